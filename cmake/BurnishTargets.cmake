@@ -1,0 +1,12 @@
+# Flags every target of the project shares; call once on each target.
+function(burnish_target name)
+  target_compile_features(${name} PUBLIC cxx_std_20)
+  target_compile_options(${name} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual)
+  if(BURNISH_WERROR)
+    target_compile_options(${name} PRIVATE -Werror)
+  endif()
+  if(BURNISH_SANITIZE)
+    target_compile_options(${name} PRIVATE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    target_link_options(${name} PUBLIC -fsanitize=address,undefined)
+  endif()
+endfunction()

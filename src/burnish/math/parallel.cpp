@@ -1,0 +1,27 @@
+#include <algorithm>
+
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include <burnish/math/parallel.h>
+
+namespace burnish {
+
+void for_each_chunk(std::size_t count, std::size_t chunk_size,
+                    const std::function<void(std::size_t, std::size_t, std::size_t)>& body) {
+  tbb::parallel_for(std::size_t{0}, chunk_count(count, chunk_size), [&](std::size_t chunk) {
+    body(chunk, chunk * chunk_size, std::min(count, (chunk + 1) * chunk_size));
+  });
+}
+
+ThreadLimit::ThreadLimit(int threads) {
+  if (threads > 0)
+    control_ = new tbb::global_control(tbb::global_control::max_allowed_parallelism,
+                                       static_cast<std::size_t>(threads));
+}
+
+ThreadLimit::~ThreadLimit() {
+  delete static_cast<tbb::global_control*>(control_);
+}
+
+}  // namespace burnish

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <burnish/math/vec3.h>
+
+namespace burnish {
+
+/// Two directions of the local frame: wi to the light, wo to the viewer.
+struct DirectionPair {
+  Vec3 wi, wo;
+
+  friend constexpr bool operator==(const DirectionPair&, const DirectionPair&) = default;
+};
+
+/// What every reflectance of this library is: a plain value with
+/// - channels(): how many values a direction pair has: 1, 3 (linear Rec. 709) or a count of wavelengths;
+/// - isotropic(): true where rotating both directions about the normal changes nothing;
+/// - eval(wi, wo, f): writes f_r in 1/sr without the cosine into f (size channels()). Returns false, and
+/// writes zeros,
+///   where the source knows nothing: a hole in a measurement, a direction outside its coverage. Below the
+///   horizon (wi.z <= 0 or wo.z <= 0) it writes zeros and returns true. Never allocates, never throws; values
+///   are finite and, except for sources kept raw on request, >= 0.
+template <class T>
+concept Brdf = requires(const T& brdf, Vec3 w, std::span<double> f) {
+  { brdf.channels() }
+  noexcept->std::convertible_to<int>;
+  { brdf.isotropic() }
+  noexcept->std::convertible_to<bool>;
+  { brdf.eval(w, w, f) }
+  noexcept->std::same_as<bool>;
+};
+
+/// A non-owning reference to any Brdf. The indirection is paid once a span, not once a direction.
+class BrdfRef {
+ public:
+  template <Brdf T>
+  requires(!std::same_as<T, BrdfRef>) BrdfRef(const T& brdf)
+  noexcept  // NOLINT: implicit like std::span
+      : brdf_(&brdf), channels_(brdf.channels()), isotropic_(brdf.isotropic()), eval_span_(&eval_span<T>) {}
+
+  int channels() const noexcept { return channels_; }
+  bool isotropic() const noexcept { return isotropic_; }
+
+  /// One pair; see Brdf.
+  bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+    const DirectionPair pair{wi, wo};
+    std::uint8_t known = 0;
+    eval_span_(brdf_, {&pair, 1}, f, {&known, 1});
+    return known != 0;
+  }
+
+  /// Many pairs: `values` has pairs.size() * channels() entries, channel fastest; `known` one flag a pair.
+  void eval(std::span<const DirectionPair> pairs, std::span<double> values,
+            std::span<std::uint8_t> known) const noexcept {
+    eval_span_(brdf_, pairs, values, known);
+  }
+
+ private:
+  template <Brdf T>
+  static void eval_span(const void* brdf, std::span<const DirectionPair> pairs, std::span<double> values,
+                        std::span<std::uint8_t> known) noexcept {
+    const T& concrete = *static_cast<const T*>(brdf);
+    const auto channels = static_cast<std::size_t>(concrete.channels());
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+      known[i] = concrete.eval(pairs[i].wi, pairs[i].wo, values.subspan(i * channels, channels));
+  }
+
+  const void* brdf_;
+  int channels_;
+  bool isotropic_;
+  void (*eval_span_)(const void*, std::span<const DirectionPair>, std::span<double>,
+                     std::span<std::uint8_t>) noexcept;
+};
+
+static_assert(Brdf<BrdfRef>);
+
+/// The reciprocal part of a source, 1/2 [f(wi, wo) + f(wo, wi)]; where only one of the two is known, that
+/// one. Measured tables are seldom exactly reciprocal, exactly reciprocal models are fitted to and scored
+/// against this. Channels: at most kMaxChannels.
+class SymmetrizedBrdf {
+ public:
+  static constexpr int kMaxChannels = 1024;
+
+  explicit SymmetrizedBrdf(BrdfRef source);
+
+  int channels() const noexcept { return source_.channels(); }
+  bool isotropic() const noexcept { return source_.isotropic(); }
+  bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
+
+ private:
+  BrdfRef source_;
+};
+
+static_assert(Brdf<SymmetrizedBrdf>);
+
+}  // namespace burnish
