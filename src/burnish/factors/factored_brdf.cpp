@@ -1,0 +1,205 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include <Imath/half.h>
+#include <fmt/format.h>
+
+#include <burnish/error.h>
+#include <burnish/factors/factored_brdf.h>
+
+namespace burnish {
+
+namespace {
+
+constexpr int kMostChannels = SymmetrizedBrdf::kMaxChannels;
+
+bool depends_on_azimuth(const TableLayout& layout) noexcept {
+  return layout.shape == TableShape::disk;
+}
+
+// The use that swapping wi and wo turns `use` into; false where there is none.
+bool swapped_use(const FactorUse& use, const TableLayout& layout, FactorUse& result) noexcept {
+  result = use;
+  return swapped(use.projection, depends_on_azimuth(layout), result.projection) &&
+         (layout.shape != TableShape::grid || swapped(use.projection_y, false, result.projection_y));
+}
+
+double lookup(const Table& table, const Lookup& at, std::size_t channel) noexcept {
+  const auto step = static_cast<std::size_t>(table.channels);
+  const std::size_t c = step == 1 ? 0 : channel;
+  const float* node = table.values.data() + static_cast<std::size_t>(at.node) * step + c;
+  const double low = node[0] + at.fx * (static_cast<double>(node[step]) - node[0]);
+  if (table.layout.shape == TableShape::line) return low;
+  const float* next = node + static_cast<std::size_t>(table.layout.width) * step;
+  const double high = next[0] + at.fx * (static_cast<double>(next[step]) - next[0]);
+  return low + at.fy * (high - low);
+}
+
+int coefficient_count(const Projection& p) noexcept {
+  if (p.kind == Projection::Kind::difference || p == kProjectWi || p == kProjectWo || p == kProjectHalf)
+    return 0;
+  return (p.wi != 0) + (p.wo != 0) + (p.mirror != 0) + (p.n != 0);
+}
+
+}  // namespace
+
+FactoredBrdf::FactoredBrdf(int channels, std::vector<Table> tables, std::vector<Lobe> lobes,
+                           TableFormat format)
+    : channels_(channels), format_(format), tables_(std::move(tables)), lobes_(std::move(lobes)) {
+  if (channels < 1 || channels > kMostChannels)
+    throw Error(fmt::format("factored BRDF: expected 1 to {} channels, found {}", kMostChannels, channels));
+  if (lobes_.empty()) throw Error("factored BRDF: expected at least one lobe, found none");
+  std::set<std::string> names;
+  for (const Table& table : tables_) {
+    check_layout(table.layout, table.name);
+    if (table.name.empty() || !names.insert(table.name).second)
+      throw Error(
+          fmt::format("factored BRDF: expected distinct table names, found '{}' twice or empty", table.name));
+    if (table.channels != 1 && table.channels != channels)
+      throw Error(fmt::format("table '{}': expected 1 or {} channels, found {}", table.name, channels,
+                              table.channels));
+    if (table.values.size() != table.layout.node_count() * static_cast<std::size_t>(table.channels))
+      throw Error(fmt::format("table '{}': expected {} values, found {}", table.name,
+                              table.layout.node_count() * static_cast<std::size_t>(table.channels),
+                              table.values.size()));
+    for (const float v : table.values)
+      if (!(v > 0) || !std::isfinite(v))
+        throw Error(fmt::format("table '{}': expected positive finite values, found {}", table.name, v));
+  }
+  for (const Lobe& lobe : lobes_) {
+    if (lobe.scale.size() != static_cast<std::size_t>(channels))
+      throw Error(fmt::format("lobe: expected {} scales, found {}", channels, lobe.scale.size()));
+    for (const double s : lobe.scale)
+      if (!(s >= 0) || !std::isfinite(s))
+        throw Error(fmt::format("lobe: expected finite scales >= 0, found {}", s));
+
+    // Order the factors so that those exchanged by swapping stand side by side.
+    std::vector<FactorUse> rest = lobe.factors, pairs, singles;
+    while (!rest.empty()) {
+      const FactorUse use = rest.front();
+      rest.erase(rest.begin());
+      if (use.table < 0 || static_cast<std::size_t>(use.table) >= tables_.size())
+        throw Error(
+            fmt::format("lobe: expected a table index below {}, found {}", tables_.size(), use.table));
+      const TableLayout& layout = tables_[static_cast<std::size_t>(use.table)].layout;
+      isotropic_ = isotropic_ && !depends_on_azimuth(layout);
+      FactorUse other;
+      const bool has_swap = swapped_use(use, layout, other);
+      const auto partner = has_swap && other != use ? std::find(rest.begin(), rest.end(), other) : rest.end();
+      if (partner != rest.end()) {
+        pairs.insert(pairs.end(), {use, other});
+        rest.erase(partner);
+      } else {
+        reciprocal_ = reciprocal_ && has_swap && other == use;
+        singles.push_back(use);
+      }
+    }
+    pair_counts_.push_back(pairs.size() / 2);
+    pairs.insert(pairs.end(), singles.begin(), singles.end());
+    ordered_.push_back(std::move(pairs));
+  }
+}
+
+bool FactoredBrdf::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+  std::fill(f.begin(), f.end(), 0.0);
+  if (wi.z <= 0 || wo.z <= 0) return true;
+  std::array<double, kMostChannels> product;  // touched up to channels_ only
+  const auto channels = static_cast<std::size_t>(channels_);
+  for (std::size_t j = 0; j < lobes_.size(); ++j) {
+    for (std::size_t c = 0; c < channels; ++c) product[c] = lobes_[j].scale[c];
+    const std::vector<FactorUse>& uses = ordered_[j];
+    std::size_t k = 0;
+    // [homomorphic factorization, eq. 4]
+    for (; k < 2 * pair_counts_[j]; k += 2) {
+      const Table& table = tables_[static_cast<std::size_t>(uses[k].table)];
+      const Lookup a = locate(table.layout, uses[k], wi, wo), b = locate(table.layout, uses[k + 1], wi, wo);
+      for (std::size_t c = 0; c < channels; ++c) product[c] *= lookup(table, a, c) * lookup(table, b, c);
+    }
+    for (; k < uses.size(); ++k) {
+      const Table& table = tables_[static_cast<std::size_t>(uses[k].table)];
+      const Lookup at = locate(table.layout, uses[k], wi, wo);
+      for (std::size_t c = 0; c < channels; ++c) product[c] *= lookup(table, at, c);
+    }
+    for (std::size_t c = 0; c < channels; ++c) f[c] += product[c];
+  }
+  return true;
+}
+
+double FactoredBrdf::smallest_factor() const noexcept {
+  double smallest = 1;
+  for (const Table& table : tables_)
+    for (const float v : table.values) smallest = std::min(smallest, static_cast<double>(v));
+  return smallest;
+}
+
+std::size_t FactoredBrdf::table_bytes() const noexcept {
+  std::size_t count = 0;
+  for (const Table& table : tables_) count += table.values.size();
+  return count * (format_ == TableFormat::half ? 2 : 4);
+}
+
+std::size_t FactoredBrdf::bytes() const noexcept {
+  std::size_t parameters = 0;
+  for (const Table& table : tables_) {
+    parameters += table.layout.warp.kind != WarpKind::identity;
+    parameters += table.layout.shape == TableShape::grid && table.layout.warp_y.kind != WarpKind::identity;
+  }
+  for (const Lobe& lobe : lobes_) {
+    parameters += lobe.scale.size();
+    for (const FactorUse& use : lobe.factors) {
+      parameters += static_cast<std::size_t>(coefficient_count(use.projection));
+      if (tables_[static_cast<std::size_t>(use.table)].layout.shape == TableShape::grid)
+        parameters += static_cast<std::size_t>(coefficient_count(use.projection_y));
+    }
+  }
+  return table_bytes() + parameters * sizeof(float);
+}
+
+FactoredBrdf from_log_tables(int channels, std::vector<Table> tables, std::vector<Lobe> lobes,
+                             TableFormat format) {
+  const auto brdf_channels = static_cast<std::size_t>(channels);
+  for (std::size_t t = 0; t < tables.size(); ++t) {
+    Table& table = tables[t];
+    const auto table_channels = static_cast<std::size_t>(table.channels);
+    for (std::size_t c = 0; c < table_channels; ++c) {
+      float largest = -std::numeric_limits<float>::infinity();
+      for (std::size_t i = c; i < table.values.size(); i += table_channels)
+        largest = std::max(largest, table.values[i]);
+      for (std::size_t i = c; i < table.values.size(); i += table_channels) {
+        const double scaled = std::max(std::exp(static_cast<double>(table.values[i]) - largest), kTableFloor);
+        table.values[i] = format == TableFormat::half
+                              ? static_cast<float>(Imath::half(static_cast<float>(scaled)))
+                              : static_cast<float>(scaled);
+      }
+      // every use of the table carries its largest value into the lobe
+      for (Lobe& lobe : lobes)
+        for (const FactorUse& use : lobe.factors)
+          if (static_cast<std::size_t>(use.table) == t)
+            for (std::size_t b = 0; b < brdf_channels; ++b)
+              if (table_channels == 1 || b == c) lobe.scale[b] += largest;
+    }
+  }
+  for (Lobe& lobe : lobes)
+    for (double& s : lobe.scale) s = static_cast<float>(std::exp(s));
+  return FactoredBrdf(channels, std::move(tables), std::move(lobes), format);
+}
+
+std::string model_expression(const FactoredBrdf& brdf) {
+  std::string text;
+  for (const Lobe& lobe : brdf.lobes()) {
+    if (!text.empty()) text += " + ";
+    for (std::size_t k = 0; k < lobe.factors.size(); ++k) {
+      const FactorUse& use = lobe.factors[k];
+      const Table& table = brdf.tables()[static_cast<std::size_t>(use.table)];
+      text += fmt::format("{}{}({}", k ? " " : "", table.name, to_string(use.projection));
+      if (table.layout.shape == TableShape::grid) text += "," + to_string(use.projection_y);
+      text += ")";
+    }
+  }
+  return text;
+}
+
+}  // namespace burnish

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <burnish/factors/table.h>
+#include <burnish/reflectance/brdf.h>
+
+namespace burnish {
+
+/// One product of factors; scale has one entry a channel.
+struct Lobe {
+  std::vector<double> scale;
+  std::vector<FactorUse> factors;
+
+  friend bool operator==(const Lobe&, const Lobe&) = default;
+};
+
+/// How table values are stored.
+enum class TableFormat { half, single };
+
+/// A factored BRDF: f(wi, wo) = sum over lobes of scale * product of table lookups, all positive [homomorphic
+/// factorization, eq. 4; several lobes go beyond the paper]. A table used for both directions is stored once,
+/// and the two lookups are multiplied with each other first, so a reciprocal model is reciprocal to the last
+/// bit. Satisfies Brdf: eval takes directions above the horizon, f has channels() entries, 1/sr.
+class FactoredBrdf {
+ public:
+  FactoredBrdf() = default;
+  /// Throws Error if a table's size, name, channels or values (finite, > 0), a lobe's scale (finite, >= 0) or
+  /// a factor's table index does not fit.
+  FactoredBrdf(int channels, std::vector<Table> tables, std::vector<Lobe> lobes, TableFormat format);
+
+  int channels() const noexcept { return channels_; }
+  bool isotropic() const noexcept { return isotropic_; }
+  bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
+
+  std::span<const Table> tables() const noexcept { return tables_; }
+  std::span<const Lobe> lobes() const noexcept { return lobes_; }
+  TableFormat format() const noexcept { return format_; }
+
+  /// True if swapping wi and wo leaves every lobe's factors the same.
+  bool reciprocal() const noexcept { return reciprocal_; }
+  /// Smallest stored table value; the largest is 1.
+  double smallest_factor() const noexcept;
+  /// Bytes of the tables as stored.
+  std::size_t table_bytes() const noexcept;
+  /// table_bytes() plus 4 bytes for every scale, warp parameter and projection coefficient that the
+  /// projection's name does not imply.
+  std::size_t bytes() const noexcept;
+
+  friend bool operator==(const FactoredBrdf&, const FactoredBrdf&) = default;
+
+ private:
+  int channels_ = 0;
+  bool isotropic_ = true, reciprocal_ = true;
+  TableFormat format_ = TableFormat::single;
+  std::vector<Table> tables_;
+  std::vector<Lobe> lobes_;
+  // lobes_[i].factors in evaluation order: the first 2 * pair_counts_[i] are pairs that swapping exchanges
+  std::vector<std::vector<FactorUse>> ordered_;
+  std::vector<std::size_t> pair_counts_;
+};
+
+static_assert(Brdf<FactoredBrdf>);
+
+/// Table entries are kept at or above this share of the largest, so that half floats stay positive and
+/// normal.
+inline constexpr double kTableFloor = 0x1p-14;
+
+/// Makes the largest value of every table's channel 1, with the factor moved into the lobes' scales, raises
+/// entries to kTableFloor and rounds them to `format`. The tables hold logarithms of lambda, channels as in
+/// Table; log_scale one entry a lobe and channel.
+FactoredBrdf from_log_tables(int channels, std::vector<Table> log_tables, std::vector<Lobe> log_scaled_lobes,
+                             TableFormat format);
+
+/// "p(wo) q(h) p(wi) + ..." with the tables' names.
+std::string model_expression(const FactoredBrdf& brdf);
+
+}  // namespace burnish

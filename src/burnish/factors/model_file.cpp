@@ -1,0 +1,301 @@
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <sstream>
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfMultiPartOutputFile.h>
+#include <OpenEXR/ImfOutputPart.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <burnish/error.h>
+#include <burnish/factors/model_file.h>
+
+namespace burnish {
+
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kVersion = 1;
+constexpr const char* kAttribute = "burnish";
+constexpr std::array<unsigned char, 4> kExrMagic{0x76, 0x2f, 0x31, 0x01};
+
+/// OpenEXR's input from memory.
+class MemoryInput : public Imf::IStream {
+ public:
+  explicit MemoryInput(const FileBytes& file) : IStream(file.name.c_str()), bytes_(file.bytes) {}
+
+  bool read(char target[], int count) override {
+    if (count < 0 || static_cast<std::uint64_t>(count) > bytes_.size() - at_)
+      throw Iex::InputExc("unexpected end of file");
+    std::memcpy(target, bytes_.data() + at_, static_cast<std::size_t>(count));
+    at_ += static_cast<std::uint64_t>(count);
+    return at_ < bytes_.size();
+  }
+  std::uint64_t tellg() override { return at_; }
+  void seekg(std::uint64_t at) override {
+    if (at > bytes_.size()) throw Iex::InputExc("offset beyond the end of the file");
+    at_ = at;
+  }
+
+ private:
+  std::span<const std::byte> bytes_;
+  std::uint64_t at_ = 0;
+};
+
+/// OpenEXR's output to memory.
+class MemoryOutput : public Imf::OStream {
+ public:
+  MemoryOutput() : OStream("model") {}
+
+  void write(const char source[], int count) override {
+    const auto n = static_cast<std::size_t>(count);
+    if (at_ + n > bytes.size()) bytes.resize(at_ + n);
+    std::memcpy(bytes.data() + at_, source, n);
+    at_ += n;
+  }
+  std::uint64_t tellp() override { return at_; }
+  void seekp(std::uint64_t at) override { at_ = at; }
+
+  std::string bytes;
+
+ private:
+  std::size_t at_ = 0;
+};
+
+// EXR keeps channels by name; viewers show Y as grey and R, G, B as colour.
+std::string channel_name(int channels, int c) {
+  if (channels == 1) return "Y";
+  if (channels == 3) return std::string(1, "RGB"[c]);
+  return fmt::format("c{:04}", c);
+}
+
+const char* shape_name(TableShape shape) {
+  return shape == TableShape::line ? "line" : shape == TableShape::disk ? "disk" : "grid";
+}
+
+Json to_json(const Model& model) {
+  const FactoredBrdf& brdf = model.brdf;
+  Json tables = Json::array(), lobes = Json::array();
+  for (const Table& t : brdf.tables()) {
+    Json table{{"name", t.name},          {"shape", shape_name(t.layout.shape)},
+               {"width", t.layout.width}, {"height", t.layout.height},
+               {"channels", t.channels},  {"warp", to_string(t.layout.warp)}};
+    if (t.layout.shape == TableShape::grid) table["warp_y"] = to_string(t.layout.warp_y);
+    tables.push_back(std::move(table));
+  }
+  for (const Lobe& l : brdf.lobes()) {
+    Json factors = Json::array();
+    for (const FactorUse& use : l.factors) {
+      const Table& table = brdf.tables()[static_cast<std::size_t>(use.table)];
+      Json factor{{"table", table.name}, {"projection", to_string(use.projection)}};
+      if (table.layout.shape == TableShape::grid) factor["projection_y"] = to_string(use.projection_y);
+      factors.push_back(std::move(factor));
+    }
+    lobes.push_back({{"scale", l.scale}, {"factors", std::move(factors)}});
+  }
+  return {{"version", kVersion},
+          {"channels", brdf.channels()},
+          {"lambda_nm", model.lambda_nm},
+          {"format", brdf.format() == TableFormat::half ? "half" : "float"},
+          {"model", model_expression(brdf)},
+          {"tables", std::move(tables)},
+          {"lobes", std::move(lobes)},
+          {"notes", Json::parse(model.notes)}};
+}
+
+std::vector<Imf::Header> headers(const Model& model) {
+  std::vector<Imf::Header> result;
+  for (const Table& t : model.brdf.tables()) {
+    Imf::Header header(t.layout.width, t.layout.height);
+    header.setName(t.name);
+    header.setType(Imf::SCANLINEIMAGE);
+    header.compression() = Imf::NO_COMPRESSION;
+    const Imf::PixelType type = model.brdf.format() == TableFormat::half ? Imf::HALF : Imf::FLOAT;
+    for (int c = 0; c < t.channels; ++c)
+      header.channels().insert(channel_name(t.channels, c), Imf::Channel(type));
+    result.push_back(std::move(header));
+  }
+  result.front().insert(kAttribute, Imf::StringAttribute(to_json(model).dump()));
+  return result;
+}
+
+// A frame buffer over interleaved floats; OpenEXR converts halves.
+Imf::FrameBuffer frame_buffer(float* values, int width, int channels) {
+  Imf::FrameBuffer buffer;
+  const std::size_t step = sizeof(float) * static_cast<std::size_t>(channels);
+  for (int c = 0; c < channels; ++c)
+    buffer.insert(channel_name(channels, c), Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values + c), step,
+                                                        step * static_cast<std::size_t>(width)));
+  return buffer;
+}
+
+TableShape parse_shape(const std::string& name) {
+  if (name == "line") return TableShape::line;
+  if (name == "disk") return TableShape::disk;
+  if (name == "grid") return TableShape::grid;
+  throw Error(fmt::format("shape: expected line, disk or grid, found '{}'", name));
+}
+
+Projection read_projection(const Json& factor, const char* key) {
+  bool angle_only = false;
+  return parse_projection(factor.at(key).get<std::string>(), angle_only);
+}
+
+// Everything but the pixels, from the JSON.
+void read_tables(const Json& json, std::uint64_t file_size, int channels, std::vector<Table>& tables) {
+  std::uint64_t total = 0;
+  for (const Json& t : json.at("tables")) {
+    Table table{.name = t.at("name").get<std::string>(),
+                .layout = {.shape = parse_shape(t.at("shape").get<std::string>()),
+                           .width = t.at("width").get<int>(),
+                           .height = t.at("height").get<int>(),
+                           .warp = parse_warp(t.at("warp").get<std::string>())},
+                .channels = t.at("channels").get<int>(),
+                .values = {}};
+    if (table.layout.shape == TableShape::grid)
+      table.layout.warp_y = parse_warp(t.at("warp_y").get<std::string>());
+    check_layout(table.layout, table.name);
+    if (table.channels != 1 && table.channels != channels)
+      throw Error(fmt::format("table '{}': expected 1 or {} channels, found {}", table.name, channels,
+                              table.channels));
+    // the tables are stored uncompressed, in halves or floats: they cannot be larger than the file
+    total += table.layout.node_count() * static_cast<std::uint64_t>(table.channels) * 2;
+    if (total > file_size)
+      throw Error(fmt::format("table '{}': expected tables that fit the file's {} bytes, found {} or more",
+                              table.name, file_size, total));
+    tables.push_back(std::move(table));
+  }
+}
+
+void read_pixels(Imf::MultiPartInputFile& input, int part, Table& table) {
+  const Imf::Header& header = input.header(part);
+  const Imath::Box2i window = header.dataWindow();
+  if (header.name() != table.name)
+    throw Error(fmt::format("part {}: expected name '{}', found '{}'", part, table.name, header.name()));
+  if (window.min != Imath::V2i(0, 0) ||
+      window.max != Imath::V2i(table.layout.width - 1, table.layout.height - 1))
+    throw Error(fmt::format("part '{}': expected a window of {} x {} at the origin, found another",
+                            table.name, table.layout.width, table.layout.height));
+  if (header.compression() != Imf::NO_COMPRESSION)
+    throw Error(fmt::format("part '{}': expected no compression, found compression {}", table.name,
+                            static_cast<int>(header.compression())));
+  int found = 0;
+  for (auto c = header.channels().begin(); c != header.channels().end(); ++c, ++found)
+    if (c.channel().xSampling != 1 || c.channel().ySampling != 1 || c.channel().type == Imf::UINT)
+      throw Error(fmt::format("part '{}': expected half or float channels without subsampling", table.name));
+  for (int c = 0; c < table.channels; ++c)
+    if (!header.channels().findChannel(channel_name(table.channels, c)) || found != table.channels)
+      throw Error(fmt::format("part '{}': expected channels {}…, found others", table.name,
+                              channel_name(table.channels, c)));
+
+  table.values.resize(table.layout.node_count() * static_cast<std::size_t>(table.channels));
+  Imf::InputPart pixels(input, part);
+  pixels.setFrameBuffer(frame_buffer(table.values.data(), table.layout.width, table.channels));
+  pixels.readPixels(0, table.layout.height - 1);
+}
+
+Model read_model(const FileBytes& file) {
+  MemoryInput stream(file);
+  Imf::MultiPartInputFile input(stream, 1);
+  const auto* attribute = input.header(0).findTypedAttribute<Imf::StringAttribute>(kAttribute);
+  if (!attribute) throw Error("expected a string attribute 'burnish', found an OpenEXR file without it");
+  const Json json = Json::parse(attribute->value());
+  if (const int version = json.at("version").get<int>(); version != kVersion)
+    throw Error(fmt::format("expected version {}, found {}", kVersion, version));
+
+  const int channels = json.at("channels").get<int>();
+  std::vector<Table> tables;
+  read_tables(json, file.bytes.size(), channels, tables);
+  if (static_cast<std::size_t>(input.parts()) != tables.size())
+    throw Error(fmt::format("expected {} parts, found {}", tables.size(), input.parts()));
+  for (int part = 0; part < input.parts(); ++part)
+    read_pixels(input, part, tables[static_cast<std::size_t>(part)]);
+
+  std::vector<Lobe> lobes;
+  for (const Json& l : json.at("lobes")) {
+    Lobe lobe{.scale = l.at("scale").get<std::vector<double>>(), .factors = {}};
+    for (const Json& f : l.at("factors")) {
+      const auto name = f.at("table").get<std::string>();
+      const auto table =
+          std::find_if(tables.begin(), tables.end(), [&](const Table& t) { return t.name == name; });
+      if (table == tables.end())
+        throw Error(fmt::format("factor: expected the name of a table, found '{}'", name));
+      FactorUse use{.table = static_cast<int>(table - tables.begin()),
+                    .projection = read_projection(f, "projection"),
+                    .projection_y = {}};
+      if (table->layout.shape == TableShape::grid) use.projection_y = read_projection(f, "projection_y");
+      lobe.factors.push_back(use);
+    }
+    lobes.push_back(std::move(lobe));
+  }
+  const auto format_name = json.at("format").get<std::string>();
+  if (format_name != "half" && format_name != "float")
+    throw Error(fmt::format("format: expected half or float, found '{}'", format_name));
+  const TableFormat format = format_name == "half" ? TableFormat::half : TableFormat::single;
+
+  Model model{.brdf = FactoredBrdf(channels, std::move(tables), std::move(lobes), format),
+              .lambda_nm = json.at("lambda_nm").get<std::vector<double>>(),
+              .notes = json.at("notes").dump()};
+  if (!model.lambda_nm.empty() && model.lambda_nm.size() != static_cast<std::size_t>(channels))
+    throw Error(fmt::format("lambda_nm: expected none or {} wavelengths, found {}", channels,
+                            model.lambda_nm.size()));
+  return model;
+}
+
+}  // namespace
+
+bool looks_like_exr(std::span<const std::byte> head) noexcept {
+  return head.size() >= kExrMagic.size() && std::memcmp(head.data(), kExrMagic.data(), kExrMagic.size()) == 0;
+}
+
+std::string format_model(const Model& model) {
+  if (model.brdf.tables().empty()) throw Error("model: expected at least one table to write, found none");
+  MemoryOutput stream;
+  {
+    const std::vector<Imf::Header> parts = headers(model);
+    Imf::MultiPartOutputFile output(stream, parts.data(), static_cast<int>(parts.size()), false, 1);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const Table& table = model.brdf.tables()[i];
+      std::vector<float> values = table.values;  // OpenEXR wants them mutable
+      Imf::OutputPart part(output, static_cast<int>(i));
+      if (model.brdf.format() == TableFormat::single) {
+        part.setFrameBuffer(frame_buffer(values.data(), table.layout.width, table.channels));
+        part.writePixels(table.layout.height);
+        continue;
+      }
+      std::vector<Imath::half> halves(values.begin(), values.end());
+      Imf::FrameBuffer buffer;
+      const std::size_t step = sizeof(Imath::half) * static_cast<std::size_t>(table.channels);
+      for (int c = 0; c < table.channels; ++c)
+        buffer.insert(channel_name(table.channels, c),
+                      Imf::Slice(Imf::HALF, reinterpret_cast<char*>(halves.data() + c), step,
+                                 step * static_cast<std::size_t>(table.layout.width)));
+      part.setFrameBuffer(buffer);
+      part.writePixels(table.layout.height);
+    }
+  }
+  return std::move(stream.bytes);
+}
+
+Model parse_model(const FileBytes& file) {
+  if (!looks_like_exr(file.bytes)) throw Error(file.name, 0, "an OpenEXR file", "other bytes");
+  try {
+    return read_model(file);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", file.name, error.what()));
+  } catch (const std::exception& error) {  // OpenEXR's and JSON's own
+    throw Error(fmt::format("{}: expected a burnish model, found: {}", file.name, error.what()));
+  }
+}
+
+}  // namespace burnish

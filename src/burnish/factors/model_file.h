@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <burnish/factors/factored_brdf.h>
+#include <burnish/file.h>
+
+namespace burnish {
+
+/// A factored BRDF with what its file says about it.
+struct Model {
+  FactoredBrdf brdf;
+  std::vector<double> lambda_nm;  ///< wavelengths of the channels; empty for grey and RGB
+  std::string notes = "{}";       ///< a JSON object: source, fit options, errors
+
+  friend bool operator==(const Model&, const Model&) = default;
+};
+
+/// The native file: a multi-part OpenEXR image, one part a table in the table's name, half or float pixels,
+/// and in the first part a string attribute "burnish" with JSON: version, channels, tables, lobes, notes.
+/// What format_model writes, parse_model restores to the last bit.
+std::string format_model(const Model& model);
+
+/// Throws Error if the bytes are no OpenEXR file, hold no "burnish" attribute, or contradict it in any way.
+Model parse_model(const FileBytes& file);
+
+/// True if the bytes start as an OpenEXR file does.
+bool looks_like_exr(std::span<const std::byte> head) noexcept;
+
+}  // namespace burnish

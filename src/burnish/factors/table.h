@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <burnish/parameterization/hemisphere_map.h>
+#include <burnish/parameterization/projection.h>
+
+namespace burnish {
+
+/// What a table's nodes are spread over.
+/// - line: the polar angle of one projected direction, node 0 at the normal, the last at the horizon;
+/// - disk: the hemisphere of one projected direction, square, the disk's rim through the outermost nodes;
+/// - grid: the polar angles of two projected directions, x of the first, y of the second.
+enum class TableShape { line, disk, grid };
+
+/// Where the nodes of a table stand.
+struct TableLayout {
+  TableShape shape = TableShape::line;
+  int width = 0;   ///< nodes along x, >= 2
+  int height = 1;  ///< nodes along y; 1 for a line, equal to width for a disk
+  Warp warp;       ///< spacing along the polar angle (disk: along the radius)
+  Warp warp_y;     ///< grid: spacing along y
+
+  std::size_t node_count() const noexcept {
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  }
+
+  friend bool operator==(const TableLayout&, const TableLayout&) = default;
+};
+
+/// One positive factor lambda: node (x, y), channel c at [(y * width + x) * channels + c]. Between nodes it
+/// is the (bi)linear interpolation of the stored values, as a texture unit computes it. Largest value of a
+/// channel: 1.
+struct Table {
+  std::string name;
+  TableLayout layout;
+  int channels = 1;  ///< 1 (shared by the BRDF's channels) or the BRDF's channel count
+  std::vector<float> values;
+
+  friend bool operator==(const Table&, const Table&) = default;
+};
+
+/// One use of a table in a product: which one, and what it is looked up by.
+struct FactorUse {
+  int table = 0;
+  Projection projection;
+  Projection projection_y;  ///< grid only
+
+  friend bool operator==(const FactorUse&, const FactorUse&) = default;
+};
+
+/// The nodes that a lookup touches: first node and fractions; the others are first + 1, + width, + width + 1.
+struct Lookup {
+  int node = 0;           ///< y * width + x of the lower corner
+  double fx = 0, fy = 0;  ///< in [0, 1]; fy = 0 for a line
+};
+
+/// Finds the nodes for directions above the horizon.
+Lookup locate(const TableLayout& layout, const FactorUse& use, Vec3 wi, Vec3 wo) noexcept;
+
+/// The projected direction that node (x, y) of a line or disk stands for (a line's at azimuth 0).
+Vec3 node_direction(const TableLayout& layout, int x, int y) noexcept;
+
+/// Throws Error unless the sizes are in [2, 8192] and fit the shape.
+void check_layout(const TableLayout& layout, const std::string& name);
+
+}  // namespace burnish

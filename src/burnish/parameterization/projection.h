@@ -1,0 +1,50 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include <burnish/math/vec3.h>
+
+namespace burnish {
+
+/// A projection pi(wi, wo) of the paper's eq. 4: a unit vector of the upper hemisphere made from the two
+/// directions.
+/// - affine: normalize(wi * WI + wo * WO + mirror * mirror(WI) + n * N), a normalized affine combination of
+/// the light,
+///   the view, the mirrored light (-x, -y, z) and the normal; wi, wo and h are the simplest of them.
+/// - difference: the light direction in the frame of the half vector, theta_d from its z, phi_d from its
+/// azimuth
+///   [Rusinkiewicz 1998].
+struct Projection {
+  enum class Kind { affine, difference };
+
+  Kind kind = Kind::affine;
+  double wi = 0, wo = 0, mirror = 0, n = 0;
+
+  friend bool operator==(const Projection&, const Projection&) = default;
+};
+
+inline constexpr Projection kProjectWi{.wi = 1};
+inline constexpr Projection kProjectWo{.wo = 1};
+inline constexpr Projection kProjectHalf{.wi = 1, .wo = 1};
+inline constexpr Projection kProjectDifference{.kind = Projection::Kind::difference};
+
+/// The projected direction, z >= 0 (a combination that points below the horizon is clamped to it). wi and wo
+/// above the horizon. Exactly equal for (wi, wo) and (wo, wi) under swapped(projection).
+Vec3 project(const Projection& projection, Vec3 wi, Vec3 wo) noexcept;
+
+/// tan(theta / 2) of project(projection, wi, wo), cheaper where the azimuth is not needed.
+double project_tan_half(const Projection& projection, Vec3 wi, Vec3 wo) noexcept;
+
+/// The projection that gives for (wo, wi) what `projection` gives for (wi, wo), as far as a table sees it:
+/// `azimuth` says whether the table depends on the azimuth. Returns false where there is none (mirror terms).
+bool swapped(const Projection& projection, bool azimuth, Projection& result) noexcept;
+
+/// Reads wi, wo, h, d, theta_h, theta_d, theta_i, theta_o or a sum of terms such as "wi+wo+0.5n", "m+0.8wo"
+/// (m is the mirrored light). The theta names mean the same vectors; `angle_only` tells that one was used.
+/// Throws Error on anything else.
+Projection parse_projection(std::string_view text, bool& angle_only);
+/// A text parse_projection reads back to the same projection.
+std::string to_string(const Projection& projection);
+
+}  // namespace burnish
