@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <burnish/reflectance/brdf.h>
+#include <burnish/reflectance/samples.h>
+
+namespace burnish {
+
+/// Both cosines of a drawn pair are above this.
+inline constexpr double kDrawnCosine = 0.05;
+
+/// `count` direction pairs drawn uniformly in (theta_h, theta_d, phi_d, phi_h) over
+/// [0, pi/2]^2 x [0, 2 pi)^2, keeping those with both cosines above kDrawnCosine. phi_h is 0 where
+/// `isotropic`. The same count, seed and flag give the same pairs; a smaller count gives a prefix.
+std::vector<DirectionPair> draw_pairs(std::size_t count, std::uint64_t seed, bool isotropic);
+
+}  // namespace burnish
