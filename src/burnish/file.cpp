@@ -1,13 +1,11 @@
-#include <burnish/file.h>
-
-#include <unistd.h>
-
 #include <fstream>
 #include <system_error>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <burnish/error.h>
+#include <burnish/file.h>
 
 namespace burnish {
 

@@ -1,5 +1,3 @@
-#include <burnish/reflectance/sample_source.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,6 +5,8 @@
 
 #include <burnish/math/angles.h>
 #include <burnish/math/random.h>
+#include <burnish/parameterization/half_diff.h>
+#include <burnish/reflectance/sample_source.h>
 
 namespace burnish {
 
@@ -40,7 +40,8 @@ SampleSource from_samples(const Samples& samples, bool symmetrize) {
               const std::size_t s = begin + i;
               const DirectionPair pair = samples.pairs[s % n];
               pairs[i] = s < n ? pair : DirectionPair{pair.wo, pair.wi};
-              std::ranges::copy(samples.at(s % n), values.begin() + static_cast<std::ptrdiff_t>(i * channels));
+              std::ranges::copy(samples.at(s % n),
+                                values.begin() + static_cast<std::ptrdiff_t>(i * channels));
               weights[i] = 1;
             }
           }};
@@ -57,10 +58,11 @@ SampleSource from_brdf(BrdfRef source, std::size_t count, std::uint64_t seed, bo
                       std::span<double> weights) {
             for (std::size_t i = 0; i < pairs.size(); ++i) {
               const std::array<double, 4> u = recurrence_point(begin + i, start);
-              pairs[i] = from_half_diff({.theta_h = kHalfPi * u[0] * u[0],
-                                         .phi_h = spread ? kTwoPi * u[1] : 0.0,
-                                         .theta_d = kHalfPi * u[2],
-                                         .phi_d = kTwoPi * u[3]});
+              const auto [wi, wo] = from_half_diff({.theta_h = kHalfPi * u[0] * u[0],
+                                                    .phi_h = spread ? kTwoPi * u[1] : 0.0,
+                                                    .theta_d = kHalfPi * u[2],
+                                                    .phi_d = kTwoPi * u[3]});
+              pairs[i] = {wi, wo};
             }
             std::vector<std::uint8_t> known(pairs.size());
             source.eval(pairs, values, known);

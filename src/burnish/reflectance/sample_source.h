@@ -15,20 +15,22 @@ struct SampleSource {
   std::size_t count = 0;
   int channels = 0;
   bool isotropic = false;
-  /// Writes samples [begin, begin + pairs.size()): directions, values (channel fastest, 1/sr) and the relative weight
-  /// of each sample, 0 where there is none. Called from several threads.
+  /// Writes samples [begin, begin + pairs.size()): directions, values (channel fastest, 1/sr) and the
+  /// relative weight of each sample, 0 where there is none. Called from several threads.
   std::function<void(std::size_t begin, std::span<DirectionPair> pairs, std::span<double> values,
                      std::span<double> weights)>
       fill;
 };
 
-/// The scattered samples as they are, weight 1. `samples` must outlive the source. With `symmetrize` each sample also
-/// stands for its swapped pair (count doubles), which is how scattered data become reciprocal without resampling.
+/// The scattered samples as they are, weight 1. `samples` must outlive the source. With `symmetrize` each
+/// sample also stands for its swapped pair (count doubles), which is how scattered data become reciprocal
+/// without resampling.
 SampleSource from_samples(const Samples& samples, bool symmetrize);
 
-/// `count` pairs of a low-discrepancy sequence: theta_d, phi_d and phi_h uniform, theta_h = pi/2 u^2 (measured tables
-/// space theta_h that way, because highlights are narrow), weight 1. Isotropic sources are measured at phi_h = 0
-/// unless `spread_phi_h`, which 2-D tables need to be filled. The Brdf behind `source` must outlive the result.
+/// `count` pairs of a low-discrepancy sequence: theta_d, phi_d and phi_h uniform, theta_h = pi/2 u^2
+/// (measured tables space theta_h that way, because highlights are narrow), weight 1. Isotropic sources are
+/// measured at phi_h = 0 unless `spread_phi_h`, which 2-D tables need to be filled. The Brdf behind `source`
+/// must outlive the result.
 SampleSource from_brdf(BrdfRef source, std::size_t count, std::uint64_t seed, bool spread_phi_h);
 
 }  // namespace burnish

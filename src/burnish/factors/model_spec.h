@@ -1,0 +1,35 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <burnish/factors/factored_brdf.h>
+
+namespace burnish {
+
+/// A factored BRDF without its numbers: which tables there are and how the lobes use them.
+struct ModelSpec {
+  struct TableSpec {
+    std::string name;
+    TableLayout layout;
+    bool shared = false;  ///< one channel for all
+  };
+  std::vector<TableSpec> tables;
+  std::vector<std::vector<FactorUse>> lobes;
+};
+
+/// Reads a model such as "p(wo) q(h) p(wi)" or "p(wo) q(h) r(theta_d) p(wi) + s(wi+wo+0.3n)": lobes joined by
+/// '+', a lobe a product of tables, each with one projection (see parse_projection), or with two polar angles
+/// as in "g(theta_h,theta_d)". "pqp" and "pqpr" stand for the first and the first lobe of the second.
+///
+/// `table_options` set tables, one text each: "NAME=SIZE[,warp][,shared]". SIZE is N (a line over the polar
+/// angle), NxN (a disk) or NxM (a grid, where two projections are given); the warp as parse_warp reads it.
+/// Where there is none, the table is a line of 32 nodes (64 and a rational warp for the half vector) if the
+/// source is `isotropic` or the projection has a theta name, and otherwise a disk of 64 x 64. Throws Error on
+/// anything else, and on options for a table that the model does not have.
+ModelSpec parse_model_spec(std::string_view expression, std::span<const std::string> table_options,
+                           bool isotropic);
+
+}  // namespace burnish

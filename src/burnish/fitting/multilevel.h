@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <burnish/factors/table.h>
+
+namespace burnish {
+
+/// Linear interpolation between a table's nodes and those of the same table at a lower resolution, the corner
+/// nodes in common. Values have `step` channels a node.
+class GridTransfer {
+ public:
+  GridTransfer(const TableLayout& fine, int coarse_width, int coarse_height);
+
+  std::size_t coarse_count() const noexcept {
+    return static_cast<std::size_t>(x_.nodes) * static_cast<std::size_t>(y_.nodes);
+  }
+  int coarse_width() const noexcept { return x_.nodes; }
+  int coarse_height() const noexcept { return y_.nodes; }
+  /// The coarse nodes and weights of a point given by its lookup in the fine table: four, some of weight 0.
+  struct Corners {
+    std::size_t node[4];
+    double weight[4];
+  };
+  Corners corners(int fine_x, double fx, int fine_y, double fy) const noexcept;
+
+  /// coarse = transpose of interpolation of fine.
+  void restrict_to(const double* fine, double* coarse, std::size_t step) const;
+  /// fine += interpolation of coarse.
+  void add_interpolated(const double* coarse, double* fine, std::size_t step) const;
+
+ private:
+  struct Axis {
+    int fine_nodes = 1, nodes = 1;
+    double scale = 0;
+  };
+  Axis x_, y_;
+};
+
+/// The resolutions below a table's own: sides halved down to 2, then 1; coarsest last.
+std::vector<GridTransfer> coarser_levels(const TableLayout& layout);
+
+}  // namespace burnish

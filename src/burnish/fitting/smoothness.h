@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <burnish/factors/table.h>
+
+namespace burnish {
+
+/// Linear functionals of a table's nodes whose squares add up to its roughness: row r is the sum of
+/// coefficients[k] * x[nodes[k]] for k in [starts[r], starts[r + 1]).
+struct SmoothnessRows {
+  std::vector<std::uint32_t> starts{0}, nodes;
+  std::vector<double> coefficients;
+
+  std::size_t size() const noexcept { return starts.size() - 1; }
+};
+
+/// The discrete form of the integral over the unit interval or square of the squared second derivatives,
+/// xx^2 + 2 xy^2 + yy^2 (whose normal operator is the Laplacian squared), plus `kSlopeShare` of the squared
+/// first derivatives, which keeps extrapolation into regions without data from running away. Independent of
+/// the resolution.
+SmoothnessRows smoothness_rows(const TableLayout& layout);
+
+inline constexpr double kSlopeShare = 0.03;
+
+}  // namespace burnish
