@@ -1,0 +1,85 @@
+#include <gtest/gtest.h>
+
+#include <burnish/error.h>
+#include <burnish/math/angles.h>
+#include <burnish/parameterization/half_diff.h>
+#include <burnish/parameterization/hemisphere_map.h>
+#include <burnish/parameterization/projection.h>
+#include <burnish/reflectance/goniometer.h>
+
+namespace burnish {
+namespace {
+
+std::vector<DirectionPair> pairs_and_corners() {
+  std::vector<DirectionPair> pairs = draw_pairs(2000, 3, false);
+  const Vec3 n{0, 0, 1}, grazing = normalize({1, 0, 1e-9}), side = normalize({-0.3, 0.4, 0.2});
+  for (const DirectionPair& p :
+       {DirectionPair{n, n}, {n, grazing}, {grazing, n}, {side, side}, {grazing, mirror(grazing)}})
+    pairs.push_back(p);
+  return pairs;
+}
+
+TEST(Projection, GivesUnitVectorsAboveTheHorizon) {
+  bool angle_only;
+  for (const char* text : {"wi", "wo", "h", "d", "wi+wo-0.7n", "m+wo", "0.5wi-wo+0.2n", "wi-wo"}) {
+    const Projection p = parse_projection(text, angle_only);
+    for (const auto& [wi, wo] : pairs_and_corners()) {
+      const Vec3 v = project(p, wi, wo);
+      EXPECT_NEAR(length(v), 1, 1e-12) << text;
+      EXPECT_GE(v.z, 0) << text;
+    }
+  }
+}
+
+TEST(Projection, HalfAndDifferenceHaveTheHalfDifferenceAngles) {
+  for (const auto& [wi, wo] : draw_pairs(2000, 5, false)) {
+    const HalfDiff angles = to_half_diff(wi, wo);
+    const Vec3 d = project(kProjectDifference, wi, wo);
+    EXPECT_NEAR(theta_of(project(kProjectHalf, wi, wo)), angles.theta_h, 1e-12);
+    EXPECT_NEAR(theta_of(d), angles.theta_d, 1e-12);
+    EXPECT_LT(length(d - spherical_direction(angles.theta_d, angles.phi_d)), 1e-9);
+  }
+}
+
+TEST(Projection, AngleAloneAgreesWithTheVector) {
+  bool angle_only;
+  for (const char* text : {"wi", "h", "d", "wi+wo+0.4n", "m+2wo"}) {
+    const Projection p = parse_projection(text, angle_only);
+    for (const auto& [wi, wo] : pairs_and_corners())
+      EXPECT_NEAR(project_tan_half(p, wi, wo), tan_half_theta(project(p, wi, wo)), 1e-12) << text;
+  }
+}
+
+TEST(Projection, SwappingIsExactToTheLastBit) {
+  bool angle_only;
+  for (const char* text : {"wi", "wo", "h", "wi+wo+0.4n", "0.3wi+0.9wo-0.2n", "d"}) {
+    const Projection p = parse_projection(text, angle_only);
+    Projection q;
+    ASSERT_TRUE(swapped(p, false, q)) << text;
+    for (const auto& [wi, wo] : pairs_and_corners())
+      EXPECT_EQ(project_tan_half(p, wi, wo), project_tan_half(q, wo, wi)) << text;
+  }
+  Projection q;
+  EXPECT_FALSE(swapped(kProjectDifference, true, q));
+  EXPECT_FALSE(swapped(parse_projection("m+wo", angle_only), false, q));
+}
+
+TEST(Projection, ReadsWhatItPrints) {
+  bool angle_only;
+  for (const char* text : {"wi", "wo", "h", "d", "wi+wo+0.5n", "-0.25wi+1e-05wo-n", "m+0.8wo"}) {
+    const Projection p = parse_projection(text, angle_only);
+    EXPECT_EQ(parse_projection(to_string(p), angle_only), p) << text;
+    EXPECT_FALSE(angle_only);
+  }
+  EXPECT_EQ(parse_projection("theta_d", angle_only), kProjectDifference);
+  EXPECT_TRUE(angle_only);
+}
+
+TEST(Projection, RefusesWhatItDoesNotKnow) {
+  bool angle_only;
+  for (const char* text : {"", "x", "wi wo", "wi+", "n", "0wi", "wi+1e9n", "nan*wi", "theta_x", "wi+wow"})
+    EXPECT_THROW(parse_projection(text, angle_only), Error) << text;
+}
+
+}  // namespace
+}  // namespace burnish
