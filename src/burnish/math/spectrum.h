@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace burnish {
+
+/// Colour matching functions x, y, z of the CIE 1931 2 degree observer at a wavelength; zero outside
+/// [380, 780] nm. Linear between tabulated values every 5 nm: within 0.017 of the table of 1 nm steps.
+/// Source: [CIE 2018].
+std::array<double, 3> cie_1931_xyz(double lambda_nm) noexcept;
+
+/// Relative power of the CIE illuminant D65, 100 at 560 nm; zero outside [380, 780] nm, linear between the
+/// tabulated values. Source: [CIE 2018].
+double cie_d65(double lambda_nm) noexcept;
+
+/// Weights that turn a reflectance spectrum sampled at `lambda_nm` into linear Rec. 709, rgb = sum_k w_k f_k,
+/// under the illuminant "E" (equal energy) or "D65".
+/// Domain: increasing, positive wavelengths, at least one; steps may vary. The spectrum is taken as linear
+/// between samples and constant beyond the first and the last, which defines the part of the visible range
+/// that is not covered.
+/// The illuminant's own white is adapted to that of Rec. 709 (Bradford), so the weights sum to (1, 1, 1)
+/// within 1e-12 and a flat spectrum f = 1 is white under either illuminant. Weights of single wavelengths may
+/// be negative: saturated colours lie outside the gamut. Throws Error for another illuminant or a list
+/// outside the domain. Source: [CIE 2018], [ITU 2015], [Lam 1985].
+std::vector<std::array<double, 3>> rec709_weights(std::span<const double> lambda_nm,
+                                                  std::string_view illuminant);
+
+}  // namespace burnish
