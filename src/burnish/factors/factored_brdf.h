@@ -67,7 +67,7 @@ static_assert(Brdf<FactoredBrdf>);
 
 /// Table entries are kept at or above this share of the largest, so that half floats stay positive and
 /// normal.
-inline constexpr double kTableFloor = 0x1p-14;
+inline constexpr double kTableFloor = 0x1p-20;
 
 /// Makes the largest value of every table's channel 1, with the factor moved into the lobes' scales, raises
 /// entries to kTableFloor and rounds them to `format`. The tables hold logarithms of lambda, channels as in

@@ -117,7 +117,8 @@ std::vector<Imf::Header> headers(const Model& model) {
   std::vector<Imf::Header> result;
   // OpenEXR asks for one display window for all parts: the smallest that holds every table.
   Imath::Box2i display(Imath::V2i(0, 0));
-  for (const Table& t : model.brdf.tables()) display.extendBy(Imath::V2i(t.layout.width - 1, t.layout.height - 1));
+  for (const Table& t : model.brdf.tables())
+    display.extendBy(Imath::V2i(t.layout.width - 1, t.layout.height - 1));
   for (const Table& t : model.brdf.tables()) {
     Imf::Header header(display, Imath::Box2i({0, 0}, {t.layout.width - 1, t.layout.height - 1}));
     header.setName(t.name);
