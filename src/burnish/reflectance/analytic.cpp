@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -138,7 +139,7 @@ constexpr AnalyticModel kModels[] = {
      [](Values v) -> AnalyticVariant {
        return CookTorrance{v[0].r, v[1], v[2]};
      }},
-    {"ashikhmin_shirley", "anisotropic Phong-like lobe over a coupled diffuse term", kAshikhminShirley, false,
+    {"ashikhmin_shirley", "anisotropic Phong-like lobe over a coupled diffuse term", kAshikhminShirley, true,
      [](Values v) -> AnalyticVariant {
        return AshikhminShirley{v[0].r, v[1].r, v[2], v[3]};
      }},
@@ -199,10 +200,11 @@ std::string_view cut(std::string_view& text, char separator) {
   return head;
 }
 
+/// Reads a finite number that is the whole text.
 bool read_number(std::string_view text, double& number) {
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, number);
-  return error == std::errc{} && stop == end;
+  return error == std::errc{} && stop == end && std::isfinite(number);
 }
 
 Rgb read_value(const AnalyticModel& model, const AnalyticParameter& parameter, std::string_view text) {

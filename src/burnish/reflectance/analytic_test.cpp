@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <burnish/error.h>
-#include <burnish/math/quadrature.h>
 #include <burnish/math/random.h>
 #include <burnish/reflectance/analytic.h>
+#include <burnish/reflectance/analytic/albedo_test_util.h>
 
 namespace burnish {
 namespace {
@@ -28,21 +28,6 @@ Vec3 random_direction(Pcg32& random) {
 Vec3 turned(Vec3 w, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   return {c * w.x - s * w.y, s * w.x + c * w.y, w.z};
-}
-
-/// Reflected share of light from wo, by Gauss-Legendre in the cosine and equal steps in azimuth.
-double albedo(const AnalyticBrdf& brdf, Vec3 wo) {
-  constexpr int kAzimuths = 96;
-  const BrdfRef ref = brdf.ref();
-  std::array<double, 3> f;
-  return integrate<64>(0, 1, [&](double z) {
-    double sum = 0;
-    for (int i = 0; i < kAzimuths; ++i) {
-      ref.eval(spherical_direction(std::acos(z), kTwoPi * i / kAzimuths), wo, f);
-      sum += f[0];
-    }
-    return sum * z * kTwoPi / kAzimuths;
-  });
 }
 
 /// Every model as it comes, and with parameters at their limits and channels that differ.
@@ -148,7 +133,7 @@ TEST(AnalyticBrdf, ReflectsNoMoreLightThanItReceivesWhereItSaysSo) {
     if (!brdf.model().conserving) continue;
     for (const double theta_deg : {0.0, 30.0, 60.0, 80.0, 88.0})
       for (const double phi_deg : {0.0, 50.0, 90.0})
-        EXPECT_LE(albedo(brdf, spherical_direction(radians(theta_deg), radians(phi_deg))),
+        EXPECT_LE((albedo<64, 96>)(brdf.ref(), spherical_direction(radians(theta_deg), radians(phi_deg))),
                   1 + kQuadratureError)
             << format_analytic(brdf) << " at " << theta_deg << ", " << phi_deg << " degrees";
   }

@@ -9,10 +9,12 @@ namespace burnish {
 
 namespace {
 
-// Rows run from grazing to normal, spaced by u = sqrt(1 - theta / (pi/2)): sigma bends within alpha of the
+// With the mean of the normals, m, sigma(w) = (S(w) + w·m) / 2, where S(w) is the integral of D(h) |w·h|: a
+// norm, whose square is smooth in w (for GGX a quadratic form), and so what the table holds.
+// Rows run from grazing to normal, spaced by u = sqrt(1 - theta / (pi/2)): S bends within alpha of the
 // horizon. One row beyond either end serves the cubic.
-constexpr int kRows = 48;
-constexpr int kColumns = 96;
+constexpr int kRows = 32;
+constexpr int kColumns = 64;
 
 Vec3 direction_of_row(int row, double phi) noexcept {
   const double u = static_cast<double>(row) / kRows;
@@ -27,7 +29,7 @@ struct Facets {
 
 Facets sample_facets(const std::function<double(Vec3)>& density) {
   // Polar angles theta = (pi/2) v², dense at the normal, where densities peak.
-  constexpr int kPolar = 96, kAzimuth = 256;
+  constexpr int kPolar = 64, kAzimuth = 256;
   const GaussLegendre<kPolar>& rule = gauss_legendre<kPolar>();
   Facets facets;
   for (std::size_t i = 0; i < kPolar; ++i) {
@@ -56,25 +58,26 @@ std::array<double, 4> cubic_weights(double t) noexcept {
 }  // namespace
 
 ProjectedAreaTable::ProjectedAreaTable(const std::function<double(Vec3)>& density, bool isotropic)
-    : areas_(static_cast<std::size_t>((kRows + 3) * kColumns)) {
+    : squares_(static_cast<std::size_t>((kRows + 3) * kColumns)) {
   const Facets facets = sample_facets(density);
-  double ground = 0;
-  for (std::size_t k = 0; k < facets.normal.size(); ++k) ground += facets.area[k] * facets.normal[k].z;
-  if (!(ground > 0)) throw Error("microfacet distribution: expected a density above 0 somewhere");
-  density_scale_ = 1 / ground;
+  for (std::size_t k = 0; k < facets.normal.size(); ++k)
+    mean_normal_ = mean_normal_ + facets.area[k] * facets.normal[k];
+  if (!(mean_normal_.z > 0)) throw Error("microfacet distribution: expected a density above 0 somewhere");
+  density_scale_ = 1 / mean_normal_.z;
+  mean_normal_ = isotropic ? Vec3{0, 0, 1} : density_scale_ * mean_normal_;
 
   for_each_chunk(kRows + 3, 1, [&](std::size_t row, std::size_t, std::size_t) {
-    double* const areas = &areas_[row * kColumns];
+    double* const squares = &squares_[row * kColumns];
     double mean = 0;
     for (int column = 0; column < kColumns; ++column) {
       const Vec3 w = direction_of_row(static_cast<int>(row) - 1, kTwoPi * column / kColumns);
       double sum = 0;
       for (std::size_t k = 0; k < facets.normal.size(); ++k)
-        sum += facets.area[k] * std::max(0.0, dot(w, facets.normal[k]));
-      areas[column] = sum * density_scale_;
-      mean += areas[column] / kColumns;
+        sum += facets.area[k] * std::abs(dot(w, facets.normal[k]));
+      squares[column] = (sum * density_scale_) * (sum * density_scale_);
+      mean += squares[column] / kColumns;
     }
-    if (isotropic) std::fill(areas, areas + kColumns, mean);
+    if (isotropic) std::fill(squares, squares + kColumns, mean);
   });
 }
 
@@ -84,15 +87,15 @@ double ProjectedAreaTable::operator()(Vec3 w) const noexcept {
   const int row0 = std::min(static_cast<int>(row), kRows - 1), column0 = static_cast<int>(column);
   const std::array<double, 4> row_weight = cubic_weights(row - row0),
                               column_weight = cubic_weights(column - column0);
-  double area = 0;
+  double square = 0;
   for (int i = 0; i < 4; ++i) {
-    const double* const areas = &areas_[static_cast<std::size_t>((row0 + i) * kColumns)];
+    const double* const squares = &squares_[static_cast<std::size_t>((row0 + i) * kColumns)];
     double sum = 0;
     for (int j = 0; j < 4; ++j)
-      sum += column_weight[static_cast<std::size_t>(j)] * areas[(column0 + j + kColumns - 1) % kColumns];
-    area += row_weight[static_cast<std::size_t>(i)] * sum;
+      sum += column_weight[static_cast<std::size_t>(j)] * squares[(column0 + j + kColumns - 1) % kColumns];
+    square += row_weight[static_cast<std::size_t>(i)] * sum;
   }
-  return std::max(area, w.z);
+  return std::max(0.5 * (std::sqrt(std::max(square, 0.0)) + dot(w, mean_normal_)), w.z);
 }
 
 double masking_correlation(Vec3 wi, Vec3 wo, double width) noexcept {

@@ -44,8 +44,8 @@ struct CookTorrance {
 };
 
 /// Anisotropic Phong-like lobe (n·h)^(exponent_x cos² + exponent_y sin²) with Schlick's Fresnel factor, and a
-/// diffuse term that gives way to it at grazing angles. Reciprocal; the paper states it conserving, with
-/// kd = 1 up to 1 % above (see docs/analytic.md). Source: [Ashikhmin 2000b, eq. 4, 5].
+/// diffuse term that gives way to it at grazing angles. Reciprocal, conserving.
+/// Source: [Ashikhmin 2000b, eq. 4, 5].
 struct AshikhminShirley {
   double exponent_x = 100, exponent_y = 100;  ///< along the tangent and across, in [0, 100000]
   Rgb f0 = 0.3;

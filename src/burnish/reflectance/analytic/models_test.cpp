@@ -6,9 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include <burnish/math/quadrature.h>
+#include <burnish/error.h>
 #include <burnish/math/random.h>
 #include <burnish/reflectance/analytic.h>
+#include <burnish/reflectance/analytic/albedo_test_util.h>
 
 namespace burnish {
 namespace {
@@ -27,28 +28,6 @@ double grey(const T& brdf, Vec3 wi, Vec3 wo) {
   std::array<double, 3> f;
   brdf.eval(wi, wo, f);
   return f[0];
-}
-
-/// Integral over the upper hemisphere, by Gauss-Legendre in theta = (pi/2) v² and equal steps in azimuth.
-template <class Integrand>
-double over_hemisphere(const Integrand& integrand) {
-  constexpr int kAzimuths = 256;
-  return integrate<96>(0, 1, [&](double v) {
-    const double theta = kHalfPi * v * v;
-    double sum = 0;
-    for (int i = 0; i < kAzimuths; ++i) sum += integrand(spherical_direction(theta, kTwoPi * i / kAzimuths));
-    return sum * std::sin(theta) * kPi * v * kTwoPi / kAzimuths;
-  });
-}
-
-/// Albedo by integrating over the half vector, where narrow lobes are smooth.
-template <Brdf T>
-double albedo(const T& brdf, Vec3 wo) {
-  return over_hemisphere([&](Vec3 h) {
-    const double cosine = dot(wo, h);
-    const Vec3 wi = 2 * cosine * h - wo;
-    return cosine > 0 && wi.z > 0 ? grey(brdf, wi, wo) * wi.z * 4 * cosine : 0;
-  });
 }
 
 TEST(Lambert, IsConstant) {
@@ -105,7 +84,7 @@ TEST(Lafortune, IsPhongWithTheCoefficientsOfTheMirror) {
   Lafortune brdf{.kd = 0.1, .lobes = {}};
   brdf.lobes[0] = {.cx = -1, .cy = -1, .cz = 1, .exponent = 12, .ks = 0.5};
   const Phong phong{.kd = 0.1, .ks = 0.5, .exponent = 12, .normalized = false};
-  EXPECT_DOUBLE_EQ(grey(brdf, kA, kB), grey(phong, kA, kB));
+  EXPECT_NEAR(grey(brdf, kA, kB), grey(phong, kA, kB), 1e-14);
 }
 
 TEST(Ward, AgreesInAllNormalizationsAtNormalIncidence) {
@@ -133,7 +112,7 @@ TEST(Fresnel, MatchesTheDielectricOfIndexThreeHalves) {
   EXPECT_NEAR(fresnel_dielectric(0.04, 0.5), 0.5 * (rs * rs + rp * rp), 1e-14);
   EXPECT_NEAR(fresnel_dielectric(0.04, kMinCosine), 1, 1e-9);
   EXPECT_EQ(fresnel_dielectric(1.0, 0.3), 1);
-  EXPECT_EQ(fresnel_dielectric(0.0, 0.3), 0);
+  EXPECT_NEAR(fresnel_dielectric(0.0, 0.3), 0, 1e-30);
 }
 
 TEST(Fresnel, OfSchlickHasItsEndsExact) {
@@ -259,10 +238,14 @@ TEST(PoulinFournier, IntegratesItsHighlightAccurately) {
 
 TEST(ProjectedAreaTable, MatchesTheClosedFormOfGaussianSlopes) {
   Pcg32 random(9);
-  const BeckmannDistribution kDistributions[] = {{1, 1}, {0.3, 0.5}, {0.05, 0.05}, {0.05, 0.5}, {0.1, 0.1}};
-  for (const BeckmannDistribution& distribution : kDistributions) {
+  const struct {
+    BeckmannDistribution distribution;
+    double bound;
+  } kCases[] = {
+      {{1, 1}, 2e-4}, {{0.3, 0.5}, 2e-4}, {{0.1, 0.1}, 3e-3}, {{0.05, 0.05}, 3e-3}, {{0.05, 0.5}, 3e-3}};
+  for (const auto& [distribution, bound] : kCases) {
     // Three times the density must give the same table.
-    const ProjectedAreaTable table([&](Vec3 h) { return 3 * distribution.density(h); },
+    const ProjectedAreaTable table([&d = distribution](Vec3 h) { return 3 * d.density(h); },
                                    distribution.isotropic());
     EXPECT_NEAR(table.density_scale(), 1.0 / 3, 1e-3);
     double worst = 0;
@@ -271,7 +254,7 @@ TEST(ProjectedAreaTable, MatchesTheClosedFormOfGaussianSlopes) {
       const Vec3 w = spherical_direction(kHalfPi * (1 - r * r), kTwoPi * random.uniform());
       worst = std::max(worst, std::abs(table(w) / distribution.projected_area(w) - 1));
     }
-    EXPECT_LT(worst, 3e-3) << distribution.alpha_x << ", " << distribution.alpha_y;
+    EXPECT_LT(worst, bound) << distribution.alpha_x << ", " << distribution.alpha_y;
   }
 }
 
@@ -308,8 +291,8 @@ TEST(AshikhminPremozeShirley, TakesAnyDistribution) {
 TEST(AshikhminPremozeShirley, MasksLessWhereDirectionsShareAnAzimuth) {
   const CrossedGaussians threads{0.5, 0.5, 0};
   const Satin apart(threads, 1, 0, 0), together(threads, 1, 0, 0.35);
-  EXPECT_GT(grey(together, at(60, 10), at(40, 10)), 1.1 * grey(apart, at(60, 10), at(40, 10)));
-  EXPECT_NEAR(grey(together, at(60, 10), at(40, 190)), grey(apart, at(60, 10), at(40, 190)), 1e-12);
+  EXPECT_GT(grey(together, at(80, 10), at(75, 10)), 1.1 * grey(apart, at(80, 10), at(75, 10)));
+  EXPECT_NEAR(grey(together, at(80, 10), at(75, 190)), grey(apart, at(80, 10), at(75, 190)), 1e-12);
 }
 
 }  // namespace

@@ -12,13 +12,10 @@ Interval overlap(Interval a, Interval b) noexcept {
   return {std::max(a.lo, b.lo), std::min(a.hi, b.hi)};
 }
 
-/// A vector's part in the cross-section: its length and its angle from the normal.
-struct CrossSection {
-  double length, angle;
-  explicit CrossSection(Vec3 v) noexcept : length(std::hypot(v.y, v.z)), angle(std::atan2(v.y, v.z)) {}
-  /// Dot product with the cylinder's normal at angle psi.
-  double facing(double psi) const noexcept { return length * std::max(0.0, std::cos(psi - angle)); }
-};
+/// Cosine between w and the cylinder's normal at angle psi, 0 where it faces away.
+double facing(Vec3 w, double psi) noexcept {
+  return std::max(0.0, w.y * std::sin(psi) + w.z * std::cos(psi));
+}
 
 }  // namespace
 
@@ -45,7 +42,6 @@ Interval PoulinFournier::visible_floor(Vec3 w) const noexcept {
 
 bool PoulinFournier::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   return eval_above_horizon(wi, wo, f, [&](const PairGeometry& g) {
-    const CrossSection light(wi), view(wo), half(g.h);
     const Interval arc = overlap(visible_arc(wi), visible_arc(wo));
     const Interval floor = overlap(visible_floor(wi), visible_floor(wo));
     const double floor_share = std::max(0.0, floor.hi - floor.lo) / spacing;
@@ -54,13 +50,14 @@ bool PoulinFournier::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept 
 
     // Diffuse: the integrand is a cosine of twice the angle; 12 nodes reach rounding on an arc of pi.
     const double rough =
-        integrate<12>(arc.lo, arc.hi, [&](double psi) { return light.facing(psi) * view.facing(psi); });
+        integrate<12>(arc.lo, arc.hi, [&](double psi) { return facing(wi, psi) * facing(wo, psi); });
 
     // Specular: only where the lobe is above 1e-10 of its largest.
     const double reach = std::acos(std::pow(1e-10, 1 / exponent));
-    const Interval lit = overlap(arc, {half.angle - reach, half.angle + reach});
+    const double peak = std::atan2(g.h.y, g.h.z);
+    const Interval lit = overlap(arc, {peak - reach, peak + reach});
     const double glossy = integrate<24>(lit.lo, lit.hi, [&](double psi) {
-      return std::pow(half.facing(psi), exponent) * light.facing(psi) * view.facing(psi);
+      return std::pow(facing(g.h, psi), exponent) * facing(wi, psi) * facing(wo, psi);
     });
     return (rough * per_area + floor_share) * diffuse(kd) +
            scale * (glossy * per_area + floor_share * std::pow(g.h.z, exponent)) * ks;
