@@ -17,7 +17,7 @@ struct Lambert {
 /// V-grooves with Lambertian walls whose slopes are Gaussian with deviation `sigma` (radians, in [0, pi/2]):
 /// the full functional approximation, with masking, shadowing and one interreflection, not the shorter
 /// "qualitative" one. Its fit dips below zero where both directions graze in opposite azimuths; we clamp
-/// there. Reciprocal; conserving for kd <= 0.9, at kd = 1 up to 5 % above. Source: [Oren 1994, section 4.4].
+/// there. Reciprocal; conserving for kd <= 0.9, at kd = 1 up to 5 % above. Source: [Oren 1994].
 struct OrenNayar {
   Rgb kd = 0.5;
   double sigma = 0.5;

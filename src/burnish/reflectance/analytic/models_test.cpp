@@ -48,6 +48,13 @@ TEST(OrenNayar, MatchesReferenceValuesForwardAndBackward) {
   EXPECT_NEAR(grey(OrenNayar{0.7, 0.6}, at(60, 0), at(40, 30)), 0.23163189319233404, 1e-14);
 }
 
+TEST(OrenNayar, ConservesLightUpToAnAlbedoOfNineTenths) {
+  for (const double sigma : {0.1, 0.275, 0.6, 1.5})
+    for (const double theta_deg : {0.0, 40.0, 70.0, 85.0})
+      EXPECT_LT((albedo<48, 64>)(OrenNayar{0.9, sigma}, at(theta_deg, 0)), 0.95) << sigma;
+  EXPECT_GT(albedo(OrenNayar{1, 0.275}, at(85, 0)), 1.01);
+}
+
 TEST(Phong, HasItsPowerAtKnownAngles) {
   // Towards the light from 30 degrees, cos(gamma) = 2 cos² - 1 = 1/2.
   const Phong lobe{.kd = 0, .ks = 1, .exponent = 3, .normalized = false};

@@ -19,8 +19,8 @@ struct Rgb {
   constexpr Rgb(double grey) noexcept : Rgb(grey, grey, grey) {}  // NOLINT: a number is a grey colour
 
   friend constexpr bool operator==(const Rgb&, const Rgb&) = default;
-  friend constexpr Rgb operator+(Rgb a, Rgb b) noexcept { return {a.r + b.r, a.g + b.g, a.b + b.b}; }
-  friend constexpr Rgb operator*(Rgb a, Rgb b) noexcept { return {a.r * b.r, a.g * b.g, a.b * b.b}; }
+  friend constexpr Rgb operator+(Rgb p, Rgb q) noexcept { return {p.r + q.r, p.g + q.g, p.b + q.b}; }
+  friend constexpr Rgb operator*(Rgb p, Rgb q) noexcept { return {p.r * q.r, p.g * q.g, p.b * q.b}; }
 };
 
 /// Cosines to the normal below this count as this much where a model divides by them, so that every value is
