@@ -133,10 +133,11 @@ void RglTable::set_reduction() {
 
 SliceMix RglTable::mix_at(double phi, double theta) const noexcept {
   const auto stride = static_cast<std::uint32_t>(data_.theta_i.size());
-  const auto [t, t_weight] = locate(data_.theta_i, theta);
+  const auto polar = locate(data_.theta_i, theta);
   SliceMix mix;
   const auto add = [&](std::uint32_t row, double weight) {
-    for (const auto& [slice, w] : {std::pair(t, 1 - t_weight), std::pair(t + 1, t_weight)})
+    for (const auto& [slice, w] :
+         {std::pair(polar.first, 1 - polar.second), std::pair(polar.first + 1, polar.second)})
       if (weight * w > 0) {
         const auto i = static_cast<std::size_t>(mix.count++);
         mix.slice[i] = row * stride + slice;
