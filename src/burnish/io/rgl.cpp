@@ -201,9 +201,11 @@ RglFile parse_rgl(const FileBytes& file, const OpenOptions& options) {
           fmt::format("phi_i covers 1/{} of the circle, completed by {}", table.reduction(),
                       table.reduction() == 2 ? "rotation by 180 degrees" : "two mirror planes"));
     findings.most_negative = most_negative(table);
-    RglTable clamped = table;
-    findings.clamped_negatives = clamped.clamp_negatives();
-    return {std::move(options.clamp_negatives ? clamped : table), std::move(findings)};
+    const auto& values = table.data().spectra.values;
+    findings.clamped_negatives = static_cast<std::uint64_t>(
+        std::count_if(values.begin(), values.end(), [](float v) { return v < 0; }));
+    if (options.clamp_negatives) table.clamp_negatives();
+    return {std::move(table), std::move(findings)};
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", file.name, error.what()));
   }

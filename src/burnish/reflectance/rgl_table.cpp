@@ -226,12 +226,9 @@ DirectionPair RglTable::node_directions(int phi, int theta, int row, int column)
   return {wi, normalize(2 * dot(wi, h) * h - wi)};
 }
 
-std::uint64_t RglTable::clamp_negatives() noexcept {
-  std::uint64_t count = 0;
-  for (float& value : data_.spectra.values)
-    if (value < 0) value = 0, ++count;
-  for (float& value : data_.luminance.values) value = std::max(value, 0.0f);
-  return count;
+void RglTable::clamp_negatives() noexcept {
+  for (RglGrid* grid : {&data_.spectra, &data_.luminance})
+    for (float& value : grid->values) value = std::max(value, 0.0f);
 }
 
 }  // namespace burnish

@@ -87,8 +87,7 @@ TEST(RglTable, IsotropicTablesDoNotFeelRotation) {
 TEST(RglTable, AnisotropicTablesInterpolateInPhi) {
   // Nodes at -pi, -pi/2, 0, pi/2, pi with the values 1, 2, 3, 2, 1.
   const auto value = [](int p, int) { return static_cast<float>(3 - std::abs(p - 2)); };
-  const RglTable table(
-      RglTable(uniform_data({pi_times(-1), pi_times(-0.5), 0, pi_times(0.5), pi_times(1)}, value)));
+  const RglTable table(uniform_data({pi_times(-1), pi_times(-0.5), 0, pi_times(0.5), pi_times(1)}, value));
   EXPECT_EQ(table.reduction(), 1);
   const Vec3 wo = spherical_direction(0.4, 1);
   const double scale = kNdf / (4 * kSigma) / wo.z;
@@ -194,14 +193,13 @@ TEST(RglTable, NodesAreReadBackAtTheirDirections) {
   EXPECT_GT(above, 15);
 }
 
-TEST(RglTable, ClampingCountsNegativeValues) {
+TEST(RglTable, ClampedTablesAreNotNegative) {
   RglData data = uniform_data({0}, [](int, int t) { return t == 1 ? -1.0f : 1.0f; });
   RglTable table(data);
   const Vec3 wi = spherical_direction(0.5, 0), wo = spherical_direction(0.2, 0);
   EXPECT_LT(value_of(table, wi, wo), 0);
-  EXPECT_EQ(table.clamp_negatives(), 4u);
+  table.clamp_negatives();
   EXPECT_EQ(value_of(table, wi, wo), 0);
-  EXPECT_EQ(table.clamp_negatives(), 0u);
 }
 
 TEST(RglTable, ImpossibleDataThrow) {
