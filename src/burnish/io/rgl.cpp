@@ -131,10 +131,12 @@ double most_negative(const RglTable& table) {
   return result;
 }
 
-std::uint64_t count_holes(const std::vector<std::uint8_t>& valid) noexcept {
-  std::uint64_t holes = 0;
-  for (std::uint8_t byte : valid) holes += static_cast<std::uint64_t>(8 - std::popcount(byte));
-  return holes;
+/// Zero bits of a mask of `samples` bits; none where there is no mask.
+std::uint64_t count_holes(const std::vector<std::uint8_t>& valid, std::uint64_t samples) noexcept {
+  if (valid.empty()) return 0;
+  std::uint64_t measured = 0;
+  for (std::uint8_t byte : valid) measured += static_cast<std::uint64_t>(std::popcount(byte));
+  return samples - std::min(measured, samples);
 }
 
 }  // namespace
@@ -167,7 +169,7 @@ RglFile parse_rgl(const FileBytes& file, const OpenOptions& options) {
     data.description = one_line(text->data);
   const std::uint64_t samples = phis * thetas * node_count(data.spectra);
   if (const Tensor* mask = fields.find("valid");
-      mask && mask->type == TensorType::u8 && mask->data.size() * 8 == samples)
+      mask && mask->type == TensorType::u8 && mask->data.size() == (samples + 7) / 8)
     for (std::byte byte : mask->data) data.valid.push_back(static_cast<std::uint8_t>(byte));
 
   Findings findings;
@@ -176,7 +178,7 @@ RglFile parse_rgl(const FileBytes& file, const OpenOptions& options) {
                                 spectral ? fmt::format("{} wavelengths", channels) : "RGB");
   findings.description = data.description;
   findings.sample_count = samples;
-  findings.hole_count = count_holes(data.valid);
+  findings.hole_count = count_holes(data.valid, samples);
   findings.theta_i_min = static_cast<double>(data.theta_i.front());
   findings.theta_i_max = std::min(static_cast<double>(data.theta_i.back()), kHalfPi);
   findings.theta_o_max = kHalfPi;
@@ -199,9 +201,11 @@ RglFile parse_rgl(const FileBytes& file, const OpenOptions& options) {
           fmt::format("phi_i covers 1/{} of the circle, completed by {}", table.reduction(),
                       table.reduction() == 2 ? "rotation by 180 degrees" : "two mirror planes"));
     findings.most_negative = most_negative(table);
-    RglTable clamped = table;
-    findings.clamped_negatives = clamped.clamp_negatives();
-    return {std::move(options.clamp_negatives ? clamped : table), std::move(findings)};
+    const auto& values = table.data().spectra.values;
+    findings.clamped_negatives = static_cast<std::uint64_t>(
+        std::count_if(values.begin(), values.end(), [](float v) { return v < 0; }));
+    if (options.clamp_negatives) table.clamp_negatives();
+    return {std::move(table), std::move(findings)};
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", file.name, error.what()));
   }

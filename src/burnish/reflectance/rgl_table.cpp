@@ -133,10 +133,11 @@ void RglTable::set_reduction() {
 
 SliceMix RglTable::mix_at(double phi, double theta) const noexcept {
   const auto stride = static_cast<std::uint32_t>(data_.theta_i.size());
-  const auto [t, t_weight] = locate(data_.theta_i, theta);
+  const auto polar = locate(data_.theta_i, theta);
   SliceMix mix;
   const auto add = [&](std::uint32_t row, double weight) {
-    for (const auto& [slice, w] : {std::pair(t, 1 - t_weight), std::pair(t + 1, t_weight)})
+    for (const auto& [slice, w] :
+         {std::pair(polar.first, 1 - polar.second), std::pair(polar.first + 1, polar.second)})
       if (weight * w > 0) {
         const auto i = static_cast<std::size_t>(mix.count++);
         mix.slice[i] = row * stride + slice;
@@ -225,12 +226,9 @@ DirectionPair RglTable::node_directions(int phi, int theta, int row, int column)
   return {wi, normalize(2 * dot(wi, h) * h - wi)};
 }
 
-std::uint64_t RglTable::clamp_negatives() noexcept {
-  std::uint64_t count = 0;
-  for (float& value : data_.spectra.values)
-    if (value < 0) value = 0, ++count;
-  for (float& value : data_.luminance.values) value = std::max(value, 0.0f);
-  return count;
+void RglTable::clamp_negatives() noexcept {
+  for (RglGrid* grid : {&data_.spectra, &data_.luminance})
+    for (float& value : grid->values) value = std::max(value, 0.0f);
 }
 
 }  // namespace burnish

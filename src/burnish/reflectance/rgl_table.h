@@ -58,8 +58,8 @@ class RglTable {
   /// Precondition: indices below the sizes of phi_i, theta_i and spectra.
   DirectionPair node_directions(int phi, int theta, int row, int column) const noexcept;
 
-  /// Sets negative spectra and luminance to zero; returns how many values of spectra there were.
-  std::uint64_t clamp_negatives() noexcept;
+  /// Sets negative spectra and luminance to zero.
+  void clamp_negatives() noexcept;
 
  private:
   void set_reduction();
