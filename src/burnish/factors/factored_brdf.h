@@ -65,8 +65,9 @@ class FactoredBrdf {
 
 static_assert(Brdf<FactoredBrdf>);
 
-/// Table entries are kept at or above this share of the largest, so that half floats stay positive and
-/// normal.
+/// Table entries are kept at or above this share of the largest: half floats stay positive there, as
+/// subnormal numbers with an error of at most 1/32. 2^-14, the smallest normal half, would cut the tails of
+/// shiny materials (docs/factorization.md).
 inline constexpr double kTableFloor = 0x1p-20;
 
 /// Makes the largest value of every table's channel 1, with the factor moved into the lobes' scales, raises

@@ -13,8 +13,8 @@ namespace burnish {
 namespace {
 
 constexpr int kLineNodes = 32, kHalfLineNodes = 64, kDiskNodes = 64;
-// Highlights are narrow: a quarter of the half vector's nodes lie within 7 degrees of the normal.
-constexpr Warp kHalfWarp{WarpKind::rational, 0.25};
+// Highlights are narrow: near the normal the half vector's nodes stand three times as dense.
+constexpr Warp kHalfWarp{WarpKind::rational, 0.5};
 
 struct TableOption {
   int width = 0, height = 1;

@@ -65,8 +65,7 @@ class LogOperator {
   Doubles right_side() const {
     return accumulate([&](const LogRows& rows, Floats& y) {
       scatter(rows, y, [&](std::size_t i, float* row) {
-        for (std::size_t c = 0; c < step(); ++c)
-          row[c] = rows.weight[i * step() + c] * rows.target[i * step() + c];
+        for (std::size_t c = 0; c < step(); ++c) row[c] = rows.weight[i] * rows.target[i * step() + c];
       });
     });
   }
@@ -77,7 +76,7 @@ class LogOperator {
     Doubles y = accumulate([&](const LogRows& rows, Floats& part) {
       scatter(rows, part, [&](std::size_t i, float* row) {
         gather(rows, i, xf, row);
-        for (std::size_t c = 0; c < step(); ++c) row[c] *= rows.weight[i * step() + c];
+        for (std::size_t c = 0; c < step(); ++c) row[c] *= rows.weight[i];
       });
     });
     add_smoothness(x, y);
@@ -129,13 +128,13 @@ class LogOperator {
         gather(rows, i, xf, row.data());
         for (std::size_t c = 0; c < step(); ++c) {
           const double residual = row[c] - rows.target[i * step() + c];
-          sums[chunk] += rows.weight[i * step() + c] * residual * residual;
+          sums[chunk] += rows.weight[i] * residual * residual;
         }
       }
     });
     double sum = 0;
     for (const double s : sums) sum += s;
-    return std::sqrt(sum / total_weight_);
+    return std::sqrt(sum / (total_weight_ * static_cast<double>(channels_)));
   }
 
   /// Unknown of a table's node and channel.
@@ -154,40 +153,38 @@ class LogOperator {
     return channels_;
   }
 
-  // Widens targets and weights to the padded channel count; padding has weight 0.
+  // Widens targets to the padded channel count; the padding stays 0.
   void pad(LogRows& rows) const {
     if (step() == channels_) return;
-    for (Floats* values : {&rows.target, &rows.weight}) {
-      Floats wide(rows.size * step());
-      for (std::size_t i = 0; i < rows.size; ++i)
-        for (std::size_t c = 0; c < channels_; ++c) wide[i * step() + c] = (*values)[i * channels_ + c];
-      *values = std::move(wide);
-    }
+    Floats wide(rows.size * step());
+    for (std::size_t i = 0; i < rows.size; ++i)
+      for (std::size_t c = 0; c < channels_; ++c) wide[i * step() + c] = rows.target[i * channels_ + c];
+    rows.target = std::move(wide);
   }
 
   // Takes each channel's mean out of the targets.
   void center() {
-    Doubles weight(step()), first(step()), second(step());
+    Doubles first(channels_), second(channels_);
     for (const LogRows& rows : chunks_) {
       samples_ += rows.size;
-      for (std::size_t i = 0; i < rows.size * step(); ++i) {
-        const double w = rows.weight[i], t = rows.target[i];
-        weight[i % step()] += w;
-        first[i % step()] += w * t;
-        second[i % step()] += w * t * t;
+      for (std::size_t i = 0; i < rows.size; ++i) {
+        const double w = rows.weight[i];
+        total_weight_ += w;
+        for (std::size_t c = 0; c < channels_; ++c) {
+          const double t = rows.target[i * step() + c];
+          first[c] += w * t;
+          second[c] += w * t * t;
+        }
       }
     }
+    if (!(total_weight_ > 0)) throw Error("fit: expected samples with weight, found none");
     mean_.assign(step(), 0);
     double spread = 0;
-    for (std::size_t c = 0; c < step(); ++c) {
-      if (!(weight[c] > 0)) continue;
-      mean_[c] = first[c] / weight[c];
-      spread += second[c] - weight[c] * mean_[c] * mean_[c];
-      total_weight_ += weight[c];
+    for (std::size_t c = 0; c < channels_; ++c) {
+      mean_[c] = first[c] / total_weight_;
+      spread += second[c] / total_weight_ - mean_[c] * mean_[c];
     }
-    if (!(total_weight_ > 0)) throw Error("fit: expected samples with weight, found none");
-    error_before_ = std::sqrt(std::max(0.0, spread / total_weight_));
-    // a table with all channels sees one channel's share of the weight
+    error_before_ = std::sqrt(std::max(0.0, spread / static_cast<double>(channels_)));
     for_each_chunk(chunks_.size(), 1, [&](std::size_t chunk, std::size_t, std::size_t) {
       LogRows& rows = chunks_[chunk];
       for (std::size_t i = 0; i < rows.size * step(); ++i)
@@ -212,13 +209,13 @@ class LogOperator {
           for (int corner = 0; corner < 4; ++corner)
             for (std::size_t c = 0; c < step(); ++c)
               d[at.node[corner] * step_of + (step_of > 1 ? c : 0)] +=
-                  kSampleStride * at.weight[corner] * at.weight[corner] * rows.weight[i * step() + c];
+                  kSampleStride * at.weight[corner] * at.weight[corner] * rows.weight[i];
         }
     TableLayout layout = spec_.tables[table].layout;
     layout.width = level.coarse_width();
     layout.height = level.coarse_height();
     const SmoothnessRows smoothness = smoothness_rows(layout);
-    for (double& v : d) v = v * static_cast<double>(channels_) / total_weight_ + kRidge;
+    for (double& v : d) v = v / total_weight_ + kRidge;
     for (std::size_t k = 0; k < smoothness.nodes.size(); ++k)
       for (std::size_t c = 0; c < step_of; ++c)
         d[smoothness.nodes[k] * step_of + c] +=
@@ -270,7 +267,7 @@ class LogOperator {
     }
   }
 
-  // Sum over chunks of what body adds to a zero vector, in the order of the chunks, over the mean weight.
+  // Sum over chunks of what body adds to a zero vector, in the order of the chunks, over the samples' weight.
   template <class Body>
   Doubles accumulate(const Body& body) const {
     constexpr std::size_t kGroups = 32;
@@ -284,7 +281,7 @@ class LogOperator {
     for_each_chunk(count_, 4096, [&](std::size_t, std::size_t begin, std::size_t end) {
       for (const Floats& part : parts)
         for (std::size_t i = begin; i < end; ++i) sum[i] += part[i];
-      for (std::size_t i = begin; i < end; ++i) sum[i] *= static_cast<double>(channels_) / total_weight_;
+      for (std::size_t i = begin; i < end; ++i) sum[i] /= total_weight_;
     });
     return sum;
   }

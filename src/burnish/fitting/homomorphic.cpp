@@ -25,8 +25,9 @@ HomomorphicFit fit_homomorphic(const SampleSource& source, const ModelSpec& spec
   if (spec.lobes.size() != 1 || spec.lobes.front().empty())
     throw Error("fit: a log-linear fit takes a model of one lobe");
   if (source.count == 0) throw Error("fit: expected samples, found none");
-  RowMaker rows{.source = &source, .spec = &spec, .weights = options.weights};
-  if (rows.weights.image > 0 && !(rows.weights.white > 0)) rows.weights.white = estimate_white(source);
+  if (!(options.smooth >= 0) || !(options.floor > 0))
+    throw Error("fit: expected smooth >= 0 and floor > 0, found others");
+  const RowMaker rows{.source = &source, .spec = &spec, .floor = options.floor};
 
   const Unknowns unknowns = number_unknowns(spec, source.channels);
   LogSolution solution = solved_directly(spec, unknowns.count, source.channels)
@@ -49,8 +50,7 @@ HomomorphicFit fit_homomorphic(const SampleSource& source, const ModelSpec& spec
                       .error_after = solution.error_after,
                       .iterations = solution.iterations,
                       .stop_reason = std::move(solution.stop_reason),
-                      .smooth = options.smooth,
-                      .white = rows.weights.white}};
+                      .smooth = options.smooth}};
 }
 
 }  // namespace burnish

@@ -18,14 +18,14 @@ struct LogRows {
   std::vector<std::uint32_t> node;  ///< [sample][use], lower corner
   std::vector<float> fx, fy;        ///< [sample][use]
   std::vector<float> target;        ///< [sample][channel]
-  std::vector<float> weight;        ///< [sample][channel]
+  std::vector<float> weight;        ///< [sample]
 };
 
 /// How samples become rows.
 struct RowMaker {
   const SampleSource* source;
   const ModelSpec* spec;  ///< one lobe
-  RowWeights weights;     ///< white > 0
+  double floor;           ///< see HomomorphicOptions
 
   /// The rows of samples [begin, end).
   LogRows make(std::size_t begin, std::size_t end) const;
@@ -57,8 +57,5 @@ LogSolution solve_directly(const RowMaker& rows, const Unknowns& unknowns, const
 /// Minimizes by conjugate gradients on the normal equations, without forming them.
 LogSolution solve_iteratively(const RowMaker& rows, const Unknowns& unknowns,
                               const HomomorphicOptions& options);
-
-/// The 97th percentile of f cos(theta_i) described at fit_homomorphic.
-double estimate_white(const SampleSource& source);
 
 }  // namespace burnish

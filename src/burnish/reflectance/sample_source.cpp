@@ -47,6 +47,11 @@ SampleSource from_samples(const Samples& samples, bool symmetrize) {
           }};
 }
 
+double pair_weight(Vec3 wi, Vec3 wo) noexcept {
+  const Vec3 h = half_vector(wi, wo);
+  return std::sqrt(h.x * h.x + h.y * h.y) * std::max(0.0, std::min(wi.z, wo.z));
+}
+
 SampleSource from_brdf(BrdfRef source, std::size_t count, std::uint64_t seed, bool spread_phi_h) {
   Pcg32 random(seed);
   const std::array<double, 4> start{random.uniform(), random.uniform(), random.uniform(), random.uniform()};
@@ -67,7 +72,7 @@ SampleSource from_brdf(BrdfRef source, std::size_t count, std::uint64_t seed, bo
             std::vector<std::uint8_t> known(pairs.size());
             source.eval(pairs, values, known);
             for (std::size_t i = 0; i < pairs.size(); ++i)
-              weights[i] = known[i] && pairs[i].wi.z > 0 && pairs[i].wo.z > 0 ? 1 : 0;
+              weights[i] = known[i] ? pair_weight(pairs[i].wi, pairs[i].wo) : 0;
           }};
 }
 

@@ -27,10 +27,16 @@ struct SampleSource {
 /// without resampling.
 SampleSource from_samples(const Samples& samples, bool symmetrize);
 
+/// What a pair drawn with theta_h = pi/2 u^2 weighs: sin(theta_h) min(cos theta_i, cos theta_o). The first
+/// leads from the sampling, dense where highlights are narrow, towards the solid angle that h takes up in a
+/// picture; the second fades out grazing directions, which pictures hardly show and instruments measure
+/// badly.
+double pair_weight(Vec3 wi, Vec3 wo) noexcept;
+
 /// `count` pairs of a low-discrepancy sequence: theta_d, phi_d and phi_h uniform, theta_h = pi/2 u^2
-/// (measured tables space theta_h that way, because highlights are narrow), weight 1. Isotropic sources are
-/// measured at phi_h = 0 unless `spread_phi_h`, which 2-D tables need to be filled. The Brdf behind `source`
-/// must outlive the result.
+/// (measured tables space theta_h that way), with pair_weight. Isotropic sources are measured at phi_h = 0
+/// unless `spread_phi_h`, which 2-D tables need to be filled. The Brdf behind `source` must outlive the
+/// result.
 SampleSource from_brdf(BrdfRef source, std::size_t count, std::uint64_t seed, bool spread_phi_h);
 
 }  // namespace burnish
