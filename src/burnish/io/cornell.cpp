@@ -35,7 +35,7 @@ std::string remarks(const FileBytes& file) {
   TextReader reader(file);
   while (reader.next_line() && reader.line().starts_with('#')) {
     const std::string_view remark = trimmed(reader.line().substr(1));
-    if (!remark.empty()) joined += (joined.empty() ? "" : ", ") + std::string(remark.substr(0, 80));
+    if (!remark.empty()) joined += (joined.empty() ? "" : ", ") + printable(remark, 80);
   }
   return joined.substr(0, 240);
 }

@@ -99,6 +99,13 @@ std::string lower_case(std::string_view text) {
   return lower;
 }
 
+std::string printable(std::string_view text, std::size_t most) {
+  std::string kept(text.substr(0, most));
+  std::replace_if(
+      kept.begin(), kept.end(), [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; }, '?');
+  return kept;
+}
+
 std::string in_quotes(std::string_view text) {
   std::string printable(text.substr(0, 40));
   std::replace_if(

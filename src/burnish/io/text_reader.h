@@ -51,6 +51,9 @@ std::string_view trimmed(std::string_view text) noexcept;
 /// ASCII letters in lower case.
 std::string lower_case(std::string_view text);
 
+/// At most `most` bytes of a remark, control characters as '?'.
+std::string printable(std::string_view text, std::size_t most);
+
 /// At most 40 characters in quotes for an error message, unprintable ones as '?'.
 std::string in_quotes(std::string_view text);
 
