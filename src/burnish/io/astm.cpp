@@ -1,0 +1,116 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <burnish/io/astm.h>
+#include <burnish/io/text_reader.h>
+#include <burnish/math/angles.h>
+
+namespace burnish {
+
+namespace {
+
+bool is_vars_line(std::string_view line) noexcept {
+  line = trimmed(line);
+  return line.starts_with("VARS") && (line.size() == 4 || line[4] == ' ' || line[4] == '\t');
+}
+
+std::vector<std::string> variable_names(std::string_view line) {
+  std::string_view rest = trimmed(trimmed(line).substr(4));
+  std::vector<std::string> names;
+  while (!rest.empty()) {
+    const std::size_t comma = std::min(rest.find(','), rest.size());
+    names.emplace_back(trimmed(rest.substr(0, comma)));
+    rest.remove_prefix(std::min(comma + 1, rest.size()));
+  }
+  return names;
+}
+
+/// Words left in the current line.
+std::size_t words_left(TextReader reader) noexcept {
+  std::size_t count = 0;
+  while (!reader.word().empty()) ++count;
+  return count;
+}
+
+constexpr std::array<std::string_view, 4> kAngles = {"theta_i", "phi_i", "theta_s", "phi_s"};
+
+}  // namespace
+
+bool looks_like_astm(std::string_view text) noexcept {
+  text = text.substr(0, 65536);
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    if (is_vars_line(text.substr(0, end))) return true;
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return false;
+}
+
+SampleFile parse_astm(const FileBytes& file, const OpenOptions& options) {
+  TextReader reader(file);
+  bool found = false;
+  while (!found && reader.next_line()) found = is_vars_line(reader.line());
+  if (!found) reader.fail("a VARS line", "the end of the file");
+  std::vector<std::string> names = variable_names(reader.line());
+  SampleFile result;
+  Findings& findings = result.findings;
+  findings.format = "ASTM E1392 text";
+  findings.conventions = {"Angles in radians; theta_i, phi_i to the light, theta_s, phi_s to the viewer."};
+
+  const std::string vars_line(reader.line());
+  bool rows = reader.next_content_line();
+  const bool forgotten = std::find(names.begin(), names.end(), kAngles[3]) == names.end();
+  if (forgotten) {
+    if (!rows || words_left(reader) != names.size() + 1)
+      reader.fail("phi_s in the VARS line, or rows with one column more than it names", in_quotes(vars_line));
+    const auto theta_s = std::find(names.begin(), names.end(), kAngles[2]);
+    if (theta_s == names.end()) reader.fail("theta_s in the VARS line", in_quotes(vars_line));
+    names.insert(theta_s + 1, std::string(kAngles[3]));
+    findings.conventions.push_back("The VARS line forgets phi_s; the rows have it, after theta_s.");
+  }
+
+  // Sort the columns into the four angles and the values.
+  std::array<std::size_t, 4> angle_column{};
+  std::vector<std::size_t> value_columns;
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (std::count(names.begin(), names.end(), kAngles[k]) != 1)
+      reader.fail(fmt::format("{} once in the VARS line", kAngles[k]), in_quotes(vars_line));
+    angle_column[k] =
+        static_cast<std::size_t>(std::find(names.begin(), names.end(), kAngles[k]) - names.begin());
+  }
+  for (std::size_t at = 0; at < names.size(); ++at)
+    if (std::find(kAngles.begin(), kAngles.end(), names[at]) == kAngles.end()) {
+      value_columns.push_back(at);
+      if (const auto lambda = parse_number(names[at])) findings.lambda_nm.push_back(*lambda);
+    }
+  const std::size_t channels = value_columns.size();
+  const bool named =
+      findings.lambda_nm.empty() ? channels == 1 || channels == 3 : findings.lambda_nm.size() == channels;
+  if (!named || channels > kMaxFileChannels)
+    reader.fail("one, three or one a wavelength value columns in the VARS line", fmt::format("{}", channels));
+
+  Samples& samples = result.samples;
+  samples.channels = static_cast<int>(channels);
+  std::vector<double> row(names.size());
+  for (; rows; rows = reader.next_content_line()) {
+    for (std::size_t at = 0; at < row.size(); ++at) row[at] = reader.number(names[at]);
+    reader.end_of_line();
+    const auto angle = [&](std::size_t k) { return row[angle_column[k]]; };
+    for (const std::size_t k : {0, 2})
+      if (!(std::abs(angle(k)) < kHalfPi))
+        reader.fail(fmt::format("{} within (-pi/2, pi/2)", kAngles[k]), fmt::format("{}", angle(k)));
+    samples.pairs.push_back(
+        {spherical_direction(angle(0), angle(1)), spherical_direction(angle(2), angle(3))});
+    for (const std::size_t at : value_columns) samples.values.push_back(row[at]);
+  }
+  samples.isotropic = same_incident_azimuth(samples);
+  findings.conventions.push_back(samples.isotropic ? "Taken as isotropic: every sample has the same phi_i."
+                                                   : "Taken as anisotropic: phi_i varies.");
+  finish_samples(file.name, options, result);
+  return result;
+}
+
+}  // namespace burnish

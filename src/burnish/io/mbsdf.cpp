@@ -1,0 +1,116 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <burnish/io/mbsdf.h>
+#include <burnish/io/text_reader.h>
+#include <burnish/math/angles.h>
+
+namespace burnish {
+
+namespace {
+
+constexpr std::string_view kMagic = "NVIDIA ARC MBSDF V1\n";
+constexpr std::string_view kReflection = "MBSDF_DATA_REFLECTION=";
+constexpr std::string_view kTransmission = "MBSDF_DATA_TRANSMISSION=";
+constexpr std::size_t kLongestLine = 4096;
+constexpr std::uint32_t kMaxResolution = 2048;
+
+std::string_view read_line(const FileBytes& file, ByteReader& reader) {
+  const std::string_view rest = file.text().substr(reader.offset());
+  const std::size_t end = rest.substr(0, kLongestLine).find('\n');
+  if (end == std::string_view::npos) reader.fail("a line of text", "none");
+  reader.seek(reader.offset() + end + 1);
+  return rest.substr(0, end);
+}
+
+/// What stands in front of a block's values.
+struct BlockHeader {
+  std::uint32_t channels, theta_count, phi_count;
+
+  std::uint64_t value_count() const noexcept {
+    return std::uint64_t{theta_count} * theta_count * phi_count * channels;
+  }
+};
+
+/// Reads a block's sizes and makes sure that its values follow.
+BlockHeader read_block_header(ByteReader& reader) {
+  const auto type = reader.number<std::uint32_t>("a block type");
+  if (type > 1) reader.fail("block type 0 (grey) or 1 (RGB)", fmt::format("{}", type));
+  const BlockHeader header{type == 1 ? 3u : 1u, reader.number<std::uint32_t>("the resolution of theta"),
+                           reader.number<std::uint32_t>("the resolution of phi")};
+  for (const std::uint32_t count : {header.theta_count, header.phi_count})
+    if (count < 1 || count > kMaxResolution)
+      reader.fail(fmt::format("a resolution in [1, {}]", kMaxResolution), fmt::format("{}", count));
+  reader.require(header.value_count() * sizeof(float), "values");
+  return header;
+}
+
+}  // namespace
+
+bool looks_like_mbsdf(std::span<const std::byte> bytes) noexcept {
+  return bytes.size() >= kMagic.size() && std::memcmp(bytes.data(), kMagic.data(), kMagic.size() - 1) == 0;
+}
+
+MbsdfFile parse_mbsdf(const FileBytes& file, const OpenOptions& options) {
+  ByteReader reader(file);
+  if (!looks_like_mbsdf(file.bytes))
+    reader.fail("NVIDIA ARC MBSDF V1", in_quotes(file.text().substr(0, kMagic.size())));
+  MbsdfFile result;
+  Findings& findings = result.findings;
+  findings.format = "NVIDIA MBSDF";
+  read_line(file, reader);
+  std::string_view line = read_line(file, reader);
+  for (; !line.starts_with(kReflection); line = read_line(file, reader)) {
+    if (line.starts_with(kTransmission)) {
+      const BlockHeader skipped = read_block_header(reader);
+      reader.seek(reader.offset() + skipped.value_count() * sizeof(float));
+      if (reader.remaining() == 0) reader.fail("a reflection block", "transmission only");
+      findings.conventions.push_back("A transmission block was left out.");
+    } else if (!line.empty()) {
+      if (line.find('=') == std::string_view::npos) reader.fail("a line KEY=VALUE", in_quotes(line));
+      if (findings.description.size() < 200)
+        findings.description += (findings.description.empty() ? "" : ", ") + printable(line, 80);
+    }
+  }
+
+  const BlockHeader header = read_block_header(reader);
+  const std::uint64_t start = reader.offset();
+  const auto bytes = reader.take(header.value_count() * sizeof(float), "values");
+  // Only a transmission block may follow.
+  if (const std::string_view rest = trimmed(file.text().substr(reader.offset()));
+      !rest.empty() && rest != "\n" && !rest.substr(rest[0] == '\n').starts_with(kTransmission))
+    reader.fail("the end of the file or a transmission block",
+                fmt::format("{} more bytes", reader.remaining()));
+
+  AngleTable& table = result.table;
+  table.folded = true;
+  table.channel_count = static_cast<int>(header.channels);
+  table.axes = {make_axis({0}), make_axis(cell_centres(header.theta_count, kHalfPi)),
+                make_axis(cell_centres(header.theta_count, kHalfPi)),
+                make_axis(cell_centres(header.phi_count, kPi))};
+  table.values.resize(header.value_count());
+  std::memcpy(table.values.data(), bytes.data(), bytes.size());
+  for (std::size_t i = 0; i < table.values.size(); ++i) {
+    float& value = table.values[i];
+    if (!std::isfinite(value)) {
+      reader.seek(start + i * sizeof(float));
+      reader.fail("a finite value", fmt::format("{}", value));
+    }
+    if (value >= 0) continue;
+    ++findings.clamped_negatives;
+    findings.most_negative = std::min(findings.most_negative, static_cast<double>(value));
+    if (options.clamp_negatives) value = 0;
+  }
+  findings.conventions.insert(
+      findings.conventions.begin(),
+      {"theta_in is the light's; the azimuth is between the directions, the mirror direction at 180 degrees.",
+       "Entries stand for the centres of their cells; linear between them.",
+       header.channels == 3 ? "Taken as linear Rec. 709." : "Grey."});
+  findings.sample_count = header.value_count() / header.channels;
+  findings.theta_i_max = findings.theta_o_max = kHalfPi;
+  return result;
+}
+
+}  // namespace burnish

@@ -1,0 +1,153 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include <burnish/io/merl.h>
+#include <burnish/math/angles.h>
+#include <burnish/math/parallel.h>
+
+namespace burnish {
+
+namespace {
+
+constexpr std::size_t kHeaderBytes = 12;
+constexpr int kMaxSize = 3600;  // ten times the finest axis in use
+/// Stored value times this is f_r. Source: [Matusik 2003].
+constexpr std::array kScale = {1 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0};
+
+std::array<std::int32_t, 3> header_of(std::span<const std::byte> bytes) noexcept {
+  std::array<std::int32_t, 3> sizes;
+  std::memcpy(sizes.data(), bytes.data(), kHeaderBytes);
+  return sizes;
+}
+
+double read_double(const std::byte* at) noexcept {
+  double value;
+  std::memcpy(&value, at, sizeof(value));
+  return value;
+}
+
+/// What one slice of theta_h adds to the findings.
+struct SliceCount {
+  std::uint64_t holes = 0, below_horizon = 0, negatives = 0;
+  double most_negative = 0;
+  bool finite = true;
+  std::size_t bad_entry = 0;
+};
+
+}  // namespace
+
+bool looks_like_merl(std::span<const std::byte> bytes) noexcept {
+  if (bytes.size() < kHeaderBytes) return false;
+  const auto sizes = header_of(bytes);
+  return std::all_of(sizes.begin(), sizes.end(), [](std::int32_t n) { return n > 0 && n <= kMaxSize; });
+}
+
+MerlFile parse_merl(const FileBytes& file, const OpenOptions& options) {
+  ByteReader reader(file);
+  reader.require(kHeaderBytes, "MERL table sizes");
+  const auto sizes = header_of(file.bytes);
+  if (!looks_like_merl(file.bytes))
+    reader.fail(fmt::format("three table sizes in [1, {}]", kMaxSize),
+                fmt::format("{}, {}, {}", sizes[0], sizes[1], sizes[2]));
+  MerlFile merl;
+  HalfDiffTable& table = merl.table;
+  table = {sizes[0], sizes[1], sizes[2], sizes[2] == 360, 3, {}};
+  const std::size_t entries = table.entry_count(), expected = kHeaderBytes + entries * 3 * sizeof(double);
+  if (file.bytes.size() != expected)
+    reader.fail(fmt::format("{} bytes for {} x {} x {} x 3 values", expected, sizes[0], sizes[1], sizes[2]),
+                fmt::format("{} bytes", file.bytes.size()));
+
+  table.values.resize(entries * 3);
+  const std::byte* planes = file.bytes.data() + kHeaderBytes;
+  std::vector<double> abs_cos_phi(static_cast<std::size_t>(sizes[2]));
+  for (int p = 0; p < sizes[2]; ++p)
+    abs_cos_phi[static_cast<std::size_t>(p)] = std::abs(std::cos(table.centre(0, 0, p).phi_d));
+  std::vector<SliceCount> counts(static_cast<std::size_t>(sizes[0]));
+  for_each_chunk(counts.size(), 1, [&](std::size_t h, std::size_t, std::size_t) {
+    SliceCount& count = counts[h];
+    for (int d = 0; d < sizes[1]; ++d) {
+      const HalfDiff angles = table.centre(static_cast<int>(h), d, 0);
+      const double tangents = std::tan(angles.theta_h) * std::tan(angles.theta_d);
+      const std::size_t row = table.offset(static_cast<int>(h), d, 0) / 3;
+      for (std::size_t p = 0; p < abs_cos_phi.size(); ++p) {
+        std::array<double, 3> f;
+        for (std::size_t c = 0; c < 3; ++c)
+          f[c] = read_double(planes + (c * entries + row + p) * sizeof(double));
+        float* entry = &table.values[(row + p) * 3];
+        const bool below = tangents * abs_cos_phi[p] >= 1;
+        if (below || (f[0] == -1 && f[1] == -1 && f[2] == -1)) {
+          ++count.holes;
+          count.below_horizon += below;
+          std::fill_n(entry, 3, std::numeric_limits<float>::quiet_NaN());
+          continue;
+        }
+        for (std::size_t c = 0; c < 3; ++c) {
+          double value = f[c] * kScale[c];
+          // Also refuses what a float cannot hold.
+          if (!(std::abs(value) <= std::numeric_limits<float>::max())) {
+            if (count.finite) count.bad_entry = c * entries + row + p;
+            count.finite = false;
+          }
+          if (value < 0) {
+            ++count.negatives;
+            count.most_negative = std::min(count.most_negative, value);
+            if (options.clamp_negatives) value = 0;
+          }
+          entry[c] = count.finite ? static_cast<float>(value) : 0;
+        }
+      }
+    }
+  });
+
+  Findings& findings = merl.findings;
+  std::uint64_t below_horizon = 0;
+  for (const SliceCount& count : counts) {
+    if (!count.finite) {
+      reader.seek(kHeaderBytes + count.bad_entry * sizeof(double));
+      reader.fail("a finite value above the horizon",
+                  fmt::format("{}", read_double(planes + count.bad_entry * sizeof(double))));
+    }
+    findings.hole_count += count.holes;
+    below_horizon += count.below_horizon;
+    findings.clamped_negatives += count.negatives;
+    findings.most_negative = std::min(findings.most_negative, count.most_negative);
+  }
+  findings.format = "MERL binary";
+  findings.description = fmt::format("{} x {} x {} half/difference table", sizes[0], sizes[1], sizes[2]);
+  findings.conventions = {"Values times 1/1500, 1.15/1500, 1.66/1500 are f_r in linear Rec. 709.",
+                          "Entries stand for the centres of their cells; trilinear between them in (sqrt "
+                          "theta_h, theta_d, phi_d).",
+                          table.full_circle
+                              ? "phi_d covers the full circle: 360 entries."
+                              : "phi_d covers half the circle; the other half follows from reciprocity.",
+                          fmt::format("{} of the holes lie below the horizon.", below_horizon)};
+  findings.sample_count = entries;
+  findings.theta_i_max = findings.theta_o_max = kHalfPi;
+  return merl;
+}
+
+void write_merl(const std::filesystem::path& path, BrdfRef source) {
+  if (source.channels() != 1 && source.channels() != 3)
+    throw Error("a MERL file holds grey or RGB, not " + std::to_string(source.channels()) + " channels");
+  const std::array<std::int32_t, 3> sizes = {90, 90, 180};
+  const HalfDiffTable table =
+      tabulate_half_diff(SymmetrizedBrdf(source), sizes[0], sizes[1], sizes[2], false);
+  const std::size_t entries = table.entry_count();
+  std::string bytes(kHeaderBytes + entries * 3 * sizeof(double), '\0');
+  std::memcpy(bytes.data(), sizes.data(), kHeaderBytes);
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < entries; ++i) {
+      const float f =
+          table
+              .values[i * static_cast<std::size_t>(table.channel_count) + (table.channel_count == 3 ? c : 0)];
+      const double value = std::isnan(f) ? -1 : static_cast<double>(f) / kScale[c];
+      std::memcpy(bytes.data() + kHeaderBytes + (c * entries + i) * sizeof(double), &value, sizeof(value));
+    }
+  write_then_rename(path, bytes);
+}
+
+}  // namespace burnish

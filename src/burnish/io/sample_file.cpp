@@ -1,0 +1,90 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <burnish/error.h>
+#include <burnish/io/sample_file.h>
+#include <burnish/math/angles.h>
+#include <burnish/math/spectrum.h>
+
+namespace burnish {
+
+namespace {
+
+/// Sets values below zero to zero; returns how many.
+std::uint64_t clamp_to_zero(std::span<double> values) noexcept {
+  std::uint64_t count = 0;
+  for (double& value : values)
+    if (value < 0) {
+      value = 0;
+      ++count;
+    }
+  return count;
+}
+
+std::vector<double> to_rec709(const Samples& samples, std::span<const std::array<double, 3>> weights) {
+  std::vector<double> rgb(samples.size() * 3, 0.0);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const auto spectrum = samples.at(i);
+    for (std::size_t k = 0; k < weights.size(); ++k)
+      for (std::size_t c = 0; c < 3; ++c) rgb[3 * i + c] += weights[k][c] * spectrum[k];
+  }
+  return rgb;
+}
+
+}  // namespace
+
+bool same_incident_azimuth(const Samples& samples) noexcept {
+  if (samples.pairs.empty()) return true;
+  const double first = phi_of(samples.pairs.front().wi);
+  return std::all_of(samples.pairs.begin(), samples.pairs.end(), [&](const DirectionPair& pair) {
+    // The azimuth of the normal is any.
+    return std::hypot(pair.wi.x, pair.wi.y) < 1e-6 ||
+           std::abs(std::remainder(phi_of(pair.wi) - first, kTwoPi)) < 1e-6;
+  });
+}
+
+void finish_samples(const std::string& file, const OpenOptions& options, SampleFile& result) {
+  Samples& samples = result.samples;
+  Findings& findings = result.findings;
+  if (samples.size() == 0) throw Error::in_file(file, "at least one measurement", "none");
+
+  for (const double value : samples.values) {
+    findings.clamped_negatives += value < 0;
+    findings.most_negative = std::min(findings.most_negative, value);
+  }
+  if (options.clamp_negatives) clamp_to_zero(samples.values);
+
+  if (!findings.lambda_nm.empty()) {
+    const auto& lambda = findings.lambda_nm;
+    if (lambda.front() <= 0 ||
+        std::adjacent_find(lambda.begin(), lambda.end(), std::greater_equal<>{}) != lambda.end())
+      throw Error::in_file(file, "positive, increasing wavelengths",
+                           fmt::format("{} ... {} nm out of order", lambda.front(), lambda.back()));
+    if (!options.keep_spectral) {
+      samples.values = to_rec709(samples, rec709_weights(lambda, options.illuminant));
+      samples.channels = 3;
+      findings.illuminant = options.illuminant == "E" ? "equal energy" : options.illuminant;
+      findings.conventions.push_back(fmt::format("{} wavelengths, {} to {} nm, became linear Rec. 709.",
+                                                 lambda.size(), lambda.front(), lambda.back()));
+      if (options.clamp_negatives)
+        if (const auto outside = clamp_to_zero(samples.values))
+          findings.conventions.push_back(
+              fmt::format("{} values outside the gamut were set to zero.", outside));
+      findings.lambda_nm.clear();
+    }
+  }
+
+  findings.sample_count = samples.size();
+  findings.theta_i_min = findings.theta_o_min = kHalfPi;
+  for (const auto& [wi, wo] : samples.pairs) {
+    const double theta_i = theta_of(wi), theta_o = theta_of(wo);
+    findings.theta_i_min = std::min(findings.theta_i_min, theta_i);
+    findings.theta_i_max = std::max(findings.theta_i_max, theta_i);
+    findings.theta_o_min = std::min(findings.theta_o_min, theta_o);
+    findings.theta_o_max = std::max(findings.theta_o_max, theta_o);
+  }
+}
+
+}  // namespace burnish

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <burnish/io/source.h>
+#include <burnish/reflectance/samples.h>
+
+namespace burnish {
+
+/// What the readers of scattered samples return.
+struct SampleFile {
+  Samples samples;
+  Findings findings;
+};
+
+/// Most channels a scattered file may have.
+inline constexpr std::size_t kMaxFileChannels = 1024;
+
+/// The last step of the readers of scattered samples. Counts negatives and, unless kept on request, sets them
+/// to zero; turns spectra (findings.lambda_nm not empty) into linear Rec. 709 unless they are kept; fills in
+/// the number of samples and the angles covered. Throws Error, naming `file`, if there are no samples or
+/// wavelengths do not increase.
+void finish_samples(const std::string& file, const OpenOptions& options, SampleFile& result);
+
+/// True if all incident directions have the same azimuth: measurements in one setting of the sample.
+bool same_incident_azimuth(const Samples& samples) noexcept;
+
+}  // namespace burnish

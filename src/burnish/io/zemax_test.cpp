@@ -1,0 +1,147 @@
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <burnish/io/test_files.h>
+#include <burnish/io/zemax.h>
+#include <burnish/math/angles.h>
+
+namespace burnish {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string kHeader =
+    "# Sample: "
+    "paint\nSource\tMeasured\nSymmetry\tPlaneSymmetrical\nSpectralContent\tMonochrome\nScatterType\tBRDF\n"
+    "SampleRotation\t1\n0\nAngleOfIncidence\t2\n10 30\nScatterAzimuth\t3\n0 90 180\nScatterRadial\t2\n0 "
+    "10\n\n";
+const std::string kData =
+    "Monochrome\nDataBegin\nTIS 0.1\n1 2\n1 3\n1 4\nTIS 0.2\n5 6\n5 -7\n5 0.000e+00\nDataEnd\n";
+
+std::string replaced(std::string text, std::string_view what, std::string_view with) {
+  return text.replace(text.find(what), what.size(), with);
+}
+
+std::string error(const std::string& text) {
+  return error_of([&] { parse_zemax(memory_file(text), {}); });
+}
+
+TEST(Zemax, ReadsValuesAroundTheMirrorDirection) {
+  EXPECT_TRUE(looks_like_zemax(kHeader));
+  const auto file = parse_zemax(memory_file(kHeader + kData), {});
+  EXPECT_EQ(file.findings.description, "paint");
+  EXPECT_EQ(file.findings.sample_count, 12u);
+  EXPECT_EQ(file.findings.hole_count, 1u);
+  EXPECT_EQ(file.findings.clamped_negatives, 1u);
+  EXPECT_TRUE(file.table.isotropic());
+  double f;
+  const double phi = 0.3;
+  for (const int side : {-1, 1}) {  // folded
+    const Vec3 wi = spherical_direction(radians(10), phi);
+    ASSERT_TRUE(file.table.eval(wi, around_specular(radians(10), phi, 0, radians(10)), {&f, 1}));
+    EXPECT_NEAR(f, 2, 1e-6);
+    ASSERT_TRUE(file.table.eval(wi, around_specular(radians(10), phi, side * kHalfPi, radians(10)), {&f, 1}));
+    EXPECT_NEAR(f, 3, 1e-6);
+  }
+  // The hole at 30 degrees takes no part: the mirror direction's value is left.
+  ASSERT_TRUE(file.table.eval(spherical_direction(radians(30), 0),
+                              around_specular(radians(30), 0, kPi, radians(5)), {&f, 1}));
+  EXPECT_NEAR(f, 5, 1e-6);
+  // Half a step beyond the incidences is covered, more is not.
+  EXPECT_TRUE(
+      file.table.eval(spherical_direction(radians(39), 0), spherical_direction(radians(39), kPi), {&f, 1}));
+  EXPECT_FALSE(
+      file.table.eval(spherical_direction(radians(41), 0), spherical_direction(radians(41), kPi), {&f, 1}));
+}
+
+TEST(Zemax, TurnsTheLightWithTheSample) {
+  std::string text = replaced(kHeader + kData, "SampleRotation\t1\n0\n", "SampleRotation\t2\n0 90\n");
+  text = replaced(text, "AngleOfIncidence\t2\n10 30\n", "AngleOfIncidence\t1\n10\n");
+  const auto file = parse_zemax(memory_file(text), {});
+  EXPECT_FALSE(file.table.isotropic());
+  double f;
+  ASSERT_TRUE(file.table.eval(spherical_direction(radians(10), kHalfPi),
+                              spherical_direction(radians(10), -kHalfPi), {&f, 1}));
+  EXPECT_NEAR(f, 1, 1e-6);
+  ASSERT_TRUE(
+      file.table.eval(spherical_direction(radians(10), kPi), spherical_direction(radians(10), 0), {&f, 1}));
+  EXPECT_NEAR(f, 5, 1e-6);
+}
+
+TEST(Zemax, TurnsWhiteXyzIntoGreyRgb) {
+  std::string text = replaced(kHeader, "Monochrome", "XYZ");
+  text = replaced(text, "AngleOfIncidence\t2\n10 30\n", "AngleOfIncidence\t1\n10\n");
+  text = replaced(text, "ScatterAzimuth\t3\n0 90 180\n", "ScatterAzimuth\t1\n0\n");
+  for (const char* white : {"0.95047", "1.0", "1.08883"})
+    text += fmt::format("TristimulusX\nDataBegin\nTIS 1\n{} {}\nDataEnd\n", white, white);
+  const auto file = parse_zemax(memory_file(text), {});
+  std::array<double, 3> f;
+  ASSERT_TRUE(file.table.eval(spherical_direction(radians(10), 0), spherical_direction(radians(10), kPi), f));
+  for (const double value : f) EXPECT_NEAR(value, 1, 1e-4);
+}
+
+TEST(Zemax, SaysWhatIsWrong) {
+  EXPECT_THAT(error(replaced(kHeader, "BRDF", "BTDF")), HasSubstr("ScatterType BRDF"));
+  EXPECT_THAT(error(replaced(kHeader, "Symmetry\tPlaneSymmetrical\n", "")), HasSubstr("keyword symmetry"));
+  EXPECT_THAT(error(replaced(kHeader, "ScatterRadial", "Scatter")), HasSubstr("keyword of the header"));
+  EXPECT_THAT(error(replaced(kHeader, "10 30", "30 10")), HasSubstr("increasing"));
+  EXPECT_THAT(error(replaced(kHeader, "10 30", "10 95")), HasSubstr("[0, 90]"));
+  EXPECT_THAT(error(replaced(kHeader, "10 30", "10 30 50")), HasSubstr("end of the line"));
+  EXPECT_THAT(error(replaced(kHeader, "SampleRotation\t1\n", "SampleRotation\t999999999\n")),
+              HasSubstr("[1, 4096]"));
+  EXPECT_THAT(error(kHeader), HasSubstr("12 values"));
+  EXPECT_THAT(error(kHeader + replaced(kData, "1 3\n", "1\n")), HasSubstr("finite number for a value"));
+  EXPECT_THAT(error(kHeader + replaced(kData, "1 3\n", "1 3 4\n")), HasSubstr("end of the line"));
+  EXPECT_THAT(error(kHeader + replaced(kData, "1 3\n", "1 inf\n")), HasSubstr("finite"));
+  EXPECT_THAT(error(kHeader + replaced(kData, "1 3\n", "1 1e200\n")), HasSubstr("below 1e38"));
+  EXPECT_THAT(error(kHeader + replaced(kData, "TIS 0.2\n", "")), HasSubstr("tis"));
+  EXPECT_THAT(error(kHeader + replaced(kData, "DataEnd\n", "")), HasSubstr("dataend"));
+}
+
+TEST(Zemax, ReadsABlackCoatingMeasuredTo80Degrees) {
+  BURNISH_NEEDS_DATA();
+  const auto file = parse_zemax(read_file(data_folder() / "zemax" / "AnoBlackEC1onAlum.bsdf"), {});
+  EXPECT_EQ(file.findings.sample_count, 4u * 19 * 12);
+  EXPECT_EQ(file.findings.clamped_negatives, 0u);
+  EXPECT_TRUE(file.table.isotropic());
+  // The instrument stops 80 degrees from the normal. Exactly the entries beyond are holes if the frame is
+  // right.
+  const auto& axes = file.table.axes;
+  std::size_t entry = 0;
+  for (const double theta_i : axes[1].nodes)
+    for (const double azimuth : axes[2].nodes)
+      for (const double radial : axes[3].nodes) {
+        const double theta = degrees(theta_of(around_specular(theta_i, 0, azimuth, radial)));
+        if (std::abs(theta - 80) > 0.01) {
+          EXPECT_EQ(std::isnan(file.table.values[entry]), theta > 80) << entry;
+        }
+        ++entry;
+      }
+  // At grazing incidence the lobe leans to the horizon, so azimuth 180 is brighter than azimuth 0.
+  double to_horizon, to_normal;
+  const Vec3 wi = spherical_direction(radians(70), 0);
+  ASSERT_TRUE(file.table.eval(wi, spherical_direction(radians(78), kPi), {&to_horizon, 1}));
+  ASSERT_TRUE(file.table.eval(wi, spherical_direction(radians(62), kPi), {&to_normal, 1}));
+  EXPECT_GT(to_horizon, 1.5 * to_normal);
+}
+
+TEST(Zemax, ReadsAnAnisotropicSensor) {
+  BURNISH_NEEDS_DATA();
+  const auto file = parse_zemax(read_file(data_folder() / "zemax" / "IMX455.bsdf"), {});
+  EXPECT_EQ(file.findings.sample_count, 37u * 4 * 37 * 21);
+  EXPECT_FALSE(file.table.isotropic());
+  // The file repeats the half turn, except around its rotations of 0, which it flips.
+  double f, turned;
+  const Vec3 wi = spherical_direction(radians(30), radians(115)),
+             wo = spherical_direction(radians(35), radians(-60));
+  ASSERT_TRUE(file.table.eval(wi, wo, {&f, 1}));
+  ASSERT_TRUE(file.table.eval(mirror(wi), mirror(wo), {&turned, 1}));
+  EXPECT_NEAR(f, turned, 1e-6 * f);
+}
+
+}  // namespace
+}  // namespace burnish

@@ -1,0 +1,107 @@
+#include <algorithm>
+#include <cmath>
+
+#include <burnish/math/angles.h>
+#include <burnish/reflectance/angle_table.h>
+
+namespace burnish {
+
+namespace {
+
+/// Radians by which rounding may miss the end of an axis.
+constexpr double kSlack = 1e-9;
+
+/// The mirror direction of the light, the direction from it to the normal, and the one that completes them.
+struct SpecularFrame {
+  Vec3 specular, up, across;
+};
+
+SpecularFrame specular_frame(double theta_i, double phi_i) noexcept {
+  const Vec3 specular = spherical_direction(theta_i, phi_i + kPi);
+  const Vec3 up{std::cos(theta_i) * std::cos(phi_i), std::cos(theta_i) * std::sin(phi_i), std::sin(theta_i)};
+  return {specular, up, cross(specular, up)};
+}
+
+}  // namespace
+
+AngleAxis make_axis(std::vector<double> nodes, double period) {
+  double widest = 0;
+  for (std::size_t i = 1; i < nodes.size(); ++i) widest = std::max(widest, nodes[i] - nodes[i - 1]);
+  const bool closed = period > 0 && nodes.front() + period - nodes.back() <= 1.5 * widest;
+  return {std::move(nodes), period, closed};
+}
+
+AxisNeighbours neighbours(const AngleAxis& axis, double angle) noexcept {
+  const auto& nodes = axis.nodes;
+  if (nodes.size() == 1) return {};
+  const std::size_t last = nodes.size() - 1;
+  const double half_step = 0.5 * (nodes[last] - nodes[last - 1]);
+  if (axis.period > 0) {
+    angle -= axis.period * std::floor((angle - nodes[0]) / axis.period);
+    // Half a step in front of the first node is closer to it than to the last.
+    if (!axis.closed && angle > nodes[last] + half_step + kSlack) angle -= axis.period;
+  }
+  if (angle > nodes[last]) {
+    if (axis.closed) return {{last, 0}, (angle - nodes[last]) / (nodes[0] + axis.period - nodes[last]), true};
+    return {{last, last}, 0, angle <= nodes[last] + half_step + kSlack};
+  }
+  if (angle < nodes[0]) return {{0, 0}, 0, angle >= nodes[0] - 0.5 * (nodes[1] - nodes[0]) - kSlack};
+  const auto above = std::upper_bound(nodes.begin(), nodes.end() - 1, angle);
+  const auto high = std::max<std::size_t>(static_cast<std::size_t>(above - nodes.begin()), 1);
+  return {{high - 1, high}, (angle - nodes[high - 1]) / (nodes[high] - nodes[high - 1]), true};
+}
+
+std::vector<double> cell_centres(std::size_t count, double extent) {
+  std::vector<double> centres(count);
+  for (std::size_t i = 0; i < count; ++i)
+    centres[i] = (static_cast<double>(i) + 0.5) / static_cast<double>(count) * extent;
+  return centres;
+}
+
+Vec3 around_specular(double theta_i, double phi_i, double azimuth, double radial) noexcept {
+  const auto [specular, up, across] = specular_frame(theta_i, phi_i);
+  return std::cos(radial) * specular +
+         std::sin(radial) * (std::cos(azimuth) * up + std::sin(azimuth) * across);
+}
+
+bool AngleTable::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+  std::fill(f.begin(), f.end(), 0.0);
+  if (wi.z <= 0 || wo.z <= 0) return true;
+  const double theta_i = theta_of(wi), phi_i = phi_of(wi);
+  std::array<double, 4> angles{phi_i, theta_i, 0, 0};
+  const std::size_t azimuth = frame == Frame::kNormal ? 3 : 2;
+  if (frame == Frame::kNormal) {
+    angles[2] = theta_of(wo);
+    angles[3] = phi_of(wo) - phi_i;
+  } else {
+    const auto [specular, up, across] = specular_frame(theta_i, phi_i);
+    angles[2] = std::atan2(dot(wo, across), dot(wo, up));
+    angles[3] = angle_between(specular, wo);
+  }
+  if (folded) angles[azimuth] = std::abs(std::remainder(angles[azimuth], kTwoPi));
+
+  std::array<AxisNeighbours, 4> near;
+  for (std::size_t k = 0; k < 4; ++k) {
+    near[k] = neighbours(axes[k], angles[k]);
+    if (!near[k].inside) return false;
+  }
+  double total = 0;
+  for (std::size_t corner = 0; corner < 16; ++corner) {
+    double weight = 1;
+    std::size_t index = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const bool second = corner >> k & 1;
+      weight *= second ? near[k].fraction : 1 - near[k].fraction;
+      index = index * axes[k].nodes.size() + near[k].index[second];
+    }
+    const float* entry = &values[index * static_cast<std::size_t>(channel_count)];
+    if (weight == 0 || std::isnan(entry[0])) continue;
+    total += weight;
+    for (std::size_t c = 0; c < f.size(); ++c) f[c] += weight * static_cast<double>(entry[c]);
+  }
+  if (total == 0) return false;
+  for (double& value : f) value /= total;
+  return true;
+}
+
+}  // namespace burnish

@@ -1,0 +1,136 @@
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <burnish/error.h>
+#include <burnish/math/angles.h>
+#include <burnish/reflectance/scattered_brdf.h>
+
+namespace burnish {
+
+namespace {
+
+constexpr double kCornellCount = 1439;
+constexpr double kCornellRadius2 = 0.001;  // [Pharr 2010]
+constexpr double kSharpness = 100;         // [Pharr 2010]
+constexpr std::size_t kEnough = 3;         // [Pharr 2010]
+constexpr std::size_t kLeaf = 8;           // ranges this short are searched one by one
+
+double distance2(const std::array<double, 4>& a, const std::array<double, 4>& b) noexcept {
+  double sum = 0;
+  for (std::size_t k = 0; k < 4; ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
+  return sum;
+}
+
+/// Calls visit(index, distance2) for every point within the ball.
+template <class Visit>
+void visit_ball(std::span<const std::array<double, 4>> points, std::span<const std::uint8_t> axes,
+                std::size_t begin, std::size_t end, const std::array<double, 4>& centre, double radius2,
+                const Visit& visit) noexcept {
+  while (end - begin > kLeaf) {
+    const std::size_t middle = begin + (end - begin) / 2;
+    const double d2 = distance2(points[middle], centre);
+    if (d2 <= radius2) visit(middle, d2);
+    const double across = centre[axes[middle]] - points[middle][axes[middle]];
+    const bool both = across * across <= radius2;
+    if (both)
+      visit_ball(points, axes, across < 0 ? middle + 1 : begin, across < 0 ? end : middle, centre, radius2,
+                 visit);
+    (across < 0 ? end : begin) = across < 0 ? middle : middle + 1;
+  }
+  for (std::size_t i = begin; i < end; ++i) {
+    const double d2 = distance2(points[i], centre);
+    if (d2 <= radius2) visit(i, d2);
+  }
+}
+
+/// Orders the indices [begin, end) as a balanced k-d tree: the middle one splits along the longest axis.
+void sort_into_tree(std::span<const std::array<double, 4>> points, std::span<std::size_t> order,
+                    std::span<std::uint8_t> axes, std::size_t begin, std::size_t end) {
+  if (end - begin <= kLeaf) return;
+  std::array<double, 4> low = points[order[begin]], high = low;
+  for (std::size_t i = begin; i < end; ++i)
+    for (std::size_t k = 0; k < 4; ++k) {
+      low[k] = std::min(low[k], points[order[i]][k]);
+      high[k] = std::max(high[k], points[order[i]][k]);
+    }
+  std::size_t axis = 0;
+  for (std::size_t k = 1; k < 4; ++k)
+    if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
+  const std::size_t middle = begin + (end - begin) / 2;
+  const auto at = [&](std::size_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); };
+  std::nth_element(at(begin), at(middle), at(end),
+                   [&](std::size_t a, std::size_t b) { return points[a][axis] < points[b][axis]; });
+  axes[middle] = static_cast<std::uint8_t>(axis);
+  sort_into_tree(points, order, axes, begin, middle);
+  sort_into_tree(points, order, axes, middle + 1, end);
+}
+
+}  // namespace
+
+Samples select(const Samples& samples, std::span<const std::size_t> subset) {
+  Samples part{samples.channels, samples.isotropic, {}, {}};
+  part.pairs.reserve(subset.size());
+  part.values.reserve(subset.size() * static_cast<std::size_t>(samples.channels));
+  for (const std::size_t i : subset) {
+    part.pairs.push_back(samples.pairs[i]);
+    const auto values = samples.at(i);
+    part.values.insert(part.values.end(), values.begin(), values.end());
+  }
+  return part;
+}
+
+ScatteredBrdf::ScatteredBrdf(const Samples& samples, std::span<const std::size_t> subset)
+    : ScatteredBrdf(select(samples, subset)) {}
+
+ScatteredBrdf::ScatteredBrdf(Samples samples) : samples_(std::move(samples)) {
+  const std::size_t count = samples_.size();
+  if (count == 0) throw Error("scattered samples: expected at least one, found none");
+  if (samples_.channels < 1 || samples_.values.size() != count * static_cast<std::size_t>(samples_.channels))
+    throw Error("scattered samples: expected as many values as pairs times channels");
+  const double dimensions = samples_.isotropic ? 3 : 4;
+  initial_radius2_ =
+      kCornellRadius2 * std::min(1.0, std::pow(kCornellCount / static_cast<double>(count), 2 / dimensions));
+
+  std::vector<Point> points(count);
+  for (std::size_t i = 0; i < count; ++i) points[i] = place(samples_.pairs[i].wi, samples_.pairs[i].wo);
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  axes_.assign(count, 0);
+  sort_into_tree(points, order, axes_, 0, count);
+  points_.reserve(count);
+  for (const std::size_t i : order) points_.push_back(points[i]);
+  samples_ = select(samples_, order);
+}
+
+ScatteredBrdf::Point ScatteredBrdf::place(Vec3 wi, Vec3 wo) const noexcept {
+  if (!samples_.isotropic) return {wi.x, wi.y, wo.x, wo.y};
+  const double turn = std::abs(std::remainder(phi_of(wi) - phi_of(wo), kTwoPi));
+  return {std::hypot(wi.x, wi.y) * std::hypot(wo.x, wo.y), turn / kPi, wi.z * wo.z, 0};
+}
+
+bool ScatteredBrdf::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+  std::fill(f.begin(), f.end(), 0.0);
+  if (wi.z <= 0 || wo.z <= 0) return true;
+  const Point centre = place(wi, wo);
+  const std::size_t enough = std::min(kEnough, points_.size());
+  for (double radius2 = initial_radius2_; radius2 <= kMaxRadius2; radius2 *= 2) {
+    std::size_t found = 0;
+    double total = 0;
+    std::fill(f.begin(), f.end(), 0.0);
+    visit_ball(points_, axes_, 0, points_.size(), centre, radius2, [&](std::size_t i, double d2) noexcept {
+      const double weight = std::exp(-kSharpness * d2);
+      const auto values = samples_.at(i);
+      for (std::size_t c = 0; c < f.size(); ++c) f[c] += weight * values[c];
+      total += weight;
+      ++found;
+    });
+    if (found < enough) continue;
+    for (double& value : f) value /= total;
+    return true;
+  }
+  std::fill(f.begin(), f.end(), 0.0);
+  return false;
+}
+
+}  // namespace burnish

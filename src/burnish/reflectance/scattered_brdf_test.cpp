@@ -1,0 +1,147 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <burnish/error.h>
+#include <burnish/math/angles.h>
+#include <burnish/math/random.h>
+#include <burnish/reflectance/goniometer.h>
+#include <burnish/reflectance/scattered_brdf.h>
+
+namespace burnish {
+namespace {
+
+Samples sample(std::size_t count, bool isotropic, double (*f)(Vec3, Vec3)) {
+  Samples samples{1, isotropic, draw_pairs(count, 11, false), {}};
+  for (const auto& [wi, wo] : samples.pairs) samples.values.push_back(f(wi, wo));
+  return samples;
+}
+
+double smooth(Vec3 wi, Vec3 wo) {
+  return 1 + wi.z * wo.z + 0.5 * (wi.x * wo.x + wi.y * wo.y);
+}
+
+double brushed(Vec3 wi, Vec3 wo) {
+  return 2 + (wi.x + wo.x) * (wi.x + wo.x) - 0.3 * wo.y;
+}
+
+double one(Vec3, Vec3) {
+  return 1;
+}
+
+/// The definition, over all samples: doubled radius until three are in reach.
+double by_exhaustion(const Samples& samples, double radius2, Vec3 wi, Vec3 wo) {
+  const auto distance2 = [&](const DirectionPair& pair) {
+    const auto place = [](Vec3 a, Vec3 b) {
+      const double turn = std::abs(std::remainder(phi_of(a) - phi_of(b), kTwoPi));
+      return Vec3{std::sin(theta_of(a)) * std::sin(theta_of(b)), turn / kPi, a.z * b.z};
+    };
+    const Vec3 apart = place(pair.wi, pair.wo) - place(wi, wo);
+    return dot(apart, apart);
+  };
+  for (;; radius2 *= 2) {
+    double sum = 0, weights = 0;
+    int found = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      if (const double d2 = distance2(samples.pairs[i]); d2 <= radius2) {
+        ++found;
+        weights += std::exp(-100 * d2);
+        sum += std::exp(-100 * d2) * samples.values[i];
+      }
+    if (found >= 3) return sum / weights;
+  }
+}
+
+TEST(ScatteredBrdf, EqualsTheWeightedMeanOverAllSamples) {
+  const Samples samples = sample(1000, true, smooth);
+  const ScatteredBrdf brdf(samples);
+  EXPECT_EQ(brdf.initial_radius2(), 0.001);
+  for (const auto& [wi, wo] : draw_pairs(300, 2, false)) {
+    double f;
+    ASSERT_TRUE(brdf.eval(wi, wo, {&f, 1}));
+    EXPECT_NEAR(f, by_exhaustion(samples, 0.001, wi, wo), 1e-12);
+  }
+}
+
+TEST(ScatteredBrdf, ReproducesAConstant) {
+  double f;
+  const ScatteredBrdf constant(sample(500, true, one));
+  for (const auto& [wi, wo] : draw_pairs(500, 3, false)) {
+    ASSERT_TRUE(constant.eval(wi, wo, {&f, 1}));
+    EXPECT_NEAR(f, 1, 1e-14);
+  }
+}
+
+TEST(ScatteredBrdf, ApproximatesASmoothIsotropicFunction) {
+  const ScatteredBrdf brdf(sample(20000, true, smooth));
+  double error = 0, f;
+  const auto pairs = draw_pairs(2000, 4, false);
+  for (const auto& [wi, wo] : pairs) {
+    ASSERT_TRUE(brdf.eval(wi, wo, {&f, 1}));
+    error += std::abs(f / smooth(wi, wo) - 1);
+  }
+  EXPECT_LT(error / 2000, 0.02);
+}
+
+TEST(ScatteredBrdf, ApproximatesASmoothAnisotropicFunction) {
+  const ScatteredBrdf brdf(sample(20000, false, brushed));
+  double error = 0, f;
+  int known = 0;
+  for (const auto& [wi, wo] : draw_pairs(2000, 5, false))
+    if (brdf.eval(wi, wo, {&f, 1})) {
+      error += std::abs(f / brushed(wi, wo) - 1);
+      ++known;
+    }
+  EXPECT_GT(known, 1900);
+  EXPECT_LT(error / known, 0.05);
+}
+
+TEST(ScatteredBrdf, IsReciprocalAndTurnsFreelyWhereIsotropic) {
+  const ScatteredBrdf brdf(sample(3000, true, smooth));
+  Pcg32 random(6);
+  for (const auto& [wi, wo] : draw_pairs(500, 6, false)) {
+    const double turn = kTwoPi * random.uniform();
+    double f, swapped, turned;
+    brdf.eval(wi, wo, {&f, 1});
+    brdf.eval(wo, wi, {&swapped, 1});
+    brdf.eval(spherical_direction(theta_of(wi), phi_of(wi) + turn),
+              spherical_direction(theta_of(wo), phi_of(wo) + turn), {&turned, 1});
+    EXPECT_DOUBLE_EQ(f, swapped);
+    EXPECT_NEAR(f, turned, 1e-9);
+  }
+}
+
+TEST(ScatteredBrdf, KnowsNothingFarFromItsSamples) {
+  Samples samples{1, true, {}, {}};
+  for (int i = 0; i < 5; ++i) {
+    samples.pairs.push_back({spherical_direction(0.1 + 0.01 * i, 0), spherical_direction(0.1, kPi)});
+    samples.values.push_back(1);
+  }
+  const ScatteredBrdf brdf(samples);
+  double f;
+  EXPECT_TRUE(brdf.eval(spherical_direction(0.12, 1), spherical_direction(0.1, 1 + kPi), {&f, 1}));
+  EXPECT_NEAR(f, 1, 1e-14);
+  EXPECT_FALSE(brdf.eval(spherical_direction(1.4, 0), spherical_direction(1.4, 0), {&f, 1}));
+  EXPECT_EQ(f, 0);
+  EXPECT_TRUE(brdf.eval({1, 0, 0}, {0, 0, 1}, {&f, 1}));
+  EXPECT_EQ(f, 0);
+}
+
+TEST(ScatteredBrdf, TakesASubsetOfTheSamples) {
+  const Samples samples = sample(100, true, smooth);
+  std::vector<std::size_t> subset;
+  for (std::size_t i = 0; i < 100; i += 2) subset.push_back(i);
+  const ScatteredBrdf brdf(samples, subset);
+  EXPECT_EQ(brdf.samples().size(), 50u);
+  const Samples chosen = select(samples, subset);
+  EXPECT_EQ(chosen.pairs[3], samples.pairs[6]);
+  EXPECT_EQ(chosen.values[3], samples.values[6]);
+}
+
+TEST(ScatteredBrdf, RefusesAnEmptyOrInconsistentSet) {
+  EXPECT_THROW(ScatteredBrdf(Samples{1, true, {}, {}}), Error);
+  EXPECT_THROW(ScatteredBrdf(Samples{3, true, {{}}, {1}}), Error);
+}
+
+}  // namespace
+}  // namespace burnish
