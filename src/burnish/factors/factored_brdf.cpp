@@ -27,6 +27,9 @@ bool swapped_use(const FactorUse& use, const TableLayout& layout, FactorUse& res
          (layout.shape != TableShape::grid || swapped(use.projection_y, false, result.projection_y));
 }
 
+// A fit far too rough can leave an unbounded product in a direction without data; floats end at e^88.
+constexpr double kMostLogScale = 88;
+
 double lookup(const Table& table, const Lookup& at, std::size_t channel) noexcept {
   const auto step = static_cast<std::size_t>(table.channels);
   const std::size_t c = step == 1 ? 0 : channel;
@@ -183,7 +186,7 @@ FactoredBrdf from_log_tables(int channels, std::vector<Table> tables, std::vecto
     }
   }
   for (Lobe& lobe : lobes)
-    for (double& s : lobe.scale) s = static_cast<float>(std::exp(s));
+    for (double& s : lobe.scale) s = static_cast<float>(std::exp(std::min(s, kMostLogScale)));
   return FactoredBrdf(channels, std::move(tables), std::move(lobes), format);
 }
 

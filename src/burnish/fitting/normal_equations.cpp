@@ -16,7 +16,7 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 
 // Pins what neither data nor smoothness determine (the share of a constant between the tables).
-constexpr double kRidge = 1e-10;
+constexpr double kRidge = 1e-7;
 
 // Memory for the partial sums that run side by side.
 constexpr std::size_t kPartialBytes = std::size_t{128} << 20;

@@ -31,6 +31,7 @@ std::array<double, 4> recurrence_point(std::size_t i, const std::array<double, 4
 SampleSource from_samples(const Samples& samples, bool symmetrize) {
   const std::size_t n = samples.size();
   return {.count = symmetrize ? 2 * n : n,
+          .distinct = n,
           .channels = samples.channels,
           .isotropic = samples.isotropic,
           .fill = [&samples, n](std::size_t begin, std::span<DirectionPair> pairs, std::span<double> values,
@@ -57,6 +58,7 @@ SampleSource from_brdf(BrdfRef source, std::size_t count, std::uint64_t seed, bo
   const std::array<double, 4> start{random.uniform(), random.uniform(), random.uniform(), random.uniform()};
   const bool spread = spread_phi_h || !source.isotropic();
   return {.count = count,
+          .distinct = count,
           .channels = source.channels(),
           .isotropic = source.isotropic(),
           .fill = [=](std::size_t begin, std::span<DirectionPair> pairs, std::span<double> values,

@@ -13,6 +13,7 @@ namespace burnish {
 /// Measurements to be fitted, produced on demand in any order so that a large table need not be copied.
 struct SampleSource {
   std::size_t count = 0;
+  std::size_t distinct = 0;  ///< sample i + distinct is sample i with wi and wo exchanged
   int channels = 0;
   bool isotropic = false;
   /// Writes samples [begin, begin + pairs.size()): directions, values (channel fastest, 1/sr) and the
