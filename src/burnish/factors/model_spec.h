@@ -14,7 +14,8 @@ struct ModelSpec {
   struct TableSpec {
     std::string name;
     TableLayout layout;
-    bool shared = false;  ///< one channel for all
+    bool shared = false;      ///< one channel for all
+    double smooth_share = 1;  ///< multiplies the fit's smoothness for this table
   };
   std::vector<TableSpec> tables;
   std::vector<std::vector<FactorUse>> lobes;

@@ -33,13 +33,13 @@ class LogOperator {
   LogOperator(const RowMaker& maker, const HomomorphicOptions& options)
       : spec_(*maker.spec),
         uses_(spec_.lobes.front()),
-        channels_(static_cast<std::size_t>(maker.source->channels)),
-        smooth_(options.smooth) {
+        channels_(static_cast<std::size_t>(maker.source->channels)) {
     for (const ModelSpec::TableSpec& table : spec_.tables) {
       base_.push_back(count_);
       step_.push_back(table.shared ? 1 : step());
       count_ += table.layout.node_count() * step_.back();
       smoothness_.push_back(smoothness_rows(table.layout));
+      smooth_.push_back(options.smooth * table.smooth_share);
     }
     for (const FactorUse& use : uses_) {
       const auto t = static_cast<std::size_t>(use.table);
@@ -65,7 +65,7 @@ class LogOperator {
   Doubles right_side() const {
     return accumulate([&](const LogRows& rows, Floats& y) {
       scatter(rows, y, [&](std::size_t i, float* row) {
-        for (std::size_t c = 0; c < step(); ++c) row[c] = rows.weight[i] * rows.target[i * step() + c];
+        for (std::size_t c = 0; c < step(); ++c) row[c] = weight(rows, i, c) * rows.target[i * step() + c];
       });
     });
   }
@@ -76,7 +76,7 @@ class LogOperator {
     Doubles y = accumulate([&](const LogRows& rows, Floats& part) {
       scatter(rows, part, [&](std::size_t i, float* row) {
         gather(rows, i, xf, row);
-        for (std::size_t c = 0; c < step(); ++c) row[c] *= rows.weight[i];
+        for (std::size_t c = 0; c < step(); ++c) row[c] *= weight(rows, i, c);
       });
     });
     add_smoothness(x, y);
@@ -128,7 +128,7 @@ class LogOperator {
         gather(rows, i, xf, row.data());
         for (std::size_t c = 0; c < step(); ++c) {
           const double residual = row[c] - rows.target[i * step() + c];
-          sums[chunk] += rows.weight[i] * residual * residual;
+          sums[chunk] += weight(rows, i, c) * residual * residual;
         }
       }
     });
@@ -153,36 +153,45 @@ class LogOperator {
     return channels_;
   }
 
-  // Widens targets to the padded channel count; the padding stays 0.
+  float weight(const LogRows& rows, std::size_t i, std::size_t c) const {
+    return rows.weight_channels == 1 ? rows.weight[i] : rows.weight[i * step() + c];
+  }
+
+  // Widens targets and weights to the padded channel count; the padding stays 0.
   void pad(LogRows& rows) const {
     if (step() == channels_) return;
-    Floats wide(rows.size * step());
-    for (std::size_t i = 0; i < rows.size; ++i)
-      for (std::size_t c = 0; c < channels_; ++c) wide[i * step() + c] = rows.target[i * channels_ + c];
-    rows.target = std::move(wide);
+    const auto widen = [&](Floats& values) {
+      Floats wide(rows.size * step());
+      for (std::size_t i = 0; i < rows.size; ++i)
+        for (std::size_t c = 0; c < channels_; ++c) wide[i * step() + c] = values[i * channels_ + c];
+      values = std::move(wide);
+    };
+    widen(rows.target);
+    if (rows.weight_channels > 1) widen(rows.weight);
   }
 
   // Takes each channel's mean out of the targets.
   void center() {
-    Doubles first(channels_), second(channels_);
+    Doubles weights(channels_), first(channels_), second(channels_);
     for (const LogRows& rows : chunks_) {
       samples_ += rows.size;
-      for (std::size_t i = 0; i < rows.size; ++i) {
-        const double w = rows.weight[i];
-        total_weight_ += w;
+      for (std::size_t i = 0; i < rows.size; ++i)
         for (std::size_t c = 0; c < channels_; ++c) {
-          const double t = rows.target[i * step() + c];
+          const double w = weight(rows, i, c), t = rows.target[i * step() + c];
+          weights[c] += w;
           first[c] += w * t;
           second[c] += w * t * t;
         }
-      }
     }
+    // the mean weight of a channel is one unit of data
+    for (const double w : weights) total_weight_ += w / static_cast<double>(channels_);
     if (!(total_weight_ > 0)) throw Error("fit: expected samples with weight, found none");
     mean_.assign(step(), 0);
     double spread = 0;
     for (std::size_t c = 0; c < channels_; ++c) {
-      mean_[c] = first[c] / total_weight_;
-      spread += second[c] / total_weight_ - mean_[c] * mean_[c];
+      if (!(weights[c] > 0)) continue;
+      mean_[c] = first[c] / weights[c];
+      spread += (second[c] - weights[c] * mean_[c] * mean_[c]) / total_weight_;
     }
     error_before_ = std::sqrt(std::max(0.0, spread / static_cast<double>(channels_)));
     for_each_chunk(chunks_.size(), 1, [&](std::size_t chunk, std::size_t, std::size_t) {
@@ -209,7 +218,7 @@ class LogOperator {
           for (int corner = 0; corner < 4; ++corner)
             for (std::size_t c = 0; c < step(); ++c)
               d[at.node[corner] * step_of + (step_of > 1 ? c : 0)] +=
-                  kSampleStride * at.weight[corner] * at.weight[corner] * rows.weight[i];
+                  kSampleStride * at.weight[corner] * at.weight[corner] * weight(rows, i, c);
         }
     TableLayout layout = spec_.tables[table].layout;
     layout.width = level.coarse_width();
@@ -219,7 +228,7 @@ class LogOperator {
     for (std::size_t k = 0; k < smoothness.nodes.size(); ++k)
       for (std::size_t c = 0; c < step_of; ++c)
         d[smoothness.nodes[k] * step_of + c] +=
-            smooth_ * smoothness.coefficients[k] * smoothness.coefficients[k];
+            smooth_[table] * smoothness.coefficients[k] * smoothness.coefficients[k];
     for (double& v : d) v = 1 / v;
     return d;
   }
@@ -295,7 +304,7 @@ class LogOperator {
           for (std::size_t k = rows.starts[r]; k < rows.starts[r + 1]; ++k)
             value += rows.coefficients[k] * x[base_[t] + rows.nodes[k] * step_[t] + c];
           for (std::size_t k = rows.starts[r]; k < rows.starts[r + 1]; ++k)
-            y[base_[t] + rows.nodes[k] * step_[t] + c] += smooth_ * rows.coefficients[k] * value;
+            y[base_[t] + rows.nodes[k] * step_[t] + c] += smooth_[t] * rows.coefficients[k] * value;
         }
     }
   }
@@ -303,7 +312,8 @@ class LogOperator {
   const ModelSpec& spec_;
   const std::vector<FactorUse>& uses_;
   std::size_t channels_, count_ = 0, samples_ = 0;
-  double smooth_, total_weight_ = 0, error_before_ = 0;
+  double total_weight_ = 0, error_before_ = 0;
+  Doubles smooth_;
   std::vector<std::size_t> base_, step_;
   std::vector<Touch> touches_;
   std::vector<SmoothnessRows> smoothness_;

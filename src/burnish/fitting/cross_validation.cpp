@@ -1,9 +1,9 @@
-#include <burnish/fitting/cross_validation.h>
-
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include <burnish/math/parallel.h>
+#include <burnish/fitting/cross_validation.h>
+#include <burnish/fitting/log_error.h>
 
 namespace burnish {
 
@@ -21,69 +21,64 @@ SampleSource part_of(const SampleSource& source, std::size_t folds, std::size_t 
   return part;
 }
 
-struct ErrorSum {
-  double error = 0, weight = 0;
-};
-
-ErrorSum log_error(const SampleSource& source, const FactoredBrdf& model, double floor) {
-  constexpr std::size_t kChunk = 4096;
-  const auto channels = static_cast<std::size_t>(source.channels);
-  std::vector<ErrorSum> parts(chunk_count(source.count, kChunk));
-  for_each_chunk(source.count, kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-    const std::size_t n = end - begin;
-    std::vector<DirectionPair> pairs(n);
-    std::vector<double> values(n * channels), weights(n), f(channels);
-    source.fill(begin, pairs, values, weights);
-    for (std::size_t i = 0; i < n; ++i) {
-      if (!(weights[i] > 0) || pairs[i].wi.z <= 0 || pairs[i].wo.z <= 0) continue;
-      model.eval(pairs[i].wi, pairs[i].wo, f);
-      for (std::size_t c = 0; c < channels; ++c) {
-        const double target = std::max(values[i * channels + c], 0.0);
-        parts[chunk].error += weights[i] * std::abs(std::log((target + floor) / (f[c] + floor)));
-        parts[chunk].weight += weights[i];
-      }
-    }
-  });
-  ErrorSum sum;
-  for (const ErrorSum& part : parts) {
-    sum.error += part.error;
-    sum.weight += part.weight;
-  }
-  return sum;
-}
-
 }  // namespace
 
 double held_out_error(const SampleSource& source, const ModelSpec& spec, const HomomorphicOptions& options,
                       std::size_t folds) {
+  const double floor = options.reweightings > 0 ? options.error_floor : options.floor;
   ErrorSum sum;
   for (std::size_t fold = 0; fold < folds; ++fold) {
     const FactoredBrdf model = fit_homomorphic(part_of(source, folds, fold, false), spec, options).brdf;
-    const ErrorSum part = log_error(part_of(source, folds, fold, true), model, options.floor);
+    const ErrorSum part = log_error(part_of(source, folds, fold, true), model, floor);
     sum.error += part.error;
     sum.weight += part.weight;
   }
-  return sum.error / sum.weight;
+  return sum.mean();
 }
 
-std::vector<SmoothTrial> try_smoothness(const SampleSource& source, const ModelSpec& spec,
-                                        const HomomorphicOptions& options) {
+std::vector<SmoothTrial> choose_smoothness(const SampleSource& source, const ModelSpec& spec,
+                                           const HomomorphicOptions& options) {
   constexpr std::size_t kManySamples = 20'000;
-  constexpr int kFirstDecade = -10, kLastDecade = -1;
+  constexpr int kFirstDecade = -10, kLastDecade = -1, kRounds = 2;
   const std::size_t folds = source.distinct > kManySamples ? 2 : 5;
+  const std::size_t tables = spec.tables.size();
+  const double expected = kLastDecade - kFirstDecade + 3 + 2.5 * kRounds * static_cast<double>(tables);
   HomomorphicOptions trial_options = options;
   trial_options.progress = nullptr;
+  ModelSpec trial_spec = spec;
+
   std::vector<SmoothTrial> trials;
-  const auto attempt = [&](double smooth) {
+  const auto attempt = [&](double smooth, const std::vector<double>& shares) {
     trial_options.smooth = smooth;
-    trials.push_back({smooth, held_out_error(source, spec, trial_options, folds)});
-    constexpr double kTrials = kLastDecade - kFirstDecade + 3;
-    if (options.progress) options.progress(static_cast<double>(trials.size()) / kTrials);
+    for (std::size_t t = 0; t < tables; ++t) trial_spec.tables[t].smooth_share = shares[t];
+    trials.push_back({smooth, shares, held_out_error(source, trial_spec, trial_options, folds)});
+    if (options.progress) options.progress(std::min(1.0, static_cast<double>(trials.size()) / expected));
+    return trials.back();
   };
-  for (int decade = kFirstDecade; decade <= kLastDecade; ++decade) attempt(std::pow(10.0, decade));
-  const double best = std::ranges::min(trials, {}, &SmoothTrial::error).smooth;
-  attempt(best / std::sqrt(10.0));
-  attempt(best * std::sqrt(10.0));
+  SmoothTrial best{.error = std::numeric_limits<double>::infinity()};
+  const auto improves = [&](const SmoothTrial& trial) {
+    if (!(trial.error < best.error)) return false;
+    best = trial;
+    return true;
+  };
+
+  std::vector<double> shares;
+  for (const ModelSpec::TableSpec& table : spec.tables) shares.push_back(table.smooth_share);
+  for (int decade = kFirstDecade; decade <= kLastDecade; ++decade)
+    improves(attempt(std::pow(10.0, decade), shares));
+  for (int round = 0; tables > 1 && round < kRounds; ++round)
+    for (std::size_t t = 0; t < tables; ++t)
+      for (const double factor : {0.1, 10.0}) {
+        bool moved = false;
+        do {
+          shares = best.shares;
+          shares[t] *= factor;
+          moved = improves(attempt(best.smooth, shares));
+        } while (moved && shares[t] > 1e-4 && shares[t] < 1e4);
+        if (best.shares[t] != spec.tables[t].smooth_share) break;
+      }
+  for (const double factor : {std::sqrt(0.1), std::sqrt(10.0)})
+    improves(attempt(best.smooth * factor, best.shares));
   std::ranges::stable_sort(trials, {}, &SmoothTrial::error);
   return trials;
 }

@@ -7,21 +7,24 @@
 
 namespace burnish {
 
-/// A smoothness and what it costs on samples that the fit did not see.
-struct SmoothTrial {
-  double smooth = 0;
-  double error = 0;  ///< weighted mean of |log((f + floor) / (model + floor))|
-};
-
-/// Held-out error of fit_homomorphic with these options: the samples are cut into `folds` by their number modulo folds
-/// (both directions of a sample fall together), each fold is predicted by a fit to the others. folds >= 2.
-/// Throws what fit_homomorphic throws.
+/// Held-out error of fit_homomorphic with these options: the samples are cut into `folds` by their number
+/// modulo folds (both directions of a sample fall together), each fold is predicted by a fit to the others.
+/// folds >= 2. Throws what fit_homomorphic throws.
 double held_out_error(const SampleSource& source, const ModelSpec& spec, const HomomorphicOptions& options,
                       std::size_t folds);
 
-/// Tries smooth = 10^k for k from -10 to -1, then half decades beside the best, by held_out_error with five folds (two
-/// for more than 20,000 samples), and returns all trials, the best first.
-std::vector<SmoothTrial> try_smoothness(const SampleSource& source, const ModelSpec& spec,
-                                        const HomomorphicOptions& options);
+/// What choose_smoothness tried.
+struct SmoothTrial {
+  double smooth = 0;
+  std::vector<double> shares;  ///< smooth_share of each table
+  double error = 0;            ///< held_out_error
+};
+
+/// Finds the smoothness with the smallest held_out_error, in five folds (two for more than 20,000 samples):
+/// first smooth = 10^k for k from -10 to -1, then for each table in turn, twice, ever smaller or larger
+/// shares by factors of ten as long as that helps, then half a decade either way. Returns all trials, the
+/// best first. options.progress is called with the share of the trials that are expected.
+std::vector<SmoothTrial> choose_smoothness(const SampleSource& source, const ModelSpec& spec,
+                                           const HomomorphicOptions& options);
 
 }  // namespace burnish

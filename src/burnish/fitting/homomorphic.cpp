@@ -1,7 +1,9 @@
+#include <optional>
 #include <utility>
 
 #include <burnish/error.h>
 #include <burnish/fitting/homomorphic.h>
+#include <burnish/fitting/log_error.h>
 #include <burnish/fitting/log_rows.h>
 
 namespace burnish {
@@ -18,22 +20,14 @@ bool solved_directly(const ModelSpec& spec, std::size_t unknowns, int channels) 
   return (coupled ? unknowns : unknowns / static_cast<std::size_t>(channels)) <= kMostDirectUnknowns;
 }
 
-}  // namespace
+LogSolution solve(const RowMaker& rows, const Unknowns& unknowns, const HomomorphicOptions& options) {
+  return solved_directly(*rows.spec, unknowns.count, rows.source->channels)
+             ? solve_directly(rows, unknowns, options)
+             : solve_iteratively(rows, unknowns, options);
+}
 
-HomomorphicFit fit_homomorphic(const SampleSource& source, const ModelSpec& spec,
-                               const HomomorphicOptions& options) {
-  if (spec.lobes.size() != 1 || spec.lobes.front().empty())
-    throw Error("fit: a log-linear fit takes a model of one lobe");
-  if (source.count == 0) throw Error("fit: expected samples, found none");
-  if (!(options.smooth >= 0) || !(options.floor > 0))
-    throw Error("fit: expected smooth >= 0 and floor > 0, found others");
-  const RowMaker rows{.source = &source, .spec = &spec, .floor = options.floor};
-
-  const Unknowns unknowns = number_unknowns(spec, source.channels);
-  LogSolution solution = solved_directly(spec, unknowns.count, source.channels)
-                             ? solve_directly(rows, unknowns, options)
-                             : solve_iteratively(rows, unknowns, options);
-
+FactoredBrdf to_brdf(const LogSolution& solution, const Unknowns& unknowns, const ModelSpec& spec,
+                     int channels, TableFormat format) {
   std::vector<Table> tables;
   for (std::size_t t = 0; t < spec.tables.size(); ++t) {
     const auto* first = solution.log_values.data() + unknowns.base[t];
@@ -42,15 +36,48 @@ HomomorphicFit fit_homomorphic(const SampleSource& source, const ModelSpec& spec
                       .channels = static_cast<int>(unknowns.channels[t]),
                       .values = {first, first + spec.tables[t].layout.node_count() * unknowns.channels[t]}});
   }
-  Lobe lobe{.scale = std::move(solution.channel_offset), .factors = spec.lobes.front()};
-  return {.brdf = from_log_tables(source.channels, std::move(tables), {std::move(lobe)}, options.format),
-          .summary = {.samples = solution.samples,
-                      .unknowns = unknowns.count,
-                      .error_before = solution.error_before,
-                      .error_after = solution.error_after,
-                      .iterations = solution.iterations,
-                      .stop_reason = std::move(solution.stop_reason),
-                      .smooth = options.smooth}};
+  Lobe lobe{.scale = solution.channel_offset, .factors = spec.lobes.front()};
+  return from_log_tables(channels, std::move(tables), {std::move(lobe)}, format);
+}
+
+}  // namespace
+
+HomomorphicFit fit_homomorphic(const SampleSource& source, const ModelSpec& spec,
+                               const HomomorphicOptions& options) {
+  if (spec.lobes.size() != 1 || spec.lobes.front().empty())
+    throw Error("fit: a log-linear fit takes a model of one lobe");
+  if (source.count == 0) throw Error("fit: expected samples, found none");
+  if (!(options.smooth >= 0) || !(options.floor > 0) || !(options.error_floor > 0) ||
+      options.reweightings < 0)
+    throw Error("fit: expected smooth >= 0, floors > 0 and reweightings >= 0");
+
+  RowMaker rows(source, spec, options.floor, options.error_floor);
+  const Unknowns unknowns = number_unknowns(spec, source.channels);
+  LogSolution solution = solve(rows, unknowns, options);
+  HomomorphicSummary summary{.samples = solution.samples,
+                             .unknowns = unknowns.count,
+                             .error_before = solution.error_before,
+                             .error_after = solution.error_after,
+                             .iterations = solution.iterations,
+                             .stop_reason = solution.stop_reason};
+
+  if (options.reweightings > 0) {
+    FactoredBrdf current = to_brdf(solution, unknowns, spec, source.channels, TableFormat::single);
+    double smallest = log_error(source, current, options.error_floor).mean();
+    for (int pass = 0; pass < options.reweightings; ++pass) {
+      rows.current = &current;
+      LogSolution next = solve(rows, unknowns, options);
+      summary.iterations += next.iterations;
+      current = to_brdf(next, unknowns, spec, source.channels, TableFormat::single);
+      const double error = log_error(source, current, options.error_floor).mean();
+      if (error < smallest) {
+        smallest = error;
+        solution = std::move(next);
+        summary.reweightings = pass + 1;
+      }
+    }
+  }
+  return {to_brdf(solution, unknowns, spec, source.channels, options.format), std::move(summary)};
 }
 
 }  // namespace burnish

@@ -18,6 +18,11 @@ struct HomomorphicOptions {
   /// The factors are fitted to log(max(f, 0) + floor), > 0, 1/sr: what zeros and values that noise makes
   /// negative count as. Well below 1e-3, where the error figures stop to look.
   double floor = 3e-5;
+  /// Most passes of reweighted least squares after the first fit. They turn the mean square of the error in
+  /// log f, which outliers and noise below error_floor rule, into the mean absolute error of log(f +
+  /// error_floor); the pass with the smallest is kept. 0: the plain least-squares fit.
+  int reweightings = 0;
+  double error_floor = 1e-3;  ///< of the reweighted error, 1/sr, > 0
   TableFormat format = TableFormat::half;
   int max_iterations = 300;  ///< of conjugate gradients
   double tolerance = 1e-3;   ///< conjugate gradients stop when the preconditioned residual fell to this share
@@ -32,7 +37,7 @@ struct HomomorphicSummary {
   double error_after = 0;   ///< weighted rms of log f - log of the model, before rounding to the table format
   int iterations = 0;       ///< of conjugate gradients; 0 for a direct solution
   std::string stop_reason;  ///< "direct solution", "tolerance reached", "iteration limit"
-  double smooth = 0;        ///< as used
+  int reweightings = 0;     ///< passes used
 };
 
 struct HomomorphicFit {

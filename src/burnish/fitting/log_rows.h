@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,17 +19,33 @@ struct LogRows {
   std::vector<std::uint32_t> node;  ///< [sample][use], lower corner
   std::vector<float> fx, fy;        ///< [sample][use]
   std::vector<float> target;        ///< [sample][channel]
+  std::size_t weight_channels = 1;  ///< one weight for all channels, or one each
   std::vector<float> weight;        ///< [sample]
 };
 
-/// How samples become rows.
-struct RowMaker {
+/// How samples become rows. Without a current model the rows are log(f + floor) with the samples' weights.
+/// With one they are a step of reweighted least squares for the absolute error of log(f + error_floor) about
+/// that model: the error's derivative by log(model) is model / (model + error_floor), and a square weighs
+/// like an absolute value where it is divided by the size of the current error [Daubechies 2010].
+class RowMaker {
+ public:
+  RowMaker(const SampleSource& samples, const ModelSpec& model, double fit_floor,
+           double floor_of_error) noexcept
+      : source(&samples), spec(&model), floor(fit_floor), error_floor(floor_of_error) {}
+
   const SampleSource* source;
-  const ModelSpec* spec;  ///< one lobe
-  double floor;           ///< see HomomorphicOptions
+  const ModelSpec* spec;      ///< one lobe
+  double floor, error_floor;  ///< see HomomorphicOptions
+
+  const FactoredBrdf* current = nullptr;
 
   /// The rows of samples [begin, end).
   LogRows make(std::size_t begin, std::size_t end) const;
+
+ private:
+  void add_plain(std::span<const double> f, double weight, LogRows& rows) const;
+  void add_reweighted(const DirectionPair& pair, std::span<const double> f, double weight,
+                      std::span<double> model, LogRows& rows) const;
 };
 
 /// Where a table's unknowns stand in the vector of all: base[t] + node * channels[t] + channel.

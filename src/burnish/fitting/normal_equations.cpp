@@ -24,13 +24,14 @@ constexpr std::size_t kPartialBytes = std::size_t{128} << 20;
 // Samples made into rows at a time.
 constexpr std::size_t kBlock = 4096;
 
-/// Sums over samples of the normal equations. Where no table is shared the channels have one matrix, and a
-/// column each on the right; where one is, all channels are the unknowns of one system with one column.
+/// Sums over samples for one matrix of the normal equations. Where a table is shared between channels, all
+/// channels are the unknowns of one system. Where none is, each channel is a system of its own; they have one
+/// matrix in common, with a column each on the right, if a sample's weight is the same for all channels.
 struct Sums {
   Matrix upper;  ///< products of two terms, each pair once, in either triangle
   Eigen::VectorXd diagonal;
   Matrix right;
-  double weight = 0;
+  double weight = 0;                      ///< of the samples, mean over the channels
   Eigen::ArrayXd target, target_squared;  ///< one a channel
 
   Sums(Eigen::Index unknowns, Eigen::Index columns, Eigen::Index channels)
@@ -57,6 +58,7 @@ class Gatherer {
         uses_(rows.spec->lobes.front()),
         channels_(static_cast<std::size_t>(rows.source->channels)) {
     for (const std::size_t c : unknowns.channels) coupled_ = coupled_ || c != channels_;
+    matrices_ = !coupled_ && rows.current ? channels_ : 1;
     for (std::size_t t = 0; t < rows.spec->tables.size(); ++t) {
       base_.push_back(coupled_ ? unknowns.base[t] : size_);
       step_.push_back(coupled_ ? unknowns.channels[t] : 1);
@@ -65,33 +67,40 @@ class Gatherer {
   }
 
   bool coupled() const { return coupled_; }
-  Sums zero() const {
-    const auto channels = static_cast<Eigen::Index>(channels_);
-    return Sums(static_cast<Eigen::Index>(size_), coupled_ ? 1 : channels, channels);
+  std::size_t matrices() const { return matrices_; }
+  std::vector<Sums> zero() const {
+    const auto channels = static_cast<Eigen::Index>(channels_ / matrices_);
+    return std::vector<Sums>(matrices_,
+                             Sums(static_cast<Eigen::Index>(size_), coupled_ ? 1 : channels, channels));
   }
-  std::size_t bytes() const { return size_ * size_ * sizeof(double); }
+  std::size_t bytes() const { return matrices_ * size_ * size_ * sizeof(double); }
   /// How often a table stands in the matrix.
   std::size_t copies(std::size_t table) const { return step_[table]; }
   Eigen::Index index(std::size_t table, std::size_t node, std::size_t copy) const {
     return static_cast<Eigen::Index>(base_[table] + node * step_[table] + copy);
   }
 
-  std::size_t add(std::size_t begin, std::size_t end, Sums& sums) const {
+  std::size_t add(std::size_t begin, std::size_t end, std::vector<Sums>& sums) const {
     const LogRows rows = rows_.make(begin, end);
     std::vector<Term> terms(4 * uses_.size());
+    const std::size_t step = rows.weight_channels;
     for (std::size_t i = 0; i < rows.size; ++i) {
       const std::span<const Term> row = find_terms(rows, i, terms);
-      const double weight = rows.weight[i];
+      const float* weight = rows.weight.data() + i * step;
       const float* target = rows.target.data() + i * channels_;
-      sums.weight += weight;
       for (std::size_t c = 0; c < channels_; ++c) {
-        sums.target[static_cast<Eigen::Index>(c)] += weight * target[c];
-        sums.target_squared[static_cast<Eigen::Index>(c)] += weight * target[c] * target[c];
+        Sums& s = sums[matrices_ == 1 ? 0 : c];
+        const double w = weight[step == 1 ? 0 : c];
+        const auto column = static_cast<Eigen::Index>(matrices_ == 1 ? c : 0);
+        s.weight += w * static_cast<double>(matrices_) / static_cast<double>(channels_);
+        s.target[column] += w * target[c];
+        s.target_squared[column] += w * target[c] * target[c];
       }
-      if (!coupled_)
-        add_row(row, weight, 0, target, sums);
+      if (!coupled_ && step == 1)
+        add_row(row, weight[0], 0, target, sums[0]);
       else
-        for (std::size_t c = 0; c < channels_; ++c) add_row(row, weight, c, target + c, sums);
+        for (std::size_t c = 0; c < channels_; ++c)
+          add_row(row, weight[step == 1 ? 0 : c], c, target + c, sums[matrices_ == 1 ? 0 : c]);
     }
     return rows.size;
   }
@@ -140,7 +149,7 @@ class Gatherer {
 
   const RowMaker& rows_;
   const std::vector<FactorUse>& uses_;
-  std::size_t channels_, size_ = 0;
+  std::size_t channels_, matrices_ = 1, size_ = 0;
   bool coupled_ = false;
   std::vector<std::size_t> base_, step_;
 };
@@ -154,7 +163,7 @@ void add_smoothness(const ModelSpec& spec, const Gatherer& gatherer, double smoo
         for (std::size_t a = rows.starts[r]; a < rows.starts[r + 1]; ++a)
           for (std::size_t b = rows.starts[r]; b < rows.starts[r + 1]; ++b)
             matrix(gatherer.index(t, rows.nodes[a], copy), gatherer.index(t, rows.nodes[b], copy)) +=
-                smooth * rows.coefficients[a] * rows.coefficients[b];
+                smooth * spec.tables[t].smooth_share * rows.coefficients[a] * rows.coefficients[b];
   }
 }
 
@@ -168,40 +177,48 @@ LogSolution solve_directly(const RowMaker& rows, const Unknowns& unknowns,
   // One partial sum a group of samples, joined in order.
   const std::size_t groups = std::clamp<std::size_t>(kPartialBytes / gatherer.bytes(), 2, 32);
   const std::size_t group_size = std::max(kBlock, (rows.source->count + groups - 1) / groups);
-  std::vector<Sums> partial(chunk_count(rows.source->count, group_size), gatherer.zero());
+  std::vector<std::vector<Sums>> partial(chunk_count(rows.source->count, group_size));
   std::vector<std::size_t> samples(partial.size());
   for_each_chunk(rows.source->count, group_size, [&](std::size_t group, std::size_t begin, std::size_t end) {
+    partial[group] = gatherer.zero();
     for (std::size_t at = begin; at < end; at += kBlock)
       samples[group] += gatherer.add(at, std::min(end, at + kBlock), partial[group]);
   });
-  Sums& sum = partial.front();
-  for (std::size_t g = 1; g < partial.size(); ++g) sum.add(partial[g]);
-  if (!(sum.weight > 0)) throw Error("fit: expected samples with weight, found none");
-
-  Matrix data = (sum.upper + sum.upper.transpose()) / sum.weight;
-  data.diagonal() += sum.diagonal / sum.weight;
-  const Matrix right = sum.right / sum.weight;
-  Matrix matrix = data;
-  add_smoothness(*rows.spec, gatherer, options.smooth, matrix);
-  matrix.diagonal().array() += kRidge * matrix.trace() / static_cast<double>(matrix.rows());
-  const Matrix x = matrix.ldlt().solve(right);
 
   LogSolution solution{.log_values = std::vector<double>(unknowns.count),
                        .channel_offset = std::vector<double>(channels),
                        .stop_reason = "direct solution"};
   for (const std::size_t s : samples) solution.samples += s;
-  // sum over rows of (A x - t)^2 = x A^T A x - 2 x A^T t + t^2
-  const Eigen::ArrayXd mean = sum.target / sum.weight, mean_square = sum.target_squared / sum.weight;
-  const double rows_per_sample = static_cast<double>(channels);
-  const double residual = (x.cwiseProduct(data * x) - 2 * x.cwiseProduct(right)).sum() + mean_square.sum();
-  solution.error_before = std::sqrt(std::max(0.0, (mean_square - mean * mean).sum() / rows_per_sample));
-  solution.error_after = std::sqrt(std::max(0.0, residual / rows_per_sample));
-  for (std::size_t t = 0; t < rows.spec->tables.size(); ++t)
-    for (std::size_t node = 0; node < rows.spec->tables[t].layout.node_count(); ++node)
-      for (std::size_t c = 0; c < unknowns.channels[t]; ++c)
-        solution.log_values[unknowns.base[t] + node * unknowns.channels[t] + c] =
-            gatherer.coupled() ? x(gatherer.index(t, node, c), 0)
-                               : x(gatherer.index(t, node, 0), static_cast<Eigen::Index>(c));
+  double before = 0, after = 0, weight = 0;
+  for (std::size_t m = 0; m < gatherer.matrices(); ++m) {
+    Sums& sum = partial.front()[m];
+    for (std::size_t g = 1; g < partial.size(); ++g) sum.add(partial[g][m]);
+    if (!(sum.weight > 0)) throw Error("fit: expected samples with weight, found none");
+
+    Matrix data = (sum.upper + sum.upper.transpose()) / sum.weight;
+    data.diagonal() += sum.diagonal / sum.weight;
+    const Matrix right = sum.right / sum.weight;
+    Matrix matrix = data;
+    add_smoothness(*rows.spec, gatherer, options.smooth, matrix);
+    matrix.diagonal().array() += kRidge * matrix.trace() / static_cast<double>(matrix.rows());
+    const Matrix x = matrix.ldlt().solve(right);
+
+    // sum over rows of (A x - t)^2 = x A^T A x - 2 x A^T t + t^2
+    const Eigen::ArrayXd mean = sum.target / sum.weight, mean_square = sum.target_squared / sum.weight;
+    before += sum.weight * (mean_square - mean * mean).sum();
+    after += sum.weight * ((x.cwiseProduct(data * x) - 2 * x.cwiseProduct(right)).sum() + mean_square.sum());
+    weight += sum.weight * static_cast<double>(mean.size());
+    for (std::size_t t = 0; t < rows.spec->tables.size(); ++t)
+      for (std::size_t node = 0; node < rows.spec->tables[t].layout.node_count(); ++node)
+        for (std::size_t c = 0; c < unknowns.channels[t]; ++c)
+          if (gatherer.matrices() == 1 || c == m)
+            solution.log_values[unknowns.base[t] + node * unknowns.channels[t] + c] =
+                gatherer.coupled() ? x(gatherer.index(t, node, c), 0)
+                                   : x(gatherer.index(t, node, 0),
+                                       static_cast<Eigen::Index>(gatherer.matrices() == 1 ? c : 0));
+  }
+  solution.error_before = std::sqrt(std::max(0.0, before / weight));
+  solution.error_after = std::sqrt(std::max(0.0, after / weight));
   return solution;
 }
 
