@@ -4,6 +4,7 @@
 #include <variant>
 
 #include <burnish/factors/factored_brdf.h>
+#include <burnish/file.h>
 #include <burnish/io/open_options.h>
 #include <burnish/reflectance/angle_table.h>
 #include <burnish/reflectance/brdf.h>
