@@ -38,9 +38,20 @@ Source from_model(const FileBytes& file) {
   return {file.name, std::move(model.brdf), std::move(findings)};
 }
 
+Source from_spec(const std::string& spec) {
+  AnalyticBrdf brdf = parse_analytic(spec);
+  Findings findings;
+  findings.format = "analytic";
+  findings.description = fmt::format("{}: {}", brdf.model().description, format_analytic(brdf));
+  findings.theta_i_max = findings.theta_o_max = kHalfPi;
+  return {spec, std::move(brdf), std::move(findings)};
+}
+
 }  // namespace
 
 BrdfRef Source::ref() const noexcept {
+  // An analytic BRDF's own reference skips the choice of its model.
+  if (const auto* analytic = std::get_if<AnalyticBrdf>(&brdf)) return analytic->ref();
   return std::visit([](const auto& any) -> BrdfRef { return any; }, brdf);
 }
 
@@ -67,6 +78,7 @@ Source parse_source(const FileBytes& file, const OpenOptions& options) {
 }
 
 Source open_source(const std::string& spec, const OpenOptions& options) {
+  if (is_analytic_spec(spec)) return from_spec(spec);
   return parse_source(read_file(spec), options);
 }
 

@@ -6,6 +6,7 @@
 #include <burnish/factors/factored_brdf.h>
 #include <burnish/file.h>
 #include <burnish/io/open_options.h>
+#include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/angle_table.h>
 #include <burnish/reflectance/brdf.h>
 #include <burnish/reflectance/findings.h>
@@ -17,7 +18,8 @@
 namespace burnish {
 
 /// Everything a BRDF argument can be.
-using AnyBrdf = std::variant<HalfDiffTable, RglTable, ScatteredBrdf, AngleTable, PatchTable, FactoredBrdf>;
+using AnyBrdf =
+    std::variant<HalfDiffTable, RglTable, ScatteredBrdf, AngleTable, PatchTable, AnalyticBrdf, FactoredBrdf>;
 
 /// An opened BRDF and what was found in it.
 struct Source {
@@ -31,8 +33,9 @@ struct Source {
   const Samples* samples() const noexcept;
 };
 
-/// Opens a file; its kind is found by content, never by its name. Throws Error if it cannot be read or is of
-/// no known kind, and whatever its reader throws.
+/// Opens an analytic BRDF such as "ggx:alpha_x=0.1" (see parse_analytic) or a file, whose kind is found by
+/// content, never by its name. Throws Error if it cannot be read or is of no known kind, and whatever its
+/// reader throws.
 Source open_source(const std::string& spec, const OpenOptions& options);
 
 /// The same for bytes in memory.

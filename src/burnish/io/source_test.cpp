@@ -36,6 +36,14 @@ TEST(Source, ReportsBytesOfNoKnownKind) {
   EXPECT_THAT(error_of([] { open_source("/nonexistent/file", {}); }), HasSubstr("no such file"));
 }
 
+TEST(Source, OpensAnalyticBrdfsByName) {
+  const Source source = open_source("lambert", {});
+  EXPECT_EQ(source.findings.format, "analytic");
+  EXPECT_THAT(source.findings.description, HasSubstr("lambert"));
+  EXPECT_EQ(source.ref().channels(), 3);
+  EXPECT_THROW(open_source("lambert:nonsense=1", {}), Error);
+}
+
 TEST(Source, RefersToScatteredSamplesOnlyWhereThereAreSome) {
   const Source source = parse_source(memory_file("theta_i,phi_i,theta_o,phi_o,value\n1,0,2,0,1\n"), {});
   ASSERT_NE(source.samples(), nullptr);
