@@ -3,7 +3,8 @@
 #include <string_view>
 
 #include <burnish/io/byte_reader.h>
-#include <burnish/io/source.h>
+#include <burnish/io/open_options.h>
+#include <burnish/reflectance/findings.h>
 #include <burnish/reflectance/patch_table.h>
 
 namespace burnish {

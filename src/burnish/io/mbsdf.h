@@ -1,8 +1,9 @@
 #pragma once
 
 #include <burnish/io/byte_reader.h>
-#include <burnish/io/source.h>
+#include <burnish/io/open_options.h>
 #include <burnish/reflectance/angle_table.h>
+#include <burnish/reflectance/findings.h>
 
 namespace burnish {
 

@@ -3,7 +3,8 @@
 #include <filesystem>
 
 #include <burnish/io/byte_reader.h>
-#include <burnish/io/source.h>
+#include <burnish/io/open_options.h>
+#include <burnish/reflectance/findings.h>
 #include <burnish/reflectance/half_diff_table.h>
 
 namespace burnish {

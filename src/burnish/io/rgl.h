@@ -5,7 +5,8 @@
 #include <string>
 
 #include <burnish/io/byte_reader.h>
-#include <burnish/io/source.h>
+#include <burnish/io/open_options.h>
+#include <burnish/reflectance/findings.h>
 #include <burnish/reflectance/rgl_table.h>
 
 namespace burnish {

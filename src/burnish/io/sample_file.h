@@ -1,6 +1,7 @@
 #pragma once
 
-#include <burnish/io/source.h>
+#include <burnish/io/open_options.h>
+#include <burnish/reflectance/findings.h>
 #include <burnish/reflectance/samples.h>
 
 namespace burnish {

@@ -1,21 +1,44 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <variant>
 
+#include <burnish/factors/factored_brdf.h>
+#include <burnish/file.h>
+#include <burnish/io/open_options.h>
+#include <burnish/reflectance/analytic.h>
+#include <burnish/reflectance/angle_table.h>
 #include <burnish/reflectance/brdf.h>
 #include <burnish/reflectance/findings.h>
+#include <burnish/reflectance/half_diff_table.h>
+#include <burnish/reflectance/patch_table.h>
+#include <burnish/reflectance/rgl_table.h>
+#include <burnish/reflectance/scattered_brdf.h>
 
 namespace burnish {
 
-/// How a source is opened.
-struct OpenOptions {
-  bool keep_spectral = false;    ///< one channel a wavelength instead of linear Rec. 709
-  std::string illuminant = "E";  ///< "E" (equal energy) or "D65": the light under which spectra become RGB
-  bool has_cosine = false;       ///< CSV values are f_r cos(theta_i): divide it out
-  bool clamp_negatives = true;   ///< set measured values below zero to zero (they are counted either way)
-  bool back_side = false;        ///< Klems: "Reflection Back" instead of "Reflection Front"
+/// Everything a BRDF argument can be.
+using AnyBrdf =
+    std::variant<HalfDiffTable, RglTable, ScatteredBrdf, AngleTable, PatchTable, AnalyticBrdf, FactoredBrdf>;
+
+/// An opened BRDF and what was found in it.
+struct Source {
+  std::string name;
+  AnyBrdf brdf;
+  Findings findings;
+
+  /// Refers to this object, which must outlive it and stay where it is.
+  BrdfRef ref() const noexcept;
+  /// The scattered measurements, or nullptr where the source is none.
+  const Samples* samples() const noexcept;
 };
+
+/// Opens an analytic BRDF such as "ggx:alpha_x=0.1" (see parse_analytic) or a file, whose kind is found by
+/// content, never by its name. Throws Error if it cannot be read or is of no known kind, and whatever its
+/// reader throws.
+Source open_source(const std::string& spec, const OpenOptions& options);
+
+/// The same for bytes in memory.
+Source parse_source(const FileBytes& file, const OpenOptions& options);
 
 }  // namespace burnish

@@ -3,8 +3,9 @@
 #include <string_view>
 
 #include <burnish/io/byte_reader.h>
-#include <burnish/io/source.h>
+#include <burnish/io/open_options.h>
 #include <burnish/reflectance/angle_table.h>
+#include <burnish/reflectance/findings.h>
 
 namespace burnish {
 

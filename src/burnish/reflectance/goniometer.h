@@ -17,4 +17,16 @@ inline constexpr double kDrawnCosine = 0.05;
 /// `isotropic`. The same count, seed and flag give the same pairs; a smaller count gives a prefix.
 std::vector<DirectionPair> draw_pairs(std::size_t count, std::uint64_t seed, bool isotropic);
 
+/// What a virtual goniometer does.
+struct MeasureOptions {
+  std::size_t count = 10000;
+  double noise = 0;  ///< sigma of the logarithm of a factor on every value, >= 0; the factor's median is 1
+  std::uint64_t seed = 1;
+};
+
+/// Samples of a source at pairs of draw_pairs, phi_h random for isotropic sources too; pairs where the source
+/// knows nothing are left out and others drawn for them. Throws Error if the noise is no finite number >= 0,
+/// or if fewer than one pair in a hundred is known.
+Samples measure(BrdfRef source, const MeasureOptions& options);
+
 }  // namespace burnish

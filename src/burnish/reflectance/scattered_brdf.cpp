@@ -4,6 +4,7 @@
 
 #include <burnish/error.h>
 #include <burnish/math/angles.h>
+#include <burnish/parameterization/half_diff.h>
 #include <burnish/reflectance/scattered_brdf.h>
 
 namespace burnish {
@@ -80,14 +81,17 @@ Samples select(const Samples& samples, std::span<const std::size_t> subset) {
   return part;
 }
 
-ScatteredBrdf::ScatteredBrdf(const Samples& samples, std::span<const std::size_t> subset)
-    : ScatteredBrdf(select(samples, subset)) {}
+ScatteredBrdf::ScatteredBrdf(const Samples& samples, std::span<const std::size_t> subset, SampleSpace space)
+    : ScatteredBrdf(select(samples, subset), space) {}
 
-ScatteredBrdf::ScatteredBrdf(Samples samples) : samples_(std::move(samples)) {
+ScatteredBrdf::ScatteredBrdf(Samples samples, SampleSpace space)
+    : space_(space), samples_(std::move(samples)) {
   const std::size_t count = samples_.size();
   if (count == 0) throw Error("scattered samples: expected at least one, found none");
   if (samples_.channels < 1 || samples_.values.size() != count * static_cast<std::size_t>(samples_.channels))
     throw Error("scattered samples: expected as many values as pairs times channels");
+  if (space_ == SampleSpace::angles && !samples_.isotropic)
+    throw Error("scattered samples: the space of angles is for isotropic ones");
   const double dimensions = samples_.isotropic ? 3 : 4;
   initial_radius2_ =
       kCornellRadius2 * std::min(1.0, std::pow(kCornellCount / static_cast<double>(count), 2 / dimensions));
@@ -104,9 +108,20 @@ ScatteredBrdf::ScatteredBrdf(Samples samples) : samples_(std::move(samples)) {
 }
 
 ScatteredBrdf::Point ScatteredBrdf::place(Vec3 wi, Vec3 wo) const noexcept {
-  if (!samples_.isotropic) return {wi.x, wi.y, wo.x, wo.y};
-  const double turn = std::abs(std::remainder(phi_of(wi) - phi_of(wo), kTwoPi));
-  return {std::hypot(wi.x, wi.y) * std::hypot(wo.x, wo.y), turn / kPi, wi.z * wo.z, 0};
+  if (space_ == SampleSpace::angles) {
+    const double turn = std::abs(std::remainder(phi_of(wi) - phi_of(wo), kTwoPi));
+    return {std::hypot(wi.x, wi.y) * std::hypot(wo.x, wo.y), turn / kPi, wi.z * wo.z, 0};
+  }
+  // cos theta_i - cos theta_o = -2 sin theta_h sin theta_d cos phi_d
+  if (samples_.isotropic)
+    return {std::sqrt(theta_of(half_vector(wi, wo)) / kHalfPi), angle_between(wi, wo) / kPi,
+            0.5 * std::abs(wi.z - wo.z), 0};
+  const HalfDiff angles = to_half_diff(wi, wo);
+  const double half = std::sqrt(angles.theta_h / kHalfPi), difference = angles.theta_d / kPi;
+  // At theta_h = 0 only the sum of the azimuths is defined.
+  const double turn = angles.phi_h + angles.phi_d;
+  return {half * std::cos(angles.phi_h), half * std::sin(angles.phi_h), difference * std::cos(turn),
+          difference * std::sin(turn)};
 }
 
 bool ScatteredBrdf::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {

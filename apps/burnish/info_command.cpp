@@ -1,0 +1,135 @@
+#include <memory>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <burnish/math/angles.h>
+#include <burnish/reflectance/statistics.h>
+
+#include "commands.h"
+#include "source_arguments.h"
+
+namespace burnish::cli {
+
+namespace {
+
+constexpr std::size_t kReciprocityPairs = 20000;
+
+/// Everything `info` says.
+struct Report {
+  const Source& source;
+  std::vector<std::pair<double, DirectionalAlbedo>> albedos;  // by theta_i in degrees, phi_i = 0
+  ReciprocityError reciprocity;
+  const FactoredBrdf* model;  // nullptr where it is none
+};
+
+Report make_report(const Source& source) {
+  Report report{source,
+                {},
+                reciprocity_error(source.ref(), kReciprocityPairs, 1),
+                std::get_if<FactoredBrdf>(&source.brdf)};
+  for (const double theta_deg : {0.0, 30.0, 60.0})
+    report.albedos.emplace_back(theta_deg,
+                                directional_albedo(source.ref(), spherical_direction(radians(theta_deg), 0)));
+  return report;
+}
+
+nlohmann::ordered_json to_json(const Report& report) {
+  const auto& [source, albedos, reciprocity, model] = report;
+  const Findings& findings = source.findings;
+  nlohmann::ordered_json json{{"name", source.name},
+                              {"format", findings.format},
+                              {"description", findings.description},
+                              {"channels", source.ref().channels()},
+                              {"isotropic", source.ref().isotropic()},
+                              {"lambda_nm", findings.lambda_nm},
+                              {"illuminant", findings.illuminant},
+                              {"conventions", findings.conventions},
+                              {"samples", findings.sample_count},
+                              {"holes", findings.hole_count},
+                              {"negatives", findings.clamped_negatives},
+                              {"most_negative", findings.most_negative},
+                              {"theta_i_deg", {degrees(findings.theta_i_min), degrees(findings.theta_i_max)}},
+                              {"theta_o_deg", {degrees(findings.theta_o_min), degrees(findings.theta_o_max)}},
+                              {"reciprocity_error", reciprocity.mean},
+                              {"reciprocity_pairs", reciprocity.pairs}};
+  for (const auto& [theta_deg, albedo] : albedos)
+    json["albedo"].push_back({{"theta_i_deg", theta_deg},
+                              {"albedo", albedo.albedo},
+                              {"unknown_fraction", albedo.unknown_fraction}});
+  if (model) {
+    json["bytes"] = model->bytes();
+    json["lobes"] = model->lobes().size();
+    json["expression"] = model_expression(*model);
+    json["reciprocal"] = model->reciprocal();
+    for (const Table& table : model->tables())
+      json["tables"].push_back({{"name", table.name},
+                                {"width", table.layout.width},
+                                {"height", table.layout.height},
+                                {"channels", table.channels}});
+  }
+  return json;
+}
+
+void print_text(const Report& report) {
+  const auto& [source, albedos, reciprocity, model] = report;
+  const Findings& findings = source.findings;
+  const auto line = [](std::string_view name, const std::string& text) {
+    fmt::print("{:<13}{}\n", name, text);
+  };
+  line("name", source.name);
+  line("format", findings.format);
+  if (!findings.description.empty()) line("description", findings.description);
+  line("channels",
+       fmt::format("{}{}", source.ref().channels(),
+                   findings.lambda_nm.empty() ? ""
+                                              : fmt::format(", {} to {} nm", findings.lambda_nm.front(),
+                                                            findings.lambda_nm.back())));
+  line("material", source.ref().isotropic() ? "isotropic" : "anisotropic");
+  for (const std::string& convention : findings.conventions) line("convention", convention);
+  if (findings.sample_count > 0)
+    line("samples", fmt::format("{}, {} of them holes", findings.sample_count, findings.hole_count));
+  line("coverage", fmt::format("theta_i {:.1f} to {:.1f}, theta_o {:.1f} to {:.1f} degrees",
+                               degrees(findings.theta_i_min), degrees(findings.theta_i_max),
+                               degrees(findings.theta_o_min), degrees(findings.theta_o_max)));
+  if (findings.clamped_negatives > 0)
+    line("negatives", fmt::format("{} values below zero, down to {:.3g} 1/sr", findings.clamped_negatives,
+                                  findings.most_negative));
+  for (const auto& [theta_deg, albedo] : albedos)
+    line("albedo",
+         fmt::format("{:.4f} at theta_i = {:g} degrees{}", fmt::join(albedo.albedo, " "), theta_deg,
+                     albedo.unknown_fraction > 0
+                         ? fmt::format(", {:.1f} % of the hemisphere unknown", 100 * albedo.unknown_fraction)
+                         : ""));
+  line("reciprocity",
+       fmt::format("mean relative asymmetry {:.4g} over {} pairs", reciprocity.mean, reciprocity.pairs));
+  if (!model) return;
+  line("bytes", fmt::format("{}", model->bytes()));
+  line("lobes", fmt::format("{}", model->lobes().size()));
+  for (const Table& table : model->tables())
+    line("table", fmt::format("{}: {} x {}, {} channels", table.name, table.layout.width, table.layout.height,
+                              table.channels));
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app) {
+  CLI::App* verb = app.add_subcommand(
+      "info", "Say what a BRDF is: kind, conventions, coverage, holes, albedo, reciprocity");
+  verb->footer("Example: burnish info --json paint.bsdf");
+  auto arguments = std::make_shared<SourceArguments>();
+  auto as_json = std::make_shared<bool>(false);
+  add_source_arguments(*verb, *arguments);
+  verb->add_flag("--json", *as_json, "for programs");
+  verb->callback([=] {
+    const Source source = arguments->open();
+    const Report report = make_report(source);
+    if (*as_json)
+      fmt::print("{}\n", to_json(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    else
+      print_text(report);
+  });
+}
+
+}  // namespace burnish::cli

@@ -1,0 +1,42 @@
+#include <memory>
+
+#include <fmt/format.h>
+
+#include <burnish/file.h>
+#include <burnish/io/csv.h>
+#include <burnish/reflectance/goniometer.h>
+
+#include "commands.h"
+#include "source_arguments.h"
+
+namespace burnish::cli {
+
+void add_measure_command(CLI::App& app) {
+  struct Arguments {
+    SourceArguments source;
+    MeasureOptions measurement;
+    std::string out;
+  };
+  CLI::App* verb =
+      app.add_subcommand("measure", "Measure a BRDF with a virtual goniometer: scattered samples as CSV");
+  verb->footer("Example: burnish measure ggx:alpha_x=0.2 -o samples.csv --count 5000 --noise 0.05");
+  auto arguments = std::make_shared<Arguments>();
+  add_source_arguments(*verb, arguments->source);
+  verb->add_option("-o,--output", arguments->out, "CSV file to write")->required();
+  // Ten million samples are a gigabyte of text.
+  verb->add_option("--count", arguments->measurement.count, "how many samples")
+      ->check(CLI::Range(1, 10000000))
+      ->capture_default_str();
+  verb->add_option("--noise", arguments->measurement.noise, "sigma of log-normal noise on every value")
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str();
+  verb->add_option("--seed", arguments->measurement.seed, "of directions and noise")->capture_default_str();
+  verb->callback([arguments] {
+    const Source source = arguments->source.open();
+    const Samples samples = measure(source.ref(), arguments->measurement);
+    write_then_rename(arguments->out, samples_csv(samples, source.findings.lambda_nm));
+    fmt::print("{} samples to {}\n", samples.size(), arguments->out);
+  });
+}
+
+}  // namespace burnish::cli

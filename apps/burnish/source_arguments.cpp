@@ -1,0 +1,19 @@
+#include "source_arguments.h"
+
+namespace burnish::cli {
+
+void add_source_arguments(CLI::App& verb, SourceArguments& arguments) {
+  verb.add_option("BRDF", arguments.spec,
+                  "a measurement, a model, or an analytic BRDF such as ggx:alpha_x=0.1")
+      ->required();
+  OpenOptions& options = arguments.options;
+  verb.add_flag("--spectral", options.keep_spectral, "keep one channel a wavelength");
+  verb.add_option("--illuminant", options.illuminant, "light under which spectra become RGB")
+      ->check(CLI::IsMember({"E", "D65"}))
+      ->capture_default_str();
+  verb.add_flag("--has-cosine", options.has_cosine, "CSV values are f_r cos(theta_i)");
+  verb.add_flag("!--keep-negatives", options.clamp_negatives, "leave values below zero as they are");
+  verb.add_flag("--back", options.back_side, "Klems: the back side's reflection");
+}
+
+}  // namespace burnish::cli

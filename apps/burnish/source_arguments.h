@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include <burnish/io/source.h>
+
+namespace burnish::cli {
+
+/// A BRDF argument and how to open it.
+struct SourceArguments {
+  std::string spec;
+  OpenOptions options;
+
+  Source open() const { return open_source(spec, options); }
+};
+
+/// Adds the positional BRDF and the options of OpenOptions to a verb. `arguments` must outlive the parse.
+void add_source_arguments(CLI::App& verb, SourceArguments& arguments);
+
+}  // namespace burnish::cli

@@ -1,0 +1,85 @@
+#include <fmt/format.h>
+
+#include <burnish/factors/model_file.h>
+#include <burnish/io/astm.h>
+#include <burnish/io/cornell.h>
+#include <burnish/io/csv.h>
+#include <burnish/io/klems.h>
+#include <burnish/io/mbsdf.h>
+#include <burnish/io/merl.h>
+#include <burnish/io/rgl.h>
+#include <burnish/io/source.h>
+#include <burnish/io/text_reader.h>
+#include <burnish/io/zemax.h>
+#include <burnish/math/angles.h>
+
+namespace burnish {
+
+namespace {
+
+/// What the readers of tables return.
+template <class File>
+Source from_table(const FileBytes& file, File parsed) {
+  return {file.name, std::move(parsed.table), std::move(parsed.findings)};
+}
+
+Source from_samples(const FileBytes& file, SampleFile parsed) {
+  return {file.name, ScatteredBrdf(std::move(parsed.samples)), std::move(parsed.findings)};
+}
+
+Source from_model(const FileBytes& file) {
+  Model model = parse_model(file);
+  Findings findings;
+  findings.format = "burnish model";
+  findings.description = model_expression(model.brdf);
+  findings.lambda_nm = std::move(model.lambda_nm);
+  for (const Table& table : model.brdf.tables()) findings.sample_count += table.layout.node_count();
+  findings.theta_i_max = findings.theta_o_max = kHalfPi;
+  return {file.name, std::move(model.brdf), std::move(findings)};
+}
+
+Source from_spec(const std::string& spec) {
+  AnalyticBrdf brdf = parse_analytic(spec);
+  Findings findings;
+  findings.format = "analytic";
+  findings.description = fmt::format("{}: {}", brdf.model().description, format_analytic(brdf));
+  findings.theta_i_max = findings.theta_o_max = kHalfPi;
+  return {spec, std::move(brdf), std::move(findings)};
+}
+
+}  // namespace
+
+BrdfRef Source::ref() const noexcept {
+  // An analytic BRDF's own reference skips the choice of its model.
+  if (const auto* analytic = std::get_if<AnalyticBrdf>(&brdf)) return analytic->ref();
+  return std::visit([](const auto& any) -> BrdfRef { return any; }, brdf);
+}
+
+const Samples* Source::samples() const noexcept {
+  const auto* scattered = std::get_if<ScatteredBrdf>(&brdf);
+  return scattered ? &scattered->samples() : nullptr;
+}
+
+Source parse_source(const FileBytes& file, const OpenOptions& options) {
+  // Binary formats first: their first bytes are unmistakable.
+  if (looks_like_exr(file.bytes)) return from_model(file);
+  if (looks_like_rgl(file.bytes)) return from_table(file, parse_rgl(file, options));
+  if (looks_like_mbsdf(file.bytes)) return from_table(file, parse_mbsdf(file, options));
+  if (looks_like_merl(file.bytes)) return from_table(file, parse_merl(file, options));
+  const std::string_view text = file.text();
+  if (looks_like_klems(text)) return from_table(file, parse_klems(file, options));
+  if (looks_like_zemax(text)) return from_table(file, parse_zemax(file, options));
+  if (looks_like_csv(text)) return from_samples(file, parse_csv(file, options));
+  if (looks_like_astm(text)) return from_samples(file, parse_astm(file, options));
+  if (looks_like_cornell(text)) return from_samples(file, parse_cornell(file, options));
+  throw Error(file.name, 0,
+              "a MERL, RGL, MBSDF, Zemax, Klems, ASTM E1392, Cornell or CSV measurement, or a burnish model",
+              fmt::format("something that starts with {}", in_quotes(text.substr(0, 16))));
+}
+
+Source open_source(const std::string& spec, const OpenOptions& options) {
+  if (is_analytic_spec(spec)) return from_spec(spec);
+  return parse_source(read_file(spec), options);
+}
+
+}  // namespace burnish
