@@ -1,0 +1,44 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <burnish/math/angles.h>
+#include <burnish/reflectance/brdf.h>
+
+namespace burnish::testing {
+
+/// albedo / pi in every direction; one channel or three.
+struct Lambert {
+  std::array<double, 3> albedo = {0.8, 0.5, 0.2};
+  int count = 3;
+
+  int channels() const noexcept { return count; }
+  bool isotropic() const noexcept { return true; }
+  bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+    for (std::size_t c = 0; c < f.size(); ++c) f[c] = wi.z > 0 && wo.z > 0 ? albedo[c] / kPi : 0;
+    return true;
+  }
+};
+
+/// Lambert plus a lobe exp(-a hx^2 - b hy^2), scaled; stretched along the tangent where a != b; knows nothing
+/// where cos theta_d is below `blind_below`.
+struct Glossy {
+  double a = 40, b = 40, scale = 1, blind_below = -1;
+  int count = 3;
+
+  int channels() const noexcept { return count; }
+  bool isotropic() const noexcept { return a == b; }
+  bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+    const Vec3 h = half_vector(wi, wo);
+    const bool above = wi.z > 0 && wo.z > 0, known = !above || dot(wi, h) >= blind_below;
+    for (std::size_t c = 0; c < f.size(); ++c)
+      f[c] = above && known
+                 ? scale * (0.1 * (1 + static_cast<double>(c)) + 2 * std::exp(-a * h.x * h.x - b * h.y * h.y))
+                 : 0;
+    return known;
+  }
+};
+
+}  // namespace burnish::testing
