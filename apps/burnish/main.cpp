@@ -10,6 +10,8 @@ int main(int argc, char** argv) {
   CLI::App app{"burnish: measured, scattered or analytic reflectance into a few small positive textures"};
   app.require_subcommand(1);
   burnish::cli::add_info_command(app);
+  burnish::cli::add_fit_command(app);
+  burnish::cli::add_eval_command(app);
   burnish::cli::add_measure_command(app);
   burnish::cli::add_convert_command(app);
   try {

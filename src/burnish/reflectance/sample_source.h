@@ -6,6 +6,7 @@
 #include <span>
 
 #include <burnish/reflectance/brdf.h>
+#include <burnish/reflectance/half_diff_table.h>
 #include <burnish/reflectance/samples.h>
 
 namespace burnish {
@@ -39,5 +40,10 @@ double pair_weight(Vec3 wi, Vec3 wo) noexcept;
 /// unless `spread_phi_h`, which 2-D tables need to be filled. The Brdf behind `source` must outlive the
 /// result.
 SampleSource from_brdf(BrdfRef source, std::size_t count, std::uint64_t seed, bool spread_phi_h);
+
+/// Every entry of the table that is no hole, with pair_weight, at its cell's centre and phi_h = 0, or phi_h
+/// spread over the circle. With `symmetrize` an entry of a full-circle table is the mean with the one half a
+/// turn of phi_d away. `table` must outlive the source.
+SampleSource from_table(const HalfDiffTable& table, bool symmetrize, bool spread_phi_h);
 
 }  // namespace burnish

@@ -1,0 +1,69 @@
+#include <iterator>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include <burnish/file.h>
+#include <burnish/io/csv.h>
+#include <burnish/math/parallel.h>
+
+#include "commands.h"
+#include "source_arguments.h"
+
+namespace burnish::cli {
+
+namespace {
+
+std::string header(int channels, const std::vector<double>& lambda_nm) {
+  if (!lambda_nm.empty()) {
+    std::vector<std::string> names;
+    for (const double l : lambda_nm) names.push_back(fmt::format("value_{}", l));
+    return fmt::format("{}", fmt::join(names, ","));
+  }
+  return channels == 1 ? "value" : "r,g,b";
+}
+
+}  // namespace
+
+void add_eval_command(CLI::App& app) {
+  struct Arguments {
+    SourceArguments source;
+    std::string directions, out;
+  };
+  CLI::App* verb =
+      app.add_subcommand("eval", "Evaluate a BRDF at direction pairs: f_r in 1/sr, without the cosine");
+  verb->footer(
+      "Example: burnish eval paint.exr directions.csv -o values.csv\n"
+      "directions.csv has the header wi_x,wi_y,wi_z,wo_x,wo_y,wo_z; a measured source is evaluated as "
+      "measured, and nan stands where it knows nothing");
+  auto arguments = std::make_shared<Arguments>();
+  add_source_arguments(*verb, arguments->source);
+  verb->add_option("directions", arguments->directions, "CSV file of direction pairs")->required();
+  verb->add_option("-o,--output", arguments->out, "CSV file to write")->required();
+  verb->callback([arguments] {
+    const Source source = arguments->source.open();
+    const std::vector<DirectionPair> pairs = parse_directions(read_file(arguments->directions));
+    const BrdfRef brdf = source.ref();
+    const auto channels = static_cast<std::size_t>(brdf.channels());
+    std::vector<double> values(pairs.size() * channels);
+    std::vector<std::uint8_t> known(pairs.size());
+    for_each_chunk(pairs.size(), 4096, [&](std::size_t, std::size_t begin, std::size_t end) {
+      brdf.eval(std::span(pairs).subspan(begin, end - begin),
+                std::span(values).subspan(begin * channels, (end - begin) * channels),
+                std::span(known).subspan(begin, end - begin));
+    });
+    fmt::memory_buffer text;
+    fmt::format_to(std::back_inserter(text), "{}\n", header(brdf.channels(), source.findings.lambda_nm));
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      for (std::size_t c = 0; c < channels; ++c)
+        if (known[i])
+          fmt::format_to(std::back_inserter(text), "{}{}", c ? "," : "", values[i * channels + c]);
+        else
+          fmt::format_to(std::back_inserter(text), "{}nan", c ? "," : "");
+      text.push_back('\n');
+    }
+    write_then_rename(arguments->out, {text.data(), text.size()});
+  });
+}
+
+}  // namespace burnish::cli

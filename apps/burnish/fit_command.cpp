@@ -1,0 +1,220 @@
+#include <chrono>
+#include <memory>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <burnish/error.h>
+#include <burnish/factors/model_file.h>
+#include <burnish/file.h>
+#include <burnish/fitting/cross_validation.h>
+#include <burnish/fitting/log_error.h>
+#include <burnish/math/parallel.h>
+#include <burnish/metrics/error_figures.h>
+#include <burnish/reflectance/sample_source.h>
+
+#include "commands.h"
+#include "progress.h"
+#include "source_arguments.h"
+
+namespace burnish::cli {
+
+namespace {
+
+// Scattered samples are few and noisy: they are fitted robustly, with the smoothness that predicts best.
+constexpr int kScatteredReweightings = 4;
+
+// Pairs drawn from a source that is a function.
+constexpr std::size_t kIsotropicSamples = 200'000, kAnisotropicSamples = 500'000;
+
+// Pairs that the fit did not see, for the error that is printed.
+constexpr std::size_t kHeldOutPairs = 20'000;
+
+struct Arguments {
+  SourceArguments source;
+  std::string out, model = "pqp", smooth = "default", format = "half";
+  std::vector<std::string> tables;
+  std::size_t samples = 0;
+  std::uint64_t seed = 1;
+  int reweightings = -1, threads = 0;
+  double floor = HomomorphicOptions{}.floor;
+  bool no_symmetrize = false, json = false;
+};
+
+bool has_disk(const ModelSpec& spec) {
+  for (const ModelSpec::TableSpec& table : spec.tables)
+    if (table.layout.shape == TableShape::disk) return true;
+  return false;
+}
+
+/// What is fitted: the source's own samples where it has some, else pairs drawn from it.
+struct FitInput {
+  std::optional<SymmetrizedBrdf> symmetrized;
+  SampleSource samples;
+};
+
+FitInput make_input(const Source& source, const Arguments& arguments, const ModelSpec& spec) {
+  FitInput input;
+  const bool symmetrize = !arguments.no_symmetrize;
+  if (const Samples* samples = source.samples()) {
+    input.samples = from_samples(*samples, symmetrize);
+  } else if (const auto* table = std::get_if<HalfDiffTable>(&source.brdf)) {
+    input.samples = from_table(*table, symmetrize, has_disk(spec));
+  } else {
+    const BrdfRef brdf = source.ref();
+    const std::size_t count = arguments.samples > 0 ? arguments.samples
+                              : brdf.isotropic()    ? kIsotropicSamples
+                                                    : kAnisotropicSamples;
+    if (symmetrize) input.symmetrized.emplace(brdf);
+    input.samples =
+        from_brdf(symmetrize ? BrdfRef(*input.symmetrized) : brdf, count, arguments.seed, has_disk(spec));
+  }
+  return input;
+}
+
+HomomorphicOptions make_options(const Source& source, const Arguments& arguments) {
+  HomomorphicOptions options;
+  options.floor = arguments.floor;
+  options.format = arguments.format == "half" ? TableFormat::half : TableFormat::single;
+  options.reweightings = arguments.reweightings >= 0 ? arguments.reweightings
+                         : source.samples()          ? kScatteredReweightings
+                                                     : 0;
+  options.progress = progress_bar("fitting");
+  return options;
+}
+
+nlohmann::ordered_json fit(const Arguments& arguments) {
+  const auto start = std::chrono::steady_clock::now();
+  const ThreadLimit limit(arguments.threads);
+  const Source source = arguments.source.open();
+  ModelSpec spec = parse_model_spec(arguments.model, arguments.tables, source.ref().isotropic());
+  const FitInput input = make_input(source, arguments, spec);
+  HomomorphicOptions options = make_options(source, arguments);
+
+  std::optional<double> cross_validated;
+  const bool automatic = arguments.smooth == "auto" || (arguments.smooth == "default" && source.samples());
+  if (automatic) {
+    const std::vector<SmoothTrial> trials = choose_smoothness(input.samples, spec, options);
+    options.smooth = trials.front().smooth;
+    for (std::size_t t = 0; t < spec.tables.size(); ++t)
+      spec.tables[t].smooth_share = trials.front().shares[t];
+    cross_validated = trials.front().error;
+  } else if (arguments.smooth != "default") {
+    options.smooth = CLI::detail::lexical_cast(arguments.smooth, options.smooth) ? options.smooth : -1;
+    if (!(options.smooth >= 0))
+      throw Error(fmt::format("--smooth: expected auto or a number >= 0, found '{}'", arguments.smooth));
+  }
+  const HomomorphicFit result = fit_homomorphic(input.samples, spec, options);
+  const HomomorphicSummary& summary = result.summary;
+
+  nlohmann::ordered_json notes{{"source", source.name},
+                               {"source_format", source.findings.format},
+                               {"symmetrized", !arguments.no_symmetrize},
+                               {"samples", summary.samples},
+                               {"smooth", options.smooth},
+                               {"floor", options.floor},
+                               {"reweightings", summary.reweightings},
+                               {"rms_log_before", summary.error_before},
+                               {"rms_log_after", summary.error_after},
+                               {"iterations", summary.iterations},
+                               {"stop_reason", summary.stop_reason}};
+  for (const ModelSpec::TableSpec& table : spec.tables)
+    if (table.smooth_share != 1) notes["smooth_shares"][table.name] = table.smooth_share;
+  // After rounding to the table format: at the samples themselves, or on pairs that were not fitted.
+  if (source.samples()) {
+    notes["relative"] = std::expm1(log_error(input.samples, result.brdf, options.error_floor).mean());
+    if (cross_validated) notes["relative_cross_validated"] = std::expm1(*cross_validated);
+  } else {
+    std::optional<SymmetrizedBrdf> symmetrized;
+    if (!arguments.no_symmetrize) symmetrized.emplace(source.ref());
+    const FigureOptions figures{.count = kHeldOutPairs, .seed = arguments.seed + 1, .image_size = 16};
+    const ErrorFigures error =
+        error_figures(symmetrized ? BrdfRef(*symmetrized) : source.ref(), result.brdf, figures);
+    notes["relative"] = error.relative;
+    notes["rms_log"] = error.rms_log;
+    notes["log_cos"] = error.log_cos;
+  }
+  write_then_rename(
+      arguments.out,
+      format_model({.brdf = result.brdf, .lambda_nm = source.findings.lambda_nm, .notes = notes.dump()}));
+
+  notes["output"] = arguments.out;
+  notes["model"] = model_expression(result.brdf);
+  notes["bytes"] = result.brdf.bytes();
+  notes["table_bytes"] = result.brdf.table_bytes();
+  notes["unknowns"] = summary.unknowns;
+  notes["smallest_factor"] = result.brdf.smallest_factor();
+  notes["reciprocal"] = result.brdf.reciprocal();
+  notes["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return notes;
+}
+
+void print(const nlohmann::ordered_json& notes) {
+  const auto number = [&](const char* key) { return notes.at(key).get<double>(); };
+  fmt::print("{}: {}\n", notes.at("source").get<std::string>(), notes.at("source_format").get<std::string>());
+  fmt::print("model      {}, {} bytes ({} of them tables)\n", notes.at("model").get<std::string>(),
+             notes.at("bytes").get<std::size_t>(), notes.at("table_bytes").get<std::size_t>());
+  fmt::print("fitted     {} samples, {} unknowns, {} iterations ({}), smooth {:.3g}\n",
+             notes.at("samples").get<std::size_t>(), notes.at("unknowns").get<std::size_t>(),
+             notes.at("iterations").get<int>(), notes.at("stop_reason").get<std::string>(), number("smooth"));
+  fmt::print("rms log f  {:.4f} before, {:.4f} after\n", number("rms_log_before"), number("rms_log_after"));
+  if (notes.contains("log_cos"))
+    fmt::print("held out   relative {:.4f}, rms_log {:.4f}, log_cos {:.4f}\n", number("relative"),
+               number("rms_log"), number("log_cos"));
+  else if (notes.contains("relative_cross_validated"))
+    fmt::print("relative   {:.4f} at the samples, {:.4f} cross-validated\n", number("relative"),
+               number("relative_cross_validated"));
+  else
+    fmt::print("relative   {:.4f} at the samples\n", number("relative"));
+  fmt::print("written    {} in {:.2f} s\n", notes.at("output").get<std::string>(), number("seconds"));
+}
+
+}  // namespace
+
+void add_fit_command(CLI::App& app) {
+  CLI::App* verb = app.add_subcommand("fit", "Factor a BRDF into a product of small positive tables");
+  verb->footer(
+      "Example: burnish fit paint.binary -o paint.exr --model \"p(wo) q(h) r(theta_d) p(wi)\" --table q=96");
+  auto arguments = std::make_shared<Arguments>();
+  add_source_arguments(*verb, arguments->source);
+  verb->add_option("-o,--output", arguments->out, "model file to write (OpenEXR)")->required();
+  verb->add_option(
+          "--model", arguments->model,
+          "product of tables over projections: pqp, pqpr, or such as \"p(wo) q(h) s(wi+wo+0.5n) p(wi)\"")
+      ->capture_default_str();
+  verb->add_option(
+          "--table", arguments->tables,
+          "size and spacing of a table: NAME=SIZE[,warp][,shared], SIZE N (1-D), NxN (hemisphere) or NxM; "
+          "warp identity, power:P or rational:K")
+      ->allow_extra_args(false);
+  verb->add_option(
+      "--smooth", arguments->smooth,
+      "smoothness of the tables: a number >= 0, or auto (cross-validation; the default for scattered "
+      "samples)");
+  verb->add_option("--floor", arguments->floor, "added to every value before its logarithm is taken, 1/sr")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  verb->add_option("--reweightings", arguments->reweightings,
+                   "passes towards the mean absolute error (default: 4 for scattered samples, else 0)")
+      ->check(CLI::Range(0, 100));
+  verb->add_option("--samples", arguments->samples, "pairs drawn from a source that is a function")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}));
+  verb->add_option("--seed", arguments->seed, "of the drawn pairs")->capture_default_str();
+  verb->add_option("--format", arguments->format, "of the stored tables")
+      ->check(CLI::IsMember({"half", "float"}))
+      ->capture_default_str();
+  verb->add_option("--threads", arguments->threads, "at most this many; 0: all")->check(CLI::Range(0, 1024));
+  verb->add_flag("--no-symmetrize", arguments->no_symmetrize,
+                 "fit f(wi, wo) as it is, not its reciprocal part");
+  verb->add_flag("--json", arguments->json, "print the summary as JSON");
+  verb->callback([arguments] {
+    const nlohmann::ordered_json notes = fit(*arguments);
+    if (arguments->json)
+      fmt::print("{}\n", notes.dump(2));
+    else
+      print(notes);
+  });
+}
+
+}  // namespace burnish::cli
