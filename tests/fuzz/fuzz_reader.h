@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <burnish/error.h>
+#include <burnish/file.h>
+#include <burnish/io/open_options.h>
+#include <burnish/math/angles.h>
+#include <burnish/reflectance/brdf.h>
+#include <burnish/reflectance/scattered_brdf.h>
+
+namespace burnish {
+
+/// Traps unless the source is finite and, if `positive`, nowhere negative.
+inline void check_values(BrdfRef source, bool positive) {
+  std::vector<double> f(static_cast<std::size_t>(source.channels()));
+  for (const double theta : {0.0, 0.7, 1.5707})
+    for (const double phi : {-kPi, 0.1, 3.0}) {
+      source.eval(spherical_direction(theta, phi), spherical_direction(0.5, 1), f);
+      for (const double value : f)
+        if (!std::isfinite(value) || (positive && value < 0)) __builtin_trap();
+    }
+}
+
+inline void check(const Samples& samples, bool positive) {
+  check_values(ScatteredBrdf(samples), positive);
+}
+
+template <Brdf T>
+void check(const T& table, bool positive) {
+  check_values(table, positive);
+}
+
+/// Any bytes either throw Error or make a source with sound values; any other exception ends the run. The
+/// size picks the options.
+template <class Parse>
+int fuzz(const std::uint8_t* data, std::size_t size, const Parse& parse) {
+  const auto* bytes = reinterpret_cast<const std::byte*>(data);
+  const FileBytes file{"fuzzed file", {bytes, bytes + size}};
+  OpenOptions options;
+  options.keep_spectral = size % 2 == 0;
+  options.clamp_negatives = size % 3 != 0;
+  options.has_cosine = size % 5 == 0;
+  options.back_side = size % 7 == 0;
+  options.illuminant = size % 11 == 0 ? "D65" : "E";
+  try {
+    parse(file, options);
+  } catch (const Error&) {
+  }
+  return 0;
+}
+
+}  // namespace burnish

@@ -1,0 +1,21 @@
+// make_seeds DIR writes DIR/NAME/NAME, a small valid file for each fuzzed reader, and all of them to
+// DIR/source.
+#include <filesystem>
+
+#include <burnish/file.h>
+
+#include "../seed_files.h"
+
+int main(int argc, char** argv) {
+  if (argc != 2) return 2;
+  const auto write = [&](const std::string& folder, const std::string& name, const std::string& bytes) {
+    std::filesystem::create_directories(std::filesystem::path(argv[1]) / folder);
+    burnish::write_then_rename(std::filesystem::path(argv[1]) / folder / name, bytes);
+  };
+  for (const auto& [name, bytes] : burnish::seeds::all_seeds()) {
+    write(name, name, bytes);
+    write("source", name, bytes);
+  }
+  write("directions", "directions", burnish::seeds::kDirections);
+  return 0;
+}

@@ -1,0 +1,203 @@
+// Bad input of every kind gets one clear error and leaves no output.
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <burnish/io/source.h>
+#include <burnish/math/random.h>
+
+#include "seed_files.h"
+
+namespace burnish {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+FileBytes as_file(std::string_view content) {
+  const auto* bytes = reinterpret_cast<const std::byte*>(content.data());
+  return {"hostile.file", {bytes, bytes + content.size()}};
+}
+
+/// Parses; true if it threw. Any exception but a clear Error fails the test.
+bool throws_clearly(std::string_view content) {
+  try {
+    parse_source(as_file(content), {});
+  } catch (const Error& error) {
+    const std::string_view message = error.what();
+    EXPECT_EQ(message.find('\n'), std::string_view::npos) << message;
+    EXPECT_NE(message.find("expected"), std::string_view::npos) << message;
+    EXPECT_NE(message.find("hostile.file"), std::string_view::npos) << message;
+    return true;
+  }
+  return false;
+}
+
+TEST(Hostile, SeedsAreValid) {
+  for (const auto& [name, bytes] : seeds::all_seeds())
+    EXPECT_NO_THROW(parse_source(as_file(bytes), {})) << name;
+}
+
+TEST(Hostile, EveryTruncatedBinaryFileThrows) {
+  const auto all = seeds::all_seeds();
+  for (std::size_t k = 0; k < seeds::kBinaryCount; ++k)
+    for (std::size_t length = 0; length < all[k].second.size(); ++length) {
+      // The first block of the MBSDF seed is left out by the reader, nothing else may be missing.
+      EXPECT_TRUE(throws_clearly(all[k].second.substr(0, length))) << all[k].first << " cut to " << length;
+    }
+}
+
+// A text cut at the end of a row or of a number's digits is another valid text.
+TEST(Hostile, TruncatedTextThrowsOrHasLess) {
+  const auto all = seeds::all_seeds();
+  for (std::size_t k = seeds::kBinaryCount; k < all.size(); ++k) {
+    const std::uint64_t whole = parse_source(as_file(all[k].second), {}).findings.sample_count;
+    std::size_t thrown = 0;
+    for (std::size_t length = 0; length < all[k].second.size(); ++length) {
+      const std::string cut = all[k].second.substr(0, length);
+      if (throws_clearly(cut))
+        ++thrown;
+      else
+        EXPECT_LE(parse_source(as_file(cut), {}).findings.sample_count, whole);
+    }
+    EXPECT_GT(thrown, all[k].second.size() / 2) << all[k].first;
+  }
+}
+
+TEST(Hostile, DamagedBytesThrowClearlyOrGiveSoundValues) {
+  std::vector<double> f;
+  for (const auto& [name, bytes] : seeds::all_seeds())
+    for (std::size_t at = 0; at<bytes.size(); at += bytes.size()> 2000 ? 7 : 1)
+      for (const char damage : {'\0', '\xff', '-', '9', 'n'}) {
+        std::string damaged = bytes;
+        damaged[at] = damage;
+        if (throws_clearly(damaged)) continue;
+        const Source source = parse_source(as_file(damaged), {});
+        f.resize(static_cast<std::size_t>(source.ref().channels()));
+        source.ref().eval({0.6, 0, 0.8}, {0, -0.6, 0.8}, f);
+        for (const double value : f) EXPECT_TRUE(std::isfinite(value)) << name << " damaged at " << at;
+      }
+}
+
+TEST(Hostile, NoiseThrows) {
+  Pcg32 random(1);
+  for (int i = 0; i < 300; ++i) {
+    std::string noise(random.next() % 400, '\0');
+    for (char& c : noise) c = static_cast<char>(random.next());
+    EXPECT_TRUE(throws_clearly(noise));
+  }
+}
+
+TEST(Hostile, LyingSizesThrowBeforeAnythingIsAllocated) {
+  const auto words = [](std::initializer_list<std::uint32_t> values) {
+    std::string bytes;
+    for (const std::uint32_t value : values) seeds::append(bytes, value);
+    return bytes;
+  };
+  const std::string big_endian_merl = words({0x5a000000, 0x5a000000, 0xb4000000}) + std::string(1000, '\0');
+  const std::string huge_merl = words({3600, 3600, 3600}) + std::string(1000, '\0');
+  const std::string negative_merl = words({0xffffffff, 90, 180}) + std::string(1000, '\0');
+  const std::string mbsdf = "NVIDIA ARC MBSDF V1\nMBSDF_DATA_REFLECTION=\n";
+  for (const std::string& bytes :
+       {big_endian_merl, huge_merl, negative_merl, mbsdf + words({1, 2000, 2000}),
+        mbsdf + words({1, 0xffffffff, 2}), mbsdf + words({1, 0, 0}), std::string("1000\n400 410\n"),
+        std::string("999999999999999999999\n400\n"), std::string("-3\n400\n"),
+        std::string("tensor_file\0\1\0\xff\xff\xff\xff", 18)})
+    EXPECT_TRUE(throws_clearly(bytes));
+}
+
+/// What one run of the command line did.
+struct Outcome {
+  int exit_code;
+  std::string errors;
+};
+
+class HostileCommandLine : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(testing::TempDir()) /
+              fmt::format("burnish_{}", testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path file(const std::string& name, std::string_view content) const {
+    std::ofstream(folder_ / name, std::ios::binary) << content;
+    return folder_ / name;
+  }
+
+  Outcome run_burnish(const std::string& arguments) const {
+    const fs::path errors = folder_ / "stderr";
+    const int status = std::system(
+        fmt::format("'{}' {} > /dev/null 2> '{}'", BURNISH_CLI, arguments, errors.string()).c_str());
+    std::ostringstream text;
+    text << std::ifstream(errors).rdbuf();
+    fs::remove(errors);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text.str()};
+  }
+
+  std::size_t file_count() const {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(HostileCommandLine, SaysOneLineAndLeavesNoOutput) {
+  for (const auto& [name, bytes] : seeds::all_seeds()) {
+    const fs::path cut = file(name, bytes.substr(0, bytes.size() / 3));
+    for (const char* verb : {"info '{}'", "convert '{}' '{}/out.csv'", "measure '{}' -o '{}/out.csv'"}) {
+      const Outcome run = run_burnish(fmt::format(fmt::runtime(verb), cut.string(), folder_.string()));
+      EXPECT_EQ(run.exit_code, 1) << name << ": " << run.errors;
+      EXPECT_THAT(run.errors, StartsWith("burnish: ")) << name;
+      EXPECT_THAT(run.errors, HasSubstr(cut.string()));
+      EXPECT_EQ(std::count(run.errors.begin(), run.errors.end(), '\n'), 1) << run.errors;
+      EXPECT_EQ(file_count(), 1u) << name;
+    }
+    fs::remove(cut);
+  }
+}
+
+TEST_F(HostileCommandLine, FailsOnMissingEmptyAndUnwritableFiles) {
+  EXPECT_EQ(run_burnish(fmt::format("info '{}/none'", folder_.string())).exit_code, 1);
+  EXPECT_EQ(run_burnish(fmt::format("info '{}'", folder_.string())).exit_code, 1);
+  EXPECT_EQ(run_burnish(fmt::format("info '{}'", file("empty", "").string())).exit_code, 1);
+  EXPECT_EQ(run_burnish(fmt::format("measure lambert -o '{}/none/out.csv'", folder_.string())).exit_code, 1);
+  EXPECT_EQ(run_burnish(fmt::format("convert ggx:alpha_x=0.1,alpha_y=0.4 '{}/out.binary'", folder_.string()))
+                .exit_code,
+            1);
+  EXPECT_EQ(run_burnish(fmt::format("convert lambert '{}/out.unknown'", folder_.string())).exit_code, 1);
+  EXPECT_EQ(file_count(), 1u);
+}
+
+TEST_F(HostileCommandLine, TellsMisuseFromBadInput) {
+  EXPECT_EQ(run_burnish("").exit_code, 2);
+  EXPECT_EQ(run_burnish("nonsense").exit_code, 2);
+  EXPECT_EQ(run_burnish("info").exit_code, 2);
+  EXPECT_EQ(run_burnish("measure lambert").exit_code, 2);
+  EXPECT_EQ(run_burnish("measure lambert -o x.csv --noise -1").exit_code, 2);
+  EXPECT_EQ(run_burnish("info --help").exit_code, 0);
+}
+
+TEST_F(HostileCommandLine, ConvertsWhatIsWell) {
+  const std::string out = folder_.string();
+  EXPECT_EQ(run_burnish(fmt::format("measure ggx -o '{}/m.csv' --count 200 --noise 0.1", out)).exit_code, 0);
+  EXPECT_EQ(run_burnish(fmt::format("convert '{0}/m.csv' '{0}/m2.csv'", out)).exit_code, 0);
+  EXPECT_EQ(run_burnish(fmt::format("convert lambert '{0}/l.bsdf'", out)).exit_code, 0);
+  EXPECT_EQ(run_burnish(fmt::format("info --json '{0}/l.bsdf'", out)).exit_code, 0);
+  const Source back = open_source(out + "/m2.csv", {});
+  EXPECT_EQ(back.samples()->size(), 200u);
+  EXPECT_TRUE(back.ref().isotropic());
+}
+
+}  // namespace
+}  // namespace burnish

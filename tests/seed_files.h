@@ -1,0 +1,89 @@
+#pragma once
+
+// A small valid file of every format, for tests of bad input and for the fuzzers.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include <burnish/io/rgl.h>
+#include <burnish/reflectance/analytic.h>
+#include <burnish/reflectance/rgl_builder.h>
+
+namespace burnish::seeds {
+
+template <class T>
+void append(std::string& bytes, T value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
+}
+
+inline std::string merl_seed() {
+  std::string bytes;
+  for (int axis = 0; axis < 3; ++axis) append(bytes, std::int32_t{2});
+  for (int i = 0; i < 24; ++i) append(bytes, i % 5 == 4 ? -1.0 : 100.0 * i);
+  return bytes;
+}
+
+inline std::string mbsdf_seed() {
+  std::string bytes = "NVIDIA ARC MBSDF V1\nname=\"seed\"\n";
+  for (const char* part : {"MBSDF_DATA_TRANSMISSION=\n", "MBSDF_DATA_REFLECTION=\n"}) {
+    bytes += part;
+    for (const std::uint32_t word : {1u, 2u, 2u}) append(bytes, word);
+    for (int i = 0; i < 24; ++i) append(bytes, 0.1f * static_cast<float>(i) - 0.2f);
+  }
+  return bytes;
+}
+
+inline std::string rgl_seed() {
+  burnish::RglOptions options;
+  options.theta_i_count = 2;
+  options.ndf_theta = options.ndf_phi = options.resolution = 4;
+  return burnish::format_rgl(burnish::make_rgl_table(burnish::parse_analytic("ggx").ref(), options));
+}
+
+inline const std::string kCornell =
+    "# Maker\n# Paint\n2\n400 500\n0.5 0 0.25 3.14 0.1 0.2\n0.5 0 0.75 0 -0.1 0.4\n";
+inline const std::string kAstm =
+    "SAMPLE steel\nNUM_POINTS 2\nVARS "
+    "theta_i,phi_i,theta_s,phi_s,R,G,B\n.1,.2,.3,.4,1,2,3\n.1,.5,.3,.4,4,5,6\n";
+inline const std::string kCsv =
+    "# isotropic\ntheta_i,phi_i,theta_o,phi_o,r,g,b\n30,0,60,180,1,2,3\n10,5,20,30,0.1,-0.2,0.3\n";
+inline const std::string kDirections = "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0,0,1,0.6,0,0.8\n0,0.6,-0.8,1,0,0\n";
+inline const std::string kZemax =
+    "# Sample: "
+    "paint\nSource\tMeasured\nSymmetry\tPlaneSymmetrical\nSpectralContent\tMonochrome\nScatterType\tBRDF\n"
+    "SampleRotation\t1\n0\nAngleOfIncidence\t2\n10 30\nScatterAzimuth\t3\n0 90 180\nScatterRadial\t2\n0 "
+    "10\n\n"
+    "Monochrome\nDataBegin\nTIS 0.1\n1 2\n1 3\n1 4\nTIS 0.2\n5 6\n5 -7\n5 0.000e+00\nDataEnd\n";
+inline const std::string kKlems =
+    "<WindowElement><Optical><Layer><DataDefinition><IncidentDataStructure>Columns</"
+    "IncidentDataStructure><AngleBasis>"
+    "<AngleBasisName>B</AngleBasisName><AngleBasisBlock><nPhis>1</nPhis><ThetaBounds><LowerTheta>0</"
+    "LowerTheta>"
+    "<UpperTheta>30</UpperTheta></ThetaBounds></AngleBasisBlock><AngleBasisBlock><nPhis>2</"
+    "nPhis><ThetaBounds>"
+    "<LowerTheta>30</LowerTheta><UpperTheta>90</UpperTheta></ThetaBounds></AngleBasisBlock></AngleBasis></"
+    "DataDefinition>"
+    "<WavelengthData><Wavelength>Visible</"
+    "Wavelength><WavelengthDataBlock><WavelengthDataDirection>Reflection Front"
+    "</WavelengthDataDirection><ColumnAngleBasis>B</ColumnAngleBasis><RowAngleBasis>B</"
+    "RowAngleBasis><ScatteringData>"
+    "1, 2, 3\n4 5 6\n7 8 "
+    "-9</ScatteringData></WavelengthDataBlock></WavelengthData></Layer></Optical></WindowElement>";
+
+/// Format names and bytes; the first `kBinaryCount` are binary and of fixed length.
+inline std::array<std::pair<std::string, std::string>, 8> all_seeds() {
+  return {{{"merl", merl_seed()},
+           {"mbsdf", mbsdf_seed()},
+           {"rgl", rgl_seed()},
+           {"cornell", kCornell},
+           {"astm", kAstm},
+           {"csv", kCsv},
+           {"zemax", kZemax},
+           {"klems", kKlems}}};
+}
+
+inline constexpr std::size_t kBinaryCount = 3;
+
+}  // namespace burnish::seeds
