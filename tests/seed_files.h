@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include <burnish/factors/model_file.h>
 #include <burnish/io/rgl.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/rgl_builder.h>
@@ -42,6 +44,21 @@ inline std::string rgl_seed() {
   return burnish::format_rgl(burnish::make_rgl_table(burnish::parse_analytic("ggx").ref(), options));
 }
 
+inline std::string model_seed() {
+  using namespace burnish;
+  const Table p{.name = "p", .layout = {.width = 2}, .channels = 1, .values = {1, 0.5f}};
+  const Table q{
+      .name = "q",
+      .layout = {.shape = TableShape::disk, .width = 2, .height = 2, .warp = {WarpKind::rational, 0.5}},
+      .channels = 3,
+      .values = std::vector<float>(12, 1.0f)};
+  const Lobe lobe{.scale = {0.1, 0.2, 0.3},
+                  .factors = {{.table = 0, .projection = kProjectWi},
+                              {.table = 0, .projection = kProjectWo},
+                              {.table = 1, .projection = kProjectHalf}}};
+  return format_model({.brdf = FactoredBrdf(3, {p, q}, {lobe}, TableFormat::half)});
+}
+
 inline const std::string kCornell =
     "# Maker\n# Paint\n2\n400 500\n0.5 0 0.25 3.14 0.1 0.2\n0.5 0 0.75 0 -0.1 0.4\n";
 inline const std::string kAstm =
@@ -73,10 +90,11 @@ inline const std::string kKlems =
     "-9</ScatteringData></WavelengthDataBlock></WavelengthData></Layer></Optical></WindowElement>";
 
 /// Format names and bytes; the first `kBinaryCount` are binary and of fixed length.
-inline std::array<std::pair<std::string, std::string>, 8> all_seeds() {
+inline std::array<std::pair<std::string, std::string>, 9> all_seeds() {
   return {{{"merl", merl_seed()},
            {"mbsdf", mbsdf_seed()},
            {"rgl", rgl_seed()},
+           {"model", model_seed()},
            {"cornell", kCornell},
            {"astm", kAstm},
            {"csv", kCsv},
@@ -84,6 +102,6 @@ inline std::array<std::pair<std::string, std::string>, 8> all_seeds() {
            {"klems", kKlems}}};
 }
 
-inline constexpr std::size_t kBinaryCount = 3;
+inline constexpr std::size_t kBinaryCount = 4;
 
 }  // namespace burnish::seeds
