@@ -72,6 +72,103 @@ class MemoryOutput : public Imf::OStream {
   std::size_t at_ = 0;
 };
 
+/// Walks the headers before OpenEXR sees them. OpenEXR allocates what an attribute's size or a window says
+/// before it reads: here sizes must lie within the file, windows and chunk counts within what a table can
+/// have, and the attributes be those of a model.
+class HeaderCheck {
+ public:
+  explicit HeaderCheck(const FileBytes& file) : bytes_(file.bytes), at_(kExrMagic.size()) {}
+
+  void run() {
+    constexpr std::uint32_t kMultiPart = 0x1000, kVersionBits = 0xff;
+    const auto version = number<std::uint32_t>();
+    if ((version & ~kMultiPart & ~kLongNames) != 2)
+      fail(fmt::format("OpenEXR version 2 without tiles or deep data, found {:#x} (version {})", version,
+                       version & kVersionBits));
+    while (header()) {
+      if ((version & kMultiPart) == 0) return;  // one header, no end mark
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t kLongNames = 0x400;
+  static constexpr std::size_t kLongestName = 255;
+
+  [[noreturn]] void fail(const std::string& expected) const {
+    throw Error(fmt::format("offset {}: expected {}", at_, expected));
+  }
+
+  std::size_t remaining() const { return bytes_.size() - at_; }
+
+  template <class T>
+  T number() {
+    if (sizeof(T) > remaining()) fail("more of the header, found the end of the file");
+    T value;
+    std::memcpy(&value, bytes_.data() + at_, sizeof(T));
+    at_ += sizeof(T);
+    return value;
+  }
+
+  std::string name() {
+    std::string text;
+    for (;;) {
+      const auto c = number<char>();
+      if (c == 0) return text;
+      if (text.size() == kLongestName) fail("a name of at most 255 bytes, found a longer one");
+      text.push_back(c);
+    }
+  }
+
+  // The types that a model has. OpenEXR reads a value by its type, whatever its size says: the two must
+  // agree.
+  void check_value(const std::string& attribute, const std::string& type, std::size_t end) {
+    if (type == "string") {
+      at_ = end;
+    } else if (type == "chlist") {
+      constexpr std::size_t kChannelBytes = 16;
+      while (!name().empty()) skip(kChannelBytes);
+    } else if (type == "box2i") {
+      for (int i = 0; i < 4; ++i) check_side(attribute);
+    } else if (type == "int") {
+      check_side(attribute);
+    } else if (type == "float" || type == "v2f") {
+      skip(type == "float" ? 4 : 8);
+    } else if (type == "compression" || type == "lineOrder") {
+      skip(1);
+    } else {
+      fail(fmt::format("attributes of a model, found '{}' of type '{}'", attribute, type));
+    }
+  }
+
+  void skip(std::size_t count) {
+    if (count > remaining()) fail("more of the header, found the end of the file");
+    at_ += count;
+  }
+
+  void check_side(const std::string& attribute) {
+    if (const auto value = number<std::int32_t>(); value < 0 || value > kLargestSide)
+      fail(fmt::format("'{}' within 0 to {}, found {}", attribute, kLargestSide, value));
+  }
+
+  // One header; false where the list of headers ends.
+  bool header() {
+    for (bool first = true;; first = false) {
+      const std::string attribute = name();
+      if (attribute.empty()) return !first;
+      const std::string type = name();
+      const auto size = number<std::int32_t>();
+      if (size < 0 || static_cast<std::size_t>(size) > remaining())
+        fail(fmt::format("an attribute '{}' of at most {} bytes, found {}", attribute, remaining(), size));
+      const std::size_t end = at_ + static_cast<std::size_t>(size);
+      check_value(attribute, type, end);
+      if (at_ != end) fail(fmt::format("'{}' to end at offset {}, found another size", attribute, end));
+    }
+  }
+
+  std::span<const std::byte> bytes_;
+  std::size_t at_;
+};
+
 // EXR keeps channels by name; viewers show Y as grey and R, G, B as colour.
 std::string channel_name(int channels, int c) {
   if (channels == 1) return "Y";
@@ -209,8 +306,9 @@ void read_pixels(Imf::MultiPartInputFile& input, int part, Table& table) {
 }
 
 Model read_model(const FileBytes& file) {
+  HeaderCheck(file).run();
   MemoryInput stream(file);
-  Imf::MultiPartInputFile input(stream, 1);
+  Imf::MultiPartInputFile input(stream, 0);
   const auto* attribute = input.header(0).findTypedAttribute<Imf::StringAttribute>(kAttribute);
   if (!attribute) throw Error("expected a string attribute 'burnish', found an OpenEXR file without it");
   const Json json = Json::parse(attribute->value());
@@ -267,7 +365,7 @@ std::string format_model(const Model& model) {
   MemoryOutput stream;
   {
     const std::vector<Imf::Header> parts = headers(model);
-    Imf::MultiPartOutputFile output(stream, parts.data(), static_cast<int>(parts.size()), false, 1);
+    Imf::MultiPartOutputFile output(stream, parts.data(), static_cast<int>(parts.size()), false, 0);
     for (std::size_t i = 0; i < parts.size(); ++i) {
       const Table& table = model.brdf.tables()[i];
       std::vector<float> values = table.values;  // OpenEXR wants them mutable

@@ -9,8 +9,6 @@ namespace burnish {
 
 namespace {
 
-constexpr int kLargestSide = 8192;
-
 struct Cell {
   int node;
   double fraction;
