@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <burnish/factors/model_file.h>
 #include <burnish/io/source.h>
 #include <burnish/io/test_files.h>
 #include <burnish/math/angles.h>
@@ -42,6 +43,16 @@ TEST(Source, OpensAnalyticBrdfsByName) {
   EXPECT_THAT(source.findings.description, HasSubstr("lambert"));
   EXPECT_EQ(source.ref().channels(), 3);
   EXPECT_THROW(open_source("lambert:nonsense=1", {}), Error);
+}
+
+TEST(Source, OpensModels) {
+  Table table{"p", {TableShape::line, 4, 1, {}, {}}, 1, {1.0f, 1.0f, 0.5f, 0.5f}};
+  const FactoredBrdf brdf(1, {table}, {Lobe{{0.25}, {{.table = 0, .projection = kProjectWi}}}},
+                          TableFormat::half);
+  const Source source = parse_source(memory_file(format_model({brdf, {}, "{}"})), {});
+  EXPECT_EQ(source.findings.format, "burnish model");
+  EXPECT_EQ(source.findings.sample_count, 4u);
+  EXPECT_EQ(std::get<FactoredBrdf>(source.brdf), brdf);
 }
 
 TEST(Source, RefersToScatteredSamplesOnlyWhereThereAreSome) {

@@ -29,7 +29,7 @@ enum class SampleSpace { half_difference, angles };
 /// default space, within 17, 20 and 17 % in that of angles.
 class ScatteredBrdf {
  public:
-  /// Largest square of the search radius, a sixth of the space's extent.
+  /// Largest square of the search radius: a quarter of the extent of each coordinate.
   static constexpr double kMaxRadius2 = 0.064;
 
   /// Keeps a copy of the samples. Throws Error if there are none, or a sample's values are not as many as its
