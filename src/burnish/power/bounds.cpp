@@ -14,7 +14,7 @@ using std::numbers::pi;
 // Rising functions that the proofs need, off by at most kSlack relative; each is a convergent series with
 // positive terms near 0, where its closed form cancels.
 constexpr double kSlack = 1e-9 / 0x1p-52;  // in units of the last place
-constexpr double kUnbounded = 1e60;                  // a derivative of which nothing is known
+constexpr double kUnbounded = 1e60;        // a derivative of which nothing is known
 constexpr double kSeriesEnd = 0.02;
 constexpr int kSeriesTerms = 9;  // 0.02^9 < 1e-15
 
@@ -60,8 +60,11 @@ double angle_ratio_derivative(double x) {  // B' = (A' - B) / x, A' = 2 gamma / 
 
 // phi of a Dual whose value is below 1.
 Dual phi(const Dual& x) {
-  return chain(rising(x.value, [](double t) { return phi(t); }, kSlack),
-               rising(x.value, [](double t) { return phi_derivative(t); }, kSlack), x);
+  return chain(rising(
+                   x.value, [](double t) { return phi(t); }, kSlack),
+               rising(
+                   x.value, [](double t) { return phi_derivative(t); }, kSlack),
+               x);
 }
 
 Dual exp(const Dual& x) {
@@ -92,8 +95,11 @@ Interval clip(Interval x, double lo, double hi) {
 // e gamma^2 = s B(s v)
 Dual squared_angle(const ScaledPoint& p) {
   const Interval x = clip(p.s.value * p.v.value, 0, 1);
-  const Dual ratio = chain(rising(x, [](double t) { return angle_ratio(t); }, kSlack),
-                           rising(x, [](double t) { return angle_ratio_derivative(t); }, kSlack), p.s * p.v);
+  const Dual ratio = chain(rising(
+                               x, [](double t) { return angle_ratio(t); }, kSlack),
+                           rising(
+                               x, [](double t) { return angle_ratio_derivative(t); }, kSlack),
+                           p.s * p.v);
   return p.s * ratio;
 }
 
@@ -116,24 +122,24 @@ Dual cos_of_root(const Dual& q) {
 // c^e as a function of s and v, with c = max(0, 1 - s v).
 Dual exact_power(const ScaledPoint& p) {
   const Interval s = p.s.value, v = p.v.value;
-  const auto power = [](double s_, double v_) {
-    return s_ * v_ >= 1 ? 0.0 : std::exp(-s_ * phi(s_ * v_));
-  };
-  // Falling in both variables. The exponent's rounding error is at most a few units of |s phi|, below 1e-12 of
-  // the power wherever that is above e^-700.
+  const auto power = [](double s_, double v_) { return s_ * v_ >= 1 ? 0.0 : std::exp(-s_ * phi(s_ * v_)); };
+  // Falling in both variables. The exponent's rounding error is at most a few units of |s phi|, below 1e-12
+  // of the power wherever that is above e^-700.
   Interval value = interval_detail::outward(power(s.hi, v.hi), power(s.lo, v.lo), 4096);
   value.lo = std::max(value.lo, 0.0);
 
   const Interval x = clip(s * v, 0, 1);
   const Interval one_minus_v = Interval(1.0) - v;
   // d/ds = -c^(e-1) = -exp(-s (1 - v) phi(s v))
-  const Interval rate = rising(x, [](double t) { return std::min(phi(t), kUnbounded); }, kSlack);
+  const Interval rate = rising(
+      x, [](double t) { return std::min(phi(t), kUnbounded); }, kSlack);
   Interval slope = exp(Interval(0.0) - s * max(one_minus_v, 0.0) * rate);
   slope = intersect(slope, {0.0, 1.0});
   Interval by_v;
   if (x.hi < 0.9) {
     // -c^e s^2 phi'(s v)
-    const Interval growth = rising(x, [](double t) { return phi_derivative(t); }, kSlack);
+    const Interval growth = rising(
+        x, [](double t) { return phi_derivative(t); }, kSlack);
     by_v = Interval(0.0) - value * square(s) * growth;
   } else {
     // -e^2 (u c^(e-1) + c^e log c), with y log y = e c^e log c in [-1/e, 0] for y = c^e
@@ -246,12 +252,13 @@ BoundProof prove_small(F error, Box domain, double bound, std::size_t max_boxes)
     const Interval ds(interval_detail::down(box.s0 - middle.s0), interval_detail::up(box.s1 - middle.s0));
     const Interval dv(interval_detail::down(box.v0 - middle.v0), interval_detail::up(box.v1 - middle.v0));
     Verdict verdict;
-    verdict.accepted = all_branches(point_of(box), point_of(middle), error, [&](const Dual& over, const Dual& at) {
-      verdict.across_s = std::max(verdict.across_s, contribution(over.d0, box.s1 - box.s0));
-      verdict.across_v = std::max(verdict.across_v, contribution(over.d1, box.v1 - box.v0));
-      const Interval enclosure = intersect(over.value, at.value + over.d0 * ds + over.d1 * dv);
-      return enclosure.lo >= -bound && enclosure.hi <= bound;
-    });
+    verdict.accepted =
+        all_branches(point_of(box), point_of(middle), error, [&](const Dual& over, const Dual& at) {
+          verdict.across_s = std::max(verdict.across_s, contribution(over.d0, box.s1 - box.s0));
+          verdict.across_v = std::max(verdict.across_v, contribution(over.d1, box.v1 - box.v0));
+          const Interval enclosure = intersect(over.value, at.value + over.d0 * ds + over.d1 * dv);
+          return enclosure.lo >= -bound && enclosure.hi <= bound;
+        });
     if (middle.s0 * middle.v0 <= 1) {
       dual_branch() = {};
       const Interval met = error(point_of(middle)).value;
@@ -279,7 +286,8 @@ Dual log2_ratio_exact(const Dual& t) {
   return phi(Dual(0.0) - t) * Dual(interval_detail::outward(1 / ln2, 1 / ln2), 0.0, 0.0);
 }
 
-// With L the polynomial logarithm and P the polynomial exponential of NearExact, x = e |ln c| and y = e log2 c:
+// With L the polynomial logarithm and P the polynomial exponential of NearExact, x = e |ln c| and y = e log2
+// c:
 //   |L(c) - log2 c| <= r |log2 c|  gives  |2^(e L) - c^e| <= r max x exp(-x (1 - r)) <= r / exp(1) (1 + 2 r),
 //   |P(f) - 2^f| <= p for f <= 0 and 2 p for f > 0, where the power of two is at most 1/2, adds p,
 //   and the smallest power of two returned adds 2^-125.
@@ -325,12 +333,13 @@ BoundProof prove_power_monotone(PowerMethod method, double min_exponent, double 
                    [&](const Box& box, const Box& middle, BoundProof& proof) {
                      Verdict verdict;
                      const bool inside = middle.s0 * middle.v0 < 1;
-                     verdict.accepted = all_branches(
-                         point_of(box, false), point_of(middle, false), value, [&](const Dual& over, const Dual& at) {
-                           if (inside) proof.attained = std::max(proof.attained, at.d0.lo);
-                           verdict.refuted = proof.attained > kZero;
-                           return over.d0.hi <= kZero;
-                         });
+                     verdict.accepted = all_branches(point_of(box, false), point_of(middle, false), value,
+                                                     [&](const Dual& over, const Dual& at) {
+                                                       if (inside)
+                                                         proof.attained = std::max(proof.attained, at.d0.lo);
+                                                       verdict.refuted = proof.attained > kZero;
+                                                       return over.d0.hi <= kZero;
+                                                     });
                      // Relative widths: the derivative's own derivative is not known.
                      verdict.across_s = (box.s1 - box.s0) / (1 + box.s0);
                      verdict.across_v = (box.v1 - box.v0) / (0.05 + box.v0);

@@ -13,9 +13,9 @@ struct BoundProof {
   double attained = 0;    ///< largest error met at a box's middle: the bound cannot be below this
 };
 
-/// Proves |member - cos^exponent| <= range.bound for all cosines in [0, 1] and all real exponents of the range
-/// by interval arithmetic over boxes in s = e (1 - c) and v = 1 / e, halved until each keeps the bound. A
-/// false `proved` means that the bound fails or that `max_boxes` did not suffice.
+/// Proves |member - cos^exponent| <= range.bound for all cosines in [0, 1] and all real exponents of the
+/// range by interval arithmetic over boxes in s = e (1 - c) and v = 1 / e, halved until each keeps the bound.
+/// A false `proved` means that the bound fails or that `max_boxes` did not suffice.
 BoundProof prove_power_bound(PowerMethod method, const PowerBound& range, std::size_t max_boxes = 4'000'000);
 
 /// Proves that the member never falls as the cosine rises, for all exponents from min_exponent to

@@ -65,6 +65,9 @@ inline Dual exp2(const Dual& a) noexcept {
   const Interval power = exp(a.value * ln2);
   return chain(power, power * ln2, a);
 }
+inline Dual short_exp2(const Dual& a) noexcept {
+  return exp2(a);
+}
 inline Dual if_less(const Dual& a, const Dual& b, const Dual& x, const Dual& y) noexcept {
   if (a.value.hi < b.value.lo) return x;
   if (a.value.lo >= b.value.hi) return y;

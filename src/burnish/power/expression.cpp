@@ -71,6 +71,12 @@ Expr sqrt(const Expr& a) {
 Expr exp2(const Expr& a) {
   return {Op::exp2, {a}};
 }
+Expr exp_of_log(const Expr& a) {
+  return exp2(a);
+}
+Expr short_exp2(const Expr& a) {
+  return exp2(a);
+}
 // The logarithm of 0 is undefined in shaders; the least normal float stands for it.
 Expr log2_of_positive(const Expr& a) {
   return {Op::log2, {max(a, 1.2e-38)}};
@@ -103,7 +109,7 @@ Expr scale_by_power_of_two(const Expr& x, const Expr& n) {
 
 #include <burnish/power/forms-inl.h>
 
-Expr log2_cosine(const Cosine<Expr>& p) {
+Expr log_cosine(const Cosine<Expr>& p) {
   return log2_of_positive(p.c);
 }
 Expr squared_angle(const Cosine<Expr>& p) {
@@ -139,24 +145,39 @@ void count(const Expr::Node* node, std::set<const Expr::Node*>& seen, PowerCost&
   if (!seen.insert(node).second) return;
   switch (node->op) {
     case Op::constant:
-    case Op::input: break;
+    case Op::input:
+      break;
     case Op::add:
-    case Op::subtract: ++cost.adds; break;
+    case Op::subtract:
+      ++cost.adds;
+      break;
     case Op::multiply:
-    case Op::scale_by_two: ++cost.multiplies; break;
+    case Op::scale_by_two:
+      ++cost.multiplies;
+      break;
     case Op::mul_add:
-    case Op::neg_mul_add: ++cost.multiplies, ++cost.adds; break;
-    case Op::divide: ++cost.divisions; break;
+    case Op::neg_mul_add:
+      ++cost.multiplies, ++cost.adds;
+      break;
+    case Op::divide:
+      ++cost.divisions;
+      break;
     case Op::max:
     case Op::min:
     case Op::floor:
     case Op::exponent_of:
-    case Op::if_less: ++cost.compares; break;
-    case Op::sqrt: ++cost.roots; break;
+    case Op::if_less:
+      ++cost.compares;
+      break;
+    case Op::sqrt:
+      ++cost.roots;
+      break;
     case Op::exp2:
     case Op::log2:
     case Op::acos:
-    case Op::cos: ++cost.transcendentals; break;
+    case Op::cos:
+      ++cost.transcendentals;
+      break;
   }
   for (const auto& argument : node->arguments) count(argument.get(), seen, cost);
 }

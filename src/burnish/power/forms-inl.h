@@ -6,9 +6,10 @@
 // interval with derivatives the proof and a node of an expression graph the shader text. T needs + - * /, a
 // constructor from double and, found by argument, the functions
 //   mul_add(a, b, c) = a b + c      neg_mul_add(a, b, c) = c - a b      max(a, b)      sqrt, exp2, log2
-//   if_less(a, b, x, y) = a < b ? x : y
+//   if_less(a, b, x, y) = a < b ? x : y                              short_exp2: 2^x within 7e-5 or better
 //   power_at_inflection(V)          see Quadratic
-// and for some members log2_cosine, squared_angle, cos_of_root, split and round_down_up as noted there.
+// and for some members log_cosine and its inverse exp_of_log (to any one base), squared_angle, cos_of_root,
+// split, round_to_whole and scale_by_power_of_two as noted there.
 //
 // Everything is homogeneous. With u = 1 - c, a member's value depends on c, u and coefficients k; coefficient
 // k of u^i is a polynomial of degree i in (e, one), where one = 1. So replacing (e, one, u) by (1, 1/e, e u)
@@ -55,7 +56,7 @@ struct Exact {
   }
   template <class P, class T>
   static T value(const P& p, const T* k) {
-    return exp2(k[0] * log2_cosine(p));
+    return exp_of_log(k[0] * log_cosine(p));
   }
 };
 
@@ -144,7 +145,8 @@ struct LinearPower {
 };
 
 /// Two parabolas in vertex form that meet with equal slope at u = s1 / e:
-///   d (s1 - s)^2 + r (s2 - s)^2 near the centre, r (s2 - s)^2 up to s2, s = e u, r from the value 1 at s = 0.
+///   d (s1 - s)^2 + r (s2 - s)^2 near the centre, r (s2 - s)^2 up to s2, s = e u, r from the value 1 at s =
+///   0.
 /// Each is max(0, m - n u)^2 + o; the compare chooses m, n and o, two multiplies do the rest.
 struct TwoPiece {
   static constexpr int kCoefficients = 6;
@@ -268,7 +270,7 @@ struct Gaussian {
   }
   template <class P, class T>
   static T value(const P& p, const T* k) {
-    return exp2(k[0] * p.u);
+    return short_exp2(k[0] * p.u);
   }
   static constexpr double kLog2OfE = 1.4426950408889634;
 };
@@ -283,7 +285,7 @@ struct GaussianSecondOrder {
   }
   template <class P, class T>
   static T value(const P& p, const T* k) {
-    return exp2(mul_add(k[1], p.u, k[0]) * p.u);
+    return short_exp2(mul_add(k[1], p.u, k[0]) * p.u);
   }
 };
 

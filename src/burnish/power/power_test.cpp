@@ -131,8 +131,8 @@ TEST_P(EveryMember, HasBoundsNoLooserThanOneTwentieth) {
     for (double e = bound.min_exponent; e <= bound.max_exponent; e *= 1.25)
       met = std::max(met, max_absolute_error(GetParam().method, e));
     met = std::max(met, max_absolute_error(GetParam().method, bound.max_exponent));
-    // near_exact leaves room for the roundings of a float kernel.
-    EXPECT_GT(met, (GetParam().method == PowerMethod::near_exact ? 0.4 : 0.95) * bound.bound)
+    // The proof of near_exact adds the errors of its two parts.
+    EXPECT_GT(met, (GetParam().method == PowerMethod::near_exact ? 0.9 : 0.95) * bound.bound)
         << bound.min_exponent;
   }
 }
@@ -166,8 +166,9 @@ TEST_P(EveryMember, RefusesExponentsOutsideItsRange) {
     EXPECT_THROW(power_coefficients(GetParam().method, e), Error) << e;
 }
 
-INSTANTIATE_TEST_SUITE_P(Power, EveryMember, testing::ValuesIn(power_methods().begin(), power_methods().end()),
-                         [](const auto& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(Power, EveryMember,
+                         testing::ValuesIn(power_methods().begin(), power_methods().end()),
+                         [](const auto& member) { return std::string(member.param.name); });
 
 TEST(Power, IsExactAtTheSpecialExponents) {
   for (double c = 0; c <= 1; c += 0.01) {
@@ -183,10 +184,10 @@ TEST(Power, IsExactAtTheSpecialExponents) {
 TEST(Power, ClosedFormsOfTheEnergyHold) {
   for (double e : {2.0, 9.5, 800.0}) {
     const double a = quadratic_coefficient(e);
-    EXPECT_NEAR(power_integral(PowerMethod::quadratic, e), (3 * a - 1) / (6 * a * a), 1e-8 / e);
+    EXPECT_NEAR(power_integral(PowerMethod::quadratic, e), (3 * a - 1) / (6 * a * a), 1e-7 / e);
     const double k = power_coefficients(PowerMethod::w8, e).k[0];
     const double below = std::pow(std::max(0.0, 1 - k), 9);
-    EXPECT_NEAR(power_integral(PowerMethod::w8, e), (1 - below) / (9 * k), 1e-9 / e);
+    EXPECT_NEAR(power_integral(PowerMethod::w8, e), (1 - below) / (9 * k), 1e-7 / e);
     EXPECT_NEAR(power_integral(PowerMethod::gaussian, e), -std::expm1(-e) / e, 1e-9 / e);
     EXPECT_NEAR(power_integral(PowerMethod::exact, e), 1 / (e + 1), 1e-9 / e);
   }
