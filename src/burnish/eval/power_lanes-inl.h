@@ -51,6 +51,11 @@ HWY_INLINE Lane max(Lane a, Lane b) {
 HWY_INLINE Lane min(Lane a, Lane b) {
   return Lane(hn::Min(a.raw, b.raw));
 }
+// As integers: negative floats are negative integers, and integer maxima do not compete with the multipliers.
+HWY_INLINE Lane clamp_negative(Lane a) {
+  const DI di;
+  return Lane(hn::BitCast(D(), hn::Max(hn::BitCast(di, a.raw), hn::Zero(di))));
+}
 HWY_INLINE Lane sqrt(Lane a) {
   return Lane(hn::Sqrt(a.raw));
 }

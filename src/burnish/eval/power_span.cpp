@@ -45,8 +45,9 @@ void constant_kernel(const float* cosines, std::size_t count, const double* coef
   const D d;
   Lane k[Form::kCoefficients];
   for (int i = 0; i < Form::kCoefficients; ++i) k[i] = Lane(coefficients[i]);
-  const auto one = [&](const float* c, float* to)
-                       HWY_ATTR { hn::StoreU(Form::value(cosine(Lane(hn::LoadU(d, c))), k).raw, d, to); };
+  const auto one = [&](const float* c, float* to) HWY_ATTR {
+    hn::StoreU(Form::value(cosine(Lane(hn::LoadU(d, c))), k).raw, d, to);
+  };
   const std::size_t width = hn::Lanes(d);
   std::size_t i = 0;
   for (; i + width <= count; i += width) one(cosines + i, out + i);
@@ -100,8 +101,10 @@ void shade_kernel(const ShadeArguments& a, float* out) {
     const Lane squared = mul_add(x, x, mul_add(y, y, z * z));
     const Lane inverse = Lane(1.0) / sqrt(squared);
     const Lane to_light = clamp_negative(mul_add(x, lx, mul_add(y, ly, z * lz))) * inverse;
-    const Lane to_half = clamp_negative(mul_add(x, hx, mul_add(y, hy, z * hz))) * inverse;
-    const Lane glossy = Form::value(cosine(min(to_half, Lane(1.0))), k);
+    const Lane to_half = clamp_negative(mul_add(x, hx, mul_add(y, hy, z * hz)));
+    // 1 - c first: one operation, and never negative by rounding.
+    const Lane u = clamp_negative(neg_mul_add(to_half, inverse, Lane(1.0)));
+    const Lane glossy = Form::value(Cosine<Lane>{Lane(1.0) - u, u}, k);
     hn::StoreU(mul_add(specular, glossy, diffuse * to_light).raw, d, to);
   };
   const std::size_t width = hn::Lanes(d);
@@ -159,11 +162,14 @@ void require_length(std::size_t expected, std::size_t found, const char* what) {
 
 }  // namespace
 
-void power_span(PowerMethod method, std::span<const float> cosines, double exponent, std::span<float> out) {
+void power_span(const PowerCoefficients& coefficients, std::span<const float> cosines, std::span<float> out) {
   require_length(cosines.size(), out.size(), "power results");
-  const PowerCoefficients k = power_coefficients(method, exponent);
   HWY_DYNAMIC_DISPATCH(run_constant)
-  (static_cast<int>(method), cosines.data(), cosines.size(), k.k.data(), out.data());
+  (static_cast<int>(coefficients.method), cosines.data(), cosines.size(), coefficients.k.data(), out.data());
+}
+
+void power_span(PowerMethod method, std::span<const float> cosines, double exponent, std::span<float> out) {
+  power_span(power_coefficients(method, exponent), cosines, out);
 }
 
 void power_span(PowerMethod method, std::span<const float> cosines, std::span<const float> exponents,
@@ -178,14 +184,12 @@ void shade_blinn_phong(const BlinnPhong& material, const NormalSpans& normals, s
   require_length(out.size(), normals.x.size(), "normals x");
   require_length(out.size(), normals.y.size(), "normals y");
   require_length(out.size(), normals.z.size(), "normals z");
-  const PowerCoefficients k =
-      material.method ? power_coefficients(*material.method, material.exponent) : PowerCoefficients{};
+  const PowerCoefficients k = material.power.value_or(PowerCoefficients{});
   const ShadeArguments arguments{
       normals.x.data(), normals.y.data(),  normals.z.data(), out.size(),
       material.diffuse, material.specular, material.wi,      half_vector(material.wi, material.wo),
       k.k.data()};
-  const int kernel =
-      material.method ? static_cast<int>(*material.method) : kPowerMethods;  // Identity is last
+  const int kernel = material.power ? static_cast<int>(k.method) : kPowerMethods;  // Identity is last
   HWY_DYNAMIC_DISPATCH(run_shade)(kernel, arguments, out.data());
 }
 

@@ -19,6 +19,9 @@ namespace burnish {
 /// power_span_rounding(method, false) of the definition. Throws Error for another exponent or length.
 void power_span(PowerMethod method, std::span<const float> cosines, double exponent, std::span<float> out);
 
+/// The same with the coefficients already made, as for a material used for many spans.
+void power_span(const PowerCoefficients& coefficients, std::span<const float> cosines, std::span<float> out);
+
 /// The same with one exponent a value; the coefficients are computed in the kernel. Domain: every exponent in
 /// the member's range (not checked). Throws Error for lengths that differ.
 void power_span(PowerMethod method, std::span<const float> cosines, std::span<const float> exponents,
@@ -32,9 +35,8 @@ double power_span_rounding(PowerMethod method, bool exponent_per_value) noexcept
 /// Blinn-Phong reflection of one directional light seen by a distant viewer.
 struct BlinnPhong {
   float diffuse = 0.5f, specular = 0.5f;
-  double exponent = 50;
-  std::optional<PowerMethod> method = PowerMethod::cubic2;  ///< none: the cosine itself, for comparison
-  Vec3 wi{0, 0, 1}, wo{0, 0, 1};                            ///< directions
+  std::optional<PowerCoefficients> power;  ///< none: the cosine itself
+  Vec3 wi{0, 0, 1}, wo{0, 0, 1};           ///< directions
 };
 
 /// Interpolated normals, one a point, of any length above 1e-6 (they are normalized here).
@@ -43,7 +45,7 @@ struct NormalSpans {
 };
 
 /// out[i] = diffuse max(0, n.wi) + specular max(0, n.h)^exponent with n the normalized normal and h the half
-/// vector. Throws Error for an exponent outside the member's range or lengths that differ.
+/// vector, ^exponent by material.power. Throws Error for lengths that differ.
 void shade_blinn_phong(const BlinnPhong& material, const NormalSpans& normals, std::span<float> out);
 
 /// Names of the instruction sets compiled in that this processor has, best first.

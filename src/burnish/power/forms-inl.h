@@ -108,6 +108,11 @@ struct Angle {
 /// which does not cancel: 1 - t = (1 - t^2) / (1 + t) = (1/e) / (1 + t).
 struct QuadraticRaw {
   static constexpr int kCoefficients = 1;
+  /// c w = w - u w, so that a kernel that has u need not load or keep c.
+  template <class P, class T>
+  static T times_cosine(const T& w, const P& p) {
+    return neg_mul_add(p.u, w, w);
+  }
   template <class T>
   static void coefficients(const Exponent<T>& x, T* k) {
     const T inverse = x.one / x.e;
@@ -116,14 +121,14 @@ struct QuadraticRaw {
   }
   template <class P, class T>
   static T value(const P& p, const T* k) {
-    return p.c * neg_mul_add(k[0], p.u, T(1.0));  // [QuadraticBrdf, eq. 1, 4]
+    return times_cosine(neg_mul_add(k[0], p.u, T(1.0)), p);  // [QuadraticBrdf, eq. 1, 4]
   }
 };
 
 struct Quadratic : QuadraticRaw {
   template <class P, class T>
   static T value(const P& p, const T* k) {
-    return p.c * clamp_negative(neg_mul_add(k[0], p.u, T(1.0)));
+    return times_cosine(clamp_negative(neg_mul_add(k[0], p.u, T(1.0))), p);
   }
 };
 
