@@ -45,9 +45,8 @@ void constant_kernel(const float* cosines, std::size_t count, const double* coef
   const D d;
   Lane k[Form::kCoefficients];
   for (int i = 0; i < Form::kCoefficients; ++i) k[i] = Lane(coefficients[i]);
-  const auto one = [&](const float* c, float* to) HWY_ATTR {
-    hn::StoreU(Form::value(cosine(Lane(hn::LoadU(d, c))), k).raw, d, to);
-  };
+  const auto one = [&](const float* c, float* to)
+                       HWY_ATTR { hn::StoreU(Form::value(cosine(Lane(hn::LoadU(d, c))), k).raw, d, to); };
   const std::size_t width = hn::Lanes(d);
   std::size_t i = 0;
   for (; i + width <= count; i += width) one(cosines + i, out + i);

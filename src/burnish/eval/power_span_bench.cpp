@@ -36,8 +36,8 @@ constexpr Level kLevels[] = {{"L1", 2048}, {"L2", 65536}, {"RAM", std::size_t{1}
 template <class T>
 struct LineAllocator {
   using value_type = T;
-  T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), std::align_val_t{64})); }
-  void deallocate(T* p, std::size_t) noexcept { ::operator delete(p, std::align_val_t{64}); }
+  T* allocate(std::size_t n) { return static_cast<T*>(::operator new (n * sizeof(T), std::align_val_t{64})); }
+  void deallocate(T* p, std::size_t) noexcept { ::operator delete (p, std::align_val_t{64}); }
   friend bool operator==(LineAllocator, LineAllocator) { return true; }
 };
 using Floats = std::vector<float, LineAllocator<float>>;

@@ -119,8 +119,7 @@ TEST(PowerSpans, ThereIsAWideTargetAndAFallback) {
 
 TEST(BlinnPhong, ShadesAsThePlainFormula) {
   Pcg32 random(5);
-  BlinnPhong material{
-      0.3f, 0.7f, 80.5, PowerMethod::cubic2, spherical_direction(0.6, 0.2), spherical_direction(0.3, 2.0)};
+  BlinnPhong material{0.3f, 0.7f, {}, spherical_direction(0.6, 0.2), spherical_direction(0.3, 2.0)};
   constexpr std::size_t kCount = 501;
   std::vector<float> x(kCount), y(kCount), z(kCount), out(kCount);
   for (std::size_t i = 0; i < kCount; ++i) {
@@ -133,9 +132,9 @@ TEST(BlinnPhong, ShadesAsThePlainFormula) {
   z[0] = static_cast<float>(mirror_normal.z);
   for (const std::string& target : simd_targets()) {
     const SimdTargetLimit limit(target);
-    for (std::optional<PowerMethod> method :
-         {std::optional(PowerMethod::cubic2), std::optional<PowerMethod>()}) {
-      material.method = method;
+    for (bool with_power : {false, true}) {
+      material.power.reset();
+      if (with_power) material.power = power_coefficients(PowerMethod::cubic2, 80.5);
       shade_blinn_phong(material, {x, y, z}, out);
       for (std::size_t i = 0; i < kCount; ++i) {
         const Vec3 n = normalize({x[i], y[i], z[i]});
