@@ -99,6 +99,9 @@ HWY_INLINE Lane scale_by_power_of_two(Lane x, Lane shifted) {
 }
 HWY_INLINE Lane short_exp2(Lane x);
 HWY_INLINE Lane power_at_inflection(Lane inverse);
+template <class T>
+struct Cosine;
+HWY_INLINE Lane times_cosine(Lane w, const Cosine<Lane>& p);
 
 #include <burnish/power/forms-inl.h>
 
@@ -113,6 +116,9 @@ HWY_INLINE Lane power_at_inflection(Lane inverse) {
   return NearExact::value(Cosine<Lane>{Lane(1.0) - inverse, inverse}, &k);
 }
 
+HWY_INLINE Lane times_cosine(Lane w, const Cosine<Lane>& p) {
+  return neg_mul_add(p.u, w, w);
+}
 HWY_INLINE Lane log_cosine(const Cosine<Lane>& p) {
   return Lane(hn::Log(D(), p.c.raw));
 }

@@ -18,12 +18,16 @@ void require_some(std::size_t count, const char* what) {
 }
 
 // Angles in degrees up to where cos^exponent is 1/1000.
-std::vector<double> angles_of(std::span<const double> exponents) {
-  const double least = *std::min_element(exponents.begin(), exponents.end());
-  const double end = degrees(std::acos(std::pow(1e-3, 1 / least)));
+std::vector<double> angles_of(double exponent) {
+  const double end = degrees(std::acos(std::pow(1e-3, 1 / exponent)));
   std::vector<double> angles(kSamples + 1);
   for (int i = 0; i <= kSamples; ++i) angles[static_cast<std::size_t>(i)] = end * i / kSamples;
   return angles;
+}
+
+// What lies outside is left out of the drawing.
+double within(double value, double low, double high) {
+  return value >= low && value <= high ? value : std::nan("");
 }
 
 template <class F>
@@ -52,16 +56,17 @@ Plot lobe_figure(std::span<const PowerMethod> methods, std::span<const double> e
                                      : "cos(γ)^e and its approximations";
   plot.x_label = "γ (degrees)";
   plot.y_label = "lobe";
-  const std::vector<double> angles = angles_of(exponents);
   for (double e : exponents) {
+    const std::vector<double> angles = angles_of(e);
     plot.series.push_back({fmt::format("cos^{}", e), angles,
                            mapped(angles, [&](double a) { return std::pow(cosine_of(a), e); }),
                            PlotStyle::line});
     for (PowerMethod method : methods) {
       const PowerCoefficients k = power_coefficients(method, e);
-      plot.series.push_back({label_of(method, e, exponents.size()), angles,
-                             mapped(angles, [&](double a) { return power(k, cosine_of(a)); }),
-                             PlotStyle::dashed});
+      plot.series.push_back(
+          {label_of(method, e, exponents.size()), angles,
+           mapped(angles, [&](double a) { return within(power(k, cosine_of(a)), -0.2, 1.2); }),
+           PlotStyle::dashed});
     }
   }
   return plot;
@@ -77,16 +82,16 @@ Plot relative_error_figure(std::span<const PowerMethod> methods, std::span<const
   plot.y_label = "approximation / cos(γ)^e − 1 (%)";
   plot.y_min = -limit;
   plot.y_max = limit;
-  const std::vector<double> angles = angles_of(exponents);
-  for (double e : exponents)
+  for (double e : exponents) {
+    const std::vector<double> angles = angles_of(e);
     for (PowerMethod method : methods) {
       const PowerCoefficients k = power_coefficients(method, e);
       plot.series.push_back({label_of(method, e, 2), angles, mapped(angles, [&](double a) {
-                               const double error =
-                                   100 * (power(k, cosine_of(a)) / std::pow(cosine_of(a), e) - 1);
-                               return std::abs(error) <= limit ? error : std::nan("");
+                               const double ratio = power(k, cosine_of(a)) / std::pow(cosine_of(a), e);
+                               return within(100 * (ratio - 1), -limit, limit);
                              })});
     }
+  }
   return plot;
 }
 
@@ -96,11 +101,11 @@ Plot max_relative_error_figure(std::span<const PowerMethod> methods, double max_
   plot.title = fmt::format("largest relative error where the lobe is at least {}", level);
   plot.x_label = "exponent e";
   plot.y_label = "largest relative error (%)";
+  plot.log_x = true;
   plot.y_min = 0;
   for (PowerMethod method : methods) {
     std::vector<double> e;
-    for (double x = power_info(method).min_exponent(); x <= max_exponent; x += std::max(0.25, x / 64))
-      e.push_back(x);
+    for (double x = power_info(method).min_exponent(); x <= max_exponent; x += x / 64) e.push_back(x);
     plot.series.push_back({std::string(power_info(method).name), e,
                            mapped(e, [&](double x) { return 100 * max_relative_error(method, x, level); })});
   }
@@ -126,19 +131,36 @@ Plot coefficient_figure() {
 Plot front_figure(double exponent) {
   Plot plot;
   plot.title = fmt::format("largest error and cost at e = {}", exponent);
-  plot.x_label = "cost (multiplies + adds + compares + 5 divisions + 5 roots + 10 transcendentals)";
+  plot.x_label = "cost: multiplies + adds + compares + 5 (divisions + roots) + 20 transcendentals";
   plot.y_label = "largest absolute error";
-  plot.log_y = true;
-  plot.width = 960;
-  plot.height = 560;
-  for (const PowerInfo& info : power_methods()) {
-    if (info.method == PowerMethod::exact || info.method == PowerMethod::quadratic_raw) continue;
-    if (exponent < info.min_exponent()) continue;
-    plot.series.push_back({std::string(info.name),
-                           {static_cast<double>(info.cost.weight())},
-                           {max_absolute_error(info.method, exponent)},
-                           PlotStyle::points});
+  plot.log_x = plot.log_y = true;
+  plot.x_min = 4;
+  plot.x_max = 70;
+  struct Point {
+    std::string name;
+    double cost, error;
+  };
+  std::vector<Point> points;
+  for (const PowerInfo& info : power_methods())
+    if (info.method != PowerMethod::exact && info.method != PowerMethod::quadratic_raw &&
+        exponent >= info.min_exponent())
+      points.push_back({std::string(info.name), static_cast<double>(info.cost.weight()),
+                        max_absolute_error(info.method, exponent)});
+  const auto beaten = [&](const Point& p) {
+    return std::any_of(points.begin(), points.end(), [&](const Point& q) {
+      return q.cost <= p.cost && q.error <= p.error && (q.cost < p.cost || q.error < p.error);
+    });
+  };
+  PlotSeries others{"beaten in both", {}, {}, PlotStyle::points, "#9a9a9a"};
+  for (const Point& p : points) {
+    if (!beaten(p)) {
+      plot.series.push_back({p.name, {p.cost}, {p.error}, PlotStyle::points});
+    } else {
+      others.x.push_back(p.cost);
+      others.y.push_back(p.error);
+    }
   }
+  plot.series.push_back(others);
   return plot;
 }
 
@@ -151,8 +173,10 @@ SphereFigure sphere_figure(std::span<const PowerMethod> methods, double exponent
     const double rr = x * x + y * y;
     return rr < 1 ? std::max(0.0, blinn_cosine(wi, wo, {x, y, std::sqrt(1 - rr)})) : 0.0;
   };
-  constexpr double kZoom = 4, kGap = 4;
-  const int step = size + static_cast<int>(kGap);
+  constexpr int kGap = 4;
+  const int step = size + kGap;
+  // Half the width of the magnified part: a little more than where the power is 1/500.
+  const double reach = std::min(1.0, 1.1 * std::sin(std::acos(std::pow(1.0 / 500, 1 / exponent))));
   SphereFigure figure{Image8(static_cast<int>(methods.size()) * step, 3 * step, 3), 0};
   std::fill(figure.image.pixels.begin(), figure.image.pixels.end(), std::uint8_t{255});
 
@@ -161,7 +185,7 @@ SphereFigure sphere_figure(std::span<const PowerMethod> methods, double exponent
     for (int j = 0; j < size; ++j)
       for (int i = 0; i < size; ++i) {
         double x = 2 * (i + 0.5) / size - 1, y = 1 - 2 * (j + 0.5) / size;
-        if (magnified) x = h.x + x / kZoom, y = h.y + y / kZoom;
+        if (magnified) x = h.x + reach * x, y = h.y + reach * y;
         const double v = std::clamp(value(cosine_at(x, y)), 0.0, 1.0);
         const auto grey = static_cast<std::uint8_t>(std::lround(255 * v));
         for (auto& channel : figure.image.at(static_cast<int>(column) * step + i, row * step + j))

@@ -28,7 +28,8 @@ Plot max_relative_error_figure(std::span<const PowerMethod> methods, double max_
 /// exponent |a(e) - (2 (1 - e^(-1/2)) e - 1/2)| over exponents 1 to 1000, which stays below 0.15 from 2 on.
 Plot coefficient_figure();
 
-/// Every member as a point: largest absolute error at this exponent over its cost weight.
+/// Every member as a point: largest absolute error at this exponent over its cost weight; those that another
+/// beats in both are grey.
 Plot front_figure(double exponent);
 
 /// Specular lobes on a sphere and their error, grey.
@@ -38,7 +39,7 @@ struct SphereFigure {
 };
 
 /// The sphere is lit from 30 degrees right of the viewer, Blinn's cosine at every pixel; the second row
-/// magnifies the highlight four times and raises it to the power 1/2.2 so that its rim, and the Mach band
+/// magnifies the highlight and raises it to the power 1/2.2 so that its rim, and the Mach band
 /// where a clamped lobe meets zero, can be seen; the third shows approximation - power there as grey about
 /// 1/2, scaled so that `max_difference` is white. Tiles are `size` pixels wide, 32 to 1024.
 SphereFigure sphere_figure(std::span<const PowerMethod> methods, double exponent, int size = 256);

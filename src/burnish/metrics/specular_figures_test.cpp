@@ -16,7 +16,7 @@ TEST(SpecularFigures, LobesStartAtOneAndFallToAThousandth) {
   const Plot plot = lobe_figure(methods, exponents);
   ASSERT_EQ(plot.series.size(), 6u);
   for (const PlotSeries& series : plot.series) EXPECT_NEAR(series.y.front(), 1, 1e-12);
-  EXPECT_NEAR(plot.series[0].y.back(), 1e-3, 1e-9);  // the widest power, e = 10
+  EXPECT_NEAR(plot.series[0].y.back(), 1e-3, 1e-9);
 }
 
 TEST(SpecularFigures, LargestRelativeErrorsAreThePapers) {

@@ -39,6 +39,12 @@ T clamp_negative(T x) {
   return max(x, T(0.0));
 }
 
+/// c w. Vectors take w - u w instead, which needs no second look at c.
+template <class P, class T>
+T times_cosine(const T& w, const P& p) {
+  return p.c * w;
+}
+
 /// x^(2^log2_n) by repeated squaring.
 template <int log2_n, class T>
 T power_of_two_power(T x) {
@@ -108,11 +114,6 @@ struct Angle {
 /// which does not cancel: 1 - t = (1 - t^2) / (1 + t) = (1/e) / (1 + t).
 struct QuadraticRaw {
   static constexpr int kCoefficients = 1;
-  /// c w = w - u w, so that a kernel that has u need not load or keep c.
-  template <class P, class T>
-  static T times_cosine(const T& w, const P& p) {
-    return neg_mul_add(p.u, w, w);
-  }
   template <class T>
   static void coefficients(const Exponent<T>& x, T* k) {
     const T inverse = x.one / x.e;

@@ -43,7 +43,7 @@ struct PowerCost {
   /// One figure to order members by: multiplies + adds + compares + 5 divisions + 5 roots + 10
   /// transcendentals.
   int weight() const noexcept {
-    return multiplies + adds + compares + 5 * divisions + 5 * roots + 10 * transcendentals;
+    return multiplies + adds + compares + 5 * divisions + 5 * roots + 20 * transcendentals;
   }
 };
 
