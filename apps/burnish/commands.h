@@ -11,5 +11,6 @@ void add_eval_command(CLI::App& app);
 void add_fit_command(CLI::App& app);
 void add_info_command(CLI::App& app);
 void add_measure_command(CLI::App& app);
+void add_specular_command(CLI::App& app);
 
 }  // namespace burnish::cli

@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
   burnish::cli::add_eval_command(app);
   burnish::cli::add_measure_command(app);
   burnish::cli::add_convert_command(app);
+  burnish::cli::add_specular_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

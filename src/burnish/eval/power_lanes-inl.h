@@ -1,0 +1,138 @@
+// Per-target include: the formulas of power/forms-inl.h over vectors of floats. The only place where their
+// vocabulary meets Highway.
+#if defined(BURNISH_EVAL_POWER_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef BURNISH_EVAL_POWER_LANES_INL_H_
+#undef BURNISH_EVAL_POWER_LANES_INL_H_
+#else
+#define BURNISH_EVAL_POWER_LANES_INL_H_
+#endif
+
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace burnish {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using D = hn::ScalableTag<float>;
+using DI = hn::RebindToSigned<D>;
+
+struct Lane {
+  hn::Vec<D> raw;
+
+  Lane() = default;
+  HWY_INLINE Lane(double x) : raw(hn::Set(D(), static_cast<float>(x))) {}  // NOLINT: numbers are constants
+  HWY_INLINE explicit Lane(hn::Vec<D> v) : raw(v) {}
+};
+
+HWY_INLINE Lane operator+(Lane a, Lane b) {
+  return Lane(hn::Add(a.raw, b.raw));
+}
+HWY_INLINE Lane operator-(Lane a, Lane b) {
+  return Lane(hn::Sub(a.raw, b.raw));
+}
+HWY_INLINE Lane operator*(Lane a, Lane b) {
+  return Lane(hn::Mul(a.raw, b.raw));
+}
+HWY_INLINE Lane operator/(Lane a, Lane b) {
+  return Lane(hn::Div(a.raw, b.raw));
+}
+HWY_INLINE Lane mul_add(Lane a, Lane b, Lane c) {
+  return Lane(hn::MulAdd(a.raw, b.raw, c.raw));
+}
+HWY_INLINE Lane neg_mul_add(Lane a, Lane b, Lane c) {
+  return Lane(hn::NegMulAdd(a.raw, b.raw, c.raw));
+}
+HWY_INLINE Lane max(Lane a, Lane b) {
+  return Lane(hn::Max(a.raw, b.raw));
+}
+HWY_INLINE Lane min(Lane a, Lane b) {
+  return Lane(hn::Min(a.raw, b.raw));
+}
+// As integers: negative floats are negative integers, and integer maxima do not compete with the multipliers.
+HWY_INLINE Lane clamp_negative(Lane a) {
+  const DI di;
+  return Lane(hn::BitCast(D(), hn::Max(hn::BitCast(di, a.raw), hn::Zero(di))));
+}
+HWY_INLINE Lane sqrt(Lane a) {
+  return Lane(hn::Sqrt(a.raw));
+}
+HWY_INLINE Lane if_less(Lane a, Lane b, Lane x, Lane y) {
+  return Lane(hn::IfThenElse(hn::Lt(a.raw, b.raw), x.raw, y.raw));
+}
+
+// The exact power by Highway's own functions.
+HWY_INLINE Lane exp_of_log(Lane a) {
+  return Lane(hn::Exp(D(), a.raw));
+}
+HWY_INLINE Lane cos_of_root(Lane q) {
+  const Lane angle = min(sqrt(q), Lane(1.5707963267948966));
+  return max(Lane(hn::Cos(D(), angle.raw)), Lane(0.0));
+}
+
+// c = m 2^n, m in [2/3, 4/3), from the bits: subtracting those of 2/3 leaves n above the mantissa.
+struct SplitLane {
+  Lane exponent, mantissa;
+};
+HWY_INLINE SplitLane split(Lane c) {
+  const DI di;
+  const auto bits = hn::BitCast(di, c.raw);
+  const auto n = hn::ShiftRight<23>(hn::Sub(bits, hn::Set(di, 0x3f2aaaab)));
+  return {Lane(hn::ConvertTo(D(), n)), Lane(hn::BitCast(D(), hn::Sub(bits, hn::ShiftLeft<23>(n))))};
+}
+
+// Adding 1.5 2^23 rounds to a whole number, which stays in the low bits of the sum.
+struct WholeLane {
+  Lane shifted, rest;
+};
+HWY_INLINE WholeLane round_to_whole(Lane y) {
+  const Lane magic(12582912.0);
+  const Lane shifted = y + magic;
+  return {shifted, y - (shifted - magic)};
+}
+HWY_INLINE Lane scale_by_power_of_two(Lane x, Lane shifted) {
+  const DI di;
+  const auto exponent = hn::ShiftLeft<23>(hn::BitCast(di, shifted.raw));
+  return Lane(hn::BitCast(D(), hn::Add(hn::BitCast(di, x.raw), exponent)));
+}
+HWY_INLINE Lane short_exp2(Lane x);
+HWY_INLINE Lane power_at_inflection(Lane inverse);
+template <class T>
+struct Cosine;
+HWY_INLINE Lane times_cosine(Lane w, const Cosine<Lane>& p);
+
+#include <burnish/power/forms-inl.h>
+
+HWY_INLINE Lane short_exp2(Lane x) {
+  const auto [whole, f] = round_to_whole(max(x, Lane(NearExact::kSmallestPower)));
+  return scale_by_power_of_two(NearExact::exp2_near_zero_short(f), whole);
+}
+
+// (1 - V)^((e - 1) / 2), e = 1/V, by the near-exact power.
+HWY_INLINE Lane power_at_inflection(Lane inverse) {
+  const Lane k = (Lane(1.0) / inverse - Lane(1.0)) * Lane(0.5);
+  return NearExact::value(Cosine<Lane>{Lane(1.0) - inverse, inverse}, &k);
+}
+
+HWY_INLINE Lane times_cosine(Lane w, const Cosine<Lane>& p) {
+  return neg_mul_add(p.u, w, w);
+}
+HWY_INLINE Lane log_cosine(const Cosine<Lane>& p) {
+  return Lane(hn::Log(D(), p.c.raw));
+}
+HWY_INLINE Lane squared_angle(const Cosine<Lane>& p) {
+  const Lane gamma(hn::Acos(D(), p.c.raw));
+  return gamma * gamma;
+}
+HWY_INLINE Cosine<Lane> cosine(Lane c) {
+  return {c, Lane(1.0) - c};
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace burnish
+HWY_AFTER_NAMESPACE();
+
+#endif

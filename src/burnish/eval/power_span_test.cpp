@@ -1,0 +1,151 @@
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <burnish/error.h>
+#include <burnish/eval/power_span.h>
+#include <burnish/math/angles.h>
+#include <burnish/math/random.h>
+#include <burnish/power/cosine.h>
+
+namespace burnish {
+namespace {
+
+// Cosines over [0, 1] and crowded near 1 where large exponents live, corners first.
+std::vector<float> test_cosines(double exponent, std::size_t count, Pcg32& random) {
+  std::vector<float> c{1, 0, 0x1p-149f, 0x1p-126f, 0x1p-24f, 1 - 0x1p-24f, 0.5f, 2.0f / 3};
+  while (c.size() < count) {
+    const double u = random.uniform();
+    c.push_back(
+        static_cast<float>(random.next() % 2 ? u : std::max(0.0, 1 - 12 * u / std::max(exponent, 12.0))));
+  }
+  return c;
+}
+
+double allowance(PowerMethod method, float c, double e, bool per_value = false) {
+  const double scale = method == PowerMethod::quadratic_raw ? 1 + e * (1 - c) : 1;
+  return power_span_rounding(method, per_value) * scale;
+}
+
+class PowerSpan : public testing::TestWithParam<PowerInfo> {};
+
+TEST_P(PowerSpan, EqualsTheDefinitionOnEveryTarget) {
+  const PowerMethod method = GetParam().method;
+  for (const std::string& target : simd_targets()) {
+    const SimdTargetLimit limit(target);
+    Pcg32 random(1);
+    for (double e : {GetParam().min_exponent(), 4.0, 10.0, 33.3, 250.0, 1024.0}) {
+      const std::vector<float> c = test_cosines(e, 1003, random);
+      std::vector<float> out(c.size());
+      power_span(method, c, e, out);
+      const PowerCoefficients k = power_coefficients(method, e);
+      for (std::size_t i = 0; i < c.size(); ++i)
+        ASSERT_NEAR(out[i], power(k, c[i]), allowance(method, c[i], e))
+            << target << " e " << e << " c " << c[i];
+    }
+  }
+}
+
+TEST_P(PowerSpan, EqualsTheDefinitionWithOneExponentAValue) {
+  const PowerMethod method = GetParam().method;
+  for (const std::string& target : simd_targets()) {
+    const SimdTargetLimit limit(target);
+    Pcg32 random(2);
+    const std::vector<float> c = test_cosines(100, 3001, random);
+    std::vector<float> e(c.size()), out(c.size());
+    for (float& x : e) {
+      const double lo = GetParam().min_exponent();
+      x = static_cast<float>(lo * std::pow(1024 / lo, random.uniform()));
+      x = std::clamp(x, static_cast<float>(lo), 1024.0f);
+    }
+    e[0] = static_cast<float>(GetParam().min_exponent()), e[1] = 1024;
+    power_span(method, c, e, out);
+    for (std::size_t i = 0; i < c.size(); ++i)
+      ASSERT_NEAR(out[i], power(method, c[i], e[i]), allowance(method, c[i], e[i], true))
+          << target << " e " << e[i] << " c " << c[i];
+  }
+}
+
+TEST_P(PowerSpan, KeepsTheProvedBoundAgainstTheTruePower) {
+  Pcg32 random(3);
+  for (const PowerBound& bound : GetParam().bounds) {
+    for (double e :
+         {bound.min_exponent, std::sqrt(bound.min_exponent * bound.max_exponent), bound.max_exponent}) {
+      const std::vector<float> c = test_cosines(e, 2000, random);
+      std::vector<float> out(c.size());
+      power_span(GetParam().method, c, e, out);
+      for (std::size_t i = 0; i < c.size(); ++i)
+        ASSERT_NEAR(out[i], std::pow(static_cast<double>(c[i]), e),
+                    bound.bound + allowance(GetParam().method, c[i], e));
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Members, PowerSpan,
+                         testing::ValuesIn(power_methods().begin(), power_methods().end()),
+                         [](const auto& member) { return std::string(member.param.name); });
+
+TEST(PowerSpans, AnyLengthAndPlaceGivesTheSameValues) {
+  Pcg32 random(4);
+  const std::vector<float> c = test_cosines(20, 67, random);
+  const std::vector<float> e(c.size(), 20.0f);
+  std::vector<float> whole(c.size());
+  for (PowerMethod method : {PowerMethod::cubic2, PowerMethod::near_exact}) {
+    power_span(method, c, 20, whole);
+    for (std::size_t begin : {0u, 1u, 5u})
+      for (std::size_t count = 0; begin + count <= c.size(); ++count) {
+        std::vector<float> part(c.begin() + static_cast<std::ptrdiff_t>(begin),
+                                c.begin() + static_cast<std::ptrdiff_t>(begin + count));
+        power_span(method, part, 20, part);  // in place
+        for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(part[i], whole[begin + i]);
+      }
+  }
+}
+
+TEST(PowerSpans, RefuseWrongLengthsAndExponents) {
+  std::vector<float> three(3), two(2);
+  EXPECT_THROW(power_span(PowerMethod::w8, three, 10, two), Error);
+  EXPECT_THROW(power_span(PowerMethod::w8, three, three, two), Error);
+  EXPECT_THROW(power_span(PowerMethod::w8, three, two, three), Error);
+  EXPECT_THROW(power_span(PowerMethod::cubic4, three, 2, three), Error);
+  EXPECT_THROW(shade_blinn_phong({}, {three, three, two}, three), Error);
+  EXPECT_THROW(SimdTargetLimit("MMX"), Error);
+}
+
+TEST(PowerSpans, ThereIsAWideTargetAndAFallback) {
+  EXPECT_GE(simd_targets().size(), 2u);
+}
+
+TEST(BlinnPhong, ShadesAsThePlainFormula) {
+  Pcg32 random(5);
+  BlinnPhong material{0.3f, 0.7f, {}, spherical_direction(0.6, 0.2), spherical_direction(0.3, 2.0)};
+  constexpr std::size_t kCount = 501;
+  std::vector<float> x(kCount), y(kCount), z(kCount), out(kCount);
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const double length = 0.2 + 2 * random.uniform();
+    const Vec3 n = length * spherical_direction(1.9 * random.uniform(), kTwoPi * random.uniform());
+    x[i] = static_cast<float>(n.x), y[i] = static_cast<float>(n.y), z[i] = static_cast<float>(n.z);
+  }
+  const Vec3 mirror_normal = half_vector(material.wi, material.wo);
+  x[0] = static_cast<float>(mirror_normal.x), y[0] = static_cast<float>(mirror_normal.y);
+  z[0] = static_cast<float>(mirror_normal.z);
+  for (const std::string& target : simd_targets()) {
+    const SimdTargetLimit limit(target);
+    for (bool with_power : {false, true}) {
+      material.power.reset();
+      if (with_power) material.power = power_coefficients(PowerMethod::cubic2, 80.5);
+      shade_blinn_phong(material, {x, y, z}, out);
+      for (std::size_t i = 0; i < kCount; ++i) {
+        const Vec3 n = normalize({x[i], y[i], z[i]});
+        const double c = std::clamp(blinn_cosine(material.wi, material.wo, n), 0.0, 1.0);
+        const double glossy = with_power ? std::pow(c, 80.5) : c;
+        const double expected = 0.3 * std::max(0.0, dot(n, material.wi)) + 0.7 * glossy;
+        ASSERT_NEAR(out[i], expected, with_power ? 0.7 / 255 : 2e-6) << target;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace burnish
