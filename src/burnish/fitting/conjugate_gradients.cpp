@@ -216,7 +216,7 @@ class LogOperator {
               level.corners(static_cast<int>(rows.node[use] % width), static_cast<double>(rows.fx[use]),
                             static_cast<int>(rows.node[use] / width), static_cast<double>(rows.fy[use]));
           for (int corner = 0; corner < 4; ++corner)
-            for (std::size_t c = 0; c < step(); ++c)
+            for (std::size_t c = 0; c < channels_; ++c)
               d[at.node[corner] * step_of + (step_of > 1 ? c : 0)] +=
                   kSampleStride * at.weight[corner] * at.weight[corner] * weight(rows, i, c);
         }
@@ -255,7 +255,7 @@ class LogOperator {
       if (step_of == step())
         for (std::size_t c = 0; c < step(); ++c) row[c] += weight * x[at + c];
       else
-        for (std::size_t c = 0; c < step(); ++c) row[c] += weight * x[at];
+        for (std::size_t c = 0; c < channels_; ++c) row[c] += weight * x[at];  // the padding stays 0
     });
   }
 

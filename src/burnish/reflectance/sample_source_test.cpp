@@ -55,7 +55,7 @@ TEST(SampleSource, DrawnSamplesAreTheBrdfsValuesWhereverFillingStarts) {
 }
 
 TEST(SampleSource, TableEntriesAreTheTablesValues) {
-  const AnalyticBrdf brdf = parse_analytic("ashikhmin_shirley:nu=20,nv=20");
+  const AnalyticBrdf brdf = parse_analytic("ashikhmin_shirley:exponent_x=20,exponent_y=20");
   ASSERT_TRUE(brdf.isotropic());
   for (const bool full : {false, true}) {
     const HalfDiffTable table = tabulate_half_diff(brdf, 12, 10, 16, full);
