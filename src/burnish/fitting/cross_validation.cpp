@@ -39,12 +39,14 @@ double held_out_error(const SampleSource& source, const ModelSpec& spec, const H
 std::vector<SmoothTrial> choose_smoothness(const SampleSource& source, const ModelSpec& spec,
                                            const HomomorphicOptions& options) {
   constexpr std::size_t kManySamples = 20'000;
-  constexpr int kFirstDecade = -10, kLastDecade = -1, kRounds = 2;
-  const std::size_t folds = source.distinct > kManySamples ? 2 : 5;
-  const std::size_t tables = spec.tables.size();
-  const double expected = kLastDecade - kFirstDecade + 3 + 2.5 * kRounds * static_cast<double>(tables);
+  constexpr int kFirstDecade = -10, kLastDecade = -1, kWorseDecades = 2;
+  const bool many = source.distinct > kManySamples;
+  const std::size_t folds = many ? 2 : 5, tables = spec.tables.size();
+  const int rounds = many || tables == 1 ? 0 : 2;
+  const double expected = kLastDecade - kFirstDecade + 3 + 2.5 * rounds * static_cast<double>(tables);
   HomomorphicOptions trial_options = options;
   trial_options.progress = nullptr;
+  if (many) trial_options.reweightings = 0;
   ModelSpec trial_spec = spec;
 
   std::vector<SmoothTrial> trials;
@@ -64,9 +66,10 @@ std::vector<SmoothTrial> choose_smoothness(const SampleSource& source, const Mod
 
   std::vector<double> shares;
   for (const ModelSpec::TableSpec& table : spec.tables) shares.push_back(table.smooth_share);
-  for (int decade = kFirstDecade; decade <= kLastDecade; ++decade)
-    improves(attempt(std::pow(10.0, decade), shares));
-  for (int round = 0; tables > 1 && round < kRounds; ++round)
+  int worse = 0;
+  for (int decade = kFirstDecade; decade <= kLastDecade && worse < kWorseDecades; ++decade)
+    worse = improves(attempt(std::pow(10.0, decade), shares)) ? 0 : worse + 1;
+  for (int round = 0; round < rounds; ++round)
     for (std::size_t t = 0; t < tables; ++t)
       for (const double factor : {0.1, 10.0}) {
         bool moved = false;
