@@ -9,6 +9,7 @@
 
 #include <burnish/error.h>
 #include <burnish/metrics/drawing.h>
+#include <burnish/metrics/markup.h>
 #include <burnish/metrics/svg_plot.h>
 
 namespace burnish {
@@ -148,12 +149,13 @@ Drawing lay_out(const Plot& plot) {
     throw Error(fmt::format("expected a plot of {} to {} pixels, found {} x {}", kMinSize, kMaxSize,
                             plot.width, plot.height));
   std::vector<Color> colors;
+  std::size_t from_palette = 0;
   for (const PlotSeries& series : plot.series) {
     if (series.x.size() != series.y.size())
       throw Error(
           fmt::format("series \"{}\": {} x for {} y", series.label, series.x.size(), series.y.size()));
-    colors.push_back(parse_color(series.color.empty() ? std::string(kPalette[colors.size() % kPalette.size()])
-                                                      : series.color));
+    colors.push_back(parse_color(
+        series.color.empty() ? std::string(kPalette[from_palette++ % kPalette.size()]) : series.color));
   }
   const Axis x_axis = make_axis(plot, &PlotSeries::x, plot.log_x, plot.x_min, plot.x_max, plot.log_x, "x");
   const Axis y_axis = make_axis(plot, &PlotSeries::y, plot.log_y, plot.y_min, plot.y_max, true, "y");
@@ -238,26 +240,6 @@ Drawing lay_out(const Plot& plot) {
   return drawing;
 }
 
-std::string escape(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
-
 std::string hex(Color color) {
   return fmt::format("#{:02x}{:02x}{:02x}", color.r, color.g, color.b);
 }
@@ -282,7 +264,7 @@ std::vector<double> axis_ticks(double low, double high, bool logarithmic, int co
   }
   const double step = round_step(high - low, count);
   for (double k = std::ceil(low / step - kSlack); k * step <= high + kSlack * step; ++k)
-    ticks.push_back(k * step);
+    ticks.push_back(k * step + 0.0);  // no negative zero
   return ticks;
 }
 
@@ -319,7 +301,7 @@ std::string to_svg(const Plot& plot) {
         text.at.x, text.at.y, text.cap_height / kCapOfFontSize, hex(text.color), anchor,
         text.bold ? " font-weight=\"600\"" : "",
         text.upwards ? fmt::format(" transform=\"rotate(-90 {:.2f} {:.2f})\"", text.at.x, text.at.y) : "",
-        escape(text.text));
+        escape_markup(text.text));
   }
   return svg + "</svg>\n";
 }

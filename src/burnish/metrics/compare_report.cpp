@@ -1,0 +1,280 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <burnish/error.h>
+#include <burnish/file.h>
+#include <burnish/metrics/compare_report.h>
+#include <burnish/metrics/contact_sheet.h>
+#include <burnish/metrics/markup.h>
+#include <burnish/metrics/png.h>
+#include <burnish/parameterization/half_diff.h>
+
+namespace burnish {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kReferenceColor = "#202226";
+constexpr std::array<double, 3> kSliceAngles = {radians(10), radians(30), radians(60)};
+
+std::string bytes_text(std::optional<std::uint64_t> bytes) {
+  return bytes ? fmt::format("{} bytes", *bytes) : std::string("size unknown");
+}
+
+std::string psnr_text(double psnr) {
+  return std::isinf(psnr) ? std::string("equal") : fmt::format("{:.2f} dB", psnr);
+}
+
+nlohmann::ordered_json json_of(std::span<const ComparedFigures> compared) {
+  auto list = nlohmann::ordered_json::array();
+  for (const ComparedFigures& c : compared) {
+    const ErrorFigures& f = c.figures;
+    nlohmann::ordered_json entry = {{"model", c.name},
+                                    {"bytes", nullptr},
+                                    {"log_cos", f.log_cos},
+                                    {"relative", f.relative},
+                                    {"rms_log", f.rms_log},
+                                    {"mean_abs_log", f.mean_abs_log},
+                                    {"psnr", nullptr},
+                                    {"ssim", f.ssim},
+                                    {"unknown_fraction", f.unknown_fraction},
+                                    {"unknown_pixels", f.unknown_pixels}};
+    if (c.bytes) entry["bytes"] = *c.bytes;
+    if (std::isfinite(f.psnr)) entry["psnr"] = f.psnr;
+    if (!c.note.empty()) entry["note"] = c.note;
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+// A file's name is free text in whatever encoding: what is no UTF-8 is replaced.
+std::string dump(const nlohmann::ordered_json& json) {
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+// 1, 2 or 5 times a power of ten, at or above v.
+double round_up(double v) {
+  const double power = std::pow(10.0, std::floor(std::log10(v))), lead = v / power;
+  return power * (lead <= 1 ? 1 : lead <= 2 ? 2 : lead <= 5 ? 5 : 10);
+}
+
+// The end of a model's colour scale: the 99.5th percentile of the worst of its pictures, rounded up.
+double heat_scale(const SpherePictures& reference, const SpherePictures& model) {
+  constexpr double kShare = 0.995, kSmallest = 0.02;
+  double scale = kSmallest;
+  for (std::size_t i = 0; i < model.shown.size(); ++i)
+    scale = std::max(scale, percentile(mean_difference(reference.shown[i], model.shown[i]).pixels, kShare));
+  return std::min(1.0, round_up(scale));
+}
+
+std::string light_text(std::size_t i) {
+  return fmt::format("light {:.0f}°", degrees(kSphereLights[i]));
+}
+
+std::string heading(const ComparedFigures& c) {
+  return fmt::format("{}\n{}, psnr {}, ssim {:.3f}", c.name, bytes_text(c.bytes), psnr_text(c.figures.psnr),
+                     c.figures.ssim);
+}
+
+void write_plot(const fs::path& stem, const Plot& plot) {
+  write_then_rename(stem.string() + ".svg", to_svg(plot));
+  write_png(stem.string() + ".png", to_image(plot));
+}
+
+constexpr std::string_view kStyle = R"(<style>
+:root { color-scheme: dark }
+body { margin: 2.5rem auto; max-width: 76rem; padding: 0 1.5rem; background: #181a1e; color: #e4e6ea;
+       font: 16px/1.5 system-ui, sans-serif }
+h1 { font-size: 1.5rem } h2 { margin-top: 2.5rem; font-size: 1.15rem }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums }
+th, td { padding: .35rem .9rem; border-bottom: 1px solid #33363d; text-align: right; white-space: nowrap }
+th:first-child, td:first-child, td.note { text-align: left; white-space: normal }
+img { max-width: 100%; height: auto; border-radius: 4px } .plots { display: grid; gap: 1rem;
+      grid-template-columns: repeat(auto-fit, minmax(24rem, 1fr)) }
+p, td.note { color: #9ea3ac }
+</style>)";
+
+std::string index_html(const std::string& reference_name, std::span<const ComparedFigures> compared,
+                       const FigureOptions& options, std::span<const std::string> plots) {
+  std::string rows;
+  for (const ComparedFigures& c : compared)
+    rows += fmt::format(
+        "<tr><td>{}</td><td>{}</td><td>{:.5f}</td><td>{:.4f}</td><td>{:.4f}</td><td>{}</td><td>{:.4f}</td>"
+        "<td class=\"note\">{}</td></tr>\n",
+        escape_markup(c.name), c.bytes ? fmt::format("{}", *c.bytes) : "–", c.figures.log_cos,
+        c.figures.relative, c.figures.rms_log, psnr_text(c.figures.psnr), c.figures.ssim,
+        escape_markup(c.note));
+  std::string sheets, charts;
+  for (std::size_t i = 0; i < compared.size(); ++i)
+    sheets += fmt::format("<h2>{0}</h2>\n<img src=\"model_{1}.png\" alt=\"Lit spheres of {0}\">\n",
+                          escape_markup(compared[i].name), i + 1);
+  for (const std::string& plot : plots) charts += fmt::format("<img src=\"{0}.svg\" alt=\"{0}\">\n", plot);
+  return fmt::format(
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}: comparison</title>\n{1}"
+      "</head><body>\n<h1>{0}</h1>\n"
+      "<table><tr><th>model</th><th>bytes</th><th>log_cos</th><th>relative</th><th>rms_log</th><th>psnr</th>"
+      "<th>ssim</th><th></th></tr>\n{2}</table>\n"
+      "<p>{3} direction pairs, seed {4}; spheres of {5} × {5} pixels under lights 0°, 30° and 60° from the "
+      "view, all at the reference's exposure. The dome is shown, not scored.</p>\n"
+      "<h2>Overview</h2>\n<img src=\"overview.png\" alt=\"Reference and models\">\n{6}"
+      "<h2>Slices and errors</h2>\n<div class=\"plots\">\n{7}</div>\n</body></html>\n",
+      escape_markup(reference_name), kStyle, rows, options.count, options.seed, options.image_size, sheets,
+      charts);
+}
+
+}  // namespace
+
+std::vector<ComparedFigures> compare_models(const Scorer& scorer, std::span<const ComparedModel> models) {
+  std::vector<ComparedFigures> result;
+  for (const ComparedModel& model : models)
+    result.push_back({model.name, model.bytes, model.note, scorer.score(model.brdf)});
+  return result;
+}
+
+std::string to_json(std::span<const ComparedFigures> figures) {
+  return dump(json_of(figures));
+}
+
+Plot incidence_plane_plot(BrdfRef reference, std::span<const ComparedModel> models, double theta_i) {
+  Plot plot{.title = fmt::format("Plane of incidence, θ_i = {:.0f}°", degrees(theta_i)),
+            .x_label = "θ_o (degrees), mirror direction positive",
+            .y_label = "f (1/sr)",
+            .log_y = true,
+            .series = {},
+            .x_min = -90,
+            .x_max = 90};
+  const Vec3 wi = spherical_direction(theta_i, kPi);
+  const auto add = [&](BrdfRef brdf, const std::string& name, PlotStyle style, std::string_view color) {
+    PlotSeries series{name, {}, {}, style, std::string(color)};
+    std::vector<double> f(static_cast<std::size_t>(brdf.channels()));
+    for (int half_deg = -178; half_deg <= 178; ++half_deg) {
+      const double theta = radians(0.5 * half_deg);
+      const bool known = brdf.eval(wi, {std::sin(theta), 0, std::cos(theta)}, f);
+      double mean = 0;
+      for (const double value : f) mean += value / static_cast<double>(f.size());
+      series.x.push_back(0.5 * half_deg);
+      series.y.push_back(known ? mean : std::numeric_limits<double>::quiet_NaN());
+    }
+    plot.series.push_back(std::move(series));
+  };
+  add(reference, "reference", PlotStyle::dashed, kReferenceColor);
+  for (const ComparedModel& model : models) add(model.brdf, model.name, PlotStyle::line, "");
+  return plot;
+}
+
+Plot error_plot(std::span<const ComparedModel> models, std::span<const std::vector<PairError>> errors,
+                ErrorAxis axis) {
+  const bool over_h = axis == ErrorAxis::theta_h;
+  Plot plot{.title = fmt::format("Mean log error over {}", over_h ? "θ_h" : "θ_d"),
+            .x_label = over_h ? "θ_h (degrees)" : "θ_d (degrees)",
+            .y_label = "mean |Δ log f|",
+            .series = {},
+            .x_min = 0,
+            .x_max = 90,
+            .y_min = 0};
+  constexpr std::size_t kBins = 18;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    std::array<double, kBins> sums{}, counts{};
+    for (const PairError& error : errors[i]) {
+      const HalfDiff angles = to_half_diff(error.pair.wi, error.pair.wo);
+      const double theta = over_h ? angles.theta_h : angles.theta_d;
+      const std::size_t bin = std::min(static_cast<std::size_t>(theta / kHalfPi * kBins), kBins - 1);
+      sums[bin] += error.log_ratio;
+      ++counts[bin];
+    }
+    PlotSeries series{models[i].name, {}, {}, PlotStyle::line_and_points};
+    for (std::size_t bin = 0; bin < kBins; ++bin)
+      if (counts[bin] > 0) {
+        series.x.push_back(90 * (static_cast<double>(bin) + 0.5) / kBins);
+        series.y.push_back(sums[bin] / counts[bin]);
+      }
+    plot.series.push_back(std::move(series));
+  }
+  return plot;
+}
+
+std::vector<ComparedFigures> write_report(const fs::path& folder, const std::string& reference_name,
+                                          const Scorer& scorer, std::span<const ComparedModel> models) {
+  if (models.empty()) throw Error("a report needs a model to compare");
+  const std::vector<ComparedFigures> compared = compare_models(scorer, models);
+  std::error_code error;
+  fs::create_directories(folder / "spheres", error);
+  if (error) throw Error::in_file(folder.string(), "a folder to write to", error.message());
+
+  // pictures
+  const SpherePictures& reference = scorer.reference_pictures();
+  const int size = scorer.options().image_size;
+  std::vector<SpherePictures> pictures;
+  for (const ComparedModel& model : models) pictures.push_back(scorer.pictures(model.brdf));
+  std::vector<double> scales;
+  for (const SpherePictures& model : pictures) scales.push_back(heat_scale(reference, model));
+  const auto dome = [size](BrdfRef brdf) { return tone_map(render_dome(brdf, size), 1); };
+  const Image reference_dome = dome(scorer.reference());
+
+  // side by side they share the median model's scale: one bad model does not hide what the others do
+  std::vector<double> sorted = scales;
+  std::ranges::sort(sorted);
+  const double shared_scale = sorted[(sorted.size() - 1) / 2];
+  const auto bar = [](double scale) { return ColorBar{scale, "mean |difference| of the shown values"}; };
+  ContactSheet overview{reference_name, {"reference"}, {}, {}, bar(shared_scale)};
+  for (std::size_t i = 0; i < kSphereLights.size(); ++i) {
+    overview.row_labels.insert(overview.row_labels.end(), {light_text(i), "difference"});
+    overview.cells.push_back({to_image8(reference.shown[i])});
+    overview.cells.push_back({Image8{}});
+    write_png(folder / "spheres" / fmt::format("reference_{:.0f}.png", degrees(kSphereLights[i])),
+              overview.cells[2 * i][0]);
+  }
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    ContactSheet sheet{
+        reference_name, {"reference", heading(compared[m]), "difference"}, {}, {}, bar(scales[m])};
+    overview.column_labels.push_back(heading(compared[m]));
+    for (std::size_t i = 0; i < kSphereLights.size(); ++i) {
+      const Image8 model = to_image8(pictures[m].shown[i]);
+      const Image difference = mean_difference(reference.shown[i], pictures[m].shown[i]);
+      const Image8 heat = heat_map(difference, scales[m]);
+      sheet.row_labels.push_back(light_text(i));
+      sheet.cells.push_back({overview.cells[2 * i][0], model, heat});
+      overview.cells[2 * i].push_back(model);
+      overview.cells[2 * i + 1].push_back(heat_map(difference, shared_scale));
+      const auto name = fmt::format("model_{}_{:.0f}", m + 1, degrees(kSphereLights[i]));
+      write_png(folder / "spheres" / (name + ".png"), model);
+      write_png(folder / "spheres" / (name + "_difference.png"), heat);
+    }
+    const Image model_dome = dome(models[m].brdf);
+    sheet.row_labels.push_back("dome");
+    sheet.cells.push_back({to_image8(reference_dome), to_image8(model_dome),
+                           heat_map(mean_difference(reference_dome, model_dome), scales[m])});
+    write_png(folder / fmt::format("model_{}.png", m + 1), compose(sheet));
+  }
+  write_png(folder / "overview.png", compose(overview));
+
+  // plots
+  std::vector<std::string> plots;
+  const auto save = [&](const std::string& name, const Plot& plot) {
+    write_plot(folder / name, plot);
+    plots.push_back(name);
+  };
+  for (const double theta_i : kSliceAngles)
+    save(fmt::format("slice_{:.0f}", degrees(theta_i)),
+         incidence_plane_plot(scorer.reference(), models, theta_i));
+  std::vector<std::vector<PairError>> errors;
+  for (const ComparedModel& model : models) errors.push_back(scorer.pair_errors(model.brdf));
+  save("error_theta_h", error_plot(models, errors, ErrorAxis::theta_h));
+  save("error_theta_d", error_plot(models, errors, ErrorAxis::theta_d));
+
+  const FigureOptions& options = scorer.options();
+  const nlohmann::ordered_json report = {{"reference", reference_name}, {"pairs", options.count},
+                                         {"seed", options.seed},        {"floor", options.floor},
+                                         {"image_size", size},          {"models", json_of(compared)}};
+  write_then_rename(folder / "report.json", dump(report));
+  write_then_rename(folder / "index.html", index_html(reference_name, compared, options, plots));
+  return compared;
+}
+
+}  // namespace burnish

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <burnish/metrics/error_figures.h>
+#include <burnish/metrics/svg_plot.h>
+#include <burnish/reflectance/brdf.h>
+
+namespace burnish {
+
+/// One candidate of a comparison; the BRDF must outlive it.
+struct ComparedModel {
+  std::string name;
+  BrdfRef brdf;
+  std::optional<std::uint64_t> bytes = {};  ///< of its tables as stored
+  std::string note = {};                    ///< how it was made: factors, fit time; one line, may be empty
+};
+
+/// What was measured of one candidate.
+struct ComparedFigures {
+  std::string name;
+  std::optional<std::uint64_t> bytes;
+  std::string note;
+  ErrorFigures figures;
+};
+
+/// Figures of every model, in their order. Throws Error as Scorer.
+std::vector<ComparedFigures> compare_models(const Scorer& scorer, std::span<const ComparedModel> models);
+
+/// JSON list of objects: model, bytes (null if unknown), log_cos, relative, rms_log, mean_abs_log, psnr (null
+/// for equal pictures, where it is infinite), ssim, unknown_fraction, unknown_pixels, and note if there is
+/// one.
+std::string to_json(std::span<const ComparedFigures> figures);
+
+/// f over theta_o in the plane of incidence at theta_i (radians, in (0, pi/2)), reference and models, mean
+/// over the channels, 1/sr on a logarithmic axis. theta_o is positive on the mirror's side; unknown and black
+/// values are gaps.
+Plot incidence_plane_plot(BrdfRef reference, std::span<const ComparedModel> models, double theta_i);
+
+/// Which half/difference angle an error is plotted over.
+enum class ErrorAxis { theta_h, theta_d };
+
+/// Mean |ln((f + floor) / (f^ + floor))| in bins of 5 degrees; errors[i] belong to models[i].
+Plot error_plot(std::span<const ComparedModel> models, std::span<const std::vector<PairError>> errors,
+                ErrorAxis axis);
+
+/// Writes the folder of a comparison, made if missing: index.html (needs nothing beside the folder),
+/// report.json, overview.png (reference and all models), model_N.png (reference, model and difference under
+/// the three lights and the dome), spheres/ (each picture by itself), and plots as SVG and PNG. Returns the
+/// figures. Throws Error as Scorer, or if there is no model or the folder cannot be written.
+std::vector<ComparedFigures> write_report(const std::filesystem::path& folder,
+                                          const std::string& reference_name, const Scorer& scorer,
+                                          std::span<const ComparedModel> models);
+
+}  // namespace burnish
