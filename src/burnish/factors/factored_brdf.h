@@ -39,6 +39,10 @@ class FactoredBrdf {
   std::span<const Table> tables() const noexcept { return tables_; }
   std::span<const Lobe> lobes() const noexcept { return lobes_; }
   TableFormat format() const noexcept { return format_; }
+  /// Factors of lobe j in evaluation order: first 2 * pair_count(j) in pairs that swapping wi and wo exchanges,
+  /// each pair multiplied with itself before anything else, then the rest.
+  std::span<const FactorUse> ordered_factors(std::size_t j) const noexcept { return ordered_[j]; }
+  std::size_t pair_count(std::size_t j) const noexcept { return pair_counts_[j]; }
 
   /// True if swapping wi and wo leaves every lobe's factors the same.
   bool reciprocal() const noexcept { return reciprocal_; }

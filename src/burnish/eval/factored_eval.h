@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+
+#include <burnish/factors/factored_brdf.h>
+
+namespace burnish {
+
+/// Direction pairs, one array a component, all of one length. wi and wo are unit vectors to 2^-22.
+struct DirectionSpans {
+  std::span<const float> wi_x, wi_y, wi_z, wo_x, wo_y, wo_z;
+
+  std::size_t size() const noexcept { return wi_x.size(); }
+};
+
+/// Evaluates a factored BRDF in float, prepared once for many directions: what the factors share (half
+/// vectors, projections, positions in tables) is found beforehand and computed once a direction, and tables
+/// are copied with their channels padded to whole vectors. Never allocates after construction; copies share
+/// the tables, threads may share a copy.
+///
+/// Reciprocal models stay reciprocal to the last bit, and both forms of eval give the same bits. Against
+/// FactoredBrdf::eval of the same directions the relative error of values above 2^-126 is at most
+/// rounding_bound(); where a model has projections other than wi, wo, h and d, times the largest
+/// (sum of |coefficients|) / |combination|: terms that cancel leave their rounding errors.
+class FactoredEvaluator {
+ public:
+  /// Throws Error for models of more than 4096 different positions in tables.
+  explicit FactoredEvaluator(const FactoredBrdf& brdf);
+
+  int channels() const noexcept;
+
+  /// f_r in 1/sr, without the cosine, zero below the horizon: f[c * directions.size() + i] is channel c of
+  /// pair i; f has channels() * directions.size() entries. One plane a channel, as the directions have one a
+  /// component: what follows (cosine, light, sum) runs over the same lanes, and vectors of any width are
+  /// stored whole, where three interleaved channels would need shuffles that differ from width to width.
+  void eval(const DirectionSpans& directions, std::span<float> f) const noexcept;
+
+  /// One pair; f has channels() entries.
+  void eval(Vec3 wi, Vec3 wo, std::span<float> f) const noexcept;
+
+  /// The largest of the lobes' sums over their factors of 2^-24 (8 R + 16 axes (n - 1) (R - 1)): a position
+  /// is off by at most 16 * 2^-24 of an axis of n nodes, and a table's neighbouring entries differ by at most
+  /// the factor R. Steep tables make this pessimistic: it takes every lookup to be at its worst.
+  double rounding_bound() const noexcept;
+
+ private:
+  struct Plan;
+  std::shared_ptr<const Plan> plan_;
+};
+
+}  // namespace burnish

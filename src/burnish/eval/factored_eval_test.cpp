@@ -1,0 +1,203 @@
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <burnish/eval/factored_eval.h>
+#include <burnish/factors/model_spec.h>
+#include <burnish/math/random.h>
+#include <burnish/reflectance/goniometer.h>
+
+namespace burnish {
+namespace {
+
+struct ModelCase {
+  const char* name;
+  const char* expression;
+  std::vector<std::string> options;
+  int channels;
+};
+
+// Every kind of table, warp and projection, alone and together.
+const ModelCase kModels[] = {
+    {"Pqp", "pqp", {"p=32", "q=64"}, 3},
+    {"Pqpr", "pqpr", {"p=32", "q=64,rational:0.05", "r=32"}, 3},
+    {"DiskPqp", "pqp", {"p=64x64", "q=64x64,rational:0.2"}, 3},
+    {"PowerWarps", "p(wo) q(h) p(wi)", {"p=16,power:0.7", "q=16x16,power:0.5"}, 3},
+    {"PowerDisk", "q(h) r(theta_d)", {"q=9x9,power:0.3", "r=12,power:0.5"}, 1},
+    {"Grid", "u(theta_h,theta_d) v(wi,wo)", {"u=16x7,rational:0.1", "v=5x5"}, 3},
+    {"Affine", "s(wi+wo+0.4n) v(0.3wi+0.9wo) v(0.9wi+0.3wo)", {"s=9x9", "v=11x11"}, 3},
+    {"Mirror", "a(m+wo) b(0.5m+wo-0.2n)", {"a=8x8", "b=16,rational:0.3"}, 3},
+    {"BelowTheHorizon", "a(wi-0.6n) b(wo-0.6n)", {"a=8x8", "b=16"}, 1},
+    {"Difference", "a(d) b(d)", {"a=12x12", "b=8"}, 3},
+    {"Shared", "p(wo) q(h) p(wi) + s(h)", {"p=8,shared", "q=8x8,shared", "s=6"}, 3},
+    {"ThreeLobes", "p(wo) q(h) p(wi) + p(wo) s(h) p(wi) + t(theta_d)", {"p=8", "q=64", "s=16", "t=8"}, 3},
+    {"Grey", "pqpr", {"p=16x16", "q=32"}, 1},
+    {"Spectral", "p(wo) q(h) p(wi) + s(h) t(theta_d)", {"p=8x8", "q=32", "s=8,shared"}, 31},
+};
+
+// Random tables: log values uniform in [-2, 0], lobes of different weight.
+FactoredBrdf random_model(const ModelCase& model) {
+  Pcg32 random(5);
+  const ModelSpec spec = parse_model_spec(model.expression, model.options, true);
+  std::vector<Table> tables;
+  for (const ModelSpec::TableSpec& t : spec.tables) {
+    Table table{.name = t.name, .layout = t.layout, .channels = t.shared ? 1 : model.channels, .values = {}};
+    table.values.resize(t.layout.node_count() * static_cast<std::size_t>(table.channels));
+    for (float& v : table.values) v = static_cast<float>(-2 * random.uniform());
+    tables.push_back(std::move(table));
+  }
+  std::vector<Lobe> lobes;
+  for (const auto& factors : spec.lobes) {
+    Lobe lobe{.scale = {}, .factors = factors};
+    for (int c = 0; c < model.channels; ++c) lobe.scale.push_back(random.uniform());
+    lobes.push_back(std::move(lobe));
+  }
+  return from_log_tables(model.channels, std::move(tables), std::move(lobes), TableFormat::half);
+}
+
+// Directions with float components: what both evaluations see.
+Vec3 rounded(Vec3 w) {
+  return {static_cast<float>(w.x), static_cast<float>(w.y), static_cast<float>(w.z)};
+}
+
+// Random pairs, the corners, and some below the horizon; more than one block, not whole blocks.
+std::vector<DirectionPair> test_pairs() {
+  std::vector<DirectionPair> pairs = draw_pairs(997, 3, false);
+  const Vec3 corners[] = {{0, 0, 1},        {1, 0, 1e-5}, {-1, 0, 1e-5},   {0, -1, 1e-3},    {1e-6, 0, 1},
+                          {-1e-6, 1e-6, 1}, {1, 1, 1},    {1, 1, 0.999},   {-1, -1e-9, 0.5}, {-1, 1e-9, 0.5},
+                          {0, 0, -1},       {1, 0, 0},    {0.3, 0.1, -0.2}};
+  for (const Vec3 wi : corners)
+    for (const Vec3 wo : corners) pairs.push_back({normalize(wi), normalize(wo)});
+  for (auto& [wi, wo] : pairs) {
+    wi = rounded(wi);
+    wo = rounded(wo);
+  }
+  return pairs;
+}
+
+struct Planes {
+  std::vector<float> component[6];
+
+  explicit Planes(std::span<const DirectionPair> pairs) {
+    for (const auto& [wi, wo] : pairs) {
+      const double values[] = {wi.x, wi.y, wi.z, wo.x, wo.y, wo.z};
+      for (int k = 0; k < 6; ++k) component[k].push_back(static_cast<float>(values[k]));
+    }
+  }
+  DirectionSpans spans() const {
+    return {component[0], component[1], component[2], component[3], component[4], component[5]};
+  }
+};
+
+std::vector<float> batched(const FactoredEvaluator& evaluator, std::span<const DirectionPair> pairs) {
+  std::vector<float> f(pairs.size() * static_cast<std::size_t>(evaluator.channels()),
+                       std::numeric_limits<float>::quiet_NaN());
+  evaluator.eval(Planes(pairs).spans(), f);
+  return f;
+}
+
+// How much cancelling terms magnify rounding errors: the worst (sum of |coefficients|) / |combination|.
+double cancellation(const FactoredBrdf& brdf, Vec3 wi, Vec3 wo) {
+  double worst = 1;
+  for (const Lobe& lobe : brdf.lobes())
+    for (const FactorUse& use : lobe.factors) {
+      const Projection& p = use.projection;
+      if (p.kind == Projection::Kind::difference || p == kProjectWi || p == kProjectWo || p == kProjectHalf)
+        continue;
+      const Vec3 v = p.wi * wi + p.wo * wo + p.mirror * mirror(wi) + Vec3{0, 0, p.n};
+      worst = std::max(worst, (std::abs(p.wi) + std::abs(p.wo) + std::abs(p.mirror) + std::abs(p.n)) /
+                                  length({v.x, v.y, std::max(v.z, 0.0)}));
+    }
+  return worst;
+}
+
+class FactoredEvaluatorTest : public testing::TestWithParam<ModelCase> {};
+
+TEST_P(FactoredEvaluatorTest, AgreesWithTheDoubleReferenceWithinItsBound) {
+  const FactoredBrdf brdf = random_model(GetParam());
+  const FactoredEvaluator evaluator(brdf);
+  ASSERT_EQ(evaluator.channels(), brdf.channels());
+  EXPECT_LT(evaluator.rounding_bound(), 0.02);  // random tables are as steep as this
+  const auto pairs = test_pairs();
+  const std::vector<float> f = batched(evaluator, pairs);
+  std::vector<double> truth(static_cast<std::size_t>(brdf.channels()));
+  double squares = 0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const auto& [wi, wo] = pairs[i];
+    brdf.eval(wi, wo, truth);
+    const bool lit = wi.z > 0 && wo.z > 0;
+    const double bound = lit ? evaluator.rounding_bound() * cancellation(brdf, wi, wo) : 0;
+    for (std::size_t c = 0; c < truth.size(); ++c) {
+      const double got = f[c * pairs.size() + i];
+      ASSERT_LE(std::abs(got - truth[c]), bound * truth[c])
+          << "pair " << i << " channel " << c << ": " << got << " for " << truth[c];
+      if (i < 997) {
+        squares += std::pow(got / truth[c] - 1, 2);
+        ++count;
+      }
+    }
+  }
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(count)), 1e-5);
+}
+
+TEST_P(FactoredEvaluatorTest, GivesTheSameBitsForOneDirectionAndForMany) {
+  const FactoredEvaluator evaluator(random_model(GetParam()));
+  const auto pairs = test_pairs();
+  const std::vector<float> f = batched(evaluator, pairs);
+  std::vector<float> one(static_cast<std::size_t>(evaluator.channels()));
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    evaluator.eval(pairs[i].wi, pairs[i].wo, one);
+    for (std::size_t c = 0; c < one.size(); ++c) ASSERT_EQ(one[c], f[c * pairs.size() + i]) << i;
+  }
+}
+
+TEST_P(FactoredEvaluatorTest, IsReciprocalToTheLastBitWhereTheModelIs) {
+  const FactoredBrdf brdf = random_model(GetParam());
+  auto pairs = test_pairs();
+  const std::vector<float> f = batched(FactoredEvaluator(brdf), pairs);
+  for (auto& [wi, wo] : pairs) std::swap(wi, wo);
+  EXPECT_EQ(f == batched(FactoredEvaluator(brdf), pairs), brdf.reciprocal());
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, FactoredEvaluatorTest, testing::ValuesIn(kModels),
+                         [](const auto& model) { return std::string(model.param.name); });
+
+TEST(FactoredEvaluator, IsPositiveAboveTheHorizonAndZeroBelow) {
+  const auto pairs = test_pairs();
+  const std::vector<float> f = batched(FactoredEvaluator(random_model(kModels[0])), pairs);
+  for (std::size_t i = 0; i < f.size(); ++i) {
+    const auto& [wi, wo] = pairs[i % pairs.size()];
+    EXPECT_EQ(f[i] > 0, wi.z > 0 && wo.z > 0);
+    EXPECT_GE(f[i], 0);
+  }
+}
+
+TEST(FactoredEvaluator, SurvivesAnythingInPlaceOfDirections) {
+  const double odd[] = {NAN, INFINITY, -INFINITY, 1e30, 1e-40, 0, 1};
+  std::vector<DirectionPair> pairs;
+  for (const double a : odd)
+    for (const double b : odd)
+      for (const double z : odd) pairs.push_back({{a, b, z}, {b, z, a}});
+  for (const ModelCase& model : kModels)
+    for (const float v : batched(FactoredEvaluator(random_model(model)), pairs)) {
+      EXPECT_GE(v, 0);
+      EXPECT_LE(v, 3);  // at most three lobes
+    }
+}
+
+TEST(FactoredEvaluator, TakesAnyNumberOfDirections) {
+  const FactoredEvaluator evaluator(random_model(kModels[1]));
+  const auto pairs = test_pairs();
+  const std::vector<float> all = batched(evaluator, pairs);
+  for (std::size_t count : {0, 1, 2, 63, 64, 65, 128, 200}) {
+    const std::vector<float> f = batched(evaluator, std::span(pairs).first(count));
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(f[c * count + i], all[c * pairs.size() + i]);
+  }
+}
+
+}  // namespace
+}  // namespace burnish
