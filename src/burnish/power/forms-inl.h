@@ -74,7 +74,7 @@ struct Schlick {
   }
   template <class P, class T>
   static T value(const P& p, const T* k) {
-    return p.c / mul_add(k[0], p.u, p.c);  // [Schlick 1994]
+    return p.c / mul_add(k[0], p.u, p.c);  // [Schlick 1994a]
   }
 };
 

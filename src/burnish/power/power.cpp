@@ -92,7 +92,7 @@ std::vector<PowerInfo> make_infos() {
   // clang-format off
   std::vector<PowerInfo> infos = {
       {M::exact, "exact", "c^e", "Phong1975", 1, {{1, kMax, 0}}, {}},
-      {M::schlick, "schlick", "c / (c + e u)", "Schlick1994", 1, {{1, kMax, 0.2037}}, {}},
+      {M::schlick, "schlick", "c / (c + e u)", "Schlick1994a", 1, {{1, kMax, 0.2037}}, {}},
       {M::lyon, "lyon", "max(0, 1 - e u + e(e-1)/2 u^2 - e(e-1)(e-2)/6 u^3)", "Lyon1993", 4, {{1, kMax, 0.203}}, {}},
       {M::angle2, "angle2", "cos(sqrt(e/2) acos c)^2", "QuadraticBrdf", 1, {{1, kMax, 0.198}}, {}},
       {M::angle4, "angle4", "cos(sqrt(e/4) acos c)^4", "QuadraticBrdf", 1, {{1, kMax, 0.251}, {4, kMax, 0.0502}}, {}},
