@@ -127,11 +127,21 @@ void add_shading(const std::string& name, std::optional<PowerMethod> method) {
   });
 }
 
-// Keeps the least time a value of each benchmark and prints the table at the end.
+// The way a benchmark of this file times: its name without the memory level.
+std::string way_of(const std::string& name) {
+  return name.substr(0, name.rfind('/'));
+}
+
+// Keeps the least time a value of each benchmark of this file and prints the table at the end; the benchmarks
+// of other files are printed as usual.
 class TableReporter : public benchmark::ConsoleReporter {
  public:
   TableReporter() : ConsoleReporter(OO_None) {}
   void ReportRuns(const std::vector<Run>& runs) override {
+    if (!runs.empty() && !errors().count(way_of(runs.front().run_name.function_name))) {
+      ConsoleReporter::ReportRuns(runs);
+      return;
+    }
     for (const Run& run : runs) {
       if (run.run_type != Run::RT_Iteration || run.error_occurred) continue;
       const double ns = 1e9 / run.counters.at("items_per_second");
@@ -141,10 +151,11 @@ class TableReporter : public benchmark::ConsoleReporter {
     }
   }
   void Finalize() override {
+    if (order_.empty()) return;
     std::printf("%-28s %10s %10s %12s %12s\n", "way/level", "ns/value", "max error", "x of powf",
                 "/ fma_loop");
     for (const std::string& name : order_) {
-      const std::string way = name.substr(0, name.rfind('/')), level = name.substr(name.rfind('/'));
+      const std::string way = way_of(name), level = name.substr(way.size());
       std::printf("%-28s %10.4f", name.c_str(), least_[name]);
       const double error = errors()[way];
       error < 0 ? std::printf(" %10s", "no power") : std::printf(" %10.2g", error);
