@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <list>
 #include <memory>
 #include <optional>
@@ -5,6 +6,8 @@
 #include <fmt/format.h>
 
 #include <burnish/metrics/compare_report.h>
+#include <burnish/metrics/factor_images.h>
+#include <burnish/metrics/png.h>
 
 #include "commands.h"
 #include "source_arguments.h"
@@ -38,6 +41,18 @@ class Candidate {
   std::optional<SymmetrizedBrdf> symmetrized_;
 };
 
+// folder/factors/model_N_TABLE.png for the models that are factored.
+void write_factors(const std::filesystem::path& folder, const std::list<Candidate>& candidates) {
+  int number = 0;
+  for (const Candidate& c : candidates) {
+    ++number;
+    if (!c.model()) continue;
+    std::filesystem::create_directories(folder / "factors");
+    for (const Table& table : c.model()->tables())
+      write_png(folder / "factors" / fmt::format("model_{}_{}.png", number, table.name), factor_image(table));
+  }
+}
+
 void compare(const Arguments& arguments) {
   const Candidate reference(arguments.reference.open(), !arguments.no_symmetrize);
   std::list<Candidate> candidates;
@@ -53,6 +68,7 @@ void compare(const Arguments& arguments) {
   const std::vector<ComparedFigures> figures =
       arguments.folder.empty() ? compare_models(scorer, models)
                                : write_report(arguments.folder, reference.source().name, scorer, models);
+  if (!arguments.folder.empty()) write_factors(arguments.folder, candidates);
   if (arguments.json) {
     fmt::print("{}\n", to_json(figures));
     return;

@@ -1,7 +1,7 @@
-#include <burnish/metrics/factor_images.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include <burnish/metrics/factor_images.h>
 
 namespace burnish {
 
@@ -15,8 +15,8 @@ Image8 factor_image(const Table& table) {
     for (int x = 0; x < width; ++x) {
       // rows of a texture go up, rows of a picture down
       const int row = table.layout.height > 1 ? table.layout.height - 1 - y / scale : 0;
-      const float* node =
- table.values.data() + static_cast<std::size_t>((row * table.layout.width + x / scale) * table.channels);
+      const float* node = table.values.data() +
+                          static_cast<std::size_t>((row * table.layout.width + x / scale) * table.channels);
       for (int c = 0; c < 3; ++c) {
         const double value = node[std::min(c, table.channels - 1)];
         const double shown = std::clamp(1 - std::log2(value) / std::log2(kShownFactor), 0.0, 1.0);

@@ -1,6 +1,6 @@
-#include <burnish/metrics/factor_images.h>
-
 #include <gtest/gtest.h>
+
+#include <burnish/metrics/factor_images.h>
 
 namespace burnish {
 namespace {
