@@ -38,6 +38,11 @@ bench: deps
 	@cmake --build --preset bench -j $(JOBS)
 	@build/bench/src/burnish/burnish_bench
 
+report: build
+	@mkdir -p docs/figures
+	@build/release/apps/report/burnish_report docs > docs/results.md.partial
+	@mv docs/results.md.partial docs/results.md
+
 fuzz: deps
 	@tests/fuzz/run.sh $(FUZZ_SECONDS)
 

@@ -60,14 +60,17 @@ nlohmann::ordered_json to_json(const Report& report) {
                               {"unknown_fraction", albedo.unknown_fraction}});
   if (model) {
     json["bytes"] = model->bytes();
+    json["table_bytes"] = model->table_bytes();
     json["lobes"] = model->lobes().size();
+    for (const Lobe& lobe : model->lobes()) json["scales"].push_back(lobe.scale);
     json["expression"] = model_expression(*model);
     json["reciprocal"] = model->reciprocal();
     for (const Table& table : model->tables())
       json["tables"].push_back({{"name", table.name},
                                 {"width", table.layout.width},
                                 {"height", table.layout.height},
-                                {"channels", table.channels}});
+                                {"channels", table.channels},
+                                {"warp", to_string(table.layout.warp)}});
   }
   return json;
 }
@@ -106,10 +109,11 @@ void print_text(const Report& report) {
        fmt::format("mean relative asymmetry {:.4g} over {} pairs", reciprocity.mean, reciprocity.pairs));
   if (!model) return;
   line("bytes", fmt::format("{}", model->bytes()));
-  line("lobes", fmt::format("{}", model->lobes().size()));
+  for (const Lobe& lobe : model->lobes())
+    line("lobe", fmt::format("scale {:.4g}", fmt::join(lobe.scale, " ")));
   for (const Table& table : model->tables())
-    line("table", fmt::format("{}: {} x {}, {} channels", table.name, table.layout.width, table.layout.height,
-                              table.channels));
+    line("table", fmt::format("{}: {} x {}, {} channels, warp {}", table.name, table.layout.width,
+                              table.layout.height, table.channels, to_string(table.layout.warp)));
 }
 
 }  // namespace

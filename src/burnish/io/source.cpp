@@ -33,6 +33,7 @@ Source from_model(const FileBytes& file) {
   findings.format = "burnish model";
   findings.description = model_expression(model.brdf);
   findings.lambda_nm = std::move(model.lambda_nm);
+  findings.conventions = {"notes of the fit: " + model.notes};
   for (const Table& table : model.brdf.tables()) findings.sample_count += table.layout.node_count();
   findings.theta_i_max = findings.theta_o_max = kHalfPi;
   return {file.name, std::move(model.brdf), std::move(findings)};
