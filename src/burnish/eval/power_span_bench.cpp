@@ -127,13 +127,21 @@ void add_shading(const std::string& name, std::optional<PowerMethod> method) {
   });
 }
 
-// Keeps the least time a value of each benchmark and prints the table at the end.
+// Keeps the least time a value of each benchmark and prints the tables at the end: powers, and whatever other
+// files registered.
 class TableReporter : public benchmark::ConsoleReporter {
  public:
   TableReporter() : ConsoleReporter(OO_None) {}
   void ReportRuns(const std::vector<Run>& runs) override {
     for (const Run& run : runs) {
+      if (run.error_occurred)
+        std::fprintf(stderr, "%s: %s\n", run.benchmark_name().c_str(), run.error_message.c_str());
       if (run.run_type != Run::RT_Iteration || run.error_occurred) continue;
+      if (!run.counters.count("max_error")) {
+        const auto [best, first] = others_.try_emplace(run.benchmark_name(), run);
+        if (run.GetAdjustedCPUTime() < best->second.GetAdjustedCPUTime()) best->second = run;
+        continue;
+      }
       const double ns = 1e9 / run.counters.at("items_per_second");
       const auto [at, fresh] = least_.try_emplace(run.run_name.function_name, ns);
       if (fresh) order_.push_back(run.run_name.function_name);
@@ -155,9 +163,21 @@ class TableReporter : public benchmark::ConsoleReporter {
         std::printf(" %12.2f", least_[name] / least_["fma_loop" + level]);
       std::printf("\n");
     }
+    const auto counter = [](const Run& run, const char* name) {
+      const auto at = run.counters.find(name);
+      return at == run.counters.end() ? 0.0 : at->second.value;
+    };
+    std::printf("\n%-34s %12s %12s %10s %12s\n", "best of the repetitions", "ns/iteration", "million/s",
+                "MB/s", "mean error");
+    for (const auto& [name, run] : others_)
+      std::printf("%-34s %12.1f %12.3f %10.0f %12.2g\n", name.c_str(),
+                  1e9 * run.cpu_accumulated_time / static_cast<double>(run.iterations),
+                  1e-6 * counter(run, "items_per_second"), 1e-6 * counter(run, "bytes_per_second"),
+                  counter(run, "relative_error"));
   }
 
  private:
+  std::map<std::string, Run> others_;
   std::map<std::string, double> least_;
   std::vector<std::string> order_;
 };
