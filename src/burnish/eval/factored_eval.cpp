@@ -3,6 +3,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <vector>
 
@@ -173,55 +174,69 @@ struct Block {
   }
 };
 
-// One table entry's channels, `kLanes` of them or one for all.
-template <std::size_t kLanes, bool kShared>
-using Entry = std::array<float, kShared ? 1 : kLanes>;
+// Channels looked up together; four are a vector of g++ and clang.
+template <std::size_t kLanes>
+struct LaneVector {
+  using type = float;
+};
+template <>
+struct LaneVector<4> {
+  typedef float type __attribute__((vector_size(16)));
+};
+template <std::size_t kLanes>
+using Lanes = typename LaneVector<kLanes>::type;
 
-template <std::size_t kLanes, bool kShared>
-Entry<kLanes, kShared> mix(const float* low, const float* high, float fraction) noexcept {
-  Entry<kLanes, kShared> v;
-  for (std::size_t c = 0; c < v.size(); ++c) v[c] = low[c] + fraction * (high[c] - low[c]);
+template <class T>
+T load(const float* from) noexcept {
+  T v;
+  std::memcpy(&v, from, sizeof v);
   return v;
 }
 
+template <class T>
+T mix(T low, T high, float fraction) noexcept {
+  return low + fraction * (high - low);
+}
+
+float lane(float v, std::size_t) noexcept {
+  return v;
+}
+float lane(Lanes<4> v, std::size_t c) noexcept {
+  return v[c];
+}
+
 // The (bi)linear interpolation of Table for one direction.
-template <std::size_t kLanes, bool kShared, bool kLine>
-Entry<kLanes, kShared> lookup(const float* table, std::size_t stride, std::size_t width, Cell x,
-                              Cell y) noexcept {
-  const std::size_t step = kShared ? 1 : stride;
+template <class T, bool kLine>
+T lookup(const float* table, std::size_t step, std::size_t width, Cell x, Cell y) noexcept {
+  const auto node_x = static_cast<std::size_t>(x.node);
   if constexpr (kLine) {
-    const float* const node = table + static_cast<std::size_t>(x.node) * step;
-    return mix<kLanes, kShared>(node, node + step, x.fraction);
+    const float* const node = table + node_x * step;
+    return mix(load<T>(node), load<T>(node + step), x.fraction);
   } else {
-    const float* const node =
-        table + (static_cast<std::size_t>(y.node) * width + static_cast<std::size_t>(x.node)) * step;
-    const auto low = mix<kLanes, kShared>(node, node + step, x.fraction);
-    const auto high = mix<kLanes, kShared>(node + width * step, node + (width + 1) * step, x.fraction);
-    return mix<kLanes, kShared>(low.data(), high.data(), y.fraction);
+    const float* const node = table + (static_cast<std::size_t>(y.node) * width + node_x) * step;
+    const float* const above = node + width * step;
+    return mix(mix(load<T>(node), load<T>(node + step), x.fraction),
+               mix(load<T>(above), load<T>(above + step), x.fraction), y.fraction);
   }
 }
 
-// product[i][lane] *= the use's lookups, a pair's with each other first.
+// product[i] *= the use's lookups, a pair's with each other first.
 template <std::size_t kLanes, bool kShared, bool kLine, bool kPair, std::size_t kMost>
 void multiply(const Use& use, const float* table, const Block<kMost>& block, std::size_t stride,
-              std::size_t count, float* product) noexcept {
-  const auto cell = [&](std::size_t slot, std::size_t i) {
-    return Cell{block.node[slot * stride + i], block.fraction[slot * stride + i]};
+              std::size_t count, Lanes<kLanes>* product) noexcept {
+  const auto value = [&](std::size_t x, std::size_t y, std::size_t i) {
+    return lookup<Lanes<kShared ? 1 : kLanes>, kLine>(
+        table, kShared ? 1 : use.stride, use.width,
+        {block.node[x * stride + i], block.fraction[x * stride + i]},
+        {block.node[y * stride + i], block.fraction[y * stride + i]});
   };
-  for (std::size_t i = 0; i < count; ++i) {
-    auto value = lookup<kLanes, kShared, kLine>(table, use.stride, use.width, cell(use.x, i), cell(use.y, i));
-    if constexpr (kPair) {
-      const auto other = lookup<kLanes, kShared, kLine>(table, use.stride, use.width, cell(use.pair_x, i),
-                                                        cell(use.pair_y, i));
-      for (std::size_t c = 0; c < value.size(); ++c) value[c] *= other[c];
-    }
-    for (std::size_t c = 0; c < kLanes; ++c) product[i * kLanes + c] *= value[kShared ? 0 : c];
-  }
+  for (std::size_t i = 0; i < count; ++i)
+    product[i] *= kPair ? value(use.x, use.y, i) * value(use.pair_x, use.pair_y, i) : value(use.x, use.y, i);
 }
 
 template <std::size_t kLanes, std::size_t kMost>
 void multiply(const Use& use, const float* table, const Block<kMost>& block, std::size_t stride,
-              std::size_t count, float* product) noexcept {
+              std::size_t count, Lanes<kLanes>* product) noexcept {
   const auto with = [&]<bool kShared, bool kLine>() {
     use.pair ? multiply<kLanes, kShared, kLine, true>(use, table, block, stride, count, product)
              : multiply<kLanes, kShared, kLine, false>(use, table, block, stride, count, product);
@@ -401,21 +416,20 @@ struct FactoredEvaluator::Plan {
     const std::size_t count = kMost == 1 ? 1 : block_count, stride = kMost == 1 ? 1 : block_stride;
     Block<kMost> block;
     find_cells(in, block, stride, count);
-    std::array<float, kMost * kLanes> product, sum;
+    Lanes<kLanes> product[kMost], sum[kMost];
     for (std::size_t group = 0; group < channels; group += kLanes) {
-      std::fill_n(sum.begin(), count * kLanes, 0.0f);
+      std::fill_n(sum, count, Lanes<kLanes>{});
       for (const LobeUses& lobe : lobes) {
-        for (std::size_t i = 0; i < count; ++i)
-          std::copy_n(scales.data() + lobe.scale + group, kLanes, product.data() + i * kLanes);
+        std::fill_n(product, count, load<Lanes<kLanes>>(scales.data() + lobe.scale + group));
         // [homomorphic factorization, eq. 4]
         for (std::size_t k = lobe.first; k < lobe.last; ++k)
           multiply<kLanes>(uses[k], values.data() + uses[k].table + (uses[k].stride == 1 ? 0 : group), block,
-                           stride, count, product.data());
-        for (std::size_t i = 0; i < count * kLanes; ++i) sum[i] += product[i];
+                           stride, count, product);
+        for (std::size_t i = 0; i < count; ++i) sum[i] += product[i];
       }
       for (std::size_t c = 0; c < std::min(kLanes, channels - group); ++c)
         for (std::size_t i = 0; i < count; ++i)
-          f[(group + c) * plane + i] = in.wi_z[i] > 0 && in.wo_z[i] > 0 ? sum[i * kLanes + c] : 0;
+          f[(group + c) * plane + i] = in.wi_z[i] > 0 && in.wo_z[i] > 0 ? lane(sum[i], c) : 0;
     }
   }
 };
