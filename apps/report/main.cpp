@@ -11,6 +11,7 @@
 #include <thread>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <burnish/error.h>
 #include <burnish/factors/model_file.h>
@@ -278,7 +279,7 @@ void report_cornell(const fs::path& data) {
 // ---- A table of the MERL size
 
 void report_merl() {
-  const fs::path folder = fs::temp_directory_path() / fmt::format("burnish-report-{}", std::rand());
+  const fs::path folder = fs::temp_directory_path() / fmt::format("burnish-report-{}", ::getpid());
   fs::create_directories(folder);
   const fs::path table = folder / "table.binary", model = folder / "model.exr";
   const AnalyticBrdf brdf = parse_analytic("cook_torrance");

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <burnish/error.h>
 #include <burnish/power/code.h>
@@ -20,7 +21,7 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 
 struct TemporaryFolder {
-  fs::path path = fs::temp_directory_path() / fmt::format("burnish_code_{}", std::rand());
+  fs::path path = fs::temp_directory_path() / fmt::format("burnish_code_{}", ::getpid());
   TemporaryFolder() { fs::create_directories(path); }
   ~TemporaryFolder() { fs::remove_all(path); }
 };
