@@ -187,51 +187,54 @@ double psnr(double mean_squared_error) noexcept {
 }
 
 double ssim(const Image& a, const Image& b) {
-  constexpr int kWindow = 11;
+  constexpr int kRadius = 6, kWindow = 2 * kRadius + 1;
   constexpr double kSigma = 1.5, kC1 = 0.01 * 0.01, kC2 = 0.03 * 0.03;
-  const int channels = common_channels(a, b);
-  if (std::min(a.width, a.height) < kWindow)
-    throw Error(fmt::format("SSIM needs an image of at least {0} x {0} pixels", kWindow));
+  const int channels = common_channels(a, b), width = a.width, height = a.height;
+  if (std::min(width, height) < kRadius)
+    throw Error(fmt::format("SSIM needs an image of at least {0} x {0} pixels", kRadius));
   std::array<double, kWindow> window;
   double total = 0;
   for (int i = 0; i < kWindow; ++i) {
-    const double d = (i - kWindow / 2) / kSigma;
+    const double d = (i - kRadius) / kSigma;
     total += window[as_size(i)] = std::exp(-d * d / 2);
   }
   for (double& w : window) w /= total;
+  // beyond an edge the image goes on as its mirror image, the edge pixel twice
+  const auto mirrored = [](int i, int size) { return i < 0 ? -1 - i : i >= size ? 2 * size - 1 - i : i; };
 
   // weighted moments a, b, aa, bb, ab: along the rows, then along the columns
   using Moments = std::array<double, 5>;
-  const int columns = a.width - kWindow + 1, rows = a.height - kWindow + 1;
-  std::vector<double> row_sums(as_size(rows * channels));
+  std::vector<double> row_sums(as_size(height * channels));
   for_each_chunk(as_size(channels), 1, [&](std::size_t index, std::size_t, std::size_t) {
     const int c = static_cast<int>(index);
-    std::vector<Moments> along(as_size(columns) * as_size(a.height));
-    for (int y = 0; y < a.height; ++y)
-      for (int x = 0; x < columns; ++x) {
-        Moments& m = along[as_size(y) * as_size(columns) + as_size(x)];
+    std::vector<Moments> along(as_size(width) * as_size(height));
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        Moments& m = along[as_size(y) * as_size(width) + as_size(x)];
         for (int k = 0; k < kWindow; ++k) {
-          const double u = channel(a, x + k, y, c), v = channel(b, x + k, y, c), w = window[as_size(k)];
+          const int from = mirrored(x + k - kRadius, width);
+          const double u = channel(a, from, y, c), v = channel(b, from, y, c), w = window[as_size(k)];
           const Moments terms = {u, v, u * u, v * v, u * v};
           for (std::size_t i = 0; i < m.size(); ++i) m[i] += w * terms[i];
         }
       }
-    for (int y = 0; y < rows; ++y)
-      for (int x = 0; x < columns; ++x) {
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
         Moments m{};
         for (int k = 0; k < kWindow; ++k) {
-          const Moments& part = along[as_size(y + k) * as_size(columns) + as_size(x)];
+          const Moments& part =
+              along[as_size(mirrored(y + k - kRadius, height)) * as_size(width) + as_size(x)];
           for (std::size_t i = 0; i < m.size(); ++i) m[i] += window[as_size(k)] * part[i];
         }
         const double ab = m[0] * m[1], squares = m[0] * m[0] + m[1] * m[1];
         // [Wang 2004, eq. 13]
-        row_sums[index * as_size(rows) + as_size(y)] +=
+        row_sums[index * as_size(height) + as_size(y)] +=
             (2 * ab + kC1) * (2 * (m[4] - ab) + kC2) / ((squares + kC1) * (m[2] + m[3] - squares + kC2));
       }
   });
   double sum = 0;
   for (const double row : row_sums) sum += row;
-  return sum / (static_cast<double>(columns) * rows * channels);
+  return sum / (static_cast<double>(width) * height * channels);
 }
 
 Image8 to_image8(const Image& shown) {

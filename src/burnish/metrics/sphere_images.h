@@ -62,9 +62,10 @@ double mean_squared_error(const Image& a, const Image& b);
 /// Peak signal-to-noise ratio in dB of values in [0, 1]: -10 log10(mse); infinite for 0.
 double psnr(double mean_squared_error) noexcept;
 
-/// Structural similarity of two images of values in [0, 1], at least 11 x 11: Gaussian window of sigma 1.5
-/// cut to 11 x 11 and normalized, K = 0.01 and 0.03, L = 1, averaged over the windows that lie wholly in the
-/// frame, then over the channels. Throws as mean_squared_error. Source: [Wang 2004].
+/// Structural similarity of two images of values in [0, 1], at least 6 x 6: Gaussian window of sigma 1.5 cut
+/// at 4 sigma (13 x 13) and normalized, population moments, K = 0.01 and 0.03, L = 1, averaged over every
+/// pixel of the frame and the channels. Beyond the edges an image goes on as its mirror image, the edge pixel
+/// twice. Throws as mean_squared_error. Source: [Wang 2004].
 double ssim(const Image& a, const Image& b);
 
 /// How a single sphere is shown.
