@@ -39,8 +39,8 @@ class FactoredBrdf {
   std::span<const Table> tables() const noexcept { return tables_; }
   std::span<const Lobe> lobes() const noexcept { return lobes_; }
   TableFormat format() const noexcept { return format_; }
-  /// Factors of lobe j in evaluation order: first 2 * pair_count(j) in pairs that swapping wi and wo exchanges,
-  /// each pair multiplied with itself before anything else, then the rest.
+  /// Factors of lobe j in evaluation order: first 2 * pair_count(j) in pairs that swapping wi and wo
+  /// exchanges, each pair multiplied with itself before anything else, then the rest.
   std::span<const FactorUse> ordered_factors(std::size_t j) const noexcept { return ordered_[j]; }
   std::size_t pair_count(std::size_t j) const noexcept { return pair_counts_[j]; }
 
