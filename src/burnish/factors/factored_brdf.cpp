@@ -197,7 +197,9 @@ std::string model_expression(const FactoredBrdf& brdf) {
     for (std::size_t k = 0; k < lobe.factors.size(); ++k) {
       const FactorUse& use = lobe.factors[k];
       const Table& table = brdf.tables()[static_cast<std::size_t>(use.table)];
-      text += fmt::format("{}{}({}", k ? " " : "", table.name, to_string(use.projection));
+      // where only the polar angle counts, say so
+      const bool angle = table.layout.shape == TableShape::line && use.projection == kProjectDifference;
+      text += fmt::format("{}{}({}", k ? " " : "", table.name, angle ? "theta_d" : to_string(use.projection));
       if (table.layout.shape == TableShape::grid) text += "," + to_string(use.projection_y);
       text += ")";
     }
