@@ -28,7 +28,7 @@ struct Arguments {
 class Candidate {
  public:
   Candidate(Source source, bool symmetrize) : source_(std::move(source)) {
-    if (symmetrize && !model()) symmetrized_.emplace(source_.ref());
+    if (symmetrize && !(model() && model()->reciprocal())) symmetrized_.emplace(source_.ref());
   }
   Candidate(const Candidate&) = delete;
 

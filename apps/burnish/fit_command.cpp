@@ -42,20 +42,28 @@ struct Arguments {
   bool no_symmetrize = false, json = false;
 };
 
+// File names need not be UTF-8.
+std::string dump(const nlohmann::ordered_json& json, int indent) {
+  return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
 bool has_disk(const ModelSpec& spec) {
   for (const ModelSpec::TableSpec& table : spec.tables)
     if (table.layout.shape == TableShape::disk) return true;
   return false;
 }
 
-/// What is fitted: the source's own samples where it has some, else pairs drawn from it.
+/// What is fitted: the source's own samples where it has some, else pairs drawn from it. The samples may
+/// refer to the symmetrized source beside them: it stays where it was made.
 struct FitInput {
+  FitInput() = default;
+  FitInput(const FitInput&) = delete;
+
   std::optional<SymmetrizedBrdf> symmetrized;
   SampleSource samples;
 };
 
-FitInput make_input(const Source& source, const Arguments& arguments, const ModelSpec& spec) {
-  FitInput input;
+void make_input(const Source& source, const Arguments& arguments, const ModelSpec& spec, FitInput& input) {
   const bool symmetrize = !arguments.no_symmetrize;
   if (const Samples* samples = source.samples()) {
     input.samples = from_samples(*samples, symmetrize);
@@ -70,7 +78,6 @@ FitInput make_input(const Source& source, const Arguments& arguments, const Mode
     input.samples =
         from_brdf(symmetrize ? BrdfRef(*input.symmetrized) : brdf, count, arguments.seed, has_disk(spec));
   }
-  return input;
 }
 
 HomomorphicOptions make_options(const Source& source, const Arguments& arguments) {
@@ -89,7 +96,8 @@ nlohmann::ordered_json fit(const Arguments& arguments) {
   const ThreadLimit limit(arguments.threads);
   const Source source = arguments.source.open();
   ModelSpec spec = parse_model_spec(arguments.model, arguments.tables, source.ref().isotropic());
-  const FitInput input = make_input(source, arguments, spec);
+  FitInput input;
+  make_input(source, arguments, spec, input);
   HomomorphicOptions options = make_options(source, arguments);
 
   std::optional<double> cross_validated;
@@ -99,7 +107,7 @@ nlohmann::ordered_json fit(const Arguments& arguments) {
     options.smooth = trials.front().smooth;
     for (std::size_t t = 0; t < spec.tables.size(); ++t)
       spec.tables[t].smooth_share = trials.front().shares[t];
-    cross_validated = trials.front().error;
+    if (input.samples.distinct <= kManySamples) cross_validated = trials.front().error;
   } else if (arguments.smooth != "default") {
     options.smooth = CLI::detail::lexical_cast(arguments.smooth, options.smooth) ? options.smooth : -1;
     if (!(options.smooth >= 0))
@@ -137,7 +145,7 @@ nlohmann::ordered_json fit(const Arguments& arguments) {
   }
   write_then_rename(
       arguments.out,
-      format_model({.brdf = result.brdf, .lambda_nm = source.findings.lambda_nm, .notes = notes.dump()}));
+      format_model({.brdf = result.brdf, .lambda_nm = source.findings.lambda_nm, .notes = dump(notes, -1)}));
 
   notes["output"] = arguments.out;
   notes["model"] = model_expression(result.brdf);
@@ -211,7 +219,7 @@ void add_fit_command(CLI::App& app) {
   verb->callback([arguments] {
     const nlohmann::ordered_json notes = fit(*arguments);
     if (arguments->json)
-      fmt::print("{}\n", notes.dump(2));
+      fmt::print("{}\n", dump(notes, 2));
     else
       print(notes);
   });

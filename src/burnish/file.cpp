@@ -30,7 +30,14 @@ FileBytes read_file(const fs::path& path, std::uint64_t limit) {
   return file;
 }
 
-void write_then_rename(const fs::path& path, std::string_view bytes) {
+void write_then_rename(const fs::path& given, std::string_view bytes) {
+  std::error_code ignored_state;
+  // A link's target is what is replaced; devices, pipes and folders are not.
+  const fs::path path =
+      fs::is_symlink(given, ignored_state) ? fs::weakly_canonical(given, ignored_state) : given;
+  const fs::file_status status = fs::status(path, ignored_state);
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    throw Error::in_file(given.string(), "a path to write a file to", "something else than a file");
   const fs::path temporary = path.string() + fmt::format(".{}.partial", ::getpid());
   {
     std::ofstream out(temporary, std::ios::binary);
@@ -39,7 +46,7 @@ void write_then_rename(const fs::path& path, std::string_view bytes) {
     if (!out) {
       std::error_code ignored;
       fs::remove(temporary, ignored);
-      throw Error::in_file(path.string(), "a writable path", "a write error");
+      throw Error::in_file(given.string(), "a writable path", "a write error");
     }
   }
   std::error_code error;

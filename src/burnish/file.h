@@ -24,7 +24,8 @@ struct FileBytes {
 FileBytes read_file(const std::filesystem::path& path, std::uint64_t limit = std::uint64_t{4} << 30);
 
 /// Writes `bytes` under a temporary name and renames it to `path`, so that no failure leaves a partial file
-/// behind. Throws Error if the folder cannot be written.
+/// behind. Follows links. Throws Error if the folder cannot be written or the path is
+/// a folder, device or pipe.
 void write_then_rename(const std::filesystem::path& path, std::string_view bytes);
 
 }  // namespace burnish

@@ -352,6 +352,7 @@ LogSolution solve(const RowMaker& rows, const Unknowns& unknowns, const Homomorp
     }
     z = op.precondition(r);
     const double next = inner_product(r, z);
+    if (!std::isfinite(next)) throw Error("fit: expected a solvable system; more smoothness may help");
     for (std::size_t i = 0; i < p.size(); ++i) p[i] = z[i] + next / rz * p[i];
     rz = next;
     ++solution.iterations;

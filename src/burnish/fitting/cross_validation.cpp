@@ -25,11 +25,10 @@ SampleSource part_of(const SampleSource& source, std::size_t folds, std::size_t 
 
 double held_out_error(const SampleSource& source, const ModelSpec& spec, const HomomorphicOptions& options,
                       std::size_t folds) {
-  const double floor = options.reweightings > 0 ? options.error_floor : options.floor;
   ErrorSum sum;
   for (std::size_t fold = 0; fold < folds; ++fold) {
     const FactoredBrdf model = fit_homomorphic(part_of(source, folds, fold, false), spec, options).brdf;
-    const ErrorSum part = log_error(part_of(source, folds, fold, true), model, floor);
+    const ErrorSum part = log_error(part_of(source, folds, fold, true), model, options.error_floor);
     sum.error += part.error;
     sum.weight += part.weight;
   }
@@ -38,7 +37,6 @@ double held_out_error(const SampleSource& source, const ModelSpec& spec, const H
 
 std::vector<SmoothTrial> choose_smoothness(const SampleSource& source, const ModelSpec& spec,
                                            const HomomorphicOptions& options) {
-  constexpr std::size_t kManySamples = 20'000;
   constexpr int kFirstDecade = -10, kLastDecade = -1, kWorseDecades = 2;
   const bool many = source.distinct > kManySamples;
   const std::size_t folds = many ? 2 : 5, tables = spec.tables.size();
@@ -66,19 +64,20 @@ std::vector<SmoothTrial> choose_smoothness(const SampleSource& source, const Mod
 
   std::vector<double> shares;
   for (const ModelSpec::TableSpec& table : spec.tables) shares.push_back(table.smooth_share);
+  best.shares = shares;
   int worse = 0;
   for (int decade = kFirstDecade; decade <= kLastDecade && worse < kWorseDecades; ++decade)
     worse = improves(attempt(std::pow(10.0, decade), shares)) ? 0 : worse + 1;
   for (int round = 0; round < rounds; ++round)
     for (std::size_t t = 0; t < tables; ++t)
-      for (const double factor : {0.1, 10.0}) {
+      for (const double before = best.shares[t]; const double factor : {0.1, 10.0}) {
         bool moved = false;
         do {
           shares = best.shares;
           shares[t] *= factor;
           moved = improves(attempt(best.smooth, shares));
         } while (moved && shares[t] > 1e-4 && shares[t] < 1e4);
-        if (best.shares[t] != spec.tables[t].smooth_share) break;
+        if (best.shares[t] != before) break;  // this way helped, the other would undo it
       }
   for (const double factor : {std::sqrt(0.1), std::sqrt(10.0)})
     improves(attempt(best.smooth * factor, best.shares));

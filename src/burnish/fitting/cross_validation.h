@@ -7,11 +7,15 @@
 
 namespace burnish {
 
-/// Held-out error of fit_homomorphic with these options: the samples are cut into `folds` by their number
+/// Held-out error of fit_homomorphic with these options, the weighted mean of |log((f + e) / (model + e))|
+/// with e = options.error_floor: the samples are cut into `folds` by their number
 /// modulo folds (both directions of a sample fall together), each fold is predicted by a fit to the others.
 /// folds >= 2. Throws what fit_homomorphic throws.
 double held_out_error(const SampleSource& source, const ModelSpec& spec, const HomomorphicOptions& options,
                       std::size_t folds);
+
+/// Above this many samples choose_smoothness takes shortcuts.
+inline constexpr std::size_t kManySamples = 20'000;
 
 /// What choose_smoothness tried.
 struct SmoothTrial {

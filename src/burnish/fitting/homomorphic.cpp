@@ -1,4 +1,4 @@
-#include <optional>
+#include <cmath>
 #include <utility>
 
 #include <burnish/error.h>
@@ -11,7 +11,7 @@ namespace burnish {
 namespace {
 
 // Up to here the normal equations fit the caches and their solution costs less than a pass over the samples.
-constexpr std::size_t kMostDirectUnknowns = 1024;
+constexpr std::size_t kMostDirectUnknowns = 512;
 
 bool solved_directly(const ModelSpec& spec, std::size_t unknowns, int channels) {
   bool shared = false;
@@ -47,8 +47,8 @@ HomomorphicFit fit_homomorphic(const SampleSource& source, const ModelSpec& spec
   if (spec.lobes.size() != 1 || spec.lobes.front().empty())
     throw Error("fit: a log-linear fit takes a model of one lobe");
   if (source.count == 0) throw Error("fit: expected samples, found none");
-  if (!(options.smooth >= 0) || !(options.floor > 0) || !(options.error_floor > 0) ||
-      options.reweightings < 0)
+  if (!(options.smooth >= 0) || !std::isfinite(options.smooth) || !(options.floor > 0) ||
+      !(options.error_floor > 0) || options.reweightings < 0)
     throw Error("fit: expected smooth >= 0, floors > 0 and reweightings >= 0");
 
   RowMaker rows(source, spec, options.floor, options.error_floor);

@@ -34,8 +34,9 @@ struct HomomorphicSummary {
   std::size_t samples = 0;   ///< samples with weight
   std::size_t unknowns = 0;  ///< texels of all channels
   double error_before = 0;   ///< weighted rms of log f about its mean: the error of the best constant
-  double error_after = 0;   ///< weighted rms of log f - log of the model, before rounding to the table format
-  int iterations = 0;       ///< of conjugate gradients; 0 for a direct solution
+  double error_after =
+      0;               ///< weighted rms of log f - log of the plain model, before reweighting and rounding
+  int iterations = 0;  ///< of conjugate gradients; 0 for a direct solution
   std::string stop_reason;  ///< "direct solution", "tolerance reached", "iteration limit"
   int reweightings = 0;     ///< passes used
 };

@@ -67,7 +67,7 @@ struct LogSolution {
   std::string stop_reason;
 };
 
-/// Minimizes by gathering the normal equations in one pass and factorizing them: for up to a thousand
+/// Minimizes by gathering the normal equations in one pass and factorizing them: for up to some hundred
 /// unknowns.
 LogSolution solve_directly(const RowMaker& rows, const Unknowns& unknowns, const HomomorphicOptions& options);
 

@@ -25,7 +25,7 @@ void add_row(SmoothnessRows& rows, double scale, std::initializer_list<Term> ter
 SmoothnessRows smoothness_rows(const TableLayout& layout) {
   SmoothnessRows rows;
   const int w = layout.width, h = layout.height;
-  const double nx = w - 1, ny = h > 1 ? h - 1 : 1;
+  const double nx = w > 1 ? w - 1 : 1, ny = h > 1 ? h - 1 : 1;
   // An integral over cells of size 1/nx x 1/ny of squared differences over powers of the spacing.
   const double area = 1 / (nx * ny);
   const double xx = nx * nx * std::sqrt(area), yy = ny * ny * std::sqrt(area),
