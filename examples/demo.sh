@@ -14,7 +14,9 @@ fi
 echo "== Factoring $input"
 "$burnish" fit "$input" -o "$out/model.exr"
 echo "== Comparing with $reference"
-"$burnish" compare "$reference" "$out/model.exr" -o "$out/report"
+"$burnish" compare "$reference" "$out/model.exr" -o "$out/report" | tee "$out/figures.txt"
 echo
 echo "The model:    $out/model.exr (any EXR viewer shows its textures)"
 echo "The pictures: $out/report/index.html, $out/report/overview.png"
+awk 'NR == 2 {printf "The error:    psnr %s dB, ssim %s, relative %s, in %s bytes\n", $(NF-4), $(NF-3), $(NF-2), $(NF-5)}' \
+  "$out/figures.txt"
