@@ -421,7 +421,7 @@ struct FactoredEvaluator::Plan {
       std::fill_n(sum, count, Lanes<kLanes>{});
       for (const LobeUses& lobe : lobes) {
         std::fill_n(product, count, load<Lanes<kLanes>>(scales.data() + lobe.scale + group));
-        // [homomorphic factorization, eq. 4]
+        // [HomomorphicBrdf, eq. 4]
         for (std::size_t k = lobe.first; k < lobe.last; ++k)
           multiply<kLanes>(uses[k], values.data() + uses[k].table + (uses[k].stride == 1 ? 0 : group), block,
                            stride, count, product);

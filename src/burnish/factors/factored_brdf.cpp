@@ -115,7 +115,7 @@ bool FactoredBrdf::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     for (std::size_t c = 0; c < channels; ++c) product[c] = lobes_[j].scale[c];
     const std::vector<FactorUse>& uses = ordered_[j];
     std::size_t k = 0;
-    // [homomorphic factorization, eq. 4]
+    // [HomomorphicBrdf, eq. 4]
     for (; k < 2 * pair_counts_[j]; k += 2) {
       const Table& table = tables_[static_cast<std::size_t>(uses[k].table)];
       const Lookup a = locate(table.layout, uses[k], wi, wo), b = locate(table.layout, uses[k + 1], wi, wo);

@@ -85,7 +85,7 @@ class LogOperator {
   }
 
   /// r -> approximate inverse of the operator times r: on the tables' own resolution and every coarser one,
-  /// the residual over the operator's diagonal there, added up [Bramble, Pasciak & Xu 1990].
+  /// the residual over the operator's diagonal there, added up [Bramble 1990].
   void build_preconditioner() {
     preconditioner_.resize(base_.size());
     for (std::size_t t = 0; t < base_.size(); ++t) {
@@ -248,7 +248,7 @@ class LogOperator {
     }
   }
 
-  // row = sum of log lambda over the uses [homomorphic factorization, eq. 5]
+  // row = sum of log lambda over the uses [HomomorphicBrdf, eq. 5]
   void gather(const LogRows& rows, std::size_t i, const Floats& x, float* row) const {
     for (std::size_t c = 0; c < step(); ++c) row[c] = 0;
     for_each_corner(rows, i, [&](std::size_t at, std::size_t step_of, float weight) {
@@ -331,7 +331,7 @@ LogSolution solve(const RowMaker& rows, const Unknowns& unknowns, const Homomorp
   LogOperator<Padded> op(rows, options);
   op.build_preconditioner();
 
-  // Preconditioned conjugate gradients on the normal equations [Hestenes & Stiefel 1952].
+  // Preconditioned conjugate gradients on the normal equations [Hestenes 1952].
   Doubles x(op.count()), r = op.right_side(), z = op.precondition(r), p;
   p = z;
   double rz = inner_product(r, z);
