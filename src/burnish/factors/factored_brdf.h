@@ -21,10 +21,10 @@ struct Lobe {
 /// How table values are stored.
 enum class TableFormat { half, single };
 
-/// A factored BRDF: f(wi, wo) = sum over lobes of scale * product of table lookups, all positive [homomorphic
-/// factorization, eq. 4; several lobes go beyond the paper]. A table used for both directions is stored once,
-/// and the two lookups are multiplied with each other first, so a reciprocal model is reciprocal to the last
-/// bit. Satisfies Brdf: eval takes directions above the horizon, f has channels() entries, 1/sr.
+/// A factored BRDF: f(wi, wo) = sum over lobes of scale * product of table lookups, all positive
+/// [HomomorphicBrdf, eq. 4; several lobes go beyond the paper]. A table used for both directions is stored
+/// once, and the two lookups are multiplied with each other first, so a reciprocal model is reciprocal to the
+/// last bit. Satisfies Brdf: eval takes directions above the horizon, f has channels() entries, 1/sr.
 class FactoredBrdf {
  public:
   FactoredBrdf() = default;

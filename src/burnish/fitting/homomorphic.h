@@ -46,13 +46,12 @@ struct HomomorphicFit {
   HomomorphicSummary summary;
 };
 
-/// Fits one lobe by homomorphic factorization: log f = sum of log lambda_k(pi_k) [homomorphic factorization,
-/// eq. 5] is one linear row a sample and channel, with the (bi)linear weights of the texels it touches;
-/// weighted least squares with a smoothness term that also fills texels that no sample touches. Small 1-D
-/// models are solved directly by normal equations gathered in one pass, others by matrix-free conjugate
-/// gradients with a multilevel preconditioner. The result depends on neither the number of threads nor their
-/// timing. Throws Error if the spec has no or several lobes, the options are out of range, or no sample has
-/// weight.
+/// Fits one lobe by homomorphic factorization: log f = sum of log lambda_k(pi_k) [HomomorphicBrdf, eq. 5] is
+/// one linear row a sample and channel, with the (bi)linear weights of the texels it touches; weighted least
+/// squares with a smoothness term that also fills texels that no sample touches. Small 1-D models are solved
+/// directly by normal equations gathered in one pass, others by matrix-free conjugate gradients with a
+/// multilevel preconditioner. The result depends on neither the number of threads nor their timing. Throws
+/// Error if the spec has no or several lobes, the options are out of range, or no sample has weight.
 HomomorphicFit fit_homomorphic(const SampleSource& source, const ModelSpec& spec,
                                const HomomorphicOptions& options);
 
