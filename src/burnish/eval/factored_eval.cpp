@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t kMostBlock = 64;  // directions that go through the steps together
 constexpr std::size_t kCells = 4096;    // cells of a block, 32 KB
 
-enum class SourceKind { wi, wo, half, difference_angle, difference, affine };
+enum class SourceKind { wi, wo, half, difference_angle, deviation_angle, difference, affine };
 
 // A position in tables: u = r a / (r b + den c), or (r / den)^power where power is not 0, times `cells`.
 // Of a disk two, in slot and slot + 1: u's components along x and y.
@@ -116,6 +116,16 @@ struct Block {
       const float dx = in.wi_x[i] - in.wo_x[i], dy = in.wi_y[i] - in.wo_y[i], dz = in.wi_z[i] - in.wo_z[i];
       r[i] = std::sqrt(dx * dx + dy * dy + dz * dz);
       den[i] = 2 + sum_length[i];
+    }
+  }
+
+  // the same of the mirrored light
+  void project_deviation_angle(const Directions& in, std::size_t count) noexcept {
+    for (std::size_t i = 0; i < count; ++i) {
+      const float dz = in.wi_z[i] - in.wo_z[i];
+      r[i] = std::sqrt(sum_x[i] * sum_x[i] + sum_y[i] * sum_y[i] + dz * dz);
+      const float dx = in.wi_x[i] - in.wo_x[i], dy = in.wi_y[i] - in.wo_y[i];
+      den[i] = 2 + std::sqrt(dx * dx + dy * dy + sum_z[i] * sum_z[i]);
     }
   }
 
@@ -371,10 +381,10 @@ struct FactoredEvaluator::Plan {
                             : projection == kProjectWo                    ? SourceKind::wo
                             : projection == kProjectHalf                  ? SourceKind::half
                             : projection.kind == Projection::Kind::affine ? SourceKind::affine
+                            : projection == kProjectDeviation             ? SourceKind::deviation_angle
                             : azimuth                                     ? SourceKind::difference
                                                                           : SourceKind::difference_angle;
-    needs_sum |=
-        kind == SourceKind::half || kind == SourceKind::difference || kind == SourceKind::difference_angle;
+    needs_sum |= kind != SourceKind::wi && kind != SourceKind::wo && kind != SourceKind::affine;
     for (Source& source : sources)
       if (source.kind == kind && source.projection == projection) return source;
     return sources.emplace_back(Source{kind, projection, {}});
@@ -397,6 +407,9 @@ struct FactoredEvaluator::Plan {
           break;
         case SourceKind::difference_angle:
           block.project_difference_angle(in, count);
+          break;
+        case SourceKind::deviation_angle:
+          block.project_deviation_angle(in, count);
           break;
         case SourceKind::difference:
           block.project_difference(in, count);

@@ -42,8 +42,7 @@ double lookup(const Table& table, const Lookup& at, std::size_t channel) noexcep
 }
 
 int coefficient_count(const Projection& p) noexcept {
-  if (p.kind == Projection::Kind::difference || p == kProjectWi || p == kProjectWo || p == kProjectHalf)
-    return 0;
+  if (p.kind != Projection::Kind::affine || p == kProjectWi || p == kProjectWo || p == kProjectHalf) return 0;
   return (p.wi != 0) + (p.wo != 0) + (p.mirror != 0) + (p.n != 0);
 }
 
@@ -89,6 +88,8 @@ FactoredBrdf::FactoredBrdf(int channels, std::vector<Table> tables, std::vector<
             fmt::format("lobe: expected a table index below {}, found {}", tables_.size(), use.table));
       const TableLayout& layout = tables_[static_cast<std::size_t>(use.table)].layout;
       isotropic_ = isotropic_ && !depends_on_azimuth(layout);
+      if (depends_on_azimuth(layout) && use.projection == kProjectDeviation)
+        throw Error("lobe: expected a disk over a projection with an azimuth, found theta_m");
       FactorUse other;
       const bool has_swap = swapped_use(use, layout, other);
       const auto partner = has_swap && other != use ? std::find(rest.begin(), rest.end(), other) : rest.end();

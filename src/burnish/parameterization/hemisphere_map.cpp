@@ -17,12 +17,12 @@ Warp parse_warp(std::string_view text) {
   const auto [end, code] = std::from_chars(number.data(), number.data() + number.size(), parameter);
   const bool numeric = code == std::errc{} && end == number.data() + number.size();
   if (numeric && name == "power" && parameter > 0 && parameter <= 1) return {WarpKind::power, parameter};
-  if (numeric && name == "rational" && parameter >= 1e-6 && parameter <= 1e6)
-    return {WarpKind::rational, parameter};
-  throw Error(
-      fmt::format("warp: expected identity, power:P with P in (0, 1] or rational:K with K in [1e-6, 1e6], "
-                  "found '{}'",
-                  text));
+  const double k = parameter > 0 ? parameter : -1 - parameter;  // distance from the excluded [-1, 0]
+  if (numeric && name == "rational" && k >= 1e-6 && k <= 1e6) return {WarpKind::rational, parameter};
+  throw Error(fmt::format(
+      "warp: expected identity, power:P with P in (0, 1] or rational:K with K in [1e-6, 1e6] or below -1, "
+      "found '{}'",
+      text));
 }
 
 std::string to_string(Warp warp) {

@@ -19,9 +19,9 @@ enum class WarpKind { identity, power, rational };
 /// u = forward(t), t = inverse(u):
 /// - identity: u = t, the parabolic map of the paper;
 /// - power: u = t^parameter, parameter in (0, 1]; below 1 more nodes near the normal (1/2: t quadratic in u);
-/// - rational: u = t (1 + k) / (t + k), k = parameter > 0; the node density at the normal is (1 + k) / k
-/// times the
-///   uniform one, for one division.
+/// - rational: u = t (1 + k) / (t + k), one division; k = parameter > 0 crowds the nodes at the normal, where
+///   their density is (1 + k) / k times the uniform one, k < -1 at the horizon, where it is k / (1 + k) times
+///   that.
 struct Warp {
   WarpKind kind = WarpKind::identity;
   double parameter = 1;

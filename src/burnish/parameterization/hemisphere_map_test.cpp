@@ -8,7 +8,11 @@
 namespace burnish {
 namespace {
 
-const Warp kWarps[] = {{}, {WarpKind::power, 0.5}, {WarpKind::rational, 0.05}, {WarpKind::rational, 2}};
+const Warp kWarps[] = {{},
+                       {WarpKind::power, 0.5},
+                       {WarpKind::rational, 0.05},
+                       {WarpKind::rational, 2},
+                       {WarpKind::rational, -1.2}};
 
 TEST(Warp, IsMonotoneOntoTheUnitIntervalAndInvertsItself) {
   for (const Warp& warp : kWarps) {
@@ -29,8 +33,8 @@ TEST(Warp, ReadsWhatItPrints) {
 }
 
 TEST(Warp, RefusesWhatItDoesNotKnow) {
-  for (const char* text :
-       {"", "power", "power:0", "power:1.5", "rational:-1", "rational:nan", "rational:1x", "log"})
+  for (const char* text : {"", "power", "power:0", "power:1.5", "rational:-1", "rational:-0.5",
+                           "rational:nan", "rational:1x", "log"})
     EXPECT_THROW(parse_warp(text), Error) << text;
 }
 

@@ -35,6 +35,10 @@ Vec3 difference_vector(Vec3 wi, Vec3 wo) noexcept {
 
 Vec3 project(const Projection& p, Vec3 wi, Vec3 wo) noexcept {
   if (p.kind == Projection::Kind::difference) return normalize(difference_vector(wi, wo));
+  if (p.kind == Projection::Kind::deviation) {
+    const Vec3 mirrored = mirror(wi);
+    return {0.5 * length(mirrored - wo), 0, 0.5 * length(mirrored + wo)};
+  }
   Vec3 v = combine(p.wi, wi, p.wo, wo);
   if (p.mirror != 0) v = v + p.mirror * mirror(wi);
   v.z += p.n;
@@ -43,13 +47,15 @@ Vec3 project(const Projection& p, Vec3 wi, Vec3 wo) noexcept {
 
 double project_tan_half(const Projection& p, Vec3 wi, Vec3 wo) noexcept {
   if (p.kind == Projection::Kind::affine) return tan_half_theta(project(p, wi, wo));
-  // cos theta_d = |wi + wo| / 2, sin theta_d = |wi - wo| / 2
+  // cos theta_d = |wi + wo| / 2, sin theta_d = |wi - wo| / 2; theta_m likewise, where mirroring only changes
+  // the signs of wi's x and y, so that exchanging the directions changes no bit
+  if (p.kind == Projection::Kind::deviation) wi = mirror(wi);
   return length(wi - wo) / (2 + length(wi + wo));
 }
 
 bool swapped(const Projection& p, bool azimuth, Projection& result) noexcept {
   result = p;
-  if (p.kind == Projection::Kind::difference) return !azimuth;
+  if (p.kind != Projection::Kind::affine) return !azimuth;
   if (p.mirror != 0) return false;
   std::swap(result.wi, result.wo);
   return true;
@@ -61,12 +67,13 @@ Projection parse_projection(std::string_view text, bool& angle_only) {
   if (text == "wo" || text == "theta_o") return kProjectWo;
   if (text == "h" || text == "theta_h") return kProjectHalf;
   if (text == "d" || text == "theta_d") return kProjectDifference;
+  if (text == "theta_m") return kProjectDeviation;
 
   const auto fail = [&]() -> Error {
-    return Error(
-        fmt::format("projection: expected wi, wo, h, d, theta_i, theta_o, theta_h, theta_d or a sum of "
-                    "terms of wi, wo, m and n such as wi+wo+0.5n, found '{}'",
-                    text));
+    return Error(fmt::format(
+        "projection: expected wi, wo, h, d, theta_i, theta_o, theta_h, theta_d, theta_m or a sum of "
+        "terms of wi, wo, m and n such as wi+wo+0.5n, found '{}'",
+        text));
   };
   Projection p;
   std::string_view rest = text;
@@ -103,6 +110,7 @@ std::string to_string(const Projection& p) {
   if (p == kProjectWo) return "wo";
   if (p == kProjectHalf) return "h";
   if (p == kProjectDifference) return "d";
+  if (p == kProjectDeviation) return "theta_m";
   std::string text;
   const auto term = [&](double coefficient, const char* name) {
     if (coefficient != 0)

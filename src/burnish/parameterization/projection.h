@@ -14,9 +14,11 @@ namespace burnish {
 ///   the view, the mirrored light (-x, -y, z) and the normal; wi, wo and h are the simplest of them.
 /// - difference: the light direction in the frame of the half vector, theta_d from its z, phi_d from its
 /// azimuth
-///   [Rusinkiewicz 1998].
+///   [Rusinkiewicz 1998];
+/// - deviation: a polar angle alone (azimuth 0), theta_m: half the angle between the view and the light's
+///   mirror direction, 0 in the middle of a highlight; the same when the directions are exchanged.
 struct Projection {
-  enum class Kind { affine, difference };
+  enum class Kind { affine, difference, deviation };
 
   Kind kind = Kind::affine;
   double wi = 0, wo = 0, mirror = 0, n = 0;
@@ -28,6 +30,7 @@ inline constexpr Projection kProjectWi{.wi = 1};
 inline constexpr Projection kProjectWo{.wo = 1};
 inline constexpr Projection kProjectHalf{.wi = 1, .wo = 1};
 inline constexpr Projection kProjectDifference{.kind = Projection::Kind::difference};
+inline constexpr Projection kProjectDeviation{.kind = Projection::Kind::deviation};
 
 /// The projected direction, z >= 0 (a combination that points below the horizon is clamped to it). wi and wo
 /// above the horizon. Exactly equal for (wi, wo) and (wo, wi) under swapped(projection).
@@ -40,9 +43,9 @@ double project_tan_half(const Projection& projection, Vec3 wi, Vec3 wo) noexcept
 /// `azimuth` says whether the table depends on the azimuth. Returns false where there is none (mirror terms).
 bool swapped(const Projection& projection, bool azimuth, Projection& result) noexcept;
 
-/// Reads wi, wo, h, d, theta_h, theta_d, theta_i, theta_o or a sum of terms such as "wi+wo+0.5n", "m+0.8wo"
-/// (m is the mirrored light). The theta names mean the same vectors; `angle_only` tells that one was used.
-/// Throws Error on anything else.
+/// Reads wi, wo, h, d, theta_h, theta_d, theta_m, theta_i, theta_o or a sum of terms such as "wi+wo+0.5n",
+/// "m+0.8wo" (m is the mirrored light). The theta names mean the same vectors; `angle_only` tells that one
+/// was used. Throws Error on anything else.
 Projection parse_projection(std::string_view text, bool& angle_only);
 /// A text parse_projection reads back to the same projection.
 std::string to_string(const Projection& projection);

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include <burnish/error.h>
@@ -21,7 +23,7 @@ std::vector<DirectionPair> pairs_and_corners() {
 
 TEST(Projection, GivesUnitVectorsAboveTheHorizon) {
   bool angle_only;
-  for (const char* text : {"wi", "wo", "h", "d", "wi+wo-0.7n", "m+wo", "0.5wi-wo+0.2n", "wi-wo"}) {
+  for (const char* text : {"wi", "wo", "h", "d", "wi+wo-0.7n", "m+wo", "0.5wi-wo+0.2n", "wi-wo", "theta_m"}) {
     const Projection p = parse_projection(text, angle_only);
     for (const auto& [wi, wo] : pairs_and_corners()) {
       const Vec3 v = project(p, wi, wo);
@@ -43,7 +45,7 @@ TEST(Projection, HalfAndDifferenceHaveTheHalfDifferenceAngles) {
 
 TEST(Projection, AngleAloneAgreesWithTheVector) {
   bool angle_only;
-  for (const char* text : {"wi", "h", "d", "wi+wo+0.4n", "m+2wo"}) {
+  for (const char* text : {"wi", "h", "d", "wi+wo+0.4n", "m+2wo", "theta_m"}) {
     const Projection p = parse_projection(text, angle_only);
     for (const auto& [wi, wo] : pairs_and_corners())
       EXPECT_NEAR(project_tan_half(p, wi, wo), tan_half_theta(project(p, wi, wo)), 1e-12) << text;
@@ -52,7 +54,7 @@ TEST(Projection, AngleAloneAgreesWithTheVector) {
 
 TEST(Projection, SwappingIsExactToTheLastBit) {
   bool angle_only;
-  for (const char* text : {"wi", "wo", "h", "wi+wo+0.4n", "0.3wi+0.9wo-0.2n", "d"}) {
+  for (const char* text : {"wi", "wo", "h", "wi+wo+0.4n", "0.3wi+0.9wo-0.2n", "d", "theta_m"}) {
     const Projection p = parse_projection(text, angle_only);
     Projection q;
     ASSERT_TRUE(swapped(p, false, q)) << text;
@@ -73,6 +75,13 @@ TEST(Projection, ReadsWhatItPrints) {
   }
   EXPECT_EQ(parse_projection("theta_d", angle_only), kProjectDifference);
   EXPECT_TRUE(angle_only);
+  EXPECT_EQ(parse_projection(to_string(kProjectDeviation), angle_only), kProjectDeviation);
+  EXPECT_TRUE(angle_only);
+}
+
+TEST(Projection, DeviationIsHalfTheAngleToTheMirrorDirection) {
+  for (const auto& [wi, wo] : draw_pairs(2000, 7, false))
+    EXPECT_NEAR(std::cos(2 * theta_of(project(kProjectDeviation, wi, wo))), dot(mirror(wi), wo), 1e-12);
 }
 
 TEST(Projection, RefusesWhatItDoesNotKnow) {
