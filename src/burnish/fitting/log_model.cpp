@@ -1,0 +1,158 @@
+#include <algorithm>
+#include <cmath>
+
+#include <burnish/error.h>
+#include <burnish/fitting/homomorphic.h>
+#include <burnish/fitting/log_model.h>
+
+namespace burnish {
+
+namespace {
+
+// Where a lobe is split, in tan(theta_d / 2): the width of the step, and how little is left of it far away.
+constexpr double kStepWidth = 0.1, kStepRest = 0.01;
+
+double step_up(double t, double centre) {
+  return kStepRest + (1 - 2 * kStepRest) / (1 + std::exp((centre - t) / kStepWidth));
+}
+
+double node_place(const Warp& warp, int node, int count) {
+  return warp.inverse(static_cast<double>(node) / (count - 1));
+}
+
+struct Cell {
+  std::size_t node;
+  double fraction;
+};
+
+Cell find_cell(double u, int count) {
+  const double position = std::clamp(u, 0.0, 1.0) * (count - 1);
+  const auto node = std::min(static_cast<std::size_t>(position), static_cast<std::size_t>(count - 2));
+  return {node, position - static_cast<double>(node)};
+}
+
+}  // namespace
+
+LogModel fit_one_lobe(const ModelSpec& spec, const TrainingSet& set, const std::vector<float>& values,
+                      double smooth) {
+  const HomomorphicFit fit =
+      fit_homomorphic(as_source(set, values), spec, {.smooth = smooth, .format = TableFormat::single});
+  LogModel model{.spec = spec, .channels = set.channels, .log_values = {}};
+  for (const Table& table : fit.brdf.tables()) {
+    auto& logs = model.log_values.emplace_back(table.values.begin(), table.values.end());
+    for (double& v : logs) v = std::log(v);
+  }
+  // The lobe's scale goes into tables used once; a shared table takes none.
+  const Lobe& lobe = fit.brdf.lobes().front();
+  for (std::size_t k = lobe.factors.size(); k-- > 0;) {
+    const auto t = static_cast<std::size_t>(lobe.factors[k].table);
+    const auto uses = std::ranges::count(lobe.factors, lobe.factors[k].table, &FactorUse::table);
+    if (model.step(t) != static_cast<std::size_t>(model.channels)) continue;
+    for (std::size_t i = 0; i < model.log_values[t].size(); ++i)
+      model.log_values[t][i] +=
+          std::log(std::max(lobe.scale[i % model.step(t)], 1e-30)) / static_cast<double>(uses);
+    return model;
+  }
+  throw Error("fit: expected a table with all channels in every lobe, found shared ones alone");
+}
+
+LogModel joined(LogModel a, const LogModel& b) {
+  const auto offset = static_cast<int>(a.spec.tables.size());
+  a.spec.tables.insert(a.spec.tables.end(), b.spec.tables.begin(), b.spec.tables.end());
+  a.log_values.insert(a.log_values.end(), b.log_values.begin(), b.log_values.end());
+  for (std::vector<FactorUse> lobe : b.spec.lobes) {
+    for (FactorUse& use : lobe) use.table += offset;
+    a.spec.lobes.push_back(std::move(lobe));
+  }
+  return a;
+}
+
+LogModel with_lobe_split(LogModel model, std::size_t lobe, double centre, const std::string& suffix) {
+  std::vector<FactorUse> uses = model.spec.lobes[lobe];
+  std::vector<int> copy(model.spec.tables.size(), -1);
+  bool stepped = false;
+  for (FactorUse& use : uses) {
+    const auto t = static_cast<std::size_t>(use.table);
+    if (copy[t] < 0) {
+      copy[t] = static_cast<int>(model.spec.tables.size());
+      model.spec.tables.push_back(model.spec.tables[t]);
+      model.spec.tables.back().name += suffix;
+      model.log_values.push_back(model.log_values[t]);
+      const TableLayout& layout = model.spec.tables[t].layout;
+      if (!stepped && layout.shape == TableShape::line && use.projection == kProjectDifference) {
+        stepped = true;
+        const std::size_t step = model.step(t);
+        for (std::size_t i = 0; i < model.log_values[t].size(); ++i) {
+          const double up =
+              step_up(node_place(layout.warp, static_cast<int>(i / step), layout.width), centre);
+          model.log_values.back()[i] += std::log(up);
+          model.log_values[t][i] += std::log(1 - up);
+        }
+      }
+    }
+    use.table = copy[t];
+  }
+  if (!stepped)
+    for (const int table : {model.spec.lobes[lobe].front().table, uses.front().table}) {
+      const auto times =
+          std::ranges::count(model.spec.lobes[lobe], model.spec.lobes[lobe].front().table, &FactorUse::table);
+      for (double& v : model.log_values[static_cast<std::size_t>(table)])
+        v -= std::log(2) / static_cast<double>(times);
+    }
+  model.spec.lobes.push_back(std::move(uses));
+  return model;
+}
+
+LogModel resampled(const LogModel& model, const ModelSpec& spec) {
+  LogModel result{.spec = spec, .channels = model.channels, .log_values = {}};
+  for (std::size_t t = 0; t < spec.tables.size(); ++t) {
+    const TableLayout &from = model.spec.tables[t].layout, &to = spec.tables[t].layout;
+    const std::size_t step = model.step(t);
+    const std::vector<double>& old = model.log_values[t];
+    std::vector<double>& logs = result.log_values.emplace_back(to.node_count() * step);
+    for (int y = 0; y < to.height; ++y)
+      for (int x = 0; x < to.width; ++x) {
+        Cell cx{}, cy{};
+        if (to.shape == TableShape::disk) {
+          const DiskPoint p = to_disk(node_direction(to, x, y), from.warp);
+          cx = find_cell(0.5 + 0.5 * p.x, from.width);
+          cy = find_cell(0.5 + 0.5 * p.y, from.height);
+        } else {
+          cx = find_cell(from.warp.forward(node_place(to.warp, x, to.width)), from.width);
+          if (to.shape == TableShape::grid)
+            cy = find_cell(from.warp_y.forward(node_place(to.warp_y, y, to.height)), from.height);
+        }
+        const auto width = static_cast<std::size_t>(from.width);
+        for (std::size_t c = 0; c < step; ++c) {
+          const auto at = [&](std::size_t i, std::size_t j) {
+            return std::exp(old[(j * width + i) * step + c]);
+          };
+          double v = (1 - cx.fraction) * at(cx.node, cy.node) + cx.fraction * at(cx.node + 1, cy.node);
+          if (to.shape != TableShape::line)
+            v = (1 - cy.fraction) * v + cy.fraction * ((1 - cx.fraction) * at(cx.node, cy.node + 1) +
+                                                       cx.fraction * at(cx.node + 1, cy.node + 1));
+          logs[(static_cast<std::size_t>(y) * static_cast<std::size_t>(to.width) +
+                static_cast<std::size_t>(x)) *
+                   step +
+               c] = std::log(v);
+        }
+      }
+  }
+  return result;
+}
+
+FactoredBrdf to_brdf(const LogModel& model, TableFormat format) {
+  std::vector<Table> tables;
+  for (std::size_t t = 0; t < model.spec.tables.size(); ++t)
+    tables.push_back({.name = model.spec.tables[t].name,
+                      .layout = model.spec.tables[t].layout,
+                      .channels = static_cast<int>(model.step(t)),
+                      .values = {model.log_values[t].begin(), model.log_values[t].end()}});
+  std::vector<Lobe> lobes;
+  for (const std::vector<FactorUse>& uses : model.spec.lobes)
+    lobes.push_back(
+        {.scale = std::vector<double>(static_cast<std::size_t>(model.channels)), .factors = uses});
+  return from_log_tables(model.channels, std::move(tables), std::move(lobes), format);
+}
+
+}  // namespace burnish

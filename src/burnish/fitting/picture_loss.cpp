@@ -1,0 +1,77 @@
+#include <algorithm>
+#include <cmath>
+
+#include <burnish/fitting/picture_loss.h>
+
+namespace burnish {
+
+namespace {
+
+constexpr double kInverseGamma = 1 / 2.2;
+constexpr double kFloor = 1e-3;  // 1/sr, of `relative`
+// Absolute errors below these count as squares; errors of sensors and rounding lie below.
+constexpr double kRelativeRound = 0.05, kLogCosRound = 0.003;
+constexpr double kDimmed[] = {1.0 / 8, 1.0 / 64};
+// The slope of a saturated pixel's model where the reference is not saturated, relative to the slope at 1.
+constexpr double kSaturatedSlope = 0.3;
+// Added to the means in the objective: errors below do not matter, and ln stays finite.
+constexpr ErrorTerms kNegligible{1e-7, 1e-7, 1e-4, 1e-5};
+
+double rounded_abs(double error, double round) noexcept {
+  return std::sqrt(error * error + round * round);
+}
+
+}  // namespace
+
+double PictureLoss::objective(const ErrorTerms& means) const noexcept {
+  double sum = 0;
+  for (std::size_t k = 0; k < kErrorTerms; ++k) sum += shares[k] * std::log(means[k] + kNegligible[k]);
+  return sum;
+}
+
+ErrorTerms PictureLoss::derivatives(const ErrorTerms& means, double picture_weight,
+                                    double pair_weight) const noexcept {
+  ErrorTerms d{};
+  for (std::size_t k = 0; k < kErrorTerms; ++k) {
+    const double weight = k < 2 ? picture_weight : pair_weight;
+    if (weight > 0) d[k] = shares[k] / (means[k] + kNegligible[k]) / weight;
+  }
+  return d;
+}
+
+PictureLoss::Slope PictureLoss::add(double f, double model, double cos_theta_i, bool picture, double weight,
+                                    const ErrorTerms& derivatives, ErrorTerms& sums) const noexcept {
+  Slope slope;
+  if (picture) {
+    // one gamma for all exposures: (e y)^g = e^g y^g
+    static const double kDim[] = {1, std::pow(kDimmed[0], kInverseGamma),
+                                  std::pow(kDimmed[1], kInverseGamma)};
+    const double scale = exposure * cos_theta_i;
+    const double shown = std::pow(f * scale, kInverseGamma),
+                 modelled = std::pow(model * scale, kInverseGamma);
+    for (std::size_t e = 0; e < 3; ++e) {
+      const double a = shown * kDim[e], b = modelled * kDim[e];
+      if (a >= 1 && b >= 1) continue;  // white both: dimmer exposures tell them apart
+      const double error = std::min(b, 1.0) - std::min(a, 1.0);
+      const std::size_t term = e == 0 ? 0 : 1;
+      const double share = e == 0 ? 1 : 0.5;
+      const double rise = kInverseGamma * (b > 1 ? kSaturatedSlope : b);
+      sums[term] += share * weight * error * error;
+      slope.gradient += share * weight * derivatives[term] * 2 * error * rise;
+      slope.curvature += share * weight * derivatives[term] * 2 * rise * rise;
+    }
+    return slope;
+  }
+  const auto add_absolute = [&](std::size_t term, double error, double rise, double round) {
+    const double size = rounded_abs(error, round), w = weight * derivatives[term];
+    sums[term] += weight * (size - round);
+    slope.gradient += w * error / size * rise;
+    slope.curvature += w * rise * rise / size;
+  };
+  add_absolute(2, std::log((model + kFloor) / (f + kFloor)), model / (model + kFloor), kRelativeRound);
+  const double lit = model * cos_theta_i;
+  add_absolute(3, std::log((1 + lit) / (1 + f * cos_theta_i)), lit / (1 + lit), kLogCosRound);
+  return slope;
+}
+
+}  // namespace burnish

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace burnish {
+
+/// The errors that refinement weighs, each a mean over its part of the training set:
+/// 0 pictures: squared error of min(1, exposure f cos theta_i)^(1/2.2), as the sphere images are scored;
+/// 1 dimmed: the same at 1/8 and 1/64 of the exposure, so that highlights keep their shape;
+/// 2 relative: |ln((f + 1e-3) / (f^ + 1e-3))|; 3 log_cos: |ln(1 + f cos theta_i) - ln(1 + f^ cos theta_i)|.
+enum class ErrorTerm : std::size_t { pictures, dimmed, relative, log_cos };
+inline constexpr std::size_t kErrorTerms = 4;
+using ErrorTerms = std::array<double, kErrorTerms>;
+
+/// What refinement minimizes: the sum of shares[k] ln(term k), so that a percent of one error is worth a
+/// percent of another whatever their sizes. Absolute values are rounded off near 0.
+struct PictureLoss {
+  ErrorTerms shares{2, 0.1, 1, 1};
+  double exposure = 1;
+
+  /// The objective of means.
+  double objective(const ErrorTerms& means) const noexcept;
+
+  /// Slope and Gauss-Newton curvature of one value's part in the objective by ln f^, given the derivative of
+  /// the objective by each term's sum; adds the value's errors times `weight` to `sums`.
+  struct Slope {
+    double gradient = 0, curvature = 0;
+  };
+  Slope add(double f, double model, double cos_theta_i, bool picture, double weight,
+            const ErrorTerms& derivatives, ErrorTerms& sums) const noexcept;
+
+  /// The derivative of the objective by each term's sum, given the means and the sums of weights.
+  ErrorTerms derivatives(const ErrorTerms& means, double picture_weight, double pair_weight) const noexcept;
+};
+
+}  // namespace burnish

@@ -1,0 +1,331 @@
+#include <algorithm>
+#include <cmath>
+
+#include <burnish/fitting/refine_system.h>
+#include <burnish/math/parallel.h>
+
+namespace burnish {
+
+namespace {
+
+constexpr std::size_t kChunk = 2048;
+constexpr std::size_t kPartialBytes = std::size_t{256} << 20;  // of matrices summed side by side
+constexpr std::size_t kMostGroups = 16;
+
+// ln of the smallest share of a table's largest value: within what half floats and shared exponents keep.
+const double kLogFloor = std::log(kTableFloor);
+
+}  // namespace
+
+Lookups find_lookups(const ModelSpec& spec, const TrainingSet& set) {
+  Lookups found;
+  for (const auto& lobe : spec.lobes) found.uses += lobe.size();
+  found.node.resize(found.uses * set.size());
+  found.fx.resize(found.node.size());
+  found.fy.resize(found.node.size());
+  for_each_chunk(set.size(), kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+    std::size_t k = begin * found.uses;
+    for (std::size_t i = begin; i < end; ++i)
+      for (const auto& lobe : spec.lobes)
+        for (const FactorUse& use : lobe) {
+          const TableLayout& layout = spec.tables[static_cast<std::size_t>(use.table)].layout;
+          const Lookup at = locate(layout, use, set.pairs[i].wi, set.pairs[i].wo);
+          found.node[k] = static_cast<std::uint32_t>(at.node);
+          found.fx[k] = static_cast<float>(at.fx);
+          found.fy[k] = static_cast<float>(at.fy);
+          ++k;
+        }
+  });
+  return found;
+}
+
+RefineSystem::RefineSystem(const LogModel& model, const TrainingSet& set, const Lookups& lookups,
+                           std::size_t first_channel, std::size_t last_channel)
+    : set_(set),
+      lookups_(lookups),
+      first_channel_(first_channel),
+      last_channel_(last_channel),
+      lobes_(model.spec.lobes.size()) {
+  const std::size_t channels = last_channel - first_channel;
+  for (std::size_t t = 0; t < model.spec.tables.size(); ++t) {
+    const auto& table = model.spec.tables[t];
+    const std::size_t copies = model.step(t) == 1 ? 1 : channels;
+    tables_.push_back({.base = size_,
+                       .stride = copies,
+                       .copies = copies,
+                       .nodes = table.layout.node_count(),
+                       .step = model.step(t),
+                       .share = table.smooth_share,
+                       .rows = smoothness_rows(table.layout)});
+    size_ += tables_.back().nodes * copies;
+  }
+  for (std::size_t j = 0; j < lobes_; ++j)
+    for (const FactorUse& use : model.spec.lobes[j]) {
+      const auto t = static_cast<std::size_t>(use.table);
+      const TableLayout& layout = model.spec.tables[t].layout;
+      uses_.push_back({.base = tables_[t].base,
+                       .stride = tables_[t].stride,
+                       .channel_stride = tables_[t].copies > 1 ? std::size_t{1} : 0,
+                       .next_row = layout.shape == TableShape::line
+                                       ? 0
+                                       : static_cast<std::size_t>(layout.width) * tables_[t].stride,
+                       .lobe = j});
+    }
+  for (std::size_t i = 0; i < set.size(); ++i)
+    (i < set.picture_count ? picture_weight_ : pair_weight_) +=
+        set.weights[i] * static_cast<double>(channels);
+}
+
+Eigen::VectorXd RefineSystem::read(const LogModel& model) const {
+  Eigen::VectorXd x(static_cast<Eigen::Index>(size_));
+  for (std::size_t t = 0; t < tables_.size(); ++t)
+    for (std::size_t n = 0; n < tables_[t].nodes; ++n)
+      for (std::size_t c = 0; c < tables_[t].copies; ++c)
+        x[static_cast<Eigen::Index>(tables_[t].base + n * tables_[t].stride + c)] =
+            model.log_values[t][n * tables_[t].step + (tables_[t].step == 1 ? 0 : first_channel_ + c)];
+  return x;
+}
+
+void RefineSystem::write(const Eigen::VectorXd& x, LogModel& model) const {
+  for (std::size_t t = 0; t < tables_.size(); ++t)
+    for (std::size_t n = 0; n < tables_[t].nodes; ++n)
+      for (std::size_t c = 0; c < tables_[t].copies; ++c)
+        model.log_values[t][n * tables_[t].step + (tables_[t].step == 1 ? 0 : first_channel_ + c)] =
+            x[static_cast<Eigen::Index>(tables_[t].base + n * tables_[t].stride + c)];
+}
+
+void RefineSystem::clamp(Eigen::VectorXd& x) const {
+  for (const TableUnknowns& table : tables_)
+    for (std::size_t c = 0; c < table.copies; ++c) {
+      double* first = x.data() + table.base + c;
+      double largest = *first;
+      for (std::size_t n = 0; n < table.nodes; ++n) largest = std::max(largest, first[n * table.stride]);
+      for (std::size_t n = 0; n < table.nodes; ++n)
+        first[n * table.stride] = std::max(first[n * table.stride], largest + kLogFloor);
+    }
+}
+
+double RefineSystem::evaluate(const double* lambda, std::size_t pair, std::size_t channel,
+                              std::span<double> factor, std::span<double> product) const noexcept {
+  std::fill(product.begin(), product.end(), 1.0);
+  for (std::size_t s = 0; s < uses_.size(); ++s) {
+    const Use& use = uses_[s];
+    const std::size_t k = pair * uses_.size() + s;
+    const double* at = lambda + use.base + lookups_.node[k] * use.stride + channel * use.channel_stride;
+    double v = at[0] + lookups_.fx[k] * (at[use.stride] - at[0]);
+    if (use.next_row > 0) {
+      const double* next = at + use.next_row;
+      v += lookups_.fy[k] * (next[0] + lookups_.fx[k] * (next[use.stride] - next[0]) - v);
+    }
+    factor[s] = v;
+    product[use.lobe] *= v;
+  }
+  double total = 0;
+  for (const double p : product) total += p;
+  return total;
+}
+
+std::size_t RefineSystem::differentiate(const double* lambda, std::size_t pair, std::size_t channel,
+                                        double total, std::span<const double> factor,
+                                        std::span<const double> product,
+                                        std::span<Term> terms) const noexcept {
+  std::size_t count = 0;
+  for (std::size_t s = 0; s < uses_.size(); ++s) {
+    const Use& use = uses_[s];
+    const std::size_t k = pair * uses_.size() + s;
+    const std::size_t first = use.base + lookups_.node[k] * use.stride + channel * use.channel_stride;
+    const double share = product[use.lobe] / (total * factor[s]), fx = lookups_.fx[k], fy = lookups_.fy[k];
+    const auto push = [&](std::size_t unknown, double weight) {
+      terms[count++] = {static_cast<std::uint32_t>(unknown),
+                        static_cast<float>(weight * share * lambda[unknown])};
+    };
+    push(first, (1 - fx) * (1 - fy));
+    push(first + use.stride, fx * (1 - fy));
+    if (use.next_row == 0) continue;
+    push(first + use.next_row, (1 - fx) * fy);
+    push(first + use.next_row + use.stride, fx * fy);
+  }
+  return count;
+}
+
+ErrorTerms RefineSystem::errors(const Eigen::VectorXd& x, const PictureLoss& loss) const {
+  const Eigen::VectorXd lambda = x.array().exp();
+  const std::size_t channels = last_channel_ - first_channel_, all = static_cast<std::size_t>(set_.channels);
+  std::vector<ErrorTerms> partial(chunk_count(set_.size(), kChunk));
+  for_each_chunk(set_.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    std::vector<double> factor(uses_.size()), product(lobes_);
+    const ErrorTerms none{};
+    for (std::size_t i = begin; i < end; ++i)
+      for (std::size_t c = 0; c < channels; ++c)
+        loss.add(set_.values[i * all + first_channel_ + c], evaluate(lambda.data(), i, c, factor, product),
+                 set_.pairs[i].wi.z, i < set_.picture_count, set_.weights[i], none, partial[chunk]);
+  });
+  ErrorTerms means{};
+  for (const ErrorTerms& p : partial)
+    for (std::size_t k = 0; k < kErrorTerms; ++k) means[k] += p[k];
+  for (std::size_t k = 0; k < kErrorTerms; ++k) {
+    const double weight = k < 2 ? picture_weight_ : pair_weight_;
+    means[k] = weight > 0 ? means[k] / weight : 0;
+  }
+  return means;
+}
+
+RefineSystem::Normal RefineSystem::normal(const Eigen::VectorXd& x, const PictureLoss& loss,
+                                          const ErrorTerms& means) const {
+  const Eigen::VectorXd lambda = x.array().exp();
+  const auto n = static_cast<Eigen::Index>(size_);
+  const std::size_t channels = last_channel_ - first_channel_, all = static_cast<std::size_t>(set_.channels);
+  const ErrorTerms derivatives = loss.derivatives(means, picture_weight_, pair_weight_);
+  const std::size_t groups =
+      std::clamp<std::size_t>(kPartialBytes / (size_ * size_ * sizeof(double)), 2, kMostGroups);
+  const std::size_t group_size = (set_.size() + groups - 1) / groups;
+  std::vector<Normal> partial(chunk_count(set_.size(), group_size));
+  // Each pair of terms is added once, below or above the diagonal; twice the diagonal's own is taken off it.
+  for_each_chunk(set_.size(), group_size, [&](std::size_t group, std::size_t begin, std::size_t end) {
+    Normal& sum = partial[group];
+    sum.gradient = Eigen::VectorXd::Zero(n);
+    sum.matrix = Eigen::MatrixXd::Zero(n, n);
+    std::vector<double> factor(uses_.size()), product(lobes_);
+    std::vector<Term> terms(4 * uses_.size());
+    ErrorTerms sums{};
+    for (std::size_t i = begin; i < end; ++i)
+      for (std::size_t c = 0; c < channels; ++c) {
+        const double model = evaluate(lambda.data(), i, c, factor, product);
+        const PictureLoss::Slope slope =
+            loss.add(set_.values[i * all + first_channel_ + c], model, set_.pairs[i].wi.z,
+                     i < set_.picture_count, set_.weights[i], derivatives, sums);
+        const std::size_t count = differentiate(lambda.data(), i, c, model, factor, product, terms);
+        for (std::size_t a = 0; a < count; ++a) {
+          const double value = terms[a].value, scaled = slope.curvature * value;
+          sum.gradient[terms[a].unknown] += slope.gradient * value;
+          double* column = sum.matrix.data() + terms[a].unknown * size_;
+          column[terms[a].unknown] += 0.5 * scaled * value;
+          for (std::size_t b = a + 1; b < count; ++b) column[terms[b].unknown] += scaled * terms[b].value;
+        }
+      }
+  });
+  Normal total = std::move(partial.front());
+  for (std::size_t g = 1; g < partial.size(); ++g) {
+    total.gradient += partial[g].gradient;
+    total.matrix += partial[g].matrix;
+  }
+  total.matrix = (total.matrix + total.matrix.transpose()).eval();
+  return total;
+}
+
+RefineSystem::Rows RefineSystem::rows(const Eigen::VectorXd& x, const PictureLoss& loss,
+                                      const ErrorTerms& means) const {
+  const Eigen::VectorXd lambda = x.array().exp();
+  const auto n = static_cast<Eigen::Index>(size_);
+  const std::size_t channels = last_channel_ - first_channel_, all = static_cast<std::size_t>(set_.channels);
+  const ErrorTerms derivatives = loss.derivatives(means, picture_weight_, pair_weight_);
+  std::size_t width = 0;
+  for (const Use& use : uses_) width += use.next_row > 0 ? 4 : 2;
+  Rows result;
+  result.gradient = result.diagonal = Eigen::VectorXd::Zero(n);
+  result.unknown.resize(set_.size() * channels * width);
+  result.value.resize(result.unknown.size());
+  result.width = width;
+  const std::size_t group_size = (set_.size() + kMostGroups - 1) / kMostGroups;
+  std::vector<Eigen::VectorXd> gradient(chunk_count(set_.size(), group_size)), diagonal(gradient.size());
+  for_each_chunk(set_.size(), group_size, [&](std::size_t group, std::size_t begin, std::size_t end) {
+    gradient[group] = diagonal[group] = Eigen::VectorXd::Zero(n);
+    std::vector<double> factor(uses_.size()), product(lobes_);
+    std::vector<Term> terms(4 * uses_.size());
+    ErrorTerms sums{};
+    for (std::size_t i = begin; i < end; ++i)
+      for (std::size_t c = 0; c < channels; ++c) {
+        const double model = evaluate(lambda.data(), i, c, factor, product);
+        const PictureLoss::Slope slope =
+            loss.add(set_.values[i * all + first_channel_ + c], model, set_.pairs[i].wi.z,
+                     i < set_.picture_count, set_.weights[i], derivatives, sums);
+        const std::size_t count = differentiate(lambda.data(), i, c, model, factor, product, terms);
+        const double root = std::sqrt(slope.curvature);
+        const std::size_t start = (i * channels + c) * width;
+        for (std::size_t a = 0; a < count; ++a) {
+          gradient[group][terms[a].unknown] += slope.gradient * terms[a].value;
+          diagonal[group][terms[a].unknown] += slope.curvature * terms[a].value * terms[a].value;
+          result.unknown[start + a] = terms[a].unknown;
+          result.value[start + a] = static_cast<float>(root * terms[a].value);
+        }
+      }
+  });
+  for (std::size_t g = 0; g < gradient.size(); ++g) {
+    result.gradient += gradient[g];
+    result.diagonal += diagonal[g];
+  }
+  return result;
+}
+
+Eigen::VectorXd RefineSystem::apply(const Rows& rows, const Eigen::VectorXd& v) const {
+  const std::size_t width = rows.width, count = rows.value.size() / width;
+  const std::size_t group_size = (count + kMostGroups - 1) / kMostGroups;
+  std::vector<Eigen::VectorXd> partial(chunk_count(count, group_size));
+  for_each_chunk(count, group_size, [&](std::size_t group, std::size_t begin, std::size_t end) {
+    partial[group] = Eigen::VectorXd::Zero(v.size());
+    for (std::size_t r = begin; r < end; ++r) {
+      const std::uint32_t* unknown = rows.unknown.data() + r * width;
+      const float* value = rows.value.data() + r * width;
+      double sum = 0;
+      for (std::size_t a = 0; a < width; ++a) sum += value[a] * v[unknown[a]];
+      for (std::size_t a = 0; a < width; ++a) partial[group][unknown[a]] += sum * value[a];
+    }
+  });
+  for (std::size_t g = 1; g < partial.size(); ++g) partial.front() += partial[g];
+  return partial.front();
+}
+
+template <class Visit>
+void RefineSystem::for_each_roughness_row(Visit visit) const {
+  for (const TableUnknowns& table : tables_)
+    for (std::size_t c = 0; c < table.copies; ++c)
+      for (std::size_t r = 0; r < table.rows.size(); ++r)
+        visit(table, c, table.rows.starts[r], table.rows.starts[r + 1]);
+}
+
+double RefineSystem::roughness(const Eigen::VectorXd& x) const {
+  double sum = 0;
+  for_each_roughness_row([&](const TableUnknowns& t, std::size_t c, std::uint32_t begin, std::uint32_t end) {
+    double row = 0;
+    for (std::uint32_t a = begin; a < end; ++a)
+      row += t.rows.coefficients[a] * x[static_cast<Eigen::Index>(t.base + t.rows.nodes[a] * t.stride + c)];
+    sum += t.share * row * row;
+  });
+  return sum;
+}
+
+Eigen::VectorXd RefineSystem::roughness_matrix_times(const Eigen::VectorXd& v) const {
+  Eigen::VectorXd y = Eigen::VectorXd::Zero(v.size());
+  for_each_roughness_row([&](const TableUnknowns& t, std::size_t c, std::uint32_t begin, std::uint32_t end) {
+    const auto place = [&](std::uint32_t a) {
+      return static_cast<Eigen::Index>(t.base + t.rows.nodes[a] * t.stride + c);
+    };
+    double row = 0;
+    for (std::uint32_t a = begin; a < end; ++a) row += t.rows.coefficients[a] * v[place(a)];
+    for (std::uint32_t a = begin; a < end; ++a) y[place(a)] += t.share * row * t.rows.coefficients[a];
+  });
+  return y;
+}
+
+Eigen::VectorXd RefineSystem::roughness_diagonal() const {
+  Eigen::VectorXd d = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(size_));
+  for_each_roughness_row([&](const TableUnknowns& t, std::size_t c, std::uint32_t begin, std::uint32_t end) {
+    for (std::uint32_t a = begin; a < end; ++a)
+      d[static_cast<Eigen::Index>(t.base + t.rows.nodes[a] * t.stride + c)] +=
+          t.share * t.rows.coefficients[a] * t.rows.coefficients[a];
+  });
+  return d;
+}
+
+void RefineSystem::add_roughness_matrix(double scale, Eigen::MatrixXd& matrix) const {
+  for_each_roughness_row([&](const TableUnknowns& t, std::size_t c, std::uint32_t begin, std::uint32_t end) {
+    const auto place = [&](std::uint32_t a) {
+      return static_cast<Eigen::Index>(t.base + t.rows.nodes[a] * t.stride + c);
+    };
+    for (std::uint32_t a = begin; a < end; ++a)
+      for (std::uint32_t b = begin; b < end; ++b)
+        matrix(place(a), place(b)) += scale * t.share * t.rows.coefficients[a] * t.rows.coefficients[b];
+  });
+}
+
+}  // namespace burnish

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <burnish/fitting/log_model.h>
+#include <burnish/fitting/picture_loss.h>
+#include <burnish/fitting/smoothness.h>
+#include <burnish/fitting/training_set.h>
+
+namespace burnish {
+
+/// Where a model's lookups fall, the same for every channel: [pair][use], uses of all lobes in order.
+struct Lookups {
+  std::size_t uses = 0;
+  std::vector<std::uint32_t> node;
+  std::vector<float> fx, fy;
+};
+
+Lookups find_lookups(const ModelSpec& spec, const TrainingSet& set);
+
+/// The unknowns of some channels of a model, those of one channel or, where a table is shared, of all, and
+/// the sums over the training set that a Gauss-Newton step needs.
+class RefineSystem {
+ public:
+  RefineSystem(const LogModel& model, const TrainingSet& set, const Lookups& lookups,
+               std::size_t first_channel, std::size_t last_channel);
+
+  std::size_t size() const noexcept { return size_; }
+  Eigen::VectorXd read(const LogModel& model) const;
+  void write(const Eigen::VectorXd& x, LogModel& model) const;
+  /// Raises unknowns to the smallest share of their table's largest that table formats keep.
+  void clamp(Eigen::VectorXd& x) const;
+
+  /// Means of the errors at x.
+  ErrorTerms errors(const Eigen::VectorXd& x, const PictureLoss& loss) const;
+
+  /// Slope and Gauss-Newton matrix of the objective at x whose errors are `means`.
+  struct Normal {
+    Eigen::VectorXd gradient;
+    Eigen::MatrixXd matrix;
+  };
+  Normal normal(const Eigen::VectorXd& x, const PictureLoss& loss, const ErrorTerms& means) const;
+
+  /// The same without the matrix: the rows of its factor, curvature^(1/2) d ln f^ / dx.
+  struct Rows {
+    Eigen::VectorXd gradient, diagonal;
+    std::size_t width = 0;  ///< terms a row; the row of pair i and channel c is number i * channels + c
+    std::vector<std::uint32_t> unknown;
+    std::vector<float> value;
+  };
+  Rows rows(const Eigen::VectorXd& x, const PictureLoss& loss, const ErrorTerms& means) const;
+  /// The normal matrix times v.
+  Eigen::VectorXd apply(const Rows& rows, const Eigen::VectorXd& v) const;
+
+  /// Roughness of all tables, its gradient, its matrix times v and its diagonal.
+  double roughness(const Eigen::VectorXd& x) const;
+  Eigen::VectorXd roughness_matrix_times(const Eigen::VectorXd& v) const;
+  Eigen::VectorXd roughness_diagonal() const;
+  void add_roughness_matrix(double scale, Eigen::MatrixXd& matrix) const;
+
+ private:
+  struct Use {
+    std::size_t base, stride,
+        channel_stride;    // unknown of node n, channel c: base + n stride + c channel_stride
+    std::size_t next_row;  // 0: a line
+    std::size_t lobe;
+  };
+  struct TableUnknowns {
+    std::size_t base, stride, copies, nodes, step;
+    double share;
+    SmoothnessRows rows;
+  };
+  struct Term {
+    std::uint32_t unknown;
+    float value;
+  };
+
+  // The model's value at pair i, and the terms of d ln f^ / dx.
+  double evaluate(const double* lambda, std::size_t pair, std::size_t channel, std::span<double> factor,
+                  std::span<double> product) const noexcept;
+  std::size_t differentiate(const double* lambda, std::size_t pair, std::size_t channel, double total,
+                            std::span<const double> factor, std::span<const double> product,
+                            std::span<Term> terms) const noexcept;
+  template <class Visit>
+  void for_each_roughness_row(Visit visit) const;
+
+  const TrainingSet& set_;
+  const Lookups& lookups_;
+  std::size_t first_channel_, last_channel_, size_ = 0, lobes_ = 0;
+  std::vector<Use> uses_;
+  std::vector<TableUnknowns> tables_;
+  double picture_weight_ = 0, pair_weight_ = 0;
+};
+
+}  // namespace burnish

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <burnish/reflectance/brdf.h>
+#include <burnish/reflectance/sample_source.h>
+#include <burnish/reflectance/samples.h>
+
+namespace burnish {
+
+/// What a model of several lobes is refined on: pixels of lit spheres, which the eye judges, and direction
+/// pairs spread over all directions, which keep the model right where no picture looks.
+struct TrainingSet {
+  int channels = 0;
+  bool isotropic = false;
+  std::vector<DirectionPair> pairs;  ///< above the horizon
+  std::vector<float> values;         ///< f_r >= 0 of pair i at [i * channels, (i + 1) * channels), 1/sr
+  std::vector<float> weights;        ///< one a pair, > 0
+  std::size_t picture_count = 0;     ///< the first so many pairs are pixels
+  double exposure = 1;               ///< 1 / (97th percentile of the pixels' f_r cos theta_i)
+
+  std::size_t size() const noexcept { return pairs.size(); }
+};
+
+struct TrainingOptions {
+  std::size_t pictures = 20'000;    ///< pixels
+  std::size_t directions = 60'000;  ///< pairs spread over all directions
+  std::uint64_t seed = 1;
+  bool spread_phi_h = false;  ///< turn pairs of isotropic sources about the normal, which 2-D tables need
+};
+
+/// Draws low-discrepancy points, the same for the same seed:
+/// - pixels uniform on the visible disk of a sphere seen from afar, under a light whose angle to the view is
+///   uniform in [0, 75] degrees, as long as both cosines are above 0.01;
+/// - pairs with theta_d, phi_d and phi_h uniform and theta_h half uniform, half pi/2 u^2, weighted as if it
+///   were uniform, as long as both cosines are above 0.05.
+/// Pairs of which the source knows nothing are left out. Throws Error if nothing is left.
+TrainingSet draw_training_set(BrdfRef source, const TrainingOptions& options);
+
+/// Scattered measurements above the horizon, weight 1, no pictures; with `symmetrize` each also stands for
+/// its swapped pair. Throws Error if nothing is left.
+TrainingSet training_set_of(const Samples& samples, bool symmetrize);
+
+/// The set as samples of a log-linear fit, with `values` in place of its own. Both must outlive the result.
+SampleSource as_source(const TrainingSet& set, const std::vector<float>& values);
+
+}  // namespace burnish
