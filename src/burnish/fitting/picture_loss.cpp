@@ -39,26 +39,30 @@ ErrorTerms PictureLoss::derivatives(const ErrorTerms& means, double picture_weig
   return d;
 }
 
-PictureLoss::Slope PictureLoss::add(double f, double model, double cos_theta_i, bool picture, double weight,
-                                    const ErrorTerms& derivatives, ErrorTerms& sums) const noexcept {
+PictureLoss::Target PictureLoss::target(double f, double cos_theta_i, bool picture) const noexcept {
+  if (picture) return {static_cast<float>(std::pow(f * exposure * cos_theta_i, kInverseGamma)), 0};
+  return {static_cast<float>(std::log(f + kFloor)), static_cast<float>(std::log1p(f * cos_theta_i))};
+}
+
+PictureLoss::Slope PictureLoss::add(Target target, double model, double cos_theta_i, bool picture,
+                                    double weight, const ErrorTerms& derivatives,
+                                    ErrorTerms& sums) const noexcept {
   Slope slope;
   if (picture) {
     // one gamma for all exposures: (e y)^g = e^g y^g
     static const double kDim[] = {1, std::pow(kDimmed[0], kInverseGamma),
                                   std::pow(kDimmed[1], kInverseGamma)};
-    const double scale = exposure * cos_theta_i;
-    const double shown = std::pow(f * scale, kInverseGamma),
-                 modelled = std::pow(model * scale, kInverseGamma);
+    const double modelled = std::pow(model * exposure * cos_theta_i, kInverseGamma);
     for (std::size_t e = 0; e < 3; ++e) {
-      const double a = shown * kDim[e], b = modelled * kDim[e];
+      const double a = target.first * kDim[e], b = modelled * kDim[e];
       if (a >= 1 && b >= 1) continue;  // white both: dimmer exposures tell them apart
       const double error = std::min(b, 1.0) - std::min(a, 1.0);
       const std::size_t term = e == 0 ? 0 : 1;
-      const double share = e == 0 ? 1 : 0.5;
+      const double share = (e == 0 ? 1 : 0.5) * weight;
       const double rise = kInverseGamma * (b > 1 ? kSaturatedSlope : b);
-      sums[term] += share * weight * error * error;
-      slope.gradient += share * weight * derivatives[term] * 2 * error * rise;
-      slope.curvature += share * weight * derivatives[term] * 2 * rise * rise;
+      sums[term] += share * error * error;
+      slope.gradient += share * derivatives[term] * 2 * error * rise;
+      slope.curvature += share * derivatives[term] * 2 * rise * rise;
     }
     return slope;
   }
@@ -68,9 +72,9 @@ PictureLoss::Slope PictureLoss::add(double f, double model, double cos_theta_i, 
     slope.gradient += w * error / size * rise;
     slope.curvature += w * rise * rise / size;
   };
-  add_absolute(2, std::log((model + kFloor) / (f + kFloor)), model / (model + kFloor), kRelativeRound);
   const double lit = model * cos_theta_i;
-  add_absolute(3, std::log((1 + lit) / (1 + f * cos_theta_i)), lit / (1 + lit), kLogCosRound);
+  add_absolute(2, std::log(model + kFloor) - target.first, model / (model + kFloor), kRelativeRound);
+  add_absolute(3, std::log1p(lit) - target.second, lit / (1 + lit), kLogCosRound);
   return slope;
 }
 

@@ -22,12 +22,19 @@ struct PictureLoss {
   /// The objective of means.
   double objective(const ErrorTerms& means) const noexcept;
 
+  /// What of a value's errors does not depend on the model: of a pixel (exposure f cos theta_i)^(1/2.2), of
+  /// a pair ln(f + 1e-3) and ln(1 + f cos theta_i).
+  struct Target {
+    float first = 0, second = 0;
+  };
+  Target target(double f, double cos_theta_i, bool picture) const noexcept;
+
   /// Slope and Gauss-Newton curvature of one value's part in the objective by ln f^, given the derivative of
   /// the objective by each term's sum; adds the value's errors times `weight` to `sums`.
   struct Slope {
     double gradient = 0, curvature = 0;
   };
-  Slope add(double f, double model, double cos_theta_i, bool picture, double weight,
+  Slope add(Target target, double model, double cos_theta_i, bool picture, double weight,
             const ErrorTerms& derivatives, ErrorTerms& sums) const noexcept;
 
   /// The derivative of the objective by each term's sum, given the means and the sums of weights.

@@ -31,26 +31,27 @@ class StepSolver {
     if (!direct()) roughness_diagonal_ = 2 * smooth * system.roughness_diagonal();
   }
 
-  void linearize(const Eigen::VectorXd& x, const PictureLoss& loss, const ErrorTerms& means) {
+  void linearize(const Eigen::VectorXd& x, const ErrorTerms& means) {
     if (direct()) {
-      normal_ = system_.normal(x, loss, means);
-      system_.add_roughness_matrix(2 * smooth_, normal_.matrix);
+      system_.find_normal(x, means, partial_);
+      system_.add_roughness_matrix(2 * smooth_, partial_.front().matrix);
     } else {
-      rows_ = system_.rows(x, loss, means);
+      rows_ = system_.rows(x, means);
     }
     gradient() += 2 * smooth_ * system_.roughness_matrix_times(x);
   }
 
-  Eigen::VectorXd step(double damping) const {
-    const Eigen::VectorXd diagonal = direct() ? Eigen::VectorXd(normal_.matrix.diagonal())
+  Eigen::VectorXd step(double damping) {
+    const Eigen::VectorXd diagonal = direct() ? Eigen::VectorXd(partial_.front().matrix.diagonal())
                                               : Eigen::VectorXd(rows_.diagonal + roughness_diagonal_);
     const Eigen::VectorXd extra =
         damping * diagonal.array() + (kRidge + damping * kDampedRidge) * diagonal.mean();
     Eigen::VectorXd dx;
     if (direct()) {
-      Eigen::MatrixXd matrix = normal_.matrix;
-      matrix.diagonal() += extra;
-      dx = -matrix.llt().solve(normal_.gradient);
+      factorized_ = partial_.front().matrix;
+      factorized_.diagonal() += extra;
+      Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> cholesky(factorized_);
+      dx = -cholesky.solve(partial_.front().gradient);
     } else {
       dx = conjugate_gradients(extra, diagonal + extra);
     }
@@ -59,7 +60,7 @@ class StepSolver {
 
  private:
   bool direct() const { return system_.size() <= kMostDirectUnknowns; }
-  Eigen::VectorXd& gradient() { return direct() ? normal_.gradient : rows_.gradient; }
+  Eigen::VectorXd& gradient() { return direct() ? partial_.front().gradient : rows_.gradient; }
 
   Eigen::VectorXd conjugate_gradients(const Eigen::VectorXd& extra, const Eigen::VectorXd& diagonal) const {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(extra.size()), r = -rows_.gradient;
@@ -83,7 +84,8 @@ class StepSolver {
   const RefineSystem& system_;
   double smooth_;
   Eigen::VectorXd roughness_diagonal_;
-  RefineSystem::Normal normal_;
+  std::vector<RefineSystem::Normal> partial_;
+  Eigen::MatrixXd factorized_;
   RefineSystem::Rows rows_;
 };
 
@@ -107,11 +109,11 @@ RefineSummary refine(LogModel& model, const TrainingSet& set, const RefineOption
   RefineSummary summary{.stop_reason = "no more progress"};
 
   for (std::size_t s = 0; s < systems; ++s) {
-    const RefineSystem system(model, set, lookups, s * together, (s + 1) * together);
+    const RefineSystem system(model, set, lookups, loss, s * together, (s + 1) * together);
     StepSolver solver(system, options.smooth);
     Eigen::VectorXd x = system.read(model);
     system.clamp(x);
-    ErrorTerms means = system.errors(x, loss);
+    ErrorTerms means = system.errors(x);
     double best = loss.objective(means) + options.smooth * system.roughness(x);
     summary.objective_before += best / static_cast<double>(systems);
     double damping = kFirstDamping;
@@ -120,12 +122,12 @@ RefineSummary refine(LogModel& model, const TrainingSet& set, const RefineOption
       if (options.progress)
         options.progress((static_cast<double>(s) + static_cast<double>(iteration) / options.max_iterations) /
                          static_cast<double>(systems));
-      solver.linearize(x, loss, means);
+      solver.linearize(x, means);
       bool accepted = false;
       for (int trial = 0; trial < kMostTrials && !accepted; ++trial) {
         Eigen::VectorXd next = x + solver.step(damping);
         system.clamp(next);
-        const ErrorTerms next_means = system.errors(next, loss);
+        const ErrorTerms next_means = system.errors(next);
         const double value = loss.objective(next_means) + options.smooth * system.roughness(next);
         accepted = value < best;
         if (accepted) {
@@ -155,8 +157,8 @@ double objective(const LogModel& model, const TrainingSet& set, const ErrorTerms
   const auto channels = static_cast<std::size_t>(model.channels);
   double sum = 0;
   for (std::size_t c = 0; c < channels; ++c) {
-    const RefineSystem system(model, set, lookups, c, c + 1);
-    sum += loss.objective(system.errors(system.read(model), loss));
+    const RefineSystem system(model, set, lookups, loss, c, c + 1);
+    sum += loss.objective(system.errors(system.read(model)));
   }
   return sum / static_cast<double>(channels);
 }

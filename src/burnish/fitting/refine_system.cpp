@@ -9,8 +9,9 @@ namespace burnish {
 namespace {
 
 constexpr std::size_t kChunk = 2048;
-constexpr std::size_t kPartialBytes = std::size_t{256} << 20;  // of matrices summed side by side
+constexpr std::size_t kPartialBytes = std::size_t{32} << 20;  // of matrices summed side by side
 constexpr std::size_t kMostGroups = 16;
+constexpr std::size_t kColumns = 64;  // of matrices, added up together
 
 // ln of the smallest share of a table's largest value: within what half floats and shared exponents keep.
 const double kLogFloor = std::log(kTableFloor);
@@ -40,9 +41,10 @@ Lookups find_lookups(const ModelSpec& spec, const TrainingSet& set) {
 }
 
 RefineSystem::RefineSystem(const LogModel& model, const TrainingSet& set, const Lookups& lookups,
-                           std::size_t first_channel, std::size_t last_channel)
+                           const PictureLoss& loss, std::size_t first_channel, std::size_t last_channel)
     : set_(set),
       lookups_(lookups),
+      loss_(loss),
       first_channel_(first_channel),
       last_channel_(last_channel),
       lobes_(model.spec.lobes.size()) {
@@ -74,6 +76,14 @@ RefineSystem::RefineSystem(const LogModel& model, const TrainingSet& set, const 
   for (std::size_t i = 0; i < set.size(); ++i)
     (i < set.picture_count ? picture_weight_ : pair_weight_) +=
         set.weights[i] * static_cast<double>(channels);
+  targets_.resize(set.size() * channels);
+  for_each_chunk(set.size(), kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      for (std::size_t c = 0; c < channels; ++c)
+        targets_[i * channels + c] =
+            loss.target(set.values[i * static_cast<std::size_t>(set.channels) + first_channel + c],
+                        set.pairs[i].wi.z, i < set.picture_count);
+  });
 }
 
 Eigen::VectorXd RefineSystem::read(const LogModel& model) const {
@@ -148,17 +158,17 @@ std::size_t RefineSystem::differentiate(const double* lambda, std::size_t pair, 
   return count;
 }
 
-ErrorTerms RefineSystem::errors(const Eigen::VectorXd& x, const PictureLoss& loss) const {
+ErrorTerms RefineSystem::errors(const Eigen::VectorXd& x) const {
   const Eigen::VectorXd lambda = x.array().exp();
-  const std::size_t channels = last_channel_ - first_channel_, all = static_cast<std::size_t>(set_.channels);
+  const std::size_t channels = last_channel_ - first_channel_;
   std::vector<ErrorTerms> partial(chunk_count(set_.size(), kChunk));
   for_each_chunk(set_.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
     std::vector<double> factor(uses_.size()), product(lobes_);
     const ErrorTerms none{};
     for (std::size_t i = begin; i < end; ++i)
       for (std::size_t c = 0; c < channels; ++c)
-        loss.add(set_.values[i * all + first_channel_ + c], evaluate(lambda.data(), i, c, factor, product),
-                 set_.pairs[i].wi.z, i < set_.picture_count, set_.weights[i], none, partial[chunk]);
+        loss_.add(targets_[i * channels + c], evaluate(lambda.data(), i, c, factor, product),
+                  set_.pairs[i].wi.z, i < set_.picture_count, set_.weights[i], none, partial[chunk]);
   });
   ErrorTerms means{};
   for (const ErrorTerms& p : partial)
@@ -170,21 +180,21 @@ ErrorTerms RefineSystem::errors(const Eigen::VectorXd& x, const PictureLoss& los
   return means;
 }
 
-RefineSystem::Normal RefineSystem::normal(const Eigen::VectorXd& x, const PictureLoss& loss,
-                                          const ErrorTerms& means) const {
+void RefineSystem::find_normal(const Eigen::VectorXd& x, const ErrorTerms& means,
+                               std::vector<Normal>& partial) const {
   const Eigen::VectorXd lambda = x.array().exp();
   const auto n = static_cast<Eigen::Index>(size_);
-  const std::size_t channels = last_channel_ - first_channel_, all = static_cast<std::size_t>(set_.channels);
-  const ErrorTerms derivatives = loss.derivatives(means, picture_weight_, pair_weight_);
+  const std::size_t channels = last_channel_ - first_channel_;
+  const ErrorTerms derivatives = loss_.derivatives(means, picture_weight_, pair_weight_);
   const std::size_t groups =
       std::clamp<std::size_t>(kPartialBytes / (size_ * size_ * sizeof(double)), 2, kMostGroups);
   const std::size_t group_size = (set_.size() + groups - 1) / groups;
-  std::vector<Normal> partial(chunk_count(set_.size(), group_size));
+  partial.resize(chunk_count(set_.size(), group_size));
   // Each pair of terms is added once, below or above the diagonal; twice the diagonal's own is taken off it.
   for_each_chunk(set_.size(), group_size, [&](std::size_t group, std::size_t begin, std::size_t end) {
     Normal& sum = partial[group];
-    sum.gradient = Eigen::VectorXd::Zero(n);
-    sum.matrix = Eigen::MatrixXd::Zero(n, n);
+    sum.gradient.setZero(n);
+    sum.matrix.setZero(n, n);
     std::vector<double> factor(uses_.size()), product(lobes_);
     std::vector<Term> terms(4 * uses_.size());
     ErrorTerms sums{};
@@ -192,8 +202,8 @@ RefineSystem::Normal RefineSystem::normal(const Eigen::VectorXd& x, const Pictur
       for (std::size_t c = 0; c < channels; ++c) {
         const double model = evaluate(lambda.data(), i, c, factor, product);
         const PictureLoss::Slope slope =
-            loss.add(set_.values[i * all + first_channel_ + c], model, set_.pairs[i].wi.z,
-                     i < set_.picture_count, set_.weights[i], derivatives, sums);
+            loss_.add(targets_[i * channels + c], model, set_.pairs[i].wi.z, i < set_.picture_count,
+                      set_.weights[i], derivatives, sums);
         const std::size_t count = differentiate(lambda.data(), i, c, model, factor, product, terms);
         for (std::size_t a = 0; a < count; ++a) {
           const double value = terms[a].value, scaled = slope.curvature * value;
@@ -204,21 +214,26 @@ RefineSystem::Normal RefineSystem::normal(const Eigen::VectorXd& x, const Pictur
         }
       }
   });
-  Normal total = std::move(partial.front());
-  for (std::size_t g = 1; g < partial.size(); ++g) {
-    total.gradient += partial[g].gradient;
-    total.matrix += partial[g].matrix;
-  }
-  total.matrix = (total.matrix + total.matrix.transpose()).eval();
-  return total;
+  Normal& total = partial.front();
+  for_each_chunk(size_, kColumns, [&](std::size_t, std::size_t begin, std::size_t end) {
+    const auto first = static_cast<Eigen::Index>(begin), count = static_cast<Eigen::Index>(end - begin);
+    for (std::size_t g = 1; g < partial.size(); ++g)
+      total.matrix.middleCols(first, count) += partial[g].matrix.middleCols(first, count);
+  });
+  for (std::size_t g = 1; g < partial.size(); ++g) total.gradient += partial[g].gradient;
+  // both triangles become the sum of the two
+  for (Eigen::Index column = 0; column < n; ++column)
+    for (Eigen::Index row = 0; row <= column; ++row) {
+      const double sum = total.matrix(row, column) + total.matrix(column, row);
+      total.matrix(row, column) = total.matrix(column, row) = sum;
+    }
 }
 
-RefineSystem::Rows RefineSystem::rows(const Eigen::VectorXd& x, const PictureLoss& loss,
-                                      const ErrorTerms& means) const {
+RefineSystem::Rows RefineSystem::rows(const Eigen::VectorXd& x, const ErrorTerms& means) const {
   const Eigen::VectorXd lambda = x.array().exp();
   const auto n = static_cast<Eigen::Index>(size_);
-  const std::size_t channels = last_channel_ - first_channel_, all = static_cast<std::size_t>(set_.channels);
-  const ErrorTerms derivatives = loss.derivatives(means, picture_weight_, pair_weight_);
+  const std::size_t channels = last_channel_ - first_channel_;
+  const ErrorTerms derivatives = loss_.derivatives(means, picture_weight_, pair_weight_);
   std::size_t width = 0;
   for (const Use& use : uses_) width += use.next_row > 0 ? 4 : 2;
   Rows result;
@@ -237,8 +252,8 @@ RefineSystem::Rows RefineSystem::rows(const Eigen::VectorXd& x, const PictureLos
       for (std::size_t c = 0; c < channels; ++c) {
         const double model = evaluate(lambda.data(), i, c, factor, product);
         const PictureLoss::Slope slope =
-            loss.add(set_.values[i * all + first_channel_ + c], model, set_.pairs[i].wi.z,
-                     i < set_.picture_count, set_.weights[i], derivatives, sums);
+            loss_.add(targets_[i * channels + c], model, set_.pairs[i].wi.z, i < set_.picture_count,
+                      set_.weights[i], derivatives, sums);
         const std::size_t count = differentiate(lambda.data(), i, c, model, factor, product, terms);
         const double root = std::sqrt(slope.curvature);
         const std::size_t start = (i * channels + c) * width;

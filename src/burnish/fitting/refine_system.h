@@ -27,7 +27,7 @@ Lookups find_lookups(const ModelSpec& spec, const TrainingSet& set);
 /// the sums over the training set that a Gauss-Newton step needs.
 class RefineSystem {
  public:
-  RefineSystem(const LogModel& model, const TrainingSet& set, const Lookups& lookups,
+  RefineSystem(const LogModel& model, const TrainingSet& set, const Lookups& lookups, const PictureLoss& loss,
                std::size_t first_channel, std::size_t last_channel);
 
   std::size_t size() const noexcept { return size_; }
@@ -37,14 +37,15 @@ class RefineSystem {
   void clamp(Eigen::VectorXd& x) const;
 
   /// Means of the errors at x.
-  ErrorTerms errors(const Eigen::VectorXd& x, const PictureLoss& loss) const;
+  ErrorTerms errors(const Eigen::VectorXd& x) const;
 
   /// Slope and Gauss-Newton matrix of the objective at x whose errors are `means`.
   struct Normal {
     Eigen::VectorXd gradient;
     Eigen::MatrixXd matrix;
   };
-  Normal normal(const Eigen::VectorXd& x, const PictureLoss& loss, const ErrorTerms& means) const;
+  /// `partial` is room for the sums of groups of pairs, kept from step to step; the first is the result.
+  void find_normal(const Eigen::VectorXd& x, const ErrorTerms& means, std::vector<Normal>& partial) const;
 
   /// The same without the matrix: the rows of its factor, curvature^(1/2) d ln f^ / dx.
   struct Rows {
@@ -53,7 +54,7 @@ class RefineSystem {
     std::vector<std::uint32_t> unknown;
     std::vector<float> value;
   };
-  Rows rows(const Eigen::VectorXd& x, const PictureLoss& loss, const ErrorTerms& means) const;
+  Rows rows(const Eigen::VectorXd& x, const ErrorTerms& means) const;
   /// The normal matrix times v.
   Eigen::VectorXd apply(const Rows& rows, const Eigen::VectorXd& v) const;
 
@@ -91,6 +92,8 @@ class RefineSystem {
 
   const TrainingSet& set_;
   const Lookups& lookups_;
+  PictureLoss loss_;
+  std::vector<PictureLoss::Target> targets_;  // [pair][channel of the system]
   std::size_t first_channel_, last_channel_, size_ = 0, lobes_ = 0;
   std::vector<Use> uses_;
   std::vector<TableUnknowns> tables_;

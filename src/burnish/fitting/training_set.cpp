@@ -148,6 +148,20 @@ TrainingSet training_set_of(const Samples& samples, bool symmetrize) {
   return set;
 }
 
+TrainingSet thinned(const TrainingSet& set, std::size_t step) {
+  TrainingSet part{.channels = set.channels, .isotropic = set.isotropic, .exposure = set.exposure};
+  const auto channels = static_cast<std::size_t>(set.channels);
+  const auto take = [&](std::size_t i) {
+    part.pairs.push_back(set.pairs[i]);
+    part.weights.push_back(set.weights[i]);
+    for (std::size_t c = 0; c < channels; ++c) part.values.push_back(set.values[i * channels + c]);
+  };
+  for (std::size_t i = 0; i < set.picture_count; i += step) take(i);
+  part.picture_count = part.size();
+  for (std::size_t i = set.picture_count; i < set.size(); i += step) take(i);
+  return part;
+}
+
 SampleSource as_source(const TrainingSet& set, const std::vector<float>& values) {
   return {.count = set.size(),
           .distinct = set.size(),

@@ -43,6 +43,9 @@ TrainingSet draw_training_set(BrdfRef source, const TrainingOptions& options);
 /// its swapped pair. Throws Error if nothing is left.
 TrainingSet training_set_of(const Samples& samples, bool symmetrize);
 
+/// Every `step`-th pixel and every `step`-th pair; step >= 1.
+TrainingSet thinned(const TrainingSet& set, std::size_t step);
+
 /// The set as samples of a log-linear fit, with `values` in place of its own. Both must outlive the result.
 SampleSource as_source(const TrainingSet& set, const std::vector<float>& values);
 
