@@ -5,16 +5,10 @@
 #include <string>
 #include <vector>
 
+#include <burnish/fitting/lobe_plan.h>
 #include <burnish/fitting/refine.h>
 
 namespace burnish {
-
-struct BudgetOptions {
-  std::size_t bytes = 2700;  ///< most bytes of the model, see FactoredBrdf::bytes
-  int lobes = 0;             ///< 0: as many as serve the budget best
-  TableFormat format = TableFormat::half;
-  RefineOptions refine;
-};
 
 struct LobesSummary {
   double objective_before = 0;  ///< of the start of the last refinement, see PictureLoss
@@ -29,16 +23,12 @@ struct LobesFit {
   LobesSummary summary;
 };
 
-/// The model that fit_budget fits: lobes p(wo) p(wi) q(theta_h) m(theta_m) r(theta_d) of 1-D tables for
-/// isotropic sources; for others a lobe of 1-D tables and lobes whose p and q are hemispheres. Throws Error
-/// if even the smallest model does not fit the bytes.
-ModelSpec budget_spec(const BudgetOptions& options, int channels, bool isotropic);
-
-/// Fits the best model of a number of bytes, several lobes refined. Isotropic: one lobe log-linearly
-/// [HomomorphicBrdf, eq. 5], then one split off after the other, each split starting from the function there
-/// was. Anisotropic: as fit_lobes. Rounding to the table format is left to to_brdf. Throws Error as
-/// budget_spec and fit_homomorphic do.
-LobesFit fit_budget(const TrainingSet& set, const BudgetOptions& options);
+/// Fits an isotropic plan: one lobe log-linearly [HomomorphicBrdf, eq. 5], then one split off after the other
+/// and refined, each split starting from the function there was. A plan with a wide lobe is fitted by
+/// fit_lobes. Rounding to the table format is left to to_brdf. Throws Error as plan_to_spec and
+/// fit_homomorphic do.
+LobesFit fit_plan(const TrainingSet& set, const LobePlan& plan, std::size_t bytes, std::size_t texel_bytes,
+                  const RefineOptions& options);
 
 /// Fits a given model of any number of lobes: each starts as the log-linear fit to its part of the data,
 /// parts cut along theta_d, or by height where the lobes differ in shape; then all are refined together.

@@ -103,40 +103,50 @@ LogModel with_lobe_split(LogModel model, std::size_t lobe, double centre, const 
   return model;
 }
 
+namespace {
+
+void resample(const TableLayout& from, const std::vector<double>& old, const TableLayout& to,
+              std::size_t step, std::vector<double>& logs) {
+  const auto width = static_cast<std::size_t>(from.width), to_width = static_cast<std::size_t>(to.width);
+  for (int y = 0; y < to.height; ++y)
+    for (int x = 0; x < to.width; ++x) {
+      Cell cx{}, cy{};
+      if (to.shape == TableShape::disk) {
+        const DiskPoint p = to_disk(node_direction(to, x, y), from.warp);
+        cx = find_cell(0.5 + 0.5 * p.x, from.width);
+        cy = find_cell(0.5 + 0.5 * p.y, from.height);
+      } else {
+        cx = find_cell(from.warp.forward(node_place(to.warp, x, to.width)), from.width);
+        if (to.shape == TableShape::grid)
+          cy = find_cell(from.warp_y.forward(node_place(to.warp_y, y, to.height)), from.height);
+      }
+      for (std::size_t c = 0; c < step; ++c) {
+        const auto at = [&](std::size_t i, std::size_t j) {
+          return std::exp(old[(j * width + i) * step + c]);
+        };
+        const auto along = [&](std::size_t row) {
+          return (1 - cx.fraction) * at(cx.node, row) + cx.fraction * at(cx.node + 1, row);
+        };
+        double v = along(cy.node);
+        if (to.shape != TableShape::line) v = (1 - cy.fraction) * v + cy.fraction * along(cy.node + 1);
+        logs[(static_cast<std::size_t>(y) * to_width + static_cast<std::size_t>(x)) * step + c] = std::log(v);
+      }
+    }
+}
+
+}  // namespace
+
 LogModel resampled(const LogModel& model, const ModelSpec& spec) {
   LogModel result{.spec = spec, .channels = model.channels, .log_values = {}};
   for (std::size_t t = 0; t < spec.tables.size(); ++t) {
-    const TableLayout &from = model.spec.tables[t].layout, &to = spec.tables[t].layout;
-    const std::size_t step = model.step(t);
-    const std::vector<double>& old = model.log_values[t];
-    std::vector<double>& logs = result.log_values.emplace_back(to.node_count() * step);
-    for (int y = 0; y < to.height; ++y)
-      for (int x = 0; x < to.width; ++x) {
-        Cell cx{}, cy{};
-        if (to.shape == TableShape::disk) {
-          const DiskPoint p = to_disk(node_direction(to, x, y), from.warp);
-          cx = find_cell(0.5 + 0.5 * p.x, from.width);
-          cy = find_cell(0.5 + 0.5 * p.y, from.height);
-        } else {
-          cx = find_cell(from.warp.forward(node_place(to.warp, x, to.width)), from.width);
-          if (to.shape == TableShape::grid)
-            cy = find_cell(from.warp_y.forward(node_place(to.warp_y, y, to.height)), from.height);
-        }
-        const auto width = static_cast<std::size_t>(from.width);
-        for (std::size_t c = 0; c < step; ++c) {
-          const auto at = [&](std::size_t i, std::size_t j) {
-            return std::exp(old[(j * width + i) * step + c]);
-          };
-          double v = (1 - cx.fraction) * at(cx.node, cy.node) + cx.fraction * at(cx.node + 1, cy.node);
-          if (to.shape != TableShape::line)
-            v = (1 - cy.fraction) * v + cy.fraction * ((1 - cx.fraction) * at(cx.node, cy.node + 1) +
-                                                       cx.fraction * at(cx.node + 1, cy.node + 1));
-          logs[(static_cast<std::size_t>(y) * static_cast<std::size_t>(to.width) +
-                static_cast<std::size_t>(x)) *
-                   step +
-               c] = std::log(v);
-        }
-      }
+    const TableLayout& layout = spec.tables[t].layout;
+    const std::size_t step = result.step(t);
+    std::vector<double>& logs = result.log_values.emplace_back(layout.node_count() * step);
+    const auto old = std::ranges::find(model.spec.tables, spec.tables[t].name, &ModelSpec::TableSpec::name);
+    if (old == model.spec.tables.end()) continue;
+    const auto k = static_cast<std::size_t>(old - model.spec.tables.begin());
+    if (old->layout.shape == layout.shape && model.step(k) == step)
+      resample(old->layout, model.log_values[k], layout, step, logs);
   }
   return result;
 }

@@ -36,7 +36,8 @@ LogModel joined(LogModel a, const LogModel& b);
 /// `suffix` after the old. A lobe without a 1-D table over theta_d is split in two halves.
 LogModel with_lobe_split(LogModel model, std::size_t lobe, double centre, const std::string& suffix);
 
-/// The same functions in tables of other sizes and warps; tables, lobes and shapes must match.
+/// The model in the tables of `spec`: those of the same name and shape hold the same functions, whatever
+/// their size and warp, others are 1 everywhere.
 LogModel resampled(const LogModel& model, const ModelSpec& spec);
 
 /// Rounds to the table formats; see from_log_tables.

@@ -98,7 +98,7 @@ bool any_shared(const LogModel& model) {
 }  // namespace
 
 RefineSummary refine(LogModel& model, const TrainingSet& set, const RefineOptions& options) {
-  if (!(options.smooth >= 0) || !std::isfinite(options.smooth) || options.max_iterations < 0)
+  if (!(options.smooth >= 0) || !std::isfinite(options.smooth) || !(options.max_iterations >= 0))
     throw Error("fit: expected smooth >= 0 and a number of iterations >= 0");
   if (model.channels != set.channels)
     throw Error("fit: expected as many channels in the model as in the data");

@@ -11,7 +11,8 @@ namespace {
 constexpr std::size_t kChunk = 2048;
 constexpr std::size_t kPartialBytes = std::size_t{32} << 20;  // of matrices summed side by side
 constexpr std::size_t kMostGroups = 16;
-constexpr std::size_t kColumns = 64;  // of matrices, added up together
+constexpr std::size_t kPairsPerUnknown = 4;  // fewer are not worth a matrix of their own
+constexpr std::size_t kColumns = 64;         // of matrices, added up together
 
 // ln of the smallest share of a table's largest value: within what half floats and shared exponents keep.
 const double kLogFloor = std::log(kTableFloor);
@@ -187,7 +188,9 @@ void RefineSystem::find_normal(const Eigen::VectorXd& x, const ErrorTerms& means
   const std::size_t channels = last_channel_ - first_channel_;
   const ErrorTerms derivatives = loss_.derivatives(means, picture_weight_, pair_weight_);
   const std::size_t groups =
-      std::clamp<std::size_t>(kPartialBytes / (size_ * size_ * sizeof(double)), 2, kMostGroups);
+      std::clamp<std::size_t>(std::min(kPartialBytes / (size_ * size_ * sizeof(double)),
+                                       set_.size() * channels / (kPairsPerUnknown * size_)),
+                              2, kMostGroups);
   const std::size_t group_size = (set_.size() + groups - 1) / groups;
   partial.resize(chunk_count(set_.size(), group_size));
   // Each pair of terms is added once, below or above the diagonal; twice the diagonal's own is taken off it.

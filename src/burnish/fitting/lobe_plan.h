@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <burnish/factors/model_spec.h>
+
+namespace burnish {
+
+/// A factor of a lobe before its size is known: a table, looked up by one projection or, for a factor that
+/// both directions share, by two that exchanging them exchanges.
+struct PlannedFactor {
+  std::string name;
+  TableShape shape = TableShape::line;
+  std::vector<Projection> uses;
+  double share = 1;  ///< of its lobe's texels, relative to the other factors' shares; > 0
+  Warp warp;
+
+  friend bool operator==(const PlannedFactor&, const PlannedFactor&) = default;
+};
+
+/// What the lobes of a model are made of. An anisotropic model has a lobe of 1-D tables for what is spread
+/// wide beside the lobes whose factors are hemispheres.
+struct LobePlan {
+  int lobes = 1;  ///< without the wide one
+  std::vector<PlannedFactor> factors;
+  std::vector<PlannedFactor> wide;  ///< empty: none
+  int wide_texels = 0;
+
+  friend bool operator==(const LobePlan&, const LobePlan&) = default;
+};
+
+/// The plan that serves a number of bytes best, measured on the materials of docs/accuracy.md: lobes
+/// p(wo) p(wi) q(theta_h) m(theta_m) r(theta_d), p and q hemispheres where the source is anisotropic. `lobes`
+/// counts the wide one too; 0: chosen by the bytes.
+LobePlan default_plan(std::size_t bytes, int lobes, bool isotropic, std::size_t texel_bytes);
+
+/// The largest model of the plan whose tables and numbers fit `bytes`, see FactoredBrdf::bytes. Throws Error
+/// if a table would have fewer than two nodes (a hemisphere: 3 x 3).
+ModelSpec plan_to_spec(const LobePlan& plan, std::size_t bytes, int channels, std::size_t texel_bytes);
+
+}  // namespace burnish
