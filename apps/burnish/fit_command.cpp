@@ -15,6 +15,7 @@
 #include <burnish/reflectance/sample_source.h>
 
 #include "commands.h"
+#include "fit_lobes.h"
 #include "progress.h"
 #include "source_arguments.h"
 
@@ -34,12 +35,13 @@ constexpr std::size_t kHeldOutPairs = 20'000;
 struct Arguments {
   SourceArguments source;
   std::string out, model = "pqp", smooth = "default", format = "half";
+  LobesArguments lobes;
   std::vector<std::string> tables;
   std::size_t samples = 0;
   std::uint64_t seed = 1;
   int reweightings = -1, threads = 0;
   double floor = HomomorphicOptions{}.floor;
-  bool no_symmetrize = false, json = false;
+  bool json = false;
 };
 
 // File names need not be UTF-8.
@@ -64,7 +66,7 @@ struct FitInput {
 };
 
 void make_input(const Source& source, const Arguments& arguments, const ModelSpec& spec, FitInput& input) {
-  const bool symmetrize = !arguments.no_symmetrize;
+  const bool symmetrize = !arguments.lobes.no_symmetrize;
   if (const Samples* samples = source.samples()) {
     input.samples = from_samples(*samples, symmetrize);
   } else if (const auto* table = std::get_if<HalfDiffTable>(&source.brdf)) {
@@ -91,69 +93,94 @@ HomomorphicOptions make_options(const Source& source, const Arguments& arguments
   return options;
 }
 
-nlohmann::ordered_json fit(const Arguments& arguments) {
-  const auto start = std::chrono::steady_clock::now();
-  const ThreadLimit limit(arguments.threads);
-  const Source source = arguments.source.open();
-  ModelSpec spec = parse_model_spec(arguments.model, arguments.tables, source.ref().isotropic());
+double parse_smooth(const std::string& text) {
+  double smooth = -1;
+  if (!CLI::detail::lexical_cast(text, smooth) || !(smooth >= 0))
+    throw Error(fmt::format("--smooth: expected auto or a number >= 0, found '{}'", text));
+  return smooth;
+}
+
+/// The paper's fit: one lobe, log-linear.
+FactoredBrdf fit_one(const Source& source, ModelSpec spec, const Arguments& arguments,
+                     nlohmann::ordered_json& notes) {
   FitInput input;
   make_input(source, arguments, spec, input);
   HomomorphicOptions options = make_options(source, arguments);
-
   std::optional<double> cross_validated;
-  const bool automatic = arguments.smooth == "auto" || (arguments.smooth == "default" && source.samples());
-  if (automatic) {
+  if (arguments.smooth == "auto" || (arguments.smooth == "default" && source.samples())) {
     const std::vector<SmoothTrial> trials = choose_smoothness(input.samples, spec, options);
     options.smooth = trials.front().smooth;
     for (std::size_t t = 0; t < spec.tables.size(); ++t)
       spec.tables[t].smooth_share = trials.front().shares[t];
     if (input.samples.distinct <= kManySamples) cross_validated = trials.front().error;
   } else if (arguments.smooth != "default") {
-    options.smooth = CLI::detail::lexical_cast(arguments.smooth, options.smooth) ? options.smooth : -1;
-    if (!(options.smooth >= 0))
-      throw Error(fmt::format("--smooth: expected auto or a number >= 0, found '{}'", arguments.smooth));
+    options.smooth = parse_smooth(arguments.smooth);
   }
-  const HomomorphicFit result = fit_homomorphic(input.samples, spec, options);
+  HomomorphicFit result = fit_homomorphic(input.samples, spec, options);
   const HomomorphicSummary& summary = result.summary;
-
-  nlohmann::ordered_json notes{{"source", source.name},
-                               {"source_format", source.findings.format},
-                               {"symmetrized", !arguments.no_symmetrize},
-                               {"samples", summary.samples},
-                               {"smooth", options.smooth},
-                               {"floor", options.floor},
-                               {"reweightings", summary.reweightings},
-                               {"rms_log_before", summary.error_before},
-                               {"rms_log_after", summary.error_after},
-                               {"iterations", summary.iterations},
-                               {"stop_reason", summary.stop_reason}};
+  notes["samples"] = summary.samples;
+  notes["smooth"] = options.smooth;
+  notes["floor"] = options.floor;
+  notes["reweightings"] = summary.reweightings;
+  notes["rms_log_before"] = summary.error_before;
+  notes["rms_log_after"] = summary.error_after;
+  notes["iterations"] = summary.iterations;
+  notes["stop_reason"] = summary.stop_reason;
   for (const ModelSpec::TableSpec& table : spec.tables)
     if (table.smooth_share != 1) notes["smooth_shares"][table.name] = table.smooth_share;
-  // After rounding to the table format: at the samples themselves, or on pairs that were not fitted.
-  if (source.samples()) {
+  if (source.samples())
     notes["relative"] = std::expm1(log_error(input.samples, result.brdf, options.error_floor).mean());
-    if (cross_validated) notes["relative_cross_validated"] = std::expm1(*cross_validated);
-  } else {
+  if (cross_validated) notes["relative_cross_validated"] = std::expm1(*cross_validated);
+  return std::move(result.brdf);
+}
+
+FactoredBrdf fit_model(const Source& source, const Arguments& arguments, nlohmann::ordered_json& notes) {
+  const bool isotropic = source.ref().isotropic();
+  LobesArguments lobes = arguments.lobes;
+  lobes.seed = arguments.seed;
+  lobes.format = arguments.format;
+  if (arguments.smooth != "default" && arguments.smooth != "auto")
+    lobes.smooth = parse_smooth(arguments.smooth);
+  if (lobes.budget > 0) {
+    // few scattered samples do not carry several lobes
+    if (source.samples()) return fit_one(source, one_lobe_spec(source, lobes), arguments, notes);
+    return fit_to_budget(source, lobes, notes);
+  }
+  ModelSpec spec = parse_model_spec(arguments.model, arguments.tables, isotropic);
+  if (spec.lobes.size() == 1) return fit_one(source, std::move(spec), arguments, notes);
+  return fit_several_lobes(source, spec, lobes, notes);
+}
+
+nlohmann::ordered_json fit(const Arguments& arguments) {
+  const auto start = std::chrono::steady_clock::now();
+  const ThreadLimit limit(arguments.threads);
+  const Source source = arguments.source.open();
+  nlohmann::ordered_json notes{{"source", source.name},
+                               {"source_format", source.findings.format},
+                               {"symmetrized", !arguments.lobes.no_symmetrize}};
+  const FactoredBrdf brdf = fit_model(source, arguments, notes);
+  // After rounding to the table format, on pairs that were not fitted.
+  if (!source.samples()) {
     std::optional<SymmetrizedBrdf> symmetrized;
-    if (!arguments.no_symmetrize) symmetrized.emplace(source.ref());
-    const FigureOptions figures{.count = kHeldOutPairs, .seed = arguments.seed + 1, .image_size = 16};
+    if (!arguments.lobes.no_symmetrize) symmetrized.emplace(source.ref());
+    const FigureOptions figures{.count = kHeldOutPairs, .seed = arguments.seed + 1, .image_size = 128};
     const ErrorFigures error =
-        error_figures(symmetrized ? BrdfRef(*symmetrized) : source.ref(), result.brdf, figures);
+        error_figures(symmetrized ? BrdfRef(*symmetrized) : source.ref(), brdf, figures);
+    notes["psnr"] = std::isfinite(error.psnr) ? nlohmann::ordered_json(error.psnr) : nlohmann::ordered_json();
+    notes["ssim"] = error.ssim;
     notes["relative"] = error.relative;
     notes["rms_log"] = error.rms_log;
     notes["log_cos"] = error.log_cos;
   }
   write_then_rename(
       arguments.out,
-      format_model({.brdf = result.brdf, .lambda_nm = source.findings.lambda_nm, .notes = dump(notes, -1)}));
-
+      format_model({.brdf = brdf, .lambda_nm = source.findings.lambda_nm, .notes = dump(notes, -1)}));
   notes["output"] = arguments.out;
-  notes["model"] = model_expression(result.brdf);
-  notes["bytes"] = result.brdf.bytes();
-  notes["table_bytes"] = result.brdf.table_bytes();
-  notes["unknowns"] = summary.unknowns;
-  notes["smallest_factor"] = result.brdf.smallest_factor();
-  notes["reciprocal"] = result.brdf.reciprocal();
+  notes["model"] = model_expression(brdf);
+  notes["bytes"] = brdf.bytes();
+  notes["table_bytes"] = brdf.table_bytes();
+  notes["smallest_factor"] = brdf.smallest_factor();
+  notes["reciprocal"] = brdf.reciprocal();
   notes["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return notes;
 }
@@ -163,14 +190,25 @@ void print(const nlohmann::ordered_json& notes) {
   fmt::print("{}: {}\n", notes.at("source").get<std::string>(), notes.at("source_format").get<std::string>());
   fmt::print("model      {}, {} bytes ({} of them tables)\n", notes.at("model").get<std::string>(),
              notes.at("bytes").get<std::size_t>(), notes.at("table_bytes").get<std::size_t>());
-  fmt::print("fitted     {} samples, {} unknowns, {} iterations ({}), smooth {:.3g}\n",
-             notes.at("samples").get<std::size_t>(), notes.at("unknowns").get<std::size_t>(),
-             notes.at("iterations").get<int>(), notes.at("stop_reason").get<std::string>(), number("smooth"));
-  fmt::print("rms log f  {:.4f} before, {:.4f} after\n", number("rms_log_before"), number("rms_log_after"));
-  if (notes.contains("log_cos"))
+  if (notes.contains("lobes")) {
+    fmt::print("fitted     {} samples, {} lobes, {} steps ({})\n", notes.at("samples").get<std::size_t>(),
+               notes.at("lobes").get<int>(), notes.at("iterations").get<int>(),
+               notes.at("stop_reason").get<std::string>());
+    if (notes.contains("search"))
+      fmt::print("searched   {} changes, {} kept\n", notes.at("search").at("trials").get<std::size_t>(),
+                 notes.at("search").at("kept").size());
+  } else {
+    fmt::print("fitted     {} samples, {} iterations ({}), smooth {:.3g}\n",
+               notes.at("samples").get<std::size_t>(), notes.at("iterations").get<int>(),
+               notes.at("stop_reason").get<std::string>(), number("smooth"));
+    fmt::print("rms log f  {:.4f} before, {:.4f} after\n", number("rms_log_before"), number("rms_log_after"));
+  }
+  if (notes.contains("log_cos")) {
+    if (notes.at("psnr").is_number())
+      fmt::print("held out   psnr {:.2f} dB, ssim {:.4f}\n", number("psnr"), number("ssim"));
     fmt::print("held out   relative {:.4f}, rms_log {:.4f}, log_cos {:.4f}\n", number("relative"),
                number("rms_log"), number("log_cos"));
-  else if (notes.contains("relative_cross_validated"))
+  } else if (notes.contains("relative_cross_validated"))
     fmt::print("relative   {:.4f} at the samples, {:.4f} cross-validated\n", number("relative"),
                number("relative_cross_validated"));
   else
@@ -183,9 +221,11 @@ void print(const nlohmann::ordered_json& notes) {
 void add_fit_command(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("fit", "Factor a BRDF into a product of small positive tables");
   verb->footer(
-      "Example: burnish fit paint.binary -o paint.exr --model \"p(wo) q(h) r(theta_d) p(wi)\" --table q=96");
+      "Examples: burnish fit paint.binary -o paint.exr --budget 2700\n"
+      "          burnish fit paint.binary -o paint.exr --model \"p(wo) q(h) r(theta_d) p(wi)\" --table q=96");
   auto arguments = std::make_shared<Arguments>();
   add_source_arguments(*verb, arguments->source);
+  add_lobes_arguments(*verb, arguments->lobes);
   verb->add_option("-o,--output", arguments->out, "model file to write (OpenEXR)")->required();
   verb->add_option(
           "--model", arguments->model,
@@ -213,7 +253,7 @@ void add_fit_command(CLI::App& app) {
       ->check(CLI::IsMember({"half", "float"}))
       ->capture_default_str();
   verb->add_option("--threads", arguments->threads, "at most this many; 0: all")->check(CLI::Range(0, 1024));
-  verb->add_flag("--no-symmetrize", arguments->no_symmetrize,
+  verb->add_flag("--no-symmetrize", arguments->lobes.no_symmetrize,
                  "fit f(wi, wo) as it is, not its reciprocal part");
   verb->add_flag("--json", arguments->json, "print the summary as JSON");
   verb->callback([arguments] {
