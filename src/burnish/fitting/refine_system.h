@@ -49,8 +49,9 @@ class RefineSystem {
 
   /// The same without the matrix: the rows of its factor, curvature^(1/2) d ln f^ / dx.
   struct Rows {
-    Eigen::VectorXd gradient, diagonal;
-    std::size_t width = 0;  ///< terms a row; the row of pair i and channel c is number i * channels + c
+    Eigen::VectorXd gradient;
+    Eigen::VectorXd diagonal;  ///< of the matrix, less what terms of one row that share an unknown add
+    std::size_t width = 0;     ///< terms a row; the row of pair i and channel c is number i * channels + c
     std::vector<std::uint32_t> unknown;
     std::vector<float> value;
   };

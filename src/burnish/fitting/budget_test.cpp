@@ -1,0 +1,96 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <burnish/error.h>
+#include <burnish/fitting/search.h>
+#include <burnish/metrics/error_figures.h>
+#include <burnish/reflectance/analytic.h>
+
+namespace burnish {
+namespace {
+
+constexpr std::size_t kHalfRgb = 6;
+
+FactoredBrdf zero_model(const ModelSpec& spec, int channels) {
+  LogModel model{.spec = spec, .channels = channels, .log_values = {}};
+  for (std::size_t t = 0; t < spec.tables.size(); ++t)
+    model.log_values.emplace_back(spec.tables[t].layout.node_count() * model.step(t));
+  return to_brdf(model, TableFormat::half);
+}
+
+TEST(LobePlan, FillsItsBytesAndNoMore) {
+  for (const bool isotropic : {true, false})
+    for (const std::size_t bytes : {1350u, 2700u, 16384u, 65536u}) {
+      if (!isotropic && bytes < 2000) continue;
+      const LobePlan plan = default_plan(bytes, 0, isotropic, kHalfRgb);
+      const FactoredBrdf brdf = zero_model(plan_to_spec(plan, bytes, 3, kHalfRgb), 3);
+      EXPECT_LE(brdf.bytes(), bytes);
+      EXPECT_GT(static_cast<double>(brdf.bytes()), 0.8 * static_cast<double>(bytes)) << bytes << isotropic;
+      EXPECT_EQ(brdf.isotropic(), isotropic);
+      EXPECT_TRUE(brdf.reciprocal());
+    }
+}
+
+TEST(LobePlan, RefusesWhatDoesNotFit) {
+  EXPECT_THROW(plan_to_spec(default_plan(100, 1, true, kHalfRgb), 100, 3, kHalfRgb), Error);
+  EXPECT_THROW(plan_to_spec(default_plan(0, 1, true, kHalfRgb), 0, 3, kHalfRgb), Error);
+  EXPECT_THROW(plan_to_spec(default_plan(300, 40, true, kHalfRgb), 300, 3, kHalfRgb), Error);
+  EXPECT_THROW(plan_to_spec(default_plan(200, 2, false, kHalfRgb), 200, 3, kHalfRgb), Error);
+  EXPECT_THROW(default_plan(2700, 1, false, kHalfRgb), Error);
+}
+
+TEST(Budget, MoreBytesMeanSmallerErrors) {
+  const AnalyticBrdf ward = parse_analytic("ggx:alpha_x=0.15,alpha_y=0.15,kd=0.3,f0=0.5");
+  const TrainingSet set = draw_training_set(ward.ref(), {.pictures = 3000, .directions = 5000});
+  double last_psnr = 0, last_relative = 1;
+  for (const std::size_t bytes : {400u, 1200u, 3600u}) {
+    const LobesFit fit =
+        fit_plan(set, default_plan(bytes, 0, true, kHalfRgb), bytes, kHalfRgb, {.max_iterations = 12});
+    const ErrorFigures e =
+        error_figures(ward.ref(), to_brdf(fit.model, TableFormat::half), {.count = 5000, .image_size = 64});
+    EXPECT_GT(e.psnr, last_psnr);
+    EXPECT_LT(e.relative, last_relative);
+    last_psnr = e.psnr;
+    last_relative = e.relative;
+  }
+  EXPECT_GT(last_psnr, 35);
+}
+
+TEST(Budget, HoldsDiffuseAndAnisotropicGlossTogether) {
+  const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.2,alpha_y=0.5,kd=0.3,f0=0.8");
+  const TrainingSet set = draw_training_set(ggx.ref(), {.pictures = 3000, .directions = 12'000});
+  const std::size_t bytes = 6000;
+  const LobesFit fit =
+      fit_plan(set, default_plan(bytes, 0, false, kHalfRgb), bytes, kHalfRgb, {.max_iterations = 10});
+  const ErrorFigures e =
+      error_figures(ggx.ref(), to_brdf(fit.model, TableFormat::half), {.count = 5000, .image_size = 64});
+  EXPECT_LT(e.relative, 0.05);
+  EXPECT_GT(e.psnr, 35);
+}
+
+TEST(Search, ImprovesAPlanThatMissesAFactorAndRepeatsItself) {
+  const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.2,alpha_y=0.2,kd=0.2,f0=0.3");
+  const TrainingSet set = draw_training_set(ggx.ref(), {.pictures = 2000, .directions = 4000});
+  LobePlan start{.lobes = 1,
+                 .factors = {{"q", TableShape::line, {kProjectHalf}, 1, {}},
+                             {"r", TableShape::line, {kProjectDifference}, 1, {}}}};
+  double progress = -1;
+  const SearchOptions options{.bytes = 500, .texel_bytes = kHalfRgb, .progress = [&](double f) {
+                                EXPECT_GE(f, 0);
+                                EXPECT_LE(f, 1);
+                                progress = f;
+                              }};
+  const SearchResult a = search_plan(set, start, options), b = search_plan(set, start, options);
+  EXPECT_EQ(a.plan, b.plan);
+  EXPECT_NE(a.plan, start);
+  EXPECT_EQ(progress, 1);
+  EXPECT_EQ(a.trials.front().change, "start");
+  double best = a.trials.front().objective;
+  for (const SearchTrial& t : a.trials)
+    if (t.kept) best = std::min(best, t.objective);
+  EXPECT_LT(best, a.trials.front().objective);
+}
+
+}  // namespace
+}  // namespace burnish

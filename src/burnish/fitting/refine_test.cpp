@@ -1,0 +1,200 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <burnish/error.h>
+#include <burnish/fitting/budget.h>
+#include <burnish/fitting/refine_system.h>
+#include <burnish/math/parallel.h>
+#include <burnish/math/random.h>
+#include <burnish/metrics/error_figures.h>
+#include <burnish/reflectance/analytic.h>
+
+namespace burnish {
+namespace {
+
+TrainingSet small_set(const AnalyticBrdf& brdf, std::size_t count = 3000) {
+  return draw_training_set(brdf.ref(), {.pictures = count, .directions = count});
+}
+
+// Random logarithms in [-1, 0].
+LogModel random_model(const std::string& expression, const std::vector<std::string>& tables, int channels) {
+  LogModel model{.spec = parse_model_spec(expression, tables, true), .channels = channels, .log_values = {}};
+  Pcg32 random(3);
+  for (std::size_t t = 0; t < model.spec.tables.size(); ++t) {
+    model.log_values.emplace_back(model.spec.tables[t].layout.node_count() * model.step(t));
+    for (double& v : model.log_values.back()) v = -random.uniform();
+  }
+  return model;
+}
+
+std::vector<double> evaluate(const LogModel& model, const TrainingSet& set) {
+  const FactoredBrdf brdf = to_brdf(model, TableFormat::single);
+  std::vector<double> f(set.size() * static_cast<std::size_t>(model.channels));
+  for (std::size_t i = 0; i < set.size(); ++i)
+    brdf.eval(set.pairs[i].wi, set.pairs[i].wo,
+              std::span(f).subspan(i * static_cast<std::size_t>(model.channels),
+                                   static_cast<std::size_t>(model.channels)));
+  return f;
+}
+
+TEST(TrainingSet, IsPixelsAndPairsAboveTheHorizonAndTheSameForASeed) {
+  const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.2,alpha_y=0.2");
+  const TrainingSet set = small_set(ggx), again = small_set(ggx);
+  EXPECT_EQ(set.pairs, again.pairs);
+  ASSERT_EQ(set.size(), 6000u);
+  EXPECT_EQ(set.picture_count, 3000u);
+  EXPECT_GT(set.exposure, 0);
+  double pair_weights = 0;
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    EXPECT_GT(set.pairs[i].wi.z, 0);
+    EXPECT_GT(set.pairs[i].wo.z, 0);
+    EXPECT_NEAR(length(set.pairs[i].wi), 1, 1e-12);
+    EXPECT_GT(set.weights[i], 0);
+    if (i >= set.picture_count) pair_weights += set.weights[i];
+  }
+  EXPECT_NEAR(pair_weights / 3000, 1, 0.2);  // but for the pairs that fall below the horizon
+  const TrainingSet part = thinned(set, 7);
+  EXPECT_EQ(part.pairs.front(), set.pairs.front());
+  EXPECT_EQ(part.picture_count, (3000u + 6) / 7);
+  EXPECT_EQ(part.pairs[part.picture_count], set.pairs[set.picture_count]);
+}
+
+TEST(PictureLoss, SlopeIsTheDerivativeOfTheErrors) {
+  const PictureLoss loss{.shares = {1, 1, 1, 1}, .exposure = 2};
+  const ErrorTerms ones{1, 1, 1, 1};
+  for (const bool picture : {true, false})
+    for (const double f : {0.0, 1e-3, 0.2, 0.4})
+      for (const double model : {1e-4, 0.05, 0.3, 0.45}) {
+        const auto value = [&](double log_model) {
+          ErrorTerms sums{};
+          loss.add(loss.target(f, 0.8, picture), std::exp(log_model), 0.8, picture, 1, ones, sums);
+          return sums[0] + sums[1] + sums[2] + sums[3];
+        };
+        ErrorTerms sums{};
+        const auto slope = loss.add(loss.target(f, 0.8, picture), model, 0.8, picture, 1, ones, sums);
+        const double x = std::log(model), h = 1e-4;
+        EXPECT_NEAR(slope.gradient, (value(x + h) - value(x - h)) / (2 * h), 1e-5) << f << ' ' << model;
+        EXPECT_GE(slope.curvature, 0);
+      }
+}
+
+TEST(PictureLoss, IsZeroWhereTheModelIsRight) {
+  const PictureLoss loss{.exposure = 3};
+  for (const bool picture : {true, false}) {
+    ErrorTerms sums{};
+    const auto slope = loss.add(loss.target(0.1, 0.5, picture), 0.1, 0.5, picture, 1, {1, 1, 1, 1}, sums);
+    for (const double s : sums) EXPECT_NEAR(s, 0, 1e-12);
+    EXPECT_NEAR(slope.gradient, 0, 1e-4);
+  }
+}
+
+TEST(RefineSystem, MatrixAndRowsAreTheSameSystem) {
+  const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.2,alpha_y=0.2");
+  const TrainingSet set = small_set(ggx, 500);
+  for (const auto& tables : {std::vector<std::string>{"p=5", "q=9", "g=4x3"},
+                             std::vector<std::string>{"p=5,shared", "q=9", "g=4x3"}}) {
+    const LogModel model = random_model("p(wo) p(wi) q(h) + q(h) g(theta_d,theta_m)", tables, 3);
+    const bool shared = model.step(0) == 1;
+    const Lookups lookups = find_lookups(model.spec, set);
+    const PictureLoss loss{.exposure = 0.1};  // no pixel is white
+    const RefineSystem system(model, set, lookups, loss, shared ? 0 : 1, shared ? 3 : 2);
+    const Eigen::VectorXd x = system.read(model);
+    ASSERT_EQ(static_cast<std::size_t>(x.size()), shared ? 5u + 3 * 9 + 3 * 12 : 5u + 9 + 12);
+    const ErrorTerms means = system.errors(x);
+    std::vector<RefineSystem::Normal> partial;
+    system.find_normal(x, means, partial);
+    const RefineSystem::Rows rows = system.rows(x, means);
+    const double size = partial.front().matrix.norm();
+    EXPECT_LT((rows.gradient - partial.front().gradient).norm(), 1e-5 * partial.front().gradient.norm());
+    Eigen::VectorXd v = Eigen::VectorXd::LinSpaced(x.size(), -1, 1);
+    EXPECT_LT((system.apply(rows, v) - partial.front().matrix * v).norm(), 1e-5 * size * v.norm());
+    Eigen::MatrixXd roughness = Eigen::MatrixXd::Zero(x.size(), x.size());
+    system.add_roughness_matrix(1, roughness);
+    EXPECT_NEAR(v.dot(roughness * v), system.roughness(v), 1e-9 * system.roughness(v));
+    EXPECT_LT((roughness * v - system.roughness_matrix_times(v)).norm(), 1e-9 * roughness.norm() * v.norm());
+    EXPECT_LT((roughness.diagonal() - system.roughness_diagonal()).norm(), 1e-9 * roughness.norm());
+    // and the gradient is that of the objective
+    for (const Eigen::Index k : {Eigen::Index{2}, x.size() - 3}) {
+      Eigen::VectorXd up = x, down = x;
+      up[k] += 1e-4;
+      down[k] -= 1e-4;
+      EXPECT_NEAR(partial.front().gradient[k],
+                  (loss.objective(system.errors(up)) - loss.objective(system.errors(down))) / 2e-4,
+                  1e-3 * partial.front().gradient.cwiseAbs().maxCoeff());
+    }
+  }
+}
+
+TEST(LogModel, SplittingALobeChangesNothing) {
+  for (const char* expression : {"p(wo) p(wi) q(h) r(theta_d)", "p(wo) p(wi) q(h)"}) {
+    const TrainingSet set = small_set(parse_analytic("lambert"), 300);
+    const LogModel model = random_model(expression, {}, 3);
+    const LogModel split = with_lobe_split(model, 0, 0.4, "x");
+    ASSERT_EQ(split.spec.lobes.size(), 2u);
+    const std::vector<double> a = evaluate(model, set), b = evaluate(split, set);
+    for (std::size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(b[i], a[i], 1e-5 * a[i]) << expression;
+  }
+}
+
+TEST(LogModel, ResamplingToMoreNodesKeepsTheFunctions) {
+  const TrainingSet set = small_set(parse_analytic("lambert"), 300);
+  const std::vector<std::string> few{"p=5", "q=9", "g=4x3"}, more{"p=9", "q=17", "g=7x5"};
+  const char* expression = "p(wo) p(wi) q(h) g(theta_d,theta_m)";
+  const LogModel model = random_model(expression, few, 3);
+  const LogModel fine = resampled(model, parse_model_spec(expression, more, true));
+  const std::vector<double> a = evaluate(model, set), b = evaluate(fine, set);
+  for (std::size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(b[i], a[i], 1e-5 * a[i]);
+  // a table that was not there is 1
+  const LogModel added =
+      resampled(model, parse_model_spec("p(wo) p(wi) q(h) g(theta_d,theta_m) s(h)", few, true));
+  const std::vector<double> c = evaluate(added, set);
+  for (std::size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(c[i], a[i], 1e-5 * a[i]);
+}
+
+TEST(Refine, RecoversASumOfTwoLobes) {
+  const LogModel truth = random_model("p(wo) p(wi) q(h) + s(h) t(theta_d)", {"p=5", "q=9", "s=5", "t=7"}, 1);
+  TrainingSet set = small_set(parse_analytic("lambert"), 4000);
+  const std::vector<double> f = evaluate(truth, set);
+  set.channels = 1;
+  set.values.assign(f.begin(), f.end());
+  const LobesFit fit =
+      fit_lobes(set, truth.spec, {.smooth = 0, .max_iterations = 100, .least_progress = 1e-6});
+  const std::vector<double> g = evaluate(fit.model, set);
+  double worst = 0;
+  for (std::size_t i = 0; i < f.size(); ++i) worst = std::max(worst, std::abs(std::log(g[i] / f[i])));
+  EXPECT_LT(worst, 0.02);
+  EXPECT_LT(fit.summary.objective_after, fit.summary.objective_before);
+}
+
+TEST(Refine, DoesNotDependOnTheNumberOfThreads) {
+  const TrainingSet set = small_set(parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3,kd=0.2"), 2000);
+  const LobePlan plan = default_plan(600, 2, true, 6);
+  const auto fit = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return fit_plan(set, plan, 600, 6, {.max_iterations = 4}).model.log_values;
+  };
+  EXPECT_EQ(fit(1), fit(2));
+}
+
+TEST(Refine, IteratesWhereTheMatrixWouldBeTooLarge) {
+  // 45 x 45 nodes are more than the direct solver takes
+  const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.3,alpha_y=0.5,kd=0");
+  const TrainingSet set = small_set(ggx, 3000);
+  LogModel model = fit_one_lobe(parse_model_spec("pqp", std::vector<std::string>{"p=5x5", "q=45x45"}, false),
+                                set, set.values, 1e-6);
+  const RefineSummary summary = refine(model, set, {.smooth = 1e-8, .max_iterations = 3});
+  EXPECT_LT(summary.objective_after, summary.objective_before - 0.2);
+}
+
+TEST(Refine, RefusesBadOptions) {
+  const TrainingSet set = small_set(parse_analytic("lambert"), 100);
+  LogModel model = random_model("pqp", {}, 3);
+  EXPECT_THROW(refine(model, set, {.smooth = -1}), Error);
+  EXPECT_THROW(refine(model, set, {.max_iterations = -1}), Error);
+  LogModel grey = random_model("pqp", {}, 1);
+  EXPECT_THROW(refine(grey, set, {}), Error);
+}
+
+}  // namespace
+}  // namespace burnish
