@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <burnish/error.h>
 #include <burnish/factors/model_file.h>
 #include <burnish/file.h>
 #include <burnish/fitting/cross_validation.h>
@@ -17,6 +16,7 @@
 #include "commands.h"
 #include "progress.h"
 #include "source_arguments.h"
+#include "usage.h"
 
 namespace burnish::cli {
 
@@ -95,7 +95,8 @@ nlohmann::ordered_json fit(const Arguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const ThreadLimit limit(arguments.threads);
   const Source source = arguments.source.open();
-  ModelSpec spec = parse_model_spec(arguments.model, arguments.tables, source.ref().isotropic());
+  ModelSpec spec =
+      usage([&] { return parse_model_spec(arguments.model, arguments.tables, source.ref().isotropic()); });
   FitInput input;
   make_input(source, arguments, spec, input);
   HomomorphicOptions options = make_options(source, arguments);
@@ -111,7 +112,8 @@ nlohmann::ordered_json fit(const Arguments& arguments) {
   } else if (arguments.smooth != "default") {
     options.smooth = CLI::detail::lexical_cast(arguments.smooth, options.smooth) ? options.smooth : -1;
     if (!(options.smooth >= 0))
-      throw Error(fmt::format("--smooth: expected auto or a number >= 0, found '{}'", arguments.smooth));
+      throw CLI::ValidationError(
+          fmt::format("--smooth: expected auto or a number >= 0, found '{}'", arguments.smooth));
   }
   const HomomorphicFit result = fit_homomorphic(input.samples, spec, options);
   const HomomorphicSummary& summary = result.summary;
