@@ -54,13 +54,14 @@ TEST(SpecularVerb, ChoosesListsAndWritesCode) {
 }
 
 TEST(SpecularVerb, ExitsWithOneForBadInputAndTwoForMisuse) {
-  EXPECT_EQ(run("eval --method nothing --exponent 9").status, 1);
-  EXPECT_EQ(run("eval --method cubic4 --exponent 2").status, 1);
-  EXPECT_EQ(run("choose --max-error 1/0").status, 1);
-  EXPECT_EQ(run("choose --exponents 9:3").status, 1);
   EXPECT_EQ(run("plot --figure 2a -o /nonexistent/a.svg").status, 1);
-  EXPECT_EQ(run("plot --figure 9 -o a.svg").status, 2);
-  EXPECT_EQ(run("").status, 2);
+  for (const char* misuse :
+       {"", "eval --method nothing --exponent 9", "eval --method cubic4 --exponent 2",
+        "code --method nothing", "code --lang cobol", "code --method cubic4 --exponent 2",
+        "choose --max-error 1/0", "choose --exponents 9:3", "choose --exponents 1:x", "choose --lang cobol",
+        "table --count 0", "plot --figure 9 -o a.svg", "plot --figure 2a -o a.txt",
+        "plot --method nothing -o a.svg", "plot --figure sphere --exponent 0.5 -o a.png"})
+    EXPECT_EQ(run(misuse).status, 2) << misuse;
   EXPECT_EQ(run("choose --help").status, 0);
 }
 

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <burnish/error.h>
 #include <burnish/file.h>
 #include <burnish/io/csv.h>
 #include <burnish/io/merl.h>
@@ -32,7 +31,8 @@ std::string target_format(const Arguments& arguments) {
   if (extension == ".binary") return "merl";
   if (extension == ".bsdf") return "rgl";
   if (extension == ".csv" || extension == ".exr") return extension.substr(1);
-  throw Error::in_file(arguments.out, "a name that ends in .binary, .bsdf, .csv or .exr, or --to", "neither");
+  throw CLI::ValidationError(arguments.out,
+                             "expected a name that ends in .binary, .bsdf, .csv or .exr, or --to");
 }
 
 /// A table keeps its entries; anything else is tabulated as MERL does.

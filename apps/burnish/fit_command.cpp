@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <burnish/error.h>
 #include <burnish/factors/model_file.h>
 #include <burnish/file.h>
 #include <burnish/fitting/cross_validation.h>
@@ -18,6 +17,7 @@
 #include "fit_lobes.h"
 #include "progress.h"
 #include "source_arguments.h"
+#include "usage.h"
 
 namespace burnish::cli {
 
@@ -96,7 +96,7 @@ HomomorphicOptions make_options(const Source& source, const Arguments& arguments
 double parse_smooth(const std::string& text) {
   double smooth = -1;
   if (!CLI::detail::lexical_cast(text, smooth) || !(smooth >= 0))
-    throw Error(fmt::format("--smooth: expected auto or a number >= 0, found '{}'", text));
+    throw CLI::ValidationError(fmt::format("--smooth: expected auto or a number >= 0, found '{}'", text));
   return smooth;
 }
 
@@ -146,7 +146,7 @@ FactoredBrdf fit_model(const Source& source, const Arguments& arguments, nlohman
     if (source.samples()) return fit_one(source, one_lobe_spec(source, lobes), arguments, notes);
     return fit_to_budget(source, lobes, notes);
   }
-  ModelSpec spec = parse_model_spec(arguments.model, arguments.tables, isotropic);
+  ModelSpec spec = usage([&] { return parse_model_spec(arguments.model, arguments.tables, isotropic); });
   if (spec.lobes.size() == 1) return fit_one(source, std::move(spec), arguments, notes);
   return fit_several_lobes(source, spec, lobes, notes);
 }

@@ -5,12 +5,13 @@
 #include <burnish/file.h>
 
 #include "commands.h"
+#include "usage.h"
 
 namespace burnish::cli {
 
 std::vector<PowerMethod> parse_methods(const std::vector<std::string>& names) {
   std::vector<PowerMethod> methods;
-  for (const std::string& name : names) methods.push_back(power_method(name));
+  for (const std::string& name : names) methods.push_back(usage([&] { return power_method(name); }));
   return methods;
 }
 

@@ -18,7 +18,7 @@ void add_specular_code(CLI::App& verb);
 void add_specular_plot(CLI::App& verb);
 void add_specular_report(CLI::App& verb);
 
-/// Members by name; throws Error for an unknown one.
+/// Members by name; an unknown one is a misuse.
 std::vector<PowerMethod> parse_methods(const std::vector<std::string>& names);
 
 /// Writes `text` to a file, or to standard output where `path` is empty.

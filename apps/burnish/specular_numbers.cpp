@@ -12,6 +12,7 @@
 #include <burnish/power/code.h>
 
 #include "specular_command.h"
+#include "usage.h"
 
 namespace burnish::cli {
 namespace {
@@ -100,12 +101,16 @@ void add_specular_choose(CLI::App& verb) {
   sub->callback([arguments] {
     const std::string& range = arguments->exponents;
     const auto colon = range.find(':');
-    const double first = parse_number(range.substr(0, colon), "--exponents");
-    const double last =
-        colon == std::string::npos ? first : parse_number(range.substr(colon + 1), "--exponents");
-    const auto choices = choose_power(parse_fraction(arguments->max_error, "--max-error"), first, last);
+    const auto number = [](const std::string& text) {
+      return usage([&] { return parse_number(text, "--exponents"); });
+    };
+    const double first = number(range.substr(0, colon));
+    const double last = colon == std::string::npos ? first : number(range.substr(colon + 1));
+    const auto choices =
+        usage([&] { return choose_power(parse_fraction(arguments->max_error, "--max-error"), first, last); });
     const CodeOptions options{arguments->language, first == last ? std::optional(first) : std::nullopt,
                               false};
+    const auto code = [&](PowerMethod method) { return usage([&] { return power_code(method, options); }); };
     if (arguments->json) {
       nlohmann::json list = nlohmann::json::array();
       for (const PowerChoice& choice : choices)
@@ -114,7 +119,7 @@ void add_specular_choose(CLI::App& verb) {
                         {"method", power_info(choice.method).name},
                         {"bound", choice.bound},
                         {"weight", power_info(choice.method).cost.weight()},
-                        {"code", power_code(choice.method, options)}});
+                        {"code", code(choice.method)}});
       fmt::print("{}\n", list.dump(2));
       return;
     }
@@ -126,7 +131,7 @@ void add_specular_choose(CLI::App& verb) {
     for (const PowerChoice& choice : choices) {
       if (std::find(written.begin(), written.end(), choice.method) != written.end()) continue;
       written.push_back(choice.method);
-      fmt::print("\n{}", power_code(choice.method, options));
+      fmt::print("\n{}", code(choice.method));
     }
   });
 }
@@ -148,8 +153,10 @@ void add_specular_code(CLI::App& verb) {
   sub->add_flag("--normalize", arguments->normalize, "keep the energy of the power; needs --exponent");
   sub->add_option("-o,--out", arguments->out, "file to write instead of standard output");
   sub->callback([arguments] {
-    write_text(arguments->out, power_code(power_method(arguments->method),
-                                          {arguments->language, arguments->exponent, arguments->normalize}));
+    write_text(arguments->out, usage([&] {
+                 return power_code(power_method(arguments->method),
+                                   {arguments->language, arguments->exponent, arguments->normalize});
+               }));
   });
 }
 
@@ -166,9 +173,9 @@ void add_specular_eval(CLI::App& verb) {
   sub->add_option("--exponent", arguments->exponent, "the exponent")->required();
   sub->add_flag("--normalize", arguments->normalize, "keep the energy of the power");
   sub->callback([arguments] {
-    const PowerMethod method = power_method(arguments->method);
-    const PowerCoefficients k = power_coefficients(method, arguments->exponent);
-    const double scale = arguments->normalize ? power_normalization(method, arguments->exponent) : 1;
+    const PowerCoefficients k =
+        usage([&] { return power_coefficients(power_method(arguments->method), arguments->exponent); });
+    const double scale = arguments->normalize ? power_normalization(k.method, arguments->exponent) : 1;
     std::string line;
     for (std::uint64_t number = 1; std::getline(std::cin, line); ++number) {
       while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
@@ -200,8 +207,9 @@ void add_specular_table(CLI::App& verb) {
       ->capture_default_str();
   sub->add_option("-o,--out", arguments->out, "file to write instead of standard output");
   sub->callback([arguments] {
-    write_text(arguments->out,
-               quadratic_table(arguments->format, arguments->count, arguments->fraction_bits));
+    write_text(arguments->out, usage([&] {
+                 return quadratic_table(arguments->format, arguments->count, arguments->fraction_bits);
+               }));
   });
 }
 

@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <burnish/error.h>
 #include <burnish/file.h>
 #include <burnish/metrics/png.h>
 #include <burnish/metrics/specular_figures.h>
 #include <burnish/power/bounds.h>
 
 #include "specular_command.h"
+#include "usage.h"
 
 namespace burnish::cli {
 namespace {
@@ -23,8 +23,7 @@ void write_plot(const fs::path& path, const Plot& plot) {
   else if (path.extension() == ".png")
     write_png(path, to_image(plot));
   else
-    throw Error::in_file(path.string(), "a name that ends in .svg or .png",
-                         "'" + path.extension().string() + "'");
+    throw CLI::ValidationError(path.string(), "expected a name that ends in .svg or .png");
 }
 
 Plot figure(const std::string& name, const std::vector<PowerMethod>& methods,
@@ -131,12 +130,13 @@ void add_specular_plot(CLI::App& verb) {
   sub->callback([arguments] {
     const std::vector<PowerMethod> methods = parse_methods(arguments->methods);
     if (arguments->figure != "sphere") {
-      write_plot(arguments->out, figure(arguments->figure, methods, arguments->exponents));
+      write_plot(arguments->out,
+                 usage([&] { return figure(arguments->figure, methods, arguments->exponents); }));
       return;
     }
     if (fs::path(arguments->out).extension() != ".png")
-      throw Error::in_file(arguments->out, "a name that ends in .png", "another");
-    const SphereFigure sphere = sphere_figure(methods, arguments->exponents.front());
+      throw CLI::ValidationError(arguments->out, "expected a name that ends in .png");
+    const SphereFigure sphere = usage([&] { return sphere_figure(methods, arguments->exponents.front()); });
     write_png(arguments->out, sphere.image);
     fmt::print("white in the last row: +{:.4g}\n", sphere.max_difference);
   });

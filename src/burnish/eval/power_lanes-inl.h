@@ -99,9 +99,8 @@ HWY_INLINE Lane scale_by_power_of_two(Lane x, Lane shifted) {
 }
 HWY_INLINE Lane short_exp2(Lane x);
 HWY_INLINE Lane power_at_inflection(Lane inverse);
-template <class T>
-struct Cosine;
-HWY_INLINE Lane times_cosine(Lane w, const Cosine<Lane>& p);
+struct GivenCosine;
+HWY_INLINE Lane falling_line(Lane k, const GivenCosine& p);
 
 #include <burnish/power/forms-inl.h>
 
@@ -116,8 +115,18 @@ HWY_INLINE Lane power_at_inflection(Lane inverse) {
   return NearExact::value(Cosine<Lane>{Lane(1.0) - inverse, inverse}, &k);
 }
 
-HWY_INLINE Lane times_cosine(Lane w, const Cosine<Lane>& p) {
-  return neg_mul_add(p.u, w, w);
+// A cosine that is a float itself, not computed from others with rounding.
+struct GivenCosine : Cosine<Lane> {};
+HWY_INLINE GivenCosine cosine(Lane c) {
+  return {{c, Lane(1.0) - c}};
+}
+// From k = 1/2 on 1 - k is exact, so a fused k c + (1 - k) rounds once, as 1 - k u does; and u is not needed.
+HWY_INLINE Lane falling_line(Lane k, const GivenCosine& p) {
+#if HWY_NATIVE_FMA
+  return mul_add(k, p.c, Lane(1.0) - k);
+#else
+  return neg_mul_add(k, p.u, Lane(1.0));
+#endif
 }
 HWY_INLINE Lane log_cosine(const Cosine<Lane>& p) {
   return Lane(hn::Log(D(), p.c.raw));
@@ -125,9 +134,6 @@ HWY_INLINE Lane log_cosine(const Cosine<Lane>& p) {
 HWY_INLINE Lane squared_angle(const Cosine<Lane>& p) {
   const Lane gamma(hn::Acos(D(), p.c.raw));
   return gamma * gamma;
-}
-HWY_INLINE Cosine<Lane> cosine(Lane c) {
-  return {c, Lane(1.0) - c};
 }
 
 }  // namespace

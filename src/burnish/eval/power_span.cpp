@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <burnish/error.h>
@@ -14,7 +13,7 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
-#include <burnish/eval/power_lanes-inl.h>
+#include <burnish/eval/vector_loop-inl.h>
 
 #ifndef BURNISH_EVAL_SHADE_ARGUMENTS
 #define BURNISH_EVAL_SHADE_ARGUMENTS
@@ -39,44 +38,21 @@ using ConstantKernel = void (*)(const float* cosines, std::size_t count, const d
 using VaryingKernel = void (*)(const float* cosines, const float* exponents, std::size_t count, float* out);
 using ShadeKernel = void (*)(const ShadeArguments&, float* out);
 
-// Runs body(i, width) over whole vectors, then the rest through buffers of one vector each.
 template <class Form>
 void constant_kernel(const float* cosines, std::size_t count, const double* coefficients, float* out) {
-  const D d;
   Lane k[Form::kCoefficients];
   for (int i = 0; i < Form::kCoefficients; ++i) k[i] = Lane(coefficients[i]);
-  const auto one = [&](const float* c, float* to)
-                       HWY_ATTR { hn::StoreU(Form::value(cosine(Lane(hn::LoadU(d, c))), k).raw, d, to); };
-  const std::size_t width = hn::Lanes(d);
-  std::size_t i = 0;
-  for (; i + width <= count; i += width) one(cosines + i, out + i);
-  if (i < count) {
-    std::array<float, hn::MaxLanes(D())> rest{};
-    std::copy(cosines + i, cosines + count, rest.begin());
-    one(rest.data(), rest.data());
-    std::copy(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(count - i), out + i);
-  }
+  for_each_vector<4>({cosines}, count, out,
+                     [=](const Lane(&in)[1]) HWY_ATTR { return Form::value(cosine(in[0]), k); });
 }
 
 template <class Form>
 void varying_kernel(const float* cosines, const float* exponents, std::size_t count, float* out) {
-  const D d;
-  const auto one = [&](const float* c, const float* e, float* to) HWY_ATTR {
+  for_each_vector<1>({cosines, exponents}, count, out, [](const Lane(&in)[2]) HWY_ATTR {
     Lane k[Form::kCoefficients];
-    Form::coefficients(Exponent<Lane>{Lane(hn::LoadU(d, e)), Lane(1.0)}, k);
-    hn::StoreU(Form::value(cosine(Lane(hn::LoadU(d, c))), k).raw, d, to);
-  };
-  const std::size_t width = hn::Lanes(d);
-  std::size_t i = 0;
-  for (; i + width <= count; i += width) one(cosines + i, exponents + i, out + i);
-  if (i < count) {
-    std::array<float, hn::MaxLanes(D())> rest{}, rest_exponents;
-    rest_exponents.fill(exponents[i]);
-    std::copy(cosines + i, cosines + count, rest.begin());
-    std::copy(exponents + i, exponents + count, rest_exponents.begin());
-    one(rest.data(), rest_exponents.data(), rest.data());
-    std::copy(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(count - i), out + i);
-  }
+    Form::coefficients(Exponent<Lane>{in[1], Lane(1.0)}, k);
+    return Form::value(cosine(in[0]), k);
+  });
 }
 
 /// No power: the cosine itself.
@@ -89,36 +65,60 @@ struct Identity {
 };
 
 template <class Form>
-void shade_kernel(const ShadeArguments& a, float* out) {
-  const D d;
-  Lane k[Form::kCoefficients];
-  for (int i = 0; i < Form::kCoefficients; ++i) k[i] = Lane(a.k[i]);
-  const Lane lx(a.wi.x), ly(a.wi.y), lz(a.wi.z), hx(a.h.x), hy(a.h.y), hz(a.h.z);
-  const Lane diffuse(a.diffuse), specular(a.specular);
-  const auto one = [&](const float* px, const float* py, const float* pz, float* to) HWY_ATTR {
-    const Lane x(hn::LoadU(d, px)), y(hn::LoadU(d, py)), z(hn::LoadU(d, pz));
-    const Lane squared = mul_add(x, x, mul_add(y, y, z * z));
-    const Lane inverse = Lane(1.0) / sqrt(squared);
-    const Lane to_light = clamp_negative(mul_add(x, lx, mul_add(y, ly, z * lz))) * inverse;
-    const Lane to_half = clamp_negative(mul_add(x, hx, mul_add(y, hy, z * hz)));
-    // 1 - c first: one operation, and never negative by rounding.
-    const Lane u = clamp_negative(neg_mul_add(to_half, inverse, Lane(1.0)));
-    const Lane glossy = Form::value(Cosine<Lane>{Lane(1.0) - u, u}, k);
-    hn::StoreU(mul_add(specular, glossy, diffuse * to_light).raw, d, to);
-  };
-  const std::size_t width = hn::Lanes(d);
-  std::size_t i = 0;
-  for (; i + width <= a.count; i += width) one(a.x + i, a.y + i, a.z + i, out + i);
-  if (i < a.count) {
-    constexpr std::size_t kMax = hn::MaxLanes(D());
-    std::array<float, kMax> x{}, y{}, z, to;
-    z.fill(1);
-    std::copy(a.x + i, a.x + a.count, x.begin());
-    std::copy(a.y + i, a.y + a.count, y.begin());
-    std::copy(a.z + i, a.z + a.count, z.begin());
-    one(x.data(), y.data(), z.data(), to.data());
-    std::copy(to.begin(), to.begin() + static_cast<std::ptrdiff_t>(a.count - i), out + i);
+concept PowerOfClampedForm = requires {
+  Form::kLog2Power;
+};
+
+// diffuse + specular * power: in general, and for powers of a clamped form without its two outer multiplies.
+// There u is scaled so that the leading coefficient is 1, and the form so that its power includes the weight.
+template <class Form>
+struct Highlight {
+  double u_scale = 1;
+  Lane specular, k[Form::kCoefficients];
+
+  explicit Highlight(const ShadeArguments& a) : specular(a.specular) {
+    for (int i = 0; i < Form::kCoefficients; ++i) k[i] = Lane(a.k[i]);
   }
+  HWY_INLINE Lane added_to(Lane diffuse, Lane u) const {
+    return mul_add(specular, Form::value(Cosine<Lane>{Lane(1.0) - u, u}, k), diffuse);
+  }
+};
+template <PowerOfClampedForm Form>
+struct Highlight<Form> {
+  double u_scale;
+  Lane top, k[Form::kCoefficients];
+
+  explicit Highlight(const ShadeArguments& a) {
+    constexpr int kDegree = Form::kCoefficients;
+    static_assert(kDegree == 1 || kDegree == 3);
+    constexpr double kLeast = 1e-30;  // instead of 0, which no leading coefficient could be scaled from
+    double root = std::max<double>(a.specular, kLeast);
+    for (int i = 0; i < Form::kLog2Power; ++i) root = std::sqrt(root);
+    top = Lane(root);
+    const double leading = root * a.k[kDegree - 1];
+    u_scale = kDegree == 1 ? leading : std::cbrt(leading);
+    for (int i = 0; i < kDegree; ++i) k[i] = Lane((root /= u_scale) * a.k[i]);
+  }
+  HWY_INLINE Lane added_to(Lane diffuse, Lane u) const {
+    const Lane half_power = power_of_two_power<Form::kLog2Power - 1>(Form::root(u, k, top));
+    return mul_add(half_power, half_power, diffuse);
+  }
+};
+
+template <class Form>
+void shade_kernel(const ShadeArguments& a, float* out) {
+  const Highlight<Form> highlight(a);
+  const Lane lx(a.diffuse * a.wi.x), ly(a.diffuse * a.wi.y), lz(a.diffuse * a.wi.z);
+  const double scale = highlight.u_scale;
+  const Lane hx(scale * a.h.x), hy(scale * a.h.y), hz(scale * a.h.z), u_at_0(scale);
+  for_each_vector<1>({a.x, a.y, a.z}, a.count, out, [=](const Lane(&n)[3]) HWY_ATTR {
+    const Lane inverse = Lane(1.0) / sqrt(mul_add(n[0], n[0], mul_add(n[1], n[1], n[2] * n[2])));
+    const Lane diffuse = clamp_negative(mul_add(n[0], lx, mul_add(n[1], ly, n[2] * lz))) * inverse;
+    const Lane to_half = clamp_negative(mul_add(n[0], hx, mul_add(n[1], hy, n[2] * hz)));
+    // 1 - c first: one operation, and never negative by rounding.
+    const Lane u = clamp_negative(neg_mul_add(to_half, inverse, u_at_0));
+    return highlight.added_to(diffuse, u);
+  });
 }
 
 template <class... Forms>

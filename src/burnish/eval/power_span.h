@@ -34,7 +34,7 @@ double power_span_rounding(PowerMethod method, bool exponent_per_value) noexcept
 
 /// Blinn-Phong reflection of one directional light seen by a distant viewer.
 struct BlinnPhong {
-  float diffuse = 0.5f, specular = 0.5f;
+  float diffuse = 0.5f, specular = 0.5f;   ///< at least 0
   std::optional<PowerCoefficients> power;  ///< none: the cosine itself
   Vec3 wi{0, 0, 1}, wo{0, 0, 1};           ///< directions
 };

@@ -32,15 +32,18 @@ struct Level {
 };
 constexpr Level kLevels[] = {{"L1", 2048}, {"L2", 65536}, {"RAM", std::size_t{1} << 24}};
 
-// Whole cache lines: without this every 64-byte access touches two of them, ours and everyone's.
+// Whole pages: every vector in one cache line, and no store shortly before a load at the same place of
+// another page, for which loads wait.
 template <class T>
-struct LineAllocator {
+struct PageAllocator {
   using value_type = T;
-  T* allocate(std::size_t n) { return static_cast<T*>(::operator new (n * sizeof(T), std::align_val_t{64})); }
-  void deallocate(T* p, std::size_t) noexcept { ::operator delete (p, std::align_val_t{64}); }
-  friend bool operator==(LineAllocator, LineAllocator) { return true; }
+  T* allocate(std::size_t n) {
+    return static_cast<T*>(::operator new (n * sizeof(T), std::align_val_t{4096}));
+  }
+  void deallocate(T* p, std::size_t) noexcept { ::operator delete (p, std::align_val_t{4096}); }
+  friend bool operator==(PageAllocator, PageAllocator) { return true; }
 };
-using Floats = std::vector<float, LineAllocator<float>>;
+using Floats = std::vector<float, PageAllocator<float>>;
 
 // Cosines as a lit sphere gives them: half over [0, 1], half inside the highlight.
 Floats bench_cosines(std::size_t count) {

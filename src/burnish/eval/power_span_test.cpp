@@ -117,33 +117,63 @@ TEST(PowerSpans, ThereIsAWideTargetAndAFallback) {
   EXPECT_GE(simd_targets().size(), 2u);
 }
 
-TEST(BlinnPhong, ShadesAsThePlainFormula) {
-  Pcg32 random(5);
-  BlinnPhong material{0.3f, 0.7f, {}, spherical_direction(0.6, 0.2), spherical_direction(0.3, 2.0)};
-  constexpr std::size_t kCount = 501;
-  std::vector<float> x(kCount), y(kCount), z(kCount), out(kCount);
-  for (std::size_t i = 0; i < kCount; ++i) {
-    const double length = 0.2 + 2 * random.uniform();
-    const Vec3 n = length * spherical_direction(1.9 * random.uniform(), kTwoPi * random.uniform());
-    x[i] = static_cast<float>(n.x), y[i] = static_cast<float>(n.y), z[i] = static_cast<float>(n.z);
+// Normals of lengths from 0.2 to 2.2, some turned away; the first is the mirror's.
+struct Normals {
+  std::vector<float> x, y, z;
+  void add(const Vec3& n) {
+    x.push_back(static_cast<float>(n.x)), y.push_back(static_cast<float>(n.y));
+    z.push_back(static_cast<float>(n.z));
   }
-  const Vec3 mirror_normal = half_vector(material.wi, material.wo);
-  x[0] = static_cast<float>(mirror_normal.x), y[0] = static_cast<float>(mirror_normal.y);
-  z[0] = static_cast<float>(mirror_normal.z);
+  Vec3 unit(std::size_t i) const { return normalize({x[i], y[i], z[i]}); }
+};
+Normals test_normals(const BlinnPhong& material) {
+  Pcg32 random(5);
+  Normals normals;
+  normals.add(half_vector(material.wi, material.wo));
+  for (int i = 1; i < 501; ++i) {
+    const double length = 0.2 + 2 * random.uniform();
+    normals.add(length * spherical_direction(1.9 * random.uniform(), kTwoPi * random.uniform()));
+  }
+  return normals;
+}
+
+TEST(BlinnPhong, ShadesAsThePlainFormula) {
+  BlinnPhong material{0.3f, 0.7f, {}, spherical_direction(0.6, 0.2), spherical_direction(0.3, 2.0)};
+  const Normals normals = test_normals(material);
+  std::vector<float> out(normals.x.size());
   for (const std::string& target : simd_targets()) {
     const SimdTargetLimit limit(target);
-    for (bool with_power : {false, true}) {
-      material.power.reset();
-      if (with_power) material.power = power_coefficients(PowerMethod::cubic2, 80.5);
-      shade_blinn_phong(material, {x, y, z}, out);
-      for (std::size_t i = 0; i < kCount; ++i) {
-        const Vec3 n = normalize({x[i], y[i], z[i]});
-        const double c = std::clamp(blinn_cosine(material.wi, material.wo, n), 0.0, 1.0);
-        const double glossy = with_power ? std::pow(c, 80.5) : c;
-        const double expected = 0.3 * std::max(0.0, dot(n, material.wi)) + 0.7 * glossy;
-        ASSERT_NEAR(out[i], expected, with_power ? 0.7 / 255 : 2e-6) << target;
-      }
+    shade_blinn_phong(material, {normals.x, normals.y, normals.z}, out);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const Vec3 n = normals.unit(i);
+      const double c = std::clamp(blinn_cosine(material.wi, material.wo, n), 0.0, 1.0);
+      ASSERT_NEAR(out[i], 0.3 * std::max(0.0, dot(n, material.wi)) + 0.7 * c, 2e-6) << target;
     }
+  }
+}
+
+TEST_P(PowerSpan, ShadesAHighlightOfAnyWeight) {
+  BlinnPhong material{0.25f, 0, {}, spherical_direction(0.6, 0.2), spherical_direction(0.3, 2.0)};
+  const Normals normals = test_normals(material);
+  std::vector<float> out(normals.x.size());
+  for (const std::string& target : simd_targets()) {
+    const SimdTargetLimit limit(target);
+    for (double e : {std::max(GetParam().min_exponent(), 1.5), 5.3, 80.5, 1024.0})
+      for (float weight : {0.0f, 0.01f, 0.7f, 40.0f}) {
+        material.specular = weight;
+        material.power = power_coefficients(GetParam().method, e);
+        shade_blinn_phong(material, {normals.x, normals.y, normals.z}, out);
+        for (std::size_t i = 0; i < out.size(); ++i) {
+          const Vec3 n = normals.unit(i);
+          const double c = std::clamp(blinn_cosine(material.wi, material.wo, n), 0.0, 1.0);
+          const double expected =
+              0.25 * std::max(0.0, dot(n, material.wi)) + weight * power(*material.power, c);
+          // The cosine's rounding, a few units of 2^-24, grows with the power's slope of at most e.
+          const double rounding = 8 * 0x1p-24 * e + allowance(GetParam().method, static_cast<float>(c), e);
+          ASSERT_NEAR(out[i], expected, 1e-6 + weight * rounding)
+              << target << " e " << e << " weight " << weight;
+        }
+      }
   }
 }
 

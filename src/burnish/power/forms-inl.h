@@ -39,10 +39,10 @@ T clamp_negative(T x) {
   return max(x, T(0.0));
 }
 
-/// c w. Vectors take w - u w instead, which needs no second look at c.
+/// 1 - k u. Vectors that know c better than u take k c + (1 - k) instead.
 template <class P, class T>
-T times_cosine(const T& w, const P& p) {
-  return p.c * w;
+T falling_line(const T& k, const P& p) {
+  return neg_mul_add(k, p.u, T(1.0));
 }
 
 /// x^(2^log2_n) by repeated squaring.
@@ -122,21 +122,21 @@ struct QuadraticRaw {
   }
   template <class P, class T>
   static T value(const P& p, const T* k) {
-    return times_cosine(neg_mul_add(k[0], p.u, T(1.0)), p);  // [QuadraticBrdf, eq. 1, 4]
+    return p.c * falling_line(k[0], p);  // [QuadraticBrdf, eq. 1, 4]
   }
 };
 
 struct Quadratic : QuadraticRaw {
   template <class P, class T>
   static T value(const P& p, const T* k) {
-    return times_cosine(clamp_negative(neg_mul_add(k[0], p.u, T(1.0))), p);
+    return p.c * clamp_negative(falling_line(k[0], p));
   }
 };
 
 /// max(0, 1 - k u)^n, k affine in e.
 template <int log2_n>
 struct LinearPower {
-  static constexpr int kCoefficients = 1;
+  static constexpr int kCoefficients = 1, kLog2Power = log2_n;
   // Least largest error over e >= 2, 2.6, 5, 10 for n = 2, 4, 8, 16.
   static constexpr double kSlope[] = {0, 0.355945, 0.211344, 0.114994, 0.0599623};
   static constexpr double kOffset[] = {0, 0.157597, 0.121098, 0.0766, 0.0322371};
@@ -144,9 +144,14 @@ struct LinearPower {
   static void coefficients(const Exponent<T>& x, T* k) {
     k[0] = mul_add(T(kSlope[log2_n]), x.e, T(kOffset[log2_n]) * x.one);
   }
+  /// max(0, top - u): what is raised to the power, with u scaled so that its coefficient is 1.
+  template <class T>
+  static T root(const T& u, const T*, const T& top) {
+    return clamp_negative(top - u);
+  }
   template <class P, class T>
   static T value(const P& p, const T* k) {
-    return power_of_two_power<log2_n>(clamp_negative(neg_mul_add(k[0], p.u, T(1.0))));
+    return power_of_two_power<log2_n>(clamp_negative(falling_line(k[0], p)));
   }
 };
 
@@ -200,14 +205,14 @@ struct TwoPiecePaper {
   template <class P, class T>
   static T value(const P& p, const T* k) {
     const T w = clamp_negative(neg_mul_add(k[3], p.u, k[2]));
-    return if_less(p.u, k[1], p.c * neg_mul_add(k[0], p.u, T(1.0)), w * w);
+    return if_less(p.u, k[1], p.c * falling_line(k[0], p), w * w);
   }
 };
 
 /// max(0, 1 - k0 u + k1 u^2 - k2 u^3)^n.
 template <int log2_n>
 struct CubicPower {
-  static constexpr int kCoefficients = 3;
+  static constexpr int kCoefficients = 3, kLog2Power = log2_n;
   template <class T>
   static void coefficients(const Exponent<T>& x, T* k) {
     const T v = x.one / x.e, e2 = x.e * x.e;
@@ -220,6 +225,11 @@ struct CubicPower {
       k[1] = polynomial(v, 0.0292343, -0.0920301, -0.0690483, -0.0551332) * e2;
       k[2] = polynomial(v, 0.0015912, -0.0130853, 0.00976116, 0.073838, 0.0552656) * (e2 * x.e);
     }
+  }
+  /// max(0, top - k0 u + k1 u^2 - u^3), as LinearPower's.
+  template <class T>
+  static T root(const T& u, const T* k, const T& top) {
+    return clamp_negative(neg_mul_add(neg_mul_add(k[1] - u, u, k[0]), u, top));
   }
   template <class P, class T>
   static T value(const P& p, const T* k) {
