@@ -11,6 +11,7 @@
 #include <burnish/factors/model_file.h>
 #include <burnish/io/rgl.h>
 #include <burnish/reflectance/analytic.h>
+#include <burnish/reflectance/neural_brdf.h>
 #include <burnish/reflectance/rgl_builder.h>
 
 namespace burnish::seeds {
@@ -59,6 +60,14 @@ inline std::string model_seed() {
   return format_model({.brdf = FactoredBrdf(3, {p, q}, {lobe}, TableFormat::half)});
 }
 
+/// A single neural encoding, of weights with few digits.
+inline std::string neural_seed() {
+  std::string row = "seed";
+  for (std::size_t i = 0; i < burnish::NeuralBrdf::kWeights; ++i)
+    row += "," + std::to_string(static_cast<int>(i * i % 7) - 3) + "e-1";
+  return row + "\n";
+}
+
 inline const std::string kCornell =
     "# Maker\n# Paint\n2\n400 500\n0.5 0 0.25 3.14 0.1 0.2\n0.5 0 0.75 0 -0.1 0.4\n";
 inline const std::string kAstm =
@@ -90,7 +99,7 @@ inline const std::string kKlems =
     "-9</ScatteringData></WavelengthDataBlock></WavelengthData></Layer></Optical></WindowElement>";
 
 /// Format names and bytes; the first `kBinaryCount` are binary and of fixed length.
-inline std::array<std::pair<std::string, std::string>, 9> all_seeds() {
+inline std::array<std::pair<std::string, std::string>, 10> all_seeds() {
   return {{{"merl", merl_seed()},
            {"mbsdf", mbsdf_seed()},
            {"rgl", rgl_seed()},
@@ -99,7 +108,8 @@ inline std::array<std::pair<std::string, std::string>, 9> all_seeds() {
            {"astm", kAstm},
            {"csv", kCsv},
            {"zemax", kZemax},
-           {"klems", kKlems}}};
+           {"klems", kKlems},
+           {"neural", neural_seed()}}};
 }
 
 inline constexpr std::size_t kBinaryCount = 4;

@@ -61,7 +61,7 @@ void compare(const Arguments& arguments) {
     const Candidate& c =
         candidates.emplace_back(open_source(spec, arguments.reference.options), !arguments.no_symmetrize);
     ComparedModel model{.name = spec, .brdf = c.ref(), .note = c.source().findings.description};
-    if (c.model()) model.bytes = c.model()->bytes();
+    model.bytes = c.source().bytes();
     models.push_back(std::move(model));
   }
   const Scorer scorer(reference.ref(), arguments.figures);

@@ -58,8 +58,8 @@ nlohmann::ordered_json to_json(const Report& report) {
     json["albedo"].push_back({{"theta_i_deg", theta_deg},
                               {"albedo", albedo.albedo},
                               {"unknown_fraction", albedo.unknown_fraction}});
+  if (const auto bytes = source.bytes()) json["bytes"] = *bytes;
   if (model) {
-    json["bytes"] = model->bytes();
     json["table_bytes"] = model->table_bytes();
     json["lobes"] = model->lobes().size();
     for (const Lobe& lobe : model->lobes()) json["scales"].push_back(lobe.scale);
@@ -107,8 +107,8 @@ void print_text(const Report& report) {
                          : ""));
   line("reciprocity",
        fmt::format("mean relative asymmetry {:.4g} over {} pairs", reciprocity.mean, reciprocity.pairs));
+  if (const auto bytes = source.bytes()) line("bytes", fmt::format("{}", *bytes));
   if (!model) return;
-  line("bytes", fmt::format("{}", model->bytes()));
   for (const Lobe& lobe : model->lobes())
     line("lobe", fmt::format("scale {:.4g}", fmt::join(lobe.scale, " ")));
   for (const Table& table : model->tables())

@@ -4,7 +4,8 @@ namespace burnish::cli {
 
 void add_source_arguments(CLI::App& verb, SourceArguments& arguments) {
   verb.add_option("BRDF", arguments.spec,
-                  "a measurement, a model, or an analytic BRDF such as ggx:alpha_x=0.1,alpha_y=0.1")
+                  "a measurement, a model, a neural encoding nbrdf:FILE#NAME, or an analytic BRDF such as "
+                  "ggx:alpha_x=0.1,alpha_y=0.1")
       ->required();
   OpenOptions& options = arguments.options;
   verb.add_flag("--spectral", options.keep_spectral, "keep one channel a wavelength");

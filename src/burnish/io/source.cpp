@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include <burnish/factors/model_file.h>
@@ -7,6 +9,7 @@
 #include <burnish/io/klems.h>
 #include <burnish/io/mbsdf.h>
 #include <burnish/io/merl.h>
+#include <burnish/io/neural.h>
 #include <burnish/io/rgl.h>
 #include <burnish/io/source.h>
 #include <burnish/io/text_reader.h>
@@ -39,6 +42,11 @@ Source from_model(const FileBytes& file) {
   return {file.name, std::move(model.brdf), std::move(findings)};
 }
 
+Source from_neural(const FileBytes& file, std::string_view name) {
+  NeuralFile parsed = parse_neural(file, name);
+  return {fmt::format("{}#{}", file.name, parsed.name), std::move(parsed.brdf), std::move(parsed.findings)};
+}
+
 Source from_spec(const std::string& spec) {
   AnalyticBrdf brdf = parse_analytic(spec);
   Findings findings;
@@ -61,6 +69,17 @@ const Samples* Source::samples() const noexcept {
   return scattered ? &scattered->samples() : nullptr;
 }
 
+std::optional<std::size_t> Source::bytes() const noexcept {
+  return std::visit(
+      [](const auto& any) -> std::optional<std::size_t> {
+        if constexpr (requires { any.bytes(); })
+          return any.bytes();
+        else
+          return std::nullopt;
+      },
+      brdf);
+}
+
 Source parse_source(const FileBytes& file, const OpenOptions& options) {
   // Binary formats first: their first bytes are unmistakable.
   if (looks_like_exr(file.bytes)) return from_model(file);
@@ -70,16 +89,26 @@ Source parse_source(const FileBytes& file, const OpenOptions& options) {
   const std::string_view text = file.text();
   if (looks_like_klems(text)) return from_table(file, parse_klems(file, options));
   if (looks_like_zemax(text)) return from_table(file, parse_zemax(file, options));
+  if (looks_like_neural(text)) return from_neural(file, {});
   if (looks_like_csv(text)) return from_samples(file, parse_csv(file, options));
   if (looks_like_astm(text)) return from_samples(file, parse_astm(file, options));
   if (looks_like_cornell(text)) return from_samples(file, parse_cornell(file, options));
-  throw Error(file.name, 0,
-              "a MERL, RGL, MBSDF, Zemax, Klems, ASTM E1392, Cornell or CSV measurement, or a burnish model",
-              fmt::format("something that starts with {}", in_quotes(text.substr(0, 16))));
+  throw Error(
+      file.name, 0,
+      "a MERL, RGL, MBSDF, Zemax, Klems, ASTM E1392, Cornell or CSV measurement, a neural encoding, or a "
+      "burnish model",
+      fmt::format("something that starts with {}", in_quotes(text.substr(0, 16))));
 }
 
 Source open_source(const std::string& spec, const OpenOptions& options) {
   if (is_analytic_spec(spec)) return from_spec(spec);
+  constexpr std::string_view kNeural = "nbrdf:";
+  if (spec.starts_with(kNeural)) {
+    const std::string rest = spec.substr(kNeural.size());
+    const std::size_t mark = std::min(rest.rfind('#'), rest.size());
+    return from_neural(read_file(rest.substr(0, mark)),
+                       std::string_view(rest).substr(std::min(mark + 1, rest.size())));
+  }
   return parse_source(read_file(spec), options);
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -11,6 +13,7 @@
 #include <burnish/reflectance/brdf.h>
 #include <burnish/reflectance/findings.h>
 #include <burnish/reflectance/half_diff_table.h>
+#include <burnish/reflectance/neural_brdf.h>
 #include <burnish/reflectance/patch_table.h>
 #include <burnish/reflectance/rgl_table.h>
 #include <burnish/reflectance/scattered_brdf.h>
@@ -18,8 +21,8 @@
 namespace burnish {
 
 /// Everything a BRDF argument can be.
-using AnyBrdf =
-    std::variant<HalfDiffTable, RglTable, ScatteredBrdf, AngleTable, PatchTable, AnalyticBrdf, FactoredBrdf>;
+using AnyBrdf = std::variant<HalfDiffTable, RglTable, ScatteredBrdf, AngleTable, PatchTable, AnalyticBrdf,
+                             NeuralBrdf, FactoredBrdf>;
 
 /// An opened BRDF and what was found in it.
 struct Source {
@@ -31,11 +34,13 @@ struct Source {
   BrdfRef ref() const noexcept;
   /// The scattered measurements, or nullptr where the source is none.
   const Samples* samples() const noexcept;
+  /// Size of a compressed BRDF as its type counts it; nothing for measurements.
+  std::optional<std::size_t> bytes() const noexcept;
 };
 
-/// Opens an analytic BRDF such as "ggx:alpha_x=0.1" (see parse_analytic) or a file, whose kind is found by
-/// content, never by its name. Throws Error if it cannot be read or is of no known kind, and whatever its
-/// reader throws.
+/// Opens an analytic BRDF such as "ggx:alpha_x=0.1" (see parse_analytic), a neural encoding
+/// "nbrdf:FILE#NAME" (see parse_neural) or a file, whose kind is found by content, never by its name. Throws
+/// Error if it cannot be read or is of no known kind, and whatever its reader throws.
 Source open_source(const std::string& spec, const OpenOptions& options);
 
 /// The same for bytes in memory.
