@@ -54,6 +54,11 @@ std::pair<std::uint32_t, double> locate(const std::vector<float>& nodes, double 
   return {static_cast<std::uint32_t>(i), std::clamp((x - a) / (b - a), 0.0, 1.0)};
 }
 
+/// In [-pi, pi]; 0 of the normal, whatever the signs of its zeros.
+double azimuth(Vec3 w) noexcept {
+  return w.x == 0 && w.y == 0 ? 0 : std::atan2(w.y, w.x);
+}
+
 /// A bilinear lookup: index of the first corner of the cell and the weights of its corners 00, 10, 01, 11.
 struct Bilinear {
   std::size_t index;
@@ -203,10 +208,10 @@ RglTable::Place RglTable::place_of(Vec3 wi, Vec3 wo) const noexcept {
   const double theta_h = std::atan2(std::sqrt(h.x * h.x + h.y * h.y), h.z);
   double phi_h = 0;
   if (isotropic()) {
-    const double x = wi.x == 0 && wi.y == 0 ? 1 : wi.x;  // the normal's azimuth is 0
+    const double x = wi.x == 0 && wi.y == 0 ? 1 : wi.x;  // as azimuth()
     phi_h = std::atan2(x * h.y - wi.y * h.x, x * h.x + wi.y * h.y);
   } else {
-    place.phi_i = std::atan2(wi.y, wi.x);
+    place.phi_i = azimuth(wi);
     phi_h = std::atan2(h.y, h.x);
   }
   place.half = rgl_square(theta_h, phi_h);
@@ -245,7 +250,7 @@ DrawnDirection RglTable::sample_wo(Vec3 wi, Point2 u) const noexcept {
   const Fold folded = fold(wi);
   const Vec3 w = folded(wi);
   const double theta_i = std::atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z);
-  const double phi_i = std::atan2(w.y, w.x);
+  const double phi_i = azimuth(w);
   const SliceMix mix = mix_at(phi_i, theta_i);
   const Point2 sample = luminance_warp_.warp(u, mix), half = warp_.warp(sample, mix);
   const double theta_h = half.x * half.x * kHalfPi, phi_h = half.y * kTwoPi - kPi;
