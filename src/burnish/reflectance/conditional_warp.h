@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include <burnish/math/point2.h>
+
 namespace burnish {
 
 /// Slices of a conditioned table and their weights (which sum to 1): the linear or bilinear interpolation
@@ -13,11 +15,6 @@ struct SliceMix {
   std::array<std::uint32_t, 4> slice{};
   std::array<double, 4> weight{};
   int count = 0;
-};
-
-/// A point of the unit square.
-struct Point2 {
-  double x = 0, y = 0;
 };
 
 /// Maps the unit square to itself so that uniform points become points of a given density, conditioned on

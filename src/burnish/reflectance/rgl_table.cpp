@@ -54,6 +54,11 @@ std::pair<std::uint32_t, double> locate(const std::vector<float>& nodes, double 
   return {static_cast<std::uint32_t>(i), std::clamp((x - a) / (b - a), 0.0, 1.0)};
 }
 
+/// In [-pi, pi]; 0 of the normal, whatever the signs of its zeros.
+double azimuth(Vec3 w) noexcept {
+  return w.x == 0 && w.y == 0 ? 0 : std::atan2(w.y, w.x);
+}
+
 /// A bilinear lookup: index of the first corner of the cell and the weights of its corners 00, 10, 01, 11.
 struct Bilinear {
   std::size_t index;
@@ -111,6 +116,15 @@ RglTable::RglTable(RglData data) : data_(std::move(data)) {
   require_finite(data_.luminance.values, -std::numeric_limits<float>::max(), "luminance");
   set_reduction();
   warp_ = ConditionalWarp2(data_.vndf.width, data_.vndf.height, data_.vndf.values);
+  // negative noise carries no light; a dark slice is drawn from evenly
+  std::vector<float> luminance = data_.luminance.values;
+  const std::size_t slice = luminance.size() / slices;
+  for (std::size_t first = 0; first < luminance.size(); first += slice) {
+    const auto part = std::span(luminance).subspan(first, slice);
+    for (float& value : part) value = std::max(value, 0.0f);
+    if (std::ranges::max(part) == 0) std::ranges::fill(part, 1.0f);
+  }
+  luminance_warp_ = ConditionalWarp2(data_.luminance.width, data_.luminance.height, luminance);
 }
 
 void RglTable::set_reduction() {
@@ -166,33 +180,51 @@ SliceMix RglTable::mix_at(double phi, double theta) const noexcept {
   return mix;
 }
 
+/// The symmetry that takes a direction into the part of the circle that phi_i covers, its own inverse.
+struct RglTable::Fold {
+  double x = 1, y = 1;
+
+  Vec3 operator()(Vec3 w) const noexcept { return {x * w.x, y * w.y, w.z}; }
+};
+
+RglTable::Fold RglTable::fold(Vec3 wi) const noexcept {
+  if (reduction_ == 2 && wi.y * cos_first_ - wi.x * sin_first_ < 0) return {-1, -1};
+  if (reduction_ == 4) return {wi.x * sign_x_ < 0 ? -1.0 : 1.0, wi.y * sign_y_ < 0 ? -1.0 : 1.0};
+  return {};
+}
+
+/// Where two directions lie in the tables.
+struct RglTable::Place {
+  double theta_i, phi_i;  // folded
+  Point2 half, sample;    // in the squares of vndf and of spectra
+  SliceMix mix;
+};
+
+RglTable::Place RglTable::place_of(Vec3 wi, Vec3 wo) const noexcept {
+  const Fold folded = fold(wi);
+  wi = folded(wi);
+  const Vec3 h = wi + folded(wo);  // its length does not matter
+  Place place{.theta_i = std::atan2(std::sqrt(wi.x * wi.x + wi.y * wi.y), wi.z), .phi_i = 0};
+  const double theta_h = std::atan2(std::sqrt(h.x * h.x + h.y * h.y), h.z);
+  double phi_h = 0;
+  if (isotropic()) {
+    const double x = wi.x == 0 && wi.y == 0 ? 1 : wi.x;  // as azimuth()
+    phi_h = std::atan2(x * h.y - wi.y * h.x, x * h.x + wi.y * h.y);
+  } else {
+    place.phi_i = azimuth(wi);
+    phi_h = std::atan2(h.y, h.x);
+  }
+  place.half = rgl_square(theta_h, phi_h);
+  place.mix = mix_at(place.phi_i, place.theta_i);
+  place.sample = warp_.invert(place.half, place.mix);
+  return place;
+}
+
 bool RglTable::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   assert(f.size() == static_cast<std::size_t>(data_.channels));
   std::fill(f.begin(), f.end(), 0.0);
   if (!(wi.z > 0 && wo.z > 0)) return true;
-
-  // Into the part of the circle that phi_i covers.
-  if (reduction_ == 2 && wi.y * cos_first_ - wi.x * sin_first_ < 0) {
-    wi = mirror(wi);
-    wo = mirror(wo);
-  } else if (reduction_ == 4) {
-    if (wi.x * sign_x_ < 0) wi.x = -wi.x, wo.x = -wo.x;
-    if (wi.y * sign_y_ < 0) wi.y = -wi.y, wo.y = -wo.y;
-  }
-
-  const Vec3 h = wi + wo;  // its length does not matter
-  const double theta_i = std::atan2(std::sqrt(wi.x * wi.x + wi.y * wi.y), wi.z);
-  const double theta_h = std::atan2(std::sqrt(h.x * h.x + h.y * h.y), h.z);
-  double phi_i = 0, phi_h = 0;
-  if (isotropic()) {
-    phi_h = std::atan2(wi.x * h.y - wi.y * h.x, wi.x * h.x + wi.y * h.y);
-  } else {
-    phi_i = std::atan2(wi.y, wi.x);
-    phi_h = std::atan2(h.y, h.x);
-  }
-  const Point2 half = rgl_square(theta_h, phi_h);
-  const SliceMix mix = mix_at(phi_i, theta_i);
-  const Point2 sample = warp_.invert(half, mix);
+  const auto [theta_i, phi_i, half, sample, mix] = place_of(wi, wo);
 
   double scale = 1 / std::max(wo.z, kSmallestCosine);
   if (data_.jacobian)  // [Dupuy 2018, sec. 4]
@@ -212,6 +244,29 @@ bool RglTable::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
       for (std::size_t c = 0; c < channels; ++c) f[c] += weight * static_cast<double>(value[c]);
     }
   return true;
+}
+
+DrawnDirection RglTable::sample_wo(Vec3 wi, Point2 u) const noexcept {
+  const Fold folded = fold(wi);
+  const Vec3 w = folded(wi);
+  const double theta_i = std::atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z);
+  const double phi_i = azimuth(w);
+  const SliceMix mix = mix_at(phi_i, theta_i);
+  const Point2 sample = luminance_warp_.warp(u, mix), half = warp_.warp(sample, mix);
+  const double theta_h = half.x * half.x * kHalfPi, phi_h = half.y * kTwoPi - kPi;
+  const Vec3 h = spherical_direction(theta_h, isotropic() ? phi_h + phi_i : phi_h);
+  const double to_half = dot(w, h);
+  const Vec3 wo = folded(2 * to_half * h - w);
+  const double area = 2 * kPi * kPi * half.x * std::sin(theta_h) * 4 * to_half;  // solid angle over square
+  if (!(area > 0 && wo.z > 0)) return {wo, 0};
+  return {wo, luminance_warp_.pdf(sample, mix) * warp_.pdf(half, mix) / area};
+}
+
+double RglTable::pdf_wo(Vec3 wi, Vec3 wo) const noexcept {
+  if (!(wi.z > 0 && wo.z > 0)) return 0;
+  const auto [theta_i, phi_i, half, sample, mix] = place_of(wi, wo);
+  const double area = 2 * kPi * kPi * half.x * std::sin(half.x * half.x * kHalfPi) * 2 * length(wi + wo);
+  return area > 0 ? luminance_warp_.pdf(sample, mix) * warp_.pdf(half, mix) / area : 0;
 }
 
 DirectionPair RglTable::node_directions(int phi, int theta, int row, int column) const noexcept {

@@ -7,6 +7,7 @@
 
 #include <burnish/reflectance/brdf.h>
 #include <burnish/reflectance/conditional_warp.h>
+#include <burnish/reflectance/sampling.h>
 
 namespace burnish {
 
@@ -54,6 +55,13 @@ class RglTable {
   /// with the cosine taken as at least 1e-6.
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 
+  /// The measurement's own way of drawing: the second direction for a given first one, wi, along the warps
+  /// by luminance and visible normals that the file stores; u in [0, 1)^2. `wi` of the result is the drawn
+  /// direction; it may lie below the horizon, where its density is lost. [Dupuy 2018, sec. 4.2]
+  DrawnDirection sample_wo(Vec3 wi, Point2 u) const noexcept;
+  /// Density per solid angle with which sample_wo(wi) draws wo, 1/sr; zero below the horizon.
+  double pdf_wo(Vec3 wi, Vec3 wo) const noexcept;
+
   /// Directions of a node of spectra; wo may lie below the horizon.
   /// Precondition: indices below the sizes of phi_i, theta_i and spectra.
   DirectionPair node_directions(int phi, int theta, int row, int column) const noexcept;
@@ -64,15 +72,30 @@ class RglTable {
  private:
   void set_reduction();
   SliceMix mix_at(double phi, double theta) const noexcept;
+  struct Fold;
+  Fold fold(Vec3 wi) const noexcept;
+  struct Place;
+  Place place_of(Vec3 wi, Vec3 wo) const noexcept;
 
   RglData data_;
-  ConditionalWarp2 warp_;
+  ConditionalWarp2 warp_, luminance_warp_;
   int reduction_ = 1;
   double sign_x_ = 0, sign_y_ = 0;        // reduction 4: signs of wi in the quadrant that is stored
   double cos_first_ = 0, sin_first_ = 0;  // reduction 2: the first phi_i
 };
 
 static_assert(Brdf<RglTable>);
+
+/// sample_wo and pdf_wo as a DirectionSampler: the measurement taken with its directions exchanged, as it is
+/// used where light is followed from the eye. Refers to the table.
+struct RglSampler {
+  const RglTable* table;
+
+  DrawnDirection sample_wi(Vec3 wo, Point2 u) const noexcept { return table->sample_wo(wo, u); }
+  double pdf(Vec3 wi, Vec3 wo) const noexcept { return table->pdf_wo(wo, wi); }
+};
+
+static_assert(DirectionSampler<RglSampler>);
 
 /// The unit square of half vectors and incident directions; see RglData. theta in [0, pi/2], phi in [-pi,
 /// pi].

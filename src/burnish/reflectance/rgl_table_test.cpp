@@ -8,6 +8,7 @@
 #include <burnish/math/angles.h>
 #include <burnish/math/random.h>
 #include <burnish/reflectance/rgl_table.h>
+#include <burnish/reflectance/sampling_test_util.h>
 
 namespace burnish {
 namespace {
@@ -237,6 +238,44 @@ TEST(RglTable, ImpossibleDataThrow) {
   throws([](RglData&) {}, {-4, 0, 4});                                             // more than the circle
   throws([](RglData&) {}, {0.1f, 0.8f, 0.1f + pi_times(0.5)});                     // no quarter between axes
   throws([](RglData&) {}, {0, std::numeric_limits<float>::denorm_min(), 1e-30f});  // nearly nothing
+}
+
+TEST(RglTable, DrawsByItsDensity) {
+  std::uint64_t seed = 0;
+  for (const auto& phi_i : {std::vector<float>{0},
+                            {0, pi_times(1)},
+                            {0, pi_times(0.25), pi_times(0.5)},
+                            {pi_times(-1), pi_times(0), pi_times(1)}}) {
+    RglData data = random_data(phi_i, ++seed);
+    Pcg32 random(seed);
+    for (float& value : data.luminance.values) value = static_cast<float>(0.1 + random.uniform());
+    for (std::size_t i = 0; i < data.vndf.values.size(); i += 3) data.vndf.values[i] = 0;  // no pole at h = n
+    const RglTable table(data);
+    for (const double theta : {0.0, 0.4, 1.2, 1.5}) {
+      const DrawTest test = test_draws(RglSampler{&table}, spherical_direction(theta, 2), 20'000, ++seed);
+      EXPECT_GT(test.p_value, level_of_each(0.01, 16)) << theta;
+      EXPECT_LT(test.integral, 1.002);
+    }
+  }
+}
+
+TEST(RglTable, TellsTheDensityThatItDrawsBy) {
+  const RglTable table(random_data({0, pi_times(0.5), pi_times(1)}, 5));
+  Pcg32 random(6);
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3 wi = random_direction(random);
+    const double x = random.uniform();
+    const DrawnDirection drawn = table.sample_wo(wi, {x, random.uniform()});
+    if (drawn.pdf == 0) continue;
+    EXPECT_NEAR(table.pdf_wo(wi, drawn.wi) / drawn.pdf, 1, 1e-3);
+  }
+}
+
+TEST(RglTable, DrawsFromDarkAndNegativeLuminanceToo) {
+  RglData data = uniform_data({0}, [](int, int t) { return t == 1 ? 0.0f : -1.0f + static_cast<float>(t); });
+  const RglTable table(data);
+  for (const double theta : {0.0, 0.5, 1.5})
+    EXPECT_GT(table.sample_wo(spherical_direction(theta, 1), {0.3, 0.4}).pdf, 0);
 }
 
 }  // namespace

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+
+#include <burnish/eval/factored_eval.h>
+#include <burnish/reflectance/brdf.h>
+#include <burnish/reflectance/sampling.h>
+
+namespace burnish {
+
+/// Directions to the viewer and uniform numbers in [0, 1), one array a component, all of one length.
+struct DrawSpans {
+  std::span<const float> wo_x, wo_y, wo_z, u_x, u_y;
+
+  std::size_t size() const noexcept { return wo_x.size(); }
+};
+
+/// What is drawn for them.
+struct DrawnSpans {
+  std::span<float> wi_x, wi_y, wi_z, pdf;
+};
+
+/// Sizes of a sampler's tables.
+struct SamplerOptions {
+  int wo_thetas = 16;  ///< polar angles of wo, 2 to 256
+  int wo_phis = 16;    ///< azimuths of wo, 2 to 256; 1 for isotropic BRDFs
+  int rows = 16;       ///< cells along the azimuth of the half vector, a power of two, 8 to 256
+  int columns = 16;    ///< cells along its polar angle, a power of two, 8 to 256
+};
+
+/// The sizes that docs/sampling.md recommends.
+SamplerOptions default_sampler_options(bool isotropic) noexcept;
+
+/// Draws directions nearly in proportion to f_r cos(theta_i), of all lobes at once: what it reflects towards
+/// wo is integrated over cells of half vectors when it is made, and a draw is two searches in 16-bit tables
+/// and a closed map. Cells cover exactly the half vectors visible from wo whose mirror direction lies above
+/// the horizon, so none is wasted, and are narrow where the material has its highlights. Between the wo of
+/// the tables densities are interpolated. Satisfies DirectionSampler.
+///
+/// Made from any BRDF, factored or measured; one whose isotropic() is true is taken to be symmetric about the
+/// plane of wo and the normal. Never allocates after construction; copies share the tables, threads may share
+/// a copy. u.x turns the half vector about the normal, u.y tilts it, both without jumps, so that
+/// stratified points stay stratified.
+class TabulatedSampler {
+ public:
+  explicit TabulatedSampler(BrdfRef brdf);
+  /// Throws Error for sizes out of range.
+  TabulatedSampler(BrdfRef brdf, const SamplerOptions& options);
+
+  DrawnDirection sample_wi(Vec3 wo, Point2 u) const noexcept;
+  double pdf(Vec3 wi, Vec3 wo) const noexcept;
+
+  /// The same in float, many at a time, by the widest vectors the processor has; spans of one length.
+  void sample_wi(const DrawSpans& in, const DrawnSpans& out) const noexcept;
+  /// pdf[i] of pair i; directions as unit vectors.
+  void pdf(const DirectionSpans& directions, std::span<float> pdf) const noexcept;
+
+  /// Bytes of the tables.
+  std::size_t bytes() const noexcept;
+
+ private:
+  struct Tables;
+  std::shared_ptr<const Tables> tables_;
+};
+
+static_assert(DirectionSampler<TabulatedSampler>);
+
+}  // namespace burnish

@@ -1,0 +1,276 @@
+#include <cmath>
+#include <map>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <burnish/error.h>
+#include <burnish/eval/tabulated_sampler.h>
+#include <burnish/factors/model_spec.h>
+#include <burnish/math/random.h>
+#include <burnish/metrics/brdfs_for_tests.h>
+#include <burnish/reflectance/analytic.h>
+#include <burnish/reflectance/half_vector_quadrature.h>
+#include <burnish/reflectance/sampling_test_util.h>
+
+namespace burnish {
+namespace {
+
+struct ModelCase {
+  const char* name;
+  const char* expression;
+  std::vector<std::string> options;
+  int channels;
+};
+
+// Lines, disks and grids, every warp and kind of projection, one lobe and several.
+const ModelCase kModels[] = {
+    {"Pqp", "pqp", {"p=16", "q=64,rational:0.05"}, 3},
+    {"Pqpr", "pqpr", {"p=16", "q=64", "r=16"}, 3},
+    {"TwoLobes",
+     "p(wo) q(h) r(theta_d) p(wi) + s(wo) t(h) s(wi)",
+     {"p=8", "q=64,rational:0.02", "r=8", "s=8", "t=16"},
+     3},
+    {"Grid", "p(wo) g(theta_h,theta_d) p(wi) + s(wo) s(wi)", {"g=32x8,rational:0.1", "p=8", "s=8,shared"}, 3},
+    {"Affine", "q(wi+wo+0.4n) v(0.3wi+0.9wo) v(0.9wi+0.3wo) + q(h)", {"q=32", "v=9"}, 1},
+    {"Mirror", "a(m+wo) q(h) b(d)", {"a=16,power:0.5", "q=32", "b=8"}, 3},
+    {"Disks", "pqp", {"p=17x17", "q=33x33,rational:0.2"}, 3},
+    {"DiskAndLine", "p(wo) q(h) p(wi) + s(wo) t(h) s(wi)", {"p=8", "q=33x33,power:0.5", "s=9x9", "t=32"}, 3},
+};
+
+// A highlight in every table of h, longer along one axis where the table is a disk; slopes elsewhere.
+FactoredBrdf glossy_model(const ModelCase& model) {
+  const ModelSpec spec = parse_model_spec(model.expression, model.options, true);
+  std::vector<Table> tables;
+  for (const ModelSpec::TableSpec& t : spec.tables) {
+    Table table{.name = t.name, .layout = t.layout, .channels = t.shared ? 1 : model.channels, .values = {}};
+    const double steepness = t.name == "q" || t.name == "g" ? 400 : 3;
+    for (int y = 0; y < t.layout.height; ++y)
+      for (int x = 0; x < t.layout.width; ++x)
+        for (int c = 0; c < table.channels; ++c) {
+          const Vec3 w = node_direction(t.layout, x, t.layout.shape == TableShape::grid ? 0 : y);
+          const double along = w.x + 0.5 * w.y, across = 3 * (w.y - 0.5 * w.x);
+          const double tilt = 0.1 * y / t.layout.height;
+          table.values.push_back(static_cast<float>(
+              -(1 + 0.2 * c) * std::log1p(steepness * (along * along + across * across)) - tilt));
+        }
+    tables.push_back(std::move(table));
+  }
+  std::vector<Lobe> lobes;
+  for (const auto& factors : spec.lobes)
+    lobes.push_back(
+        {.scale = std::vector<double>(static_cast<std::size_t>(model.channels), lobes.empty() ? 0 : -3),
+         .factors = factors});
+  return from_log_tables(model.channels, std::move(tables), std::move(lobes), TableFormat::half);
+}
+
+// Normal, grazing, and between.
+std::vector<Vec3> views(bool isotropic) {
+  std::vector<Vec3> wo;
+  for (const double theta_deg : {0.0, 3.0, 25.0, 48.0, 71.0, 86.0, 89.7})
+    for (const double phi : {0.4, 2.6})
+      if (!isotropic || phi == 2.6) wo.push_back(spherical_direction(radians(theta_deg), phi));
+  return wo;
+}
+
+Point2 random_point(Pcg32& random) {
+  const double x = random.uniform();
+  return {x, random.uniform()};
+}
+
+// A model and its sampler, made once for all tests.
+struct Prepared {
+  FactoredBrdf brdf;
+  TabulatedSampler sampler;
+  std::vector<Vec3> wos;
+
+  explicit Prepared(const ModelCase& model)
+      : brdf(glossy_model(model)), sampler(brdf), wos(views(brdf.isotropic())) {}
+};
+
+class TabulatedSamplerTest : public ::testing::TestWithParam<ModelCase> {
+ protected:
+  static const Prepared& prepared() {
+    static std::map<std::string, Prepared> all;
+    return all.try_emplace(GetParam().name, GetParam()).first->second;
+  }
+  const FactoredBrdf& brdf = prepared().brdf;
+  const TabulatedSampler& sampler = prepared().sampler;
+  const std::vector<Vec3>& wos = prepared().wos;
+};
+
+TEST_P(TabulatedSamplerTest, DrawsByItsDensity) {
+  // of all the draws of the suite, one in a hundred may be worse than this
+  const int tests = static_cast<int>(std::size(kModels) * views(false).size());
+  for (const Vec3 wo : wos) {
+    const DrawTest test = test_draws(sampler, wo, 20'000, 3);
+    EXPECT_GT(test.p_value, level_of_each(0.01, tests)) << degrees(theta_of(wo));
+    EXPECT_NEAR(test.integral, 1, 4e-3) << degrees(theta_of(wo));
+  }
+}
+
+// The solid angle that a small square of u becomes, times the density, is the square's area.
+TEST_P(TabulatedSamplerTest, JacobianOfTheDrawIsTheDensity) {
+  Pcg32 random(4);
+  int at_borders = 0, count = 0;
+  for (const Vec3 wo : wos)
+    for (int i = 0; i < 200; ++i, ++count) {
+      const double e = 1e-7;
+      Point2 u = random_point(random);
+      u = {e + (1 - 3 * e) * u.x, e + (1 - 3 * e) * u.y};
+      const DrawnDirection drawn = sampler.sample_wi(wo, u);
+      const Vec3 along_x =
+          sampler.sample_wi(wo, {u.x + e, u.y}).wi - sampler.sample_wi(wo, {u.x - e, u.y}).wi;
+      const Vec3 along_y =
+          sampler.sample_wi(wo, {u.x, u.y + e}).wi - sampler.sample_wi(wo, {u.x, u.y - e}).wi;
+      const double area = length(cross(along_x, along_y)) / (4 * e * e);
+      at_borders += std::abs(area * drawn.pdf - 1) > 1e-3;
+    }
+  EXPECT_LE(at_borders, count / 200);
+}
+
+TEST_P(TabulatedSamplerTest, TellsTheDensityThatPdfGives) {
+  Pcg32 random(5);
+  int at_borders = 0, count = 0;
+  for (const Vec3 wo : wos)
+    for (int i = 0; i < 500; ++i, ++count) {
+      const DrawnDirection drawn = sampler.sample_wi(wo, random_point(random));
+      EXPECT_NEAR(length(drawn.wi), 1, 1e-12);
+      EXPECT_GT(drawn.wi.z, -1e-12);
+      at_borders += std::abs(sampler.pdf(drawn.wi, wo) / drawn.pdf - 1) > 1e-6;
+    }
+  EXPECT_LE(at_borders, count / 1000);
+}
+
+// Nothing is wasted, and the weights have their mean and a bound, at grazing wo too.
+TEST_P(TabulatedSamplerTest, WeightsAreBoundedWithTheAlbedoAsTheirMean) {
+  std::vector<double> f(static_cast<std::size_t>(brdf.channels()));
+  Pcg32 random(6);
+  for (const Vec3 wo : wos) {
+    double albedo = 0;
+    for (const auto& [wi, weight] : half_vector_quadrature(wo, 64, 256))
+      albedo += reflected_size(brdf, wi, wo, f) * weight;
+    constexpr int kDraws = 4000;
+    double sum = 0, squares = 0, most = 0;
+    for (int i = 0; i < kDraws; ++i) {
+      const DrawnDirection drawn = sampler.sample_wi(wo, random_point(random));
+      const double weight = drawn.pdf > 0 ? reflected_size(brdf, drawn.wi, wo, f) / drawn.pdf : 0;
+      sum += weight / kDraws;
+      squares += weight * weight / kDraws;
+      most = std::max(most, weight);
+    }
+    const double deviation = std::sqrt((squares - sum * sum) / kDraws);
+    EXPECT_NEAR(sum, albedo, 5 * deviation + 2e-3 * albedo) << degrees(theta_of(wo));
+    EXPECT_LT(squares, 1.5 * sum * sum) << degrees(theta_of(wo));
+    EXPECT_LT(most, 8 * albedo) << degrees(theta_of(wo));
+  }
+}
+
+TEST_P(TabulatedSamplerTest, ManyAtOnceAreWhatOneIs) {
+  Pcg32 random(7);
+  for (const std::size_t count : {0, 1, 3, 16, 17, 1000}) {
+    std::vector<float> in[5], out[4], pdf(count);
+    for (auto& o : out) o.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3 wo =
+          i % 3 ? spherical_direction(std::acos(1 - 0.999 * random.uniform()), random.uniform() * kTwoPi)
+                : wos[i % wos.size()];
+      const Point2 u = random_point(random);
+      const double values[] = {wo.x, wo.y, wo.z, std::min(u.x, 0.9999999), std::min(u.y, 0.9999999)};
+      for (int k = 0; k < 5; ++k) in[k].push_back(static_cast<float>(values[k]));
+    }
+    sampler.sample_wi(DrawSpans{in[0], in[1], in[2], in[3], in[4]},
+                      DrawnSpans{out[0], out[1], out[2], out[3]});
+    sampler.pdf(DirectionSpans{out[0], out[1], out[2], in[0], in[1], in[2]}, pdf);
+    std::size_t other_draws = 0, other_pdfs = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3 wo{in[0][i], in[1][i], in[2][i]}, wi{out[0][i], out[1][i], out[2][i]};
+      const DrawnDirection one = sampler.sample_wi(wo, {in[3][i], in[4][i]});
+      EXPECT_LT(length(one.wi - wi), 2e-3) << i;
+      other_draws += std::abs(out[3][i] - one.pdf) > 3e-3 * one.pdf;
+      const double expected = sampler.pdf(wi, wo);
+      other_pdfs += std::abs(pdf[i] - expected) > 3e-3 * expected;
+    }
+    // those at borders of cells
+    EXPECT_LE(other_draws, count / 100);
+    EXPECT_LE(other_pdfs, count / 100);
+  }
+}
+
+TEST_P(TabulatedSamplerTest, TurnsWithTheMaterial) {
+  if (!brdf.isotropic()) GTEST_SKIP() << "anisotropic";
+  Pcg32 random(8);
+  const double angle = 1.1, c = std::cos(angle), s = std::sin(angle);
+  const auto turned = [&](Vec3 w) { return Vec3{c * w.x - s * w.y, s * w.x + c * w.y, w.z}; };
+  for (const Vec3 wo : wos) {
+    if (wo.z == 1) continue;  // which azimuth the normal has is arbitrary
+    for (int i = 0; i < 50; ++i) {
+      const Point2 u = random_point(random);
+      const DrawnDirection here = sampler.sample_wi(wo, u), there = sampler.sample_wi(turned(wo), u);
+      EXPECT_LT(length(turned(here.wi) - there.wi), 1e-9);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, TabulatedSamplerTest, ::testing::ValuesIn(kModels),
+                         [](const auto& model) { return std::string(model.param.name); });
+
+TEST(TabulatedSampler, ServesAnalyticBrdfsOfAnyWidth) {
+  for (const char* spec :
+       {"lambert", "ggx:alpha_x=0.005,alpha_y=0.005,f0=0.9,kd=0.2", "ward:alpha_x=0.05,alpha_y=0.4"}) {
+    const AnalyticBrdf brdf = parse_analytic(spec);
+    const TabulatedSampler sampler(brdf.ref());
+    std::vector<double> f(3);
+    Pcg32 random(9);
+    for (const Vec3 wo : views(false)) {
+      if (theta_of(wo) > radians(89)) continue;
+      double sum = 0, squares = 0;
+      for (int i = 0; i < 2000; ++i) {
+        const DrawnDirection drawn = sampler.sample_wi(wo, random_point(random));
+        const double weight = drawn.pdf > 0 ? reflected_size(brdf.ref(), drawn.wi, wo, f) / drawn.pdf : 0;
+        sum += weight / 2000;
+        squares += weight * weight / 2000;
+      }
+      EXPECT_LT(squares, 1.35 * sum * sum) << spec << " " << degrees(theta_of(wo));
+    }
+  }
+}
+
+TEST(TabulatedSampler, DrawsEvenlyWhereNothingIsReflected) {
+  const TabulatedSampler sampler(testing::Lambert{.albedo = {0, 0, 0}});
+  EXPECT_NEAR(test_draws(sampler, spherical_direction(0.7, 0.3), 1000, 1).integral, 1, 4e-3);
+}
+
+TEST(TabulatedSampler, SurvivesAnythingInPlaceOfDirections) {
+  const double odd[] = {NAN, INFINITY, -INFINITY, 1e30, -1e30, 1e-40, 0, 1, -1};
+  std::vector<float> in[5];
+  std::vector<float> out[4], pdf;
+  for (const ModelCase& model : {kModels[0], kModels[6]}) {
+    const TabulatedSampler sampler(glossy_model(model));
+    for (const double a : odd)
+      for (const double b : odd)
+        for (const double z : odd) {
+          sampler.sample_wi({a, b, z}, {b, z});
+          sampler.pdf({a, b, z}, {b, z, a});
+          const double values[] = {a, b, z, b, z};
+          for (int k = 0; k < 5; ++k) in[k].push_back(static_cast<float>(values[k]));
+        }
+    pdf.resize(in[0].size());
+    for (auto& o : out) o.resize(in[0].size());
+    sampler.sample_wi(DrawSpans{in[0], in[1], in[2], in[3], in[4]},
+                      DrawnSpans{out[0], out[1], out[2], out[3]});
+    sampler.pdf(DirectionSpans{in[0], in[1], in[2], in[2], in[0], in[1]}, pdf);
+  }
+}
+
+TEST(TabulatedSampler, RefusesSizesThatDoNotFit) {
+  const testing::Lambert lambert;
+  for (const SamplerOptions& bad : {SamplerOptions{1, 1, 16, 16}, SamplerOptions{16, 2, 16, 16},
+                                    SamplerOptions{16, 1, 12, 16}, SamplerOptions{16, 1, 16, 4}})
+    EXPECT_THROW(TabulatedSampler(lambert, bad), Error);
+  EXPECT_THROW(TabulatedSampler(testing::Glossy{.a = 1}, SamplerOptions{16, 1, 16, 16}), Error);
+  EXPECT_EQ(TabulatedSampler(lambert).bytes(), 2 * (16 * 16 * 17 + 2u));
+}
+
+}  // namespace
+}  // namespace burnish

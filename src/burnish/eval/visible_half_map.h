@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include <burnish/reflectance/half_vector_quadrature.h>
+
+namespace burnish {
+
+/// A map of the half vectors that are visible from some wo onto a rectangle, in which the cells of a sampling
+/// table stand. With m = tan^2(theta_h / 2), along every azimuth
+///   G(m) = share (1 + K) m / (m + K) + (1 - share) m,
+/// a highlight of width sqrt(K) beside the whole hemisphere, and the rectangle's v = G(m) / G(largest visible
+/// m). Its u is the azimuth in the metric |x'| + |y'| of the vector (x', y') = M (cos phi, sin phi), which
+/// needs no trigonometry; where M stretches, K = sharpness / |(x', y')|^2. Of isotropic BRDFs the azimuth is
+/// that from wo and half the circle does. Both directions of the map are closed forms
+/// (eval/visible_half-inl.h).
+struct VisibleHalfMap {
+  double sharpness = 0.01, share = 0.5;
+  double xx = 1, xy = 0, yy = 1;  ///< M, symmetric, determinant 1
+
+  friend bool operator==(const VisibleHalfMap&, const VisibleHalfMap&) = default;
+};
+
+/// What a BRDF reflects towards one wo.
+struct ReflectedLight {
+  Vec3 wo;
+  std::vector<DirectionWeight> rule;
+  std::vector<double> size;  ///< reflected_size at the rule's directions
+};
+
+/// The map for which cells of `rows` by `columns` give weights f cos / pdf of the least mean relative second
+/// moment over the views, found by search: deterministic, the same on every machine to rounding.
+VisibleHalfMap fit_visible_half_map(const std::vector<ReflectedLight>& views, bool isotropic, int rows,
+                                    int columns);
+
+}  // namespace burnish

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include <burnish/eval/visible_half_map.h>
+
+namespace burnish {
+
+/// What the formulas of visible_half-inl.h read.
+struct SamplerView : VisibleHalfMap {
+  int thetas = 0, phis = 0, rows = 0, columns = 0;
+  double theta_scale = 0;  ///< rings per tan(theta_o / 2)
+  const std::uint16_t *row_edges = nullptr, *cell_edges = nullptr;
+};
+
+/// The formulas for double.
+namespace scalar {
+
+using std::abs;
+using std::max;
+using std::min;
+using std::sqrt;
+
+// Comparisons as bits: which way they go is as good as random, and branches would be mispredicted.
+typedef double DoubleLanes __attribute__((vector_size(16)));
+typedef std::int64_t MaskLanes __attribute__((vector_size(16)));
+
+inline MaskLanes less_or_equal(double a, double b) noexcept {
+  return DoubleLanes{a, a} <= DoubleLanes{b, b};
+}
+inline double if_true(MaskLanes mask, double a, double b) noexcept {
+  return (mask ? DoubleLanes{a, a} : DoubleLanes{b, b})[0];
+}
+inline std::int32_t if_true(MaskLanes mask, std::int32_t a, std::int32_t b) noexcept {
+  return mask[0] ? a : b;
+}
+inline std::int32_t to_int(double x) noexcept {
+  return static_cast<std::int32_t>(std::abs(x) < 1e9 ? x : 0);  // not-a-number: 0
+}
+inline double to_real(std::int32_t i) noexcept {
+  return i;
+}
+inline std::int32_t next_around(std::int32_t i, int last) noexcept {
+  return i < last ? i + 1 : 0;
+}
+// Counts the edges up to the target, eight at a time: a search by halves waits for every comparison. In
+// float; what rounding puts into the neighbouring cell lands on its border.
+template <int kSlices>
+inline __attribute__((always_inline)) std::int32_t search(const std::uint16_t* table,
+                                                          const std::int32_t (&start)[kSlices],
+                                                          const double (&weight)[kSlices], int count,
+                                                          double target) noexcept {
+  constexpr int kTogether = 8;
+  const std::uint16_t* row[kSlices];
+  float share[kSlices];
+  for (int s = 0; s < kSlices; ++s) {
+    row[s] = table + start[s];
+    share[s] = static_cast<float>(weight[s]);
+  }
+  const auto limit = static_cast<float>(target);
+  std::int32_t below[kTogether]{};
+  for (int first = 0; first < count; first += kTogether)
+    for (int i = 0; i < kTogether; ++i) {
+      float edge = 0;
+      for (int s = 0; s < kSlices; ++s) edge += share[s] * static_cast<float>(row[s][first + i]);
+      below[i] += edge <= limit;
+    }
+  std::int32_t sum = -1;
+  for (const std::int32_t b : below) sum += b;
+  return sum;
+}
+struct EdgePair {
+  std::int32_t lower, upper;
+};
+inline EdgePair edge_pair(const std::uint16_t* table, std::int32_t i) noexcept {
+  return {table[i], ((table[i + 1] - 1) & 0xffff) + 1};
+}
+
+#define SAMPLER_INLINE inline
+#include <burnish/eval/visible_half-inl.h>
+#undef SAMPLER_INLINE
+
+}  // namespace scalar
+}  // namespace burnish

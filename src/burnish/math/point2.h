@@ -1,0 +1,10 @@
+#pragma once
+
+namespace burnish {
+
+/// A point of the unit square.
+struct Point2 {
+  double x = 0, y = 0;
+};
+
+}  // namespace burnish

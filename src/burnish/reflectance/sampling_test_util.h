@@ -1,0 +1,113 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <burnish/math/random.h>
+#include <burnish/parameterization/visible_half.h>
+#include <burnish/reflectance/sampling.h>
+
+namespace burnish {
+
+/// Probability that a chi-square variable of `degrees` degrees of freedom exceeds x: the regularized upper
+/// incomplete gamma function Q(degrees / 2, x / 2), by its series or its continued fraction.
+inline double chi_square_tail(double x, int degrees) noexcept {
+  const double a = 0.5 * degrees, z = 0.5 * x, front = std::exp(a * std::log(z) - z - std::lgamma(a));
+  if (z < a + 1) {
+    double term = 1 / a, sum = term;
+    for (double k = a + 1; term > 1e-15 * sum; ++k) sum += term *= z / k;
+    return 1 - front * sum;
+  }
+  double b = z + 1 - a, c = 1e300, d = 1 / b, fraction = d;
+  for (int i = 1; i < 1000; ++i) {
+    const double numerator = i * (a - i);
+    b += 2;
+    d = 1 / (numerator * d + b);
+    c = b + numerator / c;
+    fraction *= c * d;
+    if (std::abs(c * d - 1) < 1e-15) break;
+  }
+  return front * fraction;
+}
+
+/// What a histogram of drawn directions says about a sampler's pdf.
+struct DrawTest {
+  double p_value;   ///< of the histogram, if directions are drawn by pdf
+  double integral;  ///< of pdf over the upper hemisphere
+};
+
+/// Draws `draws` directions for wo and compares how many fall into each of kSide x kSide bins with the
+/// integral of pdf over the bin (kPoints points of a lattice, which borders of cells that are parallel to the
+/// bins do not mislead), Pearson's chi-square with bins of fewer than five expected draws joined. What is
+/// drawn below the horizon is a bin too. The bins are those of the half vector's azimuth and of log(1 + 1000
+/// tan^2(theta_h / 2)), cut where the mirror of wo meets the horizon, so that highlights and tails both have
+/// some.
+inline DrawTest test_draws(SamplerRef sampler, Vec3 wo, int draws, std::uint64_t seed) {
+  constexpr int kSide = 12, kPoints = 600;
+  constexpr double kSpread = 1000;
+  const auto largest = [&](double phi) {
+    return std::log1p(kSpread * largest_visible_half(wo.x * std::cos(phi) + wo.y * std::sin(phi), wo.z));
+  };
+  std::vector<double> expected(kSide * kSide + 1), seen(kSide * kSide + 1);
+  double total = 0;
+  for (int bin = 0; bin < kSide * kSide; ++bin)
+    for (int k = 0; k < kPoints; ++k) {
+      const double golden = 0.6180339887498949 * (k + kPoints * bin);
+      const double phi = kTwoPi * (bin / kSide + (k + 0.5) / kPoints) / kSide, v = largest(phi);
+      const double place = (bin % kSide + golden - std::floor(golden)) / kSide;
+      const double m = std::expm1(v * place * place) / kSpread;
+      const Vec3 h = spherical_direction(2 * std::atan(std::sqrt(m)), phi);
+      // dm dphi of a bin; solid angles as in half_vector_quadrature
+      const double area = (m + 1 / kSpread) * 2 * v * place * kTwoPi / (kSide * kSide);
+      const double solid_angle = 8 * dot(wo, h) * area / ((1 + m) * (1 + m)) / kPoints;
+      const double share = sampler.pdf(2 * dot(wo, h) * h - wo, wo) * solid_angle;
+      expected[static_cast<std::size_t>(bin)] += share * draws;
+      total += share;
+    }
+  expected.back() = std::max(1 - total, 0.0) * draws;
+
+  Pcg32 random(seed);
+  for (int n = 0; n < draws; ++n) {
+    const double x = random.uniform(), y = random.uniform();
+    const DrawnDirection drawn = sampler.sample_wi(wo, {x, y});
+    std::size_t bin = kSide * kSide;
+    if (drawn.wi.z > 0 && drawn.pdf > 0) {
+      const Vec3 h = half_vector(drawn.wi, wo);
+      const double phi = phi_of(h), t = std::sqrt(h.x * h.x + h.y * h.y) / (1 + h.z);
+      const auto index = [](double place) {
+        return std::clamp(static_cast<int>(place * kSide), 0, kSide - 1);
+      };
+      bin = static_cast<std::size_t>(index(phi / kTwoPi) * kSide +
+                                     index(std::sqrt(std::log1p(kSpread * t * t) / largest(phi))));
+    }
+    ++seen[bin];
+  }
+
+  double statistic = 0, rest_expected = 0, rest_seen = 0;
+  int bins = 0;
+  const auto add = [&](double e, double s) {
+    statistic += (s - e) * (s - e) / e;
+    ++bins;
+  };
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    if (expected[i] >= 5) {
+      add(expected[i], seen[i]);
+    } else {
+      rest_expected += expected[i];
+      rest_seen += seen[i];
+    }
+  // a rest too small to test may hold no more than a few
+  if (rest_expected >= 5)
+    add(rest_expected, rest_seen);
+  else if (rest_seen > 25)
+    return {0, total};
+  return {bins > 1 ? chi_square_tail(statistic, bins - 1) : 1, total};
+}
+
+/// The level at which each of `count` tests is run so that all pass with probability 1 - `level` (Sidak).
+inline double level_of_each(double level, int count) noexcept {
+  return -std::expm1(std::log1p(-level) / count);
+}
+
+}  // namespace burnish
