@@ -47,17 +47,19 @@ inline std::string rgl_seed() {
 
 inline std::string model_seed() {
   using namespace burnish;
-  const Table p{.name = "p", .layout = {.width = 2}, .channels = 1, .values = {1, 0.5f}};
+  const Table p{
+      .name = "p", .layout = {.width = 2}, .channels = 1, .values = {1, 0.2f}, .format = TableFormat::unorm8};
   const Table q{
       .name = "q",
       .layout = {.shape = TableShape::disk, .width = 2, .height = 2, .warp = {WarpKind::rational, 0.5}},
       .channels = 3,
-      .values = std::vector<float>(12, 1.0f)};
+      .values = std::vector<float>(12, 1.0f),
+      .format = TableFormat::rgb9e5};
   const Lobe lobe{.scale = {0.1, 0.2, 0.3},
                   .factors = {{.table = 0, .projection = kProjectWi},
                               {.table = 0, .projection = kProjectWo},
                               {.table = 1, .projection = kProjectHalf}}};
-  return format_model({.brdf = FactoredBrdf(3, {p, q}, {lobe}, TableFormat::half)});
+  return format_model({.brdf = FactoredBrdf(3, {p, q}, {lobe})});
 }
 
 /// A single neural encoding, of weights with few digits.

@@ -85,7 +85,7 @@ void make_input(const Source& source, const Arguments& arguments, const ModelSpe
 HomomorphicOptions make_options(const Source& source, const Arguments& arguments) {
   HomomorphicOptions options;
   options.floor = arguments.floor;
-  options.format = arguments.format == "half" ? TableFormat::half : TableFormat::single;
+  options.format = parse_table_format(arguments.format);
   options.reweightings = arguments.reweightings >= 0 ? arguments.reweightings
                          : source.samples()          ? kScatteredReweightings
                                                      : 0;
@@ -231,10 +231,10 @@ void add_fit_command(CLI::App& app) {
           "--model", arguments->model,
           "product of tables over projections: pqp, pqpr, or such as \"p(wo) q(h) s(wi+wo+0.5n) p(wi)\"")
       ->capture_default_str();
-  verb->add_option(
-          "--table", arguments->tables,
-          "size and spacing of a table: NAME=SIZE[,warp][,shared], SIZE N (1-D), NxN (hemisphere) or NxM; "
-          "warp identity, power:P or rational:K")
+  verb->add_option("--table", arguments->tables,
+                   "size and spacing of a table: NAME=SIZE[,warp][,shared][,format], SIZE N (1-D), NxN "
+                   "(hemisphere) or "
+                   "NxM; warp identity, power:P or rational:K; format as --format")
       ->allow_extra_args(false);
   verb->add_option(
       "--smooth", arguments->smooth,
@@ -249,8 +249,9 @@ void add_fit_command(CLI::App& app) {
   verb->add_option("--samples", arguments->samples, "pairs drawn from a source that is a function")
       ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}));
   verb->add_option("--seed", arguments->seed, "of the drawn pairs")->capture_default_str();
-  verb->add_option("--format", arguments->format, "of the stored tables")
-      ->check(CLI::IsMember({"half", "float"}))
+  verb->add_option("--format", arguments->format,
+                   "of the stored tables; rgb9e5 is for three channels and leaves shared tables half")
+      ->check(CLI::IsMember({"half", "float", "rgb9e5", "unorm8"}))
       ->capture_default_str();
   verb->add_option("--threads", arguments->threads, "at most this many; 0: all")->check(CLI::Range(0, 1024));
   verb->add_flag("--no-symmetrize", arguments->lobes.no_symmetrize,

@@ -70,7 +70,9 @@ nlohmann::ordered_json to_json(const Report& report) {
                                 {"width", table.layout.width},
                                 {"height", table.layout.height},
                                 {"channels", table.channels},
-                                {"warp", to_string(table.layout.warp)}});
+                                {"warp", to_string(table.layout.warp)},
+                                {"format", to_string(table.format)},
+                                {"bytes", table.byte_count()}});
   }
   return json;
 }
@@ -112,8 +114,9 @@ void print_text(const Report& report) {
   for (const Lobe& lobe : model->lobes())
     line("lobe", fmt::format("scale {:.4g}", fmt::join(lobe.scale, " ")));
   for (const Table& table : model->tables())
-    line("table", fmt::format("{}: {} x {}, {} channels, warp {}", table.name, table.layout.width,
-                              table.layout.height, table.channels, to_string(table.layout.warp)));
+    line("table", fmt::format("{}: {} x {}, {} channels, warp {}, {}, {} bytes", table.name,
+                              table.layout.width, table.layout.height, table.channels,
+                              to_string(table.layout.warp), to_string(table.format), table.byte_count()));
 }
 
 }  // namespace

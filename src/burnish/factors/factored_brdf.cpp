@@ -4,7 +4,6 @@
 #include <limits>
 #include <set>
 
-#include <Imath/half.h>
 #include <fmt/format.h>
 
 #include <burnish/error.h>
@@ -41,6 +40,42 @@ double lookup(const Table& table, const Lookup& at, std::size_t channel) noexcep
   return low + at.fy * (high - low);
 }
 
+std::vector<Table> in_format(std::vector<Table> tables, TableFormat format) {
+  for (Table& table : tables) table.format = format;
+  return tables;
+}
+
+void check_positive(const Table& table) {
+  for (const float v : table.values)
+    if (!(v > 0) || !std::isfinite(v))
+      throw Error(fmt::format("table '{}': expected positive finite values, found {}", table.name, v));
+}
+
+void check_stored(const Table& table) {
+  check_format(table);
+  const std::vector<float> stored = round_to_format(table.format, table.channels, table.values);
+  const auto [value, rounded] = std::ranges::mismatch(table.values, stored);
+  if (value != table.values.end())
+    throw Error(fmt::format("table '{}': expected values that {} holds, such as {}, found {}", table.name,
+                            to_string(table.format), *rounded, *value));
+}
+
+// For each channel the logarithm that becomes 1: of its largest value. In rgb9e5 channels share an exponent:
+// there they are brought to one mean, and the largest value of all becomes 1.
+std::vector<double> logs_of_one(const Table& table) {
+  const auto channels = static_cast<std::size_t>(table.channels);
+  std::vector<double> largest(channels, -std::numeric_limits<double>::infinity()), mean(channels, 0);
+  for (std::size_t i = 0; i < table.values.size(); ++i) {
+    largest[i % channels] = std::max<double>(largest[i % channels], table.values[i]);
+    mean[i % channels] += table.values[i] / static_cast<double>(table.layout.node_count());
+  }
+  if (table.format != TableFormat::rgb9e5) return largest;
+  double above = 0;
+  for (std::size_t c = 0; c < channels; ++c) above = std::max(above, largest[c] - mean[c]);
+  for (double& m : mean) m += above;
+  return mean;
+}
+
 int coefficient_count(const Projection& p) noexcept {
   if (p.kind != Projection::Kind::affine || p == kProjectWi || p == kProjectWo || p == kProjectHalf) return 0;
   return (p.wi != 0) + (p.wo != 0) + (p.mirror != 0) + (p.n != 0);
@@ -50,7 +85,10 @@ int coefficient_count(const Projection& p) noexcept {
 
 FactoredBrdf::FactoredBrdf(int channels, std::vector<Table> tables, std::vector<Lobe> lobes,
                            TableFormat format)
-    : channels_(channels), format_(format), tables_(std::move(tables)), lobes_(std::move(lobes)) {
+    : FactoredBrdf(channels, in_format(std::move(tables), format), std::move(lobes)) {}
+
+FactoredBrdf::FactoredBrdf(int channels, std::vector<Table> tables, std::vector<Lobe> lobes)
+    : channels_(channels), tables_(std::move(tables)), lobes_(std::move(lobes)) {
   if (channels < 1 || channels > kMostChannels)
     throw Error(fmt::format("factored BRDF: expected 1 to {} channels, found {}", kMostChannels, channels));
   if (lobes_.empty()) throw Error("factored BRDF: expected at least one lobe, found none");
@@ -67,9 +105,8 @@ FactoredBrdf::FactoredBrdf(int channels, std::vector<Table> tables, std::vector<
       throw Error(fmt::format("table '{}': expected {} values, found {}", table.name,
                               table.layout.node_count() * static_cast<std::size_t>(table.channels),
                               table.values.size()));
-    for (const float v : table.values)
-      if (!(v > 0) || !std::isfinite(v))
-        throw Error(fmt::format("table '{}': expected positive finite values, found {}", table.name, v));
+    check_positive(table);
+    check_stored(table);
   }
   for (const Lobe& lobe : lobes_) {
     if (lobe.scale.size() != static_cast<std::size_t>(channels))
@@ -141,8 +178,8 @@ double FactoredBrdf::smallest_factor() const noexcept {
 
 std::size_t FactoredBrdf::table_bytes() const noexcept {
   std::size_t count = 0;
-  for (const Table& table : tables_) count += table.values.size();
-  return count * (format_ == TableFormat::half ? 2 : 4);
+  for (const Table& table : tables_) count += table.byte_count();
+  return count;
 }
 
 std::size_t FactoredBrdf::bytes() const noexcept {
@@ -164,31 +201,35 @@ std::size_t FactoredBrdf::bytes() const noexcept {
 
 FactoredBrdf from_log_tables(int channels, std::vector<Table> tables, std::vector<Lobe> lobes,
                              TableFormat format) {
+  return from_log_tables(channels, in_format(std::move(tables), format), std::move(lobes));
+}
+
+FactoredBrdf from_log_tables(int channels, std::vector<Table> tables, std::vector<Lobe> lobes) {
   const auto brdf_channels = static_cast<std::size_t>(channels);
   for (std::size_t t = 0; t < tables.size(); ++t) {
     Table& table = tables[t];
+    check_format(table);
+    const bool floored = table.format == TableFormat::half || table.format == TableFormat::single;
+    // what these formats make of a smaller value is their own floor
+    const double floor = floored ? kTableFloor : std::numeric_limits<float>::min();
     const auto table_channels = static_cast<std::size_t>(table.channels);
+    const std::vector<double> ones = logs_of_one(table);
     for (std::size_t c = 0; c < table_channels; ++c) {
-      float largest = -std::numeric_limits<float>::infinity();
       for (std::size_t i = c; i < table.values.size(); i += table_channels)
-        largest = std::max(largest, table.values[i]);
-      for (std::size_t i = c; i < table.values.size(); i += table_channels) {
-        const double scaled = std::max(std::exp(static_cast<double>(table.values[i]) - largest), kTableFloor);
-        table.values[i] = format == TableFormat::half
-                              ? static_cast<float>(Imath::half(static_cast<float>(scaled)))
-                              : static_cast<float>(scaled);
-      }
-      // every use of the table carries its largest value into the lobe
+        table.values[i] = static_cast<float>(std::max(std::exp(table.values[i] - ones[c]), floor));
+      // every use of the table carries what is divided out into the lobe
       for (Lobe& lobe : lobes)
         for (const FactorUse& use : lobe.factors)
           if (static_cast<std::size_t>(use.table) == t)
             for (std::size_t b = 0; b < brdf_channels; ++b)
-              if (table_channels == 1 || b == c) lobe.scale[b] += largest;
+              if (table_channels == 1 || b == c) lobe.scale[b] += ones[c];
     }
+    check_positive(table);
+    table.values = round_to_format(table.format, table.channels, table.values);
   }
   for (Lobe& lobe : lobes)
     for (double& s : lobe.scale) s = static_cast<float>(std::exp(std::min(s, kMostLogScale)));
-  return FactoredBrdf(channels, std::move(tables), std::move(lobes), format);
+  return FactoredBrdf(channels, std::move(tables), std::move(lobes));
 }
 
 std::string model_expression(const FactoredBrdf& brdf) {

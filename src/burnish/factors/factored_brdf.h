@@ -18,9 +18,6 @@ struct Lobe {
   friend bool operator==(const Lobe&, const Lobe&) = default;
 };
 
-/// How table values are stored.
-enum class TableFormat { half, single };
-
 /// A factored BRDF: f(wi, wo) = sum over lobes of scale * product of table lookups, all positive
 /// [HomomorphicBrdf, eq. 4; several lobes go beyond the paper]. A table used for both directions is stored
 /// once, and the two lookups are multiplied with each other first, so a reciprocal model is reciprocal to the
@@ -28,8 +25,10 @@ enum class TableFormat { half, single };
 class FactoredBrdf {
  public:
   FactoredBrdf() = default;
-  /// Throws Error if a table's size, name, channels or values (finite, > 0), a lobe's scale (finite, >= 0) or
-  /// a factor's table index does not fit.
+  /// Throws Error if a table's size, name, channels or values (finite, > 0, held by its format to the last
+  /// bit), a lobe's scale (finite, >= 0) or a factor's table index does not fit.
+  FactoredBrdf(int channels, std::vector<Table> tables, std::vector<Lobe> lobes);
+  /// The same with every table in `format`.
   FactoredBrdf(int channels, std::vector<Table> tables, std::vector<Lobe> lobes, TableFormat format);
 
   int channels() const noexcept { return channels_; }
@@ -38,7 +37,6 @@ class FactoredBrdf {
 
   std::span<const Table> tables() const noexcept { return tables_; }
   std::span<const Lobe> lobes() const noexcept { return lobes_; }
-  TableFormat format() const noexcept { return format_; }
   /// Factors of lobe j in evaluation order: first 2 * pair_count(j) in pairs that swapping wi and wo
   /// exchanges, each pair multiplied with itself before anything else, then the rest.
   std::span<const FactorUse> ordered_factors(std::size_t j) const noexcept { return ordered_[j]; }
@@ -48,7 +46,7 @@ class FactoredBrdf {
   bool reciprocal() const noexcept { return reciprocal_; }
   /// Smallest stored table value; the largest is 1.
   double smallest_factor() const noexcept;
-  /// Bytes of the tables as stored.
+  /// Bytes of the tables as stored, each in its format.
   std::size_t table_bytes() const noexcept;
   /// table_bytes() plus 4 bytes for every scale, warp parameter and projection coefficient that the
   /// projection's name does not imply.
@@ -59,7 +57,6 @@ class FactoredBrdf {
  private:
   int channels_ = 0;
   bool isotropic_ = true, reciprocal_ = true;
-  TableFormat format_ = TableFormat::single;
   std::vector<Table> tables_;
   std::vector<Lobe> lobes_;
   // lobes_[i].factors in evaluation order: the first 2 * pair_counts_[i] are pairs that swapping exchanges
@@ -69,14 +66,17 @@ class FactoredBrdf {
 
 static_assert(Brdf<FactoredBrdf>);
 
-/// Table entries are kept at or above this share of the largest: half floats stay positive there, as
-/// subnormal numbers with an error of at most 1/32. 2^-14, the smallest normal half, would cut the tails of
-/// shiny materials (docs/factorization.md).
+/// Entries of half and single tables are kept at or above this share of the largest: half floats stay
+/// positive there, as subnormal numbers with an error of at most 1/32. 2^-14, the smallest normal half, would
+/// cut the tails of shiny materials (docs/factorization.md).
 inline constexpr double kTableFloor = 0x1p-20;
 
-/// Makes the largest value of every table's channel 1, with the factor moved into the lobes' scales, raises
-/// entries to kTableFloor and rounds them to `format`. The tables hold logarithms of lambda, channels as in
-/// Table; log_scale one entry a lobe and channel.
+/// Makes the largest value of every table's channel 1 (rgb9e5: see Table), with the factor moved into the
+/// lobes' scales, raises entries to kTableFloor (rgb9e5 and unorm8: to the smallest value their texel can
+/// have) and rounds them to the table's format. The tables hold logarithms of lambda, channels as in Table;
+/// the lobes' scales logarithms, one entry a channel. Throws as the constructor does.
+FactoredBrdf from_log_tables(int channels, std::vector<Table> log_tables, std::vector<Lobe> log_scaled_lobes);
+/// The same with every table in `format`.
 FactoredBrdf from_log_tables(int channels, std::vector<Table> log_tables, std::vector<Lobe> log_scaled_lobes,
                              TableFormat format);
 

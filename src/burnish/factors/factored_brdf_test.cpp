@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -24,13 +25,14 @@ FactoredBrdf random_model(const char* expression, std::vector<std::string> optio
     Table table{.name = t.name, .layout = t.layout, .channels = t.shared ? 1 : channels};
     for (std::size_t i = 0; i < t.layout.node_count() * static_cast<std::size_t>(table.channels); ++i)
       table.values.push_back(static_cast<float>(-span * random.uniform()));
+    table.format = format_of(t, format);
     tables.push_back(std::move(table));
   }
   std::vector<Lobe> lobes;
   for (const auto& factors : spec.lobes)
     lobes.push_back(
         {.scale = std::vector<double>(static_cast<std::size_t>(channels), 0.3), .factors = factors});
-  return from_log_tables(channels, std::move(tables), std::move(lobes), format);
+  return from_log_tables(channels, std::move(tables), std::move(lobes));
 }
 
 const char* const kEverything =
@@ -113,6 +115,46 @@ TEST(FactoredBrdf, ScalesTablesToOneAndKeepsThemAboveTheFloor) {
     }
 }
 
+TEST(FactoredBrdf, ScalesTablesToOneInEveryFormat) {
+  for (const TableFormat format : {TableFormat::rgb9e5, TableFormat::unorm8}) {
+    const FactoredBrdf brdf = random_model("pqp", {}, 3, format, 40);
+    for (const Table& table : brdf.tables()) {
+      EXPECT_EQ(*std::ranges::max_element(table.values), 1);
+      EXPECT_GE(*std::ranges::min_element(table.values),
+                format == TableFormat::unorm8 ? 1.0f / 255 : 0x1p-24f);
+    }
+  }
+}
+
+TEST(FactoredBrdf, OneSpikeCostsTheOtherNodesNoPrecisionInRgb9e5) {
+  Pcg32 random(8);
+  Table table{.name = "q", .layout = {.width = 32}, .channels = 3};
+  for (int i = 0; i < 96; ++i) table.values.push_back(static_cast<float>(0.5 * random.uniform() - i % 3));
+  table.values[4] += 9;  // node 1, channel 1
+  const Lobe lobe{.scale = {0, 0, 0}, .factors = {{.table = 0, .projection = kProjectWi}}};
+  const FactoredBrdf brdf = from_log_tables(3, {table}, {lobe}, TableFormat::rgb9e5);
+  // the means are moved by 9 / 32: channels of a texel differ by at most e^(0.5 + 9 / 32)
+  const double bound = std::exp(0.5 + 9.0 / 32) / 511 + 1e-6;
+  for (std::size_t i = 6; i < 96; ++i)
+    EXPECT_NEAR(brdf.lobes()[0].scale[i % 3] * brdf.tables()[0].values[i] / std::exp(table.values[i]), 1,
+                bound);
+}
+
+TEST(FactoredBrdf, CountsEachTableInItsFormat) {
+  std::vector<Table> tables;
+  for (const TableFormat format :
+       {TableFormat::half, TableFormat::single, TableFormat::rgb9e5, TableFormat::unorm8})
+    tables.push_back({.name = std::string(to_string(format)),
+                      .layout = {.width = 10},
+                      .channels = 3,
+                      .values = std::vector<float>(30, -1.0f),
+                      .format = format});
+  const Lobe lobe{.scale = {0, 0, 0}, .factors = {{.table = 0, .projection = kProjectWi}}};
+  const FactoredBrdf brdf = from_log_tables(3, tables, {lobe});
+  EXPECT_EQ(brdf.table_bytes(), 60u + 120 + 40 + 30);
+  EXPECT_EQ(from_log_tables(3, tables, {lobe}, TableFormat::rgb9e5).table_bytes(), 160u);
+}
+
 TEST(FactoredBrdf, CountsItsBytes) {
   const FactoredBrdf pqp = random_model("pqp", {"p=32", "q=64"}, 3, TableFormat::half);
   EXPECT_EQ(pqp.table_bytes(), 576u);
@@ -136,6 +178,7 @@ TEST(FactoredBrdf, RefusesWhatDoesNotFit) {
   refused([](Table& t) { t.values = {1, 0}; }, keep);
   refused([](Table& t) { t.values = {1, NAN}; }, keep);
   refused([](Table& t) { t.values = {1}; }, keep);
+  refused([](Table& t) { t.values = {1, 0.1f}; }, keep);  // not a half
   refused([](Table& t) { t.name = ""; }, keep);
   refused([](Table& t) { t.layout.width = 1; }, keep);
   refused([](Table& t) { t.layout.height = 3; }, keep);
@@ -143,6 +186,9 @@ TEST(FactoredBrdf, RefusesWhatDoesNotFit) {
   refused(keep, [](Lobe& l) { l.scale = {-1}; });
   refused(keep, [](Lobe& l) { l.scale = {1, 1}; });
   refused(keep, [](Lobe& l) { l.factors[0].table = 1; });
+  EXPECT_THROW(FactoredBrdf(1, {good}, {lobe}, TableFormat::rgb9e5), Error);
+  EXPECT_THROW(FactoredBrdf(1, {good}, {lobe}, TableFormat::unorm8), Error);
+  EXPECT_THROW(from_log_tables(1, {good}, {lobe}, TableFormat::rgb9e5), Error);
   EXPECT_THROW(FactoredBrdf(1, {good, good}, {lobe}, TableFormat::half), Error);
   EXPECT_THROW(FactoredBrdf(1, {good}, {}, TableFormat::half), Error);
 }
@@ -153,6 +199,14 @@ TEST(ModelSpec, ReadsWhatModelExpressionPrints) {
     const FactoredBrdf again = random_model(model_expression(brdf).c_str(), {}, 1, TableFormat::half);
     EXPECT_EQ(model_expression(again), model_expression(brdf));
   }
+}
+
+TEST(ModelSpec, ReadsFormats) {
+  const std::vector<std::string> options{"p=8,unorm8", "q=8,rational:0.5,shared"};
+  const ModelSpec spec = parse_model_spec("pqpr", options, true);
+  EXPECT_EQ(format_of(spec.tables[0], TableFormat::half), TableFormat::unorm8);
+  EXPECT_EQ(format_of(spec.tables[1], TableFormat::rgb9e5), TableFormat::half);  // shared: one channel
+  EXPECT_EQ(format_of(spec.tables[2], TableFormat::rgb9e5), TableFormat::rgb9e5);
 }
 
 TEST(ModelSpec, RefusesWhatItDoesNotKnow) {
@@ -166,17 +220,31 @@ TEST(ModelSpec, RefusesWhatItDoesNotKnow) {
   EXPECT_THROW(parse_model_spec("pqpr", std::vector<std::string>{"r=8x8"}, true), Error);
 }
 
+FileBytes as_file(const std::string& text) {
+  const auto* bytes = reinterpret_cast<const std::byte*>(text.data());
+  return {"model.exr", {bytes, bytes + text.size()}};
+}
+
+// The text with one part replaced by another, padded with spaces to the same length.
+std::string replaced(std::string text, const std::string& from, std::string to) {
+  const auto at = text.find(from);
+  EXPECT_NE(at, text.npos) << from;
+  EXPECT_LE(to.size(), from.size());
+  to.resize(from.size(), ' ');
+  return text.replace(at, from.size(), to);
+}
+
 TEST(ModelFile, RestoresModelsToTheLastBit) {
-  for (const TableFormat format : {TableFormat::half, TableFormat::single})
+  for (const TableFormat format :
+       {TableFormat::half, TableFormat::single, TableFormat::rgb9e5, TableFormat::unorm8})
     for (const int channels : {1, 3, 31}) {
+      if (format == TableFormat::rgb9e5 && channels != 3) continue;
       Model model{.brdf = random_model(kEverything, kEverySize, channels, format),
                   .lambda_nm = {},
                   .notes = R"({"source":"random","error":0.1})"};
       for (int c = 0; channels == 31 && c < channels; ++c) model.lambda_nm.push_back(400 + 10 * c);
       const std::string bytes = format_model(model);
-      FileBytes file{"model.exr", {}};
-      file.bytes.assign(reinterpret_cast<const std::byte*>(bytes.data()),
-                        reinterpret_cast<const std::byte*>(bytes.data()) + bytes.size());
+      const FileBytes file = as_file(bytes);
       EXPECT_TRUE(looks_like_exr(file.bytes));
       const Model again = parse_model(file);
       EXPECT_EQ(again.brdf.tables().size(), model.brdf.tables().size());
@@ -186,29 +254,56 @@ TEST(ModelFile, RestoresModelsToTheLastBit) {
     }
 }
 
+TEST(ModelFile, RestoresMixedFormats) {
+  std::vector<Table> tables;
+  Pcg32 random(5);
+  for (const TableFormat format :
+       {TableFormat::unorm8, TableFormat::single, TableFormat::half, TableFormat::rgb9e5}) {
+    Table table{.name = std::string(to_string(format)), .layout = {.width = 9}, .channels = 3};
+    for (int i = 0; i < 27; ++i) table.values.push_back(static_cast<float>(-20 * random.uniform()));
+    table.format = format;
+    tables.push_back(std::move(table));
+  }
+  const Lobe lobe{.scale = {0, 0, 0}, .factors = {{.table = 3, .projection = kProjectWi}}};
+  const Model model{.brdf = from_log_tables(3, tables, {lobe})};
+  EXPECT_EQ(parse_model(as_file(format_model(model))), model);
+}
+
+TEST(ModelFile, ReadsFilesOfVersionOne) {
+  const Model model{.brdf = random_model("a(h)", {}, 3, TableFormat::half),
+                    .notes = R"({"room":"for the format"})"};
+  std::string bytes = format_model(model);
+  bytes = replaced(bytes, "\"version\":2", "\"version\":1");
+  bytes = replaced(bytes, "\"format\":\"half\",", "");
+  bytes = replaced(bytes, "\"notes\":" + model.notes, "\"notes\":{},\"format\":\"half\"");
+  EXPECT_EQ(parse_model(as_file(bytes)).brdf, model.brdf);
+}
+
+TEST(ModelFile, RefusesFormatsThatTheValuesContradict) {
+  const auto with_format = [](TableFormat truth, const std::string& stated) {
+    const std::string bytes = format_model({.brdf = random_model("pqp", {}, 3, truth)});
+    return as_file(replaced(bytes, "\"" + std::string(to_string(truth)) + "\"", "\"" + stated + "\""));
+  };
+  EXPECT_NO_THROW(parse_model(with_format(TableFormat::rgb9e5, "half")));  // true, if not all of the truth
+  EXPECT_NO_THROW(parse_model(with_format(TableFormat::unorm8, "float")));
+  EXPECT_THROW(parse_model(with_format(TableFormat::single, "half")), Error);
+  EXPECT_THROW(parse_model(with_format(TableFormat::unorm8, "half")), Error);
+  EXPECT_THROW(parse_model(with_format(TableFormat::unorm8, "rgb9e5")), Error);
+  EXPECT_THROW(parse_model(with_format(TableFormat::rgb9e5, "unorm8")), Error);
+  EXPECT_THROW(parse_model(with_format(TableFormat::rgb9e5, "byte")), Error);
+}
+
 TEST(ModelFile, RefusesDamagedFiles) {
   const std::string bytes =
       format_model({.brdf = random_model("pqp", {"p=8", "q=8x8"}, 3, TableFormat::half)});
-  const auto parse = [](std::string text) {
-    FileBytes file{"model.exr", {}};
-    file.bytes.assign(reinterpret_cast<const std::byte*>(text.data()),
-                      reinterpret_cast<const std::byte*>(text.data()) + text.size());
-    return parse_model(file);
-  };
+  const auto parse = [](const std::string& text) { return parse_model(as_file(text)); };
   for (std::size_t n = 1; n < bytes.size(); n += n < 64 ? 1 : 61)
     EXPECT_THROW(parse(bytes.substr(0, n)), Error) << n;
-  const auto replaced = [&](const std::string& from, const std::string& to) {
-    std::string copy = bytes;
-    const auto at = copy.find(from);
-    EXPECT_NE(at, copy.npos) << from;
-    EXPECT_EQ(from.size(), to.size());
-    return copy.replace(at, from.size(), to);
-  };
-  EXPECT_THROW(parse(replaced("\"version\":1", "\"version\":7")), Error);
-  EXPECT_THROW(parse(replaced("\"channels\":3", "\"channels\":9")), Error);
-  EXPECT_THROW(parse(replaced("\"width\":8", "\"width\":9")), Error);
-  EXPECT_THROW(parse(replaced("\"shape\":\"disk\"", "\"shape\":\"disc\"")), Error);
-  EXPECT_THROW(parse(replaced("\"projection\":\"wo\"", "\"projection\":\"ww\"")), Error);
+  EXPECT_THROW(parse(replaced(bytes, "\"version\":2", "\"version\":7")), Error);
+  EXPECT_THROW(parse(replaced(bytes, "\"channels\":3", "\"channels\":9")), Error);
+  EXPECT_THROW(parse(replaced(bytes, "\"width\":8", "\"width\":9")), Error);
+  EXPECT_THROW(parse(replaced(bytes, "\"shape\":\"disk\"", "\"shape\":\"disc\"")), Error);
+  EXPECT_THROW(parse(replaced(bytes, "\"projection\":\"wo\"", "\"projection\":\"ww\"")), Error);
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kVersion = 1;
+constexpr int kVersion = 2, kOldVersion = 1;  // version 1 had one format for all tables
 constexpr const char* kAttribute = "burnish";
 constexpr std::array<unsigned char, 4> kExrMagic{0x76, 0x2f, 0x31, 0x01};
 
@@ -184,9 +184,13 @@ Json to_json(const Model& model) {
   const FactoredBrdf& brdf = model.brdf;
   Json tables = Json::array(), lobes = Json::array();
   for (const Table& t : brdf.tables()) {
-    Json table{{"name", t.name},          {"shape", shape_name(t.layout.shape)},
-               {"width", t.layout.width}, {"height", t.layout.height},
-               {"channels", t.channels},  {"warp", to_string(t.layout.warp)}};
+    Json table{{"name", t.name},
+               {"shape", shape_name(t.layout.shape)},
+               {"width", t.layout.width},
+               {"height", t.layout.height},
+               {"channels", t.channels},
+               {"format", to_string(t.format)},
+               {"warp", to_string(t.layout.warp)}};
     if (t.layout.shape == TableShape::grid) table["warp_y"] = to_string(t.layout.warp_y);
     tables.push_back(std::move(table));
   }
@@ -203,11 +207,15 @@ Json to_json(const Model& model) {
   return {{"version", kVersion},
           {"channels", brdf.channels()},
           {"lambda_nm", model.lambda_nm},
-          {"format", brdf.format() == TableFormat::half ? "half" : "float"},
           {"model", model_expression(brdf)},
           {"tables", std::move(tables)},
           {"lobes", std::move(lobes)},
           {"notes", Json::parse(model.notes)}};
+}
+
+// Every rgb9e5 value is a half: at most 9 significant bits, and a multiple of 2^-24 as the halves are.
+Imf::PixelType pixel_type(TableFormat format) {
+  return format == TableFormat::half || format == TableFormat::rgb9e5 ? Imf::HALF : Imf::FLOAT;
 }
 
 std::vector<Imf::Header> headers(const Model& model) {
@@ -221,9 +229,8 @@ std::vector<Imf::Header> headers(const Model& model) {
     header.setName(t.name);
     header.setType(Imf::SCANLINEIMAGE);
     header.compression() = Imf::NO_COMPRESSION;
-    const Imf::PixelType type = model.brdf.format() == TableFormat::half ? Imf::HALF : Imf::FLOAT;
     for (int c = 0; c < t.channels; ++c)
-      header.channels().insert(channel_name(t.channels, c), Imf::Channel(type));
+      header.channels().insert(channel_name(t.channels, c), Imf::Channel(pixel_type(t.format)));
     result.push_back(std::move(header));
   }
   result.front().insert(kAttribute, Imf::StringAttribute(to_json(model).dump()));
@@ -252,8 +259,9 @@ Projection read_projection(const Json& factor, const char* key) {
   return parse_projection(factor.at(key).get<std::string>(), angle_only);
 }
 
-// Everything but the pixels, from the JSON.
-void read_tables(const Json& json, std::uint64_t file_size, int channels, std::vector<Table>& tables) {
+// Everything but the pixels, from the JSON; `old` files have one format for all.
+void read_tables(const Json& json, bool old, std::uint64_t file_size, int channels,
+                 std::vector<Table>& tables) {
   std::uint64_t total = 0;
   for (const Json& t : json.at("tables")) {
     Table table{.name = t.at("name").get<std::string>(),
@@ -262,7 +270,8 @@ void read_tables(const Json& json, std::uint64_t file_size, int channels, std::v
                            .height = t.at("height").get<int>(),
                            .warp = parse_warp(t.at("warp").get<std::string>())},
                 .channels = t.at("channels").get<int>(),
-                .values = {}};
+                .values = {},
+                .format = parse_table_format((old ? json : t).at("format").get<std::string>())};
     if (table.layout.shape == TableShape::grid)
       table.layout.warp_y = parse_warp(t.at("warp_y").get<std::string>());
     check_layout(table.layout, table.name);
@@ -312,12 +321,13 @@ Model read_model(const FileBytes& file) {
   const auto* attribute = input.header(0).findTypedAttribute<Imf::StringAttribute>(kAttribute);
   if (!attribute) throw Error("expected a string attribute 'burnish', found an OpenEXR file without it");
   const Json json = Json::parse(attribute->value());
-  if (const int version = json.at("version").get<int>(); version != kVersion)
-    throw Error(fmt::format("expected version {}, found {}", kVersion, version));
+  const int version = json.at("version").get<int>();
+  if (version != kVersion && version != kOldVersion)
+    throw Error(fmt::format("expected version {} or {}, found {}", kOldVersion, kVersion, version));
 
   const int channels = json.at("channels").get<int>();
   std::vector<Table> tables;
-  read_tables(json, file.bytes.size(), channels, tables);
+  read_tables(json, version == kOldVersion, file.bytes.size(), channels, tables);
   if (static_cast<std::size_t>(input.parts()) != tables.size())
     throw Error(fmt::format("expected {} parts, found {}", tables.size(), input.parts()));
   for (int part = 0; part < input.parts(); ++part)
@@ -340,12 +350,7 @@ Model read_model(const FileBytes& file) {
     }
     lobes.push_back(std::move(lobe));
   }
-  const auto format_name = json.at("format").get<std::string>();
-  if (format_name != "half" && format_name != "float")
-    throw Error(fmt::format("format: expected half or float, found '{}'", format_name));
-  const TableFormat format = format_name == "half" ? TableFormat::half : TableFormat::single;
-
-  Model model{.brdf = FactoredBrdf(channels, std::move(tables), std::move(lobes), format),
+  Model model{.brdf = FactoredBrdf(channels, std::move(tables), std::move(lobes)),
               .lambda_nm = json.at("lambda_nm").get<std::vector<double>>(),
               .notes = json.at("notes").dump()};
   if (!model.lambda_nm.empty() && model.lambda_nm.size() != static_cast<std::size_t>(channels))
@@ -370,7 +375,7 @@ std::string format_model(const Model& model) {
       const Table& table = model.brdf.tables()[i];
       std::vector<float> values = table.values;  // OpenEXR wants them mutable
       Imf::OutputPart part(output, static_cast<int>(i));
-      if (model.brdf.format() == TableFormat::single) {
+      if (pixel_type(table.format) == Imf::FLOAT) {
         part.setFrameBuffer(frame_buffer(values.data(), table.layout.width, table.channels));
         part.writePixels(table.layout.height);
         continue;

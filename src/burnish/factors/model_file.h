@@ -18,12 +18,15 @@ struct Model {
   friend bool operator==(const Model&, const Model&) = default;
 };
 
-/// The native file: a multi-part OpenEXR image, one part a table in the table's name, half or float pixels,
-/// and in the first part a string attribute "burnish" with JSON: version, channels, tables, lobes, notes.
-/// What format_model writes, parse_model restores to the last bit.
+/// The native file: a multi-part OpenEXR image, one part a table in the table's name, and in the first part a
+/// string attribute "burnish" with JSON: version, channels, tables with their formats, lobes, notes. Pixels
+/// are halves where halves hold the table's format exactly (half, rgb9e5), else floats, so that any viewer
+/// shows the tables. What format_model writes, parse_model restores to the last bit.
 std::string format_model(const Model& model);
 
-/// Throws Error if the bytes are no OpenEXR file, hold no "burnish" attribute, or contradict it in any way.
+/// Throws Error if the bytes are no OpenEXR file, hold no "burnish" attribute, or contradict it in any way:
+/// values that a table's stated format does not hold are refused too, so that bytes() is the truth. Files of
+/// version 1, with one format for all tables, are read as well.
 Model parse_model(const FileBytes& file);
 
 /// True if the bytes start as an OpenEXR file does.

@@ -20,6 +20,7 @@ struct TableOption {
   int width = 0, height = 1;
   bool has_warp = false, shared = false;
   Warp warp;
+  std::optional<TableFormat> format;
 };
 
 int parse_size(std::string_view text, std::string_view option) {
@@ -36,7 +37,7 @@ std::map<std::string, TableOption, std::less<>> parse_table_options(std::span<co
   for (const std::string& text : options) {
     const auto equals = text.find('=');
     if (equals == text.npos || equals == 0)
-      throw Error(fmt::format("table option: expected NAME=SIZE[,warp][,shared], found '{}'", text));
+      throw Error(fmt::format("table option: expected NAME=SIZE[,warp][,shared][,format], found '{}'", text));
     TableOption option;
     std::string_view rest = std::string_view(text).substr(equals + 1);
     for (bool first = true; first || !rest.empty(); first = false) {
@@ -48,6 +49,8 @@ std::map<std::string, TableOption, std::less<>> parse_table_options(std::span<co
         if (cross != part.npos) option.height = parse_size(part.substr(cross + 1), text);
       } else if (part == "shared") {
         option.shared = true;
+      } else if (const auto format = find_table_format(part)) {
+        option.format = format;
       } else {
         option.warp = parse_warp(part);
         option.has_warp = true;
@@ -136,6 +139,7 @@ ModelSpec parse_model_spec(std::string_view expression, std::span<const std::str
                   .width = o.width,
                   .height = o.height};
         table.shared = o.shared;
+        table.format = o.format;
       } else if (grid) {
         layout = {.shape = TableShape::grid, .width = kLineNodes, .height = kLineNodes};
       } else if (isotropic || angle_only) {
@@ -170,6 +174,11 @@ ModelSpec parse_model_spec(std::string_view expression, std::span<const std::str
       throw Error(
           fmt::format("table option: expected a table of the model '{}', found '{}'", expression, name));
   return spec;
+}
+
+TableFormat format_of(const ModelSpec::TableSpec& table, TableFormat general) noexcept {
+  const bool one_channel = table.shared && general == TableFormat::rgb9e5;
+  return table.format.value_or(one_channel ? TableFormat::half : general);
 }
 
 }  // namespace burnish

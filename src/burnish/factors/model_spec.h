@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,8 +15,9 @@ struct ModelSpec {
   struct TableSpec {
     std::string name;
     TableLayout layout;
-    bool shared = false;      ///< one channel for all
-    double smooth_share = 1;  ///< multiplies the fit's smoothness for this table
+    bool shared = false;                ///< one channel for all
+    double smooth_share = 1;            ///< multiplies the fit's smoothness for this table
+    std::optional<TableFormat> format;  ///< none: what the fit's options say
   };
   std::vector<TableSpec> tables;
   std::vector<std::vector<FactorUse>> lobes;
@@ -25,12 +27,17 @@ struct ModelSpec {
 /// '+', a lobe a product of tables, each with one projection (see parse_projection), or with two polar angles
 /// as in "g(theta_h,theta_d)". "pqp" and "pqpr" stand for the first and the first lobe of the second.
 ///
-/// `table_options` set tables, one text each: "NAME=SIZE[,warp][,shared]". SIZE is N (a line over the polar
-/// angle), NxN (a disk) or NxM (a grid, where two projections are given); the warp as parse_warp reads it.
-/// Where there is none, the table is a line of 32 nodes (64 and a rational warp for the half vector) if the
-/// source is `isotropic` or the projection has a theta name, and otherwise a disk of 64 x 64. Throws Error on
-/// anything else, and on options for a table that the model does not have.
+/// `table_options` set tables, one text each: "NAME=SIZE[,warp][,shared][,format]". SIZE is N (a line over
+/// the polar angle), NxN (a disk) or NxM (a grid, where two projections are given); the warp as parse_warp
+/// reads it, the format as parse_table_format does. Where there is none, the table is a line of 32 nodes (64
+/// and a rational warp for the half vector) if the source is `isotropic` or the projection has a theta name,
+/// and otherwise a disk of 64 x 64. Throws Error on anything else, and on options for a table that the model
+/// does not have.
 ModelSpec parse_model_spec(std::string_view expression, std::span<const std::string> table_options,
                            bool isotropic);
+
+/// The format that a table of the spec is stored in: its own; else `general`, but half where that is rgb9e5
+/// and the table shared.
+TableFormat format_of(const ModelSpec::TableSpec& table, TableFormat general) noexcept;
 
 }  // namespace burnish

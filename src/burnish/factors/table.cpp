@@ -55,4 +55,10 @@ void check_layout(const TableLayout& layout, const std::string& name) {
                             kLargestSide, layout.width, layout.height));
 }
 
+void check_format(const Table& table) {
+  if (!holds_channels(table.format, table.channels))
+    throw Error(fmt::format("table '{}': expected 3 channels for {}, found {}", table.name,
+                            to_string(table.format), table.channels));
+}
+
 }  // namespace burnish

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <burnish/factors/table_format.h>
 #include <burnish/parameterization/hemisphere_map.h>
 #include <burnish/parameterization/projection.h>
 
@@ -32,12 +33,15 @@ struct TableLayout {
 
 /// One positive factor lambda: node (x, y), channel c at [(y * width + x) * channels + c]. Between nodes it
 /// is the (bi)linear interpolation of the stored values, as a texture unit computes it. Largest value of a
-/// channel: 1.
+/// channel: 1 (rgb9e5: of the table; the channels have one geometric mean, because they share exponents).
 struct Table {
   std::string name;
   TableLayout layout;
   int channels = 1;  ///< 1 (shared by the BRDF's channels) or the BRDF's channel count
   std::vector<float> values;
+  TableFormat format = TableFormat::single;  ///< in which `values` are stored, and which holds them exactly
+
+  std::size_t byte_count() const noexcept { return layout.node_count() * texel_bytes(format, channels); }
 
   friend bool operator==(const Table&, const Table&) = default;
 };
@@ -67,5 +71,8 @@ inline constexpr int kLargestSide = 8192;
 
 /// Throws Error unless the sizes are in [2, kLargestSide] and fit the shape.
 void check_layout(const TableLayout& layout, const std::string& name);
+
+/// Throws Error unless the table's format holds its channels.
+void check_format(const Table& table);
 
 }  // namespace burnish

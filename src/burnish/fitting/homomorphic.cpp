@@ -26,18 +26,29 @@ LogSolution solve(const RowMaker& rows, const Unknowns& unknowns, const Homomorp
              : solve_iteratively(rows, unknowns, options);
 }
 
-FactoredBrdf to_brdf(const LogSolution& solution, const Unknowns& unknowns, const ModelSpec& spec,
-                     int channels, TableFormat format) {
+// The tables of a solution, logarithms still, in the formats to be.
+std::vector<Table> to_tables(const LogSolution& solution, const Unknowns& unknowns, const ModelSpec& spec,
+                             TableFormat format) {
   std::vector<Table> tables;
   for (std::size_t t = 0; t < spec.tables.size(); ++t) {
     const auto* first = solution.log_values.data() + unknowns.base[t];
     tables.push_back({.name = spec.tables[t].name,
                       .layout = spec.tables[t].layout,
                       .channels = static_cast<int>(unknowns.channels[t]),
-                      .values = {first, first + spec.tables[t].layout.node_count() * unknowns.channels[t]}});
+                      .values = {first, first + spec.tables[t].layout.node_count() * unknowns.channels[t]},
+                      .format = format_of(spec.tables[t], format)});
   }
-  Lobe lobe{.scale = solution.channel_offset, .factors = spec.lobes.front()};
-  return from_log_tables(channels, std::move(tables), {std::move(lobe)}, format);
+  return tables;
+}
+
+Lobe to_lobe(const LogSolution& solution, const ModelSpec& spec) {
+  return {.scale = solution.channel_offset, .factors = spec.lobes.front()};
+}
+
+void check_formats(const ModelSpec& spec, int channels, TableFormat format) {
+  for (const ModelSpec::TableSpec& t : spec.tables)
+    check_format(
+        {.name = t.name, .channels = t.shared ? 1 : channels, .values = {}, .format = format_of(t, format)});
 }
 
 }  // namespace
@@ -51,6 +62,8 @@ HomomorphicFit fit_homomorphic(const SampleSource& source, const ModelSpec& spec
       !(options.error_floor > 0) || options.reweightings < 0)
     throw Error("fit: expected smooth >= 0, floors > 0 and reweightings >= 0");
 
+  check_formats(spec, source.channels, options.format);
+
   RowMaker rows(source, spec, options.floor, options.error_floor);
   const Unknowns unknowns = number_unknowns(spec, source.channels);
   LogSolution solution = solve(rows, unknowns, options);
@@ -62,13 +75,17 @@ HomomorphicFit fit_homomorphic(const SampleSource& source, const ModelSpec& spec
                              .stop_reason = solution.stop_reason};
 
   if (options.reweightings > 0) {
-    FactoredBrdf current = to_brdf(solution, unknowns, spec, source.channels, TableFormat::single);
+    const auto unrounded = [&](const LogSolution& s) {
+      return from_log_tables(source.channels, to_tables(s, unknowns, spec, options.format),
+                             {to_lobe(s, spec)}, TableFormat::single);
+    };
+    FactoredBrdf current = unrounded(solution);
     double smallest = log_error(source, current, options.error_floor).mean();
     for (int pass = 0; pass < options.reweightings; ++pass) {
       rows.current = &current;
       LogSolution next = solve(rows, unknowns, options);
       summary.iterations += next.iterations;
-      current = to_brdf(next, unknowns, spec, source.channels, TableFormat::single);
+      current = unrounded(next);
       const double error = log_error(source, current, options.error_floor).mean();
       if (error < smallest) {
         smallest = error;
@@ -77,7 +94,9 @@ HomomorphicFit fit_homomorphic(const SampleSource& source, const ModelSpec& spec
       }
     }
   }
-  return {to_brdf(solution, unknowns, spec, source.channels, options.format), std::move(summary)};
+  return {from_log_tables(source.channels, to_tables(solution, unknowns, spec, options.format),
+                          {to_lobe(solution, spec)}),
+          std::move(summary)};
 }
 
 }  // namespace burnish

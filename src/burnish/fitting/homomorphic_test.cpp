@@ -77,6 +77,27 @@ TEST_P(Homomorphic, RecoversAProductOfTables) {
   EXPECT_EQ(fit.brdf.reciprocal(), truth.reciprocal());
 }
 
+TEST(HomomorphicFormats, EachTableIsStoredInItsOwn) {
+  const auto spec_with = [](const char* p) {
+    return parse_model_spec("pqpr", std::vector<std::string>{p, "q=12", "r=6,shared"}, true);
+  };
+  const ModelSpec spec = spec_with("p=8,unorm8");
+  const FactoredBrdf truth = random_model(spec, 3);
+  const SampleSource source = from_brdf(truth, 20'000, 1, true);
+  const FactoredBrdf fit = fit_homomorphic(source, spec, {.format = TableFormat::rgb9e5}).brdf;
+  EXPECT_EQ(fit.tables()[0].format, TableFormat::unorm8);
+  EXPECT_EQ(fit.tables()[1].format, TableFormat::rgb9e5);
+  EXPECT_EQ(fit.tables()[2].format, TableFormat::half);
+  EXPECT_EQ(fit.table_bytes(), 8 * 3 * 1 + 12 * 4 + 6 * 2u);
+  // no entry is below e^-2.2: two lookups off by 1/510, one by 1/511 and one by 2^-11
+  const FactoredBrdf unrounded =
+      fit_homomorphic(source, spec_with("p=8"), {.format = TableFormat::single}).brdf;
+  EXPECT_LT(mean_error(unrounded, fit), std::exp(2.2) * (2.0 / 510 + 1.0 / 511) + 0x1p-11);
+  EXPECT_THROW(
+      fit_homomorphic(from_brdf(random_model(spec, 1), 100, 1, true), spec, {.format = TableFormat::rgb9e5}),
+      Error);
+}
+
 TEST_P(Homomorphic, BothSolversFindTheSameModel) {
   const Case& c = GetParam();
   const ModelSpec spec = parse_model_spec(c.model, c.tables, true);
