@@ -34,7 +34,7 @@ constexpr std::size_t kHeldOutPairs = 20'000;
 
 struct Arguments {
   SourceArguments source;
-  std::string out, model = "pqp", smooth = "default", format = "half";
+  std::string out, model = "pqp", smooth = "default", format;
   LobesArguments lobes;
   std::vector<std::string> tables;
   std::size_t samples = 0;
@@ -85,7 +85,7 @@ void make_input(const Source& source, const Arguments& arguments, const ModelSpe
 HomomorphicOptions make_options(const Source& source, const Arguments& arguments) {
   HomomorphicOptions options;
   options.floor = arguments.floor;
-  options.format = parse_table_format(arguments.format);
+  if (!arguments.format.empty()) options.format = parse_table_format(arguments.format);
   options.reweightings = arguments.reweightings >= 0 ? arguments.reweightings
                          : source.samples()          ? kScatteredReweightings
                                                      : 0;
@@ -249,10 +249,11 @@ void add_fit_command(CLI::App& app) {
   verb->add_option("--samples", arguments->samples, "pairs drawn from a source that is a function")
       ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}));
   verb->add_option("--seed", arguments->seed, "of the drawn pairs")->capture_default_str();
-  verb->add_option("--format", arguments->format,
-                   "of the stored tables; rgb9e5 is for three channels and leaves shared tables half")
-      ->check(CLI::IsMember({"half", "float", "rgb9e5", "unorm8"}))
-      ->capture_default_str();
+  verb->add_option(
+          "--format", arguments->format,
+          "of the stored tables (default: half; with --budget and three channels rgb9e5, which leaves shared "
+          "tables half)")
+      ->check(CLI::IsMember({"half", "float", "rgb9e5", "unorm8"}));
   verb->add_option("--threads", arguments->threads, "at most this many; 0: all")->check(CLI::Range(0, 1024));
   verb->add_flag("--no-symmetrize", arguments->lobes.no_symmetrize,
                  "fit f(wi, wo) as it is, not its reciprocal part");

@@ -117,7 +117,8 @@ std::size_t texel_bytes(TableFormat format, int channels) noexcept {
   return value * static_cast<std::size_t>(channels);
 }
 
-std::vector<std::byte> pack(TableFormat format, int channels, std::span<const float> values) {
+std::vector<std::byte> pack(TableFormat format, [[maybe_unused]] int channels,
+                            std::span<const float> values) {
   assert(holds_channels(format, channels) && values.size() % static_cast<std::size_t>(channels) == 0);
   switch (format) {
     case TableFormat::half:
@@ -132,7 +133,8 @@ std::vector<std::byte> pack(TableFormat format, int channels, std::span<const fl
   return encode_all<float>(values, 1, [](const float* v) { return *v; });
 }
 
-std::vector<float> unpack(TableFormat format, int channels, std::span<const std::byte> bytes) {
+std::vector<float> unpack(TableFormat format, [[maybe_unused]] int channels,
+                          std::span<const std::byte> bytes) {
   assert(bytes.size() % texel_bytes(format, channels) == 0);
   switch (format) {
     case TableFormat::half:

@@ -157,12 +157,13 @@ FactoredBrdf to_brdf(const LogModel& model, TableFormat format) {
     tables.push_back({.name = model.spec.tables[t].name,
                       .layout = model.spec.tables[t].layout,
                       .channels = static_cast<int>(model.step(t)),
-                      .values = {model.log_values[t].begin(), model.log_values[t].end()}});
+                      .values = {model.log_values[t].begin(), model.log_values[t].end()},
+                      .format = format_of(model.spec.tables[t], format)});
   std::vector<Lobe> lobes;
   for (const std::vector<FactorUse>& uses : model.spec.lobes)
     lobes.push_back(
         {.scale = std::vector<double>(static_cast<std::size_t>(model.channels)), .factors = uses});
-  return from_log_tables(model.channels, std::move(tables), std::move(lobes), format);
+  return from_log_tables(model.channels, std::move(tables), std::move(lobes));
 }
 
 }  // namespace burnish

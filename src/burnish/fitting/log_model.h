@@ -40,7 +40,7 @@ LogModel with_lobe_split(LogModel model, std::size_t lobe, double centre, const 
 /// their size and warp, others are 1 everywhere.
 LogModel resampled(const LogModel& model, const ModelSpec& spec);
 
-/// Rounds to the table formats; see from_log_tables.
+/// Rounds each table to its own format, or to `format`; see format_of and from_log_tables.
 FactoredBrdf to_brdf(const LogModel& model, TableFormat format);
 
 }  // namespace burnish

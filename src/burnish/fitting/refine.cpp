@@ -109,7 +109,7 @@ RefineSummary refine(LogModel& model, const TrainingSet& set, const RefineOption
   RefineSummary summary{.stop_reason = "no more progress"};
 
   for (std::size_t s = 0; s < systems; ++s) {
-    const RefineSystem system(model, set, lookups, loss, s * together, (s + 1) * together);
+    const RefineSystem system(model, set, lookups, loss, options.format, s * together, (s + 1) * together);
     StepSolver solver(system, options.smooth);
     Eigen::VectorXd x = system.read(model);
     system.clamp(x);
@@ -157,7 +157,7 @@ double objective(const LogModel& model, const TrainingSet& set, const ErrorTerms
   const auto channels = static_cast<std::size_t>(model.channels);
   double sum = 0;
   for (std::size_t c = 0; c < channels; ++c) {
-    const RefineSystem system(model, set, lookups, loss, c, c + 1);
+    const RefineSystem system(model, set, lookups, loss, TableFormat::single, c, c + 1);
     sum += loss.objective(system.errors(system.read(model)));
   }
   return sum / static_cast<double>(channels);

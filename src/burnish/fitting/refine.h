@@ -14,6 +14,8 @@ struct RefineOptions {
   /// Times the integrals over each table of the squared second derivatives of log lambda, added to the
   /// objective; >= 0.
   double smooth = 1e-8;
+  /// In which tables without one of their own will be stored: values stay within its range.
+  TableFormat format = TableFormat::half;
   int max_iterations = 40;       ///< Gauss-Newton steps a channel
   double least_progress = 2e-4;  ///< stop after three steps in a row that lowered the objective by less
   /// Called with rising shares of the work done, from the calling thread.

@@ -14,8 +14,27 @@ constexpr std::size_t kMostGroups = 16;
 constexpr std::size_t kPairsPerUnknown = 4;  // fewer are not worth a matrix of their own
 constexpr std::size_t kColumns = 64;         // of matrices, added up together
 
-// ln of the smallest share of a table's largest value: within what half floats and shared exponents keep.
-const double kLogFloor = std::log(kTableFloor);
+// ln of a table's largest value over the smallest that its format, or the general floor, leaves.
+double log_range(TableFormat format) {
+  return format == TableFormat::unorm8 ? std::log(255.0) : -std::log(kTableFloor);
+}
+
+// rgb9e5 holds a channel down to one unit of a mantissa of at least 256.
+const double kLogMantissa = std::log(256.0);
+
+// What the other channels of a texel ask of each value of an rgb9e5 table, whose channels are stored with one
+// geometric mean.
+std::vector<double> shared_exponent_floors(const std::vector<double>& logs, std::size_t channels) {
+  std::vector<double> mean(channels), floors(logs.size());
+  const double nodes = static_cast<double>(logs.size()) / static_cast<double>(channels);
+  for (std::size_t i = 0; i < logs.size(); ++i) mean[i % channels] += logs[i] / nodes;
+  for (std::size_t i = 0; i < logs.size(); i += channels) {
+    double largest = logs[i] - mean[0];
+    for (std::size_t c = 1; c < channels; ++c) largest = std::max(largest, logs[i + c] - mean[c]);
+    for (std::size_t c = 0; c < channels; ++c) floors[i + c] = largest - kLogMantissa + mean[c];
+  }
+  return floors;
+}
 
 }  // namespace
 
@@ -42,7 +61,8 @@ Lookups find_lookups(const ModelSpec& spec, const TrainingSet& set) {
 }
 
 RefineSystem::RefineSystem(const LogModel& model, const TrainingSet& set, const Lookups& lookups,
-                           const PictureLoss& loss, std::size_t first_channel, std::size_t last_channel)
+                           const PictureLoss& loss, TableFormat format, std::size_t first_channel,
+                           std::size_t last_channel)
     : set_(set),
       lookups_(lookups),
       loss_(loss),
@@ -59,8 +79,15 @@ RefineSystem::RefineSystem(const LogModel& model, const TrainingSet& set, const 
                        .nodes = table.layout.node_count(),
                        .step = model.step(t),
                        .share = table.smooth_share,
+                       .log_range = log_range(format_of(table, format)),
                        .rows = smoothness_rows(table.layout)});
     size_ += tables_.back().nodes * copies;
+    floors_.resize(size_, -INFINITY);
+    if (model.step(t) == 1 || format_of(table, format) != TableFormat::rgb9e5) continue;
+    const std::vector<double> floors = shared_exponent_floors(model.log_values[t], model.step(t));
+    for (std::size_t n = 0; n < tables_.back().nodes; ++n)
+      for (std::size_t c = 0; c < copies; ++c)
+        floors_[tables_.back().base + n * copies + c] = floors[n * model.step(t) + first_channel + c];
   }
   for (std::size_t j = 0; j < lobes_; ++j)
     for (const FactorUse& use : model.spec.lobes[j]) {
@@ -111,8 +138,10 @@ void RefineSystem::clamp(Eigen::VectorXd& x) const {
       double* first = x.data() + table.base + c;
       double largest = *first;
       for (std::size_t n = 0; n < table.nodes; ++n) largest = std::max(largest, first[n * table.stride]);
+      const double* floor = floors_.data() + table.base + c;
       for (std::size_t n = 0; n < table.nodes; ++n)
-        first[n * table.stride] = std::max(first[n * table.stride], largest + kLogFloor);
+        first[n * table.stride] =
+            std::max({first[n * table.stride], largest - table.log_range, floor[n * table.stride]});
     }
 }
 

@@ -28,12 +28,13 @@ Lookups find_lookups(const ModelSpec& spec, const TrainingSet& set);
 class RefineSystem {
  public:
   RefineSystem(const LogModel& model, const TrainingSet& set, const Lookups& lookups, const PictureLoss& loss,
-               std::size_t first_channel, std::size_t last_channel);
+               TableFormat format, std::size_t first_channel, std::size_t last_channel);
 
   std::size_t size() const noexcept { return size_; }
   Eigen::VectorXd read(const LogModel& model) const;
   void write(const Eigen::VectorXd& x, LogModel& model) const;
-  /// Raises unknowns to the smallest share of their table's largest that table formats keep.
+  /// Raises unknowns to what their table's format can hold: a share of the table's largest, and of rgb9e5
+  /// tables a share of the texel's largest channel, as the other channels stand in the model given.
   void clamp(Eigen::VectorXd& x) const;
 
   /// Means of the errors at x.
@@ -74,7 +75,7 @@ class RefineSystem {
   };
   struct TableUnknowns {
     std::size_t base, stride, copies, nodes, step;
-    double share;
+    double share, log_range;
     SmoothnessRows rows;
   };
   struct Term {
@@ -98,6 +99,7 @@ class RefineSystem {
   std::size_t first_channel_, last_channel_, size_ = 0, lobes_ = 0;
   std::vector<Use> uses_;
   std::vector<TableUnknowns> tables_;
+  std::vector<double> floors_;  // of the unknowns, -infinity where the other channels ask for none
   double picture_weight_ = 0, pair_weight_ = 0;
 };
 

@@ -98,7 +98,7 @@ TEST(RefineSystem, MatrixAndRowsAreTheSameSystem) {
     const bool shared = model.step(0) == 1;
     const Lookups lookups = find_lookups(model.spec, set);
     const PictureLoss loss{.exposure = 0.1};  // no pixel is white
-    const RefineSystem system(model, set, lookups, loss, shared ? 0 : 1, shared ? 3 : 2);
+    const RefineSystem system(model, set, lookups, loss, TableFormat::half, shared ? 0 : 1, shared ? 3 : 2);
     const Eigen::VectorXd x = system.read(model);
     ASSERT_EQ(static_cast<std::size_t>(x.size()), shared ? 5u + 3 * 9 + 3 * 12 : 5u + 9 + 12);
     const ErrorTerms means = system.errors(x);
