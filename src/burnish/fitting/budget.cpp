@@ -17,6 +17,9 @@ constexpr double kCentres[] = {0.25, 0.6, 0.4, 0.8, 0.15, 0.5, 0.7, 0.3};
 // The way to the last refinement is made on about this many pairs and in few steps.
 constexpr std::size_t kCoarsePairs = 20'000;
 constexpr int kRoughSteps = 12;
+// Grids are added at the end, this share of the work being done.
+constexpr int kGridSteps = 15;
+constexpr double kThinPart = 0.4;
 
 /// Adds one refinement to the summary; its progress runs from `from` to `to`.
 void refine_part(LogModel& model, const TrainingSet& set, RefineOptions options, int steps, double from,
@@ -42,6 +45,25 @@ void refine_fully(LogModel& model, const TrainingSet& coarse, const TrainingSet&
 
 TrainingSet coarse_part(const TrainingSet& set) {
   return thinned(set, std::max<std::size_t>(1, set.size() / kCoarsePairs));
+}
+
+// The spec without its grids, the tables in the same order.
+ModelSpec without_grids(const ModelSpec& spec) {
+  ModelSpec thin;
+  std::vector<int> place(spec.tables.size(), -1);
+  for (std::size_t t = 0; t < spec.tables.size(); ++t) {
+    if (spec.tables[t].layout.shape == TableShape::grid) continue;
+    place[t] = static_cast<int>(thin.tables.size());
+    thin.tables.push_back(spec.tables[t]);
+  }
+  for (const std::vector<FactorUse>& lobe : spec.lobes) {
+    std::vector<FactorUse>& uses = thin.lobes.emplace_back();
+    for (FactorUse use : lobe) {
+      use.table = place[static_cast<std::size_t>(use.table)];
+      if (use.table >= 0) uses.push_back(use);
+    }
+  }
+  return thin;
 }
 
 double soft_step(double t, double centre) {
@@ -75,12 +97,19 @@ LobesFit fit_plan(const TrainingSet& set, const LobePlan& plan, std::size_t byte
                   const RefineOptions& options) {
   const ModelSpec whole = plan_to_spec(plan, bytes, set.channels, texel_bytes);
   if (!plan.wide.empty()) return fit_lobes(set, whole, options);
-  const std::size_t lobes = whole.lobes.size();
+  // The 1-D tables first: their steps are solved directly, and grids that start as 1 only lower the error.
+  const ModelSpec thin = without_grids(whole);
+  const std::size_t lobes = thin.lobes.size(), per_lobe = thin.tables.size() / lobes;
   const TrainingSet coarse = coarse_part(set);
-  const auto tables = static_cast<std::ptrdiff_t>(plan.factors.size());
-  LobesFit fit{.model = fit_one_lobe({.tables = {whole.tables.begin(), whole.tables.begin() + tables},
-                                      .lobes = {whole.lobes.front()}},
-                                     coarse, coarse.values, options.smooth)};
+  const auto first_lobes = [&](std::size_t count) {
+    return ModelSpec{
+        .tables = {thin.tables.begin(), thin.tables.begin() + static_cast<std::ptrdiff_t>(count * per_lobe)},
+        .lobes = {thin.lobes.begin(), thin.lobes.begin() + static_cast<std::ptrdiff_t>(count)}};
+  };
+  const bool grids = thin.tables.size() < whole.tables.size();
+  RefineOptions thin_options = options;
+  if (grids && options.progress) thin_options.progress = [&](double f) { options.progress(kThinPart * f); };
+  LobesFit fit{.model = fit_one_lobe(first_lobes(1), coarse, coarse.values, options.smooth)};
   fit.summary.lobes = static_cast<int>(lobes);
   // the work grows with the square of the lobes
   const auto done = [&](std::size_t j) {
@@ -89,17 +118,19 @@ LobesFit fit_plan(const TrainingSet& set, const LobePlan& plan, std::size_t byte
   for (std::size_t j = 1; j <= lobes; ++j) {
     if (j > 1) {
       fit.model = with_lobe_split(std::move(fit.model), j - 2, kCentres[(j - 2) % std::size(kCentres)], "+");
-      ModelSpec spec{
-          .tables = {whole.tables.begin(), whole.tables.begin() + static_cast<std::ptrdiff_t>(j) * tables},
-          .lobes = {whole.lobes.begin(), whole.lobes.begin() + static_cast<std::ptrdiff_t>(j)}};
+      const ModelSpec spec = first_lobes(j);
       for (std::size_t t = 0; t < spec.tables.size(); ++t)
         fit.model.spec.tables[t].name = spec.tables[t].name;
       fit.model = resampled(fit.model, spec);
     }
     if (j < lobes)
-      refine_part(fit.model, coarse, options, kRoughSteps, done(j - 1), done(j), fit.summary);
+      refine_part(fit.model, coarse, thin_options, kRoughSteps, done(j - 1), done(j), fit.summary);
     else
-      refine_fully(fit.model, coarse, set, options, done(j - 1), fit.summary);
+      refine_fully(fit.model, coarse, set, thin_options, done(j - 1), fit.summary);
+  }
+  if (grids) {
+    fit.model = resampled(fit.model, whole);
+    refine_part(fit.model, set, options, kGridSteps, kThinPart, 1, fit.summary);
   }
   return fit;
 }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -55,6 +56,20 @@ TEST(Budget, MoreBytesMeanSmallerErrors) {
     last_relative = e.relative;
   }
   EXPECT_GT(last_psnr, 35);
+}
+
+TEST(Budget, SparesTexelsForGridsWhereThereAreMany) {
+  const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.15,alpha_y=0.15,kd=0.3,f0=0.5");
+  const TrainingSet set = draw_training_set(ggx.ref(), {.pictures = 1500, .directions = 3000});
+  const LobesFit fit =
+      fit_plan(set, default_plan(10'000, 1, true, kHalfRgb), 10'000, kHalfRgb, {.max_iterations = 4});
+  const FactoredBrdf brdf = to_brdf(fit.model, TableFormat::half);
+  EXPECT_LE(brdf.bytes(), 10'000u);
+  EXPECT_TRUE(brdf.reciprocal());
+  EXPECT_EQ(std::ranges::count(fit.model.spec.tables, TableShape::grid,
+                               [](const auto& t) { return t.layout.shape; }),
+            1);
+  EXPECT_LT(fit.summary.objective_after, fit.summary.objective_before);
 }
 
 TEST(Budget, HoldsDiffuseAndAnisotropicGlossTogether) {

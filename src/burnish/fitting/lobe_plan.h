@@ -16,6 +16,8 @@ struct PlannedFactor {
   std::vector<Projection> uses;
   double share = 1;  ///< of its lobe's texels, relative to the other factors' shares; > 0
   Warp warp;
+  Projection second;  ///< of a grid, which has one use
+  Warp second_warp;
 
   friend bool operator==(const PlannedFactor&, const PlannedFactor&) = default;
 };
@@ -32,8 +34,9 @@ struct LobePlan {
 };
 
 /// The plan that serves a number of bytes best, measured on the materials of docs/accuracy.md: lobes
-/// p(wo) p(wi) q(theta_h) m(theta_m) r(theta_d), p and q hemispheres where the source is anisotropic. `lobes`
-/// counts the wide one too; 0: chosen by the bytes.
+/// p(wo) p(wi) q(theta_h) m(theta_m) r(theta_d), with grids over two of the three angles where there are
+/// texels to spare, p and q hemispheres where the source is anisotropic. `lobes` counts the wide one too; 0:
+/// chosen by the bytes.
 LobePlan default_plan(std::size_t bytes, int lobes, bool isotropic, std::size_t texel_bytes);
 
 /// The largest model of the plan whose tables and numbers fit `bytes`, see FactoredBrdf::bytes. Throws Error

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <burnish/error.h>
+#include <burnish/math/angles.h>
 #include <burnish/math/random.h>
 #include <burnish/parameterization/half_diff.h>
 #include <burnish/reflectance/goniometer.h>
