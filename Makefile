@@ -42,6 +42,8 @@ report: build
 	@mkdir -p docs/figures
 	@build/release/apps/report/burnish_report docs > docs/results.md.partial
 	@mv docs/results.md.partial docs/results.md
+	@build/release/apps/report/burnish_accuracy docs > docs/accuracy.md.partial
+	@mv docs/accuracy.md.partial docs/accuracy.md
 
 fuzz: deps
 	@tests/fuzz/run.sh $(FUZZ_SECONDS)

@@ -18,7 +18,7 @@ constexpr double kCentres[] = {0.25, 0.6, 0.4, 0.8, 0.15, 0.5, 0.7, 0.3};
 constexpr std::size_t kCoarsePairs = 20'000;
 constexpr int kRoughSteps = 12;
 // Grids are added at the end, this share of the work being done.
-constexpr int kGridSteps = 15;
+constexpr int kGridSteps = 10;
 constexpr double kThinPart = 0.4;
 
 /// Adds one refinement to the summary; its progress runs from `from` to `to`.

@@ -21,7 +21,7 @@ constexpr double kRidge = 1e-7, kDampedRidge = 1e-3;
 constexpr double kLongestStep = 2;  // change of a logarithm
 
 // A truncated solution is good enough for a step that is tried and judged.
-constexpr int kMostCgIterations = 80;
+constexpr int kMostCgIterations = 40;
 constexpr double kCgTolerance = 1e-2;
 
 /// One channel's, or coupled channels', damped linear systems.

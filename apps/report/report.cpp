@@ -28,32 +28,10 @@
 #include <burnish/reflectance/goniometer.h>
 #include <burnish/reflectance/scattered_brdf.h>
 
-namespace fs = std::filesystem;
+#include "report_tools.h"
 
 namespace burnish {
 namespace {
-
-class Stopwatch {
- public:
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-std::string processor() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);)
-    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-  return "unknown processor";
-}
-
-void save(const Plot& plot, const fs::path& docs, const std::string& name) {
-  fs::create_directories(docs / "figures");
-  write_then_rename(docs / "figures" / (name + ".svg"), to_svg(plot));
-}
 
 // ---- Scattered samples of an anisotropic GGX
 
@@ -150,13 +128,6 @@ void report_ggx(const fs::path& docs) {
 
 // ---- The RGL materials
 
-std::vector<fs::path> files_in(const fs::path& folder) {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
-  std::ranges::sort(files);
-  return files;
-}
-
 void report_rgl(const fs::path& data) {
   struct Row {
     const char* model;
@@ -232,13 +203,15 @@ void report_cornell(const fs::path& data) {
       "cross-validated "
       "`relative` error (fold = row mod 5), floor 1e-3, in brackets 1e-5. Smoothness of every fold is chosen "
       "by cross-validation among its training rows alone (`--smooth auto`), four reweightings; tables "
-      "`p=48`, `q=64,rational:0.2`, `r=32`.\n\n| material | neighbours, pbrt-v2's space | neighbours, "
-      "half/difference space | `p q p` | `p q p r(theta_d)` |\n|---|---|---|---|---|\n");
+      "`p=48`, `q=64,rational:0.2`, `r=32`, `m=48,power:0.5`.\n\n| material | neighbours, pbrt-v2's space | "
+      "neighbours, "
+      "half/difference space | `p q p` | `p q p r(theta_d)` | `p q p r(theta_d) m(theta_m)` "
+      "|\n|---|---|---|---|---|---|\n");
   for (const char* name : {"cayman", "mystique", "krylon_blue"}) {
     const Samples samples = three_bands(
         parse_cornell(read_file(data / "cornell" / (std::string(name) + ".brdf")), {.keep_spectral = true}));
     FoldErrors pbrt_errors, half_diff_errors;
-    std::array<FoldErrors, 2> factored;
+    std::array<FoldErrors, 3> factored;
     for (std::size_t fold = 0; fold < kFolds; ++fold) {
       std::vector<std::size_t> training, test;
       for (std::size_t i = 0; i < samples.size(); ++i) (i % kFolds == fold ? test : training).push_back(i);
@@ -246,9 +219,10 @@ void report_cornell(const fs::path& data) {
       const SampleSource source = from_samples(part, true);
       const ScatteredBrdf pbrt(samples, training, SampleSpace::angles), half_diff(samples, training);
       std::vector<FactoredBrdf> models;
-      for (const char* expression : {"pqp", "pqpr"}) {
+      for (const std::string expression : {"pqp", "pqpr", "p(wo) q(h) m(theta_m) r(theta_d) p(wi)"}) {
         std::vector<std::string> tables{"p=48", "q=64,rational:0.2"};
-        if (expression == std::string("pqpr")) tables.push_back("r=32");
+        if (expression != "pqp") tables.push_back("r=32");
+        if (expression.find('m') != expression.npos) tables.push_back("m=48,power:0.5");
         ModelSpec spec = parse_model_spec(expression, tables, true);
         HomomorphicOptions options{.reweightings = 4};
         const SmoothTrial best = choose_smoothness(source, spec, options).front();
@@ -270,7 +244,7 @@ void report_cornell(const fs::path& data) {
       }
     }
     fmt::print("| {} |", name);
-    for (const FoldErrors& e : {pbrt_errors, half_diff_errors, factored[0], factored[1]})
+    for (const FoldErrors& e : {pbrt_errors, half_diff_errors, factored[0], factored[1], factored[2]})
       fmt::print(" {:.3f} ({:.3f}) |", e.relative(0), e.relative(1));
     fmt::print("\n");
   }
