@@ -1,10 +1,12 @@
 #include <filesystem>
 #include <list>
 #include <memory>
+#include <numeric>
 #include <optional>
 
 #include <fmt/format.h>
 
+#include <burnish/math/angles.h>
 #include <burnish/metrics/compare_report.h>
 #include <burnish/metrics/factor_images.h>
 #include <burnish/metrics/png.h>
@@ -53,6 +55,26 @@ void write_factors(const std::filesystem::path& folder, const std::list<Candidat
   }
 }
 
+// One line for the reference and each model, means over the channels.
+void print_albedos(std::span<const ComparedFigures> figures) {
+  const auto row = [&](const std::string& name, const ComparedFigures& c, const auto& number) {
+    fmt::print("{:<32}", name);
+    for (const ComparedAlbedo& at : c.albedos) fmt::print(" {:>8}", number(at));
+    fmt::print("\n");
+  };
+  const auto mean = [](const DirectionalAlbedo& a) {
+    return fmt::format("{:.4f}", std::accumulate(a.albedo.begin(), a.albedo.end(), 0.0) /
+                                     static_cast<double>(a.albedo.size()));
+  };
+  row("albedo at theta_i[,phi_i]", figures.front(), [](const ComparedAlbedo& at) {
+    return fmt::format("{:.0f}{}", degrees(at.theta_i),
+                       at.phi_i > 0 ? fmt::format(",{:.0f}", degrees(at.phi_i)) : "");
+  });
+  row("  reference", figures.front(), [&](const ComparedAlbedo& at) { return mean(at.reference); });
+  for (const ComparedFigures& c : figures)
+    row("  " + c.name, c, [&](const ComparedAlbedo& at) { return mean(at.model); });
+}
+
 void compare(const Arguments& arguments) {
   const Candidate reference(arguments.reference.open(), !arguments.no_symmetrize);
   std::list<Candidate> candidates;
@@ -79,6 +101,7 @@ void compare(const Arguments& arguments) {
     fmt::print("{:<32} {:>8} {:>8.2f} {:>7.4f} {:>9.4f} {:>8.4f} {:>8.4f}\n", f.name,
                f.bytes ? fmt::format("{}", *f.bytes) : "-", f.figures.psnr, f.figures.ssim,
                f.figures.relative, f.figures.rms_log, f.figures.log_cos);
+  print_albedos(figures);
   const ErrorFigures& first = figures.front().figures;
   if (first.unknown_fraction > 0 || first.unknown_pixels > 0)
     fmt::print("left out: {:.1f} % of the direction pairs and {} pixels, where a side knows nothing\n",

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -8,6 +9,7 @@
 #include <burnish/factors/model_file.h>
 #include <burnish/file.h>
 #include <burnish/fitting/cross_validation.h>
+#include <burnish/fitting/energy.h>
 #include <burnish/fitting/log_error.h>
 #include <burnish/math/parallel.h>
 #include <burnish/metrics/error_figures.h>
@@ -41,7 +43,7 @@ struct Arguments {
   std::uint64_t seed = 1;
   int reweightings = -1, threads = 0;
   double floor = HomomorphicOptions{}.floor;
-  bool json = false;
+  bool conserve_energy = false, json = false;
 };
 
 // File names need not be UTF-8.
@@ -151,6 +153,23 @@ FactoredBrdf fit_model(const Source& source, const Arguments& arguments, nlohman
   return fit_several_lobes(source, spec, lobes, notes);
 }
 
+// Takes out of the model what it reflects too much; `notes` says what that cost.
+void conserve(BrdfRef reference, const FigureOptions& figures, FactoredBrdf& brdf,
+              nlohmann::ordered_json& notes) {
+  EnergyConservation kept = conserve_energy(brdf);
+  nlohmann::ordered_json& note = notes["conserve_energy"];
+  note = {{"largest_albedo_before", std::ranges::max(kept.largest_before)},
+          {"largest_albedo_after", std::ranges::max(kept.largest_after)},
+          {"iterations", kept.iterations}};
+  const Scorer scorer(reference, figures);
+  for (const auto& [when, model] : {std::pair("before", &brdf), std::pair("after", &kept.brdf)}) {
+    const ErrorFigures error = scorer.score(*model);
+    note[fmt::format("psnr_{}", when)] = error.psnr;
+    note[fmt::format("relative_{}", when)] = error.relative;
+  }
+  brdf = std::move(kept.brdf);
+}
+
 nlohmann::ordered_json fit(const Arguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const ThreadLimit limit(arguments.threads);
@@ -158,14 +177,15 @@ nlohmann::ordered_json fit(const Arguments& arguments) {
   nlohmann::ordered_json notes{{"source", source.name},
                                {"source_format", source.findings.format},
                                {"symmetrized", !arguments.lobes.no_symmetrize}};
-  const FactoredBrdf brdf = fit_model(source, arguments, notes);
+  FactoredBrdf brdf = fit_model(source, arguments, notes);
   // After rounding to the table format, on pairs that were not fitted.
+  std::optional<SymmetrizedBrdf> symmetrized;
+  if (!arguments.lobes.no_symmetrize) symmetrized.emplace(source.ref());
+  const BrdfRef reference = symmetrized ? BrdfRef(*symmetrized) : source.ref();
+  const FigureOptions figures{.count = kHeldOutPairs, .seed = arguments.seed + 1, .image_size = 128};
+  if (arguments.conserve_energy) conserve(reference, figures, brdf, notes);
   if (!source.samples()) {
-    std::optional<SymmetrizedBrdf> symmetrized;
-    if (!arguments.lobes.no_symmetrize) symmetrized.emplace(source.ref());
-    const FigureOptions figures{.count = kHeldOutPairs, .seed = arguments.seed + 1, .image_size = 128};
-    const ErrorFigures error =
-        error_figures(symmetrized ? BrdfRef(*symmetrized) : source.ref(), brdf, figures);
+    const ErrorFigures error = error_figures(reference, brdf, figures);
     notes["psnr"] = std::isfinite(error.psnr) ? nlohmann::ordered_json(error.psnr) : nlohmann::ordered_json();
     notes["ssim"] = error.ssim;
     notes["relative"] = error.relative;
@@ -202,6 +222,17 @@ void print(const nlohmann::ordered_json& notes) {
                notes.at("samples").get<std::size_t>(), notes.at("iterations").get<int>(),
                notes.at("stop_reason").get<std::string>(), number("smooth"));
     fmt::print("rms log f  {:.4f} before, {:.4f} after\n", number("rms_log_before"), number("rms_log_after"));
+  }
+  if (notes.contains("conserve_energy")) {
+    const auto& note = notes.at("conserve_energy");
+    const auto was = [&](const char* key) {
+      return note.at(key).is_number() ? note.at(key).get<double>() : 0;
+    };
+    fmt::print(
+        "energy     albedo at most {:.4f} before, {:.4f} after; psnr {:.2f} -> {:.2f} dB, relative {:.4f} -> "
+        "{:.4f}\n",
+        was("largest_albedo_before"), was("largest_albedo_after"), was("psnr_before"), was("psnr_after"),
+        was("relative_before"), was("relative_after"));
   }
   if (notes.contains("log_cos")) {
     if (notes.at("psnr").is_number())
@@ -257,6 +288,8 @@ void add_fit_command(CLI::App& app) {
   verb->add_option("--threads", arguments->threads, "at most this many; 0: all")->check(CLI::Range(0, 1024));
   verb->add_flag("--no-symmetrize", arguments->lobes.no_symmetrize,
                  "fit f(wi, wo) as it is, not its reciprocal part");
+  verb->add_flag("--conserve-energy", arguments->conserve_energy,
+                 "damp the model where it reflects more than it receives, and say what that cost");
   verb->add_flag("--json", arguments->json, "print the summary as JSON");
   verb->callback([arguments] {
     const nlohmann::ordered_json notes = fit(*arguments);

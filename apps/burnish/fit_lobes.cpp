@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <burnish/error.h>
@@ -27,8 +28,12 @@ ErrorTerms shares_of(const std::string& loss) {
 
 // Three channels share an exponent unless told otherwise: a third fewer bytes for hardly any error.
 TableFormat format_of(const LobesArguments& arguments, int channels) {
-  if (!arguments.format.empty()) return parse_table_format(arguments.format);
-  return channels == 3 ? TableFormat::rgb9e5 : TableFormat::half;
+  if (arguments.format.empty()) return channels == 3 ? TableFormat::rgb9e5 : TableFormat::half;
+  const TableFormat format = parse_table_format(arguments.format);
+  if (!holds_channels(format, channels))
+    throw Error(
+        fmt::format("--format {}: expected a source of 3 channels, found {}", arguments.format, channels));
+  return format;
 }
 
 /// What is fitted, drawn from the source.

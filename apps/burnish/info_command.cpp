@@ -1,3 +1,4 @@
+#include <array>
 #include <memory>
 
 #include <fmt/format.h>
@@ -5,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <burnish/math/angles.h>
+#include <burnish/metrics/albedo.h>
 #include <burnish/reflectance/statistics.h>
 
 #include "commands.h"
@@ -15,24 +17,19 @@ namespace burnish::cli {
 namespace {
 
 constexpr std::size_t kReciprocityPairs = 20000;
+constexpr std::array kAlbedoAngles{0.0, radians(30), radians(60)};
 
 /// Everything `info` says.
 struct Report {
   const Source& source;
-  std::vector<std::pair<double, DirectionalAlbedo>> albedos;  // by theta_i in degrees, phi_i = 0
+  std::vector<AlbedoAt> albedos;
   ReciprocityError reciprocity;
   const FactoredBrdf* model;  // nullptr where it is none
 };
 
 Report make_report(const Source& source) {
-  Report report{source,
-                {},
-                reciprocity_error(source.ref(), kReciprocityPairs, 1),
-                std::get_if<FactoredBrdf>(&source.brdf)};
-  for (const double theta_deg : {0.0, 30.0, 60.0})
-    report.albedos.emplace_back(theta_deg,
-                                directional_albedo(source.ref(), spherical_direction(radians(theta_deg), 0)));
-  return report;
+  return {source, albedo_curve(source.ref(), kAlbedoAngles),
+          reciprocity_error(source.ref(), kReciprocityPairs, 1), std::get_if<FactoredBrdf>(&source.brdf)};
 }
 
 nlohmann::ordered_json to_json(const Report& report) {
@@ -54,8 +51,9 @@ nlohmann::ordered_json to_json(const Report& report) {
                               {"theta_o_deg", {degrees(findings.theta_o_min), degrees(findings.theta_o_max)}},
                               {"reciprocity_error", reciprocity.mean},
                               {"reciprocity_pairs", reciprocity.pairs}};
-  for (const auto& [theta_deg, albedo] : albedos)
-    json["albedo"].push_back({{"theta_i_deg", theta_deg},
+  for (const auto& [theta_i, phi_i, albedo] : albedos)
+    json["albedo"].push_back({{"theta_i_deg", degrees(theta_i)},
+                              {"phi_i_deg", degrees(phi_i)},
                               {"albedo", albedo.albedo},
                               {"unknown_fraction", albedo.unknown_fraction}});
   if (const auto bytes = source.bytes()) json["bytes"] = *bytes;
@@ -101,9 +99,10 @@ void print_text(const Report& report) {
   if (findings.clamped_negatives > 0)
     line("negatives", fmt::format("{} values below zero, down to {:.3g} 1/sr", findings.clamped_negatives,
                                   findings.most_negative));
-  for (const auto& [theta_deg, albedo] : albedos)
+  for (const auto& [theta_i, phi_i, albedo] : albedos)
     line("albedo",
-         fmt::format("{:.4f} at theta_i = {:g} degrees{}", fmt::join(albedo.albedo, " "), theta_deg,
+         fmt::format("{:.4f} at theta_i = {:.0f}{} degrees{}", fmt::join(albedo.albedo, " "),
+                     degrees(theta_i), phi_i > 0 ? fmt::format(", phi_i = {:.0f}", degrees(phi_i)) : "",
                      albedo.unknown_fraction > 0
                          ? fmt::format(", {:.1f} % of the hemisphere unknown", 100 * albedo.unknown_fraction)
                          : ""));

@@ -199,33 +199,33 @@ std::size_t FactoredBrdf::bytes() const noexcept {
   return table_bytes() + parameters * sizeof(float);
 }
 
+std::vector<double> store_log_table(Table& table) {
+  check_format(table);
+  const bool floored = table.format == TableFormat::half || table.format == TableFormat::single;
+  // what the other formats make of a smaller value is their own floor
+  const double floor = floored ? kTableFloor : std::numeric_limits<float>::min();
+  std::vector<double> divided = logs_of_one(table);
+  for (std::size_t i = 0; i < table.values.size(); ++i)
+    table.values[i] =
+        static_cast<float>(std::max(std::exp(table.values[i] - divided[i % divided.size()]), floor));
+  check_positive(table);
+  table.values = round_to_format(table.format, table.channels, table.values);
+  return divided;
+}
+
 FactoredBrdf from_log_tables(int channels, std::vector<Table> tables, std::vector<Lobe> lobes,
                              TableFormat format) {
   return from_log_tables(channels, in_format(std::move(tables), format), std::move(lobes));
 }
 
 FactoredBrdf from_log_tables(int channels, std::vector<Table> tables, std::vector<Lobe> lobes) {
-  const auto brdf_channels = static_cast<std::size_t>(channels);
   for (std::size_t t = 0; t < tables.size(); ++t) {
-    Table& table = tables[t];
-    check_format(table);
-    const bool floored = table.format == TableFormat::half || table.format == TableFormat::single;
-    // what these formats make of a smaller value is their own floor
-    const double floor = floored ? kTableFloor : std::numeric_limits<float>::min();
-    const auto table_channels = static_cast<std::size_t>(table.channels);
-    const std::vector<double> ones = logs_of_one(table);
-    for (std::size_t c = 0; c < table_channels; ++c) {
-      for (std::size_t i = c; i < table.values.size(); i += table_channels)
-        table.values[i] = static_cast<float>(std::max(std::exp(table.values[i] - ones[c]), floor));
-      // every use of the table carries what is divided out into the lobe
-      for (Lobe& lobe : lobes)
-        for (const FactorUse& use : lobe.factors)
-          if (static_cast<std::size_t>(use.table) == t)
-            for (std::size_t b = 0; b < brdf_channels; ++b)
-              if (table_channels == 1 || b == c) lobe.scale[b] += ones[c];
-    }
-    check_positive(table);
-    table.values = round_to_format(table.format, table.channels, table.values);
+    const std::vector<double> divided = store_log_table(tables[t]);
+    for (Lobe& lobe : lobes)
+      for (const FactorUse& use : lobe.factors)
+        if (static_cast<std::size_t>(use.table) == t)
+          for (std::size_t c = 0; c < lobe.scale.size(); ++c)
+            lobe.scale[c] += divided[divided.size() == 1 ? 0 : c];
   }
   for (Lobe& lobe : lobes)
     for (double& s : lobe.scale) s = static_cast<float>(std::exp(std::min(s, kMostLogScale)));

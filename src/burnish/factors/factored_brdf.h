@@ -71,10 +71,15 @@ static_assert(Brdf<FactoredBrdf>);
 /// cut the tails of shiny materials (docs/factorization.md).
 inline constexpr double kTableFloor = 0x1p-20;
 
-/// Makes the largest value of every table's channel 1 (rgb9e5: see Table), with the factor moved into the
-/// lobes' scales, raises entries to kTableFloor (rgb9e5 and unorm8: to the smallest value their texel can
-/// have) and rounds them to the table's format. The tables hold logarithms of lambda, channels as in Table;
-/// the lobes' scales logarithms, one entry a channel. Throws as the constructor does.
+/// Turns a table of logarithms of lambda into one as it is stored: makes the largest value of every channel 1
+/// (rgb9e5: see Table), raises entries to kTableFloor (rgb9e5 and unorm8: to the smallest value their texel
+/// can have) and rounds them to the table's format. Returns, for each of its channels, the logarithm of what
+/// was divided out. Throws Error if the format does not hold the channels or a logarithm is not finite.
+std::vector<double> store_log_table(Table& log_table);
+
+/// Stores the tables by store_log_table, what they are divided by moved into the lobes' scales. The tables
+/// hold logarithms of lambda, channels as in Table; the lobes' scales logarithms, one entry a channel. Throws
+/// as the constructor does.
 FactoredBrdf from_log_tables(int channels, std::vector<Table> log_tables, std::vector<Lobe> log_scaled_lobes);
 /// The same with every table in `format`.
 FactoredBrdf from_log_tables(int channels, std::vector<Table> log_tables, std::vector<Lobe> log_scaled_lobes,

@@ -8,7 +8,7 @@
 #include <burnish/io/source.h>
 #include <burnish/io/test_files.h>
 #include <burnish/math/angles.h>
-#include <burnish/reflectance/statistics.h>
+#include <burnish/metrics/albedo.h>
 
 namespace burnish {
 namespace {

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -22,6 +23,9 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kReferenceColor = "#202226";
 constexpr std::array<double, 3> kSliceAngles = {radians(10), radians(30), radians(60)};
+
+constexpr std::array<double, 6> kAlbedoAngles = {0,           radians(15), radians(30),
+                                                 radians(45), radians(60), radians(75)};
 
 std::string bytes_text(std::optional<std::uint64_t> bytes) {
   return bytes ? fmt::format("{} bytes", *bytes) : std::string("size unknown");
@@ -47,6 +51,12 @@ nlohmann::ordered_json json_of(std::span<const ComparedFigures> compared) {
                                     {"unknown_pixels", f.unknown_pixels}};
     if (c.bytes) entry["bytes"] = *c.bytes;
     if (std::isfinite(f.psnr)) entry["psnr"] = f.psnr;
+    for (const ComparedAlbedo& a : c.albedos)
+      entry["albedo"].push_back({{"theta_i_deg", degrees(a.theta_i)},
+                                 {"phi_i_deg", degrees(a.phi_i)},
+                                 {"reference", a.reference.albedo},
+                                 {"model", a.model.albedo},
+                                 {"reference_unknown_fraction", a.reference.unknown_fraction}});
     if (!c.note.empty()) entry["note"] = c.note;
     list.push_back(std::move(entry));
   }
@@ -131,14 +141,51 @@ std::string index_html(const std::string& reference_name, std::span<const Compar
 }  // namespace
 
 std::vector<ComparedFigures> compare_models(const Scorer& scorer, std::span<const ComparedModel> models) {
+  const std::vector<AlbedoAt> reference = albedo_curve(scorer.reference(), kAlbedoAngles);
   std::vector<ComparedFigures> result;
-  for (const ComparedModel& model : models)
-    result.push_back({model.name, model.bytes, model.note, scorer.score(model.brdf)});
+  for (const ComparedModel& model : models) {
+    ComparedFigures& c = result.emplace_back(
+        ComparedFigures{model.name, model.bytes, model.note, scorer.score(model.brdf), {}});
+    for (const AlbedoAt& at : reference)
+      c.albedos.push_back({at.theta_i, at.phi_i, at.albedo,
+                           directional_albedo(model.brdf, spherical_direction(at.theta_i, at.phi_i))});
+  }
   return result;
 }
 
 std::string to_json(std::span<const ComparedFigures> figures) {
   return dump(json_of(figures));
+}
+
+Plot albedo_plot(std::span<const ComparedFigures> figures) {
+  Plot plot{.title = "Directional albedo",
+            .x_label = "θ_i (degrees)",
+            .y_label = "albedo",
+            .series = {},
+            .x_min = 0,
+            .x_max = 90,
+            .y_min = 0};
+  const auto add = [&](const ComparedFigures& c, double phi, const std::string& label, bool reference) {
+    PlotSeries series{
+        label, {}, {}, PlotStyle::line, reference ? std::string(kReferenceColor) : std::string()};
+    if (reference) series.style = PlotStyle::dashed;
+    for (const ComparedAlbedo& a : c.albedos) {
+      if (a.phi_i != phi) continue;
+      const std::vector<double>& albedo = (reference ? a.reference : a.model).albedo;
+      series.x.push_back(degrees(a.theta_i));
+      series.y.push_back(std::accumulate(albedo.begin(), albedo.end(), 0.0) /
+                         static_cast<double>(albedo.size()));
+    }
+    plot.series.push_back(std::move(series));
+  };
+  if (figures.empty()) return plot;
+  const bool turned = figures.front().albedos.size() > kAlbedoAngles.size();
+  for (const double phi : turned ? std::vector{0.0, kHalfPi} : std::vector{0.0}) {
+    const std::string at = turned ? fmt::format(", φ_i = {:.0f}°", degrees(phi)) : std::string();
+    add(figures.front(), phi, "reference" + at, true);
+    for (const ComparedFigures& c : figures) add(c, phi, c.name + at, false);
+  }
+  return plot;
 }
 
 Plot incidence_plane_plot(BrdfRef reference, std::span<const ComparedModel> models, double theta_i) {
@@ -267,6 +314,7 @@ std::vector<ComparedFigures> write_report(const fs::path& folder, const std::str
   for (const ComparedModel& model : models) errors.push_back(scorer.pair_errors(model.brdf));
   save("error_theta_h", error_plot(models, errors, ErrorAxis::theta_h));
   save("error_theta_d", error_plot(models, errors, ErrorAxis::theta_d));
+  save("albedo", albedo_plot(compared));
 
   const FigureOptions& options = scorer.options();
   const nlohmann::ordered_json report = {{"reference", reference_name}, {"pairs", options.count},

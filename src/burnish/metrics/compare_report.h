@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <burnish/metrics/albedo.h>
 #include <burnish/metrics/error_figures.h>
 #include <burnish/metrics/svg_plot.h>
 #include <burnish/reflectance/brdf.h>
@@ -21,26 +22,37 @@ struct ComparedModel {
   std::string note = {};                    ///< how it was made: factors, fit time; one line, may be empty
 };
 
+/// What is reflected of light from one direction (radians), by the reference and by a model.
+struct ComparedAlbedo {
+  double theta_i = 0, phi_i = 0;
+  DirectionalAlbedo reference, model;
+};
+
 /// What was measured of one candidate.
 struct ComparedFigures {
   std::string name;
   std::optional<std::uint64_t> bytes;
   std::string note;
   ErrorFigures figures;
+  std::vector<ComparedAlbedo> albedos;  ///< at 0, 15, ... 75 degrees, see albedo_curve
 };
 
 /// Figures of every model, in their order. Throws Error as Scorer.
 std::vector<ComparedFigures> compare_models(const Scorer& scorer, std::span<const ComparedModel> models);
 
 /// JSON list of objects: model, bytes (null if unknown), log_cos, relative, rms_log, mean_abs_log, psnr (null
-/// for equal pictures, where it is infinite), ssim, unknown_fraction, unknown_pixels, and note if there is
-/// one.
+/// for equal pictures, where it is infinite), ssim, unknown_fraction, unknown_pixels, albedo (a list of
+/// theta_i_deg, phi_i_deg, reference and model, one number a channel, reference_unknown_fraction), and note
+/// if there is one.
 std::string to_json(std::span<const ComparedFigures> figures);
 
 /// f over theta_o in the plane of incidence at theta_i (radians, in (0, pi/2)), reference and models, mean
 /// over the channels, 1/sr on a logarithmic axis. theta_o is positive on the mirror's side; unknown and black
 /// values are gaps.
 Plot incidence_plane_plot(BrdfRef reference, std::span<const ComparedModel> models, double theta_i);
+
+/// Albedo over theta_i, mean over the channels, of the reference and the models; each azimuth its own curve.
+Plot albedo_plot(std::span<const ComparedFigures> figures);
 
 /// Which half/difference angle an error is plotted over.
 enum class ErrorAxis { theta_h, theta_d };

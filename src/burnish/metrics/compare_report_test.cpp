@@ -51,6 +51,11 @@ TEST_F(CompareReport, JsonHasTheFiguresUnderTheirNames) {
                                     {"psnr", compared[1].figures.psnr},
                                     {"ssim", compared[1].figures.ssim}})
     EXPECT_EQ(json[1][name], value) << name;
+  ASSERT_EQ(json[1]["albedo"].size(), 6u);  // 0, 15, ... 75 degrees
+  const auto& albedo = json[1]["albedo"][2];
+  EXPECT_NEAR(albedo["theta_i_deg"], 30, 1e-9);
+  EXPECT_EQ(albedo["reference"], directional_albedo(reference_, spherical_direction(radians(30), 0)).albedo);
+  EXPECT_EQ(albedo["model"], directional_albedo(scaled_, spherical_direction(radians(30), 0)).albedo);
 }
 
 TEST_F(CompareReport, FolderHoldsEveryFileItsPageShows) {
@@ -63,7 +68,7 @@ TEST_F(CompareReport, FolderHoldsEveryFileItsPageShows) {
     const std::string name = page.substr(at + 5, page.find('"', at + 5) - at - 5);
     EXPECT_TRUE(fs::is_regular_file(folder_ / name)) << name;
   }
-  EXPECT_EQ(shown, 1 + 3 + 5);  // overview, models, plots
+  EXPECT_EQ(shown, 1 + 3 + 6);  // overview, models, plots
   EXPECT_NE(page.find("same &lt;&amp;&gt;"), page.npos);
   EXPECT_EQ(page.find("same <&>"), page.npos);
   for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
