@@ -8,6 +8,8 @@
 
 namespace burnish {
 
+struct FactoredPlan;
+
 /// Direction pairs, one array a component, all of one length. wi and wo are unit vectors to 2^-22.
 struct DirectionSpans {
   std::span<const float> wi_x, wi_y, wi_z, wo_x, wo_y, wo_z;
@@ -26,7 +28,7 @@ struct DirectionSpans {
 /// (sum of |coefficients|) / |combination|: terms that cancel leave their rounding errors.
 class FactoredEvaluator {
  public:
-  /// Throws Error for models of more than 4096 different positions in tables.
+  /// Throws Error for models of more than 1024 different positions in tables.
   explicit FactoredEvaluator(const FactoredBrdf& brdf);
 
   int channels() const noexcept;
@@ -46,8 +48,7 @@ class FactoredEvaluator {
   double rounding_bound() const noexcept;
 
  private:
-  struct Plan;
-  std::shared_ptr<const Plan> plan_;
+  std::shared_ptr<const FactoredPlan> plan_;
 };
 
 }  // namespace burnish

@@ -1,5 +1,4 @@
-// Per-target include: the formulas of power/forms-inl.h over vectors of floats. The only place where their
-// vocabulary meets Highway.
+// Per-target include: the formulas of power/forms-inl.h over vectors of floats.
 #if defined(BURNISH_EVAL_POWER_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BURNISH_EVAL_POWER_LANES_INL_H_
 #undef BURNISH_EVAL_POWER_LANES_INL_H_
@@ -8,60 +7,13 @@
 #endif
 
 #include <hwy/contrib/math/math-inl.h>
-#include <hwy/highway.h>
+
+#include <burnish/eval/lanes-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace burnish {
 namespace HWY_NAMESPACE {
 namespace {
-
-namespace hn = hwy::HWY_NAMESPACE;
-using D = hn::ScalableTag<float>;
-using DI = hn::RebindToSigned<D>;
-
-struct Lane {
-  hn::Vec<D> raw;
-
-  Lane() = default;
-  HWY_INLINE Lane(double x) : raw(hn::Set(D(), static_cast<float>(x))) {}  // NOLINT: numbers are constants
-  HWY_INLINE explicit Lane(hn::Vec<D> v) : raw(v) {}
-};
-
-HWY_INLINE Lane operator+(Lane a, Lane b) {
-  return Lane(hn::Add(a.raw, b.raw));
-}
-HWY_INLINE Lane operator-(Lane a, Lane b) {
-  return Lane(hn::Sub(a.raw, b.raw));
-}
-HWY_INLINE Lane operator*(Lane a, Lane b) {
-  return Lane(hn::Mul(a.raw, b.raw));
-}
-HWY_INLINE Lane operator/(Lane a, Lane b) {
-  return Lane(hn::Div(a.raw, b.raw));
-}
-HWY_INLINE Lane mul_add(Lane a, Lane b, Lane c) {
-  return Lane(hn::MulAdd(a.raw, b.raw, c.raw));
-}
-HWY_INLINE Lane neg_mul_add(Lane a, Lane b, Lane c) {
-  return Lane(hn::NegMulAdd(a.raw, b.raw, c.raw));
-}
-HWY_INLINE Lane max(Lane a, Lane b) {
-  return Lane(hn::Max(a.raw, b.raw));
-}
-HWY_INLINE Lane min(Lane a, Lane b) {
-  return Lane(hn::Min(a.raw, b.raw));
-}
-// As integers: negative floats are negative integers, and integer maxima do not compete with the multipliers.
-HWY_INLINE Lane clamp_negative(Lane a) {
-  const DI di;
-  return Lane(hn::BitCast(D(), hn::Max(hn::BitCast(di, a.raw), hn::Zero(di))));
-}
-HWY_INLINE Lane sqrt(Lane a) {
-  return Lane(hn::Sqrt(a.raw));
-}
-HWY_INLINE Lane if_less(Lane a, Lane b, Lane x, Lane y) {
-  return Lane(hn::IfThenElse(hn::Lt(a.raw, b.raw), x.raw, y.raw));
-}
 
 // The exact power by Highway's own functions.
 HWY_INLINE Lane exp_of_log(Lane a) {
@@ -83,12 +35,11 @@ HWY_INLINE SplitLane split(Lane c) {
   return {Lane(hn::ConvertTo(D(), n)), Lane(hn::BitCast(D(), hn::Sub(bits, hn::ShiftLeft<23>(n))))};
 }
 
-// Adding 1.5 2^23 rounds to a whole number, which stays in the low bits of the sum.
 struct WholeLane {
   Lane shifted, rest;
 };
 HWY_INLINE WholeLane round_to_whole(Lane y) {
-  const Lane magic(12582912.0);
+  const Lane magic(kRoundingShift);
   const Lane shifted = y + magic;
   return {shifted, y - (shifted - magic)};
 }

@@ -2,17 +2,15 @@
 #include <cmath>
 
 #include <burnish/error.h>
+#include <burnish/eval/highway_targets.h>
 #include <burnish/eval/power_span.h>
 
-// Vectors whose size is unknown when compiling cannot be members of a struct; those processors have a fixed
-// set too. SSSE3 and AVX3_DL bring nothing over their neighbours here.
-#define HWY_DISABLED_TARGETS \
-  (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "burnish/eval/power_span.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
+#include <burnish/eval/power_lanes-inl.h>
 #include <burnish/eval/vector_loop-inl.h>
 
 #ifndef BURNISH_EVAL_SHADE_ARGUMENTS

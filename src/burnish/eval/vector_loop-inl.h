@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include <burnish/eval/power_lanes-inl.h>
+#include <burnish/eval/lanes-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace burnish {

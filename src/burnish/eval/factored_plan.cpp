@@ -1,0 +1,150 @@
+#include <algorithm>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include <burnish/error.h>
+#include <burnish/eval/factored_plan.h>
+
+namespace burnish {
+
+namespace {
+
+// Largest ratio of entries that one lookup mixes.
+double steepest_ratio(const Table& table) noexcept {
+  const auto channels = static_cast<std::size_t>(table.channels);
+  const auto width = static_cast<std::size_t>(table.layout.width),
+             height = static_cast<std::size_t>(table.layout.height);
+  const std::size_t row = table.layout.shape == TableShape::line ? 0 : width * channels;
+  double ratio = 1;
+  for (std::size_t y = 0; y + (row ? 1 : 0) < height; ++y)
+    for (std::size_t x = 0; x + 1 < width; ++x)
+      for (std::size_t c = 0; c < channels; ++c) {
+        const float* v = table.values.data() + (y * width + x) * channels + c;
+        const auto [least, most] = std::minmax({v[0], v[channels], v[row], v[row + channels]});
+        ratio = std::max(ratio, static_cast<double>(most) / least);
+      }
+  return ratio;
+}
+
+double lookup_bound(const Table& table) noexcept {
+  const double ratio = steepest_ratio(table);
+  const int axes = table.layout.shape == TableShape::line ? 1 : 2;
+  const int cells = std::max(table.layout.width, table.layout.height) - 1;
+  return 0x1p-24 * (8 * ratio + 16 * axes * cells * (ratio - 1));
+}
+
+std::size_t up_to_multiple(std::size_t n, std::size_t of) noexcept {
+  return (n + of - 1) / of * of;
+}
+
+}  // namespace
+
+bool FactoredPlan::Position::same_place(const Position& other) const noexcept {
+  return std::tie(disk, a, b, c, power, cells) ==
+         std::tie(other.disk, other.a, other.b, other.c, other.power, other.cells);
+}
+
+FactoredPlan::FactoredPlan(const FactoredBrdf& brdf) : channels(static_cast<std::size_t>(brdf.channels())) {
+  std::vector<Lookup> tables;
+  for (const Table& table : brdf.tables()) tables.push_back(add_table(table));
+  for (std::size_t j = 0; j < brdf.lobes().size(); ++j) {
+    const std::size_t paired = 2 * brdf.pair_count(j), first = lookups.size();
+    double bound = 0x1p-24 * static_cast<double>(brdf.lobes().size());
+    std::size_t k = 0;
+    for (const FactorUse& use : brdf.ordered_factors(j)) {
+      const Table& table = brdf.tables()[static_cast<std::size_t>(use.table)];
+      bound += lookup_bound(table);
+      const auto [x, y] = slots_of(table.layout, use);
+      if (k < paired && k % 2 == 1) {
+        Lookup& lookup = lookups.back();
+        lookup.pair = true, lookup.pair_x = x, lookup.pair_y = y;
+      } else {
+        Lookup& lookup = lookups.emplace_back(tables[static_cast<std::size_t>(use.table)]);
+        lookup.x = x, lookup.y = y;
+      }
+      ++k;
+    }
+    products.push_back({first, lookups.size(), {}});
+    for (const double s : brdf.lobes()[j].scale) products.back().scale.push_back(static_cast<float>(s));
+    products.back().scale.resize(up_to_multiple(channels, kTogether));
+    rounding_bound = std::max(rounding_bound, bound);
+  }
+  if (slots > kMostSlots)
+    throw Error(
+        fmt::format("evaluator: expected at most {} positions in tables, found {}", kMostSlots, slots));
+}
+
+FactoredPlan::Lookup FactoredPlan::add_table(const Table& table) {
+  const auto stored = static_cast<std::size_t>(table.channels), nodes = table.layout.node_count();
+  const std::size_t groups = up_to_multiple(stored, kTogether) / kTogether;
+  Lookup lookup{.plane = table.layout.shape != TableShape::line,
+                .shared = table.channels == 1,
+                .width = static_cast<std::size_t>(table.layout.width)};
+  // The last position, in cells, is the last node: lookups there read past it and give it no weight.
+  lookup.rows = values.size();
+  lookup.row_block = (nodes + lookup.width + 2) * kRowStride;
+  for (std::size_t g = 0; g < groups; ++g) {
+    const std::size_t begin = values.size();
+    for (std::size_t i = 0; i < nodes; ++i)
+      for (std::size_t c = 0; c < kRowStride; ++c) {
+        const std::size_t channel = lookup.shared ? 0 : g * kTogether + c;
+        values.push_back(channel < stored ? table.values[i * stored + channel] : 0.0f);
+      }
+    values.resize(begin + lookup.row_block);
+  }
+  if (lookup.plane || nodes > kMostVectors * kPlaneVector) return lookup;
+  lookup.planes = values.size();
+  for (lookup.plane_vectors = 1; lookup.plane_vectors * kPlaneVector < nodes;) lookup.plane_vectors *= 2;
+  for (std::size_t c = 0; c < (lookup.shared ? 1 : groups * kTogether); ++c) {
+    const std::size_t begin = values.size();
+    for (std::size_t i = 0; c < stored && i < nodes; ++i) values.push_back(table.values[i * stored + c]);
+    values.resize(begin + lookup.plane_vectors * kPlaneVector);
+  }
+  return lookup;
+}
+
+std::array<std::size_t, 2> FactoredPlan::slots_of(const TableLayout& layout, const FactorUse& use) {
+  const bool disk = layout.shape == TableShape::disk;
+  const std::size_t x = slot_of(use.projection, layout.warp, layout.width, disk);
+  if (disk) return {x, x + 1};
+  if (layout.shape == TableShape::line) return {x, x};
+  return {x, slot_of(use.projection_y, layout.warp_y, layout.height, false)};
+}
+
+// The slot of a position, the same for the same position.
+std::size_t FactoredPlan::slot_of(const Projection& projection, Warp warp, int nodes, bool disk) {
+  const auto cells = static_cast<float>(nodes - 1), half = disk ? 0.5f * cells : cells;
+  const auto parameter = static_cast<float>(warp.parameter);
+  Position position{.disk = disk, .a = half, .b = 0, .c = 1, .power = 0, .cells = cells, .slot = slots};
+  if (warp.kind == WarpKind::power) position.power = parameter;
+  if (warp.kind == WarpKind::rational) {  // t (1 + k) / (t + k) with t = r / den
+    position.a = half * (1 + parameter);
+    position.b = 1;
+    position.c = parameter;
+  }
+  Source& source = source_of(projection, disk);
+  source.radius |= !disk || warp.kind != WarpKind::identity;
+  for (const Position& known : source.positions)
+    if (known.same_place(position)) return known.slot;
+  source.positions.push_back(position);
+  slots += disk ? 2 : 1;
+  return position.slot;
+}
+
+FactoredPlan::Source& FactoredPlan::source_of(const Projection& projection, bool azimuth) {
+  using Kind = Source::Kind;
+  const Kind kind = projection == kProjectWi                      ? Kind::wi
+                    : projection == kProjectWo                    ? Kind::wo
+                    : projection == kProjectHalf                  ? Kind::half
+                    : projection.kind == Projection::Kind::affine ? Kind::affine
+                    : projection == kProjectDeviation             ? Kind::deviation_angle
+                    : azimuth                                     ? Kind::difference
+                                                                  : Kind::difference_angle;
+  needs_sum |= kind != Kind::wi && kind != Kind::wo && kind != Kind::affine;
+  for (Source& source : sources)
+    if (source.kind == kind && source.projection == projection) return source;
+  return sources.emplace_back(Source{.kind = kind, .projection = projection});
+}
+
+}  // namespace burnish

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include <burnish/factors/factored_brdf.h>
+
+namespace burnish {
+
+/// What the kernels of FactoredEvaluator carry out: a FactoredBrdf with everything shared found beforehand,
+/// in float, tables laid out for lookups by vectors.
+struct FactoredPlan {
+  static constexpr std::size_t kTogether = 3;      ///< channels that go through the lookups together
+  static constexpr std::size_t kRowStride = 4;     ///< floats a node in a table's rows
+  static constexpr std::size_t kPlaneVector = 16;  ///< floats of the vectors that hold planes
+  static constexpr std::size_t kMostVectors = 8;   ///< of a plane; longer lines have rows only
+  static constexpr std::size_t kMostSlots = 1024;  ///< different positions in tables
+
+  /// A position along an axis of tables, in cells from 0 to `cells`. With (x, y) of length r and den of the
+  /// projected vector, r / den = tan(theta / 2), a line's position is a r / (b r + c den), a disk's two in
+  /// slot and slot + 1, cells / 2 + (x, y) a / (b r + c den). By a power: a (r / den)^power in place of
+  /// a r / den.
+  struct Position {
+    bool disk;
+    float a, b, c, power, cells;  // power 0: none
+    std::size_t slot;
+
+    bool same_place(const Position& other) const noexcept;
+  };
+
+  /// An unnormalized projection and the positions that depend on it.
+  struct Source {
+    enum class Kind { wi, wo, half, difference_angle, deviation_angle, difference, affine };
+    Kind kind;
+    Projection projection;
+    bool radius = false;  // some position needs r
+    std::vector<Position> positions;
+  };
+
+  /// A lookup, or two of the same table that swapping the directions exchanges. Offsets into `values`.
+  struct Lookup {
+    bool plane = false, shared = false, pair = false;  // plane: two axes; shared by the channels
+    std::size_t x = 0, y = 0, pair_x = 0, pair_y = 0;  // slots
+    std::size_t width = 0;                             // nodes along x
+    /// Channels apart, each in whole vectors, 1, 2, 4 or 8; 0: none, the table is too long or a plane.
+    std::size_t planes = 0, plane_vectors = 0;
+    /// Three channels and a gap a node, these again for every three channels.
+    std::size_t rows = 0, row_block = 0;
+  };
+
+  struct Product {
+    std::size_t first, last;   // in `lookups`
+    std::vector<float> scale;  // a channel, filled up to whole groups
+  };
+
+  /// Throws Error for more than kMostSlots slots.
+  explicit FactoredPlan(const FactoredBrdf& brdf);
+
+  std::size_t channels, slots = 0;
+  bool needs_sum = false;  // wi + wo
+  double rounding_bound = 0;
+  std::vector<Source> sources;
+  std::vector<Product> products;
+  std::vector<Lookup> lookups;
+  std::vector<float> values;
+
+ private:
+  Lookup add_table(const Table& table);
+  std::array<std::size_t, 2> slots_of(const TableLayout& layout, const FactorUse& use);
+  std::size_t slot_of(const Projection& projection, Warp warp, int nodes, bool disk);
+  Source& source_of(const Projection& projection, bool azimuth);
+};
+
+}  // namespace burnish
