@@ -66,7 +66,11 @@ NeuralFile parse_neural(const FileBytes& file, std::string_view name) {
   findings.description = names.back();
   findings.conventions = {"675 weights, 1,350 bytes as half floats"};
   findings.theta_i_max = findings.theta_o_max = kHalfPi;
-  return {names.back(), NeuralBrdf(weights), std::move(findings)};
+  try {
+    return {names.back(), NeuralBrdf(weights), std::move(findings)};
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", file.name, error.what()));
+  }
 }
 
 }  // namespace burnish
