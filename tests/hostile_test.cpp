@@ -175,7 +175,7 @@ TEST_F(HostileCommandLine, FailsOnMissingEmptyAndUnwritableFiles) {
   EXPECT_EQ(run_burnish(fmt::format("convert ggx:alpha_x=0.1,alpha_y=0.4 '{}/out.binary'", folder_.string()))
                 .exit_code,
             1);
-  EXPECT_EQ(run_burnish(fmt::format("convert lambert '{}/out.unknown'", folder_.string())).exit_code, 1);
+  EXPECT_EQ(run_burnish(fmt::format("convert lambert '{}/out.unknown'", folder_.string())).exit_code, 2);
   EXPECT_EQ(file_count(), 1u);
 }
 

@@ -140,7 +140,8 @@ SAMPLER_INLINE Interval<kSlices, F, I> interval_at(const std::uint16_t* table, c
 template <int kSlices, class F, class I>
 SAMPLER_INLINE Interval<kSlices, F, I> find_interval(const std::uint16_t* table, const I (&start)[kSlices],
                                                      const F (&weight)[kSlices], int count, F target) {
-  return interval_at(table, start, weight, search(table, start, weight, count, target));
+  // what is no number, or below 0, falls into the first cell
+  return interval_at(table, start, weight, max(search(table, start, weight, count, target), I(0)));
 }
 
 /// d(turn) / d(azimuth) at w: along the circle of M's images, which M turns by 1 / stretch.
