@@ -10,6 +10,7 @@ void add_compare_command(CLI::App& app);
 void add_convert_command(CLI::App& app);
 void add_eval_command(CLI::App& app);
 void add_fit_command(CLI::App& app);
+void add_hw_command(CLI::App& app);
 void add_info_command(CLI::App& app);
 void add_measure_command(CLI::App& app);
 void add_specular_command(CLI::App& app);

@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   burnish::cli::add_measure_command(app);
   burnish::cli::add_convert_command(app);
   burnish::cli::add_specular_command(app);
+  burnish::cli::add_hw_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

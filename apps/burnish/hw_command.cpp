@@ -1,0 +1,206 @@
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <burnish/error.h>
+#include <burnish/file.h>
+#include <burnish/hardware/generate.h>
+
+#include "commands.h"
+
+namespace burnish::cli {
+namespace {
+
+struct UnitArguments {
+  std::string method = "exact", input = "cosine", shipped;
+  UnitConfig config;
+};
+
+std::shared_ptr<UnitArguments> add_unit_options(CLI::App& sub) {
+  auto arguments = std::make_shared<UnitArguments>();
+  std::string methods, units;
+  for (const UnitInfo& info : unit_methods())
+    methods += fmt::format("{}{} ({} to {} clocks)", methods.empty() ? "" : ", ", info.name, info.min_depth,
+                           info.max_depth);
+  for (const ShippedUnit& unit : shipped_units())
+    units += (units.empty() ? "" : ", ") + std::string(unit.name);
+  sub.add_option("--method", arguments->method, methods)->capture_default_str();
+  sub.add_option("--cos-bits", arguments->config.cosine_bits, "fraction bits of the input")
+      ->capture_default_str();
+  sub.add_option("--coef-bits", arguments->config.coefficient_bits,
+                 "width of a coefficient; 0: the method's own");
+  sub.add_option("--out-bits", arguments->config.output_bits, "width of the output")->capture_default_str();
+  sub.add_option("--depth", arguments->config.depth, "clocks from input to output; 0: the fewest");
+  sub.add_option("--input", arguments->input, "cosine: c; versine: v = 1 - c")
+      ->check(CLI::IsMember({"cosine", "versine"}))
+      ->capture_default_str();
+  sub.add_option("--unit", arguments->shipped,
+                 "a configuration of hw/ instead of the options above: " + units);
+  return arguments;
+}
+
+SpecularUnit make_unit(const UnitArguments& arguments) {
+  if (!arguments.shipped.empty()) return SpecularUnit(shipped_unit(arguments.shipped).config);
+  UnitConfig config = arguments.config;
+  config.method = unit_method(arguments.method);
+  config.input = arguments.input == "versine" ? UnitInput::versine : UnitInput::cosine;
+  return SpecularUnit(config);
+}
+
+void write_files(const std::string& folder, const std::vector<GeneratedFile>& files) {
+  for (const GeneratedFile& file : files)
+    write_then_rename(std::filesystem::path(folder) / file.name, file.text);
+}
+
+void add_generate(CLI::App& verb) {
+  CLI::App* sub =
+      verb.add_subcommand("generate", "Write module, table images, test bench and golden vectors");
+  sub->footer(
+      "Example: burnish hw generate --method exact --out-bits 10 --depth 8 --name highlight --out highlight\n"
+      "         cd highlight && iverilog -g2012 -f highlight.f highlight_tb.sv && ./a.out");
+  struct Arguments {
+    std::string name, out;
+    int vectors = 2000;
+    bool all = false, blinn = false;
+  };
+  auto unit_arguments = add_unit_options(*sub);
+  auto arguments = std::make_shared<Arguments>();
+  sub->add_option("--name", arguments->name, "of the module; by default the unit's or method's");
+  sub->add_option("--vectors", arguments->vectors, "golden vectors")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  sub->add_flag("--all", arguments->all, "every configuration of hw/, and a module `bench` around them");
+  sub->add_flag("--blinn", arguments->blinn,
+                "with Blinn's front end: vectors in; for --method exact --input versine");
+  sub->add_option("-o,--out", arguments->out, "folder, made where it is missing")->required();
+  sub->callback([unit_arguments, arguments] {
+    std::vector<std::string> names;
+    std::vector<SpecularUnit> units;
+    if (arguments->all) {
+      for (const ShippedUnit& unit : shipped_units()) {
+        names.emplace_back(unit.name);
+        units.emplace_back(unit.config);
+      }
+    } else {
+      const std::string kind =
+          unit_arguments->shipped.empty() ? unit_arguments->method : unit_arguments->shipped;
+      names.push_back(arguments->name.empty() ? kind : arguments->name);
+      units.push_back(make_unit(*unit_arguments));
+    }
+    std::error_code failed;
+    std::filesystem::create_directories(arguments->out, failed);
+    if (failed) throw Error::in_file(arguments->out, "a folder", failed.message());
+    if (arguments->blinn) {
+      write_files(arguments->out, generate_blinn(units[0], names[0], arguments->vectors));
+      return;
+    }
+    for (std::size_t i = 0; i < units.size(); ++i)
+      write_files(arguments->out, generate_unit(units[i], names[i], arguments->vectors));
+    write_files(arguments->out, {generate_bench(names, units)});
+  });
+}
+
+void add_model(CLI::App& verb) {
+  CLI::App* sub =
+      verb.add_subcommand("model", "Answer `exponent input` lines as the hardware does, to the bit");
+  sub->footer("Example: printf '50 32700\\n50 32768\\n' | burnish hw model --method exact");
+  auto unit_arguments = add_unit_options(*sub);
+  auto real = std::make_shared<bool>(false);
+  sub->add_flag(
+      "--real", *real,
+      "the input is a cosine in [0, 1], rounded to the input's format; the answer a value in [0, 1]");
+  sub->callback([unit_arguments, real] {
+    const SpecularUnit unit = make_unit(*unit_arguments);
+    const double one = static_cast<double>(1U << unit.config().cosine_bits);
+    const double full = (1 << unit.config().output_bits) - 1;
+    std::string line;
+    for (std::uint64_t number = 1; std::getline(std::cin, line); ++number) {
+      std::istringstream words(line);
+      int exponent = 0;
+      double input = -1;
+      const bool read = static_cast<bool>(words >> exponent >> input) && (words >> std::ws).eof();
+      const bool whole = *real || input == static_cast<double>(static_cast<std::int64_t>(input));
+      if (!read || exponent < 1 || exponent > kUnitMaxExponent ||
+          !(input >= 0 && input <= (*real ? 1 : one)) || !whole)
+        throw Error::in_line(
+            "standard input", number,
+            fmt::format("an exponent from 1 to {} and {}", kUnitMaxExponent,
+                        *real ? "a cosine in [0, 1]" : fmt::format("an input word from 0 to {}", one)),
+            "'" + line + "'");
+      const std::uint32_t word = *real ? unit.input(input) : static_cast<std::uint32_t>(input);
+      const std::uint32_t value = unit.value(static_cast<std::uint32_t>(exponent), word);
+      if (*real)
+        fmt::print("{:.6f}\n", value / full);
+      else
+        fmt::print("{}\n", value);
+    }
+  });
+}
+
+void add_error(CLI::App& verb) {
+  CLI::App* sub =
+      verb.add_subcommand("error", "Largest error against cos^exponent over every exponent and input");
+  sub->footer("Example: burnish hw error --method exact --out-bits 10");
+  struct Arguments {
+    int first = 1, last = 1000, exponent_step = 1;
+    std::uint32_t input_step = 1;
+    bool json = false;
+  };
+  auto unit_arguments = add_unit_options(*sub);
+  auto arguments = std::make_shared<Arguments>();
+  sub->add_option("--first", arguments->first, "exponent")
+      ->check(CLI::Range(1, kUnitMaxExponent))
+      ->capture_default_str();
+  sub->add_option("--last", arguments->last, "exponent")
+      ->check(CLI::Range(1, kUnitMaxExponent))
+      ->capture_default_str();
+  sub->add_option("--exponent-step", arguments->exponent_step, "")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  sub->add_option("--input-step", arguments->input_step, "")
+      ->check(CLI::Range(1, 1 << 20))
+      ->capture_default_str();
+  sub->add_flag("--json", arguments->json, "for programs");
+  sub->callback([unit_arguments, arguments] {
+    const SpecularUnit unit = make_unit(*unit_arguments);
+    const UnitError e = measure_unit_error(unit, arguments->first, arguments->last, arguments->input_step,
+                                           arguments->exponent_step);
+    if (arguments->json) {
+      nlohmann::json tables = nlohmann::json::array();
+      for (const UnitTable& t : unit.tables())
+        tables.push_back({{"name", t.name}, {"words", t.words.size()}, {"width", t.width}});
+      fmt::print("{}\n", nlohmann::json{{"vectors", e.vectors},
+                                        {"max_error_lsb", e.max_error},
+                                        {"worst_exponent", e.worst_exponent},
+                                        {"worst_input", e.worst_input},
+                                        {"correctly_rounded", e.correct},
+                                        {"falls", e.falls},
+                                        {"tables", tables}}
+                             .dump(2));
+      return;
+    }
+    fmt::print(
+        "{} vectors: at most {:.4f} of the last place of {} bits (exponent {}, input {}), {:.3f} % correctly "
+        "rounded, {} falls\n",
+        e.vectors, e.max_error, unit.config().output_bits, e.worst_exponent, e.worst_input, 100 * e.correct,
+        e.falls);
+  });
+}
+
+}  // namespace
+
+void add_hw_command(CLI::App& app) {
+  CLI::App* verb =
+      app.add_subcommand("hw", "The specular unit in hardware: SystemVerilog and its bit-exact model");
+  verb->require_subcommand(1);
+  verb->footer("Example: burnish hw generate --method exact --out unit");
+  add_generate(*verb);
+  add_model(*verb);
+  add_error(*verb);
+}
+
+}  // namespace burnish::cli

@@ -1,0 +1,10 @@
+# Writes OUTPUT, a C++ source that holds the SystemVerilog modules of FOLDER as text. Run with cmake -P.
+file(GLOB modules ${FOLDER}/*.sv)
+list(SORT modules)
+set(text "#include <burnish/hardware/generate.h>\n\nnamespace burnish {\n\nstd::vector<GeneratedFile> rtl_modules() {\n  return {\n")
+foreach(module ${modules})
+  get_filename_component(name ${module} NAME)
+  file(READ ${module} content)
+  string(APPEND text "{\"${name}\", R\"sv(${content})sv\"},\n")
+endforeach()
+file(WRITE ${OUTPUT} "${text}  };\n}\n\n}  // namespace burnish\n")
