@@ -3,6 +3,7 @@
 #include <optional>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <burnish/file.h>
@@ -17,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kHeldOutPairs = 20'000;
+constexpr std::size_t kDrawnPairs = 200'000, kHeldOutPairs = 20'000;
 
 Json figures_json(const ErrorFigures& f) {
   return {{"psnr", f.psnr},
@@ -39,21 +40,31 @@ Json negative_lobes_json(const SeparableBrdf& brdf, const Scorer& scorer) {
 
 }  // namespace
 
+void add_method_argument(CLI::App& verb, std::string& method) {
+  verb.add_option("--method", method,
+                  fmt::format("fit what others would instead of positive factors, at --budget bytes (default "
+                              "{}): {}",
+                              BaselineOptions{}.budget, fmt::join(baseline_methods(), ", ")));
+}
+
 Json fit_baseline(const Source& source, const BaselineArguments& arguments) {
   std::optional<SymmetrizedBrdf> symmetrized;
   if (arguments.symmetrize) symmetrized.emplace(source.ref());
   const BrdfRef brdf = symmetrized ? BrdfRef(*symmetrized) : source.ref();
-  const SampleSource samples = source.samples() ? from_samples(*source.samples(), arguments.symmetrize)
-                                                : from_brdf(brdf, arguments.samples, arguments.seed, false);
+  const SampleSource samples =
+      source.samples()
+          ? from_samples(*source.samples(), arguments.symmetrize)
+          : from_brdf(brdf, arguments.samples > 0 ? arguments.samples : kDrawnPairs, arguments.seed, false);
+  const std::size_t budget = arguments.budget > 0 ? arguments.budget : BaselineOptions{}.budget;
   BaselineFit fit = burnish::fit_baseline(
       brdf, samples, arguments.method,
-      {.budget = arguments.budget, .seed = arguments.seed, .progress = progress_bar(arguments.method)});
+      {.budget = budget, .seed = arguments.seed, .progress = progress_bar(arguments.method)});
 
   Json notes{{"source", source.name},
              {"source_format", source.findings.format},
              {"symmetrized", arguments.symmetrize},
              {"method", fit.method},
-             {"budget", arguments.budget}};
+             {"budget", budget}};
   notes.update(Json::parse(fit.baseline.notes));
   const BrdfRef model = baseline_ref(fit.baseline.brdf);
   const Scorer scorer(brdf, {.count = kHeldOutPairs, .seed = arguments.seed + 1});

@@ -168,7 +168,7 @@ class Search {
         options_(options),
         splits_(source.isotropic() ? std::span<const Split>(kIsotropicSplits)
                                    : std::span<const Split>(kAnisotropicSplits)),
-        scorer_(source, {.count = 500, .seed = options.seed, .image_size = 64}) {}
+        scorer_(source, {.count = 500, .seed = options.seed, .image_size = options.image_size}) {}
 
   SeparableFit run() {
     // every split and coupling from one start, then the best few climb

@@ -29,6 +29,7 @@ SeparableBrdf decompose(const PairGrid& grid, Decomposition method, Coupling cou
 struct SeparableOptions {
   std::size_t budget = 2640;  ///< bytes
   std::uint64_t seed = 1;
+  int image_size = 64;                                 ///< of the lit spheres that layouts are compared by
   std::function<void(double fraction)> progress = {};  ///< called with rising shares of the work
 };
 
@@ -37,8 +38,8 @@ struct SeparableFit {
   std::size_t tried = 0;  ///< layouts compared
 };
 
-/// The decomposition of at most `budget` bytes that makes the best pictures (psnr of lit spheres of 64
-/// pixels), found by hill climbing over how the coordinates are split between u and v, sizes, terms and
+/// The decomposition of at most `budget` bytes that makes the best pictures (psnr of small lit
+/// spheres), found by hill climbing over how the coordinates are split between u and v, sizes, terms and
 /// shared channels. Isotropic sources are split as θ_h | (θ_d, φ_d), (θ_h, θ_d) | φ_d, θ_d | (θ_h, φ_d);
 /// anisotropic ones, on disks of h and d, as h | d and (h, θ_d) | φ_d. The source should be reciprocal: the
 /// result is. Deterministic. Throws Error if no layout fits the budget or the source knows nothing.
