@@ -195,7 +195,8 @@ TEST_F(HostileCommandLine, ConvertsWhatIsWell) {
   EXPECT_EQ(run_burnish(fmt::format("convert lambert '{0}/l.bsdf'", out)).exit_code, 0);
   EXPECT_EQ(run_burnish(fmt::format("info --json '{0}/l.bsdf'", out)).exit_code, 0);
   EXPECT_EQ(run_burnish(fmt::format("fit ggx --method dgf --budget 600 -o '{}/d.json'", out)).exit_code, 0);
-  EXPECT_EQ(run_burnish(fmt::format("fit ggx --method analytic:ward -o '{}/w.json' --json", out)).exit_code, 0);
+  EXPECT_EQ(run_burnish(fmt::format("fit ggx --method analytic:ward -o '{}/w.json' --json", out)).exit_code,
+            0);
   EXPECT_EQ(run_burnish(fmt::format("compare ggx '{0}/d.json' '{0}/w.json' --count 100", out)).exit_code, 0);
   EXPECT_EQ(open_source(out + "/d.json", {}).findings.format, "dgf baseline");
   EXPECT_EQ(run_burnish(fmt::format("fit ggx --method pca -o '{}/p.json'", out)).exit_code, 1);
