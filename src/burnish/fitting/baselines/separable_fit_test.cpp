@@ -8,6 +8,7 @@
 #include <burnish/factors/baselines_for_tests.h>
 #include <burnish/fitting/baselines/separable_fit.h>
 #include <burnish/metrics/brdfs_for_tests.h>
+#include <burnish/reflectance/goniometer.h>
 
 namespace burnish {
 namespace {
