@@ -48,8 +48,9 @@ TEST(PairCoordinates, AreHalfDifferenceAngles) {
     const PairPlace place(wi, wo);
     EXPECT_NEAR(place[theta_h] * place[theta_h] * kHalfPi, angles.theta_h, 1e-9);
     EXPECT_NEAR(place[theta_d] * kHalfPi, angles.theta_d, 1e-7);
-    if (angles.theta_d > 1e-3 && angles.theta_d < 1.5)
+    if (angles.theta_d > 1e-3 && angles.theta_d < 1.5) {
       EXPECT_NEAR(std::cos(2 * place[phi_d] * kHalfPi), std::cos(2 * angles.phi_d), 1e-6);
+    }
   }
 }
 
