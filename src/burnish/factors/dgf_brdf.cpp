@@ -10,7 +10,7 @@ namespace burnish {
 
 namespace {
 
-constexpr float kLargestConstant = 1e9f;
+constexpr float kLargestConstant = 1e30f;  // within it no product overflows
 
 void check_constants(std::span<const float> constants, const char* name) {
   for (const float c : constants)

@@ -17,7 +17,7 @@ class DgfBrdf {
  public:
   /// D has the axis theta_h, F and G have theta_d (G is looked up where a direction meets its mirror image,
   /// whose theta_d is its polar angle), one term each. Throws Error unless they pass check_node_table with
-  /// values >= 0, and diffuse and scale have one entry in [0, 1e9] a channel.
+  /// values >= 0, and diffuse and scale have one entry in [0, 1e30] a channel.
   DgfBrdf(std::vector<float> diffuse, std::vector<float> scale, NodeTable d, NodeTable g, NodeTable f);
 
   int channels() const noexcept { return static_cast<int>(diffuse_.size()); }
