@@ -69,7 +69,7 @@ TEST(BaselineFile, SaysWhatItExpected) {
   EXPECT_THAT(error_of("{}"), HasSubstr("kind"));
   EXPECT_THAT(error_of(replaced(good, "nmf", "pca")),
               HasSubstr("svd, nd, nmf, dgf or analytic, found 'pca'"));
-  EXPECT_THAT(error_of(replaced(good, "nmf", "dgf")), HasSubstr("diffuse"));
+  EXPECT_THAT(error_of(replaced(good, "nmf", "dgf")), HasSubstr("tables: expected 3, found 2"));
   EXPECT_THAT(error_of(replaced(good, "nmf", "analytic")), HasSubstr("tables: expected 0, found 2"));
   EXPECT_THAT(error_of(replaced(good, "theta_h", "theta_z")), HasSubstr("'theta_z'"));
   EXPECT_THAT(error_of(replaced(good, R"("count":7)", R"("count":8)")), HasSubstr("values"));

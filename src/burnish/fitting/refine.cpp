@@ -1,11 +1,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
 #include <burnish/error.h>
 #include <burnish/fitting/refine.h>
 #include <burnish/fitting/refine_system.h>
+
+// Of LAPACK, which has no header of its own: Cholesky factorization of a column-major matrix, and solution with it.
+extern "C" {
+void dpotrf_(const char* triangle, const int* n, double* matrix, const int* stride, int* info);
+void dpotrs_(const char* triangle, const int* n, const int* columns, const double* matrix, const int* stride,
+             double* right_sides, const int* right_stride, int* info);
+}
 
 namespace burnish {
 
@@ -23,6 +28,16 @@ constexpr double kLongestStep = 2;  // change of a logarithm
 // A truncated solution is good enough for a step that is tried and judged.
 constexpr int kMostCgIterations = 40;
 constexpr double kCgTolerance = 1e-2;
+
+/// x := matrix^-1 x of a symmetric positive definite matrix, whose lower triangle its factor replaces; zero where
+/// rounding made it indefinite.
+void solve_in_place(Eigen::MatrixXd& matrix, Eigen::VectorXd& x) {
+  const int n = static_cast<int>(x.size()), one = 1;
+  int info = 0;
+  dpotrf_("L", &n, matrix.data(), &n, &info);
+  if (info == 0) dpotrs_("L", &n, &one, matrix.data(), &n, x.data(), &n, &info);
+  if (info != 0) x.setZero();
+}
 
 /// One channel's, or coupled channels', damped linear systems.
 class StepSolver {
@@ -50,8 +65,8 @@ class StepSolver {
     if (direct()) {
       factorized_ = partial_.front().matrix;
       factorized_.diagonal() += extra;
-      Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> cholesky(factorized_);
-      dx = -cholesky.solve(partial_.front().gradient);
+      dx = -partial_.front().gradient;
+      solve_in_place(factorized_, dx);
     } else {
       dx = conjugate_gradients(extra, diagonal + extra);
     }
