@@ -17,9 +17,9 @@ constexpr double kCentres[] = {0.25, 0.6, 0.4, 0.8, 0.15, 0.5, 0.7, 0.3};
 // The way to the last refinement is made on about this many pairs and in few steps.
 constexpr std::size_t kCoarsePairs = 20'000;
 constexpr int kRoughSteps = 12;
-// Grids are added at the end, this share of the work being done.
-constexpr int kGridSteps = 10;
-constexpr double kThinPart = 0.4;
+// Grids are added at the end, in rounds: each sees the floors that shared exponents set anew.
+constexpr int kGridSteps = 8, kGridRounds = 2;
+constexpr double kThinPart = 0.3;  // share of the work done by then
 
 /// Adds one refinement to the summary; its progress runs from `from` to `to`.
 void refine_part(LogModel& model, const TrainingSet& set, RefineOptions options, int steps, double from,
@@ -123,14 +123,16 @@ LobesFit fit_plan(const TrainingSet& set, const LobePlan& plan, std::size_t byte
         fit.model.spec.tables[t].name = spec.tables[t].name;
       fit.model = resampled(fit.model, spec);
     }
-    if (j < lobes)
+    if (j < lobes || grids)
       refine_part(fit.model, coarse, thin_options, kRoughSteps, done(j - 1), done(j), fit.summary);
     else
       refine_fully(fit.model, coarse, set, thin_options, done(j - 1), fit.summary);
   }
   if (grids) {
     fit.model = resampled(fit.model, whole);
-    refine_part(fit.model, set, options, kGridSteps, kThinPart, 1, fit.summary);
+    const auto part = [](int round) { return kThinPart + (1 - kThinPart) * round / kGridRounds; };
+    for (int k = 0; k < kGridRounds; ++k)
+      refine_part(fit.model, set, options, kGridSteps, part(k), part(k + 1), fit.summary);
   }
   return fit;
 }
