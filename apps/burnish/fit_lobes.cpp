@@ -8,6 +8,7 @@
 #include <burnish/error.h>
 #include <burnish/factors/table_format.h>
 #include <burnish/fitting/budget.h>
+#include <burnish/fitting/rounding.h>
 #include <burnish/fitting/search.h>
 #include <burnish/reflectance/brdf.h>
 
@@ -56,14 +57,14 @@ RefineOptions refine_options(const LobesArguments& arguments, int channels) {
 }
 
 FactoredBrdf finish(const LobesFit& fit, const TrainingSet& set, const LobesArguments& arguments,
-                    nlohmann::ordered_json& notes) {
+                    const RefineOptions& refine, nlohmann::ordered_json& notes) {
   notes["samples"] = set.size();
   notes["lobes"] = fit.summary.lobes;
   notes["loss"] = arguments.loss;
   notes["iterations"] = fit.summary.iterations;
   notes["stop_reason"] = fit.summary.stop_reason;
   notes["objective"] = fit.summary.objective_after;
-  return to_brdf(fit.model, format_of(arguments, set.channels));
+  return to_rounded_brdf(fit.model, set, refine);
 }
 
 }  // namespace
@@ -105,7 +106,7 @@ FactoredBrdf fit_to_budget(const Source& source, const LobesArguments& arguments
     notes["search"] = {{"trials", found.trials.size()}, {"kept", std::move(kept)}};
   }
   notes["budget"] = arguments.budget;
-  return finish(fit_plan(set, plan, arguments.budget, texel, refine), set, arguments, notes);
+  return finish(fit_plan(set, plan, arguments.budget, texel, refine), set, arguments, refine, notes);
 }
 
 FactoredBrdf fit_several_lobes(const Source& source, const ModelSpec& spec, const LobesArguments& arguments,
@@ -113,7 +114,8 @@ FactoredBrdf fit_several_lobes(const Source& source, const ModelSpec& spec, cons
   bool disk = false;
   for (const ModelSpec::TableSpec& table : spec.tables) disk |= table.layout.shape == TableShape::disk;
   const TrainingSet set = training_set(source, arguments, disk);
-  return finish(fit_lobes(set, spec, refine_options(arguments, set.channels)), set, arguments, notes);
+  const RefineOptions refine = refine_options(arguments, set.channels);
+  return finish(fit_lobes(set, spec, refine), set, arguments, refine, notes);
 }
 
 ModelSpec one_lobe_spec(const Source& source, const LobesArguments& arguments) {

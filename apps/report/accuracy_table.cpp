@@ -9,6 +9,7 @@
 #include <burnish/factors/table_format.h>
 #include <burnish/fitting/baselines/baselines.h>
 #include <burnish/fitting/budget.h>
+#include <burnish/fitting/rounding.h>
 #include <burnish/reflectance/sample_source.h>
 
 #include "report_tools.h"
@@ -27,9 +28,9 @@ FactoredBrdf fit_ours(BrdfRef reference, std::size_t bytes) {
   const std::size_t texel = texel_bytes(format, channels);
   const TrainingSet set =
       draw_training_set(reference, {.directions = reference.isotropic() ? 60'000u : 200'000u});
-  const LobesFit result =
-      fit_plan(set, default_plan(bytes, 0, reference.isotropic(), texel), bytes, texel, {.format = format});
-  return to_brdf(result.model, format);
+  const RefineOptions options{.format = format};
+  const LobePlan plan = default_plan(bytes, 0, reference.isotropic(), texel);
+  return to_rounded_brdf(fit_plan(set, plan, bytes, texel, options).model, set, options);
 }
 
 Score score_of(const Scorer& scorer, std::string_view method, std::size_t budget, BrdfRef model) {

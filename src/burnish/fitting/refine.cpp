@@ -2,15 +2,9 @@
 #include <cmath>
 
 #include <burnish/error.h>
+#include <burnish/fitting/cholesky.h>
 #include <burnish/fitting/refine.h>
 #include <burnish/fitting/refine_system.h>
-
-// Of LAPACK, which has no header of its own: Cholesky factorization of a column-major matrix, and solution with it.
-extern "C" {
-void dpotrf_(const char* triangle, const int* n, double* matrix, const int* stride, int* info);
-void dpotrs_(const char* triangle, const int* n, const int* columns, const double* matrix, const int* stride,
-             double* right_sides, const int* right_stride, int* info);
-}
 
 namespace burnish {
 
@@ -28,16 +22,6 @@ constexpr double kLongestStep = 2;  // change of a logarithm
 // A truncated solution is good enough for a step that is tried and judged.
 constexpr int kMostCgIterations = 40;
 constexpr double kCgTolerance = 1e-2;
-
-/// x := matrix^-1 x of a symmetric positive definite matrix, whose lower triangle its factor replaces; zero where
-/// rounding made it indefinite.
-void solve_in_place(Eigen::MatrixXd& matrix, Eigen::VectorXd& x) {
-  const int n = static_cast<int>(x.size()), one = 1;
-  int info = 0;
-  dpotrf_("L", &n, matrix.data(), &n, &info);
-  if (info == 0) dpotrs_("L", &n, &one, matrix.data(), &n, x.data(), &n, &info);
-  if (info != 0) x.setZero();
-}
 
 /// One channel's, or coupled channels', damped linear systems.
 class StepSolver {
@@ -104,12 +88,6 @@ class StepSolver {
   RefineSystem::Rows rows_;
 };
 
-bool any_shared(const LogModel& model) {
-  for (std::size_t t = 0; t < model.spec.tables.size(); ++t)
-    if (model.channels > 1 && model.step(t) == 1) return true;
-  return false;
-}
-
 }  // namespace
 
 RefineSummary refine(LogModel& model, const TrainingSet& set, const RefineOptions& options) {
@@ -120,7 +98,7 @@ RefineSummary refine(LogModel& model, const TrainingSet& set, const RefineOption
   const Lookups lookups = find_lookups(model.spec, set);
   const PictureLoss loss{.shares = options.shares, .exposure = set.exposure};
   const auto channels = static_cast<std::size_t>(model.channels);
-  const std::size_t together = any_shared(model) ? channels : 1, systems = channels / together;
+  const std::size_t together = model.any_shared() ? channels : 1, systems = channels / together;
   RefineSummary summary{.stop_reason = "no more progress"};
 
   for (std::size_t s = 0; s < systems; ++s) {
