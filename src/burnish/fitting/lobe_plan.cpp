@@ -120,22 +120,6 @@ LobePlan default_plan(std::size_t bytes, int lobes, bool isotropic, std::size_t 
     plan.factors = {line("p", {kProjectWo, kProjectWi}, 0.083), line("q", {kProjectHalf}, 0.587, kHalfWarp),
                     line("m", {kProjectDeviation}, 0.183, kDeviationWarp),
                     line("r", {kProjectDifference}, 0.147)};
-    if (getenv("Z")) {
-      plan.factors.push_back(line("z", {kProjectHalf}, atof(getenv("Z")), kHalfWarp));
-      plan.factors.back().every_lobe = true;
-    }
-    for (auto& f : plan.factors) {
-      const std::string n = f.name;
-      if (auto* w = getenv(("W_" + n).c_str())) f.warp = parse_warp(w);
-      if (auto* w = getenv(("H_" + n).c_str())) f.share *= atof(w);
-      if (getenv(("E_" + n).c_str())) f.every_lobe = true;
-    }
-    if (getenv("LB") && lobes <= 0) plan.lobes += atoi(getenv("LB"));
-    const auto grid = [&](const char* name, Projection x, Projection y) {
-      const auto warp = [](const Projection& p) { return p == kProjectDifference ? Warp{} : kDeviationWarp; };
-      plan.factors.push_back(
-          {name, TableShape::grid, {x}, (1 / lines - 1) / (three ? 3 : 1), warp(x), y, warp(y)});
-    };
     if (plan.lobes > 1) {
       // What the lobes have in common of q, rings of films above all, is finely resolved once; their own q
       // are coarse.
@@ -149,12 +133,6 @@ LobePlan default_plan(std::size_t bytes, int lobes, bool isotropic, std::size_t 
       plan.factors.push_back(
           {name, TableShape::grid, {x}, (1 / lines - 1) / (three ? 3 : 1), warp(x), y, warp(y)});
     };
-    if (getenv("S")) {
-      double c = atof(getenv("S"));
-      double sh = atof(getenv("SH"));
-      plan.factors.push_back(line("s", {Projection{.wi = 1, .wo = c}, Projection{.wi = c, .wo = 1}}, sh,
-                                  Warp{WarpKind::power, atof(getenv("SW"))}));
-    }
     if (grids) grid("g", kProjectHalf, kProjectDifference);
     if (three) {
       grid("k", kProjectDeviation, kProjectDifference);
