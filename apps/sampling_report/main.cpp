@@ -12,8 +12,9 @@
 
 #include <burnish/error.h>
 #include <burnish/eval/tabulated_sampler.h>
+#include <burnish/factors/table_format.h>
 #include <burnish/file.h>
-#include <burnish/fitting/homomorphic.h>
+#include <burnish/fitting/budget.h>
 #include <burnish/io/rgl.h>
 #include <burnish/math/parallel.h>
 #include <burnish/math/random.h>
@@ -53,6 +54,38 @@ struct Measurement {
 
 constexpr std::size_t kWays = 5;
 constexpr std::array<const char*, kWays> kWayNames{"cosine", "GGX", "GGX + cosine", "RGL's own", "burnish"};
+// with what no way of drawing by the material alone can beat: the density f cos(theta_i) / albedo
+constexpr std::size_t kDensities = kWays + 1, kOurs = kWays - 1;
+constexpr const char* kProportional = "in proportion";
+
+// The density of an isotropic BRDF's own light; nothing draws by it.
+class Proportional {
+ public:
+  explicit Proportional(BrdfRef brdf) : brdf_(brdf) {
+    std::vector<double> f(static_cast<std::size_t>(brdf.channels()));
+    for (int i = 0; i <= kSteps; ++i) {
+      const Vec3 wo = spherical_direction(std::min(radians(90.0 * i / kSteps), radians(89.9)), 0);
+      double sum = 0;
+      for (const auto& [wi, weight] : half_vector_quadrature(wo, 96, 96))
+        sum += reflected_size(brdf, wi, wo, f) * weight;
+      albedo_.push_back(sum);
+    }
+  }
+  DrawnDirection sample_wi(Vec3, Point2) const noexcept { return {}; }
+  double pdf(Vec3 wi, Vec3 wo) const noexcept {
+    if (wi.z <= 0 || wo.z <= 0) return 0;
+    std::array<double, 3> f;
+    const double at = theta_of(wo) / kHalfPi * kSteps;
+    const auto low = std::min(static_cast<std::size_t>(at), albedo_.size() - 2);
+    const double part = at - static_cast<double>(low);
+    return reflected_size(brdf_, wi, wo, f) / ((1 - part) * albedo_[low] + part * albedo_[low + 1]);
+  }
+
+ private:
+  static constexpr int kSteps = 90;
+  BrdfRef brdf_;
+  std::vector<double> albedo_;
+};
 
 // A BRDF and every way to draw for it.
 struct Drawers {
@@ -75,6 +108,17 @@ struct Material {
   FactoredBrdf model;
 };
 
+constexpr std::size_t kModelBytes = 2700;
+
+// As `burnish fit --budget` does.
+FactoredBrdf fit_model(BrdfRef reference) {
+  const std::size_t texel = texel_bytes(TableFormat::rgb9e5, 3);
+  const TrainingSet set = draw_training_set(reference, {.directions = 60'000});
+  const LobesFit fit = fit_plan(set, default_plan(kModelBytes, 0, true, texel), kModelBytes, texel,
+                                {.format = TableFormat::rgb9e5});
+  return to_brdf(fit.model, TableFormat::rgb9e5);
+}
+
 std::vector<Material> load_materials(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
@@ -82,20 +126,19 @@ std::vector<Material> load_materials(const fs::path& folder) {
   std::vector<Material> materials;
   for (const fs::path& file : files) {
     RglTable table = parse_rgl(read_file(file), {}).table;
-    table.clamp_negatives();
-    const SymmetrizedBrdf reference(table);
-    const ModelSpec spec = parse_model_spec("pqpr", {}, true);
-    FactoredBrdf model = fit_homomorphic(from_brdf(reference, 200'000, 1, false), spec, {}).brdf;
+    FactoredBrdf model = fit_model(SymmetrizedBrdf(table));
     materials.push_back({file.stem().string(), std::move(table), std::move(model)});
   }
   return materials;
 }
 
-void print_header(const char* first) {
+// A table's first line: the ways, and `last` unless it is empty.
+void print_header(const char* first, const std::string& last = {}) {
   fmt::print("| {} |", first);
   for (const char* way : kWayNames) fmt::print(" {} |", way);
+  if (!last.empty()) fmt::print(" {} |", last);
   fmt::print("\n|---|");
-  for (std::size_t i = 0; i < kWays; ++i) fmt::print("---|");
+  for (std::size_t i = 0; i < kWays + !last.empty(); ++i) fmt::print("---|");
   fmt::print("\n");
 }
 
@@ -127,7 +170,7 @@ void report_weights(const std::vector<Material>& materials) {
   fmt::print(
       "## Weights\n\nThe weight of a draw is f cos(theta_i) / pdf, f the root mean square of the channels. "
       "Mean over "
-      "the materials' `pqpr` models: second moment of the weights over their squared mean (1: drawn in "
+      "the materials' models: second moment of the weights over their squared mean (1: drawn in "
       "proportion), "
       "in brackets the share of draws below the horizon; last, the largest weight of all materials over its "
       "mean. "
@@ -157,21 +200,25 @@ void report_weights(const std::vector<Material>& materials) {
 
 // ---- Variance under environments
 
-constexpr int kTurns = 8, kPictureSize = 24, kSkySamples = 144;
+constexpr int kTurns = 8, kPictureSize = 24, kSamples = 144;
 
 struct Variance {
-  std::array<double, kWays> of_picture{},
-      of_pixels{};  // relative to the picture's mean square; to each pixel
+  std::array<double, kDensities> of_picture{};  // relative to the picture's mean square
+  std::array<double, kDensities> of_pixels{};   // to each pixel's square
 };
 
 // Over all turns of an environment.
-Variance variance_of(BrdfRef brdf, const Drawers& drawers, const Environment& environment) {
+Variance variance_of(BrdfRef brdf, const Drawers& drawers, const Proportional& proportional,
+                     const Environment& environment) {
+  std::vector<SamplerRef> densities;
+  for (const SamplerRef s : drawers.all()) densities.push_back(s);
+  densities.push_back(proportional);
   Variance sum;
   double energy = 0;
   for (int turn = 0; turn < kTurns; ++turn) {
     const auto [mean, variance] = moments_in_environment(
-        brdf, drawers.tabulated, drawers.all(), turned(environment, kTwoPi * turn / kTurns),
-        {.size = kPictureSize, .samples = kSkySamples, .seed = 7});
+        brdf, drawers.tabulated, densities, turned(environment, kTwoPi * turn / kTurns),
+        {.size = kPictureSize, .samples = kSamples, .seed = 7});
     double total = 0;
     std::size_t lit = 0;
     for (const float value : mean.pixels) {
@@ -183,7 +230,7 @@ Variance variance_of(BrdfRef brdf, const Drawers& drawers, const Environment& en
     for (std::size_t i = 0; i < mean.pixels.size(); ++i) {
       const double value = mean.pixels[i];
       energy += value * value;
-      for (std::size_t k = 0; k < kWays; ++k) {
+      for (std::size_t k = 0; k < kDensities; ++k) {
         sum.of_picture[k] += variance[k].pixels[i];
         sum.of_pixels[k] +=
             variance[k].pixels[i] / (value * value + floor * floor) / (static_cast<double>(lit) * kTurns);
@@ -210,32 +257,39 @@ void report_variance(const std::vector<Material>& materials, bool of_models) {
   fmt::print("## Variance, {}\n\n", of_models ? "rendering the models" : "rendering the measurements");
   for (const Environment& environment : environments()) {
     fmt::print("Environment `{}`:\n\n", environment.name);
-    print_header("material");
-    std::array<double, kWays> ratio{}, pixel_ratio{}, worst{}, time{};
+    print_header("material", kProportional);
+    std::array<double, kDensities> ratio{}, worst{}, pixel_ratio{};
+    std::array<double, kWays> time{}, timed_ratio{};
     for (const Material& m : materials) {
       const Measurement measurement{&m.table};
       const BrdfRef brdf = of_models ? BrdfRef(m.model) : BrdfRef(measurement);
       const Drawers drawers(brdf, m.table);
-      const Variance variance = variance_of(brdf, drawers, environment);
+      const Variance variance = variance_of(brdf, drawers, Proportional(brdf), environment);
       fmt::print("| {} |", m.name);
       const auto share = 1 / static_cast<double>(materials.size());
-      for (std::size_t k = 0; k < kWays; ++k) {
+      for (std::size_t k = 0; k < kDensities; ++k) {
         fmt::print(" {:.4g} |", variance.of_picture[k]);
-        const double r = variance.of_picture.back() / variance.of_picture[k];
+        const double r = variance.of_picture[kOurs] / variance.of_picture[k];
         ratio[k] += share * r;
         worst[k] = std::max(worst[k], r);
-        pixel_ratio[k] += share * variance.of_pixels.back() / variance.of_pixels[k];
-        time[k] += share * time_of(brdf, drawers.all()[k]);
+        pixel_ratio[k] += share * variance.of_pixels[kOurs] / variance.of_pixels[k];
+      }
+      std::array<double, kWays> once;
+      for (std::size_t k = 0; k < kWays; ++k) once[k] = time_of(brdf, drawers.all()[k]);
+      for (std::size_t k = 0; k < kWays; ++k) {
+        time[k] += share * once[k];
+        timed_ratio[k] += share * variance.of_picture[kOurs] / variance.of_picture[k] * once[kOurs] / once[k];
       }
       fmt::print("\n");
     }
-    const auto line = [](const char* name, const std::array<double, kWays>& values) {
+    const auto line = [](const char* name, std::span<const double> values) {
       fmt::print("| {} |", name);
       for (const double v : values) fmt::print(" {:.3f} |", v);
-      fmt::print("\n");
+      fmt::print("{}\n", values.size() < kDensities ? " |" : "");
     };
     line("**burnish's over this, mean**", ratio);
     line("burnish's over this, worst", worst);
+    line("the same in equal time, mean", timed_ratio);
     line("the same of pixels, mean", pixel_ratio);
     line("µs for a draw and its value", time);
     fmt::print("\n");
@@ -266,10 +320,9 @@ void report_errors(const Material& m, const fs::path& docs) {
       "## Error against samples and time\n\n{} rendered as measured under `{}`, 64 x 64 pixels "
       "([by count](figures/sampling-error-count.svg), [by time](figures/sampling-error-time.svg)); "
       "root mean square error over root mean square value. The last column draws from points jittered in a "
-      "square grid.\n\n| samples |",
+      "square grid.\n\n",
       m.name, studio.name);
-  for (const char* way : kWayNames) fmt::print(" {} |", way);
-  fmt::print(" burnish, stratified |\n|---|---|---|---|---|---|---|\n");
+  print_header("samples", "burnish, stratified");
   for (std::size_t k = 0; k <= kWays; ++k) {
     const std::string name = k < kWays ? kWayNames[k] : "burnish, stratified";
     const PlotStyle style = k < kWays ? PlotStyle::line_and_points : PlotStyle::dashed;
@@ -337,8 +390,10 @@ void report(const fs::path& docs) {
   const std::vector<Material> materials = load_materials(fs::path(data) / "rgl");
   fmt::print(
       "# Sampling: what was measured\n\nMade by `make sampling-report` on {}. What it means is in "
-      "[sampling.md](sampling.md).\n\n",
-      processor());
+      "[sampling.md](sampling.md). Models are those of `burnish fit --budget {}`; tables of a sampler take "
+      "{} "
+      "bytes.\n\n",
+      processor(), kModelBytes, TabulatedSampler(materials.front().model).bytes());
   report_weights(materials);
   fmt::print(
       "Variances below are of one sample, summed over the picture of a sphere ({} pixels wide) and its "

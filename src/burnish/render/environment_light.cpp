@@ -19,9 +19,20 @@ Rgb mix(Rgb a, Rgb b, double t) noexcept {
   return Rgb(1 - t) * a + Rgb(t) * b;
 }
 
-bool in_disc(const Environment& e, Vec3 w) noexcept {
-  return std::ranges::any_of(e.discs,
-                             [w](const DistantDisc& d) { return dot(w, d.direction) > std::cos(d.radius); });
+bool in_disc(const DistantDisc& disc, Vec3 w) noexcept {
+  return dot(w, disc.direction) > std::cos(disc.radius);
+}
+
+// Solid angle over 2 pi.
+double cap_of(const DistantDisc& disc) noexcept {
+  return 1 - std::cos(disc.radius);
+}
+
+// Evenly over the disc's solid angle.
+Vec3 direction_in(const DistantDisc& disc, Point2 u) noexcept {
+  const Vec3 d = disc.direction, across = normalize(cross(d, {d.y, d.z, d.x})), up = cross(d, across);
+  const double fall = cap_of(disc) * u.x, sine = std::sqrt(fall * (2 - fall)), phi = kTwoPi * u.y;
+  return (1 - fall) * d + sine * (std::cos(phi) * across + std::sin(phi) * up);
 }
 
 Rgb sky(const Environment& e, Vec3 w) noexcept {
@@ -85,7 +96,7 @@ Point2 point(Pcg32& random, const LightOptions& options, int sample) noexcept {
 Rgb Environment::radiance(Vec3 w) const noexcept {
   Rgb sum = sky(*this, w);
   for (const DistantDisc& disc : discs)
-    if (dot(w, disc.direction) > std::cos(disc.radius)) sum = sum + disc.radiance;
+    if (in_disc(disc, w)) sum = sum + disc.radiance;
   return sum;
 }
 
@@ -153,32 +164,29 @@ LightMoments moments_in_environment(BrdfRef brdf, SamplerRef guide, std::span<co
     const Vec3 wo = sphere_local(n, kView);
     Channels mean{};
     std::vector<Channels> squares(samplers.size());
-    // a direction that stands for `solid_angle`
-    const auto add = [&](Vec3 wi, Rgb radiance, double solid_angle) {
-      const Channels light = light_from(brdf, wi, wo, radiance);
-      for (std::size_t c = 0; c < 3; ++c) mean[c] += light[c] * solid_angle;
+    // Drawn from the guide and from every disc alike, a direction stands for the inverse of all their
+    // densities together: the balance heuristic [Veach 1995].
+    const double count = options.samples;
+    const auto add = [&](Vec3 wi, Vec3 w) {
+      double density = count * guide.pdf(wi, wo);
+      for (const DistantDisc& disc : environment.discs)
+        if (in_disc(disc, w)) density += count / (kTwoPi * cap_of(disc));
+      if (!(density > 0)) return;
+      const Channels light = light_from(brdf, wi, wo, environment.radiance(w));
+      for (std::size_t c = 0; c < 3; ++c) mean[c] += light[c] / density;
       for (std::size_t s = 0; s < samplers.size(); ++s)
         if (const double pdf = samplers[s].pdf(wi, wo); pdf > 0)
-          for (std::size_t c = 0; c < 3; ++c) squares[s][c] += light[c] * light[c] / pdf * solid_angle;
+          for (std::size_t c = 0; c < 3; ++c) squares[s][c] += light[c] * light[c] / (pdf * density);
     };
     for (int i = 0; i < options.samples; ++i) {
       const DrawnDirection drawn = guide.sample_wi(wo, point(random, stratified, i));
-      const Vec3 w = to_world(drawn.wi);
-      if (drawn.pdf > 0 && !in_disc(environment, w))
-        add(drawn.wi, environment.radiance(w), 1 / (drawn.pdf * options.samples));
+      if (drawn.pdf > 0) add(drawn.wi, to_world(drawn.wi));
     }
-    for (const DistantDisc& disc : environment.discs) {
-      constexpr int kSide = 32;
-      const Vec3 d = disc.direction, across = normalize(cross(d, {d.y, d.z, d.x})), up = cross(d, across);
-      const double cap = 1 - std::cos(disc.radius);
-      for (int i = 0; i < kSide * kSide; ++i) {
-        const double fall = cap * (i / kSide + 0.5) / kSide, phi = kTwoPi * (i % kSide + 0.5) / kSide;
-        const double sine = std::sqrt(fall * (2 - fall));
-        const Vec3 w = (1 - fall) * d + sine * (std::cos(phi) * across + std::sin(phi) * up);
-        const Vec3 wi = sphere_local(n, w);
-        if (wi.z > 0) add(wi, environment.radiance(w), kTwoPi * cap / (kSide * kSide));
+    for (const DistantDisc& disc : environment.discs)
+      for (int i = 0; i < options.samples; ++i) {
+        const Vec3 w = direction_in(disc, point(random, stratified, i));
+        add(sphere_local(n, w), w);
       }
-    }
     for (std::size_t c = 0; c < 3; ++c) {
       moments.mean.at(x, y)[c] = static_cast<float>(mean[c]);
       for (std::size_t s = 0; s < samplers.size(); ++s)

@@ -65,8 +65,9 @@ struct LightMoments {
 /// The picture that render_in_environment approaches, nearly without noise, and the variance of one sample
 /// that each of `samplers` has, integral of (f_r cos(theta_i) radiance)^2 / pdf less the mean's square,
 /// without drawing from them: what a small sun contributes to the variance takes millions of samples to be
-/// seen. The sky is integrated by options.samples stratified draws of `guide`, a square number, every disc by
-/// 1024 parts. Directions that a sampler never draws are left out of its variance. Throws as
+/// seen. Integrated by options.samples stratified draws of `guide`, a square number, and as many of every
+/// disc, combined by the balance heuristic [Veach 1995]. Directions that a sampler never draws are left out
+/// of its variance. Throws as
 /// render_in_environment.
 LightMoments moments_in_environment(BrdfRef brdf, SamplerRef guide, std::span<const SamplerRef> samplers,
                                     const Environment& environment, const LightOptions& options);
