@@ -172,8 +172,7 @@ TEST_F(HostileCommandLine, FailsOnMissingEmptyAndUnwritableFiles) {
   EXPECT_EQ(run_burnish(fmt::format("info '{}'", folder_.string())).exit_code, 1);
   EXPECT_EQ(run_burnish(fmt::format("info '{}'", file("empty", "").string())).exit_code, 1);
   EXPECT_EQ(run_burnish(fmt::format("measure lambert -o '{}/none/out.csv'", folder_.string())).exit_code, 1);
-  EXPECT_EQ(run_burnish(fmt::format("convert ggx:alpha_x=0.1,alpha_y=0.4 '{}/out.binary'", folder_.string()))
-                .exit_code,
+  EXPECT_EQ(run_burnish(fmt::format("convert lambert '{}/out.csv' --entries", folder_.string())).exit_code,
             1);
   EXPECT_EQ(run_burnish(fmt::format("convert lambert '{}/out.unknown'", folder_.string())).exit_code, 2);
   EXPECT_EQ(file_count(), 1u);
@@ -194,6 +193,11 @@ TEST_F(HostileCommandLine, ConvertsWhatIsWell) {
   EXPECT_EQ(run_burnish(fmt::format("convert '{0}/m.csv' '{0}/m2.csv'", out)).exit_code, 0);
   EXPECT_EQ(run_burnish(fmt::format("convert lambert '{0}/l.bsdf'", out)).exit_code, 0);
   EXPECT_EQ(run_burnish(fmt::format("info --json '{0}/l.bsdf'", out)).exit_code, 0);
+  const Outcome averaged =
+      run_burnish(fmt::format("convert ggx:alpha_x=0.1,alpha_y=0.4 '{0}/a.binary' --cells 10", out));
+  EXPECT_EQ(averaged.exit_code, 0);
+  EXPECT_THAT(averaged.errors, HasSubstr("/a.binary: lost: anisotropy averaged"));
+  EXPECT_EQ(std::count(averaged.errors.begin(), averaged.errors.end(), '\n'), 1) << averaged.errors;
   const Source back = open_source(out + "/m2.csv", {});
   EXPECT_EQ(back.samples()->size(), 200u);
   EXPECT_TRUE(back.ref().isotropic());
