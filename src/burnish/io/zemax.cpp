@@ -8,8 +8,6 @@
 #include <burnish/io/text_reader.h>
 #include <burnish/io/zemax.h>
 #include <burnish/math/angles.h>
-#include <burnish/math/parallel.h>
-#include <burnish/metrics/albedo.h>
 
 namespace burnish {
 
@@ -122,7 +120,6 @@ std::vector<double> in_radians(const std::vector<double>& angles_deg, double off
 
 /// What stands for a value of 0, since 0 is a hole.
 constexpr double kWrittenZero = 1e-30;
-constexpr double kTotalTolerance = 0.02;
 
 /// A line of the keyword and the count, then one of the angles in degrees, less `offset_deg`.
 void append_angles(std::string& text, std::string_view keyword, const AngleAxis& axis,
@@ -130,6 +127,38 @@ void append_angles(std::string& text, std::string_view keyword, const AngleAxis&
   std::vector<double> angles;
   for (const double node : axis.nodes) angles.push_back(degrees(node) - offset_deg);
   text += fmt::format("{}\t{}\n{}\n", keyword, angles.size(), fmt::join(angles, "\t"));
+}
+
+/// Middles between neighbours, and the ends themselves.
+std::vector<double> cell_borders(const std::vector<double>& nodes) {
+  std::vector<double> borders = {nodes.front()};
+  for (std::size_t i = 1; i < nodes.size(); ++i) borders.push_back(0.5 * (nodes[i - 1] + nodes[i]));
+  borders.push_back(nodes.back());
+  return borders;
+}
+
+/// What of the circle each azimuth stands for, radians; in a folded table both sides.
+std::vector<double> azimuth_widths(const AngleAxis& axis, bool folded) {
+  if (axis.nodes.size() == 1) return {kTwoPi};
+  const std::vector<double> borders = cell_borders(axis.nodes);
+  std::vector<double> widths;
+  for (std::size_t i = 0; i < axis.nodes.size(); ++i)
+    widths.push_back((folded ? 2 : 1) * (borders[i + 1] - borders[i]));
+  if (axis.closed) {
+    const double gap = axis.period - (axis.nodes.back() - axis.nodes.front());
+    widths.front() += 0.5 * gap;
+    widths.back() += 0.5 * gap;
+  }
+  return widths;
+}
+
+/// Solid angle over 2 pi of the ring around each radial angle.
+std::vector<double> ring_heights(const AngleAxis& axis) {
+  const std::vector<double> borders = cell_borders(axis.nodes);
+  std::vector<double> heights;
+  for (std::size_t i = 0; i < axis.nodes.size(); ++i)
+    heights.push_back(std::cos(borders[i]) - std::cos(borders[i + 1]));
+  return heights;
 }
 
 /// The remark "# Sample: ..." in front of the header.
@@ -290,12 +319,7 @@ std::string format_zemax(const AngleTable& table, std::string_view sample) {
   const auto to_xyz = inverse(kRec709);
   const std::size_t columns = axes[3].nodes.size(), block = axes[2].nodes.size() * columns;
   const std::size_t blocks = axes[0].nodes.size() * axes[1].nodes.size();
-  std::vector<std::vector<double>> totals(blocks);
-  for_each_chunk(blocks, 1, [&](std::size_t b, std::size_t, std::size_t) {
-    const Vec3 wi = node_directions(table, node_of_entry(table, b * block)).wi;
-    totals[b] =
-        wi.z > 0 ? directional_albedo(table, wi, kTotalTolerance).albedo : std::vector<double>(channels, 0.0);
-  });
+  const std::vector<double> around = azimuth_widths(axes[2], table.folded), along = ring_heights(axes[3]);
   constexpr std::array kNames = {"TristimulusX", "TristimulusY", "TristimulusZ"};
   const auto out = std::back_inserter(text);
   for (std::size_t c = 0; c < channels; ++c) {
@@ -305,7 +329,16 @@ std::string format_zemax(const AngleTable& table, std::string_view sample) {
     };
     fmt::format_to(out, "\n{}\nDataBegin\n", monochrome ? "Monochrome" : kNames[c]);
     for (std::size_t b = 0; b < blocks; ++b) {
-      fmt::format_to(out, "TIS\t{:.6g}\n", channel(totals[b].data()));
+      Row total{};
+      for (std::size_t entry = b * block; entry < (b + 1) * block; ++entry) {
+        const float* value = &table.values[entry * channels];
+        if (std::isnan(value[0])) continue;
+        const double cosine = node_directions(table, node_of_entry(table, entry)).wo.z;
+        const double weight =
+            std::max(cosine, 0.0) * around[entry % block / columns] * along[entry % columns];
+        for (std::size_t k = 0; k < channels; ++k) total[k] += weight * static_cast<double>(value[k]);
+      }
+      fmt::format_to(out, "TIS\t{:.6g}\n", channel(total.data()));
       for (std::size_t entry = b * block; entry < (b + 1) * block; ++entry) {
         const float* value = &table.values[entry * channels];
         const Row values = {value[0], value[channels == 3], value[channels - 1]};
