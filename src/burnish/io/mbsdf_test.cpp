@@ -13,7 +13,7 @@
 namespace burnish {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 template <class T>
 void append(std::string& bytes, T value) {

@@ -13,7 +13,7 @@
 namespace burnish {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 const std::string kHeader =
     "# Sample: "
