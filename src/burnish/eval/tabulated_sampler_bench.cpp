@@ -153,7 +153,7 @@ void eval_one_by_one(benchmark::State& state, const TabulatedSampler& sampler,
     benchmark::DoNotOptimize(f);
     i = (i + 1) % kCount;
   }
-  finish(state, 0, 1);
+  state.SetItemsProcessed(state.iterations());
 }
 
 void eval_batch(benchmark::State& state, const TabulatedSampler& sampler, const FactoredEvaluator& model) {
@@ -164,7 +164,7 @@ void eval_batch(benchmark::State& state, const TabulatedSampler& sampler, const 
     model.eval(batch.directions(), f);
     benchmark::ClobberMemory();
   }
-  finish(state, 0, kCount);
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kCount));
 }
 
 struct Case {
@@ -194,7 +194,7 @@ FactoredBrdf sum_of(const FactoredBrdf& a, const FactoredBrdf& b) {
     for (FactorUse& use : lobe.factors) use.table += shift;
     lobes.push_back(std::move(lobe));
   }
-  return FactoredBrdf(a.channels(), std::move(tables), std::move(lobes), a.format());
+  return FactoredBrdf(a.channels(), std::move(tables), std::move(lobes), TableFormat::half);
 }
 
 void register_case(const std::string& name, FactoredBrdf model) {
