@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 
 #include <fmt/format.h>
@@ -106,13 +107,13 @@ class Converter {
   /// Says what a format with one of two exchanged directions averages.
   void lose_asymmetry(BrdfRef brdf) {
     if (const double error = reciprocity_error(brdf, kMirrorPairs, 1).mean; error > kReciprocal)
-      lose("directions exchanged averaged (asymmetry {:.2g} %)", 100 * error);
+      lose("directions exchanged averaged (asymmetry {:.3g} %)", 100 * error);
   }
 
   void lose_sides(BrdfRef brdf) {
     if (const auto error = relative_difference(brdf, OtherSide{brdf}, kMirrorPairs).value_or(0);
         error > kReciprocal)
-      lose("the sides of the plane of incidence averaged (difference {:.2g} %)", 100 * error);
+      lose("the sides of the plane of incidence averaged (difference {:.3g} %)", 100 * error);
   }
 
   /// The bytes, and how far from the source they are.
@@ -123,12 +124,18 @@ class Converter {
                                      {.keep_spectral = !source_.findings.lambda_nm.empty()});
     const auto difference = relative_difference(source_.ref(), back.ref(), kComparedPairs);
     lose("sampled at {}{}", where,
-         difference ? fmt::format(", {:.2g} % from the source on average", 100 * *difference) : "");
+         difference ? fmt::format(", {:.3g} % from the source on average", 100 * *difference) : "");
     return kept(std::move(bytes));
   }
 
   std::string cells(const char* kind) const {
     return fmt::format("{0} x {0} x {1} {2} cells", options_.cells, 2 * options_.cells, kind);
+  }
+
+  /// What the source calls itself, or its file's name without folders.
+  std::string sample_name() const {
+    return source_.findings.description.empty() ? std::filesystem::path(source_.name).filename().string()
+                                                : source_.findings.description;
   }
 
   Converted kept(std::string bytes) { return {std::move(bytes), std::move(losses_)}; }
@@ -162,7 +169,7 @@ class Converter {
     if (const auto* table = std::get_if<RglTable>(&source_.brdf)) return kept(format_rgl(*table));
     RglOptions options;
     options.lambda_nm = source_.findings.lambda_nm;
-    options.description = source_.name;
+    options.description = sample_name();
     return sampled(fmt::format("{} x {} x {} x {} nodes", source_.ref().isotropic() ? 1 : options.phi_i_count,
                                options.theta_i_count, options.resolution, options.resolution),
                    format_rgl(make_rgl_table(source_.ref(), options)));
@@ -181,15 +188,14 @@ class Converter {
         std::count_if(made.values.begin(), made.values.end(), [](float v) { return std::isnan(v); }) /
         made.channel_count);
     if (unknown > 0)
-      lose("unknown directions became 0 ({:.2g} % of the entries)",
+      lose("unknown directions became 0 ({:.3g} % of the entries)",
            100 * static_cast<double>(unknown) / static_cast<double>(entries));
     return sampled(cells("angle"), format_mbsdf(made));
   }
 
   Converted zemax() {
     require_grey_or_rgb("Zemax");
-    const std::string& sample =
-        source_.findings.description.empty() ? source_.name : source_.findings.description;
+    const std::string sample = sample_name();
     const auto* table = std::get_if<AngleTable>(&source_.brdf);
     if (table && fits_zemax(*table)) return kept(format_zemax(*table, sample));
     const BrdfRef brdf = source_.ref();
