@@ -1,10 +1,13 @@
 #include <cmath>
+#include <numeric>
 
 #include <gtest/gtest.h>
 
 #include <burnish/error.h>
+#include <burnish/eval/tabulated_sampler.h>
 #include <burnish/metrics/brdfs_for_tests.h>
 #include <burnish/metrics/sphere_images.h>
+#include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/ggx_proxy.h>
 #include <burnish/reflectance/sampling_test_util.h>
 #include <burnish/render/environment_light.h>
@@ -56,6 +59,35 @@ TEST(EnvironmentLight, EverySamplerApproachesTheMeanWithItsVariance) {
     EXPECT_GT(chi_square_tail(chi_square, count), 0.001);
     EXPECT_LT(chi_square_tail(chi_square, count), 0.999);
   }
+}
+
+// Of one sample, the sum over the picture.
+double variance_of(const Image& variance) {
+  return std::accumulate(variance.pixels.begin(), variance.pixels.end(), 0.0);
+}
+
+TEST(EnvironmentLight, TabulatedDrawsVaryLessThanCosineAndGgx) {
+  double over_cosine = 0, over_ggx = 0;
+  int count = 0;
+  for (const char* spec : {"oren_nayar:sigma=0.4", "ggx:alpha_x=0.2,alpha_y=0.2,f0=0.3,kd=0.1",
+                           "ggx:alpha_x=0.1,alpha_y=0.1,f0=0.9,kd=0.1"}) {
+    const AnalyticBrdf brdf = parse_analytic(spec);
+    const TabulatedSampler tabulated(brdf.ref());
+    const CosineSampler by_cosine;
+    const GgxProxy ggx = fit_ggx_proxy(brdf.ref(), false);
+    const SamplerRef samplers[] = {tabulated, by_cosine, ggx};
+    for (const Environment& environment : environments()) {
+      const LightMoments moments =
+          moments_in_environment(brdf.ref(), tabulated, samplers, environment, {.size = 10, .samples = 64});
+      const double ours = variance_of(moments.variance[0]), cosine = variance_of(moments.variance[1]);
+      EXPECT_LT(ours, 1.05 * cosine) << spec << " " << environment.name;
+      over_cosine += ours / cosine;
+      over_ggx += ours / variance_of(moments.variance[2]);
+      ++count;
+    }
+  }
+  EXPECT_LT(over_cosine / count, 0.5);
+  EXPECT_LT(over_ggx / count, 0.8);
 }
 
 TEST(EnvironmentLight, StratifiedPointsLowerTheError) {
