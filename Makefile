@@ -1,8 +1,8 @@
 # make demo   installs packages, builds, and takes a measurement to two textures (INPUT=file for your own)
 # make test   installs packages, builds with sanitizers and optimized, runs every test
 # make build  the command line at build/release/apps/burnish/burnish
-# make bench, make fuzz, make report, make format: see docs/developing.md
-.PHONY: demo test build deps bench fuzz report format format-check
+# make bench, make fuzz, make report, make sampling-report, make format: see docs/developing.md
+.PHONY: demo test build deps bench fuzz report sampling-report format format-check
 JOBS ?= $(shell nproc)
 BURNISH := build/release/apps/burnish/burnish
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
@@ -44,6 +44,11 @@ report: build
 	@mv docs/results.md.partial docs/results.md
 	@build/release/apps/report/burnish_accuracy docs > docs/accuracy.md.partial
 	@mv docs/accuracy.md.partial docs/accuracy.md
+
+sampling-report: build
+	@mkdir -p docs/figures
+	@build/release/apps/sampling_report/burnish_sampling_report docs > docs/sampling-results.md.partial
+	@mv docs/sampling-results.md.partial docs/sampling-results.md
 
 fuzz: deps
 	@tests/fuzz/run.sh $(FUZZ_SECONDS)

@@ -2,14 +2,10 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <burnish/file.h>
-#include <burnish/io/csv.h>
-#include <burnish/io/merl.h>
-#include <burnish/io/rgl.h>
-#include <burnish/io/slice_image.h>
-#include <burnish/reflectance/goniometer.h>
-#include <burnish/reflectance/rgl_builder.h>
+#include <burnish/io/convert.h>
 
 #include "commands.h"
 #include "source_arguments.h"
@@ -21,7 +17,7 @@ namespace {
 struct Arguments {
   SourceArguments source;
   std::string out, to;
-  MeasureOptions measurement{100000, 0, 1};
+  ConvertOptions options;
 };
 
 /// The format asked for, or the one the output's name ends in.
@@ -30,52 +26,47 @@ std::string target_format(const Arguments& arguments) {
   const std::string extension = std::filesystem::path(arguments.out).extension().string();
   if (extension == ".binary") return "merl";
   if (extension == ".bsdf") return "rgl";
-  if (extension == ".csv" || extension == ".exr") return extension.substr(1);
-  throw CLI::ValidationError(arguments.out,
-                             "expected a name that ends in .binary, .bsdf, .csv or .exr, or --to");
-}
-
-/// A table keeps its entries; anything else is tabulated as MERL does.
-std::string slices(const Source& source) {
-  if (const auto* table = std::get_if<HalfDiffTable>(&source.brdf)) return format_slice_image(*table);
-  return format_slice_image(tabulate_half_diff(source.ref(), 90, 90, 180, false));
+  for (const char* same : {"mbsdf", "astm", "csv", "exr"})
+    if (extension.substr(extension.empty() ? 0 : 1) == same) return same;
+  throw CLI::ValidationError(
+      arguments.out, "expected a name that ends in .binary, .bsdf, .mbsdf, .astm, .csv or .exr, or --to");
 }
 
 }  // namespace
 
 void add_convert_command(CLI::App& app) {
   CLI::App* verb = app.add_subcommand(
-      "convert", "Convert a BRDF to a MERL or RGL table, CSV samples or an EXR image of slices");
+      "convert",
+      "Convert a BRDF to a MERL, RGL, MBSDF or Zemax table, ASTM or CSV samples, or an EXR image of slices");
   verb->footer(
-      "CSV has the samples of a scattered source, and samples drawn as `measure` does of any other.\n"
+      "ASTM and CSV have the samples of a scattered source, of any other samples drawn as `measure` does, or "
+      "with --entries a table's entries. What is lost is said on the standard error output.\n"
       "Example: burnish convert paint.bsdf paint.binary");
   auto arguments = std::make_shared<Arguments>();
   add_source_arguments(*verb, arguments->source);
   verb->add_option("OUT", arguments->out, "file to write")->required();
-  verb->add_option("--to", arguments->to, "format; by default what OUT ends in: .binary, .bsdf, .csv, .exr")
-      ->check(CLI::IsMember({"merl", "rgl", "csv", "exr"}));
-  verb->add_option("--count", arguments->measurement.count,
-                   "samples in a CSV file, unless the source is scattered")
-      ->check(CLI::Range(1, 10000000))
+  verb->add_option(
+          "--to", arguments->to,
+          "format; by default what OUT ends in: .binary (merl), .bsdf (rgl), .mbsdf, .astm, .csv, .exr")
+      ->check(CLI::IsMember(std::vector<std::string>(kConvertFormats.begin(), kConvertFormats.end())));
+  verb->add_option("--cells", arguments->options.cells,
+                   "along each polar angle of MERL, MBSDF and EXR, twice as many along the azimuth")
+      ->check(CLI::Range(2, 1000))
       ->capture_default_str();
+  auto* count = verb->add_option("--count", arguments->options.count,
+                                 "samples in an ASTM or CSV file, unless the source is scattered")
+                    ->check(CLI::Range(1, 10000000))
+                    ->capture_default_str();
+  verb->add_flag("--entries", arguments->options.entries, "a table's entries in an ASTM or CSV file")
+      ->excludes(count);
   verb->callback([arguments] {
     const std::string format = target_format(*arguments);
     const Source source = arguments->source.open();
-    if (format == "merl") {
-      write_merl(arguments->out, source.ref());
-    } else if (format == "rgl") {
-      RglOptions options;
-      options.lambda_nm = source.findings.lambda_nm;
-      options.description = source.name;
-      write_then_rename(arguments->out, format_rgl(make_rgl_table(source.ref(), options)));
-    } else if (format == "exr") {
-      write_then_rename(arguments->out, slices(source));
-    } else {
-      const Samples* samples = source.samples();
-      write_then_rename(arguments->out,
-                        samples_csv(samples ? *samples : measure(source.ref(), arguments->measurement),
-                                    source.findings.lambda_nm));
-    }
+    arguments->options.clamped_negatives = arguments->source.options.clamp_negatives;
+    const Converted converted = convert(source, format, arguments->options);
+    write_then_rename(arguments->out, converted.bytes);
+    if (!converted.losses.empty())
+      fmt::print(stderr, "burnish: {}: lost: {}\n", arguments->out, fmt::join(converted.losses, "; "));
   });
 }
 

@@ -113,4 +113,26 @@ SampleFile parse_astm(const FileBytes& file, const OpenOptions& options) {
   return result;
 }
 
+std::string samples_astm(const Samples& samples, std::span<const double> lambda_nm) {
+  const auto channels = static_cast<std::size_t>(samples.channels);
+  if (lambda_nm.empty() ? channels != 1 && channels != 3 : lambda_nm.size() != channels)
+    throw Error(fmt::format(
+        "ASTM columns: expected 1 or 3 channels or as many wavelengths, found {} channels", channels));
+  std::string text = fmt::format("NUM_POINTS {}\nVARS {}", samples.size(), fmt::join(kAngles, ","));
+  if (!lambda_nm.empty())
+    text += fmt::format(",{}", fmt::join(lambda_nm, ","));
+  else
+    text += channels == 3 ? ",Red BRDF,Green BRDF,Blue BRDF" : ",BRDF";
+  text += '\n';
+  const auto out = std::back_inserter(text);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const auto& [wi, wo] = samples.pairs[i];
+    const double turn = samples.isotropic ? phi_of(wi) : 0;
+    fmt::format_to(out, "{},{},{},{}", theta_of(wi), phi_of(wi) - turn, theta_of(wo), phi_of(wo) - turn);
+    for (const double value : samples.at(i)) fmt::format_to(out, ",{}", value);
+    text += '\n';
+  }
+  return text;
+}
+
 }  // namespace burnish

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <span>
+#include <string>
+
 #include <burnish/io/byte_reader.h>
 #include <burnish/io/sample_file.h>
 
@@ -14,5 +17,10 @@ bool looks_like_astm(std::string_view text) noexcept;
 /// accepted where the rows have the column. The material is anisotropic unless every sample has the same
 /// phi_i. Throws Error on anything else. Source: [ASTM 1996].
 SampleFile parse_astm(const FileBytes& file, const OpenOptions& options);
+
+/// The text that parse_astm reads back to the same samples, angles with all their digits. Isotropic samples
+/// are turned to phi_i = 0, by which a reader knows them. `lambda_nm` names the columns of spectra. Throws
+/// Error if channels have no names.
+std::string samples_astm(const Samples& samples, std::span<const double> lambda_nm = {});
 
 }  // namespace burnish

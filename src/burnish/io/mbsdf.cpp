@@ -85,11 +85,8 @@ MbsdfFile parse_mbsdf(const FileBytes& file, const OpenOptions& options) {
                 fmt::format("{} more bytes", reader.remaining()));
 
   AngleTable& table = result.table;
-  table.folded = true;
+  table = mbsdf_layout(header.theta_count, header.phi_count);
   table.channel_count = static_cast<int>(header.channels);
-  table.axes = {make_axis({0}), make_axis(cell_centres(header.theta_count, kHalfPi)),
-                make_axis(cell_centres(header.theta_count, kHalfPi)),
-                make_axis(cell_centres(header.phi_count, kPi))};
   table.values.resize(header.value_count());
   std::memcpy(table.values.data(), bytes.data(), bytes.size());
   for (std::size_t i = 0; i < table.values.size(); ++i) {
@@ -111,6 +108,43 @@ MbsdfFile parse_mbsdf(const FileBytes& file, const OpenOptions& options) {
   findings.sample_count = header.value_count() / header.channels;
   findings.theta_i_max = findings.theta_o_max = kHalfPi;
   return result;
+}
+
+AngleTable mbsdf_layout(std::size_t theta_count, std::size_t phi_count) {
+  AngleTable table;
+  table.folded = true;
+  table.axes = {make_axis({0}), make_axis(cell_centres(theta_count, kHalfPi)),
+                make_axis(cell_centres(theta_count, kHalfPi)), make_axis(cell_centres(phi_count, kPi))};
+  return table;
+}
+
+bool fits_mbsdf(const AngleTable& table) noexcept {
+  const auto centred = [](const AngleAxis& axis, double extent) {
+    const std::size_t count = axis.nodes.size();
+    if (count < 1 || count > kMaxResolution) return false;
+    const double cell = extent / static_cast<double>(count);
+    for (std::size_t i = 0; i < count; ++i)
+      if (!(std::abs(axis.nodes[i] - (static_cast<double>(i) + 0.5) * cell) < 1e-9)) return false;
+    return true;
+  };
+  const auto& axes = table.axes;
+  return table.frame == AngleTable::Frame::kNormal && table.folded && table.isotropic() &&
+         axes[1].nodes.size() == axes[2].nodes.size() && centred(axes[1], kHalfPi) &&
+         centred(axes[2], kHalfPi) && centred(axes[3], kPi) &&
+         (table.channel_count == 1 || table.channel_count == 3);
+}
+
+std::string format_mbsdf(const AngleTable& table) {
+  if (!fits_mbsdf(table)) throw Error("MBSDF: expected an isotropic table of cell centres, grey or RGB");
+  std::string bytes = std::string(kMagic) + std::string(kReflection) + '\n';
+  const auto append = [&](const auto& value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
+  };
+  append(std::uint32_t{table.channel_count == 3});
+  append(static_cast<std::uint32_t>(table.axes[1].nodes.size()));
+  append(static_cast<std::uint32_t>(table.axes[3].nodes.size()));
+  for (const float value : table.values) append(std::isnan(value) ? 0.0f : value);
+  return bytes;
 }
 
 }  // namespace burnish

@@ -8,11 +8,12 @@
 #include <burnish/io/mbsdf.h>
 #include <burnish/io/test_files.h>
 #include <burnish/math/angles.h>
+#include <burnish/metrics/brdfs_for_tests.h>
 
 namespace burnish {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 template <class T>
 void append(std::string& bytes, T value) {
@@ -79,6 +80,22 @@ TEST(Mbsdf, CountsAndClampsNegatives) {
   OpenOptions raw;
   raw.clamp_negatives = false;
   EXPECT_EQ(parse_mbsdf(memory_file(bytes), raw).table.values[0], -0.5f);
+}
+
+TEST(Mbsdf, WritesWhatItReads) {
+  for (const int channels : {1, 3}) {
+    AngleTable table = tabulate_angles(testing::Glossy{.count = channels}, mbsdf_layout(5, 7));
+    ASSERT_TRUE(fits_mbsdf(table));
+    EXPECT_EQ(parse_mbsdf(memory_file(format_mbsdf(table)), {}).table.values, table.values);
+    std::fill_n(table.values.begin(), channels, std::numeric_limits<float>::quiet_NaN());
+    EXPECT_EQ(parse_mbsdf(memory_file(format_mbsdf(table)), {}).table.values[0], 0);
+  }
+  AngleTable other = mbsdf_layout(5, 7);
+  other.folded = false;
+  EXPECT_FALSE(fits_mbsdf(other));
+  other = mbsdf_layout(5, 7);
+  other.axes[2].nodes[1] += 0.01;
+  EXPECT_THROW(format_mbsdf(other), Error);
 }
 
 TEST(Mbsdf, RefusesWhatIsNoMbsdf) {

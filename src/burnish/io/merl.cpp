@@ -130,12 +130,20 @@ MerlFile parse_merl(const FileBytes& file, const OpenOptions& options) {
   return merl;
 }
 
-void write_merl(const std::filesystem::path& path, BrdfRef source) {
-  if (source.channels() != 1 && source.channels() != 3)
-    throw Error("a MERL file holds grey or RGB, not " + std::to_string(source.channels()) + " channels");
-  const std::array<std::int32_t, 3> sizes = {90, 90, 180};
-  const HalfDiffTable table =
-      tabulate_half_diff(SymmetrizedBrdf(source), sizes[0], sizes[1], sizes[2], false);
+bool fits_merl(const HalfDiffTable& table) noexcept {
+  const auto fits = [](int n) { return n > 0 && n <= kMaxSize; };
+  return fits(table.theta_h_count) && fits(table.theta_d_count) && fits(table.phi_d_count) &&
+         table.full_circle == (table.phi_d_count == 360) &&
+         (table.channel_count == 1 || table.channel_count == 3);
+}
+
+std::string format_merl(const HalfDiffTable& table) {
+  if (!fits_merl(table))
+    throw Error(fmt::format(
+        "MERL table: expected 1 or 3 channels and a full circle of 360 entries or half a circle of "
+        "others, found {} channels and {} of {} entries",
+        table.channel_count, table.full_circle ? "a circle" : "half a circle", table.phi_d_count));
+  const std::array<std::int32_t, 3> sizes = {table.theta_h_count, table.theta_d_count, table.phi_d_count};
   const std::size_t entries = table.entry_count();
   std::string bytes(kHeaderBytes + entries * 3 * sizeof(double), '\0');
   std::memcpy(bytes.data(), sizes.data(), kHeaderBytes);
@@ -147,7 +155,16 @@ void write_merl(const std::filesystem::path& path, BrdfRef source) {
       const double value = std::isnan(f) ? -1 : static_cast<double>(f) / kScale[c];
       std::memcpy(bytes.data() + kHeaderBytes + (c * entries + i) * sizeof(double), &value, sizeof(value));
     }
-  write_then_rename(path, bytes);
+  return bytes;
+}
+
+void write_merl(const std::filesystem::path& path, BrdfRef source) {
+  if (source.channels() != 1 && source.channels() != 3)
+    throw Error::in_file(path.string(), "grey or RGB for a MERL file",
+                         fmt::format("{} channels", source.channels()));
+  if (!source.isotropic())
+    throw Error::in_file(path.string(), "an isotropic source for a MERL file", "an anisotropic one");
+  write_then_rename(path, format_merl(tabulate_half_diff(SymmetrizedBrdf(source), 90, 90, 180, false)));
 }
 
 }  // namespace burnish

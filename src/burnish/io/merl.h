@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include <burnish/io/byte_reader.h>
 #include <burnish/io/open_options.h>
@@ -24,10 +25,18 @@ bool looks_like_merl(std::span<const std::byte> bytes) noexcept;
 /// above the horizon is not finite. Source: [Matusik 2003].
 MerlFile parse_merl(const FileBytes& file, const OpenOptions& options);
 
+/// True if a MERL file can hold the table as it is: grey or RGB, the full circle of phi_d exactly where it
+/// has 360 entries.
+bool fits_merl(const HalfDiffTable& table) noexcept;
+
+/// The file that holds the table: reading it back gives the same values to 1e-7. Holes are -1, grey fills all
+/// three planes. Throws Error unless fits_merl.
+std::string format_merl(const HalfDiffTable& table);
+
 /// Writes a 90 x 90 x 180 table of an isotropic source's reciprocal part (see SymmetrizedBrdf: the format
 /// holds one half of phi_d), sampled at cell centres; -1 below the horizon and where the source knows
-/// nothing. Grey sources fill all three planes. Throws Error if the source is anisotropic, spectral, or the
-/// file cannot be written.
+/// nothing. Throws Error, naming the file, if the source is anisotropic, spectral, or the file cannot be
+/// written.
 void write_merl(const std::filesystem::path& path, BrdfRef source);
 
 }  // namespace burnish

@@ -109,5 +109,35 @@ TEST(Merl, RoundTripsASource) {
   }
 }
 
+TEST(Merl, WritesTablesOfAnySize) {
+  for (const bool full : {false, true}) {
+    const HalfDiffTable table = tabulate_half_diff(Glossy{}, 3, 4, full ? 360 : 6, full);
+    const std::string bytes = format_merl(table);
+    const auto* data = reinterpret_cast<const std::byte*>(bytes.data());
+    const HalfDiffTable back = parse_merl({"test.binary", {data, data + bytes.size()}}, {}).table;
+    EXPECT_EQ(back.full_circle, full);
+    ASSERT_EQ(back.values.size(), table.values.size());
+    for (std::size_t i = 0; i < table.values.size(); ++i)
+      if (std::isnan(table.values[i])) {
+        EXPECT_TRUE(std::isnan(back.values[i]));
+      } else {
+        EXPECT_NEAR(back.values[i], table.values[i], 2e-7 * table.values[i]);
+      }
+  }
+  EXPECT_THROW(format_merl(tabulate_half_diff(Glossy{}, 3, 4, 12, true)), Error);
+}
+
+TEST(Merl, NamesTheFileItCannotWrite) {
+  struct Brushed : Glossy {
+    bool isotropic() const noexcept { return false; }
+  };
+  try {
+    write_merl("some.binary", Brushed{});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_TRUE(std::string_view(error.what()).starts_with("some.binary: expected an isotropic source"));
+  }
+}
+
 }  // namespace
 }  // namespace burnish

@@ -15,14 +15,33 @@ namespace {
 
 constexpr std::size_t kMaxAngles = 4096;
 
+using Row = std::array<double, 3>;
+
 /// Linear Rec. 709 of XYZ relative to D65, rows R, G, B. Source: [ITU 2015].
-constexpr std::array<std::array<double, 3>, 3> kRec709 = {
+constexpr std::array<Row, 3> kRec709 = {
     // clang-format off
     {{ 3.2404542, -1.5371385, -0.4985314},
      {-0.9692660,  1.8760108,  0.0415560},
      { 0.0556434, -0.2040259,  1.0572252}}
     // clang-format on
 };
+
+double product(const Row& row, const double* v) noexcept {
+  return row[0] * v[0] + row[1] * v[1] + row[2] * v[2];
+}
+
+/// By cofactors, so that what is written is read back to rounding.
+std::array<Row, 3> inverse(const std::array<Row, 3>& m) noexcept {
+  std::array<Row, 3> result;
+  const auto minor_of = [&](std::size_t r, std::size_t c) {
+    const std::size_t r1 = (r + 1) % 3, r2 = (r + 2) % 3, c1 = (c + 1) % 3, c2 = (c + 2) % 3;
+    return m[r1][c1] * m[r2][c2] - m[r1][c2] * m[r2][c1];
+  };
+  const double determinant = m[0][0] * minor_of(0, 0) + m[0][1] * minor_of(0, 1) + m[0][2] * minor_of(0, 2);
+  for (std::size_t r = 0; r < 3; ++r)
+    for (std::size_t c = 0; c < 3; ++c) result[r][c] = minor_of(c, r) / determinant;
+  return result;
+}
 
 struct Header {
   std::map<std::string, std::string> words;           // keyword in lower case -> value in lower case
@@ -99,6 +118,49 @@ std::vector<double> in_radians(const std::vector<double>& angles_deg, double off
   return angles;
 }
 
+/// What stands for a value of 0, since 0 is a hole.
+constexpr double kWrittenZero = 1e-30;
+
+/// A line of the keyword and the count, then one of the angles in degrees, less `offset_deg`.
+void append_angles(std::string& text, std::string_view keyword, const AngleAxis& axis,
+                   double offset_deg = 0) {
+  std::vector<double> angles;
+  for (const double node : axis.nodes) angles.push_back(degrees(node) - offset_deg);
+  text += fmt::format("{}\t{}\n{}\n", keyword, angles.size(), fmt::join(angles, "\t"));
+}
+
+/// Middles between neighbours, and the ends themselves.
+std::vector<double> cell_borders(const std::vector<double>& nodes) {
+  std::vector<double> borders = {nodes.front()};
+  for (std::size_t i = 1; i < nodes.size(); ++i) borders.push_back(0.5 * (nodes[i - 1] + nodes[i]));
+  borders.push_back(nodes.back());
+  return borders;
+}
+
+/// What of the circle each azimuth stands for, radians; in a folded table both sides.
+std::vector<double> azimuth_widths(const AngleAxis& axis, bool folded) {
+  if (axis.nodes.size() == 1) return {kTwoPi};
+  const std::vector<double> borders = cell_borders(axis.nodes);
+  std::vector<double> widths;
+  for (std::size_t i = 0; i < axis.nodes.size(); ++i)
+    widths.push_back((folded ? 2 : 1) * (borders[i + 1] - borders[i]));
+  if (axis.closed) {
+    const double gap = axis.period - (axis.nodes.back() - axis.nodes.front());
+    widths.front() += 0.5 * gap;
+    widths.back() += 0.5 * gap;
+  }
+  return widths;
+}
+
+/// Solid angle over 2 pi of the ring around each radial angle.
+std::vector<double> ring_heights(const AngleAxis& axis) {
+  const std::vector<double> borders = cell_borders(axis.nodes);
+  std::vector<double> heights;
+  for (std::size_t i = 0; i < axis.nodes.size(); ++i)
+    heights.push_back(std::cos(borders[i]) - std::cos(borders[i + 1]));
+  return heights;
+}
+
 /// The remark "# Sample: ..." in front of the header.
 std::string sample_name(const FileBytes& file) {
   TextReader reader(file);
@@ -141,7 +203,7 @@ ZemaxFile parse_zemax(const FileBytes& file, const OpenOptions& options) {
   table.axes = {make_axis(in_radians(rotations, 90), kTwoPi), make_axis(in_radians(incidences)),
                 make_axis(in_radians(azimuths), table.folded ? 0 : kTwoPi), make_axis(in_radians(radials))};
   table.channel_count = static_cast<int>(channels);
-  table.values.resize(entries * channels);
+  std::vector<double> read(entries * channels);
   for (std::size_t c = 0; c < channels; ++c) {
     // The line that names the channel, then the data.
     if (!reader.next_content_line()) reader.fail("a channel's name", "the end of the file");
@@ -156,7 +218,7 @@ ZemaxFile parse_zemax(const FileBytes& file, const OpenOptions& options) {
           const double value = reader.number("a value");
           if (std::abs(value) > std::numeric_limits<float>::max())
             reader.fail("a value below 1e38", fmt::format("{}", value));
-          table.values[entry++ * channels + c] = static_cast<float>(value);
+          read[entry++ * channels + c] = value;
         }
         reader.end_of_line();
       }
@@ -164,22 +226,22 @@ ZemaxFile parse_zemax(const FileBytes& file, const OpenOptions& options) {
     expect_keyword(reader, "dataend");
   }
 
+  table.values.resize(entries * channels);
   findings.theta_i_min = radians(incidences.front());
   findings.theta_i_max = radians(incidences.back());
   findings.theta_o_min = kHalfPi;
   for (std::size_t entry = 0; entry < entries; ++entry) {
     float* value = &table.values[entry * channels];
-    if (std::all_of(value, value + channels, [](float v) { return v == 0; })) {
+    const double* from = &read[entry * channels];
+    if (std::all_of(from, from + channels, [](double v) { return v == 0; })) {
       ++findings.hole_count;
       std::fill_n(value, channels, std::numeric_limits<float>::quiet_NaN());
       continue;
     }
-    if (channels == 3) {
-      const std::array<double, 3> xyz = {value[0], value[1], value[2]};
-      for (std::size_t c = 0; c < 3; ++c)
-        value[c] =
-            static_cast<float>(kRec709[c][0] * xyz[0] + kRec709[c][1] * xyz[1] + kRec709[c][2] * xyz[2]);
-    }
+    if (monochrome)
+      value[0] = static_cast<float>(from[0]);
+    else
+      for (std::size_t c = 0; c < 3; ++c) value[c] = static_cast<float>(product(kRec709[c], from));
     for (std::size_t c = 0; c < channels; ++c)
       if (value[c] < 0) {
         ++findings.clamped_negatives;
@@ -206,6 +268,91 @@ ZemaxFile parse_zemax(const FileBytes& file, const OpenOptions& options) {
       monochrome ? "Monochrome." : "XYZ became linear Rec. 709 for a D65 white."};
   if (table.folded) findings.conventions.push_back("Symmetric about the plane of incidence.");
   return result;
+}
+
+AngleTable zemax_layout(bool isotropic) {
+  const auto steps = [](int count, double step_deg, double first_deg = 0) {
+    std::vector<double> angles;
+    for (int i = 0; i < count; ++i) angles.push_back(first_deg + step_deg * i);
+    return angles;
+  };
+  std::vector<double> radials = {0, 0.5, 1, 1.5, 2, 3, 4, 5, 6, 8, 10, 12.5};
+  for (const double r : steps(15, 5, 15)) radials.push_back(r);
+  for (const double r : steps(9, 10, 95)) radials.push_back(r);
+  std::vector<double> incidences = steps(9, 10);
+  incidences.push_back(85);
+  AngleTable table;
+  table.frame = AngleTable::Frame::kSpecular;
+  table.folded = isotropic;
+  if (isotropic)
+    table.axes = {make_axis(in_radians({0}, 90), kTwoPi), make_axis(in_radians(steps(18, 5))),
+                  make_axis(in_radians(steps(37, 5))), make_axis(in_radians(radials))};
+  else
+    table.axes = {make_axis(in_radians(steps(36, 10), 90), kTwoPi), make_axis(in_radians(incidences)),
+                  make_axis(in_radians(steps(36, 10)), kTwoPi), make_axis(in_radians(radials))};
+  return table;
+}
+
+bool fits_zemax(const AngleTable& table) noexcept {
+  return table.frame == AngleTable::Frame::kSpecular &&
+         (table.channel_count == 1 || table.channel_count == 3);
+}
+
+std::string format_zemax(const AngleTable& table, std::string_view sample) {
+  if (!fits_zemax(table))
+    throw Error("Zemax table: expected values around the mirror direction, grey or RGB");
+  const auto& axes = table.axes;
+  const auto channels = static_cast<std::size_t>(table.channel_count);
+  const bool monochrome = channels == 1;
+  std::string text =
+      fmt::format("# Sample: {}\nSource\tMeasured\nSymmetry\t{}\nSpectralContent\t{}\nScatterType\tBRDF\n",
+                  printable(sample, 200),
+                  table.folded        ? "PlaneSymmetrical"
+                  : table.isotropic() ? "Asymmetrical"
+                                      : "Asymmetrical4D",
+                  monochrome ? "Monochrome" : "XYZ");
+  append_angles(text, "SampleRotation", axes[0], 90);
+  append_angles(text, "AngleOfIncidence", axes[1]);
+  append_angles(text, "ScatterAzimuth", axes[2]);
+  append_angles(text, "ScatterRadial", axes[3]);
+
+  const auto to_xyz = inverse(kRec709);
+  const std::size_t columns = axes[3].nodes.size(), block = axes[2].nodes.size() * columns;
+  const std::size_t blocks = axes[0].nodes.size() * axes[1].nodes.size();
+  const std::vector<double> around = azimuth_widths(axes[2], table.folded), along = ring_heights(axes[3]);
+  constexpr std::array kNames = {"TristimulusX", "TristimulusY", "TristimulusZ"};
+  const auto out = std::back_inserter(text);
+  for (std::size_t c = 0; c < channels; ++c) {
+    // of the values of all channels, this one
+    const auto channel = [&](const double* values) {
+      return monochrome ? values[0] : product(to_xyz[c], values);
+    };
+    fmt::format_to(out, "\n{}\nDataBegin\n", monochrome ? "Monochrome" : kNames[c]);
+    for (std::size_t b = 0; b < blocks; ++b) {
+      Row total{};
+      for (std::size_t entry = b * block; entry < (b + 1) * block; ++entry) {
+        const float* value = &table.values[entry * channels];
+        if (std::isnan(value[0])) continue;
+        const double cosine = node_directions(table, node_of_entry(table, entry)).wo.z;
+        const double weight =
+            std::max(cosine, 0.0) * around[entry % block / columns] * along[entry % columns];
+        for (std::size_t k = 0; k < channels; ++k) total[k] += weight * static_cast<double>(value[k]);
+      }
+      fmt::format_to(out, "TIS\t{:.6g}\n", channel(total.data()));
+      for (std::size_t entry = b * block; entry < (b + 1) * block; ++entry) {
+        const float* value = &table.values[entry * channels];
+        const Row values = {value[0], value[channels == 3], value[channels - 1]};
+        const double written = channel(values.data());
+        fmt::format_to(out, "{}{}",
+                       std::isnan(value[0]) ? 0.0
+                       : written == 0       ? kWrittenZero
+                                            : written,
+                       (entry + 1) % columns == 0 ? '\n' : '\t');
+      }
+    }
+    text += "DataEnd\n";
+  }
+  return text;
 }
 
 }  // namespace burnish

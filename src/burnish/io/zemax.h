@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include <burnish/io/byte_reader.h>
@@ -24,5 +25,19 @@ bool looks_like_zemax(std::string_view text) noexcept;
 /// zero. Monochrome is grey; XYZ becomes linear Rec. 709 for a D65 white. Throws Error on anything else,
 /// transmission included. Source: [Rykowski 2008].
 ZemaxFile parse_zemax(const FileBytes& file, const OpenOptions& options);
+
+/// Frame and axes of the files that burnish makes, without values: isotropic ones folded, incidences
+/// up to 85 degrees and azimuths every 5, anisotropic ones every 10; radial angles 0.5 degrees apart at the
+/// mirror direction, 10 at 175.
+AngleTable zemax_layout(bool isotropic);
+
+/// True if a Zemax file can hold the table as it is: around the mirror direction, grey or RGB.
+bool fits_zemax(const AngleTable& table) noexcept;
+
+/// The file that holds the table, values and angles with all their digits; RGB as XYZ. Holes are 0, so what
+/// is 0 is written as 1e-30. The total of each incidence,
+/// TIS, is the sum of its entries times cos(theta_o) and the solid angles of their cells. `sample`
+/// names it in a remark, line breaks left out. Throws Error unless fits_zemax.
+std::string format_zemax(const AngleTable& table, std::string_view sample);
 
 }  // namespace burnish

@@ -8,11 +8,12 @@
 #include <burnish/io/test_files.h>
 #include <burnish/io/zemax.h>
 #include <burnish/math/angles.h>
+#include <burnish/metrics/brdfs_for_tests.h>
 
 namespace burnish {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 const std::string kHeader =
     "# Sample: "
@@ -82,6 +83,67 @@ TEST(Zemax, TurnsWhiteXyzIntoGreyRgb) {
   std::array<double, 3> f;
   ASSERT_TRUE(file.table.eval(spherical_direction(radians(10), 0), spherical_direction(radians(10), kPi), f));
   for (const double value : f) EXPECT_NEAR(value, 1, 1e-4);
+}
+
+// Rotations, incidences and azimuths of a coarse file.
+AngleTable coarse_layout(bool isotropic) {
+  AngleTable layout;
+  layout.frame = AngleTable::Frame::kSpecular;
+  layout.folded = isotropic;
+  layout.axes = {make_axis(isotropic ? std::vector{kHalfPi} : std::vector{0.0, kHalfPi, kPi}, kTwoPi),
+                 make_axis({0, radians(30), radians(80)}),
+                 isotropic ? make_axis({0, kHalfPi, kPi}) : make_axis({0, kHalfPi, kPi, 1.5 * kPi}, kTwoPi),
+                 make_axis({0, radians(3), radians(20)})};
+  return layout;
+}
+
+TEST(Zemax, WritesWhatItReads) {
+  for (const int channels : {1, 3})
+    for (const bool isotropic : {true, false}) {
+      testing::Glossy glossy{.a = 20, .b = isotropic ? 20.0 : 5.0, .count = channels};
+      const AngleTable table = tabulate_angles(glossy, coarse_layout(isotropic));
+      ASSERT_TRUE(fits_zemax(table));
+      const auto file = parse_zemax(memory_file(format_zemax(table, "some\nname")), {});
+      EXPECT_EQ(file.findings.description, "some?name");
+      EXPECT_EQ(file.table.channels(), channels);
+      EXPECT_EQ(file.table.isotropic(), isotropic);
+      EXPECT_EQ(file.table.folded, isotropic);
+      ASSERT_EQ(file.table.values.size(), table.values.size());
+      std::size_t holes = 0;
+      for (std::size_t i = 0; i < table.values.size(); ++i) {
+        EXPECT_EQ(std::isnan(file.table.values[i]), std::isnan(table.values[i]));
+        if (!std::isnan(table.values[i])) {
+          EXPECT_NEAR(file.table.values[i], table.values[i], 1e-6 * table.values[i]);
+        }
+        holes += std::isnan(table.values[i]);
+      }
+      EXPECT_GT(holes, 0u);
+      for (std::size_t k = 0; k < 4; ++k)
+        for (std::size_t i = 0; i < table.axes[k].nodes.size(); ++i)
+          EXPECT_NEAR(file.table.axes[k].nodes[i], table.axes[k].nodes[i], 1e-12);
+    }
+  EXPECT_THROW(format_zemax(AngleTable{}, ""), Error);
+}
+
+// Zero is no hole, saturated colours keep all channels, and the total is the albedo.
+TEST(Zemax, WritesZeroSaturationAndTotals) {
+  AngleTable table = tabulate_angles(testing::Lambert{}, zemax_layout(true));
+  const std::string white = format_zemax(table, "");
+  const std::string tis = white.substr(white.find("TIS\t") + 4, 8);
+  // X of the albedos 0.8, 0.5, 0.2
+  EXPECT_NEAR(std::stod(tis), 0.4124564 * 0.8 + 0.3575761 * 0.5 + 0.1804375 * 0.2, 0.01);
+  for (std::size_t i = 0; i < table.values.size(); i += 3) {
+    if (std::isnan(table.values[i])) continue;
+    const std::array<float, 3> value = i % 2 ? std::array{0.0f, 0.0f, 0.0f} : std::array{1.0f, 1e-3f, 1e-4f};
+    std::copy(value.begin(), value.end(), table.values.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+  const AngleTable back = parse_zemax(memory_file(format_zemax(table, "")), {}).table;
+  for (std::size_t i = 0; i < table.values.size(); ++i)
+    if (std::isnan(table.values[i])) {
+      EXPECT_TRUE(std::isnan(back.values[i]));
+    } else {
+      EXPECT_NEAR(back.values[i], table.values[i], 1e-6 * table.values[i] + 1e-29);
+    }
 }
 
 TEST(Zemax, SaysWhatIsWrong) {

@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <burnish/math/angles.h>
+#include <burnish/math/parallel.h>
 #include <burnish/reflectance/angle_table.h>
 
 namespace burnish {
@@ -102,6 +104,59 @@ bool AngleTable::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   if (total == 0) return false;
   for (double& value : f) value /= total;
   return true;
+}
+
+std::size_t entry_count(const AngleTable& table) noexcept {
+  std::size_t count = 1;
+  for (const AngleAxis& axis : table.axes) count *= axis.nodes.size();
+  return count;
+}
+
+std::array<std::size_t, 4> node_of_entry(const AngleTable& table, std::size_t entry) noexcept {
+  std::array<std::size_t, 4> node;
+  for (std::size_t k = 4; k-- > 0;) {
+    node[k] = entry % table.axes[k].nodes.size();
+    entry /= table.axes[k].nodes.size();
+  }
+  return node;
+}
+
+DirectionPair node_directions(const AngleTable& table, const std::array<std::size_t, 4>& node) noexcept {
+  std::array<double, 4> at;
+  for (std::size_t k = 0; k < 4; ++k) at[k] = table.axes[k].nodes[node[k]];
+  return {spherical_direction(at[1], at[0]), table.frame == AngleTable::Frame::kNormal
+                                                 ? spherical_direction(at[2], at[0] + at[3])
+                                                 : around_specular(at[1], at[0], at[2], at[3])};
+}
+
+AngleTable tabulate_angles(BrdfRef source, AngleTable layout) {
+  const auto channels = static_cast<std::size_t>(source.channels());
+  layout.channel_count = source.channels();
+  layout.values.assign(entry_count(layout) * channels, std::numeric_limits<float>::quiet_NaN());
+  for_each_chunk(entry_count(layout), 4096, [&](std::size_t, std::size_t begin, std::size_t end) {
+    std::vector<double> f(channels), other(channels);
+    for (std::size_t entry = begin; entry < end; ++entry) {
+      const auto node = node_of_entry(layout, entry);
+      const auto [wi, wo] = node_directions(layout, node);
+      if (wi.z <= 0 || wo.z <= 0) continue;
+      bool known = source.eval(wi, wo, f);
+      if (layout.folded) {
+        const double phi_i = layout.axes[0].nodes[node[0]];
+        const Vec3 across{-std::sin(phi_i), std::cos(phi_i), 0};
+        const Vec3 reflected = wo - 2 * dot(across, wo) * across;
+        const bool other_known = source.eval(wi, reflected, other);
+        if (known && other_known)
+          for (std::size_t c = 0; c < channels; ++c) f[c] = 0.5 * (f[c] + other[c]);
+        else if (other_known)
+          f = other;
+        known = known || other_known;
+      }
+      if (!known) continue;
+      for (std::size_t c = 0; c < channels; ++c)
+        layout.values[entry * channels + c] = static_cast<float>(f[c]);
+    }
+  });
+  return layout;
 }
 
 }  // namespace burnish

@@ -58,6 +58,20 @@ struct AngleTable {
 
 static_assert(Brdf<AngleTable>);
 
+/// Directions of the entry at a node of each axis; either may lie below the horizon. Precondition: indices
+/// below the axes' sizes.
+DirectionPair node_directions(const AngleTable& table, const std::array<std::size_t, 4>& node) noexcept;
+
+/// The nodes of an entry, counted as `values` does. Precondition: entry < entry_count(table).
+std::array<std::size_t, 4> node_of_entry(const AngleTable& table, std::size_t entry) noexcept;
+
+std::size_t entry_count(const AngleTable& table) noexcept;
+
+/// Fills a table that has frame, folding and axes with a source's channels and values at its nodes, on all
+/// threads. A folded table takes the mean of both sides of the plane of incidence, or the one that is known.
+/// Entries with a direction below the horizon and unknown ones become holes.
+AngleTable tabulate_angles(BrdfRef source, AngleTable layout);
+
 /// The direction wo at `azimuth` around and `radial` from the mirror direction of the light at (theta_i,
 /// phi_i); see AngleTable::Frame::kSpecular.
 Vec3 around_specular(double theta_i, double phi_i, double azimuth, double radial) noexcept;

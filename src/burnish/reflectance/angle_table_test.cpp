@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -145,6 +146,50 @@ TEST(AngleTable, GivesHolesNoWeight) {
   EXPECT_EQ(f, 0);
   EXPECT_TRUE(table.eval(wi, {0, 0, -1}, {&f, 1}));
   EXPECT_EQ(f, 0);
+}
+
+// Lopsided about the plane of incidence and anisotropic.
+struct Lopsided {
+  int channels() const noexcept { return 2; }
+  bool isotropic() const noexcept { return false; }
+  bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+    f[0] = 2 + wi.x * wo.y - wi.y * wo.x;
+    f[1] = 2 + wi.x;
+    return wo.x < 0.9;
+  }
+};
+
+TEST(AngleTable, TabulatesASourceAtItsNodes) {
+  for (const auto frame : {AngleTable::Frame::kNormal, AngleTable::Frame::kSpecular})
+    for (const bool folded : {false, true}) {
+      AngleTable layout;
+      layout.frame = frame;
+      layout.folded = folded;
+      const AngleAxis azimuth = folded ? make_axis({0, 1, 2, kPi}) : make_axis({0, 1.5, 3, 4.5}, kTwoPi);
+      layout.axes = {make_axis({0, 2, 4}, kTwoPi), make_axis({0, 0.5, 1.2}), make_axis({0.1, 0.7, 1.3}),
+                     make_axis({0.1, 0.7, 1.3})};
+      layout.axes[frame == AngleTable::Frame::kNormal ? 3 : 2] = azimuth;
+      const AngleTable table = tabulate_angles(Lopsided{}, layout);
+      ASSERT_EQ(table.values.size(), 2 * entry_count(table));
+      int known = 0;
+      for (std::size_t entry = 0; entry < entry_count(table); ++entry) {
+        const auto [wi, wo] = node_directions(table, node_of_entry(table, entry));
+        std::array<double, 2> expected, f;
+        const bool above = wi.z > 0 && wo.z > 0, there = above && Lopsided{}.eval(wi, wo, expected);
+        if (!there) continue;  // a folded table may know the other side
+        ++known;
+        EXPECT_NEAR(table.values[2 * entry + 1], expected[1], 1e-6);
+        if (!folded) {
+          EXPECT_NEAR(table.values[2 * entry], expected[0], 1e-6);
+        }
+        ASSERT_TRUE(table.eval(wi, wo, f));
+        if (wi.z < 1) {  // at the normal every azimuth is the same direction
+          EXPECT_NEAR(f[0], table.values[2 * entry], 1e-6);
+          EXPECT_NEAR(f[1], table.values[2 * entry + 1], 1e-6);
+        }
+      }
+      EXPECT_GT(known, 30);
+    }
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ double second_moment(const std::vector<View>& views, const GgxProxy& proxy) noex
 DrawnDirection GgxProxy::sample_wi(Vec3 wo, Point2 u) const noexcept {
   Vec3 wi;
   if (u.x < share) {
-    // a point of the spherical cap of the stretched view [Dupuy 2023, listing 3]
+    // a point of the spherical cap of the stretched view [Dupuy 2023]
     const double ax = distribution.alpha_x, ay = distribution.alpha_y;
     const Vec3 view = normalize({ax * wo.x, ay * wo.y, wo.z});
     const double phi = kTwoPi * u.x / share, z = (1 - u.y) * (1 + view.z) - view.z;

@@ -1,0 +1,309 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include <burnish/error.h>
+#include <burnish/io/astm.h>
+#include <burnish/io/convert.h>
+#include <burnish/io/csv.h>
+#include <burnish/io/mbsdf.h>
+#include <burnish/io/merl.h>
+#include <burnish/io/rgl.h>
+#include <burnish/io/slice_image.h>
+#include <burnish/io/zemax.h>
+#include <burnish/reflectance/azimuth_mean.h>
+#include <burnish/reflectance/goniometer.h>
+#include <burnish/reflectance/rgl_builder.h>
+#include <burnish/reflectance/statistics.h>
+
+namespace burnish {
+
+namespace {
+
+constexpr std::size_t kComparedPairs = 2000;
+constexpr double kFloor = 1e-3;       // as in error_figures.h
+constexpr double kReciprocal = 1e-6;  // asymmetry that is rounding
+constexpr std::size_t kMirrorPairs = 500;
+
+/// A source with the plane of incidence as its mirror: the other side's values.
+struct OtherSide {
+  BrdfRef source;
+
+  int channels() const noexcept { return source.channels(); }
+  bool isotropic() const noexcept { return source.isotropic(); }
+  bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+    // an isotropic source sees both sides exchanged where both directions are reflected at any one plane
+    return source.eval({wi.x, -wi.y, wi.z}, {wo.x, -wo.y, wo.z}, f);
+  }
+};
+
+/// The figure `relative` over pairs that both know; nothing if there are none.
+std::optional<double> relative_difference(BrdfRef a, BrdfRef b, std::size_t count) {
+  const auto channels_a = static_cast<std::size_t>(a.channels()),
+             channels_b = static_cast<std::size_t>(b.channels());
+  std::vector<double> f(channels_a), g(channels_b);
+  double sum = 0;
+  std::size_t terms = 0;
+  for (const auto& [wi, wo] : draw_pairs(count, 1, a.isotropic() && b.isotropic())) {
+    if (!a.eval(wi, wo, f) || !b.eval(wi, wo, g)) continue;
+    const std::size_t channels = std::max(channels_a, channels_b);
+    for (std::size_t c = 0; c < channels; ++c, ++terms) {
+      const auto value = [c](const std::vector<double>& v) {
+        return std::max(v[v.size() == 1 ? 0 : c], 0.0);
+      };
+      sum += std::abs(std::log((value(f) + kFloor) / (value(g) + kFloor)));
+    }
+  }
+  if (terms == 0) return std::nullopt;
+  return std::expm1(sum / static_cast<double>(terms));
+}
+
+/// One conversion.
+class Converter {
+ public:
+  Converter(const Source& source, const ConvertOptions& options)
+      : source_(source), options_(options), mean_(source.ref()) {
+    if (options.cells < 2 || options.cells > 1000)
+      throw Error(fmt::format("expected 2 to 1000 cells, found {}", options.cells));
+    const Findings& found = source.findings;
+    if (!found.illuminant.empty()) lose("spectra became linear Rec. 709 ({})", found.illuminant);
+    if (options.clamped_negatives && found.clamped_negatives > 0)
+      lose("{} values below zero became zero", found.clamped_negatives);
+  }
+
+  Converted run(std::string_view format) {
+    if (format == "merl") return merl();
+    if (format == "rgl") return rgl();
+    if (format == "mbsdf") return mbsdf();
+    if (format == "zemax") return zemax();
+    if (format == "exr") return slices();
+    if (format == "astm" || format == "csv") return scattered(format == "astm");
+    throw Error(
+        fmt::format("convert: expected one of {}, found {}", fmt::join(kConvertFormats, ", "), format));
+  }
+
+ private:
+  template <class... T>
+  void lose(fmt::format_string<T...> phrase, T&&... values) {
+    losses_.push_back(fmt::format(phrase, std::forward<T>(values)...));
+  }
+
+  void require_grey_or_rgb(const char* format) const {
+    if (const int channels = source_.ref().channels(); channels != 1 && channels != 3)
+      throw Error::in_file(source_.name, fmt::format("grey or RGB for {}, so no --spectral", format),
+                           fmt::format("{} channels", channels));
+  }
+
+  /// The source, or its mean over the azimuth.
+  BrdfRef isotropic() {
+    if (source_.ref().isotropic()) return source_.ref();
+    lose("anisotropy averaged over {} azimuths", AzimuthMean::kTurns);
+    return mean_;
+  }
+
+  /// Says what a format with one of two exchanged directions averages.
+  void lose_asymmetry(BrdfRef brdf) {
+    if (const double error = reciprocity_error(brdf, kMirrorPairs, 1).mean; error > kReciprocal)
+      lose("directions exchanged averaged (asymmetry {:.3g} %)", 100 * error);
+  }
+
+  void lose_sides(BrdfRef brdf) {
+    if (const auto error = relative_difference(brdf, OtherSide{brdf}, kMirrorPairs).value_or(0);
+        error > kReciprocal)
+      lose("the sides of the plane of incidence averaged (difference {:.3g} %)", 100 * error);
+  }
+
+  /// The bytes, and how far from the source they are.
+  Converted sampled(const std::string& where, std::string bytes) {
+    if (source_.samples()) lose("scattered samples interpolated");
+    const auto* data = reinterpret_cast<const std::byte*>(bytes.data());
+    const Source back = parse_source({"converted", {data, data + bytes.size()}},
+                                     {.keep_spectral = !source_.findings.lambda_nm.empty()});
+    const auto difference = relative_difference(source_.ref(), back.ref(), kComparedPairs);
+    lose("sampled at {}{}", where,
+         difference ? fmt::format(", {:.3g} % from the source on average", 100 * *difference) : "");
+    return kept(std::move(bytes));
+  }
+
+  std::string cells(const char* kind) const {
+    return fmt::format("{0} x {0} x {1} {2} cells", options_.cells, 2 * options_.cells, kind);
+  }
+
+  /// What the source calls itself, or its file's name without folders.
+  std::string sample_name() const {
+    return source_.findings.description.empty() ? std::filesystem::path(source_.name).filename().string()
+                                                : source_.findings.description;
+  }
+
+  Converted kept(std::string bytes) { return {std::move(bytes), std::move(losses_)}; }
+
+  HalfDiffTable half_diff_cells() {
+    const BrdfRef brdf = isotropic();
+    const int n = options_.cells;
+    // 360 azimuths would be the full circle
+    if (2 * n == 360) return tabulate_half_diff(brdf, n, n, 2 * n, true);
+    lose_asymmetry(brdf);
+    return tabulate_half_diff(SymmetrizedBrdf(brdf), n, n, 2 * n, false);
+  }
+
+  Converted merl() {
+    require_grey_or_rgb("MERL");
+    const auto* table = std::get_if<HalfDiffTable>(&source_.brdf);
+    if (table && fits_merl(*table)) return kept(format_merl(*table));
+    return sampled(cells("half/difference"), format_merl(half_diff_cells()));
+  }
+
+  Converted slices() {
+    require_grey_or_rgb("an image of slices");
+    if (const auto* table = std::get_if<HalfDiffTable>(&source_.brdf))
+      return kept(format_slice_image(*table));
+    const HalfDiffTable table = half_diff_cells();
+    lose("sampled at {}", cells("half/difference"));
+    return kept(format_slice_image(table));
+  }
+
+  Converted rgl() {
+    if (const auto* table = std::get_if<RglTable>(&source_.brdf)) return kept(format_rgl(*table));
+    RglOptions options;
+    options.lambda_nm = source_.findings.lambda_nm;
+    options.description = sample_name();
+    return sampled(fmt::format("{} x {} x {} x {} nodes", source_.ref().isotropic() ? 1 : options.phi_i_count,
+                               options.theta_i_count, options.resolution, options.resolution),
+                   format_rgl(make_rgl_table(source_.ref(), options)));
+  }
+
+  Converted mbsdf() {
+    require_grey_or_rgb("MBSDF");
+    const auto* table = std::get_if<AngleTable>(&source_.brdf);
+    if (table && fits_mbsdf(*table)) return kept(format_mbsdf(*table));
+    const BrdfRef brdf = isotropic();
+    lose_sides(brdf);
+    const auto n = static_cast<std::size_t>(options_.cells);
+    const AngleTable made = tabulate_angles(brdf, mbsdf_layout(n, 2 * n));
+    const auto entries = made.values.size() / static_cast<std::size_t>(made.channel_count);
+    const auto unknown = static_cast<std::size_t>(
+        std::count_if(made.values.begin(), made.values.end(), [](float v) { return std::isnan(v); }) /
+        made.channel_count);
+    if (unknown > 0)
+      lose("unknown directions became 0 ({:.3g} % of the entries)",
+           100 * static_cast<double>(unknown) / static_cast<double>(entries));
+    return sampled(cells("angle"), format_mbsdf(made));
+  }
+
+  Converted zemax() {
+    require_grey_or_rgb("Zemax");
+    const std::string sample = sample_name();
+    const auto* table = std::get_if<AngleTable>(&source_.brdf);
+    if (table && fits_zemax(*table)) return kept(format_zemax(*table, sample));
+    const BrdfRef brdf = source_.ref();
+    if (brdf.isotropic()) lose_sides(brdf);
+    const AngleTable made = tabulate_angles(brdf, zemax_layout(brdf.isotropic()));
+    return sampled(
+        fmt::format("{} x {} x {} x {} angles around the mirror direction", made.axes[0].nodes.size(),
+                    made.axes[1].nodes.size(), made.axes[2].nodes.size(), made.axes[3].nodes.size()),
+        format_zemax(made, sample));
+  }
+
+  Converted scattered(bool astm) {
+    std::optional<Samples> made;
+    const Samples* samples = source_.samples();
+    if (!samples && options_.entries) {
+      made = table_entries(source_);
+      lose("the table's grid: {} entries became scattered samples", made->size());
+    } else if (!samples) {
+      made = measure(source_.ref(), {options_.count, 0, options_.seed});
+      lose("{} samples drawn at random directions", made->size());
+    }
+    if (made) samples = &*made;
+    if (astm && !samples->isotropic && same_incident_azimuth(*samples))
+      lose("one phi_i: a reader takes the samples for isotropic");
+    const auto& lambda = source_.findings.lambda_nm;
+    return kept(astm ? samples_astm(*samples, lambda) : samples_csv(*samples, lambda));
+  }
+
+  const Source& source_;
+  const ConvertOptions& options_;
+  const AzimuthMean mean_;
+  std::vector<std::string> losses_;
+};
+
+/// Collects what is known above the horizon.
+class EntryList {
+ public:
+  explicit EntryList(BrdfRef brdf) : brdf_(brdf), f_(static_cast<std::size_t>(brdf.channels())) {
+    samples_.channels = brdf.channels();
+    samples_.isotropic = brdf.isotropic();
+  }
+  void add(const DirectionPair& pair) {
+    if (pair.wi.z <= 0 || pair.wo.z <= 0 || !brdf_.eval(pair.wi, pair.wo, f_)) return;
+    samples_.pairs.push_back(pair);
+    samples_.values.insert(samples_.values.end(), f_.begin(), f_.end());
+  }
+  Samples take() { return std::move(samples_); }
+
+ private:
+  BrdfRef brdf_;
+  std::vector<double> f_;
+  Samples samples_;
+};
+
+void add_entries(const HalfDiffTable& table, EntryList& list) {
+  for (int h = 0; h < table.theta_h_count; ++h)
+    for (int d = 0; d < table.theta_d_count; ++d)
+      for (int p = 0; p < table.phi_d_count; ++p)
+        if (!std::isnan(table.values[table.offset(h, d, p)])) {
+          const auto [wi, wo] = from_half_diff(table.centre(h, d, p));
+          list.add({wi, wo});
+        }
+}
+
+void add_entries(const RglTable& table, EntryList& list) {
+  const RglData& data = table.data();
+  const auto size = [](const auto& v) { return static_cast<int>(v.size()); };
+  for (int phi = 0; phi < size(data.phi_i); ++phi)
+    for (int theta = 0; theta < size(data.theta_i); ++theta)
+      for (int row = 0; row < data.spectra.height; ++row)
+        for (int column = 0; column < data.spectra.width; ++column)
+          list.add(table.node_directions(phi, theta, row, column));
+}
+
+void add_entries(const AngleTable& table, EntryList& list) {
+  for (std::size_t i = 0; i < entry_count(table); ++i)
+    if (!std::isnan(table.values[i * static_cast<std::size_t>(table.channel_count)]))
+      list.add(node_directions(table, node_of_entry(table, i)));
+}
+
+void add_entries(const PatchTable& table, EntryList& list) {
+  for (std::size_t out = 0; out < table.outgoing.size(); ++out)
+    for (std::size_t in = 0; in < table.incident.size(); ++in)
+      list.add({table.incident.centre(in), table.outgoing.centre(out)});
+}
+
+}  // namespace
+
+Samples table_entries(const Source& source) {
+  EntryList list(source.ref());
+  std::visit(
+      [&](const auto& brdf) {
+        if constexpr (requires { add_entries(brdf, list); })
+          add_entries(brdf, list);
+        else
+          throw Error::in_file(source.name, "a table for its entries", "none");
+      },
+      source.brdf);
+  return list.take();
+}
+
+Converted convert(const Source& source, std::string_view format, const ConvertOptions& options) {
+  try {
+    return Converter(source, options).run(format);
+  } catch (const Error& error) {
+    if (std::string_view(error.what()).starts_with(source.name)) throw;
+    throw Error(fmt::format("{}: {}", source.name, error.what()));
+  }
+}
+
+}  // namespace burnish

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <burnish/io/source.h>
+
+namespace burnish {
+
+/// Formats that convert writes. "exr", slices for a viewer, cannot be read back.
+inline constexpr std::array<std::string_view, 7> kConvertFormats = {"merl", "rgl", "mbsdf", "zemax",
+                                                                    "astm", "csv", "exr"};
+
+struct ConvertOptions {
+  std::size_t count = 100'000;  ///< samples drawn for "astm" and "csv" of a source that is not scattered
+  std::uint64_t seed = 1;       ///< of these
+  bool entries = false;         ///< instead of drawing: every entry of a table that is no hole
+  int cells = 90;  ///< along each polar angle of "merl", "mbsdf" and "exr"; twice as many along the azimuth
+  bool clamped_negatives = true;  ///< the source was opened so: what it lost by it is said
+};
+
+struct Converted {
+  std::string bytes;
+  std::vector<std::string> losses;  ///< what the bytes say less than the source's file, a phrase each
+};
+
+/// A source in another format. Tables that the format holds are kept entry by entry; others are sampled at
+/// its nodes: half/difference cells 90 x 90 x 180 (MERL, slices), angle cells 90 x 90 x 180 (MBSDF),
+/// zemax_layout, RglOptions{}. Isotropic formats get the azimuth's mean of anisotropic sources, those with
+/// one side of the plane of incidence or of the exchange of directions the mean of both. Scattered formats
+/// keep scattered samples; of other sources they get the table's entries, if asked for, or samples drawn by
+/// `measure`. Where values were sampled anew, a loss states how far they are: the figure `relative` of
+/// metrics/error_figures.h over 2,000 drawn pairs. Throws Error, naming the source, for an unknown format,
+/// cells outside [2, 1000], channels that the format has not, or entries of a source without any.
+Converted convert(const Source& source, std::string_view format, const ConvertOptions& options = {});
+
+/// Every entry of a table that is no hole, both directions above the horizon; see ConvertOptions::entries.
+/// Throws Error, naming the source, if it is no table.
+Samples table_entries(const Source& source);
+
+}  // namespace burnish

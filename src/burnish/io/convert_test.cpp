@@ -1,0 +1,215 @@
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <burnish/io/convert.h>
+#include <burnish/io/merl.h>
+#include <burnish/io/test_files.h>
+#include <burnish/math/angles.h>
+#include <burnish/reflectance/azimuth_mean.h>
+
+namespace burnish {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+constexpr double kTolerance = 1e-5;
+const ConvertOptions kSmall{.count = 300, .cells = 8};
+
+Source reread(const Converted& converted, const OpenOptions& options = {}) {
+  return parse_source(memory_file(converted.bytes), options);
+}
+
+// How many entries there are, and that each is the source's value in its direction.
+std::size_t expect_entries_of(const Source& table, BrdfRef source) {
+  const Samples entries = table_entries(table);
+  std::vector<double> f(static_cast<std::size_t>(source.channels()));
+  std::size_t compared = 0;
+  double worst = 0;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const auto& [wi, wo] = entries.pairs[i];
+    // the last ring of an RGL file stands for 89 degrees
+    if (std::min(wi.z, wo.z) < std::cos(radians(88.9)) || !source.eval(wi, wo, f)) continue;
+    ++compared;
+    for (std::size_t c = 0; c < f.size(); ++c) worst = std::max(worst, std::abs(entries.at(i)[c] / f[c] - 1));
+  }
+  EXPECT_LT(worst, kTolerance);
+  return compared;
+}
+
+constexpr const char* kGlossy = "ggx:alpha_x=0.3,alpha_y=0.3,f0=0.5,kd=0.3";
+constexpr const char* kBrushed = "ggx:alpha_x=0.2,alpha_y=0.5,f0=0.5,kd=0.3";
+
+TEST(Convert, EveryTableHoldsTheSourceAtItsNodes) {
+  const Source source = open_source(kGlossy, {});
+  for (const char* format : {"merl", "rgl", "mbsdf", "zemax"}) {
+    const Converted converted = convert(source, format, kSmall);
+    EXPECT_THAT(converted.losses, testing::ElementsAre(HasSubstr("sampled at "))) << format;
+    EXPECT_GT(expect_entries_of(reread(converted), source.ref()), 500u) << format;
+  }
+}
+
+TEST(Convert, IsotropicFormatsGetTheMeanOverTheAzimuth) {
+  const Source source = open_source(kBrushed, {});
+  const AzimuthMean mean(source.ref());
+  for (const char* format : {"merl", "mbsdf"}) {
+    const Converted converted = convert(source, format, kSmall);
+    EXPECT_THAT(converted.losses, Contains(HasSubstr("anisotropy averaged"))) << format;
+    EXPECT_GT(expect_entries_of(reread(converted), mean), 500u) << format;
+  }
+}
+
+// Files of every table, small ones.
+std::vector<std::pair<std::string, Source>> tables() {
+  std::vector<std::pair<std::string, Source>> all;
+  const Source source = open_source(kGlossy, {});
+  for (const char* format : {"merl", "rgl", "mbsdf", "zemax"})
+    all.emplace_back(format, reread(convert(source, format, kSmall)));
+  return all;
+}
+
+TEST(Convert, ATableInItsOwnFormatKeepsItsEntries) {
+  for (const auto& [format, table] : tables()) {
+    const Converted converted = convert(table, format, kSmall);
+    EXPECT_THAT(converted.losses, IsEmpty()) << format;
+    const Samples before = table_entries(table), after = table_entries(reread(converted));
+    ASSERT_EQ(before.size(), after.size()) << format;
+    EXPECT_EQ(before.pairs, after.pairs) << format;
+    for (std::size_t i = 0; i < before.values.size(); ++i)
+      ASSERT_NEAR(after.values[i], before.values[i], kTolerance * before.values[i]) << format;
+  }
+}
+
+TEST(Convert, EntriesSurviveInScatteredFormats) {
+  for (const auto& [format, table] : tables()) {
+    const Samples entries = table_entries(table);
+    for (const char* scattered : {"csv", "astm"}) {
+      const Converted converted = convert(table, scattered, {.entries = true});
+      EXPECT_THAT(converted.losses, Contains(HasSubstr("the table's grid")));
+      const Source back = reread(converted);
+      ASSERT_NE(back.samples(), nullptr);
+      ASSERT_EQ(back.samples()->size(), entries.size()) << format << " as " << scattered;
+      EXPECT_TRUE(back.ref().isotropic());
+      double before = 0, after = 0;  // samples may come in another order
+      for (const double v : entries.values) before += v;
+      for (const double v : back.samples()->values) after += v;
+      EXPECT_NEAR(after, before, 1e-12 * before);
+    }
+    break;  // one table of that size is enough
+  }
+}
+
+TEST(Convert, ScatteredSamplesStayBetweenCsvAndAstm) {
+  for (const bool isotropic : {true, false}) {
+    const Converted csv = convert(open_source(isotropic ? kGlossy : kBrushed, {}), "csv", kSmall);
+    EXPECT_THAT(csv.losses, Contains(HasSubstr("300 samples drawn")));
+    const Source first = reread(csv);
+    const Converted astm = convert(first, "astm", kSmall);
+    EXPECT_THAT(astm.losses, IsEmpty());
+    const Source second = reread(astm);
+    const Converted back = convert(second, "csv", kSmall);
+    EXPECT_THAT(back.losses, IsEmpty());
+    const Source third = reread(back);
+    for (const Source* s : {&second, &third}) {
+      ASSERT_EQ(s->samples()->size(), 300u);
+      EXPECT_EQ(s->ref().isotropic(), isotropic);
+      // at each sample of the first, there is one of the same angles and value
+      const Samples& from = *first.samples();
+      const Samples& to = *s->samples();
+      for (std::size_t i = 0; i < from.size(); ++i) {
+        double nearest = 1;
+        for (std::size_t j = 0; j < to.size(); ++j) {
+          const auto& a = from.pairs[i];
+          const auto& b = to.pairs[j];
+          const double angles = std::abs(a.wi.z - b.wi.z) + std::abs(a.wo.z - b.wo.z) +
+                                std::abs(dot(a.wi, a.wo) - dot(b.wi, b.wo));
+          const double value = std::abs(to.at(j)[1] / from.at(i)[1] - 1);
+          nearest = std::min(nearest, angles + value);
+        }
+        ASSERT_LT(nearest, kTolerance);
+      }
+    }
+  }
+}
+
+constexpr const char* kSpectra =
+    "# isotropic\ntheta_i,phi_i,theta_o,phi_o,value_450,value_550,value_600,value_650\n"
+    "10,0,20,180,0.1,0.2,0.3,0.4\n30,0,20,180,0.2,0.3,0.4,0.5\n10,0,60,180,0.3,0.4,0.5,0.6\n"
+    "50,0,60,180,0.3,0.4,0.5,0.6\n";
+
+TEST(Convert, KeepsSpectraWhereTheFormatHasThem) {
+  const OpenOptions spectral{.keep_spectral = true};
+  const Source source = parse_source(memory_file(kSpectra), spectral);
+  for (const char* format : {"astm", "csv"}) {
+    const Converted converted = convert(source, format);
+    EXPECT_THAT(converted.losses, IsEmpty());
+    const Source back = reread(converted, spectral);
+    EXPECT_EQ(back.findings.lambda_nm, source.findings.lambda_nm);
+    EXPECT_EQ(back.samples()->values.size(), 16u);
+  }
+  for (const char* format : {"merl", "mbsdf", "zemax", "exr"})
+    EXPECT_THAT(error_of([&] { convert(source, format); }),
+                AllOf(testing::StartsWith("test.file"), HasSubstr("found 4 channels")))
+        << format;
+}
+
+TEST(Convert, SaysWhatReadingLost) {
+  const Source source = parse_source(memory_file(kSpectra), {});
+  EXPECT_THAT(convert(source, "csv").losses, Contains(HasSubstr("linear Rec. 709 (equal energy)")));
+  const Source negative =
+      parse_source(memory_file("theta_i,phi_i,theta_o,phi_o,value\n1,0,2,0,-1\n1,0,3,0,1\n"), {});
+  EXPECT_THAT(convert(negative, "csv").losses, Contains(HasSubstr("1 values below zero")));
+  EXPECT_THAT(convert(negative, "csv", {.clamped_negatives = false}).losses, IsEmpty());
+}
+
+// f depends on wi alone: neither reciprocal nor, where `side`, symmetric about the plane of incidence.
+Source lopsided_table(bool side) {
+  AngleTable table;
+  table.axes = {make_axis({0}), make_axis({0.2, 0.6, 1.0, 1.4}), make_axis({0.2, 0.6, 1.0, 1.4}),
+                make_axis({0, kHalfPi, kPi, 1.5 * kPi}, kTwoPi)};
+  for (std::size_t i = 0; i < entry_count(table); ++i) {
+    const auto node = node_of_entry(table, i);
+    table.values.push_back(1 + static_cast<float>(node[1]) + (side && node[3] == 1 ? 1.0f : 0.0f));
+  }
+  return {"lopsided", table, {}};
+}
+
+TEST(Convert, SaysWhatIsAveraged) {
+  EXPECT_THAT(convert(lopsided_table(false), "merl", kSmall).losses,
+              Contains(HasSubstr("directions exchanged averaged")));
+  for (const char* format : {"mbsdf", "zemax"}) {
+    EXPECT_THAT(convert(lopsided_table(true), format, kSmall).losses,
+                Contains(HasSubstr("sides of the plane of incidence")));
+    EXPECT_THAT(convert(lopsided_table(false), format, kSmall).losses,
+                Not(Contains(HasSubstr("sides of the plane of incidence"))));
+  }
+}
+
+TEST(Convert, RefusesWhatItCannotDo) {
+  const Source source = open_source("lambert", {});
+  EXPECT_THAT(error_of([&] { convert(source, "doc"); }), HasSubstr("expected one of merl"));
+  EXPECT_THAT(error_of([&] { convert(source, "csv", {.entries = true}); }), HasSubstr("a table"));
+  EXPECT_THAT(error_of([&] { convert(source, "merl", {.cells = 1}); }), HasSubstr("2 to 1000"));
+}
+
+TEST(Convert, RealTablesKeepTheirEntries) {
+  BURNISH_NEEDS_DATA();
+  for (const auto& [file, format] : {std::pair("rgl/chm_mint_rgb.bsdf", "rgl"),
+                                     {"mbsdf/carpaint_blue.mbsdf", "mbsdf"},
+                                     {"zemax/AnoBlackEC1onAlum.bsdf", "zemax"}}) {
+    const Source source = open_source(data_folder() / file, {});
+    const Samples before = table_entries(source), after = table_entries(reread(convert(source, format)));
+    ASSERT_EQ(before.size(), after.size()) << file;
+    for (std::size_t i = 0; i < before.values.size(); ++i)
+      ASSERT_NEAR(after.values[i], before.values[i], kTolerance * before.values[i]) << file;
+  }
+}
+
+}  // namespace
+}  // namespace burnish

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <burnish/reflectance/brdf.h>
+
+namespace burnish {
+
+/// An anisotropic source as the isotropic one that it is on average: the mean over kTurns rotations of both
+/// directions about the normal, evenly over the circle. Rotations for which the source knows nothing are left
+/// out; unknown where all are. Isotropic sources give their own values. Channels: at most kMaxChannels.
+class AzimuthMean {
+ public:
+  static constexpr int kTurns = 36, kMaxChannels = 1024;
+
+  /// Refers to the source. Throws Error if it has more channels.
+  explicit AzimuthMean(BrdfRef source);
+
+  int channels() const noexcept { return source_.channels(); }
+  bool isotropic() const noexcept { return true; }
+  bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
+
+ private:
+  BrdfRef source_;
+};
+
+static_assert(Brdf<AzimuthMean>);
+
+}  // namespace burnish
