@@ -12,7 +12,9 @@ constexpr std::size_t kChunk = 2048;
 constexpr std::size_t kPartialBytes = std::size_t{32} << 20;  // of matrices summed side by side
 constexpr std::size_t kMostGroups = 16;
 constexpr std::size_t kPairsPerUnknown = 4;  // fewer are not worth a matrix of their own
-constexpr std::size_t kColumns = 64;         // of matrices, added up together
+// Of many pairs an even part makes a matrix good enough for a step; the slope is that of all.
+constexpr std::size_t kMatrixPairsPerUnknown = 40;
+constexpr std::size_t kColumns = 64;  // of matrices, added up together
 
 // ln of a table's largest value over the smallest that its format, or the general floor, leaves.
 double log_range(TableFormat format) {
@@ -221,6 +223,8 @@ void RefineSystem::find_normal(const Eigen::VectorXd& x, const ErrorTerms& means
       std::clamp<std::size_t>(std::min(kPartialBytes / (unknowns * unknowns * sizeof(double)),
                                        set_.size() * channels / (kPairsPerUnknown * unknowns)),
                               2, kMostGroups);
+  const std::size_t every =
+      std::max<std::size_t>(1, set_.size() * channels / (kMatrixPairsPerUnknown * unknowns));
   const std::size_t group_size = (set_.size() + groups - 1) / groups;
   partial.resize(chunk_count(set_.size(), group_size));
   // Each pair of terms is added once, below or above the diagonal; twice the diagonal's own is taken off it.
@@ -247,9 +251,12 @@ void RefineSystem::find_normal(const Eigen::VectorXd& x, const ErrorTerms& means
             }
           count = kept;
         }
+        for (std::size_t a = 0; a < count; ++a)
+          sum.gradient[terms[a].unknown] += slope.gradient * terms[a].value;
+        if (i % every > 0) continue;
+        const double curvature = slope.curvature * static_cast<double>(every);
         for (std::size_t a = 0; a < count; ++a) {
-          const double value = terms[a].value, scaled = slope.curvature * value;
-          sum.gradient[terms[a].unknown] += slope.gradient * value;
+          const double value = terms[a].value, scaled = curvature * value;
           double* column = sum.matrix.data() + terms[a].unknown * unknowns;
           column[terms[a].unknown] += 0.5 * scaled * value;
           for (std::size_t b = a + 1; b < count; ++b) column[terms[b].unknown] += scaled * terms[b].value;

@@ -40,7 +40,8 @@ class RefineSystem {
   /// Means of the errors at x.
   ErrorTerms errors(const Eigen::VectorXd& x) const;
 
-  /// Slope and Gauss-Newton matrix of the objective at x whose errors are `means`.
+  /// Slope and Gauss-Newton matrix of the objective at x whose errors are `means`. Where there are over 80
+  /// pairs an unknown, the matrix is that of an even part of them.
   struct Normal {
     Eigen::VectorXd gradient;
     Eigen::MatrixXd matrix;
