@@ -2,7 +2,8 @@
 // halves itself until one digit is left. A digit's product is one of ~b, 0, b and 2 b, one lookup a bit; the
 // 1 that ~b lacks of -b goes into a free place of the adder above, so the last digit's is left to the caller
 // (negative_o).
-// Cuts: bit l - 1 puts a register behind level l of the tree; the latency is their number.
+// Cuts: bit 0 puts a register behind the digits' products, bit l behind level l of the tree; the latency is their
+// number.
 module burnish_digit_sum #(
   parameter int Digits = 6,
   parameter int BBits  = 24,
@@ -20,6 +21,8 @@ module burnish_digit_sum #(
   localparam int Left = Digits > 2 ** (Level - 1) && Level > 0 ? 2 ** (Level - 1) : Digits;
   localparam int Low  = 2 * Left - 2;  // where the right half's free places begin
 
+  logic [Width-1:0] sum;
+  logic             negative;
   if (Level == 0) begin : gen_digit
     logic [Width-1:0] b;
     logic             unused;
@@ -27,17 +30,17 @@ module burnish_digit_sum #(
     else assign b = b_i[Width-1:0];
     always_comb begin
       case (digits_i)
-        2'd0: sum_o = ~b;
-        2'd1: sum_o = '0;
-        2'd2: sum_o = b;
-        default: sum_o = b << 1;
+        2'd0: sum = ~b;
+        2'd1: sum = '0;
+        2'd2: sum = b;
+        default: sum = b << 1;
       endcase
     end
-    assign negative_o = digits_i == 2'd0;
-    assign unused = ^{clk_i, advance_i, b_i};
+    assign negative = digits_i == 2'd0;
+    assign unused = ^b_i;
   end else begin : gen_tree
-    logic [Width-1:0] left, sum;
-    logic             left_negative, negative;
+    logic [Width-1:0] left;
+    logic             left_negative;
     burnish_digit_sum #(
       .Digits(Left), .BBits(BBits), .Width(Width), .Level(Level - 1), .Cuts(Cuts)
     ) i_left (
@@ -60,8 +63,8 @@ module burnish_digit_sum #(
       assign sum = left;
       assign negative = left_negative;
     end
-    burnish_cut #(.Width(Width + 1), .Enable(Cuts[Level-1])) i_cut (
-      .clk_i, .advance_i, .data_i({sum, negative}), .data_o({sum_o, negative_o})
-    );
   end
+  burnish_cut #(.Width(Width + 1), .Enable(Cuts[Level])) i_cut (
+    .clk_i, .advance_i, .data_i({sum, negative}), .data_o({sum_o, negative_o})
+  );
 endmodule

@@ -11,20 +11,22 @@ module burnish_octave #(
   output logic [3:0]      octave_o,
   output logic [Bits-2:0] rest_o
 );
-  logic [Bits-1:0] after8, after4, after2;
-  logic [Bits-1:0] after4_q;
-  logic            by8, by4, by2, by1, by8_q, by4_q;
-  logic            unused;
-  assign by8 = &versine_i[Bits-1-:8];
-  assign after8 = by8 ? {versine_i[Bits-9:0], 8'b0} : versine_i;
-  assign by4 = &after8[Bits-1-:4];
-  assign after4 = by4 ? {after8[Bits-5:0], 4'b0} : after8;
+  logic [Bits-1:0] after8, after4, after4_q, after2;
+  logic            by8, by4, by2, by1, by8_q, by4_q, first, second, third, unused;
+  // ones in fours from the top; no bit waits for a shifted one to be tested
+  assign first = &versine_i[Bits-1-:4];
+  assign second = &versine_i[Bits-5-:4];
+  assign third = &versine_i[Bits-9-:4];
+  assign by8 = first & second;
+  assign by4 = first & (third | ~second);
+  assign after8 = {versine_i[Bits-9:0] & {(Bits - 8){by8}}, 8'b0} | (versine_i & {Bits{~by8}});
+  assign after4 = {after8[Bits-5:0] & {(Bits - 4){by4}}, 4'b0} | (after8 & {Bits{~by4}});
   burnish_cut #(.Width(Bits + 2), .Enable(Cut)) i_cut (
     .clk_i, .advance_i, .data_i({after4, by8, by4}), .data_o({after4_q, by8_q, by4_q})
   );
   assign by2 = &after4_q[Bits-1-:2];
+  assign by1 = by2 ? after4_q[Bits-3] : after4_q[Bits-1];
   assign after2 = by2 ? {after4_q[Bits-3:0], 2'b0} : after4_q;
-  assign by1 = after2[Bits-1];
   assign rest_o = by1 ? {after2[Bits-3:0], 1'b0} : after2[Bits-2:0];
   assign octave_o = {by8_q, by4_q, by2, by1};
   assign unused = after2[Bits-1];

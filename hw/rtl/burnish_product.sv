@@ -1,7 +1,7 @@
 // floor(a b / 2^Drop), OutBits wide. With Saturate, overflow_o tells that the value does not fit
 // (product_o is then meaningless); without, OutBits must hold every product.
 // a is read in digits of two bits, each lowered by one: -1, 0, 1, 2 need no multiple but b and 2 b.
-// Cuts: bit 0 puts a register behind the digits, bit l behind level l of the adder tree; the latency is their
+// Cuts: bit 0 puts a register behind the multiples of b, bit l behind level l of the adder tree; the latency is their
 // number. Levels = ceil(log2(floor(ABits / 2) + 1)).
 module burnish_product #(
   parameter int ABits    = 10,
@@ -23,24 +23,20 @@ module burnish_product #(
   localparam int Top    = Drop + OutBits;
   localparam int Width  = Top + (Saturate ? 1 : 0);
 
-  logic [2*Digits-1:0] digits_d, digits_q;
-  logic [BBits-1:0]    b_q;
+  logic [2*Digits-1:0] digits;
   logic [Width-1:0]    sum;
   logic [Levels:0]     excess;  // bit l: behind level l
   logic                excess_d, unused;
 
-  assign digits_d = {{(2 * Digits - ABits){1'b0}}, a_i} + {Digits{2'b01}};
-  burnish_cut #(.Width(2 * Digits + BBits + 1), .Enable(Cuts[0])) i_digits (
-    .clk_i, .advance_i, .data_i({digits_d, b_i, excess_d}), .data_o({digits_q, b_q, excess[0]})
-  );
+  assign digits = {{(2 * Digits - ABits){1'b0}}, a_i} + {Digits{2'b01}};
   burnish_digit_sum #(
-    .Digits(Digits), .BBits(BBits), .Width(Width), .Level(Levels), .Cuts(Cuts >> 1)
+    .Digits(Digits), .BBits(BBits), .Width(Width), .Level(Levels), .Cuts(Cuts)
   ) i_sum (
-    .clk_i, .advance_i, .digits_i(digits_q), .b_i(b_q), .sum_o(sum), .negative_o(unused)
+    .clk_i, .advance_i, .digits_i(digits), .b_i, .sum_o(sum), .negative_o(unused)
   );
-  for (genvar l = 1; l <= Levels; l++) begin : gen_excess
+  for (genvar l = 0; l <= Levels; l++) begin : gen_excess
     burnish_cut #(.Width(1), .Enable(Cuts[l])) i_excess (
-      .clk_i, .advance_i, .data_i(excess[l-1]), .data_o(excess[l])
+      .clk_i, .advance_i, .data_i(l == 0 ? excess_d : excess[l-1]), .data_o(excess[l])
     );
   end
   assign product_o = sum[Top-1:Drop];
