@@ -25,7 +25,7 @@ module burnish_product #(
 
   logic [2*Digits-1:0] digits;
   logic [Width-1:0]    sum;
-  logic [Levels:0]     excess;  // bit l: behind level l
+  logic [Levels+1:0]   excess;  // bit l + 1: behind level l
   logic                excess_d, unused;
 
   assign digits = {{(2 * Digits - ABits){1'b0}}, a_i} + {Digits{2'b01}};
@@ -34,9 +34,10 @@ module burnish_product #(
   ) i_sum (
     .clk_i, .advance_i, .digits_i(digits), .b_i, .sum_o(sum), .negative_o(unused)
   );
+  assign excess[0] = excess_d;
   for (genvar l = 0; l <= Levels; l++) begin : gen_excess
     burnish_cut #(.Width(1), .Enable(Cuts[l])) i_excess (
-      .clk_i, .advance_i, .data_i(l == 0 ? excess_d : excess[l-1]), .data_o(excess[l])
+      .clk_i, .advance_i, .data_i(excess[l]), .data_o(excess[l+1])
     );
   end
   assign product_o = sum[Top-1:Drop];
@@ -58,11 +59,11 @@ module burnish_product #(
           if (i + j == Top || (i > Top && j == 0)) excess_d |= a_i[i] & b_above;
       end
     end
-    assign overflow_o = excess[Levels] | sum[Top];
+    assign overflow_o = excess[Levels+1] | sum[Top];
   end else begin : gen_fits
     logic unused_excess;
     assign excess_d = 1'b0;
     assign overflow_o = 1'b0;
-    assign unused_excess = excess[Levels];
+    assign unused_excess = excess[Levels+1];
   end
 endmodule

@@ -1,6 +1,5 @@
 // Small table in logic: the word at address_i, at once. File: $readmemh image.
-// The table lies in reverse, so that an inverter parts it from a register in front: synthesis would else make the
-// register one of a synchronous memory and move it behind the table.
+// Each word is chosen by itself: synthesis would move a register in front of a memory behind it.
 module burnish_table #(
   parameter int AddressBits = 4,
   parameter int Width       = 16,
@@ -10,8 +9,15 @@ module burnish_table #(
   input  logic [AddressBits-1:0] address_i,
   output logic [Width-1:0]       word_o
 );
-  localparam int Last = 2 ** AddressBits - 1;
-  logic [Width-1:0] memory [Last + 1 - Words:Last];
-  initial $readmemh(File, memory, Last, Last + 1 - Words);
-  assign word_o = memory[~address_i];
+  logic [Width-1:0] memory [0:Words-1];
+  logic [Width-1:0] chosen [0:Words-1];
+  initial $readmemh(File, memory);
+  for (genvar i = 0; i < Words; i++) begin : gen_word
+    localparam int Index = i;
+    assign chosen[i] = memory[i] & {Width{address_i == Index[AddressBits-1:0]}};
+  end
+  always_comb begin
+    word_o = '0;
+    for (int i = 0; i < Words; i++) word_o |= chosen[i];
+  end
 endmodule
