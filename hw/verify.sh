@@ -3,7 +3,7 @@
 #   lint        verilator --lint-only -Wall on every unit
 #   simulate    Verilator against the C++ model, 20,000 vectors a unit with random pauses
 #   icarus      the generated test benches
-#   prove       yosys-smtbmc and z3: order, ends and handshake of the exact 8-bit unit, some of the exponents
+#   prove       yosys-smtbmc and z3: order, ends and handshake of the exact 8-bit unit; order for 24 exponents
 #   exhaustive  Verilator with every exponent and every input of every unit, and the proofs for every exponent
 # BURNISH is the command line, LIBRARY libburnish.a, SCRATCH a folder to work in. 77: a tool is missing.
 set -eu
@@ -17,12 +17,12 @@ need() {
   done
 }
 
-generate() {  # into a fresh folder, where everything below runs
+generate() {  # VECTORS of each unit into a fresh folder, where everything below runs
   rm -rf "$scratch"
   mkdir -p "$scratch"
   cd "$scratch"
-  "$burnish" hw generate --all --out .
-  "$burnish" hw generate --blinn --unit exact_8_versine --name blinn_exact --out .
+  "$burnish" hw generate --all --vectors "$1" --out .
+  "$burnish" hw generate --blinn --unit exact_8_versine --name blinn_exact --vectors "$1" --out .
   units=$(sed -n 's/^  \([a-z0-9_]*\) i_.*/\1/p' bench.sv)
 }
 
@@ -33,49 +33,54 @@ build_bench() {  # of the module bench in bench.sv
     { cat build.log; exit 1; }
 }
 
-prove() {  # MODULE STEPS MODE [PARAMETER VALUE]...
-  module=$1 steps=$2 mode=$3
-  shift 3
+prove() {  # MODULE STEPS bounded|induction LOGIC [PARAMETER VALUE]...; LOGIC: words or gates, what z3 is given
+  module=$1 steps=$2 mode=$3 logic=$4
+  shift 4
   parameters=
   while [ $# -gt 0 ]; do parameters="$parameters -set $1 $2"; shift 2; done
-  [ -z "$parameters" ] || parameters="chparam $parameters $module;"
   formal=
   [ ! -e "$hw/formal/$module.sv" ] || formal=$hw/formal/$module.sv
-  yosys -q -p "read_verilog -sv -formal -defer $hw/rtl/*.sv $formal; $parameters prep -top $module -flatten; async2sync;
-    memory -nordff; memory_map; opt -full; techmap; opt; dffunmap; abc -g AND,XOR,MUX; opt_clean;
+  gates=
+  [ "$logic" = words ] || gates="techmap; opt; abc -g AND,XOR,MUX;"
+  yosys -q -p "read_verilog -sv -formal -defer $hw/rtl/*.sv $formal; ${parameters:+chparam$parameters $module;}
+    prep -top $module -flatten; async2sync; memory -nordff; memory_map; opt -full; $gates dffunmap; opt_clean;
     write_smt2 $module.smt2" > yosys.log 2>&1 || { cat yosys.log; exit 1; }
   case $mode in
     bounded) set -- -t "$steps" ;;
     induction) set -- -i -t "$steps" ;;
   esac
   yosys-smtbmc -s z3 --unroll "$@" "$module.smt2" > smt.log 2>&1 || { cat smt.log; echo "FAILED: $module"; exit 1; }
-  echo "proved: $module, $mode $steps $parameters"
+  echo "proved: $module, $mode $steps$parameters"
 }
 
-prove_all() {  # EXPONENTS, chunks of 33: the first exponent of each
-  prove burnish_flow 1 induction Depth 3
-  prove burnish_flow 3 bounded Depth 3
-  prove burnish_flow 1 induction Depth 15
-  prove ends 10 bounded
-  prove order_log 2 bounded
-  prove order_exp 1 bounded
-  for first; do prove order_product 1 bounded First "$first" Count 33; done
+prove_all() {  # of the exact 8-bit unit; EXPONENTS, the first of each eight
+  "$burnish" hw generate --unit exact_8 --name exact --out .
+  mv exact_log.mem log.mem; mv exact_exp.mem exp.mem
+  for depth in 3 15; do
+    prove burnish_flow 1 induction words Depth $depth
+    prove burnish_flow 3 bounded words Depth $depth
+  done
+  prove tokens 9 bounded words
+  prove ends 5 bounded words
+  prove order_log 3 bounded words
+  prove order_exp 1 bounded gates
+  for first; do prove order_product 1 bounded words First "$first" Count 8; done
 }
 
 case $step in
   lint)
     need verilator
-    generate
+    generate 1
     for unit in $units blinn_exact; do verilator --lint-only -Wall --top-module "$unit" -f "$unit.f"; done
     echo "PASS no warning" ;;
   simulate)
     need verilator
-    generate
+    generate 1
     build_bench
     bench_build/Vbench sample 20000 $units ;;
   icarus)
     need iverilog vvp
-    generate
+    generate 400
     for unit in $units blinn_exact; do
       iverilog -g2012 -o "$unit.vvp" -f "$unit.f" "${unit}_tb.sv"
       answer=$(vvp -n "$unit.vvp")
@@ -84,13 +89,11 @@ case $step in
     done ;;
   prove)
     need yosys yosys-smtbmc z3
-    generate
-    "$burnish" hw generate --unit exact_8 --name exact --out .
-    mv exact_log.mem log.mem; mv exact_exp.mem exp.mem
-    prove_all 1 991 ;;
+    generate 1
+    prove_all 1 505 1016 ;;
   exhaustive)
     need verilator yosys yosys-smtbmc z3
-    generate
+    generate 1
     for unit in $units; do
       rm -rf bench_build
       "$burnish" hw generate --unit "$unit" --out .
@@ -101,8 +104,6 @@ case $step in
     verilator --binary -O3 --top-module blinn_exact_tb -Mdir blinn_build -Wno-fatal -f blinn_exact.f blinn_exact_tb.sv \
       > build.log 2>&1 || { cat build.log; exit 1; }
     echo "blinn_exact: $(blinn_build/Vblinn_exact_tb | grep -E 'PASS|FAIL')"
-    "$burnish" hw generate --unit exact_8 --name exact --out .
-    mv exact_log.mem log.mem; mv exact_exp.mem exp.mem
-    prove_all $(seq 1 33 991) ;;
+    prove_all $(seq 1 8 1009) 1016 ;;
   *) sed -n '2,9s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
 esac

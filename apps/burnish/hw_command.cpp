@@ -148,7 +148,7 @@ void add_error(CLI::App& verb) {
   struct Arguments {
     int first = 1, last = 1000, exponent_step = 1;
     std::uint32_t input_step = 1;
-    bool json = false;
+    bool json = false, rounded_input = false;
   };
   auto unit_arguments = add_unit_options(*sub);
   auto arguments = std::make_shared<Arguments>();
@@ -165,8 +165,19 @@ void add_error(CLI::App& verb) {
       ->check(CLI::Range(1, 1 << 20))
       ->capture_default_str();
   sub->add_flag("--json", arguments->json, "for programs");
+  sub->add_flag("--rounded-input", arguments->rounded_input,
+                "instead: at --last alone, of 2^20 cosines in the highlight, rounded to the input's format");
   sub->callback([unit_arguments, arguments] {
     const SpecularUnit unit = make_unit(*unit_arguments);
+    if (arguments->rounded_input) {
+      const double error = measure_rounded_input_error(unit, arguments->last);
+      if (arguments->json)
+        fmt::print("{}\n", nlohmann::json{{"max_error_lsb", error}}.dump(2));
+      else
+        fmt::print("at most {:.4f} of the last place of {} bits at exponent {}\n", error,
+                   unit.config().output_bits, arguments->last);
+      return;
+    }
     const UnitError e = measure_unit_error(unit, arguments->first, arguments->last, arguments->input_step,
                                            arguments->exponent_step);
     if (arguments->json) {

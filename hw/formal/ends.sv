@@ -5,7 +5,7 @@ module ends #(
   input logic       clk_i,
   input logic [9:0] exponent_i
 );
-  localparam logic [2:0][15:0] Inputs = {16'hffff, 16'h8000, 16'h0000};
+  localparam logic [47:0] Inputs = {16'hffff, 16'h8000, 16'h0000};
   logic rst_n_q = 1'b0;
   always_ff @(posedge clk_i) begin
     rst_n_q <= 1'b1;
@@ -15,7 +15,7 @@ module ends #(
     logic       valid, unused_ready;
     logic [7:0] value;
     burnish_exact #(.Depth(Depth)) i_unit (
-      .clk_i, .rst_ni(rst_n_q), .valid_i(1'b1), .ready_o(unused_ready), .exponent_i, .input_i(Inputs[i]),
+      .clk_i, .rst_ni(rst_n_q), .valid_i(1'b1), .ready_o(unused_ready), .exponent_i, .input_i(Inputs[16*i+:16]),
       .valid_o(valid), .ready_i(1'b1), .value_o(value)
     );
     always_ff @(posedge clk_i) if (valid) assert (value == {8{i != 0}});

@@ -132,4 +132,15 @@ UnitError measure_unit_error(const SpecularUnit& unit, int min_exponent, int max
   return error;
 }
 
+double measure_rounded_input_error(const SpecularUnit& unit, int exponent, int points) {
+  const double scale = static_cast<double>((1U << unit.config().output_bits) - 1);
+  double largest = 0;
+  for (int i = 0; i < points; ++i) {
+    const double cosine = 1 - std::min(1.0, 12.0 / exponent) * i / points;
+    const std::uint32_t value = unit.value(static_cast<std::uint32_t>(exponent), unit.input(cosine));
+    largest = std::max(largest, std::abs(value - scale * std::pow(cosine, exponent)));
+  }
+  return largest;
+}
+
 }  // namespace burnish

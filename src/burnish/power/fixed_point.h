@@ -127,4 +127,9 @@ struct UnitError {
 UnitError measure_unit_error(const SpecularUnit& unit, int min_exponent = 1, int max_exponent = 1000,
                              std::uint32_t input_step = 1, int exponent_step = 1);
 
+/// Largest difference, in units of the last place, between the unit's output for the input word nearest to a
+/// cosine and c^exponent of that very cosine, over `points` cosines evenly spread where exponent (1 - c) <=
+/// 12: what rounding the input costs is in it.
+double measure_rounded_input_error(const SpecularUnit& unit, int exponent, int points = 1 << 20);
+
 }  // namespace burnish

@@ -24,6 +24,16 @@ TEST(FixedPoint, ExactUnitIsWithinOneUnitOfTheLastPlaceForEveryWidth) {
   }
 }
 
+TEST(FixedPoint, RoundingTheCosineCostsWhatItsSlopeTellsAndTheVersineSparesIt) {
+  // half a step of the input times the steepest slope, and the unit's own error
+  const double half_step = 255 * 1000 / std::ldexp(1.0, 16);
+  const double cosine = measure_rounded_input_error(SpecularUnit(UnitConfig{}), 1000, 1 << 16);
+  EXPECT_GT(cosine, half_step - 0.81);
+  EXPECT_LT(cosine, half_step + 0.81);
+  const UnitConfig versine = {.input = UnitInput::versine, .cosine_bits = 20};
+  EXPECT_LT(measure_rounded_input_error(SpecularUnit(versine), 1000, 1 << 16), 1);
+}
+
 TEST(FixedPoint, ExactUnitIsWithinOneUnitOfTheLastPlaceForVersines) {
   for (const auto& [output_bits, cosine_bits] : {std::pair{8, 20}, {8, 10}, {10, 22}, {12, 24}}) {
     const UnitConfig config = exact_config(output_bits, std::max(cosine_bits, 12), UnitInput::versine);
