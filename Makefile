@@ -1,8 +1,9 @@
 # make demo   installs packages, builds, and takes a measurement to two textures (INPUT=file for your own)
 # make test   installs packages, builds with sanitizers and optimized, runs every test
 # make build  the command line at build/release/apps/burnish/burnish
-# make bench, make fuzz, make report, make sampling-report, make format: see docs/developing.md
-.PHONY: demo test build deps bench fuzz report sampling-report format format-check
+# make bench, make fuzz, make report, make sampling-report, make hw-report, make hw-exhaustive, make format: see
+# docs/developing.md
+.PHONY: demo test build deps bench fuzz report sampling-report hw-report hw-exhaustive format format-check
 JOBS ?= $(shell nproc)
 BURNISH := build/release/apps/burnish/burnish
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
@@ -49,6 +50,20 @@ sampling-report: build
 	@mkdir -p docs/figures
 	@build/release/apps/sampling_report/burnish_sampling_report docs > docs/sampling-results.md.partial
 	@mv docs/sampling-results.md.partial docs/sampling-results.md
+
+HW := build/hw-report
+LIBRARY := $(CURDIR)/build/release/src/burnish/libburnish.a
+hw-report: build
+	@command -v nextpnr-ice40 > /dev/null || $(SUDO) apt-get install -y -qq --no-install-recommends nextpnr-ice40 > /dev/null
+	@rm -rf $(HW) && mkdir -p $(HW) docs/figures
+	@hw/verify.sh sphere $(CURDIR)/$(BURNISH) $(LIBRARY) $(HW)/sphere $(CURDIR)/build/release/apps/report/burnish_hardware_sphere \
+	  $(CURDIR)/docs/figures/hardware_sphere.png > $(HW)/sphere.txt
+	@hw/synthesize.sh $(CURDIR)/$(BURNISH) $(HW)/synthesis > $(HW)/synthesis.txt
+	@hw/report.py $(BURNISH) $(HW)/synthesis.txt $(HW)/sphere.txt > $(HW)/hardware.md
+	@mv $(HW)/hardware.md docs/hardware.md
+
+hw-exhaustive: build
+	@hw/verify.sh exhaustive $(CURDIR)/$(BURNISH) $(LIBRARY) build/hw-exhaustive
 
 fuzz: deps
 	@tests/fuzz/run.sh $(FUZZ_SECONDS)

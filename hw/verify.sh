@@ -5,6 +5,7 @@
 #   icarus      the generated test benches
 #   prove       yosys-smtbmc and z3: order, ends and handshake of the exact 8-bit unit; order for 24 exponents
 #   exhaustive  Verilator with every exponent and every input of every unit, and the proofs for every exponent
+#   sphere      a sphere shaded by simulated units: hw/verify.sh sphere BURNISH LIBRARY SCRATCH PROGRAM PNG
 # BURNISH is the command line, LIBRARY libburnish.a, SCRATCH a folder to work in. 77: a tool is missing.
 set -eu
 step=$1 burnish=$2 library=$3 scratch=$4
@@ -31,6 +32,12 @@ build_bench() {  # of the module bench in bench.sv
     -Mdir bench_build -y . bench.sv "$hw/tb/bench.cpp" \
     -CFLAGS "-std=c++20 -O2 -I$hw/../src" -LDFLAGS "$library -lfmt" > build.log 2>&1 ||
     { cat build.log; exit 1; }
+}
+
+build_one() {  # bench of UNIT alone
+  rm -rf bench_build
+  "$burnish" hw generate --unit "$1" --vectors 1 --out .
+  build_bench
 }
 
 prove() {  # MODULE STEPS bounded|induction LOGIC [PARAMETER VALUE]...; LOGIC: words or gates, what z3 is given
@@ -95,9 +102,7 @@ case $step in
     need verilator yosys yosys-smtbmc z3
     generate 1
     for unit in $units; do
-      rm -rf bench_build
-      "$burnish" hw generate --unit "$unit" --out .
-      build_bench
+      build_one "$unit"
       echo "$unit: $(bench_build/Vbench all "$unit")"
     done
     "$burnish" hw generate --blinn --unit exact_8_versine --name blinn_exact --vectors 1000000 --out .
@@ -105,5 +110,17 @@ case $step in
       > build.log 2>&1 || { cat build.log; exit 1; }
     echo "blinn_exact: $(blinn_build/Vblinn_exact_tb | grep -E 'PASS|FAIL')"
     prove_all $(seq 1 8 1009) 1016 ;;
-  *) sed -n '2,9s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
+  sphere)
+    need verilator
+    program=$5 png=$6
+    mkdir -p "$scratch"
+    cd "$scratch"
+    set --
+    for unit in exact_8_pipelined paper_literal paper two_piece w8 schlick; do
+      build_one "$unit"
+      "$program" questions "$unit" | bench_build/Vbench stream "$unit" > "$unit.answers"
+      set -- "$@" "$unit=$unit.answers"
+    done
+    "$program" picture "$png" "$@" ;;
+  *) sed -n '2,10s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
 esac

@@ -1,0 +1,72 @@
+#!/usr/bin/env python3
+"""Writes docs/hardware.md: hw/report.py BURNISH SYNTHESIS SPHERE, the latter two the output of hw/synthesize.sh and of
+`hw/verify.sh sphere`. The text is hw/hardware.md.in; what stands in it as @name@ is measured here."""
+import json
+import pathlib
+import subprocess
+import sys
+
+burnish, synthesis, sphere = sys.argv[1:]
+
+# LC, EBR and MHz on HX8K and gates of the first prototype of each block, which had one pipeline of about three stages
+PROTOTYPE = {
+    "exact_8": "1106 / 1 / 78.8, 3623", "paper_literal": "1445 / 4 / 66.6, 6038", "paper": "1149 / 4 / 64.3, 5042",
+    "two_piece": "1199 / 0 / 68.8, 3214", "w8": "1839 / 0 / 72.4", "schlick": "1772 / 0 / 89.1",
+}
+EXACT = ["exact_8", "exact_8_pipelined", "exact_8_versine", "exact_10", "exact_12"]
+
+
+def measured(*arguments):
+    answer = subprocess.run([burnish, "hw", "error", "--json", *arguments], check=True, capture_output=True, text=True)
+    return json.loads(answer.stdout)
+
+
+def error(unit):
+    more = ["--input-step", "31"] if unit.endswith("versine") else ["--first", "5"] if unit.startswith("w8") else []
+    return measured("--unit", unit, *more)
+
+
+def table(head, rows):
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    return "\n".join(lines + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows])
+
+
+figures = {}
+for line in pathlib.Path(synthesis).read_text().splitlines():
+    values = dict(word.split("=") for word in line.split())
+    figures[values["unit"]] = values
+errors = {unit: error(unit) for unit in figures}
+depths = {}
+for unit in figures:
+    module = subprocess.run([burnish, "hw", "generate", "--unit", unit, "--vectors", "1", "--out", synthesis + ".units"],
+                            check=True) and pathlib.Path(synthesis + ".units", unit + ".sv").read_text()
+    depths[unit] = module.split(" clocks.")[0].split()[-1]
+
+blocks = table(
+    ["block", "clocks", "HX8K LC / EBR / MHz", "UP5K MHz", "Xilinx 7 LUT / FF", "gates / FF", "error, LSB of 8 bits",
+     "prototype: LC / EBR / MHz, gates"],
+    [[f"`{unit}`", depths[unit], f"{f['lc']} / {f['ebr']} / {f['hx_mhz']}", f["up_mhz"], f"{f['luts']} / {f['x_ff']}",
+      f"{f['gates']} / {f['ff']}", f"{errors[unit]['max_error_lsb']:.2f}" + ("*" if unit in EXACT[3:] else ""),
+      PROTOTYPE.get(unit, "")] for unit, f in figures.items()])
+widths = table(
+    ["unit", "vectors", "largest error, LSB", "correctly rounded", "answers that fall as c rises", "tables, words x bits"],
+    [[f"`{unit}`", f"{e['vectors']:,}", f"{e['max_error_lsb']:.3f}", f"{100 * e['correctly_rounded']:.2f} %", e["falls"],
+      " + ".join(f"{t['words']} x {t['width']}" for t in e["tables"])] for unit, e in errors.items() if unit in EXACT])
+
+
+def rounded(bits, kind, exponent):
+    return measured("--cos-bits", str(bits), "--input", kind, "--rounded-input", "--last", str(exponent))["max_error_lsb"]
+
+
+inputs = table(
+    ["input", *(f"e = {e}" for e in (10, 100, 500, 1000))],
+    [[name, *(f"{rounded(bits, kind, e):.2f}" for e in (10, 100, 500, 1000))]
+     for name, bits, kind in (("c, 15 bits", 15, "cosine"), ("v, 15 bits", 15, "versine"), ("c, 20 bits", 20, "cosine"),
+                              ("v, 20 bits", 20, "versine"))])
+differences = table(["unit", "largest difference, levels"],
+                    [line.split() for line in pathlib.Path(sphere).read_text().splitlines() if line])
+
+text = pathlib.Path(__file__).with_name("hardware.md.in").read_text()
+for name, value in {"blocks": blocks, "widths": widths, "inputs": inputs, "differences": differences}.items():
+    text = text.replace(f"@{name}@", value)
+sys.stdout.write(text)

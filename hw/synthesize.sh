@@ -1,0 +1,53 @@
+#!/bin/sh
+# Synthesizes units of hw/ with Yosys and nextpnr: hw/synthesize.sh BURNISH SCRATCH [UNIT]..., by default all.
+# One line of key=value figures a unit: HX8K and UP5K (placed and routed, seed 1, options' defaults), Xilinx 7, gates.
+set -eu
+burnish=$1 scratch=$2
+shift 2
+mkdir -p "$scratch"
+cd "$scratch"
+
+[ $# -gt 0 ] || {
+  "$burnish" hw generate --all --vectors 1 --out .
+  set -- $(sed -n 's/^  \([a-z0-9_]*\) i_.*/\1/p' bench.sv)
+}
+
+frequency() { sed -n 's/.*Max frequency for clock.*: \([0-9.]*\) MHz.*/\1/p' "$1" | tail -1; }
+used() { sed -n "s|.*ICESTORM_$2: *\([0-9]*\)/.*|\1|p" "$1" | head -1; }
+cells() { awk -v type="$2" '$1 ~ type { sum += $2 } END { print sum + 0 }' "$1"; }
+
+for unit; do
+  "$burnish" hw generate --unit "$unit" --vectors 1 --out .
+  sources="$(grep -v // "$unit.f" | tr '\n' ' ')"
+  width=$(sed -n 's/.*\[\([0-9]*\):0\] *input_i.*/\1/p' "$unit.sv")
+  last=$(sed -n 's/.*\[\([0-9]*\):0\] *value_o.*/\1/p' "$unit.sv")
+  # a UP5K has 39 pins: the input arrives bit by bit
+  cat > "${unit}_pins.sv" <<PINS
+module ${unit}_pins (
+  input logic clk_i, rst_ni, valid_i, bit_i, ready_i, output logic ready_o, valid_o, output logic [$last:0] value_o
+);
+  logic [$((width + 10)):0] word_q;
+  always_ff @(posedge clk_i) word_q <= {word_q[$((width + 9)):0], bit_i};
+  $unit i_unit (
+    .clk_i, .rst_ni, .valid_i, .ready_o, .exponent_i(word_q[$((width + 10)):$((width + 1))]),
+    .input_i(word_q[$width:0]), .valid_o, .ready_i, .value_o
+  );
+endmodule
+PINS
+  read="read_verilog -sv -defer $sources"
+  yosys -q -p "$read; synth_ice40 -top $unit -json $unit.json" > "$unit.log" 2>&1
+  yosys -q -p "$read ${unit}_pins.sv; synth_ice40 -top ${unit}_pins -json ${unit}_pins.json" > "$unit.log" 2>&1
+  nextpnr-ice40 --hx8k --package ct256 --json "$unit.json" --freq 130 --seed 1 --pcf-allow-unconstrained \
+    --timing-allow-fail > "$unit.hx" 2>&1
+  nextpnr-ice40 --up5k --package sg48 --json "${unit}_pins.json" --freq 65 --seed 1 --pcf-allow-unconstrained \
+    --timing-allow-fail > "$unit.up" 2>&1
+  yosys -q -p "$read; synth_xilinx -family xc7 -flatten -noiopad -top $unit; tee -q -o $unit.xilinx stat" > "$unit.log" 2>&1
+  # tables of a clock stay memories; what is left are gates of one or two inputs and multiplexers
+  yosys -q -p "$read; hierarchy -top $unit; proc; flatten; opt; memory -nomap; memory_libmap -lib +/ice40/brams.txt;
+    memory_map; opt; techmap; opt; abc -g AND,NAND,OR,NOR,XOR,XNOR,MUX; opt_clean; tee -q -o $unit.gates stat" > "$unit.log" 2>&1
+  echo "unit=$unit lc=$(used "$unit.hx" LC) ebr=$(used "$unit.hx" RAM) hx_mhz=$(frequency "$unit.hx")" \
+    "up_mhz=$(frequency "$unit.up") luts=$(cells "$unit.xilinx" '^LUT')" \
+    "x_ff=$(cells "$unit.xilinx" '^FD')" "x_carry=$(cells "$unit.xilinx" '^CARRY4')" \
+    "x_bram=$(cells "$unit.xilinx" '^RAMB')" "x_dsp=$(cells "$unit.xilinx" '^DSP')" \
+    "gates=$(cells "$unit.gates" '^[$]_(AND|NAND|OR|NOR|XOR|XNOR|MUX|NOT)_')" "ff=$(cells "$unit.gates" '^[$]_.*DFF')"
+done
