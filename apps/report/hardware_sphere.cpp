@@ -2,8 +2,8 @@
 //   burnish_hardware_sphere questions UNIT          the `exponent input` line of every pixel, for a
 //   simulation burnish_hardware_sphere picture OUT NAME=FILE...  the answers of units, beside c^e and their
 //   differences
+#include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <string_view>
@@ -44,10 +44,15 @@ Image shaded(const std::string& file) {
   return image;
 }
 
+// Beside the sphere a dark grey, so that its outline shows.
 Image8 grey(const Image& levels) {
-  Image8 image(levels.width, levels.height, 3);
-  for (std::size_t i = 0; i < image.pixels.size(); ++i)
-    image.pixels[i] = static_cast<std::uint8_t>(std::lround(levels.pixels[i / 3]));
+  Image8 image(kSize, kSize, 3);
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      const bool inside = sphere_normal(kSize, x + 0.5, y + 0.5).has_value();
+      std::ranges::fill(image.at(x, y),
+                        static_cast<std::uint8_t>(inside ? std::lround(levels.at(x, y)[0]) : 40));
+    }
   return image;
 }
 

@@ -19,7 +19,7 @@ constexpr UnitConfig pipelined(UnitMethod method, int depth) {
 }
 
 const std::array kShipped = {
-    ShippedUnit{"exact_8", {}},
+    ShippedUnit{"exact_8", {.depth = 6}},
     ShippedUnit{"exact_8_pipelined", pipelined(exact, 15)},
     ShippedUnit{"exact_8_versine", {.input = UnitInput::versine, .cosine_bits = 20, .depth = 6}},
     ShippedUnit{"exact_10", {.output_bits = 10}},
