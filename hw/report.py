@@ -43,9 +43,9 @@ for unit in figures:
     depths[unit] = module.split(" clocks.")[0].split()[-1]
 
 blocks = table(
-    ["block", "clocks", "HX8K LC / EBR / MHz", "UP5K MHz", "Xilinx 7 LUT / FF", "gates / FF", "error, LSB of 8 bits",
+    ["block", "clocks", "HX8K LC / EBR / MHz", "UP5K MHz", "Xilinx 7 LUT / FF / BRAM / DSP", "gates / FF", "error, LSB of 8 bits",
      "prototype: LC / EBR / MHz, gates"],
-    [[f"`{unit}`", depths[unit], f"{f['lc']} / {f['ebr']} / {f['hx_mhz']}", f["up_mhz"], f"{f['luts']} / {f['x_ff']}",
+    [[f"`{unit}`", depths[unit], f"{f['lc']} / {f['ebr']} / {f['hx_mhz']}", f["up_mhz"], f"{f['luts']} / {f['x_ff']} / {f['x_bram']} / {f['x_dsp']}",
       f"{f['gates']} / {f['ff']}", f"{errors[unit]['max_error_lsb']:.2f}" + ("*" if unit in EXACT[3:] else ""),
       PROTOTYPE.get(unit, "")] for unit, f in figures.items()])
 widths = table(

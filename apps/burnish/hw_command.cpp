@@ -152,16 +152,16 @@ void add_error(CLI::App& verb) {
   };
   auto unit_arguments = add_unit_options(*sub);
   auto arguments = std::make_shared<Arguments>();
-  sub->add_option("--first", arguments->first, "exponent")
+  sub->add_option("--first", arguments->first, "least exponent")
       ->check(CLI::Range(1, kUnitMaxExponent))
       ->capture_default_str();
-  sub->add_option("--last", arguments->last, "exponent")
+  sub->add_option("--last", arguments->last, "largest exponent")
       ->check(CLI::Range(1, kUnitMaxExponent))
       ->capture_default_str();
-  sub->add_option("--exponent-step", arguments->exponent_step, "")
+  sub->add_option("--exponent-step", arguments->exponent_step, "only every so manyth")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  sub->add_option("--input-step", arguments->input_step, "")
+  sub->add_option("--input-step", arguments->input_step, "only every so manyth")
       ->check(CLI::Range(1, 1 << 20))
       ->capture_default_str();
   sub->add_flag("--json", arguments->json, "for programs");
