@@ -33,6 +33,8 @@ module order_log #(
   always_ff @(posedge clk_i) begin
     started_q <= {started_q[0], 1'b1};
     {cosine_q, cosine_qq} <= {cosine_i, cosine_q};
+  end
+  always_comb begin
     assume (cosine_i != '1);
     if (started_q[1]) begin
       assert (log[1] <= log[0]);
