@@ -426,7 +426,8 @@ void eval_block(const FactoredPlan& plan, const DirectionPointers& in, std::size
                                           : eval_group<3>(plan, group, in, stride, count, scratch, f, plane);
 }
 
-void eval_directions(const FactoredPlan& plan, const DirectionPointers& in, std::size_t count, float* f) {
+void eval_directions(const FactoredPlan& plan, const DirectionPointers& in, std::size_t count, float* f,
+                     std::size_t plane) {
   Scratch scratch;
   constexpr std::size_t kPositions = FactoredPlan::kMostSlots * kLanes;
   const std::size_t slots = std::max<std::size_t>(plan.slots, 1);
@@ -435,7 +436,7 @@ void eval_directions(const FactoredPlan& plan, const DirectionPointers& in, std:
   for (std::size_t i = 0; i < whole; i += stride) {
     DirectionPointers from = in;
     for (const float*& p : from) p += i;
-    eval_block(plan, from, stride, std::min(stride, whole - i), scratch, f + i, count);
+    eval_block(plan, from, stride, std::min(stride, whole - i), scratch, f + i, plane);
   }
   if (whole == count) return;
   // the rest, filled up to a vector with the first of them
@@ -446,7 +447,7 @@ void eval_directions(const FactoredPlan& plan, const DirectionPointers& in, std:
     std::copy(in[k] + whole, in[k] + count, rest[k]);
     from[k] = rest[k];
   }
-  eval_block(plan, from, stride, count - whole, scratch, f + whole, count);
+  eval_block(plan, from, stride, count - whole, scratch, f + whole, plane);
 }
 
 }  // namespace
@@ -471,12 +472,17 @@ double FactoredEvaluator::rounding_bound() const noexcept {
 }
 
 void FactoredEvaluator::eval(const DirectionSpans& d, std::span<float> f) const noexcept {
+  eval(d, f, d.size());
+}
+
+void FactoredEvaluator::eval(const DirectionSpans& d, std::span<float> f, std::size_t plane) const noexcept {
   const std::size_t count = d.size();
   assert(d.wi_y.size() == count && d.wi_z.size() == count && d.wo_x.size() == count &&
-         d.wo_y.size() == count && d.wo_z.size() == count && f.size() == count * plan_->channels);
+         d.wo_y.size() == count && d.wo_z.size() == count && plane >= count &&
+         f.size() == (plan_->channels - 1) * plane + count);
   HWY_DYNAMIC_DISPATCH(eval_directions)
   (*plan_, {d.wi_x.data(), d.wi_y.data(), d.wi_z.data(), d.wo_x.data(), d.wo_y.data(), d.wo_z.data()}, count,
-   f.data());
+   f.data(), plane);
 }
 
 void FactoredEvaluator::eval(Vec3 wi, Vec3 wo, std::span<float> f) const noexcept {

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include <burnish/factors/factored_brdf.h>
+#include <burnish/factors/model_file.h>
 #include <burnish/file.h>
 #include <burnish/io/open_options.h>
 #include <burnish/reflectance/analytic.h>
@@ -45,5 +46,8 @@ Source open_source(const std::string& spec, const OpenOptions& options);
 
 /// The same for bytes in memory.
 Source parse_source(const FileBytes& file, const OpenOptions& options);
+
+/// A model as a source of that name.
+Source to_source(const std::string& name, Model model);
 
 }  // namespace burnish
