@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <burnish/file.h>
-#include <burnish/fitting/fit_model.h>
+#include <burnish/fitting/fit.h>
 #include <burnish/math/parallel.h>
 
 #include "commands.h"
@@ -69,7 +69,7 @@ nlohmann::ordered_json fit(const Arguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const ThreadLimit limit(arguments.threads);
   const Source source = arguments.source.open();
-  const Model model = fit_model({.brdf = source.ref(),
+  const Model model = burnish::fit({.brdf = source.ref(),
                                  .name = source.name,
                                  .format = source.findings.format,
                                  .lambda_nm = source.findings.lambda_nm,

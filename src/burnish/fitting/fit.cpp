@@ -9,7 +9,7 @@
 #include <burnish/fitting/budget.h>
 #include <burnish/fitting/cross_validation.h>
 #include <burnish/fitting/energy.h>
-#include <burnish/fitting/fit_model.h>
+#include <burnish/fitting/fit.h>
 #include <burnish/fitting/log_error.h>
 #include <burnish/fitting/search.h>
 #include <burnish/metrics/error_figures.h>
@@ -226,7 +226,7 @@ class Fitter {
 
 }  // namespace
 
-Model fit_model(const FitInput& input, const FitOptions& options) {
+Model fit(const FitInput& input, const FitOptions& options) {
   return Fitter(input, options).run();
 }
 

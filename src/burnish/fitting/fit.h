@@ -54,6 +54,6 @@ struct FitOptions {
 /// fit_plan or fit_lobes do. The notes say what was fitted and how, and hold the error figures of the stored
 /// model on 20,000 pairs that were not fitted (of scattered samples: at the samples). Throws Error for a
 /// model, table option or format that does not fit, and what the solvers throw.
-Model fit_model(const FitInput& input, const FitOptions& options);
+Model fit(const FitInput& input, const FitOptions& options);
 
 }  // namespace burnish
