@@ -12,8 +12,8 @@ namespace burnish::python {
 
 namespace {
 
-// Directions a task; the fewest that are worth a thread.
-constexpr std::size_t kChunk = 16'384;
+// Directions a task: enough that starting one costs nothing.
+constexpr std::size_t kChunk = 32'768;
 
 /// What one evaluation reads and writes.
 template <class T>
@@ -23,35 +23,31 @@ struct Job {
   std::size_t count, channels;
 };
 
-// Blocks of a model's evaluation, in buffers where arrays are not in planes.
+// A part of a model's evaluation, through buffers where arrays are not in planes.
 void eval_model(const FactoredEvaluator& evaluator, const Job<float>& job, std::size_t begin,
                 std::size_t end) {
-  const auto directions = [&](std::size_t first, std::size_t count, float(&buffer)[6][kBlock]) {
-    return DirectionSpans{
-        component(job.wi, 0, first, count, buffer[0]), component(job.wi, 1, first, count, buffer[1]),
-        component(job.wi, 2, first, count, buffer[2]), component(job.wo, 0, first, count, buffer[3]),
-        component(job.wo, 1, first, count, buffer[4]), component(job.wo, 2, first, count, buffer[5])};
+  alignas(64) Buffer buffers[6];
+  const auto directions = [&](std::size_t first, std::size_t count) {
+    const auto i = components<3>(job.wi, first, count, buffers);
+    const auto o = components<3>(job.wo, first, count, buffers + 3);
+    return DirectionSpans{i[0], i[1], i[2], o[0], o[1], o[2]};
   };
-  alignas(64) float buffer[6][kBlock];
   if (job.wi.planes() && job.wo.planes() && job.f.planes()) {
     // as it lies: nothing is copied
     const auto plane = static_cast<std::size_t>(job.f.component);
-    evaluator.eval(directions(begin, end - begin, buffer),
+    evaluator.eval(directions(begin, end - begin),
                    {job.f.at(begin, 0), (job.channels - 1) * plane + (end - begin)}, plane);
     return;
   }
   std::vector<float> values(job.channels * kBlock);
   for (std::size_t i = begin; i < end; i += kBlock) {
     const std::size_t count = std::min(kBlock, end - i);
-    evaluator.eval(directions(i, count, buffer), std::span(values).first(job.channels * count));
-    if (job.channels == 3 && job.f.row == 3 && job.f.component == 1) {  // the usual one
-      float* const to = job.f.at(i, 0);
-      for (std::size_t k = 0; k < count; ++k)
-        for (std::size_t c = 0; c < 3; ++c) to[3 * k + c] = values[c * count + k];
-      continue;
-    }
-    for (std::size_t c = 0; c < job.channels; ++c)
-      for (std::size_t k = 0; k < count; ++k) *job.f.at(i + k, c) = values[c * count + k];
+    evaluator.eval(directions(i, count), std::span(values).first(job.channels * count));
+    if (job.channels == 3 && job.f.row == 3 && job.f.component == 1)
+      to_rows(values.data(), values.data() + count, values.data() + 2 * count, count, job.f.at(i, 0));
+    else
+      for (std::size_t c = 0; c < job.channels; ++c)
+        for (std::size_t k = 0; k < count; ++k) *job.f.at(i + k, c) = values[c * count + k];
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -9,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include <burnish/error.h>
+#include <burnish/eval/interleaved.h>
 
 #include "module.h"
 
@@ -81,23 +83,29 @@ Result<T> make_result(const nb::object& out, std::size_t count, std::size_t widt
 }
 
 /// Directions that go through buffers together.
-inline constexpr std::size_t kBlock = 256;
+inline constexpr std::size_t kBlock = 512;
+using Buffer = float[kBlock];
 
-/// One component of rows [begin, begin + count): where it lies if that is in one piece, else copied to
-/// `buffer`.
-template <class T>
-std::span<const float> component(const Rows<const T>& rows, std::size_t k, std::size_t begin,
-                                 std::size_t count, float* buffer) noexcept {
-  if constexpr (std::is_same_v<T, float>)
-    if (rows.planes()) return {rows.at(begin, k), count};
-  const T* from = rows.at(begin, k);
-  const std::int64_t row = rows.row;
-  if (row == 3)  // the usual C order: a constant stride is faster
-    for (std::size_t i = 0; i < count; ++i) buffer[i] = static_cast<float>(from[3 * i]);
-  else
-    for (std::size_t i = 0; i < count; ++i)
-      buffer[i] = static_cast<float>(from[static_cast<std::int64_t>(i) * row]);
-  return {buffer, count};
+/// The first kWidth components of rows [begin, begin + count) as floats: where they lie if each is in one
+/// piece, else copied to `buffers`.
+template <std::size_t kWidth, class T>
+std::array<std::span<const float>, kWidth> components(const Rows<const T>& rows, std::size_t begin,
+                                                      std::size_t count, Buffer* buffers) noexcept {
+  std::array<std::span<const float>, kWidth> result;
+  for (std::size_t k = 0; k < kWidth; ++k) result[k] = {buffers[k], count};
+  if constexpr (std::is_same_v<T, float>) {
+    if (rows.planes()) {
+      for (std::size_t k = 0; k < kWidth; ++k) result[k] = {rows.at(begin, k), count};
+      return result;
+    }
+    if (kWidth == 3 && rows.row == 3 && rows.component == 1) {  // NumPy's usual order
+      to_planes(rows.at(begin, 0), count, buffers[0], buffers[1], buffers[2]);
+      return result;
+    }
+  }
+  for (std::size_t k = 0; k < kWidth; ++k)
+    for (std::size_t i = 0; i < count; ++i) buffers[k][i] = static_cast<float>(*rows.at(begin + i, k));
+  return result;
 }
 
 }  // namespace burnish::python

@@ -22,14 +22,12 @@ nb::object pdf(const OpenedBrdf& brdf, const Array<const T>& wi_array, const Arr
     const nb::gil_scoped_release released;
     const TabulatedSampler& sampler = brdf.sampler();
     for_each_chunk(n, kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
-      alignas(64) float buffer[6][kBlock], values[kBlock];
+      alignas(64) Buffer buffers[6], values;
       for (std::size_t i = begin; i < end; i += kBlock) {
         const std::size_t count = std::min(kBlock, end - i);
         if constexpr (std::is_same_v<T, float>) {
-          sampler.pdf({component(wi, 0, i, count, buffer[0]), component(wi, 1, i, count, buffer[1]),
-                       component(wi, 2, i, count, buffer[2]), component(wo, 0, i, count, buffer[3]),
-                       component(wo, 1, i, count, buffer[4]), component(wo, 2, i, count, buffer[5])},
-                      {values, count});
+          const auto v = components<3>(wi, i, count, buffers), w = components<3>(wo, i, count, buffers + 3);
+          sampler.pdf({v[0], v[1], v[2], w[0], w[1], w[2]}, {values, count});
           for (std::size_t k = 0; k < count; ++k) *result.rows.at(i + k, 0) = values[k];
         } else {
           for (std::size_t k = i; k < i + count; ++k)
@@ -53,14 +51,15 @@ nb::tuple sample_wi(const OpenedBrdf& brdf, const Array<const T>& wo_array, cons
     const nb::gil_scoped_release released;
     const TabulatedSampler& sampler = brdf.sampler();
     for_each_chunk(n, kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
-      alignas(64) float buffer[5][kBlock], drawn[4][kBlock];
+      alignas(64) Buffer buffers[5], drawn[4];
       for (std::size_t i = begin; i < end; i += kBlock) {
         const std::size_t count = std::min(kBlock, end - i);
-        if constexpr (std::is_same_v<T, float>)
-          sampler.sample_wi({component(wo, 0, i, count, buffer[0]), component(wo, 1, i, count, buffer[1]),
-                             component(wo, 2, i, count, buffer[2]), component(u, 0, i, count, buffer[3]),
-                             component(u, 1, i, count, buffer[4])},
+        if constexpr (std::is_same_v<T, float>) {
+          const auto w = components<3>(wo, i, count, buffers);
+          const auto v = components<2>(u, i, count, buffers + 3);
+          sampler.sample_wi({w[0], w[1], w[2], v[0], v[1]},
                             {{drawn[0], count}, {drawn[1], count}, {drawn[2], count}, {drawn[3], count}});
+        }
         for (std::size_t k = 0; k < count; ++k) {
           T w[3], density;
           if constexpr (std::is_same_v<T, float>) {
