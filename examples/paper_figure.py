@@ -50,9 +50,10 @@ def main():
     model = burnish.fit(source, budget=arguments.budget)
     error = burnish.error_figures(source, model)
 
-    figure = plt.figure(figsize=(9.5, 4.6), layout="constrained")
-    grid = figure.add_gridspec(3, 4, width_ratios=[1.5, 1, 1, 1])
+    figure = plt.figure(figsize=(8.4, 5.6), layout="constrained")
+    grid = figure.add_gridspec(3, 4, width_ratios=[1.6, 1, 1, 1])
     pictures = [[burnish.render_sphere(brdf, light, 192) for brdf in (source, model)] for light in LIGHTS]
+    heat_axes = []
     lit = np.concatenate([reference[reference > 0].ravel() for reference, _ in pictures])
     exposure = 1 / np.percentile(lit, 97)
     for row, (light, (reference, fitted)) in enumerate(zip(LIGHTS, pictures)):
@@ -67,7 +68,8 @@ def main():
         heat = axes.imshow(abs(a - b).mean(axis=2), cmap="magma", vmin=0, vmax=0.1)
         axes.set_axis_off()
         axes.set_title("difference" if row == 0 else "", fontsize=9)
-        figure.colorbar(heat, ax=axes, fraction=0.046)
+        heat_axes.append(axes)
+    figure.colorbar(heat, ax=heat_axes, fraction=0.05, aspect=40)
     figure.suptitle(
         f"{model.expression}, {model.bytes} bytes: PSNR {error.psnr:.1f} dB, SSIM {error.ssim:.3f}, "
         f"relative error {100 * error.relative:.1f} %",
