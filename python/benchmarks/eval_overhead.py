@@ -29,7 +29,7 @@ def timed(call):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--count", type=int, default=1_000_000)
-    parser.add_argument("--rounds", type=int, default=30)
+    parser.add_argument("--rounds", type=int, default=40)
     arguments = parser.parse_args()
 
     source = burnish.open_source("ggx:alpha_x=0.2,alpha_y=0.2")

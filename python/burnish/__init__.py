@@ -22,6 +22,7 @@ from ._burnish import (
     ThreadLimit,
     compare_models,
     conserve_energy,
+    convert,
     directional_albedo,
     draw_pairs,
     error_figures,
@@ -29,10 +30,7 @@ from ._burnish import (
     measure,
     open_source,
     render_sphere,
-    write_csv,
-    write_merl,
     write_model,
-    write_rgl,
 )
 
 __all__ = [name for name in dir() if not name.startswith("_")]

@@ -1,14 +1,12 @@
 #include <string>
+#include <vector>
 
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include <burnish/file.h>
-#include <burnish/io/csv.h>
-#include <burnish/io/merl.h>
-#include <burnish/io/rgl.h>
-#include <burnish/reflectance/goniometer.h>
-#include <burnish/reflectance/rgl_builder.h>
+#include <burnish/io/convert.h>
 
 #include "opened_brdf.h"
 
@@ -16,42 +14,36 @@ namespace burnish::python {
 
 namespace {
 
-namespace fs = std::filesystem;
-using Released = nb::call_guard<nb::gil_scoped_release>;
-
-void write_model(const fs::path& path, const OpenedModel& model) {
+void write_model(const std::filesystem::path& path, const OpenedModel& model) {
   write_then_rename(path, format_model(to_model(model)));
 }
 
-void write_rgl(const fs::path& path, const OpenedBrdf& source) {
-  RglOptions options;
-  options.lambda_nm = source.source().findings.lambda_nm;
-  options.description = source.source().name;
-  write_then_rename(path, format_rgl(make_rgl_table(source.ref(), options)));
-}
-
-void write_csv(const fs::path& path, const OpenedBrdf& source, std::size_t count, double noise,
-               std::uint64_t seed) {
-  const Samples* samples = source.source().samples();
-  write_then_rename(path, samples_csv(samples ? *samples : measure(source.ref(), {count, noise, seed}),
-                                      source.source().findings.lambda_nm));
+std::vector<std::string> write_converted(const OpenedBrdf& source, const std::filesystem::path& path,
+                                         const std::string& format, std::size_t count, std::uint64_t seed,
+                                         bool entries, int cells) {
+  Converted converted =
+      convert(source.source(), format, {.count = count, .seed = seed, .entries = entries, .cells = cells});
+  write_then_rename(path, converted.bytes);
+  return std::move(converted.losses);
 }
 
 }  // namespace
 
 void bind_writers(nb::module_& m) {
-  m.def("write_model", &write_model, nb::arg("path"), nb::arg("model"), Released(),
+  m.def("write_model", &write_model, nb::arg("path"), nb::arg("model"),
+        nb::call_guard<nb::gil_scoped_release>(),
         "Writes the native file, a multi-part OpenEXR image that open_source reads back to the last bit.");
+  const ConvertOptions defaults;
   m.def(
-      "write_merl", [](const fs::path& path, const OpenedBrdf& source) { write_merl(path, source.ref()); },
-      nb::arg("path"), nb::arg("source"), Released(),
-      "Writes an isotropic source as a MERL table of 90 x 90 x 180 entries.");
-  m.def(
-      "write_rgl", &write_rgl, nb::arg("path"), nb::arg("source"), Released(),
-      "Writes a source as a file of the RGL material database, which Mitsuba's `measured` and pbrt-v4 read.");
-  m.def("write_csv", &write_csv, nb::arg("path"), nb::arg("source"), nb::kw_only(),
-        nb::arg("count") = 100'000, nb::arg("noise") = 0.0, nb::arg("seed") = 1, Released(),
-        "Writes a scattered source's samples, or `count` samples measured of any other.");
+      "convert", &write_converted, nb::arg("source"), nb::arg("path"), nb::arg("format"), nb::kw_only(),
+      nb::arg("count") = defaults.count, nb::arg("seed") = defaults.seed,
+      nb::arg("entries") = defaults.entries, nb::arg("cells") = defaults.cells,
+      nb::call_guard<nb::gil_scoped_release>(),
+      "Writes a source in another format and says what that lost, a phrase each.\n\n"
+      "format: \"merl\", \"rgl\" (for Mitsuba's `measured` and pbrt-v4), \"mbsdf\", \"zemax\", \"astm\", "
+      "\"csv\" "
+      "or\n\"exr\". count, seed: samples drawn for astm and csv; entries: a table's entries instead; cells: "
+      "along\neach polar angle of merl, mbsdf and exr.");
 }
 
 }  // namespace burnish::python

@@ -147,7 +147,7 @@ def test_tables_are_recovered_from_a_picture(files, llvm):
 
 def test_what_is_no_model_is_refused(llvm, tmp_path):
     path = tmp_path / "table.binary"
-    burnish.write_merl(path, burnish.open_source("lambert"))
+    burnish.convert(burnish.open_source("lambert"), path, "merl", cells=8)
     with pytest.raises(Exception, match="expected a burnish model"):
         mi.load_dict({"type": "burnish", "filename": str(path)})
 
