@@ -70,12 +70,12 @@ nlohmann::ordered_json fit(const Arguments& arguments) {
   const ThreadLimit limit(arguments.threads);
   const Source source = arguments.source.open();
   const Model model = burnish::fit({.brdf = source.ref(),
-                                 .name = source.name,
-                                 .format = source.findings.format,
-                                 .lambda_nm = source.findings.lambda_nm,
-                                 .samples = source.samples(),
-                                 .table = std::get_if<HalfDiffTable>(&source.brdf)},
-                                fit_options(arguments, source.ref().isotropic()));
+                                    .name = source.name,
+                                    .format = source.findings.format,
+                                    .lambda_nm = source.findings.lambda_nm,
+                                    .samples = source.samples(),
+                                    .table = std::get_if<HalfDiffTable>(&source.brdf)},
+                                   fit_options(arguments, source.ref().isotropic()));
   write_then_rename(arguments.out, format_model(model));
   const FactoredBrdf& brdf = model.brdf;
   auto notes = nlohmann::ordered_json::parse(model.notes);
