@@ -193,11 +193,27 @@ TEST_F(HostileCommandLine, ConvertsWhatIsWell) {
   EXPECT_EQ(run_burnish(fmt::format("convert '{0}/m.csv' '{0}/m2.csv'", out)).exit_code, 0);
   EXPECT_EQ(run_burnish(fmt::format("convert lambert '{0}/l.bsdf'", out)).exit_code, 0);
   EXPECT_EQ(run_burnish(fmt::format("info --json '{0}/l.bsdf'", out)).exit_code, 0);
+  EXPECT_EQ(run_burnish(fmt::format("fit ggx --method dgf --budget 600 -o '{}/d.json'", out)).exit_code, 0);
+  EXPECT_EQ(run_burnish(fmt::format("fit ggx --method analytic:ward -o '{}/w.json' --json", out)).exit_code,
+            0);
+  EXPECT_EQ(run_burnish(fmt::format("compare ggx '{0}/d.json' '{0}/w.json' --count 100", out)).exit_code, 0);
+  EXPECT_EQ(open_source(out + "/d.json", {}).findings.format, "dgf baseline");
+  EXPECT_EQ(run_burnish(fmt::format("fit ggx --method pca -o '{}/p.json'", out)).exit_code, 1);
   const Outcome averaged =
       run_burnish(fmt::format("convert ggx:alpha_x=0.1,alpha_y=0.4 '{0}/a.binary' --cells 10", out));
   EXPECT_EQ(averaged.exit_code, 0);
   EXPECT_THAT(averaged.errors, HasSubstr("/a.binary: lost: anisotropy averaged"));
   EXPECT_EQ(std::count(averaged.errors.begin(), averaged.errors.end(), '\n'), 1) << averaged.errors;
+  for (const char* format : {"half", "float", "rgb9e5", "unorm8"})
+    EXPECT_EQ(
+        run_burnish(
+            fmt::format("fit ggx:kd=0.3/0.2/0.1 --budget 600 --format {} --conserve-energy --loss relative "
+                        "-o '{}/b.exr'",
+                        format, out))
+            .exit_code,
+        0);
+  EXPECT_LE(open_source(out + "/b.exr", {}).bytes().value(), 600u);
+  EXPECT_EQ(run_burnish(fmt::format("fit ggx --budget 10 -o '{}/b.exr'", out)).exit_code, 1);
   const Source back = open_source(out + "/m2.csv", {});
   EXPECT_EQ(back.samples()->size(), 200u);
   EXPECT_TRUE(back.ref().isotropic());

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include <burnish/factors/baseline_file.h>
 #include <burnish/factors/model_file.h>
 #include <burnish/io/rgl.h>
 #include <burnish/reflectance/analytic.h>
@@ -70,6 +71,15 @@ inline std::string neural_seed() {
   return row + "\n";
 }
 
+inline std::string baseline_seed() {
+  using namespace burnish;
+  using enum PairCoordinate;
+  NodeTable u{{{theta_h, 2}}, 3, 1, {1, 0.5f, 2, -1, 0, 4}},
+      v{{{theta_d, 2}, {phi_d, 2}}, 1, 1, {1, 2, 3, 4}};
+  return format_baseline(
+      {.kind = "svd", .brdf = SeparableBrdf(std::move(u), std::move(v), {1, 2, 3}), .notes = R"({"a":1})"});
+}
+
 inline const std::string kCornell =
     "# Maker\n# Paint\n2\n400 500\n0.5 0 0.25 3.14 0.1 0.2\n0.5 0 0.75 0 -0.1 0.4\n";
 inline const std::string kAstm =
@@ -101,7 +111,7 @@ inline const std::string kKlems =
     "-9</ScatteringData></WavelengthDataBlock></WavelengthData></Layer></Optical></WindowElement>";
 
 /// Format names and bytes; the first `kBinaryCount` are binary and of fixed length.
-inline std::array<std::pair<std::string, std::string>, 10> all_seeds() {
+inline std::array<std::pair<std::string, std::string>, 11> all_seeds() {
   return {{{"merl", merl_seed()},
            {"mbsdf", mbsdf_seed()},
            {"rgl", rgl_seed()},
@@ -111,7 +121,8 @@ inline std::array<std::pair<std::string, std::string>, 10> all_seeds() {
            {"csv", kCsv},
            {"zemax", kZemax},
            {"klems", kKlems},
-           {"neural", neural_seed()}}};
+           {"neural", neural_seed()},
+           {"baseline", baseline_seed()}}};
 }
 
 inline constexpr std::size_t kBinaryCount = 4;

@@ -11,6 +11,7 @@
 #include <burnish/math/parallel.h>
 
 #include "commands.h"
+#include "fit_baseline.h"
 #include "progress.h"
 #include "source_arguments.h"
 #include "usage.h"
@@ -22,7 +23,7 @@ namespace {
 struct Arguments {
   SourceArguments source;
   FitOptions options;
-  std::string out, loss = "image", smooth = "default", format;
+  std::string out, method, loss = "image", smooth = "default", format;
   int threads = 0;
   bool no_symmetrize = false, json = false;
 };
@@ -131,6 +132,16 @@ void print(const nlohmann::ordered_json& notes) {
   fmt::print("written    {} in {:.2f} s\n", notes.at("output").get<std::string>(), number("seconds"));
 }
 
+nlohmann::ordered_json fit_by_method(const Arguments& arguments) {
+  const ThreadLimit limit(arguments.threads);
+  return fit_baseline(arguments.source.open(), {.method = arguments.method,
+                                                .out = arguments.out,
+                                                .budget = arguments.options.budget,
+                                                .samples = arguments.options.samples,
+                                                .seed = arguments.options.seed,
+                                                .symmetrize = !arguments.no_symmetrize});
+}
+
 void add_lobes_arguments(CLI::App& verb, Arguments& arguments) {
   FitOptions& options = arguments.options;
   verb.add_option("--budget", options.budget,
@@ -155,12 +166,15 @@ void add_fit_command(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("fit", "Factor a BRDF into a product of small positive tables");
   verb->footer(
       "Examples: burnish fit paint.binary -o paint.exr --budget 2700\n"
-      "          burnish fit paint.binary -o paint.exr --model \"p(wo) q(h) r(theta_d) p(wi)\" --table q=96");
+      "          burnish fit paint.binary -o paint.exr --model \"p(wo) q(h) r(theta_d) p(wi)\" --table q=96\n"
+      "          burnish fit paint.binary -o paint.json --method svd --budget 2700");
   auto arguments = std::make_shared<Arguments>();
   add_source_arguments(*verb, arguments->source);
   FitOptions& options = arguments->options;
   add_lobes_arguments(*verb, *arguments);
-  verb->add_option("-o,--output", arguments->out, "model file to write (OpenEXR)")->required();
+  verb->add_option("-o,--output", arguments->out, "model file to write (OpenEXR; JSON with --method)")
+      ->required();
+  add_method_argument(*verb, arguments->method);
   verb->add_option(
           "--model", options.model,
           "product of tables over projections: pqp, pqpr, or such as \"p(wo) q(h) s(wi+wo+0.5n) p(wi)\"")
@@ -195,9 +209,12 @@ void add_fit_command(CLI::App& app) {
                  "damp the model where it reflects more than it receives, and say what that cost");
   verb->add_flag("--json", arguments->json, "print the summary as JSON");
   verb->callback([arguments] {
-    const nlohmann::ordered_json notes = fit(*arguments);
+    const bool baseline = !arguments->method.empty();
+    const nlohmann::ordered_json notes = baseline ? fit_by_method(*arguments) : fit(*arguments);
     if (arguments->json)
       fmt::print("{}\n", dump(notes, 2));
+    else if (baseline)
+      print_baseline(notes);
     else
       print(notes);
   });

@@ -29,6 +29,7 @@
 #include <burnish/reflectance/scattered_brdf.h>
 
 #include "report_tools.h"
+#include "scattered.h"
 
 namespace burnish {
 namespace {
@@ -165,38 +166,6 @@ void report_rgl(const fs::path& data) {
 
 // ---- The paints of the original paper
 
-constexpr std::size_t kFolds = 5;
-
-/// The 31 bands averaged to three: 400 to 490, 500 to 590, 600 to 700 nm.
-Samples three_bands(const SampleFile& file) {
-  Samples result{.channels = 3, .isotropic = true, .pairs = file.samples.pairs};
-  for (std::size_t i = 0; i < file.samples.size(); ++i) {
-    std::array<double, 3> sum{}, count{};
-    for (std::size_t k = 0; k < file.findings.lambda_nm.size(); ++k) {
-      const double lambda_nm = file.findings.lambda_nm[k];
-      const std::size_t band = lambda_nm < 495 ? 0 : lambda_nm < 595 ? 1 : 2;
-      sum[band] += file.samples.at(i)[k];
-      ++count[band];
-    }
-    for (std::size_t b = 0; b < 3; ++b) result.values.push_back(sum[b] / count[b]);
-  }
-  return result;
-}
-
-/// Mean |ln((f + floor) / (model + floor))| of one fold, summed.
-struct FoldErrors {
-  std::array<double, 2> sum{};
-  std::size_t count = 0;
-
-  void add(std::span<const double> f, std::span<const double> model) {
-    constexpr std::array<double, 2> kFloors{1e-3, 1e-5};
-    for (std::size_t c = 0; c < f.size(); ++c, ++count)
-      for (std::size_t k = 0; k < 2; ++k)
-        sum[k] += std::abs(std::log((std::max(f[c], 0.0) + kFloors[k]) / (model[c] + kFloors[k])));
-  }
-  double relative(std::size_t k) const { return std::expm1(sum[k] / static_cast<double>(count)); }
-};
-
 void report_cornell(const fs::path& data) {
   fmt::print(
       "\n## The paints of the original paper, from their 1439 scattered directions\n\nFive-fold "
@@ -207,29 +176,17 @@ void report_cornell(const fs::path& data) {
       "neighbours, "
       "half/difference space | `p q p` | `p q p r(theta_d)` | `p q p r(theta_d) m(theta_m)` "
       "|\n|---|---|---|---|---|---|\n");
-  for (const char* name : {"cayman", "mystique", "krylon_blue"}) {
-    const Samples samples = three_bands(
-        parse_cornell(read_file(data / "cornell" / (std::string(name) + ".brdf")), {.keep_spectral = true}));
+  for (const char* name : kPaints) {
+    const Samples samples = read_paint(data, name);
     FoldErrors pbrt_errors, half_diff_errors;
     std::array<FoldErrors, 3> factored;
     for (std::size_t fold = 0; fold < kFolds; ++fold) {
-      std::vector<std::size_t> training, test;
-      for (std::size_t i = 0; i < samples.size(); ++i) (i % kFolds == fold ? test : training).push_back(i);
-      const Samples part = select(samples, training);
-      const SampleSource source = from_samples(part, true);
+      const auto [training, test] = split_fold(samples.size(), fold);
       const ScatteredBrdf pbrt(samples, training, SampleSpace::angles), half_diff(samples, training);
+      const Samples part = select(samples, training);
       std::vector<FactoredBrdf> models;
-      for (const std::string expression : {"pqp", "pqpr", "p(wo) q(h) m(theta_m) r(theta_d) p(wi)"}) {
-        std::vector<std::string> tables{"p=48", "q=64,rational:0.2"};
-        if (expression != "pqp") tables.push_back("r=32");
-        if (expression.find('m') != expression.npos) tables.push_back("m=48,power:0.5");
-        ModelSpec spec = parse_model_spec(expression, tables, true);
-        HomomorphicOptions options{.reweightings = 4};
-        const SmoothTrial best = choose_smoothness(source, spec, options).front();
-        options.smooth = best.smooth;
-        for (std::size_t t = 0; t < spec.tables.size(); ++t) spec.tables[t].smooth_share = best.shares[t];
-        models.push_back(fit_homomorphic(source, spec, options).brdf);
-      }
+      for (const char* expression : {"pqp", "pqpr", kScatteredModel})
+        models.push_back(fit_scattered(part, expression));
       std::vector<double> f(3);
       for (const std::size_t i : test) {
         const auto [wi, wo] = samples.pairs[i];

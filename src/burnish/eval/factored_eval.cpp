@@ -21,8 +21,13 @@
 #ifndef BURNISH_EVAL_FACTORED_ARGUMENTS
 #define BURNISH_EVAL_FACTORED_ARGUMENTS
 namespace burnish {
-// wi_x, wi_y, wi_z, wo_x, wo_y, wo_z
-using DirectionPointers = std::array<const float*, 6>;
+// wi_x, wi_y, wi_z, wo_x, wo_y, wo_z from one direction on.
+struct DirectionPointers {
+  const float* component[6];
+  std::size_t first = 0;
+
+  const float* operator[](std::size_t k) const { return component[k] + first; }
+};
 
 constexpr std::size_t kMostBlock = 128;  // directions that go through the steps together
 constexpr std::size_t kTogether = FactoredPlan::kTogether;
@@ -405,7 +410,8 @@ void eval_group(const FactoredPlan& plan, std::size_t group, const DirectionPoin
       } else {
         float rest[kLanes];
         store(value, rest);
-        std::copy(rest, rest + (count - i), to + c * plane + i);
+        to[c * plane + i] = rest[0];  // one direction takes no call
+        if (i + 1 < count) std::copy(rest + 1, rest + (count - i), to + c * plane + i + 1);
       }
     }
   }
@@ -426,28 +432,25 @@ void eval_block(const FactoredPlan& plan, const DirectionPointers& in, std::size
                                           : eval_group<3>(plan, group, in, stride, count, scratch, f, plane);
 }
 
-void eval_directions(const FactoredPlan& plan, const DirectionPointers& in, std::size_t count, float* f,
+void eval_directions(const FactoredPlan& plan, DirectionPointers in, std::size_t count, float* f,
                      std::size_t plane) {
   Scratch scratch;
   constexpr std::size_t kPositions = FactoredPlan::kMostSlots * kLanes;
   const std::size_t slots = std::max<std::size_t>(plan.slots, 1);
   const std::size_t stride = std::min(kMostBlock, kPositions / slots / kLanes * kLanes);
   const std::size_t whole = count / kLanes * kLanes;
-  for (std::size_t i = 0; i < whole; i += stride) {
-    DirectionPointers from = in;
-    for (const float*& p : from) p += i;
-    eval_block(plan, from, stride, std::min(stride, whole - i), scratch, f + i, plane);
-  }
+  for (in.first = 0; in.first < whole; in.first += stride)
+    eval_block(plan, in, stride, std::min(stride, whole - in.first), scratch, f + in.first, plane);
   if (whole == count) return;
   // the rest, filled up to a vector with the first of them
   float rest[6][kLanes];
-  DirectionPointers from;
   for (std::size_t k = 0; k < 6; ++k) {
-    std::fill(rest[k], rest[k] + kLanes, in[k][whole]);
-    std::copy(in[k] + whole, in[k] + count, rest[k]);
-    from[k] = rest[k];
+    const float* const from = in.component[k] + whole;
+    std::fill(rest[k], rest[k] + kLanes, *from);
+    if (whole + 1 < count) std::copy(from + 1, in.component[k] + count, rest[k] + 1);
   }
-  eval_block(plan, from, stride, count - whole, scratch, f + whole, plane);
+  eval_block(plan, {{rest[0], rest[1], rest[2], rest[3], rest[4], rest[5]}}, stride, count - whole, scratch,
+             f + whole, plane);
 }
 
 }  // namespace

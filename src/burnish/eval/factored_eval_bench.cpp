@@ -8,10 +8,13 @@
 
 #include <burnish/eval/factored_eval.h>
 #include <burnish/factors/model_spec.h>
-#include <burnish/reflectance/analytic.h>
+#include <burnish/math/angles.h>
+#include <burnish/math/random.h>
 #include <burnish/reflectance/goniometer.h>
-#include <burnish/reflectance/half_diff_table.h>
+#include <burnish/reflectance/neural_brdf.h>
 #include <burnish/reflectance/rgl_builder.h>
+
+#include "evaluation_peers_bench.h"
 
 namespace burnish {
 namespace {
@@ -55,19 +58,32 @@ FactoredBrdf smooth_model(const char* expression, const std::vector<std::string>
   return from_log_tables(3, std::move(tables), std::move(lobes), TableFormat::half);
 }
 
-// One pair at a time. `truth` gives the values to compare with; the mean relative error must be in bound.
+// The mean relative error of the first pairs; `value(i)` gives pair i's three channels.
+template <class Value, class Truth>
+double relative_error(const Value& value, const Truth& truth) {
+  double error = 0;
+  for (std::size_t i = 0; i < kChecked; ++i) {
+    const auto& [wi, wo] = bench_pairs()[i];
+    std::array<double, 3> expected;
+    truth.eval(wi, wo, expected);
+    const auto got = value(i);
+    for (std::size_t c = 0; c < 3; ++c)
+      error += std::abs(static_cast<double>(got[c]) - expected[c]) / (expected[c] + 1e-6);
+  }
+  return error / (3 * kChecked);
+}
+
+// One pair at a time. `truth` gives the values to compare with.
 template <class Real, class Eval, class Truth>
 void one_by_one(benchmark::State& state, const Eval& eval, const Truth& truth, double bound) {
   const auto& pairs = bench_pairs();
   std::array<Real, 3> f;
-  double error = 0;
-  for (const auto& [wi, wo] : std::span(pairs).first(kChecked)) {
-    std::array<double, 3> expected;
-    truth.eval(wi, wo, expected);
-    eval.eval(wi, wo, f);
-    for (std::size_t c = 0; c < 3; ++c) error += std::abs(static_cast<double>(f[c]) / expected[c] - 1);
-  }
-  error /= 3 * kChecked;
+  const double error = relative_error(
+      [&](std::size_t i) {
+        eval.eval(pairs[i].wi, pairs[i].wo, f);
+        return f;
+      },
+      truth);
   if (!(error <= bound)) return state.SkipWithError("the values are wrong");
   std::size_t i = 0;
   for (auto _ : state) {
@@ -79,27 +95,28 @@ void one_by_one(benchmark::State& state, const Eval& eval, const Truth& truth, d
   state.counters["relative_error"] = error;
 }
 
-void batched(benchmark::State& state, const FactoredBrdf& model) {
-  const FactoredEvaluator evaluator(model);
-  const auto& pairs = bench_pairs();
-  std::vector<float> in[6], f(3 * kPairs);
-  for (const auto& [wi, wo] : pairs) {
-    const double components[] = {wi.x, wi.y, wi.z, wo.x, wo.y, wo.z};
-    for (int k = 0; k < 6; ++k) in[k].push_back(static_cast<float>(components[k]));
-  }
+// All pairs at once; run(directions, f).
+template <class Run, class Truth>
+void batched(benchmark::State& state, const Run& run, const Truth& truth, double bound) {
+  static const std::array<std::vector<float>, 6> in = [] {
+    std::array<std::vector<float>, 6> components;
+    for (const auto& [wi, wo] : bench_pairs()) {
+      const double w[] = {wi.x, wi.y, wi.z, wo.x, wo.y, wo.z};
+      for (std::size_t k = 0; k < 6; ++k) components[k].push_back(static_cast<float>(w[k]));
+    }
+    return components;
+  }();
   const DirectionSpans spans{in[0], in[1], in[2], in[3], in[4], in[5]};
-  evaluator.eval(spans, f);
-  double error = 0;
-  for (std::size_t i = 0; i < kChecked; ++i) {
-    std::array<double, 3> expected;
-    model.eval(pairs[i].wi, pairs[i].wo, expected);
-    for (std::size_t c = 0; c < 3; ++c)
-      error += std::abs(static_cast<double>(f[c * kPairs + i]) / expected[c] - 1);
-  }
-  error /= 3 * kChecked;
-  if (!(error <= evaluator.rounding_bound())) return state.SkipWithError("the values are wrong");
+  std::vector<float> f(3 * kPairs);
+  run(spans, std::span(f));
+  const double error = relative_error(
+      [&](std::size_t i) {
+        return std::array{f[i], f[kPairs + i], f[2 * kPairs + i]};
+      },
+      truth);
+  if (!(error <= bound)) return state.SkipWithError("the values are wrong");
   for (auto _ : state) {
-    evaluator.eval(spans, f);
+    run(spans, std::span(f));
     benchmark::DoNotOptimize(f.data());
     benchmark::ClobberMemory();
   }
@@ -107,41 +124,102 @@ void batched(benchmark::State& state, const FactoredBrdf& model) {
   state.counters["relative_error"] = error;
 }
 
-void register_model(const std::string& name, const char* expression,
-                    const std::vector<std::string>& options) {
-  const FactoredBrdf model = smooth_model(expression, options);
-  benchmark::RegisterBenchmark(("eval/" + name + "/reference").c_str(), [model](benchmark::State& state) {
-    one_by_one<double>(state, model, model, 0);
-  });
-  benchmark::RegisterBenchmark(("eval/" + name + "/scalar").c_str(), [model](benchmark::State& state) {
-    const FactoredEvaluator evaluator(model);
-    one_by_one<float>(state, evaluator, model, evaluator.rounding_bound());
-  });
-  benchmark::RegisterBenchmark(("eval/" + name + "/batched").c_str(),
-                               [model](benchmark::State& state) { batched(state, model); });
+template <class F>
+void add(const std::string& name, const F& f) {
+  benchmark::RegisterBenchmark(("eval/" + name).c_str(), f);
 }
 
+void add_model(const std::string& name, const char* expression, const std::vector<std::string>& options) {
+  const FactoredBrdf model = smooth_model(expression, options);
+  const FactoredEvaluator evaluator(model);
+  add(name + "/reference", [=](benchmark::State& state) { one_by_one<double>(state, model, model, 0); });
+  add(name + "/one_by_one", [=](benchmark::State& state) {
+    one_by_one<float>(state, evaluator, model, evaluator.rounding_bound());
+  });
+  add(name + "/batched", [=](benchmark::State& state) {
+    const auto run = [&](const DirectionSpans& w, std::span<float> f) { evaluator.eval(w, f); };
+    batched(state, run, model, evaluator.rounding_bound());
+    state.counters["bytes"] = static_cast<double>(model.bytes());
+  });
+}
+
+// Tables of a microfacet model, sampled from the formula.
+const TabulatedMicrofacets& tabulated_microfacets() {
+  static const TabulatedMicrofacets brdf = [] {
+    TabulatedMicrofacets b{.diffuse = {0.05f, 0.1f, 0.2f}};
+    for (std::size_t c = 0; c < 3; ++c)
+      for (int k = 0; k < TabulatedMicrofacets::kAngles; ++k) {
+        const double theta = k * kHalfPi / (TabulatedMicrofacets::kAngles - 1);
+        const Vec3 w = spherical_direction(theta, 0);
+        b.d[c].push_back(static_cast<float>(ggx().distribution.density(w)));
+        b.f[c].push_back(static_cast<float>(fresnel_schlick(ggx().f0, w.z).r));
+        b.g[c].push_back(static_cast<float>(w.z / ggx().distribution.projected_area(w)));
+      }
+    return b;
+  }();
+  return brdf;
+}
+
+// A network of small random weights whose outputs are positive.
+const NeuralBrdf& neural() {
+  static const NeuralBrdf brdf = [] {
+    Pcg32 random(7);
+    std::vector<float> weights(NeuralBrdf::kWeights);
+    for (float& w : weights) w = static_cast<float>(0.4 * random.uniform() - 0.2);
+    for (std::size_t c = 0; c < 3; ++c) weights[NeuralBrdf::kWeights - 3 + c] = 1;
+    return NeuralBrdf(weights);
+  }();
+  return brdf;
+}
+
+const HalfDiffTable& merl() {
+  static const HalfDiffTable table = tabulate_half_diff(ggx(), 90, 90, 180, false);
+  return table;
+}
+
+// The peers, in float as fast as they can be written in a page, and those that the library has in double.
 // Errors of the tables are those of sampling the formula, large in the highlight and at grazing angles.
-const bool registered = [] {
-  register_model("pqp", "pqp", {"p=32", "q=64,rational:0.1"});
-  register_model("pqpr", "pqpr", {"p=32", "q=64,rational:0.1", "r=32"});
-  register_model("pqp_disk", "pqp", {"p=64x64", "q=64x64,rational:0.2"});
-  benchmark::RegisterBenchmark("eval/ggx",
-                               [](benchmark::State& state) { one_by_one<double>(state, ggx(), ggx(), 0); });
-  static const auto merl = [] {
-    static const HalfDiffTable table = tabulate_half_diff(ggx(), 90, 90, 180, false);
-    return &table;
-  };
-  benchmark::RegisterBenchmark("eval/merl_nearest", [](benchmark::State& state) {
-    one_by_one<double>(state, NearestHalfDiff{merl()}, ggx(), 0.1);
+void add_peers() {
+  add("neural/one_by_one", [](benchmark::State& state) { one_by_one<double>(state, neural(), neural(), 0); });
+  add("neural/batched", [](benchmark::State& state) {
+    const auto run = [](const DirectionSpans& w, std::span<float> f) {
+      eval_neural(neural().weights(), w, f);
+    };
+    batched(state, run, neural(), 1e-5);
   });
-  benchmark::RegisterBenchmark("eval/merl_interpolated", [](benchmark::State& state) {
-    one_by_one<double>(state, *merl(), ggx(), 0.1);
+  add("tabulated_microfacets/batched", [](benchmark::State& state) {
+    const auto run = [](const DirectionSpans& w, std::span<float> f) {
+      eval_tabulated(tabulated_microfacets(), w, f);
+    };
+    batched(state, run, tabulated_microfacets(), 1e-4);
   });
-  benchmark::RegisterBenchmark("eval/rgl", [](benchmark::State& state) {
+  add("ggx/one_by_one", [](benchmark::State& state) { one_by_one<double>(state, ggx(), ggx(), 0); });
+  add("ggx/batched", [](benchmark::State& state) {
+    const auto run = [](const DirectionSpans& w, std::span<float> f) { eval_ggx(ggx(), w, f); };
+    batched(state, run, ggx(), 1e-5);
+  });
+  add("merl_nearest/one_by_one",
+      [](benchmark::State& state) { one_by_one<double>(state, NearestHalfDiff{&merl()}, ggx(), 0.1); });
+  add("merl_nearest/batched", [](benchmark::State& state) {
+    const auto run = [](const DirectionSpans& w, std::span<float> f) { eval_nearest(merl(), w, f); };
+    batched(state, run, ggx(), 0.1);
+  });
+  add("merl_interpolated/one_by_one",
+      [](benchmark::State& state) { one_by_one<double>(state, merl(), ggx(), 0.1); });
+  add("rgl/one_by_one", [](benchmark::State& state) {
     static const RglTable table = make_rgl_table(ggx());
     one_by_one<double>(state, table, ggx(), 0.1);
   });
+}
+
+const bool registered = [] {
+  add_model("pqr_1k", "p(wo) q(h) r(theta_d) p(wi)", {"p=32", "q=96,rational:0.1", "r=40"});
+  add_model("lines_2k7", "p(wo) q(h) r(theta_d) p(wi) + s(wo) t(h) u(theta_d) s(wi)",
+            {"p=40", "q=128,rational:0.05", "r=48", "s=40", "t=128,rational:0.3", "u=48"});
+  add_model("grid_2k7", "p(wo) q(theta_h,theta_d) p(wi) + s(wo) s(wi)",
+            {"p=32", "q=48x8,rational:0.1", "s=24"});
+  add_model("pqp_64x64", "pqp", {"p=64x64", "q=64x64,rational:0.2"});
+  add_peers();
   return true;
 }();
 

@@ -37,7 +37,7 @@ const ModelCase kModels[] = {
     {"Shared", "p(wo) q(h) p(wi) + s(h)", {"p=8,shared", "q=8x8,shared", "s=6"}, 3},
     {"ThreeLobes", "p(wo) q(h) p(wi) + p(wo) s(h) p(wi) + t(theta_d)", {"p=8", "q=64", "s=16", "t=8"}, 3},
     {"Grey", "pqpr", {"p=16x16", "q=32"}, 1},
-    {"LongLines", "pqpr", {"p=128", "q=129,rational:0.05", "r=400"}, 3},
+    {"LongLines", "pqpr", {"p=128", "q=129,rational:0.05", "r=150"}, 3},
     {"ShortLines", "pqpr", {"p=2", "q=65", "r=17"}, 3},
     {"TwoChannels", "pqpr", {"p=5", "q=8x8", "r=65,shared"}, 2},
     {"SharedPair", "p(wo) q(h) p(wi)", {"p=200,shared", "q=12"}, 4},

@@ -219,16 +219,20 @@ FactoredBrdf from_log_tables(int channels, std::vector<Table> tables, std::vecto
 }
 
 FactoredBrdf from_log_tables(int channels, std::vector<Table> tables, std::vector<Lobe> lobes) {
-  for (std::size_t t = 0; t < tables.size(); ++t) {
-    const std::vector<double> divided = store_log_table(tables[t]);
-    for (Lobe& lobe : lobes)
-      for (const FactorUse& use : lobe.factors)
-        if (static_cast<std::size_t>(use.table) == t)
-          for (std::size_t c = 0; c < lobe.scale.size(); ++c)
-            lobe.scale[c] += divided[divided.size() == 1 ? 0 : c];
-  }
-  for (Lobe& lobe : lobes)
+  std::vector<std::vector<double>> divided;
+  for (Table& table : tables) divided.push_back(store_log_table(table));
+  return from_stored_tables(channels, std::move(tables), divided, std::move(lobes));
+}
+
+FactoredBrdf from_stored_tables(int channels, std::vector<Table> tables,
+                                std::span<const std::vector<double>> divided, std::vector<Lobe> lobes) {
+  for (Lobe& lobe : lobes) {
+    for (const FactorUse& use : lobe.factors) {
+      const std::vector<double>& logs = divided[static_cast<std::size_t>(use.table)];
+      for (std::size_t c = 0; c < lobe.scale.size(); ++c) lobe.scale[c] += logs[logs.size() == 1 ? 0 : c];
+    }
     for (double& s : lobe.scale) s = static_cast<float>(std::exp(std::min(s, kMostLogScale)));
+  }
   return FactoredBrdf(channels, std::move(tables), std::move(lobes));
 }
 

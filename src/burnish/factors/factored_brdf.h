@@ -77,6 +77,13 @@ inline constexpr double kTableFloor = 0x1p-20;
 /// was divided out. Throws Error if the format does not hold the channels or a logarithm is not finite.
 std::vector<double> store_log_table(Table& log_table);
 
+/// Tables as they are stored, each with what its channels were divided by, logarithms, as store_log_table
+/// returns them: what they were divided by goes into the lobes' scales, which hold logarithms, one entry a
+/// channel. Throws as the constructor does.
+FactoredBrdf from_stored_tables(int channels, std::vector<Table> tables,
+                                std::span<const std::vector<double>> divided,
+                                std::vector<Lobe> log_scaled_lobes);
+
 /// Stores the tables by store_log_table, what they are divided by moved into the lobes' scales. The tables
 /// hold logarithms of lambda, channels as in Table; the lobes' scales logarithms, one entry a channel. Throws
 /// as the constructor does.

@@ -14,12 +14,16 @@ namespace {
 // Where successive lobes are split off, in tan(theta_d / 2).
 constexpr double kCentres[] = {0.25, 0.6, 0.4, 0.8, 0.15, 0.5, 0.7, 0.3};
 
+// The log-linear start is smooth: functions of the four angles nearly add up to nothing in many ways, and a
+// fit that uses them is ruined once its tables are kept within their formats.
+constexpr double kStartSmooth = 1e-3;
+
 // The way to the last refinement is made on about this many pairs and in few steps.
 constexpr std::size_t kCoarsePairs = 20'000;
 constexpr int kRoughSteps = 12;
-// Grids are added at the end, this share of the work being done.
-constexpr int kGridSteps = 10;
-constexpr double kThinPart = 0.4;
+// Grids are added at the end, in rounds: each sees the floors that shared exponents set anew.
+constexpr int kGridSteps = 8, kGridRounds = 2;
+constexpr double kThinPart = 0.3;  // share of the work done by then
 
 /// Adds one refinement to the summary; its progress runs from `from` to `to`.
 void refine_part(LogModel& model, const TrainingSet& set, RefineOptions options, int steps, double from,
@@ -99,17 +103,24 @@ LobesFit fit_plan(const TrainingSet& set, const LobePlan& plan, std::size_t byte
   if (!plan.wide.empty()) return fit_lobes(set, whole, options);
   // The 1-D tables first: their steps are solved directly, and grids that start as 1 only lower the error.
   const ModelSpec thin = without_grids(whole);
-  const std::size_t lobes = thin.lobes.size(), per_lobe = thin.tables.size() / lobes;
+  std::vector<std::string> common;
+  for (const PlannedFactor& factor : plan.factors)
+    if (factor.every_lobe) common.push_back(factor.name);
+  const std::size_t lobes = thin.lobes.size();
+  const auto first_own = static_cast<std::size_t>(std::ranges::count_if(
+      thin.tables, [&](const auto& table) { return std::ranges::find(common, table.name) != common.end(); }));
+  const std::size_t per_lobe = (thin.tables.size() - first_own) / lobes;
   const TrainingSet coarse = coarse_part(set);
   const auto first_lobes = [&](std::size_t count) {
-    return ModelSpec{
-        .tables = {thin.tables.begin(), thin.tables.begin() + static_cast<std::ptrdiff_t>(count * per_lobe)},
-        .lobes = {thin.lobes.begin(), thin.lobes.begin() + static_cast<std::ptrdiff_t>(count)}};
+    return ModelSpec{.tables = {thin.tables.begin(), thin.tables.begin() + static_cast<std::ptrdiff_t>(
+                                                                               first_own + count * per_lobe)},
+                     .lobes = {thin.lobes.begin(), thin.lobes.begin() + static_cast<std::ptrdiff_t>(count)}};
   };
   const bool grids = thin.tables.size() < whole.tables.size();
   RefineOptions thin_options = options;
   if (grids && options.progress) thin_options.progress = [&](double f) { options.progress(kThinPart * f); };
-  LobesFit fit{.model = fit_one_lobe(first_lobes(1), coarse, coarse.values, options.smooth)};
+  LobesFit fit{
+      .model = fit_one_lobe(first_lobes(1), coarse, coarse.values, std::max(kStartSmooth, options.smooth))};
   fit.summary.lobes = static_cast<int>(lobes);
   // the work grows with the square of the lobes
   const auto done = [&](std::size_t j) {
@@ -117,20 +128,23 @@ LobesFit fit_plan(const TrainingSet& set, const LobePlan& plan, std::size_t byte
   };
   for (std::size_t j = 1; j <= lobes; ++j) {
     if (j > 1) {
-      fit.model = with_lobe_split(std::move(fit.model), j - 2, kCentres[(j - 2) % std::size(kCentres)], "+");
+      fit.model =
+          with_lobe_split(std::move(fit.model), j - 2, kCentres[(j - 2) % std::size(kCentres)], "+", common);
       const ModelSpec spec = first_lobes(j);
       for (std::size_t t = 0; t < spec.tables.size(); ++t)
         fit.model.spec.tables[t].name = spec.tables[t].name;
       fit.model = resampled(fit.model, spec);
     }
-    if (j < lobes)
+    if (j < lobes || grids)
       refine_part(fit.model, coarse, thin_options, kRoughSteps, done(j - 1), done(j), fit.summary);
     else
       refine_fully(fit.model, coarse, set, thin_options, done(j - 1), fit.summary);
   }
   if (grids) {
     fit.model = resampled(fit.model, whole);
-    refine_part(fit.model, set, options, kGridSteps, kThinPart, 1, fit.summary);
+    const auto part = [](int round) { return kThinPart + (1 - kThinPart) * round / kGridRounds; };
+    for (int k = 0; k < kGridRounds; ++k)
+      refine_part(fit.model, set, options, kGridSteps, part(k), part(k + 1), fit.summary);
   }
   return fit;
 }
@@ -176,7 +190,8 @@ LobesFit fit_lobes(const TrainingSet& set, const ModelSpec& spec, const RefineOp
       }
     }
     std::vector<std::size_t> tables;
-    const LogModel part = fit_one_lobe(lobe_spec(spec, j, tables), set, target, options.smooth);
+    const LogModel part =
+        fit_one_lobe(lobe_spec(spec, j, tables), set, target, std::max(kStartSmooth, options.smooth));
     for (std::size_t k = 0; k < tables.size(); ++k) fit.model.log_values[tables[k]] = part.log_values[k];
   }
   refine_fully(fit.model, coarse_part(set), set, options, 0.1, fit.summary);

@@ -11,6 +11,7 @@
 #include <burnish/fitting/energy.h>
 #include <burnish/fitting/fit.h>
 #include <burnish/fitting/log_error.h>
+#include <burnish/fitting/rounding.h>
 #include <burnish/fitting/search.h>
 #include <burnish/metrics/error_figures.h>
 #include <burnish/reflectance/sample_source.h>
@@ -115,7 +116,8 @@ class Fitter {
 
   FactoredBrdf fit_several(const ModelSpec& spec) {
     const TrainingSet set = training_set(has_disk(spec));
-    return finish(fit_lobes(set, spec, refine_options()), set);
+    const RefineOptions refine = refine_options();
+    return finish(fit_lobes(set, spec, refine), set, refine);
   }
 
   FactoredBrdf fit_to_budget() {
@@ -136,7 +138,7 @@ class Fitter {
       notes_["search"] = {{"trials", found.trials.size()}, {"kept", std::move(kept)}};
     }
     notes_["budget"] = options_.budget;
-    return finish(fit_plan(set, plan, options_.budget, texel, refine), set);
+    return finish(fit_plan(set, plan, options_.budget, texel, refine), set, refine);
   }
 
   ModelSpec one_lobe_of_budget() const {
@@ -148,7 +150,7 @@ class Fitter {
     return plan_to_spec(plan, options_.budget, channels(), texel);
   }
 
-  FactoredBrdf finish(const LobesFit& fit, const TrainingSet& set) {
+  FactoredBrdf finish(const LobesFit& fit, const TrainingSet& set, const RefineOptions& refine) {
     constexpr const char* kLossNames[] = {"image", "relative", "log_cos"};
     notes_["samples"] = set.size();
     notes_["lobes"] = fit.summary.lobes;
@@ -156,7 +158,7 @@ class Fitter {
     notes_["iterations"] = fit.summary.iterations;
     notes_["stop_reason"] = fit.summary.stop_reason;
     notes_["objective"] = fit.summary.objective_after;
-    return to_brdf(fit.model, format());
+    return to_rounded_brdf(fit.model, set, refine);
   }
 
   // Takes out of the model what it reflects too much, and notes what that cost.

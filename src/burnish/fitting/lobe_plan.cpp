@@ -13,6 +13,9 @@ namespace {
 // Highlights are narrow, but a gamma-corrected picture shows their skirts as wide rings: a mild crowding at
 // the normal. theta_m spans twice the angle, and only its beginning matters.
 constexpr Warp kHalfWarp{WarpKind::power, 0.8}, kDeviationWarp{WarpKind::power, 0.5};
+constexpr Warp kSkewWarp{WarpKind::power, 0.7};
+// A direction between one of the two and the half vector; both together are reciprocal.
+constexpr Projection kProjectSkew{.wi = 1, .wo = 0.5}, kProjectSkewSwapped{.wi = 0.5, .wo = 1};
 constexpr Warp kDiskWarp{WarpKind::rational, 0.25};
 
 constexpr std::size_t kNumberBytes = 4;  // of a scale, a warp's parameter or a projection's coefficient
@@ -31,41 +34,73 @@ std::size_t coefficients(const Projection& p) {
   return static_cast<std::size_t>((p.wi != 0) + (p.wo != 0) + (p.mirror != 0) + (p.n != 0));
 }
 
-std::size_t number_bytes(const std::vector<PlannedFactor>& factors, int channels) {
-  std::size_t numbers = static_cast<std::size_t>(channels);
-  for (const PlannedFactor& factor : factors) {
-    numbers += (factor.warp.kind != WarpKind::identity) + (factor.second_warp.kind != WarpKind::identity);
-    for (const Projection& use : factor.uses) numbers += coefficients(use);
-    if (factor.shape == TableShape::grid) numbers += coefficients(factor.second);
-  }
-  return numbers * kNumberBytes;
+// Numbers of one table's warps and of its uses' projections.
+std::size_t numbers(const PlannedFactor& factor, std::size_t lobes) {
+  std::size_t sum = std::size_t{factor.warp.kind != WarpKind::identity} +
+                    std::size_t{factor.second_warp.kind != WarpKind::identity};
+  if (!factor.every_lobe) sum *= lobes;
+  for (const Projection& use : factor.uses) sum += lobes * coefficients(use);
+  return factor.shape == TableShape::grid ? sum + lobes * coefficients(factor.second) : sum;
 }
 
-// Appends a lobe of at most `texels` texels.
-void add_lobe(const std::vector<PlannedFactor>& factors, std::size_t texels, const std::string& suffix,
-              ModelSpec& spec) {
+std::size_t number_bytes(const std::vector<PlannedFactor>& factors, std::size_t lobes, int channels) {
+  std::size_t sum = lobes * static_cast<std::size_t>(channels);
+  for (const PlannedFactor& factor : factors) sum += numbers(factor, lobes);
+  return sum * kNumberBytes;
+}
+
+// A node of a table with one channel for all takes this share of a texel: shared exponents serve no single
+// channel, whose table is half floats.
+double node_cost(const PlannedFactor& factor, int channels, std::size_t texel_bytes) {
+  if (!factor.grey) return 1;
+  const std::size_t one =
+      texel_bytes == 4 && channels == 3 ? 2 : texel_bytes / static_cast<std::size_t>(channels);
+  return static_cast<double>(one) / static_cast<double>(texel_bytes);
+}
+
+// Adds a factor's table of at most `nodes` nodes.
+void add_table(const PlannedFactor& factor, double nodes, const std::string& suffix, ModelSpec& spec) {
+  const bool line = factor.shape == TableShape::line, disk = factor.shape == TableShape::disk;
+  const int width = std::min(static_cast<int>(line ? nodes : std::sqrt(nodes)), kMostSide);
+  if (width < (disk ? 3 : 2))
+    throw Error(fmt::format("fit: expected a budget that holds every table, found {} texels for '{}{}'",
+                            static_cast<int>(nodes), factor.name, suffix));
+  spec.tables.push_back({.name = factor.name + suffix,
+                         .layout = {.shape = factor.shape,
+                                    .width = width,
+                                    .height = line ? 1 : width,
+                                    .warp = factor.warp,
+                                    .warp_y = factor.second_warp},
+                         .shared = factor.grey});
+}
+
+// Appends lobes of at most `texels` texels together.
+void add_lobes(const std::vector<PlannedFactor>& factors, std::size_t lobes, double texels, int channels,
+               std::size_t texel_bytes, bool numbered, ModelSpec& spec) {
   double shares = 0;
-  for (const PlannedFactor& factor : factors) shares += factor.share;
-  std::vector<FactorUse> lobe;
-  for (const PlannedFactor& factor : factors) {
-    const double nodes = factor.share / shares * static_cast<double>(texels);
-    const bool line = factor.shape == TableShape::line, disk = factor.shape == TableShape::disk;
-    const int width = std::min(static_cast<int>(line ? nodes : std::sqrt(nodes)), kMostSide);
-    if (width < (disk ? 3 : 2))
-      throw Error(fmt::format("fit: expected a budget that holds every table, found {} texels for '{}{}'",
-                              static_cast<int>(nodes), factor.name, suffix));
-    spec.tables.push_back({.name = factor.name + suffix,
-                           .layout = {.shape = factor.shape,
-                                      .width = width,
-                                      .height = line ? 1 : width,
-                                      .warp = factor.warp,
-                                      .warp_y = factor.second_warp}});
-    for (const Projection& use : factor.uses)
-      lobe.push_back({.table = static_cast<int>(spec.tables.size()) - 1,
-                      .projection = use,
-                      .projection_y = factor.second});
+  for (const PlannedFactor& factor : factors)
+    shares += factor.share * static_cast<double>(factor.every_lobe ? 1 : lobes);
+  // shares are of bytes
+  const auto nodes = [&](const PlannedFactor& factor) {
+    return factor.share / shares * texels / node_cost(factor, channels, texel_bytes);
+  };
+  std::vector<int> common(factors.size());
+  for (std::size_t k = 0; k < factors.size(); ++k)
+    if (factors[k].every_lobe) {
+      common[k] = static_cast<int>(spec.tables.size());
+      add_table(factors[k], nodes(factors[k]), "", spec);
+    }
+  for (std::size_t j = 0; j < lobes; ++j) {
+    std::vector<FactorUse> lobe;
+    for (std::size_t k = 0; k < factors.size(); ++k) {
+      if (!factors[k].every_lobe)
+        add_table(factors[k], nodes(factors[k]), numbered ? std::to_string(j + 1) : "", spec);
+      const int table = factors[k].every_lobe ? common[k] : static_cast<int>(spec.tables.size()) - 1;
+      for (const Projection& use : factors[k].uses)
+        lobe.push_back({.table = table, .projection = use, .projection_y = factors[k].second});
+    }
+    spec.lobes.push_back(std::move(lobe));
   }
-  spec.lobes.push_back(std::move(lobe));
 }
 
 }  // namespace
@@ -73,7 +108,8 @@ void add_lobe(const std::vector<PlannedFactor>& factors, std::size_t texels, con
 LobePlan default_plan(std::size_t bytes, int lobes, bool isotropic, std::size_t texel_bytes) {
   LobePlan plan{.lobes = lobes};
   const auto line = [](const char* name, std::vector<Projection> uses, double share, Warp warp = {}) {
-    return PlannedFactor{name, TableShape::line, std::move(uses), share, warp, {}, {}};
+    return PlannedFactor{
+        .name = name, .shape = TableShape::line, .uses = std::move(uses), .share = share, .warp = warp};
   };
   if (isotropic) {
     const double texels = static_cast<double>(bytes) / static_cast<double>(texel_bytes);
@@ -84,6 +120,14 @@ LobePlan default_plan(std::size_t bytes, int lobes, bool isotropic, std::size_t 
     plan.factors = {line("p", {kProjectWo, kProjectWi}, 0.083), line("q", {kProjectHalf}, 0.587, kHalfWarp),
                     line("m", {kProjectDeviation}, 0.183, kDeviationWarp),
                     line("r", {kProjectDifference}, 0.147)};
+    if (plan.lobes > 1) {
+      // What the lobes have in common of q, rings of films above all, is finely resolved once; their own q
+      // are coarse.
+      plan.factors[1].share = 0.176;
+      plan.factors.push_back(line("z", {kProjectHalf}, 1, kHalfWarp));
+      plan.factors.back().every_lobe = true;
+      plan.factors.push_back(line("s", {kProjectSkew, kProjectSkewSwapped}, 0.15, kSkewWarp));
+    }
     const auto grid = [&](const char* name, Projection x, Projection y) {
       const auto warp = [](const Projection& p) { return p == kProjectDifference ? Warp{} : kDeviationWarp; };
       plan.factors.push_back(
@@ -115,15 +159,17 @@ LobePlan default_plan(std::size_t bytes, int lobes, bool isotropic, std::size_t 
 
 ModelSpec plan_to_spec(const LobePlan& plan, std::size_t bytes, int channels, std::size_t texel_bytes) {
   const auto lobes = static_cast<std::size_t>(plan.lobes);
-  const std::size_t numbers = lobes * number_bytes(plan.factors, channels) +
-                              (plan.wide.empty() ? 0 : number_bytes(plan.wide, channels));
-  const std::size_t texels = bytes > numbers ? (bytes - numbers) / texel_bytes : 0;
+  if (lobes > 1 && std::ranges::all_of(plan.factors, &PlannedFactor::every_lobe))
+    throw Error("fit: expected a factor that each lobe has its own table of");
+  const std::size_t number_total = number_bytes(plan.factors, lobes, channels) +
+                                   (plan.wide.empty() ? 0 : number_bytes(plan.wide, 1, channels));
+  const std::size_t texels = bytes > number_total ? (bytes - number_total) / texel_bytes : 0;
   const auto wide = static_cast<std::size_t>(plan.wide_texels);
   ModelSpec spec;
-  if (!plan.wide.empty()) add_lobe(plan.wide, wide, "", spec);
-  const std::size_t left = texels > wide ? texels - wide : 0;
-  for (std::size_t j = 0; j < lobes; ++j)  // what division leaves goes to the first
-    add_lobe(plan.factors, left / lobes + (j < left % lobes), std::to_string(j + 1), spec);
+  if (!plan.wide.empty())
+    add_lobes(plan.wide, 1, static_cast<double>(wide), channels, texel_bytes, false, spec);
+  add_lobes(plan.factors, lobes, static_cast<double>(texels > wide ? texels - wide : 0), channels,
+            texel_bytes, true, spec);
   return spec;
 }
 

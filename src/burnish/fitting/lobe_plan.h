@@ -18,6 +18,8 @@ struct PlannedFactor {
   Warp warp;
   Projection second;  ///< of a grid, which has one use
   Warp second_warp;
+  bool every_lobe = false;  ///< one table for all lobes
+  bool grey = false;        ///< one channel for all
 
   friend bool operator==(const PlannedFactor&, const PlannedFactor&) = default;
 };
@@ -34,13 +36,15 @@ struct LobePlan {
 };
 
 /// The plan that serves a number of bytes best, measured on the materials of docs/accuracy.md: lobes
-/// p(wo) p(wi) q(theta_h) m(theta_m) r(theta_d), with grids over two of the three angles where there are
-/// texels to spare, p and q hemispheres where the source is anisotropic. `lobes` counts the wide one too; 0:
-/// chosen by the bytes.
+/// p(wo) p(wi) q(theta_h) m(theta_m) r(theta_d), where there are several also s(wi + wo/2) s(wi/2 + wo) and
+/// one z(theta_h) for all of them; grids over two of the three angles where there are texels to spare; p and
+/// q hemispheres where the source is anisotropic. `lobes` counts the wide one too; 0: chosen by the bytes.
 LobePlan default_plan(std::size_t bytes, int lobes, bool isotropic, std::size_t texel_bytes);
 
 /// The largest model of the plan whose tables and numbers fit `bytes`, see FactoredBrdf::bytes. Throws Error
-/// if a table would have fewer than two nodes (a hemisphere: 3 x 3).
+/// if a table would have fewer than two nodes (a hemisphere: 3 x 3), or no factor of several lobes is a
+/// lobe's own. Tables for every lobe come first and keep the factor's name; the others' names end in the
+/// lobe's number.
 ModelSpec plan_to_spec(const LobePlan& plan, std::size_t bytes, int channels, std::size_t texel_bytes);
 
 }  // namespace burnish

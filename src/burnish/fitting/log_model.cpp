@@ -68,12 +68,17 @@ LogModel joined(LogModel a, const LogModel& b) {
   return a;
 }
 
-LogModel with_lobe_split(LogModel model, std::size_t lobe, double centre, const std::string& suffix) {
+LogModel with_lobe_split(LogModel model, std::size_t lobe, double centre, const std::string& suffix,
+                         std::span<const std::string> common) {
+  const auto is_common = [&](int table) {
+    return std::ranges::find(common, model.spec.tables[static_cast<std::size_t>(table)].name) != common.end();
+  };
   std::vector<FactorUse> uses = model.spec.lobes[lobe];
   std::vector<int> copy(model.spec.tables.size(), -1);
   bool stepped = false;
   for (FactorUse& use : uses) {
     const auto t = static_cast<std::size_t>(use.table);
+    if (is_common(use.table)) continue;
     if (copy[t] < 0) {
       copy[t] = static_cast<int>(model.spec.tables.size());
       model.spec.tables.push_back(model.spec.tables[t]);
@@ -93,10 +98,11 @@ LogModel with_lobe_split(LogModel model, std::size_t lobe, double centre, const 
     }
     use.table = copy[t];
   }
+  const std::vector<FactorUse>& old = model.spec.lobes[lobe];
+  const auto own = std::ranges::find_if(old, [&](const FactorUse& use) { return !is_common(use.table); });
   if (!stepped)
-    for (const int table : {model.spec.lobes[lobe].front().table, uses.front().table}) {
-      const auto times =
-          std::ranges::count(model.spec.lobes[lobe], model.spec.lobes[lobe].front().table, &FactorUse::table);
+    for (const int table : {own->table, uses[static_cast<std::size_t>(own - old.begin())].table}) {
+      const auto times = std::ranges::count(old, own->table, &FactorUse::table);
       for (double& v : model.log_values[static_cast<std::size_t>(table)])
         v -= std::log(2) / static_cast<double>(times);
     }
@@ -106,8 +112,9 @@ LogModel with_lobe_split(LogModel model, std::size_t lobe, double centre, const 
 
 namespace {
 
-void resample(const TableLayout& from, const std::vector<double>& old, const TableLayout& to,
-              std::size_t step, std::vector<double>& logs) {
+// Adds the function that one table holds to the nodes of another.
+void add_resampled(const TableLayout& from, const std::vector<double>& old, const TableLayout& to,
+                   std::size_t step, std::vector<double>& logs) {
   const auto width = static_cast<std::size_t>(from.width), to_width = static_cast<std::size_t>(to.width);
   for (int y = 0; y < to.height; ++y)
     for (int x = 0; x < to.width; ++x) {
@@ -130,29 +137,71 @@ void resample(const TableLayout& from, const std::vector<double>& old, const Tab
         };
         double v = along(cy.node);
         if (to.shape != TableShape::line) v = (1 - cy.fraction) * v + cy.fraction * along(cy.node + 1);
-        logs[(static_cast<std::size_t>(y) * to_width + static_cast<std::size_t>(x)) * step + c] = std::log(v);
+        logs[(static_cast<std::size_t>(y) * to_width + static_cast<std::size_t>(x)) * step + c] +=
+            std::log(v);
       }
     }
+}
+
+// The mean over the channels of a table; what it is short of each channel, on average, goes to `colour`.
+std::vector<double> mean_of_channels(const std::vector<double>& logs, std::size_t channels,
+                                     std::span<double> colour) {
+  std::vector<double> mean(logs.size() / channels);
+  for (std::size_t i = 0; i < logs.size(); ++i) mean[i / channels] += logs[i] / static_cast<double>(channels);
+  for (std::size_t i = 0; i < logs.size(); ++i)
+    colour[i % channels] += (logs[i] - mean[i / channels]) / static_cast<double>(mean.size());
+  return mean;
+}
+
+// Multiplies each lobe that uses the table as often with a colour, in a coloured table of the lobe's own.
+void give_colour(std::size_t table, std::span<const double> colour, LogModel& model) {
+  const auto uses_in = [&](const std::vector<FactorUse>& lobe, int t) {
+    return std::ranges::count(lobe, t, &FactorUse::table);
+  };
+  for (const std::vector<FactorUse>& lobe : model.spec.lobes) {
+    const auto times = uses_in(lobe, static_cast<int>(table));
+    const auto own = std::ranges::find_if(lobe, [&](const FactorUse& use) {
+      return model.step(static_cast<std::size_t>(use.table)) == colour.size() &&
+             std::ranges::all_of(model.spec.lobes, [&](const auto& other) {
+               return &other == &lobe || uses_in(other, use.table) == 0;
+             });
+    });
+    if (times == 0 || own == lobe.end()) continue;
+    const double share = static_cast<double>(times) / static_cast<double>(uses_in(lobe, own->table));
+    std::vector<double>& logs = model.log_values[static_cast<std::size_t>(own->table)];
+    for (std::size_t i = 0; i < logs.size(); ++i) logs[i] += share * colour[i % colour.size()];
+  }
 }
 
 }  // namespace
 
 LogModel resampled(const LogModel& model, const ModelSpec& spec) {
   LogModel result{.spec = spec, .channels = model.channels, .log_values = {}};
+  const auto channels = static_cast<std::size_t>(model.channels);
+  for (std::size_t t = 0; t < spec.tables.size(); ++t)
+    result.log_values.emplace_back(spec.tables[t].layout.node_count() * result.step(t));
   for (std::size_t t = 0; t < spec.tables.size(); ++t) {
     const TableLayout& layout = spec.tables[t].layout;
-    const std::size_t step = result.step(t);
-    std::vector<double>& logs = result.log_values.emplace_back(layout.node_count() * step);
-    const auto old = std::ranges::find(model.spec.tables, spec.tables[t].name, &ModelSpec::TableSpec::name);
-    if (old == model.spec.tables.end()) continue;
+    const std::string& name = spec.tables[t].name;
+    auto old = std::ranges::find(model.spec.tables, name, &ModelSpec::TableSpec::name);
+    if (old == model.spec.tables.end())
+      old = std::ranges::find(model.spec.tables, name + "1", &ModelSpec::TableSpec::name);
+    if (old == model.spec.tables.end() || old->layout.shape != layout.shape) continue;
     const auto k = static_cast<std::size_t>(old - model.spec.tables.begin());
-    if (old->layout.shape == layout.shape && model.step(k) == step)
-      resample(old->layout, model.log_values[k], layout, step, logs);
+    const std::size_t step = result.step(t);
+    if (model.step(k) == step) {
+      add_resampled(old->layout, model.log_values[k], layout, step, result.log_values[t]);
+    } else if (step == 1) {
+      std::vector<double> colour(channels);
+      const std::vector<double> mean = mean_of_channels(model.log_values[k], channels, colour);
+      add_resampled(old->layout, mean, layout, 1, result.log_values[t]);
+      give_colour(t, colour, result);
+    }
   }
   return result;
 }
 
-FactoredBrdf to_brdf(const LogModel& model, TableFormat format) {
+std::vector<Table> log_tables(const LogModel& model, TableFormat format) {
   std::vector<Table> tables;
   for (std::size_t t = 0; t < model.spec.tables.size(); ++t)
     tables.push_back({.name = model.spec.tables[t].name,
@@ -160,11 +209,19 @@ FactoredBrdf to_brdf(const LogModel& model, TableFormat format) {
                       .channels = static_cast<int>(model.step(t)),
                       .values = {model.log_values[t].begin(), model.log_values[t].end()},
                       .format = format_of(model.spec.tables[t], format)});
+  return tables;
+}
+
+std::vector<Lobe> log_scaled_lobes(const LogModel& model) {
   std::vector<Lobe> lobes;
   for (const std::vector<FactorUse>& uses : model.spec.lobes)
     lobes.push_back(
         {.scale = std::vector<double>(static_cast<std::size_t>(model.channels)), .factors = uses});
-  return from_log_tables(model.channels, std::move(tables), std::move(lobes));
+  return lobes;
+}
+
+FactoredBrdf to_brdf(const LogModel& model, TableFormat format) {
+  return from_log_tables(model.channels, log_tables(model, format), log_scaled_lobes(model));
 }
 
 }  // namespace burnish

@@ -1,9 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
 #include <burnish/error.h>
+#include <burnish/fitting/cholesky.h>
 #include <burnish/fitting/refine.h>
 #include <burnish/fitting/refine_system.h>
 
@@ -50,8 +49,8 @@ class StepSolver {
     if (direct()) {
       factorized_ = partial_.front().matrix;
       factorized_.diagonal() += extra;
-      Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> cholesky(factorized_);
-      dx = -cholesky.solve(partial_.front().gradient);
+      dx = -partial_.front().gradient;
+      solve_in_place(factorized_, dx);
     } else {
       dx = conjugate_gradients(extra, diagonal + extra);
     }
@@ -89,12 +88,6 @@ class StepSolver {
   RefineSystem::Rows rows_;
 };
 
-bool any_shared(const LogModel& model) {
-  for (std::size_t t = 0; t < model.spec.tables.size(); ++t)
-    if (model.channels > 1 && model.step(t) == 1) return true;
-  return false;
-}
-
 }  // namespace
 
 RefineSummary refine(LogModel& model, const TrainingSet& set, const RefineOptions& options) {
@@ -105,7 +98,7 @@ RefineSummary refine(LogModel& model, const TrainingSet& set, const RefineOption
   const Lookups lookups = find_lookups(model.spec, set);
   const PictureLoss loss{.shares = options.shares, .exposure = set.exposure};
   const auto channels = static_cast<std::size_t>(model.channels);
-  const std::size_t together = any_shared(model) ? channels : 1, systems = channels / together;
+  const std::size_t together = model.any_shared() ? channels : 1, systems = channels / together;
   RefineSummary summary{.stop_reason = "no more progress"};
 
   for (std::size_t s = 0; s < systems; ++s) {

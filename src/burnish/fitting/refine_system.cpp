@@ -12,7 +12,9 @@ constexpr std::size_t kChunk = 2048;
 constexpr std::size_t kPartialBytes = std::size_t{32} << 20;  // of matrices summed side by side
 constexpr std::size_t kMostGroups = 16;
 constexpr std::size_t kPairsPerUnknown = 4;  // fewer are not worth a matrix of their own
-constexpr std::size_t kColumns = 64;         // of matrices, added up together
+// Of many pairs an even part makes a matrix good enough for a step; the slope is that of all.
+constexpr std::size_t kMatrixPairsPerUnknown = 40;
+constexpr std::size_t kColumns = 64;  // of matrices, added up together
 
 // ln of a table's largest value over the smallest that its format, or the general floor, leaves.
 double log_range(TableFormat format) {
@@ -210,16 +212,19 @@ ErrorTerms RefineSystem::errors(const Eigen::VectorXd& x) const {
   return means;
 }
 
-void RefineSystem::find_normal(const Eigen::VectorXd& x, const ErrorTerms& means,
-                               std::vector<Normal>& partial) const {
+void RefineSystem::find_normal(const Eigen::VectorXd& x, const ErrorTerms& means, std::size_t first_unknown,
+                               std::size_t last_unknown, std::vector<Normal>& partial) const {
   const Eigen::VectorXd lambda = x.array().exp();
-  const auto n = static_cast<Eigen::Index>(size_);
+  const std::size_t unknowns = last_unknown - first_unknown;
+  const auto n = static_cast<Eigen::Index>(unknowns);
   const std::size_t channels = last_channel_ - first_channel_;
   const ErrorTerms derivatives = loss_.derivatives(means, picture_weight_, pair_weight_);
   const std::size_t groups =
-      std::clamp<std::size_t>(std::min(kPartialBytes / (size_ * size_ * sizeof(double)),
-                                       set_.size() * channels / (kPairsPerUnknown * size_)),
+      std::clamp<std::size_t>(std::min(kPartialBytes / (unknowns * unknowns * sizeof(double)),
+                                       set_.size() * channels / (kPairsPerUnknown * unknowns)),
                               2, kMostGroups);
+  const std::size_t every =
+      std::max<std::size_t>(1, set_.size() * channels / (kMatrixPairsPerUnknown * unknowns));
   const std::size_t group_size = (set_.size() + groups - 1) / groups;
   partial.resize(chunk_count(set_.size(), group_size));
   // Each pair of terms is added once, below or above the diagonal; twice the diagonal's own is taken off it.
@@ -236,18 +241,30 @@ void RefineSystem::find_normal(const Eigen::VectorXd& x, const ErrorTerms& means
         const PictureLoss::Slope slope =
             loss_.add(targets_[i * channels + c], model, set_.pairs[i].wi.z, i < set_.picture_count,
                       set_.weights[i], derivatives, sums);
-        const std::size_t count = differentiate(lambda.data(), i, c, model, factor, product, terms);
+        std::size_t count = differentiate(lambda.data(), i, c, model, factor, product, terms);
+        if (unknowns < size_) {
+          std::size_t kept = 0;
+          for (std::size_t a = 0; a < count; ++a)
+            if (terms[a].unknown >= first_unknown && terms[a].unknown < last_unknown) {
+              terms[kept] = terms[a];
+              terms[kept++].unknown -= static_cast<std::uint32_t>(first_unknown);
+            }
+          count = kept;
+        }
+        for (std::size_t a = 0; a < count; ++a)
+          sum.gradient[terms[a].unknown] += slope.gradient * terms[a].value;
+        if (i % every > 0) continue;
+        const double curvature = slope.curvature * static_cast<double>(every);
         for (std::size_t a = 0; a < count; ++a) {
-          const double value = terms[a].value, scaled = slope.curvature * value;
-          sum.gradient[terms[a].unknown] += slope.gradient * value;
-          double* column = sum.matrix.data() + terms[a].unknown * size_;
+          const double value = terms[a].value, scaled = curvature * value;
+          double* column = sum.matrix.data() + terms[a].unknown * unknowns;
           column[terms[a].unknown] += 0.5 * scaled * value;
           for (std::size_t b = a + 1; b < count; ++b) column[terms[b].unknown] += scaled * terms[b].value;
         }
       }
   });
   Normal& total = partial.front();
-  for_each_chunk(size_, kColumns, [&](std::size_t, std::size_t begin, std::size_t end) {
+  for_each_chunk(unknowns, kColumns, [&](std::size_t, std::size_t begin, std::size_t end) {
     const auto first = static_cast<Eigen::Index>(begin), count = static_cast<Eigen::Index>(end - begin);
     for (std::size_t g = 1; g < partial.size(); ++g)
       total.matrix.middleCols(first, count) += partial[g].matrix.middleCols(first, count);
@@ -364,10 +381,12 @@ Eigen::VectorXd RefineSystem::roughness_diagonal() const {
   return d;
 }
 
-void RefineSystem::add_roughness_matrix(double scale, Eigen::MatrixXd& matrix) const {
+void RefineSystem::add_roughness_matrix(double scale, std::size_t first, Eigen::MatrixXd& matrix) const {
+  const std::size_t last = first + static_cast<std::size_t>(matrix.rows());
   for_each_roughness_row([&](const TableUnknowns& t, std::size_t c, std::uint32_t begin, std::uint32_t end) {
+    if (t.base < first || t.base >= last) return;
     const auto place = [&](std::uint32_t a) {
-      return static_cast<Eigen::Index>(t.base + t.rows.nodes[a] * t.stride + c);
+      return static_cast<Eigen::Index>(t.base + t.rows.nodes[a] * t.stride + c - first);
     };
     for (std::uint32_t a = begin; a < end; ++a)
       for (std::uint32_t b = begin; b < end; ++b)

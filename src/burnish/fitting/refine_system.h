@@ -40,13 +40,19 @@ class RefineSystem {
   /// Means of the errors at x.
   ErrorTerms errors(const Eigen::VectorXd& x) const;
 
-  /// Slope and Gauss-Newton matrix of the objective at x whose errors are `means`.
+  /// Slope and Gauss-Newton matrix of the objective at x whose errors are `means`. Where there are over 80
+  /// pairs an unknown, the matrix is that of an even part of them.
   struct Normal {
     Eigen::VectorXd gradient;
     Eigen::MatrixXd matrix;
   };
   /// `partial` is room for the sums of groups of pairs, kept from step to step; the first is the result.
-  void find_normal(const Eigen::VectorXd& x, const ErrorTerms& means, std::vector<Normal>& partial) const;
+  void find_normal(const Eigen::VectorXd& x, const ErrorTerms& means, std::vector<Normal>& partial) const {
+    find_normal(x, means, 0, size_, partial);
+  }
+  /// The same of the unknowns [first, last), the others being fixed.
+  void find_normal(const Eigen::VectorXd& x, const ErrorTerms& means, std::size_t first, std::size_t last,
+                   std::vector<Normal>& partial) const;
 
   /// The same without the matrix: the rows of its factor, curvature^(1/2) d ln f^ / dx.
   struct Rows {
@@ -64,7 +70,11 @@ class RefineSystem {
   double roughness(const Eigen::VectorXd& x) const;
   Eigen::VectorXd roughness_matrix_times(const Eigen::VectorXd& v) const;
   Eigen::VectorXd roughness_diagonal() const;
-  void add_roughness_matrix(double scale, Eigen::MatrixXd& matrix) const;
+  void add_roughness_matrix(double scale, Eigen::MatrixXd& matrix) const {
+    add_roughness_matrix(scale, 0, matrix);
+  }
+  /// The same to the matrix of the unknowns from `first` on.
+  void add_roughness_matrix(double scale, std::size_t first, Eigen::MatrixXd& matrix) const;
 
  private:
   struct Use {

@@ -4,7 +4,9 @@
 
 #include <burnish/error.h>
 #include <burnish/fitting/budget.h>
+#include <burnish/fitting/cholesky.h>
 #include <burnish/fitting/refine_system.h>
+#include <burnish/fitting/rounding.h>
 #include <burnish/math/parallel.h>
 #include <burnish/math/random.h>
 #include <burnish/metrics/error_figures.h>
@@ -150,6 +152,80 @@ TEST(LogModel, ResamplingToMoreNodesKeepsTheFunctions) {
       resampled(model, parse_model_spec("p(wo) p(wi) q(h) g(theta_d,theta_m) s(h)", few, true));
   const std::vector<double> c = evaluate(added, set);
   for (std::size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(c[i], a[i], 1e-5 * a[i]);
+}
+
+TEST(LogModel, SplittingKeepsCommonTables) {
+  const TrainingSet set = small_set(parse_analytic("lambert"), 300);
+  const std::vector<std::string> common{"p"};
+  for (const char* expression : {"p(wo) p(wi) q(h) r(theta_d)", "p(wo) p(wi) q(h)"}) {
+    const LogModel model = random_model(expression, {}, 3);
+    const LogModel split = with_lobe_split(model, 0, 0.4, "x", common);
+    EXPECT_EQ(split.spec.tables.size(), 2 * model.spec.tables.size() - 1);
+    const std::vector<double> a = evaluate(model, set), b = evaluate(split, set);
+    for (std::size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(b[i], a[i], 1e-5 * a[i]) << expression;
+  }
+}
+
+TEST(LogModel, ResamplingToSharedTablesKeepsWhatTheyCanHold) {
+  const TrainingSet set = small_set(parse_analytic("lambert"), 300);
+  LogModel model = random_model("p1(wo) p1(wi) q1(h) + p2(wo) p2(wi) q2(h)",
+                                std::vector<std::string>{"p1=5", "q1=9", "p2=5", "q2=9"}, 3);
+  // p of both lobes the same, and grey up to a colour
+  const double colour[] = {0.3, -0.2, -0.1};
+  for (std::size_t i = 0; i < model.log_values[0].size(); ++i)
+    model.log_values[2][i] = model.log_values[0][i] = -0.1 * static_cast<double>(i / 3) + colour[i % 3];
+  const LogModel shared =
+      resampled(model, parse_model_spec("p(wo) p(wi) q1(h) + p(wo) p(wi) q2(h)",
+                                        std::vector<std::string>{"p=5,shared", "q1=9", "q2=9"}, true));
+  EXPECT_EQ(shared.step(0), 1u);
+  const std::vector<double> a = evaluate(model, set), b = evaluate(shared, set);
+  for (std::size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(b[i], a[i], 1e-5 * a[i]);
+}
+
+TEST(Cholesky, SolvesAndFactorizesTheInverse) {
+  Pcg32 random(5);
+  Eigen::MatrixXd root(12, 12);
+  for (double& v : root.reshaped()) v = random.uniform() - 0.5;
+  const Eigen::MatrixXd matrix = root * root.transpose() + 0.1 * Eigen::MatrixXd::Identity(12, 12);
+  Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(12, -1, 1), b = x;
+  Eigen::MatrixXd used = matrix;
+  solve_in_place(used, x);
+  EXPECT_LT((matrix * x - b).cwiseAbs().maxCoeff(), 1e-12);
+  used = matrix;
+  ASSERT_TRUE(factorize_inverse(used));
+  const Eigen::MatrixXd upper = used.triangularView<Eigen::Upper>();
+  EXPECT_LT((upper.transpose() * upper * matrix - Eigen::MatrixXd::Identity(12, 12)).cwiseAbs().maxCoeff(),
+            1e-10);
+  used = -matrix;
+  EXPECT_FALSE(factorize_inverse(used));
+  used = -matrix;
+  solve_in_place(used, x);
+  EXPECT_EQ(x.cwiseAbs().maxCoeff(), 0);
+}
+
+TEST(ToRoundedBrdf, LosesLessThanRoundingEachValue) {
+  const AnalyticBrdf paint = parse_analytic("ggx:alpha_x=0.2,alpha_y=0.2,kd=0.4/0.02/0.1,f0=0.05/0.5/0.9");
+  const TrainingSet set = small_set(paint);
+  for (const char* p : {"p=9", "p=9,shared"})
+    for (const TableFormat format : {TableFormat::rgb9e5, TableFormat::unorm8}) {
+      const RefineOptions options{.format = format, .max_iterations = 12};
+      const LobesFit fit = fit_lobes(
+          set, parse_model_spec("p(wo) p(wi) q(h) r(theta_d)", std::vector<std::string>{p, "q=40"}, true),
+          options);
+      // picture error of what is stored, which `relative` and the rest follow
+      const auto squared = [&](const FactoredBrdf& brdf) {
+        return -error_figures(paint.ref(), brdf, {.count = 2000, .image_size = 32}).psnr;
+      };
+      const FactoredBrdf good = to_rounded_brdf(fit.model, set, options), plain = to_brdf(fit.model, format);
+      EXPECT_EQ(good.bytes(), plain.bytes());
+      EXPECT_TRUE(good.reciprocal());
+      EXPECT_LT(squared(good), squared(plain) + 0.1) << to_string(format) << p;
+      if (format == TableFormat::unorm8 && std::string(p) == "p=9,shared") {
+        EXPECT_LT(squared(good), squared(plain) - 0.5);
+      }
+    }
+  const LogModel model = random_model("p(wo) p(wi) q(h)", {}, 3);
+  EXPECT_EQ(to_rounded_brdf(model, set, {.format = TableFormat::half}), to_brdf(model, TableFormat::half));
 }
 
 TEST(Refine, RecoversASumOfTwoLobes) {

@@ -42,11 +42,11 @@ double mean_share(const LobePlan& plan) {
 // Projections that the default plans do not have. A pair stands for both directions.
 std::vector<std::pair<std::string, std::vector<Projection>>> further_projections() {
   std::vector<std::pair<std::string, std::vector<Projection>>> list;
-  for (const double n : {-0.5, 0.5, 2.0}) list.push_back({"s", {Projection{.wi = 1, .wo = 1, .n = n}}});
+  for (const double n : {-0.5, 0.5, 2.0}) list.push_back({"t", {Projection{.wi = 1, .wo = 1, .n = n}}});
   for (const double b : {-0.5, 0.5})
-    list.push_back({"s", {Projection{.wi = 1, .wo = b}, Projection{.wi = b, .wo = 1}}});
+    list.push_back({"t", {Projection{.wi = 1, .wo = b}, Projection{.wi = b, .wo = 1}}});
   list.push_back(
-      {"s", {Projection{.wi = 1, .wo = -0.5, .n = 0.5}, Projection{.wi = -0.5, .wo = 1, .n = 0.5}}});
+      {"t", {Projection{.wi = 1, .wo = -0.5, .n = 0.5}, Projection{.wi = -0.5, .wo = 1, .n = 0.5}}});
   return list;
 }
 
@@ -78,6 +78,13 @@ std::vector<Change> list_changes(const LobePlan& plan) {
              f->warp = warp;
              return p;
            }});
+    changes.push_back({fmt::format("one {} for all lobes", name), [=](LobePlan p) -> std::optional<LobePlan> {
+                         PlannedFactor* f = find(p, name);
+                         const auto own = std::ranges::count(p.factors, false, &PlannedFactor::every_lobe);
+                         if (!f || f->every_lobe || p.lobes < 2 || own < 2) return {};
+                         f->every_lobe = true;
+                         return p;
+                       }});
     changes.push_back({fmt::format("without {}", name), [=](LobePlan p) -> std::optional<LobePlan> {
                          if (p.factors.size() < 3 || !find(p, name)) return {};
                          std::erase_if(p.factors, [&](const PlannedFactor& f) { return f.name == name; });
@@ -91,20 +98,21 @@ std::vector<Change> list_changes(const LobePlan& plan) {
                          p.factors.push_back({name, TableShape::line, uses, 0.4 * mean_share(p), {}});
                          return p;
                        }});
-  // the coefficients of a factor that was added
-  for (const double scale : {1.4, 0.7})
-    changes.push_back(
-        {fmt::format("coefficients of s x {}", scale), [=](LobePlan p) -> std::optional<LobePlan> {
-           PlannedFactor* f = find(p, "s");
-           if (!f) return {};
-           if (f->uses.size() == 2) {
-             f->uses[0].wo *= scale;
-             f->uses[1].wi *= scale;
-           } else {
-             f->uses[0].n *= scale;
-           }
-           return p;
-         }});
+  // the coefficients of skewed directions
+  for (const char* name : {"s", "t"})
+    for (const double scale : {1.4, 0.7})
+      changes.push_back(
+          {fmt::format("coefficients of {} x {}", name, scale), [=](LobePlan p) -> std::optional<LobePlan> {
+             PlannedFactor* f = find(p, name);
+             if (!f) return {};
+             if (f->uses.size() == 2) {
+               f->uses[0].wo *= scale;
+               f->uses[1].wi *= scale;
+             } else {
+               f->uses[0].n *= scale;
+             }
+             return p;
+           }});
   return changes;
 }
 
@@ -138,6 +146,32 @@ TrainingSet mean_of_channels(const TrainingSet& set) {
     grey.values[i] = static_cast<float>(sum / static_cast<double>(channels));
   }
   return grey;
+}
+
+/// Keeps tables of one channel where those cost less than they save; only the colours can tell.
+void share_channels(const TrainingSet& set, const SearchOptions& options, RefineOptions refinement,
+                    SearchResult& result) {
+  const TrainingSet fitted = part_of(set, 0, kFit), judged = part_of(set, kFit / 2, kFit);
+  refinement.max_iterations = 2 * kTrialSteps;
+  std::vector<LobePlan> plans{result.plan};
+  for (std::size_t k = 0; k < result.plan.factors.size(); ++k) {
+    plans.push_back(result.plan);
+    plans.back().factors[k].grey = true;
+  }
+  std::vector<double> values(plans.size(), INFINITY);
+  for_each_chunk(plans.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
+    try {
+      const LobesFit fit = fit_plan(fitted, plans[k], options.bytes, options.texel_bytes, refinement);
+      values[k] = objective(fit.model, judged, options.refine.shares);
+    } catch (const Error&) {  // as above
+    }
+  });
+  const auto best = static_cast<std::size_t>(std::ranges::min_element(values) - values.begin());
+  const bool gained = values[best] < values.front() - kLeastGain;
+  for (std::size_t k = 1; k < plans.size(); ++k)
+    result.trials.push_back(
+        {fmt::format("one channel of {}", result.plan.factors[k - 1].name), values[k], gained && k == best});
+  if (gained) result.plan = plans[best];
 }
 
 }  // namespace
@@ -213,6 +247,7 @@ SearchResult search_plan(const TrainingSet& set, const LobePlan& start, const Se
     if (std::ranges::none_of(kept, [](bool b) { return b; })) break;
   }
   result.plan = best.plan;
+  if (set.channels > 1) share_channels(set, options, refinement, result);
   if (options.progress) options.progress(1);
   return result;
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <burnish/factors/baseline_file.h>
 #include <burnish/io/astm.h>
 #include <burnish/io/cornell.h>
 #include <burnish/io/csv.h>
@@ -27,6 +28,20 @@ Source from_table(const FileBytes& file, File parsed) {
 
 Source from_samples(const FileBytes& file, SampleFile parsed) {
   return {file.name, ScatteredBrdf(std::move(parsed.samples)), std::move(parsed.findings)};
+}
+
+Source from_baseline(const FileBytes& file) {
+  Baseline baseline = parse_baseline(file);
+  Findings findings;
+  findings.format = fmt::format("{} baseline", baseline.kind);
+  findings.description = baseline_expression(baseline.brdf);
+  findings.conventions = {"notes of the fit: " + baseline.notes};
+  findings.theta_i_max = findings.theta_o_max = kHalfPi;
+  return std::visit(
+      [&](auto& brdf) -> Source {
+        return {file.name, std::move(brdf), std::move(findings)};
+      },
+      baseline.brdf);
 }
 
 Source from_neural(const FileBytes& file, std::string_view name) {
@@ -74,6 +89,7 @@ Source parse_source(const FileBytes& file, const OpenOptions& options) {
   if (looks_like_mbsdf(file.bytes)) return from_table(file, parse_mbsdf(file, options));
   if (looks_like_merl(file.bytes)) return from_table(file, parse_merl(file, options));
   const std::string_view text = file.text();
+  if (looks_like_baseline(text)) return from_baseline(file);
   if (looks_like_klems(text)) return from_table(file, parse_klems(file, options));
   if (looks_like_zemax(text)) return from_table(file, parse_zemax(file, options));
   if (looks_like_neural(text)) return from_neural(file, {});
@@ -82,8 +98,8 @@ Source parse_source(const FileBytes& file, const OpenOptions& options) {
   if (looks_like_cornell(text)) return from_samples(file, parse_cornell(file, options));
   throw Error(
       file.name, 0,
-      "a MERL, RGL, MBSDF, Zemax, Klems, ASTM E1392, Cornell or CSV measurement, a neural encoding, or a "
-      "burnish model",
+      "a MERL, RGL, MBSDF, Zemax, Klems, ASTM E1392, Cornell or CSV measurement, a neural encoding, a "
+      "baseline or a burnish model",
       fmt::format("something that starts with {}", in_quotes(text.substr(0, 16))));
 }
 

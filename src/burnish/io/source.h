@@ -5,8 +5,10 @@
 #include <string>
 #include <variant>
 
+#include <burnish/factors/dgf_brdf.h>
 #include <burnish/factors/factored_brdf.h>
 #include <burnish/factors/model_file.h>
+#include <burnish/factors/separable_brdf.h>
 #include <burnish/file.h>
 #include <burnish/io/open_options.h>
 #include <burnish/reflectance/analytic.h>
@@ -23,7 +25,7 @@ namespace burnish {
 
 /// Everything a BRDF argument can be.
 using AnyBrdf = std::variant<HalfDiffTable, RglTable, ScatteredBrdf, AngleTable, PatchTable, AnalyticBrdf,
-                             NeuralBrdf, FactoredBrdf>;
+                             NeuralBrdf, SeparableBrdf, DgfBrdf, FactoredBrdf>;
 
 /// An opened BRDF and what was found in it.
 struct Source {

@@ -44,6 +44,7 @@ nlohmann::ordered_json json_of(std::span<const ComparedFigures> compared) {
                                     {"log_cos", f.log_cos},
                                     {"relative", f.relative},
                                     {"rms_log", f.rms_log},
+                                    {"rms", f.rms},
                                     {"mean_abs_log", f.mean_abs_log},
                                     {"psnr", nullptr},
                                     {"ssim", f.ssim},

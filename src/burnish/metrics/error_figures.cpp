@@ -25,6 +25,7 @@ PairError pair_error(const DirectionPair& pair, std::span<const double> referenc
     const double ratio = f == g ? 0 : std::log((f + floor) / (g + floor));
     error.log_ratio += std::abs(ratio);
     error.log_ratio_sq += ratio * ratio;
+    error.difference_sq += (f - g) * (f - g);
     if (f > 0 && g > 0) {
       error.abs_log += std::abs(std::log(f / g));
       ++error.positive_channels;
@@ -34,6 +35,7 @@ PairError pair_error(const DirectionPair& pair, std::span<const double> referenc
   error.log_cos /= count;
   error.log_ratio /= count;
   error.log_ratio_sq /= count;
+  error.difference_sq /= count;
   if (error.positive_channels > 0) error.abs_log /= error.positive_channels;
   return error;
 }
@@ -123,11 +125,12 @@ ErrorFigures Scorer::score(BrdfRef model) const {
   const std::vector<PairError> errors = pair_errors(model);
   if (errors.empty()) throw Error("reference and model share no known direction pair");
   ErrorFigures figures;
-  double log_ratio = 0, log_ratio_sq = 0, abs_log = 0, positive = 0;
+  double log_ratio = 0, log_ratio_sq = 0, difference_sq = 0, abs_log = 0, positive = 0;
   for (const PairError& error : errors) {
     figures.log_cos += error.log_cos;
     log_ratio += error.log_ratio;
     log_ratio_sq += error.log_ratio_sq;
+    difference_sq += error.difference_sq;
     abs_log += error.abs_log * error.positive_channels;
     positive += error.positive_channels;
   }
@@ -135,6 +138,7 @@ ErrorFigures Scorer::score(BrdfRef model) const {
   figures.log_cos /= count;
   figures.relative = std::expm1(log_ratio / count);
   figures.rms_log = std::sqrt(log_ratio_sq / count);
+  figures.rms = std::sqrt(difference_sq / count);
   figures.mean_abs_log = positive > 0 ? abs_log / positive : 0;
   figures.unknown_fraction = 1 - count / static_cast<double>(options_.count);
 

@@ -17,6 +17,7 @@ struct ErrorFigures {
   double log_cos = 0;           ///< mean |ln(1 + f cos theta_i) - ln(1 + f^ cos theta_i)| [Low 2012]
   double relative = 0;          ///< exp(mean |ln((f + floor) / (f^ + floor))|) - 1
   double rms_log = 0;           ///< root of the mean square of ln((f + floor) / (f^ + floor))
+  double rms = 0;               ///< root of the mean square of f - f^, 1/sr: the highlight's peak rules it
   double mean_abs_log = 0;      ///< mean |ln(f / f^)| over values where both are above 0; 0 if there are none
   double psnr = 0;              ///< dB, of the mean squared error of the three lit spheres; infinite if equal
   double ssim = 0;              ///< mean of the three lit spheres
@@ -38,6 +39,7 @@ struct PairError {
   double log_cos = 0;         ///< as in ErrorFigures
   double log_ratio = 0;       ///< |ln((f + floor) / (f^ + floor))|
   double log_ratio_sq = 0;    ///< its square's mean
+  double difference_sq = 0;   ///< mean (f - f^)^2, 1/sr^2
   double abs_log = 0;         ///< |ln(f / f^)| over the channels where both are above 0
   int positive_channels = 0;  ///< how many those are
 };

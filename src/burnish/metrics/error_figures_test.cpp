@@ -48,6 +48,7 @@ TEST(ErrorFigures, FloorDampsDarkValues) {
   const Lambert dark{.albedo = {0.001 * kPi, 0, 0}, .count = 1};
   const Lambert twice{.albedo = {0.002 * kPi, 0, 0}, .count = 1};
   EXPECT_NEAR(error_figures(dark, twice, kQuick).relative, 3.0 / 2 - 1, 1e-12);
+  EXPECT_NEAR(error_figures(dark, twice, kQuick).rms, 0.001, 1e-12);
 }
 
 TEST(ErrorFigures, LogCosWeighsByTheCosineOfTheLight) {

@@ -241,6 +241,15 @@ bool AnalyticBrdf::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   return std::visit([&](const auto& brdf) { return brdf.eval(wi, wo, f); }, variant_);
 }
 
+std::size_t AnalyticBrdf::bytes() const noexcept {
+  std::size_t numbers = 0;
+  for (std::size_t i = 0; i < values_.size(); ++i) {
+    const AnalyticParameter& parameter = model_->parameters[i];
+    if (values_[i] != Rgb(parameter.default_value)) numbers += parameter.color ? 3 : 1;
+  }
+  return sizeof(float) * numbers;
+}
+
 BrdfRef AnalyticBrdf::ref() const noexcept {
   return std::visit([](const auto& brdf) { return BrdfRef(brdf); }, variant_);
 }

@@ -52,6 +52,9 @@ class AnalyticBrdf {
   /// The model itself, chosen once, for many evaluations. Refers to this object.
   BrdfRef ref() const noexcept;
 
+  /// 4 for each number that is not its parameter's default; a colour has three.
+  std::size_t bytes() const noexcept;
+
   const AnalyticModel& model() const noexcept { return *model_; }
   std::span<const Rgb> values() const noexcept { return values_; }
   const AnalyticVariant& variant() const noexcept { return variant_; }

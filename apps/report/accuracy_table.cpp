@@ -1,0 +1,140 @@
+#include "accuracy_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include <burnish/factors/table_format.h>
+#include <burnish/fitting/baselines/baselines.h>
+#include <burnish/fitting/budget.h>
+#include <burnish/fitting/rounding.h>
+#include <burnish/reflectance/sample_source.h>
+
+#include "report_tools.h"
+
+namespace burnish {
+namespace {
+
+// Multiply-adds and weights of the 6-21-21-3 network.
+constexpr EvaluationCost kNetworkCost{.table_reads = 675, .multiplies = 6 * 21 + 21 * 21 + 21 * 3};
+constexpr std::size_t kNetworkBytes = 1350;  // as half floats
+constexpr std::size_t kDrawnPairs = 200'000;
+
+FactoredBrdf fit_ours(BrdfRef reference, std::size_t bytes) {
+  const int channels = reference.channels();
+  const TableFormat format = channels == 3 ? TableFormat::rgb9e5 : TableFormat::half;
+  const std::size_t texel = texel_bytes(format, channels);
+  const TrainingSet set =
+      draw_training_set(reference, {.directions = reference.isotropic() ? 60'000u : 200'000u});
+  const RefineOptions options{.format = format};
+  const LobePlan plan = default_plan(bytes, 0, reference.isotropic(), texel);
+  return to_rounded_brdf(fit_plan(set, plan, bytes, texel, options).model, set, options);
+}
+
+Score score_of(const Scorer& scorer, std::string_view method, std::size_t budget, BrdfRef model) {
+  return {.method = std::string(method),
+          .budget = budget,
+          .errors = scorer.score(model),
+          .picture = picture(model, scorer.exposure())};
+}
+
+// The figures of a mean, in one place.
+std::array<double*, 6> figures(ErrorFigures& e) {
+  return {&e.psnr, &e.ssim, &e.relative, &e.log_cos, &e.rms_log, &e.rms};
+}
+
+}  // namespace
+
+Image8 picture(BrdfRef brdf, double exposure) {
+  return lit_sphere(brdf,
+                    {.size = 128, .light_angle = kSphereLights[1], .exposure = exposure, .supersampling = 2});
+}
+
+std::vector<Score> run(const Scorer& scorer, const std::vector<Attempt>& attempts) {
+  std::vector<Score> scores;
+  std::optional<SampleSource> samples;
+  for (const auto& [method, budgets] : attempts)
+    for (const std::size_t budget : budgets.empty() ? std::vector<std::size_t>{0} : budgets) {
+      if (method == "ours") {
+        const Stopwatch watch;
+        const FactoredBrdf brdf = fit_ours(scorer.reference(), budget);
+        const double seconds = watch.seconds();
+        scores.push_back(score_of(scorer, method, budget, brdf));
+        scores.back().bytes = brdf.bytes();
+        scores.back().cost = evaluation_cost(brdf);
+        scores.back().seconds = seconds;
+        continue;
+      }
+      if (!samples) samples = from_brdf(scorer.reference(), kDrawnPairs, 1, false);
+      BaselineOptions options;
+      if (budget > 0) options.budget = budget;
+      const BaselineFit fit = fit_baseline(scorer.reference(), *samples, method, options);
+      scores.push_back(score_of(scorer, method, budget, baseline_ref(fit.baseline.brdf)));
+      scores.back().bytes = fit.bytes;
+      scores.back().cost = fit.cost;
+      scores.back().seconds = fit.seconds;
+    }
+  return scores;
+}
+
+Score run_network(const Scorer& scorer, BrdfRef network) {
+  Score score = score_of(scorer, "network", 0, network);
+  score.bytes = kNetworkBytes;
+  score.cost = kNetworkCost;
+  return score;
+}
+
+void print_head() {
+  fmt::print(
+      "| material | method | bytes | psnr | ssim | relative | log_cos | rms_log | rms | table reads | "
+      "multiplies "
+      "| fit seconds |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+}
+
+void print_row(const std::string& material, const Score& s) {
+  const ErrorFigures& e = s.errors;
+  fmt::print("| {} | {} | {} | {:.2f} | {:.4f} | {:.4f} | {:.4f} | {:.3f} | {:.3g} | {} | {} | {} |\n",
+             material, s.method, s.bytes, e.psnr, e.ssim, e.relative, e.log_cos, e.rms_log, e.rms,
+             s.cost ? std::to_string(s.cost->table_reads) : "",
+             s.cost ? std::to_string(s.cost->multiplies) : "",
+             s.seconds > 0 ? fmt::format("{:.1f}", s.seconds) : "");
+  std::fflush(stdout);
+}
+
+void Means::add(const std::vector<Score>& scores) {
+  for (Score s : scores) {
+    const auto known = std::ranges::find_if(
+        sums_, [&](const auto& sum) { return sum.first.method == s.method && sum.first.budget == s.budget; });
+    if (known == sums_.end()) {
+      sums_.emplace_back(std::move(s), 1);
+      continue;
+    }
+    auto& [sum, count] = *known;
+    sum.bytes += s.bytes;
+    sum.seconds += s.seconds;
+    const auto to = figures(sum.errors), from = figures(s.errors);
+    for (std::size_t k = 0; k < to.size(); ++k) *to[k] += *from[k];
+    if (sum.cost && s.cost) {
+      sum.cost->table_reads += s.cost->table_reads;
+      sum.cost->multiplies += s.cost->multiplies;
+    }
+    ++count;
+  }
+}
+
+std::vector<Score> Means::means() const {
+  std::vector<Score> result;
+  for (auto [sum, count] : sums_) {
+    const auto whole = static_cast<std::size_t>(count);
+    sum.bytes /= whole;
+    sum.seconds /= count;
+    for (double* figure : figures(sum.errors)) *figure /= count;
+    if (sum.cost) sum.cost = {sum.cost->table_reads / whole, sum.cost->multiplies / whole};
+    result.push_back(std::move(sum));
+  }
+  return result;
+}
+
+}  // namespace burnish

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <burnish/factors/evaluation_cost.h>
+#include <burnish/metrics/error_figures.h>
+#include <burnish/metrics/image.h>
+#include <burnish/reflectance/brdf.h>
+
+namespace burnish {
+
+/// One representation of one material.
+struct Score {
+  std::string method;  ///< "ours", "network" or one of baseline_methods()
+  std::size_t budget = 0;
+  ErrorFigures errors;
+  std::size_t bytes = 0;
+  std::optional<EvaluationCost> cost;
+  double seconds = 0;  ///< of the fit; 0: not fitted here
+  Image8 picture;      ///< a lit sphere, light at 30 degrees, under the reference's exposure
+};
+
+/// A method at the budgets it is tried at; none: whatever it takes.
+struct Attempt {
+  std::string_view method;
+  std::vector<std::size_t> budgets;
+};
+
+/// A sphere lit at 30 degrees.
+Image8 picture(BrdfRef brdf, double exposure);
+
+/// Fits and scores each attempt, in their order.
+std::vector<Score> run(const Scorer& scorer, const std::vector<Attempt>& attempts);
+
+/// Scores a network of 675 weights.
+Score run_network(const Scorer& scorer, BrdfRef network);
+
+/// Table head and rows; a row's first column is the material.
+void print_head();
+void print_row(const std::string& material, const Score& score);
+
+/// Means of scores by method and budget, in the order they came first.
+class Means {
+ public:
+  void add(const std::vector<Score>& scores);
+  std::vector<Score> means() const;
+
+ private:
+  std::vector<std::pair<Score, double>> sums_;
+};
+
+}  // namespace burnish

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include <burnish/eval/factored_eval.h>
+#include <burnish/reflectance/analytic/microfacet.h>
+#include <burnish/reflectance/half_diff_table.h>
+
+namespace burnish {
+
+// Other representations evaluated as one would who wants them fast: in float, by the widest vectors, with the
+// spans and planes of FactoredEvaluator. Three channels; a multiple of 16 directions above the horizon.
+
+/// A microfacet model of tables over angles in steps of pi/2 / (kAngles - 1), linear between them:
+/// diffuse + D(theta_h) F(theta_d) G(theta_i) G(theta_o) / (4 cos_i cos_o) [Bagher 2016].
+struct TabulatedMicrofacets {
+  static constexpr int kAngles = 90;
+  std::array<float, 3> diffuse{};
+  std::array<std::vector<float>, 3> d, f, g;  // a channel, kAngles each
+
+  static constexpr int channels() noexcept { return 3; }
+  static constexpr bool isotropic() noexcept { return true; }
+  bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
+};
+static_assert(Brdf<TabulatedMicrofacets>);
+
+void eval_tabulated(const TabulatedMicrofacets& brdf, const DirectionSpans& directions, std::span<float> f);
+
+/// The network of NeuralBrdf with these weights.
+void eval_neural(std::span<const float> weights, const DirectionSpans& directions, std::span<float> f);
+
+/// Isotropic.
+void eval_ggx(const Ggx& brdf, const DirectionSpans& directions, std::span<float> f);
+
+/// As NearestHalfDiff; over half a circle.
+void eval_nearest(const HalfDiffTable& table, const DirectionSpans& directions, std::span<float> f);
+
+}  // namespace burnish

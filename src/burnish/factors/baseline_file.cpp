@@ -1,0 +1,189 @@
+#include <array>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <burnish/error.h>
+#include <burnish/factors/baseline_file.h>
+
+namespace burnish {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kLargestFile = std::size_t{64} << 20;
+constexpr std::array<std::string_view, 3> kSeparableKinds = {"svd", "nd", "nmf"};
+
+bool is_separable(std::string_view kind) {
+  return std::find(kSeparableKinds.begin(), kSeparableKinds.end(), kind) != kSeparableKinds.end();
+}
+
+Json to_json(const NodeTable& table, const char* name) {
+  Json axes = Json::array();
+  for (const NodeAxis& axis : table.axes)
+    axes.push_back({{"coordinate", to_string(axis.coordinate)}, {"count", axis.count}});
+  return {{"name", name},
+          {"axes", std::move(axes)},
+          {"channels", table.channels},
+          {"terms", table.terms},
+          {"values", table.values}};
+}
+
+struct Parts {
+  Json parameters, tables = Json::array();
+};
+
+Parts parts_of(const SeparableBrdf& brdf) {
+  return {{{"scale", std::vector<float>(brdf.scale().begin(), brdf.scale().end())}},
+          {to_json(brdf.u(), "u"), to_json(brdf.v(), "v")}};
+}
+
+Parts parts_of(const DgfBrdf& brdf) {
+  return {{{"diffuse", std::vector<float>(brdf.diffuse().begin(), brdf.diffuse().end())},
+           {"scale", std::vector<float>(brdf.scale().begin(), brdf.scale().end())}},
+          {to_json(brdf.d(), "d"), to_json(brdf.g(), "g"), to_json(brdf.f(), "f")}};
+}
+
+Parts parts_of(const AnalyticBrdf& brdf) {
+  Json parameters{{"model", brdf.model().name}};
+  for (std::size_t i = 0; i < brdf.values().size(); ++i) {
+    const Rgb value = brdf.values()[i];
+    const AnalyticParameter& parameter = brdf.model().parameters[i];
+    parameters[std::string(parameter.name)] =
+        parameter.color ? Json{value.r, value.g, value.b} : Json(value.r);
+  }
+  return {std::move(parameters), Json::array()};
+}
+
+std::string expression(const NodeTable& table, const char* name) {
+  std::vector<std::string> axes;
+  for (const NodeAxis& axis : table.axes)
+    axes.push_back(fmt::format("{} {}", to_string(axis.coordinate), axis.count));
+  return fmt::format("{}({}){}", name, fmt::join(axes, ", "), table.channels == 1 ? " shared" : "");
+}
+
+std::string expression_of(const SeparableBrdf& brdf) {
+  return fmt::format("{} {}, {} terms", expression(brdf.u(), "u"), expression(brdf.v(), "v"), brdf.u().terms);
+}
+
+std::string expression_of(const DgfBrdf& brdf) {
+  return fmt::format("diffuse + {} {} {}", expression(brdf.d(), "d"), expression(brdf.g(), "g"),
+                     expression(brdf.f(), "f"));
+}
+
+std::string expression_of(const AnalyticBrdf& brdf) {
+  return format_analytic(brdf);
+}
+
+NodeTable read_table(const Json& tables, std::size_t index, std::string_view name) {
+  const Json& json = tables.at(index);
+  if (const auto found = json.at("name").get<std::string>(); found != name)
+    throw Error(fmt::format("table {}: expected the name '{}', found '{}'", index + 1, name, found));
+  NodeTable table{.axes = {},
+                  .channels = json.at("channels").get<int>(),
+                  .terms = json.at("terms").get<int>(),
+                  .values = json.at("values").get<std::vector<float>>()};
+  for (const Json& axis : json.at("axes")) {
+    const auto text = axis.at("coordinate").get<std::string>();
+    const auto coordinate = parse_pair_coordinate(text);
+    if (!coordinate) throw Error(fmt::format("table '{}': expected a coordinate, found '{}'", name, text));
+    table.axes.push_back({*coordinate, axis.at("count").get<int>()});
+  }
+  return table;
+}
+
+std::vector<float> read_floats(const Json& json, const char* key) {
+  return json.at(key).get<std::vector<float>>();
+}
+
+AnalyticBrdf read_analytic(const Json& parameters) {
+  const auto name = parameters.at("model").get<std::string>();
+  if (!is_analytic_spec(name) || name.find(':') != std::string::npos)
+    throw Error(fmt::format("model: expected the name of an analytic model, found '{}'", name));
+  const AnalyticModel& model = parse_analytic(name).model();
+  std::vector<Rgb> values;
+  for (const AnalyticParameter& parameter : model.parameters) {
+    const Json& value = parameters.at(std::string(parameter.name));
+    if (parameter.color) {
+      const auto rgb = value.get<std::array<double, 3>>();
+      values.emplace_back(rgb[0], rgb[1], rgb[2]);
+    } else {
+      values.emplace_back(value.get<double>());
+    }
+  }
+  return AnalyticBrdf(model, std::move(values));
+}
+
+BaselineBrdf read_brdf(const std::string& kind, const Json& parameters, const Json& tables) {
+  const auto expect_tables = [&](std::size_t count) {
+    if (!tables.is_array() || tables.size() != count)
+      throw Error(fmt::format("tables: expected {}, found {}", count, tables.size()));
+  };
+  if (is_separable(kind)) {
+    expect_tables(2);
+    return SeparableBrdf(read_table(tables, 0, "u"), read_table(tables, 1, "v"),
+                         read_floats(parameters, "scale"));
+  }
+  if (kind == "dgf") {
+    expect_tables(3);
+    return DgfBrdf(read_floats(parameters, "diffuse"), read_floats(parameters, "scale"),
+                   read_table(tables, 0, "d"), read_table(tables, 1, "g"), read_table(tables, 2, "f"));
+  }
+  if (kind == "analytic") {
+    expect_tables(0);
+    return read_analytic(parameters);
+  }
+  throw Error(fmt::format("kind: expected svd, nd, nmf, dgf or analytic, found '{}'", kind));
+}
+
+}  // namespace
+
+BrdfRef baseline_ref(const BaselineBrdf& brdf) noexcept {
+  if (const auto* analytic = std::get_if<AnalyticBrdf>(&brdf)) return analytic->ref();
+  return std::visit([](const auto& any) -> BrdfRef { return any; }, brdf);
+}
+
+std::size_t baseline_bytes(const BaselineBrdf& brdf) noexcept {
+  return std::visit([](const auto& any) { return any.bytes(); }, brdf);
+}
+
+std::string baseline_expression(const BaselineBrdf& brdf) {
+  return std::visit([](const auto& any) { return expression_of(any); }, brdf);
+}
+
+std::string format_baseline(const Baseline& baseline) {
+  Parts parts = std::visit([](const auto& brdf) { return parts_of(brdf); }, baseline.brdf);
+  const Json json{{"kind", baseline.kind},
+                  {"parameters", std::move(parts.parameters)},
+                  {"tables", std::move(parts.tables)},
+                  {"notes", Json::parse(baseline.notes)}};
+  return json.dump() + "\n";
+}
+
+bool looks_like_baseline(std::string_view text) noexcept {
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  return first != std::string_view::npos && text[first] == '{';
+}
+
+Baseline parse_baseline(const FileBytes& file) {
+  if (file.bytes.size() > kLargestFile)
+    throw Error::in_file(file.name, fmt::format("a baseline of at most {} bytes", kLargestFile),
+                         fmt::format("{}", file.bytes.size()));
+  try {
+    const Json json = Json::parse(file.text());
+    Baseline baseline{
+        .kind = json.at("kind").get<std::string>(),
+        .brdf = read_brdf(json.at("kind").get<std::string>(), json.at("parameters"), json.at("tables")),
+        .notes = json.at("notes").dump()};
+    if (!json.at("notes").is_object()) throw Error("notes: expected an object, found another value");
+    return baseline;
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", file.name, error.what()));
+  } catch (const std::exception& error) {  // the JSON library's own
+    throw Error(fmt::format("{}: expected a baseline in JSON, found: {}", file.name, error.what()));
+  }
+}
+
+}  // namespace burnish

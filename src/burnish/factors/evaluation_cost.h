@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include <burnish/factors/baseline_file.h>
+#include <burnish/factors/factored_brdf.h>
+#include <burnish/reflectance/neural_brdf.h>
+
+namespace burnish {
+
+/// What one evaluation does with stored numbers, all channels together: numbers read, and multiplications by
+/// which they are interpolated and combined. Finding the place in a table is left out.
+struct EvaluationCost {
+  std::size_t table_reads = 0, multiplies = 0;
+
+  friend bool operator==(const EvaluationCost&, const EvaluationCost&) = default;
+};
+
+EvaluationCost evaluation_cost(const FactoredBrdf& brdf) noexcept;
+EvaluationCost evaluation_cost(const SeparableBrdf& brdf) noexcept;
+EvaluationCost evaluation_cost(const DgfBrdf& brdf) noexcept;
+/// Its weights are read and all but the biases multiplied.
+EvaluationCost evaluation_cost(const NeuralBrdf& brdf) noexcept;
+/// Nothing for analytic models, which are no tables.
+std::optional<EvaluationCost> evaluation_cost(const BaselineBrdf& brdf) noexcept;
+
+}  // namespace burnish

@@ -1,0 +1,105 @@
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+
+#include <burnish/fitting/baselines/low_rank.h>
+#include <burnish/math/random.h>
+
+namespace burnish {
+
+namespace {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using ConstMap = Eigen::Map<const RowMajor>;
+using Eigen::Index;
+
+ConstMap map(const Matrix& m) {
+  return {m.values.data(), static_cast<Index>(m.rows), static_cast<Index>(m.columns)};
+}
+
+std::vector<double> to_vector(const RowMajor& m) {
+  return {m.data(), m.data() + m.size()};
+}
+
+LowRank make_low_rank(const RowMajor& u, const RowMajor& v) {
+  return {static_cast<std::size_t>(u.cols()), to_vector(u), to_vector(v)};
+}
+
+}  // namespace
+
+LowRank singular_values(const Matrix& m, std::size_t terms) {
+  const ConstMap a = map(m);
+  const bool wide = m.columns > m.rows;
+  const Eigen::MatrixXd gram = wide ? Eigen::MatrixXd(a * a.transpose()) : Eigen::MatrixXd(a.transpose() * a);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(gram);
+  const Index kept = std::min(static_cast<Index>(terms), gram.rows());
+  // eigenvalues rise: the last are the squares of the largest singular values
+  RowMajor near = solver.eigenvectors().rightCols(kept).rowwise().reverse();
+  RowMajor far = wide ? RowMajor(a.transpose() * near) : RowMajor(a * near);
+  for (Index k = 0; k < kept; ++k) {
+    const double sigma = far.col(k).norm();
+    if (sigma <= 0) continue;
+    far.col(k) /= std::sqrt(sigma);
+    near.col(k) *= std::sqrt(sigma);
+  }
+  return wide ? make_low_rank(near, far) : make_low_rank(far, near);
+}
+
+LowRank normalized_decomposition(const Matrix& m) {
+  LowRank result{1, std::vector<double>(m.rows), std::vector<double>(m.columns)};
+  std::size_t counted = 0;
+  for (std::size_t r = 0; r < m.rows; ++r) {
+    double norm = 0;
+    for (std::size_t c = 0; c < m.columns; ++c) norm += std::abs(m(r, c));
+    norm /= static_cast<double>(m.columns);
+    result.u[r] = norm;
+    if (norm <= 0) continue;
+    ++counted;
+    for (std::size_t c = 0; c < m.columns; ++c) result.v[c] += m(r, c) / norm;
+  }
+  for (double& v : result.v) v /= static_cast<double>(std::max<std::size_t>(counted, 1));
+  return result;
+}
+
+LowRank nonnegative_factors(const Matrix& m, std::span<const double> weights, std::size_t terms,
+                            int iterations, std::uint64_t seed) {
+  assert(weights.size() == m.values.size());
+  const ConstMap a = map(m), w(weights.data(), a.rows(), a.cols());
+  const auto kept = static_cast<Index>(std::min({terms, m.rows, m.columns}));
+  const double level = std::sqrt(std::max(a.mean(), 1e-300) / static_cast<double>(kept));
+  const double least = 1e-15 * level;  // no slow subnormal numbers, no 0 that could never rise again
+  Pcg32 random(seed);
+  const auto start = [&](Index rows) -> RowMajor {
+    return RowMajor::NullaryExpr(rows, kept, [&] { return level * (0.5 + random.uniform()); });
+  };
+  RowMajor u = start(a.rows()), v = start(a.cols());
+  const RowMajor wa = w.cwiseProduct(a);
+  const auto update = [&](RowMajor& x, const RowMajor& wanted, const RowMajor& found) {
+    x = (found.array() > 0).select(x.array() * wanted.array() / found.array(), x.array()).max(least);
+  };
+  for (int i = 0; i < iterations; ++i) {  // [Lee 2001, eq. 4]
+    RowMajor fitted = w.cwiseProduct(u * v.transpose());
+    update(u, wa * v, fitted * v);
+    fitted = w.cwiseProduct(u * v.transpose());
+    update(v, wa.transpose() * u, fitted.transpose() * u);
+  }
+  return make_low_rank(u, v);
+}
+
+double squared_error(const Matrix& m, const LowRank& factors, std::span<const double> weights) {
+  double sum = 0;
+  for (std::size_t r = 0; r < m.rows; ++r)
+    for (std::size_t c = 0; c < m.columns; ++c) {
+      double fitted = 0;
+      for (std::size_t k = 0; k < factors.terms; ++k)
+        fitted += factors.u[r * factors.terms + k] * factors.v[c * factors.terms + k];
+      const double error = m(r, c) - fitted;
+      sum += (weights.empty() ? 1 : weights[r * m.columns + c]) * error * error;
+    }
+  return sum;
+}
+
+}  // namespace burnish

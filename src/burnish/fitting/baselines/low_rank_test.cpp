@@ -1,0 +1,106 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <burnish/fitting/baselines/low_rank.h>
+#include <burnish/math/random.h>
+
+namespace burnish {
+namespace {
+
+/// A matrix of the given rank with entries u v, u and v uniform in [low, 1).
+Matrix random_matrix(std::size_t rows, std::size_t columns, std::size_t rank, double low,
+                     std::uint64_t seed) {
+  Pcg32 random(seed);
+  Matrix m{rows, columns, std::vector<double>(rows * columns)};
+  for (std::size_t k = 0; k < rank; ++k) {
+    std::vector<double> u(rows), v(columns);
+    for (double& x : u) x = low + (1 - low) * random.uniform();
+    for (double& x : v) x = low + (1 - low) * random.uniform();
+    for (std::size_t r = 0; r < rows; ++r)
+      for (std::size_t c = 0; c < columns; ++c) m.values[r * columns + c] += u[r] * v[c];
+  }
+  return m;
+}
+
+double sum_of_squares(const Matrix& m) {
+  double sum = 0;
+  for (const double x : m.values) sum += x * x;
+  return sum;
+}
+
+TEST(SingularValues, RecoverAMatrixOfTheirRank) {
+  for (const auto& [rows, columns] : {std::pair{30, 12}, {12, 30}, {5, 5}}) {
+    const Matrix m =
+        random_matrix(static_cast<std::size_t>(rows), static_cast<std::size_t>(columns), 3, -1, 1);
+    EXPECT_LT(squared_error(m, singular_values(m, 3)), 1e-14 * sum_of_squares(m));
+    EXPECT_GT(squared_error(m, singular_values(m, 2)), 1e-4 * sum_of_squares(m));
+  }
+}
+
+TEST(SingularValues, ErrorFallsWithEveryTermToZero) {
+  const Matrix m = random_matrix(20, 8, 8, -1, 2);
+  double last = sum_of_squares(m);
+  for (std::size_t terms = 1; terms <= 8; ++terms) {
+    const double error = squared_error(m, singular_values(m, terms));
+    EXPECT_LT(error, last);
+    last = error;
+  }
+  EXPECT_LT(last, 1e-14 * sum_of_squares(m));
+  EXPECT_EQ(singular_values(m, 100).terms, 8u);
+}
+
+TEST(SingularValues, OfZeroAreZero) {
+  const LowRank f = singular_values({4, 3, std::vector<double>(12)}, 2);
+  EXPECT_TRUE(std::all_of(f.u.begin(), f.u.end(), [](double x) { return x == 0; }));
+}
+
+TEST(NormalizedDecomposition, IsExactForRankOneAndPositiveForPositive) {
+  const Matrix one = random_matrix(9, 14, 1, 0.1, 3);
+  EXPECT_LT(squared_error(one, normalized_decomposition(one)), 1e-24 * sum_of_squares(one));
+  const Matrix three = random_matrix(9, 14, 3, 0.1, 4);
+  const LowRank f = normalized_decomposition(three);
+  for (const double x : f.u) EXPECT_GT(x, 0);
+  for (const double x : f.v) EXPECT_GT(x, 0);
+  // no better than the best of rank one
+  EXPECT_GE(squared_error(three, f), squared_error(three, singular_values(three, 1)));
+}
+
+TEST(NonnegativeFactors, AreNotNegativeAndNeverGetWorse) {
+  const Matrix m = random_matrix(16, 20, 5, 0, 5);
+  Pcg32 random(6);
+  std::vector<double> weights(m.values.size());
+  for (double& w : weights) w = random.uniform();
+  double last = std::numeric_limits<double>::infinity();
+  for (const int iterations : {1, 3, 10, 30, 100}) {
+    const LowRank f = nonnegative_factors(m, weights, 3, iterations, 1);
+    for (const double x : f.u) EXPECT_GE(x, 0);
+    for (const double x : f.v) EXPECT_GE(x, 0);
+    const double error = squared_error(m, f, weights);
+    EXPECT_LT(error, last);
+    last = error;
+  }
+}
+
+TEST(NonnegativeFactors, ApproachAPositiveMatrixOfTheirRank) {
+  const Matrix m = random_matrix(16, 20, 2, 0, 7);
+  const std::vector<double> weights(m.values.size(), 1.0);
+  EXPECT_LT(squared_error(m, nonnegative_factors(m, weights, 2, 3000, 1)), 1e-4 * sum_of_squares(m));
+}
+
+TEST(NonnegativeFactors, IgnoreEntriesWithoutWeight) {
+  Matrix m = random_matrix(10, 10, 1, 0.2, 8);
+  const Matrix clean = m;
+  std::vector<double> weights(m.values.size(), 1.0);
+  for (std::size_t i = 0; i < m.values.size(); i += 7) {
+    m.values[i] = 100;
+    weights[i] = 0;
+  }
+  EXPECT_LT(squared_error(clean, nonnegative_factors(m, weights, 1, 200, 1)), 1e-12 * sum_of_squares(clean));
+}
+
+}  // namespace
+}  // namespace burnish

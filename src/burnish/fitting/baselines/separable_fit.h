@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string_view>
+
+#include <burnish/factors/separable_brdf.h>
+#include <burnish/fitting/baselines/pair_grid.h>
+#include <burnish/metrics/error_figures.h>
+
+namespace burnish {
+
+/// How a resampled BRDF is split into tables.
+enum class Decomposition {
+  svd,  ///< singular values, terms of both signs: least mean square [Kautz 1999]
+  nd,   ///< normalized decomposition, one positive term in one pass [Kautz 1999]
+  nmf,  ///< nonnegative factors, weighted towards dark values [Lawrence 2004]
+};
+
+std::string_view to_string(Decomposition method) noexcept;
+
+/// Which tables the channels share.
+enum class Coupling { none, u, v };
+
+/// Decomposes one grid into `terms` terms (nd: 1) and rounds them to half floats. `terms` is cut to what the
+/// matrix has.
+SeparableBrdf decompose(const PairGrid& grid, Decomposition method, Coupling coupling, std::size_t terms);
+
+struct SeparableOptions {
+  std::size_t budget = 2640;  ///< bytes
+  std::uint64_t seed = 1;
+  int image_size = 64;                                 ///< of the lit spheres that layouts are compared by
+  std::function<void(double fraction)> progress = {};  ///< called with rising shares of the work
+};
+
+struct SeparableFit {
+  SeparableBrdf brdf;
+  std::size_t tried = 0;  ///< layouts compared
+};
+
+/// The decomposition of at most `budget` bytes that makes the best pictures (psnr of small lit
+/// spheres), found by hill climbing over how the coordinates are split between u and v, sizes, terms and
+/// shared channels. Isotropic sources are split as θ_h | (θ_d, φ_d), (θ_h, θ_d) | φ_d, θ_d | (θ_h, φ_d);
+/// anisotropic ones, on disks of h and d, as h | d and (h, θ_d) | φ_d. The source should be reciprocal: the
+/// result is. Deterministic. Throws Error if no layout fits the budget or the source knows nothing.
+SeparableFit fit_separable(BrdfRef source, Decomposition method, const SeparableOptions& options);
+
+/// What the negative values of a sum of signed terms cost, measured on the pairs and pictures of a Scorer.
+/// Three ways to be rid of them: the sum clamped at 0 (what SeparableBrdf does), every table clamped at 0
+/// (unsigned textures without a bias), and a constant added that lifts the sum above 0.
+struct NegativeLobes {
+  double negative_share = 0;  ///< share of pairs and channels whose sum is below 0
+  double bias = 0;            ///< what must be added to f, largest channel, 1/sr
+  ErrorFigures sum_clamped, tables_clamped, biased;
+};
+
+NegativeLobes negative_lobes(const SeparableBrdf& brdf, const Scorer& scorer);
+
+}  // namespace burnish

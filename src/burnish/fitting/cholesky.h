@@ -1,0 +1,15 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace burnish {
+
+/// x := matrix^-1 x of a symmetric positive definite matrix of which the lower triangle counts and is
+/// replaced by its factor. Zero where rounding made the matrix indefinite. By LAPACK.
+void solve_in_place(Eigen::MatrixXd& matrix, Eigen::VectorXd& x);
+
+/// Replaces such a matrix by the upper triangular U with U^T U = matrix^-1; false where rounding made it
+/// indefinite. What stands below the diagonal is meaningless.
+bool factorize_inverse(Eigen::MatrixXd& matrix);
+
+}  // namespace burnish
