@@ -1,13 +1,14 @@
 # make demo   installs packages, builds, and takes a measurement to two textures (INPUT=file for your own)
 # make test   installs packages, builds with sanitizers and optimized, runs every test
+# make python the Python package in build/venv, tested
 # make build  the command line at build/release/apps/burnish/burnish
 # make bench, make fuzz, make report, make sampling-report, make hw-report, make hw-exhaustive, make format: see
 # docs/developing.md
-.PHONY: demo test build deps bench fuzz report sampling-report hw-report hw-exhaustive format format-check
+.PHONY: demo test build python deps bench fuzz report sampling-report hw-report hw-exhaustive format format-check
 JOBS ?= $(shell nproc)
 BURNISH := build/release/apps/burnish/burnish
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
-SOURCES = $(shell find src apps tests examples -name '*.h' -o -name '*.cpp')
+SOURCES = $(shell find src apps tests examples python -name '*.h' -o -name '*.cpp')
 INPUT ?=
 OUT ?= out/demo
 FUZZ_SECONDS ?= 60
@@ -17,7 +18,11 @@ deps:
 	  dpkg-query -W -f '$${Status}' $$p 2>/dev/null | grep -q 'ok installed' || echo $$p; done); \
 	if [ -n "$$missing" ]; then \
 	  echo "Installing: $$missing"; \
-	  $(SUDO) apt-get update -qq && DEBIAN_FRONTEND=noninteractive $(SUDO) apt-get install -y -qq --no-install-recommends $$missing > /dev/null; \
+	  export DEBIAN_FRONTEND=noninteractive; \
+	  $(SUDO) apt-get update -qq && $(SUDO) apt-get install -y -qq --no-install-recommends $$missing > /dev/null || \
+	  for p in $$missing; do \
+	    $(SUDO) apt-get install -y -qq --no-install-recommends $$p > /dev/null || echo "Not available here: $$p"; \
+	  done; \
 	fi
 
 build: deps
@@ -33,6 +38,10 @@ test: deps format-check
 	  cmake --build --preset $$preset -j $(JOBS) && \
 	  ctest --preset $$preset -j $(JOBS) || exit 1; \
 	done
+	@python/check.sh --skip-offline
+
+python: build
+	@python/check.sh
 
 bench: deps
 	@cmake --preset bench > /dev/null

@@ -1,23 +1,17 @@
-#include <algorithm>
 #include <chrono>
+#include <functional>
+#include <map>
 #include <memory>
-#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <burnish/factors/model_file.h>
 #include <burnish/file.h>
-#include <burnish/fitting/cross_validation.h>
-#include <burnish/fitting/energy.h>
-#include <burnish/fitting/log_error.h>
+#include <burnish/fitting/fit.h>
 #include <burnish/math/parallel.h>
-#include <burnish/metrics/error_figures.h>
-#include <burnish/reflectance/sample_source.h>
 
 #include "commands.h"
 #include "fit_baseline.h"
-#include "fit_lobes.h"
 #include "progress.h"
 #include "source_arguments.h"
 #include "usage.h"
@@ -26,74 +20,17 @@ namespace burnish::cli {
 
 namespace {
 
-// Scattered samples are few and noisy: they are fitted robustly, with the smoothness that predicts best.
-constexpr int kScatteredReweightings = 4;
-
-// Pairs drawn from a source that is a function.
-constexpr std::size_t kIsotropicSamples = 200'000, kAnisotropicSamples = 500'000;
-
-// Pairs that the fit did not see, for the error that is printed.
-constexpr std::size_t kHeldOutPairs = 20'000;
-
 struct Arguments {
   SourceArguments source;
-  std::string out, method, model = "pqp", smooth = "default", format;
-  LobesArguments lobes;
-  std::vector<std::string> tables;
-  std::size_t samples = 0;
-  std::uint64_t seed = 1;
-  int reweightings = -1, threads = 0;
-  double floor = HomomorphicOptions{}.floor;
-  bool conserve_energy = false, json = false;
+  FitOptions options;
+  std::string out, method, loss = "image", smooth = "default", format;
+  int threads = 0;
+  bool no_symmetrize = false, json = false;
 };
 
 // File names need not be UTF-8.
 std::string dump(const nlohmann::ordered_json& json, int indent) {
   return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-}
-
-bool has_disk(const ModelSpec& spec) {
-  for (const ModelSpec::TableSpec& table : spec.tables)
-    if (table.layout.shape == TableShape::disk) return true;
-  return false;
-}
-
-/// What is fitted: the source's own samples where it has some, else pairs drawn from it. The samples may
-/// refer to the symmetrized source beside them: it stays where it was made.
-struct FitInput {
-  FitInput() = default;
-  FitInput(const FitInput&) = delete;
-
-  std::optional<SymmetrizedBrdf> symmetrized;
-  SampleSource samples;
-};
-
-void make_input(const Source& source, const Arguments& arguments, const ModelSpec& spec, FitInput& input) {
-  const bool symmetrize = !arguments.lobes.no_symmetrize;
-  if (const Samples* samples = source.samples()) {
-    input.samples = from_samples(*samples, symmetrize);
-  } else if (const auto* table = std::get_if<HalfDiffTable>(&source.brdf)) {
-    input.samples = from_table(*table, symmetrize, has_disk(spec));
-  } else {
-    const BrdfRef brdf = source.ref();
-    const std::size_t count = arguments.samples > 0 ? arguments.samples
-                              : brdf.isotropic()    ? kIsotropicSamples
-                                                    : kAnisotropicSamples;
-    if (symmetrize) input.symmetrized.emplace(brdf);
-    input.samples =
-        from_brdf(symmetrize ? BrdfRef(*input.symmetrized) : brdf, count, arguments.seed, has_disk(spec));
-  }
-}
-
-HomomorphicOptions make_options(const Source& source, const Arguments& arguments) {
-  HomomorphicOptions options;
-  options.floor = arguments.floor;
-  if (!arguments.format.empty()) options.format = parse_table_format(arguments.format);
-  options.reweightings = arguments.reweightings >= 0 ? arguments.reweightings
-                         : source.samples()          ? kScatteredReweightings
-                                                     : 0;
-  options.progress = progress_bar("fitting");
-  return options;
 }
 
 double parse_smooth(const std::string& text) {
@@ -103,99 +40,46 @@ double parse_smooth(const std::string& text) {
   return smooth;
 }
 
-/// The paper's fit: one lobe, log-linear.
-FactoredBrdf fit_one(const Source& source, ModelSpec spec, const Arguments& arguments,
-                     nlohmann::ordered_json& notes) {
-  FitInput input;
-  make_input(source, arguments, spec, input);
-  HomomorphicOptions options = make_options(source, arguments);
-  std::optional<double> cross_validated;
-  if (arguments.smooth == "auto" || (arguments.smooth == "default" && source.samples())) {
-    const std::vector<SmoothTrial> trials = choose_smoothness(input.samples, spec, options);
-    options.smooth = trials.front().smooth;
-    for (std::size_t t = 0; t < spec.tables.size(); ++t)
-      spec.tables[t].smooth_share = trials.front().shares[t];
-    if (input.samples.distinct <= kManySamples) cross_validated = trials.front().error;
-  } else if (arguments.smooth != "default") {
+// One bar a stage; nothing where standard error is no terminal.
+std::function<void(std::string_view, double)> progress_bars() {
+  if (!progress_bar("")) return nullptr;
+  return [bars = std::map<std::string, std::function<void(double)>, std::less<>>()](std::string_view stage,
+                                                                                    double fraction) mutable {
+    auto bar = bars.find(stage);
+    if (bar == bars.end()) bar = bars.emplace(stage, progress_bar(std::string(stage))).first;
+    bar->second(fraction);
+  };
+}
+
+FitOptions fit_options(const Arguments& arguments, bool isotropic) {
+  FitOptions options = arguments.options;
+  options.symmetrize = !arguments.no_symmetrize;
+  options.loss = arguments.loss == "relative"  ? FitLoss::relative
+                 : arguments.loss == "log_cos" ? FitLoss::log_cos
+                                               : FitLoss::image;
+  if (!arguments.format.empty()) options.format = parse_table_format(arguments.format);
+  options.cross_validate = arguments.smooth == "auto";
+  if (arguments.smooth != "auto" && arguments.smooth != "default")
     options.smooth = parse_smooth(arguments.smooth);
-  }
-  HomomorphicFit result = fit_homomorphic(input.samples, spec, options);
-  const HomomorphicSummary& summary = result.summary;
-  notes["samples"] = summary.samples;
-  notes["smooth"] = options.smooth;
-  notes["floor"] = options.floor;
-  notes["reweightings"] = summary.reweightings;
-  notes["rms_log_before"] = summary.error_before;
-  notes["rms_log_after"] = summary.error_after;
-  notes["iterations"] = summary.iterations;
-  notes["stop_reason"] = summary.stop_reason;
-  for (const ModelSpec::TableSpec& table : spec.tables)
-    if (table.smooth_share != 1) notes["smooth_shares"][table.name] = table.smooth_share;
-  if (source.samples())
-    notes["relative"] = std::expm1(log_error(input.samples, result.brdf, options.error_floor).mean());
-  if (cross_validated) notes["relative_cross_validated"] = std::expm1(*cross_validated);
-  return std::move(result.brdf);
-}
-
-FactoredBrdf fit_model(const Source& source, const Arguments& arguments, nlohmann::ordered_json& notes) {
-  const bool isotropic = source.ref().isotropic();
-  LobesArguments lobes = arguments.lobes;
-  lobes.seed = arguments.seed;
-  lobes.format = arguments.format;
-  if (arguments.smooth != "default" && arguments.smooth != "auto")
-    lobes.smooth = parse_smooth(arguments.smooth);
-  if (lobes.budget > 0) {
-    // few scattered samples do not carry several lobes
-    if (source.samples()) return fit_one(source, one_lobe_spec(source, lobes), arguments, notes);
-    return fit_to_budget(source, lobes, notes);
-  }
-  ModelSpec spec = usage([&] { return parse_model_spec(arguments.model, arguments.tables, isotropic); });
-  if (spec.lobes.size() == 1) return fit_one(source, std::move(spec), arguments, notes);
-  return fit_several_lobes(source, spec, lobes, notes);
-}
-
-// Takes out of the model what it reflects too much; `notes` says what that cost.
-void conserve(BrdfRef reference, const FigureOptions& figures, FactoredBrdf& brdf,
-              nlohmann::ordered_json& notes) {
-  EnergyConservation kept = conserve_energy(brdf);
-  nlohmann::ordered_json& note = notes["conserve_energy"];
-  note = {{"largest_albedo_before", std::ranges::max(kept.largest_before)},
-          {"largest_albedo_after", std::ranges::max(kept.largest_after)},
-          {"iterations", kept.iterations}};
-  const Scorer scorer(reference, figures);
-  for (const auto& [when, model] : {std::pair("before", &brdf), std::pair("after", &kept.brdf)}) {
-    const ErrorFigures error = scorer.score(*model);
-    note[fmt::format("psnr_{}", when)] = error.psnr;
-    note[fmt::format("relative_{}", when)] = error.relative;
-  }
-  brdf = std::move(kept.brdf);
+  if (options.budget == 0) usage([&] { return parse_model_spec(options.model, options.tables, isotropic); });
+  options.progress = progress_bars();
+  return options;
 }
 
 nlohmann::ordered_json fit(const Arguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const ThreadLimit limit(arguments.threads);
   const Source source = arguments.source.open();
-  nlohmann::ordered_json notes{{"source", source.name},
-                               {"source_format", source.findings.format},
-                               {"symmetrized", !arguments.lobes.no_symmetrize}};
-  FactoredBrdf brdf = fit_model(source, arguments, notes);
-  // After rounding to the table format, on pairs that were not fitted.
-  std::optional<SymmetrizedBrdf> symmetrized;
-  if (!arguments.lobes.no_symmetrize) symmetrized.emplace(source.ref());
-  const BrdfRef reference = symmetrized ? BrdfRef(*symmetrized) : source.ref();
-  const FigureOptions figures{.count = kHeldOutPairs, .seed = arguments.seed + 1, .image_size = 128};
-  if (arguments.conserve_energy) conserve(reference, figures, brdf, notes);
-  if (!source.samples()) {
-    const ErrorFigures error = error_figures(reference, brdf, figures);
-    notes["psnr"] = std::isfinite(error.psnr) ? nlohmann::ordered_json(error.psnr) : nlohmann::ordered_json();
-    notes["ssim"] = error.ssim;
-    notes["relative"] = error.relative;
-    notes["rms_log"] = error.rms_log;
-    notes["log_cos"] = error.log_cos;
-  }
-  write_then_rename(
-      arguments.out,
-      format_model({.brdf = brdf, .lambda_nm = source.findings.lambda_nm, .notes = dump(notes, -1)}));
+  const Model model = burnish::fit({.brdf = source.ref(),
+                                    .name = source.name,
+                                    .format = source.findings.format,
+                                    .lambda_nm = source.findings.lambda_nm,
+                                    .samples = source.samples(),
+                                    .table = std::get_if<HalfDiffTable>(&source.brdf)},
+                                   fit_options(arguments, source.ref().isotropic()));
+  write_then_rename(arguments.out, format_model(model));
+  const FactoredBrdf& brdf = model.brdf;
+  auto notes = nlohmann::ordered_json::parse(model.notes);
   notes["output"] = arguments.out;
   notes["model"] = model_expression(brdf);
   notes["bytes"] = brdf.bytes();
@@ -252,10 +136,28 @@ nlohmann::ordered_json fit_by_method(const Arguments& arguments) {
   const ThreadLimit limit(arguments.threads);
   return fit_baseline(arguments.source.open(), {.method = arguments.method,
                                                 .out = arguments.out,
-                                                .budget = arguments.lobes.budget,
-                                                .samples = arguments.samples,
-                                                .seed = arguments.seed,
-                                                .symmetrize = !arguments.lobes.no_symmetrize});
+                                                .budget = arguments.options.budget,
+                                                .samples = arguments.options.samples,
+                                                .seed = arguments.options.seed,
+                                                .symmetrize = !arguments.no_symmetrize});
+}
+
+void add_lobes_arguments(CLI::App& verb, Arguments& arguments) {
+  FitOptions& options = arguments.options;
+  verb.add_option("--budget", options.budget,
+                  "bytes: fits the best model of several lobes that this many hold; K and M count as 1024s")
+      ->transform(CLI::AsSizeValue(false));
+  verb.add_option("--lobes", options.lobes, "of --budget (default: as many as serve it best)")
+      ->check(CLI::Range(1, 64))
+      ->needs("--budget");
+  verb.add_option(
+          "--loss", arguments.loss,
+          "what several lobes are refined for: pictures at every exposure beside both means, or one mean")
+      ->check(CLI::IsMember({"image", "relative", "log_cos"}))
+      ->capture_default_str();
+  verb.add_flag("--search", options.search,
+                "of --budget: search factors, projections, warps and sizes first (up to a minute)")
+      ->needs("--budget");
 }
 
 }  // namespace
@@ -268,15 +170,16 @@ void add_fit_command(CLI::App& app) {
       "          burnish fit paint.binary -o paint.json --method svd --budget 2700");
   auto arguments = std::make_shared<Arguments>();
   add_source_arguments(*verb, arguments->source);
-  add_lobes_arguments(*verb, arguments->lobes);
+  FitOptions& options = arguments->options;
+  add_lobes_arguments(*verb, *arguments);
   verb->add_option("-o,--output", arguments->out, "model file to write (OpenEXR; JSON with --method)")
       ->required();
   add_method_argument(*verb, arguments->method);
   verb->add_option(
-          "--model", arguments->model,
+          "--model", options.model,
           "product of tables over projections: pqp, pqpr, or such as \"p(wo) q(h) s(wi+wo+0.5n) p(wi)\"")
       ->capture_default_str();
-  verb->add_option("--table", arguments->tables,
+  verb->add_option("--table", options.tables,
                    "size and spacing of a table: NAME=SIZE[,warp][,shared][,format], SIZE N (1-D), NxN "
                    "(hemisphere) or "
                    "NxM; warp identity, power:P or rational:K; format as --format")
@@ -285,24 +188,24 @@ void add_fit_command(CLI::App& app) {
       "--smooth", arguments->smooth,
       "smoothness of the tables: a number >= 0, or auto (cross-validation; the default for scattered "
       "samples)");
-  verb->add_option("--floor", arguments->floor, "added to every value before its logarithm is taken, 1/sr")
+  verb->add_option("--floor", options.floor, "added to every value before its logarithm is taken, 1/sr")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  verb->add_option("--reweightings", arguments->reweightings,
+  verb->add_option("--reweightings", options.reweightings,
                    "passes towards the mean absolute error (default: 4 for scattered samples, else 0)")
       ->check(CLI::Range(0, 100));
-  verb->add_option("--samples", arguments->samples, "pairs drawn from a source that is a function")
+  verb->add_option("--samples", options.samples, "pairs drawn from a source that is a function")
       ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}));
-  verb->add_option("--seed", arguments->seed, "of the drawn pairs")->capture_default_str();
+  verb->add_option("--seed", options.seed, "of the drawn pairs")->capture_default_str();
   verb->add_option(
           "--format", arguments->format,
           "of the stored tables (default: half; with --budget and three channels rgb9e5, which leaves shared "
           "tables half)")
       ->check(CLI::IsMember({"half", "float", "rgb9e5", "unorm8"}));
   verb->add_option("--threads", arguments->threads, "at most this many; 0: all")->check(CLI::Range(0, 1024));
-  verb->add_flag("--no-symmetrize", arguments->lobes.no_symmetrize,
+  verb->add_flag("--no-symmetrize", arguments->no_symmetrize,
                  "fit f(wi, wo) as it is, not its reciprocal part");
-  verb->add_flag("--conserve-energy", arguments->conserve_energy,
+  verb->add_flag("--conserve-energy", options.conserve_energy,
                  "damp the model where it reflects more than it receives, and say what that cost");
   verb->add_flag("--json", arguments->json, "print the summary as JSON");
   verb->callback([arguments] {

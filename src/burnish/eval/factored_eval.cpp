@@ -432,14 +432,15 @@ void eval_block(const FactoredPlan& plan, const DirectionPointers& in, std::size
                                           : eval_group<3>(plan, group, in, stride, count, scratch, f, plane);
 }
 
-void eval_directions(const FactoredPlan& plan, DirectionPointers in, std::size_t count, float* f) {
+void eval_directions(const FactoredPlan& plan, DirectionPointers in, std::size_t count, float* f,
+                     std::size_t plane) {
   Scratch scratch;
   constexpr std::size_t kPositions = FactoredPlan::kMostSlots * kLanes;
   const std::size_t slots = std::max<std::size_t>(plan.slots, 1);
   const std::size_t stride = std::min(kMostBlock, kPositions / slots / kLanes * kLanes);
   const std::size_t whole = count / kLanes * kLanes;
   for (in.first = 0; in.first < whole; in.first += stride)
-    eval_block(plan, in, stride, std::min(stride, whole - in.first), scratch, f + in.first, count);
+    eval_block(plan, in, stride, std::min(stride, whole - in.first), scratch, f + in.first, plane);
   if (whole == count) return;
   // the rest, filled up to a vector with the first of them
   float rest[6][kLanes];
@@ -449,7 +450,7 @@ void eval_directions(const FactoredPlan& plan, DirectionPointers in, std::size_t
     if (whole + 1 < count) std::copy(from + 1, in.component[k] + count, rest[k] + 1);
   }
   eval_block(plan, {{rest[0], rest[1], rest[2], rest[3], rest[4], rest[5]}}, stride, count - whole, scratch,
-             f + whole, count);
+             f + whole, plane);
 }
 
 }  // namespace
@@ -474,12 +475,17 @@ double FactoredEvaluator::rounding_bound() const noexcept {
 }
 
 void FactoredEvaluator::eval(const DirectionSpans& d, std::span<float> f) const noexcept {
+  eval(d, f, d.size());
+}
+
+void FactoredEvaluator::eval(const DirectionSpans& d, std::span<float> f, std::size_t plane) const noexcept {
   const std::size_t count = d.size();
   assert(d.wi_y.size() == count && d.wi_z.size() == count && d.wo_x.size() == count &&
-         d.wo_y.size() == count && d.wo_z.size() == count && f.size() == count * plan_->channels);
+         d.wo_y.size() == count && d.wo_z.size() == count && plane >= count &&
+         f.size() == (plan_->channels - 1) * plane + count);
   HWY_DYNAMIC_DISPATCH(eval_directions)
   (*plan_, {d.wi_x.data(), d.wi_y.data(), d.wi_z.data(), d.wo_x.data(), d.wo_y.data(), d.wo_z.data()}, count,
-   f.data());
+   f.data(), plane);
 }
 
 void FactoredEvaluator::eval(Vec3 wi, Vec3 wo, std::span<float> f) const noexcept {

@@ -39,6 +39,10 @@ class FactoredEvaluator {
   /// stored whole, where three interleaved channels would need shuffles that differ from width to width.
   void eval(const DirectionSpans& directions, std::span<float> f) const noexcept;
 
+  /// The same for a part of larger planes: channel c of pair i is f[c * plane + i], plane >=
+  /// directions.size(), and f ends with the last value.
+  void eval(const DirectionSpans& directions, std::span<float> f, std::size_t plane) const noexcept;
+
   /// One pair; f has channels() entries.
   void eval(Vec3 wi, Vec3 wo, std::span<float> f) const noexcept;
 

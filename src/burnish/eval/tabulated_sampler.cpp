@@ -235,6 +235,13 @@ void TabulatedSampler::pdf(const DirectionSpans& in, std::span<float> pdf) const
   HWY_DYNAMIC_DISPATCH(run_density)(tables_->isotropic, tables_->view, from, to, in.size());
 }
 
+SamplerTables TabulatedSampler::tables() const noexcept {
+  const SamplerView& view = tables_->view;
+  return {tables_->isotropic, view.sharpness, view.share, view.xx,      view.xy,          view.yy,
+          view.thetas,        view.phis,      view.rows,  view.columns, view.theta_scale, tables_->row_edges,
+          tables_->cell_edges};
+}
+
 std::size_t TabulatedSampler::bytes() const noexcept {
   return sizeof(std::uint16_t) * (tables_->row_edges.size() + tables_->cell_edges.size());
 }

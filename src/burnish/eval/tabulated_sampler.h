@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 
@@ -33,6 +34,18 @@ struct SamplerOptions {
 /// The sizes that docs/sampling.md recommends.
 SamplerOptions default_sampler_options(bool isotropic) noexcept;
 
+/// A sampler's tables, for programs that draw by themselves (a shader, a tracer that compiles its own code)
+/// with the formulas of visible_half-inl.h. Valid as long as the sampler or a copy of it.
+struct SamplerTables {
+  bool isotropic = true;
+  double sharpness = 0, share = 0, xx = 1, xy = 0, yy = 1;  ///< as in VisibleHalfMap
+  int thetas = 0, phis = 0, rows = 0, columns = 0;          ///< as in SamplerOptions
+  double theta_scale = 0;                                   ///< rings of wo per tan(theta_o / 2)
+  /// Cumulative masses in 1/65536: of the rows of a slice, and of the cells of a row; slices and rows one
+  /// after the other, an entry 0 at the end.
+  std::span<const std::uint16_t> row_edges, cell_edges;
+};
+
 /// Draws directions nearly in proportion to f_r cos(theta_i), of all lobes at once: what it reflects towards
 /// wo is integrated over cells of half vectors when it is made, and a draw is two searches in 16-bit tables
 /// and a closed map. Cells cover exactly the half vectors visible from wo whose mirror direction lies above
@@ -57,6 +70,7 @@ class TabulatedSampler {
   /// pdf[i] of pair i; directions as unit vectors.
   void pdf(const DirectionSpans& directions, std::span<float> pdf) const noexcept;
 
+  SamplerTables tables() const noexcept;
   /// Bytes of the tables.
   std::size_t bytes() const noexcept;
 

@@ -180,7 +180,11 @@ SearchResult search_plan(const TrainingSet& set, const LobePlan& start, const Se
   const TrainingSet grey = mean_of_channels(set);
   const TrainingSet fitted = part_of(grey, 0, kFit), judged = part_of(grey, kFit / 2, kFit);
   RefineOptions refinement = options.refine;
-  refinement.progress = {};
+  const auto caller = std::this_thread::get_id();
+  double share_done = 0;  // reported again at every step, so that a callback can end the search
+  refinement.progress = [&](double) {
+    if (options.progress && std::this_thread::get_id() == caller) options.progress(share_done);
+  };
 
   // A plan as far as it was tried. Where the lobes stay, it starts from the functions that are known.
   struct Candidate {
@@ -216,9 +220,9 @@ SearchResult search_plan(const TrainingSet& set, const LobePlan& start, const Se
     std::vector<double> values(changes.size(), INFINITY);
     std::atomic<std::size_t> finished = 0;
     const auto report = [&](double share) {
-      if (options.progress) options.progress((round + share) / kMostRounds);
+      share_done = (round + share) / kMostRounds;
+      if (options.progress) options.progress(share_done);
     };
-    const auto caller = std::this_thread::get_id();
     for_each_chunk(changes.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
       if (const auto changed = changes[k].apply(best.plan)) values[k] = fit(*changed, &best).objective;
       const std::size_t now = ++finished;

@@ -11,7 +11,7 @@ namespace burnish {
 struct SearchOptions {
   std::size_t bytes = 2700, texel_bytes = 6;
   RefineOptions refine;  ///< of every trial
-  /// Called with rising shares of the work expected, from the calling thread.
+  /// Called with shares of the work expected that never fall, from the calling thread.
   std::function<void(double fraction)> progress;
 };
 

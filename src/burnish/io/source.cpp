@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <burnish/factors/baseline_file.h>
-#include <burnish/factors/model_file.h>
 #include <burnish/io/astm.h>
 #include <burnish/io/cornell.h>
 #include <burnish/io/csv.h>
@@ -29,18 +28,6 @@ Source from_table(const FileBytes& file, File parsed) {
 
 Source from_samples(const FileBytes& file, SampleFile parsed) {
   return {file.name, ScatteredBrdf(std::move(parsed.samples)), std::move(parsed.findings)};
-}
-
-Source from_model(const FileBytes& file) {
-  Model model = parse_model(file);
-  Findings findings;
-  findings.format = "burnish model";
-  findings.description = model_expression(model.brdf);
-  findings.lambda_nm = std::move(model.lambda_nm);
-  findings.conventions = {"notes of the fit: " + model.notes};
-  for (const Table& table : model.brdf.tables()) findings.sample_count += table.layout.node_count();
-  findings.theta_i_max = findings.theta_o_max = kHalfPi;
-  return {file.name, std::move(model.brdf), std::move(findings)};
 }
 
 Source from_baseline(const FileBytes& file) {
@@ -97,7 +84,7 @@ std::optional<std::size_t> Source::bytes() const noexcept {
 
 Source parse_source(const FileBytes& file, const OpenOptions& options) {
   // Binary formats first: their first bytes are unmistakable.
-  if (looks_like_exr(file.bytes)) return from_model(file);
+  if (looks_like_exr(file.bytes)) return to_source(file.name, parse_model(file));
   if (looks_like_rgl(file.bytes)) return from_table(file, parse_rgl(file, options));
   if (looks_like_mbsdf(file.bytes)) return from_table(file, parse_mbsdf(file, options));
   if (looks_like_merl(file.bytes)) return from_table(file, parse_merl(file, options));
@@ -114,6 +101,18 @@ Source parse_source(const FileBytes& file, const OpenOptions& options) {
       "a MERL, RGL, MBSDF, Zemax, Klems, ASTM E1392, Cornell or CSV measurement, a neural encoding, a "
       "baseline or a burnish model",
       fmt::format("something that starts with {}", in_quotes(text.substr(0, 16))));
+}
+
+Source to_source(const std::string& name, Model model) {
+  Findings findings;
+  findings.format = "burnish model";
+  findings.description = model_expression(model.brdf);
+  findings.lambda_nm = std::move(model.lambda_nm);
+  findings.conventions = {"notes of the fit: " + model.notes};
+  findings.notes = std::move(model.notes);
+  for (const Table& table : model.brdf.tables()) findings.sample_count += table.layout.node_count();
+  findings.theta_i_max = findings.theta_o_max = kHalfPi;
+  return {name, std::move(model.brdf), std::move(findings)};
 }
 
 Source open_source(const std::string& spec, const OpenOptions& options) {

@@ -7,6 +7,7 @@
 
 #include <burnish/factors/dgf_brdf.h>
 #include <burnish/factors/factored_brdf.h>
+#include <burnish/factors/model_file.h>
 #include <burnish/factors/separable_brdf.h>
 #include <burnish/file.h>
 #include <burnish/io/open_options.h>
@@ -47,5 +48,8 @@ Source open_source(const std::string& spec, const OpenOptions& options);
 
 /// The same for bytes in memory.
 Source parse_source(const FileBytes& file, const OpenOptions& options);
+
+/// A model as a source of that name.
+Source to_source(const std::string& name, Model model);
 
 }  // namespace burnish

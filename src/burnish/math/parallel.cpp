@@ -9,9 +9,13 @@ namespace burnish {
 
 void for_each_chunk(std::size_t count, std::size_t chunk_size,
                     const std::function<void(std::size_t, std::size_t, std::size_t)>& body) {
-  tbb::parallel_for(std::size_t{0}, chunk_count(count, chunk_size), [&](std::size_t chunk) {
-    body(chunk, chunk * chunk_size, std::min(count, (chunk + 1) * chunk_size));
-  });
+  // Isolated: an exception in an outer loop must not end the loops within its other chunks halfway, whose
+  // bodies would go on with what was not computed.
+  tbb::task_group_context context(tbb::task_group_context::isolated);
+  tbb::parallel_for(
+      std::size_t{0}, chunk_count(count, chunk_size),
+      [&](std::size_t chunk) { body(chunk, chunk * chunk_size, std::min(count, (chunk + 1) * chunk_size)); },
+      context);
 }
 
 ThreadLimit::ThreadLimit(int threads) {

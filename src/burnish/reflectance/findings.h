@@ -18,6 +18,7 @@ struct Findings {
   double most_negative = 0;             ///< the smallest of them before clamping, 1/sr
   std::vector<double> lambda_nm;        ///< wavelengths of the channels kept, or empty for grey and RGB
   std::string illuminant;  ///< how spectra became RGB: "equal energy", "D65"; empty if they did not
+  std::string notes;       ///< what a model says about its making, a JSON object; empty for anything else
   double theta_i_min = 0, theta_i_max = 0;  ///< polar angles covered by data, radians
   double theta_o_min = 0, theta_o_max = 0;
 };

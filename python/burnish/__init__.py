@@ -1,0 +1,36 @@
+"""BRDFs as a few small positive tables: read, fit, evaluate, sample and compare.
+
+    paint = burnish.open_source("paint.binary")
+    model = burnish.fit(paint, budget=2700)
+    f = model.eval(wi, wo)                 # (N, 3) arrays of unit vectors -> (N, channels), 1/sr
+    wi, pdf = model.sample_wi(wo, u)
+    print(burnish.error_figures(paint, model).psnr)
+    burnish.write_model("paint.exr", model)
+
+Directions are in the local frame of the surface: normal (0, 0, 1), tangent (1, 0, 0); wi points to the light,
+wo to the viewer. Functions are named as in C++ and on the command line; angles are radians.
+"""
+
+from ._burnish import (
+    Error,
+    ErrorFigures,
+    FactorUse,
+    Lobe,
+    Model,
+    Source,
+    Table,
+    ThreadLimit,
+    compare_models,
+    conserve_energy,
+    convert,
+    directional_albedo,
+    draw_pairs,
+    error_figures,
+    fit,
+    measure,
+    open_source,
+    render_sphere,
+    write_model,
+)
+
+__all__ = [name for name in dir() if not name.startswith("_")]

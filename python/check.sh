@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# Installs the Python package into build/venv and runs its tests against the command line of the release build.
+# With --skip-offline it says so and succeeds where PyPI cannot be reached.
+set -eu
+cd "$(dirname "$0")/.."
+venv=build/venv
+pip=("$venv/bin/python" -m pip --disable-pip-version-check --quiet --retries 1 --timeout 20)
+
+[ -x "$venv/bin/pip" ] || python3 -m venv "$venv"
+if ! "${pip[@]}" install --only-binary :all: -r python/requirements.txt; then
+  [ "${1:-}" = --skip-offline ] || exit 1
+  echo "python: SKIPPED: PyPI cannot be reached, so the Python package was neither built nor tested" >&2
+  exit 0
+fi
+# The compiler and flags of the release build: ccache has its objects.
+CXX=${CXX:-c++} "${pip[@]}" install --no-build-isolation --no-deps --force-reinstall \
+  -C cmake.define.BURNISH_WERROR=ON .
+exec "$venv/bin/python" -m pytest -q

@@ -1,0 +1,105 @@
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/variant.h>
+#include <nanobind/stl/vector.h>
+
+#include <burnish/error.h>
+#include <burnish/fitting/energy.h>
+#include <burnish/fitting/fit.h>
+
+#include "opened_brdf.h"
+
+namespace burnish::python {
+
+namespace {
+
+// Lets Ctrl-C end a fit: what is thrown here leaves it. `callback` is kept alive by the caller.
+std::function<void(std::string_view, double)> progress_of(nb::handle callback) {
+  return [callback](std::string_view stage, double fraction) {
+    const nb::gil_scoped_acquire acquired;
+    if (PyErr_CheckSignals() != 0) throw nb::python_error();
+    if (!callback.is_none()) callback(nb::str(stage.data(), stage.size()), fraction);
+  };
+}
+
+FitLoss parse_loss(const std::string& name) {
+  if (name == "image") return FitLoss::image;
+  if (name == "relative") return FitLoss::relative;
+  if (name == "log_cos") return FitLoss::log_cos;
+  throw Error("loss: expected image, relative or log_cos, found '" + name + "'");
+}
+
+OpenedModel* fit(const OpenedBrdf& source, const std::string& model, const std::vector<std::string>& tables,
+                 std::uint64_t budget, int lobes, bool search, const std::string& loss,
+                 const std::variant<std::monostate, double, std::string>& smooth,
+                 std::optional<int> reweightings, double floor, const std::optional<std::string>& format,
+                 std::size_t samples, std::uint64_t seed, bool symmetrize, bool conserve_energy,
+                 const nb::object& progress) {
+  FitOptions options{.model = model,
+                     .tables = tables,
+                     .budget = budget,
+                     .lobes = lobes,
+                     .search = search,
+                     .loss = parse_loss(loss),
+                     .reweightings = reweightings,
+                     .floor = floor,
+                     .samples = samples,
+                     .seed = seed,
+                     .symmetrize = symmetrize,
+                     .conserve_energy = conserve_energy,
+                     .progress = progress_of(progress)};
+  if (const auto* number = std::get_if<double>(&smooth)) options.smooth = *number;
+  if (const auto* word = std::get_if<std::string>(&smooth)) {
+    if (*word != "auto")
+      throw Error("smooth: expected None, \"auto\" or a number >= 0, found '" + *word + "'");
+    options.cross_validate = true;
+  }
+  if (format) options.format = parse_table_format(*format);
+  const nb::gil_scoped_release released;
+  const Source& from = source.source();
+  return new OpenedModel(from.name, burnish::fit({.brdf = source.ref(),
+                                                  .name = from.name,
+                                                  .format = from.findings.format,
+                                                  .lambda_nm = from.findings.lambda_nm,
+                                                  .samples = from.samples(),
+                                                  .table = std::get_if<HalfDiffTable>(&from.brdf)},
+                                                 options));
+}
+
+}  // namespace
+
+void bind_fitting(nb::module_& m) {
+  m.def(
+      "fit", &fit, nb::arg("source"), nb::kw_only(), nb::arg("model") = "pqp",
+      nb::arg("tables") = std::vector<std::string>(), nb::arg("budget") = 0, nb::arg("lobes") = 0,
+      nb::arg("search") = false, nb::arg("loss") = "image", nb::arg("smooth") = nb::none(),
+      nb::arg("reweightings") = nb::none(), nb::arg("floor") = HomomorphicOptions{}.floor,
+      nb::arg("format") = nb::none(), nb::arg("samples") = 0, nb::arg("seed") = 1,
+      nb::arg("symmetrize") = true, nb::arg("conserve_energy") = false, nb::arg("progress") = nb::none(),
+      nb::rv_policy::take_ownership,
+      "Fits a factored BRDF as `burnish fit` does.\n\n"
+      "model: product of tables over projections, \"pqp\", \"pqpr\" or such as\n"
+      "\"p(wo) q(h) r(theta_d) p(wi)\", several lobes joined by +; tables: sizes such as \"q=96\" or\n"
+      "\"p=16x16,identity\". budget: bytes, fits the best model of several lobes that they hold instead\n"
+      "(lobes: how many; search: look for factors and sizes first). loss: \"image\", \"relative\" or\n"
+      "\"log_cos\", what several lobes are refined for. smooth: number >= 0, \"auto\" (cross-validation) or\n"
+      "None. floor: 1/sr, added before logarithms are taken. format: \"half\", \"float\", \"rgb9e5\",\n"
+      "\"unorm8\". samples: pairs drawn from a source that is a function. symmetrize: fit the reciprocal "
+      "part.\n"
+      "conserve_energy: damp the model where it reflects more than it receives.\n\n"
+      "progress(stage, fraction) is called from this thread; what it raises ends the fit, and so does "
+      "Ctrl-C.\n"
+      "Model.notes says what was done and how far off the model is.");
+  m.def(
+      "conserve_energy",
+      [](const OpenedModel& model) {
+        const nb::gil_scoped_release released;
+        Model kept = to_model(model);
+        kept.brdf = conserve_energy(model.brdf()).brdf;
+        return new OpenedModel(model.source().name, std::move(kept));
+      },
+      nb::arg("model"), nb::rv_policy::take_ownership,
+      "The model damped where its directional albedo exceeds 1, reciprocal as it was.");
+}
+
+}  // namespace burnish::python

@@ -1,0 +1,165 @@
+#include <list>
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <burnish/metrics/albedo.h>
+#include <burnish/metrics/compare_report.h>
+#include <burnish/metrics/sphere_images.h>
+#include <burnish/reflectance/goniometer.h>
+
+#include "opened_brdf.h"
+#include "rows.h"
+
+namespace burnish::python {
+
+namespace {
+
+ErrorFigures error_figures(const OpenedBrdf& reference, const OpenedBrdf& model, std::size_t count,
+                           std::uint64_t seed, double floor, int image_size, bool symmetrize) {
+  const nb::gil_scoped_release released;
+  const Reciprocal a(reference, symmetrize), b(model, symmetrize);
+  return burnish::error_figures(a.ref(), b.ref(),
+                                {.count = count, .seed = seed, .floor = floor, .image_size = image_size});
+}
+
+nb::object compare_models(const OpenedBrdf& reference, const std::vector<const OpenedBrdf*>& models,
+                          std::size_t count, std::uint64_t seed, bool symmetrize,
+                          const std::optional<std::string>& report) {
+  std::string json;
+  {
+    const nb::gil_scoped_release released;
+    const Reciprocal made_reciprocal(reference, symmetrize);
+    std::list<Reciprocal> candidates;
+    std::vector<ComparedModel> compared;
+    for (const OpenedBrdf* model : models) {
+      const Source& source = model->source();
+      compared.push_back({.name = source.name,
+                          .brdf = candidates.emplace_back(*model, symmetrize).ref(),
+                          .bytes = source.bytes(),
+                          .note = source.findings.description});
+    }
+    const Scorer scorer(made_reciprocal.ref(), {.count = count, .seed = seed});
+    json = to_json(report ? write_report(*report, reference.source().name, scorer, compared)
+                          : burnish::compare_models(scorer, compared));
+  }
+  return from_json(json);
+}
+
+nb::object directional_albedo(const OpenedBrdf& source, const Array<const double>& wi) {
+  const Rows<const double> rows = rows_of<double>(wi, "wi", 3);
+  const std::size_t channels = static_cast<std::size_t>(source.ref().channels());
+  std::vector<double> albedo;
+  {
+    const nb::gil_scoped_release released;
+    for (std::size_t i = 0; i < rows.count; ++i) {
+      const Vec3 w{*rows.at(i, 0), *rows.at(i, 1), *rows.at(i, 2)};
+      if (!(w.z > 0 && std::abs(dot(w, w) - 1) < 0.02))
+        throw Error(
+            fmt::format("wi: expected unit vectors above the horizon, found ({}, {}, {})", w.x, w.y, w.z));
+      const DirectionalAlbedo at = burnish::directional_albedo(source.ref(), w);
+      albedo.insert(albedo.end(), at.albedo.begin(), at.albedo.end());
+    }
+  }
+  const nb::object array = to_numpy(std::move(albedo), {rows.count, channels});
+  return rows.one ? nb::object(array[0]) : array;
+}
+
+template <class T>
+nb::object to_numpy_image(BasicImage<T> image) {
+  return to_numpy(std::move(image.pixels),
+                  {static_cast<std::size_t>(image.height), static_cast<std::size_t>(image.width),
+                   static_cast<std::size_t>(image.channels)});
+}
+
+nb::tuple pair_arrays(const std::vector<DirectionPair>& pairs) {
+  std::vector<double> wi, wo;
+  for (const auto& [i, o] : pairs) {
+    wi.insert(wi.end(), {i.x, i.y, i.z});
+    wo.insert(wo.end(), {o.x, o.y, o.z});
+  }
+  return nb::make_tuple(to_numpy(std::move(wi), {pairs.size(), 3}),
+                        to_numpy(std::move(wo), {pairs.size(), 3}));
+}
+
+void bind_error_figures(nb::module_& m) {
+  nb::class_<ErrorFigures>(m, "ErrorFigures", "How far a model is from a reference.")
+      .def_ro("log_cos", &ErrorFigures::log_cos, "mean |ln(1 + f cos theta_i) - ln(1 + f^ cos theta_i)|")
+      .def_ro("relative", &ErrorFigures::relative, "exp(mean |ln((f + floor) / (f^ + floor))|) - 1")
+      .def_ro("rms_log", &ErrorFigures::rms_log, "root mean square of ln((f + floor) / (f^ + floor))")
+      .def_ro("mean_abs_log", &ErrorFigures::mean_abs_log, "mean |ln(f / f^)| where both are above 0")
+      .def_ro("psnr", &ErrorFigures::psnr, "dB, of the lit spheres; infinite if equal")
+      .def_ro("ssim", &ErrorFigures::ssim, "mean of the lit spheres")
+      .def_ro("unknown_fraction", &ErrorFigures::unknown_fraction, "share of the pairs left out")
+      .def_ro("unknown_pixels", &ErrorFigures::unknown_pixels);
+  m.def("error_figures", &error_figures, nb::arg("reference"), nb::arg("model"), nb::kw_only(),
+        nb::arg("count") = FigureOptions{}.count, nb::arg("seed") = FigureOptions{}.seed,
+        nb::arg("floor") = FigureOptions{}.floor, nb::arg("image_size") = FigureOptions{}.image_size,
+        nb::arg("symmetrize") = true,
+        "Error figures of a model: count direction pairs, and lit spheres of image_size pixels. floor in "
+        "1/sr.\n"
+        "symmetrize: both sides as their reciprocal parts, as everywhere in burnish.");
+  m.def("compare_models", &compare_models, nb::arg("reference"), nb::arg("models"), nb::kw_only(),
+        nb::arg("count") = FigureOptions{}.count, nb::arg("seed") = FigureOptions{}.seed,
+        nb::arg("symmetrize") = true, nb::arg("report") = nb::none(),
+        nb::sig("def compare_models(reference: Source, models: Sequence[Source], *, count: int = 200000, "
+                "seed: int = 1, symmetrize: bool = True, report: str | None = None) -> list[dict]"),
+        "What `burnish compare --json` prints: one dictionary a model. report: a folder for pictures and "
+        "plots.");
+}
+
+}  // namespace
+
+void bind_metrics(nb::module_& m) {
+  bind_error_figures(m);
+  m.def(
+      "directional_albedo", &directional_albedo, nb::arg("source"), nb::arg("wi").noconvert(),
+      nb::sig("def directional_albedo(source: Source, wi: NDArray[numpy.float64]) -> NDArray[numpy.float64]"),
+      "The share of light from wi that is reflected, one a channel, to 0.5 %.\n\n"
+      "wi: unit vectors above the horizon, float64 (N, 3) or (3,). Returns (N, channels) or (channels,).");
+  m.def(
+      "render_sphere",
+      [](const OpenedBrdf& source, double light_angle, int size) {
+        Image image = [&] {
+          const nb::gil_scoped_release released;
+          return render_sphere(source.ref(), light_angle, size).image;
+        }();
+        return to_numpy_image(std::move(image));
+      },
+      nb::arg("source"), nb::arg("light_angle"), nb::arg("size") = kSphereSize,
+      nb::sig(
+          "def render_sphere(source: Source, light_angle: float, size: int = 256) -> NDArray[numpy.float32]"),
+      "A sphere seen along the normal of its middle under a directional light light_angle radians from the\n"
+      "view: f_r cos(theta_i), 1/sr, linear, (size, size, channels), 0 outside the sphere.");
+  m.def(
+      "draw_pairs",
+      [](std::size_t count, std::uint64_t seed, bool isotropic) {
+        return pair_arrays(draw_pairs(count, seed, isotropic));
+      },
+      nb::arg("count"), nb::arg("seed") = 1, nb::arg("isotropic") = true,
+      nb::sig("def draw_pairs(count: int, seed: int = 1, isotropic: bool = True) -> "
+              "tuple[NDArray[numpy.float64], NDArray[numpy.float64]]"),
+      "Direction pairs that error figures are taken at: wi and wo, float64 (count, 3). Uniform in theta_h,\n"
+      "theta_d, phi_d (and phi_h unless isotropic), both cosines above 0.05.");
+  m.def(
+      "measure",
+      [](const OpenedBrdf& source, std::size_t count, double noise, std::uint64_t seed) {
+        Samples samples = [&] {
+          const nb::gil_scoped_release released;
+          return measure(source.ref(), {count, noise, seed});
+        }();
+        const nb::tuple pairs = pair_arrays(samples.pairs);
+        return nb::make_tuple(pairs[0], pairs[1],
+                              to_numpy(std::move(samples.values),
+                                       {samples.size(), static_cast<std::size_t>(samples.channels)}));
+      },
+      nb::arg("source"), nb::kw_only(), nb::arg("count") = MeasureOptions{}.count, nb::arg("noise") = 0.0,
+      nb::arg("seed") = 1,
+      nb::sig("def measure(source: Source, *, count: int = 10000, noise: float = 0.0, seed: int = 1) -> "
+              "tuple[NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64]]"),
+      "A virtual goniometer: wi, wo (count, 3) and values (count, channels) in 1/sr. noise: sigma of the\n"
+      "logarithm of a random factor.");
+}
+
+}  // namespace burnish::python

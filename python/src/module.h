@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <initializer_list>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+
+namespace burnish::python {
+
+namespace nb = nanobind;
+
+// Each part of the library is bound in the file of its name.
+void bind_source(nb::module_& m);
+void bind_eval(nb::module_& m);
+void bind_fitting(nb::module_& m);
+void bind_metrics(nb::module_& m);
+void bind_sampling(nb::module_& m);
+void bind_writers(nb::module_& m);
+
+/// A JSON text as Python objects.
+inline nb::object from_json(const std::string& text) {
+  return nb::module_::import_("json").attr("loads")(text);
+}
+
+/// A C-contiguous NumPy array that owns what the vector held.
+template <class T>
+nb::object to_numpy(std::vector<T> values, std::initializer_list<std::size_t> shape) {
+  auto* kept = new std::vector<T>(std::move(values));
+  const nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
+  return nb::cast(nb::ndarray<nb::numpy, T>(kept->data(), shape, owner));
+}
+
+}  // namespace burnish::python

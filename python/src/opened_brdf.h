@@ -1,0 +1,76 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include <burnish/eval/factored_eval.h>
+#include <burnish/eval/tabulated_sampler.h>
+#include <burnish/io/source.h>
+
+#include "module.h"
+
+namespace burnish::python {
+
+/// burnish.Source: an opened BRDF, and what is made from it when it is first asked for. It stays where it
+/// is, so that references into it hold; nothing about it changes, so that threads may share it.
+class OpenedBrdf {
+ public:
+  explicit OpenedBrdf(Source source) : source_(std::move(source)) {}
+  virtual ~OpenedBrdf() = default;
+  OpenedBrdf(const OpenedBrdf&) = delete;
+
+  const Source& source() const noexcept { return source_; }
+  BrdfRef ref() const noexcept { return source_.ref(); }
+  /// The model, or nullptr where it is none.
+  const FactoredBrdf* model() const noexcept { return std::get_if<FactoredBrdf>(&source_.brdf); }
+
+  const TabulatedSampler& sampler() const {
+    std::call_once(sampler_made_, [&] { sampler_.emplace(ref()); });
+    return *sampler_;
+  }
+  /// Of models only.
+  const FactoredEvaluator& evaluator() const {
+    std::call_once(evaluator_made_, [&] { evaluator_.emplace(*model()); });
+    return *evaluator_;
+  }
+
+ private:
+  Source source_;
+  mutable std::once_flag sampler_made_, evaluator_made_;
+  mutable std::optional<TabulatedSampler> sampler_;
+  mutable std::optional<FactoredEvaluator> evaluator_;
+};
+
+/// burnish.Model: one whose BRDF is factored.
+class OpenedModel : public OpenedBrdf {
+ public:
+  OpenedModel(const std::string& name, Model model) : OpenedBrdf(to_source(name, std::move(model))) {}
+  explicit OpenedModel(Source source) : OpenedBrdf(std::move(source)) {}
+
+  const FactoredBrdf& brdf() const noexcept { return *model(); }
+};
+
+/// The same as a native model, for writing.
+inline Model to_model(const OpenedModel& opened) {
+  return {opened.brdf(), opened.source().findings.lambda_nm, opened.source().findings.notes};
+}
+
+/// A BRDF made reciprocal unless it is so by construction or shall stay as it is.
+class Reciprocal {
+ public:
+  Reciprocal(const OpenedBrdf& opened, bool symmetrize) : opened_(opened) {
+    if (symmetrize && !(opened.model() && opened.model()->reciprocal())) symmetrized_.emplace(opened.ref());
+  }
+  Reciprocal(const Reciprocal&) = delete;
+
+  BrdfRef ref() const noexcept { return symmetrized_ ? BrdfRef(*symmetrized_) : opened_.ref(); }
+  const OpenedBrdf& opened() const noexcept { return opened_; }
+
+ private:
+  const OpenedBrdf& opened_;
+  std::optional<SymmetrizedBrdf> symmetrized_;
+};
+
+}  // namespace burnish::python

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <burnish/error.h>
+#include <burnish/eval/interleaved.h>
+
+#include "module.h"
+
+namespace burnish::python {
+
+template <class T>
+using Array = nb::ndarray<T, nb::device::cpu>;
+
+/// N vectors in a NumPy array, wherever its strides put them; one alone stands for all.
+template <class T>
+struct Rows {
+  T* data = nullptr;
+  std::int64_t row = 0, component = 1;  // strides in elements
+  std::size_t count = 0;
+  bool one = false;  // a single vector, shape (K,)
+
+  T* at(std::size_t i, std::size_t k) const noexcept {
+    return data + static_cast<std::int64_t>(i) * row + static_cast<std::int64_t>(k) * component;
+  }
+  /// True if each component lies in one piece: what kernels read and write as it is.
+  bool planes() const noexcept { return row == 1; }
+};
+
+/// Reads shape (N, width) or (width,). Throws Error for another.
+template <class T>
+Rows<const T> rows_of(const Array<const T>& array, const char* name, std::size_t width) {
+  const std::size_t n = array.ndim();
+  if ((n != 1 && n != 2) || array.shape(n - 1) != width)
+    throw Error(fmt::format("{}: expected shape (N, {}) or ({},), found ({})", name, width, width,
+                            fmt::join(std::span(array.shape_ptr(), n), ", ")));
+  if (n == 1) return {array.data(), 0, array.stride(0), 1, true};
+  return {array.data(), array.stride(0), array.stride(1), array.shape(0), false};
+}
+
+/// The common count of rows; (1, K) and (K,) stand for every row of the other. Throws Error if counts differ.
+template <class A, class B>
+std::size_t match(Rows<A>& a, Rows<B>& b, const char* names) {
+  if (a.count != b.count && a.count != 1 && b.count != 1)
+    throw Error(fmt::format("{}: expected equal counts, found {} and {}", names, a.count, b.count));
+  const std::size_t count = a.count == 1 ? b.count : a.count;
+  if (a.count != count) a.row = 0;
+  if (b.count != count) b.row = 0;
+  return count;
+}
+
+/// A result: `array` is what Python gets.
+template <class T>
+struct Result {
+  nb::object array;
+  Rows<T> rows;
+};
+
+/// A new NumPy array of shape (count, width), in planes where the inputs are; or `out`, checked. `width` 0:
+/// one value a row, shape (count,).
+template <class T>
+Result<T> make_result(const nb::object& out, std::size_t count, std::size_t width, bool planes) {
+  nb::object array = out;
+  const nb::tuple shape = width > 0 ? nb::make_tuple(count, width) : nb::make_tuple(count);
+  if (out.is_none())
+    array =
+        nb::module_::import_("numpy").attr("empty")(shape, sizeof(T) == 4 ? "f4" : "f8", planes ? "F" : "C");
+  Array<T> view;
+  if (!nb::try_cast(array, view, false))
+    throw nb::type_error(
+        fmt::format("out: expected a writable array of {}", sizeof(T) == 4 ? "float32" : "float64").c_str());
+  if (view.ndim() != shape.size() || view.shape(0) != count || (width > 0 && view.shape(1) != width))
+    throw Error(fmt::format("out: expected shape {}, found ({})", nb::repr(shape).c_str(),
+                            fmt::join(std::span(view.shape_ptr(), view.ndim()), ", ")));
+  return {array, {view.data(), view.stride(0), width > 0 ? view.stride(1) : 0, count, false}};
+}
+
+/// Directions that go through buffers together.
+inline constexpr std::size_t kBlock = 512;
+using Buffer = float[kBlock];
+
+/// The first kWidth components of rows [begin, begin + count) as floats: where they lie if each is in one
+/// piece, else copied to `buffers`.
+template <std::size_t kWidth, class T>
+std::array<std::span<const float>, kWidth> components(const Rows<const T>& rows, std::size_t begin,
+                                                      std::size_t count, Buffer* buffers) noexcept {
+  std::array<std::span<const float>, kWidth> result;
+  for (std::size_t k = 0; k < kWidth; ++k) result[k] = {buffers[k], count};
+  if constexpr (std::is_same_v<T, float>) {
+    if (rows.planes()) {
+      for (std::size_t k = 0; k < kWidth; ++k) result[k] = {rows.at(begin, k), count};
+      return result;
+    }
+    if (kWidth == 3 && rows.row == 3 && rows.component == 1) {  // NumPy's usual order
+      to_planes(rows.at(begin, 0), count, buffers[0], buffers[1], buffers[2]);
+      return result;
+    }
+  }
+  for (std::size_t k = 0; k < kWidth; ++k)
+    for (std::size_t i = 0; i < count; ++i) buffers[k][i] = static_cast<float>(*rows.at(begin + i, k));
+  return result;
+}
+
+}  // namespace burnish::python

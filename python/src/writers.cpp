@@ -1,0 +1,49 @@
+#include <string>
+#include <vector>
+
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <burnish/file.h>
+#include <burnish/io/convert.h>
+
+#include "opened_brdf.h"
+
+namespace burnish::python {
+
+namespace {
+
+void write_model(const std::filesystem::path& path, const OpenedModel& model) {
+  write_then_rename(path, format_model(to_model(model)));
+}
+
+std::vector<std::string> write_converted(const OpenedBrdf& source, const std::filesystem::path& path,
+                                         const std::string& format, std::size_t count, std::uint64_t seed,
+                                         bool entries, int cells) {
+  Converted converted =
+      convert(source.source(), format, {.count = count, .seed = seed, .entries = entries, .cells = cells});
+  write_then_rename(path, converted.bytes);
+  return std::move(converted.losses);
+}
+
+}  // namespace
+
+void bind_writers(nb::module_& m) {
+  m.def("write_model", &write_model, nb::arg("path"), nb::arg("model"),
+        nb::call_guard<nb::gil_scoped_release>(),
+        "Writes the native file, a multi-part OpenEXR image that open_source reads back to the last bit.");
+  const ConvertOptions defaults;
+  m.def(
+      "convert", &write_converted, nb::arg("source"), nb::arg("path"), nb::arg("format"), nb::kw_only(),
+      nb::arg("count") = defaults.count, nb::arg("seed") = defaults.seed,
+      nb::arg("entries") = defaults.entries, nb::arg("cells") = defaults.cells,
+      nb::call_guard<nb::gil_scoped_release>(),
+      "Writes a source in another format and says what that lost, a phrase each.\n\n"
+      "format: \"merl\", \"rgl\" (for Mitsuba's `measured` and pbrt-v4), \"mbsdf\", \"zemax\", \"astm\", "
+      "\"csv\" "
+      "or\n\"exr\". count, seed: samples drawn for astm and csv; entries: a table's entries instead; cells: "
+      "along\neach polar angle of merl, mbsdf and exr.");
+}
+
+}  // namespace burnish::python

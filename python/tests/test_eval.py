@@ -1,0 +1,147 @@
+import threading
+
+import numpy as np
+import pytest
+
+import burnish
+from conftest import GGX, hemisphere
+
+
+def write_directions(path, wi, wo):
+    rows = np.hstack([wi, wo])
+    np.savetxt(path, rows, delimiter=",", header="wi_x,wi_y,wi_z,wo_x,wo_y,wo_z", comments="", fmt="%.17g")
+
+
+@pytest.mark.parametrize("name", ["ggx", "model", "lobes"])
+def test_eval_gives_what_the_command_line_gives(name, request, cli, pairs, tmp_path):
+    source = request.getfixturevalue(name)
+    spec = GGX
+    if name != "ggx":
+        spec = tmp_path / "model.exr"
+        burnish.write_model(spec, source)
+    write_directions(tmp_path / "directions.csv", *pairs)
+    cli("eval", spec, tmp_path / "directions.csv", "-o", tmp_path / "values.csv")
+    expected = np.loadtxt(tmp_path / "values.csv", delimiter=",", skiprows=1)
+    np.testing.assert_array_equal(source.eval(*pairs), expected)
+
+
+@pytest.mark.parametrize("name", ["model", "lobes"])
+def test_float32_is_near_the_definition(name, request, pairs):
+    source = request.getfixturevalue(name)
+    wi, wo = (w.astype(np.float32) for w in pairs)
+    exact = source.eval(wi.astype(np.float64), wo.astype(np.float64))
+    np.testing.assert_allclose(source.eval(wi, wo), exact, rtol=1e-4)
+
+
+@pytest.mark.parametrize("name", ["ggx", "model"])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_any_layout_gives_the_same_bits(name, dtype, request):
+    source = request.getfixturevalue(name)
+    wi, wo = hemisphere(40_001, 1).astype(dtype), hemisphere(40_001, 2).astype(dtype)
+    expected = source.eval(wi, wo)
+    assert expected.flags.c_contiguous and expected.dtype == dtype
+    planes = source.eval(np.asfortranarray(wi), np.asfortranarray(wo))
+    assert planes.flags.f_contiguous
+    np.testing.assert_array_equal(planes, expected)
+    wide = np.zeros((40_001, 8), dtype)
+    wide[:, 1:7:2] = wi
+    np.testing.assert_array_equal(source.eval(wide[:, 1:7:2], wo), expected)
+    np.testing.assert_array_equal(source.eval(wi[::-1], wo[::-1])[::-1], expected)
+    out = np.zeros((80_002, 3), dtype)
+    assert np.shares_memory(source.eval(wi, wo, out=out[::2]), out)
+    np.testing.assert_array_equal(out[::2], expected)
+    assert not out[1::2].any()
+
+
+def test_one_direction_stands_for_all(model):
+    wi, wo = hemisphere(500), np.array([0.6, 0, 0.8], np.float32)
+    np.testing.assert_array_equal(model.eval(wi, wo), model.eval(wi, np.tile(wo, (500, 1))))
+    np.testing.assert_array_equal(model.eval(wi[3], wo), model.eval(wi, wo)[3])
+    assert model.eval(wi[:0], wo).shape == (0, 3)
+
+
+def test_nothing_is_reflected_below_the_horizon(model, ggx):
+    down, up = np.array([[0.6, 0, -0.8]]), np.array([[0, 0, 1.0]])
+    for source in (model, ggx):
+        for dtype in (np.float32, np.float64):
+            assert not source.eval(down.astype(dtype), up.astype(dtype)).any()
+            assert not source.eval(up.astype(dtype), down.astype(dtype)).any()
+
+
+def test_what_is_no_direction_has_no_value(model, ggx):
+    up = np.array([0, 0, 1.0])
+    for bad in ([np.nan, 0, 1], [0, 0, np.inf], [0, 0, 2], [0, 0, 0]):
+        assert np.isnan(model.eval(np.array(bad, float), up)).all()
+        assert np.isnan(ggx.eval(up, np.array(bad, float))).all()
+        model.eval(np.array(bad, np.float32), up.astype(np.float32))  # whatever it is, it must not crash
+        ggx.sample_wi(np.array(bad, float), np.array([0.5, 0.5]))
+        model.pdf(np.array(bad, np.float32), np.array(bad, np.float32))
+
+
+def test_shapes_and_types_that_do_not_fit_are_refused(model):
+    w = hemisphere(4)
+    with pytest.raises(burnish.Error, match=r"wi: expected shape \(N, 3\) or \(3,\), found \(4, 2\)"):
+        model.eval(w[:, :2], w)
+    with pytest.raises(burnish.Error, match="wi and wo: expected equal counts, found 4 and 3"):
+        model.eval(w, w[:3])
+    with pytest.raises(burnish.Error, match=r"out: expected shape \(4, 3\), found \(3, 3\)"):
+        model.eval(w, w, out=np.empty((3, 3), np.float32))
+    with pytest.raises(TypeError, match="out: expected a writable array of float32"):
+        model.eval(w, w, out=np.empty((4, 3)))
+    with pytest.raises(TypeError):
+        model.eval(w, w.astype(np.float64))
+    with pytest.raises(TypeError):
+        model.eval(w.astype(int), w)
+    frozen = np.empty((4, 3), np.float32)
+    frozen.flags.writeable = False
+    with pytest.raises(TypeError, match="writable"):
+        model.eval(w, w, out=frozen)
+
+
+def test_draws_have_the_density_that_pdf_states(model, ggx):
+    rng = np.random.default_rng(3)
+    for source in (model, ggx):
+        for dtype in (np.float32, np.float64):
+            wo, u = hemisphere(20_000).astype(dtype), rng.random((20_000, 2)).astype(dtype)
+            wi, pdf = source.sample_wi(wo, u)
+            assert wi.dtype == pdf.dtype == dtype
+            again = source.pdf(wi, wo)
+            drawn = pdf > 0
+            assert drawn.mean() > 0.98
+            # rounding may put a draw on the far side of a cell's border
+            assert (abs(again[drawn] / pdf[drawn] - 1) < 1e-2).mean() > 0.995
+            np.testing.assert_allclose(np.linalg.norm(wi[drawn], axis=1), 1, rtol=1e-4)
+
+
+def test_draws_estimate_the_albedo(model):
+    wo = np.array([0.5, 0, np.sqrt(0.75)])
+    wi, pdf = model.sample_wi(wo, np.random.default_rng(1).random((100_000, 2)))
+    weight = model.eval(wi, wo) * wi[:, 2:] / np.where(pdf > 0, pdf, np.inf)[:, None]
+    # reciprocal: what is sent to wo is what is received from it
+    np.testing.assert_allclose(weight.mean(axis=0), burnish.directional_albedo(model, wo), rtol=0.01)
+
+
+def test_nothing_is_drawn_for_a_viewer_below_the_horizon(model):
+    for dtype in (np.float32, np.float64):
+        down = np.array([[0, 0.6, -0.8]], dtype)
+        wi, pdf = model.sample_wi(down, np.array([[0.3, 0.7]], dtype))
+        assert pdf[0] == 0 and np.isfinite(wi).all()
+        assert model.pdf(np.array([[0, 0, 1]], dtype), down)[0] == 0
+
+
+def test_threads_share_a_source_and_run_beside_each_other():
+    source = burnish.open_source(GGX)  # its tables are not made yet
+    wi, wo = hemisphere(50_000, 1), hemisphere(50_000, 2)
+    results = [None] * 4
+
+    def work(i):
+        results[i] = source.eval(wi, wo), source.pdf(wi, wo)
+
+    threads = [threading.Thread(target=work, args=(i,)) for i in range(4)]
+    for t in threads:
+        t.start()
+    for t in threads:
+        t.join()
+    for f, pdf in results[1:]:
+        np.testing.assert_array_equal(f, results[0][0])
+        np.testing.assert_array_equal(pdf, results[0][1])

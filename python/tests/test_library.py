@@ -1,0 +1,173 @@
+import gc
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import burnish
+from conftest import BRUSHED, GGX
+
+
+def test_fit_is_the_command_lines_fit(cli, tmp_path):
+    printed = cli("fit", GGX, "-o", tmp_path / "cli.exr", "--model", "pqpr", "--table", "q=48", "--json")
+    model = burnish.fit(burnish.open_source(GGX), model="pqpr", tables=["q=48"])
+    for key in ("relative", "psnr", "samples", "smooth", "iterations"):
+        assert model.notes[key] == printed[key]
+    assert model.bytes == printed["bytes"] and model.expression == printed["model"]
+    burnish.write_model(tmp_path / "python.exr", model)
+    assert (tmp_path / "python.exr").read_bytes() == (tmp_path / "cli.exr").read_bytes()
+
+
+def test_a_budget_is_kept_and_spent(ggx):
+    model = burnish.fit(ggx, budget=1200, lobes=2)
+    assert 900 < model.bytes <= 1200 and len(model.lobes) == 2
+    assert model.notes["budget"] == 1200
+
+
+def test_compare_and_info_print_the_same(cli, ggx, model, tmp_path):
+    path = tmp_path / "model.exr"
+    burnish.write_model(path, model)
+    again = burnish.open_source(path)
+    assert burnish.compare_models(ggx, [again], count=5000) == cli(
+        "compare", GGX, path, "--count", "5000", "--json"
+    )
+    assert again.info() == cli("info", path, "--json")
+    figures = burnish.error_figures(ggx, again, count=5000)
+    compared = burnish.compare_models(ggx, [again], count=5000)[0]
+    for key in ("psnr", "ssim", "relative", "rms_log", "log_cos"):
+        assert getattr(figures, key) == compared[key]
+
+
+def test_a_report_is_written(ggx, model, tmp_path):
+    burnish.compare_models(ggx, [model], count=1000, report=str(tmp_path / "report"))
+    assert (tmp_path / "report/index.html").exists()
+
+
+def test_errors_are_exceptions_with_the_same_text(cli, tmp_path):
+    (tmp_path / "bad.binary").write_bytes(b"nothing that is known")
+    for spec in (tmp_path / "bad.binary", tmp_path / "missing.exr", "ggx:alpha_x=-1"):
+        with pytest.raises(RuntimeError) as told:
+            cli("info", spec)
+        with pytest.raises(burnish.Error) as raised:
+            burnish.open_source(spec)
+        assert f"burnish: {raised.value}" == str(told.value)
+    assert issubclass(burnish.Error, ValueError)
+    with pytest.raises(burnish.Error, match="loss: expected image, relative or log_cos, found 'psnr'"):
+        burnish.fit(burnish.open_source(GGX), loss="psnr")
+
+
+@pytest.mark.parametrize("format", ["merl", "rgl", "csv"])
+def test_converted_files_are_the_command_lines(format, cli, ggx, tmp_path):
+    losses = burnish.convert(ggx, tmp_path / "python", format, count=2000)
+    cli("convert", GGX, tmp_path / "cli", "--to", format, *(["--count", 2000] if format == "csv" else []))
+    assert (tmp_path / "python").read_bytes() == (tmp_path / "cli").read_bytes()
+    assert losses and burnish.open_source(tmp_path / "python").isotropic
+
+
+def test_progress_rises_and_its_exceptions_end_the_fit(ggx):
+    seen = []
+    burnish.fit(ggx, budget=800, lobes=2, progress=lambda stage, fraction: seen.append((stage, fraction)))
+    assert seen and {stage for stage, _ in seen} == {"fitting"}
+    assert all(0 <= fraction <= 1 for _, fraction in seen)
+
+    def stop(stage, fraction):
+        raise LookupError(stage)
+
+    with pytest.raises(LookupError, match="fitting"):
+        burnish.fit(ggx, budget=800, progress=stop)
+
+
+def test_ctrl_c_ends_a_fit():
+    source = burnish.open_source(BRUSHED)
+    timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        burnish.fit(source, budget=2700, search=True)
+    timer.join()
+
+
+def test_nothing_leaks_from_fits_that_are_ended():
+    # nanobind reports leaked instances when the interpreter ends
+    program = f"""
+import burnish
+source = burnish.open_source({GGX!r})
+def stop(stage, fraction):
+    raise LookupError
+for _ in range(3):
+    try:
+        burnish.fit(source, progress=stop)
+    except LookupError as error:
+        del error
+burnish.fit(source, model="pqp").eval(*burnish.draw_pairs(10))
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert done.returncode == 0 and "leak" not in done.stderr, done.stderr
+
+
+def test_other_threads_go_on_during_a_fit(ggx):
+    ticks, done = [], threading.Event()
+
+    def tick():
+        while not done.is_set():
+            ticks.append(time.perf_counter())
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    begin = time.perf_counter()
+    burnish.fit(ggx, budget=1000)
+    end = time.perf_counter()
+    done.set()
+    thread.join()
+    inside = [t for t in ticks if begin < t < end]
+    assert len(inside) > 3
+
+
+def test_tables_are_views_that_keep_their_model_alive(ggx):
+    values = burnish.fit(ggx).tables[0].values
+    gc.collect()
+    assert values.shape == (1, 32, 3) and values.max() == 1 and not values.flags.writeable
+    with pytest.raises(ValueError):
+        values[0, 0, 0] = 2
+
+
+def test_log_tables_restore_and_change_a_model(lobes, pairs):
+    logs = [np.log(table.values.astype(np.float64)) for table in lobes.tables]
+    np.testing.assert_allclose(lobes.with_log_tables(logs).eval(*pairs), lobes.eval(*pairs), rtol=1e-3)
+    brighter = [log + (0.5 if table.name == "a" else 0) for log, table in zip(logs, lobes.tables)]
+    scales = lobes.with_log_tables(brighter).lobes
+    np.testing.assert_allclose(scales[1].scale, np.exp(0.5) * np.array(lobes.lobes[1].scale), rtol=1e-3)
+    with pytest.raises(burnish.Error, match="expected 6 arrays, found 1"):
+        lobes.with_log_tables(logs[:1])
+
+
+def test_energy_is_conserved():
+    bright = burnish.open_source("ggx:alpha_x=0.3,alpha_y=0.3,kd=0.9")
+    model = burnish.conserve_energy(burnish.fit(bright))
+    angles = np.radians(np.linspace(0, 88, 9))
+    wi = np.stack([np.sin(angles), np.zeros(9), np.cos(angles)], axis=1)
+    assert burnish.directional_albedo(model, wi).max() <= 1.01
+
+
+def test_a_measurement_is_reproducible(ggx):
+    wi, wo, f = burnish.measure(ggx, count=100, seed=3)
+    np.testing.assert_array_equal(f, ggx.eval(wi, wo))
+    noisy = burnish.measure(ggx, count=100, noise=0.1, seed=3)[2]
+    assert 0.05 < np.std(np.log(noisy / f)) < 0.2
+
+
+def test_every_public_name_says_what_it_is():
+    for name in burnish.__all__:
+        assert getattr(burnish, name).__doc__, name
+
+
+def test_a_real_measurement_is_read_and_fitted(rgl_file, cli):
+    source = burnish.open_source(rgl_file)
+    model = burnish.fit(source, budget=1344)
+    assert model.bytes <= 1344 and burnish.error_figures(source, model, count=20_000).psnr > 20
+    assert source.info() == cli("info", rgl_file, "--json")

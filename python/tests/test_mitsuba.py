@@ -1,0 +1,176 @@
+import numpy as np
+import pytest
+
+import burnish
+from conftest import hemisphere
+
+mi = pytest.importorskip("mitsuba")
+dr = pytest.importorskip("drjit")
+
+
+@pytest.fixture(scope="session")
+def llvm():
+    try:
+        mi.set_variant("llvm_ad_rgb")
+        mi.Float(1) + mi.Float([2, 3])
+    except Exception as error:  # Dr.Jit loads libLLVM when it is first needed
+        pytest.skip(f"llvm_ad_rgb is not available: {error}")
+    import burnish.mitsuba
+
+    burnish.mitsuba.register()
+    return mi
+
+
+@pytest.fixture(scope="session")
+def files(tmp_path_factory, model, lobes):
+    folder = tmp_path_factory.mktemp("models")
+    models = {
+        "model": model,
+        "lobes": lobes,
+        "white": burnish.fit(burnish.open_source("lambert:kd=1")),
+    }
+    for name, one in models.items():
+        burnish.write_model(folder / f"{name}.exr", one)
+    return {name: str(folder / f"{name}.exr") for name in models}
+
+
+def interaction(wo, count):
+    si = dr.zeros(mi.SurfaceInteraction3f, count)
+    si.wi = mi.Vector3f(*np.ascontiguousarray(wo.T))
+    return si
+
+
+@pytest.mark.parametrize("name", ["model", "lobes", "white"])
+def test_eval_and_pdf_are_the_librarys(name, files, llvm):
+    source = burnish.open_source(files[name])
+    wi, wo = hemisphere(20_000, 1), hemisphere(20_000, 2)
+    bsdf = mi.load_dict({"type": "burnish", "filename": files[name]})
+    si = interaction(wo, len(wo))
+    f, pdf = bsdf.eval_pdf(mi.BSDFContext(), si, mi.Vector3f(*np.ascontiguousarray(wi.T)))
+    expected = source.eval(wi.astype(float), wo.astype(float)) * wi[:, 2:]
+    np.testing.assert_allclose(np.array(f).T, expected, rtol=2e-5, atol=1e-5 * expected.mean())
+    # rounding may put a direction on the far side of a cell's border
+    ratio = np.array(pdf) / source.pdf(wi, wo)
+    assert (abs(ratio - 1) < 1e-3).mean() > 0.995
+
+
+@pytest.mark.parametrize("name", ["model", "lobes"])
+def test_draws_are_the_librarys(name, files, llvm):
+    source = burnish.open_source(files[name])
+    wo, u = hemisphere(20_000, 3), np.random.default_rng(4).random((20_000, 2)).astype(np.float32)
+    bsdf = mi.load_dict({"type": "burnish", "filename": files[name]})
+    drawn, weight = bsdf.sample(
+        mi.BSDFContext(), interaction(wo, len(wo)), 0.5, mi.Point2f(*np.ascontiguousarray(u.T))
+    )
+    wi, pdf = source.sample_wi(wo, u)
+    same = np.linalg.norm(np.array(drawn.wo).T - wi, axis=1) < 1e-3
+    assert same.mean() > 0.99
+    assert (abs(np.array(drawn.pdf)[same] / pdf[same] - 1) < 1e-2).mean() > 0.99
+    value = bsdf.eval(mi.BSDFContext(), interaction(wo, len(wo)), drawn.wo)
+    expected = np.array(value) / np.maximum(np.array(drawn.pdf), 1e-20)
+    np.testing.assert_allclose(np.array(weight)[:, same], expected[:, same], rtol=1e-4, atol=1e-6)
+
+
+@pytest.mark.parametrize("name", ["model", "lobes"])
+@pytest.mark.parametrize("theta", [0, 40, 80])
+def test_draws_pass_mitsubas_chi_square_test(name, theta, files, llvm):
+    import mitsuba.chi2
+
+    angle = np.radians(theta)
+    wi = [float(np.sin(angle)) * 0.6, float(np.sin(angle)) * 0.8, float(np.cos(angle))]
+    sample, pdf = mitsuba.chi2.BSDFAdapter("burnish", {"type": "burnish", "filename": files[name]}, wi=wi)
+    test = mitsuba.chi2.ChiSquareTest(
+        domain=mitsuba.chi2.SphericalDomain(),
+        sample_func=sample,
+        pdf_func=pdf,
+        sample_dim=3,
+        sample_count=200_000,
+        res=101,
+        ires=40,  # steep lobes: the test's own integration has to be as fine
+    )
+    assert test.run(significance_level=0.01), test.messages
+
+
+def render(mi, bsdf, integrator=None, spp=256, emitter=None, size=33):
+    scene = mi.load_dict(
+        {
+            "type": "scene",
+            "integrator": integrator or {"type": "path", "max_depth": 2},
+            "sensor": {
+                "type": "orthographic",
+                "to_world": mi.ScalarTransform4f().look_at([0, 0, 5], [0, 0, 0], [0, 1, 0]),
+                "film": {"type": "hdrfilm", "width": size, "height": size, "rfilter": {"type": "box"}},
+            },
+            "emitter": emitter or {"type": "constant"},
+            "shape": {"type": "sphere", "bsdf": bsdf},
+        }
+    )
+    return scene, np.array(mi.render(scene, spp=spp))
+
+
+def test_a_white_sphere_vanishes_in_a_white_furnace(files, llvm):
+    image = render(mi, {"type": "burnish", "filename": files["white"]})[1]
+    # grazing directions beyond the fit's data may be off
+    np.testing.assert_allclose(image.mean(axis=2), 1, atol=0.1)
+    assert abs(image.mean() - 1) < 5e-3
+
+
+def test_a_furnace_shows_the_albedo(files, model, llvm):
+    size = 33
+    image = render(mi, {"type": "burnish", "filename": files["model"]}, spp=1024, size=size)[1]
+    for pixel in (16, 20, 26):
+        x = (2 * pixel + 1 - size) / size
+        wo = np.array([x, 0, np.sqrt(1 - x * x)])
+        expected = burnish.directional_albedo(model, wo)
+        np.testing.assert_allclose(image[16, pixel], expected, rtol=0.03)
+
+
+def test_tables_are_recovered_from_a_picture(files, llvm):
+    light = {"type": "directional", "direction": [-0.4, -0.3, -1]}
+    settings = dict(integrator={"type": "direct"}, emitter=light, spp=4)
+    target = mi.TensorXf(render(mi, {"type": "burnish", "filename": files["model"]}, **settings)[1])
+    scene, _ = render(mi, {"type": "burnish", "filename": files["model"]}, **settings)
+    parameters = mi.traverse(scene)
+    key = next(k for k in parameters.keys() if k.endswith("q.log_values"))
+    optimizer = mi.ad.Adam(lr=0.1)
+    optimizer[key] = mi.TensorXf(np.zeros(parameters[key].shape, np.float32) - 1)
+    losses = []
+    for _ in range(40):
+        parameters.update(optimizer)
+        image = mi.render(scene, parameters, spp=4)
+        loss = dr.mean(dr.square(dr.log(1 + image) - dr.log(1 + target)), axis=None)
+        dr.backward(loss)
+        optimizer.step()
+        losses.append(float(loss.array[0]))
+    assert losses[-1] < 0.02 * losses[0], losses
+
+
+def test_what_is_no_model_is_refused(llvm, tmp_path):
+    path = tmp_path / "table.binary"
+    burnish.convert(burnish.open_source("lambert"), path, "merl", cells=8)
+    with pytest.raises(Exception, match="expected a burnish model"):
+        mi.load_dict({"type": "burnish", "filename": str(path)})
+
+
+def test_scalar_variants_call_the_library(files):
+    before = mi.variant()
+    mi.set_variant("scalar_rgb")
+    try:
+        import burnish.mitsuba
+
+        burnish.mitsuba.register()
+        source = burnish.open_source(files["model"])
+        bsdf = mi.load_dict({"type": "burnish", "filename": files["model"]})
+        si = mi.SurfaceInteraction3f()
+        si.wi = [0.6, 0, 0.8]
+        wi = np.array([0, 0.6, 0.8])
+        f, pdf = bsdf.eval_pdf(mi.BSDFContext(), si, mi.Vector3f(wi))
+        np.testing.assert_allclose(f, 0.8 * source.eval(wi, np.array([0.6, 0, 0.8])), rtol=1e-6)
+        drawn, weight = bsdf.sample(mi.BSDFContext(), si, 0.5, [0.3, 0.6])
+        assert drawn.pdf > 0 and np.all(np.array(weight) > 0)
+        assert bsdf.pdf(mi.BSDFContext(), si, drawn.wo) == pytest.approx(drawn.pdf, rel=1e-3)
+        image = render(mi, {"type": "burnish", "filename": files["white"]}, spp=64, size=9)[1]
+        assert abs(image.mean() - 1) < 0.02
+    finally:
+        if before:
+            mi.set_variant(before)

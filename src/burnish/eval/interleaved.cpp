@@ -1,0 +1,58 @@
+#include <burnish/eval/highway_targets.h>
+#include <burnish/eval/interleaved.h>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "burnish/eval/interleaved.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace burnish {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using D = hn::ScalableTag<float>;
+
+void run_to_planes(const float* rows, std::size_t count, float* x, float* y, float* z) {
+  const D d;
+  std::size_t i = 0;
+  for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d)) {
+    hn::Vec<D> a, b, c;
+    hn::LoadInterleaved3(d, rows + 3 * i, a, b, c);
+    hn::StoreU(a, d, x + i);
+    hn::StoreU(b, d, y + i);
+    hn::StoreU(c, d, z + i);
+  }
+  for (; i < count; ++i) x[i] = rows[3 * i], y[i] = rows[3 * i + 1], z[i] = rows[3 * i + 2];
+}
+
+void run_to_rows(const float* x, const float* y, const float* z, std::size_t count, float* rows) {
+  const D d;
+  std::size_t i = 0;
+  for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d))
+    hn::StoreInterleaved3(hn::LoadU(d, x + i), hn::LoadU(d, y + i), hn::LoadU(d, z + i), d, rows + 3 * i);
+  for (; i < count; ++i) rows[3 * i] = x[i], rows[3 * i + 1] = y[i], rows[3 * i + 2] = z[i];
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace burnish
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace burnish {
+
+HWY_EXPORT(run_to_planes);
+HWY_EXPORT(run_to_rows);
+
+void to_planes(const float* rows, std::size_t count, float* x, float* y, float* z) noexcept {
+  HWY_DYNAMIC_DISPATCH(run_to_planes)(rows, count, x, y, z);
+}
+
+void to_rows(const float* x, const float* y, const float* z, std::size_t count, float* rows) noexcept {
+  HWY_DYNAMIC_DISPATCH(run_to_rows)(x, y, z, count, rows);
+}
+
+}  // namespace burnish
+#endif

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <burnish/factors/factored_brdf.h>
+#include <burnish/io/source.h>
+#include <burnish/metrics/albedo.h>
+#include <burnish/reflectance/statistics.h>
+
+namespace burnish {
+
+/// Everything that is to be said about a source, which must outlive it.
+struct SourceReport {
+  const Source& source;
+  std::vector<AlbedoAt> albedos;  ///< at theta_i 0, 30 and 60 degrees
+  ReciprocityError reciprocity;   ///< over 20,000 pairs
+  const FactoredBrdf* model;      ///< nullptr where it is none
+};
+
+SourceReport report_on(const Source& source);
+
+/// A JSON object, indented by two spaces: name, format, description, channels, isotropic, lambda_nm,
+/// illuminant, conventions, samples, holes, negatives, most_negative, theta_i_deg and theta_o_deg (ranges
+/// covered), reciprocity_error, reciprocity_pairs, albedo; of a compressed BRDF bytes; of a model
+/// table_bytes, lobes, scales, expression, reciprocal, tables.
+std::string to_json(const SourceReport& report);
+
+}  // namespace burnish
