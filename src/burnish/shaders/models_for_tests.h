@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <burnish/factors/model_spec.h>
+#include <burnish/math/random.h>
+#include <burnish/reflectance/goniometer.h>
+
+namespace burnish {
+
+struct ShaderModelCase {
+  const char* name;
+  const char* expression;
+  std::vector<std::string> options;
+  int channels;
+  bool powers = false;  ///< its shader calls pow
+};
+
+/// Every kind of table, warp and projection, alone and together.
+inline const ShaderModelCase kShaderModels[] = {
+    {"Pqp", "pqp", {"p=32", "q=64"}, 3},
+    {"DiskPqp", "pqp", {"p=32x32", "q=64x64,rational:0.2"}, 3},
+    {"Pqpr", "pqpr", {"p=32", "q=64,rational:0.05", "r=32"}, 3},
+    {"PowerWarps", "p(wo) q(h) p(wi)", {"p=16,power:0.7", "q=16x16,power:0.4"}, 3, true},
+    {"RootWarps", "q(h) r(theta_d)", {"q=9x9,power:0.5", "r=12,power:0.5"}, 1},
+    {"Grid", "u(theta_h,theta_d) v(wi,wo)", {"u=16x7,rational:0.1", "v=5x5"}, 3},
+    {"Affine", "s(wi+wo+0.4n) v(0.3wi+0.9wo) v(0.9wi+0.3wo)", {"s=9x9", "v=11x11"}, 3},
+    {"Mirror", "a(m+wo) b(0.5m+wo-0.2n)", {"a=8x8", "b=16,rational:0.3"}, 3},
+    {"BelowTheHorizon", "a(wi-0.6n) b(wo-0.6n)", {"a=8x8", "b=16"}, 1},
+    {"Deviation", "a(theta_m) g(theta_h,theta_m)", {"a=16,rational:-1.3", "g=9x5"}, 3},
+    {"Difference", "a(d) b(d) c(d)", {"a=12x12", "b=8", "c=9x9,rational:0.5"}, 3},
+    {"Shared", "p(wo) q(h) p(wi) + s(h)", {"p=8,shared", "q=8x8,shared", "s=6"}, 3},
+    {"ThreeLobes", "p(wo) q(h) p(wi) + p(wo) s(h) p(wi) + t(theta_d)", {"p=8", "q=64", "s=16", "t=8"}, 3},
+};
+
+/// Smooth tables, as fits have them: neighbours differ by 12 % at most from sides of 32 up.
+inline FactoredBrdf shader_model(const ShaderModelCase& model, TableFormat format = TableFormat::single) {
+  Pcg32 random(7);
+  const ModelSpec spec = parse_model_spec(model.expression, model.options, true);
+  std::vector<Table> tables;
+  for (const ModelSpec::TableSpec& t : spec.tables) {
+    Table table{.name = t.name, .layout = t.layout, .channels = t.shared ? 1 : model.channels, .values = {}};
+    const double phase = 6 * random.uniform();
+    for (int y = 0; y < t.layout.height; ++y)
+      for (int x = 0; x < t.layout.width; ++x)
+        for (int c = 0; c < table.channels; ++c)
+          table.values.push_back(static_cast<float>(std::sin(3.0 * x / t.layout.width + phase + 0.5 * c) *
+                                                    std::cos(2.5 * y / t.layout.height + phase)));
+    tables.push_back(std::move(table));
+  }
+  std::vector<Lobe> lobes;
+  for (const auto& factors : spec.lobes) {
+    Lobe lobe{.scale = {}, .factors = factors};
+    for (int c = 0; c < model.channels; ++c) lobe.scale.push_back(random.uniform());
+    lobes.push_back(std::move(lobe));
+  }
+  return from_log_tables(model.channels, std::move(tables), std::move(lobes), format);
+}
+
+/// `count` random pairs after the corners (normal, grazing, borders of maps, wi == wo, where phi wraps, below
+/// the horizon), as floats hold them.
+inline std::vector<DirectionPair> shader_pairs(int count) {
+  const Vec3 corners[] = {{0, 0, 1},         {1, 0, 1e-5}, {-1, 0, 1e-5},   {0, -1, 1e-3},   {1e-6, 0, 1},
+                          {-1e-6, 1e-6, 1},  {1, 1, 1},    {1, 1, 0.999},   {-1, -1e-9, .5}, {-1, 1e-9, .5},
+                          {0.7, -0.7, 1e-7}, {0, 0, -1},   {0.3, 0.1, -0.2}};
+  std::vector<DirectionPair> pairs;
+  for (const Vec3 wi : corners)
+    for (const Vec3 wo : corners) pairs.push_back({normalize(wi), normalize(wo)});
+  Pcg32 random(11);
+  while (static_cast<int>(pairs.size()) < count) {
+    const auto draw = [&] {
+      const double z = random.uniform() * random.uniform(), phi = 6.283185307179586 * random.uniform();
+      const double s = std::sqrt(1 - z * z);
+      return Vec3{s * std::cos(phi), s * std::sin(phi), z};
+    };
+    const Vec3 wi = draw();
+    pairs.push_back({wi, random.uniform() < 0.1 ? wi : draw()});
+  }
+  for (auto& [wi, wo] : pairs)
+    for (Vec3* w : {&wi, &wo})
+      *w = {static_cast<float>(w->x), static_cast<float>(w->y), static_cast<float>(w->z)};
+  return pairs;
+}
+
+/// How much cancelling terms of projections magnify rounding errors: the largest of (sum of |coefficients|) /
+/// |combination| over the factors.
+inline double cancellation(const FactoredBrdf& brdf, Vec3 wi, Vec3 wo) {
+  double worst = 1;
+  for (const Lobe& lobe : brdf.lobes())
+    for (const FactorUse& use : lobe.factors) {
+      const Projection& p = use.projection;
+      if (p.kind != Projection::Kind::affine || p == kProjectWi || p == kProjectWo || p == kProjectHalf)
+        continue;
+      const Vec3 v = p.wi * wi + p.wo * wo + p.mirror * mirror(wi) + Vec3{0, 0, p.n};
+      worst = std::max(worst, (std::abs(p.wi) + std::abs(p.wo) + std::abs(p.mirror) + std::abs(p.n)) /
+                                  length({v.x, v.y, std::max(v.z, 0.0)}));
+    }
+  return worst;
+}
+
+}  // namespace burnish

@@ -1,0 +1,453 @@
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+
+#include <burnish/error.h>
+#include <burnish/shaders/dialect.h>
+#include <burnish/shaders/shader.h>
+
+namespace burnish {
+
+namespace {
+
+bool is_identifier(std::string_view name) noexcept {
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  const auto fits = [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '_'; };
+  return !name.empty() && letter(name.front()) && std::ranges::all_of(name, fits) && name.back() != '_' &&
+         name.find("__") == name.npos;
+}
+
+/// Statements of a function, one a value: what is asked for twice is computed once.
+class Body {
+ public:
+  explicit Body(const Dialect& dialect) : dialect_(dialect) {}
+
+  /// The variable that holds `expression`, named after `hint`. `cost` is what computing it costs.
+  std::string let(std::string_view type, std::string_view hint, const std::string& expression,
+                  const ShaderCost& cost) {
+    const auto [known, added] = names_.try_emplace(expression);
+    if (!added) return known->second;
+    const int uses = ++uses_[std::string(hint)];
+    known->second = uses == 1 ? std::string(hint) : fmt::format("{}{}", hint, uses);
+    text_ += dialect_.declaration(type, known->second, expression);
+    cost_.fetches += cost.fetches;
+    cost_.operations += cost.operations;
+    cost_.divisions += cost.divisions;
+    cost_.roots += cost.roots;
+    cost_.powers += cost.powers;
+    return known->second;
+  }
+  std::string scalar(std::string_view hint, const std::string& expression, const ShaderCost& cost) {
+    return let(dialect_.scalar, hint, expression, cost);
+  }
+  std::string vector(std::string_view hint, const std::string& expression, const ShaderCost& cost) {
+    return let(dialect_.vector, hint, expression, cost);
+  }
+
+  const Dialect& dialect() const noexcept { return dialect_; }
+  const std::string& text() const noexcept { return text_; }
+  const ShaderCost& cost() const noexcept { return cost_; }
+
+ private:
+  const Dialect& dialect_;
+  std::string text_;
+  ShaderCost cost_;
+  std::map<std::string, std::string> names_;
+  std::map<std::string, int> uses_{{"wi", 1}, {"wo", 1}};
+};
+
+/// Names of values of an unnormalized projection: r / den = tan(theta / 2), (x, y) / r the azimuth.
+struct Projected {
+  std::string x, y, r, den;
+};
+
+constexpr ShaderCost ops(int operations) noexcept {
+  return {.operations = operations};
+}
+
+std::string squares(Body& body, const std::string& v) {
+  return body.scalar("rr", fmt::format("{0}.x * {0}.x + {0}.y * {0}.y", v), ops(3));
+}
+
+std::string length_of(Body& body, const std::string& v) {
+  return body.scalar("len", fmt::format("sqrt({0} + {1}.z * {1}.z)", squares(body, v), v),
+                     {.operations = 2, .roots = 1});
+}
+
+std::string radius(Body& body, const std::string& v) {
+  return body.scalar("r", fmt::format("sqrt({})", squares(body, v)), {.roots = 1});
+}
+
+std::string sum(Body& body) {
+  return body.vector("sum", "wi + wo", ops(3));
+}
+
+std::string mirrored(Body& body) {
+  return body.vector("mirrored", fmt::format("{}(-wi.x, -wi.y, wi.z)", body.dialect().vector), {});
+}
+
+// a wi + b wo + mirror mirror(wi) + n N, unnormalized
+std::string combination(Body& body, const Projection& p) {
+  const Dialect& d = body.dialect();
+  int operations = -3;
+  std::string text;
+  const auto add = [&](double factor, const std::string& v) {
+    if (factor == 0) return;
+    text += text.empty() ? "" : " + ";
+    text += factor == 1 ? v : fmt::format("{} * {}", d.literal(factor), v);
+    operations += factor == 1 ? 3 : 6;
+  };
+  if (p.wi == p.wo) {
+    if (p.wi != 0) add(p.wi, sum(body));
+  } else {
+    add(p.wi, "wi");
+    add(p.wo, "wo");
+  }
+  if (p.mirror != 0) add(p.mirror, mirrored(body));
+  if (p.n != 0) add(1, fmt::format("{0}({1}, {1}, {2})", d.vector, d.literal(0), d.literal(p.n)));
+  return operations == 0 ? text : body.vector("v", text, ops(operations));
+}
+
+Projected project_affine(Body& body, const Projection& p, bool needs_r) {
+  const Dialect& d = body.dialect();
+  std::string v = combination(body, p);
+  Projected result{v + ".x", v + ".y", "", ""};
+  if (p == kProjectWi || p == kProjectWo) {
+    result.den = body.scalar("den", fmt::format("{} + {}.z", d.literal(1), v), ops(1));
+  } else {
+    // directions below the horizon go to it
+    if (p.wi < 0 || p.wo < 0 || p.mirror < 0 || p.n < 0)
+      v = body.vector("up", fmt::format("{0}({1}.x, {1}.y, max({1}.z, {2}))", d.vector, v, d.literal(0)),
+                      ops(1));
+    // of opposite directions the normal
+    result.den = body.scalar(
+        "den", fmt::format("max({} + {}.z, {})", length_of(body, v), v, d.literal(1e-30)), ops(2));
+  }
+  if (needs_r) result.r = radius(body, v);
+  return result;
+}
+
+std::string length3(Body& body, const std::string& v) {
+  return body.scalar("len", fmt::format("sqrt(dot({0}, {0}))", v), {.operations = 5, .roots = 1});
+}
+
+// [Rusinkiewicz 1998], from wi - wo: what h is orthogonal to loses no digits
+Projected project_difference(Body& body, bool disk, bool needs_r) {
+  const Dialect& d = body.dialect();
+  const std::string s = sum(body), len = length_of(body, s);
+  const std::string apart = body.vector("apart", "wi - wo", ops(3));
+  Projected result;
+  result.den = body.scalar("den", fmt::format("{} + {}", d.literal(2), len), ops(1));
+  if (needs_r) result.r = length3(body, apart);
+  if (!disk) return result;
+  const std::string r = radius(body, s), none = fmt::format("{} > {}", r, d.literal(0));
+  const std::string c = body.scalar("cosine", d.select(none, fmt::format("{}.x / {}", s, r), d.literal(1)),
+                                    {.operations = 1, .divisions = 1});
+  const std::string q = body.scalar("sine", d.select(none, fmt::format("{}.y / {}", s, r), d.literal(0)),
+                                    {.operations = 1, .divisions = 1});
+  const std::string along =
+      body.scalar("along", fmt::format("{0}.x * {1} + {0}.y * {2}", apart, c, q), ops(3));
+  result.x = body.scalar(
+      "x",
+      fmt::format("({0}.z * {1} - {2} * {3}.z) / max({4}, {5})", s, along, r, apart, len, d.literal(1e-30)),
+      {.operations = 4, .divisions = 1});
+  result.y = body.scalar("y", fmt::format("{0}.y * {1} - {0}.x * {2}", apart, c, q), ops(3));
+  return result;
+}
+
+Projected project_deviation(Body& body) {
+  const std::string m = mirrored(body);
+  const std::string apart = length3(body, body.vector("apart", m + " - wo", ops(3)));
+  const std::string along = length3(body, body.vector("sum", m + " + wo", ops(3)));
+  return {"", "", apart,
+          body.scalar("den", fmt::format("{} + {}", body.dialect().literal(2), along), ops(1))};
+}
+
+Projected project(Body& body, const Projection& p, bool disk, const Warp& warp) {
+  const bool needs_r = !disk || warp.kind != WarpKind::identity;
+  if (p.kind == Projection::Kind::difference) return project_difference(body, disk, needs_r);
+  if (p.kind == Projection::Kind::deviation) return project_deviation(body);
+  return project_affine(body, p, needs_r);
+}
+
+std::string power_of(Body& body, const std::string& t, double exponent) {
+  if (exponent == 0.5) return body.scalar("t", fmt::format("sqrt({})", t), {.roots = 1});
+  return body.scalar("t", fmt::format("pow({}, {})", t, body.dialect().literal(exponent)), {.powers = 1});
+}
+
+/// What u = forward(tan(theta / 2)) is multiplied with and added to: cells and 0, or for texture coordinates.
+struct Axis {
+  double size, first;
+};
+Axis axis_of(int nodes, ShaderFilter filter) noexcept {
+  if (filter == ShaderFilter::exact) return {nodes - 1.0, 0};
+  return {(nodes - 1.0) / nodes, 0.5 / nodes};
+}
+
+std::string plus(Body& body, const std::string& value, double first) {
+  if (first == 0) return value;
+  return body.scalar("u", fmt::format("{} + {}", value, body.dialect().literal(first)), ops(1));
+}
+
+std::string line_position(Body& body, const Projection& projection, const Warp& warp, const Axis& axis) {
+  const Dialect& d = body.dialect();
+  const Projected p = project(body, projection, false, warp);
+  std::string u;
+  if (warp.kind == WarpKind::rational)
+    u = body.scalar("u",
+                    fmt::format("{} * {} / ({} + {} * {})", d.literal(axis.size * (1 + warp.parameter)), p.r,
+                                p.r, d.literal(warp.parameter), p.den),
+                    {.operations = 3, .divisions = 1});
+  else {
+    std::string t = body.scalar("t", fmt::format("{} / {}", p.r, p.den), {.divisions = 1});
+    if (warp.kind == WarpKind::power) t = power_of(body, t, warp.parameter);
+    u = body.scalar("u", fmt::format("{} * {}", d.literal(axis.size), t), ops(1));
+  }
+  return plus(body, u, axis.first);
+}
+
+std::array<std::string, 2> disk_position(Body& body, const Projection& projection, const Warp& warp,
+                                         const Axis& axis) {
+  const Dialect& d = body.dialect();
+  const Projected p = project(body, projection, true, warp);
+  const double half = 0.5 * axis.size;
+  std::string stretch;
+  if (warp.kind == WarpKind::rational) {
+    stretch = body.scalar("stretch",
+                          fmt::format("{} / ({} + {} * {})", d.literal(half * (1 + warp.parameter)), p.r,
+                                      d.literal(warp.parameter), p.den),
+                          {.operations = 2, .divisions = 1});
+  } else {
+    stretch = body.scalar("stretch", fmt::format("{} / {}", d.literal(half), p.den), {.divisions = 1});
+    if (warp.kind == WarpKind::power) {
+      // t^parameter / t, finite at the normal, where x = y = 0
+      const std::string t = body.scalar("t", fmt::format("max({} / {}, {})", p.r, p.den, d.literal(1e-30)),
+                                        {.operations = 1, .divisions = 1});
+      stretch =
+          body.scalar("stretch", fmt::format("{} * {} / {}", stretch, power_of(body, t, warp.parameter), t),
+                      {.operations = 1, .divisions = 1});
+    }
+  }
+  const auto at = [&](const std::string& component) {
+    return body.scalar("u", fmt::format("{} + {} * {}", d.literal(half + axis.first), component, stretch),
+                       ops(2));
+  };
+  return {at(p.x), at(p.y)};
+}
+
+/// The cell of a position: its first node, the node after it, the fraction.
+struct Cell {
+  std::string low, high, fraction;
+};
+Cell cell_of(Body& body, const std::string& position, int nodes) {
+  const Dialect& d = body.dialect();
+  const std::string u = body.scalar(
+      "u", fmt::format("min(max({}, {}), {})", position, d.literal(0), d.literal(nodes - 1)), ops(2));
+  const std::string base =
+      body.scalar("base", fmt::format("min(floor({}), {})", u, d.literal(nodes - 2)), ops(2));
+  const std::string low = body.let(d.integer, "i", fmt::format("{}({})", d.integer, base), {});
+  return {low, low + " + 1", body.scalar("f", fmt::format("{} - {}", u, base), ops(1))};
+}
+
+class Lookups {
+ public:
+  Lookups(Body& body, const FactoredBrdf& brdf, const std::vector<std::string>& textures, ShaderFilter filter)
+      : body_(body), brdf_(brdf), textures_(textures), filter_(filter) {}
+
+  /// The variable with the table's value.
+  std::string value(const FactorUse& use) {
+    const auto index = static_cast<std::size_t>(use.table);
+    const Table& table = brdf_.tables()[index];
+    const TableLayout& layout = table.layout;
+    const Axis axis_x = axis_of(layout.width, filter_), axis_y = axis_of(layout.height, filter_);
+    std::string x, y;
+    if (layout.shape == TableShape::disk) {
+      const auto at = disk_position(body_, use.projection, layout.warp, axis_x);
+      x = at[0], y = at[1];
+    } else {
+      x = line_position(body_, use.projection, layout.warp, axis_x);
+      if (layout.shape == TableShape::grid) y = line_position(body_, use.projection_y, layout.warp_y, axis_y);
+    }
+    const Dialect& d = body_.dialect();
+    const std::string& texture = textures_[index];
+    if (filter_ == ShaderFilter::hardware)
+      return let("value", d.sample(texture, x, y.empty() ? d.literal(0.5) : y, table.channels),
+                 table.channels, {.fetches = 1});
+    const Cell cx = cell_of(body_, x, layout.width);
+    if (y.empty()) return row(texture, cx, "0", table.channels);
+    const Cell cy = cell_of(body_, y, layout.height);
+    return mix(row(texture, cx, cy.low, table.channels), row(texture, cx, cy.high, table.channels),
+               cy.fraction, table.channels);
+  }
+
+ private:
+  std::string let(std::string_view hint, const std::string& expression, int channels,
+                  const ShaderCost& cost) {
+    return channels == 1 ? body_.scalar(hint, expression, cost) : body_.vector(hint, expression, cost);
+  }
+  std::string texel(const std::string& texture, const std::string& x, const std::string& y, int channels) {
+    return let("texel", body_.dialect().fetch(texture, x, y, channels), channels, {.fetches = 1});
+  }
+  std::string mix(const std::string& low, const std::string& high, const std::string& f, int channels) {
+    return let("value", fmt::format("{0} + {2} * ({1} - {0})", low, high, f), channels, ops(3 * channels));
+  }
+  std::string row(const std::string& texture, const Cell& x, const std::string& y, int channels) {
+    const std::string low = texel(texture, x.low, y, channels);
+    return mix(low, texel(texture, x.high, y, channels), x.fraction, channels);
+  }
+
+  Body& body_;
+  const FactoredBrdf& brdf_;
+  const std::vector<std::string>& textures_;
+  ShaderFilter filter_;
+};
+
+// [HomomorphicBrdf, eq. 4], each pair multiplied with itself first, as the definition does
+std::string lobe_value(Body& body, Lookups& lookups, const FactoredBrdf& brdf, std::size_t j) {
+  const Dialect& d = body.dialect();
+  const auto uses = brdf.ordered_factors(j);
+  const std::size_t paired = 2 * brdf.pair_count(j);
+  const int channels = brdf.channels();
+  const auto& scale = brdf.lobes()[j].scale;
+  const auto width = [&](const FactorUse& use) {
+    return brdf.tables()[static_cast<std::size_t>(use.table)].channels;
+  };
+  std::string product = channels == 1 ? d.literal(scale[0])
+                                      : fmt::format("{}({}, {}, {})", d.vector, d.literal(scale[0]),
+                                                    d.literal(scale[1]), d.literal(scale[2]));
+  int operations = 0;
+  for (std::size_t k = 0; k < uses.size(); k += k < paired ? 2 : 1) {
+    const std::string value = lookups.value(uses[k]);
+    product += k < paired ? fmt::format(" * ({} * {})", value, lookups.value(uses[k + 1])) : " * " + value;
+    operations += channels + (k < paired ? width(uses[k]) : 0);
+  }
+  return body.let(channels == 1 ? d.scalar : d.vector, "lobe", product, ops(operations));
+}
+
+std::string declare_textures(const FactoredBrdf& brdf, const Dialect& d, const ShaderOptions& options,
+                             const std::vector<std::string>& names) {
+  const bool filtered = options.filter == ShaderFilter::hardware;
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const Table& table = brdf.tables()[i];
+    switch (d.language) {
+      case ShaderLanguage::glsl:
+      case ShaderLanguage::glsl_es:
+        text += fmt::format("uniform sampler2D {};\n", names[i]);
+        break;
+      case ShaderLanguage::hlsl:
+        text += fmt::format("Texture2D<float4> {} : register(t{});\n", names[i], i);
+        if (filtered) text += fmt::format("SamplerState {}_sampler : register(s{});\n", names[i], i);
+        break;
+      case ShaderLanguage::msl:
+        text += fmt::format("  texture2d<float> {};\n", names[i]);
+        break;
+      case ShaderLanguage::wgsl:
+        text +=
+            fmt::format("@group(0) @binding({}) var {}: texture_2d<f32>;\n", filtered ? 2 * i : i, names[i]);
+        if (filtered)
+          text += fmt::format("@group(0) @binding({}) var {}_sampler: sampler;\n", 2 * i + 1, names[i]);
+        break;
+      case ShaderLanguage::cpp: {
+        text += fmt::format("BURNISH_CONSTANT float {}[] = {{", names[i]);
+        for (std::size_t k = 0; k < table.values.size(); ++k)
+          text += fmt::format("{}{},", k % 8 ? " " : "\n    ", d.literal(table.values[k]));
+        text += "\n};\n";
+        const std::string at =
+            fmt::format("{}[{} * (y * {} + x)", names[i], table.channels, table.layout.width);
+        text += table.channels == 1
+                    ? fmt::format("BURNISH_FUNCTION float {0}_at(int x, int y) {{ return {1}]; }}\n",
+                                  names[i], at)
+                    : fmt::format(
+                          "BURNISH_FUNCTION vec3 {0}_at(int x, int y) {{\n"
+                          "  return {{{1}], {1} + 1], {1} + 2]}};\n}}\n",
+                          names[i], at);
+        break;
+      }
+    }
+  }
+  if (d.language != ShaderLanguage::msl) return text;
+  return fmt::format("struct burnish_{}_tables {{\n{}}};\n", options.name, text);
+}
+
+std::string local_function(const FactoredBrdf& brdf, const Dialect& d, const ShaderOptions& options,
+                           const std::vector<std::string>& textures, std::string_view more,
+                           ShaderCost& cost) {
+  Body body(d);
+  Lookups lookups(body, brdf, textures, options.filter);
+  std::string total;
+  for (std::size_t j = 0; j < brdf.lobes().size(); ++j)
+    total += (j ? " + " : "") + lobe_value(body, lookups, brdf, j);
+  const std::string zero = d.literal(0);
+  std::string result = d.function("burnish_" + options.name, {"wi", "wo"}, more);
+  result +=
+      fmt::format("  if (wi.z <= {0} || wo.z <= {0}) {{ return {1}({0}, {0}, {0}); }}\n", zero, d.vector);
+  if (d.language == ShaderLanguage::msl && options.filter == ShaderFilter::hardware)
+    result += "  constexpr sampler smooth_sampler(filter::linear, address::clamp_to_edge);\n";
+  cost = body.cost();
+  cost.operations += (static_cast<int>(brdf.lobes().size()) - 1) * brdf.channels();
+  if (brdf.channels() == 3) return result + body.text() + fmt::format("  return {};\n}}\n", total);
+  return result + body.text() + d.declaration(d.scalar, "f0", total) +
+         fmt::format("  return {}(f0, f0, f0);\n}}\n", d.vector);
+}
+
+std::string world_function(const Dialect& d, const std::string& name, std::string_view more) {
+  const auto local = [&](char w) {
+    return fmt::format("{0}(dot(t, {1}), dot(s, {1}), dot(n, {1}))", d.vector, w);
+  };
+  return d.function("burnish_" + name + "_world", {"n", "t", "l", "v"}, more) +
+         d.declaration(d.vector, "s", "cross(n, t)") +
+         fmt::format("  return burnish_{}({}, {}{});\n}}\n", name, local('l'), local('v'),
+                     more.empty() ? "" : ", tables");
+}
+
+}  // namespace
+
+std::string to_string(const ShaderCost& cost) {
+  return fmt::format("{} fetches, {} operations, {} divisions, {} roots, {} powers", cost.fetches,
+                     cost.operations, cost.divisions, cost.roots, cost.powers);
+}
+
+Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options) {
+  const Dialect& d = dialect_of(options.language);
+  const bool cpp = options.language == ShaderLanguage::cpp;
+  if (!is_identifier(options.name))
+    throw Error(fmt::format(
+        "shader: expected a name of letters, digits and single underscores, a letter first, found '{}'",
+        options.name));
+  if (brdf.channels() != 1 && brdf.channels() != 3)
+    throw Error(fmt::format("shader: expected a model of 1 or 3 channels, found {}", brdf.channels()));
+  if (!cpp && brdf.tables().size() > kMostShaderTables)
+    throw Error(
+        fmt::format("shader: expected at most {} tables, found {}", kMostShaderTables, brdf.tables().size()));
+  if (cpp && options.filter == ShaderFilter::hardware)
+    throw Error("shader: expected the exact filter for cpp, which has no texture units, found hardware");
+
+  Shader shader;
+  for (std::size_t i = 0; i < brdf.tables().size(); ++i) {
+    const std::string& name = brdf.tables()[i].name;
+    shader.textures.push_back(is_identifier(name) ? fmt::format("burnish_{}_table_{}", options.name, name)
+                                                  : fmt::format("burnish_{}_table{}", options.name, i));
+  }
+  const std::string more =
+      options.language == ShaderLanguage::msl ? fmt::format("burnish_{}_tables tables", options.name) : "";
+  const std::string function = local_function(brdf, d, options, shader.textures, more, shader.cost);
+  const auto comment_of = [](std::string text) {  // a table's name may hold anything
+    for (char& c : text) c = c < ' ' || c > '~' || c == '\\' ? '?' : c;
+    return text;
+  };
+  shader.text = fmt::format(
+      "// Generated by burnish from the model {}: change the model, not this file.\n"
+      "// burnish_{}(wi, wo): f_r in 1/sr, without the cosine; unit vectors of the local frame, +z the "
+      "normal.\n"
+      "// {}.\n{}",
+      comment_of(model_expression(brdf)), options.name, to_string(shader.cost), d.header);
+  if (cpp) shader.text += "namespace burnish_shader {\n";
+  shader.text += declare_textures(brdf, d, options, shader.textures);
+  shader.text += function + world_function(d, options.name, more);
+  if (cpp) shader.text += "}  // namespace burnish_shader\n";
+  return shader;
+}
+
+}  // namespace burnish

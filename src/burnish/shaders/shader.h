@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <burnish/factors/factored_brdf.h>
+
+namespace burnish {
+
+/// GLSL 4.50, GLSL ES 3.00 (WebGL2), HLSL (shader model 5), MSL, WGSL, and C++ that CUDA compiles too.
+enum class ShaderLanguage { glsl, glsl_es, hlsl, msl, wgsl, cpp };
+
+/// How tables are interpolated:
+/// - exact: the neighbouring texels are fetched and weighed in floats;
+/// - hardware: one filtered read a lookup. Many GPUs weigh texels with 8 bits.
+enum class ShaderFilter { exact, hardware };
+
+inline constexpr std::array kShaderLanguages{ShaderLanguage::glsl, ShaderLanguage::glsl_es,
+                                             ShaderLanguage::hlsl, ShaderLanguage::msl,
+                                             ShaderLanguage::wgsl, ShaderLanguage::cpp};
+
+/// "glsl", "glsl_es", "hlsl", "msl", "wgsl" or "cpp".
+std::string_view to_string(ShaderLanguage language) noexcept;
+
+struct ShaderOptions {
+  ShaderLanguage language = ShaderLanguage::glsl;
+  ShaderFilter filter = ShaderFilter::exact;
+  std::string name = "brdf";  ///< letters, digits and single underscores, a letter first
+};
+
+/// What one evaluation in the local frame costs, above the horizon. Floating-point operations are counted a
+/// component; integers, conversions and the test for the horizon are not counted.
+struct ShaderCost {
+  int fetches = 0;     ///< of texels (exact), or filtered reads (hardware)
+  int operations = 0;  ///< adds, subtracts, multiplies, minima, maxima, floors and selects
+  int divisions = 0, roots = 0, powers = 0;
+
+  friend bool operator==(const ShaderCost&, const ShaderCost&) = default;
+};
+
+struct Shader {
+  std::string text;                   ///< no #version line
+  std::vector<std::string> textures;  ///< name of table i's texture (of its array in C++; of a member in MSL)
+  ShaderCost cost;
+};
+
+/// The largest number of tables of a shader with textures: what every fragment shader can sample.
+inline constexpr std::size_t kMostShaderTables = 16;
+
+/// Source text that evaluates a factored BRDF as FactoredBrdf::eval does, in floats:
+/// - `burnish_NAME(wi, wo)`: unit vectors of the local frame in, f_r in 1/sr out as three components (a grey
+///   model's value three times), without the cosine, zero below the horizon;
+/// - `burnish_NAME_world(n, t, l, v)`: the same in any frame: unit normal and tangent, orthogonal to each
+///   other, and unit vectors to light and viewer.
+/// Nothing of the model is left to set but its textures: one 2-D texture a table, texel (x, y) node (x, y)
+/// (a line's height is 1), one channel in red or three in red, green, blue, in any format that holds the
+/// values; clamped to the edge and linear for the hardware filter. MSL takes them in a struct, as third or
+/// fifth argument; C++ has them as constant arrays. docs/shaders.md states how precise it is.
+///
+/// Throws Error if the name is not as above, channels are not 1 or 3, there are more than kMostShaderTables
+/// tables in a language with textures, or for C++ with the hardware filter.
+Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options);
+
+/// "12 fetches, 87 operations, 4 divisions, 2 roots, 0 powers".
+std::string to_string(const ShaderCost& cost);
+
+}  // namespace burnish

@@ -1,0 +1,241 @@
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <burnish/error.h>
+#include <burnish/shaders/models_for_tests.h>
+#include <burnish/shaders/shader.h>
+
+namespace burnish {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+struct TemporaryFolder {
+  fs::path path = fs::temp_directory_path() / fmt::format("burnish_shaders_{}", ::getpid());
+  TemporaryFolder() { fs::create_directories(path); }
+  ~TemporaryFolder() { fs::remove_all(path); }
+};
+
+void write(const fs::path& path, const std::string& text) {
+  std::ofstream(path) << text;
+}
+
+bool has_tool(const std::string& name) {
+  return std::system(("command -v " + name + " >/dev/null 2>&1").c_str()) == 0;
+}
+
+::testing::AssertionResult runs(const std::string& command, const fs::path& log) {
+  if (std::system(fmt::format("{} > {} 2>&1", command, log.string()).c_str()) == 0)
+    return ::testing::AssertionSuccess();
+  std::ostringstream said;
+  said << std::ifstream(log).rdbuf();
+  return ::testing::AssertionFailure() << command << ":\n" << said.str();
+}
+
+Shader shader_of(const ShaderModelCase& model, ShaderLanguage language,
+                 ShaderFilter filter = ShaderFilter::exact) {
+  return generate_shader(shader_model(model), {language, filter, model.name});
+}
+
+// All models in one program that reads direction pairs and writes what they evaluate to.
+TEST(Shader, CppAgreesWithTheDefinitionToOnePartIn100000) {
+  if (!has_tool("c++")) GTEST_SKIP() << "no C++ compiler";
+  const TemporaryFolder folder;
+  std::string program = "#include <stdio.h>\n", calls;
+  for (const ShaderModelCase& model : kShaderModels) {
+    const std::string file = fmt::format("{}.h", model.name);
+    write(folder.path / file, shader_of(model, ShaderLanguage::cpp).text);
+    program += fmt::format("#include \"{}\"\n", file);
+    calls += fmt::format(
+        "    put(burnish_{0}(wi, wo));\n    put(burnish_{0}_world(n, t, turn(wi), turn(wo)));\n", model.name);
+  }
+  // The world frame is the local one with its axes exchanged: the same numbers.
+  program +=
+      "using namespace burnish_shader;\n"
+      "static void put(vec3 f) { fwrite(&f, 4, 3, stdout); }\n"
+      "static vec3 turn(vec3 w) { return vec3(w.y, w.z, w.x); }\n"
+      "int main() {\n  const vec3 n = turn(vec3(0, 0, 1)), t = turn(vec3(1, 0, 0));\n  float w[6];\n"
+      "  while (fread(w, 4, 6, stdin) == 6) {\n"
+      "    const vec3 wi(w[0], w[1], w[2]), wo(w[3], w[4], w[5]);\n" +
+      calls + "  }\n}\n";
+  write(folder.path / "main.cpp", program);
+  const std::string binary = (folder.path / "main").string();
+  ASSERT_TRUE(
+      runs(fmt::format("c++ -std=c++17 -O1 -Wall -Wextra -Wdouble-promotion -Werror {0}.cpp -o {0}", binary),
+           folder.path / "log"));
+  const auto pairs = shader_pairs(4000);
+  {
+    std::ofstream in(folder.path / "pairs", std::ios::binary);
+    for (const auto& [wi, wo] : pairs)
+      for (const double x : {wi.x, wi.y, wi.z, wo.x, wo.y, wo.z}) {
+        const auto single = static_cast<float>(x);
+        in.write(reinterpret_cast<const char*>(&single), 4);
+      }
+  }
+  ASSERT_TRUE(
+      runs(fmt::format("({0} < {1}/pairs > {1}/values)", binary, folder.path.string()), folder.path / "log"));
+  std::ifstream values(folder.path / "values", std::ios::binary);
+  std::vector<FactoredBrdf> brdfs;
+  for (const ShaderModelCase& model : kShaderModels) brdfs.push_back(shader_model(model));
+  for (const auto& [wi, wo] : pairs)
+    for (std::size_t m = 0; m < brdfs.size(); ++m) {
+      float found[6];
+      ASSERT_TRUE(values.read(reinterpret_cast<char*>(found), sizeof found));
+      double truth[3];
+      brdfs[m].eval(wi, wo, std::span(truth).first(static_cast<std::size_t>(brdfs[m].channels())));
+      const bool lit = wi.z > 0 && wo.z > 0;
+      for (int c = 0; c < 6; ++c) {
+        const double expected = truth[brdfs[m].channels() == 1 ? 0 : c % 3];
+        ASSERT_LE(std::abs(found[c] - expected), lit ? 1e-5 * cancellation(brdfs[m], wi, wo) * expected : 0)
+            << kShaderModels[m].name << " at " << wi.x << " " << wi.y << " " << wi.z << " " << wo.x << " "
+            << wo.y << " " << wo.z;
+      }
+    }
+}
+
+// A number that counts what is done with it, in place of float in the generated C++.
+constexpr const char* kCounting = R"(
+#include <math.h>
+#include <stdio.h>
+static int operations, divisions, roots, powers;
+struct Counted {
+  double v;
+  Counted(double a) : v(a) {}
+  explicit operator int() const { return int(v); }
+  Counted operator-() const { return -v; }
+  friend Counted operator+(Counted a, Counted b) { return ++operations, a.v + b.v; }
+  friend Counted operator-(Counted a, Counted b) { return ++operations, a.v - b.v; }
+  friend Counted operator*(Counted a, Counted b) { return ++operations, a.v * b.v; }
+  friend Counted operator/(Counted a, Counted b) { return ++divisions, a.v / b.v; }
+  friend bool operator<(Counted a, Counted b) { return ++operations, a.v < b.v; }
+  friend bool operator>(Counted a, Counted b) { return ++operations, a.v > b.v; }
+  friend bool operator<=(Counted a, Counted b) { return a.v <= b.v; }
+};
+static Counted sqrtf(Counted a) { return ++roots, sqrt(a.v); }
+static Counted floorf(Counted a) { return ++operations, floor(a.v); }
+static Counted powf(Counted a, Counted b) { return ++powers, pow(a.v, b.v); }
+#define float Counted
+)";
+
+TEST(Shader, CostsWhatItSaysItCosts) {
+  if (!has_tool("c++")) GTEST_SKIP() << "no C++ compiler";
+  const TemporaryFolder folder;
+  std::string program = kCounting, calls;
+  std::string expected;
+  for (const ShaderModelCase& model : kShaderModels) {
+    const Shader shader = shader_of(model, ShaderLanguage::cpp);
+    program += shader.text;
+    calls += fmt::format(
+        "  operations = divisions = roots = powers = 0;\n"
+        "  burnish_shader::burnish_{}({{0.6, 0.0, 0.8}}, {{0.0, 0.6, 0.8}});\n"
+        "  printf(\"%d %d %d %d\\n\", operations, divisions, roots, powers);\n",
+        model.name);
+    const ShaderCost& cost = shader.cost;
+    expected += fmt::format("{} {} {} {}\n", cost.operations, cost.divisions, cost.roots, cost.powers);
+    std::size_t fetches = 0;
+    for (std::size_t at = 0; (at = shader.text.find("_at(", at)) != std::string::npos; ++at) ++fetches;
+    EXPECT_EQ(fetches - shader.textures.size(), static_cast<std::size_t>(cost.fetches)) << model.name;
+  }
+  write(folder.path / "main.cpp", program + "int main() {\n" + calls + "}\n");
+  const std::string binary = (folder.path / "main").string();
+  ASSERT_TRUE(runs(fmt::format("c++ -std=c++17 {0}.cpp -o {0} && {0}", binary), folder.path / "log"));
+  std::ostringstream counted;
+  counted << std::ifstream(folder.path / "log").rdbuf();
+  EXPECT_EQ(counted.str(), expected);
+}
+
+struct Checked {
+  ShaderLanguage language;
+  const char *tool, *extension, *before, *main, *command;
+};
+const Checked kChecked[] = {
+    {ShaderLanguage::glsl, "glslangValidator", "frag", "#version 450\n",
+     "out vec4 color;\nvoid main() {{ color = vec4(burnish_{0}(vec3(0, 0, 1), vec3(0, 0, 1)) + "
+     "burnish_{0}_world(vec3(1), vec3(1), vec3(1), vec3(1)), 1); }}\n",
+     "glslangValidator {}"},
+    {ShaderLanguage::glsl_es, "glslangValidator", "frag", "#version 300 es\n",
+     "out vec4 color;\nvoid main() {{ color = vec4(burnish_{0}(vec3(0, 0, 1), vec3(0, 0, 1)) + "
+     "burnish_{0}_world(vec3(1), vec3(1), vec3(1), vec3(1)), 1); }}\n",
+     "glslangValidator {}"},
+    {ShaderLanguage::hlsl, "glslangValidator", "frag.hlsl", "",
+     "float4 main(float4 at : SV_Position) : SV_Target {{ return float4(burnish_{0}(at.xyz, at.xyz) + "
+     "burnish_{0}_world(at.xyz, at.xyz, at.xyz, at.xyz), 1.0); }}\n",
+     "glslangValidator -D -e main -S frag -V -o /dev/null {}"},
+    {ShaderLanguage::wgsl, "naga", "wgsl", "",
+     "@fragment fn main(@builtin(position) at: vec4f) -> @location(0) vec4f {{ return "
+     "vec4f(burnish_{0}(at.xyz, "
+     "at.xyz) + burnish_{0}_world(at.xyz, at.xyz, at.xyz, at.xyz), 1.0); }}\n",
+     "naga {}"},
+    {ShaderLanguage::wgsl, "tint", "wgsl", "",
+     "@fragment fn main(@builtin(position) at: vec4f) -> @location(0) vec4f {{ return "
+     "vec4f(burnish_{0}(at.xyz, "
+     "at.xyz) + burnish_{0}_world(at.xyz, at.xyz, at.xyz, at.xyz), 1.0); }}\n",
+     "tint --format wgsl {}"},
+};
+
+class ShaderCompilers : public testing::TestWithParam<Checked> {};
+
+TEST_P(ShaderCompilers, AcceptEveryModelWithEitherFilter) {
+  const Checked& checked = GetParam();
+  if (!has_tool(checked.tool)) GTEST_SKIP() << "no " << checked.tool;
+  const TemporaryFolder folder;
+  for (const ShaderModelCase& model : kShaderModels)
+    for (const ShaderFilter filter : {ShaderFilter::exact, ShaderFilter::hardware}) {
+      const fs::path file = folder.path / fmt::format("shader.{}", checked.extension);
+      write(file, checked.before + shader_of(model, checked.language, filter).text +
+                      fmt::format(fmt::runtime(checked.main), model.name));
+      ASSERT_TRUE(runs(fmt::format(fmt::runtime(checked.command), file.string()), folder.path / "log"))
+          << model.name;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Languages, ShaderCompilers, testing::ValuesIn(kChecked), [](const auto& test) {
+  return fmt::format("{}By{}", to_string(test.param.language), test.param.tool);
+});
+
+TEST(Shader, ReadsATableOnceForEveryProjectionThatLobesShare) {
+  const ShaderModelCase one{"one", "pqp", {"p=8", "q=8"}, 3};
+  const ShaderModelCase two{"two", "p(wo) q(h) p(wi) + p(wo) s(h) p(wi)", {"p=8", "q=8", "s=8"}, 3};
+  EXPECT_EQ(shader_of(one, ShaderLanguage::glsl, ShaderFilter::hardware).cost.fetches, 3);
+  EXPECT_EQ(shader_of(two, ShaderLanguage::glsl, ShaderFilter::hardware).cost.fetches, 4);
+  EXPECT_EQ(shader_of(two, ShaderLanguage::glsl).cost.fetches, 8);
+}
+
+TEST(Shader, SaysWhatNoCompilerHasChecked) {
+  EXPECT_THAT(shader_of(kShaderModels[0], ShaderLanguage::msl).text, HasSubstr("No compiler has checked"));
+}
+
+TEST(Shader, KeepsHostileTableNamesOutOfCode) {
+  const FactoredBrdf sane = shader_model(kShaderModels[0]);
+  std::vector<Table> tables(sane.tables().begin(), sane.tables().end());
+  tables[0].name = "x\n#error";
+  tables[1].name = "a__b";
+  const Shader shader = generate_shader(FactoredBrdf(3, tables, {sane.lobes().begin(), sane.lobes().end()}),
+                                        {ShaderLanguage::glsl, ShaderFilter::exact, "m"});
+  EXPECT_THAT(shader.text, testing::Not(HasSubstr("\n#")));
+  EXPECT_EQ(shader.textures, (std::vector<std::string>{"burnish_m_table0", "burnish_m_table1"}));
+}
+
+TEST(Shader, RefusesWhatItCannotWrite) {
+  const FactoredBrdf brdf = shader_model(kShaderModels[0]);
+  for (const char* name : {"", "1a", "a b", "a__b", "a_", "_a", "a;"})
+    EXPECT_THROW(generate_shader(brdf, {.name = name}), Error) << name;
+  EXPECT_THROW(generate_shader(brdf, {ShaderLanguage::cpp, ShaderFilter::hardware, "m"}), Error);
+  EXPECT_THROW(shader_of({"m", "pqp", {"p=4", "q=4"}, 4}, ShaderLanguage::glsl), Error);
+  std::string many = "a0(h)";
+  for (int i = 1; i < 17; ++i) many += fmt::format(" a{}(h)", i);
+  const ShaderModelCase wide{"m", many.c_str(), {}, 3};
+  EXPECT_THROW(shader_of(wide, ShaderLanguage::glsl), Error);
+  EXPECT_NO_THROW(shader_of(wide, ShaderLanguage::cpp));
+}
+
+}  // namespace
+}  // namespace burnish
