@@ -2,9 +2,9 @@
 # make test   installs packages, builds with sanitizers and optimized, runs every test
 # make python the Python package in build/venv, tested
 # make build  the command line at build/release/apps/burnish/burnish
-# make bench, make fuzz, make report, make sampling-report, make hw-report, make hw-exhaustive, make format: see
-# docs/developing.md
-.PHONY: demo test build python deps bench fuzz report sampling-report hw-report hw-exhaustive format format-check
+# make bench, make fuzz, make report, make sampling-report, make shader-report, make hw-report, make hw-exhaustive, make format:
+# see docs/developing.md
+.PHONY: demo test build python deps bench fuzz report sampling-report shader-report hw-report hw-exhaustive format format-check
 JOBS ?= $(shell nproc)
 BURNISH := build/release/apps/burnish/burnish
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
@@ -59,6 +59,10 @@ sampling-report: build
 	@mkdir -p docs/figures
 	@build/release/apps/sampling_report/burnish_sampling_report docs > docs/sampling-results.md.partial
 	@mv docs/sampling-results.md.partial docs/sampling-results.md
+
+shader-report: build
+	@build/release/apps/shader_report/burnish_shader_report > docs/shader-results.md.partial
+	@mv docs/shader-results.md.partial docs/shader-results.md
 
 HW := build/hw-report
 LIBRARY := $(CURDIR)/build/release/src/burnish/libburnish.a

@@ -15,7 +15,6 @@ struct ShaderModelCase {
   const char* expression;
   std::vector<std::string> options;
   int channels;
-  bool powers = false;  ///< its shader calls pow
 };
 
 /// Every kind of table, warp and projection, alone and together.
@@ -23,7 +22,7 @@ inline const ShaderModelCase kShaderModels[] = {
     {"Pqp", "pqp", {"p=32", "q=64"}, 3},
     {"DiskPqp", "pqp", {"p=32x32", "q=64x64,rational:0.2"}, 3},
     {"Pqpr", "pqpr", {"p=32", "q=64,rational:0.05", "r=32"}, 3},
-    {"PowerWarps", "p(wo) q(h) p(wi)", {"p=16,power:0.7", "q=16x16,power:0.4"}, 3, true},
+    {"PowerWarps", "p(wo) q(h) p(wi)", {"p=16,power:0.7", "q=16x16,power:0.4"}, 3},
     {"RootWarps", "q(h) r(theta_d)", {"q=9x9,power:0.5", "r=12,power:0.5"}, 1},
     {"Grid", "u(theta_h,theta_d) v(wi,wo)", {"u=16x7,rational:0.1", "v=5x5"}, 3},
     {"Affine", "s(wi+wo+0.4n) v(0.3wi+0.9wo) v(0.9wi+0.3wo)", {"s=9x9", "v=11x11"}, 3},

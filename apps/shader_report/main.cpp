@@ -1,0 +1,95 @@
+// What docs/shader-results.md shows: precision of generated shaders on the OpenGL at hand, and their cost.
+#include <algorithm>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <burnish/render/gl_context.h>
+#include <burnish/render/gl_evaluator.h>
+#include <burnish/shaders/models_for_tests.h>
+
+namespace burnish {
+namespace {
+
+constexpr int kPairs = 1'000'000;
+
+struct Variant {
+  ShaderFilter filter;
+  TableFormat precision;
+};
+constexpr Variant kVariants[] = {{ShaderFilter::exact, TableFormat::single},
+                                 {ShaderFilter::exact, TableFormat::half},
+                                 {ShaderFilter::hardware, TableFormat::single},
+                                 {ShaderFilter::hardware, TableFormat::half}};
+
+void print_precision(const GlContext& context) {
+  fmt::print(
+      "## Precision\n\nLargest relative error against `FactoredBrdf::eval` over {} pairs of directions: "
+      "random ones, "
+      "a tenth of them `wi == wo`, and the corners (normal, grazing, the maps' borders, where phi wraps, "
+      "below the "
+      "horizon). Tables are smooth and the same for all columns. Renderer: {}.\n\n"
+      "| model | tables | exact, float | exact, half | hardware, float | hardware, half "
+      "|\n|---|---|---|---|---|---|\n",
+      kPairs, context.renderer());
+  const auto pairs = shader_pairs(kPairs);
+  std::vector<GlDirections> directions;
+  const auto single = [](double x) { return static_cast<float>(x); };
+  for (const auto& [a, b] : pairs)
+    directions.push_back({{single(a.x), single(a.y), single(a.z)}, {single(b.x), single(b.y), single(b.z)}});
+  for (const ShaderModelCase& model : kShaderModels) {
+    const FactoredBrdf brdf = shader_model(model);
+    const auto channels = static_cast<std::size_t>(brdf.channels());
+    std::vector<double> truth(3 * pairs.size());
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      brdf.eval(pairs[i].wi, pairs[i].wo, std::span(truth).subspan(3 * i, channels));
+      for (std::size_t c = channels; c < 3; ++c) truth[3 * i + c] = truth[3 * i];
+    }
+    fmt::print("| {} | `{}` {} |", model.name, model.expression, fmt::join(model.options, " "));
+    for (const auto& [filter, precision] : kVariants) {
+      const std::vector<float> found = GlEvaluator(brdf, filter, precision).eval(directions);
+      double worst = 0;
+      for (std::size_t i = 0; i < truth.size(); ++i)
+        if (truth[i] > 0) worst = std::max(worst, std::abs(found[i] / truth[i] - 1));
+      fmt::print(" {:.1e} |", worst);
+    }
+    fmt::print("\n");
+  }
+}
+
+void print_costs() {
+  fmt::print(
+      "\n## Cost of one evaluation\n\nFetches, then floating-point operations + divisions + square roots + "
+      "powers, "
+      "counted a component.\n\n| model | exact | hardware filter |\n|---|---|---|\n");
+  const auto text = [](const ShaderCost& c) {
+    return fmt::format("{} fetches, {} + {} + {} + {}", c.fetches, c.operations, c.divisions, c.roots,
+                       c.powers);
+  };
+  for (const ShaderModelCase& model : kShaderModels) {
+    const FactoredBrdf brdf = shader_model(model);
+    const auto cost = [&](ShaderFilter filter) {
+      return text(generate_shader(brdf, {ShaderLanguage::glsl, filter, "model"}).cost);
+    };
+    fmt::print("| {} | {} | {} |\n", model.name, cost(ShaderFilter::exact), cost(ShaderFilter::hardware));
+  }
+}
+
+}  // namespace
+}  // namespace burnish
+
+int main() {
+  try {
+    fmt::print(
+        "<!-- Written by `make shader-report`; edit apps/shader_report instead. -->\n"
+        "# What generated shaders give and cost\n\n");
+    burnish::print_precision(burnish::GlContext());
+    burnish::print_costs();
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "burnish_shader_report: {}\n", error.what());
+    return 1;
+  }
+}
