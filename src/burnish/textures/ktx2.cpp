@@ -1,0 +1,155 @@
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+
+#include <fmt/format.h>
+#include <zstd.h>
+
+#include <burnish/error.h>
+#include <burnish/textures/ktx2.h>
+
+namespace burnish {
+
+namespace {
+
+// [KTX2, 2.1]
+constexpr std::string_view kIdentifier{"\xABKTX 20\xBB\r\n\x1A\n", 12};
+constexpr std::uint32_t kZstandard = 2;
+constexpr std::size_t kHeaderSize = 80, kLevelSize = 24;
+
+/// Channel types of a data format descriptor's samples.
+constexpr std::uint32_t kAlpha = 15, kExponent = 0x20, kSignedFloat = 0xC0;
+
+struct Sample {
+  std::uint32_t bit_offset, bits, channel_type, lower, upper;
+};
+
+struct Texels {
+  std::uint32_t vk_format, type_size;
+  std::size_t bytes;  // of a texel
+  std::vector<Sample> samples;
+};
+
+Texels texels_of(TableFormat format, int channels) {
+  if (format == TableFormat::rgb9e5) {
+    Texels texels{123, 4, 4, {}};
+    for (std::uint32_t c = 0; c < 3; ++c) {
+      texels.samples.push_back({9 * c, 9, c, 0, 8448});
+      texels.samples.push_back({27, 5, c | kExponent, 15, 31});
+    }
+    return texels;
+  }
+  const auto pick = [&](std::uint32_t one, std::uint32_t four) { return channels == 1 ? one : four; };
+  const std::uint32_t stored = pick(1, 4);
+  const std::uint32_t size = format == TableFormat::half ? 2 : format == TableFormat::single ? 4 : 1;
+  Texels texels{format == TableFormat::half     ? pick(76, 97)
+                : format == TableFormat::single ? pick(100, 109)
+                                                : pick(9, 37),
+                size,
+                std::size_t{size} * stored,
+                {}};
+  for (std::uint32_t c = 0; c < stored; ++c) {
+    const std::uint32_t channel = c == 3 ? kAlpha : c;
+    if (size == 1)
+      texels.samples.push_back({8 * c, 8, channel, 0, 255});
+    else  // -1 and 1 as floats
+      texels.samples.push_back({8 * size * c, 8 * size, channel | kSignedFloat, 0xBF800000, 0x3F800000});
+  }
+  return texels;
+}
+
+void put(std::string& to, std::uint64_t value, int bytes) {
+  for (int i = 0; i < bytes; ++i) to += static_cast<char>(value >> (8 * i));
+}
+
+void pad(std::string& to, std::size_t multiple) {
+  while (to.size() % multiple) to += '\0';
+}
+
+// The basic block of a data format descriptor. [KTX2, 5]
+std::string descriptor(const Texels& texels, bool compressed) {
+  const std::size_t block = 24 + 16 * texels.samples.size();
+  std::string text;
+  put(text, 4 + block, 4);
+  put(text, 0, 4);  // Khronos, basic
+  put(text, 2, 2);  // version 1.3
+  put(text, block, 2);
+  put(text, 0x00010101, 4);  // RGBSDA, BT.709, linear, no flags
+  put(text, 0, 4);           // blocks of one texel
+  put(text, compressed ? 0 : texels.bytes, 8);
+  for (const Sample& s : texels.samples) {
+    put(text, s.bit_offset, 2);
+    put(text, s.bits - 1, 1);
+    put(text, s.channel_type, 1);
+    put(text, 0, 4);
+    put(text, s.lower, 4);
+    put(text, s.upper, 4);
+  }
+  return text;
+}
+
+std::string key_value(std::string_view key, std::string_view value) {
+  std::string text;
+  put(text, key.size() + value.size() + 2, 4);
+  text.append(key).append(1, '\0').append(value).append(1, '\0');
+  pad(text, 4);
+  return text;
+}
+
+std::string texel_data(const Table& table) {
+  std::vector<float> values = table.values;
+  int stored = table.channels;
+  if (stored == 3 && table.format != TableFormat::rgb9e5) {
+    stored = 4;
+    values.clear();
+    for (std::size_t i = 0; i < table.values.size(); i += 3)
+      values.insert(values.end(), {table.values[i], table.values[i + 1], table.values[i + 2], 1.0f});
+  }
+  const std::vector<std::byte> bytes = pack(table.format, stored, values);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+std::string compress(const std::string& data) {
+  std::string packed(ZSTD_compressBound(data.size()), '\0');
+  const std::size_t size = ZSTD_compress(packed.data(), packed.size(), data.data(), data.size(), 19);
+  if (ZSTD_isError(size))
+    throw Error(fmt::format("KTX2: expected data that can be compressed, found {}", ZSTD_getErrorName(size)));
+  packed.resize(size);
+  return packed;
+}
+
+}  // namespace
+
+std::string encode_ktx2(const Table& table, bool compressed) {
+  if (table.channels != 1 && table.channels != 3)
+    throw Error(fmt::format("KTX2: expected a table of 1 or 3 channels, found {}", table.channels));
+  const Texels texels = texels_of(table.format, table.channels);
+  const std::string data = texel_data(table), level = compressed ? compress(data) : data;
+  const std::string format = descriptor(texels, compressed), notes = key_value("KTXwriter", "burnish");
+  const std::size_t format_at = kHeaderSize + kLevelSize, notes_at = format_at + format.size();
+  const std::size_t alignment = compressed ? 1 : std::max<std::size_t>(texels.bytes, 4);
+  const std::size_t data_at = (notes_at + notes.size() + alignment - 1) / alignment * alignment;
+
+  std::string file(kIdentifier);
+  const std::size_t words[] = {texels.vk_format,
+                               texels.type_size,
+                               static_cast<std::size_t>(table.layout.width),
+                               static_cast<std::size_t>(table.layout.height),
+                               0,  // depth
+                               0,  // layers
+                               1,  // faces
+                               1,  // levels
+                               compressed ? kZstandard : 0,
+                               format_at,
+                               format.size(),
+                               notes_at,
+                               notes.size()};
+  for (const std::size_t word : words) put(file, word, 4);
+  for (const std::size_t word : {std::size_t{0}, std::size_t{0}, data_at, level.size(), data.size()})
+    put(file, word, 8);  // no global data; the level
+  file += format + notes;
+  pad(file, alignment);
+  return file + level;
+}
+
+}  // namespace burnish

@@ -1,0 +1,114 @@
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+#include <zstd.h>
+
+#include <burnish/error.h>
+#include <burnish/math/random.h>
+#include <burnish/textures/ktx2.h>
+
+namespace burnish {
+namespace {
+
+struct Case {
+  TableFormat format;
+  int channels;
+  std::uint32_t vk_format;
+  std::size_t texel;
+};
+const Case kCases[] = {{TableFormat::half, 1, 76, 2},    {TableFormat::half, 3, 97, 8},
+                       {TableFormat::single, 1, 100, 4}, {TableFormat::single, 3, 109, 16},
+                       {TableFormat::rgb9e5, 3, 123, 4}, {TableFormat::unorm8, 1, 9, 1},
+                       {TableFormat::unorm8, 3, 37, 4}};
+
+Table random_table(const Case& c) {
+  Pcg32 random(3);
+  Table table{.name = "t",
+              .layout = {TableShape::grid, 7, 5, {}, {}},
+              .channels = c.channels,
+              .values = {},
+              .format = c.format};
+  for (std::size_t i = 0; i < table.layout.node_count() * static_cast<std::size_t>(c.channels); ++i)
+    table.values.push_back(static_cast<float>(random.uniform()));
+  table.values = round_to_format(c.format, c.channels, table.values);
+  return table;
+}
+
+std::uint64_t word(const std::string& file, std::size_t at, std::size_t bytes = 4) {
+  std::uint64_t value = 0;
+  std::memcpy(&value, file.data() + at, bytes);
+  return value;
+}
+
+class Ktx2 : public testing::TestWithParam<std::tuple<Case, bool>> {};
+
+TEST_P(Ktx2, HoldsTheTableToTheLastBit) {
+  const auto& [c, compressed] = GetParam();
+  const Table table = random_table(c);
+  const std::string file = encode_ktx2(table, compressed);
+  EXPECT_EQ(word(file, 12), c.vk_format);
+  EXPECT_EQ(word(file, 20), 7u);
+  EXPECT_EQ(word(file, 24), 5u);
+  EXPECT_EQ(word(file, 44), compressed ? 2u : 0u);
+  const std::size_t at = word(file, 80, 8), size = word(file, 88, 8), unpacked_size = word(file, 96, 8);
+  ASSERT_EQ(at + size, file.size());
+  ASSERT_EQ(unpacked_size, 35 * c.texel);
+  std::string data = file.substr(at);
+  if (compressed) {
+    data.resize(unpacked_size);
+    ASSERT_EQ(ZSTD_decompress(data.data(), data.size(), file.data() + at, size), unpacked_size);
+  } else {
+    EXPECT_EQ(at % c.texel, 0u);
+    EXPECT_EQ(at % 4, 0u);
+  }
+  const auto* bytes = reinterpret_cast<const std::byte*>(data.data());
+  const int stored = c.texel == texel_bytes(c.format, c.channels) ? c.channels : 4;
+  const std::vector<float> values = unpack(c.format, stored, {bytes, data.size()});
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::size_t node = i / static_cast<std::size_t>(stored),
+                      channel = i % static_cast<std::size_t>(stored);
+    ASSERT_EQ(values[i],
+              channel == 3 ? 1.0f : table.values[node * static_cast<std::size_t>(c.channels) + channel]);
+  }
+}
+
+// An independent reader, where it is installed: npm install ktx-parse, NODE_PATH set.
+TEST_P(Ktx2, OpensInKtxParse) {
+  if (std::system("node -e \"require.resolve('ktx-parse')\" >/dev/null 2>&1") != 0)
+    GTEST_SKIP() << "no node with ktx-parse";
+  const auto& [c, compressed] = GetParam();
+  const std::filesystem::path path =
+      std::filesystem::temp_directory_path() / fmt::format("burnish_{}.ktx2", ::getpid());
+  std::ofstream(path, std::ios::binary) << encode_ktx2(random_table(c), compressed);
+  const std::string script = fmt::format(
+      "const k = require('ktx-parse').read(new Uint8Array(require('fs').readFileSync('{}')));"
+      "const d = k.dataFormatDescriptor[0];"
+      "process.exit(k.vkFormat === {} && k.pixelWidth === 7 && k.pixelHeight === 5 && k.levels.length === 1 "
+      "&& "
+      "k.levels[0].uncompressedByteLength === {} && k.supercompressionScheme === {} && d.samples.length > 0 "
+      "&& "
+      "k.keyValue.KTXwriter === 'burnish' ? 0 : 1)",
+      path.string(), c.vk_format, 35 * c.texel, compressed ? 2 : 0);
+  EXPECT_EQ(std::system(fmt::format("node -e \"{}\"", script).c_str()), 0);
+  std::filesystem::remove(path);
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, Ktx2, testing::Combine(testing::ValuesIn(kCases), testing::Bool()),
+                         [](const auto& test) {
+                           const Case& c = std::get<0>(test.param);
+                           return fmt::format("{}{}{}", to_string(c.format), c.channels,
+                                              std::get<1>(test.param) ? "Zstandard" : "");
+                         });
+
+TEST(Ktx2Channels, RefusesOtherChannels) {
+  EXPECT_THROW(encode_ktx2(random_table({TableFormat::half, 2, 0, 0}), false), Error);
+}
+
+}  // namespace
+}  // namespace burnish
