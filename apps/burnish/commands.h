@@ -9,6 +9,7 @@ namespace burnish::cli {
 void add_compare_command(CLI::App& app);
 void add_convert_command(CLI::App& app);
 void add_eval_command(CLI::App& app);
+void add_export_command(CLI::App& app);
 void add_fit_command(CLI::App& app);
 void add_hw_command(CLI::App& app);
 void add_info_command(CLI::App& app);

@@ -1,0 +1,159 @@
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <burnish/error.h>
+#include <burnish/factors/model_file.h>
+#include <burnish/file.h>
+#include <burnish/shaders/shader.h>
+#include <burnish/textures/ktx2.h>
+
+#include "commands.h"
+#include "export_page.h"
+
+namespace burnish::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+struct Target {
+  const char* name;
+  const char* extension;
+  ShaderLanguage language;
+};
+constexpr Target kTargets[] = {
+    {"glsl", "glsl", ShaderLanguage::glsl}, {"glsl_es", "es.glsl", ShaderLanguage::glsl_es},
+    {"hlsl", "hlsl", ShaderLanguage::hlsl}, {"msl", "metal", ShaderLanguage::msl},
+    {"wgsl", "wgsl", ShaderLanguage::wgsl}, {"cpp", "h", ShaderLanguage::cpp},
+};
+
+struct Arguments {
+  std::string model, folder, name;
+  std::vector<std::string> to;
+  bool exact = false, plain = false;
+};
+
+struct ExportedFile {
+  std::string name, bytes;
+};
+
+// What shaders can be called, of a file's name.
+std::string name_of(const std::string& path) {
+  std::string name;
+  for (const char c : fs::path(path).stem().string()) {
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'), digit = c >= '0' && c <= '9';
+    if (letter || (digit && !name.empty()))
+      name += c;
+    else if (!name.empty() && name.back() != '_')
+      name += '_';
+  }
+  while (name.ends_with('_')) name.pop_back();
+  return name.empty() ? "brdf" : name;
+}
+
+json cost_of(const ShaderCost& cost) {
+  return {{"fetches", cost.fetches},
+          {"operations", cost.operations},
+          {"divisions", cost.divisions},
+          {"roots", cost.roots},
+          {"powers", cost.powers}};
+}
+
+// The files of an export but its manifest, which they are described in.
+std::vector<ExportedFile> export_files(const FactoredBrdf& brdf, const Arguments& arguments, json& manifest) {
+  const std::string& name = arguments.name;
+  const auto wants = [&](const char* target) {
+    return std::ranges::find(arguments.to, target) != arguments.to.end();
+  };
+  std::vector<ExportedFile> files;
+  bool textures = wants("ktx2");
+  for (const Target& target : kTargets) {
+    if (!wants(target.name)) continue;
+    const bool cpp = target.language == ShaderLanguage::cpp;
+    const ShaderFilter filter = arguments.exact || cpp ? ShaderFilter::exact : ShaderFilter::hardware;
+    const Shader shader = generate_shader(brdf, {target.language, filter, name});
+    files.push_back({fmt::format("{}.{}", name, target.extension), shader.text});
+    manifest["shaders"].push_back({{"language", target.name},
+                                   {"file", files.back().name},
+                                   {"functions", {"burnish_" + name, "burnish_" + name + "_world"}},
+                                   {"filter", filter == ShaderFilter::exact ? "exact" : "hardware"},
+                                   {"cost", cost_of(shader.cost)}});
+    if (!cpp) manifest["shaders"].back()["textures"] = shader.textures;
+    textures = textures || !cpp;
+  }
+  for (std::size_t i = 0; textures && i < brdf.tables().size(); ++i) {
+    const Table& table = brdf.tables()[i];
+    files.push_back({fmt::format("{}_{}.ktx2", name, i), encode_ktx2(table, !arguments.plain)});
+    manifest["textures"].push_back({{"table", table.name},
+                                    {"file", files.back().name},
+                                    {"width", table.layout.width},
+                                    {"height", table.layout.height},
+                                    {"channels", table.channels},
+                                    {"format", to_string(table.format)},
+                                    {"warp", to_string(table.layout.warp)},
+                                    {"wrap", "clamp_to_edge"}});
+    if (table.layout.shape == TableShape::grid)
+      manifest["textures"].back()["warp_y"] = to_string(table.layout.warp_y);
+  }
+  if (wants("html")) {
+    files.push_back({name + ".html", export_page(brdf, name)});
+    manifest["page"] = files.back().name;
+  }
+  return files;
+}
+
+}  // namespace
+
+void add_export_command(CLI::App& app) {
+  CLI::App* verb = app.add_subcommand(
+      "export", "Write a factored BRDF as shader code, KTX2 textures, or a page that shows it");
+  verb->footer(
+      "Every shader comes with its textures but C++, which has them inside; NAME.json says what is in the "
+      "folder and what an evaluation costs. See docs/shaders.md.\n"
+      "Example: burnish export paint.exr --to glsl --to html -o paint");
+  auto arguments = std::make_shared<Arguments>();
+  verb->add_option("MODEL", arguments->model, "factored BRDF, as `burnish fit` writes it")->required();
+  std::vector<std::string> targets{"ktx2", "html"};
+  for (const Target& target : kTargets) targets.emplace_back(target.name);
+  verb->add_option("--to", arguments->to, "what to write; may be given several times")
+      ->required()
+      ->check(CLI::IsMember(targets));
+  verb->add_option("-o,--out", arguments->folder, "folder, made where it is missing")->required();
+  verb->add_option("--name", arguments->name, "of functions and files; by default from MODEL's name");
+  verb->add_flag("--exact", arguments->exact, "shaders that weigh texels themselves, in floats");
+  verb->add_flag("--plain", arguments->plain, "textures that are not compressed");
+  verb->callback([arguments] {
+    if (arguments->name.empty()) arguments->name = name_of(arguments->model);
+    const FactoredBrdf brdf = parse_model(read_file(arguments->model)).brdf;
+    json manifest{{"generator", "burnish"},
+                  {"name", arguments->name},
+                  {"model", model_expression(brdf)},
+                  {"channels", brdf.channels()},
+                  {"table_bytes", brdf.table_bytes()}};
+    std::vector<ExportedFile> files = export_files(brdf, *arguments, manifest);
+    files.push_back(
+        {arguments->name + ".json", manifest.dump(2, ' ', true, json::error_handler_t::replace) + "\n"});
+    std::error_code failed;
+    fs::create_directories(arguments->folder, failed);
+    if (failed) throw Error::in_file(arguments->folder, "a folder", failed.message());
+    for (const ExportedFile& file : files) {
+      write_then_rename(fs::path(arguments->folder) / file.name, file.bytes);
+      fmt::print("{}\n", file.name);
+    }
+    if (manifest.contains("shaders")) {
+      for (const json& shader : manifest["shaders"]) {
+        const json& c = shader["cost"];
+        fmt::print(
+            "{}: {} filter, {}\n", shader["file"].get<std::string>(), shader["filter"].get<std::string>(),
+            to_string(ShaderCost{c["fetches"], c["operations"], c["divisions"], c["roots"], c["powers"]}));
+      }
+    }
+  });
+}
+
+}  // namespace burnish::cli

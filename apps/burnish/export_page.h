@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include <burnish/factors/factored_brdf.h>
+
+namespace burnish::cli {
+
+/// An HTML page that shows the model on a torus knot or a sphere under a light that follows the pointer:
+/// WebGL2, everything inside, nothing loaded. Throws Error as generate_shader does.
+std::string export_page(const FactoredBrdf& brdf, const std::string& name);
+
+}  // namespace burnish::cli
