@@ -7,19 +7,28 @@
 #include <burnish/render/gl_evaluator.h>
 #include <burnish/shaders/models_for_tests.h>
 
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/lsan_interface.h>
+#endif
+
 namespace burnish {
 namespace {
 
 class GlEvaluatorTest : public testing::TestWithParam<ShaderModelCase> {
  protected:
   static void SetUpTestSuite() {
+#ifdef __SANITIZE_ADDRESS__
+    const __lsan::ScopedDisabler not_ours;  // what drivers keep when they are unloaded
+#endif
     try {
       context_ = std::make_unique<GlContext>();
     } catch (const Error& error) {
       reason_ = error.what();
     }
   }
-  static void TearDownTestSuite() { context_.reset(); }
+  static void TearDownTestSuite() {
+    context_.reset();
+  }
   void SetUp() override {
     if (!context_) GTEST_SKIP() << reason_;
   }

@@ -1,0 +1,120 @@
+// What `burnish export` writes opens elsewhere.
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <burnish/factors/model_file.h>
+#include <burnish/shaders/models_for_tests.h>
+
+namespace burnish {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+std::string read(const fs::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+void write(const fs::path& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+int run(const std::string& command) {
+  return WEXITSTATUS(std::system(command.c_str()));
+}
+
+bool has_tool(const std::string& name) {
+  return run("command -v " + name + " >/dev/null 2>&1") == 0;
+}
+
+class Export : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::create_directories(folder_);
+    write(folder_ / "two lobes.exr", format_model({shader_model(kShaderModels[2]), {}, "{}"}));
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  int exports(const std::string& arguments) const {
+    return run(fmt::format("{} export '{}/two lobes.exr' -o {}/out {} > {}/said 2>&1", BURNISH_CLI,
+                           folder_.string(), folder_.string(), arguments, folder_.string()));
+  }
+
+  fs::path folder_ = fs::temp_directory_path() / fmt::format("burnish_export_{}", ::getpid());
+};
+
+TEST_F(Export, WritesEveryLanguageWithItsTexturesAndAManifest) {
+  ASSERT_EQ(exports("--to glsl --to glsl_es --to hlsl --to msl --to wgsl --to cpp --to html"), 0)
+      << read(folder_ / "said");
+  const std::string manifest = read(folder_ / "out/two_lobes.json");
+  std::size_t files = 0;
+  for (const auto& entry : fs::directory_iterator(folder_ / "out")) {
+    ++files;
+    EXPECT_GT(fs::file_size(entry), 0u);
+    const std::string name = entry.path().filename().string();
+    EXPECT_TRUE(name.ends_with(".json") || manifest.find('"' + name + '"') != std::string::npos) << name;
+  }
+  EXPECT_EQ(files, 6u + 3 + 1 + 1);
+  EXPECT_THAT(read(folder_ / "said"), HasSubstr("two_lobes.glsl: hardware filter, 4 fetches"));
+}
+
+TEST_F(Export, RefusesWhatIsNoModelAndNoTargetAndLeavesNothing) {
+  EXPECT_EQ(exports("--to png"), 2);
+  EXPECT_EQ(exports("--to glsl --name a__b"), 1);
+  write(folder_ / "two lobes.exr", "v/1\x01 no model");
+  EXPECT_EQ(exports("--to glsl"), 1);
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+TEST_F(Export, ThePageLoadsNothing) {
+  ASSERT_EQ(exports("--to html"), 0);
+  const std::string page = read(folder_ / "out/two_lobes.html");
+  for (const char* loads : {"http", "src=", "url(", "import ", "fetch(", "<link"})
+    EXPECT_THAT(page, Not(HasSubstr(loads)));
+}
+
+TEST_F(Export, ThePageShowsTheMaterialUnderALightThatIsDragged) {
+  if (!has_tool("chromium")) GTEST_SKIP() << "no chromium";
+  ASSERT_EQ(exports("--to html"), 0);
+  std::string page = read(folder_ / "out/two_lobes.html");
+  page.insert(page.find("<script>"),
+              "<script>let errors = 0; console.error = () => ++errors;"
+              "addEventListener('error', () => ++errors);</script>");
+  page.insert(page.find("</html>"), R"(<script>
+const shot = () => canvas.toDataURL(), move = (buttons, x, y) => {
+  canvas.dispatchEvent(new PointerEvent("pointermove", {buttons, clientX: x, clientY: y, bubbles: true}));
+  return shot();
+};
+const start = shot(), hovered = move(0, 60, 300), dragged = move(1, 60, 300), back = move(1, 300, 60);
+find("select").value = "sphere";
+find("select").dispatchEvent(new Event("input"));
+const sphere = shot(), pixel = new Uint8Array(4);
+gl.readPixels(canvas.width / 2, canvas.height / 2, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+document.body.dataset.result = [hovered === start, dragged !== start, back !== dragged, sphere !== back,
+                                pixel[0] + pixel[1] + pixel[2] > 80, gl.getError() === 0, errors === 0].join(" ");
+</script>)");
+  write(folder_ / "page.html", page);
+  ASSERT_EQ(
+      run(fmt::format("timeout 60 chromium --headless --no-sandbox --use-gl=angle --use-angle=swiftshader "
+                      "--enable-unsafe-swiftshader --window-size=400,400 --user-data-dir={0}/profile "
+                      "--virtual-time-budget=5000 --dump-dom file://{0}/page.html > {0}/dom 2> {0}/said",
+                      folder_.string())),
+      0)
+      << read(folder_ / "said");
+  EXPECT_THAT(read(folder_ / "dom"), HasSubstr("data-result=\"true true true true true true true\""));
+}
+
+}  // namespace
+}  // namespace burnish
