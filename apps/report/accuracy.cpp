@@ -1,6 +1,8 @@
-// burnish_accuracy DOCS_FOLDER [--quick]: how accurate models of a number of bytes are, beside others of the
-// same size, printed as Markdown tables; figures go to DOCS_FOLDER/figures. Real materials need the folder of
-// measurements in the environment variable BURNISH_DATA and are left out, with a message, without it.
+// burnish_accuracy DOCS_FOLDER [--quick | rgl | merl | others | paints]: how accurate models of a number of
+// bytes are, beside others of the same size, printed as Markdown tables; figures go to DOCS_FOLDER/figures.
+// Real materials need the folder of measurements in the environment variable BURNISH_DATA and are left out,
+// with a message, without it. A section's name prints that one alone.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -9,6 +11,7 @@
 #include <thread>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <burnish/error.h>
 #include <burnish/fitting/baselines/baselines.h>
@@ -301,31 +304,34 @@ void report_paints(const fs::path& data) {
 }  // namespace burnish
 
 int main(int argc, char** argv) {
-  const bool quick = argc == 3 && std::string_view(argv[2]) == "--quick";
-  if (argc != 2 && !quick) {
-    fmt::print(stderr, "usage: burnish_accuracy DOCS_FOLDER [--quick]\n");
+  const std::string_view option = argc == 3 ? argv[2] : "";
+  const bool quick = option == "--quick";
+  const std::array<std::string_view, 4> sections{"rgl", "merl", "others", "paints"};
+  if (argc < 2 || argc > 3 ||
+      (argc == 3 && !quick && std::ranges::find(sections, option) == sections.end())) {
+    fmt::print(stderr, "usage: burnish_accuracy DOCS_FOLDER [--quick | {}]\n", fmt::join(sections, " | "));
     return 2;
   }
+  const auto wanted = [&](std::string_view section) { return argc == 2 || quick || option == section; };
   try {
     const burnish::Stopwatch watch;
-    fmt::print(
-        "# Accuracy: what a number of bytes buys\n\nMade by `make report` on {}, {} threads. The error "
-        "figures are "
-        "defined in [notation.md](notation.md); all are of the models as stored, on directions that were not "
-        "fitted. "
-        "`rms` is absolute, in 1/sr. Table reads and multiplies are those of one evaluation, all channels. "
-        "How the "
-        "models are fitted: [lobes.md](lobes.md).\n\n",
-        burnish::processor(), std::thread::hardware_concurrency());
+    if (argc == 2 || quick)
+      fmt::print(
+          "# Accuracy: what a number of bytes buys\n\nMade by `make report` on {}, {} threads. The error "
+          "figures are "
+          "defined in [notation.md](notation.md); all are of the models as stored, on directions that were "
+          "not "
+          "fitted. `rms` is absolute, in 1/sr. Table reads and multiplies are those of one evaluation, all "
+          "channels. "
+          "How the models are fitted: [lobes.md](lobes.md).\n\n",
+          burnish::processor(), std::thread::hardware_concurrency());
     const char* data = std::getenv("BURNISH_DATA");
-    if (data) {
-      burnish::report_rgl(data, argv[1], quick);
-      burnish::report_merl(data, quick);
-    } else {
-      fmt::print("BURNISH_DATA is not set: no real materials.\n");
-    }
-    burnish::report_others(data ? std::optional<burnish::fs::path>(data) : std::nullopt, argv[1], quick);
-    if (data && !quick) burnish::report_paints(data);
+    if (!data) fmt::print("BURNISH_DATA is not set: no real materials.\n");
+    if (data && wanted("rgl")) burnish::report_rgl(data, argv[1], quick);
+    if (data && wanted("merl")) burnish::report_merl(data, quick);
+    if (wanted("others"))
+      burnish::report_others(data ? std::optional<burnish::fs::path>(data) : std::nullopt, argv[1], quick);
+    if (data && !quick && wanted("paints")) burnish::report_paints(data);
     fmt::print("\nMade in {:.0f} s.\n", watch.seconds());
   } catch (const std::exception& error) {
     fmt::print(stderr, "burnish_accuracy: {}\n", error.what());
