@@ -55,9 +55,11 @@ void add_pictures(const std::string& name, const Image8& reference, const std::v
               ? "analytic\n" + score.method.substr(9)
               : fmt::format("{}\n{} bytes", score.method, score.budget > 0 ? score.budget : score.bytes));
     Image8 difference = score.picture;
+    const bool alpha = difference.channels == 4;
     for (std::size_t i = 0; i < difference.pixels.size(); ++i)
-      difference.pixels[i] = static_cast<std::uint8_t>(
-          std::min(255, 4 * std::abs(int{score.picture.pixels[i]} - int{reference.pixels[i]})));
+      if (!alpha || i % 4 < 3)
+        difference.pixels[i] = static_cast<std::uint8_t>(
+            std::min(255, 4 * std::abs(int{score.picture.pixels[i]} - int{reference.pixels[i]})));
     shown.push_back(score.picture);
     differences.push_back(std::move(difference));
   }
