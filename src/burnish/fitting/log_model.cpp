@@ -57,17 +57,6 @@ LogModel fit_one_lobe(const ModelSpec& spec, const TrainingSet& set, const std::
   throw Error("fit: expected a table with all channels in every lobe, found shared ones alone");
 }
 
-LogModel joined(LogModel a, const LogModel& b) {
-  const auto offset = static_cast<int>(a.spec.tables.size());
-  a.spec.tables.insert(a.spec.tables.end(), b.spec.tables.begin(), b.spec.tables.end());
-  a.log_values.insert(a.log_values.end(), b.log_values.begin(), b.log_values.end());
-  for (std::vector<FactorUse> lobe : b.spec.lobes) {
-    for (FactorUse& use : lobe) use.table += offset;
-    a.spec.lobes.push_back(std::move(lobe));
-  }
-  return a;
-}
-
 LogModel with_lobe_split(LogModel model, std::size_t lobe, double centre, const std::string& suffix,
                          std::span<const std::string> common) {
   const auto is_common = [&](int table) {

@@ -34,9 +34,6 @@ struct LogModel {
 LogModel fit_one_lobe(const ModelSpec& spec, const TrainingSet& set, const std::vector<float>& values,
                       double smooth);
 
-/// Puts the lobes of two models side by side. Tables keep their names and must differ in them.
-LogModel joined(LogModel a, const LogModel& b);
-
 /// Splits lobe `lobe` in two that add up to it: its table over theta_d is multiplied with a step from 1 to 0
 /// (or 0 to 1) at tan(theta_d / 2) = `centre`, the other tables are copied. The new tables are named
 /// `suffix` after the old; tables named in `common`, not all of the lobe's, serve both. A lobe without a 1-D

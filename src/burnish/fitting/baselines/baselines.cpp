@@ -73,16 +73,4 @@ BaselineFit fit_baseline(BrdfRef source, const SampleSource& samples, std::strin
   return result;
 }
 
-std::vector<BaselineFit> fit_baselines(BrdfRef source, const BaselineOptions& options) {
-  constexpr std::size_t kSamples = 200'000;
-  const SampleSource samples = from_brdf(source, kSamples, options.seed, false);
-  std::vector<BaselineFit> fits;
-  for (const std::string_view method : kMethods) {
-    if (method == "dgf" && !source.isotropic()) continue;
-    if (method.starts_with(kAnalytic) && source.channels() != 1 && source.channels() != 3) continue;
-    fits.push_back(fit_baseline(source, samples, method, options));
-  }
-  return fits;
-}
-
 }  // namespace burnish

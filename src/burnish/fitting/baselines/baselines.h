@@ -7,7 +7,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include <burnish/factors/baseline_file.h>
 #include <burnish/factors/evaluation_cost.h>
@@ -38,9 +37,5 @@ struct BaselineFit {
 /// another method, and as fit_separable, fit_dgf and fit_analytic.
 BaselineFit fit_baseline(BrdfRef source, const SampleSource& samples, std::string_view method,
                          const BaselineOptions& options);
-
-/// Fits every method that takes the source (dgf needs an isotropic one, analytic models 1 or 3 channels) to
-/// 200,000 pairs drawn from it, in the order of baseline_methods(). Throws Error as fit_baseline.
-std::vector<BaselineFit> fit_baselines(BrdfRef source, const BaselineOptions& options);
 
 }  // namespace burnish
