@@ -8,22 +8,14 @@
 
 #include <hwy/highway.h>
 
+#include <burnish/eval/lanes-inl.h>
+
 HWY_BEFORE_NAMESPACE();
 namespace burnish {
 namespace HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using D = hn::ScalableTag<float>;
-using DI = hn::RebindToSigned<D>;
-
-struct Reals {
-  hn::Vec<D> raw;
-
-  Reals() = default;
-  HWY_INLINE explicit Reals(double x) : raw(hn::Set(D(), static_cast<float>(x))) {}
-  HWY_INLINE explicit Reals(hn::Vec<D> v) : raw(v) {}
-};
+using Reals = Lane;
 struct Ints {
   hn::Vec<DI> raw;
 
@@ -32,29 +24,8 @@ struct Ints {
   HWY_INLINE explicit Ints(hn::Vec<DI> v) : raw(v) {}
 };
 
-HWY_INLINE Reals operator+(Reals a, Reals b) {
-  return Reals(hn::Add(a.raw, b.raw));
-}
-HWY_INLINE Reals operator-(Reals a, Reals b) {
-  return Reals(hn::Sub(a.raw, b.raw));
-}
-HWY_INLINE Reals operator*(Reals a, Reals b) {
-  return Reals(hn::Mul(a.raw, b.raw));
-}
-HWY_INLINE Reals operator/(Reals a, Reals b) {
-  return Reals(hn::Div(a.raw, b.raw));
-}
-HWY_INLINE Reals sqrt(Reals a) {
-  return Reals(hn::Sqrt(a.raw));
-}
 HWY_INLINE Reals abs(Reals a) {
   return Reals(hn::Abs(a.raw));
-}
-HWY_INLINE Reals min(Reals a, Reals b) {
-  return Reals(hn::Min(a.raw, b.raw));
-}
-HWY_INLINE Reals max(Reals a, Reals b) {
-  return Reals(hn::Max(a.raw, b.raw));
 }
 HWY_INLINE Ints operator+(Ints a, Ints b) {
   return Ints(hn::Add(a.raw, b.raw));
