@@ -9,10 +9,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <burnish/factors/model_file.h>
-#include <burnish/shaders/models_for_tests.h>
+#include <burnish/factors/models_for_tests.h>
+#include <burnish/tools_for_tests.h>
 
 namespace burnish {
 namespace {
@@ -27,32 +27,23 @@ std::string read(const fs::path& path) {
   return text.str();
 }
 
-void write(const fs::path& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary) << bytes;
-}
-
 int run(const std::string& command) {
   return WEXITSTATUS(std::system(command.c_str()));
-}
-
-bool has_tool(const std::string& name) {
-  return run("command -v " + name + " >/dev/null 2>&1") == 0;
 }
 
 class Export : public testing::Test {
  protected:
   void SetUp() override {
-    fs::create_directories(folder_);
-    write(folder_ / "two lobes.exr", format_model({shader_model(kShaderModels[2]), {}, "{}"}));
+    write(folder_ / "two lobes.exr", format_model({smooth_model(kModelCases[2]), {}, "{}"}));
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   int exports(const std::string& arguments) const {
     return run(fmt::format("{} export '{}/two lobes.exr' -o {}/out {} > {}/said 2>&1", BURNISH_CLI,
                            folder_.string(), folder_.string(), arguments, folder_.string()));
   }
 
-  fs::path folder_ = fs::temp_directory_path() / fmt::format("burnish_export_{}", ::getpid());
+  TemporaryFolder scratch_{"export"};
+  const fs::path folder_ = scratch_.path;
 };
 
 TEST_F(Export, WritesEveryLanguageWithItsTexturesAndAManifest) {

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <burnish/shaders/models_for_tests.h>
+#include <burnish/factors/models_for_tests.h>
 #include <burnish/shaders/shader.h>
 
 namespace burnish {
@@ -78,7 +78,7 @@ document.body.dataset.result = models.map(evaluate).join(" ");
 )";
 
 std::string page() {
-  const auto pairs = shader_pairs(kSide * kSide);
+  const auto pairs = corner_and_random_pairs(kSide * kSide);
   std::vector<double> wi, wo;
   for (const auto& pair : pairs) {
     wi.insert(wi.end(), {pair.wi.x, pair.wi.y, pair.wi.z, 1});
@@ -87,8 +87,8 @@ std::string page() {
   std::string text =
       fmt::format("<!DOCTYPE html><body><script>const side = {}, wi = [{}], wo = [{}], models = [", kSide,
                   fmt::join(wi, ","), fmt::join(wo, ","));
-  for (const ShaderModelCase& model : kShaderModels) {
-    const FactoredBrdf brdf = shader_model(model);
+  for (const ModelCase& model : kModelCases) {
+    const FactoredBrdf brdf = smooth_model(model);
     const Shader shader = generate_shader(brdf, {ShaderLanguage::glsl_es, ShaderFilter::exact, "m"});
     text += "{shader: `" + shader.text + "`, textures: [";
     for (std::size_t i = 0; i < brdf.tables().size(); ++i) {
@@ -132,7 +132,7 @@ TEST(WebGl, AgreesWithTheDefinitionToOnePartIn100000) {
   const auto at = text.find(mark);
   ASSERT_NE(at, std::string::npos);
   std::istringstream results(text.substr(at + mark.size()));
-  for (const ShaderModelCase& model : kShaderModels) {
+  for (const ModelCase& model : kModelCases) {
     double worst = NAN;
     ASSERT_TRUE(results >> worst) << model.name;
     EXPECT_LE(worst, 1e-5) << model.name;

@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <burnish/factors/models_for_tests.h>
 #include <burnish/render/gl_context.h>
 #include <burnish/render/gl_evaluator.h>
-#include <burnish/shaders/models_for_tests.h>
 
 namespace burnish {
 namespace {
@@ -35,13 +35,13 @@ void print_precision(const GlContext& context) {
       "| model | tables | exact, float | exact, half | hardware, float | hardware, half "
       "|\n|---|---|---|---|---|---|\n",
       kPairs, context.renderer());
-  const auto pairs = shader_pairs(kPairs);
+  const auto pairs = corner_and_random_pairs(kPairs);
   std::vector<GlDirections> directions;
   const auto single = [](double x) { return static_cast<float>(x); };
   for (const auto& [a, b] : pairs)
     directions.push_back({{single(a.x), single(a.y), single(a.z)}, {single(b.x), single(b.y), single(b.z)}});
-  for (const ShaderModelCase& model : kShaderModels) {
-    const FactoredBrdf brdf = shader_model(model);
+  for (const ModelCase& model : kModelCases) {
+    const FactoredBrdf brdf = smooth_model(model);
     const auto channels = static_cast<std::size_t>(brdf.channels());
     std::vector<double> truth(3 * pairs.size());
     for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -69,8 +69,8 @@ void print_costs() {
     return fmt::format("{} fetches, {} + {} + {} + {}", c.fetches, c.operations, c.divisions, c.roots,
                        c.powers);
   };
-  for (const ShaderModelCase& model : kShaderModels) {
-    const FactoredBrdf brdf = shader_model(model);
+  for (const ModelCase& model : kModelCases) {
+    const FactoredBrdf brdf = smooth_model(model);
     const auto cost = [&](ShaderFilter filter) {
       return text(generate_shader(brdf, {ShaderLanguage::glsl, filter, "model"}).cost);
     };

@@ -10,7 +10,7 @@
 
 namespace burnish {
 
-struct ShaderModelCase {
+struct ModelCase {
   const char* name;
   const char* expression;
   std::vector<std::string> options;
@@ -18,7 +18,7 @@ struct ShaderModelCase {
 };
 
 /// Every kind of table, warp and projection, alone and together.
-inline const ShaderModelCase kShaderModels[] = {
+inline const ModelCase kModelCases[] = {
     {"Pqp", "pqp", {"p=32", "q=64"}, 3},
     {"DiskPqp", "pqp", {"p=32x32", "q=64x64,rational:0.2"}, 3},
     {"Pqpr", "pqpr", {"p=32", "q=64,rational:0.05", "r=32"}, 3},
@@ -34,19 +34,19 @@ inline const ShaderModelCase kShaderModels[] = {
     {"ThreeLobes", "p(wo) q(h) p(wi) + p(wo) s(h) p(wi) + t(theta_d)", {"p=8", "q=64", "s=16", "t=8"}, 3},
 };
 
-/// Smooth tables, as fits have them: neighbours differ by 12 % at most from sides of 32 up.
-inline FactoredBrdf shader_model(const ShaderModelCase& model, TableFormat format = TableFormat::single) {
-  Pcg32 random(7);
+/// A model of the case's form: log_value(table, x, y, channel) fills its tables, `random` its lobes' scales.
+template <class LogValue>
+FactoredBrdf model_of(const ModelCase& model, TableFormat format, Pcg32& random, LogValue log_value) {
   const ModelSpec spec = parse_model_spec(model.expression, model.options, true);
   std::vector<Table> tables;
-  for (const ModelSpec::TableSpec& t : spec.tables) {
-    Table table{.name = t.name, .layout = t.layout, .channels = t.shared ? 1 : model.channels, .values = {}};
-    const double phase = 6 * random.uniform();
-    for (int y = 0; y < t.layout.height; ++y)
-      for (int x = 0; x < t.layout.width; ++x)
+  for (std::size_t t = 0; t < spec.tables.size(); ++t) {
+    const ModelSpec::TableSpec& form = spec.tables[t];
+    Table table{
+        .name = form.name, .layout = form.layout, .channels = form.shared ? 1 : model.channels, .values = {}};
+    for (int y = 0; y < form.layout.height; ++y)
+      for (int x = 0; x < form.layout.width; ++x)
         for (int c = 0; c < table.channels; ++c)
-          table.values.push_back(static_cast<float>(std::sin(3.0 * x / t.layout.width + phase + 0.5 * c) *
-                                                    std::cos(2.5 * y / t.layout.height + phase)));
+          table.values.push_back(static_cast<float>(log_value(t, form.layout, x, y, c)));
     tables.push_back(std::move(table));
   }
   std::vector<Lobe> lobes;
@@ -58,15 +58,40 @@ inline FactoredBrdf shader_model(const ShaderModelCase& model, TableFormat forma
   return from_log_tables(model.channels, std::move(tables), std::move(lobes), format);
 }
 
-/// `count` random pairs after the corners (normal, grazing, borders of maps, wi == wo, where phi wraps, below
-/// the horizon), as floats hold them.
-inline std::vector<DirectionPair> shader_pairs(int count) {
-  const Vec3 corners[] = {{0, 0, 1},         {1, 0, 1e-5}, {-1, 0, 1e-5},   {0, -1, 1e-3},   {1e-6, 0, 1},
-                          {-1e-6, 1e-6, 1},  {1, 1, 1},    {1, 1, 0.999},   {-1, -1e-9, .5}, {-1, 1e-9, .5},
-                          {0.7, -0.7, 1e-7}, {0, 0, -1},   {0.3, 0.1, -0.2}};
+/// Smooth tables, as fits have them: neighbours differ by 12 % at most from sides of 32 up.
+inline FactoredBrdf smooth_model(const ModelCase& model, TableFormat format = TableFormat::single) {
+  Pcg32 random(7);
+  std::vector<double> phases;  // one a table
+  return model_of(model, format, random,
+                  [&](std::size_t table, const TableLayout& layout, int x, int y, int c) {
+                    if (table == phases.size()) phases.push_back(6 * random.uniform());
+                    return std::sin(3.0 * x / layout.width + phases[table] + 0.5 * c) *
+                           std::cos(2.5 * y / layout.height + phases[table]);
+                  });
+}
+
+/// All pairs of the corners: normal, grazing, borders of maps, wi == wo, where phi wraps, below the horizon.
+inline std::vector<DirectionPair> corner_pairs() {
+  const Vec3 corners[] = {{0, 0, 1},         {1, 0, 1e-5}, {-1, 0, 1e-5},    {0, -1, 1e-3},   {1e-6, 0, 1},
+                          {-1e-6, 1e-6, 1},  {1, 1, 1},    {1, 1, 0.999},    {-1, -1e-9, .5}, {-1, 1e-9, .5},
+                          {0.7, -0.7, 1e-7}, {0, 0, -1},   {0.3, 0.1, -0.2}, {1, 0, 0}};
   std::vector<DirectionPair> pairs;
   for (const Vec3 wi : corners)
     for (const Vec3 wo : corners) pairs.push_back({normalize(wi), normalize(wo)});
+  return pairs;
+}
+
+/// The pairs with the components that floats hold.
+inline std::vector<DirectionPair> as_floats(std::vector<DirectionPair> pairs) {
+  for (auto& [wi, wo] : pairs)
+    for (Vec3* w : {&wi, &wo})
+      *w = {static_cast<float>(w->x), static_cast<float>(w->y), static_cast<float>(w->z)};
+  return pairs;
+}
+
+/// The corners and random pairs, a tenth of them wi == wo, `count` together, as floats hold them.
+inline std::vector<DirectionPair> corner_and_random_pairs(int count) {
+  std::vector<DirectionPair> pairs = corner_pairs();
   Pcg32 random(11);
   while (static_cast<int>(pairs.size()) < count) {
     const auto draw = [&] {
@@ -77,10 +102,7 @@ inline std::vector<DirectionPair> shader_pairs(int count) {
     const Vec3 wi = draw();
     pairs.push_back({wi, random.uniform() < 0.1 ? wi : draw()});
   }
-  for (auto& [wi, wo] : pairs)
-    for (Vec3* w : {&wi, &wo})
-      *w = {static_cast<float>(w->x), static_cast<float>(w->y), static_cast<float>(w->z)};
-  return pairs;
+  return as_floats(std::move(pairs));
 }
 
 /// How much cancelling terms of projections magnify rounding errors: the largest of (sum of |coefficients|) /

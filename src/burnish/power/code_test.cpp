@@ -9,10 +9,10 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <burnish/error.h>
 #include <burnish/power/code.h>
+#include <burnish/tools_for_tests.h>
 
 namespace burnish {
 namespace {
@@ -20,24 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-struct TemporaryFolder {
-  fs::path path = fs::temp_directory_path() / fmt::format("burnish_code_{}", ::getpid());
-  TemporaryFolder() { fs::create_directories(path); }
-  ~TemporaryFolder() { fs::remove_all(path); }
-};
-
-void write(const fs::path& path, const std::string& text) {
-  std::ofstream(path) << text;
-}
-
-bool has_tool(const std::string& name) {
-  return std::system(("command -v " + name + " >/dev/null 2>&1").c_str()) == 0;
-}
-
 // The emitted functions of all members, each made unique, run by one C program over a grid of cosines.
 TEST(PowerCode, EmittedCEqualsTheDefinition) {
   if (!has_tool("cc")) GTEST_SKIP() << "no C compiler";
-  const TemporaryFolder folder;
+  const TemporaryFolder folder("code");
   constexpr double kExponents[] = {4, 21.5, 1000};
   std::string program, calls;
   int functions = 0;
@@ -90,7 +76,7 @@ class EmittedShaders : public testing::TestWithParam<std::array<const char*, 4>>
 TEST_P(EmittedShaders, AreAcceptedByTheirCompiler) {
   const auto [language, tool, extension, command] = GetParam();
   if (!has_tool(tool)) GTEST_SKIP() << "no " << tool;
-  const TemporaryFolder folder;
+  const TemporaryFolder folder("code");
   for (const bool constant : {true, false}) {
     std::string functions, calls;
     for (const PowerInfo& info : power_methods()) {

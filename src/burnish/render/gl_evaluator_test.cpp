@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <burnish/error.h>
+#include <burnish/factors/models_for_tests.h>
 #include <burnish/render/gl_context.h>
 #include <burnish/render/gl_evaluator.h>
-#include <burnish/shaders/models_for_tests.h>
 
 #ifdef __SANITIZE_ADDRESS__
 #include <sanitizer/lsan_interface.h>
@@ -14,7 +14,7 @@
 namespace burnish {
 namespace {
 
-class GlEvaluatorTest : public testing::TestWithParam<ShaderModelCase> {
+class GlEvaluatorTest : public testing::TestWithParam<ModelCase> {
  protected:
   static void SetUpTestSuite() {
 #ifdef __SANITIZE_ADDRESS__
@@ -35,8 +35,8 @@ class GlEvaluatorTest : public testing::TestWithParam<ShaderModelCase> {
 
   // The largest relative error over the pairs, divided by how much projections cancel.
   static double error(ShaderFilter filter, TableFormat precision) {
-    const FactoredBrdf brdf = shader_model(GetParam());
-    const auto pairs = shader_pairs(5000);
+    const FactoredBrdf brdf = smooth_model(GetParam());
+    const auto pairs = corner_and_random_pairs(5000);
     std::vector<GlDirections> directions;
     for (const auto& [a, b] : pairs) {
       const auto single = [](double x) { return static_cast<float>(x); };
@@ -72,11 +72,11 @@ TEST_P(GlEvaluatorTest, StaysWithinTheErrorOfEveryFilterAndPrecision) {
   EXPECT_LE(error(ShaderFilter::hardware, TableFormat::half), 5e-3 + 2e-3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, GlEvaluatorTest, testing::ValuesIn(kShaderModels),
+INSTANTIATE_TEST_SUITE_P(Models, GlEvaluatorTest, testing::ValuesIn(kModelCases),
                          [](const auto& test) { return std::string(test.param.name); });
 
 TEST(GlEvaluator, RefusesTexturesThatAreNoFloats) {
-  EXPECT_THROW(GlEvaluator(shader_model(kShaderModels[0]), ShaderFilter::exact, TableFormat::unorm8), Error);
+  EXPECT_THROW(GlEvaluator(smooth_model(kModelCases[0]), ShaderFilter::exact, TableFormat::unorm8), Error);
 }
 
 }  // namespace

@@ -6,31 +6,17 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <burnish/error.h>
-#include <burnish/shaders/models_for_tests.h>
+#include <burnish/factors/models_for_tests.h>
 #include <burnish/shaders/shader.h>
+#include <burnish/tools_for_tests.h>
 
 namespace burnish {
 namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
-
-struct TemporaryFolder {
-  fs::path path = fs::temp_directory_path() / fmt::format("burnish_shaders_{}", ::getpid());
-  TemporaryFolder() { fs::create_directories(path); }
-  ~TemporaryFolder() { fs::remove_all(path); }
-};
-
-void write(const fs::path& path, const std::string& text) {
-  std::ofstream(path) << text;
-}
-
-bool has_tool(const std::string& name) {
-  return std::system(("command -v " + name + " >/dev/null 2>&1").c_str()) == 0;
-}
 
 ::testing::AssertionResult runs(const std::string& command, const fs::path& log) {
   if (std::system(fmt::format("({}) > {} 2>&1", command, log.string()).c_str()) == 0)
@@ -40,17 +26,16 @@ bool has_tool(const std::string& name) {
   return ::testing::AssertionFailure() << command << ":\n" << said.str();
 }
 
-Shader shader_of(const ShaderModelCase& model, ShaderLanguage language,
-                 ShaderFilter filter = ShaderFilter::exact) {
-  return generate_shader(shader_model(model), {language, filter, model.name});
+Shader shader_of(const ModelCase& model, ShaderLanguage language, ShaderFilter filter = ShaderFilter::exact) {
+  return generate_shader(smooth_model(model), {language, filter, model.name});
 }
 
 // All models in one program that reads direction pairs and writes what they evaluate to.
 TEST(Shader, CppAgreesWithTheDefinitionToOnePartIn100000) {
   if (!has_tool("c++")) GTEST_SKIP() << "no C++ compiler";
-  const TemporaryFolder folder;
+  const TemporaryFolder folder("shaders");
   std::string program = "#include <stdio.h>\n", calls;
-  for (const ShaderModelCase& model : kShaderModels) {
+  for (const ModelCase& model : kModelCases) {
     const std::string file = fmt::format("{}.h", model.name);
     write(folder.path / file, shader_of(model, ShaderLanguage::cpp).text);
     program += fmt::format("#include \"{}\"\n", file);
@@ -71,7 +56,7 @@ TEST(Shader, CppAgreesWithTheDefinitionToOnePartIn100000) {
   ASSERT_TRUE(
       runs(fmt::format("c++ -std=c++17 -O1 -Wall -Wextra -Wdouble-promotion -Werror {0}.cpp -o {0}", binary),
            folder.path / "log"));
-  const auto pairs = shader_pairs(4000);
+  const auto pairs = corner_and_random_pairs(4000);
   {
     std::ofstream in(folder.path / "pairs", std::ios::binary);
     for (const auto& [wi, wo] : pairs)
@@ -84,7 +69,7 @@ TEST(Shader, CppAgreesWithTheDefinitionToOnePartIn100000) {
       runs(fmt::format("{0} < {1}/pairs > {1}/values", binary, folder.path.string()), folder.path / "log"));
   std::ifstream values(folder.path / "values", std::ios::binary);
   std::vector<FactoredBrdf> brdfs;
-  for (const ShaderModelCase& model : kShaderModels) brdfs.push_back(shader_model(model));
+  for (const ModelCase& model : kModelCases) brdfs.push_back(smooth_model(model));
   for (const auto& [wi, wo] : pairs)
     for (std::size_t m = 0; m < brdfs.size(); ++m) {
       float found[6];
@@ -95,7 +80,7 @@ TEST(Shader, CppAgreesWithTheDefinitionToOnePartIn100000) {
       for (int c = 0; c < 6; ++c) {
         const double expected = truth[brdfs[m].channels() == 1 ? 0 : c % 3];
         ASSERT_LE(std::abs(found[c] - expected), lit ? 1e-5 * cancellation(brdfs[m], wi, wo) * expected : 0)
-            << kShaderModels[m].name << " at " << wi.x << " " << wi.y << " " << wi.z << " " << wo.x << " "
+            << kModelCases[m].name << " at " << wi.x << " " << wi.y << " " << wi.z << " " << wo.x << " "
             << wo.y << " " << wo.z;
       }
     }
@@ -127,10 +112,10 @@ static Counted powf(Counted a, Counted b) { return ++powers, pow(a.v, b.v); }
 
 TEST(Shader, CostsWhatItSaysItCosts) {
   if (!has_tool("c++")) GTEST_SKIP() << "no C++ compiler";
-  const TemporaryFolder folder;
+  const TemporaryFolder folder("shaders");
   std::string program = kCounting, calls;
   std::string expected;
-  for (const ShaderModelCase& model : kShaderModels) {
+  for (const ModelCase& model : kModelCases) {
     const Shader shader = shader_of(model, ShaderLanguage::cpp);
     program += shader.text;
     calls += fmt::format(
@@ -181,9 +166,9 @@ class ShaderCompilers : public testing::TestWithParam<Checked> {};
 TEST_P(ShaderCompilers, AcceptEveryModelWithEitherFilter) {
   const Checked& checked = GetParam();
   if (!has_tool(checked.tool)) GTEST_SKIP() << "no " << checked.tool;
-  const TemporaryFolder folder;
+  const TemporaryFolder folder("shaders");
   std::string files;
-  for (const ShaderModelCase& model : kShaderModels)
+  for (const ModelCase& model : kModelCases)
     for (const ShaderFilter filter : {ShaderFilter::exact, ShaderFilter::hardware}) {
       const fs::path file =
           folder.path / fmt::format("{}{}.{}", model.name, filter == ShaderFilter::exact, checked.extension);
@@ -199,19 +184,19 @@ INSTANTIATE_TEST_SUITE_P(Languages, ShaderCompilers, testing::ValuesIn(kChecked)
 });
 
 TEST(Shader, ReadsATableOnceForEveryProjectionThatLobesShare) {
-  const ShaderModelCase one{"one", "pqp", {"p=8", "q=8"}, 3};
-  const ShaderModelCase two{"two", "p(wo) q(h) p(wi) + p(wo) s(h) p(wi)", {"p=8", "q=8", "s=8"}, 3};
+  const ModelCase one{"one", "pqp", {"p=8", "q=8"}, 3};
+  const ModelCase two{"two", "p(wo) q(h) p(wi) + p(wo) s(h) p(wi)", {"p=8", "q=8", "s=8"}, 3};
   EXPECT_EQ(shader_of(one, ShaderLanguage::glsl, ShaderFilter::hardware).cost.fetches, 3);
   EXPECT_EQ(shader_of(two, ShaderLanguage::glsl, ShaderFilter::hardware).cost.fetches, 4);
   EXPECT_EQ(shader_of(two, ShaderLanguage::glsl).cost.fetches, 8);
 }
 
 TEST(Shader, SaysWhatNoCompilerHasChecked) {
-  EXPECT_THAT(shader_of(kShaderModels[0], ShaderLanguage::msl).text, HasSubstr("No compiler has checked"));
+  EXPECT_THAT(shader_of(kModelCases[0], ShaderLanguage::msl).text, HasSubstr("No compiler has checked"));
 }
 
 TEST(Shader, KeepsHostileTableNamesOutOfCode) {
-  const FactoredBrdf sane = shader_model(kShaderModels[0]);
+  const FactoredBrdf sane = smooth_model(kModelCases[0]);
   std::vector<Table> tables(sane.tables().begin(), sane.tables().end());
   tables[0].name = "x\n#error";
   tables[1].name = "a__b";
@@ -222,14 +207,14 @@ TEST(Shader, KeepsHostileTableNamesOutOfCode) {
 }
 
 TEST(Shader, RefusesWhatItCannotWrite) {
-  const FactoredBrdf brdf = shader_model(kShaderModels[0]);
+  const FactoredBrdf brdf = smooth_model(kModelCases[0]);
   for (const char* name : {"", "1a", "a b", "a__b", "a_", "_a", "a;"})
     EXPECT_THROW(generate_shader(brdf, {.name = name}), Error) << name;
   EXPECT_THROW(generate_shader(brdf, {ShaderLanguage::cpp, ShaderFilter::hardware, "m"}), Error);
   EXPECT_THROW(shader_of({"m", "pqp", {"p=4", "q=4"}, 4}, ShaderLanguage::glsl), Error);
   std::string many = "a0(h)";
   for (int i = 1; i < 17; ++i) many += fmt::format(" a{}(h)", i);
-  const ShaderModelCase wide{"m", many.c_str(), {}, 3};
+  const ModelCase wide{"m", many.c_str(), {}, 3};
   EXPECT_THROW(shader_of(wide, ShaderLanguage::glsl), Error);
   EXPECT_NO_THROW(shader_of(wide, ShaderLanguage::cpp));
 }
