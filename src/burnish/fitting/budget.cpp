@@ -21,8 +21,9 @@ constexpr double kStartSmooth = 1e-3;
 // The way to the last refinement is made on about this many pairs and in few steps.
 constexpr std::size_t kCoarsePairs = 20'000;
 constexpr int kRoughSteps = 12;
-// Grids are added at the end, in rounds: each sees the floors that shared exponents set anew.
-constexpr int kGridSteps = 8, kGridRounds = 2;
+constexpr int kGridSteps = 16;
+// Refinements of all lobes go in rounds: each sees the floors that shared exponents set anew.
+constexpr int kRounds = 2;
 constexpr double kThinPart = 0.3;  // share of the work done by then
 
 /// Adds one refinement to the summary; its progress runs from `from` to `to`.
@@ -38,13 +39,20 @@ void refine_part(LogModel& model, const TrainingSet& set, RefineOptions options,
   summary.stop_reason = done.stop_reason;
 }
 
+void refine_in_rounds(LogModel& model, const TrainingSet& set, const RefineOptions& options, int steps,
+                      double from, double to, LobesSummary& summary) {
+  const auto part = [&](int round) { return from + (to - from) * round / kRounds; };
+  for (int k = 0; k < kRounds; ++k)
+    refine_part(model, set, options, (steps + k) / kRounds, part(k), part(k + 1), summary);
+}
+
 /// The last refinement: on part of the data, then on all.
 void refine_fully(LogModel& model, const TrainingSet& coarse, const TrainingSet& set,
                   const RefineOptions& options, double from, LobesSummary& summary) {
   const double middle = from + 0.3 * (1 - from);
   const int rough = coarse.size() < set.size() ? std::min(2 * kRoughSteps, options.max_iterations) : 0;
-  if (rough > 0) refine_part(model, coarse, options, rough, from, middle, summary);
-  refine_part(model, set, options, options.max_iterations - rough, middle, 1, summary);
+  if (rough > 0) refine_in_rounds(model, coarse, options, rough, from, middle, summary);
+  refine_in_rounds(model, set, options, options.max_iterations - rough, middle, 1, summary);
 }
 
 TrainingSet coarse_part(const TrainingSet& set) {
@@ -142,9 +150,7 @@ LobesFit fit_plan(const TrainingSet& set, const LobePlan& plan, std::size_t byte
   }
   if (grids) {
     fit.model = resampled(fit.model, whole);
-    const auto part = [](int round) { return kThinPart + (1 - kThinPart) * round / kGridRounds; };
-    for (int k = 0; k < kGridRounds; ++k)
-      refine_part(fit.model, set, options, kGridSteps, part(k), part(k + 1), fit.summary);
+    refine_in_rounds(fit.model, set, options, kGridSteps, kThinPart, 1, fit.summary);
   }
   return fit;
 }

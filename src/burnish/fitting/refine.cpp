@@ -1,10 +1,13 @@
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <thread>
 
 #include <burnish/error.h>
 #include <burnish/fitting/cholesky.h>
 #include <burnish/fitting/refine.h>
 #include <burnish/fitting/refine_system.h>
+#include <burnish/math/parallel.h>
 
 namespace burnish {
 
@@ -32,8 +35,8 @@ class StepSolver {
 
   void linearize(const Eigen::VectorXd& x, const ErrorTerms& means) {
     if (direct()) {
-      system_.find_normal(x, means, partial_);
-      system_.add_roughness_matrix(2 * smooth_, partial_.front().matrix);
+      system_.find_normal(x, means, normal_);
+      system_.add_roughness_matrix(2 * smooth_, normal_.matrix);
     } else {
       rows_ = system_.rows(x, means);
     }
@@ -41,15 +44,15 @@ class StepSolver {
   }
 
   Eigen::VectorXd step(double damping) {
-    const Eigen::VectorXd diagonal = direct() ? Eigen::VectorXd(partial_.front().matrix.diagonal())
+    const Eigen::VectorXd diagonal = direct() ? Eigen::VectorXd(normal_.matrix.diagonal())
                                               : Eigen::VectorXd(rows_.diagonal + roughness_diagonal_);
     const Eigen::VectorXd extra =
         damping * diagonal.array() + (kRidge + damping * kDampedRidge) * diagonal.mean();
     Eigen::VectorXd dx;
     if (direct()) {
-      factorized_ = partial_.front().matrix;
+      factorized_ = normal_.matrix;
       factorized_.diagonal() += extra;
-      dx = -partial_.front().gradient;
+      dx = -normal_.gradient;
       solve_in_place(factorized_, dx);
     } else {
       dx = conjugate_gradients(extra, diagonal + extra);
@@ -59,7 +62,7 @@ class StepSolver {
 
  private:
   bool direct() const { return system_.size() <= kMostDirectUnknowns; }
-  Eigen::VectorXd& gradient() { return direct() ? partial_.front().gradient : rows_.gradient; }
+  Eigen::VectorXd& gradient() { return direct() ? normal_.gradient : rows_.gradient; }
 
   Eigen::VectorXd conjugate_gradients(const Eigen::VectorXd& extra, const Eigen::VectorXd& diagonal) const {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(extra.size()), r = -rows_.gradient;
@@ -83,9 +86,72 @@ class StepSolver {
   const RefineSystem& system_;
   double smooth_;
   Eigen::VectorXd roughness_diagonal_;
-  std::vector<RefineSystem::Normal> partial_;
+  RefineSystem::Normal normal_;
   Eigen::MatrixXd factorized_;
   RefineSystem::Rows rows_;
+};
+
+/// Levenberg-Marquardt steps of one channel, or of coupled channels.
+class Descent {
+ public:
+  Descent(const LogModel& model, const TrainingSet& set, const Lookups& lookups, const PictureLoss& loss,
+          const RefineOptions& options, std::size_t first_channel, std::size_t last_channel)
+      : options_(options),
+        loss_(loss),
+        system_(model, set, lookups, loss, options.format, first_channel, last_channel),
+        x_(system_.read(model)) {}
+
+  template <class BeforeStep>
+  void run(BeforeStep before_step) {
+    StepSolver solver(system_, options_.smooth);
+    system_.clamp(x_);
+    ErrorTerms means = system_.errors(x_);
+    before_ = after_ = objective(means, x_);
+    double damping = kFirstDamping;
+    for (int slow = 0; iterations_ < options_.max_iterations && slow < kMostSlowSteps; ++iterations_) {
+      before_step();
+      solver.linearize(x_, means);
+      bool accepted = false;
+      for (int trial = 0; trial < kMostTrials && !accepted; ++trial) {
+        Eigen::VectorXd next = x_ + solver.step(damping);
+        system_.clamp(next);
+        const ErrorTerms next_means = system_.errors(next);
+        const double value = objective(next_means, next);
+        accepted = value < after_;
+        if (accepted) {
+          slow = after_ - value < options_.least_progress ? slow + 1 : 0;
+          after_ = value;
+          x_ = std::move(next);
+          means = next_means;
+          if (trial == 0) damping = std::max(kLeastDamping, kEase * damping);
+        } else {
+          damping *= kHarden;
+        }
+      }
+      if (!accepted) break;
+    }
+  }
+
+  /// Puts the tables into the model and adds to the summary.
+  void finish(LogModel& model, RefineSummary& summary) const {
+    system_.write(x_, model);
+    if (iterations_ == options_.max_iterations) summary.stop_reason = "iteration limit";
+    summary.iterations += iterations_;
+    summary.objective_before += before_;
+    summary.objective_after += after_;
+  }
+
+ private:
+  double objective(const ErrorTerms& means, const Eigen::VectorXd& x) const {
+    return loss_.objective(means) + options_.smooth * system_.roughness(x);
+  }
+
+  const RefineOptions& options_;
+  const PictureLoss& loss_;
+  RefineSystem system_;
+  Eigen::VectorXd x_;
+  double before_ = 0, after_ = 0;
+  int iterations_ = 0;
 };
 
 }  // namespace
@@ -98,48 +164,26 @@ RefineSummary refine(LogModel& model, const TrainingSet& set, const RefineOption
   const Lookups lookups = find_lookups(model.spec, set);
   const PictureLoss loss{.shares = options.shares, .exposure = set.exposure};
   const auto channels = static_cast<std::size_t>(model.channels);
-  const std::size_t together = model.any_shared() ? channels : 1, systems = channels / together;
-  RefineSummary summary{.stop_reason = "no more progress"};
+  const std::size_t together = model.any_shared() ? channels : 1;
+  std::vector<Descent> descents;
+  for (std::size_t c = 0; c < channels; c += together)
+    descents.emplace_back(model, set, lookups, loss, options, c, c + together);
 
-  for (std::size_t s = 0; s < systems; ++s) {
-    const RefineSystem system(model, set, lookups, loss, options.format, s * together, (s + 1) * together);
-    StepSolver solver(system, options.smooth);
-    Eigen::VectorXd x = system.read(model);
-    system.clamp(x);
-    ErrorTerms means = system.errors(x);
-    double best = loss.objective(means) + options.smooth * system.roughness(x);
-    summary.objective_before += best / static_cast<double>(systems);
-    double damping = kFirstDamping;
-    int slow = 0, iteration = 0;
-    for (; iteration < options.max_iterations && slow < kMostSlowSteps; ++iteration) {
-      if (options.progress)
-        options.progress((static_cast<double>(s) + static_cast<double>(iteration) / options.max_iterations) /
-                         static_cast<double>(systems));
-      solver.linearize(x, means);
-      bool accepted = false;
-      for (int trial = 0; trial < kMostTrials && !accepted; ++trial) {
-        Eigen::VectorXd next = x + solver.step(damping);
-        system.clamp(next);
-        const ErrorTerms next_means = system.errors(next);
-        const double value = loss.objective(next_means) + options.smooth * system.roughness(next);
-        accepted = value < best;
-        if (accepted) {
-          slow = best - value < options.least_progress ? slow + 1 : 0;
-          best = value;
-          x = std::move(next);
-          means = next_means;
-          if (trial == 0) damping = std::max(kLeastDamping, kEase * damping);
-        } else {
-          damping *= kHarden;
-        }
-      }
-      if (!accepted) break;
-    }
-    if (iteration == options.max_iterations) summary.stop_reason = "iteration limit";
-    summary.iterations += iteration;
-    summary.objective_after += best / static_cast<double>(systems);
-    system.write(x, model);
-  }
+  // Side by side, as much of a step is too small to share out.
+  std::atomic<int> steps = 0;
+  const std::thread::id caller = std::this_thread::get_id();
+  const double all_steps = static_cast<double>(descents.size()) * std::max(options.max_iterations, 1);
+  for_each_chunk(descents.size(), 1, [&](std::size_t s, std::size_t, std::size_t) {
+    descents[s].run([&] {
+      const int done = steps++;
+      if (options.progress && std::this_thread::get_id() == caller) options.progress(done / all_steps);
+    });
+  });
+
+  RefineSummary summary{.stop_reason = "no more progress"};
+  for (const Descent& descent : descents) descent.finish(model, summary);
+  summary.objective_before /= static_cast<double>(descents.size());
+  summary.objective_after /= static_cast<double>(descents.size());
   if (options.progress) options.progress(1);
   return summary;
 }

@@ -9,12 +9,9 @@ namespace burnish {
 namespace {
 
 constexpr std::size_t kChunk = 2048;
-constexpr std::size_t kPartialBytes = std::size_t{32} << 20;  // of matrices summed side by side
 constexpr std::size_t kMostGroups = 16;
-constexpr std::size_t kPairsPerUnknown = 4;  // fewer are not worth a matrix of their own
 // Of many pairs an even part makes a matrix good enough for a step; the slope is that of all.
 constexpr std::size_t kMatrixPairsPerUnknown = 40;
-constexpr std::size_t kColumns = 64;  // of matrices, added up together
 
 // ln of a table's largest value over the smallest that its format, or the general floor, leaves.
 double log_range(TableFormat format) {
@@ -42,22 +39,24 @@ std::vector<double> shared_exponent_floors(const std::vector<double>& logs, std:
 
 Lookups find_lookups(const ModelSpec& spec, const TrainingSet& set) {
   Lookups found;
-  for (const auto& lobe : spec.lobes) found.uses += lobe.size();
-  found.node.resize(found.uses * set.size());
-  found.fx.resize(found.node.size());
-  found.fy.resize(found.node.size());
+  for (const auto& lobe : spec.lobes) {
+    std::vector<std::size_t>& of_lobe = found.lobes.emplace_back();
+    for (const FactorUse& use : lobe) {
+      of_lobe.push_back(
+          static_cast<std::size_t>(std::ranges::find(found.lookups, use) - found.lookups.begin()));
+      if (of_lobe.back() == found.lookups.size()) found.lookups.push_back(use);
+    }
+  }
+  found.places.resize(found.lookups.size() * set.size());
   for_each_chunk(set.size(), kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
-    std::size_t k = begin * found.uses;
+    auto place = found.places.begin() + static_cast<std::ptrdiff_t>(begin * found.lookups.size());
     for (std::size_t i = begin; i < end; ++i)
-      for (const auto& lobe : spec.lobes)
-        for (const FactorUse& use : lobe) {
-          const TableLayout& layout = spec.tables[static_cast<std::size_t>(use.table)].layout;
-          const Lookup at = locate(layout, use, set.pairs[i].wi, set.pairs[i].wo);
-          found.node[k] = static_cast<std::uint32_t>(at.node);
-          found.fx[k] = static_cast<float>(at.fx);
-          found.fy[k] = static_cast<float>(at.fy);
-          ++k;
-        }
+      for (const FactorUse& use : found.lookups) {
+        const Lookup at = locate(spec.tables[static_cast<std::size_t>(use.table)].layout, use,
+                                 set.pairs[i].wi, set.pairs[i].wo);
+        *place++ = {static_cast<std::uint32_t>(at.node), static_cast<float>(at.fx),
+                    static_cast<float>(at.fy)};
+      }
   });
   return found;
 }
@@ -65,12 +64,7 @@ Lookups find_lookups(const ModelSpec& spec, const TrainingSet& set) {
 RefineSystem::RefineSystem(const LogModel& model, const TrainingSet& set, const Lookups& lookups,
                            const PictureLoss& loss, TableFormat format, std::size_t first_channel,
                            std::size_t last_channel)
-    : set_(set),
-      lookups_(lookups),
-      loss_(loss),
-      first_channel_(first_channel),
-      last_channel_(last_channel),
-      lobes_(model.spec.lobes.size()) {
+    : set_(set), lookups_(lookups), loss_(loss), first_channel_(first_channel), last_channel_(last_channel) {
   const std::size_t channels = last_channel - first_channel;
   for (std::size_t t = 0; t < model.spec.tables.size(); ++t) {
     const auto& table = model.spec.tables[t];
@@ -91,18 +85,17 @@ RefineSystem::RefineSystem(const LogModel& model, const TrainingSet& set, const 
       for (std::size_t c = 0; c < copies; ++c)
         floors_[tables_.back().base + n * copies + c] = floors[n * model.step(t) + first_channel + c];
   }
-  for (std::size_t j = 0; j < lobes_; ++j)
-    for (const FactorUse& use : model.spec.lobes[j]) {
-      const auto t = static_cast<std::size_t>(use.table);
-      const TableLayout& layout = model.spec.tables[t].layout;
-      uses_.push_back({.base = tables_[t].base,
+  for (const FactorUse& use : lookups.lookups) {
+    const auto t = static_cast<std::size_t>(use.table);
+    const TableLayout& layout = model.spec.tables[t].layout;
+    const bool line = layout.shape == TableShape::line;
+    places_.push_back({.base = tables_[t].base,
                        .stride = tables_[t].stride,
                        .channel_stride = tables_[t].copies > 1 ? std::size_t{1} : 0,
-                       .next_row = layout.shape == TableShape::line
-                                       ? 0
-                                       : static_cast<std::size_t>(layout.width) * tables_[t].stride,
-                       .lobe = j});
-    }
+                       .next_row = line ? 0 : static_cast<std::size_t>(layout.width) * tables_[t].stride,
+                       .table = t});
+    term_pairs_ += line ? 1 : 2;
+  }
   for (std::size_t i = 0; i < set.size(); ++i)
     (i < set.picture_count ? picture_weight_ : pair_weight_) +=
         set.weights[i] * static_cast<double>(channels);
@@ -147,47 +140,57 @@ void RefineSystem::clamp(Eigen::VectorXd& x) const {
     }
 }
 
+RefineSystem::Scratch RefineSystem::scratch() const {
+  return {.factor = std::vector<double>(places_.size()),
+          .share = std::vector<double>(places_.size()),
+          .product = std::vector<double>(lookups_.lobes.size()),
+          .terms = std::vector<TermPair>(term_pairs_)};
+}
+
 double RefineSystem::evaluate(const double* lambda, std::size_t pair, std::size_t channel,
-                              std::span<double> factor, std::span<double> product) const noexcept {
-  std::fill(product.begin(), product.end(), 1.0);
-  for (std::size_t s = 0; s < uses_.size(); ++s) {
-    const Use& use = uses_[s];
-    const std::size_t k = pair * uses_.size() + s;
-    const double* at = lambda + use.base + lookups_.node[k] * use.stride + channel * use.channel_stride;
-    double v = at[0] + lookups_.fx[k] * (at[use.stride] - at[0]);
-    if (use.next_row > 0) {
-      const double* next = at + use.next_row;
-      v += lookups_.fy[k] * (next[0] + lookups_.fx[k] * (next[use.stride] - next[0]) - v);
+                              Scratch& at) const noexcept {
+  const Lookups::Place* found = lookups_.places.data() + pair * places_.size();
+  for (std::size_t k = 0; k < places_.size(); ++k) {
+    const Place& place = places_[k];
+    const double fx = found[k].fx;
+    const double* v = lambda + place.base + found[k].node * place.stride + channel * place.channel_stride;
+    double factor = v[0] + fx * (v[place.stride] - v[0]);
+    if (place.next_row > 0) {
+      const double* next = v + place.next_row;
+      factor += found[k].fy * (next[0] + fx * (next[place.stride] - next[0]) - factor);
     }
-    factor[s] = v;
-    product[use.lobe] *= v;
+    at.factor[k] = factor;
   }
   double total = 0;
-  for (const double p : product) total += p;
+  for (std::size_t j = 0; j < at.product.size(); ++j) {
+    double product = 1;
+    for (const std::size_t k : lookups_.lobes[j]) product *= at.factor[k];
+    at.product[j] = product;
+    total += product;
+  }
   return total;
 }
 
-std::size_t RefineSystem::differentiate(const double* lambda, std::size_t pair, std::size_t channel,
-                                        double total, std::span<const double> factor,
-                                        std::span<const double> product,
-                                        std::span<Term> terms) const noexcept {
-  std::size_t count = 0;
-  for (std::size_t s = 0; s < uses_.size(); ++s) {
-    const Use& use = uses_[s];
-    const std::size_t k = pair * uses_.size() + s;
-    const std::size_t first = use.base + lookups_.node[k] * use.stride + channel * use.channel_stride;
-    const double share = product[use.lobe] / (total * factor[s]), fx = lookups_.fx[k], fy = lookups_.fy[k];
-    const auto push = [&](std::size_t unknown, double weight) {
-      terms[count++] = {static_cast<std::uint32_t>(unknown),
-                        static_cast<float>(weight * share * lambda[unknown])};
+void RefineSystem::differentiate(const double* lambda, std::size_t pair, std::size_t channel, double total,
+                                 Scratch& at) const noexcept {
+  std::ranges::fill(at.share, 0);
+  for (std::size_t j = 0; j < at.product.size(); ++j)
+    for (const std::size_t k : lookups_.lobes[j]) at.share[k] += at.product[j];
+  const Lookups::Place* found = lookups_.places.data() + pair * places_.size();
+  auto term = at.terms.begin();
+  for (std::size_t k = 0; k < places_.size(); ++k) {
+    const Place& place = places_[k];
+    const std::size_t first = place.base + found[k].node * place.stride + channel * place.channel_stride;
+    const double fx = found[k].fx, fy = found[k].fy;
+    const auto push = [&](std::size_t unknown, double share) {
+      *term++ = {.unknown = unknown,
+                 .stride = place.stride,
+                 .value = {share * (1 - fx) * lambda[unknown], share * fx * lambda[unknown + place.stride]}};
     };
-    push(first, (1 - fx) * (1 - fy));
-    push(first + use.stride, fx * (1 - fy));
-    if (use.next_row == 0) continue;
-    push(first + use.next_row, (1 - fx) * fy);
-    push(first + use.next_row + use.stride, fx * fy);
+    const double share = at.share[k] / (total * at.factor[k]);
+    push(first, share * (1 - fy));
+    if (place.next_row > 0) push(first + place.next_row, share * fy);
   }
-  return count;
 }
 
 ErrorTerms RefineSystem::errors(const Eigen::VectorXd& x) const {
@@ -195,12 +198,12 @@ ErrorTerms RefineSystem::errors(const Eigen::VectorXd& x) const {
   const std::size_t channels = last_channel_ - first_channel_;
   std::vector<ErrorTerms> partial(chunk_count(set_.size(), kChunk));
   for_each_chunk(set_.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-    std::vector<double> factor(uses_.size()), product(lobes_);
+    Scratch at = scratch();
     const ErrorTerms none{};
     for (std::size_t i = begin; i < end; ++i)
       for (std::size_t c = 0; c < channels; ++c)
-        loss_.add(targets_[i * channels + c], evaluate(lambda.data(), i, c, factor, product),
-                  set_.pairs[i].wi.z, i < set_.picture_count, set_.weights[i], none, partial[chunk]);
+        loss_.add(targets_[i * channels + c], evaluate(lambda.data(), i, c, at), set_.pairs[i].wi.z,
+                  i < set_.picture_count, set_.weights[i], none, partial[chunk]);
   });
   ErrorTerms means{};
   for (const ErrorTerms& p : partial)
@@ -212,70 +215,73 @@ ErrorTerms RefineSystem::errors(const Eigen::VectorXd& x) const {
   return means;
 }
 
+template <class Visit>
+void RefineSystem::for_each_slope(const Eigen::VectorXd& lambda, const ErrorTerms& derivatives,
+                                  std::size_t begin, std::size_t end, Visit visit) const {
+  const std::size_t channels = last_channel_ - first_channel_;
+  Scratch at = scratch();
+  ErrorTerms sums{};
+  for (std::size_t i = begin; i < end; ++i)
+    for (std::size_t c = 0; c < channels; ++c) {
+      const double model = evaluate(lambda.data(), i, c, at);
+      const PictureLoss::Slope slope = loss_.add(targets_[i * channels + c], model, set_.pairs[i].wi.z,
+                                                 i < set_.picture_count, set_.weights[i], derivatives, sums);
+      differentiate(lambda.data(), i, c, model, at);
+      visit(i, c, slope, at.terms);
+    }
+}
+
 void RefineSystem::find_normal(const Eigen::VectorXd& x, const ErrorTerms& means, std::size_t first_unknown,
-                               std::size_t last_unknown, std::vector<Normal>& partial) const {
+                               std::size_t last_unknown, Normal& normal) const {
   const Eigen::VectorXd lambda = x.array().exp();
   const std::size_t unknowns = last_unknown - first_unknown;
-  const auto n = static_cast<Eigen::Index>(unknowns);
   const std::size_t channels = last_channel_ - first_channel_;
   const ErrorTerms derivatives = loss_.derivatives(means, picture_weight_, pair_weight_);
-  const std::size_t groups =
-      std::clamp<std::size_t>(std::min(kPartialBytes / (unknowns * unknowns * sizeof(double)),
-                                       set_.size() * channels / (kPairsPerUnknown * unknowns)),
-                              2, kMostGroups);
   const std::size_t every =
       std::max<std::size_t>(1, set_.size() * channels / (kMatrixPairsPerUnknown * unknowns));
-  const std::size_t group_size = (set_.size() + groups - 1) / groups;
-  partial.resize(chunk_count(set_.size(), group_size));
-  // Each pair of terms is added once, below or above the diagonal; twice the diagonal's own is taken off it.
-  for_each_chunk(set_.size(), group_size, [&](std::size_t group, std::size_t begin, std::size_t end) {
-    Normal& sum = partial[group];
-    sum.gradient.setZero(n);
-    sum.matrix.setZero(n, n);
-    std::vector<double> factor(uses_.size()), product(lobes_);
-    std::vector<Term> terms(4 * uses_.size());
-    ErrorTerms sums{};
-    for (std::size_t i = begin; i < end; ++i)
-      for (std::size_t c = 0; c < channels; ++c) {
-        const double model = evaluate(lambda.data(), i, c, factor, product);
-        const PictureLoss::Slope slope =
-            loss_.add(targets_[i * channels + c], model, set_.pairs[i].wi.z, i < set_.picture_count,
-                      set_.weights[i], derivatives, sums);
-        std::size_t count = differentiate(lambda.data(), i, c, model, factor, product, terms);
-        if (unknowns < size_) {
-          std::size_t kept = 0;
-          for (std::size_t a = 0; a < count; ++a)
-            if (terms[a].unknown >= first_unknown && terms[a].unknown < last_unknown) {
-              terms[kept] = terms[a];
-              terms[kept++].unknown -= static_cast<std::uint32_t>(first_unknown);
-            }
-          count = kept;
-        }
-        for (std::size_t a = 0; a < count; ++a)
-          sum.gradient[terms[a].unknown] += slope.gradient * terms[a].value;
-        if (i % every > 0) continue;
-        const double curvature = slope.curvature * static_cast<double>(every);
-        for (std::size_t a = 0; a < count; ++a) {
-          const double value = terms[a].value, scaled = curvature * value;
-          double* column = sum.matrix.data() + terms[a].unknown * unknowns;
-          column[terms[a].unknown] += 0.5 * scaled * value;
-          for (std::size_t b = a + 1; b < count; ++b) column[terms[b].unknown] += scaled * terms[b].value;
-        }
-      }
-  });
-  Normal& total = partial.front();
-  for_each_chunk(unknowns, kColumns, [&](std::size_t, std::size_t begin, std::size_t end) {
-    const auto first = static_cast<Eigen::Index>(begin), count = static_cast<Eigen::Index>(end - begin);
-    for (std::size_t g = 1; g < partial.size(); ++g)
-      total.matrix.middleCols(first, count) += partial[g].matrix.middleCols(first, count);
-  });
-  for (std::size_t g = 1; g < partial.size(); ++g) total.gradient += partial[g].gradient;
-  // both triangles become the sum of the two
-  for (Eigen::Index column = 0; column < n; ++column)
-    for (Eigen::Index row = 0; row <= column; ++row) {
-      const double sum = total.matrix(row, column) + total.matrix(column, row);
-      total.matrix(row, column) = total.matrix(column, row) = sum;
+  PairedRows& factor = normal.factor;
+  factor.pairs.clear();
+  std::vector<std::size_t> kept;  // term pairs that the factor has
+  std::size_t term_pair = 0;
+  for (const Place& place : places_) {
+    const TableUnknowns& table = tables_[place.table];
+    for (int row = 0; row < (place.next_row > 0 ? 2 : 1); ++row, ++term_pair) {
+      if (table.base < first_unknown || table.base >= last_unknown) continue;
+      kept.push_back(term_pair);
+      factor.pairs.push_back(
+          {.first = table.base - first_unknown, .count = table.nodes * table.copies, .stride = table.stride});
     }
+  }
+  factor.rows = (set_.size() + every - 1) / every * channels;
+  factor.unknown.resize(kept.size() * factor.rows);
+  factor.value.resize(factor.unknown.size());
+
+  const std::size_t group_size = (set_.size() + kMostGroups - 1) / kMostGroups;
+  std::vector<Eigen::VectorXd> gradient(chunk_count(set_.size(), group_size));
+  for_each_chunk(set_.size(), group_size, [&](std::size_t group, std::size_t begin, std::size_t end) {
+    Eigen::VectorXd& sum = gradient[group].setZero(static_cast<Eigen::Index>(unknowns));
+    for_each_slope(
+        lambda, derivatives, begin, end,
+        [&](std::size_t i, std::size_t c, PictureLoss::Slope slope, std::span<const TermPair> terms) {
+          const bool in_matrix = i % every == 0;
+          const double root = std::sqrt(slope.curvature * static_cast<double>(every));
+          std::size_t at = i / every * channels + c;
+          for (const std::size_t p : kept) {
+            const TermPair& pair = terms[p];
+            const std::size_t unknown = pair.unknown - first_unknown;
+            for (std::size_t k = 0; k < 2; ++k)
+              sum[static_cast<Eigen::Index>(unknown + k * pair.stride)] += slope.gradient * pair.value[k];
+            if (!in_matrix) continue;
+            factor.unknown[at] = static_cast<std::uint32_t>(unknown);
+            factor.value[at] = {static_cast<float>(root * pair.value[0]),
+                                static_cast<float>(root * pair.value[1])};
+            at += factor.rows;
+          }
+        });
+  });
+  normal.gradient = gradient.front();
+  for (std::size_t g = 1; g < gradient.size(); ++g) normal.gradient += gradient[g];
+  find_gram(factor, unknowns, normal.matrix);
 }
 
 RefineSystem::Rows RefineSystem::rows(const Eigen::VectorXd& x, const ErrorTerms& means) const {
@@ -283,8 +289,7 @@ RefineSystem::Rows RefineSystem::rows(const Eigen::VectorXd& x, const ErrorTerms
   const auto n = static_cast<Eigen::Index>(size_);
   const std::size_t channels = last_channel_ - first_channel_;
   const ErrorTerms derivatives = loss_.derivatives(means, picture_weight_, pair_weight_);
-  std::size_t width = 0;
-  for (const Use& use : uses_) width += use.next_row > 0 ? 4 : 2;
+  const std::size_t width = 2 * term_pairs_;
   Rows result;
   result.gradient = result.diagonal = Eigen::VectorXd::Zero(n);
   result.unknown.resize(set_.size() * channels * width);
@@ -294,25 +299,21 @@ RefineSystem::Rows RefineSystem::rows(const Eigen::VectorXd& x, const ErrorTerms
   std::vector<Eigen::VectorXd> gradient(chunk_count(set_.size(), group_size)), diagonal(gradient.size());
   for_each_chunk(set_.size(), group_size, [&](std::size_t group, std::size_t begin, std::size_t end) {
     gradient[group] = diagonal[group] = Eigen::VectorXd::Zero(n);
-    std::vector<double> factor(uses_.size()), product(lobes_);
-    std::vector<Term> terms(4 * uses_.size());
-    ErrorTerms sums{};
-    for (std::size_t i = begin; i < end; ++i)
-      for (std::size_t c = 0; c < channels; ++c) {
-        const double model = evaluate(lambda.data(), i, c, factor, product);
-        const PictureLoss::Slope slope =
-            loss_.add(targets_[i * channels + c], model, set_.pairs[i].wi.z, i < set_.picture_count,
-                      set_.weights[i], derivatives, sums);
-        const std::size_t count = differentiate(lambda.data(), i, c, model, factor, product, terms);
-        const double root = std::sqrt(slope.curvature);
-        const std::size_t start = (i * channels + c) * width;
-        for (std::size_t a = 0; a < count; ++a) {
-          gradient[group][terms[a].unknown] += slope.gradient * terms[a].value;
-          diagonal[group][terms[a].unknown] += slope.curvature * terms[a].value * terms[a].value;
-          result.unknown[start + a] = terms[a].unknown;
-          result.value[start + a] = static_cast<float>(root * terms[a].value);
-        }
-      }
+    for_each_slope(
+        lambda, derivatives, begin, end,
+        [&](std::size_t i, std::size_t c, PictureLoss::Slope slope, std::span<const TermPair> terms) {
+          const double root = std::sqrt(slope.curvature);
+          std::size_t at = (i * channels + c) * width;
+          for (const TermPair& pair : terms)
+            for (std::size_t k = 0; k < 2; ++k, ++at) {
+              const std::size_t unknown = pair.unknown + k * pair.stride;
+              const double value = pair.value[k];
+              gradient[group][static_cast<Eigen::Index>(unknown)] += slope.gradient * value;
+              diagonal[group][static_cast<Eigen::Index>(unknown)] += slope.curvature * value * value;
+              result.unknown[at] = static_cast<std::uint32_t>(unknown);
+              result.value[at] = static_cast<float>(root * value);
+            }
+        });
   });
   for (std::size_t g = 0; g < gradient.size(); ++g) {
     result.gradient += gradient[g];

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -10,15 +11,21 @@
 #include <burnish/fitting/log_model.h>
 #include <burnish/fitting/picture_loss.h>
 #include <burnish/fitting/smoothness.h>
+#include <burnish/fitting/sparse_gram.h>
 #include <burnish/fitting/training_set.h>
 
 namespace burnish {
 
-/// Where a model's lookups fall, the same for every channel: [pair][use], uses of all lobes in order.
+/// Where a model's lookups fall, the same for every channel. Lobes that look up the same texels, and the same
+/// ones of a table that they share, have one lookup.
 struct Lookups {
-  std::size_t uses = 0;
-  std::vector<std::uint32_t> node;
-  std::vector<float> fx, fy;
+  struct Place {
+    std::uint32_t node;
+    float fx, fy;
+  };
+  std::vector<FactorUse> lookups;               ///< distinct
+  std::vector<std::vector<std::size_t>> lobes;  ///< the lookups of each lobe's factors
+  std::vector<Place> places;                    ///< [pair][lookup]
 };
 
 Lookups find_lookups(const ModelSpec& spec, const TrainingSet& set);
@@ -40,19 +47,19 @@ class RefineSystem {
   /// Means of the errors at x.
   ErrorTerms errors(const Eigen::VectorXd& x) const;
 
-  /// Slope and Gauss-Newton matrix of the objective at x whose errors are `means`. Where there are over 80
-  /// pairs an unknown, the matrix is that of an even part of them.
+  /// Slope of the objective at x whose errors are `means`, and the lower triangle of its Gauss-Newton matrix.
+  /// Where there are many pairs an unknown, the matrix is that of an even part of them.
   struct Normal {
     Eigen::VectorXd gradient;
     Eigen::MatrixXd matrix;
+    PairedRows factor;  ///< room that is kept from step to step
   };
-  /// `partial` is room for the sums of groups of pairs, kept from step to step; the first is the result.
-  void find_normal(const Eigen::VectorXd& x, const ErrorTerms& means, std::vector<Normal>& partial) const {
-    find_normal(x, means, 0, size_, partial);
+  void find_normal(const Eigen::VectorXd& x, const ErrorTerms& means, Normal& normal) const {
+    find_normal(x, means, 0, size_, normal);
   }
-  /// The same of the unknowns [first, last), the others being fixed.
+  /// The same of the unknowns [first, last) of whole tables, the others being fixed.
   void find_normal(const Eigen::VectorXd& x, const ErrorTerms& means, std::size_t first, std::size_t last,
-                   std::vector<Normal>& partial) const;
+                   Normal& normal) const;
 
   /// The same without the matrix: the rows of its factor, curvature^(1/2) d ln f^ / dx.
   struct Rows {
@@ -77,28 +84,40 @@ class RefineSystem {
   void add_roughness_matrix(double scale, std::size_t first, Eigen::MatrixXd& matrix) const;
 
  private:
-  struct Use {
+  struct Place {
     std::size_t base, stride,
         channel_stride;    // unknown of node n, channel c: base + n stride + c channel_stride
     std::size_t next_row;  // 0: a line
-    std::size_t lobe;
+    std::size_t table;
   };
   struct TableUnknowns {
     std::size_t base, stride, copies, nodes, step;
     double share, log_range;
     SmoothnessRows rows;
   };
-  struct Term {
-    std::uint32_t unknown;
-    float value;
+  // Two neighbours in a row of a table, with their terms of d ln f^ / dx.
+  struct TermPair {
+    std::size_t unknown, stride;
+    std::array<double, 2> value;
   };
 
-  // The model's value at pair i, and the terms of d ln f^ / dx.
-  double evaluate(const double* lambda, std::size_t pair, std::size_t channel, std::span<double> factor,
-                  std::span<double> product) const noexcept;
-  std::size_t differentiate(const double* lambda, std::size_t pair, std::size_t channel, double total,
-                            std::span<const double> factor, std::span<const double> product,
-                            std::span<Term> terms) const noexcept;
+  // Room for one pair of directions' value and terms.
+  struct Scratch {
+    std::vector<double> factor, share;  // of the lookups
+    std::vector<double> product;        // of the lobes
+    std::vector<TermPair> terms;
+  };
+
+  Scratch scratch() const;
+  // The model's value at a pair of directions, which leaves factors and products.
+  double evaluate(const double* lambda, std::size_t pair, std::size_t channel, Scratch& at) const noexcept;
+  // The terms of d ln f^ / dx where the model's value is `total`.
+  void differentiate(const double* lambda, std::size_t pair, std::size_t channel, double total,
+                     Scratch& at) const noexcept;
+  // visit(pair, channel, slope, terms) of all pairs from `begin` to `end`.
+  template <class Visit>
+  void for_each_slope(const Eigen::VectorXd& lambda, const ErrorTerms& derivatives, std::size_t begin,
+                      std::size_t end, Visit visit) const;
   template <class Visit>
   void for_each_roughness_row(Visit visit) const;
 
@@ -106,8 +125,9 @@ class RefineSystem {
   const Lookups& lookups_;
   PictureLoss loss_;
   std::vector<PictureLoss::Target> targets_;  // [pair][channel of the system]
-  std::size_t first_channel_, last_channel_, size_ = 0, lobes_ = 0;
-  std::vector<Use> uses_;
+  std::size_t first_channel_, last_channel_, size_ = 0;
+  std::vector<Place> places_;
+  std::size_t term_pairs_ = 0;  // a channel's of one pair of directions
   std::vector<TableUnknowns> tables_;
   std::vector<double> floors_;  // of the unknowns, -infinity where the other channels ask for none
   double picture_weight_ = 0, pair_weight_ = 0;

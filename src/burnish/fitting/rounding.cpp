@@ -102,7 +102,7 @@ FactoredBrdf to_rounded_brdf(const LogModel& model, const TrainingSet& set, cons
       for (std::size_t c = 0; c < step; ++c) store(part(c), unknown(c), first, stored[c]);
     }
   };
-  std::vector<RefineSystem::Normal> partial;
+  RefineSystem::Normal normal;
   for (std::size_t t = 0, first = 0; t < tables.size();) {
     std::size_t end = t, last = first;
     while (end < tables.size() && (end == t || last - first + unknowns(end) <= kMostTogether))
@@ -110,8 +110,8 @@ FactoredBrdf to_rounded_brdf(const LogModel& model, const TrainingSet& set, cons
     for (Channels& part : parts) {
       part.upper.resize(0, 0);
       if (last - first > kMostTogether) continue;
-      part.system.find_normal(part.x, part.means, first, last, partial);
-      part.upper = partial.front().matrix;
+      part.system.find_normal(part.x, part.means, first, last, normal);
+      part.upper = normal.matrix;
       part.system.add_roughness_matrix(2 * options.smooth, first, part.upper);
       const Eigen::VectorXd diagonal = part.upper.diagonal();
       part.upper.diagonal() += kDamping * diagonal;
