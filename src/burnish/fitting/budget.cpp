@@ -127,6 +127,9 @@ LobesFit fit_plan(const TrainingSet& set, const LobePlan& plan, std::size_t byte
   const bool grids = thin.tables.size() < whole.tables.size();
   RefineOptions thin_options = options;
   if (grids && options.progress) thin_options.progress = [&](double f) { options.progress(kThinPart * f); };
+  // lobes that part are not yet held within their format
+  RefineOptions rough_options = thin_options;
+  rough_options.format = TableFormat::single;
   LobesFit fit{
       .model = fit_one_lobe(first_lobes(1), coarse, coarse.values, std::max(kStartSmooth, options.smooth))};
   fit.summary.lobes = static_cast<int>(lobes);
@@ -144,7 +147,8 @@ LobesFit fit_plan(const TrainingSet& set, const LobePlan& plan, std::size_t byte
       fit.model = resampled(fit.model, spec);
     }
     if (j < lobes || grids)
-      refine_part(fit.model, coarse, thin_options, kRoughSteps, done(j - 1), done(j), fit.summary);
+      refine_part(fit.model, coarse, j < lobes ? rough_options : thin_options, kRoughSteps, done(j - 1),
+                  done(j), fit.summary);
     else
       refine_fully(fit.model, coarse, set, thin_options, done(j - 1), fit.summary);
   }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <burnish/fitting/refine_system.h>
 #include <burnish/math/parallel.h>
@@ -20,19 +21,25 @@ double log_range(TableFormat format) {
 
 // rgb9e5 holds a channel down to one unit of a mantissa of at least 256.
 const double kLogMantissa = std::log(256.0);
+constexpr double kHeadroom = std::numbers::ln2;  // the least that a texel's largest channel may rise
 
-// What the other channels of a texel ask of each value of an rgb9e5 table, whose channels are stored with one
-// geometric mean.
-std::vector<double> shared_exponent_floors(const std::vector<double>& logs, std::size_t channels) {
-  std::vector<double> mean(channels), floors(logs.size());
+// Where the channels of an rgb9e5 texel stay, whichever way the others move: within what one exponent holds.
+// Logarithms over the channels' means, which are divided out before the texels are stored.
+std::vector<LogRange> shared_exponent_ranges(const std::vector<double>& logs, std::size_t channels) {
+  std::vector<double> mean(channels);
   const double nodes = static_cast<double>(logs.size()) / static_cast<double>(channels);
   for (std::size_t i = 0; i < logs.size(); ++i) mean[i % channels] += logs[i] / nodes;
+  std::vector<LogRange> ranges;
   for (std::size_t i = 0; i < logs.size(); i += channels) {
-    double largest = logs[i] - mean[0];
-    for (std::size_t c = 1; c < channels; ++c) largest = std::max(largest, logs[i + c] - mean[c]);
-    for (std::size_t c = 0; c < channels; ++c) floors[i + c] = largest - kLogMantissa + mean[c];
+    double most = -INFINITY, least = INFINITY;
+    for (std::size_t c = 0; c < channels; ++c) {
+      most = std::max(most, logs[i + c] - mean[c]);
+      least = std::min(least, logs[i + c] - mean[c]);
+    }
+    const double top = most + std::max(kHeadroom, (kLogMantissa - (most - least)) / 2);
+    ranges.push_back({.least = top - kLogMantissa, .most = top});
   }
-  return floors;
+  return ranges;
 }
 
 }  // namespace
@@ -78,12 +85,11 @@ RefineSystem::RefineSystem(const LogModel& model, const TrainingSet& set, const 
                        .log_range = log_range(format_of(table, format)),
                        .rows = smoothness_rows(table.layout)});
     size_ += tables_.back().nodes * copies;
-    floors_.resize(size_, -INFINITY);
+    ranges_.resize(size_, {-INFINITY, INFINITY});
     if (model.step(t) == 1 || format_of(table, format) != TableFormat::rgb9e5) continue;
-    const std::vector<double> floors = shared_exponent_floors(model.log_values[t], model.step(t));
+    const std::vector<LogRange> ranges = shared_exponent_ranges(model.log_values[t], model.step(t));
     for (std::size_t n = 0; n < tables_.back().nodes; ++n)
-      for (std::size_t c = 0; c < copies; ++c)
-        floors_[tables_.back().base + n * copies + c] = floors[n * model.step(t) + first_channel + c];
+      for (std::size_t c = 0; c < copies; ++c) ranges_[tables_.back().base + n * copies + c] = ranges[n];
   }
   for (const FactorUse& use : lookups.lookups) {
     const auto t = static_cast<std::size_t>(use.table);
@@ -131,12 +137,16 @@ void RefineSystem::clamp(Eigen::VectorXd& x) const {
   for (const TableUnknowns& table : tables_)
     for (std::size_t c = 0; c < table.copies; ++c) {
       double* first = x.data() + table.base + c;
-      double largest = *first;
-      for (std::size_t n = 0; n < table.nodes; ++n) largest = std::max(largest, first[n * table.stride]);
-      const double* floor = floors_.data() + table.base + c;
-      for (std::size_t n = 0; n < table.nodes; ++n)
-        first[n * table.stride] =
-            std::max({first[n * table.stride], largest - table.log_range, floor[n * table.stride]});
+      double largest = *first, mean = 0;
+      for (std::size_t n = 0; n < table.nodes; ++n) {
+        largest = std::max(largest, first[n * table.stride]);
+        mean += first[n * table.stride] / static_cast<double>(table.nodes);
+      }
+      for (std::size_t n = 0; n < table.nodes; ++n) {
+        const LogRange& range = ranges_[table.base + c + n * table.stride];
+        double& value = first[n * table.stride];
+        value = std::clamp(std::max(value, largest - table.log_range), mean + range.least, mean + range.most);
+      }
     }
 }
 

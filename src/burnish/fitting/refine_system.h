@@ -30,6 +30,10 @@ struct Lookups {
 
 Lookups find_lookups(const ModelSpec& spec, const TrainingSet& set);
 
+struct LogRange {
+  double least, most;
+};
+
 /// The unknowns of some channels of a model, those of one channel or, where a table is shared, of all, and
 /// the sums over the training set that a Gauss-Newton step needs.
 class RefineSystem {
@@ -40,8 +44,8 @@ class RefineSystem {
   std::size_t size() const noexcept { return size_; }
   Eigen::VectorXd read(const LogModel& model) const;
   void write(const Eigen::VectorXd& x, LogModel& model) const;
-  /// Raises unknowns to what their table's format can hold: a share of the table's largest, and of rgb9e5
-  /// tables a share of the texel's largest channel, as the other channels stand in the model given.
+  /// Keeps unknowns where their table's format can hold them: no smaller than a share of the table's largest,
+  /// and of rgb9e5 tables within a range around where the texel's channels stand in the model given.
   void clamp(Eigen::VectorXd& x) const;
 
   /// Means of the errors at x.
@@ -129,7 +133,7 @@ class RefineSystem {
   std::vector<Place> places_;
   std::size_t term_pairs_ = 0;  // a channel's of one pair of directions
   std::vector<TableUnknowns> tables_;
-  std::vector<double> floors_;  // of the unknowns, -infinity where the other channels ask for none
+  std::vector<LogRange> ranges_;  // of the unknowns, over their channel's mean in the table
   double picture_weight_ = 0, pair_weight_ = 0;
 };
 
