@@ -166,6 +166,31 @@ void nearest(const HalfDiffTable& t, const DirectionSpans& in, std::span<float> 
   });
 }
 
+float load_all(std::span<const float> table, std::span<const std::int32_t> node) {
+  const hn::CappedTag<float, 8> d8;
+  constexpr std::size_t kTogether = 8;
+  hn::Vec<hn::CappedTag<float, 8>> sum[kTogether];
+  for (auto& s : sum) s = hn::Zero(d8);
+  for (std::size_t i = 0; i + kTogether <= node.size(); i += kTogether)
+    for (std::size_t k = 0; k < kTogether; ++k)
+      for (std::size_t part = 0; part < 8; part += hn::MaxLanes(d8))
+        sum[k] = hn::Add(sum[k], hn::LoadU(d8, table.data() + node[i + k] + part));
+  for (std::size_t k = 1; k < kTogether; ++k) sum[0] = hn::Add(sum[0], sum[k]);
+  return hn::GetLane(hn::SumOfLanes(d8, sum[0]));
+}
+
+std::size_t fuse_all(std::size_t steps, float factor, float* last) {
+  constexpr std::size_t kTogether = 16;
+  Lane sum[kTogether];
+  for (std::size_t k = 0; k < kTogether; ++k) sum[k] = Lane(static_cast<double>(k));
+  const Lane by(static_cast<double>(factor));
+  for (std::size_t i = 0; i < steps; ++i)
+    for (Lane& s : sum) s = Lane(hn::MulAdd(s.raw, by.raw, by.raw));
+  for (std::size_t k = 1; k < kTogether; ++k) sum[0] = sum[0] + sum[k];
+  hn::StoreU(sum[0].raw, D(), last);
+  return steps * kTogether * kLanes;
+}
+
 }  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace burnish
@@ -178,6 +203,8 @@ HWY_EXPORT(neural);
 HWY_EXPORT(tabulated);
 HWY_EXPORT(ggx);
 HWY_EXPORT(nearest);
+HWY_EXPORT(load_all);
+HWY_EXPORT(fuse_all);
 
 void eval_neural(std::span<const float> weights, const DirectionSpans& directions, std::span<float> f) {
   HWY_DYNAMIC_DISPATCH(neural)(weights, directions, f);
@@ -190,6 +217,13 @@ void eval_ggx(const Ggx& brdf, const DirectionSpans& directions, std::span<float
 }
 void eval_nearest(const HalfDiffTable& table, const DirectionSpans& directions, std::span<float> f) {
   HWY_DYNAMIC_DISPATCH(nearest)(table, directions, f);
+}
+
+float load_nodes(std::span<const float> table, std::span<const std::int32_t> node) {
+  return HWY_DYNAMIC_DISPATCH(load_all)(table, node);
+}
+std::size_t multiply_add(std::size_t steps, float factor, std::span<float, 64> last) {
+  return HWY_DYNAMIC_DISPATCH(fuse_all)(steps, factor, last.data());
 }
 
 bool TabulatedMicrofacets::eval(Vec3 wi, Vec3 wo, std::span<double> value) const noexcept {

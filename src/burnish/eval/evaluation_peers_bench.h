@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -33,6 +35,13 @@ void eval_neural(std::span<const float> weights, const DirectionSpans& direction
 
 /// Isotropic.
 void eval_ggx(const Ggx& brdf, const DirectionSpans& directions, std::span<float> f);
+
+/// The limit that reading tables sets: loads pairs of neighbouring nodes, eight floats from each place in the
+/// table, a multiple of eight, and adds them up.
+float load_nodes(std::span<const float> table, std::span<const std::int32_t> node);
+
+/// The limit that arithmetic sets: fused multiply-adds in 16 independent chains. Returns how many.
+std::size_t multiply_add(std::size_t steps, float factor, std::span<float, 64> last);
 
 /// As NearestHalfDiff; over half a circle.
 void eval_nearest(const HalfDiffTable& table, const DirectionSpans& directions, std::span<float> f);

@@ -5,8 +5,10 @@
 #include <string>
 
 #include <benchmark/benchmark.h>
+#include <fmt/format.h>
 
 #include <burnish/eval/factored_eval.h>
+#include <burnish/factors/evaluation_cost.h>
 #include <burnish/factors/model_spec.h>
 #include <burnish/math/angles.h>
 #include <burnish/math/random.h>
@@ -140,6 +142,7 @@ void add_model(const std::string& name, const char* expression, const std::vecto
     const auto run = [&](const DirectionSpans& w, std::span<float> f) { evaluator.eval(w, f); };
     batched(state, run, model, evaluator.rounding_bound());
     state.counters["bytes"] = static_cast<double>(model.bytes());
+    state.counters["multiplies"] = static_cast<double>(evaluation_cost(model).multiplies);
   });
 }
 
@@ -212,6 +215,30 @@ void add_peers() {
   });
 }
 
+// What the machine does at most: pairs of nodes read at random from tables as large as those of a model, and
+// multiply-adds. A disk takes two pairs of nodes a lookup.
+void add_limits() {
+  for (const std::size_t nodes : {std::size_t{128}, std::size_t{2 * 64 * 64}})
+    add(fmt::format("limit/node_pairs_of_{}", nodes), [=](benchmark::State& state) {
+      const std::vector<float> table(4 * nodes, 1.0f);
+      std::vector<std::int32_t> place(1 << 14);
+      Pcg32 random(3);
+      for (std::int32_t& p : place)
+        p = 4 * static_cast<std::int32_t>(random.uniform() * static_cast<double>(nodes - 1));
+      for (auto _ : state) benchmark::DoNotOptimize(load_nodes(table, place));
+      state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(place.size()));
+    });
+  add("limit/multiply_adds", [](benchmark::State& state) {
+    std::array<float, 64> last{};
+    std::size_t count = 0;
+    for (auto _ : state) {
+      count += multiply_add(1000, 0.5f, last);
+      benchmark::DoNotOptimize(last);
+    }
+    state.SetItemsProcessed(static_cast<std::int64_t>(count));
+  });
+}
+
 const bool registered = [] {
   add_model("pqr_1k", "p(wo) q(h) r(theta_d) p(wi)", {"p=32", "q=96,rational:0.1", "r=40"});
   add_model("lines_2k7", "p(wo) q(h) r(theta_d) p(wi) + s(wo) t(h) u(theta_d) s(wi)",
@@ -220,6 +247,7 @@ const bool registered = [] {
             {"p=32", "q=48x8,rational:0.1", "s=24"});
   add_model("pqp_64x64", "pqp", {"p=64x64", "q=64x64,rational:0.2"});
   add_peers();
+  add_limits();
   return true;
 }();
 
