@@ -15,7 +15,7 @@ struct Vertex {
   std::array<float, 3> normal{};   ///< unit
   std::array<float, 3> tangent{};  ///< unit, orthogonal to the normal
   float side = 1;                  ///< the frame's third axis is side * cross(normal, tangent); 1 or -1
-  std::array<float, 2> uv{};
+  std::array<float, 2> uv{};       ///< v upwards
 
   friend bool operator==(const Vertex&, const Vertex&) = default;
 };
