@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <cctype>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -20,12 +23,13 @@ class Body {
     if (!added) return known->second;
     const int uses = ++uses_[std::string(hint)];
     known->second = uses == 1 ? std::string(hint) : std::string(hint) + std::to_string(uses);
-    text_ += dialect_.declaration(type, known->second, expression);
-    cost_.fetches += cost.fetches;
-    cost_.operations += cost.operations;
-    cost_.divisions += cost.divisions;
-    cost_.roots += cost.roots;
-    cost_.powers += cost.powers;
+    const std::string statement = dialect_.declaration(type, known->second, expression);
+    const bool lit = needs_light(expression);
+    if (lit) lit_.insert(known->second);
+    text_ += statement;
+    (lit ? light_text_ : view_text_) += statement;
+    cost_ += cost;
+    (lit ? light_cost_ : view_cost_) += cost;
     return known->second;
   }
   std::string scalar(std::string_view hint, const std::string& expression, const ShaderCost& cost) {
@@ -39,10 +43,30 @@ class Body {
   const std::string& text() const noexcept { return text_; }
   const ShaderCost& cost() const noexcept { return cost_; }
 
+  /// The statements that depend on the view alone, and those that depend on the light too.
+  const std::string& view_text() const noexcept { return view_text_; }
+  const std::string& light_text() const noexcept { return light_text_; }
+  const ShaderCost& view_cost() const noexcept { return view_cost_; }
+  const ShaderCost& light_cost() const noexcept { return light_cost_; }
+
  private:
+  // Whether one of the expression's names is wi or was made of it.
+  bool needs_light(std::string_view expression) const {
+    const auto part_of_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
+    for (std::size_t i = 0; i < expression.size(); ++i) {
+      std::size_t end = i;
+      while (end < expression.size() && part_of_name(expression[end])) ++end;
+      const bool component = i > 0 && expression[i - 1] == '.';
+      if (end > i && !component && lit_.contains(std::string(expression.substr(i, end - i)))) return true;
+      i = std::max(i, end);
+    }
+    return false;
+  }
+
   const Dialect& dialect_;
-  std::string text_;
-  ShaderCost cost_;
+  std::string text_, view_text_, light_text_;
+  ShaderCost cost_, view_cost_, light_cost_;
+  std::set<std::string> lit_{"wi"};
   std::map<std::string, std::string> names_;
   std::map<std::string, int> uses_{{"wi", 1}, {"wo", 1}};
 };

@@ -111,6 +111,15 @@ std::string lobe_value(Body& body, Lookups& lookups, const FactoredBrdf& brdf, s
   return body.let(channels == 1 ? d.scalar : d.vector, "lobe", product, ops(operations));
 }
 
+std::string sum_of_lobes(Body& body, const FactoredBrdf& brdf, const std::vector<std::string>& textures,
+                         ShaderFilter filter) {
+  Lookups lookups(body, brdf, textures, filter);
+  std::string total;
+  for (std::size_t j = 0; j < brdf.lobes().size(); ++j)
+    total += (j ? " + " : "") + lobe_value(body, lookups, brdf, j);
+  return total;
+}
+
 std::string declare_textures(const FactoredBrdf& brdf, const Dialect& d, const ShaderOptions& options,
                              const std::vector<std::string>& names) {
   const bool filtered = options.filter == ShaderFilter::hardware;
@@ -161,10 +170,7 @@ std::string local_function(const FactoredBrdf& brdf, const Dialect& d, const Sha
                            const std::vector<std::string>& textures, std::string_view more,
                            ShaderCost& cost) {
   Body body(d);
-  Lookups lookups(body, brdf, textures, options.filter);
-  std::string total;
-  for (std::size_t j = 0; j < brdf.lobes().size(); ++j)
-    total += (j ? " + " : "") + lobe_value(body, lookups, brdf, j);
+  const std::string total = sum_of_lobes(body, brdf, textures, options.filter);
   const std::string zero = d.literal(0);
   std::string result = d.function("burnish_" + options.name, {"wi", "wo"}, more);
   result +=
@@ -188,15 +194,7 @@ std::string world_function(const Dialect& d, const std::string& name, std::strin
                      more.empty() ? "" : ", tables");
 }
 
-}  // namespace
-
-std::string to_string(const ShaderCost& cost) {
-  return fmt::format("{} fetches, {} operations, {} divisions, {} roots, {} powers", cost.fetches,
-                     cost.operations, cost.divisions, cost.roots, cost.powers);
-}
-
-Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options) {
-  const Dialect& d = dialect_of(options.language);
+void check(const FactoredBrdf& brdf, const ShaderOptions& options) {
   const bool cpp = options.language == ShaderLanguage::cpp;
   if (!is_identifier(options.name))
     throw Error(fmt::format(
@@ -209,13 +207,31 @@ Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options) {
         fmt::format("shader: expected at most {} tables, found {}", kMostShaderTables, brdf.tables().size()));
   if (cpp && options.filter == ShaderFilter::hardware)
     throw Error("shader: expected the exact filter for cpp, which has no texture units, found hardware");
+}
 
-  Shader shader;
+std::vector<std::string> texture_names(const FactoredBrdf& brdf, const std::string& shader) {
+  std::vector<std::string> names;
   for (std::size_t i = 0; i < brdf.tables().size(); ++i) {
     const std::string& name = brdf.tables()[i].name;
-    shader.textures.push_back(is_identifier(name) ? fmt::format("burnish_{}_table_{}", options.name, name)
-                                                  : fmt::format("burnish_{}_table{}", options.name, i));
+    names.push_back(is_identifier(name) ? fmt::format("burnish_{}_table_{}", shader, name)
+                                        : fmt::format("burnish_{}_table{}", shader, i));
   }
+  return names;
+}
+
+}  // namespace
+
+std::string to_string(const ShaderCost& cost) {
+  return fmt::format("{} fetches, {} operations, {} divisions, {} roots, {} powers", cost.fetches,
+                     cost.operations, cost.divisions, cost.roots, cost.powers);
+}
+
+Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options) {
+  check(brdf, options);
+  const Dialect& d = dialect_of(options.language);
+  const bool cpp = options.language == ShaderLanguage::cpp;
+  Shader shader;
+  shader.textures = texture_names(brdf, options.name);
   const std::string more =
       options.language == ShaderLanguage::msl ? fmt::format("burnish_{}_tables tables", options.name) : "";
   const std::string function = local_function(brdf, d, options, shader.textures, more, shader.cost);
@@ -233,6 +249,26 @@ Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options) {
   shader.text += declare_textures(brdf, d, options, shader.textures);
   shader.text += function + world_function(d, options.name, more);
   if (cpp) shader.text += "}  // namespace burnish_shader\n";
+  return shader;
+}
+
+SplitShader split_shader(const FactoredBrdf& brdf, const ShaderOptions& options) {
+  check(brdf, options);
+  if (options.language != ShaderLanguage::glsl && options.language != ShaderLanguage::glsl_es)
+    throw Error(
+        fmt::format("shader: expected glsl or glsl_es to split, found {}", to_string(options.language)));
+  const Dialect& d = dialect_of(options.language);
+  SplitShader shader;
+  shader.textures = texture_names(brdf, options.name);
+  shader.declarations = std::string(d.header) + declare_textures(brdf, d, options, shader.textures);
+  Body body(d);
+  const std::string total = sum_of_lobes(body, brdf, shader.textures, options.filter);
+  shader.value = fmt::format("{}({})", d.vector, total);
+  shader.view = body.view_text();
+  shader.light = body.light_text();
+  shader.view_cost = body.view_cost();
+  shader.light_cost = body.light_cost();
+  shader.light_cost.operations += (static_cast<int>(brdf.lobes().size()) - 1) * brdf.channels();
   return shader;
 }
 

@@ -37,6 +37,14 @@ struct ShaderCost {
   int operations = 0;  ///< adds, subtracts, multiplies, minima, maxima, floors and selects
   int divisions = 0, roots = 0, powers = 0;
 
+  ShaderCost& operator+=(const ShaderCost& other) noexcept {
+    fetches += other.fetches;
+    operations += other.operations;
+    divisions += other.divisions;
+    roots += other.roots;
+    powers += other.powers;
+    return *this;
+  }
   friend bool operator==(const ShaderCost&, const ShaderCost&) = default;
 };
 
@@ -62,6 +70,21 @@ inline constexpr std::size_t kMostShaderTables = 16;
 /// Throws Error if the name is not as above, channels are not 1 or 3, there are more than kMostShaderTables
 /// tables in a language with textures, or for C++ with the hardware filter.
 Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options);
+
+/// What generate_shader computes, in two pieces of GLSL for a pixel that several lights shine on: `view`
+/// once, then `light` and `value` for every light.
+struct SplitShader {
+  std::string declarations;  ///< of the textures
+  std::string view;          ///< statements that need vec3 wo
+  std::string light;         ///< statements that need vec3 wi, wo and those of `view`
+  std::string value;         ///< after those an expression: f_r of directions above the horizon, vec3
+  std::vector<std::string> textures;
+  ShaderCost view_cost, light_cost;
+};
+
+/// Source text for `options.language`, glsl or glsl_es. Throws Error as generate_shader, and for other
+/// languages.
+SplitShader split_shader(const FactoredBrdf& brdf, const ShaderOptions& options);
 
 /// "12 fetches, 87 operations, 4 divisions, 2 roots, 0 powers".
 std::string to_string(const ShaderCost& cost);

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <burnish/reflectance/brdf.h>
+#include <burnish/render/scene.h>
+
+namespace burnish {
+
+struct CpuOptions {
+  int width = 512, height = 512;
+  bool shadows = false;  ///< whether triangles keep light from others
+};
+
+/// A picture of a scene by ray casting in double precision, the reference for GlRenderer: three channels,
+/// linear. `materials` have one or three channels; directions that one does not know are black. The same bits
+/// for every number of threads. Throws Error as check_scene and for materials of other channels.
+Image render_cpu(const Scene& scene, std::span<const BrdfRef> materials, const CpuOptions& options);
+
+/// What render_cpu gives where a vertex is, without shadows: for every part, in order, a value a vertex.
+std::vector<std::vector<Rgb>> shade_vertices(const Scene& scene, std::span<const BrdfRef> materials);
+
+/// One flag a pixel: 1 where the ray through it and those to its eight neighbours hit the same part, with
+/// normals that lie less than 30 degrees apart: away from outlines, where two renderers may see different
+/// triangles.
+std::vector<std::uint8_t> interior_pixels(const Scene& scene, int width, int height);
+
+}  // namespace burnish

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include <burnish/factors/table_format.h>
+
+namespace burnish {
+
+/// What is uploaded to a texture: 2-D, or 3-D where depth is not 0; clamped to the edge, one level.
+struct GlTexture {
+  std::string name;  ///< of its sampler in the shader
+  int width = 1, height = 1, depth = 0;
+  int channels = 1;  ///< 1 or 3
+  TableFormat precision = TableFormat::single;
+  bool filtered = false;  ///< linear between texels, else the nearest
+  std::vector<float> values;
+};
+
+/// Uploads it. Throws Error for a precision other than half, single and rgb9e5 (of three channels).
+unsigned upload_texture(const GlTexture& texture);
+
+/// Links shaders given as pairs of type and source without their `#version 450` line. Throws Error with what
+/// the driver says if it refuses them.
+struct GlShaderSource {
+  unsigned type;
+  std::string text;
+};
+unsigned link_program(std::span<const GlShaderSource> shaders);
+
+}  // namespace burnish

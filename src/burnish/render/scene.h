@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <burnish/metrics/image.h>
+#include <burnish/reflectance/analytic/pair_geometry.h>
+#include <burnish/render/mesh.h>
+
+namespace burnish {
+
+/// Light that leaves one point evenly in all directions.
+struct PointLight {
+  Vec3 position;
+  Rgb intensity{1, 1, 1};  ///< per steradian: what arrives at distance r is intensity / r^2
+};
+
+/// A pinhole camera.
+struct Camera {
+  Vec3 eye{0, 0, 4}, target;
+  Vec3 up{0, 1, 0};
+  double field_of_view = 0.6;  ///< angle between the upper and the lower edge, radians, in (0, pi)
+};
+
+/// What both renderers draw: the outgoing radiance of [HomomorphicBrdf, eq. 2] without shadows,
+/// sum of f_r max(cos theta_i, 0) intensity / r^2 over the lights, at the middle of every pixel. Normals and
+/// tangents are interpolated over triangles, normalized, the tangent made orthogonal to the normal; surfaces
+/// are seen from both sides, but give nothing where the view is below the interpolated horizon.
+struct Scene {
+  std::vector<MeshPart> parts;
+  std::vector<PointLight> lights;
+  Camera camera;
+  Rgb background{0, 0, 0};
+};
+
+/// The camera's axes: unit vectors to the right, up and backwards.
+struct CameraFrame {
+  Vec3 right, up, back;
+};
+CameraFrame frame_of(const Camera& camera) noexcept;
+
+/// A camera in front of the box, turned by `yaw` (radians, to the right) and `pitch` (upwards) about its
+/// middle, that has the box's enclosing sphere in its frame.
+Camera camera_for(const Bounds& bounds, double yaw, double pitch);
+
+/// Throws Error unless the picture's sides are in [1, 16384], the camera has a direction, the field of view
+/// is in range, there are `materials` for the parts, and their triangles' corners exist.
+void check_scene(const Scene& scene, int width, int height, std::size_t materials);
+
+/// Averages squares of `factor` by `factor` pixels; sides must be multiples of factor >= 1, else throws
+/// Error.
+Image averaged(const Image& image, int factor);
+
+}  // namespace burnish
