@@ -14,6 +14,7 @@ void add_fit_command(CLI::App& app);
 void add_hw_command(CLI::App& app);
 void add_info_command(CLI::App& app);
 void add_measure_command(CLI::App& app);
+void add_render_command(CLI::App& app);
 void add_specular_command(CLI::App& app);
 
 }  // namespace burnish::cli

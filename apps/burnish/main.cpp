@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   burnish::cli::add_measure_command(app);
   burnish::cli::add_convert_command(app);
   burnish::cli::add_export_command(app);
+  burnish::cli::add_render_command(app);
   burnish::cli::add_specular_command(app);
   burnish::cli::add_hw_command(app);
   try {

@@ -20,7 +20,7 @@ Scene lone_sphere() {
   Scene scene;
   scene.parts = {{make_sphere(64, 32), 0}};
   scene.lights = {{{0, 0, 5}, {32, 16, 8}}};
-  scene.camera = camera_for(bounds_of(scene.parts), 0, 0);
+  scene.camera = camera_for_unit_sphere(0, 0);
   return scene;
 }
 
@@ -34,14 +34,22 @@ TEST(CpuRenderer, GivesTheRadianceOfAPointLight) {
   EXPECT_EQ(image.at(0, 0)[0], 0);
 }
 
-TEST(CpuRenderer, FillsTheFrameWithTheEnclosingSphereOfTheScene) {
-  const Image image = render_cpu(lone_sphere(), std::array{BrdfRef(kMatte)}, {.width = 64, .height = 64});
-  double lit = 0;
-  for (int y = 0; y < 64; ++y)
-    for (int x = 0; x < 64; ++x) lit += image.at(x, y)[0] > 0;
-  // a sphere inside the sphere around its box, which touches the frame
-  EXPECT_GT(lit / (64 * 64), 0.15);
-  EXPECT_LT(lit / (64 * 64), kPi / 4 / 3 * 1.2);
+TEST(CpuRenderer, HasTheUnitSphereInItsFrame) {
+  constexpr int kSide = 200;
+  Scene scene = lone_sphere();
+  scene.background = {0, 0, 7};
+  for (Vertex& v : scene.parts[0].mesh.vertices)
+    v.position = to_floats(1e3 * to_vec3(v.position) + Vec3{5, 6, 7});
+  fit_to_unit_sphere(scene.parts);
+  const Image image = render_cpu(scene, std::array{BrdfRef(kMatte)}, {.width = kSide, .height = kSide});
+  int covered = 0;
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
+      const bool sphere = image.at(x, y)[2] != 7;
+      covered += sphere;
+      if (x == 0 || y == 0 || x == kSide - 1 || y == kSide - 1) EXPECT_FALSE(sphere);
+    }
+  EXPECT_GT(covered, 0.85 * kPi / 4 * kSide * kSide);
 }
 
 TEST(CpuRenderer, AddsLights) {

@@ -9,9 +9,8 @@ namespace burnish {
 
 namespace {
 
-[[noreturn]] void fail(EGLDisplay display, const char* what) {
+[[noreturn]] void fail(const char* what) {
   const EGLint code = eglGetError();
-  if (display) eglTerminate(display);
   throw Error(fmt::format("OpenGL: expected {}, found EGL error 0x{:x}", what, code));
 }
 
@@ -21,12 +20,12 @@ GlContext::GlContext() {
   if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"))
     throw Error("OpenGL: expected EGL with EGL_MESA_platform_surfaceless, found none");
   display_ = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
-  if (!display_ || !eglInitialize(display_, nullptr, nullptr)) fail(display_, "a display without a surface");
+  if (!display_ || !eglInitialize(display_, nullptr, nullptr)) fail("a display without a surface");
   const EGLint wanted[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, 0, EGL_NONE};
   EGLConfig config = nullptr;
   EGLint count = 0;
   if (!eglBindAPI(EGL_OPENGL_API) || !eglChooseConfig(display_, wanted, &config, 1, &count) || count == 0)
-    fail(display_, "OpenGL");
+    fail("OpenGL");
   const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION,
                             4,
                             EGL_CONTEXT_MINOR_VERSION,
@@ -35,14 +34,12 @@ GlContext::GlContext() {
                             EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
                             EGL_NONE};
   context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, version);
-  if (!context_ || !eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_))
-    fail(display_, "OpenGL 4.5");
+  if (!context_ || !eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) fail("OpenGL 4.5");
 }
 
 GlContext::~GlContext() {
   eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-  eglDestroyContext(display_, context_);
-  eglTerminate(display_);
+  eglDestroyContext(display_, context_);  // the display is the process's, and may have other contexts
 }
 
 std::string GlContext::renderer() const {

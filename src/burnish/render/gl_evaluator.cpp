@@ -5,7 +5,6 @@
 
 #include <burnish/error.h>
 #include <burnish/render/gl_evaluator.h>
-#include <burnish/render/gl_objects.h>
 
 namespace burnish {
 
@@ -30,23 +29,44 @@ void main() {
 }
 )";
 
+GLuint upload(const Table& table, ShaderFilter filter, TableFormat precision) {
+  const bool half = precision == TableFormat::half;
+  const GLenum stored = table.channels == 1 ? (half ? GL_R16F : GL_R32F) : (half ? GL_RGB16F : GL_RGB32F);
+  const GLint interpolation = filter == ShaderFilter::exact ? GL_NEAREST : GL_LINEAR;
+  GLuint texture = 0;
+  glCreateTextures(GL_TEXTURE_2D, 1, &texture);
+  glTextureStorage2D(texture, 1, stored, table.layout.width, table.layout.height);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  glTextureSubImage2D(texture, 0, 0, 0, table.layout.width, table.layout.height,
+                      table.channels == 1 ? GL_RED : GL_RGB, GL_FLOAT, table.values.data());
+  for (const GLenum filters : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    glTextureParameteri(texture, filters, interpolation);
+  for (const GLenum edges : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+    glTextureParameteri(texture, edges, GL_CLAMP_TO_EDGE);
+  return texture;
+}
+
 }  // namespace
 
 GlEvaluator::GlEvaluator(const FactoredBrdf& brdf, ShaderFilter filter, TableFormat precision) {
   if (precision != TableFormat::half && precision != TableFormat::single)
     throw Error(fmt::format("OpenGL: expected textures of half or float, found {}", to_string(precision)));
   const Shader shader = generate_shader(brdf, {ShaderLanguage::glsl, filter, "model"});
-  const GlShaderSource source{GL_COMPUTE_SHADER, shader.text + kMain};
-  program_ = link_program({&source, 1});
+  const std::string text = "#version 450\n" + shader.text + kMain;
+  const char* source = text.c_str();
+  program_ = glCreateShaderProgramv(GL_COMPUTE_SHADER, 1, &source);
+  GLint linked = 0;
+  glGetProgramiv(program_, GL_LINK_STATUS, &linked);
+  if (!linked) {
+    std::string log(4096, '\0');
+    GLsizei size = 0;
+    glGetProgramInfoLog(program_, static_cast<GLsizei>(log.size()), &size, log.data());
+    glDeleteProgram(program_);
+    throw Error("OpenGL: expected a shader that links, found: " +
+                log.substr(0, static_cast<std::size_t>(size)));
+  }
   for (std::size_t i = 0; i < brdf.tables().size(); ++i) {
-    const Table& table = brdf.tables()[i];
-    textures_.push_back(upload_texture({.name = shader.textures[i],
-                                        .width = table.layout.width,
-                                        .height = table.layout.height,
-                                        .channels = table.channels,
-                                        .precision = precision,
-                                        .filtered = filter == ShaderFilter::hardware,
-                                        .values = table.values}));
+    textures_.push_back(upload(brdf.tables()[i], filter, precision));
     glProgramUniform1i(program_, glGetUniformLocation(program_, shader.textures[i].c_str()),
                        static_cast<GLint>(i));
   }

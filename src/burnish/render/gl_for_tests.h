@@ -6,10 +6,6 @@
 #include <burnish/error.h>
 #include <burnish/render/gl_context.h>
 
-#ifdef __SANITIZE_ADDRESS__
-#include <sanitizer/lsan_interface.h>
-#endif
-
 namespace burnish {
 
 /// A context for tests, or why there is none.
@@ -18,9 +14,6 @@ struct TestContext {
   std::string reason;
 
   TestContext() {
-#ifdef __SANITIZE_ADDRESS__
-    const __lsan::ScopedDisabler not_ours;  // what drivers keep when they are unloaded
-#endif
     try {
       context = std::make_unique<GlContext>();
     } catch (const Error& error) {

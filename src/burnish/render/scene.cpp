@@ -15,12 +15,22 @@ CameraFrame frame_of(const Camera& camera) noexcept {
   return {right, cross(back, right), back};
 }
 
-Camera camera_for(const Bounds& bounds, double yaw, double pitch) {
+void fit_to_unit_sphere(std::span<MeshPart> parts) {
+  const Vec3 middle = bounds_of(parts).middle();
+  double farthest = 0;
+  for (const MeshPart& part : parts)
+    for (const Vertex& v : part.mesh.vertices)
+      farthest = std::max(farthest, length(to_vec3(v.position) - middle));
+  const double scale = farthest > 0 ? 1 / farthest : 1;
+  for (MeshPart& part : parts)
+    for (Vertex& v : part.mesh.vertices) v.position = to_floats(scale * (to_vec3(v.position) - middle));
+}
+
+Camera camera_for_unit_sphere(double yaw, double pitch) noexcept {
+  constexpr double kSpare = 1.04;
   Camera camera;
-  const double distance = std::max(bounds.radius(), 1e-12) / std::sin(0.5 * camera.field_of_view);
-  const Vec3 back{std::sin(yaw) * std::cos(pitch), std::sin(pitch), std::cos(yaw) * std::cos(pitch)};
-  camera.target = bounds.middle();
-  camera.eye = camera.target + distance * back;
+  camera.eye = kSpare / std::sin(0.5 * camera.field_of_view) *
+               Vec3{std::sin(yaw) * std::cos(pitch), std::sin(pitch), std::cos(yaw) * std::cos(pitch)};
   return camera;
 }
 

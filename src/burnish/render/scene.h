@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include <burnish/metrics/image.h>
@@ -39,9 +40,13 @@ struct CameraFrame {
 };
 CameraFrame frame_of(const Camera& camera) noexcept;
 
-/// A camera in front of the box, turned by `yaw` (radians, to the right) and `pitch` (upwards) about its
-/// middle, that has the box's enclosing sphere in its frame.
-Camera camera_for(const Bounds& bounds, double yaw, double pitch);
+/// Moves and scales the parts together so that the middle of their box is the origin and their farthest
+/// vertex 1 away. Throws Error if there is none.
+void fit_to_unit_sphere(std::span<MeshPart> parts);
+
+/// A camera that has the unit sphere in its frame with little to spare, turned by `yaw` (radians, to the
+/// right) and `pitch` (upwards) about the origin.
+Camera camera_for_unit_sphere(double yaw, double pitch) noexcept;
 
 /// Throws Error unless the picture's sides are in [1, 16384], the camera has a direction, the field of view
 /// is in range, there are `materials` for the parts, and their triangles' corners exist.

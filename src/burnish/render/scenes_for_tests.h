@@ -13,7 +13,8 @@ inline Scene knot_and_sphere() {
   for (Vertex& v : scene.parts[1].mesh.vertices)
     v.position = to_floats(0.3 * to_vec3(v.position) + Vec3{0.6, -0.5, 0.6});
   scene.lights = {{{2, 3, 4}, {20, 15, 10}}, {{-3, 1, 2}, {5, 9, 12}}, {{0.5, -4, 1}, 6}};
-  scene.camera = camera_for(bounds_of(scene.parts), radians(20), radians(15));
+  fit_to_unit_sphere(scene.parts);
+  scene.camera = camera_for_unit_sphere(radians(20), radians(15));
   scene.background = {0.02, 0.03, 0.05};
   return scene;
 }

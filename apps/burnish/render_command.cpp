@@ -1,0 +1,209 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include <burnish/error.h>
+#include <burnish/file.h>
+#include <burnish/math/angles.h>
+#include <burnish/metrics/png.h>
+#include <burnish/render/cpu_renderer.h>
+#include <burnish/render/gl_context.h>
+#include <burnish/render/gl_renderer.h>
+#include <burnish/render/mesh_file.h>
+#include <burnish/render/picture.h>
+#include <burnish/render/shapes.h>
+
+#include "commands.h"
+#include "render_figure.h"
+#include "source_arguments.h"
+#include "usage.h"
+
+namespace burnish::cli {
+
+namespace {
+
+struct Arguments {
+  std::string mesh = "sphere", out, renderer = "gl", tone = "srgb", size = "512", exposure = "auto",
+              background = "0,0,0";
+  std::vector<std::string> materials, lights{"2,3,4:20"};
+  std::vector<double> view{0, 0};
+  int vertices = 40000, samples = 2;
+  bool exact = false, shadows = false, figure1 = false;
+  FigureArguments figure;
+};
+
+// Numbers with commas between them, `least` to `most` of them.
+std::vector<double> numbers(const std::string& text, std::size_t least, std::size_t most,
+                            const char* option) {
+  std::vector<double> values;
+  for (const std::string& part : CLI::detail::split(text, ',')) {
+    double value = 0;
+    if (!CLI::detail::lexical_cast(part, value) || !std::isfinite(value)) values.resize(most + 1);
+    values.push_back(value);
+    if (values.size() > most) break;
+  }
+  if (values.size() < least || values.size() > most)
+    throw CLI::ValidationError(
+        fmt::format("{}: expected {} numbers, found '{}'", option,
+                    least == most ? fmt::format("{}", least) : fmt::format("{} or {}", least, most), text));
+  return values;
+}
+
+Rgb color(const std::string& text, const char* option) {
+  const auto v = numbers(text, 1, 3, option);
+  if (v.size() == 2 || *std::ranges::min_element(v) < 0)
+    throw CLI::ValidationError(
+        fmt::format("{}: expected one or three numbers >= 0, found '{}'", option, text));
+  return v.size() == 1 ? Rgb(v[0]) : Rgb(v[0], v[1], v[2]);
+}
+
+PointLight light(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  const auto p = numbers(text.substr(0, colon), 3, 3, "--lights");
+  return {{p[0], p[1], p[2]}, colon == text.npos ? Rgb(20) : color(text.substr(colon + 1), "--lights")};
+}
+
+std::array<int, 2> picture_size(const std::string& text) {
+  const std::size_t cross = text.find('x');
+  int width = 0, height = 0;
+  const bool read = CLI::detail::lexical_cast(text.substr(0, cross), width) &&
+                    CLI::detail::lexical_cast(cross == text.npos ? text : text.substr(cross + 1), height);
+  if (!read || width < 1 || height < 1 || width > 8192 || height > 8192)
+    throw CLI::ValidationError(fmt::format("--size: expected N or WxH in [1, 8192], found '{}'", text));
+  return {width, height};
+}
+
+double exposure_of(const std::string& text) {
+  double value = 0;
+  if (!CLI::detail::lexical_cast(text, value) || !(value > 0))
+    throw CLI::ValidationError(fmt::format("--exposure: expected auto or a number > 0, found '{}'", text));
+  return value;
+}
+
+// Files name materials of their own: as many as there are, the last given one for the rest.
+std::vector<MeshPart> parts_of(const Arguments& arguments) {
+  std::vector<MeshPart> parts;
+  if (const auto shape = parse_shape(arguments.mesh))
+    parts.push_back({make_shape(*shape, arguments.vertices), 0});
+  else
+    parts = read_mesh(arguments.mesh).parts;
+  for (MeshPart& part : parts)
+    part.material = std::min(part.material, static_cast<int>(arguments.materials.size()) - 1);
+  fit_to_unit_sphere(parts);
+  return parts;
+}
+
+Image render_gl(const Scene& scene, const Arguments& arguments, int width, int height) {
+  std::vector<SurfaceShader> materials;
+  for (const std::string& file : arguments.materials) {
+    if (!std::filesystem::is_regular_file(file))
+      throw Error::in_file(file, "the file of a factored BRDF (others are drawn by --renderer cpu)",
+                           "no file");
+    materials.push_back(surface_shader(parse_model(read_file(file)).brdf,
+                                       arguments.exact ? ShaderFilter::exact : ShaderFilter::hardware,
+                                       TableFormat::single));
+  }
+  const GlContext context;
+  const GlRenderer renderer(scene, materials, width, height);
+  renderer.draw();
+  return renderer.read();
+}
+
+Image render_by_cpu(const Scene& scene, const Arguments& arguments, int width, int height) {
+  std::vector<Source> sources;
+  for (const std::string& spec : arguments.materials) sources.push_back(open_source(spec, {}));
+  std::vector<BrdfRef> materials;
+  for (const Source& source : sources) materials.push_back(source.ref());
+  return render_cpu(scene, materials, {.width = width, .height = height, .shadows = arguments.shadows});
+}
+
+void render(const Arguments& arguments) {
+  if (arguments.materials.empty()) throw CLI::RequiredError("--material");
+  if (arguments.out.empty()) throw CLI::RequiredError("--output");
+  const bool cpu = arguments.renderer == "cpu";
+  const std::string extension = std::filesystem::path(arguments.out).extension().string();
+  if (extension != ".png" && extension != ".exr")
+    throw CLI::ValidationError(
+        fmt::format("--output: expected a name that ends in .png or .exr, found '{}'", arguments.out));
+  if (arguments.shadows && !cpu) throw CLI::ValidationError("--shadows: expected --renderer cpu with it");
+  Scene scene;
+  for (const std::string& text : arguments.lights) scene.lights.push_back(light(text));
+  scene.background = color(arguments.background, "--background");
+  scene.camera = camera_for_unit_sphere(radians(arguments.view[0]), radians(arguments.view[1]));
+  const auto [width, height] = picture_size(arguments.size);
+  const bool automatic = arguments.exposure == "auto";
+  const double given = automatic ? 1 : exposure_of(arguments.exposure);
+  scene.parts = parts_of(arguments);
+  const int n = arguments.samples;
+  const Image fine = cpu ? render_by_cpu(scene, arguments, n * width, n * height)
+                         : render_gl(scene, arguments, n * width, n * height);
+  const double exposure = automatic ? automatic_exposure(fine, scene.background) : given;
+  const Image image = averaged(fine, n);
+  if (extension == ".exr")
+    write_then_rename(arguments.out, encode_exr(image));
+  else
+    write_png(arguments.out, to_bytes(image, exposure, arguments.tone == "aces" ? Tone::aces : Tone::srgb));
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app) {
+  CLI::App* verb = app.add_subcommand("render", "Draw a mesh with factored BRDFs under point lights");
+  verb->footer(
+      "The scene is moved and scaled into the unit sphere; x points to the right, y up, z to the viewer.\n"
+      "Examples: burnish render --mesh teapot --material paint.exr --lights 2,3,4:20 --lights -3,1,2:4,5,9 "
+      "-o "
+      "teapot.png\n"
+      "          burnish render --mesh torus-knot --material ggx:alpha_x=0.1,alpha_y=0.3 --renderer cpu -o "
+      "knot.exr\n"
+      "          burnish render --figure1 -o figure1.png\n"
+      "See docs/rendering.md.");
+  auto arguments = std::make_shared<Arguments>();
+  verb->add_option("--mesh", arguments->mesh, "sphere, teapot, torus-knot, or an OBJ or glTF file")
+      ->capture_default_str();
+  verb->add_option("--vertices", arguments->vertices, "of a built-in mesh, about")
+      ->check(CLI::Range(64, 1 << 22))
+      ->capture_default_str();
+  verb->add_option(
+          "--material", arguments->materials,
+          "factored BRDF as `burnish fit` writes it (with --renderer cpu any BRDF); several: for the "
+          "file's materials in their order")
+      ->delimiter(';');
+  verb->add_option("--lights", arguments->lights,
+                   "x,y,z[:intensity] or x,y,z:r,g,b of a point light; may be given several times")
+      ->take_all()
+      ->capture_default_str();
+  verb->add_option("-o,--output", arguments->out, "picture to write: PNG, or EXR of linear values");
+  verb->add_option("--renderer", arguments->renderer, "OpenGL, or the reference on the CPU")
+      ->check(CLI::IsMember({"gl", "cpu"}))
+      ->capture_default_str();
+  verb->add_option("--view", arguments->view, "degrees to the right and upwards that the mesh is seen from")
+      ->expected(2)
+      ->delimiter(',');
+  verb->add_option("--size", arguments->size, "pixels: N or WxH")->capture_default_str();
+  verb->add_option("--samples", arguments->samples, "a pixel along each axis")
+      ->check(CLI::Range(1, 8))
+      ->capture_default_str();
+  verb->add_option("--tone", arguments->tone, "of a PNG: clamped, or with a filmic curve")
+      ->check(CLI::IsMember({"srgb", "aces"}))
+      ->capture_default_str();
+  verb->add_option("--exposure", arguments->exposure,
+                   "of a PNG: a factor, or auto: 3 % of the object are white")
+      ->capture_default_str();
+  verb->add_option("--background", arguments->background, "grey or r,g,b, linear")->capture_default_str();
+  verb->add_flag("--exact", arguments->exact, "weigh texels in the shader, not by the texture unit");
+  verb->add_flag("--shadows", arguments->shadows, "of --renderer cpu: lights are blocked by triangles");
+  add_figure_arguments(*verb, arguments->figure, arguments->figure1);
+  verb->callback([arguments] {
+    if (arguments->figure1)
+      draw_figure(arguments->figure, arguments->mesh, arguments->out);
+    else
+      render(*arguments);
+  });
+}
+
+}  // namespace burnish::cli

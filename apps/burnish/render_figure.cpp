@@ -1,0 +1,111 @@
+#include "render_figure.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <burnish/file.h>
+#include <burnish/fitting/fit.h>
+#include <burnish/io/source.h>
+#include <burnish/math/angles.h>
+#include <burnish/metrics/contact_sheet.h>
+#include <burnish/metrics/png.h>
+#include <burnish/metrics/sphere_images.h>
+#include <burnish/render/gl_context.h>
+#include <burnish/render/picture.h>
+#include <burnish/render/shapes.h>
+#include <burnish/render/vertex_figure.h>
+
+namespace burnish::cli {
+
+namespace {
+
+// What is shown of a difference of tone-mapped values: this much is the brightest colour.
+constexpr double kDifferenceScale = 0.25;
+
+Scene scene_of(const std::string& mesh, int vertices) {
+  const auto shape = parse_shape(mesh);
+  if (!shape)
+    throw CLI::ValidationError(
+        fmt::format("--mesh: expected sphere, teapot or torus-knot with --figure1, found '{}'", mesh));
+  Scene scene;
+  scene.parts = {{make_shape(*shape, vertices), 0}};
+  fit_to_unit_sphere(scene.parts);
+  scene.lights = {{{2, 3, 4}, 20}, {{-4, 1, 3}, 10}};
+  scene.camera = camera_for_unit_sphere(radians(20), radians(20));
+  return scene;
+}
+
+FactoredBrdf model_of(const FigureArguments& arguments, const Source& truth) {
+  if (!arguments.model.empty()) return parse_model(read_file(arguments.model)).brdf;
+  FitOptions options;
+  options.tables = {"p=64x64", "q=64x64,rational:0.2"};
+  return fit({.brdf = truth.ref(), .name = truth.name, .format = truth.findings.format}, options).brdf;
+}
+
+std::vector<Image8> row_of(const VertexFigure& f) {
+  const Image truth = tone_map(f.truth, f.exposure);
+  const auto shown = [&](const Image& image) { return to_image8(tone_map(image, f.exposure)); };
+  const auto difference = [&](const Image& image) {
+    return heat_map(mean_difference(tone_map(image, f.exposure), truth), kDifferenceScale);
+  };
+  return {shown(f.at_vertices), shown(f.factored), to_image8(truth), difference(f.at_vertices),
+          difference(f.factored)};
+}
+
+}  // namespace
+
+void add_figure_arguments(CLI::App& verb, FigureArguments& arguments, bool& figure1) {
+  CLI::Option* figure = verb.add_flag(
+      "--figure1", figure1,
+      "draw the truth at vertices and interpolated, the factored BRDF at pixels, and the truth at pixels");
+  verb.add_option("--truth", arguments.truth, "of --figure1: any BRDF")->needs(figure)->capture_default_str();
+  verb.add_option("--model", arguments.model,
+                  "of --figure1: factored BRDF (default: a fit of pqp with 64 x 64 tables)")
+      ->needs(figure);
+  verb.add_option("--tessellations", arguments.tessellations, "of --figure1: numbers of vertices")
+      ->needs(figure)
+      ->delimiter(',')
+      ->check(CLI::Range(64, 1 << 22))
+      ->capture_default_str();
+  verb.add_option("--figure-size", arguments.size, "of --figure1: pixels a picture")
+      ->needs(figure)
+      ->check(CLI::Range(16, 4096))
+      ->capture_default_str();
+  verb.add_flag("--json", arguments.json, "of --figure1: print the table as JSON")->needs(figure);
+}
+
+void draw_figure(const FigureArguments& arguments, const std::string& mesh, const std::string& out) {
+  if (out.empty()) throw CLI::RequiredError("--output");
+  scene_of(mesh, 64);  // a name that is none is told before anything is fitted
+  const Source truth = open_source(arguments.truth, {});
+  const FactoredBrdf model = model_of(arguments, truth);
+  const GlContext context;
+  ContactSheet sheet{.title = fmt::format("{} on a {}", arguments.truth, mesh),
+                     .column_labels = {"truth at vertices", "factored at pixels", "truth at pixels",
+                                       "difference\nat vertices", "difference\nfactored"},
+                     .row_labels = {},
+                     .cells = {},
+                     .color_bar = ColorBar{kDifferenceScale, "difference, tone mapped"}};
+  auto rows = nlohmann::ordered_json::array();
+  for (const int vertices : arguments.tessellations) {
+    const VertexFigure f =
+        compare_with_vertices(scene_of(mesh, vertices), truth.ref(), model, arguments.size);
+    rows.push_back({{"vertices", f.vertices},
+                    {"psnr_at_vertices", f.psnr_at_vertices},
+                    {"psnr_factored", f.psnr_factored}});
+    sheet.row_labels.push_back(fmt::format("{} vertices", f.vertices));
+    sheet.cells.push_back(row_of(f));
+  }
+  write_png(out, compose(sheet));
+  if (arguments.json) {
+    fmt::print("{}\n", rows.dump(2));
+    return;
+  }
+  fmt::print("{}, {} bytes, psnr against the truth at pixels (dB)\n vertices  at vertices  factored\n",
+             model_expression(model), model.bytes());
+  for (const auto& row : rows)
+    fmt::print("{:9}  {:11.2f}  {:8.2f}\n", row["vertices"].get<std::size_t>(),
+               row["psnr_at_vertices"].get<double>(), row["psnr_factored"].get<double>());
+}
+
+}  // namespace burnish::cli
