@@ -2,9 +2,9 @@
 # make test   installs packages, builds with sanitizers and optimized, runs every test
 # make python the Python package in build/venv, tested
 # make build  the command line at build/release/apps/burnish/burnish
-# make bench, make fuzz, make report, make sampling-report, make shader-report, make hw-report, make hw-exhaustive, make format:
+# make bench, make fuzz, make report, make sampling-report, make shader-report, make frame-cost, make hw-report, make hw-exhaustive, make format:
 # see docs/developing.md
-.PHONY: demo test build python deps bench fuzz report sampling-report shader-report hw-report hw-exhaustive format format-check
+.PHONY: demo test build python deps bench fuzz report sampling-report shader-report frame-cost hw-report hw-exhaustive format format-check
 JOBS ?= $(shell nproc)
 BURNISH := build/release/apps/burnish/burnish
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
@@ -63,6 +63,10 @@ sampling-report: build
 shader-report: build
 	@build/release/apps/shader_report/burnish_shader_report > docs/shader-results.md.partial
 	@mv docs/shader-results.md.partial docs/shader-results.md
+
+frame-cost: build
+	@build/release/apps/frame_cost/burnish_frame_cost > docs/frame-cost.md.partial
+	@mv docs/frame-cost.md.partial docs/frame-cost.md
 
 HW := build/hw-report
 LIBRARY := $(CURDIR)/build/release/src/burnish/libburnish.a

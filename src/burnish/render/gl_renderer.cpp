@@ -20,6 +20,7 @@ layout(location = 4) in vec3 burnish_value_in;
 uniform mat4 burnish_projection;
 out vec3 burnish_place, burnish_normal, burnish_tangent, burnish_value;
 out float burnish_side;
+invariant gl_Position;
 void main() {
   burnish_place = burnish_position;
   burnish_normal = burnish_normal_in;
@@ -146,7 +147,7 @@ struct GlRenderer::State {
   std::vector<Material> materials;
   std::vector<Part> parts;
   std::vector<LightEntry> lights;
-  GLuint frame = 0, targets[2] = {}, light_buffer = 0;
+  GLuint frame = 0, targets[2] = {}, light_buffer = 0, depth_program = 0;
   std::array<float, 4> background{};
   int width = 0, height = 0;
 
@@ -159,6 +160,7 @@ struct GlRenderer::State {
       glDeleteVertexArrays(1, &p.array);
       glDeleteBuffers(3, p.buffers);
     }
+    glDeleteProgram(depth_program);
     glDeleteBuffers(1, &light_buffer);
     glDeleteFramebuffers(1, &frame);
     glDeleteRenderbuffers(2, targets);
@@ -176,18 +178,29 @@ struct GlRenderer::State {
                               height));
   }
 
+  GLuint linked(const std::string& fragment, const Scene& scene) const {
+    const GlShaderSource sources[] = {{GL_VERTEX_SHADER, kVertexShader}, {GL_FRAGMENT_SHADER, fragment}};
+    const GLuint program = link_program(sources);
+    glProgramUniformMatrix4fv(program, glGetUniformLocation(program, "burnish_projection"), 1, GL_FALSE,
+                              projection_of(scene, width, height).data());
+    return program;
+  }
+
   void add_material(const std::string& fragment, std::span<const GlTexture> textures, const Scene& scene) {
     Material& m = materials.emplace_back();
-    const GlShaderSource sources[] = {{GL_VERTEX_SHADER, kVertexShader}, {GL_FRAGMENT_SHADER, fragment}};
-    m.program = link_program(sources);
+    m.program = linked(fragment, scene);
     const auto at = [&](const std::string& name) { return glGetUniformLocation(m.program, name.c_str()); };
-    glProgramUniformMatrix4fv(m.program, at("burnish_projection"), 1, GL_FALSE,
-                              projection_of(scene, width, height).data());
     glProgramUniform3fv(m.program, at("burnish_eye"), 1, to_floats(scene.camera.eye).data());
     for (const GlTexture& texture : textures) {
       glProgramUniform1i(m.program, at(texture.name), static_cast<GLint>(m.textures.size()));
       m.textures.push_back(upload_texture(texture));
     }
+  }
+
+  void draw_part(const Part& part, GLuint program) const {
+    glUseProgram(program);
+    glBindVertexArray(part.array);
+    glDrawElements(GL_TRIANGLES, part.corners, GL_UNSIGNED_INT, nullptr);
   }
 
   void add_part(const MeshPart& part, const std::vector<Rgb>* values) {
@@ -234,6 +247,7 @@ GlRenderer::GlRenderer(const Scene& scene, std::span<const SurfaceShader> materi
   s.background = {static_cast<float>(scene.background.r), static_cast<float>(scene.background.g),
                   static_cast<float>(scene.background.b), 1};
   s.make_target();
+  s.depth_program = s.linked("void main() {}\n", scene);
   if (interpolated) s.add_material(kInterpolated, {}, scene);
   for (const SurfaceShader& surface : materials)
     s.add_material(fragment_shader(surface), surface.textures, scene);
@@ -271,24 +285,24 @@ void GlRenderer::draw() const {
   glClearNamedFramebufferfv(s.frame, GL_COLOR, 0, s.background.data());
   glClearNamedFramebufferfv(s.frame, GL_DEPTH, 0, &far);
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, s.light_buffer);
+  // depth first, so that only what is seen is shaded
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  for (const State::Part& part : s.parts) s.draw_part(part, s.depth_program);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glDepthFunc(GL_EQUAL);
   std::size_t first = 0;
   do {
     const std::size_t count = std::min(s.lights.size() - first, std::size_t{kLightsAPass});
     if (count > 0)
       glNamedBufferSubData(s.light_buffer, 0, static_cast<GLsizeiptr>(count * sizeof(LightEntry)),
                            &s.lights[first]);
-    if (first > 0) {  // more lights: added to what is there
-      glDepthFunc(GL_EQUAL);
-      glEnable(GL_BLEND);
-    }
+    if (first > 0) glEnable(GL_BLEND);  // more lights: added to what is there
     for (const State::Part& part : s.parts) {
       const State::Material& m = s.materials[part.material];
-      glUseProgram(m.program);
       glProgramUniform1i(m.program, glGetUniformLocation(m.program, "burnish_light_count"),
                          static_cast<GLint>(count));
       glBindTextures(0, static_cast<GLsizei>(m.textures.size()), m.textures.data());
-      glBindVertexArray(part.array);
-      glDrawElements(GL_TRIANGLES, part.corners, GL_UNSIGNED_INT, nullptr);
+      s.draw_part(part, m.program);
     }
     first += count;
   } while (first < s.lights.size());

@@ -1,0 +1,130 @@
+// What `burnish render` draws and refuses.
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <burnish/error.h>
+#include <burnish/factors/model_file.h>
+#include <burnish/factors/models_for_tests.h>
+#include <burnish/metrics/png.h>
+#include <burnish/render/gl_context.h>
+#include <burnish/tools_for_tests.h>
+
+namespace burnish {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+
+std::string read(const fs::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+bool has_opengl() {
+  try {
+    const GlContext context;
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+class Render : public testing::Test {
+ protected:
+  void SetUp() override {
+    write(folder_ / "one.exr", format_model({smooth_model(kModelCases[0]), {}, "{}"}));
+    write(folder_ / "two.exr", format_model({smooth_model(kModelCases[7]), {}, "{}"}));
+    write(folder_ / "two.obj",
+          "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nusemtl left\nf 1 2 4\nusemtl right\nf 2 3 4\n");
+  }
+  int renders(const std::string& arguments) const {
+    const std::string command =
+        fmt::format("cd '{}' && {} render {} > said 2>&1", folder_.string(), BURNISH_CLI, arguments);
+    return WEXITSTATUS(std::system(command.c_str()));
+  }
+  std::string said() const { return read(folder_ / "said"); }
+  Image8 picture(const char* name) const { return read_png(folder_ / name); }
+
+  TemporaryFolder scratch_{"render"};
+  const fs::path folder_ = scratch_.path;
+};
+
+double mean_difference_of(const Image8& a, const Image8& b) {
+  EXPECT_EQ(a.pixels.size(), b.pixels.size());
+  double sum = 0;
+  for (std::size_t i = 0; i < std::min(a.pixels.size(), b.pixels.size()); ++i)
+    sum += std::abs(a.pixels[i] - b.pixels[i]);
+  return sum / static_cast<double>(a.pixels.size());
+}
+
+TEST_F(Render, BothRenderersDrawTheSamePicture) {
+  if (!has_opengl()) GTEST_SKIP() << "no OpenGL";
+  for (const std::string scene :
+       {"--mesh torus-knot --material one.exr", "--mesh two.obj --material one.exr;two.exr"}) {
+    const std::string common =
+        scene +
+        " --vertices 2000 --size 64x48 --lights 2,3,4:20 --lights -3,1,2:4,5,9 --view 20,10 --exposure 2 -o ";
+    ASSERT_EQ(renders(common + "gl.png"), 0) << said();
+    ASSERT_EQ(renders(common + "cpu.png --renderer cpu"), 0) << said();
+    EXPECT_EQ(picture("gl.png").width, 64);
+    EXPECT_EQ(picture("gl.png").height, 48);
+    EXPECT_LT(mean_difference_of(picture("gl.png"), picture("cpu.png")), 0.5);
+    EXPECT_GT(mean_difference_of(picture("gl.png"), Image8(64, 48, 3)), 5) << "something is there";
+  }
+}
+
+TEST_F(Render, DrawsAnyBrdfByTheReferenceRendererAndExr) {
+  ASSERT_EQ(
+      renders("--mesh teapot --vertices 1000 --size 32 --material ggx:alpha_x=0.2,alpha_y=0.4 --renderer cpu "
+              "--shadows --tone aces -o t.png"),
+      0)
+      << said();
+  ASSERT_EQ(renders("--size 16 --material lambert --renderer cpu -o t.exr"), 0) << said();
+  EXPECT_EQ(read(folder_ / "t.exr").substr(0, 4), "\x76\x2f\x31\x01");
+}
+
+TEST_F(Render, RefusesWhatItCannotDrawAndLeavesNothing) {
+  const std::string good = "--size 16 --material one.exr ";
+  EXPECT_EQ(renders(good + "-o x.jpg"), 2);
+  EXPECT_EQ(renders(good + "-o x.png --lights 1,2"), 2);
+  EXPECT_THAT(said(), HasSubstr("--lights"));
+  EXPECT_EQ(renders(good + "-o x.png --shadows"), 2);
+  EXPECT_EQ(renders(good + "-o x.png --size 0"), 2);
+  EXPECT_EQ(renders(good + "-o x.png --background 1,-1,1"), 2);
+  EXPECT_EQ(renders("-o x.png"), 2);
+  EXPECT_EQ(renders("--material ggx -o x.png"), 1);
+  EXPECT_THAT(said(), HasSubstr("--renderer cpu"));
+  EXPECT_EQ(renders(good + "--mesh none.obj -o x.png"), 1);
+  write(folder_ / "bad.obj", "v 0 0 0\nf 1 2 3\n");
+  EXPECT_EQ(renders(good + "--mesh bad.obj -o x.png"), 1);
+  EXPECT_THAT(said(), AllOf(HasSubstr("bad.obj: line 2"), HasSubstr("expected")));
+  EXPECT_EQ(renders("--figure1 --mesh bad.obj -o x.png"), 2);
+  EXPECT_FALSE(fs::exists(folder_ / "x.png"));
+}
+
+TEST_F(Render, FigureComparesVerticesWithPixels) {
+  if (!has_opengl()) GTEST_SKIP() << "no OpenGL";
+  // a model is its own truth, so pixels are right and vertices are not
+  ASSERT_EQ(
+      renders(
+          "--figure1 --mesh sphere --truth one.exr --model one.exr --tessellations 200,800 --figure-size 64 "
+          "--json -o figure.png"),
+      0)
+      << said();
+  EXPECT_THAT(said(),
+              AllOf(HasSubstr("psnr_at_vertices"), HasSubstr("psnr_factored"), HasSubstr("\"vertices\": 8")));
+  EXPECT_GT(picture("figure.png").width, 5 * 64);
+}
+
+}  // namespace
+}  // namespace burnish
