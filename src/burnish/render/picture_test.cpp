@@ -24,7 +24,7 @@ TEST(Picture, ToneCurvesRiseFromBlackToWhite) {
     for (std::size_t i = 1; i < shown.pixels.size(); ++i) EXPECT_GE(shown.pixels[i], shown.pixels[i - 1]);
   }
   Image grey(1, 1, 3);
-  grey.pixels = {0.2140411f, 1.0f, 50.0f};  // the first encodes to one half
+  grey.pixels = {0.2158605f, 1.0f, 50.0f};  // the first is what 128 stands for
   EXPECT_EQ(to_bytes(grey, 1, Tone::srgb).pixels, (std::vector<std::uint8_t>{128, 255, 255}));
   EXPECT_LT(to_bytes(grey, 1, Tone::aces).pixels[1], 255) << "the filmic curve keeps highlights";
   EXPECT_EQ(to_bytes(grey, 0.5, Tone::srgb).pixels[1], 188);
