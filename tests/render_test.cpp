@@ -70,7 +70,7 @@ double mean_difference_of(const Image8& a, const Image8& b) {
 TEST_F(Render, BothRenderersDrawTheSamePicture) {
   if (!has_opengl()) GTEST_SKIP() << "no OpenGL";
   for (const std::string scene :
-       {"--mesh torus-knot --material one.exr", "--mesh two.obj --material one.exr;two.exr"}) {
+       {"--mesh torus-knot --material one.exr", "--mesh two.obj --material one.exr --material two.exr"}) {
     const std::string common =
         scene +
         " --vertices 2000 --size 64x48 --lights 2,3,4:20 --lights -3,1,2:4,5,9 --view 20,10 --exposure 2 -o ";

@@ -170,12 +170,12 @@ void add_render_command(CLI::App& app) {
       ->capture_default_str();
   verb->add_option(
           "--material", arguments->materials,
-          "factored BRDF as `burnish fit` writes it (with --renderer cpu any BRDF); several: for the "
-          "file's materials in their order")
-      ->delimiter(';');
+          "factored BRDF as `burnish fit` writes it (with --renderer cpu any BRDF); several times: for "
+          "the file's materials in their order")
+      ->allow_extra_args(false);
   verb->add_option("--lights", arguments->lights,
                    "x,y,z[:intensity] or x,y,z:r,g,b of a point light; may be given several times")
-      ->take_all()
+      ->allow_extra_args(false)
       ->capture_default_str();
   verb->add_option("-o,--output", arguments->out, "picture to write: PNG, or EXR of linear values");
   verb->add_option("--renderer", arguments->renderer, "OpenGL, or the reference on the CPU")

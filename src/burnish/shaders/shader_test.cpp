@@ -219,5 +219,22 @@ TEST(Shader, RefusesWhatItCannotWrite) {
   EXPECT_NO_THROW(shader_of(wide, ShaderLanguage::cpp));
 }
 
+TEST(SplitShader, PartsWhatNeedsTheViewAloneAndAddsNothing) {
+  for (const ModelCase& model : kModelCases)
+    for (const ShaderFilter filter : {ShaderFilter::exact, ShaderFilter::hardware}) {
+      const FactoredBrdf brdf = smooth_model(model);
+      const SplitShader split = split_shader(brdf, {ShaderLanguage::glsl, filter, "model"});
+      EXPECT_EQ(split.view.find("wi"), std::string::npos) << split.view;
+      ShaderCost sum = split.view_cost;
+      sum += split.light_cost;
+      EXPECT_EQ(sum, generate_shader(brdf, {ShaderLanguage::glsl, filter, "model"}).cost);
+    }
+  const FactoredBrdf disks = smooth_model(kModelCases[1]);
+  const SplitShader split = split_shader(disks, {ShaderLanguage::glsl, ShaderFilter::hardware, "model"});
+  EXPECT_EQ(split.view_cost.fetches, 1) << "p(wo)";
+  EXPECT_EQ(split.light_cost.fetches, 2) << "q(h) and p(wi)";
+  EXPECT_THROW(split_shader(disks, {ShaderLanguage::hlsl, ShaderFilter::exact, "model"}), Error);
+}
+
 }  // namespace
 }  // namespace burnish
