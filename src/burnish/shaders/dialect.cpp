@@ -130,6 +130,7 @@ std::string Dialect::sample(std::string_view texture, std::string_view u, std::s
       return fmt::format("textureSampleLevel({0}, {0}_sampler, vec2f({1}, {2}), 0.0).{3}", texture, u, v,
                          part);
     default:
+      if (v.empty()) return fmt::format("textureLod({}, {}, 0.0).{}", texture, u, part);
       return fmt::format("textureLod({}, vec2({}, {}), 0.0).{}", texture, u, v, part);
   }
 }

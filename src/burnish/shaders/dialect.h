@@ -25,7 +25,7 @@ struct Dialect {
                        std::string_view more) const;
   /// A texel of table `texture`, `channels` of it.
   std::string fetch(std::string_view texture, std::string_view x, std::string_view y, int channels) const;
-  /// The filtered value at texture coordinates.
+  /// The filtered value at texture coordinates; v empty: of a 1-D texture (glsl).
   std::string sample(std::string_view texture, std::string_view u, std::string_view v, int channels) const;
 };
 

@@ -38,8 +38,13 @@ Cell cell_of(Body& body, const std::string& position, int nodes) {
 
 class Lookups {
  public:
-  Lookups(Body& body, const FactoredBrdf& brdf, const std::vector<std::string>& textures, ShaderFilter filter)
-      : body_(body), brdf_(brdf), textures_(textures), filter_(filter) {}
+  Lookups(Body& body, const FactoredBrdf& brdf, const std::vector<std::string>& textures,
+          const ShaderOptions& options)
+      : body_(body),
+        brdf_(brdf),
+        textures_(textures),
+        filter_(options.filter),
+        lines_are_1d_(options.lines_are_1d) {}
 
   /// The variable with the table's value.
   std::string value(const FactorUse& use) {
@@ -58,7 +63,8 @@ class Lookups {
     const Dialect& d = body_.dialect();
     const std::string& texture = textures_[index];
     if (filter_ == ShaderFilter::hardware)
-      return let("value", d.sample(texture, x, y.empty() ? d.literal(0.5) : y, table.channels),
+      return let("value",
+                 d.sample(texture, x, y.empty() && !lines_are_1d_ ? d.literal(0.5) : y, table.channels),
                  table.channels, {.fetches = 1});
     const Cell cx = cell_of(body_, x, layout.width);
     if (y.empty()) return row(texture, cx, "0", table.channels);
@@ -87,6 +93,7 @@ class Lookups {
   const FactoredBrdf& brdf_;
   const std::vector<std::string>& textures_;
   ShaderFilter filter_;
+  bool lines_are_1d_;
 };
 
 // [HomomorphicBrdf, eq. 4], each pair multiplied with itself first, as the definition does
@@ -112,8 +119,8 @@ std::string lobe_value(Body& body, Lookups& lookups, const FactoredBrdf& brdf, s
 }
 
 std::string sum_of_lobes(Body& body, const FactoredBrdf& brdf, const std::vector<std::string>& textures,
-                         ShaderFilter filter) {
-  Lookups lookups(body, brdf, textures, filter);
+                         const ShaderOptions& options) {
+  Lookups lookups(body, brdf, textures, options);
   std::string total;
   for (std::size_t j = 0; j < brdf.lobes().size(); ++j)
     total += (j ? " + " : "") + lobe_value(body, lookups, brdf, j);
@@ -129,7 +136,8 @@ std::string declare_textures(const FactoredBrdf& brdf, const Dialect& d, const S
     switch (d.language) {
       case ShaderLanguage::glsl:
       case ShaderLanguage::glsl_es:
-        text += fmt::format("uniform sampler2D {};\n", names[i]);
+        text += fmt::format("uniform sampler{}D {};\n",
+                            options.lines_are_1d && table.layout.shape == TableShape::line ? 1 : 2, names[i]);
         break;
       case ShaderLanguage::hlsl:
         text += fmt::format("Texture2D<float4> {} : register(t{});\n", names[i], i);
@@ -170,7 +178,7 @@ std::string local_function(const FactoredBrdf& brdf, const Dialect& d, const Sha
                            const std::vector<std::string>& textures, std::string_view more,
                            ShaderCost& cost) {
   Body body(d);
-  const std::string total = sum_of_lobes(body, brdf, textures, options.filter);
+  const std::string total = sum_of_lobes(body, brdf, textures, options);
   const std::string zero = d.literal(0);
   std::string result = d.function("burnish_" + options.name, {"wi", "wo"}, more);
   result +=
@@ -207,6 +215,9 @@ void check(const FactoredBrdf& brdf, const ShaderOptions& options) {
         fmt::format("shader: expected at most {} tables, found {}", kMostShaderTables, brdf.tables().size()));
   if (cpp && options.filter == ShaderFilter::hardware)
     throw Error("shader: expected the exact filter for cpp, which has no texture units, found hardware");
+  if (options.lines_are_1d &&
+      (options.language != ShaderLanguage::glsl || options.filter != ShaderFilter::hardware))
+    throw Error("shader: expected glsl and the hardware filter with 1-D textures, found others");
 }
 
 std::vector<std::string> texture_names(const FactoredBrdf& brdf, const std::string& shader) {
@@ -262,7 +273,7 @@ SplitShader split_shader(const FactoredBrdf& brdf, const ShaderOptions& options)
   shader.textures = texture_names(brdf, options.name);
   shader.declarations = std::string(d.header) + declare_textures(brdf, d, options, shader.textures);
   Body body(d);
-  const std::string total = sum_of_lobes(body, brdf, shader.textures, options.filter);
+  const std::string total = sum_of_lobes(body, brdf, shader.textures, options);
   shader.value = fmt::format("{}({})", d.vector, total);
   shader.view = body.view_text();
   shader.light = body.light_text();

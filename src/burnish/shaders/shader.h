@@ -28,6 +28,9 @@ struct ShaderOptions {
   ShaderLanguage language = ShaderLanguage::glsl;
   ShaderFilter filter = ShaderFilter::exact;
   std::string name = "brdf";  ///< letters, digits and single underscores, a letter first
+  /// Of glsl with the hardware filter: lines are 1-D textures, which takes half the texels where no texture
+  /// unit reads them.
+  bool lines_are_1d = false;
 };
 
 /// What one evaluation in the local frame costs, above the horizon. Floating-point operations are counted a
@@ -67,8 +70,8 @@ inline constexpr std::size_t kMostShaderTables = 16;
 /// values; clamped to the edge and linear for the hardware filter. MSL takes them in a struct, as third or
 /// fifth argument; C++ has them as constant arrays. docs/shaders.md states how precise it is.
 ///
-/// Throws Error if the name is not as above, channels are not 1 or 3, there are more than kMostShaderTables
-/// tables in a language with textures, or for C++ with the hardware filter.
+/// Throws Error if the name or lines_are_1d is not as above, channels are not 1 or 3, there are more than
+/// kMostShaderTables tables in a language with textures, or for C++ with the hardware filter.
 Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options);
 
 /// What generate_shader computes, in two pieces of GLSL for a pixel that several lights shine on: `view`
