@@ -31,10 +31,13 @@ def table(head, rows):
     return "\n".join(lines + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows])
 
 
-figures = {}
+figures, vectors = {}, {}
 for line in pathlib.Path(synthesis).read_text().splitlines():
     values = dict(word.split("=") for word in line.split())
-    figures[values["unit"]] = values
+    if "unit" in values:
+        figures[values["unit"]] = values
+    else:
+        vectors[values["vectors"]] = values
 errors = {unit: error(unit) for unit in figures}
 depths = {}
 for unit in figures:
@@ -48,6 +51,9 @@ blocks = table(
     [[f"`{unit}`", depths[unit], f"{f['lc']} / {f['ebr']} / {f['hx_mhz']}", f["up_mhz"], f"{f['luts']} / {f['x_ff']} / {f['x_bram']} / {f['x_dsp']}",
       f"{f['gates']} / {f['ff']}", f"{errors[unit]['max_error_lsb']:.2f}" + ("*" if unit in EXACT[3:] else ""),
       PROTOTYPE.get(unit, "")] for unit, f in figures.items()])
+blinn = table(
+    ["from vectors", "Xilinx 7 LUT / FF / BRAM / DSP", "gates / FF"],
+    [[f"`{name}`", f"{f['luts']} / {f['x_ff']} / {f['x_bram']} / {f['x_dsp']}", f"{f['gates']} / {f['ff']}"] for name, f in vectors.items()])
 widths = table(
     ["unit", "vectors", "largest error, LSB", "correctly rounded", "answers that fall as c rises", "tables, words x bits"],
     [[f"`{unit}`", f"{e['vectors']:,}", f"{e['max_error_lsb']:.3f}", f"{100 * e['correctly_rounded']:.2f} %", e["falls"],
@@ -67,6 +73,6 @@ differences = table(["unit", "largest difference, levels"],
                     [line.split() for line in pathlib.Path(sphere).read_text().splitlines() if line])
 
 text = pathlib.Path(__file__).with_name("hardware.md.in").read_text()
-for name, value in {"blocks": blocks, "widths": widths, "inputs": inputs, "differences": differences}.items():
+for name, value in {"blocks": blocks, "blinn": blinn, "widths": widths, "inputs": inputs, "differences": differences}.items():
     text = text.replace(f"@{name}@", value)
 sys.stdout.write(text)

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Synthesizes units of hw/ with Yosys and nextpnr: hw/synthesize.sh BURNISH SCRATCH [UNIT]..., by default all.
 # One line of key=value figures a unit: HX8K and UP5K (placed and routed, seed 1, options' defaults), Xilinx 7, gates.
+# Blinn's front end comes last.
 set -eu
 burnish=$1 scratch=$2
 shift 2
@@ -15,6 +16,18 @@ cd "$scratch"
 frequency() { sed -n 's/.*Max frequency for clock.*: \([0-9.]*\) MHz.*/\1/p' "$1" | tail -1; }
 used() { sed -n "s|.*ICESTORM_$2: *\([0-9]*\)/.*|\1|p" "$1" | head -1; }
 cells() { awk -v type="$2" '$1 ~ type { sum += $2 } END { print sum + 0 }' "$1"; }
+
+logic() {  # TOP, of what $read reads, for Xilinx 7 and as gates
+  yosys -q -p "$read; synth_xilinx -family xc7 -flatten -noiopad -top $1; tee -q -o $1.xilinx stat" > "$1.log" 2>&1
+  # tables of a clock stay memories; what is left are gates of one or two inputs and multiplexers
+  yosys -q -p "$read; hierarchy -top $1; proc; flatten; opt; memory -nomap; memory_libmap -lib +/ice40/brams.txt;
+    memory_map; opt; techmap; opt; abc -g AND,NAND,OR,NOR,XOR,XNOR,MUX; opt_clean; tee -q -o $1.gates stat" > "$1.log" 2>&1
+}
+logic_figures() {
+  echo "luts=$(cells "$1.xilinx" '^LUT') x_ff=$(cells "$1.xilinx" '^FD') x_carry=$(cells "$1.xilinx" '^CARRY4')" \
+    "x_bram=$(cells "$1.xilinx" '^RAMB') x_dsp=$(cells "$1.xilinx" '^DSP')" \
+    "gates=$(cells "$1.gates" '^[$]_(AND|NAND|OR|NOR|XOR|XNOR|MUX|NOT)_') ff=$(cells "$1.gates" '^[$]_.*DFF')"
+}
 
 for unit; do
   "$burnish" hw generate --unit "$unit" --vectors 1 --out .
@@ -41,13 +54,16 @@ PINS
     --timing-allow-fail > "$unit.hx" 2>&1
   nextpnr-ice40 --up5k --package sg48 --json "${unit}_pins.json" --freq 65 --seed 1 --pcf-allow-unconstrained \
     --timing-allow-fail > "$unit.up" 2>&1
-  yosys -q -p "$read; synth_xilinx -family xc7 -flatten -noiopad -top $unit; tee -q -o $unit.xilinx stat" > "$unit.log" 2>&1
-  # tables of a clock stay memories; what is left are gates of one or two inputs and multiplexers
-  yosys -q -p "$read; hierarchy -top $unit; proc; flatten; opt; memory -nomap; memory_libmap -lib +/ice40/brams.txt;
-    memory_map; opt; techmap; opt; abc -g AND,NAND,OR,NOR,XOR,XNOR,MUX; opt_clean; tee -q -o $unit.gates stat" > "$unit.log" 2>&1
+  logic "$unit"
   echo "unit=$unit lc=$(used "$unit.hx" LC) ebr=$(used "$unit.hx" RAM) hx_mhz=$(frequency "$unit.hx")" \
-    "up_mhz=$(frequency "$unit.up") luts=$(cells "$unit.xilinx" '^LUT')" \
-    "x_ff=$(cells "$unit.xilinx" '^FD')" "x_carry=$(cells "$unit.xilinx" '^CARRY4')" \
-    "x_bram=$(cells "$unit.xilinx" '^RAMB')" "x_dsp=$(cells "$unit.xilinx" '^DSP')" \
-    "gates=$(cells "$unit.gates" '^[$]_(AND|NAND|OR|NOR|XOR|XNOR|MUX|NOT)_')" "ff=$(cells "$unit.gates" '^[$]_.*DFF')"
+    "up_mhz=$(frequency "$unit.up") $(logic_figures "$unit")"
+done
+
+# Blinn's front end, alone and with the unit it feeds: more multipliers than an iCE40 has
+"$burnish" hw generate --blinn --unit exact_8_versine --name blinn_exact --vectors 1 --out .
+cp blinn_exact_rsqrt.mem rsqrt.mem
+read="read_verilog -sv -defer $(grep -v // blinn_exact.f | tr '\n' ' ')"
+for unit in burnish_blinn blinn_exact; do
+  logic "$unit"
+  echo "vectors=$unit $(logic_figures "$unit")"
 done

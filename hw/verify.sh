@@ -3,15 +3,18 @@
 #   lint        verilator --lint-only -Wall on every unit
 #   simulate    Verilator against the C++ model, 20,000 vectors a unit with random pauses
 #   icarus      the generated test benches
-#   prove       yosys-smtbmc and z3: handshake and order of the exact 8-bit unit, for 24 exponents
-#   exhaustive  Verilator with every exponent and every input of every unit, and the proofs for every exponent
+#   prove       yosys-smtbmc and z3: handshake, ends and order of the exact 8-bit unit, e u for 24 exponents
+#   mutate      that each of these proofs fails on a changed design
+#   exhaustive  Verilator with every exponent and every input of every unit, the proofs for every exponent and three
+#               depths, and mutate
 #               (UNITS in the environment: only these)
 #   sphere      a sphere shaded by simulated units: hw/verify.sh sphere BURNISH LIBRARY SCRATCH PROGRAM PNG
 # BURNISH is the command line, LIBRARY libburnish.a, SCRATCH a folder to work in. 77: a tool is missing.
 set -eu
-step=$1 burnish=$2 library=$3 scratch=$4
+step=${1-} burnish=${2-} library=${3-} scratch=${4-}
 hw=$(cd "$(dirname "$0")" && pwd)
 jobs=${JOBS:-2}
+rtl_dir=$hw/rtl
 
 need() {
   for tool; do
@@ -41,7 +44,9 @@ build_one() {  # bench of UNIT alone
   build_bench
 }
 
-prove() {  # MODULE STEPS bounded|induction LOGIC [PARAMETER VALUE]...; LOGIC: words or gates, what z3 is given
+prove() {  # MODULE STEPS bounded|afresh|induction LOGIC [PARAMETER VALUE]...
+  # LOGIC: words or gates, what z3 is given. bounded: z3 keeps what it learned at earlier clocks; afresh: it does not,
+  # and simplifies more. RTL: the sources.
   module=$1 steps=$2 mode=$3 logic=$4
   shift 4
   parameters=
@@ -50,31 +55,88 @@ prove() {  # MODULE STEPS bounded|induction LOGIC [PARAMETER VALUE]...; LOGIC: w
   [ ! -e "$hw/formal/$module.sv" ] || formal=$hw/formal/$module.sv
   gates=
   [ "$logic" = words ] || gates="techmap; opt; abc -g AND,XOR,MUX;"
-  yosys -q -p "read_verilog -sv -formal -defer $hw/rtl/*.sv $formal; ${parameters:+chparam$parameters $module;}
+  yosys -q -p "read_verilog -sv -formal -defer $rtl $formal; ${parameters:+chparam$parameters $module;}
     prep -top $module -flatten; async2sync; memory -nordff; memory_map; opt -full; $gates dffunmap; opt_clean;
     write_smt2 $module.smt2" > yosys.log 2>&1 || { cat yosys.log; exit 1; }
   case $mode in
     bounded) set -- -t "$steps" ;;
+    afresh) set -- --noincr -t "$steps" ;;
     induction) set -- -i -t "$steps" ;;
   esac
   yosys-smtbmc -s z3 --unroll "$@" "$module.smt2" > smt.log 2>&1 || { cat smt.log; echo "FAILED: $module"; exit 1; }
   echo "proved: $module, $mode $steps$parameters"
 }
 
-prove_all() {  # of the exact 8-bit unit; EXPONENTS, the first of each eight
+# Each proof of the exact 8-bit unit by its name; STAGES below may be replaced by what is proved of them
+stages="burnish_log2|burnish_product|burnish_exp2"
+sources() { ls "$1"/*.sv | grep -Ev "${2:-^\$}" | tr '\n' ' '; }
+
+prove_one() {  # NAME [VALUE]
+  rtl=$(sources "$rtl_dir")
+  case $1 in
+    flow_start) prove burnish_flow 3 bounded words Depth "$2" ;;
+    flow_step) prove burnish_flow 1 induction words Depth "$2" ;;
+    tokens) prove tokens $(($2 + 6)) bounded gates Depth "$2" ;;
+    ends) prove ends $(($2 + 2)) bounded words Depth "$2" ;;
+    log) prove order_log 2 afresh words ;;
+    product) prove order_product 1 bounded words First "$2" Count 8 ;;
+    exp) prove order_exp 1 bounded words ;;
+    chain)
+      rtl="$(sources "$rtl_dir" "/($stages)[.]sv$") $(sources "$hw/formal/chain")"
+      prove order_chain $(($2 + 4)) afresh words Depth "$2" ;;
+  esac
+}
+
+tables() {
   "$burnish" hw generate --unit exact_8 --name exact --out .
   mv exact_log.mem log.mem; mv exact_exp.mem exp.mem
-  for depth in 3 15; do
-    prove burnish_flow 1 induction words Depth $depth
-    prove burnish_flow 3 bounded words Depth $depth
+}
+
+prove_all() {  # DEPTHS of the exact 8-bit unit, "EXPONENTS", the first of each eight
+  tables
+  for depth in $1; do
+    prove_one flow_start "$depth"
+    prove_one flow_step "$depth"
+    prove_one ends "$depth"
+    prove_one chain "$depth"
+    [ "$depth" -gt 6 ] || prove_one tokens "$depth"  # deeper ones take z3 long
   done
-  prove tokens 9 bounded words
-  if [ $step = exhaustive ]; then
-    prove ends 5 bounded words
-    prove order_log 3 bounded words
-  fi
-  prove order_exp 1 bounded gates
-  for first; do prove order_product 1 bounded words First "$first" Count 8; done
+  prove_one log
+  prove_one exp
+  for first in $2; do prove_one product "$first"; done
+}
+
+# A proof that holds whatever the design does proves nothing: each must fail on a design changed in one place.
+mutant() {  # FILE CHANGE(sed) NAME [VALUE]
+  rm -rf mutated
+  cp -r "$hw/rtl" mutated
+  sed "$2" "$hw/rtl/$1.sv" > "mutated/$1.sv"
+  ! cmp -s "$hw/rtl/$1.sv" "mutated/$1.sv" || { echo "FAILED: nothing to change in $1 by $2"; exit 1; }
+  file=$1 change=$2
+  shift 2
+  if (rtl_dir=mutated; prove_one "$@") > mutant.log 2>&1; then echo "FAILED: $* holds with $file changed by $change"; exit 1; fi
+  grep -q 'Assert failed' mutant.log || { cat mutant.log; exit 1; }
+  echo "refuted: $*, $file $change"
+}
+
+mutate() {
+  tables
+  mutant burnish_flow "s/valid_q <= '0/valid_q <= '1/" flow_start 3
+  mutant burnish_flow 's/ready_o   = advance_o/ready_o = 1/' flow_step 3         # takes while it waits
+  mutant burnish_flow 's/advance_o = ready_i | ~valid_o/advance_o = 1/' flow_step 15  # does not wait
+  mutant burnish_flow 's/ready_o   = advance_o/ready_o = 1/' tokens 3
+  mutant burnish_flow 's/advance_o = ready_i | ~valid_o/advance_o = ready_i | ~valid_q[0]/' tokens 3
+  mutant burnish_cut 's/if (advance_i) //' tokens 3                              # values move, their valid bits wait
+  mutant burnish_input 's/, ~zero_o};/, 1};/' ends 3                             # v = 0 at c = 0
+  mutant burnish_input 's/ | {CosineBits{input_i\[CosineBits\]}};/;/' ends 3   # no clamp above 1
+  mutant burnish_exp2 's/{{IndexBits{1.b0}}, fall_q}/4/' ends 3                  # peak of 254
+  mutant burnish_log2 's/? CoarseShift : 0/? 0 : 0/' log                         # start of the upper half
+  mutant burnish_product 's/i + j == Top ||/i + j == Top + 1 ||/' product 1016
+  mutant burnish_digit_sum "s/left_negative};/1'b0};/" product 505
+  mutant burnish_exp2 "s/whole_qqq\[4\] ? '0 : //" exp
+  mutant burnish_exp2 's/- {{IndexBits{1.b0}}, fall_q}/+ {{IndexBits{1'"'"'b0}}, fall_q}/' exp
+  mutant burnish_octave 's/by4 = first & (third | ~second)/by4 = first \& third/' chain 3
+  mutant burnish_exact 's/{exponent_o, octave}/{exponent_q, octave}/' chain 15   # exponent a clock too early
 }
 
 case $step in
@@ -100,10 +162,17 @@ case $step in
   prove)
     need yosys yosys-smtbmc z3
     generate 1
-    prove_all 1 505 1016 ;;
+    prove_all 3 "1 505 1016" ;;
+  mutate)
+    need yosys yosys-smtbmc z3
+    generate 1
+    mutate ;;
   exhaustive)
     need verilator yosys yosys-smtbmc z3
     generate 1
+    mkdir proofs
+    (cd proofs; prove_all "3 6 15" "$(seq 1 8 1009) 1016"; mutate) > proofs.log 2>&1 &  # beside the simulation
+    proofs=$!
     for unit in ${UNITS:-$units}; do
       build_one "$unit"
       echo "$unit: $(bench_build/Vbench all "$unit")"
@@ -112,7 +181,8 @@ case $step in
     verilator --binary -O3 --top-module blinn_exact_tb -Mdir blinn_build -Wno-fatal -f blinn_exact.f blinn_exact_tb.sv \
       > build.log 2>&1 || { cat build.log; exit 1; }
     echo "blinn_exact: $(blinn_build/Vblinn_exact_tb | grep -E 'PASS|FAIL')"
-    prove_all $(seq 1 8 1009) 1016 ;;
+    wait $proofs || { cat proofs.log; exit 1; }
+    cat proofs.log ;;
   sphere)
     need verilator
     program=$5 png=$6
@@ -125,5 +195,5 @@ case $step in
       set -- "$@" "$unit=$unit.answers"
     done
     "$program" picture "$png" "$@" ;;
-  *) sed -n '2,11s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
+  *) sed -n '2,13s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
 esac
