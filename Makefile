@@ -61,7 +61,7 @@ sampling-report: build
 	@mv docs/sampling-results.md.partial docs/sampling-results.md
 
 shader-report: build
-	@build/release/apps/shader_report/burnish_shader_report > docs/shader-results.md.partial
+	@build/release/apps/shader_report/burnish_shader_report docs > docs/shader-results.md.partial
 	@mv docs/shader-results.md.partial docs/shader-results.md
 
 HW := build/hw-report

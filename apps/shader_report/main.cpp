@@ -1,15 +1,20 @@
-// What docs/shader-results.md shows: precision of generated shaders on the OpenGL at hand, and their cost.
+// burnish_shader_report DOCS_FOLDER prints what docs/shader-results.md shows: precision of generated shaders
+// on the OpenGL at hand, their cost, and image-based light; figures go to DOCS_FOLDER/figures.
 #include <algorithm>
 #include <exception>
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <burnish/error.h>
 #include <burnish/factors/models_for_tests.h>
 #include <burnish/render/gl_context.h>
 #include <burnish/render/gl_evaluator.h>
+
+#include "environment.h"
 
 namespace burnish {
 namespace {
@@ -36,7 +41,7 @@ void print_precision(const GlContext& context) {
       "|\n|---|---|---|---|---|---|\n",
       kPairs, context.renderer());
   const auto pairs = corner_and_random_pairs(kPairs);
-  std::vector<GlDirections> directions;
+  std::vector<GlVectors> directions;
   const auto single = [](double x) { return static_cast<float>(x); };
   for (const auto& [a, b] : pairs)
     directions.push_back({{single(a.x), single(a.y), single(a.z)}, {single(b.x), single(b.y), single(b.z)}});
@@ -81,13 +86,16 @@ void print_costs() {
 }  // namespace
 }  // namespace burnish
 
-int main() {
+int main(int count, char** arguments) {
   try {
+    if (count != 2) throw burnish::Error("expected one argument, the folder of the documents");
     fmt::print(
         "<!-- Written by `make shader-report`; edit apps/shader_report instead. -->\n"
         "# What generated shaders give and cost\n\n");
-    burnish::print_precision(burnish::GlContext());
+    const burnish::GlContext context;
+    burnish::print_precision(context);
     burnish::print_costs();
+    burnish::print_environment_light(std::filesystem::path(arguments[1]) / "figures");
   } catch (const std::exception& error) {
     fmt::print(stderr, "burnish_shader_report: {}\n", error.what());
     return 1;
