@@ -8,10 +8,14 @@
 #include <burnish/error.h>
 #include <burnish/factors/model_file.h>
 #include <burnish/file.h>
+#include <burnish/io/rgl.h>
+#include <burnish/reflectance/rgl_builder.h>
 #include <burnish/shaders/shader.h>
+#include <burnish/textures/image_files.h>
 #include <burnish/textures/ktx2.h>
 
 #include "commands.h"
+#include "export_formats.h"
 #include "export_page.h"
 
 namespace burnish::cli {
@@ -100,6 +104,25 @@ std::vector<ExportedFile> export_files(const FactoredBrdf& brdf, const Arguments
     if (table.layout.shape == TableShape::grid)
       manifest["textures"].back()["warp_y"] = to_string(table.layout.warp_y);
   }
+  const std::pair<const char*, std::string (*)(const Table&)> images[] = {{"exr", encode_exr},
+                                                                          {"png", encode_png_table}};
+  for (const auto& [extension, encode] : images)
+    for (std::size_t i = 0; wants(extension) && i < brdf.tables().size(); ++i) {
+      files.push_back({fmt::format("{}_{}.{}", name, i, extension), encode(brdf.tables()[i])});
+      manifest["images"].push_back({{"table", brdf.tables()[i].name}, {"file", files.back().name}});
+    }
+  if (wants("gltf")) {
+    files.push_back({name + ".glb", export_gltf(brdf, name, manifest)});
+    manifest["gltf"] = files.back().name;
+  }
+  if (wants("three")) {
+    files.push_back({name + ".three.js", export_three(brdf, name)});
+    manifest["three"] = files.back().name;
+  }
+  if (wants("rgl")) {
+    files.push_back({name + ".bsdf", format_rgl(make_rgl_table(brdf, {.description = name}))});
+    manifest["rgl"] = files.back().name;
+  }
   if (wants("html")) {
     files.push_back({name + ".html", export_page(brdf, name)});
     manifest["page"] = files.back().name;
@@ -110,15 +133,16 @@ std::vector<ExportedFile> export_files(const FactoredBrdf& brdf, const Arguments
 }  // namespace
 
 void add_export_command(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand(
-      "export", "Write a factored BRDF as shader code, KTX2 textures, or a page that shows it");
+  CLI::App* verb = app.add_subcommand("export",
+                                      "Write a factored BRDF as shaders, textures, glTF, a three.js module, "
+                                      "an RGL table, or a page that shows it");
   verb->footer(
       "Every shader comes with its textures but C++, which has them inside; NAME.json says what is in the "
       "folder and what an evaluation costs. See docs/shaders.md.\n"
       "Example: burnish export paint.exr --to glsl --to html -o paint");
   auto arguments = std::make_shared<Arguments>();
   verb->add_option("MODEL", arguments->model, "factored BRDF, as `burnish fit` writes it")->required();
-  std::vector<std::string> targets{"ktx2", "html"};
+  std::vector<std::string> targets{"ktx2", "exr", "png", "gltf", "three", "rgl", "html"};
   for (const Target& target : kTargets) targets.emplace_back(target.name);
   verb->add_option("--to", arguments->to, "what to write; may be given several times")
       ->required()

@@ -38,7 +38,7 @@ const Tabulation kTabulations[] = {{"round kernels", {.side = 32, .harmonics = 0
                                    {"four orders", {}},
                                    {"four orders, 64 texels", {.side = 64}}};
 
-constexpr int kSize = 128;      // of the pictures
+constexpr int kSize = 96;       // of the pictures
 constexpr int kSamples = 4096;  // a pixel
 
 // The sphere of metrics/sphere_images.h, each pixel by `radiance` of its normal.

@@ -1,5 +1,6 @@
-// burnish_shader_report DOCS_FOLDER prints what docs/shader-results.md shows: precision of generated shaders
-// on the OpenGL at hand, their cost, and image-based light; figures go to DOCS_FOLDER/figures.
+// burnish_shader_report DOCS_FOLDER [SECTION] prints what docs/shader-results.md shows: precision of
+// generated shaders on the OpenGL at hand, their cost, and image-based light; figures go to
+// DOCS_FOLDER/figures.
 #include <algorithm>
 #include <exception>
 #include <filesystem>
@@ -88,14 +89,18 @@ void print_costs() {
 
 int main(int count, char** arguments) {
   try {
-    if (count != 2) throw burnish::Error("expected one argument, the folder of the documents");
+    if (count != 2 && count != 3)
+      throw burnish::Error(
+          "expected the folder of the documents, then maybe precision, cost or environment alone");
+    const std::string only = count == 3 ? arguments[2] : "";
     fmt::print(
         "<!-- Written by `make shader-report`; edit apps/shader_report instead. -->\n"
         "# What generated shaders give and cost\n\n");
     const burnish::GlContext context;
-    burnish::print_precision(context);
-    burnish::print_costs();
-    burnish::print_environment_light(std::filesystem::path(arguments[1]) / "figures");
+    if (only.empty() || only == "precision") burnish::print_precision(context);
+    if (only.empty() || only == "cost") burnish::print_costs();
+    if (only.empty() || only == "environment")
+      burnish::print_environment_light(std::filesystem::path(arguments[1]) / "figures");
   } catch (const std::exception& error) {
     fmt::print(stderr, "burnish_shader_report: {}\n", error.what());
     return 1;
