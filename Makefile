@@ -39,6 +39,7 @@ test: deps format-check
 	  ctest --preset $$preset -j $(JOBS) || exit 1; \
 	done
 	@python/check.sh --skip-offline
+	@tests/web/check.sh --skip-offline
 
 python: build
 	@python/check.sh

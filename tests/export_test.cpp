@@ -12,6 +12,8 @@
 
 #include <burnish/factors/model_file.h>
 #include <burnish/factors/models_for_tests.h>
+#include <burnish/io/rgl.h>
+#include <burnish/metrics/png.h>
 #include <burnish/tools_for_tests.h>
 
 namespace burnish {
@@ -69,6 +71,25 @@ TEST_F(Export, RefusesWhatIsNoModelAndNoTargetAndLeavesNothing) {
   EXPECT_FALSE(fs::exists(folder_ / "out"));
 }
 
+TEST_F(Export, WritesTexturesAsImagesAndOtherFormatsOfTheMaterial) {
+  ASSERT_EQ(exports("--to exr --to png --to gltf --to three --to rgl"), 0) << read(folder_ / "said");
+  const fs::path out = folder_ / "out";
+  EXPECT_EQ(read_png(out / "two_lobes_0.png").width, 32);
+  EXPECT_TRUE(read(out / "two_lobes_2.exr").starts_with("v/1\x01"));
+  EXPECT_TRUE(read(out / "two_lobes.glb").starts_with("glTF"));
+  EXPECT_THAT(read(out / "two_lobes.three.js"), HasSubstr("export function createMaterial(THREE)"));
+  const RglTable table = parse_rgl(read_file(out / "two_lobes.bsdf"), {}).table;
+  const FactoredBrdf brdf = smooth_model(kModelCases[2]);
+  for (int row = 4; row < 28; row += 4) {  // nodes hold the model's values
+    const auto [wi, wo] = table.node_directions(0, 5, row, 16);
+    double f[3], expected[3];
+    if (wo.z < 0.1) continue;
+    table.eval(wi, wo, f);
+    brdf.eval(wi, wo, expected);
+    EXPECT_NEAR(f[1], expected[1], 1e-3 * expected[1]);
+  }
+}
+
 TEST_F(Export, ThePageLoadsNothing) {
   ASSERT_EQ(exports("--to html"), 0);
   const std::string page = read(folder_ / "out/two_lobes.html");
@@ -89,11 +110,15 @@ const shot = () => canvas.toDataURL(), move = (buttons, x, y) => {
   return shot();
 };
 const start = shot(), hovered = move(0, 60, 300), dragged = move(1, 60, 300), back = move(1, 300, 60);
-find("select").value = "sphere";
-find("select").dispatchEvent(new Event("input"));
-const sphere = shot(), pixel = new Uint8Array(4);
+const show = (shape) => {
+  find("select").value = shape;
+  find("select").dispatchEvent(new Event("input"));
+  return shot();
+};
+const teapot = show("teapot"), sphere = show("sphere"), pixel = new Uint8Array(4);
 gl.readPixels(canvas.width / 2, canvas.height / 2, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
-document.body.dataset.result = [hovered === start, dragged !== start, back !== dragged, sphere !== back,
+document.body.dataset.result = [hovered === start, dragged !== start, back !== dragged,
+                                teapot !== back && sphere !== back && teapot !== sphere,
                                 pixel[0] + pixel[1] + pixel[2] > 80, gl.getError() === 0, errors === 0].join(" ");
 </script>)");
   write(folder_ / "page.html", page);

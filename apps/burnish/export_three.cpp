@@ -44,7 +44,8 @@ ${model.shader}
 varying vec3 seen, n, t;
 out vec4 color;
 void main() {
-  vec3 normal = normalize(n), view = -normalize(seen), sum = vec3(0.0);
+  vec3 normal = normalize(n), view = isOrthographic ? vec3(0.0, 0.0, 1.0) : -normalize(seen);
+  vec3 sum = vec3(0.0);
   vec3 tangent = normalize(t - dot(t, normal) * normal);
 #if NUM_DIR_LIGHTS > 0
   for (int i = 0; i < NUM_DIR_LIGHTS; ++i) {
