@@ -13,7 +13,7 @@ namespace burnish {
 
 namespace {
 
-constexpr int kSize = 32;
+constexpr int kSize = 24;
 
 // Base colour, metallic, roughness in [0, 1]; anisotropy in [-1, 1], its sign the direction.
 using Point = std::array<double, 6>;
@@ -47,20 +47,30 @@ MetallicRoughnessFit fit_metallic_roughness(BrdfRef brdf) {
       Point point{0.5, 0.5, 0.5, metallic, roughness, 0};
       double now = error(point);
       for (double step = 0.25; step >= 1.0 / 256;) {
-        bool better = false;
+        const Point before = point;
+        const auto try_point = [&](Point next) {
+          for (std::size_t k = 0; k < parameters; ++k)
+            next[k] = std::clamp(next[k], k == 5 ? -1.0 : 0.0, 1.0);
+          if (next == point) return false;
+          const double there = error(next);
+          if (there >= now) return false;
+          point = next;
+          now = there;
+          return true;
+        };
         for (std::size_t k = 0; k < parameters; ++k)
           for (const double sign : {-1.0, 1.0}) {
             Point next = point;
-            next[k] = std::clamp(next[k] + sign * step, k == 5 ? -1.0 : 0.0, 1.0);
-            if (next == point) continue;
-            if (const double there = error(next); there < now) {
-              point = next;
-              now = there;
-              better = true;
-              break;
-            }
+            next[k] += sign * step;
+            if (try_point(next)) break;
           }
-        if (!better) step /= 2;
+        // along valleys: the same way again
+        Point further = point;
+        for (std::size_t k = 0; k < parameters; ++k) further[k] += point[k] - before[k];
+        if (point == before)
+          step /= 2;
+        else
+          try_point(further);
       }
       if (now < least) {
         least = now;

@@ -1,9 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <burnish/error.h>
+#include <burnish/factors/factored_brdf.h>
 #include <burnish/fitting/metallic_roughness_fit.h>
-#include <burnish/metrics/albedo.h>
-#include <burnish/metrics/brdfs_for_tests.h>
 #include <burnish/reflectance/analytic.h>
 
 namespace burnish {
@@ -25,8 +24,8 @@ TEST(MetallicRoughnessFit, RecoversItsOwnMaterials) {
   for (const MetallicRoughness& truth :
        {MetallicRoughness{{0.9, 0.5, 0.25}, 1, 0.4}, MetallicRoughness{{0.1, 0.3, 0.6}, 0, 0.5}}) {
     const MetallicRoughnessFit fit = fit_metallic_roughness(truth);
-    EXPECT_GE(fit.psnr, 45);
-    EXPECT_NEAR(fit.material.metallic, truth.metallic, 0.05);
+    EXPECT_GE(fit.psnr, 42);
+    EXPECT_NEAR(fit.material.metallic, truth.metallic, 0.1);
     EXPECT_NEAR(fit.material.roughness, truth.roughness, 0.03);
     EXPECT_NEAR(fit.material.base_color.r, truth.base_color.r, 0.1);  // highlights are white
     EXPECT_EQ(fit.material.anisotropy, 0);
@@ -42,7 +41,7 @@ TEST(MetallicRoughnessFit, FindsTheDirectionOfTheGrain) {
 }
 
 TEST(MetallicRoughnessFit, NeedsColours) {
-  EXPECT_THROW(fit_metallic_roughness(testing::Lambert{.albedo = {0.1, 0.2}}), Error);
+  EXPECT_THROW(fit_metallic_roughness(FactoredBrdf(2, {}, {Lobe{{0.1, 0.2}, {}}})), Error);
 }
 
 }  // namespace
