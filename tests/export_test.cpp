@@ -64,7 +64,7 @@ TEST_F(Export, WritesEveryLanguageWithItsTexturesAndAManifest) {
 }
 
 TEST_F(Export, RefusesWhatIsNoModelAndNoTargetAndLeavesNothing) {
-  EXPECT_EQ(exports("--to png"), 2);
+  EXPECT_EQ(exports("--to jpeg"), 2);
   EXPECT_EQ(exports("--to glsl --name a__b"), 1);
   write(folder_ / "two lobes.exr", "v/1\x01 no model");
   EXPECT_EQ(exports("--to glsl"), 1);
@@ -123,7 +123,7 @@ document.body.dataset.result = [hovered === start, dragged !== start, back !== d
 </script>)");
   write(folder_ / "page.html", page);
   ASSERT_EQ(
-      run(fmt::format("timeout 60 chromium --headless --no-sandbox --use-gl=angle --use-angle=swiftshader "
+      run(fmt::format("timeout 300 chromium --headless --no-sandbox --use-gl=angle --use-angle=swiftshader "
                       "--enable-unsafe-swiftshader --window-size=400,400 --user-data-dir={0}/profile "
                       "--virtual-time-budget=5000 --dump-dom file://{0}/page.html > {0}/dom 2> {0}/said",
                       folder_.string())),
