@@ -141,7 +141,7 @@ const shapes = {
   }),
 };
 
-let light = unit([0.4, 0.5, 0.8]), yaw = 0.3, pitch = -0.2;
+let light = unit([0.4, 0.5, 0.8]), yaw = 0.3, pitch = 0.35;
 function draw() {
   const ratio = window.devicePixelRatio;
   canvas.width = canvas.clientWidth * ratio;

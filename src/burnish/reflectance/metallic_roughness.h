@@ -12,7 +12,7 @@ namespace burnish {
 /// height-correlated masking and Schlick's Fresnel factor. Roughness alpha = roughness^2 across and
 /// mix(alpha, 1, strength^2) along the direction of anisotropy, the tangent or, `across`, the bitangent. f0
 /// is mix(0.04, base_color, metallic), what is not reflected goes to the diffuse colour (1 - metallic)
-/// base_color. Channels: 3. Source: [glTF 2.0, appendix B; KHR_materials_anisotropy].
+/// base_color. Channels: 3. Source: [glTF 2021, appendix B].
 struct MetallicRoughness {
   Rgb base_color = 1;     ///< in [0, 1]
   double metallic = 1;    ///< in [0, 1]
