@@ -2,6 +2,7 @@
 // generated shaders on the OpenGL at hand, their cost, and image-based light; figures go to
 // DOCS_FOLDER/figures.
 #include <algorithm>
+#include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <string>
@@ -14,6 +15,8 @@
 #include <burnish/factors/models_for_tests.h>
 #include <burnish/render/gl_context.h>
 #include <burnish/render/gl_evaluator.h>
+#include <burnish/shaders/webgl_for_tests.h>
+#include <burnish/tools_for_tests.h>
 
 #include "environment.h"
 
@@ -66,6 +69,24 @@ void print_precision(const GlContext& context) {
   }
 }
 
+// One page a model: tens of megabytes of directions and values each.
+void print_webgl() {
+  constexpr int kSide = 1000;
+  const TemporaryFolder folder("webgl_report");
+  fmt::print(
+      "\n## In a browser\n\nThe same errors, exact filtering and float tables, in headless Chromium (WebGL2 "
+      "by "
+      "SwiftShader), read back as floats, over {} pairs; where terms of a projection cancel, divided by how "
+      "much.\n\n| model | error |\n|---|---|\n",
+      kSide * kSide);
+  for (const ModelCase& model : kModelCases) {
+    const std::vector<double> worst = run_webgl({&model, 1}, kSide, folder.path);
+    if (worst.empty()) throw Error("expected Chromium with WebGL2, found none");
+    fmt::print("| {} | {:.1e} |\n", model.name, worst[0]);
+    std::fflush(stdout);
+  }
+}
+
 void print_costs() {
   fmt::print(
       "\n## Cost of one evaluation\n\nFetches, then floating-point operations + divisions + square roots + "
@@ -91,13 +112,14 @@ int main(int count, char** arguments) {
   try {
     if (count != 2 && count != 3)
       throw burnish::Error(
-          "expected the folder of the documents, then maybe precision, cost or environment alone");
+          "expected the folder of the documents, then maybe precision, webgl, cost or environment alone");
     const std::string only = count == 3 ? arguments[2] : "";
     fmt::print(
         "<!-- Written by `make shader-report`; edit apps/shader_report instead. -->\n"
         "# What generated shaders give and cost\n\n");
     const burnish::GlContext context;
     if (only.empty() || only == "precision") burnish::print_precision(context);
+    if (only.empty() || only == "webgl") burnish::print_webgl();
     if (only.empty() || only == "cost") burnish::print_costs();
     if (only.empty() || only == "environment")
       burnish::print_environment_light(std::filesystem::path(arguments[1]) / "figures");
