@@ -103,7 +103,8 @@ void print_environment_light(const std::filesystem::path& figures) {
       "pixel, stratified; `truth` is the PSNR of such a picture with other random numbers and a quarter of "
       "the draws. Maps of "
       "halves, "
-      "read by the generated shader on the OpenGL at hand; in brackets the shader's definition in doubles.\n\n"
+      "read by the generated shader on the OpenGL at hand; in brackets the shader's definition in "
+      "doubles.\n\n"
       "| material | lobes | environment | truth |",
       kSize, kSamples);
   for (const Tabulation& t : kTabulations) fmt::print(" {} |", t.name);
