@@ -39,6 +39,7 @@ test: deps format-check
 	  ctest --preset $$preset -j $(JOBS) || exit 1; \
 	done
 	@python/check.sh --skip-offline
+	@tests/web/check.sh --skip-offline
 
 python: build
 	@python/check.sh
@@ -61,7 +62,7 @@ sampling-report: build
 	@mv docs/sampling-results.md.partial docs/sampling-results.md
 
 shader-report: build
-	@build/release/apps/shader_report/burnish_shader_report > docs/shader-results.md.partial
+	@build/release/apps/shader_report/burnish_shader_report docs > docs/shader-results.md.partial
 	@mv docs/shader-results.md.partial docs/shader-results.md
 
 frame-cost: build

@@ -12,6 +12,8 @@
 
 #include <burnish/factors/model_file.h>
 #include <burnish/factors/models_for_tests.h>
+#include <burnish/io/rgl.h>
+#include <burnish/metrics/png.h>
 #include <burnish/tools_for_tests.h>
 
 namespace burnish {
@@ -62,11 +64,30 @@ TEST_F(Export, WritesEveryLanguageWithItsTexturesAndAManifest) {
 }
 
 TEST_F(Export, RefusesWhatIsNoModelAndNoTargetAndLeavesNothing) {
-  EXPECT_EQ(exports("--to png"), 2);
+  EXPECT_EQ(exports("--to jpeg"), 2);
   EXPECT_EQ(exports("--to glsl --name a__b"), 1);
   write(folder_ / "two lobes.exr", "v/1\x01 no model");
   EXPECT_EQ(exports("--to glsl"), 1);
   EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+TEST_F(Export, WritesTexturesAsImagesAndOtherFormatsOfTheMaterial) {
+  ASSERT_EQ(exports("--to exr --to png --to gltf --to three --to rgl"), 0) << read(folder_ / "said");
+  const fs::path out = folder_ / "out";
+  EXPECT_EQ(read_png(out / "two_lobes_0.png").width, 32);
+  EXPECT_TRUE(read(out / "two_lobes_2.exr").starts_with("v/1\x01"));
+  EXPECT_TRUE(read(out / "two_lobes.glb").starts_with("glTF"));
+  EXPECT_THAT(read(out / "two_lobes.three.js"), HasSubstr("export function createMaterial(THREE)"));
+  const RglTable table = parse_rgl(read_file(out / "two_lobes.bsdf"), {}).table;
+  const FactoredBrdf brdf = smooth_model(kModelCases[2]);
+  for (int row = 4; row < 28; row += 4) {  // nodes hold the model's values
+    const auto [wi, wo] = table.node_directions(0, 5, row, 16);
+    double f[3], expected[3];
+    if (wo.z < 0.1) continue;
+    table.eval(wi, wo, f);
+    brdf.eval(wi, wo, expected);
+    EXPECT_NEAR(f[1], expected[1], 1e-3 * expected[1]);
+  }
 }
 
 TEST_F(Export, ThePageLoadsNothing) {
@@ -89,16 +110,20 @@ const shot = () => canvas.toDataURL(), move = (buttons, x, y) => {
   return shot();
 };
 const start = shot(), hovered = move(0, 60, 300), dragged = move(1, 60, 300), back = move(1, 300, 60);
-find("select").value = "sphere";
-find("select").dispatchEvent(new Event("input"));
-const sphere = shot(), pixel = new Uint8Array(4);
+const show = (shape) => {
+  find("select").value = shape;
+  find("select").dispatchEvent(new Event("input"));
+  return shot();
+};
+const teapot = show("teapot"), sphere = show("sphere"), pixel = new Uint8Array(4);
 gl.readPixels(canvas.width / 2, canvas.height / 2, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
-document.body.dataset.result = [hovered === start, dragged !== start, back !== dragged, sphere !== back,
+document.body.dataset.result = [hovered === start, dragged !== start, back !== dragged,
+                                teapot !== back && sphere !== back && teapot !== sphere,
                                 pixel[0] + pixel[1] + pixel[2] > 80, gl.getError() === 0, errors === 0].join(" ");
 </script>)");
   write(folder_ / "page.html", page);
   ASSERT_EQ(
-      run(fmt::format("timeout 60 chromium --headless --no-sandbox --use-gl=angle --use-angle=swiftshader "
+      run(fmt::format("timeout 300 chromium --headless --no-sandbox --use-gl=angle --use-angle=swiftshader "
                       "--enable-unsafe-swiftshader --window-size=400,400 --user-data-dir={0}/profile "
                       "--virtual-time-budget=5000 --dump-dom file://{0}/page.html > {0}/dom 2> {0}/said",
                       folder_.string())),

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <filesystem>
 #include <memory>
 
@@ -8,10 +9,14 @@
 #include <burnish/error.h>
 #include <burnish/factors/model_file.h>
 #include <burnish/file.h>
+#include <burnish/io/rgl.h>
+#include <burnish/reflectance/rgl_builder.h>
 #include <burnish/shaders/shader.h>
+#include <burnish/textures/image_files.h>
 #include <burnish/textures/ktx2.h>
 
 #include "commands.h"
+#include "export_formats.h"
 #include "export_page.h"
 
 namespace burnish::cli {
@@ -35,7 +40,7 @@ constexpr Target kTargets[] = {
 struct Arguments {
   std::string model, folder, name;
   std::vector<std::string> to;
-  bool exact = false, plain = false;
+  bool exact = false, plain = false, mips = false;
 };
 
 struct ExportedFile {
@@ -88,17 +93,51 @@ std::vector<ExportedFile> export_files(const FactoredBrdf& brdf, const Arguments
   }
   for (std::size_t i = 0; textures && i < brdf.tables().size(); ++i) {
     const Table& table = brdf.tables()[i];
-    files.push_back({fmt::format("{}_{}.ktx2", name, i), encode_ktx2(table, !arguments.plain)});
+    const Texture texture = make_texture(table, arguments.mips);
+    files.push_back({fmt::format("{}_{}.ktx2", name, i), encode_ktx2(texture, !arguments.plain)});
     manifest["textures"].push_back({{"table", table.name},
                                     {"file", files.back().name},
                                     {"width", table.layout.width},
                                     {"height", table.layout.height},
+                                    {"levels", texture.levels.size()},
                                     {"channels", table.channels},
                                     {"format", to_string(table.format)},
                                     {"warp", to_string(table.layout.warp)},
                                     {"wrap", "clamp_to_edge"}});
     if (table.layout.shape == TableShape::grid)
       manifest["textures"].back()["warp_y"] = to_string(table.layout.warp_y);
+  }
+  for (std::size_t i = 0; wants("cube") && i < brdf.tables().size(); ++i) {
+    const Table& table = brdf.tables()[i];
+    if (table.layout.shape == TableShape::grid) continue;  // of two directions
+    // twice as fine at the normal as a disk without a warp
+    const Texture cube = make_cube_map(
+        table, static_cast<int>(std::bit_ceil(static_cast<unsigned>(table.layout.width))), arguments.mips);
+    files.push_back({fmt::format("{}_{}.cube.ktx2", name, i), encode_ktx2(cube, !arguments.plain)});
+    manifest["cube_maps"].push_back({{"table", table.name},
+                                     {"file", files.back().name},
+                                     {"side", cube.width},
+                                     {"levels", cube.levels.size()},
+                                     {"format", to_string(table.format)}});
+  }
+  const std::pair<const char*, std::string (*)(const Table&)> images[] = {{"exr", encode_exr},
+                                                                          {"png", encode_png_table}};
+  for (const auto& [extension, encode] : images)
+    for (std::size_t i = 0; wants(extension) && i < brdf.tables().size(); ++i) {
+      files.push_back({fmt::format("{}_{}.{}", name, i, extension), encode(brdf.tables()[i])});
+      manifest["images"].push_back({{"table", brdf.tables()[i].name}, {"file", files.back().name}});
+    }
+  if (wants("gltf")) {
+    files.push_back({name + ".glb", export_gltf(brdf, name, manifest)});
+    manifest["gltf"] = files.back().name;
+  }
+  if (wants("three")) {
+    files.push_back({name + ".three.js", export_three(brdf, name)});
+    manifest["three"] = files.back().name;
+  }
+  if (wants("rgl")) {
+    files.push_back({name + ".bsdf", format_rgl(make_rgl_table(brdf, {.description = name}))});
+    manifest["rgl"] = files.back().name;
   }
   if (wants("html")) {
     files.push_back({name + ".html", export_page(brdf, name)});
@@ -110,15 +149,16 @@ std::vector<ExportedFile> export_files(const FactoredBrdf& brdf, const Arguments
 }  // namespace
 
 void add_export_command(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand(
-      "export", "Write a factored BRDF as shader code, KTX2 textures, or a page that shows it");
+  CLI::App* verb = app.add_subcommand("export",
+                                      "Write a factored BRDF as shaders, textures, glTF, a three.js module, "
+                                      "an RGL table, or a page that shows it");
   verb->footer(
       "Every shader comes with its textures but C++, which has them inside; NAME.json says what is in the "
       "folder and what an evaluation costs. See docs/shaders.md.\n"
       "Example: burnish export paint.exr --to glsl --to html -o paint");
   auto arguments = std::make_shared<Arguments>();
   verb->add_option("MODEL", arguments->model, "factored BRDF, as `burnish fit` writes it")->required();
-  std::vector<std::string> targets{"ktx2", "html"};
+  std::vector<std::string> targets{"ktx2", "cube", "exr", "png", "gltf", "three", "rgl", "html"};
   for (const Target& target : kTargets) targets.emplace_back(target.name);
   verb->add_option("--to", arguments->to, "what to write; may be given several times")
       ->required()
@@ -126,6 +166,7 @@ void add_export_command(CLI::App& app) {
   verb->add_option("-o,--out", arguments->folder, "folder, made where it is missing")->required();
   verb->add_option("--name", arguments->name, "of functions and files; by default from MODEL's name");
   verb->add_flag("--exact", arguments->exact, "shaders that weigh texels themselves, in floats");
+  verb->add_flag("--mips", arguments->mips, "KTX2 with levels: averages over the directions of a texel");
   verb->add_flag("--plain", arguments->plain, "textures that are not compressed");
   verb->callback([arguments] {
     if (arguments->name.empty()) arguments->name = name_of(arguments->model);

@@ -1,10 +1,14 @@
 #include "export_page.h"
 
+#include <cmath>
 #include <cstdint>
 
 #include <nlohmann/json.hpp>
 
+#include <burnish/render/shapes.h>
 #include <burnish/shaders/shader.h>
+
+#include "export_formats.h"
 
 namespace burnish::cli {
 
@@ -25,7 +29,7 @@ canvas { display: block; width: 100vw; height: 100vh; touch-action: none; cursor
 </style>
 <canvas></canvas>
 <div id="panel"><b></b> <code></code><br>Drag: light. Shift and drag: object.
-<label><select><option>torus knot<option>sphere</select> shape</label>
+<label><select><option>torus knot<option>teapot<option>sphere</select> shape</label>
 <label><input type="range" min="-12" max="12" step="0.05"> exposure</label></div>
 <script>
 "use strict";
@@ -75,12 +79,12 @@ if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProg
 gl.useProgram(program);
 const uniform = (name) => gl.getUniformLocation(program, name);
 
+const decode = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
 model.textures.forEach((texture, unit) => {
-  const bytes = Uint8Array.from(atob(texture.rgba16f), (c) => c.charCodeAt(0));
   gl.activeTexture(gl.TEXTURE0 + unit);
   gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
   gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA16F, texture.width, texture.height, 0, gl.RGBA, gl.HALF_FLOAT,
-                new Uint16Array(bytes.buffer));
+                new Uint16Array(decode(texture.rgba16f)));
   for (const side of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T])
     gl.texParameteri(gl.TEXTURE_2D, side, gl.CLAMP_TO_EDGE);
   for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER])
@@ -93,7 +97,7 @@ const cross = (a, b) => [0, 1, 2].map((i) => a[(i + 1) % 3] * b[(i + 2) % 3] - a
 const unit = (a) => { const l = Math.hypot(...a); return a.map((x) => x / l); };
 
 // A grid of vertices over [0, 1]^2: at(u, v) gives [position, normal, tangent].
-function mesh(columns, rows, at) {
+function grid(columns, rows, at) {
   const vertices = [], indices = [];
   for (let i = 0; i <= columns; ++i)
     for (let j = 0; j <= rows; ++j) vertices.push(...at(i / columns, j / rows).flat());
@@ -102,6 +106,9 @@ function mesh(columns, rows, at) {
       const a = i * (rows + 1) + j, b = a + rows + 1;
       indices.push(a, b, a + 1, a + 1, b, b + 1);
     }
+  return mesh(vertices, indices);
+}
+function mesh(vertices, indices) {
   const array = gl.createVertexArray();
   gl.bindVertexArray(array);
   gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
@@ -119,20 +126,22 @@ const knot = (u) => {
   return [r * Math.cos(a), r * Math.sin(a), 0.27 * Math.sin(b)];
 };
 const shapes = {
-  "torus knot": mesh(640, 48, (u, v) => {
+  teapot: mesh(Array.from(new Int16Array(decode(model.teapot.vertices)), (x) => x / 32767),
+               new Uint16Array(decode(model.teapot.indices))),
+  "torus knot": grid(640, 48, (u, v) => {
     const p = knot(u), q = knot(u + 1e-4), along = unit(add(q, p, -1));
     const side = unit(cross(along, add(p, q))), up = cross(side, along);
     const normal = add(up.map((x) => x * Math.cos(2 * Math.PI * v)), side, Math.sin(2 * Math.PI * v));
     return [add(p, normal, 0.14), normal, along];
   }),
-  sphere: mesh(96, 96, (u, v) => {
+  sphere: grid(96, 96, (u, v) => {
     const phi = 2 * Math.PI * u, theta = 1e-4 + (Math.PI - 2e-4) * v;
     const normal = [Math.sin(theta) * Math.sin(phi), Math.cos(theta), Math.sin(theta) * Math.cos(phi)];
     return [normal.map((x) => 0.85 * x), normal, [Math.cos(phi), 0, -Math.sin(phi)]];
   }),
 };
 
-let light = unit([0.4, 0.5, 0.8]), yaw = 0.3, pitch = -0.2;
+let light = unit([0.4, 0.5, 0.8]), yaw = 0.3, pitch = 0.35;
 function draw() {
   const ratio = window.devicePixelRatio;
   canvas.width = canvas.clientWidth * ratio;
@@ -187,6 +196,25 @@ draw();
 </html>
 )";
 
+template <class T>
+std::string base64_of(const std::vector<T>& values) {
+  return base64(std::as_bytes(std::span(values)));
+}
+
+// Position, normal and tangent in steps of 1/32767.
+nlohmann::json teapot() {
+  const Mesh mesh = make_teapot(10);
+  std::vector<std::int16_t> vertices;
+  for (const Vertex& v : mesh.vertices)
+    for (const auto& part : {v.position, v.normal, v.tangent})
+      for (const float x : part) vertices.push_back(static_cast<std::int16_t>(std::lround(32767 * x)));
+  std::vector<std::uint16_t> indices;
+  for (const auto& triangle : mesh.triangles) indices.insert(indices.end(), triangle.begin(), triangle.end());
+  return {{"vertices", base64_of(vertices)}, {"indices", base64_of(indices)}};
+}
+
+}  // namespace
+
 std::string base64(std::span<const std::byte> bytes) {
   constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
@@ -210,11 +238,10 @@ std::string half_texels(const Table& table) {
   return base64(pack(TableFormat::half, 4, values));
 }
 
-}  // namespace
-
 std::string export_page(const FactoredBrdf& brdf, const std::string& name) {
   const Shader shader = generate_shader(brdf, {ShaderLanguage::glsl_es, ShaderFilter::hardware, name});
-  nlohmann::json model{{"name", name}, {"expression", model_expression(brdf)}, {"shader", shader.text}};
+  nlohmann::json model{
+      {"name", name}, {"expression", model_expression(brdf)}, {"shader", shader.text}, {"teapot", teapot()}};
   for (std::size_t i = 0; i < brdf.tables().size(); ++i) {
     const Table& table = brdf.tables()[i];
     model["textures"].push_back({{"name", shader.textures[i]},

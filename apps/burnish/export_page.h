@@ -6,8 +6,8 @@
 
 namespace burnish::cli {
 
-/// An HTML page that shows the model on a torus knot or a sphere under a light that follows the pointer:
-/// WebGL2, everything inside, nothing loaded. Throws Error as generate_shader does.
+/// An HTML page that shows the model on a torus knot, a teapot or a sphere under a light that follows the
+/// pointer: WebGL2, everything inside, nothing loaded. Throws Error as generate_shader does.
 std::string export_page(const FactoredBrdf& brdf, const std::string& name);
 
 }  // namespace burnish::cli

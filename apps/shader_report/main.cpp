@@ -1,15 +1,24 @@
-// What docs/shader-results.md shows: precision of generated shaders on the OpenGL at hand, and their cost.
+// burnish_shader_report DOCS_FOLDER [SECTION] prints what docs/shader-results.md shows: precision of
+// generated shaders on the OpenGL at hand, their cost, and image-based light; figures go to
+// DOCS_FOLDER/figures.
 #include <algorithm>
+#include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <burnish/error.h>
 #include <burnish/factors/models_for_tests.h>
 #include <burnish/render/gl_context.h>
 #include <burnish/render/gl_evaluator.h>
+#include <burnish/shaders/webgl_for_tests.h>
+#include <burnish/tools_for_tests.h>
+
+#include "environment.h"
 
 namespace burnish {
 namespace {
@@ -36,7 +45,7 @@ void print_precision(const GlContext& context) {
       "|\n|---|---|---|---|---|---|\n",
       kPairs, context.renderer());
   const auto pairs = corner_and_random_pairs(kPairs);
-  std::vector<GlDirections> directions;
+  std::vector<GlVectors> directions;
   const auto single = [](double x) { return static_cast<float>(x); };
   for (const auto& [a, b] : pairs)
     directions.push_back({{single(a.x), single(a.y), single(a.z)}, {single(b.x), single(b.y), single(b.z)}});
@@ -57,6 +66,24 @@ void print_precision(const GlContext& context) {
       fmt::print(" {:.1e} |", worst);
     }
     fmt::print("\n");
+  }
+}
+
+// One page a model: tens of megabytes of directions and values each.
+void print_webgl() {
+  constexpr int kSide = 1000;
+  const TemporaryFolder folder("webgl_report");
+  fmt::print(
+      "\n## In a browser\n\nThe same errors, exact filtering and float tables, in headless Chromium (WebGL2 "
+      "by "
+      "SwiftShader), read back as floats, over {} pairs; where terms of a projection cancel, divided by how "
+      "much.\n\n| model | error |\n|---|---|\n",
+      kSide * kSide);
+  for (const ModelCase& model : kModelCases) {
+    const std::vector<double> worst = run_webgl({&model, 1}, kSide, folder.path);
+    if (worst.empty()) throw Error("expected Chromium with WebGL2, found none");
+    fmt::print("| {} | {:.1e} |\n", model.name, worst[0]);
+    std::fflush(stdout);
   }
 }
 
@@ -81,13 +108,21 @@ void print_costs() {
 }  // namespace
 }  // namespace burnish
 
-int main() {
+int main(int count, char** arguments) {
   try {
+    if (count != 2 && count != 3)
+      throw burnish::Error(
+          "expected the folder of the documents, then maybe precision, webgl, cost or environment alone");
+    const std::string only = count == 3 ? arguments[2] : "";
     fmt::print(
         "<!-- Written by `make shader-report`; edit apps/shader_report instead. -->\n"
         "# What generated shaders give and cost\n\n");
-    burnish::print_precision(burnish::GlContext());
-    burnish::print_costs();
+    const burnish::GlContext context;
+    if (only.empty() || only == "precision") burnish::print_precision(context);
+    if (only.empty() || only == "webgl") burnish::print_webgl();
+    if (only.empty() || only == "cost") burnish::print_costs();
+    if (only.empty() || only == "environment")
+      burnish::print_environment_light(std::filesystem::path(arguments[1]) / "figures");
   } catch (const std::exception& error) {
     fmt::print(stderr, "burnish_shader_report: {}\n", error.what());
     return 1;

@@ -174,3 +174,15 @@ def test_scalar_variants_call_the_library(files):
     finally:
         if before:
             mi.set_variant(before)
+
+
+def test_mitsubas_measured_reads_exported_tables(cli, files, llvm, tmp_path):
+    cli("export", files["model"], "--to", "rgl", "-o", tmp_path, "--name", "m")
+    bsdf = mi.load_dict({"type": "measured", "filename": str(tmp_path / "m.bsdf")})
+    wi, wo = hemisphere(5_000, 5), hemisphere(5_000, 6)
+    wi, wo = wi[keep := (wi[:, 2] > 0.2) & (wo[:, 2] > 0.2)], wo[keep]
+    # the first direction of the file, our wi, is Mitsuba's si.wi
+    value = np.array(bsdf.eval(mi.BSDFContext(), interaction(wi, len(wi)), mi.Vector3f(*np.ascontiguousarray(wo.T)))).T
+    expected = burnish.open_source(str(tmp_path / "m.bsdf")).eval(wi, wo) * wo[:, 2:]
+    assert np.median(abs(value / expected - 1)) < 1e-3
+    assert (abs(value - expected) < 2e-2 * expected + 1e-3).mean() > 0.99

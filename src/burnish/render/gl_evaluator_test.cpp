@@ -37,7 +37,7 @@ class GlEvaluatorTest : public testing::TestWithParam<ModelCase> {
   static double error(ShaderFilter filter, TableFormat precision) {
     const FactoredBrdf brdf = smooth_model(GetParam());
     const auto pairs = corner_and_random_pairs(5000);
-    std::vector<GlDirections> directions;
+    std::vector<GlVectors> directions;
     for (const auto& [a, b] : pairs) {
       const auto single = [](double x) { return static_cast<float>(x); };
       directions.push_back(

@@ -96,16 +96,13 @@ std::string key_value(std::string_view key, std::string_view value) {
   return text;
 }
 
-std::string texel_data(const Table& table) {
-  std::vector<float> values = table.values;
-  int stored = table.channels;
-  if (stored == 3 && table.format != TableFormat::rgb9e5) {
-    stored = 4;
-    values.clear();
-    for (std::size_t i = 0; i < table.values.size(); i += 3)
-      values.insert(values.end(), {table.values[i], table.values[i + 1], table.values[i + 2], 1.0f});
-  }
-  const std::vector<std::byte> bytes = pack(table.format, stored, values);
+std::string texel_data(const Texture& texture, const std::vector<float>& level) {
+  const bool alpha = texture.channels == 3 && texture.format != TableFormat::rgb9e5;
+  std::vector<float> values;
+  for (std::size_t i = 0; alpha && i < level.size(); i += 3)
+    values.insert(values.end(), {level[i], level[i + 1], level[i + 2], 1.0f});
+  const std::vector<std::byte> bytes =
+      pack(texture.format, alpha ? 4 : texture.channels, alpha ? values : level);
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
@@ -120,36 +117,56 @@ std::string compress(const std::string& data) {
 
 }  // namespace
 
-std::string encode_ktx2(const Table& table, bool compressed) {
-  if (table.channels != 1 && table.channels != 3)
-    throw Error(fmt::format("KTX2: expected a table of 1 or 3 channels, found {}", table.channels));
-  const Texels texels = texels_of(table.format, table.channels);
-  const std::string data = texel_data(table), level = compressed ? compress(data) : data;
+std::string encode_ktx2(const Texture& texture, bool compressed) {
+  if (texture.channels != 1 && texture.channels != 3)
+    throw Error(fmt::format("KTX2: expected a texture of 1 or 3 channels, found {}", texture.channels));
+  const Texels texels = texels_of(texture.format, texture.channels);
   const std::string format = descriptor(texels, compressed), notes = key_value("KTXwriter", "burnish");
-  const std::size_t format_at = kHeaderSize + kLevelSize, notes_at = format_at + format.size();
+  const std::size_t levels = texture.levels.size();
+  const std::size_t format_at = kHeaderSize + levels * kLevelSize, notes_at = format_at + format.size();
   const std::size_t alignment = compressed ? 1 : std::max<std::size_t>(texels.bytes, 4);
-  const std::size_t data_at = (notes_at + notes.size() + alignment - 1) / alignment * alignment;
+
+  // the smallest level comes first
+  struct Place {
+    std::size_t at, size, unpacked;
+  };
+  std::vector<Place> places(levels);
+  std::string data;
+  const std::size_t head = (notes_at + notes.size() + alignment - 1) / alignment * alignment;
+  for (std::size_t l = levels; l-- > 0;) {
+    const std::string unpacked = texel_data(texture, texture.levels[l]);
+    const std::string level = compressed ? compress(unpacked) : unpacked;
+    pad(data, alignment);
+    places[l] = {head + data.size(), level.size(), unpacked.size()};
+    data += level;
+  }
 
   std::string file(kIdentifier);
   const std::size_t words[] = {texels.vk_format,
                                texels.type_size,
-                               static_cast<std::size_t>(table.layout.width),
-                               static_cast<std::size_t>(table.layout.height),
+                               static_cast<std::size_t>(texture.width),
+                               static_cast<std::size_t>(texture.height),
                                0,  // depth
                                0,  // layers
-                               1,  // faces
-                               1,  // levels
+                               static_cast<std::size_t>(texture.faces),
+                               levels,
                                compressed ? kZstandard : 0,
                                format_at,
                                format.size(),
                                notes_at,
                                notes.size()};
   for (const std::size_t word : words) put(file, word, 4);
-  for (const std::size_t word : {std::size_t{0}, std::size_t{0}, data_at, level.size(), data.size()})
-    put(file, word, 8);  // no global data; the level
+  put(file, 0, 8);  // no global data
+  put(file, 0, 8);
+  for (const Place& place : places)
+    for (const std::size_t word : {place.at, place.size, place.unpacked}) put(file, word, 8);
   file += format + notes;
   pad(file, alignment);
-  return file + level;
+  return file + data;
+}
+
+std::string encode_ktx2(const Table& table, bool compressed) {
+  return encode_ktx2(make_texture(table, false), compressed);
 }
 
 }  // namespace burnish

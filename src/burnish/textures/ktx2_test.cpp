@@ -85,6 +85,37 @@ INSTANTIATE_TEST_SUITE_P(Formats, Ktx2, testing::Combine(testing::ValuesIn(kCase
                                               std::get<1>(test.param) ? "Zstandard" : "");
                          });
 
+TEST(Ktx2File, HoldsEveryLevelOfEveryFaceTheSmallestFirst) {
+  Table disk = random_table({TableFormat::half, 3, 0, 0});
+  disk.layout = {TableShape::disk, 8, 8, {}, {}};
+  disk.values.assign(3 * 64, 0.5f);
+  disk.values[0] = 1;
+  for (const bool compressed : {false, true}) {
+    const Texture cube = make_cube_map(disk, 8, true);
+    const std::string file = encode_ktx2(cube, compressed);
+    EXPECT_EQ(word(file, 36), 6u);
+    ASSERT_EQ(word(file, 40), 4u);
+    std::size_t end = file.size();
+    for (std::size_t l = 0; l < 4; ++l) {
+      const std::size_t at = word(file, 80 + 24 * l, 8), size = word(file, 88 + 24 * l, 8);
+      const std::size_t unpacked = word(file, 96 + 24 * l, 8);
+      EXPECT_EQ(unpacked, 6u * 8 * (64 >> (2 * l)));
+      EXPECT_EQ(at + size, end);
+      EXPECT_TRUE(compressed || (size == unpacked && at % 8 == 0));
+      end = at;
+      std::string data = file.substr(at, size);
+      if (compressed) {
+        data.resize(unpacked);
+        ASSERT_EQ(ZSTD_decompress(data.data(), unpacked, file.data() + at, size), unpacked);
+      }
+      const std::vector<float> values =
+          unpack(TableFormat::half, 4, {reinterpret_cast<const std::byte*>(data.data()), unpacked});
+      for (std::size_t i = 0; i < cube.levels[l].size(); ++i)
+        ASSERT_EQ(values[4 * (i / 3) + i % 3], cube.levels[l][i]);
+    }
+  }
+}
+
 // An independent reader, where it is installed: npm install ktx-parse, NODE_PATH set.
 TEST(Ktx2File, OpensInKtxParse) {
   if (std::system("node -e \"require.resolve('ktx-parse')\" >/dev/null 2>&1") != 0)

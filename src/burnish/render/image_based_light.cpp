@@ -1,0 +1,330 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <burnish/error.h>
+#include <burnish/math/angles.h>
+#include <burnish/math/parallel.h>
+#include <burnish/render/image_based_light.h>
+
+namespace burnish {
+namespace {
+
+constexpr int kRings = 96;   // angles gamma about an axis, gamma = pi (ring / kRings)^2
+constexpr int kSpokes = 32;  // azimuths of a ring of the sky
+constexpr int kDiscPoints = 64;
+constexpr int kMostMaps = 9;  // of a mean and four orders
+constexpr double kLeastSine = 1e-6;
+
+using Channels = std::array<double, 3>;
+
+double ring_angle(double ring) noexcept {
+  return kPi * (ring / kRings) * (ring / kRings);
+}
+
+// Axes at right angles to `up` that turn with it without a seam where up.y > -1. [Duff 2017, with y for z]
+struct Frame {
+  Vec3 x, z;
+
+  explicit Frame(Vec3 up) noexcept {
+    const double a = 1 / (1 + up.y), b = -up.x * up.z * a;
+    x = {1 - up.x * up.x * a, -up.x, b};
+    z = {b, -up.z, 1 - up.z * up.z * a};
+  }
+};
+
+// Half 1 is half 0 seen in a mirror that exchanges up and down.
+Vec3 in_half(int half, Vec3 w) noexcept {
+  return half == 0 ? w : Vec3{w.x, -w.y, w.z};
+}
+
+// The direction of the square [-1, 1]^2; outside the unit circle it lies below the map's horizon, so that
+// texels that a reader touches beyond it continue the map.
+Vec3 map_direction(double x, double z) noexcept {
+  const double r = x * x + z * z;
+  return {2 * x / (1 + r), (1 - r) / (1 + r), 2 * z / (1 + r)};
+}
+
+bool of_view_alone(const Table& table, const FactorUse& use) noexcept {
+  const auto alone = [](const Projection& p) {
+    return p.kind == Projection::Kind::affine && p.wi == 0 && p.mirror == 0;
+  };
+  return alone(use.projection) && (table.layout.shape != TableShape::grid || alone(use.projection_y));
+}
+
+// The lobe with some of its factors, and the tables they need.
+FactoredBrdf part_of(const FactoredBrdf& brdf, std::vector<double> scale,
+                     const std::vector<FactorUse>& uses) {
+  std::vector<Table> tables;
+  Lobe lobe{.scale = std::move(scale), .factors = uses};
+  for (FactorUse& use : lobe.factors) {
+    const Table& table = brdf.tables()[static_cast<std::size_t>(use.table)];
+    const auto known = std::ranges::find(tables, table.name, &Table::name);
+    use.table = static_cast<int>(known - tables.begin());
+    if (known == tables.end()) tables.push_back(table);
+  }
+  return {brdf.channels(), std::move(tables), {std::move(lobe)}};
+}
+
+Channels eval_channels(const FactoredBrdf& brdf, Vec3 wi, Vec3 wo) noexcept {
+  Channels f{};
+  brdf.eval(wi, wo, std::span(f).first(static_cast<std::size_t>(brdf.channels())));
+  if (brdf.channels() == 1) f[1] = f[2] = f[0];
+  return f;
+}
+
+// sin(theta) and cos(theta) of a slice's view, kept off the horizon, where a BRDF is 0.
+Vec3 slice_view(int slice, int slices) noexcept {
+  const double theta = std::min(2 * std::atan(static_cast<double>(slice) / (slices - 1)), radians(89.5));
+  return {-std::sin(theta), 0, std::cos(theta)};
+}
+
+// The local frame of a slice: the viewer towards -x, so that the mirror direction lies towards +x.
+struct Kernel {
+  double axis = 0;                                                 // radians from the normal towards +x
+  std::vector<std::array<Channels, kMostMaps / 2 + 1>> harmonics;  // a ring: k_0, k_1, k_2
+};
+
+Kernel kernel_of(const FactoredBrdf& inside, Vec3 wo, int orders) {
+  const auto value = [&](Vec3 wi) {
+    Channels f{};
+    if (wi.z <= 0) return f;
+    f = eval_channels(inside, wi, wo);
+    for (double& c : f) c *= wi.z;
+    return f;
+  };
+  const auto about = [](double axis, double gamma, double psi) {
+    const double x = std::sin(gamma) * std::cos(psi), y = std::sin(gamma) * std::sin(psi),
+                 z = std::cos(gamma);
+    return Vec3{std::cos(axis) * x + std::sin(axis) * z, y, std::cos(axis) * z - std::sin(axis) * x};
+  };
+  // The mean of the kernel squared, by rings about the mirror direction, which crowd where lobes are.
+  const double mirror_angle = std::atan2(-wo.x, wo.z);
+  Vec3 mean{};
+  for (int ring = 0; ring < kRings; ++ring)
+    for (int spoke = 0; spoke < kSpokes; ++spoke) {
+      const double gamma = ring_angle(ring + 0.5), psi = kTwoPi * (spoke + 0.5) / kSpokes;
+      const Vec3 wi = about(mirror_angle, gamma, psi);
+      const Channels f = value(wi);
+      const double area = std::sin(gamma) * (ring + 0.5);  // d gamma is proportional to the ring
+      mean = mean + area * (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]) * wi;
+    }
+  Kernel kernel{.axis = std::atan2(mean.x, mean.z), .harmonics = {}};
+  kernel.harmonics.resize(kRings + 1);
+  constexpr int kAzimuths = 2 * kSpokes;
+  for (int ring = 0; ring <= kRings; ++ring)
+    for (int spoke = 0; spoke < kAzimuths; ++spoke) {
+      const double psi = kTwoPi * (spoke + 0.5) / kAzimuths;
+      const Channels f = value(about(kernel.axis, ring_angle(ring), psi));
+      for (int m = 0; m <= orders; ++m)
+        for (std::size_t c = 0; c < 3; ++c)
+          kernel.harmonics[static_cast<std::size_t>(ring)][static_cast<std::size_t>(m)][c] +=
+              f[c] * std::cos(m * psi) * (m == 0 ? 1 : 2) / kAzimuths;
+    }
+  return kernel;
+}
+
+// 1, then cos and sin of multiples of the azimuth whose cosine and sine are given.
+std::array<double, kMostMaps> harmonics_of(double c, double s) noexcept {
+  std::array<double, kMostMaps> h{1, c, s};
+  for (std::size_t i = 3; i < kMostMaps; i += 2) {
+    h[i] = c * h[i - 2] - s * h[i - 1];
+    h[i + 1] = s * h[i - 2] + c * h[i - 1];
+  }
+  return h;
+}
+
+using RingLight = std::array<Channels, kMostMaps>;
+
+void add(RingLight& to, const std::array<double, kMostMaps>& harmonics, double weight, Rgb light) noexcept {
+  for (std::size_t h = 0; h < kMostMaps; ++h) {
+    const double w = weight * harmonics[h];
+    to[h][0] += w * light.r;
+    to[h][1] += w * light.g;
+    to[h][2] += w * light.b;
+  }
+}
+
+// Solid angle of a ring over 2 pi: integral of the ring's hat function times sin(gamma).
+std::vector<double> ring_areas() {
+  std::vector<double> areas(kRings + 1);
+  constexpr int kSteps = 16;
+  for (int ring = 0; ring < kRings; ++ring)
+    for (int i = 0; i < kSteps; ++i) {
+      const double low = ring_angle(ring), high = ring_angle(ring + 1), t = (i + 0.5) / kSteps;
+      const double part = std::sin(low + t * (high - low)) * (high - low) / kSteps;
+      areas[static_cast<std::size_t>(ring)] += (1 - t) * part;
+      areas[static_cast<std::size_t>(ring) + 1] += t * part;
+    }
+  return areas;
+}
+
+struct DiscPoint {
+  Vec3 direction;
+  double light;  // radiance times solid angle
+};
+
+std::vector<DiscPoint> disc_points(const Environment& environment) {
+  std::vector<DiscPoint> points;
+  for (const DistantDisc& disc : environment.discs) {
+    const Frame frame(in_half(disc.direction.y < 0, disc.direction));
+    const double cap = 1 - std::cos(disc.radius);
+    for (int i = 0; i < kDiscPoints; ++i) {
+      // Fibonacci's spiral, even over the solid angle
+      const double fall = cap * (i + 0.5) / kDiscPoints, sine = std::sqrt(fall * (2 - fall));
+      const double phi = i * kPi * (3 - std::sqrt(5.0));
+      const Vec3 across = std::cos(phi) * frame.x + std::sin(phi) * frame.z;
+      points.push_back({(1 - fall) * disc.direction + sine * in_half(disc.direction.y < 0, across),
+                        disc.radiance * kTwoPi * cap / kDiscPoints});
+    }
+  }
+  return points;
+}
+
+}  // namespace
+
+std::size_t ImageBasedLight::bytes() const noexcept {
+  std::size_t values = 0;
+  for (const PrefilteredLobe& lobe : lobes) values += lobe.maps.size();
+  return values / 3 * 8;
+}
+
+int ImageBasedLight::fetches() const noexcept {
+  int count = 0;
+  for (const PrefilteredLobe& lobe : lobes)
+    count += map_count() + static_cast<int>(lobe.outside.lobes()[0].factors.size());
+  return count;
+}
+
+Rgb ImageBasedLight::radiance(Vec3 n, Vec3 v) const noexcept {
+  const double cos_o = std::min(dot(n, v), 1.0);
+  if (cos_o <= 0) return {};
+  const Vec3 away = cos_o * n - v;  // from the viewer, in the plane of view and normal
+  const double sin_o = length(away), t = sin_o / (1 + cos_o);
+  const Vec3 wo{-sin_o, 0, cos_o};
+  // Kernels are round where normal and view coincide: any azimuth will do there
+  const Vec3 plane = (1 / std::max(sin_o, kLeastSine)) * away;
+  const int side = options.side;
+  const double slice_at = t * (options.slices - 1);
+  const int slice = std::min(static_cast<int>(slice_at), options.slices - 2);
+  const double slice_part = slice_at - slice;
+  Rgb sum;
+  for (const PrefilteredLobe& lobe : lobes) {
+    const auto s = static_cast<std::size_t>(slice);
+    const double angle = (1 - slice_part) * lobe.axis[s] + slice_part * lobe.axis[s + 1];
+    const Vec3 axis_world = std::cos(angle) * n + std::sin(angle) * plane;
+    const Vec3 tilt_world = std::cos(angle) * plane - std::sin(angle) * n;
+    const int half = axis_world.y < 0;
+    const Vec3 axis = in_half(half, axis_world), tilt = in_half(half, tilt_world);
+    const Frame frame(axis);
+    const auto harmonics = harmonics_of(dot(tilt, frame.x), dot(tilt, frame.z));
+    const double scale = 0.5 * (side - 1) / (1 + axis.y);
+    const double x = axis.x * scale + 0.5 * (side - 1), y = axis.z * scale + 0.5 * (side - 1);
+    const int x0 = std::clamp(static_cast<int>(x), 0, side - 2),
+              y0 = std::clamp(static_cast<int>(y), 0, side - 2);
+    Channels light{};
+    for (int map = 0; map < map_count(); ++map)
+      for (int corner = 0; corner < 8; ++corner) {
+        const int dx = corner & 1, dy = corner >> 1 & 1, ds = corner >> 2;
+        const double weight = (dx ? x - x0 : 1 - x + x0) * (dy ? y - y0 : 1 - y + y0) *
+                              (ds ? slice_part : 1 - slice_part) * harmonics[static_cast<std::size_t>(map)];
+        const int row = (map * options.slices + slice + ds) * side + y0 + dy;
+        const auto at = static_cast<std::size_t>(3 * (row * 2 * side + half * side + x0 + dx));
+        for (std::size_t c = 0; c < 3; ++c) light[c] += weight * lobe.maps[at + c];
+      }
+    const Channels outside = eval_channels(lobe.outside, wo, wo);
+    sum = sum + Rgb{outside[0] * light[0], outside[1] * light[1], outside[2] * light[2]};
+  }
+  return {std::max(sum.r, 0.0), std::max(sum.g, 0.0), std::max(sum.b, 0.0)};
+}
+
+ImageBasedLight prefilter(const FactoredBrdf& brdf, const Environment& environment,
+                          const PrefilterOptions& options) {
+  const auto require = [](const char* what, int value, int least, int most) {
+    if (value < least || value > most)
+      throw Error(
+          fmt::format("image-based light: expected {} in [{}, {}], found {}", what, least, most, value));
+  };
+  require("slices", options.slices, 2, 64);
+  require("a side", options.side, 8, 512);
+  require("harmonics", options.harmonics, 0, 4);
+  if (!brdf.isotropic())
+    throw Error("image-based light: expected an isotropic model, found an anisotropic one");
+  if (brdf.channels() != 1 && brdf.channels() != 3)
+    throw Error(fmt::format("image-based light: expected 1 or 3 channels, found {}", brdf.channels()));
+
+  ImageBasedLight result{options, {}};
+  const auto slices = static_cast<std::size_t>(options.slices), side = static_cast<std::size_t>(options.side);
+  const auto maps = static_cast<std::size_t>(result.map_count());
+  std::vector<std::vector<Kernel>> kernels;  // of a lobe, of a slice
+  for (const Lobe& lobe : brdf.lobes()) {
+    std::vector<FactorUse> outside, inside;
+    for (const FactorUse& use : lobe.factors)
+      (of_view_alone(brdf.tables()[static_cast<std::size_t>(use.table)], use) ? outside : inside)
+          .push_back(use);
+    result.lobes.push_back(
+        {part_of(brdf, lobe.scale, outside), {}, std::vector<float>(maps * slices * side * side * 6)});
+    const FactoredBrdf kernel = part_of(brdf, std::vector(lobe.scale.size(), 1.0), inside);
+    std::vector<Kernel>& of_slices = kernels.emplace_back(slices);
+    for_each_chunk(slices, 1, [&](std::size_t s, std::size_t, std::size_t) {
+      of_slices[s] = kernel_of(kernel, slice_view(static_cast<int>(s), options.slices), options.harmonics);
+    });
+    for (const Kernel& k : of_slices) result.lobes.back().axis.push_back(k.axis);
+  }
+
+  const std::vector<double> areas = ring_areas();
+  const std::vector<DiscPoint> points = disc_points(environment);
+  Environment sky = environment;
+  sky.discs.clear();
+  for_each_chunk(side, 1, [&](std::size_t row, std::size_t, std::size_t) {
+    std::vector<RingLight> light(kRings + 1);
+    for (std::size_t column = 0; column < 2 * side; ++column) {
+      const int half = column >= side;
+      const auto place = [&](std::size_t i) {
+        return 2.0 * static_cast<double>(i) / static_cast<double>(side - 1) - 1;
+      };
+      const Vec3 axis = map_direction(place(column % side), place(row));
+      const Frame frame(axis);
+      std::ranges::fill(light, RingLight{});
+      for (int ring = 0; ring <= kRings; ++ring) {
+        const double sine = std::sin(ring_angle(ring)), cosine = std::cos(ring_angle(ring));
+        const double turn = 0.618 * ring;  // spokes of neighbouring rings do not line up
+        for (int spoke = 0; spoke < kSpokes; ++spoke) {
+          const double psi = kTwoPi * (spoke + turn) / kSpokes, c = std::cos(psi), s = std::sin(psi);
+          const Vec3 w = cosine * axis + (sine * c) * frame.x + (sine * s) * frame.z;
+          add(light[static_cast<std::size_t>(ring)], harmonics_of(c, s),
+              areas[static_cast<std::size_t>(ring)] * kTwoPi / kSpokes, sky.radiance(in_half(half, w)));
+        }
+      }
+      for (const DiscPoint& point : points) {
+        const Vec3 w = in_half(half, point.direction);
+        const double along = dot(w, axis), x = dot(w, frame.x), z = dot(w, frame.z), sine = std::hypot(x, z);
+        const double at = kRings * std::sqrt(std::atan2(sine, along) / kPi);
+        const auto ring = std::min(static_cast<std::size_t>(at), std::size_t{kRings - 1});
+        const auto harmonics = sine > 0 ? harmonics_of(x / sine, z / sine) : std::array<double, kMostMaps>{1};
+        // linear in gamma, as kernels are between rings
+        const double low = ring_angle(static_cast<double>(ring)),
+                     high = ring_angle(static_cast<double>(ring) + 1);
+        const double part = (std::atan2(sine, along) - low) / (high - low);
+        add(light[ring], harmonics, (1 - part) * point.light, 1);
+        add(light[ring + 1], harmonics, part * point.light, 1);
+      }
+      for (std::size_t j = 0; j < kernels.size(); ++j)
+        for (std::size_t slice = 0; slice < slices; ++slice)
+          for (std::size_t map = 0; map < maps; ++map) {
+            Channels value{};
+            for (std::size_t ring = 0; ring <= kRings; ++ring)
+              for (std::size_t c = 0; c < 3; ++c)
+                value[c] += kernels[j][slice].harmonics[ring][(map + 1) / 2][c] * light[ring][map][c];
+            float* texel =
+                result.lobes[j].maps.data() + 3 * (((map * slices + slice) * side + row) * 2 * side + column);
+            for (std::size_t c = 0; c < 3; ++c) texel[c] = static_cast<float>(value[c]);
+          }
+    }
+  });
+  return result;
+}
+
+}  // namespace burnish

@@ -1,0 +1,92 @@
+// node check.mjs FOLDER NAME F: opens what `burnish export ... --name NAME -o FOLDER` wrote in the programs it was written
+// for. F is f_r of the first channel at the normal.
+import assert from "node:assert/strict";
+import {execFileSync} from "node:child_process";
+import fs from "node:fs";
+import path from "node:path";
+import {pathToFileURL} from "node:url";
+import validator from "gltf-validator";
+import {read as readKtx2} from "ktx-parse";
+import * as THREE from "three";
+import {EXRLoader} from "three/examples/jsm/loaders/EXRLoader.js";
+import {GLTFLoader} from "three/examples/jsm/loaders/GLTFLoader.js";
+import {KTX2Loader} from "three/examples/jsm/loaders/KTX2Loader.js";
+
+const [folder, name, value] = process.argv.slice(2);
+const bytes = (file) => new Uint8Array(fs.readFileSync(path.join(folder, file)));
+const manifest = JSON.parse(fs.readFileSync(path.join(folder, `${name}.json`)));
+
+// Textures: ktx-parse and the loaders of three.js find the same texels, whose largest is 1.
+for (const [i, texture] of manifest.textures.entries()) {
+  const container = readKtx2(bytes(texture.file));
+  assert.deepEqual([container.pixelWidth, container.pixelHeight], [texture.width, texture.height]);
+  assert.equal(container.levels.length, texture.levels ?? 1);
+  const loader = new KTX2Loader();
+  loader.workerConfig = {};  // no GPU to ask: the texels are not compressed for one
+  const map = await new Promise((done, failed) => loader.parse(bytes(texture.file).buffer, done, failed));
+  const image = new EXRLoader().setDataType(THREE.FloatType).parse(bytes(manifest.images[i].file).buffer);
+  assert.deepEqual([image.width, image.height], [texture.width, texture.height]);
+  const texels = map.mipmaps?.[0]?.data ?? map.image.data;
+  let largest = 0;
+  for (let y = 0; y < texture.height; ++y)
+    for (let x = 0; x < texture.width; ++x) {
+      const at = 4 * (y * texture.width + x), seen = 4 * ((texture.height - 1 - y) * texture.width + x);
+      for (let c = 0; c < 3; ++c) {
+        const half = THREE.DataUtils.fromHalfFloat(texels[at + c]);
+        assert.equal(half, image.data[seen + c]);  // EXRLoader turns images upside down
+        largest = Math.max(largest, half);
+      }
+    }
+  assert.equal(largest, 1);
+}
+
+// Cube maps with their levels.
+for (const cube of manifest.cube_maps) {
+  const container = readKtx2(bytes(cube.file));
+  assert.deepEqual([container.faceCount, container.pixelWidth, container.levels.length], [6, cube.side, cube.levels]);
+}
+
+// glTF: the validator of Khronos finds no fault, and three.js the core material.
+const report = await validator.validateBytes(bytes(manifest.gltf));
+assert.equal(report.issues.numErrors + report.issues.numWarnings, 0, JSON.stringify(report.issues.messages));
+globalThis.self ??= globalThis;
+const gltf = await new GLTFLoader().parseAsync(bytes(manifest.gltf).buffer, "");
+const mesh = gltf.scene.getObjectByProperty("isMesh", true), core = manifest.core_material;
+assert.equal(mesh.material.roughness, core.roughnessFactor);
+assert.equal(mesh.material.metalness, core.metallicFactor);
+assert.equal(mesh.material.anisotropy ?? 0, core.anisotropyStrength);
+assert.ok(mesh.geometry.attributes.tangent.count > 1000);
+assert.ok(mesh.material.userData.gltfExtensions.BURNISH_materials_factored.lobes.length >= 1);
+
+// three.js: a plane seen and lit along its normal, drawn into floats by Chromium.
+const {createMaterial} = await import(pathToFileURL(path.resolve(folder, manifest.three)));
+assert.equal(Object.values(createMaterial(THREE).uniforms).filter((u) => u.value?.isTexture).length,
+             manifest.textures.length);
+const page = path.resolve(folder, "three.html");
+const three = (file) => pathToFileURL(path.resolve(import.meta.dirname, process.env.NODE_FOLDER, "three/build", file));
+fs.writeFileSync(page, `<!DOCTYPE html><body><script type="module">
+import * as THREE from "${three("three.module.js")}";
+import {createMaterial} from "./${manifest.three}";
+let errors = 0;
+console.error = (...text) => { ++errors; document.body.dataset.said = text.join(" "); };
+const renderer = new THREE.WebGLRenderer(), target = new THREE.WebGLRenderTarget(8, 8, {type: THREE.FloatType});
+const scene = new THREE.Scene(), camera = new THREE.OrthographicCamera(-1, 1, 1, -1, 0.1, 10);
+camera.position.z = 2;
+const light = new THREE.DirectionalLight(0xffffff, 2);
+light.position.set(0, 0, 1);
+scene.add(light, new THREE.Mesh(new THREE.PlaneGeometry(2, 2), createMaterial(THREE)));
+renderer.setRenderTarget(target);
+renderer.render(scene, camera);
+const pixel = new Float32Array(4);
+renderer.readRenderTargetPixels(target, 4, 4, 1, 1, pixel);
+document.body.dataset.result = [pixel[0], errors].join(" ");
+</script></body>`);
+const dom = execFileSync("timeout", ["300", "chromium", "--headless", "--no-sandbox", "--use-gl=angle",
+  "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--allow-file-access-from-files",
+  `--user-data-dir=${path.resolve(folder, "profile")}`, "--virtual-time-budget=10000", "--dump-dom",
+  pathToFileURL(page).href], {stdio: ["ignore", "pipe", "ignore"]}).toString();
+const result = dom.match(/data-result="([^ ]+) ([^"]+)"/);
+assert.ok(result, dom);
+assert.equal(Number(result[2]), 0, dom);
+assert.ok(Math.abs(result[1] / (2 * value) - 1) < 2e-3, `expected ${2 * value}, found ${result[1]}`);
+console.log(`web: ${manifest.textures.length} KTX2, EXR, glTF and three.js exports open elsewhere`);

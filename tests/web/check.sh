@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# Opens exports in ktx-parse, three.js, Chromium and the glTF validator, installed from npm into build/web. With --skip-offline it
+# says so and succeeds where npm, Chromium or the registry cannot be reached.
+set -eu
+cd "$(dirname "$0")/../.."
+skip() {
+  [ "${1:-}" = --skip-offline ] || exit 1
+  echo "web: SKIPPED: $2" >&2
+  exit 0
+}
+burnish=${BURNISH_CLI:-build/release/apps/burnish/burnish}
+web=build/web
+mkdir -p "$web"
+cp tests/web/check.mjs "$web"
+cmp -s tests/web/package.json "$web/package.json" || cp tests/web/package.json "$web"
+for tool in node npm chromium; do
+  command -v "$tool" > /dev/null || skip "${1:-}" "no $tool, so exports were not opened elsewhere"
+done
+[ "$web/node_modules/.package-lock.json" -nt "$web/package.json" ] ||
+  (cd "$web" && timeout 120 npm install --silent --no-audit --no-fund > /dev/null 2>&1) ||
+  skip "${1:-}" "npm cannot be reached, so exports were not opened elsewhere"
+
+"$burnish" fit ggx:alpha_x=0.2,alpha_y=0.35,f0=0.9/0.7/0.4 --samples 50000 -o "$web/brushed.exr" > /dev/null
+"$burnish" export "$web/brushed.exr" --to ktx2 --to cube --to exr --to gltf --to three --mips -o "$web/out" > /dev/null
+printf 'wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0,0,1,0,0,1\n' > "$web/normal.csv"
+"$burnish" eval "$web/brushed.exr" "$web/normal.csv" -o "$web/value.csv" > /dev/null
+NODE_FOLDER=node_modules node "$web/check.mjs" "$web/out" brushed "$(tail -1 "$web/value.csv" | cut -d, -f1)"
