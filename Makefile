@@ -37,6 +37,7 @@ test: deps format-check
 	  cmake --preset $$preset > /dev/null && \
 	  cmake --build --preset $$preset -j $(JOBS) && \
 	  ctest --preset $$preset -j $(JOBS) || exit 1; \
+	  sed -n '/: Skipped$$/{n;p}' build/$$preset/Testing/Temporary/LastTest.log | sort | uniq -c | sed 's/^/skipped/'; \
 	done
 	@python/check.sh --skip-offline
 	@tests/web/check.sh --skip-offline

@@ -16,21 +16,22 @@ Shader shader_of(const FactoredBrdf& brdf, ShaderFilter filter, TableFormat prec
 }  // namespace
 
 void set_tables(GlFunction& function, const FactoredBrdf& brdf, std::span<const std::string> samplers,
-                bool half, bool linear) {
+                TableFormat precision, bool filtered) {
   for (std::size_t i = 0; i < samplers.size(); ++i) {
     const Table& table = brdf.tables()[i];
-    function.set_texture(samplers[i], {.width = table.layout.width,
-                                       .height = table.layout.height,
-                                       .channels = table.channels,
-                                       .half = half,
-                                       .linear = linear,
-                                       .values = table.values});
+    function.set_texture({.name = samplers[i],
+                          .width = table.layout.width,
+                          .height = table.layout.height,
+                          .channels = table.channels,
+                          .precision = precision,
+                          .filtered = filtered,
+                          .values = table.values});
   }
 }
 
 GlEvaluator::GlEvaluator(const FactoredBrdf& brdf, ShaderFilter filter, TableFormat precision)
     : function_(shader_of(brdf, filter, precision).text, "burnish_model") {
-  set_tables(function_, brdf, shader_of(brdf, filter, precision).textures, precision == TableFormat::half,
+  set_tables(function_, brdf, shader_of(brdf, filter, precision).textures, precision,
              filter == ShaderFilter::hardware);
 }
 

@@ -26,6 +26,6 @@ class GlEvaluator {
 
 /// Gives a model's tables to the samplers that its shader names.
 void set_tables(GlFunction& function, const FactoredBrdf& brdf, std::span<const std::string> samplers,
-                bool half, bool linear);
+                TableFormat precision, bool filtered);
 
 }  // namespace burnish

@@ -1,8 +1,8 @@
+#include <array>
 #include <cassert>
 
 #include <epoxy/gl.h>
 
-#include <burnish/error.h>
 #include <burnish/render/gl_function.h>
 
 namespace burnish {
@@ -30,19 +30,9 @@ void main() {
 
 }  // namespace
 
-GlFunction::GlFunction(const std::string& text, const std::string& name) {
-  const std::string whole = "#version 450\n" + text + "\n#define burnish_called " + name + kMain;
-  const char* source = whole.c_str();
-  program_ = glCreateShaderProgramv(GL_COMPUTE_SHADER, 1, &source);
-  GLint linked = 0;
-  glGetProgramiv(program_, GL_LINK_STATUS, &linked);
-  if (linked) return;
-  std::string log(4096, '\0');
-  GLsizei size = 0;
-  glGetProgramInfoLog(program_, static_cast<GLsizei>(log.size()), &size, log.data());
-  glDeleteProgram(program_);
-  throw Error("OpenGL: expected a shader that links, found: " +
-              log.substr(0, static_cast<std::size_t>(size)));
+GlFunction::GlFunction(const std::string& text, const std::string& name)
+    : program_(link_program(
+          std::array{GlShaderSource{GL_COMPUTE_SHADER, text + "\n#define burnish_called " + name + kMain}})) {
 }
 
 GlFunction::~GlFunction() {
@@ -50,28 +40,10 @@ GlFunction::~GlFunction() {
   glDeleteProgram(program_);
 }
 
-void GlFunction::set_texture(const std::string& sampler, const Texels& texels) {
-  const GLenum stored =
-      texels.channels == 1 ? (texels.half ? GL_R16F : GL_R32F) : (texels.half ? GL_RGB16F : GL_RGB32F);
-  const GLenum given = texels.channels == 1 ? GL_RED : GL_RGB;
-  GLuint texture = 0;
-  glCreateTextures(texels.depth ? GL_TEXTURE_3D : GL_TEXTURE_2D, 1, &texture);
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-  if (texels.depth) {
-    glTextureStorage3D(texture, 1, stored, texels.width, texels.height, texels.depth);
-    glTextureSubImage3D(texture, 0, 0, 0, 0, texels.width, texels.height, texels.depth, given, GL_FLOAT,
-                        texels.values.data());
-  } else {
-    glTextureStorage2D(texture, 1, stored, texels.width, texels.height);
-    glTextureSubImage2D(texture, 0, 0, 0, texels.width, texels.height, given, GL_FLOAT, texels.values.data());
-  }
-  for (const GLenum filters : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
-    glTextureParameteri(texture, filters, texels.linear ? GL_LINEAR : GL_NEAREST);
-  for (const GLenum edges : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
-    glTextureParameteri(texture, edges, GL_CLAMP_TO_EDGE);
-  glProgramUniform1i(program_, glGetUniformLocation(program_, sampler.c_str()),
+void GlFunction::set_texture(const GlTexture& texture) {
+  glProgramUniform1i(program_, glGetUniformLocation(program_, texture.name.c_str()),
                      static_cast<GLint>(textures_.size()));
-  textures_.push_back(texture);
+  textures_.push_back(upload_texture(texture));
 }
 
 std::vector<float> GlFunction::call(std::span<const GlVectors> arguments) const {

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <burnish/render/gl_objects.h>
+
 namespace burnish {
 
 /// The two arguments of one call.
@@ -22,15 +24,8 @@ class GlFunction {
   GlFunction(const GlFunction&) = delete;
   GlFunction& operator=(const GlFunction&) = delete;
 
-  /// Gives a sampler its texture of one level, clamped to the edge, `channels` 1 or 3, halves or floats, from
-  /// values of a depth of 1 (2-D) or more (3-D).
-  struct Texels {
-    int width = 0, height = 0, depth = 0;  ///< depth 0: 2-D
-    int channels = 0;
-    bool half = false, linear = false;
-    std::span<const float> values;
-  };
-  void set_texture(const std::string& sampler, const Texels& texels);
+  /// Gives a texture to the sampler of its name. Throws Error as upload_texture.
+  void set_texture(const GlTexture& texture);
 
   /// Three values a call. At most kMostCalls.
   std::vector<float> call(std::span<const GlVectors> arguments) const;

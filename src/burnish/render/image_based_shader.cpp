@@ -81,14 +81,15 @@ GlImageBasedLight::GlImageBasedLight(const ImageBasedLight& light)
   const ImageBasedShader shader = generate_shader(light, ShaderLanguage::glsl, "model");
   const int side = light.options.side;
   for (std::size_t j = 0; j < light.lobes.size(); ++j) {
-    function_.set_texture(shader.lobes[j].maps, {.width = 2 * side,
-                                                 .height = side,
-                                                 .depth = light.map_count() * light.options.slices,
-                                                 .channels = 3,
-                                                 .half = true,
-                                                 .linear = true,
-                                                 .values = light.lobes[j].maps});
-    set_tables(function_, light.lobes[j].outside, shader.lobes[j].tables, true, true);
+    function_.set_texture({.name = shader.lobes[j].maps,
+                           .width = 2 * side,
+                           .height = side,
+                           .depth = light.map_count() * light.options.slices,
+                           .channels = 3,
+                           .precision = TableFormat::half,
+                           .filtered = true,
+                           .values = light.lobes[j].maps});
+    set_tables(function_, light.lobes[j].outside, shader.lobes[j].tables, TableFormat::half, true);
   }
 }
 
