@@ -184,7 +184,9 @@ TEST_F(HostileCommandLine, TellsMisuseFromBadInput) {
   EXPECT_EQ(run_burnish("info").exit_code, 2);
   EXPECT_EQ(run_burnish("measure lambert").exit_code, 2);
   EXPECT_EQ(run_burnish("measure lambert -o x.csv --noise -1").exit_code, 2);
+  EXPECT_EQ(run_burnish("measure lambert -o x.csv --seed -1").exit_code, 2);
   EXPECT_EQ(run_burnish("info --help").exit_code, 0);
+  EXPECT_EQ(run_burnish("--version").exit_code, 0);
 }
 
 TEST_F(HostileCommandLine, ConvertsWhatIsWell) {

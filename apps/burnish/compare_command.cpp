@@ -123,7 +123,9 @@ void add_compare_command(CLI::App& app) {
   verb->add_option("--count", arguments->figures.count, "direction pairs")
       ->check(CLI::Range(1, 100'000'000))
       ->capture_default_str();
-  verb->add_option("--seed", arguments->figures.seed, "of the direction pairs")->capture_default_str();
+  verb->add_option("--seed", arguments->figures.seed, "of the direction pairs")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   verb->add_flag("--no-symmetrize", arguments->no_symmetrize,
                  "compare f(wi, wo) as it is, not the mean with f(wo, wi)");
   verb->add_flag("--json", arguments->json, "print the figures as JSON");

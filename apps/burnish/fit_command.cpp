@@ -196,7 +196,9 @@ void add_fit_command(CLI::App& app) {
       ->check(CLI::Range(0, 100));
   verb->add_option("--samples", options.samples, "pairs drawn from a source that is a function")
       ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}));
-  verb->add_option("--seed", options.seed, "of the drawn pairs")->capture_default_str();
+  verb->add_option("--seed", options.seed, "of the drawn pairs")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   verb->add_option(
           "--format", arguments->format,
           "of the stored tables (default: half; with --budget and three channels rgb9e5, which leaves shared "

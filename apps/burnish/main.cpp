@@ -9,6 +9,7 @@
 int main(int argc, char** argv) {
   CLI::App app{"burnish: measured, scattered or analytic reflectance into a few small positive textures"};
   app.require_subcommand(1);
+  app.set_version_flag("--version", "burnish " BURNISH_VERSION);
   burnish::cli::add_info_command(app);
   burnish::cli::add_fit_command(app);
   burnish::cli::add_eval_command(app);

@@ -30,7 +30,9 @@ void add_measure_command(CLI::App& app) {
   verb->add_option("--noise", arguments->measurement.noise, "sigma of log-normal noise on every value")
       ->check(CLI::Range(0.0, 10.0))
       ->capture_default_str();
-  verb->add_option("--seed", arguments->measurement.seed, "of directions and noise")->capture_default_str();
+  verb->add_option("--seed", arguments->measurement.seed, "of directions and noise")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   verb->callback([arguments] {
     const Source source = arguments->source.open();
     const Samples samples = measure(source.ref(), arguments->measurement);
