@@ -4,33 +4,18 @@
 
 #include <burnish/error.h>
 #include <burnish/factors/models_for_tests.h>
-#include <burnish/render/gl_context.h>
 #include <burnish/render/gl_evaluator.h>
-
-#ifdef __SANITIZE_ADDRESS__
-#include <sanitizer/lsan_interface.h>
-#endif
+#include <burnish/render/gl_for_tests.h>
 
 namespace burnish {
 namespace {
 
 class GlEvaluatorTest : public testing::TestWithParam<ModelCase> {
  protected:
-  static void SetUpTestSuite() {
-#ifdef __SANITIZE_ADDRESS__
-    const __lsan::ScopedDisabler not_ours;  // what drivers keep when they are unloaded
-#endif
-    try {
-      context_ = std::make_unique<GlContext>();
-    } catch (const Error& error) {
-      reason_ = error.what();
-    }
-  }
-  static void TearDownTestSuite() {
-    context_.reset();
-  }
+  static void SetUpTestSuite() { context_ = std::make_unique<TestContext>(); }
+  static void TearDownTestSuite() { context_.reset(); }
   void SetUp() override {
-    if (!context_) GTEST_SKIP() << reason_;
+    if (!context_->context) GTEST_SKIP() << context_->reason;
   }
 
   // The largest relative error over the pairs, divided by how much projections cancel.
@@ -61,8 +46,7 @@ class GlEvaluatorTest : public testing::TestWithParam<ModelCase> {
   }
 
  private:
-  static inline std::unique_ptr<GlContext> context_;
-  static inline std::string reason_;
+  static inline std::unique_ptr<TestContext> context_;
 };
 
 TEST_P(GlEvaluatorTest, StaysWithinTheErrorOfEveryFilterAndPrecision) {

@@ -1,32 +1,20 @@
 // The emitted GLSL of the specular family, run on the OpenGL at hand.
 #include <cmath>
-#include <memory>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <burnish/error.h>
 #include <burnish/power/code.h>
-#include <burnish/render/gl_context.h>
+#include <burnish/render/gl_for_tests.h>
 #include <burnish/render/gl_function.h>
-
-#ifdef __SANITIZE_ADDRESS__
-#include <sanitizer/lsan_interface.h>
-#endif
 
 namespace burnish {
 namespace {
 
 TEST(GlPower, EveryMemberAgreesWithItsDefinition) {
-  std::unique_ptr<GlContext> context;
-  try {
-#ifdef __SANITIZE_ADDRESS__
-    const __lsan::ScopedDisabler not_ours;  // what drivers keep when they are unloaded
-#endif
-    context = std::make_unique<GlContext>();
-  } catch (const Error& error) {
-    GTEST_SKIP() << error.what();
-  }
+  const TestContext gl;
+  if (!gl.context) GTEST_SKIP() << gl.reason;
   std::vector<GlVectors> calls;
   for (const float e : {4.0f, 21.5f, 100.0f, 1000.0f})
     for (int i = 0; i <= 256; ++i) {

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <memory>
 
 #include <gtest/gtest.h>
 
@@ -8,12 +7,8 @@
 #include <burnish/math/angles.h>
 #include <burnish/metrics/sphere_images.h>
 #include <burnish/reflectance/sampling_test_util.h>
-#include <burnish/render/gl_context.h>
+#include <burnish/render/gl_for_tests.h>
 #include <burnish/render/image_based_light.h>
-
-#ifdef __SANITIZE_ADDRESS__
-#include <sanitizer/lsan_interface.h>
-#endif
 
 namespace burnish {
 namespace {
@@ -123,15 +118,8 @@ TEST(ImageBasedLight, RefusesWhatItCannotTabulate) {
 }
 
 TEST(ImageBasedLight, TheShaderAgreesWithTheDefinition) {
-  std::unique_ptr<GlContext> context;
-  try {
-#ifdef __SANITIZE_ADDRESS__
-    const __lsan::ScopedDisabler not_ours;  // what drivers keep when they are unloaded
-#endif
-    context = std::make_unique<GlContext>();
-  } catch (const Error& error) {
-    GTEST_SKIP() << error.what();
-  }
+  const TestContext gl;
+  if (!gl.context) GTEST_SKIP() << gl.reason;
   const ImageBasedLight light = prefilter(glossy(), kLamps, kSmall);
   const auto pairs = normals_and_views(2000);
   std::vector<GlVectors> vectors;
