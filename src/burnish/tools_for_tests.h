@@ -5,8 +5,12 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <string_view>
 
 #include <unistd.h>
+
+#include <burnish/error.h>
+#include <burnish/file.h>
 
 namespace burnish {
 
@@ -32,6 +36,23 @@ inline std::string read(const std::filesystem::path& path) {
   std::ostringstream text;
   text << std::ifstream(path, std::ios::binary).rdbuf();
   return text.str();
+}
+
+/// A file in memory.
+inline FileBytes memory_file(std::string_view content) {
+  const auto* data = reinterpret_cast<const std::byte*>(content.data());
+  return {"test.file", {data, data + content.size()}};
+}
+
+/// The message of the Error that `parse` throws; empty if it throws none.
+template <class Parse>
+std::string error_of(const Parse& parse) {
+  try {
+    parse();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
 }
 
 /// Whether the shell finds a program.

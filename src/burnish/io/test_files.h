@@ -4,29 +4,10 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <string>
-#include <string_view>
 
-#include <burnish/io/byte_reader.h>
+#include <burnish/tools_for_tests.h>
 
 namespace burnish {
-
-/// A file in memory.
-inline FileBytes memory_file(std::string_view content) {
-  const auto* data = reinterpret_cast<const std::byte*>(content.data());
-  return {"test.file", {data, data + content.size()}};
-}
-
-/// The message of the Error that `parse` throws; empty if it throws none.
-template <class Parse>
-std::string error_of(const Parse& parse) {
-  try {
-    parse();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
-}
 
 /// The folder of real measurements, empty where the environment names none.
 inline std::filesystem::path data_folder() {

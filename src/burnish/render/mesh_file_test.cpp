@@ -17,22 +17,8 @@ using nlohmann::json;
 using testing::AllOf;
 using testing::HasSubstr;
 
-FileBytes file_of(std::string_view text) {
-  const auto* data = reinterpret_cast<const std::byte*>(text.data());
-  return {"mesh.file", {data, data + text.size()}};
-}
-
-template <class Parse>
-std::string error_of(const Parse& parse) {
-  try {
-    parse();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
-}
 std::string obj_error(std::string_view text) {
-  return error_of([&] { parse_obj(file_of(text)); });
+  return error_of([&] { parse_obj(memory_file(text)); });
 }
 
 constexpr const char* kQuad =
@@ -40,9 +26,10 @@ constexpr const char* kQuad =
     "0\n";
 
 TEST(ObjReader, ReadsPolygonsMaterialsAndIndicesFromTheEnd) {
-  const MeshFile file = parse_obj(
-      file_of(std::string(kQuad) + "vn 0 0 2\nusemtl red\nf 1/1/1 2/2/1 3/3/1 4/4/1\nusemtl blue\nf -4//-1 "
-                                   "-3//-1 -2//-1\nusemtl red\nf 1 2 3\n"));
+  const MeshFile file =
+      parse_obj(memory_file(std::string(kQuad) +
+                            "vn 0 0 2\nusemtl red\nf 1/1/1 2/2/1 3/3/1 4/4/1\nusemtl blue\nf -4//-1 "
+                            "-3//-1 -2//-1\nusemtl red\nf 1 2 3\n"));
   EXPECT_THAT(file.materials, testing::ElementsAre("red", "blue"));
   ASSERT_EQ(file.parts.size(), 2u);
   EXPECT_EQ(file.parts[0].mesh.triangles.size(), 3u);
@@ -135,7 +122,7 @@ TEST(FinishMesh, SmoothNormalsOfACubePointAlongItsDiagonals) {
     text +=
         "v " + std::to_string(i & 1) + " " + std::to_string(i >> 1 & 1) + " " + std::to_string(i >> 2) + "\n";
   text += "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
-  const MeshFile file = parse_obj(file_of(text));
+  const MeshFile file = parse_obj(memory_file(text));
   EXPECT_EQ(file.parts[0].mesh.vertices.size(), 8u);
   for (const Vertex& v : file.parts[0].mesh.vertices) {
     const Vec3 outwards = normalize(to_vec3(v.position) - Vec3{0.5, 0.5, 0.5});
@@ -188,13 +175,13 @@ struct Gltf {
     return bytes + buffer;
   }
   std::string error() const {
-    return error_of([&] { parse_gltf(file_of(binary()), ""); });
+    return error_of([&] { parse_gltf(memory_file(binary()), ""); });
   }
 };
 
 TEST(GltfReader, PlacesNodesAndKeepsMirroredTrianglesOutwards) {
   const Gltf gltf;
-  const MeshFile file = parse_gltf(file_of(gltf.binary()), "");
+  const MeshFile file = parse_gltf(memory_file(gltf.binary()), "");
   ASSERT_EQ(file.parts.size(), 2u);
   EXPECT_THAT(file.materials, testing::ElementsAre("paint"));
   for (const MeshPart& part : file.parts) {
@@ -212,7 +199,7 @@ TEST(GltfReader, PlacesNodesAndKeepsMirroredTrianglesOutwards) {
 
 TEST(GltfReader, ReadsBuffersFromDataUrisAndFilesBesideIt) {
   Gltf gltf;
-  const Mesh expected = parse_gltf(file_of(gltf.binary()), "").parts[0].mesh;
+  const Mesh expected = parse_gltf(memory_file(gltf.binary()), "").parts[0].mesh;
   const TemporaryFolder folder("gltf");
   write(folder.path / "a b.bin", gltf.buffer);
   gltf.root["buffers"][0]["uri"] = "a b.bin";
@@ -220,7 +207,7 @@ TEST(GltfReader, ReadsBuffersFromDataUrisAndFilesBesideIt) {
   EXPECT_EQ(read_mesh(folder.path / "m.gltf").parts[0].mesh.vertices, expected.vertices);
   gltf.root["buffers"] = {{{"byteLength", 4}, {"uri", "data:application/octet-stream;base64,AAAAAA=="}}};
   gltf.root["accessors"][2]["count"] = 0;
-  EXPECT_THAT(error_of([&] { parse_gltf(file_of(gltf.root.dump()), ""); }), HasSubstr("expected"));
+  EXPECT_THAT(error_of([&] { parse_gltf(memory_file(gltf.root.dump()), ""); }), HasSubstr("expected"));
 }
 
 TEST(GltfReader, NamesThePlaceOfWhatIsBroken) {
@@ -258,7 +245,7 @@ TEST(GltfReader, NamesThePlaceOfWhatIsBroken) {
 TEST(GltfReader, EveryTruncatedFileThrows) {
   const std::string whole = Gltf().binary();
   for (std::size_t size = 0; size < whole.size(); ++size)
-    EXPECT_THROW(parse_gltf(file_of(std::string_view(whole).substr(0, size)), ""), Error) << size;
+    EXPECT_THROW(parse_gltf(memory_file(std::string_view(whole).substr(0, size)), ""), Error) << size;
 }
 
 TEST(GltfReader, ChangedBytesThrowOneClearErrorOrGiveAMesh) {
@@ -268,10 +255,10 @@ TEST(GltfReader, ChangedBytesThrowOneClearErrorOrGiveAMesh) {
     std::string changed = whole;
     changed[static_cast<std::size_t>(random.uniform() * static_cast<double>(whole.size()))] =
         static_cast<char>(random.uniform() * 256);
-    const std::string message = error_of([&] { parse_gltf(file_of(changed), ""); });
+    const std::string message = error_of([&] { parse_gltf(memory_file(changed), ""); });
     EXPECT_EQ(message.find('\n'), message.npos) << message;
     if (message.empty()) continue;
-    EXPECT_THAT(message, AllOf(HasSubstr("mesh.file"), HasSubstr("expected")));
+    EXPECT_THAT(message, AllOf(HasSubstr("test.file"), HasSubstr("expected")));
   }
 }
 
