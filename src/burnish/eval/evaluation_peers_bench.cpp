@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <burnish/eval/highway_targets.h>
+#include <burnish/math/highway_targets.h>
 #include <burnish/math/angles.h>
 #include <burnish/parameterization/half_diff.h>
 #include <burnish/reflectance/neural_brdf.h>

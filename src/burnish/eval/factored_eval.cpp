@@ -5,7 +5,7 @@
 
 #include <burnish/eval/factored_eval.h>
 #include <burnish/eval/factored_plan.h>
-#include <burnish/eval/highway_targets.h>
+#include <burnish/math/highway_targets.h>
 
 // Compiled without contraction to fused multiply-adds (CMakeLists.txt): a fused a * x + b * y differs from
 // b * y + a * x, and swapping the directions would change the last bit. Where that cannot be, they are

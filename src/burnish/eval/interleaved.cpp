@@ -1,4 +1,4 @@
-#include <burnish/eval/highway_targets.h>
+#include <burnish/math/highway_targets.h>
 #include <burnish/eval/interleaved.h>
 
 #undef HWY_TARGET_INCLUDE

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include <burnish/error.h>
-#include <burnish/eval/highway_targets.h>
+#include <burnish/math/highway_targets.h>
 #include <burnish/eval/power_span.h>
 
 #undef HWY_TARGET_INCLUDE

@@ -42,48 +42,42 @@ std::vector<LogRange> shared_exponent_ranges(const std::vector<double>& logs, st
   return ranges;
 }
 
-}  // namespace
-
-Lookups find_lookups(const ModelSpec& spec, const TrainingSet& set) {
-  Lookups found;
-  for (const auto& lobe : spec.lobes) {
-    std::vector<std::size_t>& of_lobe = found.lobes.emplace_back();
-    for (const FactorUse& use : lobe) {
-      of_lobe.push_back(
-          static_cast<std::size_t>(std::ranges::find(found.lookups, use) - found.lookups.begin()));
-      if (of_lobe.back() == found.lookups.size()) found.lookups.push_back(use);
-    }
+// The unknowns of a system of `channels` channels of a model, table by table.
+std::vector<LaneProduct::Unknowns> unknowns_of(const LogModel& model, std::size_t channels) {
+  std::vector<LaneProduct::Unknowns> unknowns;
+  std::size_t base = 0;
+  for (std::size_t t = 0; t < model.spec.tables.size(); ++t) {
+    const TableLayout& layout = model.spec.tables[t].layout;
+    const std::size_t copies = model.step(t) == 1 ? 1 : channels;
+    unknowns.push_back({.base = base, .stride = copies, .copies = copies, .layout = layout});
+    base += layout.node_count() * copies;
   }
-  found.places.resize(found.lookups.size() * set.size());
-  for_each_chunk(set.size(), kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
-    auto place = found.places.begin() + static_cast<std::ptrdiff_t>(begin * found.lookups.size());
-    for (std::size_t i = begin; i < end; ++i)
-      for (const FactorUse& use : found.lookups) {
-        const Lookup at = locate(spec.tables[static_cast<std::size_t>(use.table)].layout, use,
-                                 set.pairs[i].wi, set.pairs[i].wo);
-        *place++ = {static_cast<std::uint32_t>(at.node), static_cast<float>(at.fx),
-                    static_cast<float>(at.fy)};
-      }
-  });
-  return found;
+  return unknowns;
 }
+
+}  // namespace
 
 RefineSystem::RefineSystem(const LogModel& model, const TrainingSet& set, const Lookups& lookups,
                            const PictureLoss& loss, TableFormat format, std::size_t first_channel,
                            std::size_t last_channel)
-    : set_(set), lookups_(lookups), loss_(loss), first_channel_(first_channel), last_channel_(last_channel) {
+    : set_(set),
+      lookups_(lookups),
+      loss_(loss),
+      first_channel_(first_channel),
+      last_channel_(last_channel),
+      lanes_(unknowns_of(model, last_channel - first_channel), lookups, last_channel - first_channel) {
   const std::size_t channels = last_channel - first_channel;
-  for (std::size_t t = 0; t < model.spec.tables.size(); ++t) {
+  for (const auto& [base, stride, copies, layout] : unknowns_of(model, channels)) {
+    const std::size_t t = tables_.size();
     const auto& table = model.spec.tables[t];
-    const std::size_t copies = model.step(t) == 1 ? 1 : channels;
-    tables_.push_back({.base = size_,
-                       .stride = copies,
+    tables_.push_back({.base = base,
+                       .stride = stride,
                        .copies = copies,
-                       .nodes = table.layout.node_count(),
+                       .nodes = layout.node_count(),
                        .step = model.step(t),
                        .share = table.smooth_share,
                        .log_range = log_range(format_of(table, format)),
-                       .rows = smoothness_rows(table.layout)});
+                       .rows = smoothness_rows(layout)});
     size_ += tables_.back().nodes * copies;
     ranges_.resize(size_, {-INFINITY, INFINITY});
     if (model.step(t) == 1 || format_of(table, format) != TableFormat::rgb9e5) continue;
@@ -91,15 +85,16 @@ RefineSystem::RefineSystem(const LogModel& model, const TrainingSet& set, const 
     for (std::size_t n = 0; n < tables_.back().nodes; ++n)
       for (std::size_t c = 0; c < copies; ++c) ranges_[tables_.back().base + n * copies + c] = ranges[n];
   }
-  for (const FactorUse& use : lookups.lookups) {
-    const auto t = static_cast<std::size_t>(use.table);
+  for (std::size_t k = 0; k < lookups.lookups.size(); ++k) {
+    const auto t = static_cast<std::size_t>(lookups.lookups[k].table);
     const TableLayout& layout = model.spec.tables[t].layout;
     const bool line = layout.shape == TableShape::line;
     places_.push_back({.base = tables_[t].base,
                        .stride = tables_[t].stride,
                        .channel_stride = tables_[t].copies > 1 ? std::size_t{1} : 0,
                        .next_row = line ? 0 : static_cast<std::size_t>(layout.width) * tables_[t].stride,
-                       .table = t});
+                       .table = t,
+                       .place = lookups.place_of[k]});
     term_pairs_ += line ? 1 : 2;
   }
   for (std::size_t i = 0; i < set.size(); ++i)
@@ -159,15 +154,16 @@ RefineSystem::Scratch RefineSystem::scratch() const {
 
 double RefineSystem::evaluate(const double* lambda, std::size_t pair, std::size_t channel,
                               Scratch& at) const noexcept {
-  const Lookups::Place* found = lookups_.places.data() + pair * places_.size();
+  const Lookups::Place* found = lookups_.places.data() + pair * lookups_.place_count;
   for (std::size_t k = 0; k < places_.size(); ++k) {
     const Place& place = places_[k];
-    const double fx = found[k].fx;
-    const double* v = lambda + place.base + found[k].node * place.stride + channel * place.channel_stride;
-    double factor = v[0] + fx * (v[place.stride] - v[0]);
+    const auto [node, fx, fy] = found[place.place];
+    const double x = fx;
+    const double* v = lambda + place.base + node * place.stride + channel * place.channel_stride;
+    double factor = v[0] + x * (v[place.stride] - v[0]);
     if (place.next_row > 0) {
       const double* next = v + place.next_row;
-      factor += found[k].fy * (next[0] + fx * (next[place.stride] - next[0]) - factor);
+      factor += fy * (next[0] + x * (next[place.stride] - next[0]) - factor);
     }
     at.factor[k] = factor;
   }
@@ -186,18 +182,19 @@ void RefineSystem::differentiate(const double* lambda, std::size_t pair, std::si
   std::ranges::fill(at.share, 0);
   for (std::size_t j = 0; j < at.product.size(); ++j)
     for (const std::size_t k : lookups_.lobes[j]) at.share[k] += at.product[j];
-  const Lookups::Place* found = lookups_.places.data() + pair * places_.size();
+  const Lookups::Place* found = lookups_.places.data() + pair * lookups_.place_count;
   auto term = at.terms.begin();
   for (std::size_t k = 0; k < places_.size(); ++k) {
     const Place& place = places_[k];
-    const std::size_t first = place.base + found[k].node * place.stride + channel * place.channel_stride;
-    const double fx = found[k].fx, fy = found[k].fy;
+    const auto [node, x, y] = found[place.place];
+    const double fx = x, fy = y;
+    const std::size_t first = place.base + node * place.stride + channel * place.channel_stride;
     const auto push = [&](std::size_t unknown, double share) {
       *term++ = {.unknown = unknown,
                  .stride = place.stride,
                  .value = {share * (1 - fx) * lambda[unknown], share * fx * lambda[unknown + place.stride]}};
     };
-    const double share = at.share[k] / (total * at.factor[k]);
+    const double share = at.share[k] /= total * at.factor[k];
     push(first, share * (1 - fy));
     if (place.next_row > 0) push(first + place.next_row, share * fy);
   }
@@ -237,7 +234,7 @@ void RefineSystem::for_each_slope(const Eigen::VectorXd& lambda, const ErrorTerm
       const PictureLoss::Slope slope = loss_.add(targets_[i * channels + c], model, set_.pairs[i].wi.z,
                                                  i < set_.picture_count, set_.weights[i], derivatives, sums);
       differentiate(lambda.data(), i, c, model, at);
-      visit(i, c, slope, at.terms);
+      visit(i, c, slope, at);
     }
 }
 
@@ -270,24 +267,24 @@ void RefineSystem::find_normal(const Eigen::VectorXd& x, const ErrorTerms& means
   std::vector<Eigen::VectorXd> gradient(chunk_count(set_.size(), group_size));
   for_each_chunk(set_.size(), group_size, [&](std::size_t group, std::size_t begin, std::size_t end) {
     Eigen::VectorXd& sum = gradient[group].setZero(static_cast<Eigen::Index>(unknowns));
-    for_each_slope(
-        lambda, derivatives, begin, end,
-        [&](std::size_t i, std::size_t c, PictureLoss::Slope slope, std::span<const TermPair> terms) {
-          const bool in_matrix = i % every == 0;
-          const double root = std::sqrt(slope.curvature * static_cast<double>(every));
-          std::size_t at = i / every * channels + c;
-          for (const std::size_t p : kept) {
-            const TermPair& pair = terms[p];
-            const std::size_t unknown = pair.unknown - first_unknown;
-            for (std::size_t k = 0; k < 2; ++k)
-              sum[static_cast<Eigen::Index>(unknown + k * pair.stride)] += slope.gradient * pair.value[k];
-            if (!in_matrix) continue;
-            factor.unknown[at] = static_cast<std::uint32_t>(unknown);
-            factor.value[at] = {static_cast<float>(root * pair.value[0]),
-                                static_cast<float>(root * pair.value[1])};
-            at += factor.rows;
-          }
-        });
+    for_each_slope(lambda, derivatives, begin, end,
+                   [&](std::size_t i, std::size_t c, PictureLoss::Slope slope, const Scratch& at_pair) {
+                     const bool in_matrix = i % every == 0;
+                     const double root = std::sqrt(slope.curvature * static_cast<double>(every));
+                     std::size_t at = i / every * channels + c;
+                     for (const std::size_t p : kept) {
+                       const TermPair& pair = at_pair.terms[p];
+                       const std::size_t unknown = pair.unknown - first_unknown;
+                       for (std::size_t k = 0; k < 2; ++k)
+                         sum[static_cast<Eigen::Index>(unknown + k * pair.stride)] +=
+                             slope.gradient * pair.value[k];
+                       if (!in_matrix) continue;
+                       factor.unknown[at] = static_cast<std::uint32_t>(unknown);
+                       factor.value[at] = {static_cast<float>(root * pair.value[0]),
+                                           static_cast<float>(root * pair.value[1])};
+                       at += factor.rows;
+                     }
+                   });
   });
   normal.gradient = gradient.front();
   for (std::size_t g = 1; g < gradient.size(); ++g) normal.gradient += gradient[g];
@@ -295,59 +292,37 @@ void RefineSystem::find_normal(const Eigen::VectorXd& x, const ErrorTerms& means
 }
 
 RefineSystem::Rows RefineSystem::rows(const Eigen::VectorXd& x, const ErrorTerms& means) const {
-  const Eigen::VectorXd lambda = x.array().exp();
   const auto n = static_cast<Eigen::Index>(size_);
   const std::size_t channels = last_channel_ - first_channel_;
   const ErrorTerms derivatives = loss_.derivatives(means, picture_weight_, pair_weight_);
-  const std::size_t width = 2 * term_pairs_;
   Rows result;
+  result.lambda = x.array().exp();
   result.gradient = result.diagonal = Eigen::VectorXd::Zero(n);
-  result.unknown.resize(set_.size() * channels * width);
-  result.value.resize(result.unknown.size());
-  result.width = width;
+  result.slopes = lanes_.slopes();
   const std::size_t group_size = (set_.size() + kMostGroups - 1) / kMostGroups;
   std::vector<Eigen::VectorXd> gradient(chunk_count(set_.size(), group_size)), diagonal(gradient.size());
   for_each_chunk(set_.size(), group_size, [&](std::size_t group, std::size_t begin, std::size_t end) {
     gradient[group] = diagonal[group] = Eigen::VectorXd::Zero(n);
-    for_each_slope(
-        lambda, derivatives, begin, end,
-        [&](std::size_t i, std::size_t c, PictureLoss::Slope slope, std::span<const TermPair> terms) {
-          const double root = std::sqrt(slope.curvature);
-          std::size_t at = (i * channels + c) * width;
-          for (const TermPair& pair : terms)
-            for (std::size_t k = 0; k < 2; ++k, ++at) {
-              const std::size_t unknown = pair.unknown + k * pair.stride;
-              const double value = pair.value[k];
-              gradient[group][static_cast<Eigen::Index>(unknown)] += slope.gradient * value;
-              diagonal[group][static_cast<Eigen::Index>(unknown)] += slope.curvature * value * value;
-              result.unknown[at] = static_cast<std::uint32_t>(unknown);
-              result.value[at] = static_cast<float>(root * value);
-            }
-        });
+    for_each_slope(result.lambda, derivatives, begin, end,
+                   [&](std::size_t i, std::size_t c, PictureLoss::Slope slope, const Scratch& at) {
+                     const double root = std::sqrt(slope.curvature);
+                     float* row = result.slopes.data() + (i * channels + c) * lanes_.slots();
+                     for (std::size_t k = 0; k < places_.size(); ++k)
+                       row[lanes_.slot(k)] = static_cast<float>(root * at.share[k]);
+                     for (const TermPair& pair : at.terms)
+                       for (std::size_t k = 0; k < 2; ++k) {
+                         const auto unknown = static_cast<Eigen::Index>(pair.unknown + k * pair.stride);
+                         const double value = pair.value[k];
+                         gradient[group][unknown] += slope.gradient * value;
+                         diagonal[group][unknown] += slope.curvature * value * value;
+                       }
+                   });
   });
   for (std::size_t g = 0; g < gradient.size(); ++g) {
     result.gradient += gradient[g];
     result.diagonal += diagonal[g];
   }
   return result;
-}
-
-Eigen::VectorXd RefineSystem::apply(const Rows& rows, const Eigen::VectorXd& v) const {
-  const std::size_t width = rows.width, count = rows.value.size() / width;
-  const std::size_t group_size = (count + kMostGroups - 1) / kMostGroups;
-  std::vector<Eigen::VectorXd> partial(chunk_count(count, group_size));
-  for_each_chunk(count, group_size, [&](std::size_t group, std::size_t begin, std::size_t end) {
-    partial[group] = Eigen::VectorXd::Zero(v.size());
-    for (std::size_t r = begin; r < end; ++r) {
-      const std::uint32_t* unknown = rows.unknown.data() + r * width;
-      const float* value = rows.value.data() + r * width;
-      double sum = 0;
-      for (std::size_t a = 0; a < width; ++a) sum += value[a] * v[unknown[a]];
-      for (std::size_t a = 0; a < width; ++a) partial[group][unknown[a]] += sum * value[a];
-    }
-  });
-  for (std::size_t g = 1; g < partial.size(); ++g) partial.front() += partial[g];
-  return partial.front();
 }
 
 template <class Visit>

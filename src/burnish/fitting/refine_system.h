@@ -8,27 +8,15 @@
 
 #include <Eigen/Core>
 
+#include <burnish/fitting/lane_product.h>
 #include <burnish/fitting/log_model.h>
+#include <burnish/fitting/lookups.h>
 #include <burnish/fitting/picture_loss.h>
 #include <burnish/fitting/smoothness.h>
 #include <burnish/fitting/sparse_gram.h>
 #include <burnish/fitting/training_set.h>
 
 namespace burnish {
-
-/// Where a model's lookups fall, the same for every channel. Lobes that look up the same texels, and the same
-/// ones of a table that they share, have one lookup.
-struct Lookups {
-  struct Place {
-    std::uint32_t node;
-    float fx, fy;
-  };
-  std::vector<FactorUse> lookups;               ///< distinct
-  std::vector<std::vector<std::size_t>> lobes;  ///< the lookups of each lobe's factors
-  std::vector<Place> places;                    ///< [pair][lookup]
-};
-
-Lookups find_lookups(const ModelSpec& spec, const TrainingSet& set);
 
 struct LogRange {
   double least, most;
@@ -65,17 +53,20 @@ class RefineSystem {
   void find_normal(const Eigen::VectorXd& x, const ErrorTerms& means, std::size_t first, std::size_t last,
                    Normal& normal) const;
 
-  /// The same without the matrix: the rows of its factor, curvature^(1/2) d ln f^ / dx.
+  /// The same without the matrix, whose factor has the rows curvature^(1/2) d ln f^ / dx. As
+  /// d lambda / dx = lambda, a lookup's part of a row is `slope` times the weights of its interpolation,
+  /// times lambda.
   struct Rows {
     Eigen::VectorXd gradient;
     Eigen::VectorXd diagonal;  ///< of the matrix, less what terms of one row that share an unknown add
-    std::size_t width = 0;     ///< terms a row; the row of pair i and channel c is number i * channels + c
-    std::vector<std::uint32_t> unknown;
-    std::vector<float> value;
+    Eigen::VectorXd lambda;
+    std::vector<float> slopes;  ///< curvature^(1/2) d ln f^ / d factor, as LaneProduct has them
   };
   Rows rows(const Eigen::VectorXd& x, const ErrorTerms& means) const;
   /// The normal matrix times v.
-  Eigen::VectorXd apply(const Rows& rows, const Eigen::VectorXd& v) const;
+  Eigen::VectorXd apply(const Rows& rows, const Eigen::VectorXd& v) const {
+    return rows.lambda.cwiseProduct(lanes_.times(rows.slopes, rows.lambda.cwiseProduct(v)));
+  }
 
   /// Roughness of all tables, its gradient, its matrix times v and its diagonal.
   double roughness(const Eigen::VectorXd& x) const;
@@ -92,7 +83,7 @@ class RefineSystem {
     std::size_t base, stride,
         channel_stride;    // unknown of node n, channel c: base + n stride + c channel_stride
     std::size_t next_row;  // 0: a line
-    std::size_t table;
+    std::size_t table, place;
   };
   struct TableUnknowns {
     std::size_t base, stride, copies, nodes, step;
@@ -107,7 +98,7 @@ class RefineSystem {
 
   // Room for one pair of directions' value and terms.
   struct Scratch {
-    std::vector<double> factor, share;  // of the lookups
+    std::vector<double> factor, share;  // of the lookups; share: d ln f^ / d factor after differentiate
     std::vector<double> product;        // of the lobes
     std::vector<TermPair> terms;
   };
@@ -118,7 +109,7 @@ class RefineSystem {
   // The terms of d ln f^ / dx where the model's value is `total`.
   void differentiate(const double* lambda, std::size_t pair, std::size_t channel, double total,
                      Scratch& at) const noexcept;
-  // visit(pair, channel, slope, terms) of all pairs from `begin` to `end`.
+  // visit(pair, channel, slope, scratch) of all pairs from `begin` to `end`.
   template <class Visit>
   void for_each_slope(const Eigen::VectorXd& lambda, const ErrorTerms& derivatives, std::size_t begin,
                       std::size_t end, Visit visit) const;
@@ -135,6 +126,7 @@ class RefineSystem {
   std::vector<TableUnknowns> tables_;
   std::vector<LogRange> ranges_;  // of the unknowns, over their channel's mean in the table
   double picture_weight_ = 0, pair_weight_ = 0;
+  LaneProduct lanes_;
 };
 
 }  // namespace burnish

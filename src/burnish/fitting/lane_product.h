@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <burnish/factors/table.h>
+#include <burnish/fitting/lookups.h>
+
+namespace burnish {
+
+/// Products of J^T J and vectors, in single precision, where a row of J is a sum over lookups of a slope
+/// times the weights of the lookup's interpolation. Tables of one layout lie side by side, lanes of a vector,
+/// so that lookups at one place are one interpolation of vectors.
+class LaneProduct {
+ public:
+  /// A table's unknowns: of node n, copy c number base + n stride + c. It has one copy, or one a channel.
+  struct Unknowns {
+    std::size_t base, stride, copies;
+    TableLayout layout;
+  };
+  /// Rows are those of the training set that `lookups` was made for, `channels` a pair. Keeps a reference.
+  LaneProduct(std::span<const Unknowns> tables, const Lookups& lookups, std::size_t channels);
+
+  /// Slopes of all rows, zeros; the slope of lookup k of pair i and channel c stands at
+  /// [(i channels + c) slots() + slot(k)].
+  std::vector<float> slopes() const;
+  std::size_t slots() const noexcept { return slots_; }
+  std::size_t slot(std::size_t lookup) const noexcept { return slot_[lookup]; }
+
+  /// J^T J v, the same for any number of threads.
+  Eigen::VectorXd times(const std::vector<float>& slopes, const Eigen::VectorXd& v) const;
+
+  /// Lookups at one place of the tables of one family.
+  struct Group {
+    std::size_t base, channel_stride, next_row;  ///< of its tables' values; next_row 0: a line
+    std::size_t place, slot;
+    bool alone;  ///< its family is a single table, whose nodes follow each other
+  };
+
+ private:
+  const Lookups& lookups_;
+  std::size_t channels_, slots_ = 0, values_ = 0;
+  std::vector<std::size_t> slot_;
+  std::vector<Group> groups_;
+  std::vector<std::uint32_t> value_of_;  // where an unknown stands among the values
+};
+
+}  // namespace burnish

@@ -1,0 +1,51 @@
+#include <algorithm>
+
+#include <burnish/fitting/lookups.h>
+#include <burnish/math/parallel.h>
+
+namespace burnish {
+
+namespace {
+
+constexpr std::size_t kChunk = 2048;
+
+}  // namespace
+
+Lookups find_lookups(const ModelSpec& spec, const TrainingSet& set) {
+  Lookups found;
+  for (const auto& lobe : spec.lobes) {
+    std::vector<std::size_t>& of_lobe = found.lobes.emplace_back();
+    for (const FactorUse& use : lobe) {
+      of_lobe.push_back(
+          static_cast<std::size_t>(std::ranges::find(found.lookups, use) - found.lookups.begin()));
+      if (of_lobe.back() == found.lookups.size()) found.lookups.push_back(use);
+    }
+  }
+  const auto layout_of = [&](const FactorUse& use) -> const TableLayout& {
+    return spec.tables[static_cast<std::size_t>(use.table)].layout;
+  };
+  std::vector<FactorUse> distinct;
+  for (const FactorUse& use : found.lookups) {
+    const auto alike = [&](const FactorUse& other) {
+      return layout_of(other) == layout_of(use) && other.projection == use.projection &&
+             other.projection_y == use.projection_y;
+    };
+    const auto known = std::ranges::find_if(distinct, alike);
+    found.place_of.push_back(static_cast<std::size_t>(known - distinct.begin()));
+    if (known == distinct.end()) distinct.push_back(use);
+  }
+  found.place_count = distinct.size();
+  found.places.resize(distinct.size() * set.size());
+  for_each_chunk(set.size(), kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+    auto place = found.places.begin() + static_cast<std::ptrdiff_t>(begin * distinct.size());
+    for (std::size_t i = begin; i < end; ++i)
+      for (const FactorUse& use : distinct) {
+        const Lookup at = locate(layout_of(use), use, set.pairs[i].wi, set.pairs[i].wo);
+        *place++ = {static_cast<std::uint32_t>(at.node), static_cast<float>(at.fx),
+                    static_cast<float>(at.fy)};
+      }
+  });
+  return found;
+}
+
+}  // namespace burnish
