@@ -14,6 +14,7 @@
 namespace burnish {
 namespace {
 
+constexpr std::size_t kBlock = Lookups::kBlock;
 constexpr std::size_t kLanes = 8;  // tables of a family at most
 
 // What the kernels of all targets take.
@@ -41,88 +42,114 @@ HWY_INLINE V mix(V a, V b, V t) {
   return hn::MulAdd(t, hn::Sub(b, a), a);
 }
 
-// Adds the lanes (1 - t) v and t v to the two neighbours.
-HWY_INLINE void add_split(V v, V t, float* at) {
+// Vectors at a lookup and its neighbour, and their weights.
+HWY_INLINE V between(const float* v, V fx) {
   const D d;
-  const V second = hn::Mul(t, v);
-  hn::StoreU(hn::Add(hn::LoadU(d, at), hn::Sub(v, second)), d, at);
-  hn::StoreU(hn::Add(hn::LoadU(d, at + kLanes), second), d, at + kLanes);
+  return mix(hn::LoadU(d, v), hn::LoadU(d, v + kLanes), fx);
 }
 
-HWY_INLINE V interpolated(const float* v, std::size_t next_row, V fx, float fy) {
+HWY_INLINE void add_between(V amount, V fx, float* v) {
   const D d;
-  const V low = mix(hn::LoadU(d, v), hn::LoadU(d, v + kLanes), fx);
-  if (next_row == 0) return low;
-  v += next_row;
-  return mix(low, mix(hn::LoadU(d, v), hn::LoadU(d, v + kLanes), fx), hn::Set(d, fy));
+  const V second = hn::Mul(fx, amount);
+  hn::StoreU(hn::Add(hn::LoadU(d, v), hn::Sub(amount, second)), d, v);
+  hn::StoreU(hn::Add(hn::LoadU(d, v + kLanes), second), d, v + kLanes);
 }
 
-HWY_INLINE float interpolated(const float* v, std::size_t next_row, float fx, float fy) {
-  const float low = v[0] + fx * (v[1] - v[0]);
-  if (next_row == 0) return low;
-  v += next_row;
-  return low + fy * (v[0] + fx * (v[1] - v[0]) - low);
+HWY_INLINE float between(const float* v, float fx) {
+  return v[0] + fx * (v[1] - v[0]);
 }
 
-// Row times `values`.
-HWY_INLINE float row_times(const LaneRows& rows, const Lookups::Place* found, const float* slopes,
-                           std::size_t channel, const float* values) {
+HWY_INLINE void add_between(float amount, float fx, float* v) {
+  const float second = fx * amount;
+  v[0] += amount - second;
+  v[1] += second;
+}
+
+// Adds the products of a block's rows and `values`, over one group's lookups.
+template <bool line>
+void add_products(const LaneProduct::Group& group, const Lookups::Place* places, const float* slopes,
+                  const float* values, float* sums) {
   const D d;
-  V sum = hn::Zero(d);
-  float rest = 0;
-  for (const LaneProduct::Group& group : rows.groups) {
-    const auto [node, fx, fy] = found[group.place];
-    const float* first = values + group.base + channel * group.channel_stride;
-    const float* slope = slopes + group.slot;
-    if (group.alone) {
-      rest += *slope * interpolated(first + node, group.next_row, fx, fy);
-    } else {
-      for (std::size_t l = 0; l < kLanes; l += hn::Lanes(d))
-        sum = hn::MulAdd(hn::LoadU(d, slope + l),
-                         interpolated(first + node * kLanes + l, group.next_row, hn::Set(d, fx), fy), sum);
+  const std::size_t next_row = group.next_row, lanes = group.lanes;
+  if (lanes == 1) {
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      const auto [node, fx, fy] = places[i];
+      float value = between(values + node, fx);
+      if constexpr (!line) value += fy * (between(values + node + next_row, fx) - value);
+      sums[i * kLanes] += slopes[i] * value;
     }
+    return;
   }
-  return rest + hn::GetLane(hn::SumOfLanes(d, sum));
+  for (std::size_t i = 0; i < kBlock; ++i)
+    for (std::size_t l = 0; l < kLanes; l += hn::Lanes(d)) {
+      const auto [node, x, y] = places[i];
+      const float* low = values + node * kLanes + l;
+      const V fx = hn::Set(d, x);
+      V value = between(low, fx);
+      if constexpr (!line) value = mix(value, between(low + next_row, fx), hn::Set(d, y));
+      float* sum = sums + i * kLanes + l;
+      hn::Store(hn::MulAdd(hn::LoadU(d, slopes + i * lanes + l), value, hn::Load(d, sum)), d, sum);
+    }
 }
 
-// Adds `amount` times the row to `values`.
-HWY_INLINE void add_row(const LaneRows& rows, const Lookups::Place* found, const float* slopes,
-                        std::size_t channel, float amount, float* values) {
+// Adds the block's rows times `amounts` to `values`, over one group's lookups.
+template <bool line>
+void add_transposed(const LaneProduct::Group& group, const Lookups::Place* places, const float* slopes,
+                    const float* amounts, float* values) {
   const D d;
-  for (const LaneProduct::Group& group : rows.groups) {
-    const auto [node, fx, fy] = found[group.place];
-    float* first = values + group.base + channel * group.channel_stride;
-    const float* slope = slopes + group.slot;
-    if (group.alone) {
-      const float all = amount * *slope, high = fy * all, low = all - high;
-      first += node;
-      first[0] += low - fx * low;
-      first[1] += fx * low;
-      if (group.next_row == 0) continue;
-      first += group.next_row;
-      first[0] += high - fx * high;
-      first[1] += fx * high;
-    } else {
-      first += node * kLanes;
-      for (std::size_t l = 0; l < kLanes; l += hn::Lanes(d)) {
-        const V all = hn::Mul(hn::Set(d, amount), hn::LoadU(d, slope + l));
-        const V high = hn::Mul(hn::Set(d, fy), all), t = hn::Set(d, fx);
-        add_split(hn::Sub(all, high), t, first + l);
-        if (group.next_row > 0) add_split(high, t, first + group.next_row + l);
+  const std::size_t next_row = group.next_row, lanes = group.lanes;
+  if (lanes == 1) {
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      const auto [node, fx, fy] = places[i];
+      const float all = amounts[i] * slopes[i], high = line ? 0 : fy * all;
+      add_between(all - high, fx, values + node);
+      if constexpr (!line) add_between(high, fx, values + node + next_row);
+    }
+    return;
+  }
+  for (std::size_t i = 0; i < kBlock; ++i)
+    for (std::size_t l = 0; l < kLanes; l += hn::Lanes(d)) {
+      const auto [node, x, y] = places[i];
+      float* low = values + node * kLanes + l;
+      const V fx = hn::Set(d, x);
+      const V all = hn::Mul(hn::Set(d, amounts[i]), hn::LoadU(d, slopes + i * lanes + l));
+      if constexpr (line) {
+        add_between(all, fx, low);
+      } else {
+        const V high = hn::Mul(hn::Set(d, y), all);
+        add_between(hn::Sub(all, high), fx, low);
+        add_between(high, fx, low + next_row);
       }
     }
-  }
 }
 
-// Adds J^T J v of the pairs [begin, end) to `sum`.
+// Adds J^T J v of the blocks [begin, end) to `sum`.
 void multiply(const LaneRows& rows, std::size_t begin, std::size_t end, const float* v, float* sum) {
-  for (std::size_t i = begin; i < end; ++i) {
-    const Lookups::Place* found = rows.places + i * rows.place_count;
+  const D d;
+  HWY_ALIGN float sums[kBlock * kLanes];
+  float amounts[kBlock];
+  for (std::size_t block = begin; block < end; ++block)
     for (std::size_t c = 0; c < rows.channels; ++c) {
-      const float* slopes = rows.slopes + (i * rows.channels + c) * rows.slots;
-      add_row(rows, found, slopes, c, row_times(rows, found, slopes, c, v), sum);
+      const Lookups::Place* places = rows.places + block * rows.place_count * kBlock;
+      const float* slopes = rows.slopes + (block * rows.channels + c) * rows.slots * kBlock;
+      std::fill_n(sums, kBlock * kLanes, 0.0f);
+      for (const LaneProduct::Group& group : rows.groups)
+        (group.next_row == 0 ? add_products<true>
+                             : add_products<false>)(group, places + group.place * kBlock,
+                                                    slopes + group.slot * kBlock,
+                                                    v + group.base + c * group.channel_stride, sums);
+      for (std::size_t i = 0; i < kBlock; ++i) {
+        V total = hn::Zero(d);
+        for (std::size_t l = 0; l < kLanes; l += hn::Lanes(d))
+          total = hn::Add(total, hn::Load(d, sums + i * kLanes + l));
+        amounts[i] = hn::GetLane(hn::SumOfLanes(d, total));
+      }
+      for (const LaneProduct::Group& group : rows.groups)
+        (group.next_row == 0 ? add_transposed<true>
+                             : add_transposed<false>)(group, places + group.place * kBlock,
+                                                      slopes + group.slot * kBlock, amounts,
+                                                      sum + group.base + c * group.channel_stride);
     }
-  }
 }
 
 }  // namespace
@@ -192,17 +219,19 @@ LaneProduct::LaneProduct(std::span<const Unknowns> tables, const Lookups& lookup
                          .next_row = line ? 0 : static_cast<std::size_t>(layout.width) * (alone ? 1 : kLanes),
                          .place = lookups.place_of[k],
                          .slot = slots_,
-                         .alone = alone});
+                         .lanes = family.count});
       group_family.push_back(family_of[t]);
       slots_ += family.count;
     }
-    slot_.push_back(groups_[g].slot + lane_of[t]);
+    slot_.push_back({g, lane_of[t]});
   }
 }
 
-// Vectors that are read beyond a family's lanes meet values there that are 0, or sums that none asks for.
+// Pairs that fill up the last block have slopes of 0. Vectors read beyond a row's lanes: the values there are
+// 0, and so are products; the sums there are asked for by none.
 std::vector<float> LaneProduct::slopes() const {
-  return std::vector<float>(lookups_.places.size() / lookups_.place_count * channels_ * slots_ + kLanes);
+  const std::size_t rows = chunk_count(lookups_.pairs, kBlock) * kBlock * channels_;
+  return std::vector<float>(rows * slots_ + kLanes);
 }
 
 Eigen::VectorXd LaneProduct::times(const std::vector<float>& slopes, const Eigen::VectorXd& v) const {
@@ -215,7 +244,7 @@ Eigen::VectorXd LaneProduct::times(const std::vector<float>& slopes, const Eigen
                       .place_count = lookups_.place_count,
                       .slots = slots_,
                       .channels = channels_};
-  const std::size_t count = lookups_.places.size() / lookups_.place_count;
+  const std::size_t count = chunk_count(lookups_.pairs, kBlock);
   const std::size_t group_size = (count + kMostGroups - 1) / kMostGroups;
   std::vector<std::vector<float>> partial(chunk_count(count, group_size));
   for_each_chunk(count, group_size, [&](std::size_t group, std::size_t begin, std::size_t end) {

@@ -25,11 +25,15 @@ class LaneProduct {
   /// Rows are those of the training set that `lookups` was made for, `channels` a pair. Keeps a reference.
   LaneProduct(std::span<const Unknowns> tables, const Lookups& lookups, std::size_t channels);
 
-  /// Slopes of all rows, zeros; the slope of lookup k of pair i and channel c stands at
-  /// [(i channels + c) slots() + slot(k)].
+  /// Slopes of all rows, zeros.
   std::vector<float> slopes() const;
-  std::size_t slots() const noexcept { return slots_; }
-  std::size_t slot(std::size_t lookup) const noexcept { return slot_[lookup]; }
+  /// Where the slope of a pair's lookup stands in them.
+  std::size_t slot(std::size_t pair, std::size_t channel, std::size_t lookup) const noexcept {
+    constexpr std::size_t kBlock = Lookups::kBlock;
+    const auto [group, lane] = slot_[lookup];
+    return (pair / kBlock * channels_ + channel) * slots_ * kBlock + groups_[group].slot * kBlock +
+           pair % kBlock * groups_[group].lanes + lane;
+  }
 
   /// J^T J v, the same for any number of threads.
   Eigen::VectorXd times(const std::vector<float>& slopes, const Eigen::VectorXd& v) const;
@@ -37,14 +41,17 @@ class LaneProduct {
   /// Lookups at one place of the tables of one family.
   struct Group {
     std::size_t base, channel_stride, next_row;  ///< of its tables' values; next_row 0: a line
-    std::size_t place, slot;
-    bool alone;  ///< its family is a single table, whose nodes follow each other
+    std::size_t place;
+    std::size_t slot, lanes;  ///< its slopes; a family of one lane has nodes that follow each other
   };
 
  private:
   const Lookups& lookups_;
   std::size_t channels_, slots_ = 0, values_ = 0;
-  std::vector<std::size_t> slot_;
+  struct Slot {
+    std::size_t group, lane;
+  };
+  std::vector<Slot> slot_;  // of the lookups
   std::vector<Group> groups_;
   std::vector<std::uint32_t> value_of_;  // where an unknown stands among the values
 };

@@ -7,7 +7,7 @@ namespace burnish {
 
 namespace {
 
-constexpr std::size_t kChunk = 2048;
+constexpr std::size_t kChunk = 64;  // blocks
 
 }  // namespace
 
@@ -35,15 +35,20 @@ Lookups find_lookups(const ModelSpec& spec, const TrainingSet& set) {
     if (known == distinct.end()) distinct.push_back(use);
   }
   found.place_count = distinct.size();
-  found.places.resize(distinct.size() * set.size());
-  for_each_chunk(set.size(), kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
-    auto place = found.places.begin() + static_cast<std::ptrdiff_t>(begin * distinct.size());
-    for (std::size_t i = begin; i < end; ++i)
-      for (const FactorUse& use : distinct) {
-        const Lookup at = locate(layout_of(use), use, set.pairs[i].wi, set.pairs[i].wo);
-        *place++ = {static_cast<std::uint32_t>(at.node), static_cast<float>(at.fx),
-                    static_cast<float>(at.fy)};
-      }
+  found.pairs = set.size();
+  const std::size_t blocks = chunk_count(set.size(), Lookups::kBlock);
+  found.places.resize(blocks * Lookups::kBlock * distinct.size());
+  for_each_chunk(blocks, kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+    auto place =
+        found.places.begin() + static_cast<std::ptrdiff_t>(begin * Lookups::kBlock * distinct.size());
+    for (std::size_t block = begin; block < end; ++block)
+      for (const FactorUse& use : distinct)
+        for (std::size_t i = block * Lookups::kBlock; i < (block + 1) * Lookups::kBlock; ++i) {
+          const auto& [wi, wo] = set.pairs[std::min(i, set.size() - 1)];
+          const Lookup at = locate(layout_of(use), use, wi, wo);
+          *place++ = {static_cast<std::uint32_t>(at.node), static_cast<float>(at.fx),
+                      static_cast<float>(at.fy)};
+        }
   });
   return found;
 }

@@ -21,7 +21,16 @@ struct Lookups {
   std::vector<std::vector<std::size_t>> lobes;  ///< the lookups of each lobe's factors
   std::vector<std::size_t> place_of;            ///< each lookup's place
   std::size_t place_count = 0;
-  std::vector<Place> places;  ///< [pair][place]
+
+  /// Pairs follow each other in blocks of this many.
+  static constexpr std::size_t kBlock = 32;
+  std::size_t pairs = 0;
+  std::vector<Place> places;  ///< [pair / kBlock][place][pair % kBlock]
+
+  /// A pair's place p stands at [p * kBlock].
+  const Place* of_pair(std::size_t pair) const noexcept {
+    return places.data() + pair / kBlock * kBlock * place_count + pair % kBlock;
+  }
 };
 
 Lookups find_lookups(const ModelSpec& spec, const TrainingSet& set);

@@ -13,7 +13,7 @@ namespace burnish {
 
 namespace {
 
-constexpr std::size_t kMostDirectUnknowns = 2000;
+constexpr std::size_t kMostDirectUnknowns = 1000;
 
 // Levenberg-Marquardt: the damping's start, what a success and a failure make of it, and its smallest.
 constexpr double kFirstDamping = 1e-2, kEase = 0.3, kHarden = 4, kLeastDamping = 1e-6;

@@ -154,10 +154,10 @@ RefineSystem::Scratch RefineSystem::scratch() const {
 
 double RefineSystem::evaluate(const double* lambda, std::size_t pair, std::size_t channel,
                               Scratch& at) const noexcept {
-  const Lookups::Place* found = lookups_.places.data() + pair * lookups_.place_count;
+  const Lookups::Place* found = lookups_.of_pair(pair);
   for (std::size_t k = 0; k < places_.size(); ++k) {
     const Place& place = places_[k];
-    const auto [node, fx, fy] = found[place.place];
+    const auto [node, fx, fy] = found[place.place * Lookups::kBlock];
     const double x = fx;
     const double* v = lambda + place.base + node * place.stride + channel * place.channel_stride;
     double factor = v[0] + x * (v[place.stride] - v[0]);
@@ -182,11 +182,11 @@ void RefineSystem::differentiate(const double* lambda, std::size_t pair, std::si
   std::ranges::fill(at.share, 0);
   for (std::size_t j = 0; j < at.product.size(); ++j)
     for (const std::size_t k : lookups_.lobes[j]) at.share[k] += at.product[j];
-  const Lookups::Place* found = lookups_.places.data() + pair * lookups_.place_count;
+  const Lookups::Place* found = lookups_.of_pair(pair);
   auto term = at.terms.begin();
   for (std::size_t k = 0; k < places_.size(); ++k) {
     const Place& place = places_[k];
-    const auto [node, x, y] = found[place.place];
+    const auto [node, x, y] = found[place.place * Lookups::kBlock];
     const double fx = x, fy = y;
     const std::size_t first = place.base + node * place.stride + channel * place.channel_stride;
     const auto push = [&](std::size_t unknown, double share) {
@@ -293,7 +293,6 @@ void RefineSystem::find_normal(const Eigen::VectorXd& x, const ErrorTerms& means
 
 RefineSystem::Rows RefineSystem::rows(const Eigen::VectorXd& x, const ErrorTerms& means) const {
   const auto n = static_cast<Eigen::Index>(size_);
-  const std::size_t channels = last_channel_ - first_channel_;
   const ErrorTerms derivatives = loss_.derivatives(means, picture_weight_, pair_weight_);
   Rows result;
   result.lambda = x.array().exp();
@@ -306,9 +305,8 @@ RefineSystem::Rows RefineSystem::rows(const Eigen::VectorXd& x, const ErrorTerms
     for_each_slope(result.lambda, derivatives, begin, end,
                    [&](std::size_t i, std::size_t c, PictureLoss::Slope slope, const Scratch& at) {
                      const double root = std::sqrt(slope.curvature);
-                     float* row = result.slopes.data() + (i * channels + c) * lanes_.slots();
                      for (std::size_t k = 0; k < places_.size(); ++k)
-                       row[lanes_.slot(k)] = static_cast<float>(root * at.share[k]);
+                       result.slopes[lanes_.slot(i, c, k)] = static_cast<float>(root * at.share[k]);
                      for (const TermPair& pair : at.terms)
                        for (std::size_t k = 0; k < 2; ++k) {
                          const auto unknown = static_cast<Eigen::Index>(pair.unknown + k * pair.stride);
