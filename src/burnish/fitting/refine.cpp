@@ -15,8 +15,11 @@ namespace {
 
 constexpr std::size_t kMostDirectUnknowns = 1000;
 
-// Levenberg-Marquardt: the damping's start, what a success and a failure make of it, and its smallest.
-constexpr double kFirstDamping = 1e-2, kEase = 0.3, kHarden = 4, kLeastDamping = 1e-6;
+// Levenberg-Marquardt: the damping's start, its smallest, and what successes and failures make of it.
+// It changes where the objective falls by more or less than these shares of what was predicted, as a third of
+// the damping that serves best makes a step that leads up.
+constexpr double kFirstDamping = 1e-2, kFirstIterativeDamping = 0.1, kLeastDamping = 1e-6;
+constexpr double kEase = 0.3, kHarden = 4, kGoodGain = 0.75, kPoorGain = 0.25;
 constexpr int kMostTrials = 6, kMostSlowSteps = 3;
 // Pins what neither data nor smoothness determine, as shares of the mean diagonal.
 constexpr double kRidge = 1e-7, kDampedRidge = 1e-3;
@@ -33,6 +36,8 @@ class StepSolver {
     if (!direct()) roughness_diagonal_ = 2 * smooth * system.roughness_diagonal();
   }
 
+  bool direct() const { return system_.size() <= kMostDirectUnknowns; }
+
   void linearize(const Eigen::VectorXd& x, const ErrorTerms& means) {
     if (direct()) {
       system_.find_normal(x, means, normal_);
@@ -41,6 +46,15 @@ class StepSolver {
       rows_ = system_.rows(x, means);
     }
     gradient() += 2 * smooth_ * system_.roughness_matrix_times(x);
+  }
+
+  /// What the quadratic model of linearize says that a step adds to the objective.
+  double predicted_change(const Eigen::VectorXd& dx) const {
+    const Eigen::VectorXd bent =
+        direct()
+            ? Eigen::VectorXd(normal_.matrix.selfadjointView<Eigen::Lower>() * dx)
+            : Eigen::VectorXd(system_.apply(rows_, dx) + 2 * smooth_ * system_.roughness_matrix_times(dx));
+    return dx.dot((direct() ? normal_.gradient : rows_.gradient) + 0.5 * bent);
   }
 
   Eigen::VectorXd step(double damping) {
@@ -61,7 +75,6 @@ class StepSolver {
   }
 
  private:
-  bool direct() const { return system_.size() <= kMostDirectUnknowns; }
   Eigen::VectorXd& gradient() { return direct() ? normal_.gradient : rows_.gradient; }
 
   Eigen::VectorXd conjugate_gradients(const Eigen::VectorXd& extra, const Eigen::VectorXd& diagonal) const {
@@ -107,7 +120,7 @@ class Descent {
     system_.clamp(x_);
     ErrorTerms means = system_.errors(x_);
     before_ = after_ = objective(means, x_);
-    double damping = kFirstDamping;
+    double damping = solver.direct() ? kFirstDamping : kFirstIterativeDamping;
     for (int slow = 0; iterations_ < options_.max_iterations && slow < kMostSlowSteps; ++iterations_) {
       before_step();
       solver.linearize(x_, means);
@@ -119,11 +132,13 @@ class Descent {
         const double value = objective(next_means, next);
         accepted = value < after_;
         if (accepted) {
+          const double gain = (value - after_) / solver.predicted_change(next - x_);
           slow = after_ - value < options_.least_progress ? slow + 1 : 0;
           after_ = value;
           x_ = std::move(next);
           means = next_means;
-          if (trial == 0) damping = std::max(kLeastDamping, kEase * damping);
+          if (gain > kGoodGain && trial == 0) damping = std::max(kLeastDamping, kEase * damping);
+          if (gain < kPoorGain) damping *= kHarden / 2;
         } else {
           damping *= kHarden;
         }

@@ -29,7 +29,7 @@ struct RefineSummary {
 };
 
 /// Lowers the error that PictureLoss states, by damped Gauss-Newton steps (Levenberg-Marquardt) on the
-/// logarithms of the tables [Marquardt 1963]; lambda stays positive. Every accepted step lowers the
+/// logarithms of the tables [Marquardt1963]; lambda stays positive. Every accepted step lowers the
 /// objective. Channels are refined side by side, or as one system where a table is shared. Steps are solved
 /// by a Cholesky factorization for up to 1,000 unknowns, by preconditioned conjugate gradients for more. The
 /// result does not depend on the number of threads.
