@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <burnish/error.h>
+#include <burnish/fitting/overfit.h>
 #include <burnish/fitting/search.h>
 #include <burnish/metrics/error_figures.h>
 #include <burnish/reflectance/analytic.h>
@@ -49,6 +50,28 @@ TEST(LobePlan, SharesTablesAmongLobesAndChannels) {
     EXPECT_LE(brdf.bytes(), 2700u);
     EXPECT_GT(brdf.bytes(), 2600u);
   }
+}
+
+TEST(Overfit, ASmootherFitPredictsBetter) {
+  const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3,kd=0.2");
+  constexpr std::size_t kBytes = 3200, kHalf = 2;
+  const LobePlan plan = default_plan(kBytes, 2, true, kHalf);
+  RefineOptions options{.max_iterations = 4};
+  const TrainingSet held_out = draw_training_set(ggx, {.pictures = 500, .directions = 1500, .seed = 2});
+  const auto fitted = [&](std::size_t pairs) {
+    const TrainingSet set = draw_training_set(ggx, {.pictures = pairs / 4, .directions = pairs});
+    LobesFit fit = fit_plan(set, plan, kBytes, kHalf, options);
+    return std::pair(set, fit);
+  };
+  auto [few, fit] = fitted(300);
+  ASSERT_TRUE(is_overfit(fit, few, held_out, options.shares));
+  const double before = objective(fit.model, held_out, options.shares);
+  const double smooth = options.smooth;
+  fit_smoother(few, held_out, plan, kBytes, kHalf, options, fit);
+  EXPECT_GT(options.smooth, smooth);
+  EXPECT_LT(objective(fit.model, held_out, options.shares), before);
+  const auto [many, good] = fitted(5000);
+  EXPECT_FALSE(is_overfit(good, many, held_out, options.shares));
 }
 
 TEST(LobePlan, RefusesWhatDoesNotFit) {

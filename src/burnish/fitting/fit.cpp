@@ -11,6 +11,7 @@
 #include <burnish/fitting/energy.h>
 #include <burnish/fitting/fit.h>
 #include <burnish/fitting/log_error.h>
+#include <burnish/fitting/overfit.h>
 #include <burnish/fitting/rounding.h>
 #include <burnish/fitting/search.h>
 #include <burnish/metrics/error_figures.h>
@@ -124,7 +125,7 @@ class Fitter {
     const std::size_t texel = texel_bytes(format(), channels());
     const TrainingSet set = training_set(false);
     LobePlan plan = default_plan(options_.budget, options_.lobes, input_.brdf.isotropic(), texel);
-    const RefineOptions refine = refine_options();
+    RefineOptions refine = refine_options();
     if (options_.search) {
       const SearchResult found = search_plan(set, plan,
                                              {.bytes = options_.budget,
@@ -138,7 +139,17 @@ class Fitter {
       notes_["search"] = {{"trials", found.trials.size()}, {"kept", std::move(kept)}};
     }
     notes_["budget"] = options_.budget;
-    return finish(fit_plan(set, plan, options_.budget, texel, refine), set, refine);
+    LobesFit fit = fit_plan(set, plan, options_.budget, texel, refine);
+    if (!options_.smooth) {
+      TrainingSet held_out = draw_training_set(
+          reference(),
+          {.pictures = kHeldOutPairs / 4, .directions = kHeldOutPairs / 4 * 3, .seed = options_.seed + 2});
+      held_out.exposure = set.exposure;
+      if (is_overfit(fit, set, held_out, refine.shares))
+        fit_smoother(set, held_out, plan, options_.budget, texel, refine, fit);
+      notes_["smooth"] = refine.smooth;
+    }
+    return finish(fit, set, refine);
   }
 
   ModelSpec one_lobe_of_budget() const {

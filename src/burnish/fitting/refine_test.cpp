@@ -94,15 +94,28 @@ TEST(PictureLoss, IsZeroWhereTheModelIsRight) {
 TEST(RefineSystem, MatrixAndRowsAreTheSameSystem) {
   const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.2,alpha_y=0.2");
   const TrainingSet set = small_set(ggx, 500);
-  for (const auto& tables : {std::vector<std::string>{"p=5", "q=9", "g=4x3"},
-                             std::vector<std::string>{"p=5,shared", "q=9", "g=4x3"}}) {
-    const LogModel model = random_model("p(wo) p(wi) q(h) + q(h) g(theta_d,theta_m)", tables, 3);
-    const bool shared = model.step(0) == 1;
+  const std::string different = "p(wo) p(wi) q(h) + q(h) g(theta_d,theta_m)";
+  // tables of one layout, more of them than a vector has lanes
+  const std::string alike = "p(wo) p(wi) q(h) g(theta_d,theta_m) + a(wo) b(h) c(theta_d,theta_m)",
+                    many = "a(h) b(h) + c(h) d(wo) + e(h) f(h) + g(h) i(h) + j(h) k(h)";
+  const struct {
+    std::string expression;
+    std::vector<std::string> tables;
+    std::size_t unknowns;
+  } cases[] = {
+      {different, {"p=5", "q=9", "g=4x3"}, 5 + 9 + 12},
+      {different, {"p=5,shared", "q=9", "g=4x3"}, 5 + 3 * 9 + 3 * 12},
+      {alike, {"p=5", "a=5", "q=5", "b=5", "g=4x3", "c=4x3"}, 4 * 5 + 2 * 12},
+      {alike, {"p=5,shared", "a=5", "q=5", "b=5", "g=4x3,shared", "c=4x3"}, 5 + 3 * 15 + 12 + 3 * 12},
+      {many, {"a=5", "b=5", "c=5", "d=5", "e=5", "f=5", "g=5", "i=5", "j=5", "k=5"}, 50}};
+  for (const auto& [expression, tables, unknowns] : cases) {
+    const LogModel model = random_model(expression.c_str(), tables, 3);
+    const bool shared = model.any_shared();
     const Lookups lookups = find_lookups(model.spec, set);
     const PictureLoss loss{.exposure = 0.1};  // no pixel is white
     const RefineSystem system(model, set, lookups, loss, TableFormat::half, shared ? 0 : 1, shared ? 3 : 2);
     const Eigen::VectorXd x = system.read(model);
-    ASSERT_EQ(static_cast<std::size_t>(x.size()), shared ? 5u + 3 * 9 + 3 * 12 : 5u + 9 + 12);
+    ASSERT_EQ(static_cast<std::size_t>(x.size()), unknowns);
     const ErrorTerms means = system.errors(x);
     RefineSystem::Normal normal;
     system.find_normal(x, means, normal);
