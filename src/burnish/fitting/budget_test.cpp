@@ -54,24 +54,21 @@ TEST(LobePlan, SharesTablesAmongLobesAndChannels) {
 
 TEST(Overfit, ASmootherFitPredictsBetter) {
   const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3,kd=0.2");
-  constexpr std::size_t kBytes = 3200, kHalf = 2;
+  constexpr std::size_t kBytes = 3200, kFewBytes = 600, kHalf = 2;
   const LobePlan plan = default_plan(kBytes, 2, true, kHalf);
   RefineOptions options{.max_iterations = 4};
   const TrainingSet held_out = draw_training_set(ggx, {.pictures = 500, .directions = 1500, .seed = 2});
-  const auto fitted = [&](std::size_t pairs) {
-    const TrainingSet set = draw_training_set(ggx, {.pictures = pairs / 4, .directions = pairs});
-    LobesFit fit = fit_plan(set, plan, kBytes, kHalf, options);
-    return std::pair(set, fit);
-  };
-  auto [few, fit] = fitted(300);
+  const TrainingSet few = draw_training_set(ggx, {.pictures = 80, .directions = 300});
+  LobesFit fit = fit_plan(few, plan, kBytes, kHalf, options);
   ASSERT_TRUE(is_overfit(fit, few, held_out, options.shares));
   const double before = objective(fit.model, held_out, options.shares);
   const double smooth = options.smooth;
   fit_smoother(few, held_out, plan, kBytes, kHalf, options, fit);
   EXPECT_GT(options.smooth, smooth);
   EXPECT_LT(objective(fit.model, held_out, options.shares), before);
-  const auto [many, good] = fitted(5000);
-  EXPECT_FALSE(is_overfit(good, many, held_out, options.shares));
+  const TrainingSet many = draw_training_set(ggx, {.pictures = 2000, .directions = 6000});
+  const LobesFit small = fit_plan(many, default_plan(kFewBytes, 2, true, kHalf), kFewBytes, kHalf, {});
+  EXPECT_FALSE(is_overfit(small, many, held_out, options.shares));
 }
 
 TEST(LobePlan, RefusesWhatDoesNotFit) {
