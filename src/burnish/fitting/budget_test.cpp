@@ -54,8 +54,8 @@ TEST(LobePlan, SharesTablesAmongLobesAndChannels) {
 
 TEST(Overfit, ASmootherFitPredictsBetter) {
   const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3,kd=0.2");
-  constexpr std::size_t kBytes = 3200, kFewBytes = 600, kHalf = 2;
-  const LobePlan plan = default_plan(kBytes, 2, true, kHalf);
+  constexpr std::size_t kBytes = 3200, kFewBytes = 200, kHalf = 2;
+  const LobePlan plan = default_plan(kBytes, 1, true, kHalf);
   RefineOptions options{.max_iterations = 4};
   const TrainingSet held_out = draw_training_set(ggx, {.pictures = 500, .directions = 1500, .seed = 2});
   const TrainingSet few = draw_training_set(ggx, {.pictures = 80, .directions = 300});
@@ -66,8 +66,8 @@ TEST(Overfit, ASmootherFitPredictsBetter) {
   fit_smoother(few, held_out, plan, kBytes, kHalf, options, fit);
   EXPECT_GT(options.smooth, smooth);
   EXPECT_LT(objective(fit.model, held_out, options.shares), before);
-  const TrainingSet many = draw_training_set(ggx, {.pictures = 2000, .directions = 6000});
-  const LobesFit small = fit_plan(many, default_plan(kFewBytes, 2, true, kHalf), kFewBytes, kHalf, {});
+  const TrainingSet many = draw_training_set(ggx, {.pictures = 1000, .directions = 4000});
+  const LobesFit small = fit_plan(many, default_plan(kFewBytes, 1, true, kHalf), kFewBytes, kHalf, {});
   EXPECT_FALSE(is_overfit(small, many, held_out, options.shares));
 }
 
