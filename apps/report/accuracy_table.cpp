@@ -8,7 +8,7 @@
 
 #include <burnish/factors/table_format.h>
 #include <burnish/fitting/baselines/baselines.h>
-#include <burnish/fitting/budget.h>
+#include <burnish/fitting/overfit.h>
 #include <burnish/fitting/rounding.h>
 #include <burnish/reflectance/sample_source.h>
 
@@ -21,6 +21,7 @@ namespace {
 constexpr EvaluationCost kNetworkCost{.table_reads = 675, .multiplies = 6 * 21 + 21 * 21 + 21 * 3};
 constexpr std::size_t kNetworkBytes = 1350;  // as half floats
 constexpr std::size_t kDrawnPairs = 200'000;
+constexpr std::uint64_t kHeldOutSeed = 3;  // as the command has it
 
 FactoredBrdf fit_ours(BrdfRef reference, std::size_t bytes) {
   const int channels = reference.channels();
@@ -28,9 +29,10 @@ FactoredBrdf fit_ours(BrdfRef reference, std::size_t bytes) {
   const std::size_t texel = texel_bytes(format, channels);
   const TrainingSet set =
       draw_training_set(reference, {.directions = reference.isotropic() ? 60'000u : 200'000u});
-  const RefineOptions options{.format = format};
+  RefineOptions options{.format = format};
   const LobePlan plan = default_plan(bytes, 0, reference.isotropic(), texel);
-  return to_rounded_brdf(fit_plan(set, plan, bytes, texel, options).model, set, options);
+  const LobesFit fit = fit_without_overfit(reference, set, plan, bytes, texel, kHeldOutSeed, options);
+  return to_rounded_brdf(fit.model, set, options);
 }
 
 Score score_of(const Scorer& scorer, std::string_view method, std::size_t budget, BrdfRef model) {

@@ -76,6 +76,8 @@ std::vector<double> logs_of_one(const Table& table) {
   return mean;
 }
 
+constexpr std::size_t kMostPlaces = 32;  // kept while a pair of directions is evaluated
+
 int coefficient_count(const Projection& p) noexcept {
   if (p.kind != Projection::Kind::affine || p == kProjectWi || p == kProjectWo || p == kProjectHalf) return 0;
   return (p.wi != 0) + (p.wo != 0) + (p.mirror != 0) + (p.n != 0);
@@ -140,6 +142,14 @@ FactoredBrdf::FactoredBrdf(int channels, std::vector<Table> tables, std::vector<
     }
     pair_counts_.push_back(pairs.size() / 2);
     pairs.insert(pairs.end(), singles.begin(), singles.end());
+    std::vector<std::size_t>& place_of = place_of_.emplace_back();
+    for (const FactorUse& use : pairs) {
+      const auto known = std::ranges::find_if(places_, [&](const FactorUse& place) {
+        return located_alike(layout_of(use), use, layout_of(place), place);
+      });
+      place_of.push_back(static_cast<std::size_t>(known - places_.begin()));
+      if (known == places_.end()) places_.push_back(use);
+    }
     ordered_.push_back(std::move(pairs));
   }
 }
@@ -147,21 +157,28 @@ FactoredBrdf::FactoredBrdf(int channels, std::vector<Table> tables, std::vector<
 bool FactoredBrdf::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   std::fill(f.begin(), f.end(), 0.0);
   if (wi.z <= 0 || wo.z <= 0) return true;
-  std::array<double, kMostChannels> product;  // touched up to channels_ only
+  std::array<Lookup, kMostPlaces> places;     // touched up to their count,
+  std::array<double, kMostChannels> product;  // up to channels_ only
+  for (std::size_t p = 0; p < std::min(kMostPlaces, places_.size()); ++p)
+    places[p] = locate(layout_of(places_[p]), places_[p], wi, wo);
   const auto channels = static_cast<std::size_t>(channels_);
   for (std::size_t j = 0; j < lobes_.size(); ++j) {
     for (std::size_t c = 0; c < channels; ++c) product[c] = lobes_[j].scale[c];
     const std::vector<FactorUse>& uses = ordered_[j];
+    const auto place = [&](std::size_t k) {
+      const std::size_t p = place_of_[j][k];
+      return p < kMostPlaces ? places[p] : locate(layout_of(uses[k]), uses[k], wi, wo);
+    };
     std::size_t k = 0;
     // [HomomorphicBrdf, eq. 4]
     for (; k < 2 * pair_counts_[j]; k += 2) {
       const Table& table = tables_[static_cast<std::size_t>(uses[k].table)];
-      const Lookup a = locate(table.layout, uses[k], wi, wo), b = locate(table.layout, uses[k + 1], wi, wo);
+      const Lookup a = place(k), b = place(k + 1);
       for (std::size_t c = 0; c < channels; ++c) product[c] *= lookup(table, a, c) * lookup(table, b, c);
     }
     for (; k < uses.size(); ++k) {
       const Table& table = tables_[static_cast<std::size_t>(uses[k].table)];
-      const Lookup at = locate(table.layout, uses[k], wi, wo);
+      const Lookup at = place(k);
       for (std::size_t c = 0; c < channels; ++c) product[c] *= lookup(table, at, c);
     }
     for (std::size_t c = 0; c < channels; ++c) f[c] += product[c];

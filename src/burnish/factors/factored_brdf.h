@@ -55,6 +55,10 @@ class FactoredBrdf {
   friend bool operator==(const FactoredBrdf&, const FactoredBrdf&) = default;
 
  private:
+  const TableLayout& layout_of(const FactorUse& use) const noexcept {
+    return tables_[static_cast<std::size_t>(use.table)].layout;
+  }
+
   int channels_ = 0;
   bool isotropic_ = true, reciprocal_ = true;
   std::vector<Table> tables_;
@@ -62,6 +66,9 @@ class FactoredBrdf {
   // lobes_[i].factors in evaluation order: the first 2 * pair_counts_[i] are pairs that swapping exchanges
   std::vector<std::vector<FactorUse>> ordered_;
   std::vector<std::size_t> pair_counts_;
+  // distinct places of lookups, and those of ordered_
+  std::vector<FactorUse> places_;
+  std::vector<std::vector<std::size_t>> place_of_;
 };
 
 static_assert(Brdf<FactoredBrdf>);

@@ -61,6 +61,13 @@ struct Lookup {
   double fx = 0, fy = 0;  ///< in [0, 1]; fy = 0 for a line
 };
 
+/// Whether two lookups find the same nodes for all directions: then they are located once.
+inline bool located_alike(const TableLayout& layout, const FactorUse& use, const TableLayout& other_layout,
+                          const FactorUse& other) noexcept {
+  return layout == other_layout && use.projection == other.projection &&
+         use.projection_y == other.projection_y;
+}
+
 /// Finds the nodes for directions above the horizon.
 Lookup locate(const TableLayout& layout, const FactorUse& use, Vec3 wi, Vec3 wo) noexcept;
 

@@ -139,16 +139,10 @@ class Fitter {
       notes_["search"] = {{"trials", found.trials.size()}, {"kept", std::move(kept)}};
     }
     notes_["budget"] = options_.budget;
-    LobesFit fit = fit_plan(set, plan, options_.budget, texel, refine);
-    if (!options_.smooth) {
-      TrainingSet held_out = draw_training_set(
-          reference(),
-          {.pictures = kHeldOutPairs / 4, .directions = kHeldOutPairs / 4 * 3, .seed = options_.seed + 2});
-      held_out.exposure = set.exposure;
-      if (is_overfit(fit, set, held_out, refine.shares))
-        fit_smoother(set, held_out, plan, options_.budget, texel, refine, fit);
-      notes_["smooth"] = refine.smooth;
-    }
+    if (options_.smooth) return finish(fit_plan(set, plan, options_.budget, texel, refine), set, refine);
+    const LobesFit fit =
+        fit_without_overfit(reference(), set, plan, options_.budget, texel, options_.seed + 2, refine);
+    notes_["smooth"] = refine.smooth;
     return finish(fit, set, refine);
   }
 

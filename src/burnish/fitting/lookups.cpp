@@ -26,11 +26,9 @@ Lookups find_lookups(const ModelSpec& spec, const TrainingSet& set) {
   };
   std::vector<FactorUse> distinct;
   for (const FactorUse& use : found.lookups) {
-    const auto alike = [&](const FactorUse& other) {
-      return layout_of(other) == layout_of(use) && other.projection == use.projection &&
-             other.projection_y == use.projection_y;
-    };
-    const auto known = std::ranges::find_if(distinct, alike);
+    const auto known = std::ranges::find_if(distinct, [&](const FactorUse& other) {
+      return located_alike(layout_of(use), use, layout_of(other), other);
+    });
     found.place_of.push_back(static_cast<std::size_t>(known - distinct.begin()));
     if (known == distinct.end()) distinct.push_back(use);
   }
