@@ -71,7 +71,8 @@ struct Tangent {
   float side = 1;
 };
 
-// What u runs along in a triangle, and whether it is mapped the right way round; none without area.
+// What u runs along in a triangle, and whether it is mapped the right way round; none without area in the
+// texture.
 Tangent triangle_tangent(const RawMesh& raw, std::size_t first) noexcept {
   const auto edge = [&](std::size_t k) { return raw.positions[first + k] - raw.positions[first]; };
   const auto uv = [&](std::size_t k, std::size_t c) { return raw.uvs[first + k][c] - raw.uvs[first][c]; };
@@ -79,6 +80,11 @@ Tangent triangle_tangent(const RawMesh& raw, std::size_t first) noexcept {
   const Vec3 along = uv(2, 1) * edge(1) - uv(1, 1) * edge(2);
   if (area == 0 || length(along) == 0) return {};
   return {(area > 0 ? 1 : -1) * normalize(along), area > 0 ? 1.0f : -1.0f};
+}
+
+bool corners_coincide(const RawMesh& raw, std::size_t first) noexcept {
+  const Vec3 &a = raw.positions[first], &b = raw.positions[first + 1], &c = raw.positions[first + 2];
+  return a == b || b == c || c == a;
 }
 
 class Groups {
@@ -102,25 +108,33 @@ std::vector<Tangent> tangents_of(const RawMesh& raw, const std::vector<Vec3>& no
     return std::array{p.x, p.y, p.z, n.x, n.y, n.z, raw.uvs[i][0], raw.uvs[i][1]};
   });
   std::vector<Tangent> faces;
-  for (std::size_t i = 0; i < count; i += 3) faces.push_back(triangle_tangent(raw, i));
-  const auto face = [&](std::size_t corner) -> const Tangent& { return faces[corner / 3]; };
-  // corners of one vertex belong together where their triangles share an edge and the way round
-  Groups groups(count);
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> edges;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (face(i).along == Vec3{}) continue;
-    const std::size_t j = next_corner(i);
-    edges.try_emplace({welded[i], welded[j]}, i);
+  std::vector<bool> gone;
+  for (std::size_t i = 0; i < count; i += 3) {
+    gone.push_back(corners_coincide(raw, i));
+    faces.push_back(gone.back() ? Tangent{} : triangle_tangent(raw, i));
   }
+  const auto face = [&](std::size_t corner) -> const Tangent& { return faces[corner / 3]; };
+  const auto good = [&](std::size_t corner) { return face(corner).along != Vec3{}; };
+  // Corners of one vertex belong together where their triangles share an edge and the way round; triangles
+  // without area in the texture go with both ways, so a corner has two places.
+  const auto place = [&](std::size_t corner, float side) { return side > 0 ? corner : count + corner; };
+  Groups groups(2 * count);
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> edges;
+  for (std::size_t i = 0; i < count; ++i)
+    if (!gone[i / 3]) edges.try_emplace({welded[i], welded[next_corner(i)]}, i);
   for (std::size_t i = 0; i < count; ++i) {
-    if (face(i).along == Vec3{}) continue;
+    if (gone[i / 3]) continue;
     const std::size_t j = next_corner(i);
     const auto other = edges.find({welded[j], welded[i]});
-    if (other == edges.end() || face(other->second).side != face(i).side) continue;
-    groups.join(i, next_corner(other->second));
-    groups.join(j, other->second);
+    if (other == edges.end()) continue;
+    for (const float side : {1.0f, -1.0f}) {
+      if (good(i) && face(i).side != side) continue;
+      if (good(other->second) && face(other->second).side != side) continue;
+      groups.join(place(i, side), place(next_corner(other->second), side));
+      groups.join(place(j, side), place(other->second, side));
+    }
   }
-  std::vector<Vec3> sums(count);
+  std::vector<Vec3> sums(2 * count);
   for (std::size_t i = 0; i < count; ++i) {
     const Vec3 n = normals[i];
     const auto flat = [&](Vec3 w) { return w - dot(w, n) * n; };
@@ -128,21 +142,26 @@ std::vector<Tangent> tangents_of(const RawMesh& raw, const std::vector<Vec3>& no
     if (length(along) == 0) continue;
     const double angle =
         angle_between(flat(raw.positions[next_corner(i)] - p), flat(raw.positions[last_corner(i)] - p));
-    Vec3& sum = sums[groups.of(i)];
+    Vec3& sum = sums[groups.of(place(i, face(i).side))];
     sum = sum + angle * normalize(along);
   }
-  // triangles without area in texture space take what another triangle has at the same place
-  std::vector<std::size_t> good(count, count);
+  // where no neighbour tells, what another triangle has at the same place
+  std::vector<std::size_t> beside(count, count);
   for (std::size_t i = 0; i < count; ++i)
-    if (face(i).along != Vec3{}) good[welded[i]] = std::min(good[welded[i]], i);
+    if (good(i)) beside[welded[i]] = std::min(beside[welded[i]], i);
   std::vector<Tangent> tangents(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t from = face(i).along != Vec3{} ? i : good[welded[i]];
-    if (from == count) {
-      tangents[i] = {tangent_around_y(normals[i]), 1};
+    const auto sum_at = [&](std::size_t corner, float side) { return sums[groups.of(place(corner, side))]; };
+    const std::size_t from = beside[welded[i]];
+    if (good(i)) {
+      const Vec3 sum = sum_at(i, face(i).side);
+      tangents[i] = {length(sum) > 0 ? sum : face(i).along, face(i).side};
+    } else if (const Vec3 right = sum_at(i, 1), left = sum_at(i, -1); length(right) + length(left) > 0) {
+      tangents[i] = length(right) > 0 ? Tangent{right, 1} : Tangent{left, -1};
+    } else if (from < count) {
+      tangents[i] = {sum_at(from, face(from).side), face(from).side};
     } else {
-      const Vec3 sum = sums[groups.of(from)];
-      tangents[i] = {length(sum) > 0 ? sum : face(from).along, face(from).side};
+      tangents[i] = {tangent_around_y(normals[i]), 1};
     }
   }
   return tangents;

@@ -116,6 +116,20 @@ TEST(FinishMesh, WeighsTrianglesByTheirAngles) {
       1e-6);
 }
 
+TEST(FinishMesh, TrianglesWithoutTexturePassTangentsOn) {
+  // a fan around the origin whose second triangle has no area in the texture; the last one has no area at all
+  RawMesh raw;
+  const Vec3 rim[] = {{1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {-1, 0.5, 0}, {-1, 0.5, 0}};
+  const std::array<double, 2> uv[] = {{1, 0}, {1, 1}, {1, 1}, {0.3, 1.5}, {0.5, 1.5}};
+  for (std::size_t k = 0; k < 4; ++k) {
+    raw.positions.insert(raw.positions.end(), {{0, 0, 0}, rim[k], rim[k + 1]});
+    raw.uvs.insert(raw.uvs.end(), {{0, 0}, uv[k], uv[k + 1]});
+  }
+  raw.normals.assign(raw.positions.size(), {0, 0, 1});
+  const Mesh mesh = finish_mesh(raw, MissingNormals::flat);
+  for (std::size_t k = 1; k < 4; ++k) EXPECT_EQ(mesh.triangles[k][0], mesh.triangles[0][0]) << k;
+}
+
 TEST(FinishMesh, SmoothNormalsOfACubePointAlongItsDiagonals) {
   std::string text;
   for (int i = 0; i < 8; ++i)
