@@ -83,6 +83,27 @@ TEST_F(Export, WritesTexturesAsImagesAndOtherFormatsOfTheMaterial) {
   }
 }
 
+TEST_F(Export, WritesTheSpecularFamilyInEveryLanguage) {
+  const auto exports_model = [&](const std::string& arguments) {
+    return run(fmt::format("{} export {} -o {}/out > {}/said 2>&1", BURNISH_CLI, arguments, folder_.string(),
+                           folder_.string()));
+  };
+  ASSERT_EQ(
+      exports_model("blinn_phong:exponent=60 --to glsl --to glsl_es --to hlsl --to msl --to wgsl --to cpp "
+                    "--to html --power w8"),
+      0)
+      << read(folder_ / "said");
+  EXPECT_THAT(read(folder_ / "said"), HasSubstr("blinn_phong.wgsl: w8, 0 fetches, 22 operations"));
+  EXPECT_THAT(read(folder_ / "out/blinn_phong.json"), HasSubstr("\"bound\": 0.0161"));
+  EXPECT_THAT(read(folder_ / "out/blinn_phong.html"), HasSubstr("burnish_blinn_phong_power_w8"));
+  ASSERT_EQ(exports_model("phong:exponent=20 --to hlsl --name shine"), 0) << read(folder_ / "said");
+  EXPECT_THAT(read(folder_ / "said"), HasSubstr("shine.hlsl: cubic2"));
+  EXPECT_EQ(exports_model("ggx --to glsl"), 1);
+  EXPECT_EQ(exports_model("phong --to ktx2"), 1);
+  EXPECT_EQ(exports_model("phong --to glsl --power w9"), 2);
+  EXPECT_EQ(exports("--to glsl --power w8"), 2);
+}
+
 TEST_F(Export, ThePageLoadsNothing) {
   ASSERT_EQ(exports("--to html"), 0);
   const std::string page = read(folder_ / "out/two_lobes.html");

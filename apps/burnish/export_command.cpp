@@ -10,14 +10,16 @@
 #include <burnish/factors/model_file.h>
 #include <burnish/file.h>
 #include <burnish/io/rgl.h>
+#include <burnish/power/choose.h>
 #include <burnish/reflectance/rgl_builder.h>
-#include <burnish/shaders/shader.h>
+#include <burnish/shaders/specular_shader.h>
 #include <burnish/textures/image_files.h>
 #include <burnish/textures/ktx2.h>
 
 #include "commands.h"
 #include "export_formats.h"
 #include "export_page.h"
+#include "usage.h"
 
 namespace burnish::cli {
 
@@ -38,7 +40,7 @@ constexpr Target kTargets[] = {
 };
 
 struct Arguments {
-  std::string model, folder, name;
+  std::string model, folder, name, power;
   std::vector<std::string> to;
   bool exact = false, plain = false, mips = false;
 };
@@ -69,6 +71,14 @@ json cost_of(const ShaderCost& cost) {
           {"powers", cost.powers}};
 }
 
+json shader_entry(const Target& target, const std::string& file, const std::string& name,
+                  const Shader& shader) {
+  return {{"language", target.name},
+          {"file", file},
+          {"functions", {"burnish_" + name, "burnish_" + name + "_world"}},
+          {"cost", cost_of(shader.cost)}};
+}
+
 // The files of an export but its manifest, which they are described in.
 std::vector<ExportedFile> export_files(const FactoredBrdf& brdf, const Arguments& arguments, json& manifest) {
   const std::string& name = arguments.name;
@@ -83,11 +93,8 @@ std::vector<ExportedFile> export_files(const FactoredBrdf& brdf, const Arguments
     const ShaderFilter filter = arguments.exact || cpp ? ShaderFilter::exact : ShaderFilter::hardware;
     const Shader shader = generate_shader(brdf, {target.language, filter, name});
     files.push_back({fmt::format("{}.{}", name, target.extension), shader.text});
-    manifest["shaders"].push_back({{"language", target.name},
-                                   {"file", files.back().name},
-                                   {"functions", {"burnish_" + name, "burnish_" + name + "_world"}},
-                                   {"filter", filter == ShaderFilter::exact ? "exact" : "hardware"},
-                                   {"cost", cost_of(shader.cost)}});
+    manifest["shaders"].push_back(shader_entry(target, files.back().name, name, shader));
+    manifest["shaders"].back()["filter"] = filter == ShaderFilter::exact ? "exact" : "hardware";
     if (!cpp) manifest["shaders"].back()["textures"] = shader.textures;
     textures = textures || !cpp;
   }
@@ -146,18 +153,57 @@ std::vector<ExportedFile> export_files(const FactoredBrdf& brdf, const Arguments
   return files;
 }
 
+// Blinn's or Phong's model with a member of the specular family, by default the cheapest within one of 255
+// levels.
+SpecularModel specular_of(const AnalyticBrdf& brdf, const std::string& power) {
+  std::optional<SpecularModel> model = specular_model(brdf, PowerMethod::exact);
+  if (!model)
+    throw Error(
+        fmt::format("export: expected a factored BRDF (see burnish fit), or phong, blinn_phong or their "
+                    "normalized forms, found {}",
+                    brdf.model().name));
+  constexpr double kMostError = 1.0 / 255;
+  model->method = power.empty() ? choose_power(kMostError, model->exponent, model->exponent).front().method
+                                : usage([&] { return power_method(power); });
+  return *model;
+}
+
+std::vector<ExportedFile> export_files(const SpecularModel& model, const Arguments& arguments,
+                                       json& manifest) {
+  std::vector<ExportedFile> files;
+  for (const std::string& to : arguments.to) {
+    if (to == "html") {
+      files.push_back({arguments.name + ".html", export_page(model, arguments.model, arguments.name)});
+      manifest["page"] = files.back().name;
+      continue;
+    }
+    const auto target = std::ranges::find(kTargets, to, &Target::name);
+    if (target == std::end(kTargets))
+      throw Error(
+          fmt::format("export: expected a shader language or html for {}, found {}", arguments.model, to));
+    const Shader shader = generate_shader(model, target->language, arguments.name);
+    files.push_back({fmt::format("{}.{}", arguments.name, target->extension), shader.text});
+    manifest["shaders"].push_back(shader_entry(*target, files.back().name, arguments.name, shader));
+  }
+  return files;
+}
+
 }  // namespace
 
 void add_export_command(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("export",
-                                      "Write a factored BRDF as shaders, textures, glTF, a three.js module, "
-                                      "an RGL table, or a page that shows it");
+  CLI::App* verb =
+      app.add_subcommand("export",
+                         "Write a factored BRDF as shaders, textures, glTF, a three.js module, "
+                         "an RGL table, or a page that shows it; or Phong's and Blinn's models as shaders");
   verb->footer(
       "Every shader comes with its textures but C++, which has them inside; NAME.json says what is in the "
       "folder and what an evaluation costs. See docs/shaders.md.\n"
-      "Example: burnish export paint.exr --to glsl --to html -o paint");
+      "Examples: burnish export paint.exr --to glsl --to html -o paint\n"
+      "          burnish export blinn_phong:exponent=60,ks=0.8 --to wgsl --power cubic2 -o highlight");
   auto arguments = std::make_shared<Arguments>();
-  verb->add_option("MODEL", arguments->model, "factored BRDF, as `burnish fit` writes it")->required();
+  verb->add_option("MODEL", arguments->model,
+                   "factored BRDF, as `burnish fit` writes it, or one such as blinn_phong:exponent=60")
+      ->required();
   std::vector<std::string> targets{"ktx2", "cube", "exr", "png", "gltf", "three", "rgl", "html"};
   for (const Target& target : kTargets) targets.emplace_back(target.name);
   verb->add_option("--to", arguments->to, "what to write; may be given several times")
@@ -165,18 +211,39 @@ void add_export_command(CLI::App& app) {
       ->check(CLI::IsMember(targets));
   verb->add_option("-o,--out", arguments->folder, "folder, made where it is missing")->required();
   verb->add_option("--name", arguments->name, "of functions and files; by default from MODEL's name");
+  verb->add_option(
+      "--power", arguments->power,
+      "of phong and blinn_phong: how the power is computed, see `burnish specular list`; by default the "
+      "cheapest that is never one of 255 levels off");
   verb->add_flag("--exact", arguments->exact, "shaders that weigh texels themselves, in floats");
   verb->add_flag("--mips", arguments->mips, "KTX2 with levels: averages over the directions of a texel");
   verb->add_flag("--plain", arguments->plain, "textures that are not compressed");
   verb->callback([arguments] {
-    if (arguments->name.empty()) arguments->name = name_of(arguments->model);
-    const FactoredBrdf brdf = parse_model(read_file(arguments->model)).brdf;
-    json manifest{{"generator", "burnish"},
-                  {"name", arguments->name},
-                  {"model", model_expression(brdf)},
-                  {"channels", brdf.channels()},
-                  {"table_bytes", brdf.table_bytes()}};
-    std::vector<ExportedFile> files = export_files(brdf, *arguments, manifest);
+    json manifest{{"generator", "burnish"}};
+    std::vector<ExportedFile> files;
+    if (is_analytic_spec(arguments->model)) {
+      const AnalyticBrdf brdf = parse_analytic(arguments->model);
+      if (arguments->name.empty()) arguments->name = brdf.model().name;
+      const SpecularModel model = specular_of(brdf, arguments->power);
+      manifest.update({{"name", arguments->name},
+                       {"model", format_analytic(brdf)},
+                       {"channels", 3},
+                       {"power",
+                        {{"method", power_info(model.method).name},
+                         {"formula", power_info(model.method).formula},
+                         {"bound", power_bound(model.method, model.exponent)}}}});
+      files = export_files(model, *arguments, manifest);
+    } else {
+      if (!arguments->power.empty())
+        throw CLI::ValidationError("--power: expected phong or blinn_phong with it, found a file");
+      if (arguments->name.empty()) arguments->name = name_of(arguments->model);
+      const FactoredBrdf brdf = parse_model(read_file(arguments->model)).brdf;
+      manifest.update({{"name", arguments->name},
+                       {"model", model_expression(brdf)},
+                       {"channels", brdf.channels()},
+                       {"table_bytes", brdf.table_bytes()}});
+      files = export_files(brdf, *arguments, manifest);
+    }
     files.push_back(
         {arguments->name + ".json", manifest.dump(2, ' ', true, json::error_handler_t::replace) + "\n"});
     std::error_code failed;
@@ -186,13 +253,14 @@ void add_export_command(CLI::App& app) {
       write_then_rename(fs::path(arguments->folder) / file.name, file.bytes);
       fmt::print("{}\n", file.name);
     }
-    if (manifest.contains("shaders")) {
-      for (const json& shader : manifest["shaders"]) {
-        const json& c = shader["cost"];
-        fmt::print(
-            "{}: {} filter, {}\n", shader["file"].get<std::string>(), shader["filter"].get<std::string>(),
-            to_string(ShaderCost{c["fetches"], c["operations"], c["divisions"], c["roots"], c["powers"]}));
-      }
+    if (!manifest.contains("shaders")) return;
+    for (const json& shader : manifest["shaders"]) {
+      const json& c = shader["cost"];
+      const std::string how = manifest.contains("power") ? manifest["power"]["method"].get<std::string>()
+                                                         : shader["filter"].get<std::string>() + " filter";
+      fmt::print(
+          "{}: {}, {}\n", shader["file"].get<std::string>(), how,
+          to_string(ShaderCost{c["fetches"], c["operations"], c["divisions"], c["roots"], c["powers"]}));
     }
   });
 }

@@ -213,6 +213,13 @@ nlohmann::json teapot() {
   return {{"vertices", base64_of(vertices)}, {"indices", base64_of(indices)}};
 }
 
+std::string page_of(nlohmann::json model) {
+  model["teapot"] = teapot();
+  std::string text = model.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+  for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) text.replace(at, 1, "\\u003c");
+  return kBefore + text + kAfter;
+}
+
 }  // namespace
 
 std::string base64(std::span<const std::byte> bytes) {
@@ -240,18 +247,25 @@ std::string half_texels(const Table& table) {
 
 std::string export_page(const FactoredBrdf& brdf, const std::string& name) {
   const Shader shader = generate_shader(brdf, {ShaderLanguage::glsl_es, ShaderFilter::hardware, name});
-  nlohmann::json model{
-      {"name", name}, {"expression", model_expression(brdf)}, {"shader", shader.text}, {"teapot", teapot()}};
+  auto textures = nlohmann::json::array();
   for (std::size_t i = 0; i < brdf.tables().size(); ++i) {
     const Table& table = brdf.tables()[i];
-    model["textures"].push_back({{"name", shader.textures[i]},
-                                 {"width", table.layout.width},
-                                 {"height", table.layout.height},
-                                 {"rgba16f", half_texels(table)}});
+    textures.push_back({{"name", shader.textures[i]},
+                        {"width", table.layout.width},
+                        {"height", table.layout.height},
+                        {"rgba16f", half_texels(table)}});
   }
-  std::string text = model.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
-  for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) text.replace(at, 1, "\\u003c");
-  return kBefore + text + kAfter;
+  return page_of({{"name", name},
+                  {"expression", model_expression(brdf)},
+                  {"shader", shader.text},
+                  {"textures", textures}});
+}
+
+std::string export_page(const SpecularModel& model, const std::string& expression, const std::string& name) {
+  return page_of({{"name", name},
+                  {"expression", expression},
+                  {"shader", generate_shader(model, ShaderLanguage::glsl_es, name).text},
+                  {"textures", nlohmann::json::array()}});
 }
 
 }  // namespace burnish::cli

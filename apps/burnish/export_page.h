@@ -3,11 +3,14 @@
 #include <string>
 
 #include <burnish/factors/factored_brdf.h>
+#include <burnish/shaders/specular_shader.h>
 
 namespace burnish::cli {
 
 /// An HTML page that shows the model on a torus knot, a teapot or a sphere under a light that follows the
 /// pointer: WebGL2, everything inside, nothing loaded. Throws Error as generate_shader does.
 std::string export_page(const FactoredBrdf& brdf, const std::string& name);
+/// The same for a specular model that is called `expression` there.
+std::string export_page(const SpecularModel& model, const std::string& expression, const std::string& name);
 
 }  // namespace burnish::cli

@@ -49,6 +49,13 @@ const std::vector<Language>& languages() {
        {{Op::max, "max({0}, {1})"}, {Op::min, "min({0}, {1})"}, {Op::sqrt, "sqrt({0})"}, {Op::exp2, "exp2({0})"},
         {Op::log2, "log2({0})"}, {Op::acos, "acos({0})"}, {Op::cos, "cos({0})"}, {Op::floor, "floor({0})"},
         {Op::scale_by_two, "ldexp({0}, int({1}))"}, {Op::if_less, kIfLess}}},
+      {"glsl_es", "", "  float {} = {};\n", "float {}({}) {{\n{}}}\n", "float {}", "// {}\n",
+       "// n where x = m 2^n, m in [2/3, 4/3)\n"
+       "float power_exponent_of(float x) {\n"
+       "  return float((floatBitsToInt(x) - 0x3f2aaaab) >> 23);\n}\n\n",
+       {{Op::max, "max({0}, {1})"}, {Op::min, "min({0}, {1})"}, {Op::sqrt, "sqrt({0})"}, {Op::exp2, "exp2({0})"},
+        {Op::log2, "log2({0})"}, {Op::acos, "acos({0})"}, {Op::cos, "cos({0})"}, {Op::floor, "floor({0})"},
+        {Op::scale_by_two, "{0} * exp2({1})"}, {Op::if_less, kIfLess}}},
       {"hlsl", "", "  float {} = {};\n", "float {}({}) {{\n{}}}\n", "float {}", "// {}\n",
        "// n where x = m 2^n, m in [2/3, 4/3)\n"
        "float power_exponent_of(float x) {\n  return float((asint(x) - 0x3f2aaaab) >> 23);\n}\n\n",

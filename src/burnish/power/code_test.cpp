@@ -84,10 +84,10 @@ TEST_P(EmittedShaders, AreAcceptedByTheirCompiler) {
           power_code(info.method, {language, constant ? std::optional(37.5) : std::nullopt, constant});
       calls += fmt::format(" + power_{}({})", info.name, constant ? "0.5" : "0.5, 20.0");
     }
-    if (std::string(language) == "glsl")
+    if (std::string(language).starts_with("glsl"))
       functions = fmt::format(
-          "#version 450\nlayout(location = 0) out float color;\n{}void main() {{ color = 0.0{}; }}\n",
-          functions, calls);
+          "#version {}\nlayout(location = 0) out float color;\n{}void main() {{ color = 0.0{}; }}\n",
+          std::string(language) == "glsl" ? "450" : "300 es\nprecision highp float;", functions, calls);
     else if (std::string(language) == "hlsl")
       functions += fmt::format("float4 main() : SV_Target {{ return 0.0{}; }}\n", calls);
     const fs::path file = folder.path / fmt::format("power{}.{}", constant, extension);
@@ -101,6 +101,7 @@ INSTANTIATE_TEST_SUITE_P(
     PowerCode, EmittedShaders,
     testing::Values(
         std::array{"glsl", "glslangValidator", "frag", "glslangValidator {0}"},
+        std::array{"glsl_es", "glslangValidator", "frag", "glslangValidator {0}"},
         std::array{"hlsl", "glslangValidator", "frag", "glslangValidator -D -e main -V {0} -o {1}/out.spv"},
         std::array{"wgsl", "naga", "wgsl", "naga {0}"},
         std::array{"rust", "rustc", "rs", "rustc --crate-type lib --emit metadata --out-dir {1} {0}"}),

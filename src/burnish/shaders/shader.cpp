@@ -3,19 +3,13 @@
 #include <fmt/format.h>
 
 #include <burnish/error.h>
+#include <burnish/shaders/frame_function.h>
 #include <burnish/shaders/positions.h>
 #include <burnish/shaders/shader.h>
 
 namespace burnish {
 
 namespace {
-
-bool is_identifier(std::string_view name) noexcept {
-  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-  const auto fits = [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '_'; };
-  return !name.empty() && letter(name.front()) && std::ranges::all_of(name, fits) && name.back() != '_' &&
-         name.find("__") == name.npos;
-}
 
 Axis axis_of(int nodes, ShaderFilter filter) noexcept {
   if (filter == ShaderFilter::exact) return {nodes - 1.0, 0};
@@ -192,22 +186,9 @@ std::string local_function(const FactoredBrdf& brdf, const Dialect& d, const Sha
          fmt::format("  return {}(f0, f0, f0);\n}}\n", d.vector);
 }
 
-std::string world_function(const Dialect& d, const std::string& name, std::string_view more) {
-  const auto local = [&](char w) {
-    return fmt::format("{0}(dot(t, {1}), dot(s, {1}), dot(n, {1}))", d.vector, w);
-  };
-  return d.function("burnish_" + name + "_world", {"n", "t", "l", "v"}, more) +
-         d.declaration(d.vector, "s", "cross(n, t)") +
-         fmt::format("  return burnish_{}({}, {}{});\n}}\n", name, local('l'), local('v'),
-                     more.empty() ? "" : ", tables");
-}
-
 void check(const FactoredBrdf& brdf, const ShaderOptions& options) {
   const bool cpp = options.language == ShaderLanguage::cpp;
-  if (!is_identifier(options.name))
-    throw Error(fmt::format(
-        "shader: expected a name of letters, digits and single underscores, a letter first, found '{}'",
-        options.name));
+  check_shader_name(options.name);
   if (brdf.channels() != 1 && brdf.channels() != 3)
     throw Error(fmt::format("shader: expected a model of 1 or 3 channels, found {}", brdf.channels()));
   if (!cpp && brdf.tables().size() > kMostShaderTables)

@@ -9,6 +9,7 @@
 
 #include <burnish/error.h>
 #include <burnish/factors/models_for_tests.h>
+#include <burnish/shaders/compilers_for_tests.h>
 #include <burnish/shaders/shader.h>
 #include <burnish/tools_for_tests.h>
 
@@ -17,14 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
-
-::testing::AssertionResult runs(const std::string& command, const fs::path& log) {
-  if (std::system(fmt::format("({}) > {} 2>&1", command, log.string()).c_str()) == 0)
-    return ::testing::AssertionSuccess();
-  std::ostringstream said;
-  said << std::ifstream(log).rdbuf();
-  return ::testing::AssertionFailure() << command << ":\n" << said.str();
-}
 
 Shader shader_of(const ModelCase& model, ShaderLanguage language, ShaderFilter filter = ShaderFilter::exact) {
   return generate_shader(smooth_model(model), {language, filter, model.name});
@@ -86,30 +79,6 @@ TEST(Shader, CppAgreesWithTheDefinitionToOnePartIn100000) {
     }
 }
 
-// A number that counts what is done with it, in place of float in the generated C++.
-constexpr const char* kCounting = R"(
-#include <math.h>
-#include <stdio.h>
-static int operations, divisions, roots, powers;
-struct Counted {
-  double v;
-  Counted(double a) : v(a) {}
-  explicit operator int() const { return int(v); }
-  Counted operator-() const { return -v; }
-  friend Counted operator+(Counted a, Counted b) { return ++operations, a.v + b.v; }
-  friend Counted operator-(Counted a, Counted b) { return ++operations, a.v - b.v; }
-  friend Counted operator*(Counted a, Counted b) { return ++operations, a.v * b.v; }
-  friend Counted operator/(Counted a, Counted b) { return ++divisions, a.v / b.v; }
-  friend bool operator<(Counted a, Counted b) { return ++operations, a.v < b.v; }
-  friend bool operator>(Counted a, Counted b) { return ++operations, a.v > b.v; }
-  friend bool operator<=(Counted a, Counted b) { return a.v <= b.v; }
-};
-static Counted sqrtf(Counted a) { return ++roots, sqrt(a.v); }
-static Counted floorf(Counted a) { return ++operations, floor(a.v); }
-static Counted powf(Counted a, Counted b) { return ++powers, pow(a.v, b.v); }
-#define float Counted
-)";
-
 TEST(Shader, CostsWhatItSaysItCosts) {
   if (!has_tool("c++")) GTEST_SKIP() << "no C++ compiler";
   const TemporaryFolder folder("shaders");
@@ -136,30 +105,6 @@ TEST(Shader, CostsWhatItSaysItCosts) {
   counted << std::ifstream(folder.path / "log").rdbuf();
   EXPECT_EQ(counted.str(), expected);
 }
-
-struct Checked {
-  ShaderLanguage language;
-  const char *tool, *extension, *before, *main, *command;
-};
-const Checked kChecked[] = {
-    {ShaderLanguage::glsl, "glslangValidator", "frag", "#version 450\n",
-     "out vec4 color;\nvoid main() {{ color = vec4(burnish_{0}(vec3(0, 0, 1), vec3(0, 0, 1)) + "
-     "burnish_{0}_world(vec3(1), vec3(1), vec3(1), vec3(1)), 1); }}\n",
-     "glslangValidator {}"},
-    {ShaderLanguage::glsl_es, "glslangValidator", "frag", "#version 300 es\n",
-     "out vec4 color;\nvoid main() {{ color = vec4(burnish_{0}(vec3(0, 0, 1), vec3(0, 0, 1)) + "
-     "burnish_{0}_world(vec3(1), vec3(1), vec3(1), vec3(1)), 1); }}\n",
-     "glslangValidator {}"},
-    {ShaderLanguage::hlsl, "glslangValidator", "frag.hlsl", "",
-     "float4 main(float4 at : SV_Position) : SV_Target {{ return float4(burnish_{0}(at.xyz, at.xyz) + "
-     "burnish_{0}_world(at.xyz, at.xyz, at.xyz, at.xyz), 1.0); }}\n",
-     "for f in{}; do glslangValidator -D -e main -S frag -V -o /dev/null $f || exit 1; done"},
-    {ShaderLanguage::wgsl, "naga", "wgsl", "",
-     "@fragment fn main(@builtin(position) at: vec4f) -> @location(0) vec4f {{ return "
-     "vec4f(burnish_{0}(at.xyz, "
-     "at.xyz) + burnish_{0}_world(at.xyz, at.xyz, at.xyz, at.xyz), 1.0); }}\n",
-     "naga --bulk-validate {}"},
-};
 
 class ShaderCompilers : public testing::TestWithParam<Checked> {};
 
