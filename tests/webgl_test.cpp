@@ -1,5 +1,7 @@
 // Generated GLSL ES in a browser: WebGL2 draws into floats, which are read back.
 
+#include <cmath>
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -9,12 +11,18 @@
 namespace burnish {
 namespace {
 
-TEST(WebGl, AgreesWithTheDefinitionToOnePartIn100000) {
+TEST(WebGl, AgreesWithTheDefinitionInEveryVariant) {
   if (!has_tool("chromium")) GTEST_SKIP() << "no chromium";
   const TemporaryFolder folder("webgl");
-  const std::vector<double> worst = run_webgl(kModelCases, 64, folder.path);
+  const auto worst = run_webgl(kModelCases, 64, folder.path);
   ASSERT_EQ(worst.size(), std::size(kModelCases));
-  for (std::size_t i = 0; i < worst.size(); ++i) EXPECT_LE(worst[i], 1e-5) << kModelCases[i].name;
+  // as in kShaderVariants; half floats may add 2e-3
+  constexpr VariantErrors kMost = {1e-5, 2e-3, 5e-3, 7e-3};
+  for (std::size_t i = 0; i < worst.size(); ++i)
+    for (std::size_t k = 0; k < kMost.size(); ++k) {
+      if (k == 2 && std::isnan(worst[i][k])) continue;  // floats need not be filtered in WebGL2
+      EXPECT_LE(worst[i][k], kMost[k]) << kModelCases[i].name << " variant " << k;
+    }
 }
 
 }  // namespace

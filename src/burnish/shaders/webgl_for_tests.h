@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -10,22 +12,35 @@
 #include <fmt/format.h>
 
 #include <burnish/factors/models_for_tests.h>
+#include <burnish/factors/node_table.h>
 #include <burnish/shaders/shader.h>
 
 namespace burnish {
 
+/// How tables are read and what they hold, of halves or floats.
+struct ShaderVariant {
+  ShaderFilter filter;
+  bool halves;
+};
+inline constexpr ShaderVariant kShaderVariants[] = {{ShaderFilter::exact, false},
+                                                    {ShaderFilter::exact, true},
+                                                    {ShaderFilter::hardware, false},
+                                                    {ShaderFilter::hardware, true}};
+/// The largest relative error of each of kShaderVariants.
+using VariantErrors = std::array<double, std::size(kShaderVariants)>;
+
 inline constexpr const char* kWebGlRun = R"(
-const floats = (text) => new Float32Array(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
-const wi = floats(pairs.wi), wo = floats(pairs.wo);
+const floats = async (file) => new Float32Array(await (await fetch(file)).arrayBuffer());
 const gl = document.createElement("canvas").getContext("webgl2");
 if (!gl.getExtension("EXT_color_buffer_float")) throw new Error("no float targets");
-function texture(unit, width, height, rgba) {
+const filtered_floats = gl.getExtension("OES_texture_float_linear");
+function texture(unit, format, filter, width, height, rgba) {
   const t = gl.createTexture();
   gl.activeTexture(gl.TEXTURE0 + unit);
   gl.bindTexture(gl.TEXTURE_2D, t);
-  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, width, height, 0, gl.RGBA, gl.FLOAT, rgba);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+  gl.texImage2D(gl.TEXTURE_2D, 0, format, width, height, 0, gl.RGBA, gl.FLOAT, rgba);
+  for (const use of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, use, filter);
+  for (const use of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, use, gl.CLAMP_TO_EDGE);
   return t;
 }
 const shader = (type, text) => {
@@ -34,12 +49,13 @@ const shader = (type, text) => {
   gl.compileShader(s);
   return s;
 };
-function evaluate(model) {
+// Relative to the truth, times `lenience`.
+function worst_error(variant, textures, truth, lenience) {
   const program = gl.createProgram();
   gl.attachShader(program, shader(gl.VERTEX_SHADER, `void main() {
     gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, 0, 1);
   }`));
-  gl.attachShader(program, shader(gl.FRAGMENT_SHADER, model.shader + `
+  gl.attachShader(program, shader(gl.FRAGMENT_SHADER, variant.shader + `
     uniform sampler2D all_wi, all_wo;
     out vec4 value;
     void main() {
@@ -49,48 +65,57 @@ function evaluate(model) {
   gl.linkProgram(program);
   gl.useProgram(program);
   const set = (name, unit) => gl.uniform1i(gl.getUniformLocation(program, name), unit);
-  texture(0, side, side, wi);
-  texture(1, side, side, wo);
   set("all_wi", 0);
   set("all_wo", 1);
-  model.textures.forEach((t, i) => {
-    texture(2 + i, t.width, t.height, floats(t.rgba));
+  const made = textures.map((t, i) => {
     set(t.name, 2 + i);
+    return texture(2 + i, variant.halves ? gl.RGBA16F : gl.RGBA32F, variant.filtered ? gl.LINEAR : gl.NEAREST,
+                   t.width, t.height, variant.halves ? t.halves : t.floats);
   });
-  gl.bindFramebuffer(gl.FRAMEBUFFER, gl.createFramebuffer());
-  gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture(15, side, side, null), 0);
-  gl.viewport(0, 0, side, side);
   gl.drawArrays(gl.TRIANGLES, 0, 3);
-  const found = new Float32Array(4 * side * side);
   gl.readPixels(0, 0, side, side, gl.RGBA, gl.FLOAT, found);
+  made.forEach((t) => gl.deleteTexture(t));
   let worst = gl.getError() === 0 ? 0 : NaN;
-  const lenience = floats(model.lenience);
-  floats(model.truth).forEach((t, i) => {
-    const f = found[i + Math.floor(i / 3)];
-    worst = Math.max(worst, t > 0 ? Math.abs(f / t - 1) * lenience[Math.floor(i / 3)] : f === 0 ? 0 : NaN);
-  });
+  for (let i = 0; i < side * side; ++i)
+    for (let c = 0; c < 3; ++c) {
+      const f = found[4 * i + c], t = truth[3 * i + c];
+      worst = Math.max(worst, t > 0 ? Math.abs(f / t - 1) * lenience[i] : f === 0 ? 0 : NaN);
+    }
   return worst;
 }
-document.body.dataset.result = models.map(evaluate).join(" ");
+const found = new Float32Array(4 * side * side);
+(async () => {
+  texture(0, gl.RGBA32F, gl.NEAREST, side, side, await floats("wi"));
+  texture(1, gl.RGBA32F, gl.NEAREST, side, side, await floats("wo"));
+  gl.bindFramebuffer(gl.FRAMEBUFFER, gl.createFramebuffer());
+  const target = texture(15, gl.RGBA32F, gl.NEAREST, side, side, null);
+  gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, target, 0);
+  gl.viewport(0, 0, side, side);
+  const results = [];
+  for (const [i, model] of models.entries()) {
+    const truth = await floats(`truth${i}`), lenience = await floats(`lenience${i}`);
+    for (const t of model.textures) {
+      t.floats = await floats(t.file);
+      t.halves = await floats(t.file + "_half");
+    }
+    for (const variant of model.variants)
+      results.push(variant.filtered && !variant.halves && !filtered_floats
+                     ? NaN : worst_error(variant, model.textures, truth, lenience));
+  }
+  document.body.dataset.result = results.join(" ");
+})();
 )";
 
-inline std::string base64_floats(const std::vector<float>& values) {
-  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());
-  const std::size_t size = 4 * values.size();
-  std::string text;
-  for (std::size_t i = 0; i < size; i += 3) {
-    unsigned group = 0;
-    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (i + k < size ? bytes[i + k] : 0u);
-    for (std::size_t k = 0; k < 4; ++k) text += i + k <= size ? kDigits[group >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
-
-/// A page that evaluates the models' generated GLSL ES with exact filtering and float tables at side^2 pairs,
-/// in WebGL2, and leaves the largest relative error of each, divided by how much projections cancel, in
-/// data-result of its body.
-inline std::string webgl_page(std::span<const ModelCase> models, int side) {
+/// Writes a page into `folder`, and the numbers it loads, that evaluates the models' generated GLSL ES in
+/// WebGL2 at side^2 pairs, in each of kShaderVariants, and leaves the largest relative errors, divided by how
+/// much projections cancel, in data-result of its body.
+inline void write_webgl_page(std::span<const ModelCase> models, int side,
+                             const std::filesystem::path& folder) {
+  const auto put = [&](const std::string& name, const std::vector<float>& values) {
+    std::ofstream(folder / name, std::ios::binary)
+        .write(reinterpret_cast<const char*>(values.data()),
+               static_cast<std::streamsize>(values.size() * sizeof(float)));
+  };
   const auto pairs = corner_and_random_pairs(side * side);
   const auto single = [](double x) { return static_cast<float>(x); };
   std::vector<float> wi, wo;
@@ -98,22 +123,35 @@ inline std::string webgl_page(std::span<const ModelCase> models, int side) {
     wi.insert(wi.end(), {single(pair.wi.x), single(pair.wi.y), single(pair.wi.z), 1});
     wo.insert(wo.end(), {single(pair.wo.x), single(pair.wo.y), single(pair.wo.z), 1});
   }
-  std::string text =
-      fmt::format("<!DOCTYPE html><body><script>const side = {}, pairs = {{wi: '{}', wo: '{}'}}, models = [",
-                  side, base64_floats(wi), base64_floats(wo));
-  for (const ModelCase& model : models) {
-    const FactoredBrdf brdf = smooth_model(model);
-    const Shader shader = generate_shader(brdf, {ShaderLanguage::glsl_es, ShaderFilter::exact, "m"});
-    text += "{shader: `" + shader.text + "`, textures: [";
+  put("wi", wi);
+  put("wo", wo);
+  std::string text = fmt::format("<!DOCTYPE html><body><script>const side = {}, models = [", side);
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    const FactoredBrdf brdf = smooth_model(models[m]);
+    text += "{variants: [";
+    std::vector<std::string> names;
+    for (const auto& [filter, halves] : kShaderVariants) {
+      const Shader shader = generate_shader(brdf, {ShaderLanguage::glsl_es, filter, "m"});
+      text += fmt::format("{{halves: {}, filtered: {}, shader: `{}`}},", halves,
+                          filter == ShaderFilter::hardware, shader.text);
+      names = shader.textures;
+    }
+    text += "], textures: [";
     for (std::size_t i = 0; i < brdf.tables().size(); ++i) {
       const Table& table = brdf.tables()[i];
-      std::vector<float> rgba;
+      std::vector<float> rgba, halves;
       for (std::size_t k = 0; k < table.layout.node_count(); ++k)
-        for (std::size_t c = 0; c < 4; ++c)
+        for (std::size_t c = 0; c < 4; ++c) {
           rgba.push_back(table.channels == 1 ? table.values[k] : c == 3 ? 1 : table.values[3 * k + c]);
-      text += fmt::format("{{name: '{}', width: {}, height: {}, rgba: '{}'}},", shader.textures[i],
-                          table.layout.width, table.layout.height, base64_floats(rgba));
+          halves.push_back(round_to_half(rgba.back()));
+        }
+      const std::string file = fmt::format("table{}_{}", m, i);
+      put(file, rgba);
+      put(file + "_half", halves);
+      text += fmt::format("{{name: '{}', width: {}, height: {}, file: '{}'}},", names[i], table.layout.width,
+                          table.layout.height, file);
     }
+    text += "]},";
     std::vector<float> truth, lenience;
     for (const auto& [a, b] : pairs) {
       double f[3];
@@ -121,21 +159,22 @@ inline std::string webgl_page(std::span<const ModelCase> models, int side) {
       for (int c = 0; c < 3; ++c) truth.push_back(single(f[brdf.channels() == 1 ? 0 : c]));
       lenience.push_back(single(1 / cancellation(brdf, a, b)));
     }
-    text += fmt::format("], truth: '{}', lenience: '{}'}},", base64_floats(truth), base64_floats(lenience));
+    put(fmt::format("truth{}", m), truth);
+    put(fmt::format("lenience{}", m), lenience);
   }
-  return text + "];" + kWebGlRun + "</script></body>";
+  std::ofstream(folder / "page.html") << text << "];" << kWebGlRun << "</script></body>";
 }
 
-/// What Chromium finds for the page, written into `folder`: an error a model; empty where it does not run.
-inline std::vector<double> run_webgl(std::span<const ModelCase> models, int side,
-                                     const std::filesystem::path& folder) {
-  std::ofstream(folder / "page.html") << webgl_page(models, side);
+/// What Chromium finds for the page: errors a model, NaN where it cannot filter floats; empty where it does
+/// not run.
+inline std::vector<VariantErrors> run_webgl(std::span<const ModelCase> models, int side,
+                                            const std::filesystem::path& folder) {
+  write_webgl_page(models, side, folder);
   const int code = std::system(
-      fmt::format(
-          "timeout 300 chromium --headless --no-sandbox --use-gl=angle --use-angle=swiftshader "
-          "--enable-unsafe-swiftshader --user-data-dir={0}/profile --virtual-time-budget=5000 --dump-dom "
-          "file://{0}/page.html > {0}/dom 2> {0}/said",
-          folder.string())
+      fmt::format("timeout 300 chromium --headless --no-sandbox --use-gl=angle --use-angle=swiftshader "
+                  "--enable-unsafe-swiftshader --allow-file-access-from-files --user-data-dir={0}/profile "
+                  "--virtual-time-budget=5000 --dump-dom file://{0}/page.html > {0}/dom 2> {0}/said",
+                  folder.string())
           .c_str());
   if (code != 0) return {};
   std::ostringstream dom;
@@ -144,8 +183,14 @@ inline std::vector<double> run_webgl(std::span<const ModelCase> models, int side
   const auto at = text.find(mark);
   if (at == text.npos) return {};
   std::istringstream results(text.substr(at + mark.size()));
-  std::vector<double> worst;
-  for (double value; worst.size() < models.size() && results >> value;) worst.push_back(value);
+  std::vector<VariantErrors> worst(models.size());
+  for (VariantErrors& errors : worst)
+    for (double& error : errors) {
+      std::string word;
+      results >> word;
+      error = word.empty() || word.starts_with("NaN") ? std::numeric_limits<double>::quiet_NaN()
+                                                      : std::strtod(word.c_str(), nullptr);
+    }
   return worst;
 }
 
