@@ -14,6 +14,7 @@
 #include <burnish/factors/models_for_tests.h>
 #include <burnish/metrics/png.h>
 #include <burnish/render/gl_context.h>
+#include <burnish/render/picture.h>
 #include <burnish/tools_for_tests.h>
 
 namespace burnish {
@@ -37,6 +38,7 @@ class Render : public testing::Test {
   void SetUp() override {
     write(folder_ / "one.exr", format_model({smooth_model(kModelCases[0]), {}, "{}"}));
     write(folder_ / "two.exr", format_model({smooth_model(kModelCases[7]), {}, "{}"}));
+    write(folder_ / "brushed.exr", format_model({smooth_model(kModelCases[1]), {}, "{}"}));
     write(folder_ / "two.obj",
           "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nusemtl left\nf 1 2 4\nusemtl right\nf 2 3 4\n");
   }
@@ -74,6 +76,29 @@ TEST_F(Render, BothRenderersDrawTheSamePicture) {
     EXPECT_LT(mean_difference_of(picture("gl.png"), picture("cpu.png")), 0.5);
     EXPECT_GT(mean_difference_of(picture("gl.png"), Image8(64, 48, 3)), 5) << "something is there";
   }
+}
+
+TEST_F(Render, LightFromAllAroundIsTheReferencesToo) {
+  if (!has_opengl()) GTEST_SKIP() << "no OpenGL";
+  Image sky(64, 32, 3);
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 64; ++x)
+      for (std::size_t c = 0; c < 3; ++c)
+        sky.at(x, y)[c] = x > 8 && x < 20 && y > 6 && y < 14 ? 8.0f : 0.2f + 0.1f * static_cast<float>(c);
+  write(folder_ / "sky.exr", encode_exr(sky));
+  for (const char* scene :
+       {"one.exr --environment sky.exr", "brushed.exr --environment sky.exr --lights 2,3,4:5"}) {
+    const std::string common = fmt::format(
+        "--mesh torus-knot --vertices 3000 --size 48 --samples 1 --exposure 1 --material {} -o ", scene);
+    ASSERT_EQ(renders(common + "gl.png"), 0) << said();
+    ASSERT_EQ(renders(common + "cpu.png --renderer cpu --draws 64"), 0) << said();
+    EXPECT_LT(mean_difference_of(picture("gl.png"), picture("cpu.png")), 2) << scene;
+    EXPECT_GT(mean_difference_of(picture("gl.png"), Image8(48, 48, 3)), 10) << "something is there";
+  }
+  EXPECT_EQ(renders("--material one.exr --environment no_such.exr -o x.png"), 1);
+  write(folder_ / "sky.exr", "v/1\x01 no picture");
+  EXPECT_EQ(renders("--material one.exr --environment sky.exr -o x.png"), 1);
+  EXPECT_THAT(said(), AllOf(HasSubstr("sky.exr"), HasSubstr("expected")));
 }
 
 TEST_F(Render, DrawsAnyBrdfByTheReferenceRendererAndExr) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -16,6 +17,7 @@
 #include <burnish/render/mesh_file.h>
 #include <burnish/render/picture.h>
 #include <burnish/render/shapes.h>
+#include <burnish/render/surface_environment.h>
 
 #include "commands.h"
 #include "render_figure.h"
@@ -29,9 +31,10 @@ namespace {
 struct Arguments {
   std::string mesh = "sphere", out, renderer = "gl", tone = "srgb", size = "512", exposure = "auto",
               background = "0,0,0";
-  std::vector<std::string> materials, lights{"2,3,4:20"};
+  std::vector<std::string> materials, lights;
   std::vector<double> view{0, 0};
-  int vertices = 40000, samples = 2;
+  std::string environment;
+  int vertices = 40000, samples = 2, draws = 64;
   bool exact = false, shadows = false, figure1 = false;
   FigureArguments figure;
 };
@@ -84,6 +87,14 @@ double exposure_of(const std::string& text) {
   return value;
 }
 
+// A name or a picture; nothing where none is asked for.
+std::optional<Environment> environment_of(const std::string& text) {
+  if (text.empty()) return {};
+  if (const auto known = find_environment(text)) return known;
+  return Environment{.name = "picture",
+                     .picture = std::make_shared<const SkyImage>(parse_sky(read_file(text)))};
+}
+
 // Files name materials of their own: as many as there are, the last given one for the rest.
 std::vector<MeshPart> parts_of(const Arguments& arguments) {
   std::vector<MeshPart> parts;
@@ -97,15 +108,17 @@ std::vector<MeshPart> parts_of(const Arguments& arguments) {
   return parts;
 }
 
-Image render_gl(const Scene& scene, const Arguments& arguments, int width, int height) {
+Image render_gl(const Scene& scene, const std::optional<Environment>& environment, const Arguments& arguments,
+                int width, int height) {
   std::vector<SurfaceShader> materials;
   for (const std::string& file : arguments.materials) {
     if (!std::filesystem::is_regular_file(file))
       throw Error::in_file(file, "the file of a factored BRDF (others are drawn by --renderer cpu)",
                            "no file");
-    materials.push_back(surface_shader(parse_model(read_file(file)).brdf,
-                                       arguments.exact ? ShaderFilter::exact : ShaderFilter::hardware,
+    const FactoredBrdf brdf = parse_model(read_file(file)).brdf;
+    materials.push_back(surface_shader(brdf, arguments.exact ? ShaderFilter::exact : ShaderFilter::hardware,
                                        TableFormat::single));
+    if (environment) add_environment(materials.back(), brdf, *environment);
   }
   const GlContext context;
   const GlRenderer renderer(scene, materials, width, height);
@@ -113,12 +126,18 @@ Image render_gl(const Scene& scene, const Arguments& arguments, int width, int h
   return renderer.read();
 }
 
-Image render_by_cpu(const Scene& scene, const Arguments& arguments, int width, int height) {
+Image render_by_cpu(const Scene& scene, const std::optional<Environment>& environment,
+                    const Arguments& arguments, int width, int height) {
   std::vector<Source> sources;
   for (const std::string& spec : arguments.materials) sources.push_back(open_source(spec, {}));
   std::vector<BrdfRef> materials;
   for (const Source& source : sources) materials.push_back(source.ref());
-  return render_cpu(scene, materials, {.width = width, .height = height, .shadows = arguments.shadows});
+  return render_cpu(scene, materials,
+                    {.width = width,
+                     .height = height,
+                     .shadows = arguments.shadows,
+                     .environment = environment ? &*environment : nullptr,
+                     .draws = arguments.draws});
 }
 
 void render(const Arguments& arguments) {
@@ -131,7 +150,10 @@ void render(const Arguments& arguments) {
         fmt::format("--output: expected a name that ends in .png or .exr, found '{}'", arguments.out));
   if (arguments.shadows && !cpu) throw CLI::ValidationError("--shadows: expected --renderer cpu with it");
   Scene scene;
-  for (const std::string& text : arguments.lights) scene.lights.push_back(light(text));
+  const std::optional<Environment> environment = environment_of(arguments.environment);
+  std::vector<std::string> lights = arguments.lights;
+  if (lights.empty() && !environment) lights = {"2,3,4:20"};
+  for (const std::string& text : lights) scene.lights.push_back(light(text));
   scene.background = color(arguments.background, "--background");
   scene.camera = camera_for_unit_sphere(radians(arguments.view[0]), radians(arguments.view[1]));
   const auto [width, height] = picture_size(arguments.size);
@@ -139,8 +161,8 @@ void render(const Arguments& arguments) {
   const double given = automatic ? 1 : exposure_of(arguments.exposure);
   scene.parts = parts_of(arguments);
   const int n = arguments.samples;
-  const Image fine = cpu ? render_by_cpu(scene, arguments, n * width, n * height)
-                         : render_gl(scene, arguments, n * width, n * height);
+  const Image fine = cpu ? render_by_cpu(scene, environment, arguments, n * width, n * height)
+                         : render_gl(scene, environment, arguments, n * width, n * height);
   const double exposure = automatic ? automatic_exposure(fine, scene.background) : given;
   const Image image = averaged(fine, n);
   if (extension == ".exr")
@@ -160,6 +182,7 @@ void add_render_command(CLI::App& app) {
       "teapot.png\n"
       "          burnish render --mesh torus-knot --material ggx:alpha_x=0.1,alpha_y=0.3 --renderer cpu -o "
       "knot.exr\n"
+      "          burnish render --mesh teapot --material paint.exr --environment sky.exr -o teapot.png\n"
       "          burnish render --figure1 -o figure1.png\n"
       "See docs/rendering.md.");
   auto arguments = std::make_shared<Arguments>();
@@ -173,9 +196,19 @@ void add_render_command(CLI::App& app) {
           "factored BRDF as `burnish fit` writes it (with --renderer cpu any BRDF); several times: for "
           "the file's materials in their order")
       ->allow_extra_args(false);
-  verb->add_option("--lights", arguments->lights,
-                   "x,y,z[:intensity] or x,y,z:r,g,b of a point light; may be given several times")
-      ->allow_extra_args(false)
+  verb->add_option(
+          "--lights", arguments->lights,
+          "x,y,z[:intensity] or x,y,z:r,g,b of a point light; may be given several times; 2,3,4:20 where no "
+          "light is given")
+      ->allow_extra_args(false);
+  verb->add_option(
+      "--environment", arguments->environment,
+      "light from all around: sun, studio, or an OpenEXR picture of all directions, twice as wide as "
+      "high, y up, x in its middle");
+  verb->add_option(
+          "--draws", arguments->draws,
+          "of --renderer cpu: directions a ray draws of the environment, and of each of its lamps; a square")
+      ->check(CLI::Range(1, 1 << 20))
       ->capture_default_str();
   verb->add_option("-o,--output", arguments->out, "picture to write: PNG, or EXR of linear values");
   verb->add_option("--renderer", arguments->renderer, "OpenGL, or the reference on the CPU")

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/ggx_proxy.h>
 #include <burnish/render/image_based_light.h>
+#include <burnish/render/tapped_light.h>
 
 namespace burnish {
 namespace {
@@ -29,6 +31,13 @@ constexpr Material kMaterials[] = {
     {"plastic", "ggx:alpha_x=0.3,alpha_y=0.3,f0=0.05,kd=0.4/0.1/0.05", "pqpr", 0},
     {"ceramic", "ggx:alpha_x=0.1,alpha_y=0.1,f0=0.05", "pqpr", {0.05, 0.1, 0.3}},
 };
+// Anisotropic ones: taps.
+constexpr Material kBrushed[] = {
+    {"brushed gold", "ggx:alpha_x=0.1,alpha_y=0.3,f0=0.9/0.7/0.4", "pqp", 0},
+    {"silk", "ggx:alpha_x=0.15,alpha_y=0.4,f0=0.3", "pqp", {0.02, 0.05, 0.2}},
+    {"satin", "ggx:alpha_x=0.15,alpha_y=0.4,f0=0.05,kd=0.4/0.1/0.05", "pqp", 0},
+};
+constexpr int kTaps[] = {24, 48, 96, 192};
 
 FactoredBrdf factored(const Material& material) {
   const AnalyticBrdf source = parse_analytic(material.source);
@@ -67,6 +76,10 @@ Image sphere(const std::function<Rgb(Vec3 n, Vec3 v)>& radiance) {
   return image;
 }
 
+Image by_taps(const TappedBrdf& tapped, const BlurredEnvironment& blurred) {
+  return sphere([&](Vec3 n, Vec3 v) { return tapped.radiance(blurred, sphere_frame(n), v); });
+}
+
 Image on_gpu(const ImageBasedLight& light) {
   std::vector<GlVectors> calls;
   sphere([&](Vec3 n, Vec3 v) {
@@ -91,6 +104,54 @@ void paste(Image8& sheet, const Image& shown, int column, int row) {
   const Image8 part = to_image8(shown);
   for (int y = 0; y < kSize; ++y)
     std::ranges::copy_n(part.at(0, y).begin(), 3 * kSize, sheet.at(column * kSize, row * kSize + y).begin());
+}
+
+void print_taps(const std::vector<Environment>& all) {
+  fmt::print(
+      "\n### Anisotropic materials\n\nThe same for taps on one blurred environment for all materials, by the "
+      "shader's definition "
+      "in doubles; `picture` is the studio as an OpenEXR picture would have it, 512 x 256.\n\n"
+      "| material | lobes | environment | truth |");
+  for (const int taps : kTaps) fmt::print(" {} taps |", taps);
+  fmt::print("\n|---|---|---|---|---|---|---|---|\n");
+  for (const Environment& environment : all) {
+    const BlurredEnvironment blurred = blur(environment);
+    for (const Material& material : kBrushed) {
+      const FactoredBrdf brdf = factored(material);
+      const GgxProxy guide = fit_ggx_proxy(brdf, true);
+      const auto monte_carlo = [&](int samples, std::uint64_t seed) {
+        return moments_in_environment(brdf, guide, {}, environment,
+                                      {.size = kSize, .samples = samples, .seed = seed})
+            .mean;
+      };
+      const Image truth = monte_carlo(kSamples, 1);
+      const double exposure = exposure_of(truth);
+      const Image shown = tone_map(truth, exposure);
+      const auto decibels = [&](const Image& image) {
+        return psnr(mean_squared_error(tone_map(image, exposure), shown));
+      };
+      fmt::print("| {} | {} | {} | {:.1f} |", material.name, brdf.lobes().size(), environment.name,
+                 decibels(monte_carlo(kSamples / 4, 2)));
+      for (const int taps : kTaps) fmt::print(" {:.1f} |", decibels(by_taps(tap(brdf, taps), blurred)));
+      fmt::print("\n");
+      std::fflush(stdout);
+    }
+  }
+}
+
+// The environment without its formulas: a picture of it.
+Environment pictured(const Environment& environment) {
+  const SkyImage grid(Image(512, 256, 3));
+  Image image = grid.image();
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const Rgb value = environment.radiance(grid.direction(x, y));
+      const auto texel = image.at(x, y);
+      texel[0] = static_cast<float>(value.r);
+      texel[1] = static_cast<float>(value.g);
+      texel[2] = static_cast<float>(value.b);
+    }
+  return {.name = "picture", .picture = std::make_shared<const SkyImage>(std::move(image))};
 }
 
 }  // namespace
@@ -157,6 +218,7 @@ void print_environment_light(const std::filesystem::path& figures) {
       "\n| material | kernels | lobes | filtered reads a pixel | KiB of maps |\n|---|---|---|---|---|\n{}",
       costs);
   write_png(figures / "environment-light.png", sheet);
+  print_taps({all[0], all[1], pictured(all[1])});
 }
 
 }  // namespace burnish

@@ -6,6 +6,8 @@
 
 #include <burnish/error.h>
 #include <burnish/math/parallel.h>
+#include <burnish/math/random.h>
+#include <burnish/reflectance/ggx_proxy.h>
 #include <burnish/render/cpu_renderer.h>
 #include <burnish/render/ray_caster.h>
 
@@ -84,25 +86,40 @@ class Pixels {
 
 Image render_cpu(const Scene& scene, std::span<const BrdfRef> materials, const CpuOptions& options) {
   check(scene, materials, options.width, options.height);
+  const int side = static_cast<int>(std::lround(std::sqrt(std::max(options.draws, 0))));
+  if (side < 1 || side > 1024 || side * side != options.draws)
+    throw Error(fmt::format("scene: expected draws that are a square, found {}", options.draws));
+  std::vector<GgxProxy> guides;
+  if (options.environment)
+    for (const BrdfRef& material : materials) guides.push_back(fit_ggx_proxy(material, true));
   const RayCaster caster(scene.parts);
   const Pixels pixels(scene.camera, options.width, options.height);
   Image image(options.width, options.height, 3);
-  for_each_chunk(static_cast<std::size_t>(options.height), 4,
-                 [&](std::size_t, std::size_t begin, std::size_t end) {
-                   for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
-                     for (int x = 0; x < options.width; ++x) {
-                       Rgb value = scene.background;
-                       if (const auto hit = caster.nearest(scene.camera.eye, pixels.direction(x, y))) {
-                         const MeshPart& part = scene.parts[hit->part];
-                         value = shade(scene, materials[static_cast<std::size_t>(part.material)],
-                                       point_of(part.mesh, *hit), options.shadows ? &caster : nullptr);
-                       }
-                       const auto pixel = image.at(x, y);
-                       pixel[0] = static_cast<float>(value.r);
-                       pixel[1] = static_cast<float>(value.g);
-                       pixel[2] = static_cast<float>(value.b);
-                     }
-                 });
+  for_each_chunk(
+      static_cast<std::size_t>(options.height), 4, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
+          for (int x = 0; x < options.width; ++x) {
+            Rgb value = scene.background;
+            if (const auto hit = caster.nearest(scene.camera.eye, pixels.direction(x, y))) {
+              const MeshPart& part = scene.parts[hit->part];
+              const auto material = static_cast<std::size_t>(part.material);
+              const SurfacePoint point = point_of(part.mesh, *hit);
+              value = shade(scene, materials[material], point, options.shadows ? &caster : nullptr);
+              if (options.environment) {
+                Pcg32 random(1, static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(options.width) +
+                                    static_cast<std::uint64_t>(x));
+                value = value +
+                        radiance_in_environment(materials[material], guides[material], *options.environment,
+                                                {point.normal, point.tangent, point.bitangent},
+                                                normalize(scene.camera.eye - point.position), side, random);
+              }
+            }
+            const auto pixel = image.at(x, y);
+            pixel[0] = static_cast<float>(value.r);
+            pixel[1] = static_cast<float>(value.g);
+            pixel[2] = static_cast<float>(value.b);
+          }
+      });
   return image;
 }
 

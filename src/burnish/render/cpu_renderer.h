@@ -4,18 +4,24 @@
 #include <vector>
 
 #include <burnish/reflectance/brdf.h>
+#include <burnish/render/environment_light.h>
 #include <burnish/render/scene.h>
 
 namespace burnish {
 
 struct CpuOptions {
   int width = 512, height = 512;
-  bool shadows = false;  ///< whether triangles keep light from others
+  bool shadows = false;  ///< whether triangles keep the light of points from others
+  /// Light from all around, without shadows, or null: radiance_in_environment with this many draws, a square,
+  /// and as many of every lamp.
+  const Environment* environment = nullptr;
+  int draws = 64;
 };
 
 /// A picture of a scene by ray casting in double precision, the reference for GlRenderer: three channels,
 /// linear. `materials` have one or three channels; directions that one does not know are black. The same bits
-/// for every number of threads. Throws Error as check_scene and for materials of other channels.
+/// for every number of threads. Throws Error as check_scene, for materials of other channels and for draws
+/// that are not the square of 1 to 1024.
 Image render_cpu(const Scene& scene, std::span<const BrdfRef> materials, const CpuOptions& options);
 
 /// What render_cpu gives where a vertex is, without shadows: for every part, in order, a value a vertex.

@@ -36,18 +36,10 @@ Vec3 direction_in(const DistantDisc& disc, Point2 u) noexcept {
 }
 
 Rgb sky(const Environment& e, Vec3 w) noexcept {
+  if (e.picture) return e.picture->radiance(w);
   if (w.y < 0) return e.ground;
   return mix(e.horizon, e.zenith, 1 - (1 - w.y) * (1 - w.y));
 }
-
-// Out of the local frame of sphere_local.
-struct ToWorld {
-  Vec3 x, y, z;
-
-  explicit ToWorld(Vec3 n) noexcept
-      : x(sphere_local(n, {1, 0, 0})), y(sphere_local(n, {0, 1, 0})), z(sphere_local(n, kView)) {}
-  Vec3 operator()(Vec3 w) const noexcept { return {dot(x, w), dot(y, w), dot(z, w)}; }
-};
 
 void check(BrdfRef brdf, const LightOptions& options) {
   const auto require = [](const char* what, int value, bool fits) {
@@ -91,7 +83,51 @@ Point2 point(Pcg32& random, const LightOptions& options, int sample) noexcept {
   return {(sample % side + x) / side, (sample / side + y) / side};
 }
 
+// Calls add(wi, direction of the world, density) for options.samples stratified draws of the guide and as
+// many of every disc and of the picture. Whatever drew a direction, it stands for the inverse of all their
+// densities together: the balance heuristic [Veach 1995].
+template <class Add>
+void for_each_draw(SamplerRef guide, const Environment& environment, const LightFrame& frame, Vec3 wo,
+                   const LightOptions& options, Pcg32& random, const Add& add) {
+  const double count = options.samples;
+  const auto weigh = [&](Vec3 wi, Vec3 w) {
+    double density = count * guide.pdf(wi, wo);
+    for (const DistantDisc& disc : environment.discs)
+      if (in_disc(disc, w)) density += count / (kTwoPi * cap_of(disc));
+    if (environment.picture) density += count * environment.picture->pdf(w);
+    if (density > 0) add(wi, w, density);
+  };
+  for (int i = 0; i < options.samples; ++i) {
+    const DrawnDirection drawn = guide.sample_wi(wo, point(random, options, i));
+    if (drawn.pdf > 0) weigh(drawn.wi, frame.world(drawn.wi));
+  }
+  const auto weigh_world = [&](Vec3 w) { weigh(frame.local(w), w); };
+  for (const DistantDisc& disc : environment.discs)
+    for (int i = 0; i < options.samples; ++i) weigh_world(direction_in(disc, point(random, options, i)));
+  for (int i = 0; environment.picture && i < options.samples; ++i)
+    if (const DrawnDirection drawn = environment.picture->draw(point(random, options, i)); drawn.pdf > 0)
+      weigh_world(drawn.wi);
+}
+
 }  // namespace
+
+LightFrame sphere_frame(Vec3 n) noexcept {
+  const Vec3 x = sphere_local(n, {1, 0, 0}), y = sphere_local(n, {0, 1, 0}), z = sphere_local(n, {0, 0, 1});
+  return {{x.z, y.z, z.z}, {x.x, y.x, z.x}, {x.y, y.y, z.y}};
+}
+
+Rgb radiance_in_environment(BrdfRef brdf, SamplerRef guide, const Environment& environment,
+                            const LightFrame& frame, Vec3 v, int side, Pcg32& random) {
+  const Vec3 wo = frame.local(v);
+  Rgb sum;
+  if (wo.z <= 0) return sum;
+  for_each_draw(guide, environment, frame, wo, {.samples = side * side, .stratified = true}, random,
+                [&](Vec3 wi, Vec3 w, double density) {
+                  const Channels light = light_from(brdf, wi, wo, environment.radiance(w));
+                  sum = sum + Rgb(1 / density) * Rgb(light[0], light[1], light[2]);
+                });
+  return sum;
+}
 
 Rgb Environment::radiance(Vec3 w) const noexcept {
   Rgb sum = sky(*this, w);
@@ -116,6 +152,25 @@ std::span<const Environment> environments() {
   return all;
 }
 
+std::optional<Environment> find_environment(std::string_view name) {
+  const auto found = std::ranges::find(environments(), name, &Environment::name);
+  if (found == environments().end()) return {};
+  return *found;
+}
+
+std::vector<DiscPoint> disc_points(const Environment& environment) {
+  constexpr int kPoints = 64;
+  std::vector<DiscPoint> points;
+  for (const DistantDisc& disc : environment.discs)
+    for (int i = 0; i < kPoints; ++i) {
+      // Fibonacci's spiral, even over the solid angle
+      const double turns = i * 0.5 * (3 - std::sqrt(5.0));
+      points.push_back({direction_in(disc, {(i + 0.5) / kPoints, turns - std::floor(turns)}),
+                        disc.radiance * kTwoPi * cap_of(disc) / kPoints});
+    }
+  return points;
+}
+
 Environment turned(Environment environment, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   for (DistantDisc& disc : environment.discs) {
@@ -130,13 +185,13 @@ LightRender render_in_environment(BrdfRef brdf, SamplerRef sampler, const Enviro
   check(brdf, options);
   LightRender render{Image(options.size, options.size, 3), Image(options.size, options.size, 3)};
   for_each_pixel(options, [&](Vec3 n, Pcg32& random, int x, int y) {
-    const ToWorld to_world(n);
-    const Vec3 wo = sphere_local(n, kView);
+    const LightFrame frame = sphere_frame(n);
+    const Vec3 wo = frame.local(kView);
     Channels sum{}, squares{};
     for (int i = 0; i < options.samples; ++i) {
       const DrawnDirection drawn = sampler.sample_wi(wo, point(random, options, i));
       if (drawn.pdf <= 0) continue;
-      const Channels light = light_from(brdf, drawn.wi, wo, environment.radiance(to_world(drawn.wi)));
+      const Channels light = light_from(brdf, drawn.wi, wo, environment.radiance(frame.world(drawn.wi)));
       for (std::size_t c = 0; c < 3; ++c) {
         const double value = light[c] / drawn.pdf;
         sum[c] += value;
@@ -160,33 +215,17 @@ LightMoments moments_in_environment(BrdfRef brdf, SamplerRef guide, std::span<co
   const Image black(options.size, options.size, 3);
   LightMoments moments{black, std::vector(samplers.size(), black)};
   for_each_pixel(options, [&](Vec3 n, Pcg32& random, int x, int y) {
-    const ToWorld to_world(n);
-    const Vec3 wo = sphere_local(n, kView);
+    const LightFrame frame = sphere_frame(n);
+    const Vec3 wo = frame.local(kView);
     Channels mean{};
     std::vector<Channels> squares(samplers.size());
-    // Drawn from the guide and from every disc alike, a direction stands for the inverse of all their
-    // densities together: the balance heuristic [Veach 1995].
-    const double count = options.samples;
-    const auto add = [&](Vec3 wi, Vec3 w) {
-      double density = count * guide.pdf(wi, wo);
-      for (const DistantDisc& disc : environment.discs)
-        if (in_disc(disc, w)) density += count / (kTwoPi * cap_of(disc));
-      if (!(density > 0)) return;
+    for_each_draw(guide, environment, frame, wo, stratified, random, [&](Vec3 wi, Vec3 w, double density) {
       const Channels light = light_from(brdf, wi, wo, environment.radiance(w));
       for (std::size_t c = 0; c < 3; ++c) mean[c] += light[c] / density;
       for (std::size_t s = 0; s < samplers.size(); ++s)
         if (const double pdf = samplers[s].pdf(wi, wo); pdf > 0)
           for (std::size_t c = 0; c < 3; ++c) squares[s][c] += light[c] * light[c] / (pdf * density);
-    };
-    for (int i = 0; i < options.samples; ++i) {
-      const DrawnDirection drawn = guide.sample_wi(wo, point(random, stratified, i));
-      if (drawn.pdf > 0) add(drawn.wi, to_world(drawn.wi));
-    }
-    for (const DistantDisc& disc : environment.discs)
-      for (int i = 0; i < options.samples; ++i) {
-        const Vec3 w = direction_in(disc, point(random, stratified, i));
-        add(sphere_local(n, w), w);
-      }
+    });
     for (std::size_t c = 0; c < 3; ++c) {
       moments.mean.at(x, y)[c] = static_cast<float>(mean[c]);
       for (std::size_t s = 0; s < samplers.size(); ++s)

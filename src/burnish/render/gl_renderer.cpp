@@ -45,6 +45,7 @@ out vec4 burnish_color;
 struct burnish_Light { vec4 place, intensity; };
 layout(std140, binding = 0) uniform burnish_Lights { burnish_Light burnish_lights[512]; };
 uniform int burnish_light_count;
+uniform bool burnish_first;
 uniform vec3 burnish_eye;
 @DECLARATIONS
 void main() {
@@ -54,6 +55,7 @@ void main() {
   vec3 burnish_v = normalize(burnish_eye - burnish_place);
   vec3 wo = vec3(dot(burnish_t, burnish_v), dot(burnish_s, burnish_v), dot(burnish_n, burnish_v));
   vec3 burnish_sum = vec3(0.0);
+@ENVIRONMENT
   if (wo.z > 0.0) {
 @VIEW
     for (int burnish_i = 0; burnish_i < burnish_light_count; ++burnish_i) {
@@ -79,6 +81,9 @@ std::string fragment_shader(const SurfaceShader& surface) {
   put("@VALUE", surface.value);
   put("@LIGHT", surface.light);
   put("@VIEW", surface.view);
+  put("@ENVIRONMENT", surface.environment.empty()
+                          ? ""
+                          : fmt::format("  if (burnish_first) burnish_sum = {};", surface.environment));
   put("@DECLARATIONS", surface.declarations);
   return text;
 }
@@ -303,6 +308,7 @@ void GlRenderer::draw() const {
       const State::Material& m = s.materials[part.material];
       glProgramUniform1i(m.program, glGetUniformLocation(m.program, "burnish_light_count"),
                          static_cast<GLint>(count));
+      glProgramUniform1i(m.program, glGetUniformLocation(m.program, "burnish_first"), first == 0);
       glBindTextures(0, static_cast<GLsizei>(m.textures.size()), m.textures.data());
       s.draw_part(part, m.program);
     }

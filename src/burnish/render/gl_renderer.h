@@ -19,6 +19,10 @@ struct SurfaceShader {
   std::string light;         ///< statements, for every light above the horizon: have vec3 wi too
   std::string value;         ///< expression of f_r, vec3, in 1/sr
   std::vector<GlTexture> textures;
+  /// Expression of the radiance that is reflected of light from all around, vec3, or empty: has the vec3
+  /// burnish_n, burnish_t, burnish_s, burnish_v, unit vectors of the world: normal, tangent, s at right
+  /// angles, to the viewer.
+  std::string environment{};
 };
 
 /// Of a factored BRDF; textures of `precision`. Throws Error as split_shader.

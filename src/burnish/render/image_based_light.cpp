@@ -8,17 +8,16 @@
 #include <burnish/math/angles.h>
 #include <burnish/math/parallel.h>
 #include <burnish/render/image_based_light.h>
+#include <burnish/render/lobe_parts.h>
+#include <burnish/render/parabolic_pair.h>
 
 namespace burnish {
 namespace {
 
-constexpr int kRings = 96;   // angles gamma about an axis, gamma = pi (ring / kRings)^2
-constexpr int kSpokes = 32;  // azimuths of a ring of the sky
-constexpr int kDiscPoints = 64;
+constexpr int kRings = 96;    // angles gamma about an axis, gamma = pi (ring / kRings)^2
+constexpr int kSpokes = 32;   // azimuths of a ring of the sky
 constexpr int kMostMaps = 9;  // of a mean and four orders
 constexpr double kLeastSine = 1e-6;
-
-using Channels = std::array<double, 3>;
 
 double ring_angle(double ring) noexcept {
   return kPi * (ring / kRings) * (ring / kRings);
@@ -34,46 +33,6 @@ struct Frame {
     z = {b, -up.z, 1 - up.z * up.z * a};
   }
 };
-
-// Half 1 is half 0 seen in a mirror that exchanges up and down.
-Vec3 in_half(int half, Vec3 w) noexcept {
-  return half == 0 ? w : Vec3{w.x, -w.y, w.z};
-}
-
-// The direction of the square [-1, 1]^2; outside the unit circle it lies below the map's horizon, so that
-// texels that a reader touches beyond it continue the map.
-Vec3 map_direction(double x, double z) noexcept {
-  const double r = x * x + z * z;
-  return {2 * x / (1 + r), (1 - r) / (1 + r), 2 * z / (1 + r)};
-}
-
-bool of_view_alone(const Table& table, const FactorUse& use) noexcept {
-  const auto alone = [](const Projection& p) {
-    return p.kind == Projection::Kind::affine && p.wi == 0 && p.mirror == 0;
-  };
-  return alone(use.projection) && (table.layout.shape != TableShape::grid || alone(use.projection_y));
-}
-
-// The lobe with some of its factors, and the tables they need.
-FactoredBrdf part_of(const FactoredBrdf& brdf, std::vector<double> scale,
-                     const std::vector<FactorUse>& uses) {
-  std::vector<Table> tables;
-  Lobe lobe{.scale = std::move(scale), .factors = uses};
-  for (FactorUse& use : lobe.factors) {
-    const Table& table = brdf.tables()[static_cast<std::size_t>(use.table)];
-    const auto known = std::ranges::find(tables, table.name, &Table::name);
-    use.table = static_cast<int>(known - tables.begin());
-    if (known == tables.end()) tables.push_back(table);
-  }
-  return {brdf.channels(), std::move(tables), {std::move(lobe)}};
-}
-
-Channels eval_channels(const FactoredBrdf& brdf, Vec3 wi, Vec3 wo) noexcept {
-  Channels f{};
-  brdf.eval(wi, wo, std::span(f).first(static_cast<std::size_t>(brdf.channels())));
-  if (brdf.channels() == 1) f[1] = f[2] = f[0];
-  return f;
-}
 
 // sin(theta) and cos(theta) of a slice's view, kept off the horizon, where a BRDF is 0.
 Vec3 slice_view(int slice, int slices) noexcept {
@@ -161,26 +120,14 @@ std::vector<double> ring_areas() {
   return areas;
 }
 
-struct DiscPoint {
-  Vec3 direction;
-  double light;  // radiance times solid angle
-};
-
-std::vector<DiscPoint> disc_points(const Environment& environment) {
-  std::vector<DiscPoint> points;
-  for (const DistantDisc& disc : environment.discs) {
-    const Frame frame(in_half(disc.direction.y < 0, disc.direction));
-    const double cap = 1 - std::cos(disc.radius);
-    for (int i = 0; i < kDiscPoints; ++i) {
-      // Fibonacci's spiral, even over the solid angle
-      const double fall = cap * (i + 0.5) / kDiscPoints, sine = std::sqrt(fall * (2 - fall));
-      const double phi = i * kPi * (3 - std::sqrt(5.0));
-      const Vec3 across = std::cos(phi) * frame.x + std::sin(phi) * frame.z;
-      points.push_back({(1 - fall) * disc.direction + sine * in_half(disc.direction.y < 0, across),
-                        disc.radiance * kTwoPi * cap / kDiscPoints});
+// A picture is summed over its texels, of 2.8 degrees: narrower than what the maps show.
+void append_texels(std::vector<DiscPoint>& points, const SkyImage& picture) {
+  const SkyImage sky(smaller_sky(picture.image(), 128));
+  for (int y = 0; y < sky.image().height; ++y)
+    for (int x = 0; x < sky.image().width; ++x) {
+      const auto texel = sky.image().at(x, y);
+      points.push_back({sky.direction(x, y), Rgb(sky.solid_angle(y)) * Rgb(texel[0], texel[1], texel[2])});
     }
-  }
-  return points;
 }
 
 }  // namespace
@@ -220,8 +167,7 @@ Rgb ImageBasedLight::radiance(Vec3 n, Vec3 v) const noexcept {
     const Vec3 axis = in_half(half, axis_world), tilt = in_half(half, tilt_world);
     const Frame frame(axis);
     const auto harmonics = harmonics_of(dot(tilt, frame.x), dot(tilt, frame.z));
-    const double scale = 0.5 * (side - 1) / (1 + axis.y);
-    const double x = axis.x * scale + 0.5 * (side - 1), y = axis.z * scale + 0.5 * (side - 1);
+    const auto [x, y] = map_place(axis, side);
     const int x0 = std::clamp(static_cast<int>(x), 0, side - 2),
               y0 = std::clamp(static_cast<int>(y), 0, side - 2);
     Channels light{};
@@ -260,35 +206,28 @@ ImageBasedLight prefilter(const FactoredBrdf& brdf, const Environment& environme
   const auto maps = static_cast<std::size_t>(result.map_count());
   std::vector<std::vector<Kernel>> kernels;  // of a lobe, of a slice
   for (const Lobe& lobe : brdf.lobes()) {
-    std::vector<FactorUse> outside, inside;
-    for (const FactorUse& use : lobe.factors)
-      (of_view_alone(brdf.tables()[static_cast<std::size_t>(use.table)], use) ? outside : inside)
-          .push_back(use);
-    result.lobes.push_back(
-        {part_of(brdf, lobe.scale, outside), {}, std::vector<float>(maps * slices * side * side * 6)});
-    const FactoredBrdf kernel = part_of(brdf, std::vector(lobe.scale.size(), 1.0), inside);
+    auto [outside, inside] = parts_of(brdf, lobe);
+    result.lobes.push_back({std::move(outside), {}, std::vector<float>(maps * slices * side * side * 6)});
     std::vector<Kernel>& of_slices = kernels.emplace_back(slices);
-    for_each_chunk(slices, 1, [&](std::size_t s, std::size_t, std::size_t) {
-      of_slices[s] = kernel_of(kernel, slice_view(static_cast<int>(s), options.slices), options.harmonics);
+    for_each_chunk(slices, 1, [&, &inside = inside](std::size_t s, std::size_t, std::size_t) {
+      of_slices[s] = kernel_of(inside, slice_view(static_cast<int>(s), options.slices), options.harmonics);
     });
     for (const Kernel& k : of_slices) result.lobes.back().axis.push_back(k.axis);
   }
 
   const std::vector<double> areas = ring_areas();
-  const std::vector<DiscPoint> points = disc_points(environment);
+  std::vector<DiscPoint> points = disc_points(environment);
+  if (environment.picture) append_texels(points, *environment.picture);
   Environment sky = environment;
   sky.discs.clear();
   for_each_chunk(side, 1, [&](std::size_t row, std::size_t, std::size_t) {
     std::vector<RingLight> light(kRings + 1);
     for (std::size_t column = 0; column < 2 * side; ++column) {
       const int half = column >= side;
-      const auto place = [&](std::size_t i) {
-        return 2.0 * static_cast<double>(i) / static_cast<double>(side - 1) - 1;
-      };
-      const Vec3 axis = map_direction(place(column % side), place(row));
+      const Vec3 axis = map_direction(static_cast<int>(column % side), static_cast<int>(row), options.side);
       const Frame frame(axis);
       std::ranges::fill(light, RingLight{});
-      for (int ring = 0; ring <= kRings; ++ring) {
+      for (int ring = 0; !environment.picture && ring <= kRings; ++ring) {
         const double sine = std::sin(ring_angle(ring)), cosine = std::cos(ring_angle(ring));
         const double turn = 0.618 * ring;  // spokes of neighbouring rings do not line up
         for (int spoke = 0; spoke < kSpokes; ++spoke) {
@@ -308,8 +247,8 @@ ImageBasedLight prefilter(const FactoredBrdf& brdf, const Environment& environme
         const double low = ring_angle(static_cast<double>(ring)),
                      high = ring_angle(static_cast<double>(ring) + 1);
         const double part = (std::atan2(sine, along) - low) / (high - low);
-        add(light[ring], harmonics, (1 - part) * point.light, 1);
-        add(light[ring + 1], harmonics, part * point.light, 1);
+        add(light[ring], harmonics, 1 - part, point.light);
+        add(light[ring + 1], harmonics, part, point.light);
       }
       for (std::size_t j = 0; j < kernels.size(); ++j)
         for (std::size_t slice = 0; slice < slices; ++slice)
