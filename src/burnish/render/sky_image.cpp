@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -16,7 +17,8 @@ namespace burnish {
 
 namespace {
 
-constexpr int kWidest = 16384;
+constexpr int kWidest = 8192;
+constexpr std::uint64_t kMostCompressed = 4096;  // bytes of pixels a byte of the file
 
 double sum_of(std::span<const float> rgb) noexcept {
   return static_cast<double>(rgb[0]) + rgb[1] + rgb[2];
@@ -129,6 +131,10 @@ SkyImage parse_sky(const FileBytes& file) {
           file.name,
           fmt::format("a picture of all directions, twice as wide as high, at most {} wide", kWidest),
           fmt::format("{} x {}", width, height));
+    const auto stored = static_cast<std::uint64_t>(width * height) * 3 * sizeof(std::uint16_t);
+    if (stored / kMostCompressed > file.bytes.size())
+      throw Error::in_file(file.name, fmt::format("data of {} x {} pixels", width, height),
+                           fmt::format("{} bytes", file.bytes.size()));
     for (const char* name : {"R", "G", "B"}) {
       const Imf::Channel* channel = input.header().channels().findChannel(name);
       if (!channel || channel->xSampling != 1 || channel->ySampling != 1)

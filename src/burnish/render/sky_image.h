@@ -43,7 +43,7 @@ class SkyImage {
 Image smaller_sky(Image image, int width);
 
 /// An OpenEXR file with channels R, G and B. Negative values count as 0. Throws Error if it is none, is not
-/// twice as wide as high or wider than 16384, or has values that are not finite.
+/// twice as wide as high or wider than 8192 or too short for its size, or has values that are not finite.
 SkyImage parse_sky(const FileBytes& file);
 
 }  // namespace burnish

@@ -117,6 +117,15 @@ TEST(SkyImage, ReadsOpenExrAndRefusesWhatIsNone) {
   for (std::size_t size = 0; size < bytes.size(); size += 37)
     EXPECT_THROW(parse_sky(memory_file(bytes.substr(0, size))), Error) << size;
   EXPECT_THROW(SkyImage(Image(8, 4, 1)), Error);
+  // a header that promises 8192 x 4096 pixels
+  std::string lying = bytes;
+  for (const char* name : {"dataWindow", "displayWindow"}) {
+    const std::size_t box =
+        lying.find(name) + std::string(name).size() + 1 + 6 + 4;  // type "box2i", its size
+    lying[box + 8] = '\xff', lying[box + 9] = '\x1f';
+    lying[box + 12] = '\xff', lying[box + 13] = '\x0f';
+  }
+  EXPECT_THROW(parse_sky(memory_file(lying)), Error);
 }
 
 }  // namespace
