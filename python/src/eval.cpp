@@ -23,31 +23,30 @@ struct Job {
   std::size_t count, channels;
 };
 
-// A part of a model's evaluation, through buffers where arrays are not in planes.
+// A part of a model's evaluation: as arrays lie if all are in planes or all in rows, else by rows.
 void eval_model(const FactoredEvaluator& evaluator, const Job<float>& job, std::size_t begin,
                 std::size_t end) {
-  alignas(64) Buffer buffers[6];
-  const auto directions = [&](std::size_t first, std::size_t count) {
-    const auto i = components<3>(job.wi, first, count, buffers);
-    const auto o = components<3>(job.wo, first, count, buffers + 3);
-    return DirectionSpans{i[0], i[1], i[2], o[0], o[1], o[2]};
-  };
   if (job.wi.planes() && job.wo.planes() && job.f.planes()) {
-    // as it lies: nothing is copied
+    const auto component = [&](const Rows<const float>& w, std::size_t k) {
+      return std::span<const float>(w.at(begin, k), end - begin);
+    };
     const auto plane = static_cast<std::size_t>(job.f.component);
-    evaluator.eval(directions(begin, end - begin),
+    evaluator.eval({component(job.wi, 0), component(job.wi, 1), component(job.wi, 2), component(job.wo, 0),
+                    component(job.wo, 1), component(job.wo, 2)},
                    {job.f.at(begin, 0), (job.channels - 1) * plane + (end - begin)}, plane);
     return;
   }
-  std::vector<float> values(job.channels * kBlock);
-  for (std::size_t i = begin; i < end; i += kBlock) {
-    const std::size_t count = std::min(kBlock, end - i);
-    evaluator.eval(directions(i, count), std::span(values).first(job.channels * count));
-    if (job.channels == 3 && job.f.row == 3 && job.f.component == 1)
-      to_rows(values.data(), values.data() + count, values.data() + 2 * count, count, job.f.at(i, 0));
-    else
-      for (std::size_t c = 0; c < job.channels; ++c)
-        for (std::size_t k = 0; k < count; ++k) *job.f.at(i + k, c) = values[c * count + k];
+  const bool in_place = job.f.in_rows(job.channels);
+  const std::size_t most = job.wi.in_rows(3) && job.wo.in_rows(3) && in_place ? end - begin : kBlock;
+  std::vector<float> values(in_place ? 0 : job.channels * kBlock);
+  float wi[3 * kBlock], wo[3 * kBlock];
+  for (std::size_t i = begin; i < end; i += most) {
+    const std::size_t count = std::min(most, end - i);
+    float* const f = in_place ? job.f.at(i, 0) : values.data();
+    evaluator.eval(DirectionRows{in_rows(job.wi, i, count, wi), in_rows(job.wo, i, count, wo)},
+                   {f, job.channels * count});
+    for (std::size_t k = 0; k < count && !in_place; ++k)
+      for (std::size_t c = 0; c < job.channels; ++c) *job.f.at(i + k, c) = f[k * job.channels + c];
   }
 }
 
@@ -108,25 +107,22 @@ nb::object eval(const OpenedBrdf& brdf, const Array<const T>& wi, const Array<co
   return one && out.is_none() ? nb::object(result.array[0]) : result.array;
 }
 
-// Seconds of FactoredEvaluator::eval on planes in one call and thread, the best of `repeats`: what Python's
-// eval is measured against.
+// Seconds of one call of FactoredEvaluator::eval in one thread, the best of `repeats`, on arrays that are all
+// in planes or all in rows: what Python's eval is measured against.
 double time_eval(const OpenedModel& model, const Array<const float>& wi, const Array<const float>& wo,
-                 int repeats) {
-  Rows<const float> rows_i = rows_of<float>(wi, "wi", 3), rows_o = rows_of<float>(wo, "wo", 3);
-  const std::size_t count = match(rows_i, rows_o, "wi and wo");
+                 const nb::object& out, int repeats) {
+  Job<float> job{rows_of<float>(wi, "wi", 3),
+                 rows_of<float>(wo, "wo", 3),
+                 {},
+                 0,
+                 static_cast<std::size_t>(model.brdf().channels())};
+  job.count = match(job.wi, job.wo, "wi and wo");
+  job.f = make_result<float>(out, job.count, job.channels, false).rows;
   const nb::gil_scoped_release released;
-  std::vector<float> planes(6 * count), f(static_cast<std::size_t>(model.brdf().channels()) * count);
-  for (std::size_t k = 0; k < 3; ++k)
-    for (std::size_t i = 0; i < count; ++i) {
-      planes[k * count + i] = *rows_i.at(i, k);
-      planes[(k + 3) * count + i] = *rows_o.at(i, k);
-    }
-  const auto plane = [&](std::size_t k) { return std::span<const float>(planes).subspan(k * count, count); };
-  const DirectionSpans directions{plane(0), plane(1), plane(2), plane(3), plane(4), plane(5)};
   double best = std::numeric_limits<double>::infinity();
   for (int r = 0; r < repeats; ++r) {
     const auto start = std::chrono::steady_clock::now();
-    model.evaluator().eval(directions, f);
+    eval_model(model.evaluator(), job, 0, job.count);
     best = std::min(best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
   return best;
@@ -137,8 +133,8 @@ constexpr const char* kEvalDoc =
     "wi, wo: unit vectors to the light and the viewer, (N, 3) or (3,), both float32 or both float64, any\n"
     "strides, read where they lie; normal (0, 0, 1). Returns (N, channels) of the same type, or fills and\n"
     "returns `out`. float64 is the definition; float32 of a model is the fast evaluator. nan stands where a\n"
-    "measurement knows nothing, and, but for float32 of models, where wi or wo is no unit vector to 1 %.\n"
-    "Arrays whose components lie in planes (order='F') are fastest, and the result is laid out like them.\n"
+    "measurement knows nothing and where wi or wo is no unit vector to 1 %.\n"
+    "Rows (order='C') and planes of components (order='F') cost the same; of planes the result is planes.\n"
     "Uses all threads; other Python threads go on meanwhile.";
 
 }  // namespace
@@ -156,7 +152,7 @@ void bind_eval(nb::module_& m) {
            nb::sig("def eval(self, wi: NDArray[numpy.float64], wo: NDArray[numpy.float64], "
                    "out: NDArray[numpy.float64] | None = None) -> NDArray[numpy.float64]"));
   m.def("_time_eval", &time_eval, nb::arg("model"), nb::arg("wi").noconvert(), nb::arg("wo").noconvert(),
-        nb::arg("repeats"));
+        nb::arg("out"), nb::arg("repeats"));
 }
 
 }  // namespace burnish::python

@@ -32,6 +32,10 @@ struct Rows {
   }
   /// True if each component lies in one piece: what kernels read and write as it is.
   bool planes() const noexcept { return row == 1; }
+  /// True if rows of that width follow one another: NumPy's usual order.
+  bool in_rows(std::size_t width) const noexcept {
+    return component == 1 && row == static_cast<std::int64_t>(width);
+  }
 };
 
 /// Reads shape (N, width) or (width,). Throws Error for another.
@@ -98,7 +102,7 @@ std::array<std::span<const float>, kWidth> components(const Rows<const T>& rows,
       for (std::size_t k = 0; k < kWidth; ++k) result[k] = {rows.at(begin, k), count};
       return result;
     }
-    if (kWidth == 3 && rows.row == 3 && rows.component == 1) {  // NumPy's usual order
+    if (kWidth == 3 && rows.in_rows(3)) {
       to_planes(rows.at(begin, 0), count, buffers[0], buffers[1], buffers[2]);
       return result;
     }
@@ -106,6 +110,16 @@ std::array<std::span<const float>, kWidth> components(const Rows<const T>& rows,
   for (std::size_t k = 0; k < kWidth; ++k)
     for (std::size_t i = 0; i < count; ++i) buffers[k][i] = static_cast<float>(*rows.at(begin + i, k));
   return result;
+}
+
+/// Rows [begin, begin + count) of three one after the other: where they lie if they are, else copied to
+/// `buffer`, which has 3 * kBlock floats.
+inline std::span<const float> in_rows(const Rows<const float>& rows, std::size_t begin, std::size_t count,
+                                      float* buffer) noexcept {
+  if (rows.in_rows(3)) return {rows.at(begin, 0), 3 * count};
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t k = 0; k < 3; ++k) buffer[3 * i + k] = *rows.at(begin + i, k);
+  return {buffer, 3 * count};
 }
 
 }  // namespace burnish::python

@@ -13,6 +13,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "burnish/eval/factored_eval.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
@@ -21,15 +22,25 @@
 #ifndef BURNISH_EVAL_FACTORED_ARGUMENTS
 #define BURNISH_EVAL_FACTORED_ARGUMENTS
 namespace burnish {
-// wi_x, wi_y, wi_z, wo_x, wo_y, wo_z from one direction on.
+// wi_x, wi_y, wi_z, wo_x, wo_y, wo_z of a direction every `step` floats: 1 in planes, 3 in rows.
 struct DirectionPointers {
   const float* component[6];
-  std::size_t first = 0;
+  std::size_t step = 1;
 
-  const float* operator[](std::size_t k) const { return component[k] + first; }
+  const float* at(std::size_t k, std::size_t i) const { return component[k] + i * step; }
+};
+
+// Channel c of direction i goes to f[c * plane + i * step]; step is 1 or the number of channels.
+struct ValuePointers {
+  float* f;
+  std::size_t plane, step;
+
+  float* at(std::size_t channel, std::size_t i) const { return f + channel * plane + i * step; }
+  ValuePointers from(std::size_t channel, std::size_t i) const { return {at(channel, i), plane, step}; }
 };
 
 constexpr std::size_t kMostBlock = 128;  // directions that go through the steps together
+constexpr std::size_t kCacheLine = 16;   // floats
 constexpr std::size_t kTogether = FactoredPlan::kTogether;
 }  // namespace burnish
 #endif
@@ -57,6 +68,18 @@ HWY_INLINE Lane length(Lane x, Lane y) {
 HWY_INLINE Lane length(Lane x, Lane y, Lane z) {
   return sqrt(mul_add(x, x, mul_add(y, y, z * z)));
 }
+// The larger | |w|^2 - 1 | of two vectors as an integer, which is largest for not-a-number.
+HWY_INLINE hn::Vec<DI> excess(const Lane (&w)[6]) {
+  const auto of = [](Lane x, Lane y, Lane z) HWY_ATTR {
+    const Lane signed_excess = mul_add(x, x, mul_add(y, y, mul_add(z, z, Lane(-1.0))));
+    return hn::BitCast(DI(), hn::Abs(signed_excess.raw));
+  };
+  return hn::Max(of(w[0], w[1], w[2]), of(w[3], w[4], w[5]));
+}
+// To 1 %, as readers of directions ask for.
+HWY_INLINE hn::Mask<DI> no_directions(hn::Vec<DI> excess) {
+  return hn::Gt(excess, hn::BitCast(DI(), hn::Set(D(), 0.02f)));
+}
 
 // A block's directions on the way to positions in tables. Every step is a loop of its own, so that none has a
 // decision in it; stores are hidden behind roots and divisions.
@@ -64,22 +87,54 @@ struct Projector {
   alignas(64) float sum_x[kMostBlock], sum_y[kMostBlock], sum_z[kMostBlock],
       sum_length[kMostBlock];  // wi + wo
   // of the projection at hand: (x, y), its length r, and den with r / den = tan(theta / 2)
+  alignas(64) float directions[6][kMostBlock];  // of rows
   alignas(64) float own_x[kMostBlock], own_y[kMostBlock], r[kMostBlock], den[kMostBlock];
+  const float* in[6];  // planes of wi and wo
   const float *x, *y;
   std::size_t count;
+  bool all_directions;
 
   template <class Step>
   HWY_INLINE void for_each(const Step& step) const {
     for (std::size_t i = 0; i < count; i += kLanes) step(i);
   }
 
-  void add(const DirectionPointers& in) {
+  // Takes rows apart, adds the two directions and looks whether they are unit vectors: all while roots are
+  // taken.
+  template <bool kRows, bool kSum>
+  void begin() {
+    const float *const wi = in[0], *const wo = in[3];
+    if constexpr (kRows)
+      for (std::size_t k = 0; k < 6; ++k) in[k] = directions[k];
+    auto worst = hn::Zero(DI());
     for_each([&](std::size_t i) HWY_ATTR {
-      const Lane u = load(in[0] + i) + load(in[3] + i), v = load(in[1] + i) + load(in[4] + i),
-                 w = load(in[2] + i) + load(in[5] + i);
-      store(u, sum_x + i), store(v, sum_y + i), store(w, sum_z + i);
-      store(length(u, v, w), sum_length + i);
+      Lane w[6];
+      if constexpr (kRows) {
+        hn::LoadInterleaved3(D(), wi + 3 * i, w[0].raw, w[1].raw, w[2].raw);
+        hn::LoadInterleaved3(D(), wo + 3 * i, w[3].raw, w[4].raw, w[5].raw);
+        for (int k = 0; k < 6; ++k) store(w[k], directions[k] + i);
+        for (std::size_t k = 3 * i; k < 3 * (i + kLanes); k += kCacheLine)  // for the next block
+          hwy::Prefetch(wi + 3 * kMostBlock + k), hwy::Prefetch(wo + 3 * kMostBlock + k);
+      } else {
+        for (std::size_t k = 0; k < 6; ++k) w[k] = load(in[k] + i);
+      }
+      worst = hn::Max(worst, excess(w));
+      if constexpr (kSum) {
+        const Lane u = w[0] + w[3], v = w[1] + w[4], z = w[2] + w[5];
+        store(u, sum_x + i), store(v, sum_y + i), store(z, sum_z + i);
+        store(length(u, v, z), sum_length + i);
+      }
     });
+    all_directions = hn::AllFalse(DI(), no_directions(worst));
+  }
+
+  void begin(const DirectionPointers& from, std::size_t first, std::size_t number, bool sum) {
+    count = number;
+    for (std::size_t k = 0; k < 6; ++k) in[k] = from.at(k, first);
+    if (from.step == 3)
+      sum ? begin<true, true>() : begin<true, false>();
+    else
+      sum ? begin<false, true>() : begin<false, false>();
   }
 
   // Of a vector (x, y, z) and `total`, its length; none: 1.
@@ -97,7 +152,7 @@ struct Projector {
   }
 
   // cos theta_d = |wi + wo| / 2, sin theta_d = |wi - wo| / 2
-  void project_difference_angle(const DirectionPointers& in) {
+  void project_difference_angle() {
     for_each([&](std::size_t i) HWY_ATTR {
       store(length(load(in[0] + i) - load(in[3] + i), load(in[1] + i) - load(in[4] + i),
                    load(in[2] + i) - load(in[5] + i)),
@@ -107,7 +162,7 @@ struct Projector {
   }
 
   // The same of the mirrored light, for disks at azimuth 0.
-  void project_deviation_angle(const DirectionPointers& in) {
+  void project_deviation_angle() {
     x = r, y = own_y;
     for_each([&](std::size_t i) HWY_ATTR {
       const Lane dx = load(in[0] + i) - load(in[3] + i), dy = load(in[1] + i) - load(in[4] + i),
@@ -119,7 +174,7 @@ struct Projector {
   }
 
   // 2 d: wi - wo along the axes of the frame of h [Rusinkiewicz 1998]; of wi + wo they have no part
-  void project_difference(const DirectionPointers& in) {
+  void project_difference() {
     x = own_x, y = own_y;
     for_each([&](std::size_t i) HWY_ATTR {
       const Lane dx = load(in[0] + i) - load(in[3] + i), dy = load(in[1] + i) - load(in[4] + i),
@@ -136,7 +191,7 @@ struct Projector {
     });
   }
 
-  void project_affine(const DirectionPointers& in, const Projection& p) {
+  void project_affine(const Projection& p) {
     x = own_x, y = own_y;
     const Lane wi(p.wi), wo(p.wo), m(p.mirror), n(p.n);
     const bool equal = p.wi == p.wo;  // then rounded once, like Projection's reference
@@ -153,7 +208,7 @@ struct Projector {
     });
   }
 
-  void project(const FactoredPlan::Source& source, const DirectionPointers& in) {
+  void project(const FactoredPlan::Source& source) {
     using Kind = FactoredPlan::Source::Kind;
     switch (source.kind) {
       case Kind::wi:
@@ -163,13 +218,13 @@ struct Projector {
       case Kind::half:
         return project_up(sum_x, sum_y, sum_z, sum_length, source.radius);
       case Kind::difference_angle:
-        return project_difference_angle(in);
+        return project_difference_angle();
       case Kind::deviation_angle:
-        return project_deviation_angle(in);
+        return project_deviation_angle();
       case Kind::difference:
-        return project_difference(in);
+        return project_difference();
       case Kind::affine:
-        return project_affine(in, source.projection);
+        return project_affine(source.projection);
     }
   }
 
@@ -374,11 +429,11 @@ struct Scratch {
   Rows rows;
 };
 
-// Of up to kMostBlock directions, in memory that whole vectors can be read from; channel c of direction i
-// goes to f[c * plane + i].
+// Of the directions that the projector began with.
 template <int kChannels>
-void eval_group(const FactoredPlan& plan, std::size_t group, const DirectionPointers& in, std::size_t stride,
-                std::size_t count, Scratch& scratch, float* f, std::size_t plane) {
+void eval_group(const FactoredPlan& plan, std::size_t group, std::size_t stride, Scratch& scratch,
+                const ValuePointers& out) {
+  const std::size_t count = scratch.projector.count;
   for (const FactoredPlan::Product& product : plan.products) {
     const bool first = &product == plan.products.data();
     for (std::size_t c = 0; c < kChannels; ++c)
@@ -398,59 +453,85 @@ void eval_group(const FactoredPlan& plan, std::size_t group, const DirectionPoin
       }
   }
   // zero below the horizon
-  const std::size_t stored = std::min<std::size_t>(kChannels, plan.channels - group * kTogether);
-  const float *const wi_z = in[2], *const wo_z = in[5];
-  float* const to = f + group * kTogether * plane;
-  for (std::size_t i = 0; i < count; i += kLanes) {
+  const float *const wi_z = scratch.projector.in[2], *const wo_z = scratch.projector.in[5];
+  const auto finish = [&](std::size_t i, Lane(&value)[kChannels]) HWY_ATTR {
     const Lane lit = if_positive(load(wi_z + i), load(wo_z + i));
+    for (std::size_t c = 0; c < kChannels; ++c)
+      value[c] = if_positive(lit, load(scratch.sum + c * kMostBlock + i));
+  };
+  const std::size_t stored = std::min<std::size_t>(kChannels, plan.channels - group * kTogether);
+  const ValuePointers to = out.from(group * kTogether, 0);
+  Lane value[kChannels];
+  std::size_t i = 0;
+  if (to.step == 1) {
+    for (; i + kLanes <= count; i += kLanes) {
+      finish(i, value);
+      for (std::size_t c = 0; c < stored; ++c) store(value[c], to.at(c, i));
+    }
+  } else if (kChannels == 3 && to.step == 3) {
+    for (; i + kLanes <= count; i += kLanes) {
+      finish(i, value);
+      hn::StoreInterleaved3(value[0].raw, value[1 % kChannels].raw, value[2 % kChannels].raw, D(),
+                            to.at(0, i));
+    }
+  }
+  for (; i < count; i += kLanes) {
+    finish(i, value);
     for (std::size_t c = 0; c < stored; ++c) {
-      const Lane value = if_positive(lit, load(scratch.sum + c * kMostBlock + i));
-      if (i + kLanes <= count) {
-        store(value, to + c * plane + i);
-      } else {
-        float rest[kLanes];
-        store(value, rest);
-        to[c * plane + i] = rest[0];  // one direction takes no call
-        if (i + 1 < count) std::copy(rest + 1, rest + (count - i), to + c * plane + i + 1);
-      }
+      float lanes[kLanes];
+      store(value[c], lanes);
+      for (std::size_t k = i; k < std::min(count, i + kLanes); ++k) *to.at(c, k) = lanes[k - i];
     }
   }
 }
 
-void eval_block(const FactoredPlan& plan, const DirectionPointers& in, std::size_t stride, std::size_t count,
-                Scratch& scratch, float* f, std::size_t plane) {
+// Not-a-number for what is no pair of directions.
+void spoil_others(const Projector& p, std::size_t channels, const ValuePointers& out) {
+  for (std::size_t i = 0; i < p.count; i += kLanes) {
+    Lane w[6];
+    for (std::size_t k = 0; k < 6; ++k) w[k] = load(p.in[k] + i);
+    std::int32_t other[kLanes];
+    hn::StoreU(hn::VecFromMask(DI(), no_directions(excess(w))), DI(), other);
+    for (std::size_t k = i; k < std::min(p.count, i + kLanes); ++k)
+      for (std::size_t c = 0; c < channels && other[k - i] != 0; ++c)
+        *out.at(c, k) = std::numeric_limits<float>::quiet_NaN();
+  }
+}
+
+// Up to kMostBlock directions from `first` on, in memory that whole vectors can be read from.
+void eval_block(const FactoredPlan& plan, const DirectionPointers& in, std::size_t first, std::size_t count,
+                std::size_t stride, Scratch& scratch, const ValuePointers& out) {
   Projector& projector = scratch.projector;
-  projector.count = count;
-  if (plan.needs_sum) projector.add(in);
+  projector.begin(in, first, count, plan.needs_sum);
   for (const FactoredPlan::Source& source : plan.sources) {
-    projector.project(source, in);
+    projector.project(source);
     for (const FactoredPlan::Position& position : source.positions)
       projector.find_positions(position, scratch.positions + position.slot * stride, stride);
   }
   for (std::size_t group = 0; group * kTogether < plan.channels; ++group)
-    plan.channels - group* kTogether == 1 ? eval_group<1>(plan, group, in, stride, count, scratch, f, plane)
-                                          : eval_group<3>(plan, group, in, stride, count, scratch, f, plane);
+    plan.channels - group* kTogether == 1 ? eval_group<1>(plan, group, stride, scratch, out)
+                                          : eval_group<3>(plan, group, stride, scratch, out);
+  if (!projector.all_directions) spoil_others(projector, plan.channels, out);
 }
 
-void eval_directions(const FactoredPlan& plan, DirectionPointers in, std::size_t count, float* f,
-                     std::size_t plane) {
+void eval_directions(const FactoredPlan& plan, const DirectionPointers& in, std::size_t count,
+                     const ValuePointers& out) {
   Scratch scratch;
   constexpr std::size_t kPositions = FactoredPlan::kMostSlots * kLanes;
   const std::size_t slots = std::max<std::size_t>(plan.slots, 1);
   const std::size_t stride = std::min(kMostBlock, kPositions / slots / kLanes * kLanes);
   const std::size_t whole = count / kLanes * kLanes;
-  for (in.first = 0; in.first < whole; in.first += stride)
-    eval_block(plan, in, stride, std::min(stride, whole - in.first), scratch, f + in.first, plane);
+  for (std::size_t i = 0; i < whole; i += stride)
+    eval_block(plan, in, i, std::min(stride, whole - i), stride, scratch, out.from(0, i));
   if (whole == count) return;
   // the rest, filled up to a vector with the first of them
   float rest[6][kLanes];
   for (std::size_t k = 0; k < 6; ++k) {
-    const float* const from = in.component[k] + whole;
-    std::fill(rest[k], rest[k] + kLanes, *from);
-    if (whole + 1 < count) std::copy(from + 1, in.component[k] + count, rest[k] + 1);
+    std::fill(rest[k], rest[k] + kLanes, *in.at(k, whole));
+    for (std::size_t i = 1; i < count - whole; ++i) rest[k][i] = *in.at(k, whole + i);
   }
-  eval_block(plan, {{rest[0], rest[1], rest[2], rest[3], rest[4], rest[5]}}, stride, count - whole, scratch,
-             f + whole, plane);
+  eval_block(plan, {{rest[0], rest[1], rest[2], rest[3], rest[4], rest[5]}}, 0, count - whole, stride,
+             scratch, out.from(0, whole));
 }
 
 }  // namespace
@@ -484,8 +565,16 @@ void FactoredEvaluator::eval(const DirectionSpans& d, std::span<float> f, std::s
          d.wo_y.size() == count && d.wo_z.size() == count && plane >= count &&
          f.size() == (plan_->channels - 1) * plane + count);
   HWY_DYNAMIC_DISPATCH(eval_directions)
-  (*plan_, {d.wi_x.data(), d.wi_y.data(), d.wi_z.data(), d.wo_x.data(), d.wo_y.data(), d.wo_z.data()}, count,
-   f.data(), plane);
+  (*plan_, {{d.wi_x.data(), d.wi_y.data(), d.wi_z.data(), d.wo_x.data(), d.wo_y.data(), d.wo_z.data()}},
+   count, {f.data(), plane, 1});
+}
+
+void FactoredEvaluator::eval(const DirectionRows& d, std::span<float> f) const noexcept {
+  const std::size_t count = d.size();
+  assert(d.wi.size() == 3 * count && d.wo.size() == 3 * count && f.size() == plan_->channels * count);
+  const float *const wi = d.wi.data(), *const wo = d.wo.data();
+  HWY_DYNAMIC_DISPATCH(eval_directions)
+  (*plan_, {{wi, wi + 1, wi + 2, wo, wo + 1, wo + 2}, 3}, count, {f.data(), 1, plan_->channels});
 }
 
 void FactoredEvaluator::eval(Vec3 wi, Vec3 wo, std::span<float> f) const noexcept {

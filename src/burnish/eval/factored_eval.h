@@ -11,10 +11,18 @@ namespace burnish {
 struct FactoredPlan;
 
 /// Direction pairs, one array a component, all of one length. wi and wo are unit vectors to 2^-22.
+/// Those whose squared length differs from 1 by more than 0.02 give not-a-number.
 struct DirectionSpans {
   std::span<const float> wi_x, wi_y, wi_z, wo_x, wo_y, wo_z;
 
   std::size_t size() const noexcept { return wi_x.size(); }
+};
+
+/// The same as rows of three floats (x, y, z), one after the other.
+struct DirectionRows {
+  std::span<const float> wi, wo;
+
+  std::size_t size() const noexcept { return wi.size() / 3; }
 };
 
 /// Evaluates a factored BRDF in float, prepared once for many directions: what the factors share (half
@@ -35,13 +43,15 @@ class FactoredEvaluator {
 
   /// f_r in 1/sr, without the cosine, zero below the horizon: f[c * directions.size() + i] is channel c of
   /// pair i; f has channels() * directions.size() entries. One plane a channel, as the directions have one a
-  /// component: what follows (cosine, light, sum) runs over the same lanes, and vectors of any width are
-  /// stored whole, where three interleaved channels would need shuffles that differ from width to width.
+  /// component: what follows (cosine, light, sum) runs over the same lanes.
   void eval(const DirectionSpans& directions, std::span<float> f) const noexcept;
 
   /// The same for a part of larger planes: channel c of pair i is f[c * plane + i], plane >=
   /// directions.size(), and f ends with the last value.
   void eval(const DirectionSpans& directions, std::span<float> f, std::size_t plane) const noexcept;
+
+  /// Rows in, rows out: f[channels() * i + c] is channel c of pair i. The same bits.
+  void eval(const DirectionRows& directions, std::span<float> f) const noexcept;
 
   /// One pair; f has channels() entries.
   void eval(Vec3 wi, Vec3 wo, std::span<float> f) const noexcept;

@@ -1,4 +1,6 @@
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <tuple>
@@ -141,9 +143,46 @@ TEST_P(FactoredEvaluatorTest, SurvivesAnythingInPlaceOfDirections) {
   for (const double a : odd)
     for (const double b : odd)
       for (const double z : odd) pairs.push_back({{a, b, z}, {b, z, a}});
-  for (const float v : batched(FactoredEvaluator(model()), pairs)) {
-    EXPECT_GE(v, 0);
-    EXPECT_LE(v, 3.0001);  // at most three lobes
+  for (const double length : {0.98, 0.992, 1.0, 1.008, 1.02}) {
+    const Vec3 w = length * spherical_direction(0.5, 1.0);
+    pairs.push_back({w, {0, 0, 1}});
+    pairs.push_back({{0, 0, 1}, w});
+  }
+  const std::vector<float> f = batched(FactoredEvaluator(model()), pairs);
+  const auto direction = [](Vec3 w) { return std::abs(dot(w, w) - 1) < 0.02; };
+  for (std::size_t i = 0; i < f.size(); ++i) {
+    const auto& [wi, wo] = pairs[i % pairs.size()];
+    if (direction(wi) && direction(wo)) {
+      EXPECT_GE(f[i], 0);
+      EXPECT_LE(f[i], 3.0001);  // at most three lobes
+    } else {
+      EXPECT_TRUE(std::isnan(f[i])) << f[i];
+    }
+  }
+}
+
+TEST_P(FactoredEvaluatorTest, RowsGiveTheSameBitsAsPlanes) {
+  const FactoredEvaluator evaluator(model());
+  auto pairs = test_pairs();
+  pairs[20].wi = {0, 0, 2};
+  const std::vector<float> planes = batched(evaluator, pairs);
+  const auto channels = static_cast<std::size_t>(evaluator.channels());
+  std::vector<float> wi, wo;
+  for (const DirectionPair& pair : pairs) {
+    for (const double v : {pair.wi.x, pair.wi.y, pair.wi.z}) wi.push_back(static_cast<float>(v));
+    for (const double v : {pair.wo.x, pair.wo.y, pair.wo.z}) wo.push_back(static_cast<float>(v));
+  }
+  for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{15}, std::size_t{16},
+                                  std::size_t{17}, std::size_t{129}, pairs.size()}) {
+    std::vector<float> f(channels * count + 1, -1.0f);
+    evaluator.eval(DirectionRows{std::span(wi).first(3 * count), std::span(wo).first(3 * count)},
+                   std::span(f).first(channels * count));
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t c = 0; c < channels; ++c)
+        ASSERT_EQ(std::bit_cast<std::uint32_t>(f[i * channels + c]),
+                  std::bit_cast<std::uint32_t>(planes[c * pairs.size() + i]))
+            << count << ": " << i;
+    EXPECT_EQ(f.back(), -1.0f);
   }
 }
 

@@ -27,14 +27,6 @@ void run_to_planes(const float* rows, std::size_t count, float* x, float* y, flo
   for (; i < count; ++i) x[i] = rows[3 * i], y[i] = rows[3 * i + 1], z[i] = rows[3 * i + 2];
 }
 
-void run_to_rows(const float* x, const float* y, const float* z, std::size_t count, float* rows) {
-  const D d;
-  std::size_t i = 0;
-  for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d))
-    hn::StoreInterleaved3(hn::LoadU(d, x + i), hn::LoadU(d, y + i), hn::LoadU(d, z + i), d, rows + 3 * i);
-  for (; i < count; ++i) rows[3 * i] = x[i], rows[3 * i + 1] = y[i], rows[3 * i + 2] = z[i];
-}
-
 }  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace burnish
@@ -44,14 +36,9 @@ HWY_AFTER_NAMESPACE();
 namespace burnish {
 
 HWY_EXPORT(run_to_planes);
-HWY_EXPORT(run_to_rows);
 
 void to_planes(const float* rows, std::size_t count, float* x, float* y, float* z) noexcept {
   HWY_DYNAMIC_DISPATCH(run_to_planes)(rows, count, x, y, z);
-}
-
-void to_rows(const float* x, const float* y, const float* z, std::size_t count, float* rows) noexcept {
-  HWY_DYNAMIC_DISPATCH(run_to_rows)(x, y, z, count, rows);
 }
 
 }  // namespace burnish
