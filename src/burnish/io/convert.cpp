@@ -146,6 +146,8 @@ class Converter {
     // 360 azimuths would be the full circle
     if (2 * n == 360) return tabulate_half_diff(brdf, n, n, 2 * n, true);
     lose_asymmetry(brdf);
+    if (!source_.ref().isotropic())
+      return tabulate_half_diff(AzimuthMean(source_.ref(), true), n, n, 2 * n, false);
     return tabulate_half_diff(SymmetrizedBrdf(brdf), n, n, 2 * n, false);
   }
 

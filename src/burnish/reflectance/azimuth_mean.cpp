@@ -10,25 +10,30 @@ namespace burnish {
 
 namespace {
 
-Vec3 turned(Vec3 w, double cosine, double sine) noexcept {
-  return {cosine * w.x - sine * w.y, sine * w.x + cosine * w.y, w.z};
+Vec3 turned(Vec3 w, Point2 by) noexcept {
+  return {by.x * w.x - by.y * w.y, by.y * w.x + by.x * w.y, w.z};
 }
 
 }  // namespace
 
-AzimuthMean::AzimuthMean(BrdfRef source) : source_(source) {
+AzimuthMean::AzimuthMean(BrdfRef source, bool exchange) : source_(source), exchange_(exchange) {
   if (source.channels() > kMaxChannels) throw Error("a source to average has at most 1024 channels");
+  for (int k = 0; k < kTurns; ++k) {
+    const double angle = kTwoPi * k / kTurns;
+    turns_[static_cast<std::size_t>(k)] = {std::cos(angle), std::sin(angle)};
+  }
 }
 
 bool AzimuthMean::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
-  if (source_.isotropic()) return source_.eval(wi, wo, f);
+  if (source_.isotropic())
+    return exchange_ ? SymmetrizedBrdf(source_).eval(wi, wo, f) : source_.eval(wi, wo, f);
   std::array<double, kMaxChannels> buffer;
   const std::span<double> one(buffer.data(), f.size());
   std::fill(f.begin(), f.end(), 0.0);
   int known = 0;
-  for (int k = 0; k < kTurns; ++k) {
-    const double angle = kTwoPi * k / kTurns, c = std::cos(angle), s = std::sin(angle);
-    if (!source_.eval(turned(wi, c, s), turned(wo, c, s), one)) continue;
+  for (std::size_t k = 0; k < kTurns; ++k) {
+    const Vec3 a = turned(wi, turns_[k]), b = turned(wo, turns_[k]);
+    if (!(exchange_ && k % 2 == 1 ? source_.eval(b, a, one) : source_.eval(a, b, one))) continue;
     ++known;
     for (std::size_t i = 0; i < f.size(); ++i) f[i] += one[i];
   }

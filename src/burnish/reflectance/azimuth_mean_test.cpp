@@ -34,6 +34,25 @@ TEST(AzimuthMean, AveragesAnisotropyAway) {
   }
 }
 
+TEST(AzimuthMean, ExchangesDirectionsAtEverySecondRotation) {
+  // f(wi, wo) = (1 + cos(2 phi_i)) cos(theta_i): no harmonic is left in either half of the rotations
+  struct OneWay {
+    int channels() const noexcept { return 1; }
+    bool isotropic() const noexcept { return false; }
+    bool eval(Vec3 wi, Vec3, std::span<double> f) const noexcept {
+      f[0] = (1 + std::cos(2 * phi_of(wi))) * wi.z;
+      return true;
+    }
+  };
+  const OneWay one_way;
+  const AzimuthMean mean(one_way, true);
+  for (const auto& [wi, wo] : draw_pairs(50, 1, false)) {
+    double f;
+    ASSERT_TRUE(mean.eval(wi, wo, {&f, 1}));
+    EXPECT_NEAR(f, (wi.z + wo.z) / 2, 1e-12);
+  }
+}
+
 TEST(AzimuthMean, LeavesUnknownRotationsOut) {
   const Brushed brushed{.half = true};
   const AzimuthMean mean(brushed);
