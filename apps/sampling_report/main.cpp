@@ -143,23 +143,21 @@ void report_weights(const std::vector<Material>& materials) {
 
 constexpr int kTurns = 8, kPictureSize = 24, kSamples = 144;
 
+// Of each density.
 struct Variance {
-  std::array<double, kDensities> of_picture{};  // relative to the picture's mean square
-  std::array<double, kDensities> of_pixels{};   // to each pixel's square
+  std::vector<double> of_picture;  // relative to the picture's mean square
+  std::vector<double> of_pixels;   // to each pixel's square
 };
 
-// Over all turns of an environment.
-Variance variance_of(BrdfRef brdf, const Drawers& drawers, const Proportional& proportional,
+// Over all turns of an environment; `guide` draws the directions to integrate over.
+Variance variance_of(BrdfRef brdf, SamplerRef guide, std::span<const SamplerRef> densities,
                      const Environment& environment) {
-  std::vector<SamplerRef> densities;
-  for (const SamplerRef s : drawers.all()) densities.push_back(s);
-  densities.push_back(proportional);
-  Variance sum;
+  Variance sum{std::vector<double>(densities.size()), std::vector<double>(densities.size())};
   double energy = 0;
   for (int turn = 0; turn < kTurns; ++turn) {
-    const auto [mean, variance] = moments_in_environment(
-        brdf, drawers.tabulated, densities, turned(environment, kTwoPi * turn / kTurns),
-        {.size = kPictureSize, .samples = kSamples, .seed = 7});
+    const auto [mean, variance] =
+        moments_in_environment(brdf, guide, densities, turned(environment, kTwoPi * turn / kTurns),
+                               {.size = kPictureSize, .samples = kSamples, .seed = 7});
     double total = 0;
     std::size_t lit = 0;
     for (const float value : mean.pixels) {
@@ -171,7 +169,7 @@ Variance variance_of(BrdfRef brdf, const Drawers& drawers, const Proportional& p
     for (std::size_t i = 0; i < mean.pixels.size(); ++i) {
       const double value = mean.pixels[i];
       energy += value * value;
-      for (std::size_t k = 0; k < kDensities; ++k) {
+      for (std::size_t k = 0; k < densities.size(); ++k) {
         sum.of_picture[k] += variance[k].pixels[i];
         sum.of_pixels[k] +=
             variance[k].pixels[i] / (value * value + floor * floor) / (static_cast<double>(lit) * kTurns);
@@ -199,19 +197,24 @@ void report_variance(const std::vector<Material>& materials, bool of_models) {
   for (const Environment& environment : environments()) {
     fmt::print("Environment `{}`:\n\n", environment.name);
     print_header("material", kProportional);
-    std::array<double, kDensities> ratio{}, worst{}, pixel_ratio{};
+    std::array<double, kDensities> ratio{}, worst{}, pixel_ratio{}, best_ratio{};
     std::array<double, kWays> time{}, timed_ratio{};
     for (const Material& m : materials) {
       const Measurement measurement{&m.table};
       const BrdfRef brdf = of_models ? BrdfRef(m.model) : BrdfRef(measurement);
       const Drawers drawers(brdf, m.table);
-      const Variance variance = variance_of(brdf, drawers, Proportional(brdf), environment);
+      const Proportional proportional(brdf);
+      std::vector<SamplerRef> densities;
+      for (const SamplerRef s : drawers.all()) densities.push_back(s);
+      densities.push_back(proportional);
+      const Variance variance = variance_of(brdf, drawers.tabulated, densities, environment);
       fmt::print("| {} |", m.name);
       const auto share = 1 / static_cast<double>(materials.size());
       for (std::size_t k = 0; k < kDensities; ++k) {
         fmt::print(" {:.4g} |", variance.of_picture[k]);
         const double r = variance.of_picture[kOurs] / variance.of_picture[k];
         ratio[k] += share * r;
+        best_ratio[k] += share * variance.of_picture[kWays] / variance.of_picture[k];
         worst[k] = std::max(worst[k], r);
         pixel_ratio[k] += share * variance.of_pixels[kOurs] / variance.of_pixels[k];
       }
@@ -230,11 +233,50 @@ void report_variance(const std::vector<Material>& materials, bool of_models) {
     };
     line("**burnish's over this, mean**", ratio);
     line("burnish's over this, worst", worst);
+    line("what draws in proportion would have, mean", best_ratio);
     line("the same in equal time, mean", timed_ratio);
     line("the same of pixels, mean", pixel_ratio);
     line("µs for a draw and its value", time);
     fmt::print("\n");
   }
+}
+
+// ---- One table or one a lobe
+
+void report_lobe_choice(const std::vector<Material>& materials) {
+  fmt::print(
+      "## One table or one a lobe\n\nThe models again: burnish's one table over all lobes beside the "
+      "customary "
+      "mixture, a lobe chosen by its albedo for this wo and drawn from a table of its own, with the density "
+      "of "
+      "all. Variance of the one table over the mixture's; CPU time of a draw and its value; bytes of "
+      "tables.\n\n| material | lobes |");
+  for (const Environment& e : environments()) fmt::print(" `{}` |", e.name);
+  fmt::print(" µs, one | µs, mixture | bytes, one | bytes, mixture |\n|---|---|");
+  for (std::size_t k = 0; k < environments().size() + 4; ++k) fmt::print("---|");
+  fmt::print("\n");
+  std::vector<double> mean(environments().size() + 2);
+  const auto share = 1 / static_cast<double>(materials.size());
+  for (const Material& m : materials) {
+    const TabulatedSampler one(m.model);
+    const LobeChoice mixture(m.model);
+    fmt::print("| {} | {} |", m.name, mixture.lobes());
+    std::vector<double> row;
+    for (const Environment& environment : environments()) {
+      const Variance v = variance_of(m.model, one, std::array<SamplerRef, 2>{one, mixture}, environment);
+      row.push_back(v.of_picture[0] / v.of_picture[1]);
+    }
+    row.push_back(time_of(m.model, one));
+    row.push_back(time_of(m.model, mixture));
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      fmt::print(" {:.3f} |", row[k]);
+      mean[k] += share * row[k];
+    }
+    fmt::print(" {} | {} |\n", one.bytes(), mixture.lobes() * one.bytes());
+  }
+  fmt::print("| **mean** | |");
+  for (const double v : mean) fmt::print(" {:.3f} |", v);
+  fmt::print(" | |\n\n");
 }
 
 // ---- Error against the number of samples
@@ -345,6 +387,7 @@ void report(const fs::path& docs) {
       kPictureSize, kTurns);
   report_variance(materials, false);
   report_variance(materials, true);
+  report_lobe_choice(materials);
   if (const auto m = std::ranges::find(materials, kPlotted, &Material::name); m != materials.end())
     report_errors(*m, docs);
   draw_noise(materials, docs);
