@@ -27,12 +27,12 @@ constexpr int kRounds = 2;
 constexpr double kThinPart = 0.3;  // share of the work done by then
 
 /// Adds one refinement to the summary; its progress runs from `from` to `to`.
-void refine_part(LogModel& model, const TrainingSet& set, RefineOptions options, int steps, double from,
-                 double to, LobesSummary& summary) {
+void refine_part(LogModel& model, const TrainingSet& set, const Lookups& lookups, RefineOptions options,
+                 int steps, double from, double to, LobesSummary& summary) {
   options.max_iterations = std::min(steps, options.max_iterations);
   if (options.progress)
     options.progress = [whole = options.progress, from, to](double f) { whole(from + f * (to - from)); };
-  const RefineSummary done = refine(model, set, options);
+  const RefineSummary done = refine(model, set, lookups, options);
   summary.iterations += done.iterations;
   summary.objective_before = done.objective_before;
   summary.objective_after = done.objective_after;
@@ -42,8 +42,9 @@ void refine_part(LogModel& model, const TrainingSet& set, RefineOptions options,
 void refine_in_rounds(LogModel& model, const TrainingSet& set, const RefineOptions& options, int steps,
                       double from, double to, LobesSummary& summary) {
   const auto part = [&](int round) { return from + (to - from) * round / kRounds; };
+  const Lookups lookups = find_lookups(model.spec, set);
   for (int k = 0; k < kRounds; ++k)
-    refine_part(model, set, options, (steps + k) / kRounds, part(k), part(k + 1), summary);
+    refine_part(model, set, lookups, options, (steps + k) / kRounds, part(k), part(k + 1), summary);
 }
 
 /// The last refinement: on part of the data, then on all.
@@ -147,8 +148,8 @@ LobesFit fit_plan(const TrainingSet& set, const LobePlan& plan, std::size_t byte
       fit.model = resampled(fit.model, spec);
     }
     if (j < lobes || grids)
-      refine_part(fit.model, coarse, j < lobes ? rough_options : thin_options, kRoughSteps, done(j - 1),
-                  done(j), fit.summary);
+      refine_part(fit.model, coarse, find_lookups(fit.model.spec, coarse),
+                  j < lobes ? rough_options : thin_options, kRoughSteps, done(j - 1), done(j), fit.summary);
     else
       refine_fully(fit.model, coarse, set, thin_options, done(j - 1), fit.summary);
   }

@@ -172,11 +172,15 @@ class Descent {
 }  // namespace
 
 RefineSummary refine(LogModel& model, const TrainingSet& set, const RefineOptions& options) {
+  return refine(model, set, find_lookups(model.spec, set), options);
+}
+
+RefineSummary refine(LogModel& model, const TrainingSet& set, const Lookups& lookups,
+                     const RefineOptions& options) {
   if (!(options.smooth >= 0) || !std::isfinite(options.smooth) || !(options.max_iterations >= 0))
     throw Error("fit: expected smooth >= 0 and a number of iterations >= 0");
   if (model.channels != set.channels)
     throw Error("fit: expected as many channels in the model as in the data");
-  const Lookups lookups = find_lookups(model.spec, set);
   const PictureLoss loss{.shares = options.shares, .exposure = set.exposure};
   const auto channels = static_cast<std::size_t>(model.channels);
   const std::size_t together = model.any_shared() ? channels : 1;
@@ -204,7 +208,11 @@ RefineSummary refine(LogModel& model, const TrainingSet& set, const RefineOption
 }
 
 double objective(const LogModel& model, const TrainingSet& set, const ErrorTerms& shares) {
-  const Lookups lookups = find_lookups(model.spec, set);
+  return objective(model, set, find_lookups(model.spec, set), shares);
+}
+
+double objective(const LogModel& model, const TrainingSet& set, const Lookups& lookups,
+                 const ErrorTerms& shares) {
   const PictureLoss loss{.shares = shares, .exposure = set.exposure};
   const auto channels = static_cast<std::size_t>(model.channels);
   double sum = 0;

@@ -4,6 +4,7 @@
 #include <string>
 
 #include <burnish/fitting/log_model.h>
+#include <burnish/fitting/lookups.h>
 #include <burnish/fitting/picture_loss.h>
 #include <burnish/fitting/training_set.h>
 
@@ -34,8 +35,13 @@ struct RefineSummary {
 /// by a Cholesky factorization for up to 1,000 unknowns, by preconditioned conjugate gradients for more. The
 /// result does not depend on the number of threads.
 RefineSummary refine(LogModel& model, const TrainingSet& set, const RefineOptions& options);
+/// The same with the set's lookups of models like this one at hand.
+RefineSummary refine(LogModel& model, const TrainingSet& set, const Lookups& lookups,
+                     const RefineOptions& options);
 
 /// The objective that refine lowers, without the smoothness term; mean over the channels.
 double objective(const LogModel& model, const TrainingSet& set, const ErrorTerms& shares);
+double objective(const LogModel& model, const TrainingSet& set, const Lookups& lookups,
+                 const ErrorTerms& shares);
 
 }  // namespace burnish

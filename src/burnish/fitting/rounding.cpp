@@ -130,7 +130,7 @@ FactoredBrdf to_rounded_brdf(const LogModel& model, const TrainingSet& set, cons
       roundings[t].round(std::span(model.log_values[t]).subspan(i, step),
                          std::span(plain.log_values[t]).subspan(i, step));
   }
-  if (!(objective(good, set, options.shares) < objective(plain, set, options.shares)))
+  if (!(objective(good, set, lookups, options.shares) < objective(plain, set, lookups, options.shares)))
     return to_brdf(model, options.format);
   std::vector<Table> stored = log_tables(good, options.format);
   std::vector<std::vector<double>> divided;
