@@ -325,7 +325,8 @@ int main(int argc, char** argv) {
           "not "
           "fitted. `rms` is absolute, in 1/sr. Table reads and multiplies are those of one evaluation, all "
           "channels. "
-          "How the models are fitted: [lobes.md](lobes.md).\n\n",
+          "How the models are fitted: [lobes.md](lobes.md). Seconds of other methods than `ours` are of fits "
+          "that ran side by side.\n\n",
           burnish::processor(), std::thread::hardware_concurrency());
     const char* data = std::getenv("BURNISH_DATA");
     if (!data) fmt::print("BURNISH_DATA is not set: no real materials.\n");

@@ -1,8 +1,11 @@
 #include "accuracy_table.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <future>
+#include <thread>
 
 #include <fmt/format.h>
 
@@ -47,6 +50,29 @@ std::array<double*, 6> figures(ErrorFigures& e) {
   return {&e.psnr, &e.ssim, &e.relative, &e.log_cos, &e.rms_log, &e.rms};
 }
 
+Score run_ours(const Scorer& scorer, std::size_t budget) {
+  const Stopwatch watch;
+  const FactoredBrdf brdf = fit_ours(scorer.reference(), budget);
+  const double seconds = watch.seconds();
+  Score score = score_of(scorer, "ours", budget, brdf);
+  score.bytes = brdf.bytes();
+  score.cost = evaluation_cost(brdf);
+  score.seconds = seconds;
+  return score;
+}
+
+Score run_baseline(const Scorer& scorer, const SampleSource& samples, std::string_view method,
+                   std::size_t budget) {
+  BaselineOptions options;
+  if (budget > 0) options.budget = budget;
+  const BaselineFit fit = fit_baseline(scorer.reference(), samples, method, options);
+  Score score = score_of(scorer, method, budget, baseline_ref(fit.baseline.brdf));
+  score.bytes = fit.bytes;
+  score.cost = fit.cost;
+  score.seconds = fit.seconds;
+  return score;
+}
+
 }  // namespace
 
 Image8 picture(BrdfRef brdf, double exposure) {
@@ -55,29 +81,31 @@ Image8 picture(BrdfRef brdf, double exposure) {
 }
 
 std::vector<Score> run(const Scorer& scorer, const std::vector<Attempt>& attempts) {
-  std::vector<Score> scores;
-  std::optional<SampleSource> samples;
+  struct Job {
+    std::string_view method;
+    std::size_t budget;
+  };
+  std::vector<Job> jobs;
   for (const auto& [method, budgets] : attempts)
-    for (const std::size_t budget : budgets.empty() ? std::vector<std::size_t>{0} : budgets) {
-      if (method == "ours") {
-        const Stopwatch watch;
-        const FactoredBrdf brdf = fit_ours(scorer.reference(), budget);
-        const double seconds = watch.seconds();
-        scores.push_back(score_of(scorer, method, budget, brdf));
-        scores.back().bytes = brdf.bytes();
-        scores.back().cost = evaluation_cost(brdf);
-        scores.back().seconds = seconds;
-        continue;
-      }
-      if (!samples) samples = from_brdf(scorer.reference(), kDrawnPairs, 1, false);
-      BaselineOptions options;
-      if (budget > 0) options.budget = budget;
-      const BaselineFit fit = fit_baseline(scorer.reference(), *samples, method, options);
-      scores.push_back(score_of(scorer, method, budget, baseline_ref(fit.baseline.brdf)));
-      scores.back().bytes = fit.bytes;
-      scores.back().cost = fit.cost;
-      scores.back().seconds = fit.seconds;
-    }
+    for (const std::size_t budget : budgets.empty() ? std::vector<std::size_t>{0} : budgets)
+      jobs.push_back({method, budget});
+  std::vector<Score> scores(jobs.size());
+  for (std::size_t k = 0; k < jobs.size(); ++k)
+    if (jobs[k].method == "ours") scores[k] = run_ours(scorer, jobs[k].budget);
+
+  // The others take one thread each, most of the time: side by side.
+  std::optional<SampleSource> samples;
+  if (std::ranges::any_of(jobs, [](const Job& job) { return job.method != "ours"; }))
+    samples = from_brdf(scorer.reference(), kDrawnPairs, 1, false);
+  std::atomic<std::size_t> next = 0;
+  std::vector<std::future<void>> workers;
+  for (unsigned t = 0; t < std::max(1u, std::thread::hardware_concurrency()); ++t)
+    workers.push_back(std::async(std::launch::async, [&] {
+      for (std::size_t k; (k = next++) < jobs.size();)
+        if (jobs[k].method != "ours")
+          scores[k] = run_baseline(scorer, *samples, jobs[k].method, jobs[k].budget);
+    }));
+  for (std::future<void>& worker : workers) worker.get();
   return scores;
 }
 
