@@ -18,7 +18,7 @@ namespace burnish::cli {
 
 namespace {
 
-struct Arguments {
+struct CompareArguments {
   SourceArguments reference;
   std::vector<std::string> models;
   std::string folder;
@@ -75,7 +75,7 @@ void print_albedos(std::span<const ComparedFigures> figures) {
     row("  " + c.name, c, [&](const ComparedAlbedo& at) { return mean(at.model); });
 }
 
-void compare(const Arguments& arguments) {
+void compare(const CompareArguments& arguments) {
   const Candidate reference(arguments.reference.open(), !arguments.no_symmetrize);
   std::list<Candidate> candidates;
   std::vector<ComparedModel> models;
@@ -115,7 +115,7 @@ void add_compare_command(CLI::App& app) {
   CLI::App* verb =
       app.add_subcommand("compare", "Measure models against a reference: error figures and pictures");
   verb->footer("Example: burnish compare paint.binary paint.exr other.exr -o report");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<CompareArguments>();
   add_source_arguments(*verb, arguments->reference);
   verb->add_option("models", arguments->models, "BRDFs to compare with it")->required();
   verb->add_option("-o,--output", arguments->folder,

@@ -14,14 +14,14 @@ namespace burnish::cli {
 
 namespace {
 
-struct Arguments {
+struct ConvertArguments {
   SourceArguments source;
   std::string out, to;
   ConvertOptions options;
 };
 
 /// The format asked for, or the one the output's name ends in.
-std::string target_format(const Arguments& arguments) {
+std::string target_format(const ConvertArguments& arguments) {
   if (!arguments.to.empty()) return arguments.to;
   const std::string extension = std::filesystem::path(arguments.out).extension().string();
   if (extension == ".binary") return "merl";
@@ -42,7 +42,7 @@ void add_convert_command(CLI::App& app) {
       "ASTM and CSV have the samples of a scattered source, of any other samples drawn as `measure` does, or "
       "with --entries a table's entries. What is lost is said on the standard error output.\n"
       "Example: burnish convert paint.bsdf paint.binary");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ConvertArguments>();
   add_source_arguments(*verb, arguments->source);
   verb->add_option("OUT", arguments->out, "file to write")->required();
   verb->add_option(

@@ -39,7 +39,7 @@ constexpr Target kTargets[] = {
     {"wgsl", "wgsl", ShaderLanguage::wgsl}, {"cpp", "h", ShaderLanguage::cpp},
 };
 
-struct Arguments {
+struct ExportArguments {
   std::string model, folder, name, power;
   std::vector<std::string> to;
   bool exact = false, plain = false, mips = false;
@@ -80,7 +80,8 @@ json shader_entry(const Target& target, const std::string& file, const std::stri
 }
 
 // The files of an export but its manifest, which they are described in.
-std::vector<ExportedFile> export_files(const FactoredBrdf& brdf, const Arguments& arguments, json& manifest) {
+std::vector<ExportedFile> export_files(const FactoredBrdf& brdf, const ExportArguments& arguments,
+                                       json& manifest) {
   const std::string& name = arguments.name;
   const auto wants = [&](const char* target) {
     return std::ranges::find(arguments.to, target) != arguments.to.end();
@@ -168,7 +169,7 @@ SpecularModel specular_of(const AnalyticBrdf& brdf, const std::string& power) {
   return *model;
 }
 
-std::vector<ExportedFile> export_files(const SpecularModel& model, const Arguments& arguments,
+std::vector<ExportedFile> export_files(const SpecularModel& model, const ExportArguments& arguments,
                                        json& manifest) {
   std::vector<ExportedFile> files;
   for (const std::string& to : arguments.to) {
@@ -200,7 +201,7 @@ void add_export_command(CLI::App& app) {
       "folder and what an evaluation costs. See docs/shaders.md.\n"
       "Examples: burnish export paint.exr --to glsl --to html -o paint\n"
       "          burnish export blinn_phong:exponent=60,ks=0.8 --to wgsl --power cubic2 -o highlight");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ExportArguments>();
   verb->add_option("MODEL", arguments->model,
                    "factored BRDF, as `burnish fit` writes it, or one such as blinn_phong:exponent=60")
       ->required();

@@ -20,7 +20,7 @@ namespace burnish::cli {
 
 namespace {
 
-struct Arguments {
+struct FitArguments {
   SourceArguments source;
   FitOptions options;
   std::string out, method, loss = "image", smooth = "default", format;
@@ -51,7 +51,7 @@ std::function<void(std::string_view, double)> progress_bars() {
   };
 }
 
-FitOptions fit_options(const Arguments& arguments, bool isotropic) {
+FitOptions fit_options(const FitArguments& arguments, bool isotropic) {
   FitOptions options = arguments.options;
   options.symmetrize = !arguments.no_symmetrize;
   options.loss = arguments.loss == "relative"  ? FitLoss::relative
@@ -66,7 +66,7 @@ FitOptions fit_options(const Arguments& arguments, bool isotropic) {
   return options;
 }
 
-nlohmann::ordered_json fit(const Arguments& arguments) {
+nlohmann::ordered_json fit(const FitArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const ThreadLimit limit(arguments.threads);
   const Source source = arguments.source.open();
@@ -132,7 +132,7 @@ void print(const nlohmann::ordered_json& notes) {
   fmt::print("written    {} in {:.2f} s\n", notes.at("output").get<std::string>(), number("seconds"));
 }
 
-nlohmann::ordered_json fit_by_method(const Arguments& arguments) {
+nlohmann::ordered_json fit_by_method(const FitArguments& arguments) {
   const ThreadLimit limit(arguments.threads);
   return fit_baseline(arguments.source.open(), {.method = arguments.method,
                                                 .out = arguments.out,
@@ -142,7 +142,7 @@ nlohmann::ordered_json fit_by_method(const Arguments& arguments) {
                                                 .symmetrize = !arguments.no_symmetrize});
 }
 
-void add_lobes_arguments(CLI::App& verb, Arguments& arguments) {
+void add_lobes_arguments(CLI::App& verb, FitArguments& arguments) {
   FitOptions& options = arguments.options;
   verb.add_option("--budget", options.budget,
                   "bytes: fits the best model of several lobes that this many hold; K and M count as 1024s")
@@ -168,7 +168,7 @@ void add_fit_command(CLI::App& app) {
       "Examples: burnish fit paint.binary -o paint.exr --budget 2700\n"
       "          burnish fit paint.binary -o paint.exr --model \"p(wo) q(h) r(theta_d) p(wi)\" --table q=96\n"
       "          burnish fit paint.binary -o paint.json --method svd --budget 2700");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<FitArguments>();
   add_source_arguments(*verb, arguments->source);
   FitOptions& options = arguments->options;
   add_lobes_arguments(*verb, *arguments);

@@ -28,7 +28,7 @@ namespace burnish::cli {
 
 namespace {
 
-struct Arguments {
+struct RenderArguments {
   std::string mesh = "sphere", out, renderer = "gl", tone = "srgb", size = "512", exposure = "auto",
               background = "0,0,0";
   std::vector<std::string> materials, lights;
@@ -96,7 +96,7 @@ std::optional<Environment> environment_of(const std::string& text) {
 }
 
 // Files name materials of their own: as many as there are, the last given one for the rest.
-std::vector<MeshPart> parts_of(const Arguments& arguments) {
+std::vector<MeshPart> parts_of(const RenderArguments& arguments) {
   std::vector<MeshPart> parts;
   if (const auto shape = parse_shape(arguments.mesh))
     parts.push_back({make_shape(*shape, arguments.vertices), 0});
@@ -108,8 +108,8 @@ std::vector<MeshPart> parts_of(const Arguments& arguments) {
   return parts;
 }
 
-Image render_gl(const Scene& scene, const std::optional<Environment>& environment, const Arguments& arguments,
-                int width, int height) {
+Image render_gl(const Scene& scene, const std::optional<Environment>& environment,
+                const RenderArguments& arguments, int width, int height) {
   std::vector<SurfaceShader> materials;
   for (const std::string& file : arguments.materials) {
     if (!std::filesystem::is_regular_file(file))
@@ -127,7 +127,7 @@ Image render_gl(const Scene& scene, const std::optional<Environment>& environmen
 }
 
 Image render_by_cpu(const Scene& scene, const std::optional<Environment>& environment,
-                    const Arguments& arguments, int width, int height) {
+                    const RenderArguments& arguments, int width, int height) {
   std::vector<Source> sources;
   for (const std::string& spec : arguments.materials) sources.push_back(open_source(spec, {}));
   std::vector<BrdfRef> materials;
@@ -140,7 +140,7 @@ Image render_by_cpu(const Scene& scene, const std::optional<Environment>& enviro
                      .draws = arguments.draws});
 }
 
-void render(const Arguments& arguments) {
+void render(const RenderArguments& arguments) {
   if (arguments.materials.empty()) throw CLI::RequiredError("--material");
   if (arguments.out.empty()) throw CLI::RequiredError("--output");
   const bool cpu = arguments.renderer == "cpu";
@@ -185,7 +185,7 @@ void add_render_command(CLI::App& app) {
       "          burnish render --mesh teapot --material paint.exr --environment sky.exr -o teapot.png\n"
       "          burnish render --figure1 -o figure1.png\n"
       "See docs/rendering.md.");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RenderArguments>();
   verb->add_option("--mesh", arguments->mesh, "sphere, teapot, torus-knot, or an OBJ or glTF file")
       ->capture_default_str();
   verb->add_option("--vertices", arguments->vertices, "of a built-in mesh, about")
