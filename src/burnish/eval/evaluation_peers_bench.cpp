@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include <burnish/math/highway_targets.h>
 #include <burnish/math/angles.h>
+#include <burnish/math/highway_targets.h>
 #include <burnish/parameterization/half_diff.h>
 #include <burnish/reflectance/neural_brdf.h>
 

@@ -1,5 +1,5 @@
-#include <burnish/math/highway_targets.h>
 #include <burnish/eval/interleaved.h>
+#include <burnish/math/highway_targets.h>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "burnish/eval/interleaved.cpp"

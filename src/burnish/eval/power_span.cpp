@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include <burnish/error.h>
-#include <burnish/math/highway_targets.h>
 #include <burnish/eval/power_span.h>
+#include <burnish/math/highway_targets.h>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "burnish/eval/power_span.cpp"
