@@ -24,17 +24,16 @@ namespace {
 constexpr EvaluationCost kNetworkCost{.table_reads = 675, .multiplies = 6 * 21 + 21 * 21 + 21 * 3};
 constexpr std::size_t kNetworkBytes = 1350;  // as half floats
 constexpr std::size_t kDrawnPairs = 200'000;
-constexpr std::uint64_t kHeldOutSeed = 3;  // as the command has it
 
 FactoredBrdf fit_ours(BrdfRef reference, std::size_t bytes) {
   const int channels = reference.channels();
   const TableFormat format = channels == 3 ? TableFormat::rgb9e5 : TableFormat::half;
   const std::size_t texel = texel_bytes(format, channels);
-  const TrainingSet set =
-      draw_training_set(reference, {.directions = reference.isotropic() ? 60'000u : 200'000u});
+  const TrainingOptions drawn{.directions = reference.isotropic() ? 60'000u : 200'000u};
+  const TrainingSet set = draw_training_set(reference, drawn);
   RefineOptions options{.format = format};
   const LobePlan plan = default_plan(bytes, 0, reference.isotropic(), texel);
-  const LobesFit fit = fit_without_overfit(reference, set, plan, bytes, texel, kHeldOutSeed, options);
+  const LobesFit fit = fit_without_overfit(reference, set, plan, bytes, texel, drawn.seed, options);
   return to_rounded_brdf(fit.model, set, options);
 }
 

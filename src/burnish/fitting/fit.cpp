@@ -141,7 +141,7 @@ class Fitter {
     notes_["budget"] = options_.budget;
     if (options_.smooth) return finish(fit_plan(set, plan, options_.budget, texel, refine), set, refine);
     const LobesFit fit =
-        fit_without_overfit(reference(), set, plan, options_.budget, texel, options_.seed + 2, refine);
+        fit_without_overfit(reference(), set, plan, options_.budget, texel, options_.seed, refine);
     notes_["smooth"] = refine.smooth;
     return finish(fit, set, refine);
   }

@@ -10,24 +10,24 @@ constexpr std::size_t kEnoughPairs = 40;  // a texel
 constexpr std::size_t kHeldOutPictures = 5000, kHeldOutDirections = 15'000;
 constexpr double kMostGap = 2, kStiffer = 10, kMostSmooth = 1e-3;
 
-bool has_few_pairs(const LobesFit& fit, const TrainingSet& set) {
+bool has_few_pairs(const LogModel& model, const TrainingSet& set) {
   std::size_t texels = 0;
-  for (const ModelSpec::TableSpec& table : fit.model.spec.tables) texels += table.layout.node_count();
+  for (const ModelSpec::TableSpec& table : model.spec.tables) texels += table.layout.node_count();
   return set.size() < kEnoughPairs * texels;
 }
 
 }  // namespace
 
-bool is_overfit(const LobesFit& fit, const TrainingSet& set, const TrainingSet& held_out,
-                const ErrorTerms& shares) {
-  return has_few_pairs(fit, set) &&
-         objective(fit.model, held_out, shares) > objective(fit.model, set, shares) + kMostGap;
-}
-
-void fit_smoother(const TrainingSet& set, const TrainingSet& held_out, const LobePlan& plan,
-                  std::size_t bytes, std::size_t texel_bytes, RefineOptions& options, LobesFit& fit) {
-  RefineOptions stiffer = options;
+LobesFit fit_without_overfit(BrdfRef source, const TrainingSet& set, const LobePlan& plan, std::size_t bytes,
+                             std::size_t texel_bytes, std::uint64_t seed, RefineOptions& options) {
+  LobesFit fit = fit_plan(set, plan, bytes, texel_bytes, options);
+  if (!has_few_pairs(fit.model, set)) return fit;
+  TrainingSet held_out = draw_training_set(  // the error that is noted in the end is of seed + 1
+      source, {.pictures = kHeldOutPictures, .directions = kHeldOutDirections, .seed = seed + 2});
+  held_out.exposure = set.exposure;
   double error = objective(fit.model, held_out, options.shares);
+  if (error < objective(fit.model, set, options.shares) + kMostGap) return fit;
+  RefineOptions stiffer = options;
   while (stiffer.smooth < kMostSmooth) {
     stiffer.smooth *= kStiffer;
     LobesFit candidate = fit_plan(set, plan, bytes, texel_bytes, stiffer);
@@ -37,17 +37,6 @@ void fit_smoother(const TrainingSet& set, const TrainingSet& held_out, const Lob
     error = next;
     options.smooth = stiffer.smooth;
   }
-}
-
-LobesFit fit_without_overfit(BrdfRef source, const TrainingSet& set, const LobePlan& plan, std::size_t bytes,
-                             std::size_t texel_bytes, std::uint64_t seed, RefineOptions& options) {
-  LobesFit fit = fit_plan(set, plan, bytes, texel_bytes, options);
-  if (!has_few_pairs(fit, set)) return fit;
-  TrainingSet held_out = draw_training_set(
-      source, {.pictures = kHeldOutPictures, .directions = kHeldOutDirections, .seed = seed});
-  held_out.exposure = set.exposure;
-  if (is_overfit(fit, set, held_out, options.shares))
-    fit_smoother(set, held_out, plan, bytes, texel_bytes, options, fit);
   return fit;
 }
 

@@ -7,17 +7,10 @@
 
 namespace burnish {
 
-/// Whether a fit has so few pairs of directions a texel, and so much more error on pairs that it did not see,
-/// that a smoother one may be better.
-bool is_overfit(const LobesFit& fit, const TrainingSet& set, const TrainingSet& held_out,
-                const ErrorTerms& shares);
-
-/// Fits the plan with ten times the smoothness, and again while the objective on the pairs that are not
-/// fitted falls. Leaves the best fit and its smoothness, perhaps those given.
-void fit_smoother(const TrainingSet& set, const TrainingSet& held_out, const LobePlan& plan,
-                  std::size_t bytes, std::size_t texel_bytes, RefineOptions& options, LobesFit& fit);
-
-/// fit_plan, and where the fit is_overfit to pairs drawn from the source anew, fit_smoother.
+/// fit_plan, of a set drawn from the source with `seed`. Where the set has few pairs of directions a texel
+/// and the objective on pairs drawn anew is far above that on the set's, the plan is fitted with ten times
+/// options.smooth, and again while the former falls. Leaves the smoothness of the fit returned in the
+/// options. Throws Error as fit_plan and draw_training_set do.
 LobesFit fit_without_overfit(BrdfRef source, const TrainingSet& set, const LobePlan& plan, std::size_t bytes,
                              std::size_t texel_bytes, std::uint64_t seed, RefineOptions& options);
 
