@@ -106,6 +106,32 @@ void paste(Image8& sheet, const Image& shown, int column, int row) {
     std::ranges::copy_n(part.at(0, y).begin(), 3 * kSize, sheet.at(column * kSize, row * kSize + y).begin());
 }
 
+// What Monte Carlo draws of one material in one environment.
+struct Truth {
+  double exposure;
+  Image shown;
+
+  double decibels(const Image& image) const {
+    return psnr(mean_squared_error(tone_map(image, exposure), shown));
+  }
+};
+
+// Prints the start of a table's row.
+Truth begin_row(const Material& material, const FactoredBrdf& brdf, const Environment& environment) {
+  const GgxProxy guide = fit_ggx_proxy(brdf, true);
+  const auto monte_carlo = [&](int samples, std::uint64_t seed) {
+    return moments_in_environment(brdf, guide, {}, environment,
+                                  {.size = kSize, .samples = samples, .seed = seed})
+        .mean;
+  };
+  const Image image = monte_carlo(kSamples, 1);
+  const double exposure = exposure_of(image);
+  Truth truth{.exposure = exposure, .shown = tone_map(image, exposure)};
+  fmt::print("| {} | {} | {} | {:.1f} |", material.name, brdf.lobes().size(), environment.name,
+             truth.decibels(monte_carlo(kSamples / 4, 2)));
+  return truth;
+}
+
 void print_taps(const std::vector<Environment>& all) {
   fmt::print(
       "\n### Anisotropic materials\n\nThe same for taps on one blurred environment for all materials, by the "
@@ -118,21 +144,8 @@ void print_taps(const std::vector<Environment>& all) {
     const BlurredEnvironment blurred = blur(environment);
     for (const Material& material : kBrushed) {
       const FactoredBrdf brdf = factored(material);
-      const GgxProxy guide = fit_ggx_proxy(brdf, true);
-      const auto monte_carlo = [&](int samples, std::uint64_t seed) {
-        return moments_in_environment(brdf, guide, {}, environment,
-                                      {.size = kSize, .samples = samples, .seed = seed})
-            .mean;
-      };
-      const Image truth = monte_carlo(kSamples, 1);
-      const double exposure = exposure_of(truth);
-      const Image shown = tone_map(truth, exposure);
-      const auto decibels = [&](const Image& image) {
-        return psnr(mean_squared_error(tone_map(image, exposure), shown));
-      };
-      fmt::print("| {} | {} | {} | {:.1f} |", material.name, brdf.lobes().size(), environment.name,
-                 decibels(monte_carlo(kSamples / 4, 2)));
-      for (const int taps : kTaps) fmt::print(" {:.1f} |", decibels(by_taps(tap(brdf, taps), blurred)));
+      const Truth truth = begin_row(material, brdf, environment);
+      for (const int taps : kTaps) fmt::print(" {:.1f} |", truth.decibels(by_taps(tap(brdf, taps), blurred)));
       fmt::print("\n");
       std::fflush(stdout);
     }
@@ -176,36 +189,23 @@ void print_environment_light(const std::filesystem::path& figures) {
   int row = 0;
   for (const Material& material : kMaterials) {
     const FactoredBrdf brdf = factored(material);
-    const GgxProxy guide = fit_ggx_proxy(brdf, true);
     int column = 0;
     for (const Environment& environment : all) {
-      const auto monte_carlo = [&](int samples, std::uint64_t seed) {
-        return moments_in_environment(brdf, guide, {}, environment,
-                                      {.size = kSize, .samples = samples, .seed = seed})
-            .mean;
-      };
-      const Image truth = monte_carlo(kSamples, 1);
-      const double exposure = exposure_of(truth);
-      const Image shown = tone_map(truth, exposure);
-      const auto decibels = [&](const Image& image) {
-        return psnr(mean_squared_error(tone_map(image, exposure), shown));
-      };
-      fmt::print("| {} | {} | {} | {:.1f} |", material.name, brdf.lobes().size(), environment.name,
-                 decibels(monte_carlo(kSamples / 4, 2)));
+      const Truth truth = begin_row(material, brdf, environment);
       for (const Tabulation& t : kTabulations) {
         const ImageBasedLight light = prefilter(brdf, environment, t.options);
         const Image found = on_gpu(light);
-        fmt::print(" {:.1f} ({:.1f}) |", decibels(found),
-                   decibels(sphere([&](Vec3 n, Vec3 v) { return light.radiance(n, v); })));
+        fmt::print(" {:.1f} ({:.1f}) |", truth.decibels(found),
+                   truth.decibels(sphere([&](Vec3 n, Vec3 v) { return light.radiance(n, v); })));
         if (column == 0)
           costs += fmt::format("| {} | {} | {} | {} | {} |\n", material.name, t.name, light.lobes.size(),
                                light.fetches(), light.bytes() / 1024);
         if (&t != &kTabulations[2]) continue;
-        paste(sheet, shown, 3 * column, row);
-        Image difference = tone_map(found, exposure);
+        paste(sheet, truth.shown, 3 * column, row);
+        Image difference = tone_map(found, truth.exposure);
         paste(sheet, difference, 3 * column + 1, row);
         for (std::size_t i = 0; i < difference.pixels.size(); ++i)
-          difference.pixels[i] = std::min(1.0f, 10 * std::abs(difference.pixels[i] - shown.pixels[i]));
+          difference.pixels[i] = std::min(1.0f, 10 * std::abs(difference.pixels[i] - truth.shown.pixels[i]));
         paste(sheet, difference, 3 * column + 2, row);
       }
       fmt::print("\n");

@@ -85,9 +85,9 @@ HWY_INLINE hn::Mask<DI> no_directions(hn::Vec<DI> excess) {
 // decision in it; stores are hidden behind roots and divisions.
 struct Projector {
   alignas(64) float sum_x[kMostBlock], sum_y[kMostBlock], sum_z[kMostBlock],
-      sum_length[kMostBlock];  // wi + wo
-  // of the projection at hand: (x, y), its length r, and den with r / den = tan(theta / 2)
+      sum_length[kMostBlock];                   // wi + wo
   alignas(64) float directions[6][kMostBlock];  // of rows
+  // of the projection at hand: (x, y), its length r, and den with r / den = tan(theta / 2)
   alignas(64) float own_x[kMostBlock], own_y[kMostBlock], r[kMostBlock], den[kMostBlock];
   const float* in[6];  // planes of wi and wo
   const float *x, *y;

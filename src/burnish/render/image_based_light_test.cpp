@@ -7,6 +7,7 @@
 #include <burnish/math/angles.h>
 #include <burnish/metrics/sphere_images.h>
 #include <burnish/reflectance/sampling_test_util.h>
+#include <burnish/render/environments_for_tests.h>
 #include <burnish/render/gl_for_tests.h>
 #include <burnish/render/image_based_light.h>
 
@@ -14,12 +15,6 @@ namespace burnish {
 namespace {
 
 constexpr PrefilterOptions kSmall{.slices = 8, .side = 16, .harmonics = 4};
-const Environment kLamps{"lamps",
-                         {0.3, 0.5, 1},
-                         {1, 1, 1},
-                         {0.2, 0.1, 0.1},
-                         {{normalize({0.4, 0.5, 0.7}), 0.4, 6}, {normalize({-0.8, -0.3, 0.5}), 0.2, 10}}};
-const Environment kEven{"even", 2, 2, 2, {}};
 
 // A coloured glossy lobe over a matt one; factors of the view, of both directions and of the half vector.
 FactoredBrdf glossy() {

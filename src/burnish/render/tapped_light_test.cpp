@@ -6,6 +6,7 @@
 #include <burnish/factors/models_for_tests.h>
 #include <burnish/metrics/sphere_images.h>
 #include <burnish/reflectance/sampling_test_util.h>
+#include <burnish/render/environments_for_tests.h>
 #include <burnish/render/gl_evaluator.h>
 #include <burnish/render/gl_for_tests.h>
 #include <burnish/render/tapped_light.h>
@@ -14,12 +15,6 @@ namespace burnish {
 namespace {
 
 constexpr BlurOptions kSmall{.side = 32, .levels = 8, .narrowest = 0.04, .step = 1.5};
-const Environment kLamps{"lamps",
-                         {0.3, 0.5, 1},
-                         {1, 1, 1},
-                         {0.2, 0.1, 0.1},
-                         {{normalize({0.4, 0.5, 0.7}), 0.4, 6}, {normalize({-0.8, -0.3, 0.5}), 0.2, 10}}};
-const Environment kEven{"even", 2, 2, 2, {}};
 
 // A highlight three times as long across the tangent as along it.
 FactoredBrdf brushed() {
