@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <optional>
 #include <string_view>
 #include <thread>
@@ -309,7 +310,7 @@ int main(int argc, char** argv) {
   const std::string_view option = argc == 3 ? argv[2] : "";
   const bool quick = option == "--quick";
   const std::array<std::string_view, 4> sections{"rgl", "merl", "others", "paints"};
-  if (argc < 2 || argc > 3 ||
+  if (argc < 2 || argc > 3 || !std::filesystem::is_directory(argv[1]) ||
       (argc == 3 && !quick && std::ranges::find(sections, option) == sections.end())) {
     fmt::print(stderr, "usage: burnish_accuracy DOCS_FOLDER [--quick | {}]\n", fmt::join(sections, " | "));
     return 2;

@@ -397,7 +397,7 @@ void report(const fs::path& docs) {
 }  // namespace burnish
 
 int main(int argc, char** argv) {
-  if (argc != 2) {
+  if (argc != 2 || !std::filesystem::is_directory(argv[1])) {
     fmt::print(stderr, "usage: burnish_sampling_report DOCS_FOLDER\n");
     return 2;
   }

@@ -103,7 +103,7 @@ void print_costs() {
 
 int main(int count, char** arguments) {
   try {
-    if (count != 2 && count != 3)
+    if ((count != 2 && count != 3) || !std::filesystem::is_directory(arguments[1]))
       throw burnish::Error(
           "expected the folder of the documents, then maybe precision, webgl, cost or environment alone");
     const std::string only = count == 3 ? arguments[2] : "";

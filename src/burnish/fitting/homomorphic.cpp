@@ -13,6 +13,9 @@ namespace {
 // Up to here the normal equations fit the caches and their solution costs less than a pass over the samples.
 constexpr std::size_t kMostDirectUnknowns = 512;
 
+// The diffuse reflection of white is 1 / pi: a floor above hides all but highlights.
+constexpr double kLargestFloor = 1;
+
 bool solved_directly(const ModelSpec& spec, std::size_t unknowns, int channels) {
   bool shared = false;
   for (const ModelSpec::TableSpec& table : spec.tables) shared = shared || table.shared;
@@ -58,9 +61,10 @@ HomomorphicFit fit_homomorphic(const SampleSource& source, const ModelSpec& spec
   if (spec.lobes.size() != 1 || spec.lobes.front().empty())
     throw Error("fit: a log-linear fit takes a model of one lobe");
   if (source.count == 0) throw Error("fit: expected samples, found none");
-  if (!(options.smooth >= 0) || !std::isfinite(options.smooth) || !(options.floor > 0) ||
-      !(options.error_floor > 0) || options.reweightings < 0)
-    throw Error("fit: expected smooth >= 0, floors > 0 and reweightings >= 0");
+  const auto is_floor = [](double floor) { return floor > 0 && floor <= kLargestFloor; };
+  if (!(options.smooth >= 0) || !std::isfinite(options.smooth) || !is_floor(options.floor) ||
+      !is_floor(options.error_floor) || options.reweightings < 0)
+    throw Error("fit: expected smooth >= 0, floors > 0 and at most 1, and reweightings >= 0");
 
   check_formats(spec, source.channels, options.format);
 

@@ -15,14 +15,14 @@ struct HomomorphicOptions {
   /// integrals over each table's unit interval or square of the squared second derivatives of log lambda.
   /// >= 0; larger is smoother; the same at every resolution.
   double smooth = 1e-8;
-  /// The factors are fitted to log(max(f, 0) + floor), > 0, 1/sr: what zeros and values that noise makes
-  /// negative count as. Well below 1e-3, where the error figures stop to look.
+  /// The factors are fitted to log(max(f, 0) + floor), in (0, 1], 1/sr: what zeros and values that noise
+  /// makes negative count as. Well below 1e-3, where the error figures stop to look.
   double floor = 3e-5;
   /// Most passes of reweighted least squares after the first fit. They turn the mean square of the error in
   /// log f, which outliers and noise below error_floor rule, into the mean absolute error of log(f +
   /// error_floor); the pass with the smallest is kept. 0: the plain least-squares fit.
   int reweightings = 0;
-  double error_floor = 1e-3;               ///< of the reweighted error, 1/sr, > 0
+  double error_floor = 1e-3;               ///< of the reweighted error, 1/sr, in (0, 1]
   TableFormat format = TableFormat::half;  ///< of tables without one in the spec; see format_of
   int max_iterations = 300;                ///< of conjugate gradients
   double tolerance = 1e-3;  ///< conjugate gradients stop when the preconditioned residual fell to this share

@@ -198,6 +198,7 @@ TEST(HomomorphicFitting, RefusesWhatItCannotFit) {
   EXPECT_THROW(fit_homomorphic(source, parse_model_spec("p(wi) p(wo) + q(h)", {}, true), {}), Error);
   EXPECT_THROW(fit_homomorphic(source, pqp, {.smooth = -1}), Error);
   EXPECT_THROW(fit_homomorphic(source, pqp, {.floor = 0}), Error);
+  EXPECT_THROW(fit_homomorphic(source, pqp, {.floor = 1.5}), Error);
   EXPECT_THROW(fit_homomorphic(SampleSource{.channels = 1}, pqp, {}), Error);
   SampleSource blind = source;
   blind.fill = [](std::size_t, std::span<DirectionPair> pairs, std::span<double>, std::span<double> weights) {
