@@ -27,6 +27,9 @@ struct Ints {
 HWY_INLINE Reals abs(Reals a) {
   return Reals(hn::Abs(a.raw));
 }
+HWY_INLINE Reals copy_sign(Reals size, Reals sign) {
+  return Reals(hn::CopySign(size.raw, sign.raw));
+}
 HWY_INLINE Ints operator+(Ints a, Ints b) {
   return Ints(hn::Add(a.raw, b.raw));
 }
@@ -68,13 +71,13 @@ HWY_INLINE hn::Vec<DI> gather_two(const std::uint16_t* table, Ints i) {
   return hn::GatherOffset(DI(), reinterpret_cast<const std::int32_t*>(table), hn::Add(i.raw, i.raw));
 }
 struct EdgePairs {
-  Ints lower, upper;
+  Ints lower, mass;
 };
 HWY_INLINE EdgePairs edge_pair(const std::uint16_t* table, Ints i) {
   const DI di;
-  const auto two = gather_two(table, i), low = hn::Set(di, 0xffff), one = hn::Set(di, 1);
+  const auto two = gather_two(table, i), low = hn::Set(di, 0xffff);
   const auto high = hn::BitCast(di, hn::ShiftRight<16>(hn::BitCast(hn::RebindToUnsigned<D>(), two)));
-  return {Ints(hn::And(two, low)), Ints(hn::Add(hn::And(hn::Sub(high, one), low), one))};
+  return {Ints(hn::And(two, low)), Ints(hn::And(hn::Sub(high, two), low))};
 }
 
 // By halves: each step asks for one edge a lane.

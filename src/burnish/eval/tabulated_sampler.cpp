@@ -100,8 +100,8 @@ Vec3 wo_of(const SamplerOptions& options, int ring, int turn) noexcept {
   const double t = last_ring() * ring / (options.wo_thetas - 1);
   const double sine = 2 * t / (1 + t * t), cosine = (1 - t * t) / (1 + t * t);
   const double around = 4.0 * turn / options.wo_phis;
-  const auto axis = scalar::on_half_circle(std::abs(around - 2) - 1);
-  return {sine * axis.x, around <= 2 ? sine * axis.y : -sine * axis.y, cosine};
+  const auto axis = scalar::on_half_circle(std::abs(around - 2) - 1, 2 - around);
+  return {sine * axis.x / axis.length, sine * axis.y / axis.length, cosine};
 }
 
 // Cumulative masses in 1/65536, the first of them 0, each cell at least 1.
@@ -142,6 +142,8 @@ struct TabulatedSampler::Tables {
     view.phis = options.wo_phis;
     view.rows = options.rows;
     view.columns = options.columns;
+    view.per_row = 1.0 / view.rows;
+    view.per_column = 1.0 / view.columns;
     view.theta_scale = (options.wo_thetas - 1) / last_ring();
     for (int ring = 0; ring < view.thetas; ++ring)
       for (int turn = 0; turn < view.phis; ++turn)

@@ -241,6 +241,27 @@ TEST(TabulatedSampler, DrawsEvenlyWhereNothingIsReflected) {
   EXPECT_NEAR(test_draws(sampler, spherical_direction(0.7, 0.3), 1000, 1).integral, 1, 4e-3);
 }
 
+// The half vector is the normal, whose azimuth is arbitrary.
+TEST(TabulatedSampler, TellsDensitiesOfMirrorDirectionsAtAnyView) {
+  std::vector<float> wi[2], wo[2], z, pdf;
+  for (const float up : {1.0f, 0.3f, 1e-2f, 1e-4f, 1e-6f})
+    for (const float phi : {0.0f, 0.5f, 1.0f, 1.7f}) {
+      const float across = std::sqrt(1 - up * up), quarters = phi * static_cast<float>(kPi / 2);
+      const float x = phi == 1 ? 0 : across * std::cos(quarters),
+                  y = phi == 0 ? 0 : across * std::sin(quarters);
+      wo[0].push_back(x), wo[1].push_back(y), z.push_back(up);
+      wi[0].push_back(-x), wi[1].push_back(-y);
+    }
+  pdf.resize(z.size());
+  const TabulatedSampler sampler(glossy_model(kModels[6]));
+  sampler.pdf(DirectionSpans{wi[0], wi[1], z, wo[0], wo[1], z}, pdf);
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    const double one = sampler.pdf({wi[0][i], wi[1][i], z[i]}, {wo[0][i], wo[1][i], z[i]});
+    EXPECT_GT(one, 0);
+    EXPECT_NEAR(pdf[i], one, 3e-3 * one) << z[i];
+  }
+}
+
 TEST(TabulatedSampler, SurvivesAnythingInPlaceOfDirections) {
   const double odd[] = {NAN, INFINITY, -INFINITY, 1e30, -1e30, 1e-40, 0, 1, -1};
   std::vector<float> in[5];

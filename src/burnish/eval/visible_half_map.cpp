@@ -54,15 +54,15 @@ double second_moment(const std::vector<PreparedView>& views, const VisibleHalfMa
     std::fill(squares.begin(), squares.end(), 0.0);
     for (const Point& p : v.points) {
       const double x = map.xx * p.x + map.xy * p.y, y = map.xy * p.x + map.yy * p.y;
-      const double stretch = x * x + y * y, norm = std::sqrt(stretch);
-      const double w = scalar::place_on_half_circle(x / norm, y / norm);
-      const scalar::Ray<double> ray(view, stretch, p.along, v.up);
+      const double stretch = x * x + y * y, narrowing = 1 / stretch;
+      const double w = scalar::place_on_half_circle(scalar::Arrow<double>{x, y, std::sqrt(stretch)});
+      const scalar::Ray<double> ray(view, narrowing, p.along, v.up, v.up * v.up);
       const double turned = scalar::turn(w, y) * (isotropic ? 0.5 : 0.25);
       const int row = std::min(static_cast<int>(turned * rows), rows - 1);
       const int column = std::clamp(static_cast<int>(ray.to_unit(p.m) * columns), 0, columns - 1);
       const auto cell = static_cast<std::size_t>(row * columns + column);
       light[cell] += p.light;
-      squares[cell] += p.squares / ray.density(p.m, p.to_half, scalar::turning(w, stretch));
+      squares[cell] += p.squares / ray.density(p.m, p.to_half, scalar::turning(w, narrowing));
     }
     double sum = 0;
     for (std::size_t cell = 0; cell < light.size(); ++cell)

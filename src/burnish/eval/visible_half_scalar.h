@@ -12,7 +12,8 @@ namespace burnish {
 /// What the formulas of visible_half-inl.h read.
 struct SamplerView : VisibleHalfMap {
   int thetas = 0, phis = 0, rows = 0, columns = 0;
-  double theta_scale = 0;  ///< rings per tan(theta_o / 2)
+  double theta_scale = 0;              ///< rings per tan(theta_o / 2)
+  double per_row = 0, per_column = 0;  ///< 1 / rows, 1 / columns
   const std::uint16_t *row_edges = nullptr, *cell_edges = nullptr;
 };
 
@@ -37,6 +38,9 @@ inline double if_true(MaskLanes mask, double a, double b) noexcept {
 inline std::int32_t if_true(MaskLanes mask, std::int32_t a, std::int32_t b) noexcept {
   return mask[0] ? a : b;
 }
+inline double copy_sign(double size, double sign) noexcept {
+  return std::copysign(size, sign);
+}
 inline std::int32_t to_int(double x) noexcept {
   return static_cast<std::int32_t>(std::abs(x) < 1e9 ? x : 0);  // not-a-number: 0
 }
@@ -46,14 +50,13 @@ inline double to_real(std::int32_t i) noexcept {
 inline std::int32_t next_around(std::int32_t i, int last) noexcept {
   return i < last ? i + 1 : 0;
 }
-// Counts the edges up to the target, eight at a time: a search by halves waits for every comparison. In
-// float; what rounding puts into the neighbouring cell lands on its border.
+// Counts the edges up to the target: a search by halves waits for every comparison. In float; what rounding
+// puts into the neighbouring cell lands on its border.
 template <int kSlices>
 inline __attribute__((always_inline)) std::int32_t search(const std::uint16_t* table,
                                                           const std::int32_t (&start)[kSlices],
                                                           const double (&weight)[kSlices], int count,
                                                           double target) noexcept {
-  constexpr int kTogether = 8;
   const std::uint16_t* row[kSlices];
   float share[kSlices];
   for (int s = 0; s < kSlices; ++s) {
@@ -61,22 +64,20 @@ inline __attribute__((always_inline)) std::int32_t search(const std::uint16_t* t
     share[s] = static_cast<float>(weight[s]);
   }
   const auto limit = static_cast<float>(target);
-  std::int32_t below[kTogether]{};
-  for (int first = 0; first < count; first += kTogether)
-    for (int i = 0; i < kTogether; ++i) {
-      float edge = 0;
-      for (int s = 0; s < kSlices; ++s) edge += share[s] * static_cast<float>(row[s][first + i]);
-      below[i] += edge <= limit;
-    }
-  std::int32_t sum = -1;
-  for (const std::int32_t b : below) sum += b;
-  return sum;
+  const int eights = count & ~7;  // all of them: vectors without a rest
+  std::int32_t below = 0;
+  for (int i = 0; i < eights; ++i) {
+    float edge = share[0] * static_cast<float>(row[0][i]);
+    for (int s = 1; s < kSlices; ++s) edge += share[s] * static_cast<float>(row[s][i]);
+    below += edge <= limit;
+  }
+  return below - 1;
 }
 struct EdgePair {
-  std::int32_t lower, upper;
+  std::int32_t lower, mass;
 };
 inline EdgePair edge_pair(const std::uint16_t* table, std::int32_t i) noexcept {
-  return {table[i], ((table[i + 1] - 1) & 0xffff) + 1};
+  return {table[i], static_cast<std::uint16_t>(table[i + 1] - table[i])};
 }
 
 #define SAMPLER_INLINE inline
