@@ -1,4 +1,4 @@
-// The formulas of DirectionTable, each written once. No include guard: included in a namespace of its own for
+// TabulatedSampler's formulas, each written once. No include guard: included in a namespace of its own for
 // double and again in one per instruction set for vectors of floats, so that every copy is compiled with that
 // set's flags.
 //
@@ -27,6 +27,7 @@ SAMPLER_INLINE Arrow<F> arrow(F x, F y) {
   const F right = x + F(1e-15);
   return {right, y, sqrt(right * right + y * y)};
 }
+/// arrow() over its length.
 template <class F>
 SAMPLER_INLINE Axis<F> unit_axis(F x, F y) {
   const Arrow<F> to = arrow(x, y);
