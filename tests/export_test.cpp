@@ -1,8 +1,11 @@
 // What `burnish export` writes opens elsewhere.
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -13,6 +16,7 @@
 #include <burnish/factors/models_for_tests.h>
 #include <burnish/io/rgl.h>
 #include <burnish/metrics/png.h>
+#include <burnish/render/image_based_light.h>
 #include <burnish/tools_for_tests.h>
 
 namespace burnish {
@@ -26,10 +30,34 @@ int run(const std::string& command) {
   return WEXITSTATUS(std::system(command.c_str()));
 }
 
+const ModelCase& model_case(std::string_view name) {
+  return *std::ranges::find_if(kModelCases, [&](const ModelCase& model) { return model.name == name; });
+}
+
 class Export : public testing::Test {
  protected:
   void SetUp() override {
     write(folder_ / "two lobes.exr", format_model({smooth_model(kModelCases[2]), {}, "{}"}));
+  }
+
+  // What `script` leaves in data-result when the exported page has run it, after "errors" of the console.
+  std::string run_page(const std::string& script, int window) const {
+    std::string page = read(folder_ / "out/two_lobes.html");
+    page.insert(page.find("<script>"),
+                "<script>let errors = 0; console.error = () => ++errors;"
+                "addEventListener('error', () => ++errors);</script>");
+    page.insert(page.find("</html>"), "<script>" + script + "</script>");
+    write(folder_ / "page.html", page);
+    const int code =
+        run(fmt::format("timeout 300 chromium --headless --no-sandbox --use-gl=angle --use-angle=swiftshader "
+                        "--enable-unsafe-swiftshader --window-size={1},{1} --user-data-dir={0}/profile "
+                        "--virtual-time-budget=5000 --dump-dom file://{0}/page.html > {0}/dom 2> {0}/said",
+                        folder_.string(), window));
+    EXPECT_EQ(code, 0) << read(folder_ / "said");
+    const std::string dom = read(folder_ / "dom"), mark = "data-result=\"";
+    const auto at = dom.find(mark);
+    return at == dom.npos ? ""
+                          : dom.substr(at + mark.size(), dom.find('"', at + mark.size()) - at - mark.size());
   }
 
   int exports(const std::string& arguments) const {
@@ -114,11 +142,7 @@ TEST_F(Export, ThePageLoadsNothing) {
 TEST_F(Export, ThePageShowsTheMaterialUnderALightThatIsDragged) {
   if (!has_tool("chromium")) GTEST_SKIP() << "no chromium";
   ASSERT_EQ(exports("--to html"), 0);
-  std::string page = read(folder_ / "out/two_lobes.html");
-  page.insert(page.find("<script>"),
-              "<script>let errors = 0; console.error = () => ++errors;"
-              "addEventListener('error', () => ++errors);</script>");
-  page.insert(page.find("</html>"), R"(<script>
+  EXPECT_EQ(run_page(R"(
 const shot = () => canvas.toDataURL(), move = (buttons, x, y) => {
   canvas.dispatchEvent(new PointerEvent("pointermove", {buttons, clientX: x, clientY: y, bubbles: true}));
   return shot();
@@ -134,16 +158,78 @@ gl.readPixels(canvas.width / 2, canvas.height / 2, 1, 1, gl.RGBA, gl.UNSIGNED_BY
 document.body.dataset.result = [hovered === start, dragged !== start, back !== dragged,
                                 teapot !== back && sphere !== back && teapot !== sphere,
                                 pixel[0] + pixel[1] + pixel[2] > 80, gl.getError() === 0, errors === 0].join(" ");
-</script>)");
-  write(folder_ / "page.html", page);
-  ASSERT_EQ(
-      run(fmt::format("timeout 300 chromium --headless --no-sandbox --use-gl=angle --use-angle=swiftshader "
-                      "--enable-unsafe-swiftshader --window-size=400,400 --user-data-dir={0}/profile "
-                      "--virtual-time-budget=5000 --dump-dom file://{0}/page.html > {0}/dom 2> {0}/said",
-                      folder_.string())),
-      0)
-      << read(folder_ / "said");
-  EXPECT_THAT(read(folder_ / "dom"), HasSubstr("data-result=\"true true true true true true true\""));
+)",
+                     400),
+            "true true true true true true true");
+}
+
+TEST_F(Export, ThePageShowsTheLightFromAllAround) {
+  if (!has_tool("chromium")) GTEST_SKIP() << "no chromium";
+  const FactoredBrdf brdf = smooth_model(model_case("Pqpr"));
+  write(folder_ / "two lobes.exr", format_model({brdf, {}, "{}"}));
+  ASSERT_EQ(exports("--to html --environment studio"), 0) << read(folder_ / "said");
+  std::istringstream found(run_page(R"(
+find("#lamp").checked = false;
+find("select").value = "sphere";
+find("select").dispatchEvent(new Event("input"));
+const pixel = new Uint8Array(4), lit = canvas.toDataURL();
+gl.readPixels(canvas.width / 2, canvas.height / 2, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+find("#around").click();
+document.body.dataset.result = [canvas.toDataURL() !== lit, gl.getError() + errors, find("#exposure").value,
+                                canvas.width, canvas.height, ...pixel].join(" ");
+)",
+                                    300));
+  std::string changes;
+  int faults = -1, width = 0, height = 0;
+  double stops = 0;
+  found >> changes >> faults >> stops >> width >> height;
+  EXPECT_EQ(changes, "true");
+  EXPECT_EQ(faults, 0);
+  // of the pixel's middle, on a sphere of radius 0.85 that is as wide as the lesser side
+  const auto at = [&](int pixels) { return pixels % 2 ? 0 : 1 / (0.85 * std::min(width, height)); };
+  const double x = at(width), y = at(height);
+  const Rgb light =
+      prefilter(brdf, *find_environment("studio")).radiance({x, y, std::sqrt(1 - x * x - y * y)}, {0, 0, 1});
+  for (const double channel : {light.r, light.g, light.b}) {
+    double level = -1;
+    found >> level;
+    EXPECT_NEAR(level, 255 * std::pow(std::min(std::exp2(stops) * channel, 1.0), 1 / 2.2), 2);
+  }
+}
+
+TEST_F(Export, WritesTheLightFromAllAroundInGlsl) {
+  for (const std::size_t model : {2u, 1u}) {  // isotropic, and not
+    write(folder_ / "two lobes.exr", format_model({smooth_model(kModelCases[model]), {}, "{}"}));
+    ASSERT_EQ(exports("--to glsl --to glsl_es --environment sun"), 0) << read(folder_ / "said");
+    const std::string manifest = read(folder_ / "out/two_lobes.json"), out = (folder_ / "out").string();
+    EXPECT_THAT(manifest, HasSubstr("\"environment\": \"sun\""));
+    EXPECT_THAT(manifest, HasSubstr("burnish_two_lobes_light"));
+    EXPECT_THAT(read(folder_ / "out/two_lobes.light_0.ktx2"), HasSubstr("KTX 20"));
+    if (!has_tool("glslangValidator")) GTEST_SKIP() << "no glslang";
+    const char* arguments = model == 2 ? "vec3(0), vec3(1)" : "vec3(0), vec3(0), vec3(0), vec3(1)";
+    for (const auto& [file, version] :
+         {std::pair{"two_lobes.light.glsl", "450"}, {"two_lobes.light.es.glsl", "300 es"}}) {
+      write(folder_ / "a.frag",
+            fmt::format(
+                "#version {}\n{}\nout vec4 c;\nvoid main() {{ c = vec4(burnish_two_lobes_light({}), 1); }}\n",
+                version, read(folder_ / "out" / file), arguments));
+      EXPECT_EQ(run(fmt::format("glslangValidator {0}/a.frag > {0}/said 2>&1", folder_.string())), 0)
+          << read(folder_ / "said");
+    }
+  }
+  EXPECT_EQ(exports("--to ktx2 --environment sun"), 2);
+  EXPECT_EQ(exports("--to html --environment no_such_sky.exr"), 1);
+}
+
+TEST_F(Export, PutsManyTablesIntoFewTextures) {
+  write(folder_ / "two lobes.exr", format_model({smooth_model(model_case("ManyTables")), {}, "{}"}));
+  ASSERT_EQ(exports("--to wgsl --to three --to html"), 0) << read(folder_ / "said");
+  EXPECT_THAT(read(folder_ / "out/two_lobes.json"), HasSubstr("\"first_row\": 10"));
+  EXPECT_TRUE(fs::exists(folder_ / "out/two_lobes_2.ktx2"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/two_lobes_3.ktx2"));
+  EXPECT_EQ(exports("--to wgsl --mips"), 1);
+  EXPECT_EQ(exports("--to html --environment studio"), 1);
+  EXPECT_THAT(read(folder_ / "said"), HasSubstr("textures for the light from all around"));
 }
 
 }  // namespace

@@ -17,6 +17,8 @@
 #include <burnish/textures/ktx2.h>
 
 #include "commands.h"
+#include "environment_argument.h"
+#include "export_files.h"
 #include "export_formats.h"
 #include "export_page.h"
 #include "usage.h"
@@ -27,27 +29,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-struct Target {
-  const char* name;
-  const char* extension;
-  ShaderLanguage language;
-};
-constexpr Target kTargets[] = {
-    {"glsl", "glsl", ShaderLanguage::glsl}, {"glsl_es", "es.glsl", ShaderLanguage::glsl_es},
-    {"hlsl", "hlsl", ShaderLanguage::hlsl}, {"msl", "metal", ShaderLanguage::msl},
-    {"wgsl", "wgsl", ShaderLanguage::wgsl}, {"cpp", "h", ShaderLanguage::cpp},
-};
-
-struct ExportArguments {
-  std::string model, folder, name, power;
-  std::vector<std::string> to;
-  bool exact = false, plain = false, mips = false;
-};
-
-struct ExportedFile {
-  std::string name, bytes;
-};
 
 // What shaders can be called, of a file's name.
 std::string name_of(const std::string& path) {
@@ -71,7 +52,7 @@ json cost_of(const ShaderCost& cost) {
           {"powers", cost.powers}};
 }
 
-json shader_entry(const Target& target, const std::string& file, const std::string& name,
+json shader_entry(const ExportTarget& target, const std::string& file, const std::string& name,
                   const Shader& shader) {
   return {{"language", target.name},
           {"file", file},
@@ -88,7 +69,7 @@ std::vector<ExportedFile> export_files(const FactoredBrdf& brdf, const ExportArg
   };
   std::vector<ExportedFile> files;
   bool textures = wants("ktx2");
-  for (const Target& target : kTargets) {
+  for (const ExportTarget& target : kExportTargets) {
     if (!wants(target.name)) continue;
     const bool cpp = target.language == ShaderLanguage::cpp;
     const ShaderFilter filter = arguments.exact || cpp ? ShaderFilter::exact : ShaderFilter::hardware;
@@ -96,25 +77,11 @@ std::vector<ExportedFile> export_files(const FactoredBrdf& brdf, const ExportArg
     files.push_back({fmt::format("{}.{}", name, target.extension), shader.text});
     manifest["shaders"].push_back(shader_entry(target, files.back().name, name, shader));
     manifest["shaders"].back()["filter"] = filter == ShaderFilter::exact ? "exact" : "hardware";
-    if (!cpp) manifest["shaders"].back()["textures"] = shader.textures;
+    for (const ShaderTexture& texture : shader.textures)
+      if (!cpp) manifest["shaders"].back()["textures"].push_back(texture.name);
     textures = textures || !cpp;
   }
-  for (std::size_t i = 0; textures && i < brdf.tables().size(); ++i) {
-    const Table& table = brdf.tables()[i];
-    const Texture texture = make_texture(table, arguments.mips);
-    files.push_back({fmt::format("{}_{}.ktx2", name, i), encode_ktx2(texture, !arguments.plain)});
-    manifest["textures"].push_back({{"table", table.name},
-                                    {"file", files.back().name},
-                                    {"width", table.layout.width},
-                                    {"height", table.layout.height},
-                                    {"levels", texture.levels.size()},
-                                    {"channels", table.channels},
-                                    {"format", to_string(table.format)},
-                                    {"warp", to_string(table.layout.warp)},
-                                    {"wrap", "clamp_to_edge"}});
-    if (table.layout.shape == TableShape::grid)
-      manifest["textures"].back()["warp_y"] = to_string(table.layout.warp_y);
-  }
+  if (textures) add_textures(brdf, arguments, files, manifest);
   for (std::size_t i = 0; wants("cube") && i < brdf.tables().size(); ++i) {
     const Table& table = brdf.tables()[i];
     if (table.layout.shape == TableShape::grid) continue;  // of two directions
@@ -147,8 +114,13 @@ std::vector<ExportedFile> export_files(const FactoredBrdf& brdf, const ExportArg
     files.push_back({name + ".bsdf", format_rgl(make_rgl_table(brdf, {.description = name}))});
     manifest["rgl"] = files.back().name;
   }
+  std::optional<SurfaceLight> light;
+  if (const auto environment = environment_of(arguments.environment)) {
+    light.emplace(brdf, *environment);
+    add_light(*light, arguments, files, manifest);
+  }
   if (wants("html")) {
-    files.push_back({name + ".html", export_page(brdf, name)});
+    files.push_back({name + ".html", export_page(brdf, name, light ? &*light : nullptr)});
     manifest["page"] = files.back().name;
   }
   return files;
@@ -178,8 +150,8 @@ std::vector<ExportedFile> export_files(const SpecularModel& model, const ExportA
       manifest["page"] = files.back().name;
       continue;
     }
-    const auto target = std::ranges::find(kTargets, to, &Target::name);
-    if (target == std::end(kTargets))
+    const auto target = std::ranges::find(kExportTargets, to, &ExportTarget::name);
+    if (target == std::end(kExportTargets))
       throw Error(
           fmt::format("export: expected a shader language or html for {}, found {}", arguments.model, to));
     const Shader shader = generate_shader(model, target->language, arguments.name);
@@ -200,13 +172,14 @@ void add_export_command(CLI::App& app) {
       "Every shader comes with its textures but C++, which has them inside; NAME.json says what is in the "
       "folder and what an evaluation costs. See docs/shaders.md.\n"
       "Examples: burnish export paint.exr --to glsl --to html -o paint\n"
+      "          burnish export paint.exr --to glsl_es --to html --environment studio -o paint\n"
       "          burnish export blinn_phong:exponent=60,ks=0.8 --to wgsl --power cubic2 -o highlight");
   auto arguments = std::make_shared<ExportArguments>();
   verb->add_option("MODEL", arguments->model,
                    "factored BRDF, as `burnish fit` writes it, or one such as blinn_phong:exponent=60")
       ->required();
   std::vector<std::string> targets{"ktx2", "cube", "exr", "png", "gltf", "three", "rgl", "html"};
-  for (const Target& target : kTargets) targets.emplace_back(target.name);
+  for (const ExportTarget& target : kExportTargets) targets.emplace_back(target.name);
   verb->add_option("--to", arguments->to, "what to write; may be given several times")
       ->required()
       ->check(CLI::IsMember(targets));
@@ -216,6 +189,7 @@ void add_export_command(CLI::App& app) {
       "--power", arguments->power,
       "of phong and blinn_phong: how the power is computed, see `burnish specular list`; by default the "
       "cheapest that is never one of 255 levels off");
+  add_environment_argument(*verb, arguments->environment);
   verb->add_flag("--exact", arguments->exact, "shaders that weigh texels themselves, in floats");
   verb->add_flag("--mips", arguments->mips, "KTX2 with levels: averages over the directions of a texel");
   verb->add_flag("--plain", arguments->plain, "textures that are not compressed");
@@ -224,6 +198,9 @@ void add_export_command(CLI::App& app) {
     std::vector<ExportedFile> files;
     if (is_analytic_spec(arguments->model)) {
       const AnalyticBrdf brdf = parse_analytic(arguments->model);
+      if (!arguments->environment.empty())
+        throw CLI::ValidationError("--environment: expected a factored BRDF with it, found " +
+                                   arguments->model);
       if (arguments->name.empty()) arguments->name = brdf.model().name;
       const SpecularModel model = specular_of(brdf, arguments->power);
       manifest.update({{"name", arguments->name},
@@ -237,6 +214,10 @@ void add_export_command(CLI::App& app) {
     } else {
       if (!arguments->power.empty())
         throw CLI::ValidationError("--power: expected phong or blinn_phong with it, found a file");
+      const auto lit = [](const std::string& to) { return to == "glsl" || to == "glsl_es" || to == "html"; };
+      if (!arguments->environment.empty() && std::ranges::none_of(arguments->to, lit))
+        throw CLI::ValidationError(
+            "--environment: expected --to glsl, glsl_es or html with it, found others");
       if (arguments->name.empty()) arguments->name = name_of(arguments->model);
       const FactoredBrdf brdf = parse_model(read_file(arguments->model)).brdf;
       manifest.update({{"name", arguments->name},

@@ -8,8 +8,9 @@
 
 namespace burnish::cli {
 
-/// The values as half floats, four channels, in base64: what WebGL2 filters without an extension.
-std::string half_texels(const Table& table);
+/// Texels of 1 or 3 channels as half floats, four channels, in base64: what WebGL2 filters without an
+/// extension.
+std::string half_texels(const std::vector<float>& values, int channels);
 std::string base64(std::span<const std::byte> bytes);
 
 /// A glTF 2.0 file (GLB): a sphere with tangents whose material is the core one that looks most like the

@@ -3,8 +3,10 @@
 #include <cmath>
 #include <cstdint>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <burnish/error.h>
 #include <burnish/render/shapes.h>
 #include <burnish/shaders/shader.h>
 
@@ -23,14 +25,16 @@ constexpr const char* kPageBefore = R"(<!DOCTYPE html>
 <style>
 body { margin: 0; background: #17181a; color: #ddd; font: 14px/1.4 sans-serif; }
 canvas { display: block; width: 100vw; height: 100vh; touch-action: none; cursor: grab; }
-#panel { position: fixed; left: 16px; top: 16px; }
-#panel code { color: #9cf; }
+#panel { position: fixed; left: 16px; top: 16px; max-width: min(24em, 90vw); }
+#panel code { display: block; color: #9cf; white-space: nowrap; overflow: hidden; text-overflow: ellipsis; }
 #panel label { display: block; margin-top: 6px; }
 </style>
 <canvas></canvas>
-<div id="panel"><b></b> <code></code><br>Drag: light. Shift and drag: object.
+<div id="panel"><b></b><code></code>Drag: light. Shift and drag: object.
 <label><select><option>torus knot<option>teapot<option>sphere</select> shape</label>
-<label><input type="range" min="-12" max="12" step="0.05"> exposure</label></div>
+<label><input id="exposure" type="range" min="-12" max="12" step="0.05"> exposure</label>
+<label><input id="lamp" type="checkbox" checked> light</label>
+<label><input id="around" type="checkbox" checked> light from all around</label></div>
 <script>
 "use strict";
 const model = )";
@@ -41,7 +45,7 @@ const canvas = find("canvas");
 const gl = canvas.getContext("webgl2", {antialias: true, preserveDrawingBuffer: true});
 if (!gl) throw new Error("expected WebGL2, found none");
 find("b").textContent = model.name;
-find("code").textContent = model.expression;
+find("code").textContent = find("code").title = model.expression;
 
 function shader(type, text) {
   const s = gl.createShader(type);
@@ -64,15 +68,18 @@ void main() {
   t = turn * tangent;
   gl_Position = vec4(zoom * p.xy, -0.5 * p.z, 1);
 }`));
-gl.attachShader(program, shader(gl.FRAGMENT_SHADER, "#version 300 es\n" + model.shader + `
+const around = model.environment;
+gl.attachShader(program, shader(gl.FRAGMENT_SHADER, "#version 300 es\n" + model.shader + (around?.shader ?? "") + `
 in vec3 n, t;
 uniform vec3 light;
-uniform float exposure;
+uniform vec2 exposures;
 out vec4 color;
 void main() {
-  vec3 normal = normalize(n), tangent = normalize(t - dot(t, normal) * normal);
-  vec3 f = burnish_${model.name}_world(normal, tangent, light, vec3(0, 0, 1));
-  color = vec4(pow(min(exposure * f * max(dot(normal, light), 0.0), 1.0), vec3(1.0 / 2.2)), 1);
+  vec3 normal = normalize(n), tangent = normalize(t - dot(t, normal) * normal), view = vec3(0, 0, 1);
+  vec3 sum = exposures.x * max(dot(normal, light), 0.0) *
+             burnish_${model.name}_world(normal, tangent, light, view);
+  ${around ? `if (exposures.y > 0.0) sum += exposures.y * ${around.call};` : ""}
+  color = vec4(pow(min(sum, 1.0), vec3(1.0 / 2.2)), 1);
 }`));
 gl.linkProgram(program);
 if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
@@ -80,17 +87,19 @@ gl.useProgram(program);
 const uniform = (name) => gl.getUniformLocation(program, name);
 
 const decode = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
-model.textures.forEach((texture, unit) => {
+[...model.textures, ...(around?.textures ?? [])].forEach((texture, unit) => {
+  const kind = texture.depth ? gl.TEXTURE_3D : gl.TEXTURE_2D, texels = new Uint16Array(decode(texture.rgba16f));
   gl.activeTexture(gl.TEXTURE0 + unit);
-  gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
-  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA16F, texture.width, texture.height, 0, gl.RGBA, gl.HALF_FLOAT,
-                new Uint16Array(decode(texture.rgba16f)));
-  for (const side of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T])
-    gl.texParameteri(gl.TEXTURE_2D, side, gl.CLAMP_TO_EDGE);
-  for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER])
-    gl.texParameteri(gl.TEXTURE_2D, filter, gl.LINEAR);
+  gl.bindTexture(kind, gl.createTexture());
+  if (texture.depth)
+    gl.texImage3D(kind, 0, gl.RGBA16F, texture.width, texture.height, texture.depth, 0, gl.RGBA, gl.HALF_FLOAT, texels);
+  else gl.texImage2D(kind, 0, gl.RGBA16F, texture.width, texture.height, 0, gl.RGBA, gl.HALF_FLOAT, texels);
+  for (const side of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T, gl.TEXTURE_WRAP_R])
+    gl.texParameteri(kind, side, gl.CLAMP_TO_EDGE);
+  for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(kind, filter, gl.LINEAR);
   gl.uniform1i(uniform(texture.name), unit);
 });
+for (const box of ["#lamp", "#around"]) find(box).parentElement.hidden = !around;
 
 const add = (a, b, s = 1) => a.map((x, i) => x + s * b[i]);
 const cross = (a, b) => [0, 1, 2].map((i) => a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3]);
@@ -155,7 +164,8 @@ function draw() {
   const least = Math.min(canvas.width, canvas.height);
   gl.uniform2f(uniform("zoom"), least / canvas.width, least / canvas.height);
   gl.uniform3fv(uniform("light"), light);
-  gl.uniform1f(uniform("exposure"), 2 ** find("input").value);
+  const exposure = 2 ** find("#exposure").value;
+  gl.uniform2f(uniform("exposures"), find("#lamp").checked * exposure, find("#around").checked * exposure);
   const shape = shapes[find("select").value];
   gl.bindVertexArray(shape.array);
   gl.drawElements(gl.TRIANGLES, shape.count, gl.UNSIGNED_SHORT, 0);
@@ -164,7 +174,7 @@ function draw() {
 function expose() {
   let low = -12, high = 12;
   for (let i = 0; i < 10; ++i) {
-    find("input").value = (low + high) / 2;
+    find("#exposure").value = (low + high) / 2;
     draw();
     const pixels = new Uint8Array(4 * canvas.width * canvas.height);
     gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
@@ -188,7 +198,7 @@ canvas.addEventListener("pointermove", (event) => {
   }
   draw();
 });
-for (const control of ["select", "input"]) find(control).addEventListener("input", draw);
+for (const control of ["select", "#exposure", "#lamp", "#around"]) find(control).addEventListener("input", draw);
 window.addEventListener("resize", draw);
 expose();
 draw();
@@ -236,29 +246,56 @@ std::string base64(std::span<const std::byte> bytes) {
 }
 
 // WebGL2 filters half floats always, floats by an extension only.
-std::string half_texels(const Table& table) {
-  std::vector<float> values;
-  const auto step = static_cast<std::size_t>(table.channels);
-  for (std::size_t i = 0; i < table.values.size(); i += step)
-    for (std::size_t c = 0; c < 4; ++c)
-      values.push_back(c == 3 ? 1.0f : table.values[i + (step == 1 ? 0 : c)]);
-  return base64(pack(TableFormat::half, 4, values));
+std::string half_texels(const std::vector<float>& values, int channels) {
+  std::vector<float> all;
+  const auto step = static_cast<std::size_t>(channels);
+  for (std::size_t i = 0; i < values.size(); i += step)
+    for (std::size_t c = 0; c < 4; ++c) all.push_back(c == 3 ? 1.0f : values[i + (step == 1 ? 0 : c)]);
+  return base64(pack(TableFormat::half, 4, all));
 }
 
-std::string export_page(const FactoredBrdf& brdf, const std::string& name) {
-  const Shader shader = generate_shader(brdf, {ShaderLanguage::glsl_es, ShaderFilter::hardware, name});
+// The shader's call at a pixel of the page.
+std::string call_of(const LightShader& light) {
+  std::string call = light.function + "(normal";
+  for (const std::string& argument : light.arguments)
+    call += argument == "t" ? ", tangent" : argument == "s" ? ", cross(normal, tangent)" : "";
+  return call + ", view)";
+}
+
+nlohmann::json texel_entry(const GlTexture& texture) {
+  return {{"name", texture.name},
+          {"width", texture.width},
+          {"height", texture.height},
+          {"depth", texture.depth},
+          {"rgba16f", half_texels(texture.values, texture.channels)}};
+}
+
+nlohmann::json light_of(const LightShader& light) {
   auto textures = nlohmann::json::array();
-  for (std::size_t i = 0; i < brdf.tables().size(); ++i) {
-    const Table& table = brdf.tables()[i];
-    textures.push_back({{"name", shader.textures[i]},
-                        {"width", table.layout.width},
-                        {"height", table.layout.height},
-                        {"rgba16f", half_texels(table)}});
+  for (const GlTexture& texture : light.textures) textures.push_back(texel_entry(texture));
+  return {{"shader", light.text}, {"call", call_of(light)}, {"textures", textures}};
+}
+
+std::string export_page(const FactoredBrdf& brdf, const std::string& name, const SurfaceLight* light) {
+  ShaderOptions options{ShaderLanguage::glsl_es, ShaderFilter::hardware, name};
+  std::optional<LightShader> around;
+  if (light) {  // what is left of the textures that every fragment shader can sample
+    around = light->shader(ShaderLanguage::glsl_es, name);
+    if (around->textures.size() >= options.most_textures)
+      throw Error(
+          fmt::format("export: expected fewer than {} textures for the light from all around, found {}",
+                      options.most_textures, around->textures.size()));
+    options.most_textures -= around->textures.size();
   }
-  return page_of({{"name", name},
-                  {"expression", model_expression(brdf)},
-                  {"shader", shader.text},
-                  {"textures", textures}});
+  const Shader shader = generate_shader(brdf, options);
+  nlohmann::json model{{"name", name},
+                       {"expression", model_expression(brdf)},
+                       {"shader", shader.text},
+                       {"textures", nlohmann::json::array()}};
+  for (const ShaderTexture& texture : shader.textures)
+    model["textures"].push_back(texel_entry(upload_of(texture, TableFormat::half, true)));
+  if (around) model["environment"] = light_of(*around);
+  return page_of(std::move(model));
 }
 
 std::string export_page(const SpecularModel& model, const std::string& expression, const std::string& name) {

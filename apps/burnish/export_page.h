@@ -3,13 +3,16 @@
 #include <string>
 
 #include <burnish/factors/factored_brdf.h>
+#include <burnish/render/surface_environment.h>
 #include <burnish/shaders/specular_shader.h>
 
 namespace burnish::cli {
 
 /// An HTML page that shows the model on a torus knot, a teapot or a sphere under a light that follows the
-/// pointer: WebGL2, everything inside, nothing loaded. Throws Error as generate_shader does.
-std::string export_page(const FactoredBrdf& brdf, const std::string& name);
+/// pointer, and light from all around where `light` is given: WebGL2, everything inside, nothing loaded.
+/// Throws Error as generate_shader does.
+std::string export_page(const FactoredBrdf& brdf, const std::string& name,
+                        const SurfaceLight* light = nullptr);
 /// The same for a specular model that is called `expression` there.
 std::string export_page(const SpecularModel& model, const std::string& expression, const std::string& name);
 

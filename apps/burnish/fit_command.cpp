@@ -29,8 +29,8 @@ struct FitArguments {
 };
 
 // File names need not be UTF-8.
-std::string dump(const nlohmann::ordered_json& json, int indent) {
-  return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+std::string dump(const nlohmann::ordered_json& notes, int indent) {
+  return notes.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 double parse_smooth(const std::string& text) {

@@ -20,6 +20,7 @@
 #include <burnish/render/surface_environment.h>
 
 #include "commands.h"
+#include "environment_argument.h"
 #include "render_figure.h"
 #include "source_arguments.h"
 #include "usage.h"
@@ -85,14 +86,6 @@ double exposure_of(const std::string& text) {
   if (!CLI::detail::lexical_cast(text, value) || !(value > 0))
     throw CLI::ValidationError(fmt::format("--exposure: expected auto or a number > 0, found '{}'", text));
   return value;
-}
-
-// A name or a picture; nothing where none is asked for.
-std::optional<Environment> environment_of(const std::string& text) {
-  if (text.empty()) return {};
-  if (const auto known = find_environment(text)) return known;
-  return Environment{.name = "picture",
-                     .picture = std::make_shared<const SkyImage>(parse_sky(read_file(text)))};
 }
 
 // Files name materials of their own: as many as there are, the last given one for the rest.
@@ -201,10 +194,7 @@ void add_render_command(CLI::App& app) {
           "x,y,z[:intensity] or x,y,z:r,g,b of a point light; may be given several times; 2,3,4:20 where no "
           "light is given")
       ->allow_extra_args(false);
-  verb->add_option(
-      "--environment", arguments->environment,
-      "light from all around: sun, studio, or an OpenEXR picture of all directions, twice as wide as "
-      "high, y up, x in its middle");
+  add_environment_argument(*verb, arguments->environment);
   verb->add_option(
           "--draws", arguments->draws,
           "of --renderer cpu: directions a ray draws of the environment, and of each of its lamps; a square")

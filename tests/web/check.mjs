@@ -46,6 +46,16 @@ for (const cube of manifest.cube_maps) {
   assert.deepEqual([container.faceCount, container.pixelWidth, container.levels.length], [6, cube.side, cube.levels]);
 }
 
+// Light from all around: a 3-D texture and tables.
+assert.ok(manifest.light.textures.some((texture) => texture.depth > 1));
+for (const texture of manifest.light.textures) {
+  const container = readKtx2(bytes(texture.file));
+  assert.deepEqual([container.pixelWidth, container.pixelHeight, container.pixelDepth],
+                   [texture.width, texture.height, texture.depth]);
+  assert.equal(container.levels[0].uncompressedByteLength,
+               texture.width * texture.height * Math.max(texture.depth, 1) * (container.vkFormat === 97 ? 8 : 2));
+}
+
 // glTF: the validator of Khronos finds no fault, and three.js the core material.
 const report = await validator.validateBytes(bytes(manifest.gltf));
 assert.equal(report.issues.numErrors + report.issues.numWarnings, 0, JSON.stringify(report.issues.messages));

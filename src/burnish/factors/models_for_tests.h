@@ -31,6 +31,12 @@ inline const ModelCase kModelCases[] = {
     {"Deviation", "a(theta_m) g(theta_h,theta_m)", {"a=16,rational:-1.3", "g=9x5"}, 3},
     {"Difference", "a(d) b(d) c(d)", {"a=12x12", "b=8", "c=9x9,rational:0.5"}, 3},
     {"Shared", "p(wo) q(h) p(wi) + s(h)", {"p=8,shared", "q=8x8,shared", "s=6"}, 3},
+    {"ManyTables",
+     "a(wo) b(h) a(wi) + c(wo) d(h) c(wi) + e(wo) f(h) e(wi) + g(wo) i(h) g(wi) + j(wo) k(h) j(wi) + l(wo) "
+     "o(h) l(wi) + p(wo) q(h) p(wi) + r(theta_d) s(d) + t(theta_h,theta_d) u(wi,wo)",
+     {"a=8", "b=16", "c=8", "d=8x8", "e=8", "f=16x16", "g=8", "i=16,rational:0.2", "j=8", "k=16", "l=8",
+      "o=16", "p=8,shared", "q=16", "r=16", "s=8x8", "t=16x7", "u=8x5"},
+     3},
     {"ThreeLobes", "p(wo) q(h) p(wi) + p(wo) s(h) p(wi) + t(theta_d)", {"p=8", "q=64", "s=16", "t=8"}, 3},
 };
 

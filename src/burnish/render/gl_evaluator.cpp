@@ -15,24 +15,17 @@ Shader shader_of(const FactoredBrdf& brdf, ShaderFilter filter, TableFormat prec
 
 }  // namespace
 
-void set_tables(GlFunction& function, const FactoredBrdf& brdf, std::span<const std::string> samplers,
-                TableFormat precision, bool filtered) {
-  for (std::size_t i = 0; i < samplers.size(); ++i) {
-    const Table& table = brdf.tables()[i];
-    function.set_texture({.name = samplers[i],
-                          .width = table.layout.width,
-                          .height = table.layout.height,
-                          .channels = table.channels,
-                          .precision = precision,
-                          .filtered = filtered,
-                          .values = table.values});
-  }
+void set_textures(GlFunction& function, std::span<const ShaderTexture> textures, TableFormat precision,
+                  bool filtered) {
+  for (const ShaderTexture& texture : textures) function.set_texture(upload_of(texture, precision, filtered));
 }
 
 GlEvaluator::GlEvaluator(const FactoredBrdf& brdf, ShaderFilter filter, TableFormat precision)
-    : function_(shader_of(brdf, filter, precision).text, "burnish_model") {
-  set_tables(function_, brdf, shader_of(brdf, filter, precision).textures, precision,
-             filter == ShaderFilter::hardware);
+    : GlEvaluator(shader_of(brdf, filter, precision), precision, filter == ShaderFilter::hardware) {}
+
+GlEvaluator::GlEvaluator(const Shader& shader, TableFormat precision, bool filtered)
+    : function_(shader.text, "burnish_model") {
+  set_textures(function_, shader.textures, precision, filtered);
 }
 
 }  // namespace burnish

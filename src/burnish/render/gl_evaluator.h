@@ -21,11 +21,13 @@ class GlEvaluator {
   std::vector<float> eval(std::span<const GlVectors> pairs) const { return function_.call(pairs); }
 
  private:
+  GlEvaluator(const Shader& shader, TableFormat precision, bool filtered);
+
   GlFunction function_;
 };
 
-/// Gives a model's tables to the samplers that its shader names.
-void set_tables(GlFunction& function, const FactoredBrdf& brdf, std::span<const std::string> samplers,
-                TableFormat precision, bool filtered);
+/// Gives a shader its textures.
+void set_textures(GlFunction& function, std::span<const ShaderTexture> textures, TableFormat precision,
+                  bool filtered);
 
 }  // namespace burnish

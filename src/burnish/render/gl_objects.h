@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <burnish/factors/table_format.h>
+#include <burnish/shaders/shader.h>
 
 namespace burnish {
 
@@ -18,6 +19,17 @@ struct GlTexture {
   bool filtered = false;  ///< linear between texels, else the nearest
   std::vector<float> values;
 };
+
+/// A shader's texture in another precision.
+inline GlTexture upload_of(const ShaderTexture& texture, TableFormat precision, bool filtered) {
+  return {.name = texture.name,
+          .width = texture.width,
+          .height = texture.height,
+          .channels = texture.channels,
+          .precision = precision,
+          .filtered = filtered,
+          .values = texture.values};
+}
 
 /// Uploads it. Throws Error for a precision other than half, single and rgb9e5 (of three channels).
 unsigned upload_texture(const GlTexture& texture);

@@ -130,7 +130,28 @@ void append_texels(std::vector<DiscPoint>& points, const SkyImage& picture) {
     }
 }
 
+// Half floats hold maps whose largest values are 1; the rest goes into the scale.
+void normalize_maps(PrefilteredLobe& prefiltered) {
+  const FactoredBrdf& outside = prefiltered.outside;
+  Lobe lobe = outside.lobes()[0];
+  std::array<float, 3> largest{};
+  for (std::size_t i = 0; i < prefiltered.maps.size(); ++i)
+    largest[i % 3] = std::max(largest[i % 3], std::abs(prefiltered.maps[i]));
+  if (lobe.scale.size() == 1) largest.fill(std::ranges::max(largest));
+  for (std::size_t i = 0; i < prefiltered.maps.size(); ++i)
+    if (largest[i % 3] > 0) prefiltered.maps[i] /= largest[i % 3];
+  for (std::size_t c = 0; c < lobe.scale.size(); ++c) lobe.scale[c] *= static_cast<double>(largest[c]);
+  prefiltered.outside =
+      FactoredBrdf(outside.channels(), {outside.tables().begin(), outside.tables().end()}, {lobe});
+}
+
 }  // namespace
+
+std::vector<float> ImageBasedLight::joined_maps() const {
+  std::vector<float> all;
+  for (const PrefilteredLobe& lobe : lobes) all.insert(all.end(), lobe.maps.begin(), lobe.maps.end());
+  return all;
+}
 
 std::size_t ImageBasedLight::bytes() const noexcept {
   std::size_t values = 0;
@@ -263,6 +284,7 @@ ImageBasedLight prefilter(const FactoredBrdf& brdf, const Environment& environme
           }
     }
   });
+  for (PrefilteredLobe& lobe : result.lobes) normalize_maps(lobe);
   return result;
 }
 

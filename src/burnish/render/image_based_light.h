@@ -25,12 +25,12 @@ struct PrefilterOptions {
 /// squared. The kernel is a sum of cos(m psi) k_m(gamma) in angle gamma and azimuth psi about that axis, so
 /// light from it is a sum of maps over the axis in the world.
 struct PrefilteredLobe {
-  FactoredBrdf outside;      ///< one lobe: the factors of wo alone, with the scale
+  FactoredBrdf outside;      ///< one lobe: the factors of wo alone, with the scale and the maps'
   std::vector<double> axis;  ///< radians, one a slice
-  /// Parabolic maps, RGB: [map][slice][y][x], x < side the hemisphere y >= 0 of the world, then the other,
-  /// seen in a mirror that exchanges up and down; the outermost texels lie on the square around the horizon.
-  /// Map 0 is the mean over psi; maps 2 m - 1 and 2 m go with cos and sin of m times the azimuth of the
-  /// plane of view and normal about the axis.
+  /// Parabolic maps, RGB, whose largest magnitude is 1: [map][slice][y][x], x < side the hemisphere y >= 0 of
+  /// the world, then the other, seen in a mirror that exchanges up and down; the outermost texels lie on the
+  /// square around the horizon. Map 0 is the mean over psi; maps 2 m - 1 and 2 m go with cos and sin of m
+  /// times the azimuth of the plane of view and normal about the axis.
   std::vector<float> maps;
 };
 
@@ -40,6 +40,8 @@ struct ImageBasedLight {
   std::vector<PrefilteredLobe> lobes;
 
   int map_count() const noexcept { return 2 * options.harmonics + 1; }
+  /// Every lobe's maps, one after another's.
+  std::vector<float> joined_maps() const;
   /// Bytes of the maps as half floats, four channels.
   std::size_t bytes() const noexcept;
   /// Filtered reads of one evaluation: for every lobe its maps and its tables of the view.
@@ -58,12 +60,11 @@ ImageBasedLight prefilter(const FactoredBrdf& brdf, const Environment& environme
 
 /// Shader text for one light.
 struct ImageBasedShader {
-  struct Textures {
-    std::string maps;  ///< 3-D: width 2 side, height side, depth maps * slices; linear, clamped
-    std::vector<std::string> tables;  ///< of `outside`, as generate_shader names them
-  };
-  std::string text;             ///< no #version line
-  std::vector<Textures> lobes;  ///< names of samplers
+  std::string text;  ///< no #version line
+  /// Sampler of all lobes' maps, those of one after another's: 3-D, width 2 side, height side, depth lobes *
+  /// maps * slices; linear, clamped.
+  std::string maps;
+  std::vector<ShaderTexture> tables;  ///< of the factors outside
 };
 
 /// `vec3 burnish_NAME_light(vec3 n, vec3 v)`: ImageBasedLight::radiance in GLSL 4.50 or ES 3.00, unit vectors

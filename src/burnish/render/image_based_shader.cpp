@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <iterator>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -9,10 +12,9 @@ namespace burnish {
 
 namespace {
 
-// The radiance through one lobe's maps. {0} the lobe's sampler, {1} slices, {2} the axes, {3} side,
-// {4} depth, {5} orders.
+// The radiance through one lobe's maps. {0} the lobe, {1} slices, {2} the axes, {3} side, {4} depth, {5}
+// orders, {6} the sampler, {7} the lobe's first slice.
 constexpr const char* kLobe = R"(
-uniform highp sampler3D {0};
 vec3 {0}_seen(vec3 n, vec3 plane, float slice) {{
   const float axes[{1}] = float[]({2});
   int low = min(int(slice), {1} - 2);
@@ -25,13 +27,13 @@ vec3 {0}_seen(vec3 n, vec3 plane, float slice) {{
   vec3 w = vec3(-axis.x * axis.z * a, -axis.z, 1.0 - axis.z * axis.z * a);
   vec2 turn = vec2(dot(tilt, u), dot(tilt, w)), part = turn;
   vec2 at = (a * axis.xz + 1.0) * (0.5 * float({3} - 1));
-  vec3 place = vec3((first + at.x) / float(2 * {3}), (0.5 + at.y) / float({3}), (0.5 + slice) / float({4}));
-  vec3 sum = textureLod({0}, place, 0.0).rgb;
+  vec3 place = vec3((first + at.x) / float(2 * {3}), (0.5 + at.y) / float({3}), ({7}.5 + slice) / float({4}));
+  vec3 sum = textureLod({6}, place, 0.0).rgb;
   for (int m = 1; m <= {5}; ++m) {{
     place.z += float({1}) / float({4});
-    sum += part.x * textureLod({0}, place, 0.0).rgb;
+    sum += part.x * textureLod({6}, place, 0.0).rgb;
     place.z += float({1}) / float({4});
-    sum += part.y * textureLod({0}, place, 0.0).rgb;
+    sum += part.y * textureLod({6}, place, 0.0).rgb;
     part = vec2(turn.x * part.x - turn.y * part.y, turn.y * part.x + turn.x * part.y);
   }}
   return sum;
@@ -58,19 +60,22 @@ ImageBasedShader generate_shader(const ImageBasedLight& light, ShaderLanguage la
   if (language != ShaderLanguage::glsl && language != ShaderLanguage::glsl_es)
     throw Error(fmt::format("image-based light: expected glsl or glsl_es, found {}", to_string(language)));
   const auto& [slices, side, harmonics] = light.options;
-  ImageBasedShader shader;
+  const int slices_a_lobe = light.map_count() * slices;
+  const int depth = static_cast<int>(light.lobes.size()) * slices_a_lobe;
+  ImageBasedShader shader{.maps = fmt::format("burnish_{}_maps", name)};
   std::string sum;
   for (std::size_t j = 0; j < light.lobes.size(); ++j) {
     const PrefilteredLobe& lobe = light.lobes[j];
-    const std::string outside = fmt::format("{}_lobe{}", name, j),
-                      maps = fmt::format("burnish_{}_maps", outside);
+    const std::string outside = fmt::format("{}_lobe{}", name, j);
     const Shader view = generate_shader(lobe.outside, {language, ShaderFilter::hardware, outside});
     std::string axes;
     for (const double angle : lobe.axis) axes += fmt::format("{}{:.9e}", axes.empty() ? "" : ", ", angle);
-    shader.text += view.text + fmt::format(fmt::runtime(kLobe), maps, slices, axes, side,
-                                           light.map_count() * slices, harmonics);
-    shader.lobes.push_back({maps, view.textures});
-    sum += fmt::format("{}burnish_{}(wo, wo) * {}_seen(n, plane, slice)", j ? " + " : "", outside, maps);
+    shader.text += view.text;
+    if (j == 0) shader.text += fmt::format("uniform highp sampler3D {};", shader.maps);
+    shader.text += fmt::format(fmt::runtime(kLobe), "burnish_" + outside, slices, axes, side, depth,
+                               harmonics, shader.maps, static_cast<int>(j) * slices_a_lobe);
+    std::ranges::copy(view.textures, std::back_inserter(shader.tables));
+    sum += fmt::format("{0}burnish_{1}(wo, wo) * burnish_{1}_seen(n, plane, slice)", j ? " + " : "", outside);
   }
   shader.text += fmt::format(fmt::runtime(kLight), name, slices - 1, sum);
   return shader;
@@ -80,17 +85,16 @@ GlImageBasedLight::GlImageBasedLight(const ImageBasedLight& light)
     : function_(generate_shader(light, ShaderLanguage::glsl, "model").text, "burnish_model_light") {
   const ImageBasedShader shader = generate_shader(light, ShaderLanguage::glsl, "model");
   const int side = light.options.side;
-  for (std::size_t j = 0; j < light.lobes.size(); ++j) {
-    function_.set_texture({.name = shader.lobes[j].maps,
-                           .width = 2 * side,
-                           .height = side,
-                           .depth = light.map_count() * light.options.slices,
-                           .channels = 3,
-                           .precision = TableFormat::half,
-                           .filtered = true,
-                           .values = light.lobes[j].maps});
-    set_tables(function_, light.lobes[j].outside, shader.lobes[j].tables, TableFormat::half, true);
-  }
+  function_.set_texture(
+      {.name = shader.maps,
+       .width = 2 * side,
+       .height = side,
+       .depth = static_cast<int>(light.lobes.size()) * light.map_count() * light.options.slices,
+       .channels = 3,
+       .precision = TableFormat::half,
+       .filtered = true,
+       .values = light.joined_maps()});
+  set_textures(function_, shader.tables, TableFormat::half, true);
 }
 
 }  // namespace burnish

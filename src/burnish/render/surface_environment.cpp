@@ -1,61 +1,76 @@
-#include <burnish/render/image_based_light.h>
+#include <iterator>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <burnish/render/surface_environment.h>
-#include <burnish/render/tapped_light.h>
 
 namespace burnish {
 
 namespace {
 
-constexpr const char* kName = "around";
-
-void add_tables(SurfaceShader& surface, const FactoredBrdf& brdf, const std::vector<std::string>& samplers) {
-  for (std::size_t i = 0; i < samplers.size(); ++i) {
-    const Table& table = brdf.tables()[i];
-    surface.textures.push_back({.name = samplers[i],
-                                .width = table.layout.width,
-                                .height = table.layout.height,
-                                .channels = table.channels,
-                                .filtered = true,
-                                .values = table.values});
-  }
+void add_tables(LightShader& shader, const std::vector<ShaderTexture>& tables) {
+  for (const ShaderTexture& texture : tables)
+    shader.textures.push_back(upload_of(texture, TableFormat::single, true));
 }
 
-void add_maps(SurfaceShader& surface, const std::string& sampler, int side, int depth,
-              const std::vector<float>& maps) {
-  surface.textures.push_back({.name = sampler,
-                              .width = 2 * side,
-                              .height = side,
-                              .depth = depth,
-                              .channels = 3,
-                              .filtered = true,
-                              .values = maps});
+void add_maps(LightShader& shader, const std::string& sampler, int side, int depth, std::vector<float> maps) {
+  shader.textures.push_back({.name = sampler,
+                             .width = 2 * side,
+                             .height = side,
+                             .depth = depth,
+                             .channels = 3,
+                             .filtered = true,
+                             .values = std::move(maps)});
+}
+
+LightShader shader_of(const ImageBasedLight& light, ShaderLanguage language, const std::string& name) {
+  const ImageBasedShader generated = generate_shader(light, language, name);
+  LightShader shader{fmt::format("burnish_{}_light", name), {"n", "v"}, generated.text, {}};
+  const int lobes = static_cast<int>(light.lobes.size());
+  add_maps(shader, generated.maps, light.options.side, lobes * light.map_count() * light.options.slices,
+           light.joined_maps());
+  add_tables(shader, generated.tables);
+  return shader;
+}
+
+LightShader shader_of(const std::pair<TappedBrdf, BlurredEnvironment>& light, ShaderLanguage language,
+                      const std::string& name) {
+  const auto& [brdf, blurred] = light;
+  const TappedShader generated = generate_shader(brdf, blurred.options, language, name);
+  LightShader shader{fmt::format("burnish_{}_light", name), {"n", "t", "s", "v"}, generated.text, {}};
+  add_maps(shader, generated.environment, blurred.options.side, blurred.options.levels, blurred.maps);
+  for (std::size_t j = 0; j < brdf.lobes.size(); ++j) {
+    add_tables(shader, generated.lobes[j].outside);
+    add_tables(shader, generated.lobes[j].inside);
+  }
+  return shader;
 }
 
 }  // namespace
 
+SurfaceLight::SurfaceLight(const FactoredBrdf& brdf, const Environment& environment) {
+  if (brdf.isotropic())
+    light_ = prefilter(brdf, environment);
+  else
+    light_ = std::pair(tap(brdf), blur(environment));
+}
+
+int SurfaceLight::fetches() const noexcept {
+  const auto* whole = std::get_if<ImageBasedLight>(&light_);
+  return whole ? whole->fetches() : std::get_if<1>(&light_)->first.fetches();
+}
+
+LightShader SurfaceLight::shader(ShaderLanguage language, const std::string& name) const {
+  return std::visit([&](const auto& light) { return shader_of(light, language, name); }, light_);
+}
+
 void add_environment(SurfaceShader& surface, const FactoredBrdf& brdf, const Environment& environment) {
-  if (brdf.isotropic()) {
-    const ImageBasedLight light = prefilter(brdf, environment);
-    const ImageBasedShader shader = generate_shader(light, ShaderLanguage::glsl, kName);
-    surface.declarations += shader.text;
-    surface.environment = "burnish_around_light(burnish_n, burnish_v)";
-    for (std::size_t j = 0; j < light.lobes.size(); ++j) {
-      add_maps(surface, shader.lobes[j].maps, light.options.side, light.map_count() * light.options.slices,
-               light.lobes[j].maps);
-      add_tables(surface, light.lobes[j].outside, shader.lobes[j].tables);
-    }
-    return;
-  }
-  const BlurredEnvironment blurred = blur(environment);
-  const TappedBrdf tapped = tap(brdf);
-  const TappedShader shader = generate_shader(tapped, blurred.options, ShaderLanguage::glsl, kName);
+  LightShader shader = SurfaceLight(brdf, environment).shader(ShaderLanguage::glsl, "around");
   surface.declarations += shader.text;
-  surface.environment = "burnish_around_light(burnish_n, burnish_t, burnish_s, burnish_v)";
-  add_maps(surface, shader.environment, blurred.options.side, blurred.options.levels, blurred.maps);
-  for (std::size_t j = 0; j < tapped.lobes.size(); ++j) {
-    add_tables(surface, tapped.lobes[j].outside, shader.lobes[j].outside);
-    add_tables(surface, tapped.lobes[j].inside, shader.lobes[j].inside);
-  }
+  surface.environment =
+      fmt::format("{}(burnish_{})", shader.function, fmt::join(shader.arguments, ", burnish_"));
+  std::ranges::move(shader.textures, std::back_inserter(surface.textures));
 }
 
 }  // namespace burnish

@@ -89,17 +89,8 @@ SurfaceShader surface_shader(const FactoredBrdf& brdf, ShaderFilter filter, Tabl
   const bool filtered = filter == ShaderFilter::hardware;
   const SplitShader split = split_shader(brdf, {ShaderLanguage::glsl, filter, "model", filtered});
   SurfaceShader surface{split.declarations, split.view, split.light, split.value, {}};
-  for (std::size_t i = 0; i < brdf.tables().size(); ++i) {
-    const Table& table = brdf.tables()[i];
-    surface.textures.push_back(
-        {.name = split.textures[i],
-         .width = table.layout.width,
-         .height = filtered && table.layout.shape == TableShape::line ? 0 : table.layout.height,
-         .channels = table.channels,
-         .precision = precision,
-         .filtered = filtered,
-         .values = table.values});
-  }
+  for (const ShaderTexture& texture : split.textures)
+    surface.textures.push_back(upload_of(texture, precision, filtered));
   return surface;
 }
 

@@ -44,7 +44,7 @@ TappedBrdf tap(const FactoredBrdf& brdf, int taps = 96);
 /// Shader text of a TappedBrdf.
 struct TappedShader {
   struct Lobe {
-    std::vector<std::string> outside, inside;  ///< samplers of the tables
+    std::vector<ShaderTexture> outside, inside;
   };
   std::string text;         ///< no #version line
   std::string environment;  ///< 3-D sampler: width 2 side, height side, depth levels; linear, clamped

@@ -4,6 +4,7 @@
 
 #include <burnish/error.h>
 #include <burnish/render/tapped_light.h>
+#include <burnish/shaders/dialect.h>
 
 namespace burnish {
 
@@ -63,7 +64,8 @@ TappedShader generate_shader(const TappedBrdf& brdf, const BlurOptions& blur, Sh
   if (language != ShaderLanguage::glsl && language != ShaderLanguage::glsl_es)
     throw Error(fmt::format("image-based light: expected glsl or glsl_es, found {}", to_string(language)));
   TappedShader shader{.environment = fmt::format("burnish_{}_environment", name)};
-  shader.text = fmt::format(fmt::runtime(kBlurred), shader.environment, blur.side, blur.levels);
+  shader.text = std::string(dialect_of(language).header) +
+                fmt::format(fmt::runtime(kBlurred), shader.environment, blur.side, blur.levels);
   const double octave = 1 / std::log2(blur.step);  // in levels
   std::string sum;
   for (std::size_t j = 0; j < brdf.lobes.size(); ++j) {

@@ -146,10 +146,10 @@ std::string line_position(Body& body, const Projection& projection, const Warp& 
 }
 
 std::array<std::string, 2> disk_position(Body& body, const Projection& projection, const Warp& warp,
-                                         const Axis& axis) {
+                                         const Axis& axis_x, const Axis& axis_y) {
   const Dialect& d = body.dialect();
   const Projected p = project(body, projection, true, warp);
-  const double half = 0.5 * axis.size;
+  const double half = 0.5 * axis_x.size;
   std::string stretch;
   if (warp.kind == WarpKind::rational) {
     stretch = body.scalar("stretch",
@@ -167,11 +167,15 @@ std::array<std::string, 2> disk_position(Body& body, const Projection& projectio
                       {.operations = 1, .divisions = 1});
     }
   }
-  const auto at = [&](const std::string& component) {
-    return body.scalar("u", fmt::format("{} + {} * {}", d.literal(half + axis.first), component, stretch),
-                       ops(2));
+  const auto at = [&](const std::string& component, const Axis& axis) {
+    const std::string middle = d.literal(0.5 * axis.size + axis.first);
+    if (axis.size == axis_x.size)
+      return body.scalar("u", fmt::format("{} + {} * {}", middle, component, stretch), ops(2));
+    return body.scalar(
+        "u", fmt::format("{} + {} * {} * {}", middle, d.literal(axis.size / axis_x.size), component, stretch),
+        ops(3));
   };
-  return {at(p.x), at(p.y)};
+  return {at(p.x, axis_x), at(p.y, axis_y)};
 }
 
 }  // namespace burnish

@@ -17,8 +17,8 @@ struct Axis {
 /// Adds to the body what finds the position along the axis of a line or grid; returns its variable.
 std::string line_position(Body& body, const Projection& projection, const Warp& warp, const Axis& axis);
 
-/// The two positions in a disk.
+/// The two positions in a disk. `axis_x.size` cells are as many rows as there are columns.
 std::array<std::string, 2> disk_position(Body& body, const Projection& projection, const Warp& warp,
-                                         const Axis& axis);
+                                         const Axis& axis_x, const Axis& axis_y);
 
 }  // namespace burnish

@@ -32,42 +32,54 @@ Cell cell_of(Body& body, const std::string& position, int nodes) {
 
 class Lookups {
  public:
-  Lookups(Body& body, const FactoredBrdf& brdf, const std::vector<std::string>& textures,
+  Lookups(Body& body, const FactoredBrdf& brdf, const std::vector<ShaderTexture>& textures,
           const ShaderOptions& options)
-      : body_(body),
-        brdf_(brdf),
-        textures_(textures),
-        filter_(options.filter),
-        lines_are_1d_(options.lines_are_1d) {}
+      : body_(body), brdf_(brdf), filter_(options.filter), places_(brdf.tables().size()) {
+    for (const ShaderTexture& texture : textures)
+      for (std::size_t k = 0; k < texture.tables.size(); ++k)
+        places_[texture.tables[k]] = {&texture, texture.first_rows[k]};
+  }
 
   /// The variable with the table's value.
   std::string value(const FactorUse& use) {
     const auto index = static_cast<std::size_t>(use.table);
     const Table& table = brdf_.tables()[index];
     const TableLayout& layout = table.layout;
-    const Axis axis_x = axis_of(layout.width, filter_), axis_y = axis_of(layout.height, filter_);
+    const auto& [texture, first] = places_[index];
+    const Axis axis_x = axis_of(layout.width, filter_), axis_y = rows_of(layout.height, *texture, first);
     std::string x, y;
     if (layout.shape == TableShape::disk) {
-      const auto at = disk_position(body_, use.projection, layout.warp, axis_x);
+      const auto at = disk_position(body_, use.projection, layout.warp, axis_x, axis_y);
       x = at[0], y = at[1];
     } else {
       x = line_position(body_, use.projection, layout.warp, axis_x);
       if (layout.shape == TableShape::grid) y = line_position(body_, use.projection_y, layout.warp_y, axis_y);
     }
     const Dialect& d = body_.dialect();
-    const std::string& texture = textures_[index];
-    if (filter_ == ShaderFilter::hardware)
-      return let("value",
-                 d.sample(texture, x, y.empty() && !lines_are_1d_ ? d.literal(0.5) : y, table.channels),
-                 table.channels, {.fetches = 1});
+    if (filter_ == ShaderFilter::hardware) {
+      if (y.empty() && texture->height > 0) y = d.literal((first + 0.5) / texture->height);
+      return let("value", d.sample(texture->name, x, y, table.channels), table.channels, {.fetches = 1});
+    }
     const Cell cx = cell_of(body_, x, layout.width);
-    if (y.empty()) return row(texture, cx, "0", table.channels);
+    if (y.empty()) return row(texture->name, cx, std::to_string(first), table.channels);
     const Cell cy = cell_of(body_, y, layout.height);
-    return mix(row(texture, cx, cy.low, table.channels), row(texture, cx, cy.high, table.channels),
-               cy.fraction, table.channels);
+    const std::string below = first > 0 ? fmt::format(" + {}", first) : "";
+    return mix(row(texture->name, cx, cy.low + below, table.channels),
+               row(texture->name, cx, cy.high + below, table.channels), cy.fraction, table.channels);
   }
 
  private:
+  struct Place {
+    const ShaderTexture* texture = nullptr;
+    int first_row = 0;
+  };
+
+  // A table's rows among its texture's.
+  Axis rows_of(int nodes, const ShaderTexture& texture, int first) const noexcept {
+    if (filter_ == ShaderFilter::exact) return axis_of(nodes, filter_);
+    const double rows = std::max(texture.height, 1);
+    return {(nodes - 1) / rows, (first + 0.5) / rows};
+  }
   std::string let(std::string_view hint, const std::string& expression, int channels,
                   const ShaderCost& cost) {
     return channels == 1 ? body_.scalar(hint, expression, cost) : body_.vector(hint, expression, cost);
@@ -85,9 +97,8 @@ class Lookups {
 
   Body& body_;
   const FactoredBrdf& brdf_;
-  const std::vector<std::string>& textures_;
   ShaderFilter filter_;
-  bool lines_are_1d_;
+  std::vector<Place> places_;
 };
 
 // [HomomorphicBrdf, eq. 4], each pair multiplied with itself first, as the definition does
@@ -112,7 +123,7 @@ std::string lobe_value(Body& body, Lookups& lookups, const FactoredBrdf& brdf, s
   return body.let(channels == 1 ? d.scalar : d.vector, "lobe", product, ops(operations));
 }
 
-std::string sum_of_lobes(Body& body, const FactoredBrdf& brdf, const std::vector<std::string>& textures,
+std::string sum_of_lobes(Body& body, const FactoredBrdf& brdf, const std::vector<ShaderTexture>& textures,
                          const ShaderOptions& options) {
   Lookups lookups(body, brdf, textures, options);
   std::string total;
@@ -121,45 +132,43 @@ std::string sum_of_lobes(Body& body, const FactoredBrdf& brdf, const std::vector
   return total;
 }
 
-std::string declare_textures(const FactoredBrdf& brdf, const Dialect& d, const ShaderOptions& options,
-                             const std::vector<std::string>& names) {
+std::string declare_textures(const Dialect& d, const ShaderOptions& options,
+                             const std::vector<ShaderTexture>& textures) {
   const bool filtered = options.filter == ShaderFilter::hardware;
   std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const Table& table = brdf.tables()[i];
+  for (std::size_t i = 0; i < textures.size(); ++i) {
+    const ShaderTexture& texture = textures[i];
+    const std::string& name = texture.name;
     switch (d.language) {
       case ShaderLanguage::glsl:
       case ShaderLanguage::glsl_es:
-        text += fmt::format("uniform sampler{}D {};\n",
-                            options.lines_are_1d && table.layout.shape == TableShape::line ? 1 : 2, names[i]);
+        text += fmt::format("uniform sampler{}D {};\n", texture.height > 0 ? 2 : 1, name);
         break;
       case ShaderLanguage::hlsl:
-        text += fmt::format("Texture2D<float4> {} : register(t{});\n", names[i], i);
-        if (filtered) text += fmt::format("SamplerState {}_sampler : register(s{});\n", names[i], i);
+        text += fmt::format("Texture2D<float4> {} : register(t{});\n", name, i);
+        if (filtered) text += fmt::format("SamplerState {}_sampler : register(s{});\n", name, i);
         break;
       case ShaderLanguage::msl:
-        text += fmt::format("  texture2d<float> {};\n", names[i]);
+        text += fmt::format("  texture2d<float> {};\n", name);
         break;
       case ShaderLanguage::wgsl:
-        text +=
-            fmt::format("@group(0) @binding({}) var {}: texture_2d<f32>;\n", filtered ? 2 * i : i, names[i]);
+        text += fmt::format("@group(0) @binding({}) var {}: texture_2d<f32>;\n", filtered ? 2 * i : i, name);
         if (filtered)
-          text += fmt::format("@group(0) @binding({}) var {}_sampler: sampler;\n", 2 * i + 1, names[i]);
+          text += fmt::format("@group(0) @binding({}) var {}_sampler: sampler;\n", 2 * i + 1, name);
         break;
       case ShaderLanguage::cpp: {
-        text += fmt::format("BURNISH_CONSTANT float {}[] = {{", names[i]);
-        for (std::size_t k = 0; k < table.values.size(); ++k)
-          text += fmt::format("{}{},", k % 8 ? " " : "\n    ", d.literal(table.values[k]));
+        text += fmt::format("BURNISH_CONSTANT float {}[] = {{", name);
+        for (std::size_t k = 0; k < texture.values.size(); ++k)
+          text += fmt::format("{}{},", k % 8 ? " " : "\n    ", d.literal(texture.values[k]));
         text += "\n};\n";
-        const std::string at =
-            fmt::format("{}[{} * (y * {} + x)", names[i], table.channels, table.layout.width);
-        text += table.channels == 1
-                    ? fmt::format("BURNISH_FUNCTION float {0}_at(int x, int y) {{ return {1}]; }}\n",
-                                  names[i], at)
-                    : fmt::format(
-                          "BURNISH_FUNCTION vec3 {0}_at(int x, int y) {{\n"
-                          "  return {{{1}], {1} + 1], {1} + 2]}};\n}}\n",
-                          names[i], at);
+        const std::string at = fmt::format("{}[{} * (y * {} + x)", name, texture.channels, texture.width);
+        text +=
+            texture.channels == 1
+                ? fmt::format("BURNISH_FUNCTION float {0}_at(int x, int y) {{ return {1}]; }}\n", name, at)
+                : fmt::format(
+                      "BURNISH_FUNCTION vec3 {0}_at(int x, int y) {{\n"
+                      "  return {{{1}], {1} + 1], {1} + 2]}};\n}}\n",
+                      name, at);
         break;
       }
     }
@@ -169,7 +178,7 @@ std::string declare_textures(const FactoredBrdf& brdf, const Dialect& d, const S
 }
 
 std::string local_function(const FactoredBrdf& brdf, const Dialect& d, const ShaderOptions& options,
-                           const std::vector<std::string>& textures, std::string_view more,
+                           const std::vector<ShaderTexture>& textures, std::string_view more,
                            ShaderCost& cost) {
   Body body(d);
   const std::string total = sum_of_lobes(body, brdf, textures, options);
@@ -191,9 +200,6 @@ void check(const FactoredBrdf& brdf, const ShaderOptions& options) {
   check_shader_name(options.name);
   if (brdf.channels() != 1 && brdf.channels() != 3)
     throw Error(fmt::format("shader: expected a model of 1 or 3 channels, found {}", brdf.channels()));
-  if (!cpp && brdf.tables().size() > kMostShaderTables)
-    throw Error(
-        fmt::format("shader: expected at most {} tables, found {}", kMostShaderTables, brdf.tables().size()));
   if (cpp && options.filter == ShaderFilter::hardware)
     throw Error("shader: expected the exact filter for cpp, which has no texture units, found hardware");
   if (options.lines_are_1d &&
@@ -201,14 +207,45 @@ void check(const FactoredBrdf& brdf, const ShaderOptions& options) {
     throw Error("shader: expected glsl and the hardware filter with 1-D textures, found others");
 }
 
-std::vector<std::string> texture_names(const FactoredBrdf& brdf, const std::string& shader) {
-  std::vector<std::string> names;
+// Adds a table below those that the texture has.
+void add_table(ShaderTexture& texture, const FactoredBrdf& brdf, std::size_t i) {
+  const Table& table = brdf.tables()[i];
+  texture.tables.push_back(i);
+  texture.first_rows.push_back(texture.height);
+  texture.height += table.layout.height;
+  texture.values.insert(texture.values.end(), table.values.begin(), table.values.end());
+}
+
+std::vector<ShaderTexture> textures_of(const FactoredBrdf& brdf, const ShaderOptions& options) {
+  const bool shared = options.language != ShaderLanguage::cpp && brdf.tables().size() > options.most_textures;
+  std::vector<ShaderTexture> textures;
   for (std::size_t i = 0; i < brdf.tables().size(); ++i) {
-    const std::string& name = brdf.tables()[i].name;
-    names.push_back(is_identifier(name) ? fmt::format("burnish_{}_table_{}", shader, name)
-                                        : fmt::format("burnish_{}_table{}", shader, i));
+    const Table& table = brdf.tables()[i];
+    const auto fits = [&](const ShaderTexture& t) {
+      return shared && t.width == table.layout.width && t.channels == table.channels &&
+             t.format == table.format;
+    };
+    auto texture = std::ranges::find_if(textures, fits);
+    if (texture == textures.end()) {
+      textures.push_back({.name = shared ? fmt::format("burnish_{}_tables{}", options.name, textures.size())
+                                  : is_identifier(table.name)
+                                      ? fmt::format("burnish_{}_table_{}", options.name, table.name)
+                                      : fmt::format("burnish_{}_table{}", options.name, i),
+                          .width = table.layout.width,
+                          .channels = table.channels,
+                          .format = table.format,
+                          .values = {},
+                          .tables = {},
+                          .first_rows = {}});
+      texture = textures.end() - 1;
+    }
+    add_table(*texture, brdf, i);
+    if (!shared && options.lines_are_1d && table.layout.shape == TableShape::line) texture->height = 0;
   }
-  return names;
+  if (shared && textures.size() > options.most_textures)
+    throw Error(fmt::format("shader: expected tables that fit into {} textures, found {} widths and formats",
+                            options.most_textures, textures.size()));
+  return textures;
 }
 
 }  // namespace
@@ -223,7 +260,7 @@ Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options) {
   const Dialect& d = dialect_of(options.language);
   const bool cpp = options.language == ShaderLanguage::cpp;
   Shader shader;
-  shader.textures = texture_names(brdf, options.name);
+  shader.textures = textures_of(brdf, options);
   const std::string more =
       options.language == ShaderLanguage::msl ? fmt::format("burnish_{}_tables tables", options.name) : "";
   const std::string function = local_function(brdf, d, options, shader.textures, more, shader.cost);
@@ -238,7 +275,7 @@ Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options) {
       "// {}.\n{}",
       comment_of(model_expression(brdf)), options.name, to_string(shader.cost), d.header);
   if (cpp) shader.text += "namespace burnish_shader {\n";
-  shader.text += declare_textures(brdf, d, options, shader.textures);
+  shader.text += declare_textures(d, options, shader.textures);
   shader.text += function + world_function(d, options.name, more);
   if (cpp) shader.text += "}  // namespace burnish_shader\n";
   return shader;
@@ -251,8 +288,8 @@ SplitShader split_shader(const FactoredBrdf& brdf, const ShaderOptions& options)
         fmt::format("shader: expected glsl or glsl_es to split, found {}", to_string(options.language)));
   const Dialect& d = dialect_of(options.language);
   SplitShader shader;
-  shader.textures = texture_names(brdf, options.name);
-  shader.declarations = std::string(d.header) + declare_textures(brdf, d, options, shader.textures);
+  shader.textures = textures_of(brdf, options);
+  shader.declarations = std::string(d.header) + declare_textures(d, options, shader.textures);
   Body body(d);
   const std::string total = sum_of_lobes(body, brdf, shader.textures, options);
   shader.value = fmt::format("{}({})", d.vector, total);

@@ -31,6 +31,9 @@ struct ShaderOptions {
   /// Of glsl with the hardware filter: lines are 1-D textures, which takes half the texels where no texture
   /// unit reads them.
   bool lines_are_1d = false;
+  /// Where there are more tables, those of one width, format and number of channels share a texture. What
+  /// every fragment shader can sample is 16.
+  std::size_t most_textures = 16;
 };
 
 /// What one evaluation in the local frame costs, above the horizon. Floating-point operations are counted a
@@ -51,27 +54,37 @@ struct ShaderCost {
   friend bool operator==(const ShaderCost&, const ShaderCost&) = default;
 };
 
-struct Shader {
-  std::string text;                   ///< no #version line
-  std::vector<std::string> textures;  ///< name of table i's texture (of its array in C++; of a member in MSL)
-  ShaderCost cost;
+/// What a shader reads: a table, or several above each other.
+struct ShaderTexture {
+  std::string name;  ///< of the sampler; of the array in C++; of a member in MSL
+  int width = 0;
+  int height = 0;  ///< 0: 1-D
+  int channels = 1;
+  TableFormat format = TableFormat::half;  ///< that `values` are rounded to
+  std::vector<float> values;
+  std::vector<std::size_t> tables;  ///< of the model
+  std::vector<int> first_rows;      ///< of each
 };
 
-/// The largest number of tables of a shader with textures: what every fragment shader can sample.
-inline constexpr std::size_t kMostShaderTables = 16;
+struct Shader {
+  std::string text;                     ///< no #version line
+  std::vector<ShaderTexture> textures;  ///< table i's where there are no more than most_textures
+  ShaderCost cost;
+};
 
 /// Source text that evaluates a factored BRDF as FactoredBrdf::eval does, in floats:
 /// - `burnish_NAME(wi, wo)`: unit vectors of the local frame in, f_r in 1/sr out as three components (a grey
 ///   model's value three times), without the cosine, zero below the horizon;
 /// - `burnish_NAME_world(n, t, l, v)`: the same in any frame: unit normal and tangent, orthogonal to each
 ///   other, and unit vectors to light and viewer.
-/// Nothing of the model is left to set but its textures: one 2-D texture a table, texel (x, y) node (x, y)
-/// (a line's height is 1), one channel in red or three in red, green, blue, in any format that holds the
-/// values; clamped to the edge and linear for the hardware filter. MSL takes them in a struct, as third or
+/// Nothing of the model is left to set but its textures: a 2-D texture a table, texel (x, y) node (x, y)
+/// (a line's height is 1), or where tables are many some of them above each other, one channel in red or
+/// three in red, green, blue, in any format that holds the values; clamped to the edge and linear for the
+/// hardware filter. MSL takes them in a struct, as third or
 /// fifth argument; C++ has them as constant arrays. docs/shaders.md states how precise it is.
 ///
-/// Throws Error if the name or lines_are_1d is not as above, channels are not 1 or 3, there are more than
-/// kMostShaderTables tables in a language with textures, or for C++ with the hardware filter.
+/// Throws Error if the name or lines_are_1d is not as above, channels are not 1 or 3, tables need more than
+/// most_textures in a language with textures, or for C++ with the hardware filter.
 Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options);
 
 /// What generate_shader computes, in two pieces of GLSL for a pixel that several lights shine on: `view`
@@ -81,7 +94,7 @@ struct SplitShader {
   std::string view;          ///< statements that need vec3 wo
   std::string light;         ///< statements that need vec3 wi, wo and those of `view`
   std::string value;         ///< after those an expression: f_r of directions above the horizon, vec3
-  std::vector<std::string> textures;
+  std::vector<ShaderTexture> textures;
   ShaderCost view_cost, light_cost;
 };
 

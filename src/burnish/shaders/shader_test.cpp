@@ -136,6 +136,25 @@ TEST(Shader, ReadsATableOnceForEveryProjectionThatLobesShare) {
   EXPECT_EQ(shader_of(two, ShaderLanguage::glsl).cost.fetches, 8);
 }
 
+TEST(Shader, PutsTablesOfOneWidthAboveEachOtherWhereThereAreMany) {
+  const ModelCase model{"m", "a(wo) b(h) a(wi) + c(h) + d(theta_d)", {"a=8", "b=8x8", "c=6", "d=8"}, 3};
+  const FactoredBrdf brdf = smooth_model(model);
+  const Shader apart = generate_shader(brdf, {}), shared = generate_shader(brdf, {.most_textures = 3});
+  ASSERT_EQ(apart.textures.size(), 4u);
+  ASSERT_EQ(shared.textures.size(), 2u);
+  EXPECT_EQ(shared.cost.fetches, apart.cost.fetches);
+  const ShaderTexture& first = shared.textures[0];
+  EXPECT_EQ(first.tables, (std::vector<std::size_t>{0, 1, 3}));
+  EXPECT_EQ(first.first_rows, (std::vector<int>{0, 1, 9}));
+  EXPECT_EQ(first.height, 10);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto values = brdf.tables()[first.tables[k]].values;
+    EXPECT_TRUE(std::ranges::equal(
+        values,
+        std::span(first.values).subspan(static_cast<std::size_t>(24 * first.first_rows[k]), values.size())));
+  }
+}
+
 TEST(Shader, SaysWhatNoCompilerHasChecked) {
   EXPECT_THAT(shader_of(kModelCases[0], ShaderLanguage::msl).text, HasSubstr("No compiler has checked"));
 }
@@ -148,7 +167,8 @@ TEST(Shader, KeepsHostileTableNamesOutOfCode) {
   const Shader shader = generate_shader(FactoredBrdf(3, tables, {sane.lobes().begin(), sane.lobes().end()}),
                                         {ShaderLanguage::glsl, ShaderFilter::exact, "m"});
   EXPECT_THAT(shader.text, testing::Not(HasSubstr("\n#")));
-  EXPECT_EQ(shader.textures, (std::vector<std::string>{"burnish_m_table0", "burnish_m_table1"}));
+  EXPECT_EQ(shader.textures[0].name, "burnish_m_table0");
+  EXPECT_EQ(shader.textures[1].name, "burnish_m_table1");
 }
 
 TEST(Shader, RefusesWhatItCannotWrite) {
@@ -157,11 +177,10 @@ TEST(Shader, RefusesWhatItCannotWrite) {
     EXPECT_THROW(generate_shader(brdf, {.name = name}), Error) << name;
   EXPECT_THROW(generate_shader(brdf, {ShaderLanguage::cpp, ShaderFilter::hardware, "m"}), Error);
   EXPECT_THROW(shader_of({"m", "pqp", {"p=4", "q=4"}, 4}, ShaderLanguage::glsl), Error);
-  std::string many = "a0(h)";
-  for (int i = 1; i < 17; ++i) many += fmt::format(" a{}(h)", i);
-  const ModelCase wide{"m", many.c_str(), {}, 3};
-  EXPECT_THROW(shader_of(wide, ShaderLanguage::glsl), Error);
-  EXPECT_NO_THROW(shader_of(wide, ShaderLanguage::cpp));
+  const ModelCase widths{"m", "a(h) b(h) c(h)", {"a=4", "b=5", "c=6"}, 3};
+  EXPECT_THROW(generate_shader(smooth_model(widths), {.most_textures = 2}), Error);
+  EXPECT_NO_THROW(
+      generate_shader(smooth_model(widths), {.language = ShaderLanguage::cpp, .most_textures = 2}));
 }
 
 TEST(SplitShader, PartsWhatNeedsTheViewAloneAndAddsNothing) {

@@ -129,27 +129,27 @@ inline void write_webgl_page(std::span<const ModelCase> models, int side,
   for (std::size_t m = 0; m < models.size(); ++m) {
     const FactoredBrdf brdf = smooth_model(models[m]);
     text += "{variants: [";
-    std::vector<std::string> names;
+    std::vector<ShaderTexture> textures;
     for (const auto& [filter, halves] : kShaderVariants) {
       const Shader shader = generate_shader(brdf, {ShaderLanguage::glsl_es, filter, "m"});
       text += fmt::format("{{halves: {}, filtered: {}, shader: `{}`}},", halves,
                           filter == ShaderFilter::hardware, shader.text);
-      names = shader.textures;
+      textures = shader.textures;
     }
     text += "], textures: [";
-    for (std::size_t i = 0; i < brdf.tables().size(); ++i) {
-      const Table& table = brdf.tables()[i];
+    for (std::size_t i = 0; i < textures.size(); ++i) {
+      const ShaderTexture& texture = textures[i];
       std::vector<float> rgba, halves;
-      for (std::size_t k = 0; k < table.layout.node_count(); ++k)
+      for (std::size_t k = 0; k < static_cast<std::size_t>(texture.width * texture.height); ++k)
         for (std::size_t c = 0; c < 4; ++c) {
-          rgba.push_back(table.channels == 1 ? table.values[k] : c == 3 ? 1 : table.values[3 * k + c]);
+          rgba.push_back(texture.channels == 1 ? texture.values[k] : c == 3 ? 1 : texture.values[3 * k + c]);
           halves.push_back(round_to_half(rgba.back()));
         }
       const std::string file = fmt::format("table{}_{}", m, i);
       put(file, rgba);
       put(file + "_half", halves);
-      text += fmt::format("{{name: '{}', width: {}, height: {}, file: '{}'}},", names[i], table.layout.width,
-                          table.layout.height, file);
+      text += fmt::format("{{name: '{}', width: {}, height: {}, file: '{}'}},", texture.name, texture.width,
+                          texture.height, file);
     }
     text += "]},";
     std::vector<float> truth, lenience;

@@ -146,7 +146,7 @@ std::string encode_ktx2(const Texture& texture, bool compressed) {
                                texels.type_size,
                                static_cast<std::size_t>(texture.width),
                                static_cast<std::size_t>(texture.height),
-                               0,  // depth
+                               static_cast<std::size_t>(texture.depth),
                                0,  // layers
                                static_cast<std::size_t>(texture.faces),
                                levels,

@@ -124,7 +124,11 @@ constexpr double kBeyond = 1e-12;
 Texture make_texture(const Table& table, bool mips) {
   check(table);
   const TableLayout& layout = table.layout;
-  Texture texture{table.format, table.channels, layout.width, layout.height, 1, {table.values}};
+  Texture texture{.format = table.format,
+                  .channels = table.channels,
+                  .width = layout.width,
+                  .height = layout.height,
+                  .levels = {table.values}};
   if (!mips) return texture;
   Sums sums(layout.width, layout.height, table.channels);
   double value[3];
@@ -175,7 +179,12 @@ Texture make_cube_map(const Table& table, int side, bool mips) {
       value_at(table, 0.5 * (p.x + 1) * cells, 0.5 * (p.y + 1) * cells, value);
     }
   };
-  Texture texture{table.format, table.channels, side, side, 6, {{}}};
+  Texture texture{.format = table.format,
+                  .channels = table.channels,
+                  .width = side,
+                  .height = side,
+                  .faces = 6,
+                  .levels = {{}}};
   double value[3];
   const auto place = [&](double i) { return 2 * i / side - 1; };
   for (int face = 0; face < 6; ++face) {

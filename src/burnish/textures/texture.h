@@ -7,14 +7,15 @@
 
 namespace burnish {
 
-/// What a GPU holds of one table.
+/// What a GPU holds, of one table mostly.
 struct Texture {
   TableFormat format = TableFormat::single;
   int channels = 1;  ///< 1 or 3
   int width = 0, height = 0;
+  int depth = 0;  ///< > 0: 3-D
   int faces = 1;  ///< 6: a cube map, +x -x +y -y +z -z as OpenGL and KTX2 have them
-  std::vector<std::vector<float>>
-      levels;  ///< level l: [face][y][x][channel], sides halved l times, at least 1
+  /// Level l: [face or z][y][x][channel], sides halved l times, at least 1.
+  std::vector<std::vector<float>> levels;
 };
 
 /// The table as it is, texel (x, y) node (x, y). With `mips` levels follow down to one texel, each value the
