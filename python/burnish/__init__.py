@@ -17,6 +17,8 @@ from ._burnish import (
     FactorUse,
     Lobe,
     Model,
+    Shader,
+    ShaderTexture,
     Source,
     Table,
     ThreadLimit,
@@ -27,9 +29,11 @@ from ._burnish import (
     draw_pairs,
     error_figures,
     fit,
+    generate_shader,
     measure,
     open_source,
     render_sphere,
+    write_ktx2,
     write_model,
 )
 

@@ -1,4 +1,5 @@
 import gc
+import json
 import os
 import signal
 import subprocess
@@ -67,6 +68,21 @@ def test_converted_files_are_the_command_lines(format, cli, ggx, tmp_path):
     cli("convert", GGX, tmp_path / "cli", "--to", format, *(["--count", 2000] if format == "csv" else []))
     assert (tmp_path / "python").read_bytes() == (tmp_path / "cli").read_bytes()
     assert losses and burnish.open_source(tmp_path / "python").isotropic
+
+
+@pytest.mark.parametrize("language, extension", [("glsl", "glsl"), ("wgsl", "wgsl"), ("cpp", "h")])
+def test_shaders_and_textures_are_the_command_lines(language, extension, cli, model, tmp_path):
+    burnish.write_model(tmp_path / "model.exr", model)
+    cli("export", tmp_path / "model.exr", "--to", language, "--to", "ktx2", "-o", tmp_path / "out")
+    shader = burnish.generate_shader(model, language, name="model")
+    assert shader.text == (tmp_path / "out" / f"model.{extension}").read_text()
+    manifest = json.loads((tmp_path / "out/model.json").read_text())
+    assert shader.cost == manifest["shaders"][0]["cost"]
+    for texture, entry in zip(shader.textures, manifest["textures"], strict=True):
+        assert texture.values.shape == (entry["height"], entry["width"], entry["channels"])
+        np.testing.assert_array_equal(texture.values.ravel(), np.ravel(model.tables[texture.tables[0]].values))
+        burnish.write_ktx2(tmp_path / "texture.ktx2", texture)
+        assert (tmp_path / "texture.ktx2").read_bytes() == (tmp_path / "out" / entry["file"]).read_bytes()
 
 
 def test_progress_rises_and_its_exceptions_end_the_fit(ggx):

@@ -1,0 +1,89 @@
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <burnish/error.h>
+#include <burnish/file.h>
+#include <burnish/shaders/shader.h>
+#include <burnish/textures/ktx2.h>
+
+#include "opened_brdf.h"
+
+namespace burnish::python {
+
+namespace {
+
+ShaderLanguage language_of(const std::string& name) {
+  std::vector<std::string_view> known;
+  for (const ShaderLanguage language : kShaderLanguages) {
+    if (to_string(language) == name) return language;
+    known.push_back(to_string(language));
+  }
+  throw Error(fmt::format("language: expected {}, found '{}'", fmt::join(known, ", "), name));
+}
+
+Shader shader_of(const OpenedModel& model, const std::string& language, bool exact, const std::string& name) {
+  const ShaderLanguage wanted = language_of(language);
+  const bool weighs = exact || wanted == ShaderLanguage::cpp;
+  return generate_shader(model.brdf(), {wanted, weighs ? ShaderFilter::exact : ShaderFilter::hardware, name});
+}
+
+void write_ktx2(const std::filesystem::path& path, const ShaderTexture& texture, bool compressed) {
+  write_then_rename(path, encode_ktx2({.format = texture.format,
+                                       .channels = texture.channels,
+                                       .width = texture.width,
+                                       .height = texture.height,
+                                       .levels = {texture.values}},
+                                      compressed));
+}
+
+}  // namespace
+
+void bind_shaders(nb::module_& m) {
+  nb::class_<ShaderTexture>(m, "ShaderTexture", "What a shader reads: a table, or several above each other.")
+      .def_ro("name", &ShaderTexture::name, "Of the sampler.")
+      .def_ro("tables", &ShaderTexture::tables, "Numbers of the model's tables.")
+      .def_ro("first_rows", &ShaderTexture::first_rows, "Of each of them.")
+      .def_prop_ro("format", [](const ShaderTexture& t) { return std::string(to_string(t.format)); })
+      .def_prop_ro(
+          "values",
+          [](const ShaderTexture& t) {
+            return to_numpy(t.values, {static_cast<std::size_t>(t.height), static_cast<std::size_t>(t.width),
+                                       static_cast<std::size_t>(t.channels)});
+          },
+          nb::sig("def values(self) -> numpy.ndarray"), "Texels, (height, width, channels) float32.");
+  nb::class_<Shader>(m, "Shader", "Source text that evaluates a model, and what it reads.")
+      .def_ro("text", &Shader::text, "Without a #version line.")
+      .def_ro("textures", &Shader::textures)
+      .def_prop_ro(
+          "cost",
+          [](const Shader& s) {
+            nb::dict cost;
+            cost["fetches"] = s.cost.fetches;
+            cost["operations"] = s.cost.operations;
+            cost["divisions"] = s.cost.divisions;
+            cost["roots"] = s.cost.roots;
+            cost["powers"] = s.cost.powers;
+            return cost;
+          },
+          nb::sig("def cost(self) -> dict[str, int]"), "Of one evaluation; operations a component.");
+  m.def(
+      "generate_shader", &shader_of, nb::arg("model"), nb::arg("language") = "glsl", nb::kw_only(),
+      nb::arg("exact") = false, nb::arg("name") = "brdf", nb::call_guard<nb::gil_scoped_release>(),
+      "Two functions, as `burnish export --to` writes them: burnish_NAME(wi, wo), f_r in 1/sr of unit\n"
+      "vectors of the local frame, and burnish_NAME_world(n, t, l, v).\n\n"
+      "language: \"glsl\", \"glsl_es\", \"hlsl\", \"msl\", \"wgsl\" or \"cpp\", which has its tables inside. "
+      "exact: texels\nare weighed in floats, not by the texture unit; always so in cpp.");
+  m.def("write_ktx2", &write_ktx2, nb::arg("path"), nb::arg("texture"), nb::kw_only(),
+        nb::arg("compressed") = true, nb::call_guard<nb::gil_scoped_release>(),
+        "Writes a shader's texture as a KTX2 file. compressed: with Zstandard.");
+}
+
+}  // namespace burnish::python
