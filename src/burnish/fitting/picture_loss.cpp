@@ -7,13 +7,6 @@ namespace burnish {
 
 namespace {
 
-constexpr double kInverseGamma = 1 / 2.2;
-constexpr double kFloor = 1e-3;  // 1/sr, of `relative`
-// Absolute errors below these count as squares; errors of sensors and rounding lie below.
-constexpr double kRelativeRound = 0.05, kLogCosRound = 0.003;
-constexpr double kDimmed[] = {1.0 / 8, 1.0 / 64};
-// The slope of a saturated pixel's model where the reference is not saturated, relative to the slope at 1.
-constexpr double kSaturatedSlope = 0.3;
 // Added to the means in the objective: errors below do not matter, and ln stays finite.
 constexpr ErrorTerms kNegligible{1e-7, 1e-7, 1e-4, 1e-5};
 
@@ -49,11 +42,8 @@ PictureLoss::Slope PictureLoss::add(Target target, double model, double cos_thet
                                     ErrorTerms& sums) const noexcept {
   Slope slope;
   if (picture) {
-    // one gamma for all exposures: (e y)^g = e^g y^g
-    static const double kDim[] = {1, std::pow(kDimmed[0], kInverseGamma),
-                                  std::pow(kDimmed[1], kInverseGamma)};
     const double modelled = std::pow(model * exposure * cos_theta_i, kInverseGamma);
-    for (std::size_t e = 0; e < 3; ++e) {
+    for (std::size_t e = 0; e < kDim.size(); ++e) {
       const double a = target.first * kDim[e], b = modelled * kDim[e];
       if (a >= 1 && b >= 1) continue;  // white both: dimmer exposures tell them apart
       const double error = std::min(b, 1.0) - std::min(a, 1.0);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 namespace burnish {
@@ -16,6 +17,16 @@ using ErrorTerms = std::array<double, kErrorTerms>;
 /// What refinement minimizes: the sum of shares[k] ln(term k), so that a percent of one error is worth a
 /// percent of another whatever their sizes. Absolute values are rounded off near 0.
 struct PictureLoss {
+  static constexpr double kInverseGamma = 1 / 2.2;
+  static constexpr double kFloor = 1e-3;  ///< 1/sr, of `relative`
+  /// Absolute errors below these count as squares; errors of sensors and rounding lie below.
+  static constexpr double kRelativeRound = 0.05, kLogCosRound = 0.003;
+  /// What the exposures make of a pixel: one gamma for all, as (e y)^g = e^g y^g.
+  static inline const std::array<double, 3> kDim{1, std::pow(1.0 / 8, kInverseGamma),
+                                                 std::pow(1.0 / 64, kInverseGamma)};
+  /// The slope of a saturated pixel's model where the reference is not saturated, relative to the slope at 1.
+  static constexpr double kSaturatedSlope = 0.3;
+
   ErrorTerms shares{2, 0.1, 1, 1};
   double exposure = 1;
 

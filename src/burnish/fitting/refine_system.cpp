@@ -9,7 +9,7 @@ namespace burnish {
 
 namespace {
 
-constexpr std::size_t kChunk = 2048;
+constexpr std::size_t kChunk = 64;  // blocks
 constexpr std::size_t kMostGroups = 16;
 // Of many pairs an even part makes a matrix good enough for a step; the slope is that of all.
 constexpr std::size_t kMatrixPairsPerUnknown = 40;
@@ -43,8 +43,8 @@ std::vector<LogRange> shared_exponent_ranges(const std::vector<double>& logs, st
 }
 
 // The unknowns of a system of `channels` channels of a model, table by table.
-std::vector<LaneProduct::Unknowns> unknowns_of(const LogModel& model, std::size_t channels) {
-  std::vector<LaneProduct::Unknowns> unknowns;
+std::vector<LobeLanes::Unknowns> unknowns_of(const LogModel& model, std::size_t channels) {
+  std::vector<LobeLanes::Unknowns> unknowns;
   std::size_t base = 0;
   for (std::size_t t = 0; t < model.spec.tables.size(); ++t) {
     const TableLayout& layout = model.spec.tables[t].layout;
@@ -61,7 +61,6 @@ RefineSystem::RefineSystem(const LogModel& model, const TrainingSet& set, const 
                            const PictureLoss& loss, TableFormat format, std::size_t first_channel,
                            std::size_t last_channel)
     : set_(set),
-      lookups_(lookups),
       loss_(loss),
       first_channel_(first_channel),
       last_channel_(last_channel),
@@ -85,28 +84,28 @@ RefineSystem::RefineSystem(const LogModel& model, const TrainingSet& set, const 
     for (std::size_t n = 0; n < tables_.back().nodes; ++n)
       for (std::size_t c = 0; c < copies; ++c) ranges_[tables_.back().base + n * copies + c] = ranges[n];
   }
-  for (std::size_t k = 0; k < lookups.lookups.size(); ++k) {
-    const auto t = static_cast<std::size_t>(lookups.lookups[k].table);
-    const TableLayout& layout = model.spec.tables[t].layout;
-    const bool line = layout.shape == TableShape::line;
-    places_.push_back({.base = tables_[t].base,
-                       .stride = tables_[t].stride,
-                       .channel_stride = tables_[t].copies > 1 ? std::size_t{1} : 0,
-                       .next_row = line ? 0 : static_cast<std::size_t>(layout.width) * tables_[t].stride,
-                       .table = t,
-                       .place = lookups.place_of[k]});
-    term_pairs_ += line ? 1 : 2;
-  }
   for (std::size_t i = 0; i < set.size(); ++i)
     (i < set.picture_count ? picture_weight_ : pair_weight_) +=
         set.weights[i] * static_cast<double>(channels);
-  targets_.resize(set.size() * channels);
-  for_each_chunk(set.size(), kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      for (std::size_t c = 0; c < channels; ++c)
-        targets_[i * channels + c] =
-            loss.target(set.values[i * static_cast<std::size_t>(set.channels) + first_channel + c],
-                        set.pairs[i].wi.z, i < set.picture_count);
+  constexpr std::size_t kBlock = LobeLanes::kBlock;
+  const std::size_t padded = lanes_.blocks() * kBlock;
+  losses_.targets.resize(2 * padded * channels);
+  losses_.cos_theta_i.resize(padded);
+  losses_.picture_weight.resize(padded);
+  losses_.pair_weight.resize(padded);
+  for_each_chunk(set.size(), kChunk * kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const bool picture = i < set.picture_count;
+      losses_.cos_theta_i[i] = static_cast<float>(set.pairs[i].wi.z);
+      (picture ? losses_.picture_weight : losses_.pair_weight)[i] = set.weights[i];
+      for (std::size_t c = 0; c < channels; ++c) {
+        const double f = set.values[i * static_cast<std::size_t>(set.channels) + first_channel + c];
+        const PictureLoss::Target target = loss.target(f, set.pairs[i].wi.z, picture);
+        float* targets = losses_.targets.data() + 2 * (i / kBlock * channels + c) * kBlock + i % kBlock;
+        targets[0] = target.first;
+        targets[kBlock] = target.second;
+      }
+    }
   });
 }
 
@@ -145,72 +144,32 @@ void RefineSystem::clamp(Eigen::VectorXd& x) const {
     }
 }
 
-RefineSystem::Scratch RefineSystem::scratch() const {
-  return {.factor = std::vector<double>(places_.size()),
-          .share = std::vector<double>(places_.size()),
-          .product = std::vector<double>(lookups_.lobes.size()),
-          .terms = std::vector<TermPair>(term_pairs_)};
-}
-
-double RefineSystem::evaluate(const double* lambda, std::size_t pair, std::size_t channel,
-                              Scratch& at) const noexcept {
-  const Lookups::Place* found = lookups_.of_pair(pair);
-  for (std::size_t k = 0; k < places_.size(); ++k) {
-    const Place& place = places_[k];
-    const auto [node, fx, fy] = found[place.place * Lookups::kBlock];
-    const double x = fx;
-    const double* v = lambda + place.base + node * place.stride + channel * place.channel_stride;
-    double factor = v[0] + x * (v[place.stride] - v[0]);
-    if (place.next_row > 0) {
-      const double* next = v + place.next_row;
-      factor += fy * (next[0] + x * (next[place.stride] - next[0]) - factor);
-    }
-    at.factor[k] = factor;
-  }
-  double total = 0;
-  for (std::size_t j = 0; j < at.product.size(); ++j) {
-    double product = 1;
-    for (const std::size_t k : lookups_.lobes[j]) product *= at.factor[k];
-    at.product[j] = product;
-    total += product;
-  }
-  return total;
-}
-
-void RefineSystem::differentiate(const double* lambda, std::size_t pair, std::size_t channel, double total,
-                                 Scratch& at) const noexcept {
-  std::ranges::fill(at.share, 0);
-  for (std::size_t j = 0; j < at.product.size(); ++j)
-    for (const std::size_t k : lookups_.lobes[j]) at.share[k] += at.product[j];
-  const Lookups::Place* found = lookups_.of_pair(pair);
-  auto term = at.terms.begin();
-  for (std::size_t k = 0; k < places_.size(); ++k) {
-    const Place& place = places_[k];
-    const auto [node, x, y] = found[place.place * Lookups::kBlock];
-    const double fx = x, fy = y;
-    const std::size_t first = place.base + node * place.stride + channel * place.channel_stride;
-    const auto push = [&](std::size_t unknown, double share) {
-      *term++ = {.unknown = unknown,
-                 .stride = place.stride,
-                 .value = {share * (1 - fx) * lambda[unknown], share * fx * lambda[unknown + place.stride]}};
-    };
-    const double share = at.share[k] /= total * at.factor[k];
-    push(first, share * (1 - fy));
-    if (place.next_row > 0) push(first + place.next_row, share * fy);
-  }
+LossInputs RefineSystem::loss_inputs(std::size_t block, std::size_t channel,
+                                     const float* model) const noexcept {
+  constexpr std::size_t kBlock = LobeLanes::kBlock;
+  const std::size_t channels = last_channel_ - first_channel_, first = block * kBlock;
+  const float* targets = losses_.targets.data() + 2 * (block * channels + channel) * kBlock;
+  return {.first = targets,
+          .second = targets + kBlock,
+          .model = model,
+          .cos_theta_i = losses_.cos_theta_i.data() + first,
+          .picture_weight = losses_.picture_weight.data() + first,
+          .pair_weight = losses_.pair_weight.data() + first};
 }
 
 ErrorTerms RefineSystem::errors(const Eigen::VectorXd& x) const {
-  const Eigen::VectorXd lambda = x.array().exp();
+  const LobeLanes::Values values = lanes_.values(x);
   const std::size_t channels = last_channel_ - first_channel_;
-  std::vector<ErrorTerms> partial(chunk_count(set_.size(), kChunk));
-  for_each_chunk(set_.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-    Scratch at = scratch();
-    const ErrorTerms none{};
-    for (std::size_t i = begin; i < end; ++i)
-      for (std::size_t c = 0; c < channels; ++c)
-        loss_.add(targets_[i * channels + c], evaluate(lambda.data(), i, c, at), set_.pairs[i].wi.z,
-                  i < set_.picture_count, set_.weights[i], none, partial[chunk]);
+  std::vector<ErrorTerms> partial(chunk_count(lanes_.blocks(), kChunk));
+  for_each_chunk(lanes_.blocks(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    LobeLanes::Block at = lanes_.block();
+    float gradient[LobeLanes::kBlock], curvature[LobeLanes::kBlock];
+    for (std::size_t b = begin; b < end; ++b)
+      for (std::size_t c = 0; c < channels; ++c) {
+        lanes_.evaluate(values, b, c, at);
+        add_losses(loss_, loss_inputs(b, c, at.total.data()), LobeLanes::kBlock, {}, partial[chunk], gradient,
+                   curvature);
+      }
   });
   ErrorTerms means{};
   for (const ErrorTerms& p : partial)
@@ -223,103 +182,86 @@ ErrorTerms RefineSystem::errors(const Eigen::VectorXd& x) const {
 }
 
 template <class Visit>
-void RefineSystem::for_each_slope(const Eigen::VectorXd& lambda, const ErrorTerms& derivatives,
+void RefineSystem::for_each_slope(const LobeLanes::Values& values, const ErrorTerms& derivatives,
                                   std::size_t begin, std::size_t end, Visit visit) const {
-  const std::size_t channels = last_channel_ - first_channel_;
-  Scratch at = scratch();
+  LobeLanes::Block at = lanes_.block();
   ErrorTerms sums{};
-  for (std::size_t i = begin; i < end; ++i)
-    for (std::size_t c = 0; c < channels; ++c) {
-      const double model = evaluate(lambda.data(), i, c, at);
-      const PictureLoss::Slope slope = loss_.add(targets_[i * channels + c], model, set_.pairs[i].wi.z,
-                                                 i < set_.picture_count, set_.weights[i], derivatives, sums);
-      differentiate(lambda.data(), i, c, model, at);
-      visit(i, c, slope, at);
+  float gradient[LobeLanes::kBlock], curvature[LobeLanes::kBlock];
+  for (std::size_t b = begin; b < end; ++b)
+    for (std::size_t c = 0; c < last_channel_ - first_channel_; ++c) {
+      lanes_.evaluate(values, b, c, at);
+      add_losses(loss_, loss_inputs(b, c, at.total.data()), LobeLanes::kBlock, derivatives, sums, gradient,
+                 curvature);
+      lanes_.differentiate(at);
+      visit(b, c, at, gradient, curvature);
     }
 }
 
 void RefineSystem::find_normal(const Eigen::VectorXd& x, const ErrorTerms& means, std::size_t first_unknown,
                                std::size_t last_unknown, Normal& normal) const {
-  const Eigen::VectorXd lambda = x.array().exp();
-  const std::size_t unknowns = last_unknown - first_unknown;
-  const std::size_t channels = last_channel_ - first_channel_;
+  const LobeLanes::Values values = lanes_.values(x);
+  const std::size_t unknowns = last_unknown - first_unknown, channels = last_channel_ - first_channel_;
   const ErrorTerms derivatives = loss_.derivatives(means, picture_weight_, pair_weight_);
   const std::size_t every =
       std::max<std::size_t>(1, set_.size() * channels / (kMatrixPairsPerUnknown * unknowns));
-  PairedRows& factor = normal.factor;
-  factor.pairs.clear();
-  std::vector<std::size_t> kept;  // term pairs that the factor has
-  std::size_t term_pair = 0;
-  for (const Place& place : places_) {
-    const TableUnknowns& table = tables_[place.table];
-    for (int row = 0; row < (place.next_row > 0 ? 2 : 1); ++row, ++term_pair) {
-      if (table.base < first_unknown || table.base >= last_unknown) continue;
-      kept.push_back(term_pair);
-      factor.pairs.push_back(
-          {.first = table.base - first_unknown, .count = table.nodes * table.copies, .stride = table.stride});
-    }
-  }
-  factor.rows = (set_.size() + every - 1) / every * channels;
-  factor.unknown.resize(kept.size() * factor.rows);
-  factor.value.resize(factor.unknown.size());
+  LaneRows& factor = normal.factor;
+  factor.layout(lanes_, first_unknown, last_unknown, (set_.size() + every - 1) / every * channels);
 
-  const std::size_t group_size = (set_.size() + kMostGroups - 1) / kMostGroups;
-  std::vector<Eigen::VectorXd> gradient(chunk_count(set_.size(), group_size));
-  for_each_chunk(set_.size(), group_size, [&](std::size_t group, std::size_t begin, std::size_t end) {
-    Eigen::VectorXd& sum = gradient[group].setZero(static_cast<Eigen::Index>(unknowns));
-    for_each_slope(lambda, derivatives, begin, end,
-                   [&](std::size_t i, std::size_t c, PictureLoss::Slope slope, const Scratch& at_pair) {
-                     const bool in_matrix = i % every == 0;
-                     const double root = std::sqrt(slope.curvature * static_cast<double>(every));
-                     std::size_t at = i / every * channels + c;
-                     for (const std::size_t p : kept) {
-                       const TermPair& pair = at_pair.terms[p];
-                       const std::size_t unknown = pair.unknown - first_unknown;
-                       for (std::size_t k = 0; k < 2; ++k)
-                         sum[static_cast<Eigen::Index>(unknown + k * pair.stride)] +=
-                             slope.gradient * pair.value[k];
-                       if (!in_matrix) continue;
-                       factor.unknown[at] = static_cast<std::uint32_t>(unknown);
-                       factor.value[at] = {static_cast<float>(root * pair.value[0]),
-                                           static_cast<float>(root * pair.value[1])};
-                       at += factor.rows;
-                     }
+  constexpr std::size_t kBlock = LobeLanes::kBlock;
+  const std::size_t group_size = (lanes_.blocks() + kMostGroups - 1) / kMostGroups;
+  std::vector<AlignedVector<float>> gradient(chunk_count(lanes_.blocks(), group_size));
+  for_each_chunk(lanes_.blocks(), group_size, [&](std::size_t group, std::size_t begin, std::size_t end) {
+    gradient[group].resize(values.lambdas.size());
+    for_each_slope(values, derivatives, begin, end,
+                   [&](std::size_t b, std::size_t c, const LobeLanes::Block& at, const float* slopes,
+                       const float* curvatures) {
+                     lanes_.add_transposed(at, slopes, b, c, gradient[group]);
+                     const std::size_t last = std::min((b + 1) * kBlock, set_.size());
+                     for (std::size_t i = (b * kBlock + every - 1) / every * every; i < last; i += every)
+                       factor.set(lanes_, i, c, i / every * channels + c, at,
+                                  std::sqrt(curvatures[i % kBlock] * static_cast<float>(every)));
                    });
   });
-  normal.gradient = gradient.front();
-  for (std::size_t g = 1; g < gradient.size(); ++g) normal.gradient += gradient[g];
-  find_gram(factor, unknowns, normal.matrix);
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(size_));
+  for (const AlignedVector<float>& part : gradient) lanes_.gather(part, sum);
+  const auto segment = [&](const Eigen::VectorXd& v) {
+    return v.segment(static_cast<Eigen::Index>(first_unknown), static_cast<Eigen::Index>(unknowns));
+  };
+  normal.gradient = segment(sum).cwiseProduct(segment(values.lambda));
+  find_gram(factor, segment(values.lambda), normal.matrix);
 }
 
 RefineSystem::Rows RefineSystem::rows(const Eigen::VectorXd& x, const ErrorTerms& means) const {
-  const auto n = static_cast<Eigen::Index>(size_);
   const ErrorTerms derivatives = loss_.derivatives(means, picture_weight_, pair_weight_);
+  const std::size_t channels = last_channel_ - first_channel_, block_size = lanes_.shares_of_block();
   Rows result;
-  result.lambda = x.array().exp();
-  result.gradient = result.diagonal = Eigen::VectorXd::Zero(n);
-  result.slopes = lanes_.slopes();
-  const std::size_t group_size = (set_.size() + kMostGroups - 1) / kMostGroups;
-  std::vector<Eigen::VectorXd> gradient(chunk_count(set_.size(), group_size)), diagonal(gradient.size());
-  for_each_chunk(set_.size(), group_size, [&](std::size_t group, std::size_t begin, std::size_t end) {
-    gradient[group] = diagonal[group] = Eigen::VectorXd::Zero(n);
-    for_each_slope(result.lambda, derivatives, begin, end,
-                   [&](std::size_t i, std::size_t c, PictureLoss::Slope slope, const Scratch& at) {
-                     const double root = std::sqrt(slope.curvature);
-                     for (std::size_t k = 0; k < places_.size(); ++k)
-                       result.slopes[lanes_.slot(i, c, k)] = static_cast<float>(root * at.share[k]);
-                     for (const TermPair& pair : at.terms)
-                       for (std::size_t k = 0; k < 2; ++k) {
-                         const auto unknown = static_cast<Eigen::Index>(pair.unknown + k * pair.stride);
-                         const double value = pair.value[k];
-                         gradient[group][unknown] += slope.gradient * value;
-                         diagonal[group][unknown] += slope.curvature * value * value;
-                       }
+  result.values = lanes_.values(x);
+  result.gradient = result.diagonal = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(size_));
+  result.shares.resize(lanes_.blocks() * channels * block_size);
+  const std::size_t group_size = (lanes_.blocks() + kMostGroups - 1) / kMostGroups;
+  std::vector<AlignedVector<float>> gradient(chunk_count(lanes_.blocks(), group_size)),
+      diagonal(gradient.size());
+  for_each_chunk(lanes_.blocks(), group_size, [&](std::size_t group, std::size_t begin, std::size_t end) {
+    gradient[group].resize(result.values.lambdas.size());
+    diagonal[group].resize(result.values.lambdas.size());
+    for_each_slope(result.values, derivatives, begin, end,
+                   [&](std::size_t b, std::size_t c, const LobeLanes::Block& at, const float* slopes,
+                       const float* curvatures) {
+                     lanes_.add_transposed(at, slopes, b, c, gradient[group]);
+                     lanes_.add_squares(at, curvatures, b, c, diagonal[group]);
+                     float* shares = result.shares.data() + (b * channels + c) * block_size;
+                     for (std::size_t k = 0; k < block_size; ++k)
+                       shares[k] =
+                           at.product[k] * std::sqrt(curvatures[k / LobeLanes::kLanes % LobeLanes::kBlock]);
                    });
   });
   for (std::size_t g = 0; g < gradient.size(); ++g) {
-    result.gradient += gradient[g];
-    result.diagonal += diagonal[g];
+    lanes_.gather(gradient[g], result.gradient);
+    lanes_.gather(diagonal[g], result.diagonal);
   }
+  const Eigen::VectorXd& lambda = result.values.lambda;
+  result.gradient = result.gradient.cwiseProduct(lambda);
+  result.diagonal = result.diagonal.cwiseProduct(lambda.cwiseProduct(lambda));
   return result;
 }
 

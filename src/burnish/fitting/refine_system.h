@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -8,12 +7,12 @@
 
 #include <Eigen/Core>
 
-#include <burnish/fitting/lane_product.h>
+#include <burnish/fitting/lane_gram.h>
+#include <burnish/fitting/lobe_lanes.h>
 #include <burnish/fitting/log_model.h>
 #include <burnish/fitting/lookups.h>
-#include <burnish/fitting/picture_loss.h>
+#include <burnish/fitting/picture_loss_lanes.h>
 #include <burnish/fitting/smoothness.h>
-#include <burnish/fitting/sparse_gram.h>
 #include <burnish/fitting/training_set.h>
 
 namespace burnish {
@@ -44,7 +43,7 @@ class RefineSystem {
   struct Normal {
     Eigen::VectorXd gradient;
     Eigen::MatrixXd matrix;
-    PairedRows factor;  ///< room that is kept from step to step
+    LaneRows factor;  ///< room that is kept from step to step
   };
   void find_normal(const Eigen::VectorXd& x, const ErrorTerms& means, Normal& normal) const {
     find_normal(x, means, 0, size_, normal);
@@ -53,19 +52,19 @@ class RefineSystem {
   void find_normal(const Eigen::VectorXd& x, const ErrorTerms& means, std::size_t first, std::size_t last,
                    Normal& normal) const;
 
-  /// The same without the matrix, whose factor has the rows curvature^(1/2) d ln f^ / dx. As
-  /// d lambda / dx = lambda, a lookup's part of a row is `slope` times the weights of its interpolation,
-  /// times lambda.
+  /// The same without the matrix, whose factor has the rows curvature^(1/2) d ln f^ / dx.
   struct Rows {
     Eigen::VectorXd gradient;
     Eigen::VectorXd diagonal;  ///< of the matrix, less what terms of one row that share an unknown add
-    Eigen::VectorXd lambda;
-    std::vector<float> slopes;  ///< curvature^(1/2) d ln f^ / d factor, as LaneProduct has them
+    LobeLanes::Values values;
+    AlignedVector<float>
+        shares;  ///< curvature^(1/2) times the lobes' shares of f^, as LobeLanes::times takes them
   };
   Rows rows(const Eigen::VectorXd& x, const ErrorTerms& means) const;
-  /// The normal matrix times v.
+  /// The normal matrix times v. As d lambda / dx = lambda, rows are multiplied by the values.
   Eigen::VectorXd apply(const Rows& rows, const Eigen::VectorXd& v) const {
-    return rows.lambda.cwiseProduct(lanes_.times(rows.slopes, rows.lambda.cwiseProduct(v)));
+    const Eigen::VectorXd& lambda = rows.values.lambda;
+    return lambda.cwiseProduct(lanes_.times(rows.values, rows.shares, lambda.cwiseProduct(v)));
   }
 
   /// Roughness of all tables, its gradient, its matrix times v and its diagonal.
@@ -79,54 +78,33 @@ class RefineSystem {
   void add_roughness_matrix(double scale, std::size_t first, Eigen::MatrixXd& matrix) const;
 
  private:
-  struct Place {
-    std::size_t base, stride,
-        channel_stride;    // unknown of node n, channel c: base + n stride + c channel_stride
-    std::size_t next_row;  // 0: a line
-    std::size_t table, place;
-  };
   struct TableUnknowns {
     std::size_t base, stride, copies, nodes, step;
     double share, log_range;
     SmoothnessRows rows;
   };
-  // Two neighbours in a row of a table, with their terms of d ln f^ / dx.
-  struct TermPair {
-    std::size_t unknown, stride;
-    std::array<double, 2> value;
+  // What PictureLoss takes of the pairs, whole blocks: the last is filled up with pairs that weigh nothing.
+  struct Losses {
+    AlignedVector<float> targets;  // [block][channel of the system][first, second][pair]
+    AlignedVector<float> cos_theta_i, picture_weight, pair_weight;  // [pair]
   };
-
-  // Room for one pair of directions' value and terms.
-  struct Scratch {
-    std::vector<double> factor, share;  // of the lookups; share: d ln f^ / d factor after differentiate
-    std::vector<double> product;        // of the lobes
-    std::vector<TermPair> terms;
-  };
-
-  Scratch scratch() const;
-  // The model's value at a pair of directions, which leaves factors and products.
-  double evaluate(const double* lambda, std::size_t pair, std::size_t channel, Scratch& at) const noexcept;
-  // The terms of d ln f^ / dx where the model's value is `total`.
-  void differentiate(const double* lambda, std::size_t pair, std::size_t channel, double total,
-                     Scratch& at) const noexcept;
-  // visit(pair, channel, slope, scratch) of all pairs from `begin` to `end`.
+  LossInputs loss_inputs(std::size_t block, std::size_t channel, const float* model) const noexcept;
+  // visit(block, channel, lanes as differentiate leaves them, gradients, curvatures) of the blocks from
+  // `begin` to `end`.
   template <class Visit>
-  void for_each_slope(const Eigen::VectorXd& lambda, const ErrorTerms& derivatives, std::size_t begin,
+  void for_each_slope(const LobeLanes::Values& values, const ErrorTerms& derivatives, std::size_t begin,
                       std::size_t end, Visit visit) const;
   template <class Visit>
   void for_each_roughness_row(Visit visit) const;
 
   const TrainingSet& set_;
-  const Lookups& lookups_;
   PictureLoss loss_;
-  std::vector<PictureLoss::Target> targets_;  // [pair][channel of the system]
+  Losses losses_;
   std::size_t first_channel_, last_channel_, size_ = 0;
-  std::vector<Place> places_;
-  std::size_t term_pairs_ = 0;  // a channel's of one pair of directions
   std::vector<TableUnknowns> tables_;
   std::vector<LogRange> ranges_;  // of the unknowns, over their channel's mean in the table
   double picture_weight_ = 0, pair_weight_ = 0;
-  LaneProduct lanes_;
+  LobeLanes lanes_;
 };
 
 }  // namespace burnish
