@@ -1,11 +1,13 @@
 #include <mutex>
+#include <utility>
 
 #include <burnish/fitting/cholesky.h>
 
 // LAPACK has no header of its own.
 extern "C" {
 void dpotrf_(const char* triangle, const int* n, double* matrix, const int* stride, int* info);
-void dpotri_(const char* triangle, const int* n, double* matrix, const int* stride, int* info);
+void dtrtri_(const char* triangle, const char* diagonal, const int* n, double* matrix, const int* stride,
+             int* info);
 void dpotrs_(const char* triangle, const int* n, const int* columns, const double* matrix, const int* stride,
              double* right_sides, const int* right_stride, int* info);
 }
@@ -29,14 +31,17 @@ void solve_in_place(Eigen::MatrixXd& matrix, Eigen::VectorXd& x) {
 }
 
 bool factorize_inverse(Eigen::MatrixXd& matrix) {
+  // With P that reverses the order and P A P = L L^T, the inverse of A is U^T U where U = P L^-1 P: no need
+  // to make the inverse.
   const int n = static_cast<int>(matrix.rows());
   int info = 0;
+  for (Eigen::Index c = 0; c < matrix.cols(); ++c)
+    for (Eigen::Index r = matrix.rows() - 1 - c; r >= c; --r)
+      std::swap(matrix(r, c), matrix(matrix.rows() - 1 - c, matrix.rows() - 1 - r));
   const std::lock_guard one_at_a_time(lapack);
   dpotrf_("L", &n, matrix.data(), &n, &info);
-  if (info == 0) dpotri_("L", &n, matrix.data(), &n, &info);
-  if (info != 0) return false;
-  matrix.triangularView<Eigen::Upper>() = matrix.transpose().triangularView<Eigen::Upper>();
-  dpotrf_("U", &n, matrix.data(), &n, &info);
+  if (info == 0) dtrtri_("L", "N", &n, matrix.data(), &n, &info);
+  matrix.reverseInPlace();
   return info == 0;
 }
 
