@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include <burnish/fitting/lane_gram.h>
@@ -15,13 +16,11 @@
 namespace burnish {
 namespace {
 
-constexpr std::size_t kMostTerms = 2 * LobeLanes::kLanes;  // of a piece
-
 // One piece of all rows.
 struct PieceRows {
-  const std::uint32_t* place;
+  const std::uint32_t* node;
   const float* value;
-  std::size_t terms, width;
+  std::size_t lanes, width;
 };
 
 }  // namespace
@@ -35,30 +34,41 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Adds `scale` times the products of two pieces of all rows to a matrix, a's places being the columns.
-template <std::size_t most_lanes>
+// Adds `scale` times the products of two pieces of all rows to a matrix, a's nodes and lanes being the
+// columns. A vector ends with a node: what is stored is loaded again soon, and fast only if it is loaded as
+// it was stored.
+template <std::size_t width>
 void add_outer(const PieceRows& a, const PieceRows& b, std::size_t rows, double scale, double* matrix,
                std::size_t stride) {
-  const hn::CappedTag<double, most_lanes> d;
+  const hn::CappedTag<double, width> d;
   const hn::Rebind<float, decltype(d)> narrow;
-  for (std::size_t r = 0; r < rows; ++r) {
-    double factor[kMostTerms];
-    for (std::size_t i = 0; i < a.terms; ++i)
-      factor[i] = scale * static_cast<double>(a.value[r * a.width + i]);
-    double* into = matrix + a.place[r] * stride + b.place[r];
-    for (std::size_t l = 0; l < b.width; l += hn::Lanes(d)) {
-      const auto values = hn::PromoteTo(d, hn::LoadU(narrow, b.value + r * b.width + l));
-      for (std::size_t i = 0; i < a.terms; ++i) {
-        double* at = into + i * stride + l;
-        hn::StoreU(hn::MulAdd(hn::Set(d, factor[i]), values, hn::LoadU(d, at)), d, at);
+  constexpr std::size_t kVectors = 2 * width / hn::MaxLanes(d);
+  const std::size_t lanes = a.lanes, a_width = a.width;
+  const float *values_a = a.value, *values_b = b.value;
+  for (std::size_t r = 0; r < rows; ++r, values_a += 2 * a_width, values_b += 2 * width) {
+    hn::Vec<decltype(d)> values[kVectors];
+    for (std::size_t k = 0; k < kVectors; ++k)
+      values[k] =
+          hn::Mul(hn::PromoteTo(d, hn::Load(narrow, values_b + k * hn::MaxLanes(d))), hn::Set(d, scale));
+    double* into = matrix + a.node[r] * lanes * stride + b.node[r] * width;
+    for (std::size_t neighbour = 0; neighbour < 2; ++neighbour)
+      for (std::size_t i = 0; i < lanes; ++i, into += stride) {
+        const auto factor = hn::Set(d, static_cast<double>(values_a[neighbour * a_width + i]));
+        for (std::size_t k = 0; k < kVectors; ++k) {
+          double* at = into + k * hn::MaxLanes(d);
+          hn::Store(hn::MulAdd(factor, values[k], hn::Load(d, at)), d, at);
+        }
       }
-    }
   }
 }
 
 void add_products(const PieceRows& a, const PieceRows& b, std::size_t rows, double scale, double* matrix,
                   std::size_t stride) {
-  (b.width == 2 ? add_outer<2> : add_outer<8>)(a, b, rows, scale, matrix, stride);
+  const auto add = b.width == 1   ? add_outer<1>
+                   : b.width == 2 ? add_outer<2>
+                   : b.width == 4 ? add_outer<4>
+                                  : add_outer<8>;
+  add(a, b, rows, scale, matrix, stride);
 }
 
 }  // namespace
@@ -86,34 +96,43 @@ std::vector<GramBlock> blocks_of(const LaneRows& j) {
       // vectors run along the family of more lanes
       const auto [column, row] =
           j.families[f].lanes.size() <= j.families[g].lanes.size() ? std::pair(f, g) : std::pair(g, f);
-      // beyond the last value, vectors add zeros; columns do not fall on one line of a cache
-      const std::size_t stride = (j.families[row].unknown.size() + kMostTerms + 7) / 8 * 8 | 8;
+      // columns do not fall on one line of a cache
+      const std::size_t stride = (j.families[row].nodes() * j.families[row].width() + 7) / 8 * 8 | 8;
       blocks.push_back({column, row, stride, start});
-      start += stride * j.families[column].unknown.size() + kMostTerms;
+      start += stride * j.families[column].unknown.size();
     }
   return blocks;
 }
 
 void add_to_triangle(const LaneRows& j, const GramBlock& block, const Eigen::VectorXd& scale,
                      Eigen::MatrixXd& gram) {
-  const std::vector<std::uint32_t>&columns = j.families[block.column].unknown,
-        &rows = j.families[block.row].unknown;
-  const double* from = j.room.data() + block.start;
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    const auto u = static_cast<Eigen::Index>(columns[c]);
-    const double* products = from + c * block.stride;
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-      const auto v = static_cast<Eigen::Index>(rows[r]);
-      double product = scale[u] * scale[v] * products[r];
+  const LaneRows::Family &columns = j.families[block.column], &rows = j.families[block.row];
+  const double* products = j.room.data() + block.start;
+  const std::size_t lanes = rows.lanes.size(), width = rows.width();
+  for (std::size_t c = 0; c < columns.unknown.size(); ++c) {
+    const auto u = static_cast<Eigen::Index>(columns.unknown[c]);
+    const std::size_t own_row = c / lanes * width + c % lanes;  // of a family with itself
+    for (std::size_t r = 0; r < rows.unknown.size(); ++r) {
+      const auto v = static_cast<Eigen::Index>(rows.unknown[r]);
+      double product = products[c * block.stride + r / lanes * width + r % lanes];
       if (block.column == block.row) {
         if (v < u) continue;
-        product += scale[u] * scale[v] * from[r * block.stride + c];
+        product += products[r * block.stride + own_row];
       } else if (u == v) {
         product *= 2;
       }
-      gram(std::max(u, v), std::min(u, v)) += product;
+      gram(std::max(u, v), std::min(u, v)) += scale[u] * scale[v] * product;
     }
   }
+}
+
+// Lanes beyond the family's are read by none.
+template <std::size_t width>
+void set_neighbours(const float* slopes, float left, float right, float* values) {
+  std::array<float, width> of_lanes;
+  std::copy_n(slopes, width, of_lanes.begin());
+  for (std::size_t l = 0; l < width; ++l) values[l] = left * of_lanes[l];
+  for (std::size_t l = 0; l < width; ++l) values[width + l] = right * of_lanes[l];
 }
 
 }  // namespace
@@ -144,7 +163,8 @@ void LaneRows::layout(const LobeLanes& model, std::size_t first, std::size_t las
           kept.unknown.push_back(
               static_cast<std::uint32_t>(table.base + n * table.stride + (table.copies > 1 ? c : 0) - first));
         }
-    kept.copy_size = copies ? nodes * kept.lanes.size() : 0;
+    kept.copy_nodes = copies ? nodes : 0;
+    kept.in_order = kept.lanes.back() + 1 == kept.lanes.size();
     families.push_back(std::move(kept));
   }
   std::size_t start = 0;
@@ -154,10 +174,10 @@ void LaneRows::layout(const LobeLanes& model, std::size_t first, std::size_t las
     for (const bool second_row : {false, true}) {
       if (second_row && model.slots()[s].next_row == 0) continue;
       pieces.push_back({family, s, second_row, start});
-      start += rows * width(families[family].lanes.size());
+      start += rows * 2 * families[family].width();
     }
   }
-  place.resize(pieces.size() * rows);
+  node.resize(pieces.size() * rows);
   value.resize(start);
 }
 
@@ -169,35 +189,40 @@ void LaneRows::set(const LobeLanes& model, std::size_t pair, std::size_t channel
     const Piece& piece = pieces[p];
     const LobeLanes::Slot& slot = model.slots()[piece.slot];
     const Family& family = families[piece.family];
-    const std::size_t lanes = family.lanes.size();
-    const auto [node, fx, fy] = places[slot.place * LobeLanes::kBlock];
+    const std::size_t lanes = family.lanes.size(), width = family.width();
+    const Lookups::Place& place = places[slot.place * LobeLanes::kBlock];
     const std::size_t next = piece.second_row ? slot.next_row / LobeLanes::kLanes : 0;
-    place[p * rows + r] = static_cast<std::uint32_t>(channel * family.copy_size + (node + next) * lanes);
+    node[p * rows + r] = static_cast<std::uint32_t>(channel * family.copy_nodes + place.node + next);
     const float* slopes = at.factor.data() + piece.slot * LobeLanes::kBlockLanes + i * LobeLanes::kLanes;
-    const float part = root * (slot.next_row == 0 ? 1 : piece.second_row ? fy : 1 - fy);
-    const float left = part * (1 - fx), right = part * fx;
-    float* values = value.data() + piece.start + r * width(lanes);
-    for (std::size_t l = 0; l < lanes; ++l) {
-      values[l] = left * slopes[family.lanes[l]];
-      values[lanes + l] = right * slopes[family.lanes[l]];
-    }
-    std::fill(values + 2 * lanes, values + width(lanes), 0.0f);
+    const float part = root * (slot.next_row == 0 ? 1 : piece.second_row ? place.fy : 1 - place.fy);
+    const float left = part * (1 - place.fx), right = part * place.fx;
+    float* values = value.data() + piece.start + r * 2 * width;
+    // the widths as constants: vectors
+    if (family.in_order && width == 4)
+      set_neighbours<4>(slopes, left, right, values);
+    else if (family.in_order && width == 8)
+      set_neighbours<8>(slopes, left, right, values);
+    else
+      for (std::size_t l = 0; l < lanes; ++l) {
+        values[l] = left * slopes[family.lanes[l]];
+        values[width + l] = right * slopes[family.lanes[l]];
+      }
   }
 }
 
 void find_gram(LaneRows& j, const Eigen::VectorXd& scale, Eigen::MatrixXd& gram) {
   const std::vector<GramBlock> blocks = blocks_of(j);
   const GramBlock& end = blocks.back();
-  j.room.resize(end.start + end.stride * j.families[end.column].unknown.size() + kMostTerms);
+  j.room.resize(end.start + end.stride * j.families[end.column].unknown.size());
   const auto rows_of = [&](std::size_t p) {
-    const std::size_t lanes = j.families[j.pieces[p].family].lanes.size();
-    return PieceRows{j.place.data() + p * j.rows, j.value.data() + j.pieces[p].start, 2 * lanes,
-                     LaneRows::width(lanes)};
+    const LaneRows::Family& family = j.families[j.pieces[p].family];
+    return PieceRows{j.node.data() + p * j.rows, j.value.data() + j.pieces[p].start, family.lanes.size(),
+                     family.width()};
   };
   for_each_chunk(blocks.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
     const GramBlock& block = blocks[k];
     double* matrix = j.room.data() + block.start;
-    std::fill_n(matrix, block.stride * j.families[block.column].unknown.size() + kMostTerms, 0.0);
+    std::fill_n(matrix, block.stride * j.families[block.column].unknown.size(), 0.0);
     for (std::size_t a = 0; a < j.pieces.size(); ++a)
       for (std::size_t b = 0; b < j.pieces.size(); ++b) {
         if (j.pieces[a].family != block.column || j.pieces[b].family != block.row) continue;

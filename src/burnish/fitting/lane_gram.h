@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -16,7 +17,12 @@ struct LaneRows {
   struct Family {
     std::vector<std::size_t> lanes;      ///< of the LobeLanes' family
     std::vector<std::uint32_t> unknown;  ///< of [copy][node][lane]
-    std::size_t copy_size = 0;           ///< 0: one copy for all channels
+    std::size_t copy_nodes = 0;          ///< 0: one copy for all channels
+    bool in_order = false;               ///< lanes are 0, 1, ...
+
+    std::size_t nodes() const noexcept { return unknown.size() / lanes.size(); }
+    /// A vector's, as two neighbours must not share one.
+    std::size_t width() const noexcept { return std::bit_ceil(lanes.size()); }
   };
   struct Piece {
     std::size_t family, slot;
@@ -26,12 +32,9 @@ struct LaneRows {
   std::vector<Family> families;
   std::vector<Piece> pieces;
   std::size_t rows = 0;
-  std::vector<std::uint32_t> place;  ///< [piece][row], of the first slope among the family's values
-  AlignedVector<float> value;        ///< [piece][row][width]
-  AlignedVector<double> room;        ///< of find_gram
-
-  /// Slopes of a family's row in a piece, filled up with zeros.
-  static std::size_t width(std::size_t lanes) noexcept { return lanes == 1 ? 2 : (2 * lanes + 7) / 8 * 8; }
+  std::vector<std::uint32_t> node;  ///< [piece][row], the first of the two
+  AlignedVector<float> value;       ///< [piece][row][neighbour][width]
+  AlignedVector<double> room;       ///< of find_gram
 
   /// Makes room for rows over the unknowns [first, last) of whole tables.
   void layout(const LobeLanes& model, std::size_t first, std::size_t last, std::size_t row_count);
