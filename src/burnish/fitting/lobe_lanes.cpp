@@ -400,8 +400,11 @@ Eigen::VectorXd LobeLanes::times(const Values& values, const AlignedVector<float
          partial[group].data() + offset);
       }
   });
+  AlignedVector<float>& sum = partial.front();
+  for (std::size_t g = 1; g < partial.size(); ++g)
+    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += partial[g][k];
   Eigen::VectorXd product = Eigen::VectorXd::Zero(v.size());
-  for (const AlignedVector<float>& sum : partial) gather(sum, product);
+  gather(sum, product);
   return product;
 }
 
