@@ -211,7 +211,9 @@ void LaneRows::set(const LobeLanes& model, std::size_t pair, std::size_t channel
 }
 
 void find_gram(LaneRows& j, const Eigen::VectorXd& scale, Eigen::MatrixXd& gram) {
+  gram.setZero(scale.size(), scale.size());
   const std::vector<GramBlock> blocks = blocks_of(j);
+  if (blocks.empty()) return;
   const GramBlock& end = blocks.back();
   j.room.resize(end.start + end.stride * j.families[end.column].unknown.size());
   const auto rows_of = [&](std::size_t p) {
@@ -232,7 +234,6 @@ void find_gram(LaneRows& j, const Eigen::VectorXd& scale, Eigen::MatrixXd& gram)
         (rows_of(a), rows_of(b), j.rows, a == b ? 0.5 : 1, matrix, block.stride);
       }
   });
-  gram.setZero(scale.size(), scale.size());
   for (const GramBlock& block : blocks) add_to_triangle(j, block, scale, gram);
 }
 

@@ -243,6 +243,7 @@ HWY_EXPORT(add_squares);
 HWY_EXPORT(multiply);
 
 constexpr std::size_t kMostGroups = 16;
+constexpr float kLeastTotal = 1e-30f;  // whose reciprocal is finite
 
 void prefetch(const void* data, std::size_t bytes) noexcept {
   constexpr std::size_t kLine = 64;
@@ -359,6 +360,7 @@ void LobeLanes::evaluate(const Values& values, std::size_t block, std::size_t ch
   HWY_DYNAMIC_DISPATCH(evaluate)
   (slots_, parts_, places(block), values.lambdas.data() + channel * channel_size_, at.factor.data(),
    at.product.data(), at.total.data());
+  for (float& total : at.total) total = std::max(total, kLeastTotal);
 }
 
 void LobeLanes::differentiate(Block& at) const noexcept {

@@ -26,11 +26,6 @@ struct Lookups {
   static constexpr std::size_t kBlock = 32;
   std::size_t pairs = 0;
   std::vector<Place> places;  ///< [pair / kBlock][place][pair % kBlock]
-
-  /// A pair's place p stands at [p * kBlock].
-  const Place* of_pair(std::size_t pair) const noexcept {
-    return places.data() + pair / kBlock * kBlock * place_count + pair % kBlock;
-  }
 };
 
 Lookups find_lookups(const ModelSpec& spec, const TrainingSet& set);

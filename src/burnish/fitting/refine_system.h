@@ -57,8 +57,8 @@ class RefineSystem {
     Eigen::VectorXd gradient;
     Eigen::VectorXd diagonal;  ///< of the matrix, less what terms of one row that share an unknown add
     LobeLanes::Values values;
-    AlignedVector<float>
-        shares;  ///< curvature^(1/2) times the lobes' shares of f^, as LobeLanes::times takes them
+    /// curvature^(1/2) times the lobes' shares of f^, as LobeLanes::times takes them.
+    AlignedVector<float> shares;
   };
   Rows rows(const Eigen::VectorXd& x, const ErrorTerms& means) const;
   /// The normal matrix times v. As d lambda / dx = lambda, rows are multiplied by the values.
