@@ -29,11 +29,11 @@ FactoredBrdf fit_ours(BrdfRef reference, std::size_t bytes) {
   const int channels = reference.channels();
   const TableFormat format = channels == 3 ? TableFormat::rgb9e5 : TableFormat::half;
   const std::size_t texel = texel_bytes(format, channels);
-  const TrainingOptions drawn{.directions = reference.isotropic() ? 60'000u : 200'000u};
+  const TrainingOptions drawn = training_for(bytes, texel, reference.isotropic());
   const TrainingSet set = draw_training_set(reference, drawn);
   RefineOptions options{.format = format};
   const LobePlan plan = default_plan(bytes, 0, reference.isotropic(), texel);
-  const LobesFit fit = fit_without_overfit(reference, set, plan, bytes, texel, drawn.seed, options);
+  const LobesFit fit = fit_without_overfit(reference, set, plan, bytes, texel, drawn, options);
   return to_rounded_brdf(fit.model, set, options);
 }
 

@@ -60,7 +60,7 @@ TEST(FitWithoutOverfit, IsSmootherWhereThatPredictsBetterAndNowhereElse) {
   const TrainingSet other = draw_training_set(ggx, {.pictures = 500, .directions = 1500, .seed = 9});
   const TrainingSet few = draw_training_set(ggx, {.pictures = 80, .directions = 300});
   RefineOptions options = given;
-  const LobesFit smoother = fit_without_overfit(ggx, few, plan, kBytes, kHalf, 1, options);
+  const LobesFit smoother = fit_without_overfit(ggx, few, plan, kBytes, kHalf, {}, options);
   EXPECT_GT(options.smooth, given.smooth);
   EXPECT_LT(objective(smoother.model, other, given.shares),
             objective(fit_plan(few, plan, kBytes, kHalf, given).model, other, given.shares));
@@ -68,7 +68,7 @@ TEST(FitWithoutOverfit, IsSmootherWhereThatPredictsBetterAndNowhereElse) {
   const TrainingSet many = draw_training_set(ggx, {.pictures = 1000, .directions = 4000});
   const LobePlan small = default_plan(kFewBytes, 1, true, kHalf);
   options = given;
-  const LobesFit same = fit_without_overfit(ggx, many, small, kFewBytes, kHalf, 1, options);
+  const LobesFit same = fit_without_overfit(ggx, many, small, kFewBytes, kHalf, {}, options);
   EXPECT_EQ(options.smooth, given.smooth);
   EXPECT_EQ(same.model.log_values, fit_plan(many, small, kFewBytes, kHalf, given).model.log_values);
 }

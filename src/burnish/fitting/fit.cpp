@@ -29,9 +29,6 @@ constexpr int kScatteredReweightings = 4;
 // Pairs drawn for one lobe from a source that is a function; an anisotropic one has one dimension more.
 constexpr std::size_t kIsotropicSamples = 200'000, kAnisotropicSamples = 500'000;
 
-// The same for several lobes.
-constexpr std::size_t kIsotropicDirections = 60'000, kAnisotropicDirections = 200'000;
-
 // Pairs that the fit did not see, for the error that is noted.
 constexpr std::size_t kHeldOutPairs = 20'000;
 
@@ -123,7 +120,9 @@ class Fitter {
 
   FactoredBrdf fit_to_budget() {
     const std::size_t texel = texel_bytes(format(), channels());
-    const TrainingSet set = training_set(false);
+    TrainingOptions drawn = training_for(options_.budget, texel, input_.brdf.isotropic());
+    drawn.seed = options_.seed;
+    const TrainingSet set = draw_training_set(reference(), drawn);
     LobePlan plan = default_plan(options_.budget, options_.lobes, input_.brdf.isotropic(), texel);
     RefineOptions refine = refine_options();
     if (options_.search) {
@@ -140,8 +139,7 @@ class Fitter {
     }
     notes_["budget"] = options_.budget;
     if (options_.smooth) return finish(fit_plan(set, plan, options_.budget, texel, refine), set, refine);
-    const LobesFit fit =
-        fit_without_overfit(reference(), set, plan, options_.budget, texel, options_.seed, refine);
+    const LobesFit fit = fit_without_overfit(reference(), set, plan, options_.budget, texel, drawn, refine);
     notes_["smooth"] = refine.smooth;
     return finish(fit, set, refine);
   }
@@ -210,10 +208,10 @@ class Fitter {
 
   TrainingSet training_set(bool spread_phi_h) const {
     if (input_.samples) return training_set_of(*input_.samples, options_.symmetrize);
-    return draw_training_set(
-        reference(), {.directions = input_.brdf.isotropic() ? kIsotropicDirections : kAnisotropicDirections,
-                      .seed = options_.seed,
-                      .spread_phi_h = spread_phi_h});
+    TrainingOptions drawn = training_for(0, 1, input_.brdf.isotropic());
+    drawn.seed = options_.seed;
+    drawn.spread_phi_h = spread_phi_h;
+    return draw_training_set(reference(), drawn);
   }
 
   RefineOptions refine_options() const {

@@ -6,6 +6,8 @@ namespace burnish {
 
 namespace {
 
+constexpr std::size_t kManyTexels = 6000;
+constexpr std::size_t kIsotropicDirections = 60'000, kAnisotropicDirections = 200'000;
 constexpr std::size_t kEnoughPairs = 40;  // a texel
 constexpr std::size_t kHeldOutPictures = 5000, kHeldOutDirections = 15'000;
 constexpr double kMostGap = 2, kStiffer = 10, kMostSmooth = 1e-3;
@@ -18,12 +20,21 @@ bool has_few_pairs(const LogModel& model, const TrainingSet& set) {
 
 }  // namespace
 
+TrainingOptions training_for(std::size_t bytes, std::size_t texel_bytes, bool isotropic) {
+  if (!isotropic) return {.directions = kAnisotropicDirections};
+  if (bytes <= kManyTexels * texel_bytes) return {.directions = kIsotropicDirections};
+  return {.pictures = 40'000, .directions = 50'000, .crowded = true};
+}
+
 LobesFit fit_without_overfit(BrdfRef source, const TrainingSet& set, const LobePlan& plan, std::size_t bytes,
-                             std::size_t texel_bytes, std::uint64_t seed, RefineOptions& options) {
+                             std::size_t texel_bytes, const TrainingOptions& drawn, RefineOptions& options) {
   LobesFit fit = fit_plan(set, plan, bytes, texel_bytes, options);
   if (!has_few_pairs(fit.model, set)) return fit;
-  TrainingSet held_out = draw_training_set(  // the error that is noted in the end is of seed + 1
-      source, {.pictures = kHeldOutPictures, .directions = kHeldOutDirections, .seed = seed + 2});
+  TrainingOptions anew = drawn;
+  anew.pictures = kHeldOutPictures;
+  anew.directions = kHeldOutDirections;
+  anew.seed += 2;  // the error that is noted in the end is of seed + 1
+  TrainingSet held_out = draw_training_set(source, anew);
   held_out.exposure = set.exposure;
   double error = objective(fit.model, held_out, options.shares);
   if (error < objective(fit.model, set, options.shares) + kMostGap) return fit;

@@ -63,6 +63,30 @@ TEST(TrainingSet, IsPixelsAndPairsAboveTheHorizonAndTheSameForASeed) {
   EXPECT_EQ(part.pairs[part.picture_count], set.pairs[set.picture_count]);
 }
 
+TEST(TrainingSet, CrowdsPixelsAtTheHighlightAndWeighsThemAsIfTheyWereEven) {
+  const AnalyticBrdf matte = parse_analytic("ggx:alpha_x=0.4,alpha_y=0.4,kd=0.5");
+  const auto near_highlight = [](const TrainingSet& set, bool weighted) {
+    double near = 0, all = 0;
+    for (std::size_t i = 0; i < set.picture_count; ++i) {
+      const Vec3 half = normalize(set.pairs[i].wi + set.pairs[i].wo);
+      const double weight = weighted ? set.weights[i] : 1;
+      all += weight;
+      if (half.z > std::cos(0.2)) near += weight;
+    }
+    return near / all;
+  };
+  const TrainingSet even = draw_training_set(matte, {.pictures = 40'000, .directions = 10});
+  const TrainingSet crowded =
+      draw_training_set(matte, {.pictures = 40'000, .directions = 10, .crowded = true});
+  EXPECT_GT(near_highlight(crowded, false), 3 * near_highlight(even, false));
+  EXPECT_NEAR(near_highlight(crowded, true) / near_highlight(even, true), 1, 0.05);
+  for (std::size_t i = 0; i < crowded.picture_count; ++i) {
+    EXPECT_GT(crowded.weights[i], 0);
+    EXPECT_LE(crowded.weights[i], 2);
+  }
+  EXPECT_GT(crowded.exposure, even.exposure);  // pixels in the dark count
+}
+
 TEST(PictureLoss, SlopeIsTheDerivativeOfTheErrors) {
   const PictureLoss loss{.shares = {1, 1, 1, 1}, .exposure = 2};
   const ErrorTerms ones{1, 1, 1, 1};

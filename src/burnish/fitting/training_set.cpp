@@ -18,7 +18,8 @@ namespace {
 
 constexpr double kLargestLightAngle = radians(75);
 constexpr double kPixelCosine = 0.01, kPairCosine = 0.05;  // the second as in the error figures
-constexpr double kExposedShare = 0.97;                     // as in the error figures
+constexpr double kCrowdedPixelCosine = 1e-3;
+constexpr double kExposedShare = 0.97;  // as in the error figures
 constexpr std::size_t kChunk = 4096;
 
 // Points of the additive recurrence of the generalized golden ratio in five dimensions: phi^6 = phi + 1
@@ -44,14 +45,43 @@ class Recurrence {
   std::array<double, 5> point_{};
 };
 
+Vec3 light_of(double u) {
+  const double light = kLargestLightAngle * u;
+  return {std::sin(light), 0, std::cos(light)};
+}
+
 std::optional<DirectionPair> draw_pixel(const std::array<double, 5>& u) {
   const std::optional<Vec3> n = sphere_normal(2, 2 * u[0], 2 * u[1]);
   if (!n || std::abs(n->y) >= 1) return {};
-  const double light = kLargestLightAngle * u[2];
-  const DirectionPair pair{sphere_local(*n, {std::sin(light), 0, std::cos(light)}),
-                           sphere_local(*n, {0, 0, 1})};
+  const DirectionPair pair{sphere_local(*n, light_of(u[2])), sphere_local(*n, {0, 0, 1})};
   if (!(pair.wi.z > kPixelCosine) || !(pair.wo.z > kPixelCosine)) return {};
   return pair;
+}
+
+struct WeightedPixel {
+  DirectionPair pair;
+  double weight;  // one over its density beside that of pixels spread evenly over the disk
+};
+
+// Half of the pixels are spread over the disk, half crowd where it mirrors the light.
+WeightedPixel draw_crowded_pixel(const std::array<double, 5>& u) {
+  const Vec3 light = light_of(u[2]), half = normalize(light + Vec3{0, 0, 1});
+  const double phi = kTwoPi * u[1];
+  Vec3 n;
+  if (u[3] < 0.5) {
+    const double r = std::sqrt(u[0]);
+    n = {r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u[0])};
+  } else {
+    const double theta_h = kHalfPi * u[0] * u[0], r = std::sin(theta_h);
+    const Vec3 across{half.z, 0, -half.x};
+    n = r * std::cos(phi) * across + r * std::sin(phi) * Vec3{0, 1, 0} + std::cos(theta_h) * half;
+  }
+  // densities over the normal's solid angle
+  const double theta_h = std::acos(std::clamp(dot(n, half), -1.0, 1 - 1e-12));
+  const double even = std::max(n.z, 0.0) / kPi;
+  const double crowded =
+      theta_h < kHalfPi ? 1 / (kTwoPi * kPi * std::sin(theta_h) * std::sqrt(theta_h / kHalfPi)) : 0;
+  return {{sphere_local(n, light), sphere_local(n, {0, 0, 1})}, 2 * even / (even + crowded)};
 }
 
 // theta_h / (pi/2) of a point, half of them uniform, half squared, and one over the density.
@@ -93,15 +123,29 @@ void fill_values(BrdfRef source, TrainingSet& set) {
   set.picture_count = pictures;
 }
 
-double exposure_of(const TrainingSet& set) {
+// Linear between the values at their places among the weights; `unlit` is that of black pixels beside the
+// set's.
+double exposure_of(const TrainingSet& set, double unlit) {
   const auto channels = static_cast<std::size_t>(set.channels);
-  std::vector<float> shown;
-  shown.reserve(set.picture_count * channels);
+  struct Shown {
+    float value, weight;
+  };
+  std::vector<Shown> shown;
+  double total = 0;
   for (std::size_t i = 0; i < set.picture_count; ++i)
-    for (std::size_t c = 0; c < channels; ++c)
-      shown.push_back(set.values[i * channels + c] * static_cast<float>(set.pairs[i].wi.z));
+    for (std::size_t c = 0; c < channels; ++c) {
+      shown.push_back({set.values[i * channels + c] * static_cast<float>(set.pairs[i].wi.z), set.weights[i]});
+      total += shown.back().weight;
+    }
   if (shown.empty()) return 1;
-  const double white = percentile(shown, kExposedShare);
+  std::ranges::sort(shown, {}, &Shown::value);
+  const double mean = total / static_cast<double>(shown.size()),
+               black = unlit * static_cast<double>(channels);
+  double rest = std::max(0.0, kExposedShare * (total + black - mean) - black);
+  std::size_t low = 0;
+  while (low + 1 < shown.size() && rest >= shown[low].weight) rest -= shown[low++].weight;
+  const double next = shown[std::min(low + 1, shown.size() - 1)].value;
+  const double white = shown[low].value + rest / shown[low].weight * (next - shown[low].value);
   return white > 0 ? 1 / white : 1;
 }
 
@@ -110,10 +154,23 @@ double exposure_of(const TrainingSet& set) {
 TrainingSet draw_training_set(BrdfRef source, const TrainingOptions& options) {
   TrainingSet set{.channels = source.channels(), .isotropic = source.isotropic()};
   Recurrence points(options.seed);
-  while (set.pairs.size() < options.pictures)
-    if (const auto pixel = draw_pixel(points.next())) set.pairs.push_back(*pixel);
+  double unlit = 0;
+  while (set.pairs.size() < options.pictures) {
+    if (!options.crowded) {
+      if (const auto pixel = draw_pixel(points.next())) set.pairs.push_back(*pixel);
+      continue;
+    }
+    const auto [pair, weight] = draw_crowded_pixel(points.next());
+    if (!(pair.wo.z > kCrowdedPixelCosine)) continue;
+    if (pair.wi.z > kCrowdedPixelCosine) {
+      set.pairs.push_back(pair);
+      set.weights.push_back(static_cast<float>(weight));
+    } else {
+      unlit += weight;
+    }
+  }
+  set.weights.resize(set.pairs.size(), 1);
   set.picture_count = set.pairs.size();
-  set.weights.assign(set.pairs.size(), 1);
   while (set.pairs.size() < options.pictures + options.directions) {
     const std::array<double, 5>& u = points.next();
     const auto [theta_h, weight] = draw_theta_h(u[0]);
@@ -130,7 +187,7 @@ TrainingSet draw_training_set(BrdfRef source, const TrainingOptions& options) {
     for (DirectionPair& pair : set.pairs) pair = turned(pair, kTwoPi * points.next()[4]);
   fill_values(source, set);
   if (set.size() == 0) throw Error("fit: expected a source that knows some directions, found none");
-  set.exposure = exposure_of(set);
+  set.exposure = exposure_of(set, unlit);
   return set;
 }
 

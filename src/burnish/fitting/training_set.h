@@ -27,13 +27,17 @@ struct TrainingSet {
 struct TrainingOptions {
   std::size_t pictures = 20'000;    ///< pixels
   std::size_t directions = 60'000;  ///< pairs spread over all directions
+  /// Half of the pixels have theta_h = pi/2 u^2, all are weighted as if they were uniform on the disk, and
+  /// the exposure counts those in the dark too.
+  bool crowded = false;
   std::uint64_t seed = 1;
   bool spread_phi_h = false;  ///< turn pairs of isotropic sources about the normal, which 2-D tables need
 };
 
 /// Draws low-discrepancy points, the same for the same seed:
 /// - pixels uniform on the visible disk of a sphere seen from afar, under a light whose angle to the view is
-///   uniform in [0, 75] degrees, as long as both cosines are above 0.01;
+///   uniform in [0, 75] degrees, as long as both cosines are above 0.01; crowded ones as the option says, as
+///   long as both are above 0.001;
 /// - pairs with theta_d, phi_d and phi_h uniform and theta_h half uniform, half pi/2 u^2, weighted as if it
 ///   were uniform, as long as both cosines are above 0.05.
 /// Pairs of which the source knows nothing are left out. Throws Error if nothing is left.
