@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <utility>
 
 #include <burnish/fitting/overfit.h>
@@ -6,7 +7,7 @@ namespace burnish {
 
 namespace {
 
-constexpr std::size_t kManyTexels = 6000;
+constexpr std::size_t kManyTexels = 6000, kTexelsOnce = 16'384;
 constexpr std::size_t kIsotropicDirections = 60'000, kAnisotropicDirections = 200'000;
 constexpr std::size_t kEnoughPairs = 40;  // a texel
 constexpr std::size_t kHeldOutPictures = 5000, kHeldOutDirections = 15'000;
@@ -23,7 +24,8 @@ bool has_few_pairs(const LogModel& model, const TrainingSet& set) {
 TrainingOptions training_for(std::size_t bytes, std::size_t texel_bytes, bool isotropic) {
   if (!isotropic) return {.directions = kAnisotropicDirections};
   if (bytes <= kManyTexels * texel_bytes) return {.directions = kIsotropicDirections};
-  return {.pictures = 40'000, .directions = 50'000, .crowded = true};
+  const std::size_t texels = bytes / texel_bytes, times = std::max<std::size_t>(1, texels / kTexelsOnce);
+  return {.pictures = times * 40'000, .directions = times * 50'000, .crowded = true};
 }
 
 LobesFit fit_without_overfit(BrdfRef source, const TrainingSet& set, const LobePlan& plan, std::size_t bytes,
