@@ -17,6 +17,7 @@
 #include <burnish/error.h>
 #include <burnish/fitting/baselines/baselines.h>
 #include <burnish/io/source.h>
+#include <burnish/math/parallel.h>
 #include <burnish/metrics/contact_sheet.h>
 #include <burnish/metrics/png.h>
 #include <burnish/reflectance/analytic.h>
@@ -280,20 +281,21 @@ void report_paints(const fs::path& data) {
       const Samples part = select(samples, training);
       const ScatteredBrdf neighbours(samples, training);
       const SampleSource source = from_samples(part, true);
-      for (std::size_t m = 0; m < methods.size(); ++m) {
-        std::optional<FactoredBrdf> ours;
-        std::optional<BaselineFit> other;
-        if (m == 0)
-          ours = fit_scattered(part, kScatteredModel);
-        else
-          other = fit_baseline(neighbours, source, methods[m], {});
-        const BrdfRef model = ours ? BrdfRef(*ours) : baseline_ref(other->baseline.brdf);
-        std::array<double, 3> f;
-        for (const std::size_t i : test) {
-          model.eval(samples.pairs[i].wi, samples.pairs[i].wo, f);
-          errors[m][paint].add(samples.at(i), f);
-        }
-      }
+      for_each_chunk(methods.size(), 1,
+                     [&, &training = training, &test = test](std::size_t m, std::size_t, std::size_t) {
+                       std::optional<FactoredBrdf> ours;
+                       std::optional<BaselineFit> other;
+                       if (m == 0)
+                         ours = fit_scattered(part, kScatteredModel);
+                       else
+                         other = fit_baseline(neighbours, source, methods[m], {});
+                       const BrdfRef model = ours ? BrdfRef(*ours) : baseline_ref(other->baseline.brdf);
+                       std::array<double, 3> f;
+                       for (const std::size_t i : test) {
+                         model.eval(samples.pairs[i].wi, samples.pairs[i].wo, f);
+                         errors[m][paint].add(samples.at(i), f);
+                       }
+                     });
     }
   }
   for (std::size_t m = 0; m < methods.size(); ++m) {
