@@ -161,23 +161,10 @@ void differentiate(Slots slots, std::size_t parts, const float* totals, float* f
   }
 }
 
-void add_transposed(Slots slots, const Lookups::Place* places, const float* slopes, const float* amounts,
-                    float* sums) {
-  const D d;
-  for_each_slot(slots, [&](const LobeLanes::Slot& slot, std::size_t s, auto line) HWY_ATTR {
-    const Lookups::Place* place = places + slot.place * kBlock;
-    const float* slope = slopes + s * kBlockLanes;
-    float* into = sums + slot.base;
-    const std::size_t next_row = slot.next_row;
-    for_each_vector([=](std::size_t i, std::size_t l, std::size_t at) HWY_ATTR {
-      add_weights<line>(hn::Mul(hn::Set(d, amounts[i]), hn::Load(d, slope + at)), place[i], next_row,
-                        into + place[i].node * kLanes + l);
-    });
-  });
-}
-
-void add_squares(Slots slots, const Lookups::Place* places, const float* slopes, const float* amounts,
-                 float* sums) {
+// Adds amounts times the rows' terms, or the squares of these.
+template <bool squares>
+void add_terms(Slots slots, const Lookups::Place* places, const float* slopes, const float* amounts,
+               float* sums) {
   const D d;
   for_each_slot(slots, [&](const LobeLanes::Slot& slot, std::size_t s, auto line) HWY_ATTR {
     const Lookups::Place* place = places + slot.place * kBlock;
@@ -185,11 +172,24 @@ void add_squares(Slots slots, const Lookups::Place* places, const float* slopes,
     float* into = sums + slot.base;
     const std::size_t next_row = slot.next_row;
     for_each_vector([=](std::size_t i, std::size_t l, std::size_t at) HWY_ATTR {
-      const V slope = hn::Load(d, slopes_of + at);
-      add_square_weights<line>(hn::Mul(hn::Set(d, amounts[i]), hn::Mul(slope, slope)), place[i], next_row,
-                               into + place[i].node * kLanes + l);
+      const V slope = hn::Load(d, slopes_of + at), amount = hn::Set(d, amounts[i]);
+      float* to = into + place[i].node * kLanes + l;
+      if constexpr (squares)
+        add_square_weights<line>(hn::Mul(amount, hn::Mul(slope, slope)), place[i], next_row, to);
+      else
+        add_weights<line>(hn::Mul(amount, slope), place[i], next_row, to);
     });
   });
+}
+
+void add_transposed(Slots slots, const Lookups::Place* places, const float* slopes, const float* amounts,
+                    float* sums) {
+  add_terms<false>(slots, places, slopes, amounts, sums);
+}
+
+void add_squares(Slots slots, const Lookups::Place* places, const float* slopes, const float* amounts,
+                 float* sums) {
+  add_terms<true>(slots, places, slopes, amounts, sums);
 }
 
 // Adds J^T J v of a block to `sums`; `slopes` is room.
