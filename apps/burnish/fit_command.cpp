@@ -188,7 +188,8 @@ void add_fit_command(CLI::App& app) {
       "--smooth", arguments->smooth,
       "smoothness of the tables: a number >= 0, or auto (cross-validation; the default for scattered "
       "samples)");
-  verb->add_option("--floor", options.floor, "added to every value before its logarithm is taken, 1/sr")
+  verb->add_option("--floor", options.floor,
+                   "added to every value before its logarithm is taken, 1/sr, at most 1")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   verb->add_option("--reweightings", options.reweightings,
