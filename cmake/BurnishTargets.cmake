@@ -14,12 +14,12 @@ function(burnish_target name)
 endfunction()
 
 # Runs a program of GoogleTest tests in parts, side by side: starting it once a test takes longer than most tests,
-# with sanitizers above all.
+# with sanitizers above all. Only what fails or is skipped is printed.
 function(burnish_tests name parts)
   math(EXPR last "${parts} - 1")
   foreach(part RANGE ${last})
     add_test(NAME ${name}.${part} COMMAND ${name})
     set_tests_properties(${name}.${part} PROPERTIES
-      ENVIRONMENT "GTEST_TOTAL_SHARDS=${parts};GTEST_SHARD_INDEX=${part}")
+      ENVIRONMENT "GTEST_TOTAL_SHARDS=${parts};GTEST_SHARD_INDEX=${part};GTEST_BRIEF=1")
   endforeach()
 endfunction()

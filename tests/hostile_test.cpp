@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <burnish/io/source.h>
 #include <burnish/math/random.h>
@@ -124,7 +125,8 @@ class HostileCommandLine : public testing::Test {
  protected:
   void SetUp() override {
     folder_ = fs::path(testing::TempDir()) /
-              fmt::format("burnish_{}", testing::UnitTest::GetInstance()->current_test_info()->name());
+              fmt::format("burnish_{}_{}", testing::UnitTest::GetInstance()->current_test_info()->name(),
+                          ::getpid());
     fs::remove_all(folder_);
     fs::create_directories(folder_);
   }

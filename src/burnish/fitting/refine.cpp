@@ -4,7 +4,7 @@
 #include <thread>
 
 #include <burnish/error.h>
-#include <burnish/fitting/cholesky.h>
+#include <burnish/fitting/dense.h>
 #include <burnish/fitting/refine.h>
 #include <burnish/fitting/refine_system.h>
 #include <burnish/math/parallel.h>

@@ -4,7 +4,7 @@
 
 #include <burnish/error.h>
 #include <burnish/fitting/budget.h>
-#include <burnish/fitting/cholesky.h>
+#include <burnish/fitting/dense.h>
 #include <burnish/fitting/picture_loss_lanes.h>
 #include <burnish/fitting/refine_system.h>
 #include <burnish/fitting/rounding.h>

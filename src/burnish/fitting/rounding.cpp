@@ -2,7 +2,7 @@
 #include <array>
 #include <cmath>
 
-#include <burnish/fitting/cholesky.h>
+#include <burnish/fitting/dense.h>
 #include <burnish/fitting/refine_system.h>
 #include <burnish/fitting/rounding.h>
 

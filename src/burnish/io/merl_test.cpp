@@ -8,6 +8,7 @@
 #include <burnish/io/merl.h>
 #include <burnish/math/angles.h>
 #include <burnish/reflectance/goniometer.h>
+#include <burnish/tools_for_tests.h>
 
 namespace burnish {
 namespace {
@@ -94,12 +95,12 @@ TEST(Merl, RefusesSizesThatDoNotFitTheFile) {
 }
 
 TEST(Merl, RoundTripsASource) {
-  const auto path = std::filesystem::path(testing::TempDir()) / "burnish_merl_round_trip.binary";
+  const TemporaryFolder folder("merl");
+  const auto path = folder.path / "round_trip.binary";
   const Glossy source;
   write_merl(path, source);
   EXPECT_EQ(std::filesystem::file_size(path), 12 + 90 * 90 * 180 * 3 * 8u);
   const MerlFile merl = parse_merl(read_file(path), {});
-  std::filesystem::remove(path);
   std::array<double, 3> f, truth;
   for (const auto& [wi, wo] : draw_pairs(5000, 1, true)) {
     ASSERT_TRUE(merl.table.eval(wi, wo, f));

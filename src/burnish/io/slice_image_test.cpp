@@ -1,5 +1,4 @@
 #include <cmath>
-#include <filesystem>
 #include <limits>
 
 #include <ImfFrameBuffer.h>
@@ -10,6 +9,7 @@
 #include <burnish/error.h>
 #include <burnish/file.h>
 #include <burnish/io/slice_image.h>
+#include <burnish/tools_for_tests.h>
 
 namespace burnish {
 namespace {
@@ -21,7 +21,8 @@ TEST(SliceImage, ShowsEveryEntryAtItsPlace) {
   const std::size_t gap = table.offset(1, 2, 3);
   for (std::size_t c = 0; c < 3; ++c) table.values[gap + c] = hole;
 
-  const auto path = testing::TempDir() + "burnish_slices.exr";
+  const TemporaryFolder folder("slices");
+  const auto path = folder.path / "slices.exr";
   write_then_rename(path, format_slice_image(table));
   Imf::InputFile file(path.c_str());
   // 3 slices across, 2 down
@@ -33,7 +34,6 @@ TEST(SliceImage, ShowsEveryEntryAtItsPlace) {
   frame.insert("A", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(alpha.data()), 4, 48));
   file.setFrameBuffer(frame);
   file.readPixels(0, 5);
-  std::filesystem::remove(path);
   for (int p = 0; p < 5; ++p)
     for (int h = 0; h < 3; ++h)
       for (int d = 0; d < 4; ++d) {

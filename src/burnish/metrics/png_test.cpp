@@ -1,12 +1,12 @@
 #include <filesystem>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <burnish/error.h>
 #include <burnish/file.h>
 #include <burnish/math/random.h>
 #include <burnish/metrics/png.h>
+#include <burnish/tools_for_tests.h>
 
 namespace burnish {
 namespace {
@@ -26,13 +26,11 @@ TEST(Png, RoundTripsEveryByte) {
 }
 
 TEST(Png, RoundTripsThroughAFileAndLeavesNothingElse) {
-  const auto folder = std::filesystem::temp_directory_path() / ("burnish_png_" + std::to_string(::getpid()));
-  std::filesystem::create_directory(folder);
+  const TemporaryFolder folder("png");
   const Image8 image = random_image(5, 3, 3);
-  write_png(folder / "a.png", image);
-  EXPECT_EQ(read_png(folder / "a.png"), image);
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
-  std::filesystem::remove_all(folder);
+  write_png(folder.path / "a.png", image);
+  EXPECT_EQ(read_png(folder.path / "a.png"), image);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path), {}), 1);
 }
 
 TEST(Png, RefusesEveryTruncation) {

@@ -1,17 +1,16 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 #include <zstd.h>
 
 #include <burnish/error.h>
 #include <burnish/math/random.h>
 #include <burnish/textures/ktx2.h>
+#include <burnish/tools_for_tests.h>
 
 namespace burnish {
 namespace {
@@ -120,8 +119,8 @@ TEST(Ktx2File, HoldsEveryLevelOfEveryFaceTheSmallestFirst) {
 TEST(Ktx2File, OpensInKtxParse) {
   if (std::system("node -e \"require.resolve('ktx-parse')\" >/dev/null 2>&1") != 0)
     GTEST_SKIP() << "no node with ktx-parse";
-  const std::filesystem::path path =
-      std::filesystem::temp_directory_path() / fmt::format("burnish_{}.ktx2", ::getpid());
+  const TemporaryFolder folder("ktx2");
+  const auto path = folder.path / "table.ktx2";
   for (const Case& c : kCases)
     for (const bool compressed : {false, true}) {
       std::ofstream(path, std::ios::binary) << encode_ktx2(random_table(c), compressed);
@@ -135,7 +134,6 @@ TEST(Ktx2File, OpensInKtxParse) {
           path.string(), c.vk_format, 35 * c.texel, compressed ? 2 : 0);
       EXPECT_EQ(std::system(fmt::format("node -e \"{}\"", script).c_str()), 0) << c.vk_format;
     }
-  std::filesystem::remove(path);
 }
 
 TEST(Ktx2File, HasOneOrThreeChannels) {

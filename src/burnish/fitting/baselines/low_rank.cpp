@@ -6,13 +6,14 @@
 #include <Eigen/Eigenvalues>
 
 #include <burnish/fitting/baselines/low_rank.h>
+#include <burnish/fitting/dense.h>
 #include <burnish/math/random.h>
 
 namespace burnish {
 
 namespace {
 
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using RowMajor = RowMajorMatrix;
 using ConstMap = Eigen::Map<const RowMajor>;
 using Eigen::Index;
 
@@ -77,14 +78,19 @@ LowRank nonnegative_factors(const Matrix& m, std::span<const double> weights, st
   };
   RowMajor u = start(a.rows()), v = start(a.cols());
   const RowMajor wa = w.cwiseProduct(a);
-  const auto update = [&](RowMajor& x, const RowMajor& wanted, const RowMajor& found) {
+  RowMajor fitted(a.rows(), a.cols()), wanted, found;
+  const auto update = [&](RowMajor& x, const RowMajor& other, bool transpose) {
+    multiply(u, false, v, true, fitted);
+    fitted.array() *= w.array();
+    wanted.resizeLike(x);
+    found.resizeLike(x);
+    multiply(wa, transpose, other, false, wanted);
+    multiply(fitted, transpose, other, false, found);
     x = (found.array() > 0).select(x.array() * wanted.array() / found.array(), x.array()).max(least);
   };
   for (int i = 0; i < iterations; ++i) {  // [Lee 2001, eq. 4]
-    RowMajor fitted = w.cwiseProduct(u * v.transpose());
-    update(u, wa * v, fitted * v);
-    fitted = w.cwiseProduct(u * v.transpose());
-    update(v, wa.transpose() * u, fitted.transpose() * u);
+    update(u, v, false);
+    update(v, u, true);
   }
   return make_low_rank(u, v);
 }

@@ -12,4 +12,11 @@ void solve_in_place(Eigen::MatrixXd& matrix, Eigen::VectorXd& x);
 /// indefinite. What stands below the diagonal is meaningless.
 bool factorize_inverse(Eigen::MatrixXd& matrix);
 
+using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// result := op(a) op(b), op being the transpose where asked. By BLAS, for large matrices.
+/// Precondition: the sizes fit, that of the result included.
+void multiply(const RowMajorMatrix& a, bool transpose_a, const RowMajorMatrix& b, bool transpose_b,
+              RowMajorMatrix& result);
+
 }  // namespace burnish

@@ -1,15 +1,18 @@
 #include <mutex>
 #include <utility>
 
-#include <burnish/fitting/cholesky.h>
+#include <burnish/fitting/dense.h>
 
-// LAPACK has no header of its own.
+// LAPACK and BLAS as Fortran knows them have no header of their own.
 extern "C" {
 void dpotrf_(const char* triangle, const int* n, double* matrix, const int* stride, int* info);
 void dtrtri_(const char* triangle, const char* diagonal, const int* n, double* matrix, const int* stride,
              int* info);
 void dpotrs_(const char* triangle, const int* n, const int* columns, const double* matrix, const int* stride,
              double* right_sides, const int* right_stride, int* info);
+void dgemm_(const char* transpose_a, const char* transpose_b, const int* rows, const int* columns,
+            const int* inner, const double* scale, const double* a, const int* stride_a, const double* b,
+            const int* stride_b, const double* keep, double* result, const int* stride);
 }
 
 namespace burnish {
@@ -43,6 +46,18 @@ bool factorize_inverse(Eigen::MatrixXd& matrix) {
   if (info == 0) dtrtri_("L", "N", &n, matrix.data(), &n, &info);
   matrix.reverseInPlace();
   return info == 0;
+}
+
+void multiply(const RowMajorMatrix& a, bool transpose_a, const RowMajorMatrix& b, bool transpose_b,
+              RowMajorMatrix& result) {
+  // What lies row by row is, column by column, the transpose: op(b)^T op(a)^T.
+  const int rows = static_cast<int>(result.cols()), columns = static_cast<int>(result.rows()),
+            inner = static_cast<int>(transpose_a ? a.rows() : a.cols()),
+            stride_a = static_cast<int>(a.cols()), stride_b = static_cast<int>(b.cols());
+  const double one = 1, zero = 0;
+  const std::lock_guard one_at_a_time(lapack);
+  dgemm_(transpose_b ? "T" : "N", transpose_a ? "T" : "N", &rows, &columns, &inner, &one, b.data(), &stride_b,
+         a.data(), &stride_a, &zero, result.data(), &rows);
 }
 
 }  // namespace burnish
