@@ -21,6 +21,7 @@
 #include <burnish/io/merl.h>
 #include <burnish/io/source.h>
 #include <burnish/math/angles.h>
+#include <burnish/math/parallel.h>
 #include <burnish/metrics/error_figures.h>
 #include <burnish/metrics/png.h>
 #include <burnish/metrics/svg_plot.h>
@@ -111,15 +112,20 @@ void report_ggx(const fs::path& docs) {
       "directions |\n"
       "|---|---|---|---|\n");
   const SampleSource holed = without_cap(source, cap);
-  for (int decade = -11; decade <= -3; ++decade) {
-    const double smooth = std::pow(10.0, decade);
+  constexpr int kFirstDecade = -11, kDecades = 9;
+  std::array<std::array<double, 3>, kDecades> errors;
+  for_each_chunk(kDecades, 1, [&](std::size_t k, std::size_t, std::size_t) {
+    const double smooth = std::pow(10.0, kFirstDecade + static_cast<int>(k));
     const FactoredBrdf whole = fit("rational:0.25", smooth, source).brdf;
     const FactoredBrdf with_hole = fit("rational:0.25", smooth, holed).brdf;
-    const double a = mean_abs_log(ggx.ref(), whole), b = mean_abs_log(ggx.ref(), with_hole, cap),
-                 c = mean_abs_log(ggx.ref(), with_hole);
-    fmt::print("| 1e{} | {:.4f} | {:.3f} | {:.3f} |\n", decade, a, b, c);
+    errors[k] = {mean_abs_log(ggx.ref(), whole), mean_abs_log(ggx.ref(), with_hole, cap),
+                 mean_abs_log(ggx.ref(), with_hole)};
+  });
+  for (int k = 0; k < kDecades; ++k) {
+    const auto [a, b, c] = errors[static_cast<std::size_t>(k)];
+    fmt::print("| 1e{} | {:.4f} | {:.3f} | {:.3f} |\n", kFirstDecade + k, a, b, c);
     for (auto [series, y] : {std::pair{&all, a}, {&hole, b}, {&rest, c}}) {
-      series->x.push_back(smooth);
+      series->x.push_back(std::pow(10.0, kFirstDecade + k));
       series->y.push_back(y);
     }
   }
@@ -184,9 +190,10 @@ void report_cornell(const fs::path& data) {
       const auto [training, test] = split_fold(samples.size(), fold);
       const ScatteredBrdf pbrt(samples, training, SampleSpace::angles), half_diff(samples, training);
       const Samples part = select(samples, training);
-      std::vector<FactoredBrdf> models;
-      for (const char* expression : {"pqp", "pqpr", kScatteredModel})
-        models.push_back(fit_scattered(part, expression));
+      std::array<std::optional<FactoredBrdf>, 3> models;
+      for_each_chunk(models.size(), 1, [&](std::size_t m, std::size_t, std::size_t) {
+        models[m] = fit_scattered(part, std::array{"pqp", "pqpr", kScatteredModel}[m]);
+      });
       std::vector<double> f(3);
       for (const std::size_t i : test) {
         const auto [wi, wo] = samples.pairs[i];
@@ -195,7 +202,7 @@ void report_cornell(const fs::path& data) {
         half_diff.eval(wi, wo, f);
         half_diff_errors.add(samples.at(i), f);
         for (std::size_t m = 0; m < models.size(); ++m) {
-          models[m].eval(wi, wo, f);
+          models[m]->eval(wi, wo, f);
           factored[m].add(samples.at(i), f);
         }
       }
