@@ -7,10 +7,8 @@ namespace burnish {
 
 namespace {
 
-// Added to the means in the objective: errors below do not matter, and ln stays finite. Of pictures the
-// variance of rounding to 8 bits.
-constexpr double kRounding = 1 / (12 * 255.0 * 255.0);
-constexpr ErrorTerms kNegligible{kRounding, kRounding, 1e-4, 1e-5};
+// Added to the means in the objective: errors below do not matter, and ln stays finite.
+constexpr ErrorTerms kNegligible{1e-7, 1e-7, 1e-4, 1e-5};
 
 double rounded_abs(double error, double round) noexcept {
   return std::sqrt(error * error + round * round);
