@@ -107,6 +107,9 @@ class Parameters {
   std::vector<Unknown> unknowns_;
 };
 
+// cbrt(f r)^2 below which the slope of the cube root rises no further.
+constexpr double kLeastSquare = 1e-8;
+
 /// Residuals sqrt(weight) (cbrt(f^ r) - cbrt(f r)), r the root of the cosines, a sample and channel each.
 class Cost : public ceres::CostFunction {
  public:
@@ -127,13 +130,17 @@ class Cost : public ceres::CostFunction {
   }
 
   bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override {
-    evaluate(x[0], residuals);
-    if (jacobians && jacobians[0]) differentiate(x[0], residuals, jacobians[0]);
+    std::vector<double> values(targets_.size());
+    evaluate(x[0], values);
+    for (std::size_t r = 0; r < values.size(); ++r)
+      residuals[r] = weights_[r / samples_.channels] * (std::cbrt(values[r]) - targets_[r]);
+    if (jacobians && jacobians[0]) differentiate(x[0], values, residuals, jacobians[0]);
     return true;
   }
 
  private:
-  void evaluate(const double* x, double* residuals) const {
+  // f r of every sample and channel.
+  void evaluate(const double* x, std::span<double> values) const {
     const AnalyticVariant variant = parameters_.model().build(parameters_.values(x));
     const BrdfRef brdf = std::visit([](const auto& any) -> BrdfRef { return any; }, variant);
     const std::size_t channels = samples_.channels;
@@ -144,16 +151,20 @@ class Cost : public ceres::CostFunction {
       brdf.eval(std::span(samples_.pairs).subspan(begin, end - begin), f, known);
       for (std::size_t i = begin; i < end; ++i)
         for (std::size_t c = 0; c < channels; ++c)
-          residuals[i * channels + c] =
-              weights_[i] * (std::cbrt(f[3 * (i - begin) + c] * roots_[i]) - targets_[i * channels + c]);
+          values[i * channels + c] = f[3 * (i - begin) + c] * roots_[i];
     });
   }
 
-  // Forward differences; the channels of a colour, which do not see each other, in one evaluation.
-  void differentiate(const double* x, const double* residuals, double* jacobian) const {
+  // Forward differences of f; the channels of a colour, which do not see each other, in one evaluation.
+  void differentiate(const double* x, std::span<const double> values, const double* residuals,
+                     double* jacobian) const {
     const std::vector<Unknown>& unknowns = parameters_.unknowns();
     const std::size_t columns = unknowns.size(), rows = targets_.size();
-    std::vector<double> moved_residuals(rows);
+    std::vector<double> moved_values(rows), slopes(rows);  // of residuals by f r
+    for (std::size_t r = 0; r < rows; ++r) {
+      const double weight = weights_[r / samples_.channels], root = residuals[r] / weight + targets_[r];
+      slopes[r] = weight / (3 * std::max(root * root, kLeastSquare));
+    }
     for (std::size_t k = 0; k < columns;) {
       const std::size_t group = unknowns[k].channel < 0 ? 1 : 3;
       std::vector<double> moved(x, x + columns);
@@ -164,11 +175,11 @@ class Cost : public ceres::CostFunction {
         step[g] = x[k + g] + size > unknowns[k + g].upper ? -size : size;
         moved[k + g] += step[g];
       }
-      evaluate(moved.data(), moved_residuals.data());
+      evaluate(moved.data(), moved_values);
       for (std::size_t r = 0; r < rows; ++r)
         for (std::size_t g = 0; g < group; ++g)
           jacobian[r * columns + k + g] =
-              group == 3 && r % 3 != g ? 0 : (moved_residuals[r] - residuals[r]) / step[g];
+              group == 3 && r % 3 != g ? 0 : slopes[r] * (moved_values[r] - values[r]) / step[g];
       k += group;
     }
   }
