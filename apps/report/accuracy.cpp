@@ -44,8 +44,8 @@ std::vector<Attempt> attempts(const std::vector<std::size_t>& budgets, bool isot
 }
 
 /// A material's pictures: one row of what it looks like, one of four times the difference from the reference.
-void add_pictures(const std::string& name, const Image8& reference, const std::vector<Score>& scores,
-                  ContactSheet& sheet) {
+void add_pictures(const Material& material, const std::vector<Score>& scores, ContactSheet& sheet) {
+  const Image8 reference = picture(material.reference, material.scorer.exposure());
   const bool first = sheet.column_labels.empty();
   std::vector<Image8> shown{reference}, differences{Image8{}};
   if (first) sheet.column_labels.push_back("reference");
@@ -65,7 +65,7 @@ void add_pictures(const std::string& name, const Image8& reference, const std::v
     shown.push_back(score.picture);
     differences.push_back(std::move(difference));
   }
-  sheet.row_labels.push_back(name);
+  sheet.row_labels.push_back(material.name);
   sheet.cells.push_back(std::move(shown));
   sheet.row_labels.push_back("4 x difference");
   sheet.cells.push_back(std::move(differences));
@@ -99,15 +99,19 @@ void print_verdicts(const std::vector<std::vector<Score>>& materials, std::strin
   }
 }
 
-void print_table(const std::vector<std::string>& names, const std::vector<std::vector<Score>>& materials) {
+void print_rows(const std::deque<Material>& materials, const std::vector<std::vector<Score>>& scores) {
+  print_head();
+  for (std::size_t i = 0; i < materials.size(); ++i)
+    for (const Score& score : scores[i]) print_row(materials[i].name, score);
+}
+
+void print_table(const std::deque<Material>& materials, const std::vector<std::vector<Score>>& scores) {
   Means means;
-  for (const std::vector<Score>& scores : materials) means.add(scores);
+  for (const std::vector<Score>& row : scores) means.add(row);
   print_head();
   for (const Score& mean : means.means()) print_row("**mean**", mean);
   fmt::print("\nBy material:\n\n");
-  print_head();
-  for (std::size_t i = 0; i < materials.size(); ++i)
-    for (const Score& score : materials[i]) print_row(names[i], score);
+  print_rows(materials, scores);
 }
 
 /// Each method's mean of one figure over its bytes.
@@ -142,34 +146,30 @@ void report_rgl(const fs::path& data, const fs::path& docs, bool quick) {
       "`burnish fit --method`, [baselines.md](baselines.md). ![spheres](figures/accuracy-spheres.png)\n\n",
       quick ? "One of eight" : "Eight");
   ContactSheet sheet{.title = "Light at 30 degrees; at most 2,700 bytes"};
-  std::vector<std::string> names;
-  std::vector<std::vector<Score>> materials;
+  std::deque<Material> materials;
   std::vector<fs::path> files = files_in(data / "rgl");
   if (quick) files.resize(1);
   for (const fs::path& file : files) {
-    const std::string name = file.stem().string();
-    fmt::print(stderr, "accuracy: {}\n", name);
-    const Source source = open_source(file.string(), {});
-    const SymmetrizedBrdf reference(source.ref());
-    const Scorer scorer(reference);
-    const Source network =
-        open_source(fmt::format("nbrdf:{}#{}", (data / "nbrdf/rgl.csv").string(), name), {});
-    const SymmetrizedBrdf symmetric(network.ref());
-    std::vector<Score> scores{run_network(scorer, symmetric)};
-    for (Score& score : run(scorer, attempts(budgets, reference.isotropic(), quick)))
-      scores.push_back(std::move(score));
-    add_pictures(name, picture(reference, scorer.exposure()), scores, sheet);
-    names.push_back(name);
-    materials.push_back(std::move(scores));
+    Material& material = materials.emplace_back(file.stem().string(), file.string());
+    material.attempts = attempts(budgets, material.reference.isotropic(), quick);
   }
-  print_table(names, materials);
+  std::vector<std::vector<Score>> scores = run(materials);
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const Material& material = materials[i];
+    const Source network =
+        open_source(fmt::format("nbrdf:{}#{}", (data / "nbrdf/rgl.csv").string(), material.name), {});
+    const SymmetrizedBrdf symmetric(network.ref());
+    scores[i].insert(scores[i].begin(), run_network(material.scorer, symmetric));
+    add_pictures(material, scores[i], sheet);
+  }
+  print_table(materials, scores);
   for (const std::string_view other : {"svd", "nmf"})
-    if (other == "svd" || !quick) print_verdicts(materials, other, budgets);
+    if (other == "svd" || !quick) print_verdicts(scores, other, budgets);
   fs::create_directories(docs / "figures");
   write_then_rename(docs / "figures/accuracy-spheres.png", encode_png(compose(sheet)));
 
   Means means;
-  for (const std::vector<Score>& scores : materials) means.add(scores);
+  for (const std::vector<Score>& row : scores) means.add(row);
   const std::vector<Score> all = means.means();
   plot_means(all, docs, "psnr", false, &ErrorFigures::psnr);
   plot_means(all, docs, "ssim", false, &ErrorFigures::ssim);
@@ -196,33 +196,32 @@ void report_merl(const fs::path& data, bool quick) {
       "2,700 bytes{}.\n\n",
       quick ? "every tenth material" : "all 100 materials",
       quick ? "" : ", every method on every tenth material");
-  std::vector<std::vector<Score>> materials;  // ours and svd
+  std::deque<Material> materials;
+  std::vector<std::vector<Score>> scores;  // of ours and svd
   Means means, every;
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (quick && i % kEvery > 0) continue;
-    fmt::print(stderr, "accuracy: {}\n", names[i]);
-    const Source source =
-        open_source(fmt::format("nbrdf:{}#{}", (data / "nbrdf/merl.csv").string(), names[i]), {});
-    const SymmetrizedBrdf reference(source.ref());
-    const Scorer scorer(reference, {.count = 50'000, .image_size = 128});
-    std::vector<Score> scores = run(scorer, attempts({kSheetBudget}, true, quick || i % kEvery > 0));
-    if (i % kEvery == 0) every.add(scores);
-    scores.resize(2);
-    means.add(scores);
-    materials.push_back(std::move(scores));
+    const std::string place = fmt::format("nbrdf:{}#{}", (data / "nbrdf/merl.csv").string(), names[i]);
+    Material& material =
+        materials.emplace_back(names[i], place, FigureOptions{.count = 50'000, .image_size = 128});
+    material.attempts = attempts({kSheetBudget}, true, quick || i % kEvery > 0);
+  }
+  for (std::vector<Score>& row : run(materials)) {
+    if (!quick && scores.size() % kEvery == 0) every.add(row);
+    row.resize(2);
+    means.add(row);
+    scores.push_back(std::move(row));
   }
   print_head();
   for (const Score& mean : means.means()) print_row(fmt::format("**mean of {}**", materials.size()), mean);
   for (const Score& mean : every.means()) print_row("**mean of ten**", mean);
-  print_verdicts(materials, "svd", {kSheetBudget});
+  print_verdicts(scores, "svd", {kSheetBudget});
   if (quick) return;
   const auto worst =
-      std::ranges::max_element(materials, {}, [](const auto& s) { return s.front().errors.rms_log; });
+      std::ranges::max_element(scores, {}, [](const auto& row) { return row.front().errors.rms_log; });
   fmt::print("\nLargest rms_log: {:.3f}, {}. By material:\n\n", worst->front().errors.rms_log,
-             names[static_cast<std::size_t>(worst - materials.begin())]);
-  print_head();
-  for (std::size_t i = 0; i < materials.size(); ++i)
-    for (const Score& score : materials[i]) print_row(names[i], score);
+             materials[static_cast<std::size_t>(worst - scores.begin())].name);
+  print_rows(materials, scores);
 }
 
 void report_others(const std::optional<fs::path>& data, const fs::path& docs, bool quick) {
@@ -240,23 +239,19 @@ void report_others(const std::optional<fs::path>& data, const fs::path& docs, bo
          {"mbsdf/carpaint_blue.mbsdf", "klems/mecho_shade_fabric_aniso.xml", "zemax/AnoBlackEC1onAlum.bsdf"})
       sources.emplace_back((*data / file).stem().string(), (*data / file).string());
   ContactSheet sheet{.title = "Light at 30 degrees; at most 2,700 bytes"};
-  std::vector<std::string> names;
-  std::vector<std::vector<Score>> materials;
+  std::deque<Material> materials;
   for (const auto& [name, place] : sources) {
-    fmt::print(stderr, "accuracy: {}\n", name);
-    const Source source = open_source(place, {});
-    const SymmetrizedBrdf reference(source.ref());
-    const Scorer scorer(reference);
-    names.push_back(name);
-    materials.push_back(run(scorer, attempts(budgets, reference.isotropic(), quick)));
-    std::vector<Score> shown = materials.back();
-    std::erase_if(shown, [](const Score& s) { return s.method == "dgf"; });  // a column for every material
-    add_pictures(name, picture(reference, scorer.exposure()), shown, sheet);
+    Material& material = materials.emplace_back(name, place);
+    material.attempts = attempts(budgets, material.reference.isotropic(), quick);
   }
-  print_head();
-  for (std::size_t i = 0; i < materials.size(); ++i)
-    for (const Score& score : materials[i]) print_row(names[i], score);
-  print_verdicts(materials, "svd", budgets);
+  const std::vector<std::vector<Score>> scores = run(materials);
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    std::vector<Score> shown = scores[i];
+    std::erase_if(shown, [](const Score& s) { return s.method == "dgf"; });  // a column for every material
+    add_pictures(materials[i], shown, sheet);
+  }
+  print_rows(materials, scores);
+  print_verdicts(scores, "svd", budgets);
   if (!quick) write_then_rename(docs / "figures/accuracy-others.png", encode_png(compose(sheet)));
 }
 

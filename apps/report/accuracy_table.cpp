@@ -79,30 +79,41 @@ Image8 picture(BrdfRef brdf, double exposure) {
                     {.size = 128, .light_angle = kSphereLights[1], .exposure = exposure, .supersampling = 2});
 }
 
-std::vector<Score> run(const Scorer& scorer, const std::vector<Attempt>& attempts) {
+std::vector<std::vector<Score>> run(const std::deque<Material>& materials) {
   struct Job {
+    const Material* material;
     std::string_view method;
     std::size_t budget;
+    Score* score;
   };
-  std::vector<Job> jobs;
-  for (const auto& [method, budgets] : attempts)
-    for (const std::size_t budget : budgets.empty() ? std::vector<std::size_t>{0} : budgets)
-      jobs.push_back({method, budget});
-  std::vector<Score> scores(jobs.size());
-  for (std::size_t k = 0; k < jobs.size(); ++k)
-    if (jobs[k].method == "ours") scores[k] = run_ours(scorer, jobs[k].budget);
-
-  // The others take one thread each, most of the time: side by side.
-  std::optional<SampleSource> samples;
-  if (std::ranges::any_of(jobs, [](const Job& job) { return job.method != "ours"; }))
-    samples = from_brdf(scorer.reference(), kDrawnPairs, 1, false);
+  std::vector<std::vector<Score>> scores;
+  std::vector<Job> others;
+  for (const Material& material : materials) {
+    std::vector<Job> jobs;
+    for (const auto& [method, budgets] : material.attempts)
+      for (const std::size_t budget : budgets.empty() ? std::vector<std::size_t>{0} : budgets)
+        jobs.push_back({&material, method, budget, nullptr});
+    fmt::print(stderr, "accuracy: {}\n", material.name);
+    std::vector<Score>& row = scores.emplace_back(jobs.size());
+    for (std::size_t k = 0; k < jobs.size(); ++k) {
+      jobs[k].score = &row[k];
+      if (jobs[k].method == "ours")
+        row[k] = run_ours(material.scorer, jobs[k].budget);
+      else
+        others.push_back(jobs[k]);
+    }
+  }
+  // They take one thread each, most of the time.
   std::atomic<std::size_t> next = 0;
   std::vector<std::future<void>> workers;
   for (unsigned t = 0; t < std::max(1u, std::thread::hardware_concurrency()); ++t)
     workers.push_back(std::async(std::launch::async, [&] {
-      for (std::size_t k; (k = next++) < jobs.size();)
-        if (jobs[k].method != "ours")
-          scores[k] = run_baseline(scorer, *samples, jobs[k].method, jobs[k].budget);
+      for (std::size_t k; (k = next++) < others.size();) {
+        const auto& [material, method, budget, score] = others[k];
+        fmt::print(stderr, "accuracy: {}, {}\n", material->name, method);
+        *score = run_baseline(material->scorer, from_brdf(material->reference, kDrawnPairs, 1, false), method,
+                              budget);
+      }
     }));
   for (std::future<void>& worker : workers) worker.get();
   return scores;

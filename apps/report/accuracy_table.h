@@ -1,6 +1,6 @@
 #pragma once
 
-#include <map>
+#include <deque>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <burnish/factors/evaluation_cost.h>
+#include <burnish/io/source.h>
 #include <burnish/metrics/error_figures.h>
 #include <burnish/metrics/image.h>
 #include <burnish/reflectance/brdf.h>
@@ -31,11 +32,29 @@ struct Attempt {
   std::vector<std::size_t> budgets;
 };
 
+/// What methods are tried on; stays where it is.
+struct Material {
+  std::string name;
+  Source source;
+  SymmetrizedBrdf reference;
+  Scorer scorer;
+  std::vector<Attempt> attempts = {};
+
+  /// Throws Error as open_source and Scorer do.
+  Material(std::string called, const std::string& place, const FigureOptions& options = {})
+      : name(std::move(called)),
+        source(open_source(place, {})),
+        reference(source.ref()),
+        scorer(reference, options) {}
+  Material(const Material&) = delete;
+  Material& operator=(const Material&) = delete;
+};
+
 /// A sphere lit at 30 degrees.
 Image8 picture(BrdfRef brdf, double exposure);
 
-/// Fits and scores each attempt, in their order.
-std::vector<Score> run(const Scorer& scorer, const std::vector<Attempt>& attempts);
+/// Fits and scores each material's attempts, in their order; those that are not "ours" side by side.
+std::vector<std::vector<Score>> run(const std::deque<Material>& materials);
 
 /// Scores a network of 675 weights.
 Score run_network(const Scorer& scorer, BrdfRef network);
