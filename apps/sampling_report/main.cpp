@@ -118,7 +118,7 @@ void report_weights(const std::vector<Material>& materials) {
       "50,000 draws each.\n\n");
   print_header("theta_o");
   Weights worst[kWays];
-  for (const int theta_deg : {0, 20, 40, 60, 75, 85, 89}) {
+  for (const int theta_deg : {0, 20, 40, 60, 75, 85, 88, 89}) {
     Weights mean[kWays];
     for (const Material& m : materials) {
       const Drawers drawers(m.model, m.table);
@@ -137,6 +137,42 @@ void report_weights(const std::vector<Material>& materials) {
   fmt::print("| largest |");
   for (const Weights& w : worst) fmt::print(" {:.0f} |", w.largest);
   fmt::print("\n\n");
+}
+
+// What a BRDF reflects towards wo, the root mean square of the channels.
+double albedo_of(BrdfRef brdf, Vec3 wo) {
+  std::vector<double> f(static_cast<std::size_t>(brdf.channels()));
+  double sum = 0;
+  for (const auto& [wi, weight] : half_vector_quadrature(wo, 64, 1024))
+    sum += reflected_size(brdf, wi, wo, f) * weight;
+  return sum;
+}
+
+void report_horizon(const std::vector<Material>& materials) {
+  constexpr int kThetas[] = {75, 85, 88, 89};
+  fmt::print(
+      "burnish's weights near the horizon, second moment and largest, and what is reflected there (albedo, "
+      "root mean square of the channels) by the model and as measured:\n\n| material |");
+  for (const int theta_deg : kThetas) fmt::print(" {}° |", theta_deg);
+  for (const int theta_deg : kThetas) fmt::print(" albedo {}° |", theta_deg);
+  fmt::print("\n|---|");
+  for (std::size_t i = 0; i < 2 * std::size(kThetas); ++i) fmt::print("---|");
+  fmt::print("\n");
+  for (const Material& m : materials) {
+    const TabulatedSampler sampler(m.model);
+    const Measurement measurement{&m.table};
+    fmt::print("| {} |", m.name);
+    for (const int theta_deg : kThetas) {
+      const Weights w = weights_of(m.model, sampler, spherical_direction(radians(theta_deg), 1));
+      fmt::print(" {:.2f}, {:.0f} |", w.second_moment, w.largest);
+    }
+    for (const int theta_deg : kThetas) {
+      const Vec3 wo = spherical_direction(radians(theta_deg), 1);
+      fmt::print(" {:.3g}, {:.3g} |", albedo_of(m.model, wo), albedo_of(measurement, wo));
+    }
+    fmt::print("\n");
+  }
+  fmt::print("\n");
 }
 
 // ---- Variance under environments
@@ -378,6 +414,7 @@ void report(const fs::path& docs) {
       "bytes.\n\n",
       processor(), kModelBytes, TabulatedSampler(materials.front().model).bytes());
   report_weights(materials);
+  report_horizon(materials);
   fmt::print(
       "Variances below are of one sample, summed over the picture of a sphere ({} pixels wide) and its "
       "channels, over "

@@ -269,7 +269,7 @@ class CompiledSampler:
         """The azimuth of wo, and the tables around it with their weights."""
         plane = _unit_axis(wo.x, wo.y)
         t = (wo.x * plane.x + wo.y * plane.y) / (1 + wo.z)
-        at = dr.minimum(t * self.theta_scale, self.thetas - 1)
+        at = dr.minimum(t / (self.ring_reach - t) * self.theta_scale, self.thetas - 1)
         ring = _index(at, self.thetas - 1)
         outer = at - mi.Float(ring)
         if self.isotropic:

@@ -97,6 +97,7 @@ nb::dict sampler_tables(const OpenedBrdf& brdf) {
   tables["rows"] = t.rows;
   tables["columns"] = t.columns;
   tables["theta_scale"] = t.theta_scale;
+  tables["ring_reach"] = t.ring_reach;
   tables["row_edges"] = to_numpy(std::vector(t.row_edges.begin(), t.row_edges.end()), {t.row_edges.size()});
   tables["cell_edges"] =
       to_numpy(std::vector(t.cell_edges.begin(), t.cell_edges.end()), {t.cell_edges.size()});

@@ -91,13 +91,14 @@ namespace {
 
 constexpr double kSteepest = 0.01;  // least wo.z of the tables
 
-// tan(theta / 2) of the last ring of wo
+// Where the last ring of wo stands: t / (kRingReach - t), t = tan(theta / 2).
 double last_ring() noexcept {
-  return std::sqrt((1 - kSteepest) / (1 + kSteepest));
+  const double t = std::sqrt((1 - kSteepest) / (1 + kSteepest));
+  return t / (scalar::kRingReach - t);
 }
 
 Vec3 wo_of(const SamplerOptions& options, int ring, int turn) noexcept {
-  const double t = last_ring() * ring / (options.wo_thetas - 1);
+  const double at = last_ring() * ring / (options.wo_thetas - 1), t = scalar::kRingReach * at / (1 + at);
   const double sine = 2 * t / (1 + t * t), cosine = (1 - t * t) / (1 + t * t);
   const double around = 4.0 * turn / options.wo_phis;
   const auto axis = scalar::on_half_circle(std::abs(around - 2) - 1, 2 - around);
@@ -239,9 +240,10 @@ void TabulatedSampler::pdf(const DirectionSpans& in, std::span<float> pdf) const
 
 SamplerTables TabulatedSampler::tables() const noexcept {
   const SamplerView& view = tables_->view;
-  return {tables_->isotropic, view.sharpness, view.share, view.xx,      view.xy,          view.yy,
-          view.thetas,        view.phis,      view.rows,  view.columns, view.theta_scale, tables_->row_edges,
-          tables_->cell_edges};
+  return {
+      tables_->isotropic, view.sharpness,     view.share, view.xx,      view.xy,          view.yy,
+      view.thetas,        view.phis,          view.rows,  view.columns, view.theta_scale, scalar::kRingReach,
+      tables_->row_edges, tables_->cell_edges};
 }
 
 std::size_t TabulatedSampler::bytes() const noexcept {

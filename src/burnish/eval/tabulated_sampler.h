@@ -40,7 +40,7 @@ struct SamplerTables {
   bool isotropic = true;
   double sharpness = 0, share = 0, xx = 1, xy = 0, yy = 1;  ///< as in VisibleHalfMap
   int thetas = 0, phis = 0, rows = 0, columns = 0;          ///< as in SamplerOptions
-  double theta_scale = 0;                                   ///< rings of wo per tan(theta_o / 2)
+  double theta_scale = 0, ring_reach = 0;  ///< rings of wo per t / (ring_reach - t), t = tan(theta_o / 2)
   /// Cumulative masses in 1/65536: of the rows of a slice, and of the cells of a row; slices and rows one
   /// after the other, an entry 0 at the end.
   std::span<const std::uint16_t> row_edges, cell_edges;

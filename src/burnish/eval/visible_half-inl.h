@@ -98,6 +98,10 @@ struct Ray {
   }
 };
 
+/// Rings of wo stand evenly along t / (kRingReach - t), t = tan(theta_o / 2): twice as far apart at the
+/// normal and half as far at the horizon as they would along t.
+inline constexpr double kRingReach = 2;
+
 /// The slices around one wo: their weights and first rows.
 template <int kSlices, class F, class I>
 struct Mix {
@@ -109,7 +113,8 @@ struct Mix {
 template <int kSlices, class F, class I, class View>
 SAMPLER_INLINE Mix<kSlices, F, I> mix_for(const View& view, F x, F y, F z) {
   const Arrow<F> to = arrow(x, y);
-  const F at = min(to.length / (F(1.0) + z) * F(view.theta_scale), F(view.thetas - 1.0));
+  const F short_of = F(kRingReach) * (F(1.0) + z) - to.length;
+  const F at = min(to.length / short_of * F(view.theta_scale), F(view.thetas - 1.0));
   const I ring = max(min(to_int(at), I(view.thetas - 2)), I(0));
   const F outer = at - to_real(ring), inner = F(1.0) - outer;
   const I inner_ring = ring * I(view.phis * view.rows), outer_ring = inner_ring + I(view.phis * view.rows);

@@ -12,7 +12,7 @@ namespace burnish {
 /// What the formulas of visible_half-inl.h read.
 struct SamplerView : VisibleHalfMap {
   int thetas = 0, phis = 0, rows = 0, columns = 0;
-  double theta_scale = 0;              ///< rings per tan(theta_o / 2)
+  double theta_scale = 0;              ///< rings per t / (kRingReach - t), t = tan(theta_o / 2)
   double per_row = 0, per_column = 0;  ///< 1 / rows, 1 / columns
   const std::uint16_t *row_edges = nullptr, *cell_edges = nullptr;
 };
