@@ -167,6 +167,7 @@ void LaneRows::layout(const LobeLanes& model, std::size_t first, std::size_t las
     kept.in_order = kept.lanes.back() + 1 == kept.lanes.size();
     families.push_back(std::move(kept));
   }
+  constexpr std::size_t kAligned = 2 * LobeLanes::kLanes;  // pieces of odd widths and rows too
   std::size_t start = 0;
   for (std::size_t s = 0; s < model.slots().size(); ++s) {
     const std::size_t family = number[model.slots()[s].family];
@@ -174,7 +175,7 @@ void LaneRows::layout(const LobeLanes& model, std::size_t first, std::size_t las
     for (const bool second_row : {false, true}) {
       if (second_row && model.slots()[s].next_row == 0) continue;
       pieces.push_back({family, s, second_row, start});
-      start += rows * 2 * families[family].width();
+      start += (rows * 2 * families[family].width() + kAligned - 1) / kAligned * kAligned;
     }
   }
   node.resize(pieces.size() * rows);

@@ -36,6 +36,9 @@ TEST(LaneGram, IsTheProductOfTheDenseMatrix) {
   const std::size_t first = tables[1].base, count = size - first;
   LaneRows rows;
   rows.layout(lanes, first, size, set.size());
+  LaneRows odd;
+  odd.layout(lanes, first, size, 7);
+  for (const LaneRows::Piece& piece : odd.pieces) EXPECT_EQ(piece.start % 16, 0u);  // loaded as whole vectors
   Eigen::MatrixXd dense(static_cast<Eigen::Index>(set.size()), x.size());
   LobeLanes::Block at = lanes.block();
   for (std::size_t i = 0; i < set.size(); ++i) {

@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kLargestLightAngle = radians(75);
 constexpr double kPixelCosine = 0.01, kPairCosine = 0.05;  // the second as in the error figures
+constexpr double kRimCosine = 0.005, kRimWeight = 0.1;     // of pairs nearer to the horizon than that
 constexpr double kCrowdedPixelCosine = 1e-3;
 constexpr double kExposedShare = 0.97;  // as in the error figures
 constexpr std::size_t kChunk = 4096;
@@ -171,7 +172,7 @@ TrainingSet draw_training_set(BrdfRef source, const TrainingOptions& options) {
   }
   set.weights.resize(set.pairs.size(), 1);
   set.picture_count = set.pairs.size();
-  while (set.pairs.size() < options.pictures + options.directions) {
+  for (std::size_t drawn = 0; drawn < options.directions;) {
     const std::array<double, 5>& u = points.next();
     const auto [theta_h, weight] = draw_theta_h(u[0]);
     const HalfDiff angles{.theta_h = kHalfPi * theta_h,
@@ -179,9 +180,12 @@ TrainingSet draw_training_set(BrdfRef source, const TrainingOptions& options) {
                           .theta_d = kHalfPi * u[1],
                           .phi_d = kTwoPi * u[2]};
     const HalfDiffDirections pair = from_half_diff(angles);
-    if (!(pair.wi.z > kPairCosine) || !(pair.wo.z > kPairCosine)) continue;
+    const double least = std::min(pair.wi.z, pair.wo.z);
+    if (!(least > kRimCosine)) continue;
+    const bool rim = !(least > kPairCosine);
     set.pairs.push_back({pair.wi, pair.wo});
-    set.weights.push_back(static_cast<float>(weight));
+    set.weights.push_back(static_cast<float>(rim ? kRimWeight * weight : weight));
+    drawn += !rim;
   }
   if (options.spread_phi_h && source.isotropic())
     for (DirectionPair& pair : set.pairs) pair = turned(pair, kTwoPi * points.next()[4]);

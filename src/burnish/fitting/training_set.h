@@ -39,7 +39,8 @@ struct TrainingOptions {
 ///   uniform in [0, 75] degrees, as long as both cosines are above 0.01; crowded ones as the option says, as
 ///   long as both are above 0.001;
 /// - pairs with theta_d, phi_d and phi_h uniform and theta_h half uniform, half pi/2 u^2, weighted as if it
-///   were uniform, as long as both cosines are above 0.05.
+///   were uniform, as long as both cosines are above 0.05, and beside those asked for the ones that come
+///   up with both above 0.005, a tenth of the weight: what hardly counts is kept from running away.
 /// Pairs of which the source knows nothing are left out. Throws Error if nothing is left.
 TrainingSet draw_training_set(BrdfRef source, const TrainingOptions& options);
 
