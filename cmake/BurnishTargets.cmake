@@ -15,7 +15,7 @@ endfunction()
 
 # Runs a program of GoogleTest tests in parts, side by side: starting it once a test takes longer than most tests,
 # with sanitizers above all. Only what fails or is skipped is printed.
-# GCC 12's leak check takes the thread-local memory of one library in 256, where the address happens to end in 010,
+# GCC 12's leak check takes the thread-local memory of one library in 256, where the address happens to end in 0x010,
 # for that of a glibc of 2014 and reads at the size of a block of memory: it is told to leave such memory alone.
 function(burnish_tests name parts)
   math(EXPR last "${parts} - 1")
