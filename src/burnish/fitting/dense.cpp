@@ -10,9 +10,9 @@ void dtrtri_(const char* triangle, const char* diagonal, const int* n, double* m
              int* info);
 void dpotrs_(const char* triangle, const int* n, const int* columns, const double* matrix, const int* stride,
              double* right_sides, const int* right_stride, int* info);
-void dgemm_(const char* transpose_a, const char* transpose_b, const int* rows, const int* columns,
-            const int* inner, const double* scale, const double* a, const int* stride_a, const double* b,
-            const int* stride_b, const double* keep, double* result, const int* stride);
+void dsyrk_(const char* triangle, const char* transpose, const int* n, const int* inner, const double* scale,
+            const double* matrix, const int* stride, const double* keep, double* result,
+            const int* result_stride);
 }
 
 namespace burnish {
@@ -21,6 +21,18 @@ namespace {
 
 // Builds of OpenBLAS without threads of their own need not bear calls from several.
 std::mutex lapack;
+
+// What lies row by row is, column by column, the transpose.
+Eigen::MatrixXd products(const char* transpose, Eigen::Index size, Eigen::Index inner,
+                         const Eigen::Ref<const RowMajorMatrix>& a) {
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(size, size);
+  const int n = static_cast<int>(size), terms = static_cast<int>(inner),
+            stride = static_cast<int>(a.outerStride());
+  const double one = 1, zero = 0;
+  const std::lock_guard one_at_a_time(lapack);
+  dsyrk_("L", transpose, &n, &terms, &one, a.data(), &stride, &zero, result.data(), &n);
+  return result;
+}
 
 }  // namespace
 
@@ -48,16 +60,12 @@ bool factorize_inverse(Eigen::MatrixXd& matrix) {
   return info == 0;
 }
 
-void multiply(const RowMajorMatrix& a, bool transpose_a, const RowMajorMatrix& b, bool transpose_b,
-              RowMajorMatrix& result) {
-  // What lies row by row is, column by column, the transpose: op(b)^T op(a)^T.
-  const int rows = static_cast<int>(result.cols()), columns = static_cast<int>(result.rows()),
-            inner = static_cast<int>(transpose_a ? a.rows() : a.cols()),
-            stride_a = static_cast<int>(a.cols()), stride_b = static_cast<int>(b.cols());
-  const double one = 1, zero = 0;
-  const std::lock_guard one_at_a_time(lapack);
-  dgemm_(transpose_b ? "T" : "N", transpose_a ? "T" : "N", &rows, &columns, &inner, &one, b.data(), &stride_b,
-         a.data(), &stride_a, &zero, result.data(), &rows);
+Eigen::MatrixXd products_of_rows(const Eigen::Ref<const RowMajorMatrix>& a) {
+  return products("T", a.rows(), a.cols(), a);
+}
+
+Eigen::MatrixXd products_of_columns(const Eigen::Ref<const RowMajorMatrix>& a) {
+  return products("N", a.cols(), a.rows(), a);
 }
 
 }  // namespace burnish

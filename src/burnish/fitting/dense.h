@@ -14,9 +14,8 @@ bool factorize_inverse(Eigen::MatrixXd& matrix);
 
 using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// result := op(a) op(b), op being the transpose where asked. By BLAS, for large matrices.
-/// Precondition: the sizes fit, that of the result included.
-void multiply(const RowMajorMatrix& a, bool transpose_a, const RowMajorMatrix& b, bool transpose_b,
-              RowMajorMatrix& result);
+/// a a^T, or a^T a: its lower triangle, 0 above. By BLAS, for large matrices.
+Eigen::MatrixXd products_of_rows(const Eigen::Ref<const RowMajorMatrix>& a);
+Eigen::MatrixXd products_of_columns(const Eigen::Ref<const RowMajorMatrix>& a);
 
 }  // namespace burnish

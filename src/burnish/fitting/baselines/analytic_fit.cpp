@@ -6,7 +6,6 @@
 #include <vector>
 
 #include <ceres/cost_function.h>
-#include <ceres/manifold.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 #include <fmt/format.h>
@@ -35,10 +34,20 @@ struct Unknown {
   int channel = -1;                  ///< of a colour; -1: all
   bool logarithmic = false;          ///< what is varied is the logarithm
   double lower, upper;               ///< of what is varied
+  int part = 0;                      ///< of the model, see part_of
 };
 
 bool is_scale_free(std::string_view name) {
   return name.starts_with("alpha") || name.starts_with("exponent");
+}
+
+/// A sum's parts vary apart: the diffuse term of lafortune, 0, and its lobes, 1 to 3, which the last
+/// characters of parameters' names number. Other models are one part.
+constexpr int kLobes = 3;
+
+int part_of(const AnalyticModel& model, std::string_view parameter) {
+  if (model.name != "lafortune" || parameter == "kd") return 0;
+  return parameter.ends_with('2') ? 2 : parameter.ends_with('3') ? 3 : 1;
 }
 
 /// Which parameters vary together and how, for a model.
@@ -58,7 +67,8 @@ class Parameters {
                       .equal = {},
                       .logarithmic = logarithmic,
                       .lower = logarithmic ? std::log(least) : least,
-                      .upper = logarithmic ? std::log(parameter.max) : parameter.max};
+                      .upper = logarithmic ? std::log(parameter.max) : parameter.max,
+                      .part = part_of(model, parameter.name)};
       for (int c = 0; c < (parameter.color && channels == 3 ? 3 : 1); ++c) {
         unknown.channel = parameter.color && channels == 3 ? c : -1;
         unknowns_.push_back(unknown);
@@ -69,7 +79,10 @@ class Parameters {
   const AnalyticModel& model() const { return *model_; }
   const std::vector<Unknown>& unknowns() const { return unknowns_; }
 
-  std::vector<Rgb> values(const double* x) const {
+  int parts() const { return unknowns_.back().part + 1; }
+
+  /// The model's values, all of it or one part alone, the colours of the others being black.
+  std::vector<Rgb> values(std::span<const double> x, std::optional<int> part = {}) const {
     std::vector<Rgb> result(model_->parameters.size());
     for (std::size_t k = 0; k < unknowns_.size(); ++k) {
       const Unknown& u = unknowns_[k];
@@ -81,6 +94,7 @@ class Parameters {
          : u.channel == 1 ? result[u.parameter].g
                           : result[u.parameter].b) = value;
       if (u.equal) result[*u.equal] = value;
+      if (part && u.part != *part && model_->parameters[u.parameter].color) result[u.parameter] = {};
     }
     return result;
   }
@@ -110,7 +124,8 @@ class Parameters {
 // cbrt(f r)^2 below which the slope of the cube root rises no further.
 constexpr double kLeastSquare = 1e-8;
 
-/// Residuals sqrt(weight) (cbrt(f^ r) - cbrt(f r)), r the root of the cosines, a sample and channel each.
+/// Residuals sqrt(weight) (cbrt(f^ r) - cbrt(f r)), r the root of the cosines, a sample and channel each, as
+/// functions of some of the unknowns.
 class Cost : public ceres::CostFunction {
  public:
   Cost(const GatheredSamples& samples, const Parameters& parameters)
@@ -126,24 +141,42 @@ class Cost : public ceres::CostFunction {
         targets_.push_back(std::cbrt(samples.values[i * samples.channels + c] * root));
     }
     set_num_residuals(static_cast<int>(targets_.size()));
-    *mutable_parameter_block_sizes() = {static_cast<int>(parameters.unknowns().size())};
   }
 
-  bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override {
-    std::vector<double> values(targets_.size());
-    evaluate(x[0], values);
-    for (std::size_t r = 0; r < values.size(); ++r)
-      residuals[r] = weights_[r / samples_.channels] * (std::cbrt(values[r]) - targets_[r]);
-    if (jacobians && jacobians[0]) differentiate(x[0], values, residuals, jacobians[0]);
+  /// Holds all unknowns at x but those whose numbers are `varied`, rising, the channels of a colour together.
+  void hold(std::vector<double> x, std::vector<std::size_t> varied) {
+    held_ = std::move(x);
+    varied_ = std::move(varied);
+    *mutable_parameter_block_sizes() = {static_cast<int>(varied_.size())};
+  }
+
+  /// All unknowns.
+  std::vector<double> all(const double* varied) const {
+    std::vector<double> x = held_;
+    for (std::size_t k = 0; k < varied_.size(); ++k) x[varied_[k]] = varied[k];
+    return x;
+  }
+
+  bool Evaluate(double const* const* varied, double* residuals, double** jacobians) const override {
+    const std::vector<double> x = all(varied[0]);
+    std::vector<std::vector<double>> parts(static_cast<std::size_t>(parameters_.parts()));
+    for (std::size_t p = 0; p < parts.size(); ++p) parts[p] = evaluate(x, static_cast<int>(p));
+    for (std::size_t r = 0; r < targets_.size(); ++r) {
+      double value = 0;
+      for (const std::vector<double>& part : parts) value += part[r];
+      residuals[r] = weights_[r / samples_.channels] * (std::cbrt(value) - targets_[r]);
+    }
+    if (jacobians && jacobians[0]) differentiate(x, parts, residuals, jacobians[0]);
     return true;
   }
 
  private:
-  // f r of every sample and channel.
-  void evaluate(const double* x, std::span<double> values) const {
-    const AnalyticVariant variant = parameters_.model().build(parameters_.values(x));
+  // f r of every sample and channel, of one part.
+  std::vector<double> evaluate(std::span<const double> x, int part) const {
+    const AnalyticVariant variant = parameters_.model().build(parameters_.values(x, part));
     const BrdfRef brdf = std::visit([](const auto& any) -> BrdfRef { return any; }, variant);
     const std::size_t channels = samples_.channels;
+    std::vector<double> values(targets_.size());
     constexpr std::size_t kChunk = 1024;
     for_each_chunk(samples_.size(), kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
       std::vector<double> f(3 * (end - begin));
@@ -153,29 +186,33 @@ class Cost : public ceres::CostFunction {
         for (std::size_t c = 0; c < channels; ++c)
           values[i * channels + c] = f[3 * (i - begin) + c] * roots_[i];
     });
+    return values;
   }
 
   // Forward differences of f; the channels of a colour, which do not see each other, in one evaluation.
-  void differentiate(const double* x, std::span<const double> values, const double* residuals,
-                     double* jacobian) const {
+  void differentiate(const std::vector<double>& x, const std::vector<std::vector<double>>& parts,
+                     const double* residuals, double* jacobian) const {
     const std::vector<Unknown>& unknowns = parameters_.unknowns();
-    const std::size_t columns = unknowns.size(), rows = targets_.size();
-    std::vector<double> moved_values(rows), slopes(rows);  // of residuals by f r
+    const std::size_t columns = varied_.size(), rows = targets_.size();
+    std::vector<double> slopes(rows);  // of residuals by f r
     for (std::size_t r = 0; r < rows; ++r) {
       const double weight = weights_[r / samples_.channels], root = residuals[r] / weight + targets_[r];
       slopes[r] = weight / (3 * std::max(root * root, kLeastSquare));
     }
     for (std::size_t k = 0; k < columns;) {
-      const std::size_t group = unknowns[k].channel < 0 ? 1 : 3;
-      std::vector<double> moved(x, x + columns);
+      const Unknown& first = unknowns[varied_[k]];
+      const std::size_t group = first.channel < 0 ? 1 : 3;
+      std::vector<double> moved = x;
       std::array<double, 3> step{};
       for (std::size_t g = 0; g < group; ++g) {
         // inwards where a bound is near
-        const double size = 1e-6 * std::max(std::abs(x[k + g]), 0.01);
-        step[g] = x[k + g] + size > unknowns[k + g].upper ? -size : size;
-        moved[k + g] += step[g];
+        double& at = moved[varied_[k + g]];
+        const double size = 1e-6 * std::max(std::abs(at), 0.01);
+        step[g] = at + size > first.upper ? -size : size;
+        at += step[g];
       }
-      evaluate(moved.data(), moved_values);
+      const std::vector<double>& values = parts[static_cast<std::size_t>(first.part)];
+      const std::vector<double> moved_values = evaluate(moved, first.part);
       for (std::size_t r = 0; r < rows; ++r)
         for (std::size_t g = 0; g < group; ++g)
           jacobian[r * columns + k + g] =
@@ -186,7 +223,8 @@ class Cost : public ceres::CostFunction {
 
   const GatheredSamples& samples_;
   const Parameters& parameters_;
-  std::vector<double> roots_, weights_, targets_;
+  std::vector<double> roots_, weights_, targets_, held_;
+  std::vector<std::size_t> varied_;
 };
 
 /// Minimizations from several starts of which the best is kept.
@@ -195,19 +233,23 @@ class Fit {
   Fit(const GatheredSamples& samples, const Parameters& parameters, const AnalyticFitOptions& options)
       : parameters_(parameters), options_(options), cost_(samples, parameters) {}
 
-  /// One minimization from x; `held` unknowns keep their values.
-  void run(std::vector<double> x, const std::vector<int>& held = {}) {
+  /// One minimization from x over the unknowns of the first `parts` parts; the others keep their values.
+  void run(std::vector<double> x, int parts) {
     const std::vector<Unknown>& unknowns = parameters_.unknowns();
+    std::vector<std::size_t> varied;
+    for (std::size_t k = 0; k < unknowns.size(); ++k)
+      if (unknowns[k].part < parts) varied.push_back(k);
+    std::vector<double> at;
+    for (const std::size_t k : varied) at.push_back(x[k]);
+    cost_.hold(std::move(x), varied);
     ceres::Problem::Options problem_options;
     problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     ceres::Problem problem(problem_options);
-    problem.AddResidualBlock(&cost_, nullptr, x.data());
-    for (std::size_t k = 0; k < unknowns.size(); ++k) {
-      problem.SetParameterLowerBound(x.data(), static_cast<int>(k), unknowns[k].lower);
-      problem.SetParameterUpperBound(x.data(), static_cast<int>(k), unknowns[k].upper);
+    problem.AddResidualBlock(&cost_, nullptr, at.data());
+    for (std::size_t k = 0; k < varied.size(); ++k) {
+      problem.SetParameterLowerBound(at.data(), static_cast<int>(k), unknowns[varied[k]].lower);
+      problem.SetParameterUpperBound(at.data(), static_cast<int>(k), unknowns[varied[k]].upper);
     }
-    if (!held.empty())
-      problem.SetManifold(x.data(), new ceres::SubsetManifold(static_cast<int>(x.size()), held));
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
     solver.max_num_iterations = options_.max_iterations;
@@ -221,7 +263,7 @@ class Fit {
     best_cost = summary.final_cost;
     first_cost = summary.initial_cost;
     converged = summary.termination_type == ceres::CONVERGENCE;
-    best = std::move(x);
+    best = cost_.all(at.data());
   }
 
   std::vector<double> best;
@@ -249,7 +291,6 @@ constexpr std::string_view suffix(int lobe) {
 
 void fit_lafortune(const Parameters& parameters, double kd, const std::function<void(double)>& progress,
                    Fit& fit) {
-  constexpr int kLobes = 3;
   std::vector<double> x(parameters.unknowns().size());
   parameters.set("kd", kd, x);
   for (int lobe = 0; lobe < kLobes; ++lobe) {
@@ -264,16 +305,9 @@ void fit_lafortune(const Parameters& parameters, double kd, const std::function<
     else
       x = fit.best;
     set("ks", 0.1);
-    // lobes that are still to come stay black; a name's last character numbers its lobe
-    std::vector<int> held;
-    for (std::size_t k = 0; k < parameters.unknowns().size(); ++k) {
-      const std::string_view name = parameters.model().parameters[parameters.unknowns()[k].parameter].name;
-      for (int later = lobe + 1; later < kLobes; ++later)
-        if (name.ends_with(suffix(later))) held.push_back(static_cast<int>(k));
-    }
     for (std::size_t i = 0; i < kExponents.size(); ++i) {
       set("exponent", kExponents[i]);
-      fit.run(x, held);
+      fit.run(x, lobe + 2);  // the diffuse term and the lobes up to this one; those to come stay black
       if (progress)
         progress((lobe + static_cast<double>(i + 1) / static_cast<double>(kExponents.size())) / kLobes);
     }
@@ -292,7 +326,7 @@ void fit_roughness(const Parameters& parameters, double kd, const std::function<
     // a Gaussian of slopes of roughness alpha is about a power of 2 / alpha^2
     for (const std::string_view name : {"exponent_x", "exponent_y"})
       parameters.set(name, 2 / (alpha * alpha), x);
-    fit.run(x);
+    fit.run(x, parameters.parts());
     if (progress) progress(static_cast<double>(i + 1) / static_cast<double>(kRoughnesses.size()));
   }
 }
@@ -317,7 +351,7 @@ AnalyticFit fit_analytic(const SampleSource& source, std::string_view name,
   (name == "lafortune" ? fit_lafortune : fit_roughness)(parameters, diffuse_guess(samples), options.progress,
                                                         fit);
 
-  std::vector<Rgb> values = parameters.values(fit.best.data());
+  std::vector<Rgb> values = parameters.values(fit.best);
   for (std::size_t p = 0; p < values.size(); ++p) {
     const AnalyticParameter& parameter = model.parameters[p];
     const auto rounded = [&](double x) {

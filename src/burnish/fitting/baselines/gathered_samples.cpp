@@ -11,23 +11,17 @@ namespace burnish {
 
 GatheredSamples gather_samples(const SampleSource& source, std::size_t most) {
   GatheredSamples result{.channels = static_cast<std::size_t>(source.channels)};
-  constexpr std::size_t kBlock = 4096;
   const double step = std::max(1.0, static_cast<double>(source.count) / static_cast<double>(most));
-  std::vector<DirectionPair> pairs(kBlock);
-  std::vector<double> values(kBlock * result.channels), weights(kBlock);
-  double next = 0;  // number of the next sample that is taken
-  for (std::size_t begin = 0; begin < source.count; begin += kBlock) {
-    const std::size_t count = std::min(kBlock, source.count - begin);
-    source.fill(begin, std::span(pairs).first(count), std::span(values).first(count * result.channels),
-                std::span(weights).first(count));
-    for (; next < static_cast<double>(begin + count); next += step) {
-      const std::size_t i = static_cast<std::size_t>(next) - begin;
-      if (!(weights[i] > 0) || std::min(pairs[i].wi.z, pairs[i].wo.z) <= kDrawnCosine) continue;
-      result.pairs.push_back(pairs[i]);
-      result.weights.push_back(weights[i]);
-      for (std::size_t c = 0; c < result.channels; ++c)
-        result.values.push_back(std::max(0.0, values[i * result.channels + c]));
-    }
+  DirectionPair pair;
+  std::vector<double> values(result.channels);
+  double weight = 0;
+  // one at a time: those between are not made
+  for (double next = 0; next < static_cast<double>(source.count); next += step) {
+    source.fill(static_cast<std::size_t>(next), {&pair, 1}, values, {&weight, 1});
+    if (!(weight > 0) || std::min(pair.wi.z, pair.wo.z) <= kDrawnCosine) continue;
+    result.pairs.push_back(pair);
+    result.weights.push_back(weight);
+    for (const double value : values) result.values.push_back(std::max(0.0, value));
   }
   if (result.pairs.empty()) throw Error("expected a sample with weight, found none");
   return result;

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 #include <Eigen/Core>
@@ -7,7 +6,6 @@
 
 #include <burnish/fitting/baselines/low_rank.h>
 #include <burnish/fitting/dense.h>
-#include <burnish/math/random.h>
 
 namespace burnish {
 
@@ -34,7 +32,7 @@ LowRank make_low_rank(const RowMajor& u, const RowMajor& v) {
 LowRank singular_values(const Matrix& m, std::size_t terms) {
   const ConstMap a = map(m);
   const bool wide = m.columns > m.rows;
-  const Eigen::MatrixXd gram = wide ? Eigen::MatrixXd(a * a.transpose()) : Eigen::MatrixXd(a.transpose() * a);
+  const Eigen::MatrixXd gram = wide ? products_of_rows(a) : products_of_columns(a);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(gram);
   const Index kept = std::min(static_cast<Index>(terms), gram.rows());
   // eigenvalues rise: the last are the squares of the largest singular values
@@ -63,36 +61,6 @@ LowRank normalized_decomposition(const Matrix& m) {
   }
   for (double& v : result.v) v /= static_cast<double>(std::max<std::size_t>(counted, 1));
   return result;
-}
-
-LowRank nonnegative_factors(const Matrix& m, std::span<const double> weights, std::size_t terms,
-                            int iterations, std::uint64_t seed) {
-  assert(weights.size() == m.values.size());
-  const ConstMap a = map(m), w(weights.data(), a.rows(), a.cols());
-  const auto kept = static_cast<Index>(std::min({terms, m.rows, m.columns}));
-  const double level = std::sqrt(std::max(a.mean(), 1e-300) / static_cast<double>(kept));
-  const double least = 1e-15 * level;  // no slow subnormal numbers, no 0 that could never rise again
-  Pcg32 random(seed);
-  const auto start = [&](Index rows) -> RowMajor {
-    return RowMajor::NullaryExpr(rows, kept, [&] { return level * (0.5 + random.uniform()); });
-  };
-  RowMajor u = start(a.rows()), v = start(a.cols());
-  const RowMajor wa = w.cwiseProduct(a);
-  RowMajor fitted(a.rows(), a.cols()), wanted, found;
-  const auto update = [&](RowMajor& x, const RowMajor& other, bool transpose) {
-    multiply(u, false, v, true, fitted);
-    fitted.array() *= w.array();
-    wanted.resizeLike(x);
-    found.resizeLike(x);
-    multiply(wa, transpose, other, false, wanted);
-    multiply(fitted, transpose, other, false, found);
-    x = (found.array() > 0).select(x.array() * wanted.array() / found.array(), x.array()).max(least);
-  };
-  for (int i = 0; i < iterations; ++i) {  // [Lee 2001, eq. 4]
-    update(u, v, false);
-    update(v, u, true);
-  }
-  return make_low_rank(u, v);
 }
 
 double squared_error(const Matrix& m, const LowRank& factors, std::span<const double> weights) {

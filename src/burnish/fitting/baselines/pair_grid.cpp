@@ -14,21 +14,18 @@ namespace {
 
 /// Reduces theta_h and then theta_d until both cosines reach kDrawnCosine. Returns whether they did before.
 bool pull_above_horizon(PairFrame& frame) {
-  const auto above = [&] {
-    const auto [wi, wo] = frame.directions();
-    return std::min(wi.z, wo.z) >= kDrawnCosine;
-  };
-  if (above()) return true;
+  const auto [wi, wo] = frame.directions();
+  if (std::min(wi.z, wo.z) >= kDrawnCosine) return true;
+  // just inside, against rounding
   if (const double most = std::acos(kDrawnCosine) * (1 - 1e-9); theta_of(frame.h) > most) {
     frame.h = spherical_direction(most, phi_of(frame.h));
     frame.across = normalize(frame.across - dot(frame.across, frame.h) * frame.h);
   }
-  double low = 0, high = frame.theta_d;
-  for (int step = 0; step < 40; ++step) {
-    frame.theta_d = 0.5 * (low + high);
-    (above() ? low : high) = frame.theta_d;
-  }
-  frame.theta_d = low;
+  // the lower direction's z is length cos(theta_d + tilt)
+  const double aside = std::abs(frame.across.z), tilt = std::atan2(aside, frame.h.z),
+               length = std::hypot(aside, frame.h.z);
+  const double highest = std::acos(std::min(kDrawnCosine / length, 1.0)) - tilt;
+  frame.theta_d = std::clamp(highest * (1 - 1e-9), 0.0, frame.theta_d);
   return false;
 }
 

@@ -20,7 +20,7 @@ using enum PairCoordinate;
 
 // ---- one decomposition ----
 
-constexpr int kUpdates = 200;  // of nonnegative factors
+constexpr int kUpdates = 400;  // of nonnegative factors
 
 // Nodes that are filled in count little.
 std::vector<double> node_weights(const Matrix& m, std::span<const std::uint8_t> measured,
@@ -260,12 +260,21 @@ class Search {
     const SeparableBrdf brdf =
         decompose(sample_pair_grid(source_, sides[0], sides[1]), method_, layout.coupling,
                   static_cast<std::size_t>(kTerms[static_cast<std::size_t>(layout.size[0])]));
-    const double psnr = scorer_.score(brdf).psnr;
+    const double psnr = picture_quality(brdf);
     if (!best_ || psnr > best_psnr_) {
       best_ = brdf;
       best_psnr_ = psnr;
     }
     return known->second = psnr;
+  }
+
+  // psnr of a model, as the scorer has it.
+  double picture_quality(BrdfRef model) const {
+    const SpherePictures pictures = scorer_.pictures(model);
+    double squared = 0;
+    for (std::size_t i = 0; i < pictures.shown.size(); ++i)
+      squared += mean_squared_error(scorer_.reference_pictures().shown[i], pictures.shown[i]);
+    return psnr(squared / static_cast<double>(pictures.shown.size()));
   }
 
   void climb(Layout at) {
