@@ -213,10 +213,12 @@ class Cost : public ceres::CostFunction {
       }
       const std::vector<double>& values = parts[static_cast<std::size_t>(first.part)];
       const std::vector<double> moved_values = evaluate(moved, first.part);
-      for (std::size_t r = 0; r < rows; ++r)
+      for (double& size : step) size = 1 / size;
+      for (std::size_t r = 0; r < rows; ++r) {
+        const double slope = slopes[r] * (moved_values[r] - values[r]);
         for (std::size_t g = 0; g < group; ++g)
-          jacobian[r * columns + k + g] =
-              group == 3 && r % 3 != g ? 0 : slopes[r] * (moved_values[r] - values[r]) / step[g];
+          jacobian[r * columns + k + g] = group == 3 && r % 3 != g ? 0 : slope * step[g];
+      }
       k += group;
     }
   }

@@ -32,9 +32,10 @@ LowRank singular_values(const Matrix& m, std::size_t terms);
 /// and is exact for a matrix of rank 1 whose entries are of one sign. [Kautz 1999, sec. 4.2]
 LowRank normalized_decomposition(const Matrix& m);
 
-/// u, v >= 0 by `iterations` multiplicative updates for the sum of weight * (m - u v)^2, from a seeded random
-/// start; the sum never rises. Precondition: entries and weights >= 0, weights of the size of m.
-/// Source: [Lee 2001], weighted as in [Blondel 2008].
+/// u, v >= 0 by at most `iterations` multiplicative updates for the sum of weight * (m - u v)^2, in single
+/// precision, from a seeded random start; the sum never rises but by rounding. Ends before where no value of
+/// the longer side changes by more than 1e-5 of itself. Precondition: entries and weights >= 0, weights of
+/// the size of m. Source: [Lee 2001], weighted as in [Blondel 2008].
 LowRank nonnegative_factors(const Matrix& m, std::span<const double> weights, std::size_t terms,
                             int iterations, std::uint64_t seed);
 

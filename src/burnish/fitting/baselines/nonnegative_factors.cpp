@@ -21,15 +21,21 @@ namespace {
 
 constexpr std::size_t kMostLanes = 16, kBlock = 4;  // floats of a vector, terms at a time
 
-/// Factors on their way, for one row of the matrix: what it is multiplied with and made of. Lines of values
-/// along the columns are `stride` long, 0 beyond the columns.
+// [Lee 2001, eq. 4]
+float improved(float x, float wanted, float found, float least) {
+  return found > 0 ? std::max(least, x * wanted / found) : x;
+}
+
+/// One row of the matrix and what meets it. Lines along the columns are `stride` long, weightless beyond
+/// them.
 struct Row {
   std::size_t stride, terms;
+  bool improve_near, gather_far;    ///< what is done
   const float *weights, *weighted;  ///< weighted: weight * entry
-  float* u;                         ///< [term]
-  const float* v;                   ///< [term][column]
-  float* fitted;                    ///< [column], weight * (u v)
-  float *wanted_v, *found_v;        ///< [term][column], sums over the rows
+  float* near;                      ///< [term], of this row
+  const float* far;                 ///< [term][column]
+  float* fitted;                    ///< [column], weight * sum of near * far
+  float *wanted, *found;            ///< [term][column], sums over the rows that improve far
   float least;
 };
 
@@ -59,53 +65,61 @@ void for_each_block(std::size_t terms, const Body& body) {
 void fit(const Row& row) {
   const Tag d;
   for_each_block(row.terms, [&]<std::size_t count>(std::size_t first) {
-    Vector u[count];
-    for (std::size_t k = 0; k < count; ++k) u[k] = hn::Set(d, row.u[first + k]);
+    Vector near[count];
+    for (std::size_t k = 0; k < count; ++k) near[k] = hn::Set(d, row.near[first + k]);
     const bool last = first + count == row.terms;
     for (std::size_t c = 0; c < row.stride; c += hn::Lanes(d)) {
       Vector sum = first > 0 ? hn::Load(d, row.fitted + c) : hn::Zero(d);
       for (std::size_t k = 0; k < count; ++k)
-        sum = hn::MulAdd(u[k], hn::Load(d, row.v + (first + k) * row.stride + c), sum);
+        sum = hn::MulAdd(near[k], hn::Load(d, row.far + (first + k) * row.stride + c), sum);
       if (last) sum = hn::Mul(sum, hn::Load(d, row.weights + c));
       hn::Store(sum, d, row.fitted + c);
     }
   });
 }
 
-// Improves u, then adds what v needs from this row. [Lee 2001, eq. 4]
-void update(const Row& row) {
+void improve_near(const Row& row) {
   const Tag d;
-  fit(row);
   for_each_block(row.terms, [&]<std::size_t count>(std::size_t first) {
     Vector wanted[count], found[count];
     for (std::size_t k = 0; k < count; ++k) wanted[k] = found[k] = hn::Zero(d);
     for (std::size_t c = 0; c < row.stride; c += hn::Lanes(d)) {
       const Vector weighted = hn::Load(d, row.weighted + c), fitted = hn::Load(d, row.fitted + c);
       for (std::size_t k = 0; k < count; ++k) {
-        const Vector v = hn::Load(d, row.v + (first + k) * row.stride + c);
-        wanted[k] = hn::MulAdd(weighted, v, wanted[k]);
-        found[k] = hn::MulAdd(fitted, v, found[k]);
+        const Vector far = hn::Load(d, row.far + (first + k) * row.stride + c);
+        wanted[k] = hn::MulAdd(weighted, far, wanted[k]);
+        found[k] = hn::MulAdd(fitted, far, found[k]);
       }
     }
-    for (std::size_t k = 0; k < count; ++k) {
-      const float sum = hn::GetLane(hn::SumOfLanes(d, found[k]));
-      float& u = row.u[first + k];
-      if (sum > 0) u = std::max(row.least, u * hn::GetLane(hn::SumOfLanes(d, wanted[k])) / sum);
-    }
+    for (std::size_t k = 0; k < count; ++k)
+      row.near[first + k] = improved(row.near[first + k], hn::GetLane(hn::SumOfLanes(d, wanted[k])),
+                                     hn::GetLane(hn::SumOfLanes(d, found[k])), row.least);
   });
-  fit(row);
+}
+
+void gather_far(const Row& row) {
+  const Tag d;
   for_each_block(row.terms, [&]<std::size_t count>(std::size_t first) {
-    Vector u[count];
-    for (std::size_t k = 0; k < count; ++k) u[k] = hn::Set(d, row.u[first + k]);
+    Vector near[count];
+    for (std::size_t k = 0; k < count; ++k) near[k] = hn::Set(d, row.near[first + k]);
     for (std::size_t c = 0; c < row.stride; c += hn::Lanes(d)) {
       const Vector weighted = hn::Load(d, row.weighted + c), fitted = hn::Load(d, row.fitted + c);
       for (std::size_t k = 0; k < count; ++k) {
         const std::size_t at = (first + k) * row.stride + c;
-        hn::Store(hn::MulAdd(u[k], weighted, hn::Load(d, row.wanted_v + at)), d, row.wanted_v + at);
-        hn::Store(hn::MulAdd(u[k], fitted, hn::Load(d, row.found_v + at)), d, row.found_v + at);
+        hn::Store(hn::MulAdd(near[k], weighted, hn::Load(d, row.wanted + at)), d, row.wanted + at);
+        hn::Store(hn::MulAdd(near[k], fitted, hn::Load(d, row.found + at)), d, row.found + at);
       }
     }
   });
+}
+
+void visit(const Row& row) {
+  fit(row);
+  if (row.improve_near) {
+    improve_near(row);
+    if (row.gather_far) fit(row);
+  }
+  if (row.gather_far) gather_far(row);
 }
 
 }  // namespace
@@ -118,56 +132,72 @@ namespace burnish {
 
 namespace {
 
-HWY_EXPORT(update);
+HWY_EXPORT(visit);
+
+constexpr float kStill = 1e-5f;  // relative change of values that have arrived, far below a half float's
 
 }  // namespace
 
 LowRank nonnegative_factors(const Matrix& m, std::span<const double> weights, std::size_t terms,
                             int iterations, std::uint64_t seed) {
   assert(weights.size() == m.values.size());
-  // vectors run along the longer side, called columns here
+  // vectors run along the longer side, the far one, whose values are sums over the rows
   const bool tall = m.rows > m.columns;
   const std::size_t rows = std::min(m.rows, m.columns), columns = std::max(m.rows, m.columns),
                     stride = chunk_count(columns, kMostLanes) * kMostLanes, kept = std::min(terms, rows);
   AlignedVector<float> weight(rows * stride), weighted(rows * stride), fitted(stride);
-  double mean = 0, largest = std::numeric_limits<double>::min();
-  for (const double w : weights) largest = std::max(largest, w);
-  for (std::size_t i = 0; i < m.values.size(); ++i) {
-    const std::size_t r = i / m.columns, c = i % m.columns, at = tall ? c * stride + r : r * stride + c;
-    weight[at] = static_cast<float>(weights[i] / largest);
-    weighted[at] = static_cast<float>(weights[i] / largest * m.values[i]);
-    mean += m.values[i] / static_cast<double>(m.values.size());
-  }
-  const double level = std::sqrt(std::max(mean, 1e-300) / static_cast<double>(kept));
+  double sum = 0;
+  const double unit = 1 / std::max(*std::ranges::max_element(weights), std::numeric_limits<double>::min());
+  for (std::size_t r = 0, i = 0; r < m.rows; ++r)
+    for (std::size_t c = 0; c < m.columns; ++c, ++i) {
+      const std::size_t at = tall ? c * stride + r : r * stride + c;
+      weight[at] = static_cast<float>(unit * weights[i]);
+      weighted[at] = static_cast<float>(unit * weights[i] * m.values[i]);
+      sum += m.values[i];
+    }
+  const double mean = std::max(sum / static_cast<double>(m.values.size()), 1e-300),
+               level = std::sqrt(mean / static_cast<double>(kept));
   const auto least = static_cast<float>(1e-15 * level);  // no subnormal numbers, no 0 that could never rise
   Pcg32 random(seed);
-  const auto start = [&] { return static_cast<float>(level * (0.5 + random.uniform())); };
-  AlignedVector<float> u(rows * kept), v(kept * stride), wanted(v.size()), found(v.size());
-  std::ranges::generate(u, start);
-  for (std::size_t k = 0; k < kept; ++k) std::generate_n(v.data() + k * stride, columns, start);
+  LowRank result{kept, std::vector<double>(m.rows * kept), std::vector<double>(m.columns * kept)};
+  for (std::vector<double>* side : {&result.u, &result.v})
+    std::ranges::generate(*side, [&] { return level * (0.5 + random.uniform()); });
+  std::vector<double>&near_side = tall ? result.v : result.u, &far_side = tall ? result.u : result.v;
+  AlignedVector<float> near(near_side.begin(), near_side.end()), far(kept * stride), wanted(far.size()),
+      found(far.size());
+  for (std::size_t i = 0; i < far_side.size(); ++i)
+    far[i % kept * stride + i / kept] = static_cast<float>(far_side[i]);
 
-  for (int i = 0; i < iterations; ++i) {
+  // u, v, u, v and so on, whichever is near
+  bool still = false;
+  for (int i = tall ? 0 : 1; i <= iterations && !still; ++i) {
+    const bool gather = !tall || i < iterations;
     std::ranges::fill(wanted, 0.0f);
     std::ranges::fill(found, 0.0f);
-    for (std::size_t r = 0; r < rows; ++r) HWY_DYNAMIC_DISPATCH(update)
+    for (std::size_t r = 0; r < rows; ++r) HWY_DYNAMIC_DISPATCH(visit)
     ({.stride = stride,
       .terms = kept,
+      .improve_near = i > 0,
+      .gather_far = gather,
       .weights = weight.data() + r * stride,
       .weighted = weighted.data() + r * stride,
-      .u = u.data() + r * kept,
-      .v = v.data(),
+      .near = near.data() + r * kept,
+      .far = far.data(),
       .fitted = fitted.data(),
-      .wanted_v = wanted.data(),
-      .found_v = found.data(),
+      .wanted = wanted.data(),
+      .found = found.data(),
       .least = least});
-    for (std::size_t j = 0; j < v.size(); ++j)
-      if (found[j] > 0) v[j] = std::max(least, v[j] * wanted[j] / found[j]);
+    if (!gather) break;
+    float change = 0;
+    for (std::size_t j = 0; j < far.size(); ++j) {
+      const float before = far[j];
+      far[j] = improved(before, wanted[j], found[j], least);
+      change = std::max(change, std::abs(far[j] - before) - kStill * before);
+    }
+    still = change <= 0;
   }
-
-  LowRank result{kept, std::vector<double>(u.begin(), u.end()), std::vector<double>(columns * kept)};
-  for (std::size_t c = 0; c < columns; ++c)
-    for (std::size_t k = 0; k < kept; ++k) result.v[c * kept + k] = v[k * stride + c];
-  if (tall) std::swap(result.u, result.v);
+  near_side.assign(near.begin(), near.end());
+  for (std::size_t i = 0; i < far_side.size(); ++i) far_side[i] = far[i % kept * stride + i / kept];
   return result;
 }
 

@@ -20,14 +20,15 @@ using enum PairCoordinate;
 
 // ---- one decomposition ----
 
-constexpr int kUpdates = 400;  // of nonnegative factors
+constexpr int kUpdates = 200;  // of nonnegative factors
 
 // Nodes that are filled in count little.
 std::vector<double> node_weights(const Matrix& m, std::span<const std::uint8_t> measured,
                                  std::size_t repeat) {
   constexpr double kFilled = 0.05;
-  double mean = std::numeric_limits<double>::min();
-  for (const double x : m.values) mean += x / static_cast<double>(m.values.size());
+  double mean = 0;
+  for (const double x : m.values) mean += x;
+  mean = std::max(mean / static_cast<double>(m.values.size()), std::numeric_limits<double>::min());
   std::vector<double> weights(m.values.size());
   for (std::size_t i = 0; i < weights.size(); ++i)
     weights[i] = (measured[i / repeat] ? 1 : kFilled) * compressive_weight(m.values[i], mean);
