@@ -34,8 +34,7 @@ constexpr std::size_t kSheetBudget = 2700;
 std::vector<Attempt> attempts(const std::vector<std::size_t>& budgets, bool isotropic, bool quick) {
   std::vector<Attempt> list{{"ours", budgets}, {"svd", budgets}};
   if (quick) return list;
-  // Large anisotropic matrices take minutes to factorize without negative values.
-  list.push_back({"nmf", isotropic ? budgets : std::vector<std::size_t>{budgets.front()}});
+  list.push_back({"nmf", budgets});
   list.push_back({"nd", {kSheetBudget}});
   if (isotropic) list.push_back({"dgf", {kSheetBudget}});
   for (const std::string_view method : baseline_methods())
@@ -72,8 +71,8 @@ void add_pictures(const Material& material, const std::vector<Score>& scores, Co
 }
 
 /// On how many materials ours beats another method at equal bytes.
-void print_verdicts(const std::vector<std::vector<Score>>& materials, std::string_view other,
-                    const std::vector<std::size_t>& budgets) {
+void print_verdict(const std::vector<std::vector<Score>>& materials, std::string_view other,
+                   const std::vector<std::size_t>& budgets) {
   fmt::print(
       "\nMaterials of {} on which ours is better than `{}` at the same budget:\n\n| bytes | psnr | ssim | "
       "relative "
@@ -97,6 +96,12 @@ void print_verdicts(const std::vector<std::vector<Score>>& materials, std::strin
     }
     fmt::print("| {} | {} |\n", budget, fmt::join(better, " | "));
   }
+}
+
+void print_verdicts(const std::vector<std::vector<Score>>& materials, bool quick,
+                    const std::vector<std::size_t>& budgets) {
+  for (const std::string_view other : {"svd", "nmf"})
+    if (other == "svd" || !quick) print_verdict(materials, other, budgets);
 }
 
 void print_rows(const std::deque<Material>& materials, const std::vector<std::vector<Score>>& scores) {
@@ -152,6 +157,7 @@ void report_rgl(const fs::path& data, const fs::path& docs, bool quick) {
   for (const fs::path& file : files) {
     Material& material = materials.emplace_back(file.stem().string(), file.string());
     material.attempts = attempts(budgets, material.reference.isotropic(), quick);
+    material.shown_budget = kSheetBudget;
   }
   std::vector<std::vector<Score>> scores = run(materials);
   for (std::size_t i = 0; i < materials.size(); ++i) {
@@ -159,12 +165,11 @@ void report_rgl(const fs::path& data, const fs::path& docs, bool quick) {
     const Source network =
         open_source(fmt::format("nbrdf:{}#{}", (data / "nbrdf/rgl.csv").string(), material.name), {});
     const SymmetrizedBrdf symmetric(network.ref());
-    scores[i].insert(scores[i].begin(), run_network(material.scorer, symmetric));
+    scores[i].insert(scores[i].begin(), run_network(material, symmetric));
     add_pictures(material, scores[i], sheet);
   }
   print_table(materials, scores);
-  for (const std::string_view other : {"svd", "nmf"})
-    if (other == "svd" || !quick) print_verdicts(scores, other, budgets);
+  print_verdicts(scores, quick, budgets);
   fs::create_directories(docs / "figures");
   write_then_rename(docs / "figures/accuracy-spheres.png", encode_png(compose(sheet)));
 
@@ -192,35 +197,26 @@ void report_merl(const fs::path& data, bool quick) {
   constexpr std::size_t kEvery = 10;
   fmt::print(
       "\n## Stand-ins for the MERL materials\n\nThe published encodings of {}, evaluated, are the reference; "
-      "`ours` and `svd` at "
-      "2,700 bytes{}.\n\n",
-      quick ? "every tenth material" : "all 100 materials",
-      quick ? "" : ", every method on every tenth material");
+      "2,700 bytes.\n\n",
+      quick ? "every tenth material" : "all 100 materials");
   std::deque<Material> materials;
-  std::vector<std::vector<Score>> scores;  // of ours and svd
-  Means means, every;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (quick && i % kEvery > 0) continue;
+  for (std::size_t i = 0; i < names.size(); i += quick ? kEvery : 1) {
     const std::string place = fmt::format("nbrdf:{}#{}", (data / "nbrdf/merl.csv").string(), names[i]);
-    Material& material =
-        materials.emplace_back(names[i], place, FigureOptions{.count = 50'000, .image_size = 128});
-    material.attempts = attempts({kSheetBudget}, true, quick || i % kEvery > 0);
+    materials.emplace_back(names[i], place, FigureOptions{.count = 50'000, .image_size = 128}).attempts =
+        attempts({kSheetBudget}, true, quick);
   }
-  for (std::vector<Score>& row : run(materials)) {
-    if (!quick && scores.size() % kEvery == 0) every.add(row);
-    row.resize(2);
-    means.add(row);
-    scores.push_back(std::move(row));
-  }
+  const std::vector<std::vector<Score>> scores = run(materials);
+  Means means;
+  for (const std::vector<Score>& row : scores) means.add(row);
   print_head();
   for (const Score& mean : means.means()) print_row(fmt::format("**mean of {}**", materials.size()), mean);
-  for (const Score& mean : every.means()) print_row("**mean of ten**", mean);
-  print_verdicts(scores, "svd", {kSheetBudget});
-  if (quick) return;
   const auto worst =
       std::ranges::max_element(scores, {}, [](const auto& row) { return row.front().errors.rms_log; });
-  fmt::print("\nLargest rms_log: {:.3f}, {}. By material:\n\n", worst->front().errors.rms_log,
+  fmt::print("\nLargest rms_log of `ours`: {:.3f}, {}.\n", worst->front().errors.rms_log,
              materials[static_cast<std::size_t>(worst - scores.begin())].name);
+  print_verdicts(scores, quick, {kSheetBudget});
+  if (quick) return;
+  fmt::print("\nBy material:\n\n");
   print_rows(materials, scores);
 }
 
@@ -243,6 +239,7 @@ void report_others(const std::optional<fs::path>& data, const fs::path& docs, bo
   for (const auto& [name, place] : sources) {
     Material& material = materials.emplace_back(name, place);
     material.attempts = attempts(budgets, material.reference.isotropic(), quick);
+    material.shown_budget = kSheetBudget;
   }
   const std::vector<std::vector<Score>> scores = run(materials);
   for (std::size_t i = 0; i < materials.size(); ++i) {
@@ -251,7 +248,7 @@ void report_others(const std::optional<fs::path>& data, const fs::path& docs, bo
     add_pictures(materials[i], shown, sheet);
   }
   print_rows(materials, scores);
-  print_verdicts(scores, "svd", budgets);
+  print_verdicts(scores, quick, budgets);
   if (!quick) write_then_rename(docs / "figures/accuracy-others.png", encode_png(compose(sheet)));
 }
 

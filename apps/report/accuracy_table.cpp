@@ -37,11 +37,12 @@ FactoredBrdf fit_ours(BrdfRef reference, std::size_t bytes) {
   return to_rounded_brdf(fit.model, set, options);
 }
 
-Score score_of(const Scorer& scorer, std::string_view method, std::size_t budget, BrdfRef model) {
-  return {.method = std::string(method),
-          .budget = budget,
-          .errors = scorer.score(model),
-          .picture = picture(model, scorer.exposure())};
+Score score_of(const Material& material, std::string_view method, std::size_t budget, BrdfRef model) {
+  Score score{
+      .method = std::string(method), .budget = budget, .errors = material.scorer.score(model), .picture = {}};
+  if (material.shown_budget && budget <= *material.shown_budget)
+    score.picture = picture(model, material.scorer.exposure());
+  return score;
 }
 
 // The figures of a mean, in one place.
@@ -49,23 +50,23 @@ std::array<double*, 6> figures(ErrorFigures& e) {
   return {&e.psnr, &e.ssim, &e.relative, &e.log_cos, &e.rms_log, &e.rms};
 }
 
-Score run_ours(const Scorer& scorer, std::size_t budget) {
+Score run_ours(const Material& material, std::size_t budget) {
   const Stopwatch watch;
-  const FactoredBrdf brdf = fit_ours(scorer.reference(), budget);
+  const FactoredBrdf brdf = fit_ours(material.reference, budget);
   const double seconds = watch.seconds();
-  Score score = score_of(scorer, "ours", budget, brdf);
+  Score score = score_of(material, "ours", budget, brdf);
   score.bytes = brdf.bytes();
   score.cost = evaluation_cost(brdf);
   score.seconds = seconds;
   return score;
 }
 
-Score run_baseline(const Scorer& scorer, const SampleSource& samples, std::string_view method,
-                   std::size_t budget) {
+Score run_baseline(const Material& material, std::string_view method, std::size_t budget) {
   BaselineOptions options;
   if (budget > 0) options.budget = budget;
-  const BaselineFit fit = fit_baseline(scorer.reference(), samples, method, options);
-  Score score = score_of(scorer, method, budget, baseline_ref(fit.baseline.brdf));
+  const BaselineFit fit =
+      fit_baseline(material.reference, from_brdf(material.reference, kDrawnPairs, 1, false), method, options);
+  Score score = score_of(material, method, budget, baseline_ref(fit.baseline.brdf));
   score.bytes = fit.bytes;
   score.cost = fit.cost;
   score.seconds = fit.seconds;
@@ -98,7 +99,7 @@ std::vector<std::vector<Score>> run(const std::deque<Material>& materials) {
     for (std::size_t k = 0; k < jobs.size(); ++k) {
       jobs[k].score = &row[k];
       if (jobs[k].method == "ours")
-        row[k] = run_ours(material.scorer, jobs[k].budget);
+        row[k] = run_ours(material, jobs[k].budget);
       else
         others.push_back(jobs[k]);
     }
@@ -111,16 +112,15 @@ std::vector<std::vector<Score>> run(const std::deque<Material>& materials) {
       for (std::size_t k; (k = next++) < others.size();) {
         const auto& [material, method, budget, score] = others[k];
         fmt::print(stderr, "accuracy: {}, {}\n", material->name, method);
-        *score = run_baseline(material->scorer, from_brdf(material->reference, kDrawnPairs, 1, false), method,
-                              budget);
+        *score = run_baseline(*material, method, budget);
       }
     }));
   for (std::future<void>& worker : workers) worker.get();
   return scores;
 }
 
-Score run_network(const Scorer& scorer, BrdfRef network) {
-  Score score = score_of(scorer, "network", 0, network);
+Score run_network(const Material& material, BrdfRef network) {
+  Score score = score_of(material, "network", 0, network);
   score.bytes = kNetworkBytes;
   score.cost = kNetworkCost;
   return score;

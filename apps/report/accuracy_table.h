@@ -23,7 +23,7 @@ struct Score {
   std::size_t bytes = 0;
   std::optional<EvaluationCost> cost;
   double seconds = 0;  ///< of the fit; 0: not fitted here
-  Image8 picture;      ///< a lit sphere, light at 30 degrees, under the reference's exposure
+  Image8 picture;      ///< a lit sphere, light at 30 degrees, under the reference's exposure; may be none
 };
 
 /// A method at the budgets it is tried at; none: whatever it takes.
@@ -39,6 +39,7 @@ struct Material {
   SymmetrizedBrdf reference;
   Scorer scorer;
   std::vector<Attempt> attempts = {};
+  std::optional<std::size_t> shown_budget = {};  ///< scores up to it have pictures
 
   /// Throws Error as open_source and Scorer do.
   Material(std::string called, const std::string& place, const FigureOptions& options = {})
@@ -57,7 +58,7 @@ Image8 picture(BrdfRef brdf, double exposure);
 std::vector<std::vector<Score>> run(const std::deque<Material>& materials);
 
 /// Scores a network of 675 weights.
-Score run_network(const Scorer& scorer, BrdfRef network);
+Score run_network(const Material& material, BrdfRef network);
 
 /// Table head and rows; a row's first column is the material.
 void print_head();
