@@ -78,7 +78,6 @@ class Parameters {
 
   const AnalyticModel& model() const { return *model_; }
   const std::vector<Unknown>& unknowns() const { return unknowns_; }
-
   int parts() const { return unknowns_.back().part + 1; }
 
   /// The model's values, all of it or one part alone, the colours of the others being black.

@@ -64,7 +64,7 @@ void for_each_block(std::size_t terms, const Body& body) {
 
 void fit(const Row& row) {
   const Tag d;
-  for_each_block(row.terms, [&]<std::size_t count>(std::size_t first) {
+  for_each_block(row.terms, [&]<std::size_t count>(std::size_t first) HWY_ATTR {
     Vector near[count];
     for (std::size_t k = 0; k < count; ++k) near[k] = hn::Set(d, row.near[first + k]);
     const bool last = first + count == row.terms;
@@ -80,7 +80,7 @@ void fit(const Row& row) {
 
 void improve_near(const Row& row) {
   const Tag d;
-  for_each_block(row.terms, [&]<std::size_t count>(std::size_t first) {
+  for_each_block(row.terms, [&]<std::size_t count>(std::size_t first) HWY_ATTR {
     Vector wanted[count], found[count];
     for (std::size_t k = 0; k < count; ++k) wanted[k] = found[k] = hn::Zero(d);
     for (std::size_t c = 0; c < row.stride; c += hn::Lanes(d)) {
@@ -99,7 +99,7 @@ void improve_near(const Row& row) {
 
 void gather_far(const Row& row) {
   const Tag d;
-  for_each_block(row.terms, [&]<std::size_t count>(std::size_t first) {
+  for_each_block(row.terms, [&]<std::size_t count>(std::size_t first) HWY_ATTR {
     Vector near[count];
     for (std::size_t k = 0; k < count; ++k) near[k] = hn::Set(d, row.near[first + k]);
     for (std::size_t c = 0; c < row.stride; c += hn::Lanes(d)) {
@@ -174,19 +174,21 @@ LowRank nonnegative_factors(const Matrix& m, std::span<const double> weights, st
     const bool gather = !tall || i < iterations;
     std::ranges::fill(wanted, 0.0f);
     std::ranges::fill(found, 0.0f);
-    for (std::size_t r = 0; r < rows; ++r) HWY_DYNAMIC_DISPATCH(visit)
-    ({.stride = stride,
-      .terms = kept,
-      .improve_near = i > 0,
-      .gather_far = gather,
-      .weights = weight.data() + r * stride,
-      .weighted = weighted.data() + r * stride,
-      .near = near.data() + r * kept,
-      .far = far.data(),
-      .fitted = fitted.data(),
-      .wanted = wanted.data(),
-      .found = found.data(),
-      .least = least});
+    for (std::size_t r = 0; r < rows; ++r) {
+      const Row row{.stride = stride,
+                    .terms = kept,
+                    .improve_near = i > 0,
+                    .gather_far = gather,
+                    .weights = weight.data() + r * stride,
+                    .weighted = weighted.data() + r * stride,
+                    .near = near.data() + r * kept,
+                    .far = far.data(),
+                    .fitted = fitted.data(),
+                    .wanted = wanted.data(),
+                    .found = found.data(),
+                    .least = least};
+      HWY_DYNAMIC_DISPATCH(visit)(row);
+    }
     if (!gather) break;
     float change = 0;
     for (std::size_t j = 0; j < far.size(); ++j) {
