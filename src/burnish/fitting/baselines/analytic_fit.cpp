@@ -157,15 +157,18 @@ class Cost : public ceres::CostFunction {
   }
 
   bool Evaluate(double const* const* varied, double* residuals, double** jacobians) const override {
-    const std::vector<double> x = all(varied[0]);
-    std::vector<std::vector<double>> parts(static_cast<std::size_t>(parameters_.parts()));
-    for (std::size_t p = 0; p < parts.size(); ++p) parts[p] = evaluate(x, static_cast<int>(p));
+    std::vector<double> x = all(varied[0]);
+    if (x != evaluated_at_) {  // slopes are asked for where values were
+      parts_.resize(static_cast<std::size_t>(parameters_.parts()));
+      for (std::size_t p = 0; p < parts_.size(); ++p) parts_[p] = evaluate(x, static_cast<int>(p));
+      evaluated_at_ = std::move(x);
+    }
     for (std::size_t r = 0; r < targets_.size(); ++r) {
       double value = 0;
-      for (const std::vector<double>& part : parts) value += part[r];
+      for (const std::vector<double>& part : parts_) value += part[r];
       residuals[r] = weights_[r / samples_.channels] * (std::cbrt(value) - targets_[r]);
     }
-    if (jacobians && jacobians[0]) differentiate(x, parts, residuals, jacobians[0]);
+    if (jacobians && jacobians[0]) differentiate(residuals, jacobians[0]);
     return true;
   }
 
@@ -189,8 +192,7 @@ class Cost : public ceres::CostFunction {
   }
 
   // Forward differences of f; the channels of a colour, which do not see each other, in one evaluation.
-  void differentiate(const std::vector<double>& x, const std::vector<std::vector<double>>& parts,
-                     const double* residuals, double* jacobian) const {
+  void differentiate(const double* residuals, double* jacobian) const {
     const std::vector<Unknown>& unknowns = parameters_.unknowns();
     const std::size_t columns = varied_.size(), rows = targets_.size();
     std::vector<double> slopes(rows);  // of residuals by f r
@@ -201,7 +203,7 @@ class Cost : public ceres::CostFunction {
     for (std::size_t k = 0; k < columns;) {
       const Unknown& first = unknowns[varied_[k]];
       const std::size_t group = first.channel < 0 ? 1 : 3;
-      std::vector<double> moved = x;
+      std::vector<double> moved = evaluated_at_;
       std::array<double, 3> step{};
       for (std::size_t g = 0; g < group; ++g) {
         // inwards where a bound is near
@@ -210,7 +212,7 @@ class Cost : public ceres::CostFunction {
         step[g] = at + size > first.upper ? -size : size;
         at += step[g];
       }
-      const std::vector<double>& values = parts[static_cast<std::size_t>(first.part)];
+      const std::vector<double>& values = parts_[static_cast<std::size_t>(first.part)];
       const std::vector<double> moved_values = evaluate(moved, first.part);
       for (double& size : step) size = 1 / size;
       for (std::size_t r = 0; r < rows; ++r) {
@@ -226,6 +228,8 @@ class Cost : public ceres::CostFunction {
   const Parameters& parameters_;
   std::vector<double> roots_, weights_, targets_, held_;
   std::vector<std::size_t> varied_;
+  mutable std::vector<double> evaluated_at_;
+  mutable std::vector<std::vector<double>> parts_;
 };
 
 /// Minimizations from several starts of which the best is kept.
