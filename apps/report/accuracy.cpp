@@ -170,7 +170,6 @@ void report_rgl(const fs::path& data, const fs::path& docs, bool quick) {
   }
   print_table(materials, scores);
   print_verdicts(scores, quick, budgets);
-  fs::create_directories(docs / "figures");
   write_then_rename(docs / "figures/accuracy-spheres.png", encode_png(compose(sheet)));
 
   Means means;
@@ -327,6 +326,7 @@ int main(int argc, char** argv) {
           burnish::processor(), std::thread::hardware_concurrency());
     const char* data = std::getenv("BURNISH_DATA");
     if (!data) fmt::print("BURNISH_DATA is not set: no real materials.\n");
+    burnish::fs::create_directories(burnish::fs::path(argv[1]) / "figures");
     if (data && wanted("rgl")) burnish::report_rgl(data, argv[1], quick);
     if (data && wanted("merl")) burnish::report_merl(data, quick);
     if (wanted("others"))
