@@ -115,6 +115,32 @@ TEST(PairGrid, HoldsTheSourceAtItsNodes) {
   EXPECT_GT(measured, 30u);
 }
 
+/// The lower of both cosines, as a grid stores it.
+struct LowerCosine {
+  static int channels() noexcept { return 1; }
+  static bool isotropic() noexcept { return true; }
+  static bool eval(Vec3 wi, Vec3 wo, std::span<double> f) noexcept {
+    f[0] = std::min(wi.z, wo.z) / separable_divisor(wi, wo);
+    return true;
+  }
+};
+
+TEST(PairGrid, PullsNodesBelowTheHorizonJustAboveIt) {
+  for (const PairCoordinate azimuth : {phi_d, turn_d}) {
+    const PairGrid grid = sample_pair_grid(LowerCosine{}, std::vector<NodeAxis>{{theta_h, 12}},
+                                           std::vector<NodeAxis>{{theta_d, 12}, {azimuth, 5}});
+    std::size_t pulled = 0;
+    for (std::size_t i = 0; i < grid.values.size(); ++i)
+      if (grid.measured[i]) {
+        EXPECT_GE(grid.values[i], kDrawnCosine);
+      } else {
+        EXPECT_NEAR(grid.values[i], kDrawnCosine, 1e-7);
+        ++pulled;
+      }
+    EXPECT_GT(pulled, 100u);
+  }
+}
+
 TEST(PairGrid, FillsHolesFromTheirNeighbours) {
   const testing::Glossy blind{.blind_below = 0.9};
   const PairGrid grid = sample_pair_grid(blind, std::vector<NodeAxis>{{theta_h, 6}},
