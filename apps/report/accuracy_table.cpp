@@ -32,7 +32,7 @@ FactoredBrdf fit_ours(BrdfRef reference, std::size_t bytes) {
   const TrainingOptions drawn = training_for(bytes, texel, reference.isotropic());
   const TrainingSet set = draw_training_set(reference, drawn);
   RefineOptions options{.format = format};
-  const LobePlan plan = default_plan(bytes, 0, reference.isotropic(), texel);
+  const LobePlan plan = plan_for(reference, bytes, 0, texel);
   const LobesFit fit = fit_without_overfit(reference, set, plan, bytes, texel, drawn, options);
   return to_rounded_brdf(fit.model, set, options);
 }

@@ -42,6 +42,8 @@ nb::object projection_terms(const Projection& p) {
       return nb::str("difference");
     case Projection::Kind::deviation:
       return nb::str("deviation");
+    case Projection::Kind::twist:
+      return nb::str("twist");
     case Projection::Kind::affine:
       break;
   }

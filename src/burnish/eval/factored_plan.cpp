@@ -139,6 +139,7 @@ FactoredPlan::Source& FactoredPlan::source_of(const Projection& projection, bool
                     : projection == kProjectHalf                  ? Kind::half
                     : projection.kind == Projection::Kind::affine ? Kind::affine
                     : projection == kProjectDeviation             ? Kind::deviation_angle
+                    : projection == kProjectTwist                 ? Kind::twist_angle
                     : azimuth                                     ? Kind::difference
                                                                   : Kind::difference_angle;
   needs_sum |= kind != Kind::wi && kind != Kind::wo && kind != Kind::affine;

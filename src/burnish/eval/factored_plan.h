@@ -31,7 +31,7 @@ struct FactoredPlan {
 
   /// An unnormalized projection and the positions that depend on it.
   struct Source {
-    enum class Kind { wi, wo, half, difference_angle, deviation_angle, difference, affine };
+    enum class Kind { wi, wo, half, difference_angle, deviation_angle, twist_angle, difference, affine };
     Kind kind;
     Projection projection;
     bool radius = false;  // some position needs r

@@ -127,7 +127,7 @@ FactoredBrdf::FactoredBrdf(int channels, std::vector<Table> tables, std::vector<
             fmt::format("lobe: expected a table index below {}, found {}", tables_.size(), use.table));
       const TableLayout& layout = tables_[static_cast<std::size_t>(use.table)].layout;
       isotropic_ = isotropic_ && !depends_on_azimuth(layout);
-      if (depends_on_azimuth(layout) && use.projection == kProjectDeviation)
+      if (depends_on_azimuth(layout) && is_angle_alone(use.projection))
         throw Error("lobe: expected a disk over a projection with an azimuth, found theta_m");
       FactorUse other;
       const bool has_swap = swapped_use(use, layout, other);

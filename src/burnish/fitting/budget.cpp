@@ -60,6 +60,12 @@ TrainingSet coarse_part(const TrainingSet& set) {
   return thinned(set, std::max<std::size_t>(1, set.size() / kCoarsePairs));
 }
 
+bool solved_directly(const ModelSpec& spec) {
+  std::size_t unknowns = 0;
+  for (const ModelSpec::TableSpec& table : spec.tables) unknowns += table.layout.node_count();
+  return unknowns <= kMostDirectUnknowns;
+}
+
 // The spec without its grids, the tables in the same order.
 ModelSpec without_grids(const ModelSpec& spec) {
   ModelSpec thin;
@@ -110,8 +116,9 @@ LobesFit fit_plan(const TrainingSet& set, const LobePlan& plan, std::size_t byte
                   const RefineOptions& options) {
   const ModelSpec whole = plan_to_spec(plan, bytes, set.channels, texel_bytes);
   if (!plan.wide.empty()) return fit_lobes(set, whole, options);
-  // The 1-D tables first: their steps are solved directly, and grids that start as 1 only lower the error.
-  const ModelSpec thin = without_grids(whole);
+  // Of many unknowns the 1-D tables first: their steps are solved directly, and grids that start as 1 only
+  // lower the error.
+  const ModelSpec thin = solved_directly(whole) ? whole : without_grids(whole);
   std::vector<std::string> common;
   for (const PlannedFactor& factor : plan.factors)
     if (factor.every_lobe) common.push_back(factor.name);

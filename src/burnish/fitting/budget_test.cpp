@@ -52,6 +52,41 @@ TEST(LobePlan, SharesTablesAmongLobesAndChannels) {
   }
 }
 
+// Brighter on one side of the plane of h and n than on the other.
+struct Twisted {
+  AnalyticBrdf even;
+
+  int channels() const noexcept { return even.channels(); }
+  bool isotropic() const noexcept { return true; }
+  bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+    const bool known = even.eval(wi, wo, f);
+    const double sine = project_tan_half(kProjectTwist, wi, wo) - 0.5;
+    for (double& v : f) v *= std::exp(1.5 * sine * project_tan_half(kProjectHalf, wi, wo));
+    return known;
+  }
+};
+
+TEST(PlanFor, TellsMirrorImagesApartWhereTheSourceDoes) {
+  const AnalyticBrdf even = parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3,kd=0.3,f0=0.5");
+  const Twisted source{even};
+  constexpr std::size_t kBytes = 1500;
+  const LobePlan plain = default_plan(kBytes, 0, true, kHalfRgb);
+  EXPECT_EQ(plan_for(even, kBytes, 0, kHalfRgb), plain);
+  const AnalyticBrdf brushed = parse_analytic("ggx:alpha_x=0.2,alpha_y=0.5");
+  EXPECT_EQ(plan_for(brushed, kBytes, 0, kHalfRgb), default_plan(kBytes, 0, false, kHalfRgb));
+
+  const LobePlan plan = plan_for(source, kBytes, 0, kHalfRgb);
+  const TrainingSet set = draw_training_set(source, {.pictures = 2000, .directions = 5000});
+  const auto relative = [&](const LobePlan& p) {
+    const FactoredBrdf brdf =
+        to_brdf(fit_plan(set, p, kBytes, kHalfRgb, {.max_iterations = 10}).model, TableFormat::half);
+    EXPECT_LE(brdf.bytes(), kBytes);
+    EXPECT_TRUE(brdf.isotropic() && brdf.reciprocal());
+    return error_figures(source, brdf, {.count = 5000, .image_size = 32}).relative;
+  };
+  EXPECT_LT(relative(plan), 0.3 * relative(plain));
+}
+
 TEST(FitWithoutOverfit, IsSmootherWhereThatPredictsBetterAndNowhereElse) {
   const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3,kd=0.2");
   constexpr std::size_t kBytes = 3200, kFewBytes = 200, kHalf = 2;

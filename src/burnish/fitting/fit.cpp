@@ -123,7 +123,7 @@ class Fitter {
     TrainingOptions drawn = training_for(options_.budget, texel, input_.brdf.isotropic());
     drawn.seed = options_.seed;
     const TrainingSet set = draw_training_set(reference(), drawn);
-    LobePlan plan = default_plan(options_.budget, options_.lobes, input_.brdf.isotropic(), texel);
+    LobePlan plan = plan_for(reference(), options_.budget, options_.lobes, texel);
     RefineOptions refine = refine_options();
     if (options_.search) {
       const SearchResult found = search_plan(set, plan,

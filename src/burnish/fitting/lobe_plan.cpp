@@ -5,6 +5,7 @@
 
 #include <burnish/error.h>
 #include <burnish/fitting/lobe_plan.h>
+#include <burnish/reflectance/goniometer.h>
 
 namespace burnish {
 
@@ -21,6 +22,9 @@ constexpr Warp kDiskWarp{WarpKind::rational, 0.25};
 constexpr std::size_t kNumberBytes = 4;  // of a scale, a warp's parameter or a projection's coefficient
 // Of an isotropic model: from how many texels on it has grids, and how many its 1-D tables take at most.
 constexpr double kGridTexels = 1500, kThreeGridTexels = 6000, kMostLineTexels = 2000;
+// From which asymmetry on a factor tells mirror images apart, and its nodes from one side to the other.
+constexpr double kLeastAsymmetry = 0.001;
+constexpr int kTwistNodes = 5;
 constexpr int kMostSide = 1024;  // nodes of a line: finer than any measurement
 
 // More texels for each of few lobes resolve rings, more lobes follow how the highlight changes with the
@@ -60,15 +64,18 @@ double node_cost(const PlannedFactor& factor, int channels, std::size_t texel_by
 
 // Adds a factor's table of at most `nodes` nodes.
 void add_table(const PlannedFactor& factor, double nodes, const std::string& suffix, ModelSpec& spec) {
-  const bool line = factor.shape == TableShape::line, disk = factor.shape == TableShape::disk;
-  const int width = std::min(static_cast<int>(line ? nodes : std::sqrt(nodes)), kMostSide);
-  if (width < (disk ? 3 : 2))
+  const bool line = factor.shape == TableShape::line;
+  const double side = factor.width > 0 ? factor.width : line ? nodes : std::sqrt(nodes);
+  const int width = std::min(static_cast<int>(side), kMostSide),
+            height = line ? 1 : std::min(static_cast<int>(nodes / side), kMostSide),
+            least = factor.shape == TableShape::disk ? 3 : 2;
+  if (width < least || (!line && height < least))
     throw Error(fmt::format("fit: expected a budget that holds every table, found {} texels for '{}{}'",
                             static_cast<int>(nodes), factor.name, suffix));
   spec.tables.push_back({.name = factor.name + suffix,
                          .layout = {.shape = factor.shape,
                                     .width = width,
-                                    .height = line ? 1 : width,
+                                    .height = height,
                                     .warp = factor.warp,
                                     .warp_y = factor.second_warp},
                          .shared = factor.grey});
@@ -101,6 +108,24 @@ void add_lobes(const std::vector<PlannedFactor>& factors, std::size_t lobes, dou
     }
     spec.lobes.push_back(std::move(lobe));
   }
+}
+
+// Mean of what the logarithms of f and of its mirror image differ by from their mean.
+double mirror_asymmetry(BrdfRef source) {
+  constexpr double kFloor = 1e-3;
+  constexpr std::size_t kPairs = 4000;
+  const std::vector<DirectionPair> pairs = draw_pairs(kPairs, 1, true);
+  const auto channels = static_cast<std::size_t>(source.channels());
+  std::vector<double> f(channels), mirrored(channels);
+  double sum = 0, count = 0;
+  for (const auto& [wi, wo] : pairs) {
+    const Vec3 mirrored_wi{wi.x, -wi.y, wi.z}, mirrored_wo{wo.x, -wo.y, wo.z};
+    if (!source.eval(wi, wo, f) || !source.eval(mirrored_wi, mirrored_wo, mirrored)) continue;
+    for (std::size_t c = 0; c < channels; ++c)
+      sum += 0.5 * std::abs(std::log((std::max(f[c], 0.0) + kFloor) / (std::max(mirrored[c], 0.0) + kFloor)));
+    count += static_cast<double>(channels);
+  }
+  return count > 0 ? sum / count : 0;
 }
 
 }  // namespace
@@ -154,6 +179,19 @@ LobePlan default_plan(std::size_t bytes, int lobes, bool isotropic, std::size_t 
   plan.wide = {line("a", {kProjectWo, kProjectWi}, 1), line("b", {kProjectHalf}, 1),
                line("c", {kProjectDifference}, 1)};
   plan.wide_texels = std::min(3 * kWide, static_cast<int>(texels / 4));
+  return plan;
+}
+
+LobePlan plan_for(BrdfRef source, std::size_t bytes, int lobes, std::size_t texel_bytes) {
+  LobePlan plan = default_plan(bytes, lobes, source.isotropic(), texel_bytes);
+  if (source.isotropic() && mirror_asymmetry(source) > kLeastAsymmetry)
+    plan.factors.push_back({.name = "t",
+                            .shape = TableShape::grid,
+                            .uses = {kProjectTwist},
+                            .share = 0.25,
+                            .second = kProjectHalf,
+                            .second_warp = kHalfWarp,
+                            .width = kTwistNodes});
   return plan;
 }
 

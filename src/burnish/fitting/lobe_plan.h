@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <burnish/factors/model_spec.h>
+#include <burnish/reflectance/brdf.h>
 
 namespace burnish {
 
@@ -18,6 +19,7 @@ struct PlannedFactor {
   Warp warp;
   Projection second;  ///< of a grid, which has one use
   Warp second_warp;
+  int width = 0;            ///< nodes of a grid along its first axis; 0: as many as along the second
   bool every_lobe = false;  ///< one table for all lobes
   bool grey = false;        ///< one channel for all
 
@@ -40,6 +42,10 @@ struct LobePlan {
 /// one z(theta_h) for all of them; grids over two of the three angles where there are texels to spare; p and
 /// q hemispheres where the source is anisotropic. `lobes` counts the wide one too; 0: chosen by the bytes.
 LobePlan default_plan(std::size_t bytes, int lobes, bool isotropic, std::size_t texel_bytes);
+
+/// default_plan for a source; where an isotropic one is not its own mirror image, each lobe has also a factor
+/// t(theta_t, theta_h).
+LobePlan plan_for(BrdfRef source, std::size_t bytes, int lobes, std::size_t texel_bytes);
 
 /// The largest model of the plan whose tables and numbers fit `bytes`, see FactoredBrdf::bytes. Throws Error
 /// if a table would have fewer than two nodes (a hemisphere: 3 x 3), or no factor of several lobes is a

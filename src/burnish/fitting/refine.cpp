@@ -13,8 +13,6 @@ namespace burnish {
 
 namespace {
 
-constexpr std::size_t kMostDirectUnknowns = 1000;
-
 // Levenberg-Marquardt: the damping's start, its smallest, and what successes and failures make of it.
 // It changes where the objective falls by more or less than these shares of what was predicted, as a third of
 // the damping that serves best makes a step that leads up.

@@ -10,6 +10,9 @@
 
 namespace burnish {
 
+/// Nodes that a channel's tables have at most for its steps to be solved by a Cholesky factorization.
+inline constexpr std::size_t kMostDirectUnknowns = 1000;
+
 struct RefineOptions {
   ErrorTerms shares = PictureLoss{}.shares;  ///< see PictureLoss
   /// Times the integrals over each table of the squared second derivatives of log lambda, added to the
@@ -32,7 +35,7 @@ struct RefineSummary {
 /// Lowers the error that PictureLoss states, by damped Gauss-Newton steps (Levenberg-Marquardt) on the
 /// logarithms of the tables [Marquardt1963]; lambda stays positive. Every accepted step lowers the
 /// objective. Channels are refined side by side, or as one system where a table is shared. Steps are solved
-/// by a Cholesky factorization for up to 1,000 unknowns, by preconditioned conjugate gradients for more. The
+/// directly for up to kMostDirectUnknowns, by preconditioned conjugate gradients for more. The
 /// result does not depend on the number of threads.
 RefineSummary refine(LogModel& model, const TrainingSet& set, const RefineOptions& options);
 /// The same with the set's lookups of models like this one at hand.

@@ -31,6 +31,15 @@ Vec3 difference_vector(Vec3 wi, Vec3 wo) noexcept {
   return {dot(wi, x_axis), dot(wi, y_axis), 0.5 * length(wi + wo)};
 }
 
+// tan(theta_t / 2)
+double twist(Vec3 wi, Vec3 wo) noexcept {
+  const Vec3 s = wi + wo, a = wi - wo;
+  const double across = s.x * s.x + s.y * s.y, square = across + s.z * s.z;
+  const double turn = a.z * (s.y * a.x - s.x * a.y) * square;
+  const double den = 2 * (across + kTwistCore * square);
+  return den > 0 ? std::clamp(0.5 + kTwistScale * turn / den, 0.0, 1.0) : 0;
+}
+
 }  // namespace
 
 Vec3 project(const Projection& p, Vec3 wi, Vec3 wo) noexcept {
@@ -38,6 +47,10 @@ Vec3 project(const Projection& p, Vec3 wi, Vec3 wo) noexcept {
   if (p.kind == Projection::Kind::deviation) {
     const Vec3 mirrored = mirror(wi);
     return {0.5 * length(mirrored - wo), 0, 0.5 * length(mirrored + wo)};
+  }
+  if (p.kind == Projection::Kind::twist) {
+    const double t = twist(wi, wo);
+    return normalize({2 * t, 0, 1 - t * t});
   }
   Vec3 v = combine(p.wi, wi, p.wo, wo);
   if (p.mirror != 0) v = v + p.mirror * mirror(wi);
@@ -47,6 +60,7 @@ Vec3 project(const Projection& p, Vec3 wi, Vec3 wo) noexcept {
 
 double project_tan_half(const Projection& p, Vec3 wi, Vec3 wo) noexcept {
   if (p.kind == Projection::Kind::affine) return tan_half_theta(project(p, wi, wo));
+  if (p.kind == Projection::Kind::twist) return twist(wi, wo);
   // cos theta_d = |wi + wo| / 2, sin theta_d = |wi - wo| / 2; theta_m likewise, where mirroring only changes
   // the signs of wi's x and y, so that exchanging the directions changes no bit
   if (p.kind == Projection::Kind::deviation) wi = mirror(wi);
@@ -68,10 +82,11 @@ Projection parse_projection(std::string_view text, bool& angle_only) {
   if (text == "h" || text == "theta_h") return kProjectHalf;
   if (text == "d" || text == "theta_d") return kProjectDifference;
   if (text == "theta_m") return kProjectDeviation;
+  if (text == "theta_t") return kProjectTwist;
 
   const auto fail = [&]() -> Error {
     return Error(fmt::format(
-        "projection: expected wi, wo, h, d, theta_i, theta_o, theta_h, theta_d, theta_m or a sum of "
+        "projection: expected wi, wo, h, d, theta_i, theta_o, theta_h, theta_d, theta_m, theta_t or a sum of "
         "terms of wi, wo, m and n such as wi+wo+0.5n, found '{}'",
         text));
   };
@@ -111,6 +126,7 @@ std::string to_string(const Projection& p) {
   if (p == kProjectHalf) return "h";
   if (p == kProjectDifference) return "d";
   if (p == kProjectDeviation) return "theta_m";
+  if (p == kProjectTwist) return "theta_t";
   std::string text;
   const auto term = [&](double coefficient, const char* name) {
     if (coefficient != 0)

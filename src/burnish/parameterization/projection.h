@@ -16,9 +16,13 @@ namespace burnish {
 /// azimuth
 ///   [Rusinkiewicz 1998];
 /// - deviation: a polar angle alone (azimuth 0), theta_m: half the angle between the view and the light's
-///   mirror direction, 0 in the middle of a highlight; the same when the directions are exchanged.
+///   mirror direction, 0 in the middle of a highlight; the same when the directions are exchanged;
+/// - twist: a polar angle alone, theta_t, the one projection that tells a pair from its mirror image: to
+///   which side of the plane of h and n the directions turn off. tan(theta_t / 2) = 1/2 + (3 sqrt(3) / 4) x,
+///   x = sin^2 theta_d cos theta_d sin(2 phi_d) sin^2 theta_h / (sin^2 theta_h + 1/256), is between 0 and 1
+///   and becomes 1 less itself in the mirror; the same when the directions are exchanged.
 struct Projection {
-  enum class Kind { affine, difference, deviation };
+  enum class Kind { affine, difference, deviation, twist };
 
   Kind kind = Kind::affine;
   double wi = 0, wo = 0, mirror = 0, n = 0;
@@ -31,6 +35,16 @@ inline constexpr Projection kProjectWo{.wo = 1};
 inline constexpr Projection kProjectHalf{.wi = 1, .wo = 1};
 inline constexpr Projection kProjectDifference{.kind = Projection::Kind::difference};
 inline constexpr Projection kProjectDeviation{.kind = Projection::Kind::deviation};
+inline constexpr Projection kProjectTwist{.kind = Projection::Kind::twist};
+
+/// Twist, unnormalized: S = wi + wo and A = wi - wo, tan(theta_t / 2) = r / den with
+/// den = 2 (S.x^2 + S.y^2 + |S|^2 kTwistCore), r = den / 2 + A.z (S.y A.x - S.x A.y) |S|^2 kTwistScale.
+inline constexpr double kTwistCore = 1.0 / 256, kTwistScale = 0.6495190528383290;  // 3 sqrt(3) / 8
+
+/// Whether a projection has a polar angle but no azimuth.
+constexpr bool is_angle_alone(const Projection& p) noexcept {
+  return p.kind == Projection::Kind::deviation || p.kind == Projection::Kind::twist;
+}
 
 /// The projected direction, z >= 0 (a combination that points below the horizon is clamped to it). wi and wo
 /// above the horizon. Exactly equal for (wi, wo) and (wo, wi) under swapped(projection).
@@ -43,9 +57,9 @@ double project_tan_half(const Projection& projection, Vec3 wi, Vec3 wo) noexcept
 /// `azimuth` says whether the table depends on the azimuth. Returns false where there is none (mirror terms).
 bool swapped(const Projection& projection, bool azimuth, Projection& result) noexcept;
 
-/// Reads wi, wo, h, d, theta_h, theta_d, theta_m, theta_i, theta_o or a sum of terms such as "wi+wo+0.5n",
-/// "m+0.8wo" (m is the mirrored light). The theta names mean the same vectors; `angle_only` tells that one
-/// was used. Throws Error on anything else.
+/// Reads wi, wo, h, d, theta_h, theta_d, theta_m, theta_t, theta_i, theta_o or a sum of terms such as
+/// "wi+wo+0.5n", "m+0.8wo" (m is the mirrored light). The theta names mean the same vectors; `angle_only`
+/// tells that one was used. Throws Error on anything else.
 Projection parse_projection(std::string_view text, bool& angle_only);
 /// A text parse_projection reads back to the same projection.
 std::string to_string(const Projection& projection);

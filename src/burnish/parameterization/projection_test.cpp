@@ -23,7 +23,8 @@ std::vector<DirectionPair> pairs_and_corners() {
 
 TEST(Projection, GivesUnitVectorsAboveTheHorizon) {
   bool angle_only;
-  for (const char* text : {"wi", "wo", "h", "d", "wi+wo-0.7n", "m+wo", "0.5wi-wo+0.2n", "wi-wo", "theta_m"}) {
+  for (const char* text :
+       {"wi", "wo", "h", "d", "wi+wo-0.7n", "m+wo", "0.5wi-wo+0.2n", "wi-wo", "theta_m", "theta_t"}) {
     const Projection p = parse_projection(text, angle_only);
     for (const auto& [wi, wo] : pairs_and_corners()) {
       const Vec3 v = project(p, wi, wo);
@@ -45,7 +46,7 @@ TEST(Projection, HalfAndDifferenceHaveTheHalfDifferenceAngles) {
 
 TEST(Projection, AngleAloneAgreesWithTheVector) {
   bool angle_only;
-  for (const char* text : {"wi", "h", "d", "wi+wo+0.4n", "m+2wo", "theta_m"}) {
+  for (const char* text : {"wi", "h", "d", "wi+wo+0.4n", "m+2wo", "theta_m", "theta_t"}) {
     const Projection p = parse_projection(text, angle_only);
     for (const auto& [wi, wo] : pairs_and_corners())
       EXPECT_NEAR(project_tan_half(p, wi, wo), tan_half_theta(project(p, wi, wo)), 1e-12) << text;
@@ -54,7 +55,7 @@ TEST(Projection, AngleAloneAgreesWithTheVector) {
 
 TEST(Projection, SwappingIsExactToTheLastBit) {
   bool angle_only;
-  for (const char* text : {"wi", "wo", "h", "wi+wo+0.4n", "0.3wi+0.9wo-0.2n", "d", "theta_m"}) {
+  for (const char* text : {"wi", "wo", "h", "wi+wo+0.4n", "0.3wi+0.9wo-0.2n", "d", "theta_m", "theta_t"}) {
     const Projection p = parse_projection(text, angle_only);
     Projection q;
     ASSERT_TRUE(swapped(p, false, q)) << text;
@@ -75,13 +76,39 @@ TEST(Projection, ReadsWhatItPrints) {
   }
   EXPECT_EQ(parse_projection("theta_d", angle_only), kProjectDifference);
   EXPECT_TRUE(angle_only);
-  EXPECT_EQ(parse_projection(to_string(kProjectDeviation), angle_only), kProjectDeviation);
-  EXPECT_TRUE(angle_only);
+  for (const Projection& p : {kProjectDeviation, kProjectTwist}) {
+    EXPECT_EQ(parse_projection(to_string(p), angle_only), p);
+    EXPECT_TRUE(angle_only);
+  }
 }
 
 TEST(Projection, DeviationIsHalfTheAngleToTheMirrorDirection) {
   for (const auto& [wi, wo] : draw_pairs(2000, 7, false))
     EXPECT_NEAR(std::cos(2 * theta_of(project(kProjectDeviation, wi, wo))), dot(mirror(wi), wo), 1e-12);
+}
+
+TEST(Projection, TwistTellsMirrorImagesApart) {
+  for (const auto& [wi, wo] : draw_pairs(2000, 9, false)) {
+    const HalfDiff angles = to_half_diff(wi, wo);
+    const double sine_h = std::sin(angles.theta_h), sine_d = std::sin(angles.theta_d);
+    const double x = sine_d * sine_d * std::cos(angles.theta_d) * std::sin(2 * angles.phi_d) * sine_h *
+                     sine_h / (sine_h * sine_h + kTwistCore);
+    const double t = project_tan_half(kProjectTwist, wi, wo);
+    EXPECT_NEAR(t, 0.5 + 0.75 * std::sqrt(3) * x, 1e-9);
+    const Vec3 mirrored_wi{wi.x, -wi.y, wi.z}, mirrored_wo{wo.x, -wo.y, wo.z};
+    EXPECT_NEAR(project_tan_half(kProjectTwist, mirrored_wi, mirrored_wo), 1 - t, 1e-12);
+  }
+}
+
+TEST(Projection, TwistReachesBothItsEnds) {
+  double least = 1, most = 0;
+  for (const auto& [wi, wo] : draw_pairs(20'000, 9, true)) {
+    const double t = project_tan_half(kProjectTwist, wi, wo);
+    least = std::min(least, t);
+    most = std::max(most, t);
+  }
+  EXPECT_LT(least, 0.01);
+  EXPECT_GT(most, 0.99);
 }
 
 TEST(Projection, RefusesWhatItDoesNotKnow) {

@@ -109,10 +109,30 @@ Projected project_deviation(Body& body) {
           body.scalar("den", fmt::format("{} + {}", body.dialect().literal(2), along), ops(1))};
 }
 
+Projected project_twist(Body& body) {
+  const Dialect& d = body.dialect();
+  const std::string s = sum(body), apart = body.vector("apart", "wi - wo", ops(3));
+  const std::string across = squares(body, s);
+  const std::string square = body.scalar("square", fmt::format("{0} + {1}.z * {1}.z", across, s), ops(2));
+  const std::string half =
+      body.scalar("half_den", fmt::format("{} + {} * {}", across, d.literal(kTwistCore), square), ops(2));
+  const std::string turn = body.scalar(
+      "turn", fmt::format("{0}.z * ({1}.y * {0}.x - {1}.x * {0}.y) * {2}", apart, s, square), ops(5));
+  const std::string den =
+      body.scalar("den", fmt::format("max({0} + {0}, {1})", half, d.literal(1e-30)), ops(2));
+  return {"", "",
+          body.scalar("r",
+                      fmt::format("min(max({} + {} * {}, {}), {})", half, d.literal(kTwistScale), turn,
+                                  d.literal(0), den),
+                      ops(4)),
+          den};
+}
+
 Projected project(Body& body, const Projection& p, bool disk, const Warp& warp) {
   const bool needs_r = !disk || warp.kind != WarpKind::identity;
   if (p.kind == Projection::Kind::difference) return project_difference(body, disk, needs_r);
   if (p.kind == Projection::Kind::deviation) return project_deviation(body);
+  if (p.kind == Projection::Kind::twist) return project_twist(body);
   return project_affine(body, p, needs_r);
 }
 
