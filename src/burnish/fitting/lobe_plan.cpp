@@ -5,7 +5,7 @@
 
 #include <burnish/error.h>
 #include <burnish/fitting/lobe_plan.h>
-#include <burnish/reflectance/goniometer.h>
+#include <burnish/reflectance/mirror_asymmetry.h>
 
 namespace burnish {
 
@@ -108,24 +108,6 @@ void add_lobes(const std::vector<PlannedFactor>& factors, std::size_t lobes, dou
     }
     spec.lobes.push_back(std::move(lobe));
   }
-}
-
-// Mean of what the logarithms of f and of its mirror image differ by from their mean.
-double mirror_asymmetry(BrdfRef source) {
-  constexpr double kFloor = 1e-3;
-  constexpr std::size_t kPairs = 4000;
-  const std::vector<DirectionPair> pairs = draw_pairs(kPairs, 1, true);
-  const auto channels = static_cast<std::size_t>(source.channels());
-  std::vector<double> f(channels), mirrored(channels);
-  double sum = 0, count = 0;
-  for (const auto& [wi, wo] : pairs) {
-    const Vec3 mirrored_wi{wi.x, -wi.y, wi.z}, mirrored_wo{wo.x, -wo.y, wo.z};
-    if (!source.eval(wi, wo, f) || !source.eval(mirrored_wi, mirrored_wo, mirrored)) continue;
-    for (std::size_t c = 0; c < channels; ++c)
-      sum += 0.5 * std::abs(std::log((std::max(f[c], 0.0) + kFloor) / (std::max(mirrored[c], 0.0) + kFloor)));
-    count += static_cast<double>(channels);
-  }
-  return count > 0 ? sum / count : 0;
 }
 
 }  // namespace

@@ -11,7 +11,17 @@ namespace burnish {
 namespace {
 
 constexpr std::array<std::string_view, kPairCoordinates> kNames = {
-    "theta_h", "theta_d", "phi_d", "half_x", "half_y", "turn_d", "difference_x", "difference_y"};
+    "theta_h", "theta_d", "phi_d",        "half_turn_d", "half_x",
+    "half_y",  "turn_d",  "difference_x", "difference_y"};
+
+// The azimuth of (x, y) modulo pi, over pi.
+double half_turn(double x, double y) noexcept {
+  if (y < 0 || (y == 0 && x < 0)) {
+    x = -x;
+    y = -y;
+  }
+  return std::min(std::atan2(y, x) / kPi, std::nextafter(1.0, 0.0));
+}
 
 // The tangent made perpendicular to h; the normal where h is the tangent.
 Vec3 tangent_at(Vec3 h) noexcept {
@@ -39,12 +49,7 @@ PairPlace::PairPlace(Vec3 wi, Vec3 wo) noexcept
 
 double PairPlace::turn() const noexcept {
   const Vec3 t = tangent_at(half_), s = cross(half_, t);
-  double x = dot(difference_, t), y = dot(difference_, s);
-  if (y < 0 || (y == 0 && x < 0)) {
-    x = -x;
-    y = -y;
-  }
-  return std::min(std::atan2(y, x) / kPi, std::nextafter(1.0, 0.0));
+  return half_turn(dot(difference_, t), dot(difference_, s));
 }
 
 double PairPlace::operator[](PairCoordinate coordinate) const noexcept {
@@ -56,10 +61,12 @@ double PairPlace::operator[](PairCoordinate coordinate) const noexcept {
       return radius_h;
     case PairCoordinate::theta_d:
       return radius_d;
-    case PairCoordinate::phi_d: {
+    case PairCoordinate::phi_d:
+    case PairCoordinate::half_turn_d: {
       const double x = dot(difference_, {half_.z * to_half.x, half_.z * to_half.y, -sin_theta});
       const double y = dot(difference_, {-to_half.y, to_half.x, 0});
-      return std::atan2(std::abs(y), std::abs(x)) / kHalfPi;
+      return coordinate == PairCoordinate::half_turn_d ? half_turn(x, y)
+                                                       : std::atan2(std::abs(y), std::abs(x)) / kHalfPi;
     }
     case PairCoordinate::half_x:
       return 0.5 + 0.5 * radius_h * to_half.x;
@@ -92,6 +99,7 @@ PairFrame pair_at(std::span<const PairCoordinate> coordinates, std::span<const d
       case PairCoordinate::phi_d:
         turn = kHalfPi * u;
         break;
+      case PairCoordinate::half_turn_d:
       case PairCoordinate::turn_d:
         turn = kPi * u;
         break;

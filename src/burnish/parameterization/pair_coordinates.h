@@ -15,6 +15,7 @@ enum class PairCoordinate {
   theta_h,  ///< sqrt(theta_h / (pi/2)), the spacing of MERL
   theta_d,  ///< theta_d / (pi/2)
   phi_d,    ///< phi_d folded to [0, pi/2], over pi/2: for isotropic materials that equal their mirror image
+  half_turn_d,  ///< phi_d modulo pi, over pi; periodic: for those that do not
   half_x,
   half_y,  ///< the half vector on a disk of radius sqrt(theta_h / (pi/2)), from [-1, 1] to [0, 1]
   turn_d,  ///< azimuth of the difference vector modulo pi, over pi; periodic. Counted from the tangent made
@@ -23,7 +24,7 @@ enum class PairCoordinate {
   difference_y,  ///< half disk of x in [-1, 1], here [0, 1], and y in [0, 1]
 };
 
-inline constexpr int kPairCoordinates = 8;
+inline constexpr int kPairCoordinates = 9;
 
 /// "theta_h" and so on; nothing for another text.
 std::string_view to_string(PairCoordinate coordinate) noexcept;
@@ -31,11 +32,11 @@ std::optional<PairCoordinate> parse_pair_coordinate(std::string_view text) noexc
 
 /// True where 1 is the same place as 0.
 constexpr bool is_periodic(PairCoordinate coordinate) noexcept {
-  return coordinate == PairCoordinate::turn_d;
+  return coordinate == PairCoordinate::turn_d || coordinate == PairCoordinate::half_turn_d;
 }
 /// True where rotating both directions about the normal changes nothing.
 constexpr bool is_isotropic(PairCoordinate coordinate) noexcept {
-  return coordinate <= PairCoordinate::phi_d;
+  return coordinate <= PairCoordinate::half_turn_d;
 }
 
 /// Coordinates of one pair above the horizon, each computed when asked for.
@@ -65,8 +66,9 @@ struct PairFrame {
 };
 
 /// The pair at given coordinates, coordinates[i] = values[i]: theta_h or half_x and half_y, and theta_d with
-/// phi_d or turn_d, or difference_x and difference_y; what is missing is 0. Points outside a disk are moved
-/// to its rim. The pair may lie below the horizon. PairPlace inverts it to 1e-6, to 1e-12 away from the ends.
+/// phi_d, half_turn_d or turn_d, or difference_x and difference_y; what is missing is 0. Points outside a
+/// disk are moved to its rim. The pair may lie below the horizon. PairPlace inverts it to 1e-6, to 1e-12 away
+/// from the ends.
 PairFrame pair_at(std::span<const PairCoordinate> coordinates, std::span<const double> values) noexcept;
 
 }  // namespace burnish

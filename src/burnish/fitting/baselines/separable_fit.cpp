@@ -11,6 +11,7 @@
 #include <burnish/fitting/baselines/compressive_weight.h>
 #include <burnish/fitting/baselines/low_rank.h>
 #include <burnish/fitting/baselines/separable_fit.h>
+#include <burnish/reflectance/mirror_asymmetry.h>
 
 namespace burnish {
 
@@ -142,8 +143,15 @@ struct Split {
   std::vector<PairCoordinate> rows, columns;
 };
 
-const std::array<Split, 3> kIsotropicSplits = {
-    {{{theta_h}, {theta_d, phi_d}}, {{theta_h, theta_d}, {phi_d}}, {{theta_d}, {theta_h, phi_d}}}};
+// The second three, with a whole half turn of phi_d, for those that are not their own mirror image.
+const std::array<Split, 6> kIsotropicSplits = {{{{theta_h}, {theta_d, phi_d}},
+                                                {{theta_h, theta_d}, {phi_d}},
+                                                {{theta_d}, {theta_h, phi_d}},
+                                                {{theta_h}, {theta_d, half_turn_d}},
+                                                {{theta_h, theta_d}, {half_turn_d}},
+                                                {{theta_d}, {theta_h, half_turn_d}}}};
+constexpr double kLeastAsymmetry = 0.001;
+constexpr std::size_t kTwins = 16;
 const std::array<Split, 2> kAnisotropicSplits = {
     {{{half_x, half_y}, {difference_x, difference_y}}, {{half_x, half_y, theta_d}, {turn_d}}}};
 
@@ -167,14 +175,18 @@ class Search {
       : source_(source),
         method_(method),
         options_(options),
-        splits_(source.isotropic() ? std::span<const Split>(kIsotropicSplits)
-                                   : std::span<const Split>(kAnisotropicSplits)),
+        unfolded_(source.isotropic() && mirror_asymmetry(source) > kLeastAsymmetry
+                      ? kIsotropicSplits.size() / 2
+                      : 0),
+        splits_(!source.isotropic()
+                    ? std::span<const Split>(kAnisotropicSplits)
+                    : std::span(kIsotropicSplits).first(kIsotropicSplits.size() / 2 + unfolded_)),
         scorer_(source, {.count = 500, .seed = options.seed, .image_size = options.image_size}) {}
 
   SeparableFit run() {
     // every split and coupling from one start, then the best few climb
     std::vector<Layout> starts;
-    for (std::size_t split = 0; split < splits_.size(); ++split)
+    for (std::size_t split = 0; split < splits_.size() - unfolded_; ++split)
       for (const Coupling coupling : {Coupling::none, Coupling::u, Coupling::v}) {
         if (coupling != Coupling::none && source_.channels() == 1) continue;
         starts.push_back({.split = split, .coupling = coupling});
@@ -191,6 +203,14 @@ class Search {
       report(0.3 * static_cast<double>(i + 1) / static_cast<double>(starts.size()));
     }
     std::sort(ranked.begin(), ranked.end());
+    if (unfolded_ > 0) {
+      for (std::size_t i = 0, count = std::min(kTwins, ranked.size()); i < count; ++i) {
+        Layout twin = ranked[i].second;
+        twin.split += unfolded_;
+        ranked.emplace_back(-quality(twin), twin);
+      }
+      std::sort(ranked.begin(), ranked.end());
+    }
     constexpr std::size_t kClimbers = 4;
     for (std::size_t i = 0; i < std::min(kClimbers, ranked.size()); ++i) {
       climb(ranked[i].second);
@@ -236,10 +256,10 @@ class Search {
       for (const PairCoordinate c : side == 0 ? splits_[layout.split].rows : splits_[layout.split].columns) {
         const bool half = c == theta_h || c == half_x || c == half_y;
         // a half disk of d is twice as wide as high
-        const int count = half                        ? 0
-                          : c == phi_d || c == turn_d ? phi
-                          : c == difference_x         ? 2 * theta - 1
-                                                      : theta;
+        const int count = half                                            ? 0
+                          : c == phi_d || c == half_turn_d || c == turn_d ? phi
+                          : c == difference_x                             ? 2 * theta - 1
+                                                                          : theta;
         sides[side].push_back({c, count});
       }
     const int n = half_nodes(layout, sides);
@@ -297,6 +317,7 @@ class Search {
   BrdfRef source_;
   Decomposition method_;
   const SeparableOptions& options_;
+  std::size_t unfolded_;  // of the splits
   std::span<const Split> splits_;
   Scorer scorer_;
   std::map<Layout, double> tried_;
