@@ -13,6 +13,7 @@
 #include <burnish/fitting/baselines/baselines.h>
 #include <burnish/fitting/overfit.h>
 #include <burnish/fitting/rounding.h>
+#include <burnish/fitting/search.h>
 #include <burnish/reflectance/sample_source.h>
 
 #include "report_tools.h"
@@ -32,7 +33,7 @@ FactoredBrdf fit_ours(BrdfRef reference, std::size_t bytes) {
   const TrainingOptions drawn = training_for(bytes, texel, reference.isotropic());
   const TrainingSet set = draw_training_set(reference, drawn);
   RefineOptions options{.format = format};
-  const LobePlan plan = plan_for(reference, bytes, 0, texel);
+  const LobePlan plan = plan_for(reference, set, bytes, 0, texel, options);
   const LobesFit fit = fit_without_overfit(reference, set, plan, bytes, texel, drawn, options);
   return to_rounded_brdf(fit.model, set, options);
 }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -85,6 +86,33 @@ TEST(PlanFor, TellsMirrorImagesApartWhereTheSourceDoes) {
     return error_figures(source, brdf, {.count = 5000, .image_size = 32}).relative;
   };
   EXPECT_LT(relative(plan), 0.3 * relative(plain));
+}
+
+// Brushed along x and along y.
+struct Crossed {
+  AnalyticBrdf one = parse_analytic("ggx:alpha_x=0.15,alpha_y=0.5,kd=0.1"),
+               other = parse_analytic("ggx:alpha_x=0.5,alpha_y=0.15,kd=0.1");
+
+  static int channels() noexcept { return 3; }
+  static bool isotropic() noexcept { return false; }
+  bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+    std::array<double, 3> more{};
+    const bool known = one.eval(wi, wo, f) && other.eval(wi, wo, more);
+    for (std::size_t c = 0; c < 3; ++c) f[c] += more[c];
+    return known;
+  }
+};
+
+TEST(PlanFor, GivesAnAnisotropicSourceTheLobesItHas) {
+  constexpr std::size_t kBytes = 9000;
+  const AnalyticBrdf single = parse_analytic("ggx:alpha_x=0.15,alpha_y=0.5,kd=0.1");
+  const auto lobes = [&](BrdfRef source, int wanted) {
+    const TrainingSet set = draw_training_set(source, {.pictures = 12'000, .directions = 36'000});
+    return plan_for(source, set, kBytes, wanted, kHalfRgb, {}).lobes;
+  };
+  EXPECT_EQ(lobes(single, 0), 1);
+  EXPECT_GT(lobes(Crossed{}, 0), 1);
+  EXPECT_EQ(lobes(Crossed{}, 2), 1);
 }
 
 TEST(FitWithoutOverfit, IsSmootherWhereThatPredictsBetterAndNowhereElse) {

@@ -123,8 +123,8 @@ class Fitter {
     TrainingOptions drawn = training_for(options_.budget, texel, input_.brdf.isotropic());
     drawn.seed = options_.seed;
     const TrainingSet set = draw_training_set(reference(), drawn);
-    LobePlan plan = plan_for(reference(), options_.budget, options_.lobes, texel);
     RefineOptions refine = refine_options();
+    LobePlan plan = plan_for(reference(), set, options_.budget, options_.lobes, texel, refine);
     if (options_.search) {
       const SearchResult found = search_plan(set, plan,
                                              {.bytes = options_.budget,

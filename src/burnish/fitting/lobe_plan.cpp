@@ -167,7 +167,7 @@ LobePlan default_plan(std::size_t bytes, int lobes, bool isotropic, std::size_t 
 LobePlan plan_for(BrdfRef source, std::size_t bytes, int lobes, std::size_t texel_bytes) {
   LobePlan plan = default_plan(bytes, lobes, source.isotropic(), texel_bytes);
   if (source.isotropic() && mirror_asymmetry(source) > kLeastAsymmetry)
-    plan.factors.push_back({.name = "t",
+    plan.factors.push_back({.name = "w",
                             .shape = TableShape::grid,
                             .uses = {kProjectTwist},
                             .share = 0.25,

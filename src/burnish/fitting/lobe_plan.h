@@ -44,7 +44,7 @@ struct LobePlan {
 LobePlan default_plan(std::size_t bytes, int lobes, bool isotropic, std::size_t texel_bytes);
 
 /// default_plan for a source; where an isotropic one is not its own mirror image, each lobe has also a factor
-/// t(theta_t, theta_h).
+/// w(theta_t, theta_h).
 LobePlan plan_for(BrdfRef source, std::size_t bytes, int lobes, std::size_t texel_bytes);
 
 /// The largest model of the plan whose tables and numbers fit `bytes`, see FactoredBrdf::bytes. Throws Error

@@ -21,6 +21,9 @@ constexpr int kTrialSteps = 8;
 constexpr int kMostRounds = 2;
 // A change must pay for its risk: gains below are within what another draw of pairs would give.
 constexpr double kLeastGain = 0.01;
+// Lobes of an anisotropic source are judged by models of no more texels than there are so many pairs for.
+constexpr std::size_t kJudgedPairs = 8;
+constexpr int kMostAnisotropicLobes = 4;
 
 /// One way to change a plan; nothing where it does not apply.
 struct Change {
@@ -175,6 +178,31 @@ void share_channels(const TrainingSet& set, const SearchOptions& options, Refine
 }
 
 }  // namespace
+
+LobePlan plan_for(BrdfRef source, const TrainingSet& set, std::size_t bytes, int lobes,
+                  std::size_t texel_bytes, const RefineOptions& options) {
+  LobePlan best = plan_for(source, bytes, lobes, texel_bytes);
+  if (source.isotropic() || lobes > 0) return best;
+  const TrainingSet grey = mean_of_channels(set);
+  const TrainingSet fitted = part_of(grey, 0, kFit), judged = part_of(grey, kFit / 2, kFit);
+  const std::size_t judged_bytes = std::min(bytes, texel_bytes * fitted.size() / kJudgedPairs);
+  RefineOptions steps = options;
+  steps.max_iterations = 2 * kTrialSteps;
+  steps.progress = [&](double) {
+    if (options.progress) options.progress(0);  // a callback can end the fit
+  };
+  double least = INFINITY;
+  for (int count = 2; count <= kMostAnisotropicLobes; ++count) try {
+      const LobesFit fit = fit_plan(fitted, plan_for(source, judged_bytes, count, texel_bytes), judged_bytes,
+                                    texel_bytes, steps);
+      const double value = objective(fit.model, judged, options.shares);
+      if (value > least - kLeastGain) continue;
+      least = value;
+      best = plan_for(source, bytes, count, texel_bytes);
+    } catch (const Error&) {  // a table too small for the bytes
+    }
+  return best;
+}
 
 SearchResult search_plan(const TrainingSet& set, const LobePlan& start, const SearchOptions& options) {
   const TrainingSet grey = mean_of_channels(set);

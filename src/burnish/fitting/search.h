@@ -27,6 +27,12 @@ struct SearchResult {
   std::vector<SearchTrial> trials;
 };
 
+/// plan_for, the lobes of an anisotropic source as many as serve it best: two, three or four, each fitted to
+/// part of the set in few steps, at fewer bytes where that has too few pairs, and judged on another. Throws
+/// Error as plan_for and plan_to_spec do.
+LobePlan plan_for(BrdfRef source, const TrainingSet& set, std::size_t bytes, int lobes,
+                  std::size_t texel_bytes, const RefineOptions& options);
+
 /// Finds the factors, projections, warps, sizes and number of lobes that serve the data best at a number of
 /// bytes, the future work that [HomomorphicBrdf] names: more or fewer lobes, larger or smaller shares of
 /// texels, other warps, factors left out, factors added over further projections (affine combinations, whose
