@@ -88,17 +88,17 @@ TEST(PlanFor, TellsMirrorImagesApartWhereTheSourceDoes) {
   EXPECT_LT(relative(plan), 0.3 * relative(plain));
 }
 
-// Brushed along x and along y.
+// Brushed metal along x under lacquer along y, which shows at grazing angles alone.
 struct Crossed {
-  AnalyticBrdf one = parse_analytic("ggx:alpha_x=0.15,alpha_y=0.5,kd=0.1"),
-               other = parse_analytic("ggx:alpha_x=0.5,alpha_y=0.15,kd=0.1");
+  AnalyticBrdf one = parse_analytic("ggx:alpha_x=0.1,alpha_y=0.5,f0=0.9,kd=0.1"),
+               other = parse_analytic("ggx:alpha_x=0.5,alpha_y=0.1,f0=0.01,kd=0");
 
   static int channels() noexcept { return 3; }
   static bool isotropic() noexcept { return false; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     std::array<double, 3> more{};
     const bool known = one.eval(wi, wo, f) && other.eval(wi, wo, more);
-    for (std::size_t c = 0; c < 3; ++c) f[c] += more[c];
+    for (std::size_t c = 0; c < 3; ++c) f[c] += 20 * more[c];
     return known;
   }
 };
