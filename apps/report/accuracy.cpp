@@ -196,7 +196,7 @@ void report_merl(const fs::path& data, bool quick) {
   constexpr std::size_t kEvery = 10;
   fmt::print(
       "\n## Stand-ins for the MERL materials\n\nThe published encodings of {}, evaluated, are the reference; "
-      "2,700 bytes.\n\n",
+      "at most 2,700 bytes.\n\n",
       quick ? "every tenth material" : "all 100 materials");
   std::deque<Material> materials;
   for (std::size_t i = 0; i < names.size(); i += quick ? kEvery : 1) {

@@ -55,7 +55,7 @@ constexpr std::size_t kModelBytes = 2700;
 FactoredBrdf fit_model(BrdfRef reference) {
   const std::size_t texel = texel_bytes(TableFormat::rgb9e5, 3);
   const TrainingSet set = draw_training_set(reference, {.directions = 60'000});
-  const LobesFit fit = fit_plan(set, default_plan(kModelBytes, 0, true, texel), kModelBytes, texel,
+  const LobesFit fit = fit_plan(set, plan_for(reference, kModelBytes, 0, texel), kModelBytes, texel,
                                 {.format = TableFormat::rgb9e5});
   return to_brdf(fit.model, TableFormat::rgb9e5);
 }

@@ -169,8 +169,21 @@ def _mirror(w):
     return mi.Vector3f(-w.x, -w.y, w.z)
 
 
+def _twist(wi, wo):
+    """tan(theta_t / 2) of parameterization/projection.h."""
+    total, apart = wi + wo, wi - wo
+    across = total.x * total.x + total.y * total.y
+    square = across + total.z * total.z
+    half = dr.maximum(across + square / 256, 1e-30)
+    turn = apart.z * (total.y * apart.x - total.x * apart.y) * square
+    return dr.clip(0.5 + 0.3247595264191645 * turn / half, 0, 1)
+
+
 def _project(projection, wi, wo):
     """project() of parameterization/projection.h."""
+    if projection == "twist":
+        t = _twist(wi, wo)
+        return dr.normalize(mi.Vector3f(2 * t, 0, 1 - t * t))
     if projection == "deviation":
         return mi.Vector3f(0.5 * dr.norm(_mirror(wi) - wo), 0, 0.5 * dr.norm(_mirror(wi) + wo))
     if projection == "difference":
@@ -186,6 +199,8 @@ def _project(projection, wi, wo):
 
 def _project_tan_half(projection, wi, wo):
     """tan(theta / 2) of it; of differences without inverse functions."""
+    if projection == "twist":
+        return _twist(wi, wo)
     if projection == "deviation":
         wi = _mirror(wi)
     elif projection != "difference":

@@ -105,7 +105,7 @@ void bind_model_parts(nb::module_& m) {
           "projection", [](const FactorUse& u) { return projection_terms(u.projection); },
           nb::sig("def projection(self) -> tuple[float, float, float, float] | str"),
           "(a, b, m, n) of normalize(a wi + b wo + m mirror(wi) + n normal), or \"difference\", "
-          "\"deviation\".")
+          "\"deviation\" or \"twist\".")
       .def_prop_ro(
           "projection_y", [](const FactorUse& u) { return projection_terms(u.projection_y); },
           nb::sig("def projection_y(self) -> tuple[float, float, float, float] | str"), "Of grids only.");

@@ -175,18 +175,17 @@ struct Projector {
 
   // One rounded product less another: exchanging the directions only changes its sign.
   void project_twist_angle() {
-    x = r, y = own_y;
     for_each([&](std::size_t i) HWY_ATTR {
       const Lane dx = load(in[0] + i) - load(in[3] + i), dy = load(in[1] + i) - load(in[4] + i),
                  dz = load(in[2] + i) - load(in[5] + i);
       const Lane sx = load(sum_x + i), sy = load(sum_y + i), total = load(sum_length + i);
       const Lane across = mul_add(sx, sx, sy * sy), square = total * total;
-      const Lane half = mul_add(square, Lane(kTwistCore), across);
+      const Lane half =
+          max(mul_add(square, Lane(kTwistCore), across), Lane(std::numeric_limits<float>::min()));
       const Lane turn = dz * neg_mul_add(sx, dy, sy * dx) * square;
       const Lane twisted = mul_add(turn, Lane(kTwistScale), half), whole = half + half;
       store(max(min(twisted, whole), Lane(0.0)), r + i);
-      store(max(whole, Lane(std::numeric_limits<float>::min())), den + i);
-      store(Lane(0.0), own_y + i);
+      store(whole, den + i);
     });
   }
 

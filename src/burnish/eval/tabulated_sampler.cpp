@@ -157,6 +157,13 @@ struct TabulatedSampler::Tables {
   }
   Tables(const Tables&) = delete;
 
+  // One side of the plane of wo, y = 0, stands for both where the BRDF is isotropic: for their mean, as a
+  // measured one need not be its own mirror image.
+  double size_of(BrdfRef brdf, Vec3 wi, Vec3 wo, std::span<double> f) const {
+    const double one = reflected_size(brdf, wi, wo, f);
+    return isotropic ? 0.5 * (one + reflected_size(brdf, {wi.x, -wi.y, wi.z}, wo, f)) : one;
+  }
+
   VisibleHalfMap fit_map(BrdfRef brdf, const SamplerOptions& options, std::span<double> f) const {
     std::vector<ReflectedLight> views;
     const int azimuths = isotropic ? 1 : 3;
@@ -167,8 +174,7 @@ struct TabulatedSampler::Tables {
         light.rule = half_vector_quadrature(light.wo, 64, 96);
         // wo lies in the x-z plane: one side of it does
         if (isotropic) std::erase_if(light.rule, [](const DirectionWeight& d) { return d.wi.y < 0; });
-        for (const auto& [wi, weight] : light.rule)
-          light.size.push_back(reflected_size(brdf, wi, light.wo, f));
+        for (const auto& [wi, weight] : light.rule) light.size.push_back(size_of(brdf, wi, light.wo, f));
         views.push_back(std::move(light));
       }
     return fit_visible_half_map(views, isotropic, options.rows, options.columns);
@@ -188,7 +194,7 @@ struct TabulatedSampler::Tables {
             const auto wi = scalar::place<kIsotropic>(view, wo.x, wo.y, wo.z, scalar::unit_axis(wo.x, wo.y),
                                                       turn * (row + (i + 0.5) / kAcross),
                                                       (column + (j + 0.5) / kAcross) / view.columns, 1.0);
-            if (wi.z > 0) mass += reflected_size(brdf, {wi.x, wi.y, wi.z}, wo, f) / wi.density;
+            if (wi.z > 0) mass += size_of(brdf, {wi.x, wi.y, wi.z}, wo, f) / wi.density;
           }
         cells[static_cast<std::size_t>(column)] = mass;
         sum += mass;

@@ -52,10 +52,10 @@ struct SamplerTables {
 /// the horizon, so none is wasted, and are narrow where the material has its highlights. Between the wo of
 /// the tables densities are interpolated. Satisfies DirectionSampler.
 ///
-/// Made from any BRDF, factored or measured; one whose isotropic() is true is taken to be symmetric about the
-/// plane of wo and the normal. Never allocates after construction; copies share the tables, threads may share
-/// a copy. u.x turns the half vector about the normal, u.y tilts it, both without jumps, so that
-/// stratified points stay stratified.
+/// Made from any BRDF, factored or measured; one whose isotropic() is true is drawn alike on both sides of
+/// the plane of wo and the normal, by their mean: unbiased where they differ, with weights as uneven. Never
+/// allocates after construction; copies share the tables, threads may share a copy. u.x turns the half vector
+/// about the normal, u.y tilts it, both without jumps, so that stratified points stay stratified.
 class TabulatedSampler {
  public:
   explicit TabulatedSampler(BrdfRef brdf);

@@ -36,6 +36,7 @@ const ModelCase kModels[] = {
     {"Mirror", "a(m+wo) q(h) b(d)", {"a=16,power:0.5", "q=32", "b=8"}, 3},
     {"Disks", "pqp", {"p=17x17", "q=33x33,rational:0.2"}, 3},
     {"DiskAndLine", "p(wo) q(h) p(wi) + s(wo) t(h) s(wi)", {"p=8", "q=33x33,power:0.5", "s=9x9", "t=32"}, 3},
+    {"Twist", "p(wo) q(h) p(wi) w(theta_t,theta_h)", {"p=8", "q=48", "w=5x8"}, 3},
 };
 
 // A highlight in every table of h, longer along one axis where the table is a disk; slopes elsewhere.

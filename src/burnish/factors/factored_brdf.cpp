@@ -128,7 +128,8 @@ FactoredBrdf::FactoredBrdf(int channels, std::vector<Table> tables, std::vector<
       const TableLayout& layout = tables_[static_cast<std::size_t>(use.table)].layout;
       isotropic_ = isotropic_ && !depends_on_azimuth(layout);
       if (depends_on_azimuth(layout) && is_angle_alone(use.projection))
-        throw Error("lobe: expected a disk over a projection with an azimuth, found theta_m");
+        throw Error("lobe: expected a disk over a projection with an azimuth, found " +
+                    to_string(use.projection));
       FactorUse other;
       const bool has_swap = swapped_use(use, layout, other);
       const auto partner = has_swap && other != use ? std::find(rest.begin(), rest.end(), other) : rest.end();

@@ -28,7 +28,6 @@ inline const ModelCase kModelCases[] = {
     {"Affine", "s(wi+wo+0.4n) v(0.3wi+0.9wo) v(0.9wi+0.3wo)", {"s=9x9", "v=11x11"}, 3},
     {"Mirror", "a(m+wo) b(0.5m+wo-0.2n)", {"a=8x8", "b=16,rational:0.3"}, 3},
     {"BelowTheHorizon", "a(wi-0.6n) b(wo-0.6n)", {"a=8x8", "b=16"}, 1},
-    {"Twist", "a(theta_t) g(theta_h,theta_t)", {"a=16,power:0.7", "g=9x5"}, 3},
     {"Deviation", "a(theta_m) g(theta_h,theta_m)", {"a=16,rational:-1.3", "g=9x5"}, 3},
     {"Difference", "a(d) b(d) c(d)", {"a=12x12", "b=8", "c=9x9,rational:0.5"}, 3},
     {"Shared", "p(wo) q(h) p(wi) + s(h)", {"p=8,shared", "q=8x8,shared", "s=6"}, 3},
@@ -39,6 +38,7 @@ inline const ModelCase kModelCases[] = {
       "o=16", "p=8,shared", "q=16", "r=16", "s=8x8", "t=16x7", "u=8x5"},
      3},
     {"ThreeLobes", "p(wo) q(h) p(wi) + p(wo) s(h) p(wi) + t(theta_d)", {"p=8", "q=64", "s=16", "t=8"}, 3},
+    {"Twist", "a(theta_t) g(theta_h,theta_t)", {"a=16,power:0.7", "g=9x5"}, 3},
 };
 
 /// A model of the case's form: log_value(table, x, y, channel) fills its tables, `random` its lobes' scales.

@@ -60,9 +60,12 @@ TrainingSet coarse_part(const TrainingSet& set) {
   return thinned(set, std::max<std::size_t>(1, set.size() / kCoarsePairs));
 }
 
-bool solved_directly(const ModelSpec& spec) {
+bool solved_directly(const ModelSpec& spec, std::size_t channels) {
+  // a table that the channels share makes them one system
+  const bool coupled = std::ranges::any_of(spec.tables, &ModelSpec::TableSpec::shared);
   std::size_t unknowns = 0;
-  for (const ModelSpec::TableSpec& table : spec.tables) unknowns += table.layout.node_count();
+  for (const ModelSpec::TableSpec& table : spec.tables)
+    unknowns += table.layout.node_count() * (coupled && !table.shared ? channels : 1);
   return unknowns <= kMostDirectUnknowns;
 }
 
@@ -118,7 +121,8 @@ LobesFit fit_plan(const TrainingSet& set, const LobePlan& plan, std::size_t byte
   if (!plan.wide.empty()) return fit_lobes(set, whole, options);
   // Of many unknowns the 1-D tables first: their steps are solved directly, and grids that start as 1 only
   // lower the error.
-  const ModelSpec thin = solved_directly(whole) ? whole : without_grids(whole);
+  const ModelSpec thin =
+      solved_directly(whole, static_cast<std::size_t>(set.channels)) ? whole : without_grids(whole);
   std::vector<std::string> common;
   for (const PlannedFactor& factor : plan.factors)
     if (factor.every_lobe) common.push_back(factor.name);

@@ -7,6 +7,7 @@
 #include <burnish/error.h>
 #include <burnish/fitting/overfit.h>
 #include <burnish/fitting/search.h>
+#include <burnish/metrics/brdfs_for_tests.h>
 #include <burnish/metrics/error_figures.h>
 #include <burnish/reflectance/analytic.h>
 
@@ -53,23 +54,9 @@ TEST(LobePlan, SharesTablesAmongLobesAndChannels) {
   }
 }
 
-// Brighter on one side of the plane of h and n than on the other.
-struct Twisted {
-  AnalyticBrdf even;
-
-  int channels() const noexcept { return even.channels(); }
-  bool isotropic() const noexcept { return true; }
-  bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
-    const bool known = even.eval(wi, wo, f);
-    const double sine = project_tan_half(kProjectTwist, wi, wo) - 0.5;
-    for (double& v : f) v *= std::exp(1.5 * sine * project_tan_half(kProjectHalf, wi, wo));
-    return known;
-  }
-};
-
 TEST(PlanFor, TellsMirrorImagesApartWhereTheSourceDoes) {
-  const AnalyticBrdf even = parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3,kd=0.3,f0=0.5");
-  const Twisted source{even};
+  const testing::Glossy even{.a = 10, .b = 10};
+  const testing::Twisted source{even};
   constexpr std::size_t kBytes = 1500;
   const LobePlan plain = default_plan(kBytes, 0, true, kHalfRgb);
   EXPECT_EQ(plan_for(even, kBytes, 0, kHalfRgb), plain);
@@ -86,6 +73,21 @@ TEST(PlanFor, TellsMirrorImagesApartWhereTheSourceDoes) {
     return error_figures(source, brdf, {.count = 5000, .image_size = 32}).relative;
   };
   EXPECT_LT(relative(plan), 0.3 * relative(plain));
+  // no room for it
+  constexpr std::size_t kFewBytes = 180;
+  EXPECT_EQ(plan_for(source, kFewBytes, 1, kHalfRgb), default_plan(kFewBytes, 1, true, kHalfRgb));
+  EXPECT_TRUE(plan_fits(default_plan(kFewBytes, 1, true, kHalfRgb), kFewBytes, 3, kHalfRgb));
+}
+
+TEST(LobePlan, GivesAGridTheWidthItIsPlannedWith) {
+  LobePlan plan = default_plan(2700, 2, true, kHalfRgb);
+  plan.factors.push_back(
+      {.name = "w", .shape = TableShape::grid, .uses = {kProjectTwist}, .share = 0.3, .width = 4});
+  const ModelSpec spec = plan_to_spec(plan, 2700, 3, kHalfRgb);
+  const auto grid = std::ranges::find(spec.tables, "w1", &ModelSpec::TableSpec::name);
+  ASSERT_NE(grid, spec.tables.end());
+  EXPECT_EQ(grid->layout.width, 4);
+  EXPECT_GT(grid->layout.height, 4);
 }
 
 // Brushed metal along x under lacquer along y, which shows at grazing angles alone.
@@ -108,7 +110,14 @@ TEST(PlanFor, GivesAnAnisotropicSourceTheLobesItHas) {
   const AnalyticBrdf single = parse_analytic("ggx:alpha_x=0.15,alpha_y=0.5,kd=0.1");
   const auto lobes = [&](BrdfRef source, int wanted) {
     const TrainingSet set = draw_training_set(source, {.pictures = 12'000, .directions = 36'000});
-    return plan_for(source, set, kBytes, wanted, kHalfRgb, {}).lobes;
+    double progress = -1;
+    RefineOptions options;
+    options.progress = [&](double f) {
+      EXPECT_GE(f, progress);
+      EXPECT_LE(f, 1);
+      progress = f;
+    };
+    return plan_for(source, set, kBytes, wanted, kHalfRgb, options).lobes;
   };
   EXPECT_EQ(lobes(single, 0), 1);
   EXPECT_GT(lobes(Crossed{}, 0), 1);

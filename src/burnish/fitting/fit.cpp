@@ -124,7 +124,9 @@ class Fitter {
     drawn.seed = options_.seed;
     const TrainingSet set = draw_training_set(reference(), drawn);
     RefineOptions refine = refine_options();
-    LobePlan plan = plan_for(reference(), set, options_.budget, options_.lobes, texel, refine);
+    RefineOptions trials = refine;
+    trials.progress = progress("choosing lobes");
+    LobePlan plan = plan_for(reference(), set, options_.budget, options_.lobes, texel, trials);
     if (options_.search) {
       const SearchResult found = search_plan(set, plan,
                                              {.bytes = options_.budget,

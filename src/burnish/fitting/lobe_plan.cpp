@@ -22,9 +22,10 @@ constexpr Warp kDiskWarp{WarpKind::rational, 0.25};
 constexpr std::size_t kNumberBytes = 4;  // of a scale, a warp's parameter or a projection's coefficient
 // Of an isotropic model: from how many texels on it has grids, and how many its 1-D tables take at most.
 constexpr double kGridTexels = 1500, kThreeGridTexels = 6000, kMostLineTexels = 2000;
-// From which asymmetry on a factor tells mirror images apart, and its nodes from one side to the other.
-constexpr double kLeastAsymmetry = 0.001;
+// Of the factor that tells mirror images apart: nodes from one side to the other, where 3 and 7 did no
+// better, and its share, where .04 to .4 did about as well.
 constexpr int kTwistNodes = 5;
+constexpr double kTwistShare = 0.25;
 constexpr int kMostSide = 1024;  // nodes of a line: finer than any measurement
 
 // More texels for each of few lobes resolve rings, more lobes follow how the highlight changes with the
@@ -65,10 +66,12 @@ double node_cost(const PlannedFactor& factor, int channels, std::size_t texel_by
 // Adds a factor's table of at most `nodes` nodes.
 void add_table(const PlannedFactor& factor, double nodes, const std::string& suffix, ModelSpec& spec) {
   const bool line = factor.shape == TableShape::line;
-  const double side = factor.width > 0 ? factor.width : line ? nodes : std::sqrt(nodes);
-  const int width = std::min(static_cast<int>(side), kMostSide),
-            height = line ? 1 : std::min(static_cast<int>(nodes / side), kMostSide),
-            least = factor.shape == TableShape::disk ? 3 : 2;
+  const int least = factor.shape == TableShape::disk ? 3 : 2;
+  const auto side = [](double n) { return std::min(static_cast<int>(n), kMostSide); };
+  const int width = factor.width > 0 ? factor.width : side(line ? nodes : std::sqrt(nodes)),
+            height = line               ? 1
+                     : factor.width > 0 ? side(nodes / factor.width)
+                                        : width;
   if (width < least || (!line && height < least))
     throw Error(fmt::format("fit: expected a budget that holds every table, found {} texels for '{}{}'",
                             static_cast<int>(nodes), factor.name, suffix));
@@ -165,16 +168,26 @@ LobePlan default_plan(std::size_t bytes, int lobes, bool isotropic, std::size_t 
 }
 
 LobePlan plan_for(BrdfRef source, std::size_t bytes, int lobes, std::size_t texel_bytes) {
-  LobePlan plan = default_plan(bytes, lobes, source.isotropic(), texel_bytes);
-  if (source.isotropic() && mirror_asymmetry(source) > kLeastAsymmetry)
-    plan.factors.push_back({.name = "w",
-                            .shape = TableShape::grid,
-                            .uses = {kProjectTwist},
-                            .share = 0.25,
-                            .second = kProjectHalf,
-                            .second_warp = kHalfWarp,
-                            .width = kTwistNodes});
-  return plan;
+  const LobePlan plain = default_plan(bytes, lobes, source.isotropic(), texel_bytes);
+  if (!source.isotropic() || mirror_asymmetry(source) <= kLeastAsymmetry) return plain;
+  LobePlan twisted = plain;
+  twisted.factors.push_back({.name = "w",
+                             .shape = TableShape::grid,
+                             .uses = {kProjectTwist},
+                             .share = kTwistShare,
+                             .second = kProjectHalf,
+                             .second_warp = kHalfWarp,
+                             .width = kTwistNodes});
+  return plan_fits(twisted, bytes, source.channels(), texel_bytes) ? twisted : plain;
+}
+
+bool plan_fits(const LobePlan& plan, std::size_t bytes, int channels, std::size_t texel_bytes) {
+  try {
+    plan_to_spec(plan, bytes, channels, texel_bytes);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 ModelSpec plan_to_spec(const LobePlan& plan, std::size_t bytes, int channels, std::size_t texel_bytes) {

@@ -44,7 +44,7 @@ struct LobePlan {
 LobePlan default_plan(std::size_t bytes, int lobes, bool isotropic, std::size_t texel_bytes);
 
 /// default_plan for a source; where an isotropic one is not its own mirror image, each lobe has also a factor
-/// w(theta_t, theta_h).
+/// w(theta_t, theta_h), unless the bytes hold no such table.
 LobePlan plan_for(BrdfRef source, std::size_t bytes, int lobes, std::size_t texel_bytes);
 
 /// The largest model of the plan whose tables and numbers fit `bytes`, see FactoredBrdf::bytes. Throws Error
@@ -52,5 +52,8 @@ LobePlan plan_for(BrdfRef source, std::size_t bytes, int lobes, std::size_t texe
 /// lobe's own. Tables for every lobe come first and keep the factor's name; the others' names end in the
 /// lobe's number.
 ModelSpec plan_to_spec(const LobePlan& plan, std::size_t bytes, int channels, std::size_t texel_bytes);
+
+/// Whether plan_to_spec has room for every table.
+bool plan_fits(const LobePlan& plan, std::size_t bytes, int channels, std::size_t texel_bytes);
 
 }  // namespace burnish

@@ -10,7 +10,8 @@
 
 namespace burnish {
 
-/// Nodes that a channel's tables have at most for its steps to be solved by a Cholesky factorization.
+/// Nodes of a channel's tables, of all channels' where one is shared, up to which steps are solved by a
+/// Cholesky factorization.
 inline constexpr std::size_t kMostDirectUnknowns = 1000;
 
 struct RefineOptions {

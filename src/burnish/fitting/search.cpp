@@ -188,19 +188,22 @@ LobePlan plan_for(BrdfRef source, const TrainingSet& set, std::size_t bytes, int
   const std::size_t judged_bytes = std::min(bytes, texel_bytes * fitted.size() / kJudgedPairs);
   RefineOptions steps = options;
   steps.max_iterations = 2 * kTrialSteps;
-  steps.progress = [&](double) {
-    if (options.progress) options.progress(0);  // a callback can end the fit
-  };
   double least = INFINITY;
-  for (int count = 2; count <= kMostAnisotropicLobes; ++count) try {
-      const LobesFit fit = fit_plan(fitted, plan_for(source, judged_bytes, count, texel_bytes), judged_bytes,
-                                    texel_bytes, steps);
-      const double value = objective(fit.model, judged, options.shares);
-      if (value > least - kLeastGain) continue;
-      least = value;
-      best = plan_for(source, bytes, count, texel_bytes);
-    } catch (const Error&) {  // a table too small for the bytes
-    }
+  for (int count = 2; count <= kMostAnisotropicLobes; ++count) {
+    const LobePlan plan = plan_for(source, bytes, count, texel_bytes),
+                   trial = plan_for(source, judged_bytes, count, texel_bytes);
+    if (!plan_fits(plan, bytes, set.channels, texel_bytes) || !plan_fits(trial, judged_bytes, 1, texel_bytes))
+      continue;
+    if (options.progress)
+      steps.progress = [&, count](double f) {
+        options.progress((count - 2 + f) / (kMostAnisotropicLobes - 1));
+      };
+    const LobesFit fit = fit_plan(fitted, trial, judged_bytes, texel_bytes, steps);
+    const double value = objective(fit.model, judged, options.shares);
+    if (!(value < least - kLeastGain)) continue;
+    least = value;
+    best = plan;
+  }
   return best;
 }
 

@@ -28,8 +28,8 @@ struct SearchResult {
 };
 
 /// plan_for, the lobes of an anisotropic source as many as serve it best: two, three or four, each fitted to
-/// part of the set in few steps, at fewer bytes where that has too few pairs, and judged on another. Throws
-/// Error as plan_for and plan_to_spec do.
+/// part of the set in few steps, at fewer bytes where that has too few pairs, and judged on another.
+/// options.progress is called with rising shares of those trials. Throws Error as default_plan does.
 LobePlan plan_for(BrdfRef source, const TrainingSet& set, std::size_t bytes, int lobes,
                   std::size_t texel_bytes, const RefineOptions& options);
 

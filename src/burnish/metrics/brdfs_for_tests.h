@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <burnish/math/angles.h>
+#include <burnish/parameterization/projection.h>
 #include <burnish/reflectance/brdf.h>
 
 namespace burnish::testing {
@@ -37,6 +38,22 @@ struct Glossy {
       f[c] = above && known
                  ? scale * (0.1 * (1 + static_cast<double>(c)) + 2 * std::exp(-a * h.x * h.x - b * h.y * h.y))
                  : 0;
+    return known;
+  }
+};
+
+/// Glossy, brighter on one side of the plane of h and n than on the other: isotropic, reciprocal, but not its
+/// own mirror image.
+struct Twisted {
+  Glossy even;
+  double slope = 1.5;
+
+  int channels() const noexcept { return even.channels(); }
+  bool isotropic() const noexcept { return even.isotropic(); }
+  bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+    const double side = project_tan_half(kProjectTwist, wi, wo) - 0.5;
+    const bool known = even.eval(wi, wo, f);
+    for (double& v : f) v *= std::exp(slope * side);
     return known;
   }
 };

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -36,8 +37,8 @@ double twist(Vec3 wi, Vec3 wo) noexcept {
   const Vec3 s = wi + wo, a = wi - wo;
   const double across = s.x * s.x + s.y * s.y, square = across + s.z * s.z;
   const double turn = a.z * (s.y * a.x - s.x * a.y) * square;
-  const double den = 2 * (across + kTwistCore * square);
-  return den > 0 ? std::clamp(0.5 + kTwistScale * turn / den, 0.0, 1.0) : 0;
+  const double half = std::max(across + kTwistCore * square, std::numeric_limits<double>::min());
+  return std::clamp(0.5 + 0.5 * kTwistScale * turn / half, 0.0, 1.0);
 }
 
 }  // namespace

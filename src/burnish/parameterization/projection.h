@@ -17,7 +17,7 @@ namespace burnish {
 ///   [Rusinkiewicz 1998];
 /// - deviation: a polar angle alone (azimuth 0), theta_m: half the angle between the view and the light's
 ///   mirror direction, 0 in the middle of a highlight; the same when the directions are exchanged;
-/// - twist: a polar angle alone, theta_t, the one projection that tells a pair from its mirror image: to
+/// - twist: a polar angle alone, theta_t, the one polar angle that tells a pair from its mirror image: to
 ///   which side of the plane of h and n the directions turn off. tan(theta_t / 2) = 1/2 + (3 sqrt(3) / 4) x,
 ///   x = sin^2 theta_d cos theta_d sin(2 phi_d) sin^2 theta_h / (sin^2 theta_h + 1/256), is between 0 and 1
 ///   and becomes 1 less itself in the mirror; the same when the directions are exchanged.
@@ -38,7 +38,8 @@ inline constexpr Projection kProjectDeviation{.kind = Projection::Kind::deviatio
 inline constexpr Projection kProjectTwist{.kind = Projection::Kind::twist};
 
 /// Twist, unnormalized: S = wi + wo and A = wi - wo, tan(theta_t / 2) = r / den with
-/// den = 2 (S.x^2 + S.y^2 + |S|^2 kTwistCore), r = den / 2 + A.z (S.y A.x - S.x A.y) |S|^2 kTwistScale.
+/// den = 2 (S.x^2 + S.y^2 + |S|^2 kTwistCore), r = den / 2 + A.z (S.y A.x - S.x A.y) |S|^2 kTwistScale;
+/// of opposite directions 1/2.
 inline constexpr double kTwistCore = 1.0 / 256, kTwistScale = 0.6495190528383290;  // 3 sqrt(3) / 8
 
 /// Whether a projection has a polar angle but no azimuth.

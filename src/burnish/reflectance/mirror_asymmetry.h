@@ -10,4 +10,7 @@ namespace burnish {
 /// where the source knows no pair.
 double mirror_asymmetry(BrdfRef source);
 
+/// From here on a fit tells mirror images apart: a tenth of a percent, below what instruments repeat.
+inline constexpr double kLeastAsymmetry = 0.001;
+
 }  // namespace burnish

@@ -42,8 +42,10 @@ Vec3 slice_view(int slice, int slices) noexcept {
 
 // The local frame of a slice: the viewer towards -x, so that the mirror direction lies towards +x.
 struct Kernel {
-  double axis = 0;                                                 // radians from the normal towards +x
-  std::vector<std::array<Channels, kMostMaps / 2 + 1>> harmonics;  // a ring: k_0, k_1, k_2
+  using Harmonics = std::array<Channels, kMostMaps / 2 + 1>;
+
+  double axis = 0;                   // radians from the normal towards +x
+  std::vector<Harmonics> even, odd;  // a ring: of cos(m psi), of sin(m psi)
 };
 
 Kernel kernel_of(const FactoredBrdf& inside, Vec3 wo, int orders) {
@@ -70,17 +72,22 @@ Kernel kernel_of(const FactoredBrdf& inside, Vec3 wo, int orders) {
       const double area = std::sin(gamma) * (ring + 0.5);  // d gamma is proportional to the ring
       mean = mean + area * (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]) * wi;
     }
-  Kernel kernel{.axis = std::atan2(mean.x, mean.z), .harmonics = {}};
-  kernel.harmonics.resize(kRings + 1);
+  Kernel kernel{.axis = std::atan2(mean.x, mean.z), .even = {}, .odd = {}};
+  kernel.even.resize(kRings + 1);
+  kernel.odd.resize(kRings + 1);
   constexpr int kAzimuths = 2 * kSpokes;
   for (int ring = 0; ring <= kRings; ++ring)
     for (int spoke = 0; spoke < kAzimuths; ++spoke) {
       const double psi = kTwoPi * (spoke + 0.5) / kAzimuths;
       const Channels f = value(about(kernel.axis, ring_angle(ring), psi));
       for (int m = 0; m <= orders; ++m)
-        for (std::size_t c = 0; c < 3; ++c)
-          kernel.harmonics[static_cast<std::size_t>(ring)][static_cast<std::size_t>(m)][c] +=
-              f[c] * std::cos(m * psi) * (m == 0 ? 1 : 2) / kAzimuths;
+        for (std::size_t c = 0; c < 3; ++c) {
+          const double share = f[c] * (m == 0 ? 1 : 2) / kAzimuths;
+          kernel.even[static_cast<std::size_t>(ring)][static_cast<std::size_t>(m)][c] +=
+              share * std::cos(m * psi);
+          kernel.odd[static_cast<std::size_t>(ring)][static_cast<std::size_t>(m)][c] +=
+              share * std::sin(m * psi);
+        }
     }
   return kernel;
 }
@@ -271,13 +278,20 @@ ImageBasedLight prefilter(const FactoredBrdf& brdf, const Environment& environme
         add(light[ring], harmonics, 1 - part, point.light);
         add(light[ring + 1], harmonics, part, point.light);
       }
+      // Kernels count their azimuth from the tilt at alpha, about the axis in the world, which a mirror
+      // turns. Map 2 m - 1 goes with cos(m alpha), map 2 m with sin(m alpha).
+      const double sense = (dot(cross(axis, frame.x), frame.z) > 0) != (half == 1) ? 1 : -1;
       for (std::size_t j = 0; j < kernels.size(); ++j)
         for (std::size_t slice = 0; slice < slices; ++slice)
           for (std::size_t map = 0; map < maps; ++map) {
+            const std::size_t order = (map + 1) / 2, other = map == 0 ? 0 : map % 2 ? map + 1 : map - 1;
+            const double turned = map % 2 ? sense : -sense;
+            const Kernel& kernel = kernels[j][slice];
             Channels value{};
             for (std::size_t ring = 0; ring <= kRings; ++ring)
               for (std::size_t c = 0; c < 3; ++c)
-                value[c] += kernels[j][slice].harmonics[ring][(map + 1) / 2][c] * light[ring][map][c];
+                value[c] += kernel.even[ring][order][c] * light[ring][map][c] +
+                            turned * kernel.odd[ring][order][c] * light[ring][other][c];
             float* texel =
                 result.lobes[j].maps.data() + 3 * (((map * slices + slice) * side + row) * 2 * side + column);
             for (std::size_t c = 0; c < 3; ++c) texel[c] = static_cast<float>(value[c]);

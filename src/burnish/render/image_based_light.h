@@ -22,8 +22,9 @@ struct PrefilterOptions {
 /// What the light of an environment becomes under one lobe, but for the factors that depend on the view
 /// alone. The other factors times cos(theta_i) are a kernel about the axis that lies, in the plane of view
 /// and normal, at `axis[slice]` from the normal, away from the viewer: the mean direction of the kernel
-/// squared. The kernel is a sum of cos(m psi) k_m(gamma) in angle gamma and azimuth psi about that axis, so
-/// light from it is a sum of maps over the axis in the world.
+/// squared. The kernel is a sum of cos(m psi) k_m(gamma), and where the BRDF is not its own mirror image
+/// sin(m psi) l_m(gamma), in angle gamma and azimuth psi about that axis, so light from it is a sum of maps
+/// over the axis in the world.
 struct PrefilteredLobe {
   FactoredBrdf outside;      ///< one lobe: the factors of wo alone, with the scale and the maps'
   std::vector<double> axis;  ///< radians, one a slice

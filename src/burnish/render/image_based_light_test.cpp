@@ -49,33 +49,58 @@ TEST(ImageBasedLight, AnEvenSkyOnAMattSurfaceGivesPiTimesItsValue) {
     EXPECT_NEAR(light.radiance(n, v).g, dot(n, v) > 0 ? kPi * 0.25 * 2 : 0, 2e-3);
 }
 
-TEST(ImageBasedLight, IsCloseToMonteCarloAndCloserWithEveryOrder) {
-  const FactoredBrdf brdf = glossy();
-  constexpr int kSize = 24;
-  const Image truth =
-      moments_in_environment(brdf, CosineSampler{}, {}, kLamps, {.size = kSize, .samples = 1024}).mean;
+constexpr int kSize = 24;
+
+Image truth_of(const FactoredBrdf& brdf) {
+  return moments_in_environment(brdf, CosineSampler{}, {}, kLamps, {.size = kSize, .samples = 1024}).mean;
+}
+
+// How near the lit sphere is to `truth`, in decibels.
+double agreement(const FactoredBrdf& brdf, int harmonics, const Image& truth) {
   const LitSphere sphere{truth, {}};
   const double exposure = sphere_exposure({&sphere, 1});
+  PrefilterOptions options = kSmall;
+  options.harmonics = harmonics;
+  const ImageBasedLight light = prefilter(brdf, kLamps, options);
+  Image found(kSize, kSize, 3);
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x)
+      if (const auto n = sphere_normal(kSize, x + 0.5, y + 0.5)) {
+        const Rgb value = light.radiance(*n, {0, 0, 1});
+        const auto pixel = found.at(x, y);
+        pixel[0] = static_cast<float>(value.r);
+        pixel[1] = static_cast<float>(value.g);
+        pixel[2] = static_cast<float>(value.b);
+      }
+  return psnr(mean_squared_error(tone_map(found, exposure), tone_map(truth, exposure)));
+}
+
+TEST(ImageBasedLight, IsCloseToMonteCarloAndCloserWithEveryOrder) {
+  const FactoredBrdf brdf = glossy();
+  const Image truth = truth_of(brdf);
   double last = 0;
   for (const int harmonics : {0, 2, 4}) {
-    PrefilterOptions options = kSmall;
-    options.harmonics = harmonics;
-    const ImageBasedLight light = prefilter(brdf, kLamps, options);
-    Image found(kSize, kSize, 3);
-    for (int y = 0; y < kSize; ++y)
-      for (int x = 0; x < kSize; ++x)
-        if (const auto n = sphere_normal(kSize, x + 0.5, y + 0.5)) {
-          const Rgb value = light.radiance(*n, {0, 0, 1});
-          const auto pixel = found.at(x, y);
-          pixel[0] = static_cast<float>(value.r);
-          pixel[1] = static_cast<float>(value.g);
-          pixel[2] = static_cast<float>(value.b);
-        }
-    const double decibels = psnr(mean_squared_error(tone_map(found, exposure), tone_map(truth, exposure)));
+    const double decibels = agreement(brdf, harmonics, truth);
     EXPECT_GT(decibels, last) << harmonics;
     last = decibels;
   }
   EXPECT_GE(last, 38);
+}
+
+TEST(ImageBasedLight, KeepsTheSideThatAMaterialTurnsTo) {
+  const auto twisted = [](double slope) {
+    const ModelCase form{"m", "p(wo) q(h) p(wi) w(theta_t)", {"p=8", "q=64,rational:0.2", "w=5"}, 3};
+    Pcg32 random(5);
+    return model_of(
+        form, TableFormat::half, random, [=](std::size_t table, const TableLayout& l, int x, int, int) {
+          const double u = static_cast<double>(x) / (l.width - 1);
+          return table == 1 ? -2 * std::log1p(100 * u * u * u) : table == 2 ? slope * (u - 0.5) : -u;
+        });
+  };
+  const Image truth = truth_of(twisted(2.5));
+  const double kept = agreement(twisted(2.5), 4, truth), mirrored = agreement(twisted(-2.5), 4, truth);
+  EXPECT_GE(kept, 36);
+  EXPECT_LT(mirrored, kept - 3);
 }
 
 TEST(ImageBasedLight, TurnsWithTheWorld) {

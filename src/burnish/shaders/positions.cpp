@@ -114,12 +114,12 @@ Projected project_twist(Body& body) {
   const std::string s = sum(body), apart = body.vector("apart", "wi - wo", ops(3));
   const std::string across = squares(body, s);
   const std::string square = body.scalar("square", fmt::format("{0} + {1}.z * {1}.z", across, s), ops(2));
-  const std::string half =
-      body.scalar("half_den", fmt::format("{} + {} * {}", across, d.literal(kTwistCore), square), ops(2));
+  const std::string half = body.scalar(
+      "half_den",
+      fmt::format("max({} + {} * {}, {})", across, d.literal(kTwistCore), square, d.literal(1e-30)), ops(3));
   const std::string turn = body.scalar(
       "turn", fmt::format("{0}.z * ({1}.y * {0}.x - {1}.x * {0}.y) * {2}", apart, s, square), ops(5));
-  const std::string den =
-      body.scalar("den", fmt::format("max({0} + {0}, {1})", half, d.literal(1e-30)), ops(2));
+  const std::string den = body.scalar("den", fmt::format("{0} + {0}", half), ops(1));
   return {"", "",
           body.scalar("r",
                       fmt::format("min(max({} + {} * {}, {}), {})", half, d.literal(kTwistScale), turn,

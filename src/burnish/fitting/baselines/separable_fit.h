@@ -40,7 +40,8 @@ struct SeparableFit {
 
 /// The decomposition of at most `budget` bytes that makes the best pictures (psnr of small lit
 /// spheres), found by hill climbing over how the coordinates are split between u and v, sizes, terms and
-/// shared channels. Isotropic sources are split as θ_h | (θ_d, φ_d), (θ_h, θ_d) | φ_d, θ_d | (θ_h, φ_d);
+/// shared channels. Isotropic sources are split as θ_h | (θ_d, φ_d), (θ_h, θ_d) | φ_d, θ_d | (θ_h, φ_d),
+/// φ_d folded to a quarter circle or, where they are not their own mirror image, to half a circle;
 /// anisotropic ones, on disks of h and d, as h | d and (h, θ_d) | φ_d. The source should be reciprocal: the
 /// result is. Deterministic. Throws Error if no layout fits the budget or the source knows nothing.
 SeparableFit fit_separable(BrdfRef source, Decomposition method, const SeparableOptions& options);

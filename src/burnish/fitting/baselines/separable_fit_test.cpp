@@ -183,6 +183,22 @@ TEST(FitSeparable, TakesAnisotropicAndGreySources) {
   EXPECT_LE(one.brdf.bytes(), 600u);
 }
 
+TEST(FitSeparable, KeepsTheSideOfPhiDWhereTheSourceTellsIt) {
+  const auto whole = [](const SeparableBrdf& brdf) {
+    for (const NodeTable* table : {&brdf.u(), &brdf.v()})
+      for (const NodeAxis& axis : table->axes)
+        if (axis.coordinate == half_turn_d) return true;
+    return false;
+  };
+  const testing::Glossy even{.count = 1};
+  const testing::Twisted twisted{.even = even, .slope = 2};
+  const SeparableFit fit = fit_separable(twisted, Decomposition::svd, {.budget = 1500, .image_size = 16});
+  EXPECT_LE(fit.brdf.bytes(), 1500u);
+  EXPECT_TRUE(whole(fit.brdf) && fit.brdf.isotropic());
+  EXPECT_LT(error_figures(twisted, fit.brdf, {.count = 2000, .image_size = 16}).relative, 0.1);
+  EXPECT_FALSE(whole(fit_separable(even, Decomposition::svd, {.budget = 1500, .image_size = 16}).brdf));
+}
+
 TEST(FitSeparable, RefusesABudgetThatHoldsNothing) {
   const testing::Glossy source;
   EXPECT_THROW(fit_separable(source, Decomposition::svd, {.budget = 20, .image_size = 16}), Error);
