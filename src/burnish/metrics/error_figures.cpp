@@ -121,6 +121,13 @@ SpherePictures Scorer::pictures(BrdfRef model) const {
   return pictures;
 }
 
+double Scorer::picture_psnr(const SpherePictures& pictures) const {
+  double squared = 0;
+  for (std::size_t i = 0; i < pictures.shown.size(); ++i)
+    squared += mean_squared_error(pictures_.shown[i], pictures.shown[i]);
+  return psnr(squared / static_cast<double>(pictures.shown.size()));
+}
+
 ErrorFigures Scorer::score(BrdfRef model) const {
   const std::vector<PairError> errors = pair_errors(model);
   if (errors.empty()) throw Error("reference and model share no known direction pair");
@@ -143,13 +150,11 @@ ErrorFigures Scorer::score(BrdfRef model) const {
   figures.unknown_fraction = 1 - count / static_cast<double>(options_.count);
 
   const SpherePictures shown = pictures(model);
-  double squared = 0;
   for (std::size_t i = 0; i < shown.shown.size(); ++i) {
-    squared += mean_squared_error(pictures_.shown[i], shown.shown[i]);
     figures.ssim += ssim(pictures_.shown[i], shown.shown[i]) / static_cast<double>(shown.shown.size());
     figures.unknown_pixels += static_cast<std::size_t>(std::ranges::count(pictures_.spheres[i].known, 0));
   }
-  figures.psnr = psnr(squared / static_cast<double>(shown.shown.size()));
+  figures.psnr = picture_psnr(shown);
   return figures;
 }
 

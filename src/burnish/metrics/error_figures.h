@@ -71,6 +71,9 @@ class Scorer {
   /// The model's pictures under the reference's exposure.
   SpherePictures pictures(BrdfRef model) const;
 
+  /// The psnr of score, in dB, of pictures(model).
+  double picture_psnr(const SpherePictures& pictures) const;
+
   BrdfRef reference() const noexcept { return reference_; }
   const SpherePictures& reference_pictures() const noexcept { return pictures_; }
   double exposure() const noexcept { return exposure_; }

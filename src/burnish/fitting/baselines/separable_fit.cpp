@@ -280,21 +280,12 @@ class Search {
     const SeparableBrdf brdf =
         decompose(sample_pair_grid(source_, sides[0], sides[1]), method_, layout.coupling,
                   static_cast<std::size_t>(kTerms[static_cast<std::size_t>(layout.size[0])]));
-    const double psnr = picture_quality(brdf);
+    const double psnr = scorer_.picture_psnr(scorer_.pictures(brdf));
     if (!best_ || psnr > best_psnr_) {
       best_ = brdf;
       best_psnr_ = psnr;
     }
     return known->second = psnr;
-  }
-
-  // psnr of a model, as the scorer has it.
-  double picture_quality(BrdfRef model) const {
-    const SpherePictures pictures = scorer_.pictures(model);
-    double squared = 0;
-    for (std::size_t i = 0; i < pictures.shown.size(); ++i)
-      squared += mean_squared_error(scorer_.reference_pictures().shown[i], pictures.shown[i]);
-    return psnr(squared / static_cast<double>(pictures.shown.size()));
   }
 
   void climb(Layout at) {
