@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <burnish/fitting/metallic_roughness_fit.h>
+#include <burnish/export/metallic_roughness_fit.h>
 #include <burnish/math/angles.h>
 #include <burnish/render/shapes.h>
 

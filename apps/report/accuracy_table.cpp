@@ -11,9 +11,9 @@
 
 #include <burnish/factors/table_format.h>
 #include <burnish/fitting/baselines/baselines.h>
-#include <burnish/fitting/overfit.h>
-#include <burnish/fitting/rounding.h>
-#include <burnish/fitting/search.h>
+#include <burnish/fitting/plans/overfit.h>
+#include <burnish/fitting/plans/search.h>
+#include <burnish/fitting/refinement/rounding.h>
 #include <burnish/reflectance/sample_source.h>
 
 #include "report_tools.h"

@@ -16,7 +16,7 @@
 #include <burnish/error.h>
 #include <burnish/factors/model_file.h>
 #include <burnish/file.h>
-#include <burnish/fitting/cross_validation.h>
+#include <burnish/fitting/one_lobe/cross_validation.h>
 #include <burnish/io/cornell.h>
 #include <burnish/io/merl.h>
 #include <burnish/io/source.h>

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <burnish/fitting/cross_validation.h>
+#include <burnish/fitting/one_lobe/cross_validation.h>
 #include <burnish/io/cornell.h>
 
 namespace burnish {

@@ -13,7 +13,7 @@
 #include <burnish/error.h>
 #include <burnish/factors/table_format.h>
 #include <burnish/file.h>
-#include <burnish/fitting/budget.h>
+#include <burnish/fitting/plans/fit_plan.h>
 #include <burnish/io/rgl.h>
 #include <burnish/math/parallel.h>
 #include <burnish/math/random.h>

@@ -6,7 +6,7 @@
 #include <benchmark/benchmark.h>
 
 #include <burnish/eval/tabulated_sampler.h>
-#include <burnish/fitting/homomorphic.h>
+#include <burnish/fitting/one_lobe/homomorphic.h>
 #include <burnish/math/random.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/ggx_proxy.h>

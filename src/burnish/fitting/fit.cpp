@@ -6,14 +6,14 @@
 #include <nlohmann/json.hpp>
 
 #include <burnish/error.h>
-#include <burnish/fitting/budget.h>
-#include <burnish/fitting/cross_validation.h>
 #include <burnish/fitting/energy.h>
 #include <burnish/fitting/fit.h>
-#include <burnish/fitting/log_error.h>
-#include <burnish/fitting/overfit.h>
-#include <burnish/fitting/rounding.h>
-#include <burnish/fitting/search.h>
+#include <burnish/fitting/one_lobe/cross_validation.h>
+#include <burnish/fitting/one_lobe/log_error.h>
+#include <burnish/fitting/plans/fit_plan.h>
+#include <burnish/fitting/plans/overfit.h>
+#include <burnish/fitting/plans/search.h>
+#include <burnish/fitting/refinement/rounding.h>
 #include <burnish/metrics/error_figures.h>
 #include <burnish/reflectance/sample_source.h>
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <burnish/factors/model_file.h>
-#include <burnish/fitting/homomorphic.h>
+#include <burnish/fitting/one_lobe/homomorphic.h>
 #include <burnish/reflectance/brdf.h>
 #include <burnish/reflectance/half_diff_table.h>
 #include <burnish/reflectance/samples.h>

@@ -5,7 +5,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <burnish/fitting/baselines/low_rank.h>
-#include <burnish/fitting/dense.h>
+#include <burnish/fitting/numerics/dense.h>
 
 namespace burnish {
 

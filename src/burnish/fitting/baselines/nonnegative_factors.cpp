@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include <burnish/fitting/aligned_vector.h>
 #include <burnish/fitting/baselines/low_rank.h>
+#include <burnish/fitting/numerics/aligned_vector.h>
 #include <burnish/math/highway_targets.h>
 #include <burnish/math/parallel.h>
 #include <burnish/math/random.h>

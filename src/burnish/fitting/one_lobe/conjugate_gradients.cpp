@@ -1,0 +1,388 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <burnish/error.h>
+#include <burnish/fitting/numerics/smoothness.h>
+#include <burnish/fitting/one_lobe/log_rows.h>
+#include <burnish/fitting/one_lobe/multilevel.h>
+#include <burnish/math/parallel.h>
+
+namespace burnish {
+
+namespace {
+
+constexpr std::size_t kChunk = 16384;
+constexpr double kRidge = 1e-8;
+
+using Floats = std::vector<float>;
+using Doubles = std::vector<double>;
+
+double inner_product(const Doubles& a, const Doubles& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+/// The normal operator A^T W A / sum(W) + smooth S + ridge, without its matrix. Unknowns of tables with all
+/// channels are padded to `Padded` floats a texel (0: no padding, any count), so that a texel is one vector
+/// register.
+template <std::size_t Padded>
+class LogOperator {
+ public:
+  LogOperator(const RowMaker& maker, const HomomorphicOptions& options)
+      : spec_(*maker.spec),
+        uses_(spec_.lobes.front()),
+        channels_(static_cast<std::size_t>(maker.source->channels)) {
+    for (const ModelSpec::TableSpec& table : spec_.tables) {
+      base_.push_back(count_);
+      step_.push_back(table.shared ? 1 : step());
+      count_ += table.layout.node_count() * step_.back();
+      smoothness_.push_back(smoothness_rows(table.layout));
+      smooth_.push_back(options.smooth * table.smooth_share);
+    }
+    for (const FactorUse& use : uses_) {
+      const auto t = static_cast<std::size_t>(use.table);
+      const TableLayout& layout = spec_.tables[t].layout;
+      touches_.push_back({.base = base_[t],
+                          .step = step_[t],
+                          .next_row = static_cast<std::size_t>(layout.width) * step_[t],
+                          .line = layout.shape == TableShape::line});
+    }
+    chunks_.resize(chunk_count(maker.source->count, kChunk));
+    for_each_chunk(maker.source->count, kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+      chunks_[chunk] = maker.make(begin, end);
+      pad(chunks_[chunk]);
+    });
+    center();
+  }
+
+  std::size_t count() const { return count_; }
+  std::size_t samples() const { return samples_; }
+  double error_before() const { return error_before_; }
+  const Doubles& mean() const { return mean_; }
+
+  Doubles right_side() const {
+    return accumulate([&](const LogRows& rows, Floats& y) {
+      scatter(rows, y, [&](std::size_t i, float* row) {
+        for (std::size_t c = 0; c < step(); ++c) row[c] = weight(rows, i, c) * rows.target[i * step() + c];
+      });
+    });
+  }
+
+  /// y = operator x; also x^T A^T W A x / sum(W) is x.y less the smoothness.
+  Doubles apply(const Doubles& x) const {
+    const Floats xf(x.begin(), x.end());
+    Doubles y = accumulate([&](const LogRows& rows, Floats& part) {
+      scatter(rows, part, [&](std::size_t i, float* row) {
+        gather(rows, i, xf, row);
+        for (std::size_t c = 0; c < step(); ++c) row[c] *= weight(rows, i, c);
+      });
+    });
+    add_smoothness(x, y);
+    for (std::size_t i = 0; i < count_; ++i) y[i] += kRidge * x[i];
+    return y;
+  }
+
+  /// r -> approximate inverse of the operator times r: on the tables' own resolution and every coarser one,
+  /// the residual over the operator's diagonal there, added up [Bramble 1990].
+  void build_preconditioner() {
+    preconditioner_.resize(base_.size());
+    for (std::size_t t = 0; t < base_.size(); ++t) {
+      const TableLayout& layout = spec_.tables[t].layout;
+      preconditioner_[t].push_back({GridTransfer(layout, layout.width, layout.height), {}});
+      for (GridTransfer& level : coarser_levels(layout)) preconditioner_[t].push_back({std::move(level), {}});
+    }
+    struct Task {
+      std::size_t table;
+      Level* level;
+    };
+    std::vector<Task> tasks;
+    for (std::size_t t = 0; t < base_.size(); ++t)
+      for (Level& level : preconditioner_[t]) tasks.push_back({t, &level});
+    for_each_chunk(tasks.size(), 1, [&](std::size_t task, std::size_t, std::size_t) {
+      tasks[task].level->inverse_diagonal = inverse_diagonal(tasks[task].table, tasks[task].level->transfer);
+    });
+  }
+
+  Doubles precondition(const Doubles& r) const {
+    Doubles z(r.size()), coarse;
+    for (std::size_t t = 0; t < base_.size(); ++t)
+      for (const Level& level : preconditioner_[t]) {
+        coarse.resize(level.inverse_diagonal.size());
+        level.transfer.restrict_to(r.data() + base_[t], coarse.data(), step_[t]);
+        for (std::size_t i = 0; i < coarse.size(); ++i) coarse[i] *= level.inverse_diagonal[i];
+        level.transfer.add_interpolated(coarse.data(), z.data() + base_[t], step_[t]);
+      }
+    return z;
+  }
+
+  /// Weighted rms of the rows' residual.
+  double error(const Doubles& x) const {
+    const Floats xf(x.begin(), x.end());
+    Doubles sums(chunks_.size());
+    for_each_chunk(chunks_.size(), 1, [&](std::size_t chunk, std::size_t, std::size_t) {
+      const LogRows& rows = chunks_[chunk];
+      Floats row(step());
+      for (std::size_t i = 0; i < rows.size; ++i) {
+        gather(rows, i, xf, row.data());
+        for (std::size_t c = 0; c < step(); ++c) {
+          const double residual = row[c] - rows.target[i * step() + c];
+          sums[chunk] += weight(rows, i, c) * residual * residual;
+        }
+      }
+    });
+    double sum = 0;
+    for (const double s : sums) sum += s;
+    return std::sqrt(sum / (total_weight_ * static_cast<double>(channels_)));
+  }
+
+  /// Unknown of a table's node and channel.
+  std::size_t index(std::size_t table, std::size_t node, std::size_t channel) const {
+    return base_[table] + node * step_[table] + (step_[table] > 1 ? channel : 0);
+  }
+
+ private:
+  struct Touch {
+    std::size_t base, step, next_row;
+    bool line;
+  };
+
+  std::size_t step() const {
+    if constexpr (Padded > 0) return Padded;
+    return channels_;
+  }
+
+  float weight(const LogRows& rows, std::size_t i, std::size_t c) const {
+    return rows.weight_channels == 1 ? rows.weight[i] : rows.weight[i * step() + c];
+  }
+
+  // Widens targets and weights to the padded channel count; the padding stays 0.
+  void pad(LogRows& rows) const {
+    if (step() == channels_) return;
+    const auto widen = [&](Floats& values) {
+      Floats wide(rows.size * step());
+      for (std::size_t i = 0; i < rows.size; ++i)
+        for (std::size_t c = 0; c < channels_; ++c) wide[i * step() + c] = values[i * channels_ + c];
+      values = std::move(wide);
+    };
+    widen(rows.target);
+    if (rows.weight_channels > 1) widen(rows.weight);
+  }
+
+  // Takes each channel's mean out of the targets.
+  void center() {
+    Doubles weights(channels_), first(channels_), second(channels_);
+    for (const LogRows& rows : chunks_) {
+      samples_ += rows.size;
+      for (std::size_t i = 0; i < rows.size; ++i)
+        for (std::size_t c = 0; c < channels_; ++c) {
+          const double w = weight(rows, i, c), t = rows.target[i * step() + c];
+          weights[c] += w;
+          first[c] += w * t;
+          second[c] += w * t * t;
+        }
+    }
+    // the mean weight of a channel is one unit of data
+    for (const double w : weights) total_weight_ += w / static_cast<double>(channels_);
+    if (!(total_weight_ > 0)) throw Error("fit: expected samples with weight, found none");
+    mean_.assign(step(), 0);
+    double spread = 0;
+    for (std::size_t c = 0; c < channels_; ++c) {
+      if (!(weights[c] > 0)) continue;
+      mean_[c] = first[c] / weights[c];
+      spread += (second[c] - weights[c] * mean_[c] * mean_[c]) / total_weight_;
+    }
+    error_before_ = std::sqrt(std::max(0.0, spread / static_cast<double>(channels_)));
+    for_each_chunk(chunks_.size(), 1, [&](std::size_t chunk, std::size_t, std::size_t) {
+      LogRows& rows = chunks_[chunk];
+      for (std::size_t i = 0; i < rows.size * step(); ++i)
+        rows.target[i] -= static_cast<float>(mean_[i % step()]);
+    });
+  }
+
+  // Every kSampleStride-th sample is enough to estimate a diagonal.
+  Doubles inverse_diagonal(std::size_t table, const GridTransfer& level) const {
+    constexpr std::size_t kSampleStride = 8;
+    const std::size_t step_of = step_[table];
+    const auto width = static_cast<std::uint32_t>(spec_.tables[table].layout.width);
+    Doubles d(level.coarse_count() * step_of);
+    for (const LogRows& rows : chunks_)
+      for (std::size_t i = 0; i < rows.size; i += kSampleStride)
+        for (std::size_t k = 0; k < uses_.size(); ++k) {
+          if (static_cast<std::size_t>(uses_[k].table) != table) continue;
+          const std::size_t use = i * uses_.size() + k;
+          const GridTransfer::Corners at =
+              level.corners(static_cast<int>(rows.node[use] % width), static_cast<double>(rows.fx[use]),
+                            static_cast<int>(rows.node[use] / width), static_cast<double>(rows.fy[use]));
+          for (int corner = 0; corner < 4; ++corner)
+            for (std::size_t c = 0; c < channels_; ++c)
+              d[at.node[corner] * step_of + (step_of > 1 ? c : 0)] +=
+                  kSampleStride * at.weight[corner] * at.weight[corner] * weight(rows, i, c);
+        }
+    TableLayout layout = spec_.tables[table].layout;
+    layout.width = level.coarse_width();
+    layout.height = level.coarse_height();
+    const SmoothnessRows smoothness = smoothness_rows(layout);
+    for (double& v : d) v = v / total_weight_ + kRidge;
+    for (std::size_t k = 0; k < smoothness.nodes.size(); ++k)
+      for (std::size_t c = 0; c < step_of; ++c)
+        d[smoothness.nodes[k] * step_of + c] +=
+            smooth_[table] * smoothness.coefficients[k] * smoothness.coefficients[k];
+    for (double& v : d) v = 1 / v;
+    return d;
+  }
+
+  template <class Body>
+  void for_each_corner(const LogRows& rows, std::size_t i, const Body& body) const {
+    for (std::size_t k = 0; k < touches_.size(); ++k) {
+      const Touch& touch = touches_[k];
+      const std::size_t use = i * touches_.size() + k;
+      const std::size_t at = touch.base + rows.node[use] * touch.step;
+      const float fx = rows.fx[use], fy = rows.fy[use];
+      body(at, touch.step, (1 - fx) * (1 - fy));
+      body(at + touch.step, touch.step, fx * (1 - fy));
+      if (touch.line) continue;
+      body(at + touch.next_row, touch.step, (1 - fx) * fy);
+      body(at + touch.next_row + touch.step, touch.step, fx * fy);
+    }
+  }
+
+  // row = sum of log lambda over the uses [HomomorphicBrdf, eq. 5]
+  void gather(const LogRows& rows, std::size_t i, const Floats& x, float* row) const {
+    for (std::size_t c = 0; c < step(); ++c) row[c] = 0;
+    for_each_corner(rows, i, [&](std::size_t at, std::size_t step_of, float weight) {
+      if (step_of == step())
+        for (std::size_t c = 0; c < step(); ++c) row[c] += weight * x[at + c];
+      else
+        for (std::size_t c = 0; c < channels_; ++c) row[c] += weight * x[at];  // the padding stays 0
+    });
+  }
+
+  // y += A^T row for every sample, row as make_row(i, row) writes it
+  template <class MakeRow>
+  void scatter(const LogRows& rows, Floats& y, const MakeRow& make_row) const {
+    std::array<float, Padded> fixed;
+    Floats dynamic(Padded == 0 ? step() : 0);
+    float* row = Padded == 0 ? dynamic.data() : fixed.data();
+    for (std::size_t i = 0; i < rows.size; ++i) {
+      make_row(i, row);
+      for_each_corner(rows, i, [&](std::size_t at, std::size_t step_of, float weight) {
+        if (step_of == step())
+          for (std::size_t c = 0; c < step(); ++c) y[at + c] += weight * row[c];
+        else
+          for (std::size_t c = 0; c < step(); ++c) y[at] += weight * row[c];
+      });
+    }
+  }
+
+  // Sum over chunks of what body adds to a zero vector, in the order of the chunks, over the samples' weight.
+  template <class Body>
+  Doubles accumulate(const Body& body) const {
+    constexpr std::size_t kGroups = 32;
+    const std::size_t group = (chunks_.size() + kGroups - 1) / kGroups;
+    std::vector<Floats> parts(chunk_count(chunks_.size(), group));
+    for_each_chunk(chunks_.size(), group, [&](std::size_t g, std::size_t begin, std::size_t end) {
+      parts[g].assign(count_, 0);
+      for (std::size_t i = begin; i < end; ++i) body(chunks_[i], parts[g]);
+    });
+    Doubles sum(count_);
+    for_each_chunk(count_, 4096, [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (const Floats& part : parts)
+        for (std::size_t i = begin; i < end; ++i) sum[i] += part[i];
+      for (std::size_t i = begin; i < end; ++i) sum[i] /= total_weight_;
+    });
+    return sum;
+  }
+
+  void add_smoothness(const Doubles& x, Doubles& y) const {
+    for (std::size_t t = 0; t < base_.size(); ++t) {
+      const SmoothnessRows& rows = smoothness_[t];
+      for (std::size_t r = 0; r < rows.size(); ++r)
+        for (std::size_t c = 0; c < step_[t]; ++c) {
+          double value = 0;
+          for (std::size_t k = rows.starts[r]; k < rows.starts[r + 1]; ++k)
+            value += rows.coefficients[k] * x[base_[t] + rows.nodes[k] * step_[t] + c];
+          for (std::size_t k = rows.starts[r]; k < rows.starts[r + 1]; ++k)
+            y[base_[t] + rows.nodes[k] * step_[t] + c] += smooth_[t] * rows.coefficients[k] * value;
+        }
+    }
+  }
+
+  const ModelSpec& spec_;
+  const std::vector<FactorUse>& uses_;
+  std::size_t channels_, count_ = 0, samples_ = 0;
+  double total_weight_ = 0, error_before_ = 0;
+  Doubles smooth_;
+  std::vector<std::size_t> base_, step_;
+  std::vector<Touch> touches_;
+  std::vector<SmoothnessRows> smoothness_;
+  std::vector<LogRows> chunks_;
+  struct Level {
+    GridTransfer transfer;
+    Doubles inverse_diagonal;
+  };
+  std::vector<std::vector<Level>> preconditioner_;  ///< [table][level]
+  Doubles mean_;
+};
+
+template <std::size_t Padded>
+LogSolution solve(const RowMaker& rows, const Unknowns& unknowns, const HomomorphicOptions& options) {
+  LogOperator<Padded> op(rows, options);
+  op.build_preconditioner();
+
+  // Preconditioned conjugate gradients on the normal equations [Hestenes 1952].
+  Doubles x(op.count()), r = op.right_side(), z = op.precondition(r), p;
+  p = z;
+  double rz = inner_product(r, z);
+  const double first = rz;
+  LogSolution solution{
+      .samples = op.samples(), .error_before = op.error_before(), .stop_reason = "iteration limit"};
+  const double target = options.tolerance * options.tolerance * first;
+  while (solution.iterations < options.max_iterations) {
+    if (rz <= target) {
+      solution.stop_reason = "tolerance reached";
+      break;
+    }
+    const Doubles ap = op.apply(p);
+    const double alpha = rz / inner_product(p, ap);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      x[i] += alpha * p[i];
+      r[i] -= alpha * ap[i];
+    }
+    z = op.precondition(r);
+    const double next = inner_product(r, z);
+    if (!std::isfinite(next)) throw Error("fit: expected a solvable system; more smoothness may help");
+    for (std::size_t i = 0; i < p.size(); ++i) p[i] = z[i] + next / rz * p[i];
+    rz = next;
+    ++solution.iterations;
+    // the residual falls about geometrically
+    if (options.progress)
+      options.progress(
+          std::clamp(std::log(first / std::max(rz, 1e-300)) / std::log(first / target), 0.0, 1.0));
+  }
+  solution.error_after = op.error(x);
+  solution.log_values.resize(unknowns.count);
+  for (std::size_t t = 0; t < rows.spec->tables.size(); ++t)
+    for (std::size_t node = 0; node < rows.spec->tables[t].layout.node_count(); ++node)
+      for (std::size_t c = 0; c < unknowns.channels[t]; ++c)
+        solution.log_values[unknowns.base[t] + node * unknowns.channels[t] + c] = x[op.index(t, node, c)];
+  solution.channel_offset.assign(op.mean().begin(), op.mean().begin() + rows.source->channels);
+  return solution;
+}
+
+}  // namespace
+
+LogSolution solve_iteratively(const RowMaker& rows, const Unknowns& unknowns,
+                              const HomomorphicOptions& options) {
+  switch (rows.source->channels) {
+    case 1:
+      return solve<1>(rows, unknowns, options);
+    case 3:
+      return solve<4>(rows, unknowns, options);
+    default:
+      return solve<0>(rows, unknowns, options);
+  }
+}
+
+}  // namespace burnish

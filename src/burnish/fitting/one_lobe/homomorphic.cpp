@@ -1,0 +1,106 @@
+#include <cmath>
+#include <utility>
+
+#include <burnish/error.h>
+#include <burnish/fitting/one_lobe/homomorphic.h>
+#include <burnish/fitting/one_lobe/log_error.h>
+#include <burnish/fitting/one_lobe/log_rows.h>
+
+namespace burnish {
+
+namespace {
+
+// Up to here the normal equations fit the caches and their solution costs less than a pass over the samples.
+constexpr std::size_t kMostDirectUnknowns = 512;
+
+// The diffuse reflection of white is 1 / pi: a floor above hides all but highlights.
+constexpr double kLargestFloor = 1;
+
+bool solved_directly(const ModelSpec& spec, std::size_t unknowns, int channels) {
+  bool shared = false;
+  for (const ModelSpec::TableSpec& table : spec.tables) shared = shared || table.shared;
+  const bool coupled = shared && channels > 1;
+  return (coupled ? unknowns : unknowns / static_cast<std::size_t>(channels)) <= kMostDirectUnknowns;
+}
+
+LogSolution solve(const RowMaker& rows, const Unknowns& unknowns, const HomomorphicOptions& options) {
+  return solved_directly(*rows.spec, unknowns.count, rows.source->channels)
+             ? solve_directly(rows, unknowns, options)
+             : solve_iteratively(rows, unknowns, options);
+}
+
+// The tables of a solution, logarithms still, in the formats to be.
+std::vector<Table> to_tables(const LogSolution& solution, const Unknowns& unknowns, const ModelSpec& spec,
+                             TableFormat format) {
+  std::vector<Table> tables;
+  for (std::size_t t = 0; t < spec.tables.size(); ++t) {
+    const auto* first = solution.log_values.data() + unknowns.base[t];
+    tables.push_back({.name = spec.tables[t].name,
+                      .layout = spec.tables[t].layout,
+                      .channels = static_cast<int>(unknowns.channels[t]),
+                      .values = {first, first + spec.tables[t].layout.node_count() * unknowns.channels[t]},
+                      .format = format_of(spec.tables[t], format)});
+  }
+  return tables;
+}
+
+Lobe to_lobe(const LogSolution& solution, const ModelSpec& spec) {
+  return {.scale = solution.channel_offset, .factors = spec.lobes.front()};
+}
+
+void check_formats(const ModelSpec& spec, int channels, TableFormat format) {
+  for (const ModelSpec::TableSpec& t : spec.tables)
+    check_format(
+        {.name = t.name, .channels = t.shared ? 1 : channels, .values = {}, .format = format_of(t, format)});
+}
+
+}  // namespace
+
+HomomorphicFit fit_homomorphic(const SampleSource& source, const ModelSpec& spec,
+                               const HomomorphicOptions& options) {
+  if (spec.lobes.size() != 1 || spec.lobes.front().empty())
+    throw Error("fit: a log-linear fit takes a model of one lobe");
+  if (source.count == 0) throw Error("fit: expected samples, found none");
+  const auto is_floor = [](double floor) { return floor > 0 && floor <= kLargestFloor; };
+  if (!(options.smooth >= 0) || !std::isfinite(options.smooth) || !is_floor(options.floor) ||
+      !is_floor(options.error_floor) || options.reweightings < 0)
+    throw Error("fit: expected smooth >= 0, floors > 0 and at most 1, and reweightings >= 0");
+
+  check_formats(spec, source.channels, options.format);
+
+  RowMaker rows(source, spec, options.floor, options.error_floor);
+  const Unknowns unknowns = number_unknowns(spec, source.channels);
+  LogSolution solution = solve(rows, unknowns, options);
+  HomomorphicSummary summary{.samples = solution.samples,
+                             .unknowns = unknowns.count,
+                             .error_before = solution.error_before,
+                             .error_after = solution.error_after,
+                             .iterations = solution.iterations,
+                             .stop_reason = solution.stop_reason};
+
+  if (options.reweightings > 0) {
+    const auto unrounded = [&](const LogSolution& s) {
+      return from_log_tables(source.channels, to_tables(s, unknowns, spec, options.format),
+                             {to_lobe(s, spec)}, TableFormat::single);
+    };
+    FactoredBrdf current = unrounded(solution);
+    double smallest = log_error(source, current, options.error_floor).mean();
+    for (int pass = 0; pass < options.reweightings; ++pass) {
+      rows.current = &current;
+      LogSolution next = solve(rows, unknowns, options);
+      summary.iterations += next.iterations;
+      current = unrounded(next);
+      const double error = log_error(source, current, options.error_floor).mean();
+      if (error < smallest) {
+        smallest = error;
+        solution = std::move(next);
+        summary.reweightings = pass + 1;
+      }
+    }
+  }
+  return {from_log_tables(source.channels, to_tables(solution, unknowns, spec, options.format),
+                          {to_lobe(solution, spec)}),
+          std::move(summary)};
+}
+
+}  // namespace burnish

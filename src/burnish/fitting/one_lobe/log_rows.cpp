@@ -1,0 +1,88 @@
+#include <algorithm>
+#include <cmath>
+
+#include <burnish/error.h>
+#include <burnish/fitting/one_lobe/log_rows.h>
+#include <burnish/math/parallel.h>
+
+namespace burnish {
+
+namespace {
+
+constexpr std::size_t kBlock = 1024;  // samples produced at a time
+
+// Reweighting: errors below kSmallError count as squares, a step changes a value by at most e^kLongestStep,
+// and the model is taken as at least this share of the floor.
+constexpr double kSmallError = 0.2, kLongestStep = 3, kSmallestShare = 1e-2;
+
+}  // namespace
+
+LogRows RowMaker::make(std::size_t begin, std::size_t end) const {
+  const std::vector<FactorUse>& uses = spec->lobes.front();
+  const auto channels = static_cast<std::size_t>(source->channels);
+  LogRows rows;
+  const std::size_t most = end - begin;
+  rows.node.reserve(most * uses.size());
+  rows.fx.reserve(most * uses.size());
+  rows.fy.reserve(most * uses.size());
+  rows.target.reserve(most * channels);
+  rows.weight.reserve(most * (current ? channels : 1));
+
+  rows.weight_channels = current ? channels : 1;
+  std::vector<double> model(channels);
+  std::vector<DirectionPair> pairs(kBlock);
+  std::vector<double> values(kBlock * channels), sample_weights(kBlock);
+  for (std::size_t at = begin; at < end; at += kBlock) {
+    const std::size_t n = std::min(kBlock, end - at);
+    source->fill(at, std::span(pairs).first(n), std::span(values).first(n * channels),
+                 std::span(sample_weights).first(n));
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto [wi, wo] = pairs[i];
+      if (!(sample_weights[i] > 0) || wi.z <= 0 || wo.z <= 0) continue;
+      ++rows.size;
+      for (const FactorUse& use : uses) {
+        const Lookup at_nodes = locate(spec->tables[static_cast<std::size_t>(use.table)].layout, use, wi, wo);
+        rows.node.push_back(static_cast<std::uint32_t>(at_nodes.node));
+        rows.fx.push_back(static_cast<float>(at_nodes.fx));
+        rows.fy.push_back(static_cast<float>(at_nodes.fy));
+      }
+      const std::span<const double> f = std::span(values).subspan(i * channels, channels);
+      if (current)
+        add_reweighted(pairs[i], f, sample_weights[i], model, rows);
+      else
+        add_plain(f, sample_weights[i], rows);
+    }
+  }
+  return rows;
+}
+
+void RowMaker::add_plain(std::span<const double> f, double weight, LogRows& rows) const {
+  rows.weight.push_back(static_cast<float>(weight));
+  for (const double v : f) rows.target.push_back(static_cast<float>(std::log(std::max(v, 0.0) + floor)));
+}
+
+void RowMaker::add_reweighted(const DirectionPair& pair, std::span<const double> f, double weight,
+                              std::span<double> model, LogRows& rows) const {
+  current->eval(pair.wi, pair.wo, model);
+  for (std::size_t c = 0; c < f.size(); ++c) {
+    const double m = std::max(model[c], floor * kSmallestShare);
+    const double slope = m / (m + error_floor);
+    const double error = std::log((std::max(f[c], 0.0) + error_floor) / (m + error_floor));
+    const double step = std::clamp(error / slope, -kLongestStep, kLongestStep);
+    rows.target.push_back(static_cast<float>(std::log(m) + step));
+    rows.weight.push_back(
+        static_cast<float>(weight * slope * slope / std::max(std::abs(error), kSmallError)));
+  }
+}
+
+Unknowns number_unknowns(const ModelSpec& spec, int channels) {
+  Unknowns unknowns;
+  for (const ModelSpec::TableSpec& table : spec.tables) {
+    unknowns.base.push_back(unknowns.count);
+    unknowns.channels.push_back(table.shared ? 1 : static_cast<std::size_t>(channels));
+    unknowns.count += table.layout.node_count() * unknowns.channels.back();
+  }
+  return unknowns;
+}
+
+}  // namespace burnish

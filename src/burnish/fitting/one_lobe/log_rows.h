@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <burnish/factors/model_spec.h>
+#include <burnish/fitting/one_lobe/homomorphic.h>
+#include <burnish/reflectance/sample_source.h>
+
+namespace burnish {
+
+/// A block of samples as rows of the log-linear problem: what each lookup touches, the logarithms and the
+/// weights. Samples without weight are left out.
+struct LogRows {
+  std::size_t size = 0;
+  std::vector<std::uint32_t> node;  ///< [sample][use], lower corner
+  std::vector<float> fx, fy;        ///< [sample][use]
+  std::vector<float> target;        ///< [sample][channel]
+  std::size_t weight_channels = 1;  ///< one weight for all channels, or one each
+  std::vector<float> weight;        ///< [sample]
+};
+
+/// How samples become rows. Without a current model the rows are log(f + floor) with the samples' weights.
+/// With one they are a step of reweighted least squares for the absolute error of log(f + error_floor) about
+/// that model: the error's derivative by log(model) is model / (model + error_floor), and a square weighs
+/// like an absolute value where it is divided by the size of the current error [Daubechies 2010].
+class RowMaker {
+ public:
+  RowMaker(const SampleSource& samples, const ModelSpec& model, double fit_floor,
+           double floor_of_error) noexcept
+      : source(&samples), spec(&model), floor(fit_floor), error_floor(floor_of_error) {}
+
+  const SampleSource* source;
+  const ModelSpec* spec;      ///< one lobe
+  double floor, error_floor;  ///< see HomomorphicOptions
+
+  const FactoredBrdf* current = nullptr;
+
+  /// The rows of samples [begin, end).
+  LogRows make(std::size_t begin, std::size_t end) const;
+
+ private:
+  void add_plain(std::span<const double> f, double weight, LogRows& rows) const;
+  void add_reweighted(const DirectionPair& pair, std::span<const double> f, double weight,
+                      std::span<double> model, LogRows& rows) const;
+};
+
+/// Where a table's unknowns stand in the vector of all: base[t] + node * channels[t] + channel.
+struct Unknowns {
+  std::vector<std::size_t> base;
+  std::vector<std::size_t> channels;  ///< 1 for a shared table
+  std::size_t count = 0;
+};
+
+Unknowns number_unknowns(const ModelSpec& spec, int channels);
+
+/// Solution of a log-linear problem.
+struct LogSolution {
+  std::vector<double> log_values;      ///< as numbered by Unknowns
+  std::vector<double> channel_offset;  ///< added to every log value of a channel
+  std::size_t samples = 0;
+  double error_before = 0, error_after = 0;  ///< see HomomorphicSummary
+  int iterations = 0;
+  std::string stop_reason;
+};
+
+/// Minimizes by gathering the normal equations in one pass and factorizing them: for up to some hundred
+/// unknowns.
+LogSolution solve_directly(const RowMaker& rows, const Unknowns& unknowns, const HomomorphicOptions& options);
+
+/// Minimizes by conjugate gradients on the normal equations, without forming them.
+LogSolution solve_iteratively(const RowMaker& rows, const Unknowns& unknowns,
+                              const HomomorphicOptions& options);
+
+}  // namespace burnish

@@ -1,0 +1,225 @@
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include <Eigen/Cholesky>
+
+#include <burnish/error.h>
+#include <burnish/fitting/numerics/smoothness.h>
+#include <burnish/fitting/one_lobe/log_rows.h>
+#include <burnish/math/parallel.h>
+
+namespace burnish {
+
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+
+// Pins what neither data nor smoothness determine (the share of a constant between the tables).
+constexpr double kRidge = 1e-7;
+
+// Memory for the partial sums that run side by side.
+constexpr std::size_t kPartialBytes = std::size_t{128} << 20;
+
+// Samples made into rows at a time.
+constexpr std::size_t kBlock = 4096;
+
+/// Sums over samples for one matrix of the normal equations. Where a table is shared between channels, all
+/// channels are the unknowns of one system. Where none is, each channel is a system of its own; they have one
+/// matrix in common, with a column each on the right, if a sample's weight is the same for all channels.
+struct Sums {
+  Matrix upper;  ///< products of two terms, each pair once, in either triangle
+  Eigen::VectorXd diagonal;
+  Matrix right;
+  double weight = 0;                      ///< of the samples, mean over the channels
+  Eigen::ArrayXd target, target_squared;  ///< one a channel
+
+  Sums(Eigen::Index unknowns, Eigen::Index columns, Eigen::Index channels)
+      : upper(Matrix::Zero(unknowns, unknowns)),
+        diagonal(Eigen::VectorXd::Zero(unknowns)),
+        right(Matrix::Zero(unknowns, columns)),
+        target(Eigen::ArrayXd::Zero(channels)),
+        target_squared(Eigen::ArrayXd::Zero(channels)) {}
+
+  void add(const Sums& other) {
+    upper += other.upper;
+    diagonal += other.diagonal;
+    right += other.right;
+    weight += other.weight;
+    target += other.target;
+    target_squared += other.target_squared;
+  }
+};
+
+class Gatherer {
+ public:
+  Gatherer(const RowMaker& rows, const Unknowns& unknowns)
+      : rows_(rows),
+        uses_(rows.spec->lobes.front()),
+        channels_(static_cast<std::size_t>(rows.source->channels)) {
+    for (const std::size_t c : unknowns.channels) coupled_ = coupled_ || c != channels_;
+    matrices_ = !coupled_ && rows.current ? channels_ : 1;
+    for (std::size_t t = 0; t < rows.spec->tables.size(); ++t) {
+      base_.push_back(coupled_ ? unknowns.base[t] : size_);
+      step_.push_back(coupled_ ? unknowns.channels[t] : 1);
+      size_ += rows.spec->tables[t].layout.node_count() * step_.back();
+    }
+  }
+
+  bool coupled() const { return coupled_; }
+  std::size_t matrices() const { return matrices_; }
+  std::vector<Sums> zero() const {
+    const auto channels = static_cast<Eigen::Index>(channels_ / matrices_);
+    return std::vector<Sums>(matrices_,
+                             Sums(static_cast<Eigen::Index>(size_), coupled_ ? 1 : channels, channels));
+  }
+  std::size_t bytes() const { return matrices_ * size_ * size_ * sizeof(double); }
+  /// How often a table stands in the matrix.
+  std::size_t copies(std::size_t table) const { return step_[table]; }
+  Eigen::Index index(std::size_t table, std::size_t node, std::size_t copy) const {
+    return static_cast<Eigen::Index>(base_[table] + node * step_[table] + copy);
+  }
+
+  std::size_t add(std::size_t begin, std::size_t end, std::vector<Sums>& sums) const {
+    const LogRows rows = rows_.make(begin, end);
+    std::vector<Term> terms(4 * uses_.size());
+    const std::size_t step = rows.weight_channels;
+    for (std::size_t i = 0; i < rows.size; ++i) {
+      const std::span<const Term> row = find_terms(rows, i, terms);
+      const float* weight = rows.weight.data() + i * step;
+      const float* target = rows.target.data() + i * channels_;
+      for (std::size_t c = 0; c < channels_; ++c) {
+        Sums& s = sums[matrices_ == 1 ? 0 : c];
+        const double w = weight[step == 1 ? 0 : c];
+        const auto column = static_cast<Eigen::Index>(matrices_ == 1 ? c : 0);
+        s.weight += w * static_cast<double>(matrices_) / static_cast<double>(channels_);
+        s.target[column] += w * target[c];
+        s.target_squared[column] += w * target[c] * target[c];
+      }
+      if (!coupled_ && step == 1)
+        add_row(row, weight[0], 0, target, sums[0]);
+      else
+        for (std::size_t c = 0; c < channels_; ++c)
+          add_row(row, weight[step == 1 ? 0 : c], c, target + c, sums[matrices_ == 1 ? 0 : c]);
+    }
+    return rows.size;
+  }
+
+ private:
+  /// One texel of a row.
+  struct Term {
+    std::size_t index;
+    bool per_channel;
+    double weight;
+  };
+
+  void add_row(std::span<const Term> row, double weight, std::size_t copy, const float* target,
+               Sums& sums) const {
+    const auto place = [&](const Term& t) {
+      return static_cast<Eigen::Index>(t.index + (t.per_channel ? copy : 0));
+    };
+    for (std::size_t a = 0; a < row.size(); ++a) {
+      const Eigen::Index at = place(row[a]);
+      const double wa = weight * row[a].weight;
+      for (Eigen::Index c = 0; c < sums.right.cols(); ++c) sums.right(at, c) += wa * target[c];
+      sums.diagonal[at] += wa * row[a].weight;
+      double* column = sums.upper.col(at).data();
+      for (std::size_t b = a + 1; b < row.size(); ++b) column[place(row[b])] += wa * row[b].weight;
+    }
+  }
+
+  std::span<const Term> find_terms(const LogRows& rows, std::size_t i, std::vector<Term>& terms) const {
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < uses_.size(); ++k) {
+      const auto t = static_cast<std::size_t>(uses_[k].table);
+      const TableLayout& layout = rows_.spec->tables[t].layout;
+      const std::size_t at = i * uses_.size() + k, node = rows.node[at];
+      const double fx = rows.fx[at], fy = rows.fy[at];
+      const auto push = [&](std::size_t n, double weight) {
+        terms[count++] = {base_[t] + n * step_[t], step_[t] > 1, weight};
+      };
+      push(node, (1 - fx) * (1 - fy));
+      push(node + 1, fx * (1 - fy));
+      if (layout.shape == TableShape::line) continue;
+      push(node + static_cast<std::size_t>(layout.width), (1 - fx) * fy);
+      push(node + static_cast<std::size_t>(layout.width) + 1, fx * fy);
+    }
+    return {terms.data(), count};
+  }
+
+  const RowMaker& rows_;
+  const std::vector<FactorUse>& uses_;
+  std::size_t channels_, matrices_ = 1, size_ = 0;
+  bool coupled_ = false;
+  std::vector<std::size_t> base_, step_;
+};
+
+// Adds smooth * (roughness of every table) to the matrix.
+void add_smoothness(const ModelSpec& spec, const Gatherer& gatherer, double smooth, Matrix& matrix) {
+  for (std::size_t t = 0; t < spec.tables.size(); ++t) {
+    const SmoothnessRows rows = smoothness_rows(spec.tables[t].layout);
+    for (std::size_t copy = 0; copy < gatherer.copies(t); ++copy)
+      for (std::size_t r = 0; r < rows.size(); ++r)
+        for (std::size_t a = rows.starts[r]; a < rows.starts[r + 1]; ++a)
+          for (std::size_t b = rows.starts[r]; b < rows.starts[r + 1]; ++b)
+            matrix(gatherer.index(t, rows.nodes[a], copy), gatherer.index(t, rows.nodes[b], copy)) +=
+                smooth * spec.tables[t].smooth_share * rows.coefficients[a] * rows.coefficients[b];
+  }
+}
+
+}  // namespace
+
+LogSolution solve_directly(const RowMaker& rows, const Unknowns& unknowns,
+                           const HomomorphicOptions& options) {
+  const Gatherer gatherer(rows, unknowns);
+  const auto channels = static_cast<std::size_t>(rows.source->channels);
+
+  // One partial sum a group of samples, joined in order.
+  const std::size_t groups = std::clamp<std::size_t>(kPartialBytes / gatherer.bytes(), 2, 32);
+  const std::size_t group_size = std::max(kBlock, (rows.source->count + groups - 1) / groups);
+  std::vector<std::vector<Sums>> partial(chunk_count(rows.source->count, group_size));
+  std::vector<std::size_t> samples(partial.size());
+  for_each_chunk(rows.source->count, group_size, [&](std::size_t group, std::size_t begin, std::size_t end) {
+    partial[group] = gatherer.zero();
+    for (std::size_t at = begin; at < end; at += kBlock)
+      samples[group] += gatherer.add(at, std::min(end, at + kBlock), partial[group]);
+  });
+
+  LogSolution solution{.log_values = std::vector<double>(unknowns.count),
+                       .channel_offset = std::vector<double>(channels),
+                       .stop_reason = "direct solution"};
+  for (const std::size_t s : samples) solution.samples += s;
+  double before = 0, after = 0, weight = 0;
+  for (std::size_t m = 0; m < gatherer.matrices(); ++m) {
+    Sums& sum = partial.front()[m];
+    for (std::size_t g = 1; g < partial.size(); ++g) sum.add(partial[g][m]);
+    if (!(sum.weight > 0)) throw Error("fit: expected samples with weight, found none");
+
+    Matrix data = (sum.upper + sum.upper.transpose()) / sum.weight;
+    data.diagonal() += sum.diagonal / sum.weight;
+    const Matrix right = sum.right / sum.weight;
+    Matrix matrix = data;
+    add_smoothness(*rows.spec, gatherer, options.smooth, matrix);
+    matrix.diagonal().array() += kRidge * matrix.trace() / static_cast<double>(matrix.rows());
+    const Matrix x = matrix.ldlt().solve(right);
+
+    // sum over rows of (A x - t)^2 = x A^T A x - 2 x A^T t + t^2
+    const Eigen::ArrayXd mean = sum.target / sum.weight, mean_square = sum.target_squared / sum.weight;
+    before += sum.weight * (mean_square - mean * mean).sum();
+    after += sum.weight * ((x.cwiseProduct(data * x) - 2 * x.cwiseProduct(right)).sum() + mean_square.sum());
+    weight += sum.weight * static_cast<double>(mean.size());
+    for (std::size_t t = 0; t < rows.spec->tables.size(); ++t)
+      for (std::size_t node = 0; node < rows.spec->tables[t].layout.node_count(); ++node)
+        for (std::size_t c = 0; c < unknowns.channels[t]; ++c)
+          if (gatherer.matrices() == 1 || c == m)
+            solution.log_values[unknowns.base[t] + node * unknowns.channels[t] + c] =
+                gatherer.coupled() ? x(gatherer.index(t, node, c), 0)
+                                   : x(gatherer.index(t, node, 0),
+                                       static_cast<Eigen::Index>(gatherer.matrices() == 1 ? c : 0));
+  }
+  solution.error_before = std::sqrt(std::max(0.0, before / weight));
+  solution.error_after = std::sqrt(std::max(0.0, after / weight));
+  return solution;
+}
+
+}  // namespace burnish

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <burnish/fitting/plans/lobe_plan.h>
+#include <burnish/fitting/refinement/refine.h>
+
+namespace burnish {
+
+struct LobesSummary {
+  double objective_before = 0;  ///< of the start of the last refinement, see PictureLoss
+  double objective_after = 0;
+  int lobes = 0;
+  int iterations = 0;  ///< Gauss-Newton steps of all refinements and channels
+  std::string stop_reason;
+};
+
+struct LobesFit {
+  LogModel model;
+  LobesSummary summary;
+};
+
+/// Fits an isotropic plan: one lobe log-linearly [HomomorphicBrdf, eq. 5], then one split off after the other
+/// and refined, each split starting from the function there was. A plan with a wide lobe is fitted by
+/// fit_lobes. Rounding to the table format is left to to_brdf. Throws Error as plan_to_spec and
+/// fit_homomorphic do.
+LobesFit fit_plan(const TrainingSet& set, const LobePlan& plan, std::size_t bytes, std::size_t texel_bytes,
+                  const RefineOptions& options);
+
+/// Fits a given model of any number of lobes: each starts as the log-linear fit to its part of the data,
+/// parts cut along theta_d, or by height where the lobes differ in shape; then all are refined together.
+LobesFit fit_lobes(const TrainingSet& set, const ModelSpec& spec, const RefineOptions& options);
+
+}  // namespace burnish

@@ -1,0 +1,286 @@
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <burnish/error.h>
+#include <burnish/fitting/plans/search.h>
+#include <burnish/math/parallel.h>
+
+namespace burnish {
+
+namespace {
+
+// A trial is fitted to every kFit-th pair in few steps and judged on as many others.
+constexpr std::size_t kFit = 6;
+constexpr int kTrialSteps = 8;
+constexpr int kMostRounds = 2;
+// A change must pay for its risk: gains below are within what another draw of pairs would give.
+constexpr double kLeastGain = 0.01;
+// Lobes of an anisotropic source are judged by models of no more texels than there are so many pairs for.
+constexpr std::size_t kJudgedPairs = 8;
+constexpr int kMostAnisotropicLobes = 4;
+
+/// One way to change a plan; nothing where it does not apply.
+struct Change {
+  std::string name;
+  std::function<std::optional<LobePlan>(const LobePlan&)> apply;
+};
+
+PlannedFactor* find(LobePlan& plan, const std::string& name) {
+  const auto at = std::ranges::find(plan.factors, name, &PlannedFactor::name);
+  return at == plan.factors.end() ? nullptr : &*at;
+}
+
+double mean_share(const LobePlan& plan) {
+  double sum = 0;
+  for (const PlannedFactor& f : plan.factors) sum += f.share;
+  return sum / static_cast<double>(plan.factors.size());
+}
+
+// Projections that the default plans do not have. A pair stands for both directions.
+std::vector<std::pair<std::string, std::vector<Projection>>> further_projections() {
+  std::vector<std::pair<std::string, std::vector<Projection>>> list;
+  for (const double n : {-0.5, 0.5, 2.0}) list.push_back({"t", {Projection{.wi = 1, .wo = 1, .n = n}}});
+  for (const double b : {-0.5, 0.5})
+    list.push_back({"t", {Projection{.wi = 1, .wo = b}, Projection{.wi = b, .wo = 1}}});
+  list.push_back(
+      {"t", {Projection{.wi = 1, .wo = -0.5, .n = 0.5}, Projection{.wi = -0.5, .wo = 1, .n = 0.5}}});
+  return list;
+}
+
+std::vector<Change> list_changes(const LobePlan& plan) {
+  std::vector<Change> changes;
+  for (const int step : {1, -1})
+    changes.push_back(
+        {step > 0 ? "one lobe more" : "one lobe fewer", [step](LobePlan p) -> std::optional<LobePlan> {
+           p.lobes += step;
+           if (p.lobes < 1) return {};
+           return p;
+         }});
+  for (const PlannedFactor& factor : plan.factors) {
+    const std::string name = factor.name;
+    for (const double scale : {1.5, 0.67})
+      changes.push_back(
+          {fmt::format("share of {} x {}", name, scale), [=](LobePlan p) -> std::optional<LobePlan> {
+             PlannedFactor* f = find(p, name);
+             if (!f || p.factors.size() < 2) return {};
+             f->share *= scale;
+             return p;
+           }});
+    for (const Warp warp : {Warp{}, Warp{WarpKind::power, 0.5}, Warp{WarpKind::power, 0.7},
+                            Warp{WarpKind::rational, 0.1}, Warp{WarpKind::rational, -1.3}})
+      changes.push_back(
+          {fmt::format("{} spaced {}", name, to_string(warp)), [=](LobePlan p) -> std::optional<LobePlan> {
+             PlannedFactor* f = find(p, name);
+             if (!f || f->warp == warp) return {};
+             f->warp = warp;
+             return p;
+           }});
+    changes.push_back({fmt::format("one {} for all lobes", name), [=](LobePlan p) -> std::optional<LobePlan> {
+                         PlannedFactor* f = find(p, name);
+                         const auto own = std::ranges::count(p.factors, false, &PlannedFactor::every_lobe);
+                         if (!f || f->every_lobe || p.lobes < 2 || own < 2) return {};
+                         f->every_lobe = true;
+                         return p;
+                       }});
+    changes.push_back({fmt::format("without {}", name), [=](LobePlan p) -> std::optional<LobePlan> {
+                         if (p.factors.size() < 3 || !find(p, name)) return {};
+                         std::erase_if(p.factors, [&](const PlannedFactor& f) { return f.name == name; });
+                         return p;
+                       }});
+  }
+  for (const auto& [name, uses] : further_projections())
+    changes.push_back({fmt::format("with {}({})", name, to_string(uses.front())),
+                       [name = name, uses = uses](LobePlan p) -> std::optional<LobePlan> {
+                         if (find(p, name)) return {};
+                         p.factors.push_back({name, TableShape::line, uses, 0.4 * mean_share(p), {}});
+                         return p;
+                       }});
+  // the coefficients of skewed directions
+  for (const char* name : {"s", "t"})
+    for (const double scale : {1.4, 0.7})
+      changes.push_back(
+          {fmt::format("coefficients of {} x {}", name, scale), [=](LobePlan p) -> std::optional<LobePlan> {
+             PlannedFactor* f = find(p, name);
+             if (!f) return {};
+             if (f->uses.size() == 2) {
+               f->uses[0].wo *= scale;
+               f->uses[1].wi *= scale;
+             } else {
+               f->uses[0].n *= scale;
+             }
+             return p;
+           }});
+  return changes;
+}
+
+/// Every step-th pair, beginning at `first`.
+TrainingSet part_of(const TrainingSet& set, std::size_t first, std::size_t step) {
+  TrainingSet shifted = set;
+  // drop the first pairs of both kinds, so that thinning begins elsewhere
+  const auto channels = static_cast<std::ptrdiff_t>(set.channels);
+  const auto drop = [&](std::size_t at) {
+    const auto n = static_cast<std::ptrdiff_t>(at), m = static_cast<std::ptrdiff_t>(first);
+    shifted.pairs.erase(shifted.pairs.begin() + n, shifted.pairs.begin() + n + m);
+    shifted.weights.erase(shifted.weights.begin() + n, shifted.weights.begin() + n + m);
+    shifted.values.erase(shifted.values.begin() + n * channels, shifted.values.begin() + (n + m) * channels);
+  };
+  if (set.size() - set.picture_count > first) drop(set.picture_count);
+  if (set.picture_count > first) {
+    drop(0);
+    shifted.picture_count -= first;
+  }
+  return thinned(shifted, step);
+}
+
+TrainingSet mean_of_channels(const TrainingSet& set) {
+  TrainingSet grey = set;
+  grey.channels = 1;
+  const auto channels = static_cast<std::size_t>(set.channels);
+  grey.values.resize(set.size());
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    double sum = 0;
+    for (std::size_t c = 0; c < channels; ++c) sum += set.values[i * channels + c];
+    grey.values[i] = static_cast<float>(sum / static_cast<double>(channels));
+  }
+  return grey;
+}
+
+/// Keeps tables of one channel where those cost less than they save; only the colours can tell.
+void share_channels(const TrainingSet& set, const SearchOptions& options, RefineOptions refinement,
+                    SearchResult& result) {
+  const TrainingSet fitted = part_of(set, 0, kFit), judged = part_of(set, kFit / 2, kFit);
+  refinement.max_iterations = 2 * kTrialSteps;
+  std::vector<LobePlan> plans{result.plan};
+  for (std::size_t k = 0; k < result.plan.factors.size(); ++k) {
+    plans.push_back(result.plan);
+    plans.back().factors[k].grey = true;
+  }
+  std::vector<double> values(plans.size(), INFINITY);
+  for_each_chunk(plans.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
+    try {
+      const LobesFit fit = fit_plan(fitted, plans[k], options.bytes, options.texel_bytes, refinement);
+      values[k] = objective(fit.model, judged, options.refine.shares);
+    } catch (const Error&) {  // as above
+    }
+  });
+  const auto best = static_cast<std::size_t>(std::ranges::min_element(values) - values.begin());
+  const bool gained = values[best] < values.front() - kLeastGain;
+  for (std::size_t k = 1; k < plans.size(); ++k)
+    result.trials.push_back(
+        {fmt::format("one channel of {}", result.plan.factors[k - 1].name), values[k], gained && k == best});
+  if (gained) result.plan = plans[best];
+}
+
+}  // namespace
+
+LobePlan plan_for(BrdfRef source, const TrainingSet& set, std::size_t bytes, int lobes,
+                  std::size_t texel_bytes, const RefineOptions& options) {
+  LobePlan best = plan_for(source, bytes, lobes, texel_bytes);
+  if (source.isotropic() || lobes > 0) return best;
+  const TrainingSet grey = mean_of_channels(set);
+  const TrainingSet fitted = part_of(grey, 0, kFit), judged = part_of(grey, kFit / 2, kFit);
+  const std::size_t judged_bytes = std::min(bytes, texel_bytes * fitted.size() / kJudgedPairs);
+  RefineOptions steps = options;
+  steps.max_iterations = 2 * kTrialSteps;
+  double least = INFINITY;
+  for (int count = 2; count <= kMostAnisotropicLobes; ++count) {
+    const LobePlan plan = plan_for(source, bytes, count, texel_bytes),
+                   trial = plan_for(source, judged_bytes, count, texel_bytes);
+    if (!plan_fits(plan, bytes, set.channels, texel_bytes) || !plan_fits(trial, judged_bytes, 1, texel_bytes))
+      continue;
+    if (options.progress)
+      steps.progress = [&, count](double f) {
+        options.progress((count - 2 + f) / (kMostAnisotropicLobes - 1));
+      };
+    const LobesFit fit = fit_plan(fitted, trial, judged_bytes, texel_bytes, steps);
+    const double value = objective(fit.model, judged, options.shares);
+    if (!(value < least - kLeastGain)) continue;
+    least = value;
+    best = plan;
+  }
+  return best;
+}
+
+SearchResult search_plan(const TrainingSet& set, const LobePlan& start, const SearchOptions& options) {
+  const TrainingSet grey = mean_of_channels(set);
+  const TrainingSet fitted = part_of(grey, 0, kFit), judged = part_of(grey, kFit / 2, kFit);
+  RefineOptions refinement = options.refine;
+  const auto caller = std::this_thread::get_id();
+  double share_done = 0;  // reported again at every step, so that a callback can end the search
+  refinement.progress = [&](double) {
+    if (options.progress && std::this_thread::get_id() == caller) options.progress(share_done);
+  };
+
+  // A plan as far as it was tried. Where the lobes stay, it starts from the functions that are known.
+  struct Candidate {
+    LobePlan plan;
+    LogModel model;
+    double objective = INFINITY;
+  };
+  const auto fit = [&](const LobePlan& plan, const Candidate* from) {
+    Candidate result{.plan = plan, .model = {}};
+    RefineOptions steps = refinement;
+    try {
+      if (from && from->plan.lobes == plan.lobes) {
+        steps.max_iterations = kTrialSteps;
+        result.model =
+            resampled(from->model, plan_to_spec(plan, options.bytes, set.channels, options.texel_bytes));
+        refine(result.model, fitted, steps);
+      } else {
+        steps.max_iterations = 2 * kTrialSteps;
+        result.model = fit_plan(fitted, plan, options.bytes, options.texel_bytes, steps).model;
+      }
+      result.objective = objective(result.model, judged, options.refine.shares);
+    } catch (const Error&) {  // a table too small for the bytes: no candidate
+    }
+    return result;
+  };
+
+  Candidate best = fit(start, nullptr);
+  if (!(best.objective < INFINITY)) plan_to_spec(start, options.bytes, set.channels, options.texel_bytes);
+  best = fit(start, &best);  // as many steps as every change gets
+  SearchResult result{.plan = start, .trials = {{"start", best.objective, true}}};
+  for (int round = 0; round < kMostRounds; ++round) {
+    const std::vector<Change> changes = list_changes(best.plan);
+    std::vector<double> values(changes.size(), INFINITY);
+    std::atomic<std::size_t> finished = 0;
+    const auto report = [&](double share) {
+      share_done = (round + share) / kMostRounds;
+      if (options.progress) options.progress(share_done);
+    };
+    for_each_chunk(changes.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
+      if (const auto changed = changes[k].apply(best.plan)) values[k] = fit(*changed, &best).objective;
+      const std::size_t now = ++finished;
+      if (std::this_thread::get_id() == caller)
+        report(0.8 * static_cast<double>(now) / static_cast<double>(changes.size()));
+    });
+
+    std::vector<std::size_t> order;
+    for (std::size_t k = 0; k < changes.size(); ++k)
+      if (values[k] < best.objective - kLeastGain) order.push_back(k);
+    std::ranges::sort(order, {}, [&](std::size_t k) { return std::pair(values[k], k); });
+    std::vector<bool> kept(changes.size());
+    for (const std::size_t k : order) {
+      const auto changed = changes[k].apply(best.plan);
+      if (!changed) continue;
+      Candidate next = fit(*changed, &best);
+      kept[k] = next.objective < best.objective - kLeastGain;
+      if (kept[k]) best = std::move(next);
+    }
+    for (std::size_t k = 0; k < changes.size(); ++k)
+      if (values[k] < INFINITY) result.trials.push_back({changes[k].name, values[k], kept[k]});
+    if (std::ranges::none_of(kept, [](bool b) { return b; })) break;
+  }
+  result.plan = best.plan;
+  if (set.channels > 1) share_channels(set, options, refinement, result);
+  if (options.progress) options.progress(1);
+  return result;
+}
+
+}  // namespace burnish

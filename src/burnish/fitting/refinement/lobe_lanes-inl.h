@@ -1,0 +1,225 @@
+// Per-target include: a block of pairs by the lobes of a model.
+#if defined(BURNISH_FITTING_LOBE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef BURNISH_FITTING_LOBE_LANES_INL_H_
+#undef BURNISH_FITTING_LOBE_LANES_INL_H_
+#else
+#define BURNISH_FITTING_LOBE_LANES_INL_H_
+#endif
+
+#include <span>
+#include <type_traits>
+#include <utility>
+
+#include <hwy/highway.h>
+
+#include <burnish/fitting/refinement/lobe_lanes.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace burnish {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+constexpr std::size_t kLanes = LobeLanes::kLanes;
+using D = hn::CappedTag<float, kLanes>;
+using V = hn::Vec<D>;
+using Slots = std::span<const LobeLanes::Slot>;
+
+constexpr std::size_t kBlock = LobeLanes::kBlock, kBlockLanes = LobeLanes::kBlockLanes;
+
+HWY_INLINE V mix(V a, V b, V t) {
+  return hn::MulAdd(t, hn::Sub(b, a), a);
+}
+
+// Vectors at a lookup and its neighbour, and their weights.
+HWY_INLINE V between(const float* v, V fx) {
+  const D d;
+  return mix(hn::Load(d, v), hn::Load(d, v + kLanes), fx);
+}
+
+template <bool line>
+HWY_INLINE V interpolate(const float* v, std::size_t next_row, const Lookups::Place& place) {
+  const D d;
+  const V fx = hn::Set(d, place.fx), low = between(v, fx);
+  if constexpr (line) return low;
+  return mix(low, between(v + next_row, fx), hn::Set(d, place.fy));
+}
+
+// Adds `amount` times an interpolation's weights.
+HWY_INLINE void add_between(V amount, V fx, float* v) {
+  const D d;
+  const V second = hn::Mul(fx, amount);
+  hn::Store(hn::Add(hn::Load(d, v), hn::Sub(amount, second)), d, v);
+  hn::Store(hn::Add(hn::Load(d, v + kLanes), second), d, v + kLanes);
+}
+
+template <bool line>
+HWY_INLINE void add_weights(V amount, const Lookups::Place& place, std::size_t next_row, float* v) {
+  const D d;
+  const V fx = hn::Set(d, place.fx);
+  if constexpr (line) {
+    add_between(amount, fx, v);
+  } else {
+    const V high = hn::Mul(amount, hn::Set(d, place.fy));
+    add_between(hn::Sub(amount, high), fx, v);
+    add_between(high, fx, v + next_row);
+  }
+}
+
+// The same with the squares of the weights.
+HWY_INLINE void add_squares_between(V amount, float fx, float* v) {
+  const D d;
+  const V first = hn::Set(d, (1 - fx) * (1 - fx)), second = hn::Set(d, fx * fx);
+  hn::Store(hn::MulAdd(amount, first, hn::Load(d, v)), d, v);
+  hn::Store(hn::MulAdd(amount, second, hn::Load(d, v + kLanes)), d, v + kLanes);
+}
+
+template <bool line>
+HWY_INLINE void add_square_weights(V amount, const Lookups::Place& place, std::size_t next_row, float* v) {
+  const D d;
+  const auto times = [&](float w) { return hn::Mul(amount, hn::Set(d, w * w)); };
+  add_squares_between(line ? amount : times(1 - place.fy), place.fx, v);
+  if constexpr (!line) add_squares_between(times(place.fy), place.fx, v + next_row);
+}
+
+HWY_INLINE V reciprocal(V v) {
+  const V guess = hn::ApproximateReciprocal(v);
+  return hn::Mul(guess, hn::NegMulAdd(v, guess, hn::Set(D(), 2.0f)));  // a step of Newton's
+}
+
+// visit(slot, number of the slot, is a line)
+template <class Visit>
+HWY_INLINE void for_each_slot(Slots slots, Visit visit) {
+  for (std::size_t s = 0; s < slots.size(); ++s)
+    if (slots[s].next_row == 0)
+      visit(slots[s], s, std::true_type());
+    else
+      visit(slots[s], s, std::false_type());
+}
+
+// visit(pair of the block, lane, number of the lane in the block)
+template <class Visit>
+HWY_INLINE void for_each_vector(Visit visit) {
+  for (std::size_t i = 0; i < kBlock; ++i)
+    for (std::size_t l = 0; l < kLanes; l += hn::Lanes(D())) visit(i, l, i * kLanes + l);
+}
+
+void sum_lanes(std::size_t parts, const float* lanes, float* sums) {
+  const D d;
+  for (std::size_t i = 0; i < kBlock; ++i) {
+    V sum = hn::Zero(d);
+    for (std::size_t p = 0; p < parts; ++p)
+      for (std::size_t l = 0; l < kLanes; l += hn::Lanes(d))
+        sum = hn::Add(sum, hn::Load(d, lanes + p * kBlockLanes + i * kLanes + l));
+    sums[i] = hn::GetLane(hn::SumOfLanes(d, sum));
+  }
+}
+
+// `products` hold the lobes' scales, 0 where there is none.
+void evaluate(Slots slots, std::size_t parts, const Lookups::Place* places, const float* values,
+              float* factors, float* products, float* totals) {
+  const D d;
+  for_each_slot(slots, [&](const LobeLanes::Slot& slot, std::size_t s, auto line) HWY_ATTR {
+    const Lookups::Place* place = places + slot.place * kBlock;
+    const float* from = values + slot.base;
+    float *factor_of = factors + s * kBlockLanes, *product_of = products + slot.part * kBlockLanes;
+    const std::size_t next_row = slot.next_row;
+    for_each_vector([=](std::size_t i, std::size_t l, std::size_t at) HWY_ATTR {
+      const V factor = interpolate<line>(from + place[i].node * kLanes + l, next_row, place[i]);
+      hn::Store(factor, d, factor_of + at);
+      hn::Store(hn::Mul(hn::Load(d, product_of + at), factor), d, product_of + at);
+    });
+  });
+  sum_lanes(parts, products, totals);
+}
+
+void differentiate(Slots slots, std::size_t parts, const float* totals, float* factors, float* products) {
+  const D d;
+  for (std::size_t i = 0; i < kBlock; ++i) {
+    const V over = hn::Set(d, 1 / totals[i]);
+    for (std::size_t p = 0; p < parts; ++p)
+      for (std::size_t l = 0; l < kLanes; l += hn::Lanes(d)) {
+        float* product = products + p * kBlockLanes + i * kLanes + l;
+        hn::Store(hn::Mul(hn::Load(d, product), over), d, product);
+      }
+  }
+  for_each_slot(slots, [&](const LobeLanes::Slot& slot, std::size_t s, auto) HWY_ATTR {
+    float* factor = factors + s * kBlockLanes;
+    const float* share = products + slot.part * kBlockLanes;
+    for_each_vector([=](std::size_t, std::size_t, std::size_t at) HWY_ATTR {
+      hn::Store(hn::Mul(hn::Load(d, share + at), reciprocal(hn::Load(d, factor + at))), d, factor + at);
+    });
+  });
+  for (std::size_t s = 0; s < slots.size(); ++s) {
+    if (!slots[s].one_table) continue;
+    float* factor = factors + s * kBlockLanes;
+    for (std::size_t i = 0; i < kBlock; ++i, factor += kLanes) {
+      float sum = 0;
+      for (std::size_t l = 0; l < kLanes; ++l) sum += std::exchange(factor[l], 0.0f);
+      factor[0] = sum;
+    }
+  }
+}
+
+// Adds amounts times the rows' terms, or the squares of these.
+template <bool squares>
+void add_terms(Slots slots, const Lookups::Place* places, const float* slopes, const float* amounts,
+               float* sums) {
+  const D d;
+  for_each_slot(slots, [&](const LobeLanes::Slot& slot, std::size_t s, auto line) HWY_ATTR {
+    const Lookups::Place* place = places + slot.place * kBlock;
+    const float* slopes_of = slopes + s * kBlockLanes;
+    float* into = sums + slot.base;
+    const std::size_t next_row = slot.next_row;
+    for_each_vector([=](std::size_t i, std::size_t l, std::size_t at) HWY_ATTR {
+      const V slope = hn::Load(d, slopes_of + at), amount = hn::Set(d, amounts[i]);
+      float* to = into + place[i].node * kLanes + l;
+      if constexpr (squares)
+        add_square_weights<line>(hn::Mul(amount, hn::Mul(slope, slope)), place[i], next_row, to);
+      else
+        add_weights<line>(hn::Mul(amount, slope), place[i], next_row, to);
+    });
+  });
+}
+
+void add_transposed(Slots slots, const Lookups::Place* places, const float* slopes, const float* amounts,
+                    float* sums) {
+  add_terms<false>(slots, places, slopes, amounts, sums);
+}
+
+void add_squares(Slots slots, const Lookups::Place* places, const float* slopes, const float* amounts,
+                 float* sums) {
+  add_terms<true>(slots, places, slopes, amounts, sums);
+}
+
+// Adds J^T J v of a block to `sums`; `slopes` is room.
+void multiply(Slots slots, const Lookups::Place* places, const float* values, const float* shares,
+              const float* v, float* slopes, float* sums) {
+  const D d;
+  HWY_ALIGN float products[kBlockLanes] = {};
+  float amounts[kBlock];
+  for_each_slot(slots, [&](const LobeLanes::Slot& slot, std::size_t s, auto line) HWY_ATTR {
+    const Lookups::Place* place = places + slot.place * kBlock;
+    const float *value = values + slot.base, *from = v + slot.base, *share = shares + slot.part * kBlockLanes;
+    float *slope_of = slopes + s * kBlockLanes, *product = products;
+    const std::size_t next_row = slot.next_row;
+    for_each_vector([=](std::size_t i, std::size_t l, std::size_t at) HWY_ATTR {
+      const std::size_t node = place[i].node * kLanes + l;
+      const V over = reciprocal(interpolate<line>(value + node, next_row, place[i]));
+      const V slope = hn::Mul(hn::Load(d, share + at), over);
+      hn::Store(slope, d, slope_of + at);
+      hn::Store(
+          hn::MulAdd(slope, interpolate<line>(from + node, next_row, place[i]), hn::Load(d, product + at)), d,
+          product + at);
+    });
+  });
+  sum_lanes(1, products, amounts);
+  add_transposed(slots, places, slopes, amounts, sums);
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace burnish
+HWY_AFTER_NAMESPACE();
+
+#endif

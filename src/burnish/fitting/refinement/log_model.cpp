@@ -1,0 +1,216 @@
+#include <algorithm>
+#include <cmath>
+
+#include <burnish/error.h>
+#include <burnish/fitting/one_lobe/homomorphic.h>
+#include <burnish/fitting/refinement/log_model.h>
+
+namespace burnish {
+
+namespace {
+
+// Where a lobe is split, in tan(theta_d / 2): the width of the step, and how little is left of it far away.
+constexpr double kStepWidth = 0.1, kStepRest = 0.01;
+
+double step_up(double t, double centre) {
+  return kStepRest + (1 - 2 * kStepRest) / (1 + std::exp((centre - t) / kStepWidth));
+}
+
+double node_place(const Warp& warp, int node, int count) {
+  return warp.inverse(static_cast<double>(node) / (count - 1));
+}
+
+struct Cell {
+  std::size_t node;
+  double fraction;
+};
+
+Cell find_cell(double u, int count) {
+  const double position = std::clamp(u, 0.0, 1.0) * (count - 1);
+  const auto node = std::min(static_cast<std::size_t>(position), static_cast<std::size_t>(count - 2));
+  return {node, position - static_cast<double>(node)};
+}
+
+}  // namespace
+
+LogModel fit_one_lobe(const ModelSpec& spec, const TrainingSet& set, const std::vector<float>& values,
+                      double smooth) {
+  ModelSpec unrounded = spec;
+  for (ModelSpec::TableSpec& table : unrounded.tables) table.format = TableFormat::single;
+  const HomomorphicFit fit = fit_homomorphic(as_source(set, values), unrounded, {.smooth = smooth});
+  LogModel model{.spec = spec, .channels = set.channels, .log_values = {}};
+  for (const Table& table : fit.brdf.tables()) {
+    auto& logs = model.log_values.emplace_back(table.values.begin(), table.values.end());
+    for (double& v : logs) v = std::log(v);
+  }
+  // The lobe's scale goes into tables used once; a shared table takes none.
+  const Lobe& lobe = fit.brdf.lobes().front();
+  for (std::size_t k = lobe.factors.size(); k-- > 0;) {
+    const auto t = static_cast<std::size_t>(lobe.factors[k].table);
+    const auto uses = std::ranges::count(lobe.factors, lobe.factors[k].table, &FactorUse::table);
+    if (model.step(t) != static_cast<std::size_t>(model.channels)) continue;
+    for (std::size_t i = 0; i < model.log_values[t].size(); ++i)
+      model.log_values[t][i] +=
+          std::log(std::max(lobe.scale[i % model.step(t)], 1e-30)) / static_cast<double>(uses);
+    return model;
+  }
+  throw Error("fit: expected a table with all channels in every lobe, found shared ones alone");
+}
+
+LogModel with_lobe_split(LogModel model, std::size_t lobe, double centre, const std::string& suffix,
+                         std::span<const std::string> common) {
+  const auto is_common = [&](int table) {
+    return std::ranges::find(common, model.spec.tables[static_cast<std::size_t>(table)].name) != common.end();
+  };
+  std::vector<FactorUse> uses = model.spec.lobes[lobe];
+  std::vector<int> copy(model.spec.tables.size(), -1);
+  bool stepped = false;
+  for (FactorUse& use : uses) {
+    const auto t = static_cast<std::size_t>(use.table);
+    if (is_common(use.table)) continue;
+    if (copy[t] < 0) {
+      copy[t] = static_cast<int>(model.spec.tables.size());
+      model.spec.tables.push_back(model.spec.tables[t]);
+      model.spec.tables.back().name += suffix;
+      model.log_values.push_back(model.log_values[t]);
+      const TableLayout& layout = model.spec.tables[t].layout;
+      if (!stepped && layout.shape == TableShape::line && use.projection == kProjectDifference) {
+        stepped = true;
+        const std::size_t step = model.step(t);
+        for (std::size_t i = 0; i < model.log_values[t].size(); ++i) {
+          const double up =
+              step_up(node_place(layout.warp, static_cast<int>(i / step), layout.width), centre);
+          model.log_values.back()[i] += std::log(up);
+          model.log_values[t][i] += std::log(1 - up);
+        }
+      }
+    }
+    use.table = copy[t];
+  }
+  const std::vector<FactorUse>& old = model.spec.lobes[lobe];
+  const auto own = std::ranges::find_if(old, [&](const FactorUse& use) { return !is_common(use.table); });
+  if (!stepped)
+    for (const int table : {own->table, uses[static_cast<std::size_t>(own - old.begin())].table}) {
+      const auto times = std::ranges::count(old, own->table, &FactorUse::table);
+      for (double& v : model.log_values[static_cast<std::size_t>(table)])
+        v -= std::log(2) / static_cast<double>(times);
+    }
+  model.spec.lobes.push_back(std::move(uses));
+  return model;
+}
+
+namespace {
+
+// Adds the function that one table holds to the nodes of another.
+void add_resampled(const TableLayout& from, const std::vector<double>& old, const TableLayout& to,
+                   std::size_t step, std::vector<double>& logs) {
+  const auto width = static_cast<std::size_t>(from.width), to_width = static_cast<std::size_t>(to.width);
+  for (int y = 0; y < to.height; ++y)
+    for (int x = 0; x < to.width; ++x) {
+      Cell cx{}, cy{};
+      if (to.shape == TableShape::disk) {
+        const DiskPoint p = to_disk(node_direction(to, x, y), from.warp);
+        cx = find_cell(0.5 + 0.5 * p.x, from.width);
+        cy = find_cell(0.5 + 0.5 * p.y, from.height);
+      } else {
+        cx = find_cell(from.warp.forward(node_place(to.warp, x, to.width)), from.width);
+        if (to.shape == TableShape::grid)
+          cy = find_cell(from.warp_y.forward(node_place(to.warp_y, y, to.height)), from.height);
+      }
+      for (std::size_t c = 0; c < step; ++c) {
+        const auto at = [&](std::size_t i, std::size_t j) {
+          return std::exp(old[(j * width + i) * step + c]);
+        };
+        const auto along = [&](std::size_t row) {
+          return (1 - cx.fraction) * at(cx.node, row) + cx.fraction * at(cx.node + 1, row);
+        };
+        double v = along(cy.node);
+        if (to.shape != TableShape::line) v = (1 - cy.fraction) * v + cy.fraction * along(cy.node + 1);
+        logs[(static_cast<std::size_t>(y) * to_width + static_cast<std::size_t>(x)) * step + c] +=
+            std::log(v);
+      }
+    }
+}
+
+// The mean over the channels of a table; what it is short of each channel, on average, goes to `colour`.
+std::vector<double> mean_of_channels(const std::vector<double>& logs, std::size_t channels,
+                                     std::span<double> colour) {
+  std::vector<double> mean(logs.size() / channels);
+  for (std::size_t i = 0; i < logs.size(); ++i) mean[i / channels] += logs[i] / static_cast<double>(channels);
+  for (std::size_t i = 0; i < logs.size(); ++i)
+    colour[i % channels] += (logs[i] - mean[i / channels]) / static_cast<double>(mean.size());
+  return mean;
+}
+
+// Multiplies each lobe that uses the table as often with a colour, in a coloured table of the lobe's own.
+void give_colour(std::size_t table, std::span<const double> colour, LogModel& model) {
+  const auto uses_in = [&](const std::vector<FactorUse>& lobe, int t) {
+    return std::ranges::count(lobe, t, &FactorUse::table);
+  };
+  for (const std::vector<FactorUse>& lobe : model.spec.lobes) {
+    const auto times = uses_in(lobe, static_cast<int>(table));
+    const auto own = std::ranges::find_if(lobe, [&](const FactorUse& use) {
+      return model.step(static_cast<std::size_t>(use.table)) == colour.size() &&
+             std::ranges::all_of(model.spec.lobes, [&](const auto& other) {
+               return &other == &lobe || uses_in(other, use.table) == 0;
+             });
+    });
+    if (times == 0 || own == lobe.end()) continue;
+    const double share = static_cast<double>(times) / static_cast<double>(uses_in(lobe, own->table));
+    std::vector<double>& logs = model.log_values[static_cast<std::size_t>(own->table)];
+    for (std::size_t i = 0; i < logs.size(); ++i) logs[i] += share * colour[i % colour.size()];
+  }
+}
+
+}  // namespace
+
+LogModel resampled(const LogModel& model, const ModelSpec& spec) {
+  LogModel result{.spec = spec, .channels = model.channels, .log_values = {}};
+  const auto channels = static_cast<std::size_t>(model.channels);
+  for (std::size_t t = 0; t < spec.tables.size(); ++t)
+    result.log_values.emplace_back(spec.tables[t].layout.node_count() * result.step(t));
+  for (std::size_t t = 0; t < spec.tables.size(); ++t) {
+    const TableLayout& layout = spec.tables[t].layout;
+    const std::string& name = spec.tables[t].name;
+    auto old = std::ranges::find(model.spec.tables, name, &ModelSpec::TableSpec::name);
+    if (old == model.spec.tables.end())
+      old = std::ranges::find(model.spec.tables, name + "1", &ModelSpec::TableSpec::name);
+    if (old == model.spec.tables.end() || old->layout.shape != layout.shape) continue;
+    const auto k = static_cast<std::size_t>(old - model.spec.tables.begin());
+    const std::size_t step = result.step(t);
+    if (model.step(k) == step) {
+      add_resampled(old->layout, model.log_values[k], layout, step, result.log_values[t]);
+    } else if (step == 1) {
+      std::vector<double> colour(channels);
+      const std::vector<double> mean = mean_of_channels(model.log_values[k], channels, colour);
+      add_resampled(old->layout, mean, layout, 1, result.log_values[t]);
+      give_colour(t, colour, result);
+    }
+  }
+  return result;
+}
+
+std::vector<Table> log_tables(const LogModel& model, TableFormat format) {
+  std::vector<Table> tables;
+  for (std::size_t t = 0; t < model.spec.tables.size(); ++t)
+    tables.push_back({.name = model.spec.tables[t].name,
+                      .layout = model.spec.tables[t].layout,
+                      .channels = static_cast<int>(model.step(t)),
+                      .values = {model.log_values[t].begin(), model.log_values[t].end()},
+                      .format = format_of(model.spec.tables[t], format)});
+  return tables;
+}
+
+std::vector<Lobe> log_scaled_lobes(const LogModel& model) {
+  std::vector<Lobe> lobes;
+  for (const std::vector<FactorUse>& uses : model.spec.lobes)
+    lobes.push_back(
+        {.scale = std::vector<double>(static_cast<std::size_t>(model.channels)), .factors = uses});
+  return lobes;
+}
+
+FactoredBrdf to_brdf(const LogModel& model, TableFormat format) {
+  return from_log_tables(model.channels, log_tables(model, format), log_scaled_lobes(model));
+}
+
+}  // namespace burnish

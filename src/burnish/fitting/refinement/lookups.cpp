@@ -1,0 +1,54 @@
+#include <algorithm>
+
+#include <burnish/fitting/refinement/lookups.h>
+#include <burnish/math/parallel.h>
+
+namespace burnish {
+
+namespace {
+
+constexpr std::size_t kChunk = 64;  // blocks
+
+}  // namespace
+
+Lookups find_lookups(const ModelSpec& spec, const TrainingSet& set) {
+  Lookups found;
+  for (const auto& lobe : spec.lobes) {
+    std::vector<std::size_t>& of_lobe = found.lobes.emplace_back();
+    for (const FactorUse& use : lobe) {
+      of_lobe.push_back(
+          static_cast<std::size_t>(std::ranges::find(found.lookups, use) - found.lookups.begin()));
+      if (of_lobe.back() == found.lookups.size()) found.lookups.push_back(use);
+    }
+  }
+  const auto layout_of = [&](const FactorUse& use) -> const TableLayout& {
+    return spec.tables[static_cast<std::size_t>(use.table)].layout;
+  };
+  std::vector<FactorUse> distinct;
+  for (const FactorUse& use : found.lookups) {
+    const auto known = std::ranges::find_if(distinct, [&](const FactorUse& other) {
+      return located_alike(layout_of(use), use, layout_of(other), other);
+    });
+    found.place_of.push_back(static_cast<std::size_t>(known - distinct.begin()));
+    if (known == distinct.end()) distinct.push_back(use);
+  }
+  found.place_count = distinct.size();
+  found.pairs = set.size();
+  const std::size_t blocks = chunk_count(set.size(), Lookups::kBlock);
+  found.places.resize(blocks * Lookups::kBlock * distinct.size());
+  for_each_chunk(blocks, kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+    auto place =
+        found.places.begin() + static_cast<std::ptrdiff_t>(begin * Lookups::kBlock * distinct.size());
+    for (std::size_t block = begin; block < end; ++block)
+      for (const FactorUse& use : distinct)
+        for (std::size_t i = block * Lookups::kBlock; i < (block + 1) * Lookups::kBlock; ++i) {
+          const auto& [wi, wo] = set.pairs[std::min(i, set.size() - 1)];
+          const Lookup at = locate(layout_of(use), use, wi, wo);
+          *place++ = {static_cast<std::uint32_t>(at.node), static_cast<float>(at.fx),
+                      static_cast<float>(at.fy)};
+        }
+  });
+  return found;
+}
+
+}  // namespace burnish

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <burnish/factors/model_spec.h>
+#include <burnish/fitting/refinement/training_set.h>
+
+namespace burnish {
+
+/// Where a model's lookups fall, the same for every channel. Lobes that look up the same texels, and the same
+/// ones of a table that they share, have one lookup; tables of one layout that are looked up alike have one
+/// place.
+struct Lookups {
+  struct Place {
+    std::uint32_t node;
+    float fx, fy;
+  };
+  std::vector<FactorUse> lookups;               ///< distinct
+  std::vector<std::vector<std::size_t>> lobes;  ///< the lookups of each lobe's factors
+  std::vector<std::size_t> place_of;            ///< each lookup's place
+  std::size_t place_count = 0;
+
+  /// Pairs follow each other in blocks of this many.
+  static constexpr std::size_t kBlock = 32;
+  std::size_t pairs = 0;
+  std::vector<Place> places;  ///< [pair / kBlock][place][pair % kBlock]
+};
+
+Lookups find_lookups(const ModelSpec& spec, const TrainingSet& set);
+
+}  // namespace burnish

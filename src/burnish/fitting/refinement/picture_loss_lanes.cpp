@@ -1,0 +1,108 @@
+#include <burnish/fitting/refinement/picture_loss_lanes.h>
+#include <burnish/math/highway_targets.h>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "burnish/fitting/refinement/picture_loss_lanes.cpp"
+// each target includes the last anew
+// clang-format off
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+#include <hwy/highway.h>
+#include <hwy/contrib/math/math-inl.h>
+// clang-format on
+
+HWY_BEFORE_NAMESPACE();
+namespace burnish {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using D = hn::CappedTag<float, 8>;
+using V = hn::Vec<D>;
+
+V number(double v) {
+  return hn::Set(D(), static_cast<float>(v));
+}
+
+// What a vector of values adds.
+struct Part {
+  V terms[kErrorTerms], gradient, curvature;
+};
+
+void add_pictures(const PictureLoss& loss, const ErrorTerms& derivatives, V target, V lit, V weight,
+                  Part& part) {
+  const D d;
+  const V one = number(1), gamma = number(PictureLoss::kInverseGamma);
+  const V shown = hn::Max(hn::Mul(lit, number(loss.exposure)), number(1e-30));
+  const V modelled = hn::Exp(d, hn::Mul(gamma, hn::Log(d, shown)));
+  for (std::size_t e = 0; e < PictureLoss::kDim.size(); ++e) {
+    const V dim = number(PictureLoss::kDim[e]);
+    const V a = hn::Mul(target, dim), b = hn::Mul(modelled, dim);
+    const V error = hn::Sub(hn::Min(b, one), hn::Min(a, one));
+    const std::size_t term = e == 0 ? 0 : 1;
+    const V share = hn::Mul(weight, number(e == 0 ? 1 : 0.5)),
+            slope = hn::Mul(share, number(2 * derivatives[term]));
+    const auto white = hn::Gt(b, one);
+    // white both: dimmer exposures tell them apart
+    const V rise =
+        hn::IfThenZeroElse(hn::And(hn::Ge(b, one), hn::Ge(a, one)),
+                           hn::Mul(gamma, hn::IfThenElse(white, number(PictureLoss::kSaturatedSlope), b)));
+    part.terms[term] = hn::MulAdd(share, hn::Mul(error, error), part.terms[term]);
+    part.gradient = hn::MulAdd(slope, hn::Mul(error, rise), part.gradient);
+    part.curvature = hn::MulAdd(slope, hn::Mul(rise, rise), part.curvature);
+  }
+}
+
+void add_absolute(V error, V rise, double round, V weight, double derivative, V& term, Part& part) {
+  const V square = hn::Mul(error, error), rounding = number(round);
+  const V size = hn::Sqrt(hn::MulAdd(rounding, rounding, square));
+  term = hn::MulAdd(weight, hn::Div(square, hn::Add(size, rounding)), term);
+  const V over = hn::Div(hn::Mul(hn::Mul(weight, number(derivative)), rise), size);
+  part.gradient = hn::MulAdd(over, error, part.gradient);
+  part.curvature = hn::MulAdd(over, rise, part.curvature);
+}
+
+void add_pairs(const ErrorTerms& derivatives, V first, V second, V model, V lit, V weight, Part& part) {
+  const D d;
+  const V raised = hn::Add(model, number(PictureLoss::kFloor)), brighter = hn::Add(lit, number(1));
+  add_absolute(hn::Sub(hn::Log(d, raised), first), hn::Div(model, raised), PictureLoss::kRelativeRound,
+               weight, derivatives[2], part.terms[2], part);
+  add_absolute(hn::Sub(hn::Log1p(d, lit), second), hn::Div(lit, brighter), PictureLoss::kLogCosRound, weight,
+               derivatives[3], part.terms[3], part);
+}
+
+void add(const PictureLoss& loss, const LossInputs& in, std::size_t count, const ErrorTerms& derivatives,
+         ErrorTerms& sums, float* gradient, float* curvature) {
+  const D d;
+  const V zero = hn::Zero(d);
+  Part part{{zero, zero, zero, zero}, zero, zero};
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const V model = hn::LoadU(d, in.model + i), lit = hn::Mul(model, hn::LoadU(d, in.cos_theta_i + i));
+    const V first = hn::LoadU(d, in.first + i), second = hn::LoadU(d, in.second + i);
+    const V pictures = hn::LoadU(d, in.picture_weight + i), pairs = hn::LoadU(d, in.pair_weight + i);
+    part.gradient = part.curvature = zero;
+    if (!hn::AllFalse(d, hn::Gt(pictures, zero))) add_pictures(loss, derivatives, first, lit, pictures, part);
+    if (!hn::AllFalse(d, hn::Gt(pairs, zero))) add_pairs(derivatives, first, second, model, lit, pairs, part);
+    hn::StoreU(part.gradient, d, gradient + i);
+    hn::StoreU(part.curvature, d, curvature + i);
+  }
+  for (std::size_t k = 0; k < kErrorTerms; ++k)
+    sums[k] += static_cast<double>(hn::GetLane(hn::SumOfLanes(d, part.terms[k])));
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace burnish
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace burnish {
+
+HWY_EXPORT(add);
+
+void add_losses(const PictureLoss& loss, const LossInputs& in, std::size_t count,
+                const ErrorTerms& derivatives, ErrorTerms& sums, float* gradient, float* curvature) noexcept {
+  HWY_DYNAMIC_DISPATCH(add)(loss, in, count, derivatives, sums, gradient, curvature);
+}
+
+}  // namespace burnish
+#endif

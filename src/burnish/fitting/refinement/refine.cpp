@@ -1,0 +1,224 @@
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <thread>
+
+#include <burnish/error.h>
+#include <burnish/fitting/numerics/dense.h>
+#include <burnish/fitting/refinement/refine.h>
+#include <burnish/fitting/refinement/refine_system.h>
+#include <burnish/math/parallel.h>
+
+namespace burnish {
+
+namespace {
+
+// Levenberg-Marquardt: the damping's start, its smallest, and what successes and failures make of it.
+// It changes where the objective falls by more or less than these shares of what was predicted, as a third of
+// the damping that serves best makes a step that leads up.
+constexpr double kFirstDamping = 1e-2, kFirstIterativeDamping = 0.1, kLeastDamping = 1e-6;
+constexpr double kEase = 0.3, kHarden = 4, kGoodGain = 0.75, kPoorGain = 0.25;
+constexpr int kMostTrials = 6, kMostSlowSteps = 3;
+// Pins what neither data nor smoothness determine, as shares of the mean diagonal.
+constexpr double kRidge = 1e-7, kDampedRidge = 1e-3;
+constexpr double kLongestStep = 2;  // change of a logarithm
+
+// A truncated solution is good enough for a step that is tried and judged.
+constexpr int kMostCgIterations = 40;
+constexpr double kCgTolerance = 1e-2;
+
+/// One channel's, or coupled channels', damped linear systems.
+class StepSolver {
+ public:
+  StepSolver(const RefineSystem& system, double smooth) : system_(system), smooth_(smooth) {
+    if (!direct()) roughness_diagonal_ = 2 * smooth * system.roughness_diagonal();
+  }
+
+  bool direct() const { return system_.size() <= kMostDirectUnknowns; }
+
+  void linearize(const Eigen::VectorXd& x, const ErrorTerms& means) {
+    if (direct()) {
+      system_.find_normal(x, means, normal_);
+      system_.add_roughness_matrix(2 * smooth_, normal_.matrix);
+    } else {
+      rows_ = system_.rows(x, means);
+    }
+    gradient() += 2 * smooth_ * system_.roughness_matrix_times(x);
+  }
+
+  /// What the quadratic model of linearize says that a step adds to the objective.
+  double predicted_change(const Eigen::VectorXd& dx) const {
+    const Eigen::VectorXd bent =
+        direct()
+            ? Eigen::VectorXd(normal_.matrix.selfadjointView<Eigen::Lower>() * dx)
+            : Eigen::VectorXd(system_.apply(rows_, dx) + 2 * smooth_ * system_.roughness_matrix_times(dx));
+    return dx.dot((direct() ? normal_.gradient : rows_.gradient) + 0.5 * bent);
+  }
+
+  Eigen::VectorXd step(double damping) {
+    const Eigen::VectorXd diagonal = direct() ? Eigen::VectorXd(normal_.matrix.diagonal())
+                                              : Eigen::VectorXd(rows_.diagonal + roughness_diagonal_);
+    const Eigen::VectorXd extra =
+        damping * diagonal.array() + (kRidge + damping * kDampedRidge) * diagonal.mean();
+    Eigen::VectorXd dx;
+    if (direct()) {
+      factorized_ = normal_.matrix;
+      factorized_.diagonal() += extra;
+      dx = -normal_.gradient;
+      solve_in_place(factorized_, dx);
+    } else {
+      dx = conjugate_gradients(extra, diagonal + extra);
+    }
+    return dx.cwiseMax(-kLongestStep).cwiseMin(kLongestStep);
+  }
+
+ private:
+  Eigen::VectorXd& gradient() { return direct() ? normal_.gradient : rows_.gradient; }
+
+  Eigen::VectorXd conjugate_gradients(const Eigen::VectorXd& extra, const Eigen::VectorXd& diagonal) const {
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(extra.size()), r = -rows_.gradient;
+    Eigen::VectorXd z = r.cwiseQuotient(diagonal), p = z;
+    double rz = r.dot(z);
+    const double enough = kCgTolerance * kCgTolerance * rz;
+    for (int k = 0; k < kMostCgIterations && rz > enough; ++k) {
+      const Eigen::VectorXd ap =
+          system_.apply(rows_, p) + 2 * smooth_ * system_.roughness_matrix_times(p) + extra.cwiseProduct(p);
+      const double alpha = rz / p.dot(ap);
+      x += alpha * p;
+      r -= alpha * ap;
+      z = r.cwiseQuotient(diagonal);
+      const double next = r.dot(z);
+      p = z + next / rz * p;
+      rz = next;
+    }
+    return x;
+  }
+
+  const RefineSystem& system_;
+  double smooth_;
+  Eigen::VectorXd roughness_diagonal_;
+  RefineSystem::Normal normal_;
+  Eigen::MatrixXd factorized_;
+  RefineSystem::Rows rows_;
+};
+
+/// Levenberg-Marquardt steps of one channel, or of coupled channels.
+class Descent {
+ public:
+  Descent(const LogModel& model, const TrainingSet& set, const Lookups& lookups, const PictureLoss& loss,
+          const RefineOptions& options, std::size_t first_channel, std::size_t last_channel)
+      : options_(options),
+        loss_(loss),
+        system_(model, set, lookups, loss, options.format, first_channel, last_channel),
+        x_(system_.read(model)) {}
+
+  template <class BeforeStep>
+  void run(BeforeStep before_step) {
+    StepSolver solver(system_, options_.smooth);
+    system_.clamp(x_);
+    ErrorTerms means = system_.errors(x_);
+    before_ = after_ = objective(means, x_);
+    double damping = solver.direct() ? kFirstDamping : kFirstIterativeDamping;
+    for (int slow = 0; iterations_ < options_.max_iterations && slow < kMostSlowSteps; ++iterations_) {
+      before_step();
+      solver.linearize(x_, means);
+      bool accepted = false;
+      for (int trial = 0; trial < kMostTrials && !accepted; ++trial) {
+        Eigen::VectorXd next = x_ + solver.step(damping);
+        system_.clamp(next);
+        const ErrorTerms next_means = system_.errors(next);
+        const double value = objective(next_means, next);
+        accepted = value < after_;
+        if (accepted) {
+          const double gain = (value - after_) / solver.predicted_change(next - x_);
+          slow = after_ - value < options_.least_progress ? slow + 1 : 0;
+          after_ = value;
+          x_ = std::move(next);
+          means = next_means;
+          if (gain > kGoodGain && trial == 0) damping = std::max(kLeastDamping, kEase * damping);
+          if (gain < kPoorGain) damping *= kHarden / 2;
+        } else {
+          damping *= kHarden;
+        }
+      }
+      if (!accepted) break;
+    }
+  }
+
+  /// Puts the tables into the model and adds to the summary.
+  void finish(LogModel& model, RefineSummary& summary) const {
+    system_.write(x_, model);
+    if (iterations_ == options_.max_iterations) summary.stop_reason = "iteration limit";
+    summary.iterations += iterations_;
+    summary.objective_before += before_;
+    summary.objective_after += after_;
+  }
+
+ private:
+  double objective(const ErrorTerms& means, const Eigen::VectorXd& x) const {
+    return loss_.objective(means) + options_.smooth * system_.roughness(x);
+  }
+
+  const RefineOptions& options_;
+  const PictureLoss& loss_;
+  RefineSystem system_;
+  Eigen::VectorXd x_;
+  double before_ = 0, after_ = 0;
+  int iterations_ = 0;
+};
+
+}  // namespace
+
+RefineSummary refine(LogModel& model, const TrainingSet& set, const RefineOptions& options) {
+  return refine(model, set, find_lookups(model.spec, set), options);
+}
+
+RefineSummary refine(LogModel& model, const TrainingSet& set, const Lookups& lookups,
+                     const RefineOptions& options) {
+  if (!(options.smooth >= 0) || !std::isfinite(options.smooth) || !(options.max_iterations >= 0))
+    throw Error("fit: expected smooth >= 0 and a number of iterations >= 0");
+  if (model.channels != set.channels)
+    throw Error("fit: expected as many channels in the model as in the data");
+  const PictureLoss loss{.shares = options.shares, .exposure = set.exposure};
+  const auto channels = static_cast<std::size_t>(model.channels);
+  const std::size_t together = model.any_shared() ? channels : 1;
+  std::vector<Descent> descents;
+  for (std::size_t c = 0; c < channels; c += together)
+    descents.emplace_back(model, set, lookups, loss, options, c, c + together);
+
+  // Side by side, as much of a step is too small to share out.
+  std::atomic<int> steps = 0;
+  const std::thread::id caller = std::this_thread::get_id();
+  const double all_steps = static_cast<double>(descents.size()) * std::max(options.max_iterations, 1);
+  for_each_chunk(descents.size(), 1, [&](std::size_t s, std::size_t, std::size_t) {
+    descents[s].run([&] {
+      const int done = steps++;
+      if (options.progress && std::this_thread::get_id() == caller) options.progress(done / all_steps);
+    });
+  });
+
+  RefineSummary summary{.stop_reason = "no more progress"};
+  for (const Descent& descent : descents) descent.finish(model, summary);
+  summary.objective_before /= static_cast<double>(descents.size());
+  summary.objective_after /= static_cast<double>(descents.size());
+  if (options.progress) options.progress(1);
+  return summary;
+}
+
+double objective(const LogModel& model, const TrainingSet& set, const ErrorTerms& shares) {
+  return objective(model, set, find_lookups(model.spec, set), shares);
+}
+
+double objective(const LogModel& model, const TrainingSet& set, const Lookups& lookups,
+                 const ErrorTerms& shares) {
+  const PictureLoss loss{.shares = shares, .exposure = set.exposure};
+  const auto channels = static_cast<std::size_t>(model.channels);
+  double sum = 0;
+  for (std::size_t c = 0; c < channels; ++c) {
+    const RefineSystem system(model, set, lookups, loss, TableFormat::single, c, c + 1);
+    sum += loss.objective(system.errors(system.read(model)));
+  }
+  return sum / static_cast<double>(channels);
+}
+
+}  // namespace burnish

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include <burnish/fitting/refinement/log_model.h>
+#include <burnish/fitting/refinement/lookups.h>
+#include <burnish/fitting/refinement/picture_loss.h>
+#include <burnish/fitting/refinement/training_set.h>
+
+namespace burnish {
+
+/// Nodes of a channel's tables, of all channels' where one is shared, up to which steps are solved by a
+/// Cholesky factorization.
+inline constexpr std::size_t kMostDirectUnknowns = 1000;
+
+struct RefineOptions {
+  ErrorTerms shares = PictureLoss{}.shares;  ///< see PictureLoss
+  /// Times the integrals over each table of the squared second derivatives of log lambda, added to the
+  /// objective; >= 0.
+  double smooth = 1e-8;
+  /// In which tables without one of their own will be stored: values stay within its range.
+  TableFormat format = TableFormat::half;
+  int max_iterations = 40;       ///< Gauss-Newton steps a channel
+  double least_progress = 2e-4;  ///< stop after three steps in a row that lowered the objective by less
+  /// Called with rising shares of the work done, from the calling thread.
+  std::function<void(double fraction)> progress;
+};
+
+struct RefineSummary {
+  double objective_before = 0, objective_after = 0;  ///< means over the channels
+  int iterations = 0;                                ///< of all channels
+  std::string stop_reason;                           ///< "no more progress", "iteration limit"
+};
+
+/// Lowers the error that PictureLoss states, by damped Gauss-Newton steps (Levenberg-Marquardt) on the
+/// logarithms of the tables [Marquardt1963]; lambda stays positive. Every accepted step lowers the
+/// objective. Channels are refined side by side, or as one system where a table is shared. Steps are solved
+/// directly for up to kMostDirectUnknowns, by preconditioned conjugate gradients for more. The
+/// result does not depend on the number of threads.
+RefineSummary refine(LogModel& model, const TrainingSet& set, const RefineOptions& options);
+/// The same with the set's lookups of models like this one at hand.
+RefineSummary refine(LogModel& model, const TrainingSet& set, const Lookups& lookups,
+                     const RefineOptions& options);
+
+/// The objective that refine lowers, without the smoothness term; mean over the channels.
+double objective(const LogModel& model, const TrainingSet& set, const ErrorTerms& shares);
+double objective(const LogModel& model, const TrainingSet& set, const Lookups& lookups,
+                 const ErrorTerms& shares);
+
+}  // namespace burnish

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <burnish/fitting/numerics/smoothness.h>
+#include <burnish/fitting/refinement/lane_gram.h>
+#include <burnish/fitting/refinement/lobe_lanes.h>
+#include <burnish/fitting/refinement/log_model.h>
+#include <burnish/fitting/refinement/lookups.h>
+#include <burnish/fitting/refinement/picture_loss_lanes.h>
+#include <burnish/fitting/refinement/training_set.h>
+
+namespace burnish {
+
+struct LogRange {
+  double least, most;
+};
+
+/// The unknowns of some channels of a model, those of one channel or, where a table is shared, of all, and
+/// the sums over the training set that a Gauss-Newton step needs.
+class RefineSystem {
+ public:
+  RefineSystem(const LogModel& model, const TrainingSet& set, const Lookups& lookups, const PictureLoss& loss,
+               TableFormat format, std::size_t first_channel, std::size_t last_channel);
+
+  std::size_t size() const noexcept { return size_; }
+  Eigen::VectorXd read(const LogModel& model) const;
+  void write(const Eigen::VectorXd& x, LogModel& model) const;
+  /// Keeps unknowns where their table's format can hold them: no smaller than a share of the table's largest,
+  /// and of rgb9e5 tables within a range around where the texel's channels stand in the model given.
+  void clamp(Eigen::VectorXd& x) const;
+
+  /// Means of the errors at x.
+  ErrorTerms errors(const Eigen::VectorXd& x) const;
+
+  /// Slope of the objective at x whose errors are `means`, and the lower triangle of its Gauss-Newton matrix.
+  /// Where there are many pairs an unknown, the matrix is that of an even part of them.
+  struct Normal {
+    Eigen::VectorXd gradient;
+    Eigen::MatrixXd matrix;
+    LaneRows factor;  ///< room that is kept from step to step
+  };
+  void find_normal(const Eigen::VectorXd& x, const ErrorTerms& means, Normal& normal) const {
+    find_normal(x, means, 0, size_, normal);
+  }
+  /// The same of the unknowns [first, last) of whole tables, the others being fixed.
+  void find_normal(const Eigen::VectorXd& x, const ErrorTerms& means, std::size_t first, std::size_t last,
+                   Normal& normal) const;
+
+  /// The same without the matrix, whose factor has the rows curvature^(1/2) d ln f^ / dx.
+  struct Rows {
+    Eigen::VectorXd gradient;
+    Eigen::VectorXd diagonal;  ///< of the matrix, less what terms of one row that share an unknown add
+    LobeLanes::Values values;
+    /// curvature^(1/2) times the lobes' shares of f^, as LobeLanes::times takes them.
+    AlignedVector<float> shares;
+  };
+  Rows rows(const Eigen::VectorXd& x, const ErrorTerms& means) const;
+  /// The normal matrix times v. As d lambda / dx = lambda, rows are multiplied by the values.
+  Eigen::VectorXd apply(const Rows& rows, const Eigen::VectorXd& v) const {
+    const Eigen::VectorXd& lambda = rows.values.lambda;
+    return lambda.cwiseProduct(lanes_.times(rows.values, rows.shares, lambda.cwiseProduct(v)));
+  }
+
+  /// Roughness of all tables, its gradient, its matrix times v and its diagonal.
+  double roughness(const Eigen::VectorXd& x) const;
+  Eigen::VectorXd roughness_matrix_times(const Eigen::VectorXd& v) const;
+  Eigen::VectorXd roughness_diagonal() const;
+  void add_roughness_matrix(double scale, Eigen::MatrixXd& matrix) const {
+    add_roughness_matrix(scale, 0, matrix);
+  }
+  /// The same to the matrix of the unknowns from `first` on.
+  void add_roughness_matrix(double scale, std::size_t first, Eigen::MatrixXd& matrix) const;
+
+ private:
+  struct TableUnknowns {
+    std::size_t base, stride, copies, nodes, step;
+    double share, log_range;
+    SmoothnessRows rows;
+  };
+  // What PictureLoss takes of the pairs, whole blocks: the last is filled up with pairs that weigh nothing.
+  struct Losses {
+    AlignedVector<float> targets;  // [block][channel of the system][first, second][pair]
+    AlignedVector<float> cos_theta_i, picture_weight, pair_weight;  // [pair]
+  };
+  LossInputs loss_inputs(std::size_t block, std::size_t channel, const float* model) const noexcept;
+  // visit(block, channel, lanes as differentiate leaves them, gradients, curvatures) of the blocks from
+  // `begin` to `end`.
+  template <class Visit>
+  void for_each_slope(const LobeLanes::Values& values, const ErrorTerms& derivatives, std::size_t begin,
+                      std::size_t end, Visit visit) const;
+  template <class Visit>
+  void for_each_roughness_row(Visit visit) const;
+
+  const TrainingSet& set_;
+  PictureLoss loss_;
+  Losses losses_;
+  std::size_t first_channel_, last_channel_, size_ = 0;
+  std::vector<TableUnknowns> tables_;
+  std::vector<LogRange> ranges_;  // of the unknowns, over their channel's mean in the table
+  double picture_weight_ = 0, pair_weight_ = 0;
+  LobeLanes lanes_;
+};
+
+}  // namespace burnish

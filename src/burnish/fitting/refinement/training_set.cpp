@@ -1,0 +1,242 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+#include <burnish/error.h>
+#include <burnish/fitting/refinement/training_set.h>
+#include <burnish/math/angles.h>
+#include <burnish/math/parallel.h>
+#include <burnish/math/random.h>
+#include <burnish/metrics/sphere_images.h>
+#include <burnish/parameterization/half_diff.h>
+
+namespace burnish {
+
+namespace {
+
+constexpr double kLargestLightAngle = radians(75);
+constexpr double kPixelCosine = 0.01, kPairCosine = 0.05;  // the second as in the error figures
+constexpr double kRimCosine = 0.005, kRimWeight = 0.1;     // of pairs nearer to the horizon than that
+constexpr double kCrowdedPixelCosine = 1e-3;
+constexpr double kExposedShare = 0.97;  // as in the error figures
+constexpr std::size_t kChunk = 4096;
+
+// Points of the additive recurrence of the generalized golden ratio in five dimensions: phi^6 = phi + 1
+// [Roberts 2018].
+class Recurrence {
+ public:
+  explicit Recurrence(std::uint64_t seed) {
+    Pcg32 random(seed);
+    for (double& x : point_) x = random.uniform();
+  }
+  const std::array<double, 5>& next() {
+    constexpr double kRatio = 1.1347241384015194;
+    double step = 1;
+    for (double& x : point_) {
+      step /= kRatio;
+      x += step;
+      x -= std::floor(x);
+    }
+    return point_;
+  }
+
+ private:
+  std::array<double, 5> point_{};
+};
+
+Vec3 light_of(double u) {
+  const double light = kLargestLightAngle * u;
+  return {std::sin(light), 0, std::cos(light)};
+}
+
+std::optional<DirectionPair> draw_pixel(const std::array<double, 5>& u) {
+  const std::optional<Vec3> n = sphere_normal(2, 2 * u[0], 2 * u[1]);
+  if (!n || std::abs(n->y) >= 1) return {};
+  const DirectionPair pair{sphere_local(*n, light_of(u[2])), sphere_local(*n, {0, 0, 1})};
+  if (!(pair.wi.z > kPixelCosine) || !(pair.wo.z > kPixelCosine)) return {};
+  return pair;
+}
+
+struct WeightedPixel {
+  DirectionPair pair;
+  double weight;  // one over its density beside that of pixels spread evenly over the disk
+};
+
+// Half of the pixels are spread over the disk, half crowd where it mirrors the light.
+WeightedPixel draw_crowded_pixel(const std::array<double, 5>& u) {
+  const Vec3 light = light_of(u[2]), half = normalize(light + Vec3{0, 0, 1});
+  const double phi = kTwoPi * u[1];
+  Vec3 n;
+  if (u[3] < 0.5) {
+    const double r = std::sqrt(u[0]);
+    n = {r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u[0])};
+  } else {
+    const double theta_h = kHalfPi * u[0] * u[0], r = std::sin(theta_h);
+    const Vec3 across{half.z, 0, -half.x};
+    n = r * std::cos(phi) * across + r * std::sin(phi) * Vec3{0, 1, 0} + std::cos(theta_h) * half;
+  }
+  // densities over the normal's solid angle
+  const double theta_h = std::acos(std::clamp(dot(n, half), -1.0, 1 - 1e-12));
+  const double even = std::max(n.z, 0.0) / kPi;
+  const double crowded =
+      theta_h < kHalfPi ? 1 / (kTwoPi * kPi * std::sin(theta_h) * std::sqrt(theta_h / kHalfPi)) : 0;
+  return {{sphere_local(n, light), sphere_local(n, {0, 0, 1})}, 2 * even / (even + crowded)};
+}
+
+// theta_h / (pi/2) of a point, half of them uniform, half squared, and one over the density.
+std::array<double, 2> draw_theta_h(double u) {
+  const double v = 2 * u - std::floor(2 * u), x = u < 0.5 ? v : v * v;
+  return {x, 1 / (0.5 + 0.25 / std::sqrt(std::max(x, 1e-9)))};
+}
+
+DirectionPair turned(const DirectionPair& pair, double angle) {
+  const double s = std::sin(angle), c = std::cos(angle);
+  const auto turn = [&](Vec3 w) { return Vec3{c * w.x - s * w.y, s * w.x + c * w.y, w.z}; };
+  return {turn(pair.wi), turn(pair.wo)};
+}
+
+// Evaluates the source and keeps what it knows.
+void fill_values(BrdfRef source, TrainingSet& set) {
+  const auto channels = static_cast<std::size_t>(set.channels);
+  std::vector<std::uint8_t> known(set.size());
+  std::vector<double> values(set.size() * channels);
+  for_each_chunk(set.size(), kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+    source.eval(std::span(set.pairs).subspan(begin, end - begin),
+                std::span(values).subspan(begin * channels, (end - begin) * channels),
+                std::span(known).subspan(begin, end - begin));
+  });
+  std::size_t kept = 0, pictures = 0;
+  set.values.resize(values.size());
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    if (!known[i]) continue;
+    set.pairs[kept] = set.pairs[i];
+    set.weights[kept] = set.weights[i];
+    for (std::size_t c = 0; c < channels; ++c)
+      set.values[kept * channels + c] = static_cast<float>(std::max(values[i * channels + c], 0.0));
+    pictures += i < set.picture_count;
+    ++kept;
+  }
+  set.pairs.resize(kept);
+  set.weights.resize(kept);
+  set.values.resize(kept * channels);
+  set.picture_count = pictures;
+}
+
+// Linear between the values at their places among the weights; `unlit` is that of black pixels beside the
+// set's.
+double exposure_of(const TrainingSet& set, double unlit) {
+  const auto channels = static_cast<std::size_t>(set.channels);
+  struct Shown {
+    float value, weight;
+  };
+  std::vector<Shown> shown;
+  double total = 0;
+  for (std::size_t i = 0; i < set.picture_count; ++i)
+    for (std::size_t c = 0; c < channels; ++c) {
+      shown.push_back({set.values[i * channels + c] * static_cast<float>(set.pairs[i].wi.z), set.weights[i]});
+      total += shown.back().weight;
+    }
+  if (shown.empty()) return 1;
+  std::ranges::sort(shown, {}, &Shown::value);
+  const double mean = total / static_cast<double>(shown.size()),
+               black = unlit * static_cast<double>(channels);
+  double rest = std::max(0.0, kExposedShare * (total + black - mean) - black);
+  std::size_t low = 0;
+  while (low + 1 < shown.size() && rest >= shown[low].weight) rest -= shown[low++].weight;
+  const double next = shown[std::min(low + 1, shown.size() - 1)].value;
+  const double white = shown[low].value + rest / shown[low].weight * (next - shown[low].value);
+  return white > 0 ? 1 / white : 1;
+}
+
+}  // namespace
+
+TrainingSet draw_training_set(BrdfRef source, const TrainingOptions& options) {
+  TrainingSet set{.channels = source.channels(), .isotropic = source.isotropic()};
+  Recurrence points(options.seed);
+  double unlit = 0;
+  while (set.pairs.size() < options.pictures) {
+    if (!options.crowded) {
+      if (const auto pixel = draw_pixel(points.next())) set.pairs.push_back(*pixel);
+      continue;
+    }
+    const auto [pair, weight] = draw_crowded_pixel(points.next());
+    if (!(pair.wo.z > kCrowdedPixelCosine)) continue;
+    if (pair.wi.z > kCrowdedPixelCosine) {
+      set.pairs.push_back(pair);
+      set.weights.push_back(static_cast<float>(weight));
+    } else {
+      unlit += weight;
+    }
+  }
+  set.weights.resize(set.pairs.size(), 1);
+  set.picture_count = set.pairs.size();
+  for (std::size_t drawn = 0; drawn < options.directions;) {
+    const std::array<double, 5>& u = points.next();
+    const auto [theta_h, weight] = draw_theta_h(u[0]);
+    const HalfDiff angles{.theta_h = kHalfPi * theta_h,
+                          .phi_h = source.isotropic() ? 0 : kTwoPi * u[3],
+                          .theta_d = kHalfPi * u[1],
+                          .phi_d = kTwoPi * u[2]};
+    const HalfDiffDirections pair = from_half_diff(angles);
+    const double least = std::min(pair.wi.z, pair.wo.z);
+    if (!(least > kRimCosine)) continue;
+    const bool rim = !(least > kPairCosine);
+    set.pairs.push_back({pair.wi, pair.wo});
+    set.weights.push_back(static_cast<float>(rim ? kRimWeight * weight : weight));
+    drawn += !rim;
+  }
+  if (options.spread_phi_h && source.isotropic())
+    for (DirectionPair& pair : set.pairs) pair = turned(pair, kTwoPi * points.next()[4]);
+  fill_values(source, set);
+  if (set.size() == 0) throw Error("fit: expected a source that knows some directions, found none");
+  set.exposure = exposure_of(set, unlit);
+  return set;
+}
+
+TrainingSet training_set_of(const Samples& samples, bool symmetrize) {
+  TrainingSet set{.channels = samples.channels, .isotropic = samples.isotropic};
+  for (int turn = 0; turn < (symmetrize ? 2 : 1); ++turn)
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const auto [wi, wo] = samples.pairs[i];
+      if (wi.z <= 0 || wo.z <= 0) continue;
+      set.pairs.push_back(turn == 0 ? DirectionPair{wi, wo} : DirectionPair{wo, wi});
+      for (const double f : samples.at(i)) set.values.push_back(static_cast<float>(std::max(f, 0.0)));
+    }
+  set.weights.assign(set.pairs.size(), 1);
+  if (set.size() == 0) throw Error("fit: expected samples above the horizon, found none");
+  return set;
+}
+
+TrainingSet thinned(const TrainingSet& set, std::size_t step) {
+  TrainingSet part{.channels = set.channels, .isotropic = set.isotropic, .exposure = set.exposure};
+  const auto channels = static_cast<std::size_t>(set.channels);
+  const auto take = [&](std::size_t i) {
+    part.pairs.push_back(set.pairs[i]);
+    part.weights.push_back(set.weights[i]);
+    for (std::size_t c = 0; c < channels; ++c) part.values.push_back(set.values[i * channels + c]);
+  };
+  for (std::size_t i = 0; i < set.picture_count; i += step) take(i);
+  part.picture_count = part.size();
+  for (std::size_t i = set.picture_count; i < set.size(); i += step) take(i);
+  return part;
+}
+
+SampleSource as_source(const TrainingSet& set, const std::vector<float>& values) {
+  return {.count = set.size(),
+          .distinct = set.size(),
+          .channels = set.channels,
+          .isotropic = set.isotropic,
+          .fill = [&set, &values](std::size_t begin, std::span<DirectionPair> pairs, std::span<double> f,
+                                  std::span<double> weights) {
+            std::copy_n(set.pairs.begin() + static_cast<std::ptrdiff_t>(begin), pairs.size(), pairs.begin());
+            std::copy_n(set.weights.begin() + static_cast<std::ptrdiff_t>(begin), pairs.size(),
+                        weights.begin());
+            std::copy_n(
+                values.begin() + static_cast<std::ptrdiff_t>(begin * static_cast<std::size_t>(set.channels)),
+                f.size(), f.begin());
+          }};
+}
+
+}  // namespace burnish
