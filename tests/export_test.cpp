@@ -14,8 +14,8 @@
 
 #include <burnish/factors/model_file.h>
 #include <burnish/factors/models_for_tests.h>
+#include <burnish/image/png.h>
 #include <burnish/io/rgl.h>
-#include <burnish/metrics/png.h>
 #include <burnish/render/image_based_light.h>
 #include <burnish/tools_for_tests.h>
 

@@ -12,7 +12,7 @@
 #include <burnish/error.h>
 #include <burnish/factors/model_file.h>
 #include <burnish/factors/models_for_tests.h>
-#include <burnish/metrics/png.h>
+#include <burnish/image/png.h>
 #include <burnish/render/gl_context.h>
 #include <burnish/render/picture.h>
 #include <burnish/tools_for_tests.h>

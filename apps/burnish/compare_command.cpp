@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 
+#include <burnish/image/png.h>
 #include <burnish/math/angles.h>
-#include <burnish/metrics/compare_report.h>
-#include <burnish/metrics/factor_images.h>
-#include <burnish/metrics/png.h>
+#include <burnish/report/compare_report.h>
+#include <burnish/report/factor_images.h>
 
 #include "commands.h"
 #include "source_arguments.h"

@@ -9,8 +9,8 @@
 
 #include <burnish/error.h>
 #include <burnish/file.h>
+#include <burnish/image/png.h>
 #include <burnish/math/angles.h>
-#include <burnish/metrics/png.h>
 #include <burnish/render/cpu_renderer.h>
 #include <burnish/render/gl_context.h>
 #include <burnish/render/gl_renderer.h>

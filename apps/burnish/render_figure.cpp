@@ -5,10 +5,10 @@
 
 #include <burnish/file.h>
 #include <burnish/fitting/fit.h>
+#include <burnish/image/contact_sheet.h>
+#include <burnish/image/png.h>
 #include <burnish/io/source.h>
 #include <burnish/math/angles.h>
-#include <burnish/metrics/contact_sheet.h>
-#include <burnish/metrics/png.h>
 #include <burnish/metrics/sphere_images.h>
 #include <burnish/render/gl_context.h>
 #include <burnish/render/picture.h>

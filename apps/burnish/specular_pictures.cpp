@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include <burnish/file.h>
-#include <burnish/metrics/png.h>
-#include <burnish/metrics/specular_figures.h>
+#include <burnish/image/png.h>
 #include <burnish/power/bounds.h>
+#include <burnish/report/specular_figures.h>
 
 #include "specular_command.h"
 #include "usage.h"

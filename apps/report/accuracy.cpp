@@ -16,10 +16,10 @@
 
 #include <burnish/error.h>
 #include <burnish/fitting/baselines/baselines.h>
+#include <burnish/image/contact_sheet.h>
+#include <burnish/image/png.h>
 #include <burnish/io/source.h>
 #include <burnish/math/parallel.h>
-#include <burnish/metrics/contact_sheet.h>
-#include <burnish/metrics/png.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/scattered_brdf.h>
 

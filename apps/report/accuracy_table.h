@@ -8,9 +8,9 @@
 #include <vector>
 
 #include <burnish/factors/evaluation_cost.h>
+#include <burnish/image/image.h>
 #include <burnish/io/source.h>
 #include <burnish/metrics/error_figures.h>
-#include <burnish/metrics/image.h>
 #include <burnish/reflectance/brdf.h>
 
 namespace burnish {

@@ -12,8 +12,8 @@
 
 #include <burnish/error.h>
 #include <burnish/hardware/generate.h>
-#include <burnish/metrics/contact_sheet.h>
-#include <burnish/metrics/png.h>
+#include <burnish/image/contact_sheet.h>
+#include <burnish/image/png.h>
 #include <burnish/metrics/sphere_images.h>
 
 namespace burnish {

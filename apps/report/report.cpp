@@ -17,14 +17,14 @@
 #include <burnish/factors/model_file.h>
 #include <burnish/file.h>
 #include <burnish/fitting/one_lobe/cross_validation.h>
+#include <burnish/image/png.h>
+#include <burnish/image/svg_plot.h>
 #include <burnish/io/cornell.h>
 #include <burnish/io/merl.h>
 #include <burnish/io/source.h>
 #include <burnish/math/angles.h>
 #include <burnish/math/parallel.h>
 #include <burnish/metrics/error_figures.h>
-#include <burnish/metrics/png.h>
-#include <burnish/metrics/svg_plot.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/goniometer.h>
 #include <burnish/reflectance/scattered_brdf.h>

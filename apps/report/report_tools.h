@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <burnish/file.h>
-#include <burnish/metrics/svg_plot.h>
+#include <burnish/image/svg_plot.h>
 
 namespace burnish {
 

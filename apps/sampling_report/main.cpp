@@ -14,13 +14,13 @@
 #include <burnish/factors/table_format.h>
 #include <burnish/file.h>
 #include <burnish/fitting/plans/fit_plan.h>
+#include <burnish/image/contact_sheet.h>
+#include <burnish/image/png.h>
+#include <burnish/image/svg_plot.h>
 #include <burnish/io/rgl.h>
 #include <burnish/math/parallel.h>
 #include <burnish/math/random.h>
-#include <burnish/metrics/contact_sheet.h>
-#include <burnish/metrics/png.h>
 #include <burnish/metrics/sphere_images.h>
-#include <burnish/metrics/svg_plot.h>
 #include <burnish/reflectance/half_vector_quadrature.h>
 #include <burnish/render/environment_light.h>
 

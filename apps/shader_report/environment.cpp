@@ -11,8 +11,8 @@
 #include <fmt/format.h>
 
 #include <burnish/fitting/fit.h>
+#include <burnish/image/png.h>
 #include <burnish/math/angles.h>
-#include <burnish/metrics/png.h>
 #include <burnish/metrics/sphere_images.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/ggx_proxy.h>

@@ -5,9 +5,9 @@
 #include <nanobind/stl/vector.h>
 
 #include <burnish/metrics/albedo.h>
-#include <burnish/metrics/compare_report.h>
 #include <burnish/metrics/sphere_images.h>
 #include <burnish/reflectance/goniometer.h>
+#include <burnish/report/compare_report.h>
 
 #include "opened_brdf.h"
 #include "rows.h"

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include <burnish/image/image.h>
 #include <burnish/math/angles.h>
-#include <burnish/metrics/image.h>
 #include <burnish/reflectance/brdf.h>
 
 namespace burnish {

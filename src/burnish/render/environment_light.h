@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include <burnish/image/image.h>
 #include <burnish/math/random.h>
-#include <burnish/metrics/image.h>
 #include <burnish/reflectance/analytic/pair_geometry.h>
 #include <burnish/reflectance/brdf.h>
 #include <burnish/reflectance/sampling.h>

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include <burnish/metrics/image.h>
+#include <burnish/image/image.h>
 #include <burnish/reflectance/analytic/pair_geometry.h>
 
 namespace burnish {

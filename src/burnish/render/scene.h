@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include <burnish/metrics/image.h>
+#include <burnish/image/image.h>
 #include <burnish/reflectance/analytic/pair_geometry.h>
 #include <burnish/render/mesh.h>
 

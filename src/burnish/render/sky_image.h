@@ -3,8 +3,8 @@
 #include <vector>
 
 #include <burnish/file.h>
+#include <burnish/image/image.h>
 #include <burnish/math/point2.h>
-#include <burnish/metrics/image.h>
 #include <burnish/reflectance/analytic/pair_geometry.h>
 #include <burnish/reflectance/sampling.h>
 

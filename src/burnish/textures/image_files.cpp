@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include <burnish/error.h>
-#include <burnish/metrics/png.h>
+#include <burnish/image/png.h>
 #include <burnish/textures/image_files.h>
 
 namespace burnish {

@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include <burnish/error.h>
+#include <burnish/image/png.h>
 #include <burnish/math/random.h>
-#include <burnish/metrics/png.h>
 #include <burnish/textures/image_files.h>
 
 namespace burnish {

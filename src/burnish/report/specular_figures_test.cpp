@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <burnish/error.h>
-#include <burnish/metrics/specular_figures.h>
+#include <burnish/report/specular_figures.h>
 
 namespace burnish {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <burnish/factors/table.h>
-#include <burnish/metrics/image.h>
+#include <burnish/image/image.h>
 
 namespace burnish {
 

@@ -3,7 +3,7 @@
 #include <string_view>
 #include <vector>
 
-#include <burnish/metrics/drawing.h>
+#include <burnish/image/drawing.h>
 
 namespace burnish {
 

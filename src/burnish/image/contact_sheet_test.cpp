@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <burnish/error.h>
-#include <burnish/metrics/contact_sheet.h>
+#include <burnish/image/contact_sheet.h>
 
 namespace burnish {
 namespace {

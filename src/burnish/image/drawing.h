@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include <burnish/metrics/image.h>
+#include <burnish/image/image.h>
 
 namespace burnish {
 

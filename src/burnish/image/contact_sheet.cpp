@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include <burnish/error.h>
-#include <burnish/metrics/contact_sheet.h>
-#include <burnish/metrics/svg_plot.h>
+#include <burnish/image/contact_sheet.h>
+#include <burnish/image/svg_plot.h>
 
 namespace burnish {
 namespace {

@@ -6,8 +6,8 @@
 #include <pugixml.hpp>
 
 #include <burnish/error.h>
-#include <burnish/metrics/drawing.h>
-#include <burnish/metrics/svg_plot.h>
+#include <burnish/image/drawing.h>
+#include <burnish/image/svg_plot.h>
 
 namespace burnish {
 namespace {

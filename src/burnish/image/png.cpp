@@ -5,7 +5,7 @@
 
 #include <burnish/error.h>
 #include <burnish/file.h>
-#include <burnish/metrics/png.h>
+#include <burnish/image/png.h>
 
 namespace burnish {
 

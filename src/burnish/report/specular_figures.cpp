@@ -5,8 +5,8 @@
 
 #include <burnish/error.h>
 #include <burnish/math/angles.h>
-#include <burnish/metrics/specular_figures.h>
 #include <burnish/power/cosine.h>
+#include <burnish/report/specular_figures.h>
 
 namespace burnish {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include <burnish/metrics/drawing.h>
-#include <burnish/metrics/image.h>
+#include <burnish/image/drawing.h>
+#include <burnish/image/image.h>
 
 namespace burnish {
 

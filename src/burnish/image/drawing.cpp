@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <burnish/metrics/drawing.h>
-#include <burnish/metrics/stroke_font.h>
+#include <burnish/image/drawing.h>
+#include <burnish/image/stroke_font.h>
 
 namespace burnish {
 namespace {

@@ -7,10 +7,10 @@
 
 #include <burnish/error.h>
 #include <burnish/file.h>
+#include <burnish/image/png.h>
 #include <burnish/metrics/brdfs_for_tests.h>
-#include <burnish/metrics/compare_report.h>
-#include <burnish/metrics/png.h>
 #include <burnish/parameterization/half_diff.h>
+#include <burnish/report/compare_report.h>
 
 namespace burnish {
 namespace {

@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 
 #include <burnish/error.h>
-#include <burnish/metrics/drawing.h>
-#include <burnish/metrics/markup.h>
-#include <burnish/metrics/svg_plot.h>
+#include <burnish/image/drawing.h>
+#include <burnish/image/markup.h>
+#include <burnish/image/svg_plot.h>
 
 namespace burnish {
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include <burnish/image/svg_plot.h>
 #include <burnish/metrics/albedo.h>
 #include <burnish/metrics/error_figures.h>
-#include <burnish/metrics/svg_plot.h>
 #include <burnish/reflectance/brdf.h>
 
 namespace burnish {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <burnish/metrics/image.h>
+#include <burnish/image/image.h>
 
 namespace burnish {
 

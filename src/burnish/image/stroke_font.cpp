@@ -2,7 +2,7 @@
 #include <array>
 #include <utility>
 
-#include <burnish/metrics/stroke_font.h>
+#include <burnish/image/stroke_font.h>
 
 namespace burnish {
 namespace {

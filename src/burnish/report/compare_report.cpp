@@ -10,11 +10,11 @@
 
 #include <burnish/error.h>
 #include <burnish/file.h>
-#include <burnish/metrics/compare_report.h>
-#include <burnish/metrics/contact_sheet.h>
-#include <burnish/metrics/markup.h>
-#include <burnish/metrics/png.h>
+#include <burnish/image/contact_sheet.h>
+#include <burnish/image/markup.h>
+#include <burnish/image/png.h>
 #include <burnish/parameterization/half_diff.h>
+#include <burnish/report/compare_report.h>
 
 namespace burnish {
 namespace {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <burnish/metrics/factor_images.h>
+#include <burnish/report/factor_images.h>
 
 namespace burnish {
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <burnish/metrics/factor_images.h>
+#include <burnish/report/factor_images.h>
 
 namespace burnish {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <span>
 
-#include <burnish/metrics/image.h>
-#include <burnish/metrics/svg_plot.h>
+#include <burnish/image/image.h>
+#include <burnish/image/svg_plot.h>
 #include <burnish/power/power.h>
 
 namespace burnish {

@@ -4,8 +4,8 @@
 
 #include <burnish/error.h>
 #include <burnish/file.h>
+#include <burnish/image/png.h>
 #include <burnish/math/random.h>
-#include <burnish/metrics/png.h>
 #include <burnish/tools_for_tests.h>
 
 namespace burnish {

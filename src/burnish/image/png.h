@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include <burnish/metrics/image.h>
+#include <burnish/image/image.h>
 
 namespace burnish {
 
