@@ -16,7 +16,7 @@
 #include <burnish/factors/models_for_tests.h>
 #include <burnish/image/png.h>
 #include <burnish/io/rgl.h>
-#include <burnish/render/image_based_light.h>
+#include <burnish/render/light/image_based_light.h>
 #include <burnish/tools_for_tests.h>
 
 namespace burnish {

@@ -13,7 +13,7 @@
 #include <burnish/factors/model_file.h>
 #include <burnish/factors/models_for_tests.h>
 #include <burnish/image/png.h>
-#include <burnish/render/gl_context.h>
+#include <burnish/render/gl/gl_context.h>
 #include <burnish/render/picture.h>
 #include <burnish/tools_for_tests.h>
 

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include <burnish/file.h>
-#include <burnish/render/sky_image.h>
+#include <burnish/render/light/sky_image.h>
 
 namespace burnish::cli {
 

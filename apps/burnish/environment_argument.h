@@ -5,7 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include <burnish/render/environment_light.h>
+#include <burnish/render/light/environment_light.h>
 
 namespace burnish::cli {
 

@@ -6,7 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <burnish/factors/factored_brdf.h>
-#include <burnish/render/surface_environment.h>
+#include <burnish/render/gl/surface_environment.h>
 #include <burnish/shaders/shader.h>
 
 namespace burnish::cli {

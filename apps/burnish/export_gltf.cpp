@@ -5,7 +5,7 @@
 
 #include <burnish/export/metallic_roughness_fit.h>
 #include <burnish/math/angles.h>
-#include <burnish/render/shapes.h>
+#include <burnish/render/mesh/shapes.h>
 
 #include "export_formats.h"
 

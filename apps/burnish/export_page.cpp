@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <burnish/error.h>
-#include <burnish/render/shapes.h>
+#include <burnish/render/mesh/shapes.h>
 #include <burnish/shaders/shader.h>
 
 #include "export_formats.h"

@@ -3,7 +3,7 @@
 #include <string>
 
 #include <burnish/factors/factored_brdf.h>
-#include <burnish/render/surface_environment.h>
+#include <burnish/render/gl/surface_environment.h>
 #include <burnish/shaders/specular_shader.h>
 
 namespace burnish::cli {

@@ -12,12 +12,12 @@
 #include <burnish/image/png.h>
 #include <burnish/math/angles.h>
 #include <burnish/render/cpu_renderer.h>
-#include <burnish/render/gl_context.h>
-#include <burnish/render/gl_renderer.h>
-#include <burnish/render/mesh_file.h>
+#include <burnish/render/gl/gl_context.h>
+#include <burnish/render/gl/gl_renderer.h>
+#include <burnish/render/gl/surface_environment.h>
+#include <burnish/render/mesh/mesh_file.h>
+#include <burnish/render/mesh/shapes.h>
 #include <burnish/render/picture.h>
-#include <burnish/render/shapes.h>
-#include <burnish/render/surface_environment.h>
 
 #include "commands.h"
 #include "environment_argument.h"

@@ -10,9 +10,9 @@
 #include <burnish/io/source.h>
 #include <burnish/math/angles.h>
 #include <burnish/metrics/sphere_images.h>
-#include <burnish/render/gl_context.h>
+#include <burnish/render/gl/gl_context.h>
+#include <burnish/render/mesh/shapes.h>
 #include <burnish/render/picture.h>
-#include <burnish/render/shapes.h>
 #include <burnish/render/vertex_figure.h>
 
 namespace burnish::cli {

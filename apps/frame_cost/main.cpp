@@ -16,9 +16,9 @@
 #include <burnish/metrics/sphere_images.h>
 #include <burnish/reflectance/half_diff_table.h>
 #include <burnish/render/cpu_renderer.h>
-#include <burnish/render/gl_context.h>
+#include <burnish/render/gl/gl_context.h>
+#include <burnish/render/mesh/shapes.h>
 #include <burnish/render/picture.h>
-#include <burnish/render/shapes.h>
 
 #include "peer_shaders.h"
 

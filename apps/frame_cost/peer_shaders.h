@@ -4,7 +4,7 @@
 #include <burnish/reflectance/analytic/microfacet.h>
 #include <burnish/reflectance/half_diff_table.h>
 #include <burnish/reflectance/neural_brdf.h>
-#include <burnish/render/gl_renderer.h>
+#include <burnish/render/gl/gl_renderer.h>
 
 namespace burnish {
 

@@ -22,7 +22,7 @@
 #include <burnish/math/random.h>
 #include <burnish/metrics/sphere_images.h>
 #include <burnish/reflectance/half_vector_quadrature.h>
-#include <burnish/render/environment_light.h>
+#include <burnish/render/light/environment_light.h>
 
 #include "drawers.h"
 

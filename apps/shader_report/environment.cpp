@@ -16,8 +16,8 @@
 #include <burnish/metrics/sphere_images.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/ggx_proxy.h>
-#include <burnish/render/image_based_light.h>
-#include <burnish/render/tapped_light.h>
+#include <burnish/render/light/image_based_light.h>
+#include <burnish/render/light/tapped_light.h>
 
 namespace burnish {
 namespace {

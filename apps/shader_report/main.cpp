@@ -13,8 +13,8 @@
 
 #include <burnish/error.h>
 #include <burnish/factors/models_for_tests.h>
-#include <burnish/render/gl_context.h>
-#include <burnish/render/gl_evaluator.h>
+#include <burnish/render/gl/gl_context.h>
+#include <burnish/render/gl/gl_evaluator.h>
 #include <burnish/shaders/webgl_for_tests.h>
 #include <burnish/tools_for_tests.h>
 

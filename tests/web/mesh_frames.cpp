@@ -9,9 +9,9 @@
 #include <fmt/format.h>
 
 #include <burnish/error.h>
-#include <burnish/render/frames.h>
-#include <burnish/render/mesh_file.h>
-#include <burnish/render/shapes.h>
+#include <burnish/render/mesh/frames.h>
+#include <burnish/render/mesh/mesh_file.h>
+#include <burnish/render/mesh/shapes.h>
 
 namespace burnish {
 namespace {

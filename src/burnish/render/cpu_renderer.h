@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <burnish/reflectance/brdf.h>
-#include <burnish/render/environment_light.h>
+#include <burnish/render/light/environment_light.h>
 #include <burnish/render/scene.h>
 
 namespace burnish {

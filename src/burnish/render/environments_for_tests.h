@@ -1,6 +1,6 @@
 #pragma once
 
-#include <burnish/render/environment_light.h>
+#include <burnish/render/light/environment_light.h>
 
 namespace burnish {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include <burnish/error.h>
-#include <burnish/render/gl_context.h>
+#include <burnish/render/gl/gl_context.h>
 
 namespace burnish {
 

@@ -6,7 +6,7 @@
 
 #include <burnish/image/image.h>
 #include <burnish/reflectance/analytic/pair_geometry.h>
-#include <burnish/render/mesh.h>
+#include <burnish/render/mesh/mesh.h>
 
 namespace burnish {
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <burnish/math/angles.h>
+#include <burnish/render/mesh/shapes.h>
 #include <burnish/render/scene.h>
-#include <burnish/render/shapes.h>
 
 namespace burnish {
 

@@ -2,7 +2,7 @@
 
 #include <burnish/metrics/sphere_images.h>
 #include <burnish/render/cpu_renderer.h>
-#include <burnish/render/gl_renderer.h>
+#include <burnish/render/gl/gl_renderer.h>
 #include <burnish/render/picture.h>
 #include <burnish/render/vertex_figure.h>
 

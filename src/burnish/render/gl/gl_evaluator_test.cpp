@@ -1,0 +1,67 @@
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include <burnish/error.h>
+#include <burnish/factors/models_for_tests.h>
+#include <burnish/render/gl/gl_evaluator.h>
+#include <burnish/render/gl_for_tests.h>
+
+namespace burnish {
+namespace {
+
+class GlEvaluatorTest : public testing::TestWithParam<ModelCase> {
+ protected:
+  static void SetUpTestSuite() { context_ = std::make_unique<TestContext>(); }
+  static void TearDownTestSuite() { context_.reset(); }
+  void SetUp() override {
+    if (!context_->context) GTEST_SKIP() << context_->reason;
+  }
+
+  // The largest relative error over the pairs, divided by how much projections cancel.
+  static double error(ShaderFilter filter, TableFormat precision) {
+    const FactoredBrdf brdf = smooth_model(GetParam());
+    const auto pairs = corner_and_random_pairs(5000);
+    std::vector<GlVectors> directions;
+    for (const auto& [a, b] : pairs) {
+      const auto single = [](double x) { return static_cast<float>(x); };
+      directions.push_back(
+          {{single(a.x), single(a.y), single(a.z)}, {single(b.x), single(b.y), single(b.z)}});
+    }
+    const std::vector<float> found = GlEvaluator(brdf, filter, precision).eval(directions);
+    double worst = 0;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const auto& [wi, wo] = pairs[i];
+      double f[3];
+      brdf.eval(wi, wo, std::span(f).first(static_cast<std::size_t>(brdf.channels())));
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double truth = f[brdf.channels() == 1 ? 0 : c];
+        if (truth > 0)
+          worst = std::max(worst, std::abs(found[3 * i + c] / truth - 1) / cancellation(brdf, wi, wo));
+        else
+          EXPECT_EQ(found[3 * i + c], 0) << "below the horizon";
+      }
+    }
+    return worst;
+  }
+
+ private:
+  static inline std::unique_ptr<TestContext> context_;
+};
+
+TEST_P(GlEvaluatorTest, StaysWithinTheErrorOfEveryFilterAndPrecision) {
+  EXPECT_LE(error(ShaderFilter::exact, TableFormat::single), 1e-5);
+  EXPECT_LE(error(ShaderFilter::hardware, TableFormat::single), 5e-3);
+  EXPECT_LE(error(ShaderFilter::exact, TableFormat::half), 2e-3);
+  EXPECT_LE(error(ShaderFilter::hardware, TableFormat::half), 5e-3 + 2e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, GlEvaluatorTest, testing::ValuesIn(kModelCases),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+TEST(GlEvaluator, RefusesTexturesThatAreNoFloats) {
+  EXPECT_THROW(GlEvaluator(smooth_model(kModelCases[0]), ShaderFilter::exact, TableFormat::unorm8), Error);
+}
+
+}  // namespace
+}  // namespace burnish

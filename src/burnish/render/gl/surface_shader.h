@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <burnish/factors/factored_brdf.h>
+#include <burnish/render/gl/gl_objects.h>
+#include <burnish/shaders/shader.h>
+
+namespace burnish {
+
+/// A reflectance in GLSL 4.50. Its variables must not start with "burnish_".
+struct SurfaceShader {
+  std::string declarations;  ///< of functions and samplers
+  std::string view;          ///< statements, once a pixel: have vec3 wo, above the horizon
+  std::string light;         ///< statements, for every light above the horizon: have vec3 wi too
+  std::string value;         ///< expression of f_r, vec3, in 1/sr
+  std::vector<GlTexture> textures;
+  /// Expression of the radiance that is reflected of light from all around, vec3, or empty: has the vec3
+  /// burnish_n, burnish_t, burnish_s, burnish_v, unit vectors of the world: normal, tangent, s at right
+  /// angles, to the viewer.
+  std::string environment{};
+};
+
+/// Of a factored BRDF; textures of `precision`. Throws Error as split_shader.
+SurfaceShader surface_shader(const FactoredBrdf& brdf, ShaderFilter filter, TableFormat precision);
+
+/// GlRenderer's programs, without #version lines. Vertices have place, normal, tangent, side and a value at
+/// locations 0 to 4; `burnish_projection` takes places to the screen.
+extern const char* const kSceneVertexShader;
+/// Shows the values of vertices.
+extern const char* const kInterpolatedFragmentShader;
+/// Light of a buffer of points (binding 0, `burnish_light_count` of them) and, where `burnish_first` is set,
+/// from all around, that the surface reflects towards `burnish_eye`.
+std::string scene_fragment_shader(const SurfaceShader& surface);
+
+}  // namespace burnish

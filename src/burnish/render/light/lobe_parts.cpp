@@ -1,0 +1,46 @@
+#include <algorithm>
+
+#include <burnish/render/light/lobe_parts.h>
+
+namespace burnish {
+namespace {
+
+bool of_view_alone(const Table& table, const FactorUse& use) noexcept {
+  const auto alone = [](const Projection& p) {
+    return p.kind == Projection::Kind::affine && p.wi == 0 && p.mirror == 0;
+  };
+  return alone(use.projection) && (table.layout.shape != TableShape::grid || alone(use.projection_y));
+}
+
+// The lobe with some of its factors, and the tables they need.
+FactoredBrdf part_of(const FactoredBrdf& brdf, std::vector<double> scale,
+                     const std::vector<FactorUse>& uses) {
+  std::vector<Table> tables;
+  Lobe lobe{.scale = std::move(scale), .factors = uses};
+  for (FactorUse& use : lobe.factors) {
+    const Table& table = brdf.tables()[static_cast<std::size_t>(use.table)];
+    const auto known = std::ranges::find(tables, table.name, &Table::name);
+    use.table = static_cast<int>(known - tables.begin());
+    if (known == tables.end()) tables.push_back(table);
+  }
+  return {brdf.channels(), std::move(tables), {std::move(lobe)}};
+}
+
+}  // namespace
+
+LobeParts parts_of(const FactoredBrdf& brdf, const Lobe& lobe) {
+  std::vector<FactorUse> outside, inside;
+  for (const FactorUse& use : lobe.factors)
+    (of_view_alone(brdf.tables()[static_cast<std::size_t>(use.table)], use) ? outside : inside)
+        .push_back(use);
+  return {part_of(brdf, lobe.scale, outside), part_of(brdf, std::vector(lobe.scale.size(), 1.0), inside)};
+}
+
+Channels eval_channels(const FactoredBrdf& brdf, Vec3 wi, Vec3 wo) noexcept {
+  Channels f{};
+  brdf.eval(wi, wo, std::span(f).first(static_cast<std::size_t>(brdf.channels())));
+  if (brdf.channels() == 1) f[1] = f[2] = f[0];
+  return f;
+}
+
+}  // namespace burnish

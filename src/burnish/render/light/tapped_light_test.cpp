@@ -1,0 +1,138 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <burnish/error.h>
+#include <burnish/factors/models_for_tests.h>
+#include <burnish/metrics/sphere_images.h>
+#include <burnish/reflectance/sampling_test_util.h>
+#include <burnish/render/environments_for_tests.h>
+#include <burnish/render/gl/gl_evaluator.h>
+#include <burnish/render/gl_for_tests.h>
+#include <burnish/render/light/tapped_light.h>
+
+namespace burnish {
+namespace {
+
+constexpr BlurOptions kSmall{.side = 32, .levels = 8, .narrowest = 0.04, .step = 1.5};
+
+// A highlight three times as long across the tangent as along it.
+FactoredBrdf brushed() {
+  const ModelCase form{"m", "p(wo) q(h) p(wi)", {"p=8", "q=64x64,rational:0.2"}, 3};
+  Pcg32 random(5);
+  return model_of(form, TableFormat::half, random,
+                  [](std::size_t table, const TableLayout& l, int x, int y, int c) {
+                    if (table == 0) return -static_cast<double>(x) / l.width;
+                    const Vec3 h = node_direction(l, x, y);
+                    const double u = h.x / std::max(h.z, 0.1) / 0.15, v = h.y / std::max(h.z, 0.1) / 0.45;
+                    return -2 * std::log1p(u * u + v * v) - 0.1 * c;
+                  });
+}
+
+TEST(BlurredEnvironment, KeepsAnEvenSkyAndTheLightOfADisc) {
+  const BlurredEnvironment even = blur(kEven, kSmall);
+  const Environment lamp{"lamp", 0, 0, 0, {{{0, 1, 0}, 0.1, 5}}};
+  const BlurredEnvironment one = blur(lamp, kSmall);
+  const double light = 5 * kTwoPi * (1 - std::cos(0.1));
+  for (const double width : {0.04, 0.2, 0.5}) {
+    for (const Vec3 w : {Vec3{0, 1, 0}, Vec3{0, -1, 0}, Vec3{1, 0, 0}, normalize({1, -2, 3})})
+      EXPECT_NEAR(even.radiance(w, width).g, 2, 1e-3);
+    double sum = 0;  // over the sphere it is still all there
+    const SkyImage grid(Image(256, 128, 3));
+    for (int y = 0; y < 128; ++y)
+      for (int x = 0; x < 256; ++x) sum += grid.solid_angle(y) * one.radiance(grid.direction(x, y), width).r;
+    EXPECT_NEAR(sum, light, (width < 0.1 ? 0.1 : 0.05) * light) << width;  // narrower than 1.3 texels
+  }
+  EXPECT_THROW(blur(kEven, {.side = 7}), Error);
+  EXPECT_THROW(blur(kEven, {.levels = 1}), Error);
+  EXPECT_THROW(blur(kEven, {.step = 1}), Error);
+}
+
+TEST(TappedLight, AnEvenSkyOnAMattSurfaceGivesPiTimesItsValue) {
+  const FactoredBrdf matt(1, {}, {Lobe{.scale = {0.25}, .factors = {}}});
+  const TappedBrdf tapped = tap(matt, 48);
+  const BlurredEnvironment even = blur(kEven, kSmall);
+  for (const Vec3 v : {Vec3{0, 0, 1}, normalize({0.5, 0.1, 0.2}), normalize({1, 1, 0.01})})
+    EXPECT_NEAR(tapped.radiance(even, sphere_frame({0, 0, 1}), v).g, kPi * 0.25 * 2, 0.03);
+  EXPECT_EQ(tapped.radiance(even, sphere_frame({0, 0, 1}), {0, 0, -1}), Rgb());
+}
+
+TEST(TappedLight, IsCloseToMonteCarloOnBrushedMetalAndCloserWithMoreTaps) {
+  const FactoredBrdf brdf = brushed();
+  ASSERT_FALSE(brdf.isotropic());
+  constexpr int kSize = 14;
+  const Image truth =
+      moments_in_environment(brdf, CosineSampler{}, {}, kLamps, {.size = kSize, .samples = 900}).mean;
+  const LitSphere sphere{truth, {}};
+  const double exposure = sphere_exposure({&sphere, 1});
+  const BlurredEnvironment blurred = blur(kLamps);
+  double last = 0;
+  for (const int taps : {12, 96}) {
+    const TappedBrdf tapped = tap(brdf, taps);
+    Image found(kSize, kSize, 3);
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize; ++x)
+        if (const auto n = sphere_normal(kSize, x + 0.5, y + 0.5)) {
+          const Rgb value = tapped.radiance(blurred, sphere_frame(*n), {0, 0, 1});
+          const auto pixel = found.at(x, y);
+          pixel[0] = static_cast<float>(value.r);
+          pixel[1] = static_cast<float>(value.g);
+          pixel[2] = static_cast<float>(value.b);
+        }
+    const double decibels = psnr(mean_squared_error(tone_map(found, exposure), tone_map(truth, exposure)));
+    EXPECT_GT(decibels, last + 3) << taps;
+    last = decibels;
+  }
+  EXPECT_GE(last, 36);
+}
+
+TEST(TappedLight, TheShaderAgreesWithTheDefinition) {
+  const TestContext gl;
+  if (!gl.context) GTEST_SKIP() << gl.reason;
+  const TappedBrdf tapped = tap(brushed(), 24);
+  const BlurredEnvironment blurred = blur(kLamps, kSmall);
+  const TappedShader shader = generate_shader(tapped, blurred.options, ShaderLanguage::glsl, "m");
+  GlFunction function(shader.text +
+                          "vec3 on_sphere(vec3 n, vec3 v) {\n"
+                          "  vec3 t = normalize(cross(vec3(0, 1, 0), n));\n"
+                          "  return burnish_m_light(n, t, cross(n, t), v);\n}\n",
+                      "on_sphere");
+  function.set_texture({.name = shader.environment,
+                        .width = 2 * blurred.options.side,
+                        .height = blurred.options.side,
+                        .depth = blurred.options.levels,
+                        .channels = 3,
+                        .filtered = true,
+                        .values = blurred.maps});
+  set_textures(function, shader.lobes[0].outside, TableFormat::single, true);
+  set_textures(function, shader.lobes[0].inside, TableFormat::single, true);
+  Pcg32 random(3);
+  std::vector<GlVectors> calls;
+  std::vector<Rgb> expected;
+  const auto direction = [&] {
+    const double y = 1.9 * random.uniform() - 0.95, phi = kTwoPi * random.uniform(), s = std::sqrt(1 - y * y);
+    return Vec3{s * std::cos(phi), y, s * std::sin(phi)};
+  };
+  for (int i = 0; i < 500; ++i) {
+    const Vec3 n = direction(), v = direction();
+    const auto single = [](double x) { return static_cast<float>(x); };
+    calls.push_back({{single(n.x), single(n.y), single(n.z)}, {single(v.x), single(v.y), single(v.z)}});
+    expected.push_back(tapped.radiance(blurred, sphere_frame(n), v));
+  }
+  const std::vector<float> found = function.call(calls);
+  for (std::size_t i = 0; i < calls.size(); ++i) {
+    EXPECT_NEAR(found[3 * i], std::max(expected[i].r, 0.0), 1e-3 * expected[i].r + 1e-3) << i;
+    EXPECT_NEAR(found[3 * i + 2], std::max(expected[i].b, 0.0), 1e-3 * expected[i].b + 1e-3) << i;
+  }
+  EXPECT_THROW(generate_shader(tapped, blurred.options, ShaderLanguage::wgsl, "m"), Error);
+}
+
+TEST(TappedLight, RefusesWhatItCannotTabulate) {
+  const FactoredBrdf brdf = smooth_model(kModelCases[1]);
+  EXPECT_THROW(tap(brdf, 0), Error);
+  EXPECT_THROW(tap(brdf, 257), Error);
+  EXPECT_EQ(tap(brdf, 4).fetches(), 1 + 4 * 3);
+}
+
+}  // namespace
+}  // namespace burnish

@@ -1,0 +1,97 @@
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <burnish/error.h>
+#include <burnish/render/light/tapped_light.h>
+#include <burnish/shaders/dialect.h>
+
+namespace burnish {
+
+namespace {
+
+// {0} the sampler, {1} side, {2} levels.
+constexpr const char* kBlurred = R"(
+uniform highp sampler3D {0};
+vec3 {0}_at(vec3 w, float level) {{
+  float first = 0.5;
+  if (w.y < 0.0) {{ w.y = -w.y; first += {1}.0; }}
+  vec2 at = (w.xz / (1.0 + w.y) + 1.0) * (0.5 * float({1} - 1));
+  vec3 place = vec3((first + at.x) / float(2 * {1}), (0.5 + at.y) / float({1}),
+                    (0.5 + clamp(level, 0.0, float({2} - 1))) / float({2}));
+  return textureLod({0}, place, 0.0).rgb;
+}}
+)";
+
+// {0} the lobe, {1} the environment's sampler, {2} the number of taps, {3} taps, {4} levels, {5} what turns
+// half vectors into directions, {6} the inner factors.
+constexpr const char* kLobe = R"(
+const vec4 {0}_taps[{2}] = vec4[]({3});
+const float {0}_levels[{2}] = float[]({4});
+vec3 {0}_gathered(vec3 wo, vec3 n, vec3 t, vec3 s) {{
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < {2}; ++i) {{
+    vec3 wi = {0}_taps[i].xyz;
+    float area = {0}_taps[i].w, level = {0}_levels[i];
+{5}    if (wi.z <= 0.0) continue;
+    sum += area * wi.z * {6}(wi, wo) * {1}_at(wi.x * t + wi.y * s + wi.z * n, level);
+  }}
+  return sum;
+}}
+)";
+
+// {0}: levels an octave, halved
+constexpr const char* kHalf = R"(    float along = dot(wo, wi);
+    if (along <= 0.0) continue;
+    wi = 2.0 * along * wi - wo;
+    area *= 4.0 * along;
+    level += {0:.9e} * log2(along);
+)";
+
+constexpr const char* kLight = R"(
+// Radiance towards v at a point with normal n, tangent t and s at right angles to both.
+vec3 burnish_{0}_light(vec3 n, vec3 t, vec3 s, vec3 v) {{
+  vec3 wo = vec3(dot(t, v), dot(s, v), dot(n, v));
+  if (wo.z <= 0.0) return vec3(0.0);
+  return max({1}, vec3(0.0));
+}}
+)";
+
+}  // namespace
+
+TappedShader generate_shader(const TappedBrdf& brdf, const BlurOptions& blur, ShaderLanguage language,
+                             const std::string& name) {
+  if (language != ShaderLanguage::glsl && language != ShaderLanguage::glsl_es)
+    throw Error(fmt::format("image-based light: expected glsl or glsl_es, found {}", to_string(language)));
+  TappedShader shader{.environment = fmt::format("burnish_{}_environment", name)};
+  shader.text = std::string(dialect_of(language).header) +
+                fmt::format(fmt::runtime(kBlurred), shader.environment, blur.side, blur.levels);
+  const double octave = 1 / std::log2(blur.step);  // in levels
+  std::string sum;
+  for (std::size_t j = 0; j < brdf.lobes.size(); ++j) {
+    const TappedLobe& lobe = brdf.lobes[j];
+    const std::string lobe_name = fmt::format("{}_lobe{}", name, j), called = "burnish_" + lobe_name;
+    const auto part = [&](const FactoredBrdf& factors, const char* which) {
+      const Shader text = generate_shader(factors, {language, ShaderFilter::hardware, lobe_name + which});
+      shader.text += text.text;
+      return text.textures;
+    };
+    shader.lobes.push_back({part(lobe.outside, "_outside"), part(lobe.inside, "_inside")});
+    std::string taps, levels;
+    for (const LightTap& tap : lobe.taps) {
+      const Vec3 w = tap.direction;
+      const double width = tap.width * (lobe.of_half ? 2 : 1);
+      const char* comma = taps.empty() ? "" : ", ";
+      taps += fmt::format("{}vec4({:.8e}, {:.8e}, {:.8e}, {:.8e})", comma, w.x, w.y, w.z, tap.area);
+      levels += fmt::format("{}{:.6e}", comma, octave * std::log2(width / blur.narrowest));
+    }
+    shader.text +=
+        fmt::format(fmt::runtime(kLobe), called, shader.environment, lobe.taps.size(), taps, levels,
+                    lobe.of_half ? fmt::format(fmt::runtime(kHalf), 0.5 * octave) : "", called + "_inside");
+    sum += fmt::format("{0}{1}_outside(wo, wo) * {1}_gathered(wo, n, t, s)", j ? " + " : "", called);
+  }
+  shader.text += fmt::format(fmt::runtime(kLight), name, sum);
+  return shader;
+}
+
+}  // namespace burnish
