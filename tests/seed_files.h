@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include <burnish/factors/baseline_file.h>
+#include <burnish/baselines/baseline_file.h>
+#include <burnish/baselines/neural_brdf.h>
 #include <burnish/factors/model_file.h>
 #include <burnish/io/rgl.h>
 #include <burnish/reflectance/analytic.h>
-#include <burnish/reflectance/neural_brdf.h>
 #include <burnish/reflectance/rgl_builder.h>
 
 namespace burnish::seeds {

@@ -1,9 +1,9 @@
 #pragma once
 
+#include <burnish/baselines/neural_brdf.h>
 #include <burnish/reflectance/analytic/cosine_lobes.h>
 #include <burnish/reflectance/analytic/microfacet.h>
 #include <burnish/reflectance/half_diff_table.h>
-#include <burnish/reflectance/neural_brdf.h>
 #include <burnish/render/gl/gl_renderer.h>
 
 namespace burnish {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <burnish/factors/evaluation_cost.h>
+#include <burnish/baselines/evaluation_cost.h>
 #include <burnish/image/image.h>
 #include <burnish/io/source.h>
 #include <burnish/metrics/error_figures.h>

@@ -1,4 +1,4 @@
-#include <burnish/factors/baseline_file.h>
+#include <burnish/baselines/baseline_file.h>
 
 #include "fuzz_reader.h"
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include <burnish/baselines/neural_brdf.h>
 #include <burnish/math/angles.h>
 #include <burnish/math/highway_targets.h>
 #include <burnish/parameterization/half_diff.h>
-#include <burnish/reflectance/neural_brdf.h>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "burnish/eval/evaluation_peers_bench.cpp"

@@ -7,13 +7,13 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include <burnish/baselines/evaluation_cost.h>
+#include <burnish/baselines/neural_brdf.h>
 #include <burnish/eval/factored_eval.h>
-#include <burnish/factors/evaluation_cost.h>
 #include <burnish/factors/model_spec.h>
 #include <burnish/math/angles.h>
 #include <burnish/math/random.h>
 #include <burnish/reflectance/goniometer.h>
-#include <burnish/reflectance/neural_brdf.h>
 #include <burnish/reflectance/rgl_builder.h>
 
 #include "evaluation_peers_bench.h"

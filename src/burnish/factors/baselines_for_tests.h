@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include <burnish/factors/dgf_brdf.h>
-#include <burnish/factors/separable_brdf.h>
+#include <burnish/baselines/dgf_brdf.h>
+#include <burnish/baselines/separable_brdf.h>
 #include <burnish/math/random.h>
 
 namespace burnish::testing {

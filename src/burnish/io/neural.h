@@ -3,9 +3,9 @@
 #include <string>
 #include <string_view>
 
+#include <burnish/baselines/neural_brdf.h>
 #include <burnish/file.h>
 #include <burnish/reflectance/findings.h>
-#include <burnish/reflectance/neural_brdf.h>
 
 namespace burnish {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <burnish/factors/baseline_file.h>
+#include <burnish/baselines/baseline_file.h>
 #include <burnish/io/astm.h>
 #include <burnish/io/cornell.h>
 #include <burnish/io/csv.h>

@@ -5,10 +5,11 @@
 #include <string>
 #include <variant>
 
-#include <burnish/factors/dgf_brdf.h>
+#include <burnish/baselines/dgf_brdf.h>
+#include <burnish/baselines/neural_brdf.h>
+#include <burnish/baselines/separable_brdf.h>
 #include <burnish/factors/factored_brdf.h>
 #include <burnish/factors/model_file.h>
-#include <burnish/factors/separable_brdf.h>
 #include <burnish/file.h>
 #include <burnish/io/open_options.h>
 #include <burnish/reflectance/analytic.h>
@@ -16,7 +17,6 @@
 #include <burnish/reflectance/brdf.h>
 #include <burnish/reflectance/findings.h>
 #include <burnish/reflectance/half_diff_table.h>
-#include <burnish/reflectance/neural_brdf.h>
 #include <burnish/reflectance/patch_table.h>
 #include <burnish/reflectance/rgl_table.h>
 #include <burnish/reflectance/scattered_brdf.h>

@@ -11,8 +11,8 @@
 
 #include <fmt/format.h>
 
+#include <burnish/baselines/node_table.h>
 #include <burnish/factors/models_for_tests.h>
-#include <burnish/factors/node_table.h>
 #include <burnish/shaders/shader.h>
 
 namespace burnish {

@@ -11,8 +11,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <burnish/baselines/separable_brdf.h>
 #include <burnish/error.h>
-#include <burnish/factors/separable_brdf.h>
 #include <burnish/fitting/baselines/analytic_fit.h>
 #include <burnish/fitting/baselines/gathered_samples.h>
 #include <burnish/math/parallel.h>

@@ -8,8 +8,8 @@
 #include <string>
 #include <string_view>
 
-#include <burnish/factors/baseline_file.h>
-#include <burnish/factors/evaluation_cost.h>
+#include <burnish/baselines/baseline_file.h>
+#include <burnish/baselines/evaluation_cost.h>
 #include <burnish/reflectance/sample_source.h>
 
 namespace burnish {

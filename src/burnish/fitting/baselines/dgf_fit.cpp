@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <burnish/baselines/separable_brdf.h>
 #include <burnish/error.h>
-#include <burnish/factors/separable_brdf.h>
 #include <burnish/fitting/baselines/dgf_fit.h>
 #include <burnish/fitting/baselines/gathered_samples.h>
 #include <burnish/math/angles.h>

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <functional>
 
-#include <burnish/factors/dgf_brdf.h>
+#include <burnish/baselines/dgf_brdf.h>
 #include <burnish/reflectance/sample_source.h>
 
 namespace burnish {

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <burnish/baselines/separable_brdf.h>
 #include <burnish/error.h>
-#include <burnish/factors/separable_brdf.h>
 #include <burnish/fitting/baselines/pair_grid.h>
 #include <burnish/math/angles.h>
 #include <burnish/math/parallel.h>

@@ -4,7 +4,7 @@
 #include <functional>
 #include <string_view>
 
-#include <burnish/factors/separable_brdf.h>
+#include <burnish/baselines/separable_brdf.h>
 #include <burnish/fitting/baselines/pair_grid.h>
 #include <burnish/metrics/error_figures.h>
 

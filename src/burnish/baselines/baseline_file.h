@@ -5,8 +5,8 @@
 #include <string_view>
 #include <variant>
 
-#include <burnish/factors/dgf_brdf.h>
-#include <burnish/factors/separable_brdf.h>
+#include <burnish/baselines/dgf_brdf.h>
+#include <burnish/baselines/separable_brdf.h>
 #include <burnish/file.h>
 #include <burnish/reflectance/analytic.h>
 

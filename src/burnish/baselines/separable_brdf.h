@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include <burnish/factors/node_table.h>
+#include <burnish/baselines/node_table.h>
 #include <burnish/reflectance/brdf.h>
 
 namespace burnish {

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <burnish/baselines/pair_coordinates.h>
 #include <burnish/math/angles.h>
 #include <burnish/math/random.h>
-#include <burnish/parameterization/pair_coordinates.h>
 
 namespace burnish {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <burnish/parameterization/pair_coordinates.h>
+#include <burnish/baselines/pair_coordinates.h>
 
 namespace burnish {
 

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <burnish/baselines/baseline_file.h>
 #include <burnish/error.h>
-#include <burnish/factors/baseline_file.h>
 #include <burnish/factors/baselines_for_tests.h>
 #include <burnish/math/angles.h>
 #include <burnish/reflectance/goniometer.h>

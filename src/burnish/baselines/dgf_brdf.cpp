@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <burnish/baselines/dgf_brdf.h>
 #include <burnish/error.h>
-#include <burnish/factors/dgf_brdf.h>
 #include <burnish/reflectance/goniometer.h>
 
 namespace burnish {

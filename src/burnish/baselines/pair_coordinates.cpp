@@ -3,8 +3,8 @@
 #include <cassert>
 #include <cmath>
 
+#include <burnish/baselines/pair_coordinates.h>
 #include <burnish/math/angles.h>
-#include <burnish/parameterization/pair_coordinates.h>
 
 namespace burnish {
 

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <burnish/baselines/node_table.h>
 #include <burnish/error.h>
-#include <burnish/factors/node_table.h>
 #include <burnish/math/random.h>
 #include <burnish/reflectance/goniometer.h>
 

@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <burnish/baselines/neural_brdf.h>
 #include <burnish/error.h>
 #include <burnish/parameterization/projection.h>
-#include <burnish/reflectance/neural_brdf.h>
 
 namespace burnish {
 

@@ -4,8 +4,8 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <burnish/baselines/baseline_file.h>
 #include <burnish/error.h>
-#include <burnish/factors/baseline_file.h>
 
 namespace burnish {
 

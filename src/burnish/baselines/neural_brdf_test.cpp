@@ -4,12 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <burnish/baselines/neural_brdf.h>
 #include <burnish/error.h>
 #include <burnish/math/angles.h>
 #include <burnish/math/random.h>
 #include <burnish/parameterization/half_diff.h>
 #include <burnish/reflectance/goniometer.h>
-#include <burnish/reflectance/neural_brdf.h>
 
 namespace burnish {
 namespace {

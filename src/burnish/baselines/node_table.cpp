@@ -5,8 +5,8 @@
 #include <Imath/half.h>
 #include <fmt/format.h>
 
+#include <burnish/baselines/node_table.h>
 #include <burnish/error.h>
-#include <burnish/factors/node_table.h>
 #include <burnish/factors/table.h>
 
 namespace burnish {

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <burnish/baselines/separable_brdf.h>
 #include <burnish/error.h>
-#include <burnish/factors/separable_brdf.h>
 #include <burnish/reflectance/goniometer.h>
 
 namespace burnish {

@@ -3,10 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <burnish/baselines/baseline_file.h>
+#include <burnish/baselines/evaluation_cost.h>
 #include <burnish/error.h>
-#include <burnish/factors/baseline_file.h>
 #include <burnish/factors/baselines_for_tests.h>
-#include <burnish/factors/evaluation_cost.h>
 
 namespace burnish {
 namespace {

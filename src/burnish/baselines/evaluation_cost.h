@@ -3,9 +3,9 @@
 #include <cstddef>
 #include <optional>
 
-#include <burnish/factors/baseline_file.h>
+#include <burnish/baselines/baseline_file.h>
+#include <burnish/baselines/neural_brdf.h>
 #include <burnish/factors/factored_brdf.h>
-#include <burnish/reflectance/neural_brdf.h>
 
 namespace burnish {
 

@@ -1,4 +1,4 @@
-#include <burnish/factors/evaluation_cost.h>
+#include <burnish/baselines/evaluation_cost.h>
 
 namespace burnish {
 
