@@ -13,11 +13,11 @@
 #include <sys/wait.h>
 
 #include <burnish/factors/model_file.h>
-#include <burnish/factors/models_for_tests.h>
 #include <burnish/image/png.h>
 #include <burnish/io/rgl.h>
 #include <burnish/render/light/image_based_light.h>
-#include <burnish/tools_for_tests.h>
+#include <burnish/testing/models.h>
+#include <burnish/testing/tools.h>
 
 namespace burnish {
 namespace {

@@ -11,11 +11,11 @@
 
 #include <burnish/error.h>
 #include <burnish/factors/model_file.h>
-#include <burnish/factors/models_for_tests.h>
 #include <burnish/image/png.h>
 #include <burnish/render/gl/gl_context.h>
 #include <burnish/render/picture.h>
-#include <burnish/tools_for_tests.h>
+#include <burnish/testing/models.h>
+#include <burnish/testing/tools.h>
 
 namespace burnish {
 namespace {

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <burnish/shaders/webgl_for_tests.h>
-#include <burnish/tools_for_tests.h>
+#include <burnish/testing/tools.h>
+#include <burnish/testing/webgl.h>
 
 namespace burnish {
 namespace {

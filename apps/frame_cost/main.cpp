@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include <burnish/error.h>
-#include <burnish/factors/models_for_tests.h>
 #include <burnish/math/angles.h>
 #include <burnish/metrics/sphere_images.h>
 #include <burnish/reflectance/half_diff_table.h>
@@ -19,6 +18,7 @@
 #include <burnish/render/gl/gl_context.h>
 #include <burnish/render/mesh/shapes.h>
 #include <burnish/render/picture.h>
+#include <burnish/testing/models.h>
 
 #include "peer_shaders.h"
 

@@ -12,11 +12,11 @@
 #include <fmt/ranges.h>
 
 #include <burnish/error.h>
-#include <burnish/factors/models_for_tests.h>
 #include <burnish/render/gl/gl_context.h>
 #include <burnish/render/gl/gl_evaluator.h>
-#include <burnish/shaders/webgl_for_tests.h>
-#include <burnish/tools_for_tests.h>
+#include <burnish/testing/models.h>
+#include <burnish/testing/tools.h>
+#include <burnish/testing/webgl.h>
 
 #include "environment.h"
 

@@ -8,9 +8,9 @@
 
 #include <burnish/baselines/baseline_file.h>
 #include <burnish/error.h>
-#include <burnish/factors/baselines_for_tests.h>
 #include <burnish/math/angles.h>
 #include <burnish/reflectance/goniometer.h>
+#include <burnish/testing/baselines.h>
 
 namespace burnish {
 namespace {

@@ -6,7 +6,7 @@
 #include <burnish/baselines/baseline_file.h>
 #include <burnish/baselines/evaluation_cost.h>
 #include <burnish/error.h>
-#include <burnish/factors/baselines_for_tests.h>
+#include <burnish/testing/baselines.h>
 
 namespace burnish {
 namespace {

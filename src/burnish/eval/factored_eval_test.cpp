@@ -9,10 +9,10 @@
 
 #include <burnish/eval/factored_eval.h>
 #include <burnish/eval/power_span.h>
-#include <burnish/factors/models_for_tests.h>
 #include <burnish/math/angles.h>
 #include <burnish/math/random.h>
 #include <burnish/reflectance/goniometer.h>
+#include <burnish/testing/models.h>
 
 namespace burnish {
 namespace {

@@ -8,10 +8,10 @@
 #include <burnish/eval/tabulated_sampler.h>
 #include <burnish/factors/model_spec.h>
 #include <burnish/math/random.h>
-#include <burnish/metrics/brdfs_for_tests.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/half_vector_quadrature.h>
-#include <burnish/reflectance/sampling_test_util.h>
+#include <burnish/testing/brdfs.h>
+#include <burnish/testing/sampling.h>
 
 namespace burnish {
 namespace {

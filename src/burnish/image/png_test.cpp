@@ -6,7 +6,7 @@
 #include <burnish/file.h>
 #include <burnish/image/png.h>
 #include <burnish/math/random.h>
-#include <burnish/tools_for_tests.h>
+#include <burnish/testing/tools.h>
 
 namespace burnish {
 namespace {

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <burnish/io/astm.h>
-#include <burnish/io/test_files.h>
 #include <burnish/math/angles.h>
+#include <burnish/testing/files.h>
 
 namespace burnish {
 namespace {

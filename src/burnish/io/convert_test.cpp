@@ -7,9 +7,9 @@
 
 #include <burnish/io/convert.h>
 #include <burnish/io/merl.h>
-#include <burnish/io/test_files.h>
 #include <burnish/math/angles.h>
 #include <burnish/reflectance/azimuth_mean.h>
+#include <burnish/testing/files.h>
 
 namespace burnish {
 namespace {

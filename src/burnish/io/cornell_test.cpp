@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <burnish/io/cornell.h>
-#include <burnish/io/test_files.h>
 #include <burnish/math/angles.h>
 #include <burnish/reflectance/scattered_brdf.h>
+#include <burnish/testing/files.h>
 
 namespace burnish {
 namespace {

@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <burnish/io/csv.h>
-#include <burnish/io/test_files.h>
 #include <burnish/math/angles.h>
 #include <burnish/reflectance/goniometer.h>
+#include <burnish/testing/files.h>
 
 namespace burnish {
 namespace {

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <burnish/io/klems.h>
-#include <burnish/io/test_files.h>
 #include <burnish/math/angles.h>
+#include <burnish/testing/files.h>
 
 namespace burnish {
 namespace {

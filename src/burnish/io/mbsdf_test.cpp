@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <burnish/io/mbsdf.h>
-#include <burnish/io/test_files.h>
 #include <burnish/math/angles.h>
-#include <burnish/metrics/brdfs_for_tests.h>
+#include <burnish/testing/brdfs.h>
+#include <burnish/testing/files.h>
 
 namespace burnish {
 namespace {

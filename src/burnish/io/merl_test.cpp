@@ -8,7 +8,7 @@
 #include <burnish/io/merl.h>
 #include <burnish/math/angles.h>
 #include <burnish/reflectance/goniometer.h>
-#include <burnish/tools_for_tests.h>
+#include <burnish/testing/tools.h>
 
 namespace burnish {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <burnish/io/neural.h>
 #include <burnish/io/source.h>
-#include <burnish/io/test_files.h>
 #include <burnish/metrics/error_figures.h>
+#include <burnish/testing/files.h>
 
 namespace burnish {
 namespace {

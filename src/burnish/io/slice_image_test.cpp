@@ -9,7 +9,7 @@
 #include <burnish/error.h>
 #include <burnish/file.h>
 #include <burnish/io/slice_image.h>
-#include <burnish/tools_for_tests.h>
+#include <burnish/testing/tools.h>
 
 namespace burnish {
 namespace {

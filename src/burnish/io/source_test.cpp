@@ -6,9 +6,9 @@
 
 #include <burnish/factors/model_file.h>
 #include <burnish/io/source.h>
-#include <burnish/io/test_files.h>
 #include <burnish/math/angles.h>
 #include <burnish/metrics/albedo.h>
+#include <burnish/testing/files.h>
 
 namespace burnish {
 namespace {

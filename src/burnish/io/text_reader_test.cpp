@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <burnish/io/test_files.h>
 #include <burnish/io/text_reader.h>
+#include <burnish/testing/files.h>
 
 namespace burnish {
 namespace {

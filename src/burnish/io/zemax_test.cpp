@@ -5,10 +5,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <burnish/io/test_files.h>
 #include <burnish/io/zemax.h>
 #include <burnish/math/angles.h>
-#include <burnish/metrics/brdfs_for_tests.h>
+#include <burnish/testing/brdfs.h>
+#include <burnish/testing/files.h>
 
 namespace burnish {
 namespace {

@@ -6,8 +6,8 @@
 #include <burnish/math/angles.h>
 #include <burnish/metrics/albedo.h>
 #include <burnish/reflectance/analytic.h>
-#include <burnish/reflectance/analytic/albedo_test_util.h>
 #include <burnish/reflectance/analytic/microfacet.h>
+#include <burnish/testing/albedo.h>
 
 namespace burnish {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <burnish/error.h>
 #include <burnish/math/parallel.h>
-#include <burnish/metrics/brdfs_for_tests.h>
 #include <burnish/metrics/error_figures.h>
+#include <burnish/testing/brdfs.h>
 
 namespace burnish {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <burnish/error.h>
 #include <burnish/math/random.h>
-#include <burnish/metrics/brdfs_for_tests.h>
 #include <burnish/metrics/sphere_images.h>
+#include <burnish/testing/brdfs.h>
 
 namespace burnish {
 namespace {

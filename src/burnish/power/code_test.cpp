@@ -12,7 +12,7 @@
 
 #include <burnish/error.h>
 #include <burnish/power/code.h>
-#include <burnish/tools_for_tests.h>
+#include <burnish/testing/tools.h>
 
 namespace burnish {
 namespace {

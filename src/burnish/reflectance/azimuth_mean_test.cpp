@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <burnish/metrics/brdfs_for_tests.h>
 #include <burnish/reflectance/azimuth_mean.h>
 #include <burnish/reflectance/goniometer.h>
+#include <burnish/testing/brdfs.h>
 
 namespace burnish {
 namespace {

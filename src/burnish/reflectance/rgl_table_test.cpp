@@ -8,7 +8,7 @@
 #include <burnish/math/angles.h>
 #include <burnish/math/random.h>
 #include <burnish/reflectance/rgl_table.h>
-#include <burnish/reflectance/sampling_test_util.h>
+#include <burnish/testing/sampling.h>
 
 namespace burnish {
 namespace {

@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <burnish/metrics/brdfs_for_tests.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/ggx_proxy.h>
 #include <burnish/reflectance/half_vector_quadrature.h>
-#include <burnish/reflectance/sampling_test_util.h>
+#include <burnish/testing/brdfs.h>
+#include <burnish/testing/sampling.h>
 
 namespace burnish {
 namespace {

@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <burnish/error.h>
-#include <burnish/factors/models_for_tests.h>
 #include <burnish/math/parallel.h>
-#include <burnish/metrics/brdfs_for_tests.h>
 #include <burnish/render/cpu_renderer.h>
-#include <burnish/render/scenes_for_tests.h>
+#include <burnish/testing/brdfs.h>
+#include <burnish/testing/models.h>
+#include <burnish/testing/scenes.h>
 
 namespace burnish {
 namespace {

@@ -8,9 +8,9 @@
 #include <burnish/error.h>
 #include <burnish/file.h>
 #include <burnish/image/png.h>
-#include <burnish/metrics/brdfs_for_tests.h>
 #include <burnish/parameterization/half_diff.h>
 #include <burnish/report/compare_report.h>
+#include <burnish/testing/brdfs.h>
 
 namespace burnish {
 namespace {

@@ -8,10 +8,10 @@
 #include <gtest/gtest.h>
 
 #include <burnish/error.h>
-#include <burnish/factors/models_for_tests.h>
-#include <burnish/shaders/compilers_for_tests.h>
 #include <burnish/shaders/shader.h>
-#include <burnish/tools_for_tests.h>
+#include <burnish/testing/compilers.h>
+#include <burnish/testing/models.h>
+#include <burnish/testing/tools.h>
 
 namespace burnish {
 namespace {

@@ -9,8 +9,8 @@
 
 #include <burnish/error.h>
 #include <burnish/math/random.h>
+#include <burnish/testing/tools.h>
 #include <burnish/textures/ktx2.h>
-#include <burnish/tools_for_tests.h>
 
 namespace burnish {
 namespace {

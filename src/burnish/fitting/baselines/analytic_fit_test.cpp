@@ -6,8 +6,8 @@
 
 #include <burnish/error.h>
 #include <burnish/fitting/baselines/analytic_fit.h>
-#include <burnish/metrics/brdfs_for_tests.h>
 #include <burnish/metrics/error_figures.h>
+#include <burnish/testing/brdfs.h>
 
 namespace burnish {
 namespace {

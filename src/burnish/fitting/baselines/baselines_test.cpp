@@ -5,7 +5,7 @@
 
 #include <burnish/error.h>
 #include <burnish/fitting/baselines/baselines.h>
-#include <burnish/metrics/brdfs_for_tests.h>
+#include <burnish/testing/brdfs.h>
 
 namespace burnish {
 namespace {

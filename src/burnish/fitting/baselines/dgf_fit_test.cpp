@@ -7,8 +7,8 @@
 #include <burnish/fitting/baselines/dgf_fit.h>
 #include <burnish/fitting/baselines/gathered_samples.h>
 #include <burnish/math/angles.h>
-#include <burnish/metrics/brdfs_for_tests.h>
 #include <burnish/metrics/error_figures.h>
+#include <burnish/testing/brdfs.h>
 
 namespace burnish {
 namespace {

@@ -5,10 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <burnish/error.h>
-#include <burnish/factors/baselines_for_tests.h>
 #include <burnish/fitting/baselines/separable_fit.h>
-#include <burnish/metrics/brdfs_for_tests.h>
 #include <burnish/reflectance/goniometer.h>
+#include <burnish/testing/baselines.h>
+#include <burnish/testing/brdfs.h>
 
 namespace burnish {
 namespace {

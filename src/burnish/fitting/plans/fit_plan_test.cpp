@@ -7,9 +7,9 @@
 #include <burnish/error.h>
 #include <burnish/fitting/plans/overfit.h>
 #include <burnish/fitting/plans/search.h>
-#include <burnish/metrics/brdfs_for_tests.h>
 #include <burnish/metrics/error_figures.h>
 #include <burnish/reflectance/analytic.h>
+#include <burnish/testing/brdfs.h>
 
 namespace burnish {
 namespace {

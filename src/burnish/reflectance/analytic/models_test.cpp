@@ -9,7 +9,7 @@
 #include <burnish/error.h>
 #include <burnish/math/random.h>
 #include <burnish/reflectance/analytic.h>
-#include <burnish/reflectance/analytic/albedo_test_util.h>
+#include <burnish/testing/albedo.h>
 
 namespace burnish {
 namespace {

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <burnish/error.h>
-#include <burnish/factors/models_for_tests.h>
 #include <burnish/render/gl/gl_evaluator.h>
-#include <burnish/render/gl_for_tests.h>
+#include <burnish/testing/gl.h>
+#include <burnish/testing/models.h>
 
 namespace burnish {
 namespace {

@@ -7,7 +7,7 @@
 #include <burnish/error.h>
 #include <burnish/power/code.h>
 #include <burnish/render/gl/gl_function.h>
-#include <burnish/render/gl_for_tests.h>
+#include <burnish/testing/gl.h>
 
 namespace burnish {
 namespace {

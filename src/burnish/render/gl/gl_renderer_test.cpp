@@ -5,12 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <burnish/error.h>
-#include <burnish/factors/models_for_tests.h>
 #include <burnish/metrics/sphere_images.h>
 #include <burnish/render/cpu_renderer.h>
 #include <burnish/render/gl/gl_renderer.h>
-#include <burnish/render/gl_for_tests.h>
-#include <burnish/render/scenes_for_tests.h>
+#include <burnish/testing/gl.h>
+#include <burnish/testing/models.h>
+#include <burnish/testing/scenes.h>
 
 namespace burnish {
 namespace {

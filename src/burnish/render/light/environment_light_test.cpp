@@ -5,12 +5,12 @@
 
 #include <burnish/error.h>
 #include <burnish/eval/tabulated_sampler.h>
-#include <burnish/metrics/brdfs_for_tests.h>
 #include <burnish/metrics/sphere_images.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/ggx_proxy.h>
-#include <burnish/reflectance/sampling_test_util.h>
 #include <burnish/render/light/environment_light.h>
+#include <burnish/testing/brdfs.h>
+#include <burnish/testing/sampling.h>
 
 namespace burnish {
 namespace {

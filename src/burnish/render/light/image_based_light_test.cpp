@@ -3,13 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <burnish/error.h>
-#include <burnish/factors/models_for_tests.h>
 #include <burnish/math/angles.h>
 #include <burnish/metrics/sphere_images.h>
-#include <burnish/reflectance/sampling_test_util.h>
-#include <burnish/render/environments_for_tests.h>
-#include <burnish/render/gl_for_tests.h>
 #include <burnish/render/light/image_based_light.h>
+#include <burnish/testing/environments.h>
+#include <burnish/testing/gl.h>
+#include <burnish/testing/models.h>
+#include <burnish/testing/sampling.h>
 
 namespace burnish {
 namespace {

@@ -9,7 +9,7 @@
 #include <burnish/render/light/environment_light.h>
 #include <burnish/render/light/sky_image.h>
 #include <burnish/render/picture.h>
-#include <burnish/tools_for_tests.h>
+#include <burnish/testing/tools.h>
 
 namespace burnish {
 namespace {

@@ -8,7 +8,7 @@
 #include <burnish/math/random.h>
 #include <burnish/render/mesh/frames.h>
 #include <burnish/render/mesh/mesh_file.h>
-#include <burnish/tools_for_tests.h>
+#include <burnish/testing/tools.h>
 
 namespace burnish {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include <burnish/tools_for_tests.h>
+#include <burnish/testing/tools.h>
 
 namespace burnish {
 

@@ -12,8 +12,8 @@
 #include <fmt/format.h>
 
 #include <burnish/baselines/node_table.h>
-#include <burnish/factors/models_for_tests.h>
 #include <burnish/shaders/shader.h>
+#include <burnish/testing/models.h>
 
 namespace burnish {
 
