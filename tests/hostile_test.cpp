@@ -13,8 +13,7 @@
 
 #include <burnish/io/source.h>
 #include <burnish/math/random.h>
-
-#include "seed_files.h"
+#include <burnish/testing/seed_files.h>
 
 namespace burnish {
 namespace {

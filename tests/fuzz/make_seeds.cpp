@@ -3,8 +3,7 @@
 #include <filesystem>
 
 #include <burnish/file.h>
-
-#include "../seed_files.h"
+#include <burnish/testing/seed_files.h>
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;

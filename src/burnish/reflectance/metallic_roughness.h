@@ -2,8 +2,8 @@
 
 #include <span>
 
+#include <burnish/math/rgb.h>
 #include <burnish/math/vec3.h>
-#include <burnish/reflectance/analytic/pair_geometry.h>
 #include <burnish/reflectance/brdf.h>
 
 namespace burnish {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include <burnish/image/image.h>
-#include <burnish/reflectance/analytic/pair_geometry.h>
+#include <burnish/math/rgb.h>
 
 namespace burnish {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <burnish/image/image.h>
-#include <burnish/reflectance/analytic/pair_geometry.h>
+#include <burnish/math/rgb.h>
 #include <burnish/render/mesh/mesh.h>
 
 namespace burnish {

@@ -6,22 +6,10 @@
 #include <span>
 
 #include <burnish/math/angles.h>
+#include <burnish/math/rgb.h>
 #include <burnish/math/vec3.h>
 
 namespace burnish {
-
-/// A colour or a coefficient for each of the channels, linear Rec. 709.
-struct Rgb {
-  double r = 0, g = 0, b = 0;
-
-  constexpr Rgb() = default;
-  constexpr Rgb(double red, double green, double blue) noexcept : r(red), g(green), b(blue) {}
-  constexpr Rgb(double grey) noexcept : Rgb(grey, grey, grey) {}  // NOLINT: a number is a grey colour
-
-  friend constexpr bool operator==(const Rgb&, const Rgb&) = default;
-  friend constexpr Rgb operator+(Rgb p, Rgb q) noexcept { return {p.r + q.r, p.g + q.g, p.b + q.b}; }
-  friend constexpr Rgb operator*(Rgb p, Rgb q) noexcept { return {p.r * q.r, p.g * q.g, p.b * q.b}; }
-};
 
 /// Cosines to the normal below this count as this much where a model divides by them, so that every value is
 /// finite. No other direction is changed.

@@ -9,7 +9,7 @@
 
 #include <burnish/image/image.h>
 #include <burnish/math/random.h>
-#include <burnish/reflectance/analytic/pair_geometry.h>
+#include <burnish/math/rgb.h>
 #include <burnish/reflectance/brdf.h>
 #include <burnish/reflectance/sampling.h>
 #include <burnish/render/light/sky_image.h>

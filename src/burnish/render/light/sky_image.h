@@ -5,7 +5,7 @@
 #include <burnish/file.h>
 #include <burnish/image/image.h>
 #include <burnish/math/point2.h>
-#include <burnish/reflectance/analytic/pair_geometry.h>
+#include <burnish/math/rgb.h>
 #include <burnish/reflectance/sampling.h>
 
 namespace burnish {
