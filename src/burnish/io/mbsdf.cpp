@@ -128,7 +128,7 @@ bool fits_mbsdf(const AngleTable& table) noexcept {
     return true;
   };
   const auto& axes = table.axes;
-  return table.frame == AngleTable::Frame::kNormal && table.folded && table.isotropic() &&
+  return table.frame == AngleTable::Frame::normal && table.folded && table.isotropic() &&
          axes[1].nodes.size() == axes[2].nodes.size() && centred(axes[1], kHalfPi) &&
          centred(axes[2], kHalfPi) && centred(axes[3], kPi) &&
          (table.channel_count == 1 || table.channel_count == 3);

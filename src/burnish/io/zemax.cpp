@@ -198,7 +198,7 @@ ZemaxFile parse_zemax(const FileBytes& file, const OpenOptions& options) {
   ZemaxFile result;
   Findings& findings = result.findings;
   AngleTable& table = result.table;
-  table.frame = AngleTable::Frame::kSpecular;
+  table.frame = AngleTable::Frame::specular;
   table.folded = header.words["symmetry"] == "planesymmetrical";
   table.axes = {make_axis(in_radians(rotations, 90), kTwoPi), make_axis(in_radians(incidences)),
                 make_axis(in_radians(azimuths), table.folded ? 0 : kTwoPi), make_axis(in_radians(radials))};
@@ -282,7 +282,7 @@ AngleTable zemax_layout(bool isotropic) {
   std::vector<double> incidences = steps(9, 10);
   incidences.push_back(85);
   AngleTable table;
-  table.frame = AngleTable::Frame::kSpecular;
+  table.frame = AngleTable::Frame::specular;
   table.folded = isotropic;
   if (isotropic)
     table.axes = {make_axis(in_radians({0}, 90), kTwoPi), make_axis(in_radians(steps(18, 5))),
@@ -294,8 +294,7 @@ AngleTable zemax_layout(bool isotropic) {
 }
 
 bool fits_zemax(const AngleTable& table) noexcept {
-  return table.frame == AngleTable::Frame::kSpecular &&
-         (table.channel_count == 1 || table.channel_count == 3);
+  return table.frame == AngleTable::Frame::specular && (table.channel_count == 1 || table.channel_count == 3);
 }
 
 std::string format_zemax(const AngleTable& table, std::string_view sample) {
