@@ -59,10 +59,7 @@ std::vector<double> values_of(const RglTable& table, std::uint64_t seed = 1) {
   Pcg32 random(seed);
   std::vector<double> all, f(static_cast<std::size_t>(table.channels()));
   for (int i = 0; i < 300; ++i) {
-    const auto direction = [&] {
-      return spherical_direction(std::acos(1 - random.uniform()), random.uniform() * kTwoPi);
-    };
-    const Vec3 wi = direction(), wo = direction();
+    const Vec3 wi = random_upper_direction(random), wo = random_upper_direction(random);
     table.eval(wi, wo, f);
     all.insert(all.end(), f.begin(), f.end());
   }
