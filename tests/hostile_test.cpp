@@ -1,19 +1,17 @@
 // Bad input of every kind gets one clear error and leaves no output.
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <burnish/io/source.h>
 #include <burnish/math/random.h>
 #include <burnish/testing/seed_files.h>
+#include <burnish/testing/tools.h>
 
 namespace burnish {
 namespace {
@@ -22,20 +20,15 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-FileBytes as_file(std::string_view content) {
-  const auto* bytes = reinterpret_cast<const std::byte*>(content.data());
-  return {"hostile.file", {bytes, bytes + content.size()}};
-}
-
 /// Parses; true if it threw. Any exception but a clear Error fails the test.
 bool throws_clearly(std::string_view content) {
   try {
-    parse_source(as_file(content), {});
+    parse_source(memory_file(content), {});
   } catch (const Error& error) {
     const std::string_view message = error.what();
     EXPECT_EQ(message.find('\n'), std::string_view::npos) << message;
     EXPECT_NE(message.find("expected"), std::string_view::npos) << message;
-    EXPECT_NE(message.find("hostile.file"), std::string_view::npos) << message;
+    EXPECT_NE(message.find("test.file"), std::string_view::npos) << message;
     return true;
   }
   return false;
@@ -43,7 +36,7 @@ bool throws_clearly(std::string_view content) {
 
 TEST(Hostile, SeedsAreValid) {
   for (const auto& [name, bytes] : seeds::all_seeds())
-    EXPECT_NO_THROW(parse_source(as_file(bytes), {})) << name;
+    EXPECT_NO_THROW(parse_source(memory_file(bytes), {})) << name;
 }
 
 TEST(Hostile, EveryTruncatedBinaryFileThrows) {
@@ -59,14 +52,14 @@ TEST(Hostile, EveryTruncatedBinaryFileThrows) {
 TEST(Hostile, TruncatedTextThrowsOrHasLess) {
   const auto all = seeds::all_seeds();
   for (std::size_t k = seeds::kBinaryCount; k < all.size(); ++k) {
-    const std::uint64_t whole = parse_source(as_file(all[k].second), {}).findings.sample_count;
+    const std::uint64_t whole = parse_source(memory_file(all[k].second), {}).findings.sample_count;
     std::size_t thrown = 0;
     for (std::size_t length = 0; length < all[k].second.size(); ++length) {
       const std::string cut = all[k].second.substr(0, length);
       if (throws_clearly(cut))
         ++thrown;
       else
-        EXPECT_LE(parse_source(as_file(cut), {}).findings.sample_count, whole);
+        EXPECT_LE(parse_source(memory_file(cut), {}).findings.sample_count, whole);
     }
     EXPECT_GT(thrown, all[k].second.size() / 2) << all[k].first;
   }
@@ -80,7 +73,7 @@ TEST(Hostile, DamagedBytesThrowClearlyOrGiveSoundValues) {
         std::string damaged = bytes;
         damaged[at] = damage;
         if (throws_clearly(damaged)) continue;
-        const Source source = parse_source(as_file(damaged), {});
+        const Source source = parse_source(memory_file(damaged), {});
         f.resize(static_cast<std::size_t>(source.ref().channels()));
         source.ref().eval({0.6, 0, 0.8}, {0, -0.6, 0.8}, f);
         for (const double value : f) EXPECT_TRUE(std::isfinite(value)) << name << " damaged at " << at;
@@ -114,12 +107,6 @@ TEST(Hostile, LyingSizesThrowBeforeAnythingIsAllocated) {
     EXPECT_TRUE(throws_clearly(bytes));
 }
 
-/// What one run of the command line did.
-struct Outcome {
-  int exit_code;
-  std::string errors;
-};
-
 class HostileCommandLine : public testing::Test {
  protected:
   void SetUp() override {
@@ -136,14 +123,9 @@ class HostileCommandLine : public testing::Test {
     return folder_ / name;
   }
 
-  Outcome run_burnish(const std::string& arguments) const {
-    const fs::path errors = folder_ / "stderr";
-    const int status = std::system(
-        fmt::format("'{}' {} > /dev/null 2> '{}'", BURNISH_CLI, arguments, errors.string()).c_str());
-    std::ostringstream text;
-    text << std::ifstream(errors).rdbuf();
-    fs::remove(errors);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text.str()};
+  /// Its output is what it says on the stream of errors.
+  static Outcome run_burnish(const std::string& arguments) {
+    return run(fmt::format("'{}' {} 2>&1 >/dev/null", BURNISH_CLI, arguments));
   }
 
   std::size_t file_count() const {
@@ -157,11 +139,11 @@ TEST_F(HostileCommandLine, SaysOneLineAndLeavesNoOutput) {
   for (const auto& [name, bytes] : seeds::all_seeds()) {
     const fs::path cut = file(name, bytes.substr(0, bytes.size() / 3));
     for (const char* verb : {"info '{}'", "convert '{}' '{}/out.csv'", "measure '{}' -o '{}/out.csv'"}) {
-      const Outcome run = run_burnish(fmt::format(fmt::runtime(verb), cut.string(), folder_.string()));
-      EXPECT_EQ(run.exit_code, 1) << name << ": " << run.errors;
-      EXPECT_THAT(run.errors, StartsWith("burnish: ")) << name;
-      EXPECT_THAT(run.errors, HasSubstr(cut.string()));
-      EXPECT_EQ(std::count(run.errors.begin(), run.errors.end(), '\n'), 1) << run.errors;
+      const Outcome outcome = run_burnish(fmt::format(fmt::runtime(verb), cut.string(), folder_.string()));
+      EXPECT_EQ(outcome.status, 1) << name << ": " << outcome.output;
+      EXPECT_THAT(outcome.output, StartsWith("burnish: ")) << name;
+      EXPECT_THAT(outcome.output, HasSubstr(cut.string()));
+      EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;
       EXPECT_EQ(file_count(), 1u) << name;
     }
     fs::remove(cut);
@@ -169,54 +151,52 @@ TEST_F(HostileCommandLine, SaysOneLineAndLeavesNoOutput) {
 }
 
 TEST_F(HostileCommandLine, FailsOnMissingEmptyAndUnwritableFiles) {
-  EXPECT_EQ(run_burnish(fmt::format("info '{}/none'", folder_.string())).exit_code, 1);
-  EXPECT_EQ(run_burnish(fmt::format("info '{}'", folder_.string())).exit_code, 1);
-  EXPECT_EQ(run_burnish(fmt::format("info '{}'", file("empty", "").string())).exit_code, 1);
-  EXPECT_EQ(run_burnish(fmt::format("measure lambert -o '{}/none/out.csv'", folder_.string())).exit_code, 1);
-  EXPECT_EQ(run_burnish(fmt::format("convert lambert '{}/out.csv' --entries", folder_.string())).exit_code,
-            1);
-  EXPECT_EQ(run_burnish(fmt::format("convert lambert '{}/out.unknown'", folder_.string())).exit_code, 2);
+  EXPECT_EQ(run_burnish(fmt::format("info '{}/none'", folder_.string())).status, 1);
+  EXPECT_EQ(run_burnish(fmt::format("info '{}'", folder_.string())).status, 1);
+  EXPECT_EQ(run_burnish(fmt::format("info '{}'", file("empty", "").string())).status, 1);
+  EXPECT_EQ(run_burnish(fmt::format("measure lambert -o '{}/none/out.csv'", folder_.string())).status, 1);
+  EXPECT_EQ(run_burnish(fmt::format("convert lambert '{}/out.csv' --entries", folder_.string())).status, 1);
+  EXPECT_EQ(run_burnish(fmt::format("convert lambert '{}/out.unknown'", folder_.string())).status, 2);
   EXPECT_EQ(file_count(), 1u);
 }
 
 TEST_F(HostileCommandLine, TellsMisuseFromBadInput) {
-  EXPECT_EQ(run_burnish("").exit_code, 2);
-  EXPECT_EQ(run_burnish("nonsense").exit_code, 2);
-  EXPECT_EQ(run_burnish("info").exit_code, 2);
-  EXPECT_EQ(run_burnish("measure lambert").exit_code, 2);
-  EXPECT_EQ(run_burnish("measure lambert -o x.csv --noise -1").exit_code, 2);
-  EXPECT_EQ(run_burnish("measure lambert -o x.csv --seed -1").exit_code, 2);
-  EXPECT_EQ(run_burnish("info --help").exit_code, 0);
-  EXPECT_EQ(run_burnish("--version").exit_code, 0);
+  EXPECT_EQ(run_burnish("").status, 2);
+  EXPECT_EQ(run_burnish("nonsense").status, 2);
+  EXPECT_EQ(run_burnish("info").status, 2);
+  EXPECT_EQ(run_burnish("measure lambert").status, 2);
+  EXPECT_EQ(run_burnish("measure lambert -o x.csv --noise -1").status, 2);
+  EXPECT_EQ(run_burnish("measure lambert -o x.csv --seed -1").status, 2);
+  EXPECT_EQ(run_burnish("info --help").status, 0);
+  EXPECT_EQ(run_burnish("--version").status, 0);
 }
 
 TEST_F(HostileCommandLine, ConvertsWhatIsWell) {
   const std::string out = folder_.string();
-  EXPECT_EQ(run_burnish(fmt::format("measure ggx -o '{}/m.csv' --count 200 --noise 0.1", out)).exit_code, 0);
-  EXPECT_EQ(run_burnish(fmt::format("convert '{0}/m.csv' '{0}/m2.csv'", out)).exit_code, 0);
-  EXPECT_EQ(run_burnish(fmt::format("convert lambert '{0}/l.bsdf'", out)).exit_code, 0);
-  EXPECT_EQ(run_burnish(fmt::format("info --json '{0}/l.bsdf'", out)).exit_code, 0);
-  EXPECT_EQ(run_burnish(fmt::format("fit ggx --method dgf --budget 600 -o '{}/d.json'", out)).exit_code, 0);
-  EXPECT_EQ(run_burnish(fmt::format("fit ggx --method analytic:ward -o '{}/w.json' --json", out)).exit_code,
-            0);
-  EXPECT_EQ(run_burnish(fmt::format("compare ggx '{0}/d.json' '{0}/w.json' --count 100", out)).exit_code, 0);
+  EXPECT_EQ(run_burnish(fmt::format("measure ggx -o '{}/m.csv' --count 200 --noise 0.1", out)).status, 0);
+  EXPECT_EQ(run_burnish(fmt::format("convert '{0}/m.csv' '{0}/m2.csv'", out)).status, 0);
+  EXPECT_EQ(run_burnish(fmt::format("convert lambert '{0}/l.bsdf'", out)).status, 0);
+  EXPECT_EQ(run_burnish(fmt::format("info --json '{0}/l.bsdf'", out)).status, 0);
+  EXPECT_EQ(run_burnish(fmt::format("fit ggx --method dgf --budget 600 -o '{}/d.json'", out)).status, 0);
+  EXPECT_EQ(run_burnish(fmt::format("fit ggx --method analytic:ward -o '{}/w.json' --json", out)).status, 0);
+  EXPECT_EQ(run_burnish(fmt::format("compare ggx '{0}/d.json' '{0}/w.json' --count 100", out)).status, 0);
   EXPECT_EQ(open_source(out + "/d.json", {}).findings.format, "dgf baseline");
-  EXPECT_EQ(run_burnish(fmt::format("fit ggx --method pca -o '{}/p.json'", out)).exit_code, 1);
+  EXPECT_EQ(run_burnish(fmt::format("fit ggx --method pca -o '{}/p.json'", out)).status, 1);
   const Outcome averaged =
       run_burnish(fmt::format("convert ggx:alpha_x=0.1,alpha_y=0.4 '{0}/a.binary' --cells 10", out));
-  EXPECT_EQ(averaged.exit_code, 0);
-  EXPECT_THAT(averaged.errors, HasSubstr("/a.binary: lost: anisotropy averaged"));
-  EXPECT_EQ(std::count(averaged.errors.begin(), averaged.errors.end(), '\n'), 1) << averaged.errors;
+  EXPECT_EQ(averaged.status, 0);
+  EXPECT_THAT(averaged.output, HasSubstr("/a.binary: lost: anisotropy averaged"));
+  EXPECT_EQ(std::count(averaged.output.begin(), averaged.output.end(), '\n'), 1) << averaged.output;
   for (const char* format : {"half", "float", "rgb9e5", "unorm8"})
     EXPECT_EQ(
         run_burnish(
             fmt::format("fit ggx:kd=0.3/0.2/0.1 --budget 600 --format {} --conserve-energy --loss relative "
                         "-o '{}/b.exr'",
                         format, out))
-            .exit_code,
+            .status,
         0);
   EXPECT_LE(open_source(out + "/b.exr", {}).bytes().value(), 600u);
-  EXPECT_EQ(run_burnish(fmt::format("fit ggx --budget 10 -o '{}/b.exr'", out)).exit_code, 1);
+  EXPECT_EQ(run_burnish(fmt::format("fit ggx --budget 10 -o '{}/b.exr'", out)).status, 1);
   const Source back = open_source(out + "/m2.csv", {});
   EXPECT_EQ(back.samples()->size(), 200u);
   EXPECT_TRUE(back.ref().isotropic());

@@ -36,16 +36,15 @@ bool has_opengl() {
 class Render : public testing::Test {
  protected:
   void SetUp() override {
-    write(folder_ / "one.exr", format_model({smooth_model(kModelCases[0]), {}, "{}"}));
-    write(folder_ / "two.exr", format_model({smooth_model(kModelCases[7]), {}, "{}"}));
-    write(folder_ / "brushed.exr", format_model({smooth_model(kModelCases[1]), {}, "{}"}));
+    write(folder_ / "one.exr", format_model({smooth_model(model_case("Pqp")), {}, "{}"}));
+    write(folder_ / "two.exr", format_model({smooth_model(model_case("Mirror")), {}, "{}"}));
+    write(folder_ / "brushed.exr", format_model({smooth_model(model_case("DiskPqp")), {}, "{}"}));
     write(folder_ / "two.obj",
           "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nusemtl left\nf 1 2 4\nusemtl right\nf 2 3 4\n");
   }
   int renders(const std::string& arguments) const {
-    const std::string command =
-        fmt::format("cd '{}' && {} render {} > said 2>&1", folder_.string(), BURNISH_CLI, arguments);
-    return WEXITSTATUS(std::system(command.c_str()));
+    return run(fmt::format("cd '{}' && {} render {} > said 2>&1", folder_.string(), BURNISH_CLI, arguments))
+        .status;
   }
   std::string said() const { return read(folder_ / "said"); }
   Image8 picture(const char* name) const { return read_png(folder_ / name); }

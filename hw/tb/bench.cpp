@@ -76,10 +76,9 @@ struct Lane {
   SpecularUnit unit;
   std::string name;
   std::unique_ptr<Source> source;
-  std::deque<Vector> flying;
+  std::deque<Vector> flying;  // taken in, not answered yet
   bool offering = false, ended = false;
-  std::uint64_t taken = 0, given = 0;
-  int waited = 0, least_wait = 1 << 30;  // clocks an answer to the oldest vector has taken
+  std::uint64_t given = 0;  // answers
   Vector offered;
 };
 
@@ -91,19 +90,31 @@ struct Lane {
   std::exit(1);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  const std::string mode = argc > 1 ? argv[1] : "";
-  const int first = mode == "sample" ? 3 : 2;
-  if (argc <= first || (mode != "sample" && mode != "all" && mode != "stream")) {
-    std::fprintf(stderr, "usage: bench sample COUNT UNIT... | all UNIT... | stream UNIT\n");
-    return 2;
+/// Says yes with odds of 256, from seeded bits.
+class Chance {
+ public:
+  explicit Chance(std::uint32_t odds) : odds_(odds) {}
+  bool operator()() {
+    if (left_ == 0) {
+      bits_ = std::uint64_t{random_.next()} << 32 | random_.next();
+      left_ = 8;
+    }
+    const bool yes = (bits_ & 255) < odds_;
+    bits_ >>= 8;
+    --left_;
+    return yes;
   }
-  // Odds, of 256, that a value is offered and taken.
-  const std::uint32_t odds = mode == "sample" ? 160 : 255;
+
+ private:
+  std::uint32_t odds_;
+  Pcg32 random_{7};
+  std::uint64_t bits_ = 0;
+  int left_ = 0;
+};
+
+std::vector<Lane> make_lanes(const std::string& mode, int argc, char** argv) {
   std::vector<Lane> lanes;
-  for (int i = first; i < argc; ++i) {
+  for (int i = mode == "sample" ? 3 : 2; i < argc; ++i) {
     SpecularUnit unit(shipped_unit(argv[i]).config);
     std::unique_ptr<Source> source;
     if (mode == "sample")
@@ -112,77 +123,93 @@ int main(int argc, char** argv) {
       source = std::make_unique<All>(unit);
     else
       source = std::make_unique<Lines>();
-    lanes.push_back({unit, argv[i], std::move(source), {}, false, false, 0, 0, 0, 1 << 30, {}});
+    lanes.push_back({unit, argv[i], std::move(source), {}, false, false, 0, {}});
   }
+  return lanes;
+}
 
-  VerilatedContext context;
-  Vbench top(&context);
-  Pcg32 random(7);
-  std::uint64_t bits = 0;
-  int left = 0;
-  const auto chance = [&] {
-    if (left == 0) bits = std::uint64_t{random.next()} << 32 | random.next(), left = 8;
-    const bool yes = (bits & 255) < odds;
-    bits >>= 8;
-    --left;
-    return yes;
-  };
-  const auto clock = [&] {
-    top.clk_i = 1;
-    top.eval();
-    top.clk_i = 0;
-    top.eval();
-  };
+void clock(Vbench& top) {
+  top.clk_i = 1;
+  top.eval();
+  top.clk_i = 0;
+  top.eval();
+}
+
+/// One clock in reset with idle inputs.
+void reset(Vbench& top, std::size_t lanes) {
   top.clk_i = 0;
   top.rst_ni = 0;
-  for (std::size_t i = 0; i < lanes.size(); ++i) top.valid_i[i] = 0, top.ready_i[i] = 0;
+  for (std::size_t i = 0; i < lanes; ++i) {
+    top.valid_i[i] = 0;
+    top.ready_i[i] = 0;
+  }
   top.eval();
-  clock();
+  clock(top);
   top.rst_ni = 1;
   top.eval();
+}
 
-  std::uint64_t total = 0;
+/// Sets lane i's inputs for the next clock; true when that ends the lane: its vectors are all answered.
+bool offer(Lane& lane, Vbench& top, std::size_t i, Chance& chance) {
+  bool done = false;
+  if (!lane.offering && !lane.ended && chance()) {
+    lane.offering = lane.source->next(lane.offered);
+    lane.ended = !lane.offering;
+    done = lane.ended && lane.flying.empty();
+  }
+  top.valid_i[i] = lane.offering;
+  top.exponent_i[i] = static_cast<std::uint16_t>(lane.offered.exponent);
+  top.input_i[i] = lane.offered.input;
+  top.ready_i[i] = chance();
+  return done;
+}
+
+/// Takes lane i's answer, if there is one, and compares it; notes the vector that was taken in. True when that
+/// ends the lane.
+bool check(Lane& lane, const Vbench& top, std::size_t i, bool printed) {
+  bool done = false;
+  if (top.valid_o[i] && top.ready_i[i]) {
+    if (lane.flying.empty()) fail(lane, "answers", 0, 1);
+    const std::uint32_t expected = lane.unit.value(lane.flying.front().exponent, lane.flying.front().input);
+    if (top.value_o[i] != expected) fail(lane, "value", expected, top.value_o[i]);
+    if (printed) std::printf("%u\n", static_cast<unsigned>(top.value_o[i]));
+    lane.flying.pop_front();
+    ++lane.given;
+    done = lane.ended && lane.flying.empty();
+  }
+  if (top.valid_i[i] && top.ready_o[i]) {
+    lane.flying.push_back(lane.offered);
+    lane.offering = false;
+  }
+  const auto most = static_cast<std::size_t>(lane.unit.config().depth);
+  if (lane.flying.size() > most)
+    fail(lane, "values in the pipeline", static_cast<std::uint32_t>(most),
+         static_cast<std::uint32_t>(lane.flying.size()));
+  return done;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string mode = argc > 1 ? argv[1] : "";
+  if (argc <= (mode == "sample" ? 3 : 2) || (mode != "sample" && mode != "all" && mode != "stream")) {
+    std::fprintf(stderr, "usage: bench sample COUNT UNIT... | all UNIT... | stream UNIT\n");
+    return 2;
+  }
+  std::vector<Lane> lanes = make_lanes(mode, argc, argv);
+  VerilatedContext context;
+  Vbench top(&context);
+  Chance chance(mode == "sample" ? 160 : 255);  // that a value is offered, and taken
+  reset(top, lanes.size());
   for (std::size_t running = lanes.size(); running > 0;) {
-    for (std::size_t i = 0; i < lanes.size(); ++i) {
-      Lane& lane = lanes[i];
-      if (!lane.offering && !lane.ended && chance()) {
-        lane.offering = lane.source->next(lane.offered);
-        lane.ended = !lane.offering;
-        if (lane.ended && lane.flying.empty()) --running;
-      }
-      top.valid_i[i] = lane.offering;
-      top.exponent_i[i] = static_cast<std::uint16_t>(lane.offered.exponent);
-      top.input_i[i] = lane.offered.input;
-      top.ready_i[i] = chance();
-    }
+    for (std::size_t i = 0; i < lanes.size(); ++i) running -= offer(lanes[i], top, i, chance);
     top.eval();
-    for (std::size_t i = 0; i < lanes.size(); ++i) {
-      Lane& lane = lanes[i];
-      ++lane.waited;
-      if (top.valid_o[i] && top.ready_i[i]) {
-        if (lane.flying.empty()) fail(lane, "answers", 0, 1);
-        const std::uint32_t expected =
-            lane.unit.value(lane.flying.front().exponent, lane.flying.front().input);
-        if (top.value_o[i] != expected) fail(lane, "value", expected, top.value_o[i]);
-        if (mode == "stream") std::printf("%u\n", static_cast<unsigned>(top.value_o[i]));
-        lane.flying.pop_front();
-        ++lane.given;
-        ++total;
-        if (lane.ended && lane.flying.empty()) --running;
-      }
-      if (top.valid_i[i] && top.ready_o[i]) {
-        lane.flying.push_back(lane.offered);
-        lane.offering = false;
-        ++lane.taken;
-      }
-      const auto most = static_cast<std::size_t>(lane.unit.config().depth);
-      if (lane.flying.size() > most)
-        fail(lane, "values in the pipeline", static_cast<std::uint32_t>(most),
-             static_cast<std::uint32_t>(lane.flying.size()));
-    }
-    clock();
+    for (std::size_t i = 0; i < lanes.size(); ++i) running -= check(lanes[i], top, i, mode == "stream");
+    clock(top);
   }
   top.final();
+  std::uint64_t total = 0;
+  for (const Lane& lane : lanes) total += lane.given;
   if (mode != "stream")
     std::printf("PASS %llu vectors, no mismatch (%zu units)\n", static_cast<unsigned long long>(total),
                 lanes.size());

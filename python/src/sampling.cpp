@@ -68,7 +68,10 @@ nb::tuple sample_wi(const OpenedBrdf& brdf, const Array<const T>& wo_array, cons
           } else {
             const DrawnDirection d = sampler.sample_wi({*wo.at(i + k, 0), *wo.at(i + k, 1), *wo.at(i + k, 2)},
                                                        {*u.at(i + k, 0), *u.at(i + k, 1)});
-            w[0] = d.wi.x, w[1] = d.wi.y, w[2] = d.wi.z, density = d.pdf;
+            w[0] = d.wi.x;
+            w[1] = d.wi.y;
+            w[2] = d.wi.z;
+            density = d.pdf;
           }
           // towards a viewer below the horizon nothing is drawn
           const bool above = *wo.at(i + k, 2) > 0;

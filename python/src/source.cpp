@@ -114,10 +114,7 @@ void bind_model_parts(nb::module_& m) {
       .def_ro("factors", &Lobe::factors);
 }
 
-}  // namespace
-
-void bind_source(nb::module_& m) {
-  bind_model_parts(m);
+void bind_opened_brdf(nb::module_& m) {
   nb::class_<OpenedBrdf>(
       m, "Source",
       "A BRDF: measured, analytic, a neural encoding or a model. Immutable; threads may share it.")
@@ -146,6 +143,9 @@ void bind_source(nb::module_& m) {
       .def("__repr__", [](const OpenedBrdf& b) {
         return "<burnish " + b.source().findings.format + " '" + b.source().name + "'>";
       });
+}
+
+void bind_model(nb::module_& m) {
   nb::class_<OpenedModel, OpenedBrdf>(m, "Model",
                                       "A factored BRDF: sum over lobes of scale * product of tables.")
       .def_prop_ro(
@@ -176,6 +176,14 @@ void bind_source(nb::module_& m) {
           "value\n"
           "of 1, what is divided out moves into the lobes' scales, and rounded to its format or to `format`\n"
           "(\"half\", \"float\", \"rgb9e5\", \"unorm8\").");
+}
+
+}  // namespace
+
+void bind_source(nb::module_& m) {
+  bind_model_parts(m);
+  bind_opened_brdf(m);
+  bind_model(m);
   m.def(
       "open_source",
       [](const nb::object& spec, bool keep_spectral, const std::string& illuminant, bool has_cosine,

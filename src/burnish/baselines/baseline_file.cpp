@@ -20,6 +20,7 @@ bool is_separable(std::string_view kind) {
   return std::find(kSeparableKinds.begin(), kSeparableKinds.end(), kind) != kSeparableKinds.end();
 }
 
+// Written: a name, axes and float values, which JSON keeps to the last bit.
 Json to_json(const NodeTable& table, const char* name) {
   Json axes = Json::array();
   for (const NodeAxis& axis : table.axes)
@@ -31,6 +32,7 @@ Json to_json(const NodeTable& table, const char* name) {
           {"values", table.values}};
 }
 
+// What differs between kinds of baselines in a file.
 struct Parts {
   Json parameters, tables = Json::array();
 };
@@ -57,6 +59,7 @@ Parts parts_of(const AnalyticBrdf& brdf) {
   return {std::move(parameters), Json::array()};
 }
 
+// Said in one line: "u(theta_h 32, phi_d 8) shared".
 std::string expression(const NodeTable& table, const char* name) {
   std::vector<std::string> axes;
   for (const NodeAxis& axis : table.axes)
@@ -77,6 +80,7 @@ std::string expression_of(const AnalyticBrdf& brdf) {
   return format_analytic(brdf);
 }
 
+// Read: tables stand in the order of their names; constructors check sizes and values.
 NodeTable read_table(const Json& tables, std::size_t index, std::string_view name) {
   const Json& json = tables.at(index);
   if (const auto found = json.at("name").get<std::string>(); found != name)
@@ -98,11 +102,12 @@ std::vector<float> read_floats(const Json& json, const char* key) {
   return json.at(key).get<std::vector<float>>();
 }
 
+// The model's parameters by name: three numbers for a colour, one for any other.
 AnalyticBrdf read_analytic(const Json& parameters) {
   const auto name = parameters.at("model").get<std::string>();
   if (!is_analytic_spec(name) || name.find(':') != std::string::npos)
     throw Error(fmt::format("model: expected the name of an analytic model, found '{}'", name));
-  const AnalyticModel& model = parse_analytic(name).model();
+  const AnalyticModel& model = parse_analytic(name).model();  // by its name alone: the defaults
   std::vector<Rgb> values;
   for (const AnalyticParameter& parameter : model.parameters) {
     const Json& value = parameters.at(std::string(parameter.name));
@@ -171,6 +176,7 @@ Baseline parse_baseline(const FileBytes& file) {
   if (file.bytes.size() > kLargestFile)
     throw Error::in_file(file.name, fmt::format("a baseline of at most {} bytes", kLargestFile),
                          fmt::format("{}", file.bytes.size()));
+  // whatever goes wrong inside, the message names the file
   try {
     const Json json = Json::parse(file.text());
     Baseline baseline{

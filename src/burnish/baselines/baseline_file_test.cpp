@@ -7,6 +7,7 @@
 #include <burnish/baselines/evaluation_cost.h>
 #include <burnish/error.h>
 #include <burnish/testing/baselines.h>
+#include <burnish/testing/tools.h>
 
 namespace burnish {
 namespace {
@@ -16,18 +17,8 @@ using testing::random_anisotropic;
 using testing::random_dgf;
 using testing::random_separable;
 
-FileBytes as_file(const std::string& text) {
-  const auto* data = reinterpret_cast<const std::byte*>(text.data());
-  return {"test.json", {data, data + text.size()}};
-}
-
-std::string error_of(const std::string& text) {
-  try {
-    parse_baseline(as_file(text));
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
+std::string error_in(const std::string& text) {
+  return error_of([&] { parse_baseline(memory_file(text)); });
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
@@ -39,18 +30,18 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 TEST(BaselineFile, RestoresTablesToTheLastBit) {
   for (const SeparableBrdf& brdf : {random_separable(), random_anisotropic()}) {
     const Baseline back =
-        parse_baseline(as_file(format_baseline({.kind = "svd", .brdf = brdf, .notes = R"({"a":1})"})));
+        parse_baseline(memory_file(format_baseline({.kind = "svd", .brdf = brdf, .notes = R"({"a":1})"})));
     EXPECT_EQ(back.kind, "svd");
     EXPECT_EQ(back.notes, R"({"a":1})");
     EXPECT_EQ(std::get<SeparableBrdf>(back.brdf), brdf);
   }
-  const Baseline back = parse_baseline(as_file(format_baseline({.kind = "dgf", .brdf = random_dgf()})));
+  const Baseline back = parse_baseline(memory_file(format_baseline({.kind = "dgf", .brdf = random_dgf()})));
   EXPECT_EQ(std::get<DgfBrdf>(back.brdf), random_dgf());
 }
 
 TEST(BaselineFile, RestoresAnalyticParametersToTheLastBit) {
   const AnalyticBrdf brdf = parse_analytic("ward:alpha_x=0.12345678901234567,ks=0.1/0.2/0.30000000000000004");
-  const Baseline back = parse_baseline(as_file(format_baseline({.kind = "analytic", .brdf = brdf})));
+  const Baseline back = parse_baseline(memory_file(format_baseline({.kind = "analytic", .brdf = brdf})));
   EXPECT_EQ(format_analytic(std::get<AnalyticBrdf>(back.brdf)), format_analytic(brdf));
   // alpha_x and three channels of ks; the rest is as by default
   EXPECT_EQ(baseline_bytes(back.brdf), 16u);
@@ -64,29 +55,29 @@ TEST(BaselineFile, IsToldByItsFirstCharacter) {
 
 TEST(BaselineFile, SaysWhatItExpected) {
   const std::string good = format_baseline({.kind = "nmf", .brdf = random_separable()});
-  EXPECT_EQ(error_of(good), "");
-  EXPECT_THAT(error_of("{"), HasSubstr("test.json: expected a baseline in JSON"));
-  EXPECT_THAT(error_of("{}"), HasSubstr("kind"));
-  EXPECT_THAT(error_of(replaced(good, "nmf", "pca")),
+  EXPECT_EQ(error_in(good), "");
+  EXPECT_THAT(error_in("{"), HasSubstr("test.file: expected a baseline in JSON"));
+  EXPECT_THAT(error_in("{}"), HasSubstr("kind"));
+  EXPECT_THAT(error_in(replaced(good, "nmf", "pca")),
               HasSubstr("svd, nd, nmf, dgf or analytic, found 'pca'"));
-  EXPECT_THAT(error_of(replaced(good, "nmf", "dgf")), HasSubstr("tables: expected 3, found 2"));
-  EXPECT_THAT(error_of(replaced(good, "nmf", "analytic")), HasSubstr("tables: expected 0, found 2"));
-  EXPECT_THAT(error_of(replaced(good, "theta_h", "theta_z")), HasSubstr("'theta_z'"));
-  EXPECT_THAT(error_of(replaced(good, R"("count":7)", R"("count":8)")), HasSubstr("values"));
-  EXPECT_THAT(error_of(replaced(good, R"("count":7)", R"("count":2000000000)")),
+  EXPECT_THAT(error_in(replaced(good, "nmf", "dgf")), HasSubstr("tables: expected 3, found 2"));
+  EXPECT_THAT(error_in(replaced(good, "nmf", "analytic")), HasSubstr("tables: expected 0, found 2"));
+  EXPECT_THAT(error_in(replaced(good, "theta_h", "theta_z")), HasSubstr("'theta_z'"));
+  EXPECT_THAT(error_in(replaced(good, R"("count":7)", R"("count":8)")), HasSubstr("values"));
+  EXPECT_THAT(error_in(replaced(good, R"("count":7)", R"("count":2000000000)")),
               HasSubstr("nodes along theta_h"));
-  EXPECT_THAT(error_of(replaced(good, R"("terms":2)", R"("terms":0)")), HasSubstr("term"));
-  EXPECT_THAT(error_of(replaced(good, R"("values":[)", R"("values":[1e300,)")), HasSubstr("table 'u'"));
-  EXPECT_THAT(error_of(replaced(good, R"("notes":{})", R"("notes":[])")), HasSubstr("notes"));
-  EXPECT_THAT(error_of(replaced(good, R"("name":"u")", R"("name":"w")")), HasSubstr("'u', found 'w'"));
+  EXPECT_THAT(error_in(replaced(good, R"("terms":2)", R"("terms":0)")), HasSubstr("term"));
+  EXPECT_THAT(error_in(replaced(good, R"("values":[)", R"("values":[1e300,)")), HasSubstr("table 'u'"));
+  EXPECT_THAT(error_in(replaced(good, R"("notes":{})", R"("notes":[])")), HasSubstr("notes"));
+  EXPECT_THAT(error_in(replaced(good, R"("name":"u")", R"("name":"w")")), HasSubstr("'u', found 'w'"));
   const std::string analytic = format_baseline({.kind = "analytic", .brdf = parse_analytic("ggx")});
-  EXPECT_THAT(error_of(replaced(analytic, "ggx", "ggz")), HasSubstr("'ggz'"));
-  EXPECT_THAT(error_of(replaced(analytic, "0.2", "7")), HasSubstr("alpha_x"));
+  EXPECT_THAT(error_in(replaced(analytic, "ggx", "ggz")), HasSubstr("'ggz'"));
+  EXPECT_THAT(error_in(replaced(analytic, "0.2", "7")), HasSubstr("alpha_x"));
 }
 
 TEST(BaselineFile, RefusesDeepNesting) {
   const std::string deep = std::string(100'000, '[');
-  EXPECT_THAT(error_of("{\"kind\":" + deep), HasSubstr("expected a baseline"));
+  EXPECT_THAT(error_in("{\"kind\":" + deep), HasSubstr("expected a baseline"));
 }
 
 TEST(EvaluationCost, CountsLookupsAndProducts) {

@@ -103,7 +103,9 @@ void add_shading(const std::string& name, std::optional<PowerMethod> method) {
   for (std::size_t i = 0; i < kCount; ++i) {
     const Vec3 n = (0.8 + 0.2 * random.uniform()) *
                    spherical_direction(kHalfPi * random.uniform(), kTwoPi * random.uniform());
-    x[i] = static_cast<float>(n.x), y[i] = static_cast<float>(n.y), z[i] = static_cast<float>(n.z);
+    x[i] = static_cast<float>(n.x);
+    y[i] = static_cast<float>(n.y);
+    z[i] = static_cast<float>(n.z);
   }
   shade_blinn_phong(material, {x, y, z}, out);
   const Vec3 h = half_vector(material.wi, material.wo);

@@ -59,7 +59,8 @@ TEST_P(PowerSpan, EqualsTheDefinitionWithOneExponentAValue) {
       x = static_cast<float>(lo * std::pow(1024 / lo, random.uniform()));
       x = std::clamp(x, static_cast<float>(lo), 1024.0f);
     }
-    e[0] = static_cast<float>(GetParam().min_exponent()), e[1] = 1024;
+    e[0] = static_cast<float>(GetParam().min_exponent());
+    e[1] = 1024;
     power_span(method, c, e, out);
     for (std::size_t i = 0; i < c.size(); ++i)
       ASSERT_NEAR(out[i], power(method, c[i], e[i]), allowance(method, c[i], e[i], true))
@@ -121,7 +122,8 @@ TEST(PowerSpans, ThereIsAWideTargetAndAFallback) {
 struct Normals {
   std::vector<float> x, y, z;
   void add(const Vec3& n) {
-    x.push_back(static_cast<float>(n.x)), y.push_back(static_cast<float>(n.y));
+    x.push_back(static_cast<float>(n.x));
+    y.push_back(static_cast<float>(n.y));
     z.push_back(static_cast<float>(n.z));
   }
   Vec3 unit(std::size_t i) const { return normalize({x[i], y[i], z[i]}); }

@@ -6,10 +6,8 @@
 #include <burnish/error.h>
 #include <burnish/eval/tabulated_sampler.h>
 #include <burnish/eval/visible_half_scalar.h>
+#include <burnish/math/highway_targets.h>
 
-// As in power_span.cpp: members need a fixed size of vectors.
-#define HWY_DISABLED_TARGETS \
-  (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "burnish/eval/tabulated_sampler.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
@@ -22,7 +20,8 @@ namespace burnish {
 namespace HWY_NAMESPACE {
 namespace {
 
-// Runs body(in, out) on whole vectors, then on the rest through buffers. Outputs may be inputs.
+// Runs body(in, out) on whole vectors, then on the rest through buffers filled up with 0. Unlike the loop of
+// vector_loop-inl.h for any count of outputs, which may be inputs.
 template <std::size_t kIn, std::size_t kOut, class Body>
 HWY_INLINE void for_each_vector(const float* const (&in)[kIn], float* const (&out)[kOut], std::size_t count,
                                 const Body& body) {
@@ -54,7 +53,10 @@ void draw_all(const SamplerView& tables, const float* const (&in)[5], float* con
   const SamplerView view = tables;
   for_each_vector(in, out, count, [&](const Reals(&from)[5], Reals(&to)[4]) HWY_ATTR {
     const auto wi = draw<kIsotropic, Reals, Ints>(view, from[0], from[1], from[2], from[3], from[4]);
-    to[0] = wi.x, to[1] = wi.y, to[2] = wi.z, to[3] = wi.pdf;
+    to[0] = wi.x;
+    to[1] = wi.y;
+    to[2] = wi.z;
+    to[3] = wi.pdf;
   });
 }
 
@@ -69,11 +71,17 @@ void density_all(const SamplerView& tables, const float* const (&in)[6], float* 
 
 void run_draw(bool isotropic, const SamplerView& view, const float* const (&in)[5], float* const (&out)[4],
               std::size_t count) {
-  isotropic ? draw_all<true>(view, in, out, count) : draw_all<false>(view, in, out, count);
+  if (isotropic)
+    draw_all<true>(view, in, out, count);
+  else
+    draw_all<false>(view, in, out, count);
 }
 void run_density(bool isotropic, const SamplerView& view, const float* const (&in)[6], float* const (&out)[1],
                  std::size_t count) {
-  isotropic ? density_all<true>(view, in, out, count) : density_all<false>(view, in, out, count);
+  if (isotropic)
+    density_all<true>(view, in, out, count);
+  else
+    density_all<false>(view, in, out, count);
 }
 
 }  // namespace
@@ -137,6 +145,8 @@ struct TabulatedSampler::Tables {
          isotropic ? options.wo_phis == 1 : options.wo_phis >= 2 && options.wo_phis <= 256);
     size("rows", options.rows, power(options.rows));
     size("columns", options.columns, power(options.columns));
+
+    // the map that suits this BRDF best, and the sizes of the tables
     std::vector<double> f(static_cast<std::size_t>(brdf.channels()));
     static_cast<VisibleHalfMap&>(view) = fit_map(brdf, options, f);
     view.thetas = options.wo_thetas;
@@ -146,10 +156,14 @@ struct TabulatedSampler::Tables {
     view.per_row = 1.0 / view.rows;
     view.per_column = 1.0 / view.columns;
     view.theta_scale = (options.wo_thetas - 1) / last_ring();
+
+    // one slice a wo; an edge of 0 follows the last, where 65536 would be
     for (int ring = 0; ring < view.thetas; ++ring)
       for (int turn = 0; turn < view.phis; ++turn)
-        isotropic ? add_slice<true>(brdf, wo_of(options, ring, turn), f)
-                  : add_slice<false>(brdf, wo_of(options, ring, turn), f);
+        if (isotropic)
+          add_slice<true>(brdf, wo_of(options, ring, turn), f);
+        else
+          add_slice<false>(brdf, wo_of(options, ring, turn), f);
     row_edges.push_back(0);
     cell_edges.push_back(0);
     view.row_edges = row_edges.data();
@@ -180,6 +194,7 @@ struct TabulatedSampler::Tables {
     return fit_visible_half_map(views, isotropic, options.rows, options.columns);
   }
 
+  // What is reflected in each cell, over rows and columns of the map at wo.
   template <bool kIsotropic>
   void add_slice(BrdfRef brdf, Vec3 wo, std::span<double> f) {
     constexpr int kAcross = 3;  // points a cell and axis

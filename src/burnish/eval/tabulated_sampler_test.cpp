@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
@@ -6,24 +7,18 @@
 
 #include <burnish/error.h>
 #include <burnish/eval/tabulated_sampler.h>
-#include <burnish/factors/model_spec.h>
 #include <burnish/math/random.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/half_vector_quadrature.h>
 #include <burnish/testing/brdfs.h>
+#include <burnish/testing/models.h>
 #include <burnish/testing/sampling.h>
 
 namespace burnish {
 namespace {
 
-struct ModelCase {
-  const char* name;
-  const char* expression;
-  std::vector<std::string> options;
-  int channels;
-};
-
-// Lines, disks and grids, every warp and kind of projection, one lobe and several.
+// With lobes that are drawn well: lines, disks and grids, every warp and kind of projection, one lobe and
+// several.
 const ModelCase kModels[] = {
     {"Pqp", "pqp", {"p=16", "q=64,rational:0.05"}, 3},
     {"Pqpr", "pqpr", {"p=16", "q=64", "r=16"}, 3},
@@ -38,6 +33,10 @@ const ModelCase kModels[] = {
     {"DiskAndLine", "p(wo) q(h) p(wi) + s(wo) t(h) s(wi)", {"p=8", "q=33x33,power:0.5", "s=9x9", "t=32"}, 3},
     {"Twist", "p(wo) q(h) p(wi) w(theta_t,theta_h)", {"p=8", "q=48", "w=5x8"}, 3},
 };
+
+const ModelCase& named(std::string_view name) {
+  return *std::ranges::find(kModels, name, &ModelCase::name);
+}
 
 // A highlight in every table of h, longer along one axis where the table is a disk; slopes elsewhere.
 FactoredBrdf glossy_model(const ModelCase& model) {
@@ -285,11 +284,14 @@ TEST(TabulatedSampler, TellsDensitiesOfMirrorDirectionsAtAnyView) {
       const float across = std::sqrt(1 - up * up), quarters = phi * static_cast<float>(kPi / 2);
       const float x = phi == 1 ? 0 : across * std::cos(quarters),
                   y = phi == 0 ? 0 : across * std::sin(quarters);
-      wo[0].push_back(x), wo[1].push_back(y), z.push_back(up);
-      wi[0].push_back(-x), wi[1].push_back(-y);
+      wo[0].push_back(x);
+      wo[1].push_back(y);
+      wi[0].push_back(-x);
+      wi[1].push_back(-y);
+      z.push_back(up);
     }
   pdf.resize(z.size());
-  const TabulatedSampler sampler(glossy_model(kModels[6]));
+  const TabulatedSampler sampler(glossy_model(named("Disks")));
   sampler.pdf(DirectionSpans{wi[0], wi[1], z, wo[0], wo[1], z}, pdf);
   for (std::size_t i = 0; i < z.size(); ++i) {
     const double one = sampler.pdf({wi[0][i], wi[1][i], z[i]}, {wo[0][i], wo[1][i], z[i]});
@@ -298,17 +300,25 @@ TEST(TabulatedSampler, TellsDensitiesOfMirrorDirectionsAtAnyView) {
   }
 }
 
+// Densities are never negative, directions drawn for a unit vector never of another length.
 TEST(TabulatedSampler, SurvivesAnythingInPlaceOfDirections) {
+  const auto density = [](double pdf) { return std::isnan(pdf) || pdf >= 0; };
+  const auto reflected = [](Vec3 wi, Vec3 wo) {
+    return length(wo) != 1 || std::isnan(length(wi)) || std::abs(length(wi) - 1) < 1e-5;
+  };
   const double odd[] = {NAN, INFINITY, -INFINITY, 1e30, -1e30, 1e-40, 0, 1, -1};
   std::vector<float> in[5];
   std::vector<float> out[4], pdf;
-  for (const ModelCase& model : {kModels[0], kModels[6]}) {
-    const TabulatedSampler sampler(glossy_model(model));
+  for (const char* name : {"Pqp", "Disks"}) {
+    const TabulatedSampler sampler(glossy_model(named(name)));
     for (const double a : odd)
       for (const double b : odd)
         for (const double z : odd) {
-          sampler.sample_wi({a, b, z}, {b, z});
-          sampler.pdf({a, b, z}, {b, z, a});
+          const Vec3 wo{a, b, z};
+          const DrawnDirection drawn = sampler.sample_wi(wo, {b, z});
+          EXPECT_TRUE(density(drawn.pdf)) << a << " " << b << " " << z << ": " << drawn.pdf;
+          EXPECT_TRUE(reflected(drawn.wi, wo)) << a << " " << b << " " << z << ": " << length(drawn.wi);
+          EXPECT_TRUE(density(sampler.pdf(wo, {b, z, a}))) << a << " " << b << " " << z;
           const double values[] = {a, b, z, b, z};
           for (int k = 0; k < 5; ++k) in[k].push_back(static_cast<float>(values[k]));
         }
@@ -317,6 +327,11 @@ TEST(TabulatedSampler, SurvivesAnythingInPlaceOfDirections) {
     sampler.sample_wi(DrawSpans{in[0], in[1], in[2], in[3], in[4]},
                       DrawnSpans{out[0], out[1], out[2], out[3]});
     sampler.pdf(DirectionSpans{in[0], in[1], in[2], in[2], in[0], in[1]}, pdf);
+    for (std::size_t i = 0; i < pdf.size(); ++i) {
+      EXPECT_TRUE(density(pdf[i])) << i << ": " << pdf[i];
+      EXPECT_TRUE(density(out[3][i])) << i << ": " << out[3][i];
+      EXPECT_TRUE(reflected({out[0][i], out[1][i], out[2][i]}, {in[0][i], in[1][i], in[2][i]})) << i;
+    }
   }
 }
 

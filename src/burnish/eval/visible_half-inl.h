@@ -10,8 +10,9 @@
 //                         sum_s weight[s] table[start[s] + entry] <= target; the first entries are 0
 // found by argument.
 
+/// A unit vector of the plane.
 template <class F>
-struct Axis {
+struct PlaneAxis {
   F x, y;
 };
 
@@ -29,7 +30,7 @@ SAMPLER_INLINE Arrow<F> arrow(F x, F y) {
 }
 /// arrow() over its length.
 template <class F>
-SAMPLER_INLINE Axis<F> unit_axis(F x, F y) {
+SAMPLER_INLINE PlaneAxis<F> unit_axis(F x, F y) {
   const Arrow<F> to = arrow(x, y);
   const F inverse = F(1.0) / to.length;
   return {to.x * inverse, to.y * inverse};
@@ -180,8 +181,9 @@ struct Placed {
 /// The direction at turn and v. Of isotropic tables the turn is that from the azimuth `plane` of wo, to the
 /// side that the sign of `side` tells.
 template <bool kIsotropic, class F, class View>
-SAMPLER_INLINE Placed<F> place(const View& view, F wo_x, F wo_y, F wo_z, Axis<F> plane, F turned, F v,
+SAMPLER_INLINE Placed<F> place(const View& view, F wo_x, F wo_y, F wo_z, PlaneAxis<F> plane, F turned, F v,
                                F side) {
+  // the half vector's azimuth
   const F w = abs(turned - F(2.0)) - F(1.0);
   F x, y, length2, length, narrowing(1.0);  // (x, y): towards the azimuth
   if constexpr (kIsotropic) {
@@ -198,9 +200,11 @@ SAMPLER_INLINE Placed<F> place(const View& view, F wo_x, F wo_y, F wo_z, Axis<F>
     length = sqrt(length2);
     narrowing = length2 / (axis.length * axis.length);
   }
+  // its polar angle, m = tan^2(theta_h / 2)
   const F along = wo_x * x + wo_y * y;
   const Ray<F> ray(view, narrowing, along, wo_z * length, wo_z * wo_z * length2);
   const F m = ray.from_unit(v);
+  // wo reflected about it
   const F norm = F(1.0) / (F(1.0) + m), cosine = (F(1.0) - m) * norm;
   const F sine = F(2.0) / length * norm * sqrt(m);  // over length
   const F to_half = along * sine + wo_z * cosine, twice = to_half + to_half;
@@ -218,17 +222,20 @@ inline constexpr double kEdgeUnit = 65536;
 template <bool kIsotropic, class F, class I, class View>
 SAMPLER_INLINE Drawn<F> draw(const View& view, F wo_x, F wo_y, F wo_z, F u_x, F u_y) {
   constexpr int kSlices = kIsotropic ? 2 : 3;
-  const Axis<F> plane = unit_axis(wo_x, wo_y);
+  const PlaneAxis<F> plane = unit_axis(wo_x, wo_y);
   const Mix<kSlices, F, I> mix = mix_for<kSlices, F, I>(view, wo_x, wo_y, wo_z);
+  // the place in a cell, linear between its edges
   const auto within = [](F target, const Interval<kSlices, F, I>& i) {
     return to_real(i.index) + max(min((target - i.lower) / i.mass, F(1.0)), F(0.0));
   };
 
+  // the row, then where in it; isotropic tables have one side of the plane of wo, u_x < 1/2 is the other
   const F uniform = kIsotropic ? abs(u_x + u_x - F(1.0)) : u_x;
   const F row_target = uniform * F(kEdgeUnit);
   const auto row = find_interval<kSlices, F, I>(view.row_edges, mix.row, mix.weight, view.rows, row_target);
   const F around = within(row_target, row) * F((kIsotropic ? 2.0 : 4.0) * view.per_row);
 
+  // the column in that row, its slices weighed by what the row has in each
   I start[kSlices];
   for (int s = 0; s < kSlices; ++s) start[s] = (mix.row[s] + row.index) * I(view.columns);
   const F column_target = u_y * row.mass * F(kEdgeUnit);
@@ -236,6 +243,7 @@ SAMPLER_INLINE Drawn<F> draw(const View& view, F wo_x, F wo_y, F wo_z, F u_x, F 
       find_interval<kSlices, F, I>(view.cell_edges, start, row.slice_mass, view.columns, column_target);
   const F v = within(column_target, column) * F(view.per_column);
 
+  // the direction there; the cell's density times the map's
   const Placed<F> wi = place<kIsotropic>(view, wo_x, wo_y, wo_z, plane, around, v, u_x - F(0.5));
   const F cells = F(0.25 / (kEdgeUnit * kEdgeUnit) * view.rows * view.columns);
   return {wi.x, wi.y, wi.z, if_true(less_or_equal(wi.z, F(0.0)), F(0.0), column.mass * cells * wi.density)};
@@ -245,7 +253,8 @@ template <bool kIsotropic, class F, class I, class View>
 SAMPLER_INLINE F density(const View& view, F wi_x, F wi_y, F wi_z, F wo_x, F wo_y, F wo_z) {
   constexpr int kSlices = kIsotropic ? 2 : 3;
   const Mix<kSlices, F, I> mix = mix_for<kSlices, F, I>(view, wo_x, wo_y, wo_z);
-  // as of arrow(); lengths of vectors are left in wherever only their ratios count
+  // the half vector: m = tan^2(theta_h / 2) and its azimuth, or what M makes of it; as of arrow(), and lengths
+  // of vectors are left in wherever only their ratios count
   const F x = wi_x + wo_x + F(1e-15), y = wi_y + wo_y, z = wi_z + wo_z;
   const F across = x * x + y * y, norm = sqrt(across), length = sqrt(across + z * z), up = length + z;
   const F m = across / (up * up);
@@ -263,6 +272,7 @@ SAMPLER_INLINE F density(const View& view, F wi_x, F wi_y, F wi_z, F wo_x, F wo_
   const F w = place_on_half_circle(image);
   const Ray<F> ray(view, narrowing, wo_x * x + wo_y * y, wo_z * norm, wo_z * wo_z * across);
 
+  // the cell that holds it
   const auto cell = [](F unit, int count) { return min(max(to_int(unit), I(0)), I(count - 1)); };
   const I row_index = cell(turn(w, image.y) * F(view.rows / (kIsotropic ? 2.0 : 4.0)), view.rows);
   const I column_index = cell(ray.to_unit(m) * F(view.columns), view.columns);

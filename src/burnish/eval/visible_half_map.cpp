@@ -12,14 +12,14 @@ namespace burnish {
 namespace {
 
 // A half vector of a view's rule, as maps see it.
-struct Point {
+struct HalfPoint {
   double x, y, m, along, to_half;  // unit azimuth (isotropic: from wo), tan^2(theta_h / 2), wo.azimuth, wo.h
   double light, squares;           // sums of the solid angle's size and size squared
 };
 
 struct PreparedView {
   double up;
-  std::vector<Point> points;
+  std::vector<HalfPoint> points;
   double total = 0;
 };
 
@@ -52,7 +52,7 @@ double second_moment(const std::vector<PreparedView>& views, const VisibleHalfMa
   for (const PreparedView& v : views) {
     std::fill(light.begin(), light.end(), 0.0);
     std::fill(squares.begin(), squares.end(), 0.0);
-    for (const Point& p : v.points) {
+    for (const HalfPoint& p : v.points) {
       const double x = map.xx * p.x + map.xy * p.y, y = map.xy * p.x + map.yy * p.y;
       const double stretch = x * x + y * y, narrowing = 1 / stretch;
       const double w = scalar::place_on_half_circle(scalar::Arrow<double>{x, y, std::sqrt(stretch)});
@@ -64,6 +64,7 @@ double second_moment(const std::vector<PreparedView>& views, const VisibleHalfMa
       light[cell] += p.light;
       squares[cell] += p.squares / ray.density(p.m, p.to_half, scalar::turning(w, narrowing));
     }
+    // over the cells: squares of the light over its share
     double sum = 0;
     for (std::size_t cell = 0; cell < light.size(); ++cell)
       if (light[cell] > 0) sum += squares[cell] / light[cell];
@@ -93,6 +94,8 @@ VisibleHalfMap fit_visible_half_map(const std::vector<ReflectedLight>& views, bo
   std::vector<double> light(cells), squares(cells);
   double least = std::numeric_limits<double>::infinity();
   std::array<double, 4> at{};  // log sharpness, share, log aspect, turn
+
+  // takes parameters that are better than the best so far
   const auto consider = [&](std::array<double, 4> p) {
     p[0] = std::clamp(p[0], std::log(1e-7), std::log(1.0));
     p[1] = std::clamp(p[1], 0.0, 0.98);
@@ -104,6 +107,8 @@ VisibleHalfMap fit_visible_half_map(const std::vector<ReflectedLight>& views, bo
     at = p;
     return true;
   };
+
+  // first a grid of round maps, then stretched ones around the best
   for (int k = 0; k < 12; ++k)
     for (const double share : {0.3, 0.6, 0.85, 0.95}) consider({-1.25 * k, share, 0, 0});
   if (!isotropic) {
@@ -113,9 +118,10 @@ VisibleHalfMap fit_visible_half_map(const std::vector<ReflectedLight>& views, bo
         for (const double narrower : {0.0, 1.0})
           consider({round[0] - narrower, round[1], aspect, k * kPi / 4});
   }
+
+  // then one parameter after another, as long as it helps, by ever smaller steps
   std::array<double, 4> step{0.6, 0.1, 0.25, kPi / 12};
-  for (int pass = 0; pass < 5; ++pass, std::ranges::for_each(
-                                           step, [](double& s) { s *= 0.6; }))
+  for (int pass = 0; pass < 5; ++pass) {
     for (std::size_t k = 0; k < (isotropic ? 2 : 4); ++k)
       for (const double sign : {-1.0, 1.0})
         for (int moves = 0; moves < 3; ++moves) {
@@ -123,6 +129,8 @@ VisibleHalfMap fit_visible_half_map(const std::vector<ReflectedLight>& views, bo
           next[k] += sign * step[k];
           if (!consider(next)) break;
         }
+    for (double& s : step) s *= 0.6;
+  }
   return best;
 }
 

@@ -94,6 +94,8 @@ FactoredBrdf::FactoredBrdf(int channels, std::vector<Table> tables, std::vector<
   if (channels < 1 || channels > kMostChannels)
     throw Error(fmt::format("factored BRDF: expected 1 to {} channels, found {}", kMostChannels, channels));
   if (lobes_.empty()) throw Error("factored BRDF: expected at least one lobe, found none");
+
+  // tables: names, sizes, values
   std::set<std::string> names;
   for (const Table& table : tables_) {
     check_layout(table.layout, table.name);
@@ -117,7 +119,7 @@ FactoredBrdf::FactoredBrdf(int channels, std::vector<Table> tables, std::vector<
       if (!(s >= 0) || !std::isfinite(s))
         throw Error(fmt::format("lobe: expected finite scales >= 0, found {}", s));
 
-    // Order the factors so that those exchanged by swapping stand side by side.
+    // order the factors so that those exchanged by swapping stand side by side
     std::vector<FactorUse> rest = lobe.factors, pairs, singles;
     while (!rest.empty()) {
       const FactorUse use = rest.front();
@@ -125,7 +127,7 @@ FactoredBrdf::FactoredBrdf(int channels, std::vector<Table> tables, std::vector<
       if (use.table < 0 || static_cast<std::size_t>(use.table) >= tables_.size())
         throw Error(
             fmt::format("lobe: expected a table index below {}, found {}", tables_.size(), use.table));
-      const TableLayout& layout = tables_[static_cast<std::size_t>(use.table)].layout;
+      const TableLayout& layout = layout_of(use);
       isotropic_ = isotropic_ && !depends_on_azimuth(layout);
       if (depends_on_azimuth(layout) && is_angle_alone(use.projection))
         throw Error("lobe: expected a disk over a projection with an azimuth, found " +
@@ -141,6 +143,8 @@ FactoredBrdf::FactoredBrdf(int channels, std::vector<Table> tables, std::vector<
         singles.push_back(use);
       }
     }
+
+    // pairs first; lookups at one place are found once
     pair_counts_.push_back(pairs.size() / 2);
     pairs.insert(pairs.end(), singles.begin(), singles.end());
     std::vector<std::size_t>& place_of = place_of_.emplace_back();
@@ -158,10 +162,14 @@ FactoredBrdf::FactoredBrdf(int channels, std::vector<Table> tables, std::vector<
 bool FactoredBrdf::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   std::fill(f.begin(), f.end(), 0.0);
   if (wi.z <= 0 || wo.z <= 0) return true;
+
+  // every distinct place once
   std::array<Lookup, kMostPlaces> places;     // touched up to their count,
   std::array<double, kMostChannels> product;  // up to channels_ only
   for (std::size_t p = 0; p < std::min(kMostPlaces, places_.size()); ++p)
     places[p] = locate(layout_of(places_[p]), places_[p], wi, wo);
+
+  // sum over lobes of scale times pairs times the other factors [HomomorphicBrdf, eq. 4]
   const auto channels = static_cast<std::size_t>(channels_);
   for (std::size_t j = 0; j < lobes_.size(); ++j) {
     for (std::size_t c = 0; c < channels; ++c) product[c] = lobes_[j].scale[c];
@@ -171,14 +179,13 @@ bool FactoredBrdf::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
       return p < kMostPlaces ? places[p] : locate(layout_of(uses[k]), uses[k], wi, wo);
     };
     std::size_t k = 0;
-    // [HomomorphicBrdf, eq. 4]
     for (; k < 2 * pair_counts_[j]; k += 2) {
-      const Table& table = tables_[static_cast<std::size_t>(uses[k].table)];
+      const Table& table = table_of(uses[k]);
       const Lookup a = place(k), b = place(k + 1);
       for (std::size_t c = 0; c < channels; ++c) product[c] *= lookup(table, a, c) * lookup(table, b, c);
     }
     for (; k < uses.size(); ++k) {
-      const Table& table = tables_[static_cast<std::size_t>(uses[k].table)];
+      const Table& table = table_of(uses[k]);
       const Lookup at = place(k);
       for (std::size_t c = 0; c < channels; ++c) product[c] *= lookup(table, at, c);
     }
@@ -210,7 +217,7 @@ std::size_t FactoredBrdf::bytes() const noexcept {
     parameters += lobe.scale.size();
     for (const FactorUse& use : lobe.factors) {
       parameters += static_cast<std::size_t>(coefficient_count(use.projection));
-      if (tables_[static_cast<std::size_t>(use.table)].layout.shape == TableShape::grid)
+      if (layout_of(use).shape == TableShape::grid)
         parameters += static_cast<std::size_t>(coefficient_count(use.projection_y));
     }
   }
@@ -260,7 +267,7 @@ std::string model_expression(const FactoredBrdf& brdf) {
     if (!text.empty()) text += " + ";
     for (std::size_t k = 0; k < lobe.factors.size(); ++k) {
       const FactorUse& use = lobe.factors[k];
-      const Table& table = brdf.tables()[static_cast<std::size_t>(use.table)];
+      const Table& table = brdf.table_of(use);
       // where only the polar angle counts, say so
       const bool angle = table.layout.shape == TableShape::line && use.projection == kProjectDifference;
       text += fmt::format("{}{}({}", k ? " " : "", table.name, angle ? "theta_d" : to_string(use.projection));

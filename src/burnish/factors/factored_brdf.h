@@ -37,6 +37,10 @@ class FactoredBrdf {
 
   std::span<const Table> tables() const noexcept { return tables_; }
   std::span<const Lobe> lobes() const noexcept { return lobes_; }
+  /// The table that a factor looks up. Precondition: use.table is below tables().size().
+  const Table& table_of(const FactorUse& use) const noexcept {
+    return tables_[static_cast<std::size_t>(use.table)];
+  }
   /// Factors of lobe j in evaluation order: first 2 * pair_count(j) in pairs that swapping wi and wo
   /// exchanges, each pair multiplied with itself before anything else, then the rest.
   std::span<const FactorUse> ordered_factors(std::size_t j) const noexcept { return ordered_[j]; }
@@ -55,9 +59,7 @@ class FactoredBrdf {
   friend bool operator==(const FactoredBrdf&, const FactoredBrdf&) = default;
 
  private:
-  const TableLayout& layout_of(const FactorUse& use) const noexcept {
-    return tables_[static_cast<std::size_t>(use.table)].layout;
-  }
+  const TableLayout& layout_of(const FactorUse& use) const noexcept { return table_of(use).layout; }
 
   int channels_ = 0;
   bool isotropic_ = true, reciprocal_ = true;

@@ -11,6 +11,7 @@
 #include <burnish/math/angles.h>
 #include <burnish/math/random.h>
 #include <burnish/reflectance/goniometer.h>
+#include <burnish/testing/tools.h>
 
 namespace burnish {
 namespace {
@@ -220,11 +221,6 @@ TEST(ModelSpec, RefusesWhatItDoesNotKnow) {
   EXPECT_THROW(parse_model_spec("pqpr", std::vector<std::string>{"r=8x8"}, true), Error);
 }
 
-FileBytes as_file(const std::string& text) {
-  const auto* bytes = reinterpret_cast<const std::byte*>(text.data());
-  return {"model.exr", {bytes, bytes + text.size()}};
-}
-
 // The text with one part replaced by another, padded with spaces to the same length.
 std::string replaced(std::string text, const std::string& from, std::string to) {
   const auto at = text.find(from);
@@ -244,7 +240,7 @@ TEST(ModelFile, RestoresModelsToTheLastBit) {
                   .notes = R"({"source":"random","error":0.1})"};
       for (int c = 0; channels == 31 && c < channels; ++c) model.lambda_nm.push_back(400 + 10 * c);
       const std::string bytes = format_model(model);
-      const FileBytes file = as_file(bytes);
+      const FileBytes file = memory_file(bytes);
       EXPECT_TRUE(looks_like_exr(file.bytes));
       const Model again = parse_model(file);
       EXPECT_EQ(again.brdf.tables().size(), model.brdf.tables().size());
@@ -266,7 +262,7 @@ TEST(ModelFile, RestoresMixedFormats) {
   }
   const Lobe lobe{.scale = {0, 0, 0}, .factors = {{.table = 3, .projection = kProjectWi}}};
   const Model model{.brdf = from_log_tables(3, tables, {lobe})};
-  EXPECT_EQ(parse_model(as_file(format_model(model))), model);
+  EXPECT_EQ(parse_model(memory_file(format_model(model))), model);
 }
 
 TEST(ModelFile, ReadsFilesOfVersionOne) {
@@ -276,13 +272,13 @@ TEST(ModelFile, ReadsFilesOfVersionOne) {
   bytes = replaced(bytes, "\"version\":2", "\"version\":1");
   bytes = replaced(bytes, "\"format\":\"half\",", "");
   bytes = replaced(bytes, "\"notes\":" + model.notes, "\"notes\":{},\"format\":\"half\"");
-  EXPECT_EQ(parse_model(as_file(bytes)).brdf, model.brdf);
+  EXPECT_EQ(parse_model(memory_file(bytes)).brdf, model.brdf);
 }
 
 TEST(ModelFile, RefusesFormatsThatTheValuesContradict) {
   const auto with_format = [](TableFormat truth, const std::string& stated) {
     const std::string bytes = format_model({.brdf = random_model("pqp", {}, 3, truth)});
-    return as_file(replaced(bytes, "\"" + std::string(to_string(truth)) + "\"", "\"" + stated + "\""));
+    return memory_file(replaced(bytes, "\"" + std::string(to_string(truth)) + "\"", "\"" + stated + "\""));
   };
   EXPECT_NO_THROW(parse_model(with_format(TableFormat::rgb9e5, "half")));  // true, if not all of the truth
   EXPECT_NO_THROW(parse_model(with_format(TableFormat::unorm8, "float")));
@@ -296,7 +292,7 @@ TEST(ModelFile, RefusesFormatsThatTheValuesContradict) {
 TEST(ModelFile, RefusesDamagedFiles) {
   const std::string bytes =
       format_model({.brdf = random_model("pqp", {"p=8", "q=8x8"}, 3, TableFormat::half)});
-  const auto parse = [](const std::string& text) { return parse_model(as_file(text)); };
+  const auto parse = [](const std::string& text) { return parse_model(memory_file(text)); };
   for (std::size_t n = 1; n < bytes.size(); n += n < 64 ? 1 : 61)
     EXPECT_THROW(parse(bytes.substr(0, n)), Error) << n;
   EXPECT_THROW(parse(replaced(bytes, "\"version\":2", "\"version\":7")), Error);

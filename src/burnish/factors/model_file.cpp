@@ -197,7 +197,7 @@ Json to_json(const Model& model) {
   for (const Lobe& l : brdf.lobes()) {
     Json factors = Json::array();
     for (const FactorUse& use : l.factors) {
-      const Table& table = brdf.tables()[static_cast<std::size_t>(use.table)];
+      const Table& table = brdf.table_of(use);
       Json factor{{"table", table.name}, {"projection", to_string(use.projection)}};
       if (table.layout.shape == TableShape::grid) factor["projection_y"] = to_string(use.projection_y);
       factors.push_back(std::move(factor));

@@ -32,8 +32,10 @@ int parse_size(std::string_view text, std::string_view option) {
   return n;
 }
 
-std::map<std::string, TableOption, std::less<>> parse_table_options(std::span<const std::string> options) {
-  std::map<std::string, TableOption, std::less<>> result;
+using TableOptions = std::map<std::string, TableOption, std::less<>>;
+
+TableOptions parse_table_options(std::span<const std::string> options) {
+  TableOptions result;
   for (const std::string& text : options) {
     const auto equals = text.find('=');
     if (equals == text.npos || equals == 0)
@@ -105,65 +107,86 @@ class Parser {
   std::string_view text_, rest_;
 };
 
+/// NAME(PROJECTION) or NAME(PROJECTION,PROJECTION).
+struct ParsedFactor {
+  std::string name;
+  FactorUse use;
+  bool grid = false, angle_only = false;
+};
+
+ParsedFactor parse_factor(Parser& parser) {
+  ParsedFactor factor{.name = parser.name(), .use = {}};
+  parser.expect('(');
+  factor.use.projection = parse_projection(parser.until_bracket_or_comma(), factor.angle_only);
+  factor.grid = parser.accept(',');
+  bool second_angle_only = false;
+  if (factor.grid)
+    factor.use.projection_y = parse_projection(parser.until_bracket_or_comma(), second_angle_only);
+  parser.expect(')');
+  return factor;
+}
+
+/// The table that a factor asks for: as the options say, else of the size that its projection needs.
+ModelSpec::TableSpec table_for(const ParsedFactor& factor, const TableOptions& options, bool isotropic) {
+  ModelSpec::TableSpec table{.name = factor.name};
+  TableLayout& layout = table.layout;
+  const bool over_half = factor.use.projection == kProjectHalf;
+  const auto given = options.find(factor.name);
+  if (given != options.end()) {
+    const TableOption& o = given->second;
+    layout = {.shape = factor.grid     ? TableShape::grid
+                       : o.height == 1 ? TableShape::line
+                                       : TableShape::disk,
+              .width = o.width,
+              .height = o.height};
+    table.shared = o.shared;
+    table.format = o.format;
+  } else if (factor.grid) {
+    layout = {.shape = TableShape::grid, .width = kLineNodes, .height = kLineNodes};
+  } else if (isotropic || factor.angle_only) {
+    layout = {.shape = TableShape::line, .width = over_half ? kHalfLineNodes : kLineNodes};
+  } else {
+    layout = {.shape = TableShape::disk, .width = kDiskNodes, .height = kDiskNodes};
+  }
+
+  const bool warp_given = given != options.end() && given->second.has_warp;
+  layout.warp = warp_given ? given->second.warp : over_half ? kHalfWarp : Warp{};
+  if (factor.grid) layout.warp_y = factor.use.projection_y == kProjectHalf ? kHalfWarp : Warp{};
+  if (factor.angle_only && layout.shape == TableShape::disk)
+    throw Error(fmt::format("table '{}': expected a size N for a polar angle, found NxN", factor.name));
+  check_layout(layout, factor.name);
+  return table;
+}
+
+/// The number of the table of that name, a new one for a new name.
+int add_table(ModelSpec& spec, ModelSpec::TableSpec table) {
+  const auto known = std::ranges::find(spec.tables, table.name, &ModelSpec::TableSpec::name);
+  const auto number = static_cast<int>(known - spec.tables.begin());
+  if (known == spec.tables.end())
+    spec.tables.push_back(std::move(table));
+  else if (known->layout.shape != table.layout.shape)
+    throw Error(fmt::format("table '{}': expected the same shape in every use, found two", table.name));
+  return number;
+}
+
 }  // namespace
 
 ModelSpec parse_model_spec(std::string_view expression, std::span<const std::string> table_options,
                            bool isotropic) {
   if (expression == "pqp") expression = "p(wo) q(h) p(wi)";
   if (expression == "pqpr") expression = "p(wo) q(h) r(theta_d) p(wi)";
-  auto options = parse_table_options(table_options);
+  const TableOptions options = parse_table_options(table_options);
 
+  // lobes are joined by +, a lobe's factors stand one after another
   ModelSpec spec;
   Parser parser(expression);
   bool more = true;
   while (more) {
     std::vector<FactorUse> lobe;
     do {
-      const std::string name = parser.name();
-      parser.expect('(');
-      bool angle_only = false, second_angle_only = false;
-      FactorUse use{.projection = parse_projection(parser.until_bracket_or_comma(), angle_only)};
-      const bool grid = parser.accept(',');
-      if (grid) use.projection_y = parse_projection(parser.until_bracket_or_comma(), second_angle_only);
-      parser.expect(')');
-
-      ModelSpec::TableSpec table{.name = name};
-      TableLayout& layout = table.layout;
-      const bool over_half = use.projection == kProjectHalf;
-      const auto given = options.find(name);
-      if (given != options.end()) {
-        const TableOption& o = given->second;
-        layout = {.shape = grid            ? TableShape::grid
-                           : o.height == 1 ? TableShape::line
-                                           : TableShape::disk,
-                  .width = o.width,
-                  .height = o.height};
-        table.shared = o.shared;
-        table.format = o.format;
-      } else if (grid) {
-        layout = {.shape = TableShape::grid, .width = kLineNodes, .height = kLineNodes};
-      } else if (isotropic || angle_only) {
-        layout = {.shape = TableShape::line, .width = over_half ? kHalfLineNodes : kLineNodes};
-      } else {
-        layout = {.shape = TableShape::disk, .width = kDiskNodes, .height = kDiskNodes};
-      }
-      const bool warp_given = given != options.end() && given->second.has_warp;
-      layout.warp = warp_given ? given->second.warp : over_half ? kHalfWarp : Warp{};
-      if (grid) layout.warp_y = use.projection_y == kProjectHalf ? kHalfWarp : Warp{};
-      if (angle_only && layout.shape == TableShape::disk)
-        throw Error(fmt::format("table '{}': expected a size N for a polar angle, found NxN", name));
-      check_layout(layout, name);
-
-      const auto known = std::ranges::find(spec.tables, name, &ModelSpec::TableSpec::name);
-      if (known == spec.tables.end()) {
-        use.table = static_cast<int>(spec.tables.size());
-        spec.tables.push_back(table);
-      } else {
-        use.table = static_cast<int>(known - spec.tables.begin());
-        if (known->layout.shape != layout.shape)
-          throw Error(fmt::format("table '{}': expected the same shape in every use, found two", name));
-      }
-      lobe.push_back(use);
+      const ParsedFactor factor = parse_factor(parser);
+      lobe.push_back(factor.use);
+      lobe.back().table = add_table(spec, table_for(factor, options, isotropic));
       more = parser.accept('+');
     } while (!parser.done() && !more);
     spec.lobes.push_back(std::move(lobe));

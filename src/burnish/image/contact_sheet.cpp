@@ -107,70 +107,93 @@ Image8 heat_map(const Image& values, double scale) {
   return map;
 }
 
-Image8 compose(const ContactSheet& sheet) {
+namespace {
+
+// Where everything of a sheet lies, in pixels: the title, the headings, then the rows.
+struct SheetLayout {
+  std::vector<int> widths, heights;  // of columns and rows
+  double row_label_width = 0;
+  int left = 0, heads = 0, top = 0, bar_x = 0, bottom = 0;
+  int width = 0, height = 0;
+};
+
+SheetLayout lay_out(const ContactSheet& sheet) {
+  // columns hold their headings and cells, rows their cells
   const std::size_t columns = sheet.column_labels.size(), rows = sheet.row_labels.size();
   if (sheet.cells.size() != rows)
     throw Error(fmt::format("a sheet of {} row labels with {} rows", rows, sheet.cells.size()));
-  std::vector<int> widths(columns), heights(rows);
+  SheetLayout at{.widths = std::vector<int>(columns), .heights = std::vector<int>(rows)};
   std::size_t head_lines = 0;
-  double row_label_width = 0;
   for (std::size_t c = 0; c < columns; ++c) {
     const auto lines = lines_of(sheet.column_labels[c]);
     head_lines = std::max(head_lines, lines.size());
     for (const auto& line : lines)
-      widths[c] = std::max(widths[c], static_cast<int>(std::ceil(text_width(line, kHeadCap))) + 2);
+      at.widths[c] = std::max(at.widths[c], static_cast<int>(std::ceil(text_width(line, kHeadCap))) + 2);
   }
   for (std::size_t r = 0; r < rows; ++r) {
     if (sheet.cells[r].size() != columns)
       throw Error(fmt::format("a sheet of {} column labels with {} columns", columns, sheet.cells[r].size()));
-    row_label_width = std::max(row_label_width, text_width(sheet.row_labels[r], kHeadCap));
+    at.row_label_width = std::max(at.row_label_width, text_width(sheet.row_labels[r], kHeadCap));
     for (std::size_t c = 0; c < columns; ++c) {
-      widths[c] = std::max(widths[c], sheet.cells[r][c].width);
-      heights[r] = std::max(heights[r], sheet.cells[r][c].height);
+      at.widths[c] = std::max(at.widths[c], sheet.cells[r][c].width);
+      at.heights[r] = std::max(at.heights[r], sheet.cells[r][c].height);
     }
   }
 
-  // place everything: the title, the headings, then the rows
-  const int left = kMargin + (row_label_width > 0 ? static_cast<int>(row_label_width) + 16 : 0);
-  const int heads = kMargin + (sheet.title.empty() ? 0 : static_cast<int>(kTitleCap) + 22);
-  const int top = heads + kLine * static_cast<int>(head_lines);
-  int width = left, height = top;
-  for (const int w : widths) width += w + kGap;
-  for (const int h : heights) height += h + kGap;
-  const int bar_x = width + 8;
-  width += kMargin - kGap + (sheet.color_bar ? 90 : 0);
-  width = std::max(width, static_cast<int>(text_width(sheet.title, kTitleCap)) + 2 * kMargin);
-  const int bottom = height - kGap;
-  Image8 image(width, bottom + kMargin, 3);
+  // one after another, with gaps
+  at.left = kMargin + (at.row_label_width > 0 ? static_cast<int>(at.row_label_width) + 16 : 0);
+  at.heads = kMargin + (sheet.title.empty() ? 0 : static_cast<int>(kTitleCap) + 22);
+  at.top = at.heads + kLine * static_cast<int>(head_lines);
+  at.width = at.left;
+  at.bottom = at.top - kGap;
+  for (const int w : at.widths) at.width += w + kGap;
+  for (const int h : at.heights) at.bottom += h + kGap;
+  at.bar_x = at.width + 8;
+  at.width += kMargin - kGap + (sheet.color_bar ? 90 : 0);
+  at.width = std::max(at.width, static_cast<int>(text_width(sheet.title, kTitleCap)) + 2 * kMargin);
+  at.height = at.bottom + kMargin;
+  return at;
+}
+
+}  // namespace
+
+Image8 compose(const ContactSheet& sheet) {
+  const SheetLayout at = lay_out(sheet);
+  Image8 image(at.width, at.height, 3);
   fill_rect(image, 0, 0, image.width, image.height, kGround);
 
+  // title and headings
   if (!sheet.title.empty())
     draw_text(image, {static_cast<double>(kMargin), kMargin + kTitleCap - 2}, sheet.title, kTitleCap, kInk);
-  for (std::size_t c = 0, x = static_cast<std::size_t>(left); c < columns;
-       x += static_cast<std::size_t>(widths[c++] + kGap)) {
+  int head_x = at.left;
+  for (std::size_t c = 0; c < at.widths.size(); ++c) {
     const auto lines = lines_of(sheet.column_labels[c]);
     for (std::size_t i = 0; i < lines.size(); ++i)
       draw_text(image,
-                {static_cast<double>(x) + 1,
-                 heads + kHeadCap + static_cast<double>(kLine * static_cast<int>(i)) - 4},
+                {static_cast<double>(head_x) + 1,
+                 at.heads + kHeadCap + static_cast<double>(kLine * static_cast<int>(i)) - 4},
                 lines[i], kHeadCap, i == 0 ? kInk : kMuted);
+    head_x += at.widths[c] + kGap;
   }
-  int y = top;
-  for (std::size_t r = 0; r < rows; ++r) {
-    draw_text(image, {kMargin + row_label_width, y + heights[r] / 2.0 + kHeadCap / 2}, sheet.row_labels[r],
-              kHeadCap, kMuted, Align::right);
-    int x = left;
-    for (std::size_t c = 0; c < columns; ++c) {
+
+  // rows of cells
+  int y = at.top;
+  for (std::size_t r = 0; r < at.heights.size(); ++r) {
+    draw_text(image, {kMargin + at.row_label_width, y + at.heights[r] / 2.0 + kHeadCap / 2},
+              sheet.row_labels[r], kHeadCap, kMuted, Align::right);
+    int x = at.left;
+    for (std::size_t c = 0; c < at.widths.size(); ++c) {
       const Image8& cell = sheet.cells[r][c];
       if (cell.width > 0) {
         fill_rect(image, x, y, x + cell.width, y + cell.height, kCell);
         blit(image, cell, x, y);
       }
-      x += widths[c] + kGap;
+      x += at.widths[c] + kGap;
     }
-    y += heights[r] + kGap;
+    y += at.heights[r] + kGap;
   }
-  if (sheet.color_bar) draw_color_bar(image, *sheet.color_bar, bar_x, top, std::min(bottom, top + 300));
+  if (sheet.color_bar)
+    draw_color_bar(image, *sheet.color_bar, at.bar_x, at.top, std::min(at.bottom, at.top + 300));
   return image;
 }
 

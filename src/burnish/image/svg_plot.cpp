@@ -61,7 +61,8 @@ double round_step(double span, int count) {
   return power * (lead < 1.5 ? 1 : lead < 3.5 ? 2 : lead < 7.5 ? 5 : 10);
 }
 
-struct Axis {
+// What values a side of the frame spans.
+struct PlotScale {
   double low = 0, high = 1;
   bool logarithmic = false;
 
@@ -71,22 +72,27 @@ struct Axis {
   double place(double v) const { return (scaled(v) - scaled(low)) / (scaled(high) - scaled(low)); }
 };
 
-Axis make_axis(const Plot& plot, std::vector<double> PlotSeries::*member, bool logarithmic,
-               std::optional<double> fixed_low, std::optional<double> fixed_high, bool widen,
-               const char* name) {
-  Axis axis{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(), logarithmic};
+PlotScale make_scale(const Plot& plot, std::vector<double> PlotSeries::*member, bool logarithmic,
+                     std::optional<double> fixed_low, std::optional<double> fixed_high, bool widen,
+                     const char* name) {
+  PlotScale axis{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+                 logarithmic};
   for (const PlotSeries& series : plot.series)
     for (const double v : series.*member)
       if (axis.shows(v)) {
         axis.low = std::min(axis.low, v);
         axis.high = std::max(axis.high, v);
       }
+
+  // nothing to show, or one value: still a span
   if (axis.low > axis.high) axis = {logarithmic ? 0.1 : 0.0, 1, logarithmic};
   if (axis.low == axis.high) {
     const double margin = axis.low != 0 ? std::abs(axis.low) / 2 : 0.5;
     axis.low -= margin;
     axis.high += margin;
   }
+
+  // to whole ticks, or by a little
   if (widen && !logarithmic) {
     const double step = round_step(axis.high - axis.low, 6);
     axis.low = step * std::floor(axis.low / step + 1e-9);
@@ -96,6 +102,7 @@ Axis make_axis(const Plot& plot, std::vector<double> PlotSeries::*member, bool l
     axis.low *= std::pow(10.0, -margin);
     axis.high *= std::pow(10.0, margin);
   }
+
   axis.low = fixed_low.value_or(axis.low);
   axis.high = fixed_high.value_or(axis.high);
   if (!(axis.low < axis.high) || !axis.shows(axis.low) || !axis.shows(axis.high))
@@ -143,11 +150,8 @@ double lay_out_legend(Drawing& drawing, const Plot& plot, const std::vector<Colo
   return any ? y : y - kRow;
 }
 
-Drawing lay_out(const Plot& plot) {
-  constexpr int kMinSize = 160, kMaxSize = 8192;
-  if (std::min(plot.width, plot.height) < kMinSize || std::max(plot.width, plot.height) > kMaxSize)
-    throw Error(fmt::format("expected a plot of {} to {} pixels, found {} x {}", kMinSize, kMaxSize,
-                            plot.width, plot.height));
+// One colour a series: its own, or the palette's next.
+std::vector<Color> colors_of(const Plot& plot) {
   std::vector<Color> colors;
   std::size_t from_palette = 0;
   for (const PlotSeries& series : plot.series) {
@@ -157,51 +161,41 @@ Drawing lay_out(const Plot& plot) {
     colors.push_back(parse_color(
         series.color.empty() ? std::string(kPalette[from_palette++ % kPalette.size()]) : series.color));
   }
-  const Axis x_axis = make_axis(plot, &PlotSeries::x, plot.log_x, plot.x_min, plot.x_max, plot.log_x, "x");
-  const Axis y_axis = make_axis(plot, &PlotSeries::y, plot.log_y, plot.y_min, plot.y_max, true, "y");
+  return colors;
+}
 
-  Drawing drawing{plot.width, plot.height, {}, {}, {}};
-  const std::vector<double> x_ticks =
-      axis_ticks(x_axis.low, x_axis.high, x_axis.logarithmic, std::max(2, plot.width / 110));
-  const std::vector<double> y_ticks =
-      axis_ticks(y_axis.low, y_axis.high, y_axis.logarithmic, std::max(2, plot.height / 65));
-  const auto step_of = [](const std::vector<double>& ticks) {
-    return ticks.size() > 1 ? ticks[1] - ticks[0] : 1.0;
-  };
-  double tick_width = 0;
-  for (const double v : y_ticks)
-    tick_width = std::max(tick_width, text_width(tick_label(v, step_of(y_ticks)), kTickCap));
+constexpr double kMargin = 16;
 
-  // margins: y label, tick labels, title and legend, x label
-  constexpr double kMargin = 16;
-  const double left = kMargin + (plot.y_label.empty() ? 0 : 22) + tick_width + 10;
-  const double right = plot.width - kMargin - 8;
-  double top = kMargin + 4;
-  if (!plot.title.empty()) {
-    drawing.texts.push_back({{left, top + kTitleCap}, plot.title, kTitleCap, kInk, Align::left, false, true});
-    top += kTitleCap + 14;
-  }
-  top = lay_out_legend(drawing, plot, colors, left, right, top + kTickCap) + 14;
-  const double bottom = plot.height - kMargin - (plot.x_label.empty() ? 0 : 22) - kTickCap - 6;
-  drawing.frame = {left, top, right, bottom};
+// The two scales, their ticks, and the frame they span in the drawing.
+struct PlotArea {
+  PlotScale x, y;
+  std::vector<double> x_ticks, y_ticks;
+  Box frame;
 
-  // grid and tick labels; half-pixel places keep thin lines crisp
-  const auto crisp = [](double v) { return std::floor(v) + 0.5; };
-  const auto to_x = [&](double v) { return left + (right - left) * x_axis.place(v); };
-  const auto to_y = [&](double v) { return bottom - (bottom - top) * y_axis.place(v); };
+  double to_x(double v) const { return frame.x0 + (frame.x1 - frame.x0) * x.place(v); }
+  double to_y(double v) const { return frame.y1 - (frame.y1 - frame.y0) * y.place(v); }
+};
+
+double step_of(const std::vector<double>& ticks) {
+  return ticks.size() > 1 ? ticks[1] - ticks[0] : 1.0;
+}
+
+// Grid, tick labels, the axes themselves and their labels.
+void lay_out_axes(Drawing& drawing, const Plot& plot, const PlotArea& area) {
+  const auto [left, top, right, bottom] = area.frame;
+  const auto crisp = [](double v) { return std::floor(v) + 0.5; };  // half-pixel places keep thin lines sharp
   Strokes grid{{}, 1, kGrid, false, false};
-  for (const double v : x_ticks) {
-    grid.lines.push_back({{crisp(to_x(v)), top}, {crisp(to_x(v)), bottom}});
+  for (const double v : area.x_ticks) {
+    const double x = area.to_x(v);
+    grid.lines.push_back({{crisp(x), top}, {crisp(x), bottom}});
     drawing.texts.push_back(
-        {{to_x(v), bottom + kTickCap + 8}, tick_label(v, step_of(x_ticks)), kTickCap, kMuted, Align::center});
+        {{x, bottom + kTickCap + 8}, tick_label(v, step_of(area.x_ticks)), kTickCap, kMuted, Align::center});
   }
-  for (const double v : y_ticks) {
-    grid.lines.push_back({{left, crisp(to_y(v))}, {right, crisp(to_y(v))}});
-    drawing.texts.push_back({{left - 8, to_y(v) + kTickCap / 2},
-                             tick_label(v, step_of(y_ticks)),
-                             kTickCap,
-                             kMuted,
-                             Align::right});
+  for (const double v : area.y_ticks) {
+    const double y = area.to_y(v);
+    grid.lines.push_back({{left, crisp(y)}, {right, crisp(y)}});
+    drawing.texts.push_back(
+        {{left - 8, y + kTickCap / 2}, tick_label(v, step_of(area.y_ticks)), kTickCap, kMuted, Align::right});
   }
   drawing.strokes.push_back(std::move(grid));
   drawing.strokes.push_back({{{{crisp(left), top}, {crisp(left), crisp(bottom)}, {right, crisp(bottom)}}},
@@ -215,28 +209,64 @@ Drawing lay_out(const Plot& plot) {
   if (!plot.y_label.empty())
     drawing.texts.push_back(
         {{kMargin + kLabelCap, (top + bottom) / 2}, plot.y_label, kLabelCap, kInk, Align::center, true});
+}
 
-  // the series, the first one on top
-  for (std::size_t i = plot.series.size(); i-- > 0;) {
-    const PlotSeries& series = plot.series[i];
-    Strokes curve{{}, kCurveWidth, colors[i], series.style == PlotStyle::dashed, true};
-    Strokes dots{{}, kDotWidth, colors[i], false, true};
-    bool broken = true;
-    for (std::size_t k = 0; k < series.x.size(); ++k) {
-      if (!x_axis.shows(series.x[k]) || !y_axis.shows(series.y[k])) {
-        broken = true;
-        continue;
-      }
-      const Point p{to_x(series.x[k]), to_y(series.y[k])};
-      if (broken) curve.lines.emplace_back();
-      broken = false;
-      curve.lines.back().push_back(p);
-      dots.lines.push_back({p});
+// A line breaks where a value cannot be shown.
+void lay_out_series(Drawing& drawing, const PlotSeries& series, Color color, const PlotArea& area) {
+  Strokes curve{{}, kCurveWidth, color, series.style == PlotStyle::dashed, true};
+  Strokes dots{{}, kDotWidth, color, false, true};
+  bool broken = true;
+  for (std::size_t k = 0; k < series.x.size(); ++k) {
+    if (!area.x.shows(series.x[k]) || !area.y.shows(series.y[k])) {
+      broken = true;
+      continue;
     }
-    if (series.style != PlotStyle::points) drawing.strokes.push_back(std::move(curve));
-    if (series.style == PlotStyle::points || series.style == PlotStyle::line_and_points)
-      drawing.strokes.push_back(std::move(dots));
+    const Point p{area.to_x(series.x[k]), area.to_y(series.y[k])};
+    if (broken) curve.lines.emplace_back();
+    broken = false;
+    curve.lines.back().push_back(p);
+    dots.lines.push_back({p});
   }
+  if (series.style != PlotStyle::points) drawing.strokes.push_back(std::move(curve));
+  if (series.style == PlotStyle::points || series.style == PlotStyle::line_and_points)
+    drawing.strokes.push_back(std::move(dots));
+}
+
+Drawing lay_out(const Plot& plot) {
+  constexpr int kMinSize = 160, kMaxSize = 8192;
+  if (std::min(plot.width, plot.height) < kMinSize || std::max(plot.width, plot.height) > kMaxSize)
+    throw Error(fmt::format("expected a plot of {} to {} pixels, found {} x {}", kMinSize, kMaxSize,
+                            plot.width, plot.height));
+  const std::vector<Color> colors = colors_of(plot);
+
+  // scales and ticks
+  PlotArea area{make_scale(plot, &PlotSeries::x, plot.log_x, plot.x_min, plot.x_max, plot.log_x, "x"),
+                make_scale(plot, &PlotSeries::y, plot.log_y, plot.y_min, plot.y_max, true, "y"),
+                {},
+                {},
+                {}};
+  area.x_ticks = axis_ticks(area.x.low, area.x.high, area.x.logarithmic, std::max(2, plot.width / 110));
+  area.y_ticks = axis_ticks(area.y.low, area.y.high, area.y.logarithmic, std::max(2, plot.height / 65));
+  double tick_width = 0;
+  for (const double v : area.y_ticks)
+    tick_width = std::max(tick_width, text_width(tick_label(v, step_of(area.y_ticks)), kTickCap));
+
+  // the frame, inside of: y label and tick labels, title and legend, x label
+  Drawing drawing{plot.width, plot.height, {}, {}, {}};
+  const double left = kMargin + (plot.y_label.empty() ? 0 : 22) + tick_width + 10;
+  const double right = plot.width - kMargin - 8;
+  double top = kMargin + 4;
+  if (!plot.title.empty()) {
+    drawing.texts.push_back({{left, top + kTitleCap}, plot.title, kTitleCap, kInk, Align::left, false, true});
+    top += kTitleCap + 14;
+  }
+  top = lay_out_legend(drawing, plot, colors, left, right, top + kTickCap) + 14;
+  const double bottom = plot.height - kMargin - (plot.x_label.empty() ? 0 : 22) - kTickCap - 6;
+  drawing.frame = area.frame = {left, top, right, bottom};
+
+  // axes, then the series, the first one on top
+  lay_out_axes(drawing, plot, area);
+  for (std::size_t i = plot.series.size(); i-- > 0;) lay_out_series(drawing, plot.series[i], colors[i], area);
   return drawing;
 }
 

@@ -37,6 +37,36 @@ std::size_t words_left(TextReader reader) noexcept {
 
 constexpr std::array<std::string_view, 4> kAngles = {"theta_i", "phi_i", "theta_s", "phi_s"};
 
+/// Where each thing stands in a row.
+struct Columns {
+  std::array<std::size_t, 4> angle{};  // of kAngles
+  std::vector<std::size_t> values;
+  std::vector<double> lambda_nm;  // of the values, or empty
+};
+
+/// Sorts the columns into the four angles and the values.
+Columns sort_columns(const TextReader& reader, const std::vector<std::string>& names,
+                     const std::string& vars_line) {
+  Columns columns;
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (std::count(names.begin(), names.end(), kAngles[k]) != 1)
+      reader.fail(fmt::format("{} once in the VARS line", kAngles[k]), in_quotes(vars_line));
+    columns.angle[k] =
+        static_cast<std::size_t>(std::find(names.begin(), names.end(), kAngles[k]) - names.begin());
+  }
+  for (std::size_t at = 0; at < names.size(); ++at)
+    if (std::find(kAngles.begin(), kAngles.end(), names[at]) == kAngles.end()) {
+      columns.values.push_back(at);
+      if (const auto lambda = parse_number(names[at])) columns.lambda_nm.push_back(*lambda);
+    }
+  const std::size_t channels = columns.values.size();
+  const bool named =
+      columns.lambda_nm.empty() ? channels == 1 || channels == 3 : columns.lambda_nm.size() == channels;
+  if (!named || channels > kMaxFileChannels)
+    reader.fail("one, three or one a wavelength value columns in the VARS line", fmt::format("{}", channels));
+  return columns;
+}
+
 }  // namespace
 
 bool looks_like_astm(std::string_view text) noexcept {
@@ -60,6 +90,7 @@ SampleFile parse_astm(const FileBytes& file, const OpenOptions& options) {
   findings.format = "ASTM E1392 text";
   findings.conventions = {"Angles in radians; theta_i, phi_i to the light, theta_s, phi_s to the viewer."};
 
+  // some files forget a name: the rows tell
   const std::string vars_line(reader.line());
   bool rows = reader.next_content_line();
   const bool forgotten = std::find(names.begin(), names.end(), kAngles[3]) == names.end();
@@ -72,39 +103,22 @@ SampleFile parse_astm(const FileBytes& file, const OpenOptions& options) {
     findings.conventions.push_back("The VARS line forgets phi_s; the rows have it, after theta_s.");
   }
 
-  // Sort the columns into the four angles and the values.
-  std::array<std::size_t, 4> angle_column{};
-  std::vector<std::size_t> value_columns;
-  for (std::size_t k = 0; k < 4; ++k) {
-    if (std::count(names.begin(), names.end(), kAngles[k]) != 1)
-      reader.fail(fmt::format("{} once in the VARS line", kAngles[k]), in_quotes(vars_line));
-    angle_column[k] =
-        static_cast<std::size_t>(std::find(names.begin(), names.end(), kAngles[k]) - names.begin());
-  }
-  for (std::size_t at = 0; at < names.size(); ++at)
-    if (std::find(kAngles.begin(), kAngles.end(), names[at]) == kAngles.end()) {
-      value_columns.push_back(at);
-      if (const auto lambda = parse_number(names[at])) findings.lambda_nm.push_back(*lambda);
-    }
-  const std::size_t channels = value_columns.size();
-  const bool named =
-      findings.lambda_nm.empty() ? channels == 1 || channels == 3 : findings.lambda_nm.size() == channels;
-  if (!named || channels > kMaxFileChannels)
-    reader.fail("one, three or one a wavelength value columns in the VARS line", fmt::format("{}", channels));
+  const Columns columns = sort_columns(reader, names, vars_line);
+  findings.lambda_nm = columns.lambda_nm;
 
   Samples& samples = result.samples;
-  samples.channels = static_cast<int>(channels);
+  samples.channels = static_cast<int>(columns.values.size());
   std::vector<double> row(names.size());
   for (; rows; rows = reader.next_content_line()) {
     for (std::size_t at = 0; at < row.size(); ++at) row[at] = reader.number(names[at]);
     reader.end_of_line();
-    const auto angle = [&](std::size_t k) { return row[angle_column[k]]; };
+    const auto angle = [&](std::size_t k) { return row[columns.angle[k]]; };
     for (const std::size_t k : {0, 2})
       if (!(std::abs(angle(k)) < kHalfPi))
         reader.fail(fmt::format("{} within (-pi/2, pi/2)", kAngles[k]), fmt::format("{}", angle(k)));
     samples.pairs.push_back(
         {spherical_direction(angle(0), angle(1)), spherical_direction(angle(2), angle(3))});
-    for (const std::size_t at : value_columns) samples.values.push_back(row[at]);
+    for (const std::size_t at : columns.values) samples.values.push_back(row[at]);
   }
   samples.isotropic = same_incident_azimuth(samples);
   findings.conventions.push_back(samples.isotropic ? "Taken as isotropic: every sample has the same phi_i."

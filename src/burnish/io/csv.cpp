@@ -40,7 +40,10 @@ std::size_t position(const std::vector<std::string>& names, std::string_view nam
   return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
-void find_directions(const TextReader& reader, const std::vector<std::string>& names, Columns& columns) {
+/// Columns with those of the directions; the rest is empty.
+Columns find_directions(const TextReader& reader, const std::vector<std::string>& names) {
+  Columns columns;
+  columns.count = names.size();
   columns.vectors = position(names, kVectorNames[0]) < names.size();
   const auto need = [&](std::string_view name) {
     const std::size_t at = position(names, name);
@@ -49,7 +52,7 @@ void find_directions(const TextReader& reader, const std::vector<std::string>& n
   };
   if (columns.vectors) {
     for (std::size_t k = 0; k < 6; ++k) columns.direction[k] = need(kVectorNames[k]);
-    return;
+    return columns;
   }
   for (std::size_t k = 0; k < 4; ++k) {
     const std::size_t in_radians = position(names, std::string(kAngleNames[k]) + "_rad");
@@ -57,9 +60,12 @@ void find_directions(const TextReader& reader, const std::vector<std::string>& n
     columns.direction[k] = is_rad ? in_radians : need(kAngleNames[k]);
     columns.to_radians[k] = is_rad ? 1 : radians(1);
   }
+  return columns;
 }
 
+/// Adds those of the values.
 void find_values(const TextReader& reader, const std::vector<std::string>& names, Columns& columns) {
+  // one of: value; r, g and b; value_<nm> for every wavelength
   const std::size_t size = names.size();
   if (const std::size_t at = position(names, "value"); at < size) columns.values = {at};
   const std::array<std::size_t, 3> rgb = {position(names, "r"), position(names, "g"), position(names, "b")};
@@ -81,9 +87,7 @@ void find_values(const TextReader& reader, const std::vector<std::string>& names
 
 Columns read_header(TextReader& reader, bool with_values) {
   const std::vector<std::string> names = split_header(reader.line());
-  Columns columns;
-  columns.count = names.size();
-  find_directions(reader, names, columns);
+  Columns columns = find_directions(reader, names);
   if (with_values) find_values(reader, names, columns);
   const std::size_t used = (columns.vectors ? 6 : 4) + columns.values.size();
   if (used != names.size())
@@ -114,20 +118,26 @@ DirectionPair read_pair(const TextReader& reader, const Columns& columns, std::s
 }
 
 /// What a comment says about the material.
-enum class Tag { kNone, kIsotropic, kAnisotropic };
+enum class Tag { none, isotropic, anisotropic };
 
-/// Moves to the next line with content, noting tags on the way.
-bool next_row(TextReader& reader, Tag& tag) {
-  while (reader.next_line()) {
-    const std::string_view line = trimmed(reader.line());
-    if (line.empty()) continue;
-    if (line[0] != '#') return true;
-    const std::string remark = lower_case(trimmed(line.substr(1)));
-    if (remark == "isotropic") tag = Tag::kIsotropic;
-    if (remark == "anisotropic") tag = Tag::kAnisotropic;
+/// The lines with content of a file, and the last tag in front of the one it stands at.
+struct TaggedLines {
+  TextReader reader;
+  Tag tag = Tag::none;
+
+  /// Moves to the next line with content; false at the end of the file.
+  bool next() {
+    while (reader.next_line()) {
+      const std::string_view line = trimmed(reader.line());
+      if (line.empty()) continue;
+      if (line[0] != '#') return true;
+      const std::string remark = lower_case(trimmed(line.substr(1)));
+      if (remark == "isotropic") tag = Tag::isotropic;
+      if (remark == "anisotropic") tag = Tag::anisotropic;
+    }
+    return false;
   }
-  return false;
-}
+};
 
 }  // namespace
 
@@ -137,16 +147,16 @@ bool looks_like_csv(std::string_view text) noexcept {
 }
 
 SampleFile parse_csv(const FileBytes& file, const OpenOptions& options) {
-  TextReader reader(file);
-  Tag tag = Tag::kNone;
-  if (!next_row(reader, tag)) reader.fail("a header line", "the end of the file");
+  TaggedLines lines{TextReader(file)};
+  TextReader& reader = lines.reader;
+  if (!lines.next()) reader.fail("a header line", "the end of the file");
   const Columns columns = read_header(reader, true);
 
   SampleFile result;
   Samples& samples = result.samples;
   samples.channels = static_cast<int>(columns.values.size());
   std::vector<double> row(columns.count);
-  while (next_row(reader, tag)) {
+  while (lines.next()) {
     read_row(reader, row);
     const DirectionPair pair = read_pair(reader, columns, row);
     if (!(pair.wi.z > 0 && pair.wo.z > 0))
@@ -154,7 +164,7 @@ SampleFile parse_csv(const FileBytes& file, const OpenOptions& options) {
     samples.pairs.push_back(pair);
     for (const std::size_t at : columns.values) {
       const double value = options.has_cosine ? row[at] / pair.wi.z : row[at];
-      // A cosine near zero may push a finite number over the edge.
+      // a cosine near zero may push a finite number over the edge
       if (!std::isfinite(value)) reader.fail("a finite value over cos(theta_i)", in_quotes(reader.line()));
       samples.values.push_back(value);
     }
@@ -166,11 +176,12 @@ SampleFile parse_csv(const FileBytes& file, const OpenOptions& options) {
   findings.conventions = {columns.vectors ? "Directions as unit vectors." : "Directions as angles.",
                           options.has_cosine ? "The cosine of theta_i was divided out, as asked."
                                              : "Values are f_r without the cosine."};
-  samples.isotropic = tag == Tag::kIsotropic || (tag == Tag::kNone && same_incident_azimuth(samples));
+  const Tag tag = lines.tag;
+  samples.isotropic = tag == Tag::isotropic || (tag == Tag::none && same_incident_azimuth(samples));
   findings.conventions.push_back(
-      tag == Tag::kNone ? (samples.isotropic ? "Taken as isotropic: every sample has the same phi_i."
-                                             : "Taken as anisotropic: the file does not say.")
-                        : (samples.isotropic ? "Isotropic, the file says." : "Anisotropic, the file says."));
+      tag == Tag::none ? (samples.isotropic ? "Taken as isotropic: every sample has the same phi_i."
+                                            : "Taken as anisotropic: the file does not say.")
+                       : (samples.isotropic ? "Isotropic, the file says." : "Anisotropic, the file says."));
   finish_samples(file.name, options, result);
   return result;
 }

@@ -60,6 +60,8 @@ MbsdfFile parse_mbsdf(const FileBytes& file, const OpenOptions& options) {
   MbsdfFile result;
   Findings& findings = result.findings;
   findings.format = "NVIDIA MBSDF";
+
+  // the header, up to the reflection block
   read_line(file, reader);
   std::string_view line = read_line(file, reader);
   for (; !line.starts_with(kReflection); line = read_line(file, reader)) {
@@ -75,15 +77,16 @@ MbsdfFile parse_mbsdf(const FileBytes& file, const OpenOptions& options) {
     }
   }
 
+  // the block's bytes; nothing but a transmission block may follow
   const BlockHeader header = read_block_header(reader);
   const std::uint64_t start = reader.offset();
   const auto bytes = reader.take(header.value_count() * sizeof(float), "values");
-  // Only a transmission block may follow.
   if (const std::string_view rest = trimmed(file.text().substr(reader.offset()));
       !rest.empty() && rest != "\n" && !rest.substr(rest[0] == '\n').starts_with(kTransmission))
     reader.fail("the end of the file or a transmission block",
                 fmt::format("{} more bytes", reader.remaining()));
 
+  // its values, all of which must be numbers
   AngleTable& table = result.table;
   table = mbsdf_layout(header.theta_count, header.phi_count);
   table.channel_count = static_cast<int>(header.channels);
@@ -128,7 +131,7 @@ bool fits_mbsdf(const AngleTable& table) noexcept {
     return true;
   };
   const auto& axes = table.axes;
-  return table.frame == AngleTable::Frame::kNormal && table.folded && table.isotropic() &&
+  return table.frame == AngleTable::Frame::normal && table.folded && table.isotropic() &&
          axes[1].nodes.size() == axes[2].nodes.size() && centred(axes[1], kHalfPi) &&
          centred(axes[2], kHalfPi) && centred(axes[3], kPi) &&
          (table.channel_count == 1 || table.channel_count == 3);

@@ -35,8 +35,53 @@ struct SliceCount {
   std::uint64_t holes = 0, below_horizon = 0, negatives = 0;
   double most_negative = 0;
   bool finite = true;
-  std::size_t bad_entry = 0;
+  std::size_t bad_entry = 0;  // where it is not
 };
+
+/// Reads the entries of one theta_h from the file's three planes into the table. abs_cos_phi is |cos phi_d|
+/// of each entry of a row.
+SliceCount read_slice(const std::byte* planes, int h, std::span<const double> abs_cos_phi,
+                      bool clamp_negatives, HalfDiffTable& table) {
+  const std::size_t entries = table.entry_count();
+  SliceCount count;
+  for (int d = 0; d < table.theta_d_count; ++d) {
+    const HalfDiff angles = table.centre(h, d, 0);
+    const double tangents = std::tan(angles.theta_h) * std::tan(angles.theta_d);
+    const std::size_t row = table.offset(h, d, 0) / 3;
+    for (std::size_t p = 0; p < abs_cos_phi.size(); ++p) {
+      std::array<double, 3> f;
+      for (std::size_t c = 0; c < 3; ++c)
+        f[c] = read_double(planes + (c * entries + row + p) * sizeof(double));
+      float* entry = &table.values[(row + p) * 3];
+
+      // A direction of the pair is below the horizon where tan theta_h tan theta_d |cos phi_d| >= 1, since
+      // cos theta_i, cos theta_o = cos theta_h cos theta_d -+ sin theta_h sin theta_d cos phi_d.
+      const bool below = tangents * abs_cos_phi[p] >= 1;
+      if (below || (f[0] == -1 && f[1] == -1 && f[2] == -1)) {
+        ++count.holes;
+        count.below_horizon += below;
+        std::fill_n(entry, 3, std::numeric_limits<float>::quiet_NaN());
+        continue;
+      }
+
+      for (std::size_t c = 0; c < 3; ++c) {
+        double value = f[c] * kScale[c];
+        // also refuses what a float cannot hold
+        if (!(std::abs(value) <= std::numeric_limits<float>::max())) {
+          if (count.finite) count.bad_entry = c * entries + row + p;
+          count.finite = false;
+        }
+        if (value < 0) {
+          ++count.negatives;
+          count.most_negative = std::min(count.most_negative, value);
+          if (clamp_negatives) value = 0;
+        }
+        entry[c] = count.finite ? static_cast<float>(value) : 0;
+      }
+    }
+  }
+  return count;
+}
 
 }  // namespace
 
@@ -61,6 +106,7 @@ MerlFile parse_merl(const FileBytes& file, const OpenOptions& options) {
     reader.fail(fmt::format("{} bytes for {} x {} x {} x 3 values", expected, sizes[0], sizes[1], sizes[2]),
                 fmt::format("{} bytes", file.bytes.size()));
 
+  // slices of theta_h at once, each with its own counts
   table.values.resize(entries * 3);
   const std::byte* planes = file.bytes.data() + kHeaderBytes;
   std::vector<double> abs_cos_phi(static_cast<std::size_t>(sizes[2]));
@@ -68,39 +114,7 @@ MerlFile parse_merl(const FileBytes& file, const OpenOptions& options) {
     abs_cos_phi[static_cast<std::size_t>(p)] = std::abs(std::cos(table.centre(0, 0, p).phi_d));
   std::vector<SliceCount> counts(static_cast<std::size_t>(sizes[0]));
   for_each_chunk(counts.size(), 1, [&](std::size_t h, std::size_t, std::size_t) {
-    SliceCount& count = counts[h];
-    for (int d = 0; d < sizes[1]; ++d) {
-      const HalfDiff angles = table.centre(static_cast<int>(h), d, 0);
-      const double tangents = std::tan(angles.theta_h) * std::tan(angles.theta_d);
-      const std::size_t row = table.offset(static_cast<int>(h), d, 0) / 3;
-      for (std::size_t p = 0; p < abs_cos_phi.size(); ++p) {
-        std::array<double, 3> f;
-        for (std::size_t c = 0; c < 3; ++c)
-          f[c] = read_double(planes + (c * entries + row + p) * sizeof(double));
-        float* entry = &table.values[(row + p) * 3];
-        const bool below = tangents * abs_cos_phi[p] >= 1;
-        if (below || (f[0] == -1 && f[1] == -1 && f[2] == -1)) {
-          ++count.holes;
-          count.below_horizon += below;
-          std::fill_n(entry, 3, std::numeric_limits<float>::quiet_NaN());
-          continue;
-        }
-        for (std::size_t c = 0; c < 3; ++c) {
-          double value = f[c] * kScale[c];
-          // Also refuses what a float cannot hold.
-          if (!(std::abs(value) <= std::numeric_limits<float>::max())) {
-            if (count.finite) count.bad_entry = c * entries + row + p;
-            count.finite = false;
-          }
-          if (value < 0) {
-            ++count.negatives;
-            count.most_negative = std::min(count.most_negative, value);
-            if (options.clamp_negatives) value = 0;
-          }
-          entry[c] = count.finite ? static_cast<float>(value) : 0;
-        }
-      }
-    }
+    counts[h] = read_slice(planes, static_cast<int>(h), abs_cos_phi, options.clamp_negatives, table);
   });
 
   Findings& findings = merl.findings;

@@ -131,6 +131,39 @@ double most_negative(const RglTable& table) {
   return result;
 }
 
+/// All that the file says, spectral if it is.
+RglData read_data(const Fields& fields) {
+  RglData data;
+  data.phi_i = fields.floats("phi_i");
+  data.theta_i = fields.floats("theta_i");
+  const std::uint64_t phis = data.phi_i.size(), thetas = data.theta_i.size();
+  data.ndf = fields.grid("ndf", {});
+  data.sigma = fields.grid("sigma", {});
+  data.vndf = fields.grid("vndf", {phis, thetas});
+  data.luminance = fields.grid("luminance", {phis, thetas});
+  data.jacobian = fields.get("jacobian", TensorType::u8, 1).data[0] != std::byte{0};
+
+  // wavelengths or RGB, whose channels the file keeps apart
+  const bool spectral = fields.find("spectra") != nullptr;
+  if (spectral) {
+    const auto lambda_nm = fields.floats("wavelengths");
+    data.lambda_nm.assign(lambda_nm.begin(), lambda_nm.end());
+  }
+  const std::uint64_t channels = spectral ? data.lambda_nm.size() : 3;
+  data.channels = static_cast<int>(channels);
+  data.spectra = fields.grid(spectral ? "spectra" : "rgb", {phis, thetas, channels});
+  data.spectra.values = transpose(data.spectra.values, channels, node_count(data.spectra));
+
+  // what a file may leave out
+  if (const Tensor* text = fields.find("description"); text && text->type == TensorType::u8)
+    data.description = one_line(text->data);
+  const std::uint64_t samples = phis * thetas * node_count(data.spectra);
+  if (const Tensor* mask = fields.find("valid");
+      mask && mask->type == TensorType::u8 && mask->data.size() == (samples + 7) / 8)
+    for (std::byte byte : mask->data) data.valid.push_back(static_cast<std::uint8_t>(byte));
+  return data;
+}
+
 /// Zero bits of a mask of `samples` bits; none where there is no mask.
 std::uint64_t count_holes(const std::vector<std::uint8_t>& valid, std::uint64_t samples) noexcept {
   if (valid.empty()) return 0;
@@ -147,35 +180,14 @@ bool looks_like_rgl(std::span<const std::byte> head) noexcept {
 
 RglFile parse_rgl(const FileBytes& file, const OpenOptions& options) {
   const Fields fields(file);
-  RglData data;
-  data.phi_i = fields.floats("phi_i");
-  data.theta_i = fields.floats("theta_i");
+  RglData data = read_data(fields);
   const std::uint64_t phis = data.phi_i.size(), thetas = data.theta_i.size();
-  data.ndf = fields.grid("ndf", {});
-  data.sigma = fields.grid("sigma", {});
-  data.vndf = fields.grid("vndf", {phis, thetas});
-  data.luminance = fields.grid("luminance", {phis, thetas});
-  data.jacobian = fields.get("jacobian", TensorType::u8, 1).data[0] != std::byte{0};
-  const bool spectral = fields.find("spectra") != nullptr;
-  if (spectral) {
-    const auto lambda_nm = fields.floats("wavelengths");
-    data.lambda_nm.assign(lambda_nm.begin(), lambda_nm.end());
-  }
-  const std::uint64_t channels = spectral ? data.lambda_nm.size() : 3;
-  data.channels = static_cast<int>(channels);
-  data.spectra = fields.grid(spectral ? "spectra" : "rgb", {phis, thetas, channels});
-  data.spectra.values = transpose(data.spectra.values, channels, node_count(data.spectra));
-  if (const Tensor* text = fields.find("description"); text && text->type == TensorType::u8)
-    data.description = one_line(text->data);
   const std::uint64_t samples = phis * thetas * node_count(data.spectra);
-  if (const Tensor* mask = fields.find("valid");
-      mask && mask->type == TensorType::u8 && mask->data.size() == (samples + 7) / 8)
-    for (std::byte byte : mask->data) data.valid.push_back(static_cast<std::uint8_t>(byte));
+  const bool isotropic = phis <= 2, spectral = fields.find("spectra") != nullptr;
 
   Findings findings;
-  const bool isotropic = phis <= 2;
   findings.format = fmt::format("RGL tensor file ({}, {})", isotropic ? "isotropic" : "anisotropic",
-                                spectral ? fmt::format("{} wavelengths", channels) : "RGB");
+                                spectral ? fmt::format("{} wavelengths", data.channels) : "RGB");
   findings.description = data.description;
   findings.sample_count = samples;
   findings.hole_count = count_holes(data.valid, samples);
@@ -188,6 +200,7 @@ RglFile parse_rgl(const FileBytes& file, const OpenOptions& options) {
   if (findings.hole_count > 0)
     findings.conventions.push_back("nodes that were not measured keep the values the file fills in");
 
+  // the table checks what the file says
   try {
     if (spectral && options.keep_spectral) {
       findings.lambda_nm = data.lambda_nm;

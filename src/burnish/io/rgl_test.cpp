@@ -15,6 +15,8 @@
 #include <burnish/math/random.h>
 #include <burnish/math/spectrum.h>
 #include <burnish/reflectance/rgl_builder.h>
+#include <burnish/testing/directions.h>
+#include <burnish/testing/files.h>
 
 namespace burnish {
 namespace {
@@ -49,23 +51,15 @@ RglTable small_table(int channels, bool brushed) {
   return make_rgl_table(Lobe{channels, brushed}, options);
 }
 
-FileBytes file_of(std::string_view bytes) {
-  const auto* data = reinterpret_cast<const std::byte*>(bytes.data());
-  return {"test.bsdf", std::vector<std::byte>(data, data + bytes.size())};
-}
-
 RglFile parsed(std::string_view bytes, const OpenOptions& options = {}) {
-  return parse_rgl(file_of(bytes), options);
+  return parse_rgl(memory_file(bytes), options);
 }
 
 std::vector<double> values_of(const RglTable& table, std::uint64_t seed = 1) {
   Pcg32 random(seed);
   std::vector<double> all, f(static_cast<std::size_t>(table.channels()));
   for (int i = 0; i < 300; ++i) {
-    const auto direction = [&] {
-      return spherical_direction(std::acos(1 - random.uniform()), random.uniform() * kTwoPi);
-    };
-    const Vec3 wi = direction(), wo = direction();
+    const Vec3 wi = random_upper_direction(random), wo = random_upper_direction(random);
     table.eval(wi, wo, f);
     all.insert(all.end(), f.begin(), f.end());
   }
@@ -84,7 +78,7 @@ struct Field {
 class EditedFile {
  public:
   explicit EditedFile(const RglTable& table) {
-    const FileBytes file = file_of(format_rgl(table));
+    const FileBytes file = memory_file(format_rgl(table));
     for (const Tensor& t : parse_tensor_file(file))
       fields_.emplace_back(t.name, Field{t.type, t.shape, {t.data.begin(), t.data.end()}});
   }
@@ -192,7 +186,7 @@ TEST(Rgl, NegativeValuesAreCountedAndClampedUnlessKept) {
 
 TEST(Rgl, EveryTruncatedHeaderThrows) {
   const std::string bytes = format_rgl(small_table(3, false));
-  const std::uint64_t header = parse_tensor_file(file_of(bytes)).front().offset;
+  const std::uint64_t header = parse_tensor_file(memory_file(bytes)).front().offset;
   for (std::size_t n = 0; n <= header; ++n) EXPECT_THROW(parsed(bytes.substr(0, n)), Error) << n;
   for (std::size_t n = header; n < bytes.size(); n += 101)
     EXPECT_THROW(parsed(bytes.substr(0, n)), Error) << n;
@@ -216,76 +210,83 @@ TEST(Rgl, MissingFieldsThrow) {
   }
 }
 
-TEST(Rgl, WrongTypesShapesAndNumbersThrow) {
-  constexpr float kNan = std::numeric_limits<float>::quiet_NaN(),
-                  kInf = std::numeric_limits<float>::infinity();
-  const auto error_of = [](const std::function<void(EditedFile&)>& change) {
+// What is changed in a file, and what its message says.
+struct BadField {
+  std::function<void(EditedFile&)> change;
+  const char* what;
+};
+
+void expect_errors(std::span<const BadField> cases) {
+  for (const auto& [change, what] : cases) {
     EditedFile edited(small_table(3, true));
     change(edited);
-    try {
-      parsed(edited.bytes());
-    } catch (const Error& error) {
-      return std::string(error.what());
-    }
-    return std::string("nothing thrown");
+    const std::string message = error_of([&bytes = edited] { parsed(bytes.bytes()); });
+    EXPECT_NE(message.find(what), std::string::npos) << what << ": " << message;
+  }
+}
+
+TEST(Rgl, WrongTypesAndShapesThrow) {
+  using enum TensorType;
+  const auto type = [](const char* name, TensorType value) {
+    return [=](EditedFile& f) { f[name].type = value; };
   };
-  const std::pair<std::function<void(EditedFile&)>, const char*> cases[] = {
-      {[](EditedFile& f) { f["ndf"].type = TensorType::u32; }, "ndf of type f32"},
-      {[](EditedFile& f) { f["jacobian"].type = TensorType::i8; }, "jacobian of type u8"},
+  const auto shape = [](const char* name, std::vector<std::uint64_t> value) {
+    return [=](EditedFile& f) { f[name].shape = value; };
+  };
+  const BadField cases[] = {
+      {type("ndf", u32), "ndf of type f32"},
+      {type("jacobian", i8), "jacobian of type u8"},
+      {shape("theta_i", {2, 2}), "theta_i of type f32 with 1 dimensions"},
+      {shape("vndf", {5, 4, 16 * 16}), "vndf of type f32 with 4"},
+      {shape("vndf", {4, 5, 16, 16}), "vndf of shape [5, 4,"},
+      {shape("rgb", {5, 4, 6, 8, 4}), "rgb of shape [5, 4, 3,"},
+      {shape("rgb", {5, 4, 3, 64, 1}), "spectra"},
       {[](EditedFile& f) {
-         f["theta_i"].shape = {2, 2};
-       },
-       "theta_i of type f32 with 1 dimensions"},
-      {[](EditedFile& f) {
-         f["vndf"].shape = {5, 4, 16 * 16};
-       },
-       "vndf of type f32 with 4"},
-      {[](EditedFile& f) {
-         f["vndf"].shape = {4, 5, 16, 16};
-       },
-       "vndf of shape [5, 4,"},
-      {[](EditedFile& f) {
-         f["rgb"].shape = {5, 4, 6, 8, 4};
-       },
-       "rgb of shape [5, 4, 3,"},
-      {[](EditedFile& f) {
-         f["rgb"].shape = {5, 4, 3, 64, 1};
-       },
-       "spectra"},
-      {[](EditedFile& f) {
-         f["luminance"] = {TensorType::f32, {5, 4, 0, 8}, {}};
+         f["luminance"] = {f32, {5, 4, 0, 8}, {}};
        },
        "luminance"},
       {[](EditedFile& f) {
-         f["theta_i"] = {TensorType::f32, {0}, {}};
+         f["theta_i"] = {f32, {0}, {}};
        },
        "theta_i"},
       {[](EditedFile& f) {
-         f["jacobian"] = {TensorType::u8, {0}, {}};
+         f["jacobian"] = {u8, {0}, {}};
        },
        "jacobian"},
-      {[](EditedFile& f) { f["theta_i"].set_float(2, 0.1f); }, "increasing theta_i"},
-      {[](EditedFile& f) { f["theta_i"].set_float(3, 2.0f); }, "pi/2"},
-      {[](EditedFile& f) { f["phi_i"].set_float(1, -4.0f); }, "increasing phi_i"},
-      {[](EditedFile& f) { f["phi_i"].set_float(4, 2.0f); }, "nothing"},  // a circle that closes by itself
-      {[](EditedFile& f) { f["phi_i"].set_float(0, -1e30f); }, "cover the circle"},
-      {[=](EditedFile& f) { f["phi_i"].set_float(0, kNan); }, "finite numbers in phi_i"},
-      {[=](EditedFile& f) { f["ndf"].set_float(7, kInf); }, "finite numbers in ndf"},
-      {[=](EditedFile& f) { f["sigma"].set_float(7, -kInf); }, "finite numbers in sigma"},
-      {[=](EditedFile& f) { f["vndf"].set_float(7, kNan); }, "finite numbers in vndf"},
-      {[=](EditedFile& f) { f["rgb"].set_float(7, kNan); }, "finite numbers in rgb"},
-      {[=](EditedFile& f) { f["luminance"].set_float(7, kInf); }, "finite numbers in luminance"},
-      {[](EditedFile& f) { f["ndf"].set_float(7, -1); }, "ndf finite and >= 0"},
-      {[](EditedFile& f) { f["vndf"].set_float(7, -1); }, "values >= 0"},
+  };
+  expect_errors(cases);
+}
+
+TEST(Rgl, WrongNumbersThrow) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN(),
+                  kInf = std::numeric_limits<float>::infinity();
+  const auto number = [](const char* name, std::size_t i, float value) {
+    return [=](EditedFile& f) { f[name].set_float(i, value); };
+  };
+  const BadField cases[] = {
+      {number("theta_i", 2, 0.1f), "increasing theta_i"},
+      {number("theta_i", 3, 2.0f), "pi/2"},
+      {number("phi_i", 1, -4.0f), "increasing phi_i"},
+      {number("phi_i", 0, -1e30f), "cover the circle"},
+      {number("phi_i", 0, kNan), "finite numbers in phi_i"},
+      {number("ndf", 7, kInf), "finite numbers in ndf"},
+      {number("sigma", 7, -kInf), "finite numbers in sigma"},
+      {number("vndf", 7, kNan), "finite numbers in vndf"},
+      {number("rgb", 7, kNan), "finite numbers in rgb"},
+      {number("luminance", 7, kInf), "finite numbers in luminance"},
+      {number("ndf", 7, -1), "ndf finite and >= 0"},
+      {number("vndf", 7, -1), "values >= 0"},
       {[](EditedFile& f) { std::fill_n(f["vndf"].data.begin(), 4 * 16 * 16, std::byte{0}); }, "positive"},
   };
-  for (const auto& [change, what] : cases)
-    EXPECT_NE(error_of(change).find(what), std::string::npos) << what << ": " << error_of(change);
+  expect_errors(cases);
+  EditedFile closed(small_table(3, true));  // a circle that closes by itself
+  closed["phi_i"].set_float(4, 2.0f);
+  EXPECT_NO_THROW(parsed(closed.bytes()));
 }
 
 TEST(Rgl, ChangedHeaderBytesThrowOrReadWithinTheFile) {
   const std::string bytes = format_rgl(small_table(3, false));
-  const std::uint64_t header = parse_tensor_file(file_of(bytes)).front().offset;
+  const std::uint64_t header = parse_tensor_file(memory_file(bytes)).front().offset;
   int thrown = 0;
   for (std::size_t at = 0; at < header; ++at)
     for (char value : {'\x00', '\x01', '\x7f', '\xff'}) {

@@ -5,14 +5,10 @@
 
 #include <burnish/error.h>
 #include <burnish/io/tensor_file.h>
+#include <burnish/testing/tools.h>
 
 namespace burnish {
 namespace {
-
-FileBytes file_of(std::string_view bytes) {
-  const auto* data = reinterpret_cast<const std::byte*>(bytes.data());
-  return {"test.bsdf", std::vector<std::byte>(data, data + bytes.size())};
-}
 
 const std::array<float, 6> kNumbers{1, -2, 3.5f, 0, 5, 6};
 const std::array<std::uint8_t, 3> kText{'a', 'b', 'c'};
@@ -36,7 +32,7 @@ std::string with(std::string bytes, std::size_t at, T value) {
 
 std::string error_of(const std::string& bytes) {
   try {
-    parse_tensor_file(file_of(bytes));
+    parse_tensor_file(memory_file(bytes));
   } catch (const Error& error) {
     return error.what();
   }
@@ -45,7 +41,7 @@ std::string error_of(const std::string& bytes) {
 
 TEST(TensorFile, RoundTripsFields) {
   const auto tensors = example();
-  const FileBytes file = file_of(format_tensor_file(tensors));
+  const FileBytes file = memory_file(format_tensor_file(tensors));
   EXPECT_TRUE(looks_like_tensor_file(file.bytes));
   const auto read = parse_tensor_file(file);
   ASSERT_EQ(read.size(), tensors.size());
@@ -108,7 +104,7 @@ TEST(TensorFile, RepeatedNamesAndOverlappingDataThrow) {
   twice[1].name = "text";
   EXPECT_NE(error_of(format_tensor_file(twice)).find("two fields named text"), std::string::npos);
 
-  const FileBytes file = file_of(format_tensor_file(example()));
+  const FileBytes file = memory_file(format_tensor_file(example()));
   const std::string bytes(file.text());
   const auto second = parse_tensor_file(file)[1].offset;
   EXPECT_NE(error_of(with(bytes, kOffset, second + 4)).find("another field"), std::string::npos);
@@ -118,7 +114,7 @@ TEST(TensorFile, ChangingAnyHeaderByteNeverReadsOutside) {
   const std::string bytes = format_tensor_file(example());
   for (std::size_t at = 0; at < bytes.size(); ++at)
     for (int value : {0x00, 0x01, 0x7f, 0x80, 0xff}) {
-      const FileBytes file = file_of(with(bytes, at, static_cast<std::uint8_t>(value)));
+      const FileBytes file = memory_file(with(bytes, at, static_cast<std::uint8_t>(value)));
       try {
         for (const Tensor& tensor : parse_tensor_file(file)) {
           EXPECT_GE(tensor.data.data(), file.bytes.data());

@@ -87,11 +87,13 @@ Header read_header(TextReader& reader) {
     if (!header.words.contains(keyword)) reader.fail(fmt::format("the keyword {}", keyword), "none");
   for (const char* keyword : {"samplerotation", "angleofincidence", "scatterazimuth"})
     if (!header.angles.contains(keyword)) reader.fail(fmt::format("the keyword {}", keyword), "none");
+
   if (header.words["scattertype"] != "brdf")
     reader.fail("ScatterType BRDF", in_quotes(header.words["scattertype"]));
   const std::string& symmetry = header.words["symmetry"];
   if (symmetry != "planesymmetrical" && symmetry != "asymmetrical" && symmetry != "asymmetrical4d")
     reader.fail("Symmetry PlaneSymmetrical, Asymmetrical or Asymmetrical4D", in_quotes(symmetry));
+
   for (const char* keyword : {"angleofincidence", "scatterradial"}) {
     const auto& angles = header.angles[keyword];
     const double most = keyword[0] == 'a' ? 90 : 180;
@@ -161,6 +163,77 @@ std::vector<double> ring_heights(const AngleAxis& axis) {
   return heights;
 }
 
+/// Counts of a file's blocks, rows and columns.
+struct TableSizes {
+  std::size_t rotations, incidences, azimuths, radials, channels;
+
+  std::size_t blocks() const noexcept { return rotations * incidences; }
+  std::size_t entries() const noexcept { return blocks() * azimuths * radials; }
+};
+
+/// The data of one channel: for every block the integral TIS, which is passed over, then rows of azimuths.
+/// `entries` has one value an entry, `stride` apart.
+void read_channel(TextReader& reader, const TableSizes& sizes, double* entries, std::size_t stride) {
+  // the line that names the channel, then the data
+  if (!reader.next_content_line()) reader.fail("a channel's name", "the end of the file");
+  expect_keyword(reader, "databegin");
+  std::size_t entry = 0;
+  for (std::size_t block = 0; block < sizes.blocks(); ++block) {
+    expect_keyword(reader, "tis");
+    reader.number("TIS");
+    for (std::size_t row = 0; row < sizes.azimuths; ++row) {
+      if (!reader.next_content_line()) reader.fail("a row of values", "the end of the file");
+      for (std::size_t column = 0; column < sizes.radials; ++column) {
+        const double value = reader.number("a value");
+        if (std::abs(value) > std::numeric_limits<float>::max())
+          reader.fail("a value below 1e38", fmt::format("{}", value));
+        entries[entry++ * stride] = value;
+      }
+      reader.end_of_line();
+    }
+  }
+  expect_keyword(reader, "dataend");
+}
+
+/// Makes the table's values of what was read, grey or XYZ, and notes holes, negatives and angles.
+void fill_values(const std::vector<double>& read, const Header& header, const TableSizes& sizes,
+                 const OpenOptions& options, ZemaxFile& result) {
+  const std::size_t channels = sizes.channels;
+  const auto& incidences = header.angles.at("angleofincidence");
+  const auto& azimuths = header.angles.at("scatterazimuth");
+  const auto& radials = header.angles.at("scatterradial");
+  Findings& findings = result.findings;
+  result.table.values.resize(read.size());
+  for (std::size_t entry = 0; entry < sizes.entries(); ++entry) {
+    float* value = &result.table.values[entry * channels];
+    const double* from = &read[entry * channels];
+    if (std::all_of(from, from + channels, [](double v) { return v == 0; })) {
+      ++findings.hole_count;
+      std::fill_n(value, channels, std::numeric_limits<float>::quiet_NaN());
+      continue;
+    }
+    if (channels == 1)
+      value[0] = static_cast<float>(from[0]);
+    else
+      for (std::size_t c = 0; c < 3; ++c) value[c] = static_cast<float>(product(kRec709[c], from));
+
+    for (std::size_t c = 0; c < channels; ++c)
+      if (value[c] < 0) {
+        ++findings.clamped_negatives;
+        findings.most_negative = std::min(findings.most_negative, static_cast<double>(value[c]));
+        if (options.clamp_negatives) value[c] = 0;
+      }
+
+    // theta_o, the same for every rotation of the sample
+    const std::size_t column = entry % radials.size(), row = entry / radials.size() % azimuths.size(),
+                      incidence = entry / (radials.size() * azimuths.size()) % incidences.size();
+    const Vec3 wo =
+        around_specular(radians(incidences[incidence]), 0, radians(azimuths[row]), radians(radials[column]));
+    findings.theta_o_min = std::min(findings.theta_o_min, theta_of(wo));
+    findings.theta_o_max = std::max(findings.theta_o_max, theta_of(wo));
+  }
+}
+
 /// The remark "# Sample: ..." in front of the header.
 std::string sample_name(const FileBytes& file) {
   TextReader reader(file);
@@ -184,81 +257,41 @@ ZemaxFile parse_zemax(const FileBytes& file, const OpenOptions& options) {
   const bool monochrome = header.words["spectralcontent"] == "monochrome";
   if (!monochrome && header.words["spectralcontent"] != "xyz")
     reader.fail("SpectralContent Monochrome or XYZ", in_quotes(header.words["spectralcontent"]));
-  const std::size_t channels = monochrome ? 1 : 3;
   const auto& rotations = header.angles["samplerotation"];
   const auto& incidences = header.angles["angleofincidence"];
   const auto& azimuths = header.angles["scatterazimuth"];
   const auto& radials = header.angles["scatterradial"];
-  const std::size_t entries = rotations.size() * incidences.size() * azimuths.size() * radials.size();
-  // A value takes a digit and a separator.
-  if (2 * entries * channels > reader.remaining() + 1)
-    reader.fail(fmt::format("{} values", entries * channels),
-                fmt::format("{} bytes to the end", reader.remaining()));
+  const TableSizes sizes{.rotations = rotations.size(),
+                         .incidences = incidences.size(),
+                         .azimuths = azimuths.size(),
+                         .radials = radials.size(),
+                         .channels = monochrome ? 1u : 3u};
+  // a value takes a digit and a separator
+  const std::size_t values = sizes.entries() * sizes.channels;
+  if (2 * values > reader.remaining() + 1)
+    reader.fail(fmt::format("{} values", values), fmt::format("{} bytes to the end", reader.remaining()));
 
   ZemaxFile result;
-  Findings& findings = result.findings;
   AngleTable& table = result.table;
-  table.frame = AngleTable::Frame::kSpecular;
+  table.frame = AngleTable::Frame::specular;
   table.folded = header.words["symmetry"] == "planesymmetrical";
   table.axes = {make_axis(in_radians(rotations, 90), kTwoPi), make_axis(in_radians(incidences)),
                 make_axis(in_radians(azimuths), table.folded ? 0 : kTwoPi), make_axis(in_radians(radials))};
-  table.channel_count = static_cast<int>(channels);
-  std::vector<double> read(entries * channels);
-  for (std::size_t c = 0; c < channels; ++c) {
-    // The line that names the channel, then the data.
-    if (!reader.next_content_line()) reader.fail("a channel's name", "the end of the file");
-    expect_keyword(reader, "databegin");
-    std::size_t entry = 0;
-    for (std::size_t block = 0; block < rotations.size() * incidences.size(); ++block) {
-      expect_keyword(reader, "tis");
-      reader.number("TIS");
-      for (std::size_t row = 0; row < azimuths.size(); ++row) {
-        if (!reader.next_content_line()) reader.fail("a row of values", "the end of the file");
-        for (std::size_t column = 0; column < radials.size(); ++column) {
-          const double value = reader.number("a value");
-          if (std::abs(value) > std::numeric_limits<float>::max())
-            reader.fail("a value below 1e38", fmt::format("{}", value));
-          read[entry++ * channels + c] = value;
-        }
-        reader.end_of_line();
-      }
-    }
-    expect_keyword(reader, "dataend");
-  }
+  table.channel_count = static_cast<int>(sizes.channels);
 
-  table.values.resize(entries * channels);
+  // the file has one channel after another, the table all of an entry together
+  std::vector<double> read(values);
+  for (std::size_t c = 0; c < sizes.channels; ++c) read_channel(reader, sizes, &read[c], sizes.channels);
+
+  Findings& findings = result.findings;
   findings.theta_i_min = radians(incidences.front());
   findings.theta_i_max = radians(incidences.back());
   findings.theta_o_min = kHalfPi;
-  for (std::size_t entry = 0; entry < entries; ++entry) {
-    float* value = &table.values[entry * channels];
-    const double* from = &read[entry * channels];
-    if (std::all_of(from, from + channels, [](double v) { return v == 0; })) {
-      ++findings.hole_count;
-      std::fill_n(value, channels, std::numeric_limits<float>::quiet_NaN());
-      continue;
-    }
-    if (monochrome)
-      value[0] = static_cast<float>(from[0]);
-    else
-      for (std::size_t c = 0; c < 3; ++c) value[c] = static_cast<float>(product(kRec709[c], from));
-    for (std::size_t c = 0; c < channels; ++c)
-      if (value[c] < 0) {
-        ++findings.clamped_negatives;
-        findings.most_negative = std::min(findings.most_negative, static_cast<double>(value[c]));
-        if (options.clamp_negatives) value[c] = 0;
-      }
-    const std::size_t column = entry % radials.size(), row = entry / radials.size() % azimuths.size(),
-                      incidence = entry / (radials.size() * azimuths.size()) % incidences.size();
-    const Vec3 wo =
-        around_specular(radians(incidences[incidence]), 0, radians(azimuths[row]), radians(radials[column]));
-    findings.theta_o_min = std::min(findings.theta_o_min, theta_of(wo));
-    findings.theta_o_max = std::max(findings.theta_o_max, theta_of(wo));
-  }
+  fill_values(read, header, sizes, options, result);
 
   findings.format = "Zemax tabular BRDF";
   findings.description = sample_name(file);
-  findings.sample_count = entries;
+  findings.sample_count = sizes.entries();
   findings.conventions = {
       "Azimuth and radial angles are around and from the mirror direction, azimuth 0 to the normal; linear "
       "between them.",
@@ -282,7 +315,7 @@ AngleTable zemax_layout(bool isotropic) {
   std::vector<double> incidences = steps(9, 10);
   incidences.push_back(85);
   AngleTable table;
-  table.frame = AngleTable::Frame::kSpecular;
+  table.frame = AngleTable::Frame::specular;
   table.folded = isotropic;
   if (isotropic)
     table.axes = {make_axis(in_radians({0}, 90), kTwoPi), make_axis(in_radians(steps(18, 5))),
@@ -294,8 +327,7 @@ AngleTable zemax_layout(bool isotropic) {
 }
 
 bool fits_zemax(const AngleTable& table) noexcept {
-  return table.frame == AngleTable::Frame::kSpecular &&
-         (table.channel_count == 1 || table.channel_count == 3);
+  return table.frame == AngleTable::Frame::specular && (table.channel_count == 1 || table.channel_count == 3);
 }
 
 std::string format_zemax(const AngleTable& table, std::string_view sample) {
@@ -316,6 +348,7 @@ std::string format_zemax(const AngleTable& table, std::string_view sample) {
   append_angles(text, "ScatterAzimuth", axes[2]);
   append_angles(text, "ScatterRadial", axes[3]);
 
+  // weights of the integral: cosine times the solid angle that each entry stands for
   const auto to_xyz = inverse(kRec709);
   const std::size_t columns = axes[3].nodes.size(), block = axes[2].nodes.size() * columns;
   const std::size_t blocks = axes[0].nodes.size() * axes[1].nodes.size();
@@ -329,6 +362,7 @@ std::string format_zemax(const AngleTable& table, std::string_view sample) {
     };
     fmt::format_to(out, "\n{}\nDataBegin\n", monochrome ? "Monochrome" : kNames[c]);
     for (std::size_t b = 0; b < blocks; ++b) {
+      // the integral, which readers want though the entries give it
       Row total{};
       for (std::size_t entry = b * block; entry < (b + 1) * block; ++entry) {
         const float* value = &table.values[entry * channels];
@@ -339,6 +373,7 @@ std::string format_zemax(const AngleTable& table, std::string_view sample) {
         for (std::size_t k = 0; k < channels; ++k) total[k] += weight * static_cast<double>(value[k]);
       }
       fmt::format_to(out, "TIS\t{:.6g}\n", channel(total.data()));
+
       for (std::size_t entry = b * block; entry < (b + 1) * block; ++entry) {
         const float* value = &table.values[entry * channels];
         const Row values = {value[0], value[channels == 3], value[channels - 1]};

@@ -88,7 +88,7 @@ TEST(Zemax, TurnsWhiteXyzIntoGreyRgb) {
 // Rotations, incidences and azimuths of a coarse file.
 AngleTable coarse_layout(bool isotropic) {
   AngleTable layout;
-  layout.frame = AngleTable::Frame::kSpecular;
+  layout.frame = AngleTable::Frame::specular;
   layout.folded = isotropic;
   layout.axes = {make_axis(isotropic ? std::vector{kHalfPi} : std::vector{0.0, kHalfPi, kPi}, kTwoPi),
                  make_axis({0, radians(30), radians(80)}),

@@ -5,18 +5,15 @@
 #include <burnish/math/angles.h>
 #include <burnish/math/random.h>
 #include <burnish/parameterization/half_diff.h>
+#include <burnish/testing/directions.h>
 
 namespace burnish {
 namespace {
 
-Vec3 random_direction(Pcg32& random) {
-  return spherical_direction(std::acos(random.uniform()), kTwoPi * random.uniform());
-}
-
 TEST(HalfDiff, RoundTripsDirections) {
   Pcg32 random(1);
   for (int i = 0; i < 10000; ++i) {
-    const Vec3 wi = random_direction(random), wo = random_direction(random);
+    const Vec3 wi = random_upper_direction(random), wo = random_upper_direction(random);
     const HalfDiff angles = to_half_diff(wi, wo);
     if (angles.theta_d > radians(89.9)) continue;
     const HalfDiffDirections back = from_half_diff(angles);
@@ -42,7 +39,7 @@ TEST(HalfDiff, RoundTripsAngles) {
 TEST(HalfDiff, ExchangingTheDirectionsTurnsPhiDByPi) {
   Pcg32 random(3);
   for (int i = 0; i < 1000; ++i) {
-    const Vec3 wi = random_direction(random), wo = random_direction(random);
+    const Vec3 wi = random_upper_direction(random), wo = random_upper_direction(random);
     const HalfDiff a = to_half_diff(wi, wo), b = to_half_diff(wo, wi);
     EXPECT_DOUBLE_EQ(a.theta_h, b.theta_h);
     EXPECT_DOUBLE_EQ(a.phi_h, b.phi_h);

@@ -158,13 +158,14 @@ Dual exact_power(const ScaledPoint& p) {
   return {value, Interval(0.0) - slope, by_v};
 }
 
-struct Box {
+// A range of ScaledPoints.
+struct ScaledBox {
   double s0, s1, v0, v1;
 };
 
 // Beyond c = 0 either the constant 0, for mean values across the edge, or nothing: then c is clipped to the
 // domain and keeps its derivatives.
-ScaledPoint point_of(const Box& b, bool constant_outside = true) {
+ScaledPoint point_of(const ScaledBox& b, bool constant_outside = true) {
   const Dual s({b.s0, b.s1}, 1.0, 0.0), v({b.v0, b.v1}, 0.0, 1.0);
   const Dual line = Dual(1.0) - s * v;
   Dual c = constant_outside ? max(line, Dual(0.0)) : line;
@@ -217,19 +218,19 @@ struct Verdict {
 
 // Halves boxes until `examine` accepts them all or refutes one.
 template <class Examine>
-BoundProof subdivide(Box domain, std::size_t max_boxes, Examine examine) {
+BoundProof subdivide(ScaledBox domain, std::size_t max_boxes, Examine examine) {
   BoundProof proof;
-  std::vector<Box> stack{domain};
+  std::vector<ScaledBox> stack{domain};
   while (!stack.empty()) {
-    const Box box = stack.back();
+    const ScaledBox box = stack.back();
     stack.pop_back();
     if (box.s0 * box.v0 > 1.0000001) continue;  // no cosine there
     if (++proof.boxes > max_boxes) return proof;
     const double s = 0.5 * (box.s0 + box.s1), v = 0.5 * (box.v0 + box.v1);
-    const Verdict verdict = examine(box, Box{s, s, v, v}, proof);
+    const Verdict verdict = examine(box, ScaledBox{s, s, v, v}, proof);
     if (verdict.refuted) return proof;
     if (verdict.accepted) continue;
-    Box a = box, b = box;
+    ScaledBox a = box, b = box;
     if (verdict.across_s >= verdict.across_v)
       a.s1 = b.s0 = s;
     else
@@ -247,8 +248,8 @@ double contribution(Interval derivative, double width) {
 
 // |error| <= bound over the domain.
 template <class F>
-BoundProof prove_small(F error, Box domain, double bound, std::size_t max_boxes) {
-  return subdivide(domain, max_boxes, [&](const Box& box, const Box& middle, BoundProof& proof) {
+BoundProof prove_small(F error, ScaledBox domain, double bound, std::size_t max_boxes) {
+  return subdivide(domain, max_boxes, [&](const ScaledBox& box, const ScaledBox& middle, BoundProof& proof) {
     const Interval ds(interval_detail::down(box.s0 - middle.s0), interval_detail::up(box.s1 - middle.s0));
     const Interval dv(interval_detail::down(box.v0 - middle.v0), interval_detail::up(box.v1 - middle.v0));
     Verdict verdict;
@@ -276,7 +277,7 @@ bool prove_small_1d(F error, double lo, double hi, double bound) {
   return prove_small(of_s, {lo, hi, 0, 0}, bound, 10'000'000).proved;
 }
 
-Box scaled_domain(double min_exponent, double max_exponent) {
+ScaledBox scaled_domain(double min_exponent, double max_exponent) {
   const double v0 = 1 / max_exponent, v1 = 1 / min_exponent;
   return {0, max_exponent, interval_detail::down(v0), v1 == 1 ? 1 : interval_detail::up(v1)};
 }
@@ -286,8 +287,8 @@ Dual log2_ratio_exact(const Dual& t) {
   return phi(Dual(0.0) - t) * Dual(interval_detail::outward(1 / ln2, 1 / ln2), 0.0, 0.0);
 }
 
-// With L the polynomial logarithm and P the polynomial exponential of NearExact, x = e |ln c| and y = e log2
-// c:
+// With L the polynomial logarithm and P the polynomial exponential of NearExact, x = e |ln c| and
+// y = e log2 c:
 //   |L(c) - log2 c| <= r |log2 c|  gives  |2^(e L) - c^e| <= r max x exp(-x (1 - r)) <= r / exp(1) (1 + 2 r),
 //   |P(f) - 2^f| <= p for f <= 0 and 2 p for f > 0, where the power of two is at most 1/2, adds p,
 //   and the smallest power of two returned adds 2^-125.
@@ -330,7 +331,7 @@ BoundProof prove_power_monotone(PowerMethod method, double min_exponent, double 
   const ValueFunction value = value_function(method);
   constexpr double kZero = 1e-300;  // what outward rounding makes of 0
   return subdivide(scaled_domain(min_exponent, max_exponent), max_boxes,
-                   [&](const Box& box, const Box& middle, BoundProof& proof) {
+                   [&](const ScaledBox& box, const ScaledBox& middle, BoundProof& proof) {
                      Verdict verdict;
                      const bool inside = middle.s0 * middle.v0 < 1;
                      verdict.accepted = all_branches(point_of(box, false), point_of(middle, false), value,

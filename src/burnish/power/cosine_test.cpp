@@ -5,13 +5,10 @@
 #include <burnish/math/angles.h>
 #include <burnish/math/random.h>
 #include <burnish/power/cosine.h>
+#include <burnish/testing/directions.h>
 
 namespace burnish {
 namespace {
-
-Vec3 random_direction(Pcg32& random) {
-  return spherical_direction(std::acos(1 - 2 * random.uniform()), kTwoPi * random.uniform());
-}
 
 TEST(PowerCosine, PhongIsTheCosineToTheMirroredLight) {
   Pcg32 random(1);

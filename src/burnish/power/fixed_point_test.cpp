@@ -7,6 +7,7 @@
 #include <burnish/power/cosine.h>
 #include <burnish/power/fixed_point.h>
 #include <burnish/power/fixed_point_blinn.h>
+#include <burnish/testing/directions.h>
 
 namespace burnish {
 namespace {
@@ -140,12 +141,6 @@ TEST(FixedPoint, FieldsOutsideTheirDomainThrow) {
   EXPECT_THROW(unit_method("cubic2"), Error);
   EXPECT_THROW(BlinnFront(11), Error);
   EXPECT_THROW(BlinnFront(25), Error);
-}
-
-Vec3 random_direction(Pcg32& random) {
-  const double z = 2 * random.uniform() - 1, phi = 6.283185307179586 * random.uniform();
-  const double r = std::sqrt(1 - z * z);
-  return {r * std::cos(phi), r * std::sin(phi), z};
 }
 
 Vec3 real(const FixedVec3& v) {

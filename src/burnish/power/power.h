@@ -40,8 +40,8 @@ inline constexpr int kPowerMethods = static_cast<int>(PowerMethod::near_exact) +
 struct PowerCost {
   int multiplies = 0, adds = 0, compares = 0, divisions = 0, roots = 0, transcendentals = 0;
   int table_words = 0;  ///< coefficients that depend on the exponent
-  /// One figure to order members by: multiplies + adds + compares + 5 divisions + 5 roots + 10
-  /// transcendentals.
+  /// One figure to order members by:
+  /// multiplies + adds + compares + 5 divisions + 5 roots + 20 transcendentals.
   int weight() const noexcept {
     return multiplies + adds + compares + 5 * divisions + 5 * roots + 20 * transcendentals;
   }
@@ -95,13 +95,11 @@ double power(const PowerCoefficients& coefficients, double cosine) noexcept;
 /// power(power_coefficients(method, exponent), cosine).
 double power(PowerMethod method, double cosine, double exponent);
 
-/// Coefficient a(e) of the paper's parabola a c^2 + (1 - a) c. Domain: exponent >= 1; a(1) = 0, a(2) = 1, a /
-/// e
-/// -> 2 (1 - e^(-1/2)) = 0.7869. Relative error 1e-14. Source: [QuadraticBrdf, eq. 7].
+/// Coefficient a(e) of the paper's parabola a c^2 + (1 - a) c. Domain: exponent >= 1; a(1) = 0, a(2) = 1,
+/// a / e -> 2 (1 - e^(-1/2)) = 0.7869. Relative error 1e-14. Source: [QuadraticBrdf, eq. 7].
 double quadratic_coefficient(double exponent) noexcept;
 
-/// 2 (1 - e^(-1/2)) exponent - 1/2: a(e) without a table, within 0.15 / exponent for exponents from 2 to
-/// 1024.
+/// 2 (1 - e^(-1/2)) exponent - 1/2: a(e) without a table, within 0.15 / exponent for exponents in [2, 1024].
 double quadratic_coefficient_affine(double exponent) noexcept;
 
 /// Integral over the cosine from 0 to 1 (the solid angle integral over 2 pi); the power itself has 1/(e+1).

@@ -7,6 +7,7 @@
 #include <burnish/math/random.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/testing/albedo.h>
+#include <burnish/testing/directions.h>
 
 namespace burnish {
 namespace {
@@ -20,11 +21,6 @@ Rgb eval(const AnalyticBrdf& brdf, Vec3 wi, Vec3 wo) {
 }
 
 /// Uniform in the hemisphere's solid angle.
-Vec3 random_direction(Pcg32& random) {
-  const double z = random.uniform();
-  return spherical_direction(std::acos(z), kTwoPi * random.uniform());
-}
-
 Vec3 turned(Vec3 w, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   return {c * w.x - s * w.y, s * w.x + c * w.y, w.z};
@@ -66,7 +62,7 @@ TEST(AnalyticBrdf, IsReciprocal) {
   Pcg32 random(1);
   for (const AnalyticBrdf& brdf : specimens())
     for (int i = 0; i < 100; ++i) {
-      const Vec3 wi = random_direction(random), wo = random_direction(random);
+      const Vec3 wi = random_upper_direction(random), wo = random_upper_direction(random);
       const Rgb there = eval(brdf, wi, wo), back = eval(brdf, wo, wi);
       EXPECT_NEAR(there.r, back.r, 1e-12 * there.r) << format_analytic(brdf);
       EXPECT_NEAR(there.b, back.b, 1e-12 * there.b) << format_analytic(brdf);
@@ -79,7 +75,7 @@ TEST(AnalyticBrdf, IsFiniteAndNotNegativeEverywhere) {
   for (const double z : {1e-3, 1e-9, 1e-14, 1e-160, 5e-324})
     for (const double phi : {0.0, kHalfPi, kPi, 3 * kHalfPi, 0.7})
       directions.push_back(normalize({std::cos(phi), std::sin(phi), z}));
-  for (int i = 0; i < 20; ++i) directions.push_back(random_direction(random));
+  for (int i = 0; i < 20; ++i) directions.push_back(random_upper_direction(random));
   for (const AnalyticBrdf& brdf : specimens())
     for (const Vec3 wi : directions)
       for (const Vec3 wo : directions) {
@@ -105,7 +101,7 @@ TEST(AnalyticBrdf, ChangesUnderRotationExactlyWhereItSaysSo) {
     Pcg32 random(3);
     double change = 0;
     for (int i = 0; i < 100; ++i) {
-      const Vec3 wi = random_direction(random), wo = random_direction(random);
+      const Vec3 wi = random_upper_direction(random), wo = random_upper_direction(random);
       const double angle = kTwoPi * random.uniform();
       const double before = eval(brdf, wi, wo).r, after = eval(brdf, turned(wi, angle), turned(wo, angle)).r;
       change = std::max(change, std::abs(after - before) / (before + 1e-3));
@@ -118,7 +114,7 @@ TEST(AnalyticBrdf, IsSymmetricAboutTangentAndBitangent) {
   Pcg32 random(4);
   for (const AnalyticBrdf& brdf : specimens())
     for (int i = 0; i < 50; ++i) {
-      const Vec3 wi = random_direction(random), wo = random_direction(random);
+      const Vec3 wi = random_upper_direction(random), wo = random_upper_direction(random);
       const double f = eval(brdf, wi, wo).g;
       EXPECT_NEAR(f, eval(brdf, {-wi.x, wi.y, wi.z}, {-wo.x, wo.y, wo.z}).g, 1e-9 * (f + 1e-3))
           << format_analytic(brdf);
@@ -142,7 +138,7 @@ TEST(AnalyticBrdf, ReflectsNoMoreLightThanItReceivesWhereItSaysSo) {
 TEST(AnalyticBrdf, GivesTheSameValuesThroughItsReference) {
   Pcg32 random(5);
   for (const AnalyticBrdf& brdf : specimens()) {
-    const Vec3 wi = random_direction(random), wo = random_direction(random);
+    const Vec3 wi = random_upper_direction(random), wo = random_upper_direction(random);
     std::array<double, 3> f;
     ASSERT_TRUE(brdf.ref().eval(wi, wo, f));
     EXPECT_EQ(eval(brdf, wi, wo), (Rgb{f[0], f[1], f[2]}));

@@ -71,8 +71,8 @@ bool AngleTable::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   if (wi.z <= 0 || wo.z <= 0) return true;
   const double theta_i = theta_of(wi), phi_i = phi_of(wi);
   std::array<double, 4> angles{phi_i, theta_i, 0, 0};
-  const std::size_t azimuth = frame == Frame::kNormal ? 3 : 2;
-  if (frame == Frame::kNormal) {
+  const std::size_t azimuth = frame == Frame::normal ? 3 : 2;
+  if (frame == Frame::normal) {
     angles[2] = theta_of(wo);
     angles[3] = phi_of(wo) - phi_i;
   } else {
@@ -124,7 +124,7 @@ std::array<std::size_t, 4> node_of_entry(const AngleTable& table, std::size_t en
 DirectionPair node_directions(const AngleTable& table, const std::array<std::size_t, 4>& node) noexcept {
   std::array<double, 4> at;
   for (std::size_t k = 0; k < 4; ++k) at[k] = table.axes[k].nodes[node[k]];
-  return {spherical_direction(at[1], at[0]), table.frame == AngleTable::Frame::kNormal
+  return {spherical_direction(at[1], at[0]), table.frame == AngleTable::Frame::normal
                                                  ? spherical_direction(at[2], at[0] + at[3])
                                                  : around_specular(at[1], at[0], at[2], at[3])};
 }

@@ -36,18 +36,17 @@ std::vector<double> cell_centres(std::size_t count, double extent);
 /// frame:
 /// - normal: theta_o and the azimuth phi_o - phi_i;
 /// - specular: the azimuth around and the angle from the mirror direction of wi; azimuth 0 points to the
-/// normal and
-///   grows counter-clockwise as seen against the mirror direction.
+///   normal and grows counter-clockwise as seen against the mirror direction.
 /// A single node of phi_i makes it isotropic.
 struct AngleTable {
-  enum class Frame { kNormal, kSpecular };
+  enum class Frame { normal, specular };
 
-  Frame frame = Frame::kNormal;
+  Frame frame = Frame::normal;
   bool folded = false;  ///< azimuths a and -a have one value; the axis covers [0, pi]
   std::array<AngleAxis, 4> axes;
   int channel_count = 1;
-  std::vector<float>
-      values;  ///< [axis 0][axis 1][axis 2][axis 3][channel], 1/sr; NaN in all channels is a hole
+  /// [axis 0][axis 1][axis 2][axis 3][channel], 1/sr; NaN in all channels is a hole
+  std::vector<float> values;
 
   int channels() const noexcept { return channel_count; }
   bool isotropic() const noexcept { return axes[0].nodes.size() == 1; }
@@ -73,7 +72,7 @@ std::size_t entry_count(const AngleTable& table) noexcept;
 AngleTable tabulate_angles(BrdfRef source, AngleTable layout);
 
 /// The direction wo at `azimuth` around and `radial` from the mirror direction of the light at (theta_i,
-/// phi_i); see AngleTable::Frame::kSpecular.
+/// phi_i); see AngleTable::Frame::specular.
 Vec3 around_specular(double theta_i, double phi_i, double azimuth, double radial) noexcept;
 
 }  // namespace burnish

@@ -105,7 +105,7 @@ TEST(AngleTable, FoldsAzimuthsWhereSymmetric) {
 
 TEST(AngleTable, MeasuresTheSpecularFrameFromTheMirrorDirection) {
   AngleTable table;
-  table.frame = AngleTable::Frame::kSpecular;
+  table.frame = AngleTable::Frame::specular;
   std::vector<double> circle, radial;
   for (int k = 0; k < 36; ++k) circle.push_back(radians(10 * k));
   for (int k = 0; k <= 18; ++k) radial.push_back(radians(10 * k));
@@ -160,7 +160,7 @@ struct Lopsided {
 };
 
 TEST(AngleTable, TabulatesASourceAtItsNodes) {
-  for (const auto frame : {AngleTable::Frame::kNormal, AngleTable::Frame::kSpecular})
+  for (const auto frame : {AngleTable::Frame::normal, AngleTable::Frame::specular})
     for (const bool folded : {false, true}) {
       AngleTable layout;
       layout.frame = frame;
@@ -168,7 +168,7 @@ TEST(AngleTable, TabulatesASourceAtItsNodes) {
       const AngleAxis azimuth = folded ? make_axis({0, 1, 2, kPi}) : make_axis({0, 1.5, 3, 4.5}, kTwoPi);
       layout.axes = {make_axis({0, 2, 4}, kTwoPi), make_axis({0, 0.5, 1.2}), make_axis({0.1, 0.7, 1.3}),
                      make_axis({0.1, 0.7, 1.3})};
-      layout.axes[frame == AngleTable::Frame::kNormal ? 3 : 2] = azimuth;
+      layout.axes[frame == AngleTable::Frame::normal ? 3 : 2] = azimuth;
       const AngleTable table = tabulate_angles(Lopsided{}, layout);
       ASSERT_EQ(table.values.size(), 2 * entry_count(table));
       int known = 0;

@@ -20,27 +20,27 @@ struct DirectionPair {
 /// - channels(): how many values a direction pair has: 1, 3 (linear Rec. 709) or a count of wavelengths;
 /// - isotropic(): true where rotating both directions about the normal changes nothing;
 /// - eval(wi, wo, f): writes f_r in 1/sr without the cosine into f (size channels()). Returns false, and
-/// writes zeros,
-///   where the source knows nothing: a hole in a measurement, a direction outside its coverage. Below the
-///   horizon (wi.z <= 0 or wo.z <= 0) it writes zeros and returns true. Never allocates, never throws; values
-///   are finite and, except for sources kept raw on request, >= 0.
+///   writes zeros, where the source knows nothing: a hole in a measurement, a direction outside its coverage.
+///   Below the horizon (wi.z <= 0 or wo.z <= 0) it writes zeros and returns true. Never allocates, never
+///   throws; values are finite and, except for sources kept raw on request, >= 0.
+// clang-format off
 template <class T>
 concept Brdf = requires(const T& brdf, Vec3 w, std::span<double> f) {
-  { brdf.channels() }
-  noexcept->std::convertible_to<int>;
-  { brdf.isotropic() }
-  noexcept->std::convertible_to<bool>;
-  { brdf.eval(w, w, f) }
-  noexcept->std::same_as<bool>;
+  { brdf.channels() } noexcept -> std::convertible_to<int>;
+  { brdf.isotropic() } noexcept -> std::convertible_to<bool>;
+  { brdf.eval(w, w, f) } noexcept -> std::same_as<bool>;
 };
+// clang-format on
 
 /// A non-owning reference to any Brdf. The indirection is paid once a span, not once a direction.
 class BrdfRef {
  public:
+  // clang-format off
   template <Brdf T>
-  requires(!std::same_as<T, BrdfRef>) BrdfRef(const T& brdf)
-  noexcept  // NOLINT: implicit like std::span
+    requires(!std::same_as<T, BrdfRef>)
+  BrdfRef(const T& brdf) noexcept  // NOLINT: implicit like std::span
       : brdf_(&brdf), channels_(brdf.channels()), isotropic_(brdf.isotropic()), eval_span_(&eval_span<T>) {}
+  // clang-format on
 
   int channels() const noexcept { return channels_; }
   bool isotropic() const noexcept { return isotropic_; }

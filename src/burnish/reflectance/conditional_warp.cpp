@@ -9,11 +9,11 @@ namespace burnish {
 namespace {
 
 /// Cell of a coordinate in [0, 1] on a grid of n nodes and the place within it.
-struct Cell {
+struct CellOfSide {
   int index;
   double t;
 
-  Cell(double x, int n) noexcept {
+  CellOfSide(double x, int n) noexcept {
     const double at = std::clamp(x, 0.0, 1.0) * (n - 1);
     index = std::min(static_cast<int>(at), n - 2);
     t = at - index;
@@ -37,7 +37,9 @@ int find_cell(int n, double value, Before before) noexcept {
   int low = 0, high = n - 1;
   while (high - low > 1) {
     const int middle = (low + high) / 2;
-    (before(middle) <= value ? low : high) = middle;
+    const bool below = before(middle) <= value;
+    low = below ? middle : low;
+    high = below ? high : middle;
   }
   return low;
 }
@@ -59,9 +61,10 @@ ConditionalWarp2::ConditionalWarp2(int width, int height, std::span<const float>
     throw Error("a warp's density: expected whole slices");
   nodes_.resize(density.size());
   rows_.resize(density.size() / w);
-  std::vector<double> before(w * h), total(h);
+  std::vector<double> before(w * h), total(h);  // of one slice
   for (std::size_t slice = 0; slice < rows_.size() / h; ++slice) {
     const auto values = density.subspan(slice * w * h, w * h);
+    // trapezoids along each row, then over the rows' totals
     double sum = 0;
     for (std::size_t y = 0; y < h; ++y) {
       double row = 0;
@@ -76,6 +79,7 @@ ConditionalWarp2::ConditionalWarp2(int width, int height, std::span<const float>
       if (y > 0) sum += 0.5 * (row + total[y - 1]);
     }
     if (!(sum > 0)) throw Error("a warp's density: expected a positive value in every slice");
+    // scaled so that the slice integrates to 1
     double rows_before = 0;
     for (std::size_t y = 0; y < h; ++y) {
       if (y > 0) rows_before += 0.5 * (total[y] + total[y - 1]);
@@ -111,30 +115,34 @@ ConditionalWarp2::Patch ConditionalWarp2::patch(int column, int row, const Slice
 }
 
 double ConditionalWarp2::pdf(Point2 point, const SliceMix& mix) const noexcept {
-  const Cell x(point.x, width_), y(point.y, height_);
+  const CellOfSide x(point.x, width_), y(point.y, height_);
   const Patch p = patch(x.index, y.index, mix);
   const double a = std::lerp(p.d00, p.d01, y.t), b = std::lerp(p.d10, p.d11, y.t);
   return std::lerp(a, b, x.t) * (width_ - 1) * (height_ - 1);
 }
 
 Point2 ConditionalWarp2::invert(Point2 point, const SliceMix& mix) const noexcept {
-  const Cell x(point.x, width_), y(point.y, height_);
+  // the share of the row before the point, rows taken linearly between the two nodes
+  const CellOfSide x(point.x, width_), y(point.y, height_);
   const Patch p = patch(x.index, y.index, mix);
   const auto along_y = [t = y.t](double a, double b) { return a + t * (b - a); };
   const double total = along_y(p.total0, p.total1);
   const double in_row =
       along_y(p.before0, p.before1) + integral(along_y(p.d00, p.d01), along_y(p.d10, p.d11), x.t);
+  // the share of the rows before it
   const double v = p.rows_before + integral(p.total0, p.total1, y.t);
   return {total > 0 ? std::min(in_row / total, 1.0) : point.x, std::min(v, 1.0)};
 }
 
 Point2 ConditionalWarp2::warp(Point2 u, const SliceMix& mix) const noexcept {
+  // the row: where the rows' totals sum to u.y
   const int row =
       find_cell(height_, u.y, [&](int y) { return patch(0, std::min(y, height_ - 2), mix).rows_before; });
   const Patch rows = patch(0, row, mix);
   const double ty = solve(rows.total0, rows.total1, u.y - rows.rows_before);
-  const double target = u.x * std::lerp(rows.total0, rows.total1, ty);
 
+  // the place in the row: where its density sums to u.x of its total
+  const double target = u.x * std::lerp(rows.total0, rows.total1, ty);
   const int column = find_cell(width_, target, [&](int x) {
     const Patch p = patch(std::min(x, width_ - 2), row, mix);
     return std::lerp(p.before0, p.before1, ty);

@@ -16,12 +16,6 @@ constexpr double kFloor = 1e-6;
 constexpr double kLargestTheta = radians(89);
 constexpr int kSigmaTheta = 64, kSigmaPhi = 33;  // sigma is as smooth as a clamped cosine
 
-double theta_of_u(double u) noexcept {
-  return u * u * kHalfPi;
-}
-double phi_of_v(double v) noexcept {
-  return v * kTwoPi - kPi;
-}
 double node(int i, int n) noexcept {
   return static_cast<double>(i) / (n - 1);
 }
@@ -43,8 +37,8 @@ std::vector<double> retro_reflection(BrdfRef source, int rows, int columns) {
     std::vector<double> f(index(source.channels()));
     double* value = result.data() + row * index(columns);
     for (int i = 0; i < columns; ++i) {
-      const double theta = std::min(theta_of_u(node(i, columns)), kLargestTheta);
-      const Vec3 w = spherical_direction(theta, phi_of_v(rows > 1 ? node(static_cast<int>(row), rows) : 0.5));
+      const double theta = std::min(rgl_theta(node(i, columns)), kLargestTheta);
+      const Vec3 w = spherical_direction(theta, rgl_phi(rows > 1 ? node(static_cast<int>(row), rows) : 0.5));
       const double g = grey(source, w, w, f);
       value[i] = g < 0 ? (i > 0 ? value[i - 1] : -1) : g * std::cos(theta);
     }
@@ -76,11 +70,11 @@ Microfacets find_microfacets(BrdfRef source, const RglOptions& options) {
   std::vector<Node> nodes;
   for (int j = 0; j < around; ++j)
     for (int i = 0; i < columns; ++i) {
-      const double u = node(i, columns), theta = theta_of_u(u);
+      const double u = node(i, columns), theta = rgl_theta(u);
       const double border = (i == columns - 1 ? 0.5 : 1) * (j == 0 || j == around - 1 ? 0.5 : 1);
       const double area =
           kPi * u * std::sin(theta) * kTwoPi / ((columns - 1.0) * (around - 1.0));  // dm / (du dv)
-      nodes.push_back({spherical_direction(theta, phi_of_v(node(j, around))), border * area,
+      nodes.push_back({spherical_direction(theta, rgl_phi(node(j, around))), border * area,
                        index((isotropic ? 0 : j) * columns + i)});
     }
 
@@ -104,8 +98,8 @@ Microfacets find_microfacets(BrdfRef source, const RglOptions& options) {
     for_each_chunk(index(sigma_rows * kSigmaTheta), 16, [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         const int i = static_cast<int>(k) % kSigmaTheta, j = static_cast<int>(k) / kSigmaTheta;
-        const Vec3 w = spherical_direction(theta_of_u(node(i, kSigmaTheta)),
-                                           phi_of_v(sigma_rows > 1 ? node(j, sigma_rows) : 0.5));
+        const Vec3 w = spherical_direction(rgl_theta(node(i, kSigmaTheta)),
+                                           rgl_phi(sigma_rows > 1 ? node(j, sigma_rows) : 0.5));
         double sum = 0;
         for (const Node& n : nodes) sum += n.weight * ndf[n.value] * std::max(0.0, dot(n.m, w));
         sigma[k] = static_cast<float>(sum);
@@ -124,8 +118,8 @@ void add_visible_normals(const RglGrid& ndf, Vec3 wi, RglGrid& vndf) {
   for (int j = 0; j < vndf.height; ++j)
     for (int i = 0; i < vndf.width; ++i) {
       const Point2 p{node(i, vndf.width), node(j, vndf.height)};
-      const double theta = theta_of_u(p.x);
-      const Vec3 m = spherical_direction(theta, phi_of_v(p.y));
+      const double theta = rgl_theta(p.x);
+      const Vec3 m = spherical_direction(theta, rgl_phi(p.y));
       slice.push_back(rgl_lookup(ndf, p) * std::max(0.0, dot(m, wi)) * std::sin(theta) * p.x);
     }
   const double sum = std::accumulate(slice.begin(), slice.end(), 0.0);
@@ -212,7 +206,7 @@ RglTable make_rgl_table(BrdfRef source, const RglOptions& options) {
       for (int x = 0; x < side; ++x) {
         const auto at = index(y * side + x);
         const Point2 half = warp.warp({node(x, side), node(y, side)}, mix);
-        const Vec3 h = spherical_direction(theta_of_u(half.x), phi_of_v(half.y));
+        const Vec3 h = spherical_direction(rgl_theta(half.x), rgl_phi(half.y));
         const Vec3 wo = normalize(2 * dot(wi, h) * h - wi);
         known[at] = wo.z > 0 && source.eval(wi, wo, f);
         if (!known[at]) continue;

@@ -8,6 +8,7 @@
 #include <burnish/math/angles.h>
 #include <burnish/math/random.h>
 #include <burnish/reflectance/rgl_builder.h>
+#include <burnish/testing/directions.h>
 
 namespace burnish {
 namespace {
@@ -59,7 +60,7 @@ double mean_log_error(BrdfRef source, BrdfRef table, std::uint64_t seed) {
   while (count < 2000) {
     // Uniform half vectors and differences, as the error figures draw them.
     const Vec3 h = spherical_direction(random.uniform() * kHalfPi, random.uniform() * kTwoPi);
-    const Vec3 wi = spherical_direction(std::acos(1 - random.uniform()), random.uniform() * kTwoPi);
+    const Vec3 wi = random_upper_direction(random);
     const Vec3 wo = 2 * dot(wi, h) * h - wi;
     if (wi.z < 0.2 || wo.z < 0.2) continue;
     source.eval(wi, wo, a);

@@ -54,17 +54,29 @@ std::pair<std::uint32_t, double> locate(const std::vector<float>& nodes, double 
   return {static_cast<std::uint32_t>(i), std::clamp((x - a) / (b - a), 0.0, 1.0)};
 }
 
+/// theta_of by a square root, which costs less than hypot. w of any length that is not tiny.
+double polar_angle(Vec3 w) noexcept {
+  return std::atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z);
+}
+
 /// In [-pi, pi]; 0 of the normal, whatever the signs of its zeros.
 double azimuth(Vec3 w) noexcept {
   return w.x == 0 && w.y == 0 ? 0 : std::atan2(w.y, w.x);
 }
 
-/// A bilinear lookup: index of the first corner of the cell and the weights of its corners 00, 10, 01, 11.
-struct Bilinear {
+/// Solid angle of half vectors over area of the unit square, dm / (du dv), with theta = pi/2 u^2 and
+/// phi = 2 pi v - pi: sin(theta) dtheta/du dphi/dv = sin(theta) (pi u) (2 pi).
+double solid_angle_over_area(Point2 half) noexcept {
+  return 2 * kPi * kPi * half.x * std::sin(rgl_theta(half.x));
+}
+
+/// The cell of a grid that holds p in [0, 1]^2, for bilinear interpolation: index of its first corner and
+/// the weights of its corners 00, 10, 01, 11.
+struct GridCell {
   std::size_t index;
   std::array<double, 4> weight;
 
-  Bilinear(Point2 p, int width, int height) noexcept {
+  GridCell(Point2 p, int width, int height) noexcept {
     const double x = p.x * (width - 1), y = p.y * (height - 1);
     const int column = std::min(static_cast<int>(x), width - 2),
               row = std::min(static_cast<int>(y), height - 2);
@@ -82,7 +94,7 @@ Point2 rgl_square(double theta, double phi) noexcept {
 }
 
 double rgl_lookup(const RglGrid& grid, Point2 p) noexcept {
-  const Bilinear at(p, grid.width, grid.height);
+  const GridCell at(p, grid.width, grid.height);
   const float* v = grid.values.data() + at.index;
   return at.weight[0] * static_cast<double>(v[0]) + at.weight[1] * static_cast<double>(v[1]) +
          at.weight[2] * static_cast<double>(v[grid.width]) +
@@ -98,12 +110,15 @@ RglTable::RglTable(RglData data) : data_(std::move(data)) {
   for (std::size_t k = 0; k < lambdas; ++k)
     require(std::isfinite(data_.lambda_nm[k]) && data_.lambda_nm[k] > (k > 0 ? data_.lambda_nm[k - 1] : 0),
             "increasing wavelengths");
+
+  // angles
   require_finite(data_.phi_i, -std::numeric_limits<float>::max(), "phi_i");
   require_finite(data_.theta_i, 0, "theta_i");
   require_increasing(data_.phi_i, "phi_i");
   require_increasing(data_.theta_i, "theta_i");
   require(static_cast<double>(data_.theta_i.back()) < kHalfPi + 1e-3, "theta_i up to pi/2");
 
+  // tables
   const std::size_t slices = data_.phi_i.size() * data_.theta_i.size();
   require_grid(data_.ndf, 1, "ndf");
   require_grid(data_.sigma, 1, "sigma");
@@ -114,8 +129,10 @@ RglTable::RglTable(RglData data) : data_(std::move(data)) {
   require_finite(data_.sigma.values, 0, "sigma");
   require_finite(data_.spectra.values, -std::numeric_limits<float>::max(), "spectra");
   require_finite(data_.luminance.values, -std::numeric_limits<float>::max(), "luminance");
+
   set_reduction();
   warp_ = ConditionalWarp2(data_.vndf.width, data_.vndf.height, data_.vndf.values);
+
   // negative noise carries no light; a dark slice is drawn from evenly
   std::vector<float> luminance = data_.luminance.values;
   const std::size_t slice = luminance.size() / slices;
@@ -131,6 +148,7 @@ void RglTable::set_reduction() {
   if (isotropic()) return;
   const double first = static_cast<double>(data_.phi_i.front()),
                last = static_cast<double>(data_.phi_i.back());
+  // how often the range fits in the circle
   const double times = std::round(kTwoPi / (last - first));
   require((times == 1 || times == 2 || times == 4) && std::abs(first) < 2 * kTwoPi &&
               last - first < kTwoPi + kPhiTolerance,
@@ -145,6 +163,7 @@ void RglTable::set_reduction() {
   }
 }
 
+/// The slices next to an incident direction: two in theta_i, of an anisotropic table times two in phi_i.
 SliceMix RglTable::mix_at(double phi, double theta) const noexcept {
   const auto stride = static_cast<std::uint32_t>(data_.theta_i.size());
   const auto polar = locate(data_.theta_i, theta);
@@ -165,6 +184,7 @@ SliceMix RglTable::mix_at(double phi, double theta) const noexcept {
 
   const double first = static_cast<double>(data_.phi_i.front()),
                last = static_cast<double>(data_.phi_i.back());
+  // phi_i may start anywhere: into the turn that begins at the first
   phi -= kTwoPi * std::floor((phi - first) / kTwoPi);
   const auto [p, p_weight] = locate(data_.phi_i, phi);
   if (phi <= last) {
@@ -180,61 +200,75 @@ SliceMix RglTable::mix_at(double phi, double theta) const noexcept {
   return mix;
 }
 
-/// The symmetry that takes a direction into the part of the circle that phi_i covers, its own inverse.
-struct RglTable::Fold {
-  double x = 1, y = 1;
+/// The symmetry that takes a direction into the part of the circle that phi_i covers: nothing, a turn by pi or
+/// a reflection in one of the mirror planes, all of which change signs only. It is its own inverse.
+struct RglTable::Symmetry {
+  double x = 1, y = 1;  // +1 or -1
 
   Vec3 operator()(Vec3 w) const noexcept { return {x * w.x, y * w.y, w.z}; }
 };
 
-RglTable::Fold RglTable::fold(Vec3 wi) const noexcept {
+RglTable::Symmetry RglTable::symmetry_of(Vec3 wi) const noexcept {
+  // half a circle: wi lies beyond it where it is clockwise from the first phi_i
   if (reduction_ == 2 && wi.y * cos_first_ - wi.x * sin_first_ < 0) return {-1, -1};
+  // a quarter: wi is taken to the quadrant that is stored
   if (reduction_ == 4) return {wi.x * sign_x_ < 0 ? -1.0 : 1.0, wi.y * sign_y_ < 0 ? -1.0 : 1.0};
   return {};
 }
 
-/// Where two directions lie in the tables.
-struct RglTable::Place {
-  double theta_i, phi_i;  // folded
-  Point2 half, sample;    // in the squares of vndf and of spectra
-  SliceMix mix;
+/// Where a pair of directions lies in the tables.
+struct RglTable::TablePlaces {
+  double theta_i, phi_i;  // of wi, for sigma
+  Point2 half;            // of the half vector: in the squares of ndf and vndf
+  Point2 sample;          // in the square of spectra and luminance
+  SliceMix mix;           // the slices of the conditioned tables
 };
 
-RglTable::Place RglTable::place_of(Vec3 wi, Vec3 wo) const noexcept {
-  const Fold folded = fold(wi);
-  wi = folded(wi);
-  const Vec3 h = wi + folded(wo);  // its length does not matter
-  Place place{.theta_i = std::atan2(std::sqrt(wi.x * wi.x + wi.y * wi.y), wi.z), .phi_i = 0};
-  const double theta_h = std::atan2(std::sqrt(h.x * h.x + h.y * h.y), h.z);
+RglTable::TablePlaces RglTable::places_of(Vec3 wi, Vec3 wo) const noexcept {
+  // into the part of the circle that is stored
+  const Symmetry symmetry = symmetry_of(wi);
+  wi = symmetry(wi);
+  const Vec3 h = wi + symmetry(wo);  // its length does not matter
+
+  // Cartesian -> spherical
+  TablePlaces places{.theta_i = polar_angle(wi), .phi_i = 0};
+  const double theta_h = polar_angle(h);
   double phi_h = 0;
   if (isotropic()) {
+    // phi_h from wi, by their cross and dot product in the plane
     const double x = wi.x == 0 && wi.y == 0 ? 1 : wi.x;  // as azimuth()
     phi_h = std::atan2(x * h.y - wi.y * h.x, x * h.x + wi.y * h.y);
   } else {
-    place.phi_i = azimuth(wi);
+    places.phi_i = azimuth(wi);
     phi_h = std::atan2(h.y, h.x);
   }
-  place.half = rgl_square(theta_h, phi_h);
-  place.mix = mix_at(place.phi_i, place.theta_i);
-  place.sample = warp_.invert(place.half, place.mix);
-  return place;
+
+  // spherical -> unit square of half vectors
+  places.half = rgl_square(theta_h, phi_h);
+
+  // invert the warp by visible normals -> unit square of samples
+  places.mix = mix_at(places.phi_i, places.theta_i);
+  places.sample = warp_.invert(places.half, places.mix);
+  return places;
 }
 
 bool RglTable::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   assert(f.size() == static_cast<std::size_t>(data_.channels));
   std::fill(f.begin(), f.end(), 0.0);
   if (!(wi.z > 0 && wo.z > 0)) return true;
-  const auto [theta_i, phi_i, half, sample, mix] = place_of(wi, wo);
+  const auto [theta_i, phi_i, half, sample, mix] = places_of(wi, wo);
 
+  // what the stored values were multiplied by: cos(theta_o), and 4 sigma / ndf [Dupuy 2018, sec. 4]
   double scale = 1 / std::max(wo.z, kSmallestCosine);
-  if (data_.jacobian)  // [Dupuy 2018, sec. 4]
+  if (data_.jacobian)
     scale *= rgl_lookup(data_.ndf, half) /
              (4 * std::max(rgl_lookup(data_.sigma, rgl_square(theta_i, phi_i)), kSmallestSigma));
 
+  // spectra, bilinear in the square and mixed over the slices
   const auto channels = static_cast<std::size_t>(data_.channels);
   const auto width = static_cast<std::size_t>(data_.spectra.width);
   const std::size_t slice_size = width * static_cast<std::size_t>(data_.spectra.height);
-  const Bilinear at(sample, data_.spectra.width, data_.spectra.height);
+  const GridCell at(sample, data_.spectra.width, data_.spectra.height);
   const std::size_t corner[] = {0, 1, width, width + 1};
   for (std::size_t s = 0; s < static_cast<std::size_t>(mix.count); ++s)
     for (std::size_t k = 0; k < 4; ++k) {
@@ -247,25 +281,29 @@ bool RglTable::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
 }
 
 DrawnDirection RglTable::sample_wo(Vec3 wi, Point2 u) const noexcept {
-  const Fold folded = fold(wi);
-  const Vec3 w = folded(wi);
-  const double theta_i = std::atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z);
+  // the slices of wi, in the part of the circle that is stored
+  const Symmetry symmetry = symmetry_of(wi);
+  const Vec3 w = symmetry(wi);
   const double phi_i = azimuth(w);
-  const SliceMix mix = mix_at(phi_i, theta_i);
+  const SliceMix mix = mix_at(phi_i, polar_angle(w));
+
+  // uniform -> by luminance -> by visible normals -> half vector
   const Point2 sample = luminance_warp_.warp(u, mix), half = warp_.warp(sample, mix);
-  const double theta_h = half.x * half.x * kHalfPi, phi_h = half.y * kTwoPi - kPi;
-  const Vec3 h = spherical_direction(theta_h, isotropic() ? phi_h + phi_i : phi_h);
+  const double phi_h = rgl_phi(half.y);
+  const Vec3 h = spherical_direction(rgl_theta(half.x), isotropic() ? phi_h + phi_i : phi_h);
+
+  // reflect; dwo = 4 dot(wi, h) dh
   const double to_half = dot(w, h);
-  const Vec3 wo = folded(2 * to_half * h - w);
-  const double area = 2 * kPi * kPi * half.x * std::sin(theta_h) * 4 * to_half;  // solid angle over square
+  const Vec3 wo = symmetry(2 * to_half * h - w);
+  const double area = solid_angle_over_area(half) * 4 * to_half;
   if (!(area > 0 && wo.z > 0)) return {wo, 0};
   return {wo, luminance_warp_.pdf(sample, mix) * warp_.pdf(half, mix) / area};
 }
 
 double RglTable::pdf_wo(Vec3 wi, Vec3 wo) const noexcept {
   if (!(wi.z > 0 && wo.z > 0)) return 0;
-  const auto [theta_i, phi_i, half, sample, mix] = place_of(wi, wo);
-  const double area = 2 * kPi * kPi * half.x * std::sin(half.x * half.x * kHalfPi) * 2 * length(wi + wo);
+  const auto [theta_i, phi_i, half, sample, mix] = places_of(wi, wo);
+  const double area = solid_angle_over_area(half) * 2 * length(wi + wo);  // 4 dot(wi, h) = 2 |wi + wo|
   return area > 0 ? luminance_warp_.pdf(sample, mix) * warp_.pdf(half, mix) / area : 0;
 }
 
@@ -277,7 +315,7 @@ DirectionPair RglTable::node_directions(int phi, int theta, int row, int column)
   const Point2 half = warp_.warp({static_cast<double>(column) / (data_.spectra.width - 1),
                                   static_cast<double>(row) / (data_.spectra.height - 1)},
                                  {{static_cast<std::uint32_t>(slice)}, {1}, 1});
-  const Vec3 h = spherical_direction(half.x * half.x * kHalfPi, half.y * kTwoPi - kPi);
+  const Vec3 h = spherical_direction(rgl_theta(half.x), rgl_phi(half.y));
   return {wi, normalize(2 * dot(wi, h) * h - wi)};
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <burnish/math/angles.h>
 #include <burnish/reflectance/brdf.h>
 #include <burnish/reflectance/conditional_warp.h>
 #include <burnish/reflectance/sampling.h>
@@ -72,10 +73,10 @@ class RglTable {
  private:
   void set_reduction();
   SliceMix mix_at(double phi, double theta) const noexcept;
-  struct Fold;
-  Fold fold(Vec3 wi) const noexcept;
-  struct Place;
-  Place place_of(Vec3 wi, Vec3 wo) const noexcept;
+  struct Symmetry;
+  Symmetry symmetry_of(Vec3 wi) const noexcept;
+  struct TablePlaces;
+  TablePlaces places_of(Vec3 wi, Vec3 wo) const noexcept;
 
   RglData data_;
   ConditionalWarp2 warp_, luminance_warp_;
@@ -97,9 +98,15 @@ struct RglSampler {
 
 static_assert(DirectionSampler<RglSampler>);
 
-/// The unit square of half vectors and incident directions; see RglData. theta in [0, pi/2], phi in [-pi,
-/// pi].
+/// The unit square of half vectors and incident directions; see RglData. theta in [0, pi/2], phi in [-pi, pi].
 Point2 rgl_square(double theta, double phi) noexcept;
+/// Its inverse: theta of a column's u in [0, 1] and phi of a row's v in [0, 1], radians.
+constexpr double rgl_theta(double u) noexcept {
+  return u * u * kHalfPi;
+}
+constexpr double rgl_phi(double v) noexcept {
+  return v * kTwoPi - kPi;
+}
 /// Bilinear value of an unconditioned grid at p in [0, 1]^2.
 double rgl_lookup(const RglGrid& grid, Point2 p) noexcept;
 

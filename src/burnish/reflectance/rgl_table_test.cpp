@@ -8,6 +8,7 @@
 #include <burnish/math/angles.h>
 #include <burnish/math/random.h>
 #include <burnish/reflectance/rgl_table.h>
+#include <burnish/testing/directions.h>
 #include <burnish/testing/sampling.h>
 
 namespace burnish {
@@ -51,10 +52,6 @@ float pi_times(double factor) {
   return static_cast<float>(kPi * factor);
 }
 
-Vec3 random_direction(Pcg32& random) {
-  return spherical_direction(std::acos(1 - random.uniform()), random.uniform() * kTwoPi);
-}
-
 Vec3 rotated(Vec3 w, double angle) {
   return {w.x * std::cos(angle) - w.y * std::sin(angle), w.x * std::sin(angle) + w.y * std::cos(angle), w.z};
 }
@@ -79,7 +76,7 @@ TEST(RglTable, IsotropicTablesDoNotFeelRotation) {
   EXPECT_TRUE(RglTable(random_data({0, 1}, 1)).isotropic());
   Pcg32 random(2);
   for (int i = 0; i < 500; ++i) {
-    const Vec3 wi = random_direction(random), wo = random_direction(random);
+    const Vec3 wi = random_upper_direction(random), wo = random_upper_direction(random);
     const double turn = random.uniform() * kTwoPi, f = value_of(table, wi, wo);
     EXPECT_NEAR(value_of(table, rotated(wi, turn), rotated(wo, turn)) / f, 1, 1e-9);
   }
@@ -113,7 +110,7 @@ TEST(RglTable, HalfCirclesAreCompletedByRotation) {
   EXPECT_EQ(table.reduction(), 2);
   Pcg32 random(4);
   for (int i = 0; i < 500; ++i) {
-    const Vec3 wi = random_direction(random), wo = random_direction(random);
+    const Vec3 wi = random_upper_direction(random), wo = random_upper_direction(random);
     EXPECT_NEAR(value_of(table, mirror(wi), mirror(wo)) / value_of(table, wi, wo), 1, 1e-9);
   }
   // The stored half is the lower one: there the last node, phi_i = 0, is reached without rotation.
@@ -133,7 +130,7 @@ TEST(RglTable, QuarterCirclesAreCompletedByMirrors) {
     EXPECT_EQ(table.reduction(), 4);
     Pcg32 random(6);
     for (int i = 0; i < 200; ++i) {
-      const Vec3 wi = random_direction(random), wo = random_direction(random);
+      const Vec3 wi = random_upper_direction(random), wo = random_upper_direction(random);
       const double f = value_of(table, wi, wo);
       EXPECT_NEAR(value_of(table, {-wi.x, wi.y, wi.z}, {-wo.x, wo.y, wo.z}) / f, 1, 1e-9);
       EXPECT_NEAR(value_of(table, {wi.x, -wi.y, wi.z}, {wo.x, -wo.y, wo.z}) / f, 1, 1e-9);
@@ -263,7 +260,7 @@ TEST(RglTable, TellsTheDensityThatItDrawsBy) {
   const RglTable table(random_data({0, pi_times(0.5), pi_times(1)}, 5));
   Pcg32 random(6);
   for (int i = 0; i < 1000; ++i) {
-    const Vec3 wi = random_direction(random);
+    const Vec3 wi = random_upper_direction(random);
     const double x = random.uniform();
     const DrawnDirection drawn = table.sample_wo(wi, {x, random.uniform()});
     if (drawn.pdf == 0) continue;

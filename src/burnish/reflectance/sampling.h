@@ -21,26 +21,29 @@ struct DrawnDirection {
 /// - pdf(wi, wo): that density, 1/sr, for any unit vector wi; zero for wi.z <= 0. It integrates to at most 1
 ///   over the upper hemisphere: what is missing is drawn below the horizon.
 /// Never allocates, never throws.
+// clang-format off
 template <class T>
 concept DirectionSampler = requires(const T& sampler, Vec3 w, Point2 u) {
-  { sampler.sample_wi(w, u) }
-  noexcept->std::same_as<DrawnDirection>;
-  { sampler.pdf(w, w) }
-  noexcept->std::same_as<double>;
+  { sampler.sample_wi(w, u) } noexcept -> std::same_as<DrawnDirection>;
+  { sampler.pdf(w, w) } noexcept -> std::same_as<double>;
 };
+// clang-format on
 
 /// A non-owning reference to any DirectionSampler.
 class SamplerRef {
  public:
+  // clang-format off
   template <DirectionSampler T>
-  requires(!std::same_as<T, SamplerRef>) SamplerRef(const T& sampler)
-  noexcept  // NOLINT: implicit like std::span
+    requires(!std::same_as<T, SamplerRef>)
+  SamplerRef(const T& sampler) noexcept  // NOLINT: implicit like std::span
       : sampler_(&sampler),
         sample_([](const void* s, Vec3 wo, Point2 u) noexcept {
           return static_cast<const T*>(s)->sample_wi(wo, u);
         }),
-        pdf_([](const void* s, Vec3 wi, Vec3 wo) noexcept { return static_cast<const T*>(s)->pdf(wi, wo); }) {
-  }
+        pdf_([](const void* s, Vec3 wi, Vec3 wo) noexcept {
+          return static_cast<const T*>(s)->pdf(wi, wo);
+        }) {}
+  // clang-format on
 
   DrawnDirection sample_wi(Vec3 wo, Point2 u) const noexcept { return sample_(sampler_, wo, u); }
   double pdf(Vec3 wi, Vec3 wo) const noexcept { return pdf_(sampler_, wi, wo); }

@@ -10,13 +10,12 @@
 namespace burnish {
 
 /// Where samples are neighbours.
-/// - half_difference: isotropic (sqrt(theta_h / (pi/2)), theta_d / (pi/2), sin theta_h sin theta_d |cos
-/// phi_d|);
+/// - half_difference: isotropic
+///   (sqrt(theta_h / (pi/2)), theta_d / (pi/2), sin theta_h sin theta_d |cos phi_d|);
 ///   anisotropic the half vector at radius sqrt(theta_h / (pi/2)) and azimuth phi_h, and the difference
 ///   vector at radius theta_d / pi and azimuth phi_h + phi_d. Highlights keep their shape.
 /// - angles: (sin theta_i sin theta_o, |phi_i - phi_o| / pi, cos theta_i cos theta_o), the space of pbrt-v2,
-/// for isotropic
-///   samples only; for comparison. Near the normal it mixes directions up to 10 degrees apart.
+///   for isotropic samples only; for comparison. Near the normal it mixes directions up to 10 degrees apart.
 /// Both isotropic spaces are reciprocal and symmetric about the plane of incidence.
 enum class SampleSpace { half_difference, angles };
 
@@ -57,8 +56,7 @@ class ScatteredBrdf {
   SampleSpace space_;
   Samples samples_;  // in the order of the tree
   std::vector<Point> points_;
-  // Split axis of the node whose pivot is point i; a k-d tree without pointers: a range's pivot is its
-  // middle.
+  // Split axis of the node whose pivot is point i; a k-d tree without pointers: a range's pivot is its middle.
   std::vector<std::uint8_t> axes_;
   double initial_radius2_ = 0;
 };

@@ -16,9 +16,14 @@ namespace {
 RTCRay ray_of(Vec3 origin, Vec3 direction, double near, double far) noexcept {
   RTCRay ray{};
   const auto o = to_floats(origin), d = to_floats(direction);
-  ray.org_x = o[0], ray.org_y = o[1], ray.org_z = o[2];
-  ray.dir_x = d[0], ray.dir_y = d[1], ray.dir_z = d[2];
-  ray.tnear = static_cast<float>(near), ray.tfar = static_cast<float>(far);
+  ray.org_x = o[0];
+  ray.org_y = o[1];
+  ray.org_z = o[2];
+  ray.dir_x = d[0];
+  ray.dir_y = d[1];
+  ray.dir_z = d[2];
+  ray.tnear = static_cast<float>(near);
+  ray.tfar = static_cast<float>(far);
   ray.mask = ~0u;
   return ray;
 }

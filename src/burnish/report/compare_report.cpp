@@ -247,15 +247,31 @@ Plot error_plot(std::span<const ComparedModel> models, std::span<const std::vect
   return plot;
 }
 
-std::vector<ComparedFigures> write_report(const fs::path& folder, const std::string& reference_name,
-                                          const Scorer& scorer, std::span<const ComparedModel> models) {
-  if (models.empty()) throw Error("a report needs a model to compare");
-  const std::vector<ComparedFigures> compared = compare_models(scorer, models);
-  std::error_code error;
-  fs::create_directories(folder / "spheres", error);
-  if (error) throw Error::in_file(folder.string(), "a folder to write to", error.message());
+namespace {
 
-  // pictures
+ColorBar difference_bar(double scale) {
+  return {scale, "mean |difference| of the shown values"};
+}
+
+// The sheet of all models side by side: a row of spheres and one of differences a light; the reference's
+// spheres are there already.
+ContactSheet start_overview(const fs::path& folder, const std::string& reference_name,
+                            const SpherePictures& reference, double scale) {
+  ContactSheet overview{reference_name, {"reference"}, {}, {}, difference_bar(scale)};
+  for (std::size_t i = 0; i < kSphereLights.size(); ++i) {
+    overview.row_labels.insert(overview.row_labels.end(), {light_text(i), "difference"});
+    overview.cells.push_back({to_image8(reference.shown[i])});
+    overview.cells.push_back({Image8{}});
+    write_png(folder / "spheres" / fmt::format("reference_{:.0f}.png", degrees(kSphereLights[i])),
+              overview.cells[2 * i][0]);
+  }
+  return overview;
+}
+
+// Writes the spheres, a sheet for every model and the overview of all.
+void write_pictures(const fs::path& folder, const std::string& reference_name, const Scorer& scorer,
+                    std::span<const ComparedModel> models, std::span<const ComparedFigures> compared) {
+  // every model's spheres and the end of its colour scale
   const SpherePictures& reference = scorer.reference_pictures();
   const int size = scorer.options().image_size;
   std::vector<SpherePictures> pictures;
@@ -269,18 +285,12 @@ std::vector<ComparedFigures> write_report(const fs::path& folder, const std::str
   std::vector<double> sorted = scales;
   std::ranges::sort(sorted);
   const double shared_scale = sorted[(sorted.size() - 1) / 2];
-  const auto bar = [](double scale) { return ColorBar{scale, "mean |difference| of the shown values"}; };
-  ContactSheet overview{reference_name, {"reference"}, {}, {}, bar(shared_scale)};
-  for (std::size_t i = 0; i < kSphereLights.size(); ++i) {
-    overview.row_labels.insert(overview.row_labels.end(), {light_text(i), "difference"});
-    overview.cells.push_back({to_image8(reference.shown[i])});
-    overview.cells.push_back({Image8{}});
-    write_png(folder / "spheres" / fmt::format("reference_{:.0f}.png", degrees(kSphereLights[i])),
-              overview.cells[2 * i][0]);
-  }
+  ContactSheet overview = start_overview(folder, reference_name, reference, shared_scale);
+
   for (std::size_t m = 0; m < models.size(); ++m) {
+    // a row for every light, on the model's own sheet and on the overview
     ContactSheet sheet{
-        reference_name, {"reference", heading(compared[m]), "difference"}, {}, {}, bar(scales[m])};
+        reference_name, {"reference", heading(compared[m]), "difference"}, {}, {}, difference_bar(scales[m])};
     overview.column_labels.push_back(heading(compared[m]));
     for (std::size_t i = 0; i < kSphereLights.size(); ++i) {
       const Image8 model = to_image8(pictures[m].shown[i]);
@@ -294,6 +304,8 @@ std::vector<ComparedFigures> write_report(const fs::path& folder, const std::str
       write_png(folder / "spheres" / (name + ".png"), model);
       write_png(folder / "spheres" / (name + "_difference.png"), heat);
     }
+
+    // the dome, on its own sheet only
     const Image model_dome = dome(models[m].brdf);
     sheet.row_labels.push_back("dome");
     sheet.cells.push_back({to_image8(reference_dome), to_image8(model_dome),
@@ -301,8 +313,12 @@ std::vector<ComparedFigures> write_report(const fs::path& folder, const std::str
     write_png(folder / fmt::format("model_{}.png", m + 1), compose(sheet));
   }
   write_png(folder / "overview.png", compose(overview));
+}
 
-  // plots
+// Writes the plots; returns their names.
+std::vector<std::string> write_plots(const fs::path& folder, const Scorer& scorer,
+                                     std::span<const ComparedModel> models,
+                                     std::span<const ComparedFigures> compared) {
   std::vector<std::string> plots;
   const auto save = [&](const std::string& name, const Plot& plot) {
     write_plot(folder / name, plot);
@@ -316,11 +332,26 @@ std::vector<ComparedFigures> write_report(const fs::path& folder, const std::str
   save("error_theta_h", error_plot(models, errors, ErrorAxis::theta_h));
   save("error_theta_d", error_plot(models, errors, ErrorAxis::theta_d));
   save("albedo", albedo_plot(compared));
+  return plots;
+}
+
+}  // namespace
+
+std::vector<ComparedFigures> write_report(const fs::path& folder, const std::string& reference_name,
+                                          const Scorer& scorer, std::span<const ComparedModel> models) {
+  if (models.empty()) throw Error("a report needs a model to compare");
+  const std::vector<ComparedFigures> compared = compare_models(scorer, models);
+  std::error_code error;
+  fs::create_directories(folder / "spheres", error);
+  if (error) throw Error::in_file(folder.string(), "a folder to write to", error.message());
+
+  write_pictures(folder, reference_name, scorer, models, compared);
+  const std::vector<std::string> plots = write_plots(folder, scorer, models, compared);
 
   const FigureOptions& options = scorer.options();
-  const nlohmann::ordered_json report = {{"reference", reference_name}, {"pairs", options.count},
-                                         {"seed", options.seed},        {"floor", options.floor},
-                                         {"image_size", size},          {"models", json_of(compared)}};
+  const nlohmann::ordered_json report = {
+      {"reference", reference_name}, {"pairs", options.count},           {"seed", options.seed},
+      {"floor", options.floor},      {"image_size", options.image_size}, {"models", json_of(compared)}};
   write_then_rename(folder / "report.json", dump(report));
   write_then_rename(folder / "index.html", index_html(reference_name, compared, options, plots));
   return compared;

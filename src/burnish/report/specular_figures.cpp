@@ -185,7 +185,10 @@ SphereFigure sphere_figure(std::span<const PowerMethod> methods, double exponent
     for (int j = 0; j < size; ++j)
       for (int i = 0; i < size; ++i) {
         double x = 2 * (i + 0.5) / size - 1, y = 1 - 2 * (j + 0.5) / size;
-        if (magnified) x = h.x + reach * x, y = h.y + reach * y;
+        if (magnified) {
+          x = h.x + reach * x;
+          y = h.y + reach * y;
+        }
         const double v = std::clamp(value(cosine_at(x, y)), 0.0, 1.0);
         const auto grey = static_cast<std::uint8_t>(std::lround(255 * v));
         for (auto& channel : figure.image.at(static_cast<int>(column) * step + i, row * step + j))

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include <burnish/error.h>
 #include <burnish/factors/model_spec.h>
 #include <burnish/math/random.h>
 #include <burnish/reflectance/goniometer.h>
@@ -40,6 +44,13 @@ inline const ModelCase kModelCases[] = {
     {"ThreeLobes", "p(wo) q(h) p(wi) + p(wo) s(h) p(wi) + t(theta_d)", {"p=8", "q=64", "s=16", "t=8"}, 3},
     {"Twist", "a(theta_t) g(theta_h,theta_t)", {"a=16,power:0.7", "g=9x5"}, 3},
 };
+
+/// The case of that name.
+inline const ModelCase& model_case(std::string_view name) {
+  const ModelCase* const found = std::ranges::find(kModelCases, name, &ModelCase::name);
+  if (found == std::end(kModelCases)) throw Error("no model case " + std::string(name));
+  return *found;
+}
 
 /// A model of the case's form: log_value(table, x, y, channel) fills its tables, `random` its lobes' scales.
 template <class LogValue>

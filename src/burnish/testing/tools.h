@@ -1,12 +1,13 @@
 #pragma once
 
-#include <cstdlib>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
 #include <string_view>
 
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <burnish/error.h>
@@ -55,9 +56,27 @@ std::string error_of(const Parse& parse) {
   return {};
 }
 
+/// What a command came to: its exit status, -1 where a signal ended it, and what it said on both streams, or
+/// on those that the command leaves alone.
+struct Outcome {
+  int status = -1;
+  std::string output;
+};
+
+/// Runs a shell command to its end.
+inline Outcome run(const std::string& command) {
+  std::FILE* const pipe = ::popen(("(" + command + ") 2>&1").c_str(), "r");
+  if (!pipe) return {};
+  Outcome outcome;
+  for (int c; (c = std::fgetc(pipe)) != EOF;) outcome.output += static_cast<char>(c);
+  const int status = ::pclose(pipe);
+  if (WIFEXITED(status)) outcome.status = WEXITSTATUS(status);
+  return outcome;
+}
+
 /// Whether the shell finds a program.
 inline bool has_tool(const std::string& name) {
-  return std::system(("command -v " + name + " >/dev/null 2>&1").c_str()) == 0;
+  return run("command -v " + name).status == 0;
 }
 
 }  // namespace burnish

@@ -20,14 +20,14 @@ constexpr std::size_t kHeaderSize = 80, kLevelSize = 24;
 /// Channel types of a data format descriptor's samples.
 constexpr std::uint32_t kAlpha = 15, kExponent = 0x20, kSignedFloat = 0xC0;
 
-struct Sample {
+struct ChannelSample {
   std::uint32_t bit_offset, bits, channel_type, lower, upper;
 };
 
 struct Texels {
   std::uint32_t vk_format, type_size;
   std::size_t bytes;  // of a texel
-  std::vector<Sample> samples;
+  std::vector<ChannelSample> samples;
 };
 
 Texels texels_of(TableFormat format, int channels) {
@@ -77,7 +77,7 @@ std::string descriptor(const Texels& texels, bool compressed) {
   put(text, 0x00010101, 4);  // RGBSDA, BT.709, linear, no flags
   put(text, 0, 4);           // blocks of one texel
   put(text, compressed ? 0 : texels.bytes, 8);
-  for (const Sample& s : texels.samples) {
+  for (const ChannelSample& s : texels.samples) {
     put(text, s.bit_offset, 2);
     put(text, s.bits - 1, 1);
     put(text, s.channel_type, 1);
@@ -127,10 +127,10 @@ std::string encode_ktx2(const Texture& texture, bool compressed) {
   const std::size_t alignment = compressed ? 1 : std::max<std::size_t>(texels.bytes, 4);
 
   // the smallest level comes first
-  struct Place {
+  struct LevelPlace {
     std::size_t at, size, unpacked;
   };
-  std::vector<Place> places(levels);
+  std::vector<LevelPlace> places(levels);
   std::string data;
   const std::size_t head = (notes_at + notes.size() + alignment - 1) / alignment * alignment;
   for (std::size_t l = levels; l-- > 0;) {
@@ -141,6 +141,7 @@ std::string encode_ktx2(const Texture& texture, bool compressed) {
     data += level;
   }
 
+  // header, index of the levels, descriptor, notes, levels [KTX2, 3]
   std::string file(kIdentifier);
   const std::size_t words[] = {texels.vk_format,
                                texels.type_size,
@@ -158,7 +159,7 @@ std::string encode_ktx2(const Texture& texture, bool compressed) {
   for (const std::size_t word : words) put(file, word, 4);
   put(file, 0, 8);  // no global data
   put(file, 0, 8);
-  for (const Place& place : places)
+  for (const LevelPlace& place : places)
     for (const std::size_t word : {place.at, place.size, place.unpacked}) put(file, word, 8);
   file += format + notes;
   pad(file, alignment);

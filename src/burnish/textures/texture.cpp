@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -38,14 +39,14 @@ void check(const Table& table) {
 
 // The bilinear value at a place in cells, clamped to the table.
 void value_at(const Table& table, double x, double y, double* value) {
-  const auto part = [](double at, int size, int& low) {
+  const auto cell = [](double at, int size) {
     at = std::clamp(at, 0.0, size - 1.0);
-    low = std::min(static_cast<int>(at), std::max(size - 2, 0));
-    return at - low;
+    const int low = std::min(static_cast<int>(at), std::max(size - 2, 0));
+    return std::pair(low, at - low);
   };
-  int x0 = 0, y0 = 0;
-  const double fx = part(x, table.layout.width, x0), fy = part(y, table.layout.height, y0);
-  const auto texel = [&](int i, int j, int c) {
+  const auto [x0, fx] = cell(x, table.layout.width);
+  const auto [y0, fy] = cell(y, table.layout.height);
+  const auto texel = [&table](int i, int j, int c) {
     i = std::min(i, table.layout.width - 1);
     j = std::min(j, table.layout.height - 1);
     return static_cast<double>(
@@ -71,8 +72,8 @@ double measure(const TableLayout& layout, double x, double y) {
   if (layout.shape == TableShape::line) return axis_measure(layout.warp, u);
   const double v = y / (layout.height - 1);
   if (layout.shape == TableShape::grid) return axis_measure(layout.warp, u) * axis_measure(layout.warp_y, v);
-  const double r =
-      std::hypot(2 * u - 1, 2 * v - 1);  // d(omega) = sin(theta) d(theta) d(phi), area r dr d(phi)
+  // d(omega) = sin(theta) d(theta) d(phi), area r dr d(phi)
+  const double r = std::hypot(2 * u - 1, 2 * v - 1);
   return r > 1 ? 0 : axis_measure(layout.warp, r) / std::max(r, 1e-9);
 }
 
@@ -130,6 +131,8 @@ Texture make_texture(const Table& table, bool mips) {
                   .height = layout.height,
                   .levels = {table.values}};
   if (!mips) return texture;
+
+  // points of every texel's footprint, weighed by what of the sphere they stand for
   Sums sums(layout.width, layout.height, table.channels);
   double value[3];
   const int rows = layout.height == 1 ? 1 : kPoints;
@@ -169,6 +172,8 @@ Texture make_cube_map(const Table& table, int side, bool mips) {
     throw Error(fmt::format("cube map: expected a table of one direction, found the grid '{}'", table.name));
   if (side < 2 || side > 2048)
     throw Error(fmt::format("cube map: expected a side in [2, 2048], found {}", side));
+
+  // below the horizon the table's rim goes on
   const int cells = table.layout.width - 1;
   const auto at_direction = [&](Vec3 w, double* value) {
     if (w.z < 0) w = normalize({w.x, w.y, 0});
@@ -189,6 +194,7 @@ Texture make_cube_map(const Table& table, int side, bool mips) {
   const auto place = [&](double i) { return 2 * i / side - 1; };
   for (int face = 0; face < 6; ++face) {
     std::vector<float> values;
+    // the value in each texel's middle, and points of its footprint for the smaller levels
     Sums sums(side, side, table.channels);
     for (int y = 0; y < side; ++y)
       for (int x = 0; x < side; ++x) {

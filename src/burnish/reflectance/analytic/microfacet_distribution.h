@@ -12,13 +12,13 @@ double gaussian_of_slopes(Vec3 h, double alpha_x, double alpha_y) noexcept;
 
 /// A distribution of microfacet normals: density(h), microfacet area per solid angle of normals and per area
 /// of the surface, 1/sr, for h.z >= 0; over the hemisphere density times h.z integrates to 1.
+// clang-format off
 template <class T>
 concept MicrofacetDistribution = requires(const T& distribution, Vec3 h) {
-  { distribution.density(h) }
-  noexcept->std::same_as<double>;
-  { distribution.isotropic() }
-  noexcept->std::same_as<bool>;
+  { distribution.density(h) } noexcept -> std::same_as<double>;
+  { distribution.isotropic() } noexcept -> std::same_as<bool>;
 };
+// clang-format on
 
 /// Gaussian slopes; alpha is sqrt(2) times their deviation. alpha in [0.001, 1].
 /// Source: [Walter 2007, eq. 25], anisotropic form [Heitz 2014].

@@ -1,6 +1,6 @@
-// Reference values of the models: closed forms at special directions, and numbers computed outside the
-// library from angles and the textbook forms (double-precision NumPy; albedos by the midpoint rule over half
-// vectors, cylinders by intersecting rays with the neighbouring circles at 200,001 points of a period).
+// Reference values of the models: closed forms at special directions, and the numbers that
+// tests/reference/analytic_models.py prints, computed apart from the library from angles and the textbook forms
+// (albedos by the midpoint rule over half vectors, cylinders by rays against the circles around).
 
 #include <array>
 
@@ -44,8 +44,8 @@ TEST(OrenNayar, HasItsClosedFormAtNormalIncidence) {
 }
 
 TEST(OrenNayar, MatchesReferenceValuesForwardAndBackward) {
-  EXPECT_NEAR(grey(OrenNayar{0.7, 0.6}, kA, kB), 0.15244957608313237, 1e-14);
-  EXPECT_NEAR(grey(OrenNayar{0.7, 0.6}, at(60, 0), at(40, 30)), 0.23163189319233404, 1e-14);
+  EXPECT_NEAR(grey(OrenNayar{0.7, 0.6}, kA, kB), 0.1524495760831324, 1e-14);
+  EXPECT_NEAR(grey(OrenNayar{0.7, 0.6}, at(60, 0), at(40, 30)), 0.2316318931923341, 1e-14);
 }
 
 TEST(OrenNayar, ConservesLightUpToAnAlbedoOfNineTenths) {
@@ -82,9 +82,9 @@ TEST(BlinnPhong, ReflectsEverythingAtNormalIncidenceWhereNormalized) {
 TEST(Lafortune, SumsItsLobes) {
   Lafortune brdf{.kd = 0, .lobes = {}};
   brdf.lobes[1] = {.cx = -0.8, .cy = -0.9, .cz = 0.7, .exponent = 4, .ks = 1};
-  EXPECT_NEAR(grey(brdf, kA, kB), 0.20197343027903045, 1e-14);
+  EXPECT_NEAR(grey(brdf, kA, kB), 0.20197343027903056, 1e-14);
   brdf.lobes[2] = {.cx = 0, .cy = 0, .cz = 1, .exponent = 1, .ks = 2};
-  EXPECT_NEAR(grey(brdf, kA, kB), 0.20197343027903045 + 2 * kA.z * kB.z, 1e-14);
+  EXPECT_NEAR(grey(brdf, kA, kB), 0.20197343027903056 + 2 * kA.z * kB.z, 1e-14);
 }
 
 TEST(Lafortune, IsPhongWithTheCoefficientsOfTheMirror) {
@@ -100,10 +100,10 @@ TEST(Ward, AgreesInAllNormalizationsAtNormalIncidence) {
 }
 
 TEST(Ward, MatchesReferenceValues) {
-  EXPECT_NEAR(grey(Ward{0.3, 0.5, 0, 1, Ward::Normalization::ward}, kA, kB), 0.5052092823348818, 1e-14);
-  EXPECT_NEAR(grey(Ward{0.3, 0.5, 0, 1, Ward::Normalization::duer}, kA, kB), 0.6962341369030931, 1e-14);
-  EXPECT_NEAR(grey(Ward{0.3, 0.5, 0, 1, Ward::Normalization::bounded}, kA, kB), 0.7357877505675448, 1e-14);
-  EXPECT_NEAR(albedo(Ward{0.3, 0.5, 0, 1, Ward::Normalization::bounded}, at(60, 30)), 0.7562707719627755,
+  EXPECT_NEAR(grey(Ward{0.3, 0.5, 0, 1, Ward::Normalization::ward}, kA, kB), 0.5052092823348826, 1e-14);
+  EXPECT_NEAR(grey(Ward{0.3, 0.5, 0, 1, Ward::Normalization::duer}, kA, kB), 0.6962341369030941, 1e-14);
+  EXPECT_NEAR(grey(Ward{0.3, 0.5, 0, 1, Ward::Normalization::bounded}, kA, kB), 0.7357877505675455, 1e-14);
+  EXPECT_NEAR(albedo(Ward{0.3, 0.5, 0, 1, Ward::Normalization::bounded}, at(60, 30)), 0.7562699577939842,
               1e-3);
 }
 
@@ -161,25 +161,25 @@ TEST(Microfacet, HasItsClosedFormAtNormalIncidence) {
 }
 
 TEST(Microfacet, MatchesReferenceValues) {
-  EXPECT_NEAR(grey(Ggx{{0.3, 0.5}, 0.4, 0}, kA, kB), 0.23592309953559887, 1e-13);
-  EXPECT_NEAR(grey(Beckmann{{0.3, 0.5}, 0.4, 0}, kA, kB), 0.32069390677079695, 1e-13);
-  EXPECT_NEAR(albedo(Ggx{{0.3, 0.5}, 1, 0}, at(60, 30)), 0.7451086739813441, 1e-3);
-  EXPECT_NEAR(albedo(Beckmann{{0.3, 0.5}, 1, 0}, at(60, 30)), 0.890848930807108, 1e-3);
+  EXPECT_NEAR(grey(Ggx{{0.3, 0.5}, 0.4, 0}, kA, kB), 0.23592309953559934, 1e-13);
+  EXPECT_NEAR(grey(Beckmann{{0.3, 0.5}, 0.4, 0}, kA, kB), 0.3206939067707974, 1e-13);
+  EXPECT_NEAR(albedo(Ggx{{0.3, 0.5}, 1, 0}, at(60, 30)), 0.7451083232299258, 1e-3);
+  EXPECT_NEAR(albedo(Beckmann{{0.3, 0.5}, 1, 0}, at(60, 30)), 0.8908478610948384, 1e-3);
 }
 
 TEST(CookTorrance, MatchesReferenceValues) {
   EXPECT_NEAR(grey(CookTorrance{0.3, 0.6, 0}, kNormal, kNormal), 0.6 / (4 * kPi * 0.09), 1e-14);
-  EXPECT_NEAR(grey(CookTorrance{0.4, 0.04, 0}, kA, kB), 0.031994684225960766, 1e-14);
-  EXPECT_NEAR(grey(CookTorrance{0.4, 0.04, 0}, at(75, 0), at(80, 160)), 0.14365748724401997, 1e-13);
-  EXPECT_NEAR(albedo(CookTorrance{0.4, 0.04, 0}, at(60, 30)), 0.06923561263472773, 1e-4);
+  EXPECT_NEAR(grey(CookTorrance{0.4, 0.04, 0}, kA, kB), 0.031994684225960794, 1e-14);
+  EXPECT_NEAR(grey(CookTorrance{0.4, 0.04, 0}, at(75, 0), at(80, 160)), 0.14365748724402036, 1e-13);
+  EXPECT_NEAR(albedo(CookTorrance{0.4, 0.04, 0}, at(60, 30)), 0.0692355639029696, 1e-4);
 }
 
 TEST(AshikhminShirley, MatchesReferenceValues) {
   const double diffuse_part = 28 * 0.3 * 0.8 / (23 * kPi) * std::pow(31.0 / 32, 2);
   EXPECT_NEAR(grey(AshikhminShirley{8, 24, 0.2, 0.3}, kNormal, kNormal), 15 * 0.2 / (8 * kPi) + diffuse_part,
               1e-14);
-  EXPECT_NEAR(grey(AshikhminShirley{10, 40, 0.2, 0.3}, kA, kB), 0.1533938204680389, 1e-14);
-  EXPECT_NEAR(albedo(AshikhminShirley{10, 40, 1, 0}, at(60, 30)), 0.6638437208976735, 1e-3);
+  EXPECT_NEAR(grey(AshikhminShirley{10, 40, 0.2, 0.3}, kA, kB), 0.15339382046803923, 1e-14);
+  EXPECT_NEAR(albedo(AshikhminShirley{10, 40, 1, 0}, at(60, 30)), 0.6638437086170594, 1e-3);
 }
 
 TEST(PoulinFournier, HasItsClosedFormAtNormalIncidence) {
@@ -195,12 +195,12 @@ TEST(PoulinFournier, MatchesRaysTracedThroughTheCylinders) {
   const auto specular_only = [](double spacing, double height, double exponent, Vec3 wi, Vec3 wo) {
     return grey(PoulinFournier{spacing, height, exponent, 0, 1}, wi, wo);
   };
-  EXPECT_NEAR(diffuse_only(2.5, 1, kA, kB), 0.2634862, 1e-5);
-  EXPECT_NEAR(specular_only(2.5, 1, 50, kA, kB), 0.3192018, 1e-5);
-  EXPECT_NEAR(diffuse_only(3, 0.4, kA, kB), 0.3002155, 1e-5);
-  EXPECT_NEAR(specular_only(3, 0.4, 200, kA, kB), 0.1828653, 1e-5);
-  EXPECT_NEAR(diffuse_only(2.2, 0.9, at(70, 60), at(65, 250)), 0.0822310, 1e-5);
-  EXPECT_NEAR(specular_only(2.2, 0.9, 20, at(70, 60), at(65, 250)), 0.1266661, 1e-5);
+  EXPECT_NEAR(diffuse_only(2.5, 1, kA, kB), 0.2634911277552571, 1e-8);
+  EXPECT_NEAR(specular_only(2.5, 1, 50, kA, kB), 0.31920134233708136, 1e-5);
+  EXPECT_NEAR(diffuse_only(3, 0.4, kA, kB), 0.3002153874509721, 1e-8);
+  EXPECT_NEAR(specular_only(3, 0.4, 200, kA, kB), 0.18286524405626386, 1e-5);
+  EXPECT_NEAR(diffuse_only(2.2, 0.9, at(70, 60), at(65, 250)), 0.08223099673920896, 1e-8);
+  EXPECT_NEAR(specular_only(2.2, 0.9, 20, at(70, 60), at(65, 250)), 0.12666610241220655, 1e-5);
 }
 
 TEST(PoulinFournier, ShowsEveryDirectionExactlyOneGroundArea) {

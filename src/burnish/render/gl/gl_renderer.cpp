@@ -15,6 +15,8 @@ namespace {
 std::array<float, 16> projection_of(const Scene& scene, int width, int height) {
   const Camera& camera = scene.camera;
   const CameraFrame f = frame_of(camera);
+
+  // the scene's distances along the view; a depth of floats stays fine where low is not tiny beside high
   double low = 1e-30, high = 1;
   if (!scene.parts.empty()) {
     const Bounds bounds = bounds_of(scene.parts);
@@ -23,6 +25,8 @@ std::array<float, 16> projection_of(const Scene& scene, int width, int height) {
     low = std::max(distance - 1.01 * radius, 1e-3 * radius);
     high = std::max(distance + 1.01 * radius, 2 * low);
   }
+
+  // rows of the matrix: the frame's axes from the eye, then OpenGL's perspective
   const double y = 1 / std::tan(0.5 * camera.field_of_view), x = y * height / width;
   const double a = (high + low) / (low - high), b = 2 * high * low / (low - high);
   const auto row = [&](double s, Vec3 axis) {
@@ -39,6 +43,7 @@ std::array<float, 16> projection_of(const Scene& scene, int width, int height) {
   return m;
 }
 
+// As the shader's uniform block has it.
 struct LightEntry {
   float place[4], intensity[4];
 };
@@ -78,6 +83,7 @@ struct GlRenderer::State {
     glDeleteRenderbuffers(2, targets);
   }
 
+  // A picture of floats and its depth.
   void make_target() {
     glCreateFramebuffers(1, &frame);
     glCreateRenderbuffers(2, targets);
@@ -90,6 +96,7 @@ struct GlRenderer::State {
                               height));
   }
 
+  // A program for the scene's camera.
   GLuint linked(const std::string& fragment, const Scene& scene) const {
     const GlShaderSource sources[] = {{GL_VERTEX_SHADER, kSceneVertexShader}, {GL_FRAGMENT_SHADER, fragment}};
     const GLuint program = link_program(sources);
@@ -98,6 +105,7 @@ struct GlRenderer::State {
     return program;
   }
 
+  // A surface's program and its textures, bound to units 0, 1, ... in their order.
   void add_material(const std::string& fragment, std::span<const GlTexture> textures, const Scene& scene) {
     Material& m = materials.emplace_back();
     m.program = linked(fragment, scene);
@@ -115,6 +123,7 @@ struct GlRenderer::State {
     glDrawElements(GL_TRIANGLES, part.corners, GL_UNSIGNED_INT, nullptr);
   }
 
+  // A part's vertices and corners; with `values`, one a vertex, they are all that is shown.
   void add_part(const MeshPart& part, const std::vector<Rgb>* values) {
     Part& p = parts.emplace_back();
     p.corners = static_cast<GLsizei>(3 * part.mesh.triangles.size());
@@ -129,6 +138,8 @@ struct GlRenderer::State {
     fill(p.buffers[1], part.mesh.triangles);
     glVertexArrayVertexBuffer(p.array, 0, p.buffers[0], 0, sizeof(Vertex));
     glVertexArrayElementBuffer(p.array, p.buffers[1]);
+
+    // attributes as the vertex shader numbers them: position, normal, tangent, side, value
     const auto attribute = [&](GLuint index, GLuint binding, GLint count, std::size_t offset) {
       glEnableVertexArrayAttrib(p.array, index);
       glVertexArrayAttribFormat(p.array, index, count, GL_FLOAT, GL_FALSE, static_cast<GLuint>(offset));
@@ -155,14 +166,19 @@ GlRenderer::GlRenderer(const Scene& scene, std::span<const SurfaceShader> materi
   const bool interpolated = !vertex_values.empty();
   check_scene(scene, width, height, interpolated ? SIZE_MAX : materials.size());
   State& s = *state_;
-  s.width = width, s.height = height;
+  s.width = width;
+  s.height = height;
   s.background = {static_cast<float>(scene.background.r), static_cast<float>(scene.background.g),
                   static_cast<float>(scene.background.b), 1};
+
+  // programs: one that only finds depths, then one a material
   s.make_target();
   s.depth_program = s.linked("void main() {}\n", scene);
   if (interpolated) s.add_material(kInterpolatedFragmentShader, {}, scene);
   for (const SurfaceShader& surface : materials)
     s.add_material(scene_fragment_shader(surface), surface.textures, scene);
+
+  // meshes and lights
   for (std::size_t i = 0; i < scene.parts.size(); ++i)
     s.add_part(scene.parts[i], interpolated ? &vertex_values[i] : nullptr);
   for (const PointLight& light : scene.lights) {
@@ -197,10 +213,13 @@ void GlRenderer::draw() const {
   glClearNamedFramebufferfv(s.frame, GL_COLOR, 0, s.background.data());
   glClearNamedFramebufferfv(s.frame, GL_DEPTH, 0, &far);
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, s.light_buffer);
+
   // depth first, so that only what is seen is shaded
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   for (const State::Part& part : s.parts) s.draw_part(part, s.depth_program);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+
+  // then passes of as many lights as the block holds; without lights one, for what shines itself
   glDepthFunc(GL_EQUAL);
   std::size_t first = 0;
   do {
@@ -223,6 +242,7 @@ void GlRenderer::draw() const {
 }
 
 Image GlRenderer::read() const {
+  // OpenGL's first row is the lowest
   const State& s = *state_;
   Image upside_down(s.width, s.height, 3), image(s.width, s.height, 3);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, s.frame);

@@ -36,11 +36,11 @@ Image draw(const Scene& scene, std::span<const SurfaceShader> materials) {
 }
 
 const FactoredBrdf& disks() {
-  static const FactoredBrdf brdf = smooth_model(kModelCases[1]);
+  static const FactoredBrdf brdf = smooth_model(model_case("DiskPqp"));
   return brdf;
 }
 const FactoredBrdf& lines() {
-  static const FactoredBrdf brdf = smooth_model(kModelCases[12]);
+  static const FactoredBrdf brdf = smooth_model(model_case("ManyTables"));
   return brdf;
 }
 std::vector<SurfaceShader> shaders(ShaderFilter filter, TableFormat precision) {

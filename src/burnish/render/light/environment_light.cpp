@@ -97,6 +97,8 @@ void for_each_draw(SamplerRef guide, const Environment& environment, const Light
     if (environment.picture) density += count * environment.picture->pdf(w);
     if (density > 0) add(wi, w, density);
   };
+
+  // draws of the guide, of every disc, of the picture
   for (int i = 0; i < options.samples; ++i) {
     const DrawnDirection drawn = guide.sample_wi(wo, point(random, options, i));
     if (drawn.pdf > 0) weigh(drawn.wi, frame.world(drawn.wi));
@@ -198,6 +200,7 @@ LightRender render_in_environment(BrdfRef brdf, SamplerRef sampler, const Enviro
         squares[c] += value * value;
       }
     }
+    // the mean, and the variance of one sample by sums of squares
     for (std::size_t c = 0; c < 3; ++c) {
       const double mean = sum[c] / options.samples;
       render.mean.at(x, y)[c] = static_cast<float>(mean);
@@ -219,6 +222,7 @@ LightMoments moments_in_environment(BrdfRef brdf, SamplerRef guide, std::span<co
     const Vec3 wo = frame.local(kView);
     Channels mean{};
     std::vector<Channels> squares(samplers.size());
+    // E[(light / pdf)^2] of a sampler is the integral of light^2 / pdf
     for_each_draw(guide, environment, frame, wo, stratified, random, [&](Vec3 wi, Vec3 w, double density) {
       const Channels light = light_from(brdf, wi, wo, environment.radiance(w));
       for (std::size_t c = 0; c < 3; ++c) mean[c] += light[c] / density;

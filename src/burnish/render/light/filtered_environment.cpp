@@ -16,6 +16,12 @@ constexpr int kFinest = 512;  // texels around the horizon that are summed over
 constexpr double kTexelsAWidth = 1.3;
 constexpr double kReach = 3.5;  // widths where weights end
 
+void store(Rgb value, std::span<float> texel) noexcept {
+  texel[0] = static_cast<float>(value.r);
+  texel[1] = static_cast<float>(value.g);
+  texel[2] = static_cast<float>(value.b);
+}
+
 // What is not a disc, as a picture.
 SkyImage sky_of(const Environment& environment) {
   if (environment.picture) return SkyImage(smaller_sky(environment.picture->image(), kFinest));
@@ -26,15 +32,14 @@ SkyImage sky_of(const Environment& environment) {
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
       const Rgb value = sky.radiance(grid.direction(x, y));
-      const auto texel = image.at(x, y);
-      texel[0] = static_cast<float>(value.r), texel[1] = static_cast<float>(value.g);
-      texel[2] = static_cast<float>(value.b);
+      store(value, image.at(x, y));
     }
   return SkyImage(std::move(image));
 }
 
 // Texels weighed by a lobe about `axis`.
 Rgb blurred(const SkyImage& sky, Vec3 axis, double width) noexcept {
+  // rows within reach, and the columns of each that may be
   const Image& image = sky.image();
   const double texel = kPi / image.height, reach = std::max(kReach * width, 1.5 * texel);
   const double theta = std::acos(std::clamp(axis.y, -1.0, 1.0)), phi = std::atan2(axis.z, axis.x);
@@ -45,6 +50,8 @@ Rgb blurred(const SkyImage& sky, Vec3 axis, double width) noexcept {
     columns = std::min(
         columns, 2 * static_cast<int>(std::ceil(std::asin(std::sin(reach) / std::sin(theta)) / texel)) + 1);
   const int start = static_cast<int>(std::floor((phi / kTwoPi + 0.5) * image.width)) - columns / 2;
+
+  // sums of the colours and of the weights
   std::array<double, 4> sum{};
   for (int y = first; y <= last; ++y) {
     const double area = sky.solid_angle(y);
@@ -76,9 +83,13 @@ BlurredEnvironment blur(const Environment& environment, const BlurOptions& optio
   require("levels", options.levels, 2, 32);
   require("a narrowest width", options.narrowest, 1e-3, 0.5);
   require("a step", options.step, 1.1, 4);
-  std::vector<SkyImage> skies{sky_of(environment)};  // ever smaller
+
+  // the picture ever smaller: wide lobes are summed over coarse ones
+  std::vector<SkyImage> skies{sky_of(environment)};
   while (skies.back().image().width > 16 && skies.back().image().height % 2 == 0)
     skies.emplace_back(smaller_sky(skies.back().image(), skies.back().image().width / 2));
+
+  // every texel of every level: the blurred picture and the discs
   const std::vector<DiscPoint> points = disc_points(environment);
   const auto side = static_cast<std::size_t>(options.side);
   BlurredEnvironment result{options,
@@ -96,9 +107,8 @@ BlurredEnvironment blur(const Environment& environment, const BlurOptions& optio
           Rgb value = blurred(skies[level], axis, width);
           for (const DiscPoint& point : points)
             value = value + Rgb(blur_weight(dot(point.direction, axis), width)) * point.light;
-          float* texel = result.maps.data() + 3 * (row * 2 * side + static_cast<std::size_t>(column));
-          texel[0] = static_cast<float>(value.r), texel[1] = static_cast<float>(value.g);
-          texel[2] = static_cast<float>(value.b);
+          store(value,
+                std::span(result.maps).subspan(3 * (row * 2 * side + static_cast<std::size_t>(column)), 3));
         }
       });
   return result;
@@ -112,6 +122,8 @@ Rgb BlurredEnvironment::radiance(Vec3 w, double width) const noexcept {
   const int x0 = std::clamp(static_cast<int>(x), 0, side - 2),
             y0 = std::clamp(static_cast<int>(y), 0, side - 2),
             l0 = std::min(static_cast<int>(level), options.levels - 2);
+
+  // linear in place and level
   Rgb sum;
   for (int corner = 0; corner < 8; ++corner) {
     const int dx = corner & 1, dy = corner >> 1 & 1, dl = corner >> 2;

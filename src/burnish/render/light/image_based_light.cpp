@@ -24,10 +24,10 @@ double ring_angle(double ring) noexcept {
 }
 
 // Axes at right angles to `up` that turn with it without a seam where up.y > -1. [Duff 2017, with y for z]
-struct Frame {
+struct TurnedAxes {
   Vec3 x, z;
 
-  explicit Frame(Vec3 up) noexcept {
+  explicit TurnedAxes(Vec3 up) noexcept {
     const double a = 1 / (1 + up.y), b = -up.x * up.z * a;
     x = {1 - up.x * up.x * a, -up.x, b};
     z = {b, -up.z, 1 - up.z * up.z * a};
@@ -40,7 +40,8 @@ Vec3 slice_view(int slice, int slices) noexcept {
   return {-std::sin(theta), 0, std::cos(theta)};
 }
 
-// The local frame of a slice: the viewer towards -x, so that the mirror direction lies towards +x.
+// (the inside factors) cos(theta_i) about an axis, in azimuthal harmonics on rings. Directions are in the local
+// frame of a slice: the viewer towards -x, so that the mirror direction lies towards +x.
 struct Kernel {
   using Harmonics = std::array<Channels, kMostMaps / 2 + 1>;
 
@@ -49,6 +50,7 @@ struct Kernel {
 };
 
 Kernel kernel_of(const FactoredBrdf& inside, Vec3 wo, int orders) {
+  // the kernel, and the direction at angle gamma and azimuth psi about an axis in the plane of view
   const auto value = [&](Vec3 wi) {
     Channels f{};
     if (wi.z <= 0) return f;
@@ -61,6 +63,7 @@ Kernel kernel_of(const FactoredBrdf& inside, Vec3 wo, int orders) {
                  z = std::cos(gamma);
     return Vec3{std::cos(axis) * x + std::sin(axis) * z, y, std::cos(axis) * z - std::sin(axis) * x};
   };
+
   // The mean of the kernel squared, by rings about the mirror direction, which crowd where lobes are.
   const double mirror_angle = std::atan2(-wo.x, wo.z);
   Vec3 mean{};
@@ -72,6 +75,8 @@ Kernel kernel_of(const FactoredBrdf& inside, Vec3 wo, int orders) {
       const double area = std::sin(gamma) * (ring + 0.5);  // d gamma is proportional to the ring
       mean = mean + area * (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]) * wi;
     }
+
+  // its harmonics on rings about that axis, Fourier coefficients in psi
   Kernel kernel{.axis = std::atan2(mean.x, mean.z), .even = {}, .odd = {}};
   kernel.even.resize(kRings + 1);
   kernel.odd.resize(kRings + 1);
@@ -102,6 +107,7 @@ std::array<double, kMostMaps> harmonics_of(double c, double s) noexcept {
   return h;
 }
 
+// Light at one ring, weighted by each harmonic of its azimuth.
 using RingLight = std::array<Channels, kMostMaps>;
 
 void add(RingLight& to, const std::array<double, kMostMaps>& harmonics, double weight, Rgb light) noexcept {
@@ -135,6 +141,108 @@ void append_texels(std::vector<DiscPoint>& points, const SkyImage& picture) {
       const auto texel = sky.image().at(x, y);
       points.push_back({sky.direction(x, y), Rgb(sky.solid_angle(y)) * Rgb(texel[0], texel[1], texel[2])});
     }
+}
+
+// An environment as it is summed over rings: a sky that is sampled at every spoke (none where a picture says
+// all), and points of light.
+struct RingSources {
+  Environment sky;
+  bool samples_sky = true;
+  std::vector<double> areas;  // of the rings
+  std::vector<DiscPoint> points;
+};
+
+RingSources sources_of(const Environment& environment) {
+  RingSources sources{.sky = environment,
+                      .samples_sky = !environment.picture,
+                      .areas = ring_areas(),
+                      .points = disc_points(environment)};
+  if (environment.picture) append_texels(sources.points, *environment.picture);
+  sources.sky.discs.clear();
+  return sources;
+}
+
+// The sky about an axis of one half, at the spokes of every ring.
+void add_sky(std::vector<RingLight>& light, Vec3 axis, const TurnedAxes& across, int half,
+             const RingSources& sources) {
+  for (int ring = 0; ring <= kRings; ++ring) {
+    const double sine = std::sin(ring_angle(ring)), cosine = std::cos(ring_angle(ring));
+    const double turn = 0.618 * ring;  // spokes of neighbouring rings do not line up
+    for (int spoke = 0; spoke < kSpokes; ++spoke) {
+      const double psi = kTwoPi * (spoke + turn) / kSpokes, c = std::cos(psi), s = std::sin(psi);
+      const Vec3 w = cosine * axis + (sine * c) * across.x + (sine * s) * across.z;
+      add(light[static_cast<std::size_t>(ring)], harmonics_of(c, s),
+          sources.areas[static_cast<std::size_t>(ring)] * kTwoPi / kSpokes,
+          sources.sky.radiance(in_half(half, w)));
+    }
+  }
+}
+
+// A point's light, shared by the two rings next to it: linear in gamma, as kernels are between rings.
+void add_point(std::vector<RingLight>& light, Vec3 axis, const TurnedAxes& across, int half,
+               const DiscPoint& point) {
+  const Vec3 w = in_half(half, point.direction);
+  const double along = dot(w, axis), x = dot(w, across.x), z = dot(w, across.z), sine = std::hypot(x, z);
+  const double at = kRings * std::sqrt(std::atan2(sine, along) / kPi);
+  const auto ring = std::min(static_cast<std::size_t>(at), std::size_t{kRings - 1});
+  const auto harmonics = sine > 0 ? harmonics_of(x / sine, z / sine) : std::array<double, kMostMaps>{1};
+  const double low = ring_angle(static_cast<double>(ring)), high = ring_angle(static_cast<double>(ring) + 1);
+  const double part = (std::atan2(sine, along) - low) / (high - low);
+  add(light[ring], harmonics, 1 - part, point.light);
+  add(light[ring + 1], harmonics, part, point.light);
+}
+
+// All light about an axis of one half, by rings.
+std::vector<RingLight> light_about(Vec3 axis, const TurnedAxes& across, int half,
+                                   const RingSources& sources) {
+  std::vector<RingLight> light(kRings + 1);
+  if (sources.samples_sky) add_sky(light, axis, across, half, sources);
+  for (const DiscPoint& point : sources.points) add_point(light, axis, across, half, point);
+  return light;
+}
+
+// Kernels count their azimuth about the axis in the world, which a mirror turns: 1 or -1.
+double azimuth_sense(Vec3 axis, const TurnedAxes& across, int half) noexcept {
+  return (dot(cross(axis, across.x), across.z) > 0) != (half == 1) ? 1 : -1;
+}
+
+// What a kernel makes of the light about its axis, in one map. Kernels count their azimuth from the tilt, at
+// alpha: cos(m (psi - alpha)) = cos(m psi) cos(m alpha) + sin(m psi) sin(m alpha), and the sine likewise. Map
+// 2 m - 1 goes with cos(m alpha), map 2 m with sin(m alpha).
+Channels filtered(const Kernel& kernel, const std::vector<RingLight>& light, std::size_t map,
+                  double sense) noexcept {
+  const std::size_t order = (map + 1) / 2, other = map == 0 ? 0 : map % 2 ? map + 1 : map - 1;
+  const double turned = map % 2 ? sense : -sense;
+  Channels value{};
+  for (std::size_t ring = 0; ring <= kRings; ++ring)
+    for (std::size_t c = 0; c < 3; ++c)
+      value[c] += kernel.even[ring][order][c] * light[ring][map][c] +
+                  turned * kernel.odd[ring][order][c] * light[ring][other][c];
+  return value;
+}
+
+// A lobe's kernels, one a slice.
+std::vector<Kernel> kernels_of(const FactoredBrdf& inside, const PrefilterOptions& options) {
+  std::vector<Kernel> kernels(static_cast<std::size_t>(options.slices));
+  for_each_chunk(kernels.size(), 1, [&](std::size_t s, std::size_t, std::size_t) {
+    kernels[s] = kernel_of(inside, slice_view(static_cast<int>(s), options.slices), options.harmonics);
+  });
+  return kernels;
+}
+
+void check(const FactoredBrdf& brdf, const PrefilterOptions& options) {
+  const auto require = [](const char* what, int value, int least, int most) {
+    if (value < least || value > most)
+      throw Error(
+          fmt::format("image-based light: expected {} in [{}, {}], found {}", what, least, most, value));
+  };
+  require("slices", options.slices, 2, 64);
+  require("a side", options.side, 8, 512);
+  require("harmonics", options.harmonics, 0, 4);
+  if (!brdf.isotropic())
+    throw Error("image-based light: expected an isotropic model, found an anisotropic one");
+  if (brdf.channels() != 1 && brdf.channels() != 3)
+    throw Error(fmt::format("image-based light: expected 1 or 3 channels, found {}", brdf.channels()));
 }
 
 // Half floats hold maps whose largest values are 1; the rest goes into the scale.
@@ -179,25 +287,32 @@ Rgb ImageBasedLight::radiance(Vec3 n, Vec3 v) const noexcept {
   const Vec3 away = cos_o * n - v;  // from the viewer, in the plane of view and normal
   const double sin_o = length(away), t = sin_o / (1 + cos_o);
   const Vec3 wo{-sin_o, 0, cos_o};
-  // Kernels are round where normal and view coincide: any azimuth will do there
+  // kernels are round where normal and view coincide: any azimuth will do there
   const Vec3 plane = (1 / std::max(sin_o, kLeastSine)) * away;
+
+  // the two slices next to the view
   const int side = options.side;
   const double slice_at = t * (options.slices - 1);
   const int slice = std::min(static_cast<int>(slice_at), options.slices - 2);
   const double slice_part = slice_at - slice;
   Rgb sum;
   for (const PrefilteredLobe& lobe : lobes) {
+    // the kernel's axis in the world, and the tilt that its azimuth counts from
     const auto s = static_cast<std::size_t>(slice);
     const double angle = (1 - slice_part) * lobe.axis[s] + slice_part * lobe.axis[s + 1];
     const Vec3 axis_world = std::cos(angle) * n + std::sin(angle) * plane;
     const Vec3 tilt_world = std::cos(angle) * plane - std::sin(angle) * n;
+
+    // its place in the map of its half, and the azimuth of the tilt there
     const int half = axis_world.y < 0;
     const Vec3 axis = in_half(half, axis_world), tilt = in_half(half, tilt_world);
-    const Frame frame(axis);
-    const auto harmonics = harmonics_of(dot(tilt, frame.x), dot(tilt, frame.z));
+    const TurnedAxes across(axis);
+    const auto harmonics = harmonics_of(dot(tilt, across.x), dot(tilt, across.z));
     const auto [x, y] = map_place(axis, side);
     const int x0 = std::clamp(static_cast<int>(x), 0, side - 2),
               y0 = std::clamp(static_cast<int>(y), 0, side - 2);
+
+    // every map, linear in place and slice
     Channels light{};
     for (int map = 0; map < map_count(); ++map)
       for (int corner = 0; corner < 8; ++corner) {
@@ -216,82 +331,33 @@ Rgb ImageBasedLight::radiance(Vec3 n, Vec3 v) const noexcept {
 
 ImageBasedLight prefilter(const FactoredBrdf& brdf, const Environment& environment,
                           const PrefilterOptions& options) {
-  const auto require = [](const char* what, int value, int least, int most) {
-    if (value < least || value > most)
-      throw Error(
-          fmt::format("image-based light: expected {} in [{}, {}], found {}", what, least, most, value));
-  };
-  require("slices", options.slices, 2, 64);
-  require("a side", options.side, 8, 512);
-  require("harmonics", options.harmonics, 0, 4);
-  if (!brdf.isotropic())
-    throw Error("image-based light: expected an isotropic model, found an anisotropic one");
-  if (brdf.channels() != 1 && brdf.channels() != 3)
-    throw Error(fmt::format("image-based light: expected 1 or 3 channels, found {}", brdf.channels()));
-
+  check(brdf, options);
   ImageBasedLight result{options, {}};
   const auto slices = static_cast<std::size_t>(options.slices), side = static_cast<std::size_t>(options.side);
   const auto maps = static_cast<std::size_t>(result.map_count());
-  std::vector<std::vector<Kernel>> kernels;  // of a lobe, of a slice
+
+  // every lobe's kernels, one a slice
+  std::vector<std::vector<Kernel>> kernels;
   for (const Lobe& lobe : brdf.lobes()) {
     auto [outside, inside] = parts_of(brdf, lobe);
     result.lobes.push_back({std::move(outside), {}, std::vector<float>(maps * slices * side * side * 6)});
-    std::vector<Kernel>& of_slices = kernels.emplace_back(slices);
-    for_each_chunk(slices, 1, [&, &inside = inside](std::size_t s, std::size_t, std::size_t) {
-      of_slices[s] = kernel_of(inside, slice_view(static_cast<int>(s), options.slices), options.harmonics);
-    });
-    for (const Kernel& k : of_slices) result.lobes.back().axis.push_back(k.axis);
+    kernels.push_back(kernels_of(inside, options));
+    for (const Kernel& kernel : kernels.back()) result.lobes.back().axis.push_back(kernel.axis);
   }
 
-  const std::vector<double> areas = ring_areas();
-  std::vector<DiscPoint> points = disc_points(environment);
-  if (environment.picture) append_texels(points, *environment.picture);
-  Environment sky = environment;
-  sky.discs.clear();
+  // every texel's light about its axis, then what each kernel makes of it
+  const RingSources sources = sources_of(environment);
   for_each_chunk(side, 1, [&](std::size_t row, std::size_t, std::size_t) {
-    std::vector<RingLight> light(kRings + 1);
     for (std::size_t column = 0; column < 2 * side; ++column) {
       const int half = column >= side;
       const Vec3 axis = map_direction(static_cast<int>(column % side), static_cast<int>(row), options.side);
-      const Frame frame(axis);
-      std::ranges::fill(light, RingLight{});
-      for (int ring = 0; !environment.picture && ring <= kRings; ++ring) {
-        const double sine = std::sin(ring_angle(ring)), cosine = std::cos(ring_angle(ring));
-        const double turn = 0.618 * ring;  // spokes of neighbouring rings do not line up
-        for (int spoke = 0; spoke < kSpokes; ++spoke) {
-          const double psi = kTwoPi * (spoke + turn) / kSpokes, c = std::cos(psi), s = std::sin(psi);
-          const Vec3 w = cosine * axis + (sine * c) * frame.x + (sine * s) * frame.z;
-          add(light[static_cast<std::size_t>(ring)], harmonics_of(c, s),
-              areas[static_cast<std::size_t>(ring)] * kTwoPi / kSpokes, sky.radiance(in_half(half, w)));
-        }
-      }
-      for (const DiscPoint& point : points) {
-        const Vec3 w = in_half(half, point.direction);
-        const double along = dot(w, axis), x = dot(w, frame.x), z = dot(w, frame.z), sine = std::hypot(x, z);
-        const double at = kRings * std::sqrt(std::atan2(sine, along) / kPi);
-        const auto ring = std::min(static_cast<std::size_t>(at), std::size_t{kRings - 1});
-        const auto harmonics = sine > 0 ? harmonics_of(x / sine, z / sine) : std::array<double, kMostMaps>{1};
-        // linear in gamma, as kernels are between rings
-        const double low = ring_angle(static_cast<double>(ring)),
-                     high = ring_angle(static_cast<double>(ring) + 1);
-        const double part = (std::atan2(sine, along) - low) / (high - low);
-        add(light[ring], harmonics, 1 - part, point.light);
-        add(light[ring + 1], harmonics, part, point.light);
-      }
-      // Kernels count their azimuth from the tilt at alpha, about the axis in the world, which a mirror
-      // turns. Map 2 m - 1 goes with cos(m alpha), map 2 m with sin(m alpha).
-      const double sense = (dot(cross(axis, frame.x), frame.z) > 0) != (half == 1) ? 1 : -1;
+      const TurnedAxes across(axis);
+      const std::vector<RingLight> light = light_about(axis, across, half, sources);
+      const double sense = azimuth_sense(axis, across, half);
       for (std::size_t j = 0; j < kernels.size(); ++j)
         for (std::size_t slice = 0; slice < slices; ++slice)
           for (std::size_t map = 0; map < maps; ++map) {
-            const std::size_t order = (map + 1) / 2, other = map == 0 ? 0 : map % 2 ? map + 1 : map - 1;
-            const double turned = map % 2 ? sense : -sense;
-            const Kernel& kernel = kernels[j][slice];
-            Channels value{};
-            for (std::size_t ring = 0; ring <= kRings; ++ring)
-              for (std::size_t c = 0; c < 3; ++c)
-                value[c] += kernel.even[ring][order][c] * light[ring][map][c] +
-                            turned * kernel.odd[ring][order][c] * light[ring][other][c];
+            const Channels value = filtered(kernels[j][slice], light, map, sense);
             float* texel =
                 result.lobes[j].maps.data() + 3 * (((map * slices + slice) * side + row) * 2 * side + column);
             for (std::size_t c = 0; c < 3; ++c) texel[c] = static_cast<float>(value[c]);

@@ -83,6 +83,8 @@ class GlImageBasedLight {
   std::vector<float> radiance(std::span<const GlVectors> pairs) const { return function_.call(pairs); }
 
  private:
+  GlImageBasedLight(const ImageBasedLight& light, const ImageBasedShader& shader);
+
   GlFunction function_;
 };
 

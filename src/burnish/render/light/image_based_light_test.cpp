@@ -126,7 +126,7 @@ TEST(ImageBasedLight, HasNoSeamBetweenItsHemispheres) {
 }
 
 TEST(ImageBasedLight, RefusesWhatItCannotTabulate) {
-  const FactoredBrdf brushed = smooth_model(kModelCases[1]), plain = smooth_model(kModelCases[0]);
+  const FactoredBrdf brushed = smooth_model(model_case("DiskPqp")), plain = smooth_model(model_case("Pqp"));
   EXPECT_THROW(prefilter(brushed, kEven), Error);
   EXPECT_THROW(prefilter(plain, kEven, {.slices = 1}), Error);
   EXPECT_THROW(prefilter(plain, kEven, {.side = 7}), Error);

@@ -59,10 +59,13 @@ ImageBasedShader generate_shader(const ImageBasedLight& light, ShaderLanguage la
                                  const std::string& name) {
   if (language != ShaderLanguage::glsl && language != ShaderLanguage::glsl_es)
     throw Error(fmt::format("image-based light: expected glsl or glsl_es, found {}", to_string(language)));
+  // all lobes' maps are slices of one texture
   const auto& [slices, side, harmonics] = light.options;
   const int slices_a_lobe = light.map_count() * slices;
   const int depth = static_cast<int>(light.lobes.size()) * slices_a_lobe;
   ImageBasedShader shader{.maps = fmt::format("burnish_{}_maps", name)};
+
+  // every lobe: the factors of the view and the look at its maps
   std::string sum;
   for (std::size_t j = 0; j < light.lobes.size(); ++j) {
     const PrefilteredLobe& lobe = light.lobes[j];
@@ -82,8 +85,10 @@ ImageBasedShader generate_shader(const ImageBasedLight& light, ShaderLanguage la
 }
 
 GlImageBasedLight::GlImageBasedLight(const ImageBasedLight& light)
-    : function_(generate_shader(light, ShaderLanguage::glsl, "model").text, "burnish_model_light") {
-  const ImageBasedShader shader = generate_shader(light, ShaderLanguage::glsl, "model");
+    : GlImageBasedLight(light, generate_shader(light, ShaderLanguage::glsl, "model")) {}
+
+GlImageBasedLight::GlImageBasedLight(const ImageBasedLight& light, const ImageBasedShader& shader)
+    : function_(shader.text, "burnish_model_light") {
   const int side = light.options.side;
   function_.set_texture(
       {.name = shader.maps,

@@ -18,7 +18,7 @@ FactoredBrdf part_of(const FactoredBrdf& brdf, std::vector<double> scale,
   std::vector<Table> tables;
   Lobe lobe{.scale = std::move(scale), .factors = uses};
   for (FactorUse& use : lobe.factors) {
-    const Table& table = brdf.tables()[static_cast<std::size_t>(use.table)];
+    const Table& table = brdf.table_of(use);
     const auto known = std::ranges::find(tables, table.name, &Table::name);
     use.table = static_cast<int>(known - tables.begin());
     if (known == tables.end()) tables.push_back(table);
@@ -31,8 +31,10 @@ FactoredBrdf part_of(const FactoredBrdf& brdf, std::vector<double> scale,
 LobeParts parts_of(const FactoredBrdf& brdf, const Lobe& lobe) {
   std::vector<FactorUse> outside, inside;
   for (const FactorUse& use : lobe.factors)
-    (of_view_alone(brdf.tables()[static_cast<std::size_t>(use.table)], use) ? outside : inside)
-        .push_back(use);
+    if (of_view_alone(brdf.table_of(use), use))
+      outside.push_back(use);
+    else
+      inside.push_back(use);
   return {part_of(brdf, lobe.scale, outside), part_of(brdf, std::vector(lobe.scale.size(), 1.0), inside)};
 }
 

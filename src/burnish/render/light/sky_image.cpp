@@ -49,7 +49,7 @@ SkyImage::SkyImage(Image image) : image_(std::move(image)) {
   for (double& share : until_) share = sum > 0 ? share / sum : 0;
 }
 
-SkyImage::Place SkyImage::place_of(Vec3 w) const noexcept {
+SkyImage::PicturePlace SkyImage::place_of(Vec3 w) const noexcept {
   const double phi = std::atan2(w.z, w.x), theta = std::acos(std::clamp(w.y, -1.0, 1.0));
   return {(phi / kTwoPi + 0.5) * image_.width, theta / kPi * image_.height};
 }
@@ -79,11 +79,14 @@ double SkyImage::solid_angle(int y) const noexcept {
 
 DrawnDirection SkyImage::draw(Point2 u) const noexcept {
   if (until_.back() == 0) return {};
+  // the texel whose share of the light holds u.x
   const auto texel = static_cast<int>(std::ranges::upper_bound(until_, u.x) - until_.begin());
   const int last = image_.width * image_.height - 1, at = std::min(texel, last);
   const double before = at > 0 ? until_[static_cast<std::size_t>(at) - 1] : 0,
                share = until_[static_cast<std::size_t>(at)] - before;
   if (!(share > 0)) return {};
+
+  // a place in it, even over its solid angle: the rest of u.x along the row, u.y in the cosine
   const int x = at % image_.width, y = at / image_.width;
   const double fx = std::clamp((u.x - before) / share, 0.0, 1.0);
   const double high = std::cos(kPi * y / image_.height), low = std::cos(kPi * (y + 1) / image_.height);
@@ -123,6 +126,8 @@ SkyImage parse_sky(const FileBytes& file) {
     Imf::StdISStream stream;
     stream.str(std::string(bytes, file.bytes.size()));
     Imf::InputFile input(stream, 1);
+
+    // a size that fits a picture of all directions and the bytes there are
     const Imath::Box2i window = input.header().dataWindow();
     const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1,
                        height = std::int64_t{window.max.y} - window.min.y + 1;
@@ -135,11 +140,15 @@ SkyImage parse_sky(const FileBytes& file) {
     if (stored / kMostCompressed > file.bytes.size())
       throw Error::in_file(file.name, fmt::format("data of {} x {} pixels", width, height),
                            fmt::format("{} bytes", file.bytes.size()));
+
+    // three full channels
     for (const char* name : {"R", "G", "B"}) {
       const Imf::Channel* channel = input.header().channels().findChannel(name);
       if (!channel || channel->xSampling != 1 || channel->ySampling != 1)
         throw Error::in_file(file.name, fmt::format("a full channel {}", name), "none");
     }
+
+    // read side by side
     Image image(static_cast<int>(width), static_cast<int>(height), 3);
     Imf::FrameBuffer frame;
     constexpr std::size_t kPixel = 3 * sizeof(float);

@@ -30,10 +30,11 @@ class SkyImage {
   double pdf(Vec3 w) const noexcept;
 
  private:
-  struct Place {
+  /// In texels, from the picture's corner.
+  struct PicturePlace {
     double x, y;
   };
-  Place place_of(Vec3 w) const noexcept;
+  PicturePlace place_of(Vec3 w) const noexcept;
 
   Image image_;
   std::vector<double> until_;  ///< cumulated share of the light, a texel

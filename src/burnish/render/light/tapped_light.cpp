@@ -15,7 +15,7 @@ namespace burnish {
 namespace {
 
 // A direction of a grid over the hemisphere, which crowds at the normal.
-struct Cell {
+struct LobeCell {
   Vec3 direction;
   double area, value, mass;
 };
@@ -27,11 +27,11 @@ bool has_half_vectors(const Lobe& lobe) noexcept {
   });
 }
 
-std::vector<Cell> cells_of(const FactoredBrdf& inside, bool of_half) {
+std::vector<LobeCell> cells_of(const FactoredBrdf& inside, bool of_half) {
   constexpr int kRings = 96, kSpokes = 96;
   // mass is a power below 1 of what is reflected: wide parts of a lobe send light too
   constexpr double kPower = 0.85;
-  std::vector<Cell> cells;
+  std::vector<LobeCell> cells;
   const auto angle = [](double ring) { return 0.5 * kPi * (ring / kRings) * (ring / kRings); };
   for (int ring = 0; ring < kRings; ++ring)
     for (int spoke = 0; spoke < kSpokes; ++spoke) {
@@ -49,7 +49,7 @@ std::vector<Cell> cells_of(const FactoredBrdf& inside, bool of_half) {
 }
 
 // What is nearest to one middle.
-struct Part {
+struct LobePart {
   Vec3 sum;
   double light = 0, spread = 0;   // reflected; times the squared distance
   double closest = 8, value = 0;  // of the cell closest to the middle
@@ -58,11 +58,12 @@ struct Part {
 // Standard deviations of a part that its tap's blur has: less, and the sum of blurs has ripples.
 constexpr double kOverlap = 1.5;
 
-std::vector<LightTap> clusters(const std::vector<Cell>& cells, std::size_t count) {
+std::vector<LightTap> clusters(const std::vector<LobeCell>& cells, std::size_t count) {
   constexpr int kRounds = 30;
   Pcg32 random(1);
   const auto square = [](Vec3 a, Vec3 b) { return dot(a - b, a - b); };
-  // seeds far apart [Arthur 2007]
+
+  // seeds far apart: each drawn by its mass times the squared distance from those before it [Arthur 2007]
   std::vector<Vec3> middles;
   std::vector<double> nearest(cells.size(), 4);
   while (middles.size() < count) {
@@ -75,23 +76,32 @@ std::vector<LightTap> clusters(const std::vector<Cell>& cells, std::size_t count
     for (std::size_t i = 0; i < cells.size(); ++i)
       nearest[i] = std::min(nearest[i], square(cells[i].direction, middles.back()));
   }
+
+  // rounds: every cell to its nearest middle, every middle to its part's mean. A tap stands for its part's
+  // light with the value in its middle.
   std::vector<LightTap> taps(count);
   for (int round = 0; round < kRounds; ++round) {
-    std::vector<Part> parts(count);
-    for (const Cell& cell : cells) {
+    std::vector<LobePart> parts(count);
+    for (const LobeCell& cell : cells) {
       std::size_t best = 0;
       double distance = 8;
       for (std::size_t k = 0; k < middles.size(); ++k)
-        if (const double d = square(cell.direction, middles[k]); d < distance) distance = d, best = k;
-      Part& part = parts[best];
+        if (const double d = square(cell.direction, middles[k]); d < distance) {
+          distance = d;
+          best = k;
+        }
+      LobePart& part = parts[best];
       const double light = cell.value * cell.area;
       part.sum = part.sum + cell.mass * cell.direction;
       part.light += light;
       part.spread += light * distance;
-      if (distance < part.closest) part.closest = distance, part.value = cell.value;
+      if (distance < part.closest) {
+        part.closest = distance;
+        part.value = cell.value;
+      }
     }
     for (std::size_t k = 0; k < count; ++k) {
-      const Part& part = parts[k];
+      const LobePart& part = parts[k];
       if (!(part.light > 0) || !(part.value > 0)) continue;
       taps[k] = {middles[k], part.light / part.value, kOverlap * std::sqrt(0.5 * part.spread / part.light)};
       middles[k] = normalize(part.sum);
@@ -103,29 +113,34 @@ std::vector<LightTap> clusters(const std::vector<Cell>& cells, std::size_t count
 
 // Areas that make the sum of the taps' blurs the lobe, by least squares: sharper than the parts' own areas,
 // which blur the lobe once more. Some are negative.
-void sharpen(std::vector<LightTap>& taps, const std::vector<Cell>& cells) {
+void sharpen(std::vector<LightTap>& taps, const std::vector<LobeCell>& cells) {
+  // normal equations over the grid: how blurs overlap, and what of the lobe each covers
   constexpr double kDark = 0.2;  // of the largest value: where errors begin to weigh less
   const auto count = static_cast<Eigen::Index>(taps.size());
-  const double most = std::ranges::max(cells, {}, &Cell::value).value;
+  const double most = std::ranges::max(cells, {}, &LobeCell::value).value;
   Eigen::MatrixXd products = Eigen::MatrixXd::Zero(count, count);
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(count), blurs(count);
   std::vector<double> closest(taps.size(), 8), values(taps.size());
-  for (const Cell& cell : cells) {
+  for (const LobeCell& cell : cells) {
     const double relative = cell.value / most, weight = cell.area / ((relative + kDark) * (relative + kDark));
     for (Eigen::Index j = 0; j < count; ++j) {
       const auto k = static_cast<std::size_t>(j);
       const double cosine = dot(taps[k].direction, cell.direction);
       blurs[j] = blur_weight(cosine, taps[k].width);
-      if (1 - cosine < closest[k]) closest[k] = 1 - cosine, values[k] = relative;
+      if (1 - cosine < closest[k]) {
+        closest[k] = 1 - cosine;
+        values[k] = relative;
+      }
     }
     products.selfadjointView<Eigen::Lower>().rankUpdate(blurs, weight);
     sums += weight * relative * blurs;
   }
   products.diagonal() *= 1 + 1e-6;
   const Eigen::VectorXd light = products.selfadjointView<Eigen::Lower>().ldlt().solve(sums);
+
   // what leaks below the horizon is made up for at its rim: keep the sum over cosines
   double whole = 0, found = 0;
-  for (const Cell& cell : cells) whole += cell.area * cell.value / most * cell.direction.z;
+  for (const LobeCell& cell : cells) whole += cell.area * cell.value / most * cell.direction.z;
   for (std::size_t k = 0; k < taps.size(); ++k)
     found += light[static_cast<Eigen::Index>(k)] * taps[k].direction.z;
   for (std::size_t k = 0; k < taps.size(); ++k)
@@ -143,7 +158,7 @@ TappedBrdf tap(const FactoredBrdf& brdf, int taps) {
   for (const Lobe& lobe : brdf.lobes()) {
     auto [outside, inside] = parts_of(brdf, lobe);
     const bool of_half = has_half_vectors(lobe);
-    const std::vector<Cell> cells = cells_of(inside, of_half);
+    const std::vector<LobeCell> cells = cells_of(inside, of_half);
     std::vector<LightTap> found = clusters(cells, static_cast<std::size_t>(taps));
     sharpen(found, cells);
     result.lobes.push_back({std::move(outside), std::move(inside), of_half, std::move(found)});
@@ -167,6 +182,7 @@ Rgb TappedBrdf::radiance(const BlurredEnvironment& environment, const LightFrame
   for (const TappedLobe& lobe : lobes) {
     Rgb light;
     for (const LightTap& tap : lobe.taps) {
+      // a tap at a half vector reflects the view there; dwi = 4 dot(wo, h) dh, widths go with the root
       Vec3 wi = tap.direction;
       double area = tap.area, width = tap.width;
       if (lobe.of_half) {

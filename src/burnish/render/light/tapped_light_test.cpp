@@ -128,7 +128,7 @@ TEST(TappedLight, TheShaderAgreesWithTheDefinition) {
 }
 
 TEST(TappedLight, RefusesWhatItCannotTabulate) {
-  const FactoredBrdf brdf = smooth_model(kModelCases[1]);
+  const FactoredBrdf brdf = smooth_model(model_case("DiskPqp"));
   EXPECT_THROW(tap(brdf, 0), Error);
   EXPECT_THROW(tap(brdf, 257), Error);
   EXPECT_EQ(tap(brdf, 4).fetches(), 1 + 4 * 3);

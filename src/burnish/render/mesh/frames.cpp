@@ -41,6 +41,8 @@ std::size_t last_corner(std::size_t i) noexcept {
 std::vector<Vec3> normals_of(const RawMesh& raw, MissingNormals missing) {
   const std::size_t count = raw.positions.size();
   std::vector<Vec3> normals(count);
+
+  // of a triangle; smooth ones are sums over the corners at a place, weighed by their angles
   std::vector<Vec3> sums;
   std::vector<std::uint32_t> places;
   if (missing == MissingNormals::smooth) {
@@ -58,6 +60,8 @@ std::vector<Vec3> normals_of(const RawMesh& raw, MissingNormals missing) {
       sums[places[i]] = sums[places[i]] + angle * normals[i];
     }
   }
+
+  // the file's own where it has them
   for (std::size_t i = 0; i < count; ++i) {
     if (missing == MissingNormals::smooth) normals[i] = sums[places[i]];
     if (!raw.normals.empty() && length(raw.normals[i]) > 0) normals[i] = raw.normals[i];
@@ -87,6 +91,7 @@ bool corners_coincide(const RawMesh& raw, std::size_t first) noexcept {
   return a == b || b == c || c == a;
 }
 
+// Sets that grow together: each is named by its root.
 class Groups {
  public:
   explicit Groups(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
@@ -100,6 +105,75 @@ class Groups {
   std::vector<std::size_t> parent_;
 };
 
+// The triangles' tangents, and what their corners belong to. A corner is good where its triangle has a tangent.
+struct Faces {
+  std::vector<Tangent> tangents;
+  std::vector<bool> gone;  // corners coincide
+
+  const Tangent& at(std::size_t corner) const noexcept { return tangents[corner / 3]; }
+  bool good(std::size_t corner) const noexcept { return at(corner).along != Vec3{}; }
+};
+
+Faces faces_of(const RawMesh& raw) {
+  Faces faces;
+  for (std::size_t i = 0; i < raw.positions.size(); i += 3) {
+    faces.gone.push_back(corners_coincide(raw, i));
+    faces.tangents.push_back(faces.gone.back() ? Tangent{} : triangle_tangent(raw, i));
+  }
+  return faces;
+}
+
+// Corners of one vertex belong together where their triangles share an edge and the way round; triangles
+// without area in the texture go with both ways, so a corner has two places, the second `count` further.
+class CornerGroups {
+ public:
+  CornerGroups(const Faces& faces, const std::vector<std::uint32_t>& welded)
+      : count_(welded.size()), groups_(2 * count_) {
+    // a triangle's edge is its neighbour's the other way round
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> edges;
+    for (std::size_t i = 0; i < count_; ++i)
+      if (!faces.gone[i / 3]) edges.try_emplace({welded[i], welded[next_corner(i)]}, i);
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (faces.gone[i / 3]) continue;
+      const std::size_t j = next_corner(i);
+      const auto other = edges.find({welded[j], welded[i]});
+      if (other == edges.end()) continue;
+      for (const float side : {1.0f, -1.0f}) {
+        if (faces.good(i) && faces.at(i).side != side) continue;
+        if (faces.good(other->second) && faces.at(other->second).side != side) continue;
+        groups_.join(place(i, side), place(next_corner(other->second), side));
+        groups_.join(place(j, side), place(other->second, side));
+      }
+    }
+  }
+  std::size_t of(std::size_t corner, float side) noexcept { return groups_.of(place(corner, side)); }
+
+ private:
+  std::size_t place(std::size_t corner, float side) const noexcept {
+    return side > 0 ? corner : count_ + corner;
+  }
+
+  std::size_t count_;
+  Groups groups_;
+};
+
+// Sums over each group of its corners' tangents in the plane at their normals, weighed by the corners' angles.
+std::vector<Vec3> tangent_sums(const RawMesh& raw, const std::vector<Vec3>& normals, const Faces& faces,
+                               CornerGroups& groups) {
+  std::vector<Vec3> sums(2 * normals.size());
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    const Vec3 n = normals[i];
+    const auto flat = [&](Vec3 w) { return w - dot(w, n) * n; };
+    const Vec3 along = flat(faces.at(i).along), p = raw.positions[i];
+    if (length(along) == 0) continue;
+    const double angle =
+        angle_between(flat(raw.positions[next_corner(i)] - p), flat(raw.positions[last_corner(i)] - p));
+    Vec3& sum = sums[groups.of(i, faces.at(i).side)];
+    sum = sum + angle * normalize(along);
+  }
+  return sums;
+}
+
 // [Mikkelsen 2008]
 std::vector<Tangent> tangents_of(const RawMesh& raw, const std::vector<Vec3>& normals) {
   const std::size_t count = raw.positions.size();
@@ -107,59 +181,25 @@ std::vector<Tangent> tangents_of(const RawMesh& raw, const std::vector<Vec3>& no
     const Vec3 p = raw.positions[i], n = normals[i];
     return std::array{p.x, p.y, p.z, n.x, n.y, n.z, raw.uvs[i][0], raw.uvs[i][1]};
   });
-  std::vector<Tangent> faces;
-  std::vector<bool> gone;
-  for (std::size_t i = 0; i < count; i += 3) {
-    gone.push_back(corners_coincide(raw, i));
-    faces.push_back(gone.back() ? Tangent{} : triangle_tangent(raw, i));
-  }
-  const auto face = [&](std::size_t corner) -> const Tangent& { return faces[corner / 3]; };
-  const auto good = [&](std::size_t corner) { return face(corner).along != Vec3{}; };
-  // Corners of one vertex belong together where their triangles share an edge and the way round; triangles
-  // without area in the texture go with both ways, so a corner has two places.
-  const auto place = [&](std::size_t corner, float side) { return side > 0 ? corner : count + corner; };
-  Groups groups(2 * count);
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> edges;
-  for (std::size_t i = 0; i < count; ++i)
-    if (!gone[i / 3]) edges.try_emplace({welded[i], welded[next_corner(i)]}, i);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (gone[i / 3]) continue;
-    const std::size_t j = next_corner(i);
-    const auto other = edges.find({welded[j], welded[i]});
-    if (other == edges.end()) continue;
-    for (const float side : {1.0f, -1.0f}) {
-      if (good(i) && face(i).side != side) continue;
-      if (good(other->second) && face(other->second).side != side) continue;
-      groups.join(place(i, side), place(next_corner(other->second), side));
-      groups.join(place(j, side), place(other->second, side));
-    }
-  }
-  std::vector<Vec3> sums(2 * count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Vec3 n = normals[i];
-    const auto flat = [&](Vec3 w) { return w - dot(w, n) * n; };
-    const Vec3 along = flat(face(i).along), p = raw.positions[i];
-    if (length(along) == 0) continue;
-    const double angle =
-        angle_between(flat(raw.positions[next_corner(i)] - p), flat(raw.positions[last_corner(i)] - p));
-    Vec3& sum = sums[groups.of(place(i, face(i).side))];
-    sum = sum + angle * normalize(along);
-  }
+  const Faces faces = faces_of(raw);
+  CornerGroups groups(faces, welded);
+  const std::vector<Vec3> sums = tangent_sums(raw, normals, faces, groups);
+
   // where no neighbour tells, what another triangle has at the same place
   std::vector<std::size_t> beside(count, count);
   for (std::size_t i = 0; i < count; ++i)
-    if (good(i)) beside[welded[i]] = std::min(beside[welded[i]], i);
+    if (faces.good(i)) beside[welded[i]] = std::min(beside[welded[i]], i);
   std::vector<Tangent> tangents(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const auto sum_at = [&](std::size_t corner, float side) { return sums[groups.of(place(corner, side))]; };
+    const auto sum_at = [&](std::size_t corner, float side) { return sums[groups.of(corner, side)]; };
     const std::size_t from = beside[welded[i]];
-    if (good(i)) {
-      const Vec3 sum = sum_at(i, face(i).side);
-      tangents[i] = {length(sum) > 0 ? sum : face(i).along, face(i).side};
+    if (faces.good(i)) {
+      const Vec3 sum = sum_at(i, faces.at(i).side);
+      tangents[i] = {length(sum) > 0 ? sum : faces.at(i).along, faces.at(i).side};
     } else if (const Vec3 right = sum_at(i, 1), left = sum_at(i, -1); length(right) + length(left) > 0) {
       tangents[i] = length(right) > 0 ? Tangent{right, 1} : Tangent{left, -1};
     } else if (from < count) {
-      tangents[i] = {sum_at(from, face(from).side), face(from).side};
+      tangents[i] = {sum_at(from, faces.at(from).side), faces.at(from).side};
     } else {
       tangents[i] = {tangent_around_y(normals[i]), 1};
     }
@@ -173,6 +213,8 @@ Mesh finish_mesh(const RawMesh& raw, MissingNormals missing) {
   const std::size_t count = raw.positions.size();
   assert(count % 3 == 0);
   const std::vector<Vec3> normals = normals_of(raw, missing);
+
+  // tangents: the file's, of the texture, or around the vertical
   std::vector<Tangent> tangents(count);
   if (!raw.tangents.empty()) {
     for (std::size_t i = 0; i < count; ++i) {
@@ -184,6 +226,8 @@ Mesh finish_mesh(const RawMesh& raw, MissingNormals missing) {
   } else {
     for (std::size_t i = 0; i < count; ++i) tangents[i] = {tangent_around_y(normals[i]), 1};
   }
+
+  // a vertex a corner; those that are equal become one
   std::vector<Vertex> corners(count);
   for (std::size_t i = 0; i < count; ++i) {
     corners[i] = {.position = to_floats(raw.positions[i]),

@@ -14,9 +14,10 @@ namespace {
 
 using nlohmann::json;
 
+// Six bits a character, highest first; `=` at the end only fills up.
 std::vector<std::byte> from_base64(std::string_view text, const std::string& name, const std::string& place) {
   std::vector<std::byte> bytes;
-  unsigned bits = 0, held = 0;
+  unsigned bits = 0, held = 0;  // the last `held` bits of `bits` wait to make a byte
   while (text.ends_with('=')) text.remove_suffix(1);
   for (const char c : text) {
     const bool upper = c >= 'A' && c <= 'Z', lower = c >= 'a' && c <= 'z', digit = c >= '0' && c <= '9';
@@ -38,10 +39,10 @@ std::vector<std::byte> from_base64(std::string_view text, const std::string& nam
 GltfDocument::GltfDocument(const FileBytes& file, const std::filesystem::path& folder)
     : name_(file.name), folder_(folder) {
   std::string_view text = file.text();
-  std::uint64_t offset = 0;
+  std::uint64_t offset = 0;  // of the JSON in the file
   if (text.starts_with("glTF")) {
     offset = 20;
-    split_binary(text);
+    text = split_binary(text);
   }
   try {
     root_ = json::parse(text);
@@ -57,7 +58,9 @@ void GltfDocument::fail(const std::string& place, const std::string& expected,
   throw Error::in_file(name_, place + ": " + expected, shown);
 }
 
-void GltfDocument::split_binary(std::string_view& text) {
+// A binary glTF: a header (magic, version, length), then chunks of a length, a type and bytes: first JSON, then
+// the buffer that has no uri. Sets chunk_; returns the JSON.
+std::string_view GltfDocument::split_binary(std::string_view text) {
   const auto word = [&](std::size_t at) {
     if (text.size() < at + 4) throw Error(name_, at, "4 bytes of a binary glTF", "the end");
     std::uint32_t value = 0;
@@ -65,10 +68,14 @@ void GltfDocument::split_binary(std::string_view& text) {
     return value;
   };
   if (word(4) != 2) throw Error(name_, 4, "version 2", std::to_string(word(4)));
+
+  // the JSON
   const std::size_t size = word(12);
   if (word(16) != 0x4e4f534a) throw Error(name_, 16, "a chunk of JSON", fmt::format("0x{:x}", word(16)));
   if (size > text.size() - 20)
     throw Error(name_, 12, fmt::format("at most {} bytes of JSON", text.size() - 20), std::to_string(size));
+
+  // the buffer, which may be missing
   const std::string_view rest = text.substr(20 + size);
   if (!rest.empty()) {
     const std::size_t at = 20 + size, length = word(at);
@@ -78,7 +85,7 @@ void GltfDocument::split_binary(std::string_view& text) {
       throw Error(name_, at, fmt::format("at most {} bytes", rest.size() - 8), std::to_string(length));
     chunk_ = rest.substr(8, length);
   }
-  text = text.substr(20, size);
+  return text.substr(20, size);
 }
 
 const json& GltfDocument::member(const json& of, const char* key, const std::string& place) const {
@@ -107,6 +114,7 @@ std::string_view GltfDocument::buffer(std::size_t index) {
   const json& entry = element("buffers", index);
   if (buffers_.size() <= index) buffers_.resize(index + 1);
   const std::size_t length = number(member(entry, "byteLength", place), place + ".byteLength", SIZE_MAX);
+  // the binary chunk, or what the uri names, loaded once
   std::string_view bytes;
   if (!entry.contains("uri")) {
     if (index != 0 || chunk_.empty()) fail(place, "a uri", "none");
@@ -126,6 +134,7 @@ std::vector<std::byte> GltfDocument::load(const json& uri, const std::string& pl
     if (comma == text.npos) fail(place + ".uri", "data as base64", text);
     return from_base64(std::string_view(text).substr(comma + 8), name_, place);
   }
+  // never leaves the file's folder
   const std::filesystem::path path(text);
   if (path.is_absolute() || text.find("..") != text.npos || text.find(':') != text.npos)
     fail(place + ".uri", "a file beside this one", text);
@@ -133,6 +142,7 @@ std::vector<std::byte> GltfDocument::load(const json& uri, const std::string& pl
 }
 
 GltfElements GltfDocument::elements(std::size_t index, const std::string& user) {
+  // the type of an element: how many numbers of which kind
   const json& accessor = element("accessors", index);
   const std::string place = fmt::format("{}: accessors[{}]", user, index);
   if (accessor.contains("sparse")) fail(place, "an accessor that is not sparse", "a sparse one");
@@ -145,6 +155,8 @@ GltfElements GltfDocument::elements(std::size_t index, const std::string& user) 
   const std::size_t kind = number(member(accessor, "componentType", place), place + ".componentType", 5127);
   const std::size_t bytes = kind == 5121 ? 1 : kind == 5123 ? 2 : kind == 5125 || kind == 5126 ? 4 : 0;
   if (bytes == 0) fail(place + ".componentType", "5121, 5123, 5125 or 5126", std::to_string(kind));
+
+  // where its bytes lie: the accessor in a view in a buffer, each inside the one around it
   e.count = number(member(accessor, "count", place), place + ".count", 3 * kMostTriangles + 1);
   const json& view =
       element("bufferViews", number(member(accessor, "bufferView", place), place + ".bufferView", SIZE_MAX));
@@ -158,6 +170,8 @@ GltfElements GltfDocument::elements(std::size_t index, const std::string& user) 
   if (e.count > 0 && (view_size - start < size || (view_size - start - size) / step < e.count - 1))
     fail(place, fmt::format("{} bytes of its buffer", (e.count - 1) * step + size),
          std::to_string(view_size - start));
+
+  // integers may stand for [0, 1]
   const bool normalized = accessor.contains("normalized") && accessor["normalized"] == json(true);
   const double scale = normalized && bytes < 4 ? 1.0 / ((1 << 8 * bytes) - 1) : 1;
   e.values.reserve(e.count * e.width);

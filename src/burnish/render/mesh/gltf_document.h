@@ -43,7 +43,7 @@ class GltfDocument {
   GltfElements elements(std::size_t index, const std::string& user);
 
  private:
-  void split_binary(std::string_view& text);
+  std::string_view split_binary(std::string_view text);
   std::string_view buffer(std::size_t index);
   std::vector<std::byte> load(const nlohmann::json& uri, const std::string& place) const;
 
