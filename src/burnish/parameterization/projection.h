@@ -44,7 +44,7 @@ inline constexpr double kTwistCore = 1.0 / 256, kTwistScale = 0.6495190528383290
 
 /// Whether a projection has a polar angle but no azimuth.
 constexpr bool is_angle_alone(const Projection& p) noexcept {
-  return p.kind == Projection::Kind::deviation || p.kind == Projection::Kind::twist;
+  return p.kind != Projection::Kind::affine && p.kind != Projection::Kind::difference;
 }
 
 /// The projected direction, z >= 0 (a combination that points below the horizon is clamped to it). wi and wo
