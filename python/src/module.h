@@ -17,6 +17,7 @@ namespace nb = nanobind;
 void bind_source(nb::module_& m);
 void bind_eval(nb::module_& m);
 void bind_fitting(nb::module_& m);
+void bind_graphs(nb::module_& m);
 void bind_metrics(nb::module_& m);
 void bind_sampling(nb::module_& m);
 void bind_shaders(nb::module_& m);

@@ -87,20 +87,20 @@ Expr stretched(const Warp& warp, double size, const Polar<Expr>& polar) {
   return identity_stretch(Expr(size), polar);
 }
 
-Expr line_position(const Projection& projection, const Warp& warp, const Axis& axis) {
+Expr line_position(const Projection& projection, const Warp& warp, const TableAxis& axis) {
   return named("u", warped(warp, axis.size, project_expression(projection, false).polar) + axis.first);
 }
 
 }  // namespace
 
-std::array<Expr, 2> position_expressions(const TableLayout& layout, const FactorUse& use, const Axis& x,
-                                         const Axis& y) {
+std::array<Expr, 2> position_expressions(const TableLayout& layout, const FactorUse& use, const TableAxis& x,
+                                         const TableAxis& y) {
   if (layout.shape != TableShape::disk)
     return {line_position(use.projection, layout.warp, x),
             layout.shape == TableShape::grid ? line_position(use.projection_y, layout.warp_y, y) : Expr(0.0)};
   const Projected at = project_expression(use.projection, true);
   const Expr stretch = named("stretch", stretched(layout.warp, 0.5 * x.size, at.polar));
-  const auto along = [&](const Expr& component, const Axis& axis) {
+  const auto along = [&](const Expr& component, const TableAxis& axis) {
     const Expr scaled = Expr(axis.size / x.size) * component;
     return named("u", mul_add(scaled, stretch, 0.5 * axis.size + axis.first));
   };

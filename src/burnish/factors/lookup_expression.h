@@ -9,15 +9,15 @@ namespace burnish {
 
 /// An axis of a table: its warped tan(theta / 2) in [0, 1] is multiplied with `size` and `first` added, which
 /// gives cells, or texture coordinates.
-struct Axis {
+struct TableAxis {
   double size, first;
 };
 
 /// Where two directions fall in a table, as expressions over the vectors "wi" and "wo": unit, above the
 /// horizon. The formulas of parameterization/projection-inl.h, for arithmetic of single precision. A line has
 /// one position, disks and grids two. A disk's `x.size` cells are as many rows as there are columns.
-std::array<Expr, 2> position_expressions(const TableLayout& layout, const FactorUse& use, const Axis& x,
-                                         const Axis& y);
+std::array<Expr, 2> position_expressions(const TableLayout& layout, const FactorUse& use, const TableAxis& x,
+                                         const TableAxis& y);
 
 /// The cell of `nodes` nodes that a position in cells falls into: its first node, a whole number, and how
 /// far in it.

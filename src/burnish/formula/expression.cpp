@@ -17,6 +17,7 @@ bool is_constant(const Expr& x, double value) {
 ValueType type_of(Op op, const std::vector<Expr>& arguments) {
   if (op == Op::vector) return ValueType::vector;
   if (op == Op::to_integer) return ValueType::integer;
+  if (op == Op::to_real) return ValueType::real;
   const auto any = [&](ValueType type) {
     return std::ranges::any_of(arguments, [&](const Expr& x) { return x.type() == type; });
   };
@@ -26,6 +27,15 @@ ValueType type_of(Op op, const std::vector<Expr>& arguments) {
 }
 
 }  // namespace
+
+std::string_view to_string(Op op) noexcept {
+  constexpr std::string_view kNames[] = {
+      "constant",   "input",   "add",     "subtract", "multiply",    "divide",       "mul_add", "neg_mul_add",
+      "negate",     "abs",     "max",     "min",      "if_less",     "floor",        "sqrt",    "power",
+      "exp2",       "log2",    "acos",    "cos",      "exponent_of", "scale_by_two", "vector",  "component",
+      "to_integer", "to_real", "element", "texel",    "sample"};
+  return kNames[static_cast<std::size_t>(op)];
+}
 
 Expr::Expr(double constant)
     : Expr(Node{.op = Op::constant, .constant = constant, .name = {}, .called = {}, .arguments = {}}) {}
@@ -41,6 +51,14 @@ Expr Expr::integer(int constant) {
 
 Expr Expr::input(std::string name, ValueType type) {
   return Expr(Node{.op = Op::input, .type = type, .name = std::move(name), .called = {}, .arguments = {}});
+}
+
+Expr Expr::element(std::string array, const Expr& index) {
+  return Expr(Node{.op = Op::element,
+                   .type = ValueType::integer,
+                   .name = std::move(array),
+                   .called = {},
+                   .arguments = {index.node_}});
 }
 
 Expr Expr::texel(std::string texture, const Expr& x, const Expr& y, ValueType type) {

@@ -33,10 +33,15 @@ enum class Op {
   scale_by_two,  // a 2^b, b whole
   vector,        // (a, b, c)
   component,     // number `constant` of a vector
-  to_integer,    // of a whole number
+  to_integer,    // the integer part
+  to_real,       // of an integer
+  element,       // of integers called `name`, at integer a
   texel,         // of texture `name` at integers (a, b)
   sample,        // of texture `name`, filtered, at coordinates a or (a, b)
 };
+
+/// The enumerator's name.
+std::string_view to_string(Op op) noexcept;
 
 /// What a node's value is: a number, three of them, or an integer that numbers nodes of a table.
 enum class ValueType { real, vector, integer };
@@ -57,6 +62,8 @@ class Expr {
   Expr(double constant);  // NOLINT: numbers are expressions
   static Expr integer(int constant);
   static Expr input(std::string name, ValueType type = ValueType::real);
+  /// What an array of integers holds.
+  static Expr element(std::string array, const Expr& index);
   /// What a texture holds: `type` tells whether one or three channels are read.
   static Expr texel(std::string texture, const Expr& x, const Expr& y, ValueType type);
   /// Coordinates: one of a 1-D texture, else two.

@@ -14,7 +14,7 @@ OperationCount& OperationCount::operator+=(const OperationCount& other) noexcept
 }
 
 OperationCount count_of(Op op, ValueType type) noexcept {
-  if (type == ValueType::integer) return {};
+  if (type == ValueType::integer && op != Op::element) return {};
   const int n = type == ValueType::vector ? 3 : 1;
   switch (op) {
     case Op::constant:
@@ -24,6 +24,7 @@ OperationCount count_of(Op op, ValueType type) noexcept {
     case Op::vector:
     case Op::component:
     case Op::to_integer:
+    case Op::to_real:
       return {};
     case Op::add:
     case Op::subtract:
@@ -50,6 +51,7 @@ OperationCount count_of(Op op, ValueType type) noexcept {
     case Op::acos:
     case Op::cos:
       return {.transcendentals = n};
+    case Op::element:
     case Op::texel:
     case Op::sample:
       return {.fetches = 1};

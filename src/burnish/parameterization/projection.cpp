@@ -115,6 +115,11 @@ Projection parse_projection(std::string_view text, bool& angle_only) {
   return p;
 }
 
+std::string_view to_string(Projection::Kind kind) noexcept {
+  constexpr std::string_view kKinds[] = {"affine", "difference", "deviation", "twist"};
+  return kKinds[static_cast<std::size_t>(kind)];
+}
+
 std::string to_string(const Projection& p) {
   const auto known = std::ranges::find(kNames, p, &Name::projection);
   if (known != std::end(kNames)) return std::string(known->text);

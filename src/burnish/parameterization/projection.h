@@ -62,6 +62,8 @@ bool swapped(const Projection& projection, bool azimuth, Projection& result) noe
 /// "wi+wo+0.5n", "m+0.8wo" (m is the mirrored light). The theta names mean the same vectors; `angle_only`
 /// tells that one was used. Throws Error on anything else.
 Projection parse_projection(std::string_view text, bool& angle_only);
+/// "affine", "difference", "deviation" or "twist".
+std::string_view to_string(Projection::Kind kind) noexcept;
 /// A text parse_projection reads back to the same projection.
 std::string to_string(const Projection& projection);
 

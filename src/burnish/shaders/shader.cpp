@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <array>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@ namespace burnish {
 
 namespace {
 
-Axis axis_of(int nodes, ShaderFilter filter) noexcept {
+TableAxis axis_of(int nodes, ShaderFilter filter) noexcept {
   if (filter == ShaderFilter::exact) return {nodes - 1.0, 0};
   return {(nodes - 1.0) / nodes, 0.5 / nodes};
 }
@@ -71,7 +71,7 @@ class Lookups {
   }
 
   // A table's rows among its texture's.
-  Axis rows_of(int nodes, const ShaderTexture& texture, int first) const noexcept {
+  TableAxis rows_of(int nodes, const ShaderTexture& texture, int first) const noexcept {
     if (filter_ == ShaderFilter::exact) return axis_of(nodes, filter_);
     const double rows = std::max(texture.height, 1);
     return {(nodes - 1) / rows, (first + 0.5) / rows};
@@ -142,11 +142,9 @@ ShaderCost cost_of(const OperationCount& count) noexcept {
           .powers = count.transcendentals};
 }
 
-std::string local_function(const FactoredBrdf& brdf, const Language& l, const ShaderOptions& options,
-                           const std::vector<ShaderTexture>& textures, std::string_view more,
+std::string local_function(Expr total, const Language& l, const ShaderOptions& options, std::string_view more,
                            ShaderCost& cost) {
-  Expr total = sum_of_lobes(brdf, textures, options);
-  if (brdf.channels() == 1) {
+  if (total.type() == ValueType::real) {
     total = named("f0", total);
     total = Expr(Op::vector, {total, total, total});
   }
@@ -226,15 +224,23 @@ std::string to_string(const ShaderCost& cost) {
                      cost.operations, cost.divisions, cost.roots, cost.powers);
 }
 
-Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options) {
+ShaderFormula shader_formula(const FactoredBrdf& brdf, const ShaderOptions& options) {
   check(brdf, options);
+  ShaderFormula formula;
+  formula.textures = textures_of(brdf, options);
+  formula.value = sum_of_lobes(brdf, formula.textures, options);
+  return formula;
+}
+
+Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options) {
+  ShaderFormula formula = shader_formula(brdf, options);
   const Language& l = language(to_string(options.language));
   const bool cpp = options.language == ShaderLanguage::cpp;
   Shader shader;
-  shader.textures = textures_of(brdf, options);
+  shader.textures = std::move(formula.textures);
   const std::string more =
       options.language == ShaderLanguage::msl ? fmt::format("burnish_{}_tables tables", options.name) : "";
-  const std::string function = local_function(brdf, l, options, shader.textures, more, shader.cost);
+  const std::string function = local_function(formula.value, l, options, more, shader.cost);
   const auto comment_of = [](std::string text) {  // a table's name may hold anything
     for (char& c : text) c = c < ' ' || c > '~' || c == '\\' ? '?' : c;
     return text;
@@ -253,16 +259,16 @@ Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options) {
 }
 
 SplitShader split_shader(const FactoredBrdf& brdf, const ShaderOptions& options) {
-  check(brdf, options);
   if (options.language != ShaderLanguage::glsl && options.language != ShaderLanguage::glsl_es)
     throw Error(
         fmt::format("shader: expected glsl or glsl_es to split, found {}", to_string(options.language)));
   const Language& l = language(to_string(options.language));
+  ShaderFormula formula = shader_formula(brdf, options);
   SplitShader shader;
-  shader.textures = textures_of(brdf, options);
+  shader.textures = std::move(formula.textures);
   shader.declarations = std::string(l.header) + declare_textures(l, options, shader.textures);
   Graph graph;
-  const std::size_t root = graph.add(sum_of_lobes(brdf, shader.textures, options));
+  const std::size_t root = graph.add(formula.value);
   const Writer writer(l, graph, {root});
   OperationCount view, rest;
   for (const Statement& statement : writer.statements()) {
