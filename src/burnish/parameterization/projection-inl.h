@@ -125,6 +125,19 @@ FORMULA_INLINE auto twist_angle(const Pair& pair) {
   return off_the_middle(kTwistScale, turn, half);
 }
 
+/// phi_d, folded: |cos phi_d| : |sin phi_d| = |d_z| |s| : |s_y d_x - s_x d_y|, so that
+/// r / den = tan(phi_d / 2) = |sin phi_d| / (1 + |cos phi_d|), without inverse functions. The products are not
+/// fused: what is left of one rounded and one exact would be an angle where both terms are 0.
+template <class Pair>
+FORMULA_INLINE auto folded_azimuth(const Pair& pair) {
+  using T = decltype(pair.sum.x);
+  const auto &s = pair.sum, &d = pair.apart;
+  const T cosine = named("cosine", abs(d.z) * pair.sum_length());
+  const T sine = named("sine", abs(s.y * d.x - s.x * d.y));
+  const T den = named("den", max(length(cosine, sine) + cosine, least_positive(T())));
+  return Polar<T>{named("r", min(sine, den)), den};  // squares of tiny numbers vanish
+}
+
 /// Calls f(find), find(pair) the polar angle of the projection's kind: of the difference and of all that have
 /// no azimuth. Decides once, for loops that must not.
 template <class F>
@@ -135,6 +148,8 @@ FORMULA_INLINE auto with_angle(Projection::Kind kind, const F& f) {
       return f([](const auto& pair) FORMULA_ATTRIBUTE { return deviation_angle(pair); });
     case Kind::twist:
       return f([](const auto& pair) FORMULA_ATTRIBUTE { return twist_angle(pair); });
+    case Kind::azimuth:
+      return f([](const auto& pair) FORMULA_ATTRIBUTE { return folded_azimuth(pair); });
     case Kind::difference:
     case Kind::affine:
       break;

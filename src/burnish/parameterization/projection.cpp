@@ -69,6 +69,7 @@ constexpr Name kNames[] = {
     {"theta_d", kProjectDifference, true},
     {"theta_m", kProjectDeviation, true},
     {"theta_t", kProjectTwist, true},
+    {"phi_d", kProjectAzimuth, true},
 };
 
 }  // namespace
@@ -116,7 +117,7 @@ Projection parse_projection(std::string_view text, bool& angle_only) {
 }
 
 std::string_view to_string(Projection::Kind kind) noexcept {
-  constexpr std::string_view kKinds[] = {"affine", "difference", "deviation", "twist"};
+  constexpr std::string_view kKinds[] = {"affine", "difference", "deviation", "twist", "azimuth"};
   return kKinds[static_cast<std::size_t>(kind)];
 }
 
