@@ -3,8 +3,8 @@
 # make python the Python package in build/venv, tested
 # make build  the command line at build/release/apps/burnish/burnish
 # make bench, make fuzz, make report, make sampling-report, make shader-report, make frame-cost, make hw-report, make hw-exhaustive, make format:
-# see docs/developing.md
-.PHONY: demo test build python deps bench fuzz report sampling-report shader-report frame-cost hw-report hw-exhaustive format format-check
+# see CONTRIBUTING.md
+.PHONY: demo test build python deps bench fuzz report sampling-report shader-report frame-cost hw-report hw-exhaustive format format-check docs-check
 JOBS ?= $(shell nproc)
 BURNISH := build/release/apps/burnish/burnish
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
@@ -32,7 +32,7 @@ build: deps
 demo: build
 	@examples/demo.sh "$(BURNISH)" "$(OUT)" "$(INPUT)"
 
-test: deps format-check
+test: deps format-check docs-check
 	@for preset in dev release; do \
 	  cmake --preset $$preset > /dev/null && \
 	  cmake --build --preset $$preset -j $(JOBS) && \
@@ -74,12 +74,12 @@ HW := build/hw-report
 LIBRARY := $(CURDIR)/build/release/src/burnish/libburnish.a
 hw-report: build
 	@command -v nextpnr-ice40 > /dev/null || $(SUDO) apt-get install -y -qq --no-install-recommends nextpnr-ice40 > /dev/null
-	@rm -rf $(HW) && mkdir -p $(HW) docs/figures
+	@rm -rf $(HW) && mkdir -p $(HW) docs/figures docs/results
 	@hw/verify.sh sphere $(CURDIR)/$(BURNISH) $(LIBRARY) $(HW)/sphere $(CURDIR)/build/release/apps/report/burnish_hardware_sphere \
 	  $(CURDIR)/docs/figures/hardware_sphere.png > $(HW)/sphere.txt
 	@hw/synthesize.sh $(CURDIR)/$(BURNISH) $(HW)/synthesis > $(HW)/synthesis.txt
 	@hw/report.py $(BURNISH) $(HW)/synthesis.txt $(HW)/sphere.txt > $(HW)/hardware.md
-	@mv $(HW)/hardware.md docs/hardware.md
+	@mv $(HW)/hardware.md docs/results/hardware.md
 
 hw-exhaustive: build
 	@hw/verify.sh exhaustive $(CURDIR)/$(BURNISH) $(LIBRARY) build/hw-exhaustive
@@ -92,3 +92,6 @@ format: deps
 
 format-check: deps
 	@clang-format --dry-run -Werror $(SOURCES)
+
+docs-check:
+	@tests/docs/check.py

@@ -170,7 +170,7 @@ void add_export_command(CLI::App& app) {
                          "an RGL table, or a page that shows it; or Phong's and Blinn's models as shaders");
   verb->footer(
       "Every shader comes with its textures but C++, which has them inside; NAME.json says what is in the "
-      "folder and what an evaluation costs. See docs/shaders.md.\n"
+      "folder and what an evaluation costs. See docs/guide/shaders.md.\n"
       "Examples: burnish export paint.exr --to glsl --to html -o paint\n"
       "          burnish export paint.exr --to glsl_es --to html --environment studio -o paint\n"
       "          burnish export blinn_phong:exponent=60,ks=0.8 --to wgsl --power cubic2 -o highlight");
