@@ -7,7 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json_fwd.hpp>
 
-#include <burnish/io/source.h>
+#include <burnish/source.h>
 
 namespace burnish::cli {
 

@@ -7,7 +7,7 @@
 #include <burnish/fitting/fit.h>
 #include <burnish/image/contact_sheet.h>
 #include <burnish/image/png.h>
-#include <burnish/io/source.h>
+#include <burnish/io/open_source.h>
 #include <burnish/math/angles.h>
 #include <burnish/metrics/sphere_images.h>
 #include <burnish/render/gl/gl_context.h>

@@ -18,7 +18,7 @@
 #include <burnish/fitting/baselines/baselines.h>
 #include <burnish/image/contact_sheet.h>
 #include <burnish/image/png.h>
-#include <burnish/io/source.h>
+#include <burnish/io/open_source.h>
 #include <burnish/math/parallel.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/scattered_brdf.h>

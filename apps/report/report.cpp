@@ -21,7 +21,7 @@
 #include <burnish/image/svg_plot.h>
 #include <burnish/io/cornell.h>
 #include <burnish/io/merl.h>
-#include <burnish/io/source.h>
+#include <burnish/io/open_source.h>
 #include <burnish/math/angles.h>
 #include <burnish/math/parallel.h>
 #include <burnish/metrics/error_figures.h>
