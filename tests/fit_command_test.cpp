@@ -1,11 +1,8 @@
 // `burnish fit` writes and prints what the library gives.
 
-#include <cstdlib>
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <sys/wait.h>
 
 #include <burnish/fitting/fit_file.h>
 #include <burnish/io/open_source.h>
@@ -22,17 +19,11 @@ constexpr const char* kScattered =
 
 class FitCommand : public testing::Test {
  protected:
-  // The exit code of the command with --json, which writes `written()` and prints `printed()`.
-  int run(const std::string& source, const std::string& arguments) const {
-    return WEXITSTATUS(std::system(fmt::format("{} fit '{}' -o {} --json {} > {} 2> {}", BURNISH_CLI, source,
-                                               out(), arguments, (folder_.path / "printed").string(),
-                                               (folder_.path / "said").string())
-                                       .c_str()));
+  // The command with --json, which writes `out()`.
+  Outcome run_fit(const std::string& source, const std::string& arguments) const {
+    return run(fmt::format("{} fit '{}' -o {} --json {}", BURNISH_CLI, source, out(), arguments));
   }
   std::string out() const { return (folder_.path / "out").string(); }
-  std::string written() const { return read(out()); }
-  std::string printed() const { return read(folder_.path / "printed"); }
-  std::string said() const { return read(folder_.path / "said"); }
   std::string scattered() const {
     const auto path = folder_.path / "scattered.csv";
     write(path, kScattered);
@@ -40,11 +31,12 @@ class FitCommand : public testing::Test {
   }
 
   void expect_same(const std::string& source, const std::string& arguments, const FitOptions& options) {
-    ASSERT_EQ(run(source, arguments), 0) << said();
+    const Outcome outcome = run_fit(source, arguments);
+    ASSERT_EQ(outcome.status, 0) << outcome.output;
     const Fit made = fit(open_source(source, {}), options);
-    EXPECT_EQ(written(), format_fit(made)) << arguments;
+    EXPECT_EQ(read(out()), format_fit(made)) << arguments;
     auto expected = nlohmann::json::parse(summary_json(made, out(), 0)),
-         found = nlohmann::json::parse(printed());
+         found = nlohmann::json::parse(outcome.output);
     expected.erase("seconds");
     found.erase("seconds");
     EXPECT_EQ(found, expected) << arguments;
@@ -79,12 +71,12 @@ TEST_F(FitCommand, IsTheLibrarysFit) {
 }
 
 TEST_F(FitCommand, TellsMisuseFromErrors) {
-  EXPECT_EQ(run(kPaint, "--model 'p(up)'"), 2);
-  EXPECT_EQ(run(kPaint, "--smooth much"), 2);
-  EXPECT_EQ(run(kPaint, "--lobes 2"), 2);
-  EXPECT_EQ(run(kPaint, "--method pca"), 1);
-  EXPECT_EQ(run(kPaint, "--method svd --format half"), 1);
-  EXPECT_EQ(run(kPaint, "--budget 20"), 1);
+  EXPECT_EQ(run_fit(kPaint, "--model 'p(up)'").status, 2);
+  EXPECT_EQ(run_fit(kPaint, "--smooth much").status, 2);
+  EXPECT_EQ(run_fit(kPaint, "--lobes 2").status, 2);
+  EXPECT_EQ(run_fit(kPaint, "--method pca").status, 1);
+  EXPECT_EQ(run_fit(kPaint, "--method svd --format half").status, 1);
+  EXPECT_EQ(run_fit(kPaint, "--budget 20").status, 1);
 }
 
 }  // namespace
