@@ -16,9 +16,10 @@
 
 #include <burnish/error.h>
 #include <burnish/fitting/baselines/baselines.h>
+#include <burnish/fitting/fit.h>
 #include <burnish/image/contact_sheet.h>
 #include <burnish/image/png.h>
-#include <burnish/io/source.h>
+#include <burnish/io/open_source.h>
 #include <burnish/math/parallel.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/scattered_brdf.h>
@@ -271,24 +272,21 @@ void report_paints(const fs::path& data) {
     const Samples samples = read_paint(data, kPaints[paint]);
     for (std::size_t fold = 0; fold < kFolds; ++fold) {
       const auto [training, test] = split_fold(samples.size(), fold);
-      const Samples part = select(samples, training);
-      const ScatteredBrdf neighbours(samples, training);
-      const SampleSource source = from_samples(part, true);
-      for_each_chunk(methods.size(), 1,
-                     [&, &training = training, &test = test](std::size_t m, std::size_t, std::size_t) {
-                       std::optional<FactoredBrdf> ours;
-                       std::optional<BaselineFit> other;
-                       if (m == 0)
-                         ours = fit_scattered(part, kScatteredModel);
-                       else
-                         other = fit_baseline(neighbours, source, methods[m], {});
-                       const BrdfRef model = ours ? BrdfRef(*ours) : baseline_ref(other->baseline.brdf);
-                       std::array<double, 3> f;
-                       for (const std::size_t i : test) {
-                         model.eval(samples.pairs[i].wi, samples.pairs[i].wo, f);
-                         errors[m][paint].add(samples.at(i), f);
-                       }
-                     });
+      const Source source = source_of(select(samples, training));
+      for_each_chunk(methods.size(), 1, [&, &test = test](std::size_t m, std::size_t, std::size_t) {
+        std::optional<FactoredBrdf> ours;
+        std::optional<Fit> other;
+        if (m == 0)
+          ours = fit_scattered(source, kScatteredModel);
+        else
+          other = fit(source, {.form = BaselineMethod{.method = methods[m]}, .score = false});
+        const BrdfRef model = ours ? BrdfRef(*ours) : other->ref();
+        std::array<double, 3> f;
+        for (const std::size_t i : test) {
+          model.eval(samples.pairs[i].wi, samples.pairs[i].wo, f);
+          errors[m][paint].add(samples.at(i), f);
+        }
+      });
     }
   }
   for (std::size_t m = 0; m < methods.size(); ++m) {

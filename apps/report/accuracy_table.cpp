@@ -9,12 +9,7 @@
 
 #include <fmt/format.h>
 
-#include <burnish/factors/table_format.h>
-#include <burnish/fitting/baselines/baselines.h>
-#include <burnish/fitting/plans/overfit.h>
-#include <burnish/fitting/plans/search.h>
-#include <burnish/fitting/refinement/rounding.h>
-#include <burnish/reflectance/sample_source.h>
+#include <burnish/fitting/fit.h>
 
 #include "report_tools.h"
 
@@ -24,19 +19,6 @@ namespace {
 // Multiply-adds and weights of the 6-21-21-3 network.
 constexpr EvaluationCost kNetworkCost{.table_reads = 675, .multiplies = 6 * 21 + 21 * 21 + 21 * 3};
 constexpr std::size_t kNetworkBytes = 1350;  // as half floats
-constexpr std::size_t kDrawnPairs = 200'000;
-
-FactoredBrdf fit_ours(BrdfRef reference, std::size_t bytes) {
-  const int channels = reference.channels();
-  const TableFormat format = channels == 3 ? TableFormat::rgb9e5 : TableFormat::half;
-  const std::size_t texel = texel_bytes(format, channels);
-  const TrainingOptions drawn = training_for(bytes, texel, reference.isotropic());
-  const TrainingSet set = draw_training_set(reference, drawn);
-  RefineOptions options{.format = format};
-  const LobePlan plan = plan_for(reference, set, bytes, 0, texel, options);
-  const LobesFit fit = fit_without_overfit(reference, set, plan, bytes, texel, drawn, options);
-  return to_rounded_brdf(fit.model, set, options);
-}
 
 Score score_of(const Material& material, std::string_view method, std::size_t budget, BrdfRef model) {
   Score score{
@@ -51,26 +33,19 @@ std::array<double*, 6> figures(ErrorFigures& e) {
   return {&e.psnr, &e.ssim, &e.relative, &e.log_cos, &e.rms_log, &e.rms};
 }
 
-Score run_ours(const Material& material, std::size_t budget) {
-  const Stopwatch watch;
-  const FactoredBrdf brdf = fit_ours(material.reference, budget);
-  const double seconds = watch.seconds();
-  Score score = score_of(material, "ours", budget, brdf);
-  score.bytes = brdf.bytes();
-  score.cost = evaluation_cost(brdf);
-  score.seconds = seconds;
-  return score;
-}
-
-Score run_baseline(const Material& material, std::string_view method, std::size_t budget) {
-  BaselineOptions options;
-  if (budget > 0) options.budget = budget;
-  const BaselineFit fit =
-      fit_baseline(material.reference, from_brdf(material.reference, kDrawnPairs, 1, false), method, options);
-  Score score = score_of(material, method, budget, baseline_ref(fit.baseline.brdf));
-  score.bytes = fit.bytes;
-  score.cost = fit.cost;
-  score.seconds = fit.seconds;
+// "ours" or one of the baselines, at so many bytes; 0: whatever it takes.
+Score run_method(const Material& material, std::string_view method, std::size_t budget) {
+  FitOptions options{.score = false};
+  if (method == "ours")
+    options.form = Budget{.bytes = budget};
+  else
+    options.form = BaselineMethod{.method = std::string(method), .bytes = budget};
+  const Fit made = fit(material.source, options);
+  Score score = score_of(material, method, budget, made.ref());
+  score.bytes = made.bytes();
+  score.cost = std::visit(
+      [](const auto& brdf) -> std::optional<EvaluationCost> { return evaluation_cost(brdf); }, made.brdf);
+  score.seconds = made.report.seconds;
   return score;
 }
 
@@ -100,7 +75,7 @@ std::vector<std::vector<Score>> run(const std::deque<Material>& materials) {
     for (std::size_t k = 0; k < jobs.size(); ++k) {
       jobs[k].score = &row[k];
       if (jobs[k].method == "ours")
-        row[k] = run_ours(material, jobs[k].budget);
+        row[k] = run_method(material, jobs[k].method, jobs[k].budget);
       else
         others.push_back(jobs[k]);
     }
@@ -113,7 +88,7 @@ std::vector<std::vector<Score>> run(const std::deque<Material>& materials) {
       for (std::size_t k; (k = next++) < others.size();) {
         const auto& [material, method, budget, score] = others[k];
         fmt::print(stderr, "accuracy: {}, {}\n", material->name, method);
-        *score = run_baseline(*material, method, budget);
+        *score = run_method(*material, method, budget);
       }
     }));
   for (std::future<void>& worker : workers) worker.get();

@@ -9,7 +9,7 @@
 
 #include <burnish/baselines/evaluation_cost.h>
 #include <burnish/image/image.h>
-#include <burnish/io/source.h>
+#include <burnish/io/open_source.h>
 #include <burnish/metrics/error_figures.h>
 #include <burnish/reflectance/brdf.h>
 

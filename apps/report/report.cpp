@@ -14,14 +14,13 @@
 #include <unistd.h>
 
 #include <burnish/error.h>
-#include <burnish/factors/model_file.h>
 #include <burnish/file.h>
-#include <burnish/fitting/one_lobe/cross_validation.h>
+#include <burnish/fitting/fit_file.h>
 #include <burnish/image/png.h>
 #include <burnish/image/svg_plot.h>
 #include <burnish/io/cornell.h>
 #include <burnish/io/merl.h>
-#include <burnish/io/source.h>
+#include <burnish/io/open_source.h>
 #include <burnish/math/angles.h>
 #include <burnish/math/parallel.h>
 #include <burnish/metrics/error_figures.h>
@@ -55,22 +54,18 @@ double mean_abs_log(BrdfRef truth, const FactoredBrdf& model, std::optional<doub
   return sum / static_cast<double>(count);
 }
 
-SampleSource without_cap(const SampleSource& source, double cap) {
-  SampleSource part = source;
-  part.fill = [source, cap](std::size_t begin, std::span<DirectionPair> pairs, std::span<double> values,
-                            std::span<double> weights) {
-    source.fill(begin, pairs, values, weights);
-    for (std::size_t i = 0; i < pairs.size(); ++i)
-      if (theta_of(half_vector(pairs[i].wi, pairs[i].wo)) < cap) weights[i] = 0;
-  };
-  return part;
+Samples without_cap(const Samples& samples, double cap) {
+  std::vector<std::size_t> left;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    if (theta_of(half_vector(samples.pairs[i].wi, samples.pairs[i].wo)) >= cap) left.push_back(i);
+  return select(samples, left);
 }
 
 void report_ggx(const fs::path& docs) {
   const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.1,alpha_y=0.3,f0=0.8,kd=0");
   const Samples samples = measure(ggx.ref(), {.count = kGgxSamples, .noise = 0, .seed = 7});
-  const SampleSource source = from_samples(samples, true);
   const double cap = radians(20);
+  const Source source = source_of(samples), holed = source_of(without_cap(samples, cap));
 
   fmt::print("## Anisotropic GGX (alpha 0.1 x 0.3, f0 0.8), {} scattered samples\n\n", kGgxSamples);
   fmt::print("`pqp`, two 64 x 64 tables, half floats; errors on {} held-out pairs.\n\n", kGgxHeldOut);
@@ -78,24 +73,26 @@ void report_ggx(const fs::path& docs) {
       "| q's radial warp | smooth | mean abs dlog f | iterations | seconds | smallest factor | reciprocity "
       "error |\n"
       "|---|---|---|---|---|---|---|\n");
-  const auto fit = [&](const std::string& warp, double smooth, const SampleSource& input) {
-    const std::vector<std::string> tables{"p=64x64", "q=64x64," + warp};
-    return fit_homomorphic(input, parse_model_spec("pqp", tables, false), {.smooth = smooth, .floor = 1e-6});
+  const auto fit_to = [&](const Source& input, const std::string& warp, double smooth) {
+    return fit(input, {.form = OneLobe{.model = "pqp",
+                                       .tables = {"p=64x64", "q=64x64," + warp},
+                                       .how = {.reweightings = 0, .floor = 1e-6}},
+                       .smooth = smooth,
+                       .score = false});
   };
   for (const char* warp : {"identity", "rational:0.5", "rational:0.25"}) {
-    const Stopwatch watch;
-    const HomomorphicFit result = fit(warp, 1e-8, source);
-    const double seconds = watch.seconds();
+    const Fit result = fit_to(source, warp, 1e-8);
+    const FactoredBrdf& model = result.model();
     double asymmetry = 0;
     std::vector<double> f(3), g(3);
     for (const auto& [wi, wo] : draw_pairs(kGgxHeldOut, 5, false)) {
-      result.brdf.eval(wi, wo, f);
-      result.brdf.eval(wo, wi, g);
+      model.eval(wi, wo, f);
+      model.eval(wo, wi, g);
       for (std::size_t c = 0; c < 3; ++c) asymmetry = std::max(asymmetry, std::abs(f[c] - g[c]));
     }
-    fmt::print("| {} | 1e-8 | {:.4f} | {} | {:.2f} | {:.2g} | {} |\n", warp,
-               mean_abs_log(ggx.ref(), result.brdf), result.summary.iterations, seconds,
-               result.brdf.smallest_factor(), asymmetry);
+    fmt::print("| {} | 1e-8 | {:.4f} | {} | {:.2f} | {:.2g} | {} |\n", warp, mean_abs_log(ggx.ref(), model),
+               result.report.summary()->iterations, result.report.seconds, model.smallest_factor(),
+               asymmetry);
   }
 
   Plot plot{.title = "Smoothness: error of a fit to 500,000 samples, anisotropic GGX",
@@ -111,13 +108,12 @@ void report_ggx(const fs::path& docs) {
       "([figure](figures/smooth-sweep.svg)):\n\n| smooth | all samples | hole: error inside | hole: all "
       "directions |\n"
       "|---|---|---|---|\n");
-  const SampleSource holed = without_cap(source, cap);
   constexpr int kFirstDecade = -11, kDecades = 9;
   std::array<std::array<double, 3>, kDecades> errors;
   for_each_chunk(kDecades, 1, [&](std::size_t k, std::size_t, std::size_t) {
     const double smooth = std::pow(10.0, kFirstDecade + static_cast<int>(k));
-    const FactoredBrdf whole = fit("rational:0.25", smooth, source).brdf;
-    const FactoredBrdf with_hole = fit("rational:0.25", smooth, holed).brdf;
+    const FactoredBrdf whole = fit_to(source, "rational:0.25", smooth).model();
+    const FactoredBrdf with_hole = fit_to(holed, "rational:0.25", smooth).model();
     errors[k] = {mean_abs_log(ggx.ref(), whole), mean_abs_log(ggx.ref(), with_hole, cap),
                  mean_abs_log(ggx.ref(), with_hole)};
   });
@@ -153,8 +149,9 @@ void report_rgl(const fs::path& data) {
     const SymmetrizedBrdf reference(source.ref());
     const Scorer scorer(reference);
     for (std::size_t m = 0; m < 2; ++m) {
-      const ModelSpec spec = parse_model_spec(rows[m].model, rows[m].tables, true);
-      const FactoredBrdf model = fit_homomorphic(from_brdf(reference, 200'000, 1, false), spec, {}).brdf;
+      const FactoredBrdf model =
+          fit(source, {.form = OneLobe{.model = rows[m].model, .tables = rows[m].tables}, .score = false})
+              .model();
       const ErrorFigures e = scorer.score(model);
       fmt::print("| {} | {} | {} | {:.2f} | {:.3f} | {:.3f} | {:.4f} |\n", file.stem().string(),
                  rows[m].model, model.table_bytes(), e.psnr, e.ssim, e.relative, e.log_cos);
@@ -189,7 +186,7 @@ void report_cornell(const fs::path& data) {
     for (std::size_t fold = 0; fold < kFolds; ++fold) {
       const auto [training, test] = split_fold(samples.size(), fold);
       const ScatteredBrdf pbrt(samples, training, SampleSpace::angles), half_diff(samples, training);
-      const Samples part = select(samples, training);
+      const Source part = source_of(select(samples, training));
       std::array<std::optional<FactoredBrdf>, 3> models;
       for_each_chunk(models.size(), 1, [&](std::size_t m, std::size_t, std::size_t) {
         models[m] = fit_scattered(part, std::array{"pqp", "pqpr", kScatteredModel}[m]);
@@ -244,16 +241,12 @@ void report_merl() {
                  if (!std::isnan(v)) checksum += std::log(v + 3e-5F);
              }));
   for (const bool disks : {false, true})
-    fmt::print(
-        "| fit `pqp`, {} | {:.3f} |\n", disks ? "64 x 64 x 2" : "1-D, 32 and 64 nodes", best([&] {
-          const MerlFile merl = parse_merl(read_file(table), {});
-          const std::vector<std::string> tables =
-              disks ? std::vector<std::string>{"p=64x64", "q=64x64"} : std::vector<std::string>{};
-          const ModelSpec spec = parse_model_spec("pqp", tables, true);
-          write_then_rename(
-              model,
-              format_model({.brdf = fit_homomorphic(from_table(merl.table, true, disks), spec, {}).brdf}));
-        }));
+    fmt::print("| fit `pqp`, {} | {:.3f} |\n", disks ? "64 x 64 x 2" : "1-D, 32 and 64 nodes", best([&] {
+                 OneLobe form;
+                 if (disks) form.tables = {"p=64x64", "q=64x64"};
+                 write_then_rename(
+                     model, format_fit(fit(open_source(table.string(), {}), {.form = form, .score = false})));
+               }));
   fs::remove_all(folder);
   if (!std::isfinite(checksum)) throw Error("report: expected finite logarithms");
 }

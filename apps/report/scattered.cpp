@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <burnish/fitting/one_lobe/cross_validation.h>
+#include <burnish/fitting/fit.h>
 #include <burnish/io/cornell.h>
 
 namespace burnish {
@@ -37,17 +37,15 @@ Fold split_fold(std::size_t rows, std::size_t fold) {
   return split;
 }
 
-FactoredBrdf fit_scattered(const Samples& part, const std::string& expression) {
-  const SampleSource source = from_samples(part, true);
+Source source_of(Samples samples) {
+  return {.name = {}, .brdf = ScatteredBrdf(std::move(samples)), .findings = {}};
+}
+
+FactoredBrdf fit_scattered(const Source& source, const std::string& expression) {
   std::vector<std::string> tables{"p=48", "q=64,rational:0.2"};
   if (expression != "pqp") tables.push_back("r=32");
   if (expression.find('m') != expression.npos) tables.push_back("m=48,power:0.5");
-  ModelSpec spec = parse_model_spec(expression, tables, true);
-  HomomorphicOptions options{.reweightings = 4};
-  const SmoothTrial best = choose_smoothness(source, spec, options).front();
-  options.smooth = best.smooth;
-  for (std::size_t t = 0; t < spec.tables.size(); ++t) spec.tables[t].smooth_share = best.shares[t];
-  return fit_homomorphic(source, spec, options).brdf;
+  return fit(source, {.form = OneLobe{.model = expression, .tables = tables}, .score = false}).model();
 }
 
 void FoldErrors::add(std::span<const double> f, std::span<const double> model) {

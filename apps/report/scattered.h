@@ -9,6 +9,7 @@
 
 #include <burnish/factors/factored_brdf.h>
 #include <burnish/reflectance/samples.h>
+#include <burnish/source.h>
 
 #include "report_tools.h"
 
@@ -31,8 +32,11 @@ Fold split_fold(std::size_t rows, std::size_t fold);
 /// The paper's model with r(theta_d) and m(theta_m) beside it.
 inline constexpr const char* kScatteredModel = "p(wo) q(h) m(theta_m) r(theta_d) p(wi)";
 
-/// Fits one lobe; smoothness by cross-validation among the samples given.
-FactoredBrdf fit_scattered(const Samples& part, const std::string& expression);
+/// Samples as `burnish fit` opens them.
+Source source_of(Samples samples);
+
+/// Fits one lobe; smoothness by cross-validation among the samples of the source.
+FactoredBrdf fit_scattered(const Source& source, const std::string& expression);
 
 /// Errors of the tested rows of all folds, at the floors 1e-3 and 1e-5.
 struct FoldErrors {

@@ -11,13 +11,12 @@
 #include <fmt/format.h>
 
 #include <burnish/error.h>
-#include <burnish/factors/table_format.h>
 #include <burnish/file.h>
-#include <burnish/fitting/plans/fit_plan.h>
+#include <burnish/fitting/fit.h>
 #include <burnish/image/contact_sheet.h>
 #include <burnish/image/png.h>
 #include <burnish/image/svg_plot.h>
-#include <burnish/io/rgl.h>
+#include <burnish/io/open_source.h>
 #include <burnish/math/parallel.h>
 #include <burnish/math/random.h>
 #include <burnish/metrics/sphere_images.h>
@@ -51,24 +50,15 @@ struct Material {
 
 constexpr std::size_t kModelBytes = 2700;
 
-// As `burnish fit --budget` does.
-FactoredBrdf fit_model(BrdfRef reference) {
-  const std::size_t texel = texel_bytes(TableFormat::rgb9e5, 3);
-  const TrainingSet set = draw_training_set(reference, {.directions = 60'000});
-  const LobesFit fit = fit_plan(set, plan_for(reference, kModelBytes, 0, texel), kModelBytes, texel,
-                                {.format = TableFormat::rgb9e5});
-  return to_brdf(fit.model, TableFormat::rgb9e5);
-}
-
 std::vector<Material> load_materials(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
   std::ranges::sort(files);
   std::vector<Material> materials;
   for (const fs::path& file : files) {
-    RglTable table = parse_rgl(read_file(file), {}).table;
-    FactoredBrdf model = fit_model(SymmetrizedBrdf(table));
-    materials.push_back({file.stem().string(), std::move(table), std::move(model)});
+    Source source = open_source(file.string(), {});
+    FactoredBrdf model = fit(source, {.form = Budget{.bytes = kModelBytes}, .score = false}).model();
+    materials.push_back({file.stem().string(), std::get<RglTable>(std::move(source.brdf)), std::move(model)});
   }
   return materials;
 }

@@ -12,9 +12,9 @@
 
 #include <burnish/fitting/fit.h>
 #include <burnish/image/png.h>
+#include <burnish/io/open_source.h>
 #include <burnish/math/angles.h>
 #include <burnish/metrics/sphere_images.h>
-#include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/ggx_proxy.h>
 #include <burnish/render/light/image_based_light.h>
 #include <burnish/render/light/tapped_light.h>
@@ -40,9 +40,9 @@ constexpr Material kBrushed[] = {
 constexpr int kTaps[] = {24, 48, 96, 192};
 
 FactoredBrdf factored(const Material& material) {
-  const AnalyticBrdf source = parse_analytic(material.source);
-  const FactoredBrdf one =
-      fit({source, material.name, "analytic"}, {.model = material.model, .samples = 100'000}).brdf;
+  const FactoredBrdf one = fit(open_source(material.source, {}),
+                               {.form = OneLobe{.model = material.model}, .samples = 100'000, .score = false})
+                               .model();
   std::vector<Lobe> lobes(one.lobes().begin(), one.lobes().end());
   const auto [r, g, b] = material.diffuse;
   if (g > 0) lobes.push_back({.scale = {r / kPi, g / kPi, b / kPi}, .factors = {}});

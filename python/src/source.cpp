@@ -8,6 +8,7 @@
 #include <burnish/error.h>
 #include <burnish/factors/model_file.h>
 #include <burnish/factors/model_spec.h>
+#include <burnish/io/open_source.h>
 #include <burnish/io/source_report.h>
 
 #include "opened_brdf.h"

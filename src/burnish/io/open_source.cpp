@@ -10,8 +10,8 @@
 #include <burnish/io/mbsdf.h>
 #include <burnish/io/merl.h>
 #include <burnish/io/neural.h>
+#include <burnish/io/open_source.h>
 #include <burnish/io/rgl.h>
-#include <burnish/io/source.h>
 #include <burnish/io/text_reader.h>
 #include <burnish/io/zemax.h>
 #include <burnish/math/angles.h>
@@ -60,28 +60,6 @@ Source from_spec(const std::string& spec) {
 
 }  // namespace
 
-BrdfRef Source::ref() const noexcept {
-  // An analytic BRDF's own reference skips the choice of its model.
-  if (const auto* analytic = std::get_if<AnalyticBrdf>(&brdf)) return analytic->ref();
-  return std::visit([](const auto& any) -> BrdfRef { return any; }, brdf);
-}
-
-const Samples* Source::samples() const noexcept {
-  const auto* scattered = std::get_if<ScatteredBrdf>(&brdf);
-  return scattered ? &scattered->samples() : nullptr;
-}
-
-std::optional<std::size_t> Source::bytes() const noexcept {
-  return std::visit(
-      [](const auto& any) -> std::optional<std::size_t> {
-        if constexpr (requires { any.bytes(); })
-          return any.bytes();
-        else
-          return std::nullopt;
-      },
-      brdf);
-}
-
 Source parse_source(const FileBytes& file, const OpenOptions& options) {
   // Binary formats first: their first bytes are unmistakable.
   if (looks_like_exr(file.bytes)) return to_source(file.name, parse_model(file));
@@ -101,18 +79,6 @@ Source parse_source(const FileBytes& file, const OpenOptions& options) {
       "a MERL, RGL, MBSDF, Zemax, Klems, ASTM E1392, Cornell or CSV measurement, a neural encoding, a "
       "baseline or a burnish model",
       fmt::format("something that starts with {}", in_quotes(text.substr(0, 16))));
-}
-
-Source to_source(const std::string& name, Model model) {
-  Findings findings;
-  findings.format = "burnish model";
-  findings.description = model_expression(model.brdf);
-  findings.lambda_nm = std::move(model.lambda_nm);
-  findings.conventions = {"notes of the fit: " + model.notes};
-  findings.notes = std::move(model.notes);
-  for (const Table& table : model.brdf.tables()) findings.sample_count += table.layout.node_count();
-  findings.theta_i_max = findings.theta_o_max = kHalfPi;
-  return {name, std::move(model.brdf), std::move(findings)};
 }
 
 Source open_source(const std::string& spec, const OpenOptions& options) {

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <burnish/factors/model_file.h>
-#include <burnish/io/source.h>
+#include <burnish/io/open_source.h>
 #include <burnish/math/angles.h>
 #include <burnish/metrics/albedo.h>
 #include <burnish/testing/files.h>
