@@ -68,6 +68,7 @@ std::vector<double> read_angles(TextReader& reader, std::string_view keyword) {
 
 /// Reads keywords up to the block of the first channel.
 Header read_header(TextReader& reader) {
+  // keywords with a word or a list of angles, in any order but for the last
   Header header;
   while (header.angles.find("scatterradial") == header.angles.end()) {
     if (!reader.next_content_line()) reader.fail("the keyword ScatterRadial", "the end of the file");
@@ -83,6 +84,8 @@ Header read_header(TextReader& reader) {
       reader.fail("a keyword of the header", in_quotes(reader.line()));
     }
   }
+
+  // all of them there, with values that the format knows
   for (const char* keyword : {"symmetry", "spectralcontent", "scattertype"})
     if (!header.words.contains(keyword)) reader.fail(fmt::format("the keyword {}", keyword), "none");
   for (const char* keyword : {"samplerotation", "angleofincidence", "scatterazimuth"})
