@@ -76,6 +76,7 @@ void print_albedos(std::span<const ComparedFigures> figures) {
 }
 
 void compare(const CompareArguments& arguments) {
+  // a list: models refer to their candidates
   const Candidate reference(arguments.reference.open(), !arguments.no_symmetrize);
   std::list<Candidate> candidates;
   std::vector<ComparedModel> models;
@@ -86,6 +87,7 @@ void compare(const CompareArguments& arguments) {
     model.bytes = c.source().bytes();
     models.push_back(std::move(model));
   }
+
   const Scorer scorer(reference.ref(), arguments.figures);
   const std::vector<ComparedFigures> figures =
       arguments.folder.empty() ? compare_models(scorer, models)
@@ -95,6 +97,7 @@ void compare(const CompareArguments& arguments) {
     fmt::print("{}\n", to_json(figures));
     return;
   }
+
   fmt::print("{:<32} {:>8} {:>8} {:>7} {:>9} {:>8} {:>8}\n", "model", "bytes", "psnr", "ssim", "relative",
              "rms_log", "log_cos");
   for (const ComparedFigures& f : figures)

@@ -142,6 +142,8 @@ void render(const RenderArguments& arguments) {
     throw CLI::ValidationError(
         fmt::format("--output: expected a name that ends in .png or .exr, found '{}'", arguments.out));
   if (arguments.shadows && !cpu) throw CLI::ValidationError("--shadows: expected --renderer cpu with it");
+
+  // everything is read before anything is drawn: a bad argument is told at once
   Scene scene;
   const std::optional<Environment> environment = environment_of(arguments.environment);
   std::vector<std::string> lights = arguments.lights;
@@ -153,6 +155,8 @@ void render(const RenderArguments& arguments) {
   const bool automatic = arguments.exposure == "auto";
   const double given = automatic ? 1 : exposure_of(arguments.exposure);
   scene.parts = parts_of(arguments);
+
+  // drawn finer, exposed, averaged
   const int n = arguments.samples;
   const Image fine = cpu ? render_by_cpu(scene, environment, arguments, n * width, n * height)
                          : render_gl(scene, environment, arguments, n * width, n * height);

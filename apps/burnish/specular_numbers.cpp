@@ -99,6 +99,7 @@ void add_specular_choose(CLI::App& verb) {
   sub->add_option("--lang", arguments->language, "language of the code")->capture_default_str();
   sub->add_flag("--json", arguments->json, "for programs");
   sub->callback([arguments] {
+    // FIRST:LAST, or one exponent, for which the code has constants
     const std::string& range = arguments->exponents;
     const auto colon = range.find(':');
     const auto number = [](const std::string& text) {
@@ -127,6 +128,7 @@ void add_specular_choose(CLI::App& verb) {
       fmt::print("// exponents {:g} to {:g}: {}, error at most {:g}, cost {}\n", choice.min_exponent,
                  choice.max_exponent, power_info(choice.method).name, choice.bound,
                  power_info(choice.method).cost.weight());
+    // the code of a member once, however many ranges it serves
     std::vector<PowerMethod> written;
     for (const PowerChoice& choice : choices) {
       if (std::find(written.begin(), written.end(), choice.method) != written.end()) continue;

@@ -52,6 +52,7 @@ double microfacet_divisor(Vec3 wi, Vec3 wo) noexcept {
 bool DgfBrdf::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   std::fill(f.begin(), f.end(), 0.0);
   if (wi.z <= 0 || wo.z <= 0) return true;
+  // D over theta_h, F over theta_d, and the masking G of either direction
   const PairPlace place(wi, wo);
   const NodeCorners in_d = corners(d_.axes, place), in_f = corners(f_.axes, place),
                     in_gi = corners(g_.axes, masking_place(wi)), in_go = corners(g_.axes, masking_place(wo));

@@ -45,6 +45,8 @@ bool NeuralBrdf::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     std::ranges::fill(f, 0.0);
     return true;
   }
+
+  // the network's inputs: half and difference vector, turned so that h lies over +x
   constexpr double kLargestExponent = 700;  // exp(700) is still finite
   const Vec3 h = half_vector(wi, wo), d = project(kProjectDifference, wi, wo);
   const float* weights = weights_.data();
@@ -52,6 +54,8 @@ bool NeuralBrdf::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   cut_off_negatives(first);
   auto second = affine<kHidden, kHidden>(weights, first);
   cut_off_negatives(second);
+
+  // it was trained on log(1 + f)
   const auto x = affine<kHidden, kOutputs>(weights, second);
   for (std::size_t c = 0; c < kOutputs; ++c)
     f[c] = std::max(0.0, std::expm1(std::min(x[c], kLargestExponent)));

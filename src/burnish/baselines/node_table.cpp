@@ -24,11 +24,13 @@ std::size_t NodeTable::node_count() const noexcept {
 }
 
 NodeCorners corners(std::span<const NodeAxis> axes, const PairPlace& place) noexcept {
+  // each axis doubles the corners: those so far at its lower node, then the same at its upper one
   NodeCorners result;
   result.node[0] = 0;
   result.weight[0] = 1;
   result.count = 1;
   for (const NodeAxis& axis : axes) {
+    // the two nodes; those of a periodic axis go around, and the last is followed by the first
     const double u = std::clamp(place[axis.coordinate], 0.0, 1.0);
     const bool periodic = is_periodic(axis.coordinate);
     const double position = u * (periodic ? axis.count : axis.count - 1);
@@ -69,6 +71,8 @@ void check_node_table(const NodeTable& table, int brdf_channels, const std::stri
     fail(fmt::format("1 or {} channels", brdf_channels), fmt::format("{}", table.channels));
   if (table.terms < 1 || static_cast<std::size_t>(table.terms) > kMostValues)
     fail("at least 1 term", fmt::format("{}", table.terms));
+
+  // the count stays in bounds while it is multiplied
   std::size_t count = static_cast<std::size_t>(table.channels) * static_cast<std::size_t>(table.terms);
   for (const NodeAxis& axis : table.axes) {
     if (axis.count < 2 || axis.count > kLargestSide)
@@ -79,6 +83,8 @@ void check_node_table(const NodeTable& table, int brdf_channels, const std::stri
   }
   if (table.values.size() != count)
     fail(fmt::format("{} values", count), fmt::format("{}", table.values.size()));
+
+  // half floats, so that a file that counts two bytes a value is what is evaluated
   for (const float value : table.values)
     if (!std::isfinite(value) || static_cast<float>(Imath::half(value)) != value)
       fail("half floats", fmt::format("{}", value));

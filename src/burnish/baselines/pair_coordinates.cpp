@@ -63,6 +63,7 @@ double PairPlace::operator[](PairCoordinate coordinate) const noexcept {
       return radius_d;
     case PairCoordinate::phi_d:
     case PairCoordinate::half_turn_d: {
+      // the difference vector along two tangents at h: the one away from n, and the one around n
       const double x = dot(difference_, {half_.z * to_half.x, half_.z * to_half.y, -sin_theta});
       const double y = dot(difference_, {-to_half.y, to_half.x, 0});
       return coordinate == PairCoordinate::half_turn_d ? half_turn(x, y)
@@ -84,6 +85,7 @@ double PairPlace::operator[](PairCoordinate coordinate) const noexcept {
 
 PairFrame pair_at(std::span<const PairCoordinate> coordinates, std::span<const double> values) noexcept {
   assert(coordinates.size() == values.size());
+  // coordinates that are not given are 0; two of them together are a point of a disk
   double radius_h = 0, phi_h = 0, radius_d = 0, turn = 0;
   std::array<double, 2> half{}, difference{};
   bool half_disk = false, difference_disk = false;
@@ -118,6 +120,8 @@ PairFrame pair_at(std::span<const PairCoordinate> coordinates, std::span<const d
         break;
     }
   }
+
+  // disks to radius and azimuth
   if (half_disk) {
     radius_h = std::min(1.0, std::hypot(half[0], half[1]));
     phi_h = std::atan2(half[1], half[0]);
@@ -126,6 +130,7 @@ PairFrame pair_at(std::span<const PairCoordinate> coordinates, std::span<const d
     radius_d = std::min(1.0, std::hypot(difference[0], difference[1]));
     turn = std::atan2(difference[1], difference[0]);
   }
+
   // at phi_h = 0 the tangent made perpendicular to h is what phi_d is counted from
   const Vec3 h = spherical_direction(kHalfPi * radius_h * radius_h, phi_h);
   const Vec3 t = tangent_at(h), s = cross(h, t);

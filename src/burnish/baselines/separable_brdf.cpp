@@ -23,6 +23,8 @@ SeparableBrdf::SeparableBrdf(NodeTable u, NodeTable v, std::vector<float> scale)
   if (u_.terms != v_.terms || u_.terms > kMostTerms)
     throw Error(fmt::format("separable BRDF: expected as many terms in u and v, at most {}, found {} and {}",
                             kMostTerms, u_.terms, v_.terms));
+
+  // every coordinate belongs to one of the two
   unsigned used = 0;
   for (const NodeTable* table : {&u_, &v_})
     for (const NodeAxis& axis : table->axes) {

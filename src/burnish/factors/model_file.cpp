@@ -180,6 +180,7 @@ const char* shape_name(TableShape shape) {
   return shape == TableShape::line ? "line" : shape == TableShape::disk ? "disk" : "grid";
 }
 
+// All but the pixels.
 Json to_json(const Model& model) {
   const FactoredBrdf& brdf = model.brdf;
   Json tables = Json::array(), lobes = Json::array();
@@ -287,6 +288,7 @@ void read_tables(const Json& json, bool old, std::uint64_t file_size, int channe
   }
 }
 
+// The values of a table from the part that holds it, which must have the table's name, size and channels.
 void read_pixels(Imf::MultiPartInputFile& input, int part, Table& table) {
   const Imf::Header& header = input.header(part);
   const Imath::Box2i window = header.dataWindow();
@@ -315,6 +317,7 @@ void read_pixels(Imf::MultiPartInputFile& input, int part, Table& table) {
 }
 
 Model read_model(const FileBytes& file) {
+  // OpenEXR sees only what has been checked; the form of the model is JSON in the first part's header
   HeaderCheck(file).run();
   MemoryInput stream(file);
   Imf::MultiPartInputFile input(stream, 0);
@@ -326,6 +329,7 @@ Model read_model(const FileBytes& file) {
     throw Error(fmt::format("expected version {} or {}, found {}", kOldVersion, kVersion, version));
 
   const int channels = json.at("channels").get<int>();
+  // a part a table
   std::vector<Table> tables;
   read_tables(json, version == kOldVersion, file.bytes.size(), channels, tables);
   if (static_cast<std::size_t>(input.parts()) != tables.size())
@@ -333,6 +337,7 @@ Model read_model(const FileBytes& file) {
   for (int part = 0; part < input.parts(); ++part)
     read_pixels(input, part, tables[static_cast<std::size_t>(part)]);
 
+  // lobes name their tables
   std::vector<Lobe> lobes;
   for (const Json& l : json.at("lobes")) {
     Lobe lobe{.scale = l.at("scale").get<std::vector<double>>(), .factors = {}};
@@ -350,6 +355,8 @@ Model read_model(const FileBytes& file) {
     }
     lobes.push_back(std::move(lobe));
   }
+
+  // the constructor checks how all of it fits together
   Model model{.brdf = FactoredBrdf(channels, std::move(tables), std::move(lobes)),
               .lambda_nm = json.at("lambda_nm").get<std::vector<double>>(),
               .notes = json.at("notes").dump()};
@@ -380,6 +387,8 @@ std::string format_model(const Model& model) {
         part.writePixels(table.layout.height);
         continue;
       }
+
+      // what halves hold is written as halves
       std::vector<Imath::half> halves(values.begin(), values.end());
       Imf::FrameBuffer buffer;
       const std::size_t step = sizeof(Imath::half) * static_cast<std::size_t>(table.channels);

@@ -61,6 +61,7 @@ std::string camel(std::string_view name) {
   return text;
 }
 
+// Of a module.
 struct Port {
   std::string_view name;
   int width;
@@ -214,6 +215,7 @@ std::uint64_t packed(const FixedVec3& v) {
 
 // Modules the unit is made of, by the names that occur in their texts.
 std::vector<GeneratedFile> modules_below(const std::string& text) {
+  // what is used uses others: until no more turn up
   std::vector<GeneratedFile> modules = rtl_modules(), used;
   std::string seen = text;
   for (bool grew = true; grew;) {
@@ -273,6 +275,7 @@ std::vector<UnitVector> golden_vectors(const SpecularUnit& unit, int count, std:
     if (static_cast<int>(vectors.size()) < count)
       vectors.push_back({exponent, input, unit.value(exponent, input)});
   };
+  // corners, then exponents and cosines at random, half of them in the highlight
   for (const std::uint32_t exponent : {1U, 2U, 3U, 8U, 15U, 16U, 63U, 64U, 128U, 511U, 1000U, 1023U})
     for (const std::uint32_t input : {0U, 1U, one / 2 - 1, one / 2, one - 1, one, 2 * one - 1})
       add(exponent, input);
@@ -308,6 +311,8 @@ std::vector<BlinnVector> blinn_vectors(const SpecularUnit& unit, int count, std:
     if (static_cast<int>(vectors.size()) < count)
       vectors.push_back({n, l, v, exponent, unit.value(exponent, front.versine(n, l, v))});
   };
+
+  // corners: along, across, opposite, below, zero, the ends of the number format
   constexpr std::int32_t kOne = 1 << kFixedVec3FractionBits, kLeast = -2 * kOne, kMost = 2 * kOne - 1;
   const FixedVec3 z = {0, 0, kOne}, x = {kOne, 0, 0}, down = {0, 0, -kOne}, zero = {};
   for (const std::uint32_t exponent : {1U, 50U, 1023U}) {
@@ -320,6 +325,8 @@ std::vector<BlinnVector> blinn_vectors(const SpecularUnit& unit, int count, std:
     add({kMost, kMost, kMost}, {kMost, kMost, kMost}, {kMost, kMost, kMost}, exponent);
     add({kLeast, kLeast, kLeast}, {kLeast, kLeast, kLeast}, {kLeast, kLeast, kLeast}, exponent);
   }
+
+  // at random; half of the normals near h
   Pcg32 random(seed);
   const auto direction = [&] {
     for (;;) {

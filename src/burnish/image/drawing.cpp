@@ -54,6 +54,7 @@ class Mask {
     return static_cast<std::size_t>(y - y0_) * static_cast<std::size_t>(x1_ - x0_) +
            static_cast<std::size_t>(x - x0_);
   }
+  // A pixel is covered by how far its centre lies inside the stroke's edge, up to half a pixel on each side.
   void add_segment(Point a, Point b, double radius) noexcept {
     const auto within = [](double v, int low, int high) {
       return static_cast<int>(std::clamp(v, static_cast<double>(low), static_cast<double>(high)));
@@ -106,6 +107,7 @@ std::vector<std::vector<Point>> dashes(std::span<const Point> points, double on,
     const Point a = points[i], b = points[i + 1];
     const double total = std::hypot(b.x - a.x, b.y - a.y);
     for (double done = 0; done < total;) {
+      // a dash or gap is used up: the other begins
       const Point here{a.x + (b.x - a.x) * done / total, a.y + (b.y - a.y) * done / total};
       if (left <= 0) {
         drawing = !drawing;
@@ -133,11 +135,14 @@ void draw_text(Image8& image, Point at, std::string_view text, double cap_height
   const auto snap = [](double v) { return std::floor(v) + 0.5; };
   const Point origin =
       upwards ? Point{snap(at.x), snap(at.y - start)} : Point{snap(at.x + start), snap(at.y)};
+
+  // room for the text and a little around it
   const double width = std::max(1.1, 0.13 * cap_height);
   const double far = laid_out.width * unit + cap_height, high = 2 * cap_height;
   Mask mask(image, upwards ? Box{origin.x - high, origin.y - far, origin.x + high, origin.y + cap_height}
                            : Box{origin.x - cap_height, origin.y - high, origin.x + far, origin.y + high});
   for (auto& stroke : laid_out.strokes) {
+    // from the font's units, turned where the text runs upwards
     for (Point& p : stroke) {
       p = {p.x * unit, p.y * unit};
       p = upwards ? Point{origin.x + p.y, origin.y - p.x} : Point{origin.x + p.x, origin.y + p.y};

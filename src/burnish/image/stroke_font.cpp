@@ -107,6 +107,8 @@ std::vector<Point> smooth(std::span<const Point> points, bool closed) {
 
 TextStrokes text_strokes(std::string_view text) {
   constexpr double kSpacing = 2.25, kSpace = 1.75, kDigitWidth = 4, kBaseline = 8;
+  // A glyph is strokes parted by blanks, each of points of two digits, x and y; `~` in front is an open curve
+  // through middles, `o` a closed one.
   TextStrokes result;
   double pen = 0;
   while (!text.empty()) {

@@ -120,6 +120,7 @@ class Converter {
   /// The bytes, and how far from the source they are.
   Converted sampled(const std::string& where, std::string bytes) {
     if (source_.samples()) lose("scattered samples interpolated");
+    // read back, as another program would
     const auto* data = reinterpret_cast<const std::byte*>(bytes.data());
     const Source back = parse_source({"converted", {data, data + bytes.size()}},
                                      {.keep_spectral = !source_.findings.lambda_nm.empty()});
@@ -141,6 +142,7 @@ class Converter {
 
   Converted kept(std::string bytes) { return {std::move(bytes), std::move(losses_)}; }
 
+  /// Half/difference cells of the source, one value for directions exchanged unless they cover the circle.
   HalfDiffTable half_diff_cells() {
     const BrdfRef brdf = isotropic();
     const int n = options_.cells;
@@ -211,6 +213,7 @@ class Converter {
   }
 
   Converted scattered(bool astm) {
+    // samples as they are, a table's entries, or draws
     std::optional<Samples> made;
     const Samples* samples = source_.samples();
     if (!samples && options_.entries) {
@@ -253,6 +256,7 @@ class EntryList {
   Samples samples_;
 };
 
+// Every entry of a table that holds something.
 void add_entries(const HalfDiffTable& table, EntryList& list) {
   for (int h = 0; h < table.theta_h_count; ++h)
     for (int d = 0; d < table.theta_d_count; ++d)

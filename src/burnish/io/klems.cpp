@@ -93,7 +93,7 @@ pugi::xml_node find_matrix(const KlemsReader& reader, std::string_view direction
 std::vector<float> read_values(const KlemsReader& reader, std::string_view text, std::size_t count) {
   constexpr std::string_view separators = " \t\r\n,";
   std::vector<float> values;
-  // A value takes a digit and a separator.
+  // a value takes a digit and a separator
   values.reserve(std::min(count, text.size() / 2 + 1));
   for (;;) {
     text.remove_prefix(std::min(text.find_first_not_of(separators), text.size()));
@@ -128,11 +128,12 @@ KlemsFile parse_klems(const FileBytes& file, const OpenOptions& options) {
   const std::string_view direction = options.back_side ? "Reflection Back" : "Reflection Front";
   const pugi::xml_node block = find_matrix(reader, direction);
 
+  // the bases and the matrix between them
   KlemsFile result;
   PatchTable& table = result.table;
   Findings& findings = result.findings;
   table.incident = reader.basis(trimmed(block.child_value("ColumnAngleBasis")));
-  // The file counts incident patches by where the light goes to, wi by where it comes from.
+  // the file counts incident patches by where the light goes to, wi by where it comes from.
   table.incident.first_azimuth = kPi;
   table.outgoing = reader.basis(trimmed(block.child_value("RowAngleBasis")));
   table.values =

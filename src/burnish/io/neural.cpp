@@ -43,6 +43,7 @@ bool looks_like_neural(std::string_view text) noexcept {
 }
 
 NeuralFile parse_neural(const FileBytes& file, std::string_view name) {
+  // the row of that name, or the only one
   TextReader reader(file);
   std::vector<std::string> names;
   std::vector<float> weights;
@@ -61,6 +62,7 @@ NeuralFile parse_neural(const FileBytes& file, std::string_view name) {
   if (weights.empty())
     throw Error::in_file(file.name, fmt::format("an encoding named {}", in_quotes(name)),
                          names.empty() ? "no row" : some_names(names));
+
   Findings findings;
   findings.format = "neural encoding";
   findings.description = names.back();

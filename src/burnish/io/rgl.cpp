@@ -230,6 +230,7 @@ std::string format_rgl(const RglTable& table) {
   const auto nodes = node_count(data.spectra);
   const auto side = [](int length) { return static_cast<std::uint64_t>(length); };
 
+  // channels apart again, three of them for a grey table
   std::vector<float> spectra;  // [slice][channel][node]
   const bool grey = data.lambda_nm.empty() && data.channels == 1;
   if (grey)
@@ -244,6 +245,7 @@ std::string format_rgl(const RglTable& table) {
   const std::array<std::uint32_t, 2> version{1, 0};
   const std::array<std::uint8_t, 1> jacobian{data.jacobian};
   const std::vector<float> wavelengths(data.lambda_nm.begin(), data.lambda_nm.end());
+
   std::vector<Tensor> tensors;
   const auto add = [&](std::string name, TensorType type, std::vector<std::uint64_t> shape, auto& values) {
     tensors.push_back({std::move(name), type, std::move(shape), std::as_bytes(std::span(values)), 0});

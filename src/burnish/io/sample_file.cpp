@@ -39,7 +39,7 @@ bool same_incident_azimuth(const Samples& samples) noexcept {
   if (samples.pairs.empty()) return true;
   const double first = phi_of(samples.pairs.front().wi);
   return std::all_of(samples.pairs.begin(), samples.pairs.end(), [&](const DirectionPair& pair) {
-    // The azimuth of the normal is any.
+    // the azimuth of the normal is any
     return std::hypot(pair.wi.x, pair.wi.y) < 1e-6 ||
            std::abs(std::remainder(phi_of(pair.wi) - first, kTwoPi)) < 1e-6;
   });
@@ -50,12 +50,14 @@ void finish_samples(const std::string& file, const OpenOptions& options, SampleF
   Findings& findings = result.findings;
   if (samples.size() == 0) throw Error::in_file(file, "at least one measurement", "none");
 
+  // negatives
   for (const double value : samples.values) {
     findings.clamped_negatives += value < 0;
     findings.most_negative = std::min(findings.most_negative, value);
   }
   if (options.clamp_negatives) clamp_to_zero(samples.values);
 
+  // spectra, kept or made linear Rec. 709, where colours outside the gamut have negatives of their own
   if (!findings.lambda_nm.empty()) {
     const auto& lambda = findings.lambda_nm;
     if (lambda.front() <= 0 ||
@@ -76,6 +78,7 @@ void finish_samples(const std::string& file, const OpenOptions& options, SampleF
     }
   }
 
+  // coverage
   findings.sample_count = samples.size();
   findings.theta_i_min = findings.theta_o_min = kHalfPi;
   for (const auto& [wi, wo] : samples.pairs) {

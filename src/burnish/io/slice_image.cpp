@@ -18,6 +18,8 @@ std::string format_slice_image(const HalfDiffTable& table) {
   if (table.channel_count != 1 && table.channel_count != 3)
     throw Error("slices are drawn of grey or RGB tables, not of " + std::to_string(table.channel_count) +
                 " channels");
+
+  // slices of phi_d in rows, as square as can be; holes stay transparent
   const auto channels = static_cast<std::size_t>(table.channel_count);
   const int across = static_cast<int>(std::ceil(std::sqrt(table.phi_d_count)));
   const int down = (table.phi_d_count + across - 1) / across;
@@ -37,6 +39,7 @@ std::string format_slice_image(const HalfDiffTable& table) {
         to[channels] = 1;
       }
 
+  // what it takes to find an entry in the picture
   Imf::Header header(width, height);
   header.compression() = Imf::ZIP_COMPRESSION;
   header.insert("thetaHCount", Imf::IntAttribute(table.theta_h_count));

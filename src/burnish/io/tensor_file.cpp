@@ -47,6 +47,7 @@ Tensor parse_field(const FileBytes& file, ByteReader& reader) {
   tensor.type = static_cast<TensorType>(type);
   tensor.offset = reader.number<std::uint64_t>("a data offset");
 
+  // no product of lengths may overflow, nor be more than the file has
   reader.require(std::uint64_t{8} * dimensions, "shape");
   std::uint64_t bytes = size_of(tensor.type);
   for (int d = 0; d < dimensions; ++d) {
@@ -93,6 +94,7 @@ std::vector<Tensor> parse_tensor_file(const FileBytes& file) {
   tensors.reserve(count);
   for (std::uint32_t i = 0; i < count; ++i) tensors.push_back(parse_field(file, reader));
 
+  // by name: each once
   std::vector<const Tensor*> order;
   for (const Tensor& tensor : tensors) order.push_back(&tensor);
   std::sort(order.begin(), order.end(), [](auto* a, auto* b) { return a->name < b->name; });
@@ -100,7 +102,7 @@ std::vector<Tensor> parse_tensor_file(const FileBytes& file) {
     if (order[i]->name == order[i - 1]->name)
       throw Error::in_file(file.name, "each field once", "two fields named " + printable(order[i]->name));
 
-  // Front to back, each datum starts where the header and the data before it have ended.
+  // front to back, each datum starts where the header and the data before it have ended.
   std::sort(order.begin(), order.end(), [](auto* a, auto* b) {
     return std::pair(a->offset, a->data.size()) < std::pair(b->offset, b->data.size());
   });
@@ -122,10 +124,13 @@ std::string format_tensor_file(std::span<const Tensor> tensors) {
   put(std::uint8_t{1});
   put(std::uint8_t{0});
   put(static_cast<std::uint32_t>(tensors.size()));
+
+  // the header's size, after which the data begin
   std::uint64_t offset = bytes.size();
   for (const Tensor& tensor : tensors)
     offset += kSmallestField - 1 + tensor.name.size() + 8 * tensor.shape.size();
 
+  // fields
   std::vector<std::uint64_t> offsets;
   for (const Tensor& tensor : tensors) {
     assert(!tensor.name.empty() && tensor.name.size() <= std::numeric_limits<std::uint16_t>::max());
@@ -144,6 +149,8 @@ std::string format_tensor_file(std::span<const Tensor> tensors) {
     assert(size == tensor.data.size());
     offset += size;
   }
+
+  // data, each at its place
   bytes.reserve(offset);
   for (std::size_t i = 0; i < tensors.size(); ++i) {
     bytes.resize(offsets[i]);

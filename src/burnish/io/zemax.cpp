@@ -68,6 +68,7 @@ std::vector<double> read_angles(TextReader& reader, std::string_view keyword) {
 
 /// Reads keywords up to the block of the first channel.
 Header read_header(TextReader& reader) {
+  // keywords with a word or a list of angles, in any order but for the last
   Header header;
   while (header.angles.find("scatterradial") == header.angles.end()) {
     if (!reader.next_content_line()) reader.fail("the keyword ScatterRadial", "the end of the file");
@@ -83,6 +84,8 @@ Header read_header(TextReader& reader) {
       reader.fail("a keyword of the header", in_quotes(reader.line()));
     }
   }
+
+  // all of them there, with values that the format knows
   for (const char* keyword : {"symmetry", "spectralcontent", "scattertype"})
     if (!header.words.contains(keyword)) reader.fail(fmt::format("the keyword {}", keyword), "none");
   for (const char* keyword : {"samplerotation", "angleofincidence", "scatterazimuth"})
@@ -234,6 +237,25 @@ void fill_values(const std::vector<double>& read, const Header& header, const Ta
   }
 }
 
+/// Of every rotation and incidence the reflected share of the light: values times the cosine and the solid angle
+/// that each entry stands for.
+std::vector<Row> block_integrals(const AngleTable& table) {
+  const auto& axes = table.axes;
+  const auto channels = static_cast<std::size_t>(table.channel_count);
+  const std::size_t columns = axes[3].nodes.size(), block = axes[2].nodes.size() * columns;
+  const std::vector<double> around = azimuth_widths(axes[2], table.folded), along = ring_heights(axes[3]);
+  std::vector<Row> totals(axes[0].nodes.size() * axes[1].nodes.size(), Row{});
+  for (std::size_t entry = 0; entry < totals.size() * block; ++entry) {
+    const float* value = &table.values[entry * channels];
+    if (std::isnan(value[0])) continue;
+    const double cosine = node_directions(table, node_of_entry(table, entry)).wo.z;
+    const double weight = std::max(cosine, 0.0) * around[entry % block / columns] * along[entry % columns];
+    for (std::size_t k = 0; k < channels; ++k)
+      totals[entry / block][k] += weight * static_cast<double>(value[k]);
+  }
+  return totals;
+}
+
 /// The remark "# Sample: ..." in front of the header.
 std::string sample_name(const FileBytes& file) {
   TextReader reader(file);
@@ -348,11 +370,10 @@ std::string format_zemax(const AngleTable& table, std::string_view sample) {
   append_angles(text, "ScatterAzimuth", axes[2]);
   append_angles(text, "ScatterRadial", axes[3]);
 
-  // weights of the integral: cosine times the solid angle that each entry stands for
+  // one channel after another; the integrals are what readers want, though the entries give them
   const auto to_xyz = inverse(kRec709);
+  const std::vector<Row> totals = block_integrals(table);
   const std::size_t columns = axes[3].nodes.size(), block = axes[2].nodes.size() * columns;
-  const std::size_t blocks = axes[0].nodes.size() * axes[1].nodes.size();
-  const std::vector<double> around = azimuth_widths(axes[2], table.folded), along = ring_heights(axes[3]);
   constexpr std::array kNames = {"TristimulusX", "TristimulusY", "TristimulusZ"};
   const auto out = std::back_inserter(text);
   for (std::size_t c = 0; c < channels; ++c) {
@@ -361,19 +382,8 @@ std::string format_zemax(const AngleTable& table, std::string_view sample) {
       return monochrome ? values[0] : product(to_xyz[c], values);
     };
     fmt::format_to(out, "\n{}\nDataBegin\n", monochrome ? "Monochrome" : kNames[c]);
-    for (std::size_t b = 0; b < blocks; ++b) {
-      // the integral, which readers want though the entries give it
-      Row total{};
-      for (std::size_t entry = b * block; entry < (b + 1) * block; ++entry) {
-        const float* value = &table.values[entry * channels];
-        if (std::isnan(value[0])) continue;
-        const double cosine = node_directions(table, node_of_entry(table, entry)).wo.z;
-        const double weight =
-            std::max(cosine, 0.0) * around[entry % block / columns] * along[entry % columns];
-        for (std::size_t k = 0; k < channels; ++k) total[k] += weight * static_cast<double>(value[k]);
-      }
-      fmt::format_to(out, "TIS\t{:.6g}\n", channel(total.data()));
-
+    for (std::size_t b = 0; b < totals.size(); ++b) {
+      fmt::format_to(out, "TIS\t{:.6g}\n", channel(totals[b].data()));
       for (std::size_t entry = b * block; entry < (b + 1) * block; ++entry) {
         const float* value = &table.values[entry * channels];
         const Row values = {value[0], value[channels == 3], value[channels - 1]};

@@ -141,6 +141,7 @@ std::vector<std::array<double, 3>> rec709_weights(std::span<const double> lambda
   std::erase_if(breaks, [](double l) { return l < kFirst_nm || l > kLast_nm; });
   std::sort(breaks.begin(), breaks.end());
 
+  // XYZ of every sample's hat function under the light; beyond the ends the outermost samples go on
   std::vector<Vec3> xyz(n);
   const auto add = [&](double lambda, std::size_t upper, double width) {
     const CieRow row = cie_at(lambda);
@@ -163,6 +164,7 @@ std::vector<std::array<double, 3>> rec709_weights(std::span<const double> lambda
     add(b, upper, (b - a) / 6);
   }
 
+  // a spectrum of ones is white
   Vec3 white;
   for (const Vec3& v : xyz) white = white + v;
   std::vector<std::array<double, 3>> weights(n);

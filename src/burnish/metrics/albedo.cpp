@@ -12,11 +12,11 @@ namespace {
 constexpr std::size_t kFewestRings = 64, kMostRings = 512, kRingsAtOnce = 8;
 
 /// A direction with two others across it, the first towards the normal.
-struct Frame {
+struct RingFrame {
   Vec3 axis, up, side;
 };
 
-Frame frame_around(Vec3 axis) noexcept {
+RingFrame frame_around(Vec3 axis) noexcept {
   const Vec3 up = Vec3{0, 0, 1} - axis.z * axis;
   const bool at_normal = length(up) < 1e-9;
   const Vec3 x = at_normal ? Vec3{1, 0, 0} : normalize(up);
@@ -29,7 +29,7 @@ struct Ring {
   double known = 0, all = 0;
 };
 
-Ring integrate_ring(BrdfRef source, Vec3 wi, const Frame& frame, double radius,
+Ring integrate_ring(BrdfRef source, Vec3 wi, const RingFrame& frame, double radius,
                     double solid_angle_per_azimuth, std::size_t azimuth_count, std::vector<double>& f) {
   Ring ring{.reflected = std::vector<double>(f.size())};
   // cos(theta_o) = level + slope cos(azimuth) is above 0 within `half` of the azimuth towards the normal
@@ -52,19 +52,21 @@ Ring integrate_ring(BrdfRef source, Vec3 wi, const Frame& frame, double radius,
 
 DirectionalAlbedo integrate(BrdfRef source, Vec3 wi, std::size_t ring_count) {
   const auto channels = static_cast<std::size_t>(source.channels());
-  const Frame frame = frame_around(mirror(wi));
+  const RingFrame frame = frame_around(mirror(wi));
   const double most_radius = kHalfPi + theta_of(wi);  // the farthest point of the horizon
+
+  // rings about the mirror direction, which crowd around it: radius = most u^2, dr = 2 most u du
   std::vector<Ring> rings(ring_count);
   for_each_chunk(ring_count, kRingsAtOnce, [&](std::size_t, std::size_t begin, std::size_t end) {
     std::vector<double> f(channels);
     for (std::size_t k = begin; k < end; ++k) {
       const double u = (static_cast<double>(k) + 0.5) / static_cast<double>(ring_count);
       const double radius = most_radius * u * u;
-      const double width =
-          2 * most_radius * u / static_cast<double>(ring_count);  // of radii: dr = 2 r_end u du
+      const double width = 2 * most_radius * u / static_cast<double>(ring_count);
       rings[k] = integrate_ring(source, wi, frame, radius, std::sin(radius) * width, ring_count / 2, f);
     }
   });
+
   DirectionalAlbedo result{std::vector<double>(channels, 0.0), 0};
   double known = 0, all = 0;
   for (const Ring& ring : rings) {
@@ -79,6 +81,7 @@ DirectionalAlbedo integrate(BrdfRef source, Vec3 wi, std::size_t ring_count) {
 }  // namespace
 
 DirectionalAlbedo directional_albedo(BrdfRef source, Vec3 wi, double tolerance) {
+  // twice as many rings until the figures settle
   DirectionalAlbedo result = integrate(source, wi, kFewestRings);
   for (std::size_t rings = 2 * kFewestRings; rings <= kMostRings; rings *= 2) {
     DirectionalAlbedo finer = integrate(source, wi, rings);

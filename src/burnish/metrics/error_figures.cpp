@@ -82,6 +82,7 @@ std::vector<PairError> Scorer::pair_errors(BrdfRef model) const {
   const Evaluated& truth = turned ? own : evaluated_;
   const Evaluated guess = evaluate(model, truth.pairs);
 
+  // errors of all pairs, on all threads
   const auto reference_channels = static_cast<std::size_t>(reference_.channels());
   const auto model_channels = static_cast<std::size_t>(model.channels());
   std::vector<PairError> errors(truth.pairs.size());
@@ -95,6 +96,8 @@ std::vector<PairError> Scorer::pair_errors(BrdfRef model) const {
             std::span(guess.values).subspan(i * model_channels, model_channels), options_.floor);
     }
   });
+
+  // those that both know
   std::size_t kept = 0;
   for (std::size_t i = 0; i < errors.size(); ++i)
     if (known[i]) errors[kept++] = errors[i];
@@ -131,6 +134,8 @@ double Scorer::picture_psnr(const SpherePictures& pictures) const {
 ErrorFigures Scorer::score(BrdfRef model) const {
   const std::vector<PairError> errors = pair_errors(model);
   if (errors.empty()) throw Error("reference and model share no known direction pair");
+
+  // means over the pairs
   ErrorFigures figures;
   double log_ratio = 0, log_ratio_sq = 0, difference_sq = 0, abs_log = 0, positive = 0;
   for (const PairError& error : errors) {
@@ -149,6 +154,7 @@ ErrorFigures Scorer::score(BrdfRef model) const {
   figures.mean_abs_log = positive > 0 ? abs_log / positive : 0;
   figures.unknown_fraction = 1 - count / static_cast<double>(options_.count);
 
+  // pictures
   const SpherePictures shown = pictures(model);
   for (std::size_t i = 0; i < shown.shown.size(); ++i) {
     figures.ssim += ssim(pictures_.shown[i], shown.shown[i]) / static_cast<double>(shown.shown.size());

@@ -117,6 +117,7 @@ Image render_dome(BrdfRef brdf, int size) {
     }
   });
 
+  // every pixel: bilinear between the nodes
   Image image(size, size, brdf.channels());
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size; ++x) {
@@ -192,11 +193,14 @@ double ssim(const Image& a, const Image& b) {
   const int channels = common_channels(a, b), width = a.width, height = a.height;
   if (std::min(width, height) < kRadius)
     throw Error(fmt::format("SSIM needs an image of at least {0} x {0} pixels", kRadius));
+
+  // a Gaussian window
   std::array<double, kWindow> window;
   double total = 0;
   for (int i = 0; i < kWindow; ++i) {
     const double d = (i - kRadius) / kSigma;
-    total += window[as_size(i)] = std::exp(-d * d / 2);
+    window[as_size(i)] = std::exp(-d * d / 2);
+    total += window[as_size(i)];
   }
   for (double& w : window) w /= total;
   // beyond an edge the image goes on as its mirror image, the edge pixel twice
@@ -262,6 +266,8 @@ Image8 lit_sphere(BrdfRef brdf, const LitSphereOptions& options) {
   const int samples = options.supersampling;
   if (samples < 1 || samples > 16)
     throw Error(fmt::format("expected a supersampling of 1 to 16, found {}", samples));
+
+  // that of the three lights together, unless one is given
   double exposure = 1;
   if (options.exposure) {
     exposure = *options.exposure;
@@ -296,6 +302,8 @@ Image8 lit_sphere(BrdfRef brdf, const LitSphereOptions& options) {
         coverage.at(x, y)[0] = static_cast<float>(hits) / static_cast<float>(samples * samples);
       }
   });
+
+  // tone mapped, with the coverage as alpha
   const Image8 opaque = to_image8(tone_map(std::move(linear), 1));
   Image8 picture(options.size, options.size, 4);
   for (int y = 0; y < options.size; ++y)

@@ -133,6 +133,7 @@ UnitError measure_unit_error(const SpecularUnit& unit, int min_exponent, int max
 }
 
 double measure_rounded_input_error(const SpecularUnit& unit, int exponent, int points) {
+  // cosines that the input's format does not have, in the highlight
   const double scale = static_cast<double>((1U << unit.config().output_bits) - 1);
   double largest = 0;
   for (int i = 0; i < points; ++i) {

@@ -27,12 +27,15 @@ class ExactCore final : public UnitCore {
   }
 
   std::uint32_t value(std::uint32_t exponent, std::uint64_t, std::uint64_t v) const noexcept override {
+    // c = 2^-octave (1 - r): leading ones of v off the front, eight, four, two and one at a time
     std::uint64_t octave = 0, r = v;
     for (int shift = 8; shift > 0; shift /= 2)
       if (r >> (f_ - shift) == power_of_two(shift) - 1) {
         r = (r << shift) & (power_of_two(f_) - 1);
         octave += static_cast<std::uint64_t>(shift);
       }
+
+    // u = -log2 c, then e u; 2^-(e u) by its whole part, a shift, and its fraction, a table
     r &= power_of_two(f_ - 1) - 1;
     const std::uint64_t u = (octave << log_bits_) | log_of(r);
     const UnitProduct p = unit_product(exponent, u, log_bits_ - fraction_bits_, fraction_bits_ + 4);
@@ -90,12 +93,14 @@ class ExactCore final : public UnitCore {
     const std::uint64_t limit = power_of_two(log_bits_) - 1;  // u - k stays below 1
     for (std::size_t i = 0; i < cells; ++i) {
       const std::uint64_t first = std::uint64_t{i} << low_bits(), last = first + power_of_two(low_bits()) - 1;
+      // the slope over the cell, of what the linear part leaves
       if (wide_) {
         const double rise = true_log(last + 1) - true_log(first) -
                             static_cast<double>(power_of_two(low_bits() + log_bits_ - f_));
         log_slope_[i] =
             static_cast<std::uint64_t>(std::ldexp(rise, slope_bits_ - low_bits() - (log_bits_ - f_)));
       }
+
       // the middle of the largest and the least error, found at the cell's ends and in its middle
       double least = HUGE_VAL, largest = -HUGE_VAL;
       const std::uint64_t step = std::max<std::uint64_t>(1, (last - first) / 64);
@@ -105,6 +110,8 @@ class ExactCore final : public UnitCore {
         largest = std::max(largest, off);
         if (r == last) break;
       }
+
+      // rounded; not below the cell before it, and below 1 at its end
       const int shift = i >= cells / 2 ? coarse_shift_ : 0;
       const double middle = i == 0 && wide_ ? 0 : std::max(0.0, (least + largest) / 2);
       std::uint64_t word = static_cast<std::uint64_t>(std::llround(std::ldexp(middle, -shift)));
@@ -141,6 +148,8 @@ class ExactCore final : public UnitCore {
       const auto first = static_cast<std::uint64_t>(i) << rest_bits();
       const std::uint64_t last = first + power_of_two(rest_bits()) - 1;
       const double begin = static_cast<double>(first);
+
+      // the slope to the cell's end, then the start in the middle of the largest and the least error
       exp_slope_[cell] = static_cast<std::uint64_t>(std::llround(true_exp(begin) - true_exp(begin + width)));
       exp_start_[cell] = power_of_two(mantissa_bits_);  // above the slope's fall, so that no difference wraps
       double least = HUGE_VAL, largest = -HUGE_VAL;
@@ -152,6 +161,8 @@ class ExactCore final : public UnitCore {
       }
       exp_start_[cell] = static_cast<std::uint64_t>(
           std::llround(static_cast<double>(exp_start_[cell]) + (least + largest) / 2));
+
+      // no rise where cells meet
       if (i + 1 < cells)
         while (exp_of(last) < exp_of(last + 1)) --exp_slope_[cell];
     }

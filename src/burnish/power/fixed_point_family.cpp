@@ -129,7 +129,7 @@ class TwoPieceCore final : public UnitCore {
 
   std::vector<UnitTable> tables() const override {
     UnitTable split{"split", 2 * g_ + 2, {}}, near{"near", g_ + n_bits_, {}}, far{"far", g_ + n_bits_, {}};
-    for (const Row& row : rows_) {
+    for (const TwoPieceRow& row : rows_) {
       split.words.push_back(row.split << g_ | row.o);
       near.words.push_back(row.m[0] << n_bits_ | row.n[0]);
       far.words.push_back(row.m[1] << n_bits_ | row.n[1]);
@@ -140,7 +140,7 @@ class TwoPieceCore final : public UnitCore {
  private:
   static constexpr int kRows = 24;
   static constexpr int kWholeBits = 3;  // s = 8 and more gives 0
-  struct Row {
+  struct TwoPieceRow {
     std::uint64_t split = 0, o = 0, m[2] = {}, n[2] = {};
   };
 
@@ -151,7 +151,7 @@ class TwoPieceCore final : public UnitCore {
     return e < 128 ? 22 : 23;
   }
 
-  std::uint64_t shape(const Row& row, std::uint64_t s) const noexcept {
+  std::uint64_t shape(const TwoPieceRow& row, std::uint64_t s) const noexcept {
     const bool far = s >= row.split;
     const std::uint64_t fall = (row.n[far] * s) >> n_bits_;
     const std::uint64_t w = row.m[far] > fall ? row.m[far] - fall : 0;
@@ -162,10 +162,13 @@ class TwoPieceCore final : public UnitCore {
     double inverse = 0;  // the coefficients are functions of 1 / e: take its mean
     int count = 0;
     for (std::uint32_t e = 2; e <= kUnitMaxExponent; ++e)
-      if (row_of(e) == index) inverse += 1.0 / e, ++count;
+      if (row_of(e) == index) {
+        inverse += 1.0 / e;
+        ++count;
+      }
     const double e = count / inverse;
     const PowerCoefficients k = power_coefficients(PowerMethod::two_piece, e);
-    Row& row = rows_[static_cast<std::size_t>(index)];
+    TwoPieceRow& row = rows_[static_cast<std::size_t>(index)];
     row.split = to_fixed(k.k[0] * e, g_);
     row.m[0] = to_fixed(k.k[1], g_);
     row.n[0] = to_fixed(k.k[2] / e, n_bits_);
@@ -176,7 +179,7 @@ class TwoPieceCore final : public UnitCore {
   }
 
   int f_, w_, g_, n_bits_;
-  std::vector<Row> rows_;
+  std::vector<TwoPieceRow> rows_;
 };
 
 // c / (c + e v), bit by bit.

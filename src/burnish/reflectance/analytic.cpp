@@ -2,6 +2,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -200,22 +201,21 @@ std::string_view cut(std::string_view& text, char separator) {
   return head;
 }
 
-/// Reads a finite number that is the whole text.
-bool read_number(std::string_view text, double& number) {
+/// The finite number that is the whole text; none where it is another.
+std::optional<double> read_number(std::string_view text) {
+  double number = 0;
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, number);
-  return error == std::errc{} && stop == end && std::isfinite(number);
+  if (error != std::errc{} || stop != end || !std::isfinite(number)) return {};
+  return number;
 }
 
 Rgb read_value(const AnalyticModel& model, const AnalyticParameter& parameter, std::string_view text) {
-  Rgb value;
-  if (read_number(text, value.r)) return value.r;
+  if (const auto grey = read_number(text)) return *grey;
   std::string_view rest = text;
-  const auto parts = std::count(text.begin(), text.end(), '/');
-  if (parts != 2 || !read_number(cut(rest, '/'), value.r) || !read_number(cut(rest, '/'), value.g) ||
-      !read_number(rest, value.b))
-    throw_bad_value(model, parameter, text);
-  return value;
+  const auto red = read_number(cut(rest, '/')), green = read_number(cut(rest, '/')), blue = read_number(rest);
+  if (!red || !green || !blue) throw_bad_value(model, parameter, text);
+  return {*red, *green, *blue};
 }
 
 }  // namespace
@@ -266,6 +266,7 @@ AnalyticBrdf parse_analytic(std::string_view spec) {
     throw Error(
         fmt::format("analytic model: expected one of {}, found '{}'", names(analytic_models()), name));
 
+  // defaults, then what is given, each once
   std::vector<Rgb> values;
   for (const AnalyticParameter& parameter : model->parameters) values.push_back(parameter.default_value);
   std::vector<bool> given(values.size());

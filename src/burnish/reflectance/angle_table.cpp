@@ -40,9 +40,10 @@ AxisNeighbours neighbours(const AngleAxis& axis, double angle) noexcept {
   const double half_step = 0.5 * (nodes[last] - nodes[last - 1]);
   if (axis.period > 0) {
     angle -= axis.period * std::floor((angle - nodes[0]) / axis.period);
-    // Half a step in front of the first node is closer to it than to the last.
+    // half a step in front of the first node is closer to it than to the last.
     if (!axis.closed && angle > nodes[last] + half_step + kSlack) angle -= axis.period;
   }
+  // beyond the last node, before the first, between two
   if (angle > nodes[last]) {
     if (axis.closed) return {{last, 0}, (angle - nodes[last]) / (nodes[0] + axis.period - nodes[last]), true};
     return {{last, last}, 0, angle <= nodes[last] + half_step + kSlack};
@@ -69,6 +70,8 @@ Vec3 around_specular(double theta_i, double phi_i, double azimuth, double radial
 bool AngleTable::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   std::fill(f.begin(), f.end(), 0.0);
   if (wi.z <= 0 || wo.z <= 0) return true;
+
+  // the four angles
   const double theta_i = theta_of(wi), phi_i = phi_of(wi);
   std::array<double, 4> angles{phi_i, theta_i, 0, 0};
   const std::size_t azimuth = frame == Frame::normal ? 3 : 2;
@@ -87,6 +90,8 @@ bool AngleTable::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     near[k] = neighbours(axes[k], angles[k]);
     if (!near[k].inside) return false;
   }
+
+  // linear along each of them; holes have no weight, and the others' make up for it
   double total = 0;
   for (std::size_t corner = 0; corner < 16; ++corner) {
     double weight = 1;
@@ -139,6 +144,8 @@ AngleTable tabulate_angles(BrdfRef source, AngleTable layout) {
       const auto node = node_of_entry(layout, entry);
       const auto [wi, wo] = node_directions(layout, node);
       if (wi.z <= 0 || wo.z <= 0) continue;
+
+      // folded: the mean with the mirror image of wo about the plane of incidence
       bool known = source.eval(wi, wo, f);
       if (layout.folded) {
         const double phi_i = layout.axes[0].nodes[node[0]];

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kLeastAlpha = 0.004;
 
+// What is reflected towards one view.
 struct View {
   Vec3 wo;
   std::vector<DirectionWeight> rule;
@@ -57,6 +58,7 @@ double GgxProxy::pdf(Vec3 wi, Vec3 wo) const noexcept {
 }
 
 GgxProxy fit_ggx_proxy(BrdfRef brdf, bool with_cosine) {
+  // what is reflected towards eight views
   std::vector<View> views;
   std::vector<double> f(static_cast<std::size_t>(brdf.channels()));
   for (int k = 0; k < 8; ++k) {
@@ -69,6 +71,8 @@ GgxProxy fit_ggx_proxy(BrdfRef brdf, bool with_cosine) {
     }
     if (view.total > 0) views.push_back(std::move(view));
   }
+
+  // the proxy whose weights scatter least
   GgxProxy best;
   double least = std::numeric_limits<double>::infinity();
   const auto consider = [&](double alpha_x, double alpha_y, double share) {

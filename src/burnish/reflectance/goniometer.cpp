@@ -42,6 +42,8 @@ Samples measure(BrdfRef source, const MeasureOptions& options) {
     throw Error("the noise of a measurement is a finite number >= 0");
   Samples samples{source.channels(), source.isotropic(), {}, {}};
   samples.pairs.reserve(options.count);
+
+  // pairs and noise from streams of their own: noise does not change which pairs are drawn
   std::vector<double> f(static_cast<std::size_t>(source.channels()));
   Pcg32 random(options.seed), noise(options.seed, 1);
   std::size_t unknown = 0;

@@ -13,19 +13,19 @@ namespace burnish {
 namespace {
 
 /// The two neighbours of a position on one axis and the weight of the second.
-struct Neighbours {
+struct CellNeighbours {
   std::array<int, 2> index;
   double fraction;
 };
 
 /// Position in cells, centres at halves, held constant beyond the outermost centres.
-Neighbours clamped_neighbours(double position, int count) noexcept {
+CellNeighbours clamped_neighbours(double position, int count) noexcept {
   const double x = std::clamp(position - 0.5, 0.0, static_cast<double>(count - 1));
   const int low = std::min(static_cast<int>(x), std::max(count - 2, 0));
   return {{low, std::min(low + 1, count - 1)}, x - low};
 }
 
-Neighbours periodic_neighbours(double position, int count) noexcept {
+CellNeighbours periodic_neighbours(double position, int count) noexcept {
   const double x = position - 0.5, low = std::floor(x);
   const int index = (static_cast<int>(low) + count) % count;
   return {{index, (index + 1) % count}, x - low};
@@ -37,11 +37,11 @@ int cell(double position, int count) noexcept {
 }
 
 /// Directions as positions in cells along the three axes.
-struct Position {
+struct PositionInCells {
   double theta_h, theta_d, phi_d;
 };
 
-Position position_in(const HalfDiffTable& table, Vec3 wi, Vec3 wo) noexcept {
+PositionInCells position_in(const HalfDiffTable& table, Vec3 wi, Vec3 wo) noexcept {
   const HalfDiff angles = to_half_diff(wi, wo);
   const double circle = angles.phi_d / (table.full_circle ? kTwoPi : kPi);
   return {std::sqrt(angles.theta_h / kHalfPi) * table.theta_h_count,
@@ -76,10 +76,12 @@ bool HalfDiffTable::above_horizon(int h, int d, int p) const noexcept {
 bool HalfDiffTable::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   write_zeros(f);
   if (wi.z <= 0 || wo.z <= 0) return true;
-  const Position at = position_in(*this, wi, wo);
-  const Neighbours h = clamped_neighbours(at.theta_h, theta_h_count);
-  const Neighbours d = clamped_neighbours(at.theta_d, theta_d_count);
-  const Neighbours p = periodic_neighbours(at.phi_d, phi_d_count);
+  const PositionInCells at = position_in(*this, wi, wo);
+  const CellNeighbours h = clamped_neighbours(at.theta_h, theta_h_count);
+  const CellNeighbours d = clamped_neighbours(at.theta_d, theta_d_count);
+  const CellNeighbours p = periodic_neighbours(at.phi_d, phi_d_count);
+
+  // trilinear; holes have no weight, and the others' make up for it
   double total = 0;
   for (std::size_t corner = 0; corner < 8; ++corner) {
     const std::size_t ch = corner & 1, cd = corner >> 1 & 1, cp = corner >> 2;
@@ -98,7 +100,7 @@ bool HalfDiffTable::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
 bool NearestHalfDiff::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   write_zeros(f);
   if (wi.z <= 0 || wo.z <= 0) return true;
-  const Position at = position_in(*table, wi, wo);
+  const PositionInCells at = position_in(*table, wi, wo);
   const float* entry = &table->values[table->offset(cell(at.theta_h, table->theta_h_count),
                                                     cell(at.theta_d, table->theta_d_count),
                                                     cell(at.phi_d, table->phi_d_count))];

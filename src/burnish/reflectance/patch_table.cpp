@@ -22,6 +22,8 @@ const PatchRing& ring_of(const PatchBasis& basis, std::size_t patch) noexcept {
 
 PatchNeighbours PatchBasis::neighbours(Vec3 w) const noexcept {
   const double theta = theta_of(w), turn = phi_of(w) / kTwoPi - first_azimuth / kTwoPi + 1;
+
+  // the two rings whose centres are next to theta
   std::size_t high = 0;
   while (high < rings.size() && centre_theta(rings[high]) <= theta) ++high;
   const std::size_t inner = high > 0 ? high - 1 : 0, outer = std::min(high, rings.size() - 1);
@@ -29,6 +31,7 @@ PatchNeighbours PatchBasis::neighbours(Vec3 w) const noexcept {
   const double outwards =
       inner == outer ? 0 : std::clamp((theta - low_theta) / (high_theta - low_theta), 0.0, 1.0);
 
+  // in each of them the two patches next to phi
   PatchNeighbours near;
   for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
     const PatchRing& ring = rings[side ? outer : inner];

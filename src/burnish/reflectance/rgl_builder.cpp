@@ -24,7 +24,7 @@ std::size_t index(int i) noexcept {
 }
 
 /// Mean over the channels; negative where the source knows nothing.
-double grey(BrdfRef source, Vec3 wi, Vec3 wo, std::vector<double>& f) {
+double grey(BrdfRef source, Vec3 wi, Vec3 wo, std::vector<double>& f) {  // f: room for the channels
   if (!source.eval(wi, wo, f)) return -1;
   return std::max(0.0, std::accumulate(f.begin(), f.end(), 0.0) / static_cast<double>(f.size()));
 }
@@ -84,6 +84,7 @@ Microfacets find_microfacets(BrdfRef source, const RglOptions& options) {
   sigma.assign(index(result.sigma.height * kSigmaTheta), 1);
   std::vector<double> ndf(retro.size());
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
+    // D from retro-reflection f cos = D / (4 sigma), scaled to a projected area of 1
     for (int j = 0; j < rows; ++j)
       for (int i = 0; i < columns; ++i) {
         const auto at = index(j * columns + i);
@@ -95,6 +96,7 @@ Microfacets find_microfacets(BrdfRef source, const RglOptions& options) {
     for (const Node& n : nodes) projected += n.weight * ndf[n.value] * n.m.z;
     for (double& d : ndf) d /= projected;
 
+    // sigma(w) = integral of D(m) max(0, m.w)
     for_each_chunk(index(sigma_rows * kSigmaTheta), 16, [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         const int i = static_cast<int>(k) % kSigmaTheta, j = static_cast<int>(k) / kSigmaTheta;
@@ -151,6 +153,13 @@ void fill_gaps(std::span<float> values, std::vector<std::uint8_t> valid, int sid
   }
 }
 
+/// The direction of a slice, a little above the horizon.
+Vec3 incident(const RglData& data, std::size_t slice) {
+  const auto theta = static_cast<double>(data.theta_i[slice % data.theta_i.size()]);
+  return spherical_direction(std::min(theta, kLargestTheta),
+                             static_cast<double>(data.phi_i[slice / data.theta_i.size()]));
+}
+
 void check(BrdfRef source, const RglOptions& o) {
   const auto channels = index(source.channels());
   if (!(o.theta_i_count >= 2 && o.ndf_theta >= 2 && o.ndf_phi >= 2 && o.resolution >= 2 &&
@@ -162,12 +171,8 @@ void check(BrdfRef source, const RglOptions& o) {
     throw Error("RGL table: expected a wavelength for each of " + std::to_string(channels) + " channels");
 }
 
-}  // namespace
-
-RglTable make_rgl_table(BrdfRef source, const RglOptions& options) {
-  check(source, options);
-  const int side = options.resolution;
-  const auto channels = index(source.channels()), nodes = index(side * side);
+/// Directions, sizes and microfacets; the tables of visible normals.
+RglData start_data(BrdfRef source, const RglOptions& options) {
   RglData data;
   data.description = options.description;
   data.lambda_nm = options.lambda_nm;
@@ -178,25 +183,33 @@ RglTable make_rgl_table(BrdfRef source, const RglOptions& options) {
         source.isotropic() ? 0 : static_cast<float>(-kPi + kTwoPi / options.reduction * node(p, phis)));
   for (int t = 0; t < options.theta_i_count; ++t)
     data.theta_i.push_back(static_cast<float>(kHalfPi * node(t, options.theta_i_count)));
+
   auto [ndf, sigma] = find_microfacets(source, options);
   data.ndf = std::move(ndf);
   data.sigma = std::move(sigma);
 
   data.vndf = {options.ndf_theta, options.ndf_phi, {}};
-  const auto incident = [&](int slice) {
-    const auto theta = static_cast<double>(data.theta_i[index(slice % options.theta_i_count)]);
-    return spherical_direction(std::min(theta, kLargestTheta),
-                               static_cast<double>(data.phi_i[index(slice / options.theta_i_count)]));
-  };
-  const int slices = phis * options.theta_i_count;
-  for (int slice = 0; slice < slices; ++slice) add_visible_normals(data.ndf, incident(slice), data.vndf);
+  for (int slice = 0; slice < phis * options.theta_i_count; ++slice)
+    add_visible_normals(data.ndf, incident(data, index(slice)), data.vndf);
+  return data;
+}
+
+}  // namespace
+
+RglTable make_rgl_table(BrdfRef source, const RglOptions& options) {
+  check(source, options);
+  RglData data = start_data(source, options);
+  const std::size_t slices = data.phi_i.size() * data.theta_i.size();
+  const int side = options.resolution;
+  const auto channels = index(source.channels()), nodes = index(side * side);
   const ConditionalWarp2 warp(data.vndf.width, data.vndf.height, data.vndf.values);
 
-  data.spectra = {side, side, std::vector<float>(index(slices) * nodes * channels)};
-  data.luminance = {side, side, std::vector<float>(index(slices) * nodes)};
-  std::vector<std::uint8_t> valid(index(slices) * nodes);
-  for_each_chunk(index(slices), 1, [&](std::size_t slice, std::size_t, std::size_t) {
-    const Vec3 wi = incident(static_cast<int>(slice));
+  // every slice: what the source has at the half vectors that the warp makes of even nodes
+  data.spectra = {side, side, std::vector<float>(slices * nodes * channels)};
+  data.luminance = {side, side, std::vector<float>(slices * nodes)};
+  std::vector<std::uint8_t> valid(slices * nodes);
+  for_each_chunk(slices, 1, [&](std::size_t slice, std::size_t, std::size_t) {
+    const Vec3 wi = incident(data, slice);
     const double sigma_i = rgl_lookup(data.sigma, rgl_square(theta_of(wi), std::atan2(wi.y, wi.x)));
     const SliceMix mix{{static_cast<std::uint32_t>(slice)}, {1}, 1};
     const auto values = std::span(data.spectra.values).subspan(slice * nodes * channels, nodes * channels);
@@ -214,6 +227,8 @@ RglTable make_rgl_table(BrdfRef source, const RglOptions& options) {
         for (std::size_t c = 0; c < channels; ++c)
           values[at * channels + c] = static_cast<float>(scale * f[c]);
       }
+
+    // the mask, then values in the gaps, then the mean over the channels
     std::copy(known.begin(), known.end(), valid.begin() + static_cast<std::ptrdiff_t>(slice * nodes));
     fill_gaps(values, std::move(known), side, channels);
     for (std::size_t i = 0; i < nodes; ++i)
@@ -221,6 +236,7 @@ RglTable make_rgl_table(BrdfRef source, const RglOptions& options) {
           std::accumulate(&values[i * channels], &values[i * channels] + channels, 0.0f) /
           static_cast<float>(channels);
   });
+
   data.valid.resize((valid.size() + 7) / 8);
   for (std::size_t i = 0; i < valid.size(); ++i)
     data.valid[i / 8] |= static_cast<std::uint8_t>(valid[i] << (7 - i % 8));

@@ -30,6 +30,7 @@ void visit_ball(std::span<const std::array<double, 4>> points, std::span<const s
                 const Visit& visit) noexcept {
   while (end - begin > kLeaf) {
     const std::size_t middle = begin + (end - begin) / 2;
+    // the pivot itself, then the far side of its plane if the ball reaches it
     const double d2 = distance2(points[middle], centre);
     if (d2 <= radius2) visit(middle, d2);
     const double across = centre[axes[middle]] - points[middle][axes[middle]];
@@ -37,7 +38,11 @@ void visit_ball(std::span<const std::array<double, 4>> points, std::span<const s
     if (both)
       visit_ball(points, axes, across < 0 ? middle + 1 : begin, across < 0 ? end : middle, centre, radius2,
                  visit);
-    (across < 0 ? end : begin) = across < 0 ? middle : middle + 1;
+    // the centre's side goes on
+    if (across < 0)
+      end = middle;
+    else
+      begin = middle + 1;
   }
   for (std::size_t i = begin; i < end; ++i) {
     const double d2 = distance2(points[i], centre);
@@ -49,6 +54,7 @@ void visit_ball(std::span<const std::array<double, 4>> points, std::span<const s
 void sort_into_tree(std::span<const std::array<double, 4>> points, std::span<std::size_t> order,
                     std::span<std::uint8_t> axes, std::size_t begin, std::size_t end) {
   if (end - begin <= kLeaf) return;
+  // the longest axis of the range's box
   std::array<double, 4> low = points[order[begin]], high = low;
   for (std::size_t i = begin; i < end; ++i)
     for (std::size_t k = 0; k < 4; ++k) {
@@ -58,6 +64,8 @@ void sort_into_tree(std::span<const std::array<double, 4>> points, std::span<std
   std::size_t axis = 0;
   for (std::size_t k = 1; k < 4; ++k)
     if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
+
+  // the pivot in the middle, what is below it in front
   const std::size_t middle = begin + (end - begin) / 2;
   const auto at = [&](std::size_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); };
   std::nth_element(at(begin), at(middle), at(end),
@@ -96,6 +104,7 @@ ScatteredBrdf::ScatteredBrdf(Samples samples, SampleSpace space)
   initial_radius2_ =
       kCornellRadius2 * std::min(1.0, std::pow(kCornellCount / static_cast<double>(count), 2 / dimensions));
 
+  // points and samples in the order of the tree
   std::vector<Point> points(count);
   for (std::size_t i = 0; i < count; ++i) points[i] = place(samples_.pairs[i].wi, samples_.pairs[i].wo);
   std::vector<std::size_t> order(count);
@@ -118,7 +127,7 @@ ScatteredBrdf::Point ScatteredBrdf::place(Vec3 wi, Vec3 wo) const noexcept {
             0.5 * std::abs(wi.z - wo.z), 0};
   const HalfDiff angles = to_half_diff(wi, wo);
   const double half = std::sqrt(angles.theta_h / kHalfPi), difference = angles.theta_d / kPi;
-  // At theta_h = 0 only the sum of the azimuths is defined.
+  // at theta_h = 0 only the sum of the azimuths is defined.
   const double turn = angles.phi_h + angles.phi_d;
   return {half * std::cos(angles.phi_h), half * std::sin(angles.phi_h), difference * std::cos(turn),
           difference * std::sin(turn)};
@@ -127,6 +136,8 @@ ScatteredBrdf::Point ScatteredBrdf::place(Vec3 wi, Vec3 wo) const noexcept {
 bool ScatteredBrdf::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   std::fill(f.begin(), f.end(), 0.0);
   if (wi.z <= 0 || wo.z <= 0) return true;
+
+  // larger balls until one holds enough samples
   const Point centre = place(wi, wo);
   const std::size_t enough = std::min(kEnough, points_.size());
   for (double radius2 = initial_radius2_; radius2 <= kMaxRadius2; radius2 *= 2) {

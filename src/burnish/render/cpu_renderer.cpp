@@ -89,9 +89,13 @@ Image render_cpu(const Scene& scene, std::span<const BrdfRef> materials, const C
   const int side = static_cast<int>(std::lround(std::sqrt(std::max(options.draws, 0))));
   if (side < 1 || side > 1024 || side * side != options.draws)
     throw Error(fmt::format("scene: expected draws that are a square, found {}", options.draws));
+
+  // light from all around is drawn by a lobe like each material's
   std::vector<GgxProxy> guides;
   if (options.environment)
     for (const BrdfRef& material : materials) guides.push_back(fit_ggx_proxy(material, true));
+
+  // one ray a pixel; random numbers depend on the pixel alone
   const RayCaster caster(scene.parts);
   const Pixels pixels(scene.camera, options.width, options.height);
   Image image(options.width, options.height, 3);
@@ -143,6 +147,8 @@ std::vector<std::uint8_t> interior_pixels(const Scene& scene, int width, int hei
   check_scene(scene, width, height, SIZE_MAX);
   const RayCaster caster(scene.parts);
   const Pixels pixels(scene.camera, width, height);
+
+  // what every pixel shows
   struct Seen {
     std::size_t part = SIZE_MAX;
     Vec3 normal;
@@ -155,6 +161,8 @@ std::vector<std::uint8_t> interior_pixels(const Scene& scene, int width, int hei
     for (int x = 0; x < width; ++x)
       if (const auto hit = caster.nearest(scene.camera.eye, pixels.direction(x, y)))
         seen[index(x, y)] = {hit->part, point_of(scene.parts[hit->part].mesh, *hit).normal};
+
+  // interior: all eight neighbours show the same part, turned by less than 30 degrees
   std::vector<std::uint8_t> interior(seen.size());
   for (int y = 1; y + 1 < height; ++y)
     for (int x = 1; x + 1 < width; ++x) {

@@ -136,23 +136,25 @@ Plot front_figure(double exponent) {
   plot.log_x = plot.log_y = true;
   plot.x_min = 4;
   plot.x_max = 70;
-  struct Point {
+
+  // members that no other beats in cost and error both, the others grey
+  struct Member {
     std::string name;
     double cost, error;
   };
-  std::vector<Point> points;
+  std::vector<Member> members;
   for (const PowerInfo& info : power_methods())
     if (info.method != PowerMethod::exact && info.method != PowerMethod::quadratic_raw &&
         exponent >= info.min_exponent())
-      points.push_back({std::string(info.name), static_cast<double>(info.cost.weight()),
-                        max_absolute_error(info.method, exponent)});
-  const auto beaten = [&](const Point& p) {
-    return std::any_of(points.begin(), points.end(), [&](const Point& q) {
+      members.push_back({std::string(info.name), static_cast<double>(info.cost.weight()),
+                         max_absolute_error(info.method, exponent)});
+  const auto beaten = [&](const Member& p) {
+    return std::any_of(members.begin(), members.end(), [&](const Member& q) {
       return q.cost <= p.cost && q.error <= p.error && (q.cost < p.cost || q.error < p.error);
     });
   };
   PlotSeries others{"beaten in both", {}, {}, PlotStyle::points, "#9a9a9a"};
-  for (const Point& p : points) {
+  for (const Member& p : members) {
     if (!beaten(p)) {
       plot.series.push_back({p.name, {p.cost}, {p.error}, PlotStyle::points});
     } else {
@@ -175,12 +177,12 @@ SphereFigure sphere_figure(std::span<const PowerMethod> methods, double exponent
   };
   constexpr int kGap = 4;
   const int step = size + kGap;
-  // Half the width of the magnified part: a little more than where the power is 1/500.
+  // half the width of the magnified part: a little more than where the power is 1/500.
   const double reach = std::min(1.0, 1.1 * std::sin(std::acos(std::pow(1.0 / 500, 1 / exponent))));
   SphereFigure figure{Image8(static_cast<int>(methods.size()) * step, 3 * step, 3), 0};
   std::fill(figure.image.pixels.begin(), figure.image.pixels.end(), std::uint8_t{255});
 
-  // One tile: value(cosine) in [0, 1] as grey, over the whole sphere or round the highlight.
+  // one tile: value(cosine) in [0, 1] as grey, over the whole sphere or round the highlight.
   const auto tile = [&](std::size_t column, int row, bool magnified, auto value) {
     for (int j = 0; j < size; ++j)
       for (int i = 0; i < size; ++i) {
@@ -195,6 +197,8 @@ SphereFigure sphere_figure(std::span<const PowerMethod> methods, double exponent
           channel = grey;
       }
   };
+
+  // columns of members; rows: the lobe, its highlight magnified, what is wrong with it
   std::vector<PowerCoefficients> k;
   for (PowerMethod method : methods) {
     k.push_back(power_coefficients(method, exponent));

@@ -89,6 +89,33 @@ inline FactoredBrdf smooth_model(const ModelCase& model, TableFormat format = Ta
                   });
 }
 
+/// A model with random tables: log values uniform in [-span, 0].
+inline FactoredBrdf random_model(const char* expression, std::vector<std::string> options, int channels,
+                                 TableFormat format, double span = 3) {
+  Pcg32 random(17);
+  const ModelSpec spec = parse_model_spec(expression, options, true);
+  std::vector<Table> tables;
+  for (const ModelSpec::TableSpec& t : spec.tables) {
+    Table table{.name = t.name, .layout = t.layout, .channels = t.shared ? 1 : channels, .values = {}};
+    for (std::size_t i = 0; i < t.layout.node_count() * static_cast<std::size_t>(table.channels); ++i)
+      table.values.push_back(static_cast<float>(-span * random.uniform()));
+    table.format = format_of(t, format);
+    tables.push_back(std::move(table));
+  }
+  std::vector<Lobe> lobes;
+  for (const auto& factors : spec.lobes)
+    lobes.push_back(
+        {.scale = std::vector<double>(static_cast<std::size_t>(channels), 0.3), .factors = factors});
+  return from_log_tables(channels, std::move(tables), std::move(lobes));
+}
+
+/// Every kind of table, warp and projection in one model, and sizes for its tables.
+inline const char* const kEverything =
+    "p(wo) q(h) p(wi) r(theta_d) + s(wi+wo+0.4n) t(wi) t(wo) u(theta_h,theta_d) + v(0.3wi+0.9wo) "
+    "v(0.9wi+0.3wo)";
+inline const std::vector<std::string> kEverySize{
+    "p=8", "q=16x16,rational:0.2", "r=5,power:0.5,shared", "s=9x9", "t=4,shared", "u=6x7", "v=11"};
+
 /// All pairs of the corners: normal, grazing, borders of maps, wi == wo, where phi wraps, below the horizon.
 inline std::vector<DirectionPair> corner_pairs() {
   const Vec3 corners[] = {{0, 0, 1},         {1, 0, 1e-5}, {-1, 0, 1e-5},    {0, -1, 1e-3},   {1e-6, 0, 1},

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <span>
 #include <vector>
 
 #include <burnish/math/random.h>
@@ -37,53 +39,53 @@ struct DrawTest {
   double integral;  ///< of pdf over the upper hemisphere
 };
 
-/// Draws `draws` directions for wo and compares how many fall into each of kSide x kSide bins with the
-/// integral of pdf over the bin (kPoints points of a lattice, which borders of cells that are parallel to the
-/// bins do not mislead), Pearson's chi-square with bins of fewer than five expected draws joined. What is
-/// drawn below the horizon is a bin too. The bins are those of the half vector's azimuth and of log(1 + 1000
-/// tan^2(theta_h / 2)), cut where the mirror of wo meets the horizon, so that highlights and tails both have
-/// some.
-inline DrawTest test_draws(SamplerRef sampler, Vec3 wo, int draws, std::uint64_t seed) {
-  constexpr int kSide = 12, kPoints = 600;
-  constexpr double kSpread = 1000;
-  const auto largest = [&](double phi) {
-    return std::log1p(kSpread * largest_visible_half(wo.x * std::cos(phi) + wo.y * std::sin(phi), wo.z));
-  };
-  std::vector<double> expected(kSide * kSide + 1), seen(kSide * kSide + 1);
-  double total = 0;
-  for (int bin = 0; bin < kSide * kSide; ++bin)
-    for (int k = 0; k < kPoints; ++k) {
-      const double golden = 0.6180339887498949 * (k + kPoints * bin);
-      const double phi = kTwoPi * (bin / kSide + (k + 0.5) / kPoints) / kSide, v = largest(phi);
-      const double place = (bin % kSide + golden - std::floor(golden)) / kSide;
-      const double m = std::expm1(v * place * place) / kSpread;
-      const Vec3 h = spherical_direction(2 * std::atan(std::sqrt(m)), phi);
-      // dm dphi of a bin; solid angles as in half_vector_quadrature
-      const double area = (m + 1 / kSpread) * 2 * v * place * kTwoPi / (kSide * kSide);
-      const double solid_angle = 8 * dot(wo, h) * area / ((1 + m) * (1 + m)) / kPoints;
-      const double share = sampler.pdf(2 * dot(wo, h) * h - wo, wo) * solid_angle;
-      expected[static_cast<std::size_t>(bin)] += share * draws;
-      total += share;
-    }
-  expected.back() = std::max(1 - total, 0.0) * draws;
+/// The bins of half vectors that test_draws counts in, kSide x kSide of them and one below the horizon: even in
+/// the azimuth and in the root of log(1 + 1000 tan^2(theta_h / 2)) up to where the mirror of wo meets the
+/// horizon, so that highlights and tails both have some.
+struct HalfVectorBins {
+  static constexpr int kSide = 12, kPoints = 600;
+  static constexpr double kSpread = 1000;
+  Vec3 wo;
 
-  Pcg32 random(seed);
-  for (int n = 0; n < draws; ++n) {
-    const double x = random.uniform(), y = random.uniform();
-    const DrawnDirection drawn = sampler.sample_wi(wo, {x, y});
-    std::size_t bin = kSide * kSide;
-    if (drawn.wi.z > 0 && drawn.pdf > 0) {
-      const Vec3 h = half_vector(drawn.wi, wo);
-      const double phi = phi_of(h), t = std::sqrt(h.x * h.x + h.y * h.y) / (1 + h.z);
-      const auto index = [](double place) {
-        return std::clamp(static_cast<int>(place * kSide), 0, kSide - 1);
-      };
-      bin = static_cast<std::size_t>(index(phi / kTwoPi) * kSide +
-                                     index(std::sqrt(std::log1p(kSpread * t * t) / largest(phi))));
-    }
-    ++seen[bin];
+  /// log(1 + 1000 tan^2(theta_h / 2)) at the horizon.
+  double largest(double phi) const noexcept {
+    return std::log1p(kSpread * largest_visible_half(wo.x * std::cos(phi) + wo.y * std::sin(phi), wo.z));
+  }
+  std::size_t count() const noexcept { return kSide * kSide + 1; }
+
+  /// The integral of pdf over each bin, by kPoints points of a lattice, which borders of cells that are
+  /// parallel to the bins do not mislead.
+  std::vector<double> integrals(SamplerRef sampler) const {
+    std::vector<double> shares(count());
+    for (int bin = 0; bin < kSide * kSide; ++bin)
+      for (int k = 0; k < kPoints; ++k) {
+        const double golden = 0.6180339887498949 * (k + kPoints * bin);
+        const double phi = kTwoPi * (bin / kSide + (k + 0.5) / kPoints) / kSide, v = largest(phi);
+        const double place = (bin % kSide + golden - std::floor(golden)) / kSide;
+        const double m = std::expm1(v * place * place) / kSpread;
+        const Vec3 h = spherical_direction(2 * std::atan(std::sqrt(m)), phi);
+        // dm dphi of a bin; solid angles as in half_vector_quadrature
+        const double area = (m + 1 / kSpread) * 2 * v * place * kTwoPi / (kSide * kSide);
+        const double solid_angle = 8 * dot(wo, h) * area / ((1 + m) * (1 + m)) / kPoints;
+        shares[static_cast<std::size_t>(bin)] += sampler.pdf(2 * dot(wo, h) * h - wo, wo) * solid_angle;
+      }
+    return shares;
   }
 
+  /// The bin of a draw.
+  std::size_t of(const DrawnDirection& drawn) const noexcept {
+    if (!(drawn.wi.z > 0 && drawn.pdf > 0)) return kSide * kSide;
+    const Vec3 h = half_vector(drawn.wi, wo);
+    const double phi = phi_of(h), t = std::sqrt(h.x * h.x + h.y * h.y) / (1 + h.z);
+    const auto index = [](double place) { return std::clamp(static_cast<int>(place * kSide), 0, kSide - 1); };
+    return static_cast<std::size_t>(index(phi / kTwoPi) * kSide +
+                                    index(std::sqrt(std::log1p(kSpread * t * t) / largest(phi))));
+  }
+};
+
+/// Pearson's chi-square test of counts; bins of fewer than five expected are joined, and too small a rest may
+/// hold no more than 25.
+inline double chi_square_p_value(std::span<const double> expected, std::span<const double> seen) noexcept {
   double statistic = 0, rest_expected = 0, rest_seen = 0;
   int bins = 0;
   const auto add = [&](double e, double s) {
@@ -97,12 +99,29 @@ inline DrawTest test_draws(SamplerRef sampler, Vec3 wo, int draws, std::uint64_t
       rest_expected += expected[i];
       rest_seen += seen[i];
     }
-  // a rest too small to test may hold no more than a few
   if (rest_expected >= 5)
     add(rest_expected, rest_seen);
   else if (rest_seen > 25)
-    return {0, total};
-  return {bins > 1 ? chi_square_tail(statistic, bins - 1) : 1, total};
+    return 0;
+  return bins > 1 ? chi_square_tail(statistic, bins - 1) : 1;
+}
+
+/// Draws `draws` directions for wo and compares how many fall into each of HalfVectorBins with the integral of
+/// pdf over the bin.
+inline DrawTest test_draws(SamplerRef sampler, Vec3 wo, int draws, std::uint64_t seed) {
+  const HalfVectorBins bins{wo};
+  std::vector<double> expected = bins.integrals(sampler);
+  const double total = std::accumulate(expected.begin(), expected.end(), 0.0);
+  for (double& e : expected) e *= draws;
+  expected.back() = std::max(1 - total, 0.0) * draws;
+
+  Pcg32 random(seed);
+  std::vector<double> seen(bins.count());
+  for (int n = 0; n < draws; ++n) {
+    const double x = random.uniform(), y = random.uniform();
+    ++seen[bins.of(sampler.sample_wi(wo, {x, y}))];
+  }
+  return {chi_square_p_value(expected, seen), total};
 }
 
 /// The level at which each of `count` tests is run so that all pass with probability 1 - `level` (Sidak).

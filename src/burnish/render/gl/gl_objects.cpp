@@ -8,6 +8,7 @@ namespace burnish {
 
 namespace {
 
+// How texels are stored, and what comes in.
 struct TexelFormat {
   GLenum stored, layout, type;
 };
@@ -41,6 +42,8 @@ std::string log_of(GLuint object, bool program) {
 
 unsigned upload_texture(const GlTexture& texture) {
   const TexelFormat format = format_of(texture);
+
+  // as many dimensions as there are sides
   GLuint name = 0;
   glCreateTextures(texture.depth ? GL_TEXTURE_3D : texture.height ? GL_TEXTURE_2D : GL_TEXTURE_1D, 1, &name);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
@@ -56,6 +59,7 @@ unsigned upload_texture(const GlTexture& texture) {
     glTextureSubImage2D(name, 0, 0, 0, texture.width, texture.height, format.layout, format.type,
                         texture.values.data());
   }
+
   for (const GLenum filters : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
     glTextureParameteri(name, filters, texture.filtered ? GL_LINEAR : GL_NEAREST);
   for (const GLenum edges : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
@@ -64,6 +68,7 @@ unsigned upload_texture(const GlTexture& texture) {
 }
 
 unsigned link_program(std::span<const GlShaderSource> shaders) {
+  // every shader compiled, so that all of them can complain
   const GLuint program = glCreateProgram();
   std::string failure;
   for (const auto& [type, text] : shaders) {
@@ -78,6 +83,7 @@ unsigned link_program(std::span<const GlShaderSource> shaders) {
     glAttachShader(program, shader);
     glDeleteShader(shader);  // once the program goes
   }
+
   GLint linked = 0;
   if (failure.empty()) {
     glLinkProgram(program);

@@ -73,6 +73,7 @@ class GltfReader {
   const json& element(const char* list, std::size_t i) const { return document_.element(list, i); }
 
   std::vector<std::size_t> roots() const {
+    // those of the chosen scene; without scenes all that are nobody's child
     std::vector<std::size_t> found;
     const json& nodes = member(root_, "nodes", "the file");
     if (!nodes.is_array()) fail("nodes", "a list", nodes.dump());
@@ -108,6 +109,7 @@ class GltfReader {
     return values;
   }
 
+  // Given as it is, or as scale, then rotation by a quaternion, then translation.
   Matrix matrix_of(const json& node, const std::string& place) const {
     if (const auto m = numbers<16>(node, "matrix", place)) return *m;
     const auto t = numbers<3>(node, "translation", place).value_or(std::array{0.0, 0.0, 0.0});
@@ -150,10 +152,13 @@ class GltfReader {
       read_primitive(primitives[i], fmt::format("{}.primitives[{}]", place, i), matrix);
   }
 
-  void read_primitive(const json& primitive, const std::string& place, const Matrix& matrix) {
+  // Elements of a primitive's corners; those that it does not have are empty.
+  struct Attributes {
+    std::optional<GltfElements> positions, normals, tangents, uvs;
+  };
+
+  Attributes attributes_of(const json& primitive, const std::string& place) {
     const json& attributes = member(primitive, "attributes", place);
-    if (document_.number_or(primitive, "mode", 4, place, 7) != 4)
-      fail(place + ".mode", "4, triangles", primitive["mode"].dump());
     const auto read = [&](const char* key, std::size_t width) -> std::optional<GltfElements> {
       if (!attributes.is_object() || !attributes.contains(key)) return {};
       const std::string at = place + ".attributes." + key;
@@ -161,32 +166,53 @@ class GltfReader {
       if (e.width != width) fail(at, fmt::format("{} components", width), std::to_string(e.width));
       return e;
     };
-    const auto positions = read("POSITION", 3), normals = read("NORMAL", 3), tangents = read("TANGENT", 4),
-               uvs = read("TEXCOORD_0", 2);
-    if (!positions) fail(place + ".attributes", "POSITION", "none");
-    for (const auto* other : {&normals, &tangents, &uvs})
-      if (*other && (*other)->count != positions->count)
-        fail(place, fmt::format("{} of every attribute", positions->count), std::to_string((*other)->count));
+    Attributes found;
+    found.positions = read("POSITION", 3);
+    found.normals = read("NORMAL", 3);
+    found.tangents = read("TANGENT", 4);
+    found.uvs = read("TEXCOORD_0", 2);
+    if (!found.positions) fail(place + ".attributes", "POSITION", "none");
+    const std::size_t count = found.positions->count;
+    for (const auto* other : {&found.normals, &found.tangents, &found.uvs})
+      if (*other && (*other)->count != count)
+        fail(place, fmt::format("{} of every attribute", count), std::to_string((*other)->count));
+    return found;
+  }
+
+  // The corners by threes: as the indices say, or one after another.
+  std::vector<std::size_t> corners_of(const json& primitive, const std::string& place, std::size_t count) {
     std::vector<std::size_t> order;
     if (primitive.contains("indices")) {
       const std::string at = place + ".indices";
       const GltfElements list = document_.elements(number(primitive["indices"], at, SIZE_MAX), at);
       if (list.width != 1) fail(at, "one component", std::to_string(list.width));
       for (const double v : list.values) {
-        if (!(v >= 0) || v >= static_cast<double>(positions->count) || v != std::floor(v))
-          fail(at, fmt::format("indices below {}", positions->count), fmt::format("{}", v));
+        if (!(v >= 0) || v >= static_cast<double>(count) || v != std::floor(v))
+          fail(at, fmt::format("indices below {}", count), fmt::format("{}", v));
         order.push_back(static_cast<std::size_t>(v));
       }
     } else {
-      for (std::size_t i = 0; i < positions->count; ++i) order.push_back(i);
+      for (std::size_t i = 0; i < count; ++i) order.push_back(i);
     }
     if (order.size() % 3 != 0) fail(place, "corners by threes", std::to_string(order.size()));
     triangles_ += order.size() / 3;
     if (triangles_ > kMostTriangles) fail(place, fmt::format("at most {} triangles", kMostTriangles), "more");
+    return order;
+  }
+
+  void read_primitive(const json& primitive, const std::string& place, const Matrix& matrix) {
+    if (document_.number_or(primitive, "mode", 4, place, 7) != 4)
+      fail(place + ".mode", "4, triangles", primitive["mode"].dump());
+    const auto [positions, normals, tangents, uvs] = attributes_of(primitive, place);
+    std::vector<std::size_t> order = corners_of(primitive, place, positions->count);
     if (order.empty()) return;
+
+    // a matrix that mirrors turns triangles inside out: they go the other way round
     const bool mirrored = determinant(matrix) < 0;
     if (mirrored)
       for (std::size_t i = 0; i < order.size(); i += 3) std::swap(order[i + 1], order[i + 2]);
+
+    // every corner in the scene's frame
     RawMesh raw;
     for (const std::size_t i : order) {
       const Vec3 p = transform_direction(matrix, positions->vec3(i)) + column(matrix, 3);
@@ -215,6 +241,7 @@ class GltfReader {
       if (material.contains("name") && material["name"].is_string())
         name = material["name"].get<std::string>();
     }
+    // materials in the order of their first use
     const auto known = std::ranges::find(material_keys_, key);
     const auto index = static_cast<int>(known - material_keys_.begin());
     if (known == material_keys_.end()) {

@@ -36,6 +36,8 @@ class ObjReader {
         material_ = material_of(std::string(word()));
     }
     if (triangles_ == 0) throw Error::in_file(name_, "at least one face", "none");
+
+    // a part a material that has triangles
     MeshFile file{.parts = {}, .materials = names_};
     for (std::size_t i = 0; i < raws_.size(); ++i) {
       RawMesh& raw = raws_[i];
@@ -112,6 +114,7 @@ class ObjReader {
     for (std::string_view text = word(); !text.empty(); text = word()) corners.push_back(corner(text));
     if (corners.size() < 3) fail("at least three corners", fmt::format("{}", corners.size()));
     if (!material_) material_ = material_of("");
+    // a fan about the first corner
     for (std::size_t k = 2; k < corners.size(); ++k)
       for (const std::size_t i : {std::size_t{0}, k - 1, k}) append(corners[i]);
     triangles_ += corners.size() - 2;

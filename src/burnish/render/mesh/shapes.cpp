@@ -29,6 +29,7 @@ void append_grid(Mesh& mesh, int columns, int rows, At at) {
                                .tangent = to_floats(orthogonalized(p.tangent, p.normal)),
                                .uv = {static_cast<float>(u), static_cast<float>(v)}});
     }
+  // two triangles a cell
   const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     const auto& v = mesh.vertices;
     if (v[a].position != v[b].position && v[b].position != v[c].position && v[c].position != v[a].position)
@@ -62,6 +63,7 @@ Curve knot_at(double u) noexcept {
 }
 
 SurfacePoint patch_at(const BezierPatch& patch, double u, double v) noexcept {
+  // Bernstein polynomials of degree 3 and their derivatives
   struct Weights {
     double value[4], slope[4];
   };

@@ -55,7 +55,8 @@ TEST_P(Shapes, HaveAboutAsManyVerticesAsAskedForAndAnAreaThatSettles) {
   for (const int count : {1000, 4000, 16000, 64000}) {
     const Mesh mesh = make_shape(shape(), count);
     EXPECT_NEAR(static_cast<double>(mesh.vertices.size()) / count, 1, 0.2) << count;
-    before = area, area = area_of(mesh);
+    before = area;
+    area = area_of(mesh);
   }
   EXPECT_NEAR(area / before, 1, 0.005);
 }

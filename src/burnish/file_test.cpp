@@ -1,0 +1,65 @@
+#include <algorithm>
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <burnish/file.h>
+#include <burnish/testing/tools.h>
+
+namespace burnish {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+std::size_t entries_in(const fs::path& folder) {
+  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+TEST(File, ReadsBackWhatWasWrittenAndLeavesNothingElse) {
+  const TemporaryFolder folder("file");
+  const std::string bytes("\0\xff\n text", 8);
+  for (int time = 0; time < 2; ++time) {  // the second replaces the first
+    write_then_rename(folder.path / "a", bytes);
+    const FileBytes file = read_file(folder.path / "a");
+    EXPECT_EQ(file.text(), bytes);
+    EXPECT_EQ(file.name, (folder.path / "a").string());
+    EXPECT_EQ(entries_in(folder.path), 1u);
+  }
+}
+
+TEST(File, ReadsUpToTheLimit) {
+  const TemporaryFolder folder("file");
+  write(folder.path / "a", "12345");
+  EXPECT_EQ(read_file(folder.path / "a", 5).bytes.size(), 5u);
+  EXPECT_THAT(error_of([&] { read_file(folder.path / "a", 4); }), HasSubstr("at most 4 bytes"));
+}
+
+TEST(File, RefusesToReadWhatIsMissingEmptyOrNoFile) {
+  const TemporaryFolder folder("file");
+  write(folder.path / "empty", "");
+  EXPECT_THAT(error_of([&] { read_file(folder.path / "none"); }), HasSubstr("no such file"));
+  EXPECT_THAT(error_of([&] { read_file(folder.path / "empty"); }), HasSubstr("an empty file"));
+  EXPECT_THAT(error_of([&] { read_file(folder.path); }), HasSubstr("a regular file"));
+}
+
+TEST(File, WritesToWhatALinkNames) {
+  const TemporaryFolder folder("file");
+  write(folder.path / "target", "old");
+  fs::create_symlink("target", folder.path / "link");
+  write_then_rename(folder.path / "link", "new");
+  EXPECT_TRUE(fs::is_symlink(folder.path / "link"));
+  EXPECT_EQ(read(folder.path / "target"), "new");
+}
+
+TEST(File, RefusesToWriteOverAFolderOrIntoNone) {
+  const TemporaryFolder folder("file");
+  EXPECT_THAT(error_of([&] { write_then_rename(folder.path, "x"); }),
+              HasSubstr("something else than a file"));
+  EXPECT_THAT(error_of([&] { write_then_rename(folder.path / "none/a", "x"); }), HasSubstr("a write error"));
+  EXPECT_EQ(entries_in(folder.path), 0u);
+}
+
+}  // namespace
+}  // namespace burnish
