@@ -1,15 +1,15 @@
 #include <bit>
-#include <cstring>
+#include <cstdint>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
-#include <burnish/export/metallic_roughness_fit.h>
+#include <burnish/export/gltf_binary.h>
+#include <burnish/export/manifest.h>
 #include <burnish/math/angles.h>
 #include <burnish/render/mesh/shapes.h>
 
-#include "export_formats.h"
-
-namespace burnish::cli {
+namespace burnish {
 
 namespace {
 
@@ -106,9 +106,12 @@ void put_chunk(std::string& file, const char* type, std::string data, char paddi
 
 }  // namespace
 
-std::string export_gltf(const FactoredBrdf& brdf, const std::string& name, json& manifest) {
+GltfBinary gltf_binary(const FactoredBrdf& brdf, const std::string& name) {
   static_assert(std::endian::native == std::endian::little);
-  const auto [core, decibels] = fit_metallic_roughness(brdf);
+  GltfBinary result{.bytes = {}, .core = fit_metallic_roughness(brdf)};
+  const MetallicRoughness& core = result.core.material;
+
+  // geometry and tables fill the binary chunk
   Binary binary;
   const json primitive = add_sphere(binary);
   json extensions{{"BURNISH_materials_factored", factored_extension(brdf, binary)}};
@@ -118,12 +121,6 @@ std::string export_gltf(const FactoredBrdf& brdf, const std::string& name, json&
                                               {"anisotropyRotation", core.across ? kHalfPi : 0}};
     used.push_back("KHR_materials_anisotropy");
   }
-  const json pbr{{"baseColorFactor", {core.base_color.r, core.base_color.g, core.base_color.b, 1}},
-                 {"metallicFactor", core.metallic},
-                 {"roughnessFactor", core.roughness}};
-  manifest["core_material"] = pbr;
-  manifest["core_material"]["anisotropyStrength"] = core.anisotropy;
-  manifest["core_material"]["psnr"] = decibels;
   const json document{
       {"asset", {{"version", "2.0"}, {"generator", "burnish"}}},
       {"extensionsUsed", used},
@@ -131,16 +128,20 @@ std::string export_gltf(const FactoredBrdf& brdf, const std::string& name, json&
       {"scenes", {{{"nodes", {0}}}}},
       {"nodes", {{{"mesh", 0}, {"name", name}}}},
       {"meshes", {{{"primitives", {primitive}}}}},
-      {"materials", {{{"name", name}, {"pbrMetallicRoughness", pbr}, {"extensions", extensions}}}},
+      {"materials",
+       {{{"name", name}, {"pbrMetallicRoughness", core_entry(core)}, {"extensions", extensions}}}},
       {"buffers", {{{"byteLength", binary.bytes().size()}}}},
       {"bufferViews", binary.views()},
       {"accessors", binary.accessors()}};
+
+  // header, then the document and what it points into
   std::string chunks;
   put_chunk(chunks, "JSON", document.dump(-1, ' ', true, json::error_handler_t::replace), ' ');
   put_chunk(chunks, std::string("BIN\0", 4).c_str(), binary.bytes(), '\0');
-  std::string file("glTF\x02\0\0\0", 8);
+  result.bytes = std::string("glTF\x02\0\0\0", 8);
   const auto size = static_cast<std::uint32_t>(chunks.size() + 12);
-  return file.append(reinterpret_cast<const char*>(&size), 4) + chunks;
+  result.bytes.append(reinterpret_cast<const char*>(&size), 4).append(chunks);
+  return result;
 }
 
-}  // namespace burnish::cli
+}  // namespace burnish
