@@ -6,7 +6,7 @@
 #include <burnish/reflectance/half_diff_table.h>
 #include <burnish/render/gl/gl_renderer.h>
 
-namespace burnish {
+namespace burnish::reports {
 
 // GLSL of what factored BRDFs are compared with, what depends on the view alone once a pixel.
 
@@ -21,4 +21,4 @@ SurfaceShader shader_of(const HalfDiffTable& table);
 /// The weights as constants of the shader, four units a multiplication.
 SurfaceShader shader_of(const NeuralBrdf& network);
 
-}  // namespace burnish
+}  // namespace burnish::reports

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include <burnish/file.h>
 #include <burnish/fitting/one_lobe/cross_validation.h>
 #include <burnish/io/cornell.h>
 
-namespace burnish {
+namespace burnish::reports {
+
 namespace {
 
 Samples three_bands(const SampleFile& file) {
@@ -68,4 +70,4 @@ double FoldErrors::rms_log(std::size_t floor) const {
   return std::sqrt(sum_sq[floor] / static_cast<double>(count));
 }
 
-}  // namespace burnish
+}  // namespace burnish::reports

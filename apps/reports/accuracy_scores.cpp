@@ -1,9 +1,8 @@
-#include "accuracy_table.h"
+#include "accuracy_scores.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
-#include <cmath>
-#include <cstdio>
 #include <future>
 #include <thread>
 
@@ -16,9 +15,10 @@
 #include <burnish/fitting/refinement/rounding.h>
 #include <burnish/reflectance/sample_source.h>
 
-#include "report_tools.h"
+#include "report.h"
 
-namespace burnish {
+namespace burnish::reports {
+
 namespace {
 
 // Multiply-adds and weights of the 6-21-21-3 network.
@@ -74,6 +74,26 @@ Score run_baseline(const Material& material, std::string_view method, std::size_
   return score;
 }
 
+std::vector<std::string> with_figures(std::vector<std::string> head) {
+  for (const char* name : {"bytes", "psnr", "ssim", "relative", "log_cos", "rms_log", "rms", "table reads",
+                           "multiplies", "fit seconds"})
+    head.emplace_back(name);
+  return head;
+}
+
+std::vector<std::string> with_figures(std::vector<std::string> cells, const Score& s) {
+  const ErrorFigures& e = s.errors;
+  for (const std::string& text :
+       std::array{fmt::format("{}", s.bytes), fmt::format("{:.2f}", e.psnr), fmt::format("{:.4f}", e.ssim),
+                  fmt::format("{:.4f}", e.relative), fmt::format("{:.4f}", e.log_cos),
+                  fmt::format("{:.3f}", e.rms_log), fmt::format("{:.3g}", e.rms),
+                  s.cost ? std::to_string(s.cost->table_reads) : "",
+                  s.cost ? std::to_string(s.cost->multiplies) : "",
+                  s.seconds > 0 ? fmt::format("{:.1f}", s.seconds) : ""})
+    cells.push_back(text);
+  return cells;
+}
+
 }  // namespace
 
 Image8 picture(BrdfRef brdf, double exposure) {
@@ -95,7 +115,7 @@ std::vector<std::vector<Score>> run(const std::deque<Material>& materials) {
     for (const auto& [method, budgets] : material.attempts)
       for (const std::size_t budget : budgets.empty() ? std::vector<std::size_t>{0} : budgets)
         jobs.push_back({&material, method, budget, nullptr});
-    fmt::print(stderr, "accuracy: {}\n", material.name);
+    tell("accuracy: " + material.name);
     std::vector<Score>& row = scores.emplace_back(jobs.size());
     for (std::size_t k = 0; k < jobs.size(); ++k) {
       jobs[k].score = &row[k];
@@ -112,7 +132,7 @@ std::vector<std::vector<Score>> run(const std::deque<Material>& materials) {
     workers.push_back(std::async(std::launch::async, [&] {
       for (std::size_t k; (k = next++) < others.size();) {
         const auto& [material, method, budget, score] = others[k];
-        fmt::print(stderr, "accuracy: {}, {}\n", material->name, method);
+        tell(fmt::format("accuracy: {}, {}", material->name, method));
         *score = run_baseline(*material, method, budget);
       }
     }));
@@ -127,55 +147,52 @@ Score run_network(const Material& material, BrdfRef network) {
   return score;
 }
 
-void print_head() {
-  fmt::print(
-      "| material | method | bytes | psnr | ssim | relative | log_cos | rms_log | rms | table reads | "
-      "multiplies "
-      "| fit seconds |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-}
-
-void print_row(const std::string& material, const Score& s) {
-  const ErrorFigures& e = s.errors;
-  fmt::print("| {} | {} | {} | {:.2f} | {:.4f} | {:.4f} | {:.4f} | {:.3f} | {:.3g} | {} | {} | {} |\n",
-             material, s.method, s.bytes, e.psnr, e.ssim, e.relative, e.log_cos, e.rms_log, e.rms,
-             s.cost ? std::to_string(s.cost->table_reads) : "",
-             s.cost ? std::to_string(s.cost->multiplies) : "",
-             s.seconds > 0 ? fmt::format("{:.1f}", s.seconds) : "");
-  std::fflush(stdout);
-}
-
-void Means::add(const std::vector<Score>& scores) {
-  for (Score s : scores) {
-    const auto known = std::ranges::find_if(
-        sums_, [&](const auto& sum) { return sum.first.method == s.method && sum.first.budget == s.budget; });
-    if (known == sums_.end()) {
-      sums_.emplace_back(std::move(s), 1);
-      continue;
+std::vector<MeanScore> means_of(const std::vector<std::vector<Score>>& scores) {
+  std::vector<MeanScore> means;
+  for (const std::vector<Score>& row : scores)
+    for (Score s : row) {
+      const auto known = std::ranges::find_if(means, [&](const MeanScore& mean) {
+        return mean.score.method == s.method && mean.score.budget == s.budget;
+      });
+      if (known == means.end()) {
+        means.push_back({std::move(s), 1});
+        continue;
+      }
+      Score& sum = known->score;
+      sum.bytes += s.bytes;
+      sum.seconds += s.seconds;
+      const auto to = figures(sum.errors), from = figures(s.errors);
+      for (std::size_t k = 0; k < to.size(); ++k) *to[k] += *from[k];
+      if (sum.cost && s.cost) {
+        sum.cost->table_reads += s.cost->table_reads;
+        sum.cost->multiplies += s.cost->multiplies;
+      }
+      ++known->materials;
     }
-    auto& [sum, count] = *known;
-    sum.bytes += s.bytes;
-    sum.seconds += s.seconds;
-    const auto to = figures(sum.errors), from = figures(s.errors);
-    for (std::size_t k = 0; k < to.size(); ++k) *to[k] += *from[k];
-    if (sum.cost && s.cost) {
-      sum.cost->table_reads += s.cost->table_reads;
-      sum.cost->multiplies += s.cost->multiplies;
-    }
-    ++count;
-  }
-}
-
-std::vector<Score> Means::means() const {
-  std::vector<Score> result;
-  for (auto [sum, count] : sums_) {
-    const auto whole = static_cast<std::size_t>(count);
+  for (auto& [sum, materials] : means) {
+    const auto whole = static_cast<std::size_t>(materials);
     sum.bytes /= whole;
-    sum.seconds /= count;
-    for (double* figure : figures(sum.errors)) *figure /= count;
+    sum.seconds /= materials;
+    for (double* figure : figures(sum.errors)) *figure /= materials;
     if (sum.cost) sum.cost = {sum.cost->table_reads / whole, sum.cost->multiplies / whole};
-    result.push_back(std::move(sum));
   }
-  return result;
+  return means;
 }
 
-}  // namespace burnish
+Table table_of(const std::vector<MeanScore>& means) {
+  Table table(with_figures({"method", "materials"}));
+  for (const auto& [score, materials] : means)
+    table.add(with_figures({score.method, std::to_string(materials)}, score));
+  return table;
+}
+
+Table table_of(const std::deque<Material>& materials, const std::vector<std::vector<Score>>& scores) {
+  Table table(with_figures({"material", "method", "budget"}));
+  for (std::size_t i = 0; i < materials.size(); ++i)
+    for (const Score& score : scores[i])
+      table.add(with_figures(
+          {materials[i].name, score.method, score.budget > 0 ? std::to_string(score.budget) : ""}, score));
+  return table;
+}
+
+}  // namespace burnish::reports

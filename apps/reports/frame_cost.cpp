@@ -1,9 +1,8 @@
-// What docs/frame-cost.md shows: milliseconds a frame of factored BRDFs and of what they are compared with.
+// Milliseconds a frame of factored BRDFs and of what they are compared with.
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <exception>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,12 +20,13 @@
 #include <burnish/testing/models.h>
 
 #include "peer_shaders.h"
+#include "report.h"
 
-namespace burnish {
+namespace burnish::reports {
+
 namespace {
 
-constexpr int kSize = 1024, kVertices = 10000, kRepetitions = 11;
-constexpr std::array kLights{1, 4, 16};
+constexpr int kSize = 1024, kVertices = 10000;
 constexpr double kLeastPsnr = 40;
 
 struct Peer {
@@ -80,7 +80,7 @@ struct Times {
 };
 
 // Repetitions of all peers in turn, so that a busy moment meets all.
-std::vector<Times> time_frames(std::span<const Peer> peers, int lights) {
+std::vector<Times> time_frames(std::span<const Peer> peers, int lights, int repetitions) {
   const Scene scene = knot(lights);
   std::vector<std::unique_ptr<GlRenderer>> renderers;
   for (const Peer& peer : peers) {
@@ -88,7 +88,7 @@ std::vector<Times> time_frames(std::span<const Peer> peers, int lights) {
     renderers.back()->draw();  // compiles
   }
   std::vector<std::vector<double>> ms(peers.size());
-  for (int repetition = 0; repetition < kRepetitions; ++repetition)
+  for (int repetition = 0; repetition < repetitions; ++repetition)
     for (std::size_t i = 0; i < peers.size(); ++i) {
       const auto start = std::chrono::steady_clock::now();
       renderers[i]->draw();
@@ -110,70 +110,75 @@ NeuralBrdf some_network() {
   return NeuralBrdf(weights);
 }
 
-void report() {
-  const GlContext context;
-  const ModelCase pqp_lines{"", "pqp", {"p=32", "q=64,rational:0.2"}, 3};
-  const ModelCase pqp_disks{"", "pqp", {"p=64x64", "q=64x64,rational:0.2"}, 3};
-  const ModelCase two_lobes{
-      "", "p(wo) q(h) r(theta_d) p(wi) + s(wo) t(h) s(wi)", {"p=24", "q=64", "r=16", "s=16", "t=32"}, 3};
-  const FactoredBrdf lines = smooth_model(pqp_lines), disks = smooth_model(pqp_disks),
-                     two = smooth_model(two_lobes);
-  const Ggx ggx{{0.1, 0.3}, 0.8, 0.3};
-  const Ggx round{{0.3, 0.3}, 0.8, 0.3};
-  const HalfDiffTable merl = tabulate_half_diff(round, 90, 90, 180, false);
-  const NeuralBrdf network = some_network();
-  const BlinnPhong phong;
-  const Matte white;
+// What is compared.
+struct Models {
+  FactoredBrdf lines = smooth_model({"", "pqp", {"p=32", "q=64,rational:0.2"}, 3});
+  FactoredBrdf disks = smooth_model({"", "pqp", {"p=64x64", "q=64x64,rational:0.2"}, 3});
+  FactoredBrdf two = smooth_model(
+      {"", "p(wo) q(h) r(theta_d) p(wi) + s(wo) t(h) s(wi)", {"p=24", "q=64", "r=16", "s=16", "t=32"}, 3});
+  Ggx ggx{{0.1, 0.3}, 0.8, 0.3};
+  HalfDiffTable merl = tabulate_half_diff(Ggx{{0.3, 0.3}, 0.8, 0.3}, 90, 90, 180, false);
+  NeuralBrdf network = some_network();
+  BlinnPhong phong;
+  Matte white;
+};
+
+// The first is what the others are related to.
+std::vector<Peer> peers_of(const Models& models) {
   std::vector<Peer> peers;
-  peers.push_back({"analytic GGX, anisotropic", shader_of(ggx), ggx});
-  peers.push_back({"constant", matte(), white});
+  peers.push_back({"analytic GGX, anisotropic", shader_of(models.ggx), models.ggx});
+  peers.push_back({"constant", matte(), models.white});
   const auto add = [&](ShaderFilter filter, TableFormat format, const char* how) {
     const auto shader = [&](const FactoredBrdf& brdf) { return surface_shader(brdf, filter, format); };
-    peers.push_back({fmt::format("factored `pqp`, lines, {}", how), shader(lines), lines});
-    peers.push_back({fmt::format("factored `pqp`, disks, {}", how), shader(disks), disks});
-    peers.push_back({fmt::format("factored, 2 lobes of lines, {}", how), shader(two), two});
+    peers.push_back({fmt::format("factored `pqp`, lines, {}", how), shader(models.lines), models.lines});
+    peers.push_back({fmt::format("factored `pqp`, disks, {}", how), shader(models.disks), models.disks});
+    peers.push_back({fmt::format("factored, 2 lobes of lines, {}", how), shader(models.two), models.two});
   };
   add(ShaderFilter::hardware, TableFormat::rgb9e5, "rgb9e5");
   add(ShaderFilter::hardware, TableFormat::half, "half");
   add(ShaderFilter::exact, TableFormat::half, "half, exact filter");
-  peers.push_back({"Blinn-Phong, pow", shader_of(phong, false), phong});
-  peers.push_back({"Blinn-Phong, w8", shader_of(phong, true), phong});
-  peers.push_back({"MERL table, 3-D texture", shader_of(merl), merl});
-  peers.push_back({"network of 675 weights", shader_of(network), network});
-  for (const Peer& peer : peers) check_answer(peer);
+  peers.push_back({"Blinn-Phong, pow", shader_of(models.phong, false), models.phong});
+  peers.push_back({"Blinn-Phong, w8", shader_of(models.phong, true), models.phong});
+  peers.push_back({"MERL table, 3-D texture", shader_of(models.merl), models.merl});
+  peers.push_back({"network of 675 weights", shader_of(models.network), models.network});
+  return peers;
+}
 
-  fmt::print(
-      "## Milliseconds a frame\n\nTorus knot of {} vertices, {} x {} pixels, {} frames of each in turn: "
-      "least (median), "
-      "then the least over that of analytic GGX. Renderer: {}.\n\n| material |",
-      kVertices, kSize, kSize, kRepetitions, context.renderer());
-  std::vector<std::vector<Times>> columns;
-  for (const int lights : kLights) {
-    fmt::print(" {} light{} | of GGX |", lights, lights == 1 ? "" : "s");
-    columns.push_back(time_frames(peers, lights));
+Table times_table(std::span<const Peer> peers, std::span<const int> lights, int repetitions) {
+  std::vector<std::string> head{"material"};
+  std::vector<std::vector<std::string>> rows;
+  for (const Peer& peer : peers) rows.push_back({peer.name});
+  for (const int count : lights) {
+    head.push_back(fmt::format("{} light{}", count, count == 1 ? "" : "s"));
+    head.emplace_back("of GGX");
+    tell(fmt::format("frame-cost: lights: {}", count));
+    const std::vector<Times> times = time_frames(peers, count, repetitions);
+    for (std::size_t i = 0; i < peers.size(); ++i) {
+      rows[i].push_back(fmt::format("{:.1f} ({:.1f})", times[i].least, times[i].median));
+      rows[i].push_back(fmt::format("{:.2f}", times[i].least / times[0].least));
+    }
   }
-  fmt::print("\n|---|");
-  for (std::size_t i = 0; i < kLights.size(); ++i) fmt::print("---|---|");
-  for (std::size_t i = 0; i < peers.size(); ++i) {
-    fmt::print("\n| {} |", peers[i].name);
-    for (const auto& times : columns)
-      fmt::print(" {:.1f} ({:.1f}) | {:.2f} |", times[i].least, times[i].median,
-                 times[i].least / times[0].least);
-  }
-  fmt::print("\n");
+  Table table(head);
+  for (const auto& row : rows) table.add(row);
+  return table;
 }
 
 }  // namespace
-}  // namespace burnish
 
-int main() {
-  try {
-    fmt::print(
-        "<!-- Written by `make frame-cost`; edit apps/frame_cost instead. -->\n"
-        "# What a frame costs\n\n");
-    burnish::report();
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "burnish_frame_cost: {}\n", error.what());
-    return 1;
-  }
+void report_frame_cost(const ReportOptions& options) {
+  const int repetitions = options.quick ? 1 : 11;
+  const std::vector<int> lights = options.quick ? std::vector{1} : std::vector{1, 4, 16};
+  Page page(options, "frame-cost");
+  const GlContext context;
+  const Models models{};
+  const std::vector<Peer> peers = peers_of(models);
+  for (const Peer& peer : peers) check_answer(peer);
+  page["vertices"] = std::to_string(kVertices);
+  page["size"] = std::to_string(kSize);
+  page["repetitions"] = std::to_string(repetitions);
+  page["renderer"] = context.renderer();
+  page["times"] = times_table(peers, lights, repetitions).markdown();
+  page.write();
 }
+
+}  // namespace burnish::reports

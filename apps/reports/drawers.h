@@ -11,7 +11,7 @@
 #include <burnish/reflectance/half_vector_quadrature.h>
 #include <burnish/reflectance/rgl_table.h>
 
-namespace burnish {
+namespace burnish::reports {
 
 // A measurement followed from the eye: with its directions exchanged, as RglSampler draws.
 struct Measurement {
@@ -125,4 +125,4 @@ struct Drawers {
   std::array<SamplerRef, kWays> all() const { return {cosine, ggx, ggx_and_cosine, rgl, tabulated}; }
 };
 
-}  // namespace burnish
+}  // namespace burnish::reports

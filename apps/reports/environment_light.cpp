@@ -1,10 +1,11 @@
-#include "environment.h"
+#include "environment_light.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,8 @@
 #include <burnish/render/light/image_based_light.h>
 #include <burnish/render/light/tapped_light.h>
 
-namespace burnish {
+namespace burnish::reports {
+
 namespace {
 
 struct Material {
@@ -58,8 +60,11 @@ const Tabulation kTabulations[] = {{"round kernels", {.side = 32, .harmonics = 0
                                    {"four orders", {}},
                                    {"four orders, 64 texels", {.side = 64}}};
 
-constexpr int kSize = 64;       // of the pictures
-constexpr int kSamples = 4096;  // a pixel
+constexpr int kSize = 64;  // of the pictures
+
+int samples_of(const Page& page) {  // a pixel
+  return page.options().quick ? 16 : 4096;
+}
 
 // The sphere of metrics/sphere_images.h, each pixel by `radiance` of its normal.
 Image sphere(const std::function<Rgb(Vec3 n, Vec3 v)>& radiance) {
@@ -110,47 +115,33 @@ void paste(Image8& sheet, const Image& shown, int column, int row) {
 struct Truth {
   double exposure;
   Image shown;
+  double own_decibels;  // of such a picture with other random numbers and a quarter of the draws
 
   double decibels(const Image& image) const {
     return psnr(mean_squared_error(tone_map(image, exposure), shown));
   }
 };
 
-// Prints the start of a table's row.
-Truth begin_row(const Material& material, const FactoredBrdf& brdf, const Environment& environment) {
+Truth truth_of(const FactoredBrdf& brdf, const Environment& environment, int samples) {
   const GgxProxy guide = fit_ggx_proxy(brdf, true);
-  const auto monte_carlo = [&](int samples, std::uint64_t seed) {
-    return moments_in_environment(brdf, guide, {}, environment,
-                                  {.size = kSize, .samples = samples, .seed = seed})
-        .mean;
-  };
-  const Image image = monte_carlo(kSamples, 1);
+  const Image image =
+      moments_in_environment(brdf, guide, {}, environment, {.size = kSize, .samples = samples, .seed = 1})
+          .mean;
   const double exposure = exposure_of(image);
-  Truth truth{.exposure = exposure, .shown = tone_map(image, exposure)};
-  fmt::print("| {} | {} | {} | {:.1f} |", material.name, brdf.lobes().size(), environment.name,
-             truth.decibels(monte_carlo(kSamples / 4, 2)));
+  Truth truth{.exposure = exposure, .shown = tone_map(image, exposure), .own_decibels = 0};
+  truth.own_decibels = truth.decibels(
+      moments_in_environment(brdf, guide, {}, environment, {.size = kSize, .samples = samples / 4, .seed = 2})
+          .mean);
   return truth;
 }
 
-void print_taps(const std::vector<Environment>& all) {
-  fmt::print(
-      "\n### Anisotropic materials\n\nThe same for taps on one blurred environment for all materials, by the "
-      "shader's definition "
-      "in doubles; `picture` is the studio as an OpenEXR picture would have it, 512 x 256.\n\n"
-      "| material | lobes | environment | truth |");
-  for (const int taps : kTaps) fmt::print(" {} taps |", taps);
-  fmt::print("\n|---|---|---|---|---|---|---|---|\n");
-  for (const Environment& environment : all) {
-    const BlurredEnvironment blurred = blur(environment);
-    for (const Material& material : kBrushed) {
-      const FactoredBrdf brdf = factored(material);
-      const Truth truth = begin_row(material, brdf, environment);
-      for (const int taps : kTaps) fmt::print(" {:.1f} |", truth.decibels(by_taps(tap(brdf, taps), blurred)));
-      fmt::print("\n");
-      std::fflush(stdout);
-    }
-  }
+// The first cells of a row.
+std::vector<std::string> row_head(const Material& material, const FactoredBrdf& brdf,
+                                  const Environment& environment, const Truth& truth) {
+  return {material.name, std::to_string(brdf.lobes().size()), environment.name,
+          fmt::format("{:.1f}", truth.own_decibels)};
 }
+const std::vector<std::string> kHead{"material", "lobes", "environment", "truth"};
 
 // The environment without its formulas: a picture of it.
 Environment pictured(const Environment& environment) {
@@ -167,58 +158,75 @@ Environment pictured(const Environment& environment) {
   return {.name = "picture", .picture = std::make_shared<const SkyImage>(std::move(image))};
 }
 
-}  // namespace
+Table taps_table(std::span<const Environment> all, int samples) {
+  Table table(joined(kHead, cells("{} taps", kTaps)));
+  for (const Environment& environment : all) {
+    const BlurredEnvironment blurred = blur(environment);
+    for (const Material& material : kBrushed) {
+      const FactoredBrdf brdf = factored(material);
+      const Truth truth = truth_of(brdf, environment, samples);
+      std::vector<double> decibels;
+      for (const int taps : kTaps) decibels.push_back(truth.decibels(by_taps(tap(brdf, taps), blurred)));
+      table.add(joined(row_head(material, brdf, environment, truth), cells("{:.1f}", decibels)));
+    }
+  }
+  return table;
+}
 
-void print_environment_light(const std::filesystem::path& figures) {
-  fmt::print(
-      "\n## Environment light\n\nPSNR in dB of a sphere of {0}^2 pixels, exposed and tone mapped as "
-      "[results.md](results.md) says, against Monte Carlo: {1} draws of the material and as many of every "
-      "lamp a "
-      "pixel, stratified; `truth` is the PSNR of such a picture with other random numbers and a quarter of "
-      "the draws. Maps of "
-      "halves, "
-      "read by the generated shader on the OpenGL at hand; in brackets the shader's definition in "
-      "doubles.\n\n"
-      "| material | lobes | environment | truth |",
-      kSize, kSamples);
-  for (const Tabulation& t : kTabulations) fmt::print(" {} |", t.name);
-  fmt::print("\n|---|---|---|---|---|---|---|---|\n");
-  std::string costs;
-  const auto all = environments();
+// The truth, what was found, and ten times their difference.
+void paste_row(Image8& sheet, const Truth& truth, const Image& found, int column, int row) {
+  paste(sheet, truth.shown, column, row);
+  Image difference = tone_map(found, truth.exposure);
+  paste(sheet, difference, column + 1, row);
+  for (std::size_t i = 0; i < difference.pixels.size(); ++i)
+    difference.pixels[i] = std::min(1.0f, 10 * std::abs(difference.pixels[i] - truth.shown.pixels[i]));
+  paste(sheet, difference, column + 2, row);
+}
+
+// Isotropic materials: every tabulation in every environment, and what each costs.
+void report_prefiltered(Page& page, std::span<const Environment> all) {
+  std::vector<std::string> names;
+  for (const Tabulation& t : kTabulations) names.emplace_back(t.name);
+  Table table(joined(kHead, names)),
+      costs({"material", "kernels", "lobes", "filtered reads a pixel", "KiB of maps"});
   Image8 sheet(kSize * 3 * static_cast<int>(all.size()), kSize * static_cast<int>(std::size(kMaterials)), 3);
-  int row = 0;
-  for (const Material& material : kMaterials) {
+  for (int row = 0; const Material& material : kMaterials) {
+    tell(fmt::format("shaders: {}", material.name));
     const FactoredBrdf brdf = factored(material);
-    int column = 0;
-    for (const Environment& environment : all) {
-      const Truth truth = begin_row(material, brdf, environment);
+    for (int column = 0; const Environment& environment : all) {
+      const Truth truth = truth_of(brdf, environment, samples_of(page));
+      std::vector<std::string> line = row_head(material, brdf, environment, truth);
       for (const Tabulation& t : kTabulations) {
         const ImageBasedLight light = prefilter(brdf, environment, t.options);
         const Image found = on_gpu(light);
-        fmt::print(" {:.1f} ({:.1f}) |", truth.decibels(found),
-                   truth.decibels(sphere([&](Vec3 n, Vec3 v) { return light.radiance(n, v); })));
+        line.push_back(
+            fmt::format("{:.1f} ({:.1f})", truth.decibels(found),
+                        truth.decibels(sphere([&](Vec3 n, Vec3 v) { return light.radiance(n, v); }))));
         if (column == 0)
-          costs += fmt::format("| {} | {} | {} | {} | {} |\n", material.name, t.name, light.lobes.size(),
-                               light.fetches(), light.bytes() / 1024);
-        if (&t != &kTabulations[2]) continue;
-        paste(sheet, truth.shown, 3 * column, row);
-        Image difference = tone_map(found, truth.exposure);
-        paste(sheet, difference, 3 * column + 1, row);
-        for (std::size_t i = 0; i < difference.pixels.size(); ++i)
-          difference.pixels[i] = std::min(1.0f, 10 * std::abs(difference.pixels[i] - truth.shown.pixels[i]));
-        paste(sheet, difference, 3 * column + 2, row);
+          costs.add(joined({material.name, t.name},
+                           cells("{}", std::array<std::size_t, 3>{light.lobes.size(),
+                                                                  static_cast<std::size_t>(light.fetches()),
+                                                                  light.bytes() / 1024})));
+        if (&t == &kTabulations[2]) paste_row(sheet, truth, found, 3 * column, row);
       }
-      fmt::print("\n");
-      std::fflush(stdout);
+      table.add(line);
       ++column;
     }
     ++row;
   }
-  fmt::print(
-      "\n| material | kernels | lobes | filtered reads a pixel | KiB of maps |\n|---|---|---|---|---|\n{}",
-      costs);
-  write_png(figures / "environment-light.png", sheet);
-  print_taps({all[0], all[1], pictured(all[1])});
+  page["environment"] = table.markdown();
+  page["environment_costs"] = costs.markdown();
+  page.write_figure("environment-light.png", encode_png(sheet));
 }
 
-}  // namespace burnish
+}  // namespace
+
+void report_environment_light(Page& page) {
+  const std::span<const Environment> all = environments();
+  page["picture_size"] = std::to_string(kSize);
+  page["draws"] = std::to_string(samples_of(page));
+  report_prefiltered(page, all);
+  page["taps"] = taps_table(std::array{all[0], all[1], pictured(all[1])}, samples_of(page)).markdown();
+}
+
+}  // namespace burnish::reports

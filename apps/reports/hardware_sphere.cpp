@@ -1,12 +1,7 @@
 // A sphere shaded by a unit of hw/, pixel by pixel.
-//   burnish_hardware_sphere questions UNIT          the `exponent input` line of every pixel, for a
-//   simulation burnish_hardware_sphere picture OUT NAME=FILE...  the answers of units, beside c^e and their
-//   differences
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <iostream>
-#include <string_view>
 
 #include <fmt/format.h>
 
@@ -16,7 +11,10 @@
 #include <burnish/image/png.h>
 #include <burnish/metrics/sphere_images.h>
 
-namespace burnish {
+#include "report.h"
+
+namespace burnish::reports {
+
 namespace {
 
 constexpr int kSize = 256, kExponent = 50;
@@ -56,12 +54,15 @@ Image8 grey(const Image& levels) {
   return image;
 }
 
-void print_questions(const SpecularUnit& unit) {
+}  // namespace
+
+void print_sphere_questions(const std::string& name) {
+  const SpecularUnit unit(shipped_unit(name).config);
   for (int y = 0; y < kSize; ++y)
     for (int x = 0; x < kSize; ++x) fmt::print("{} {}\n", kExponent, unit.input(cosine_at(x, y)));
 }
 
-void write_picture(const std::string& out, const std::vector<std::string>& units) {
+void draw_sphere_answers(const fs::path& folder, const std::vector<std::string>& units) {
   const Image exact = shaded("");
   ContactSheet sheet{fmt::format("c^{} from simulated blocks, 8 bits", kExponent),
                      {"c^e"},
@@ -79,22 +80,7 @@ void write_picture(const std::string& out, const std::vector<std::string>& units
     sheet.cells[1].push_back(heat_map(difference, kScale));
     fmt::print("{} {:.2f}\n", unit.substr(0, equals), most);
   }
-  write_png(out, compose(sheet));
+  write_png(folder / "hardware_sphere.png", compose(sheet));
 }
 
-}  // namespace
-}  // namespace burnish
-
-int main(int argc, char** argv) {
-  const std::vector<std::string> words(argv + 1, argv + argc);
-  try {
-    if (words.size() == 2 && words[0] == "questions")
-      burnish::print_questions(burnish::SpecularUnit(burnish::shipped_unit(words[1]).config));
-    else if (words.size() > 2 && words[0] == "picture")
-      burnish::write_picture(words[1], {words.begin() + 2, words.end()});
-    else
-      return std::cerr << "usage: burnish_hardware_sphere questions UNIT | picture OUT NAME=FILE...\n", 2;
-  } catch (const burnish::Error& error) {
-    return std::cerr << error.what() << "\n", 1;
-  }
-}
+}  // namespace burnish::reports

@@ -8,7 +8,7 @@
 #include <burnish/power/code.h>
 #include <burnish/reflectance/analytic/diffuse.h>
 
-namespace burnish {
+namespace burnish::reports {
 
 namespace {
 
@@ -135,4 +135,4 @@ SurfaceShader shader_of(const NeuralBrdf& network) {
   return shader;
 }
 
-}  // namespace burnish
+}  // namespace burnish::reports

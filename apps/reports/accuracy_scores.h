@@ -4,7 +4,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include <burnish/baselines/evaluation_cost.h>
@@ -13,7 +12,9 @@
 #include <burnish/metrics/error_figures.h>
 #include <burnish/reflectance/brdf.h>
 
-namespace burnish {
+#include "markdown.h"
+
+namespace burnish::reports {
 
 /// One representation of one material.
 struct Score {
@@ -60,18 +61,17 @@ std::vector<std::vector<Score>> run(const std::deque<Material>& materials);
 /// Scores a network of 675 weights.
 Score run_network(const Material& material, BrdfRef network);
 
-/// Table head and rows; a row's first column is the material.
-void print_head();
-void print_row(const std::string& material, const Score& score);
-
-/// Means of scores by method and budget, in the order they came first.
-class Means {
- public:
-  void add(const std::vector<Score>& scores);
-  std::vector<Score> means() const;
-
- private:
-  std::vector<std::pair<Score, double>> sums_;
+/// The mean of some scores of a method at a budget.
+struct MeanScore {
+  Score score;
+  int materials = 0;
 };
+/// In the order the methods and budgets came first.
+std::vector<MeanScore> means_of(const std::vector<std::vector<Score>>& scores);
 
-}  // namespace burnish
+/// Means, a row each.
+Table table_of(const std::vector<MeanScore>& means);
+/// Every score, a row each, scores[i] those of materials[i].
+Table table_of(const std::deque<Material>& materials, const std::vector<std::vector<Score>>& scores);
+
+}  // namespace burnish::reports

@@ -10,9 +10,9 @@
 #include <burnish/factors/factored_brdf.h>
 #include <burnish/reflectance/samples.h>
 
-#include "report_tools.h"
+#include "report.h"
 
-namespace burnish {
+namespace burnish::reports {
 
 /// The paints of the original paper, 1439 scattered directions each.
 inline constexpr std::array<const char*, 3> kPaints = {"cayman", "mystique", "krylon_blue"};
@@ -44,4 +44,4 @@ struct FoldErrors {
   double rms_log(std::size_t floor) const;
 };
 
-}  // namespace burnish
+}  // namespace burnish::reports
