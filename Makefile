@@ -50,33 +50,21 @@ bench: deps
 	@cmake --build --preset bench -j $(JOBS)
 	@build/bench/src/burnish/burnish_bench
 
-report: build
-	@mkdir -p docs/figures
-	@build/release/apps/report/burnish_report docs > docs/results.md.partial
-	@mv docs/results.md.partial docs/results.md
-	@build/release/apps/report/burnish_accuracy docs > docs/accuracy.md.partial
-	@mv docs/accuracy.md.partial docs/accuracy.md
-
-sampling-report: build
-	@mkdir -p docs/figures
-	@build/release/apps/sampling_report/burnish_sampling_report docs > docs/sampling-results.md.partial
-	@mv docs/sampling-results.md.partial docs/sampling-results.md
-
-shader-report: build
-	@build/release/apps/shader_report/burnish_shader_report docs > docs/shader-results.md.partial
-	@mv docs/shader-results.md.partial docs/shader-results.md
-
-frame-cost: build
-	@build/release/apps/frame_cost/burnish_frame_cost > docs/frame-cost.md.partial
-	@mv docs/frame-cost.md.partial docs/frame-cost.md
+# Pages of docs/results, by what burnish_reports calls them.
+REPORTS := build/release/apps/reports/burnish_reports
+report: NAMES := results accuracy
+sampling-report: NAMES := sampling
+shader-report: NAMES := shaders
+frame-cost: NAMES := frame-cost
+report sampling-report shader-report frame-cost: build
+	@for name in $(NAMES); do $(REPORTS) $$name docs/results || exit 1; done
 
 HW := build/hw-report
 LIBRARY := $(CURDIR)/build/release/src/burnish/libburnish.a
 hw-report: build
 	@command -v nextpnr-ice40 > /dev/null || $(SUDO) apt-get install -y -qq --no-install-recommends nextpnr-ice40 > /dev/null
 	@rm -rf $(HW) && mkdir -p $(HW) docs/figures docs/results
-	@hw/verify.sh sphere $(CURDIR)/$(BURNISH) $(LIBRARY) $(HW)/sphere $(CURDIR)/build/release/apps/report/burnish_hardware_sphere \
-	  $(CURDIR)/docs/figures/hardware_sphere.png > $(HW)/sphere.txt
+	@hw/verify.sh sphere $(CURDIR)/$(BURNISH) $(LIBRARY) $(HW)/sphere $(CURDIR)/$(REPORTS) $(CURDIR)/docs/figures > $(HW)/sphere.txt
 	@hw/synthesize.sh $(CURDIR)/$(BURNISH) $(HW)/synthesis > $(HW)/synthesis.txt
 	@hw/report.py $(BURNISH) $(HW)/synthesis.txt $(HW)/sphere.txt > $(HW)/hardware.md
 	@mv $(HW)/hardware.md docs/results/hardware.md

@@ -50,6 +50,7 @@ NB_MODULE(_burnish, m) {
   bind_fitting(m);
   bind_metrics(m);
   bind_shaders(m);
+  bind_exports(m);
   bind_writers(m);
 }
 
