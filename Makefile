@@ -1,10 +1,10 @@
-# make demo   installs packages, builds, and takes a measurement to two textures (INPUT=file for your own)
-# make test   installs packages, builds with sanitizers and optimized, runs every test
+# make demo   installs packages, builds the command line, and takes a measurement to two textures (INPUT=file for your own)
+# make test   installs tools, builds with sanitizers and optimized, runs every test
 # make python the Python package in build/venv, tested
 # make build  the command line at build/release/apps/burnish/burnish
 # make bench, make fuzz, make report, make sampling-report, make shader-report, make frame-cost, make hw-report, make hw-exhaustive, make format:
 # see CONTRIBUTING.md
-.PHONY: demo test build python deps bench fuzz report sampling-report shader-report frame-cost hw-report hw-exhaustive format format-check docs-check
+.PHONY: demo test build reports python deps test-deps bench fuzz report sampling-report shader-report frame-cost hw-report hw-exhaustive format format-check docs-check
 JOBS ?= $(shell nproc)
 BURNISH := build/release/apps/burnish/burnish
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
@@ -13,8 +13,11 @@ INPUT ?=
 OUT ?= out/demo
 FUZZ_SECONDS ?= 60
 
-deps:
-	@missing=$$(for p in $$(grep -v '^#' cmake/debian-packages.txt); do \
+# deps: what the command line is built with; test-deps: what everything else takes besides.
+deps: PACKAGES := cmake/debian-packages.txt
+test-deps: PACKAGES := cmake/debian-packages.txt cmake/debian-test-packages.txt
+deps test-deps:
+	@missing=$$(for p in $$(grep -hv '^#' $(PACKAGES)); do \
 	  dpkg-query -W -f '$${Status}' $$p 2>/dev/null | grep -q 'ok installed' || echo $$p; done); \
 	if [ -n "$$missing" ]; then \
 	  echo "Installing: $$missing"; \
@@ -26,13 +29,16 @@ deps:
 	fi
 
 build: deps
-	@cmake --preset release > /dev/null
-	@cmake --build --preset release -j $(JOBS)
+	@cmake --preset programs > /dev/null
+	@cmake --build --preset programs -j $(JOBS)
+
+reports: test-deps build
+	@cmake --build --preset programs -j $(JOBS) --target all
 
 demo: build
 	@examples/demo.sh "$(BURNISH)" "$(OUT)" "$(INPUT)"
 
-test: deps format-check docs-check
+test: test-deps format-check docs-check
 	@for preset in dev release; do \
 	  cmake --preset $$preset > /dev/null && \
 	  cmake --build --preset $$preset -j $(JOBS) && \
@@ -42,10 +48,10 @@ test: deps format-check docs-check
 	@python/check.sh --skip-offline
 	@tests/web/check.sh --skip-offline
 
-python: build
+python: test-deps build
 	@python/check.sh
 
-bench: deps
+bench: test-deps
 	@cmake --preset bench > /dev/null
 	@cmake --build --preset bench -j $(JOBS)
 	@build/bench/src/burnish/burnish_bench
@@ -56,12 +62,12 @@ report: NAMES := results accuracy
 sampling-report: NAMES := sampling
 shader-report: NAMES := shaders
 frame-cost: NAMES := frame-cost
-report sampling-report shader-report frame-cost: build
+report sampling-report shader-report frame-cost: reports
 	@for name in $(NAMES); do $(REPORTS) $$name docs/results || exit 1; done
 
 HW := build/hw-report
 LIBRARY := $(CURDIR)/build/release/src/burnish/libburnish.a
-hw-report: build
+hw-report: test-deps reports
 	@command -v nextpnr-ice40 > /dev/null || $(SUDO) apt-get install -y -qq --no-install-recommends nextpnr-ice40 > /dev/null
 	@rm -rf $(HW) && mkdir -p $(HW) docs/figures docs/results
 	@hw/verify.sh sphere $(CURDIR)/$(BURNISH) $(LIBRARY) $(HW)/sphere $(CURDIR)/$(REPORTS) $(CURDIR)/docs/figures > $(HW)/sphere.txt
@@ -69,16 +75,16 @@ hw-report: build
 	@hw/report.py $(BURNISH) $(HW)/synthesis.txt $(HW)/sphere.txt > $(HW)/hardware.md
 	@mv $(HW)/hardware.md docs/results/hardware.md
 
-hw-exhaustive: build
+hw-exhaustive: test-deps build
 	@hw/verify.sh exhaustive $(CURDIR)/$(BURNISH) $(LIBRARY) build/hw-exhaustive
 
-fuzz: deps
+fuzz: test-deps
 	@tests/fuzz/run.sh $(FUZZ_SECONDS)
 
-format: deps
+format: test-deps
 	@clang-format -i $(SOURCES)
 
-format-check: deps
+format-check: test-deps
 	@clang-format --dry-run -Werror $(SOURCES)
 
 docs-check:

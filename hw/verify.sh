@@ -18,7 +18,7 @@ rtl_dir=$hw/rtl
 
 need() {
   for tool; do
-    command -v "$tool" > /dev/null || { echo "skipped: $tool is not installed (make deps installs it)"; exit 77; }
+    command -v "$tool" > /dev/null || { echo "skipped: $tool is not installed (make test-deps installs it)"; exit 77; }
   done
 }
 
