@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Checks the Markdown files of this repository: tests/docs/check.py [FILE...], all of them without arguments.
 
-- Prose is wrapped at 120 columns; tables, code and lines without a space before column 120 are free.
+- Prose, also that of templates (.md.in), is wrapped at 120 columns; tables, code and lines without a space before
+  column 120 are free.
 - Links lead to files of the tree, anchors to headings.
 - A page of docs/guide has at most 120 lines.
 - Daggers, which mark figures that no command prints, stand in docs/notes alone.
@@ -21,8 +22,8 @@ LINK = re.compile(r"\]\(\s*<?([^)\s>]+)>?(?:\s+\"[^\"]*\")?\s*\)|^\s*\[[^\]]+\]:
 
 
 def documents():
-    """Every Markdown file that git knows or would know."""
-    listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard", "*.md"], cwd=ROOT, check=True,
+    """Every Markdown file and template that git knows or would know."""
+    listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard", "*.md", "*.md.in"], cwd=ROOT, check=True,
                             capture_output=True, text=True).stdout.split("\n")
     return sorted(path for name in set(listed) if name and (path := ROOT / name).exists())
 
@@ -91,6 +92,8 @@ def check(path):
             continue
         if len(text) > COLUMNS and not text.lstrip().startswith("|") and " " in text.strip()[:COLUMNS]:
             yield number, f"{len(text)} columns, at most {COLUMNS}"
+        if path.suffix == ".in":  # its links are those of the page it becomes
+            continue
         for link in LINK.finditer(re.sub(r"`[^`]*`", "", text)):
             if wrong := check_link(path, next(target for target in link.groups() if target)):
                 yield number, wrong

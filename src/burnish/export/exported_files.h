@@ -54,7 +54,7 @@ struct ExportedShader {
 };
 
 /// Files in memory. The last one, NAME.json, is the manifest: what the others are, how they are read and what
-/// an evaluation costs; docs/shaders.md describes it.
+/// an evaluation costs; see docs/guide/shaders.md.
 struct ExportedFiles {
   std::vector<ExportedFile> files;
   std::vector<ExportedShader> shaders;
