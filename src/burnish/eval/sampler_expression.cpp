@@ -51,11 +51,14 @@ ExprInt next_around(const ExprInt& i, int last) {
   return ExprInt(if_less(i.value, Expr::integer(last), i.value + Expr::integer(1), Expr::integer(0)));
 }
 
+Expr element(const char* table, const ExprInt& i) {
+  return Expr::element(table, i.value, ValueType::integer);
+}
 struct ExprEdges {
   ExprInt lower, mass;
 };
 ExprEdges edge_pair(const char* table, const ExprInt& i) {
-  const Expr lower = Expr::element(table, i.value), upper = Expr::element(table, i.value + Expr::integer(1));
+  const Expr lower = element(table, i), upper = element(table, i + ExprInt(1));
   const Expr mass = upper - lower;  // modulo 65536
   return {ExprInt(lower), ExprInt(if_less(upper, lower, mass + Expr::integer(65536), mass))};
 }
@@ -68,7 +71,7 @@ ExprInt search(const char* table, const ExprInt (&start)[kSlices], const Expr (&
     const ExprInt next = index + ExprInt(step);
     Expr edge;
     for (int s = 0; s < kSlices; ++s)
-      edge = edge + weight[s] * to_real(ExprInt(Expr::element(table, (start[s] + next).value)));
+      edge = edge + weight[s] * to_real(ExprInt(element(table, start[s] + next)));
     index = if_true(less_or_equal(edge, target), next, index);
   }
   return index;

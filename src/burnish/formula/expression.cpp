@@ -30,10 +30,11 @@ ValueType type_of(Op op, const std::vector<Expr>& arguments) {
 
 std::string_view to_string(Op op) noexcept {
   constexpr std::string_view kNames[] = {
-      "constant",   "input",   "add",     "subtract", "multiply",    "divide",       "mul_add", "neg_mul_add",
-      "negate",     "abs",     "max",     "min",      "if_less",     "floor",        "sqrt",    "power",
-      "exp2",       "log2",    "acos",    "cos",      "exponent_of", "scale_by_two", "vector",  "component",
-      "to_integer", "to_real", "element", "texel",    "sample"};
+      "constant",    "input",        "add",    "subtract",  "multiply",   "divide",  "mul_add",
+      "neg_mul_add", "negate",       "abs",    "max",       "min",        "if_less", "floor",
+      "sqrt",        "power",        "exp2",   "log2",      "acos",       "cos",     "sin",
+      "exponent_of", "scale_by_two", "vector", "component", "to_integer", "to_real", "element",
+      "texel",       "sample",       "call"};
   return kNames[static_cast<std::size_t>(op)];
 }
 
@@ -50,28 +51,28 @@ Expr Expr::integer(int constant) {
 }
 
 Expr Expr::input(std::string name, ValueType type) {
-  return Expr(Node{.op = Op::input, .type = type, .name = std::move(name), .called = {}, .arguments = {}});
+  return of_name(Op::input, type, std::move(name), {});
 }
 
-Expr Expr::element(std::string array, const Expr& index) {
-  return Expr(Node{.op = Op::element,
-                   .type = ValueType::integer,
-                   .name = std::move(array),
-                   .called = {},
-                   .arguments = {index.node_}});
+Expr Expr::element(std::string array, const Expr& index, ValueType type) {
+  return of_name(Op::element, type, std::move(array), {index});
 }
 
 Expr Expr::texel(std::string texture, const Expr& x, const Expr& y, ValueType type) {
-  return Expr(Node{.op = Op::texel,
-                   .type = type,
-                   .name = std::move(texture),
-                   .called = {},
-                   .arguments = {x.node_, y.node_}});
+  return of_name(Op::texel, type, std::move(texture), {x, y});
 }
 
 Expr Expr::sample(std::string texture, const std::vector<Expr>& at, ValueType type) {
-  Node node{.op = Op::sample, .type = type, .name = std::move(texture), .called = {}, .arguments = {}};
-  for (const Expr& x : at) node.arguments.push_back(x.node_);
+  return of_name(Op::sample, type, std::move(texture), at);
+}
+
+Expr Expr::call(std::string function, const std::vector<Expr>& arguments, ValueType type) {
+  return of_name(Op::call, type, std::move(function), arguments);
+}
+
+Expr Expr::of_name(Op op, ValueType type, std::string name, const std::vector<Expr>& arguments) {
+  Node node{.op = op, .type = type, .name = std::move(name), .called = {}, .arguments = {}};
+  for (const Expr& x : arguments) node.arguments.push_back(x.node_);
   return Expr(std::move(node));
 }
 
@@ -155,6 +156,12 @@ Expr floor(const Expr& a) {
 Expr sqrt(const Expr& a) {
   return {Op::sqrt, {a}};
 }
+Expr cos(const Expr& a) {
+  return {Op::cos, {a}};
+}
+Expr sin(const Expr& a) {
+  return {Op::sin, {a}};
+}
 Expr power(const Expr& a, double exponent) {
   return exponent == 0.5 ? sqrt(a) : Expr(Op::power, {a, exponent});
 }
@@ -178,8 +185,11 @@ ExprVector operator+(const ExprVector& a, const ExprVector& b) {
 ExprVector operator-(const ExprVector& a, const ExprVector& b) {
   return ExprVector(a.whole() - b.whole());
 }
-ExprVector operator*(double a, const ExprVector& b) {
-  return ExprVector(Expr(a) * b.whole());
+ExprVector operator*(const Expr& a, const ExprVector& b) {
+  return ExprVector(a * b.whole());
+}
+Expr dot(const ExprVector& a, const ExprVector& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 ExprVector mirror(const ExprVector& v) {
   return {-v.x, -v.y, v.z};

@@ -29,15 +29,17 @@ enum class Op {
   log2,
   acos,
   cos,
+  sin,
   exponent_of,   // n where a = m 2^n, m in [2/3, 4/3)
   scale_by_two,  // a 2^b, b whole
   vector,        // (a, b, c)
   component,     // number `constant` of a vector
   to_integer,    // the integer part
   to_real,       // of an integer
-  element,       // of integers called `name`, at integer a
+  element,       // of an array `name`, at integer a
   texel,         // of texture `name` at integers (a, b)
-  sample,        // of texture `name`, filtered, at coordinates a or (a, b)
+  sample,        // of texture `name`, filtered, at one to three coordinates
+  call,          // of a function `name` that the text around has
 };
 
 /// The enumerator's name.
@@ -53,7 +55,7 @@ class Expr {
     Op op;
     ValueType type = ValueType::real;
     double constant = 0;
-    std::string name;         // of an input or a texture
+    std::string name;         // of an input, a texture, an array or a function
     std::string_view called;  // what the formula calls the value, or empty; a literal
     std::vector<std::shared_ptr<const Node>> arguments;
   };
@@ -62,12 +64,12 @@ class Expr {
   Expr(double constant);  // NOLINT: numbers are expressions
   static Expr integer(int constant);
   static Expr input(std::string name, ValueType type = ValueType::real);
-  /// What an array of integers holds.
-  static Expr element(std::string array, const Expr& index);
+  static Expr element(std::string array, const Expr& index, ValueType type);
   /// What a texture holds: `type` tells whether one or three channels are read.
   static Expr texel(std::string texture, const Expr& x, const Expr& y, ValueType type);
-  /// Coordinates: one of a 1-D texture, else two.
+  /// Coordinates: as many as the texture has dimensions.
   static Expr sample(std::string texture, const std::vector<Expr>& at, ValueType type);
+  static Expr call(std::string function, const std::vector<Expr>& arguments, ValueType type);
   /// A node over its arguments, of vectors componentwise; folds sums and products of constants, drops 1 * x,
   /// 0 * x and x + 0.
   Expr(Op op, const std::vector<Expr>& arguments);
@@ -81,6 +83,7 @@ class Expr {
   friend Expr component(const Expr& vector, int index);
 
  private:
+  static Expr of_name(Op op, ValueType type, std::string name, const std::vector<Expr>& arguments);
   explicit Expr(Node node) : node_(std::make_shared<const Node>(std::move(node))) {}
 
   std::shared_ptr<const Node> node_;
@@ -102,6 +105,8 @@ Expr if_less(const Expr& a, const Expr& b, const Expr& x, const Expr& y);
 Expr abs(const Expr& a);
 Expr floor(const Expr& a);
 Expr sqrt(const Expr& a);
+Expr cos(const Expr& a);
+Expr sin(const Expr& a);
 /// a^exponent, a >= 0; a root where the exponent is 1/2.
 Expr power(const Expr& a, double exponent);
 
@@ -123,7 +128,8 @@ struct ExprVector {
 ExprVector named(const char* name, const ExprVector& v);
 ExprVector operator+(const ExprVector& a, const ExprVector& b);
 ExprVector operator-(const ExprVector& a, const ExprVector& b);
-ExprVector operator*(double a, const ExprVector& b);
+ExprVector operator*(const Expr& a, const ExprVector& b);
+Expr dot(const ExprVector& a, const ExprVector& b);
 /// (-x, -y, z)
 ExprVector mirror(const ExprVector& v);
 

@@ -19,8 +19,8 @@ class Graph {
     Op op;
     ValueType type;
     double constant;
-    std::string name;         // of an input or a texture
-    std::string_view called;  // as Expr::Node's; empty: nothing
+    std::string name;         // as Expr::Node's
+    std::string_view called;  // likewise
     std::vector<std::size_t> arguments;
   };
 

@@ -15,22 +15,22 @@ constexpr Language::Call kTernary{"{0} < {1} ? {2} : {3}", 0};
 const Calls kCMath = {
     {Op::abs, {"fabsf({0})"}}, {Op::max, {"fmaxf({0}, {1})"}}, {Op::min, {"fminf({0}, {1})"}}, {Op::if_less, kTernary},
     {Op::floor, {"floorf({0})"}}, {Op::sqrt, {"sqrtf({0})"}}, {Op::power, {"powf({0}, {1})"}},
-    {Op::exp2, {"exp2f({0})"}}, {Op::log2, {"log2f({0})"}}, {Op::acos, {"acosf({0})"}}, {Op::cos, {"cosf({0})"}},
+    {Op::exp2, {"exp2f({0})"}}, {Op::log2, {"log2f({0})"}}, {Op::acos, {"acosf({0})"}}, {Op::cos, {"cosf({0})"}}, {Op::sin, {"sinf({0})"}},
     {Op::exponent_of, {"power_exponent_of({0})"}}, {Op::scale_by_two, {"ldexpf({0}, (int)({1}))"}},
-    {Op::to_integer, {"(int)({0})"}}};
+    {Op::to_integer, {"(int)({0})"}}, {Op::to_real, {"(float)({0})"}}};
 const Calls kShaderMath = {
     {Op::abs, {"abs({0})"}}, {Op::max, {"max({0}, {1})"}}, {Op::min, {"min({0}, {1})"}}, {Op::if_less, kTernary},
     {Op::floor, {"floor({0})"}}, {Op::sqrt, {"sqrt({0})"}}, {Op::power, {"pow({0}, {1})"}},
-    {Op::exp2, {"exp2({0})"}}, {Op::log2, {"log2({0})"}}, {Op::acos, {"acos({0})"}}, {Op::cos, {"cos({0})"}},
+    {Op::exp2, {"exp2({0})"}}, {Op::log2, {"log2({0})"}}, {Op::acos, {"acos({0})"}}, {Op::cos, {"cos({0})"}}, {Op::sin, {"sin({0})"}},
     {Op::exponent_of, {"power_exponent_of({0})"}}, {Op::scale_by_two, {"ldexp({0}, int({1}))"}},
-    {Op::to_integer, {"int({0})"}}};
+    {Op::to_integer, {"int({0})"}}, {Op::to_real, {"float({0})"}}};
 const Calls kRustMath = {
     {Op::abs, {"({0}).abs()"}}, {Op::max, {"({0}).max({1})"}}, {Op::min, {"({0}).min({1})"}},
     {Op::if_less, {"if {0} < {1} {{ {2} }} else {{ {3} }}", 0}},
     {Op::floor, {"({0}).floor()"}}, {Op::sqrt, {"({0}).sqrt()"}}, {Op::power, {"({0}).powf({1})"}},
-    {Op::exp2, {"({0}).exp2()"}}, {Op::log2, {"({0}).log2()"}}, {Op::acos, {"({0}).acos()"}}, {Op::cos, {"({0}).cos()"}},
+    {Op::exp2, {"({0}).exp2()"}}, {Op::log2, {"({0}).log2()"}}, {Op::acos, {"({0}).acos()"}}, {Op::cos, {"({0}).cos()"}}, {Op::sin, {"({0}).sin()"}},
     {Op::exponent_of, {"power_exponent_of({0})"}}, {Op::scale_by_two, {"{0} * ({1}).exp2()", 2}},
-    {Op::to_integer, {"({0}) as i32"}}};
+    {Op::to_integer, {"({0}) as i32"}}, {Op::to_real, {"({0}) as f32"}}};
 // clang-format on
 
 Calls with(Calls calls, const Calls& others) {
@@ -92,8 +92,11 @@ Language c_like(std::string_view name, std::string_view suffix) {
           .texel = {},
           .sample = {},
           .sample_1d = {},
+          .sample_3d = {},
+          .array = {},
           .texture = {},
           .texture_1d = {},
+          .texture_3d = {},
           .filtered_texture = {},
           .texture_struct = {}};
 }
@@ -146,8 +149,11 @@ Language glsl() {
   l.texel = "texelFetch({0}, ivec2({1}, {2}), 0).{3}";
   l.sample = "textureLod({0}, vec2({1}, {2}), 0.0).{3}";
   l.sample_1d = "textureLod({0}, {1}, 0.0).{2}";
+  l.sample_3d = "textureLod({0}, vec3({1}, {2}, {3}), 0.0).{4}";
+  l.array = "const float {0}[{1}] = float[]({2});\n";
   l.texture = l.filtered_texture = "uniform sampler2D {0};\n";
   l.texture_1d = "uniform sampler1D {0};\n";
+  l.texture_3d = "uniform highp sampler3D {0};\n";
   return l;
 }
 
@@ -224,7 +230,8 @@ Language wgsl() {
       "fn power_exponent_of(x: f32) -> f32 {\n  return f32((bitcast<i32>(x) - 0x3f2aaaab) >> 23u);\n}\n\n";
   l.calls = with(kShaderMath, {{Op::if_less, {"select({3}, {2}, {0} < {1})"}},
                                {Op::scale_by_two, {"ldexp({0}, i32({1}))"}},
-                               {Op::to_integer, {"i32({0})"}}});
+                               {Op::to_integer, {"i32({0})"}},
+                               {Op::to_real, {"f32({0})"}}});
   l.texel = "textureLoad({0}, vec2i({1}, {2}), 0).{3}";
   l.sample = "textureSampleLevel({0}, {0}_sampler, vec2f({1}, {2}), 0.0).{3}";
   l.texture = "@group(0) @binding({1}) var {0}: texture_2d<f32>;\n";
@@ -285,10 +292,18 @@ std::string Language::fetch(std::string_view texture_name, std::string_view x, s
   return fmt::format(fmt::runtime(texel), texture_name, x, y, channels_of(type));
 }
 
-std::string Language::filtered(std::string_view texture_name, std::string_view u, std::string_view v,
+std::string Language::filtered(std::string_view texture_name, std::span<const std::string> at,
                                ValueType type) const {
-  if (v.empty()) return fmt::format(fmt::runtime(sample_1d), texture_name, u, channels_of(type));
-  return fmt::format(fmt::runtime(sample), texture_name, u, v, channels_of(type));
+  const std::string_view letters = channels_of(type);
+  if (at.size() == 1) return fmt::format(fmt::runtime(sample_1d), texture_name, at[0], letters);
+  if (at.size() == 2) return fmt::format(fmt::runtime(sample), texture_name, at[0], at[1], letters);
+  return fmt::format(fmt::runtime(sample_3d), texture_name, at[0], at[1], at[2], letters);
+}
+
+std::string Language::declare_array(std::string_view array_name, std::span<const double> values) const {
+  std::string list;
+  for (const double value : values) list += (list.empty() ? "" : ", ") + literal(value);
+  return fmt::format(fmt::runtime(array), array_name, values.size(), list);
 }
 
 }  // namespace burnish

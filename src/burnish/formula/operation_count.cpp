@@ -25,6 +25,7 @@ OperationCount count_of(Op op, ValueType type) noexcept {
     case Op::component:
     case Op::to_integer:
     case Op::to_real:
+    case Op::call:
       return {};
     case Op::add:
     case Op::subtract:
@@ -50,6 +51,7 @@ OperationCount count_of(Op op, ValueType type) noexcept {
     case Op::log2:
     case Op::acos:
     case Op::cos:
+    case Op::sin:
       return {.transcendentals = n};
     case Op::element:
     case Op::texel:

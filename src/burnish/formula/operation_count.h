@@ -5,7 +5,7 @@
 namespace burnish {
 
 /// What computing values takes, counted from their formula: floating-point operations a component. Changes of
-/// sign, integers and conversions are not counted.
+/// sign, integers and conversions are not counted, nor what called functions compute.
 struct OperationCount {
   int multiplies = 0, adds = 0, compares = 0;  ///< compares: minima, maxima, floors and selects
   int divisions = 0, roots = 0, transcendentals = 0, fetches = 0;

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <burnish/formula/writer.h>
 
@@ -113,8 +114,15 @@ std::string Writer::formula(std::size_t i, int& precedence) const {
       return fmt::format("{}.{}", of(0, kCall), "xyz"[static_cast<std::size_t>(node.constant)]);
     case Op::texel:
       return language_.fetch(node.name, of(0, 0), of(1, 0), node.type);
+    case Op::element:
+      return fmt::format("{}[{}]", node.name, of(0, 0));
     case Op::sample:
-      return language_.filtered(node.name, of(0, 0), node.arguments.size() > 1 ? of(1, 0) : "", node.type);
+    case Op::call: {
+      std::vector<std::string> all;
+      for (std::size_t k = 0; k < node.arguments.size(); ++k) all.push_back(of(k, 0));
+      if (node.op == Op::sample) return language_.filtered(node.name, all, node.type);
+      return fmt::format("{}({})", node.name, fmt::join(all, ", "));
+    }
     default: {
       const Language::Call& call = language_.calls.at(node.op);
       precedence = call.precedence;

@@ -8,6 +8,7 @@
 #include <burnish/math/parallel.h>
 #include <burnish/render/light/filtered_environment.h>
 #include <burnish/render/light/parabolic_pair.h>
+#include <burnish/render/light/prefiltered_formula.h>
 
 namespace burnish {
 namespace {

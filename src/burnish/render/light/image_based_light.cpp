@@ -10,6 +10,7 @@
 #include <burnish/render/light/image_based_light.h>
 #include <burnish/render/light/lobe_parts.h>
 #include <burnish/render/light/parabolic_pair.h>
+#include <burnish/render/light/prefiltered_formula.h>
 
 namespace burnish {
 namespace {
@@ -17,22 +18,12 @@ namespace {
 constexpr int kRings = 96;    // angles gamma about an axis, gamma = pi (ring / kRings)^2
 constexpr int kSpokes = 32;   // azimuths of a ring of the sky
 constexpr int kMostMaps = 9;  // of a mean and four orders
-constexpr double kLeastSine = 1e-6;
 
 double ring_angle(double ring) noexcept {
   return kPi * (ring / kRings) * (ring / kRings);
 }
 
-// Axes at right angles to `up` that turn with it without a seam where up.y > -1. [Duff 2017, with y for z]
-struct TurnedAxes {
-  Vec3 x, z;
-
-  explicit TurnedAxes(Vec3 up) noexcept {
-    const double a = 1 / (1 + up.y), b = -up.x * up.z * a;
-    x = {1 - up.x * up.x * a, -up.x, b};
-    z = {b, -up.z, 1 - up.z * up.z * a};
-  }
-};
+using Axes = TurnedAxes<Vec3>;
 
 // sin(theta) and cos(theta) of a slice's view, kept off the horizon, where a BRDF is 0.
 Vec3 slice_view(int slice, int slices) noexcept {
@@ -97,14 +88,8 @@ Kernel kernel_of(const FactoredBrdf& inside, Vec3 wo, int orders) {
   return kernel;
 }
 
-// 1, then cos and sin of multiples of the azimuth whose cosine and sine are given.
 std::array<double, kMostMaps> harmonics_of(double c, double s) noexcept {
-  std::array<double, kMostMaps> h{1, c, s};
-  for (std::size_t i = 3; i < kMostMaps; i += 2) {
-    h[i] = c * h[i - 2] - s * h[i - 1];
-    h[i + 1] = s * h[i - 2] + c * h[i - 1];
-  }
-  return h;
+  return harmonics<kMostMaps>(c, s);
 }
 
 // Light at one ring, weighted by each harmonic of its azimuth.
@@ -163,7 +148,7 @@ RingSources sources_of(const Environment& environment) {
 }
 
 // The sky about an axis of one half, at the spokes of every ring.
-void add_sky(std::vector<RingLight>& light, Vec3 axis, const TurnedAxes& across, int half,
+void add_sky(std::vector<RingLight>& light, Vec3 axis, const Axes& across, int half,
              const RingSources& sources) {
   for (int ring = 0; ring <= kRings; ++ring) {
     const double sine = std::sin(ring_angle(ring)), cosine = std::cos(ring_angle(ring));
@@ -179,7 +164,7 @@ void add_sky(std::vector<RingLight>& light, Vec3 axis, const TurnedAxes& across,
 }
 
 // A point's light, shared by the two rings next to it: linear in gamma, as kernels are between rings.
-void add_point(std::vector<RingLight>& light, Vec3 axis, const TurnedAxes& across, int half,
+void add_point(std::vector<RingLight>& light, Vec3 axis, const Axes& across, int half,
                const DiscPoint& point) {
   const Vec3 w = in_half(half, point.direction);
   const double along = dot(w, axis), x = dot(w, across.x), z = dot(w, across.z), sine = std::hypot(x, z);
@@ -193,8 +178,7 @@ void add_point(std::vector<RingLight>& light, Vec3 axis, const TurnedAxes& acros
 }
 
 // All light about an axis of one half, by rings.
-std::vector<RingLight> light_about(Vec3 axis, const TurnedAxes& across, int half,
-                                   const RingSources& sources) {
+std::vector<RingLight> light_about(Vec3 axis, const Axes& across, int half, const RingSources& sources) {
   std::vector<RingLight> light(kRings + 1);
   if (sources.samples_sky) add_sky(light, axis, across, half, sources);
   for (const DiscPoint& point : sources.points) add_point(light, axis, across, half, point);
@@ -202,7 +186,7 @@ std::vector<RingLight> light_about(Vec3 axis, const TurnedAxes& across, int half
 }
 
 // Kernels count their azimuth about the axis in the world, which a mirror turns: 1 or -1.
-double azimuth_sense(Vec3 axis, const TurnedAxes& across, int half) noexcept {
+double azimuth_sense(Vec3 axis, const Axes& across, int half) noexcept {
   return (dot(cross(axis, across.x), across.z) > 0) != (half == 1) ? 1 : -1;
 }
 
@@ -300,13 +284,12 @@ Rgb ImageBasedLight::radiance(Vec3 n, Vec3 v) const noexcept {
     // the kernel's axis in the world, and the tilt that its azimuth counts from
     const auto s = static_cast<std::size_t>(slice);
     const double angle = (1 - slice_part) * lobe.axis[s] + slice_part * lobe.axis[s + 1];
-    const Vec3 axis_world = std::cos(angle) * n + std::sin(angle) * plane;
-    const Vec3 tilt_world = std::cos(angle) * plane - std::sin(angle) * n;
+    const auto [axis_world, tilt_world] = kernel_axis(n, plane, angle);
 
     // its place in the map of its half, and the azimuth of the tilt there
     const int half = axis_world.y < 0;
     const Vec3 axis = in_half(half, axis_world), tilt = in_half(half, tilt_world);
-    const TurnedAxes across(axis);
+    const Axes across(axis);
     const auto harmonics = harmonics_of(dot(tilt, across.x), dot(tilt, across.z));
     const auto [x, y] = map_place(axis, side);
     const int x0 = std::clamp(static_cast<int>(x), 0, side - 2),
@@ -351,7 +334,7 @@ ImageBasedLight prefilter(const FactoredBrdf& brdf, const Environment& environme
     for (std::size_t column = 0; column < 2 * side; ++column) {
       const int half = column >= side;
       const Vec3 axis = map_direction(static_cast<int>(column % side), static_cast<int>(row), options.side);
-      const TurnedAxes across(axis);
+      const Axes across(axis);
       const std::vector<RingLight> light = light_about(axis, across, half, sources);
       const double sense = azimuth_sense(axis, across, half);
       for (std::size_t j = 0; j < kernels.size(); ++j)

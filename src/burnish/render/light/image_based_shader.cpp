@@ -1,86 +1,109 @@
 #include <algorithm>
+#include <array>
 #include <iterator>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <burnish/error.h>
+#include <burnish/factors/lookup_expression.h>
+#include <burnish/formula/writer.h>
 #include <burnish/render/gl/gl_evaluator.h>
 #include <burnish/render/light/image_based_light.h>
+#include <burnish/render/light/map_expression.h>
+#include <burnish/render/light/prefiltered_formula.h>
 
 namespace burnish {
 
 namespace {
 
-// The radiance through one lobe's maps. {0} the lobe, {1} slices, {2} the axes, {3} side, {4} depth, {5}
-// orders, {6} the sampler, {7} the lobe's first slice.
-constexpr const char* kLobe = R"(
-vec3 {0}_seen(vec3 n, vec3 plane, float slice) {{
-  const float axes[{1}] = float[]({2});
-  int low = min(int(slice), {1} - 2);
-  float angle = mix(axes[low], axes[low + 1], slice - float(low));
-  vec3 axis = cos(angle) * n + sin(angle) * plane, tilt = cos(angle) * plane - sin(angle) * n;
-  float first = 0.5;
-  if (axis.y < 0.0) {{ axis.y = -axis.y; tilt.y = -tilt.y; first += {3}.0; }}
-  float a = 1.0 / (1.0 + axis.y);
-  vec3 u = vec3(1.0 - axis.x * axis.x * a, -axis.x, -axis.x * axis.z * a);
-  vec3 w = vec3(-axis.x * axis.z * a, -axis.z, 1.0 - axis.z * axis.z * a);
-  vec2 turn = vec2(dot(tilt, u), dot(tilt, w)), part = turn;
-  vec2 at = (a * axis.xz + 1.0) * (0.5 * float({3} - 1));
-  vec3 place = vec3((first + at.x) / float(2 * {3}), (0.5 + at.y) / float({3}), ({7}.5 + slice) / float({4}));
-  vec3 sum = textureLod({6}, place, 0.0).rgb;
-  for (int m = 1; m <= {5}; ++m) {{
-    place.z += float({1}) / float({4});
-    sum += part.x * textureLod({6}, place, 0.0).rgb;
-    place.z += float({1}) / float({4});
-    sum += part.y * textureLod({6}, place, 0.0).rgb;
-    part = vec2(turn.x * part.x - turn.y * part.y, turn.y * part.x + turn.x * part.y);
-  }}
-  return sum;
-}}
-)";
+Expr length(const ExprVector& v) {
+  return sqrt(dot(v, v));
+}
 
-constexpr const char* kLight = R"(
-// Radiance towards v at normal n, of the light that the maps were made from.
-vec3 burnish_{0}_light(vec3 n, vec3 v) {{
-  float cos_o = min(dot(n, v), 1.0);
-  if (cos_o <= 0.0) return vec3(0.0);
-  vec3 away = cos_o * n - v;
-  float sin_o = length(away);
-  vec3 plane = away / max(sin_o, 1e-6), wo = vec3(-sin_o, 0.0, cos_o);
-  float slice = sin_o / (1.0 + cos_o) * {1}.0;
-  return max({2}, vec3(0.0));
-}}
-)";
+// The view of a pair of normal and view, as far as all lobes share it.
+struct View {
+  ExprVector n, plane, wo;
+  Expr slice, low, part;  // position among the slices, the one below it, how far from it
+
+  explicit View(int slices) : n(Expr::input("n", ValueType::vector)), plane(n), wo(n) {
+    const ExprVector v(Expr::input("v", ValueType::vector));
+    const Expr cosine = named("cos_o", min(dot(n, v), 1.0));
+    const ExprVector away = named("away", cosine * n - v);
+    const Expr sine = named("sin_o", length(away));
+    plane = named("plane", Expr(1.0) / max(sine, kLeastSine) * away);
+    wo = named("wo", ExprVector(-sine, 0.0, cosine));
+    slice = named("slice", sine / (1 + cosine) * (slices - 1));
+    low = named("low", min(Expr(Op::to_integer, {slice}), Expr::integer(slices - 2)));
+    part = slice - Expr(Op::to_real, {low});
+  }
+};
+
+// The radiance through one lobe's maps, which begin at slice `first` of `depth`.
+Expr seen(const ImageBasedLight& light, const View& view, const std::string& axes, const std::string& maps,
+          int first, int depth) {
+  const auto& [slices, side, orders] = light.options;
+  // the kernel's axis in the world, and the tilt that its azimuth counts from
+  const auto entry = [&](const Expr& index) { return Expr::element(axes, index, ValueType::real); };
+  const Expr angle =
+      named("angle", mix_expression(entry(view.low), entry(view.low + Expr::integer(1)), view.part));
+  const auto [axis_world, tilt_world] = kernel_axis(view.n, view.plane, angle);
+  const ExprVector shown = named("axis", axis_world);
+
+  // its place in the maps of its half, and the azimuth of the tilt there
+  const ExprVector axis = in_half_of(shown, shown), tilt = in_half_of(shown, named("tilt", tilt_world));
+  const TurnedAxes<ExprVector> across(axis);
+  constexpr std::size_t kMostMaps = 9;
+  const auto weights =
+      harmonics<kMostMaps>(named("turn_x", dot(tilt, across.x)), named("turn_y", dot(tilt, across.z)));
+  const auto [place_x, place_y] = map_coordinates(shown, side);
+
+  // every map, weighed by its harmonic
+  Expr sum;
+  for (int map = 0; map < 2 * orders + 1; ++map) {
+    const Expr place_z = (view.slice + (first + map * slices + 0.5)) * (1.0 / depth);
+    sum = sum + weights[static_cast<std::size_t>(map)] *
+                    Expr::sample(maps, {place_x, place_y, place_z}, ValueType::vector);
+  }
+  return named("seen", sum);
+}
 
 }  // namespace
 
 ImageBasedShader generate_shader(const ImageBasedLight& light, ShaderLanguage language,
                                  const std::string& name) {
-  if (language != ShaderLanguage::glsl && language != ShaderLanguage::glsl_es)
-    throw Error(fmt::format("image-based light: expected glsl or glsl_es, found {}", to_string(language)));
+  const Language& l = burnish::language(to_string(language));
+  if (l.texture_3d.empty())
+    throw Error(fmt::format("image-based light: expected glsl or glsl_es, found {}", l.name));
   // all lobes' maps are slices of one texture
-  const auto& [slices, side, harmonics] = light.options;
-  const int slices_a_lobe = light.map_count() * slices;
+  const int slices_a_lobe = light.map_count() * light.options.slices;
   const int depth = static_cast<int>(light.lobes.size()) * slices_a_lobe;
   ImageBasedShader shader{.maps = fmt::format("burnish_{}_maps", name)};
+  shader.text = fmt::format(fmt::runtime(l.texture_3d), shader.maps);
 
-  // every lobe: the factors of the view and the look at its maps
-  std::string sum;
+  // every lobe: the factors of the view times what its maps show
+  const View view(light.options.slices);
+  Expr sum;
   for (std::size_t j = 0; j < light.lobes.size(); ++j) {
     const PrefilteredLobe& lobe = light.lobes[j];
-    const std::string outside = fmt::format("{}_lobe{}", name, j);
-    const Shader view = generate_shader(lobe.outside, {language, ShaderFilter::hardware, outside});
-    std::string axes;
-    for (const double angle : lobe.axis) axes += fmt::format("{}{:.9e}", axes.empty() ? "" : ", ", angle);
-    shader.text += view.text;
-    if (j == 0) shader.text += fmt::format("uniform highp sampler3D {};", shader.maps);
-    shader.text += fmt::format(fmt::runtime(kLobe), "burnish_" + outside, slices, axes, side, depth,
-                               harmonics, shader.maps, static_cast<int>(j) * slices_a_lobe);
-    std::ranges::copy(view.textures, std::back_inserter(shader.tables));
-    sum += fmt::format("{0}burnish_{1}(wo, wo) * burnish_{1}_seen(n, plane, slice)", j ? " + " : "", outside);
+    const std::string outside = fmt::format("{}_lobe{}", name, j),
+                      axes = fmt::format("burnish_{}_axes", outside);
+    const Shader factors = generate_shader(lobe.outside, {language, ShaderFilter::hardware, outside});
+    shader.text += factors.text + l.declare_array(axes, lobe.axis);
+    std::ranges::copy(factors.textures, std::back_inserter(shader.tables));
+    const Expr wo = view.wo.whole();
+    sum = sum + Expr::call("burnish_" + outside, {wo, wo}, ValueType::vector) *
+                    seen(light, view, axes, shader.maps, static_cast<int>(j) * slices_a_lobe, depth);
   }
-  shader.text += fmt::format(fmt::runtime(kLight), name, slices - 1, sum);
+  const Expr dark(Op::vector, {0.0, 0.0, 0.0});
+  Graph graph;
+  const std::size_t root = graph.add(max(sum, dark));
+  const Writer writer(l, graph, {root});
+  constexpr std::array<std::string_view, 2> kParameters{"n", "v"};
+  shader.text += "\n// Radiance towards v at normal n, of the light that the maps were made from.\n";
+  shader.text += l.function(
+      ValueType::vector, fmt::format("burnish_{}_light", name), kParameters, "",
+      fmt::format("  if (dot(n, v) <= {0}) {{ return {1}({0}, {0}, {0}); }}\n", l.literal(0), l.vector) +
+          writer.text() + fmt::format(fmt::runtime(l.result), writer.text(root)));
   return shader;
 }
 

@@ -20,13 +20,4 @@ inline Vec3 map_direction(int x, int y, int side) noexcept {
   return {2 * u / (1 + r), (1 - r) / (1 + r), 2 * v / (1 + r)};
 }
 
-/// Where a direction with y >= 0 lies in its map, in texels.
-struct MapPlace {
-  double x, y;
-};
-inline MapPlace map_place(Vec3 w, int side) noexcept {
-  const double scale = 0.5 * (side - 1) / (1 + w.y);
-  return {w.x * scale + 0.5 * (side - 1), w.z * scale + 0.5 * (side - 1)};
-}
-
 }  // namespace burnish

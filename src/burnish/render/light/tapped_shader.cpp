@@ -1,27 +1,31 @@
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include <burnish/error.h>
-#include <burnish/formula/language.h>
+#include <burnish/formula/writer.h>
+#include <burnish/render/light/map_expression.h>
 #include <burnish/render/light/tapped_light.h>
 
 namespace burnish {
 
 namespace {
 
-// {0} the sampler, {1} side, {2} levels.
-constexpr const char* kBlurred = R"(
-uniform highp sampler3D {0};
-vec3 {0}_at(vec3 w, float level) {{
-  float first = 0.5;
-  if (w.y < 0.0) {{ w.y = -w.y; first += {1}.0; }}
-  vec2 at = (w.xz / (1.0 + w.y) + 1.0) * (0.5 * float({1} - 1));
-  vec3 place = vec3((first + at.x) / float(2 * {1}), (0.5 + at.y) / float({1}),
-                    (0.5 + clamp(level, 0.0, float({2} - 1))) / float({2}));
-  return textureLod({0}, place, 0.0).rgb;
-}}
-)";
+// The environment at a direction of the world, blurred as wide as the level tells.
+std::string blurred_function(const Language& l, const std::string& environment, const BlurOptions& blur) {
+  const ExprVector w(Expr::input("w", ValueType::vector));
+  const auto [x, y] = map_coordinates(w, blur.side);
+  const Expr level = min(max(Expr::input("level"), 0.0), blur.levels - 1.0);
+  Graph graph;
+  const std::size_t root =
+      graph.add(Expr::sample(environment, {x, y, (level + 0.5) * (1.0 / blur.levels)}, ValueType::vector));
+  const Writer writer(l, graph, {root});
+  constexpr std::array<std::string_view, 1> kParameters{"w"};
+  return l.function(ValueType::vector, environment + "_at", kParameters,
+                    fmt::format(fmt::runtime(l.parameter), l.scalar, "level"),
+                    writer.text() + fmt::format(fmt::runtime(l.result), writer.text(root)));
+}
 
 // {0} the lobe, {1} the environment's sampler, {2} the number of taps, {3} taps, {4} levels, {5} what turns
 // half vectors into directions, {6} the inner factors.
@@ -61,11 +65,12 @@ vec3 burnish_{0}_light(vec3 n, vec3 t, vec3 s, vec3 v) {{
 
 TappedShader generate_shader(const TappedBrdf& brdf, const BlurOptions& blur, ShaderLanguage language,
                              const std::string& name) {
-  if (language != ShaderLanguage::glsl && language != ShaderLanguage::glsl_es)
-    throw Error(fmt::format("image-based light: expected glsl or glsl_es, found {}", to_string(language)));
+  const Language& l = burnish::language(to_string(language));
+  if (l.texture_3d.empty())
+    throw Error(fmt::format("image-based light: expected glsl or glsl_es, found {}", l.name));
   TappedShader shader{.environment = fmt::format("burnish_{}_environment", name)};
-  shader.text = std::string(burnish::language(to_string(language)).header) +
-                fmt::format(fmt::runtime(kBlurred), shader.environment, blur.side, blur.levels);
+  shader.text = std::string(l.header) + fmt::format(fmt::runtime(l.texture_3d), shader.environment) +
+                blurred_function(l, shader.environment, blur);
   const double octave = 1 / std::log2(blur.step);  // in levels
   std::string sum;
   for (std::size_t j = 0; j < brdf.lobes.size(); ++j) {
