@@ -1,10 +1,10 @@
-# make demo   installs packages, builds, and takes a measurement to two textures (INPUT=file for your own)
-# make test   installs packages, builds with sanitizers and optimized, runs every test
+# make demo   installs packages, builds the command line, and takes a measurement to two textures (INPUT=file for your own)
+# make test   installs tools, builds with sanitizers and optimized, runs every test
 # make python the Python package in build/venv, tested
 # make build  the command line at build/release/apps/burnish/burnish
 # make bench, make fuzz, make report, make sampling-report, make shader-report, make frame-cost, make hw-report, make hw-exhaustive, make format:
-# see docs/developing.md
-.PHONY: demo test build python deps bench fuzz report sampling-report shader-report frame-cost hw-report hw-exhaustive format format-check
+# see CONTRIBUTING.md
+.PHONY: demo test build reports python deps test-deps bench fuzz report sampling-report shader-report frame-cost hw-report hw-exhaustive format format-check docs-check
 JOBS ?= $(shell nproc)
 BURNISH := build/release/apps/burnish/burnish
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
@@ -13,8 +13,11 @@ INPUT ?=
 OUT ?= out/demo
 FUZZ_SECONDS ?= 60
 
-deps:
-	@missing=$$(for p in $$(grep -v '^#' cmake/debian-packages.txt); do \
+# deps: what the command line is built with; test-deps: what everything else takes besides.
+deps: PACKAGES := cmake/debian-packages.txt
+test-deps: PACKAGES := cmake/debian-packages.txt cmake/debian-test-packages.txt
+deps test-deps:
+	@missing=$$(for p in $$(grep -hv '^#' $(PACKAGES)); do \
 	  dpkg-query -W -f '$${Status}' $$p 2>/dev/null | grep -q 'ok installed' || echo $$p; done); \
 	if [ -n "$$missing" ]; then \
 	  echo "Installing: $$missing"; \
@@ -26,13 +29,16 @@ deps:
 	fi
 
 build: deps
-	@cmake --preset release > /dev/null
-	@cmake --build --preset release -j $(JOBS)
+	@cmake --preset programs > /dev/null
+	@cmake --build --preset programs -j $(JOBS)
+
+reports: test-deps build
+	@cmake --build --preset programs -j $(JOBS) --target all
 
 demo: build
 	@examples/demo.sh "$(BURNISH)" "$(OUT)" "$(INPUT)"
 
-test: deps format-check
+test: test-deps format-check docs-check
 	@for preset in dev release; do \
 	  cmake --preset $$preset > /dev/null && \
 	  cmake --build --preset $$preset -j $(JOBS) && \
@@ -42,53 +48,44 @@ test: deps format-check
 	@python/check.sh --skip-offline
 	@tests/web/check.sh --skip-offline
 
-python: build
+python: test-deps build
 	@python/check.sh
 
-bench: deps
+bench: test-deps
 	@cmake --preset bench > /dev/null
 	@cmake --build --preset bench -j $(JOBS)
 	@build/bench/src/burnish/burnish_bench
 
-report: build
-	@mkdir -p docs/figures
-	@build/release/apps/report/burnish_report docs > docs/results.md.partial
-	@mv docs/results.md.partial docs/results.md
-	@build/release/apps/report/burnish_accuracy docs > docs/accuracy.md.partial
-	@mv docs/accuracy.md.partial docs/accuracy.md
-
-sampling-report: build
-	@mkdir -p docs/figures
-	@build/release/apps/sampling_report/burnish_sampling_report docs > docs/sampling-results.md.partial
-	@mv docs/sampling-results.md.partial docs/sampling-results.md
-
-shader-report: build
-	@build/release/apps/shader_report/burnish_shader_report docs > docs/shader-results.md.partial
-	@mv docs/shader-results.md.partial docs/shader-results.md
-
-frame-cost: build
-	@build/release/apps/frame_cost/burnish_frame_cost > docs/frame-cost.md.partial
-	@mv docs/frame-cost.md.partial docs/frame-cost.md
+# Pages of docs/results, by what burnish_reports calls them.
+REPORTS := build/release/apps/reports/burnish_reports
+report: NAMES := results accuracy
+sampling-report: NAMES := sampling
+shader-report: NAMES := shaders
+frame-cost: NAMES := frame-cost
+report sampling-report shader-report frame-cost: reports
+	@for name in $(NAMES); do $(REPORTS) $$name docs/results || exit 1; done
 
 HW := build/hw-report
 LIBRARY := $(CURDIR)/build/release/src/burnish/libburnish.a
-hw-report: build
+hw-report: test-deps reports
 	@command -v nextpnr-ice40 > /dev/null || $(SUDO) apt-get install -y -qq --no-install-recommends nextpnr-ice40 > /dev/null
-	@rm -rf $(HW) && mkdir -p $(HW) docs/figures
-	@hw/verify.sh sphere $(CURDIR)/$(BURNISH) $(LIBRARY) $(HW)/sphere $(CURDIR)/build/release/apps/report/burnish_hardware_sphere \
-	  $(CURDIR)/docs/figures/hardware_sphere.png > $(HW)/sphere.txt
+	@rm -rf $(HW) && mkdir -p $(HW) docs/figures docs/results
+	@hw/verify.sh sphere $(CURDIR)/$(BURNISH) $(LIBRARY) $(HW)/sphere $(CURDIR)/$(REPORTS) $(CURDIR)/docs/figures > $(HW)/sphere.txt
 	@hw/synthesize.sh $(CURDIR)/$(BURNISH) $(HW)/synthesis > $(HW)/synthesis.txt
 	@hw/report.py $(BURNISH) $(HW)/synthesis.txt $(HW)/sphere.txt > $(HW)/hardware.md
-	@mv $(HW)/hardware.md docs/hardware.md
+	@mv $(HW)/hardware.md docs/results/hardware.md
 
-hw-exhaustive: build
+hw-exhaustive: test-deps build
 	@hw/verify.sh exhaustive $(CURDIR)/$(BURNISH) $(LIBRARY) build/hw-exhaustive
 
-fuzz: deps
+fuzz: test-deps
 	@tests/fuzz/run.sh $(FUZZ_SECONDS)
 
-format: deps
+format: test-deps
 	@clang-format -i $(SOURCES)
 
-format-check: deps
+format-check: test-deps
 	@clang-format --dry-run -Werror $(SOURCES)
+
+docs-check:
+	@tests/docs/check.py

@@ -25,3 +25,15 @@ function(burnish_tests name parts)
       ENVIRONMENT "GTEST_TOTAL_SHARDS=${parts};GTEST_SHARD_INDEX=${part};GTEST_BRIEF=1;ASAN_OPTIONS=intercept_tls_get_addr=0")
   endforeach()
 endfunction()
+
+# Makes text files a part of a target: FUNCTION(), which the target declares, returns those that match the patterns, by
+# name, as std::span<const burnish::EmbeddedFile>.
+function(burnish_embed target function)
+  file(GLOB files CONFIGURE_DEPENDS ${ARGN})
+  list(SORT files)
+  set(output ${CMAKE_CURRENT_BINARY_DIR}/${function}.cpp)
+  set(script ${PROJECT_SOURCE_DIR}/cmake/EmbedFiles.cmake)
+  add_custom_command(OUTPUT ${output} DEPENDS ${files} ${script} VERBATIM
+    COMMAND ${CMAKE_COMMAND} -DFUNCTION=${function} "-DFILES=${files}" -DOUTPUT=${output} -P ${script})
+  target_sources(${target} PRIVATE ${output})
+endfunction()

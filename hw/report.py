@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/hardware.md: hw/report.py BURNISH SYNTHESIS SPHERE, the latter two the output of hw/synthesize.sh and of
+"""Writes docs/results/hardware.md: hw/report.py BURNISH SYNTHESIS SPHERE, the latter two the output of hw/synthesize.sh and of
 `hw/verify.sh sphere`. The text is hw/hardware.md.in; what stands in it as @name@ is measured here."""
 import json
 import pathlib
@@ -8,11 +8,6 @@ import sys
 
 burnish, synthesis, sphere = sys.argv[1:]
 
-# LC, EBR and MHz on HX8K and gates of the first prototype of each block, which had one pipeline of about three stages
-PROTOTYPE = {
-    "exact_8": "1106 / 1 / 78.8, 3623", "paper_literal": "1445 / 4 / 66.6, 6038", "paper": "1149 / 4 / 64.3, 5042",
-    "two_piece": "1199 / 0 / 68.8, 3214", "w8": "1839 / 0 / 72.4", "schlick": "1772 / 0 / 89.1",
-}
 EXACT = ["exact_8", "exact_8_pipelined", "exact_8_versine", "exact_10", "exact_12"]
 
 
@@ -46,11 +41,10 @@ for unit in figures:
     depths[unit] = module.split(" clocks.")[0].split()[-1]
 
 blocks = table(
-    ["block", "clocks", "HX8K LC / EBR / MHz", "UP5K MHz", "Xilinx 7 LUT / FF / BRAM / DSP", "gates / FF", "error, LSB of 8 bits",
-     "prototype: LC / EBR / MHz, gates"],
+    ["block", "clocks", "HX8K LC / EBR / MHz", "UP5K MHz", "Xilinx 7 LUT / FF / BRAM / DSP", "gates / FF", "error, LSB of 8 bits"],
     [[f"`{unit}`", depths[unit], f"{f['lc']} / {f['ebr']} / {f['hx_mhz']}", f["up_mhz"], f"{f['luts']} / {f['x_ff']} / {f['x_bram']} / {f['x_dsp']}",
-      f"{f['gates']} / {f['ff']}", f"{errors[unit]['max_error_lsb']:.2f}" + ("*" if unit in EXACT[3:] else ""),
-      PROTOTYPE.get(unit, "")] for unit, f in figures.items()])
+      f"{f['gates']} / {f['ff']}", f"{errors[unit]['max_error_lsb']:.2f}" + ("*" if unit in EXACT[3:] else "")]
+     for unit, f in figures.items()])
 blinn = table(
     ["from vectors", "Xilinx 7 LUT / FF / BRAM / DSP", "gates / FF"],
     [[f"`{name}`", f"{f['luts']} / {f['x_ff']} / {f['x_bram']} / {f['x_dsp']}", f"{f['gates']} / {f['ff']}"] for name, f in vectors.items()])

@@ -8,7 +8,7 @@
 #   exhaustive  Verilator with every exponent and every input of every unit, the proofs for every exponent and three
 #               depths, and mutate
 #               (UNITS in the environment: only these)
-#   sphere      a sphere shaded by simulated units: hw/verify.sh sphere BURNISH LIBRARY SCRATCH PROGRAM PNG
+#   sphere      a sphere shaded by simulated units: hw/verify.sh sphere BURNISH LIBRARY SCRATCH REPORTS FIGURES
 # BURNISH is the command line, LIBRARY libburnish.a, SCRATCH a folder to work in. 77: a tool is missing.
 set -eu
 step=${1-} burnish=${2-} library=${3-} scratch=${4-}
@@ -18,7 +18,7 @@ rtl_dir=$hw/rtl
 
 need() {
   for tool; do
-    command -v "$tool" > /dev/null || { echo "skipped: $tool is not installed (make deps installs it)"; exit 77; }
+    command -v "$tool" > /dev/null || { echo "skipped: $tool is not installed (make test-deps installs it)"; exit 77; }
   done
 }
 
@@ -185,15 +185,15 @@ case $step in
     cat proofs.log ;;
   sphere)
     need verilator
-    program=$5 png=$6
+    reports=$5 figures=$6
     mkdir -p "$scratch"
     cd "$scratch"
     set --
     for unit in exact_8_pipelined paper_literal paper; do
       build_one "$unit"
-      "$program" questions "$unit" | bench_build/Vbench stream "$unit" > "$unit.answers"
+      "$reports" hardware-sphere questions "$unit" | bench_build/Vbench stream "$unit" > "$unit.answers"
       set -- "$@" "$unit=$unit.answers"
     done
-    "$program" picture "$png" "$@" ;;
+    "$reports" hardware-sphere picture "$figures" "$@" ;;
   *) sed -n '2,13s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
 esac

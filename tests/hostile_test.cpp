@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <burnish/io/source.h>
+#include <burnish/io/open_source.h>
 #include <burnish/math/random.h>
 #include <burnish/testing/seed_files.h>
 #include <burnish/testing/tools.h>

@@ -1,10 +1,5 @@
 #include "environment_argument.h"
 
-#include <memory>
-
-#include <burnish/file.h>
-#include <burnish/render/light/sky_image.h>
-
 namespace burnish::cli {
 
 void add_environment_argument(CLI::App& verb, std::string& text) {
@@ -16,9 +11,7 @@ void add_environment_argument(CLI::App& verb, std::string& text) {
 
 std::optional<Environment> environment_of(const std::string& text) {
   if (text.empty()) return {};
-  if (const auto known = find_environment(text)) return known;
-  return Environment{.name = "picture",
-                     .picture = std::make_shared<const SkyImage>(parse_sky(read_file(text)))};
+  return open_environment(text);
 }
 
 }  // namespace burnish::cli

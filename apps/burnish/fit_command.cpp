@@ -1,17 +1,19 @@
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <memory>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include <fmt/ranges.h>
 
+#include <burnish/baselines/evaluation_cost.h>
 #include <burnish/file.h>
-#include <burnish/fitting/fit.h>
+#include <burnish/fitting/baselines/baselines.h>
+#include <burnish/fitting/fit_file.h>
 #include <burnish/math/parallel.h>
 
 #include "commands.h"
-#include "fit_baseline.h"
 #include "progress.h"
 #include "source_arguments.h"
 #include "usage.h"
@@ -23,15 +25,12 @@ namespace {
 struct FitArguments {
   SourceArguments source;
   FitOptions options;
+  OneLobe one_lobe;
+  Budget budget{.bytes = 0};
   std::string out, method, loss = "image", smooth = "default", format;
   int threads = 0;
   bool no_symmetrize = false, json = false;
 };
-
-// File names need not be UTF-8.
-std::string dump(const nlohmann::ordered_json& notes, int indent) {
-  return notes.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-}
 
 double parse_smooth(const std::string& text) {
   double smooth = -1;
@@ -51,103 +50,126 @@ std::function<void(std::string_view, double)> progress_bars() {
   };
 }
 
+FitForm fit_form(const FitArguments& arguments, bool isotropic) {
+  if (!arguments.method.empty())
+    return BaselineMethod{.method = arguments.method, .bytes = arguments.budget.bytes};
+  LogLinear how = arguments.one_lobe.how;
+  how.cross_validate = arguments.smooth == "auto";
+  const FitLoss loss = parse_fit_loss(arguments.loss);
+  if (arguments.budget.bytes > 0) {
+    Budget budget = arguments.budget;
+    budget.loss = loss;
+    budget.scattered = how;
+    return budget;
+  }
+  return usage(
+      [&] { return form_of(arguments.one_lobe.model, arguments.one_lobe.tables, isotropic, how, loss); });
+}
+
 FitOptions fit_options(const FitArguments& arguments, bool isotropic) {
   FitOptions options = arguments.options;
+  options.form = fit_form(arguments, isotropic);
   options.symmetrize = !arguments.no_symmetrize;
-  options.loss = arguments.loss == "relative"  ? FitLoss::relative
-                 : arguments.loss == "log_cos" ? FitLoss::log_cos
-                                               : FitLoss::image;
   if (!arguments.format.empty()) options.format = parse_table_format(arguments.format);
-  options.cross_validate = arguments.smooth == "auto";
   if (arguments.smooth != "auto" && arguments.smooth != "default")
     options.smooth = parse_smooth(arguments.smooth);
-  if (options.budget == 0) usage([&] { return parse_model_spec(options.model, options.tables, isotropic); });
   options.progress = progress_bars();
   return options;
 }
 
-nlohmann::ordered_json fit(const FitArguments& arguments) {
+std::string figures(const ErrorFigures& e) {
+  return fmt::format("psnr {:.2f}, ssim {:.4f}, relative {:.4f}, rms_log {:.4f}, log_cos {:.4f}", e.psnr,
+                     e.ssim, e.relative, e.rms_log, e.log_cos);
+}
+
+void print(const OneLobeReport& report) {
+  fmt::print("fitted     {} samples, {} iterations ({}), smooth {:.3g}\n", report.samples,
+             report.summary.iterations, to_string(report.summary.stop_reason), report.smooth);
+  fmt::print("rms log f  {:.4f} before, {:.4f} after\n", report.summary.error_before,
+             report.summary.error_after);
+}
+
+void print(const LobesReport& report) {
+  fmt::print("fitted     {} samples, {} lobes, {} steps ({})\n", report.samples, report.lobes,
+             report.summary.iterations, to_string(report.summary.stop_reason));
+  if (report.search)
+    fmt::print("searched   {} changes, {} kept\n", report.search->trials, report.search->kept.size());
+}
+
+void print(const EnergyReport& report) {
+  const auto finite = [](double psnr) { return std::isfinite(psnr) ? psnr : 0; };
+  fmt::print(
+      "energy     albedo at most {:.4f} before, {:.4f} after; psnr {:.2f} -> {:.2f} dB, relative {:.4f} -> "
+      "{:.4f}\n",
+      report.largest_albedo_before, report.largest_albedo_after, finite(report.before.psnr),
+      finite(report.after.psnr), report.before.relative, report.after.relative);
+}
+
+void print_model(const FactoredBrdf& model, const FitReport& report) {
+  fmt::print("model      {}, {} bytes ({} of them tables)\n", model_expression(model), model.bytes(),
+             model.table_bytes());
+  const auto* one_lobe = std::get_if<OneLobeReport>(&report.how);
+  if (one_lobe)
+    print(*one_lobe);
+  else
+    print(std::get<LobesReport>(report.how));
+  if (report.energy) print(*report.energy);
+  if (report.held_out) {
+    const ErrorFigures& e = *report.held_out;
+    if (std::isfinite(e.psnr)) fmt::print("held out   psnr {:.2f} dB, ssim {:.4f}\n", e.psnr, e.ssim);
+    fmt::print("held out   relative {:.4f}, rms_log {:.4f}, log_cos {:.4f}\n", e.relative, e.rms_log,
+               e.log_cos);
+  } else if (one_lobe) {
+    fmt::print("relative   {:.4f} at the samples", one_lobe->relative.value());
+    if (one_lobe->relative_cross_validated)
+      fmt::print(", {:.4f} cross-validated", *one_lobe->relative_cross_validated);
+    fmt::print("\n");
+  }
+}
+
+void print_baseline(const BaselineBrdf& brdf, const FitReport& fit) {
+  const auto& report = std::get<BaselineReport>(fit.how);
+  fmt::print("model      {}, {}, {} bytes\n", report.method, baseline_expression(brdf), baseline_bytes(brdf));
+  if (const auto cost = evaluation_cost(brdf))
+    fmt::print("evaluation {} table reads, {} multiplies\n", cost->table_reads, cost->multiplies);
+  fmt::print("held out   {}\n", figures(fit.held_out.value()));
+  if (const auto& lobes = report.negative_lobes) {
+    fmt::print("negative   {:.2f} % of the values before they are clamped\n", 100 * lobes->negative_share);
+    fmt::print("  tables clamped instead: {}\n", figures(lobes->tables_clamped));
+    fmt::print("  lifted by {:.3g} instead: {}\n", lobes->bias, figures(lobes->biased));
+  }
+}
+
+void fit(const FitArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const ThreadLimit limit(arguments.threads);
   const Source source = arguments.source.open();
-  const Model model = burnish::fit({.brdf = source.ref(),
-                                    .name = source.name,
-                                    .format = source.findings.format,
-                                    .lambda_nm = source.findings.lambda_nm,
-                                    .samples = source.samples(),
-                                    .table = std::get_if<HalfDiffTable>(&source.brdf)},
-                                   fit_options(arguments, source.ref().isotropic()));
-  write_then_rename(arguments.out, format_model(model));
-  const FactoredBrdf& brdf = model.brdf;
-  auto notes = nlohmann::ordered_json::parse(model.notes);
-  notes["output"] = arguments.out;
-  notes["model"] = model_expression(brdf);
-  notes["bytes"] = brdf.bytes();
-  notes["table_bytes"] = brdf.table_bytes();
-  notes["smallest_factor"] = brdf.smallest_factor();
-  notes["reciprocal"] = brdf.reciprocal();
-  notes["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return notes;
-}
+  const Fit fit = burnish::fit(source, fit_options(arguments, source.ref().isotropic()));
+  write_then_rename(arguments.out, format_fit(fit));
 
-void print(const nlohmann::ordered_json& notes) {
-  const auto number = [&](const char* key) { return notes.at(key).get<double>(); };
-  fmt::print("{}: {}\n", notes.at("source").get<std::string>(), notes.at("source_format").get<std::string>());
-  fmt::print("model      {}, {} bytes ({} of them tables)\n", notes.at("model").get<std::string>(),
-             notes.at("bytes").get<std::size_t>(), notes.at("table_bytes").get<std::size_t>());
-  if (notes.contains("lobes")) {
-    fmt::print("fitted     {} samples, {} lobes, {} steps ({})\n", notes.at("samples").get<std::size_t>(),
-               notes.at("lobes").get<int>(), notes.at("iterations").get<int>(),
-               notes.at("stop_reason").get<std::string>());
-    if (notes.contains("search"))
-      fmt::print("searched   {} changes, {} kept\n", notes.at("search").at("trials").get<std::size_t>(),
-                 notes.at("search").at("kept").size());
-  } else {
-    fmt::print("fitted     {} samples, {} iterations ({}), smooth {:.3g}\n",
-               notes.at("samples").get<std::size_t>(), notes.at("iterations").get<int>(),
-               notes.at("stop_reason").get<std::string>(), number("smooth"));
-    fmt::print("rms log f  {:.4f} before, {:.4f} after\n", number("rms_log_before"), number("rms_log_after"));
+  const auto* model = std::get_if<FactoredBrdf>(&fit.brdf);
+  // baselines are compared by what their fits alone take
+  const double seconds = model
+                             ? std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()
+                             : fit.report.seconds;
+  if (arguments.json) {
+    fmt::print("{}\n", summary_json(fit, arguments.out, seconds));
+    return;
   }
-  if (notes.contains("conserve_energy")) {
-    const auto& note = notes.at("conserve_energy");
-    const auto was = [&](const char* key) {
-      return note.at(key).is_number() ? note.at(key).get<double>() : 0;
-    };
-    fmt::print(
-        "energy     albedo at most {:.4f} before, {:.4f} after; psnr {:.2f} -> {:.2f} dB, relative {:.4f} -> "
-        "{:.4f}\n",
-        was("largest_albedo_before"), was("largest_albedo_after"), was("psnr_before"), was("psnr_after"),
-        was("relative_before"), was("relative_after"));
-  }
-  if (notes.contains("log_cos")) {
-    if (notes.at("psnr").is_number())
-      fmt::print("held out   psnr {:.2f} dB, ssim {:.4f}\n", number("psnr"), number("ssim"));
-    fmt::print("held out   relative {:.4f}, rms_log {:.4f}, log_cos {:.4f}\n", number("relative"),
-               number("rms_log"), number("log_cos"));
-  } else if (notes.contains("relative_cross_validated"))
-    fmt::print("relative   {:.4f} at the samples, {:.4f} cross-validated\n", number("relative"),
-               number("relative_cross_validated"));
+  fmt::print("{}: {}\n", fit.report.source, fit.report.source_format);
+  if (model)
+    print_model(*model, fit.report);
   else
-    fmt::print("relative   {:.4f} at the samples\n", number("relative"));
-  fmt::print("written    {} in {:.2f} s\n", notes.at("output").get<std::string>(), number("seconds"));
-}
-
-nlohmann::ordered_json fit_by_method(const FitArguments& arguments) {
-  const ThreadLimit limit(arguments.threads);
-  return fit_baseline(arguments.source.open(), {.method = arguments.method,
-                                                .out = arguments.out,
-                                                .budget = arguments.options.budget,
-                                                .samples = arguments.options.samples,
-                                                .seed = arguments.options.seed,
-                                                .symmetrize = !arguments.no_symmetrize});
+    print_baseline(std::get<BaselineBrdf>(fit.brdf), fit.report);
+  fmt::print("written    {} in {:.2f} s\n", arguments.out, seconds);
 }
 
 void add_lobes_arguments(CLI::App& verb, FitArguments& arguments) {
-  FitOptions& options = arguments.options;
-  verb.add_option("--budget", options.budget,
+  Budget& budget = arguments.budget;
+  verb.add_option("--budget", budget.bytes,
                   "bytes: fits the best model of several lobes that this many hold; K and M count as 1024s")
       ->transform(CLI::AsSizeValue(false));
-  verb.add_option("--lobes", options.lobes, "of --budget (default: as many as serve it best)")
+  verb.add_option("--lobes", budget.lobes, "of --budget (default: as many as serve it best)")
       ->check(CLI::Range(1, 64))
       ->needs("--budget");
   verb.add_option(
@@ -155,7 +177,7 @@ void add_lobes_arguments(CLI::App& verb, FitArguments& arguments) {
           "what several lobes are refined for: pictures at every exposure beside both means, or one mean")
       ->check(CLI::IsMember({"image", "relative", "log_cos"}))
       ->capture_default_str();
-  verb.add_flag("--search", options.search,
+  verb.add_flag("--search", budget.search,
                 "of --budget: search factors, projections, warps and sizes first (up to a minute)")
       ->needs("--budget");
 }
@@ -171,15 +193,20 @@ void add_fit_command(CLI::App& app) {
   auto arguments = std::make_shared<FitArguments>();
   add_source_arguments(*verb, arguments->source);
   FitOptions& options = arguments->options;
+  OneLobe& one_lobe = arguments->one_lobe;
   add_lobes_arguments(*verb, *arguments);
   verb->add_option("-o,--output", arguments->out, "model file to write (OpenEXR; JSON with --method)")
       ->required();
-  add_method_argument(*verb, arguments->method);
   verb->add_option(
-          "--model", options.model,
+      "--method", arguments->method,
+      fmt::format("fit what others would instead of positive factors, at --budget bytes (default "
+                  "{}): {}",
+                  BaselineOptions{}.budget, fmt::join(baseline_methods(), ", ")));
+  verb->add_option(
+          "--model", one_lobe.model,
           "product of tables over projections: pqp, pqpr, or such as \"p(wo) q(h) s(wi+wo+0.5n) p(wi)\"")
       ->capture_default_str();
-  verb->add_option("--table", options.tables,
+  verb->add_option("--table", one_lobe.tables,
                    "size and spacing of a table: NAME=SIZE[,warp][,shared][,format], SIZE N (1-D), NxN "
                    "(hemisphere) or "
                    "NxM; warp identity, power:P or rational:K; format as --format")
@@ -188,11 +215,11 @@ void add_fit_command(CLI::App& app) {
       "--smooth", arguments->smooth,
       "smoothness of the tables: a number >= 0, or auto (cross-validation; the default for scattered "
       "samples)");
-  verb->add_option("--floor", options.floor,
+  verb->add_option("--floor", one_lobe.how.floor,
                    "added to every value before its logarithm is taken, 1/sr, at most 1")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  verb->add_option("--reweightings", options.reweightings,
+  verb->add_option("--reweightings", one_lobe.how.reweightings,
                    "passes towards the mean absolute error (default: 4 for scattered samples, else 0)")
       ->check(CLI::Range(0, 100));
   verb->add_option("--samples", options.samples, "pairs drawn from a source that is a function")
@@ -211,16 +238,7 @@ void add_fit_command(CLI::App& app) {
   verb->add_flag("--conserve-energy", options.conserve_energy,
                  "damp the model where it reflects more than it receives, and say what that cost");
   verb->add_flag("--json", arguments->json, "print the summary as JSON");
-  verb->callback([arguments] {
-    const bool baseline = !arguments->method.empty();
-    const nlohmann::ordered_json notes = baseline ? fit_by_method(*arguments) : fit(*arguments);
-    if (arguments->json)
-      fmt::print("{}\n", dump(notes, 2));
-    else if (baseline)
-      print_baseline(notes);
-    else
-      print(notes);
-  });
+  verb->callback([arguments] { fit(*arguments); });
 }
 
 }  // namespace burnish::cli

@@ -181,7 +181,7 @@ void add_render_command(CLI::App& app) {
       "knot.exr\n"
       "          burnish render --mesh teapot --material paint.exr --environment sky.exr -o teapot.png\n"
       "          burnish render --figure1 -o figure1.png\n"
-      "See docs/rendering.md.");
+      "See docs/guide/rendering.md.");
   auto arguments = std::make_shared<RenderArguments>();
   verb->add_option("--mesh", arguments->mesh, "sphere, teapot, torus-knot, or an OBJ or glTF file")
       ->capture_default_str();

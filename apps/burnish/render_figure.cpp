@@ -7,7 +7,7 @@
 #include <burnish/fitting/fit.h>
 #include <burnish/image/contact_sheet.h>
 #include <burnish/image/png.h>
-#include <burnish/io/source.h>
+#include <burnish/io/open_source.h>
 #include <burnish/math/angles.h>
 #include <burnish/metrics/sphere_images.h>
 #include <burnish/render/gl/gl_context.h>
@@ -37,9 +37,7 @@ Scene scene_of(const std::string& mesh, int vertices) {
 
 FactoredBrdf model_of(const FigureArguments& arguments, const Source& truth) {
   if (!arguments.model.empty()) return parse_model(read_file(arguments.model)).brdf;
-  FitOptions options;
-  options.budget = 16 << 10;
-  return fit({.brdf = truth.ref(), .name = truth.name, .format = truth.findings.format}, options).brdf;
+  return fit(truth, {.form = Budget{.bytes = 16 << 10}, .score = false}).model();
 }
 
 std::vector<Image8> row_of(const VertexFigure& f) {

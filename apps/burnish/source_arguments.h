@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include <burnish/io/source.h>
+#include <burnish/io/open_source.h>
 
 namespace burnish::cli {
 

@@ -1,5 +1,5 @@
 // c^exponent as 2^-(exponent u), u = -log2 c, within one unit of the last place of value_o for every exponent
-// and every input (0.82 at most; docs/hardware.md).
+// and every input (0.82 at most; docs/results/hardware.md).
 //   exponent_i  U10.0, 1 to 1023
 //   input_i     Q1.CosineBits in [0, 1]: c, or with Versine v = 1 - c; CosineBits from OutBits + 2 to OutBits + 12
 //   value_o     c^exponent (2^OutBits - 1): full at c = 1, 0 at c = 0, never falling as c rises

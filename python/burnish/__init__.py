@@ -28,6 +28,7 @@ from ._burnish import (
     directional_albedo,
     draw_pairs,
     error_figures,
+    export,
     fit,
     generate_shader,
     measure,

@@ -5,7 +5,7 @@
 
 #include <burnish/error.h>
 #include <burnish/fitting/energy.h>
-#include <burnish/fitting/fit.h>
+#include <burnish/fitting/fit_file.h>
 
 #include "opened_brdf.h"
 
@@ -22,28 +22,14 @@ std::function<void(std::string_view, double)> progress_of(nb::handle callback) {
   };
 }
 
-FitLoss parse_loss(const std::string& name) {
-  if (name == "image") return FitLoss::image;
-  if (name == "relative") return FitLoss::relative;
-  if (name == "log_cos") return FitLoss::log_cos;
-  throw Error("loss: expected image, relative or log_cos, found '" + name + "'");
-}
-
 OpenedModel* fit(const OpenedBrdf& source, const std::string& model, const std::vector<std::string>& tables,
                  std::uint64_t budget, int lobes, bool search, const std::string& loss,
                  const std::variant<std::monostate, double, std::string>& smooth,
                  std::optional<int> reweightings, double floor, const std::optional<std::string>& format,
                  std::size_t samples, std::uint64_t seed, bool symmetrize, bool conserve_energy,
                  const nb::object& progress) {
-  FitOptions options{.model = model,
-                     .tables = tables,
-                     .budget = budget,
-                     .lobes = lobes,
-                     .search = search,
-                     .loss = parse_loss(loss),
-                     .reweightings = reweightings,
-                     .floor = floor,
-                     .samples = samples,
+  LogLinear how{.reweightings = reweightings, .floor = floor};
+  FitOptions options{.samples = samples,
                      .seed = seed,
                      .symmetrize = symmetrize,
                      .conserve_energy = conserve_energy,
@@ -52,18 +38,19 @@ OpenedModel* fit(const OpenedBrdf& source, const std::string& model, const std::
   if (const auto* word = std::get_if<std::string>(&smooth)) {
     if (*word != "auto")
       throw Error("smooth: expected None, \"auto\" or a number >= 0, found '" + *word + "'");
-    options.cross_validate = true;
+    how.cross_validate = true;
   }
   if (format) options.format = parse_table_format(*format);
+  if (budget > 0)
+    options.form = Budget{.bytes = budget,
+                          .lobes = lobes,
+                          .search = search,
+                          .loss = parse_fit_loss(loss),
+                          .scattered = how};
+  else
+    options.form = form_of(model, tables, source.ref().isotropic(), how, parse_fit_loss(loss));
   const nb::gil_scoped_release released;
-  const Source& from = source.source();
-  return new OpenedModel(from.name, burnish::fit({.brdf = source.ref(),
-                                                  .name = from.name,
-                                                  .format = from.findings.format,
-                                                  .lambda_nm = from.findings.lambda_nm,
-                                                  .samples = from.samples(),
-                                                  .table = std::get_if<HalfDiffTable>(&from.brdf)},
-                                                 options));
+  return new OpenedModel(source.source().name, to_model(burnish::fit(source.source(), options)));
 }
 
 }  // namespace
@@ -73,7 +60,7 @@ void bind_fitting(nb::module_& m) {
       "fit", &fit, nb::arg("source"), nb::kw_only(), nb::arg("model") = "pqp",
       nb::arg("tables") = std::vector<std::string>(), nb::arg("budget") = 0, nb::arg("lobes") = 0,
       nb::arg("search") = false, nb::arg("loss") = "image", nb::arg("smooth") = nb::none(),
-      nb::arg("reweightings") = nb::none(), nb::arg("floor") = HomomorphicOptions{}.floor,
+      nb::arg("reweightings") = nb::none(), nb::arg("floor") = LogLinear{}.floor,
       nb::arg("format") = nb::none(), nb::arg("samples") = 0, nb::arg("seed") = 1,
       nb::arg("symmetrize") = true, nb::arg("conserve_energy") = false, nb::arg("progress") = nb::none(),
       nb::rv_policy::take_ownership,

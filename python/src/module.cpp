@@ -46,9 +46,11 @@ NB_MODULE(_burnish, m) {
   bind_source(m);
   bind_eval(m);
   bind_sampling(m);
+  bind_graphs(m);
   bind_fitting(m);
   bind_metrics(m);
   bind_shaders(m);
+  bind_exports(m);
   bind_writers(m);
 }
 

@@ -16,7 +16,9 @@ namespace nb = nanobind;
 // Each part of the library is bound in the file of its name.
 void bind_source(nb::module_& m);
 void bind_eval(nb::module_& m);
+void bind_exports(nb::module_& m);
 void bind_fitting(nb::module_& m);
+void bind_graphs(nb::module_& m);
 void bind_metrics(nb::module_& m);
 void bind_sampling(nb::module_& m);
 void bind_shaders(nb::module_& m);

@@ -7,7 +7,7 @@
 
 #include <burnish/eval/factored_eval.h>
 #include <burnish/eval/tabulated_sampler.h>
-#include <burnish/io/source.h>
+#include <burnish/source.h>
 
 #include "module.h"
 

@@ -85,28 +85,6 @@ nb::tuple sample_wi(const OpenedBrdf& brdf, const Array<const T>& wo_array, cons
   return nb::make_tuple(wi.array, pdf.array);
 }
 
-nb::dict sampler_tables(const OpenedBrdf& brdf) {
-  const SamplerTables t = [&] {
-    const nb::gil_scoped_release released;
-    return brdf.sampler().tables();
-  }();
-  nb::dict tables;
-  tables["isotropic"] = t.isotropic;
-  tables["sharpness"] = t.sharpness;
-  tables["share"] = t.share;
-  tables["stretch"] = nb::make_tuple(t.xx, t.xy, t.yy);
-  tables["thetas"] = t.thetas;
-  tables["phis"] = t.phis;
-  tables["rows"] = t.rows;
-  tables["columns"] = t.columns;
-  tables["theta_scale"] = t.theta_scale;
-  tables["ring_reach"] = t.ring_reach;
-  tables["row_edges"] = to_numpy(std::vector(t.row_edges.begin(), t.row_edges.end()), {t.row_edges.size()});
-  tables["cell_edges"] =
-      to_numpy(std::vector(t.cell_edges.begin(), t.cell_edges.end()), {t.cell_edges.size()});
-  return tables;
-}
-
 constexpr const char* kSampleDoc =
     "Draws directions to the light nearly in proportion to f_r cos(theta_i).\n\n"
     "wo: unit vectors to the viewer, (N, 3) or (3,); u: uniform numbers in [0, 1), (N, 2) or (2,), of the\n"
@@ -137,9 +115,7 @@ void bind_sampling(nb::module_& m) {
       .def("pdf", &pdf<double>, nb::arg("wi").noconvert(), nb::arg("wo").noconvert(),
            nb::arg("out") = nb::none(),
            nb::sig("def pdf(self, wi: NDArray[numpy.float64], wo: NDArray[numpy.float64], "
-                   "out: NDArray[numpy.float64] | None = None) -> NDArray[numpy.float64]"))
-      .def("_sampler_tables", &sampler_tables,
-           "What sample_wi draws from, for tracers that compile their own code.");
+                   "out: NDArray[numpy.float64] | None = None) -> NDArray[numpy.float64]"));
 }
 
 }  // namespace burnish::python

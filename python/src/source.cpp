@@ -8,6 +8,7 @@
 #include <burnish/error.h>
 #include <burnish/factors/model_file.h>
 #include <burnish/factors/model_spec.h>
+#include <burnish/io/open_source.h>
 #include <burnish/io/source_report.h>
 
 #include "opened_brdf.h"
@@ -37,16 +38,7 @@ nb::object table_values(nb::handle self) {
 }
 
 nb::object projection_terms(const Projection& p) {
-  switch (p.kind) {
-    case Projection::Kind::difference:
-      return nb::str("difference");
-    case Projection::Kind::deviation:
-      return nb::str("deviation");
-    case Projection::Kind::twist:
-      return nb::str("twist");
-    case Projection::Kind::affine:
-      break;
-  }
+  if (p.kind != Projection::Kind::affine) return nb::str(std::string(to_string(p.kind)).c_str());
   return nb::make_tuple(p.wi, p.wo, p.mirror, p.n);
 }
 
@@ -104,8 +96,8 @@ void bind_model_parts(nb::module_& m) {
       .def_prop_ro(
           "projection", [](const FactorUse& u) { return projection_terms(u.projection); },
           nb::sig("def projection(self) -> tuple[float, float, float, float] | str"),
-          "(a, b, m, n) of normalize(a wi + b wo + m mirror(wi) + n normal), or \"difference\", "
-          "\"deviation\" or \"twist\".")
+          "(a, b, m, n) of normalize(a wi + b wo + m mirror(wi) + n normal), or the name of another kind, such "
+          "as \"difference\".")
       .def_prop_ro(
           "projection_y", [](const FactorUse& u) { return projection_terms(u.projection_y); },
           nb::sig("def projection_y(self) -> tuple[float, float, float, float] | str"), "Of grids only.");

@@ -85,6 +85,28 @@ def test_shaders_and_textures_are_the_command_lines(language, extension, cli, mo
         assert (tmp_path / "texture.ktx2").read_bytes() == (tmp_path / "out" / entry["file"]).read_bytes()
 
 
+def test_exports_are_the_command_lines(cli, model, tmp_path):
+    burnish.write_model(tmp_path / "model.exr", model)
+    options = [word for to in ("three", "gltf", "glsl", "html") for word in ("--to", to)]
+    cli("export", tmp_path / "model.exr", *options, "--environment", "sun", "-o", tmp_path / "cli")
+    files = burnish.export(
+        model, ["three", "gltf", "glsl", "html"], tmp_path / "python", name="model", environment="sun"
+    )
+    assert list(files)[-1] == "model.json"
+    for name, content in files.items():
+        assert (tmp_path / "cli" / name).read_bytes() == content == (tmp_path / "python" / name).read_bytes()
+    assert len(files) == len(list((tmp_path / "cli").iterdir()))
+    assert list(burnish.export(model, "three")) == ["brdf.three.js", "brdf.json"]
+    with pytest.raises(burnish.Error, match="expected ktx2, .*, found 'jpeg'"):
+        burnish.export(model, "jpeg")
+
+
+def test_the_specular_family_is_exported(cli, tmp_path):
+    cli("export", "phong:exponent=20", "--to", "hlsl", "--power", "w8", "-o", tmp_path)
+    files = burnish.export("phong:exponent=20", "hlsl", name="phong", power="w8")
+    assert files["phong.hlsl"] == (tmp_path / "phong.hlsl").read_bytes()
+
+
 def test_progress_rises_and_its_exceptions_end_the_fit(ggx):
     seen = []
     burnish.fit(ggx, budget=800, lobes=2, progress=lambda stage, fraction: seen.append((stage, fraction)))

@@ -1,4 +1,4 @@
-#include <burnish/io/source.h>
+#include <burnish/io/open_source.h>
 
 #include "fuzz_reader.h"
 

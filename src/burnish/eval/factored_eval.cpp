@@ -18,6 +18,7 @@
 #include <hwy/highway.h>
 
 #include <burnish/eval/lookup_lanes-inl.h>
+#include <burnish/eval/projection_lanes-inl.h>
 
 #ifndef BURNISH_EVAL_FACTORED_ARGUMENTS
 #define BURNISH_EVAL_FACTORED_ARGUMENTS
@@ -59,15 +60,14 @@ HWY_INLINE void store(Lane v, float* to) {
 HWY_INLINE Lane if_positive(Lane condition, Lane value) {  // else 0, also for not-a-number
   return Lane(hn::IfThenElseZero(hn::Gt(condition.raw, hn::Zero(D())), value.raw));
 }
-HWY_INLINE Lane if_positive(Lane condition, Lane value, Lane other) {
-  return Lane(hn::IfThenElse(hn::Gt(condition.raw, hn::Zero(D())), value.raw, other.raw));
-}
-HWY_INLINE Lane length(Lane x, Lane y) {
-  return sqrt(mul_add(x, x, y * y));
-}
-HWY_INLINE Lane length(Lane x, Lane y, Lane z) {
-  return sqrt(mul_add(x, x, mul_add(y, y, z * z)));
-}
+
+// wi and wo for the formulas of projections.
+struct LanePair {
+  Lanes sum, apart;
+  Lane length_of_sum;
+
+  HWY_INLINE Lane sum_length() const { return length_of_sum; }
+};
 // The larger | |w|^2 - 1 | of two vectors as an integer, which is largest for not-a-number.
 HWY_INLINE hn::Vec<DI> excess(const Lane (&w)[6]) {
   const auto of = [](Lane x, Lane y, Lane z) HWY_ATTR {
@@ -82,7 +82,7 @@ HWY_INLINE hn::Mask<DI> no_directions(hn::Vec<DI> excess) {
 }
 
 // A block's directions on the way to positions in tables. Every step is a loop of its own, so that none has a
-// decision in it; stores are hidden behind roots and divisions.
+// decision in it; stores are hidden behind roots and divisions. The formulas are projection-inl.h's.
 struct Projector {
   alignas(64) float sum_x[kMostBlock], sum_y[kMostBlock], sum_z[kMostBlock],
       sum_length[kMostBlock];                   // wi + wo
@@ -137,90 +137,53 @@ struct Projector {
       sum ? begin<false, true>() : begin<false, false>();
   }
 
+  HWY_INLINE Lanes direction(std::size_t first, std::size_t i) const {
+    return {load(in[first] + i), load(in[first + 1] + i), load(in[first + 2] + i)};
+  }
+  HWY_INLINE LanePair pair(std::size_t i) const {
+    return {{load(sum_x + i), load(sum_y + i), load(sum_z + i)},
+            direction(0, i) - direction(3, i),
+            load(sum_length + i)};
+  }
+  HWY_INLINE void put(const Polar<Lane>& polar, std::size_t i) {
+    store(polar.r, r + i), store(polar.den, den + i);
+  }
+
   // Of a vector (x, y, z) and `total`, its length; none: 1.
   void project_up(const float* from_x, const float* from_y, const float* z, const float* total, bool radius) {
     x = from_x, y = from_y;
-    const auto denominator = [=](std::size_t i)
-                                 HWY_ATTR { return (total ? load(total + i) : Lane(1.0)) + load(z + i); };
+    const auto polar = [=](std::size_t i) HWY_ATTR {
+      return polar_of(Lanes{load(from_x + i), load(from_y + i), load(z + i)},
+                      total ? load(total + i) : Lane(1.0));
+    };
     if (radius)
-      for_each([&](std::size_t i) HWY_ATTR {
-        store(denominator(i), den + i);
-        store(length(load(from_x + i), load(from_y + i)), r + i);
-      });
+      for_each([&](std::size_t i) HWY_ATTR { put(polar(i), i); });
     else
-      for_each([&](std::size_t i) HWY_ATTR { store(denominator(i), den + i); });
+      for_each([&](std::size_t i) HWY_ATTR { store(polar(i).den, den + i); });
   }
 
-  // cos theta_d = |wi + wo| / 2, sin theta_d = |wi - wo| / 2
-  void project_difference_angle() {
-    for_each([&](std::size_t i) HWY_ATTR {
-      store(length(load(in[0] + i) - load(in[3] + i), load(in[1] + i) - load(in[4] + i),
-                   load(in[2] + i) - load(in[5] + i)),
-            r + i);
-      store(Lane(2.0) + load(sum_length + i), den + i);
-    });
+  void project_angle(Projection::Kind kind) {
+    with_angle(kind, [&](const auto& angle)
+                         HWY_ATTR { for_each([&](std::size_t i) HWY_ATTR { put(angle(pair(i)), i); }); });
   }
 
-  // The same of the mirrored light, for disks at azimuth 0.
-  void project_deviation_angle() {
-    x = r, y = own_y;
-    for_each([&](std::size_t i) HWY_ATTR {
-      const Lane dx = load(in[0] + i) - load(in[3] + i), dy = load(in[1] + i) - load(in[4] + i),
-                 dz = load(in[2] + i) - load(in[5] + i);
-      store(length(load(sum_x + i), load(sum_y + i), dz), r + i);
-      store(Lane(2.0) + length(dx, dy, load(sum_z + i)), den + i);
-      store(Lane(0.0), own_y + i);
-    });
-  }
-
-  // One rounded product less another: exchanging the directions only changes its sign.
-  void project_twist_angle() {
-    for_each([&](std::size_t i) HWY_ATTR {
-      const Lane dx = load(in[0] + i) - load(in[3] + i), dy = load(in[1] + i) - load(in[4] + i),
-                 dz = load(in[2] + i) - load(in[5] + i);
-      const Lane sx = load(sum_x + i), sy = load(sum_y + i), total = load(sum_length + i);
-      const Lane across = mul_add(sx, sx, sy * sy), square = total * total;
-      const Lane half =
-          max(mul_add(square, Lane(kTwistCore), across), Lane(std::numeric_limits<float>::min()));
-      const Lane turn = dz * neg_mul_add(sx, dy, sy * dx) * square;
-      const Lane twisted = mul_add(turn, Lane(kTwistScale), half), whole = half + half;
-      store(max(min(twisted, whole), Lane(0.0)), r + i);
-      store(whole, den + i);
-    });
-  }
-
-  // 2 d: wi - wo along the axes of the frame of h [Rusinkiewicz 1998]; of wi + wo they have no part
+  // 2 d, whose z is |wi + wo|
   void project_difference() {
     x = own_x, y = own_y;
     for_each([&](std::size_t i) HWY_ATTR {
-      const Lane dx = load(in[0] + i) - load(in[3] + i), dy = load(in[1] + i) - load(in[4] + i),
-                 dz = load(in[2] + i) - load(in[5] + i);
-      const Lane sx = load(sum_x + i), sy = load(sum_y + i), total = load(sum_length + i);
-      const Lane across = length(sx, sy);
-      const Lane cos_phi = if_positive(across, sx / across, Lane(1.0));
-      const Lane sin_phi = if_positive(across, sy / across);
-      const Lane along = mul_add(cos_phi, dx, sin_phi * dy);
-      const Lane u = if_positive(total, neg_mul_add(across, dz, load(sum_z + i) * along) / total, along);
-      const Lane v = neg_mul_add(sin_phi, dx, cos_phi * dy), square = mul_add(u, u, v * v);
-      store(u, own_x + i), store(v, own_y + i), store(sqrt(square), r + i);
-      store(sqrt(mul_add(total, total, square)) + total, den + i);
+      const LanePair at = pair(i);
+      const auto [u, v] = across_half(at.sum, at.length_of_sum, at.apart);
+      store(u, own_x + i), store(v, own_y + i);
+      put(polar_of(Lanes{u, v, at.length_of_sum}, length(u, v, at.length_of_sum)), i);
     });
   }
 
   void project_affine(const Projection& p) {
     x = own_x, y = own_y;
-    const Lane wi(p.wi), wo(p.wo), m(p.mirror), n(p.n);
-    const bool equal = p.wi == p.wo;  // then rounded once, like Projection's reference
     for_each([&](std::size_t i) HWY_ATTR {
-      const auto combine = [&](std::size_t k) HWY_ATTR {  // not fused: symmetric in its terms
-        const Lane from_wi = load(in[k] + i), from_wo = load(in[k + 3] + i);
-        return equal ? wi * (from_wi + from_wo) : wi * from_wi + wo * from_wo;
-      };
-      const Lane u = combine(0) - m * load(in[0] + i), v = combine(1) - m * load(in[1] + i);
-      const Lane up = combine(2) + m * load(in[2] + i) + n;
-      const Lane z = if_positive(up, up), square = mul_add(u, u, v * v);
-      store(u, own_x + i), store(v, own_y + i), store(sqrt(square), r + i);
-      store(max(sqrt(mul_add(z, z, square)) + z, Lane(std::numeric_limits<float>::min())), den + i);
+      const auto [v, polar] = affine(p, direction(0, i), direction(3, i));
+      store(v.x, own_x + i), store(v.y, own_y + i);
+      put(polar, i);
     });
   }
 
@@ -233,16 +196,12 @@ struct Projector {
         return project_up(in[3], in[4], in[5], nullptr, source.radius);
       case Kind::half:
         return project_up(sum_x, sum_y, sum_z, sum_length, source.radius);
-      case Kind::difference_angle:
-        return project_difference_angle();
-      case Kind::deviation_angle:
-        return project_deviation_angle();
-      case Kind::twist_angle:
-        return project_twist_angle();
-      case Kind::difference:
-        return project_difference();
       case Kind::affine:
         return project_affine(source.projection);
+      case Kind::difference:
+        return project_difference();
+      case Kind::angle:
+        return project_angle(source.projection.kind);
     }
   }
 
@@ -251,46 +210,45 @@ struct Projector {
     return if_positive(position, min(position, cells));
   }
 
-  // `scaled` makes a line's position of r and what a disk's x and y are multiplied by of 1.
-  template <class Scaled>
-  HWY_INLINE void place(const FactoredPlan::Position& k, float* to, std::size_t stride,
-                        const Scaled& scaled) const {
+  HWY_INLINE Polar<Lane> polar(std::size_t i) const { return {load(r + i), load(den + i)}; }
+
+  // `warp` makes a line's position of a polar angle, `stretch` what a disk's x and y are multiplied by.
+  template <class WarpOf, class StretchOf>
+  HWY_INLINE void place(const FactoredPlan::Position& k, float* to, std::size_t stride, const WarpOf& warp,
+                        const StretchOf& stretch) const {
     const Lane cells(k.cells), centre(0.5 * k.cells);
     if (k.disk)
       for_each([&](std::size_t i) HWY_ATTR {
-        const Lane scale = scaled(i, true);
+        const Lane scale = stretch(polar(i));
         store(within(mul_add(load(x + i), scale, centre), cells), to + i);
         store(within(mul_add(load(y + i), scale, centre), cells), to + stride + i);
       });
     else
-      for_each([&](std::size_t i) HWY_ATTR { store(within(scaled(i, false), cells), to + i); });
+      for_each([&](std::size_t i) HWY_ATTR { store(within(warp(polar(i)), cells), to + i); });
+  }
+  template <class Exponent>
+  HWY_INLINE void place_by_power(const FactoredPlan::Position& k, float* to, std::size_t stride,
+                                 const Exponent& exponent) const {
+    const Lane size(k.size);
+    place(
+        k, to, stride, [&](const Polar<Lane>& p) HWY_ATTR { return power_warp(size, exponent, p); },
+        [&](const Polar<Lane>& p) HWY_ATTR { return power_stretch(size, exponent, p); });
   }
 
   void find_positions(const FactoredPlan::Position& k, float* to, std::size_t stride) const {
-    const Lane a(k.a), b(k.b), c(k.c);
-    const auto by_power = [&](std::size_t i, bool disk, auto power) HWY_ATTR {
-      const Lane radius = load(r + i), t = radius / load(den + i), stretched = a * power(t);
-      return if_positive(t, disk ? stretched / radius : stretched);
-    };
-    if (k.power == 0.5f) {
-      place(k, to, stride, [&](std::size_t i, bool disk) HWY_ATTR {
-        return by_power(i, disk, [](Lane t) HWY_ATTR { return sqrt(t); });
-      });
-    } else if (k.power != 0) {
-      const Lane exponent(k.power);
-      place(k, to, stride, [&](std::size_t i, bool disk) HWY_ATTR {
-        return by_power(i, disk, [&](Lane t) HWY_ATTR {
-          return Lane(hn::Exp(D(), (exponent * Lane(hn::Log(D(), t.raw))).raw));
-        });
-      });
-    } else if (k.b == 0) {
-      place(k, to, stride,
-            [&](std::size_t i, bool disk) HWY_ATTR { return (disk ? a : a * load(r + i)) / load(den + i); });
-    } else {
-      place(k, to, stride, [&](std::size_t i, bool disk) HWY_ATTR {
-        const Lane radius = load(r + i);
-        return (disk ? a : a * radius) / mul_add(b, radius, c * load(den + i));
-      });
+    const Lane size(k.size), parameter(k.parameter);
+    switch (k.warp) {
+      case WarpKind::identity:
+        return place(
+            k, to, stride, [&](const Polar<Lane>& p) HWY_ATTR { return identity_warp(size, p); },
+            [&](const Polar<Lane>& p) HWY_ATTR { return identity_stretch(size, p); });
+      case WarpKind::rational:
+        return place(
+            k, to, stride, [&](const Polar<Lane>& p) HWY_ATTR { return rational_warp(size, parameter, p); },
+            [&](const Polar<Lane>& p) HWY_ATTR { return rational_stretch(size, parameter, p); });
+      case WarpKind::power:
+        return k.parameter == 0.5f ? place_by_power(k, to, stride, Half())
+                                   : place_by_power(k, to, stride, parameter);
     }
   }
 };
@@ -306,10 +264,10 @@ struct RowCells {
     const DI di;
     const auto width = hn::Set(di, static_cast<std::int32_t>(lookup.width));
     for (std::size_t i = 0; i < count; i += kLanes) {
-      const Cell across = cell_of(load(at_x + i));
+      const LaneCell across = cell_of(load(at_x + i));
       hn::Vec<DI> node = node_of(across);
       if constexpr (kPlane) {
-        const Cell up = cell_of(load(at_y + i));
+        const LaneCell up = cell_of(load(at_y + i));
         node = hn::Add(node, hn::Mul(node_of(up), width));
         store(up.fraction, y + i);
       }
@@ -367,7 +325,7 @@ void multiply_planes(const FactoredPlan::Lookup& lookup, const float* table, con
   for (int c = 0; c < kPlanes; ++c) planes[c].load(table + static_cast<std::size_t>(16 * kVectors * c));
   const float *const x = block.slot(lookup.x), *const pair_x = block.slot(lookup.pair_x);
   const auto interpolate = [&](const float* position, Lane(&value)[kPlanes]) HWY_ATTR {
-    const Cell cell = cell_of(load(position));
+    const LaneCell cell = cell_of(load(position));
     const hn::Vec<DI> node = hn::BitCast(DI(), cell.shifted.raw), next = hn::Add(node, hn::Set(DI(), 1));
     for (int c = 0; c < kPlanes; ++c) value[c] = mix(planes[c].at(node), planes[c].at(next), cell.fraction);
   };

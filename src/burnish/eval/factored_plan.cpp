@@ -41,8 +41,8 @@ std::size_t up_to_multiple(std::size_t n, std::size_t of) noexcept {
 }  // namespace
 
 bool FactoredPlan::Position::same_place(const Position& other) const noexcept {
-  return std::tie(disk, a, b, c, power, cells) ==
-         std::tie(other.disk, other.a, other.b, other.c, other.power, other.cells);
+  return std::tie(disk, warp, parameter, size, cells) ==
+         std::tie(other.disk, other.warp, other.parameter, other.size, other.cells);
 }
 
 FactoredPlan::FactoredPlan(const FactoredBrdf& brdf) : channels(static_cast<std::size_t>(brdf.channels())) {
@@ -114,15 +114,13 @@ std::array<std::size_t, 2> FactoredPlan::slots_of(const TableLayout& layout, con
 
 // The slot of a position, the same for the same position.
 std::size_t FactoredPlan::slot_of(const Projection& projection, Warp warp, int nodes, bool disk) {
-  const auto cells = static_cast<float>(nodes - 1), half = disk ? 0.5f * cells : cells;
-  const auto parameter = static_cast<float>(warp.parameter);
-  Position position{.disk = disk, .a = half, .b = 0, .c = 1, .power = 0, .cells = cells, .slot = slots};
-  if (warp.kind == WarpKind::power) position.power = parameter;
-  if (warp.kind == WarpKind::rational) {  // t (1 + k) / (t + k) with t = r / den
-    position.a = half * (1 + parameter);
-    position.b = 1;
-    position.c = parameter;
-  }
+  const auto cells = static_cast<float>(nodes - 1);
+  const Position position{.disk = disk,
+                          .warp = warp.kind,
+                          .parameter = static_cast<float>(warp.parameter),
+                          .size = disk ? 0.5f * cells : cells,
+                          .cells = cells,
+                          .slot = slots};
   Source& source = source_of(projection, disk);
   source.radius |= !disk || warp.kind != WarpKind::identity;
   for (const Position& known : source.positions)
@@ -138,10 +136,8 @@ FactoredPlan::Source& FactoredPlan::source_of(const Projection& projection, bool
                     : projection == kProjectWo                    ? Kind::wo
                     : projection == kProjectHalf                  ? Kind::half
                     : projection.kind == Projection::Kind::affine ? Kind::affine
-                    : projection == kProjectDeviation             ? Kind::deviation_angle
-                    : projection == kProjectTwist                 ? Kind::twist_angle
                     : azimuth                                     ? Kind::difference
-                                                                  : Kind::difference_angle;
+                                                                  : Kind::angle;
   needs_sum |= kind != Kind::wi && kind != Kind::wo && kind != Kind::affine;
   for (Source& source : sources)
     if (source.kind == kind && source.projection == projection) return source;

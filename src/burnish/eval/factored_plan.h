@@ -17,13 +17,13 @@ struct FactoredPlan {
   static constexpr std::size_t kMostVectors = 8;   ///< of a plane; longer lines have rows only
   static constexpr std::size_t kMostSlots = 1024;  ///< different positions in tables
 
-  /// A position along an axis of tables, in cells from 0 to `cells`. With (x, y) of length r and den of the
-  /// projected vector, r / den = tan(theta / 2), a line's position is a r / (b r + c den), a disk's two in
-  /// slot and slot + 1, cells / 2 + (x, y) a / (b r + c den). By a power: a (r / den)^power in place of
-  /// a r / den.
+  /// A position along an axis of tables, in cells from 0 to `cells`. With (x, y) of length r of the projected
+  /// vector, a line's is `size` times its warped tan(theta / 2), size = cells; a disk's two, in slot and
+  /// slot + 1, are cells / 2 + (x, y) / r times that, size = cells / 2.
   struct Position {
     bool disk;
-    float a, b, c, power, cells;  // power 0: none
+    WarpKind warp;
+    float parameter, size, cells;
     std::size_t slot;
 
     bool same_place(const Position& other) const noexcept;
@@ -31,7 +31,8 @@ struct FactoredPlan {
 
   /// An unnormalized projection and the positions that depend on it.
   struct Source {
-    enum class Kind { wi, wo, half, difference_angle, deviation_angle, twist_angle, difference, affine };
+    /// difference: with its azimuth; angle: the polar angle alone of what is no affine combination.
+    enum class Kind { wi, wo, half, affine, difference, angle };
     Kind kind;
     Projection projection;
     bool radius = false;  // some position needs r

@@ -60,8 +60,16 @@ HWY_INLINE Lane clamp_negative(Lane a) {
 HWY_INLINE Lane sqrt(Lane a) {
   return Lane(hn::Sqrt(a.raw));
 }
+HWY_INLINE Lane abs(Lane a) {
+  return Lane(hn::Abs(a.raw));
+}
 HWY_INLINE Lane if_less(Lane a, Lane b, Lane x, Lane y) {
   return Lane(hn::IfThenElse(hn::Lt(a.raw, b.raw), x.raw, y.raw));
+}
+/// Text alone keeps the names that formulas give.
+template <class T>
+HWY_INLINE T named(const char*, const T& x) {
+  return x;
 }
 
 }  // namespace

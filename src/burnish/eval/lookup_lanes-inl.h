@@ -21,23 +21,23 @@ constexpr std::size_t kLanes = hn::MaxLanes(D());
 
 /// The cell that a position of at least 0 lies in and how far: an integer position is the start of its cell
 /// or the end of the one before.
-struct Cell {
+struct LaneCell {
   Lane shifted;   // 1.5 2^23 + node: the node in the low 22 bits
   Lane fraction;  // 0 to 1
 };
-HWY_INLINE Cell cell_of(Lane position) {
+HWY_INLINE LaneCell cell_of(Lane position) {
   const Lane magic(kRoundingShift);
   const Lane shifted = (position - Lane(0.5)) + magic;
   return {shifted, position - (shifted - magic)};
 }
-HWY_INLINE hn::Vec<DI> node_of(const Cell& cell) {
+HWY_INLINE hn::Vec<DI> node_of(const LaneCell& cell) {
   const DI di;
   return hn::And(hn::BitCast(di, cell.shifted.raw), hn::Set(di, 0x3fffff));
 }
 
-HWY_INLINE Lane mix(Lane low, Lane high, Lane fraction) {
-  return mul_add(fraction, high - low, low);
-}
+#define FORMULA_INLINE HWY_INLINE
+#include <burnish/factors/lookup-inl.h>
+#undef FORMULA_INLINE
 
 #undef BURNISH_PLANES_IN_REGISTERS
 #if HWY_TARGET == HWY_AVX3

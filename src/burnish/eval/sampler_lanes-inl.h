@@ -24,9 +24,6 @@ struct Ints {
   HWY_INLINE explicit Ints(hn::Vec<DI> v) : raw(v) {}
 };
 
-HWY_INLINE Reals abs(Reals a) {
-  return Reals(hn::Abs(a.raw));
-}
 HWY_INLINE Reals copy_sign(Reals size, Reals sign) {
   return Reals(hn::CopySign(size.raw, sign.raw));
 }

@@ -8,7 +8,7 @@
 //   edge_pair(table, i)   lower = table[i] and table[i + 1] - lower, modulo 65536
 //   search(table, start, weight, count, target)  the last of `count` entries, a power of two, for which
 //                         sum_s weight[s] table[start[s] + entry] <= target; the first entries are 0
-// found by argument.
+// found by argument. Tables are anything that edge_pair and search take: pointers, or names of arrays.
 
 /// A unit vector of the plane.
 template <class F>
@@ -144,8 +144,8 @@ struct Interval {
 
 // An entry of a table is the cumulative probability at the lower end of a cell, in 1/65536; the first is 0,
 // and what follows the last, the next row's first, is 0 for 65536.
-template <int kSlices, class F, class I>
-SAMPLER_INLINE Interval<kSlices, F, I> interval_at(const std::uint16_t* table, const I (&start)[kSlices],
+template <int kSlices, class F, class I, class Edges>
+SAMPLER_INLINE Interval<kSlices, F, I> interval_at(Edges table, const I (&start)[kSlices],
                                                    const F (&weight)[kSlices], I index) {
   Interval<kSlices, F, I> found;
   found.index = index;
@@ -159,8 +159,8 @@ SAMPLER_INLINE Interval<kSlices, F, I> interval_at(const std::uint16_t* table, c
   return found;
 }
 
-template <int kSlices, class F, class I>
-SAMPLER_INLINE Interval<kSlices, F, I> find_interval(const std::uint16_t* table, const I (&start)[kSlices],
+template <int kSlices, class F, class I, class Edges>
+SAMPLER_INLINE Interval<kSlices, F, I> find_interval(Edges table, const I (&start)[kSlices],
                                                      const F (&weight)[kSlices], int count, F target) {
   // what is no number, or below 0, falls into the first cell
   return interval_at(table, start, weight, max(search(table, start, weight, count, target), I(0)));

@@ -8,6 +8,7 @@
 
 #include <burnish/error.h>
 #include <burnish/factors/factored_brdf.h>
+#include <burnish/factors/lookup_scalar.h>
 
 namespace burnish {
 
@@ -33,11 +34,11 @@ double lookup(const Table& table, const Lookup& at, std::size_t channel) noexcep
   const auto step = static_cast<std::size_t>(table.channels);
   const std::size_t c = step == 1 ? 0 : channel;
   const float* node = table.values.data() + static_cast<std::size_t>(at.node) * step + c;
-  const double low = node[0] + at.fx * (static_cast<double>(node[step]) - node[0]);
+  const auto along = [&](const float* v) { return definition::mix<double>(v[0], v[step], at.fx); };
+  const double low = along(node);
   if (table.layout.shape == TableShape::line) return low;
   const float* next = node + static_cast<std::size_t>(table.layout.width) * step;
-  const double high = next[0] + at.fx * (static_cast<double>(next[step]) - next[0]);
-  return low + at.fy * (high - low);
+  return definition::mix(low, along(next), at.fy);
 }
 
 std::vector<Table> in_format(std::vector<Table> tables, TableFormat format) {

@@ -77,7 +77,7 @@ static_assert(Brdf<FactoredBrdf>);
 
 /// Entries of half and single tables are kept at or above this share of the largest: half floats stay
 /// positive there, as subnormal numbers with an error of at most 1/32. 2^-14, the smallest normal half, would
-/// cut the tails of shiny materials (docs/factorization.md).
+/// cut the tails of shiny materials (docs/notes/factorization.md).
 inline constexpr double kTableFloor = 0x1p-20;
 
 /// Turns a table of logarithms of lambda into one as it is stored: makes the largest value of every channel 1

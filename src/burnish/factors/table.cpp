@@ -3,22 +3,22 @@
 #include <fmt/format.h>
 
 #include <burnish/error.h>
+#include <burnish/factors/lookup_scalar.h>
 #include <burnish/factors/table.h>
 
 namespace burnish {
 
 namespace {
 
-struct Cell {
+struct Place {
   int node;
   double fraction;
 };
 
-// The cell of n nodes over [0, 1] that u falls into; the last cell takes u = 1.
-Cell cell(double u, int n) noexcept {
-  const double position = std::clamp(u, 0.0, 1.0) * (n - 1);
-  const int node = std::min(static_cast<int>(position), n - 2);
-  return {node, position - node};
+// Where u in [0, 1] falls among n nodes.
+Place place(double u, int n) noexcept {
+  const auto cell = definition::cell_of(u * (n - 1), n - 1.0);
+  return {static_cast<int>(cell.node), cell.fraction};
 }
 
 }  // namespace
@@ -26,12 +26,12 @@ Cell cell(double u, int n) noexcept {
 Lookup locate(const TableLayout& layout, const FactorUse& use, Vec3 wi, Vec3 wo) noexcept {
   if (layout.shape == TableShape::disk) {
     const DiskPoint p = to_disk(project(use.projection, wi, wo), layout.warp);
-    const Cell x = cell(0.5 + 0.5 * p.x, layout.width), y = cell(0.5 + 0.5 * p.y, layout.height);
+    const Place x = place(0.5 + 0.5 * p.x, layout.width), y = place(0.5 + 0.5 * p.y, layout.height);
     return {y.node * layout.width + x.node, x.fraction, y.fraction};
   }
-  const Cell x = cell(layout.warp.forward(project_tan_half(use.projection, wi, wo)), layout.width);
+  const Place x = place(layout.warp.forward(project_tan_half(use.projection, wi, wo)), layout.width);
   if (layout.shape == TableShape::line) return {x.node, x.fraction, 0};
-  const Cell y = cell(layout.warp_y.forward(project_tan_half(use.projection_y, wi, wo)), layout.height);
+  const Place y = place(layout.warp_y.forward(project_tan_half(use.projection_y, wi, wo)), layout.height);
   return {y.node * layout.width + x.node, x.fraction, y.fraction};
 }
 

@@ -6,54 +6,100 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
-#include <burnish/factors/model_file.h>
-#include <burnish/fitting/one_lobe/homomorphic.h>
-#include <burnish/reflectance/brdf.h>
-#include <burnish/reflectance/half_diff_table.h>
-#include <burnish/reflectance/samples.h>
+#include <burnish/baselines/baseline_file.h>
+#include <burnish/factors/factored_brdf.h>
+#include <burnish/factors/table_format.h>
+#include <burnish/fitting/fit_report.h>
+#include <burnish/source.h>
 
 namespace burnish {
 
-/// What is fitted; what it refers to must outlive the fit.
-struct FitInput {
-  BrdfRef brdf;
-  std::string name, format;              ///< for the notes
-  std::vector<double> lambda_nm = {};    ///< wavelengths of the channels; empty for grey and RGB
-  const Samples* samples = nullptr;      ///< the measurements of a scattered source: these are fitted
-  const HalfDiffTable* table = nullptr;  ///< a source that is a table: its entries are fitted
+/// How one lobe is fitted, log-linearly: see HomomorphicOptions.
+struct LogLinear {
+  bool cross_validate = false;           ///< choose the smoothness; scattered samples have it chosen anyway
+  std::optional<int> reweightings = {};  ///< none: 4 for scattered samples, else 0
+  double floor = 3e-5;                   ///< 1/sr, added to every value before its logarithm is taken
 };
 
-/// What several lobes are refined for: pictures at every exposure beside both means, or one mean.
-enum class FitLoss { image, relative, log_cos };
+/// One lobe: a product of tables.
+struct OneLobe {
+  std::string model = "pqp";             ///< see parse_model_spec
+  std::vector<std::string> tables = {};  ///< the same
+  LogLinear how = {};
+};
+
+/// The model of several lobes that serves a number of bytes best.
+struct Budget {
+  std::uint64_t bytes = 2700;
+  int lobes = 0;        ///< 0: as many as serve it best
+  bool search = false;  ///< search_plan first
+  FitLoss loss = FitLoss::image;
+  LogLinear scattered = {};  ///< scattered samples are too few for several lobes: they get one
+};
+
+/// Lobes as given, refined together.
+struct GivenLobes {
+  std::string model;                     ///< see parse_model_spec
+  std::vector<std::string> tables = {};  ///< the same
+  FitLoss loss = FitLoss::image;
+};
+
+/// What others would do instead of positive factors.
+struct BaselineMethod {
+  std::string method;       ///< one of baseline_methods()
+  std::uint64_t bytes = 0;  ///< at most so many; 0: the default of BaselineOptions
+};
+
+/// What a fit makes.
+using FitForm = std::variant<OneLobe, Budget, GivenLobes, BaselineMethod>;
+
+/// The form for a model as parse_model_spec reads it: OneLobe or, where it has several, GivenLobes. Throws
+/// Error as that does.
+FitForm form_of(const std::string& model, const std::vector<std::string>& tables, bool isotropic,
+                const LogLinear& of_one_lobe, FitLoss of_several);
 
 struct FitOptions {
-  std::string model = "pqp";        ///< see parse_model_spec; ignored with a budget
-  std::vector<std::string> tables;  ///< the same
-  std::uint64_t budget = 0;         ///< bytes: the best model of several lobes that they hold; 0: none given
-  int lobes = 0;                    ///< of the budget; 0: as many as serve it best
-  bool search = false;              ///< of the budget: search_plan first
-  FitLoss loss = FitLoss::image;    ///< of several lobes
-  std::optional<double> smooth;     ///< >= 0; none: the solver's own, or chosen for scattered samples
-  bool cross_validate = false;      ///< of one lobe: choose_smoothness, whatever the source
-  std::optional<int> reweightings;  ///< of one lobe; none: 4 for scattered samples, else 0
-  double floor = HomomorphicOptions{}.floor;  ///< of one lobe, 1/sr
-  /// Of tables without one of their own. None: half; with a budget and three channels rgb9e5.
-  std::optional<TableFormat> format;
-  std::size_t samples = 0;  ///< pairs drawn for one lobe from a source that is a function; 0: the default
-  std::uint64_t seed = 1;   ///< of the drawn pairs
-  bool symmetrize = true;   ///< fit the reciprocal part, see SymmetrizedBrdf
+  FitForm form = OneLobe{};
+  std::optional<double> smooth = {};  ///< >= 0; none: the solver's own, or chosen where LogLinear says so
+  /// Of tables without one of their own. None: half; with a budget or several lobes and three channels
+  /// rgb9e5.
+  std::optional<TableFormat> format = {};
+  /// Pairs drawn for one lobe or a baseline from a source that is a function; 0: 200,000, or 500,000 for one
+  /// lobe of an anisotropic source.
+  std::size_t samples = 0;
+  std::uint64_t seed = 1;        ///< of the drawn pairs
+  bool symmetrize = true;        ///< fit the reciprocal part, see SymmetrizedBrdf
   bool conserve_energy = false;  ///< see burnish::conserve_energy
-  /// Called from the calling thread with what is done ("searching", "fitting") and a rising share of it. What
-  /// it throws ends the fit and reaches the caller.
-  std::function<void(std::string_view stage, double fraction)> progress;
+  bool score = true;             ///< measure what is stored on pairs that were not fitted
+  /// Called from the calling thread with what is done ("searching", "fitting", a baseline's method) and a
+  /// rising share of it. What it throws ends the fit and reaches the caller.
+  std::function<void(std::string_view stage, double fraction)> progress = {};
 };
 
-/// Fits a factored BRDF the way `burnish fit` does: one lobe log-linearly (fit_homomorphic), several as
-/// fit_plan or fit_lobes do. The notes say what was fitted and how, and hold the error figures of the stored
-/// model on 20,000 pairs that were not fitted (of scattered samples: at the samples). Throws Error for a
-/// model, table option or format that does not fit, and what the solvers throw.
-Model fit(const FitInput& input, const FitOptions& options);
+/// What came of a fit. Its file is written by format_fit (fit_file.h).
+struct Fit {
+  std::variant<FactoredBrdf, BaselineBrdf> brdf;  ///< the second where the form was a BaselineMethod
+  std::vector<double> lambda_nm;                  ///< wavelengths of the channels; empty for grey and RGB
+  FitReport report;
+
+  /// The factored BRDF. Throws Error where a baseline was fitted.
+  const FactoredBrdf& model() const&;
+  FactoredBrdf model() &&;
+  /// Refers to this object, which must outlive it and stay where it is.
+  BrdfRef ref() const noexcept;
+  /// Size as its type counts it.
+  std::size_t bytes() const noexcept;
+};
+
+/// Fits a source the way `burnish fit` does: one lobe log-linearly (fit_homomorphic), to scattered samples
+/// and to tables of half and difference angles as they are, to pairs drawn from any other source; several
+/// lobes as fit_plan or fit_lobes do; baselines as fit_baseline does. The same bits for the same options,
+/// whatever the number of threads. Throws Error for options that the form or the source does not take (a
+/// model, table or format that does not fit; a baseline with a format, a smoothness or conserve_energy), and
+/// what the solvers throw.
+Fit fit(const Source& source, const FitOptions& options);
 
 }  // namespace burnish

@@ -5,11 +5,16 @@
 
 #include <fmt/format.h>
 
+#include <burnish/embedded_file.h>
 #include <burnish/error.h>
 #include <burnish/hardware/generate.h>
 #include <burnish/math/random.h>
 
 namespace burnish {
+
+// The files of hw/rtl.
+std::span<const EmbeddedFile> rtl_files();
+
 namespace {
 
 using enum UnitMethod;
@@ -254,6 +259,12 @@ std::vector<GeneratedFile> surround(const std::string& head, const std::string& 
 }
 
 }  // namespace
+
+std::vector<GeneratedFile> rtl_modules() {
+  std::vector<GeneratedFile> modules;
+  for (const auto& [name, text] : rtl_files()) modules.push_back({std::string(name), std::string(text)});
+  return modules;
+}
 
 std::span<const ShippedUnit> shipped_units() {
   return kShipped;

@@ -11,6 +11,7 @@
 #include <burnish/io/csv.h>
 #include <burnish/io/mbsdf.h>
 #include <burnish/io/merl.h>
+#include <burnish/io/open_source.h>
 #include <burnish/io/rgl.h>
 #include <burnish/io/slice_image.h>
 #include <burnish/io/zemax.h>

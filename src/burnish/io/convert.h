@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include <burnish/io/source.h>
+#include <burnish/source.h>
 
 namespace burnish {
 

@@ -7,6 +7,7 @@
 
 #include <burnish/io/convert.h>
 #include <burnish/io/merl.h>
+#include <burnish/io/open_source.h>
 #include <burnish/math/angles.h>
 #include <burnish/reflectance/azimuth_mean.h>
 #include <burnish/testing/files.h>

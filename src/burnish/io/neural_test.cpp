@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <burnish/io/neural.h>
-#include <burnish/io/source.h>
+#include <burnish/io/open_source.h>
 #include <burnish/metrics/error_figures.h>
 #include <burnish/testing/files.h>
 

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include <burnish/factors/factored_brdf.h>
-#include <burnish/io/source.h>
 #include <burnish/metrics/albedo.h>
 #include <burnish/reflectance/statistics.h>
+#include <burnish/source.h>
 
 namespace burnish {
 

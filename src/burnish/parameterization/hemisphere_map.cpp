@@ -4,9 +4,13 @@
 #include <fmt/format.h>
 
 #include <burnish/error.h>
-#include <burnish/parameterization/hemisphere_map.h>
+#include <burnish/parameterization/projection_scalar.h>
 
 namespace burnish {
+
+double Warp::forward(double t) const noexcept {
+  return definition::forward(*this, t);
+}
 
 Warp parse_warp(std::string_view text) {
   const auto colon = text.find(':');

@@ -26,10 +26,7 @@ struct Warp {
   WarpKind kind = WarpKind::identity;
   double parameter = 1;
 
-  double forward(double t) const noexcept {
-    if (kind == WarpKind::rational) return t * (1 + parameter) / (t + parameter);
-    return kind == WarpKind::power ? std::pow(t, parameter) : t;
-  }
+  double forward(double t) const noexcept;
   double inverse(double u) const noexcept {
     if (kind == WarpKind::rational) return u * parameter / (1 + parameter - u);
     return kind == WarpKind::power ? std::pow(u, 1 / parameter) : u;

@@ -1,71 +1,45 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
+#include <iterator>
 
 #include <fmt/format.h>
 
 #include <burnish/error.h>
-#include <burnish/parameterization/hemisphere_map.h>
-#include <burnish/parameterization/projection.h>
+#include <burnish/parameterization/projection_scalar.h>
 
 namespace burnish {
 
 namespace {
 
-// a u + b v; where a == b as a (u + v), so that swapping u and v changes no bit
-Vec3 combine(double a, Vec3 u, double b, Vec3 v) noexcept {
-  return a == b ? a * (u + v) : a * u + b * v;
-}
+using definition::Pair;
 
 Vec3 above_horizon(Vec3 w) noexcept {
   if (w.z >= 0) return w;
   return normalize({w.x, w.y, 0});
 }
 
-// wi in the frame whose z axis is h and whose x axis lies in the plane of h and n [Rusinkiewicz 1998]
+// wi in the frame of h
 Vec3 difference_vector(Vec3 wi, Vec3 wo) noexcept {
-  const Vec3 h = half_vector(wi, wo);
-  const double sin_theta = std::sqrt(h.x * h.x + h.y * h.y);
-  const double cos_phi = sin_theta > 0 ? h.x / sin_theta : 1, sin_phi = sin_theta > 0 ? h.y / sin_theta : 0;
-  const Vec3 x_axis{h.z * cos_phi, h.z * sin_phi, -sin_theta}, y_axis{-sin_phi, cos_phi, 0};
-  return {dot(wi, x_axis), dot(wi, y_axis), 0.5 * length(wi + wo)};
-}
-
-// tan(theta_t / 2)
-double twist(Vec3 wi, Vec3 wo) noexcept {
-  const Vec3 s = wi + wo, a = wi - wo;
-  const double across = s.x * s.x + s.y * s.y, square = across + s.z * s.z;
-  const double turn = a.z * (s.y * a.x - s.x * a.y) * square;
-  const double half = std::max(across + kTwistCore * square, std::numeric_limits<double>::min());
-  return std::clamp(0.5 + 0.5 * kTwistScale * turn / half, 0.0, 1.0);
+  const auto [x, y] = definition::across_half(half_vector(wi, wo), 1.0, wi);
+  return {x, y, 0.5 * length(wi + wo)};
 }
 
 }  // namespace
 
 Vec3 project(const Projection& p, Vec3 wi, Vec3 wo) noexcept {
+  if (p.kind == Projection::Kind::affine) return above_horizon(normalize(definition::combination(p, wi, wo)));
   if (p.kind == Projection::Kind::difference) return normalize(difference_vector(wi, wo));
-  if (p.kind == Projection::Kind::deviation) {
-    const Vec3 mirrored = mirror(wi);
-    return {0.5 * length(mirrored - wo), 0, 0.5 * length(mirrored + wo)};
-  }
-  if (p.kind == Projection::Kind::twist) {
-    const double t = twist(wi, wo);
-    return normalize({2 * t, 0, 1 - t * t});
-  }
-  Vec3 v = combine(p.wi, wi, p.wo, wo);
-  if (p.mirror != 0) v = v + p.mirror * mirror(wi);
-  v.z += p.n;
-  return above_horizon(normalize(v));
+  const double t = project_tan_half(p, wi, wo);
+  return normalize({2 * t, 0, 1 - t * t});
 }
 
 double project_tan_half(const Projection& p, Vec3 wi, Vec3 wo) noexcept {
-  if (p.kind == Projection::Kind::affine) return tan_half_theta(project(p, wi, wo));
-  if (p.kind == Projection::Kind::twist) return twist(wi, wo);
-  // cos theta_d = |wi + wo| / 2, sin theta_d = |wi - wo| / 2; theta_m likewise, where mirroring only changes
-  // the signs of wi's x and y, so that exchanging the directions changes no bit
-  if (p.kind == Projection::Kind::deviation) wi = mirror(wi);
-  return length(wi - wo) / (2 + length(wi + wo));
+  const auto polar =
+      p.kind == Projection::Kind::affine
+          ? definition::polar_of(project(p, wi, wo), 1.0)
+          : definition::with_angle(p.kind, [&](const auto& angle) { return angle(Pair(wi, wo)); });
+  return polar.r / polar.den;
 }
 
 bool swapped(const Projection& p, bool azimuth, Projection& result) noexcept {
@@ -76,19 +50,40 @@ bool swapped(const Projection& p, bool azimuth, Projection& result) noexcept {
   return true;
 }
 
+namespace {
+
+// What projections are called; an angle's name stands for a direction whose azimuth is of no concern.
+struct Name {
+  std::string_view text;
+  Projection projection;
+  bool angle_only = false;
+};
+constexpr Name kNames[] = {
+    {"wi", kProjectWi},
+    {"wo", kProjectWo},
+    {"h", kProjectHalf},
+    {"d", kProjectDifference},
+    {"theta_i", kProjectWi, true},
+    {"theta_o", kProjectWo, true},
+    {"theta_h", kProjectHalf, true},
+    {"theta_d", kProjectDifference, true},
+    {"theta_m", kProjectDeviation, true},
+    {"theta_t", kProjectTwist, true},
+    {"phi_d", kProjectAzimuth, true},
+};
+
+}  // namespace
+
 Projection parse_projection(std::string_view text, bool& angle_only) {
-  angle_only = text.starts_with("theta_");
-  if (text == "wi" || text == "theta_i") return kProjectWi;
-  if (text == "wo" || text == "theta_o") return kProjectWo;
-  if (text == "h" || text == "theta_h") return kProjectHalf;
-  if (text == "d" || text == "theta_d") return kProjectDifference;
-  if (text == "theta_m") return kProjectDeviation;
-  if (text == "theta_t") return kProjectTwist;
+  const auto known = std::ranges::find(kNames, text, &Name::text);
+  angle_only = known != std::end(kNames) && known->angle_only;
+  if (known != std::end(kNames)) return known->projection;
 
   const auto fail = [&]() -> Error {
+    std::string names;
+    for (const Name& name : kNames) names += fmt::format("{}{}", names.empty() ? "" : ", ", name.text);
     return Error(fmt::format(
-        "projection: expected wi, wo, h, d, theta_i, theta_o, theta_h, theta_d, theta_m, theta_t or a sum of "
-        "terms of wi, wo, m and n such as wi+wo+0.5n, found '{}'",
+        "projection: expected {} or a sum of terms of wi, wo, m and n such as wi+wo+0.5n, found '{}'", names,
         text));
   };
   Projection p;
@@ -121,13 +116,14 @@ Projection parse_projection(std::string_view text, bool& angle_only) {
   return p;
 }
 
+std::string_view to_string(Projection::Kind kind) noexcept {
+  constexpr std::string_view kKinds[] = {"affine", "difference", "deviation", "twist", "azimuth"};
+  return kKinds[static_cast<std::size_t>(kind)];
+}
+
 std::string to_string(const Projection& p) {
-  if (p == kProjectWi) return "wi";
-  if (p == kProjectWo) return "wo";
-  if (p == kProjectHalf) return "h";
-  if (p == kProjectDifference) return "d";
-  if (p == kProjectDeviation) return "theta_m";
-  if (p == kProjectTwist) return "theta_t";
+  const auto known = std::ranges::find(kNames, p, &Name::projection);
+  if (known != std::end(kNames)) return std::string(known->text);
   std::string text;
   const auto term = [&](double coefficient, const char* name) {
     if (coefficient != 0)

@@ -21,8 +21,12 @@ namespace burnish {
 ///   which side of the plane of h and n the directions turn off. tan(theta_t / 2) = 1/2 + (3 sqrt(3) / 4) x,
 ///   x = sin^2 theta_d cos theta_d sin(2 phi_d) sin^2 theta_h / (sin^2 theta_h + 1/256), is between 0 and 1
 ///   and becomes 1 less itself in the mirror; the same when the directions are exchanged.
+/// - azimuth: a polar angle alone, phi_d folded into [0, pi/2]: |cos phi_d| = |cos theta_i - cos theta_o| /
+///   (2 sin theta_h sin theta_d), 0 where the plane of the directions holds the normal, pi/2 where both are
+///   equally steep; the same when the directions are exchanged and in the mirror. Where phi_d has no meaning,
+///   sin theta_h sin theta_d = 0, it is 0.
 struct Projection {
-  enum class Kind { affine, difference, deviation, twist };
+  enum class Kind { affine, difference, deviation, twist, azimuth };
 
   Kind kind = Kind::affine;
   double wi = 0, wo = 0, mirror = 0, n = 0;
@@ -36,6 +40,7 @@ inline constexpr Projection kProjectHalf{.wi = 1, .wo = 1};
 inline constexpr Projection kProjectDifference{.kind = Projection::Kind::difference};
 inline constexpr Projection kProjectDeviation{.kind = Projection::Kind::deviation};
 inline constexpr Projection kProjectTwist{.kind = Projection::Kind::twist};
+inline constexpr Projection kProjectAzimuth{.kind = Projection::Kind::azimuth};
 
 /// Twist, unnormalized: S = wi + wo and A = wi - wo, tan(theta_t / 2) = r / den with
 /// den = 2 (S.x^2 + S.y^2 + |S|^2 kTwistCore), r = den / 2 + A.z (S.y A.x - S.x A.y) |S|^2 kTwistScale;
@@ -44,7 +49,7 @@ inline constexpr double kTwistCore = 1.0 / 256, kTwistScale = 0.6495190528383290
 
 /// Whether a projection has a polar angle but no azimuth.
 constexpr bool is_angle_alone(const Projection& p) noexcept {
-  return p.kind == Projection::Kind::deviation || p.kind == Projection::Kind::twist;
+  return p.kind != Projection::Kind::affine && p.kind != Projection::Kind::difference;
 }
 
 /// The projected direction, z >= 0 (a combination that points below the horizon is clamped to it). wi and wo
@@ -58,10 +63,12 @@ double project_tan_half(const Projection& projection, Vec3 wi, Vec3 wo) noexcept
 /// `azimuth` says whether the table depends on the azimuth. Returns false where there is none (mirror terms).
 bool swapped(const Projection& projection, bool azimuth, Projection& result) noexcept;
 
-/// Reads wi, wo, h, d, theta_h, theta_d, theta_m, theta_t, theta_i, theta_o or a sum of terms such as
-/// "wi+wo+0.5n", "m+0.8wo" (m is the mirrored light). The theta names mean the same vectors; `angle_only`
-/// tells that one was used. Throws Error on anything else.
+/// Reads wi, wo, h, d, theta_h, theta_d, theta_m, theta_t, phi_d, theta_i, theta_o or a sum of terms such as
+/// "wi+wo+0.5n", "m+0.8wo" (m is the mirrored light). Names of angles mean the same vectors;
+/// `angle_only` tells that one was used. Throws Error on anything else.
 Projection parse_projection(std::string_view text, bool& angle_only);
+/// "affine", "difference", "deviation", "twist" or "azimuth".
+std::string_view to_string(Projection::Kind kind) noexcept;
 /// A text parse_projection reads back to the same projection.
 std::string to_string(const Projection& projection);
 

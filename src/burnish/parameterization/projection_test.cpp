@@ -24,7 +24,7 @@ std::vector<DirectionPair> pairs_and_corners() {
 TEST(Projection, GivesUnitVectorsAboveTheHorizon) {
   bool angle_only;
   for (const char* text :
-       {"wi", "wo", "h", "d", "wi+wo-0.7n", "m+wo", "0.5wi-wo+0.2n", "wi-wo", "theta_m", "theta_t"}) {
+       {"wi", "wo", "h", "d", "wi+wo-0.7n", "m+wo", "0.5wi-wo+0.2n", "wi-wo", "theta_m", "theta_t", "phi_d"}) {
     const Projection p = parse_projection(text, angle_only);
     for (const auto& [wi, wo] : pairs_and_corners()) {
       const Vec3 v = project(p, wi, wo);
@@ -46,7 +46,7 @@ TEST(Projection, HalfAndDifferenceHaveTheHalfDifferenceAngles) {
 
 TEST(Projection, AngleAloneAgreesWithTheVector) {
   bool angle_only;
-  for (const char* text : {"wi", "h", "d", "wi+wo+0.4n", "m+2wo", "theta_m", "theta_t"}) {
+  for (const char* text : {"wi", "h", "d", "wi+wo+0.4n", "m+2wo", "theta_m", "theta_t", "phi_d"}) {
     const Projection p = parse_projection(text, angle_only);
     for (const auto& [wi, wo] : pairs_and_corners())
       EXPECT_NEAR(project_tan_half(p, wi, wo), tan_half_theta(project(p, wi, wo)), 1e-12) << text;
@@ -55,7 +55,7 @@ TEST(Projection, AngleAloneAgreesWithTheVector) {
 
 TEST(Projection, SwappingIsExactToTheLastBit) {
   bool angle_only;
-  for (const char* text : {"wi", "wo", "h", "wi+wo+0.4n", "0.3wi+0.9wo-0.2n", "d", "theta_m", "theta_t"}) {
+  for (const char* text : {"wi", "wo", "h", "wi+wo+0.4n", "0.3wi+0.9wo-0.2n", "d", "theta_m", "theta_t", "phi_d"}) {
     const Projection p = parse_projection(text, angle_only);
     Projection q;
     ASSERT_TRUE(swapped(p, false, q)) << text;
@@ -76,7 +76,7 @@ TEST(Projection, ReadsWhatItPrints) {
   }
   EXPECT_EQ(parse_projection("theta_d", angle_only), kProjectDifference);
   EXPECT_TRUE(angle_only);
-  for (const Projection& p : {kProjectDeviation, kProjectTwist}) {
+  for (const Projection& p : {kProjectDeviation, kProjectTwist, kProjectAzimuth}) {
     EXPECT_EQ(parse_projection(to_string(p), angle_only), p);
     EXPECT_TRUE(angle_only);
   }
@@ -111,9 +111,44 @@ TEST(Projection, TwistReachesBothItsEnds) {
   EXPECT_GT(most, 0.99);
 }
 
+TEST(Projection, AzimuthIsPhiDFolded) {
+  for (const auto& [wi, wo] : draw_pairs(2000, 13, false)) {
+    const HalfDiff angles = to_half_diff(wi, wo);
+    const double t = project_tan_half(kProjectAzimuth, wi, wo);
+    EXPECT_NEAR(std::cos(2 * std::atan(t)), std::abs(std::cos(angles.phi_d)), 1e-9);
+    EXPECT_NEAR((1 - t * t) / (1 + t * t),
+                std::abs(wi.z - wo.z) / (2 * std::sin(angles.theta_h) * std::sin(angles.theta_d)), 1e-9);
+  }
+}
+
+TEST(Projection, AzimuthIsTheSameInTheMirrorToTheLastBit) {
+  for (const auto& [wi, wo] : pairs_and_corners()) {
+    const double t = project_tan_half(kProjectAzimuth, wi, wo);
+    EXPECT_EQ(project_tan_half(kProjectAzimuth, {wi.x, -wi.y, wi.z}, {wo.x, -wo.y, wo.z}), t);
+    EXPECT_EQ(project_tan_half(kProjectAzimuth, {-wi.x, wi.y, wi.z}, {-wo.x, wo.y, wo.z}), t);
+    EXPECT_GE(t, 0);
+    EXPECT_LE(t, 1);
+  }
+}
+
+TEST(Projection, AzimuthReachesBothItsEndsAndIsZeroWhereItHasNoMeaning) {
+  const Vec3 n{0, 0, 1};
+  for (const auto& [w, other] : draw_pairs(200, 15, false)) {
+    EXPECT_EQ(project_tan_half(kProjectAzimuth, w, w), 0) << "theta_d = 0";
+    EXPECT_EQ(project_tan_half(kProjectAzimuth, w, mirror(w)), 0) << "theta_h = 0";
+    EXPECT_LT(project_tan_half(kProjectAzimuth, w, n), 1e-9) << "the plane of both holds the normal";
+    EXPECT_EQ(project_tan_half(kProjectAzimuth, w, {w.y, -w.x, w.z}), 1) << "equally steep";
+  }
+  EXPECT_EQ(project_tan_half(kProjectAzimuth, n, n), 0);
+  EXPECT_EQ(project_tan_half(kProjectAzimuth, {1, 0, 0}, {-1, 0, 0}), 0) << "opposite";
+  // products of what is tiny vanish, their ratio does not
+  const double tiny = 1e-160;
+  EXPECT_LE(project_tan_half(kProjectAzimuth, {tiny, 0, 1}, {0, tiny, 1}), 1);
+}
+
 TEST(Projection, RefusesWhatItDoesNotKnow) {
   bool angle_only;
-  for (const char* text : {"", "x", "wi wo", "wi+", "n", "0wi", "wi+1e9n", "nan*wi", "theta_x", "wi+wow"})
+  for (const char* text : {"", "x", "wi wo", "wi+", "n", "0wi", "wi+1e9n", "nan*wi", "theta_x", "phi_h", "wi+wow"})
     EXPECT_THROW(parse_projection(text, angle_only), Error) << text;
 }
 

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include <burnish/error.h>
-#include <burnish/power/op_count.h>
+#include <burnish/power/expression.h>
 #include <burnish/power/power.h>
 
 namespace burnish {

@@ -21,14 +21,21 @@ void check_shader_name(std::string_view name) {
         name));
 }
 
-std::string world_function(const Dialect& d, const std::string& name, std::string_view more) {
+std::string horizon_test(const Language& l) {
+  return fmt::format("  if (wi.z <= {0} || wo.z <= {0}) {{ return {1}({0}, {0}, {0}); }}\n", l.literal(0),
+                     l.vector);
+}
+
+std::string world_function(const Language& l, const std::string& name, std::string_view more) {
   const auto local = [&](char w) {
-    return fmt::format("{0}(dot(t, {1}), dot(s, {1}), dot(n, {1}))", d.vector, w);
+    return fmt::format("{0}(dot(t, {1}), dot(s, {1}), dot(n, {1}))", l.vector, w);
   };
-  return d.function("burnish_" + name + "_world", {"n", "t", "l", "v"}, more) +
-         d.declaration(d.vector, "s", "cross(n, t)") +
-         fmt::format("  return burnish_{}({}, {}{});\n}}\n", name, local('l'), local('v'),
-                     more.empty() ? "" : ", tables");
+  constexpr std::array<std::string_view, 4> kVectors{"n", "t", "l", "v"};
+  const std::string value =
+      fmt::format("burnish_{}({}, {}{})", name, local('l'), local('v'), more.empty() ? "" : ", tables");
+  return l.function(
+      ValueType::vector, "burnish_" + name + "_world", kVectors, more,
+      l.declaration(ValueType::vector, "s", "cross(n, t)") + fmt::format(fmt::runtime(l.result), value));
 }
 
 }  // namespace burnish

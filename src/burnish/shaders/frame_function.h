@@ -1,9 +1,10 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 
-#include <burnish/shaders/dialect.h>
+#include <burnish/formula/language.h>
 
 namespace burnish {
 
@@ -13,8 +14,13 @@ bool is_identifier(std::string_view name) noexcept;
 /// Throws Error unless is_identifier(name).
 void check_shader_name(std::string_view name);
 
+inline constexpr std::array<std::string_view, 2> kTwoDirections{"wi", "wo"};
+
+/// A statement that returns zero where one of wi and wo is not above the horizon.
+std::string horizon_test(const Language& language);
+
 /// `burnish_NAME_world(n, t, l, v)`, which calls `burnish_NAME(wi, wo)`; `more` declares a third parameter of
 /// both, called tables.
-std::string world_function(const Dialect& dialect, const std::string& name, std::string_view more);
+std::string world_function(const Language& language, const std::string& name, std::string_view more);
 
 }  // namespace burnish

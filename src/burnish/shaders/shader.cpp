@@ -1,71 +1,57 @@
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include <burnish/error.h>
+#include <burnish/factors/lookup_expression.h>
+#include <burnish/formula/writer.h>
 #include <burnish/shaders/frame_function.h>
-#include <burnish/shaders/positions.h>
 #include <burnish/shaders/shader.h>
 
 namespace burnish {
 
 namespace {
 
-Axis axis_of(int nodes, ShaderFilter filter) noexcept {
+TableAxis axis_of(int nodes, ShaderFilter filter) noexcept {
   if (filter == ShaderFilter::exact) return {nodes - 1.0, 0};
   return {(nodes - 1.0) / nodes, 0.5 / nodes};
 }
 
-/// The cell of a position: its first node, the node after it, the fraction.
-struct Cell {
-  std::string low, high, fraction;
-};
-Cell cell_of(Body& body, const std::string& position, int nodes) {
-  const Dialect& d = body.dialect();
-  const std::string u = body.scalar(
-      "u", fmt::format("min(max({}, {}), {})", position, d.literal(0), d.literal(nodes - 1)), ops(2));
-  const std::string base =
-      body.scalar("base", fmt::format("min(floor({}), {})", u, d.literal(nodes - 2)), ops(2));
-  const std::string low = body.let(d.integer, "i", fmt::format("{}({})", d.integer, base), {});
-  return {low, low + " + 1", body.scalar("f", fmt::format("{} - {}", u, base), ops(1))};
-}
-
 class Lookups {
  public:
-  Lookups(Body& body, const FactoredBrdf& brdf, const std::vector<ShaderTexture>& textures,
-          const ShaderOptions& options)
-      : body_(body), brdf_(brdf), filter_(options.filter), places_(brdf.tables().size()) {
+  Lookups(const FactoredBrdf& brdf, const std::vector<ShaderTexture>& textures, const ShaderOptions& options)
+      : brdf_(brdf), filter_(options.filter), places_(brdf.tables().size()) {
     for (const ShaderTexture& texture : textures)
       for (std::size_t k = 0; k < texture.tables.size(); ++k)
         places_[texture.tables[k]] = {&texture, texture.first_rows[k]};
   }
 
-  /// The variable with the table's value.
-  std::string value(const FactorUse& use) {
+  /// The table's value.
+  Expr value(const FactorUse& use) const {
     const auto index = static_cast<std::size_t>(use.table);
     const Table& table = brdf_.tables()[index];
     const TableLayout& layout = table.layout;
     const auto& [texture, first] = places_[index];
-    const Axis axis_x = axis_of(layout.width, filter_), axis_y = rows_of(layout.height, *texture, first);
-    std::string x, y;
-    if (layout.shape == TableShape::disk) {
-      const auto at = disk_position(body_, use.projection, layout.warp, axis_x, axis_y);
-      x = at[0], y = at[1];
-    } else {
-      x = line_position(body_, use.projection, layout.warp, axis_x);
-      if (layout.shape == TableShape::grid) y = line_position(body_, use.projection_y, layout.warp_y, axis_y);
-    }
-    const Dialect& d = body_.dialect();
+    const auto [x, y] = position_expressions(layout, use, axis_of(layout.width, filter_),
+                                             rows_of(layout.height, *texture, first));
+    const bool line = layout.shape == TableShape::line;
+    const ValueType type = table.channels == 1 ? ValueType::real : ValueType::vector;
     if (filter_ == ShaderFilter::hardware) {
-      if (y.empty() && texture->height > 0) y = d.literal((first + 0.5) / texture->height);
-      return let("value", d.sample(texture->name, x, y, table.channels), table.channels, {.fetches = 1});
+      std::vector<Expr> at{x};
+      if (!line || texture->height > 0) at.push_back(line ? Expr((first + 0.5) / texture->height) : y);
+      return named("value", Expr::sample(texture->name, at, type));
     }
-    const Cell cx = cell_of(body_, x, layout.width);
-    if (y.empty()) return row(texture->name, cx, std::to_string(first), table.channels);
-    const Cell cy = cell_of(body_, y, layout.height);
-    const std::string below = first > 0 ? fmt::format(" + {}", first) : "";
-    return mix(row(texture->name, cx, cy.low + below, table.channels),
-               row(texture->name, cx, cy.high + below, table.channels), cy.fraction, table.channels);
+    const Cell across = cell_of(x, layout.width);
+    const auto row = [&](const Expr& number) {
+      const auto texel = [&](const Expr& column) {
+        return named("texel", Expr::texel(texture->name, column, number, type));
+      };
+      return mix_expression(texel(across.low), texel(across.high), across.fraction);
+    };
+    if (line) return row(Expr::integer(first));
+    const Cell up = cell_of(y, layout.height, first);
+    return mix_expression(row(up.low), row(up.high), up.fraction);
   }
 
  private:
@@ -74,125 +60,103 @@ class Lookups {
     int first_row = 0;
   };
 
+  // The nodes around a position, numbered from `first`, and how far it is from the lower one.
+  struct Cell {
+    Expr low, high, fraction;
+  };
+  static Cell cell_of(const Expr& position, int nodes, int first = 0) {
+    const CellExpr cell = cell_expression(position, nodes);
+    const Expr node = named("i", Expr(Op::to_integer, {cell.node}));
+    return {node + Expr::integer(first), node + Expr::integer(first + 1), cell.fraction};
+  }
+
   // A table's rows among its texture's.
-  Axis rows_of(int nodes, const ShaderTexture& texture, int first) const noexcept {
+  TableAxis rows_of(int nodes, const ShaderTexture& texture, int first) const noexcept {
     if (filter_ == ShaderFilter::exact) return axis_of(nodes, filter_);
     const double rows = std::max(texture.height, 1);
     return {(nodes - 1) / rows, (first + 0.5) / rows};
   }
-  std::string let(std::string_view hint, const std::string& expression, int channels,
-                  const ShaderCost& cost) {
-    return channels == 1 ? body_.scalar(hint, expression, cost) : body_.vector(hint, expression, cost);
-  }
-  std::string texel(const std::string& texture, const std::string& x, const std::string& y, int channels) {
-    return let("texel", body_.dialect().fetch(texture, x, y, channels), channels, {.fetches = 1});
-  }
-  std::string mix(const std::string& low, const std::string& high, const std::string& f, int channels) {
-    return let("value", fmt::format("{0} + {2} * ({1} - {0})", low, high, f), channels, ops(3 * channels));
-  }
-  std::string row(const std::string& texture, const Cell& x, const std::string& y, int channels) {
-    const std::string low = texel(texture, x.low, y, channels);
-    return mix(low, texel(texture, x.high, y, channels), x.fraction, channels);
-  }
 
-  Body& body_;
   const FactoredBrdf& brdf_;
   ShaderFilter filter_;
   std::vector<Place> places_;
 };
 
 // [HomomorphicBrdf, eq. 4], each pair multiplied with itself first, as the definition does
-std::string lobe_value(Body& body, Lookups& lookups, const FactoredBrdf& brdf, std::size_t j) {
-  const Dialect& d = body.dialect();
+Expr lobe_value(const Lookups& lookups, const FactoredBrdf& brdf, std::size_t j) {
   const auto uses = brdf.ordered_factors(j);
   const std::size_t paired = 2 * brdf.pair_count(j);
-  const int channels = brdf.channels();
   const auto& scale = brdf.lobes()[j].scale;
-  const auto width = [&](const FactorUse& use) {
-    return brdf.tables()[static_cast<std::size_t>(use.table)].channels;
-  };
-  std::string product = channels == 1 ? d.literal(scale[0])
-                                      : fmt::format("{}({}, {}, {})", d.vector, d.literal(scale[0]),
-                                                    d.literal(scale[1]), d.literal(scale[2]));
-  int operations = 0;
+  Expr product = brdf.channels() == 1 ? Expr(scale[0]) : Expr(Op::vector, {scale[0], scale[1], scale[2]});
   for (std::size_t k = 0; k < uses.size(); k += k < paired ? 2 : 1) {
-    const std::string value = lookups.value(uses[k]);
-    product += k < paired ? fmt::format(" * ({} * {})", value, lookups.value(uses[k + 1])) : " * " + value;
-    operations += channels + (k < paired ? width(uses[k]) : 0);
+    const Expr value = lookups.value(uses[k]);
+    product = product * (k < paired ? value * lookups.value(uses[k + 1]) : value);
   }
-  return body.let(channels == 1 ? d.scalar : d.vector, "lobe", product, ops(operations));
+  return named("lobe", product);
 }
 
-std::string sum_of_lobes(Body& body, const FactoredBrdf& brdf, const std::vector<ShaderTexture>& textures,
-                         const ShaderOptions& options) {
-  Lookups lookups(body, brdf, textures, options);
-  std::string total;
-  for (std::size_t j = 0; j < brdf.lobes().size(); ++j)
-    total += (j ? " + " : "") + lobe_value(body, lookups, brdf, j);
+Expr sum_of_lobes(const FactoredBrdf& brdf, const std::vector<ShaderTexture>& textures,
+                  const ShaderOptions& options) {
+  const Lookups lookups(brdf, textures, options);
+  Expr total;
+  for (std::size_t j = 0; j < brdf.lobes().size(); ++j) total = total + lobe_value(lookups, brdf, j);
   return total;
 }
 
-std::string declare_textures(const Dialect& d, const ShaderOptions& options,
+// C++ has no textures: an array and a function that reads it.
+std::string declare_array(const Language& l, const ShaderTexture& texture) {
+  std::string text = fmt::format("BURNISH_CONSTANT float {}[] = {{", texture.name);
+  for (std::size_t k = 0; k < texture.values.size(); ++k)
+    text += fmt::format("{}{},", k % 8 ? " " : "\n    ", l.literal(texture.values[k]));
+  text += "\n};\n";
+  const std::string at = fmt::format("{}[{} * (y * {} + x)", texture.name, texture.channels, texture.width);
+  if (texture.channels == 1)
+    return text +
+           fmt::format("BURNISH_FUNCTION float {}_at(int x, int y) {{ return {}]; }}\n", texture.name, at);
+  return text + fmt::format(
+                    "BURNISH_FUNCTION vec3 {0}_at(int x, int y) {{\n"
+                    "  return {{{1}], {1} + 1], {1} + 2]}};\n}}\n",
+                    texture.name, at);
+}
+
+std::string declare_textures(const Language& l, const ShaderOptions& options,
                              const std::vector<ShaderTexture>& textures) {
-  const bool filtered = options.filter == ShaderFilter::hardware;
   std::string text;
   for (std::size_t i = 0; i < textures.size(); ++i) {
     const ShaderTexture& texture = textures[i];
-    const std::string& name = texture.name;
-    switch (d.language) {
-      case ShaderLanguage::glsl:
-      case ShaderLanguage::glsl_es:
-        text += fmt::format("uniform sampler{}D {};\n", texture.height > 0 ? 2 : 1, name);
-        break;
-      case ShaderLanguage::hlsl:
-        text += fmt::format("Texture2D<float4> {} : register(t{});\n", name, i);
-        if (filtered) text += fmt::format("SamplerState {}_sampler : register(s{});\n", name, i);
-        break;
-      case ShaderLanguage::msl:
-        text += fmt::format("  texture2d<float> {};\n", name);
-        break;
-      case ShaderLanguage::wgsl:
-        text += fmt::format("@group(0) @binding({}) var {}: texture_2d<f32>;\n", filtered ? 2 * i : i, name);
-        if (filtered)
-          text += fmt::format("@group(0) @binding({}) var {}_sampler: sampler;\n", 2 * i + 1, name);
-        break;
-      case ShaderLanguage::cpp: {
-        text += fmt::format("BURNISH_CONSTANT float {}[] = {{", name);
-        for (std::size_t k = 0; k < texture.values.size(); ++k)
-          text += fmt::format("{}{},", k % 8 ? " " : "\n    ", d.literal(texture.values[k]));
-        text += "\n};\n";
-        const std::string at = fmt::format("{}[{} * (y * {} + x)", name, texture.channels, texture.width);
-        text +=
-            texture.channels == 1
-                ? fmt::format("BURNISH_FUNCTION float {0}_at(int x, int y) {{ return {1}]; }}\n", name, at)
-                : fmt::format(
-                      "BURNISH_FUNCTION vec3 {0}_at(int x, int y) {{\n"
-                      "  return {{{1}], {1} + 1], {1} + 2]}};\n}}\n",
-                      name, at);
-        break;
-      }
-    }
+    const std::string_view pattern = texture.height == 0                        ? l.texture_1d
+                                     : options.filter == ShaderFilter::hardware ? l.filtered_texture
+                                                                                : l.texture;
+    text += l.texture.empty() ? declare_array(l, texture)
+                              : fmt::format(fmt::runtime(pattern), texture.name, i, 2 * i, 2 * i + 1);
   }
-  if (d.language != ShaderLanguage::msl) return text;
-  return fmt::format("struct burnish_{}_tables {{\n{}}};\n", options.name, text);
+  if (l.texture_struct.empty()) return text;
+  return fmt::format(fmt::runtime(l.texture_struct), "burnish_" + options.name + "_tables", text);
 }
 
-std::string local_function(const FactoredBrdf& brdf, const Dialect& d, const ShaderOptions& options,
-                           const std::vector<ShaderTexture>& textures, std::string_view more,
+ShaderCost cost_of(const OperationCount& count) noexcept {
+  return {.fetches = count.fetches,
+          .operations = count.multiplies + count.adds + count.compares,
+          .divisions = count.divisions,
+          .roots = count.roots,
+          .powers = count.transcendentals};
+}
+
+std::string local_function(Expr total, const Language& l, const ShaderOptions& options, std::string_view more,
                            ShaderCost& cost) {
-  Body body(d);
-  const std::string total = sum_of_lobes(body, brdf, textures, options);
-  const std::string zero = d.literal(0);
-  std::string result = d.function("burnish_" + options.name, {"wi", "wo"}, more);
-  result +=
-      fmt::format("  if (wi.z <= {0} || wo.z <= {0}) {{ return {1}({0}, {0}, {0}); }}\n", zero, d.vector);
-  if (d.language == ShaderLanguage::msl && options.filter == ShaderFilter::hardware)
-    result += "  constexpr sampler smooth_sampler(filter::linear, address::clamp_to_edge);\n";
-  cost = body.cost();
-  cost.operations += (static_cast<int>(brdf.lobes().size()) - 1) * brdf.channels();
-  if (brdf.channels() == 3) return result + body.text() + fmt::format("  return {};\n}}\n", total);
-  return result + body.text() + d.declaration(d.scalar, "f0", total) +
-         fmt::format("  return {}(f0, f0, f0);\n}}\n", d.vector);
+  if (total.type() == ValueType::real) {
+    total = named("f0", total);
+    total = Expr(Op::vector, {total, total, total});
+  }
+  Graph graph;
+  const std::size_t root = graph.add(total);
+  const Writer writer(l, graph, {root});
+  cost = cost_of(graph.count());
+  std::string body = horizon_test(l);
+  if (options.language == ShaderLanguage::msl && options.filter == ShaderFilter::hardware)
+    body += "  constexpr sampler smooth_sampler(filter::linear, address::clamp_to_edge);\n";
+  body += writer.text() + fmt::format(fmt::runtime(l.result), writer.text(root));
+  return l.function(ValueType::vector, "burnish_" + options.name, kTwoDirections, more, body);
 }
 
 void check(const FactoredBrdf& brdf, const ShaderOptions& options) {
@@ -250,20 +214,33 @@ std::vector<ShaderTexture> textures_of(const FactoredBrdf& brdf, const ShaderOpt
 
 }  // namespace
 
+std::string_view to_string(ShaderLanguage language) noexcept {
+  constexpr std::string_view kNames[] = {"glsl", "glsl_es", "hlsl", "msl", "wgsl", "cpp"};
+  return kNames[static_cast<std::size_t>(language)];
+}
+
 std::string to_string(const ShaderCost& cost) {
   return fmt::format("{} fetches, {} operations, {} divisions, {} roots, {} powers", cost.fetches,
                      cost.operations, cost.divisions, cost.roots, cost.powers);
 }
 
-Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options) {
+ShaderFormula shader_formula(const FactoredBrdf& brdf, const ShaderOptions& options) {
   check(brdf, options);
-  const Dialect& d = dialect_of(options.language);
+  ShaderFormula formula;
+  formula.textures = textures_of(brdf, options);
+  formula.value = sum_of_lobes(brdf, formula.textures, options);
+  return formula;
+}
+
+Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options) {
+  ShaderFormula formula = shader_formula(brdf, options);
+  const Language& l = language(to_string(options.language));
   const bool cpp = options.language == ShaderLanguage::cpp;
   Shader shader;
-  shader.textures = textures_of(brdf, options);
+  shader.textures = std::move(formula.textures);
   const std::string more =
       options.language == ShaderLanguage::msl ? fmt::format("burnish_{}_tables tables", options.name) : "";
-  const std::string function = local_function(brdf, d, options, shader.textures, more, shader.cost);
+  const std::string function = local_function(formula.value, l, options, more, shader.cost);
   const auto comment_of = [](std::string text) {  // a table's name may hold anything
     for (char& c : text) c = c < ' ' || c > '~' || c == '\\' ? '?' : c;
     return text;
@@ -273,31 +250,36 @@ Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options) {
       "// burnish_{}(wi, wo): f_r in 1/sr, without the cosine; unit vectors of the local frame, +z the "
       "normal.\n"
       "// {}.\n{}",
-      comment_of(model_expression(brdf)), options.name, to_string(shader.cost), d.header);
+      comment_of(model_expression(brdf)), options.name, to_string(shader.cost), l.header);
   if (cpp) shader.text += "namespace burnish_shader {\n";
-  shader.text += declare_textures(d, options, shader.textures);
-  shader.text += function + world_function(d, options.name, more);
+  shader.text += declare_textures(l, options, shader.textures);
+  shader.text += function + world_function(l, options.name, more);
   if (cpp) shader.text += "}  // namespace burnish_shader\n";
   return shader;
 }
 
 SplitShader split_shader(const FactoredBrdf& brdf, const ShaderOptions& options) {
-  check(brdf, options);
   if (options.language != ShaderLanguage::glsl && options.language != ShaderLanguage::glsl_es)
     throw Error(
         fmt::format("shader: expected glsl or glsl_es to split, found {}", to_string(options.language)));
-  const Dialect& d = dialect_of(options.language);
+  const Language& l = language(to_string(options.language));
+  ShaderFormula formula = shader_formula(brdf, options);
   SplitShader shader;
-  shader.textures = textures_of(brdf, options);
-  shader.declarations = std::string(d.header) + declare_textures(d, options, shader.textures);
-  Body body(d);
-  const std::string total = sum_of_lobes(body, brdf, shader.textures, options);
-  shader.value = fmt::format("{}({})", d.vector, total);
-  shader.view = body.view_text();
-  shader.light = body.light_text();
-  shader.view_cost = body.view_cost();
-  shader.light_cost = body.light_cost();
-  shader.light_cost.operations += (static_cast<int>(brdf.lobes().size()) - 1) * brdf.channels();
+  shader.textures = std::move(formula.textures);
+  shader.declarations = std::string(l.header) + declare_textures(l, options, shader.textures);
+  Graph graph;
+  const std::size_t root = graph.add(formula.value);
+  const Writer writer(l, graph, {root});
+  OperationCount view, rest;
+  for (const Statement& statement : writer.statements()) {
+    const bool lit = graph.reaches(statement.node, "wi");
+    (lit ? shader.light : shader.view) += statement.text;
+    (lit ? rest : view) += statement.count;
+  }
+  rest += writer.count(root);
+  shader.value = fmt::format("{}({})", l.vector, writer.text(root));
+  shader.view_cost = cost_of(view);
+  shader.light_cost = cost_of(rest);
   return shader;
 }
 

@@ -42,6 +42,7 @@ struct Counted {
 };
 static Counted sqrtf(Counted a) { return ++roots, sqrt(a.v); }
 static Counted fmaxf(Counted a, Counted b) { return ++operations, a.v < b.v ? b : a; }
+static Counted fabsf(Counted a) { return fabs(a.v); }
 static Counted floorf(Counted a) { return ++operations, floor(a.v); }
 static Counted powf(Counted a, Counted b) { return ++powers, pow(a.v, b.v); }
 #define float Counted

@@ -43,6 +43,7 @@ inline const ModelCase kModelCases[] = {
      3},
     {"ThreeLobes", "p(wo) q(h) p(wi) + p(wo) s(h) p(wi) + t(theta_d)", {"p=8", "q=64", "s=16", "t=8"}, 3},
     {"Twist", "a(theta_t) g(theta_h,theta_t)", {"a=16,power:0.7", "g=9x5"}, 3},
+    {"Azimuth", "a(phi_d) g(theta_d,phi_d)", {"a=16,rational:0.3", "g=9x5"}, 3},
 };
 
 /// The case of that name.

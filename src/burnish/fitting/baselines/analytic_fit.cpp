@@ -366,11 +366,11 @@ AnalyticFit fit_analytic(const SampleSource& source, std::string_view name,
   }
   // Ceres' cost is half the sum of squares
   return {.brdf = AnalyticBrdf(model, std::move(values)),
-          .error_before = std::sqrt(2 * fit.first_cost),
-          .error_after = std::sqrt(2 * fit.best_cost),
-          .starts = fit.starts,
-          .iterations = fit.iterations,
-          .stop_reason = fit.converged ? "converged" : "iteration limit"};
+          .summary = {.error_before = std::sqrt(2 * fit.first_cost),
+                      .error_after = std::sqrt(2 * fit.best_cost),
+                      .iterations = fit.iterations,
+                      .stop_reason = fit.converged ? StopReason::converged : StopReason::iteration_limit},
+          .starts = fit.starts};
 }
 
 }  // namespace burnish

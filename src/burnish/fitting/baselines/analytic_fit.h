@@ -3,9 +3,9 @@
 #include <cstddef>
 #include <functional>
 #include <span>
-#include <string>
 #include <string_view>
 
+#include <burnish/fitting/fit_summary.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/sample_source.h>
 
@@ -18,12 +18,11 @@ struct AnalyticFitOptions {
 };
 
 struct AnalyticFit {
-  AnalyticBrdf brdf;        ///< parameters rounded to single precision
-  double error_before = 0;  ///< weighted rms error of the cube roots at the best start
-  double error_after = 0;   ///< of the result
-  int starts = 0;           ///< minimizations run
-  int iterations = 0;       ///< of all of them
-  std::string stop_reason;  ///< of the best: "converged" or "iteration limit"
+  AnalyticBrdf brdf;  ///< parameters rounded to single precision
+  /// Errors are weighted rms ones of the cube roots: before at the best start, after of the result.
+  /// Iterations are those of all starts, the reason is the best one's.
+  FitSummary summary;
+  int starts = 0;  ///< minimizations run
 };
 
 /// The models fit_analytic takes.

@@ -20,7 +20,7 @@ AnalyticFit fit(const AnalyticBrdf& truth) {
 void expect_recovered(const std::string& spec) {
   const AnalyticBrdf truth = parse_analytic(spec);
   const AnalyticFit found = fit(truth);
-  EXPECT_LT(found.error_after, 1e-3) << spec;
+  EXPECT_LT(found.summary.error_after, 1e-3) << spec;
   for (std::size_t p = 0; p < truth.values().size(); ++p) {
     const Rgb a = truth.values()[p], b = found.brdf.values()[p];
     for (const auto& [x, y] : {std::pair{a.r, b.r}, {a.g, b.g}, {a.b, b.b}})
@@ -45,7 +45,7 @@ TEST(FitAnalytic, RecoversLafortunesFunction) {
   const AnalyticBrdf truth =
       parse_analytic("lafortune:kd=0.1/0.2/0.3,cx=-0.8,cy=-0.8,cz=0.9,exponent=25,ks=0.6");
   const AnalyticFit found = fit(truth);
-  EXPECT_LT(found.error_after, 1e-3);
+  EXPECT_LT(found.summary.error_after, 1e-3);
   EXPECT_LT(error_figures(truth.ref(), found.brdf.ref(), {.count = 2000, .image_size = 16}).relative, 0.02);
   EXPECT_EQ(found.starts, 12);
 }
@@ -56,7 +56,7 @@ TEST(FitAnalytic, KeepsParametersOfIsotropicSourcesEqual) {
     const AnalyticFit found =
         fit_analytic(from_brdf(source, 1000, 1, false), model, {.most_samples = 300, .max_iterations = 5});
     EXPECT_TRUE(found.brdf.isotropic()) << model;
-    EXPECT_LE(found.error_after, found.error_before);
+    EXPECT_LE(found.summary.error_after, found.summary.error_before);
   }
 }
 

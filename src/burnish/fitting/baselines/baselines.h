@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include <burnish/baselines/baseline_file.h>
-#include <burnish/baselines/evaluation_cost.h>
+#include <burnish/fitting/fit_summary.h>
 #include <burnish/reflectance/sample_source.h>
 
 namespace burnish {
@@ -23,13 +23,13 @@ struct BaselineOptions {
   std::function<void(double fraction)> progress = {};  ///< called with rising shares of the work
 };
 
-/// A fitted baseline and what it costs.
+/// A fitted baseline and how that went.
 struct BaselineFit {
-  std::string method;
-  Baseline baseline;  ///< its notes say how the fit went
-  std::size_t bytes = 0;
-  double seconds = 0;                  ///< of the fit, by the wall clock
-  std::optional<EvaluationCost> cost;  ///< nothing for analytic models
+  std::string method;  ///< as baseline_methods() writes it
+  BaselineBrdf brdf;
+  std::optional<std::size_t> layouts_tried;  ///< of decompositions, see SeparableFit
+  std::optional<FitSummary> summary;         ///< of the others, see DgfFit and AnalyticFit
+  std::optional<int> starts;                 ///< of analytic models
 };
 
 /// Fits one baseline. Decompositions resample `source`; the others take `samples` of it. Both should be

@@ -232,8 +232,8 @@ DgfFit fit_dgf(const SampleSource& source, const DgfOptions& options) {
     before += first / static_cast<double>(channels);
     after += last / static_cast<double>(channels);
   }
-  return {DgfBrdf(std::move(diffuse), std::move(scale), std::move(d), std::move(g), std::move(f)), before,
-          after};
+  return {DgfBrdf(std::move(diffuse), std::move(scale), std::move(d), std::move(g), std::move(f)),
+          {.error_before = before, .error_after = after, .iterations = options.rounds}};
 }
 
 }  // namespace burnish

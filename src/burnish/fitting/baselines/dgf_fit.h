@@ -4,6 +4,7 @@
 #include <functional>
 
 #include <burnish/baselines/dgf_brdf.h>
+#include <burnish/fitting/fit_summary.h>
 #include <burnish/reflectance/sample_source.h>
 
 namespace burnish {
@@ -18,8 +19,9 @@ struct DgfOptions {
 
 struct DgfFit {
   DgfBrdf brdf;
-  double error_before = 0;  ///< weighted squared error of the first guess, mean over channels
-  double error_after = 0;   ///< of the result, before rounding
+  /// Errors are weighted squared ones, means over the channels: before of the first guess, after of the
+  /// result before rounding. Stops after all rounds.
+  FitSummary summary;
 };
 
 /// Fits the microfacet factors by alternating weighted least squares, every value >= 0: each table enters the

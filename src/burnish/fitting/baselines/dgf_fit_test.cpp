@@ -35,7 +35,7 @@ TEST(FitDgf, RecoversAMicrofacetModelMadeOfTables) {
   const DgfFit fit = fit_dgf(from_brdf(truth, 12'000, 1, false), {.budget = 3 * 136});
   EXPECT_EQ(fit.brdf.bytes(), 3u * 136);
   EXPECT_EQ(fit.brdf.d().axes[0].count, 32);
-  EXPECT_LT(fit.error_after, 0.01 * fit.error_before);
+  EXPECT_LT(fit.summary.error_after, 0.01 * fit.summary.error_before);
   const ErrorFigures error = error_figures(truth, fit.brdf, {.count = 2000, .image_size = 64});
   EXPECT_LT(error.relative, 0.05);
   EXPECT_GT(error.psnr, 40);
@@ -49,7 +49,7 @@ TEST(FitDgf, GetsBetterWithItsBudgetUpToThePapersTables) {
                capped = fit_dgf(samples, {.budget = 1 << 20, .rounds = 1});
   EXPECT_LE(small.brdf.bytes(), 200u);
   EXPECT_LE(large.brdf.bytes(), 1000u);
-  EXPECT_LT(large.error_after, small.error_after);
+  EXPECT_LT(large.summary.error_after, small.summary.error_after);
   EXPECT_EQ(capped.brdf.d().axes[0].count, 180);
   EXPECT_EQ(capped.brdf.g().axes[0].count, 90);
 }

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <vector>
 
-#include <burnish/fitting/baselines/separable_fit.h>
+#include <burnish/fitting/baselines/negative_lobes.h>
 #include <burnish/reflectance/goniometer.h>
 
 namespace burnish {

@@ -11,6 +11,7 @@
 #include <burnish/fitting/baselines/compressive_weight.h>
 #include <burnish/fitting/baselines/low_rank.h>
 #include <burnish/fitting/baselines/separable_fit.h>
+#include <burnish/metrics/error_figures.h>
 #include <burnish/reflectance/mirror_asymmetry.h>
 
 namespace burnish {

@@ -6,7 +6,6 @@
 
 #include <burnish/baselines/separable_brdf.h>
 #include <burnish/fitting/baselines/pair_grid.h>
-#include <burnish/metrics/error_figures.h>
 
 namespace burnish {
 
@@ -45,16 +44,5 @@ struct SeparableFit {
 /// anisotropic ones, on disks of h and d, as h | d and (h, θ_d) | φ_d. The source should be reciprocal: the
 /// result is. Deterministic. Throws Error if no layout fits the budget or the source knows nothing.
 SeparableFit fit_separable(BrdfRef source, Decomposition method, const SeparableOptions& options);
-
-/// What the negative values of a sum of signed terms cost, measured on the pairs and pictures of a Scorer.
-/// Three ways to be rid of them: the sum clamped at 0 (what SeparableBrdf does), every table clamped at 0
-/// (unsigned textures without a bias), and a constant added that lifts the sum above 0.
-struct NegativeLobes {
-  double negative_share = 0;  ///< share of pairs and channels whose sum is below 0
-  double bias = 0;            ///< what must be added to f, largest channel, 1/sr
-  ErrorFigures sum_clamped, tables_clamped, biased;
-};
-
-NegativeLobes negative_lobes(const SeparableBrdf& brdf, const Scorer& scorer);
 
 }  // namespace burnish

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <burnish/error.h>
+#include <burnish/fitting/baselines/negative_lobes.h>
 #include <burnish/fitting/baselines/separable_fit.h>
 #include <burnish/reflectance/goniometer.h>
 #include <burnish/testing/baselines.h>

@@ -336,12 +336,12 @@ LogSolution solve(const RowMaker& rows, const Unknowns& unknowns, const Homomorp
   p = z;
   double rz = inner_product(r, z);
   const double first = rz;
-  LogSolution solution{
-      .samples = op.samples(), .error_before = op.error_before(), .stop_reason = "iteration limit"};
+  LogSolution solution{.samples = op.samples(), .summary = {.error_before = op.error_before()}};
+  FitSummary& summary = solution.summary;
   const double target = options.tolerance * options.tolerance * first;
-  while (solution.iterations < options.max_iterations) {
+  while (summary.iterations < options.max_iterations) {
     if (rz <= target) {
-      solution.stop_reason = "tolerance reached";
+      summary.stop_reason = StopReason::tolerance_reached;
       break;
     }
     const Doubles ap = op.apply(p);
@@ -355,13 +355,13 @@ LogSolution solve(const RowMaker& rows, const Unknowns& unknowns, const Homomorp
     if (!std::isfinite(next)) throw Error("fit: expected a solvable system; more smoothness may help");
     for (std::size_t i = 0; i < p.size(); ++i) p[i] = z[i] + next / rz * p[i];
     rz = next;
-    ++solution.iterations;
+    ++summary.iterations;
     // the residual falls about geometrically
     if (options.progress)
       options.progress(
           std::clamp(std::log(first / std::max(rz, 1e-300)) / std::log(first / target), 0.0, 1.0));
   }
-  solution.error_after = op.error(x);
+  summary.error_after = op.error(x);
   solution.log_values.resize(unknowns.count);
   for (std::size_t t = 0; t < rows.spec->tables.size(); ++t)
     for (std::size_t node = 0; node < rows.spec->tables[t].layout.node_count(); ++node)

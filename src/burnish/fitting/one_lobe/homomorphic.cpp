@@ -71,12 +71,8 @@ HomomorphicFit fit_homomorphic(const SampleSource& source, const ModelSpec& spec
   RowMaker rows(source, spec, options.floor, options.error_floor);
   const Unknowns unknowns = number_unknowns(spec, source.channels);
   LogSolution solution = solve(rows, unknowns, options);
-  HomomorphicSummary summary{.samples = solution.samples,
-                             .unknowns = unknowns.count,
-                             .error_before = solution.error_before,
-                             .error_after = solution.error_after,
-                             .iterations = solution.iterations,
-                             .stop_reason = solution.stop_reason};
+  FitSummary summary = solution.summary;
+  int reweightings = 0;
 
   if (options.reweightings > 0) {
     const auto unrounded = [&](const LogSolution& s) {
@@ -88,19 +84,22 @@ HomomorphicFit fit_homomorphic(const SampleSource& source, const ModelSpec& spec
     for (int pass = 0; pass < options.reweightings; ++pass) {
       rows.current = &current;
       LogSolution next = solve(rows, unknowns, options);
-      summary.iterations += next.iterations;
+      summary.iterations += next.summary.iterations;
       current = unrounded(next);
       const double error = log_error(source, current, options.error_floor).mean();
       if (error < smallest) {
         smallest = error;
         solution = std::move(next);
-        summary.reweightings = pass + 1;
+        reweightings = pass + 1;
       }
     }
   }
-  return {from_log_tables(source.channels, to_tables(solution, unknowns, spec, options.format),
-                          {to_lobe(solution, spec)}),
-          std::move(summary)};
+  return {.brdf = from_log_tables(source.channels, to_tables(solution, unknowns, spec, options.format),
+                                  {to_lobe(solution, spec)}),
+          .summary = summary,
+          .samples = solution.samples,
+          .unknowns = unknowns.count,
+          .reweightings = reweightings};
 }
 
 }  // namespace burnish

@@ -2,10 +2,10 @@
 
 #include <cstddef>
 #include <functional>
-#include <string>
 
 #include <burnish/factors/factored_brdf.h>
 #include <burnish/factors/model_spec.h>
+#include <burnish/fitting/fit_summary.h>
 #include <burnish/reflectance/sample_source.h>
 
 namespace burnish {
@@ -30,20 +30,15 @@ struct HomomorphicOptions {
   std::function<void(double fraction)> progress;
 };
 
-struct HomomorphicSummary {
-  std::size_t samples = 0;   ///< samples with weight
-  std::size_t unknowns = 0;  ///< texels of all channels
-  double error_before = 0;   ///< weighted rms of log f about its mean: the error of the best constant
-  double error_after =
-      0;               ///< weighted rms of log f - log of the plain model, before reweighting and rounding
-  int iterations = 0;  ///< of conjugate gradients; 0 for a direct solution
-  std::string stop_reason;  ///< "direct solution", "tolerance reached", "iteration limit"
-  int reweightings = 0;     ///< passes used
-};
-
 struct HomomorphicFit {
   FactoredBrdf brdf;
-  HomomorphicSummary summary;
+  /// Errors are weighted rms of log f: before about its mean, the error of the best constant; after from log
+  /// of the plain model, before reweighting and rounding. Iterations are of conjugate gradients, of all
+  /// passes; the reason is the first pass's.
+  FitSummary summary;
+  std::size_t samples = 0;   ///< with weight
+  std::size_t unknowns = 0;  ///< texels of all channels
+  int reweightings = 0;      ///< passes used
 };
 
 /// Fits one lobe by homomorphic factorization: log f = sum of log lambda_k(pi_k) [HomomorphicBrdf, eq. 5] is

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
 #include <burnish/factors/model_spec.h>
@@ -62,9 +61,7 @@ struct LogSolution {
   std::vector<double> log_values;      ///< as numbered by Unknowns
   std::vector<double> channel_offset;  ///< added to every log value of a channel
   std::size_t samples = 0;
-  double error_before = 0, error_after = 0;  ///< see HomomorphicSummary
-  int iterations = 0;
-  std::string stop_reason;
+  FitSummary summary;  ///< see HomomorphicFit
 };
 
 /// Minimizes by gathering the normal equations in one pass and factorizing them: for up to some hundred

@@ -187,7 +187,7 @@ LogSolution solve_directly(const RowMaker& rows, const Unknowns& unknowns,
 
   LogSolution solution{.log_values = std::vector<double>(unknowns.count),
                        .channel_offset = std::vector<double>(channels),
-                       .stop_reason = "direct solution"};
+                       .summary = {.stop_reason = StopReason::direct_solution}};
   for (const std::size_t s : samples) solution.samples += s;
   double before = 0, after = 0, weight = 0;
   for (std::size_t m = 0; m < gatherer.matrices(); ++m) {
@@ -217,8 +217,8 @@ LogSolution solve_directly(const RowMaker& rows, const Unknowns& unknowns,
                                    : x(gatherer.index(t, node, 0),
                                        static_cast<Eigen::Index>(gatherer.matrices() == 1 ? c : 0));
   }
-  solution.error_before = std::sqrt(std::max(0.0, before / weight));
-  solution.error_after = std::sqrt(std::max(0.0, after / weight));
+  solution.summary.error_before = std::sqrt(std::max(0.0, before / weight));
+  solution.summary.error_after = std::sqrt(std::max(0.0, after / weight));
   return solution;
 }
 

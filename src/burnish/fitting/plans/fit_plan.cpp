@@ -28,19 +28,19 @@ constexpr double kThinPart = 0.3;  // share of the work done by then
 
 /// Adds one refinement to the summary; its progress runs from `from` to `to`.
 void refine_part(LogModel& model, const TrainingSet& set, const Lookups& lookups, RefineOptions options,
-                 int steps, double from, double to, LobesSummary& summary) {
+                 int steps, double from, double to, FitSummary& summary) {
   options.max_iterations = std::min(steps, options.max_iterations);
   if (options.progress)
     options.progress = [whole = options.progress, from, to](double f) { whole(from + f * (to - from)); };
-  const RefineSummary done = refine(model, set, lookups, options);
+  const FitSummary done = refine(model, set, lookups, options);
   summary.iterations += done.iterations;
-  summary.objective_before = done.objective_before;
-  summary.objective_after = done.objective_after;
+  summary.error_before = done.error_before;
+  summary.error_after = done.error_after;
   summary.stop_reason = done.stop_reason;
 }
 
 void refine_in_rounds(LogModel& model, const TrainingSet& set, const RefineOptions& options, int steps,
-                      double from, double to, LobesSummary& summary) {
+                      double from, double to, FitSummary& summary) {
   const auto part = [&](int round) { return from + (to - from) * round / kRounds; };
   const Lookups lookups = find_lookups(model.spec, set);
   for (int k = 0; k < kRounds; ++k)
@@ -49,7 +49,7 @@ void refine_in_rounds(LogModel& model, const TrainingSet& set, const RefineOptio
 
 /// The last refinement: on part of the data, then on all.
 void refine_fully(LogModel& model, const TrainingSet& coarse, const TrainingSet& set,
-                  const RefineOptions& options, double from, LobesSummary& summary) {
+                  const RefineOptions& options, double from, FitSummary& summary) {
   const double middle = from + 0.3 * (1 - from);
   const int rough = coarse.size() < set.size() ? std::min(2 * kRoughSteps, options.max_iterations) : 0;
   if (rough > 0) refine_in_rounds(model, coarse, options, rough, from, middle, summary);
@@ -144,7 +144,6 @@ LobesFit fit_plan(const TrainingSet& set, const LobePlan& plan, std::size_t byte
   rough_options.format = TableFormat::single;
   LobesFit fit{
       .model = fit_one_lobe(first_lobes(1), coarse, coarse.values, std::max(kStartSmooth, options.smooth))};
-  fit.summary.lobes = static_cast<int>(lobes);
   // the work grows with the square of the lobes
   const auto done = [&](std::size_t j) {
     return 0.4 * static_cast<double>(j * j * j) / static_cast<double>(lobes * lobes * lobes);
@@ -176,7 +175,6 @@ LobesFit fit_lobes(const TrainingSet& set, const ModelSpec& spec, const RefineOp
   if (lobes == 0) throw Error("fit: expected at least one lobe");
   LobesFit fit{.model = {.spec = spec, .channels = set.channels, .log_values = {}}};
   fit.model.log_values.resize(spec.tables.size());
-  fit.summary.lobes = static_cast<int>(lobes);
 
   // A low value of each channel stands for what is spread wide.
   std::vector<float> low(channels);

@@ -1,26 +1,17 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
-#include <string>
-#include <vector>
 
 #include <burnish/fitting/plans/lobe_plan.h>
 #include <burnish/fitting/refinement/refine.h>
 
 namespace burnish {
 
-struct LobesSummary {
-  double objective_before = 0;  ///< of the start of the last refinement, see PictureLoss
-  double objective_after = 0;
-  int lobes = 0;
-  int iterations = 0;  ///< Gauss-Newton steps of all refinements and channels
-  std::string stop_reason;
-};
-
 struct LobesFit {
   LogModel model;
-  LobesSummary summary;
+  /// Of the last refinement, its errors as refine says; iterations are the Gauss-Newton steps of all
+  /// refinements and channels.
+  FitSummary summary;
 };
 
 /// Fits an isotropic plan: one lobe log-linearly [HomomorphicBrdf, eq. 5], then one split off after the other

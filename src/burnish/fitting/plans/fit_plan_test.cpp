@@ -185,7 +185,7 @@ TEST(Budget, SparesTexelsForGridsWhereThereAreMany) {
   EXPECT_EQ(std::ranges::count(fit.model.spec.tables, TableShape::grid,
                                [](const auto& t) { return t.layout.shape; }),
             1);
-  EXPECT_LT(fit.summary.objective_after, fit.summary.objective_before);
+  EXPECT_LT(fit.summary.error_after, fit.summary.error_before);
 }
 
 TEST(Budget, HoldsDiffuseAndAnisotropicGlossTogether) {

@@ -37,7 +37,7 @@ struct LobePlan {
   friend bool operator==(const LobePlan&, const LobePlan&) = default;
 };
 
-/// The plan that serves a number of bytes best, measured on the materials of docs/accuracy.md: lobes
+/// The plan that serves a number of bytes best, measured on the materials of docs/results/accuracy.md: lobes
 /// p(wo) p(wi) q(theta_h) m(theta_m) r(theta_d), where there are several also s(wi + wo/2) s(wi/2 + wo) and
 /// one z(theta_h) for all of them; grids over two of the three angles where there are texels to spare; p and
 /// q hemispheres where the source is anisotropic. `lobes` counts the wide one too; 0: chosen by the bytes.

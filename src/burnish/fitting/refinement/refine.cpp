@@ -146,12 +146,12 @@ class Descent {
   }
 
   /// Puts the tables into the model and adds to the summary.
-  void finish(LogModel& model, RefineSummary& summary) const {
+  void finish(LogModel& model, FitSummary& summary) const {
     system_.write(x_, model);
-    if (iterations_ == options_.max_iterations) summary.stop_reason = "iteration limit";
+    if (iterations_ == options_.max_iterations) summary.stop_reason = StopReason::iteration_limit;
     summary.iterations += iterations_;
-    summary.objective_before += before_;
-    summary.objective_after += after_;
+    summary.error_before += before_;
+    summary.error_after += after_;
   }
 
  private:
@@ -169,12 +169,12 @@ class Descent {
 
 }  // namespace
 
-RefineSummary refine(LogModel& model, const TrainingSet& set, const RefineOptions& options) {
+FitSummary refine(LogModel& model, const TrainingSet& set, const RefineOptions& options) {
   return refine(model, set, find_lookups(model.spec, set), options);
 }
 
-RefineSummary refine(LogModel& model, const TrainingSet& set, const Lookups& lookups,
-                     const RefineOptions& options) {
+FitSummary refine(LogModel& model, const TrainingSet& set, const Lookups& lookups,
+                  const RefineOptions& options) {
   if (!(options.smooth >= 0) || !std::isfinite(options.smooth) || !(options.max_iterations >= 0))
     throw Error("fit: expected smooth >= 0 and a number of iterations >= 0");
   if (model.channels != set.channels)
@@ -197,10 +197,10 @@ RefineSummary refine(LogModel& model, const TrainingSet& set, const Lookups& loo
     });
   });
 
-  RefineSummary summary{.stop_reason = "no more progress"};
+  FitSummary summary{.stop_reason = StopReason::no_more_progress};
   for (const Descent& descent : descents) descent.finish(model, summary);
-  summary.objective_before /= static_cast<double>(descents.size());
-  summary.objective_after /= static_cast<double>(descents.size());
+  summary.error_before /= static_cast<double>(descents.size());
+  summary.error_after /= static_cast<double>(descents.size());
   if (options.progress) options.progress(1);
   return summary;
 }

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <functional>
-#include <string>
 
+#include <burnish/fitting/fit_summary.h>
 #include <burnish/fitting/refinement/log_model.h>
 #include <burnish/fitting/refinement/lookups.h>
 #include <burnish/fitting/refinement/picture_loss.h>
@@ -27,21 +27,16 @@ struct RefineOptions {
   std::function<void(double fraction)> progress;
 };
 
-struct RefineSummary {
-  double objective_before = 0, objective_after = 0;  ///< means over the channels
-  int iterations = 0;                                ///< of all channels
-  std::string stop_reason;                           ///< "no more progress", "iteration limit"
-};
-
 /// Lowers the error that PictureLoss states, by damped Gauss-Newton steps (Levenberg-Marquardt) on the
 /// logarithms of the tables [Marquardt1963]; lambda stays positive. Every accepted step lowers the
 /// objective. Channels are refined side by side, or as one system where a table is shared. Steps are solved
 /// directly for up to kMostDirectUnknowns, by preconditioned conjugate gradients for more. The
-/// result does not depend on the number of threads.
-RefineSummary refine(LogModel& model, const TrainingSet& set, const RefineOptions& options);
+/// result does not depend on the number of threads. The summary's errors are the objective with the
+/// smoothness term, means over the channels; its iterations are of all channels.
+FitSummary refine(LogModel& model, const TrainingSet& set, const RefineOptions& options);
 /// The same with the set's lookups of models like this one at hand.
-RefineSummary refine(LogModel& model, const TrainingSet& set, const Lookups& lookups,
-                     const RefineOptions& options);
+FitSummary refine(LogModel& model, const TrainingSet& set, const Lookups& lookups,
+                  const RefineOptions& options);
 
 /// The objective that refine lowers, without the smoothness term; mean over the channels.
 double objective(const LogModel& model, const TrainingSet& set, const ErrorTerms& shares);

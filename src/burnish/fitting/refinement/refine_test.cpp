@@ -325,7 +325,7 @@ TEST(Refine, RecoversASumOfTwoLobes) {
   double worst = 0;
   for (std::size_t i = 0; i < f.size(); ++i) worst = std::max(worst, std::abs(std::log(g[i] / f[i])));
   EXPECT_LT(worst, 0.02);
-  EXPECT_LT(fit.summary.objective_after, fit.summary.objective_before);
+  EXPECT_LT(fit.summary.error_after, fit.summary.error_before);
 }
 
 TEST(Refine, DoesNotDependOnTheNumberOfThreads) {
@@ -344,8 +344,8 @@ TEST(Refine, IteratesWhereTheMatrixWouldBeTooLarge) {
   const TrainingSet set = small_set(ggx, 3000);
   LogModel model = fit_one_lobe(parse_model_spec("pqp", std::vector<std::string>{"p=5x5", "q=45x45"}, false),
                                 set, set.values, 1e-6);
-  const RefineSummary summary = refine(model, set, {.smooth = 1e-8, .max_iterations = 3});
-  EXPECT_LT(summary.objective_after, summary.objective_before - 0.2);
+  const FitSummary summary = refine(model, set, {.smooth = 1e-8, .max_iterations = 3});
+  EXPECT_LT(summary.error_after, summary.error_before - 0.2);
 }
 
 TEST(Refine, RefusesBadOptions) {

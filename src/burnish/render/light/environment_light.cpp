@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <burnish/error.h>
+#include <burnish/file.h>
 #include <burnish/math/parallel.h>
 #include <burnish/math/random.h>
 #include <burnish/metrics/sphere_images.h>
@@ -158,6 +159,12 @@ std::optional<Environment> find_environment(std::string_view name) {
   const auto found = std::ranges::find(environments(), name, &Environment::name);
   if (found == environments().end()) return {};
   return *found;
+}
+
+Environment open_environment(const std::string& name_or_file) {
+  if (auto known = find_environment(name_or_file)) return *std::move(known);
+  return {.name = name_or_file,
+          .picture = std::make_shared<const SkyImage>(parse_sky(read_file(name_or_file)))};
 }
 
 std::vector<DiscPoint> disc_points(const Environment& environment) {

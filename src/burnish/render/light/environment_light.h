@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -25,7 +26,7 @@ struct DistantDisc {
 
 /// Light from all around: a sky from horizon to zenith over a dark ground, y up, or a picture, and discs.
 struct Environment {
-  std::string_view name;
+  std::string name;
   Rgb zenith, horizon, ground;
   std::vector<DistantDisc> discs;
   std::shared_ptr<const SkyImage> picture{};  ///< where there is one, in place of the colours
@@ -42,6 +43,10 @@ std::vector<DiscPoint> disc_points(const Environment& environment);
 
 /// The environment of that name ("sun", "studio"); nothing for others.
 std::optional<Environment> find_environment(std::string_view name);
+
+/// The environment of that name, or else the picture in that file, which gives it its name. Throws Error as
+/// read_file and parse_sky do.
+Environment open_environment(const std::string& name_or_file);
 
 /// "sun": a clear sky with a sun of radius 1 degree that gives the most of the light; "studio": three lamps
 /// of 6 to 20 degrees in a dim room.

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <burnish/error.h>
+#include <burnish/formula/language.h>
 #include <burnish/render/light/tapped_light.h>
-#include <burnish/shaders/dialect.h>
 
 namespace burnish {
 
@@ -64,7 +64,7 @@ TappedShader generate_shader(const TappedBrdf& brdf, const BlurOptions& blur, Sh
   if (language != ShaderLanguage::glsl && language != ShaderLanguage::glsl_es)
     throw Error(fmt::format("image-based light: expected glsl or glsl_es, found {}", to_string(language)));
   TappedShader shader{.environment = fmt::format("burnish_{}_environment", name)};
-  shader.text = std::string(dialect_of(language).header) +
+  shader.text = std::string(burnish::language(to_string(language)).header) +
                 fmt::format(fmt::runtime(kBlurred), shader.environment, blur.side, blur.levels);
   const double octave = 1 / std::log2(blur.step);  // in levels
   std::string sum;

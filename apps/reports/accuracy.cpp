@@ -1,0 +1,255 @@
+// How accurate models of a number of bytes are, beside others of the same size.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <optional>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include <burnish/fitting/baselines/baselines.h>
+#include <burnish/fitting/fit.h>
+#include <burnish/image/contact_sheet.h>
+#include <burnish/image/png.h>
+#include <burnish/io/open_source.h>
+#include <burnish/math/parallel.h>
+#include <burnish/reflectance/analytic.h>
+#include <burnish/reflectance/scattered_brdf.h>
+
+#include "accuracy_scores.h"
+#include "report.h"
+#include "scattered.h"
+
+namespace burnish::reports {
+
+namespace {
+
+constexpr std::size_t kSheetBudget = 2700;
+
+std::vector<Attempt> attempts(const std::vector<std::size_t>& budgets, bool isotropic, bool quick) {
+  std::vector<Attempt> list{{"ours", budgets}, {"svd", budgets}};
+  if (quick) return list;
+  list.push_back({"nmf", budgets});
+  list.push_back({"nd", {kSheetBudget}});
+  if (isotropic) list.push_back({"dgf", {kSheetBudget}});
+  for (const std::string_view method : baseline_methods())
+    if (method.starts_with("analytic:")) list.push_back({method, {}});
+  return list;
+}
+
+// What stands above a score's pictures.
+std::string label_of(const Score& score) {
+  if (score.method.starts_with("analytic:")) return "analytic\n" + score.method.substr(9);
+  return fmt::format("{}\n{} bytes", score.method, score.budget > 0 ? score.budget : score.bytes);
+}
+
+// Four times |shown - reference|, but alpha, which stays.
+Image8 difference_of(const Image8& shown, const Image8& reference) {
+  Image8 difference = shown;
+  const bool alpha = shown.channels == 4;
+  for (std::size_t i = 0; i < shown.pixels.size(); ++i)
+    if (!alpha || i % 4 < 3)
+      difference.pixels[i] = static_cast<std::uint8_t>(
+          std::min(255, 4 * std::abs(int{shown.pixels[i]} - int{reference.pixels[i]})));
+  return difference;
+}
+
+// A material's pictures: one row of what it looks like, one of four times the difference from the reference.
+void add_pictures(const Material& material, const std::vector<Score>& scores, ContactSheet& sheet) {
+  const Image8 reference = picture(material.reference, material.scorer.exposure());
+  const bool first = sheet.column_labels.empty();
+  std::vector<Image8> shown{reference}, differences{Image8{}};
+  if (first) sheet.column_labels.push_back("reference");
+  for (const Score& score : scores) {
+    if (score.budget > kSheetBudget) continue;
+    if (first) sheet.column_labels.push_back(label_of(score));
+    shown.push_back(score.picture);
+    differences.push_back(difference_of(score.picture, reference));
+  }
+  sheet.row_labels.push_back(material.name);
+  sheet.cells.push_back(std::move(shown));
+  sheet.row_labels.push_back("4 x difference");
+  sheet.cells.push_back(std::move(differences));
+}
+
+// Each method's mean of one figure over its bytes.
+Plot plot_of(const std::vector<MeanScore>& means, const std::string& figure, bool log_y,
+             double ErrorFigures::*value) {
+  Plot plot{.title = "Mean " + figure + " over the eight RGL materials",
+            .x_label = "bytes",
+            .y_label = figure,
+            .log_x = true,
+            .log_y = log_y};
+  for (const auto& [mean, materials] : means) {
+    auto series =
+        std::ranges::find_if(plot.series, [&](const PlotSeries& s) { return s.label == mean.method; });
+    if (series == plot.series.end()) {
+      plot.series.push_back({.label = mean.method, .style = PlotStyle::line_and_points});
+      series = plot.series.end() - 1;
+    }
+    series->x.push_back(static_cast<double>(mean.bytes));
+    series->y.push_back(mean.errors.*value);
+  }
+  return plot;
+}
+
+void plot_means(const Page& page, const std::vector<MeanScore>& means) {
+  page.write_plot("accuracy-psnr", plot_of(means, "psnr", false, &ErrorFigures::psnr));
+  page.write_plot("accuracy-ssim", plot_of(means, "ssim", false, &ErrorFigures::ssim));
+  page.write_plot("accuracy-relative", plot_of(means, "relative", true, &ErrorFigures::relative));
+  page.write_plot("accuracy-log_cos", plot_of(means, "log_cos", true, &ErrorFigures::log_cos));
+  page.write_plot("accuracy-rms_log", plot_of(means, "rms_log", true, &ErrorFigures::rms_log));
+}
+
+void report_rgl(Page& page, const fs::path& data) {
+  const bool quick = page.options().quick;
+  const std::vector<std::size_t> budgets =
+      quick ? std::vector<std::size_t>{1350, 2700} : std::vector<std::size_t>{1350, 2700, 16'384, 65'536};
+  std::vector<fs::path> files = files_in(data / "rgl");
+  if (quick) files.resize(1);
+  std::deque<Material> materials;
+  for (const fs::path& file : files) {
+    Material& material = materials.emplace_back(file.stem().string(), file.string());
+    material.attempts = attempts(budgets, material.reference.isotropic(), quick);
+    material.shown_budget = kSheetBudget;
+  }
+  std::vector<std::vector<Score>> scores = run(materials);
+
+  // the published network of the same material comes first
+  ContactSheet sheet{.title = "Light at 30 degrees; at most 2,700 bytes"};
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const Material& material = materials[i];
+    const Source network =
+        open_source(fmt::format("nbrdf:{}#{}", (data / "nbrdf/rgl.csv").string(), material.name), {});
+    const SymmetrizedBrdf symmetric(network.ref());
+    scores[i].insert(scores[i].begin(), run_network(material, symmetric));
+    add_pictures(material, scores[i], sheet);
+  }
+
+  const std::vector<MeanScore> means = means_of(scores);
+  page["rgl"] = table_of(means).markdown();
+  page["rgl_materials"] = std::to_string(materials.size());
+  page.write_rows("rgl", table_of(materials, scores));
+  page.write_figure("accuracy-spheres.png", encode_png(compose(sheet)));
+  plot_means(page, means);
+}
+
+// The first column of a CSV file.
+std::vector<std::string> row_names(const fs::path& file) {
+  std::vector<std::string> names;
+  std::ifstream rows(file);
+  for (std::string row; std::getline(rows, row);)
+    if (const auto comma = row.find(','); comma != row.npos) names.push_back(row.substr(0, comma));
+  return names;
+}
+
+void report_merl(Page& page, const fs::path& data) {
+  const bool quick = page.options().quick;
+  const std::vector<std::string> names = row_names(data / "nbrdf/merl.csv");
+  constexpr std::size_t kEvery = 10;
+  std::deque<Material> materials;
+  for (std::size_t i = 0; i < names.size(); i += quick ? kEvery : 1) {
+    const std::string place = fmt::format("nbrdf:{}#{}", (data / "nbrdf/merl.csv").string(), names[i]);
+    materials.emplace_back(names[i], place, FigureOptions{.count = 50'000, .image_size = 128}).attempts =
+        attempts({kSheetBudget}, true, quick);
+  }
+  const std::vector<std::vector<Score>> scores = run(materials);
+  const auto worst =
+      std::ranges::max_element(scores, {}, [](const auto& row) { return row.front().errors.rms_log; });
+  page["merl"] = table_of(means_of(scores)).markdown();
+  page["merl_materials"] = std::to_string(materials.size());
+  page["merl_worst"] = fmt::format("{:.3f}, {}", worst->front().errors.rms_log,
+                                   materials[static_cast<std::size_t>(worst - scores.begin())].name);
+  page.write_rows("merl", table_of(materials, scores));
+}
+
+void report_others(Page& page) {
+  const auto& [folder, data, quick, section] = page.options();
+  const std::vector<std::size_t> budgets =
+      quick ? std::vector<std::size_t>{2700} : std::vector<std::size_t>{2700, 16'384, 65'536};
+  std::vector<std::pair<std::string, std::string>> sources{
+      {"anisotropic GGX", "ggx:alpha_x=0.1,alpha_y=0.3,f0=0.8,kd=0.3"}};
+  if (data && !quick)
+    for (const char* file :
+         {"mbsdf/carpaint_blue.mbsdf", "klems/mecho_shade_fabric_aniso.xml", "zemax/AnoBlackEC1onAlum.bsdf"})
+      sources.emplace_back((*data / file).stem().string(), (*data / file).string());
+  std::deque<Material> materials;
+  for (const auto& [name, place] : sources) {
+    Material& material = materials.emplace_back(name, place);
+    material.attempts = attempts(budgets, material.reference.isotropic(), quick);
+    material.shown_budget = kSheetBudget;
+  }
+  const std::vector<std::vector<Score>> scores = run(materials);
+
+  ContactSheet sheet{.title = "Light at 30 degrees; at most 2,700 bytes"};
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    std::vector<Score> shown = scores[i];
+    std::erase_if(shown, [](const Score& s) { return s.method == "dgf"; });  // a column for every material
+    add_pictures(materials[i], shown, sheet);
+  }
+  page["others"] = table_of(means_of(scores)).markdown();
+  page.write_rows("others", table_of(materials, scores));
+  if (!quick) page.write_figure("accuracy-others.png", encode_png(compose(sheet)));
+}
+
+// Errors of each method, ours first, on the rows of one paint that it was not fitted to.
+std::vector<FoldErrors> paint_errors(const Samples& samples, const std::vector<std::string>& methods) {
+  std::vector<FoldErrors> errors(methods.size());
+  for (std::size_t fold = 0; fold < kFolds; ++fold) {
+    const auto [training, test] = split_fold(samples.size(), fold);
+    const Source source = source_of(select(samples, training));
+    for_each_chunk(methods.size(), 1, [&, &test = test](std::size_t m, std::size_t, std::size_t) {
+      std::optional<FactoredBrdf> ours;
+      std::optional<Fit> other;
+      if (m == 0)
+        ours = fit_scattered(source, kScatteredModel);
+      else
+        other = fit(source, {.form = BaselineMethod{.method = methods[m]}, .score = false});
+      const BrdfRef model = ours ? BrdfRef(*ours) : other->ref();
+      std::array<double, 3> f;
+      for (const std::size_t i : test) {
+        model.eval(samples.pairs[i].wi, samples.pairs[i].wo, f);
+        errors[m].add(samples.at(i), f);
+      }
+    });
+  }
+  return errors;
+}
+
+void report_paints(Page& page, const fs::path& data) {
+  std::vector<std::string> methods{"ours"};
+  for (const std::string_view method : baseline_methods()) methods.emplace_back(method);
+  Table rows({"paint", "method", "relative", "rms_log"});
+  std::vector<std::array<double, 2>> means(methods.size());
+  for (const char* paint : kPaints) {
+    tell(fmt::format("accuracy: {}", paint));
+    const std::vector<FoldErrors> errors = paint_errors(read_paint(data, paint), methods);
+    for (std::size_t m = 0; m < methods.size(); ++m) {
+      const double relative = errors[m].relative(0), rms_log = errors[m].rms_log(0);
+      rows.add({paint, methods[m], fmt::format("{:.3f}", relative), fmt::format("{:.3f}", rms_log)});
+      means[m][0] += relative / kPaints.size();
+      means[m][1] += rms_log / kPaints.size();
+    }
+  }
+  Table table({"method", "relative", "rms_log"});
+  for (std::size_t m = 0; m < methods.size(); ++m)
+    table.add({methods[m], fmt::format("{:.3f}", means[m][0]), fmt::format("{:.3f}", means[m][1])});
+  page["paints"] = table.markdown();
+  page["paints_model"] = kScatteredModel;
+  page.write_rows("paints", rows);
+}
+
+}  // namespace
+
+void report_accuracy(const ReportOptions& options) {
+  Page page(options, "accuracy");
+  if (options.data && options.wants("rgl")) report_rgl(page, *options.data);
+  if (options.data && options.wants("merl")) report_merl(page, *options.data);
+  if (options.wants("others")) report_others(page);
+  if (options.data && !options.quick && options.wants("paints")) report_paints(page, *options.data);
+  page.write();
+}
+
+}  // namespace burnish::reports

@@ -1,0 +1,173 @@
+#include "accuracy_scores.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <future>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include <burnish/fitting/fit.h>
+
+#include "report.h"
+
+namespace burnish::reports {
+
+namespace {
+
+// Multiply-adds and weights of the 6-21-21-3 network.
+constexpr EvaluationCost kNetworkCost{.table_reads = 675, .multiplies = 6 * 21 + 21 * 21 + 21 * 3};
+constexpr std::size_t kNetworkBytes = 1350;  // as half floats
+
+Score score_of(const Material& material, std::string_view method, std::size_t budget, BrdfRef model) {
+  Score score{
+      .method = std::string(method), .budget = budget, .errors = material.scorer.score(model), .picture = {}};
+  if (material.shown_budget && budget <= *material.shown_budget)
+    score.picture = picture(model, material.scorer.exposure());
+  return score;
+}
+
+// The figures of a mean, in one place.
+std::array<double*, 6> figures(ErrorFigures& e) {
+  return {&e.psnr, &e.ssim, &e.relative, &e.log_cos, &e.rms_log, &e.rms};
+}
+
+// "ours" or one of the baselines, at so many bytes; 0: whatever it takes.
+Score run_method(const Material& material, std::string_view method, std::size_t budget) {
+  FitOptions options{.score = false};
+  if (method == "ours")
+    options.form = Budget{.bytes = budget};
+  else
+    options.form = BaselineMethod{.method = std::string(method), .bytes = budget};
+  const Fit made = fit(material.source, options);
+  Score score = score_of(material, method, budget, made.ref());
+  score.bytes = made.bytes();
+  score.cost = std::visit(
+      [](const auto& brdf) -> std::optional<EvaluationCost> { return evaluation_cost(brdf); }, made.brdf);
+  score.seconds = made.report.seconds;
+  return score;
+}
+
+std::vector<std::string> with_figures(std::vector<std::string> head) {
+  for (const char* name : {"bytes", "psnr", "ssim", "relative", "log_cos", "rms_log", "rms", "table reads",
+                           "multiplies", "fit seconds"})
+    head.emplace_back(name);
+  return head;
+}
+
+std::vector<std::string> with_figures(std::vector<std::string> cells, const Score& s) {
+  const ErrorFigures& e = s.errors;
+  for (const std::string& text :
+       std::array{fmt::format("{}", s.bytes), fmt::format("{:.2f}", e.psnr), fmt::format("{:.4f}", e.ssim),
+                  fmt::format("{:.4f}", e.relative), fmt::format("{:.4f}", e.log_cos),
+                  fmt::format("{:.3f}", e.rms_log), fmt::format("{:.3g}", e.rms),
+                  s.cost ? std::to_string(s.cost->table_reads) : "",
+                  s.cost ? std::to_string(s.cost->multiplies) : "",
+                  s.seconds > 0 ? fmt::format("{:.1f}", s.seconds) : ""})
+    cells.push_back(text);
+  return cells;
+}
+
+}  // namespace
+
+Image8 picture(BrdfRef brdf, double exposure) {
+  return lit_sphere(brdf,
+                    {.size = 128, .light_angle = kSphereLights[1], .exposure = exposure, .supersampling = 2});
+}
+
+std::vector<std::vector<Score>> run(const std::deque<Material>& materials) {
+  struct Job {
+    const Material* material;
+    std::string_view method;
+    std::size_t budget;
+    Score* score;
+  };
+  std::vector<std::vector<Score>> scores;
+  std::vector<Job> others;
+  for (const Material& material : materials) {
+    std::vector<Job> jobs;
+    for (const auto& [method, budgets] : material.attempts)
+      for (const std::size_t budget : budgets.empty() ? std::vector<std::size_t>{0} : budgets)
+        jobs.push_back({&material, method, budget, nullptr});
+    tell("accuracy: " + material.name);
+    std::vector<Score>& row = scores.emplace_back(jobs.size());
+    for (std::size_t k = 0; k < jobs.size(); ++k) {
+      jobs[k].score = &row[k];
+      if (jobs[k].method == "ours")
+        row[k] = run_method(material, jobs[k].method, jobs[k].budget);
+      else
+        others.push_back(jobs[k]);
+    }
+  }
+  // They take one thread each, most of the time.
+  std::atomic<std::size_t> next = 0;
+  std::vector<std::future<void>> workers;
+  for (unsigned t = 0; t < std::max(1u, std::thread::hardware_concurrency()); ++t)
+    workers.push_back(std::async(std::launch::async, [&] {
+      for (std::size_t k; (k = next++) < others.size();) {
+        const auto& [material, method, budget, score] = others[k];
+        tell(fmt::format("accuracy: {}, {}", material->name, method));
+        *score = run_method(*material, method, budget);
+      }
+    }));
+  for (std::future<void>& worker : workers) worker.get();
+  return scores;
+}
+
+Score run_network(const Material& material, BrdfRef network) {
+  Score score = score_of(material, "network", 0, network);
+  score.bytes = kNetworkBytes;
+  score.cost = kNetworkCost;
+  return score;
+}
+
+std::vector<MeanScore> means_of(const std::vector<std::vector<Score>>& scores) {
+  std::vector<MeanScore> means;
+  for (const std::vector<Score>& row : scores)
+    for (Score s : row) {
+      const auto known = std::ranges::find_if(means, [&](const MeanScore& mean) {
+        return mean.score.method == s.method && mean.score.budget == s.budget;
+      });
+      if (known == means.end()) {
+        means.push_back({std::move(s), 1});
+        continue;
+      }
+      Score& sum = known->score;
+      sum.bytes += s.bytes;
+      sum.seconds += s.seconds;
+      const auto to = figures(sum.errors), from = figures(s.errors);
+      for (std::size_t k = 0; k < to.size(); ++k) *to[k] += *from[k];
+      if (sum.cost && s.cost) {
+        sum.cost->table_reads += s.cost->table_reads;
+        sum.cost->multiplies += s.cost->multiplies;
+      }
+      ++known->materials;
+    }
+  for (auto& [sum, materials] : means) {
+    const auto whole = static_cast<std::size_t>(materials);
+    sum.bytes /= whole;
+    sum.seconds /= materials;
+    for (double* figure : figures(sum.errors)) *figure /= materials;
+    if (sum.cost) sum.cost = {sum.cost->table_reads / whole, sum.cost->multiplies / whole};
+  }
+  return means;
+}
+
+Table table_of(const std::vector<MeanScore>& means) {
+  Table table(with_figures({"method", "materials"}));
+  for (const auto& [score, materials] : means)
+    table.add(with_figures({score.method, std::to_string(materials)}, score));
+  return table;
+}
+
+Table table_of(const std::deque<Material>& materials, const std::vector<std::vector<Score>>& scores) {
+  Table table(with_figures({"material", "method", "budget"}));
+  for (std::size_t i = 0; i < materials.size(); ++i)
+    for (const Score& score : scores[i])
+      table.add(with_figures(
+          {materials[i].name, score.method, score.budget > 0 ? std::to_string(score.budget) : ""}, score));
+  return table;
+}
+
+}  // namespace burnish::reports

@@ -1,0 +1,94 @@
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/variant.h>
+#include <nanobind/stl/vector.h>
+
+#include <burnish/export/export_model.h>
+#include <burnish/export/export_specular.h>
+
+#include "opened_brdf.h"
+
+namespace burnish::python {
+
+namespace {
+
+using Names = std::variant<std::string, std::vector<std::string>>;
+
+std::vector<ExportTarget> targets_of(const Names& names) {
+  if (const auto* one = std::get_if<std::string>(&names)) return {export_target(*one)};
+  std::vector<ExportTarget> targets;
+  for (const std::string& name : std::get<std::vector<std::string>>(names))
+    targets.push_back(export_target(name));
+  return targets;
+}
+
+// Writes the files where a folder is given, and hands them out by name.
+nb::dict handed_out(const ExportedFiles& exported, const std::optional<std::filesystem::path>& folder) {
+  if (folder) write_files(*folder, exported.files);
+  nb::dict files;
+  for (const auto& [name, bytes] : exported.files)
+    files[name.c_str()] = nb::bytes(bytes.data(), bytes.size());
+  return files;
+}
+
+nb::dict exported_model(const OpenedModel& model, const Names& to,
+                        const std::optional<std::filesystem::path>& folder, const std::string& name,
+                        bool exact, bool mips, bool compressed,
+                        const std::optional<std::string>& environment) {
+  const ExportedFiles exported = [&] {
+    const nb::gil_scoped_release unlocked;
+    ExportOptions options{
+        .to = targets_of(to), .name = name, .exact = exact, .mips = mips, .compressed = compressed};
+    if (environment) options.environment = open_environment(*environment);
+    return export_model(model.brdf(), options);
+  }();
+  return handed_out(exported, folder);
+}
+
+nb::dict exported_specular(const std::string& spec, const Names& to,
+                           const std::optional<std::filesystem::path>& folder, const std::string& name,
+                           const std::optional<std::string>& power) {
+  const std::optional<PowerMethod> method = power ? std::optional(power_method(*power)) : std::nullopt;
+  return handed_out(export_specular(spec, method, {.to = targets_of(to), .name = name}), folder);
+}
+
+}  // namespace
+
+void bind_exports(nb::module_& m) {
+  const ExportOptions defaults;
+  m.def("export", &exported_model, nb::arg("model"), nb::arg("to"), nb::arg("folder") = nb::none(),
+        nb::kw_only(), nb::arg("name") = defaults.name, nb::arg("exact") = defaults.exact,
+        nb::arg("mips") = defaults.mips, nb::arg("compressed") = defaults.compressed,
+        nb::arg("environment") = nb::none(),
+        nb::sig("def export(model: Model, to: str | list[str], folder: str | os.PathLike | None = None, *, "
+                "name: str = 'brdf', exact: bool = False, mips: bool = False, compressed: bool = True, "
+                "environment: str | None = None) -> dict[str, bytes]"),
+        "What `burnish export` writes, by the files' names, the last one the manifest NAME.json; into the "
+        "folder\n"
+        "too where one is given.\n\n"
+        "to: one or several of \"ktx2\", \"cube\", \"exr\", \"png\", \"gltf\", \"three\", \"rgl\", \"html\" "
+        "and the "
+        "shaders\n\"glsl\", \"glsl_es\", \"hlsl\", \"msl\", \"wgsl\" and \"cpp\", which bring their textures "
+        "along. "
+        "name: of files\nand functions. exact: shaders weigh texels themselves, in floats. mips: KTX2 with "
+        "levels. "
+        "compressed: KTX2\nwith Zstandard. environment: \"sun\", \"studio\" or an OpenEXR picture of all "
+        "directions, "
+        "whose light glsl,\nglsl_es and html show.");
+  m.def("export", &exported_specular, nb::arg("spec"), nb::arg("to"), nb::arg("folder") = nb::none(),
+        nb::kw_only(), nb::arg("name") = defaults.name, nb::arg("power") = nb::none(),
+        nb::sig("def export(spec: str, to: str | list[str], folder: str | os.PathLike | None = None, *, "
+                "name: str = 'brdf', power: str | None = None) -> dict[str, bytes]"),
+        "Phong's or Blinn's model, such as \"blinn_phong:exponent=60\", as shaders or \"html\". power: how "
+        "it is\n"
+        "computed, a member of the specular family; by default the cheapest that is never one of 255 levels "
+        "off.");
+}
+
+}  // namespace burnish::python

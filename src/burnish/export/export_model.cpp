@@ -1,0 +1,222 @@
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <burnish/error.h>
+#include <burnish/export/export_model.h>
+#include <burnish/export/gltf_binary.h>
+#include <burnish/export/html_page.h>
+#include <burnish/export/manifest.h>
+#include <burnish/export/three_module.h>
+#include <burnish/io/rgl.h>
+#include <burnish/reflectance/rgl_builder.h>
+#include <burnish/render/gl/surface_environment.h>
+#include <burnish/shaders/shader.h>
+#include <burnish/textures/image_files.h>
+#include <burnish/textures/ktx2.h>
+
+namespace burnish {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr float kLargestHalf = 65504;
+
+// Files so far and what the manifest says of them.
+class ModelExport {
+ public:
+  ModelExport(const FactoredBrdf& brdf, const ExportOptions& options)
+      : brdf_(brdf),
+        options_(options),
+        manifest_{{"generator", "burnish"},
+                  {"name", options.name},
+                  {"model", model_expression(brdf)},
+                  {"channels", brdf.channels()},
+                  {"table_bytes", brdf.table_bytes()}} {}
+
+  ExportedFiles run() &&;
+
+ private:
+  bool wants(ExportTarget target) const {
+    return std::ranges::find(options_.to, target) != options_.to.end();
+  }
+  bool wants(ShaderLanguage language) const {
+    return std::ranges::find(options_.to, language, language_of) != options_.to.end();
+  }
+  // The last file's name.
+  const std::string& add(std::string name, std::string bytes) {
+    return result_.files.emplace_back(std::move(name), std::move(bytes)).name;
+  }
+
+  void add_shader(ShaderLanguage language);
+  void add_textures();
+  void add_cube_maps();
+  void add_images(ExportTarget target, std::string (*encode)(const Table& table));
+  void add_gltf();
+  void add_light(const SurfaceLight& light);
+
+  const FactoredBrdf& brdf_;
+  const ExportOptions& options_;
+  json manifest_;
+  ExportedFiles result_;
+};
+
+void ModelExport::add_shader(ShaderLanguage language) {
+  const bool cpp = language == ShaderLanguage::cpp;
+  const ShaderFilter filter = options_.exact || cpp ? ShaderFilter::exact : ShaderFilter::hardware;
+  const Shader shader = generate_shader(brdf_, {language, filter, options_.name});
+  const char* filter_name = filter == ShaderFilter::exact ? "exact" : "hardware";
+
+  json entry = manifest_entry(language, options_.name, shader);
+  entry["filter"] = filter_name;
+  for (const ShaderTexture& texture : shader.textures)
+    if (!cpp) entry["textures"].push_back(texture.name);
+  manifest_["shaders"].push_back(std::move(entry));
+
+  const std::string& file = add(shader_file(language, options_.name), shader.text);
+  result_.shaders.push_back({file, fmt::format("{} filter", filter_name), shader.cost});
+}
+
+// What generated shaders read.
+void ModelExport::add_textures() {
+  const Shader shader = generate_shader(brdf_, {.name = options_.name});
+  for (std::size_t i = 0; i < shader.textures.size(); ++i) {
+    const ShaderTexture& shown = shader.textures[i];
+    const bool alone = shown.tables.size() == 1;
+    if (!alone && options_.mips)
+      throw Error("export: expected a model of at most 16 tables with --mips: more share textures");
+    const Texture texture = alone ? make_texture(brdf_.tables()[shown.tables[0]], options_.mips)
+                                  : Texture{.format = shown.format,
+                                            .channels = shown.channels,
+                                            .width = shown.width,
+                                            .height = shown.height,
+                                            .levels = {shown.values}};
+    const std::string& file =
+        add(fmt::format("{}_{}.ktx2", options_.name, i), encode_ktx2(texture, options_.compressed));
+
+    // the table it is, or the rows of each that it holds
+    json entry = manifest_entry(file, texture);
+    if (alone) entry.update(manifest_entry(brdf_.tables()[shown.tables[0]]));
+    for (std::size_t k = 0; !alone && k < shown.tables.size(); ++k) {
+      const Table& table = brdf_.tables()[shown.tables[k]];
+      entry["tables"].push_back(manifest_entry(table));
+      entry["tables"].back().update({{"first_row", shown.first_rows[k]}, {"rows", table.layout.height}});
+    }
+    manifest_["textures"].push_back(std::move(entry));
+  }
+}
+
+void ModelExport::add_cube_maps() {
+  for (std::size_t i = 0; i < brdf_.tables().size(); ++i) {
+    const Table& table = brdf_.tables()[i];
+    if (table.layout.shape == TableShape::grid) continue;  // of two directions
+    // twice as fine at the normal as a disk without a warp
+    const Texture cube = make_cube_map(
+        table, static_cast<int>(std::bit_ceil(static_cast<unsigned>(table.layout.width))), options_.mips);
+    const std::string& file =
+        add(fmt::format("{}_{}.cube.ktx2", options_.name, i), encode_ktx2(cube, options_.compressed));
+    manifest_["cube_maps"].push_back({{"table", table.name},
+                                      {"file", file},
+                                      {"side", cube.width},
+                                      {"levels", cube.levels.size()},
+                                      {"format", to_string(table.format)}});
+  }
+}
+
+// A table a picture.
+void ModelExport::add_images(ExportTarget target, std::string (*encode)(const Table& table)) {
+  for (std::size_t i = 0; i < brdf_.tables().size(); ++i) {
+    const Table& table = brdf_.tables()[i];
+    const std::string& file =
+        add(fmt::format("{}_{}.{}", options_.name, i, to_string(target)), encode(table));
+    manifest_["images"].push_back({{"table", table.name}, {"file", file}});
+  }
+}
+
+void ModelExport::add_gltf() {
+  GltfBinary binary = gltf_binary(brdf_, options_.name);
+  manifest_["gltf"] = add(options_.name + ".glb", std::move(binary.bytes));
+  json core = core_entry(binary.core.material);
+  core["anisotropyStrength"] = binary.core.material.anisotropy;
+  core["psnr"] = binary.core.psnr;
+  manifest_["core_material"] = std::move(core);
+}
+
+// Shaders of the light that comes from all around, as far as their languages are asked for, and its textures.
+void ModelExport::add_light(const SurfaceLight& light) {
+  json entry{{"environment", options_.environment->name}, {"fetches", light.fetches()}};
+  std::vector<GlTexture> textures;
+  for (const ShaderLanguage language : {ShaderLanguage::glsl, ShaderLanguage::glsl_es}) {
+    if (!wants(language)) continue;
+    LightShader shader = light.shader(language, options_.name);
+    const std::string& file = add(shader_file(language, options_.name + ".light"), shader.text);
+    entry["shaders"].push_back({{"language", to_string(language)},
+                                {"file", file},
+                                {"function", shader.function},
+                                {"arguments", shader.arguments}});
+    textures = std::move(shader.textures);  // the same for both
+  }
+  for (std::size_t i = 0; i < textures.size(); ++i) {
+    GlTexture& texture = textures[i];
+    for (float& value : texture.values) value = std::clamp(value, -kLargestHalf, kLargestHalf);
+    const std::string& file = add(fmt::format("{}.light_{}.ktx2", options_.name, i),
+                                  encode_ktx2({.format = TableFormat::half,
+                                               .channels = texture.channels,
+                                               .width = texture.width,
+                                               .height = texture.height,
+                                               .depth = texture.depth,
+                                               .levels = {std::move(texture.values)}},
+                                              options_.compressed));
+    entry["textures"].push_back(manifest_entry(file, texture));
+  }
+  manifest_["light"] = std::move(entry);
+}
+
+ExportedFiles ModelExport::run() && {
+  // shaders and what they read
+  bool textures = wants(ExportTarget::ktx2);
+  for (const ShaderLanguage language : kShaderLanguages) {
+    if (!wants(language)) continue;
+    add_shader(language);
+    textures = textures || language != ShaderLanguage::cpp;
+  }
+  if (textures) add_textures();
+
+  // tables in other formats
+  const std::string& name = options_.name;
+  if (wants(ExportTarget::cube)) add_cube_maps();
+  if (wants(ExportTarget::exr)) add_images(ExportTarget::exr, encode_exr);
+  if (wants(ExportTarget::png)) add_images(ExportTarget::png, encode_png_table);
+
+  // materials of other programs
+  if (wants(ExportTarget::gltf)) add_gltf();
+  if (wants(ExportTarget::three)) manifest_["three"] = add(name + ".three.js", three_module(brdf_, name));
+  if (wants(ExportTarget::rgl))
+    manifest_["rgl"] = add(name + ".bsdf", format_rgl(make_rgl_table(brdf_, {.description = name})));
+
+  // light from all around, for the page too
+  std::optional<SurfaceLight> light;
+  if (options_.environment) {
+    light.emplace(brdf_, *options_.environment);
+    add_light(*light);
+  }
+  if (wants(ExportTarget::html))
+    manifest_["page"] = add(name + ".html", html_page(brdf_, name, light ? &*light : nullptr));
+
+  add_manifest(manifest_, name, result_.files);
+  return std::move(result_);
+}
+
+}  // namespace
+
+ExportedFiles export_model(const FactoredBrdf& brdf, const ExportOptions& options) {
+  if (options.environment && std::ranges::none_of(options.to, shows_environment))
+    throw Error("environment: expected glsl, glsl_es or html with it, found others");
+  return ModelExport(brdf, options).run();
+}
+
+}  // namespace burnish

@@ -1,0 +1,93 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <burnish/error.h>
+#include <burnish/export/export_model.h>
+#include <burnish/export/export_specular.h>
+#include <burnish/export/web.h>
+#include <burnish/file.h>
+#include <burnish/testing/models.h>
+#include <burnish/testing/tools.h>
+
+namespace burnish {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+FactoredBrdf small_model() {
+  return smooth_model({"", "pqpr", {"p=8", "q=16", "r=8"}, 3});
+}
+
+const std::string& file_of(const ExportedFiles& exported, const std::string& name) {
+  for (const ExportedFile& file : exported.files)
+    if (file.name == name) return file.bytes;
+  throw std::out_of_range(name);
+}
+
+TEST(ExportTarget, HasANameThatFindsIt) {
+  for (const std::string_view name : export_target_names()) EXPECT_EQ(to_string(export_target(name)), name);
+  for (const ShaderLanguage language : kShaderLanguages)
+    EXPECT_EQ(language_of(export_target(to_string(language))), language);
+  EXPECT_THROW(export_target("jpeg"), Error);
+}
+
+TEST(Base64, WritesTheVectorsOfItsStandard) {  // RFC 4648, section 10
+  const auto encoded = [](std::string_view text) { return base64(std::as_bytes(std::span(text))); };
+  EXPECT_EQ(encoded(""), "");
+  EXPECT_EQ(encoded("f"), "Zg==");
+  EXPECT_EQ(encoded("fo"), "Zm8=");
+  EXPECT_EQ(encoded("foo"), "Zm9v");
+  EXPECT_EQ(encoded("foobar"), "Zm9vYmFy");
+}
+
+TEST(ExportModel, DescribesEveryFileInTheLastOne) {
+  ExportOptions options{.to = {}, .name = "paint"};
+  for (const std::string_view name : export_target_names()) options.to.push_back(export_target(name));
+  const ExportedFiles exported = export_model(small_model(), options);
+  const ExportedFile& manifest = exported.files.back();
+  EXPECT_EQ(manifest.name, "paint.json");
+  for (const ExportedFile& file : exported.files) {
+    EXPECT_FALSE(file.bytes.empty()) << file.name;
+    if (&file == &manifest) continue;
+    EXPECT_THAT(manifest.bytes, HasSubstr('"' + file.name + '"'));
+  }
+  EXPECT_EQ(exported.shaders.size(), kShaderLanguages.size());
+}
+
+TEST(ExportModel, PutsTheModelIntoTheFilesOfTheWeb) {
+  const ExportedFiles exported =
+      export_model(small_model(), {.to = {ExportTarget::html, ExportTarget::three}});
+  for (const char* name : {"brdf.html", "brdf.three.js"}) {
+    const std::string& text = file_of(exported, name);
+    EXPECT_THAT(text, HasSubstr("burnish_brdf_world"));
+    EXPECT_THAT(text, Not(HasSubstr("MODEL")));
+  }
+  EXPECT_THAT(file_of(exported, "brdf.html"), Not(HasSubstr("src=")));
+}
+
+TEST(ExportModel, RefusesAnEnvironmentThatNothingShows) {
+  EXPECT_THROW(
+      export_model(small_model(), {.to = {ExportTarget::ktx2}, .environment = find_environment("sun")}),
+      Error);
+}
+
+TEST(ExportSpecular, TakesTheCheapestPowerOrTheOneNamed) {
+  const ExportOptions options{.to = {ExportTarget::wgsl}, .name = "shine"};
+  const std::string spec = "blinn_phong:exponent=60";
+  EXPECT_EQ(export_specular(spec, {}, options).shaders.at(0).how, "cubic2");
+  EXPECT_EQ(export_specular(spec, PowerMethod::w8, options).shaders.at(0).how, "w8");
+  EXPECT_THROW(export_specular("ggx", {}, options), Error);
+  EXPECT_THROW(export_specular(spec, {}, {.to = {ExportTarget::gltf}}), Error);
+}
+
+TEST(WriteFiles, MakesTheFolder) {
+  const TemporaryFolder scratch("write_files");
+  const std::vector<ExportedFile> files{{"a", "one"}, {"b", "two"}};
+  write_files(scratch.path / "new/folder", files);
+  EXPECT_EQ(read_file(scratch.path / "new/folder/b").text(), "two");
+  EXPECT_THROW(write_files(scratch.path / "new/folder/a", files), Error);
+}
+
+}  // namespace
+}  // namespace burnish

@@ -1,0 +1,54 @@
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <burnish/error.h>
+#include <burnish/export/exported_files.h>
+#include <burnish/file.h>
+
+namespace burnish {
+
+namespace {
+
+constexpr std::array<std::string_view, 14> kNames{"ktx2", "cube", "exr",     "png",  "gltf", "three", "rgl",
+                                                  "html", "glsl", "glsl_es", "hlsl", "msl",  "wgsl",  "cpp"};
+constexpr auto kFirstLanguage = static_cast<std::size_t>(ExportTarget::glsl);
+static_assert(kFirstLanguage + kShaderLanguages.size() == kNames.size());
+
+}  // namespace
+
+std::span<const std::string_view> export_target_names() noexcept {
+  return kNames;
+}
+
+std::string_view to_string(ExportTarget target) noexcept {
+  return kNames[static_cast<std::size_t>(target)];
+}
+
+ExportTarget export_target(std::string_view name) {
+  const auto found = std::ranges::find(kNames, name);
+  if (found == kNames.end())
+    throw Error(fmt::format("export: expected {}, found '{}'", fmt::join(kNames, ", "), name));
+  return static_cast<ExportTarget>(found - kNames.begin());
+}
+
+std::optional<ShaderLanguage> language_of(ExportTarget target) noexcept {
+  const auto i = static_cast<std::size_t>(target);
+  if (i < kFirstLanguage) return {};
+  return kShaderLanguages[i - kFirstLanguage];
+}
+
+bool shows_environment(ExportTarget target) noexcept {
+  return target == ExportTarget::glsl || target == ExportTarget::glsl_es || target == ExportTarget::html;
+}
+
+void write_files(const std::filesystem::path& folder, std::span<const ExportedFile> files) {
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  if (failed) throw Error::in_file(folder, "a folder", failed.message());
+  for (const ExportedFile& file : files) write_then_rename(folder / file.name, file.bytes);
+}
+
+}  // namespace burnish

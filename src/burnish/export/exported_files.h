@@ -1,0 +1,67 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <burnish/render/light/environment_light.h>
+#include <burnish/shaders/shader.h>
+
+namespace burnish {
+
+/// What a model can be written as.
+enum class ExportTarget {
+  ktx2,   ///< the textures that shaders read
+  cube,   ///< tables of one direction as cube maps, KTX2
+  exr,    ///< a table an OpenEXR image
+  png,    ///< a table a PNG image
+  gltf,   ///< GLB: the nearest core material, the factors in an extension
+  three,  ///< a module that makes a material of three.js
+  rgl,    ///< a table of the RGL database's format
+  html,   ///< a page that shows the material
+  // shaders, in the order of ShaderLanguage
+  glsl,
+  glsl_es,
+  hlsl,
+  msl,
+  wgsl,
+  cpp,
+};
+
+/// In the order of ExportTarget, by the names that export_target takes.
+std::span<const std::string_view> export_target_names() noexcept;
+std::string_view to_string(ExportTarget target) noexcept;
+/// Throws Error naming all targets.
+ExportTarget export_target(std::string_view name);
+
+/// The language of a shader; nothing for other targets.
+std::optional<ShaderLanguage> language_of(ExportTarget target) noexcept;
+/// Whether the target can show light from all around: glsl, glsl_es and html.
+bool shows_environment(ExportTarget target) noexcept;
+
+struct ExportedFile {
+  std::string name, bytes;
+};
+
+/// What an exported shader costs.
+struct ExportedShader {
+  std::string file;
+  std::string how;  ///< "exact filter", "hardware filter", or the name of the power's method
+  ShaderCost cost;
+};
+
+/// Files in memory. The last one, NAME.json, is the manifest: what the others are, how they are read and what
+/// an evaluation costs; see docs/guide/shaders.md.
+struct ExportedFiles {
+  std::vector<ExportedFile> files;
+  std::vector<ExportedShader> shaders;
+};
+
+/// Writes each file by write_then_rename into the folder, made where it is missing. Throws Error where that
+/// cannot be done.
+void write_files(const std::filesystem::path& folder, std::span<const ExportedFile> files);
+
+}  // namespace burnish

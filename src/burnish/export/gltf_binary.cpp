@@ -1,0 +1,147 @@
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <burnish/export/gltf_binary.h>
+#include <burnish/export/manifest.h>
+#include <burnish/math/angles.h>
+#include <burnish/render/mesh/shapes.h>
+
+namespace burnish {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr int kFloat = 5126, kUnsigned = 5125;               // component types of glTF
+constexpr int kArrayBuffer = 34962, kElementBuffer = 34963;  // targets of buffer views
+
+// The binary chunk and what points into it.
+class Binary {
+ public:
+  /// The accessor of `count` elements of `type` from 4-byte numbers.
+  template <class T>
+  std::size_t add(const std::vector<T>& values, const char* type, std::size_t width, int target) {
+    static_assert(sizeof(T) == 4);
+    json view{{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", 4 * values.size()}};
+    if (target) view["target"] = target;
+    views_.push_back(view);
+    bytes_.append(reinterpret_cast<const char*>(values.data()), 4 * values.size());
+    json accessor{{"bufferView", views_.size() - 1},
+                  {"componentType", std::is_same_v<T, float> ? kFloat : kUnsigned},
+                  {"count", values.size() / width},
+                  {"type", type}};
+    std::vector<T> least(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(width)), most = least;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      least[i % width] = std::min(least[i % width], values[i]);
+      most[i % width] = std::max(most[i % width], values[i]);
+    }
+    accessor["min"] = least;
+    accessor["max"] = most;
+    accessors_.push_back(accessor);
+    return accessors_.size() - 1;
+  }
+
+  const std::string& bytes() const { return bytes_; }
+  const json& views() const { return views_; }
+  const json& accessors() const { return accessors_; }
+
+ private:
+  std::string bytes_;
+  json views_ = json::array(), accessors_ = json::array();
+};
+
+json add_sphere(Binary& binary) {
+  const Mesh mesh = make_sphere(64, 32);
+  std::vector<float> positions, normals, tangents;
+  for (const Vertex& v : mesh.vertices) {
+    positions.insert(positions.end(), v.position.begin(), v.position.end());
+    normals.insert(normals.end(), v.normal.begin(), v.normal.end());
+    tangents.insert(tangents.end(), v.tangent.begin(), v.tangent.end());
+    tangents.push_back(v.side);
+  }
+  std::vector<std::uint32_t> corners;
+  for (const auto& triangle : mesh.triangles) corners.insert(corners.end(), triangle.begin(), triangle.end());
+  return {{"attributes",
+           {{"POSITION", binary.add(positions, "VEC3", 3, kArrayBuffer)},
+            {"NORMAL", binary.add(normals, "VEC3", 3, kArrayBuffer)},
+            {"TANGENT", binary.add(tangents, "VEC4", 4, kArrayBuffer)}}},
+          {"indices", binary.add(corners, "SCALAR", 1, kElementBuffer)},
+          {"material", 0}};
+}
+
+json factored_extension(const FactoredBrdf& brdf, Binary& binary) {
+  json tables = json::array(), lobes = json::array();
+  for (const Table& table : brdf.tables()) {
+    const char* shapes[] = {"line", "disk", "grid"};
+    json entry{{"name", table.name},
+               {"shape", shapes[static_cast<int>(table.layout.shape)]},
+               {"width", table.layout.width},
+               {"height", table.layout.height},
+               {"warp", to_string(table.layout.warp)},
+               {"values", binary.add(table.values, table.channels == 1 ? "SCALAR" : "VEC3",
+                                     static_cast<std::size_t>(table.channels), 0)}};
+    if (table.layout.shape == TableShape::grid) entry["warpY"] = to_string(table.layout.warp_y);
+    tables.push_back(entry);
+  }
+  for (const Lobe& lobe : brdf.lobes()) {
+    json factors = json::array();
+    for (const FactorUse& use : lobe.factors) {
+      factors.push_back({{"table", use.table}, {"projection", to_string(use.projection)}});
+      if (brdf.tables()[static_cast<std::size_t>(use.table)].layout.shape == TableShape::grid)
+        factors.back()["projectionY"] = to_string(use.projection_y);
+    }
+    lobes.push_back({{"scale", lobe.scale}, {"factors", factors}});
+  }
+  return {{"tables", tables}, {"lobes", lobes}};
+}
+
+void put_chunk(std::string& file, const char* type, std::string data, char padding) {
+  while (data.size() % 4) data += padding;
+  const auto size = static_cast<std::uint32_t>(data.size());
+  file.append(reinterpret_cast<const char*>(&size), 4).append(type, 4).append(data);
+}
+
+}  // namespace
+
+GltfBinary gltf_binary(const FactoredBrdf& brdf, const std::string& name) {
+  static_assert(std::endian::native == std::endian::little);
+  GltfBinary result{.bytes = {}, .core = fit_metallic_roughness(brdf)};
+  const MetallicRoughness& core = result.core.material;
+
+  // geometry and tables fill the binary chunk
+  Binary binary;
+  const json primitive = add_sphere(binary);
+  json extensions{{"BURNISH_materials_factored", factored_extension(brdf, binary)}};
+  json used{"BURNISH_materials_factored"};
+  if (core.anisotropy > 0) {
+    extensions["KHR_materials_anisotropy"] = {{"anisotropyStrength", core.anisotropy},
+                                              {"anisotropyRotation", core.across ? kHalfPi : 0}};
+    used.push_back("KHR_materials_anisotropy");
+  }
+  const json document{
+      {"asset", {{"version", "2.0"}, {"generator", "burnish"}}},
+      {"extensionsUsed", used},
+      {"scene", 0},
+      {"scenes", {{{"nodes", {0}}}}},
+      {"nodes", {{{"mesh", 0}, {"name", name}}}},
+      {"meshes", {{{"primitives", {primitive}}}}},
+      {"materials",
+       {{{"name", name}, {"pbrMetallicRoughness", core_entry(core)}, {"extensions", extensions}}}},
+      {"buffers", {{{"byteLength", binary.bytes().size()}}}},
+      {"bufferViews", binary.views()},
+      {"accessors", binary.accessors()}};
+
+  // header, then the document and what it points into
+  std::string chunks;
+  put_chunk(chunks, "JSON", document.dump(-1, ' ', true, json::error_handler_t::replace), ' ');
+  put_chunk(chunks, std::string("BIN\0", 4).c_str(), binary.bytes(), '\0');
+  result.bytes = std::string("glTF\x02\0\0\0", 8);
+  const auto size = static_cast<std::uint32_t>(chunks.size() + 12);
+  result.bytes.append(reinterpret_cast<const char*>(&size), 4).append(chunks);
+  return result;
+}
+
+}  // namespace burnish

@@ -1,0 +1,77 @@
+#include <string_view>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <burnish/export/manifest.h>
+
+namespace burnish {
+
+namespace {
+
+using nlohmann::json;
+
+std::string_view extension_of(ShaderLanguage language) noexcept {
+  switch (language) {
+    case ShaderLanguage::glsl_es:
+      return "es.glsl";
+    case ShaderLanguage::msl:
+      return "metal";
+    case ShaderLanguage::cpp:
+      return "h";
+    default:
+      return to_string(language);
+  }
+}
+
+}  // namespace
+
+std::string shader_file(ShaderLanguage language, const std::string& name) {
+  return fmt::format("{}.{}", name, extension_of(language));
+}
+
+json manifest_entry(ShaderLanguage language, const std::string& name, const Shader& shader) {
+  const ShaderCost& cost = shader.cost;
+  return {{"language", to_string(language)},
+          {"file", shader_file(language, name)},
+          {"functions", {"burnish_" + name, "burnish_" + name + "_world"}},
+          {"cost",
+           {{"fetches", cost.fetches},
+            {"operations", cost.operations},
+            {"divisions", cost.divisions},
+            {"roots", cost.roots},
+            {"powers", cost.powers}}}};
+}
+
+json manifest_entry(const std::string& file, const Texture& texture) {
+  return {{"file", file},
+          {"width", texture.width},
+          {"height", texture.height},
+          {"levels", texture.levels.size()},
+          {"channels", texture.channels},
+          {"format", to_string(texture.format)},
+          {"wrap", "clamp_to_edge"}};
+}
+
+json manifest_entry(const Table& table) {
+  json entry{{"table", table.name}, {"warp", to_string(table.layout.warp)}};
+  if (table.layout.shape == TableShape::grid) entry["warp_y"] = to_string(table.layout.warp_y);
+  return entry;
+}
+
+json manifest_entry(const std::string& file, const GlTexture& texture) {
+  return {{"sampler", texture.name},  {"file", file},           {"width", texture.width},
+          {"height", texture.height}, {"depth", texture.depth}, {"wrap", "clamp_to_edge"}};
+}
+
+json core_entry(const MetallicRoughness& material) {
+  return {{"baseColorFactor", {material.base_color.r, material.base_color.g, material.base_color.b, 1}},
+          {"metallicFactor", material.metallic},
+          {"roughnessFactor", material.roughness}};
+}
+
+void add_manifest(const json& manifest, const std::string& name, std::vector<ExportedFile>& files) {
+  files.push_back({name + ".json", manifest.dump(2, ' ', true, json::error_handler_t::replace) + "\n"});
+}
+
+}  // namespace burnish

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <burnish/export/exported_files.h>
+#include <burnish/reflectance/metallic_roughness.h>
+#include <burnish/render/gl/gl_objects.h>
+#include <burnish/textures/ktx2.h>
+
+namespace burnish {
+
+// What the manifest of an export says of its files.
+
+/// "NAME.glsl" and the like.
+std::string shader_file(ShaderLanguage language, const std::string& name);
+
+nlohmann::json manifest_entry(ShaderLanguage language, const std::string& name, const Shader& shader);
+nlohmann::json manifest_entry(const std::string& file, const Texture& texture);
+/// Which table, and how its positions are warped.
+nlohmann::json manifest_entry(const Table& table);
+/// A texture of light from all around.
+nlohmann::json manifest_entry(const std::string& file, const GlTexture& texture);
+
+/// A core material as glTF has it.
+nlohmann::json core_entry(const MetallicRoughness& material);
+
+/// Appends NAME.json.
+void add_manifest(const nlohmann::json& manifest, const std::string& name, std::vector<ExportedFile>& files);
+
+}  // namespace burnish

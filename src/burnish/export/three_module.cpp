@@ -1,0 +1,21 @@
+#include <nlohmann/json.hpp>
+
+#include <burnish/export/three_module.h>
+#include <burnish/export/web.h>
+#include <burnish/shaders/shader.h>
+
+namespace burnish {
+
+std::string three_module(const FactoredBrdf& brdf, const std::string& name) {
+  const Shader shader = generate_shader(brdf, {ShaderLanguage::glsl_es, ShaderFilter::hardware, name});
+  nlohmann::json model{{"name", name}, {"expression", model_expression(brdf)}, {"shader", shader.text}};
+  model["textures"] = nlohmann::json::array();
+  for (const ShaderTexture& texture : shader.textures)
+    model["textures"].push_back({{"name", texture.name},
+                                 {"width", texture.width},
+                                 {"height", texture.height},
+                                 {"rgba16f", half_texels(texture.values, texture.channels)}});
+  return web_script("three.js", model.dump(1, ' ', true, nlohmann::json::error_handler_t::replace));
+}
+
+}  // namespace burnish

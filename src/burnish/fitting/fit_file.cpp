@@ -1,0 +1,47 @@
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include <burnish/baselines/evaluation_cost.h>
+#include <burnish/fitting/fit_file.h>
+#include <burnish/fitting/fit_report_json.h>
+
+namespace burnish {
+
+Model to_model(Fit fit) {
+  std::string notes = to_json(fit.report);
+  return {.brdf = std::move(fit).model(), .lambda_nm = std::move(fit.lambda_nm), .notes = std::move(notes)};
+}
+
+std::string format_fit(const Fit& fit) {
+  const auto* baseline = std::get_if<BaselineBrdf>(&fit.brdf);
+  if (!baseline) return format_model(to_model(fit));
+  const bool analytic = std::holds_alternative<AnalyticBrdf>(*baseline);
+  return format_baseline({.kind = analytic ? "analytic" : std::get<BaselineReport>(fit.report.how).method,
+                          .brdf = *baseline,
+                          .notes = to_json(fit.report)});
+}
+
+std::string summary_json(const Fit& fit, const std::string& output, double seconds) {
+  nlohmann::ordered_json json = json_of(fit.report);
+  json["output"] = output;
+  if (const auto* model = std::get_if<FactoredBrdf>(&fit.brdf)) {
+    json["model"] = model_expression(*model);
+    json["bytes"] = model->bytes();
+    json["table_bytes"] = model->table_bytes();
+    json["smallest_factor"] = model->smallest_factor();
+    json["reciprocal"] = model->reciprocal();
+  } else {
+    const auto& baseline = std::get<BaselineBrdf>(fit.brdf);
+    json["model"] = baseline_expression(baseline);
+    json["bytes"] = baseline_bytes(baseline);
+    if (const auto cost = evaluation_cost(baseline)) {
+      json["table_reads"] = cost->table_reads;
+      json["multiplies"] = cost->multiplies;
+    }
+  }
+  json["seconds"] = seconds;
+  return to_text(json, 2);
+}
+
+}  // namespace burnish

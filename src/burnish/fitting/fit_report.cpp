@@ -1,0 +1,130 @@
+#include <array>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <burnish/error.h>
+#include <burnish/fitting/fit_report.h>
+#include <burnish/fitting/fit_report_json.h>
+
+namespace burnish {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<std::string_view, 3> kLossNames = {"image", "relative", "log_cos"};
+
+Json json_of(const ErrorFigures& figures) {
+  return {{"psnr", figures.psnr},
+          {"ssim", figures.ssim},
+          {"relative", figures.relative},
+          {"rms_log", figures.rms_log},
+          {"log_cos", figures.log_cos}};
+}
+
+Json json_of(const OneLobeReport& report) {
+  Json json{{"samples", report.samples},
+            {"smooth", report.smooth},
+            {"floor", report.floor},
+            {"reweightings", report.reweightings},
+            {"rms_log_before", report.summary.error_before},
+            {"rms_log_after", report.summary.error_after},
+            {"iterations", report.summary.iterations},
+            {"stop_reason", to_string(report.summary.stop_reason)}};
+  for (const auto& [table, share] : report.smooth_shares) json["smooth_shares"][table] = share;
+  if (report.relative) json["relative"] = *report.relative;
+  if (report.relative_cross_validated) json["relative_cross_validated"] = *report.relative_cross_validated;
+  return json;
+}
+
+Json json_of(const LobesReport& report) {
+  Json json = Json::object();
+  if (report.search) {
+    Json kept = Json::array();
+    for (const auto& [change, objective] : report.search->kept)
+      kept.push_back({{"change", change}, {"objective", objective}});
+    json["search"] = {{"trials", report.search->trials}, {"kept", std::move(kept)}};
+  }
+  if (report.budget > 0) json["budget"] = report.budget;
+  if (report.smooth) json["smooth"] = *report.smooth;
+  json["samples"] = report.samples;
+  json["lobes"] = report.lobes;
+  json["loss"] = to_string(report.loss);
+  json["iterations"] = report.summary.iterations;
+  json["stop_reason"] = to_string(report.summary.stop_reason);
+  json["objective"] = report.summary.error_after;
+  return json;
+}
+
+Json json_of(const BaselineReport& report) {
+  Json json{{"method", report.method}, {"budget", report.budget}};
+  if (report.layouts_tried) json["layouts_tried"] = *report.layouts_tried;
+  if (report.summary) {
+    json["error_before"] = report.summary->error_before;
+    json["error_after"] = report.summary->error_after;
+  }
+  if (report.starts) {
+    json["starts"] = *report.starts;
+    json["iterations"] = report.summary->iterations;
+    json["stop_reason"] = to_string(report.summary->stop_reason);
+  }
+  return json;
+}
+
+Json json_of(const EnergyReport& report) {
+  return {{"largest_albedo_before", report.largest_albedo_before},
+          {"largest_albedo_after", report.largest_albedo_after},
+          {"iterations", report.iterations},
+          {"psnr_before", report.before.psnr},
+          {"relative_before", report.before.relative},
+          {"psnr_after", report.after.psnr},
+          {"relative_after", report.after.relative}};
+}
+
+// What it costs to be rid of an SVD's negative values, in each of the usual ways.
+Json json_of(const NegativeLobes& lobes) {
+  return {{"negative_share", lobes.negative_share},
+          {"bias", lobes.bias},
+          {"sum_clamped", json_of(lobes.sum_clamped)},
+          {"tables_clamped", json_of(lobes.tables_clamped)},
+          {"biased", json_of(lobes.biased)}};
+}
+
+}  // namespace
+
+std::string_view to_string(FitLoss loss) noexcept {
+  return kLossNames[static_cast<std::size_t>(loss)];
+}
+
+FitLoss parse_fit_loss(std::string_view name) {
+  for (const FitLoss loss : {FitLoss::image, FitLoss::relative, FitLoss::log_cos})
+    if (name == to_string(loss)) return loss;
+  throw Error(fmt::format("loss: expected image, relative or log_cos, found '{}'", name));
+}
+
+std::optional<FitSummary> FitReport::summary() const {
+  return std::visit([](const auto& part) -> std::optional<FitSummary> { return part.summary; }, how);
+}
+
+nlohmann::ordered_json json_of(const FitReport& report) {
+  Json json{{"source", report.source},
+            {"source_format", report.source_format},
+            {"symmetrized", report.symmetrized}};
+  json.update(std::visit([](const auto& part) { return json_of(part); }, report.how));
+  if (report.energy) json["conserve_energy"] = json_of(*report.energy);
+  if (report.held_out) json.update(json_of(*report.held_out));
+  const auto* baseline = std::get_if<BaselineReport>(&report.how);
+  if (baseline && baseline->negative_lobes) json["negative_lobes"] = json_of(*baseline->negative_lobes);
+  return json;
+}
+
+std::string to_text(const nlohmann::ordered_json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string to_json(const FitReport& report) {
+  return to_text(json_of(report), -1);
+}
+
+}  // namespace burnish

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <burnish/fitting/baselines/negative_lobes.h>
+#include <burnish/fitting/fit_summary.h>
+#include <burnish/metrics/error_figures.h>
+
+namespace burnish {
+
+/// What several lobes are refined for: pictures at every exposure beside both means, or one mean.
+enum class FitLoss { image, relative, log_cos };
+
+/// "image", "relative" or "log_cos".
+std::string_view to_string(FitLoss loss) noexcept;
+/// Reads what to_string writes; throws Error on anything else.
+FitLoss parse_fit_loss(std::string_view name);
+
+/// One lobe, fitted log-linearly.
+struct OneLobeReport {
+  FitSummary summary;       ///< errors are rms of log f, see HomomorphicFit
+  std::size_t samples = 0;  ///< with weight
+  double smooth = 0;        ///< as given or chosen
+  double floor = 0;         ///< 1/sr
+  int reweightings = 0;     ///< passes used
+  /// Tables whose share of the smoothness is not 1.
+  std::vector<std::pair<std::string, double>> smooth_shares;
+  /// Of scattered samples, exp(mean |ln((f + e) / (model + e))|) - 1: at the samples, and of those left out
+  /// in turn while the smoothness was chosen.
+  std::optional<double> relative, relative_cross_validated;
+};
+
+/// What search_plan tried.
+struct SearchReport {
+  std::size_t trials = 0;
+  /// The changes kept and the objective after each.
+  std::vector<std::pair<std::string, double>> kept;
+};
+
+/// Several lobes, refined together.
+struct LobesReport {
+  FitSummary summary;       ///< errors are objectives, see refine
+  std::size_t samples = 0;  ///< pairs fitted
+  std::size_t lobes = 0;
+  FitLoss loss = FitLoss::image;
+  std::uint64_t budget = 0;      ///< bytes; 0: the lobes were given
+  std::optional<double> smooth;  ///< where it was chosen
+  std::optional<SearchReport> search;
+};
+
+/// What others would do.
+struct BaselineReport {
+  std::string method;
+  std::size_t budget = 0;                       ///< bytes
+  std::optional<std::size_t> layouts_tried;     ///< of decompositions
+  std::optional<FitSummary> summary;            ///< of the others; errors as DgfFit and AnalyticFit say
+  std::optional<int> starts;                    ///< of analytic models
+  std::optional<NegativeLobes> negative_lobes;  ///< of svd
+};
+
+/// What conserve_energy took out, and what that cost on pairs that were not fitted.
+struct EnergyReport {
+  double largest_albedo_before = 0, largest_albedo_after = 0;
+  int iterations = 0;
+  ErrorFigures before, after;
+};
+
+/// How a fit went.
+struct FitReport {
+  std::string source, source_format;
+  bool symmetrized = true;
+  std::variant<OneLobeReport, LobesReport, BaselineReport> how;
+  std::optional<EnergyReport> energy;
+  /// Of the model as stored, on 20,000 pairs that were not fitted; none of factors fitted to scattered
+  /// samples.
+  std::optional<ErrorFigures> held_out;
+  double seconds = 0;  ///< of the fit by the wall clock, without what was measured afterwards
+
+  /// Of the solver; nothing for decompositions.
+  std::optional<FitSummary> summary() const;
+};
+
+/// A JSON object in one line, the notes that a model's file keeps: source, source_format, symmetrized; of one
+/// lobe samples, smooth, floor, reweightings, rms_log_before, rms_log_after, iterations, stop_reason,
+/// smooth_shares, relative, relative_cross_validated; of several search, budget, smooth, samples, lobes,
+/// loss, iterations, stop_reason, objective; of baselines method, budget, layouts_tried, error_before,
+/// error_after, starts, iterations, stop_reason; then conserve_energy, psnr, ssim, relative, rms_log, log_cos
+/// and negative_lobes. What there is none of is left out; what is not finite is null.
+std::string to_json(const FitReport& report);
+
+}  // namespace burnish

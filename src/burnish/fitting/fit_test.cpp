@@ -1,0 +1,300 @@
+#include <cmath>
+#include <map>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <burnish/error.h>
+#include <burnish/fitting/baselines/baselines.h>
+#include <burnish/fitting/fit_file.h>
+#include <burnish/math/parallel.h>
+#include <burnish/math/random.h>
+#include <burnish/reflectance/goniometer.h>
+#include <burnish/reflectance/rgl_builder.h>
+#include <burnish/testing/baselines.h>
+#include <burnish/testing/tools.h>
+
+namespace burnish {
+namespace {
+
+using ::testing::HasSubstr;
+
+AnalyticBrdf paint() {
+  return parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3,f0=0.5/0.3/0.1,kd=0.2");
+}
+
+AnalyticBrdf brushed() {
+  return parse_analytic("ggx:alpha_x=0.2,alpha_y=0.5,f0=0.5,kd=0.2");
+}
+
+Source source_of(const std::string& name, AnyBrdf brdf) {
+  Findings findings;
+  findings.format = name + " format";
+  return {name, std::move(brdf), std::move(findings)};
+}
+
+AngleTable angle_table() {
+  AngleTable layout;
+  layout.folded = true;
+  layout.axes = {make_axis({0}, kTwoPi), make_axis(cell_centres(8, kHalfPi)),
+                 make_axis(cell_centres(8, kHalfPi)), make_axis(cell_centres(12, kPi))};
+  const AnalyticBrdf source = paint();
+  return tabulate_angles(source, layout);
+}
+
+PatchTable patch_table() {
+  const AnalyticBrdf source = paint();
+  PatchTable table{klems_full_basis(), klems_full_basis(), {}};
+  std::vector<double> f(3);
+  for (std::size_t o = 0; o < table.outgoing.size(); ++o)
+    for (std::size_t i = 0; i < table.incident.size(); ++i) {
+      source.eval(table.incident.centre(i), table.outgoing.centre(o), f);
+      table.values.push_back(static_cast<float>(f[0]));
+    }
+  return table;
+}
+
+// exp(0.3) - 1 everywhere: the outputs' biases are the last weights.
+NeuralBrdf neural() {
+  std::vector<float> weights(NeuralBrdf::kWeights);
+  std::fill(weights.end() - NeuralBrdf::kOutputs, weights.end(), 0.3f);
+  return NeuralBrdf(weights);
+}
+
+FactoredBrdf factored() {
+  const Table p{.name = "p", .layout = {.width = 3}, .channels = 1, .values = {1, 0.5f, 0.25f}};
+  return {3, {p}, {{{0.1, 0.2, 0.3}, {{.table = 0, .projection = kProjectHalf}}}}};
+}
+
+// One source of every kind.
+std::vector<Source> every_source() {
+  RglOptions rgl;
+  rgl.theta_i_count = 4;
+  rgl.ndf_theta = rgl.ndf_phi = rgl.resolution = 8;
+  const AnalyticBrdf isotropic = paint();
+  std::vector<Source> sources;
+  sources.push_back(source_of("half/difference table", tabulate_half_diff(isotropic, 12, 8, 10, false)));
+  sources.push_back(source_of("RGL table", make_rgl_table(isotropic, rgl)));
+  sources.push_back(source_of("scattered", ScatteredBrdf(measure(isotropic, {.count = 400}))));
+  sources.push_back(source_of("angle table", angle_table()));
+  sources.push_back(source_of("patch table", patch_table()));
+  sources.push_back(source_of("isotropic analytic", isotropic));
+  sources.push_back(source_of("anisotropic analytic", brushed()));
+  sources.push_back(source_of("neural", neural()));
+  sources.push_back(source_of("separable", testing::random_separable(1, 0.2)));
+  sources.push_back(source_of("microfacet", testing::random_dgf()));
+  sources.push_back(source_of("factored", factored()));
+  return sources;
+}
+
+// One lobe of small tables, fitted in no time.
+FitOptions small_lobe(const Source& source) {
+  const bool isotropic = source.ref().isotropic();
+  return {.form = OneLobe{.tables = isotropic ? std::vector<std::string>{"p=8", "q=12"}
+                                              : std::vector<std::string>{"p=6x6", "q=8x8"}},
+          .samples = 4000};
+}
+
+// Every form, for an isotropic source of three channels.
+std::map<std::string, FitOptions> every_form() {
+  std::map<std::string, FitOptions> forms{
+      {"one lobe", {.form = OneLobe{.tables = {"p=8", "q=12"}}, .samples = 4000}},
+      {"one lobe, robust",
+       {.form = OneLobe{.model = "pqpr", .how = {.reweightings = 2, .floor = 1e-3}}, .samples = 4000}},
+      {"one lobe that conserves energy", {.form = OneLobe{}, .samples = 4000, .conserve_energy = true}},
+      {"budget", {.form = Budget{.bytes = 300}}},
+      {"budget as smooth as given", {.form = Budget{.bytes = 500, .lobes = 2}, .smooth = 1e-6}},
+      {"lobes",
+       {.form = GivenLobes{.model = "p(wo) q(h) p(wi) + s(h)", .tables = {"p=8", "q=12", "s=6"}},
+        .format = TableFormat::half}}};
+  for (const std::string_view method : baseline_methods())
+    forms[std::string(method)] = {.form = BaselineMethod{std::string(method), 400}, .samples = 2000};
+  return forms;
+}
+
+double mean_error(BrdfRef reference, BrdfRef model) {
+  return error_figures(SymmetrizedBrdf(reference), model, {.count = 2000, .image_size = 16}).relative;
+}
+
+TEST(Fit, MakesAModelOfEverySource) {
+  for (const Source& source : every_source()) {
+    const Fit made = fit(source, small_lobe(source));
+    EXPECT_EQ(made.model().channels(), source.ref().channels()) << source.name;
+    EXPECT_EQ(made.model().isotropic(), source.ref().isotropic()) << source.name;
+    EXPECT_TRUE(made.model().reciprocal()) << source.name;
+    EXPECT_EQ(made.report.source, source.name);
+    EXPECT_EQ(made.report.source_format, source.findings.format);
+    // scattered samples have no function to be held against
+    EXPECT_EQ(made.report.held_out.has_value(), source.samples() == nullptr) << source.name;
+    EXPECT_EQ(std::get<OneLobeReport>(made.report.how).relative.has_value(), source.samples() != nullptr);
+  }
+}
+
+TEST(Fit, MakesEveryForm) {
+  const Source source = source_of("paint", paint());
+  for (const auto& [name, options] : every_form()) {
+    const Fit made = fit(source, options);
+    EXPECT_LT(mean_error(source.ref(), made.ref()), 1) << name;
+    EXPECT_GT(made.report.seconds, 0) << name;
+    ASSERT_TRUE(made.report.held_out) << name;
+    EXPECT_NEAR(made.report.held_out->relative, mean_error(source.ref(), made.ref()), 0.1) << name;
+    if (const auto* budget = std::get_if<Budget>(&options.form)) {
+      EXPECT_LE(made.bytes(), budget->bytes) << name;
+    }
+    EXPECT_EQ(std::holds_alternative<BaselineBrdf>(made.brdf),
+              std::holds_alternative<BaselineMethod>(options.form));
+    EXPECT_EQ(made.report.energy.has_value(), options.conserve_energy) << name;
+  }
+}
+
+TEST(Fit, GivesScatteredSamplesOneLobeOfTheBudget) {
+  const AnalyticBrdf isotropic = paint();
+  const Source source = source_of("scattered", ScatteredBrdf(measure(isotropic, {.count = 400})));
+  const Fit made = fit(source, {.form = Budget{.bytes = 600, .scattered = {.floor = 1e-4}}, .smooth = 1e-6});
+  EXPECT_EQ(made.model().lobes().size(), 1u);
+  EXPECT_EQ(std::get<OneLobeReport>(made.report.how).floor, 1e-4);
+}
+
+TEST(Fit, GivesTheSameBitsForTheSameOptions) {
+  const Source source = source_of("paint", paint());
+  for (const auto& [name, options] : every_form()) {
+    const auto file = [&](int threads) {
+      const ThreadLimit limit(threads);
+      return format_fit(fit(source, options));
+    };
+    EXPECT_EQ(file(1), file(2)) << name;
+  }
+}
+
+TEST(Fit, DependsOnTheSeedAndOnWhatIsAskedFor) {
+  const Source source = source_of("brushed", brushed());
+  const FitOptions plain = small_lobe(source);
+  const auto model_with = [&](auto change) {
+    FitOptions options = plain;
+    change(options);
+    return fit(source, options).model();
+  };
+  const FactoredBrdf model = fit(source, plain).model();
+  EXPECT_NE(model, model_with([](FitOptions& o) { o.seed = 2; }));
+  EXPECT_NE(model, model_with([](FitOptions& o) { o.samples = 5000; }));
+  EXPECT_NE(model, model_with([](FitOptions& o) { o.smooth = 1e-3; }));
+  EXPECT_NE(model, model_with([](FitOptions& o) { o.format = TableFormat::single; }));
+  EXPECT_EQ(model, model_with([](FitOptions& o) { o.score = false; }));
+}
+
+TEST(Fit, LowersTheErrorThatItReports) {
+  const Source source = source_of("paint", paint());
+  for (const auto& [name, options] : every_form()) {
+    const auto summary = fit(source, options).report.summary();
+    const bool decomposition = name == "svd" || name == "nd" || name == "nmf";
+    ASSERT_EQ(summary.has_value(), !decomposition) << name;
+    if (!summary) continue;
+    EXPECT_LE(summary->error_after, summary->error_before) << name;
+    EXPECT_GE(summary->iterations, 0) << name;
+    EXPECT_FALSE(to_string(summary->stop_reason).empty());
+  }
+}
+
+TEST(Fit, TellsProgressByStagesAndEndsWhereTheCallerThrows) {
+  const Source source = source_of("paint", paint());
+  for (auto [name, options] : every_form()) {
+    std::map<std::string, double, std::less<>> stages;
+    options.progress = [&](std::string_view stage, double fraction) {
+      auto& last = stages.try_emplace(std::string(stage), 0).first->second;
+      EXPECT_GE(fraction, last) << name << ": " << stage;
+      EXPECT_LE(fraction, 1) << name << ": " << stage;
+      last = fraction;
+    };
+    fit(source, options);
+    // one lobe of few unknowns is solved at once
+    if (std::holds_alternative<OneLobe>(options.form)) continue;
+    EXPECT_FALSE(stages.empty()) << name;
+    options.progress = [](std::string_view, double) { throw Error("enough"); };
+    EXPECT_EQ(error_of([&] { fit(source, options); }), "enough") << name;
+  }
+}
+
+TEST(Fit, KeepsItsReportInItsFile) {
+  const Source source = source_of("paint", paint());
+  for (const auto& [name, options] : every_form()) {
+    const Fit made = fit(source, options);
+    const auto notes = nlohmann::json::parse(to_json(made.report));
+    const FileBytes file = memory_file(format_fit(made));
+    if (std::holds_alternative<FactoredBrdf>(made.brdf)) {
+      const Model model = parse_model(file);
+      EXPECT_EQ(model.brdf, made.model()) << name;
+      EXPECT_EQ(nlohmann::json::parse(model.notes), notes) << name;
+      EXPECT_EQ(to_model(made).notes, to_json(made.report)) << name;
+    } else {
+      const Baseline baseline = parse_baseline(file);
+      EXPECT_EQ(nlohmann::json::parse(baseline.notes), notes) << name;
+      EXPECT_EQ(baseline_bytes(baseline.brdf), made.bytes());
+      EXPECT_THROW(to_model(made), Error) << name;
+      EXPECT_THROW(made.model(), Error) << name;
+    }
+    EXPECT_EQ(notes.at("source"), "paint");
+    EXPECT_EQ(notes.at("relative"), made.report.held_out->relative) << name;
+    const auto summary = nlohmann::json::parse(summary_json(made, "out", 1.5));
+    EXPECT_EQ(summary.at("bytes"), made.bytes()) << name;
+    EXPECT_EQ(summary.at("seconds"), 1.5);
+  }
+}
+
+TEST(FitReport, WritesNamesThatAreNoUtf8AndFiguresThatAreNotFinite) {
+  FitReport report;
+  report.source = "a\xff";
+  report.held_out.emplace().psnr = INFINITY;
+  const auto json = nlohmann::json::parse(to_json(report));
+  EXPECT_EQ(json.at("source"), "a\xEF\xBF\xBD");
+  EXPECT_TRUE(json.at("psnr").is_null());
+}
+
+TEST(FitForm, IsOneLobeOrSeveral) {
+  EXPECT_TRUE(std::holds_alternative<OneLobe>(form_of("p(wo) q(wi+wo+0.5n) p(wi)", {}, true, {}, {})));
+  const FitForm form = form_of("p(wo) q(h) p(wi) + s(h)", {"s=6"}, true, {}, FitLoss::log_cos);
+  ASSERT_TRUE(std::holds_alternative<GivenLobes>(form));
+  EXPECT_EQ(std::get<GivenLobes>(form).loss, FitLoss::log_cos);
+  EXPECT_THROW(form_of("p(wo) +", {}, true, {}, {}), Error);
+}
+
+TEST(FitLoss, RoundTripsThroughItsName) {
+  for (const FitLoss loss : {FitLoss::image, FitLoss::relative, FitLoss::log_cos})
+    EXPECT_EQ(parse_fit_loss(to_string(loss)), loss);
+  EXPECT_THROW(parse_fit_loss("picture"), Error);
+}
+
+TEST(Fit, RefusesWhatDoesNotGoTogether) {
+  const Source even = source_of("even", paint()), uneven = source_of("uneven", brushed()),
+               grey = source_of("grey", patch_table());
+  const auto told = [](const Source& source, const FitOptions& options) {
+    return error_of([&] { fit(source, options); });
+  };
+  // models that are none, or not of that form
+  EXPECT_THAT(told(even, {.form = OneLobe{.model = "p(wo) q(h) p(wi) + s(h)"}}),
+              HasSubstr("one lobe, found 2"));
+  EXPECT_NE(told(even, {.form = OneLobe{.model = "p(up)"}}), "");
+  EXPECT_NE(told(even, {.form = OneLobe{.tables = {"z=8"}}}), "");
+  EXPECT_NE(told(even, {.form = OneLobe{.model = "w(theta_t)", .tables = {"w=8x8"}}}), "");
+  EXPECT_NE(told(even, {.form = GivenLobes{.model = ""}}), "");
+  // budgets that hold nothing
+  EXPECT_THAT(told(even, {.form = Budget{.bytes = 0}}), HasSubstr("budget"));
+  EXPECT_THAT(told(even, {.form = Budget{.bytes = 20}}), HasSubstr("budget"));
+  EXPECT_THAT(told(uneven, {.form = Budget{.lobes = 1}}), HasSubstr("two lobes"));
+  // formats that do not hold the channels
+  EXPECT_THAT(told(grey, {.form = Budget{}, .format = TableFormat::rgb9e5}), HasSubstr("3 channels"));
+  EXPECT_NE(told(grey, {.form = OneLobe{.tables = {"p=6x6", "q=8x8"}}, .format = TableFormat::rgb9e5}), "");
+  // numbers out of their range
+  EXPECT_NE(told(even, {.form = OneLobe{}, .smooth = -1, .samples = 100}), "");
+  EXPECT_NE(told(even, {.form = OneLobe{.how = {.floor = 0}}, .samples = 100}), "");
+  // baselines
+  EXPECT_THAT(told(even, {.form = BaselineMethod{"pca"}}), HasSubstr("expected one of svd"));
+  EXPECT_THAT(told(uneven, {.form = BaselineMethod{"dgf"}, .samples = 100}), HasSubstr("isotropic"));
+  EXPECT_THAT(told(even, {.form = BaselineMethod{"svd"}, .smooth = 1e-3}), HasSubstr("method svd"));
+  EXPECT_THAT(told(even, {.form = BaselineMethod{"svd"}, .format = TableFormat::half}),
+              HasSubstr("method svd"));
+  EXPECT_THAT(told(even, {.form = BaselineMethod{"svd"}, .conserve_energy = true}), HasSubstr("method svd"));
+}
+
+}  // namespace
+}  // namespace burnish

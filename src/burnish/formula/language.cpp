@@ -1,0 +1,294 @@
+#include <fmt/format.h>
+
+#include <burnish/error.h>
+#include <burnish/formula/language.h>
+
+namespace burnish {
+
+namespace {
+
+using Calls = std::map<Op, Language::Call>;
+
+constexpr Language::Call kTernary{"{0} < {1} ? {2} : {3}", 0};
+
+// clang-format off
+const Calls kCMath = {
+    {Op::abs, {"fabsf({0})"}}, {Op::max, {"fmaxf({0}, {1})"}}, {Op::min, {"fminf({0}, {1})"}}, {Op::if_less, kTernary},
+    {Op::floor, {"floorf({0})"}}, {Op::sqrt, {"sqrtf({0})"}}, {Op::power, {"powf({0}, {1})"}},
+    {Op::exp2, {"exp2f({0})"}}, {Op::log2, {"log2f({0})"}}, {Op::acos, {"acosf({0})"}}, {Op::cos, {"cosf({0})"}},
+    {Op::exponent_of, {"power_exponent_of({0})"}}, {Op::scale_by_two, {"ldexpf({0}, (int)({1}))"}},
+    {Op::to_integer, {"(int)({0})"}}};
+const Calls kShaderMath = {
+    {Op::abs, {"abs({0})"}}, {Op::max, {"max({0}, {1})"}}, {Op::min, {"min({0}, {1})"}}, {Op::if_less, kTernary},
+    {Op::floor, {"floor({0})"}}, {Op::sqrt, {"sqrt({0})"}}, {Op::power, {"pow({0}, {1})"}},
+    {Op::exp2, {"exp2({0})"}}, {Op::log2, {"log2({0})"}}, {Op::acos, {"acos({0})"}}, {Op::cos, {"cos({0})"}},
+    {Op::exponent_of, {"power_exponent_of({0})"}}, {Op::scale_by_two, {"ldexp({0}, int({1}))"}},
+    {Op::to_integer, {"int({0})"}}};
+const Calls kRustMath = {
+    {Op::abs, {"({0}).abs()"}}, {Op::max, {"({0}).max({1})"}}, {Op::min, {"({0}).min({1})"}},
+    {Op::if_less, {"if {0} < {1} {{ {2} }} else {{ {3} }}", 0}},
+    {Op::floor, {"({0}).floor()"}}, {Op::sqrt, {"({0}).sqrt()"}}, {Op::power, {"({0}).powf({1})"}},
+    {Op::exp2, {"({0}).exp2()"}}, {Op::log2, {"({0}).log2()"}}, {Op::acos, {"({0}).acos()"}}, {Op::cos, {"({0}).cos()"}},
+    {Op::exponent_of, {"power_exponent_of({0})"}}, {Op::scale_by_two, {"{0} * ({1}).exp2()", 2}},
+    {Op::to_integer, {"({0}) as i32"}}};
+// clang-format on
+
+Calls with(Calls calls, const Calls& others) {
+  for (const auto& [op, call] : others) calls[op] = call;
+  return calls;
+}
+
+// The GLSL names that generated C++ uses. It has its own vec3: CUDA's float3 has no operators.
+constexpr std::string_view kCppHeader = R"(
+#ifndef BURNISH_SHADER_TYPES
+#define BURNISH_SHADER_TYPES
+#include <math.h>
+#ifdef __CUDACC__
+#define BURNISH_FUNCTION __device__ inline
+#define BURNISH_CONSTANT __device__ const
+#else
+#define BURNISH_FUNCTION inline
+#define BURNISH_CONSTANT static const
+#endif
+namespace burnish_shader {
+struct vec3 {
+  float x, y, z;
+  BURNISH_FUNCTION vec3(float a, float b, float c) : x(a), y(b), z(c) {}
+};
+BURNISH_FUNCTION vec3 operator+(vec3 a, vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+BURNISH_FUNCTION vec3 operator-(vec3 a, vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+BURNISH_FUNCTION vec3 operator*(vec3 a, vec3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+BURNISH_FUNCTION vec3 operator*(float a, vec3 b) { return {a * b.x, a * b.y, a * b.z}; }
+BURNISH_FUNCTION vec3 operator*(vec3 a, float b) { return b * a; }
+BURNISH_FUNCTION float dot(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+BURNISH_FUNCTION vec3 cross(vec3 a, vec3 b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+BURNISH_FUNCTION float abs(float a) { return ::fabsf(a); }
+BURNISH_FUNCTION float min(float a, float b) { return b < a ? b : a; }
+BURNISH_FUNCTION float max(float a, float b) { return a < b ? b : a; }
+BURNISH_FUNCTION float sqrt(float a) { return ::sqrtf(a); }
+BURNISH_FUNCTION float floor(float a) { return ::floorf(a); }
+BURNISH_FUNCTION float pow(float a, float b) { return ::powf(a, b); }
+}  // namespace burnish_shader
+#endif
+)";
+
+// What languages share.
+Language c_like(std::string_view name, std::string_view suffix) {
+  return {.name = name,
+          .suffix = suffix,
+          .scalar = "float",
+          .vector = {},
+          .integer = "int",
+          .local = "  const {0} {1} = {2};\n",
+          .result = "  return {};\n",
+          .parameter = "{0} {1}",
+          .definition = {},
+          .header = {},
+          .math = {},
+          .exponent_of = {},
+          .calls = {},
+          .texel = {},
+          .sample = {},
+          .sample_1d = {},
+          .texture = {},
+          .texture_1d = {},
+          .filtered_texture = {},
+          .texture_struct = {}};
+}
+
+Language c() {
+  Language l = c_like("c", "f");
+  l.definition = "static inline {0} {1}({2}) {{\n{3}}}\n";
+  l.math = "#include <math.h>\n\n";
+  l.exponent_of =
+      "#include <math.h>\n#include <string.h>\n\n"
+      "// n where x = m 2^n, m in [2/3, 4/3)\n"
+      "static inline float power_exponent_of(float x) {\n"
+      "  int bits;\n  memcpy(&bits, &x, sizeof bits);\n  return (float)((bits - 0x3f2aaaab) >> 23);\n}\n\n";
+  l.calls = kCMath;
+  return l;
+}
+
+Language cuda() {
+  Language l = c_like("cuda", "f");
+  l.definition = "__device__ inline {0} {1}({2}) {{\n{3}}}\n";
+  l.exponent_of =
+      "// n where x = m 2^n, m in [2/3, 4/3)\n"
+      "__device__ inline float power_exponent_of(float x) {\n"
+      "  return (float)((__float_as_int(x) - 0x3f2aaaab) >> 23);\n}\n\n";
+  l.calls = kCMath;
+  return l;
+}
+
+Language cpp() {
+  Language l = c_like("cpp", "f");
+  l.vector = "vec3";
+  l.local = "  {0} {1} = {2};\n";
+  l.definition = "BURNISH_FUNCTION {0} {1}({2}) {{\n{3}}}\n";
+  l.header = kCppHeader;
+  l.calls = kShaderMath;
+  l.texel = "{0}_at({1}, {2})";
+  return l;
+}
+
+Language glsl() {
+  Language l = c_like("glsl", "");
+  l.vector = "vec3";
+  l.local = "  {0} {1} = {2};\n";
+  l.definition = "{0} {1}({2}) {{\n{3}}}\n";
+  l.exponent_of =
+      "// n where x = m 2^n, m in [2/3, 4/3)\n"
+      "float power_exponent_of(float x) {\n"
+      "  return float((floatBitsToInt(x) - 0x3f2aaaab) >> 23);\n}\n\n";
+  l.calls = kShaderMath;
+  l.texel = "texelFetch({0}, ivec2({1}, {2}), 0).{3}";
+  l.sample = "textureLod({0}, vec2({1}, {2}), 0.0).{3}";
+  l.sample_1d = "textureLod({0}, {1}, 0.0).{2}";
+  l.texture = l.filtered_texture = "uniform sampler2D {0};\n";
+  l.texture_1d = "uniform sampler1D {0};\n";
+  return l;
+}
+
+Language glsl_es() {
+  Language l = glsl();
+  l.name = "glsl_es";
+  l.header = "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\n";
+  l.calls = with(kShaderMath, {{Op::scale_by_two, {"{0} * exp2({1})", 2}}});
+  l.sample_1d = l.texture_1d = {};
+  return l;
+}
+
+Language hlsl() {
+  Language l = c_like("hlsl", "");
+  l.vector = "float3";
+  l.local = "  {0} {1} = {2};\n";
+  l.definition = "{0} {1}({2}) {{\n{3}}}\n";
+  l.exponent_of =
+      "// n where x = m 2^n, m in [2/3, 4/3)\n"
+      "float power_exponent_of(float x) {\n  return float((asint(x) - 0x3f2aaaab) >> 23);\n}\n\n";
+  l.calls = with(kShaderMath, {{Op::scale_by_two, {"ldexp({0}, {1})"}}});
+  l.texel = "{0}.Load(int3({1}, {2}, 0)).{3}";
+  l.sample = "{0}.SampleLevel({0}_sampler, float2({1}, {2}), 0.0).{3}";
+  l.texture = "Texture2D<float4> {0} : register(t{1});\n";
+  l.filtered_texture =
+      "Texture2D<float4> {0} : register(t{1});\nSamplerState {0}_sampler : register(s{1});\n";
+  return l;
+}
+
+Language msl() {
+  Language l = c_like("msl", "f");
+  l.vector = "float3";
+  l.definition = "inline {0} {1}({2}) {{\n{3}}}\n";
+  l.header =
+      "// No compiler has checked this file: none for MSL is at hand where it is tested.\n"
+      "#include <metal_stdlib>\nusing namespace metal;\n";
+  l.exponent_of =
+      "// n where x = m 2^n, m in [2/3, 4/3)\n"
+      "inline float power_exponent_of(float x) {\n"
+      "  return float((as_type<int>(x) - 0x3f2aaaab) >> 23);\n}\n\n";
+  l.calls = kShaderMath;
+  l.texel = "tables.{0}.read(uint2({1}, {2})).{3}";
+  l.sample = "tables.{0}.sample(smooth_sampler, float2({1}, {2}), level(0.0f)).{3}";
+  l.texture = l.filtered_texture = "  texture2d<float> {0};\n";
+  l.texture_struct = "struct {0} {{\n{1}}};\n";
+  return l;
+}
+
+Language rust() {
+  Language l = c_like("rust", "f32");
+  l.scalar = "f32";
+  l.integer = "i32";
+  l.local = "    let {1} = {2};\n";
+  l.result = "    {}\n";
+  l.parameter = "{1}: {0}";
+  l.definition = "pub fn {1}({2}) -> {0} {{\n{3}}}\n";
+  l.exponent_of =
+      "/// n where x = m 2^n, m in [2/3, 4/3)\n"
+      "fn power_exponent_of(x: f32) -> f32 {\n    ((x.to_bits() as i32 - 0x3f2aaaab) >> 23) as f32\n}\n\n";
+  l.calls = kRustMath;
+  return l;
+}
+
+Language wgsl() {
+  Language l = c_like("wgsl", "");
+  l.scalar = "f32";
+  l.vector = "vec3f";
+  l.integer = "i32";
+  l.local = "  let {1} = {2};\n";
+  l.parameter = "{1}: {0}";
+  l.definition = "fn {1}({2}) -> {0} {{\n{3}}}\n";
+  l.exponent_of =
+      "// n where x = m 2^n, m in [2/3, 4/3)\n"
+      "fn power_exponent_of(x: f32) -> f32 {\n  return f32((bitcast<i32>(x) - 0x3f2aaaab) >> 23u);\n}\n\n";
+  l.calls = with(kShaderMath, {{Op::if_less, {"select({3}, {2}, {0} < {1})"}},
+                               {Op::scale_by_two, {"ldexp({0}, i32({1}))"}},
+                               {Op::to_integer, {"i32({0})"}}});
+  l.texel = "textureLoad({0}, vec2i({1}, {2}), 0).{3}";
+  l.sample = "textureSampleLevel({0}, {0}_sampler, vec2f({1}, {2}), 0.0).{3}";
+  l.texture = "@group(0) @binding({1}) var {0}: texture_2d<f32>;\n";
+  l.filtered_texture =
+      "@group(0) @binding({2}) var {0}: texture_2d<f32>;\n@group(0) @binding({3}) var {0}_sampler: "
+      "sampler;\n";
+  return l;
+}
+
+constexpr std::string_view channels_of(ValueType type) noexcept {
+  return type == ValueType::vector ? "rgb" : "r";
+}
+
+}  // namespace
+
+std::span<const Language> languages() {
+  static const Language kAll[] = {c(), cuda(), cpp(), glsl(), glsl_es(), hlsl(), msl(), rust(), wgsl()};
+  return kAll;
+}
+
+const Language& language(std::string_view name) {
+  std::string known;
+  for (const Language& l : languages()) {
+    if (l.name == name) return l;
+    known += (known.empty() ? "" : ", ") + std::string(l.name);
+  }
+  throw Error(fmt::format("language: expected one of {}, found {}", known, name));
+}
+
+std::string_view Language::type_name(ValueType type) const noexcept {
+  return type == ValueType::vector ? vector : type == ValueType::integer ? integer : scalar;
+}
+
+std::string Language::literal(double value) const {
+  const auto single = static_cast<float>(value);
+  std::string digits =
+      static_cast<double>(single) == value ? fmt::format("{}", single) : fmt::format("{:.9g}", value);
+  if (digits.find_first_of(".e") == std::string::npos) digits += ".0";
+  return digits + std::string(suffix);
+}
+
+std::string Language::declaration(ValueType type, std::string_view variable, std::string_view value) const {
+  return fmt::format(fmt::runtime(local), type_name(type), variable, value);
+}
+
+std::string Language::function(ValueType type, std::string_view function_name,
+                               std::span<const std::string_view> parameters, std::string_view more,
+                               std::string_view body) const {
+  std::string list;
+  for (const std::string_view p : parameters)
+    list += (list.empty() ? "" : ", ") + fmt::format(fmt::runtime(parameter), type_name(type), p);
+  if (!more.empty()) list += fmt::format(", {}", more);
+  return fmt::format(fmt::runtime(definition), type_name(type), function_name, list, body);
+}
+
+std::string Language::fetch(std::string_view texture_name, std::string_view x, std::string_view y,
+                            ValueType type) const {
+  return fmt::format(fmt::runtime(texel), texture_name, x, y, channels_of(type));
+}
+
+std::string Language::filtered(std::string_view texture_name, std::string_view u, std::string_view v,
+                               ValueType type) const {
+  if (v.empty()) return fmt::format(fmt::runtime(sample_1d), texture_name, u, channels_of(type));
+  return fmt::format(fmt::runtime(sample), texture_name, u, v, channels_of(type));
+}
+
+}  // namespace burnish

@@ -1,0 +1,129 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <burnish/formula/writer.h>
+
+namespace burnish {
+namespace {
+
+// How tightly operators bind.
+constexpr int kTernary = 0, kSum = 1, kProduct = 2, kCall = 3;
+
+}  // namespace
+
+Writer::Writer(const Language& language, const Graph& graph, const std::vector<std::size_t>& roots)
+    : language_(language), graph_(graph), uses_(graph.nodes().size()), names_(graph.nodes().size()) {
+  for (const Graph::Node& node : graph.nodes()) {
+    for (const std::size_t argument : node.arguments) ++uses_[argument];
+    if (node.op == Op::input) times_[node.name] = 1;
+  }
+  for (const std::size_t root : roots) ++uses_[root];
+  for (std::size_t i = 0; i < graph.nodes().size(); ++i) {
+    if (!is_local(i)) continue;
+    const Graph::Node& node = graph.nodes()[i];
+    int precedence;
+    const std::string value = formula(i, precedence);
+    names_[i] = new_name(node.called);
+    statements_.push_back({language.declaration(node.type, names_[i], value), i, count_of_text(i)});
+  }
+}
+
+std::string Writer::text() const {
+  std::string all;
+  for (const Statement& statement : statements_) all += statement.text;
+  return all;
+}
+
+bool Writer::uses(Op op) const noexcept {
+  return std::ranges::any_of(graph_.nodes(), [&](const Graph::Node& node) { return node.op == op; });
+}
+
+OperationCount Writer::count(std::size_t root) const {
+  return names_[root].empty() ? count_of_text(root) : OperationCount{};
+}
+
+// What costs nothing to say again is said again.
+bool Writer::is_local(std::size_t i) const {
+  const Graph::Node& node = graph_.nodes()[i];
+  if (node.op == Op::constant || node.op == Op::input || node.op == Op::component) return false;
+  if (!node.called.empty()) return true;
+  return uses_[i] > 1 && node.op != Op::negate && node.type != ValueType::integer;
+}
+
+OperationCount Writer::count_of_text(std::size_t i) const {
+  const Graph::Node& node = graph_.nodes()[i];
+  OperationCount count = count_of(node.op, node.type);
+  for (const std::size_t argument : node.arguments)
+    if (names_[argument].empty()) count += count_of_text(argument);
+  return count;
+}
+
+std::string Writer::new_name(std::string_view called) {
+  if (called.empty()) return fmt::format("t{}", unnamed_++);
+  const int time = ++times_[std::string(called)];
+  return time == 1 ? std::string(called) : fmt::format("{}{}", called, time);
+}
+
+std::string Writer::operand(std::size_t i, int least_precedence) const {
+  const Graph::Node& node = graph_.nodes()[i];
+  if (!names_[i].empty()) return names_[i];
+  if (node.op == Op::input) return node.name;
+  int precedence;
+  const std::string text = formula(i, precedence);
+  return precedence < least_precedence ? "(" + text + ")" : text;
+}
+
+std::string Writer::formula(std::size_t i, int& precedence) const {
+  const Graph::Node& node = graph_.nodes()[i];
+  const auto of = [&](std::size_t k, int least) { return operand(node.arguments[k], least); };
+  // a op b; what stands to the right of an operator keeps its parentheses
+  const auto binary = [&](const char* sign, int own) {
+    precedence = own;
+    return fmt::format("{} {} {}", of(0, own), sign, of(1, own + 1));
+  };
+  precedence = kCall;
+  switch (node.op) {
+    case Op::constant:
+      if (node.constant < 0) precedence = kTernary;
+      return node.type == ValueType::integer ? fmt::format("{}", node.constant)
+                                             : language_.literal(node.constant);
+    case Op::input:
+      return node.name;
+    case Op::add:
+      return binary("+", kSum);
+    case Op::subtract:
+      return binary("-", kSum);
+    case Op::multiply:
+      return binary("*", kProduct);
+    case Op::divide:
+      return binary("/", kProduct);
+    case Op::mul_add:
+      precedence = kSum;
+      return fmt::format("{} * {} + {}", of(0, kProduct), of(1, kCall), of(2, kProduct));
+    case Op::neg_mul_add:
+      precedence = kSum;
+      return fmt::format("{} - {} * {}", of(2, kSum), of(0, kProduct), of(1, kCall));
+    case Op::negate:
+      precedence = kTernary;
+      return "-" + of(0, kCall);
+    case Op::vector:
+      return fmt::format("{}({}, {}, {})", language_.vector, of(0, 0), of(1, 0), of(2, 0));
+    case Op::component:
+      return fmt::format("{}.{}", of(0, kCall), "xyz"[static_cast<std::size_t>(node.constant)]);
+    case Op::texel:
+      return language_.fetch(node.name, of(0, 0), of(1, 0), node.type);
+    case Op::sample:
+      return language_.filtered(node.name, of(0, 0), node.arguments.size() > 1 ? of(1, 0) : "", node.type);
+    default: {
+      const Language::Call& call = language_.calls.at(node.op);
+      precedence = call.precedence;
+      std::string a[4];
+      for (std::size_t k = 0; k < node.arguments.size(); ++k)
+        a[k] = of(k, precedence == kCall ? 0 : precedence + 1);
+      return fmt::format(fmt::runtime(call.pattern), a[0], a[1], a[2], a[3]);
+    }
+  }
+}
+
+}  // namespace burnish

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <burnish/formula/graph.h>
+#include <burnish/formula/language.h>
+
+namespace burnish {
+
+/// One local variable of written code.
+struct Statement {
+  std::string text;
+  std::size_t node;      ///< whose value it holds
+  OperationCount count;  ///< of what its text computes
+};
+
+/// Writes a graph as statements of a language: a value that the formula names, or that is used more than
+/// once, becomes a local. The order of operations is the formula's.
+class Writer {
+ public:
+  /// For all values of the graph; `roots` are those that text() will be asked for. Names that are inputs of
+  /// the graph are not given to locals.
+  Writer(const Language& language, const Graph& graph, const std::vector<std::size_t>& roots);
+
+  const std::vector<Statement>& statements() const noexcept { return statements_; }
+  /// Their text together.
+  std::string text() const;
+  /// A root's value: its local's name, or an expression.
+  std::string text(std::size_t root) const { return operand(root, 0); }
+  /// What a root's expression computes; nothing where it is a local's name.
+  OperationCount count(std::size_t root) const;
+  /// Whether the statements call the language's exponent_of.
+  bool uses(Op op) const noexcept;
+
+ private:
+  bool is_local(std::size_t node) const;
+  std::string operand(std::size_t node, int least_precedence) const;
+  std::string formula(std::size_t node, int& precedence) const;
+  OperationCount count_of_text(std::size_t node) const;
+  std::string new_name(std::string_view called);
+
+  const Language& language_;
+  const Graph& graph_;
+  std::vector<int> uses_;
+  std::vector<std::string> names_;  // of locals, by node
+  std::map<std::string, int, std::less<>> times_;
+  int unnamed_ = 0;
+  std::vector<Statement> statements_;
+};
+
+}  // namespace burnish

@@ -1,0 +1,96 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <burnish/baselines/baseline_file.h>
+#include <burnish/io/astm.h>
+#include <burnish/io/cornell.h>
+#include <burnish/io/csv.h>
+#include <burnish/io/klems.h>
+#include <burnish/io/mbsdf.h>
+#include <burnish/io/merl.h>
+#include <burnish/io/neural.h>
+#include <burnish/io/open_source.h>
+#include <burnish/io/rgl.h>
+#include <burnish/io/text_reader.h>
+#include <burnish/io/zemax.h>
+#include <burnish/math/angles.h>
+
+namespace burnish {
+
+namespace {
+
+/// What the readers of tables return.
+template <class File>
+Source from_table(const FileBytes& file, File parsed) {
+  return {file.name, std::move(parsed.table), std::move(parsed.findings)};
+}
+
+Source from_samples(const FileBytes& file, SampleFile parsed) {
+  return {file.name, ScatteredBrdf(std::move(parsed.samples)), std::move(parsed.findings)};
+}
+
+Source from_baseline(const FileBytes& file) {
+  Baseline baseline = parse_baseline(file);
+  Findings findings;
+  findings.format = fmt::format("{} baseline", baseline.kind);
+  findings.description = baseline_expression(baseline.brdf);
+  findings.conventions = {"notes of the fit: " + baseline.notes};
+  findings.theta_i_max = findings.theta_o_max = kHalfPi;
+  return std::visit(
+      [&](auto& brdf) -> Source {
+        return {file.name, std::move(brdf), std::move(findings)};
+      },
+      baseline.brdf);
+}
+
+Source from_neural(const FileBytes& file, std::string_view name) {
+  NeuralFile parsed = parse_neural(file, name);
+  return {fmt::format("{}#{}", file.name, parsed.name), std::move(parsed.brdf), std::move(parsed.findings)};
+}
+
+Source from_spec(const std::string& spec) {
+  AnalyticBrdf brdf = parse_analytic(spec);
+  Findings findings;
+  findings.format = "analytic";
+  findings.description = fmt::format("{}: {}", brdf.model().description, format_analytic(brdf));
+  findings.theta_i_max = findings.theta_o_max = kHalfPi;
+  return {spec, std::move(brdf), std::move(findings)};
+}
+
+}  // namespace
+
+Source parse_source(const FileBytes& file, const OpenOptions& options) {
+  // Binary formats first: their first bytes are unmistakable.
+  if (looks_like_exr(file.bytes)) return to_source(file.name, parse_model(file));
+  if (looks_like_rgl(file.bytes)) return from_table(file, parse_rgl(file, options));
+  if (looks_like_mbsdf(file.bytes)) return from_table(file, parse_mbsdf(file, options));
+  if (looks_like_merl(file.bytes)) return from_table(file, parse_merl(file, options));
+  const std::string_view text = file.text();
+  if (looks_like_baseline(text)) return from_baseline(file);
+  if (looks_like_klems(text)) return from_table(file, parse_klems(file, options));
+  if (looks_like_zemax(text)) return from_table(file, parse_zemax(file, options));
+  if (looks_like_neural(text)) return from_neural(file, {});
+  if (looks_like_csv(text)) return from_samples(file, parse_csv(file, options));
+  if (looks_like_astm(text)) return from_samples(file, parse_astm(file, options));
+  if (looks_like_cornell(text)) return from_samples(file, parse_cornell(file, options));
+  throw Error(
+      file.name, 0,
+      "a MERL, RGL, MBSDF, Zemax, Klems, ASTM E1392, Cornell or CSV measurement, a neural encoding, a "
+      "baseline or a burnish model",
+      fmt::format("something that starts with {}", in_quotes(text.substr(0, 16))));
+}
+
+Source open_source(const std::string& spec, const OpenOptions& options) {
+  if (is_analytic_spec(spec)) return from_spec(spec);
+  constexpr std::string_view kNeural = "nbrdf:";
+  if (spec.starts_with(kNeural)) {
+    const std::string rest = spec.substr(kNeural.size());
+    const std::size_t mark = std::min(rest.rfind('#'), rest.size());
+    return from_neural(read_file(rest.substr(0, mark)),
+                       std::string_view(rest).substr(std::min(mark + 1, rest.size())));
+  }
+  return parse_source(read_file(spec), options);
+}
+
+}  // namespace burnish

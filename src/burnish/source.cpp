@@ -1,0 +1,42 @@
+#include <utility>
+
+#include <burnish/math/angles.h>
+#include <burnish/source.h>
+
+namespace burnish {
+
+BrdfRef Source::ref() const noexcept {
+  // An analytic BRDF's own reference skips the choice of its model.
+  if (const auto* analytic = std::get_if<AnalyticBrdf>(&brdf)) return analytic->ref();
+  return std::visit([](const auto& any) -> BrdfRef { return any; }, brdf);
+}
+
+const Samples* Source::samples() const noexcept {
+  const auto* scattered = std::get_if<ScatteredBrdf>(&brdf);
+  return scattered ? &scattered->samples() : nullptr;
+}
+
+std::optional<std::size_t> Source::bytes() const noexcept {
+  return std::visit(
+      [](const auto& any) -> std::optional<std::size_t> {
+        if constexpr (requires { any.bytes(); })
+          return any.bytes();
+        else
+          return std::nullopt;
+      },
+      brdf);
+}
+
+Source to_source(const std::string& name, Model model) {
+  Findings findings;
+  findings.format = "burnish model";
+  findings.description = model_expression(model.brdf);
+  findings.lambda_nm = std::move(model.lambda_nm);
+  findings.conventions = {"notes of the fit: " + model.notes};
+  findings.notes = std::move(model.notes);
+  for (const Table& table : model.brdf.tables()) findings.sample_count += table.layout.node_count();
+  findings.theta_i_max = findings.theta_o_max = kHalfPi;
+  return {name, std::move(model.brdf), std::move(findings)};
+}
+
+}  // namespace burnish

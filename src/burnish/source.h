@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include <burnish/baselines/dgf_brdf.h>
+#include <burnish/baselines/neural_brdf.h>
+#include <burnish/baselines/separable_brdf.h>
+#include <burnish/factors/factored_brdf.h>
+#include <burnish/factors/model_file.h>
+#include <burnish/reflectance/analytic.h>
+#include <burnish/reflectance/angle_table.h>
+#include <burnish/reflectance/brdf.h>
+#include <burnish/reflectance/findings.h>
+#include <burnish/reflectance/half_diff_table.h>
+#include <burnish/reflectance/patch_table.h>
+#include <burnish/reflectance/rgl_table.h>
+#include <burnish/reflectance/scattered_brdf.h>
+
+namespace burnish {
+
+/// Everything a BRDF argument can be. Files become one by open_source (io/open_source.h).
+using AnyBrdf = std::variant<HalfDiffTable, RglTable, ScatteredBrdf, AngleTable, PatchTable, AnalyticBrdf,
+                             NeuralBrdf, SeparableBrdf, DgfBrdf, FactoredBrdf>;
+
+/// An opened BRDF and what was found in it.
+struct Source {
+  std::string name;
+  AnyBrdf brdf;
+  Findings findings;
+
+  /// Refers to this object, which must outlive it and stay where it is.
+  BrdfRef ref() const noexcept;
+  /// The scattered measurements, or nullptr where the source is none.
+  const Samples* samples() const noexcept;
+  /// Size of a compressed BRDF as its type counts it; nothing for measurements.
+  std::optional<std::size_t> bytes() const noexcept;
+};
+
+/// A model as a source of that name.
+Source to_source(const std::string& name, Model model);
+
+}  // namespace burnish

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <burnish/formula/graph.h>
+
+namespace burnish {
+
+/// What a graph of numbers and vectors computes, in double.
+struct GraphInputs {
+  std::map<std::string, std::array<double, 3>> values;  ///< of numbers the first
+  std::function<double(const std::string&, int)> element = {};
+};
+
+inline std::vector<std::array<double, 3>> graph_values(const Graph& graph, const GraphInputs& inputs) {
+  std::vector<std::array<double, 3>> all;
+  for (const Graph::Node& node : graph.nodes()) {
+    const auto argument = [&](std::size_t k, std::size_t i) {
+      const std::size_t from = node.arguments[k];
+      return all[from][graph.nodes()[from].type == ValueType::vector ? i : 0];
+    };
+    std::array<double, 3>& value = all.emplace_back();
+    for (std::size_t i = 0; i < (node.type == ValueType::vector ? 3 : 1); ++i) {
+      const auto a = [&](std::size_t k) { return argument(k, i); };
+      value[i] = [&]() -> double {
+        switch (node.op) {
+          case Op::constant:
+            return node.constant;
+          case Op::input:
+            return inputs.values.at(node.name)[i];
+          case Op::add:
+            return a(0) + a(1);
+          case Op::subtract:
+            return a(0) - a(1);
+          case Op::multiply:
+            return a(0) * a(1);
+          case Op::divide:
+            return a(0) / a(1);
+          case Op::mul_add:
+            return a(0) * a(1) + a(2);
+          case Op::neg_mul_add:
+            return a(2) - a(0) * a(1);
+          case Op::negate:
+            return -a(0);
+          case Op::abs:
+            return std::abs(a(0));
+          case Op::max:
+            return std::max(a(0), a(1));
+          case Op::min:
+            return std::min(a(0), a(1));
+          case Op::if_less:
+            return a(0) < a(1) ? a(2) : a(3);
+          case Op::floor:
+            return std::floor(a(0));
+          case Op::sqrt:
+            return std::sqrt(a(0));
+          case Op::power:
+            return std::pow(a(0), a(1));
+          case Op::vector:
+            return argument(i, 0);
+          case Op::component:
+            return argument(0, static_cast<std::size_t>(node.constant));
+          case Op::to_integer:
+            return std::trunc(a(0));
+          case Op::to_real:
+            return a(0);
+          case Op::element:
+            return inputs.element(node.name, static_cast<int>(a(0)));
+          default:
+            throw std::logic_error("no value of " + std::string(to_string(node.op)));
+        }
+      }();
+    }
+  }
+  return all;
+}
+
+}  // namespace burnish

@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+"""Checks the Markdown files of this repository: tests/docs/check.py [FILE...], all of them without arguments.
+
+- Prose, also that of templates (.md.in), is wrapped at 120 columns; tables, code and lines without a space before
+  column 120 are free.
+- Links lead to files of the tree, anchors to headings.
+- A page of docs/guide has at most 120 lines.
+- Daggers, which mark figures that no command prints, stand in docs/notes alone.
+
+Prints what is wrong as FILE:LINE: MESSAGE and exits with 1 if anything is."""
+import functools
+import pathlib
+import re
+import subprocess
+import sys
+import urllib.parse
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+COLUMNS = 120
+GUIDE_LINES = 120
+LINK = re.compile(r"\]\(\s*<?([^)\s>]+)>?(?:\s+\"[^\"]*\")?\s*\)|^\s*\[[^\]]+\]:\s+(\S+)|(?:src|href)=\"([^\"]+)\"")
+
+
+def documents():
+    """Every Markdown file and template that git knows or would know."""
+    listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard", "*.md", "*.md.in"], cwd=ROOT, check=True,
+                            capture_output=True, text=True).stdout.split("\n")
+    return sorted(path for name in set(listed) if name and (path := ROOT / name).exists())
+
+
+def lines_of(path):
+    """(number, text, is_code) of every line. Code is fenced, or indented by four after an empty line."""
+    fence, indented, last_empty, in_list = None, False, True, False
+    for number, text in enumerate(path.read_text(encoding="utf-8").split("\n"), 1):
+        mark = re.match(r"\s*(```+|~~~+)", text)
+        if fence:
+            yield number, text, True
+            if mark and mark.group(1).startswith(fence):
+                fence = None
+            continue
+        if mark:
+            fence = mark.group(1)
+            yield number, text, True
+            continue
+        if not text.strip():
+            last_empty = True
+            yield number, text, indented
+            continue
+        in_list = bool(re.match(r"\s*([-*+]|\d+\.)\s", text)) or (in_list and text.startswith(" "))
+        indented = text.startswith("    ") and (indented or last_empty) and not in_list
+        last_empty = False
+        yield number, text, indented
+
+
+@functools.cache
+def anchors(path):
+    """Names of a page's headings, as GitHub makes them."""
+    found, seen = set(), {}
+    for _, text, code in lines_of(path):
+        heading = re.match(r"#{1,6}\s+(.*?)\s*#*$", text)
+        if code or not heading:
+            continue
+        title = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", heading.group(1))
+        name = re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
+        count = seen[name] = seen.get(name, -1) + 1
+        found.add(f"{name}-{count}" if count else name)
+    return found
+
+
+def check_link(path, target):
+    """What is wrong with a link of a page, or nothing."""
+    if re.match(r"[a-z][a-z0-9+.-]*:", target):
+        return None
+    name, _, anchor = urllib.parse.unquote(target).partition("#")
+    aim = (path.parent / name).resolve() if name else path
+    if not aim.is_relative_to(ROOT):
+        return f"{target} leads out of the repository"
+    if not aim.exists():
+        return f"{target} does not exist"
+    if anchor and aim.suffix == ".md" and anchor not in anchors(aim):
+        return f"{target}: no such heading"
+    return None
+
+
+def check(path):
+    """(line, message) of everything wrong in a page."""
+    name = path.relative_to(ROOT).as_posix()
+    count = 0
+    for number, text, code in lines_of(path):
+        count = number if text else count
+        if code:
+            continue
+        if len(text) > COLUMNS and not text.lstrip().startswith("|") and " " in text.strip()[:COLUMNS]:
+            yield number, f"{len(text)} columns, at most {COLUMNS}"
+        if path.suffix == ".in":  # its links are those of the page it becomes
+            continue
+        for link in LINK.finditer(re.sub(r"`[^`]*`", "", text)):
+            if wrong := check_link(path, next(target for target in link.groups() if target)):
+                yield number, wrong
+        if "†" in re.sub(r"`[^`]*`", "", text) and not name.startswith("docs/notes/"):
+            yield number, "a figure that no command prints belongs to docs/notes"
+    if name.startswith("docs/guide/") and count > GUIDE_LINES:
+        yield count, f"{count} lines, a page of the guide has at most {GUIDE_LINES}"
+
+
+def main():
+    pages = [pathlib.Path(name).resolve() for name in sys.argv[1:]] or documents()
+    wrong = [f"{path.relative_to(ROOT)}:{number}: {message}" for path in pages for number, message in check(path)]
+    print("\n".join(wrong) if wrong else f"{len(pages)} documents, nothing wrong")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,83 @@
+// `burnish fit` writes and prints what the library gives.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <burnish/fitting/fit_file.h>
+#include <burnish/io/open_source.h>
+#include <burnish/testing/tools.h>
+
+namespace burnish {
+namespace {
+
+constexpr const char* kPaint = "ggx:alpha_x=0.3,alpha_y=0.3,f0=0.5/0.3/0.1,kd=0.2";
+// Angles in degrees, values in 1/sr.
+constexpr const char* kScattered =
+    "theta_i,phi_i,theta_o,phi_o,value\n5,0,12,0,0.3\n22,0,11,60,0.2\n40,0,17,60,0.25\n50,0,50,180,0.5\n"
+    "11,0,62,110,0.2\n28,0,29,175,0.6\n62,0,23,50,0.2\n";
+
+class FitCommand : public testing::Test {
+ protected:
+  // The command with --json, which writes `out()`.
+  Outcome run_fit(const std::string& source, const std::string& arguments) const {
+    return run(fmt::format("{} fit '{}' -o {} --json {}", BURNISH_CLI, source, out(), arguments));
+  }
+  std::string out() const { return (folder_.path / "out").string(); }
+  std::string scattered() const {
+    const auto path = folder_.path / "scattered.csv";
+    write(path, kScattered);
+    return path.string();
+  }
+
+  void expect_same(const std::string& source, const std::string& arguments, const FitOptions& options) {
+    const Outcome outcome = run_fit(source, arguments);
+    ASSERT_EQ(outcome.status, 0) << outcome.output;
+    const Fit made = fit(open_source(source, {}), options);
+    EXPECT_EQ(read(out()), format_fit(made)) << arguments;
+    auto expected = nlohmann::json::parse(summary_json(made, out(), 0)),
+         found = nlohmann::json::parse(outcome.output);
+    expected.erase("seconds");
+    found.erase("seconds");
+    EXPECT_EQ(found, expected) << arguments;
+  }
+
+ private:
+  TemporaryFolder folder_{"fit_command"};
+};
+
+TEST_F(FitCommand, IsTheLibrarysFit) {
+  expect_same(kPaint, "", {});
+  expect_same(
+      kPaint, "--model pqpr --table q=24 --floor 1e-4 --reweightings 1 --samples 3000 --seed 4",
+      {.form = OneLobe{.model = "pqpr", .tables = {"q=24"}, .how = {.reweightings = 1, .floor = 1e-4}},
+       .samples = 3000,
+       .seed = 4});
+  expect_same(kPaint, "--smooth auto --samples 2000 --no-symmetrize",
+              {.form = OneLobe{.how = {.cross_validate = true}}, .samples = 2000, .symmetrize = false});
+  expect_same(kPaint, "--budget 300 --loss relative --format half --smooth 1e-6 --conserve-energy",
+              {.form = Budget{.bytes = 300, .loss = FitLoss::relative},
+               .smooth = 1e-6,
+               .format = TableFormat::half,
+               .conserve_energy = true});
+  expect_same(kPaint, "--model 'p(wo) q(h) p(wi) + s(h)' --table s=6 --loss log_cos",
+              {.form = GivenLobes{"p(wo) q(h) p(wi) + s(h)", {"s=6"}, FitLoss::log_cos}});
+  expect_same(kPaint, "--method analytic:cook-torrance --samples 2000",
+              {.form = BaselineMethod{"analytic:cook-torrance"}, .samples = 2000});
+  expect_same(kPaint, "--method nd --budget 400", {.form = BaselineMethod{"nd", 400}});
+  const std::string samples = scattered();
+  expect_same(samples, "", {});
+  expect_same(samples, "--budget 300", {.form = Budget{.bytes = 300}});
+}
+
+TEST_F(FitCommand, TellsMisuseFromErrors) {
+  EXPECT_EQ(run_fit(kPaint, "--model 'p(up)'").status, 2);
+  EXPECT_EQ(run_fit(kPaint, "--smooth much").status, 2);
+  EXPECT_EQ(run_fit(kPaint, "--lobes 2").status, 2);
+  EXPECT_EQ(run_fit(kPaint, "--method pca").status, 1);
+  EXPECT_EQ(run_fit(kPaint, "--method svd --format half").status, 1);
+  EXPECT_EQ(run_fit(kPaint, "--budget 20").status, 1);
+}
+
+}  // namespace
+}  // namespace burnish
