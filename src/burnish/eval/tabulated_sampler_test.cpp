@@ -300,9 +300,14 @@ TEST(TabulatedSampler, TellsDensitiesOfMirrorDirectionsAtAnyView) {
   }
 }
 
-// Densities are never negative, directions drawn for a unit vector never of another length.
+// For unit vectors densities are never negative and directions have length 1, whatever stands in place of u, and
+// what is no number stays none; of vectors that are no directions nothing is said but that they come back.
 TEST(TabulatedSampler, SurvivesAnythingInPlaceOfDirections) {
-  const auto density = [](double pdf) { return std::isnan(pdf) || pdf >= 0; };
+  const auto sane = [](double pdf, std::initializer_list<Vec3> directions) {
+    const bool units =
+        std::ranges::all_of(directions, [](Vec3 w) { return length(w) == 1 || std::isnan(length(w)); });
+    return !units || std::isnan(pdf) || pdf >= 0;
+  };
   const auto reflected = [](Vec3 wi, Vec3 wo) {
     return length(wo) != 1 || std::isnan(length(wi)) || std::abs(length(wi) - 1) < 1e-5;
   };
@@ -314,11 +319,11 @@ TEST(TabulatedSampler, SurvivesAnythingInPlaceOfDirections) {
     for (const double a : odd)
       for (const double b : odd)
         for (const double z : odd) {
-          const Vec3 wo{a, b, z};
+          const Vec3 wo{a, b, z}, turned{b, z, a};
           const DrawnDirection drawn = sampler.sample_wi(wo, {b, z});
-          EXPECT_TRUE(density(drawn.pdf)) << a << " " << b << " " << z << ": " << drawn.pdf;
+          EXPECT_TRUE(sane(drawn.pdf, {wo})) << a << " " << b << " " << z << ": " << drawn.pdf;
           EXPECT_TRUE(reflected(drawn.wi, wo)) << a << " " << b << " " << z << ": " << length(drawn.wi);
-          EXPECT_TRUE(density(sampler.pdf(wo, {b, z, a}))) << a << " " << b << " " << z;
+          EXPECT_TRUE(sane(sampler.pdf(wo, turned), {wo, turned})) << a << " " << b << " " << z;
           const double values[] = {a, b, z, b, z};
           for (int k = 0; k < 5; ++k) in[k].push_back(static_cast<float>(values[k]));
         }
@@ -328,9 +333,10 @@ TEST(TabulatedSampler, SurvivesAnythingInPlaceOfDirections) {
                       DrawnSpans{out[0], out[1], out[2], out[3]});
     sampler.pdf(DirectionSpans{in[0], in[1], in[2], in[2], in[0], in[1]}, pdf);
     for (std::size_t i = 0; i < pdf.size(); ++i) {
-      EXPECT_TRUE(density(pdf[i])) << i << ": " << pdf[i];
-      EXPECT_TRUE(density(out[3][i])) << i << ": " << out[3][i];
-      EXPECT_TRUE(reflected({out[0][i], out[1][i], out[2][i]}, {in[0][i], in[1][i], in[2][i]})) << i;
+      const Vec3 wo{in[0][i], in[1][i], in[2][i]}, turned{in[2][i], in[0][i], in[1][i]};
+      EXPECT_TRUE(sane(pdf[i], {wo, turned})) << i << ": " << pdf[i];
+      EXPECT_TRUE(sane(out[3][i], {wo})) << i << ": " << out[3][i];
+      EXPECT_TRUE(reflected({out[0][i], out[1][i], out[2][i]}, wo)) << i;
     }
   }
 }

@@ -48,7 +48,10 @@ SplitNumber split(double c) {
   if (c <= 0) return {-127, 1};  // as the float bits of 0 read
   int n = 0;
   double m = std::frexp(c, &n);
-  if (m < 2.0 / 3) m *= 2, --n;
+  if (m < 2.0 / 3) {
+    m *= 2;
+    --n;
+  }
   return {static_cast<double>(n), m};
 }
 struct WholeAndRest {
