@@ -96,7 +96,8 @@ void bind_model_parts(nb::module_& m) {
       .def_prop_ro(
           "projection", [](const FactorUse& u) { return projection_terms(u.projection); },
           nb::sig("def projection(self) -> tuple[float, float, float, float] | str"),
-          "(a, b, m, n) of normalize(a wi + b wo + m mirror(wi) + n normal), or the name of another kind, such "
+          "(a, b, m, n) of normalize(a wi + b wo + m mirror(wi) + n normal), or the name of another kind, "
+          "such "
           "as \"difference\".")
       .def_prop_ro(
           "projection_y", [](const FactorUse& u) { return projection_terms(u.projection_y); },
