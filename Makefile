@@ -4,7 +4,7 @@
 # make build  the command line at build/release/apps/burnish/burnish
 # make bench, make fuzz, make report, make sampling-report, make shader-report, make frame-cost, make hw-report, make hw-exhaustive, make format:
 # see CONTRIBUTING.md
-.PHONY: demo test build reports python deps test-deps bench fuzz report sampling-report shader-report frame-cost hw-report hw-exhaustive format format-check docs-check
+.PHONY: demo test build reports python deps test-deps bench fuzz report sampling-report shader-report frame-cost hw-report hw-exhaustive format format-check docs-check include-check api
 JOBS ?= $(shell nproc)
 BURNISH := build/release/apps/burnish/burnish
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
@@ -38,7 +38,7 @@ reports: test-deps build
 demo: build
 	@examples/demo.sh "$(BURNISH)" "$(OUT)" "$(INPUT)"
 
-test: test-deps format-check docs-check
+test: test-deps format-check docs-check include-check
 	@for preset in dev release; do \
 	  cmake --preset $$preset > /dev/null && \
 	  cmake --build --preset $$preset -j $(JOBS) && \
@@ -89,3 +89,11 @@ format-check: test-deps
 
 docs-check:
 	@tests/docs/check.py
+	@docs/api.py --check
+
+include-check:
+	@tests/includes/check.py
+	@tests/includes/check.py --self-test
+
+api:
+	@docs/api.py

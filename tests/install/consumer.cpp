@@ -1,20 +1,27 @@
-// A program of somebody else's: an analytic BRDF in, the bytes of a factored one out.
+// A program of somebody else's: it does what the README shows, and compares with the definition.
+#include <cmath>
 #include <cstdio>
+#include <vector>
 
-#include <burnish/eval/factored_eval.h>
-#include <burnish/factors/model_file.h>
-#include <burnish/reflectance/analytic.h>
-#include <burnish/reflectance/half_diff_table.h>
+#include <burnish/burnish.h>
 
 int main() {
-  const burnish::AnalyticBrdf ggx = burnish::parse_analytic("ggx:alpha_x=0.1,alpha_y=0.1");
-  const burnish::HalfDiffTable table = burnish::tabulate_half_diff(ggx.ref(), 9, 9, 18, false);
-  burnish::Table line{.name = "q", .layout = {.width = 2}, .channels = 1, .values = {1, 0.5f}};
-  const burnish::FactoredBrdf brdf(3, {line},
-                                   {{.scale = {1, 1, 1}, .factors = {{0, burnish::kProjectHalf, {}}}}},
-                                   burnish::TableFormat::half);
-  float f[3];
-  burnish::FactoredEvaluator(brdf).eval({0, 0, 1}, {0, 0, 1}, f);
-  if (f[0] != 1 || table.values.empty()) return 1;
-  std::printf("burnish finds a table of %zu bytes\n", burnish::format_model({brdf, {}, "{}"}).size());
+  // a million pairs: the light goes round a tilted circle, the viewer from the normal to the horizon
+  std::vector<float> wi, wo;
+  for (int i = 0; i < 1'000'000; ++i) {
+    const double phi = 1e-3 * i, theta = 1.5e-6 * i;
+    for (const double x : {0.6 * std::cos(phi), 0.6 * std::sin(phi), 0.8})
+      wi.push_back(static_cast<float>(x));
+    for (const double x : {std::sin(theta), 0.0, std::cos(theta)}) wo.push_back(static_cast<float>(x));
+  }
+
+#include "readme_example.inc"  // install_test.cmake takes it from there
+
+  for (std::size_t i = 0; i < 3'000'000; i += 3'000) {
+    double expected[3];
+    fit.ref().eval({wi[i], wi[i + 1], wi[i + 2]}, {wo[i], wo[i + 1], wo[i + 2]}, expected);
+    for (std::size_t c = 0; c < 3; ++c)
+      if (!(std::abs(f[i + c] - expected[c]) <= evaluator.rounding_bound() * expected[c])) return 1;
+  }
+  std::printf("burnish evaluates a model whose file has %zu bytes\n", burnish::format_fit(fit).size());
 }

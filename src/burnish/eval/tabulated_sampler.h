@@ -35,7 +35,8 @@ struct SamplerOptions {
 SamplerOptions default_sampler_options(bool isotropic) noexcept;
 
 /// A sampler's tables, for programs that draw by themselves (a shader, a tracer that compiles its own code)
-/// with the formulas of visible_half-inl.h. Valid as long as the sampler or a copy of it.
+/// with the formulas that eval/sampler_expression.h gives as graphs. Valid as long as the sampler or a copy of
+/// it.
 struct SamplerTables {
   bool isotropic = true;
   double sharpness = 0, share = 0, xx = 1, xy = 0, yy = 1;  ///< as in VisibleHalfMap

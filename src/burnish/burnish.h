@@ -1,0 +1,35 @@
+#pragma once
+
+/// The public door: what these headers declare is what programs may rely on; docs/api.md shows it at a glance. They
+/// need the C++20 standard library and nothing else.
+
+// A BRDF in: from a file, a spec or a program's own type; out again in another format.
+#include <burnish/error.h>
+#include <burnish/io/convert.h>
+#include <burnish/io/open_source.h>
+#include <burnish/reflectance/analytic.h>
+#include <burnish/reflectance/brdf.h>
+#include <burnish/source.h>
+
+// A factored model of it, its file, and how far it is from the original.
+#include <burnish/factors/factored_brdf.h>
+#include <burnish/factors/model_file.h>
+#include <burnish/factors/model_spec.h>
+#include <burnish/fitting/fit.h>
+#include <burnish/fitting/fit_file.h>
+#include <burnish/metrics/error_figures.h>
+
+// Many values and draws at a time.
+#include <burnish/eval/factored_eval.h>
+#include <burnish/eval/sampler_expression.h>
+#include <burnish/eval/tabulated_sampler.h>
+#include <burnish/formula/graph.h>
+
+// Shaders, textures, and all that a model can be exported as.
+#include <burnish/export/export_model.h>
+#include <burnish/shaders/shader.h>
+#include <burnish/textures/ktx2.h>
+
+// Glossy highlights without pow.
+#include <burnish/eval/power_span.h>
+#include <burnish/power/power.h>
