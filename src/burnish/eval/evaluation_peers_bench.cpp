@@ -103,7 +103,7 @@ void neural(std::span<const float> weights, const DirectionSpans& in, std::span<
 
 void tabulated(const TabulatedMicrofacets& b, const DirectionSpans& in, std::span<float> f) {
   constexpr double kScale = (TabulatedMicrofacets::kAngles - 1) / kHalfPi;
-  const auto lookup = [](const std::vector<float>& table, const Cell& cell) HWY_ATTR {
+  const auto lookup = [](const std::vector<float>& table, const LaneCell& cell) HWY_ATTR {
     const auto node = node_of(cell);
     return mix(Lane(hn::GatherIndex(D(), table.data(), node)),
                Lane(hn::GatherIndex(D(), table.data() + 1, node)), cell.fraction);
