@@ -3,7 +3,7 @@
 
 #include <burnish/eval/sampler_expression.h>
 #include <burnish/formula/graph.h>
-#include <burnish/shaders/shader.h>
+#include <burnish/shaders/shader_formula.h>
 
 #include "opened_brdf.h"
 

@@ -103,7 +103,7 @@ void neural(std::span<const float> weights, const DirectionSpans& in, std::span<
 
 void tabulated(const TabulatedMicrofacets& b, const DirectionSpans& in, std::span<float> f) {
   constexpr double kScale = (TabulatedMicrofacets::kAngles - 1) / kHalfPi;
-  const auto lookup = [](const std::vector<float>& table, const Cell& cell) HWY_ATTR {
+  const auto lookup = [](const std::vector<float>& table, const LaneCell& cell) HWY_ATTR {
     const auto node = node_of(cell);
     return mix(Lane(hn::GatherIndex(D(), table.data(), node)),
                Lane(hn::GatherIndex(D(), table.data() + 1, node)), cell.fraction);
@@ -114,8 +114,8 @@ void tabulated(const TabulatedMicrofacets& b, const DirectionSpans& in, std::spa
   for_each_pair(in, f, [&](const Vector& wi, const Vector& wo, Lane(&value)[3]) HWY_ATTR {
     const Vector sum = sum_of(wi, wo), across{wi.x - wo.x, wi.y - wo.y, wi.z - wo.z};
     const Lane total = length(sum), one(1.0);
-    const Cell h = cell(sum, total), i = cell(wi, one), o = cell(wo, one);
-    const Cell d = cell({length(across), Lane(0.0), total}, Lane(2.0));
+    const LaneCell h = cell(sum, total), i = cell(wi, one), o = cell(wo, one);
+    const LaneCell d = cell({length(across), Lane(0.0), total}, Lane(2.0));
     const Lane scale = Lane(0.25) / (wi.z * wo.z);
     for (std::size_t c = 0; c < 3; ++c)
       value[c] = mul_add(lookup(b.d[c], h) * lookup(b.f[c], d) * scale, lookup(b.g[c], i) * lookup(b.g[c], o),

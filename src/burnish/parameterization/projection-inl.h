@@ -173,7 +173,8 @@ FORMULA_INLINE T power_warp(const T& size, const Exponent& exponent, const Polar
   return size * power(named("t", polar.r / polar.den), exponent);
 }
 
-/// size u / r: what the components of the projected vector are multiplied by in a disk; 0 where r is.
+/// size u / r: what the components of the projected vector are multiplied by in a disk; 0 where r is. The
+/// definition, to_disk() of hemisphere_map.h, keeps the order that models were fitted with: u / t / den.
 template <class T>
 FORMULA_INLINE T identity_stretch(const T& size, const Polar<T>& polar) {
   return size / polar.den;

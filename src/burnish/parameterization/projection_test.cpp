@@ -23,8 +23,8 @@ std::vector<DirectionPair> pairs_and_corners() {
 
 TEST(Projection, GivesUnitVectorsAboveTheHorizon) {
   bool angle_only;
-  for (const char* text :
-       {"wi", "wo", "h", "d", "wi+wo-0.7n", "m+wo", "0.5wi-wo+0.2n", "wi-wo", "theta_m", "theta_t", "phi_d"}) {
+  for (const char* text : {"wi", "wo", "h", "d", "wi+wo-0.7n", "m+wo", "0.5wi-wo+0.2n", "wi-wo", "theta_m",
+                           "theta_t", "phi_d"}) {
     const Projection p = parse_projection(text, angle_only);
     for (const auto& [wi, wo] : pairs_and_corners()) {
       const Vec3 v = project(p, wi, wo);
@@ -55,7 +55,8 @@ TEST(Projection, AngleAloneAgreesWithTheVector) {
 
 TEST(Projection, SwappingIsExactToTheLastBit) {
   bool angle_only;
-  for (const char* text : {"wi", "wo", "h", "wi+wo+0.4n", "0.3wi+0.9wo-0.2n", "d", "theta_m", "theta_t", "phi_d"}) {
+  for (const char* text :
+       {"wi", "wo", "h", "wi+wo+0.4n", "0.3wi+0.9wo-0.2n", "d", "theta_m", "theta_t", "phi_d"}) {
     const Projection p = parse_projection(text, angle_only);
     Projection q;
     ASSERT_TRUE(swapped(p, false, q)) << text;
@@ -148,7 +149,8 @@ TEST(Projection, AzimuthReachesBothItsEndsAndIsZeroWhereItHasNoMeaning) {
 
 TEST(Projection, RefusesWhatItDoesNotKnow) {
   bool angle_only;
-  for (const char* text : {"", "x", "wi wo", "wi+", "n", "0wi", "wi+1e9n", "nan*wi", "theta_x", "phi_h", "wi+wow"})
+  for (const char* text :
+       {"", "x", "wi wo", "wi+", "n", "0wi", "wi+1e9n", "nan*wi", "theta_x", "phi_h", "wi+wow"})
     EXPECT_THROW(parse_projection(text, angle_only), Error) << text;
 }
 

@@ -7,7 +7,7 @@
 #include <burnish/factors/lookup_expression.h>
 #include <burnish/formula/writer.h>
 #include <burnish/shaders/frame_function.h>
-#include <burnish/shaders/shader.h>
+#include <burnish/shaders/shader_formula.h>
 
 namespace burnish {
 

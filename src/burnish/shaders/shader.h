@@ -6,7 +6,6 @@
 #include <vector>
 
 #include <burnish/factors/factored_brdf.h>
-#include <burnish/formula/expression.h>
 
 namespace burnish {
 
@@ -87,14 +86,6 @@ struct Shader {
 /// Throws Error if the name or lines_are_1d is not as above, channels are not 1 or 3, tables need more than
 /// most_textures in a language with textures, or for C++ with the hardware filter.
 Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options);
-
-/// What generate_shader writes, as an expression over the vectors wi and wo, above the horizon, and texels of
-/// the textures: a number or a vector. Throws Error as it does.
-struct ShaderFormula {
-  Expr value;
-  std::vector<ShaderTexture> textures;
-};
-ShaderFormula shader_formula(const FactoredBrdf& brdf, const ShaderOptions& options);
 
 /// What generate_shader computes, in two pieces of GLSL for a pixel that several lights shine on: `view`
 /// once, then `light` and `value` for every light.

@@ -34,7 +34,7 @@ struct View {
     wo = named("wo", ExprVector(-sine, 0.0, cosine));
     slice = named("slice", sine / (1 + cosine) * (slices - 1));
     low = named("low", min(Expr(Op::to_integer, {slice}), Expr::integer(slices - 2)));
-    part = slice - Expr(Op::to_real, {low});
+    part = named("part", slice - Expr(Op::to_real, {low}));
   }
 };
 
@@ -61,8 +61,8 @@ Expr seen(const ImageBasedLight& light, const View& view, const std::string& axe
   Expr sum;
   for (int map = 0; map < 2 * orders + 1; ++map) {
     const Expr place_z = (view.slice + (first + map * slices + 0.5)) * (1.0 / depth);
-    sum = sum + weights[static_cast<std::size_t>(map)] *
-                    Expr::sample(maps, {place_x, place_y, place_z}, ValueType::vector);
+    const Expr value = Expr::sample(maps, {place_x, place_y, place_z}, ValueType::vector);
+    sum = sum + weights[static_cast<std::size_t>(map)] * named("map", value);
   }
   return named("seen", sum);
 }

@@ -4,7 +4,7 @@
 namespace burnish {
 
 ExprVector in_half_of(const ExprVector& axis, const ExprVector& w) {
-  return {w.x, if_less(axis.y, 0.0, -w.y, w.y), w.z};
+  return {w.x, named("up", if_less(axis.y, 0.0, -w.y, w.y)), w.z};
 }
 
 MapCoordinates map_coordinates(const ExprVector& w, int side) {
