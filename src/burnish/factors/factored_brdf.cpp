@@ -79,12 +79,12 @@ std::vector<double> logs_of_one(const Table& table) {
 
 constexpr std::size_t kMostPlaces = 32;  // kept while a pair of directions is evaluated
 
-int coefficient_count(const Projection& p) noexcept {
-  if (p.kind != Projection::Kind::affine || p == kProjectWi || p == kProjectWo || p == kProjectHalf) return 0;
-  return (p.wi != 0) + (p.wo != 0) + (p.mirror != 0) + (p.n != 0);
-}
-
 }  // namespace
+
+std::size_t coefficient_count(const Projection& p) noexcept {
+  if (p.kind != Projection::Kind::affine || p == kProjectWi || p == kProjectWo || p == kProjectHalf) return 0;
+  return static_cast<std::size_t>((p.wi != 0) + (p.wo != 0) + (p.mirror != 0) + (p.n != 0));
+}
 
 FactoredBrdf::FactoredBrdf(int channels, std::vector<Table> tables, std::vector<Lobe> lobes,
                            TableFormat format)
@@ -217,9 +217,8 @@ std::size_t FactoredBrdf::bytes() const noexcept {
   for (const Lobe& lobe : lobes_) {
     parameters += lobe.scale.size();
     for (const FactorUse& use : lobe.factors) {
-      parameters += static_cast<std::size_t>(coefficient_count(use.projection));
-      if (layout_of(use).shape == TableShape::grid)
-        parameters += static_cast<std::size_t>(coefficient_count(use.projection_y));
+      parameters += coefficient_count(use.projection);
+      if (layout_of(use).shape == TableShape::grid) parameters += coefficient_count(use.projection_y);
     }
   }
   return table_bytes() + parameters * sizeof(float);

@@ -75,6 +75,9 @@ class FactoredBrdf {
 
 static_assert(Brdf<FactoredBrdf>);
 
+/// The coefficients of a projection that are not 0 and that its name does not imply.
+std::size_t coefficient_count(const Projection& projection) noexcept;
+
 /// Entries of half and single tables are kept at or above this share of the largest: half floats stay
 /// positive there, as subnormal numbers with an error of at most 1/32. 2^-14, the smallest normal half, would
 /// cut the tails of shiny materials (docs/notes/factorization.md).

@@ -206,8 +206,8 @@ class Fitter {
 
   RefineOptions refine_options(FitLoss loss) const {
     RefineOptions options{.format = format()};
-    if (loss == FitLoss::relative) options.shares = {0, 0, 1, 0};
-    if (loss == FitLoss::log_cos) options.shares = {0, 0, 0.1, 1};
+    if (loss == FitLoss::relative) options.shares = {.relative = 1};
+    if (loss == FitLoss::log_cos) options.shares = {.relative = 0.1, .log_cos = 1};
     if (options_.smooth) options.smooth = *options_.smooth;
     options.progress = progress("fitting");
     return options;

@@ -3,8 +3,10 @@
 #include <cmath>
 
 #include <burnish/error.h>
+#include <burnish/fitting/numerics/node_numbers.h>
+#include <burnish/fitting/numerics/preconditioned_cg.h>
 #include <burnish/fitting/numerics/smoothness.h>
-#include <burnish/fitting/one_lobe/log_rows.h>
+#include <burnish/fitting/one_lobe/conjugate_gradients.h>
 #include <burnish/fitting/one_lobe/multilevel.h>
 #include <burnish/math/parallel.h>
 
@@ -33,20 +35,19 @@ class LogOperator {
   LogOperator(const RowMaker& maker, const HomomorphicOptions& options)
       : spec_(*maker.spec),
         uses_(spec_.lobes.front()),
-        channels_(static_cast<std::size_t>(maker.source->channels)) {
+        channels_(static_cast<std::size_t>(maker.source->channels)),
+        numbering_(number_nodes(spec_, step())) {
     for (const ModelSpec::TableSpec& table : spec_.tables) {
-      base_.push_back(count_);
-      step_.push_back(table.shared ? 1 : step());
-      count_ += table.layout.node_count() * step_.back();
       smoothness_.push_back(smoothness_rows(table.layout));
       smooth_.push_back(options.smooth * table.smooth_share);
     }
     for (const FactorUse& use : uses_) {
       const auto t = static_cast<std::size_t>(use.table);
       const TableLayout& layout = spec_.tables[t].layout;
-      touches_.push_back({.base = base_[t],
-                          .step = step_[t],
-                          .next_row = static_cast<std::size_t>(layout.width) * step_[t],
+      const auto [base, copies] = numbering_.tables[t];
+      touches_.push_back({.base = base,
+                          .step = copies,
+                          .next_row = static_cast<std::size_t>(layout.width) * copies,
                           .line = layout.shape == TableShape::line});
     }
     chunks_.resize(chunk_count(maker.source->count, kChunk));
@@ -57,7 +58,7 @@ class LogOperator {
     center();
   }
 
-  std::size_t count() const { return count_; }
+  std::size_t count() const { return numbering_.count; }
   std::size_t samples() const { return samples_; }
   double error_before() const { return error_before_; }
   const Doubles& mean() const { return mean_; }
@@ -80,15 +81,15 @@ class LogOperator {
       });
     });
     add_smoothness(x, y);
-    for (std::size_t i = 0; i < count_; ++i) y[i] += kRidge * x[i];
+    for (std::size_t i = 0; i < count(); ++i) y[i] += kRidge * x[i];
     return y;
   }
 
   /// r -> approximate inverse of the operator times r: on the tables' own resolution and every coarser one,
   /// the residual over the operator's diagonal there, added up [Bramble 1990].
   void build_preconditioner() {
-    preconditioner_.resize(base_.size());
-    for (std::size_t t = 0; t < base_.size(); ++t) {
+    preconditioner_.resize(spec_.tables.size());
+    for (std::size_t t = 0; t < spec_.tables.size(); ++t) {
       const TableLayout& layout = spec_.tables[t].layout;
       preconditioner_[t].push_back({GridTransfer(layout, layout.width, layout.height), {}});
       for (GridTransfer& level : coarser_levels(layout)) preconditioner_[t].push_back({std::move(level), {}});
@@ -98,7 +99,7 @@ class LogOperator {
       Level* level;
     };
     std::vector<Task> tasks;
-    for (std::size_t t = 0; t < base_.size(); ++t)
+    for (std::size_t t = 0; t < spec_.tables.size(); ++t)
       for (Level& level : preconditioner_[t]) tasks.push_back({t, &level});
     for_each_chunk(tasks.size(), 1, [&](std::size_t task, std::size_t, std::size_t) {
       tasks[task].level->inverse_diagonal = inverse_diagonal(tasks[task].table, tasks[task].level->transfer);
@@ -107,13 +108,15 @@ class LogOperator {
 
   Doubles precondition(const Doubles& r) const {
     Doubles z(r.size()), coarse;
-    for (std::size_t t = 0; t < base_.size(); ++t)
+    for (std::size_t t = 0; t < spec_.tables.size(); ++t) {
+      const auto [base, copies] = numbering_.tables[t];
       for (const Level& level : preconditioner_[t]) {
         coarse.resize(level.inverse_diagonal.size());
-        level.transfer.restrict_to(r.data() + base_[t], coarse.data(), step_[t]);
+        level.transfer.restrict_to(r.data() + base, coarse.data(), copies);
         for (std::size_t i = 0; i < coarse.size(); ++i) coarse[i] *= level.inverse_diagonal[i];
-        level.transfer.add_interpolated(coarse.data(), z.data() + base_[t], step_[t]);
+        level.transfer.add_interpolated(coarse.data(), z.data() + base, copies);
       }
+    }
     return z;
   }
 
@@ -139,7 +142,7 @@ class LogOperator {
 
   /// Unknown of a table's node and channel.
   std::size_t index(std::size_t table, std::size_t node, std::size_t channel) const {
-    return base_[table] + node * step_[table] + (step_[table] > 1 ? channel : 0);
+    return numbering_.tables[table](node, channel);
   }
 
  private:
@@ -204,7 +207,7 @@ class LogOperator {
   // Every kSampleStride-th sample is enough to estimate a diagonal.
   Doubles inverse_diagonal(std::size_t table, const GridTransfer& level) const {
     constexpr std::size_t kSampleStride = 8;
-    const std::size_t step_of = step_[table];
+    const std::size_t step_of = numbering_.tables[table].copies;
     const auto width = static_cast<std::uint32_t>(spec_.tables[table].layout.width);
     Doubles d(level.coarse_count() * step_of);
     for (const LogRows& rows : chunks_)
@@ -283,11 +286,11 @@ class LogOperator {
     const std::size_t group = (chunks_.size() + kGroups - 1) / kGroups;
     std::vector<Floats> parts(chunk_count(chunks_.size(), group));
     for_each_chunk(chunks_.size(), group, [&](std::size_t g, std::size_t begin, std::size_t end) {
-      parts[g].assign(count_, 0);
+      parts[g].assign(count(), 0);
       for (std::size_t i = begin; i < end; ++i) body(chunks_[i], parts[g]);
     });
-    Doubles sum(count_);
-    for_each_chunk(count_, 4096, [&](std::size_t, std::size_t begin, std::size_t end) {
+    Doubles sum(count());
+    for_each_chunk(count(), 4096, [&](std::size_t, std::size_t begin, std::size_t end) {
       for (const Floats& part : parts)
         for (std::size_t i = begin; i < end; ++i) sum[i] += part[i];
       for (std::size_t i = begin; i < end; ++i) sum[i] /= total_weight_;
@@ -296,25 +299,26 @@ class LogOperator {
   }
 
   void add_smoothness(const Doubles& x, Doubles& y) const {
-    for (std::size_t t = 0; t < base_.size(); ++t) {
+    for (std::size_t t = 0; t < spec_.tables.size(); ++t) {
       const SmoothnessRows& rows = smoothness_[t];
+      const NodeNumbers& number = numbering_.tables[t];
       for (std::size_t r = 0; r < rows.size(); ++r)
-        for (std::size_t c = 0; c < step_[t]; ++c) {
+        for (std::size_t c = 0; c < number.copies; ++c) {
           double value = 0;
           for (std::size_t k = rows.starts[r]; k < rows.starts[r + 1]; ++k)
-            value += rows.coefficients[k] * x[base_[t] + rows.nodes[k] * step_[t] + c];
+            value += rows.coefficients[k] * x[number(rows.nodes[k], c)];
           for (std::size_t k = rows.starts[r]; k < rows.starts[r + 1]; ++k)
-            y[base_[t] + rows.nodes[k] * step_[t] + c] += smooth_[t] * rows.coefficients[k] * value;
+            y[number(rows.nodes[k], c)] += smooth_[t] * rows.coefficients[k] * value;
         }
     }
   }
 
   const ModelSpec& spec_;
   const std::vector<FactorUse>& uses_;
-  std::size_t channels_, count_ = 0, samples_ = 0;
+  std::size_t channels_, samples_ = 0;
+  Numbering numbering_;  ///< of padded texels
   double total_weight_ = 0, error_before_ = 0;
   Doubles smooth_;
-  std::vector<std::size_t> base_, step_;
   std::vector<Touch> touches_;
   std::vector<SmoothnessRows> smoothness_;
   std::vector<LogRows> chunks_;
@@ -327,61 +331,51 @@ class LogOperator {
 };
 
 template <std::size_t Padded>
-LogSolution solve(const RowMaker& rows, const Unknowns& unknowns, const HomomorphicOptions& options) {
+LogSolution solve(const RowMaker& rows, const HomomorphicOptions& options) {
   LogOperator<Padded> op(rows, options);
   op.build_preconditioner();
-
-  // Preconditioned conjugate gradients on the normal equations [Hestenes 1952].
-  Doubles x(op.count()), r = op.right_side(), z = op.precondition(r), p;
-  p = z;
-  double rz = inner_product(r, z);
-  const double first = rz;
   LogSolution solution{.samples = op.samples(), .summary = {.error_before = op.error_before()}};
-  FitSummary& summary = solution.summary;
-  const double target = options.tolerance * options.tolerance * first;
-  while (summary.iterations < options.max_iterations) {
-    if (rz <= target) {
-      summary.stop_reason = StopReason::tolerance_reached;
-      break;
-    }
-    const Doubles ap = op.apply(p);
-    const double alpha = rz / inner_product(p, ap);
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      x[i] += alpha * p[i];
-      r[i] -= alpha * ap[i];
-    }
-    z = op.precondition(r);
-    const double next = inner_product(r, z);
-    if (!std::isfinite(next)) throw Error("fit: expected a solvable system; more smoothness may help");
-    for (std::size_t i = 0; i < p.size(); ++i) p[i] = z[i] + next / rz * p[i];
-    rz = next;
-    ++summary.iterations;
+
+  // on the normal equations
+  Doubles x(op.count());
+  const double least = options.tolerance * options.tolerance;
+  const auto after_step = [&](const CgResult& state) {
     // the residual falls about geometrically
     if (options.progress)
-      options.progress(
-          std::clamp(std::log(first / std::max(rz, 1e-300)) / std::log(first / target), 0.0, 1.0));
-  }
-  summary.error_after = op.error(x);
-  solution.log_values.resize(unknowns.count);
+      options.progress(std::clamp(
+          std::log(state.first_residual / std::max(state.residual, 1e-300)) / std::log(1 / least), 0.0, 1.0));
+  };
+  const CgResult found = preconditioned_cg(
+      x, op.right_side(), options.tolerance, options.max_iterations,
+      [&](const Doubles& v) { return op.apply(v); }, [&](const Doubles& r) { return op.precondition(r); },
+      inner_product, after_step);
+  if (!std::isfinite(found.residual))
+    throw Error("fit: expected a solvable system; more smoothness may help");
+  solution.summary.iterations = found.iterations;
+  if (found.iterations < options.max_iterations) solution.summary.stop_reason = StopReason::tolerance_reached;
+  solution.summary.error_after = op.error(x);
+
+  // without the padding
+  const Numbering numbering = number_nodes(*rows.spec, static_cast<std::size_t>(rows.source->channels));
+  solution.log_values.resize(numbering.count);
   for (std::size_t t = 0; t < rows.spec->tables.size(); ++t)
     for (std::size_t node = 0; node < rows.spec->tables[t].layout.node_count(); ++node)
-      for (std::size_t c = 0; c < unknowns.channels[t]; ++c)
-        solution.log_values[unknowns.base[t] + node * unknowns.channels[t] + c] = x[op.index(t, node, c)];
+      for (std::size_t c = 0; c < numbering.tables[t].copies; ++c)
+        solution.log_values[numbering.tables[t](node, c)] = x[op.index(t, node, c)];
   solution.channel_offset.assign(op.mean().begin(), op.mean().begin() + rows.source->channels);
   return solution;
 }
 
 }  // namespace
 
-LogSolution solve_iteratively(const RowMaker& rows, const Unknowns& unknowns,
-                              const HomomorphicOptions& options) {
+LogSolution solve_by_conjugate_gradients(const RowMaker& rows, const HomomorphicOptions& options) {
   switch (rows.source->channels) {
     case 1:
-      return solve<1>(rows, unknowns, options);
+      return solve<1>(rows, options);
     case 3:
-      return solve<4>(rows, unknowns, options);
+      return solve<4>(rows, options);
     default:
-      return solve<0>(rows, unknowns, options);
+      return solve<0>(rows, options);
   }
 }
 

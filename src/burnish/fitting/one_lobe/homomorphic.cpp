@@ -2,43 +2,40 @@
 #include <utility>
 
 #include <burnish/error.h>
+#include <burnish/fitting/numerics/node_numbers.h>
+#include <burnish/fitting/one_lobe/conjugate_gradients.h>
 #include <burnish/fitting/one_lobe/homomorphic.h>
 #include <burnish/fitting/one_lobe/log_error.h>
-#include <burnish/fitting/one_lobe/log_rows.h>
+#include <burnish/fitting/one_lobe/normal_equations.h>
 
 namespace burnish {
 
 namespace {
 
 // Up to here the normal equations fit the caches and their solution costs less than a pass over the samples.
-constexpr std::size_t kMostDirectUnknowns = 512;
+constexpr std::size_t kMostNormalEquations = 512;
 
 // The diffuse reflection of white is 1 / pi: a floor above hides all but highlights.
 constexpr double kLargestFloor = 1;
 
-bool solved_directly(const ModelSpec& spec, std::size_t unknowns, int channels) {
-  bool shared = false;
-  for (const ModelSpec::TableSpec& table : spec.tables) shared = shared || table.shared;
-  const bool coupled = shared && channels > 1;
-  return (coupled ? unknowns : unknowns / static_cast<std::size_t>(channels)) <= kMostDirectUnknowns;
-}
-
-LogSolution solve(const RowMaker& rows, const Unknowns& unknowns, const HomomorphicOptions& options) {
-  return solved_directly(*rows.spec, unknowns.count, rows.source->channels)
-             ? solve_directly(rows, unknowns, options)
-             : solve_iteratively(rows, unknowns, options);
+LogSolution solve(const RowMaker& rows, const HomomorphicOptions& options) {
+  const auto channels = static_cast<std::size_t>(rows.source->channels);
+  return coupled_unknowns(*rows.spec, channels) <= kMostNormalEquations
+             ? solve_normal_equations(rows, options)
+             : solve_by_conjugate_gradients(rows, options);
 }
 
 // The tables of a solution, logarithms still, in the formats to be.
-std::vector<Table> to_tables(const LogSolution& solution, const Unknowns& unknowns, const ModelSpec& spec,
+std::vector<Table> to_tables(const LogSolution& solution, const Numbering& numbering, const ModelSpec& spec,
                              TableFormat format) {
   std::vector<Table> tables;
   for (std::size_t t = 0; t < spec.tables.size(); ++t) {
-    const auto* first = solution.log_values.data() + unknowns.base[t];
+    const auto [base, copies] = numbering.tables[t];
+    const auto* first = solution.log_values.data() + base;
     tables.push_back({.name = spec.tables[t].name,
                       .layout = spec.tables[t].layout,
-                      .channels = static_cast<int>(unknowns.channels[t]),
-                      .values = {first, first + spec.tables[t].layout.node_count() * unknowns.channels[t]},
+                      .channels = static_cast<int>(copies),
+                      .values = {first, first + spec.tables[t].layout.node_count() * copies},
                       .format = format_of(spec.tables[t], format)});
   }
   return tables;
@@ -69,21 +66,21 @@ HomomorphicFit fit_homomorphic(const SampleSource& source, const ModelSpec& spec
   check_formats(spec, source.channels, options.format);
 
   RowMaker rows(source, spec, options.floor, options.error_floor);
-  const Unknowns unknowns = number_unknowns(spec, source.channels);
-  LogSolution solution = solve(rows, unknowns, options);
+  const Numbering numbering = number_nodes(spec, static_cast<std::size_t>(source.channels));
+  LogSolution solution = solve(rows, options);
   FitSummary summary = solution.summary;
   int reweightings = 0;
 
   if (options.reweightings > 0) {
     const auto unrounded = [&](const LogSolution& s) {
-      return from_log_tables(source.channels, to_tables(s, unknowns, spec, options.format),
+      return from_log_tables(source.channels, to_tables(s, numbering, spec, options.format),
                              {to_lobe(s, spec)}, TableFormat::single);
     };
     FactoredBrdf current = unrounded(solution);
     double smallest = log_error(source, current, options.error_floor).mean();
     for (int pass = 0; pass < options.reweightings; ++pass) {
       rows.current = &current;
-      LogSolution next = solve(rows, unknowns, options);
+      LogSolution next = solve(rows, options);
       summary.iterations += next.summary.iterations;
       current = unrounded(next);
       const double error = log_error(source, current, options.error_floor).mean();
@@ -94,11 +91,11 @@ HomomorphicFit fit_homomorphic(const SampleSource& source, const ModelSpec& spec
       }
     }
   }
-  return {.brdf = from_log_tables(source.channels, to_tables(solution, unknowns, spec, options.format),
+  return {.brdf = from_log_tables(source.channels, to_tables(solution, numbering, spec, options.format),
                                   {to_lobe(solution, spec)}),
           .summary = summary,
           .samples = solution.samples,
-          .unknowns = unknowns.count,
+          .unknowns = numbering.count,
           .reweightings = reweightings};
 }
 

@@ -4,10 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <burnish/error.h>
+#include <burnish/fitting/one_lobe/conjugate_gradients.h>
 #include <burnish/fitting/one_lobe/cross_validation.h>
 #include <burnish/fitting/one_lobe/homomorphic.h>
 #include <burnish/fitting/one_lobe/log_error.h>
-#include <burnish/fitting/one_lobe/log_rows.h>
+#include <burnish/fitting/one_lobe/normal_equations.h>
 #include <burnish/math/angles.h>
 #include <burnish/math/parallel.h>
 #include <burnish/math/random.h>
@@ -104,13 +105,13 @@ TEST_P(Homomorphic, BothSolversFindTheSameModel) {
   const FactoredBrdf truth = random_model(spec, c.channels);
   const SampleSource source = from_brdf(truth, 3000, 1, true);
   const RowMaker rows(source, spec, 1e-3, 1e-3);
-  const Unknowns unknowns = number_unknowns(spec, c.channels);
   const HomomorphicOptions options{.smooth = 1e-4, .max_iterations = 2000, .tolerance = 1e-8};
-  const LogSolution direct = solve_directly(rows, unknowns, options);
-  const LogSolution iterative = solve_iteratively(rows, unknowns, options);
+  const LogSolution direct = solve_normal_equations(rows, options);
+  const LogSolution iterative = solve_by_conjugate_gradients(rows, options);
   EXPECT_EQ(direct.samples, iterative.samples);
-  EXPECT_NEAR(direct.error_before, iterative.error_before, 1e-4 * direct.error_before);
-  EXPECT_NEAR(direct.error_after, iterative.error_after, 2e-3 * direct.error_after);
+  EXPECT_NEAR(direct.summary.error_before, iterative.summary.error_before,
+              1e-4 * direct.summary.error_before);
+  EXPECT_NEAR(direct.summary.error_after, iterative.summary.error_after, 2e-3 * direct.summary.error_after);
 }
 
 TEST_P(Homomorphic, DoesNotDependOnTheNumberOfThreads) {

@@ -75,14 +75,4 @@ void RowMaker::add_reweighted(const DirectionPair& pair, std::span<const double>
   }
 }
 
-Unknowns number_unknowns(const ModelSpec& spec, int channels) {
-  Unknowns unknowns;
-  for (const ModelSpec::TableSpec& table : spec.tables) {
-    unknowns.base.push_back(unknowns.count);
-    unknowns.channels.push_back(table.shared ? 1 : static_cast<std::size_t>(channels));
-    unknowns.count += table.layout.node_count() * unknowns.channels.back();
-  }
-  return unknowns;
-}
-
 }  // namespace burnish

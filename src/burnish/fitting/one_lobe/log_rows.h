@@ -47,29 +47,12 @@ class RowMaker {
                       std::span<double> model, LogRows& rows) const;
 };
 
-/// Where a table's unknowns stand in the vector of all: base[t] + node * channels[t] + channel.
-struct Unknowns {
-  std::vector<std::size_t> base;
-  std::vector<std::size_t> channels;  ///< 1 for a shared table
-  std::size_t count = 0;
-};
-
-Unknowns number_unknowns(const ModelSpec& spec, int channels);
-
 /// Solution of a log-linear problem.
 struct LogSolution {
-  std::vector<double> log_values;      ///< as numbered by Unknowns
+  std::vector<double> log_values;      ///< as number_nodes numbers them, a copy a channel
   std::vector<double> channel_offset;  ///< added to every log value of a channel
   std::size_t samples = 0;
   FitSummary summary;  ///< see HomomorphicFit
 };
-
-/// Minimizes by gathering the normal equations in one pass and factorizing them: for up to some hundred
-/// unknowns.
-LogSolution solve_directly(const RowMaker& rows, const Unknowns& unknowns, const HomomorphicOptions& options);
-
-/// Minimizes by conjugate gradients on the normal equations, without forming them.
-LogSolution solve_iteratively(const RowMaker& rows, const Unknowns& unknowns,
-                              const HomomorphicOptions& options);
 
 }  // namespace burnish

@@ -5,8 +5,9 @@
 #include <Eigen/Cholesky>
 
 #include <burnish/error.h>
+#include <burnish/fitting/numerics/node_numbers.h>
 #include <burnish/fitting/numerics/smoothness.h>
-#include <burnish/fitting/one_lobe/log_rows.h>
+#include <burnish/fitting/one_lobe/normal_equations.h>
 #include <burnish/math/parallel.h>
 
 namespace burnish {
@@ -51,33 +52,29 @@ struct Sums {
   }
 };
 
+/// Adds samples to the sums.
 class Gatherer {
  public:
-  Gatherer(const RowMaker& rows, const Unknowns& unknowns)
+  explicit Gatherer(const RowMaker& rows)
       : rows_(rows),
         uses_(rows.spec->lobes.front()),
-        channels_(static_cast<std::size_t>(rows.source->channels)) {
-    for (const std::size_t c : unknowns.channels) coupled_ = coupled_ || c != channels_;
-    matrices_ = !coupled_ && rows.current ? channels_ : 1;
-    for (std::size_t t = 0; t < rows.spec->tables.size(); ++t) {
-      base_.push_back(coupled_ ? unknowns.base[t] : size_);
-      step_.push_back(coupled_ ? unknowns.channels[t] : 1);
-      size_ += rows.spec->tables[t].layout.node_count() * step_.back();
-    }
-  }
+        channels_(static_cast<std::size_t>(rows.source->channels)),
+        coupled_(channels_ > 1 && std::ranges::any_of(rows.spec->tables, &ModelSpec::TableSpec::shared)),
+        matrices_(!coupled_ && rows.current ? channels_ : 1),
+        numbering_(number_nodes(*rows.spec, coupled_ ? channels_ : 1)) {}
 
   bool coupled() const { return coupled_; }
   std::size_t matrices() const { return matrices_; }
   std::vector<Sums> zero() const {
     const auto channels = static_cast<Eigen::Index>(channels_ / matrices_);
-    return std::vector<Sums>(matrices_,
-                             Sums(static_cast<Eigen::Index>(size_), coupled_ ? 1 : channels, channels));
+    return std::vector<Sums>(
+        matrices_, Sums(static_cast<Eigen::Index>(numbering_.count), coupled_ ? 1 : channels, channels));
   }
-  std::size_t bytes() const { return matrices_ * size_ * size_ * sizeof(double); }
+  std::size_t bytes() const { return matrices_ * numbering_.count * numbering_.count * sizeof(double); }
   /// How often a table stands in the matrix.
-  std::size_t copies(std::size_t table) const { return step_[table]; }
+  std::size_t copies(std::size_t table) const { return numbering_.tables[table].copies; }
   Eigen::Index index(std::size_t table, std::size_t node, std::size_t copy) const {
-    return static_cast<Eigen::Index>(base_[table] + node * step_[table] + copy);
+    return static_cast<Eigen::Index>(numbering_.tables[table](node, copy));
   }
 
   std::size_t add(std::size_t begin, std::size_t end, std::vector<Sums>& sums) const {
@@ -136,7 +133,8 @@ class Gatherer {
       const std::size_t at = i * uses_.size() + k, node = rows.node[at];
       const double fx = rows.fx[at], fy = rows.fy[at];
       const auto push = [&](std::size_t n, double weight) {
-        terms[count++] = {base_[t] + n * step_[t], step_[t] > 1, weight};
+        const NodeNumbers& numbers = numbering_.tables[t];
+        terms[count++] = {numbers(n, 0), numbers.copies > 1, weight};
       };
       push(node, (1 - fx) * (1 - fy));
       push(node + 1, fx * (1 - fy));
@@ -149,9 +147,10 @@ class Gatherer {
 
   const RowMaker& rows_;
   const std::vector<FactorUse>& uses_;
-  std::size_t channels_, matrices_ = 1, size_ = 0;
-  bool coupled_ = false;
-  std::vector<std::size_t> base_, step_;
+  std::size_t channels_;
+  bool coupled_;
+  std::size_t matrices_;
+  Numbering numbering_;  ///< of one matrix
 };
 
 // Adds smooth * (roughness of every table) to the matrix.
@@ -169,9 +168,8 @@ void add_smoothness(const ModelSpec& spec, const Gatherer& gatherer, double smoo
 
 }  // namespace
 
-LogSolution solve_directly(const RowMaker& rows, const Unknowns& unknowns,
-                           const HomomorphicOptions& options) {
-  const Gatherer gatherer(rows, unknowns);
+LogSolution solve_normal_equations(const RowMaker& rows, const HomomorphicOptions& options) {
+  const Gatherer gatherer(rows);
   const auto channels = static_cast<std::size_t>(rows.source->channels);
 
   // One partial sum a group of samples, joined in order.
@@ -185,7 +183,8 @@ LogSolution solve_directly(const RowMaker& rows, const Unknowns& unknowns,
       samples[group] += gatherer.add(at, std::min(end, at + kBlock), partial[group]);
   });
 
-  LogSolution solution{.log_values = std::vector<double>(unknowns.count),
+  const Numbering all = number_nodes(*rows.spec, channels);
+  LogSolution solution{.log_values = std::vector<double>(all.count),
                        .channel_offset = std::vector<double>(channels),
                        .summary = {.stop_reason = StopReason::direct_solution}};
   for (const std::size_t s : samples) solution.samples += s;
@@ -210,9 +209,9 @@ LogSolution solve_directly(const RowMaker& rows, const Unknowns& unknowns,
     weight += sum.weight * static_cast<double>(mean.size());
     for (std::size_t t = 0; t < rows.spec->tables.size(); ++t)
       for (std::size_t node = 0; node < rows.spec->tables[t].layout.node_count(); ++node)
-        for (std::size_t c = 0; c < unknowns.channels[t]; ++c)
+        for (std::size_t c = 0; c < all.tables[t].copies; ++c)
           if (gatherer.matrices() == 1 || c == m)
-            solution.log_values[unknowns.base[t] + node * unknowns.channels[t] + c] =
+            solution.log_values[all.tables[t](node, c)] =
                 gatherer.coupled() ? x(gatherer.index(t, node, c), 0)
                                    : x(gatherer.index(t, node, 0),
                                        static_cast<Eigen::Index>(gatherer.matrices() == 1 ? c : 0));

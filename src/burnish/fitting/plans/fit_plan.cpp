@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
+#include <utility>
 
 #include <burnish/error.h>
+#include <burnish/fitting/numerics/node_numbers.h>
 #include <burnish/fitting/plans/fit_plan.h>
 #include <burnish/math/vec3.h>
 
@@ -42,7 +42,7 @@ void refine_part(LogModel& model, const TrainingSet& set, const Lookups& lookups
 void refine_in_rounds(LogModel& model, const TrainingSet& set, const RefineOptions& options, int steps,
                       double from, double to, FitSummary& summary) {
   const auto part = [&](int round) { return from + (to - from) * round / kRounds; };
-  const Lookups lookups = find_lookups(model.spec, set);
+  const Lookups lookups = lookups_of(model.spec, set);
   for (int k = 0; k < kRounds; ++k)
     refine_part(model, set, lookups, options, (steps + k) / kRounds, part(k), part(k + 1), summary);
 }
@@ -58,15 +58,6 @@ void refine_fully(LogModel& model, const TrainingSet& coarse, const TrainingSet&
 
 TrainingSet coarse_part(const TrainingSet& set) {
   return thinned(set, std::max<std::size_t>(1, set.size() / kCoarsePairs));
-}
-
-bool solved_directly(const ModelSpec& spec, std::size_t channels) {
-  // a table that the channels share makes them one system
-  const bool coupled = std::ranges::any_of(spec.tables, &ModelSpec::TableSpec::shared);
-  std::size_t unknowns = 0;
-  for (const ModelSpec::TableSpec& table : spec.tables)
-    unknowns += table.layout.node_count() * (coupled && !table.shared ? channels : 1);
-  return unknowns <= kMostDirectUnknowns;
 }
 
 // The spec without its grids, the tables in the same order.
@@ -113,70 +104,44 @@ ModelSpec lobe_spec(const ModelSpec& spec, std::size_t lobe, std::vector<std::si
   return part;
 }
 
-}  // namespace
+/// A plan's spec: first the tables that all lobes have in common, then each lobe's own.
+class LobesInTurn {
+ public:
+  LobesInTurn(const LobePlan& plan, ModelSpec spec) : spec_(std::move(spec)) {
+    for (const PlannedFactor& factor : plan.factors)
+      if (factor.every_lobe) common_.push_back(factor.name);
+    first_own_ = static_cast<std::size_t>(std::ranges::count_if(spec_.tables, [&](const auto& table) {
+      return std::ranges::find(common_, table.name) != common_.end();
+    }));
+    per_lobe_ = (spec_.tables.size() - first_own_) / count();
+  }
 
-LobesFit fit_plan(const TrainingSet& set, const LobePlan& plan, std::size_t bytes, std::size_t texel_bytes,
-                  const RefineOptions& options) {
-  const ModelSpec whole = plan_to_spec(plan, bytes, set.channels, texel_bytes);
-  if (!plan.wide.empty()) return fit_lobes(set, whole, options);
-  // Of many unknowns the 1-D tables first: their steps are solved directly, and grids that start as 1 only
-  // lower the error.
-  const ModelSpec thin =
-      solved_directly(whole, static_cast<std::size_t>(set.channels)) ? whole : without_grids(whole);
-  std::vector<std::string> common;
-  for (const PlannedFactor& factor : plan.factors)
-    if (factor.every_lobe) common.push_back(factor.name);
-  const std::size_t lobes = thin.lobes.size();
-  const auto first_own = static_cast<std::size_t>(std::ranges::count_if(
-      thin.tables, [&](const auto& table) { return std::ranges::find(common, table.name) != common.end(); }));
-  const std::size_t per_lobe = (thin.tables.size() - first_own) / lobes;
-  const TrainingSet coarse = coarse_part(set);
-  const auto first_lobes = [&](std::size_t count) {
-    return ModelSpec{.tables = {thin.tables.begin(), thin.tables.begin() + static_cast<std::ptrdiff_t>(
-                                                                               first_own + count * per_lobe)},
-                     .lobes = {thin.lobes.begin(), thin.lobes.begin() + static_cast<std::ptrdiff_t>(count)}};
-  };
-  const bool grids = thin.tables.size() < whole.tables.size();
-  RefineOptions thin_options = options;
-  if (grids && options.progress) thin_options.progress = [&](double f) { options.progress(kThinPart * f); };
-  // lobes that part are not yet held within their format
-  RefineOptions rough_options = thin_options;
-  rough_options.format = TableFormat::single;
-  LobesFit fit{
-      .model = fit_one_lobe(first_lobes(1), coarse, coarse.values, std::max(kStartSmooth, options.smooth))};
-  // the work grows with the square of the lobes
-  const auto done = [&](std::size_t j) {
-    return 0.4 * static_cast<double>(j * j * j) / static_cast<double>(lobes * lobes * lobes);
-  };
-  for (std::size_t j = 1; j <= lobes; ++j) {
-    if (j > 1) {
-      fit.model =
-          with_lobe_split(std::move(fit.model), j - 2, kCentres[(j - 2) % std::size(kCentres)], "+", common);
-      const ModelSpec spec = first_lobes(j);
-      for (std::size_t t = 0; t < spec.tables.size(); ++t)
-        fit.model.spec.tables[t].name = spec.tables[t].name;
-      fit.model = resampled(fit.model, spec);
-    }
-    if (j < lobes || grids)
-      refine_part(fit.model, coarse, find_lookups(fit.model.spec, coarse),
-                  j < lobes ? rough_options : thin_options, kRoughSteps, done(j - 1), done(j), fit.summary);
-    else
-      refine_fully(fit.model, coarse, set, thin_options, done(j - 1), fit.summary);
+  std::size_t count() const noexcept { return spec_.lobes.size(); }
+  const std::vector<std::string>& common() const noexcept { return common_; }
+  ModelSpec first(std::size_t lobes) const {
+    const auto tables = static_cast<std::ptrdiff_t>(first_own_ + lobes * per_lobe_);
+    return {.tables = {spec_.tables.begin(), spec_.tables.begin() + tables},
+            .lobes = {spec_.lobes.begin(), spec_.lobes.begin() + static_cast<std::ptrdiff_t>(lobes)}};
   }
-  if (grids) {
-    fit.model = resampled(fit.model, whole);
-    refine_in_rounds(fit.model, set, options, kGridSteps, kThinPart, 1, fit.summary);
-  }
-  return fit;
+
+ private:
+  ModelSpec spec_;
+  std::vector<std::string> common_;
+  std::size_t first_own_ = 0, per_lobe_ = 0;
+};
+
+/// A model of the lobes so far with one more, split off the last.
+LogModel with_next_lobe(LogModel model, const LobesInTurn& lobes, std::size_t count) {
+  model = with_lobe_split(std::move(model), count - 2, kCentres[(count - 2) % std::size(kCentres)], "+",
+                          lobes.common());
+  const ModelSpec spec = lobes.first(count);
+  for (std::size_t t = 0; t < spec.tables.size(); ++t) model.spec.tables[t].name = spec.tables[t].name;
+  return resampled(model, spec);
 }
 
-LobesFit fit_lobes(const TrainingSet& set, const ModelSpec& spec, const RefineOptions& options) {
-  const std::size_t lobes = spec.lobes.size(), channels = static_cast<std::size_t>(set.channels);
-  if (lobes == 0) throw Error("fit: expected at least one lobe");
-  LobesFit fit{.model = {.spec = spec, .channels = set.channels, .log_values = {}}};
-  fit.model.log_values.resize(spec.tables.size());
-
-  // A low value of each channel stands for what is spread wide.
+/// A low value of each channel, which stands for what is spread wide.
+std::vector<float> low_values(const TrainingSet& set) {
+  const auto channels = static_cast<std::size_t>(set.channels);
   std::vector<float> low(channels);
   for (std::size_t c = 0; c < channels; ++c) {
     std::vector<float> values;
@@ -185,34 +150,103 @@ LobesFit fit_lobes(const TrainingSet& set, const ModelSpec& spec, const RefineOp
     std::nth_element(values.begin(), place, values.end());
     low[c] = *place;
   }
-  const bool any_disk = std::ranges::any_of(spec.lobes, [&](const auto& l) { return has_disk(spec, l); });
-  std::size_t wide = 0;
-  for (const auto& lobe : spec.lobes) wide += any_disk && !has_disk(spec, lobe);
-  const std::size_t narrow = lobes - wide;
+  return low;
+}
 
+/// Which part of the values a lobe starts from: of `count` parts along theta_d number `place`, of what lies
+/// below the low values (wide) or above them; of everything where there are none.
+struct StartPart {
+  std::size_t place, count;
+  bool wide;
+};
+
+std::vector<float> values_of(const StartPart& part, const TrainingSet& set, const std::vector<float>& low) {
+  const auto channels = static_cast<std::size_t>(set.channels);
+  std::vector<float> values(set.values.size());
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    const double t = project_tan_half(kProjectDifference, set.pairs[i].wi, set.pairs[i].wo);
+    const auto cut = [&](std::size_t k) {
+      return k == 0            ? 1.0
+             : k == part.count ? 0.0
+                               : soft_step(t, static_cast<double>(k) / static_cast<double>(part.count));
+    };
+    const double share = cut(part.place) - cut(part.place + 1);
+    for (std::size_t c = 0; c < channels; ++c) {
+      const double f = set.values[i * channels + c];
+      const double base = low.empty() ? 0 : std::min<double>(0.9 * f, low[c]);
+      values[i * channels + c] = static_cast<float>(share * (part.wide ? base : f - base));
+    }
+  }
+  return values;
+}
+
+}  // namespace
+
+LobesFit fit_plan(const TrainingSet& set, const LobePlan& plan, std::size_t bytes, std::size_t texel_bytes,
+                  const RefineOptions& options) {
+  const ModelSpec whole = plan_to_spec(plan, bytes, set.channels, texel_bytes);
+  if (!plan.wide.empty()) return fit_lobes(set, whole, options);
+
+  // Of many unknowns the 1-D tables first: their steps are solved directly, and grids that start as 1 only
+  // lower the error.
+  const bool direct =
+      coupled_unknowns(whole, static_cast<std::size_t>(set.channels)) <= kMostCholeskyUnknowns;
+  const LobesInTurn lobes(plan, direct ? whole : without_grids(whole));
+  const bool grids = lobes.first(lobes.count()).tables.size() < whole.tables.size();
+  RefineOptions thin_options = options;
+  if (grids && options.progress) thin_options.progress = [&](double f) { options.progress(kThinPart * f); };
+  // lobes that part are not yet held within their format
+  RefineOptions rough_options = thin_options;
+  rough_options.format = TableFormat::single;
+
+  // one lobe, then one more at a time; the work grows with the square of the lobes
+  const TrainingSet coarse = coarse_part(set);
+  LobesFit fit{
+      .model = fit_one_lobe(lobes.first(1), coarse, coarse.values, std::max(kStartSmooth, options.smooth))};
+  const auto done = [count = lobes.count()](std::size_t j) {
+    return 0.4 * static_cast<double>(j * j * j) / static_cast<double>(count * count * count);
+  };
+  for (std::size_t j = 1; j <= lobes.count(); ++j) {
+    if (j > 1) fit.model = with_next_lobe(std::move(fit.model), lobes, j);
+    if (j < lobes.count() || grids)
+      refine_part(fit.model, coarse, lookups_of(fit.model.spec, coarse),
+                  j < lobes.count() ? rough_options : thin_options, kRoughSteps, done(j - 1), done(j),
+                  fit.summary);
+    else
+      refine_fully(fit.model, coarse, set, thin_options, done(j - 1), fit.summary);
+  }
+
+  if (grids) {
+    fit.model = resampled(fit.model, whole);
+    refine_in_rounds(fit.model, set, options, kGridSteps, kThinPart, 1, fit.summary);
+  }
+  return fit;
+}
+
+LobesFit fit_lobes(const TrainingSet& set, const ModelSpec& spec, const RefineOptions& options) {
+  const std::size_t lobes = spec.lobes.size();
+  if (lobes == 0) throw Error("fit: expected at least one lobe");
+  LobesFit fit{.model = {.spec = spec, .channels = set.channels, .log_values = {}}};
+  fit.model.log_values.resize(spec.tables.size());
+
+  // lobes without a disk beside such with one are for what is spread wide
+  const bool any_disk = std::ranges::any_of(spec.lobes, [&](const auto& l) { return has_disk(spec, l); });
+  const auto is_wide = [&](const auto& lobe) { return any_disk && !has_disk(spec, lobe); };
+  const auto wide = static_cast<std::size_t>(std::ranges::count_if(spec.lobes, is_wide));
+  const std::vector<float> low = wide > 0 ? low_values(set) : std::vector<float>();
+
+  // each starts as the fit to its part of the data
   std::size_t wide_seen = 0, narrow_seen = 0;
   for (std::size_t j = 0; j < lobes; ++j) {
-    const bool is_wide = any_disk && !has_disk(spec, spec.lobes[j]);
-    const std::size_t group = is_wide ? wide : narrow, place = is_wide ? wide_seen++ : narrow_seen++;
-    std::vector<float> target(set.values.size());
-    for (std::size_t i = 0; i < set.size(); ++i) {
-      const double t = project_tan_half(kProjectDifference, set.pairs[i].wi, set.pairs[i].wo);
-      const auto cut = [&](std::size_t k) {
-        return k == 0       ? 1.0
-               : k == group ? 0.0
-                            : soft_step(t, static_cast<double>(k) / static_cast<double>(group));
-      };
-      const double share = cut(place) - cut(place + 1);
-      for (std::size_t c = 0; c < channels; ++c) {
-        const double f = set.values[i * channels + c];
-        const double base = wide > 0 ? std::min<double>(0.9 * f, low[c]) : 0;
-        target[i * channels + c] = static_cast<float>(share * (is_wide ? base : f - base));
-      }
-    }
+    const bool of_wide = is_wide(spec.lobes[j]);
+    const StartPart part{.place = of_wide ? wide_seen++ : narrow_seen++,
+                         .count = of_wide ? wide : lobes - wide,
+                         .wide = of_wide};
     std::vector<std::size_t> tables;
-    const LogModel part =
-        fit_one_lobe(lobe_spec(spec, j, tables), set, target, std::max(kStartSmooth, options.smooth));
-    for (std::size_t k = 0; k < tables.size(); ++k) fit.model.log_values[tables[k]] = part.log_values[k];
+    const ModelSpec alone = lobe_spec(spec, j, tables);
+    const LogModel start =
+        fit_one_lobe(alone, set, values_of(part, set, low), std::max(kStartSmooth, options.smooth));
+    for (std::size_t k = 0; k < tables.size(); ++k) fit.model.log_values[tables[k]] = start.log_values[k];
   }
   refine_fully(fit.model, coarse_part(set), set, options, 0.1, fit.summary);
   return fit;

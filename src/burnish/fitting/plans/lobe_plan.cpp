@@ -34,18 +34,13 @@ int lobes_for(double texels) {
   return std::clamp(static_cast<int>(std::lround(std::log2(texels / 82))), 1, 8);
 }
 
-std::size_t coefficients(const Projection& p) {
-  if (p.kind != Projection::Kind::affine || p == kProjectWi || p == kProjectWo || p == kProjectHalf) return 0;
-  return static_cast<std::size_t>((p.wi != 0) + (p.wo != 0) + (p.mirror != 0) + (p.n != 0));
-}
-
 // Numbers of one table's warps and of its uses' projections.
 std::size_t numbers(const PlannedFactor& factor, std::size_t lobes) {
   std::size_t sum = std::size_t{factor.warp.kind != WarpKind::identity} +
                     std::size_t{factor.second_warp.kind != WarpKind::identity};
   if (!factor.every_lobe) sum *= lobes;
-  for (const Projection& use : factor.uses) sum += lobes * coefficients(use);
-  return factor.shape == TableShape::grid ? sum + lobes * coefficients(factor.second) : sum;
+  for (const Projection& use : factor.uses) sum += lobes * coefficient_count(use);
+  return factor.shape == TableShape::grid ? sum + lobes * coefficient_count(factor.second) : sum;
 }
 
 std::size_t number_bytes(const std::vector<PlannedFactor>& factors, std::size_t lobes, int channels) {

@@ -151,31 +151,140 @@ TrainingSet mean_of_channels(const TrainingSet& set) {
   return grey;
 }
 
-/// Keeps tables of one channel where those cost less than they save; only the colours can tell.
-void share_channels(const TrainingSet& set, const SearchOptions& options, RefineOptions refinement,
-                    SearchResult& result) {
-  const TrainingSet fitted = part_of(set, 0, kFit), judged = part_of(set, kFit / 2, kFit);
-  refinement.max_iterations = 2 * kTrialSteps;
-  std::vector<LobePlan> plans{result.plan};
-  for (std::size_t k = 0; k < result.plan.factors.size(); ++k) {
-    plans.push_back(result.plan);
-    plans.back().factors[k].grey = true;
+/// A plan as far as it was tried.
+struct Candidate {
+  LobePlan plan;
+  LogModel model;
+  double objective = INFINITY;
+};
+
+/// The search of search_plan.
+class PlanSearch {
+ public:
+  PlanSearch(const TrainingSet& set, const SearchOptions& options)
+      : set_(set), options_(options), refinement_(options.refine) {
+    const TrainingSet grey = mean_of_channels(set);
+    fitted_ = part_of(grey, 0, kFit);
+    judged_ = part_of(grey, kFit / 2, kFit);
+    // told again at every step, so that a callback can end the search
+    refinement_.progress = [this](double) {
+      if (std::this_thread::get_id() == caller_) report();
+    };
   }
-  std::vector<double> values(plans.size(), INFINITY);
-  for_each_chunk(plans.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
+  PlanSearch(const PlanSearch&) = delete;
+
+  SearchResult run(const LobePlan& start) {
+    Candidate best = fit(start, nullptr);
+    if (!(best.objective < INFINITY))
+      plan_to_spec(start, options_.bytes, set_.channels, options_.texel_bytes);
+    best = fit(start, &best);  // as many steps as every change gets
+    result_.trials = {{"start", best.objective, true}};
+    for (int round = 0; round < kMostRounds; ++round)
+      if (!improve(round, best)) break;
+    result_.plan = best.plan;
+    if (set_.channels > 1) share_channels();
+    share_done_ = 1;
+    report();
+    return std::move(result_);
+  }
+
+ private:
+  /// Where the lobes stay, a plan starts from the functions that are known.
+  Candidate fit(const LobePlan& plan, const Candidate* from) const {
+    Candidate result{.plan = plan, .model = {}};
+    RefineOptions steps = refinement_;
     try {
-      const LobesFit fit = fit_plan(fitted, plans[k], options.bytes, options.texel_bytes, refinement);
-      values[k] = objective(fit.model, judged, options.refine.shares);
-    } catch (const Error&) {  // as above
+      if (from && from->plan.lobes == plan.lobes) {
+        steps.max_iterations = kTrialSteps;
+        result.model =
+            resampled(from->model, plan_to_spec(plan, options_.bytes, set_.channels, options_.texel_bytes));
+        refine(result.model, fitted_, steps);
+      } else {
+        steps.max_iterations = 2 * kTrialSteps;
+        result.model = fit_plan(fitted_, plan, options_.bytes, options_.texel_bytes, steps).model;
+      }
+      result.objective = objective(result.model, judged_, options_.refine.shares);
+    } catch (const Error&) {  // a table too small for the bytes: no candidate
     }
-  });
-  const auto best = static_cast<std::size_t>(std::ranges::min_element(values) - values.begin());
-  const bool gained = values[best] < values.front() - kLeastGain;
-  for (std::size_t k = 1; k < plans.size(); ++k)
-    result.trials.push_back(
-        {fmt::format("one channel of {}", result.plan.factors[k - 1].name), values[k], gained && k == best});
-  if (gained) result.plan = plans[best];
-}
+    return result;
+  }
+
+  /// One round: every change alone, then together those that pay. False where none does.
+  bool improve(int round, Candidate& best) {
+    const std::vector<Change> changes = list_changes(best.plan);
+    const std::vector<double> values = try_alone(changes, best, round);
+
+    // the most rewarding first
+    std::vector<std::size_t> order;
+    for (std::size_t k = 0; k < changes.size(); ++k)
+      if (values[k] < best.objective - kLeastGain) order.push_back(k);
+    std::ranges::sort(order, {}, [&](std::size_t k) { return std::pair(values[k], k); });
+    std::vector<bool> kept(changes.size());
+    for (const std::size_t k : order) {
+      const auto changed = changes[k].apply(best.plan);
+      if (!changed) continue;
+      Candidate next = fit(*changed, &best);
+      kept[k] = next.objective < best.objective - kLeastGain;
+      if (kept[k]) best = std::move(next);
+    }
+    for (std::size_t k = 0; k < changes.size(); ++k)
+      if (values[k] < INFINITY) result_.trials.push_back({changes[k].name, values[k], kept[k]});
+    return std::ranges::any_of(kept, [](bool b) { return b; });
+  }
+
+  /// The objective of each change, infinite where it does not apply.
+  std::vector<double> try_alone(const std::vector<Change>& changes, const Candidate& best, int round) {
+    std::vector<double> values(changes.size(), INFINITY);
+    std::atomic<std::size_t> finished = 0;
+    for_each_chunk(changes.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
+      if (const auto changed = changes[k].apply(best.plan)) values[k] = fit(*changed, &best).objective;
+      const std::size_t now = ++finished;
+      if (std::this_thread::get_id() != caller_) return;
+      share_done_ =
+          (round + 0.8 * static_cast<double>(now) / static_cast<double>(changes.size())) / kMostRounds;
+      report();
+    });
+    return values;
+  }
+
+  /// Keeps tables of one channel where those cost less than they save; only the colours can tell.
+  void share_channels() {
+    const TrainingSet fitted = part_of(set_, 0, kFit), judged = part_of(set_, kFit / 2, kFit);
+    RefineOptions steps = refinement_;
+    steps.max_iterations = 2 * kTrialSteps;
+    std::vector<LobePlan> plans{result_.plan};
+    for (std::size_t k = 0; k < result_.plan.factors.size(); ++k) {
+      plans.push_back(result_.plan);
+      plans.back().factors[k].grey = true;
+    }
+    std::vector<double> values(plans.size(), INFINITY);
+    for_each_chunk(plans.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
+      try {
+        const LobesFit fit = fit_plan(fitted, plans[k], options_.bytes, options_.texel_bytes, steps);
+        values[k] = objective(fit.model, judged, options_.refine.shares);
+      } catch (const Error&) {  // as above
+      }
+    });
+    const auto best = static_cast<std::size_t>(std::ranges::min_element(values) - values.begin());
+    const bool gained = values[best] < values.front() - kLeastGain;
+    for (std::size_t k = 1; k < plans.size(); ++k)
+      result_.trials.push_back({fmt::format("one channel of {}", result_.plan.factors[k - 1].name), values[k],
+                                gained && k == best});
+    if (gained) result_.plan = plans[best];
+  }
+
+  void report() const {
+    if (options_.progress) options_.progress(share_done_);
+  }
+
+  const TrainingSet& set_;
+  const SearchOptions& options_;
+  RefineOptions refinement_;
+  TrainingSet fitted_, judged_;  ///< grey
+  SearchResult result_;
+  std::thread::id caller_ = std::this_thread::get_id();
+  double share_done_ = 0;
+};
 
 }  // namespace
 
@@ -183,6 +292,8 @@ LobePlan plan_for(BrdfRef source, const TrainingSet& set, std::size_t bytes, int
                   std::size_t texel_bytes, const RefineOptions& options) {
   LobePlan best = plan_for(source, bytes, lobes, texel_bytes);
   if (source.isotropic() || lobes > 0) return best;
+
+  // each number of lobes, fitted to part of the grey set and judged on another
   const TrainingSet grey = mean_of_channels(set);
   const TrainingSet fitted = part_of(grey, 0, kFit), judged = part_of(grey, kFit / 2, kFit);
   const std::size_t judged_bytes = std::min(bytes, texel_bytes * fitted.size() / kJudgedPairs);
@@ -208,79 +319,7 @@ LobePlan plan_for(BrdfRef source, const TrainingSet& set, std::size_t bytes, int
 }
 
 SearchResult search_plan(const TrainingSet& set, const LobePlan& start, const SearchOptions& options) {
-  const TrainingSet grey = mean_of_channels(set);
-  const TrainingSet fitted = part_of(grey, 0, kFit), judged = part_of(grey, kFit / 2, kFit);
-  RefineOptions refinement = options.refine;
-  const auto caller = std::this_thread::get_id();
-  double share_done = 0;  // reported again at every step, so that a callback can end the search
-  refinement.progress = [&](double) {
-    if (options.progress && std::this_thread::get_id() == caller) options.progress(share_done);
-  };
-
-  // A plan as far as it was tried. Where the lobes stay, it starts from the functions that are known.
-  struct Candidate {
-    LobePlan plan;
-    LogModel model;
-    double objective = INFINITY;
-  };
-  const auto fit = [&](const LobePlan& plan, const Candidate* from) {
-    Candidate result{.plan = plan, .model = {}};
-    RefineOptions steps = refinement;
-    try {
-      if (from && from->plan.lobes == plan.lobes) {
-        steps.max_iterations = kTrialSteps;
-        result.model =
-            resampled(from->model, plan_to_spec(plan, options.bytes, set.channels, options.texel_bytes));
-        refine(result.model, fitted, steps);
-      } else {
-        steps.max_iterations = 2 * kTrialSteps;
-        result.model = fit_plan(fitted, plan, options.bytes, options.texel_bytes, steps).model;
-      }
-      result.objective = objective(result.model, judged, options.refine.shares);
-    } catch (const Error&) {  // a table too small for the bytes: no candidate
-    }
-    return result;
-  };
-
-  Candidate best = fit(start, nullptr);
-  if (!(best.objective < INFINITY)) plan_to_spec(start, options.bytes, set.channels, options.texel_bytes);
-  best = fit(start, &best);  // as many steps as every change gets
-  SearchResult result{.plan = start, .trials = {{"start", best.objective, true}}};
-  for (int round = 0; round < kMostRounds; ++round) {
-    const std::vector<Change> changes = list_changes(best.plan);
-    std::vector<double> values(changes.size(), INFINITY);
-    std::atomic<std::size_t> finished = 0;
-    const auto report = [&](double share) {
-      share_done = (round + share) / kMostRounds;
-      if (options.progress) options.progress(share_done);
-    };
-    for_each_chunk(changes.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
-      if (const auto changed = changes[k].apply(best.plan)) values[k] = fit(*changed, &best).objective;
-      const std::size_t now = ++finished;
-      if (std::this_thread::get_id() == caller)
-        report(0.8 * static_cast<double>(now) / static_cast<double>(changes.size()));
-    });
-
-    std::vector<std::size_t> order;
-    for (std::size_t k = 0; k < changes.size(); ++k)
-      if (values[k] < best.objective - kLeastGain) order.push_back(k);
-    std::ranges::sort(order, {}, [&](std::size_t k) { return std::pair(values[k], k); });
-    std::vector<bool> kept(changes.size());
-    for (const std::size_t k : order) {
-      const auto changed = changes[k].apply(best.plan);
-      if (!changed) continue;
-      Candidate next = fit(*changed, &best);
-      kept[k] = next.objective < best.objective - kLeastGain;
-      if (kept[k]) best = std::move(next);
-    }
-    for (std::size_t k = 0; k < changes.size(); ++k)
-      if (values[k] < INFINITY) result.trials.push_back({changes[k].name, values[k], kept[k]});
-    if (std::ranges::none_of(kept, [](bool b) { return b; })) break;
-  }
-  result.plan = best.plan;
-  if (set.channels > 1) share_channels(set, options, refinement, result);
-  if (options.progress) options.progress(1);
-  return result;
+  return PlanSearch(set, options).run(start);
 }
 
 }  // namespace burnish

@@ -116,6 +116,7 @@ void add_to_triangle(const LaneRows& j, const GramBlock& block, const Eigen::Vec
       const auto v = static_cast<Eigen::Index>(rows.unknown[r]);
       double product = products[c * block.stride + r / lanes * width + r % lanes];
       if (block.column == block.row) {
+        // what was added to one triangle or the other
         if (v < u) continue;
         product += products[r * block.stride + own_row];
       } else if (u == v) {
@@ -124,6 +125,31 @@ void add_to_triangle(const LaneRows& j, const GramBlock& block, const Eigen::Vec
       gram(std::max(u, v), std::min(u, v)) += scale[u] * scale[v] * product;
     }
   }
+}
+
+// What of a model's family lies among the unknowns [first, last); without lanes where nothing does.
+LaneRows::Family family_within(const LobeLanes& model, const LobeLanes::Family& family, std::size_t first,
+                               std::size_t last) {
+  LaneRows::Family kept;
+  bool copies = false;
+  std::size_t nodes = 0;
+  for (std::size_t l = 0; l < LobeLanes::kLanes && !(family.one_table && kept.lanes.size() == 1); ++l) {
+    if (family.tables[l] == LobeLanes::kNone) continue;
+    const LobeLanes::NumberedTable& table = model.tables()[family.tables[l]];
+    if (table.number.base < first || table.number.base >= last) continue;
+    kept.lanes.push_back(l);
+    copies = copies || table.number.copies > 1;
+    nodes = table.layout.node_count();
+  }
+  if (kept.lanes.empty()) return kept;
+  for (std::size_t c = 0; c < (copies ? model.channels() : 1); ++c)
+    for (std::size_t n = 0; n < nodes; ++n)
+      for (const std::size_t l : kept.lanes)
+        kept.unknown.push_back(
+            static_cast<std::uint32_t>(model.tables()[family.tables[l]].number(n, c) - first));
+  kept.copy_nodes = copies ? nodes : 0;
+  kept.in_order = kept.lanes.back() + 1 == kept.lanes.size();
+  return kept;
 }
 
 // Lanes beyond the family's are read by none.
@@ -141,32 +167,14 @@ void LaneRows::layout(const LobeLanes& model, std::size_t first, std::size_t las
   families.clear();
   pieces.clear();
   rows = row_count;
-  std::vector<std::size_t> number;  // of the model's families
+  std::vector<std::size_t> number;  // of the model's families here
   for (const LobeLanes::Family& family : model.families()) {
-    Family kept;
-    bool copies = false;
-    std::size_t nodes = 0;
-    for (std::size_t l = 0; l < LobeLanes::kLanes && !(family.one_table && kept.lanes.size() == 1); ++l) {
-      if (family.tables[l] == LobeLanes::kNone) continue;
-      const LobeLanes::Unknowns& table = model.tables()[family.tables[l]];
-      if (table.base < first || table.base >= last) continue;
-      kept.lanes.push_back(l);
-      copies = copies || table.copies > 1;
-      nodes = table.layout.node_count();
-    }
+    Family kept = family_within(model, family, first, last);
     number.push_back(kept.lanes.empty() ? LobeLanes::kNone : families.size());
-    if (kept.lanes.empty()) continue;
-    for (std::size_t c = 0; c < (copies ? model.channels() : 1); ++c)
-      for (std::size_t n = 0; n < nodes; ++n)
-        for (const std::size_t l : kept.lanes) {
-          const LobeLanes::Unknowns& table = model.tables()[family.tables[l]];
-          kept.unknown.push_back(
-              static_cast<std::uint32_t>(table.base + n * table.stride + (table.copies > 1 ? c : 0) - first));
-        }
-    kept.copy_nodes = copies ? nodes : 0;
-    kept.in_order = kept.lanes.back() + 1 == kept.lanes.size();
-    families.push_back(std::move(kept));
+    if (!kept.lanes.empty()) families.push_back(std::move(kept));
   }
+
+  // a piece for each slot of a family that is kept, two where the slot is a grid's
   constexpr std::size_t kAligned = 2 * LobeLanes::kLanes;  // pieces of odd widths and rows too
   std::size_t start = 0;
   for (std::size_t s = 0; s < model.slots().size(); ++s) {
@@ -191,9 +199,13 @@ void LaneRows::set(const LobeLanes& model, std::size_t pair, std::size_t channel
     const LobeLanes::Slot& slot = model.slots()[piece.slot];
     const Family& family = families[piece.family];
     const std::size_t lanes = family.lanes.size(), width = family.width();
+
+    // the first of the two nodes
     const Lookups::Place& place = places[slot.place * LobeLanes::kBlock];
     const std::size_t next = piece.second_row ? slot.next_row / LobeLanes::kLanes : 0;
     node[p * rows + r] = static_cast<std::uint32_t>(channel * family.copy_nodes + place.node + next);
+
+    // the lanes' slopes times the weights of both nodes
     const float* slopes = at.factor.data() + piece.slot * LobeLanes::kBlockLanes + i * LobeLanes::kLanes;
     const float part = root * (slot.next_row == 0 ? 1 : piece.second_row ? place.fy : 1 - place.fy);
     const float left = part * (1 - place.fx), right = part * place.fx;
@@ -211,12 +223,16 @@ void LaneRows::set(const LobeLanes& model, std::size_t pair, std::size_t channel
   }
 }
 
-void find_gram(LaneRows& j, const Eigen::VectorXd& scale, Eigen::MatrixXd& gram) {
+void scaled_gram(LaneRows& j, const Eigen::VectorXd& scale, Eigen::MatrixXd& gram) {
   gram.setZero(scale.size(), scale.size());
+
+  // room for the products of every two families
   const std::vector<GramBlock> blocks = blocks_of(j);
   if (blocks.empty()) return;
   const GramBlock& end = blocks.back();
   j.room.resize(end.start + end.stride * j.families[end.column].unknown.size());
+
+  // each summed over its pairs of pieces, then put where its unknowns stand
   const auto rows_of = [&](std::size_t p) {
     const LaneRows::Family& family = j.families[j.pieces[p].family];
     return PieceRows{j.node.data() + p * j.rows, j.value.data() + j.pieces[p].start, family.lanes.size(),

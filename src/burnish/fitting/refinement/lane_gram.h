@@ -34,7 +34,7 @@ struct LaneRows {
   std::size_t rows = 0;
   std::vector<std::uint32_t> node;  ///< [piece][row], the first of the two
   AlignedVector<float> value;       ///< [piece][row][neighbour][width]
-  AlignedVector<double> room;       ///< of find_gram
+  AlignedVector<double> room;       ///< of scaled_gram
 
   /// Makes room for rows over the unknowns [first, last) of whole tables.
   void layout(const LobeLanes& model, std::size_t first, std::size_t last, std::size_t row_count);
@@ -45,6 +45,6 @@ struct LaneRows {
 
 /// Lower triangle of D J^T J D, D being the diagonal matrix of `scale`, a number an unknown; what stands
 /// above it is meaningless. In double precision, the same for any number of threads.
-void find_gram(LaneRows& j, const Eigen::VectorXd& scale, Eigen::MatrixXd& gram);
+void scaled_gram(LaneRows& j, const Eigen::VectorXd& scale, Eigen::MatrixXd& gram);
 
 }  // namespace burnish

@@ -19,13 +19,12 @@ TEST(LaneGram, IsTheProductOfTheDenseMatrix) {
       "p(wo) p(wi) q(h) g(theta_d,theta_m) z(h) + a(wo) a(wi) b(h) z(h) + c(wo) c(wi) d(theta_d,theta_m) "
       "z(h)",
       sizes, true);
-  std::vector<LobeLanes::Unknowns> tables;
-  std::size_t size = 0;
-  for (const ModelSpec::TableSpec& table : spec.tables) {
-    tables.push_back({.base = size, .stride = 1, .copies = 1, .layout = table.layout});
-    size += table.layout.node_count();
-  }
-  const Lookups lookups = find_lookups(spec, set);
+  const Numbering numbering = number_nodes(spec, 1);
+  const std::size_t size = numbering.count;
+  std::vector<LobeLanes::NumberedTable> tables;
+  for (std::size_t t = 0; t < spec.tables.size(); ++t)
+    tables.push_back({numbering.tables[t], spec.tables[t].layout});
+  const Lookups lookups = lookups_of(spec, set);
   const LobeLanes lanes(tables, lookups, 1);
   Pcg32 random(5);
   Eigen::VectorXd x(static_cast<Eigen::Index>(size));
@@ -33,7 +32,7 @@ TEST(LaneGram, IsTheProductOfTheDenseMatrix) {
   const LobeLanes::Values values = lanes.values(x);
 
   // Row by row what add_transposed adds, whose slopes are those of the total.
-  const std::size_t first = tables[1].base, count = size - first;
+  const std::size_t first = tables[1].number.base, count = size - first;
   LaneRows rows;
   rows.layout(lanes, first, size, set.size());
   LaneRows odd;
@@ -58,7 +57,7 @@ TEST(LaneGram, IsTheProductOfTheDenseMatrix) {
   const auto kept = static_cast<Eigen::Index>(count);
   Eigen::MatrixXd gram = Eigen::MatrixXd::Constant(2, 2, 7);  // of another step
   for (int again = 0; again < 2; ++again) {
-    find_gram(rows, values.lambda.tail(kept), gram);
+    scaled_gram(rows, values.lambda.tail(kept), gram);
     const Eigen::MatrixXd part = dense.rightCols(kept), expected = part.transpose() * part;
     const Eigen::MatrixXd found = gram.selfadjointView<Eigen::Lower>();
     EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 1e-5 * expected.maxCoeff());

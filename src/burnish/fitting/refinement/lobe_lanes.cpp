@@ -34,12 +34,12 @@ void prefetch(const void* data, std::size_t bytes) noexcept {
 
 }  // namespace
 
-LobeLanes::LobeLanes(std::span<const Unknowns> tables, const Lookups& lookups, std::size_t channels)
+LobeLanes::LobeLanes(std::span<const NumberedTable> tables, const Lookups& lookups, std::size_t channels)
     : lookups_(lookups),
       channels_(channels),
       parts_(chunk_count(lookups.lobes.size(), kLanes)),
       tables_(tables.begin(), tables.end()) {
-  // The tables of each slot, lobe by lobe.
+  // slots: what lobes of one part look up at one place, a lane a lobe; and the tables of their lanes
   std::vector<std::vector<std::size_t>> lanes;
   for (std::size_t j = 0; j < lookups.lobes.size(); ++j)
     for (const std::size_t k : lookups.lobes[j]) {
@@ -53,6 +53,8 @@ LobeLanes::LobeLanes(std::span<const Unknowns> tables, const Lookups& lookups, s
       }
       lanes[s][j % kLanes] = static_cast<std::size_t>(lookups.lookups[k].table);
     }
+
+  // families: slots of the same tables share values
   std::vector<std::size_t> nodes;  // of the families
   for (std::size_t s = 0; s < slots_.size(); ++s) {
     Slot& slot = slots_[s];
@@ -72,14 +74,16 @@ LobeLanes::LobeLanes(std::span<const Unknowns> tables, const Lookups& lookups, s
     slot.base = families_[slot.family].base;
     slot.next_row = layout.shape == TableShape::line ? 0 : static_cast<std::size_t>(layout.width) * kLanes;
   }
+
+  // links: where each unknown's value stands among the lanes
   for (std::size_t f = 0; f < families_.size(); ++f)
     for (std::size_t l = 0; l < kLanes; ++l) {
       if (families_[f].tables[l] == kNone) continue;
-      const auto& [base, stride, copies, layout] = tables[families_[f].tables[l]];
+      const NodeNumbers& number = tables[families_[f].tables[l]].number;
       for (std::size_t n = 0; n < nodes[f]; ++n)
         for (std::size_t c = 0; c < channels; ++c)
           links_.push_back(
-              {static_cast<std::uint32_t>(base + n * stride + (copies > 1 ? c : 0)),
+              {static_cast<std::uint32_t>(number(n, c)),
                static_cast<std::uint32_t>(c * channel_size_ + families_[f].base + n * kLanes + l)});
     }
 }
@@ -93,15 +97,17 @@ AlignedVector<float> LobeLanes::spread(const Eigen::VectorXd& v, float empty) co
 
 LobeLanes::Values LobeLanes::values(const Eigen::VectorXd& x) const {
   Values found{.lambda = x, .lambdas = {}, .scales = AlignedVector<float>(channels_ * parts_ * kLanes)};
+
+  // the means of the logarithms, divided out of each table's channels
   std::vector<double> means(tables_.size() * channels_);
   for (std::size_t t = 0; t < tables_.size(); ++t) {
-    const auto& [base, stride, copies, layout] = tables_[t];
+    const auto& [number, layout] = tables_[t];
     const auto nodes = static_cast<Eigen::Index>(layout.node_count());
     for (std::size_t c = 0; c < channels_; ++c) {
       Eigen::Map<Eigen::VectorXd, 0, Eigen::InnerStride<>> logs(
-          found.lambda.data() + base + (copies > 1 ? c : 0), nodes,
-          Eigen::InnerStride<>(static_cast<Eigen::Index>(stride)));
-      if (c > 0 && copies == 1) {
+          found.lambda.data() + number(0, c), nodes,
+          Eigen::InnerStride<>(static_cast<Eigen::Index>(number.copies)));
+      if (c > 0 && number.copies == 1) {
         means[t * channels_ + c] = means[t * channels_];
         continue;
       }
@@ -111,6 +117,8 @@ LobeLanes::Values LobeLanes::values(const Eigen::VectorXd& x) const {
   }
   found.lambda = found.lambda.array().exp();
   found.lambdas = spread(found.lambda, 1);
+
+  // and given back as the lobes' scales
   for (std::size_t c = 0; c < channels_; ++c)
     for (std::size_t j = 0; j < lookups_.lobes.size(); ++j) {
       double sum = 0;
@@ -134,6 +142,7 @@ LobeLanes::Block LobeLanes::block() const {
 
 void LobeLanes::evaluate(const Values& values, std::size_t block, std::size_t channel,
                          Block& at) const noexcept {
+  // the products start as the scales
   for (std::size_t p = 0; p < parts_; ++p) {
     const float* scales = values.scales.data() + (channel * parts_ + p) * kLanes;
     for (std::size_t i = 0; i < kBlock; ++i)
@@ -184,6 +193,8 @@ Eigen::VectorXd LobeLanes::times(const Values& values, const AlignedVector<float
          partial[group].data() + offset);
       }
   });
+
+  // in the order of the groups, whatever the threads
   AlignedVector<float>& sum = partial.front();
   for (std::size_t g = 1; g < partial.size(); ++g)
     for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += partial[g][k];

@@ -9,6 +9,7 @@
 
 #include <burnish/factors/table.h>
 #include <burnish/fitting/numerics/aligned_vector.h>
+#include <burnish/fitting/numerics/node_numbers.h>
 #include <burnish/fitting/refinement/lookups.h>
 
 namespace burnish {
@@ -21,13 +22,13 @@ class LobeLanes {
   static constexpr std::size_t kLanes = 8, kBlock = Lookups::kBlock;
   static constexpr std::size_t kBlockLanes = kBlock * kLanes;
 
-  /// A table's unknowns: of node n, copy c number base + n stride + c. It has one copy, or one a channel.
-  struct Unknowns {
-    std::size_t base, stride, copies;
+  /// A table and where its nodes stand among the unknowns; it has one copy, or one a channel.
+  struct NumberedTable {
+    NodeNumbers number;
     TableLayout layout;
   };
   /// Rows are those of the training set that `lookups` was made for, `channels` a pair. Keeps a reference.
-  LobeLanes(std::span<const Unknowns> tables, const Lookups& lookups, std::size_t channels);
+  LobeLanes(std::span<const NumberedTable> tables, const Lookups& lookups, std::size_t channels);
 
   /// Tables, one a lane; kNone where there is none.
   struct Family {
@@ -43,7 +44,7 @@ class LobeLanes {
     std::size_t part;            ///< of the lobes, kLanes each
     bool one_table;
   };
-  std::span<const Unknowns> tables() const noexcept { return tables_; }
+  std::span<const NumberedTable> tables() const noexcept { return tables_; }
   std::size_t channels() const noexcept { return channels_; }
   std::span<const Family> families() const noexcept { return families_; }
   std::span<const Slot> slots() const noexcept { return slots_; }
@@ -93,7 +94,7 @@ class LobeLanes {
 
   const Lookups& lookups_;
   std::size_t channels_, parts_, channel_size_ = 0;
-  std::vector<Unknowns> tables_;
+  std::vector<NumberedTable> tables_;
   std::vector<Family> families_;
   std::vector<Slot> slots_;
   struct Link {

@@ -11,7 +11,7 @@ constexpr std::size_t kChunk = 64;  // blocks
 
 }  // namespace
 
-Lookups find_lookups(const ModelSpec& spec, const TrainingSet& set) {
+Lookups lookups_of(const ModelSpec& spec, const TrainingSet& set) {
   Lookups found;
   for (const auto& lobe : spec.lobes) {
     std::vector<std::size_t>& of_lobe = found.lobes.emplace_back();

@@ -28,6 +28,6 @@ struct Lookups {
   std::vector<Place> places;  ///< [pair / kBlock][place][pair % kBlock]
 };
 
-Lookups find_lookups(const ModelSpec& spec, const TrainingSet& set);
+Lookups lookups_of(const ModelSpec& spec, const TrainingSet& set);
 
 }  // namespace burnish

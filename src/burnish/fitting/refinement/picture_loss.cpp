@@ -8,7 +8,7 @@ namespace burnish {
 namespace {
 
 // Added to the means in the objective: errors below do not matter, and ln stays finite.
-constexpr ErrorTerms kNegligible{1e-7, 1e-7, 1e-4, 1e-5};
+constexpr ErrorTerms kNegligible{.pictures = 1e-7, .dimmed = 1e-7, .relative = 1e-4, .log_cos = 1e-5};
 
 double rounded_abs(double error, double round) noexcept {
   return std::sqrt(error * error + round * round);
@@ -17,17 +17,22 @@ double rounded_abs(double error, double round) noexcept {
 }  // namespace
 
 double PictureLoss::objective(const ErrorTerms& means) const noexcept {
-  double sum = 0;
-  for (std::size_t k = 0; k < kErrorTerms; ++k) sum += shares[k] * std::log(means[k] + kNegligible[k]);
-  return sum;
+  return shares.pictures * std::log(means.pictures + kNegligible.pictures) +
+         shares.dimmed * std::log(means.dimmed + kNegligible.dimmed) +
+         shares.relative * std::log(means.relative + kNegligible.relative) +
+         shares.log_cos * std::log(means.log_cos + kNegligible.log_cos);
 }
 
 ErrorTerms PictureLoss::derivatives(const ErrorTerms& means, double picture_weight,
                                     double pair_weight) const noexcept {
-  ErrorTerms d{};
-  for (std::size_t k = 0; k < kErrorTerms; ++k) {
-    const double weight = k < 2 ? picture_weight : pair_weight;
-    if (weight > 0) d[k] = shares[k] / (means[k] + kNegligible[k]) / weight;
+  ErrorTerms d;
+  if (picture_weight > 0) {
+    d.pictures = shares.pictures / (means.pictures + kNegligible.pictures) / picture_weight;
+    d.dimmed = shares.dimmed / (means.dimmed + kNegligible.dimmed) / picture_weight;
+  }
+  if (pair_weight > 0) {
+    d.relative = shares.relative / (means.relative + kNegligible.relative) / pair_weight;
+    d.log_cos = shares.log_cos / (means.log_cos + kNegligible.log_cos) / pair_weight;
   }
   return d;
 }
@@ -47,24 +52,26 @@ PictureLoss::Slope PictureLoss::add(Target target, double model, double cos_thet
       const double a = target.first * kDim[e], b = modelled * kDim[e];
       if (a >= 1 && b >= 1) continue;  // white both: dimmer exposures tell them apart
       const double error = std::min(b, 1.0) - std::min(a, 1.0);
-      const std::size_t term = e == 0 ? 0 : 1;
+      const double derivative = e == 0 ? derivatives.pictures : derivatives.dimmed;
       const double share = (e == 0 ? 1 : 0.5) * weight;
       const double rise = kInverseGamma * (b > 1 ? kSaturatedSlope : b);
-      sums[term] += share * error * error;
-      slope.gradient += share * derivatives[term] * 2 * error * rise;
-      slope.curvature += share * derivatives[term] * 2 * rise * rise;
+      (e == 0 ? sums.pictures : sums.dimmed) += share * error * error;
+      slope.gradient += share * derivative * 2 * error * rise;
+      slope.curvature += share * derivative * 2 * rise * rise;
     }
     return slope;
   }
-  const auto add_absolute = [&](std::size_t term, double error, double rise, double round) {
-    const double size = rounded_abs(error, round), w = weight * derivatives[term];
-    sums[term] += weight * (size - round);
+  const auto add_absolute = [&](double& sum, double derivative, double error, double rise, double round) {
+    const double size = rounded_abs(error, round), w = weight * derivative;
+    sum += weight * (size - round);
     slope.gradient += w * error / size * rise;
     slope.curvature += w * rise * rise / size;
   };
   const double lit = model * cos_theta_i;
-  add_absolute(2, std::log(model + kFloor) - target.first, model / (model + kFloor), kRelativeRound);
-  add_absolute(3, std::log1p(lit) - target.second, lit / (1 + lit), kLogCosRound);
+  add_absolute(sums.relative, derivatives.relative, std::log(model + kFloor) - target.first,
+               model / (model + kFloor), kRelativeRound);
+  add_absolute(sums.log_cos, derivatives.log_cos, std::log1p(lit) - target.second, lit / (1 + lit),
+               kLogCosRound);
   return slope;
 }
 

@@ -6,16 +6,26 @@
 
 namespace burnish {
 
-/// The errors that refinement weighs, each a mean over its part of the training set:
-/// 0 pictures: squared error of min(1, exposure f cos theta_i)^(1/2.2), as the sphere images are scored;
-/// 1 dimmed: the same at 1/8 and 1/64 of the exposure, so that highlights keep their shape;
-/// 2 relative: |ln((f + 1e-3) / (f^ + 1e-3))|; 3 log_cos: |ln(1 + f cos theta_i) - ln(1 + f^ cos theta_i)|.
-enum class ErrorTerm : std::size_t { pictures, dimmed, relative, log_cos };
-inline constexpr std::size_t kErrorTerms = 4;
-using ErrorTerms = std::array<double, kErrorTerms>;
+/// The errors that refinement weighs, each a mean over its part of the training set; or one number for each.
+struct ErrorTerms {
+  /// Of pixels, the squared error of min(1, exposure f cos theta_i)^(1/2.2), as the sphere images are scored.
+  double pictures = 0;
+  /// The same at 1/8 and 1/64 of the exposure, so that highlights keep their shape.
+  double dimmed = 0;
+  double relative = 0;  ///< of pairs, |ln((f + 1e-3) / (f^ + 1e-3))|
+  double log_cos = 0;   ///< of pairs, |ln(1 + f cos theta_i) - ln(1 + f^ cos theta_i)|
 
-/// What refinement minimizes: the sum of shares[k] ln(term k), so that a percent of one error is worth a
-/// percent of another whatever their sizes. Absolute values are rounded off near 0.
+  ErrorTerms& operator+=(const ErrorTerms& other) noexcept {
+    pictures += other.pictures;
+    dimmed += other.dimmed;
+    relative += other.relative;
+    log_cos += other.log_cos;
+    return *this;
+  }
+};
+
+/// What refinement minimizes: the sum of share ln(mean) over the terms, so that a percent of one error is worth
+/// a percent of another whatever their sizes. Absolute values are rounded off near 0.
 struct PictureLoss {
   static constexpr double kInverseGamma = 1 / 2.2;
   static constexpr double kFloor = 1e-3;  ///< 1/sr, of `relative`
@@ -27,7 +37,7 @@ struct PictureLoss {
   /// The slope of a saturated pixel's model where the reference is not saturated, relative to the slope at 1.
   static constexpr double kSaturatedSlope = 0.3;
 
-  ErrorTerms shares{2, 0.1, 1, 1};
+  ErrorTerms shares{.pictures = 2, .dimmed = 0.1, .relative = 1, .log_cos = 1};
   double exposure = 1;
 
   /// The objective of means.

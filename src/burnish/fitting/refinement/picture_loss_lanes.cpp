@@ -25,7 +25,8 @@ V number(double v) {
 
 // What a vector of values adds.
 struct Part {
-  V terms[kErrorTerms], gradient, curvature;
+  V pictures, dimmed, relative, log_cos;  // of ErrorTerms
+  V gradient, curvature;
 };
 
 void add_pictures(const PictureLoss& loss, const ErrorTerms& derivatives, V target, V lit, V weight,
@@ -38,15 +39,15 @@ void add_pictures(const PictureLoss& loss, const ErrorTerms& derivatives, V targ
     const V dim = number(PictureLoss::kDim[e]);
     const V a = hn::Mul(target, dim), b = hn::Mul(modelled, dim);
     const V error = hn::Sub(hn::Min(b, one), hn::Min(a, one));
-    const std::size_t term = e == 0 ? 0 : 1;
-    const V share = hn::Mul(weight, number(e == 0 ? 1 : 0.5)),
-            slope = hn::Mul(share, number(2 * derivatives[term]));
+    V& term = e == 0 ? part.pictures : part.dimmed;
+    const double derivative = e == 0 ? derivatives.pictures : derivatives.dimmed;
+    const V share = hn::Mul(weight, number(e == 0 ? 1 : 0.5)), slope = hn::Mul(share, number(2 * derivative));
     const auto white = hn::Gt(b, one);
     // white both: dimmer exposures tell them apart
     const V rise =
         hn::IfThenZeroElse(hn::And(hn::Ge(b, one), hn::Ge(a, one)),
                            hn::Mul(gamma, hn::IfThenElse(white, number(PictureLoss::kSaturatedSlope), b)));
-    part.terms[term] = hn::MulAdd(share, hn::Mul(error, error), part.terms[term]);
+    term = hn::MulAdd(share, hn::Mul(error, error), term);
     part.gradient = hn::MulAdd(slope, hn::Mul(error, rise), part.gradient);
     part.curvature = hn::MulAdd(slope, hn::Mul(rise, rise), part.curvature);
   }
@@ -65,16 +66,16 @@ void add_pairs(const ErrorTerms& derivatives, V first, V second, V model, V lit,
   const D d;
   const V raised = hn::Add(model, number(PictureLoss::kFloor)), brighter = hn::Add(lit, number(1));
   add_absolute(hn::Sub(hn::Log(d, raised), first), hn::Div(model, raised), PictureLoss::kRelativeRound,
-               weight, derivatives[2], part.terms[2], part);
+               weight, derivatives.relative, part.relative, part);
   add_absolute(hn::Sub(hn::Log1p(d, lit), second), hn::Div(lit, brighter), PictureLoss::kLogCosRound, weight,
-               derivatives[3], part.terms[3], part);
+               derivatives.log_cos, part.log_cos, part);
 }
 
 void add(const PictureLoss& loss, const LossInputs& in, std::size_t count, const ErrorTerms& derivatives,
          ErrorTerms& sums, float* gradient, float* curvature) {
   const D d;
   const V zero = hn::Zero(d);
-  Part part{{zero, zero, zero, zero}, zero, zero};
+  Part part{zero, zero, zero, zero, zero, zero};
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
     const V model = hn::LoadU(d, in.model + i), lit = hn::Mul(model, hn::LoadU(d, in.cos_theta_i + i));
     const V first = hn::LoadU(d, in.first + i), second = hn::LoadU(d, in.second + i);
@@ -85,8 +86,12 @@ void add(const PictureLoss& loss, const LossInputs& in, std::size_t count, const
     hn::StoreU(part.gradient, d, gradient + i);
     hn::StoreU(part.curvature, d, curvature + i);
   }
-  for (std::size_t k = 0; k < kErrorTerms; ++k)
-    sums[k] += static_cast<double>(hn::GetLane(hn::SumOfLanes(d, part.terms[k])));
+  const auto sum_of = [d](V lanes)
+                          HWY_ATTR { return static_cast<double>(hn::GetLane(hn::SumOfLanes(d, lanes))); };
+  sums += {.pictures = sum_of(part.pictures),
+           .dimmed = sum_of(part.dimmed),
+           .relative = sum_of(part.relative),
+           .log_cos = sum_of(part.log_cos)};
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <burnish/error.h>
 #include <burnish/fitting/numerics/dense.h>
+#include <burnish/fitting/numerics/preconditioned_cg.h>
 #include <burnish/fitting/refinement/refine.h>
 #include <burnish/fitting/refinement/refine_system.h>
 #include <burnish/math/parallel.h>
@@ -34,72 +35,68 @@ class StepSolver {
     if (!direct()) roughness_diagonal_ = 2 * smooth * system.roughness_diagonal();
   }
 
-  bool direct() const { return system_.size() <= kMostDirectUnknowns; }
+  bool direct() const { return system_.size() <= kMostCholeskyUnknowns; }
 
   void linearize(const Eigen::VectorXd& x, const ErrorTerms& means) {
     if (direct()) {
-      system_.find_normal(x, means, normal_);
-      system_.add_roughness_matrix(2 * smooth_, normal_.matrix);
+      system_.gauss_newton_matrix(x, means, dense_);
+      system_.add_roughness_matrix(2 * smooth_, dense_.matrix);
     } else {
-      rows_ = system_.rows(x, means);
+      factor_ = system_.gauss_newton_factor(x, means);
     }
     gradient() += 2 * smooth_ * system_.roughness_matrix_times(x);
   }
 
   /// What the quadratic model of linearize says that a step adds to the objective.
   double predicted_change(const Eigen::VectorXd& dx) const {
-    const Eigen::VectorXd bent =
-        direct()
-            ? Eigen::VectorXd(normal_.matrix.selfadjointView<Eigen::Lower>() * dx)
-            : Eigen::VectorXd(system_.apply(rows_, dx) + 2 * smooth_ * system_.roughness_matrix_times(dx));
-    return dx.dot((direct() ? normal_.gradient : rows_.gradient) + 0.5 * bent);
+    const Eigen::VectorXd bent = direct()
+                                     ? Eigen::VectorXd(dense_.matrix.selfadjointView<Eigen::Lower>() * dx)
+                                     : Eigen::VectorXd(system_.gauss_newton_times(factor_, dx) +
+                                                       2 * smooth_ * system_.roughness_matrix_times(dx));
+    return dx.dot((direct() ? dense_.gradient : factor_.gradient) + 0.5 * bent);
   }
 
   Eigen::VectorXd step(double damping) {
-    const Eigen::VectorXd diagonal = direct() ? Eigen::VectorXd(normal_.matrix.diagonal())
-                                              : Eigen::VectorXd(rows_.diagonal + roughness_diagonal_);
+    const Eigen::VectorXd diagonal = direct() ? Eigen::VectorXd(dense_.matrix.diagonal())
+                                              : Eigen::VectorXd(factor_.diagonal + roughness_diagonal_);
     const Eigen::VectorXd extra =
         damping * diagonal.array() + (kRidge + damping * kDampedRidge) * diagonal.mean();
     Eigen::VectorXd dx;
     if (direct()) {
-      factorized_ = normal_.matrix;
+      factorized_ = dense_.matrix;
       factorized_.diagonal() += extra;
-      dx = -normal_.gradient;
+      dx = -dense_.gradient;
       solve_in_place(factorized_, dx);
     } else {
-      dx = conjugate_gradients(extra, diagonal + extra);
+      dx = solve_iteratively(extra, diagonal + extra);
     }
     return dx.cwiseMax(-kLongestStep).cwiseMin(kLongestStep);
   }
 
  private:
-  Eigen::VectorXd& gradient() { return direct() ? normal_.gradient : rows_.gradient; }
+  Eigen::VectorXd& gradient() { return direct() ? dense_.gradient : factor_.gradient; }
 
-  Eigen::VectorXd conjugate_gradients(const Eigen::VectorXd& extra, const Eigen::VectorXd& diagonal) const {
-    Eigen::VectorXd x = Eigen::VectorXd::Zero(extra.size()), r = -rows_.gradient;
-    Eigen::VectorXd z = r.cwiseQuotient(diagonal), p = z;
-    double rz = r.dot(z);
-    const double enough = kCgTolerance * kCgTolerance * rz;
-    for (int k = 0; k < kMostCgIterations && rz > enough; ++k) {
-      const Eigen::VectorXd ap =
-          system_.apply(rows_, p) + 2 * smooth_ * system_.roughness_matrix_times(p) + extra.cwiseProduct(p);
-      const double alpha = rz / p.dot(ap);
-      x += alpha * p;
-      r -= alpha * ap;
-      z = r.cwiseQuotient(diagonal);
-      const double next = r.dot(z);
-      p = z + next / rz * p;
-      rz = next;
-    }
+  /// The step where `extra` is added to the matrix's diagonal, which then is about `diagonal`.
+  Eigen::VectorXd solve_iteratively(const Eigen::VectorXd& extra, const Eigen::VectorXd& diagonal) const {
+    using Vector = Eigen::VectorXd;
+    Vector x = Vector::Zero(extra.size());
+    const auto apply = [&](const Vector& v) -> Vector {
+      return system_.gauss_newton_times(factor_, v) + 2 * smooth_ * system_.roughness_matrix_times(v) +
+             extra.cwiseProduct(v);
+    };
+    const auto precondition = [&](const Vector& r) -> Vector { return r.cwiseQuotient(diagonal); };
+    const auto dot = [](const Vector& a, const Vector& b) { return a.dot(b); };
+    preconditioned_cg(x, Vector(-factor_.gradient), kCgTolerance, kMostCgIterations, apply, precondition, dot,
+                      [](const CgResult&) {});
     return x;
   }
 
   const RefineSystem& system_;
   double smooth_;
   Eigen::VectorXd roughness_diagonal_;
-  RefineSystem::Normal normal_;
+  RefineSystem::GaussNewton dense_;  ///< of a direct solution
   Eigen::MatrixXd factorized_;
-  RefineSystem::Rows rows_;
+  RefineSystem::GaussNewtonFactor factor_;  ///< of an iterative one
 };
 
 /// Levenberg-Marquardt steps of one channel, or of coupled channels.
@@ -170,7 +167,7 @@ class Descent {
 }  // namespace
 
 FitSummary refine(LogModel& model, const TrainingSet& set, const RefineOptions& options) {
-  return refine(model, set, find_lookups(model.spec, set), options);
+  return refine(model, set, lookups_of(model.spec, set), options);
 }
 
 FitSummary refine(LogModel& model, const TrainingSet& set, const Lookups& lookups,
@@ -206,7 +203,7 @@ FitSummary refine(LogModel& model, const TrainingSet& set, const Lookups& lookup
 }
 
 double objective(const LogModel& model, const TrainingSet& set, const ErrorTerms& shares) {
-  return objective(model, set, find_lookups(model.spec, set), shares);
+  return objective(model, set, lookups_of(model.spec, set), shares);
 }
 
 double objective(const LogModel& model, const TrainingSet& set, const Lookups& lookups,

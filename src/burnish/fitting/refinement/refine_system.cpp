@@ -42,17 +42,13 @@ std::vector<LogRange> shared_exponent_ranges(const std::vector<double>& logs, st
   return ranges;
 }
 
-// The unknowns of a system of `channels` channels of a model, table by table.
-std::vector<LobeLanes::Unknowns> unknowns_of(const LogModel& model, std::size_t channels) {
-  std::vector<LobeLanes::Unknowns> unknowns;
-  std::size_t base = 0;
-  for (std::size_t t = 0; t < model.spec.tables.size(); ++t) {
-    const TableLayout& layout = model.spec.tables[t].layout;
-    const std::size_t copies = model.step(t) == 1 ? 1 : channels;
-    unknowns.push_back({.base = base, .stride = copies, .copies = copies, .layout = layout});
-    base += layout.node_count() * copies;
-  }
-  return unknowns;
+// The tables of a system of `channels` channels of a model.
+std::vector<LobeLanes::NumberedTable> numbered_tables(const LogModel& model, std::size_t channels) {
+  const Numbering numbering = number_nodes(model.spec, channels);
+  std::vector<LobeLanes::NumberedTable> tables;
+  for (std::size_t t = 0; t < model.spec.tables.size(); ++t)
+    tables.push_back({numbering.tables[t], model.spec.tables[t].layout});
+  return tables;
 }
 
 }  // namespace
@@ -64,44 +60,51 @@ RefineSystem::RefineSystem(const LogModel& model, const TrainingSet& set, const 
       loss_(loss),
       first_channel_(first_channel),
       last_channel_(last_channel),
-      lanes_(unknowns_of(model, last_channel - first_channel), lookups, last_channel - first_channel) {
-  const std::size_t channels = last_channel - first_channel;
-  for (const auto& [base, stride, copies, layout] : unknowns_of(model, channels)) {
+      lanes_(numbered_tables(model, channels()), lookups, channels()) {
+  add_tables(model, format);
+  for (std::size_t i = 0; i < set.size(); ++i)
+    (i < set.picture_count ? picture_weight_ : pair_weight_) +=
+        set.weights[i] * static_cast<double>(channels());
+  fill_losses();
+}
+
+void RefineSystem::add_tables(const LogModel& model, TableFormat format) {
+  for (const auto& [number, layout] : lanes_.tables()) {
     const std::size_t t = tables_.size();
     const auto& table = model.spec.tables[t];
-    tables_.push_back({.base = base,
-                       .stride = stride,
-                       .copies = copies,
+    tables_.push_back({.number = number,
                        .nodes = layout.node_count(),
                        .step = model.step(t),
                        .share = table.smooth_share,
                        .log_range = log_range(format_of(table, format)),
-                       .rows = smoothness_rows(layout)});
-    size_ += tables_.back().nodes * copies;
+                       .smoothness = smoothness_rows(layout)});
+    size_ += tables_.back().nodes * number.copies;
+
+    // texels of one exponent stay where it holds them
     ranges_.resize(size_, {-INFINITY, INFINITY});
     if (model.step(t) == 1 || format_of(table, format) != TableFormat::rgb9e5) continue;
     const std::vector<LogRange> ranges = shared_exponent_ranges(model.log_values[t], model.step(t));
     for (std::size_t n = 0; n < tables_.back().nodes; ++n)
-      for (std::size_t c = 0; c < copies; ++c) ranges_[tables_.back().base + n * copies + c] = ranges[n];
+      for (std::size_t c = 0; c < number.copies; ++c) ranges_[number(n, c)] = ranges[n];
   }
-  for (std::size_t i = 0; i < set.size(); ++i)
-    (i < set.picture_count ? picture_weight_ : pair_weight_) +=
-        set.weights[i] * static_cast<double>(channels);
+}
+
+void RefineSystem::fill_losses() {
   constexpr std::size_t kBlock = LobeLanes::kBlock;
   const std::size_t padded = lanes_.blocks() * kBlock;
-  losses_.targets.resize(2 * padded * channels);
+  losses_.targets.resize(2 * padded * channels());
   losses_.cos_theta_i.resize(padded);
   losses_.picture_weight.resize(padded);
   losses_.pair_weight.resize(padded);
-  for_each_chunk(set.size(), kChunk * kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+  for_each_chunk(set_.size(), kChunk * kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const bool picture = i < set.picture_count;
-      losses_.cos_theta_i[i] = static_cast<float>(set.pairs[i].wi.z);
-      (picture ? losses_.picture_weight : losses_.pair_weight)[i] = set.weights[i];
-      for (std::size_t c = 0; c < channels; ++c) {
-        const double f = set.values[i * static_cast<std::size_t>(set.channels) + first_channel + c];
-        const PictureLoss::Target target = loss.target(f, set.pairs[i].wi.z, picture);
-        float* targets = losses_.targets.data() + 2 * (i / kBlock * channels + c) * kBlock + i % kBlock;
+      const bool picture = i < set_.picture_count;
+      losses_.cos_theta_i[i] = static_cast<float>(set_.pairs[i].wi.z);
+      (picture ? losses_.picture_weight : losses_.pair_weight)[i] = set_.weights[i];
+      for (std::size_t c = 0; c < channels(); ++c) {
+        const double f = set_.values[i * static_cast<std::size_t>(set_.channels) + first_channel_ + c];
+        const PictureLoss::Target target = loss_.target(f, set_.pairs[i].wi.z, picture);
+        float* targets = losses_.targets.data() + 2 * (i / kBlock * channels() + c) * kBlock + i % kBlock;
         targets[0] = target.first;
         targets[kBlock] = target.second;
       }
@@ -109,36 +112,45 @@ RefineSystem::RefineSystem(const LogModel& model, const TrainingSet& set, const 
   });
 }
 
+// visit(unknown, table, place in the model's log_values)
+template <class Visit>
+void RefineSystem::for_each_unknown(Visit visit) const {
+  for (std::size_t t = 0; t < tables_.size(); ++t) {
+    const auto& [number, nodes, step, share, log_range, smoothness] = tables_[t];
+    for (std::size_t n = 0; n < nodes; ++n)
+      for (std::size_t c = 0; c < number.copies; ++c)
+        visit(static_cast<Eigen::Index>(number(n, c)), t, n * step + (step == 1 ? 0 : first_channel_ + c));
+  }
+}
+
 Eigen::VectorXd RefineSystem::read(const LogModel& model) const {
   Eigen::VectorXd x(static_cast<Eigen::Index>(size_));
-  for (std::size_t t = 0; t < tables_.size(); ++t)
-    for (std::size_t n = 0; n < tables_[t].nodes; ++n)
-      for (std::size_t c = 0; c < tables_[t].copies; ++c)
-        x[static_cast<Eigen::Index>(tables_[t].base + n * tables_[t].stride + c)] =
-            model.log_values[t][n * tables_[t].step + (tables_[t].step == 1 ? 0 : first_channel_ + c)];
+  for_each_unknown(
+      [&](Eigen::Index unknown, std::size_t t, std::size_t at) { x[unknown] = model.log_values[t][at]; });
   return x;
 }
 
 void RefineSystem::write(const Eigen::VectorXd& x, LogModel& model) const {
-  for (std::size_t t = 0; t < tables_.size(); ++t)
-    for (std::size_t n = 0; n < tables_[t].nodes; ++n)
-      for (std::size_t c = 0; c < tables_[t].copies; ++c)
-        model.log_values[t][n * tables_[t].step + (tables_[t].step == 1 ? 0 : first_channel_ + c)] =
-            x[static_cast<Eigen::Index>(tables_[t].base + n * tables_[t].stride + c)];
+  for_each_unknown(
+      [&](Eigen::Index unknown, std::size_t t, std::size_t at) { model.log_values[t][at] = x[unknown]; });
 }
 
 void RefineSystem::clamp(Eigen::VectorXd& x) const {
-  for (const TableUnknowns& table : tables_)
-    for (std::size_t c = 0; c < table.copies; ++c) {
-      double* first = x.data() + table.base + c;
-      double largest = *first, mean = 0;
+  for (const SystemTable& table : tables_)
+    for (std::size_t c = 0; c < table.number.copies; ++c) {
+      const auto value_of = [&](std::size_t n) -> double& {
+        return x[static_cast<Eigen::Index>(table.number(n, c))];
+      };
+      // largest and mean of the table's channel
+      double largest = value_of(0), mean = 0;
       for (std::size_t n = 0; n < table.nodes; ++n) {
-        largest = std::max(largest, first[n * table.stride]);
-        mean += first[n * table.stride] / static_cast<double>(table.nodes);
+        largest = std::max(largest, value_of(n));
+        mean += value_of(n) / static_cast<double>(table.nodes);
       }
+      // not below a share of the first, and about the second as far as an exponent reaches
       for (std::size_t n = 0; n < table.nodes; ++n) {
-        const LogRange& range = ranges_[table.base + c + n * table.stride];
-        double& value = first[n * table.stride];
+        const LogRange& range = ranges_[table.number(n, c)];
+        double& value = value_of(n);
         value = std::clamp(std::max(value, largest - table.log_range), mean + range.least, mean + range.most);
       }
     }
@@ -147,8 +159,8 @@ void RefineSystem::clamp(Eigen::VectorXd& x) const {
 LossInputs RefineSystem::loss_inputs(std::size_t block, std::size_t channel,
                                      const float* model) const noexcept {
   constexpr std::size_t kBlock = LobeLanes::kBlock;
-  const std::size_t channels = last_channel_ - first_channel_, first = block * kBlock;
-  const float* targets = losses_.targets.data() + 2 * (block * channels + channel) * kBlock;
+  const std::size_t first = block * kBlock;
+  const float* targets = losses_.targets.data() + 2 * (block * channels() + channel) * kBlock;
   return {.first = targets,
           .second = targets + kBlock,
           .model = model,
@@ -159,36 +171,34 @@ LossInputs RefineSystem::loss_inputs(std::size_t block, std::size_t channel,
 
 ErrorTerms RefineSystem::errors(const Eigen::VectorXd& x) const {
   const LobeLanes::Values values = lanes_.values(x);
-  const std::size_t channels = last_channel_ - first_channel_;
   std::vector<ErrorTerms> partial(chunk_count(lanes_.blocks(), kChunk));
   for_each_chunk(lanes_.blocks(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
     LobeLanes::Block at = lanes_.block();
     float gradient[LobeLanes::kBlock], curvature[LobeLanes::kBlock];
     for (std::size_t b = begin; b < end; ++b)
-      for (std::size_t c = 0; c < channels; ++c) {
+      for (std::size_t c = 0; c < channels(); ++c) {
         lanes_.evaluate(values, b, c, at);
         add_losses(loss_, loss_inputs(b, c, at.total.data()), LobeLanes::kBlock, {}, partial[chunk], gradient,
                    curvature);
       }
   });
-  ErrorTerms means{};
-  for (const ErrorTerms& p : partial)
-    for (std::size_t k = 0; k < kErrorTerms; ++k) means[k] += p[k];
-  for (std::size_t k = 0; k < kErrorTerms; ++k) {
-    const double weight = k < 2 ? picture_weight_ : pair_weight_;
-    means[k] = weight > 0 ? means[k] / weight : 0;
-  }
-  return means;
+  ErrorTerms sums;
+  for (const ErrorTerms& part : partial) sums += part;
+  const auto mean = [](double sum, double weight) { return weight > 0 ? sum / weight : 0; };
+  return {.pictures = mean(sums.pictures, picture_weight_),
+          .dimmed = mean(sums.dimmed, picture_weight_),
+          .relative = mean(sums.relative, pair_weight_),
+          .log_cos = mean(sums.log_cos, pair_weight_)};
 }
 
 template <class Visit>
 void RefineSystem::for_each_slope(const LobeLanes::Values& values, const ErrorTerms& derivatives,
                                   std::size_t begin, std::size_t end, Visit visit) const {
   LobeLanes::Block at = lanes_.block();
-  ErrorTerms sums{};
+  ErrorTerms sums;
   float gradient[LobeLanes::kBlock], curvature[LobeLanes::kBlock];
   for (std::size_t b = begin; b < end; ++b)
-    for (std::size_t c = 0; c < last_channel_ - first_channel_; ++c) {
+    for (std::size_t c = 0; c < channels(); ++c) {
       lanes_.evaluate(values, b, c, at);
       add_losses(loss_, loss_inputs(b, c, at.total.data()), LobeLanes::kBlock, derivatives, sums, gradient,
                  curvature);
@@ -197,16 +207,20 @@ void RefineSystem::for_each_slope(const LobeLanes::Values& values, const ErrorTe
     }
 }
 
-void RefineSystem::find_normal(const Eigen::VectorXd& x, const ErrorTerms& means, std::size_t first_unknown,
-                               std::size_t last_unknown, Normal& normal) const {
+void RefineSystem::gauss_newton_matrix(const Eigen::VectorXd& x, const ErrorTerms& means,
+                                       std::size_t first_unknown, std::size_t last_unknown,
+                                       GaussNewton& result) const {
   const LobeLanes::Values values = lanes_.values(x);
-  const std::size_t unknowns = last_unknown - first_unknown, channels = last_channel_ - first_channel_;
+  const std::size_t unknowns = last_unknown - first_unknown;
   const ErrorTerms derivatives = loss_.derivatives(means, picture_weight_, pair_weight_);
-  const std::size_t every =
-      std::max<std::size_t>(1, set_.size() * channels / (kMatrixPairsPerUnknown * unknowns));
-  LaneRows& factor = normal.factor;
-  factor.layout(lanes_, first_unknown, last_unknown, (set_.size() + every - 1) / every * channels);
 
+  // room for the factor's rows, of every so many pairs
+  const std::size_t every =
+      std::max<std::size_t>(1, set_.size() * channels() / (kMatrixPairsPerUnknown * unknowns));
+  LaneRows& factor = result.factor;
+  factor.layout(lanes_, first_unknown, last_unknown, (set_.size() + every - 1) / every * channels());
+
+  // the slope of all pairs; rows of some, each standing for `every`
   constexpr std::size_t kBlock = LobeLanes::kBlock;
   const std::size_t group_size = (lanes_.blocks() + kMostGroups - 1) / kMostGroups;
   std::vector<AlignedVector<float>> gradient(chunk_count(lanes_.blocks(), group_size));
@@ -218,26 +232,31 @@ void RefineSystem::find_normal(const Eigen::VectorXd& x, const ErrorTerms& means
                      lanes_.add_transposed(at, slopes, b, c, gradient[group]);
                      const std::size_t last = std::min((b + 1) * kBlock, set_.size());
                      for (std::size_t i = (b * kBlock + every - 1) / every * every; i < last; i += every)
-                       factor.set(lanes_, i, c, i / every * channels + c, at,
+                       factor.set(lanes_, i, c, i / every * channels() + c, at,
                                   std::sqrt(curvatures[i % kBlock] * static_cast<float>(every)));
                    });
   });
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(size_));
   for (const AlignedVector<float>& part : gradient) lanes_.gather(part, sum);
+
+  // by logarithms: d lambda / dx = lambda
   const auto segment = [&](const Eigen::VectorXd& v) {
     return v.segment(static_cast<Eigen::Index>(first_unknown), static_cast<Eigen::Index>(unknowns));
   };
-  normal.gradient = segment(sum).cwiseProduct(segment(values.lambda));
-  find_gram(factor, segment(values.lambda), normal.matrix);
+  result.gradient = segment(sum).cwiseProduct(segment(values.lambda));
+  scaled_gram(factor, segment(values.lambda), result.matrix);
 }
 
-RefineSystem::Rows RefineSystem::rows(const Eigen::VectorXd& x, const ErrorTerms& means) const {
+RefineSystem::GaussNewtonFactor RefineSystem::gauss_newton_factor(const Eigen::VectorXd& x,
+                                                                  const ErrorTerms& means) const {
   const ErrorTerms derivatives = loss_.derivatives(means, picture_weight_, pair_weight_);
-  const std::size_t channels = last_channel_ - first_channel_, block_size = lanes_.shares_of_block();
-  Rows result;
+  const std::size_t block_size = lanes_.shares_of_block();
+  GaussNewtonFactor result;
   result.values = lanes_.values(x);
   result.gradient = result.diagonal = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(size_));
-  result.shares.resize(lanes_.blocks() * channels * block_size);
+  result.shares.resize(lanes_.blocks() * channels() * block_size);
+
+  // slope and diagonal, and the lobes' shares that make the rows
   const std::size_t group_size = (lanes_.blocks() + kMostGroups - 1) / kMostGroups;
   std::vector<AlignedVector<float>> gradient(chunk_count(lanes_.blocks(), group_size)),
       diagonal(gradient.size());
@@ -249,7 +268,7 @@ RefineSystem::Rows RefineSystem::rows(const Eigen::VectorXd& x, const ErrorTerms
                        const float* curvatures) {
                      lanes_.add_transposed(at, slopes, b, c, gradient[group]);
                      lanes_.add_squares(at, curvatures, b, c, diagonal[group]);
-                     float* shares = result.shares.data() + (b * channels + c) * block_size;
+                     float* shares = result.shares.data() + (b * channels() + c) * block_size;
                      for (std::size_t k = 0; k < block_size; ++k)
                        shares[k] =
                            at.product[k] * std::sqrt(curvatures[k / LobeLanes::kLanes % LobeLanes::kBlock]);
@@ -259,64 +278,65 @@ RefineSystem::Rows RefineSystem::rows(const Eigen::VectorXd& x, const ErrorTerms
     lanes_.gather(gradient[g], result.gradient);
     lanes_.gather(diagonal[g], result.diagonal);
   }
+
+  // by logarithms: d lambda / dx = lambda
   const Eigen::VectorXd& lambda = result.values.lambda;
   result.gradient = result.gradient.cwiseProduct(lambda);
   result.diagonal = result.diagonal.cwiseProduct(lambda.cwiseProduct(lambda));
   return result;
 }
 
+// visit(coefficients of a row, number of a coefficient's unknown, the table): a row is the functional sum of
+// coefficient k times unknown(k).
 template <class Visit>
 void RefineSystem::for_each_roughness_row(Visit visit) const {
-  for (const TableUnknowns& table : tables_)
-    for (std::size_t c = 0; c < table.copies; ++c)
-      for (std::size_t r = 0; r < table.rows.size(); ++r)
-        visit(table, c, table.rows.starts[r], table.rows.starts[r + 1]);
+  for (const SystemTable& table : tables_)
+    for (std::size_t c = 0; c < table.number.copies; ++c)
+      for (std::size_t r = 0; r < table.smoothness.size(); ++r) {
+        const std::size_t begin = table.smoothness.starts[r], end = table.smoothness.starts[r + 1];
+        const auto unknown = [&](std::size_t k) {
+          return static_cast<Eigen::Index>(table.number(table.smoothness.nodes[begin + k], c));
+        };
+        visit(std::span(table.smoothness.coefficients).subspan(begin, end - begin), unknown, table);
+      }
 }
 
 double RefineSystem::roughness(const Eigen::VectorXd& x) const {
   double sum = 0;
-  for_each_roughness_row([&](const TableUnknowns& t, std::size_t c, std::uint32_t begin, std::uint32_t end) {
-    double row = 0;
-    for (std::uint32_t a = begin; a < end; ++a)
-      row += t.rows.coefficients[a] * x[static_cast<Eigen::Index>(t.base + t.rows.nodes[a] * t.stride + c)];
-    sum += t.share * row * row;
+  for_each_roughness_row([&](std::span<const double> row, const auto& unknown, const SystemTable& table) {
+    double value = 0;
+    for (std::size_t a = 0; a < row.size(); ++a) value += row[a] * x[unknown(a)];
+    sum += table.share * value * value;
   });
   return sum;
 }
 
 Eigen::VectorXd RefineSystem::roughness_matrix_times(const Eigen::VectorXd& v) const {
   Eigen::VectorXd y = Eigen::VectorXd::Zero(v.size());
-  for_each_roughness_row([&](const TableUnknowns& t, std::size_t c, std::uint32_t begin, std::uint32_t end) {
-    const auto place = [&](std::uint32_t a) {
-      return static_cast<Eigen::Index>(t.base + t.rows.nodes[a] * t.stride + c);
-    };
-    double row = 0;
-    for (std::uint32_t a = begin; a < end; ++a) row += t.rows.coefficients[a] * v[place(a)];
-    for (std::uint32_t a = begin; a < end; ++a) y[place(a)] += t.share * row * t.rows.coefficients[a];
+  for_each_roughness_row([&](std::span<const double> row, const auto& unknown, const SystemTable& table) {
+    double value = 0;
+    for (std::size_t a = 0; a < row.size(); ++a) value += row[a] * v[unknown(a)];
+    for (std::size_t a = 0; a < row.size(); ++a) y[unknown(a)] += table.share * value * row[a];
   });
   return y;
 }
 
 Eigen::VectorXd RefineSystem::roughness_diagonal() const {
   Eigen::VectorXd d = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(size_));
-  for_each_roughness_row([&](const TableUnknowns& t, std::size_t c, std::uint32_t begin, std::uint32_t end) {
-    for (std::uint32_t a = begin; a < end; ++a)
-      d[static_cast<Eigen::Index>(t.base + t.rows.nodes[a] * t.stride + c)] +=
-          t.share * t.rows.coefficients[a] * t.rows.coefficients[a];
+  for_each_roughness_row([&](std::span<const double> row, const auto& unknown, const SystemTable& table) {
+    for (std::size_t a = 0; a < row.size(); ++a) d[unknown(a)] += table.share * row[a] * row[a];
   });
   return d;
 }
 
 void RefineSystem::add_roughness_matrix(double scale, std::size_t first, Eigen::MatrixXd& matrix) const {
   const std::size_t last = first + static_cast<std::size_t>(matrix.rows());
-  for_each_roughness_row([&](const TableUnknowns& t, std::size_t c, std::uint32_t begin, std::uint32_t end) {
-    if (t.base < first || t.base >= last) return;
-    const auto place = [&](std::uint32_t a) {
-      return static_cast<Eigen::Index>(t.base + t.rows.nodes[a] * t.stride + c - first);
-    };
-    for (std::uint32_t a = begin; a < end; ++a)
-      for (std::uint32_t b = begin; b < end; ++b)
-        matrix(place(a), place(b)) += scale * t.share * t.rows.coefficients[a] * t.rows.coefficients[b];
+  const auto start = static_cast<Eigen::Index>(first);
+  for_each_roughness_row([&](std::span<const double> row, const auto& unknown, const SystemTable& table) {
+    if (table.number.base < first || table.number.base >= last) return;
+    for (std::size_t a = 0; a < row.size(); ++a)
+      for (std::size_t b = 0; b < row.size(); ++b)
+        matrix(unknown(a) - start, unknown(b) - start) += scale * table.share * row[a] * row[b];
   });
 }
 

@@ -40,31 +40,31 @@ class RefineSystem {
 
   /// Slope of the objective at x whose errors are `means`, and the lower triangle of its Gauss-Newton matrix.
   /// Where there are many pairs an unknown, the matrix is that of an even part of them.
-  struct Normal {
+  struct GaussNewton {
     Eigen::VectorXd gradient;
     Eigen::MatrixXd matrix;
     LaneRows factor;  ///< room that is kept from step to step
   };
-  void find_normal(const Eigen::VectorXd& x, const ErrorTerms& means, Normal& normal) const {
-    find_normal(x, means, 0, size_, normal);
+  void gauss_newton_matrix(const Eigen::VectorXd& x, const ErrorTerms& means, GaussNewton& result) const {
+    gauss_newton_matrix(x, means, 0, size_, result);
   }
   /// The same of the unknowns [first, last) of whole tables, the others being fixed.
-  void find_normal(const Eigen::VectorXd& x, const ErrorTerms& means, std::size_t first, std::size_t last,
-                   Normal& normal) const;
+  void gauss_newton_matrix(const Eigen::VectorXd& x, const ErrorTerms& means, std::size_t first,
+                           std::size_t last, GaussNewton& result) const;
 
   /// The same without the matrix, whose factor has the rows curvature^(1/2) d ln f^ / dx.
-  struct Rows {
+  struct GaussNewtonFactor {
     Eigen::VectorXd gradient;
     Eigen::VectorXd diagonal;  ///< of the matrix, less what terms of one row that share an unknown add
     LobeLanes::Values values;
     /// curvature^(1/2) times the lobes' shares of f^, as LobeLanes::times takes them.
     AlignedVector<float> shares;
   };
-  Rows rows(const Eigen::VectorXd& x, const ErrorTerms& means) const;
-  /// The normal matrix times v. As d lambda / dx = lambda, rows are multiplied by the values.
-  Eigen::VectorXd apply(const Rows& rows, const Eigen::VectorXd& v) const {
-    const Eigen::VectorXd& lambda = rows.values.lambda;
-    return lambda.cwiseProduct(lanes_.times(rows.values, rows.shares, lambda.cwiseProduct(v)));
+  GaussNewtonFactor gauss_newton_factor(const Eigen::VectorXd& x, const ErrorTerms& means) const;
+  /// The Gauss-Newton matrix times v. As d lambda / dx = lambda, rows are multiplied by the values.
+  Eigen::VectorXd gauss_newton_times(const GaussNewtonFactor& factor, const Eigen::VectorXd& v) const {
+    const Eigen::VectorXd& lambda = factor.values.lambda;
+    return lambda.cwiseProduct(lanes_.times(factor.values, factor.shares, lambda.cwiseProduct(v)));
   }
 
   /// Roughness of all tables, its gradient, its matrix times v and its diagonal.
@@ -78,16 +78,20 @@ class RefineSystem {
   void add_roughness_matrix(double scale, std::size_t first, Eigen::MatrixXd& matrix) const;
 
  private:
-  struct TableUnknowns {
-    std::size_t base, stride, copies, nodes, step;
+  std::size_t channels() const noexcept { return last_channel_ - first_channel_; }
+  struct SystemTable {
+    NodeNumbers number;
+    std::size_t nodes, step;  ///< of the model's log_values
     double share, log_range;
-    SmoothnessRows rows;
+    SmoothnessRows smoothness;
   };
   // What PictureLoss takes of the pairs, whole blocks: the last is filled up with pairs that weigh nothing.
   struct Losses {
     AlignedVector<float> targets;  // [block][channel of the system][first, second][pair]
     AlignedVector<float> cos_theta_i, picture_weight, pair_weight;  // [pair]
   };
+  void add_tables(const LogModel& model, TableFormat format);
+  void fill_losses();
   LossInputs loss_inputs(std::size_t block, std::size_t channel, const float* model) const noexcept;
   // visit(block, channel, lanes as differentiate leaves them, gradients, curvatures) of the blocks from
   // `begin` to `end`.
@@ -95,13 +99,15 @@ class RefineSystem {
   void for_each_slope(const LobeLanes::Values& values, const ErrorTerms& derivatives, std::size_t begin,
                       std::size_t end, Visit visit) const;
   template <class Visit>
+  void for_each_unknown(Visit visit) const;
+  template <class Visit>
   void for_each_roughness_row(Visit visit) const;
 
   const TrainingSet& set_;
   PictureLoss loss_;
   Losses losses_;
   std::size_t first_channel_, last_channel_, size_ = 0;
-  std::vector<TableUnknowns> tables_;
+  std::vector<SystemTable> tables_;
   std::vector<LogRange> ranges_;  // of the unknowns, over their channel's mean in the table
   double picture_weight_ = 0, pair_weight_ = 0;
   LobeLanes lanes_;

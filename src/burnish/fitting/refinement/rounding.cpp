@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <burnish/fitting/numerics/dense.h>
+#include <burnish/fitting/numerics/node_numbers.h>
 #include <burnish/fitting/refinement/refine_system.h>
 #include <burnish/fitting/refinement/rounding.h>
 
@@ -54,94 +55,136 @@ struct Channels {
   Eigen::VectorXd x;
   ErrorTerms means;
   Eigen::MatrixXd upper;  ///< of the tables rounded together; empty: nothing is made good
+
+  /// Sets unknown u, `first` being the first of the matrix, to what is stored and makes that good by the
+  /// unknowns after it.
+  void set_and_compensate(std::size_t u, std::size_t first, double stored) {
+    const auto at = static_cast<Eigen::Index>(u), row = static_cast<Eigen::Index>(u - first);
+    const Eigen::Index rest = upper.rows() - row - 1;
+    if (rest > 0) {
+      const double error = (x[at] - stored) / upper(row, row);
+      x.segment(at + 1, rest) -= error * upper.row(row).tail(rest).transpose();
+    }
+    x[at] = stored;
+  }
 };
 
-/// Rounds unknown u, `first` being the first of the matrix, and makes it good by those after it.
-void store(Channels& part, std::size_t u, std::size_t first, double stored) {
-  const auto at = static_cast<Eigen::Index>(u), row = static_cast<Eigen::Index>(u - first);
-  const Eigen::Index rest = part.upper.rows() - row - 1;
-  if (rest > 0) {
-    const double error = (part.x[at] - stored) / part.upper(row, row);
-    part.x.segment(at + 1, rest) -= error * part.upper.row(row).tail(rest).transpose();
+/// Rounds the tables of a model one after the other.
+class CompensatedRounding {
+ public:
+  CompensatedRounding(const LogModel& model, const std::vector<Table>& tables, const TrainingSet& set,
+                      const Lookups& lookups, const RefineOptions& options)
+      : model_(model),
+        smooth_(options.smooth),
+        roundings_(tables.begin(), tables.end()),
+        together_(model.any_shared() ? static_cast<std::size_t>(model.channels) : 1),
+        numbering_(number_nodes(model.spec, together_)) {
+    const PictureLoss loss{.shares = options.shares, .exposure = set.exposure};
+    for (std::size_t c = 0; c < static_cast<std::size_t>(model.channels); c += together_) {
+      RefineSystem system(model, set, lookups, loss, options.format, c, c + together_);
+      Eigen::VectorXd x = system.read(model);
+      const ErrorTerms means = system.errors(x);
+      parts_.push_back({std::move(system), std::move(x), means, {}});
+    }
   }
-  part.x[at] = stored;
+
+  const std::vector<Rounding>& roundings() const noexcept { return roundings_; }
+
+  /// What is stored, the errors made good by the nodes that come after.
+  LogModel compensated() {
+    for (std::size_t t = 0; t < roundings_.size();) {
+      // as many tables as one matrix may hold
+      const std::size_t first = first_unknown(t);
+      std::size_t end = t + 1;
+      while (end < roundings_.size() && first_unknown(end + 1) - first <= kMostTogether) ++end;
+      for (Channels& part : parts_) prepare(part, first, first_unknown(end));
+      for (; t < end; ++t) round_table(t, first);
+    }
+    LogModel result = model_;
+    for (const Channels& part : parts_) part.system.write(part.x, result);
+    return result;
+  }
+
+  /// What is stored where each node is rounded by itself.
+  LogModel nearest() const {
+    LogModel result = model_;
+    for (std::size_t t = 0; t < roundings_.size(); ++t) {
+      const std::size_t step = model_.step(t);
+      for (std::size_t i = 0; i < result.log_values[t].size(); i += step)
+        roundings_[t].round(std::span(model_.log_values[t]).subspan(i, step),
+                            std::span(result.log_values[t]).subspan(i, step));
+    }
+    return result;
+  }
+
+ private:
+  std::size_t first_unknown(std::size_t table) const {
+    return table < numbering_.tables.size() ? numbering_.tables[table].base : numbering_.count;
+  }
+
+  /// The factor of the damped inverse for the unknowns [first, last).
+  void prepare(Channels& part, std::size_t first, std::size_t last) {
+    part.upper.resize(0, 0);
+    if (last - first > kMostTogether) return;
+    part.system.gauss_newton_matrix(part.x, part.means, first, last, gauss_newton_);
+    part.upper = gauss_newton_.matrix;
+    part.system.add_roughness_matrix(2 * smooth_, first, part.upper);
+    const Eigen::VectorXd diagonal = part.upper.diagonal();
+    part.upper.diagonal() += kDamping * diagonal;
+    part.upper.diagonal().array() += kRidge * diagonal.mean();
+    if (!factorize_inverse(part.upper)) part.upper.resize(0, 0);
+  }
+
+  void round_table(std::size_t t, std::size_t first) {
+    const NodeNumbers& number = numbering_.tables[t];
+    const std::size_t step = model_.step(t);
+    std::vector<double> logs(step), stored(step);
+    for (std::size_t n = 0; n < model_.spec.tables[t].layout.node_count(); ++n) {
+      const auto part = [&](std::size_t c) -> Channels& { return parts_[together_ > 1 ? 0 : c]; };
+      for (std::size_t c = 0; c < step; ++c) logs[c] = part(c).x[static_cast<Eigen::Index>(number(n, c))];
+      roundings_[t].round(logs, stored);
+      for (std::size_t c = 0; c < step; ++c) part(c).set_and_compensate(number(n, c), first, stored[c]);
+    }
+  }
+
+  const LogModel& model_;
+  double smooth_;
+  std::vector<Rounding> roundings_;
+  std::size_t together_;  ///< channels of a system
+  Numbering numbering_;
+  std::vector<Channels> parts_;
+  RefineSystem::GaussNewton gauss_newton_;
+};
+
+/// The model whose logarithms are those of what is stored.
+FactoredBrdf from_stored(const LogModel& model, const std::vector<Rounding>& roundings, TableFormat format) {
+  std::vector<Table> tables = log_tables(model, format);
+  std::vector<std::vector<double>> divided;
+  for (std::size_t t = 0; t < tables.size(); ++t) {
+    divided.push_back(roundings[t].divided());
+    const std::size_t step = model.step(t);
+    for (std::size_t i = 0; i < tables[t].values.size(); ++i)
+      tables[t].values[i] = static_cast<float>(std::exp(model.log_values[t][i] - divided[t][i % step]));
+    tables[t].values = round_to_format(tables[t].format, tables[t].channels, tables[t].values);
+  }
+  return from_stored_tables(model.channels, std::move(tables), divided, log_scaled_lobes(model));
 }
 
 }  // namespace
 
 FactoredBrdf to_rounded_brdf(const LogModel& model, const TrainingSet& set, const RefineOptions& options) {
   const std::vector<Table> tables = log_tables(model, options.format);
-  const auto channels = static_cast<std::size_t>(model.channels);
-  if (channels > kMostChannels ||
+  if (static_cast<std::size_t>(model.channels) > kMostChannels ||
       std::ranges::none_of(tables, [](const Table& table) { return holds_few_bits(table.format); }))
     return to_brdf(model, options.format);
 
-  std::vector<Rounding> roundings(tables.begin(), tables.end());
-  const Lookups lookups = find_lookups(model.spec, set);
-  const PictureLoss loss{.shares = options.shares, .exposure = set.exposure};
-  const std::size_t together = model.any_shared() ? channels : 1;
-  std::vector<Channels> parts;
-  for (std::size_t c = 0; c < channels; c += together) {
-    RefineSystem system(model, set, lookups, loss, options.format, c, c + together);
-    Eigen::VectorXd x = system.read(model);
-    const ErrorTerms means = system.errors(x);
-    parts.push_back({std::move(system), std::move(x), means, {}});
-  }
-
-  // Number of a table's unknowns in a system; a table shared by the channels has one a node.
-  const auto copies = [&](std::size_t t) { return model.step(t) == 1 ? 1 : together; };
-  const auto unknowns = [&](std::size_t t) { return tables[t].layout.node_count() * copies(t); };
-  const auto round_table = [&](std::size_t t, std::size_t base, std::size_t first) {
-    const std::size_t step = model.step(t);
-    std::vector<double> logs(step), stored(step);
-    for (std::size_t n = 0; n < tables[t].layout.node_count(); ++n) {
-      const auto unknown = [&](std::size_t c) { return base + n * copies(t) + (copies(t) > 1 ? c : 0); };
-      const auto part = [&](std::size_t c) -> Channels& { return parts[together > 1 ? 0 : c]; };
-      for (std::size_t c = 0; c < step; ++c) logs[c] = part(c).x[static_cast<Eigen::Index>(unknown(c))];
-      roundings[t].round(logs, stored);
-      for (std::size_t c = 0; c < step; ++c) store(part(c), unknown(c), first, stored[c]);
-    }
-  };
-  RefineSystem::Normal normal;
-  for (std::size_t t = 0, first = 0; t < tables.size();) {
-    std::size_t end = t, last = first;
-    while (end < tables.size() && (end == t || last - first + unknowns(end) <= kMostTogether))
-      last += unknowns(end++);
-    for (Channels& part : parts) {
-      part.upper.resize(0, 0);
-      if (last - first > kMostTogether) continue;
-      part.system.find_normal(part.x, part.means, first, last, normal);
-      part.upper = normal.matrix;
-      part.system.add_roughness_matrix(2 * options.smooth, first, part.upper);
-      const Eigen::VectorXd diagonal = part.upper.diagonal();
-      part.upper.diagonal() += kDamping * diagonal;
-      part.upper.diagonal().array() += kRidge * diagonal.mean();
-      if (!factorize_inverse(part.upper)) part.upper.resize(0, 0);
-    }
-    for (std::size_t base = first; t < end; base += unknowns(t++)) round_table(t, base, first);
-    first = last;
-  }
-
-  LogModel good = model, plain = model;
-  for (const Channels& part : parts) part.system.write(part.x, good);
-  for (std::size_t t = 0; t < tables.size(); ++t) {
-    const std::size_t step = model.step(t);
-    for (std::size_t i = 0; i < plain.log_values[t].size(); i += step)
-      roundings[t].round(std::span(model.log_values[t]).subspan(i, step),
-                         std::span(plain.log_values[t]).subspan(i, step));
-  }
-  if (!(objective(good, set, lookups, options.shares) < objective(plain, set, lookups, options.shares)))
-    return to_brdf(model, options.format);
-  std::vector<Table> stored = log_tables(good, options.format);
-  std::vector<std::vector<double>> divided;
-  for (std::size_t t = 0; t < stored.size(); ++t) {
-    divided.push_back(roundings[t].divided());
-    const std::size_t step = model.step(t);
-    for (std::size_t i = 0; i < stored[t].values.size(); ++i)
-      stored[t].values[i] = static_cast<float>(std::exp(good.log_values[t][i] - divided[t][i % step]));
-    stored[t].values = round_to_format(stored[t].format, stored[t].channels, stored[t].values);
-  }
-  return from_stored_tables(model.channels, std::move(stored), divided, log_scaled_lobes(model));
+  const Lookups lookups = lookups_of(model.spec, set);
+  CompensatedRounding rounding(model, tables, set, lookups, options);
+  const LogModel compensated = rounding.compensated();
+  const auto error = [&](const LogModel& stored) { return objective(stored, set, lookups, options.shares); };
+  return error(compensated) < error(rounding.nearest())
+             ? from_stored(compensated, rounding.roundings(), options.format)
+             : to_brdf(model, options.format);
 }
 
 }  // namespace burnish
