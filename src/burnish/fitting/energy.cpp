@@ -240,19 +240,22 @@ EnergyConservation conserve_energy(const FactoredBrdf& brdf, const EnergyOptions
   result.largest_after = result.largest_before;
   if (within_one(result.largest_before)) return result;
 
+  // lobes that no gain reaches, scaled until they alone are within 1
   Damper damper(brdf, grid);
   std::vector<Lobe> lobes(brdf.lobes().begin(), brdf.lobes().end());
   std::vector<double> rest = albedos_of(damper.rest());
   const std::vector<double> largest_rest = largest_of(rest, channels);
   limit_scales(lobes, largest_rest, [&](const Lobe& lobe) { return !damper.damps(lobe); });
   for (std::size_t i = 0; i < rest.size(); ++i) rest[i] /= std::max(largest_rest[i % channels], 1.0);
-  // Gains are at most 1: an albedo that is at most 1 without them stays so.
+
+  // the gains of the others; as they are at most 1, an albedo that is at most 1 without them stays so
   const std::vector<bool> above = directions_above_one(albedo, channels);
   for (; result.iterations < options.max_iterations; ++result.iterations) {
     update_albedos(damper.apply(lobes), grid, options.tolerance, above, albedo);
     if (damper.step(albedo, rest) < options.tolerance) break;
   }
 
+  // what rounding left above 1
   const FactoredBrdf stored = damper.store(lobes);
   result.largest_after = largest_of(albedos_of(stored), channels);
   lobes = {stored.lobes().begin(), stored.lobes().end()};

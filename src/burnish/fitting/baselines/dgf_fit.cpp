@@ -193,6 +193,7 @@ DgfFit fit_dgf(const SampleSource& source, const DgfOptions& options) {
     throw Error(fmt::format("dgf: expected a budget of at least {} bytes, found {}",
                             channels * (8 + 8 * kFewest), options.budget));
 
+  // where the samples fall in the tables
   const GatheredSamples samples = gather_samples(source, options.most_samples);
   Places places;
   for (const auto& [wi, wo] : samples.pairs) {
@@ -204,6 +205,7 @@ DgfFit fit_dgf(const SampleSource& source, const DgfOptions& options) {
     places.divisor.push_back(microfacet_divisor(wi, wo));
   }
 
+  // a channel at a time, stored as half floats over the largest D
   NodeTable d = make_table(PairCoordinate::theta_h, static_cast<std::size_t>(size_d), channels),
             g = make_table(PairCoordinate::theta_d, static_cast<std::size_t>(size_fg), channels), f = g;
   std::vector<float> diffuse(channels), scale(channels);

@@ -136,6 +136,33 @@ HWY_EXPORT(visit);
 
 constexpr float kStill = 1e-5f;  // relative change of values that have arrived, far below a half float's
 
+/// A matrix row by row along its longer side, with its weights, each row filled up to `stride`.
+struct WeightedRows {
+  std::size_t stride;
+  AlignedVector<float> weights, weighted;  ///< over the largest weight; times the values
+  double mean;                             ///< of the values, > 0
+};
+
+WeightedRows lay_out(const Matrix& m, std::span<const double> weights, bool tall) {
+  const std::size_t rows = std::min(m.rows, m.columns), columns = std::max(m.rows, m.columns),
+                    stride = chunk_count(columns, kMostLanes) * kMostLanes;
+  WeightedRows result{.stride = stride,
+                      .weights = AlignedVector<float>(rows * stride),
+                      .weighted = AlignedVector<float>(rows * stride),
+                      .mean = 0};
+  double sum = 0;
+  const double unit = 1 / std::max(*std::ranges::max_element(weights), std::numeric_limits<double>::min());
+  for (std::size_t r = 0, i = 0; r < m.rows; ++r)
+    for (std::size_t c = 0; c < m.columns; ++c, ++i) {
+      const std::size_t at = tall ? c * stride + r : r * stride + c;
+      result.weights[at] = static_cast<float>(unit * weights[i]);
+      result.weighted[at] = static_cast<float>(unit * weights[i] * m.values[i]);
+      sum += m.values[i];
+    }
+  result.mean = std::max(sum / static_cast<double>(m.values.size()), 1e-300);
+  return result;
+}
+
 }  // namespace
 
 LowRank nonnegative_factors(const Matrix& m, std::span<const double> weights, std::size_t terms,
@@ -143,20 +170,11 @@ LowRank nonnegative_factors(const Matrix& m, std::span<const double> weights, st
   assert(weights.size() == m.values.size());
   // vectors run along the longer side, the far one, whose values are sums over the rows
   const bool tall = m.rows > m.columns;
-  const std::size_t rows = std::min(m.rows, m.columns), columns = std::max(m.rows, m.columns),
-                    stride = chunk_count(columns, kMostLanes) * kMostLanes, kept = std::min(terms, rows);
-  AlignedVector<float> weight(rows * stride), weighted(rows * stride), fitted(stride);
-  double sum = 0;
-  const double unit = 1 / std::max(*std::ranges::max_element(weights), std::numeric_limits<double>::min());
-  for (std::size_t r = 0, i = 0; r < m.rows; ++r)
-    for (std::size_t c = 0; c < m.columns; ++c, ++i) {
-      const std::size_t at = tall ? c * stride + r : r * stride + c;
-      weight[at] = static_cast<float>(unit * weights[i]);
-      weighted[at] = static_cast<float>(unit * weights[i] * m.values[i]);
-      sum += m.values[i];
-    }
-  const double mean = std::max(sum / static_cast<double>(m.values.size()), 1e-300),
-               level = std::sqrt(mean / static_cast<double>(kept));
+  WeightedRows matrix = lay_out(m, weights, tall);
+  const std::size_t rows = std::min(m.rows, m.columns), stride = matrix.stride, kept = std::min(terms, rows);
+
+  // random factors of the matrix's level
+  const double level = std::sqrt(matrix.mean / static_cast<double>(kept));
   const auto least = static_cast<float>(1e-15 * level);  // no subnormal numbers, no 0 that could never rise
   Pcg32 random(seed);
   LowRank result{kept, std::vector<double>(m.rows * kept), std::vector<double>(m.columns * kept)};
@@ -164,7 +182,7 @@ LowRank nonnegative_factors(const Matrix& m, std::span<const double> weights, st
     std::ranges::generate(*side, [&] { return level * (0.5 + random.uniform()); });
   std::vector<double>&near_side = tall ? result.v : result.u, &far_side = tall ? result.u : result.v;
   AlignedVector<float> near(near_side.begin(), near_side.end()), far(kept * stride), wanted(far.size()),
-      found(far.size());
+      found(far.size()), fitted(stride);
   for (std::size_t i = 0; i < far_side.size(); ++i)
     far[i % kept * stride + i / kept] = static_cast<float>(far_side[i]);
 
@@ -179,8 +197,8 @@ LowRank nonnegative_factors(const Matrix& m, std::span<const double> weights, st
                     .terms = kept,
                     .improve_near = i > 0,
                     .gather_far = gather,
-                    .weights = weight.data() + r * stride,
-                    .weighted = weighted.data() + r * stride,
+                    .weights = matrix.weights.data() + r * stride,
+                    .weighted = matrix.weighted.data() + r * stride,
                     .near = near.data() + r * kept,
                     .far = far.data(),
                     .fitted = fitted.data(),

@@ -84,6 +84,7 @@ PairGrid sample_pair_grid(BrdfRef source, std::span<const NodeAxis> rows, std::s
   const bool folded =
       std::find(coordinates.begin(), coordinates.end(), PairCoordinate::phi_d) != coordinates.end();
 
+  // the source at every node's directions, pulled above the horizon
   const std::size_t nodes = grid.rows * grid.columns;
   grid.values.resize(nodes * grid.channels);
   grid.measured.resize(nodes);
@@ -109,6 +110,8 @@ PairGrid sample_pair_grid(BrdfRef source, std::span<const NodeAxis> rows, std::s
         grid.values[node * grid.channels + c] = std::max(f[c], 0.0) * separable_divisor(wi, wo);
     }
   });
+
+  // where it is unknown, what the neighbours know
   for (std::size_t node = 0; node < nodes; ++node) grid.measured[node] = grid.measured[node] && known[node];
   if (std::find(known.begin(), known.end(), 1) == known.end())
     throw Error("decomposition: expected a source that is known somewhere, found one that is not");

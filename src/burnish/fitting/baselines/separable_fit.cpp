@@ -96,6 +96,8 @@ SeparableBrdf decompose(const PairGrid& grid, Decomposition method, Coupling cou
   const auto value = [&](std::size_t node, std::size_t c) {
     return scale[c] > 0 ? grid.values[node * channels + c] / scale[c] : 0.0;
   };
+
+  // a matrix a channel, or one of all
   std::vector<LowRank> parts;
   if (coupling == Coupling::none) {
     for (std::size_t c = 0; c < channels; ++c) {
@@ -120,6 +122,7 @@ SeparableBrdf decompose(const PairGrid& grid, Decomposition method, Coupling cou
   }
   for (LowRank& part : parts) balance(part);
 
+  // as half floats
   const std::size_t kept = parts[0].terms;
   NodeTable u = make_table(grid.row_axes, coupling == Coupling::u ? 1 : channels, kept);
   NodeTable v = make_table(grid.column_axes, coupling == Coupling::v ? 1 : channels, kept);
@@ -203,6 +206,7 @@ class Search {
       report(0.3 * static_cast<double>(i + 1) / static_cast<double>(starts.size()));
     }
     std::sort(ranked.begin(), ranked.end());
+    // the best also with phi_d over half a circle
     if (unfolded_ > 0) {
       for (std::size_t i = 0, count = std::min(kTwins, ranked.size()); i < count; ++i) {
         Layout twin = ranked[i].second;
@@ -211,6 +215,7 @@ class Search {
       }
       std::sort(ranked.begin(), ranked.end());
     }
+
     constexpr std::size_t kClimbers = 4;
     for (std::size_t i = 0; i < std::min(kClimbers, ranked.size()); ++i) {
       climb(ranked[i].second);

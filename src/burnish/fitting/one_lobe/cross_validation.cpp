@@ -62,12 +62,14 @@ std::vector<SmoothTrial> choose_smoothness(const SampleSource& source, const Mod
     return true;
   };
 
+  // the smoothness of all tables, by decades
   std::vector<double> shares;
   for (const ModelSpec::TableSpec& table : spec.tables) shares.push_back(table.smooth_share);
   best.shares = shares;
   int worse = 0;
   for (int decade = kFirstDecade; decade <= kLastDecade && worse < kWorseDecades; ++decade)
     worse = improves(attempt(std::pow(10.0, decade), shares)) ? 0 : worse + 1;
+  // each table's share of it
   for (int round = 0; round < rounds; ++round)
     for (std::size_t t = 0; t < tables; ++t)
       for (const double before = best.shares[t]; const double factor : {0.1, 10.0}) {
@@ -79,6 +81,7 @@ std::vector<SmoothTrial> choose_smoothness(const SampleSource& source, const Mod
         } while (moved && shares[t] > 1e-4 && shares[t] < 1e4);
         if (best.shares[t] != before) break;  // this way helped, the other would undo it
       }
+  // half a decade either way
   for (const double factor : {std::sqrt(0.1), std::sqrt(10.0)})
     improves(attempt(best.smooth * factor, best.shares));
   std::ranges::stable_sort(trials, {}, &SmoothTrial::error);

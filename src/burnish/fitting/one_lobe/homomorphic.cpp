@@ -65,12 +65,14 @@ HomomorphicFit fit_homomorphic(const SampleSource& source, const ModelSpec& spec
 
   check_formats(spec, source.channels, options.format);
 
+  // least squares in log f
   RowMaker rows(source, spec, options.floor, options.error_floor);
   const Numbering numbering = number_nodes(spec, static_cast<std::size_t>(source.channels));
   LogSolution solution = solve(rows, options);
   FitSummary summary = solution.summary;
   int reweightings = 0;
 
+  // towards the least absolute error; the best pass is kept
   if (options.reweightings > 0) {
     const auto unrounded = [&](const LogSolution& s) {
       return from_log_tables(source.channels, to_tables(s, numbering, spec, options.format),

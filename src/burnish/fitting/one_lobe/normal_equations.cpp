@@ -194,6 +194,7 @@ LogSolution solve_normal_equations(const RowMaker& rows, const HomomorphicOption
     for (std::size_t g = 1; g < partial.size(); ++g) sum.add(partial[g][m]);
     if (!(sum.weight > 0)) throw Error("fit: expected samples with weight, found none");
 
+    // the mean over the samples, smoothness and ridge added
     Matrix data = (sum.upper + sum.upper.transpose()) / sum.weight;
     data.diagonal() += sum.diagonal / sum.weight;
     const Matrix right = sum.right / sum.weight;
@@ -207,6 +208,8 @@ LogSolution solve_normal_equations(const RowMaker& rows, const HomomorphicOption
     before += sum.weight * (mean_square - mean * mean).sum();
     after += sum.weight * ((x.cwiseProduct(data * x) - 2 * x.cwiseProduct(right)).sum() + mean_square.sum());
     weight += sum.weight * static_cast<double>(mean.size());
+
+    // where the unknowns stand among those of all channels
     for (std::size_t t = 0; t < rows.spec->tables.size(); ++t)
       for (std::size_t node = 0; node < rows.spec->tables[t].layout.node_count(); ++node)
         for (std::size_t c = 0; c < all.tables[t].copies; ++c)

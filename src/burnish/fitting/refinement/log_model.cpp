@@ -62,6 +62,7 @@ LogModel with_lobe_split(LogModel model, std::size_t lobe, double centre, const 
   const auto is_common = [&](int table) {
     return std::ranges::find(common, model.spec.tables[static_cast<std::size_t>(table)].name) != common.end();
   };
+  // the new lobe's own tables: copies, but for the step over theta_d
   std::vector<FactorUse> uses = model.spec.lobes[lobe];
   std::vector<int> copy(model.spec.tables.size(), -1);
   bool stepped = false;
@@ -87,6 +88,8 @@ LogModel with_lobe_split(LogModel model, std::size_t lobe, double centre, const 
     }
     use.table = copy[t];
   }
+
+  // without one, halves
   const std::vector<FactorUse>& old = model.spec.lobes[lobe];
   const auto own = std::ranges::find_if(old, [&](const FactorUse& use) { return !is_common(use.table); });
   if (!stepped)

@@ -13,6 +13,8 @@ constexpr std::size_t kChunk = 64;  // blocks
 
 Lookups lookups_of(const ModelSpec& spec, const TrainingSet& set) {
   Lookups found;
+
+  // what the lobes look up, each once
   for (const auto& lobe : spec.lobes) {
     std::vector<std::size_t>& of_lobe = found.lobes.emplace_back();
     for (const FactorUse& use : lobe) {
@@ -21,6 +23,8 @@ Lookups lookups_of(const ModelSpec& spec, const TrainingSet& set) {
       if (of_lobe.back() == found.lookups.size()) found.lookups.push_back(use);
     }
   }
+
+  // of these, what falls on the same place
   const auto layout_of = [&](const FactorUse& use) -> const TableLayout& {
     return spec.tables[static_cast<std::size_t>(use.table)].layout;
   };
@@ -33,6 +37,8 @@ Lookups lookups_of(const ModelSpec& spec, const TrainingSet& set) {
     if (known == distinct.end()) distinct.push_back(use);
   }
   found.place_count = distinct.size();
+
+  // the places, block by block; the last is filled up with the last pair
   found.pairs = set.size();
   const std::size_t blocks = chunk_count(set.size(), Lookups::kBlock);
   found.places.resize(blocks * Lookups::kBlock * distinct.size());

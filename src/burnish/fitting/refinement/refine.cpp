@@ -119,6 +119,7 @@ class Descent {
     for (int slow = 0; iterations_ < options_.max_iterations && slow < kMostSlowSteps; ++iterations_) {
       before_step();
       solver.linearize(x_, means);
+      // harder and harder damped, until a step leads down
       bool accepted = false;
       for (int trial = 0; trial < kMostTrials && !accepted; ++trial) {
         Eigen::VectorXd next = x_ + solver.step(damping);

@@ -155,6 +155,8 @@ double exposure_of(const TrainingSet& set, double unlit) {
 TrainingSet draw_training_set(BrdfRef source, const TrainingOptions& options) {
   TrainingSet set{.channels = source.channels(), .isotropic = source.isotropic()};
   Recurrence points(options.seed);
+
+  // pixels of lit spheres
   double unlit = 0;
   while (set.pairs.size() < options.pictures) {
     if (!options.crowded) {
@@ -172,6 +174,8 @@ TrainingSet draw_training_set(BrdfRef source, const TrainingOptions& options) {
   }
   set.weights.resize(set.pairs.size(), 1);
   set.picture_count = set.pairs.size();
+
+  // pairs over all directions
   for (std::size_t drawn = 0; drawn < options.directions;) {
     const std::array<double, 5>& u = points.next();
     const auto [theta_h, weight] = draw_theta_h(u[0]);
@@ -187,6 +191,8 @@ TrainingSet draw_training_set(BrdfRef source, const TrainingOptions& options) {
     set.weights.push_back(static_cast<float>(rim ? kRimWeight * weight : weight));
     drawn += !rim;
   }
+
+  // what the source says there
   if (options.spread_phi_h && source.isotropic())
     for (DirectionPair& pair : set.pairs) pair = turned(pair, kTwoPi * points.next()[4]);
   fill_values(source, set);
