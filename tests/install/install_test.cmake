@@ -1,5 +1,5 @@
-# Installs BUILD under SCRATCH, where ALONE compiles each installed header alone, then configures, builds and runs the consumer
-# beside this file, which holds the example of SOURCE/README.md.
+# Installs BUILD under SCRATCH, where ALONE compiles each installed header alone, then configures, builds and runs the
+# consumer beside this file, which holds the example of SOURCE/README.md.
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output
     WORKING_DIRECTORY ${SCRATCH})
