@@ -51,17 +51,16 @@ void add_eval_command(CLI::App& app) {
                 std::span(values).subspan(begin * channels, (end - begin) * channels),
                 std::span(known).subspan(begin, end - begin));
     });
-    fmt::memory_buffer text;
-    text += fmt::format("{}\n", header(brdf.channels(), source.findings.lambda_nm));
+    std::string text = header(brdf.channels(), source.findings.lambda_nm) + "\n";
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       for (std::size_t c = 0; c < channels; ++c)
         if (known[i])
           text += fmt::format("{}{}", c ? "," : "", values[i * channels + c]);
         else
           text += fmt::format("{}nan", c ? "," : "");
-      text.push_back('\n');
+      text += '\n';
     }
-    write_then_rename(arguments->out, {text.data(), text.size()});
+    write_then_rename(arguments->out, text);
   });
 }
 
