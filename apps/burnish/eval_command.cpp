@@ -1,4 +1,3 @@
-#include <iterator>
 #include <memory>
 
 #include <fmt/format.h>
@@ -52,17 +51,16 @@ void add_eval_command(CLI::App& app) {
                 std::span(values).subspan(begin * channels, (end - begin) * channels),
                 std::span(known).subspan(begin, end - begin));
     });
-    fmt::memory_buffer text;
-    fmt::format_to(std::back_inserter(text), "{}\n", header(brdf.channels(), source.findings.lambda_nm));
+    std::string text = header(brdf.channels(), source.findings.lambda_nm) + "\n";
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       for (std::size_t c = 0; c < channels; ++c)
         if (known[i])
-          fmt::format_to(std::back_inserter(text), "{}{}", c ? "," : "", values[i * channels + c]);
+          text += fmt::format("{}{}", c ? "," : "", values[i * channels + c]);
         else
-          fmt::format_to(std::back_inserter(text), "{}nan", c ? "," : "");
-      text.push_back('\n');
+          text += fmt::format("{}nan", c ? "," : "");
+      text += '\n';
     }
-    write_then_rename(arguments->out, {text.data(), text.size()});
+    write_then_rename(arguments->out, text);
   });
 }
 

@@ -177,7 +177,7 @@ void power_span(PowerMethod method, std::span<const float> cosines, std::span<co
   (static_cast<int>(method), cosines.data(), exponents.data(), cosines.size(), out.data());
 }
 
-void shade_blinn_phong(const BlinnPhong& material, const NormalSpans& normals, std::span<float> out) {
+void shade_blinn_phong(const BlinnPhongShading& material, const NormalSpans& normals, std::span<float> out) {
   require_length(out.size(), normals.x.size(), "normals x");
   require_length(out.size(), normals.y.size(), "normals y");
   require_length(out.size(), normals.z.size(), "normals z");

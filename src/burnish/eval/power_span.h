@@ -33,7 +33,7 @@ void power_span(PowerMethod method, std::span<const float> cosines, std::span<co
 double power_span_rounding(PowerMethod method, bool exponent_per_value) noexcept;
 
 /// Blinn-Phong reflection of one directional light seen by a distant viewer.
-struct BlinnPhong {
+struct BlinnPhongShading {
   float diffuse = 0.5f, specular = 0.5f;   ///< at least 0
   std::optional<PowerCoefficients> power;  ///< none: the cosine itself
   Vec3 wi{0, 0, 1}, wo{0, 0, 1};           ///< directions
@@ -46,7 +46,7 @@ struct NormalSpans {
 
 /// out[i] = diffuse max(0, n.wi) + specular max(0, n.h)^exponent with n the normalized normal and h the half
 /// vector, ^exponent by material.power. Throws Error for lengths that differ.
-void shade_blinn_phong(const BlinnPhong& material, const NormalSpans& normals, std::span<float> out);
+void shade_blinn_phong(const BlinnPhongShading& material, const NormalSpans& normals, std::span<float> out);
 
 /// Names of the instruction sets compiled in that this processor has, best first.
 std::vector<std::string> simd_targets();

@@ -96,7 +96,7 @@ void add(const std::string& name, double allowed, const Run& run) {
 
 void add_shading(const std::string& name, std::optional<PowerMethod> method) {
   constexpr std::size_t kCount = 2048;
-  BlinnPhong material{0.4f, 0.6f, {}, spherical_direction(0.5, 0), spherical_direction(0.2, 1)};
+  BlinnPhongShading material{0.4f, 0.6f, {}, spherical_direction(0.5, 0), spherical_direction(0.2, 1)};
   if (method) material.power = power_coefficients(*method, kExponent);
   Pcg32 random(12);
   Floats x(kCount), y(kCount), z(kCount), out(kCount);

@@ -128,7 +128,7 @@ struct Normals {
   }
   Vec3 unit(std::size_t i) const { return normalize({x[i], y[i], z[i]}); }
 };
-Normals test_normals(const BlinnPhong& material) {
+Normals test_normals(const BlinnPhongShading& material) {
   Pcg32 random(5);
   Normals normals;
   normals.add(half_vector(material.wi, material.wo));
@@ -140,7 +140,7 @@ Normals test_normals(const BlinnPhong& material) {
 }
 
 TEST(BlinnPhong, ShadesAsThePlainFormula) {
-  BlinnPhong material{0.3f, 0.7f, {}, spherical_direction(0.6, 0.2), spherical_direction(0.3, 2.0)};
+  BlinnPhongShading material{0.3f, 0.7f, {}, spherical_direction(0.6, 0.2), spherical_direction(0.3, 2.0)};
   const Normals normals = test_normals(material);
   std::vector<float> out(normals.x.size());
   for (const std::string& target : simd_targets()) {
@@ -155,7 +155,7 @@ TEST(BlinnPhong, ShadesAsThePlainFormula) {
 }
 
 TEST_P(PowerSpan, ShadesAHighlightOfAnyWeight) {
-  BlinnPhong material{0.25f, 0, {}, spherical_direction(0.6, 0.2), spherical_direction(0.3, 2.0)};
+  BlinnPhongShading material{0.25f, 0, {}, spherical_direction(0.6, 0.2), spherical_direction(0.3, 2.0)};
   const Normals normals = test_normals(material);
   std::vector<float> out(normals.x.size());
   for (const std::string& target : simd_targets()) {

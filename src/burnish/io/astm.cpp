@@ -138,12 +138,11 @@ std::string samples_astm(const Samples& samples, std::span<const double> lambda_
   else
     text += channels == 3 ? ",Red BRDF,Green BRDF,Blue BRDF" : ",BRDF";
   text += '\n';
-  const auto out = std::back_inserter(text);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const auto& [wi, wo] = samples.pairs[i];
     const double turn = samples.isotropic ? phi_of(wi) : 0;
-    fmt::format_to(out, "{},{},{},{}", theta_of(wi), phi_of(wi) - turn, theta_of(wo), phi_of(wo) - turn);
-    for (const double value : samples.at(i)) fmt::format_to(out, ",{}", value);
+    text += fmt::format("{},{},{},{}", theta_of(wi), phi_of(wi) - turn, theta_of(wo), phi_of(wo) - turn);
+    for (const double value : samples.at(i)) text += fmt::format(",{}", value);
     text += '\n';
   }
   return text;

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 
 #include <fmt/format.h>
 
@@ -198,11 +197,10 @@ std::string samples_csv(const Samples& samples, std::span<const double> lambda_n
   else
     text += channels == 3 ? ",r,g,b" : ",value";
   text += '\n';
-  const auto out = std::back_inserter(text);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const auto& [wi, wo] = samples.pairs[i];
-    fmt::format_to(out, "{},{},{},{},{},{}", wi.x, wi.y, wi.z, wo.x, wo.y, wo.z);
-    for (const double value : samples.at(i)) fmt::format_to(out, ",{}", value);
+    text += fmt::format("{},{},{},{},{},{}", wi.x, wi.y, wi.z, wo.x, wo.y, wo.z);
+    for (const double value : samples.at(i)) text += fmt::format(",{}", value);
     text += '\n';
   }
   return text;

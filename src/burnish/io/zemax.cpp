@@ -375,24 +375,23 @@ std::string format_zemax(const AngleTable& table, std::string_view sample) {
   const std::vector<Row> totals = block_integrals(table);
   const std::size_t columns = axes[3].nodes.size(), block = axes[2].nodes.size() * columns;
   constexpr std::array kNames = {"TristimulusX", "TristimulusY", "TristimulusZ"};
-  const auto out = std::back_inserter(text);
   for (std::size_t c = 0; c < channels; ++c) {
     // of the values of all channels, this one
     const auto channel = [&](const double* values) {
       return monochrome ? values[0] : product(to_xyz[c], values);
     };
-    fmt::format_to(out, "\n{}\nDataBegin\n", monochrome ? "Monochrome" : kNames[c]);
+    text += fmt::format("\n{}\nDataBegin\n", monochrome ? "Monochrome" : kNames[c]);
     for (std::size_t b = 0; b < totals.size(); ++b) {
-      fmt::format_to(out, "TIS\t{:.6g}\n", channel(totals[b].data()));
+      text += fmt::format("TIS\t{:.6g}\n", channel(totals[b].data()));
       for (std::size_t entry = b * block; entry < (b + 1) * block; ++entry) {
         const float* value = &table.values[entry * channels];
         const Row values = {value[0], value[channels == 3], value[channels - 1]};
         const double written = channel(values.data());
-        fmt::format_to(out, "{}{}",
-                       std::isnan(value[0]) ? 0.0
-                       : written == 0       ? kWrittenZero
-                                            : written,
-                       (entry + 1) % columns == 0 ? '\n' : '\t');
+        text += fmt::format("{}{}",
+                            std::isnan(value[0]) ? 0.0
+                            : written == 0       ? kWrittenZero
+                                                 : written,
+                            (entry + 1) % columns == 0 ? '\n' : '\t');
       }
     }
     text += "DataEnd\n";
