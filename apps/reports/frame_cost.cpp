@@ -27,7 +27,7 @@ namespace burnish::reports {
 namespace {
 
 constexpr int kSize = 1024, kVertices = 10000;
-constexpr double kLeastPsnr = 40;
+constexpr double kMinPsnr = 40;
 
 struct Peer {
   std::string name;
@@ -70,9 +70,9 @@ void check_answer(const Peer& peer) {
   const double exposure = automatic_exposure(truth, scene.background);
   const double found =
       psnr(mean_squared_error(tone_map(renderer.read(), exposure), tone_map(truth, exposure)));
-  if (!(found >= kLeastPsnr))
+  if (!(found >= kMinPsnr))
     throw Error(
-        fmt::format("{}: expected a picture of at least {} dB, found {:.1f}", peer.name, kLeastPsnr, found));
+        fmt::format("{}: expected a picture of at least {} dB, found {:.1f}", peer.name, kMinPsnr, found));
 }
 
 struct Times {

@@ -42,11 +42,8 @@ OpenedModel* fit(const OpenedBrdf& source, const std::string& model, const std::
   }
   if (format) options.format = parse_table_format(*format);
   if (budget > 0)
-    options.form = Budget{.bytes = budget,
-                          .lobes = lobes,
-                          .search = search,
-                          .loss = parse_fit_loss(loss),
-                          .scattered = how};
+    options.form = Budget{
+        .bytes = budget, .lobes = lobes, .search = search, .loss = parse_fit_loss(loss), .scattered = how};
   else
     options.form = form_of(model, tables, source.ref().isotropic(), how, parse_fit_loss(loss));
   const nb::gil_scoped_release released;

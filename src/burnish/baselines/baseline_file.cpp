@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kLargestFile = std::size_t{64} << 20;
+constexpr std::size_t kMaxFile = std::size_t{64} << 20;
 constexpr std::array<std::string_view, 3> kSeparableKinds = {"svd", "nd", "nmf"};
 
 bool is_separable(std::string_view kind) {
@@ -173,8 +173,8 @@ bool looks_like_baseline(std::string_view text) noexcept {
 }
 
 Baseline parse_baseline(const FileBytes& file) {
-  if (file.bytes.size() > kLargestFile)
-    throw Error::in_file(file.name, fmt::format("a baseline of at most {} bytes", kLargestFile),
+  if (file.bytes.size() > kMaxFile)
+    throw Error::in_file(file.name, fmt::format("a baseline of at most {} bytes", kMaxFile),
                          fmt::format("{}", file.bytes.size()));
   // whatever goes wrong inside, the message names the file
   try {

@@ -10,12 +10,12 @@ namespace burnish {
 
 namespace {
 
-constexpr float kLargestConstant = 1e30f;  // within it no product overflows
+constexpr float kMaxConstant = 1e30f;  // within it no product overflows
 
 void check_constants(std::span<const float> constants, const char* name) {
   for (const float c : constants)
-    if (!(c >= 0 && c <= kLargestConstant))
-      throw Error(fmt::format("dgf: {}: expected a number in [0, {}], found {}", name, kLargestConstant, c));
+    if (!(c >= 0 && c <= kMaxConstant))
+      throw Error(fmt::format("dgf: {}: expected a number in [0, {}], found {}", name, kMaxConstant, c));
 }
 
 void check_factor(const NodeTable& table, PairCoordinate coordinate, int channels, const char* name) {

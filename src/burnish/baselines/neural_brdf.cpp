@@ -34,9 +34,9 @@ NeuralBrdf::NeuralBrdf(std::span<const float> weights) : weights_{} {
   if (weights.size() != kWeights)
     throw Error(fmt::format("neural encoding: expected {} weights, found {}", kWeights, weights.size()));
   for (std::size_t i = 0; i < kWeights; ++i)
-    if (!(std::abs(weights[i]) <= kLargestWeight))
+    if (!(std::abs(weights[i]) <= kMaxWeight))
       throw Error(fmt::format("neural encoding: weight {}: expected a number within {} of 0, found {}", i + 1,
-                              kLargestWeight, weights[i]));
+                              kMaxWeight, weights[i]));
   std::ranges::copy(weights, weights_.begin());
 }
 
@@ -47,7 +47,7 @@ bool NeuralBrdf::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   }
 
   // the network's inputs: half and difference vector, turned so that h lies over +x
-  constexpr double kLargestExponent = 700;  // exp(700) is still finite
+  constexpr double kMaxExponent = 700;  // exp(700) is still finite
   const Vec3 h = half_vector(wi, wo), d = project(kProjectDifference, wi, wo);
   const float* weights = weights_.data();
   auto first = affine<kInputs, kHidden>(weights, {std::sqrt(h.x * h.x + h.y * h.y), 0, h.z, d.x, d.y, d.z});
@@ -57,8 +57,7 @@ bool NeuralBrdf::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
 
   // it was trained on log(1 + f)
   const auto x = affine<kHidden, kOutputs>(weights, second);
-  for (std::size_t c = 0; c < kOutputs; ++c)
-    f[c] = std::max(0.0, std::expm1(std::min(x[c], kLargestExponent)));
+  for (std::size_t c = 0; c < kOutputs; ++c) f[c] = std::max(0.0, std::expm1(std::min(x[c], kMaxExponent)));
   return true;
 }
 

@@ -20,9 +20,9 @@ class NeuralBrdf {
   static constexpr std::size_t kWeights =
       (kInputs + 1) * kHidden + (kHidden + 1) * kHidden + (kHidden + 1) * kOutputs;
   /// Weights beyond this are no encoding; within it no sum overflows.
-  static constexpr float kLargestWeight = 1e6f;
+  static constexpr float kMaxWeight = 1e6f;
 
-  /// Throws Error unless there are kWeights finite weights within kLargestWeight of 0.
+  /// Throws Error unless there are kWeights finite weights within kMaxWeight of 0.
   explicit NeuralBrdf(std::span<const float> weights);
 
   static constexpr int channels() noexcept { return static_cast<int>(kOutputs); }

@@ -60,7 +60,7 @@ TEST(NeuralBrdf, EvaluatesTheNetworkOfItsDefinition) {
 TEST(NeuralBrdf, IsFiniteAndNotNegativeForTheLargestWeights) {
   std::vector<double> f(3);
   for (const float sign : {1.0f, -1.0f}) {
-    const NeuralBrdf brdf(Weights(NeuralBrdf::kWeights, sign * NeuralBrdf::kLargestWeight));
+    const NeuralBrdf brdf(Weights(NeuralBrdf::kWeights, sign * NeuralBrdf::kMaxWeight));
     for (const Vec3 wi : {Vec3{0, 0, 1}, Vec3{1, 0, 1e-9}, Vec3{0.6, 0, 0.8}})
       for (const Vec3 wo : {Vec3{0, 0, 1}, Vec3{-1, 0, 1e-9}, Vec3{0, 0.6, 0.8}}) {
         ASSERT_TRUE(brdf.eval(wi, wo, f));

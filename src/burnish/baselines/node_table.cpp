@@ -13,7 +13,7 @@ namespace burnish {
 
 namespace {
 
-constexpr std::size_t kMostValues = std::size_t{1} << 26;
+constexpr std::size_t kMaxValues = std::size_t{1} << 26;
 
 }  // namespace
 
@@ -65,21 +65,21 @@ void check_node_table(const NodeTable& table, int brdf_channels, const std::stri
   const auto fail = [&](const std::string& expected, const std::string& found) {
     throw Error(fmt::format("table '{}': expected {}, found {}", name, expected, found));
   };
-  if (table.axes.empty() || table.axes.size() > NodeTable::kMostAxes)
-    fail(fmt::format("1 to {} axes", NodeTable::kMostAxes), fmt::format("{}", table.axes.size()));
+  if (table.axes.empty() || table.axes.size() > NodeTable::kMaxAxes)
+    fail(fmt::format("1 to {} axes", NodeTable::kMaxAxes), fmt::format("{}", table.axes.size()));
   if (table.channels != 1 && table.channels != brdf_channels)
     fail(fmt::format("1 or {} channels", brdf_channels), fmt::format("{}", table.channels));
-  if (table.terms < 1 || static_cast<std::size_t>(table.terms) > kMostValues)
+  if (table.terms < 1 || static_cast<std::size_t>(table.terms) > kMaxValues)
     fail("at least 1 term", fmt::format("{}", table.terms));
 
   // the count stays in bounds while it is multiplied
   std::size_t count = static_cast<std::size_t>(table.channels) * static_cast<std::size_t>(table.terms);
   for (const NodeAxis& axis : table.axes) {
-    if (axis.count < 2 || axis.count > kLargestSide)
-      fail(fmt::format("2 to {} nodes along {}", kLargestSide, to_string(axis.coordinate)),
+    if (axis.count < 2 || axis.count > kMaxSide)
+      fail(fmt::format("2 to {} nodes along {}", kMaxSide, to_string(axis.coordinate)),
            fmt::format("{}", axis.count));
     count *= static_cast<std::size_t>(axis.count);
-    if (count > kMostValues) fail(fmt::format("at most {} values", kMostValues), "more");
+    if (count > kMaxValues) fail(fmt::format("at most {} values", kMaxValues), "more");
   }
   if (table.values.size() != count)
     fail(fmt::format("{} values", count), fmt::format("{}", table.values.size()));
@@ -91,8 +91,8 @@ void check_node_table(const NodeTable& table, int brdf_channels, const std::stri
 }
 
 float round_to_half(double value) noexcept {
-  constexpr double kLargestHalf = 65504;
-  return static_cast<float>(Imath::half(static_cast<float>(std::clamp(value, -kLargestHalf, kLargestHalf))));
+  constexpr double kMaxHalf = 65504;
+  return static_cast<float>(Imath::half(static_cast<float>(std::clamp(value, -kMaxHalf, kMaxHalf))));
 }
 
 }  // namespace burnish

@@ -13,7 +13,7 @@ namespace burnish {
 /// A table's nodes along one coordinate: at i / (count - 1), or at i / count where it is periodic.
 struct NodeAxis {
   PairCoordinate coordinate = PairCoordinate::theta_h;
-  int count = 0;  ///< in [2, kLargestSide] of factors/table.h
+  int count = 0;  ///< in [2, kMaxSide] of factors/table.h
 
   double node(int i) const noexcept {
     return static_cast<double>(i) / (is_periodic(coordinate) ? count : count - 1);
@@ -24,9 +24,9 @@ struct NodeAxis {
 
 /// Half floats over a grid of pair coordinates, linear between nodes; the last axis varies fastest.
 struct NodeTable {
-  static constexpr std::size_t kMostAxes = 3;
+  static constexpr std::size_t kMaxAxes = 3;
 
-  std::vector<NodeAxis> axes;  ///< 1 to kMostAxes
+  std::vector<NodeAxis> axes;  ///< 1 to kMaxAxes
   int channels = 1;            ///< 1 (shared by the BRDF's channels) or the BRDF's channel count
   int terms = 1;
   std::vector<float> values;  ///< [node][channel][term], each exactly a half float
@@ -38,8 +38,8 @@ struct NodeTable {
 
 /// The nodes around a place and their weights, which sum to 1.
 struct NodeCorners {
-  std::array<std::size_t, std::size_t{1} << NodeTable::kMostAxes> node;
-  std::array<double, std::size_t{1} << NodeTable::kMostAxes> weight;
+  std::array<std::size_t, std::size_t{1} << NodeTable::kMaxAxes> node;
+  std::array<double, std::size_t{1} << NodeTable::kMaxAxes> weight;
   std::size_t count = 0;
 };
 

@@ -11,18 +11,18 @@ namespace burnish {
 
 SeparableBrdf::SeparableBrdf(NodeTable u, NodeTable v, std::vector<float> scale)
     : u_(std::move(u)), v_(std::move(v)), scale_(std::move(scale)) {
-  constexpr float kLargestScale = 1e9f;
+  constexpr float kMaxScale = 1e9f;
   if (scale_.empty() || scale_.size() > SymmetrizedBrdf::kMaxChannels)
     throw Error(fmt::format("separable BRDF: expected 1 to {} scales, one a channel, found {}",
                             SymmetrizedBrdf::kMaxChannels, scale_.size()));
   for (const float s : scale_)
-    if (!(s >= 0 && s <= kLargestScale))
-      throw Error(fmt::format("separable BRDF: expected a scale in [0, {}], found {}", kLargestScale, s));
+    if (!(s >= 0 && s <= kMaxScale))
+      throw Error(fmt::format("separable BRDF: expected a scale in [0, {}], found {}", kMaxScale, s));
   check_node_table(u_, channels(), "u");
   check_node_table(v_, channels(), "v");
-  if (u_.terms != v_.terms || u_.terms > kMostTerms)
+  if (u_.terms != v_.terms || u_.terms > kMaxTerms)
     throw Error(fmt::format("separable BRDF: expected as many terms in u and v, at most {}, found {} and {}",
-                            kMostTerms, u_.terms, v_.terms));
+                            kMaxTerms, u_.terms, v_.terms));
 
   // every coordinate belongs to one of the two
   unsigned used = 0;

@@ -16,10 +16,10 @@ namespace burnish {
 /// most of what a decomposition sees. Reciprocal to the last bit. Source: [Kautz 1999, eq. 3].
 class SeparableBrdf {
  public:
-  static constexpr int kMostTerms = 1024;
+  static constexpr int kMaxTerms = 1024;
 
   /// Throws Error unless the tables pass check_node_table and have as many terms as each other, at most
-  /// kMostTerms, no coordinate stands twice, and there is one scale in [0, 1e9] a channel.
+  /// kMaxTerms, no coordinate stands twice, and there is one scale in [0, 1e9] a channel.
   SeparableBrdf(NodeTable u, NodeTable v, std::vector<float> scale);
 
   int channels() const noexcept { return static_cast<int>(scale_.size()); }

@@ -40,8 +40,8 @@ struct ValuePointers {
   ValuePointers from(std::size_t channel, std::size_t i) const { return {at(channel, i), plane, step}; }
 };
 
-constexpr std::size_t kMostBlock = 128;  // directions that go through the steps together
-constexpr std::size_t kCacheLine = 16;   // floats
+constexpr std::size_t kMaxBlock = 128;  // directions that go through the steps together
+constexpr std::size_t kCacheLine = 16;  // floats
 constexpr std::size_t kTogether = FactoredPlan::kTogether;
 }  // namespace burnish
 #endif
@@ -84,11 +84,11 @@ HWY_INLINE hn::Mask<DI> no_directions(hn::Vec<DI> excess) {
 // A block's directions on the way to positions in tables. Every step is a loop of its own, so that none has a
 // decision in it; stores are hidden behind roots and divisions. The formulas are projection-inl.h's.
 struct Projector {
-  alignas(64) float sum_x[kMostBlock], sum_y[kMostBlock], sum_z[kMostBlock],
-      sum_length[kMostBlock];                   // wi + wo
-  alignas(64) float directions[6][kMostBlock];  // of rows
+  alignas(64) float sum_x[kMaxBlock], sum_y[kMaxBlock], sum_z[kMaxBlock],
+      sum_length[kMaxBlock];                   // wi + wo
+  alignas(64) float directions[6][kMaxBlock];  // of rows
   // of the projection at hand: (x, y), its length r, and den with r / den = tan(theta / 2)
-  alignas(64) float own_x[kMostBlock], own_y[kMostBlock], r[kMostBlock], den[kMostBlock];
+  alignas(64) float own_x[kMaxBlock], own_y[kMaxBlock], r[kMaxBlock], den[kMaxBlock];
   const float* in[6];  // planes of wi and wo
   const float *x, *y;
   std::size_t count;
@@ -114,7 +114,7 @@ struct Projector {
         hn::LoadInterleaved3(D(), wo + 3 * i, w[3].raw, w[4].raw, w[5].raw);
         for (int k = 0; k < 6; ++k) store(w[k], directions[k] + i);
         for (std::size_t k = 3 * i; k < 3 * (i + kLanes); k += kCacheLine)  // for the next block
-          hwy::Prefetch(wi + 3 * kMostBlock + k), hwy::Prefetch(wo + 3 * kMostBlock + k);
+          hwy::Prefetch(wi + 3 * kMaxBlock + k), hwy::Prefetch(wo + 3 * kMaxBlock + k);
       } else {
         for (std::size_t k = 0; k < 6; ++k) w[k] = load(in[k] + i);
       }
@@ -255,8 +255,8 @@ struct Projector {
 
 // Lookups in rows, again in loops of their own: loads that span several recent stores would wait for them.
 struct RowCells {
-  alignas(64) std::int32_t first[kMostBlock];  // float of the row that a lookup starts with
-  alignas(64) float x[kMostBlock], y[kMostBlock];
+  alignas(64) std::int32_t first[kMaxBlock];  // float of the row that a lookup starts with
+  alignas(64) float x[kMaxBlock], y[kMaxBlock];
 
   template <bool kPlane>
   HWY_INLINE void find(const FactoredPlan::Lookup& lookup, const float* at_x, const float* at_y,
@@ -286,7 +286,7 @@ struct RowCells {
 };
 struct Rows {
   RowCells cells, pair_cells;
-  alignas(64) float values[FactoredPlan::kRowStride * kMostBlock];
+  alignas(64) float values[FactoredPlan::kRowStride * kMaxBlock];
 };
 
 // Calls store_quad(i, where) for the directions of a block, by fours and at least `count`, with the places in
@@ -303,7 +303,7 @@ HWY_INLINE void for_each_quad(std::size_t count, float* values, const StoreQuad&
 struct Block {
   std::size_t stride, count;
   const float* positions;  // a slot has `stride`
-  float* values;           // a channel has kMostBlock
+  float* values;           // a channel has kMaxBlock
   const float* before;     // the same, or kLanes a channel of the scale
   std::size_t before_stride, before_mask;
   Rows& rows;
@@ -311,7 +311,7 @@ struct Block {
   HWY_INLINE const float* slot(std::size_t s) const { return positions + s * stride; }
   HWY_INLINE void multiply(std::size_t channel, std::size_t i, Lane factor) const {
     store(load(before + channel * before_stride + (i & before_mask)) * factor,
-          values + channel * kMostBlock + i);
+          values + channel * kMaxBlock + i);
   }
 };
 
@@ -397,9 +397,9 @@ void multiply(const FactoredPlan& plan, const FactoredPlan::Lookup& lookup, std:
 }
 
 struct Scratch {
-  alignas(64) float positions[FactoredPlan::kMostSlots * kLanes];
-  alignas(64) float sum[kTogether * kMostBlock];
-  alignas(64) float product[kTogether * kMostBlock];
+  alignas(64) float positions[FactoredPlan::kMaxSlots * kLanes];
+  alignas(64) float sum[kTogether * kMaxBlock];
+  alignas(64) float product[kTogether * kMaxBlock];
   alignas(64) float scale[kTogether * kLanes];
   Projector projector;
   Rows rows;
@@ -419,13 +419,13 @@ void eval_group(const FactoredPlan& plan, std::size_t group, std::size_t stride,
     // [HomomorphicBrdf, eq. 4]
     for (std::size_t k = product.first; k < product.last; ++k) {
       multiply<kChannels>(plan, plan.lookups[k], group, block);
-      block.before = block.values, block.before_stride = kMostBlock, block.before_mask = ~std::size_t{0};
+      block.before = block.values, block.before_stride = kMaxBlock, block.before_mask = ~std::size_t{0};
     }
     for (std::size_t c = 0; c < kChannels; ++c)
       for (std::size_t i = 0; i < count; i += kLanes) {
         if (product.first == product.last) block.multiply(c, i, Lane(1.0));
-        float* const sum = scratch.sum + c * kMostBlock + i;
-        if (!first) store(load(sum) + load(scratch.product + c * kMostBlock + i), sum);
+        float* const sum = scratch.sum + c * kMaxBlock + i;
+        if (!first) store(load(sum) + load(scratch.product + c * kMaxBlock + i), sum);
       }
   }
   // zero below the horizon
@@ -433,7 +433,7 @@ void eval_group(const FactoredPlan& plan, std::size_t group, std::size_t stride,
   const auto finish = [&](std::size_t i, Lane(&value)[kChannels]) HWY_ATTR {
     const Lane lit = if_positive(load(wi_z + i), load(wo_z + i));
     for (std::size_t c = 0; c < kChannels; ++c)
-      value[c] = if_positive(lit, load(scratch.sum + c * kMostBlock + i));
+      value[c] = if_positive(lit, load(scratch.sum + c * kMaxBlock + i));
   };
   const std::size_t stored = std::min<std::size_t>(kChannels, plan.channels - group * kTogether);
   const ValuePointers to = out.from(group * kTogether, 0);
@@ -474,7 +474,7 @@ void spoil_others(const Projector& p, std::size_t channels, const ValuePointers&
   }
 }
 
-// Up to kMostBlock directions from `first` on, in memory that whole vectors can be read from.
+// Up to kMaxBlock directions from `first` on, in memory that whole vectors can be read from.
 void eval_block(const FactoredPlan& plan, const DirectionPointers& in, std::size_t first, std::size_t count,
                 std::size_t stride, Scratch& scratch, const ValuePointers& out) {
   Projector& projector = scratch.projector;
@@ -493,9 +493,9 @@ void eval_block(const FactoredPlan& plan, const DirectionPointers& in, std::size
 void eval_directions(const FactoredPlan& plan, const DirectionPointers& in, std::size_t count,
                      const ValuePointers& out) {
   Scratch scratch;
-  constexpr std::size_t kPositions = FactoredPlan::kMostSlots * kLanes;
+  constexpr std::size_t kPositions = FactoredPlan::kMaxSlots * kLanes;
   const std::size_t slots = std::max<std::size_t>(plan.slots, 1);
-  const std::size_t stride = std::min(kMostBlock, kPositions / slots / kLanes * kLanes);
+  const std::size_t stride = std::min(kMaxBlock, kPositions / slots / kLanes * kLanes);
   const std::size_t whole = count / kLanes * kLanes;
   for (std::size_t i = 0; i < whole; i += stride)
     eval_block(plan, in, i, std::min(stride, whole - i), stride, scratch, out.from(0, i));

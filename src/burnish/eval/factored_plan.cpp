@@ -70,9 +70,9 @@ FactoredPlan::FactoredPlan(const FactoredBrdf& brdf) : channels(static_cast<std:
     products.back().scale.resize(up_to_multiple(channels, kTogether));
     rounding_bound = std::max(rounding_bound, bound);
   }
-  if (slots > kMostSlots)
+  if (slots > kMaxSlots)
     throw Error(
-        fmt::format("evaluator: expected at most {} positions in tables, found {}", kMostSlots, slots));
+        fmt::format("evaluator: expected at most {} positions in tables, found {}", kMaxSlots, slots));
 }
 
 FactoredPlan::Lookup FactoredPlan::add_table(const Table& table) {
@@ -93,7 +93,7 @@ FactoredPlan::Lookup FactoredPlan::add_table(const Table& table) {
       }
     values.resize(begin + lookup.row_block);
   }
-  if (lookup.plane || nodes > kMostVectors * kPlaneVector) return lookup;
+  if (lookup.plane || nodes > kMaxVectors * kPlaneVector) return lookup;
   lookup.planes = values.size();
   for (lookup.plane_vectors = 1; lookup.plane_vectors * kPlaneVector < nodes;) lookup.plane_vectors *= 2;
   for (std::size_t c = 0; c < (lookup.shared ? 1 : groups * kTogether); ++c) {

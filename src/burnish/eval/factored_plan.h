@@ -14,8 +14,8 @@ struct FactoredPlan {
   static constexpr std::size_t kTogether = 3;      ///< channels that go through the lookups together
   static constexpr std::size_t kRowStride = 4;     ///< floats a node in a table's rows
   static constexpr std::size_t kPlaneVector = 16;  ///< floats of the vectors that hold planes
-  static constexpr std::size_t kMostVectors = 8;   ///< of a plane; longer lines have rows only
-  static constexpr std::size_t kMostSlots = 1024;  ///< different positions in tables
+  static constexpr std::size_t kMaxVectors = 8;    ///< of a plane; longer lines have rows only
+  static constexpr std::size_t kMaxSlots = 1024;   ///< different positions in tables
 
   /// A position along an axis of tables, in cells from 0 to `cells`. With (x, y) of length r of the projected
   /// vector, a line's is `size` times its warped tan(theta / 2), size = cells; a disk's two, in slot and
@@ -55,7 +55,7 @@ struct FactoredPlan {
     std::vector<float> scale;  // a channel, filled up to whole groups
   };
 
-  /// Throws Error for more than kMostSlots slots.
+  /// Throws Error for more than kMaxSlots slots.
   explicit FactoredPlan(const FactoredBrdf& brdf);
 
   std::size_t channels, slots = 0;

@@ -56,7 +56,7 @@ HWY_INLINE Lane falling_line(Lane k, const GivenCosine& p);
 #include <burnish/power/forms-inl.h>
 
 HWY_INLINE Lane short_exp2(Lane x) {
-  const auto [whole, f] = round_to_whole(max(x, Lane(NearExact::kSmallestPower)));
+  const auto [whole, f] = round_to_whole(max(x, Lane(NearExact::kMinPower)));
   return scale_by_power_of_two(NearExact::exp2_near_zero_short(f), whole);
 }
 

@@ -24,7 +24,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr float kLargestHalf = 65504;
+constexpr float kMaxHalf = 65504;
 
 // Files so far and what the manifest says of them.
 class ModelExport {
@@ -162,7 +162,7 @@ void ModelExport::add_light(const SurfaceLight& light) {
   }
   for (std::size_t i = 0; i < textures.size(); ++i) {
     GlTexture& texture = textures[i];
-    for (float& value : texture.values) value = std::clamp(value, -kLargestHalf, kLargestHalf);
+    for (float& value : texture.values) value = std::clamp(value, -kMaxHalf, kMaxHalf);
     const std::string& file = add(fmt::format("{}.light_{}.ktx2", options_.name, i),
                                   encode_ktx2({.format = TableFormat::half,
                                                .channels = texture.channels,

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 
 #include <fmt/format.h>
@@ -14,21 +15,22 @@ namespace burnish {
 
 namespace {
 
-constexpr int kMostChannels = SymmetrizedBrdf::kMaxChannels;
+constexpr int kMaxChannels = SymmetrizedBrdf::kMaxChannels;
 
 bool depends_on_azimuth(const TableLayout& layout) noexcept {
   return layout.shape == TableShape::disk;
 }
 
-// The use that swapping wi and wo turns `use` into; false where there is none.
-bool swapped_use(const FactorUse& use, const TableLayout& layout, FactorUse& result) noexcept {
-  result = use;
-  return swapped(use.projection, depends_on_azimuth(layout), result.projection) &&
-         (layout.shape != TableShape::grid || swapped(use.projection_y, false, result.projection_y));
+// The use that swapping wi and wo turns `use` into; nothing where there is none.
+std::optional<FactorUse> swapped_use(const FactorUse& use, const TableLayout& layout) noexcept {
+  const auto x = swapped(use.projection, depends_on_azimuth(layout));
+  const auto y = layout.shape == TableShape::grid ? swapped(use.projection_y, false) : use.projection_y;
+  if (!x || !y) return std::nullopt;
+  return FactorUse{.table = use.table, .projection = *x, .projection_y = *y};
 }
 
 // A fit far too rough can leave an unbounded product in a direction without data; floats end at e^88.
-constexpr double kMostLogScale = 88;
+constexpr double kMaxLogScale = 88;
 
 double lookup(const Table& table, const Lookup& at, std::size_t channel) noexcept {
   const auto step = static_cast<std::size_t>(table.channels);
@@ -77,7 +79,7 @@ std::vector<double> logs_of_one(const Table& table) {
   return mean;
 }
 
-constexpr std::size_t kMostPlaces = 32;  // kept while a pair of directions is evaluated
+constexpr std::size_t kMaxPlaces = 32;  // kept while a pair of directions is evaluated
 
 }  // namespace
 
@@ -92,8 +94,8 @@ FactoredBrdf::FactoredBrdf(int channels, std::vector<Table> tables, std::vector<
 
 FactoredBrdf::FactoredBrdf(int channels, std::vector<Table> tables, std::vector<Lobe> lobes)
     : channels_(channels), tables_(std::move(tables)), lobes_(std::move(lobes)) {
-  if (channels < 1 || channels > kMostChannels)
-    throw Error(fmt::format("factored BRDF: expected 1 to {} channels, found {}", kMostChannels, channels));
+  if (channels < 1 || channels > kMaxChannels)
+    throw Error(fmt::format("factored BRDF: expected 1 to {} channels, found {}", kMaxChannels, channels));
   if (lobes_.empty()) throw Error("factored BRDF: expected at least one lobe, found none");
 
   // tables: names, sizes, values
@@ -133,14 +135,13 @@ FactoredBrdf::FactoredBrdf(int channels, std::vector<Table> tables, std::vector<
       if (depends_on_azimuth(layout) && is_angle_alone(use.projection))
         throw Error("lobe: expected a disk over a projection with an azimuth, found " +
                     to_string(use.projection));
-      FactorUse other;
-      const bool has_swap = swapped_use(use, layout, other);
-      const auto partner = has_swap && other != use ? std::find(rest.begin(), rest.end(), other) : rest.end();
+      const std::optional<FactorUse> other = swapped_use(use, layout);
+      const auto partner = other && *other != use ? std::find(rest.begin(), rest.end(), *other) : rest.end();
       if (partner != rest.end()) {
-        pairs.insert(pairs.end(), {use, other});
+        pairs.insert(pairs.end(), {use, *other});
         rest.erase(partner);
       } else {
-        reciprocal_ = reciprocal_ && has_swap && other == use;
+        reciprocal_ = reciprocal_ && other == use;
         singles.push_back(use);
       }
     }
@@ -165,9 +166,9 @@ bool FactoredBrdf::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   if (wi.z <= 0 || wo.z <= 0) return true;
 
   // every distinct place once
-  std::array<Lookup, kMostPlaces> places;     // touched up to their count,
-  std::array<double, kMostChannels> product;  // up to channels_ only
-  for (std::size_t p = 0; p < std::min(kMostPlaces, places_.size()); ++p)
+  std::array<Lookup, kMaxPlaces> places;     // touched up to their count,
+  std::array<double, kMaxChannels> product;  // up to channels_ only
+  for (std::size_t p = 0; p < std::min(kMaxPlaces, places_.size()); ++p)
     places[p] = locate(layout_of(places_[p]), places_[p], wi, wo);
 
   // sum over lobes of scale times pairs times the other factors [HomomorphicBrdf, eq. 4]
@@ -177,7 +178,7 @@ bool FactoredBrdf::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     const std::vector<FactorUse>& uses = ordered_[j];
     const auto place = [&](std::size_t k) {
       const std::size_t p = place_of_[j][k];
-      return p < kMostPlaces ? places[p] : locate(layout_of(uses[k]), uses[k], wi, wo);
+      return p < kMaxPlaces ? places[p] : locate(layout_of(uses[k]), uses[k], wi, wo);
     };
     std::size_t k = 0;
     for (; k < 2 * pair_counts_[j]; k += 2) {
@@ -256,7 +257,7 @@ FactoredBrdf from_stored_tables(int channels, std::vector<Table> tables,
       const std::vector<double>& logs = divided[static_cast<std::size_t>(use.table)];
       for (std::size_t c = 0; c < lobe.scale.size(); ++c) lobe.scale[c] += logs[logs.size() == 1 ? 0 : c];
     }
-    for (double& s : lobe.scale) s = static_cast<float>(std::exp(std::min(s, kMostLogScale)));
+    for (double& s : lobe.scale) s = static_cast<float>(std::exp(std::min(s, kMaxLogScale)));
   }
   return FactoredBrdf(channels, std::move(tables), std::move(lobes));
 }

@@ -146,8 +146,8 @@ class HeaderCheck {
   }
 
   void check_side(const std::string& attribute) {
-    if (const auto value = number<std::int32_t>(); value < 0 || value > kLargestSide)
-      fail(fmt::format("'{}' within 0 to {}, found {}", attribute, kLargestSide, value));
+    if (const auto value = number<std::int32_t>(); value < 0 || value > kMaxSide)
+      fail(fmt::format("'{}' within 0 to {}, found {}", attribute, kMaxSide, value));
   }
 
   // One header; false where the list of headers ends.
@@ -256,8 +256,7 @@ TableShape parse_shape(const std::string& name) {
 }
 
 Projection read_projection(const Json& factor, const char* key) {
-  bool angle_only = false;
-  return parse_projection(factor.at(key).get<std::string>(), angle_only);
+  return parse_projection(factor.at(key).get<std::string>()).projection;
 }
 
 // Everything but the pixels, from the JSON; `old` files have one format for all.

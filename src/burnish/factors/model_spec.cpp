@@ -117,11 +117,11 @@ struct ParsedFactor {
 ParsedFactor parse_factor(Parser& parser) {
   ParsedFactor factor{.name = parser.name(), .use = {}};
   parser.expect('(');
-  factor.use.projection = parse_projection(parser.until_bracket_or_comma(), factor.angle_only);
+  const NamedProjection first = parse_projection(parser.until_bracket_or_comma());
+  factor.use.projection = first.projection;
+  factor.angle_only = first.angle_only;
   factor.grid = parser.accept(',');
-  bool second_angle_only = false;
-  if (factor.grid)
-    factor.use.projection_y = parse_projection(parser.until_bracket_or_comma(), second_angle_only);
+  if (factor.grid) factor.use.projection_y = parse_projection(parser.until_bracket_or_comma()).projection;
   parser.expect(')');
   return factor;
 }

@@ -43,7 +43,7 @@ Vec3 node_direction(const TableLayout& layout, int x, int y) noexcept {
 }
 
 void check_layout(const TableLayout& layout, const std::string& name) {
-  const auto in_range = [](int n) { return n >= 2 && n <= kLargestSide; };
+  const auto in_range = [](int n) { return n >= 2 && n <= kMaxSide; };
   const bool height_fits = layout.shape == TableShape::line   ? layout.height == 1
                            : layout.shape == TableShape::disk ? layout.height == layout.width
                                                               : in_range(layout.height);
@@ -52,7 +52,7 @@ void check_layout(const TableLayout& layout, const std::string& name) {
                             layout.shape == TableShape::line   ? "a line (N x 1)"
                             : layout.shape == TableShape::disk ? "a disk (N x N)"
                                                                : "a grid",
-                            kLargestSide, layout.width, layout.height));
+                            kMaxSide, layout.width, layout.height));
 }
 
 void check_format(const Table& table) {

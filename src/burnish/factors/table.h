@@ -74,9 +74,9 @@ Lookup locate(const TableLayout& layout, const FactorUse& use, Vec3 wi, Vec3 wo)
 /// The projected direction that node (x, y) of a line or disk stands for (a line's at azimuth 0).
 Vec3 node_direction(const TableLayout& layout, int x, int y) noexcept;
 
-inline constexpr int kLargestSide = 8192;
+inline constexpr int kMaxSide = 8192;
 
-/// Throws Error unless the sizes are in [2, kLargestSide] and fit the shape.
+/// Throws Error unless the sizes are in [2, kMaxSide] and fit the shape.
 void check_layout(const TableLayout& layout, const std::string& name);
 
 /// Throws Error unless the table's format holds its channels.

@@ -40,7 +40,7 @@ float from_unorm8(std::uint8_t byte) noexcept {
 }
 
 // [EXT_texture_shared_exponent]: mantissas of N bits, exponents of bias B, the largest exponent E.
-constexpr int kMantissaBits = 9, kExponentBias = 15, kMostExponent = 31;
+constexpr int kMantissaBits = 9, kExponentBias = 15, kMaxExponent = 31;
 constexpr int kMantissaMask = (1 << kMantissaBits) - 1;
 
 // The value of one mantissa step.
@@ -49,7 +49,7 @@ float step_of(int exponent) noexcept {
 }
 
 std::uint32_t to_rgb9e5(const float* rgb) noexcept {
-  const float most = static_cast<float>(kMantissaMask) * step_of(kMostExponent);
+  const float most = static_cast<float>(kMantissaMask) * step_of(kMaxExponent);
   const float largest = std::min(std::max({rgb[0], rgb[1], rgb[2]}), most);
   int exponent = std::max(-kExponentBias - 1, std::ilogb(largest)) + 1 + kExponentBias;
   if (std::lround(largest / step_of(exponent)) > kMantissaMask) ++exponent;

@@ -15,9 +15,9 @@ namespace burnish {
 namespace {
 
 // At the horizon itself f is 0 by definition and the albedo has no meaning.
-constexpr double kMostTheta = radians(89.5);
+constexpr double kMaxTheta = radians(89.5);
 // Gains stay above this: a table that should vanish is left to the scaling of whole lobes.
-constexpr double kLeastGain = 1e-3;
+constexpr double kMinGain = 1e-3;
 // Kept below 1, so that rounding of the scales cannot lead above it.
 constexpr double kLimit = 1 - 1e-6;
 
@@ -29,14 +29,14 @@ struct Grid {
   // Steps shrink towards grazing, where albedos change fastest.
   double theta(std::size_t i) const {
     const double left = 1 - static_cast<double>(i) / static_cast<double>(thetas - 1);
-    return kMostTheta * (1 - std::pow(left, 1.5));
+    return kMaxTheta * (1 - std::pow(left, 1.5));
   }
   double phi(std::size_t j) const { return kTwoPi * static_cast<double>(j) / static_cast<double>(phis); }
   Vec3 direction(std::size_t k) const { return spherical_direction(theta(k / phis), phi(k % phis)); }
   // Linear in what theta() is a function of and in the azimuth; values beyond the last polar angle are its
   // own.
   double interpolate(const std::vector<double>& values, Vec3 w, std::size_t channel) const {
-    const double share = std::clamp(1 - theta_of(w) / kMostTheta, 0.0, 1.0);
+    const double share = std::clamp(1 - theta_of(w) / kMaxTheta, 0.0, 1.0);
     const double y = (1 - std::pow(share, 1 / 1.5)) * static_cast<double>(thetas - 1);
     const double x = phi_of(w) / kTwoPi * static_cast<double>(phis);
     const auto row = std::min(static_cast<std::size_t>(y), thetas - 2);
@@ -124,7 +124,7 @@ class Damper {
       const std::vector<double> changes = node_changes(brdf_.tables()[t], change);
       for (std::size_t i = 0; i < gains_[t].size(); ++i) {
         const double before =
-            std::exchange(gains_[t][i], std::clamp(gains_[t][i] * changes[i], kLeastGain, 1.0));
+            std::exchange(gains_[t][i], std::clamp(gains_[t][i] * changes[i], kMinGain, 1.0));
         largest = std::max(largest, std::abs(gains_[t][i] / before - 1));
       }
     }

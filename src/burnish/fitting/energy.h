@@ -8,7 +8,7 @@ namespace burnish {
 
 /// Where albedos are looked at, and how well.
 struct EnergyOptions {
-  int theta_count = 48;  ///< polar angles of wi from the normal to kMostTheta, denser towards grazing; >= 2
+  int theta_count = 48;  ///< polar angles of wi from the normal to kMaxTheta, denser towards grazing; >= 2
   int phi_count = 24;    ///< azimuths around, of anisotropic models; >= 1
   double tolerance = 0.005;  ///< of an albedo, see directional_albedo
   int max_iterations = 12;

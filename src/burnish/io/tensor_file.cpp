@@ -12,7 +12,7 @@ namespace {
 constexpr std::string_view kSignature("tensor_file\0", 12);
 constexpr std::uint64_t kAlignment = 8;
 // Name length, one byte of name, dimensions, type, offset.
-constexpr std::uint64_t kSmallestField = 2 + 1 + 2 + 1 + 8;
+constexpr std::uint64_t kMinField = 2 + 1 + 2 + 1 + 8;
 
 struct TypeInfo {
   std::string_view name;
@@ -87,7 +87,7 @@ std::vector<Tensor> parse_tensor_file(const FileBytes& file) {
              minor = reader.number<std::uint8_t>("a version");
   if (major != 1 || minor != 0) reader.fail("version 1.0", fmt::format("{}.{}", major, minor));
   const auto count = reader.number<std::uint32_t>("a number of fields");
-  if (count > reader.remaining() / kSmallestField)
+  if (count > reader.remaining() / kMinField)
     reader.fail("fields within the file", fmt::format("{} fields", count));
 
   std::vector<Tensor> tensors;
@@ -127,8 +127,7 @@ std::string format_tensor_file(std::span<const Tensor> tensors) {
 
   // the header's size, after which the data begin
   std::uint64_t offset = bytes.size();
-  for (const Tensor& tensor : tensors)
-    offset += kSmallestField - 1 + tensor.name.size() + 8 * tensor.shape.size();
+  for (const Tensor& tensor : tensors) offset += kMinField - 1 + tensor.name.size() + 8 * tensor.shape.size();
 
   // fields
   std::vector<std::uint64_t> offsets;

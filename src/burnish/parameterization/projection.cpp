@@ -42,12 +42,13 @@ double project_tan_half(const Projection& p, Vec3 wi, Vec3 wo) noexcept {
   return polar.r / polar.den;
 }
 
-bool swapped(const Projection& p, bool azimuth, Projection& result) noexcept {
-  result = p;
-  if (p.kind != Projection::Kind::affine) return !azimuth;
-  if (p.mirror != 0) return false;
+std::optional<Projection> swapped(const Projection& p, bool azimuth) noexcept {
+  // the azimuth of the difference turns by pi; all other angles stay
+  if (p.kind != Projection::Kind::affine) return azimuth ? std::nullopt : std::optional(p);
+  if (p.mirror != 0) return std::nullopt;
+  Projection result = p;
   std::swap(result.wi, result.wo);
-  return true;
+  return result;
 }
 
 namespace {
@@ -74,10 +75,9 @@ constexpr Name kNames[] = {
 
 }  // namespace
 
-Projection parse_projection(std::string_view text, bool& angle_only) {
+NamedProjection parse_projection(std::string_view text) {
   const auto known = std::ranges::find(kNames, text, &Name::text);
-  angle_only = known != std::end(kNames) && known->angle_only;
-  if (known != std::end(kNames)) return known->projection;
+  if (known != std::end(kNames)) return {known->projection, known->angle_only};
 
   const auto fail = [&]() -> Error {
     std::string names;
@@ -113,7 +113,7 @@ Projection parse_projection(std::string_view text, bool& angle_only) {
     if (!(term("wi", p.wi) || term("wo", p.wo) || term("m", p.mirror) || term("n", p.n))) throw fail();
   }
   if (p.wi == 0 && p.wo == 0 && p.mirror == 0) throw fail();
-  return p;
+  return {p};
 }
 
 std::string_view to_string(Projection::Kind kind) noexcept {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -60,13 +61,19 @@ Vec3 project(const Projection& projection, Vec3 wi, Vec3 wo) noexcept;
 double project_tan_half(const Projection& projection, Vec3 wi, Vec3 wo) noexcept;
 
 /// The projection that gives for (wo, wi) what `projection` gives for (wi, wo), as far as a table sees it:
-/// `azimuth` says whether the table depends on the azimuth. Returns false where there is none (mirror terms).
-bool swapped(const Projection& projection, bool azimuth, Projection& result) noexcept;
+/// `azimuth` says whether the table depends on the azimuth. Nothing where there is none (mirror terms).
+std::optional<Projection> swapped(const Projection& projection, bool azimuth) noexcept;
+
+/// A projection as text names it.
+struct NamedProjection {
+  Projection projection;
+  bool angle_only = false;  ///< by the name of an angle, which stands for the same vector
+};
 
 /// Reads wi, wo, h, d, theta_h, theta_d, theta_m, theta_t, phi_d, theta_i, theta_o or a sum of terms such as
-/// "wi+wo+0.5n", "m+0.8wo" (m is the mirrored light). Names of angles mean the same vectors;
-/// `angle_only` tells that one was used. Throws Error on anything else.
-Projection parse_projection(std::string_view text, bool& angle_only);
+/// "wi+wo+0.5n", "m+0.8wo" (m is the mirrored light). Throws Error on
+/// anything else.
+NamedProjection parse_projection(std::string_view text);
 /// "affine", "difference", "deviation", "twist" or "azimuth".
 std::string_view to_string(Projection::Kind kind) noexcept;
 /// A text parse_projection reads back to the same projection.

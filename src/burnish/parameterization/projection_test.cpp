@@ -22,10 +22,9 @@ std::vector<DirectionPair> pairs_and_corners() {
 }
 
 TEST(Projection, GivesUnitVectorsAboveTheHorizon) {
-  bool angle_only;
   for (const char* text : {"wi", "wo", "h", "d", "wi+wo-0.7n", "m+wo", "0.5wi-wo+0.2n", "wi-wo", "theta_m",
                            "theta_t", "phi_d"}) {
-    const Projection p = parse_projection(text, angle_only);
+    const Projection p = parse_projection(text).projection;
     for (const auto& [wi, wo] : pairs_and_corners()) {
       const Vec3 v = project(p, wi, wo);
       EXPECT_NEAR(length(v), 1, 1e-12) << text;
@@ -45,41 +44,37 @@ TEST(Projection, HalfAndDifferenceHaveTheHalfDifferenceAngles) {
 }
 
 TEST(Projection, AngleAloneAgreesWithTheVector) {
-  bool angle_only;
   for (const char* text : {"wi", "h", "d", "wi+wo+0.4n", "m+2wo", "theta_m", "theta_t", "phi_d"}) {
-    const Projection p = parse_projection(text, angle_only);
+    const Projection p = parse_projection(text).projection;
     for (const auto& [wi, wo] : pairs_and_corners())
       EXPECT_NEAR(project_tan_half(p, wi, wo), tan_half_theta(project(p, wi, wo)), 1e-12) << text;
   }
 }
 
 TEST(Projection, SwappingIsExactToTheLastBit) {
-  bool angle_only;
   for (const char* text :
        {"wi", "wo", "h", "wi+wo+0.4n", "0.3wi+0.9wo-0.2n", "d", "theta_m", "theta_t", "phi_d"}) {
-    const Projection p = parse_projection(text, angle_only);
-    Projection q;
-    ASSERT_TRUE(swapped(p, false, q)) << text;
+    const Projection p = parse_projection(text).projection;
+    const std::optional<Projection> q = swapped(p, false);
+    ASSERT_TRUE(q) << text;
     for (const auto& [wi, wo] : pairs_and_corners())
-      EXPECT_EQ(project_tan_half(p, wi, wo), project_tan_half(q, wo, wi)) << text;
+      EXPECT_EQ(project_tan_half(p, wi, wo), project_tan_half(*q, wo, wi)) << text;
   }
-  Projection q;
-  EXPECT_FALSE(swapped(kProjectDifference, true, q));
-  EXPECT_FALSE(swapped(parse_projection("m+wo", angle_only), false, q));
+  EXPECT_FALSE(swapped(kProjectDifference, true));
+  EXPECT_FALSE(swapped(parse_projection("m+wo").projection, false));
 }
 
 TEST(Projection, ReadsWhatItPrints) {
-  bool angle_only;
   for (const char* text : {"wi", "wo", "h", "d", "wi+wo+0.5n", "-0.25wi+1e-05wo-n", "m+0.8wo"}) {
-    const Projection p = parse_projection(text, angle_only);
-    EXPECT_EQ(parse_projection(to_string(p), angle_only), p) << text;
-    EXPECT_FALSE(angle_only);
+    const Projection p = parse_projection(text).projection;
+    EXPECT_EQ(parse_projection(to_string(p)).projection, p) << text;
+    EXPECT_FALSE(parse_projection(text).angle_only);
   }
-  EXPECT_EQ(parse_projection("theta_d", angle_only), kProjectDifference);
-  EXPECT_TRUE(angle_only);
+  EXPECT_EQ(parse_projection("theta_d").projection, kProjectDifference);
+  EXPECT_TRUE(parse_projection("theta_d").angle_only);
   for (const Projection& p : {kProjectDeviation, kProjectTwist, kProjectAzimuth}) {
-    EXPECT_EQ(parse_projection(to_string(p), angle_only), p);
-    EXPECT_TRUE(angle_only);
+    EXPECT_EQ(parse_projection(to_string(p)).projection, p);
+    EXPECT_TRUE(parse_projection(to_string(p)).angle_only);
   }
 }
 
@@ -148,10 +143,9 @@ TEST(Projection, AzimuthReachesBothItsEndsAndIsZeroWhereItHasNoMeaning) {
 }
 
 TEST(Projection, RefusesWhatItDoesNotKnow) {
-  bool angle_only;
   for (const char* text :
        {"", "x", "wi wo", "wi+", "n", "0wi", "wi+1e9n", "nan*wi", "theta_x", "phi_h", "wi+wow"})
-    EXPECT_THROW(parse_projection(text, angle_only), Error) << text;
+    EXPECT_THROW(parse_projection(text), Error) << text;
 }
 
 }  // namespace

@@ -327,13 +327,13 @@ struct NearExact {
   static T exp2_near_zero_short(T f) {
     return polynomial(f, 1.0, 0.693346858, 0.242223814, 0.0547617041);
   }
-  static constexpr double kSmallestPower = -125;  // 2^this is returned for everything smaller: no denormals
+  static constexpr double kMinPower = -125;  // 2^this is returned for everything smaller: no denormals
 
   template <class P, class T>
   static T value(const P& p, const T* k) {
     const auto [n, m] = split(p.c);
     const T t = m - T(1.0);
-    const T y = max(k[0] * mul_add(log2_ratio(t), t, n), T(kSmallestPower));
+    const T y = max(k[0] * mul_add(log2_ratio(t), t, n), T(kMinPower));
     const auto [whole, f] = round_to_whole(y);
     return scale_by_power_of_two(exp2_near_zero(f), whole);
   }

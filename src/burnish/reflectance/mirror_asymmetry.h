@@ -11,6 +11,6 @@ namespace burnish {
 double mirror_asymmetry(BrdfRef source);
 
 /// From here on a fit tells mirror images apart: a tenth of a percent, below what instruments repeat.
-inline constexpr double kLeastAsymmetry = 0.001;
+inline constexpr double kMinAsymmetry = 0.001;
 
 }  // namespace burnish

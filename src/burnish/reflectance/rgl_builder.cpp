@@ -13,7 +13,7 @@ namespace burnish {
 namespace {
 
 constexpr double kFloor = 1e-6;
-constexpr double kLargestTheta = radians(89);
+constexpr double kMaxTheta = radians(89);
 constexpr int kSigmaTheta = 64, kSigmaPhi = 33;  // sigma is as smooth as a clamped cosine
 
 double node(int i, int n) noexcept {
@@ -37,7 +37,7 @@ std::vector<double> retro_reflection(BrdfRef source, int rows, int columns) {
     std::vector<double> f(index(source.channels()));
     double* value = result.data() + row * index(columns);
     for (int i = 0; i < columns; ++i) {
-      const double theta = std::min(rgl_theta(node(i, columns)), kLargestTheta);
+      const double theta = std::min(rgl_theta(node(i, columns)), kMaxTheta);
       const Vec3 w = spherical_direction(theta, rgl_phi(rows > 1 ? node(static_cast<int>(row), rows) : 0.5));
       const double g = grey(source, w, w, f);
       value[i] = g < 0 ? (i > 0 ? value[i - 1] : -1) : g * std::cos(theta);
@@ -156,7 +156,7 @@ void fill_gaps(std::span<float> values, std::vector<std::uint8_t> valid, int sid
 /// The direction of a slice, a little above the horizon.
 Vec3 incident(const RglData& data, std::size_t slice) {
   const auto theta = static_cast<double>(data.theta_i[slice % data.theta_i.size()]);
-  return spherical_direction(std::min(theta, kLargestTheta),
+  return spherical_direction(std::min(theta, kMaxTheta),
                              static_cast<double>(data.phi_i[slice / data.theta_i.size()]));
 }
 

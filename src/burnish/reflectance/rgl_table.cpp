@@ -13,10 +13,10 @@
 namespace burnish {
 namespace {
 
-constexpr double kSmallestCosine = 1e-6;
-constexpr double kSmallestSigma = std::numeric_limits<float>::min();
+constexpr double kMinCosine = 1e-6;
+constexpr double kMinSigma = std::numeric_limits<float>::min();
 constexpr double kPhiTolerance = 1e-3;
-constexpr int kLargestChannels = 1 << 16;
+constexpr int kMaxChannels = 1 << 16;
 
 void require(bool condition, const char* expected) {
   if (!condition) throw Error(fmt::format("RGL table: expected {}", expected));
@@ -103,7 +103,7 @@ double rgl_lookup(const RglGrid& grid, Point2 p) noexcept {
 
 RglTable::RglTable(RglData data) : data_(std::move(data)) {
   const auto lambdas = data_.lambda_nm.size();
-  require(data_.channels > 0 && data_.channels <= kLargestChannels, "1 to 65536 channels");
+  require(data_.channels > 0 && data_.channels <= kMaxChannels, "1 to 65536 channels");
   require(lambdas == 0 ? data_.channels == 1 || data_.channels == 3
                        : static_cast<std::size_t>(data_.channels) == lambdas,
           "one channel, three, or one a wavelength");
@@ -259,10 +259,10 @@ bool RglTable::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   const auto [theta_i, phi_i, half, sample, mix] = places_of(wi, wo);
 
   // what the stored values were multiplied by: cos(theta_o), and 4 sigma / ndf [Dupuy 2018, sec. 4]
-  double scale = 1 / std::max(wo.z, kSmallestCosine);
+  double scale = 1 / std::max(wo.z, kMinCosine);
   if (data_.jacobian)
     scale *= rgl_lookup(data_.ndf, half) /
-             (4 * std::max(rgl_lookup(data_.sigma, rgl_square(theta_i, phi_i)), kSmallestSigma));
+             (4 * std::max(rgl_lookup(data_.sigma, rgl_square(theta_i, phi_i)), kMinSigma));
 
   // spectra, bilinear in the square and mixed over the slices
   const auto channels = static_cast<std::size_t>(data_.channels);

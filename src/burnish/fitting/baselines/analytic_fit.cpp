@@ -121,7 +121,7 @@ class Parameters {
 };
 
 // cbrt(f r)^2 below which the slope of the cube root rises no further.
-constexpr double kLeastSquare = 1e-8;
+constexpr double kMinSquare = 1e-8;
 
 /// Residuals sqrt(weight) (cbrt(f^ r) - cbrt(f r)), r the root of the cosines, a sample and channel each, as
 /// functions of some of the unknowns.
@@ -198,7 +198,7 @@ class Cost : public ceres::CostFunction {
     std::vector<double> slopes(rows);  // of residuals by f r
     for (std::size_t r = 0; r < rows; ++r) {
       const double weight = weights_[r / samples_.channels], root = residuals[r] / weight + targets_[r];
-      slopes[r] = weight / (3 * std::max(root * root, kLeastSquare));
+      slopes[r] = weight / (3 * std::max(root * root, kMinSquare));
     }
     for (std::size_t k = 0; k < columns;) {
       const Unknown& first = unknowns[varied_[k]];

@@ -17,7 +17,7 @@ namespace burnish {
 namespace {
 
 constexpr double kSmooth = 1e-3;  // of F and G
-constexpr int kMostD = 180, kMostFg = 90, kFewest = 4;
+constexpr int kMaxD = 180, kMaxFg = 90, kFewest = 4;
 
 /// Where a sample touches a table: node and node + 1, and the weight of the second.
 struct Touch {
@@ -188,7 +188,7 @@ DgfFit fit_dgf(const SampleSource& source, const DgfOptions& options) {
   const auto channels = static_cast<std::size_t>(source.channels);
   const auto nodes =
       static_cast<int>((options.budget / channels - std::min<std::size_t>(options.budget / channels, 8)) / 2);
-  const int size_d = std::min(kMostD, nodes / 2), size_fg = std::min(kMostFg, (nodes - size_d) / 2);
+  const int size_d = std::min(kMaxD, nodes / 2), size_fg = std::min(kMaxFg, (nodes - size_d) / 2);
   if (size_fg < kFewest || size_d < kFewest)
     throw Error(fmt::format("dgf: expected a budget of at least {} bytes, found {}",
                             channels * (8 + 8 * kFewest), options.budget));

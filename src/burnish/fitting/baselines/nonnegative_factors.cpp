@@ -19,7 +19,7 @@
 namespace burnish {
 namespace {
 
-constexpr std::size_t kMostLanes = 16, kBlock = 4;  // floats of a vector, terms at a time
+constexpr std::size_t kMaxLanes = 16, kBlock = 4;  // floats of a vector, terms at a time
 
 // [Lee 2001, eq. 4]
 float improved(float x, float wanted, float found, float least) {
@@ -145,7 +145,7 @@ struct WeightedRows {
 
 WeightedRows lay_out(const Matrix& m, std::span<const double> weights, bool tall) {
   const std::size_t rows = std::min(m.rows, m.columns), columns = std::max(m.rows, m.columns),
-                    stride = chunk_count(columns, kMostLanes) * kMostLanes;
+                    stride = chunk_count(columns, kMaxLanes) * kMaxLanes;
   WeightedRows result{.stride = stride,
                       .weights = AlignedVector<float>(rows * stride),
                       .weighted = AlignedVector<float>(rows * stride),

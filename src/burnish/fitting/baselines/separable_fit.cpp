@@ -170,7 +170,7 @@ struct Layout {
 constexpr std::array kTerms = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64};
 constexpr std::array kThetaNodes = {4, 6, 8, 12, 16, 24, 32, 48, 64};
 constexpr std::array kPhiNodes = {2, 3, 5, 9, 17, 33};
-constexpr int kFewestHalfNodes = 8, kMostHalfNodes = 512, kMostDiskNodes = 96;
+constexpr int kFewestHalfNodes = 8, kMaxHalfNodes = 512, kMaxDiskNodes = 96;
 
 class Search {
  public:
@@ -178,9 +178,8 @@ class Search {
       : source_(source),
         method_(method),
         options_(options),
-        unfolded_(source.isotropic() && mirror_asymmetry(source) > kLeastAsymmetry
-                      ? kIsotropicSplits.size() / 2
-                      : 0),
+        unfolded_(source.isotropic() && mirror_asymmetry(source) > kMinAsymmetry ? kIsotropicSplits.size() / 2
+                                                                                 : 0),
         splits_(!source.isotropic()
                     ? std::span<const Split>(kAnisotropicSplits)
                     : std::span(kIsotropicSplits).first(kIsotropicSplits.size() / 2 + unfolded_)),
@@ -248,7 +247,7 @@ class Search {
       return values;
     };
     const std::size_t most_values = (options_.budget - std::min(options_.budget, 4 * channels)) / 2;
-    int n = source_.isotropic() ? kMostHalfNodes : kMostDiskNodes;
+    int n = source_.isotropic() ? kMaxHalfNodes : kMaxDiskNodes;
     while (n >= kFewestHalfNodes && values_with(n) > most_values) --n;
     return n >= kFewestHalfNodes ? n : 0;
   }

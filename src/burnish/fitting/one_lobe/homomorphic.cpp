@@ -13,14 +13,14 @@ namespace burnish {
 namespace {
 
 // Up to here the normal equations fit the caches and their solution costs less than a pass over the samples.
-constexpr std::size_t kMostNormalEquations = 512;
+constexpr std::size_t kMaxNormalEquations = 512;
 
 // The diffuse reflection of white is 1 / pi: a floor above hides all but highlights.
-constexpr double kLargestFloor = 1;
+constexpr double kMaxFloor = 1;
 
 LogSolution solve(const RowMaker& rows, const HomomorphicOptions& options) {
   const auto channels = static_cast<std::size_t>(rows.source->channels);
-  return coupled_unknowns(*rows.spec, channels) <= kMostNormalEquations
+  return coupled_unknowns(*rows.spec, channels) <= kMaxNormalEquations
              ? solve_normal_equations(rows, options)
              : solve_by_conjugate_gradients(rows, options);
 }
@@ -58,7 +58,7 @@ HomomorphicFit fit_homomorphic(const SampleSource& source, const ModelSpec& spec
   if (spec.lobes.size() != 1 || spec.lobes.front().empty())
     throw Error("fit: a log-linear fit takes a model of one lobe");
   if (source.count == 0) throw Error("fit: expected samples, found none");
-  const auto is_floor = [](double floor) { return floor > 0 && floor <= kLargestFloor; };
+  const auto is_floor = [](double floor) { return floor > 0 && floor <= kMaxFloor; };
   if (!(options.smooth >= 0) || !std::isfinite(options.smooth) || !is_floor(options.floor) ||
       !is_floor(options.error_floor) || options.reweightings < 0)
     throw Error("fit: expected smooth >= 0, floors > 0 and at most 1, and reweightings >= 0");

@@ -13,7 +13,7 @@ constexpr std::size_t kBlock = 1024;  // samples produced at a time
 
 // Reweighting: errors below kSmallError count as squares, a step changes a value by at most e^kLongestStep,
 // and the model is taken as at least this share of the floor.
-constexpr double kSmallError = 0.2, kLongestStep = 3, kSmallestShare = 1e-2;
+constexpr double kSmallError = 0.2, kLongestStep = 3, kMinShare = 1e-2;
 
 }  // namespace
 
@@ -65,7 +65,7 @@ void RowMaker::add_reweighted(const DirectionPair& pair, std::span<const double>
                               std::span<double> model, LogRows& rows) const {
   current->eval(pair.wi, pair.wo, model);
   for (std::size_t c = 0; c < f.size(); ++c) {
-    const double m = std::max(model[c], floor * kSmallestShare);
+    const double m = std::max(model[c], floor * kMinShare);
     const double slope = m / (m + error_floor);
     const double error = std::log((std::max(f[c], 0.0) + error_floor) / (m + error_floor));
     const double step = std::clamp(error / slope, -kLongestStep, kLongestStep);

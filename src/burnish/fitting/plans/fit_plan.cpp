@@ -189,8 +189,7 @@ LobesFit fit_plan(const TrainingSet& set, const LobePlan& plan, std::size_t byte
 
   // Of many unknowns the 1-D tables first: their steps are solved directly, and grids that start as 1 only
   // lower the error.
-  const bool direct =
-      coupled_unknowns(whole, static_cast<std::size_t>(set.channels)) <= kMostCholeskyUnknowns;
+  const bool direct = coupled_unknowns(whole, static_cast<std::size_t>(set.channels)) <= kMaxCholeskyUnknowns;
   const LobesInTurn lobes(plan, direct ? whole : without_grids(whole));
   const bool grids = lobes.first(lobes.count()).tables.size() < whole.tables.size();
   RefineOptions thin_options = options;

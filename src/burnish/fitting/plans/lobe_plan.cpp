@@ -21,12 +21,12 @@ constexpr Warp kDiskWarp{WarpKind::rational, 0.25};
 
 constexpr std::size_t kNumberBytes = 4;  // of a scale, a warp's parameter or a projection's coefficient
 // Of an isotropic model: from how many texels on it has grids, and how many its 1-D tables take at most.
-constexpr double kGridTexels = 1500, kThreeGridTexels = 6000, kMostLineTexels = 2000;
+constexpr double kGridTexels = 1500, kThreeGridTexels = 6000, kMaxLineTexels = 2000;
 // Of the factor that tells mirror images apart: nodes from one side to the other, where 3 and 7 did no
 // better, and its share, where .04 to .4 did about as well.
 constexpr int kTwistNodes = 5;
 constexpr double kTwistShare = 0.25;
-constexpr int kMostSide = 1024;  // nodes of a line: finer than any measurement
+constexpr int kMaxLineNodes = 1024;  // nodes of a line: finer than any measurement
 
 // More texels for each of few lobes resolve rings, more lobes follow how the highlight changes with the
 // angles.
@@ -62,7 +62,7 @@ double node_cost(const PlannedFactor& factor, int channels, std::size_t texel_by
 void add_table(const PlannedFactor& factor, double nodes, const std::string& suffix, ModelSpec& spec) {
   const bool line = factor.shape == TableShape::line;
   const int least = factor.shape == TableShape::disk ? 3 : 2;
-  const auto side = [](double n) { return std::min(static_cast<int>(n), kMostSide); };
+  const auto side = [](double n) { return std::min(static_cast<int>(n), kMaxLineNodes); };
   const int width = factor.width > 0 ? factor.width : side(line ? nodes : std::sqrt(nodes)),
             height = line               ? 1
                      : factor.width > 0 ? side(nodes / factor.width)
@@ -120,7 +120,7 @@ LobePlan default_plan(std::size_t bytes, int lobes, bool isotropic, std::size_t 
     const double texels = static_cast<double>(bytes) / static_cast<double>(texel_bytes);
     // Beyond some hundred texels a lobe, what three 1-D tables multiply to is missing more than resolution.
     const bool grids = texels > kGridTexels, three = texels > kThreeGridTexels;
-    const double lines = grids ? std::min(0.5, kMostLineTexels / texels) : 1;
+    const double lines = grids ? std::min(0.5, kMaxLineTexels / texels) : 1;
     if (lobes <= 0) plan.lobes = lobes_for(lines * texels);
     plan.factors = {line("p", {kProjectWo, kProjectWi}, 0.083), line("q", {kProjectHalf}, 0.587, kHalfWarp),
                     line("m", {kProjectDeviation}, 0.183, kDeviationWarp),
@@ -164,7 +164,7 @@ LobePlan default_plan(std::size_t bytes, int lobes, bool isotropic, std::size_t 
 
 LobePlan plan_for(BrdfRef source, std::size_t bytes, int lobes, std::size_t texel_bytes) {
   const LobePlan plain = default_plan(bytes, lobes, source.isotropic(), texel_bytes);
-  if (!source.isotropic() || mirror_asymmetry(source) <= kLeastAsymmetry) return plain;
+  if (!source.isotropic() || mirror_asymmetry(source) <= kMinAsymmetry) return plain;
   LobePlan twisted = plain;
   twisted.factors.push_back({.name = "w",
                              .shape = TableShape::grid,

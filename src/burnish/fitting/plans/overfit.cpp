@@ -11,7 +11,7 @@ constexpr std::size_t kManyTexels = 6000, kTexelsOnce = 16'384;
 constexpr std::size_t kIsotropicDirections = 60'000, kAnisotropicDirections = 200'000;
 constexpr std::size_t kEnoughPairs = 40;  // a texel
 constexpr std::size_t kHeldOutPictures = 5000, kHeldOutDirections = 15'000;
-constexpr double kMostGap = 2, kStiffer = 10, kMostSmooth = 1e-3;
+constexpr double kMaxGap = 2, kStiffer = 10, kMaxSmooth = 1e-3;
 
 bool has_few_pairs(const LogModel& model, const TrainingSet& set) {
   std::size_t texels = 0;
@@ -39,9 +39,9 @@ LobesFit fit_without_overfit(BrdfRef source, const TrainingSet& set, const LobeP
   TrainingSet held_out = draw_training_set(source, anew);
   held_out.exposure = set.exposure;
   double error = objective(fit.model, held_out, options.shares);
-  if (error < objective(fit.model, set, options.shares) + kMostGap) return fit;
+  if (error < objective(fit.model, set, options.shares) + kMaxGap) return fit;
   RefineOptions stiffer = options;
-  while (stiffer.smooth < kMostSmooth) {
+  while (stiffer.smooth < kMaxSmooth) {
     stiffer.smooth *= kStiffer;
     LobesFit candidate = fit_plan(set, plan, bytes, texel_bytes, stiffer);
     const double next = objective(candidate.model, held_out, options.shares);

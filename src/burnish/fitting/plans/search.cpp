@@ -18,12 +18,12 @@ namespace {
 // A trial is fitted to every kFit-th pair in few steps and judged on as many others.
 constexpr std::size_t kFit = 6;
 constexpr int kTrialSteps = 8;
-constexpr int kMostRounds = 2;
+constexpr int kMaxRounds = 2;
 // A change must pay for its risk: gains below are within what another draw of pairs would give.
-constexpr double kLeastGain = 0.01;
+constexpr double kMinGain = 0.01;
 // Lobes of an anisotropic source are judged by models of no more texels than there are so many pairs for.
 constexpr std::size_t kJudgedPairs = 8;
-constexpr int kMostAnisotropicLobes = 4;
+constexpr int kMaxAnisotropicLobes = 4;
 
 /// One way to change a plan; nothing where it does not apply.
 struct Change {
@@ -179,7 +179,7 @@ class PlanSearch {
       plan_to_spec(start, options_.bytes, set_.channels, options_.texel_bytes);
     best = fit(start, &best);  // as many steps as every change gets
     result_.trials = {{"start", best.objective, true}};
-    for (int round = 0; round < kMostRounds; ++round)
+    for (int round = 0; round < kMaxRounds; ++round)
       if (!improve(round, best)) break;
     result_.plan = best.plan;
     if (set_.channels > 1) share_channels();
@@ -217,14 +217,14 @@ class PlanSearch {
     // the most rewarding first
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < changes.size(); ++k)
-      if (values[k] < best.objective - kLeastGain) order.push_back(k);
+      if (values[k] < best.objective - kMinGain) order.push_back(k);
     std::ranges::sort(order, {}, [&](std::size_t k) { return std::pair(values[k], k); });
     std::vector<bool> kept(changes.size());
     for (const std::size_t k : order) {
       const auto changed = changes[k].apply(best.plan);
       if (!changed) continue;
       Candidate next = fit(*changed, &best);
-      kept[k] = next.objective < best.objective - kLeastGain;
+      kept[k] = next.objective < best.objective - kMinGain;
       if (kept[k]) best = std::move(next);
     }
     for (std::size_t k = 0; k < changes.size(); ++k)
@@ -241,7 +241,7 @@ class PlanSearch {
       const std::size_t now = ++finished;
       if (std::this_thread::get_id() != caller_) return;
       share_done_ =
-          (round + 0.8 * static_cast<double>(now) / static_cast<double>(changes.size())) / kMostRounds;
+          (round + 0.8 * static_cast<double>(now) / static_cast<double>(changes.size())) / kMaxRounds;
       report();
     });
     return values;
@@ -266,7 +266,7 @@ class PlanSearch {
       }
     });
     const auto best = static_cast<std::size_t>(std::ranges::min_element(values) - values.begin());
-    const bool gained = values[best] < values.front() - kLeastGain;
+    const bool gained = values[best] < values.front() - kMinGain;
     for (std::size_t k = 1; k < plans.size(); ++k)
       result_.trials.push_back({fmt::format("one channel of {}", result_.plan.factors[k - 1].name), values[k],
                                 gained && k == best});
@@ -300,18 +300,18 @@ LobePlan plan_for(BrdfRef source, const TrainingSet& set, std::size_t bytes, int
   RefineOptions steps = options;
   steps.max_iterations = 2 * kTrialSteps;
   double least = INFINITY;
-  for (int count = 2; count <= kMostAnisotropicLobes; ++count) {
+  for (int count = 2; count <= kMaxAnisotropicLobes; ++count) {
     const LobePlan plan = plan_for(source, bytes, count, texel_bytes),
                    trial = plan_for(source, judged_bytes, count, texel_bytes);
     if (!plan_fits(plan, bytes, set.channels, texel_bytes) || !plan_fits(trial, judged_bytes, 1, texel_bytes))
       continue;
     if (options.progress)
       steps.progress = [&, count](double f) {
-        options.progress((count - 2 + f) / (kMostAnisotropicLobes - 1));
+        options.progress((count - 2 + f) / (kMaxAnisotropicLobes - 1));
       };
     const LobesFit fit = fit_plan(fitted, trial, judged_bytes, texel_bytes, steps);
     const double value = objective(fit.model, judged, options.shares);
-    if (!(value < least - kLeastGain)) continue;
+    if (!(value < least - kMinGain)) continue;
     least = value;
     best = plan;
   }

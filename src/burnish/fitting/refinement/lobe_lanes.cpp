@@ -24,8 +24,8 @@ HWY_EXPORT(add_transposed);
 HWY_EXPORT(add_squares);
 HWY_EXPORT(multiply);
 
-constexpr std::size_t kMostGroups = 16;
-constexpr float kLeastTotal = 1e-30f;  // whose reciprocal is finite
+constexpr std::size_t kMaxGroups = 16;
+constexpr float kMinTotal = 1e-30f;  // whose reciprocal is finite
 
 void prefetch(const void* data, std::size_t bytes) noexcept {
   constexpr std::size_t kLine = 64;
@@ -151,7 +151,7 @@ void LobeLanes::evaluate(const Values& values, std::size_t block, std::size_t ch
   HWY_DYNAMIC_DISPATCH(evaluate)
   (slots_, parts_, places(block), values.lambdas.data() + channel * channel_size_, at.factor.data(),
    at.product.data(), at.total.data());
-  for (float& total : at.total) total = std::max(total, kLeastTotal);
+  for (float& total : at.total) total = std::max(total, kMinTotal);
 }
 
 void LobeLanes::differentiate(Block& at) const noexcept {
@@ -174,7 +174,7 @@ void LobeLanes::add_squares(const Block& at, const float* amounts, std::size_t b
 Eigen::VectorXd LobeLanes::times(const Values& values, const AlignedVector<float>& shares,
                                  const Eigen::VectorXd& v) const {
   const AlignedVector<float> lanes = spread(v, 0);
-  const std::size_t group_size = (blocks() + kMostGroups - 1) / kMostGroups;
+  const std::size_t group_size = (blocks() + kMaxGroups - 1) / kMaxGroups;
   std::vector<AlignedVector<float>> partial(chunk_count(blocks(), group_size));
   for_each_chunk(blocks(), group_size, [&](std::size_t group, std::size_t begin, std::size_t end) {
     partial[group].resize(lanes.size());

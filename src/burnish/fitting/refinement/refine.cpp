@@ -17,15 +17,15 @@ namespace {
 // Levenberg-Marquardt: the damping's start, its smallest, and what successes and failures make of it.
 // It changes where the objective falls by more or less than these shares of what was predicted, as a third of
 // the damping that serves best makes a step that leads up.
-constexpr double kFirstDamping = 1e-2, kFirstIterativeDamping = 0.1, kLeastDamping = 1e-6;
+constexpr double kFirstDamping = 1e-2, kFirstIterativeDamping = 0.1, kMinDamping = 1e-6;
 constexpr double kEase = 0.3, kHarden = 4, kGoodGain = 0.75, kPoorGain = 0.25;
-constexpr int kMostTrials = 6, kMostSlowSteps = 3;
+constexpr int kMaxTrials = 6, kMaxSlowSteps = 3;
 // Pins what neither data nor smoothness determine, as shares of the mean diagonal.
 constexpr double kRidge = 1e-7, kDampedRidge = 1e-3;
 constexpr double kLongestStep = 2;  // change of a logarithm
 
 // A truncated solution is good enough for a step that is tried and judged.
-constexpr int kMostCgIterations = 40;
+constexpr int kMaxCgIterations = 40;
 constexpr double kCgTolerance = 1e-2;
 
 /// One channel's, or coupled channels', damped linear systems.
@@ -35,7 +35,7 @@ class StepSolver {
     if (!direct()) roughness_diagonal_ = 2 * smooth * system.roughness_diagonal();
   }
 
-  bool direct() const { return system_.size() <= kMostCholeskyUnknowns; }
+  bool direct() const { return system_.size() <= kMaxCholeskyUnknowns; }
 
   void linearize(const Eigen::VectorXd& x, const ErrorTerms& means) {
     if (direct()) {
@@ -86,7 +86,7 @@ class StepSolver {
     };
     const auto precondition = [&](const Vector& r) -> Vector { return r.cwiseQuotient(diagonal); };
     const auto dot = [](const Vector& a, const Vector& b) { return a.dot(b); };
-    preconditioned_cg(x, Vector(-factor_.gradient), kCgTolerance, kMostCgIterations, apply, precondition, dot,
+    preconditioned_cg(x, Vector(-factor_.gradient), kCgTolerance, kMaxCgIterations, apply, precondition, dot,
                       [](const CgResult&) {});
     return x;
   }
@@ -116,12 +116,12 @@ class Descent {
     ErrorTerms means = system_.errors(x_);
     before_ = after_ = objective(means, x_);
     double damping = solver.direct() ? kFirstDamping : kFirstIterativeDamping;
-    for (int slow = 0; iterations_ < options_.max_iterations && slow < kMostSlowSteps; ++iterations_) {
+    for (int slow = 0; iterations_ < options_.max_iterations && slow < kMaxSlowSteps; ++iterations_) {
       before_step();
       solver.linearize(x_, means);
       // harder and harder damped, until a step leads down
       bool accepted = false;
-      for (int trial = 0; trial < kMostTrials && !accepted; ++trial) {
+      for (int trial = 0; trial < kMaxTrials && !accepted; ++trial) {
         Eigen::VectorXd next = x_ + solver.step(damping);
         system_.clamp(next);
         const ErrorTerms next_means = system_.errors(next);
@@ -133,7 +133,7 @@ class Descent {
           after_ = value;
           x_ = std::move(next);
           means = next_means;
-          if (gain > kGoodGain && trial == 0) damping = std::max(kLeastDamping, kEase * damping);
+          if (gain > kGoodGain && trial == 0) damping = std::max(kMinDamping, kEase * damping);
           if (gain < kPoorGain) damping *= kHarden / 2;
         } else {
           damping *= kHarden;

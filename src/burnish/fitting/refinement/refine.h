@@ -11,7 +11,7 @@
 namespace burnish {
 
 /// coupled_unknowns up to which steps are solved by a Cholesky factorization.
-inline constexpr std::size_t kMostCholeskyUnknowns = 1000;
+inline constexpr std::size_t kMaxCholeskyUnknowns = 1000;
 
 struct RefineOptions {
   ErrorTerms shares = PictureLoss{}.shares;  ///< see PictureLoss
@@ -29,7 +29,7 @@ struct RefineOptions {
 /// Lowers the error that PictureLoss states, by damped Gauss-Newton steps (Levenberg-Marquardt) on the
 /// logarithms of the tables [Marquardt1963]; lambda stays positive. Every accepted step lowers the
 /// objective. Channels are refined side by side, or as one system where a table is shared. Steps are solved
-/// directly for up to kMostCholeskyUnknowns, by preconditioned conjugate gradients for more. The
+/// directly for up to kMaxCholeskyUnknowns, by preconditioned conjugate gradients for more. The
 /// result does not depend on the number of threads. The summary's errors are the objective with the
 /// smoothness term, means over the channels; its iterations are of all channels.
 FitSummary refine(LogModel& model, const TrainingSet& set, const RefineOptions& options);

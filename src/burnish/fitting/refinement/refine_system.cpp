@@ -10,7 +10,7 @@ namespace burnish {
 namespace {
 
 constexpr std::size_t kChunk = 64;  // blocks
-constexpr std::size_t kMostGroups = 16;
+constexpr std::size_t kMaxGroups = 16;
 // Of many pairs an even part makes a matrix good enough for a step; the slope is that of all.
 constexpr std::size_t kMatrixPairsPerUnknown = 40;
 
@@ -222,7 +222,7 @@ void RefineSystem::gauss_newton_matrix(const Eigen::VectorXd& x, const ErrorTerm
 
   // the slope of all pairs; rows of some, each standing for `every`
   constexpr std::size_t kBlock = LobeLanes::kBlock;
-  const std::size_t group_size = (lanes_.blocks() + kMostGroups - 1) / kMostGroups;
+  const std::size_t group_size = (lanes_.blocks() + kMaxGroups - 1) / kMaxGroups;
   std::vector<AlignedVector<float>> gradient(chunk_count(lanes_.blocks(), group_size));
   for_each_chunk(lanes_.blocks(), group_size, [&](std::size_t group, std::size_t begin, std::size_t end) {
     gradient[group].resize(values.lambdas.size());
@@ -257,7 +257,7 @@ RefineSystem::GaussNewtonFactor RefineSystem::gauss_newton_factor(const Eigen::V
   result.shares.resize(lanes_.blocks() * channels() * block_size);
 
   // slope and diagonal, and the lobes' shares that make the rows
-  const std::size_t group_size = (lanes_.blocks() + kMostGroups - 1) / kMostGroups;
+  const std::size_t group_size = (lanes_.blocks() + kMaxGroups - 1) / kMaxGroups;
   std::vector<AlignedVector<float>> gradient(chunk_count(lanes_.blocks(), group_size)),
       diagonal(gradient.size());
   for_each_chunk(lanes_.blocks(), group_size, [&](std::size_t group, std::size_t begin, std::size_t end) {

@@ -11,10 +11,10 @@ namespace burnish {
 
 namespace {
 
-constexpr std::size_t kMostTogether = 2000;  // unknowns of a system whose errors are made good together
+constexpr std::size_t kMaxTogether = 2000;  // unknowns of a system whose errors are made good together
 // Keeps what makes good within what a linear model sees: shares of a diagonal entry and of their mean.
 constexpr double kDamping = 1e-2, kRidge = 1e-3;
-constexpr std::size_t kMostChannels = 64;
+constexpr std::size_t kMaxChannels = 64;
 
 bool holds_few_bits(TableFormat format) {
   return format == TableFormat::rgb9e5 || format == TableFormat::unorm8;
@@ -32,7 +32,7 @@ class Rounding {
   void round(std::span<const double> logs, std::span<double> stored) const {
     const double least = holds_few_bits(format_) ? 0x1p-126 : kTableFloor;
     const double most = format_ == TableFormat::rgb9e5 ? 65408 : 1;
-    std::array<float, kMostChannels> values;
+    std::array<float, kMaxChannels> values;
     for (std::size_t c = 0; c < logs.size(); ++c)
       values[c] = static_cast<float>(std::clamp(std::exp(logs[c] - divided_[c]), least, most));
     const std::vector<float> rounded =
@@ -96,7 +96,7 @@ class CompensatedRounding {
       // as many tables as one matrix may hold
       const std::size_t first = first_unknown(t);
       std::size_t end = t + 1;
-      while (end < roundings_.size() && first_unknown(end + 1) - first <= kMostTogether) ++end;
+      while (end < roundings_.size() && first_unknown(end + 1) - first <= kMaxTogether) ++end;
       for (Channels& part : parts_) prepare(part, first, first_unknown(end));
       for (; t < end; ++t) round_table(t, first);
     }
@@ -125,7 +125,7 @@ class CompensatedRounding {
   /// The factor of the damped inverse for the unknowns [first, last).
   void prepare(Channels& part, std::size_t first, std::size_t last) {
     part.upper.resize(0, 0);
-    if (last - first > kMostTogether) return;
+    if (last - first > kMaxTogether) return;
     part.system.gauss_newton_matrix(part.x, part.means, first, last, gauss_newton_);
     part.upper = gauss_newton_.matrix;
     part.system.add_roughness_matrix(2 * smooth_, first, part.upper);
@@ -174,7 +174,7 @@ FactoredBrdf from_stored(const LogModel& model, const std::vector<Rounding>& rou
 
 FactoredBrdf to_rounded_brdf(const LogModel& model, const TrainingSet& set, const RefineOptions& options) {
   const std::vector<Table> tables = log_tables(model, options.format);
-  if (static_cast<std::size_t>(model.channels) > kMostChannels ||
+  if (static_cast<std::size_t>(model.channels) > kMaxChannels ||
       std::ranges::none_of(tables, [](const Table& table) { return holds_few_bits(table.format); }))
     return to_brdf(model, options.format);
 

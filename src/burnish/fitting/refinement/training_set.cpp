@@ -16,7 +16,7 @@ namespace burnish {
 
 namespace {
 
-constexpr double kLargestLightAngle = radians(75);
+constexpr double kMaxLightAngle = radians(75);
 constexpr double kPixelCosine = 0.01, kPairCosine = 0.05;  // the second as in the error figures
 constexpr double kRimCosine = 0.005, kRimWeight = 0.1;     // of pairs nearer to the horizon than that
 constexpr double kCrowdedPixelCosine = 1e-3;
@@ -47,7 +47,7 @@ class Recurrence {
 };
 
 Vec3 light_of(double u) {
-  const double light = kLargestLightAngle * u;
+  const double light = kMaxLightAngle * u;
   return {std::sin(light), 0, std::cos(light)};
 }
 

@@ -17,7 +17,7 @@ class GlEvaluator {
   GlEvaluator(const FactoredBrdf& brdf, ShaderFilter filter, TableFormat precision);
 
   /// f_r in 1/sr, three values a pair: wi and wo, unit vectors of the local frame. At most
-  /// GlFunction::kMostCalls pairs.
+  /// GlFunction::kMaxCalls pairs.
   std::vector<float> eval(std::span<const GlVectors> pairs) const { return function_.call(pairs); }
 
  private:

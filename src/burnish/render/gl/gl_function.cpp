@@ -47,7 +47,7 @@ void GlFunction::set_texture(const GlTexture& texture) {
 }
 
 std::vector<float> GlFunction::call(std::span<const GlVectors> arguments) const {
-  assert(arguments.size() <= kMostCalls);
+  assert(arguments.size() <= kMaxCalls);
   std::vector<float> values(3 * arguments.size());
   if (arguments.empty()) return values;
   GLuint buffers[2];

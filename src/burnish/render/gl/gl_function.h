@@ -27,10 +27,10 @@ class GlFunction {
   /// Gives a texture to the sampler of its name. Throws Error as upload_texture.
   void set_texture(const GlTexture& texture);
 
-  /// Three values a call. At most kMostCalls.
+  /// Three values a call. At most kMaxCalls.
   std::vector<float> call(std::span<const GlVectors> arguments) const;
 
-  static constexpr std::size_t kMostCalls = 64 * 65535;
+  static constexpr std::size_t kMaxCalls = 64 * 65535;
 
  private:
   unsigned program_ = 0;

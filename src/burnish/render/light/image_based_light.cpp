@@ -15,9 +15,9 @@
 namespace burnish {
 namespace {
 
-constexpr int kRings = 96;    // angles gamma about an axis, gamma = pi (ring / kRings)^2
-constexpr int kSpokes = 32;   // azimuths of a ring of the sky
-constexpr int kMostMaps = 9;  // of a mean and four orders
+constexpr int kRings = 96;   // angles gamma about an axis, gamma = pi (ring / kRings)^2
+constexpr int kSpokes = 32;  // azimuths of a ring of the sky
+constexpr int kMaxMaps = 9;  // of a mean and four orders
 
 double ring_angle(double ring) noexcept {
   return kPi * (ring / kRings) * (ring / kRings);
@@ -34,7 +34,7 @@ Vec3 slice_view(int slice, int slices) noexcept {
 // (the inside factors) cos(theta_i) about an axis, in azimuthal harmonics on rings. Directions are in the local
 // frame of a slice: the viewer towards -x, so that the mirror direction lies towards +x.
 struct Kernel {
-  using Harmonics = std::array<Channels, kMostMaps / 2 + 1>;
+  using Harmonics = std::array<Channels, kMaxMaps / 2 + 1>;
 
   double axis = 0;                   // radians from the normal towards +x
   std::vector<Harmonics> even, odd;  // a ring: of cos(m psi), of sin(m psi)
@@ -88,15 +88,15 @@ Kernel kernel_of(const FactoredBrdf& inside, Vec3 wo, int orders) {
   return kernel;
 }
 
-std::array<double, kMostMaps> harmonics_of(double c, double s) noexcept {
-  return harmonics<kMostMaps>(c, s);
+std::array<double, kMaxMaps> harmonics_of(double c, double s) noexcept {
+  return harmonics<kMaxMaps>(c, s);
 }
 
 // Light at one ring, weighted by each harmonic of its azimuth.
-using RingLight = std::array<Channels, kMostMaps>;
+using RingLight = std::array<Channels, kMaxMaps>;
 
-void add(RingLight& to, const std::array<double, kMostMaps>& harmonics, double weight, Rgb light) noexcept {
-  for (std::size_t h = 0; h < kMostMaps; ++h) {
+void add(RingLight& to, const std::array<double, kMaxMaps>& harmonics, double weight, Rgb light) noexcept {
+  for (std::size_t h = 0; h < kMaxMaps; ++h) {
     const double w = weight * harmonics[h];
     to[h][0] += w * light.r;
     to[h][1] += w * light.g;
@@ -170,7 +170,7 @@ void add_point(std::vector<RingLight>& light, Vec3 axis, const Axes& across, int
   const double along = dot(w, axis), x = dot(w, across.x), z = dot(w, across.z), sine = std::hypot(x, z);
   const double at = kRings * std::sqrt(std::atan2(sine, along) / kPi);
   const auto ring = std::min(static_cast<std::size_t>(at), std::size_t{kRings - 1});
-  const auto harmonics = sine > 0 ? harmonics_of(x / sine, z / sine) : std::array<double, kMostMaps>{1};
+  const auto harmonics = sine > 0 ? harmonics_of(x / sine, z / sine) : std::array<double, kMaxMaps>{1};
   const double low = ring_angle(static_cast<double>(ring)), high = ring_angle(static_cast<double>(ring) + 1);
   const double part = (std::atan2(sine, along) - low) / (high - low);
   add(light[ring], harmonics, 1 - part, point.light);
@@ -272,7 +272,7 @@ Rgb ImageBasedLight::radiance(Vec3 n, Vec3 v) const noexcept {
   const double sin_o = length(away), t = sin_o / (1 + cos_o);
   const Vec3 wo{-sin_o, 0, cos_o};
   // kernels are round where normal and view coincide: any azimuth will do there
-  const Vec3 plane = (1 / std::max(sin_o, kLeastSine)) * away;
+  const Vec3 plane = (1 / std::max(sin_o, kMinSine)) * away;
 
   // the two slices next to the view
   const int side = options.side;

@@ -30,7 +30,7 @@ struct View {
     const Expr cosine = named("cos_o", min(dot(n, v), 1.0));
     const ExprVector away = named("away", cosine * n - v);
     const Expr sine = named("sin_o", length(away));
-    plane = named("plane", Expr(1.0) / max(sine, kLeastSine) * away);
+    plane = named("plane", Expr(1.0) / max(sine, kMinSine) * away);
     wo = named("wo", ExprVector(-sine, 0.0, cosine));
     slice = named("slice", sine / (1 + cosine) * (slices - 1));
     low = named("low", min(Expr(Op::to_integer, {slice}), Expr::integer(slices - 2)));
@@ -52,9 +52,9 @@ Expr seen(const ImageBasedLight& light, const View& view, const std::string& axe
   // its place in the maps of its half, and the azimuth of the tilt there
   const ExprVector axis = in_half_of(shown, shown), tilt = in_half_of(shown, named("tilt", tilt_world));
   const TurnedAxes<ExprVector> across(axis);
-  constexpr std::size_t kMostMaps = 9;
+  constexpr std::size_t kMaxMaps = 9;
   const auto weights =
-      harmonics<kMostMaps>(named("turn_x", dot(tilt, across.x)), named("turn_y", dot(tilt, across.z)));
+      harmonics<kMaxMaps>(named("turn_x", dot(tilt, across.x)), named("turn_y", dot(tilt, across.z)));
   const auto [place_x, place_y] = map_coordinates(shown, side);
 
   // every map, weighed by its harmonic

@@ -10,7 +10,7 @@ namespace burnish {
 /// with members x, y and z.
 
 /// The plane of view and normal is divided by no less than this sine between them.
-inline constexpr double kLeastSine = 1e-6;
+inline constexpr double kMinSine = 1e-6;
 
 /// Axes at right angles to `up` that turn with it without a seam where up.y > -1 [Duff 2017, with y for z].
 template <class V>

@@ -18,7 +18,7 @@ namespace burnish {
 namespace {
 
 constexpr int kWidest = 8192;
-constexpr std::uint64_t kMostCompressed = 4096;  // bytes of pixels a byte of the file
+constexpr std::uint64_t kMaxCompressed = 4096;  // bytes of pixels a byte of the file
 
 double sum_of(std::span<const float> rgb) noexcept {
   return static_cast<double>(rgb[0]) + rgb[1] + rgb[2];
@@ -137,7 +137,7 @@ SkyImage parse_sky(const FileBytes& file) {
           fmt::format("a picture of all directions, twice as wide as high, at most {} wide", kWidest),
           fmt::format("{} x {}", width, height));
     const auto stored = static_cast<std::uint64_t>(width * height) * 3 * sizeof(std::uint16_t);
-    if (stored / kMostCompressed > file.bytes.size())
+    if (stored / kMaxCompressed > file.bytes.size())
       throw Error::in_file(file.name, fmt::format("data of {} x {} pixels", width, height),
                            fmt::format("{} bytes", file.bytes.size()));
 

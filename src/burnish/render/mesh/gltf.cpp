@@ -196,7 +196,7 @@ class GltfReader {
     }
     if (order.size() % 3 != 0) fail(place, "corners by threes", std::to_string(order.size()));
     triangles_ += order.size() / 3;
-    if (triangles_ > kMostTriangles) fail(place, fmt::format("at most {} triangles", kMostTriangles), "more");
+    if (triangles_ > kMaxTriangles) fail(place, fmt::format("at most {} triangles", kMaxTriangles), "more");
     return order;
   }
 

@@ -157,7 +157,7 @@ GltfElements GltfDocument::elements(std::size_t index, const std::string& user) 
   if (bytes == 0) fail(place + ".componentType", "5121, 5123, 5125 or 5126", std::to_string(kind));
 
   // where its bytes lie: the accessor in a view in a buffer, each inside the one around it
-  e.count = number(member(accessor, "count", place), place + ".count", 3 * kMostTriangles + 1);
+  e.count = number(member(accessor, "count", place), place + ".count", 3 * kMaxTriangles + 1);
   const json& view =
       element("bufferViews", number(member(accessor, "bufferView", place), place + ".bufferView", SIZE_MAX));
   const std::string_view all = buffer(number(member(view, "buffer", place), place + ".buffer", 1000));

@@ -16,7 +16,7 @@ struct MeshFile {
 };
 
 /// Files with more triangles than this are refused.
-inline constexpr std::size_t kMostTriangles = std::size_t{1} << 25;
+inline constexpr std::size_t kMaxTriangles = std::size_t{1} << 25;
 
 /// Wavefront OBJ: v, vt, vn, f (polygons as fans, indices from the end too) and usemtl; everything else is
 /// passed over. Missing normals are smooth, tangents as finish_mesh finds them. Throws Error, with the line,

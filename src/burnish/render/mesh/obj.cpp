@@ -118,8 +118,7 @@ class ObjReader {
     for (std::size_t k = 2; k < corners.size(); ++k)
       for (const std::size_t i : {std::size_t{0}, k - 1, k}) append(corners[i]);
     triangles_ += corners.size() - 2;
-    if (triangles_ > kMostTriangles)
-      fail(fmt::format("at most {} triangles", kMostTriangles), "more of them");
+    if (triangles_ > kMaxTriangles) fail(fmt::format("at most {} triangles", kMaxTriangles), "more of them");
   }
   void append(const Corner& c) {
     RawMesh& raw = raws_[*material_];
