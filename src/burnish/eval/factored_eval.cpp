@@ -113,15 +113,19 @@ struct Projector {
         hn::LoadInterleaved3(D(), wi + 3 * i, w[0].raw, w[1].raw, w[2].raw);
         hn::LoadInterleaved3(D(), wo + 3 * i, w[3].raw, w[4].raw, w[5].raw);
         for (int k = 0; k < 6; ++k) store(w[k], directions[k] + i);
-        for (std::size_t k = 3 * i; k < 3 * (i + kLanes); k += kCacheLine)  // for the next block
-          hwy::Prefetch(wi + 3 * kMaxBlock + k), hwy::Prefetch(wo + 3 * kMaxBlock + k);
+        for (std::size_t k = 3 * i; k < 3 * (i + kLanes); k += kCacheLine) {  // for the next block
+          hwy::Prefetch(wi + 3 * kMaxBlock + k);
+          hwy::Prefetch(wo + 3 * kMaxBlock + k);
+        }
       } else {
         for (std::size_t k = 0; k < 6; ++k) w[k] = load(in[k] + i);
       }
       worst = hn::Max(worst, excess(w));
       if constexpr (kSum) {
         const Lane u = w[0] + w[3], v = w[1] + w[4], z = w[2] + w[5];
-        store(u, sum_x + i), store(v, sum_y + i), store(z, sum_z + i);
+        store(u, sum_x + i);
+        store(v, sum_y + i);
+        store(z, sum_z + i);
         store(length(u, v, z), sum_length + i);
       }
     });
@@ -131,10 +135,17 @@ struct Projector {
   void begin(const DirectionPointers& from, std::size_t first, std::size_t number, bool sum) {
     count = number;
     for (std::size_t k = 0; k < 6; ++k) in[k] = from.at(k, first);
-    if (from.step == 3)
-      sum ? begin<true, true>() : begin<true, false>();
-    else
-      sum ? begin<false, true>() : begin<false, false>();
+    if (from.step == 3) {
+      if (sum)
+        begin<true, true>();
+      else
+        begin<true, false>();
+    } else {
+      if (sum)
+        begin<false, true>();
+      else
+        begin<false, false>();
+    }
   }
 
   HWY_INLINE Lanes direction(std::size_t first, std::size_t i) const {
@@ -146,12 +157,14 @@ struct Projector {
             load(sum_length + i)};
   }
   HWY_INLINE void put(const Polar<Lane>& polar, std::size_t i) {
-    store(polar.r, r + i), store(polar.den, den + i);
+    store(polar.r, r + i);
+    store(polar.den, den + i);
   }
 
   // Of a vector (x, y, z) and `total`, its length; none: 1.
   void project_up(const float* from_x, const float* from_y, const float* z, const float* total, bool radius) {
-    x = from_x, y = from_y;
+    x = from_x;
+    y = from_y;
     const auto polar = [=](std::size_t i) HWY_ATTR {
       return polar_of(Lanes{load(from_x + i), load(from_y + i), load(z + i)},
                       total ? load(total + i) : Lane(1.0));
@@ -169,20 +182,24 @@ struct Projector {
 
   // 2 d, whose z is |wi + wo|
   void project_difference() {
-    x = own_x, y = own_y;
+    x = own_x;
+    y = own_y;
     for_each([&](std::size_t i) HWY_ATTR {
       const LanePair at = pair(i);
       const auto [u, v] = across_half(at.sum, at.length_of_sum, at.apart);
-      store(u, own_x + i), store(v, own_y + i);
+      store(u, own_x + i);
+      store(v, own_y + i);
       put(polar_of(Lanes{u, v, at.length_of_sum}, length(u, v, at.length_of_sum)), i);
     });
   }
 
   void project_affine(const Projection& p) {
-    x = own_x, y = own_y;
+    x = own_x;
+    y = own_y;
     for_each([&](std::size_t i) HWY_ATTR {
       const auto [v, polar] = affine(p, direction(0, i), direction(3, i));
-      store(v.x, own_x + i), store(v.y, own_y + i);
+      store(v.x, own_x + i);
+      store(v.y, own_y + i);
       put(polar, i);
     });
   }
@@ -392,8 +409,10 @@ void multiply(const FactoredPlan& plan, const FactoredPlan::Lookup& lookup, std:
   }
 #endif
   const float* const rows = plan.values.data() + lookup.rows + (lookup.shared ? 0 : group * lookup.row_block);
-  lookup.plane ? multiply_rows<kChannels, true>(lookup, rows, block)
-               : multiply_rows<kChannels, false>(lookup, rows, block);
+  if (lookup.plane)
+    multiply_rows<kChannels, true>(lookup, rows, block);
+  else
+    multiply_rows<kChannels, false>(lookup, rows, block);
 }
 
 struct Scratch {
@@ -419,7 +438,9 @@ void eval_group(const FactoredPlan& plan, std::size_t group, std::size_t stride,
     // [HomomorphicBrdf, eq. 4]
     for (std::size_t k = product.first; k < product.last; ++k) {
       multiply<kChannels>(plan, plan.lookups[k], group, block);
-      block.before = block.values, block.before_stride = kMaxBlock, block.before_mask = ~std::size_t{0};
+      block.before = block.values;
+      block.before_stride = kMaxBlock;
+      block.before_mask = ~std::size_t{0};
     }
     for (std::size_t c = 0; c < kChannels; ++c)
       for (std::size_t i = 0; i < count; i += kLanes) {
@@ -484,9 +505,13 @@ void eval_block(const FactoredPlan& plan, const DirectionPointers& in, std::size
     for (const FactoredPlan::Position& position : source.positions)
       projector.find_positions(position, scratch.positions + position.slot * stride, stride);
   }
-  for (std::size_t group = 0; group * kTogether < plan.channels; ++group)
-    plan.channels - group* kTogether == 1 ? eval_group<1>(plan, group, stride, scratch, out)
-                                          : eval_group<3>(plan, group, stride, scratch, out);
+  for (std::size_t group = 0; group * kTogether < plan.channels; ++group) {
+    const std::size_t left = plan.channels - group * kTogether;
+    if (left == 1)
+      eval_group<1>(plan, group, stride, scratch, out);
+    else
+      eval_group<3>(plan, group, stride, scratch, out);
+  }
   if (!projector.all_directions) spoil_others(projector, plan.channels, out);
 }
 

@@ -58,10 +58,13 @@ FactoredPlan::FactoredPlan(const FactoredBrdf& brdf) : channels(static_cast<std:
       const auto [x, y] = slots_of(table.layout, use);
       if (k < paired && k % 2 == 1) {
         Lookup& lookup = lookups.back();
-        lookup.pair = true, lookup.pair_x = x, lookup.pair_y = y;
+        lookup.pair = true;
+        lookup.pair_x = x;
+        lookup.pair_y = y;
       } else {
         Lookup& lookup = lookups.emplace_back(tables[static_cast<std::size_t>(use.table)]);
-        lookup.x = x, lookup.y = y;
+        lookup.x = x;
+        lookup.y = y;
       }
       ++k;
     }

@@ -9,7 +9,7 @@ namespace burnish {
 
 namespace {
 
-constexpr std::size_t kFewestRings = 64, kMaxRings = 512, kRingsAtOnce = 8;
+constexpr std::size_t kMinRings = 64, kMaxRings = 512, kRingsAtOnce = 8;
 
 /// A direction with two others across it, the first towards the normal.
 struct RingFrame {
@@ -82,8 +82,8 @@ DirectionalAlbedo integrate(BrdfRef source, Vec3 wi, std::size_t ring_count) {
 
 DirectionalAlbedo directional_albedo(BrdfRef source, Vec3 wi, double tolerance) {
   // twice as many rings until the figures settle
-  DirectionalAlbedo result = integrate(source, wi, kFewestRings);
-  for (std::size_t rings = 2 * kFewestRings; rings <= kMaxRings; rings *= 2) {
+  DirectionalAlbedo result = integrate(source, wi, kMinRings);
+  for (std::size_t rings = 2 * kMinRings; rings <= kMaxRings; rings *= 2) {
     DirectionalAlbedo finer = integrate(source, wi, rings);
     bool settled = true;
     for (std::size_t c = 0; c < finer.albedo.size(); ++c)

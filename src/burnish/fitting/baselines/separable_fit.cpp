@@ -170,7 +170,7 @@ struct Layout {
 constexpr std::array kTerms = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64};
 constexpr std::array kThetaNodes = {4, 6, 8, 12, 16, 24, 32, 48, 64};
 constexpr std::array kPhiNodes = {2, 3, 5, 9, 17, 33};
-constexpr int kFewestHalfNodes = 8, kMaxHalfNodes = 512, kMaxDiskNodes = 96;
+constexpr int kMinHalfNodes = 8, kMaxHalfNodes = 512, kMaxDiskNodes = 96;
 
 class Search {
  public:
@@ -248,8 +248,8 @@ class Search {
     };
     const std::size_t most_values = (options_.budget - std::min(options_.budget, 4 * channels)) / 2;
     int n = source_.isotropic() ? kMaxHalfNodes : kMaxDiskNodes;
-    while (n >= kFewestHalfNodes && values_with(n) > most_values) --n;
-    return n >= kFewestHalfNodes ? n : 0;
+    while (n >= kMinHalfNodes && values_with(n) > most_values) --n;
+    return n >= kMinHalfNodes ? n : 0;
   }
 
   std::array<std::vector<NodeAxis>, 2> axes(const Layout& layout) const {

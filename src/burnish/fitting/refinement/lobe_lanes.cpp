@@ -24,7 +24,6 @@ HWY_EXPORT(add_transposed);
 HWY_EXPORT(add_squares);
 HWY_EXPORT(multiply);
 
-constexpr std::size_t kMaxGroups = 16;
 constexpr float kMinTotal = 1e-30f;  // whose reciprocal is finite
 
 void prefetch(const void* data, std::size_t bytes) noexcept {

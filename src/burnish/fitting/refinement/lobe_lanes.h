@@ -14,6 +14,10 @@
 
 namespace burnish {
 
+/// Sums over pairs are taken in at most so many groups, joined in their order: the same bits for any number of
+/// threads.
+inline constexpr std::size_t kMaxGroups = 16;
+
 /// A model's lobes side by side as lanes of vectors: what they look up at one place is one interpolation of
 /// vectors, in single precision. Tables that lobes look up so form a family, whose values stand node by node;
 /// a lane without a table has one that is 1 everywhere.

@@ -10,7 +10,6 @@ namespace burnish {
 namespace {
 
 constexpr std::size_t kChunk = 64;  // blocks
-constexpr std::size_t kMaxGroups = 16;
 // Of many pairs an even part makes a matrix good enough for a step; the slope is that of all.
 constexpr std::size_t kMatrixPairsPerUnknown = 40;
 

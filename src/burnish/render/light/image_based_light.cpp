@@ -17,7 +17,6 @@ namespace {
 
 constexpr int kRings = 96;   // angles gamma about an axis, gamma = pi (ring / kRings)^2
 constexpr int kSpokes = 32;  // azimuths of a ring of the sky
-constexpr int kMaxMaps = 9;  // of a mean and four orders
 
 double ring_angle(double ring) noexcept {
   return kPi * (ring / kRings) * (ring / kRings);

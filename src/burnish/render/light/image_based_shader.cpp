@@ -52,7 +52,6 @@ Expr seen(const ImageBasedLight& light, const View& view, const std::string& axe
   // its place in the maps of its half, and the azimuth of the tilt there
   const ExprVector axis = in_half_of(shown, shown), tilt = in_half_of(shown, named("tilt", tilt_world));
   const TurnedAxes<ExprVector> across(axis);
-  constexpr std::size_t kMaxMaps = 9;
   const auto weights =
       harmonics<kMaxMaps>(named("turn_x", dot(tilt, across.x)), named("turn_y", dot(tilt, across.z)));
   const auto [place_x, place_y] = map_coordinates(shown, side);

@@ -11,6 +11,8 @@ namespace burnish {
 
 /// The plane of view and normal is divided by no less than this sine between them.
 inline constexpr double kMinSine = 1e-6;
+/// Maps of a kernel: its mean and four orders of harmonics of the azimuth, a cosine and a sine each.
+inline constexpr std::size_t kMaxMaps = 9;
 
 /// Axes at right angles to `up` that turn with it without a seam where up.y > -1 [Duff 2017, with y for z].
 template <class V>
