@@ -9,8 +9,7 @@ enum class StopReason {
   /// A factorized system: no iteration was needed.
   direct_solution,
   /// Conjugate gradients: r^T M^-1 r <= tolerance^2 times what it was at the start, r being the residual and
-  /// M
-  /// the preconditioner.
+  /// M the preconditioner.
   tolerance_reached,
   /// Gauss-Newton: before - after < least_progress in three steps in a row, before and after being the
   /// objective; or no damping gave a step with after < before.

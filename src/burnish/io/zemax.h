@@ -35,9 +35,9 @@ AngleTable zemax_layout(bool isotropic);
 bool fits_zemax(const AngleTable& table) noexcept;
 
 /// The file that holds the table, values and angles with all their digits; RGB as XYZ. Holes are 0, so what
-/// is 0 is written as 1e-30. The total of each incidence,
-/// TIS, is the sum of its entries times cos(theta_o) and the solid angles of their cells. `sample`
-/// names it in a remark, line breaks left out. Throws Error unless fits_zemax.
+/// is 0 is written as 1e-30. The total of each incidence, TIS, is the sum of its entries times cos(theta_o)
+/// and the solid angles of their cells. `sample` names it in a remark, line breaks left out. Throws Error
+/// unless fits_zemax.
 std::string format_zemax(const AngleTable& table, std::string_view sample);
 
 }  // namespace burnish

@@ -117,8 +117,20 @@ NamedProjection parse_projection(std::string_view text) {
 }
 
 std::string_view to_string(Projection::Kind kind) noexcept {
-  constexpr std::string_view kKinds[] = {"affine", "difference", "deviation", "twist", "azimuth"};
-  return kKinds[static_cast<std::size_t>(kind)];
+  using Kind = Projection::Kind;
+  switch (kind) {
+    case Kind::affine:
+      return "affine";
+    case Kind::difference:
+      return "difference";
+    case Kind::deviation:
+      return "deviation";
+    case Kind::twist:
+      return "twist";
+    case Kind::azimuth:
+      return "azimuth";
+  }
+  return "";
 }
 
 std::string to_string(const Projection& p) {

@@ -11,17 +11,16 @@ namespace burnish {
 /// A projection pi(wi, wo) of the paper's eq. 4: a unit vector of the upper hemisphere made from the two
 /// directions.
 /// - affine: normalize(wi * WI + wo * WO + mirror * mirror(WI) + n * N), a normalized affine combination of
-/// the light,
-///   the view, the mirrored light (-x, -y, z) and the normal; wi, wo and h are the simplest of them.
+///   the light, the view, the mirrored light (-x, -y, z) and the normal; wi, wo and h are the simplest of
+///   them;
 /// - difference: the light direction in the frame of the half vector, theta_d from its z, phi_d from its
-/// azimuth
-///   [Rusinkiewicz 1998];
+///   azimuth [Rusinkiewicz 1998];
 /// - deviation: a polar angle alone (azimuth 0), theta_m: half the angle between the view and the light's
 ///   mirror direction, 0 in the middle of a highlight; the same when the directions are exchanged;
 /// - twist: a polar angle alone, theta_t, the one polar angle that tells a pair from its mirror image: to
 ///   which side of the plane of h and n the directions turn off. tan(theta_t / 2) = 1/2 + (3 sqrt(3) / 4) x,
 ///   x = sin^2 theta_d cos theta_d sin(2 phi_d) sin^2 theta_h / (sin^2 theta_h + 1/256), is between 0 and 1
-///   and becomes 1 less itself in the mirror; the same when the directions are exchanged.
+///   and becomes 1 less itself in the mirror; the same when the directions are exchanged;
 /// - azimuth: a polar angle alone, phi_d folded into [0, pi/2]: |cos phi_d| = |cos theta_i - cos theta_o| /
 ///   (2 sin theta_h sin theta_d), 0 where the plane of the directions holds the normal, pi/2 where both are
 ///   equally steep; the same when the directions are exchanged and in the mirror. Where phi_d has no meaning,
@@ -71,8 +70,7 @@ struct NamedProjection {
 };
 
 /// Reads wi, wo, h, d, theta_h, theta_d, theta_m, theta_t, phi_d, theta_i, theta_o or a sum of terms such as
-/// "wi+wo+0.5n", "m+0.8wo" (m is the mirrored light). Throws Error on
-/// anything else.
+/// "wi+wo+0.5n", "m+0.8wo" (m is the mirrored light). Throws Error on anything else.
 NamedProjection parse_projection(std::string_view text);
 /// "affine", "difference", "deviation", "twist" or "azimuth".
 std::string_view to_string(Projection::Kind kind) noexcept;

@@ -30,8 +30,7 @@ std::string power_code(PowerMethod method, const CodeOptions& options);
 /// - "csv": header `exponent,a`, 17 digits;
 /// - "c": a C header with a float array `burnish_quadratic_a`, index 0 unused (a(0) = 0);
 /// - "mem": a PROM image for $readmemh: word e holds round(a(e) 2^fraction_bits) as an unsigned hexadecimal
-/// number,
-///   addresses 0 .. count, comment lines first.
+///   number, addresses 0 .. count, comment lines first.
 /// Domain: count in [1, 1024], fraction_bits in [0, 20]. Throws Error otherwise.
 std::string quadratic_table(std::string_view format, int count = 1000, int fraction_bits = 8);
 

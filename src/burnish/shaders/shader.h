@@ -80,8 +80,8 @@ struct Shader {
 /// Nothing of the model is left to set but its textures: a 2-D texture a table, texel (x, y) node (x, y)
 /// (a line's height is 1), or where tables are many some of them above each other, one channel in red or
 /// three in red, green, blue, in any format that holds the values; clamped to the edge and linear for the
-/// hardware filter. MSL takes them in a struct, as third or
-/// fifth argument; C++ has them as constant arrays. docs/guide/shaders.md states how precise it is.
+/// hardware filter. MSL takes them in a struct, as third or fifth argument; C++ has them as constant arrays.
+/// docs/guide/shaders.md states how precise it is.
 ///
 /// Throws Error if the name or lines_are_1d is not as above, channels are not 1 or 3, tables need more than
 /// most_textures in a language with textures, or for C++ with the hardware filter.

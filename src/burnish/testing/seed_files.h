@@ -111,18 +111,18 @@ inline const std::string kKlems =
     "-9</ScatteringData></WavelengthDataBlock></WavelengthData></Layer></Optical></WindowElement>";
 
 /// Format names and bytes; the first `kBinaryCount` are binary and of fixed length.
-inline std::array<std::pair<std::string, std::string>, 11> all_seeds() {
-  return {{{"merl", merl_seed()},
-           {"mbsdf", mbsdf_seed()},
-           {"rgl", rgl_seed()},
-           {"model", model_seed()},
-           {"cornell", kCornell},
-           {"astm", kAstm},
-           {"csv", kCsv},
-           {"zemax", kZemax},
-           {"klems", kKlems},
-           {"neural", neural_seed()},
-           {"baseline", baseline_seed()}}};
+inline std::vector<std::pair<std::string, std::string>> all_seeds() {
+  return {{"merl", merl_seed()},
+          {"mbsdf", mbsdf_seed()},
+          {"rgl", rgl_seed()},
+          {"model", model_seed()},
+          {"cornell", kCornell},
+          {"astm", kAstm},
+          {"csv", kCsv},
+          {"zemax", kZemax},
+          {"klems", kKlems},
+          {"neural", neural_seed()},
+          {"baseline", baseline_seed()}};
 }
 
 inline constexpr std::size_t kBinaryCount = 4;
