@@ -2,7 +2,6 @@
 
 // A small valid file of every format, for tests of bad input and for the fuzzers.
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <utility>
