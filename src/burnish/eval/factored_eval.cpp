@@ -273,32 +273,41 @@ struct Projector {
 // Lookups in rows, again in loops of their own: loads that span several recent stores would wait for them.
 struct RowCells {
   alignas(64) std::int32_t first[kMaxBlock];  // float of the row that a lookup starts with
-  alignas(64) float x[kMaxBlock], y[kMaxBlock];
+  alignas(64) float x[kMaxBlock], y[kMaxBlock], z[kMaxBlock];
 
-  template <bool kPlane>
-  HWY_INLINE void find(const FactoredPlan::Lookup& lookup, const float* at_x, const float* at_y,
+  /// at[k]: the positions along axis k.
+  template <int kAxes>
+  HWY_INLINE void find(const FactoredPlan::Lookup& lookup, const std::array<const float*, 3>& at,
                        std::size_t count) {
     const DI di;
     const auto width = hn::Set(di, static_cast<std::int32_t>(lookup.width));
+    const auto layer = hn::Set(di, static_cast<std::int32_t>(lookup.layer));
     for (std::size_t i = 0; i < count; i += kLanes) {
-      const LaneCell across = cell_of(load(at_x + i));
+      const LaneCell across = cell_of(load(at[0] + i));
       hn::Vec<DI> node = node_of(across);
-      if constexpr (kPlane) {
-        const LaneCell up = cell_of(load(at_y + i));
+      if constexpr (kAxes > 1) {
+        const LaneCell up = cell_of(load(at[1] + i));
         node = hn::Add(node, hn::Mul(node_of(up), width));
         store(up.fraction, y + i);
+      }
+      if constexpr (kAxes > 2) {
+        const LaneCell inwards = cell_of(load(at[2] + i));
+        node = hn::Add(node, hn::Mul(node_of(inwards), layer));
+        store(inwards.fraction, z + i);
       }
       static_assert(FactoredPlan::kRowStride == 4);
       hn::StoreU(hn::ShiftLeft<2>(node), di, first + i);
       store(across.fraction, x + i);
     }
   }
-  template <bool kPlane>
-  HWY_INLINE Quad interpolated(const float* row, const float* above, std::size_t i) const {
-    if constexpr (kPlane)
-      return interpolate(row + first[i], above + first[i], x[i], y[i]);
-    else
-      return interpolate(row + first[i], x[i]);
+  /// above, layer: floats to the next row, and to the next layer.
+  template <int kAxes>
+  HWY_INLINE Quad interpolated(const float* table, std::size_t above, std::size_t layer,
+                               std::size_t i) const {
+    const float* const node = table + first[i];
+    if constexpr (kAxes == 1) return interpolate(node, x[i]);
+    if constexpr (kAxes == 2) return interpolate(node, node + above, x[i], y[i]);
+    if constexpr (kAxes == 3) return interpolate(node, node + above, layer, x[i], y[i], z[i]);
   }
 };
 struct Rows {
@@ -326,6 +335,9 @@ struct Block {
   Rows& rows;
 
   HWY_INLINE const float* slot(std::size_t s) const { return positions + s * stride; }
+  HWY_INLINE std::array<const float*, 3> slots(const std::array<std::size_t, 3>& s) const {
+    return {slot(s[0]), slot(s[1]), slot(s[2])};
+  }
   HWY_INLINE void multiply(std::size_t channel, std::size_t i, Lane factor) const {
     store(load(before + channel * before_stride + (i & before_mask)) * factor,
           values + channel * kMaxBlock + i);
@@ -340,7 +352,7 @@ void multiply_planes(const FactoredPlan::Lookup& lookup, const float* table, con
   constexpr int kPlanes = kShared ? 1 : kChannels;
   Plane<kVectors> planes[kPlanes];
   for (int c = 0; c < kPlanes; ++c) planes[c].load(table + static_cast<std::size_t>(16 * kVectors * c));
-  const float *const x = block.slot(lookup.x), *const pair_x = block.slot(lookup.pair_x);
+  const float *const x = block.slot(lookup.at[0]), *const pair_x = block.slot(lookup.pair_at[0]);
   const auto interpolate = [&](const float* position, Lane(&value)[kPlanes]) HWY_ATTR {
     const LaneCell cell = cell_of(load(position));
     const hn::Vec<DI> node = hn::BitCast(DI(), cell.shifted.raw), next = hn::Add(node, hn::Set(DI(), 1));
@@ -372,22 +384,23 @@ Multiply planes_kernel(std::size_t vectors, bool shared, std::size_t channels) {
 }
 #endif
 
-template <int kChannels, bool kPlane>
+template <int kChannels, int kAxes>
 void multiply_rows(const FactoredPlan::Lookup& lookup, const float* table, const Block& block) {
   Rows& rows = block.rows;
-  const float* const above = table + lookup.width * FactoredPlan::kRowStride;
+  const std::size_t above = lookup.width * FactoredPlan::kRowStride,
+                    layer = lookup.layer * FactoredPlan::kRowStride;
   const std::size_t count = block.count;
-  rows.cells.find<kPlane>(lookup, block.slot(lookup.x), block.slot(lookup.y), count);
+  rows.cells.find<kAxes>(lookup, block.slots(lookup.at), count);
   if (lookup.pair) {
-    rows.pair_cells.find<kPlane>(lookup, block.slot(lookup.pair_x), block.slot(lookup.pair_y), count);
+    rows.pair_cells.find<kAxes>(lookup, block.slots(lookup.pair_at), count);
     for_each_quad(count, rows.values, [&](std::size_t i, float* to) HWY_ATTR {
-      store(rows.cells.interpolated<kPlane>(table, above, i) *
-                rows.pair_cells.interpolated<kPlane>(table, above, i),
+      store(rows.cells.interpolated<kAxes>(table, above, layer, i) *
+                rows.pair_cells.interpolated<kAxes>(table, above, layer, i),
             to);
     });
   } else {
     for_each_quad(count, rows.values, [&](std::size_t i, float* to) HWY_ATTR {
-      store(rows.cells.interpolated<kPlane>(table, above, i), to);
+      store(rows.cells.interpolated<kAxes>(table, above, layer, i), to);
     });
   }
   for (std::size_t i = 0; i < count; i += kLanes) {
@@ -409,10 +422,14 @@ void multiply(const FactoredPlan& plan, const FactoredPlan::Lookup& lookup, std:
   }
 #endif
   const float* const rows = plan.values.data() + lookup.rows + (lookup.shared ? 0 : group * lookup.row_block);
-  if (lookup.plane)
-    multiply_rows<kChannels, true>(lookup, rows, block);
-  else
-    multiply_rows<kChannels, false>(lookup, rows, block);
+  switch (lookup.axes) {
+    case 1:
+      return multiply_rows<kChannels, 1>(lookup, rows, block);
+    case 2:
+      return multiply_rows<kChannels, 2>(lookup, rows, block);
+    default:
+      return multiply_rows<kChannels, 3>(lookup, rows, block);
+  }
 }
 
 struct Scratch {

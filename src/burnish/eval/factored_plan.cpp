@@ -14,24 +14,28 @@ namespace {
 double steepest_ratio(const Table& table) noexcept {
   const auto channels = static_cast<std::size_t>(table.channels);
   const auto width = static_cast<std::size_t>(table.layout.width),
-             height = static_cast<std::size_t>(table.layout.height);
-  const std::size_t row = table.layout.shape == TableShape::line ? 0 : width * channels;
+             height = static_cast<std::size_t>(table.layout.height),
+             depth = static_cast<std::size_t>(table.layout.depth);
+  const std::size_t row = height > 1 ? width * channels : 0, layer = depth > 1 ? row * height : 0;
   double ratio = 1;
-  for (std::size_t y = 0; y + (row ? 1 : 0) < height; ++y)
-    for (std::size_t x = 0; x + 1 < width; ++x)
-      for (std::size_t c = 0; c < channels; ++c) {
-        const float* v = table.values.data() + (y * width + x) * channels + c;
-        const auto [least, most] = std::minmax({v[0], v[channels], v[row], v[row + channels]});
-        ratio = std::max(ratio, static_cast<double>(most) / least);
-      }
+  for (std::size_t z = 0; z + (layer ? 1 : 0) < depth; ++z)
+    for (std::size_t y = 0; y + (row ? 1 : 0) < height; ++y)
+      for (std::size_t x = 0; x + 1 < width; ++x)
+        for (std::size_t c = 0; c < channels; ++c) {
+          const float* v = table.values.data() + ((z * height + y) * width + x) * channels + c;
+          const float* w = v + layer;
+          const auto [least, most] = std::minmax({v[0], v[channels], v[row], v[row + channels],  //
+                                                  w[0], w[channels], w[row], w[row + channels]});
+          ratio = std::max(ratio, static_cast<double>(most) / least);
+        }
   return ratio;
 }
 
 double lookup_bound(const Table& table) noexcept {
   const double ratio = steepest_ratio(table);
-  const int axes = table.layout.shape == TableShape::line ? 1 : 2;
-  const int cells = std::max(table.layout.width, table.layout.height) - 1;
-  return 0x1p-24 * (8 * ratio + 16 * axes * cells * (ratio - 1));
+  const TableLayout& layout = table.layout;
+  const int cells = std::max({layout.width, layout.height, layout.depth}) - 1;
+  return 0x1p-24 * (8 * ratio + 16 * axis_count(layout.shape) * cells * (ratio - 1));
 }
 
 std::size_t up_to_multiple(std::size_t n, std::size_t of) noexcept {
@@ -55,16 +59,13 @@ FactoredPlan::FactoredPlan(const FactoredBrdf& brdf) : channels(static_cast<std:
     for (const FactorUse& use : brdf.ordered_factors(j)) {
       const Table& table = brdf.tables()[static_cast<std::size_t>(use.table)];
       bound += lookup_bound(table);
-      const auto [x, y] = slots_of(table.layout, use);
+      const auto at = slots_of(table.layout, use);
       if (k < paired && k % 2 == 1) {
-        Lookup& lookup = lookups.back();
-        lookup.pair = true;
-        lookup.pair_x = x;
-        lookup.pair_y = y;
+        lookups.back().pair = true;
+        lookups.back().pair_at = at;
       } else {
-        Lookup& lookup = lookups.emplace_back(tables[static_cast<std::size_t>(use.table)]);
-        lookup.x = x;
-        lookup.y = y;
+        lookups.push_back(tables[static_cast<std::size_t>(use.table)]);
+        lookups.back().at = at;
       }
       ++k;
     }
@@ -81,12 +82,13 @@ FactoredPlan::FactoredPlan(const FactoredBrdf& brdf) : channels(static_cast<std:
 FactoredPlan::Lookup FactoredPlan::add_table(const Table& table) {
   const auto stored = static_cast<std::size_t>(table.channels), nodes = table.layout.node_count();
   const std::size_t groups = up_to_multiple(stored, kTogether) / kTogether;
-  Lookup lookup{.plane = table.layout.shape != TableShape::line,
+  Lookup lookup{.axes = axis_count(table.layout.shape),
                 .shared = table.channels == 1,
                 .width = static_cast<std::size_t>(table.layout.width)};
+  lookup.layer = lookup.width * static_cast<std::size_t>(table.layout.height);
   // The last position, in cells, is the last node: lookups there read past it and give it no weight.
   lookup.rows = values.size();
-  lookup.row_block = (nodes + lookup.width + 2) * kRowStride;
+  lookup.row_block = (nodes + (lookup.axes > 2 ? lookup.layer : 0) + lookup.width + 2) * kRowStride;
   for (std::size_t g = 0; g < groups; ++g) {
     const std::size_t begin = values.size();
     for (std::size_t i = 0; i < nodes; ++i)
@@ -96,7 +98,7 @@ FactoredPlan::Lookup FactoredPlan::add_table(const Table& table) {
       }
     values.resize(begin + lookup.row_block);
   }
-  if (lookup.plane || nodes > kMaxVectors * kPlaneVector) return lookup;
+  if (lookup.axes > 1 || nodes > kMaxVectors * kPlaneVector) return lookup;
   lookup.planes = values.size();
   for (lookup.plane_vectors = 1; lookup.plane_vectors * kPlaneVector < nodes;) lookup.plane_vectors *= 2;
   for (std::size_t c = 0; c < (lookup.shared ? 1 : groups * kTogether); ++c) {
@@ -107,12 +109,13 @@ FactoredPlan::Lookup FactoredPlan::add_table(const Table& table) {
   return lookup;
 }
 
-std::array<std::size_t, 2> FactoredPlan::slots_of(const TableLayout& layout, const FactorUse& use) {
+std::array<std::size_t, 3> FactoredPlan::slots_of(const TableLayout& layout, const FactorUse& use) {
   const bool disk = layout.shape == TableShape::disk;
   const std::size_t x = slot_of(use.projection, layout.warp, layout.width, disk);
-  if (disk) return {x, x + 1};
-  if (layout.shape == TableShape::line) return {x, x};
-  return {x, slot_of(use.projection_y, layout.warp_y, layout.height, false)};
+  if (disk) return {x, x + 1, x};
+  const int axes = axis_count(layout.shape);
+  const std::size_t y = axes > 1 ? slot_of(use.projection_y, layout.warp_y, layout.height, false) : x;
+  return {x, y, axes > 2 ? slot_of(use.projection_z, layout.warp_z, layout.depth, false) : x};
 }
 
 // The slot of a position, the same for the same position.

@@ -41,10 +41,11 @@ struct FactoredPlan {
 
   /// A lookup, or two of the same table that swapping the directions exchanges. Offsets into `values`.
   struct Lookup {
-    bool plane = false, shared = false, pair = false;  // plane: two axes; shared by the channels
-    std::size_t x = 0, y = 0, pair_x = 0, pair_y = 0;  // slots
-    std::size_t width = 0;                             // nodes along x
-    /// Channels apart, each in whole vectors, 1, 2, 4 or 8; 0: none, the table is too long or a plane.
+    int axes = 1;
+    bool shared = false, pair = false;           // shared by the channels
+    std::array<std::size_t, 3> at{}, pair_at{};  // slots, one an axis
+    std::size_t width = 0, layer = 0;            // nodes of a row, and of a volume's layer
+    /// Channels apart, each in whole vectors, 1, 2, 4 or 8; 0: none, the table is too long or no line.
     std::size_t planes = 0, plane_vectors = 0;
     /// Three channels and a gap a node, these again for every three channels.
     std::size_t rows = 0, row_block = 0;
@@ -68,7 +69,7 @@ struct FactoredPlan {
 
  private:
   Lookup add_table(const Table& table);
-  std::array<std::size_t, 2> slots_of(const TableLayout& layout, const FactorUse& use);
+  std::array<std::size_t, 3> slots_of(const TableLayout& layout, const FactorUse& use);
   std::size_t slot_of(const Projection& projection, Warp warp, int nodes, bool disk);
   Source& source_of(const Projection& projection, bool azimuth);
 };

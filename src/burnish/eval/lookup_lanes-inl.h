@@ -127,6 +127,25 @@ HWY_INLINE Quad interpolate(const float* node, const float* above, float fractio
 #endif
 }
 
+/// Between eight: four of a layer, and four of the next.
+HWY_INLINE Quad interpolate(const float* node, const float* above, std::size_t layer, float fraction_x,
+                            float fraction_y, float fraction_z) {
+#if HWY_MAX_BYTES >= 32
+  const hn::CappedTag<float, 8> d8;
+  const auto between =
+      [&](hn::Vec<hn::CappedTag<float, 8>> low, hn::Vec<hn::CappedTag<float, 8>> high, float fraction)
+          HWY_ATTR { return hn::MulAdd(hn::Set(d8, fraction), hn::Sub(high, low), low); };
+  const auto along = [&](const float* row) HWY_ATTR {
+    return between(hn::LoadU(d8, row), hn::LoadU(d8, row + layer), fraction_z);
+  };
+  const auto both = between(along(node), along(above), fraction_y);
+  return mix(Quad{hn::LowerHalf(D4(), both)}, Quad{hn::UpperHalf(D4(), both)}, fraction_x);
+#else
+  return mix(interpolate(node, above, fraction_x, fraction_y),
+             interpolate(node + layer, above + layer, fraction_x, fraction_y), fraction_z);
+#endif
+}
+
 /// The first, second and third floats of each of kLanes quads; quad j is at k kLanes + 4 (j / 4), k = j % 4.
 HWY_INLINE void transpose(const float* buffer, Lane (&channel)[3]) {
 #if HWY_TARGET == HWY_SCALAR
