@@ -32,6 +32,15 @@ concept Brdf = requires(const T& brdf, Vec3 w, std::span<double> f) {
 };
 // clang-format on
 
+/// A Brdf that evaluates many pairs at a time, faster than one after the other.
+// clang-format off
+template <class T>
+concept SpanBrdf = Brdf<T> && requires(const T& brdf, std::span<const DirectionPair> pairs,
+                                       std::span<double> values, std::span<std::uint8_t> known) {
+  { brdf.eval(pairs, values, known) } noexcept;
+};
+// clang-format on
+
 /// A non-owning reference to any Brdf. The indirection is paid once a span, not once a direction.
 class BrdfRef {
  public:
@@ -39,11 +48,15 @@ class BrdfRef {
   template <Brdf T>
     requires(!std::same_as<T, BrdfRef>)
   BrdfRef(const T& brdf) noexcept  // NOLINT: implicit like std::span
-      : brdf_(&brdf), channels_(brdf.channels()), isotropic_(brdf.isotropic()), eval_span_(&eval_span<T>) {}
+      : brdf_(&brdf), channels_(brdf.channels()), isotropic_(brdf.isotropic()), eval_span_(&eval_span<T>) {
+    if constexpr (requires { brdf.reciprocal(); }) reciprocal_ = brdf.reciprocal();
+  }
   // clang-format on
 
   int channels() const noexcept { return channels_; }
   bool isotropic() const noexcept { return isotropic_; }
+  /// True where the source says that exchanged directions give the same bits.
+  bool reciprocal() const noexcept { return reciprocal_; }
 
   /// One pair; see Brdf.
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
@@ -64,23 +77,27 @@ class BrdfRef {
   static void eval_span(const void* brdf, std::span<const DirectionPair> pairs, std::span<double> values,
                         std::span<std::uint8_t> known) noexcept {
     const T& concrete = *static_cast<const T*>(brdf);
-    const auto channels = static_cast<std::size_t>(concrete.channels());
-    for (std::size_t i = 0; i < pairs.size(); ++i)
-      known[i] = concrete.eval(pairs[i].wi, pairs[i].wo, values.subspan(i * channels, channels));
+    if constexpr (SpanBrdf<T>) {
+      concrete.eval(pairs, values, known);
+    } else {
+      const auto channels = static_cast<std::size_t>(concrete.channels());
+      for (std::size_t i = 0; i < pairs.size(); ++i)
+        known[i] = concrete.eval(pairs[i].wi, pairs[i].wo, values.subspan(i * channels, channels));
+    }
   }
 
   const void* brdf_;
   int channels_;
-  bool isotropic_;
+  bool isotropic_, reciprocal_ = false;
   void (*eval_span_)(const void*, std::span<const DirectionPair>, std::span<double>,
                      std::span<std::uint8_t>) noexcept;
 };
 
-static_assert(Brdf<BrdfRef>);
+static_assert(SpanBrdf<BrdfRef>);
 
 /// The reciprocal part of a source, 1/2 [f(wi, wo) + f(wo, wi)]; where only one of the two is known, that
 /// one. Measured tables are seldom exactly reciprocal, exactly reciprocal models are fitted to and scored
-/// against this. Channels: at most kMaxChannels.
+/// against this. A source that says it is reciprocal is evaluated once. Channels: at most kMaxChannels.
 class SymmetrizedBrdf {
  public:
   static constexpr int kMaxChannels = 1024;
@@ -90,11 +107,13 @@ class SymmetrizedBrdf {
   int channels() const noexcept { return source_.channels(); }
   bool isotropic() const noexcept { return source_.isotropic(); }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
+  void eval(std::span<const DirectionPair> pairs, std::span<double> values,
+            std::span<std::uint8_t> known) const noexcept;
 
  private:
   BrdfRef source_;
 };
 
-static_assert(Brdf<SymmetrizedBrdf>);
+static_assert(SpanBrdf<SymmetrizedBrdf>);
 
 }  // namespace burnish
