@@ -4,7 +4,8 @@ namespace burnish::cli {
 
 void add_source_arguments(CLI::App& verb, SourceArguments& arguments) {
   verb.add_option("BRDF", arguments.spec,
-                  "a measurement, a model, a neural encoding nbrdf:FILE#NAME, or an analytic BRDF such as "
+                  "a measurement, a model, a neural encoding nbrdf:FILE#NAME or np:FOLDER#NAME, or an "
+                  "analytic BRDF such as "
                   "ggx:alpha_x=0.1,alpha_y=0.1")
       ->required();
   OpenOptions& options = arguments.options;

@@ -13,6 +13,7 @@
 #include <burnish/fitting/fit.h>
 #include <burnish/image/contact_sheet.h>
 #include <burnish/image/png.h>
+#include <burnish/io/convert.h>
 #include <burnish/io/open_source.h>
 #include <burnish/math/parallel.h>
 #include <burnish/reflectance/analytic.h>
@@ -111,20 +112,22 @@ void report_rgl(Page& page, const fs::path& data) {
   if (quick) files.resize(1);
   std::deque<Material> materials;
   for (const fs::path& file : files) {
-    Material& material = materials.emplace_back(file.stem().string(), file.string());
+    Material& material = materials.emplace_back(file.stem().string(), open_source(file.string(), {}));
     material.attempts = attempts(budgets, material.reference.isotropic(), quick);
     material.shown_budget = kSheetBudget;
   }
   std::vector<std::vector<Score>> scores = run(materials);
 
-  // the published network of the same material comes first
+  // published models of the same material come first
   ContactSheet sheet{.title = "Light at 30 degrees; at most 2,700 bytes"};
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const Material& material = materials[i];
-    const Source network =
-        open_source(fmt::format("nbrdf:{}#{}", (data / "nbrdf/rgl.csv").string(), material.name), {});
-    const SymmetrizedBrdf symmetric(network.ref());
-    scores[i].insert(scores[i].begin(), run_network(material, symmetric));
+    const auto published = [&](std::string_view method, std::string_view spec, const fs::path& place) {
+      const Source model = open_source(fmt::format("{}:{}#{}", spec, place.string(), material.name), {});
+      return run_published(material, method, model);
+    };
+    scores[i].insert(scores[i].begin(), {published("network", "nbrdf", data / "nbrdf/rgl.csv"),
+                                         published("np", "np", data / "np")});
     add_pictures(material, scores[i], sheet);
   }
 
@@ -145,16 +148,26 @@ std::vector<std::string> row_names(const fs::path& file) {
   return names;
 }
 
+// A table of the MERL size, decoded from a published code of the material.
+Source merl_stand_in(const fs::path& codes, const std::string& name) {
+  tell(fmt::format("accuracy: {}, decoded", name));
+  const Converted table = convert(open_source(fmt::format("np:{}#{}", codes.string(), name), {}), "merl");
+  const auto* bytes = reinterpret_cast<const std::byte*>(table.bytes.data());
+  return parse_source({name, {bytes, bytes + table.bytes.size()}}, {});
+}
+
 void report_merl(Page& page, const fs::path& data) {
   const bool quick = page.options().quick;
-  const std::vector<std::string> names = row_names(data / "nbrdf/merl.csv");
-  constexpr std::size_t kEvery = 10;
+  std::vector<std::string> names = row_names(data / "np/codes.csv");
+  std::erase_if(names,
+                [](const std::string& name) { return name.ends_with("_rgb"); });  // of the RGL database
+  const std::size_t every = quick ? 50 : 4;
   std::deque<Material> materials;
-  for (std::size_t i = 0; i < names.size(); i += quick ? kEvery : 1) {
-    const std::string place = fmt::format("nbrdf:{}#{}", (data / "nbrdf/merl.csv").string(), names[i]);
-    materials.emplace_back(names[i], place, FigureOptions{.count = 50'000, .image_size = 128}).attempts =
-        attempts({kSheetBudget}, true, quick);
-  }
+  for (std::size_t i = 0; i < names.size(); i += every)
+    materials
+        .emplace_back(names[i], merl_stand_in(data / "np", names[i]),
+                      FigureOptions{.count = 50'000, .image_size = 128})
+        .attempts = attempts({kSheetBudget}, true, quick);
   const std::vector<std::vector<Score>> scores = run(materials);
   const auto worst =
       std::ranges::max_element(scores, {}, [](const auto& row) { return row.front().errors.rms_log; });
@@ -177,7 +190,7 @@ void report_others(Page& page) {
       sources.emplace_back((*data / file).stem().string(), (*data / file).string());
   std::deque<Material> materials;
   for (const auto& [name, place] : sources) {
-    Material& material = materials.emplace_back(name, place);
+    Material& material = materials.emplace_back(name, open_source(place, {}));
     material.attempts = attempts(budgets, material.reference.isotropic(), quick);
     material.shown_budget = kSheetBudget;
   }

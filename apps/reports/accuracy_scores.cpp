@@ -16,10 +16,6 @@ namespace burnish::reports {
 
 namespace {
 
-// Multiply-adds and weights of the 6-21-21-3 network.
-constexpr EvaluationCost kNetworkCost{.table_reads = 675, .multiplies = 6 * 21 + 21 * 21 + 21 * 3};
-constexpr std::size_t kNetworkBytes = 1350;  // as half floats
-
 Score score_of(const Material& material, std::string_view method, std::size_t budget, BrdfRef model) {
   Score score{
       .method = std::string(method), .budget = budget, .errors = material.scorer.score(model), .picture = {}};
@@ -56,17 +52,49 @@ std::vector<std::string> with_figures(std::vector<std::string> head) {
   return head;
 }
 
-std::vector<std::string> with_figures(std::vector<std::string> cells, const Score& s) {
+// Figures to be printed in bold, in the order of figures().
+using Bold = std::array<bool, 6>;
+
+std::vector<std::string> with_figures(std::vector<std::string> cells, const Score& s, const Bold& bold = {}) {
   const ErrorFigures& e = s.errors;
-  for (const std::string& text :
-       std::array{fmt::format("{}", s.bytes), fmt::format("{:.2f}", e.psnr), fmt::format("{:.4f}", e.ssim),
-                  fmt::format("{:.4f}", e.relative), fmt::format("{:.4f}", e.log_cos),
-                  fmt::format("{:.3f}", e.rms_log), fmt::format("{:.3g}", e.rms),
-                  s.cost ? std::to_string(s.cost->table_reads) : "",
-                  s.cost ? std::to_string(s.cost->multiplies) : "",
-                  s.seconds > 0 ? fmt::format("{:.1f}", s.seconds) : ""})
-    cells.push_back(text);
+  cells.push_back(std::to_string(s.bytes));
+  const std::array texts{fmt::format("{:.2f}", e.psnr),     fmt::format("{:.4f}", e.ssim),
+                         fmt::format("{:.4f}", e.relative), fmt::format("{:.4f}", e.log_cos),
+                         fmt::format("{:.3f}", e.rms_log),  fmt::format("{:.3g}", e.rms)};
+  for (std::size_t k = 0; k < texts.size(); ++k) cells.push_back(bold[k] ? "**" + texts[k] + "**" : texts[k]);
+  cells.push_back(s.cost ? std::to_string(s.cost->table_reads) : "");
+  cells.push_back(s.cost ? std::to_string(s.cost->multiplies) : "");
+  cells.push_back(s.seconds > 0 ? fmt::format("{:.1f}", s.seconds) : "");
   return cells;
+}
+
+// Which figures of one score are ahead of another's.
+Bold ahead_of(Score score, Score other) {
+  const auto own = figures(score.errors), others = figures(other.errors);
+  Bold ahead;
+  for (std::size_t k = 0; k < ahead.size(); ++k) {
+    const bool more_is_better = own[k] == &score.errors.psnr || own[k] == &score.errors.ssim;
+    ahead[k] = more_is_better ? *own[k] > *others[k] : *own[k] < *others[k];
+  }
+  return ahead;
+}
+
+// Of every mean the figures that table_of prints in bold.
+std::vector<Bold> bold_figures(const std::vector<MeanScore>& means) {
+  std::vector<Bold> bold(means.size(), Bold{});
+  for (std::size_t i = 0; i < means.size(); ++i)
+    for (std::size_t j = 0; j < means.size(); ++j) {
+      const Score &other = means[i].score, &ours = means[j].score;
+      if (other.method == "ours" || ours.method != "ours" || means[i].materials != means[j].materials ||
+          (other.budget > 0 ? other.budget : other.bytes) > ours.budget)
+        continue;
+      const Bold ahead = ahead_of(other, ours);
+      for (std::size_t k = 0; k < ahead.size(); ++k) {
+        bold[i][k] |= ahead[k];
+        bold[j][k] |= ahead[k];
+      }
+    }
+  return bold;
 }
 
 }  // namespace
@@ -115,10 +143,15 @@ std::vector<std::vector<Score>> run(const std::deque<Material>& materials) {
   return scores;
 }
 
-Score run_network(const Material& material, BrdfRef network) {
-  Score score = score_of(material, "network", 0, network);
-  score.bytes = kNetworkBytes;
-  score.cost = kNetworkCost;
+Score run_published(const Material& material, std::string_view method, const Source& model) {
+  tell(fmt::format("accuracy: {}, {}", material.name, method));
+  Score score = score_of(material, method, 0, SymmetrizedBrdf(model.ref()));
+  score.bytes = model.bytes().value_or(0);
+  std::visit(
+      [&](const auto& brdf) {
+        if constexpr (requires { evaluation_cost(brdf); }) score.cost = evaluation_cost(brdf);
+      },
+      model.brdf);
   return score;
 }
 
@@ -156,8 +189,10 @@ std::vector<MeanScore> means_of(const std::vector<std::vector<Score>>& scores) {
 
 Table table_of(const std::vector<MeanScore>& means) {
   Table table(with_figures({"method", "materials"}));
-  for (const auto& [score, materials] : means)
-    table.add(with_figures({score.method, std::to_string(materials)}, score));
+  const std::vector<Bold> bold = bold_figures(means);
+  for (std::size_t i = 0; i < means.size(); ++i)
+    table.add(
+        with_figures({means[i].score.method, std::to_string(means[i].materials)}, means[i].score, bold[i]));
   return table;
 }
 

@@ -18,7 +18,7 @@ namespace burnish::reports {
 
 /// One representation of one material.
 struct Score {
-  std::string method;  ///< "ours", "network" or one of baseline_methods()
+  std::string method;  ///< "ours", one of baseline_methods(), or what a published model is called
   std::size_t budget = 0;
   ErrorFigures errors;
   std::size_t bytes = 0;
@@ -42,10 +42,10 @@ struct Material {
   std::vector<Attempt> attempts = {};
   std::optional<std::size_t> shown_budget = {};  ///< scores up to it have pictures
 
-  /// Throws Error as open_source and Scorer do.
-  Material(std::string called, const std::string& place, const FigureOptions& options = {})
+  /// Throws Error as Scorer does.
+  Material(std::string called, Source opened, const FigureOptions& options = {})
       : name(std::move(called)),
-        source(open_source(place, {})),
+        source(std::move(opened)),
         reference(source.ref()),
         scorer(reference, options) {}
   Material(const Material&) = delete;
@@ -58,8 +58,8 @@ Image8 picture(BrdfRef brdf, double exposure);
 /// Fits and scores each material's attempts, in their order; those that are not "ours" side by side.
 std::vector<std::vector<Score>> run(const std::deque<Material>& materials);
 
-/// Scores a network of 675 weights.
-Score run_network(const Material& material, BrdfRef network);
+/// Scores a model that others published, made reciprocal; `method` is what it is called.
+Score run_published(const Material& material, std::string_view method, const Source& model);
 
 /// The mean of some scores of a method at a budget.
 struct MeanScore {
@@ -69,7 +69,8 @@ struct MeanScore {
 /// In the order the methods and budgets came first.
 std::vector<MeanScore> means_of(const std::vector<std::vector<Score>>& scores);
 
-/// Means, a row each.
+/// Means, a row each. Where the figure of another method is ahead of that of "ours" over as many materials, and took
+/// no more bytes than ours was given, both figures are bold.
 Table table_of(const std::vector<MeanScore>& means);
 /// Every score, a row each, scores[i] those of materials[i].
 Table table_of(const std::deque<Material>& materials, const std::vector<std::vector<Score>>& scores);

@@ -7,6 +7,7 @@
 
 #include <burnish/baselines/dgf_brdf.h>
 #include <burnish/baselines/neural_brdf.h>
+#include <burnish/baselines/np_brdf.h>
 #include <burnish/baselines/separable_brdf.h>
 #include <burnish/factors/factored_brdf.h>
 #include <burnish/factors/model_file.h>
@@ -23,7 +24,7 @@ namespace burnish {
 
 /// Everything a BRDF argument can be. Files become one by open_source (io/open_source.h).
 using AnyBrdf = std::variant<HalfDiffTable, RglTable, ScatteredBrdf, AngleTable, PatchTable, AnalyticBrdf,
-                             NeuralBrdf, SeparableBrdf, DgfBrdf, FactoredBrdf>;
+                             NeuralBrdf, NpBrdf, SeparableBrdf, DgfBrdf, FactoredBrdf>;
 
 /// An opened BRDF and what was found in it.
 struct Source {

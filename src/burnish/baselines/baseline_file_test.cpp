@@ -86,6 +86,9 @@ TEST(EvaluationCost, CountsLookupsAndProducts) {
   // d and f: 2 corners, 3 channels; g twice: 2 corners, 1 channel
   EXPECT_EQ(evaluation_cost(random_dgf()), (EvaluationCost{16, 16 + 12}));
   EXPECT_EQ(evaluation_cost(NeuralBrdf(std::vector<float>(675))), (EvaluationCost{675, 630}));
+  const NpBrdf np(std::make_shared<const NpDecoder>(std::vector<float>(808'003)), {},
+                  NpBrdf::Value::reflectance);
+  EXPECT_EQ(evaluation_cost(np), (EvaluationCost{808'003, 805'600}));
   EXPECT_FALSE(evaluation_cost(BaselineBrdf(parse_analytic("ggx"))));
   EXPECT_EQ(evaluation_cost(BaselineBrdf(random_dgf())), evaluation_cost(random_dgf()));
 }

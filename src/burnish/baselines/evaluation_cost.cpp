@@ -51,6 +51,10 @@ EvaluationCost evaluation_cost(const NeuralBrdf&) noexcept {
   return {NeuralBrdf::kWeights, NeuralBrdf::kWeights - 2 * NeuralBrdf::kHidden - NeuralBrdf::kOutputs};
 }
 
+EvaluationCost evaluation_cost(const NpBrdf&) noexcept {
+  return {NpDecoder::kWeights, NpDecoder::kProducts};
+}
+
 std::optional<EvaluationCost> evaluation_cost(const BaselineBrdf& brdf) noexcept {
   if (const auto* separable = std::get_if<SeparableBrdf>(&brdf)) return evaluation_cost(*separable);
   if (const auto* dgf = std::get_if<DgfBrdf>(&brdf)) return evaluation_cost(*dgf);

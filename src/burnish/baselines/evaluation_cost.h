@@ -5,6 +5,7 @@
 
 #include <burnish/baselines/baseline_file.h>
 #include <burnish/baselines/neural_brdf.h>
+#include <burnish/baselines/np_brdf.h>
 #include <burnish/factors/factored_brdf.h>
 
 namespace burnish {
@@ -20,8 +21,9 @@ struct EvaluationCost {
 EvaluationCost evaluation_cost(const FactoredBrdf& brdf) noexcept;
 EvaluationCost evaluation_cost(const SeparableBrdf& brdf) noexcept;
 EvaluationCost evaluation_cost(const DgfBrdf& brdf) noexcept;
-/// Its weights are read and all but the biases multiplied.
+/// Their weights are read and all but the biases multiplied; of NpBrdf those of the decoder.
 EvaluationCost evaluation_cost(const NeuralBrdf& brdf) noexcept;
+EvaluationCost evaluation_cost(const NpBrdf& brdf) noexcept;
 /// Nothing for analytic models, which are no tables.
 std::optional<EvaluationCost> evaluation_cost(const BaselineBrdf& brdf) noexcept;
 

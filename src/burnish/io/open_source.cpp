@@ -10,6 +10,7 @@
 #include <burnish/io/mbsdf.h>
 #include <burnish/io/merl.h>
 #include <burnish/io/neural.h>
+#include <burnish/io/np.h>
 #include <burnish/io/open_source.h>
 #include <burnish/io/rgl.h>
 #include <burnish/io/text_reader.h>
@@ -49,6 +50,11 @@ Source from_neural(const FileBytes& file, std::string_view name) {
   return {fmt::format("{}#{}", file.name, parsed.name), std::move(parsed.brdf), std::move(parsed.findings)};
 }
 
+Source from_np(std::string_view address) {
+  NpFile parsed = open_np(address);
+  return {fmt::format("np:{}", address), std::move(parsed.brdf), std::move(parsed.findings)};
+}
+
 Source from_spec(const std::string& spec) {
   AnalyticBrdf brdf = parse_analytic(spec);
   Findings findings;
@@ -72,6 +78,9 @@ Source parse_file(const FileBytes& file, const OpenOptions& options) {
   if (looks_like_csv(text)) return from_samples(file, parse_csv(file, options));
   if (looks_like_astm(text)) return from_samples(file, parse_astm(file, options));
   if (looks_like_cornell(text)) return from_samples(file, parse_cornell(file, options));
+  if (looks_like_np(text))
+    throw Error::in_file(file.name, "np:FILE#NAME for one of its codes, a decoder.f32 beside it",
+                         "the file alone");
   throw Error(
       file.name, 0,
       "a MERL, RGL, MBSDF, Zemax, Klems, ASTM E1392, Cornell or CSV measurement, a neural encoding, a "
@@ -89,7 +98,8 @@ Source parse_source(const FileBytes& file, const OpenOptions& options) {
 
 Source open_source(const std::string& spec, const OpenOptions& options) {
   if (is_analytic_spec(spec)) return from_spec(spec);
-  constexpr std::string_view kNeural = "nbrdf:";
+  constexpr std::string_view kNeural = "nbrdf:", kNp = "np:";
+  if (spec.starts_with(kNp)) return from_np(std::string_view(spec).substr(kNp.size()));
   if (spec.starts_with(kNeural)) {
     const std::string rest = spec.substr(kNeural.size());
     const std::size_t mark = std::min(rest.rfind('#'), rest.size());

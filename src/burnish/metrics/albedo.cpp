@@ -30,24 +30,33 @@ struct Ring {
 };
 
 Ring integrate_ring(BrdfRef source, Vec3 wi, const RingFrame& frame, double radius,
-                    double solid_angle_per_azimuth, std::size_t azimuth_count, std::vector<double>& f) {
-  Ring ring{.reflected = std::vector<double>(f.size()), .clamped = std::vector<double>(f.size())};
+                    double solid_angle_per_azimuth, std::size_t azimuth_count) {
+  const auto channels = static_cast<std::size_t>(source.channels());
+  Ring ring{.reflected = std::vector<double>(channels), .clamped = std::vector<double>(channels)};
   // cos(theta_o) = level + slope cos(azimuth) is above 0 within `half` of the azimuth towards the normal
   const double level = std::cos(radius) * frame.axis.z;
   const double slope = std::sin(radius) * frame.up.z;
   const double half = slope > 0 ? std::acos(std::clamp(-level / slope, -1.0, 1.0)) : level > 0 ? kPi : 0;
   const double weight = solid_angle_per_azimuth * 2 * half / static_cast<double>(azimuth_count);
+  std::vector<DirectionPair> pairs;
   for (std::size_t j = 0; j < azimuth_count; ++j) {
     const double azimuth = half * ((2 * static_cast<double>(j) + 1) / static_cast<double>(azimuth_count) - 1);
     const Vec3 wo = std::cos(radius) * frame.axis +
                     std::sin(radius) * (std::cos(azimuth) * frame.up + std::sin(azimuth) * frame.side);
-    if (wo.z <= 0) continue;
-    ring.all += weight * wo.z;
-    if (!source.eval(wi, wo, f)) continue;
-    ring.known += weight * wo.z;
-    for (std::size_t c = 0; c < f.size(); ++c) {
-      ring.reflected[c] += weight * wo.z * f[c];
-      ring.clamped[c] += weight * wo.z * std::max(f[c], 0.0);
+    if (wo.z > 0) pairs.push_back({wi, wo});
+  }
+  std::vector<double> values(pairs.size() * channels);
+  std::vector<std::uint8_t> known(pairs.size());
+  source.eval(pairs, values, known);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const double share = weight * pairs[i].wo.z;
+    ring.all += share;
+    if (!known[i]) continue;
+    ring.known += share;
+    for (std::size_t c = 0; c < channels; ++c) {
+      const double f = values[i * channels + c];
+      ring.reflected[c] += share * f;
+      ring.clamped[c] += share * std::max(f, 0.0);
     }
   }
   return ring;
@@ -61,12 +70,11 @@ DirectionalAlbedo integrate(BrdfRef source, Vec3 wi, std::size_t ring_count) {
   // rings about the mirror direction, which crowd around it: radius = most u^2, dr = 2 most u du
   std::vector<Ring> rings(ring_count);
   for_each_chunk(ring_count, kRingsAtOnce, [&](std::size_t, std::size_t begin, std::size_t end) {
-    std::vector<double> f(channels);
     for (std::size_t k = begin; k < end; ++k) {
       const double u = (static_cast<double>(k) + 0.5) / static_cast<double>(ring_count);
       const double radius = most_radius * u * u;
       const double width = 2 * most_radius * u / static_cast<double>(ring_count);
-      rings[k] = integrate_ring(source, wi, frame, radius, std::sin(radius) * width, ring_count / 2, f);
+      rings[k] = integrate_ring(source, wi, frame, radius, std::sin(radius) * width, ring_count / 2);
     }
   });
 

@@ -29,17 +29,38 @@ Vec3 light_direction(double angle) noexcept {
   return {std::sin(angle), 0, std::cos(angle)};
 }
 
-// f_r max(cos theta_i, 0) at normal n, into `out`; false where unknown.
-bool shade(BrdfRef brdf, Vec3 n, Vec3 light, std::span<double> out) noexcept {
-  const Vec3 wi = sphere_local(n, light);
-  const bool known = brdf.eval(wi, sphere_local(n, kView), out);
-  for (double& value : out) value *= std::max(wi.z, 0.0);
-  return known;
-}
-
 std::size_t as_size(int v) noexcept {
   return static_cast<std::size_t>(v);
 }
+
+// f_r max(cos theta_i, 0) at normals of the sphere, many at a time.
+class Shading {
+ public:
+  Shading(BrdfRef brdf, Vec3 light) : brdf_(brdf), light_(light) {}
+
+  void run(std::span<const Vec3> normals) {
+    pairs_.clear();
+    for (const Vec3 n : normals) pairs_.push_back({sphere_local(n, light_), sphere_local(n, kView)});
+    values_.resize(pairs_.size() * channels());
+    known_.resize(pairs_.size());
+    brdf_.eval(pairs_, values_, known_);
+    for (std::size_t i = 0; i < values_.size(); ++i) values_[i] *= std::max(pairs_[i / channels()].wi.z, 0.0);
+  }
+  // Of normal i of the last run.
+  std::span<const double> value(std::size_t i) const noexcept {
+    return std::span(values_).subspan(i * channels(), channels());
+  }
+  std::uint8_t known(std::size_t i) const noexcept { return known_[i]; }
+
+ private:
+  std::size_t channels() const noexcept { return as_size(brdf_.channels()); }
+
+  BrdfRef brdf_;
+  Vec3 light_;
+  std::vector<DirectionPair> pairs_;
+  std::vector<double> values_;
+  std::vector<std::uint8_t> known_;
+};
 
 // Channels two images are compared in.
 int common_channels(const Image& a, const Image& b) {
@@ -74,15 +95,24 @@ LitSphere render_sphere(BrdfRef brdf, double light_angle, int size) {
                    std::vector<std::uint8_t>(as_size(size) * as_size(size), 1)};
   const Vec3 light = light_direction(light_angle);
   for_each_chunk(as_size(size), 8, [&](std::size_t, std::size_t begin, std::size_t end) {
-    std::vector<double> value(as_size(brdf.channels()));
-    for (std::size_t row = begin; row < end; ++row)
-      for (int x = 0; x < size; ++x) {
-        const int y = static_cast<int>(row);
-        const auto n = sphere_normal(size, x + 0.5, y + 0.5);
-        if (!n) continue;
-        sphere.known[row * as_size(size) + as_size(x)] = shade(brdf, *n, light, value);
-        std::ranges::copy(value, sphere.image.at(x, y).begin());
+    Shading shading(brdf, light);
+    std::vector<int> columns;
+    std::vector<Vec3> normals;
+    for (std::size_t row = begin; row < end; ++row) {
+      const int y = static_cast<int>(row);
+      columns.clear();
+      normals.clear();
+      for (int x = 0; x < size; ++x)
+        if (const auto n = sphere_normal(size, x + 0.5, y + 0.5)) {
+          columns.push_back(x);
+          normals.push_back(*n);
+        }
+      shading.run(normals);
+      for (std::size_t i = 0; i < columns.size(); ++i) {
+        sphere.known[row * as_size(size) + as_size(columns[i])] = shading.known(i);
+        std::ranges::copy(shading.value(i), sphere.image.at(columns[i], y).begin());
       }
+    }
   });
   return sphere;
 }
@@ -283,24 +313,34 @@ Image8 lit_sphere(BrdfRef brdf, const LitSphereOptions& options) {
   Image linear(options.size, options.size, brdf.channels());
   Image coverage(options.size, options.size, 1);
   for_each_chunk(as_size(options.size), 8, [&](std::size_t, std::size_t begin, std::size_t end) {
-    std::vector<double> value(as_size(brdf.channels())), sum(value.size());
-    for (std::size_t row = begin; row < end; ++row)
+    Shading shading(brdf, light);
+    std::vector<int> hits(as_size(options.size));  // of each pixel of a row
+    std::vector<Vec3> normals;
+    std::vector<double> sum(as_size(brdf.channels()));
+    for (std::size_t row = begin; row < end; ++row) {
+      const int y = static_cast<int>(row);
+      std::ranges::fill(hits, 0);
+      normals.clear();
+      for (int x = 0; x < options.size; ++x)
+        for (int k = 0; k < samples * samples; ++k)
+          if (const auto n = sphere_normal(options.size, x + (k % samples + 0.5) / samples,
+                                           y + (k / samples + 0.5) / samples)) {
+            ++hits[as_size(x)];
+            normals.push_back(*n);
+          }
+      shading.run(normals);
+      std::size_t next = 0;
       for (int x = 0; x < options.size; ++x) {
-        const int y = static_cast<int>(row);
-        int hits = 0;
+        const int count = hits[as_size(x)];
+        if (count == 0) continue;
         std::ranges::fill(sum, 0.0);
-        for (int k = 0; k < samples * samples; ++k) {
-          const auto n = sphere_normal(options.size, x + (k % samples + 0.5) / samples,
-                                       y + (k / samples + 0.5) / samples);
-          if (!n) continue;
-          ++hits;
-          shade(brdf, *n, light, value);
-          for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += std::clamp(exposure * value[c], 0.0, 1.0);
-        }
-        if (hits == 0) continue;
-        for (std::size_t c = 0; c < sum.size(); ++c) linear.at(x, y)[c] = static_cast<float>(sum[c] / hits);
-        coverage.at(x, y)[0] = static_cast<float>(hits) / static_cast<float>(samples * samples);
+        for (int k = 0; k < count; ++k, ++next)
+          for (std::size_t c = 0; c < sum.size(); ++c)
+            sum[c] += std::clamp(exposure * shading.value(next)[c], 0.0, 1.0);
+        for (std::size_t c = 0; c < sum.size(); ++c) linear.at(x, y)[c] = static_cast<float>(sum[c] / count);
+        coverage.at(x, y)[0] = static_cast<float>(count) / static_cast<float>(samples * samples);
       }
+    }
   });
 
   // tone mapped, with the coverage as alpha

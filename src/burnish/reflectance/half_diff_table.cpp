@@ -124,14 +124,22 @@ HalfDiffTable tabulate_half_diff(BrdfRef source, int theta_h_count, int theta_d_
   const auto channels = static_cast<std::size_t>(table.channel_count);
   table.values.assign(table.entry_count() * channels, std::numeric_limits<float>::quiet_NaN());
   for_each_chunk(static_cast<std::size_t>(theta_h_count), 1, [&](std::size_t h, std::size_t, std::size_t) {
-    std::vector<double> f(channels);
-    for (int d = 0; d < theta_d_count; ++d)
-      for (int p = 0; p < phi_d_count; ++p) {
-        const auto [wi, wo] = from_half_diff(table.centre(static_cast<int>(h), d, p));
-        if (wi.z <= 0 || wo.z <= 0 || !source.eval(wi, wo, f)) continue;
-        float* entry = &table.values[table.offset(static_cast<int>(h), d, p)];
-        for (std::size_t c = 0; c < channels; ++c) entry[c] = static_cast<float>(f[c]);
+    const auto circle = static_cast<std::size_t>(phi_d_count);
+    std::vector<DirectionPair> pairs(circle);
+    std::vector<double> values(circle * channels);
+    std::vector<std::uint8_t> known(circle);
+    for (int d = 0; d < theta_d_count; ++d) {
+      for (std::size_t p = 0; p < circle; ++p) {
+        const auto [wi, wo] = from_half_diff(table.centre(static_cast<int>(h), d, static_cast<int>(p)));
+        pairs[p] = {wi, wo};
       }
+      source.eval(pairs, values, known);
+      float* entry = &table.values[table.offset(static_cast<int>(h), d, 0)];
+      for (std::size_t p = 0; p < circle; ++p)
+        if (known[p] && pairs[p].wi.z > 0 && pairs[p].wo.z > 0)
+          for (std::size_t c = p * channels; c < (p + 1) * channels; ++c)
+            entry[c] = static_cast<float>(values[c]);
+    }
   });
   return table;
 }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <burnish/reflectance/goniometer.h>
 #include <burnish/reflectance/statistics.h>
@@ -8,13 +9,19 @@ namespace burnish {
 
 ReciprocityError reciprocity_error(BrdfRef source, std::size_t count, std::uint64_t seed) {
   const auto channels = static_cast<std::size_t>(source.channels());
-  std::vector<double> f(channels), swapped(channels);
+  std::vector<DirectionPair> pairs = draw_pairs(count, seed, false);
+  std::vector<double> f(pairs.size() * channels), swapped(f.size());
+  std::vector<std::uint8_t> known(pairs.size()), swapped_known(pairs.size());
+  source.eval(pairs, f, known);
+  for (DirectionPair& pair : pairs) std::swap(pair.wi, pair.wo);
+  source.eval(pairs, swapped, swapped_known);
+
   ReciprocityError result;
   double sum = 0;
-  for (const auto& [wi, wo] : draw_pairs(count, seed, false)) {
-    if (!source.eval(wi, wo, f) || !source.eval(wo, wi, swapped)) continue;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (!known[i] || !swapped_known[i]) continue;
     ++result.pairs;
-    for (std::size_t c = 0; c < channels; ++c) {
+    for (std::size_t c = i * channels; c < (i + 1) * channels; ++c) {
       const double total = std::abs(f[c] + swapped[c]);
       if (total > 0) sum += 2 * std::abs(f[c] - swapped[c]) / total / static_cast<double>(channels);
     }

@@ -79,6 +79,8 @@ inline std::string baseline_seed() {
       {.kind = "svd", .brdf = SeparableBrdf(std::move(u), std::move(v), {1, 2, 3}), .notes = R"({"a":1})"});
 }
 
+/// A code of Neural Processes, which is a BRDF only with its decoder.
+inline const std::string kNpCode = "seed,0.5,-0.25,1e-1,1.5,-.75,0,2\n";
 inline const std::string kCornell =
     "# Maker\n# Paint\n2\n400 500\n0.5 0 0.25 3.14 0.1 0.2\n0.5 0 0.75 0 -0.1 0.4\n";
 inline const std::string kAstm =

@@ -1,0 +1,36 @@
+#pragma once
+
+// A decoder of Neural Processes with weights of its own.
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <burnish/baselines/np_decoder.h>
+#include <burnish/math/random.h>
+
+namespace burnish {
+
+/// Weights of a layer of n inputs within sqrt(6 / n) of 0, so that values neither grow nor vanish; biases
+/// within 0.2.
+inline std::vector<float> random_np_weights(std::uint64_t seed) {
+  Pcg32 random(seed);
+  std::vector<float> weights;
+  const auto draw = [&](std::size_t count, double range) {
+    for (std::size_t i = 0; i < count; ++i)
+      weights.push_back(static_cast<float>(range * (2 * random.uniform() - 1)));
+  };
+  for (std::size_t layer = 0; layer + 1 < NpDecoder::kUnits.size(); ++layer) {
+    const std::size_t inputs = NpDecoder::kUnits[layer], outputs = NpDecoder::kUnits[layer + 1];
+    draw(inputs * outputs, std::sqrt(6.0 / static_cast<double>(inputs)));
+    draw(outputs, 0.2);
+  }
+  return weights;
+}
+
+inline std::shared_ptr<const NpDecoder> random_np_decoder(std::uint64_t seed) {
+  return std::make_shared<const NpDecoder>(random_np_weights(seed));
+}
+
+}  // namespace burnish
