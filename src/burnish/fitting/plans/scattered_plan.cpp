@@ -25,7 +25,7 @@ constexpr std::size_t kTrialChannels = 3;
 
 // Texels of the models that are tried. Up to about 500 a fit is direct and takes milliseconds; hemispheres
 // need more, and are then solved by iterations.
-constexpr std::array<std::size_t, 3> kLineSizes{96, 216, 486}, kDiskSizes{160, 486, 1800};
+constexpr std::array<std::size_t, 2> kLineSizes{140, 400}, kDiskSizes{160, 1200};
 constexpr int kLongestLine = 1024;  // nodes, finer than any measurement
 constexpr int kLargestDisk = 256;   // nodes along a side
 
@@ -180,13 +180,9 @@ class Trials {
         if (table.name == other.name) table.smooth_share = other.smooth_share;
     ScatteredPlan best = attempt(std::move(spec), known.smooth);
     if (fixed_smooth_) return best;
-    for (const double factor : {0.1, 10.0}) {
-      bool moved = false;
-      while (step(best, factor)) moved = true;
-      if (moved) break;  // the other way would undo it
-    }
-    for (const double factor : {std::sqrt(0.1), std::sqrt(10.0)})
-      if (step(best, factor)) break;
+    climb(best, [](ScatteredPlan& plan, double factor) { plan.smooth *= factor; });
+    for (std::size_t t = 0; t < best.spec.tables.size(); ++t)
+      climb(best, [t](ScatteredPlan& plan, double factor) { plan.spec.tables[t].smooth_share *= factor; });
     return best;
   }
 
@@ -197,11 +193,21 @@ class Trials {
     return {.spec = std::move(spec), .smooth = smooth, .error = error, .format = options_.format};
   }
 
-  bool step(ScatteredPlan& best, double factor) {
-    ScatteredPlan trial = attempt(best.spec, best.smooth * factor);
-    if (!(*trial.error < *best.error)) return false;
-    best = std::move(trial);
-    return true;
+  // Changes by decades either way as long as that helps.
+  template <class Change>
+  void climb(ScatteredPlan& best, const Change& change) {
+    constexpr int kDecades = 4;
+    for (const double factor : {0.1, 10.0}) {
+      int moved = 0;
+      for (bool better = true; better && moved < kDecades; moved += better) {
+        ScatteredPlan trial = best;
+        change(trial, factor);
+        trial = attempt(std::move(trial.spec), trial.smooth);
+        better = *trial.error < *best.error;
+        if (better) best = std::move(trial);
+      }
+      if (moved > 0) return;  // the other way would undo it
+    }
   }
 
   const SampleSource& source_;
@@ -275,26 +281,24 @@ ScatteredPlan plan_scattered(const SampleSource& source, std::size_t bytes, std:
   const SampleSource part = some_channels(source);
   Trials trials(part, smooth.has_value(), chosen);
   const std::vector<ModelSpec> specs = candidates(source, bytes, formats.front());
-  ScatteredPlan best = trials.start(specs.front(), smooth, options.progress);
-  const auto compare = [&](const ModelSpec& spec) {
-    ScatteredPlan other = trials.near(spec, best);
-    if (*other.error < *best.error) best = std::move(other);
-  };
-  for (auto spec = specs.begin() + 1; spec != specs.end(); ++spec) compare(*spec);
+  std::vector<ScatteredPlan> found{trials.start(specs.front(), smooth, options.progress)};
+  const auto best = [&] { return std::ranges::min_element(found, {}, &ScatteredPlan::error); };
+  for (auto spec = specs.begin() + 1; spec != specs.end(); ++spec)
+    found.push_back(trials.near(*spec, *best()));
   // the smaller format where it resolves more
   for (auto other = formats.begin() + 1; other != formats.end(); ++other) {
     trials.store_as(*other);
     const ModelSpec finest = candidates(source, bytes, *other).back();
-    if (texels_of(finest) > texels_of(specs.back())) compare(finest);
+    if (texels_of(finest) > texels_of(specs.back())) found.push_back(trials.near(finest, *best()));
   }
 
-  // the error of all channels
-  if (part.channels != source.channels) {
-    chosen.progress = nullptr;
-    chosen.smooth = best.smooth;
-    best.error = held_out_error(source, best.spec, chosen, kFolds);
-  }
-  return best;
+  // the errors of all channels
+  if (part.channels != source.channels)
+    for (ScatteredPlan& plan : found) {
+      chosen.smooth = plan.smooth;
+      plan.error = held_out_error(source, plan.spec, chosen, kFolds);
+    }
+  return *best();
 }
 
 }  // namespace burnish
