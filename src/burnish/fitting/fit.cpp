@@ -14,6 +14,7 @@
 #include <burnish/fitting/one_lobe/log_error.h>
 #include <burnish/fitting/plans/fit_plan.h>
 #include <burnish/fitting/plans/overfit.h>
+#include <burnish/fitting/plans/scattered_plan.h>
 #include <burnish/fitting/plans/search.h>
 #include <burnish/fitting/refinement/rounding.h>
 #include <burnish/metrics/error_figures.h>
@@ -82,7 +83,7 @@ class Fitter {
   Fitted fit(const Budget& form) {
     if (form.bytes == 0) throw Error("fit: expected a budget of at least one byte, found none");
     // few scattered samples do not carry several lobes
-    return samples() ? fit_one(one_lobe_of(form), form.scattered) : fit_to_budget(form);
+    return samples() ? fit_scattered(form) : fit_to_budget(form);
   }
 
   Fitted fit(const BaselineMethod& form) {
@@ -113,25 +114,12 @@ class Fitter {
     return spec;
   }
 
-  /// The lobe of a budget's plan without what is spread wide.
-  ModelSpec one_lobe_of(const Budget& form) const {
-    const std::size_t texel = texel_bytes(format(), channels());
-    const bool isotropic = brdf_.isotropic();
-    LobePlan plan = default_plan(form.bytes, isotropic ? 1 : 2, isotropic, texel);
-    plan.wide.clear();
-    plan.wide_texels = 0;
-    return plan_to_spec(plan, form.bytes, channels(), texel);
-  }
-
   /// The paper's fit: one lobe, log-linear.
   FactoredBrdf fit_one(ModelSpec spec, const LogLinear& how) {
     const SampleSource source =
         sample_source(brdf_.isotropic() ? kIsotropicSamples : kAnisotropicSamples, has_disk(spec), table());
-    HomomorphicOptions options;
-    options.floor = how.floor;
+    HomomorphicOptions options = log_linear_options(how);
     if (options_.format) options.format = *options_.format;
-    options.reweightings = how.reweightings.value_or(samples() ? kScatteredReweightings : 0);
-    options.progress = progress("fitting");
     OneLobeReport report;
 
     // the smoothness: given, or the one that predicts best
@@ -144,7 +132,33 @@ class Fitter {
         spec.tables[t].smooth_share = trials.front().shares[t];
       if (source.distinct <= kManySamples) report.relative_cross_validated = std::expm1(trials.front().error);
     }
+    return finish_one(source, spec, options, std::move(report));
+  }
 
+  /// The lobe for scattered samples that predicts best within the budget.
+  FactoredBrdf fit_scattered(const Budget& form) {
+    // the lobe is reciprocal: samples exchanged would say the same again
+    const SampleSource source = from_samples(*samples(), false);
+    if (options_.format) check_format_of_source(*options_.format);
+    HomomorphicOptions options = log_linear_options(form.scattered);
+    const ScatteredPlan plan = plan_scattered(source, form.bytes, options_.smooth, options_.format, options);
+    options.smooth = plan.smooth;
+    options.format = plan.format;
+    OneLobeReport report;
+    if (plan.error && !options_.smooth) report.relative_cross_validated = std::expm1(*plan.error);
+    return finish_one(source, plan.spec, options, std::move(report));
+  }
+
+  HomomorphicOptions log_linear_options(const LogLinear& how) const {
+    HomomorphicOptions options;
+    options.floor = how.floor;
+    options.reweightings = how.reweightings.value_or(samples() ? kScatteredReweightings : 0);
+    options.progress = progress("fitting");
+    return options;
+  }
+
+  FactoredBrdf finish_one(const SampleSource& source, const ModelSpec& spec,
+                          const HomomorphicOptions& options, OneLobeReport report) {
     HomomorphicFit result = fit_homomorphic(source, spec, options);
     report.summary = result.summary;
     report.samples = result.samples;
@@ -216,10 +230,14 @@ class Fitter {
   /// Three channels share an exponent unless told otherwise: a third fewer bytes for hardly any error.
   TableFormat format() const {
     if (!options_.format) return channels() == 3 ? TableFormat::rgb9e5 : TableFormat::half;
-    if (!holds_channels(*options_.format, channels()))
-      throw Error(fmt::format("format {}: expected a source of 3 channels, found {}",
-                              to_string(*options_.format), channels()));
+    check_format_of_source(*options_.format);
     return *options_.format;
+  }
+
+  void check_format_of_source(TableFormat format) const {
+    if (!holds_channels(format, channels()))
+      throw Error(
+          fmt::format("format {}: expected a source of 3 channels, found {}", to_string(format), channels()));
   }
 
   // ---- What is fitted

@@ -4,6 +4,7 @@
 
 #include <burnish/fitting/one_lobe/cross_validation.h>
 #include <burnish/fitting/one_lobe/log_error.h>
+#include <burnish/math/parallel.h>
 
 namespace burnish {
 
@@ -25,10 +26,15 @@ SampleSource part_of(const SampleSource& source, std::size_t folds, std::size_t 
 
 double held_out_error(const SampleSource& source, const ModelSpec& spec, const HomomorphicOptions& options,
                       std::size_t folds) {
+  HomomorphicOptions quiet = options;
+  quiet.progress = nullptr;  // the folds are fitted side by side
+  std::vector<ErrorSum> parts(folds);
+  for_each_chunk(folds, 1, [&](std::size_t fold, std::size_t, std::size_t) {
+    const FactoredBrdf model = fit_homomorphic(part_of(source, folds, fold, false), spec, quiet).brdf;
+    parts[fold] = log_error(part_of(source, folds, fold, true), model, options.error_floor);
+  });
   ErrorSum sum;
-  for (std::size_t fold = 0; fold < folds; ++fold) {
-    const FactoredBrdf model = fit_homomorphic(part_of(source, folds, fold, false), spec, options).brdf;
-    const ErrorSum part = log_error(part_of(source, folds, fold, true), model, options.error_floor);
+  for (const ErrorSum& part : parts) {
     sum.error += part.error;
     sum.weight += part.weight;
   }
@@ -37,11 +43,11 @@ double held_out_error(const SampleSource& source, const ModelSpec& spec, const H
 
 std::vector<SmoothTrial> choose_smoothness(const SampleSource& source, const ModelSpec& spec,
                                            const HomomorphicOptions& options) {
-  constexpr int kFirstDecade = -10, kLastDecade = -1, kWorseDecades = 2;
+  constexpr int kFirstDecade = -1, kLastDecade = -10, kWorseDecades = 2;
   const bool many = source.distinct > kManySamples;
   const std::size_t folds = many ? 2 : 5, tables = spec.tables.size();
   const int rounds = many || tables == 1 ? 0 : 2;
-  const double expected = kLastDecade - kFirstDecade + 3 + 2.5 * rounds * static_cast<double>(tables);
+  const double expected = kFirstDecade - kLastDecade + 3 + 2.5 * rounds * static_cast<double>(tables);
   HomomorphicOptions trial_options = options;
   trial_options.progress = nullptr;
   if (many) trial_options.reweightings = 0;
@@ -62,12 +68,13 @@ std::vector<SmoothTrial> choose_smoothness(const SampleSource& source, const Mod
     return true;
   };
 
-  // the smoothness of all tables, by decades
+  // the smoothness of all tables, by decades; from the smooth side, since rough tables can be wild at any of
+  // several decades
   std::vector<double> shares;
   for (const ModelSpec::TableSpec& table : spec.tables) shares.push_back(table.smooth_share);
   best.shares = shares;
   int worse = 0;
-  for (int decade = kFirstDecade; decade <= kLastDecade && worse < kWorseDecades; ++decade)
+  for (int decade = kFirstDecade; decade >= kLastDecade && worse < kWorseDecades; --decade)
     worse = improves(attempt(std::pow(10.0, decade), shares)) ? 0 : worse + 1;
   // each table's share of it
   for (int round = 0; round < rounds; ++round)

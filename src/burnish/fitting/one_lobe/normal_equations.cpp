@@ -166,6 +166,35 @@ void add_smoothness(const ModelSpec& spec, const Gatherer& gatherer, double smoo
   }
 }
 
+/// Solution of one matrix: a column for each on the right, and the weighted squares of its rows' targets about
+/// their mean and about the solution, with their weight.
+struct Solved {
+  Matrix x;
+  double before = 0, after = 0, weight = 0;
+};
+
+Solved solve(const Sums& sum, const ModelSpec& spec, const Gatherer& gatherer, double smooth) {
+  if (!(sum.weight > 0)) throw Error("fit: expected samples with weight, found none");
+
+  // the mean over the samples, smoothness and ridge added
+  Matrix data = (sum.upper + sum.upper.transpose()) / sum.weight;
+  data.diagonal() += sum.diagonal / sum.weight;
+  const Matrix right = sum.right / sum.weight;
+  Matrix matrix = data;
+  add_smoothness(spec, gatherer, smooth, matrix);
+  matrix.diagonal().array() += kRidge * matrix.trace() / static_cast<double>(matrix.rows());
+  Solved solved{.x = matrix.ldlt().solve(right)};
+
+  // sum over rows of (A x - t)^2 = x A^T A x - 2 x A^T t + t^2
+  const Matrix& x = solved.x;
+  const Eigen::ArrayXd mean = sum.target / sum.weight, mean_square = sum.target_squared / sum.weight;
+  solved.before = sum.weight * (mean_square - mean * mean).sum();
+  solved.after =
+      sum.weight * ((x.cwiseProduct(data * x) - 2 * x.cwiseProduct(right)).sum() + mean_square.sum());
+  solved.weight = sum.weight * static_cast<double>(mean.size());
+  return solved;
+}
+
 }  // namespace
 
 LogSolution solve_normal_equations(const RowMaker& rows, const HomomorphicOptions& options) {
@@ -188,26 +217,20 @@ LogSolution solve_normal_equations(const RowMaker& rows, const HomomorphicOption
                        .channel_offset = std::vector<double>(channels),
                        .summary = {.stop_reason = StopReason::direct_solution}};
   for (const std::size_t s : samples) solution.samples += s;
-  double before = 0, after = 0, weight = 0;
-  for (std::size_t m = 0; m < gatherer.matrices(); ++m) {
+  // each matrix by itself
+  std::vector<Solved> solved(gatherer.matrices());
+  for_each_chunk(gatherer.matrices(), 1, [&](std::size_t m, std::size_t, std::size_t) {
     Sums& sum = partial.front()[m];
     for (std::size_t g = 1; g < partial.size(); ++g) sum.add(partial[g][m]);
-    if (!(sum.weight > 0)) throw Error("fit: expected samples with weight, found none");
+    solved[m] = solve(sum, *rows.spec, gatherer, options.smooth);
+  });
 
-    // the mean over the samples, smoothness and ridge added
-    Matrix data = (sum.upper + sum.upper.transpose()) / sum.weight;
-    data.diagonal() += sum.diagonal / sum.weight;
-    const Matrix right = sum.right / sum.weight;
-    Matrix matrix = data;
-    add_smoothness(*rows.spec, gatherer, options.smooth, matrix);
-    matrix.diagonal().array() += kRidge * matrix.trace() / static_cast<double>(matrix.rows());
-    const Matrix x = matrix.ldlt().solve(right);
-
-    // sum over rows of (A x - t)^2 = x A^T A x - 2 x A^T t + t^2
-    const Eigen::ArrayXd mean = sum.target / sum.weight, mean_square = sum.target_squared / sum.weight;
-    before += sum.weight * (mean_square - mean * mean).sum();
-    after += sum.weight * ((x.cwiseProduct(data * x) - 2 * x.cwiseProduct(right)).sum() + mean_square.sum());
-    weight += sum.weight * static_cast<double>(mean.size());
+  double before = 0, after = 0, weight = 0;
+  for (std::size_t m = 0; m < gatherer.matrices(); ++m) {
+    const Matrix& x = solved[m].x;
+    before += solved[m].before;
+    after += solved[m].after;
+    weight += solved[m].weight;
 
     // where the unknowns stand among those of all channels
     for (std::size_t t = 0; t < rows.spec->tables.size(); ++t)

@@ -1,0 +1,304 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <burnish/error.h>
+#include <burnish/fitting/one_lobe/cross_validation.h>
+#include <burnish/fitting/plans/lobe_plan.h>
+#include <burnish/fitting/plans/scattered_plan.h>
+
+namespace burnish {
+
+namespace {
+
+constexpr std::size_t kNumberBytes = 4;  // of a scale, a warp's parameter or a projection's coefficient
+constexpr std::size_t kFolds = 5;
+
+// Smoothness is common to all channels: a few tell it.
+constexpr std::size_t kTrialChannels = 3;
+
+// Texels of the models that are tried. Up to about 500 a fit is direct and takes milliseconds; hemispheres
+// need more, and are then solved by iterations.
+constexpr std::array<std::size_t, 2> kLineSizes{140, 400}, kDiskSizes{160, 1200};
+constexpr int kLongestLine = 1024;  // nodes, finer than any measurement
+constexpr int kLargestDisk = 256;   // nodes along a side
+
+// Factor sets, the fullest first: the others serve budgets that hold few texels.
+const std::array<std::string, 5> kFactorSets{"pqmr", "pqm", "pqr", "pq", "q"};
+
+bool is_disk(const PlannedFactor& factor) {
+  return factor.shape == TableShape::disk;
+}
+
+int least_side(const PlannedFactor& factor) {
+  return is_disk(factor) ? 3 : 2;
+}
+
+// Nodes along a side of a factor's table of at most so many nodes.
+int side_of(const PlannedFactor& factor, double nodes) {
+  const int most = is_disk(factor) ? kLargestDisk : kLongestLine;
+  return static_cast<int>(std::min<double>(most, is_disk(factor) ? std::sqrt(nodes) : nodes));
+}
+
+std::size_t nodes_of(const PlannedFactor& factor, int side) {
+  const auto n = static_cast<std::size_t>(side);
+  return is_disk(factor) ? n * n : n;
+}
+
+// The factors of one set, as budgets plan them.
+std::vector<PlannedFactor> factors_of(const std::string& set, std::size_t texels, bool isotropic) {
+  std::vector<PlannedFactor> chosen;
+  // of so few bytes of one each that no grids are planned
+  const std::size_t bytes = isotropic ? 1 : texels;
+  for (PlannedFactor& factor : default_plan(bytes, isotropic ? 1 : 2, isotropic, 1).factors)
+    if (set.find(factor.name) != set.npos) chosen.push_back(std::move(factor));
+  return chosen;
+}
+
+// The lobe whose tables have at most `texels` texels together: each its share, but as many as it needs, and q
+// what is left. None where they do not suffice.
+std::optional<ModelSpec> spec_of(const std::string& set, std::size_t texels, bool isotropic) {
+  const std::vector<PlannedFactor> factors = factors_of(set, texels, isotropic);
+  double shares = 0;
+  for (const PlannedFactor& factor : factors) shares += factor.share;
+  std::vector<int> sides;
+  std::size_t left = texels;
+  const auto q = std::ranges::find(factors, "q", &PlannedFactor::name);
+  for (const PlannedFactor& factor : factors) {
+    const double nodes = factor.share / shares * static_cast<double>(texels);
+    sides.push_back(std::max(least_side(factor), side_of(factor, nodes)));
+    if (factor.name == q->name) continue;
+    const std::size_t taken = nodes_of(factor, sides.back());
+    if (taken > left) return std::nullopt;
+    left -= taken;
+  }
+  const int side = side_of(*q, static_cast<double>(left));
+  if (side < least_side(*q)) return std::nullopt;
+  sides[static_cast<std::size_t>(q - factors.begin())] = side;
+
+  ModelSpec spec;
+  spec.lobes.emplace_back();
+  for (std::size_t k = 0; k < factors.size(); ++k) {
+    const PlannedFactor& factor = factors[k];
+    spec.tables.push_back({.name = factor.name,
+                           .layout = {.shape = factor.shape,
+                                      .width = sides[k],
+                                      .height = is_disk(factor) ? sides[k] : 1,
+                                      .warp = factor.warp}});
+    for (const Projection& use : factor.uses)
+      spec.lobes.front().push_back({.table = static_cast<int>(k), .projection = use, .projection_y = {}});
+  }
+  return spec;
+}
+
+// The same within so many bytes, at most `most` texels.
+std::optional<ModelSpec> spec_within(const std::string& set, std::size_t bytes, std::size_t most,
+                                     const SampleSource& source, TableFormat format) {
+  const std::size_t texel = texel_bytes(format, source.channels);
+  for (std::size_t texels = std::min(most, bytes / texel); texels > 0; --texels) {
+    std::optional<ModelSpec> spec = spec_of(set, texels, source.isotropic);
+    if (!spec || model_bytes(*spec, source.channels, format) <= bytes) return spec;
+  }
+  return std::nullopt;
+}
+
+// What is compared: the fullest set from coarse to fine; where that is no choice, because the bytes hold few
+// texels, the other sets too.
+std::vector<ModelSpec> candidates(const SampleSource& source, std::size_t bytes, TableFormat format) {
+  std::vector<ModelSpec> specs;
+  const auto add = [&](const std::string& set, std::size_t most) {
+    std::optional<ModelSpec> spec = spec_within(set, bytes, most, source, format);
+    if (!spec) return;
+    const auto same = [&](const ModelSpec& other) {
+      return other.tables.size() == spec->tables.size() &&
+             std::ranges::equal(other.tables, spec->tables, {}, &ModelSpec::TableSpec::layout,
+                                &ModelSpec::TableSpec::layout);
+    };
+    if (std::ranges::none_of(specs, same)) specs.push_back(std::move(*spec));
+  };
+  for (const std::size_t size : source.isotropic ? kLineSizes : kDiskSizes) add(kFactorSets.front(), size);
+  if (specs.size() <= 1)
+    for (const std::string& set : kFactorSets) add(set, kLineSizes.front());
+  return specs;
+}
+
+std::size_t texels_of(const ModelSpec& spec) {
+  std::size_t sum = 0;
+  for (const ModelSpec::TableSpec& table : spec.tables) sum += table.layout.node_count();
+  return sum;
+}
+
+// The source with at most kTrialChannels of its channels, evenly spread.
+SampleSource some_channels(const SampleSource& source) {
+  const auto channels = static_cast<std::size_t>(source.channels);
+  if (channels <= kTrialChannels) return source;
+  SampleSource part = source;
+  part.channels = static_cast<int>(kTrialChannels);
+  part.fill = [&source, channels](std::size_t begin, std::span<DirectionPair> pairs, std::span<double> values,
+                                  std::span<double> weights) {
+    std::vector<double> all(pairs.size() * channels);
+    source.fill(begin, pairs, all, weights);
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+      for (std::size_t k = 0; k < kTrialChannels; ++k)
+        values[i * kTrialChannels + k] = all[i * channels + (2 * k + 1) * channels / (2 * kTrialChannels)];
+  };
+  return part;
+}
+
+/// Compares models by what they predict.
+class Trials {
+ public:
+  Trials(const SampleSource& source, bool fixed_smooth, const HomomorphicOptions& options)
+      : source_(source), fixed_smooth_(fixed_smooth), options_(options) {
+    options_.progress = nullptr;
+  }
+
+  /// From now on.
+  void store_as(TableFormat format) { options_.format = format; }
+
+  /// The first model, with its smoothness if that is given.
+  ScatteredPlan start(ModelSpec spec, std::optional<double> smooth,
+                      const std::function<void(double)>& progress) {
+    if (smooth) return attempt(std::move(spec), *smooth);
+    HomomorphicOptions options = options_;
+    options.progress = progress;
+    const SmoothTrial best = choose_smoothness(source_, spec, options).front();
+    for (std::size_t t = 0; t < spec.tables.size(); ++t) spec.tables[t].smooth_share = best.shares[t];
+    return {.spec = std::move(spec), .smooth = best.smooth, .error = best.error, .format = options_.format};
+  }
+
+  /// Another model, from the smoothness of one that is known, by decades either way as long as that helps.
+  ScatteredPlan near(ModelSpec spec, const ScatteredPlan& known) {
+    for (ModelSpec::TableSpec& table : spec.tables)
+      for (const ModelSpec::TableSpec& other : known.spec.tables)
+        if (table.name == other.name) table.smooth_share = other.smooth_share;
+    ScatteredPlan best = attempt(std::move(spec), known.smooth);
+    if (fixed_smooth_) return best;
+    climb(best, [](ScatteredPlan& plan, double factor) { plan.smooth *= factor; });
+    for (std::size_t t = 0; t < best.spec.tables.size(); ++t)
+      climb(best, [t](ScatteredPlan& plan, double factor) { plan.spec.tables[t].smooth_share *= factor; });
+    return best;
+  }
+
+ private:
+  ScatteredPlan attempt(ModelSpec spec, double smooth) {
+    options_.smooth = smooth;
+    const double error = held_out_error(source_, spec, options_, kFolds);
+    return {.spec = std::move(spec), .smooth = smooth, .error = error, .format = options_.format};
+  }
+
+  // Changes by decades either way as long as that helps.
+  template <class Change>
+  void climb(ScatteredPlan& best, const Change& change) {
+    constexpr int kDecades = 4;
+    for (const double factor : {0.1, 10.0}) {
+      int moved = 0;
+      for (bool better = true; better && moved < kDecades; moved += better) {
+        ScatteredPlan trial = best;
+        change(trial, factor);
+        trial = attempt(std::move(trial.spec), trial.smooth);
+        better = *trial.error < *best.error;
+        if (better) best = std::move(trial);
+      }
+      if (moved > 0) return;  // the other way would undo it
+    }
+  }
+
+  const SampleSource& source_;
+  bool fixed_smooth_;
+  HomomorphicOptions options_;
+};
+
+// Of many samples: as fine as the bytes hold.
+ScatteredPlan plan_many(const SampleSource& source, std::size_t bytes, std::optional<double> smooth,
+                        const HomomorphicOptions& options) {
+  const std::size_t texel = texel_bytes(options.format, source.channels);
+  for (std::size_t within = bytes;; within -= std::min(within, texel)) {
+    LobePlan plan = default_plan(within, source.isotropic ? 1 : 2, source.isotropic, texel);
+    plan.wide.clear();
+    plan.wide_texels = 0;
+    ModelSpec spec = plan_to_spec(plan, within, source.channels, texel);
+    if (model_bytes(spec, source.channels, options.format) > bytes) continue;
+    Trials trials(source, smooth.has_value(), options);
+    ScatteredPlan best = trials.start(std::move(spec), smooth, options.progress);
+    best.error.reset();
+    return best;
+  }
+}
+
+}  // namespace
+
+std::size_t model_bytes(const ModelSpec& spec, int channels, TableFormat format) {
+  std::size_t tables = 0, numbers = 0;
+  for (const ModelSpec::TableSpec& table : spec.tables) {
+    tables += table.layout.node_count() * texel_bytes(format_of(table, format), table.shared ? 1 : channels);
+    numbers += table.layout.warp.kind != WarpKind::identity;
+    numbers += table.layout.shape == TableShape::grid && table.layout.warp_y.kind != WarpKind::identity;
+  }
+  for (const std::vector<FactorUse>& lobe : spec.lobes) {
+    numbers += static_cast<std::size_t>(channels);
+    for (const FactorUse& use : lobe) {
+      numbers += coefficient_count(use.projection);
+      if (spec.tables[static_cast<std::size_t>(use.table)].layout.shape == TableShape::grid)
+        numbers += coefficient_count(use.projection_y);
+    }
+  }
+  return tables + numbers * kNumberBytes;
+}
+
+std::size_t least_scattered_bytes(int channels, bool isotropic, TableFormat format) {
+  const std::string& least = kFactorSets.back();
+  std::size_t texels = 1;
+  while (!spec_of(least, texels, isotropic)) ++texels;
+  return model_bytes(*spec_of(least, texels, isotropic), channels, format);
+}
+
+ScatteredPlan plan_scattered(const SampleSource& source, std::size_t bytes, std::optional<double> smooth,
+                             std::optional<TableFormat> format, const HomomorphicOptions& options) {
+  // the formats to choose from, the first one first
+  std::vector<TableFormat> formats{format.value_or(TableFormat::half)};
+  if (!format && source.channels == 3) formats.push_back(TableFormat::rgb9e5);
+  const auto least = [&](TableFormat of) {
+    return least_scattered_bytes(source.channels, source.isotropic, of);
+  };
+  const auto too_large = [&](TableFormat of) { return least(of) > bytes; };
+  if (std::ranges::all_of(formats, too_large))
+    throw Error(
+        fmt::format("fit: expected a budget of at least {} bytes for {} channels in format {}, found {}",
+                    least(formats.back()), source.channels, to_string(formats.back()), bytes));
+  std::erase_if(formats, too_large);
+  HomomorphicOptions chosen = options;
+  chosen.format = formats.front();
+  if (source.distinct > kManySamples) return plan_many(source, bytes, smooth, chosen);
+
+  // from the coarsest to finer ones as long as that helps, or every set of factors
+  const SampleSource part = some_channels(source);
+  Trials trials(part, smooth.has_value(), chosen);
+  const std::vector<ModelSpec> specs = candidates(source, bytes, formats.front());
+  std::vector<ScatteredPlan> found{trials.start(specs.front(), smooth, options.progress)};
+  const auto best = [&] { return std::ranges::min_element(found, {}, &ScatteredPlan::error); };
+  for (auto spec = specs.begin() + 1; spec != specs.end(); ++spec)
+    found.push_back(trials.near(*spec, *best()));
+  // the smaller format where it resolves more
+  for (auto other = formats.begin() + 1; other != formats.end(); ++other) {
+    trials.store_as(*other);
+    const ModelSpec finest = candidates(source, bytes, *other).back();
+    if (texels_of(finest) > texels_of(specs.back())) found.push_back(trials.near(finest, *best()));
+  }
+
+  // the errors of all channels
+  if (part.channels != source.channels)
+    for (ScatteredPlan& plan : found) {
+      chosen.smooth = plan.smooth;
+      plan.error = held_out_error(source, plan.spec, chosen, kFolds);
+    }
+  return *best();
+}
+
+}  // namespace burnish

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include <burnish/factors/model_spec.h>
+#include <burnish/fitting/one_lobe/homomorphic.h>
+#include <burnish/reflectance/sample_source.h>
+
+namespace burnish {
+
+/// FactoredBrdf::bytes of a model of this spec, its tables in `format` where they have none of their own.
+std::size_t model_bytes(const ModelSpec& spec, int channels, TableFormat format);
+
+/// The least bytes that plan_scattered has a model for: one table of the half vector, as coarse as can be.
+std::size_t least_scattered_bytes(int channels, bool isotropic, TableFormat format);
+
+/// A lobe for scattered samples.
+struct ScatteredPlan {
+  ModelSpec spec;     ///< with the share of the smoothness that each table takes
+  double smooth = 0;  ///< of HomomorphicOptions
+  /// held_out_error of it; none for more than kManySamples samples.
+  std::optional<double> error;
+  TableFormat format = TableFormat::half;  ///< of all tables
+};
+
+/// The lobe of at most `bytes`, see model_bytes, that predicts held-out samples best: p(wo) p(wi) q(h)
+/// m(theta_m) r(theta_d), p and q hemispheres where the source is anisotropic, or fewer of these factors where
+/// the bytes are few. Smoothness is chosen by choose_smoothness for a coarse model, unless `smooth` says it;
+/// finer ones, with a smoothness nearby, are taken where they predict better. More than three channels
+/// are represented by three of them in these trials, and all decide in the end. Sources of more than kManySamples samples get the finest
+/// that the bytes hold. The samples of `source` stand for their swapped pairs too: the models are
+/// reciprocal. Tables are in `format`; without one they are half, or rgb9e5 where that predicts better. The
+/// same bits for any number of threads. Throws Error if bytes < least_scattered_bytes of the format, and what
+/// fit_homomorphic throws.
+ScatteredPlan plan_scattered(const SampleSource& source, std::size_t bytes, std::optional<double> smooth,
+                             std::optional<TableFormat> format, const HomomorphicOptions& options);
+
+}  // namespace burnish
