@@ -16,10 +16,10 @@ namespace burnish {
 
 namespace {
 
-// Major types and marks of an item's head [RFC 8949, 3].
+// Major types and marks of an item's head [RFC8949, 3].
 enum Major { kUnsigned, kNegative, kBytes, kText, kList, kMap, kTag, kOther };
 constexpr int kOneByte = 24, kHalf = 25, kSingle = 26, kDouble = 27;  // 25, 26, 27: also 2, 4 and 8 bytes
-constexpr std::uint64_t kDecimalFraction = 4;                         // [RFC 8949, 3.4.4]
+constexpr std::uint64_t kDecimalFraction = 4;                         // [RFC8949, 3.4.4]
 constexpr int kMaxExponent = 400;                                     // of ten; doubles end before
 
 // `value` in 2^width bytes, the highest first.

@@ -13,7 +13,7 @@ namespace burnish {
 /// Whether a text is UTF-8, as CBOR's and JSON's texts are.
 bool is_utf8(const std::string& text);
 
-/// Writes items of CBOR [RFC 8949] one after the other, lengths definite and heads as short as they can be.
+/// Writes items of CBOR [RFC8949] one after the other, lengths definite and heads as short as they can be.
 class CborWriter {
  public:
   void integer(std::int64_t value);

@@ -30,7 +30,7 @@ double read_number(const std::string& bytes) {
   return value;
 }
 
-// [RFC 8949, appendix A and 3.4.4]
+// [RFC8949, appendix A and 3.4.4]
 TEST(Cbor, SpellsNumbersAsTheStandardDoes) {
   EXPECT_EQ(number_of(0), "\x00"s);
   EXPECT_EQ(number_of(23), "\x17");

@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr int kVersion = 1;
-constexpr std::uint64_t kSelfDescribed = 55799;  // [RFC 8949, 3.4.6]
+constexpr std::uint64_t kSelfDescribed = 55799;  // [RFC8949, 3.4.6]
 constexpr std::string_view kName = "burnish";
 // name, version, channels, lambda_nm, kinds, tables, products, lobes; then notes
 constexpr std::size_t kParts = 8;

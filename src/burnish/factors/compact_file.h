@@ -14,7 +14,7 @@ enum class CompactContent {
   model_and_notes  ///< everything
 };
 
-/// The compact twin of the native file, `.burnish`: one CBOR item [RFC 8949] that holds the form of the model
+/// The compact twin of the native file, `.burnish`: one CBOR item [RFC8949] that holds the form of the model
 /// and every table's bytes as `pack` makes them, ready for a texture. docs/guide/formats.md lists it item by
 /// item. Above the tables it is at most 256 bytes and 5 % of theirs for what `fit` makes of grey and RGB
 /// sources within a budget. Notes would not fit into that: they are left out unless asked for. What

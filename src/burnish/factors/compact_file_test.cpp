@@ -68,7 +68,7 @@ TEST(CompactFile, RestoresScalesThatNoFloatHolds) {
   expect_twins({.brdf = FactoredBrdf(3, tables, lobes)});
 }
 
-// As docs/guide/formats.md lists it.
+// As docs/notes/compact-file.md lists it.
 TEST(CompactFile, IsTheseBytes) {
   // clang-format off
   const std::string bytes =
