@@ -46,6 +46,18 @@ class FitCommand : public testing::Test {
   TemporaryFolder folder_{"fit_command"};
 };
 
+TEST_F(FitCommand, WritesTheFileThatTheNameAsksFor) {
+  const std::string name = out() + ".burnish", command = std::string(BURNISH_CLI) + ' ';
+  ASSERT_EQ(run(command + "fit " + kPaint + " --model pqp --table q=9 --samples 2000 -o " + name).status, 0);
+  const Model model = to_model(open_source(name, {}));
+  EXPECT_EQ(read(name), format_model_as(name, model));
+  // a model's name in .exr is its other file, slices are asked for
+  EXPECT_EQ(run(command + "convert " + name + ' ' + out() + ".exr").status, 0);
+  EXPECT_EQ(read(out() + ".exr"), format_model(model));
+  EXPECT_EQ(run(command + "convert " + name + ' ' + out() + ".exr --to exr --cells 4").status, 0);
+  EXPECT_THROW(open_source(out() + ".exr", {}), Error);
+}
+
 TEST_F(FitCommand, IsTheLibrarysFit) {
   expect_same(kPaint, "", {});
   expect_same(

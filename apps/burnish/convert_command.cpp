@@ -26,28 +26,32 @@ std::string target_format(const ConvertArguments& arguments) {
   const std::string extension = std::filesystem::path(arguments.out).extension().string();
   if (extension == ".binary") return "merl";
   if (extension == ".bsdf") return "rgl";
-  for (const char* same : {"mbsdf", "astm", "csv", "exr"})
+  for (const char* same : {"mbsdf", "astm", "csv", "exr", "burnish"})
     if (extension.substr(extension.empty() ? 0 : 1) == same) return same;
   throw CLI::ValidationError(
-      arguments.out, "expected a name that ends in .binary, .bsdf, .mbsdf, .astm, .csv or .exr, or --to");
+      arguments.out,
+      "expected a name that ends in .binary, .bsdf, .mbsdf, .astm, .csv, .exr or .burnish, or --to");
 }
 
 }  // namespace
 
 void add_convert_command(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand(
-      "convert",
-      "Convert a BRDF to a MERL, RGL, MBSDF or Zemax table, ASTM or CSV samples, or an EXR image of slices");
+  CLI::App* verb = app.add_subcommand("convert",
+                                      "Convert a BRDF to a MERL, RGL, MBSDF or Zemax table, ASTM or CSV "
+                                      "samples, or an EXR image of slices; a "
+                                      "model to its other file");
   verb->footer(
       "ASTM and CSV have the samples of a scattered source, of any other samples drawn as `measure` does, or "
       "with --entries a table's entries. What is lost is said on the standard error output.\n"
-      "Example: burnish convert paint.bsdf paint.binary");
+      "Examples: burnish convert paint.bsdf paint.binary\n"
+      "          burnish convert model.exr model.burnish");
   auto arguments = std::make_shared<ConvertArguments>();
   add_source_arguments(*verb, arguments->source);
   verb->add_option("OUT", arguments->out, "file to write")->required();
-  verb->add_option(
-          "--to", arguments->to,
-          "format; by default what OUT ends in: .binary (merl), .bsdf (rgl), .mbsdf, .astm, .csv, .exr")
+  verb->add_option("--to", arguments->to,
+                   "format; by default what OUT ends in: .binary (merl), .bsdf (rgl), .mbsdf, .astm, .csv, "
+                   ".exr (of a model: "
+                   "model, its OpenEXR file; else slices), .burnish")
       ->check(CLI::IsMember(std::vector<std::string>(kConvertFormats.begin(), kConvertFormats.end())));
   verb->add_option("--cells", arguments->options.cells,
                    "along each polar angle of MERL, MBSDF and EXR, twice as many along the azimuth")
@@ -59,9 +63,13 @@ void add_convert_command(CLI::App& app) {
                     ->capture_default_str();
   verb->add_flag("--entries", arguments->options.entries, "a table's entries in an ASTM or CSV file")
       ->excludes(count);
+  verb->add_flag("--notes", arguments->options.notes, "keep a model's notes of its fit in a .burnish file");
   verb->callback([arguments] {
-    const std::string format = target_format(*arguments);
+    std::string format = target_format(*arguments);
     const Source source = arguments->source.open();
+    // slices of a model are asked for by name
+    const bool is_model = std::holds_alternative<FactoredBrdf>(source.brdf);
+    if (is_model && format == "exr" && arguments->to.empty()) format = "model";
     const Converted converted = convert(source, format, arguments->options);
     write_then_rename(arguments->out, converted.bytes);
     if (!converted.losses.empty())

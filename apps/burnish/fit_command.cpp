@@ -145,7 +145,7 @@ void fit(const FitArguments& arguments) {
   const ThreadLimit limit(arguments.threads);
   const Source source = arguments.source.open();
   const Fit fit = burnish::fit(source, fit_options(arguments, source.ref().isotropic()));
-  write_then_rename(arguments.out, format_fit(fit));
+  write_then_rename(arguments.out, format_fit(fit, arguments.out));
 
   const auto* model = std::get_if<FactoredBrdf>(&fit.brdf);
   // baselines are compared by what their fits alone take
@@ -195,7 +195,9 @@ void add_fit_command(CLI::App& app) {
   FitOptions& options = arguments->options;
   OneLobe& one_lobe = arguments->one_lobe;
   add_lobes_arguments(*verb, *arguments);
-  verb->add_option("-o,--output", arguments->out, "model file to write (OpenEXR; JSON with --method)")
+  verb->add_option(
+          "-o,--output", arguments->out,
+          "model file to write (compact where it ends in .burnish, else OpenEXR; JSON with --method)")
       ->required();
   verb->add_option(
       "--method", arguments->method,

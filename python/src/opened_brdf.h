@@ -54,7 +54,7 @@ class OpenedModel : public OpenedBrdf {
 
 /// The same as a native model, for writing.
 inline Model to_model(const OpenedModel& opened) {
-  return {opened.brdf(), opened.source().findings.lambda_nm, opened.source().findings.notes};
+  return to_model(opened.source());
 }
 
 /// A BRDF made reciprocal unless it is so by construction or shall stay as it is.

@@ -15,14 +15,15 @@ namespace burnish::python {
 namespace {
 
 void write_model(const std::filesystem::path& path, const OpenedModel& model) {
-  write_then_rename(path, format_model(to_model(model)));
+  write_then_rename(path, format_model_as(path, to_model(model)));
 }
 
 std::vector<std::string> write_converted(const OpenedBrdf& source, const std::filesystem::path& path,
                                          const std::string& format, std::size_t count, std::uint64_t seed,
-                                         bool entries, int cells) {
+                                         bool entries, int cells, bool notes) {
   Converted converted =
-      convert(source.source(), format, {.count = count, .seed = seed, .entries = entries, .cells = cells});
+      convert(source.source(), format,
+              {.count = count, .seed = seed, .entries = entries, .cells = cells, .notes = notes});
   write_then_rename(path, converted.bytes);
   return std::move(converted.losses);
 }
@@ -32,18 +33,19 @@ std::vector<std::string> write_converted(const OpenedBrdf& source, const std::fi
 void bind_writers(nb::module_& m) {
   m.def("write_model", &write_model, nb::arg("path"), nb::arg("model"),
         nb::call_guard<nb::gil_scoped_release>(),
-        "Writes the native file, a multi-part OpenEXR image that open_source reads back to the last bit.");
+        "Writes the native file, which open_source reads back to the last bit: a multi-part OpenEXR\nimage, "
+        "or where path ends in .burnish its compact twin, without notes.");
   const ConvertOptions defaults;
   m.def(
       "convert", &write_converted, nb::arg("source"), nb::arg("path"), nb::arg("format"), nb::kw_only(),
       nb::arg("count") = defaults.count, nb::arg("seed") = defaults.seed,
       nb::arg("entries") = defaults.entries, nb::arg("cells") = defaults.cells,
-      nb::call_guard<nb::gil_scoped_release>(),
+      nb::arg("notes") = defaults.notes, nb::call_guard<nb::gil_scoped_release>(),
       "Writes a source in another format and says what that lost, a phrase each.\n\n"
       "format: \"merl\", \"rgl\" (for Mitsuba's `measured` and pbrt-v4), \"mbsdf\", \"zemax\", \"astm\", "
-      "\"csv\" "
-      "or\n\"exr\". count, seed: samples drawn for astm and csv; entries: a table's entries instead; cells: "
-      "along\neach polar angle of merl, mbsdf and exr.");
+      "\"csv\",\n\"exr\" (slices), or of a model its files \"model\" (OpenEXR) or \"burnish\". count, seed: "
+      "samples drawn\nfor astm and csv; entries: a table's entries instead; cells: along each polar angle of "
+      "merl, mbsdf and\nexr; notes: those of the fit are kept in burnish.");
 }
 
 }  // namespace burnish::python

@@ -12,6 +12,7 @@
 #include <burnish/source.h>
 
 // A factored model of it, its file, and how far it is from the original.
+#include <burnish/factors/compact_file.h>
 #include <burnish/factors/factored_brdf.h>
 #include <burnish/factors/model_file.h>
 #include <burnish/factors/model_spec.h>

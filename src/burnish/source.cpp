@@ -1,5 +1,6 @@
 #include <utility>
 
+#include <burnish/error.h>
 #include <burnish/math/angles.h>
 #include <burnish/source.h>
 
@@ -38,6 +39,13 @@ Source to_source(const std::string& name, Model model) {
   for (const Table& table : model.brdf.tables()) findings.sample_count += table.layout.node_count();
   findings.theta_i_max = findings.theta_o_max = kHalfPi;
   return {name, std::move(model.brdf), std::move(findings)};
+}
+
+Model to_model(const Source& source) {
+  const auto* brdf = std::get_if<FactoredBrdf>(&source.brdf);
+  if (!brdf)
+    throw Error::in_file(source.name, "a model, which `burnish fit` makes of it", source.findings.format);
+  return {*brdf, source.findings.lambda_nm, source.findings.notes};
 }
 
 }  // namespace burnish

@@ -45,4 +45,7 @@ struct Source {
 /// A model as a source of that name.
 Source to_source(const std::string& name, Model model);
 
+/// The model that a source is. Throws Error, naming it, where it is none.
+Model to_model(const Source& source);
+
 }  // namespace burnish

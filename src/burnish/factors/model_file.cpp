@@ -17,6 +17,7 @@
 #include <nlohmann/json.hpp>
 
 #include <burnish/error.h>
+#include <burnish/factors/compact_file.h>
 #include <burnish/factors/model_file.h>
 
 namespace burnish {
@@ -371,6 +372,14 @@ bool looks_like_exr(std::span<const std::byte> head) noexcept {
   return head.size() >= kExrMagic.size() && std::memcmp(head.data(), kExrMagic.data(), kExrMagic.size()) == 0;
 }
 
+bool looks_like_model(std::span<const std::byte> head) noexcept {
+  return looks_like_exr(head) || looks_like_compact(head);
+}
+
+std::string format_model_as(const std::filesystem::path& name, const Model& model) {
+  return name.extension() == ".burnish" ? format_compact(model) : format_model(model);
+}
+
 std::string format_model(const Model& model) {
   if (model.brdf.tables().empty()) throw Error("model: expected at least one table to write, found none");
   MemoryOutput stream;
@@ -403,7 +412,9 @@ std::string format_model(const Model& model) {
 }
 
 Model parse_model(const FileBytes& file) {
-  if (!looks_like_exr(file.bytes)) throw Error(file.name, 0, "an OpenEXR file", "other bytes");
+  if (looks_like_compact(file.bytes)) return parse_compact(file);
+  if (!looks_like_exr(file.bytes))
+    throw Error(file.name, 0, "a model, an OpenEXR or .burnish file", "other bytes");
   try {
     return read_model(file);
   } catch (const Error& error) {

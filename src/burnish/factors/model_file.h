@@ -25,10 +25,18 @@ struct Model {
 /// shows the tables. What format_model writes, parse_model restores to the last bit.
 std::string format_model(const Model& model);
 
-/// Throws Error if the bytes are no OpenEXR file, hold no "burnish" attribute, or contradict it in any way:
-/// values that a table's stated format does not hold are refused too, so that bytes() is the truth. Files of
-/// version 1, with one format for all tables, are read as well.
+/// The bytes of a model's file by the ending of its name: format_compact's (compact_file.h) for .burnish,
+/// else format_model's.
+std::string format_model_as(const std::filesystem::path& name, const Model& model);
+
+/// Reads either file of a model, known by its content. Throws Error as parse_compact (compact_file.h) does,
+/// or if the bytes are no OpenEXR file, hold no "burnish" attribute, or contradict it in any way: values that
+/// a table's stated format does not hold are refused too, so that bytes() is the truth. Files of version 1,
+/// with one format for all tables, are read as well.
 Model parse_model(const FileBytes& file);
+
+/// True if the bytes start as an OpenEXR or a compact file does.
+bool looks_like_model(std::span<const std::byte> head) noexcept;
 
 /// True if the bytes start as an OpenEXR file does.
 bool looks_like_exr(std::span<const std::byte> head) noexcept;

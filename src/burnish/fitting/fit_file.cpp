@@ -13,9 +13,9 @@ Model to_model(Fit fit) {
   return {.brdf = std::move(fit).model(), .lambda_nm = std::move(fit.lambda_nm), .notes = std::move(notes)};
 }
 
-std::string format_fit(const Fit& fit) {
+std::string format_fit(const Fit& fit, const std::filesystem::path& name) {
   const auto* baseline = std::get_if<BaselineBrdf>(&fit.brdf);
-  if (!baseline) return format_model(to_model(fit));
+  if (!baseline) return format_model_as(name, to_model(fit));
   const bool analytic = std::holds_alternative<AnalyticBrdf>(*baseline);
   return format_baseline({.kind = analytic ? "analytic" : std::get<BaselineReport>(fit.report.how).method,
                           .brdf = *baseline,

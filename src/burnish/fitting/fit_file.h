@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include <burnish/factors/model_file.h>
@@ -10,8 +11,8 @@ namespace burnish {
 /// The model as its file keeps it, with the report as notes. Throws Error where a baseline was fitted.
 Model to_model(Fit fit);
 
-/// The bytes of the file: format_model's, or format_baseline's where a baseline was fitted.
-std::string format_fit(const Fit& fit);
+/// The bytes of the file of that name: format_model_as's, or format_baseline's where a baseline was fitted.
+std::string format_fit(const Fit& fit, const std::filesystem::path& name = {});
 
 /// The JSON that `burnish fit --json` prints, indented by two: the report's, then output, model, bytes; of a
 /// model table_bytes, smallest_factor and reciprocal, of a baseline table_reads and multiplies; and seconds.

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <burnish/error.h>
+#include <burnish/factors/compact_file.h>
 #include <burnish/io/astm.h>
 #include <burnish/io/convert.h>
 #include <burnish/io/csv.h>
@@ -79,6 +80,8 @@ class Converter {
     if (format == "mbsdf") return mbsdf();
     if (format == "zemax") return zemax();
     if (format == "exr") return slices();
+    if (format == "model") return kept(format_model(to_model(source_)));
+    if (format == "burnish") return compact();
     if (format == "astm" || format == "csv") return scattered(format == "astm");
     throw Error(
         fmt::format("convert: expected one of {}, found {}", fmt::join(kConvertFormats, ", "), format));
@@ -207,6 +210,13 @@ class Converter {
         fmt::format("{} x {} x {} x {} angles around the mirror direction", made.axes[0].nodes.size(),
                     made.axes[1].nodes.size(), made.axes[2].nodes.size(), made.axes[3].nodes.size()),
         format_zemax(made, sample));
+  }
+
+  Converted compact() {
+    const Model model = to_model(source_);
+    if (options_.notes) return kept(format_compact(model, CompactContent::model_and_notes));
+    if (model.notes != Model{}.notes) lose("the notes of the fit");
+    return kept(format_compact(model));
   }
 
   Converted scattered(bool astm) {

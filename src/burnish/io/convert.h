@@ -10,15 +10,17 @@
 
 namespace burnish {
 
-/// Formats that convert writes. "exr", slices for a viewer, cannot be read back.
-inline constexpr std::array<std::string_view, 7> kConvertFormats = {"merl", "rgl", "mbsdf", "zemax",
-                                                                    "astm", "csv", "exr"};
+/// Formats that convert writes. "exr", slices for a viewer, cannot be read back. "model" and "burnish" are
+/// the two files of a model, format_model's and format_compact's.
+inline constexpr std::array<std::string_view, 9> kConvertFormats = {"merl", "rgl", "mbsdf", "zemax",  "astm",
+                                                                    "csv",  "exr", "model", "burnish"};
 
 struct ConvertOptions {
   std::size_t count = 100'000;  ///< samples drawn for "astm" and "csv" of a source that is not scattered
   std::uint64_t seed = 1;       ///< of these
   bool entries = false;         ///< instead of drawing: every entry of a table that is no hole
   int cells = 90;  ///< along each polar angle of "merl", "mbsdf" and "exr"; twice as many along the azimuth
+  bool notes = false;  ///< keep the fit's notes in "burnish"
 };
 
 struct Converted {
@@ -33,7 +35,8 @@ struct Converted {
 /// keep scattered samples; of other sources they get the table's entries, if asked for, or samples drawn by
 /// `measure`. Where values were sampled anew, a loss states how far they are: the figure `relative` of
 /// metrics/error_figures.h over 2,000 drawn pairs. Throws Error, naming the source, for an unknown format,
-/// cells outside [2, 1000], channels that the format has not, or entries of a source without any.
+/// cells outside [2, 1000], "model" and "burnish" of a source that is no model, channels that the format has
+/// not, or entries of a source without any.
 Converted convert(const Source& source, std::string_view format, const ConvertOptions& options = {});
 
 /// Every entry of a table that is no hole, both directions above the horizon; see ConvertOptions::entries.

@@ -11,6 +11,7 @@
 #include <burnish/math/angles.h>
 #include <burnish/reflectance/azimuth_mean.h>
 #include <burnish/testing/files.h>
+#include <burnish/testing/models.h>
 
 namespace burnish {
 namespace {
@@ -46,6 +47,26 @@ std::size_t expect_entries_of(const Source& table, BrdfRef source) {
 
 constexpr const char* kGlossy = "ggx:alpha_x=0.3,alpha_y=0.3,f0=0.5,kd=0.3";
 constexpr const char* kBrushed = "ggx:alpha_x=0.2,alpha_y=0.5,f0=0.5,kd=0.3";
+
+TEST(Convert, MakesEachFileOfAModelFromTheOther) {
+  const Model model{.brdf = random_model(kEverything, kEverySize, 3, TableFormat::rgb9e5),
+                    .notes = R"({"source":"random"})"};
+  const Source source = to_source("paint", model);
+  const Converted exr = convert(source, "model");
+  EXPECT_EQ(exr.bytes, format_model(model));
+  EXPECT_THAT(exr.losses, IsEmpty());
+
+  // by way of the other file; notes only where they are asked for
+  const Converted whole = convert(reread(exr), "burnish", {.notes = true}), bare = convert(source, "burnish");
+  EXPECT_THAT(whole.losses, IsEmpty());
+  EXPECT_EQ(convert(reread(whole), "model").bytes, exr.bytes);
+  EXPECT_THAT(bare.losses, testing::ElementsAre("the notes of the fit"));
+  EXPECT_EQ(to_model(reread(bare)).brdf, model.brdf);
+  EXPECT_THAT(convert(reread(bare), "burnish").losses, IsEmpty());
+
+  for (const char* format : {"model", "burnish"})
+    EXPECT_THAT(error_of([&] { convert(open_source(kGlossy, {}), format); }), HasSubstr("expected a model"));
+}
 
 TEST(Convert, EveryTableHoldsTheSourceAtItsNodes) {
   const Source source = open_source(kGlossy, {});

@@ -66,7 +66,7 @@ Source from_spec(const std::string& spec) {
 
 Source parse_file(const FileBytes& file, const OpenOptions& options) {
   // Binary formats first: their first bytes are unmistakable.
-  if (looks_like_exr(file.bytes)) return to_source(file.name, parse_model(file));
+  if (looks_like_model(file.bytes)) return to_source(file.name, parse_model(file));
   if (looks_like_rgl(file.bytes)) return from_table(file, parse_rgl(file, options));
   if (looks_like_mbsdf(file.bytes)) return from_table(file, parse_mbsdf(file));
   if (looks_like_merl(file.bytes)) return from_table(file, parse_merl(file));

@@ -9,6 +9,7 @@
 
 #include <burnish/baselines/baseline_file.h>
 #include <burnish/baselines/neural_brdf.h>
+#include <burnish/factors/compact_file.h>
 #include <burnish/factors/model_file.h>
 #include <burnish/io/rgl.h>
 #include <burnish/reflectance/analytic.h>
@@ -45,7 +46,8 @@ inline std::string rgl_seed() {
   return burnish::format_rgl(burnish::make_rgl_table(burnish::parse_analytic("ggx").ref(), options));
 }
 
-inline std::string model_seed() {
+/// A line and a disk.
+inline burnish::Model small_model() {
   using namespace burnish;
   const Table p{
       .name = "p", .layout = {.width = 2}, .channels = 1, .values = {1, 0.2f}, .format = TableFormat::unorm8};
@@ -59,7 +61,31 @@ inline std::string model_seed() {
                   .factors = {{.table = 0, .projection = kProjectWi},
                               {.table = 0, .projection = kProjectWo},
                               {.table = 1, .projection = kProjectHalf}}};
-  return format_model({.brdf = FactoredBrdf(3, {p, q}, {lobe})});
+  return {.brdf = FactoredBrdf(3, {p, q}, {lobe})};
+}
+
+inline std::string model_seed() {
+  return burnish::format_model(small_model());
+}
+
+inline std::string compact_seed() {
+  using namespace burnish;
+  const Model small = small_model();
+  std::vector<Table> tables(small.brdf.tables().begin(), small.brdf.tables().end());
+  std::vector<Lobe> lobes(small.brdf.lobes().begin(), small.brdf.lobes().end());
+  tables.push_back(
+      {.name = "g",
+       .layout = {.shape = TableShape::grid, .width = 2, .height = 3, .warp = {WarpKind::power, 0.8}},
+       .channels = 1,
+       .values = {1, 0.5f, 0.25f, 1, 0.5f, 0.25f},
+       .format = TableFormat::half});
+  lobes.push_back({.scale = {1, 0x1p-20, 1e30},
+                   .factors = {{.table = 2, .projection = kProjectHalf, .projection_y = kProjectAzimuth},
+                               {.table = 1, .projection = {.wi = 1, .mirror = -0.5, .n = 0.3}}}});
+  return format_compact({.brdf = FactoredBrdf(3, std::move(tables), std::move(lobes)),
+                         .lambda_nm = {450, 550.5, 650},
+                         .notes = R"({"a":[1]})"},
+                        CompactContent::model_and_notes);
 }
 
 /// A single neural encoding, of weights with few digits.
@@ -117,6 +143,7 @@ inline std::vector<std::pair<std::string, std::string>> all_seeds() {
           {"mbsdf", mbsdf_seed()},
           {"rgl", rgl_seed()},
           {"model", model_seed()},
+          {"compact", compact_seed()},
           {"cornell", kCornell},
           {"astm", kAstm},
           {"csv", kCsv},
@@ -126,6 +153,6 @@ inline std::vector<std::pair<std::string, std::string>> all_seeds() {
           {"baseline", baseline_seed()}};
 }
 
-inline constexpr std::size_t kBinaryCount = 4;
+inline constexpr std::size_t kBinaryCount = 5;
 
 }  // namespace burnish::seeds

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <burnish/error.h>
+#include <burnish/factors/compact_file.h>
 #include <burnish/fitting/plans/fit_plan.h>
 #include <burnish/metrics/error_figures.h>
 #include <burnish/reflectance/analytic.h>
@@ -31,6 +32,28 @@ TEST(LobePlan, FillsItsBytesAndNoMore) {
       EXPECT_EQ(brdf.isotropic(), isotropic);
       EXPECT_TRUE(brdf.reciprocal());
     }
+}
+
+// What compact_file.h promises, whatever the values are.
+TEST(LobePlan, MakesCompactFiles) {
+  struct {
+    std::size_t texel_bytes;
+    TableFormat format;
+    int channels;
+  } const kinds[] = {{4, TableFormat::rgb9e5, 3}, {6, TableFormat::half, 3}, {2, TableFormat::half, 1}};
+  for (const auto& [texel_bytes, format, channels] : kinds)
+    for (const bool isotropic : {true, false})
+      for (std::size_t bytes = 300; bytes < 140'000; bytes += bytes / 8) {
+        const LobePlan plan = default_plan(bytes, 0, isotropic, texel_bytes);
+        if (!plan_fits(plan, bytes, channels, texel_bytes)) continue;
+        const FactoredBrdf zero = zero_model(plan_to_spec(plan, bytes, channels, texel_bytes), channels);
+        std::vector<Lobe> lobes(zero.lobes().begin(), zero.lobes().end());
+        for (Lobe& lobe : lobes) std::ranges::fill(lobe.scale, 49383772161.0f);
+        const FactoredBrdf brdf(channels, {zero.tables().begin(), zero.tables().end()}, lobes, format);
+        const std::size_t size = format_compact({.brdf = brdf}).size();
+        EXPECT_LE(size, 256 + brdf.table_bytes() * 21 / 20)
+            << bytes << " bytes, " << channels << " channels, " << lobes.size() << " lobes";
+      }
 }
 
 TEST(LobePlan, SharesTablesAmongLobesAndChannels) {

@@ -1,0 +1,445 @@
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <burnish/error.h>
+#include <burnish/factors/cbor.h>
+#include <burnish/factors/compact_file.h>
+
+namespace burnish {
+
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kVersion = 1;
+constexpr std::uint64_t kSelfDescribed = 55799;  // [RFC8949, 3.4.6]
+constexpr std::string_view kName = "burnish";
+// name, version, channels, lambda_nm, kinds, tables, products, lobes; then notes
+constexpr std::size_t kParts = 8;
+constexpr int kMaxChannels = SymmetrizedBrdf::kMaxChannels;
+constexpr std::size_t kTableItems = 3;  // name, kind, texels
+constexpr std::size_t kLongestName = 255, kLongestNotes = 1 << 20;
+constexpr int kDeepestNotes = 32;
+
+// The numbers that stand for them in files: places in these lists.
+constexpr std::array kShapes{TableShape::line, TableShape::disk, TableShape::grid};
+constexpr std::array kFormats{TableFormat::half, TableFormat::single, TableFormat::rgb9e5,
+                              TableFormat::unorm8};
+constexpr std::array kWarps{WarpKind::identity, WarpKind::power, WarpKind::rational};
+constexpr std::array kProjections{kProjectWi,        kProjectWo,    kProjectHalf,   kProjectDifference,
+                                  kProjectDeviation, kProjectTwist, kProjectAzimuth};
+
+template <class List, class T>
+std::int64_t place_in(const List& list, const T& value) {
+  return std::ranges::find(list, value) - std::begin(list);
+}
+
+/// Nodes along one axis of a table, and their spacing.
+struct Axis {
+  int nodes = 0;
+  Warp warp;
+};
+
+/// A disk's two sides are one axis.
+std::size_t axis_count(TableShape shape) {
+  return shape == TableShape::grid ? 2 : 1;
+}
+
+std::vector<Axis> axes_of(const TableLayout& layout) {
+  std::vector<Axis> axes{{layout.width, layout.warp}};
+  if (layout.shape == TableShape::grid) axes.push_back({layout.height, layout.warp_y});
+  return axes;
+}
+
+TableLayout layout_of(TableShape shape, std::span<const Axis> axes) {
+  TableLayout layout{.shape = shape, .width = axes[0].nodes, .warp = axes[0].warp, .warp_y = {}};
+  if (shape == TableShape::disk) layout.height = layout.width;
+  if (shape == TableShape::grid) {
+    layout.height = axes[1].nodes;
+    layout.warp_y = axes[1].warp;
+  }
+  return layout;
+}
+
+std::vector<Projection> projections_of(const FactorUse& use, TableShape shape) {
+  std::vector<Projection> projections{use.projection};
+  if (shape == TableShape::grid) projections.push_back(use.projection_y);
+  return projections;
+}
+
+FactorUse use_of(int table, std::span<const Projection> projections) {
+  FactorUse use{.table = table, .projection = projections[0], .projection_y = {}};
+  if (projections.size() > 1) use.projection_y = projections[1];
+  return use;
+}
+
+bool is_name(const std::string& text) {
+  const auto control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; };
+  return text.size() <= kLongestName && is_utf8(text) && std::ranges::none_of(text, control);
+}
+
+// A JSON object of bounded depth; nothing on anything else.
+std::optional<Json> parse_notes(const std::string& text) {
+  bool shallow = true;
+  const auto measure = [&](int depth, Json::parse_event_t, Json&) {
+    return shallow = shallow && depth <= kDeepestNotes;
+  };
+  Json json = Json::parse(text, measure, false);
+  if (!shallow || !json.is_object()) return std::nullopt;
+  return json;
+}
+
+/// What tables of one form, such as those of several lobes, have in common.
+struct TableKind {
+  TableLayout layout;
+  TableFormat format = TableFormat::single;
+  int channels = 1;
+
+  friend bool operator==(const TableKind&, const TableKind&) = default;
+};
+
+TableKind kind_of(const Table& table) {
+  return {table.layout, table.format, table.channels};
+}
+
+std::vector<TableKind> kinds_of(std::span<const Table> tables) {
+  std::vector<TableKind> kinds;
+  for (const Table& table : tables)
+    if (std::ranges::find(kinds, kind_of(table)) == kinds.end()) kinds.push_back(kind_of(table));
+  return kinds;
+}
+
+/// What the factors of a lobe are looked up by, one projection an axis: lobes often differ in their tables
+/// alone.
+using Product = std::vector<std::vector<Projection>>;
+
+Product product_of(const FactoredBrdf& brdf, const Lobe& lobe) {
+  Product product;
+  for (const FactorUse& use : lobe.factors)
+    product.push_back(projections_of(use, brdf.table_of(use).layout.shape));
+  return product;
+}
+
+std::vector<Product> products_of(const FactoredBrdf& brdf) {
+  std::vector<Product> products;
+  for (const Lobe& lobe : brdf.lobes())
+    if (Product product = product_of(brdf, lobe); std::ranges::find(products, product) == products.end())
+      products.push_back(std::move(product));
+  return products;
+}
+
+/// One file in the making.
+class CompactWriter {
+ public:
+  std::string run(const Model& model, CompactContent content) {
+    const FactoredBrdf& brdf = model.brdf;
+    const bool notes = content == CompactContent::model_and_notes;
+    cbor_.tag(kSelfDescribed);
+    cbor_.list(notes ? kParts + 1 : kParts);
+    cbor_.text(kName);
+    cbor_.integer(kVersion);
+    cbor_.integer(brdf.channels());
+    numbers(model.lambda_nm);
+
+    // tables of one kind name it by its place in a list
+    const std::vector<TableKind> kinds = kinds_of(brdf.tables());
+    cbor_.list(kinds.size());
+    for (const TableKind& k : kinds) kind(k);
+    cbor_.list(kTableItems * brdf.tables().size());
+    for (const Table& table : brdf.tables()) {
+      cbor_.text(table.name);
+      cbor_.integer(place_in(kinds, kind_of(table)));
+      cbor_.bytes(pack(table.format, table.channels, table.values));
+    }
+
+    // so do lobes of one product
+    const std::vector<Product> products = products_of(brdf);
+    cbor_.list(products.size());
+    for (const Product& p : products) product(p);
+    cbor_.list(brdf.lobes().size());
+    for (const Lobe& lobe : brdf.lobes()) {
+      cbor_.list(2 + lobe.factors.size());
+      numbers(lobe.scale);
+      cbor_.integer(place_in(products, product_of(brdf, lobe)));
+      for (const FactorUse& use : lobe.factors) cbor_.integer(use.table);
+    }
+    if (notes) cbor_.text(model.notes);
+    return cbor_.written();
+  }
+
+ private:
+  void numbers(std::span<const double> values) {
+    cbor_.list(values.size());
+    for (const double value : values) cbor_.number(value);
+  }
+
+  void kind(const TableKind& kind) {
+    const std::vector<Axis> axes = axes_of(kind.layout);
+    cbor_.list(3 + axes.size());
+    cbor_.integer(place_in(kShapes, kind.layout.shape));
+    cbor_.integer(place_in(kFormats, kind.format));
+    cbor_.integer(kind.channels);
+    for (const auto& [nodes, warp] : axes) {
+      if (warp.kind == WarpKind::identity) {
+        cbor_.integer(nodes);
+        continue;
+      }
+      cbor_.list(3);
+      cbor_.integer(nodes);
+      cbor_.integer(place_in(kWarps, warp.kind));
+      cbor_.number(warp.parameter);
+    }
+  }
+
+  void product(const Product& product) {
+    cbor_.list(product.size());
+    for (const std::vector<Projection>& projections : product) {
+      cbor_.list(projections.size());
+      for (const Projection& p : projections) projection(p);
+    }
+  }
+
+  // By its number, or the coefficients of wi, wo, mirror and n up to the last that is not 0.
+  void projection(const Projection& p) {
+    if (const auto known = std::ranges::find(kProjections, p); known != kProjections.end())
+      return cbor_.integer(known - kProjections.begin());
+    std::vector<double> terms{p.wi, p.wo, p.mirror, p.n};
+    while (!terms.empty() && terms.back() == 0) terms.pop_back();
+    numbers(terms);
+  }
+
+  CborWriter cbor_;
+};
+
+/// One file being read.
+class CompactReader {
+ public:
+  explicit CompactReader(const FileBytes& file) : cbor_(file), name_(file.name) {}
+
+  Model run() {
+    cbor_.tag("a compact file", kSelfDescribed);
+    const std::size_t parts = cbor_.list("a model", kParts, kParts + 1);
+    if (const auto at = cbor_.offset(); cbor_.text("the name of the format", kName.size()) != kName)
+      cbor_.fail(at, "'burnish'", "another name");
+    cbor_.integer("version", kVersion, kVersion);
+    channels_ = static_cast<int>(cbor_.integer("channels", 1, kMaxChannels));
+    Model model;
+    const auto lambda_at = cbor_.offset();
+    model.lambda_nm = numbers("lambda_nm", 0, static_cast<std::size_t>(channels_));
+    if (!model.lambda_nm.empty() && model.lambda_nm.size() != static_cast<std::size_t>(channels_))
+      cbor_.fail(lambda_at, fmt::format("lambda_nm, none or {} wavelengths", channels_),
+                 fmt::format("{}", model.lambda_nm.size()));
+
+    // the form of the tables, the tables, what is done with them
+    read_list("kinds of tables", 0, kMaxCompactItems, [&] { kinds_.push_back(kind()); });
+    tables();
+    read_list("products", 0, kMaxCompactItems, [&] { products_.push_back(product()); });
+    std::vector<Lobe> lobes;
+    read_list("lobes", 0, kMaxCompactItems, [&] { lobes.push_back(lobe()); });
+    if (parts > kParts) model.notes = notes();
+    cbor_.end();
+
+    // the constructor checks how all of it fits together
+    try {
+      model.brdf = FactoredBrdf(channels_, std::move(tables_), std::move(lobes));
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}: {}", name_, error.what()));
+    }
+    return model;
+  }
+
+ private:
+  template <class Read>
+  void read_list(std::string_view what, std::size_t least, std::size_t most, const Read& read) {
+    for (std::size_t count = cbor_.list(what, least, most); count > 0; --count) read();
+  }
+
+  std::vector<double> numbers(std::string_view what, std::size_t least, std::size_t most) {
+    std::vector<double> values(cbor_.list(what, least, most));
+    for (double& value : values) value = cbor_.number(what);
+    return values;
+  }
+
+  template <class List>
+  const auto& one_of(const List& list, std::string_view what) {
+    const auto last = static_cast<std::int64_t>(std::size(list)) - 1;
+    return list[static_cast<std::size_t>(cbor_.integer(what, 0, last))];
+  }
+
+  /// Runs what throws errors without a place.
+  template <class Check>
+  auto checked(std::uint64_t offset, const Check& check) {
+    try {
+      return check();
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}: offset {}: {}", name_, offset, error.what()));
+    }
+  }
+
+  TableKind kind() {
+    const auto at = cbor_.offset();
+    const std::size_t items = cbor_.list("a kind of tables", 4, 3 + kMostAxes);
+    const TableShape shape = one_of(kShapes, "a shape");
+    if (items != 3 + axis_count(shape))
+      cbor_.fail(at, fmt::format("a kind of tables with {} axes", axis_count(shape)),
+                 fmt::format("{}", items - 3));
+    TableKind kind{.layout = {}, .format = one_of(kFormats, "a table format")};
+    kind.channels = static_cast<int>(cbor_.integer("a table's channels", 1, channels_));
+    if (kind.channels != 1 && kind.channels != channels_)
+      cbor_.fail(at, fmt::format("a kind of tables of 1 or {} channels", channels_),
+                 fmt::format("{}", kind.channels));
+    std::vector<Axis> axes;
+    while (axes.size() < axis_count(shape)) axes.push_back(axis());
+    kind.layout = layout_of(shape, axes);
+    if (!holds_channels(kind.format, kind.channels))
+      cbor_.fail(at, fmt::format("3 channels for {}", to_string(kind.format)),
+                 fmt::format("{}", kind.channels));
+    return kind;
+  }
+
+  Axis axis() {
+    const auto nodes = [&] { return static_cast<int>(cbor_.integer("nodes of an axis", 2, kMaxSide)); };
+    if (!cbor_.list_is_next()) return {nodes(), {}};
+    cbor_.list("nodes, spacing and its parameter", 3, 3);
+    Axis axis{nodes(), {}};
+    const auto at = cbor_.offset();
+    axis.warp.kind = one_of(kWarps, "a spacing");
+    axis.warp.parameter = cbor_.number("the parameter of a spacing");
+    if (axis.warp.kind == WarpKind::identity) cbor_.fail(at, "a spacing with a parameter", "even spacing");
+    checked(at, [&] { return parse_warp(to_string(axis.warp)); });
+    return axis;
+  }
+
+  void tables() {
+    const auto at = cbor_.offset();
+    const std::size_t items = cbor_.list("tables", 0, kTableItems * kMaxCompactItems);
+    if (items % kTableItems != 0) cbor_.fail(at, "three items a table", fmt::format("{} items", items));
+    while (tables_.size() < items / kTableItems) tables_.push_back(table());
+  }
+
+  Table table() {
+    const auto at = cbor_.offset();
+    std::string name = cbor_.text("a table's name", kLongestName);
+    if (!is_name(name)) cbor_.fail(at, "a table's name in UTF-8 without control characters", "another");
+    const TableKind& kind = one_of(kinds_, "a table's kind");
+    const std::uint64_t size =
+        kind.layout.node_count() * std::uint64_t{texel_bytes(kind.format, kind.channels)};
+    const auto texels = cbor_.bytes(fmt::format("the texels of table '{}'", name), size);
+    return {.name = std::move(name),
+            .layout = kind.layout,
+            .channels = kind.channels,
+            .values = unpack(kind.format, kind.channels, texels),
+            .format = kind.format};
+  }
+
+  Product product() {
+    Product product(cbor_.list("a product", 0, kMaxCompactItems - use_count_));
+    use_count_ += product.size();
+    for (std::vector<Projection>& projections : product)
+      read_list("the projections of a factor", 1, kMostAxes, [&] { projections.push_back(projection()); });
+    return product;
+  }
+
+  Lobe lobe() {
+    const auto at = cbor_.offset();
+    const std::size_t items = cbor_.list("a lobe", 2, 2 + kMaxCompactItems - factor_count_);
+    factor_count_ += items - 2;
+    const auto channels = static_cast<std::size_t>(channels_);
+    Lobe lobe{.scale = numbers("a lobe's scales", channels, channels), .factors = {}};
+    const Product& product = one_of(products_, "a lobe's product");
+    if (items != 2 + product.size())
+      cbor_.fail(at, fmt::format("a lobe of {} factors", product.size()), fmt::format("{}", items - 2));
+    for (const std::vector<Projection>& projections : product) lobe.factors.push_back(factor(projections));
+    return lobe;
+  }
+
+  FactorUse factor(std::span<const Projection> projections) {
+    const auto at = cbor_.offset();
+    const auto table =
+        static_cast<int>(cbor_.integer("a factor's table", 0, static_cast<std::int64_t>(tables_.size()) - 1));
+    const std::size_t axes = axis_count(tables_[static_cast<std::size_t>(table)].layout.shape);
+    if (projections.size() != axes)
+      cbor_.fail(at, fmt::format("a table of {} axes", projections.size()), fmt::format("one of {}", axes));
+    return use_of(table, projections);
+  }
+
+  Projection projection() {
+    if (!cbor_.list_is_next()) return one_of(kProjections, "a projection");
+    const auto at = cbor_.offset();
+    std::vector<double> terms = numbers("the coefficients of a projection", 1, 4);
+    terms.resize(4);
+    const Projection p{.wi = terms[0], .wo = terms[1], .mirror = terms[2], .n = terms[3]};
+    return checked(at, [&] { return parse_projection(to_string(p)).projection; });
+  }
+
+  std::string notes() {
+    const auto at = cbor_.offset();
+    const std::string text = cbor_.text("notes", kLongestNotes);
+    const std::optional<Json> json = parse_notes(text);
+    if (!json)
+      cbor_.fail(at, fmt::format("notes that are a JSON object at most {} deep", kDeepestNotes), "others");
+    return json->dump();
+  }
+
+  static constexpr std::size_t kMostAxes = 2;
+
+  CborReader cbor_;
+  std::string name_;
+  int channels_ = 0;
+  std::vector<TableKind> kinds_;
+  std::vector<Table> tables_;
+  std::vector<Product> products_;
+  std::size_t use_count_ = 0, factor_count_ = 0;
+};
+
+// What the reader refuses is not written.
+void check_writable(const Model& model, CompactContent content) {
+  const auto check = [](const char* what, std::size_t count) {
+    if (count > kMaxCompactItems)
+      throw Error(
+          fmt::format("compact file: expected at most {} {}, found {}", kMaxCompactItems, what, count));
+  };
+  const FactoredBrdf& brdf = model.brdf;
+  std::size_t factors = 0;
+  for (const Lobe& lobe : brdf.lobes()) factors += lobe.factors.size();
+  check("tables", brdf.tables().size());
+  check("lobes", brdf.lobes().size());
+  check("factors", factors);
+  for (const Table& table : brdf.tables())
+    if (!is_name(table.name))
+      throw Error(
+          fmt::format("compact file: expected table names of at most {} bytes of UTF-8 without control "
+                      "characters, found others",
+                      kLongestName));
+  if (content == CompactContent::model_and_notes &&
+      (model.notes.size() > kLongestNotes || !parse_notes(model.notes)))
+    throw Error("compact file: expected notes that are a JSON object of at most 1 MiB, found others");
+}
+
+}  // namespace
+
+bool looks_like_compact(std::span<const std::byte> head) noexcept {
+  constexpr std::string_view kTag = "\xd9\xd9\xf7", kText =
+                                                        "\x67"
+                                                        "burnish";
+  if (head.size() < kTag.size() + 1 + kText.size()) return false;
+  const std::string_view found(reinterpret_cast<const char*>(head.data()), head.size());
+  return found.starts_with(kTag) && (found[kTag.size()] & '\xe0') == '\x80' &&
+         found.substr(kTag.size() + 1).starts_with(kText);
+}
+
+std::string format_compact(const Model& model, CompactContent content) {
+  check_writable(model, content);
+  return CompactWriter().run(model, content);
+}
+
+Model parse_compact(const FileBytes& file) {
+  return CompactReader(file).run();
+}
+
+}  // namespace burnish
