@@ -27,7 +27,7 @@ constexpr std::size_t kLongestName = 255, kLongestNotes = 1 << 20;
 constexpr int kDeepestNotes = 32;
 
 // The numbers that stand for them in files: places in these lists.
-constexpr std::array kShapes{TableShape::line, TableShape::disk, TableShape::grid};
+constexpr std::array kShapes{TableShape::line, TableShape::disk, TableShape::grid, TableShape::volume};
 constexpr std::array kFormats{TableFormat::half, TableFormat::single, TableFormat::rgb9e5,
                               TableFormat::unorm8};
 constexpr std::array kWarps{WarpKind::identity, WarpKind::power, WarpKind::rational};
@@ -46,35 +46,43 @@ struct Axis {
 };
 
 /// A disk's two sides are one axis.
-std::size_t axis_count(TableShape shape) {
-  return shape == TableShape::grid ? 2 : 1;
+std::size_t axes_in_file(TableShape shape) {
+  return static_cast<std::size_t>(projection_count(shape));
 }
 
 std::vector<Axis> axes_of(const TableLayout& layout) {
   std::vector<Axis> axes{{layout.width, layout.warp}};
-  if (layout.shape == TableShape::grid) axes.push_back({layout.height, layout.warp_y});
+  if (axes_in_file(layout.shape) > 1) axes.push_back({layout.height, layout.warp_y});
+  if (axes_in_file(layout.shape) > 2) axes.push_back({layout.depth, layout.warp_z});
   return axes;
 }
 
 TableLayout layout_of(TableShape shape, std::span<const Axis> axes) {
-  TableLayout layout{.shape = shape, .width = axes[0].nodes, .warp = axes[0].warp, .warp_y = {}};
+  TableLayout layout{
+      .shape = shape, .width = axes[0].nodes, .warp = axes[0].warp, .warp_y = {}, .warp_z = {}};
   if (shape == TableShape::disk) layout.height = layout.width;
-  if (shape == TableShape::grid) {
+  if (axes.size() > 1) {
     layout.height = axes[1].nodes;
     layout.warp_y = axes[1].warp;
+  }
+  if (axes.size() > 2) {
+    layout.depth = axes[2].nodes;
+    layout.warp_z = axes[2].warp;
   }
   return layout;
 }
 
 std::vector<Projection> projections_of(const FactorUse& use, TableShape shape) {
   std::vector<Projection> projections{use.projection};
-  if (shape == TableShape::grid) projections.push_back(use.projection_y);
+  if (axes_in_file(shape) > 1) projections.push_back(use.projection_y);
+  if (axes_in_file(shape) > 2) projections.push_back(use.projection_z);
   return projections;
 }
 
 FactorUse use_of(int table, std::span<const Projection> projections) {
-  FactorUse use{.table = table, .projection = projections[0], .projection_y = {}};
+  FactorUse use{.table = table, .projection = projections[0], .projection_y = {}, .projection_z = {}};
   if (projections.size() > 1) use.projection_y = projections[1];
+  if (projections.size() > 2) use.projection_z = projections[2];
   return use;
 }
 
@@ -285,8 +293,8 @@ class CompactReader {
     const auto at = cbor_.offset();
     const std::size_t items = cbor_.list("a kind of tables", 4, 3 + kMostAxes);
     const TableShape shape = one_of(kShapes, "a shape");
-    if (items != 3 + axis_count(shape))
-      cbor_.fail(at, fmt::format("a kind of tables with {} axes", axis_count(shape)),
+    if (items != 3 + axes_in_file(shape))
+      cbor_.fail(at, fmt::format("a kind of tables with {} axes", axes_in_file(shape)),
                  fmt::format("{}", items - 3));
     TableKind kind{.layout = {}, .format = one_of(kFormats, "a table format")};
     kind.channels = static_cast<int>(cbor_.integer("a table's channels", 1, channels_));
@@ -294,7 +302,7 @@ class CompactReader {
       cbor_.fail(at, fmt::format("a kind of tables of 1 or {} channels", channels_),
                  fmt::format("{}", kind.channels));
     std::vector<Axis> axes;
-    while (axes.size() < axis_count(shape)) axes.push_back(axis());
+    while (axes.size() < axes_in_file(shape)) axes.push_back(axis());
     kind.layout = layout_of(shape, axes);
     if (!holds_channels(kind.format, kind.channels))
       cbor_.fail(at, fmt::format("3 channels for {}", to_string(kind.format)),
@@ -362,7 +370,7 @@ class CompactReader {
     const auto at = cbor_.offset();
     const auto table =
         static_cast<int>(cbor_.integer("a factor's table", 0, static_cast<std::int64_t>(tables_.size()) - 1));
-    const std::size_t axes = axis_count(tables_[static_cast<std::size_t>(table)].layout.shape);
+    const std::size_t axes = axes_in_file(tables_[static_cast<std::size_t>(table)].layout.shape);
     if (projections.size() != axes)
       cbor_.fail(at, fmt::format("a table of {} axes", projections.size()), fmt::format("one of {}", axes));
     return use_of(table, projections);
@@ -386,7 +394,7 @@ class CompactReader {
     return json->dump();
   }
 
-  static constexpr std::size_t kMostAxes = 2;
+  static constexpr std::size_t kMostAxes = 3;
 
   CborReader cbor_;
   std::string name_;
