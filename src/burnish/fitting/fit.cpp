@@ -180,6 +180,7 @@ class Fitter {
 
   FactoredBrdf fit_to_budget(const Budget& form) {
     const std::size_t texel = texel_bytes(format(), channels());
+    check_budget(form, texel);
     TrainingOptions drawn = training_for(form.bytes, texel, brdf_.isotropic());
     drawn.seed = options_.seed;
     const TrainingSet set = draw_training_set(reference(), drawn);
@@ -207,6 +208,21 @@ class Fitter {
     const LobesFit fit = fit_without_overfit(reference(), set, plan, form.bytes, texel, drawn, refine);
     report.smooth = refine.smooth;
     return finish(fit, set, refine, std::move(report));
+  }
+
+  /// Throws Error unless the bytes hold every table of the plan that they give.
+  void check_budget(const Budget& form, std::size_t texel) const {
+    const auto fits = [&](std::size_t bytes) {
+      return plan_fits(default_plan(bytes, form.lobes, brdf_.isotropic(), texel), bytes, channels(), texel);
+    };
+    if (fits(form.bytes)) return;
+    std::size_t most = form.bytes;
+    while (!fits(most)) most *= 2;
+    std::size_t least = most / 2;  // between what does not fit and what does
+    while (most - least > 1) (fits((least + most) / 2) ? most : least) = (least + most) / 2;
+    throw Error(
+        fmt::format("fit: expected a budget of at least {} bytes for {} channels in format {}, found {}",
+                    most, channels(), to_string(format()), form.bytes));
   }
 
   FactoredBrdf finish(const LobesFit& fit, const TrainingSet& set, const RefineOptions& refine,

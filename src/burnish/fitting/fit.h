@@ -31,7 +31,8 @@ struct OneLobe {
   LogLinear how = {};
 };
 
-/// The model of several lobes that serves a number of bytes best.
+/// The model of several lobes that serves a number of bytes best: at most so many, as FactoredBrdf::bytes
+/// counts them.
 struct Budget {
   std::uint64_t bytes = 2700;
   int lobes = 0;        ///< 0: as many as serve it best
@@ -65,7 +66,7 @@ struct FitOptions {
   FitForm form = OneLobe{};
   std::optional<double> smooth = {};  ///< >= 0; none: the solver's own, or chosen where LogLinear says so
   /// Of tables without one of their own. None: half; with a budget or several lobes and three channels
-  /// rgb9e5.
+  /// rgb9e5; with a budget and scattered samples of three channels the one of both that predicts better.
   std::optional<TableFormat> format = {};
   /// Pairs drawn for one lobe or a baseline from a source that is a function; 0: 200,000, or 500,000 for one
   /// lobe of an anisotropic source.

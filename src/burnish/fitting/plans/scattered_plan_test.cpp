@@ -1,0 +1,95 @@
+#include <cmath>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <burnish/fitting/fit.h>
+#include <burnish/fitting/plans/scattered_plan.h>
+#include <burnish/math/parallel.h>
+#include <burnish/reflectance/analytic.h>
+#include <burnish/reflectance/goniometer.h>
+#include <burnish/testing/tools.h>
+
+namespace burnish {
+namespace {
+
+// A measured highlight in so many channels, the first the darkest.
+Source scattered(int channels, const char* brdf = "ggx:alpha_x=0.3,alpha_y=0.3,f0=0.5,kd=0.2",
+                 std::size_t count = 60) {
+  const Samples grey = measure(parse_analytic(brdf), {.count = count, .noise = 0.1, .seed = 3});
+  Samples samples{.channels = channels, .isotropic = grey.isotropic, .pairs = grey.pairs, .values = {}};
+  for (std::size_t i = 0; i < grey.size(); ++i)
+    for (int c = 0; c < channels; ++c) samples.values.push_back(grey.at(i)[0] * (c + 1) / channels);
+  return {"scattered", ScatteredBrdf(std::move(samples)), {}};
+}
+
+std::size_t least(const Source& source, TableFormat format) {
+  return least_scattered_bytes(source.ref().channels(), source.ref().isotropic(), format);
+}
+
+TEST(ScatteredPlan, KeepsEveryBudget) {
+  for (const int channels : {1, 3, 31}) {
+    const Source source = scattered(channels);
+    for (const auto& format :
+         {std::optional<TableFormat>(), std::optional(TableFormat::half), std::optional(TableFormat::single),
+          std::optional(TableFormat::unorm8), std::optional(TableFormat::rgb9e5)}) {
+      if (format == TableFormat::rgb9e5 && channels != 3) continue;
+      for (const std::size_t bytes : {592, 2700, 64 << 10}) {
+        FitOptions options{.form = Budget{.bytes = bytes, .lobes = 3}, .smooth = 1e-5, .format = format};
+        if (bytes < least(source, format.value_or(TableFormat::half))) continue;
+        const Fit made = fit(source, options);
+        EXPECT_LE(made.bytes(), bytes) << channels;
+        // of few samples fine models predict no better
+        EXPECT_GE(made.bytes(), std::min<std::size_t>(bytes / 2, 140 * static_cast<std::size_t>(channels)))
+            << channels << " channels, " << bytes << " bytes";
+      }
+    }
+  }
+}
+
+TEST(ScatteredPlan, SaysTheLeastBudget) {
+  for (const char* brdf :
+       {"ggx:alpha_x=0.3,alpha_y=0.3,f0=0.5,kd=0.2", "ggx:alpha_x=0.2,alpha_y=0.5,f0=0.5,kd=0.2"})
+    for (const int channels : {1, 31}) {
+      const Source source = scattered(channels, brdf);
+      const std::size_t bytes = least(source, TableFormat::half);
+      EXPECT_EQ(fit(source, {.form = Budget{.bytes = bytes}, .smooth = 1e-5}).bytes(), bytes);
+      EXPECT_THAT(error_of([&] { fit(source, {.form = Budget{.bytes = bytes - 1}}); }),
+                  testing::HasSubstr(fmt::format("at least {} bytes", bytes)));
+    }
+}
+
+TEST(ScatteredPlan, CountsTheBytesOfItsModels) {
+  for (const char* model : {"pqpr", "p(wo) q(h) p(wi) g(theta_h,theta_d)", "q(wi+wo+0.5n)"})
+    for (const TableFormat format : {TableFormat::half, TableFormat::rgb9e5}) {
+      const ModelSpec spec = parse_model_spec(model, {}, true);
+      const Source source = scattered(3);
+      const FactoredBrdf brdf =
+          fit_homomorphic(from_samples(*source.samples(), true), spec, {.format = format}).brdf;
+      EXPECT_EQ(model_bytes(spec, 3, format), brdf.bytes()) << model;
+    }
+}
+
+TEST(ScatteredPlan, ChoosesASmoothnessThatPredicts) {
+  const Source source = scattered(1, "ggx:alpha_x=0.3,alpha_y=0.3,f0=0.5,kd=0.2", 600);
+  const auto error = [&](std::optional<double> smooth) {
+    const SampleSource samples = from_samples(*source.samples(), false);
+    return plan_scattered(samples, 1350, smooth, {}, {.reweightings = 1}).error.value();
+  };
+  const double chosen = error({});
+  EXPECT_LT(chosen, error(1e-10));
+  EXPECT_LT(chosen, error(1));
+  EXPECT_LT(chosen, 0.2);  // the noise alone errs by .1 sqrt(2 / pi)
+}
+
+TEST(ScatteredPlan, DoesNotDependOnTheNumberOfThreads) {
+  const Source source = scattered(4);
+  const FitOptions options{.form = Budget{.bytes = 2700, .scattered = {.reweightings = 1}}};
+  const Fit all = fit(source, options);
+  const ThreadLimit one(1);
+  EXPECT_EQ(fit(source, options).model(), all.model());
+}
+
+}  // namespace
+}  // namespace burnish
