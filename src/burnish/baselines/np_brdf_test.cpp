@@ -41,7 +41,7 @@ TEST(NpBrdf, DecodesTheAnglesOfHalfAndDifferenceVector) {
   const NpBrdf brdf(decoder, kCode, reflectance), with_a_cosine(decoder, kCode, with_cosine);
   std::vector<double> f(3);
   double largest = 0;
-  for (const auto& [wi, wo] : draw_pairs(300, 2, false)) {
+  for (const auto& [wi, wo] : draw_pairs(60, 2, false)) {
     const std::vector<double> expected = value_of(*decoder, to_half_diff(wi, wo));
     ASSERT_TRUE(brdf.eval(wi, wo, f));
     for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(f[c], expected[c], 1e-5 * (1 + expected[c]));
@@ -55,16 +55,18 @@ TEST(NpBrdf, DecodesTheAnglesOfHalfAndDifferenceVector) {
 
 TEST(NpBrdf, GivesTheSameBitsAloneAsInASpan) {
   const NpBrdf brdf = some_brdf();
-  std::vector<DirectionPair> pairs = draw_pairs(600, 3, false);
+  std::vector<DirectionPair> pairs = draw_pairs(300, 3, false);
   for (std::size_t i = 0; i < pairs.size(); i += 7) pairs[i].wo.z *= -1;
   std::vector<double> values(3 * pairs.size()), f(3);
   std::vector<std::uint8_t> known(pairs.size());
   BrdfRef(brdf).eval(pairs, values, known);
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
+  for (std::size_t i = 0; i < pairs.size(); i += 5) {
     EXPECT_TRUE(known[i]);
     EXPECT_TRUE(brdf.eval(pairs[i].wi, pairs[i].wo, f));
     for (std::size_t c = 0; c < 3; ++c) ASSERT_EQ(values[3 * i + c], f[c]) << i;
-    if (i % 7 == 0) EXPECT_EQ(f, std::vector<double>(3));
+    if (i % 7 == 0) {
+      EXPECT_EQ(f, std::vector<double>(3));
+    }
   }
 }
 
@@ -72,14 +74,15 @@ TEST(NpBrdf, IsReciprocalToTheLastBit) {
   for (const NpBrdf::Value value : {reflectance, with_cosine}) {
     const NpBrdf brdf = some_brdf(value);
     const SymmetrizedBrdf symmetrized(brdf);
-    std::vector<double> f(3), exchanged(3);
-    for (const auto& [wi, wo] : draw_pairs(500, 4, false)) {
-      brdf.eval(wi, wo, f);
-      brdf.eval(wo, wi, exchanged);
-      EXPECT_EQ(f, exchanged);
-      symmetrized.eval(wi, wo, exchanged);
-      EXPECT_EQ(f, exchanged);
-    }
+    std::vector<DirectionPair> pairs = draw_pairs(500, 4, false);
+    std::vector<double> f(3 * pairs.size()), exchanged(f.size());
+    std::vector<std::uint8_t> known(pairs.size());
+    brdf.eval(pairs, f, known);
+    BrdfRef(symmetrized).eval(pairs, exchanged, known);
+    EXPECT_EQ(f, exchanged);
+    for (DirectionPair& pair : pairs) std::swap(pair.wi, pair.wo);
+    brdf.eval(pairs, exchanged, known);
+    EXPECT_EQ(f, exchanged);
   }
 }
 

@@ -46,17 +46,22 @@ struct OtherSide {
 std::optional<double> relative_difference(BrdfRef a, BrdfRef b, std::size_t count) {
   const auto channels_a = static_cast<std::size_t>(a.channels()),
              channels_b = static_cast<std::size_t>(b.channels());
-  std::vector<double> f(channels_a), g(channels_b);
+  const std::vector<DirectionPair> pairs = draw_pairs(count, 1, a.isotropic() && b.isotropic());
+  std::vector<double> f(pairs.size() * channels_a), g(pairs.size() * channels_b);
+  std::vector<std::uint8_t> known_a(pairs.size()), known_b(pairs.size());
+  a.eval(pairs, f, known_a);
+  b.eval(pairs, g, known_b);
+
   double sum = 0;
   std::size_t terms = 0;
-  for (const auto& [wi, wo] : draw_pairs(count, 1, a.isotropic() && b.isotropic())) {
-    if (!a.eval(wi, wo, f) || !b.eval(wi, wo, g)) continue;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (!known_a[i] || !known_b[i]) continue;
     const std::size_t channels = std::max(channels_a, channels_b);
     for (std::size_t c = 0; c < channels; ++c, ++terms) {
-      const auto value = [c](const std::vector<double>& v) {
-        return std::max(v[v.size() == 1 ? 0 : c], 0.0);
+      const auto value = [i, c](const std::vector<double>& v, std::size_t size) {
+        return std::max(v[i * size + (size == 1 ? 0 : c)], 0.0);
       };
-      sum += std::abs(std::log((value(f) + kFloor) / (value(g) + kFloor)));
+      sum += std::abs(std::log((value(f, channels_a) + kFloor) / (value(g, channels_b) + kFloor)));
     }
   }
   if (terms == 0) return std::nullopt;
