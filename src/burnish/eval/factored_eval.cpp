@@ -18,6 +18,7 @@
 #include <hwy/highway.h>
 
 #include <burnish/eval/lookup_lanes-inl.h>
+#include <burnish/eval/one_pair_lanes-inl.h>
 #include <burnish/eval/projection_lanes-inl.h>
 
 #ifndef BURNISH_EVAL_FACTORED_ARGUMENTS
@@ -42,7 +43,6 @@ struct ValuePointers {
 
 constexpr std::size_t kMaxBlock = 128;  // directions that go through the steps together
 constexpr std::size_t kCacheLine = 16;  // floats
-constexpr std::size_t kTogether = FactoredPlan::kTogether;
 }  // namespace burnish
 #endif
 
@@ -56,6 +56,9 @@ HWY_INLINE Lane load(const float* from) {
 }
 HWY_INLINE void store(Lane v, float* to) {
   hn::StoreU(v.raw, D(), to);
+}
+HWY_INLINE hn::Vec<DI> excess(const Lane (&w)[6]) {  // of a pair
+  return hn::Max(excess_of(w[0], w[1], w[2]), excess_of(w[3], w[4], w[5]));
 }
 // Lanes that hold no pair of directions.
 HWY_INLINE hn::Mask<DI> no_directions(hn::Vec<DI> excess) {
@@ -527,6 +530,15 @@ void eval_directions(const FactoredPlan& plan, const DirectionPointers& in, std:
              scratch, out.from(0, whole));
 }
 
+void eval_one(const FactoredPlan& plan, Vec3 wi, Vec3 wo, float* f) {
+#if HWY_TARGET != HWY_SCALAR
+  if (plan.steps.size() <= FactoredPlan::kMaxSteps) return eval_one_pair(plan, wi, wo, f);
+#endif
+  const float w[] = {static_cast<float>(wi.x), static_cast<float>(wi.y), static_cast<float>(wi.z),
+                     static_cast<float>(wo.x), static_cast<float>(wo.y), static_cast<float>(wo.z)};
+  eval_directions(plan, {{w, w + 1, w + 2, w + 3, w + 4, w + 5}}, 1, {f, 1, plan.channels});
+}
+
 }  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace burnish
@@ -536,6 +548,7 @@ HWY_AFTER_NAMESPACE();
 namespace burnish {
 
 HWY_EXPORT(eval_directions);
+HWY_EXPORT(eval_one);
 
 FactoredEvaluator::FactoredEvaluator(const FactoredBrdf& brdf)
     : plan_(std::make_shared<FactoredPlan>(brdf)) {}
@@ -571,10 +584,8 @@ void FactoredEvaluator::eval(const DirectionRows& d, std::span<float> f) const n
 }
 
 void FactoredEvaluator::eval(Vec3 wi, Vec3 wo, std::span<float> f) const noexcept {
-  const std::array<float, 6> w{static_cast<float>(wi.x), static_cast<float>(wi.y), static_cast<float>(wi.z),
-                               static_cast<float>(wo.x), static_cast<float>(wo.y), static_cast<float>(wo.z)};
-  const auto component = [&](std::size_t k) { return std::span(w).subspan(k, 1); };
-  eval({component(0), component(1), component(2), component(3), component(4), component(5)}, f);
+  assert(f.size() == plan_->channels);
+  HWY_DYNAMIC_DISPATCH(eval_one)(*plan_, wi, wo, f.data());
 }
 
 }  // namespace burnish

@@ -80,15 +80,11 @@ struct LanePairOf {
   HWY_INLINE LaneOf<Tag> sum_length() const { return length_of_sum; }
 };
 
-/// The larger | |w|^2 - 1 | of two vectors as an integer, which is largest for not-a-number.
+/// | |w|^2 - 1 | as an integer, which is largest for not-a-number.
 template <class Tag>
-HWY_INLINE hn::Vec<hn::RebindToSigned<Tag>> excess(const LaneOf<Tag> (&w)[6]) {
-  using T = LaneOf<Tag>;
-  const auto of = [](T x, T y, T z) HWY_ATTR {
-    const T signed_excess = mul_add(x, x, mul_add(y, y, mul_add(z, z, T(-1.0))));
-    return hn::BitCast(hn::RebindToSigned<Tag>(), hn::Abs(signed_excess.raw));
-  };
-  return hn::Max(of(w[0], w[1], w[2]), of(w[3], w[4], w[5]));
+HWY_INLINE hn::Vec<hn::RebindToSigned<Tag>> excess_of(LaneOf<Tag> x, LaneOf<Tag> y, LaneOf<Tag> z) {
+  const LaneOf<Tag> signed_excess = mul_add(x, x, mul_add(y, y, mul_add(z, z, LaneOf<Tag>(-1.0))));
+  return hn::BitCast(hn::RebindToSigned<Tag>(), hn::Abs(signed_excess.raw));
 }
 /// That and more is no direction: 1 %, as readers of directions ask for.
 constexpr float kMostExcess = 0.02f;
