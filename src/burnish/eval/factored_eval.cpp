@@ -18,6 +18,7 @@
 #include <hwy/highway.h>
 
 #include <burnish/eval/lookup_lanes-inl.h>
+#include <burnish/eval/one_pair_lanes-inl.h>
 #include <burnish/eval/projection_lanes-inl.h>
 
 #ifndef BURNISH_EVAL_FACTORED_ARGUMENTS
@@ -42,7 +43,6 @@ struct ValuePointers {
 
 constexpr std::size_t kMaxBlock = 128;  // directions that go through the steps together
 constexpr std::size_t kCacheLine = 16;  // floats
-constexpr std::size_t kTogether = FactoredPlan::kTogether;
 }  // namespace burnish
 #endif
 
@@ -57,28 +57,12 @@ HWY_INLINE Lane load(const float* from) {
 HWY_INLINE void store(Lane v, float* to) {
   hn::StoreU(v.raw, D(), to);
 }
-HWY_INLINE Lane if_positive(Lane condition, Lane value) {  // else 0, also for not-a-number
-  return Lane(hn::IfThenElseZero(hn::Gt(condition.raw, hn::Zero(D())), value.raw));
+HWY_INLINE hn::Vec<DI> excess(const Lane (&w)[6]) {  // of a pair
+  return hn::Max(excess_of(w[0], w[1], w[2]), excess_of(w[3], w[4], w[5]));
 }
-
-// wi and wo for the formulas of projections.
-struct LanePair {
-  Lanes sum, apart;
-  Lane length_of_sum;
-
-  HWY_INLINE Lane sum_length() const { return length_of_sum; }
-};
-// The larger | |w|^2 - 1 | of two vectors as an integer, which is largest for not-a-number.
-HWY_INLINE hn::Vec<DI> excess(const Lane (&w)[6]) {
-  const auto of = [](Lane x, Lane y, Lane z) HWY_ATTR {
-    const Lane signed_excess = mul_add(x, x, mul_add(y, y, mul_add(z, z, Lane(-1.0))));
-    return hn::BitCast(DI(), hn::Abs(signed_excess.raw));
-  };
-  return hn::Max(of(w[0], w[1], w[2]), of(w[3], w[4], w[5]));
-}
-// To 1 %, as readers of directions ask for.
+// Lanes that hold no pair of directions.
 HWY_INLINE hn::Mask<DI> no_directions(hn::Vec<DI> excess) {
-  return hn::Gt(excess, hn::BitCast(DI(), hn::Set(D(), 0.02f)));
+  return hn::Gt(excess, hn::BitCast(DI(), hn::Set(D(), kMostExcess)));
 }
 
 // A block's directions on the way to positions in tables. Every step is a loop of its own, so that none has a
@@ -151,7 +135,7 @@ struct Projector {
   HWY_INLINE Lanes direction(std::size_t first, std::size_t i) const {
     return {load(in[first] + i), load(in[first + 1] + i), load(in[first + 2] + i)};
   }
-  HWY_INLINE LanePair pair(std::size_t i) const {
+  HWY_INLINE LanePairOf<D> pair(std::size_t i) const {
     return {{load(sum_x + i), load(sum_y + i), load(sum_z + i)},
             direction(0, i) - direction(3, i),
             load(sum_length + i)};
@@ -185,11 +169,10 @@ struct Projector {
     x = own_x;
     y = own_y;
     for_each([&](std::size_t i) HWY_ATTR {
-      const LanePair at = pair(i);
-      const auto [u, v] = across_half(at.sum, at.length_of_sum, at.apart);
-      store(u, own_x + i);
-      store(v, own_y + i);
-      put(polar_of(Lanes{u, v, at.length_of_sum}, length(u, v, at.length_of_sum)), i);
+      const auto [d, polar] = doubled_difference(pair(i));
+      store(d.x, own_x + i);
+      store(d.y, own_y + i);
+      put(polar, i);
     });
   }
 
@@ -220,11 +203,6 @@ struct Projector {
       case Kind::angle:
         return project_angle(source.projection.kind);
     }
-  }
-
-  // Not-a-number, of directions below the horizon, becomes 0.
-  HWY_INLINE static Lane within(Lane position, Lane cells) {
-    return if_positive(position, min(position, cells));
   }
 
   HWY_INLINE Polar<Lane> polar(std::size_t i) const { return {load(r + i), load(den + i)}; }
@@ -552,6 +530,15 @@ void eval_directions(const FactoredPlan& plan, const DirectionPointers& in, std:
              scratch, out.from(0, whole));
 }
 
+void eval_one(const FactoredPlan& plan, Vec3 wi, Vec3 wo, float* f) {
+#if HWY_TARGET != HWY_SCALAR
+  if (plan.steps.size() <= FactoredPlan::kMaxSteps) return eval_one_pair(plan, wi, wo, f);
+#endif
+  const float w[] = {static_cast<float>(wi.x), static_cast<float>(wi.y), static_cast<float>(wi.z),
+                     static_cast<float>(wo.x), static_cast<float>(wo.y), static_cast<float>(wo.z)};
+  eval_directions(plan, {{w, w + 1, w + 2, w + 3, w + 4, w + 5}}, 1, {f, 1, plan.channels});
+}
+
 }  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace burnish
@@ -561,6 +548,7 @@ HWY_AFTER_NAMESPACE();
 namespace burnish {
 
 HWY_EXPORT(eval_directions);
+HWY_EXPORT(eval_one);
 
 FactoredEvaluator::FactoredEvaluator(const FactoredBrdf& brdf)
     : plan_(std::make_shared<FactoredPlan>(brdf)) {}
@@ -596,10 +584,8 @@ void FactoredEvaluator::eval(const DirectionRows& d, std::span<float> f) const n
 }
 
 void FactoredEvaluator::eval(Vec3 wi, Vec3 wo, std::span<float> f) const noexcept {
-  const std::array<float, 6> w{static_cast<float>(wi.x), static_cast<float>(wi.y), static_cast<float>(wi.z),
-                               static_cast<float>(wo.x), static_cast<float>(wo.y), static_cast<float>(wo.z)};
-  const auto component = [&](std::size_t k) { return std::span(w).subspan(k, 1); };
-  eval({component(0), component(1), component(2), component(3), component(4), component(5)}, f);
+  assert(f.size() == plan_->channels);
+  HWY_DYNAMIC_DISPATCH(eval_one)(*plan_, wi, wo, f.data());
 }
 
 }  // namespace burnish

@@ -46,7 +46,7 @@ FactoredBrdf smooth_model(const char* expression, const std::vector<std::string>
   for (const ModelSpec::TableSpec& t : spec.tables) {
     Table table{.name = t.name, .layout = t.layout, .channels = 3, .values = {}};
     const double steepness = t.name == "q" ? 100 : 1;
-    for (int y = 0; y < t.layout.height; ++y)
+    for (int y = 0; y < t.layout.rows(); ++y)
       for (int x = 0; x < t.layout.width; ++x)
         for (int c = 0; c < 3; ++c) {
           const Vec3 w = node_direction(t.layout, x, y);
@@ -245,6 +245,7 @@ const bool registered = [] {
             {"p=40", "q=128,rational:0.05", "r=48", "s=40", "t=128,rational:0.3", "u=48"});
   add_model("grid_2k7", "p(wo) q(theta_h,theta_d) p(wi) + s(wo) s(wi)",
             {"p=32", "q=48x8,rational:0.1", "s=24"});
+  add_model("volume", "z(theta_h) g(theta_h,theta_d,phi_d)", {"z=256,power:0.5", "g=28x14x8,power:0.5"});
   add_model("pqp_64x64", "pqp", {"p=64x64", "q=64x64,rational:0.2"});
   add_peers();
   add_limits();

@@ -38,6 +38,27 @@ double lookup_bound(const Table& table) noexcept {
   return 0x1p-24 * (8 * ratio + 16 * axis_count(layout.shape) * cells * (ratio - 1));
 }
 
+// A position along an axis of so many nodes.
+FactoredPlan::Position position_in(Warp warp, int nodes, bool disk, std::size_t slot) noexcept {
+  const auto cells = static_cast<float>(nodes - 1);
+  return {.disk = disk,
+          .warp = warp.kind,
+          .parameter = static_cast<float>(warp.parameter),
+          .size = disk ? 0.5f * cells : cells,
+          .cells = cells,
+          .slot = slot};
+}
+
+FactoredPlan::Source::Kind kind_of(const Projection& projection, bool azimuth) noexcept {
+  using Kind = FactoredPlan::Source::Kind;
+  return projection == kProjectWi                      ? Kind::wi
+         : projection == kProjectWo                    ? Kind::wo
+         : projection == kProjectHalf                  ? Kind::half
+         : projection.kind == Projection::Kind::affine ? Kind::affine
+         : azimuth                                     ? Kind::difference
+                                                       : Kind::angle;
+}
+
 std::size_t up_to_multiple(std::size_t n, std::size_t of) noexcept {
   return (n + of - 1) / of * of;
 }
@@ -63,15 +84,17 @@ FactoredPlan::FactoredPlan(const FactoredBrdf& brdf) : channels(static_cast<std:
       if (k < paired && k % 2 == 1) {
         lookups.back().pair = true;
         lookups.back().pair_at = at;
+        lookups.back().pair_steps_at = steps_of(table.layout, use);
       } else {
         lookups.push_back(tables[static_cast<std::size_t>(use.table)]);
         lookups.back().at = at;
+        lookups.back().steps_at = steps_of(table.layout, use);
       }
       ++k;
     }
     products.push_back({first, lookups.size(), {}});
     for (const double s : brdf.lobes()[j].scale) products.back().scale.push_back(static_cast<float>(s));
-    products.back().scale.resize(up_to_multiple(channels, kTogether));
+    products.back().scale.resize(up_to_multiple(channels, kTogether) + 1);  // for loads of four
     rounding_bound = std::max(rounding_bound, bound);
   }
   if (slots > kMaxSlots)
@@ -120,13 +143,7 @@ std::array<std::size_t, 3> FactoredPlan::slots_of(const TableLayout& layout, con
 
 // The slot of a position, the same for the same position.
 std::size_t FactoredPlan::slot_of(const Projection& projection, Warp warp, int nodes, bool disk) {
-  const auto cells = static_cast<float>(nodes - 1);
-  const Position position{.disk = disk,
-                          .warp = warp.kind,
-                          .parameter = static_cast<float>(warp.parameter),
-                          .size = disk ? 0.5f * cells : cells,
-                          .cells = cells,
-                          .slot = slots};
+  const Position position = position_in(warp, nodes, disk, slots);
   Source& source = source_of(projection, disk);
   source.radius |= !disk || warp.kind != WarpKind::identity;
   for (const Position& known : source.positions)
@@ -136,14 +153,86 @@ std::size_t FactoredPlan::slot_of(const Projection& projection, Warp warp, int n
   return position.slot;
 }
 
+std::array<std::uint32_t, 3> FactoredPlan::steps_of(const TableLayout& layout, const FactorUse& use) {
+  if (layout.shape == TableShape::disk) {
+    const auto [x, y] = steps_across(layout, use);
+    return {x, y, x};
+  }
+  const auto width = static_cast<std::size_t>(layout.width), height = static_cast<std::size_t>(layout.height);
+  const int axes = axis_count(layout.shape);
+  const std::uint32_t x = steps_along(use.projection, layout.warp, layout.width, 1);
+  const std::uint32_t y = axes > 1 ? steps_along(use.projection_y, layout.warp_y, layout.height, width) : x;
+  return {x, y, axes > 2 ? steps_along(use.projection_z, layout.warp_z, layout.depth, width * height) : x};
+}
+
+// The lane of a position along a polar angle, the same for the same position.
+std::uint32_t FactoredPlan::steps_along(const Projection& projection, Warp warp, int nodes,
+                                        std::size_t stride) {
+  using Kind = Projection::Kind;
+  const Position position = position_in(warp, nodes, false, 0);
+  const Source::Kind source = kind_of(projection, false);
+  if (source == Source::Kind::affine) {
+    for (const GivenSteps& known : given)
+      if (known.projection == projection && known.position.same_place(position) &&
+          steps[known.x / Steps::kLanes].floats[known.x % Steps::kLanes] ==
+              static_cast<std::int32_t>(stride * kRowStride))
+        return known.x;
+    const std::uint32_t lane = lane_of(position, true, stride, 0);
+    given.push_back({source, projection, position, lane, lane});
+    return lane;
+  }
+  const Angle angle = source == Source::Kind::wi           ? Angle::wi
+                      : source == Source::Kind::wo         ? Angle::wo
+                      : source == Source::Kind::half       ? Angle::half
+                      : projection.kind == Kind::deviation ? Angle::deviation
+                      : projection.kind == Kind::twist     ? Angle::twist
+                      : projection.kind == Kind::azimuth   ? Angle::azimuth
+                                                           : Angle::difference;
+  has_angle[static_cast<std::size_t>(angle)] = true;
+  return lane_of(position, false, stride, static_cast<std::int32_t>(angle));
+}
+
+// The lanes of a disk's x and y.
+std::array<std::uint32_t, 2> FactoredPlan::steps_across(const TableLayout& layout, const FactorUse& use) {
+  const Position position = position_in(layout.warp, layout.width, true, 0);
+  for (const GivenSteps& known : given)
+    if (known.projection == use.projection && known.position.same_place(position)) return {known.x, known.y};
+  const std::uint32_t x = lane_of(position, true, 1, 0);
+  const std::uint32_t y = lane_of(position, true, static_cast<std::size_t>(layout.width), 0);
+  given.push_back({kind_of(use.projection, true), use.projection, position, x, y});
+  return {x, y};
+}
+
+// A lane with this position along this angle; a new one if it is given.
+std::uint32_t FactoredPlan::lane_of(const Position& position, bool is_given, std::size_t stride,
+                                    std::int32_t angle) {
+  const bool root = position.warp == WarpKind::power && position.parameter == 0.5f;
+  const auto floats = static_cast<std::int32_t>(stride * kRowStride);
+  const auto number = [&](const Steps& of, std::size_t lane) {
+    return static_cast<std::uint32_t>(static_cast<std::size_t>(&of - steps.data()) * Steps::kLanes + lane);
+  };
+  Steps* open = nullptr;
+  for (Steps& s : steps) {
+    if (s.given != is_given || (!is_given && (s.warp != position.warp || s.root != root))) continue;
+    for (std::size_t k = 0; k < s.used && !is_given; ++k)
+      if (std::tie(s.size[k], s.parameter[k], s.floats[k], s.angle[k]) ==
+          std::tie(position.size, position.parameter, floats, angle))
+        return number(s, k);
+    if (s.used < Steps::kLanes) open = &s;
+  }
+  if (!open) open = &steps.emplace_back(Steps{.warp = position.warp, .root = root, .given = is_given});
+  const std::size_t k = open->used++;
+  open->size[k] = position.size;
+  open->parameter[k] = position.parameter;
+  open->cells[k] = position.cells;
+  open->floats[k] = floats;
+  open->angle[k] = angle;
+  return number(*open, k);
+}
+
 FactoredPlan::Source& FactoredPlan::source_of(const Projection& projection, bool azimuth) {
   using Kind = Source::Kind;
-  const Kind kind = projection == kProjectWi                      ? Kind::wi
-                    : projection == kProjectWo                    ? Kind::wo
-                    : projection == kProjectHalf                  ? Kind::half
-                    : projection.kind == Projection::Kind::affine ? Kind::affine
-                    : azimuth                                     ? Kind::difference
-                                                                  : Kind::angle;
+  const Kind kind = kind_of(projection, azimuth);
   needs_sum |= kind != Kind::wi && kind != Kind::wo && kind != Kind::affine;
   for (Source& source : sources)
     if (source.kind == kind && source.projection == projection) return source;

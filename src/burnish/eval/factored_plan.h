@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include <burnish/factors/factored_brdf.h>
@@ -16,6 +17,7 @@ struct FactoredPlan {
   static constexpr std::size_t kPlaneVector = 16;  ///< floats of the vectors that hold planes
   static constexpr std::size_t kMaxVectors = 8;    ///< of a plane; longer lines have rows only
   static constexpr std::size_t kMaxSlots = 1024;   ///< different positions in tables
+  static constexpr std::size_t kMaxSteps = 64;     ///< of one pair; models of more go the way of batches
 
   /// A position along an axis of tables, in cells from 0 to `cells`. With (x, y) of length r of the projected
   /// vector, a line's is `size` times its warped tan(theta / 2), size = cells; a disk's two, in slot and
@@ -42,18 +44,41 @@ struct FactoredPlan {
   /// A lookup, or two of the same table that swapping the directions exchanges. Offsets into `values`.
   struct Lookup {
     int axes = 1;
-    bool shared = false, pair = false;           // shared by the channels
-    std::array<std::size_t, 3> at{}, pair_at{};  // slots, one an axis
-    std::size_t width = 0, layer = 0;            // nodes of a row, and of a volume's layer
+    bool shared = false, pair = false;                         // shared by the channels
+    std::array<std::size_t, 3> at{}, pair_at{};                // slots, one an axis
+    std::array<std::uint32_t, 3> steps_at{}, pair_steps_at{};  // lanes of `steps`
+    std::size_t width = 0, layer = 0;                          // nodes of a row, and of a volume's layer
     /// Channels apart, each in whole vectors, 1, 2, 4 or 8; 0: none, the table is too long or no line.
     std::size_t planes = 0, plane_vectors = 0;
     /// Three channels and a gap a node, these again for every three channels.
     std::size_t rows = 0, row_block = 0;
   };
 
+  /// For one pair at a time positions are the lanes: what is looked up along an axis, eight of one warp
+  /// together, the last of them filled up. A lane's position becomes a fraction and a way through the rows.
+  struct Steps {
+    static constexpr std::size_t kLanes = 8;
+
+    WarpKind warp;
+    bool root;             // a power of 1/2
+    bool given;            // found one by one: disks and affine combinations
+    std::size_t used = 0;  // lanes
+    alignas(32) std::array<float, kLanes> size{}, parameter{}, cells{};  // as in Position
+    alignas(32) std::array<std::int32_t, kLanes> floats{};               // of the rows, from node to node
+    alignas(32) std::array<std::int32_t, kLanes> angle{};                // an Angle
+  };
+  /// The polar angles that are found together.
+  enum class Angle { wi, wo, half, difference = 4, deviation, twist, azimuth };
+  struct GivenSteps {
+    Source::Kind kind;
+    Projection projection;
+    Position position;
+    std::uint32_t x, y;  // lanes of `steps`
+  };
+
   struct Product {
     std::size_t first, last;   // in `lookups`
-    std::vector<float> scale;  // a channel, filled up to whole groups
+    std::vector<float> scale;  // a channel, filled up to whole groups and one more
   };
 
   /// Throws Error for more than kMaxSlots slots.
@@ -63,6 +88,9 @@ struct FactoredPlan {
   bool needs_sum = false;  // wi + wo
   double rounding_bound = 0;
   std::vector<Source> sources;
+  std::vector<Steps> steps;
+  std::vector<GivenSteps> given;
+  std::array<bool, Steps::kLanes> has_angle{};  // an Angle is asked for
   std::vector<Product> products;
   std::vector<Lookup> lookups;
   std::vector<float> values;
@@ -71,6 +99,10 @@ struct FactoredPlan {
   Lookup add_table(const Table& table);
   std::array<std::size_t, 3> slots_of(const TableLayout& layout, const FactorUse& use);
   std::size_t slot_of(const Projection& projection, Warp warp, int nodes, bool disk);
+  std::array<std::uint32_t, 3> steps_of(const TableLayout& layout, const FactorUse& use);
+  std::uint32_t steps_along(const Projection& projection, Warp warp, int nodes, std::size_t stride);
+  std::array<std::uint32_t, 2> steps_across(const TableLayout& layout, const FactorUse& use);
+  std::uint32_t lane_of(const Position& position, bool given, std::size_t stride, std::int32_t angle);
   Source& source_of(const Projection& projection, bool azimuth);
 };
 

@@ -20,52 +20,47 @@ using DI = hn::RebindToSigned<D>;
 /// 1.5 2^23: added to a float it rounds it to a whole number, which stays in the low bits of the sum.
 constexpr double kRoundingShift = 12582912;
 
-struct Lane {
-  hn::Vec<D> raw;
+/// A vector of the floats that `Tag` says: as wide as there are, or one for each of a few things.
+template <class Tag>
+struct LaneOf {
+  using Integers = hn::RebindToSigned<Tag>;
+  hn::Vec<Tag> raw;
 
-  Lane() = default;
-  HWY_INLINE Lane(double x) : raw(hn::Set(D(), static_cast<float>(x))) {}  // NOLINT: numbers are constants
-  HWY_INLINE explicit Lane(hn::Vec<D> v) : raw(v) {}
+  LaneOf() = default;
+  HWY_INLINE LaneOf(double x)
+      : raw(hn::Set(Tag(), static_cast<float>(x))) {}  // NOLINT: numbers are constants
+  HWY_INLINE explicit LaneOf(hn::Vec<Tag> v) : raw(v) {}
+
+  friend HWY_INLINE LaneOf operator+(LaneOf a, LaneOf b) { return LaneOf(hn::Add(a.raw, b.raw)); }
+  friend HWY_INLINE LaneOf operator-(LaneOf a, LaneOf b) { return LaneOf(hn::Sub(a.raw, b.raw)); }
+  friend HWY_INLINE LaneOf operator*(LaneOf a, LaneOf b) { return LaneOf(hn::Mul(a.raw, b.raw)); }
+  friend HWY_INLINE LaneOf operator/(LaneOf a, LaneOf b) { return LaneOf(hn::Div(a.raw, b.raw)); }
+  friend HWY_INLINE LaneOf mul_add(LaneOf a, LaneOf b, LaneOf c) {
+    return LaneOf(hn::MulAdd(a.raw, b.raw, c.raw));
+  }
+  friend HWY_INLINE LaneOf neg_mul_add(LaneOf a, LaneOf b, LaneOf c) {
+    return LaneOf(hn::NegMulAdd(a.raw, b.raw, c.raw));
+  }
+  friend HWY_INLINE LaneOf max(LaneOf a, LaneOf b) { return LaneOf(hn::Max(a.raw, b.raw)); }
+  friend HWY_INLINE LaneOf min(LaneOf a, LaneOf b) { return LaneOf(hn::Min(a.raw, b.raw)); }
+  // As integers: negative floats are negative integers, and integer maxima do not compete with the
+  // multipliers.
+  friend HWY_INLINE LaneOf clamp_negative(LaneOf a) {
+    const Integers di;
+    return LaneOf(hn::BitCast(Tag(), hn::Max(hn::BitCast(di, a.raw), hn::Zero(di))));
+  }
+  friend HWY_INLINE LaneOf sqrt(LaneOf a) { return LaneOf(hn::Sqrt(a.raw)); }
+  friend HWY_INLINE LaneOf abs(LaneOf a) { return LaneOf(hn::Abs(a.raw)); }
+  friend HWY_INLINE LaneOf if_less(LaneOf a, LaneOf b, LaneOf x, LaneOf y) {
+    return LaneOf(hn::IfThenElse(hn::Lt(a.raw, b.raw), x.raw, y.raw));
+  }
+  /// Where the condition is positive, else 0, also where it is not-a-number.
+  friend HWY_INLINE LaneOf if_positive(LaneOf condition, LaneOf value) {
+    return LaneOf(hn::IfThenElseZero(hn::Gt(condition.raw, hn::Zero(Tag())), value.raw));
+  }
 };
+using Lane = LaneOf<D>;
 
-HWY_INLINE Lane operator+(Lane a, Lane b) {
-  return Lane(hn::Add(a.raw, b.raw));
-}
-HWY_INLINE Lane operator-(Lane a, Lane b) {
-  return Lane(hn::Sub(a.raw, b.raw));
-}
-HWY_INLINE Lane operator*(Lane a, Lane b) {
-  return Lane(hn::Mul(a.raw, b.raw));
-}
-HWY_INLINE Lane operator/(Lane a, Lane b) {
-  return Lane(hn::Div(a.raw, b.raw));
-}
-HWY_INLINE Lane mul_add(Lane a, Lane b, Lane c) {
-  return Lane(hn::MulAdd(a.raw, b.raw, c.raw));
-}
-HWY_INLINE Lane neg_mul_add(Lane a, Lane b, Lane c) {
-  return Lane(hn::NegMulAdd(a.raw, b.raw, c.raw));
-}
-HWY_INLINE Lane max(Lane a, Lane b) {
-  return Lane(hn::Max(a.raw, b.raw));
-}
-HWY_INLINE Lane min(Lane a, Lane b) {
-  return Lane(hn::Min(a.raw, b.raw));
-}
-// As integers: negative floats are negative integers, and integer maxima do not compete with the multipliers.
-HWY_INLINE Lane clamp_negative(Lane a) {
-  const DI di;
-  return Lane(hn::BitCast(D(), hn::Max(hn::BitCast(di, a.raw), hn::Zero(di))));
-}
-HWY_INLINE Lane sqrt(Lane a) {
-  return Lane(hn::Sqrt(a.raw));
-}
-HWY_INLINE Lane abs(Lane a) {
-  return Lane(hn::Abs(a.raw));
-}
-HWY_INLINE Lane if_less(Lane a, Lane b, Lane x, Lane y) {
-  return Lane(hn::IfThenElse(hn::Lt(a.raw, b.raw), x.raw, y.raw));
-}
 /// Text alone keeps the names that formulas give.
 template <class T>
 HWY_INLINE T named(const char*, const T& x) {

@@ -21,17 +21,21 @@ constexpr std::size_t kLanes = hn::MaxLanes(D());
 
 /// The cell that a position of at least 0 lies in and how far: an integer position is the start of its cell
 /// or the end of the one before.
-struct LaneCell {
-  Lane shifted;   // 1.5 2^23 + node: the node in the low 22 bits
-  Lane fraction;  // 0 to 1
+template <class Tag>
+struct LaneCellOf {
+  LaneOf<Tag> shifted;   // 1.5 2^23 + node: the node in the low 22 bits
+  LaneOf<Tag> fraction;  // 0 to 1
 };
-HWY_INLINE LaneCell cell_of(Lane position) {
-  const Lane magic(kRoundingShift);
-  const Lane shifted = (position - Lane(0.5)) + magic;
+using LaneCell = LaneCellOf<D>;
+template <class Tag>
+HWY_INLINE LaneCellOf<Tag> cell_of(LaneOf<Tag> position) {
+  const LaneOf<Tag> magic(kRoundingShift);
+  const LaneOf<Tag> shifted = (position - LaneOf<Tag>(0.5)) + magic;
   return {shifted, position - (shifted - magic)};
 }
-HWY_INLINE hn::Vec<DI> node_of(const LaneCell& cell) {
-  const DI di;
+template <class Tag>
+HWY_INLINE hn::Vec<hn::RebindToSigned<Tag>> node_of(const LaneCellOf<Tag>& cell) {
+  const hn::RebindToSigned<Tag> di;
   return hn::And(hn::BitCast(di, cell.shifted.raw), hn::Set(di, 0x3fffff));
 }
 

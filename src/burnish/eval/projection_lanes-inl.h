@@ -20,41 +20,49 @@ namespace HWY_NAMESPACE {
 namespace {
 
 /// Three vectors of floats: the components of directions.
-struct Lanes {
-  Lane x, y, z;
-};
-HWY_INLINE Lanes operator+(const Lanes& a, const Lanes& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-HWY_INLINE Lanes operator-(const Lanes& a, const Lanes& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-HWY_INLINE Lanes operator*(double a, const Lanes& b) {
-  const Lane factor(a);
-  return {factor * b.x, factor * b.y, factor * b.z};
-}
-HWY_INLINE Lanes mirror(const Lanes& a) {
-  return {Lane(hn::Neg(a.x.raw)), Lane(hn::Neg(a.y.raw)), a.z};
-}
+template <class Tag>
+struct LanesOf {
+  LaneOf<Tag> x, y, z;
 
-HWY_INLINE Lane length(Lane x, Lane y) {
+  friend HWY_INLINE LanesOf operator+(const LanesOf& a, const LanesOf& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+  }
+  friend HWY_INLINE LanesOf operator-(const LanesOf& a, const LanesOf& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+  }
+  friend HWY_INLINE LanesOf operator*(double a, const LanesOf& b) {
+    const LaneOf<Tag> factor(a);
+    return {factor * b.x, factor * b.y, factor * b.z};
+  }
+  friend HWY_INLINE LanesOf mirror(const LanesOf& a) {
+    return {LaneOf<Tag>(hn::Neg(a.x.raw)), LaneOf<Tag>(hn::Neg(a.y.raw)), a.z};
+  }
+};
+using Lanes = LanesOf<D>;
+
+template <class Tag>
+HWY_INLINE LaneOf<Tag> length(LaneOf<Tag> x, LaneOf<Tag> y) {
   return sqrt(mul_add(x, x, y * y));
 }
-HWY_INLINE Lane length(Lane x, Lane y, Lane z) {
+template <class Tag>
+HWY_INLINE LaneOf<Tag> length(LaneOf<Tag> x, LaneOf<Tag> y, LaneOf<Tag> z) {
   return sqrt(mul_add(z, z, mul_add(x, x, y * y)));
 }
-HWY_INLINE Lane least_positive(Lane) {
-  return Lane(std::numeric_limits<float>::min());
+template <class Tag>
+HWY_INLINE LaneOf<Tag> least_positive(LaneOf<Tag>) {
+  return LaneOf<Tag>(std::numeric_limits<float>::min());
 }
 
 /// The exponent 1/2.
 struct Half {};
-HWY_INLINE Lane power(Lane t, Half) {
+template <class Tag>
+HWY_INLINE LaneOf<Tag> power(LaneOf<Tag> t, Half) {
   return sqrt(t);
 }
-HWY_INLINE Lane power(Lane t, Lane exponent) {  // of 0 and not-a-number 0
-  const Lane value(hn::Exp(D(), (exponent * Lane(hn::Log(D(), t.raw))).raw));
-  return Lane(hn::IfThenElseZero(hn::Gt(t.raw, hn::Zero(D())), value.raw));
+template <class Tag>
+HWY_INLINE LaneOf<Tag> power(LaneOf<Tag> t, LaneOf<Tag> exponent) {  // of 0 and not-a-number 0
+  const LaneOf<Tag> log(hn::Log(Tag(), t.raw));
+  return if_positive(t, LaneOf<Tag>(hn::Exp(Tag(), (exponent * log).raw)));
 }
 
 #define FORMULA_INLINE HWY_INLINE
@@ -62,6 +70,38 @@ HWY_INLINE Lane power(Lane t, Lane exponent) {  // of 0 and not-a-number 0
 #include <burnish/parameterization/projection-inl.h>
 #undef FORMULA_ATTRIBUTE
 #undef FORMULA_INLINE
+
+/// wi and wo for the formulas of projections.
+template <class Tag>
+struct LanePairOf {
+  LanesOf<Tag> sum, apart;
+  LaneOf<Tag> length_of_sum;
+
+  HWY_INLINE LaneOf<Tag> sum_length() const { return length_of_sum; }
+};
+
+/// | |w|^2 - 1 | as an integer, which is largest for not-a-number.
+template <class Tag>
+HWY_INLINE hn::Vec<hn::RebindToSigned<Tag>> excess_of(LaneOf<Tag> x, LaneOf<Tag> y, LaneOf<Tag> z) {
+  const LaneOf<Tag> signed_excess = mul_add(x, x, mul_add(y, y, mul_add(z, z, LaneOf<Tag>(-1.0))));
+  return hn::BitCast(hn::RebindToSigned<Tag>(), hn::Abs(signed_excess.raw));
+}
+/// That and more is no direction: 1 %, as readers of directions ask for.
+constexpr float kMostExcess = 0.02f;
+
+/// The doubled difference vector 2 d, whose z is |wi + wo|, and its polar angle.
+template <class Tag>
+HWY_INLINE Affine<LanesOf<Tag>, LaneOf<Tag>> doubled_difference(const LanePairOf<Tag>& pair) {
+  const auto [u, v] = across_half(pair.sum, pair.length_of_sum, pair.apart);
+  const LanesOf<Tag> d{u, v, pair.length_of_sum};
+  return {d, polar_of(d, length(u, v, d.z))};
+}
+
+/// A position among cells: not-a-number, of directions below the horizon, becomes 0.
+template <class Tag>
+HWY_INLINE LaneOf<Tag> within(LaneOf<Tag> position, LaneOf<Tag> cells) {
+  return if_positive(position, min(position, cells));
+}
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
