@@ -93,18 +93,21 @@ Expr line_position(const Projection& projection, const Warp& warp, const TableAx
 
 }  // namespace
 
-std::array<Expr, 2> position_expressions(const TableLayout& layout, const FactorUse& use, const TableAxis& x,
-                                         const TableAxis& y) {
-  if (layout.shape != TableShape::disk)
+std::array<Expr, 3> position_expressions(const TableLayout& layout, const FactorUse& use, const TableAxis& x,
+                                         const TableAxis& y, const TableAxis& z) {
+  if (layout.shape != TableShape::disk) {
+    const int axes = axis_count(layout.shape);
     return {line_position(use.projection, layout.warp, x),
-            layout.shape == TableShape::grid ? line_position(use.projection_y, layout.warp_y, y) : Expr(0.0)};
+            axes > 1 ? line_position(use.projection_y, layout.warp_y, y) : Expr(0.0),
+            axes > 2 ? line_position(use.projection_z, layout.warp_z, z) : Expr(0.0)};
+  }
   const Projected at = project_expression(use.projection, true);
   const Expr stretch = named("stretch", stretched(layout.warp, 0.5 * x.size, at.polar));
   const auto along = [&](const Expr& component, const TableAxis& axis) {
     const Expr scaled = Expr(axis.size / x.size) * component;
     return named("u", mul_add(scaled, stretch, 0.5 * axis.size + axis.first));
   };
-  return {along(at.x, x), along(at.y, y)};
+  return {along(at.x, x), along(at.y, y), 0.0};
 }
 
 CellExpr cell_expression(const Expr& position, int nodes) {

@@ -15,9 +15,10 @@ struct TableAxis {
 
 /// Where two directions fall in a table, as expressions over the vectors "wi" and "wo": unit, above the
 /// horizon. The formulas of parameterization/projection-inl.h, for arithmetic of single precision. A line has
-/// one position, disks and grids two. A disk's `x.size` cells are as many rows as there are columns.
-std::array<Expr, 2> position_expressions(const TableLayout& layout, const FactorUse& use, const TableAxis& x,
-                                         const TableAxis& y);
+/// one position, disks and grids two, a volume three; those that a table lacks are the number 0. A disk's
+/// `x.size` cells are as many rows as there are columns.
+std::array<Expr, 3> position_expressions(const TableLayout& layout, const FactorUse& use, const TableAxis& x,
+                                         const TableAxis& y, const TableAxis& z);
 
 /// The cell of `nodes` nodes that a position in cells falls into: its first node, a whole number, and how
 /// far in it.

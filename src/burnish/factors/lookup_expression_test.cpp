@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -18,22 +19,27 @@ TEST(LookupExpression, FindsWhatTheDefinitionFinds) {
     for (const Lobe& lobe : brdf.lobes())
       for (const FactorUse& use : lobe.factors) {
         const TableLayout& layout = brdf.tables()[static_cast<std::size_t>(use.table)].layout;
-        const auto [x, y] =
-            position_expressions(layout, use, {layout.width - 1.0, 0}, {layout.height - 1.0, 0});
-        const CellExpr across = cell_expression(x, layout.width), up = cell_expression(y, layout.height);
+        const int nodes[3] = {layout.width, layout.height, layout.depth};
+        const auto positions =
+            position_expressions(layout, use, {nodes[0] - 1.0, 0}, {nodes[1] - 1.0, 0}, {nodes[2] - 1.0, 0});
         Graph graph;
-        const std::size_t at_x = graph.add(across.node + across.fraction),
-                          at_y = graph.add(up.node + up.fraction);
+        std::array<std::size_t, 3> found{};
+        for (std::size_t k = 0; k < 3; ++k) {
+          const CellExpr cell = cell_expression(positions[k], nodes[k]);
+          found[k] = graph.add(cell.node + cell.fraction);
+        }
         for (const auto& [wi, wo] : pairs) {
           if (wi.z <= 0 || wo.z <= 0) continue;
           const auto values =
               graph_values(graph, {.values = {{"wi", {wi.x, wi.y, wi.z}}, {"wo", {wo.x, wo.y, wo.z}}}});
           const Lookup at = locate(layout, use, wi, wo);
           // single directions are unit vectors to 1e-7 only, which the two take in different ways
-          const double tolerance = 3e-6 * layout.width * cancellation(brdf, wi, wo);
-          EXPECT_NEAR(values[at_x][0], at.node % layout.width + at.fx, tolerance) << model.name;
-          if (layout.shape == TableShape::line) continue;
-          EXPECT_NEAR(values[at_y][0], at.node / layout.width + at.fy, tolerance) << model.name;
+          const double scale = 3e-6 * cancellation(brdf, wi, wo);
+          const int row = at.node / layout.width;
+          const double expected[3] = {at.node % layout.width + at.fx, row % layout.height + at.fy,
+                                      row / layout.height + at.fz};
+          for (std::size_t k = 0; k < static_cast<std::size_t>(axis_count(layout.shape)); ++k)
+            EXPECT_NEAR(values[found[k]][0], expected[k], scale * nodes[k]) << model.name << " axis " << k;
         }
       }
   }

@@ -33,8 +33,9 @@ class Lookups {
     const Table& table = brdf_.tables()[index];
     const TableLayout& layout = table.layout;
     const auto& [texture, first] = places_[index];
-    const auto [x, y] = position_expressions(layout, use, axis_of(layout.width, filter_),
-                                             rows_of(layout.height, *texture, first));
+    const auto [x, y, z] =
+        position_expressions(layout, use, axis_of(layout.width, filter_),
+                             rows_of(layout.height, *texture, first), axis_of(layout.depth, filter_));
     const bool line = layout.shape == TableShape::line;
     const ValueType type = table.channels == 1 ? ValueType::real : ValueType::vector;
     if (filter_ == ShaderFilter::hardware) {
