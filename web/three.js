@@ -7,8 +7,10 @@ export function createMaterial(THREE) {
   const uniforms = THREE.UniformsUtils.clone(THREE.UniformsLib.lights);
   for (const texture of model.textures) {
     const bytes = Uint8Array.from(atob(texture.rgba16f), (c) => c.charCodeAt(0));
-    const map = new THREE.DataTexture(new Uint16Array(bytes.buffer), texture.width, texture.height,
-                                      THREE.RGBAFormat, THREE.HalfFloatType);
+    const texels = new Uint16Array(bytes.buffer), {width, height, depth} = texture;
+    const map = depth ? new THREE.Data3DTexture(texels, width, height, depth) : new THREE.DataTexture(texels, width, height);
+    map.format = THREE.RGBAFormat;
+    map.type = THREE.HalfFloatType;
     map.minFilter = map.magFilter = THREE.LinearFilter;
     map.needsUpdate = true;
     uniforms[texture.name] = {value: map};

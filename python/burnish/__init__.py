@@ -17,6 +17,7 @@ from ._burnish import (
     FactorUse,
     Lobe,
     Model,
+    PlacedTable,
     Shader,
     ShaderTexture,
     Source,

@@ -31,7 +31,8 @@ nb::tuple graph_of(const std::vector<Expr>& outputs) {
 nb::tuple eval_graph(const OpenedModel& model) {
   const ShaderFormula formula = shader_formula(model.brdf(), {.language = ShaderLanguage::cpp});
   nb::dict tables;
-  for (const ShaderTexture& texture : formula.textures) tables[texture.name.c_str()] = texture.tables[0];
+  for (const ShaderTexture& texture : formula.textures)
+    tables[texture.name.c_str()] = texture.tables[0].table;
   return nb::make_tuple(graph_of({formula.value}), tables);
 }
 

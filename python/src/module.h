@@ -31,10 +31,10 @@ inline nb::object from_json(const std::string& text) {
 
 /// A C-contiguous NumPy array that owns what the vector held.
 template <class T>
-nb::object to_numpy(std::vector<T> values, std::initializer_list<std::size_t> shape) {
+nb::object to_numpy(std::vector<T> values, std::vector<std::size_t> shape) {
   auto* kept = new std::vector<T>(std::move(values));
   const nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
-  return nb::cast(nb::ndarray<nb::numpy, T>(kept->data(), shape, owner));
+  return nb::cast(nb::ndarray<nb::numpy, T>(kept->data(), shape.size(), shape.data(), owner));
 }
 
 }  // namespace burnish::python

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -40,6 +41,7 @@ void write_ktx2(const std::filesystem::path& path, const ShaderTexture& texture,
                                        .channels = texture.channels,
                                        .width = texture.width,
                                        .height = texture.height,
+                                       .depth = texture.depth,
                                        .levels = {texture.values}},
                                       compressed));
 }
@@ -47,18 +49,25 @@ void write_ktx2(const std::filesystem::path& path, const ShaderTexture& texture,
 }  // namespace
 
 void bind_shaders(nb::module_& m) {
-  nb::class_<ShaderTexture>(m, "ShaderTexture", "What a shader reads: a table, or several above each other.")
+  nb::class_<PlacedTable>(m, "PlacedTable", "Where a table stands in a texture.")
+      .def_ro("table", &PlacedTable::table, "Number of the model's table.")
+      .def_ro("first", &PlacedTable::first, "x, y and z of the texel that is its first node.");
+  nb::class_<ShaderTexture>(m, "ShaderTexture",
+                            "What a shader reads: tables beside, above or behind each other.")
       .def_ro("name", &ShaderTexture::name, "Of the sampler.")
-      .def_ro("tables", &ShaderTexture::tables, "Numbers of the model's tables.")
-      .def_ro("first_rows", &ShaderTexture::first_rows, "Of each of them.")
+      .def_ro("tables", &ShaderTexture::tables)
       .def_prop_ro("format", [](const ShaderTexture& t) { return std::string(to_string(t.format)); })
       .def_prop_ro(
           "values",
           [](const ShaderTexture& t) {
-            return to_numpy(t.values, {static_cast<std::size_t>(t.height), static_cast<std::size_t>(t.width),
-                                       static_cast<std::size_t>(t.channels)});
+            std::vector<std::size_t> shape;
+            if (t.depth > 0) shape.push_back(static_cast<std::size_t>(t.depth));
+            for (const int side : {t.height, t.width, t.channels})
+              shape.push_back(static_cast<std::size_t>(side));
+            return to_numpy(t.values, shape);
           },
-          nb::sig("def values(self) -> numpy.ndarray"), "Texels, (height, width, channels) float32.");
+          nb::sig("def values(self) -> numpy.ndarray"),
+          "Texels, (height, width, channels) float32, with the depth before them where there is one.");
   nb::class_<Shader>(m, "Shader", "Source text that evaluates a model, and what it reads.")
       .def_ro("text", &Shader::text, "Without a #version line.")
       .def_ro("textures", &Shader::textures)

@@ -54,6 +54,7 @@ class ModelExport {
 
   void add_shader(ShaderLanguage language);
   void add_textures();
+  void add_levels();
   void add_cube_maps();
   void add_images(ExportTarget target, std::string (*encode)(const Table& table));
   void add_gltf();
@@ -86,34 +87,45 @@ void ModelExport::add_textures() {
   const Shader shader = generate_shader(brdf_, {.name = options_.name});
   for (std::size_t i = 0; i < shader.textures.size(); ++i) {
     const ShaderTexture& shown = shader.textures[i];
-    const bool alone = shown.tables.size() == 1;
-    if (!alone && options_.mips)
-      throw Error("export: expected a model of at most 16 tables with --mips: more share textures");
-    const Texture texture = alone ? make_texture(brdf_.tables()[shown.tables[0]], options_.mips)
-                                  : Texture{.format = shown.format,
-                                            .channels = shown.channels,
-                                            .width = shown.width,
-                                            .height = shown.height,
-                                            .levels = {shown.values}};
+    const Texture texture{.format = shown.format,
+                          .channels = shown.channels,
+                          .width = shown.width,
+                          .height = shown.height,
+                          .depth = shown.depth,
+                          .levels = {shown.values}};
     const std::string& file =
         add(fmt::format("{}_{}.ktx2", options_.name, i), encode_ktx2(texture, options_.compressed));
 
-    // the table it is, or the rows of each that it holds
+    // where each table's nodes are
     json entry = manifest_entry(file, texture);
-    if (alone) entry.update(manifest_entry(brdf_.tables()[shown.tables[0]]));
-    for (std::size_t k = 0; !alone && k < shown.tables.size(); ++k) {
-      const Table& table = brdf_.tables()[shown.tables[k]];
-      entry["tables"].push_back(manifest_entry(table));
-      entry["tables"].back().update({{"first_row", shown.first_rows[k]}, {"rows", table.layout.height}});
+    entry["sampler"] = shown.name;
+    for (const PlacedTable& placed : shown.tables) {
+      const TableLayout& layout = brdf_.tables()[placed.table].layout;
+      json place = manifest_entry(brdf_.tables()[placed.table]);
+      place.update({{"first", placed.first}, {"nodes", {layout.width, layout.height, layout.depth}}});
+      entry["tables"].push_back(std::move(place));
     }
     manifest_["textures"].push_back(std::move(entry));
+  }
+}
+
+// A table a texture, with its levels.
+void ModelExport::add_levels() {
+  for (std::size_t i = 0; i < brdf_.tables().size(); ++i) {
+    const Table& table = brdf_.tables()[i];
+    const Texture texture = make_texture(table, true);
+    const std::string& file =
+        add(fmt::format("{}_{}.mips.ktx2", options_.name, i), encode_ktx2(texture, options_.compressed));
+    json entry = manifest_entry(file, texture);
+    entry.update(manifest_entry(table));
+    manifest_["mips"].push_back(std::move(entry));
   }
 }
 
 void ModelExport::add_cube_maps() {
   for (std::size_t i = 0; i < brdf_.tables().size(); ++i) {
     const Table& table = brdf_.tables()[i];
-    if (table.layout.shape == TableShape::grid) continue;  // of two directions
+    if (projection_count(table.layout.shape) > 1) continue;  // of several directions
     // twice as fine at the normal as a disk without a warp
     const Texture cube = make_cube_map(
         table, static_cast<int>(std::bit_ceil(static_cast<unsigned>(table.layout.width))), options_.mips);
@@ -185,6 +197,7 @@ ExportedFiles ModelExport::run() && {
     textures = textures || language != ShaderLanguage::cpp;
   }
   if (textures) add_textures();
+  if (textures && options_.mips) add_levels();
 
   // tables in other formats
   const std::string& name = options_.name;

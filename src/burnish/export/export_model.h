@@ -15,15 +15,15 @@ struct ExportOptions {
   std::string name =
       "brdf";              ///< of functions and files: letters, digits and single underscores, a letter first
   bool exact = false;      ///< shaders weigh texels themselves, in floats; always so in C++
-  bool mips = false;       ///< KTX2 with levels: averages over the directions of a texel
+  bool mips = false;       ///< KTX2 a table with levels too: averages over the directions of a texel
   bool compressed = true;  ///< KTX2 with Zstandard
   /// Light from all around, for the targets of shows_environment.
   std::optional<Environment> environment = {};
 };
 
 /// A factored BRDF as every target of `to`, each once; shaders but C++ bring their textures along. Throws
-/// Error as generate_shader does, for an environment that no target shows, for levels of tables that share a
-/// texture, and for glTF of other than 1 or 3 channels.
+/// Error as generate_shader does, for an environment that no target shows, and for glTF of other than 1 or 3
+/// channels.
 ExportedFiles export_model(const FactoredBrdf& brdf, const ExportOptions& options);
 
 }  // namespace burnish

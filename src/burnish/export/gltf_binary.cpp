@@ -75,23 +75,26 @@ json add_sphere(Binary& binary) {
 json factored_extension(const FactoredBrdf& brdf, Binary& binary) {
   json tables = json::array(), lobes = json::array();
   for (const Table& table : brdf.tables()) {
-    const char* shapes[] = {"line", "disk", "grid"};
     json entry{{"name", table.name},
-               {"shape", shapes[static_cast<int>(table.layout.shape)]},
+               {"shape", to_string(table.layout.shape)},
                {"width", table.layout.width},
                {"height", table.layout.height},
                {"warp", to_string(table.layout.warp)},
                {"values", binary.add(table.values, table.channels == 1 ? "SCALAR" : "VEC3",
                                      static_cast<std::size_t>(table.channels), 0)}};
-    if (table.layout.shape == TableShape::grid) entry["warpY"] = to_string(table.layout.warp_y);
+    const int projections = projection_count(table.layout.shape);
+    if (projections > 1) entry["warpY"] = to_string(table.layout.warp_y);
+    if (projections > 2)
+      entry.update({{"depth", table.layout.depth}, {"warpZ", to_string(table.layout.warp_z)}});
     tables.push_back(entry);
   }
   for (const Lobe& lobe : brdf.lobes()) {
     json factors = json::array();
     for (const FactorUse& use : lobe.factors) {
       factors.push_back({{"table", use.table}, {"projection", to_string(use.projection)}});
-      if (brdf.tables()[static_cast<std::size_t>(use.table)].layout.shape == TableShape::grid)
-        factors.back()["projectionY"] = to_string(use.projection_y);
+      const int projections = projection_count(brdf.table_of(use).layout.shape);
+      if (projections > 1) factors.back()["projectionY"] = to_string(use.projection_y);
+      if (projections > 2) factors.back()["projectionZ"] = to_string(use.projection_z);
     }
     lobes.push_back({{"scale", lobe.scale}, {"factors", factors}});
   }

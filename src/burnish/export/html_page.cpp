@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <burnish/error.h>
 #include <burnish/export/html_page.h>
 #include <burnish/export/web.h>
 #include <burnish/render/mesh/shapes.h>
@@ -71,17 +70,9 @@ std::string page_of(json model) {
 }  // namespace
 
 std::string html_page(const FactoredBrdf& brdf, const std::string& name, const SurfaceLight* light) {
-  ShaderOptions options{ShaderLanguage::glsl_es, ShaderFilter::hardware, name};
   std::optional<LightShader> around;
-  if (light) {  // what is left of the textures that every fragment shader can sample
-    around = light->shader(ShaderLanguage::glsl_es, name);
-    if (around->textures.size() >= options.most_textures)
-      throw Error(
-          fmt::format("export: expected fewer than {} textures for the light from all around, found {}",
-                      options.most_textures, around->textures.size()));
-    options.most_textures -= around->textures.size();
-  }
-  const Shader shader = generate_shader(brdf, options);
+  if (light) around = light->shader(ShaderLanguage::glsl_es, name);
+  const Shader shader = generate_shader(brdf, {ShaderLanguage::glsl_es, ShaderFilter::hardware, name});
   json model{{"name", name},
              {"expression", model_expression(brdf)},
              {"shader", shader.text},

@@ -44,18 +44,22 @@ json manifest_entry(ShaderLanguage language, const std::string& name, const Shad
 }
 
 json manifest_entry(const std::string& file, const Texture& texture) {
-  return {{"file", file},
-          {"width", texture.width},
-          {"height", texture.height},
-          {"levels", texture.levels.size()},
-          {"channels", texture.channels},
-          {"format", to_string(texture.format)},
-          {"wrap", "clamp_to_edge"}};
+  json entry{{"file", file},
+             {"width", texture.width},
+             {"height", texture.height},
+             {"levels", texture.levels.size()},
+             {"channels", texture.channels},
+             {"format", to_string(texture.format)},
+             {"wrap", "clamp_to_edge"}};
+  if (texture.depth > 0) entry["depth"] = texture.depth;
+  return entry;
 }
 
 json manifest_entry(const Table& table) {
   json entry{{"table", table.name}, {"warp", to_string(table.layout.warp)}};
-  if (table.layout.shape == TableShape::grid) entry["warp_y"] = to_string(table.layout.warp_y);
+  const int projections = projection_count(table.layout.shape);
+  if (projections > 1) entry["warp_y"] = to_string(table.layout.warp_y);
+  if (projections > 2) entry["warp_z"] = to_string(table.layout.warp_z);
   return entry;
 }
 

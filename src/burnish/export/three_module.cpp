@@ -14,6 +14,7 @@ std::string three_module(const FactoredBrdf& brdf, const std::string& name) {
     model["textures"].push_back({{"name", texture.name},
                                  {"width", texture.width},
                                  {"height", texture.height},
+                                 {"depth", texture.depth},
                                  {"rgba16f", half_texels(texture.values, texture.channels)}});
   return web_script("three.js", model.dump(1, ' ', true, nlohmann::json::error_handler_t::replace));
 }

@@ -32,6 +32,10 @@ struct ExprPair {
   ExprPair(const ExprVector& wi, const ExprVector& wo)
       : sum(named("sum", wi + wo)), apart(named("apart", wi - wo)) {}
   Expr sum_length() const { return length(sum.x, sum.y, sum.z); }
+  /// Of roots that theta_d and theta_h take too.
+  Expr azimuth_size() const {
+    return named("r", length(apart.x, apart.y, apart.z)) * named("r", length(sum.x, sum.y));
+  }
 };
 
 ExprVector direction(const char* name) {

@@ -34,7 +34,7 @@ TEST(LookupExpression, FindsWhatTheDefinitionFinds) {
               graph_values(graph, {.values = {{"wi", {wi.x, wi.y, wi.z}}, {"wo", {wo.x, wo.y, wo.z}}}});
           const Lookup at = locate(layout, use, wi, wo);
           // single directions are unit vectors to 1e-7 only, which the two take in different ways
-          const double scale = 3e-6 * cancellation(brdf, wi, wo);
+          const double scale = 3e-6 * shader_cancellation(brdf, wi, wo);
           const int row = at.node / layout.width;
           const double expected[3] = {at.node % layout.width + at.fx, row % layout.height + at.fy,
                                       row / layout.height + at.fz};

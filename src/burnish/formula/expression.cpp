@@ -58,8 +58,8 @@ Expr Expr::element(std::string array, const Expr& index, ValueType type) {
   return of_name(Op::element, type, std::move(array), {index});
 }
 
-Expr Expr::texel(std::string texture, const Expr& x, const Expr& y, ValueType type) {
-  return of_name(Op::texel, type, std::move(texture), {x, y});
+Expr Expr::texel(std::string texture, const std::vector<Expr>& at, ValueType type) {
+  return of_name(Op::texel, type, std::move(texture), at);
 }
 
 Expr Expr::sample(std::string texture, const std::vector<Expr>& at, ValueType type) {

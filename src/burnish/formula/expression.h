@@ -37,8 +37,8 @@ enum class Op {
   to_integer,    // the integer part
   to_real,       // of an integer
   element,       // of an array `name`, at integer a
-  texel,         // of texture `name` at integers (a, b)
-  sample,        // of texture `name`, filtered, at one to three coordinates
+  texel,         // of texture `name` at integers (a, b) or (a, b, c)
+  sample,        // of texture `name`, filtered, at two or three coordinates
   call,          // of a function `name` that the text around has
 };
 
@@ -65,9 +65,9 @@ class Expr {
   static Expr integer(int constant);
   static Expr input(std::string name, ValueType type = ValueType::real);
   static Expr element(std::string array, const Expr& index, ValueType type);
-  /// What a texture holds: `type` tells whether one or three channels are read.
-  static Expr texel(std::string texture, const Expr& x, const Expr& y, ValueType type);
-  /// Coordinates: as many as the texture has dimensions.
+  /// What a texture holds, at as many coordinates as it has dimensions: `type` tells whether one or three
+  /// channels are read.
+  static Expr texel(std::string texture, const std::vector<Expr>& at, ValueType type);
   static Expr sample(std::string texture, const std::vector<Expr>& at, ValueType type);
   static Expr call(std::string function, const std::vector<Expr>& arguments, ValueType type);
   /// A node over its arguments, of vectors componentwise; folds sums and products of constants, drops 1 * x,

@@ -90,14 +90,14 @@ Language c_like(std::string_view name, std::string_view suffix) {
           .exponent_of = {},
           .calls = {},
           .texel = {},
+          .texel_3d = {},
           .sample = {},
-          .sample_1d = {},
           .sample_3d = {},
           .array = {},
           .texture = {},
-          .texture_1d = {},
           .texture_3d = {},
           .filtered_texture = {},
+          .filtered_texture_3d = {},
           .texture_struct = {}};
 }
 
@@ -147,13 +147,12 @@ Language glsl() {
       "  return float((floatBitsToInt(x) - 0x3f2aaaab) >> 23);\n}\n\n";
   l.calls = kShaderMath;
   l.texel = "texelFetch({0}, ivec2({1}, {2}), 0).{3}";
+  l.texel_3d = "texelFetch({0}, ivec3({1}, {2}, {3}), 0).{4}";
   l.sample = "textureLod({0}, vec2({1}, {2}), 0.0).{3}";
-  l.sample_1d = "textureLod({0}, {1}, 0.0).{2}";
   l.sample_3d = "textureLod({0}, vec3({1}, {2}, {3}), 0.0).{4}";
   l.array = "const float {0}[{1}] = float[]({2});\n";
   l.texture = l.filtered_texture = "uniform sampler2D {0};\n";
-  l.texture_1d = "uniform sampler1D {0};\n";
-  l.texture_3d = "uniform highp sampler3D {0};\n";
+  l.texture_3d = l.filtered_texture_3d = "uniform highp sampler3D {0};\n";
   return l;
 }
 
@@ -162,7 +161,6 @@ Language glsl_es() {
   l.name = "glsl_es";
   l.header = "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\n";
   l.calls = with(kShaderMath, {{Op::scale_by_two, {"{0} * exp2({1})", 2}}});
-  l.sample_1d = l.texture_1d = {};
   return l;
 }
 
@@ -176,10 +174,15 @@ Language hlsl() {
       "float power_exponent_of(float x) {\n  return float((asint(x) - 0x3f2aaaab) >> 23);\n}\n\n";
   l.calls = with(kShaderMath, {{Op::scale_by_two, {"ldexp({0}, {1})"}}});
   l.texel = "{0}.Load(int3({1}, {2}, 0)).{3}";
+  l.texel_3d = "{0}.Load(int4({1}, {2}, {3}, 0)).{4}";
   l.sample = "{0}.SampleLevel({0}_sampler, float2({1}, {2}), 0.0).{3}";
+  l.sample_3d = "{0}.SampleLevel({0}_sampler, float3({1}, {2}, {3}), 0.0).{4}";
   l.texture = "Texture2D<float4> {0} : register(t{1});\n";
+  l.texture_3d = "Texture3D<float4> {0} : register(t{1});\n";
   l.filtered_texture =
       "Texture2D<float4> {0} : register(t{1});\nSamplerState {0}_sampler : register(s{1});\n";
+  l.filtered_texture_3d =
+      "Texture3D<float4> {0} : register(t{1});\nSamplerState {0}_sampler : register(s{1});\n";
   return l;
 }
 
@@ -196,8 +199,11 @@ Language msl() {
       "  return float((as_type<int>(x) - 0x3f2aaaab) >> 23);\n}\n\n";
   l.calls = kShaderMath;
   l.texel = "tables.{0}.read(uint2({1}, {2})).{3}";
+  l.texel_3d = "tables.{0}.read(uint3({1}, {2}, {3})).{4}";
   l.sample = "tables.{0}.sample(smooth_sampler, float2({1}, {2}), level(0.0f)).{3}";
+  l.sample_3d = "tables.{0}.sample(smooth_sampler, float3({1}, {2}, {3}), level(0.0f)).{4}";
   l.texture = l.filtered_texture = "  texture2d<float> {0};\n";
+  l.texture_3d = l.filtered_texture_3d = "  texture3d<float> {0};\n";
   l.texture_struct = "struct {0} {{\n{1}}};\n";
   return l;
 }
@@ -233,16 +239,29 @@ Language wgsl() {
                                {Op::to_integer, {"i32({0})"}},
                                {Op::to_real, {"f32({0})"}}});
   l.texel = "textureLoad({0}, vec2i({1}, {2}), 0).{3}";
+  l.texel_3d = "textureLoad({0}, vec3i({1}, {2}, {3}), 0).{4}";
   l.sample = "textureSampleLevel({0}, {0}_sampler, vec2f({1}, {2}), 0.0).{3}";
+  l.sample_3d = "textureSampleLevel({0}, {0}_sampler, vec3f({1}, {2}, {3}), 0.0).{4}";
   l.texture = "@group(0) @binding({1}) var {0}: texture_2d<f32>;\n";
+  l.texture_3d = "@group(0) @binding({1}) var {0}: texture_3d<f32>;\n";
   l.filtered_texture =
       "@group(0) @binding({2}) var {0}: texture_2d<f32>;\n@group(0) @binding({3}) var {0}_sampler: "
+      "sampler;\n";
+  l.filtered_texture_3d =
+      "@group(0) @binding({2}) var {0}: texture_3d<f32>;\n@group(0) @binding({3}) var {0}_sampler: "
       "sampler;\n";
   return l;
 }
 
 constexpr std::string_view channels_of(ValueType type) noexcept {
   return type == ValueType::vector ? "rgb" : "r";
+}
+
+// Of a texture of as many dimensions as there are coordinates.
+std::string read_at(std::string_view of_two, std::string_view of_three, std::string_view texture,
+                    std::span<const std::string> at, ValueType type) {
+  if (at.size() == 2) return fmt::format(fmt::runtime(of_two), texture, at[0], at[1], channels_of(type));
+  return fmt::format(fmt::runtime(of_three), texture, at[0], at[1], at[2], channels_of(type));
 }
 
 }  // namespace
@@ -287,17 +306,14 @@ std::string Language::function(ValueType type, std::string_view function_name,
   return fmt::format(fmt::runtime(definition), type_name(type), function_name, list, body);
 }
 
-std::string Language::fetch(std::string_view texture_name, std::string_view x, std::string_view y,
+std::string Language::fetch(std::string_view texture_name, std::span<const std::string> at,
                             ValueType type) const {
-  return fmt::format(fmt::runtime(texel), texture_name, x, y, channels_of(type));
+  return read_at(texel, texel_3d, texture_name, at, type);
 }
 
 std::string Language::filtered(std::string_view texture_name, std::span<const std::string> at,
                                ValueType type) const {
-  const std::string_view letters = channels_of(type);
-  if (at.size() == 1) return fmt::format(fmt::runtime(sample_1d), texture_name, at[0], letters);
-  if (at.size() == 2) return fmt::format(fmt::runtime(sample), texture_name, at[0], at[1], letters);
-  return fmt::format(fmt::runtime(sample_3d), texture_name, at[0], at[1], at[2], letters);
+  return read_at(sample, sample_3d, texture_name, at, type);
 }
 
 std::string Language::declare_array(std::string_view array_name, std::span<const double> values) const {

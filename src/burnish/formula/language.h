@@ -29,13 +29,11 @@ struct Language {
   std::string_view exponent_of;              // helper for Op::exponent_of, with `math`; empty: none
   std::map<Op, Call> calls;
 
-  std::string_view texel;                 // {0} texture, {1} x, {2} y, {3} channels' letters
-  std::string_view sample;                // {0} texture, {1} u, {2} v, {3} channels' letters
-  std::string_view sample_1d, sample_3d;  // the same of one and three coordinates; empty: none
-  std::string_view array;                 // constant floats: {0} name, {1} how many, {2} values
-  std::string_view texture;               // declaration: {0} name, {1} number, {2} twice it, {3} and one; 2-D
-  std::string_view texture_1d, texture_3d;  // empty: none
-  std::string_view filtered_texture;
+  std::string_view texel, texel_3d;    // {0} texture, {1} x, {2} y (, {3} z), last channels' letters
+  std::string_view sample, sample_3d;  // likewise at texture coordinates
+  std::string_view array;              // constant floats: {0} name, {1} how many, {2} values
+  // declarations: {0} name, {1} number, {2} twice it, {3} and one; empty: none
+  std::string_view texture, texture_3d, filtered_texture, filtered_texture_3d;
   std::string_view texture_struct;  // what gathers declarations: {0} name, {1} declarations; empty: nothing
 
   std::string_view type_name(ValueType type) const noexcept;
@@ -45,8 +43,9 @@ struct Language {
   /// A function's head and body; `more` is text that follows the parameters, each a `type`.
   std::string function(ValueType type, std::string_view name, std::span<const std::string_view> parameters,
                        std::string_view more, std::string_view body) const;
-  std::string fetch(std::string_view texture, std::string_view x, std::string_view y, ValueType type) const;
-  /// Filtered, at one to three texture coordinates.
+  /// Of a 2-D or 3-D texture, by as many integers.
+  std::string fetch(std::string_view texture, std::span<const std::string> at, ValueType type) const;
+  /// Filtered, at two or three texture coordinates.
   std::string filtered(std::string_view texture, std::span<const std::string> at, ValueType type) const;
   /// A constant array of floats.
   std::string declare_array(std::string_view name, std::span<const double> values) const;

@@ -112,14 +112,14 @@ std::string Writer::formula(std::size_t i, int& precedence) const {
       return fmt::format("{}({}, {}, {})", language_.vector, of(0, 0), of(1, 0), of(2, 0));
     case Op::component:
       return fmt::format("{}.{}", of(0, kCall), "xyz"[static_cast<std::size_t>(node.constant)]);
-    case Op::texel:
-      return language_.fetch(node.name, of(0, 0), of(1, 0), node.type);
     case Op::element:
       return fmt::format("{}[{}]", node.name, of(0, 0));
+    case Op::texel:
     case Op::sample:
     case Op::call: {
       std::vector<std::string> all;
       for (std::size_t k = 0; k < node.arguments.size(); ++k) all.push_back(of(k, 0));
+      if (node.op == Op::texel) return language_.fetch(node.name, all, node.type);
       if (node.op == Op::sample) return language_.filtered(node.name, all, node.type);
       return fmt::format("{}({})", node.name, fmt::join(all, ", "));
     }

@@ -46,7 +46,7 @@ TEST(Source, OpensAnalyticBrdfsByName) {
 }
 
 TEST(Source, OpensModels) {
-  Table table{"p", {TableShape::line, 4, 1, {}, {}}, 1, {1.0f, 1.0f, 0.5f, 0.5f}};
+  Table table{"p", {.shape = TableShape::line, .width = 4}, 1, {1.0f, 1.0f, 0.5f, 0.5f}};
   const FactoredBrdf brdf(1, {table}, {Lobe{{0.25}, {{.table = 0, .projection = kProjectWi}}}},
                           TableFormat::half);
   const Source source = parse_source(memory_file(format_model({brdf, {}, "{}"})), {});

@@ -127,14 +127,23 @@ FORMULA_INLINE auto twist_angle(const Pair& pair) {
 
 /// phi_d, folded: |cos phi_d| : |sin phi_d| = |d_z| |s| : |s_y d_x - s_x d_y|, so that
 /// r / den = tan(phi_d / 2) = |sin phi_d| / (1 + |cos phi_d|), without inverse functions. The products are not
-/// fused: what is left of one rounded and one exact would be an angle where both terms are 0.
+/// fused: what is left of one rounded and one exact would be an angle where both terms are 0. Of unit
+/// directions, whose s and d are at right angles, the length of both is |d| |s_xy|: a pair with a member
+/// azimuth_size() says that, where those roots are taken anyway. Directions off by e turn phi_d by
+/// e / (|d| |s_xy|) more then.
 template <class Pair>
 FORMULA_INLINE auto folded_azimuth(const Pair& pair) {
   using T = decltype(pair.sum.x);
   const auto &s = pair.sum, &d = pair.apart;
   const T cosine = named("cosine", abs(d.z) * pair.sum_length());
   const T sine = named("sine", abs(s.y * d.x - s.x * d.y));
-  const T den = named("den", max(length(cosine, sine) + cosine, least_positive(T())));
+  const auto size = [&]() FORMULA_ATTRIBUTE {
+    if constexpr (requires { pair.azimuth_size(); })
+      return pair.azimuth_size();
+    else
+      return length(cosine, sine);
+  };
+  const T den = named("den", max(size() + cosine, least_positive(T())));
   return Polar<T>{named("r", min(sine, den)), den};  // squares of tiny numbers vanish
 }
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include <fmt/format.h>
@@ -8,74 +9,84 @@
 #include <burnish/formula/writer.h>
 #include <burnish/shaders/frame_function.h>
 #include <burnish/shaders/shader_formula.h>
+#include <burnish/shaders/texture_packing.h>
 
 namespace burnish {
 
 namespace {
 
-TableAxis axis_of(int nodes, ShaderFilter filter) noexcept {
-  if (filter == ShaderFilter::exact) return {nodes - 1.0, 0};
-  return {(nodes - 1.0) / nodes, 0.5 / nodes};
-}
-
 class Lookups {
  public:
-  Lookups(const FactoredBrdf& brdf, const std::vector<ShaderTexture>& textures, const ShaderOptions& options)
-      : brdf_(brdf), filter_(options.filter), places_(brdf.tables().size()) {
+  Lookups(const FactoredBrdf& brdf, const std::vector<ShaderTexture>& textures, ShaderFilter filter)
+      : brdf_(brdf), filter_(filter), places_(brdf.tables().size()) {
     for (const ShaderTexture& texture : textures)
-      for (std::size_t k = 0; k < texture.tables.size(); ++k)
-        places_[texture.tables[k]] = {&texture, texture.first_rows[k]};
+      for (const PlacedTable& placed : texture.tables) places_[placed.table] = {&texture, placed.first};
   }
 
   /// The table's value.
   Expr value(const FactorUse& use) const {
-    const auto index = static_cast<std::size_t>(use.table);
-    const Table& table = brdf_.tables()[index];
-    const TableLayout& layout = table.layout;
-    const auto& [texture, first] = places_[index];
-    const auto [x, y, z] =
-        position_expressions(layout, use, axis_of(layout.width, filter_),
-                             rows_of(layout.height, *texture, first), axis_of(layout.depth, filter_));
-    const bool line = layout.shape == TableShape::line;
-    const ValueType type = table.channels == 1 ? ValueType::real : ValueType::vector;
-    if (filter_ == ShaderFilter::hardware) {
-      std::vector<Expr> at{x};
-      if (!line || texture->height > 0) at.push_back(line ? Expr((first + 0.5) / texture->height) : y);
-      return named("value", Expr::sample(texture->name, at, type));
-    }
-    const Cell across = cell_of(x, layout.width);
-    const auto row = [&](const Expr& number) {
-      const auto texel = [&](const Expr& column) {
-        return named("texel", Expr::texel(texture->name, column, number, type));
-      };
-      return mix_expression(texel(across.low), texel(across.high), across.fraction);
-    };
-    if (line) return row(Expr::integer(first));
-    const Cell up = cell_of(y, layout.height, first);
-    return mix_expression(row(up.low), row(up.high), up.fraction);
+    const TableLayout& layout = brdf_.table_of(use).layout;
+    const Place& place = places_[static_cast<std::size_t>(use.table)];
+    const ValueType type = brdf_.table_of(use).channels == 1 ? ValueType::real : ValueType::vector;
+    return filter_ == ShaderFilter::hardware ? filtered(layout, use, place, type)
+                                             : weighed(layout, use, place, type);
   }
 
  private:
   struct Place {
     const ShaderTexture* texture = nullptr;
-    int first_row = 0;
+    std::array<int, 3> first{};
   };
 
-  // The nodes around a position, numbered from `first`, and how far it is from the lower one.
+  static Expr filtered(const TableLayout& layout, const FactorUse& use, const Place& place, ValueType type) {
+    const auto& [texture, first] = place;
+    const auto axis = [](int nodes, double texel, int texels) {
+      return TableAxis{(nodes - 1.0) / texels, (texel + 0.5) / texels};
+    };
+    const auto [x, y, z] = position_expressions(layout, use, axis(layout.width, first[0], texture->width),
+                                                axis(layout.height, first[1], texture->height),
+                                                axis(layout.depth, first[2], std::max(texture->depth, 1)));
+    std::vector<Expr> at{x, axis_count(layout.shape) == 1 ? Expr((first[1] + 0.5) / texture->height) : y};
+    if (texture->depth > 0) at.push_back(z);
+    return named("value", Expr::sample(texture->name, at, type));
+  }
+
+  // The texels around a position, and how far it is from the lower one.
   struct Cell {
     Expr low, high, fraction;
   };
-  static Cell cell_of(const Expr& position, int nodes, int first = 0) {
+  static Cell cell_of(const Expr& position, int nodes, int first) {
+    if (nodes == 1) return {Expr::integer(first), Expr::integer(first), 0.0};
     const CellExpr cell = cell_expression(position, nodes);
     const Expr node = named("i", Expr(Op::to_integer, {cell.node}));
     return {node + Expr::integer(first), node + Expr::integer(first + 1), cell.fraction};
   }
 
-  // A table's rows among its texture's.
-  TableAxis rows_of(int nodes, const ShaderTexture& texture, int first) const noexcept {
-    if (filter_ == ShaderFilter::exact) return axis_of(nodes, filter_);
-    const double rows = std::max(texture.height, 1);
-    return {(nodes - 1) / rows, (first + 0.5) / rows};
+  static Expr weighed(const TableLayout& layout, const FactorUse& use, const Place& place, ValueType type) {
+    const auto& [texture, first] = place;
+    const auto axis = [](int nodes) { return TableAxis{nodes - 1.0, 0}; };
+    const auto [x, y, z] =
+        position_expressions(layout, use, axis(layout.width), axis(layout.height), axis(layout.depth));
+    const Cell across = cell_of(x, layout.width, first[0]), up = cell_of(y, layout.height, first[1]),
+               behind = cell_of(z, layout.depth, first[2]);
+    // an array has a volume's layers one after another
+    const auto texel = [&](const Expr& column, const Expr& row, const Expr& layer) {
+      std::vector<Expr> at{column, row};
+      if (texture->depth > 0)
+        at.push_back(layer);
+      else if (layout.depth > 1)
+        at[1] = layer * Expr::integer(layout.height) + row;
+      return named("texel", Expr::texel(texture->name, at, type));
+    };
+    const auto in_row = [&](const Expr& row, const Expr& layer) {
+      return mix_expression(texel(across.low, row, layer), texel(across.high, row, layer), across.fraction);
+    };
+    const auto in_layer = [&](const Expr& layer) {
+      const Expr low = in_row(up.low, layer);
+      return layout.height == 1 ? low : mix_expression(low, in_row(up.high, layer), up.fraction);
+    };
+    const Expr low = in_layer(behind.low);
+    return layout.depth == 1 ? low : mix_expression(low, in_layer(behind.high), behind.fraction);
   }
 
   const FactoredBrdf& brdf_;
@@ -98,7 +109,7 @@ Expr lobe_value(const Lookups& lookups, const FactoredBrdf& brdf, std::size_t j)
 
 Expr sum_of_lobes(const FactoredBrdf& brdf, const std::vector<ShaderTexture>& textures,
                   const ShaderOptions& options) {
-  const Lookups lookups(brdf, textures, options);
+  const Lookups lookups(brdf, textures, options.filter);
   Expr total;
   for (std::size_t j = 0; j < brdf.lobes().size(); ++j) total = total + lobe_value(lookups, brdf, j);
   return total;
@@ -125,9 +136,10 @@ std::string declare_textures(const Language& l, const ShaderOptions& options,
   std::string text;
   for (std::size_t i = 0; i < textures.size(); ++i) {
     const ShaderTexture& texture = textures[i];
-    const std::string_view pattern = texture.height == 0                        ? l.texture_1d
-                                     : options.filter == ShaderFilter::hardware ? l.filtered_texture
-                                                                                : l.texture;
+    const bool filtered = options.filter == ShaderFilter::hardware;
+    const std::string_view pattern = texture.depth > 0 ? filtered ? l.filtered_texture_3d : l.texture_3d
+                                     : filtered        ? l.filtered_texture
+                                                       : l.texture;
     text += l.texture.empty() ? declare_array(l, texture)
                               : fmt::format(fmt::runtime(pattern), texture.name, i, 2 * i, 2 * i + 1);
   }
@@ -167,50 +179,6 @@ void check(const FactoredBrdf& brdf, const ShaderOptions& options) {
     throw Error(fmt::format("shader: expected a model of 1 or 3 channels, found {}", brdf.channels()));
   if (cpp && options.filter == ShaderFilter::hardware)
     throw Error("shader: expected the exact filter for cpp, which has no texture units, found hardware");
-  if (options.lines_are_1d &&
-      (options.language != ShaderLanguage::glsl || options.filter != ShaderFilter::hardware))
-    throw Error("shader: expected glsl and the hardware filter with 1-D textures, found others");
-}
-
-// Adds a table below those that the texture has.
-void add_table(ShaderTexture& texture, const FactoredBrdf& brdf, std::size_t i) {
-  const Table& table = brdf.tables()[i];
-  texture.tables.push_back(i);
-  texture.first_rows.push_back(texture.height);
-  texture.height += table.layout.height;
-  texture.values.insert(texture.values.end(), table.values.begin(), table.values.end());
-}
-
-std::vector<ShaderTexture> textures_of(const FactoredBrdf& brdf, const ShaderOptions& options) {
-  const bool shared = options.language != ShaderLanguage::cpp && brdf.tables().size() > options.most_textures;
-  std::vector<ShaderTexture> textures;
-  for (std::size_t i = 0; i < brdf.tables().size(); ++i) {
-    const Table& table = brdf.tables()[i];
-    const auto fits = [&](const ShaderTexture& t) {
-      return shared && t.width == table.layout.width && t.channels == table.channels &&
-             t.format == table.format;
-    };
-    auto texture = std::ranges::find_if(textures, fits);
-    if (texture == textures.end()) {
-      textures.push_back({.name = shared ? fmt::format("burnish_{}_tables{}", options.name, textures.size())
-                                  : is_identifier(table.name)
-                                      ? fmt::format("burnish_{}_table_{}", options.name, table.name)
-                                      : fmt::format("burnish_{}_table{}", options.name, i),
-                          .width = table.layout.width,
-                          .channels = table.channels,
-                          .format = table.format,
-                          .values = {},
-                          .tables = {},
-                          .first_rows = {}});
-      texture = textures.end() - 1;
-    }
-    add_table(*texture, brdf, i);
-    if (!shared && options.lines_are_1d && table.layout.shape == TableShape::line) texture->height = 0;
-  }
-  if (shared && textures.size() > options.most_textures)
-    throw Error(fmt::format("shader: expected tables that fit into {} textures, found {} widths and formats",
-                            options.most_textures, textures.size()));
-  return textures;
 }
 
 }  // namespace
@@ -228,7 +196,8 @@ std::string to_string(const ShaderCost& cost) {
 ShaderFormula shader_formula(const FactoredBrdf& brdf, const ShaderOptions& options) {
   check(brdf, options);
   ShaderFormula formula;
-  formula.textures = textures_of(brdf, options);
+  formula.textures = options.language == ShaderLanguage::cpp ? tables_apart(brdf, options.name)
+                                                             : pack_tables(brdf, options.name);
   formula.value = sum_of_lobes(brdf, formula.textures, options);
   return formula;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,12 +29,6 @@ struct ShaderOptions {
   ShaderLanguage language = ShaderLanguage::glsl;
   ShaderFilter filter = ShaderFilter::exact;
   std::string name = "brdf";  ///< letters, digits and single underscores, a letter first
-  /// Of glsl with the hardware filter: lines are 1-D textures, which takes half the texels where no texture
-  /// unit reads them.
-  bool lines_are_1d = false;
-  /// Where there are more tables, those of one width, format and number of channels share a texture. What
-  /// every fragment shader can sample is 16.
-  std::size_t most_textures = 16;
 };
 
 /// What one evaluation in the local frame costs, above the horizon. Floating-point operations are counted a
@@ -54,21 +49,26 @@ struct ShaderCost {
   friend bool operator==(const ShaderCost&, const ShaderCost&) = default;
 };
 
-/// What a shader reads: a table, or several above each other.
+/// Where a table stands in a texture.
+struct PlacedTable {
+  std::size_t table = 0;       ///< of the model
+  std::array<int, 3> first{};  ///< x, y and z of the texel that is its first node
+};
+
+/// What a shader reads: tables beside, above or behind each other. Texels around a table repeat its edge.
 struct ShaderTexture {
   std::string name;  ///< of the sampler; of the array in C++; of a member in MSL
-  int width = 0;
-  int height = 0;  ///< 0: 1-D
+  int width = 0, height = 0;
+  int depth = 0;  ///< > 0: 3-D
   int channels = 1;
   TableFormat format = TableFormat::half;  ///< that `values` are rounded to
-  std::vector<float> values;
-  std::vector<std::size_t> tables;  ///< of the model
-  std::vector<int> first_rows;      ///< of each
+  std::vector<float> values;               ///< [z][y][x][channel]
+  std::vector<PlacedTable> tables;
 };
 
 struct Shader {
   std::string text;                     ///< no #version line
-  std::vector<ShaderTexture> textures;  ///< table i's where there are no more than most_textures
+  std::vector<ShaderTexture> textures;  ///< at most one 2-D and one 3-D; of C++ one a table
   ShaderCost cost;
 };
 
@@ -77,14 +77,13 @@ struct Shader {
 ///   model's value three times), without the cosine, zero below the horizon;
 /// - `burnish_NAME_world(n, t, l, v)`: the same in any frame: unit normal and tangent, orthogonal to each
 ///   other, and unit vectors to light and viewer.
-/// Nothing of the model is left to set but its textures: a 2-D texture a table, texel (x, y) node (x, y)
-/// (a line's height is 1), or where tables are many some of them above each other, one channel in red or
-/// three in red, green, blue, in any format that holds the values; clamped to the edge and linear for the
-/// hardware filter. MSL takes them in a struct, as third or fifth argument; C++ has them as constant arrays.
-/// docs/guide/shaders.md states how precise it is.
+/// Nothing of the model is left to set but its textures: one 2-D texture of all lines, disks and grids and one
+/// 3-D texture of all volumes, one channel in red or three in red, green, blue, in any format that holds the
+/// values; clamped to the edge and linear for the hardware filter. MSL takes them in a struct, as third or
+/// fifth argument; C++ has an array a table. docs/guide/shaders.md states how precise it is.
 ///
-/// Throws Error if the name or lines_are_1d is not as above, channels are not 1 or 3, tables need more than
-/// most_textures in a language with textures, or for C++ with the hardware filter.
+/// Throws Error if the name is not as above, channels are not 1 or 3, a texture's side would be above 16384,
+/// or for C++ with the hardware filter.
 Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options);
 
 /// What generate_shader computes, in two pieces of GLSL for a pixel that several lights shine on: `view`

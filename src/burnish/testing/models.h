@@ -169,4 +169,17 @@ inline double cancellation(const FactoredBrdf& brdf, Vec3 wi, Vec3 wo) {
   return worst;
 }
 
+/// Besides, of shaders: phi_d of directions that are unit to 2^-24 is off by 2^-24 / (sin theta_d sin theta_h)
+/// (folded_azimuth of parameterization/projection-inl.h), so that f is by that times the slope of its tables.
+inline double shader_cancellation(const FactoredBrdf& brdf, Vec3 wi, Vec3 wo) {
+  double worst = cancellation(brdf, wi, wo);
+  const Vec3 sum = wi + wo;
+  const double product = length(wi - wo) * std::hypot(sum.x, sum.y);
+  for (const Lobe& lobe : brdf.lobes())
+    for (const FactorUse& use : lobe.factors)
+      for (const Projection& p : {use.projection, use.projection_y, use.projection_z})
+        if (p == kProjectAzimuth) worst = std::max(worst, 1 + 0.05 / std::max(product, 1e-12));
+  return worst;
+}
+
 }  // namespace burnish

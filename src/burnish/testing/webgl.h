@@ -34,13 +34,15 @@ const floats = async (file) => new Float32Array(await (await fetch(file)).arrayB
 const gl = document.createElement("canvas").getContext("webgl2");
 if (!gl.getExtension("EXT_color_buffer_float")) throw new Error("no float targets");
 const filtered_floats = gl.getExtension("OES_texture_float_linear");
-function texture(unit, format, filter, width, height, rgba) {
-  const t = gl.createTexture();
+function texture(unit, format, filter, {width, height, depth}, rgba) {
+  const t = gl.createTexture(), kind = depth ? gl.TEXTURE_3D : gl.TEXTURE_2D;
   gl.activeTexture(gl.TEXTURE0 + unit);
-  gl.bindTexture(gl.TEXTURE_2D, t);
-  gl.texImage2D(gl.TEXTURE_2D, 0, format, width, height, 0, gl.RGBA, gl.FLOAT, rgba);
-  for (const use of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, use, filter);
-  for (const use of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, use, gl.CLAMP_TO_EDGE);
+  gl.bindTexture(kind, t);
+  if (depth) gl.texImage3D(kind, 0, format, width, height, depth, 0, gl.RGBA, gl.FLOAT, rgba);
+  else gl.texImage2D(kind, 0, format, width, height, 0, gl.RGBA, gl.FLOAT, rgba);
+  for (const use of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(kind, use, filter);
+  for (const use of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T, gl.TEXTURE_WRAP_R])
+    gl.texParameteri(kind, use, gl.CLAMP_TO_EDGE);
   return t;
 }
 const shader = (type, text) => {
@@ -69,8 +71,8 @@ function worst_error(variant, textures, truth, lenience) {
   set("all_wo", 1);
   const made = textures.map((t, i) => {
     set(t.name, 2 + i);
-    return texture(2 + i, variant.halves ? gl.RGBA16F : gl.RGBA32F, variant.filtered ? gl.LINEAR : gl.NEAREST,
-                   t.width, t.height, variant.halves ? t.halves : t.floats);
+    return texture(2 + i, variant.halves ? gl.RGBA16F : gl.RGBA32F, variant.filtered ? gl.LINEAR : gl.NEAREST, t,
+                   variant.halves ? t.halves : t.floats);
   });
   gl.drawArrays(gl.TRIANGLES, 0, 3);
   gl.readPixels(0, 0, side, side, gl.RGBA, gl.FLOAT, found);
@@ -83,12 +85,12 @@ function worst_error(variant, textures, truth, lenience) {
     }
   return worst;
 }
-const found = new Float32Array(4 * side * side);
+const found = new Float32Array(4 * side * side), square = {width: side, height: side};
 (async () => {
-  texture(0, gl.RGBA32F, gl.NEAREST, side, side, await floats("wi"));
-  texture(1, gl.RGBA32F, gl.NEAREST, side, side, await floats("wo"));
+  texture(0, gl.RGBA32F, gl.NEAREST, square, await floats("wi"));
+  texture(1, gl.RGBA32F, gl.NEAREST, square, await floats("wo"));
   gl.bindFramebuffer(gl.FRAMEBUFFER, gl.createFramebuffer());
-  const target = texture(15, gl.RGBA32F, gl.NEAREST, side, side, null);
+  const target = texture(15, gl.RGBA32F, gl.NEAREST, square, null);
   gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, target, 0);
   gl.viewport(0, 0, side, side);
   const results = [];
@@ -140,7 +142,7 @@ inline void write_webgl_page(std::span<const ModelCase> models, int side,
     for (std::size_t i = 0; i < textures.size(); ++i) {
       const ShaderTexture& texture = textures[i];
       std::vector<float> rgba, halves;
-      for (std::size_t k = 0; k < static_cast<std::size_t>(texture.width * texture.height); ++k)
+      for (std::size_t k = 0; k < texture.values.size() / static_cast<std::size_t>(texture.channels); ++k)
         for (std::size_t c = 0; c < 4; ++c) {
           rgba.push_back(texture.channels == 1 ? texture.values[k] : c == 3 ? 1 : texture.values[3 * k + c]);
           halves.push_back(round_to_half(rgba.back()));
@@ -148,8 +150,8 @@ inline void write_webgl_page(std::span<const ModelCase> models, int side,
       const std::string file = fmt::format("table{}_{}", m, i);
       put(file, rgba);
       put(file + "_half", halves);
-      text += fmt::format("{{name: '{}', width: {}, height: {}, file: '{}'}},", texture.name, texture.width,
-                          texture.height, file);
+      text += fmt::format("{{name: '{}', width: {}, height: {}, depth: {}, file: '{}'}},", texture.name,
+                          texture.width, texture.height, texture.depth, file);
     }
     text += "]},";
     std::vector<float> truth, lenience;
@@ -157,7 +159,7 @@ inline void write_webgl_page(std::span<const ModelCase> models, int side,
       double f[3];
       brdf.eval(a, b, std::span(f).first(static_cast<std::size_t>(brdf.channels())));
       for (int c = 0; c < 3; ++c) truth.push_back(single(f[brdf.channels() == 1 ? 0 : c]));
-      lenience.push_back(single(1 / cancellation(brdf, a, b)));
+      lenience.push_back(single(1 / shader_cancellation(brdf, a, b)));
     }
     put(fmt::format("truth{}", m), truth);
     put(fmt::format("lenience{}", m), lenience);

@@ -25,7 +25,7 @@ void check_channels(const Table& table) {
 template <class T>
 std::string encode(const Table& table, Imf::PixelType type) {
   std::vector<T> pixels(table.values.begin(), table.values.end());
-  Imf::Header header(table.layout.width, table.layout.height);
+  Imf::Header header(table.layout.width, table.layout.rows());
   Imf::FrameBuffer frame;
   const auto channels = static_cast<std::size_t>(table.channels);
   for (std::size_t c = 0; c < channels; ++c) {
@@ -38,7 +38,7 @@ std::string encode(const Table& table, Imf::PixelType type) {
   {
     Imf::OutputFile file(stream, header, 0);
     file.setFrameBuffer(frame);
-    file.writePixels(table.layout.height);
+    file.writePixels(table.layout.rows());
   }
   return stream.str();
 }
@@ -53,7 +53,7 @@ std::string encode_exr(const Table& table) {
 
 std::string encode_png_table(const Table& table) {
   check_channels(table);
-  Image8 image(table.layout.width, table.layout.height, 3);
+  Image8 image(table.layout.width, table.layout.rows(), 3);
   const std::size_t step = table.channels == 1 ? 1 : 3;
   for (std::size_t i = 0; i < image.pixels.size(); ++i)
     image.pixels[i] = static_cast<std::uint8_t>(std::lround(255 * table.values[step == 1 ? i / 3 : i]));

@@ -18,7 +18,7 @@ namespace {
 Table random_table(TableFormat format, int channels) {
   Pcg32 random(3);
   Table table{.name = "t",
-              .layout = {TableShape::grid, 7, 5, {}, {}},
+              .layout = {.shape = TableShape::grid, .width = 7, .height = 5},
               .channels = channels,
               .values = {},
               .format = format};

@@ -29,7 +29,7 @@ const Case kCases[] = {{TableFormat::half, 1, 76, 2},    {TableFormat::half, 3, 
 Table random_table(const Case& c) {
   Pcg32 random(3);
   Table table{.name = "t",
-              .layout = {TableShape::grid, 7, 5, {}, {}},
+              .layout = {.shape = TableShape::grid, .width = 7, .height = 5},
               .channels = c.channels,
               .values = {},
               .format = c.format};
@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(Formats, Ktx2, testing::Combine(testing::ValuesIn(kCase
 
 TEST(Ktx2File, HoldsEveryLevelOfEveryFaceTheSmallestFirst) {
   Table disk = random_table({TableFormat::half, 3, 0, 0});
-  disk.layout = {TableShape::disk, 8, 8, {}, {}};
+  disk.layout = {.shape = TableShape::disk, .width = 8, .height = 8};
   disk.values.assign(3 * 64, 0.5f);
   disk.values[0] = 1;
   for (const bool compressed : {false, true}) {

@@ -10,10 +10,12 @@
 namespace burnish {
 namespace {
 
-Table table_of(TableShape shape, int width, int height, Warp warp, double (*value)(double x, double y)) {
-  Table table{.name = "t", .layout = {shape, width, height, warp, warp}, .channels = 3, .values = {}};
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x)
+Table table_of(TableShape shape, int width, int height, Warp warp, double (*value)(double x, double y),
+               int depth = 1) {
+  Table table{
+      .name = "t", .layout = {shape, width, height, depth, warp, warp, warp}, .channels = 3, .values = {}};
+  for (int row = 0; row < height * depth; ++row)
+    for (int x = 0, y = row % height; x < width; ++x)
       for (int c = 0; c < 3; ++c)
         table.values.push_back(
             static_cast<float>(value(static_cast<double>(x) / (width - 1),
@@ -60,6 +62,22 @@ TEST(Texture, TheLastLevelIsTheMeanOverTheHemisphere) {
       EXPECT_NEAR(texture.levels.back()[0], mean, 4e-3);  // draws: 3 sigma = 1.5e-3; footprints: 16 points
       EXPECT_NEAR(texture.levels.back()[2], mean / 3, 2e-3);
     }
+}
+
+// The layers of a volume that are all one grid.
+TEST(Texture, LevelsOfAVolumeAreThoseOfItsLayers) {
+  const Warp warp{WarpKind::rational, 0.3};
+  const Texture flat = make_texture(table_of(TableShape::grid, 9, 6, warp, smooth), true),
+                deep = make_texture(table_of(TableShape::volume, 9, 6, warp, smooth, 4), true);
+  EXPECT_EQ(flat.depth, 0);
+  EXPECT_EQ(deep.depth, 4);
+  ASSERT_EQ(deep.levels.size(), flat.levels.size());
+  for (std::size_t l = 0; l < flat.levels.size(); ++l) {
+    const std::size_t layer = flat.levels[l].size(), layers = std::max<std::size_t>(4 >> l, 1);
+    ASSERT_EQ(deep.levels[l].size(), layers * layer);
+    for (std::size_t i = 0; i < deep.levels[l].size(); ++i)
+      EXPECT_NEAR(deep.levels[l][i], flat.levels[l][i % layer], 1e-6) << "level " << l << " texel " << i;
+  }
 }
 
 TEST(Texture, LevelsHalveDownToOneTexel) {

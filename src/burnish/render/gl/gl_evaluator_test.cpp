@@ -37,7 +37,7 @@ class GlEvaluatorTest : public testing::TestWithParam<ModelCase> {
       for (std::size_t c = 0; c < 3; ++c) {
         const double truth = f[brdf.channels() == 1 ? 0 : c];
         if (truth > 0)
-          worst = std::max(worst, std::abs(found[3 * i + c] / truth - 1) / cancellation(brdf, wi, wo));
+          worst = std::max(worst, std::abs(found[3 * i + c] / truth - 1) / shader_cancellation(brdf, wi, wo));
         else
           EXPECT_EQ(found[3 * i + c], 0) << "below the horizon";
       }

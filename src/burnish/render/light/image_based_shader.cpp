@@ -71,7 +71,7 @@ Expr seen(const ImageBasedLight& light, const View& view, const std::string& axe
 ImageBasedShader generate_shader(const ImageBasedLight& light, ShaderLanguage language,
                                  const std::string& name) {
   const Language& l = burnish::language(to_string(language));
-  if (l.texture_3d.empty())
+  if (language != ShaderLanguage::glsl && language != ShaderLanguage::glsl_es)
     throw Error(fmt::format("image-based light: expected glsl or glsl_es, found {}", l.name));
   // all lobes' maps are slices of one texture
   const int slices_a_lobe = light.map_count() * light.options.slices;

@@ -9,7 +9,9 @@ bool of_view_alone(const Table& table, const FactorUse& use) noexcept {
   const auto alone = [](const Projection& p) {
     return p.kind == Projection::Kind::affine && p.wi == 0 && p.mirror == 0;
   };
-  return alone(use.projection) && (table.layout.shape != TableShape::grid || alone(use.projection_y));
+  const int projections = projection_count(table.layout.shape);
+  return alone(use.projection) && (projections < 2 || alone(use.projection_y)) &&
+         (projections < 3 || alone(use.projection_z));
 }
 
 // The lobe with some of its factors, and the tables they need.

@@ -66,7 +66,7 @@ vec3 burnish_{0}_light(vec3 n, vec3 t, vec3 s, vec3 v) {{
 TappedShader generate_shader(const TappedBrdf& brdf, const BlurOptions& blur, ShaderLanguage language,
                              const std::string& name) {
   const Language& l = burnish::language(to_string(language));
-  if (l.texture_3d.empty())
+  if (language != ShaderLanguage::glsl && language != ShaderLanguage::glsl_es)
     throw Error(fmt::format("image-based light: expected glsl or glsl_es, found {}", l.name));
   TappedShader shader{.environment = fmt::format("burnish_{}_environment", name)};
   shader.text = std::string(l.header) + fmt::format(fmt::runtime(l.texture_3d), shader.environment) +
