@@ -62,7 +62,6 @@ void add_convert_command(CLI::App& app) {
   verb->callback([arguments] {
     const std::string format = target_format(*arguments);
     const Source source = arguments->source.open();
-    arguments->options.clamped_negatives = arguments->source.options.clamp_negatives;
     const Converted converted = convert(source, format, arguments->options);
     write_then_rename(arguments->out, converted.bytes);
     if (!converted.losses.empty())

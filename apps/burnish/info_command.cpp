@@ -34,8 +34,8 @@ void print_text(const SourceReport& report) {
   line("coverage", fmt::format("theta_i {:.1f} to {:.1f}, theta_o {:.1f} to {:.1f} degrees",
                                degrees(findings.theta_i_min), degrees(findings.theta_i_max),
                                degrees(findings.theta_o_min), degrees(findings.theta_o_max)));
-  if (findings.clamped_negatives > 0)
-    line("negatives", fmt::format("{} values below zero, down to {:.3g} 1/sr", findings.clamped_negatives,
+  if (findings.negative_count > 0)
+    line("negatives", fmt::format("{} values below zero, down to {:.3g} 1/sr", findings.negative_count,
                                   findings.most_negative));
   for (const auto& [theta_i, phi_i, albedo] : albedos)
     line("albedo",

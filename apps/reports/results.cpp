@@ -255,7 +255,7 @@ void report_merl(Page& page) {
   Table times({"what", "seconds"});
   double checksum = 0;
   times.add({"read, and logarithms", best_seconds(repetitions, [&] {
-               const MerlFile merl = parse_merl(read_file(table), {});
+               const MerlFile merl = parse_merl(read_file(table));
                for (const float v : merl.table.values)
                  if (!std::isnan(v)) checksum += std::log(v + 3e-5F);
              })});

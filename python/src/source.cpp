@@ -197,7 +197,7 @@ void bind_source(nb::module_& m) {
       "the\n"
       "light under which spectra become RGB; has_cosine: CSV values are f_r cos(theta_i); clamp_negatives: "
       "set\n"
-      "measured values below zero to zero; back_side: Klems, the back's reflection. A burnish model is\n"
+      "interpolated values below zero to zero; back_side: Klems, the back's reflection. A burnish model is\n"
       "returned as a Model.");
 }
 

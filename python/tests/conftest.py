@@ -56,11 +56,16 @@ def pairs():
 
 
 @pytest.fixture(scope="session")
-def rgl_file():
+def rgl_files():
     folder = os.environ.get("BURNISH_DATA")
     if not folder:
         pytest.skip("BURNISH_DATA is not set")
-    return sorted((pathlib.Path(folder) / "rgl").glob("*.bsdf"))[0]
+    return [path for part in ("rgl", "repeat") for path in sorted((pathlib.Path(folder) / part).glob("*.bsdf"))]
+
+
+@pytest.fixture(scope="session")
+def rgl_file(rgl_files):
+    return rgl_files[0]
 
 
 def hemisphere(count, seed=1):

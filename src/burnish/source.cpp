@@ -13,7 +13,8 @@ namespace burnish {
 BrdfRef Source::ref() const noexcept {
   // An analytic BRDF's own reference skips the choice of its model.
   if (const auto* analytic = std::get_if<AnalyticBrdf>(&brdf)) return analytic->ref();
-  return std::visit([](const auto& any) -> BrdfRef { return any; }, brdf);
+  const BrdfRef measured = std::visit([](const auto& any) -> BrdfRef { return any; }, brdf);
+  return clamp_negatives ? measured : measured.unclamped();
 }
 
 const Samples* Source::samples() const noexcept {

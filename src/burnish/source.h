@@ -31,8 +31,10 @@ struct Source {
   std::string name;
   AnyBrdf brdf;
   Findings findings;
+  bool clamp_negatives = true;  ///< values below zero become zero once they are interpolated
 
-  /// Refers to this object, which must outlive it and stay where it is.
+  /// Refers to this object, which must outlive it and stay where it is. BrdfRef::unclamped() has its values as
+  /// they were measured.
   BrdfRef ref() const noexcept;
   /// The scattered measurements, or nullptr where the source is none.
   const Samples* samples() const noexcept;

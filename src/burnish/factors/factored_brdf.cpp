@@ -24,9 +24,11 @@ bool depends_on_azimuth(const TableLayout& layout) noexcept {
 // The use that swapping wi and wo turns `use` into; nothing where there is none.
 std::optional<FactorUse> swapped_use(const FactorUse& use, const TableLayout& layout) noexcept {
   const auto x = swapped(use.projection, depends_on_azimuth(layout));
-  const auto y = layout.shape == TableShape::grid ? swapped(use.projection_y, false) : use.projection_y;
-  if (!x || !y) return std::nullopt;
-  return FactorUse{.table = use.table, .projection = *x, .projection_y = *y};
+  const int projections = projection_count(layout.shape);
+  const auto y = projections > 1 ? swapped(use.projection_y, false) : use.projection_y;
+  const auto z = projections > 2 ? swapped(use.projection_z, false) : use.projection_z;
+  if (!x || !y || !z) return std::nullopt;
+  return FactorUse{.table = use.table, .projection = *x, .projection_y = *y, .projection_z = *z};
 }
 
 // A fit far too rough can leave an unbounded product in a direction without data; floats end at e^88.
@@ -37,10 +39,17 @@ double lookup(const Table& table, const Lookup& at, std::size_t channel) noexcep
   const std::size_t c = step == 1 ? 0 : channel;
   const float* node = table.values.data() + static_cast<std::size_t>(at.node) * step + c;
   const auto along = [&](const float* v) { return definition::mix<double>(v[0], v[step], at.fx); };
-  const double low = along(node);
-  if (table.layout.shape == TableShape::line) return low;
-  const float* next = node + static_cast<std::size_t>(table.layout.width) * step;
-  return definition::mix(low, along(next), at.fy);
+  const std::size_t row = static_cast<std::size_t>(table.layout.width) * step;
+  const auto across = [&](const float* v) { return definition::mix(along(v), along(v + row), at.fy); };
+  switch (axis_count(table.layout.shape)) {
+    case 1:
+      return along(node);
+    case 2:
+      return across(node);
+    default:
+      return definition::mix(across(node), across(node + row * static_cast<std::size_t>(table.layout.height)),
+                             at.fz);
+  }
 }
 
 std::vector<Table> in_format(std::vector<Table> tables, TableFormat format) {
@@ -213,13 +222,17 @@ std::size_t FactoredBrdf::bytes() const noexcept {
   std::size_t parameters = 0;
   for (const Table& table : tables_) {
     parameters += table.layout.warp.kind != WarpKind::identity;
-    parameters += table.layout.shape == TableShape::grid && table.layout.warp_y.kind != WarpKind::identity;
+    const int axes = projection_count(table.layout.shape);
+    parameters += axes > 1 && table.layout.warp_y.kind != WarpKind::identity;
+    parameters += axes > 2 && table.layout.warp_z.kind != WarpKind::identity;
   }
   for (const Lobe& lobe : lobes_) {
     parameters += lobe.scale.size();
     for (const FactorUse& use : lobe.factors) {
       parameters += coefficient_count(use.projection);
-      if (layout_of(use).shape == TableShape::grid) parameters += coefficient_count(use.projection_y);
+      const int axes = projection_count(layout_of(use).shape);
+      if (axes > 1) parameters += coefficient_count(use.projection_y);
+      if (axes > 2) parameters += coefficient_count(use.projection_z);
     }
   }
   return table_bytes() + parameters * sizeof(float);
@@ -272,7 +285,9 @@ std::string model_expression(const FactoredBrdf& brdf) {
       // where only the polar angle counts, say so
       const bool angle = table.layout.shape == TableShape::line && use.projection == kProjectDifference;
       text += fmt::format("{}{}({}", k ? " " : "", table.name, angle ? "theta_d" : to_string(use.projection));
-      if (table.layout.shape == TableShape::grid) text += "," + to_string(use.projection_y);
+      const int axes = projection_count(table.layout.shape);
+      if (axes > 1) text += "," + to_string(use.projection_y);
+      if (axes > 2) text += "," + to_string(use.projection_z);
       text += ")";
     }
   }

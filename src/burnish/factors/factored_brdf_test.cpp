@@ -68,6 +68,37 @@ TEST(FactoredBrdf, InterpolatesLinearlyBetweenNodes) {
   }
 }
 
+TEST(FactoredBrdf, InterpolatesAVolumeAlongEachOfItsAxes) {
+  // values that are the product of three linear functions of the nodes are that product between them
+  Table table{.name = "g",
+              .layout = {.shape = TableShape::volume, .width = 5, .height = 4, .depth = 3},
+              .channels = 1,
+              .values = {}};
+  const auto along_x = [](double u) { return 0.2 + 0.8 * u; };
+  const auto along_y = [](double u) { return 1 - 0.5 * u; };
+  const auto along_z = [](double u) { return 0.3 + 0.7 * u; };
+  for (int z = 0; z < 3; ++z)
+    for (int y = 0; y < 4; ++y)
+      for (int x = 0; x < 5; ++x)
+        table.values.push_back(static_cast<float>(along_x(x / 4.0) * along_y(y / 3.0) * along_z(z / 2.0)));
+  const FactorUse use{.table = 0,
+                      .projection = kProjectHalf,
+                      .projection_y = kProjectDifference,
+                      .projection_z = kProjectAzimuth};
+  const FactoredBrdf brdf(1, {table}, {{.scale = {2}, .factors = {use}}}, TableFormat::single);
+  EXPECT_TRUE(brdf.reciprocal());
+  EXPECT_TRUE(brdf.isotropic());
+  EXPECT_EQ(brdf.bytes(), 4u * (60 + 1));
+  double f;
+  for (const auto& [wi, wo] : draw_pairs(500, 8, false)) {
+    brdf.eval(wi, wo, {&f, 1});
+    const auto at = [&](const Projection& p) { return project_tan_half(p, wi, wo); };
+    EXPECT_NEAR(
+        f, 2 * along_x(at(kProjectHalf)) * along_y(at(kProjectDifference)) * along_z(at(kProjectAzimuth)),
+        1e-6);
+  }
+}
+
 TEST(FactoredBrdf, IsZeroBelowTheHorizon) {
   const FactoredBrdf brdf = random_model("pqp", {}, 3, TableFormat::half);
   std::array<double, 3> f;

@@ -176,23 +176,21 @@ std::string channel_name(int channels, int c) {
   return fmt::format("c{:04}", c);
 }
 
-const char* shape_name(TableShape shape) {
-  return shape == TableShape::line ? "line" : shape == TableShape::disk ? "disk" : "grid";
-}
-
 // All but the pixels.
 Json to_json(const Model& model) {
   const FactoredBrdf& brdf = model.brdf;
   Json tables = Json::array(), lobes = Json::array();
   for (const Table& t : brdf.tables()) {
     Json table{{"name", t.name},
-               {"shape", shape_name(t.layout.shape)},
+               {"shape", to_string(t.layout.shape)},
                {"width", t.layout.width},
                {"height", t.layout.height},
                {"channels", t.channels},
                {"format", to_string(t.format)},
                {"warp", to_string(t.layout.warp)}};
-    if (t.layout.shape == TableShape::grid) table["warp_y"] = to_string(t.layout.warp_y);
+    const int axes = projection_count(t.layout.shape);
+    if (axes > 1) table["warp_y"] = to_string(t.layout.warp_y);
+    if (axes > 2) table.update({{"depth", t.layout.depth}, {"warp_z", to_string(t.layout.warp_z)}});
     tables.push_back(std::move(table));
   }
   for (const Lobe& l : brdf.lobes()) {
@@ -200,7 +198,9 @@ Json to_json(const Model& model) {
     for (const FactorUse& use : l.factors) {
       const Table& table = brdf.table_of(use);
       Json factor{{"table", table.name}, {"projection", to_string(use.projection)}};
-      if (table.layout.shape == TableShape::grid) factor["projection_y"] = to_string(use.projection_y);
+      const int axes = projection_count(table.layout.shape);
+      if (axes > 1) factor["projection_y"] = to_string(use.projection_y);
+      if (axes > 2) factor["projection_z"] = to_string(use.projection_z);
       factors.push_back(std::move(factor));
     }
     lobes.push_back({{"scale", l.scale}, {"factors", std::move(factors)}});
@@ -224,9 +224,9 @@ std::vector<Imf::Header> headers(const Model& model) {
   // OpenEXR asks for one display window for all parts: the smallest that holds every table.
   Imath::Box2i display(Imath::V2i(0, 0));
   for (const Table& t : model.brdf.tables())
-    display.extendBy(Imath::V2i(t.layout.width - 1, t.layout.height - 1));
+    display.extendBy(Imath::V2i(t.layout.width - 1, t.layout.rows() - 1));
   for (const Table& t : model.brdf.tables()) {
-    Imf::Header header(display, Imath::Box2i({0, 0}, {t.layout.width - 1, t.layout.height - 1}));
+    Imf::Header header(display, Imath::Box2i({0, 0}, {t.layout.width - 1, t.layout.rows() - 1}));
     header.setName(t.name);
     header.setType(Imf::SCANLINEIMAGE);
     header.compression() = Imf::NO_COMPRESSION;
@@ -248,13 +248,6 @@ Imf::FrameBuffer frame_buffer(float* values, int width, int channels) {
   return buffer;
 }
 
-TableShape parse_shape(const std::string& name) {
-  if (name == "line") return TableShape::line;
-  if (name == "disk") return TableShape::disk;
-  if (name == "grid") return TableShape::grid;
-  throw Error(fmt::format("shape: expected line, disk or grid, found '{}'", name));
-}
-
 Projection read_projection(const Json& factor, const char* key) {
   return parse_projection(factor.at(key).get<std::string>()).projection;
 }
@@ -265,15 +258,19 @@ void read_tables(const Json& json, bool old, std::uint64_t file_size, int channe
   std::uint64_t total = 0;
   for (const Json& t : json.at("tables")) {
     Table table{.name = t.at("name").get<std::string>(),
-                .layout = {.shape = parse_shape(t.at("shape").get<std::string>()),
+                .layout = {.shape = parse_table_shape(t.at("shape").get<std::string>()),
                            .width = t.at("width").get<int>(),
                            .height = t.at("height").get<int>(),
                            .warp = parse_warp(t.at("warp").get<std::string>())},
                 .channels = t.at("channels").get<int>(),
                 .values = {},
                 .format = parse_table_format((old ? json : t).at("format").get<std::string>())};
-    if (table.layout.shape == TableShape::grid)
-      table.layout.warp_y = parse_warp(t.at("warp_y").get<std::string>());
+    const int axes = projection_count(table.layout.shape);
+    if (axes > 1) table.layout.warp_y = parse_warp(t.at("warp_y").get<std::string>());
+    if (axes > 2) {
+      table.layout.depth = t.at("depth").get<int>();
+      table.layout.warp_z = parse_warp(t.at("warp_z").get<std::string>());
+    }
     check_layout(table.layout, table.name);
     if (table.channels != 1 && table.channels != channels)
       throw Error(fmt::format("table '{}': expected 1 or {} channels, found {}", table.name, channels,
@@ -294,9 +291,9 @@ void read_pixels(Imf::MultiPartInputFile& input, int part, Table& table) {
   if (header.name() != table.name)
     throw Error(fmt::format("part {}: expected name '{}', found '{}'", part, table.name, header.name()));
   if (window.min != Imath::V2i(0, 0) ||
-      window.max != Imath::V2i(table.layout.width - 1, table.layout.height - 1))
+      window.max != Imath::V2i(table.layout.width - 1, table.layout.rows() - 1))
     throw Error(fmt::format("part '{}': expected a window of {} x {} at the origin, found another",
-                            table.name, table.layout.width, table.layout.height));
+                            table.name, table.layout.width, table.layout.rows()));
   if (header.compression() != Imf::NO_COMPRESSION)
     throw Error(fmt::format("part '{}': expected no compression, found compression {}", table.name,
                             static_cast<int>(header.compression())));
@@ -312,7 +309,7 @@ void read_pixels(Imf::MultiPartInputFile& input, int part, Table& table) {
   table.values.resize(table.layout.node_count() * static_cast<std::size_t>(table.channels));
   Imf::InputPart pixels(input, part);
   pixels.setFrameBuffer(frame_buffer(table.values.data(), table.layout.width, table.channels));
-  pixels.readPixels(0, table.layout.height - 1);
+  pixels.readPixels(0, table.layout.rows() - 1);
 }
 
 Model read_model(const FileBytes& file) {
@@ -348,8 +345,11 @@ Model read_model(const FileBytes& file) {
         throw Error(fmt::format("factor: expected the name of a table, found '{}'", name));
       FactorUse use{.table = static_cast<int>(table - tables.begin()),
                     .projection = read_projection(f, "projection"),
-                    .projection_y = {}};
-      if (table->layout.shape == TableShape::grid) use.projection_y = read_projection(f, "projection_y");
+                    .projection_y = {},
+                    .projection_z = {}};
+      const int axes = projection_count(table->layout.shape);
+      if (axes > 1) use.projection_y = read_projection(f, "projection_y");
+      if (axes > 2) use.projection_z = read_projection(f, "projection_z");
       lobe.factors.push_back(use);
     }
     lobes.push_back(std::move(lobe));
@@ -383,7 +383,7 @@ std::string format_model(const Model& model) {
       Imf::OutputPart part(output, static_cast<int>(i));
       if (pixel_type(table.format) == Imf::FLOAT) {
         part.setFrameBuffer(frame_buffer(values.data(), table.layout.width, table.channels));
-        part.writePixels(table.layout.height);
+        part.writePixels(table.layout.rows());
         continue;
       }
 
@@ -396,7 +396,7 @@ std::string format_model(const Model& model) {
                       Imf::Slice(Imf::HALF, reinterpret_cast<char*>(halves.data() + c), step,
                                  step * static_cast<std::size_t>(table.layout.width)));
       part.setFrameBuffer(buffer);
-      part.writePixels(table.layout.height);
+      part.writePixels(table.layout.rows());
     }
   }
   return std::move(stream.bytes);

@@ -19,7 +19,8 @@ struct Model {
 };
 
 /// The native file: a multi-part OpenEXR image, one part a table in the table's name, and in the first part a
-/// string attribute "burnish" with JSON: version, channels, tables with their formats, lobes, notes. Pixels
+/// string attribute "burnish" with JSON: version, channels, tables with their formats, lobes, notes. A volume's
+/// layers stand one under another. Pixels
 /// are halves where halves hold the table's format exactly (half, rgb9e5), else floats, so that any viewer
 /// shows the tables. What format_model writes, parse_model restores to the last bit.
 std::string format_model(const Model& model);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <map>
@@ -14,12 +15,13 @@ namespace {
 
 constexpr int kLineNodes = 32, kHalfLineNodes = 64, kDiskNodes = 64;
 // Highlights are narrow: near the normal the half vector's nodes stand three times as dense.
-constexpr Warp kHalfWarp{WarpKind::rational, 0.5};
+constexpr Warp kHalfWarp{WarpKind::rational, 0.5}, kVolumeHalfWarp{WarpKind::power, 0.5};
+constexpr int kMaxAxes = 3;
 
 struct TableOption {
-  int width = 0, height = 1;
-  bool has_warp = false, shared = false;
-  Warp warp;
+  std::vector<int> sides;
+  bool shared = false;
+  std::vector<Warp> warps;
   std::optional<TableFormat> format;
 };
 
@@ -27,8 +29,8 @@ int parse_size(std::string_view text, std::string_view option) {
   int n = 0;
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), n);
   if (code != std::errc{} || end != text.data() + text.size() || n < 2)
-    throw Error(fmt::format("table option '{}': expected a size N, NxN or NxM of at least 2, found '{}'",
-                            option, text));
+    throw Error(fmt::format(
+        "table option '{}': expected a size N, NxN, NxM or NxMxK of at least 2, found '{}'", option, text));
   return n;
 }
 
@@ -39,23 +41,25 @@ TableOptions parse_table_options(std::span<const std::string> options) {
   for (const std::string& text : options) {
     const auto equals = text.find('=');
     if (equals == text.npos || equals == 0)
-      throw Error(fmt::format("table option: expected NAME=SIZE[,warp][,shared][,format], found '{}'", text));
+      throw Error(
+          fmt::format("table option: expected NAME=SIZE[,warp...][,shared][,format], found '{}'", text));
     TableOption option;
     std::string_view rest = std::string_view(text).substr(equals + 1);
     for (bool first = true; first || !rest.empty(); first = false) {
       const std::string_view part = rest.substr(0, rest.find(','));
       rest.remove_prefix(std::min(rest.size(), part.size() + 1));
       if (first) {
-        const auto cross = part.find('x');
-        option.width = parse_size(part.substr(0, cross), text);
-        if (cross != part.npos) option.height = parse_size(part.substr(cross + 1), text);
+        for (std::size_t at = 0, cross = 0; cross != part.npos && option.sides.size() < kMaxAxes;
+             at = cross + 1) {
+          cross = option.sides.size() + 1 < kMaxAxes ? part.find('x', at) : part.npos;
+          option.sides.push_back(parse_size(part.substr(at, cross - at), text));
+        }
       } else if (part == "shared") {
         option.shared = true;
       } else if (const auto format = find_table_format(part)) {
         option.format = format;
       } else {
-        option.warp = parse_warp(part);
-        option.has_warp = true;
+        option.warps.push_back(parse_warp(part));
       }
     }
     if (!result.emplace(text.substr(0, equals), option).second)
@@ -107,11 +111,12 @@ class Parser {
   std::string_view text_, rest_;
 };
 
-/// NAME(PROJECTION) or NAME(PROJECTION,PROJECTION).
+/// NAME(PROJECTION), or with two or three projections.
 struct ParsedFactor {
   std::string name;
   FactorUse use;
-  bool grid = false, angle_only = false;
+  int projections = 1;
+  bool angle_only = false;
 };
 
 ParsedFactor parse_factor(Parser& parser) {
@@ -120,38 +125,70 @@ ParsedFactor parse_factor(Parser& parser) {
   const NamedProjection first = parse_projection(parser.until_bracket_or_comma());
   factor.use.projection = first.projection;
   factor.angle_only = first.angle_only;
-  factor.grid = parser.accept(',');
-  if (factor.grid) factor.use.projection_y = parse_projection(parser.until_bracket_or_comma()).projection;
+  for (Projection* more : {&factor.use.projection_y, &factor.use.projection_z}) {
+    if (!parser.accept(',')) break;
+    *more = parse_projection(parser.until_bracket_or_comma()).projection;
+    ++factor.projections;
+  }
   parser.expect(')');
   return factor;
+}
+
+/// The shape of so many projections and sides.
+TableShape shape_of(int projections, std::size_t sides) {
+  if (projections == 3) return TableShape::volume;
+  if (projections == 2) return TableShape::grid;
+  return sides == 1 ? TableShape::line : TableShape::disk;
+}
+
+/// Nodes along an axis of a volume over `projection`.
+int volume_nodes(const Projection& projection) {
+  if (projection == kProjectHalf) return 24;
+  return projection == kProjectDifference ? 12 : 8;
 }
 
 /// The table that a factor asks for: as the options say, else of the size that its projection needs.
 ModelSpec::TableSpec table_for(const ParsedFactor& factor, const TableOptions& options, bool isotropic) {
   ModelSpec::TableSpec table{.name = factor.name};
   TableLayout& layout = table.layout;
-  const bool over_half = factor.use.projection == kProjectHalf;
+  const std::array<Projection, kMaxAxes> over{factor.use.projection, factor.use.projection_y,
+                                              factor.use.projection_z};
   const auto given = options.find(factor.name);
   if (given != options.end()) {
-    const TableOption& o = given->second;
-    layout = {.shape = factor.grid     ? TableShape::grid
-                       : o.height == 1 ? TableShape::line
-                                       : TableShape::disk,
-              .width = o.width,
-              .height = o.height};
-    table.shared = o.shared;
-    table.format = o.format;
-  } else if (factor.grid) {
+    const std::vector<int>& sides = given->second.sides;
+    const auto side = [&](std::size_t k) { return k < sides.size() ? sides[k] : 1; };
+    layout = {.shape = shape_of(factor.projections, sides.size()),
+              .width = side(0),
+              .height = side(1),
+              .depth = side(2)};
+    table.shared = given->second.shared;
+    table.format = given->second.format;
+  } else if (factor.projections == 3) {
+    layout = {.shape = TableShape::volume,
+              .width = volume_nodes(over[0]),
+              .height = volume_nodes(over[1]),
+              .depth = volume_nodes(over[2])};
+  } else if (factor.projections == 2) {
     layout = {.shape = TableShape::grid, .width = kLineNodes, .height = kLineNodes};
   } else if (isotropic || factor.angle_only) {
-    layout = {.shape = TableShape::line, .width = over_half ? kHalfLineNodes : kLineNodes};
+    layout = {.shape = TableShape::line, .width = over[0] == kProjectHalf ? kHalfLineNodes : kLineNodes};
   } else {
     layout = {.shape = TableShape::disk, .width = kDiskNodes, .height = kDiskNodes};
   }
 
-  const bool warp_given = given != options.end() && given->second.has_warp;
-  layout.warp = warp_given ? given->second.warp : over_half ? kHalfWarp : Warp{};
-  if (factor.grid) layout.warp_y = factor.use.projection_y == kProjectHalf ? kHalfWarp : Warp{};
+  // spacings: as given, axis by axis, else dense where highlights are narrow
+  const auto warp_of = [&](std::size_t axis) {
+    if (given != options.end() && axis < given->second.warps.size()) return given->second.warps[axis];
+    if (over[axis] != kProjectHalf) return Warp{};
+    return layout.shape == TableShape::volume ? kVolumeHalfWarp : kHalfWarp;
+  };
+  const int axes = projection_count(layout.shape);
+  layout.warp = warp_of(0);
+  if (axes > 1) layout.warp_y = warp_of(1);
+  if (axes > 2) layout.warp_z = warp_of(2);
+  if (given != options.end() && given->second.warps.size() > static_cast<std::size_t>(axes))
+    throw Error(fmt::format("table '{}': expected at most {} warps, found {}", factor.name, axes,
+                            given->second.warps.size()));
   if (factor.angle_only && layout.shape == TableShape::disk)
     throw Error(fmt::format("table '{}': expected a size N for a polar angle, found NxN", factor.name));
   check_layout(layout, factor.name);

@@ -24,14 +24,15 @@ struct ModelSpec {
 };
 
 /// Reads a model such as "p(wo) q(h) p(wi)" or "p(wo) q(h) r(theta_d) p(wi) + s(wi+wo+0.3n)": lobes joined by
-/// '+', a lobe a product of tables, each with one projection (see parse_projection), or with two polar angles
-/// as in "g(theta_h,theta_d)". "pqp" and "pqpr" stand for the first and the first lobe of the second.
+/// '+', a lobe a product of tables, each with one projection (see parse_projection), or with two or three polar
+/// angles as in "g(theta_h,theta_d,phi_d)". "pqp" and "pqpr" stand for the first and the first lobe of the second.
 ///
-/// `table_options` set tables, one text each: "NAME=SIZE[,warp][,shared][,format]". SIZE is N (a line over
-/// the polar angle), NxN (a disk) or NxM (a grid, where two projections are given); the warp as parse_warp
-/// reads it, the format as parse_table_format does. Where there is none, the table is a line of 32 nodes (64
-/// and a rational warp for the half vector) if the source is `isotropic` or the projection has a theta name,
-/// and otherwise a disk of 64 x 64. Throws Error on anything else, and on options for a table that the model
+/// `table_options` set tables, one text each: "NAME=SIZE[,warp...][,shared][,format]". SIZE is N (a line over
+/// the polar angle), NxN (a disk), NxM (a grid, where two projections are given) or NxMxK (a volume, of
+/// three); warps as parse_warp reads them, one an axis in turn, the format as parse_table_format does. Where
+/// there is none, the table is a line of 32 nodes (64 and a rational warp for the half vector) if the source
+/// is `isotropic` or the projection has a theta name, and otherwise a disk of 64 x 64; a grid has 32 x 32, a
+/// volume 24 nodes along theta_h, with a root warp, 12 along theta_d and 8 along another. Throws Error on anything else, and on options for a table that the model
 /// does not have.
 ModelSpec parse_model_spec(std::string_view expression, std::span<const std::string> table_options,
                            bool isotropic);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 
 #include <fmt/format.h>
 
@@ -9,6 +10,8 @@
 namespace burnish {
 
 namespace {
+
+constexpr std::array<std::string_view, 4> kShapeNames{"line", "disk", "grid", "volume"};
 
 struct Place {
   int node;
@@ -23,6 +26,17 @@ Place place(double u, int n) noexcept {
 
 }  // namespace
 
+std::string_view to_string(TableShape shape) noexcept {
+  return kShapeNames[static_cast<std::size_t>(shape)];
+}
+
+TableShape parse_table_shape(std::string_view name) {
+  const auto known = std::ranges::find(kShapeNames, name);
+  if (known == kShapeNames.end())
+    throw Error(fmt::format("shape: expected line, disk, grid or volume, found '{}'", name));
+  return static_cast<TableShape>(known - kShapeNames.begin());
+}
+
 Lookup locate(const TableLayout& layout, const FactorUse& use, Vec3 wi, Vec3 wo) noexcept {
   if (layout.shape == TableShape::disk) {
     const DiskPoint p = to_disk(project(use.projection, wi, wo), layout.warp);
@@ -32,7 +46,10 @@ Lookup locate(const TableLayout& layout, const FactorUse& use, Vec3 wi, Vec3 wo)
   const Place x = place(layout.warp.forward(project_tan_half(use.projection, wi, wo)), layout.width);
   if (layout.shape == TableShape::line) return {x.node, x.fraction, 0};
   const Place y = place(layout.warp_y.forward(project_tan_half(use.projection_y, wi, wo)), layout.height);
-  return {y.node * layout.width + x.node, x.fraction, y.fraction};
+  if (layout.shape == TableShape::grid) return {y.node * layout.width + x.node, x.fraction, y.fraction};
+  const Place z = place(layout.warp_z.forward(project_tan_half(use.projection_z, wi, wo)), layout.depth);
+  const int row = z.node * layout.height + y.node;
+  return {row * layout.width + x.node, x.fraction, y.fraction, z.fraction};
 }
 
 Vec3 node_direction(const TableLayout& layout, int x, int y) noexcept {
@@ -43,16 +60,30 @@ Vec3 node_direction(const TableLayout& layout, int x, int y) noexcept {
 }
 
 void check_layout(const TableLayout& layout, const std::string& name) {
-  const auto in_range = [](int n) { return n >= 2 && n <= kMaxSide; };
-  const bool height_fits = layout.shape == TableShape::line   ? layout.height == 1
-                           : layout.shape == TableShape::disk ? layout.height == layout.width
-                                                              : in_range(layout.height);
-  if (!in_range(layout.width) || !height_fits)
-    throw Error(fmt::format("table '{}': expected {} of sides 2 to {}, found {} x {}", name,
-                            layout.shape == TableShape::line   ? "a line (N x 1)"
-                            : layout.shape == TableShape::disk ? "a disk (N x N)"
-                                                               : "a grid",
-                            kMaxSide, layout.width, layout.height));
+  const auto in_range = [](int n, int most) { return n >= 2 && n <= most; };
+  bool fits = in_range(layout.width, kMaxSide) && layout.depth == 1;
+  int most = kMaxSide;
+  switch (layout.shape) {
+    case TableShape::line:
+      fits = fits && layout.height == 1;
+      break;
+    case TableShape::disk:
+      fits = fits && layout.height == layout.width;
+      break;
+    case TableShape::grid:
+      fits = fits && in_range(layout.height, kMaxSide);
+      break;
+    case TableShape::volume:
+      most = kMaxVolumeSide;
+      fits = in_range(layout.width, most) && in_range(layout.height, most) && in_range(layout.depth, most) &&
+             layout.rows() <= kMaxSide;
+  }
+  constexpr std::array<const char*, 4> kForms{"a line (N x 1)", "a disk (N x N)", "a grid",
+                                              "a volume of at most 8192 rows"};
+  if (!fits)
+    throw Error(fmt::format("table '{}': expected {} of sides 2 to {}, found {} x {} x {}", name,
+                            kForms[static_cast<std::size_t>(layout.shape)], most, layout.width, layout.height,
+                            layout.depth));
 }
 
 void check_format(const Table& table) {

@@ -76,9 +76,10 @@ std::vector<double> largest_of(const std::vector<double>& albedo, std::size_t ch
   return largest;
 }
 
-// The first table that a lobe looks up by both directions alike.
-std::optional<int> damping_table(const Lobe& lobe) {
+// The first table that a lobe looks up by both directions alike, and by nothing else.
+std::optional<int> damping_table(const FactoredBrdf& brdf, const Lobe& lobe) {
   for (const FactorUse& use : lobe.factors) {
+    if (projection_count(brdf.table_of(use).layout.shape) > 1) continue;
     FactorUse other = use;
     other.projection = kProjectWo;
     if (use.projection == kProjectWi && std::ranges::find(lobe.factors, other) != lobe.factors.end())
@@ -92,7 +93,7 @@ class Damper {
  public:
   Damper(const FactoredBrdf& brdf, Grid grid) : brdf_(brdf), grid_(grid), gains_(brdf.tables().size()) {
     for (const Lobe& lobe : brdf.lobes())
-      if (const auto table = damping_table(lobe)) {
+      if (const auto table = damping_table(brdf, lobe)) {
         const auto t = static_cast<std::size_t>(*table);
         gains_[t].assign(brdf.tables()[t].values.size(), 1.0);
       }

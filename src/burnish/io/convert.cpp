@@ -66,13 +66,11 @@ std::optional<double> relative_difference(BrdfRef a, BrdfRef b, std::size_t coun
 class Converter {
  public:
   Converter(const Source& source, const ConvertOptions& options)
-      : source_(source), options_(options), mean_(source.ref()) {
+      : source_(source), options_(options), brdf_(source.ref().unclamped()), mean_(brdf_) {
     if (options.cells < 2 || options.cells > 1000)
       throw Error(fmt::format("expected 2 to 1000 cells, found {}", options.cells));
     const Findings& found = source.findings;
     if (!found.illuminant.empty()) lose("spectra became linear Rec. 709 ({})", found.illuminant);
-    if (options.clamped_negatives && found.clamped_negatives > 0)
-      lose("{} values below zero became zero", found.clamped_negatives);
   }
 
   Converted run(std::string_view format) {
@@ -93,14 +91,14 @@ class Converter {
   }
 
   void require_grey_or_rgb(const char* format) const {
-    if (const int channels = source_.ref().channels(); channels != 1 && channels != 3)
+    if (const int channels = brdf_.channels(); channels != 1 && channels != 3)
       throw Error::in_file(source_.name, fmt::format("grey or RGB for {}, so no --spectral", format),
                            fmt::format("{} channels", channels));
   }
 
   /// The source, or its mean over the azimuth.
   BrdfRef isotropic() {
-    if (source_.ref().isotropic()) return source_.ref();
+    if (brdf_.isotropic()) return brdf_;
     lose("anisotropy averaged over {} azimuths", AzimuthMean::kTurns);
     return mean_;
   }
@@ -124,7 +122,7 @@ class Converter {
     const auto* data = reinterpret_cast<const std::byte*>(bytes.data());
     const Source back = parse_source({"converted", {data, data + bytes.size()}},
                                      {.keep_spectral = !source_.findings.lambda_nm.empty()});
-    const auto difference = relative_difference(source_.ref(), back.ref(), kComparedPairs);
+    const auto difference = relative_difference(brdf_, back.ref(), kComparedPairs);
     lose("sampled at {}{}", where,
          difference ? fmt::format(", {:.3g} % from the source on average", 100 * *difference) : "");
     return kept(std::move(bytes));
@@ -149,8 +147,7 @@ class Converter {
     // 360 azimuths would be the full circle
     if (2 * n == 360) return tabulate_half_diff(brdf, n, n, 2 * n, true);
     lose_asymmetry(brdf);
-    if (!source_.ref().isotropic())
-      return tabulate_half_diff(AzimuthMean(source_.ref(), true), n, n, 2 * n, false);
+    if (!brdf_.isotropic()) return tabulate_half_diff(AzimuthMean(brdf_, true), n, n, 2 * n, false);
     return tabulate_half_diff(SymmetrizedBrdf(brdf), n, n, 2 * n, false);
   }
 
@@ -175,9 +172,9 @@ class Converter {
     RglOptions options;
     options.lambda_nm = source_.findings.lambda_nm;
     options.description = sample_name();
-    return sampled(fmt::format("{} x {} x {} x {} nodes", source_.ref().isotropic() ? 1 : options.phi_i_count,
+    return sampled(fmt::format("{} x {} x {} x {} nodes", brdf_.isotropic() ? 1 : options.phi_i_count,
                                options.theta_i_count, options.resolution, options.resolution),
-                   format_rgl(make_rgl_table(source_.ref(), options)));
+                   format_rgl(make_rgl_table(brdf_, options)));
   }
 
   Converted mbsdf() {
@@ -203,7 +200,7 @@ class Converter {
     const std::string sample = sample_name();
     const auto* table = std::get_if<AngleTable>(&source_.brdf);
     if (table && fits_zemax(*table)) return kept(format_zemax(*table, sample));
-    const BrdfRef brdf = source_.ref();
+    const BrdfRef brdf = brdf_;
     if (brdf.isotropic()) lose_sides(brdf);
     const AngleTable made = tabulate_angles(brdf, zemax_layout(brdf.isotropic()));
     return sampled(
@@ -220,7 +217,7 @@ class Converter {
       made = table_entries(source_);
       lose("the table's grid: {} entries became scattered samples", made->size());
     } else if (!samples) {
-      made = measure(source_.ref(), {options_.count, 0, options_.seed});
+      made = measure(brdf_, {options_.count, 0, options_.seed});
       lose("{} samples drawn at random directions", made->size());
     }
     if (made) samples = &*made;
@@ -232,6 +229,7 @@ class Converter {
 
   const Source& source_;
   const ConvertOptions& options_;
+  const BrdfRef brdf_;  // values below zero stay
   const AzimuthMean mean_;
   std::vector<std::string> losses_;
 };
@@ -292,7 +290,7 @@ void add_entries(const PatchTable& table, EntryList& list) {
 }  // namespace
 
 Samples table_entries(const Source& source) {
-  EntryList list(source.ref());
+  EntryList list(source.ref().unclamped());
   std::visit(
       [&](const auto& brdf) {
         if constexpr (requires { add_entries(brdf, list); })

@@ -19,7 +19,6 @@ struct ConvertOptions {
   std::uint64_t seed = 1;       ///< of these
   bool entries = false;         ///< instead of drawing: every entry of a table that is no hole
   int cells = 90;  ///< along each polar angle of "merl", "mbsdf" and "exr"; twice as many along the azimuth
-  bool clamped_negatives = true;  ///< the source was opened so: what it lost by it is said
 };
 
 struct Converted {

@@ -163,10 +163,15 @@ TEST(Convert, KeepsSpectraWhereTheFormatHasThem) {
 TEST(Convert, SaysWhatReadingLost) {
   const Source source = parse_source(memory_file(kSpectra), {});
   EXPECT_THAT(convert(source, "csv").losses, Contains(HasSubstr("linear Rec. 709 (equal energy)")));
+}
+
+TEST(Convert, KeepsValuesBelowZero) {
   const Source negative =
       parse_source(memory_file("theta_i,phi_i,theta_o,phi_o,value\n1,0,2,0,-1\n1,0,3,0,1\n"), {});
-  EXPECT_THAT(convert(negative, "csv").losses, Contains(HasSubstr("1 values below zero")));
-  EXPECT_THAT(convert(negative, "csv", {.clamped_negatives = false}).losses, IsEmpty());
+  const Converted converted = convert(negative, "csv");
+  EXPECT_THAT(converted.losses, IsEmpty());
+  EXPECT_THAT(parse_source(memory_file(converted.bytes), {}).samples()->values,
+              testing::UnorderedElementsAre(-1, 1));
 }
 
 // f depends on wi alone: neither reciprocal nor, where `side`, symmetric about the plane of incidence.

@@ -29,9 +29,9 @@ TEST(Cornell, ReadsWrappedRowsAndKeepsSpectraOnRequest) {
   EXPECT_EQ(file.findings.description, "Maker, Paint");
   EXPECT_NEAR(length(file.samples.pairs[0].wi - spherical_direction(0.5, 0)), 0, 1e-15);
   EXPECT_NEAR(length(file.samples.pairs[0].wo - spherical_direction(0.25, kPi)), 0, 1e-8);
-  EXPECT_EQ(file.samples.at(1)[0], 0);  // clamped
+  EXPECT_EQ(file.samples.at(1)[0], -0.1);  // noise, kept
   EXPECT_EQ(file.samples.at(1)[2], 0.5);
-  EXPECT_EQ(file.findings.clamped_negatives, 1u);
+  EXPECT_EQ(file.findings.negative_count, 1u);
   EXPECT_EQ(file.findings.most_negative, -0.1);
 }
 

@@ -138,11 +138,10 @@ KlemsFile parse_klems(const FileBytes& file, const OpenOptions& options) {
   table.outgoing = reader.basis(trimmed(block.child_value("RowAngleBasis")));
   table.values =
       read_values(reader, block.child_value("ScatteringData"), table.incident.size() * table.outgoing.size());
-  for (float& value : table.values)
+  for (const float value : table.values)
     if (value < 0) {
-      ++findings.clamped_negatives;
+      ++findings.negative_count;
       findings.most_negative = std::min(findings.most_negative, static_cast<double>(value));
-      if (options.clamp_negatives) value = 0;
     }
   findings.format = "Klems XML";
   findings.description = printable(trimmed(reader.layer().child("Material").child_value("Name")), 200);

@@ -20,7 +20,7 @@ bool looks_like_klems(std::string_view text) noexcept;
 /// One reflection matrix of a window system's XML file: "Reflection Front", or "Reflection Back" if asked; of
 /// the visible spectrum where there are several. Columns are incident patches, counted by the azimuth
 /// the light travels to: the mirror direction has the same patch. Grey; continuous between patch
-/// centres. Negatives are counted and, unless kept on request, set to zero. Throws Error if the matrix is
+/// centres. Negatives are counted and kept. Throws Error if the matrix is
 /// missing, not patches of stated rings (variable resolution trees are not read), not as large as its bases,
 /// or a value is not finite.
 KlemsFile parse_klems(const FileBytes& file, const OpenOptions& options);

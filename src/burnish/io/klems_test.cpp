@@ -58,7 +58,7 @@ TEST(Klems, ReadsTheMatrixOfTheChosenSide) {
   EXPECT_TRUE(looks_like_klems(text));
   const auto front = parse_klems(memory_file(text), {});
   EXPECT_EQ(front.findings.description, "blind");
-  EXPECT_EQ(front.findings.clamped_negatives, 1u);
+  EXPECT_EQ(front.findings.negative_count, 1u);
   const Vec3 normal{0, 0, 1}, plus_x = spherical_direction(kPi / 3, 0), minus_x = mirror(plus_x);
   double f;
   front.table.eval(minus_x, minus_x, {&f, 1});  // light that travels to +x

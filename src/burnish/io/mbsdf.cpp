@@ -53,7 +53,7 @@ bool looks_like_mbsdf(std::span<const std::byte> bytes) noexcept {
   return bytes.size() >= kMagic.size() && std::memcmp(bytes.data(), kMagic.data(), kMagic.size() - 1) == 0;
 }
 
-MbsdfFile parse_mbsdf(const FileBytes& file, const OpenOptions& options) {
+MbsdfFile parse_mbsdf(const FileBytes& file) {
   ByteReader reader(file);
   if (!looks_like_mbsdf(file.bytes))
     reader.fail("NVIDIA ARC MBSDF V1", in_quotes(file.text().substr(0, kMagic.size())));
@@ -93,15 +93,14 @@ MbsdfFile parse_mbsdf(const FileBytes& file, const OpenOptions& options) {
   table.values.resize(header.value_count());
   std::memcpy(table.values.data(), bytes.data(), bytes.size());
   for (std::size_t i = 0; i < table.values.size(); ++i) {
-    float& value = table.values[i];
+    const float value = table.values[i];
     if (!std::isfinite(value)) {
       reader.seek(start + i * sizeof(float));
       reader.fail("a finite value", fmt::format("{}", value));
     }
     if (value >= 0) continue;
-    ++findings.clamped_negatives;
+    ++findings.negative_count;
     findings.most_negative = std::min(findings.most_negative, static_cast<double>(value));
-    if (options.clamp_negatives) value = 0;
   }
   findings.conventions.insert(
       findings.conventions.begin(),

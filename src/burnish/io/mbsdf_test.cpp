@@ -35,13 +35,12 @@ const std::string kReflection = "MBSDF_DATA_REFLECTION=\n";
 const std::string kTransmission = "MBSDF_DATA_TRANSMISSION=\n";
 
 std::string error(const std::string& bytes) {
-  return error_of([&] { parse_mbsdf(memory_file(bytes), {}); });
+  return error_of([&] { parse_mbsdf(memory_file(bytes)); });
 }
 
 TEST(Mbsdf, PutsEntriesAtCellCentres) {
   // [theta_in][theta_out][phi], 2 x 2 x 2
-  const auto file =
-      parse_mbsdf(memory_file(kStart + block(kReflection, 0, 2, 2, {1, 2, 3, 4, 5, 6, 7, 8})), {});
+  const auto file = parse_mbsdf(memory_file(kStart + block(kReflection, 0, 2, 2, {1, 2, 3, 4, 5, 6, 7, 8})));
   EXPECT_EQ(file.findings.sample_count, 8u);
   EXPECT_EQ(file.table.channels(), 1);
   EXPECT_TRUE(file.table.isotropic());
@@ -63,7 +62,7 @@ TEST(Mbsdf, SkipsMetadataAndTransmission) {
   for (const std::string& bytes :
        {kStart + "name=\"blue\"\n" + transmission + reflection, kStart + reflection + transmission,
         kStart + reflection + "\n" + transmission}) {
-    const auto file = parse_mbsdf(memory_file(bytes), {});
+    const auto file = parse_mbsdf(memory_file(bytes));
     std::array<double, 3> f;
     ASSERT_TRUE(file.table.eval({0, 0, 1}, {0, 0, 1}, f));
     EXPECT_EQ(f, (std::array<double, 3>{1, 2, 3}));
@@ -71,24 +70,21 @@ TEST(Mbsdf, SkipsMetadataAndTransmission) {
   EXPECT_THAT(error(kStart + transmission), HasSubstr("transmission only"));
 }
 
-TEST(Mbsdf, CountsAndClampsNegatives) {
+TEST(Mbsdf, CountsAndKeepsNegatives) {
   const std::string bytes = kStart + block(kReflection, 0, 1, 2, {-0.5f, 2});
-  const auto clamped = parse_mbsdf(memory_file(bytes), {});
-  EXPECT_EQ(clamped.findings.clamped_negatives, 1u);
-  EXPECT_EQ(clamped.findings.most_negative, -0.5);
-  EXPECT_EQ(clamped.table.values[0], 0);
-  OpenOptions raw;
-  raw.clamp_negatives = false;
-  EXPECT_EQ(parse_mbsdf(memory_file(bytes), raw).table.values[0], -0.5f);
+  const auto file = parse_mbsdf(memory_file(bytes));
+  EXPECT_EQ(file.findings.negative_count, 1u);
+  EXPECT_EQ(file.findings.most_negative, -0.5);
+  EXPECT_EQ(file.table.values[0], -0.5f);
 }
 
 TEST(Mbsdf, WritesWhatItReads) {
   for (const int channels : {1, 3}) {
     AngleTable table = tabulate_angles(testing::Glossy{.count = channels}, mbsdf_layout(5, 7));
     ASSERT_TRUE(fits_mbsdf(table));
-    EXPECT_EQ(parse_mbsdf(memory_file(format_mbsdf(table)), {}).table.values, table.values);
+    EXPECT_EQ(parse_mbsdf(memory_file(format_mbsdf(table))).table.values, table.values);
     std::fill_n(table.values.begin(), channels, std::numeric_limits<float>::quiet_NaN());
-    EXPECT_EQ(parse_mbsdf(memory_file(format_mbsdf(table)), {}).table.values[0], 0);
+    EXPECT_EQ(parse_mbsdf(memory_file(format_mbsdf(table))).table.values[0], 0);
   }
   AngleTable other = mbsdf_layout(5, 7);
   other.folded = false;
@@ -114,9 +110,9 @@ TEST(Mbsdf, RefusesWhatIsNoMbsdf) {
 
 TEST(Mbsdf, ReadsCarPaintWithItsPeakInTheMirrorDirection) {
   BURNISH_NEEDS_DATA();
-  const auto file = parse_mbsdf(read_file(data_folder() / "mbsdf" / "carpaint_blue.mbsdf"), {});
+  const auto file = parse_mbsdf(read_file(data_folder() / "mbsdf" / "carpaint_blue.mbsdf"));
   EXPECT_EQ(file.findings.sample_count, 45u * 45 * 90);
-  EXPECT_NEAR(static_cast<double>(file.findings.clamped_negatives) / (45 * 45 * 90 * 3), 1 / 7.0, 0.01);
+  EXPECT_NEAR(static_cast<double>(file.findings.negative_count) / (45 * 45 * 90 * 3), 1 / 7.0, 0.01);
   std::array<double, 3> f;
   for (const double theta : {20.0, 40.0, 60.0}) {
     const Vec3 wi = spherical_direction(radians(theta), 0);

@@ -41,7 +41,7 @@ struct SliceCount {
 /// Reads the entries of one theta_h from the file's three planes into the table. abs_cos_phi is |cos phi_d|
 /// of each entry of a row.
 SliceCount read_slice(const std::byte* planes, int h, std::span<const double> abs_cos_phi,
-                      bool clamp_negatives, HalfDiffTable& table) {
+                      HalfDiffTable& table) {
   const std::size_t entries = table.entry_count();
   SliceCount count;
   for (int d = 0; d < table.theta_d_count; ++d) {
@@ -65,7 +65,7 @@ SliceCount read_slice(const std::byte* planes, int h, std::span<const double> ab
       }
 
       for (std::size_t c = 0; c < 3; ++c) {
-        double value = f[c] * kScale[c];
+        const double value = f[c] * kScale[c];
         // also refuses what a float cannot hold
         if (!(std::abs(value) <= std::numeric_limits<float>::max())) {
           if (count.finite) count.bad_entry = c * entries + row + p;
@@ -74,7 +74,6 @@ SliceCount read_slice(const std::byte* planes, int h, std::span<const double> ab
         if (value < 0) {
           ++count.negatives;
           count.most_negative = std::min(count.most_negative, value);
-          if (clamp_negatives) value = 0;
         }
         entry[c] = count.finite ? static_cast<float>(value) : 0;
       }
@@ -91,7 +90,7 @@ bool looks_like_merl(std::span<const std::byte> bytes) noexcept {
   return std::all_of(sizes.begin(), sizes.end(), [](std::int32_t n) { return n > 0 && n <= kMaxSize; });
 }
 
-MerlFile parse_merl(const FileBytes& file, const OpenOptions& options) {
+MerlFile parse_merl(const FileBytes& file) {
   ByteReader reader(file);
   reader.require(kHeaderBytes, "MERL table sizes");
   const auto sizes = header_of(file.bytes);
@@ -114,7 +113,7 @@ MerlFile parse_merl(const FileBytes& file, const OpenOptions& options) {
     abs_cos_phi[static_cast<std::size_t>(p)] = std::abs(std::cos(table.centre(0, 0, p).phi_d));
   std::vector<SliceCount> counts(static_cast<std::size_t>(sizes[0]));
   for_each_chunk(counts.size(), 1, [&](std::size_t h, std::size_t, std::size_t) {
-    counts[h] = read_slice(planes, static_cast<int>(h), abs_cos_phi, options.clamp_negatives, table);
+    counts[h] = read_slice(planes, static_cast<int>(h), abs_cos_phi, table);
   });
 
   Findings& findings = merl.findings;
@@ -127,7 +126,7 @@ MerlFile parse_merl(const FileBytes& file, const OpenOptions& options) {
     }
     findings.hole_count += count.holes;
     below_horizon += count.below_horizon;
-    findings.clamped_negatives += count.negatives;
+    findings.negative_count += count.negatives;
     findings.most_negative = std::min(findings.most_negative, count.most_negative);
   }
   findings.format = "MERL binary";

@@ -20,10 +20,10 @@ bool looks_like_merl(std::span<const std::byte> bytes) noexcept;
 
 /// A MERL .binary table: i32 sizes of theta_h, theta_d, phi_d, then f64 planes of red, green and blue. 360
 /// entries of phi_d are a full circle, any other count half of it. Entries below the horizon, and entries of
-/// -1 in all channels, are holes; other negatives are counted and, unless kept on request, set to zero.
+/// -1 in all channels, are holes; other negatives are counted and kept.
 /// Linear Rec. 709, as the database states. Throws Error if the sizes and the file's length differ or a value
 /// above the horizon is not finite. Source: [Matusik 2003].
-MerlFile parse_merl(const FileBytes& file, const OpenOptions& options);
+MerlFile parse_merl(const FileBytes& file);
 
 /// True if a MERL file can hold the table as it is: grey or RGB, the full circle of phi_d exactly where it
 /// has 360 entries.

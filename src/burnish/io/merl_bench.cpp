@@ -24,7 +24,7 @@ void merl(benchmark::State& state, bool convert) {
   for (auto _ : state) {
     const FileBytes file = read_file(path);
     if (convert) {
-      const MerlFile parsed = parse_merl(file, {});
+      const MerlFile parsed = parse_merl(file);
       if (parsed.table.values.front() != 0.25f) state.SkipWithError("the table is wrong");
     }
     benchmark::DoNotOptimize(file.bytes.data());

@@ -9,7 +9,7 @@ struct OpenOptions {
   bool keep_spectral = false;    ///< one channel a wavelength instead of linear Rec. 709
   std::string illuminant = "E";  ///< "E" (equal energy) or "D65": the light under which spectra become RGB
   bool has_cosine = false;       ///< CSV values are f_r cos(theta_i): divide it out
-  bool clamp_negatives = true;   ///< set measured values below zero to zero (they are counted either way)
+  bool clamp_negatives = true;   ///< set interpolated values below zero to zero
   bool back_side = false;        ///< Klems: "Reflection Back" instead of "Reflection Front"
 };
 

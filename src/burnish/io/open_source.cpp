@@ -58,14 +58,12 @@ Source from_spec(const std::string& spec) {
   return {spec, std::move(brdf), std::move(findings)};
 }
 
-}  // namespace
-
-Source parse_source(const FileBytes& file, const OpenOptions& options) {
+Source parse_file(const FileBytes& file, const OpenOptions& options) {
   // Binary formats first: their first bytes are unmistakable.
   if (looks_like_exr(file.bytes)) return to_source(file.name, parse_model(file));
   if (looks_like_rgl(file.bytes)) return from_table(file, parse_rgl(file, options));
-  if (looks_like_mbsdf(file.bytes)) return from_table(file, parse_mbsdf(file, options));
-  if (looks_like_merl(file.bytes)) return from_table(file, parse_merl(file, options));
+  if (looks_like_mbsdf(file.bytes)) return from_table(file, parse_mbsdf(file));
+  if (looks_like_merl(file.bytes)) return from_table(file, parse_merl(file));
   const std::string_view text = file.text();
   if (looks_like_baseline(text)) return from_baseline(file);
   if (looks_like_klems(text)) return from_table(file, parse_klems(file, options));
@@ -79,6 +77,14 @@ Source parse_source(const FileBytes& file, const OpenOptions& options) {
       "a MERL, RGL, MBSDF, Zemax, Klems, ASTM E1392, Cornell or CSV measurement, a neural encoding, a "
       "baseline or a burnish model",
       fmt::format("something that starts with {}", in_quotes(text.substr(0, 16))));
+}
+
+}  // namespace
+
+Source parse_source(const FileBytes& file, const OpenOptions& options) {
+  Source source = parse_file(file, options);
+  source.clamp_negatives = options.clamp_negatives;
+  return source;
 }
 
 Source open_source(const std::string& spec, const OpenOptions& options) {

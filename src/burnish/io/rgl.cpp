@@ -125,7 +125,7 @@ double most_negative(const RglTable& table) {
     const DirectionPair pair = table.node_directions(
         static_cast<int>(slice / data.theta_i.size()), static_cast<int>(slice % data.theta_i.size()),
         static_cast<int>(node / width), static_cast<int>(node % width));
-    table.eval(pair.wi, pair.wo, f);
+    table.eval_raw(pair.wi, pair.wo, f);
     result = std::min(result, *std::min_element(f.begin(), f.end()));
   }
   return result;
@@ -215,9 +215,8 @@ RglFile parse_rgl(const FileBytes& file, const OpenOptions& options) {
                       table.reduction() == 2 ? "rotation by 180 degrees" : "two mirror planes"));
     findings.most_negative = most_negative(table);
     const auto& values = table.data().spectra.values;
-    findings.clamped_negatives = static_cast<std::uint64_t>(
+    findings.negative_count = static_cast<std::uint64_t>(
         std::count_if(values.begin(), values.end(), [](float v) { return v < 0; }));
-    if (options.clamp_negatives) table.clamp_negatives();
     return {std::move(table), std::move(findings)};
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", file.name, error.what()));

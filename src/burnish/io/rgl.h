@@ -22,7 +22,7 @@ bool looks_like_rgl(std::span<const std::byte> head) noexcept;
 
 /// Reads a tensor file with the fields of the RGL material database [Dupuy 2018]: isotropic or anisotropic,
 /// RGB or spectral. Spectra become linear Rec. 709 under options.illuminant unless options.keep_spectral.
-/// Negative values that remain are counted, and set to zero where options.clamp_negatives. Throws Error for
+/// Negative values that remain are kept and counted. Throws Error for
 /// what parse_tensor_file and RglTable refuse, a missing field, or one of another type or shape.
 RglFile parse_rgl(const FileBytes& file, const OpenOptions& options);
 

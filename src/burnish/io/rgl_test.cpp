@@ -111,7 +111,7 @@ TEST(Rgl, RoundTripsIsotropicAndAnisotropicRgb) {
     const RglFile file = parsed(bytes);
     EXPECT_EQ(file.table.isotropic(), !brushed);
     EXPECT_EQ(file.findings.description, "a lobe");
-    EXPECT_EQ(file.findings.clamped_negatives, 0u);
+    EXPECT_EQ(file.findings.negative_count, 0u);
     EXPECT_EQ(file.findings.sample_count, (brushed ? 5u : 1u) * 4 * 8 * 8);
     EXPECT_GT(file.findings.hole_count, 0u);  // directions below the horizon
     EXPECT_EQ(file.table.data().valid, table.data().valid);
@@ -163,25 +163,21 @@ TEST(Rgl, GreyTablesAreWrittenAsRgb) {
   for (std::size_t i = 0; i < rgb.size(); ++i) EXPECT_EQ(rgb[i], grey[i / 3]);
 }
 
-TEST(Rgl, NegativeValuesAreCountedAndClampedUnlessKept) {
+TEST(Rgl, NegativeValuesAreCountedAndCutAfterInterpolation) {
   EditedFile edited(small_table(3, false));
   const std::size_t slice = 1, nodes = 8 * 8, red = slice * 3 * nodes;
   for (std::size_t i = 0; i < nodes; ++i) edited["rgb"].set_float(red + i, -0.25f);
-  OpenOptions keep;
-  keep.clamp_negatives = false;
-  const RglFile clamped = parsed(edited.bytes()), kept = parsed(edited.bytes(), keep);
-  for (const RglFile* file : {&clamped, &kept}) {
-    EXPECT_EQ(file->findings.clamped_negatives, nodes);
-    EXPECT_LT(file->findings.most_negative, 0);
-  }
+  const RglFile file = parsed(edited.bytes());
+  EXPECT_EQ(file.findings.negative_count, nodes);
+  EXPECT_LT(file.findings.most_negative, 0);
   const Vec3 wi = spherical_direction(kHalfPi / 3, 0), wo = spherical_direction(0.4, 1);
-  std::vector<double> a(3), b(3);
-  clamped.table.eval(wi, wo, a);
-  kept.table.eval(wi, wo, b);
-  EXPECT_NEAR(a[0], 0, 1e-6);
-  EXPECT_LT(b[0], 0);
-  EXPECT_GE(b[0], kept.findings.most_negative);
-  EXPECT_EQ(a[1], b[1]);
+  std::vector<double> cut(3), raw(3);
+  file.table.eval(wi, wo, cut);
+  file.table.eval_raw(wi, wo, raw);
+  EXPECT_EQ(cut[0], 0);
+  EXPECT_LT(raw[0], 0);
+  EXPECT_GE(raw[0], file.findings.most_negative);
+  EXPECT_EQ(cut[1], raw[1]);
 }
 
 TEST(Rgl, EveryTruncatedHeaderThrows) {
@@ -319,7 +315,7 @@ TEST_F(RglMeasurements, AreReadAsDescribed) {
     EXPECT_EQ(file.table.channels(), 3);
     EXPECT_EQ(file.findings.sample_count, 8u * 32 * 32);
     EXPECT_NE(file.findings.description, "");
-    EXPECT_EQ(file.findings.clamped_negatives > 0, file.findings.most_negative < 0);
+    EXPECT_EQ(file.findings.negative_count > 0, file.findings.most_negative < 0);
     for (double value : values_of(file.table)) EXPECT_TRUE(std::isfinite(value) && value >= 0);
   }
 }

@@ -12,17 +12,6 @@ namespace burnish {
 
 namespace {
 
-/// Sets values below zero to zero; returns how many.
-std::uint64_t clamp_to_zero(std::span<double> values) noexcept {
-  std::uint64_t count = 0;
-  for (double& value : values)
-    if (value < 0) {
-      value = 0;
-      ++count;
-    }
-  return count;
-}
-
 std::vector<double> to_rec709(const Samples& samples, std::span<const std::array<double, 3>> weights) {
   std::vector<double> rgb(samples.size() * 3, 0.0);
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -52,10 +41,9 @@ void finish_samples(const std::string& file, const OpenOptions& options, SampleF
 
   // negatives
   for (const double value : samples.values) {
-    findings.clamped_negatives += value < 0;
+    findings.negative_count += value < 0;
     findings.most_negative = std::min(findings.most_negative, value);
   }
-  if (options.clamp_negatives) clamp_to_zero(samples.values);
 
   // spectra, kept or made linear Rec. 709, where colours outside the gamut have negatives of their own
   if (!findings.lambda_nm.empty()) {
@@ -70,10 +58,9 @@ void finish_samples(const std::string& file, const OpenOptions& options, SampleF
       findings.illuminant = options.illuminant == "E" ? "equal energy" : options.illuminant;
       findings.conventions.push_back(fmt::format("{} wavelengths, {} to {} nm, became linear Rec. 709.",
                                                  lambda.size(), lambda.front(), lambda.back()));
-      if (options.clamp_negatives)
-        if (const auto outside = clamp_to_zero(samples.values))
-          findings.conventions.push_back(
-              fmt::format("{} values outside the gamut were set to zero.", outside));
+      if (const auto outside = std::ranges::count_if(samples.values, [](double v) { return v < 0; }))
+        findings.conventions.push_back(
+            fmt::format("{} values are below zero: colours outside the gamut, or noise.", outside));
       findings.lambda_nm.clear();
     }
   }

@@ -32,7 +32,7 @@ std::string to_json(const SourceReport& report) {
                               {"conventions", findings.conventions},
                               {"samples", findings.sample_count},
                               {"holes", findings.hole_count},
-                              {"negatives", findings.clamped_negatives},
+                              {"negatives", findings.negative_count},
                               {"most_negative", findings.most_negative},
                               {"theta_i_deg", {degrees(findings.theta_i_min), degrees(findings.theta_i_max)}},
                               {"theta_o_deg", {degrees(findings.theta_o_min), degrees(findings.theta_o_max)}},

@@ -222,9 +222,8 @@ void fill_values(const std::vector<double>& read, const Header& header, const Ta
 
     for (std::size_t c = 0; c < channels; ++c)
       if (value[c] < 0) {
-        ++findings.clamped_negatives;
+        ++findings.negative_count;
         findings.most_negative = std::min(findings.most_negative, static_cast<double>(value[c]));
-        if (options.clamp_negatives) value[c] = 0;
       }
 
     // theta_o, the same for every rotation of the sample

@@ -37,7 +37,7 @@ TEST(Zemax, ReadsValuesAroundTheMirrorDirection) {
   EXPECT_EQ(file.findings.description, "paint");
   EXPECT_EQ(file.findings.sample_count, 12u);
   EXPECT_EQ(file.findings.hole_count, 1u);
-  EXPECT_EQ(file.findings.clamped_negatives, 1u);
+  EXPECT_EQ(file.findings.negative_count, 1u);
   EXPECT_TRUE(file.table.isotropic());
   double f;
   const double phi = 0.3;
@@ -168,7 +168,7 @@ TEST(Zemax, ReadsABlackCoatingMeasuredTo80Degrees) {
   BURNISH_NEEDS_DATA();
   const auto file = parse_zemax(read_file(data_folder() / "zemax" / "AnoBlackEC1onAlum.bsdf"), {});
   EXPECT_EQ(file.findings.sample_count, 4u * 19 * 12);
-  EXPECT_EQ(file.findings.clamped_negatives, 0u);
+  EXPECT_EQ(file.findings.negative_count, 0u);
   EXPECT_TRUE(file.table.isotropic());
   // The instrument stops 80 degrees from the normal. Exactly the entries beyond are holes if the frame is
   // right.

@@ -68,6 +68,12 @@ Vec3 around_specular(double theta_i, double phi_i, double azimuth, double radial
 }
 
 bool AngleTable::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+  const bool known = eval_raw(wi, wo, f);
+  cut_negatives(f);
+  return known;
+}
+
+bool AngleTable::eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   std::fill(f.begin(), f.end(), 0.0);
   if (wi.z <= 0 || wo.z <= 0) return true;
 

@@ -53,9 +53,10 @@ struct AngleTable {
   /// Linear along each angle. Holes have no weight, the others' weights are scaled to sum to 1; unknown where
   /// all neighbours are holes and outside an axis (see AxisNeighbours).
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
+  bool eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 };
 
-static_assert(Brdf<AngleTable>);
+static_assert(HasRawValues<AngleTable>);
 
 /// Directions of the entry at a node of each axis; either may lie below the horizon. Precondition: indices
 /// below the axes' sizes.

@@ -25,15 +25,22 @@ AzimuthMean::AzimuthMean(BrdfRef source, bool exchange) : source_(source), excha
 }
 
 bool AzimuthMean::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
-  if (source_.isotropic())
-    return exchange_ ? SymmetrizedBrdf(source_).eval(wi, wo, f) : source_.eval(wi, wo, f);
+  return mean(source_, wi, wo, f);
+}
+
+bool AzimuthMean::eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+  return mean(source_.unclamped(), wi, wo, f);
+}
+
+bool AzimuthMean::mean(BrdfRef source, Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+  if (source.isotropic()) return exchange_ ? SymmetrizedBrdf(source).eval(wi, wo, f) : source.eval(wi, wo, f);
   std::array<double, kMaxChannels> buffer;
   const std::span<double> one(buffer.data(), f.size());
   std::fill(f.begin(), f.end(), 0.0);
   int known = 0;
   for (std::size_t k = 0; k < kTurns; ++k) {
     const Vec3 a = turned(wi, turns_[k]), b = turned(wo, turns_[k]);
-    if (!(exchange_ && k % 2 == 1 ? source_.eval(b, a, one) : source_.eval(a, b, one))) continue;
+    if (!(exchange_ && k % 2 == 1 ? source.eval(b, a, one) : source.eval(a, b, one))) continue;
     ++known;
     for (std::size_t i = 0; i < f.size(); ++i) f[i] += one[i];
   }

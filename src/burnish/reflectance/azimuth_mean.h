@@ -23,13 +23,16 @@ class AzimuthMean {
   int channels() const noexcept { return source_.channels(); }
   bool isotropic() const noexcept { return true; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
+  bool eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 
  private:
+  bool mean(BrdfRef source, Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
+
   BrdfRef source_;
   bool exchange_;
   std::array<Point2, kTurns> turns_;  // cosine, sine
 };
 
-static_assert(Brdf<AzimuthMean>);
+static_assert(HasRawValues<AzimuthMean>);
 
 }  // namespace burnish

@@ -9,16 +9,28 @@ SymmetrizedBrdf::SymmetrizedBrdf(BrdfRef source) : source_(source) {
   if (source.channels() > kMaxChannels) throw Error("a source to symmetrize has at most 1024 channels");
 }
 
-bool SymmetrizedBrdf::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
-  std::array<double, kMaxChannels> buffer;
+namespace {
+
+bool mean_of_orders(BrdfRef source, Vec3 wi, Vec3 wo, std::span<double> f) noexcept {
+  std::array<double, SymmetrizedBrdf::kMaxChannels> buffer;
   const std::span<double> swapped(buffer.data(), f.size());
-  const bool known = source_.eval(wi, wo, f);
-  const bool swapped_known = source_.eval(wo, wi, swapped);
+  const bool known = source.eval(wi, wo, f);
+  const bool swapped_known = source.eval(wo, wi, swapped);
   if (known && swapped_known)
     for (std::size_t c = 0; c < f.size(); ++c) f[c] = 0.5 * (f[c] + swapped[c]);
   else if (swapped_known)
     for (std::size_t c = 0; c < f.size(); ++c) f[c] = swapped[c];
   return known || swapped_known;
+}
+
+}  // namespace
+
+bool SymmetrizedBrdf::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+  return mean_of_orders(source_, wi, wo, f);
+}
+
+bool SymmetrizedBrdf::eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+  return mean_of_orders(source_.unclamped(), wi, wo, f);
 }
 
 }  // namespace burnish

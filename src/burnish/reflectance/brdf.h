@@ -23,6 +23,9 @@ struct DirectionPair {
 ///   writes zeros, where the source knows nothing: a hole in a measurement, a direction outside its coverage.
 ///   Below the horizon (wi.z <= 0 or wo.z <= 0) it writes zeros and returns true. Never allocates, never
 ///   throws; values are finite and, except for sources kept raw on request, >= 0.
+/// What holds negative values, the noise of a measurement about small ones, has besides
+/// - eval_raw(wi, wo, f): the same with negative results as they are. eval sets these to zero, and what is
+///   interpolated or averaged is not cut before.
 // clang-format off
 template <class T>
 concept Brdf = requires(const T& brdf, Vec3 w, std::span<double> f) {
@@ -32,6 +35,17 @@ concept Brdf = requires(const T& brdf, Vec3 w, std::span<double> f) {
 };
 // clang-format on
 
+template <class T>
+concept HasRawValues = Brdf<T> && requires(const T& brdf, Vec3 w, std::span<double> f) {
+  { brdf.eval_raw(w, w, f) }
+  noexcept->std::same_as<bool>;
+};
+
+/// Sets values below zero to zero, as the owners of measured formats do with what they interpolated.
+inline void cut_negatives(std::span<double> f) noexcept {
+  for (double& value : f) value = value < 0 ? 0 : value;
+}
+
 /// A non-owning reference to any Brdf. The indirection is paid once a span, not once a direction.
 class BrdfRef {
  public:
@@ -39,11 +53,19 @@ class BrdfRef {
   template <Brdf T>
     requires(!std::same_as<T, BrdfRef>)
   BrdfRef(const T& brdf) noexcept  // NOLINT: implicit like std::span
-      : brdf_(&brdf), channels_(brdf.channels()), isotropic_(brdf.isotropic()), eval_span_(&eval_span<T>) {}
+      : brdf_(&brdf), channels_(brdf.channels()), isotropic_(brdf.isotropic()), eval_span_(&eval_span<T, false>),
+        raw_span_(&eval_span<T, HasRawValues<T>>) {}
   // clang-format on
 
   int channels() const noexcept { return channels_; }
   bool isotropic() const noexcept { return isotropic_; }
+
+  /// The same BRDF with eval_raw in the place of eval where it has one: for means, whose noise then cancels.
+  BrdfRef unclamped() const noexcept {
+    BrdfRef raw = *this;
+    raw.eval_span_ = raw_span_;
+    return raw;
+  }
 
   /// One pair; see Brdf.
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
@@ -60,27 +82,37 @@ class BrdfRef {
   }
 
  private:
-  template <Brdf T>
+  using EvalSpan = void(const void*, std::span<const DirectionPair>, std::span<double>,
+                        std::span<std::uint8_t>) noexcept;
+
+  template <Brdf T, bool raw>
   static void eval_span(const void* brdf, std::span<const DirectionPair> pairs, std::span<double> values,
                         std::span<std::uint8_t> known) noexcept {
     const T& concrete = *static_cast<const T*>(brdf);
     const auto channels = static_cast<std::size_t>(concrete.channels());
-    for (std::size_t i = 0; i < pairs.size(); ++i)
-      known[i] = concrete.eval(pairs[i].wi, pairs[i].wo, values.subspan(i * channels, channels));
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const auto& [wi, wo] = pairs[i];
+      const std::span<double> f = values.subspan(i * channels, channels);
+      if constexpr (raw)
+        known[i] = concrete.eval_raw(wi, wo, f);
+      else
+        known[i] = concrete.eval(wi, wo, f);
+    }
   }
 
   const void* brdf_;
   int channels_;
   bool isotropic_;
-  void (*eval_span_)(const void*, std::span<const DirectionPair>, std::span<double>,
-                     std::span<std::uint8_t>) noexcept;
+  EvalSpan* eval_span_;
+  EvalSpan* raw_span_;
 };
 
 static_assert(Brdf<BrdfRef>);
 
 /// The reciprocal part of a source, 1/2 [f(wi, wo) + f(wo, wi)]; where only one of the two is known, that
 /// one. Measured tables are seldom exactly reciprocal, exactly reciprocal models are fitted to and scored
-/// against this. Channels: at most kMaxChannels.
+/// against this. Both orders are cut at zero before they are averaged, as the source's owner evaluates them;
+/// raw values average raw ones. Channels: at most kMaxChannels.
 class SymmetrizedBrdf {
  public:
   static constexpr int kMaxChannels = 1024;
@@ -90,11 +122,12 @@ class SymmetrizedBrdf {
   int channels() const noexcept { return source_.channels(); }
   bool isotropic() const noexcept { return source_.isotropic(); }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
+  bool eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 
  private:
   BrdfRef source_;
 };
 
-static_assert(Brdf<SymmetrizedBrdf>);
+static_assert(HasRawValues<SymmetrizedBrdf>);
 
 }  // namespace burnish

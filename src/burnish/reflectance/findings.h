@@ -11,14 +11,14 @@ struct Findings {
   std::string format;       ///< "MERL binary", "Cornell scattered spectra", "analytic", ...
   std::string description;  ///< the source's own name or remarks, one line; may be empty
   std::vector<std::string>
-      conventions;                 ///< how the source's conventions were mapped to ours, one sentence each
-  std::uint64_t sample_count = 0;  ///< stored values of one channel, holes included
-  std::uint64_t hole_count = 0;    ///< of these, how many hold no measurement
-  std::uint64_t clamped_negatives = 0;  ///< values (all channels) below zero that were set to zero
-  double most_negative = 0;             ///< the smallest of them before clamping, 1/sr
-  std::vector<double> lambda_nm;        ///< wavelengths of the channels kept, or empty for grey and RGB
-  std::string illuminant;  ///< how spectra became RGB: "equal energy", "D65"; empty if they did not
-  std::string notes;       ///< what a model says about its making, a JSON object; empty for anything else
+      conventions;                   ///< how the source's conventions were mapped to ours, one sentence each
+  std::uint64_t sample_count = 0;    ///< stored values of one channel, holes included
+  std::uint64_t hole_count = 0;      ///< of these, how many hold no measurement
+  std::uint64_t negative_count = 0;  ///< of all channels' values, how many are below zero
+  double most_negative = 0;          ///< the smallest of them, 1/sr
+  std::vector<double> lambda_nm;     ///< wavelengths of the channels kept, or empty for grey and RGB
+  std::string illuminant;            ///< how spectra became RGB: "equal energy", "D65"; empty if they did not
+  std::string notes;  ///< what a model says about its making, a JSON object; empty for anything else
   double theta_i_min = 0, theta_i_max = 0;  ///< polar angles covered by data, radians
   double theta_o_min = 0, theta_o_max = 0;
 };

@@ -74,6 +74,12 @@ bool HalfDiffTable::above_horizon(int h, int d, int p) const noexcept {
 }
 
 bool HalfDiffTable::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+  const bool known = eval_raw(wi, wo, f);
+  cut_negatives(f);
+  return known;
+}
+
+bool HalfDiffTable::eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   write_zeros(f);
   if (wi.z <= 0 || wo.z <= 0) return true;
   const PositionInCells at = position_in(*this, wi, wo);
@@ -105,7 +111,7 @@ bool NearestHalfDiff::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept
                                                     cell(at.theta_d, table->theta_d_count),
                                                     cell(at.phi_d, table->phi_d_count))];
   if (std::isnan(entry[0])) return false;
-  for (std::size_t c = 0; c < f.size(); ++c) f[c] = static_cast<double>(entry[c]);
+  for (std::size_t c = 0; c < f.size(); ++c) f[c] = std::max(static_cast<double>(entry[c]), 0.0);
   return true;
 }
 

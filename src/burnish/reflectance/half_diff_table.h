@@ -26,6 +26,7 @@ struct HalfDiffTable {
   /// Holes have no weight, the others' weights are scaled to sum to 1; unknown where all eight neighbours are
   /// holes.
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
+  bool eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 
   std::size_t entry_count() const noexcept {
     return static_cast<std::size_t>(theta_h_count) * static_cast<std::size_t>(theta_d_count) *
@@ -49,7 +50,7 @@ struct NearestHalfDiff {
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 };
 
-static_assert(Brdf<HalfDiffTable> && Brdf<NearestHalfDiff>);
+static_assert(HasRawValues<HalfDiffTable> && Brdf<NearestHalfDiff>);
 
 /// Samples an isotropic source at the centres of a table's cells, on all threads; entries below the horizon
 /// and unknown ones become holes. Throws Error if the source is anisotropic or a count is below 1.

@@ -59,6 +59,12 @@ double PatchBasis::projected_solid_angle(std::size_t patch) const noexcept {
 }
 
 bool PatchTable::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+  const bool known = eval_raw(wi, wo, f);
+  cut_negatives(f);
+  return known;
+}
+
+bool PatchTable::eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   f[0] = 0;
   if (wi.z <= 0 || wo.z <= 0) return true;
   const PatchNeighbours in = incident.neighbours(wi), out = outgoing.neighbours(wo);

@@ -46,9 +46,10 @@ struct PatchTable {
   /// Linear between patch centres in both directions, see PatchBasis::neighbours: continuous, unlike the
   /// patches.
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
+  bool eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 };
 
-static_assert(Brdf<PatchTable>);
+static_assert(HasRawValues<PatchTable>);
 
 /// The 145 patches of the full Klems basis. Source: [Klems 1994].
 PatchBasis klems_full_basis();

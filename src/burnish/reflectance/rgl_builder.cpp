@@ -233,8 +233,8 @@ RglTable make_rgl_table(BrdfRef source, const RglOptions& options) {
     fill_gaps(values, std::move(known), side, channels);
     for (std::size_t i = 0; i < nodes; ++i)
       data.luminance.values[slice * nodes + i] =
-          std::accumulate(&values[i * channels], &values[i * channels] + channels, 0.0f) /
-          static_cast<float>(channels);
+          std::max(0.0f, std::accumulate(&values[i * channels], &values[i * channels] + channels, 0.0f) /
+                             static_cast<float>(channels));
   });
 
   data.valid.resize((valid.size() + 7) / 8);

@@ -133,7 +133,7 @@ RglTable::RglTable(RglData data) : data_(std::move(data)) {
   set_reduction();
   warp_ = ConditionalWarp2(data_.vndf.width, data_.vndf.height, data_.vndf.values);
 
-  // negative noise carries no light; a dark slice is drawn from evenly
+  // a density has no negative values; a dark slice is drawn from evenly
   std::vector<float> luminance = data_.luminance.values;
   const std::size_t slice = luminance.size() / slices;
   for (std::size_t first = 0; first < luminance.size(); first += slice) {
@@ -253,6 +253,12 @@ RglTable::TablePlaces RglTable::places_of(Vec3 wi, Vec3 wo) const noexcept {
 }
 
 bool RglTable::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+  const bool known = eval_raw(wi, wo, f);
+  cut_negatives(f);
+  return known;
+}
+
+bool RglTable::eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   assert(f.size() == static_cast<std::size_t>(data_.channels));
   std::fill(f.begin(), f.end(), 0.0);
   if (!(wi.z > 0 && wo.z > 0)) return true;
@@ -317,11 +323,6 @@ DirectionPair RglTable::node_directions(int phi, int theta, int row, int column)
                                  {{static_cast<std::uint32_t>(slice)}, {1}, 1});
   const Vec3 h = spherical_direction(rgl_theta(half.x), rgl_phi(half.y));
   return {wi, normalize(2 * dot(wi, h) * h - wi)};
-}
-
-void RglTable::clamp_negatives() noexcept {
-  for (RglGrid* grid : {&data_.spectra, &data_.luminance})
-    for (float& value : grid->values) value = std::max(value, 0.0f);
 }
 
 }  // namespace burnish

@@ -52,9 +52,11 @@ class RglTable {
   /// How often the range of phi_i fits in the circle: 1, 2 or 4.
   int reduction() const noexcept { return reduction_; }
 
-  /// f_r; see Brdf. Negative only where spectra are. The cosine of wo that the table contains is divided out,
-  /// with the cosine taken as at least 1e-6.
+  /// f_r; see Brdf. The spectra are interpolated as they are stored and the result is cut at zero, as the
+  /// database's own loader does. The cosine of wo that the table contains is divided out, with the cosine taken
+  /// as at least 1e-6.
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
+  bool eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 
   /// The measurement's own way of drawing: the second direction for a given first one, wi, along the warps
   /// by luminance and visible normals that the file stores; u in [0, 1)^2. `wi` of the result is the drawn
@@ -66,9 +68,6 @@ class RglTable {
   /// Directions of a node of spectra; wo may lie below the horizon.
   /// Precondition: indices below the sizes of phi_i, theta_i and spectra.
   DirectionPair node_directions(int phi, int theta, int row, int column) const noexcept;
-
-  /// Sets negative spectra and luminance to zero.
-  void clamp_negatives() noexcept;
 
  private:
   void set_reduction();
@@ -85,7 +84,7 @@ class RglTable {
   double cos_first_ = 0, sin_first_ = 0;  // reduction 2: the first phi_i
 };
 
-static_assert(Brdf<RglTable>);
+static_assert(HasRawValues<RglTable>);
 
 /// sample_wo and pdf_wo as a DirectionSampler: the measurement taken with its directions exchanged, as it is
 /// used where light is followed from the eye. Refers to the table.

@@ -191,13 +191,25 @@ TEST(RglTable, NodesAreReadBackAtTheirDirections) {
   EXPECT_GT(above, 15);
 }
 
-TEST(RglTable, ClampedTablesAreNotNegative) {
-  RglData data = uniform_data({0}, [](int, int t) { return t == 1 ? -1.0f : 1.0f; });
-  RglTable table(data);
-  const Vec3 wi = spherical_direction(0.5, 0), wo = spherical_direction(0.2, 0);
-  EXPECT_LT(value_of(table, wi, wo), 0);
-  table.clamp_negatives();
-  EXPECT_EQ(value_of(table, wi, wo), 0);
+TEST(RglTable, InterpolatesNegativeNodesAndCutsTheResult) {
+  const auto table_of = [](float second) {
+    return RglTable(uniform_data({0}, [=](int, int t) { return t == 1 ? second : 1.0f; }));
+  };
+  const RglTable negative = table_of(-1), zero = table_of(0);
+  const Vec3 wo = spherical_direction(0.2, 0);
+  int cut = 0, positive = 0;
+  for (double theta = 0; theta < 1; theta += 0.05) {
+    const Vec3 wi = spherical_direction(theta, 0);
+    double raw, f;
+    ASSERT_TRUE(negative.eval_raw(wi, wo, {&raw, 1}));
+    ASSERT_TRUE(negative.eval(wi, wo, {&f, 1}));
+    EXPECT_EQ(f, std::max(raw, 0.0));
+    cut += raw < 0;
+    // beside the node it is below what a node of zero would leave
+    positive += raw > 0 && f < 0.999 * value_of(zero, wi, wo);
+  }
+  EXPECT_GT(cut, 2);
+  EXPECT_GT(positive, 2);
 }
 
 TEST(RglTable, ImpossibleDataThrow) {

@@ -134,6 +134,12 @@ ScatteredBrdf::Point ScatteredBrdf::place(Vec3 wi, Vec3 wo) const noexcept {
 }
 
 bool ScatteredBrdf::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+  const bool known = eval_raw(wi, wo, f);
+  cut_negatives(f);
+  return known;
+}
+
+bool ScatteredBrdf::eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   std::fill(f.begin(), f.end(), 0.0);
   if (wi.z <= 0 || wo.z <= 0) return true;
 

@@ -42,6 +42,7 @@ class ScatteredBrdf {
   int channels() const noexcept { return samples_.channels; }
   bool isotropic() const noexcept { return samples_.isotropic; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
+  bool eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 
   const Samples& samples() const noexcept { return samples_; }
   /// 0.001 min(1, (1439 / n)^(2/d)) in d dimensions: as many samples in reach as the Cornell sets have, so
@@ -61,7 +62,7 @@ class ScatteredBrdf {
   double initial_radius2_ = 0;
 };
 
-static_assert(Brdf<ScatteredBrdf>);
+static_assert(HasRawValues<ScatteredBrdf>);
 
 /// The chosen samples, in the order given. Precondition: indices below samples.size().
 Samples select(const Samples& samples, std::span<const std::size_t> subset);

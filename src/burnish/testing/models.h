@@ -43,6 +43,8 @@ inline const ModelCase kModelCases[] = {
      3},
     {"ThreeLobes", "p(wo) q(h) p(wi) + p(wo) s(h) p(wi) + t(theta_d)", {"p=8", "q=64", "s=16", "t=8"}, 3},
     {"Twist", "a(theta_t) g(theta_h,theta_t)", {"a=16,power:0.7", "g=9x5"}, 3},
+    {"Volume", "z(theta_h) g(theta_h,theta_d,phi_d)", {"z=24,power:0.5", "g=9x5x4,power:0.5"}, 3},
+    {"Volumes", "v(phi_d,h,d) + s(wi,wo,theta_t) w(theta_d)", {"v=3x8x4", "s=4x4x3,shared", "w=6"}, 3},
     {"Azimuth", "a(phi_d) g(theta_d,phi_d)", {"a=16,rational:0.3", "g=9x5"}, 3},
 };
 
@@ -53,7 +55,7 @@ inline const ModelCase& model_case(std::string_view name) {
   return *found;
 }
 
-/// A model of the case's form: log_value(table, x, y, channel) fills its tables, `random` its lobes' scales.
+/// A model of the case's form: log_value(table, layout, x, row, channel) fills its tables, `random` its lobes' scales.
 template <class LogValue>
 FactoredBrdf model_of(const ModelCase& model, TableFormat format, Pcg32& random, LogValue log_value) {
   const ModelSpec spec = parse_model_spec(model.expression, model.options, true);
@@ -62,7 +64,7 @@ FactoredBrdf model_of(const ModelCase& model, TableFormat format, Pcg32& random,
     const ModelSpec::TableSpec& form = spec.tables[t];
     Table table{
         .name = form.name, .layout = form.layout, .channels = form.shared ? 1 : model.channels, .values = {}};
-    for (int y = 0; y < form.layout.height; ++y)
+    for (int y = 0; y < form.layout.rows(); ++y)
       for (int x = 0; x < form.layout.width; ++x)
         for (int c = 0; c < table.channels; ++c)
           table.values.push_back(static_cast<float>(log_value(t, form.layout, x, y, c)));
@@ -85,7 +87,7 @@ inline FactoredBrdf smooth_model(const ModelCase& model, TableFormat format = Ta
                   [&](std::size_t table, const TableLayout& layout, int x, int y, int c) {
                     if (table == phases.size()) phases.push_back(6 * random.uniform());
                     return std::sin(3.0 * x / layout.width + phases[table] + 0.5 * c) *
-                           std::cos(2.5 * y / layout.height + phases[table]);
+                           std::cos(2.5 * y / layout.rows() + phases[table]);
                   });
 }
 
@@ -112,9 +114,9 @@ inline FactoredBrdf random_model(const char* expression, std::vector<std::string
 /// Every kind of table, warp and projection in one model, and sizes for its tables.
 inline const char* const kEverything =
     "p(wo) q(h) p(wi) r(theta_d) + s(wi+wo+0.4n) t(wi) t(wo) u(theta_h,theta_d) + v(0.3wi+0.9wo) "
-    "v(0.9wi+0.3wo)";
+    "v(0.9wi+0.3wo) + x(theta_h,theta_d,phi_d)";
 inline const std::vector<std::string> kEverySize{
-    "p=8", "q=16x16,rational:0.2", "r=5,power:0.5,shared", "s=9x9", "t=4,shared", "u=6x7", "v=11"};
+    "p=8", "q=16x16,rational:0.2", "r=5,power:0.5,shared", "s=9x9", "t=4,shared", "u=6x7", "v=11", "x=7x5x3"};
 
 /// All pairs of the corners: normal, grazing, borders of maps, wi == wo, where phi wraps, below the horizon.
 inline std::vector<DirectionPair> corner_pairs() {

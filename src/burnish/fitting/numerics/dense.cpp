@@ -1,7 +1,7 @@
-#include <mutex>
 #include <utility>
 
 #include <burnish/fitting/numerics/dense.h>
+#include <burnish/fitting/numerics/lapack_lock.h>
 
 // LAPACK and BLAS as Fortran knows them have no header of their own.
 extern "C" {
@@ -19,9 +19,6 @@ namespace burnish {
 
 namespace {
 
-// Builds of OpenBLAS without threads of their own need not bear calls from several.
-std::mutex lapack;
-
 // What lies row by row is, column by column, the transpose.
 Eigen::MatrixXd products(const char* transpose, Eigen::Index size, Eigen::Index inner,
                          const Eigen::Ref<const RowMajorMatrix>& a) {
@@ -29,17 +26,22 @@ Eigen::MatrixXd products(const char* transpose, Eigen::Index size, Eigen::Index 
   const int n = static_cast<int>(size), terms = static_cast<int>(inner),
             stride = static_cast<int>(a.outerStride());
   const double one = 1, zero = 0;
-  const std::lock_guard one_at_a_time(lapack);
+  const std::lock_guard one_at_a_time(lapack_mutex());
   dsyrk_("L", transpose, &n, &terms, &one, a.data(), &stride, &zero, result.data(), &n);
   return result;
 }
 
 }  // namespace
 
+std::mutex& lapack_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
 void solve_in_place(Eigen::MatrixXd& matrix, Eigen::VectorXd& x) {
   const int n = static_cast<int>(x.size()), one = 1;
   int info = 0;
-  const std::lock_guard one_at_a_time(lapack);
+  const std::lock_guard one_at_a_time(lapack_mutex());
   dpotrf_("L", &n, matrix.data(), &n, &info);
   if (info == 0) dpotrs_("L", &n, &one, matrix.data(), &n, x.data(), &n, &info);
   if (info != 0) x.setZero();
@@ -53,7 +55,7 @@ bool factorize_inverse(Eigen::MatrixXd& matrix) {
   for (Eigen::Index c = 0; c < matrix.cols(); ++c)
     for (Eigen::Index r = matrix.rows() - 1 - c; r >= c; --r)
       std::swap(matrix(r, c), matrix(matrix.rows() - 1 - c, matrix.rows() - 1 - r));
-  const std::lock_guard one_at_a_time(lapack);
+  const std::lock_guard one_at_a_time(lapack_mutex());
   dpotrf_("L", &n, matrix.data(), &n, &info);
   if (info == 0) dtrtri_("L", "N", &n, matrix.data(), &n, &info);
   matrix.reverseInPlace();

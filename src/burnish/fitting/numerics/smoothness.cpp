@@ -24,23 +24,32 @@ void add_row(SmoothnessRows& rows, double scale, std::initializer_list<Term> ter
 
 SmoothnessRows smoothness_rows(const TableLayout& layout) {
   SmoothnessRows rows;
-  const int w = layout.width, h = layout.height;
-  const double nx = w > 1 ? w - 1 : 1, ny = h > 1 ? h - 1 : 1;
-  // An integral over cells of size 1/nx x 1/ny of squared differences over powers of the spacing.
-  const double area = 1 / (nx * ny);
-  const double xx = nx * nx * std::sqrt(area), yy = ny * ny * std::sqrt(area),
-               xy = nx * ny * std::sqrt(2 * area);
-  const double dx = nx * std::sqrt(kSlopeShare * area), dy = ny * std::sqrt(kSlopeShare * area);
-  for (int y = 0; y < h; ++y) {
-    for (int x = 0; x < w; ++x) {
-      const int i = y * w + x;
-      if (x > 0 && x + 1 < w) add_row(rows, xx, {{i - 1, 1}, {i, -2}, {i + 1, 1}});
-      if (y > 0 && y + 1 < h) add_row(rows, yy, {{i - w, 1}, {i, -2}, {i + w, 1}});
-      if (x + 1 < w && y + 1 < h) add_row(rows, xy, {{i, 1}, {i + 1, -1}, {i + w, -1}, {i + w + 1, 1}});
-      if (x + 1 < w) add_row(rows, dx, {{i, -1}, {i + 1, 1}});
-      if (y + 1 < h) add_row(rows, dy, {{i, -1}, {i + w, 1}});
-    }
-  }
+  const int w = layout.width, h = layout.height, d = layout.depth, layer = w * h;
+  const auto cells = [](int nodes) { return nodes > 1 ? nodes - 1.0 : 1.0; };
+  const double nx = cells(w), ny = cells(h), nz = cells(d);
+  // An integral over cells of size 1/nx x 1/ny x 1/nz of squared differences over powers of the spacing.
+  const double volume = 1 / (nx * ny * nz), root = std::sqrt(volume), twice = std::sqrt(2 * volume);
+  const double xx = nx * nx * root, yy = ny * ny * root, zz = nz * nz * root, xy = nx * ny * twice,
+               xz = nx * nz * twice, yz = ny * nz * twice;
+  const double slope = std::sqrt(kSlopeShare * volume), dx = nx * slope, dy = ny * slope, dz = nz * slope;
+  for (int z = 0; z < d; ++z)
+    for (int y = 0; y < h; ++y)
+      for (int x = 0; x < w; ++x) {
+        const int i = (z * h + y) * w + x;
+        const auto mixed = [&](double scale, int a, int b) {
+          add_row(rows, scale, {{i, 1}, {i + a, -1}, {i + b, -1}, {i + a + b, 1}});
+        };
+        const bool next_x = x + 1 < w, next_y = y + 1 < h, next_z = z + 1 < d;
+        if (x > 0 && next_x) add_row(rows, xx, {{i - 1, 1}, {i, -2}, {i + 1, 1}});
+        if (y > 0 && next_y) add_row(rows, yy, {{i - w, 1}, {i, -2}, {i + w, 1}});
+        if (next_x && next_y) mixed(xy, 1, w);
+        if (next_x) add_row(rows, dx, {{i, -1}, {i + 1, 1}});
+        if (next_y) add_row(rows, dy, {{i, -1}, {i + w, 1}});
+        if (z > 0 && next_z) add_row(rows, zz, {{i - layer, 1}, {i, -2}, {i + layer, 1}});
+        if (next_x && next_z) mixed(xz, 1, layer);
+        if (next_y && next_z) mixed(yz, w, layer);
+        if (next_z) add_row(rows, dz, {{i, -1}, {i + layer, 1}});
+      }
   // A polar angle's function is even about the normal: its slope vanishes there.
   if (layout.shape == TableShape::line && w > 1) add_row(rows, xx, {{0, -1}, {1, 1}});
   return rows;

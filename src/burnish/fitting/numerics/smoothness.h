@@ -16,8 +16,8 @@ struct SmoothnessRows {
   std::size_t size() const noexcept { return starts.size() - 1; }
 };
 
-/// The discrete form of the integral over the unit interval or square of the squared second derivatives,
-/// xx^2 + 2 xy^2 + yy^2 (whose normal operator is the Laplacian squared), plus `kSlopeShare` of the squared
+/// The discrete form of the integral over the unit interval, square or cube of the squared second derivatives,
+/// xx^2 + 2 xy^2 + yy^2 and so on (whose normal operator is the Laplacian squared), plus `kSlopeShare` of the squared
 /// first derivatives, which keeps extrapolation into regions without data from running away. Independent of
 /// the resolution.
 SmoothnessRows smoothness_rows(const TableLayout& layout);

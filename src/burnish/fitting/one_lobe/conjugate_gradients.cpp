@@ -45,10 +45,12 @@ class LogOperator {
       const auto t = static_cast<std::size_t>(use.table);
       const TableLayout& layout = spec_.tables[t].layout;
       const auto [base, copies] = numbering_.tables[t];
+      const std::size_t row = static_cast<std::size_t>(layout.width) * copies;
       touches_.push_back({.base = base,
                           .step = copies,
-                          .next_row = static_cast<std::size_t>(layout.width) * copies,
-                          .line = layout.shape == TableShape::line});
+                          .next_row = row,
+                          .next_layer = row * static_cast<std::size_t>(layout.height),
+                          .axes = axis_count(layout.shape)});
     }
     chunks_.resize(chunk_count(maker.source->count, kChunk));
     for_each_chunk(maker.source->count, kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
@@ -91,7 +93,7 @@ class LogOperator {
     preconditioner_.resize(spec_.tables.size());
     for (std::size_t t = 0; t < spec_.tables.size(); ++t) {
       const TableLayout& layout = spec_.tables[t].layout;
-      preconditioner_[t].push_back({GridTransfer(layout, layout.width, layout.height), {}});
+      preconditioner_[t].push_back({GridTransfer(layout, layout.width, layout.height, layout.depth), {}});
       for (GridTransfer& level : coarser_levels(layout)) preconditioner_[t].push_back({std::move(level), {}});
     }
     struct Task {
@@ -147,8 +149,8 @@ class LogOperator {
 
  private:
   struct Touch {
-    std::size_t base, step, next_row;
-    bool line;
+    std::size_t base, step, next_row, next_layer;
+    int axes;
   };
 
   std::size_t step() const {
@@ -208,17 +210,17 @@ class LogOperator {
   Doubles inverse_diagonal(std::size_t table, const GridTransfer& level) const {
     constexpr std::size_t kSampleStride = 8;
     const std::size_t step_of = numbering_.tables[table].copies;
-    const auto width = static_cast<std::uint32_t>(spec_.tables[table].layout.width);
     Doubles d(level.coarse_count() * step_of);
     for (const LogRows& rows : chunks_)
       for (std::size_t i = 0; i < rows.size; i += kSampleStride)
         for (std::size_t k = 0; k < uses_.size(); ++k) {
           if (static_cast<std::size_t>(uses_[k].table) != table) continue;
           const std::size_t use = i * uses_.size() + k;
-          const GridTransfer::Corners at =
-              level.corners(static_cast<int>(rows.node[use] % width), static_cast<double>(rows.fx[use]),
-                            static_cast<int>(rows.node[use] / width), static_cast<double>(rows.fy[use]));
-          for (int corner = 0; corner < 4; ++corner)
+          const GridTransfer::Corners at = level.corners({.node = static_cast<int>(rows.node[use]),
+                                                          .fx = static_cast<double>(rows.fx[use]),
+                                                          .fy = static_cast<double>(rows.fy[use]),
+                                                          .fz = static_cast<double>(rows.fz[use])});
+          for (std::size_t corner = 0; corner < at.count; ++corner)
             for (std::size_t c = 0; c < channels_; ++c)
               d[at.node[corner] * step_of + (step_of > 1 ? c : 0)] +=
                   kSampleStride * at.weight[corner] * at.weight[corner] * weight(rows, i, c);
@@ -226,6 +228,7 @@ class LogOperator {
     TableLayout layout = spec_.tables[table].layout;
     layout.width = level.coarse_width();
     layout.height = level.coarse_height();
+    layout.depth = level.coarse_depth();
     const SmoothnessRows smoothness = smoothness_rows(layout);
     for (double& v : d) v = v / total_weight_ + kRidge;
     for (std::size_t k = 0; k < smoothness.nodes.size(); ++k)
@@ -242,12 +245,16 @@ class LogOperator {
       const Touch& touch = touches_[k];
       const std::size_t use = i * touches_.size() + k;
       const std::size_t at = touch.base + rows.node[use] * touch.step;
-      const float fx = rows.fx[use], fy = rows.fy[use];
-      body(at, touch.step, (1 - fx) * (1 - fy));
-      body(at + touch.step, touch.step, fx * (1 - fy));
-      if (touch.line) continue;
-      body(at + touch.next_row, touch.step, (1 - fx) * fy);
-      body(at + touch.next_row + touch.step, touch.step, fx * fy);
+      const float fx = rows.fx[use], fy = rows.fy[use], fz = rows.fz[use];
+      const auto layer = [&](std::size_t node, float share) {
+        body(node, touch.step, (1 - fx) * (1 - fy) * share);
+        body(node + touch.step, touch.step, fx * (1 - fy) * share);
+        if (touch.axes == 1) return;
+        body(node + touch.next_row, touch.step, (1 - fx) * fy * share);
+        body(node + touch.next_row + touch.step, touch.step, fx * fy * share);
+      };
+      layer(at, 1 - fz);
+      if (touch.axes == 3) layer(at + touch.next_layer, fz);
     }
   }
 

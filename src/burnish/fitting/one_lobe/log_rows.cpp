@@ -25,6 +25,7 @@ LogRows RowMaker::make(std::size_t begin, std::size_t end) const {
   rows.node.reserve(most * uses.size());
   rows.fx.reserve(most * uses.size());
   rows.fy.reserve(most * uses.size());
+  rows.fz.reserve(most * uses.size());
   rows.target.reserve(most * channels);
   rows.weight.reserve(most * (current ? channels : 1));
 
@@ -45,6 +46,7 @@ LogRows RowMaker::make(std::size_t begin, std::size_t end) const {
         rows.node.push_back(static_cast<std::uint32_t>(at_nodes.node));
         rows.fx.push_back(static_cast<float>(at_nodes.fx));
         rows.fy.push_back(static_cast<float>(at_nodes.fy));
+        rows.fz.push_back(static_cast<float>(at_nodes.fz));
       }
       const std::span<const double> f = std::span(values).subspan(i * channels, channels);
       if (current)

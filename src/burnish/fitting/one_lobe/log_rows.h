@@ -16,7 +16,7 @@ namespace burnish {
 struct LogRows {
   std::size_t size = 0;
   std::vector<std::uint32_t> node;  ///< [sample][use], lower corner
-  std::vector<float> fx, fy;        ///< [sample][use]
+  std::vector<float> fx, fy, fz;    ///< [sample][use]
   std::vector<float> target;        ///< [sample][channel]
   std::size_t weight_channels = 1;  ///< one weight for all channels, or one each
   std::vector<float> weight;        ///< [sample]

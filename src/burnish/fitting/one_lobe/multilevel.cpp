@@ -12,15 +12,16 @@ int halved(int n) {
 
 }  // namespace
 
-GridTransfer::GridTransfer(const TableLayout& fine, int coarse_width, int coarse_height) {
+GridTransfer::GridTransfer(const TableLayout& fine, int coarse_width, int coarse_height, int coarse_depth) {
   const auto axis = [](int fine_nodes, int nodes) {
     return Axis{fine_nodes, nodes, fine_nodes > 1 ? (nodes - 1.0) / (fine_nodes - 1.0) : 0};
   };
   x_ = axis(fine.width, coarse_width);
   y_ = axis(fine.height, coarse_height);
+  z_ = axis(fine.depth, coarse_depth);
 }
 
-GridTransfer::Corners GridTransfer::corners(int fine_x, double fx, int fine_y, double fy) const noexcept {
+GridTransfer::Corners GridTransfer::corners(const Lookup& fine) const noexcept {
   const auto place = [](const Axis& axis, double position, std::size_t node[2], double weight[2]) {
     const double at = position * axis.scale;
     const int low = std::clamp(static_cast<int>(at), 0, std::max(axis.nodes - 2, 0));
@@ -29,40 +30,46 @@ GridTransfer::Corners GridTransfer::corners(int fine_x, double fx, int fine_y, d
     weight[1] = at - low;
     weight[0] = 1 - weight[1];
   };
-  std::size_t x[2], y[2];
-  double wx[2], wy[2];
-  place(x_, fine_x + fx, x, wx);
-  place(y_, fine_y + fy, y, wy);
-  const auto width = static_cast<std::size_t>(x_.nodes);
-  return {{y[0] * width + x[0], y[0] * width + x[1], y[1] * width + x[0], y[1] * width + x[1]},
-          {wy[0] * wx[0], wy[0] * wx[1], wy[1] * wx[0], wy[1] * wx[1]}};
+  std::size_t x[2], y[2], z[2];
+  double wx[2], wy[2], wz[2];
+  const int row = fine.node / x_.fine_nodes;
+  place(x_, fine.node % x_.fine_nodes + fine.fx, x, wx);
+  place(y_, row % y_.fine_nodes + fine.fy, y, wy);
+  place(z_, row / y_.fine_nodes + fine.fz, z, wz);
+  const auto width = static_cast<std::size_t>(x_.nodes), height = static_cast<std::size_t>(y_.nodes);
+  Corners at{.count = z_.fine_nodes > 1 ? std::size_t{8} : std::size_t{4}, .node = {}, .weight = {}};
+  for (std::size_t k = 0; k < at.count; ++k) {
+    const std::size_t i = k & 1, j = k >> 1 & 1, l = k >> 2;
+    at.node[k] = (z[l] * height + y[j]) * width + x[i];
+    at.weight[k] = wy[j] * wx[i] * (z_.fine_nodes > 1 ? wz[l] : 1);
+  }
+  return at;
 }
 
 void GridTransfer::restrict_to(const double* fine, double* coarse, std::size_t step) const {
   std::fill_n(coarse, coarse_count() * step, 0.0);
-  for (int y = 0; y < y_.fine_nodes; ++y)
-    for (int x = 0; x < x_.fine_nodes; ++x, fine += step) {
-      const Corners at = corners(x, 0, y, 0);
-      for (int k = 0; k < 4; ++k)
-        for (std::size_t c = 0; c < step; ++c) coarse[at.node[k] * step + c] += at.weight[k] * fine[c];
-    }
+  for (int node = 0; node < fine_count(); ++node, fine += step) {
+    const Corners at = corners({.node = node});
+    for (std::size_t k = 0; k < at.count; ++k)
+      for (std::size_t c = 0; c < step; ++c) coarse[at.node[k] * step + c] += at.weight[k] * fine[c];
+  }
 }
 
 void GridTransfer::add_interpolated(const double* coarse, double* fine, std::size_t step) const {
-  for (int y = 0; y < y_.fine_nodes; ++y)
-    for (int x = 0; x < x_.fine_nodes; ++x, fine += step) {
-      const Corners at = corners(x, 0, y, 0);
-      for (int k = 0; k < 4; ++k)
-        for (std::size_t c = 0; c < step; ++c) fine[c] += at.weight[k] * coarse[at.node[k] * step + c];
-    }
+  for (int node = 0; node < fine_count(); ++node, fine += step) {
+    const Corners at = corners({.node = node});
+    for (std::size_t k = 0; k < at.count; ++k)
+      for (std::size_t c = 0; c < step; ++c) fine[c] += at.weight[k] * coarse[at.node[k] * step + c];
+  }
 }
 
 std::vector<GridTransfer> coarser_levels(const TableLayout& layout) {
   std::vector<GridTransfer> levels;
-  for (int w = layout.width, h = layout.height; w > 1 || h > 1;) {
+  for (int w = layout.width, h = layout.height, d = layout.depth; w > 1 || h > 1 || d > 1;) {
     w = halved(w);
     h = halved(h);
-    levels.emplace_back(layout, w, h);
+    d = halved(d);
+    levels.emplace_back(layout, w, h, d);
   }
   return levels;
 }

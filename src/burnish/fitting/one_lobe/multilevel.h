@@ -11,19 +11,22 @@ namespace burnish {
 /// nodes in common. Values have `step` channels a node.
 class GridTransfer {
  public:
-  GridTransfer(const TableLayout& fine, int coarse_width, int coarse_height);
+  GridTransfer(const TableLayout& fine, int coarse_width, int coarse_height, int coarse_depth = 1);
 
   std::size_t coarse_count() const noexcept {
-    return static_cast<std::size_t>(x_.nodes) * static_cast<std::size_t>(y_.nodes);
+    return static_cast<std::size_t>(x_.nodes) * static_cast<std::size_t>(y_.nodes) *
+           static_cast<std::size_t>(z_.nodes);
   }
   int coarse_width() const noexcept { return x_.nodes; }
   int coarse_height() const noexcept { return y_.nodes; }
-  /// The coarse nodes and weights of a point given by its lookup in the fine table: four, some of weight 0.
+  int coarse_depth() const noexcept { return z_.nodes; }
+  /// The coarse nodes and weights of a lookup in the fine table: four, of a volume eight, some of weight 0.
   struct Corners {
-    std::size_t node[4];
-    double weight[4];
+    std::size_t count;
+    std::size_t node[8];
+    double weight[8];
   };
-  Corners corners(int fine_x, double fx, int fine_y, double fy) const noexcept;
+  Corners corners(const Lookup& fine) const noexcept;
 
   /// coarse = transpose of interpolation of fine.
   void restrict_to(const double* fine, double* coarse, std::size_t step) const;
@@ -35,7 +38,9 @@ class GridTransfer {
     int fine_nodes = 1, nodes = 1;
     double scale = 0;
   };
-  Axis x_, y_;
+  int fine_count() const noexcept { return x_.fine_nodes * y_.fine_nodes * z_.fine_nodes; }
+
+  Axis x_, y_, z_;
 };
 
 /// The resolutions below a table's own: sides halved down to 2, then 1; coarsest last.

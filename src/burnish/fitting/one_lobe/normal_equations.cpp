@@ -79,7 +79,7 @@ class Gatherer {
 
   std::size_t add(std::size_t begin, std::size_t end, std::vector<Sums>& sums) const {
     const LogRows rows = rows_.make(begin, end);
-    std::vector<Term> terms(4 * uses_.size());
+    std::vector<Term> terms(8 * uses_.size());
     const std::size_t step = rows.weight_channels;
     for (std::size_t i = 0; i < rows.size; ++i) {
       const std::span<const Term> row = find_terms(rows, i, terms);
@@ -131,16 +131,22 @@ class Gatherer {
       const auto t = static_cast<std::size_t>(uses_[k].table);
       const TableLayout& layout = rows_.spec->tables[t].layout;
       const std::size_t at = i * uses_.size() + k, node = rows.node[at];
-      const double fx = rows.fx[at], fy = rows.fy[at];
+      const double fx = rows.fx[at], fy = rows.fy[at], fz = rows.fz[at];
       const auto push = [&](std::size_t n, double weight) {
         const NodeNumbers& numbers = numbering_.tables[t];
         terms[count++] = {numbers(n, 0), numbers.copies > 1, weight};
       };
-      push(node, (1 - fx) * (1 - fy));
-      push(node + 1, fx * (1 - fy));
-      if (layout.shape == TableShape::line) continue;
-      push(node + static_cast<std::size_t>(layout.width), (1 - fx) * fy);
-      push(node + static_cast<std::size_t>(layout.width) + 1, fx * fy);
+      const auto width = static_cast<std::size_t>(layout.width);
+      const int axes = axis_count(layout.shape);
+      const auto push_layer = [&](std::size_t n, double share) {
+        push(n, (1 - fx) * (1 - fy) * share);
+        push(n + 1, fx * (1 - fy) * share);
+        if (axes == 1) return;
+        push(n + width, (1 - fx) * fy * share);
+        push(n + width + 1, fx * fy * share);
+      };
+      push_layer(node, 1 - fz);
+      if (axes == 3) push_layer(node + width * static_cast<std::size_t>(layout.height), fz);
     }
     return {terms.data(), count};
   }

@@ -174,17 +174,19 @@ void LaneRows::layout(const LobeLanes& model, std::size_t first, std::size_t las
     if (!kept.lanes.empty()) families.push_back(std::move(kept));
   }
 
-  // a piece for each slot of a family that is kept, two where the slot is a grid's
+  // a piece for each slot of a family that is kept, two where the slot is a grid's, four where a volume's
   constexpr std::size_t kAligned = 2 * LobeLanes::kLanes;  // pieces of odd widths and rows too
   std::size_t start = 0;
   for (std::size_t s = 0; s < model.slots().size(); ++s) {
     const std::size_t family = number[model.slots()[s].family];
     if (family == LobeLanes::kNone) continue;
-    for (const bool second_row : {false, true}) {
-      if (second_row && model.slots()[s].next_row == 0) continue;
-      pieces.push_back({family, s, second_row, start});
-      start += (rows * 2 * families[family].width() + kAligned - 1) / kAligned * kAligned;
-    }
+    for (const bool second_layer : {false, true})
+      for (const bool second_row : {false, true}) {
+        if (second_row && model.slots()[s].next_row == 0) continue;
+        if (second_layer && model.slots()[s].next_layer == 0) continue;
+        pieces.push_back({family, s, second_row, second_layer, start});
+        start += (rows * 2 * families[family].width() + kAligned - 1) / kAligned * kAligned;
+      }
   }
   node.resize(pieces.size() * rows);
   value.resize(start);
@@ -202,12 +204,16 @@ void LaneRows::set(const LobeLanes& model, std::size_t pair, std::size_t channel
 
     // the first of the two nodes
     const Lookups::Place& place = places[slot.place * LobeLanes::kBlock];
-    const std::size_t next = piece.second_row ? slot.next_row / LobeLanes::kLanes : 0;
+    const std::size_t next =
+        ((piece.second_row ? slot.next_row : 0) + (piece.second_layer ? slot.next_layer : 0)) /
+        LobeLanes::kLanes;
     node[p * rows + r] = static_cast<std::uint32_t>(channel * family.copy_nodes + place.node + next);
 
     // the lanes' slopes times the weights of both nodes
     const float* slopes = at.factor.data() + piece.slot * LobeLanes::kBlockLanes + i * LobeLanes::kLanes;
-    const float part = root * (slot.next_row == 0 ? 1 : piece.second_row ? place.fy : 1 - place.fy);
+    const float row = slot.next_row == 0 ? 1 : piece.second_row ? place.fy : 1 - place.fy;
+    const float layer = slot.next_layer == 0 ? 1 : piece.second_layer ? place.fz : 1 - place.fz;
+    const float part = root * row * layer;
     const float left = part * (1 - place.fx), right = part * place.fx;
     float* values = value.data() + piece.start + r * 2 * width;
     // the widths as constants: vectors

@@ -12,7 +12,7 @@
 namespace burnish {
 
 /// Rows of a sparse matrix J over the values of families of tables: each row has in every piece the slopes of
-/// a family's lanes at two neighbouring nodes.
+/// a family's lanes at two nodes that are neighbours along x.
 struct LaneRows {
   struct Family {
     std::vector<std::size_t> lanes;      ///< of the LobeLanes' family
@@ -26,8 +26,8 @@ struct LaneRows {
   };
   struct Piece {
     std::size_t family, slot;
-    bool second_row;    ///< of a grid's cell
-    std::size_t start;  ///< its first value
+    bool second_row, second_layer;  ///< of a cell
+    std::size_t start;              ///< its first value
   };
   std::vector<Family> families;
   std::vector<Piece> pieces;

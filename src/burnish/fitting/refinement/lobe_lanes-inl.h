@@ -37,12 +37,26 @@ HWY_INLINE V between(const float* v, V fx) {
   return mix(hn::Load(d, v), hn::Load(d, v + kLanes), fx);
 }
 
-template <bool line>
-HWY_INLINE V interpolate(const float* v, std::size_t next_row, const Lookups::Place& place) {
+// To the rows and layers that follow a lookup's; 0 where a table has none.
+struct Strides {
+  std::size_t row, layer;
+};
+
+HWY_INLINE Strides strides_of(const LobeLanes::Slot& slot) {
+  return {slot.next_row, slot.next_layer};
+}
+
+template <int axes>
+HWY_INLINE V interpolate(const float* v, Strides next, const Lookups::Place& place) {
   const D d;
-  const V fx = hn::Set(d, place.fx), low = between(v, fx);
-  if constexpr (line) return low;
-  return mix(low, between(v + next_row, fx), hn::Set(d, place.fy));
+  if constexpr (axes == 3) {
+    const V low = interpolate<2>(v, next, place);
+    return mix(low, interpolate<2>(v + next.layer, next, place), hn::Set(d, place.fz));
+  } else {
+    const V fx = hn::Set(d, place.fx), low = between(v, fx);
+    if constexpr (axes == 1) return low;
+    return mix(low, between(v + next.row, fx), hn::Set(d, place.fy));
+  }
 }
 
 // Adds `amount` times an interpolation's weights.
@@ -53,16 +67,22 @@ HWY_INLINE void add_between(V amount, V fx, float* v) {
   hn::Store(hn::Add(hn::Load(d, v + kLanes), second), d, v + kLanes);
 }
 
-template <bool line>
-HWY_INLINE void add_weights(V amount, const Lookups::Place& place, std::size_t next_row, float* v) {
+template <int axes>
+HWY_INLINE void add_weights(V amount, const Lookups::Place& place, Strides next, float* v) {
   const D d;
-  const V fx = hn::Set(d, place.fx);
-  if constexpr (line) {
-    add_between(amount, fx, v);
+  if constexpr (axes == 3) {
+    const V high = hn::Mul(amount, hn::Set(d, place.fz));
+    add_weights<2>(hn::Sub(amount, high), place, next, v);
+    add_weights<2>(high, place, next, v + next.layer);
   } else {
-    const V high = hn::Mul(amount, hn::Set(d, place.fy));
-    add_between(hn::Sub(amount, high), fx, v);
-    add_between(high, fx, v + next_row);
+    const V fx = hn::Set(d, place.fx);
+    if constexpr (axes == 1) {
+      add_between(amount, fx, v);
+    } else {
+      const V high = hn::Mul(amount, hn::Set(d, place.fy));
+      add_between(hn::Sub(amount, high), fx, v);
+      add_between(high, fx, v + next.row);
+    }
   }
 }
 
@@ -74,12 +94,17 @@ HWY_INLINE void add_squares_between(V amount, float fx, float* v) {
   hn::Store(hn::MulAdd(amount, second, hn::Load(d, v + kLanes)), d, v + kLanes);
 }
 
-template <bool line>
-HWY_INLINE void add_square_weights(V amount, const Lookups::Place& place, std::size_t next_row, float* v) {
+template <int axes>
+HWY_INLINE void add_square_weights(V amount, const Lookups::Place& place, Strides next, float* v) {
   const D d;
   const auto times = [&](float w) { return hn::Mul(amount, hn::Set(d, w * w)); };
-  add_squares_between(line ? amount : times(1 - place.fy), place.fx, v);
-  if constexpr (!line) add_squares_between(times(place.fy), place.fx, v + next_row);
+  if constexpr (axes == 3) {
+    add_square_weights<2>(times(1 - place.fz), place, next, v);
+    add_square_weights<2>(times(place.fz), place, next, v + next.layer);
+  } else {
+    add_squares_between(axes == 1 ? amount : times(1 - place.fy), place.fx, v);
+    if constexpr (axes == 2) add_squares_between(times(place.fy), place.fx, v + next.row);
+  }
 }
 
 HWY_INLINE V reciprocal(V v) {
@@ -87,14 +112,16 @@ HWY_INLINE V reciprocal(V v) {
   return hn::Mul(guess, hn::NegMulAdd(v, guess, hn::Set(D(), 2.0f)));  // a step of Newton's
 }
 
-// visit(slot, number of the slot, is a line)
+// visit(slot, number of the slot, its axes)
 template <class Visit>
 HWY_INLINE void for_each_slot(Slots slots, Visit visit) {
   for (std::size_t s = 0; s < slots.size(); ++s)
     if (slots[s].next_row == 0)
-      visit(slots[s], s, std::true_type());
+      visit(slots[s], s, std::integral_constant<int, 1>());
+    else if (slots[s].next_layer == 0)
+      visit(slots[s], s, std::integral_constant<int, 2>());
     else
-      visit(slots[s], s, std::false_type());
+      visit(slots[s], s, std::integral_constant<int, 3>());
 }
 
 // visit(pair of the block, lane, number of the lane in the block)
@@ -119,13 +146,13 @@ void sum_lanes(std::size_t parts, const float* lanes, float* sums) {
 void evaluate(Slots slots, std::size_t parts, const Lookups::Place* places, const float* values,
               float* factors, float* products, float* totals) {
   const D d;
-  for_each_slot(slots, [&](const LobeLanes::Slot& slot, std::size_t s, auto line) HWY_ATTR {
+  for_each_slot(slots, [&](const LobeLanes::Slot& slot, std::size_t s, auto axes) HWY_ATTR {
     const Lookups::Place* place = places + slot.place * kBlock;
     const float* from = values + slot.base;
     float *factor_of = factors + s * kBlockLanes, *product_of = products + slot.part * kBlockLanes;
-    const std::size_t next_row = slot.next_row;
+    const Strides next = strides_of(slot);
     for_each_vector([=](std::size_t i, std::size_t l, std::size_t at) HWY_ATTR {
-      const V factor = interpolate<line>(from + place[i].node * kLanes + l, next_row, place[i]);
+      const V factor = interpolate<axes>(from + place[i].node * kLanes + l, next, place[i]);
       hn::Store(factor, d, factor_of + at);
       hn::Store(hn::Mul(hn::Load(d, product_of + at), factor), d, product_of + at);
     });
@@ -166,18 +193,18 @@ template <bool squares>
 void add_terms(Slots slots, const Lookups::Place* places, const float* slopes, const float* amounts,
                float* sums) {
   const D d;
-  for_each_slot(slots, [&](const LobeLanes::Slot& slot, std::size_t s, auto line) HWY_ATTR {
+  for_each_slot(slots, [&](const LobeLanes::Slot& slot, std::size_t s, auto axes) HWY_ATTR {
     const Lookups::Place* place = places + slot.place * kBlock;
     const float* slopes_of = slopes + s * kBlockLanes;
     float* into = sums + slot.base;
-    const std::size_t next_row = slot.next_row;
+    const Strides next = strides_of(slot);
     for_each_vector([=](std::size_t i, std::size_t l, std::size_t at) HWY_ATTR {
       const V slope = hn::Load(d, slopes_of + at), amount = hn::Set(d, amounts[i]);
       float* to = into + place[i].node * kLanes + l;
       if constexpr (squares)
-        add_square_weights<line>(hn::Mul(amount, hn::Mul(slope, slope)), place[i], next_row, to);
+        add_square_weights<axes>(hn::Mul(amount, hn::Mul(slope, slope)), place[i], next, to);
       else
-        add_weights<line>(hn::Mul(amount, slope), place[i], next_row, to);
+        add_weights<axes>(hn::Mul(amount, slope), place[i], next, to);
     });
   });
 }
@@ -198,19 +225,18 @@ void multiply(Slots slots, const Lookups::Place* places, const float* values, co
   const D d;
   HWY_ALIGN float products[kBlockLanes] = {};
   float amounts[kBlock];
-  for_each_slot(slots, [&](const LobeLanes::Slot& slot, std::size_t s, auto line) HWY_ATTR {
+  for_each_slot(slots, [&](const LobeLanes::Slot& slot, std::size_t s, auto axes) HWY_ATTR {
     const Lookups::Place* place = places + slot.place * kBlock;
     const float *value = values + slot.base, *from = v + slot.base, *share = shares + slot.part * kBlockLanes;
     float *slope_of = slopes + s * kBlockLanes, *product = products;
-    const std::size_t next_row = slot.next_row;
+    const Strides next = strides_of(slot);
     for_each_vector([=](std::size_t i, std::size_t l, std::size_t at) HWY_ATTR {
       const std::size_t node = place[i].node * kLanes + l;
-      const V over = reciprocal(interpolate<line>(value + node, next_row, place[i]));
+      const V over = reciprocal(interpolate<axes>(value + node, next, place[i]));
       const V slope = hn::Mul(hn::Load(d, share + at), over);
       hn::Store(slope, d, slope_of + at);
-      hn::Store(
-          hn::MulAdd(slope, interpolate<line>(from + node, next_row, place[i]), hn::Load(d, product + at)), d,
-          product + at);
+      hn::Store(hn::MulAdd(slope, interpolate<axes>(from + node, next, place[i]), hn::Load(d, product + at)),
+                d, product + at);
     });
   });
   sum_lanes(1, products, amounts);

@@ -71,7 +71,9 @@ LobeLanes::LobeLanes(std::span<const NumberedTable> tables, const Lookups& looku
       channel_size_ += layout.node_count() * kLanes;
     }
     slot.base = families_[slot.family].base;
-    slot.next_row = layout.shape == TableShape::line ? 0 : static_cast<std::size_t>(layout.width) * kLanes;
+    const int axes = axis_count(layout.shape);
+    slot.next_row = axes > 1 ? static_cast<std::size_t>(layout.width) * kLanes : 0;
+    slot.next_layer = axes > 2 ? slot.next_row * static_cast<std::size_t>(layout.height) : 0;
   }
 
   // links: where each unknown's value stands among the lanes

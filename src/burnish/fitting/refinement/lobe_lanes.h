@@ -44,8 +44,9 @@ class LobeLanes {
   /// What up to kLanes lobes look up at one place.
   struct Slot {
     std::size_t place, family;
-    std::size_t base, next_row;  ///< of the family's values; next_row 0: a line
-    std::size_t part;            ///< of the lobes, kLanes each
+    std::size_t base;                  ///< of the family's values
+    std::size_t next_row, next_layer;  ///< 0: a line; 0: no volume
+    std::size_t part;                  ///< of the lobes, kLanes each
     bool one_table;
   };
   std::span<const NumberedTable> tables() const noexcept { return tables_; }

@@ -107,32 +107,38 @@ namespace {
 // Adds the function that one table holds to the nodes of another.
 void add_resampled(const TableLayout& from, const std::vector<double>& old, const TableLayout& to,
                    std::size_t step, std::vector<double>& logs) {
-  const auto width = static_cast<std::size_t>(from.width), to_width = static_cast<std::size_t>(to.width);
-  for (int y = 0; y < to.height; ++y)
-    for (int x = 0; x < to.width; ++x) {
-      Cell cx{}, cy{};
-      if (to.shape == TableShape::disk) {
-        const DiskPoint p = to_disk(node_direction(to, x, y), from.warp);
-        cx = find_cell(0.5 + 0.5 * p.x, from.width);
-        cy = find_cell(0.5 + 0.5 * p.y, from.height);
-      } else {
-        cx = find_cell(from.warp.forward(node_place(to.warp, x, to.width)), from.width);
-        if (to.shape == TableShape::grid)
-          cy = find_cell(from.warp_y.forward(node_place(to.warp_y, y, to.height)), from.height);
+  const auto width = static_cast<std::size_t>(from.width), height = static_cast<std::size_t>(from.height);
+  const int axes = axis_count(to.shape);
+  std::size_t node = 0;
+  for (int z = 0; z < to.depth; ++z)
+    for (int y = 0; y < to.height; ++y)
+      for (int x = 0; x < to.width; ++x, ++node) {
+        Cell cx{}, cy{}, cz{};
+        if (to.shape == TableShape::disk) {
+          const DiskPoint p = to_disk(node_direction(to, x, y), from.warp);
+          cx = find_cell(0.5 + 0.5 * p.x, from.width);
+          cy = find_cell(0.5 + 0.5 * p.y, from.height);
+        } else {
+          cx = find_cell(from.warp.forward(node_place(to.warp, x, to.width)), from.width);
+          if (axes > 1) cy = find_cell(from.warp_y.forward(node_place(to.warp_y, y, to.height)), from.height);
+          if (axes > 2) cz = find_cell(from.warp_z.forward(node_place(to.warp_z, z, to.depth)), from.depth);
+        }
+        for (std::size_t c = 0; c < step; ++c) {
+          const auto at = [&](std::size_t i, std::size_t row) {
+            return std::exp(old[(row * width + i) * step + c]);
+          };
+          const auto along = [&](std::size_t row) {
+            return (1 - cx.fraction) * at(cx.node, row) + cx.fraction * at(cx.node + 1, row);
+          };
+          const auto across = [&](std::size_t row) {
+            const double v = along(row);
+            return axes > 1 ? (1 - cy.fraction) * v + cy.fraction * along(row + 1) : v;
+          };
+          double v = across(cz.node * height + cy.node);
+          if (axes > 2) v = (1 - cz.fraction) * v + cz.fraction * across((cz.node + 1) * height + cy.node);
+          logs[node * step + c] += std::log(v);
+        }
       }
-      for (std::size_t c = 0; c < step; ++c) {
-        const auto at = [&](std::size_t i, std::size_t j) {
-          return std::exp(old[(j * width + i) * step + c]);
-        };
-        const auto along = [&](std::size_t row) {
-          return (1 - cx.fraction) * at(cx.node, row) + cx.fraction * at(cx.node + 1, row);
-        };
-        double v = along(cy.node);
-        if (to.shape != TableShape::line) v = (1 - cy.fraction) * v + cy.fraction * along(cy.node + 1);
-        logs[(static_cast<std::size_t>(y) * to_width + static_cast<std::size_t>(x)) * step + c] +=
-            std::log(v);
-      }
-    }
 }
 
 // The mean over the channels of a table; what it is short of each channel, on average, goes to `colour`.

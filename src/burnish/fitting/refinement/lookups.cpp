@@ -51,7 +51,7 @@ Lookups lookups_of(const ModelSpec& spec, const TrainingSet& set) {
           const auto& [wi, wo] = set.pairs[std::min(i, set.size() - 1)];
           const Lookup at = locate(layout_of(use), use, wi, wo);
           *place++ = {static_cast<std::uint32_t>(at.node), static_cast<float>(at.fx),
-                      static_cast<float>(at.fy)};
+                      static_cast<float>(at.fy), static_cast<float>(at.fz)};
         }
   });
   return found;

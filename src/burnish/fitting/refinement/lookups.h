@@ -15,7 +15,7 @@ namespace burnish {
 struct Lookups {
   struct Place {
     std::uint32_t node;
-    float fx, fy;
+    float fx, fy, fz;
   };
   std::vector<FactorUse> lookups;               ///< distinct
   std::vector<std::vector<std::size_t>> lobes;  ///< the lookups of each lobe's factors

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <optional>
 #include <thread>
 
 #include <burnish/error.h>
@@ -32,7 +33,9 @@ constexpr double kCgTolerance = 1e-2;
 class StepSolver {
  public:
   StepSolver(const RefineSystem& system, double smooth) : system_(system), smooth_(smooth) {
-    if (!direct()) roughness_diagonal_ = 2 * smooth * system.roughness_diagonal();
+    if (direct()) return;
+    roughness_diagonal_ = 2 * smooth * system.roughness_diagonal();
+    if (system.has_volume()) band_ = system.node_band();
   }
 
   bool direct() const { return system_.size() <= kMaxCholeskyUnknowns; }
@@ -43,6 +46,8 @@ class StepSolver {
       system_.add_roughness_matrix(2 * smooth_, dense_.matrix);
     } else {
       factor_ = system_.gauss_newton_factor(x, means);
+      x_ = x;
+      means_ = means;
     }
     gradient() += 2 * smooth_ * system_.roughness_matrix_times(x);
   }
@@ -77,14 +82,21 @@ class StepSolver {
   Eigen::VectorXd& gradient() { return direct() ? dense_.gradient : factor_.gradient; }
 
   /// The step where `extra` is added to the matrix's diagonal, which then is about `diagonal`.
-  Eigen::VectorXd solve_iteratively(const Eigen::VectorXd& extra, const Eigen::VectorXd& diagonal) const {
+  Eigen::VectorXd solve_iteratively(const Eigen::VectorXd& extra, const Eigen::VectorXd& diagonal) {
     using Vector = Eigen::VectorXd;
     Vector x = Vector::Zero(extra.size());
     const auto apply = [&](const Vector& v) -> Vector {
       return system_.gauss_newton_times(factor_, v) + 2 * smooth_ * system_.roughness_matrix_times(v) +
              extra.cwiseProduct(v);
     };
-    const auto precondition = [&](const Vector& r) -> Vector { return r.cwiseQuotient(diagonal); };
+    bool banded = band_.has_value();
+    if (banded) {
+      system_.fill(x_, means_, 2 * smooth_, *band_);
+      banded = band_->factorize(extra);
+    }
+    const auto precondition = [&](const Vector& r) -> Vector {
+      return banded ? band_->solve(r) : r.cwiseQuotient(diagonal);
+    };
     const auto dot = [](const Vector& a, const Vector& b) { return a.dot(b); };
     preconditioned_cg(x, Vector(-factor_.gradient), kCgTolerance, kMaxCgIterations, apply, precondition, dot,
                       [](const CgResult&) {});
@@ -96,7 +108,10 @@ class StepSolver {
   Eigen::VectorXd roughness_diagonal_;
   RefineSystem::GaussNewton dense_;  ///< of a direct solution
   Eigen::MatrixXd factorized_;
-  RefineSystem::GaussNewtonFactor factor_;  ///< of an iterative one
+  RefineSystem::GaussNewtonFactor factor_;  ///< of an iterative one, and what it was made at
+  Eigen::VectorXd x_;
+  ErrorTerms means_;
+  std::optional<NodeBand> band_;  ///< of models with volumes
 };
 
 /// Levenberg-Marquardt steps of one channel, or of coupled channels.

@@ -56,6 +56,7 @@ RefineSystem::RefineSystem(const LogModel& model, const TrainingSet& set, const 
                            const PictureLoss& loss, TableFormat format, std::size_t first_channel,
                            std::size_t last_channel)
     : set_(set),
+      lookups_(lookups),
       loss_(loss),
       first_channel_(first_channel),
       last_channel_(last_channel),
@@ -298,6 +299,62 @@ void RefineSystem::for_each_roughness_row(Visit visit) const {
         };
         visit(std::span(table.smoothness.coefficients).subspan(begin, end - begin), unknown, table);
       }
+}
+
+bool RefineSystem::has_volume() const noexcept {
+  return std::ranges::any_of(lanes_.tables(), [](const LobeLanes::NumberedTable& table) {
+    return table.layout.shape == TableShape::volume;
+  });
+}
+
+void RefineSystem::fill(const Eigen::VectorXd& x, const ErrorTerms& means, double smooth,
+                        NodeBand& band) const {
+  const LobeLanes::Values values = lanes_.values(x);
+  const ErrorTerms derivatives = loss_.derivatives(means, picture_weight_, pair_weight_);
+  band.set_zero();
+  std::vector<NodeBand::Term> row;
+
+  // a term for each node that a lobe's lookup touches
+  const auto add_terms = [&](const LobeLanes::Slot& slot, const Lookups::Place& place, std::size_t lane,
+                             std::size_t channel, double slope) {
+    const auto& [number, layout] = lanes_.tables()[lanes_.families()[slot.family].tables[lane]];
+    const std::size_t row_nodes = slot.next_row / LobeLanes::kLanes,
+                      layer_nodes = slot.next_layer / LobeLanes::kLanes;
+    for (std::size_t k = 0; k < std::size_t{1} << axis_count(layout.shape); ++k) {
+      const double weight = (k & 1 ? place.fx : 1 - place.fx) * (k & 2 ? place.fy : 1 - place.fy) *
+                            (k & 4 ? place.fz : 1 - place.fz);
+      const std::size_t node = place.node + (k & 1) + (k & 2 ? row_nodes : 0) + (k & 4 ? layer_nodes : 0);
+      const std::size_t unknown = number(node, channel);
+      // by logarithms: d lambda / dx = lambda
+      row.push_back({static_cast<std::uint32_t>(unknown),
+                     slope * weight * values.lambda[static_cast<Eigen::Index>(unknown)]});
+    }
+  };
+  for_each_slope(
+      values, derivatives, 0, lanes_.blocks(),
+      [&](std::size_t b, std::size_t c, const LobeLanes::Block& at, const float*, const float* curvatures) {
+        const Lookups::Place* places = lanes_.places(b);
+        const std::size_t count = std::min(LobeLanes::kBlock, set_.size() - b * LobeLanes::kBlock);
+        for (std::size_t i = 0; i < count; ++i) {
+          row.clear();
+          for (std::size_t s = 0; s < lanes_.slots().size(); ++s) {
+            const LobeLanes::Slot& slot = lanes_.slots()[s];
+            const float* slopes = at.factor.data() + s * LobeLanes::kBlockLanes + i * LobeLanes::kLanes;
+            for (std::size_t l = 0; l < (slot.one_table ? 1 : LobeLanes::kLanes); ++l)
+              if (lanes_.families()[slot.family].tables[l] != LobeLanes::kNone)
+                add_terms(slot, places[slot.place * LobeLanes::kBlock + i], l, c,
+                          static_cast<double>(slopes[l]));
+          }
+          if (curvatures[i] > 0) band.add_row(row, static_cast<double>(curvatures[i]));
+        }
+      });
+  for_each_roughness_row(
+      [&](std::span<const double> coefficients, const auto& unknown, const SystemTable& table) {
+        row.clear();
+        for (std::size_t a = 0; a < coefficients.size(); ++a)
+          row.push_back({static_cast<std::uint32_t>(unknown(a)), coefficients[a]});
+        band.add_wide_row(row, smooth * table.share);
+      });
 }
 
 double RefineSystem::roughness(const Eigen::VectorXd& x) const {

@@ -12,6 +12,7 @@
 #include <burnish/fitting/refinement/lobe_lanes.h>
 #include <burnish/fitting/refinement/log_model.h>
 #include <burnish/fitting/refinement/lookups.h>
+#include <burnish/fitting/refinement/node_band.h>
 #include <burnish/fitting/refinement/picture_loss_lanes.h>
 #include <burnish/fitting/refinement/training_set.h>
 
@@ -67,6 +68,12 @@ class RefineSystem {
     return lambda.cwiseProduct(lanes_.times(factor.values, factor.shares, lambda.cwiseProduct(v)));
   }
 
+  /// Whether a table has three axes.
+  bool has_volume() const noexcept;
+  NodeBand node_band() const { return NodeBand(lanes_.tables(), lookups_, channels()); }
+  /// Puts the Gauss-Newton matrix at x and `smooth` times that of the roughness into a band like node_band().
+  void fill(const Eigen::VectorXd& x, const ErrorTerms& means, double smooth, NodeBand& band) const;
+
   /// Roughness of all tables, its gradient, its matrix times v and its diagonal.
   double roughness(const Eigen::VectorXd& x) const;
   Eigen::VectorXd roughness_matrix_times(const Eigen::VectorXd& v) const;
@@ -104,6 +111,7 @@ class RefineSystem {
   void for_each_roughness_row(Visit visit) const;
 
   const TrainingSet& set_;
+  const Lookups& lookups_;
   PictureLoss loss_;
   Losses losses_;
   std::size_t first_channel_, last_channel_, size_ = 0;

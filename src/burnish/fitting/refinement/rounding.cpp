@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include <burnish/fitting/numerics/dense.h>
 #include <burnish/fitting/numerics/node_numbers.h>
@@ -54,7 +55,9 @@ struct Channels {
   RefineSystem system;
   Eigen::VectorXd x;
   ErrorTerms means;
-  Eigen::MatrixXd upper;  ///< of the tables rounded together; empty: nothing is made good
+  Eigen::MatrixXd upper;         ///< of the tables rounded together; empty: nothing is made good
+  std::optional<NodeBand> band;  ///< of models with volumes
+  Eigen::VectorXd start = {};    ///< x before the first table was rounded
 
   /// Sets unknown u, `first` being the first of the matrix, to what is stored and makes that good by the
   /// unknowns after it.
@@ -84,7 +87,7 @@ class CompensatedRounding {
       RefineSystem system(model, set, lookups, loss, options.format, c, c + together_);
       Eigen::VectorXd x = system.read(model);
       const ErrorTerms means = system.errors(x);
-      parts_.push_back({std::move(system), std::move(x), means, {}});
+      parts_.push_back({std::move(system), std::move(x), means, {}, {}});
     }
   }
 
@@ -92,14 +95,21 @@ class CompensatedRounding {
 
   /// What is stored, the errors made good by the nodes that come after.
   LogModel compensated() {
+    prepare_bands();
     for (std::size_t t = 0; t < roundings_.size();) {
+      if (is_banded(t)) {
+        ++t;
+        continue;
+      }
       // as many tables as one matrix may hold
       const std::size_t first = first_unknown(t);
       std::size_t end = t + 1;
-      while (end < roundings_.size() && first_unknown(end + 1) - first <= kMaxTogether) ++end;
+      while (end < roundings_.size() && !is_banded(end) && first_unknown(end + 1) - first <= kMaxTogether)
+        ++end;
       for (Channels& part : parts_) prepare(part, first, first_unknown(end));
       for (; t < end; ++t) round_table(t, first);
     }
+    if (parts_.front().band) round_band();
     LogModel result = model_;
     for (const Channels& part : parts_) part.system.write(part.x, result);
     return result;
@@ -134,6 +144,77 @@ class CompensatedRounding {
     part.upper.diagonal().array() += kRidge * diagonal.mean();
     if (!factorize_inverse(part.upper)) part.upper.resize(0, 0);
   }
+
+  // ---- Tables along one coordinate, which a band holds whole
+
+  bool is_banded(std::size_t t) const {
+    const auto& band = parts_.front().band;
+    return band && band->is_banded(static_cast<std::uint32_t>(first_unknown(t)));
+  }
+
+  void prepare_bands() {
+    for (Channels& part : parts_)
+      if (!part.system.has_volume() || !prepare_band(part)) {
+        for (Channels& other : parts_) other.band.reset();
+        return;
+      }
+  }
+
+  bool prepare_band(Channels& part) {
+    part.band = part.system.node_band();
+    part.start = part.x;
+    const RefineSystem::GaussNewtonFactor factor = part.system.gauss_newton_factor(part.x, part.means);
+    const Eigen::VectorXd diagonal = factor.diagonal + 2 * smooth_ * part.system.roughness_diagonal();
+    part.system.fill(part.x, part.means, 2 * smooth_, *part.band);
+    return part.band->factorize(kDamping * diagonal.array() + kRidge * diagonal.mean());
+  }
+
+  /// From the last node to the first, each where those after it ask it to be.
+  void round_band() {
+    std::vector<Eigen::VectorXd> asked;
+    for (Channels& part : parts_) asked.push_back(follow_rest(part));
+    const std::span<const std::uint32_t> order = parts_.front().band->banded();
+    std::vector<Eigen::VectorXd> changes(parts_.size(),
+                                         Eigen::VectorXd::Zero(static_cast<Eigen::Index>(order.size())));
+    std::vector<double> logs, stored;
+    for (std::size_t i = order.size(); i > 0;) {
+      // a texel's channels, side by side in one system or at the same place of several
+      const std::size_t t = table_of(order[i - 1]), step = model_.step(t);
+      const std::size_t here = together_ > 1 ? step : 1, systems = step / here;
+      i -= here;
+      logs.resize(step);
+      stored.resize(step);
+      for (std::size_t c = 0; c < step; ++c) {
+        const std::size_t s = systems > 1 ? c : 0, at = i + (here > 1 ? c : 0);
+        logs[c] = asked[s][order[at]] + parts_[s].band->band().follow(at, changes[s]);
+      }
+      roundings_[t].round(logs, stored);
+      for (std::size_t c = 0; c < step; ++c) {
+        const std::size_t s = systems > 1 ? c : 0, at = i + (here > 1 ? c : 0);
+        changes[s][static_cast<Eigen::Index>(at)] = stored[c] - asked[s][order[at]];
+        parts_[s].x[order[at]] = stored[c];
+      }
+    }
+  }
+
+  /// Where the band's unknowns go after what rounding did to the others.
+  Eigen::VectorXd follow_rest(Channels& part) const {
+    const Eigen::VectorXd change = part.x - part.start;
+    if (change.isZero(0)) return part.x;
+    const RefineSystem::GaussNewtonFactor factor = part.system.gauss_newton_factor(part.start, part.means);
+    Eigen::VectorXd pull = -part.system.gauss_newton_times(factor, change);
+    for (Eigen::Index u = 0; u < pull.size(); ++u)
+      if (!part.band->is_banded(static_cast<std::uint32_t>(u))) pull[u] = 0;
+    return part.x + part.band->solve(pull);
+  }
+
+  std::size_t table_of(std::size_t unknown) const {
+    std::size_t t = 0;
+    while (first_unknown(t + 1) <= unknown) ++t;
+    return t;
+  }
+
+  // ---- The others
 
   void round_table(std::size_t t, std::size_t first) {
     const NodeNumbers& number = numbering_.tables[t];
