@@ -1,4 +1,8 @@
+#include <concepts>
+#include <type_traits>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include <burnish/error.h>
 #include <burnish/math/angles.h>
@@ -27,6 +31,23 @@ std::optional<std::size_t> Source::bytes() const noexcept {
           return std::nullopt;
       },
       brdf);
+}
+
+MeasuredNodes measured_nodes(const Source& source) {
+  MeasuredNodes nodes = std::visit(
+      [&](const auto& any) -> MeasuredNodes {
+        if constexpr (std::same_as<std::decay_t<decltype(any)>, ScatteredBrdf>)
+          return measured_nodes(any.samples());
+        else if constexpr (requires { measured_nodes(any); })
+          return measured_nodes(any);
+        else
+          throw Error(fmt::format("{}: expected a measurement, whose nodes are known, found {}", source.name,
+                                  source.findings.format));
+      },
+      source.brdf);
+  if (nodes.size() == 0)
+    throw Error(fmt::format("{}: expected nodes above the horizon, found none", source.name));
+  return nodes;
 }
 
 Source to_source(const std::string& name, Model model) {

@@ -16,6 +16,7 @@
 #include <burnish/reflectance/brdf.h>
 #include <burnish/reflectance/findings.h>
 #include <burnish/reflectance/half_diff_table.h>
+#include <burnish/reflectance/measured_nodes.h>
 #include <burnish/reflectance/patch_table.h>
 #include <burnish/reflectance/rgl_table.h>
 #include <burnish/reflectance/scattered_brdf.h>
@@ -41,6 +42,10 @@ struct Source {
   /// Size of a compressed BRDF as its type counts it; nothing for measurements.
   std::optional<std::size_t> bytes() const noexcept;
 };
+
+/// What was measured, where the source is a measurement. Throws Error naming the source where it is a formula
+/// or a model, or has no node above the horizon.
+MeasuredNodes measured_nodes(const Source& source);
 
 /// A model as a source of that name.
 Source to_source(const std::string& name, Model model);

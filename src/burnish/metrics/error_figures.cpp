@@ -13,6 +13,15 @@ namespace {
 
 constexpr std::size_t kChunk = 1024;  // pairs evaluated at a time
 
+SpherePictures render(BrdfRef brdf, int size) {
+  SpherePictures pictures;
+  for (std::size_t i = 0; i < kSphereLights.size(); ++i)
+    pictures.spheres[i] = render_sphere(brdf, kSphereLights[i], size);
+  return pictures;
+}
+
+}  // namespace
+
 PairError pair_error(const DirectionPair& pair, std::span<const double> reference,
                      std::span<const double> model, double floor) noexcept {
   PairError error{pair};
@@ -39,15 +48,6 @@ PairError pair_error(const DirectionPair& pair, std::span<const double> referenc
   if (error.positive_channels > 0) error.abs_log /= error.positive_channels;
   return error;
 }
-
-SpherePictures render(BrdfRef brdf, int size) {
-  SpherePictures pictures;
-  for (std::size_t i = 0; i < kSphereLights.size(); ++i)
-    pictures.spheres[i] = render_sphere(brdf, kSphereLights[i], size);
-  return pictures;
-}
-
-}  // namespace
 
 Scorer::Scorer(BrdfRef reference, const FigureOptions& options) : reference_(reference), options_(options) {
   if (options.count == 0) throw Error("expected at least one direction pair, found 0");

@@ -44,6 +44,10 @@ struct PairError {
   int positive_channels = 0;  ///< how many those are
 };
 
+/// Error of a model's values at one pair, floor >= 0. One channel stands for every channel of the other side.
+PairError pair_error(const DirectionPair& pair, std::span<const double> reference,
+                     std::span<const double> model, double floor) noexcept;
+
 /// The three lit spheres of one BRDF and what is shown of them.
 struct SpherePictures {
   std::array<LitSphere, kSphereLights.size()> spheres;

@@ -1,0 +1,147 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <burnish/error.h>
+#include <burnish/math/parallel.h>
+#include <burnish/metrics/node_figures.h>
+
+namespace burnish {
+
+namespace {
+
+constexpr std::uint32_t kManyGroups = 20'000;
+constexpr int kMostSteps = 4;
+
+/// Weighted sums of errors, to be means.
+struct ErrorSums {
+  double log_cos = 0, log_ratio = 0, log_ratio_sq = 0, difference_sq = 0, weight = 0;
+  std::size_t count = 0;
+
+  void add(const PairError& error, double by) noexcept {
+    log_cos += by * error.log_cos;
+    log_ratio += by * error.log_ratio;
+    log_ratio_sq += by * error.log_ratio_sq;
+    difference_sq += by * error.difference_sq;
+    weight += by;
+    ++count;
+  }
+  void add(const ErrorSums& other) noexcept {
+    log_cos += other.log_cos;
+    log_ratio += other.log_ratio;
+    log_ratio_sq += other.log_ratio_sq;
+    difference_sq += other.difference_sq;
+    weight += other.weight;
+    count += other.count;
+  }
+  NodeFigures means(const NodeScoring& scoring) const {
+    if (count == 0)
+      throw Error(
+          fmt::format("nodes: expected some with both cosines above {}, found none", scoring.least_cosine));
+    return {log_cos / weight, std::expm1(log_ratio / weight), std::sqrt(log_ratio_sq / weight),
+            std::sqrt(difference_sq / weight), count};
+  }
+};
+
+/// Calls body(node, error) for the nodes that are scored.
+template <class Body>
+void for_each_error(const MeasuredNodes& nodes, BrdfRef model, const NodeScoring& scoring, Body body) {
+  const int channels = nodes.samples.channels;
+  if (model.channels() != channels && model.channels() != 1 && channels != 1)
+    throw Error(
+        fmt::format("cannot compare nodes of {} channels with a model of {}", channels, model.channels()));
+  std::vector<double> f(static_cast<std::size_t>(model.channels()));
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const DirectionPair& pair = nodes.samples.pairs[i];
+    if (!(std::min(pair.wi.z, pair.wo.z) > scoring.least_cosine) || !model.eval(pair.wi, pair.wo, f))
+      continue;
+    body(i, pair_error(pair, nodes.samples.at(i), f, scoring.floor));
+  }
+}
+
+ErrorSums sums_of(const MeasuredNodes& nodes, BrdfRef model, const NodeScoring& scoring) {
+  ErrorSums sums;
+  for_each_error(nodes, model, scoring,
+                 [&](std::size_t i, const PairError& error) { sums.add(error, nodes.weights[i]); });
+  return sums;
+}
+
+// The hand that a group is dealt to: neighbouring groups go to different ones [Knuth 1998].
+std::size_t hand_of(std::uint32_t group, std::size_t hands) noexcept {
+  return (group * 2654435769u >> 8 & 0xffff) % hands;
+}
+
+}  // namespace
+
+std::vector<PairError> node_errors(const MeasuredNodes& nodes, BrdfRef model, const NodeScoring& scoring) {
+  std::vector<PairError> errors;
+  for_each_error(nodes, model, scoring,
+                 [&](std::size_t, const PairError& error) { errors.push_back(error); });
+  return errors;
+}
+
+NodeFigures node_figures(const MeasuredNodes& nodes, BrdfRef model, const NodeScoring& scoring) {
+  return sums_of(nodes, model, scoring).means(scoring);
+}
+
+NodeFigures held_out_figures(const MeasuredNodes& nodes, const NodeSmoothness& smoothness, int folds) {
+  std::vector<ErrorSums> sums(static_cast<std::size_t>(folds));
+  for_each_chunk(sums.size(), 1, [&](std::size_t fold, std::size_t, std::size_t) {
+    std::vector<std::size_t> seen, unseen;
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      (hand_of(nodes.groups[i], sums.size()) == fold ? unseen : seen).push_back(i);
+    if (unseen.empty() || seen.empty()) return;
+    sums[fold] = sums_of(select(nodes, unseen), SmoothedNodes(select(nodes, seen), smoothness), {});
+  });
+  ErrorSums total;
+  for (const ErrorSums& sum : sums) total.add(sum);
+  return total.means({});
+}
+
+NodeSmoothness choose_node_smoothness(const MeasuredNodes& nodes) {
+  // enough of the groups
+  std::optional<MeasuredNodes> part;
+  if (const std::uint32_t step = nodes.group_count() / kManyGroups + 1; step > 1) {
+    std::vector<std::size_t> chosen;
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      if (nodes.groups[i] % step == 0) chosen.push_back(i);
+    part = select(nodes, chosen);
+  }
+
+  NodeSmoothness best;
+  const auto error_of = [&](const NodeSmoothness& trial) {
+    const NodeFigures figures = held_out_figures(part ? *part : nodes, trial);
+    return std::log(figures.relative) + std::log(figures.log_cos);
+  };
+  double smallest = error_of(best);
+  const auto improves = [&](const NodeSmoothness& trial) {
+    const double error = error_of(trial);
+    if (!(error < smallest)) return false;
+    smallest = error;
+    best = trial;
+    return true;
+  };
+  // all shares, or one, up or down as long as that helps
+  const auto walk = [&](auto scaled) {
+    for (const double factor : {10.0, 0.1}) {
+      int steps = 0;
+      while (steps < kMostSteps && improves(scaled(best, factor))) ++steps;
+      if (steps > 0) break;  // the other way would undo it
+    }
+  };
+  walk([](NodeSmoothness trial, double factor) {
+    for (double& share : trial.shares) share *= factor;
+    return trial;
+  });
+  for (std::size_t k = 0; k < best.shares.size(); ++k)
+    walk([k](NodeSmoothness trial, double factor) {
+      trial.shares[k] *= factor;
+      return trial;
+    });
+  return best;
+}
+
+}  // namespace burnish

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <burnish/metrics/error_figures.h>
+#include <burnish/reflectance/brdf.h>
+#include <burnish/reflectance/measured_nodes.h>
+#include <burnish/reflectance/smoothed_nodes.h>
+
+namespace burnish {
+
+/// How far a model is from what was measured, at the measured nodes: weighted means over them and the channels,
+/// each as in ErrorFigures.
+struct NodeFigures {
+  double log_cos = 0, relative = 0, rms_log = 0, rms = 0;
+  std::size_t count = 0;  ///< nodes that were scored
+};
+
+/// Which nodes are scored and how; the defaults are the definition.
+struct NodeScoring {
+  double least_cosine = 0.15;  ///< of both directions: beyond it instruments err more than models
+  double floor = 1e-3;         ///< 1/sr, as in FigureOptions
+};
+
+/// Errors at the scored nodes that the model knows, in their order; values below 0 count as 0.
+/// Throws Error if the channel counts do not fit.
+std::vector<PairError> node_errors(const MeasuredNodes& nodes, BrdfRef model,
+                                   const NodeScoring& scoring = {});
+
+/// Throws Error as node_errors, or where no node is left to score.
+NodeFigures node_figures(const MeasuredNodes& nodes, BrdfRef model, const NodeScoring& scoring = {});
+
+/// Figures of SmoothedNodes at nodes that it was not made from: groups are dealt to `folds` hands, and each hand
+/// is predicted from the others. folds >= 2. Throws Error as SmoothedNodes and node_figures.
+NodeFigures held_out_figures(const MeasuredNodes& nodes, const NodeSmoothness& smoothness, int folds = 4);
+
+/// The smoothness whose held_out_figures are best, a mean of the logarithms of relative and log_cos; found by
+/// steps of ten from the default: all shares together, then one after the other. Of many nodes a part is taken.
+/// Deterministic. Throws Error as held_out_figures.
+NodeSmoothness choose_node_smoothness(const MeasuredNodes& nodes);
+
+}  // namespace burnish

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <burnish/reflectance/brdf.h>
+#include <burnish/reflectance/measured_nodes.h>
+
+namespace burnish {
+
+/// How stiff a SmoothedNodes is: what the integrals of squared second derivatives of ln f count, over the unit
+/// intervals of theta_h (spaced by its square root), theta_d, phi_d and of the angle to the normal, against the
+/// mean over the nodes of the error in ln f.
+struct NodeSmoothness {
+  std::array<double, 4> shares{1e-8, 1e-7, 1e-6, 1e-8};
+
+  friend bool operator==(const NodeSmoothness&, const NodeSmoothness&) = default;
+};
+
+/// The reciprocal function that runs smoothly between measured nodes of an isotropic surface, where interpolation
+/// would follow each with its noise:
+///   ln(f + 1e-3) = g(theta_h, theta_d, phi_d) + p(theta_i) + p(theta_o),
+/// g linear between 48 x 12 x 6 places, phi_d folded into [0, pi/2], p between 16. Least squares, then towards
+/// the least absolute error by reweighting [Daubechies 2010], which noise of dark nodes hardly moves; nodes
+/// nearer to the horizon count less the nearer they are. Values lie between 0 and twice the largest node's.
+class SmoothedNodes {
+ public:
+  static constexpr double kFloor = 1e-3;  ///< 1/sr, as in the figure `relative`
+
+  /// Throws Error where the nodes are anisotropic or none of them has both cosines above 0.02.
+  explicit SmoothedNodes(const MeasuredNodes& nodes, const NodeSmoothness& smoothness = {});
+
+  int channels() const noexcept { return channels_; }
+  bool isotropic() const noexcept { return true; }
+  bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
+
+ private:
+  int channels_ = 0;
+  std::vector<double> values_;   // [unknown][channel]
+  std::vector<double> largest_;  // [channel]
+};
+
+static_assert(Brdf<SmoothedNodes>);
+
+}  // namespace burnish
