@@ -36,7 +36,9 @@ TEST(ScatteredPlan, KeepsEveryBudget) {
           std::optional(TableFormat::unorm8), std::optional(TableFormat::rgb9e5)}) {
       if (format == TableFormat::rgb9e5 && channels != 3) continue;
       for (const std::size_t bytes : {592, 2700, 64 << 10}) {
-        FitOptions options{.form = Budget{.bytes = bytes, .lobes = 3}, .smooth = 1e-5, .format = format};
+        FitOptions options{.form = Budget{.bytes = bytes, .lobes = 3, .scattered = {.reweightings = 0}},
+                           .smooth = 1e-5,
+                           .format = format};
         if (bytes < least(source, format.value_or(TableFormat::half))) continue;
         const Fit made = fit(source, options);
         EXPECT_LE(made.bytes(), bytes) << channels;
