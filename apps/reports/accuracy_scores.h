@@ -69,8 +69,8 @@ struct MeanScore {
 /// In the order the methods and budgets came first.
 std::vector<MeanScore> means_of(const std::vector<std::vector<Score>>& scores);
 
-/// Means, a row each. Where the figure of another method is ahead of that of "ours" over as many materials, and took
-/// no more bytes than ours was given, both figures are bold.
+/// Means, a row each. Where the figure of another method is ahead of that of "ours" over as many materials,
+/// and took no more bytes than ours was given, both figures are bold.
 Table table_of(const std::vector<MeanScore>& means);
 /// Every score, a row each, scores[i] those of materials[i].
 Table table_of(const std::deque<Material>& materials, const std::vector<std::vector<Score>>& scores);

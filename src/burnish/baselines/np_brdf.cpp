@@ -11,8 +11,8 @@ namespace burnish {
 
 namespace {
 
-// Exchanged directions negate half their difference, and with it both coordinates across the half vector, to the last
-// bit: cosine and sine of twice the azimuth stay.
+// Exchanged directions negate half their difference, and with it both coordinates across the half vector, to
+// the last bit: cosine and sine of twice the azimuth stay.
 NpDecoder::Inputs inputs_of(const DirectionPair& pair, const NpBrdf::Code& code) noexcept {
   // the frame that turns the half vector onto the normal
   const Vec3 sum = pair.wi + pair.wo, difference = pair.wi - pair.wo;

@@ -11,16 +11,16 @@
 
 namespace burnish {
 
-/// A material as seven numbers, decoded by a network that many materials share [Zheng 2021]. The decoder's inputs are
-/// (1 + cos 2 phi_d) / 2, (1 + sin 2 phi_d) / 2, theta_h and theta_d over pi/2, and the code; an output y stands for
-/// f_r = g(g(g(g(0.15 y)))) with g(x) = exp(x) - 1, or for f_r times the cosine. Isotropic, three channels (linear
-/// Rec. 709), >= 0, reciprocal to the last bit; not its own mirror image.
+/// A material as seven numbers, decoded by a network that many materials share [Zheng 2021]. The decoder's
+/// inputs are (1 + cos 2 phi_d) / 2, (1 + sin 2 phi_d) / 2, theta_h and theta_d over pi/2, and the code; an
+/// output y stands for f_r = g(g(g(g(0.15 y)))) with g(x) = exp(x) - 1, or for f_r times the cosine.
+/// Isotropic, three channels (linear Rec. 709), >= 0, reciprocal to the last bit; not its own mirror image.
 class NpBrdf {
  public:
   static constexpr std::size_t kCode = NpDecoder::kInputs - 4;
   using Code = std::array<float, kCode>;
-  /// What a decoded value is. A reciprocal network cannot know which of the two cosines a value was multiplied by:
-  /// `with_cosine` is divided by their mean, at least kMinCosine.
+  /// What a decoded value is. A reciprocal network cannot know which of the two cosines a value was
+  /// multiplied by: `with_cosine` is divided by their mean, at least kMinCosine.
   enum class Value { reflectance, with_cosine };
   static constexpr double kMinCosine = 0.02;
 

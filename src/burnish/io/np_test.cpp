@@ -119,7 +119,7 @@ TEST(Np, EncodingsOfMeasuredMaterialsMeetThem) {
     const Source measured = open_source((data_folder() / "rgl" / (name + ".bsdf")).string(), {});
     const Source np = open_source("np:" + (data_folder() / "np").string() + "#" + name, {});
     const SymmetrizedBrdf reference(measured.ref());
-    const ErrorFigures figures = error_figures(reference, np.ref(), {.count = 5000, .image_size = 64});
+    const ErrorFigures figures = error_figures(reference, np.ref(), {.count = 2000, .image_size = 32});
     EXPECT_LT(figures.relative, 0.3) << name;
     EXPECT_LT(figures.log_cos, 0.01) << name;
   }
