@@ -67,7 +67,7 @@ Source parse_file(const FileBytes& file, const OpenOptions& options) {
   const std::string_view text = file.text();
   if (looks_like_baseline(text)) return from_baseline(file);
   if (looks_like_klems(text)) return from_table(file, parse_klems(file, options));
-  if (looks_like_zemax(text)) return from_table(file, parse_zemax(file, options));
+  if (looks_like_zemax(text)) return from_table(file, parse_zemax(file));
   if (looks_like_neural(text)) return from_neural(file, {});
   if (looks_like_csv(text)) return from_samples(file, parse_csv(file, options));
   if (looks_like_astm(text)) return from_samples(file, parse_astm(file, options));

@@ -42,6 +42,7 @@ std::string to_json(const SourceReport& report) {
     json["albedo"].push_back({{"theta_i_deg", degrees(theta_i)},
                               {"phi_i_deg", degrees(phi_i)},
                               {"albedo", albedo.albedo},
+                              {"clamped_albedo", albedo.clamped},
                               {"unknown_fraction", albedo.unknown_fraction}});
   if (const auto bytes = source.bytes()) json["bytes"] = *bytes;
   if (model) {

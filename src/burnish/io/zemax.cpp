@@ -200,7 +200,7 @@ void read_channel(TextReader& reader, const TableSizes& sizes, double* entries, 
 
 /// Makes the table's values of what was read, grey or XYZ, and notes holes, negatives and angles.
 void fill_values(const std::vector<double>& read, const Header& header, const TableSizes& sizes,
-                 const OpenOptions& options, ZemaxFile& result) {
+                 ZemaxFile& result) {
   const std::size_t channels = sizes.channels;
   const auto& incidences = header.angles.at("angleofincidence");
   const auto& azimuths = header.angles.at("scatterazimuth");
@@ -272,7 +272,7 @@ bool looks_like_zemax(std::string_view text) noexcept {
   return line.starts_with("Source ") || line.starts_with("Source\t");
 }
 
-ZemaxFile parse_zemax(const FileBytes& file, const OpenOptions& options) {
+ZemaxFile parse_zemax(const FileBytes& file) {
   TextReader reader(file);
   Header header = read_header(reader);
   const bool monochrome = header.words["spectralcontent"] == "monochrome";
@@ -308,7 +308,7 @@ ZemaxFile parse_zemax(const FileBytes& file, const OpenOptions& options) {
   findings.theta_i_min = radians(incidences.front());
   findings.theta_i_max = radians(incidences.back());
   findings.theta_o_min = kHalfPi;
-  fill_values(read, header, sizes, options, result);
+  fill_values(read, header, sizes, result);
 
   findings.format = "Zemax tabular BRDF";
   findings.description = sample_name(file);

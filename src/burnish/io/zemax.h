@@ -23,7 +23,7 @@ bool looks_like_zemax(std::string_view text) noexcept;
 /// a light at phi_i = r + 90 degrees: the normal of the plane of incidence is then r from +x. Linear between
 /// the angles. Entries of exactly zero are holes; negatives are counted and kept. Monochrome is grey; XYZ becomes linear Rec. 709 for a D65 white. Throws Error on anything else,
 /// transmission included. Source: [Rykowski 2008].
-ZemaxFile parse_zemax(const FileBytes& file, const OpenOptions& options);
+ZemaxFile parse_zemax(const FileBytes& file);
 
 /// Frame and axes of the files that burnish makes, without values: isotropic ones folded, incidences
 /// up to 85 degrees and azimuths every 5, anisotropic ones every 10; radial angles 0.5 degrees apart at the

@@ -28,12 +28,12 @@ std::string replaced(std::string text, std::string_view what, std::string_view w
 }
 
 std::string error(const std::string& text) {
-  return error_of([&] { parse_zemax(memory_file(text), {}); });
+  return error_of([&] { parse_zemax(memory_file(text)); });
 }
 
 TEST(Zemax, ReadsValuesAroundTheMirrorDirection) {
   EXPECT_TRUE(looks_like_zemax(kHeader));
-  const auto file = parse_zemax(memory_file(kHeader + kData), {});
+  const auto file = parse_zemax(memory_file(kHeader + kData));
   EXPECT_EQ(file.findings.description, "paint");
   EXPECT_EQ(file.findings.sample_count, 12u);
   EXPECT_EQ(file.findings.hole_count, 1u);
@@ -62,7 +62,7 @@ TEST(Zemax, ReadsValuesAroundTheMirrorDirection) {
 TEST(Zemax, TurnsTheLightWithTheSample) {
   std::string text = replaced(kHeader + kData, "SampleRotation\t1\n0\n", "SampleRotation\t2\n0 90\n");
   text = replaced(text, "AngleOfIncidence\t2\n10 30\n", "AngleOfIncidence\t1\n10\n");
-  const auto file = parse_zemax(memory_file(text), {});
+  const auto file = parse_zemax(memory_file(text));
   EXPECT_FALSE(file.table.isotropic());
   double f;
   ASSERT_TRUE(file.table.eval(spherical_direction(radians(10), kHalfPi),
@@ -79,7 +79,7 @@ TEST(Zemax, TurnsWhiteXyzIntoGreyRgb) {
   text = replaced(text, "ScatterAzimuth\t3\n0 90 180\n", "ScatterAzimuth\t1\n0\n");
   for (const char* white : {"0.95047", "1.0", "1.08883"})
     text += fmt::format("TristimulusX\nDataBegin\nTIS 1\n{} {}\nDataEnd\n", white, white);
-  const auto file = parse_zemax(memory_file(text), {});
+  const auto file = parse_zemax(memory_file(text));
   std::array<double, 3> f;
   ASSERT_TRUE(file.table.eval(spherical_direction(radians(10), 0), spherical_direction(radians(10), kPi), f));
   for (const double value : f) EXPECT_NEAR(value, 1, 1e-4);
@@ -103,7 +103,7 @@ TEST(Zemax, WritesWhatItReads) {
       testing::Glossy glossy{.a = 20, .b = isotropic ? 20.0 : 5.0, .count = channels};
       const AngleTable table = tabulate_angles(glossy, coarse_layout(isotropic));
       ASSERT_TRUE(fits_zemax(table));
-      const auto file = parse_zemax(memory_file(format_zemax(table, "some\nname")), {});
+      const auto file = parse_zemax(memory_file(format_zemax(table, "some\nname")));
       EXPECT_EQ(file.findings.description, "some?name");
       EXPECT_EQ(file.table.channels(), channels);
       EXPECT_EQ(file.table.isotropic(), isotropic);
@@ -137,7 +137,7 @@ TEST(Zemax, WritesZeroSaturationAndTotals) {
     const std::array<float, 3> value = i % 2 ? std::array{0.0f, 0.0f, 0.0f} : std::array{1.0f, 1e-3f, 1e-4f};
     std::copy(value.begin(), value.end(), table.values.begin() + static_cast<std::ptrdiff_t>(i));
   }
-  const AngleTable back = parse_zemax(memory_file(format_zemax(table, "")), {}).table;
+  const AngleTable back = parse_zemax(memory_file(format_zemax(table, ""))).table;
   for (std::size_t i = 0; i < table.values.size(); ++i)
     if (std::isnan(table.values[i])) {
       EXPECT_TRUE(std::isnan(back.values[i]));
@@ -166,7 +166,7 @@ TEST(Zemax, SaysWhatIsWrong) {
 
 TEST(Zemax, ReadsABlackCoatingMeasuredTo80Degrees) {
   BURNISH_NEEDS_DATA();
-  const auto file = parse_zemax(read_file(data_folder() / "zemax" / "AnoBlackEC1onAlum.bsdf"), {});
+  const auto file = parse_zemax(read_file(data_folder() / "zemax" / "AnoBlackEC1onAlum.bsdf"));
   EXPECT_EQ(file.findings.sample_count, 4u * 19 * 12);
   EXPECT_EQ(file.findings.negative_count, 0u);
   EXPECT_TRUE(file.table.isotropic());
@@ -193,7 +193,7 @@ TEST(Zemax, ReadsABlackCoatingMeasuredTo80Degrees) {
 
 TEST(Zemax, ReadsAnAnisotropicSensor) {
   BURNISH_NEEDS_DATA();
-  const auto file = parse_zemax(read_file(data_folder() / "zemax" / "IMX455.bsdf"), {});
+  const auto file = parse_zemax(read_file(data_folder() / "zemax" / "IMX455.bsdf"));
   EXPECT_EQ(file.findings.sample_count, 37u * 4 * 37 * 21);
   EXPECT_FALSE(file.table.isotropic());
   // The file repeats the half turn, except around its rotations of 0, which it flips.
