@@ -25,13 +25,13 @@ RingFrame frame_around(Vec3 axis) noexcept {
 
 /// Integrals over one ring; joined in order, so that the sum does not depend on the threads.
 struct Ring {
-  std::vector<double> reflected;
+  std::vector<double> reflected, clamped;
   double known = 0, all = 0;
 };
 
 Ring integrate_ring(BrdfRef source, Vec3 wi, const RingFrame& frame, double radius,
                     double solid_angle_per_azimuth, std::size_t azimuth_count, std::vector<double>& f) {
-  Ring ring{.reflected = std::vector<double>(f.size())};
+  Ring ring{.reflected = std::vector<double>(f.size()), .clamped = std::vector<double>(f.size())};
   // cos(theta_o) = level + slope cos(azimuth) is above 0 within `half` of the azimuth towards the normal
   const double level = std::cos(radius) * frame.axis.z;
   const double slope = std::sin(radius) * frame.up.z;
@@ -45,7 +45,10 @@ Ring integrate_ring(BrdfRef source, Vec3 wi, const RingFrame& frame, double radi
     ring.all += weight * wo.z;
     if (!source.eval(wi, wo, f)) continue;
     ring.known += weight * wo.z;
-    for (std::size_t c = 0; c < f.size(); ++c) ring.reflected[c] += weight * wo.z * f[c];
+    for (std::size_t c = 0; c < f.size(); ++c) {
+      ring.reflected[c] += weight * wo.z * f[c];
+      ring.clamped[c] += weight * wo.z * std::max(f[c], 0.0);
+    }
   }
   return ring;
 }
@@ -67,12 +70,15 @@ DirectionalAlbedo integrate(BrdfRef source, Vec3 wi, std::size_t ring_count) {
     }
   });
 
-  DirectionalAlbedo result{std::vector<double>(channels, 0.0), 0};
+  DirectionalAlbedo result{std::vector<double>(channels, 0.0), std::vector<double>(channels, 0.0), 0};
   double known = 0, all = 0;
   for (const Ring& ring : rings) {
     known += ring.known;
     all += ring.all;
-    for (std::size_t c = 0; c < channels; ++c) result.albedo[c] += ring.reflected[c];
+    for (std::size_t c = 0; c < channels; ++c) {
+      result.albedo[c] += ring.reflected[c];
+      result.clamped[c] += ring.clamped[c];
+    }
   }
   result.unknown_fraction = std::max(0.0, 1 - known / all);
   return result;
@@ -81,6 +87,7 @@ DirectionalAlbedo integrate(BrdfRef source, Vec3 wi, std::size_t ring_count) {
 }  // namespace
 
 DirectionalAlbedo directional_albedo(BrdfRef source, Vec3 wi, double tolerance) {
+  source = source.unclamped();
   // twice as many rings until the figures settle
   DirectionalAlbedo result = integrate(source, wi, kMinRings);
   for (std::size_t rings = 2 * kMinRings; rings <= kMaxRings; rings *= 2) {

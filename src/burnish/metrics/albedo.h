@@ -9,14 +9,16 @@ namespace burnish {
 
 /// The share of light from one direction that is reflected.
 struct DirectionalAlbedo {
-  std::vector<double> albedo;  ///< one a channel; unknown directions count as black
+  std::vector<double> albedo;   ///< one a channel; unknown directions count as black
+  std::vector<double> clamped;  ///< the same with values below zero cut: what their noise adds is light
   double unknown_fraction =
       0;  ///< share of the projected hemisphere where the source knows nothing, in [0, 1]
 };
 
 inline constexpr double kAlbedoTolerance = 0.005;
 
-/// The integral of f(wi, wo) cos(theta_o) over the hemisphere of wo, wi above the horizon. Midpoint rule over
+/// The integral of f(wi, wo) cos(theta_o) over the hemisphere of wo, wi above the horizon; of raw values (see
+/// BrdfRef::unclamped), whose noise cancels. Midpoint rule over
 /// rings around the mirror direction, their radii spaced as squares so that narrow peaks are met, each ring
 /// cut exactly at the horizon. The number of rings (and that of points on a ring, half as many) doubles from
 /// 64 until no channel changes by more than `tolerance` of itself, up to 512. Within `tolerance` of the
