@@ -32,6 +32,25 @@ TEST(Smoothness, ApproachesTheIntegralOfSecondDerivatives) {
   EXPECT_NEAR(roughness(fine, [](double x, double y) { return x * x * y; }), exact, 0.03 * exact);
 }
 
+TEST(Smoothness, CountsEveryAxisOfAVolume) {
+  // f = x y z: f_xy^2 = z^2 and so on, f_x^2 = y^2 z^2; the nodes are the same whichever axis comes first
+  const auto along = [](int node, int nodes) { return static_cast<double>(node) / (nodes - 1); };
+  const TableLayout layout{.shape = TableShape::volume, .width = 40, .height = 30, .depth = 50};
+  const SmoothnessRows rows = smoothness_rows(layout);
+  double sum = 0;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    double value = 0;
+    for (std::size_t k = rows.starts[r]; k < rows.starts[r + 1]; ++k) {
+      const int node = static_cast<int>(rows.nodes[k]), row = node / layout.width;
+      value += rows.coefficients[k] * along(node % layout.width, layout.width) *
+               along(row % layout.height, layout.height) * along(row / layout.height, layout.depth);
+    }
+    sum += value * value;
+  }
+  const double exact = 2 * 3 * (1.0 / 3) + kSlopeShare * 3 * (1.0 / 9);
+  EXPECT_NEAR(sum, exact, 0.08 * exact);
+}
+
 TEST(Smoothness, IsTheSameAtEveryResolution) {
   const auto f = [](double x, double) { return std::cos(3 * x); };
   const double coarse = roughness({.width = 60}, f), fine = roughness({.width = 240}, f);
@@ -41,7 +60,8 @@ TEST(Smoothness, IsTheSameAtEveryResolution) {
 TEST(Smoothness, ConstantsAreFree) {
   for (const TableLayout& layout :
        {TableLayout{.width = 7}, TableLayout{.shape = TableShape::disk, .width = 5, .height = 5},
-        TableLayout{.shape = TableShape::grid, .width = 4, .height = 6}})
+        TableLayout{.shape = TableShape::grid, .width = 4, .height = 6},
+        TableLayout{.shape = TableShape::volume, .width = 4, .height = 6, .depth = 3}})
     EXPECT_NEAR(roughness(layout, [](double, double) { return 3.0; }), 0, 1e-20);
 }
 

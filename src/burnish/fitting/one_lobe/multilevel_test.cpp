@@ -9,21 +9,23 @@ namespace burnish {
 namespace {
 
 TEST(GridTransfer, RestrictionIsTheTransposeOfInterpolation) {
-  const TableLayout layout{.shape = TableShape::grid, .width = 9, .height = 6};
+  const TableLayout grid{.shape = TableShape::grid, .width = 9, .height = 6},
+      volume{.shape = TableShape::volume, .width = 9, .height = 6, .depth = 5};
   Pcg32 random(1);
   constexpr std::size_t kStep = 3;
-  for (const GridTransfer& level : coarser_levels(layout)) {
-    std::vector<double> fine(layout.node_count() * kStep), coarse(level.coarse_count() * kStep);
-    for (double& v : fine) v = random.uniform();
-    for (double& v : coarse) v = random.uniform();
-    std::vector<double> restricted(coarse.size()), interpolated(fine.size());
-    level.restrict_to(fine.data(), restricted.data(), kStep);
-    level.add_interpolated(coarse.data(), interpolated.data(), kStep);
-    double a = 0, b = 0;
-    for (std::size_t i = 0; i < coarse.size(); ++i) a += restricted[i] * coarse[i];
-    for (std::size_t i = 0; i < fine.size(); ++i) b += interpolated[i] * fine[i];
-    EXPECT_NEAR(a, b, 1e-12 * std::abs(a));
-  }
+  for (const TableLayout& layout : {grid, volume})
+    for (const GridTransfer& level : coarser_levels(layout)) {
+      std::vector<double> fine(layout.node_count() * kStep), coarse(level.coarse_count() * kStep);
+      for (double& v : fine) v = random.uniform();
+      for (double& v : coarse) v = random.uniform();
+      std::vector<double> restricted(coarse.size()), interpolated(fine.size());
+      level.restrict_to(fine.data(), restricted.data(), kStep);
+      level.add_interpolated(coarse.data(), interpolated.data(), kStep);
+      double a = 0, b = 0;
+      for (std::size_t i = 0; i < coarse.size(); ++i) a += restricted[i] * coarse[i];
+      for (std::size_t i = 0; i < fine.size(); ++i) b += interpolated[i] * fine[i];
+      EXPECT_NEAR(a, b, 1e-12 * std::abs(a));
+    }
 }
 
 TEST(GridTransfer, InterpolatesLinearFunctionsExactlyDownToTwoNodes) {

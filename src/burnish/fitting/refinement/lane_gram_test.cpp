@@ -10,14 +10,14 @@
 namespace burnish {
 namespace {
 
-// Families of three, two and one table, one of all lobes, grids, and unknowns of which some are left out.
+// Families of three, two and one table, one of all lobes, grids, a volume, and unknowns of which some are left out.
 TEST(LaneGram, IsTheProductOfTheDenseMatrix) {
   const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3");
   const TrainingSet set = draw_training_set(ggx.ref(), {.pictures = 200, .directions = 200});
-  const std::vector<std::string> sizes{"p=5", "a=5", "c=5", "q=7", "b=7", "g=4x3", "d=4x3", "z=9"};
+  const std::vector<std::string> sizes{"p=5", "a=5", "c=5", "q=7", "b=7", "g=4x3", "d=4x3", "z=9", "v=3x4x2"};
   const ModelSpec spec = parse_model_spec(
       "p(wo) p(wi) q(h) g(theta_d,theta_m) z(h) + a(wo) a(wi) b(h) z(h) + c(wo) c(wi) d(theta_d,theta_m) "
-      "z(h)",
+      "z(h) v(theta_h,theta_d,phi_d)",
       sizes, true);
   const Numbering numbering = number_nodes(spec, 1);
   const std::size_t size = numbering.count;

@@ -15,6 +15,7 @@ TEST(RefineSystem, MatrixAndFactorAreTheSameSystem) {
   const std::string different = "p(wo) p(wi) q(h) + q(h) g(theta_d,theta_m)";
   // tables of one layout, more of them than a vector has lanes
   const std::string alike = "p(wo) p(wi) q(h) g(theta_d,theta_m) + a(wo) b(h) c(theta_d,theta_m)",
+                    volumes = "z(h) v(theta_h,theta_d,phi_d) + z(h) p(wo) p(wi) w(theta_d,theta_h,phi_d)",
                     many = "a(h) b(h) + c(h) d(wo) + e(h) f(h) + g(h) i(h) + j(h) k(h)";
   const struct {
     std::string expression;
@@ -25,7 +26,9 @@ TEST(RefineSystem, MatrixAndFactorAreTheSameSystem) {
       {different, {"p=5,shared", "q=9", "g=4x3"}, 5 + 3 * 9 + 3 * 12},
       {alike, {"p=5", "a=5", "q=5", "b=5", "g=4x3", "c=4x3"}, 4 * 5 + 2 * 12},
       {alike, {"p=5,shared", "a=5", "q=5", "b=5", "g=4x3,shared", "c=4x3"}, 5 + 3 * 15 + 12 + 3 * 12},
-      {many, {"a=5", "b=5", "c=5", "d=5", "e=5", "f=5", "g=5", "i=5", "j=5", "k=5"}, 50}};
+      {many, {"a=5", "b=5", "c=5", "d=5", "e=5", "f=5", "g=5", "i=5", "j=5", "k=5"}, 50},
+      {volumes, {"z=9", "v=5x4x3", "p=5", "w=4x5x3"}, 9 + 60 + 5 + 60},
+      {volumes, {"z=9,shared", "v=5x4x3", "p=5", "w=4x5x3,shared"}, 9 + 3 * 60 + 3 * 5 + 60}};
   for (const auto& [expression, tables, unknowns] : cases) {
     const LogModel model = random_model(expression.c_str(), tables, 3);
     const bool shared = model.any_shared();
@@ -57,6 +60,51 @@ TEST(RefineSystem, MatrixAndFactorAreTheSameSystem) {
                   (loss.objective(system.errors(up)) - loss.objective(system.errors(down))) / 2e-3,
                   1e-3 * dense.gradient.cwiseAbs().maxCoeff());
     }
+  }
+}
+
+TEST(NodeBand, SolvesWhatTheMatrixSolves) {
+  const TrainingSet set = small_set(parse_analytic("ggx:alpha_x=0.2,alpha_y=0.2"), 500);
+  // all tables along theta_h, or another beside them
+  for (const bool other : {false, true}) {
+    std::string model = "z(h) v(theta_h,theta_d,phi_d) + y(h) w(theta_d,theta_h,phi_d)";
+    std::vector<std::string> tables{"z=9", "v=5x4x3", "y=7,power:0.5", "w=4x6x3,identity,power:0.5"};
+    if (other) {
+      model += " p(wo) p(wi)";
+      tables.emplace_back("p=5");
+    }
+    const LogModel log_model = random_model(model.c_str(), tables, 1);
+    const Lookups lookups = lookups_of(log_model.spec, set);
+    const RefineSystem system(log_model, set, lookups, {.exposure = 0.1}, TableFormat::half, 0, 1);
+    ASSERT_TRUE(system.has_volume());
+    const Eigen::VectorXd x = system.read(log_model);
+    const ErrorTerms means = system.errors(x);
+    RefineSystem::GaussNewton dense;
+    system.gauss_newton_matrix(x, means, dense);
+    Eigen::MatrixXd matrix = dense.matrix.selfadjointView<Eigen::Lower>();
+    const Eigen::VectorXd extra = Eigen::VectorXd::Constant(x.size(), 1e-2 * matrix.diagonal().mean());
+    matrix.diagonal() += extra;
+    // what couples the band with the table beside it is left out
+    const Eigen::Index rest = other ? 5 : 0;
+    matrix.bottomLeftCorner(rest, x.size() - rest).setZero();
+    matrix.topRightCorner(x.size() - rest, rest).setZero();
+    NodeBand band = system.node_band();
+    EXPECT_EQ(static_cast<Eigen::Index>(band.banded().size()), x.size() - rest);
+    EXPECT_LT(band.band().width(), 120u);
+    system.fill(x, means, 0, band);
+    ASSERT_TRUE(band.factorize(extra));
+    const Eigen::VectorXd v = Eigen::VectorXd::LinSpaced(x.size(), -1, 1);
+    EXPECT_LT((band.solve(matrix * v) - v).norm(), 1e-3 * v.norm());
+
+    // the roughness only adds to the matrix
+    system.fill(x, means, 1, band);
+    ASSERT_TRUE(band.factorize(extra));
+    const Eigen::VectorXd solved = band.solve(v);
+    EXPECT_GT(v.dot(solved), 0);
+    Eigen::MatrixXd rough = matrix;
+    system.add_roughness_matrix(1, rough);
+    EXPECT_GE(v.dot(Eigen::VectorXd(rough.selfadjointView<Eigen::Lower>().llt().solve(v))),
+              0.99 * v.dot(solved));
   }
 }
 

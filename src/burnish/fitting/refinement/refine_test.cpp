@@ -30,6 +30,21 @@ TEST(Refine, RecoversASumOfTwoLobes) {
   EXPECT_LT(fit.summary.error_after, fit.summary.error_before);
 }
 
+TEST(Refine, RecoversALineTimesAVolume) {
+  const LogModel truth = random_model("z(theta_h) g(theta_h,theta_d,phi_d)", {"z=40", "g=16x12x8"},
+                                      1);  // too large for a dense matrix
+  TrainingSet set = small_set(parse_analytic("lambert"), 20'000);
+  const std::vector<double> f = evaluate(truth, set);
+  set.channels = 1;
+  set.values.assign(f.begin(), f.end());
+  const LobesFit fit =
+      fit_lobes(set, truth.spec, {.smooth = 0, .max_iterations = 40, .least_progress = 1e-6});
+  const std::vector<double> g = evaluate(fit.model, set);
+  double sum = 0;
+  for (std::size_t i = 0; i < f.size(); ++i) sum += std::abs(std::log(g[i] / f[i]));
+  EXPECT_LT(sum / static_cast<double>(f.size()), 0.01);
+}
+
 TEST(Refine, DoesNotDependOnTheNumberOfThreads) {
   const TrainingSet set = small_set(parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3,kd=0.2"), 2000);
   const LobePlan plan = default_plan(600, 2, true, 6);
@@ -38,6 +53,13 @@ TEST(Refine, DoesNotDependOnTheNumberOfThreads) {
     return fit_plan(set, plan, 600, 6, {.max_iterations = 4}).model.log_values;
   };
   EXPECT_EQ(fit(1), fit(2));
+  const auto of_volume = [&](int threads) {
+    const ThreadLimit limit(threads);
+    LogModel model = random_model("z(theta_h) g(theta_h,theta_d,phi_d)", {"z=40", "g=16x12x8"}, 3);
+    refine(model, set, {.max_iterations = 2});
+    return model.log_values;
+  };
+  EXPECT_EQ(of_volume(1), of_volume(2));
 }
 
 TEST(Refine, IteratesWhereTheMatrixWouldBeTooLarge) {

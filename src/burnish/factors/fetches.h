@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstddef>
+
+#include <burnish/factors/factored_brdf.h>
+#include <burnish/factors/model_spec.h>
+
+namespace burnish {
+
+/// Filtered reads of tables that one evaluation takes: distinct tables and places in them, whatever the number
+/// of lobes that multiply by what is read. The view's own lookups count too. Of a line, grid, disk or volume
+/// one read each, as a texture unit makes it.
+std::size_t fetch_count(const FactoredBrdf& brdf);
+/// The same of a model without its numbers.
+std::size_t fetch_count(const ModelSpec& spec);
+
+}  // namespace burnish

@@ -1,0 +1,25 @@
+#include <gtest/gtest.h>
+
+#include <burnish/factors/fetches.h>
+#include <burnish/testing/models.h>
+
+namespace burnish {
+namespace {
+
+TEST(FetchCount, CountsWhatLobesShareOnce) {
+  const struct {
+    const char* model;
+    std::size_t fetches;
+  } cases[] = {{"p(wo) q(h) p(wi)", 3},
+               {"z(theta_h) g(theta_h,theta_d,phi_d)", 2},
+               {"z(theta_h) g(theta_h,theta_d) + z(theta_h) p(wo) p(wi)", 4},
+               {"p(wo) q(h) p(wi) + p(wo) s(h) p(wi) + t(theta_d)", 5},
+               {"v(wi,wo) + v(wo,wi)", 2}};
+  for (const auto& [model, fetches] : cases) {
+    EXPECT_EQ(fetch_count(random_model(model, {}, 1, TableFormat::half)), fetches) << model;
+    EXPECT_EQ(fetch_count(parse_model_spec(model, {}, true)), fetches) << model;
+  }
+}
+
+}  // namespace
+}  // namespace burnish
