@@ -227,26 +227,26 @@ std::uint32_t FactoredPlan::lane_of(Spacing spacing, const Position& position, s
                                     Angle angle) {
   const auto floats = static_cast<std::int32_t>(stride * kRowStride),
              number = static_cast<std::int32_t>(angle);
-  std::size_t at = steps.size();
-  for (std::size_t i = 0; i < steps.size(); ++i) {
+  for (std::size_t i = 0; i < steps.size() && spacing != Spacing::given; ++i) {
     const Steps& s = steps[i];
-    if (s.spacing != spacing) continue;
-    for (std::size_t k = 0; k < s.used && spacing != Spacing::given; ++k)
-      if (std::tie(s.size[k], s.parameter[k], s.floats[k], s.angle[k]) ==
-          std::tie(position.size, position.parameter, floats, number))
+    for (std::size_t k = 0; k < s.used; ++k)
+      if (std::tie(s.spacing[k], s.size[k], s.parameter[k], s.floats[k], s.angle[k]) ==
+          std::tie(spacing, position.size, position.parameter, floats, number))
         return static_cast<std::uint32_t>(i * Steps::kLanes + k);
-    if (s.used < Steps::kLanes) at = i;
   }
-  if (at == steps.size()) steps.push_back({.spacing = spacing});
-  Steps& open = steps[at];
+  if (steps.empty() || steps.back().used == Steps::kLanes) steps.emplace_back();
+  Steps& open = steps.back();
   const std::size_t lane = open.used++;
+  open.has[static_cast<std::size_t>(spacing)] = true;
+  open.is[static_cast<std::size_t>(spacing)][lane] = -1;
+  open.spacing[lane] = spacing;
   open.size[lane] = position.size;
   open.parameter[lane] = position.parameter;
   open.cells[lane] = position.cells;
   open.floats[lane] = floats;
   open.angle[lane] = number;
   has_angle[static_cast<std::size_t>(angle)] |= spacing != Spacing::given;
-  return static_cast<std::uint32_t>(at * Steps::kLanes + lane);
+  return static_cast<std::uint32_t>((steps.size() - 1) * Steps::kLanes + lane);
 }
 
 FactoredPlan::Source& FactoredPlan::source_of(const Projection& projection, bool azimuth) {

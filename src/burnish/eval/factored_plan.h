@@ -54,19 +54,22 @@ struct FactoredPlan {
     std::size_t rows = 0, row_block = 0, next_group = 0;
   };
 
-  /// For one pair at a time positions are the lanes: what is looked up along an axis, eight of one spacing
-  /// together, the last of them filled up. A lane's position becomes a fraction and a way through the rows.
+  /// For one pair at a time positions are the lanes: what is looked up along an axis, eight together, the last
+  /// of them filled up. A lane's position becomes a fraction and a way through the rows.
   enum class Spacing { identity, rational, power, root, given };  // root: a power of 1/2; given: see below
+  static constexpr std::size_t kSpacings = 5;
   /// The polar angles that are found together.
   enum class Angle { wi, wo, half, azimuth, difference, deviation, twist };
   struct Steps {
     static constexpr std::size_t kLanes = 8;
 
-    Spacing spacing;
-    std::size_t used = 0;                                                // lanes
-    alignas(32) std::array<float, kLanes> size{}, parameter{}, cells{};  // as in Position
-    alignas(32) std::array<std::int32_t, kLanes> floats{};               // of the rows, from node to node
-    alignas(32) std::array<std::int32_t, kLanes> angle{};                // an Angle
+    std::size_t used = 0;               // lanes
+    std::array<bool, kSpacings> has{};  // of some lane
+    std::array<Spacing, kLanes> spacing{};
+    alignas(32) std::array<std::array<std::int32_t, kLanes>, kSpacings> is{};  // -1 in lanes of a spacing
+    alignas(32) std::array<float, kLanes> size{}, parameter{}, cells{};        // as in Position
+    alignas(32) std::array<std::int32_t, kLanes> floats{};  // of the rows, from node to node
+    alignas(32) std::array<std::int32_t, kLanes> angle{};   // an Angle
   };
   /// Positions that are found one by one: of disks and of affine combinations.
   struct GivenSteps {

@@ -31,6 +31,13 @@ using Eight = LaneOf<D8>;
 using DI8 = hn::RebindToSigned<D8>;
 constexpr std::size_t kEight = hn::MaxLanes(D8());  // fewer where vectors are shorter
 
+// Logarithms and exponentials apart: their constants would be loaded for all.
+template <class Tag>
+HWY_NOINLINE LaneOf<Tag> power_warp_apart(LaneOf<Tag> size, LaneOf<Tag> exponent,
+                                          const Polar<LaneOf<Tag>>& polar) {
+  return power_warp(size, exponent, polar);
+}
+
 /// A position of a polar angle.
 template <class T>
 HWY_INLINE T warped(FactoredPlan::Spacing spacing, T size, T parameter, const Polar<T>& polar) {
@@ -140,7 +147,8 @@ struct OneCells {
   alignas(64) float fraction[kMost];
 
   HWY_INLINE void put(Eight position, const FactoredPlan::Steps& s, std::size_t lane, std::size_t to) {
-    const auto cell = cell_of(within(position, Eight(hn::Load(D8(), s.cells.data() + lane))));
+    const Eight cells(hn::Load(D8(), s.cells.data() + lane));
+    const auto cell = cell_of(min(max(position, Eight(0.0)), cells));
     const auto step = hn::Load(DI8(), s.floats.data() + lane);
     hn::Store(hn::Mul(node_of(cell), step), DI8(), floats + to);
     hn::Store(cell.fraction.raw, D8(), fraction + to);
@@ -217,22 +225,34 @@ class AngleTable {
 #endif
 };
 
+/// The positions of lanes that may have different spacings: of each that is among them, then chosen.
+HWY_INLINE Eight warped(const FactoredPlan::Steps& s, std::size_t lane, const Polar<Eight>& polar,
+                        const float* given) {
+  using Spacing = FactoredPlan::Spacing;
+  const D8 d8;
+  const Eight size(hn::Load(d8, s.size.data() + lane)), parameter(hn::Load(d8, s.parameter.data() + lane));
+  const auto has = [&](Spacing spacing) HWY_ATTR { return s.has[static_cast<std::size_t>(spacing)]; };
+  const auto put = [&](Spacing spacing, Eight value, Eight others) HWY_ATTR {
+    const auto is = hn::Load(DI8(), s.is[static_cast<std::size_t>(spacing)].data() + lane);
+    return Eight(hn::IfVecThenElse(hn::BitCast(d8, is), value.raw, others.raw));
+  };
+  Eight position = identity_warp(size, polar);
+  if (has(Spacing::root)) position = put(Spacing::root, power_warp(size, Half(), polar), position);
+  if (has(Spacing::rational))
+    position = put(Spacing::rational, rational_warp(size, parameter, polar), position);
+  if (has(Spacing::power)) position = put(Spacing::power, power_warp_apart(size, parameter, polar), position);
+  if (has(Spacing::given)) position = put(Spacing::given, Eight(hn::Load(d8, given)), position);
+  return position;
+}
+
 HWY_INLINE void find_cells(const FactoredPlan& plan, const OnePair& one, const AngleTable& angles,
                            OneCells& cells) {
-  constexpr std::size_t kAll = FactoredPlan::Steps::kLanes;
   alignas(64) float given[OneCells::kMost];
   if (!plan.given.empty()) find_given(plan, one, given);
   std::size_t to = 0;
   for (const FactoredPlan::Steps& s : plan.steps)
-    for (std::size_t lane = 0; lane < kAll; lane += kEight, to += kEight) {
-      if (s.spacing == FactoredPlan::Spacing::given) {
-        cells.put(Eight(hn::Load(D8(), given + to)), s, lane, to);
-        continue;
-      }
-      const Eight size(hn::Load(D8(), s.size.data() + lane)),
-          parameter(hn::Load(D8(), s.parameter.data() + lane));
-      cells.put(warped(s.spacing, size, parameter, angles.at(s.angle.data() + lane)), s, lane, to);
-    }
+    for (std::size_t lane = 0; lane < FactoredPlan::Steps::kLanes; lane += kEight, to += kEight)
+      cells.put(warped(s, lane, angles.at(s.angle.data() + lane), given + to), s, lane, to);
 }
 
 /// A table's value for one pair. `at`: the axes' lanes.
