@@ -399,7 +399,7 @@ void multiply(const FactoredPlan& plan, const FactoredPlan::Lookup& lookup, std:
     return;
   }
 #endif
-  const float* const rows = plan.values.data() + lookup.rows + (lookup.shared ? 0 : group * lookup.row_block);
+  const float* const rows = plan.values.data() + lookup.rows + group * lookup.next_group;
   switch (lookup.axes) {
     case 1:
       return multiply_rows<kChannels, 1>(lookup, rows, block);
@@ -530,7 +530,7 @@ void eval_directions(const FactoredPlan& plan, const DirectionPointers& in, std:
              scratch, out.from(0, whole));
 }
 
-void eval_one(const FactoredPlan& plan, Vec3 wi, Vec3 wo, float* f) {
+void eval_one(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, float* f) {
 #if HWY_TARGET != HWY_SCALAR
   if (plan.steps.size() <= FactoredPlan::kMaxSteps) return eval_one_pair(plan, wi, wo, f);
 #endif

@@ -59,6 +59,28 @@ FactoredPlan::Source::Kind kind_of(const Projection& projection, bool azimuth) n
                                                        : Kind::angle;
 }
 
+FactoredPlan::Spacing spacing_of(const FactoredPlan::Position& position) noexcept {
+  using Spacing = FactoredPlan::Spacing;
+  switch (position.warp) {
+    case WarpKind::rational:
+      return Spacing::rational;
+    case WarpKind::power:
+      return position.parameter == 0.5f ? Spacing::root : Spacing::power;
+    case WarpKind::identity:
+      break;
+  }
+  return Spacing::identity;
+}
+
+FactoredPlan::Angle angle_of(Projection::Kind kind) noexcept {
+  using Angle = FactoredPlan::Angle;
+  using Kind = Projection::Kind;
+  return kind == Kind::deviation ? Angle::deviation
+         : kind == Kind::twist   ? Angle::twist
+         : kind == Kind::azimuth ? Angle::azimuth
+                                 : Angle::difference;
+}
+
 std::size_t up_to_multiple(std::size_t n, std::size_t of) noexcept {
   return (n + of - 1) / of * of;
 }
@@ -112,6 +134,7 @@ FactoredPlan::Lookup FactoredPlan::add_table(const Table& table) {
   // The last position, in cells, is the last node: lookups there read past it and give it no weight.
   lookup.rows = values.size();
   lookup.row_block = (nodes + (lookup.axes > 2 ? lookup.layer : 0) + lookup.width + 2) * kRowStride;
+  lookup.next_group = lookup.shared ? 0 : lookup.row_block;
   for (std::size_t g = 0; g < groups; ++g) {
     const std::size_t begin = values.size();
     for (std::size_t i = 0; i < nodes; ++i)
@@ -168,28 +191,23 @@ std::array<std::uint32_t, 3> FactoredPlan::steps_of(const TableLayout& layout, c
 // The lane of a position along a polar angle, the same for the same position.
 std::uint32_t FactoredPlan::steps_along(const Projection& projection, Warp warp, int nodes,
                                         std::size_t stride) {
-  using Kind = Projection::Kind;
   const Position position = position_in(warp, nodes, false, 0);
-  const Source::Kind source = kind_of(projection, false);
-  if (source == Source::Kind::affine) {
-    for (const GivenSteps& known : given)
-      if (known.projection == projection && known.position.same_place(position) &&
-          steps[known.x / Steps::kLanes].floats[known.x % Steps::kLanes] ==
-              static_cast<std::int32_t>(stride * kRowStride))
-        return known.x;
-    const std::uint32_t lane = lane_of(position, true, stride, 0);
-    given.push_back({source, projection, position, lane, lane});
-    return lane;
+  switch (kind_of(projection, false)) {
+    case Source::Kind::wi:
+      return lane_of(spacing_of(position), position, stride, Angle::wi);
+    case Source::Kind::wo:
+      return lane_of(spacing_of(position), position, stride, Angle::wo);
+    case Source::Kind::half:
+      return lane_of(spacing_of(position), position, stride, Angle::half);
+    case Source::Kind::affine:
+      break;
+    case Source::Kind::difference:
+    case Source::Kind::angle:
+      return lane_of(spacing_of(position), position, stride, angle_of(projection.kind));
   }
-  const Angle angle = source == Source::Kind::wi           ? Angle::wi
-                      : source == Source::Kind::wo         ? Angle::wo
-                      : source == Source::Kind::half       ? Angle::half
-                      : projection.kind == Kind::deviation ? Angle::deviation
-                      : projection.kind == Kind::twist     ? Angle::twist
-                      : projection.kind == Kind::azimuth   ? Angle::azimuth
-                                                           : Angle::difference;
-  has_angle[static_cast<std::size_t>(angle)] = true;
-  return lane_of(position, false, stride, static_cast<std::int32_t>(angle));
+  const std::uint32_t lane = lane_of(Spacing::given, position, stride, Angle::wi);
+  given.push_back({Source::Kind::affine, projection, position, spacing_of(position), lane, lane});
+  return lane;
 }
 
 // The lanes of a disk's x and y.
@@ -197,37 +215,38 @@ std::array<std::uint32_t, 2> FactoredPlan::steps_across(const TableLayout& layou
   const Position position = position_in(layout.warp, layout.width, true, 0);
   for (const GivenSteps& known : given)
     if (known.projection == use.projection && known.position.same_place(position)) return {known.x, known.y};
-  const std::uint32_t x = lane_of(position, true, 1, 0);
-  const std::uint32_t y = lane_of(position, true, static_cast<std::size_t>(layout.width), 0);
-  given.push_back({kind_of(use.projection, true), use.projection, position, x, y});
+  const std::uint32_t x = lane_of(Spacing::given, position, 1, Angle::wi);
+  const std::uint32_t y =
+      lane_of(Spacing::given, position, static_cast<std::size_t>(layout.width), Angle::wi);
+  given.push_back({kind_of(use.projection, true), use.projection, position, spacing_of(position), x, y});
   return {x, y};
 }
 
 // A lane with this position along this angle; a new one if it is given.
-std::uint32_t FactoredPlan::lane_of(const Position& position, bool is_given, std::size_t stride,
-                                    std::int32_t angle) {
-  const bool root = position.warp == WarpKind::power && position.parameter == 0.5f;
-  const auto floats = static_cast<std::int32_t>(stride * kRowStride);
-  const auto number = [&](const Steps& of, std::size_t lane) {
-    return static_cast<std::uint32_t>(static_cast<std::size_t>(&of - steps.data()) * Steps::kLanes + lane);
-  };
-  Steps* open = nullptr;
-  for (Steps& s : steps) {
-    if (s.given != is_given || (!is_given && (s.warp != position.warp || s.root != root))) continue;
-    for (std::size_t k = 0; k < s.used && !is_given; ++k)
-      if (std::tie(s.size[k], s.parameter[k], s.floats[k], s.angle[k]) ==
-          std::tie(position.size, position.parameter, floats, angle))
-        return number(s, k);
-    if (s.used < Steps::kLanes) open = &s;
+std::uint32_t FactoredPlan::lane_of(Spacing spacing, const Position& position, std::size_t stride,
+                                    Angle angle) {
+  const auto floats = static_cast<std::int32_t>(stride * kRowStride),
+             number = static_cast<std::int32_t>(angle);
+  for (std::size_t i = 0; i < steps.size() && spacing != Spacing::given; ++i) {
+    const Steps& s = steps[i];
+    for (std::size_t k = 0; k < s.used; ++k)
+      if (std::tie(s.spacing[k], s.size[k], s.parameter[k], s.floats[k], s.angle[k]) ==
+          std::tie(spacing, position.size, position.parameter, floats, number))
+        return static_cast<std::uint32_t>(i * Steps::kLanes + k);
   }
-  if (!open) open = &steps.emplace_back(Steps{.warp = position.warp, .root = root, .given = is_given});
-  const std::size_t k = open->used++;
-  open->size[k] = position.size;
-  open->parameter[k] = position.parameter;
-  open->cells[k] = position.cells;
-  open->floats[k] = floats;
-  open->angle[k] = angle;
-  return number(*open, k);
+  if (steps.empty() || steps.back().used == Steps::kLanes) steps.emplace_back();
+  Steps& open = steps.back();
+  const std::size_t lane = open.used++;
+  open.has[static_cast<std::size_t>(spacing)] = true;
+  open.is[static_cast<std::size_t>(spacing)][lane] = -1;
+  open.spacing[lane] = spacing;
+  open.size[lane] = position.size;
+  open.parameter[lane] = position.parameter;
+  open.cells[lane] = position.cells;
+  open.floats[lane] = floats;
+  open.angle[lane] = number;
+  has_angle[static_cast<std::size_t>(angle)] |= spacing != Spacing::given;
+  return static_cast<std::uint32_t>((steps.size() - 1) * Steps::kLanes + lane);
 }
 
 FactoredPlan::Source& FactoredPlan::source_of(const Projection& projection, bool azimuth) {

@@ -50,30 +50,34 @@ struct FactoredPlan {
     std::size_t width = 0, layer = 0;                          // nodes of a row, and of a volume's layer
     /// Channels apart, each in whole vectors, 1, 2, 4 or 8; 0: none, the table is too long or no line.
     std::size_t planes = 0, plane_vectors = 0;
-    /// Three channels and a gap a node, these again for every three channels.
-    std::size_t rows = 0, row_block = 0;
+    /// Three channels and a gap a node, these again for every three channels, next_group floats on: 0 if shared.
+    std::size_t rows = 0, row_block = 0, next_group = 0;
   };
 
-  /// For one pair at a time positions are the lanes: what is looked up along an axis, eight of one warp
-  /// together, the last of them filled up. A lane's position becomes a fraction and a way through the rows.
+  /// For one pair at a time positions are the lanes: what is looked up along an axis, eight together, the last
+  /// of them filled up. A lane's position becomes a fraction and a way through the rows.
+  enum class Spacing { identity, rational, power, root, given };  // root: a power of 1/2; given: see below
+  static constexpr std::size_t kSpacings = 5;
+  /// The polar angles that are found together.
+  enum class Angle { wi, wo, half, azimuth, difference, deviation, twist };
   struct Steps {
     static constexpr std::size_t kLanes = 8;
 
-    WarpKind warp;
-    bool root;             // a power of 1/2
-    bool given;            // found one by one: disks and affine combinations
-    std::size_t used = 0;  // lanes
-    alignas(32) std::array<float, kLanes> size{}, parameter{}, cells{};  // as in Position
-    alignas(32) std::array<std::int32_t, kLanes> floats{};               // of the rows, from node to node
-    alignas(32) std::array<std::int32_t, kLanes> angle{};                // an Angle
+    std::size_t used = 0;               // lanes
+    std::array<bool, kSpacings> has{};  // of some lane
+    std::array<Spacing, kLanes> spacing{};
+    alignas(32) std::array<std::array<std::int32_t, kLanes>, kSpacings> is{};  // -1 in lanes of a spacing
+    alignas(32) std::array<float, kLanes> size{}, parameter{}, cells{};        // as in Position
+    alignas(32) std::array<std::int32_t, kLanes> floats{};  // of the rows, from node to node
+    alignas(32) std::array<std::int32_t, kLanes> angle{};   // an Angle
   };
-  /// The polar angles that are found together.
-  enum class Angle { wi, wo, half, difference = 4, deviation, twist, azimuth };
+  /// Positions that are found one by one: of disks and of affine combinations.
   struct GivenSteps {
     Source::Kind kind;
     Projection projection;
     Position position;
-    std::uint32_t x, y;  // lanes of `steps`
+    Spacing spacing;
+    std::uint32_t x, y;  // lanes
   };
 
   struct Product {
@@ -100,9 +104,9 @@ struct FactoredPlan {
   std::array<std::size_t, 3> slots_of(const TableLayout& layout, const FactorUse& use);
   std::size_t slot_of(const Projection& projection, Warp warp, int nodes, bool disk);
   std::array<std::uint32_t, 3> steps_of(const TableLayout& layout, const FactorUse& use);
+  std::uint32_t lane_of(Spacing spacing, const Position& position, std::size_t stride, Angle angle);
   std::uint32_t steps_along(const Projection& projection, Warp warp, int nodes, std::size_t stride);
   std::array<std::uint32_t, 2> steps_across(const TableLayout& layout, const FactorUse& use);
-  std::uint32_t lane_of(const Position& position, bool given, std::size_t stride, std::int32_t angle);
   Source& source_of(const Projection& projection, bool azimuth);
 };
 

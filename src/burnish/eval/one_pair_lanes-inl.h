@@ -24,79 +24,119 @@ constexpr std::size_t kTogether = FactoredPlan::kTogether;
 
 #if HWY_TARGET != HWY_SCALAR
 
+using D2 = hn::Half<D4>;
 using Four = LaneOf<D4>;
 using D8 = hn::CappedTag<float, FactoredPlan::Steps::kLanes>;
 using Eight = LaneOf<D8>;
 using DI8 = hn::RebindToSigned<D8>;
+constexpr std::size_t kEight = hn::MaxLanes(D8());  // fewer where vectors are shorter
 
-/// Lanes 0, 1, 2, 3 of four.
-HWY_INLINE Four lanes_of(Four a, Four b, Four c, Four d) {
-  const D4 d4;
-  return Four(hn::ConcatUpperLower(d4, hn::OddEven(d.raw, c.raw), hn::OddEven(b.raw, a.raw)));
-}
-HWY_INLINE LanesOf<D4> lanes_of(const LanesOf<D4>& a, const LanesOf<D4>& b, const LanesOf<D4>& c,
-                                const LanesOf<D4>& d) {
-  return {lanes_of(a.x, b.x, c.x, d.x), lanes_of(a.y, b.y, c.y, d.y), lanes_of(a.z, b.z, c.z, d.z)};
+// Logarithms and exponentials apart: their constants would be loaded for all.
+template <class Tag>
+HWY_NOINLINE LaneOf<Tag> power_warp_apart(LaneOf<Tag> size, LaneOf<Tag> exponent,
+                                          const Polar<LaneOf<Tag>>& polar) {
+  return power_warp(size, exponent, polar);
 }
 
-/// A position of a polar angle, of a warp that is the same in all lanes.
+/// A position of a polar angle.
 template <class T>
-HWY_INLINE T warped(WarpKind warp, bool root, T size, T parameter, const Polar<T>& polar) {
-  switch (warp) {
-    case WarpKind::rational:
+HWY_INLINE T warped(FactoredPlan::Spacing spacing, T size, T parameter, const Polar<T>& polar) {
+  using Spacing = FactoredPlan::Spacing;
+  switch (spacing) {
+    case Spacing::rational:
       return rational_warp(size, parameter, polar);
-    case WarpKind::power:
-      return root ? power_warp(size, Half(), polar) : power_warp(size, parameter, polar);
-    case WarpKind::identity:
+    case Spacing::root:
+      return power_warp(size, Half(), polar);
+    case Spacing::power:
+      return power_warp(size, parameter, polar);
+    case Spacing::identity:
+    case Spacing::given:
       break;
   }
   return identity_warp(size, polar);
 }
 /// What a disk's x and y are multiplied by.
 template <class T>
-HWY_INLINE T stretched(WarpKind warp, bool root, T size, T parameter, const Polar<T>& polar) {
-  switch (warp) {
-    case WarpKind::rational:
+HWY_INLINE T stretched(FactoredPlan::Spacing spacing, T size, T parameter, const Polar<T>& polar) {
+  using Spacing = FactoredPlan::Spacing;
+  switch (spacing) {
+    case Spacing::rational:
       return rational_stretch(size, parameter, polar);
-    case WarpKind::power:
-      return root ? power_stretch(size, Half(), polar) : power_stretch(size, parameter, polar);
-    case WarpKind::identity:
+    case Spacing::root:
+      return power_stretch(size, Half(), polar);
+    case Spacing::power:
+      return power_stretch(size, parameter, polar);
+    case Spacing::identity:
+    case Spacing::given:
       break;
   }
   return identity_stretch(size, polar);
 }
 
-/// One pair, each value in every lane, and what projections share.
+/// One pair: wi, wo, their sum and their difference are lanes; what the formulas take apart stands in all.
 struct OnePair {
-  LanesOf<D4> wi, wo;
+  LanesOf<D4> all;
   LanePairOf<D4> pair;
 
-  HWY_INLINE OnePair(Vec3 to_light, Vec3 to_viewer) : wi(in_floats(to_light)), wo(in_floats(to_viewer)) {
-    pair.sum = wi + wo;
-    pair.apart = wi - wo;
-    pair.length_of_sum = length(pair.sum.x, pair.sum.y, pair.sum.z);
+  HWY_INLINE OnePair(const Vec3& to_light, const Vec3& to_viewer) {
+    const D4 d4;
+    const hn::Repartition<double, D4> halves;
+    const auto join = [&](auto low, auto high) HWY_ATTR {
+      return Four(
+          hn::BitCast(d4, hn::InterleaveLower(halves, hn::BitCast(halves, low), hn::BitCast(halves, high))));
+    };
+    const auto join_upper = [&](auto low, auto high) HWY_ATTR {
+      return Four(
+          hn::BitCast(d4, hn::InterleaveUpper(halves, hn::BitCast(halves, low), hn::BitCast(halves, high))));
+    };
+    const auto wi = row(to_light), wo = row(to_viewer), sum = hn::Add(wi, wo), apart = hn::Sub(wi, wo);
+    const auto xy = hn::InterleaveLower(d4, wi, wo), zz = hn::InterleaveUpper(d4, wi, wo);
+    const auto sum_xy = hn::InterleaveLower(d4, sum, apart), sum_zz = hn::InterleaveUpper(d4, sum, apart);
+    all = {join(xy, sum_xy), join_upper(xy, sum_xy), join(zz, sum_zz)};
+    pair.sum = of_all<2>();
+    pair.apart = of_all<3>();
+    pair.length_of_sum = Four(hn::Broadcast<2>(length(all.x, all.y, all.z).raw));
   }
-  static HWY_INLINE LanesOf<D4> in_floats(Vec3 w) { return {Four(w.x), Four(w.y), Four(w.z)}; }
-  /// wi, wo and their sum, a lane each.
-  HWY_INLINE LanesOf<D4> upwards() const { return lanes_of(wi, wo, pair.sum, pair.sum); }
+  /// wi, wo, their sum or their difference in every lane.
+  template <int kLane>
+  HWY_INLINE LanesOf<D4> of_all() const {
+    return {Four(hn::Broadcast<kLane>(all.x.raw)), Four(hn::Broadcast<kLane>(all.y.raw)),
+            Four(hn::Broadcast<kLane>(all.z.raw))};
+  }
+  static HWY_INLINE hn::Vec<D4> row(const Vec3& w) {
+    const hn::CappedTag<double, 2> two;
+    static_assert(sizeof(Vec3) == 3 * sizeof(double));
+    return hn::Combine(D4(), hn::Set(D2(), static_cast<float>(w.z)),
+                       hn::DemoteTo(D2(), hn::LoadU(two, &w.x)));
+  }
 };
 
 /// The polar angles, in the order of FactoredPlan::Angle.
 struct PolarAngles {
   Polar<Four> low, high;
 
-  HWY_INLINE PolarAngles(const FactoredPlan& plan, const OnePair& one, const LanesOf<D4>& upwards) {
-    low = polar_of(upwards, Four(hn::ConcatUpperLower(D4(), one.pair.length_of_sum.raw, Four(1.0).raw)));
-    Polar<Four> angle[4];
-    for (std::size_t k = 0; k < 4; ++k) angle[k] = {Four(0.0), Four(1.0)};
+  HWY_INLINE PolarAngles(const FactoredPlan& plan, const OnePair& one) {
     using Angle = FactoredPlan::Angle;
+    const D4 d4;
     const auto asked = [&](Angle a) HWY_ATTR { return plan.has_angle[static_cast<std::size_t>(a)]; };
-    if (asked(Angle::difference)) angle[0] = difference_angle(one.pair);
-    if (asked(Angle::deviation)) angle[1] = deviation_angle(one.pair);
-    if (asked(Angle::twist)) angle[2] = twist_angle(one.pair);
-    if (asked(Angle::azimuth)) angle[3] = folded_azimuth(one.pair);
-    high = {lanes_of(angle[0].r, angle[1].r, angle[2].r, angle[3].r),
-            lanes_of(angle[0].den, angle[1].den, angle[2].den, angle[3].den)};
+    const auto second_of = [&](const Polar<Four>& angles, const Polar<Four>& angle) HWY_ATTR {
+      return Polar<Four>{Four(hn::OddEven(angle.r.raw, angles.r.raw)),
+                         Four(hn::OddEven(angle.den.raw, angles.den.raw))};
+    };
+    low = polar_of(one.all, Four(hn::ConcatUpperLower(d4, one.pair.length_of_sum.raw, Four(1.0).raw)));
+    if (asked(Angle::azimuth)) {
+      const Polar<Four> angle = folded_azimuth(one.pair), odd = second_of(low, angle);
+      low = {Four(hn::ConcatUpperLower(d4, odd.r.raw, low.r.raw)),
+             Four(hn::ConcatUpperLower(d4, odd.den.raw, low.den.raw))};
+    }
+    high = low;
+    if (asked(Angle::difference)) high = difference_angle(one.pair);
+    if (asked(Angle::deviation)) high = second_of(high, deviation_angle(one.pair));
+    if (asked(Angle::twist)) {
+      const Polar<Four> angle = twist_angle(one.pair);
+      high = {Four(hn::ConcatUpperLower(d4, angle.r.raw, high.r.raw)),
+              Four(hn::ConcatUpperLower(d4, angle.den.raw, high.den.raw))};
+    }
   }
 };
 
@@ -107,87 +147,112 @@ struct OneCells {
   alignas(64) float fraction[kMost];
 
   HWY_INLINE void put(Eight position, const FactoredPlan::Steps& s, std::size_t lane, std::size_t to) {
-    const auto cell = cell_of(within(position, Eight(hn::Load(D8(), s.cells.data() + lane))));
+    const Eight cells(hn::Load(D8(), s.cells.data() + lane));
+    const auto cell = cell_of(min(max(position, Eight(0.0)), cells));
     const auto step = hn::Load(DI8(), s.floats.data() + lane);
     hn::Store(hn::Mul(node_of(cell), step), DI8(), floats + to);
     hn::Store(cell.fraction.raw, D8(), fraction + to);
   }
 };
 
-/// Disks and affine combinations: their positions, to lanes of `given`.
-HWY_INLINE void find_given(const FactoredPlan::GivenSteps& steps, const OnePair& one, float* given) {
+/// The positions of disks and affine combinations, to their lanes of `given`.
+HWY_NOINLINE void find_given(const FactoredPlan& plan, const OnePair& one, float* given) {
   using Kind = FactoredPlan::Source::Kind;
-  Affine<LanesOf<D4>, Four> at;
-  switch (steps.kind) {
-    case Kind::wi:
-      at = {one.wi, polar_of(one.wi, Four(1.0))};
-      break;
-    case Kind::wo:
-      at = {one.wo, polar_of(one.wo, Four(1.0))};
-      break;
-    case Kind::half:
-      at = {one.pair.sum, polar_of(one.pair.sum, one.pair.length_of_sum)};
-      break;
-    case Kind::affine:
-      at = affine(steps.projection, one.wi, one.wo);
-      break;
-    case Kind::difference:
-    case Kind::angle:
-      at = doubled_difference(one.pair);
-  }
-  const FactoredPlan::Position& p = steps.position;
-  const bool root = p.parameter == 0.5f;
-  const Four size(p.size), parameter(p.parameter);
-  if (!p.disk) {
-    given[steps.x] = hn::GetLane(warped(p.warp, root, size, parameter, at.polar).raw);
-    return;
-  }
-  const Four scale = stretched(p.warp, root, size, parameter, at.polar), centre(0.5 * p.cells);
-  given[steps.x] = hn::GetLane(mul_add(at.vector.x, scale, centre).raw);
-  given[steps.y] = hn::GetLane(mul_add(at.vector.y, scale, centre).raw);
-}
-
-HWY_INLINE void find_cells(const FactoredPlan& plan, const OnePair& one, const PolarAngles& angles,
-                           OneCells& cells) {
-  alignas(64) float given[OneCells::kMost];
-  for (const FactoredPlan::GivenSteps& steps : plan.given) find_given(steps, one, given);
-  constexpr std::size_t kLanesOfEight = hn::MaxLanes(D8()), kAll = FactoredPlan::Steps::kLanes;
-#if HWY_MAX_BYTES >= 32
-  const D8 d8;
-  const auto r = hn::Combine(d8, angles.high.r.raw, angles.low.r.raw);
-  const auto den = hn::Combine(d8, angles.high.den.raw, angles.low.den.raw);
-#else
-  float r[kAll], den[kAll];
-  hn::StoreU(angles.low.r.raw, D4(), r);
-  hn::StoreU(angles.high.r.raw, D4(), r + 4);
-  hn::StoreU(angles.low.den.raw, D4(), den);
-  hn::StoreU(angles.high.den.raw, D4(), den + 4);
-#endif
-  for (std::size_t k = 0; k < plan.steps.size(); ++k) {
-    const FactoredPlan::Steps& s = plan.steps[k];
-    for (std::size_t lane = 0; lane < kAll; lane += kLanesOfEight) {
-      const std::size_t to = kAll * k + lane;
-      if (s.given) {
-        cells.put(Eight(hn::Load(D8(), given + to)), s, lane, to);
-        continue;
-      }
-      Polar<Eight> polar;
-#if HWY_MAX_BYTES >= 32
-      const auto index = hn::SetTableIndices(d8, s.angle.data());
-      polar = {Eight(hn::TableLookupLanes(r, index)), Eight(hn::TableLookupLanes(den, index))};
-#else
-      alignas(16) float own_r[kAll], own_den[kAll];
-      for (std::size_t i = 0; i < kLanesOfEight; ++i) {
-        own_r[i] = r[s.angle[lane + i]];
-        own_den[i] = den[s.angle[lane + i]];
-      }
-      polar = {Eight(hn::Load(D8(), own_r)), Eight(hn::Load(D8(), own_den))};
-#endif
-      const Eight size(hn::Load(D8(), s.size.data() + lane)),
-          parameter(hn::Load(D8(), s.parameter.data() + lane));
-      cells.put(warped(s.warp, s.root, size, parameter, polar), s, lane, to);
+  const LanesOf<D4> wi = one.of_all<0>(), wo = one.of_all<1>();
+  for (const FactoredPlan::GivenSteps& steps : plan.given) {
+    Affine<LanesOf<D4>, Four> at;
+    switch (steps.kind) {
+      case Kind::wi:
+        at = {wi, polar_of(wi, Four(1.0))};
+        break;
+      case Kind::wo:
+        at = {wo, polar_of(wo, Four(1.0))};
+        break;
+      case Kind::half:
+        at = {one.pair.sum, polar_of(one.pair.sum, one.pair.length_of_sum)};
+        break;
+      case Kind::affine:
+        at = affine(steps.projection, wi, wo);
+        break;
+      case Kind::difference:
+      case Kind::angle:
+        at = doubled_difference(one.pair);
+    }
+    const FactoredPlan::Position& p = steps.position;
+    const Four size(p.size), parameter(p.parameter), centre(0.5 * p.cells);
+    if (p.disk) {
+      const Four scale = stretched(steps.spacing, size, parameter, at.polar);
+      given[steps.x] = hn::GetLane(mul_add(at.vector.x, scale, centre).raw);
+      given[steps.y] = hn::GetLane(mul_add(at.vector.y, scale, centre).raw);
+    } else {
+      given[steps.x] = hn::GetLane(warped(steps.spacing, size, parameter, at.polar).raw);
     }
   }
+}
+
+/// The polar angles of eight lanes.
+class AngleTable {
+ public:
+#if HWY_MAX_BYTES >= 32
+  HWY_INLINE explicit AngleTable(const PolarAngles& angles)
+      : r_(hn::Combine(D8(), angles.high.r.raw, angles.low.r.raw)),
+        den_(hn::Combine(D8(), angles.high.den.raw, angles.low.den.raw)) {}
+  HWY_INLINE Polar<Eight> at(const std::int32_t* angle) const {
+    const auto index = hn::SetTableIndices(D8(), angle);
+    return {Eight(hn::TableLookupLanes(r_, index)), Eight(hn::TableLookupLanes(den_, index))};
+  }
+
+ private:
+  hn::Vec<D8> r_, den_;
+#else
+  HWY_INLINE explicit AngleTable(const PolarAngles& angles) {
+    hn::StoreU(angles.low.r.raw, D4(), r_);
+    hn::StoreU(angles.high.r.raw, D4(), r_ + 4);
+    hn::StoreU(angles.low.den.raw, D4(), den_);
+    hn::StoreU(angles.high.den.raw, D4(), den_ + 4);
+  }
+  HWY_INLINE Polar<Eight> at(const std::int32_t* angle) const {
+    float r[kEight], den[kEight];
+    for (std::size_t i = 0; i < kEight; ++i) {
+      r[i] = r_[angle[i]];
+      den[i] = den_[angle[i]];
+    }
+    return {Eight(hn::LoadU(D8(), r)), Eight(hn::LoadU(D8(), den))};
+  }
+
+ private:
+  float r_[8], den_[8];
+#endif
+};
+
+/// The positions of lanes that may have different spacings: of each that is among them, then chosen.
+HWY_INLINE Eight warped(const FactoredPlan::Steps& s, std::size_t lane, const Polar<Eight>& polar,
+                        const float* given) {
+  using Spacing = FactoredPlan::Spacing;
+  const D8 d8;
+  const Eight size(hn::Load(d8, s.size.data() + lane)), parameter(hn::Load(d8, s.parameter.data() + lane));
+  const auto has = [&](Spacing spacing) HWY_ATTR { return s.has[static_cast<std::size_t>(spacing)]; };
+  const auto put = [&](Spacing spacing, Eight value, Eight others) HWY_ATTR {
+    const auto is = hn::Load(DI8(), s.is[static_cast<std::size_t>(spacing)].data() + lane);
+    return Eight(hn::IfVecThenElse(hn::BitCast(d8, is), value.raw, others.raw));
+  };
+  Eight position = identity_warp(size, polar);
+  if (has(Spacing::root)) position = put(Spacing::root, power_warp(size, Half(), polar), position);
+  if (has(Spacing::rational))
+    position = put(Spacing::rational, rational_warp(size, parameter, polar), position);
+  if (has(Spacing::power)) position = put(Spacing::power, power_warp_apart(size, parameter, polar), position);
+  if (has(Spacing::given)) position = put(Spacing::given, Eight(hn::Load(d8, given)), position);
+  return position;
+}
+
+HWY_INLINE void find_cells(const FactoredPlan& plan, const OnePair& one, const AngleTable& angles,
+                           OneCells& cells) {
+  alignas(64) float given[OneCells::kMost];
+  if (!plan.given.empty()) find_given(plan, one, given);
+  std::size_t to = 0;
+  for (const FactoredPlan::Steps& s : plan.steps)
+    for (std::size_t lane = 0; lane < FactoredPlan::Steps::kLanes; lane += kEight, to += kEight)
+      cells.put(warped(s, lane, angles.at(s.angle.data() + lane), given + to), s, lane, to);
 }
 
 /// A table's value for one pair. `at`: the axes' lanes.
@@ -196,19 +261,14 @@ HWY_INLINE Quad looked_up(const FactoredPlan::Lookup& lookup, const float* rows,
                           const std::array<std::uint32_t, 3>& at) {
   const float* node = rows + cells.floats[at[0]];
   const float x = cells.fraction[at[0]];
-  if constexpr (kAxes == 1) {
-    return interpolate(node, x);
-  } else {
-    const std::size_t above = lookup.width * FactoredPlan::kRowStride;
-    node += cells.floats[at[1]];
-    const float y = cells.fraction[at[1]];
-    if constexpr (kAxes == 2) {
-      return interpolate(node, node + above, x, y);
-    } else {
-      node += cells.floats[at[2]];
-      return interpolate(node, node + above, lookup.layer * FactoredPlan::kRowStride, x, y,
-                         cells.fraction[at[2]]);
-    }
+  if constexpr (kAxes == 1) return interpolate(node, x);
+  if constexpr (kAxes > 1) node += cells.floats[at[1]];
+  const std::size_t above = lookup.width * FactoredPlan::kRowStride;
+  if constexpr (kAxes == 2) return interpolate(node, node + above, x, cells.fraction[at[1]]);
+  if constexpr (kAxes == 3) {
+    node += cells.floats[at[2]];
+    return interpolate(node, node + above, lookup.layer * FactoredPlan::kRowStride, x, cells.fraction[at[1]],
+                       cells.fraction[at[2]]);
   }
 }
 template <int kAxes>
@@ -220,22 +280,18 @@ HWY_INLINE Quad looked_up(const FactoredPlan::Lookup& lookup, const float* rows,
 /// Three channels: sum over lobes of scale times lookups [HomomorphicBrdf, eq. 4].
 HWY_INLINE Quad sum_of_products(const FactoredPlan& plan, std::size_t group, const OneCells& cells) {
   Quad sum{hn::Zero(D4())};
+  const FactoredPlan::Lookup* lookup = plan.lookups.data();
+  const float* const values = plan.values.data();
   for (const FactoredPlan::Product& product : plan.products) {
     Quad value = load_quad(product.scale.data() + group * kTogether);
-    for (std::size_t k = product.first; k < product.last; ++k) {
-      const FactoredPlan::Lookup& lookup = plan.lookups[k];
-      const float* const rows =
-          plan.values.data() + lookup.rows + (lookup.shared ? 0 : group * lookup.row_block);
-      switch (lookup.axes) {
-        case 1:
-          value = value * looked_up<1>(lookup, rows, cells);
-          break;
-        case 2:
-          value = value * looked_up<2>(lookup, rows, cells);
-          break;
-        default:
-          value = value * looked_up<3>(lookup, rows, cells);
-      }
+    for (std::size_t k = product.first; k < product.last; ++k, ++lookup) {
+      const float* const rows = values + lookup->rows + group * lookup->next_group;
+      if (lookup->axes == 1)
+        value = value * looked_up<1>(*lookup, rows, cells);
+      else if (lookup->axes == 2)
+        value = value * looked_up<2>(*lookup, rows, cells);
+      else
+        value = value * looked_up<3>(*lookup, rows, cells);
     }
     sum = Quad{hn::Add(sum.raw, value.raw)};
   }
@@ -243,34 +299,27 @@ HWY_INLINE Quad sum_of_products(const FactoredPlan& plan, std::size_t group, con
 }
 
 /// f has the plan's channels; the plan at most kMaxSteps steps.
-void eval_one_pair(const FactoredPlan& plan, Vec3 wi, Vec3 wo, float* f) {
-  using D2 = hn::Half<D4>;
+void eval_one_pair(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, float* f) {
   using DI2 = hn::RebindToSigned<D2>;
   const D2 d2;
   const DI2 di2;
   const OnePair one(wi, wo);
-  const LanesOf<D4> upwards = one.upwards();
   // of wi and wo
-  const auto excess = hn::LowerHalf(di2, excess_of(upwards.x, upwards.y, upwards.z));
+  const auto excess = hn::LowerHalf(di2, excess_of(one.all.x, one.all.y, one.all.z));
+  const auto up = hn::LowerHalf(d2, one.all.z.raw);
   const bool directions = hn::AllFalse(di2, hn::Gt(excess, hn::BitCast(di2, hn::Set(d2, kMostExcess))));
-  const bool lit = hn::AllTrue(d2, hn::Gt(hn::LowerHalf(d2, upwards.z.raw), hn::Zero(d2)));
-  if (!directions || !lit) {
+  if (!directions || !hn::AllTrue(d2, hn::Gt(up, hn::Zero(d2)))) {
     std::fill(f, f + plan.channels, directions ? 0.0f : std::numeric_limits<float>::quiet_NaN());
     return;
   }
   OneCells cells;
-  find_cells(plan, one, PolarAngles(plan, one, upwards), cells);
+  find_cells(plan, one, AngleTable(PolarAngles(plan, one)), cells);
   for (std::size_t group = 0; group * kTogether < plan.channels; ++group, f += kTogether) {
     const auto sum = sum_of_products(plan, group, cells).raw;
     const std::size_t left = plan.channels - group * kTogether;
-    if (left >= kTogether) {
-      hn::StoreU(hn::LowerHalf(d2, sum), d2, f);
-      f[2] = hn::GetLane(hn::UpperHalf(d2, sum));
-    } else {
-      float rest[4];
-      hn::StoreU(sum, D4(), rest);
-      std::copy(rest, rest + left, f);
-    }
+    f[0] = hn::GetLane(sum);
+    if (left > 1) f[1] = hn::GetLane(hn::Broadcast<1>(sum));
+    if (left > 2) f[2] = hn::GetLane(hn::UpperHalf(d2, sum));
   }
 }
 
