@@ -98,6 +98,13 @@ Language c_like(std::string_view name, std::string_view suffix) {
           .texture_3d = {},
           .filtered_texture = {},
           .filtered_texture_3d = {},
+          .half_scalar = {},
+          .half_vector = {},
+          .half_constructor = {},
+          .half_from_scalar = {},
+          .half_from_vector = {},
+          .half_suffix = {},
+          .half_header = {},
           .texture_struct = {}};
 }
 
@@ -152,14 +159,22 @@ Language glsl() {
   l.sample_3d = "textureLod({0}, vec3({1}, {2}, {3}), 0.0).{4}";
   l.array = "const float {0}[{1}] = float[]({2});\n";
   l.texture = l.filtered_texture = "uniform sampler2D {0};\n";
-  l.texture_3d = l.filtered_texture_3d = "uniform highp sampler3D {0};\n";
+  l.texture_3d = l.filtered_texture_3d = "uniform sampler3D {0};\n";
+  l.half_scalar = "mediump float";
+  l.half_vector = "mediump vec3";
+  l.half_constructor = "vec3";
   return l;
 }
 
 Language glsl_es() {
   Language l = glsl();
   l.name = "glsl_es";
-  l.header = "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\n";
+  l.header =
+      "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\nprecision highp "
+      "sampler3D;\n";
+  l.half_header =
+      "precision highp float;\nprecision highp int;\nprecision mediump sampler2D;\nprecision mediump "
+      "sampler3D;\n";
   l.calls = with(kShaderMath, {{Op::scale_by_two, {"{0} * exp2({1})", 2}}});
   return l;
 }
@@ -168,6 +183,8 @@ Language hlsl() {
   Language l = c_like("hlsl", "");
   l.vector = "float3";
   l.local = "  {0} {1} = {2};\n";
+  l.half_scalar = l.half_from_scalar = "min16float";
+  l.half_vector = l.half_constructor = l.half_from_vector = "min16float3";
   l.definition = "{0} {1}({2}) {{\n{3}}}\n";
   l.exponent_of =
       "// n where x = m 2^n, m in [2/3, 4/3)\n"
@@ -193,6 +210,10 @@ Language msl() {
   l.header =
       "// No compiler has checked this file: none for MSL is at hand where it is tested.\n"
       "#include <metal_stdlib>\nusing namespace metal;\n";
+  l.half_header = l.header;
+  l.half_scalar = l.half_from_scalar = "half";
+  l.half_vector = l.half_constructor = l.half_from_vector = "half3";
+  l.half_suffix = "h";
   l.exponent_of =
       "// n where x = m 2^n, m in [2/3, 4/3)\n"
       "inline float power_exponent_of(float x) {\n"
@@ -227,6 +248,10 @@ Language wgsl() {
   Language l = c_like("wgsl", "");
   l.scalar = "f32";
   l.vector = "vec3f";
+  l.half_header = "enable f16;\n";
+  l.half_scalar = l.half_from_scalar = "f16";
+  l.half_vector = l.half_constructor = l.half_from_vector = "vec3h";
+  l.half_suffix = "h";
   l.integer = "i32";
   l.local = "  let {1} = {2};\n";
   l.parameter = "{1}: {0}";
@@ -280,20 +305,23 @@ const Language& language(std::string_view name) {
   throw Error(fmt::format("language: expected one of {}, found {}", known, name));
 }
 
-std::string_view Language::type_name(ValueType type) const noexcept {
-  return type == ValueType::vector ? vector : type == ValueType::integer ? integer : scalar;
+std::string_view Language::type_name(ValueType type, bool half) const noexcept {
+  if (type == ValueType::integer) return integer;
+  if (half) return type == ValueType::vector ? half_vector : half_scalar;
+  return type == ValueType::vector ? vector : scalar;
 }
 
-std::string Language::literal(double value) const {
+std::string Language::literal(double value, bool half) const {
   const auto single = static_cast<float>(value);
   std::string digits =
       static_cast<double>(single) == value ? fmt::format("{}", single) : fmt::format("{:.9g}", value);
   if (digits.find_first_of(".e") == std::string::npos) digits += ".0";
-  return digits + std::string(suffix);
+  return digits + std::string(half ? half_suffix : suffix);
 }
 
-std::string Language::declaration(ValueType type, std::string_view variable, std::string_view value) const {
-  return fmt::format(fmt::runtime(local), type_name(type), variable, value);
+std::string Language::declaration(ValueType type, std::string_view variable, std::string_view value,
+                                  bool half) const {
+  return fmt::format(fmt::runtime(local), type_name(type, half), variable, value);
 }
 
 std::string Language::function(ValueType type, std::string_view function_name,

@@ -34,12 +34,18 @@ struct Language {
   std::string_view array;              // constant floats: {0} name, {1} how many, {2} values
   // declarations: {0} name, {1} number, {2} twice it, {3} and one; empty: none
   std::string_view texture, texture_3d, filtered_texture, filtered_texture_3d;
+  // products of texels in half precision: its types, what makes a vector, what converts from single (empty:
+  // nothing has to), suffix of literals, and what stands instead of `header`
+  std::string_view half_scalar, half_vector, half_constructor, half_from_scalar, half_from_vector,
+      half_suffix, half_header;
   std::string_view texture_struct;  // what gathers declarations: {0} name, {1} declarations; empty: nothing
 
-  std::string_view type_name(ValueType type) const noexcept;
+  /// `half`: of what is computed from texels in half precision.
+  std::string_view type_name(ValueType type, bool half = false) const noexcept;
   /// A float: the shortest digits that restore it, of what is none nine digits.
-  std::string literal(double value) const;
-  std::string declaration(ValueType type, std::string_view name, std::string_view value) const;
+  std::string literal(double value, bool half = false) const;
+  std::string declaration(ValueType type, std::string_view name, std::string_view value,
+                          bool half = false) const;
   /// A function's head and body; `more` is text that follows the parameters, each a `type`.
   std::string function(ValueType type, std::string_view name, std::span<const std::string_view> parameters,
                        std::string_view more, std::string_view body) const;

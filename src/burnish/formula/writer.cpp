@@ -13,8 +13,10 @@ constexpr int kTernary = 0, kSum = 1, kProduct = 2, kCall = 3;
 
 }  // namespace
 
-Writer::Writer(const Language& language, const Graph& graph, const std::vector<std::size_t>& roots)
+Writer::Writer(const Language& language, const Graph& graph, const std::vector<std::size_t>& roots,
+               bool halves)
     : language_(language), graph_(graph), uses_(graph.nodes().size()), names_(graph.nodes().size()) {
+  for (const Graph::Node& node : graph.nodes()) half_.push_back(halves && is_half(node));
   for (const Graph::Node& node : graph.nodes()) {
     for (const std::size_t argument : node.arguments) ++uses_[argument];
     if (node.op == Op::input) times_[node.name] = 1;
@@ -26,7 +28,7 @@ Writer::Writer(const Language& language, const Graph& graph, const std::vector<s
     int precedence;
     const std::string value = formula(i, precedence);
     names_[i] = new_name(node.called);
-    statements_.push_back({language.declaration(node.type, names_[i], value), i, count_of_text(i)});
+    statements_.push_back({language.declaration(node.type, names_[i], value, half_[i]), i, count_of_text(i)});
   }
 }
 
@@ -42,6 +44,14 @@ bool Writer::uses(Op op) const noexcept {
 
 OperationCount Writer::count(std::size_t root) const {
   return names_[root].empty() ? count_of_text(root) : OperationCount{};
+}
+
+// From texels, or a vector of constants, which only they are multiplied with.
+bool Writer::is_half(const Graph::Node& node) const {
+  if (node.op == Op::texel || node.op == Op::sample) return true;
+  const auto constant = [&](std::size_t a) { return graph_.nodes()[a].op == Op::constant; };
+  if (node.op == Op::vector && std::ranges::all_of(node.arguments, constant)) return true;
+  return std::ranges::any_of(node.arguments, [&](std::size_t a) { return half_[a]; });
 }
 
 // What costs nothing to say again is said again.
@@ -77,7 +87,12 @@ std::string Writer::operand(std::size_t i, int least_precedence) const {
 
 std::string Writer::formula(std::size_t i, int& precedence) const {
   const Graph::Node& node = graph_.nodes()[i];
-  const auto of = [&](std::size_t k, int least) { return operand(node.arguments[k], least); };
+  const bool half = half_[i];
+  const auto of = [&](std::size_t k, int least) {
+    const Graph::Node& argument = graph_.nodes()[node.arguments[k]];
+    const bool factor = half && argument.op == Op::constant && argument.type == ValueType::real;
+    return factor ? language_.literal(argument.constant, true) : operand(node.arguments[k], least);
+  };
   // a op b; what stands to the right of an operator keeps its parentheses
   const auto binary = [&](const char* sign, int own) {
     precedence = own;
@@ -109,7 +124,8 @@ std::string Writer::formula(std::size_t i, int& precedence) const {
       precedence = kTernary;
       return "-" + of(0, kCall);
     case Op::vector:
-      return fmt::format("{}({}, {}, {})", language_.vector, of(0, 0), of(1, 0), of(2, 0));
+      return fmt::format("{}({}, {}, {})", half ? language_.half_constructor : language_.vector, of(0, 0),
+                         of(1, 0), of(2, 0));
     case Op::component:
       return fmt::format("{}.{}", of(0, kCall), "xyz"[static_cast<std::size_t>(node.constant)]);
     case Op::element:
@@ -119,9 +135,12 @@ std::string Writer::formula(std::size_t i, int& precedence) const {
     case Op::call: {
       std::vector<std::string> all;
       for (std::size_t k = 0; k < node.arguments.size(); ++k) all.push_back(of(k, 0));
-      if (node.op == Op::texel) return language_.fetch(node.name, all, node.type);
-      if (node.op == Op::sample) return language_.filtered(node.name, all, node.type);
-      return fmt::format("{}({})", node.name, fmt::join(all, ", "));
+      if (node.op == Op::call) return fmt::format("{}({})", node.name, fmt::join(all, ", "));
+      const std::string read = node.op == Op::texel ? language_.fetch(node.name, all, node.type)
+                                                    : language_.filtered(node.name, all, node.type);
+      const std::string_view convert =
+          node.type == ValueType::vector ? language_.half_from_vector : language_.half_from_scalar;
+      return half && !convert.empty() ? fmt::format("{}({})", convert, read) : read;
     }
     default: {
       const Language::Call& call = language_.calls.at(node.op);

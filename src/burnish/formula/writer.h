@@ -22,8 +22,10 @@ struct Statement {
 class Writer {
  public:
   /// For all values of the graph; `roots` are those that text() will be asked for. Names that are inputs of
-  /// the graph are not given to locals.
-  Writer(const Language& language, const Graph& graph, const std::vector<std::size_t>& roots);
+  /// the graph are not given to locals. `halves`: what is computed from texels is in half precision, with the
+  /// constants that it is multiplied with.
+  Writer(const Language& language, const Graph& graph, const std::vector<std::size_t>& roots,
+         bool halves = false);
 
   const std::vector<Statement>& statements() const noexcept { return statements_; }
   /// Their text together.
@@ -36,6 +38,7 @@ class Writer {
   bool uses(Op op) const noexcept;
 
  private:
+  bool is_half(const Graph::Node& node) const;
   bool is_local(std::size_t node) const;
   std::string operand(std::size_t node, int least_precedence) const;
   std::string formula(std::size_t node, int& precedence) const;
@@ -45,6 +48,7 @@ class Writer {
   const Language& language_;
   const Graph& graph_;
   std::vector<int> uses_;
+  std::vector<bool> half_;          // by node
   std::vector<std::string> names_;  // of locals, by node
   std::map<std::string, int, std::less<>> times_;
   int unnamed_ = 0;

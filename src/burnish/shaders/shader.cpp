@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 #include <burnish/factors/lookup_expression.h>
 #include <burnish/formula/writer.h>
 #include <burnish/shaders/frame_function.h>
+#include <burnish/shaders/half_range.h>
 #include <burnish/shaders/shader_formula.h>
 #include <burnish/shaders/texture_packing.h>
 
@@ -94,25 +96,49 @@ class Lookups {
   std::vector<Place> places_;
 };
 
-// [HomomorphicBrdf, eq. 4], each pair multiplied with itself first, as the definition does
-Expr lobe_value(const Lookups& lookups, const FactoredBrdf& brdf, std::size_t j) {
+// Powers of 2 that tables are multiplied with in textures, by table.
+std::vector<int> exponents_in(const std::vector<ShaderTexture>& textures, std::size_t tables) {
+  std::vector<int> exponents(tables, 0);
+  for (const ShaderTexture& texture : textures)
+    for (const PlacedTable& placed : texture.tables) exponents[placed.table] = placed.exponent;
+  return exponents;
+}
+
+// [HomomorphicBrdf, eq. 4], each pair multiplied with itself first, as the definition does. `steps`: powers of 2
+// before each multiplication, for products in half precision; or empty.
+Expr lobe_value(const Lookups& lookups, const FactoredBrdf& brdf, std::size_t j,
+                const std::vector<int>& exponents, const std::vector<int>& steps) {
   const auto uses = brdf.ordered_factors(j);
-  const std::size_t paired = 2 * brdf.pair_count(j);
-  const auto& scale = brdf.lobes()[j].scale;
-  Expr product = brdf.channels() == 1 ? Expr(scale[0]) : Expr(Op::vector, {scale[0], scale[1], scale[2]});
-  for (std::size_t k = 0; k < uses.size(); k += k < paired ? 2 : 1) {
-    const Expr value = lookups.value(uses[k]);
-    product = product * (k < paired ? value * lookups.value(uses[k + 1]) : value);
+  const std::size_t pairs = brdf.pair_count(j);
+  int in_tables = 0;
+  for (const FactorUse& use : uses) in_tables += exponents[static_cast<std::size_t>(use.table)];
+  std::vector<Expr> scale;
+  for (const double s : brdf.lobes()[j].scale)
+    scale.emplace_back(std::ldexp(s, (steps.empty() ? 0 : steps[0]) - in_tables));
+  Expr product = brdf.channels() == 1 ? scale[0] : Expr(Op::vector, scale);
+  for (std::size_t step = 0, k = 0; k < uses.size(); ++step) {
+    // no constant above what half floats hold
+    constexpr int kMostStep = 14;
+    int rest = step == 0 || steps.empty() ? 0 : steps[step];
+    for (; rest != 0; rest -= std::clamp(rest, -kMostStep, kMostStep))
+      product = product * std::ldexp(1.0, std::clamp(rest, -kMostStep, kMostStep));
+    const Expr value = lookups.value(uses[k++]);
+    product = product * (step < pairs ? value * lookups.value(uses[k++]) : value);
   }
   return named("lobe", product);
 }
 
-Expr sum_of_lobes(const FactoredBrdf& brdf, const std::vector<ShaderTexture>& textures,
-                  const ShaderOptions& options) {
+std::vector<Expr> lobe_values(const FactoredBrdf& brdf, const std::vector<ShaderTexture>& textures,
+                              const ShaderOptions& options) {
   const Lookups lookups(brdf, textures, options.filter);
-  Expr total;
-  for (std::size_t j = 0; j < brdf.lobes().size(); ++j) total = total + lobe_value(lookups, brdf, j);
-  return total;
+  const std::vector<int> exponents = exponents_in(textures, brdf.tables().size());
+  std::vector<Expr> lobes;
+  for (std::size_t j = 0; j < brdf.lobes().size(); ++j) {
+    const std::vector<int> steps =
+        options.half_products ? step_exponents(brdf, j, exponents) : std::vector<int>{};
+    lobes.push_back(lobe_value(lookups, brdf, j, exponents, steps));
+  }
+  return lobes;
 }
 
 // C++ has no textures: an array and a function that reads it.
@@ -155,21 +181,32 @@ ShaderCost cost_of(const OperationCount& count) noexcept {
           .powers = count.transcendentals};
 }
 
-std::string local_function(Expr total, const Language& l, const ShaderOptions& options, std::string_view more,
-                           ShaderCost& cost) {
+std::string local_function(Expr total, const Language& l, const ShaderOptions& options,
+                           const std::string& name, std::string_view more, ShaderCost& cost) {
   if (total.type() == ValueType::real) {
     total = named("f0", total);
     total = Expr(Op::vector, {total, total, total});
   }
   Graph graph;
   const std::size_t root = graph.add(total);
-  const Writer writer(l, graph, {root});
+  const Writer writer(l, graph, {root}, options.half_products);
   cost = cost_of(graph.count());
   std::string body = horizon_test(l);
   if (options.language == ShaderLanguage::msl && options.filter == ShaderFilter::hardware)
     body += "  constexpr sampler smooth_sampler(filter::linear, address::clamp_to_edge);\n";
-  body += writer.text() + fmt::format(fmt::runtime(l.result), writer.text(root));
-  return l.function(ValueType::vector, "burnish_" + options.name, kTwoDirections, more, body);
+  const std::string value =
+      options.half_products ? fmt::format("{}({})", l.vector, writer.text(root)) : writer.text(root);
+  body += writer.text() + fmt::format(fmt::runtime(l.result), value);
+  return l.function(ValueType::vector, name, kTwoDirections, more, body);
+}
+
+std::string_view header_of(const Language& l, const ShaderOptions& options) noexcept {
+  return options.half_products ? l.half_header : l.header;
+}
+
+// What functions take besides the directions.
+std::string more_of(const ShaderOptions& options) {
+  return options.language == ShaderLanguage::msl ? fmt::format("burnish_{}_tables tables", options.name) : "";
 }
 
 void check(const FactoredBrdf& brdf, const ShaderOptions& options) {
@@ -179,6 +216,8 @@ void check(const FactoredBrdf& brdf, const ShaderOptions& options) {
     throw Error(fmt::format("shader: expected a model of 1 or 3 channels, found {}", brdf.channels()));
   if (cpp && options.filter == ShaderFilter::hardware)
     throw Error("shader: expected the exact filter for cpp, which has no texture units, found hardware");
+  if (options.half_products && options.filter == ShaderFilter::exact)
+    throw Error("shader: expected the hardware filter with half products, found exact");
 }
 
 }  // namespace
@@ -198,8 +237,24 @@ ShaderFormula shader_formula(const FactoredBrdf& brdf, const ShaderOptions& opti
   ShaderFormula formula;
   formula.textures = options.language == ShaderLanguage::cpp ? tables_apart(brdf, options.name)
                                                              : pack_tables(brdf, options.name);
-  formula.value = sum_of_lobes(brdf, formula.textures, options);
+  formula.lobes = lobe_values(brdf, formula.textures, options);
+  for (const Expr& lobe : formula.lobes) formula.value = formula.value + lobe;
   return formula;
+}
+
+LobeFunctions lobe_functions(const FactoredBrdf& brdf, const ShaderOptions& options) {
+  ShaderFormula formula = shader_formula(brdf, options);
+  const Language& l = language(to_string(options.language));
+  LobeFunctions functions{.text = std::string(header_of(l, options)), .names = {}, .textures = {}};
+  functions.textures = std::move(formula.textures);
+  functions.text += declare_textures(l, options, functions.textures);
+  for (std::size_t j = 0; j < formula.lobes.size(); ++j) {
+    ShaderCost cost;
+    functions.names.push_back(fmt::format("burnish_{}_lobe{}", options.name, j));
+    functions.text +=
+        local_function(formula.lobes[j], l, options, functions.names.back(), more_of(options), cost);
+  }
+  return functions;
 }
 
 Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options) {
@@ -208,9 +263,9 @@ Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options) {
   const bool cpp = options.language == ShaderLanguage::cpp;
   Shader shader;
   shader.textures = std::move(formula.textures);
-  const std::string more =
-      options.language == ShaderLanguage::msl ? fmt::format("burnish_{}_tables tables", options.name) : "";
-  const std::string function = local_function(formula.value, l, options, more, shader.cost);
+  const std::string more = more_of(options);
+  const std::string function =
+      local_function(formula.value, l, options, "burnish_" + options.name, more, shader.cost);
   const auto comment_of = [](std::string text) {  // a table's name may hold anything
     for (char& c : text) c = c < ' ' || c > '~' || c == '\\' ? '?' : c;
     return text;
@@ -220,7 +275,7 @@ Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options) {
       "// burnish_{}(wi, wo): f_r in 1/sr, without the cosine; unit vectors of the local frame, +z the "
       "normal.\n"
       "// {}.\n{}",
-      comment_of(model_expression(brdf)), options.name, to_string(shader.cost), l.header);
+      comment_of(model_expression(brdf)), options.name, to_string(shader.cost), header_of(l, options));
   if (cpp) shader.text += "namespace burnish_shader {\n";
   shader.text += declare_textures(l, options, shader.textures);
   shader.text += function + world_function(l, options.name, more);
@@ -236,10 +291,10 @@ SplitShader split_shader(const FactoredBrdf& brdf, const ShaderOptions& options)
   ShaderFormula formula = shader_formula(brdf, options);
   SplitShader shader;
   shader.textures = std::move(formula.textures);
-  shader.declarations = std::string(l.header) + declare_textures(l, options, shader.textures);
+  shader.declarations = std::string(header_of(l, options)) + declare_textures(l, options, shader.textures);
   Graph graph;
   const std::size_t root = graph.add(formula.value);
-  const Writer writer(l, graph, {root});
+  const Writer writer(l, graph, {root}, options.half_products);
   OperationCount view, rest;
   for (const Statement& statement : writer.statements()) {
     const bool lit = graph.reaches(statement.node, "wi");

@@ -29,6 +29,9 @@ struct ShaderOptions {
   ShaderLanguage language = ShaderLanguage::glsl;
   ShaderFilter filter = ShaderFilter::exact;
   std::string name = "brdf";  ///< letters, digits and single underscores, a letter first
+  /// Of the hardware filter: what comes out of textures is multiplied in half precision (mediump, half,
+  /// min16float, f16), positions still found in single.
+  bool half_products = false;
 };
 
 /// What one evaluation in the local frame costs, above the horizon. Floating-point operations are counted a
@@ -53,6 +56,7 @@ struct ShaderCost {
 struct PlacedTable {
   std::size_t table = 0;       ///< of the model
   std::array<int, 3> first{};  ///< x, y and z of the texel that is its first node
+  int exponent = 0;            ///< its values are there times 2^exponent
 };
 
 /// What a shader reads: tables beside, above or behind each other. Texels around a table repeat its edge.
@@ -82,8 +86,11 @@ struct Shader {
 /// values; clamped to the edge and linear for the hardware filter. MSL takes them in a struct, as third or
 /// fifth argument; C++ has an array a table. docs/guide/shaders.md states how precise it is.
 ///
+/// With half products the relative error stays below 1 % where f_r is between 1e-3 and 3e4 and tables are
+/// smooth; what is brighter than 65504 becomes infinite.
+///
 /// Throws Error if the name is not as above, channels are not 1 or 3, a texture's side would be above 16384,
-/// or for C++ with the hardware filter.
+/// for C++ with the hardware filter, or for half products with the exact one.
 Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options);
 
 /// What generate_shader computes, in two pieces of GLSL for a pixel that several lights shine on: `view`

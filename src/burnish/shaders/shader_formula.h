@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include <burnish/formula/expression.h>
@@ -11,8 +12,18 @@ namespace burnish {
 /// the textures: a number or a vector. Throws Error as it does.
 struct ShaderFormula {
   Expr value;
+  std::vector<Expr> lobes;  ///< whose sum it is
   std::vector<ShaderTexture> textures;
 };
 ShaderFormula shader_formula(const FactoredBrdf& brdf, const ShaderOptions& options);
+
+/// Every lobe of a model apart: functions `vec3 NAME(vec3 wi, vec3 wo)` as generate_shader writes them, over
+/// textures that they share.
+struct LobeFunctions {
+  std::string text;  ///< declarations and functions, after the language's header
+  std::vector<std::string> names;
+  std::vector<ShaderTexture> textures;
+};
+LobeFunctions lobe_functions(const FactoredBrdf& brdf, const ShaderOptions& options);
 
 }  // namespace burnish

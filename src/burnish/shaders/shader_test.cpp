@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -9,9 +10,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <burnish/baselines/node_table.h>
 #include <burnish/error.h>
+#include <burnish/formula/graph.h>
 #include <burnish/shaders/shader.h>
+#include <burnish/shaders/shader_formula.h>
 #include <burnish/testing/compilers.h>
+#include <burnish/testing/graph_values.h>
 #include <burnish/testing/models.h>
 #include <burnish/testing/tools.h>
 
@@ -111,17 +116,21 @@ TEST(Shader, CostsWhatItSaysItCosts) {
 
 class ShaderCompilers : public testing::TestWithParam<Checked> {};
 
-TEST_P(ShaderCompilers, AcceptEveryModelWithEitherFilter) {
+TEST_P(ShaderCompilers, AcceptEveryModelWithEveryFilter) {
   const Checked& checked = GetParam();
   if (!has_tool(checked.tool)) GTEST_SKIP() << "no " << checked.tool;
   const TemporaryFolder folder("shaders");
   std::string files;
   for (const ModelCase& model : kModelCases)
-    for (const ShaderFilter filter : {ShaderFilter::exact, ShaderFilter::hardware}) {
-      const fs::path file =
-          folder.path / fmt::format("{}{}.{}", model.name, filter == ShaderFilter::exact, checked.extension);
-      write(file, checked.before + shader_of(model, checked.language, filter).text +
-                      fmt::format(fmt::runtime(checked.main), model.name));
+    for (const char* how : {"exact", "hardware", "half"}) {
+      const fs::path file = folder.path / fmt::format("{}_{}.{}", model.name, how, checked.extension);
+      const Shader shader = generate_shader(
+          smooth_model(model),
+          {.language = checked.language,
+           .filter = how == std::string_view("exact") ? ShaderFilter::exact : ShaderFilter::hardware,
+           .name = model.name,
+           .half_products = how == std::string_view("half")});
+      write(file, checked.before + shader.text + fmt::format(fmt::runtime(checked.main), model.name));
       files += " " + file.string();
     }
   EXPECT_TRUE(runs(fmt::format(fmt::runtime(checked.command), files), folder.path / "log"));
@@ -183,9 +192,9 @@ TEST(Shader, RepeatsTheEdgesOfTablesThatShareATexture) {
               const int from = (node(z, 2) * nodes[1] + node(y, 1)) * nodes[0] + node(x, 0),
                         row = (placed.first[2] + z) * sides[1] + placed.first[1] + y,
                         to = (row * sides[0] + placed.first[0] + x) * texture.channels + c;
-              EXPECT_EQ(texture.values[static_cast<std::size_t>(to)],
-                        table.values[static_cast<std::size_t>(from * table.channels +
-                                                              (table.channels == 1 ? 0 : c))]);
+              const float value = table.values[static_cast<std::size_t>(from * table.channels +
+                                                                        (table.channels == 1 ? 0 : c))];
+              EXPECT_EQ(texture.values[static_cast<std::size_t>(to)], std::ldexp(value, placed.exponent));
             }
     }
 }
@@ -215,6 +224,88 @@ TEST(Shader, TakesAFormatThatHoldsAllTables) {
   EXPECT_EQ(format_of_textures(rgb9e5, half), half);
   EXPECT_EQ(format_of_textures(unorm8, half), single);
   EXPECT_EQ(format_of_textures(single, half), single);
+}
+
+// A filtered read of texels of half floats.
+std::array<double, 3> half_sample(const ShaderTexture& texture, std::span<const double> at) {
+  const std::array sides{texture.width, texture.height, std::max(texture.depth, 1)};
+  std::array<double, 3> sum{};
+  for (int corner = 0; corner < 8; ++corner) {
+    double weight = 1;
+    std::array<int, 3> texel{};
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      const double place = std::clamp(at[k] * sides[k] - 0.5, 0.0, sides[k] - 1.0);
+      const int low = std::min(static_cast<int>(place), std::max(sides[k] - 2, 0)), up = corner >> k & 1;
+      weight *= up ? place - low : 1 - place + low;
+      texel[k] = low + up;
+    }
+    if (weight == 0 || (at.size() == 2 && corner >= 4)) continue;
+    const int first = ((texel[2] * sides[1] + texel[1]) * sides[0] + texel[0]) * texture.channels;
+    for (int c = 0; c < 3; ++c)
+      sum[static_cast<std::size_t>(c)] +=
+          weight * static_cast<double>(round_to_half(
+                       texture.values[static_cast<std::size_t>(first + (texture.channels == 1 ? 0 : c))]));
+  }
+  return sum;
+}
+
+// The largest relative error of a shader with half products where f is between `least` and 3e4.
+double half_error(const FactoredBrdf& brdf, double least) {
+  const ShaderFormula formula =
+      shader_formula(brdf, {.filter = ShaderFilter::hardware, .half_products = true});
+  Graph graph;
+  const std::size_t root = graph.add(formula.value);
+  GraphInputs inputs;
+  inputs.round = [](double x) { return round_to_half(x); };
+  inputs.sample = [&](const std::string& name, std::span<const double> at) {
+    return half_sample(*std::ranges::find(formula.textures, name, &ShaderTexture::name), at);
+  };
+  double worst = 0;
+  for (const auto& [wi, wo] : corner_and_random_pairs(2000)) {
+    if (wi.z <= 0 || wo.z <= 0) continue;
+    inputs.values = {{"wi", {wi.x, wi.y, wi.z}}, {"wo", {wo.x, wo.y, wo.z}}};
+    const auto found = graph_values(graph, inputs)[root];
+    double truth[3];
+    const auto channels = static_cast<std::size_t>(brdf.channels());
+    brdf.eval(wi, wo, std::span(truth).first(channels));
+    for (std::size_t c = 0; c < channels; ++c)
+      if (truth[c] >= least && truth[c] <= 3e4)
+        worst = std::max(worst, std::abs(found[c] / truth[c] - 1) / shader_cancellation(brdf, wi, wo));
+  }
+  return worst;
+}
+
+TEST(HalfProducts, AreWithinOnePercent) {
+  for (const ModelCase& model : kModelCases)
+    EXPECT_LE(half_error(smooth_model(model), 1e-4), 0.01) << model.name;
+}
+
+// Factors of 2^19 that only together make a reflectance: what fits have at the horizon.
+TEST(HalfProducts, HoldTablesThatMakeUpForEachOther) {
+  const ModelCase models[] = {
+      {"lines", "p(wo) q(h) p(wi) r(theta_d)", {"p=64", "q=64", "r=64"}, 3},
+      {"volume", "z(theta_h) g(theta_h,theta_d,phi_d)", {"z=128,power:0.5", "g=96x6x3,power:0.5"}, 3},
+      {"lobes", "p(wo) q(h) p(wi) r(theta_d) + s(h) t(theta_d)", {"p=64", "q=64", "r=64", "s=8", "t=8"}, 3}};
+  for (const ModelCase& model : models)
+    for (const TableFormat format : {TableFormat::half, TableFormat::single, TableFormat::rgb9e5}) {
+      Pcg32 random(3);
+      FactoredBrdf brdf = model_of(
+          model, format, random, [&](std::size_t table, const TableLayout& layout, int x, int, int c) {
+            const double u = static_cast<double>(x) / (layout.width - 1);
+            const bool rises = layout.shape == TableShape::volume || (table == 0 && layout.width == 64);
+            return (rises ? 13 * u : -13 * u) + 0.1 * c;
+          });
+      EXPECT_GT(std::ranges::max(brdf.lobes()[0].scale), 1e5) << model.name;
+      EXPECT_LE(half_error(brdf, 1e-3), 0.01) << model.name << " " << to_string(format);
+      for (const ShaderTexture& texture : generate_shader(brdf, {}).textures)
+        EXPECT_EQ(texture.values, round_to_format(texture.format, texture.channels, texture.values))
+            << "no bit lost";
+    }
+}
+
+TEST(HalfProducts, TakeTheHardwareFilter) {
+  const FactoredBrdf brdf = smooth_model(kModelCases[0]);
+  EXPECT_THROW(generate_shader(brdf, {.half_products = true}), Error);
 }
 
 TEST(Shader, SaysWhatNoCompilerHasChecked) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -8,6 +9,7 @@
 
 #include <burnish/error.h>
 #include <burnish/shaders/frame_function.h>
+#include <burnish/shaders/half_range.h>
 #include <burnish/shaders/texture_packing.h>
 
 namespace burnish {
@@ -117,7 +119,7 @@ TableFormat common_format(std::span<const Table> tables, const TableNumbers& num
 }
 
 // The table's nodes and what repeats its edges.
-void fill(ShaderTexture& texture, const Spot& spot, const Table& table) {
+void fill(ShaderTexture& texture, const Spot& spot, const Table& table, int exponent) {
   const auto& [ax, ay, az] = spot.axes;
   const auto node_of = [](int texel, const SpotAxis& axis) {
     return std::clamp(texel - axis.first, 0, axis.nodes - 1);
@@ -131,12 +133,12 @@ void fill(ShaderTexture& texture, const Spot& spot, const Table& table) {
                    to = static_cast<std::size_t>(((z * texture.height + y) * texture.width + x) * channels);
         for (int c = 0; c < channels; ++c)
           texture.values[to + static_cast<std::size_t>(c)] =
-              table.values[from + static_cast<std::size_t>(c * step)];
+              std::ldexp(table.values[from + static_cast<std::size_t>(c * step)], exponent);
       }
 }
 
 ShaderTexture packed(std::span<const Table> tables, const TableNumbers& numbers, const PackingPlan& plan,
-                     std::string name, bool deep) {
+                     const std::vector<int>& exponents, std::string name, bool deep) {
   ShaderTexture texture{.name = std::move(name),
                         .width = plan.size[0],
                         .height = plan.size[1],
@@ -152,8 +154,10 @@ ShaderTexture packed(std::span<const Table> tables, const TableNumbers& numbers,
   for (const std::size_t i : numbers) texture.channels = std::max(texture.channels, tables[i].channels);
   texture.values.resize(static_cast<std::size_t>(plan.texels() * texture.channels));
   for (const Spot& spot : plan.spots) {
-    fill(texture, spot, tables[spot.table]);
-    texture.tables.push_back({spot.table, {spot.axes[0].first, spot.axes[1].first, spot.axes[2].first}});
+    const int exponent = exponents[spot.table];
+    fill(texture, spot, tables[spot.table], exponent);
+    texture.tables.push_back(
+        {spot.table, {spot.axes[0].first, spot.axes[1].first, spot.axes[2].first}, exponent});
   }
   return texture;
 }
@@ -164,12 +168,13 @@ std::vector<ShaderTexture> pack_tables(const FactoredBrdf& brdf, const std::stri
   TableNumbers flat, deep;
   for (std::size_t i = 0; i < brdf.tables().size(); ++i)
     (brdf.tables()[i].layout.shape == TableShape::volume ? deep : flat).push_back(i);
+  const std::vector<int> exponents = table_exponents(brdf);
   std::vector<ShaderTexture> textures;
   if (!flat.empty())
-    textures.push_back(packed(brdf.tables(), flat, plan_2d(brdf.tables(), flat),
+    textures.push_back(packed(brdf.tables(), flat, plan_2d(brdf.tables(), flat), exponents,
                               fmt::format("burnish_{}_tables", name), false));
   if (!deep.empty())
-    textures.push_back(packed(brdf.tables(), deep, plan_3d(brdf.tables(), deep),
+    textures.push_back(packed(brdf.tables(), deep, plan_3d(brdf.tables(), deep), exponents,
                               fmt::format("burnish_{}_volumes", name), true));
   return textures;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -17,11 +18,25 @@ namespace burnish {
 struct GraphInputs {
   std::map<std::string, std::array<double, 3>> values;  ///< of numbers the first
   std::function<double(const std::string&, int)> element = {};
+  /// Of a texture at coordinates.
+  std::function<std::array<double, 3>(const std::string&, std::span<const double>)> sample = {};
+  /// What every result that depends on a sample is rounded by.
+  std::function<double(double)> round = [](double x) { return x; };
 };
 
 inline std::vector<std::array<double, 3>> graph_values(const Graph& graph, const GraphInputs& inputs) {
   std::vector<std::array<double, 3>> all;
+  std::vector<bool> sampled;
   for (const Graph::Node& node : graph.nodes()) {
+    sampled.push_back(node.op == Op::sample ||
+                      std::ranges::any_of(node.arguments, [&](std::size_t a) { return sampled[a]; }));
+    if (node.op == Op::sample) {
+      std::vector<double> at;
+      for (const std::size_t a : node.arguments) at.push_back(all[a][0]);
+      all.push_back(inputs.sample(node.name, at));
+      for (double& channel : all.back()) channel = inputs.round(channel);
+      continue;
+    }
     const auto argument = [&](std::size_t k, std::size_t i) {
       const std::size_t from = node.arguments[k];
       return all[from][graph.nodes()[from].type == ValueType::vector ? i : 0];
@@ -77,6 +92,7 @@ inline std::vector<std::array<double, 3>> graph_values(const Graph& graph, const
             throw std::logic_error("no value of " + std::string(to_string(node.op)));
         }
       }();
+      if (sampled.back()) value[i] = inputs.round(value[i]);
     }
   }
   return all;

@@ -40,10 +40,7 @@ LightShader shader_of(const std::pair<TappedBrdf, BlurredEnvironment>& light, Sh
   const TappedShader generated = generate_shader(brdf, blurred.options, language, name);
   LightShader shader{fmt::format("burnish_{}_light", name), {"n", "t", "s", "v"}, generated.text, {}};
   add_maps(shader, generated.environment, blurred.options.side, blurred.options.levels, blurred.maps);
-  for (std::size_t j = 0; j < brdf.lobes.size(); ++j) {
-    add_tables(shader, generated.lobes[j].outside);
-    add_tables(shader, generated.lobes[j].inside);
-  }
+  add_tables(shader, generated.tables);
   return shader;
 }
 

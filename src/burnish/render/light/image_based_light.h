@@ -65,7 +65,7 @@ struct ImageBasedShader {
   /// Sampler of all lobes' maps, those of one after another's: 3-D, width 2 side, height side, depth lobes *
   /// maps * slices; linear, clamped.
   std::string maps;
-  std::vector<ShaderTexture> tables;  ///< of the factors outside
+  std::vector<ShaderTexture> tables;  ///< of all lobes' factors outside: one at most
 };
 
 /// `vec3 burnish_NAME_light(vec3 n, vec3 v)`: ImageBasedLight::radiance in GLSL 4.50 or ES 3.00, unit vectors

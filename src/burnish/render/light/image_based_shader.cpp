@@ -1,6 +1,6 @@
-#include <algorithm>
 #include <array>
-#include <iterator>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -9,8 +9,10 @@
 #include <burnish/formula/writer.h>
 #include <burnish/render/gl/gl_evaluator.h>
 #include <burnish/render/light/image_based_light.h>
+#include <burnish/render/light/lobe_parts.h>
 #include <burnish/render/light/map_expression.h>
 #include <burnish/render/light/prefiltered_formula.h>
+#include <burnish/shaders/shader_formula.h>
 
 namespace burnish {
 
@@ -77,20 +79,22 @@ ImageBasedShader generate_shader(const ImageBasedLight& light, ShaderLanguage la
   const int slices_a_lobe = light.map_count() * light.options.slices;
   const int depth = static_cast<int>(light.lobes.size()) * slices_a_lobe;
   ImageBasedShader shader{.maps = fmt::format("burnish_{}_maps", name)};
-  shader.text = fmt::format(fmt::runtime(l.texture_3d), shader.maps);
+  std::vector<FactoredBrdf> parts;
+  for (const PrefilteredLobe& lobe : light.lobes) parts.push_back(lobe.outside);
+  LobeFunctions factors = lobe_functions(
+      joined(parts), {.language = language, .filter = ShaderFilter::hardware, .name = name + "_view"});
+  shader.text = factors.text + fmt::format(fmt::runtime(l.filtered_texture_3d), shader.maps);
+  shader.tables = std::move(factors.textures);
 
   // every lobe: the factors of the view times what its maps show
   const View view(light.options.slices);
   Expr sum;
   for (std::size_t j = 0; j < light.lobes.size(); ++j) {
     const PrefilteredLobe& lobe = light.lobes[j];
-    const std::string outside = fmt::format("{}_lobe{}", name, j),
-                      axes = fmt::format("burnish_{}_axes", outside);
-    const Shader factors = generate_shader(lobe.outside, {language, ShaderFilter::hardware, outside});
-    shader.text += factors.text + l.declare_array(axes, lobe.axis);
-    std::ranges::copy(factors.textures, std::back_inserter(shader.tables));
+    const std::string axes = fmt::format("burnish_{}_axes{}", name, j);
+    shader.text += l.declare_array(axes, lobe.axis);
     const Expr wo = view.wo.whole();
-    sum = sum + Expr::call("burnish_" + outside, {wo, wo}, ValueType::vector) *
+    sum = sum + Expr::call(factors.names[j], {wo, wo}, ValueType::vector) *
                     seen(light, view, axes, shader.maps, static_cast<int>(j) * slices_a_lobe, depth);
   }
   const Expr dark(Op::vector, {0.0, 0.0, 0.0});

@@ -14,16 +14,21 @@ bool of_view_alone(const Table& table, const FactorUse& use) noexcept {
          (projections < 3 || alone(use.projection_z));
 }
 
+// The table's place among those that are needed, made where it is new.
+int number_of(const Table& table, std::vector<Table>& tables) {
+  const auto known = std::ranges::find(tables, table.name, &Table::name);
+  const auto number = static_cast<int>(known - tables.begin());
+  if (known == tables.end()) tables.push_back(table);
+  return number;
+}
+
 // The lobe with some of its factors, and the tables they need.
 FactoredBrdf part_of(const FactoredBrdf& brdf, std::vector<double> scale,
                      const std::vector<FactorUse>& uses) {
   std::vector<Table> tables;
   Lobe lobe{.scale = std::move(scale), .factors = uses};
   for (FactorUse& use : lobe.factors) {
-    const Table& table = brdf.table_of(use);
-    const auto known = std::ranges::find(tables, table.name, &Table::name);
-    use.table = static_cast<int>(known - tables.begin());
-    if (known == tables.end()) tables.push_back(table);
+    use.table = number_of(brdf.table_of(use), tables);
   }
   return {brdf.channels(), std::move(tables), {std::move(lobe)}};
 }
@@ -38,6 +43,17 @@ LobeParts parts_of(const FactoredBrdf& brdf, const Lobe& lobe) {
     else
       inside.push_back(use);
   return {part_of(brdf, lobe.scale, outside), part_of(brdf, std::vector(lobe.scale.size(), 1.0), inside)};
+}
+
+FactoredBrdf joined(std::span<const FactoredBrdf> parts) {
+  std::vector<Table> tables;
+  std::vector<Lobe> lobes;
+  for (const FactoredBrdf& part : parts) {
+    Lobe lobe = part.lobes()[0];
+    for (FactorUse& use : lobe.factors) use.table = number_of(part.table_of(use), tables);
+    lobes.push_back(std::move(lobe));
+  }
+  return {parts[0].channels(), std::move(tables), std::move(lobes)};
 }
 
 Channels eval_channels(const FactoredBrdf& brdf, Vec3 wi, Vec3 wo) noexcept {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include <burnish/factors/factored_brdf.h>
 
@@ -12,6 +13,9 @@ struct LobeParts {
   FactoredBrdf outside, inside;
 };
 LobeParts parts_of(const FactoredBrdf& brdf, const Lobe& lobe);
+
+/// Parts, each of one lobe, of one model as the lobes of one that has their tables.
+FactoredBrdf joined(std::span<const FactoredBrdf> parts);
 
 /// f_r in three channels.
 using Channels = std::array<double, 3>;

@@ -43,12 +43,9 @@ TappedBrdf tap(const FactoredBrdf& brdf, int taps = 96);
 
 /// Shader text of a TappedBrdf.
 struct TappedShader {
-  struct Lobe {
-    std::vector<ShaderTexture> outside, inside;
-  };
   std::string text;         ///< no #version line
   std::string environment;  ///< 3-D sampler: width 2 side, height side, depth levels; linear, clamped
-  std::vector<Lobe> lobes;
+  std::vector<ShaderTexture> tables;  ///< one 2-D and one 3-D at most
 };
 
 /// `vec3 burnish_NAME_light(vec3 n, vec3 t, vec3 s, vec3 v)`: TappedBrdf::radiance in GLSL 4.50 or ES 3.00.

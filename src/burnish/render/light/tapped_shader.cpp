@@ -1,12 +1,16 @@
 #include <array>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include <burnish/error.h>
 #include <burnish/formula/writer.h>
+#include <burnish/render/light/lobe_parts.h>
 #include <burnish/render/light/map_expression.h>
 #include <burnish/render/light/tapped_light.h>
+#include <burnish/shaders/shader_formula.h>
 
 namespace burnish {
 
@@ -69,19 +73,18 @@ TappedShader generate_shader(const TappedBrdf& brdf, const BlurOptions& blur, Sh
   if (language != ShaderLanguage::glsl && language != ShaderLanguage::glsl_es)
     throw Error(fmt::format("image-based light: expected glsl or glsl_es, found {}", l.name));
   TappedShader shader{.environment = fmt::format("burnish_{}_environment", name)};
-  shader.text = std::string(l.header) + fmt::format(fmt::runtime(l.texture_3d), shader.environment) +
+  std::vector<FactoredBrdf> parts;  // outside and inside of each lobe
+  for (const TappedLobe& lobe : brdf.lobes) parts.insert(parts.end(), {lobe.outside, lobe.inside});
+  LobeFunctions factors = lobe_functions(
+      joined(parts), {.language = language, .filter = ShaderFilter::hardware, .name = name + "_factors"});
+  shader.tables = std::move(factors.textures);
+  shader.text = factors.text + fmt::format(fmt::runtime(l.filtered_texture_3d), shader.environment) +
                 blurred_function(l, shader.environment, blur);
   const double octave = 1 / std::log2(blur.step);  // in levels
   std::string sum;
   for (std::size_t j = 0; j < brdf.lobes.size(); ++j) {
     const TappedLobe& lobe = brdf.lobes[j];
-    const std::string lobe_name = fmt::format("{}_lobe{}", name, j), called = "burnish_" + lobe_name;
-    const auto part = [&](const FactoredBrdf& factors, const char* which) {
-      const Shader text = generate_shader(factors, {language, ShaderFilter::hardware, lobe_name + which});
-      shader.text += text.text;
-      return text.textures;
-    };
-    shader.lobes.push_back({part(lobe.outside, "_outside"), part(lobe.inside, "_inside")});
+    const std::string called = fmt::format("burnish_{}_lobe{}", name, j);
     std::string taps, levels;
     for (const LightTap& tap : lobe.taps) {
       const Vec3 w = tap.direction;
@@ -90,10 +93,11 @@ TappedShader generate_shader(const TappedBrdf& brdf, const BlurOptions& blur, Sh
       taps += fmt::format("{}vec4({:.8e}, {:.8e}, {:.8e}, {:.8e})", comma, w.x, w.y, w.z, tap.area);
       levels += fmt::format("{}{:.6e}", comma, octave * std::log2(width / blur.narrowest));
     }
-    shader.text +=
-        fmt::format(fmt::runtime(kLobe), called, shader.environment, lobe.taps.size(), taps, levels,
-                    lobe.of_half ? fmt::format(fmt::runtime(kHalf), 0.5 * octave) : "", called + "_inside");
-    sum += fmt::format("{0}{1}_outside(wo, wo) * {1}_gathered(wo, n, t, s)", j ? " + " : "", called);
+    shader.text += fmt::format(fmt::runtime(kLobe), called, shader.environment, lobe.taps.size(), taps,
+                               levels, lobe.of_half ? fmt::format(fmt::runtime(kHalf), 0.5 * octave) : "",
+                               factors.names[2 * j + 1]);
+    sum +=
+        fmt::format("{}{}(wo, wo) * {}_gathered(wo, n, t, s)", j ? " + " : "", factors.names[2 * j], called);
   }
   shader.text += fmt::format(fmt::runtime(kLight), name, sum);
   return shader;
