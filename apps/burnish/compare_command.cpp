@@ -21,7 +21,7 @@ namespace {
 struct CompareArguments {
   SourceArguments reference;
   std::vector<std::string> models;
-  std::string folder;
+  std::string folder, target = "function", repeat, only;
   FigureOptions figures;
   bool no_symmetrize = false, json = false;
 };
@@ -75,6 +75,54 @@ void print_albedos(std::span<const ComparedFigures> figures) {
     row("  " + c.name, c, [&](const ComparedAlbedo& at) { return mean(at.model); });
 }
 
+// What another measurement of the same surface scores.
+void print_quality(const MeasurementQuality& quality) {
+  const ErrorFigures& f = quality.figures;
+  fmt::print("{:<32} {:>8} {:>8.2f} {:>7.4f} {:>9.4f} {:>8.4f} {:>8.4f}\n",
+             quality.repeated ? "the measurement, repeated" : "the measurement, estimated", "-", f.psnr,
+             f.ssim, f.relative, f.rms_log, f.log_cos);
+}
+
+// What is known of a reference that is a measurement; nothing of a formula or model unless it is asked for.
+std::optional<Measurement> measurement_of(const Candidate& reference, const CompareArguments& arguments) {
+  const bool asked = arguments.target == "nodes" || !arguments.only.empty();
+  if (!asked && !is_measurement(reference.source())) return {};
+  Measurement measurement{.nodes = measured_nodes(reference.source()), .itself = {}, .quality = {}};
+  if (!arguments.only.empty())
+    measurement.nodes = nodes_of(measurement.nodes, parse_node_part(arguments.only));
+  measurement.itself = node_figures(measurement.nodes, reference.ref());
+  return measurement;
+}
+
+void add_quality(Measurement& measurement, const Candidate& reference, const Scorer& scorer,
+                 const CompareArguments& arguments) {
+  if (arguments.repeat.empty()) {
+    measurement.quality = quality_by_exchange(scorer, reference.source().ref(), measurement.nodes);
+    return;
+  }
+  const Candidate second(open_source(arguments.repeat, arguments.reference.options),
+                         !arguments.no_symmetrize);
+  measurement.quality = quality_by_repeat(scorer, second.ref(), measurement.nodes);
+}
+
+// Figures at the nodes alone: no picture is drawn.
+void compare_nodes(const Measurement& measurement, std::span<const ComparedModel> models, bool json) {
+  if (json) {
+    fmt::print("{}\n", nodes_json(measurement, models));
+    return;
+  }
+  fmt::print("{:<32} {:>8} {:>9} {:>8} {:>8} {:>9}\n", "at the measured nodes", "bytes", "relative",
+             "rms_log", "log_cos", "rms");
+  const auto row = [](const std::string& name, std::optional<std::uint64_t> bytes, const NodeFigures& f) {
+    fmt::print("{:<32} {:>8} {:>9.4f} {:>8.4f} {:>8.4f} {:>9.4g}\n", name,
+               bytes ? fmt::format("{}", *bytes) : "-", f.relative, f.rms_log, f.log_cos, f.rms);
+  };
+  row("the reference itself", {}, measurement.itself);
+  for (const ComparedModel& model : models)
+    row(model.name, model.bytes, node_figures(measurement.nodes, model.brdf));
+  fmt::print("{} nodes with both cosines above 0.15\n", measurement.itself.count);
+}
+
 void compare(const CompareArguments& arguments) {
   // a list: models refer to their candidates
   const Candidate reference(arguments.reference.open(), !arguments.no_symmetrize);
@@ -88,13 +136,22 @@ void compare(const CompareArguments& arguments) {
     models.push_back(std::move(model));
   }
 
+  std::optional<Measurement> measurement = measurement_of(reference, arguments);
+  if (arguments.target == "nodes" && arguments.folder.empty()) {
+    compare_nodes(*measurement, models, arguments.json);
+    return;
+  }
   const Scorer scorer(reference.ref(), arguments.figures);
+  if (measurement && (!arguments.folder.empty() || !arguments.repeat.empty()))
+    add_quality(*measurement, reference, scorer, arguments);
+  const Measurement* const measured = measurement ? &*measurement : nullptr;
   const std::vector<ComparedFigures> figures =
-      arguments.folder.empty() ? compare_models(scorer, models)
-                               : write_report(arguments.folder, reference.source().name, scorer, models);
+      arguments.folder.empty()
+          ? compare_models(scorer, models, measured)
+          : write_report(arguments.folder, reference.source().name, scorer, models, measured);
   if (!arguments.folder.empty()) write_factors(arguments.folder, candidates);
   if (arguments.json) {
-    fmt::print("{}\n", to_json(figures));
+    fmt::print("{}\n", to_json(figures, measured));
     return;
   }
 
@@ -104,6 +161,7 @@ void compare(const CompareArguments& arguments) {
     fmt::print("{:<32} {:>8} {:>8.2f} {:>7.4f} {:>9.4f} {:>8.4f} {:>8.4f}\n", f.name,
                f.bytes ? fmt::format("{}", *f.bytes) : "-", f.figures.psnr, f.figures.ssim,
                f.figures.relative, f.figures.rms_log, f.figures.log_cos);
+  if (measured && measured->quality) print_quality(*measured->quality);
   print_albedos(figures);
   const ErrorFigures& first = figures.front().figures;
   if (first.unknown_fraction > 0 || first.unknown_pixels > 0)
@@ -129,6 +187,14 @@ void add_compare_command(CLI::App& app) {
   verb->add_option("--seed", arguments->figures.seed, "of the direction pairs")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  verb->add_option("--target", arguments->target,
+                   "score the function between what was measured too, or nodes: only what was measured")
+      ->check(CLI::IsMember({"function", "nodes"}))
+      ->capture_default_str();
+  verb->add_option("--only", arguments->only,
+                   "score these nodes only: half=0, half=1 (of a checkerboard) or theta_i=K, counted from 0");
+  verb->add_option("--repeat", arguments->repeat,
+                   "a second measurement of the same surface: what it scores is the line to reach");
   verb->add_flag("--no-symmetrize", arguments->no_symmetrize,
                  "compare f(wi, wo) as it is, not the mean with f(wo, wi)");
   verb->add_flag("--json", arguments->json, "print the figures as JSON");

@@ -27,7 +27,7 @@ struct FitArguments {
   FitOptions options;
   OneLobe one_lobe;
   Budget budget{.bytes = 0};
-  std::string out, method, loss = "image", smooth = "default", format;
+  std::string out, method, target = "function", hold_out, loss = "image", smooth = "default", format;
   int threads = 0;
   bool no_symmetrize = false, json = false;
 };
@@ -70,6 +70,9 @@ FitOptions fit_options(const FitArguments& arguments, bool isotropic) {
   FitOptions options = arguments.options;
   options.form = fit_form(arguments, isotropic);
   options.symmetrize = !arguments.no_symmetrize;
+  if (arguments.target == "nodes") options.target = FitTarget::nodes;
+  if (!arguments.hold_out.empty())
+    options.hold_out = usage([&] { return parse_node_part(arguments.hold_out); });
   if (!arguments.format.empty()) options.format = parse_table_format(arguments.format);
   if (arguments.smooth != "auto" && arguments.smooth != "default")
     options.smooth = parse_smooth(arguments.smooth);
@@ -105,6 +108,16 @@ void print(const EnergyReport& report) {
       finite(report.after.psnr), report.before.relative, report.after.relative);
 }
 
+void print(const NodesReport& report) {
+  const auto line = [](std::string_view name, const NodeFigures& f) {
+    fmt::print("{:<10} relative {:.4f}, rms_log {:.4f}, log_cos {:.4f} at {} nodes\n", name, f.relative,
+               f.rms_log, f.log_cos, f.count);
+  };
+  line("nodes", report.at_fitted);
+  if (report.held_out) line("unseen", *report.held_out);
+  if (report.at_held_out) line("held out", *report.at_held_out);
+}
+
 void print_model(const FactoredBrdf& model, const FitReport& report) {
   fmt::print("model      {}, {} bytes ({} of them tables)\n", model_expression(model), model.bytes(),
              model.table_bytes());
@@ -113,6 +126,7 @@ void print_model(const FactoredBrdf& model, const FitReport& report) {
     print(*one_lobe);
   else
     print(std::get<LobesReport>(report.how));
+  if (report.nodes) print(*report.nodes);
   if (report.energy) print(*report.energy);
   if (report.held_out) {
     const ErrorFigures& e = *report.held_out;
@@ -217,6 +231,14 @@ void add_fit_command(CLI::App& app) {
       "--smooth", arguments->smooth,
       "smoothness of the tables: a number >= 0, or auto (cross-validation; the default for scattered "
       "samples)");
+  verb->add_option("--target", arguments->target,
+                   "fit the function that the source's owner makes of it, or nodes: what was measured")
+      ->check(CLI::IsMember({"function", "nodes"}))
+      ->capture_default_str();
+  verb->add_option("--hold-out", arguments->hold_out,
+                   "of --target nodes: leave these out, half=0, half=1 (of a checkerboard) or theta_i=K, "
+                   "counted from 0")
+      ->needs("--target");
   verb->add_option("--floor", one_lobe.how.floor,
                    "added to every value before its logarithm is taken, 1/sr, at most 1")
       ->check(CLI::PositiveNumber)

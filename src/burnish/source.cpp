@@ -33,6 +33,16 @@ std::optional<std::size_t> Source::bytes() const noexcept {
       brdf);
 }
 
+bool is_measurement(const Source& source) noexcept {
+  return std::visit(
+      [](const auto& any) {
+        return std::same_as<std::decay_t<decltype(any)>, ScatteredBrdf> || requires {
+          measured_nodes(any);
+        };
+      },
+      source.brdf);
+}
+
 MeasuredNodes measured_nodes(const Source& source) {
   MeasuredNodes nodes = std::visit(
       [&](const auto& any) -> MeasuredNodes {

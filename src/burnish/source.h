@@ -43,6 +43,9 @@ struct Source {
   std::optional<std::size_t> bytes() const noexcept;
 };
 
+/// Whether measured_nodes has an answer.
+bool is_measurement(const Source& source) noexcept;
+
 /// What was measured, where the source is a measurement. Throws Error naming the source where it is a formula
 /// or a model, or has no node above the horizon.
 MeasuredNodes measured_nodes(const Source& source);

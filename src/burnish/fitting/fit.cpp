@@ -18,7 +18,9 @@
 #include <burnish/fitting/plans/search.h>
 #include <burnish/fitting/refinement/rounding.h>
 #include <burnish/metrics/error_figures.h>
+#include <burnish/metrics/node_figures.h>
 #include <burnish/reflectance/sample_source.h>
+#include <burnish/reflectance/smoothed_nodes.h>
 
 namespace burnish {
 
@@ -44,12 +46,23 @@ Error no_model() {
   return Error("fit: expected a product of tables, found a baseline");
 }
 
+BrdfRef ref_of(const FactoredBrdf& brdf) noexcept {
+  return brdf;
+}
+BrdfRef ref_of(const BaselineBrdf& brdf) noexcept {
+  return baseline_ref(brdf);
+}
+
 /// One fit of one source.
 class Fitter {
  public:
   Fitter(const Source& source, const FitOptions& options)
       : source_(source), options_(options), brdf_(source.ref()) {
     if (options.symmetrize) symmetrized_.emplace(brdf_);
+    if (options.target == FitTarget::nodes)
+      take_nodes();
+    else if (options.hold_out)
+      throw Error("fit: expected the nodes as the target, since some are to be held out");
   }
   Fitter(const Fitter&) = delete;
 
@@ -83,7 +96,7 @@ class Fitter {
   Fitted fit(const Budget& form) {
     if (form.bytes == 0) throw Error("fit: expected a budget of at least one byte, found none");
     // few scattered samples do not carry several lobes
-    return samples() ? fit_scattered(form) : fit_to_budget(form);
+    return samples() && !nodes_ ? fit_scattered(form) : fit_to_budget(form);
   }
 
   Fitted fit(const BaselineMethod& form) {
@@ -183,7 +196,8 @@ class Fitter {
     check_budget(form, texel);
     TrainingOptions drawn = training_for(form.bytes, texel, brdf_.isotropic());
     drawn.seed = options_.seed;
-    const TrainingSet set = draw_training_set(reference(), drawn);
+    const TrainingSet set =
+        samples() ? training_set_of(*samples(), options_.symmetrize) : draw_training_set(reference(), drawn);
     RefineOptions refine = refine_options(form.loss);
     LobesReport report{.loss = form.loss, .budget = form.bytes};
 
@@ -259,9 +273,27 @@ class Fitter {
   // ---- What is fitted
 
   int channels() const { return brdf_.channels(); }
-  const Samples* samples() const { return source_.samples(); }
-  const HalfDiffTable* table() const { return std::get_if<HalfDiffTable>(&source_.brdf); }
-  BrdfRef reference() const { return symmetrized_ ? BrdfRef(*symmetrized_) : brdf_; }
+  /// Samples that are fitted as they are.
+  const Samples* samples() const {
+    if (smoothed_) return nullptr;
+    return nodes_ ? &nodes_->samples : source_.samples();
+  }
+  const HalfDiffTable* table() const { return nodes_ ? nullptr : std::get_if<HalfDiffTable>(&source_.brdf); }
+  BrdfRef reference() const {
+    if (smoothed_) return *smoothed_;
+    return symmetrized_ ? BrdfRef(*symmetrized_) : brdf_;
+  }
+
+  /// The nodes to be fitted and, of an isotropic source, the function between them.
+  void take_nodes() {
+    nodes_ = measured_nodes(source_);
+    if (options_.hold_out) nodes_ = nodes_without(*nodes_, *options_.hold_out);
+    NodesReport& report = report_.nodes.emplace(NodesReport{.fitted = nodes_->size()});
+    if (!nodes_->samples.isotropic) return;
+    report.smoothness = choose_node_smoothness(*nodes_);
+    report.held_out = held_out_figures(*nodes_, *report.smoothness);
+    smoothed_.emplace(*nodes_, *report.smoothness);
+  }
 
   /// The source's own samples where it has some, a table's entries where one is given, else pairs drawn.
   SampleSource sample_source(std::size_t drawn, bool spread_phi_h,
@@ -303,6 +335,13 @@ class Fitter {
 
   /// After rounding to the table format, on pairs that were not fitted.
   void score(const Fitted& fitted) {
+    if (report_.nodes) {
+      const BrdfRef brdf = std::visit([](const auto& any) { return ref_of(any); }, fitted);
+      report_.nodes->at_fitted = node_figures(*nodes_, brdf);
+      if (options_.hold_out)
+        report_.nodes->at_held_out =
+            node_figures(nodes_of(measured_nodes(source_), *options_.hold_out), brdf);
+    }
     if (const auto* baseline = std::get_if<BaselineBrdf>(&fitted)) {
       const Scorer scorer(reference(), held_out());
       report_.held_out = scorer.score(baseline_ref(*baseline));
@@ -323,6 +362,8 @@ class Fitter {
   const FitOptions& options_;
   BrdfRef brdf_;
   std::optional<SymmetrizedBrdf> symmetrized_;
+  std::optional<MeasuredNodes> nodes_;
+  std::optional<SmoothedNodes> smoothed_;
   FitReport report_;
 };
 

@@ -13,6 +13,7 @@
 #include <burnish/factors/factored_brdf.h>
 #include <burnish/factors/table_format.h>
 #include <burnish/fitting/fit_report.h>
+#include <burnish/reflectance/measured_nodes.h>
 #include <burnish/source.h>
 
 namespace burnish {
@@ -62,8 +63,17 @@ using FitForm = std::variant<OneLobe, Budget, GivenLobes, BaselineMethod>;
 FitForm form_of(const std::string& model, const std::vector<std::string>& tables, bool isotropic,
                 const LogLinear& of_one_lobe, FitLoss of_several);
 
+/// What is fitted: the function that the owner of a measurement makes of it, or what was measured itself. Between
+/// nodes of an isotropic source a SmoothedNodes stands, as smooth as predicts nodes best that it has not seen; nodes of
+/// an anisotropic one are fitted as they are.
+enum class FitTarget { function, nodes };
+
 struct FitOptions {
   FitForm form = OneLobe{};
+  FitTarget target = FitTarget::function;
+  std::optional<NodePart> hold_out =
+      {};  ///< nodes that are not fitted and choose nothing; with FitTarget::nodes
+
   std::optional<double> smooth = {};  ///< >= 0; none: the solver's own, or chosen where LogLinear says so
   /// Of tables without one of their own. None: half; with a budget or several lobes and three channels
   /// rgb9e5; with a budget and scattered samples of three channels the one of both that predicts better.

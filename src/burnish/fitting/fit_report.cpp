@@ -82,6 +82,22 @@ Json json_of(const EnergyReport& report) {
           {"relative_after", report.after.relative}};
 }
 
+Json json_of(const NodeFigures& figures) {
+  return {{"count", figures.count},
+          {"relative", figures.relative},
+          {"rms_log", figures.rms_log},
+          {"log_cos", figures.log_cos}};
+}
+
+Json json_of(const NodesReport& report) {
+  Json json{{"target", "nodes"}, {"nodes", report.fitted}};
+  if (report.smoothness) json["node_smoothness"] = report.smoothness->shares;
+  if (report.held_out) json["node_held_out"] = json_of(*report.held_out);
+  json["node_fit"] = json_of(report.at_fitted);
+  if (report.at_held_out) json["node_test"] = json_of(*report.at_held_out);
+  return json;
+}
+
 // What it costs to be rid of an SVD's negative values, in each of the usual ways.
 Json json_of(const NegativeLobes& lobes) {
   return {{"negative_share", lobes.negative_share},
@@ -112,6 +128,7 @@ nlohmann::ordered_json json_of(const FitReport& report) {
             {"source_format", report.source_format},
             {"symmetrized", report.symmetrized}};
   json.update(std::visit([](const auto& part) { return json_of(part); }, report.how));
+  if (report.nodes) json.update(json_of(*report.nodes));
   if (report.energy) json["conserve_energy"] = json_of(*report.energy);
   if (report.held_out) json.update(json_of(*report.held_out));
   const auto* baseline = std::get_if<BaselineReport>(&report.how);

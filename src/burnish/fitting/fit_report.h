@@ -12,6 +12,7 @@
 #include <burnish/fitting/baselines/negative_lobes.h>
 #include <burnish/fitting/fit_summary.h>
 #include <burnish/metrics/error_figures.h>
+#include <burnish/metrics/node_figures.h>
 
 namespace burnish {
 
@@ -72,11 +73,23 @@ struct EnergyReport {
   ErrorFigures before, after;
 };
 
+/// What was fitted where it was nodes.
+struct NodesReport {
+  std::size_t fitted = 0;  ///< nodes, without those that were held out
+  /// Of the function between them, of an isotropic source: as found, and what it scores at nodes that it had not seen.
+  std::optional<NodeSmoothness> smoothness = {};
+  std::optional<NodeFigures> held_out = {};
+  /// Of the model as stored, at the nodes that were fitted and at those that were held out.
+  NodeFigures at_fitted = {};
+  std::optional<NodeFigures> at_held_out = {};
+};
+
 /// How a fit went.
 struct FitReport {
   std::string source, source_format;
   bool symmetrized = true;
   std::variant<OneLobeReport, LobesReport, BaselineReport> how;
+  std::optional<NodesReport> nodes;
   std::optional<EnergyReport> energy;
   /// Of the model as stored, on 20,000 pairs that were not fitted; none of factors fitted to scattered
   /// samples.
@@ -91,7 +104,8 @@ struct FitReport {
 /// lobe samples, smooth, floor, reweightings, rms_log_before, rms_log_after, iterations, stop_reason,
 /// smooth_shares, relative, relative_cross_validated; of several search, budget, smooth, samples, lobes,
 /// loss, iterations, stop_reason, objective; of baselines method, budget, layouts_tried, error_before,
-/// error_after, starts, iterations, stop_reason; then conserve_energy, psnr, ssim, relative, rms_log, log_cos
+/// error_after, starts, iterations, stop_reason; of nodes target, nodes, node_smoothness, node_held_out, node_fit,
+/// node_test; then conserve_energy, psnr, ssim, relative, rms_log, log_cos
 /// and negative_lobes. What there is none of is left out; what is not finite is null.
 std::string to_json(const FitReport& report);
 

@@ -13,6 +13,7 @@
 #include <burnish/reflectance/goniometer.h>
 #include <burnish/reflectance/rgl_builder.h>
 #include <burnish/testing/baselines.h>
+#include <burnish/testing/brdfs.h>
 #include <burnish/testing/tools.h>
 
 namespace burnish {
@@ -264,6 +265,35 @@ TEST(FitLoss, RoundTripsThroughItsName) {
   EXPECT_THROW(parse_fit_loss("picture"), Error);
 }
 
+TEST(Fit, ToNodesPredictsThoseHeldOut) {
+  constexpr double kNoise = 0.25;
+  const testing::Glossy truth{.a = 8, .b = 8};
+  const Source source =
+      source_of("measured", ScatteredBrdf(measure(truth, {.count = 3000, .noise = kNoise})));
+  const Fit made =
+      fit(source,
+          {.form = Budget{.bytes = 1000}, .target = FitTarget::nodes, .hold_out = parse_node_part("half=1")});
+  ASSERT_TRUE(made.report.nodes);
+  const NodesReport& report = *made.report.nodes;
+  EXPECT_EQ(report.fitted, nodes_of(measured_nodes(source), parse_node_part("half=0")).size());
+  // of noise alone the mean |error| is kNoise sqrt(2 / pi)
+  EXPECT_LT(std::log1p(report.at_held_out.value().relative), 1.2 * kNoise * std::sqrt(2 / kPi));
+  EXPECT_GT(report.at_held_out->relative, report.at_fitted.relative);
+  // the source itself is far better than one of its samples
+  EXPECT_LT(mean_error(truth, made.ref()), 0.5 * report.at_held_out->relative);
+  EXPECT_LE(made.bytes(), 1000u);
+  EXPECT_NE(to_json(made.report).find("node_test"), std::string::npos);
+}
+
+TEST(Fit, TakesNodesOfAnisotropicSourcesAsTheyAre) {
+  const Source source = source_of("patches", patch_table());
+  const Fit made = fit(source, {.form = GivenLobes{.model = "p(wo) q(h) p(wi)", .tables = {"p=6x6", "q=8x8"}},
+                                .target = FitTarget::nodes});
+  ASSERT_TRUE(made.report.nodes);
+  EXPECT_FALSE(made.report.nodes->smoothness);
+  EXPECT_LT(made.report.nodes->at_fitted.relative, 0.5);
+}
+
 TEST(Fit, RefusesWhatDoesNotGoTogether) {
   const Source even = source_of("even", paint()), uneven = source_of("uneven", brushed()),
                grey = source_of("grey", patch_table());
@@ -277,6 +307,9 @@ TEST(Fit, RefusesWhatDoesNotGoTogether) {
   EXPECT_NE(told(even, {.form = OneLobe{.tables = {"z=8"}}}), "");
   EXPECT_NE(told(even, {.form = OneLobe{.model = "w(theta_t)", .tables = {"w=8x8"}}}), "");
   EXPECT_NE(told(even, {.form = GivenLobes{.model = ""}}), "");
+  // nodes of what was not measured, or held out of a function
+  EXPECT_THAT(told(even, {.target = FitTarget::nodes}), HasSubstr("expected a measurement"));
+  EXPECT_THAT(told(even, {.hold_out = NodePart{}}), HasSubstr("expected the nodes"));
   // budgets that hold nothing
   EXPECT_THAT(told(even, {.form = Budget{.bytes = 0}}), HasSubstr("budget"));
   EXPECT_THAT(told(even, {.form = Budget{.bytes = 20}}), HasSubstr("budget"));

@@ -35,7 +35,31 @@ std::string psnr_text(double psnr) {
   return std::isinf(psnr) ? std::string("equal") : fmt::format("{:.2f} dB", psnr);
 }
 
-nlohmann::ordered_json json_of(std::span<const ComparedFigures> compared) {
+nlohmann::ordered_json json_of(const NodeFigures& f) {
+  return {{"count", f.count},
+          {"log_cos", f.log_cos},
+          {"relative", f.relative},
+          {"rms_log", f.rms_log},
+          {"rms", f.rms}};
+}
+
+nlohmann::ordered_json json_of(const MeasurementQuality& quality) {
+  const ErrorFigures& f = quality.figures;
+  nlohmann::ordered_json entry = {{"repeated", quality.repeated},
+                                  {"log_cos", f.log_cos},
+                                  {"relative", f.relative},
+                                  {"rms_log", f.rms_log},
+                                  {"rms", f.rms},
+                                  {"psnr", nullptr},
+                                  {"ssim", f.ssim},
+                                  {"negative_share", quality.negative_share},
+                                  {"negative_rms", quality.negative_rms}};
+  if (std::isfinite(f.psnr)) entry["psnr"] = f.psnr;
+  if (quality.held_out) entry["held_out"] = json_of(*quality.held_out);
+  return entry;
+}
+
+nlohmann::ordered_json json_of(std::span<const ComparedFigures> compared, const Measurement* measurement) {
   auto list = nlohmann::ordered_json::array();
   for (const ComparedFigures& c : compared) {
     const ErrorFigures& f = c.figures;
@@ -59,6 +83,9 @@ nlohmann::ordered_json json_of(std::span<const ComparedFigures> compared) {
                                  {"model", a.model.albedo},
                                  {"reference_unknown_fraction", a.reference.unknown_fraction}});
     if (!c.note.empty()) entry["note"] = c.note;
+    if (c.nodes) entry["nodes"] = json_of(*c.nodes);
+    if (c.nodes && measurement) entry["nodes"]["itself"] = json_of(measurement->itself);
+    if (measurement && measurement->quality) entry["measurement"] = json_of(*measurement->quality);
     list.push_back(std::move(entry));
   }
   return list;
@@ -82,6 +109,10 @@ double heat_scale(const SpherePictures& reference, const SpherePictures& model) 
   for (std::size_t i = 0; i < model.shown.size(); ++i)
     scale = std::max(scale, percentile(mean_difference(reference.shown[i], model.shown[i]).pixels, kShare));
   return std::min(1.0, round_up(scale));
+}
+
+std::string_view name_of(const MeasurementQuality& quality) {
+  return quality.repeated ? "the measurement, repeated" : "the measurement itself (estimate)";
 }
 
 std::string light_text(std::size_t i) {
@@ -111,16 +142,46 @@ img { max-width: 100%; height: auto; border-radius: 4px } .plots { display: grid
 p, td.note { color: #9ea3ac }
 </style>)";
 
-std::string index_html(const std::string& reference_name, std::span<const ComparedFigures> compared,
-                       const FigureOptions& options, std::span<const std::string> plots) {
+// What the models score where something was measured.
+std::string nodes_html(const Measurement& measurement, std::span<const ComparedFigures> compared) {
   std::string rows;
+  const auto add_row = [&](std::string_view name, const NodeFigures& figures) {
+    rows += fmt::format("<tr><td>{}</td><td>{:.5f}</td><td>{:.4f}</td><td>{:.4f}</td><td>{:.4g}</td></tr>\n",
+                        escape_markup(name), figures.log_cos, figures.relative, figures.rms_log, figures.rms);
+  };
+  add_row("the reference, made reciprocal", measurement.itself);
+  if (measurement.quality && measurement.quality->held_out)
+    add_row("a smooth function that has not seen them", *measurement.quality->held_out);
   for (const ComparedFigures& c : compared)
+    if (c.nodes) add_row(c.name, *c.nodes);
+  std::string noise;
+  if (measurement.quality && measurement.quality->negative_share > 0)
+    noise = fmt::format(
+        " {:.1f} % of the measured values are negative, with a root mean square of {:.2g} per sr.",
+        100 * measurement.quality->negative_share, measurement.quality->negative_rms);
+  return fmt::format(
+      "<h2>At the measured "
+      "nodes</h2>\n<table><tr><th>model</th><th>log_cos</th><th>relative</th><th>rms_log</th>"
+      "<th>rms</th></tr>\n{}</table>\n<p>{} nodes with both cosines above 0.15.{}</p>\n",
+      rows, measurement.itself.count, noise);
+}
+
+std::string index_html(const std::string& reference_name, std::span<const ComparedFigures> compared,
+                       const FigureOptions& options, std::span<const std::string> plots,
+                       const Measurement* measurement) {
+  std::string rows;
+  const auto add_row = [&](std::string_view name, std::optional<std::uint64_t> bytes,
+                           const ErrorFigures& figures, std::string_view note) {
     rows += fmt::format(
         "<tr><td>{}</td><td>{}</td><td>{:.5f}</td><td>{:.4f}</td><td>{:.4f}</td><td>{}</td><td>{:.4f}</td>"
         "<td class=\"note\">{}</td></tr>\n",
-        escape_markup(c.name), c.bytes ? fmt::format("{}", *c.bytes) : "–", c.figures.log_cos,
-        c.figures.relative, c.figures.rms_log, psnr_text(c.figures.psnr), c.figures.ssim,
-        escape_markup(c.note));
+        escape_markup(name), bytes ? fmt::format("{}", *bytes) : "–", figures.log_cos, figures.relative,
+        figures.rms_log, psnr_text(figures.psnr), figures.ssim, escape_markup(note));
+  };
+  if (measurement && measurement->quality)
+    add_row(name_of(*measurement->quality), {}, measurement->quality->figures,
+            "a model that scores better follows noise");
+  for (const ComparedFigures& c : compared) add_row(c.name, c.bytes, c.figures, c.note);
   std::string sheets, charts;
   for (std::size_t i = 0; i < compared.size(); ++i)
     sheets += fmt::format("<h2>{0}</h2>\n<img src=\"model_{1}.png\" alt=\"Lit spheres of {0}\">\n",
@@ -132,16 +193,17 @@ std::string index_html(const std::string& reference_name, std::span<const Compar
       "<table><tr><th>model</th><th>bytes</th><th>log_cos</th><th>relative</th><th>rms_log</th><th>psnr</th>"
       "<th>ssim</th><th></th></tr>\n{2}</table>\n"
       "<p>{3} direction pairs, seed {4}; spheres of {5} × {5} pixels under lights 0°, 30° and 60° from the "
-      "view, all at the reference's exposure. The dome is shown, not scored.</p>\n"
+      "view, all at the reference's exposure. The dome is shown, not scored.</p>\n{8}"
       "<h2>Overview</h2>\n<img src=\"overview.png\" alt=\"Reference and models\">\n{6}"
       "<h2>Slices and errors</h2>\n<div class=\"plots\">\n{7}</div>\n</body></html>\n",
       escape_markup(reference_name), kStyle, rows, options.count, options.seed, options.image_size, sheets,
-      charts);
+      charts, measurement ? nodes_html(*measurement, compared) : std::string());
 }
 
 }  // namespace
 
-std::vector<ComparedFigures> compare_models(const Scorer& scorer, std::span<const ComparedModel> models) {
+std::vector<ComparedFigures> compare_models(const Scorer& scorer, std::span<const ComparedModel> models,
+                                            const Measurement* measurement) {
   const std::vector<AlbedoAt> reference = albedo_curve(scorer.reference(), kAlbedoAngles);
   std::vector<ComparedFigures> result;
   for (const ComparedModel& model : models) {
@@ -150,12 +212,28 @@ std::vector<ComparedFigures> compare_models(const Scorer& scorer, std::span<cons
     for (const AlbedoAt& at : reference)
       c.albedos.push_back({at.theta_i, at.phi_i, at.albedo,
                            directional_albedo(model.brdf, spherical_direction(at.theta_i, at.phi_i))});
+    if (measurement) c.nodes = node_figures(measurement->nodes, model.brdf);
   }
   return result;
 }
 
-std::string to_json(std::span<const ComparedFigures> figures) {
-  return dump(json_of(figures));
+std::string to_json(std::span<const ComparedFigures> figures, const Measurement* measurement) {
+  return dump(json_of(figures, measurement));
+}
+
+std::string nodes_json(const Measurement& measurement, std::span<const ComparedModel> models) {
+  auto list = nlohmann::ordered_json::array();
+  const auto add = [&](std::string_view name, std::optional<std::uint64_t> bytes,
+                       const NodeFigures& figures) {
+    nlohmann::ordered_json entry = {{"model", name}, {"bytes", nullptr}};
+    if (bytes) entry["bytes"] = *bytes;
+    entry.update(json_of(figures));
+    list.push_back(std::move(entry));
+  };
+  add("the reference itself", {}, measurement.itself);
+  for (const ComparedModel& model : models)
+    add(model.name, model.bytes, node_figures(measurement.nodes, model.brdf));
+  return dump(list);
 }
 
 Plot albedo_plot(std::span<const ComparedFigures> figures) {
@@ -217,7 +295,7 @@ Plot incidence_plane_plot(BrdfRef reference, std::span<const ComparedModel> mode
 }
 
 Plot error_plot(std::span<const ComparedModel> models, std::span<const std::vector<PairError>> errors,
-                ErrorAxis axis) {
+                ErrorAxis axis, const MeasurementQuality* measurement) {
   const bool over_h = axis == ErrorAxis::theta_h;
   Plot plot{.title = fmt::format("Mean log error over {}", over_h ? "θ_h" : "θ_d"),
             .x_label = over_h ? "θ_h (degrees)" : "θ_d (degrees)",
@@ -227,23 +305,27 @@ Plot error_plot(std::span<const ComparedModel> models, std::span<const std::vect
             .x_max = 90,
             .y_min = 0};
   constexpr std::size_t kBins = 18;
-  for (std::size_t i = 0; i < models.size(); ++i) {
+  const auto add = [&](PlotSeries series, std::span<const PairError> of) {
     std::array<double, kBins> sums{}, counts{};
-    for (const PairError& error : errors[i]) {
+    for (const PairError& error : of) {
       const HalfDiff angles = to_half_diff(error.pair.wi, error.pair.wo);
       const double theta = over_h ? angles.theta_h : angles.theta_d;
       const std::size_t bin = std::min(static_cast<std::size_t>(theta / kHalfPi * kBins), kBins - 1);
       sums[bin] += error.log_ratio;
       ++counts[bin];
     }
-    PlotSeries series{models[i].name, {}, {}, PlotStyle::line_and_points};
     for (std::size_t bin = 0; bin < kBins; ++bin)
       if (counts[bin] > 0) {
         series.x.push_back(90 * (static_cast<double>(bin) + 0.5) / kBins);
         series.y.push_back(sums[bin] / counts[bin]);
       }
     plot.series.push_back(std::move(series));
-  }
+  };
+  if (measurement)
+    add({std::string(name_of(*measurement)), {}, {}, PlotStyle::dashed, std::string(kReferenceColor)},
+        measurement->errors);
+  for (std::size_t i = 0; i < models.size(); ++i)
+    add({models[i].name, {}, {}, PlotStyle::line_and_points}, errors[i]);
   return plot;
 }
 
@@ -318,7 +400,8 @@ void write_pictures(const fs::path& folder, const std::string& reference_name, c
 // Writes the plots; returns their names.
 std::vector<std::string> write_plots(const fs::path& folder, const Scorer& scorer,
                                      std::span<const ComparedModel> models,
-                                     std::span<const ComparedFigures> compared) {
+                                     std::span<const ComparedFigures> compared,
+                                     const MeasurementQuality* measurement) {
   std::vector<std::string> plots;
   const auto save = [&](const std::string& name, const Plot& plot) {
     write_plot(folder / name, plot);
@@ -329,8 +412,8 @@ std::vector<std::string> write_plots(const fs::path& folder, const Scorer& score
          incidence_plane_plot(scorer.reference(), models, theta_i));
   std::vector<std::vector<PairError>> errors;
   for (const ComparedModel& model : models) errors.push_back(scorer.pair_errors(model.brdf));
-  save("error_theta_h", error_plot(models, errors, ErrorAxis::theta_h));
-  save("error_theta_d", error_plot(models, errors, ErrorAxis::theta_d));
+  save("error_theta_h", error_plot(models, errors, ErrorAxis::theta_h, measurement));
+  save("error_theta_d", error_plot(models, errors, ErrorAxis::theta_d, measurement));
   save("albedo", albedo_plot(compared));
   return plots;
 }
@@ -338,22 +421,27 @@ std::vector<std::string> write_plots(const fs::path& folder, const Scorer& score
 }  // namespace
 
 std::vector<ComparedFigures> write_report(const fs::path& folder, const std::string& reference_name,
-                                          const Scorer& scorer, std::span<const ComparedModel> models) {
+                                          const Scorer& scorer, std::span<const ComparedModel> models,
+                                          const Measurement* measurement) {
   if (models.empty()) throw Error("a report needs a model to compare");
-  const std::vector<ComparedFigures> compared = compare_models(scorer, models);
+  const std::vector<ComparedFigures> compared = compare_models(scorer, models, measurement);
+  const MeasurementQuality* quality = measurement && measurement->quality ? &*measurement->quality : nullptr;
   std::error_code error;
   fs::create_directories(folder / "spheres", error);
   if (error) throw Error::in_file(folder.string(), "a folder to write to", error.message());
 
   write_pictures(folder, reference_name, scorer, models, compared);
-  const std::vector<std::string> plots = write_plots(folder, scorer, models, compared);
+  const std::vector<std::string> plots = write_plots(folder, scorer, models, compared, quality);
 
   const FigureOptions& options = scorer.options();
-  const nlohmann::ordered_json report = {
-      {"reference", reference_name}, {"pairs", options.count},           {"seed", options.seed},
-      {"floor", options.floor},      {"image_size", options.image_size}, {"models", json_of(compared)}};
+  const nlohmann::ordered_json report = {{"reference", reference_name},
+                                         {"pairs", options.count},
+                                         {"seed", options.seed},
+                                         {"floor", options.floor},
+                                         {"image_size", options.image_size},
+                                         {"models", json_of(compared, measurement)}};
   write_then_rename(folder / "report.json", dump(report));
-  write_then_rename(folder / "index.html", index_html(reference_name, compared, options, plots));
+  write_then_rename(folder / "index.html", index_html(reference_name, compared, options, plots, measurement));
   return compared;
 }
 

@@ -10,6 +10,8 @@
 #include <burnish/image/svg_plot.h>
 #include <burnish/metrics/albedo.h>
 #include <burnish/metrics/error_figures.h>
+#include <burnish/metrics/measurement_quality.h>
+#include <burnish/metrics/node_figures.h>
 #include <burnish/reflectance/brdf.h>
 
 namespace burnish {
@@ -34,17 +36,32 @@ struct ComparedFigures {
   std::optional<std::uint64_t> bytes;
   std::string note;
   ErrorFigures figures;
-  std::vector<ComparedAlbedo> albedos;  ///< at 0, 15, ... 75 degrees, see albedo_curve
+  std::vector<ComparedAlbedo> albedos;    ///< at 0, 15, ... 75 degrees, see albedo_curve
+  std::optional<NodeFigures> nodes = {};  ///< where the reference is a measurement
 };
 
-/// Figures of every model, in their order. Throws Error as Scorer.
-std::vector<ComparedFigures> compare_models(const Scorer& scorer, std::span<const ComparedModel> models);
+/// What is known of a reference that is a measurement.
+struct Measurement {
+  MeasuredNodes nodes;                        ///< those that are scored
+  NodeFigures itself;                         ///< the reference's own figures there, made reciprocal
+  std::optional<MeasurementQuality> quality;  ///< none where nothing tells
+};
+
+/// Figures of every model, in their order; at the nodes too where a measurement is given. Throws Error as Scorer.
+std::vector<ComparedFigures> compare_models(const Scorer& scorer, std::span<const ComparedModel> models,
+                                            const Measurement* measurement = nullptr);
 
 /// JSON list of objects: model, bytes (null if unknown), log_cos, relative, rms_log, mean_abs_log, psnr (null
 /// for equal pictures, where it is infinite), ssim, unknown_fraction, unknown_pixels, albedo (a list of
 /// theta_i_deg, phi_i_deg, reference and model, one number a channel, reference_unknown_fraction), and note
-/// if there is one.
-std::string to_json(std::span<const ComparedFigures> figures);
+/// if there is one. Of a measurement also nodes (count, log_cos, relative, rms_log, rms, and the same as
+/// itself) and measurement (repeated, log_cos, relative, rms_log, rms, psnr, ssim, held_out with the figures of
+/// nodes, negative_share, negative_rms).
+std::string to_json(std::span<const ComparedFigures> figures, const Measurement* measurement = nullptr);
+
+/// Of the nodes alone, a JSON list of objects: model, bytes (null if unknown), count, log_cos, relative, rms_log, rms;
+/// the reference itself comes first. Throws Error as node_figures.
+std::string nodes_json(const Measurement& measurement, std::span<const ComparedModel> models);
 
 /// f over theta_o in the plane of incidence at theta_i (radians, in (0, pi/2)), reference and models, mean
 /// over the channels, 1/sr on a logarithmic axis. theta_o is positive on the mirror's side; unknown and black
@@ -57,16 +74,19 @@ Plot albedo_plot(std::span<const ComparedFigures> figures);
 /// Which half/difference angle an error is plotted over.
 enum class ErrorAxis { theta_h, theta_d };
 
-/// Mean |ln((f + floor) / (f^ + floor))| in bins of 5 degrees; errors[i] belong to models[i].
+/// Mean |ln((f + floor) / (f^ + floor))| in bins of 5 degrees; errors[i] belong to models[i]. The measurement's own
+/// error is a dashed line.
 Plot error_plot(std::span<const ComparedModel> models, std::span<const std::vector<PairError>> errors,
-                ErrorAxis axis);
+                ErrorAxis axis, const MeasurementQuality* measurement = nullptr);
 
 /// Writes the folder of a comparison, made if missing: index.html (needs nothing beside the folder),
 /// report.json, overview.png (reference and all models), model_N.png (reference, model and difference under
-/// the three lights and the dome), spheres/ (each picture by itself), and plots as SVG and PNG. Returns the
-/// figures. Throws Error as Scorer, or if there is no model or the folder cannot be written.
+/// the three lights and the dome), spheres/ (each picture by itself), and plots as SVG and PNG; of a measurement
+/// also what it would score itself. Returns the figures. Throws Error as Scorer, or if there is no model or the
+/// folder cannot be written.
 std::vector<ComparedFigures> write_report(const std::filesystem::path& folder,
                                           const std::string& reference_name, const Scorer& scorer,
-                                          std::span<const ComparedModel> models);
+                                          std::span<const ComparedModel> models,
+                                          const Measurement* measurement = nullptr);
 
 }  // namespace burnish

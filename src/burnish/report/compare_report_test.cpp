@@ -9,6 +9,7 @@
 #include <burnish/file.h>
 #include <burnish/image/png.h>
 #include <burnish/parameterization/half_diff.h>
+#include <burnish/reflectance/goniometer.h>
 #include <burnish/report/compare_report.h>
 #include <burnish/testing/brdfs.h>
 
@@ -80,6 +81,29 @@ TEST_F(CompareReport, FolderHoldsEveryFileItsPageShows) {
   const auto report = nlohmann::json::parse(read_file(folder_ / "report.json").text());
   EXPECT_EQ(report["reference"], "a reference & more");
   EXPECT_EQ(report["models"].size(), 3u);
+}
+
+TEST_F(CompareReport, OfAMeasurementSaysWhatItWouldScoreItself) {
+  const Scorer scorer(reference_, kQuick);
+  const MeasuredNodes nodes = measured_nodes(measure(reference_, {.count = 300}));
+  const Measurement measurement{.nodes = nodes,
+                                .itself = node_figures(nodes, reference_),
+                                .quality = quality_by_repeat(scorer, scaled_, nodes)};
+  const auto compared = write_report(folder_, "r", scorer, models_, &measurement);
+  ASSERT_TRUE(compared[1].nodes);
+  EXPECT_EQ(compared[1].nodes->relative, node_figures(nodes, scaled_).relative);
+  const std::string page(read_file(folder_ / "index.html").text());
+  EXPECT_NE(page.find("the measurement, repeated"), page.npos);
+  EXPECT_NE(page.find("At the measured nodes"), page.npos);
+  EXPECT_NE(read_file(folder_ / "error_theta_h.svg").text().find("the measurement, repeated"),
+            std::string::npos);
+  const auto report = nlohmann::json::parse(read_file(folder_ / "report.json").text());
+  EXPECT_EQ(report["models"][1]["measurement"]["relative"], measurement.quality->figures.relative);
+  EXPECT_EQ(report["models"][1]["nodes"]["itself"]["relative"], 0);
+  const auto of_nodes = nlohmann::json::parse(nodes_json(measurement, models_));
+  ASSERT_EQ(of_nodes.size(), 4u);
+  EXPECT_EQ(of_nodes[2]["bytes"], 1344);
+  EXPECT_EQ(of_nodes[2]["relative"], compared[1].nodes->relative);
 }
 
 TEST_F(CompareReport, RefusesNoModelsAndAFolderThatIsAFile) {

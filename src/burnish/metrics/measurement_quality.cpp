@@ -1,0 +1,62 @@
+#include <cmath>
+#include <utility>
+
+#include <burnish/metrics/measurement_quality.h>
+
+namespace burnish {
+
+namespace {
+
+// What the nodes alone tell.
+MeasurementQuality quality_of(const MeasuredNodes& nodes) {
+  MeasurementQuality quality;
+  double squares = 0;
+  std::size_t negative = 0;
+  for (const double f : nodes.samples.values)
+    if (f < 0) {
+      squares += f * f;
+      ++negative;
+    }
+  if (negative > 0) {
+    quality.negative_share = static_cast<double>(negative) / static_cast<double>(nodes.samples.values.size());
+    quality.negative_rms = std::sqrt(squares / static_cast<double>(negative));
+  }
+  if (nodes.samples.isotropic) quality.held_out = held_out_figures(nodes, choose_node_smoothness(nodes));
+  return quality;
+}
+
+}  // namespace
+
+MeasurementQuality quality_by_repeat(const Scorer& scorer, BrdfRef second, const MeasuredNodes& nodes) {
+  MeasurementQuality quality = quality_of(nodes);
+  quality.repeated = true;
+  quality.figures = scorer.score(second);
+  quality.errors = scorer.pair_errors(second);
+  return quality;
+}
+
+std::optional<MeasurementQuality> quality_by_exchange(const Scorer& scorer, BrdfRef raw,
+                                                      const MeasuredNodes& nodes) {
+  const ErrorFigures half = scorer.score(raw);
+  if (half.rms == 0) return {};
+  MeasurementQuality quality = quality_of(nodes);
+  quality.errors = scorer.pair_errors(raw);
+  for (PairError& error : quality.errors) {
+    error.log_cos *= std::sqrt(2);
+    error.log_ratio *= std::sqrt(2);
+    error.abs_log *= std::sqrt(2);
+    error.log_ratio_sq *= 2;
+    error.difference_sq *= 2;
+  }
+  ErrorFigures& figures = quality.figures = half;
+  figures.log_cos *= std::sqrt(2);
+  figures.relative = std::expm1(std::sqrt(2) * std::log1p(half.relative));
+  figures.rms_log *= std::sqrt(2);
+  figures.rms *= std::sqrt(2);
+  figures.mean_abs_log *= std::sqrt(2);
+  figures.psnr -= 10 * std::log10(2);
+  figures.ssim = 1 - 2 * (1 - half.ssim);  // near 1 it falls with the squared error
+  return quality;
+}
+
+}  // namespace burnish

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <burnish/metrics/error_figures.h>
+#include <burnish/metrics/node_figures.h>
+#include <burnish/reflectance/brdf.h>
+#include <burnish/reflectance/measured_nodes.h>
+
+namespace burnish {
+
+/// How good a measurement is: what another one of the same surface scores against it. A model that scores better
+/// follows its noise.
+struct MeasurementQuality {
+  bool repeated = false;          ///< by a second scan; else estimated from exchanged directions
+  ErrorFigures figures;           ///< of the second scan, or estimated
+  std::vector<PairError> errors;  ///< of the pairs that figures are means of
+  /// Of a smooth function at nodes that it has not seen (held_out_figures); none of anisotropic sources.
+  std::optional<NodeFigures> held_out;
+  double negative_share = 0;  ///< of the nodes' values
+  double negative_rms = 0;    ///< their root mean square, 1/sr: noise about nothing
+};
+
+/// Scores a second scan, symmetrized like the scorer's reference; of the first scan's nodes the rest.
+MeasurementQuality quality_by_repeat(const Scorer& scorer, BrdfRef second, const MeasuredNodes& nodes);
+
+/// The same without a second scan. Physics has f(wi, wo) = f(wo, wi), so where noise of the two is independent and
+/// of size s, f differs from the mean of both, the scorer's reference, by s / sqrt(2), and the mean of a second scan
+/// from it by s: what `raw` scores against the reference, times sqrt(2) (squares 2). What errs alike both ways is not
+/// seen, so this is the least that the measurement is off by. Nothing where the reference is `raw` itself: a source
+/// kept raw, or one reciprocal by construction.
+std::optional<MeasurementQuality> quality_by_exchange(const Scorer& scorer, BrdfRef raw,
+                                                      const MeasuredNodes& nodes);
+
+}  // namespace burnish

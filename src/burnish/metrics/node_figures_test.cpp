@@ -1,0 +1,117 @@
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <burnish/error.h>
+#include <burnish/math/angles.h>
+#include <burnish/metrics/measurement_quality.h>
+#include <burnish/metrics/node_figures.h>
+#include <burnish/reflectance/goniometer.h>
+#include <burnish/testing/brdfs.h>
+
+namespace burnish {
+namespace {
+
+MeasuredNodes nodes_of_source(BrdfRef source, std::size_t count, double noise = 0) {
+  return measured_nodes(measure(source, {.count = count, .noise = noise}));
+}
+
+TEST(NodeFigures, AreZeroForTheSourceAndTheirDefinitionForOthers) {
+  const testing::Glossy source, twice{.scale = 2};
+  const MeasuredNodes nodes = nodes_of_source(source, 2000);
+  const NodeFigures same = node_figures(nodes, source);
+  EXPECT_EQ(same.relative, 0);
+  EXPECT_EQ(same.rms, 0);
+
+  // by hand
+  double log_ratio = 0, log_cos = 0, squares = 0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const auto [wi, wo] = nodes.samples.pairs[i];
+    if (std::min(wi.z, wo.z) <= 0.15) continue;
+    ++count;
+    for (const double f : nodes.samples.at(i)) {
+      log_ratio += std::log((2 * f + 1e-3) / (f + 1e-3)) / 3;
+      log_cos += (std::log1p(2 * f * wi.z) - std::log1p(f * wi.z)) / 3;
+      squares += f * f / 3;
+    }
+  }
+  const NodeFigures figures = node_figures(nodes, twice);
+  const double n = static_cast<double>(count);
+  EXPECT_EQ(figures.count, count);
+  EXPECT_NEAR(figures.relative, std::expm1(log_ratio / n), 1e-9);
+  EXPECT_NEAR(figures.log_cos, log_cos / n, 1e-9);
+  EXPECT_NEAR(figures.rms, std::sqrt(squares / n), 1e-9);
+  EXPECT_EQ(node_errors(nodes, twice).size(), count);
+}
+
+TEST(NodeFigures, CountNegativeValuesAsZeroAndNodesByTheirWeights) {
+  Samples samples{.channels = 1, .isotropic = true};
+  samples.pairs = {{spherical_direction(0.2, 0), spherical_direction(0.4, 1)},
+                   {spherical_direction(0.3, 0), spherical_direction(0.5, 2)}};
+  samples.values = {-1, 1};
+  MeasuredNodes nodes = measured_nodes(samples);
+  nodes.weights = {3, 1};
+  const testing::Lambert black{.albedo = {0, 0, 0}, .count = 1};
+  EXPECT_NEAR(node_figures(nodes, black).rms, 0.5, 1e-12);  // one of four parts is off by 1
+}
+
+TEST(NodeFigures, RefuseWhatCannotBeScored) {
+  const MeasuredNodes nodes = nodes_of_source(testing::Glossy{}, 100);
+  EXPECT_THROW(node_figures(nodes, testing::Lambert{.count = 2}), Error);
+  EXPECT_THROW(node_figures(nodes, testing::Glossy{}, {.least_cosine = 1}), Error);
+}
+
+TEST(NodeFigures, SmoothnessIsStifferWhereNodesAreNoisy) {
+  const testing::Glossy source{.a = 8, .b = 8};
+  const MeasuredNodes clean = nodes_of_source(source, 1500), noisy = nodes_of_source(source, 1500, 0.25);
+  const NodeSmoothness of_clean = choose_node_smoothness(clean), of_noisy = choose_node_smoothness(noisy);
+  EXPECT_GT(of_noisy.shares[1] * of_noisy.shares[0], of_clean.shares[1] * of_clean.shares[0]);
+  // mean |error| of a perfect prediction is 0.25 sqrt(2 / pi)
+  const double held_out = std::log1p(held_out_figures(noisy, of_noisy).relative);
+  EXPECT_GT(held_out, 0.18);
+  EXPECT_LT(held_out, 0.26);
+}
+
+/// Lambert times 1 + slope (cos theta_i - cos theta_o): not reciprocal.
+struct Leaning {
+  double slope = 0.2;
+
+  int channels() const noexcept { return 1; }
+  bool isotropic() const noexcept { return true; }
+  bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+    f[0] = wi.z > 0 && wo.z > 0 ? 0.3 * (1 + slope * (wi.z - wo.z)) : 0;
+    return true;
+  }
+};
+
+TEST(MeasurementQuality, IsEstimatedFromExchangedDirections) {
+  const Leaning raw;
+  const SymmetrizedBrdf reference(raw);
+  const Scorer scorer(reference, {.count = 5000, .image_size = 32});
+  const MeasuredNodes nodes = nodes_of_source(raw, 500);
+  const auto quality = quality_by_exchange(scorer, raw, nodes);
+  ASSERT_TRUE(quality);
+  const ErrorFigures half = scorer.score(raw);
+  EXPECT_NEAR(quality->figures.rms, std::sqrt(2) * half.rms, 1e-12);
+  EXPECT_NEAR(quality->figures.psnr, half.psnr - 3.0103, 1e-3);
+  EXPECT_EQ(quality->errors.size(), scorer.pair_errors(raw).size());
+  EXPECT_FALSE(quality->repeated);
+  EXPECT_FALSE(quality_by_exchange(scorer, reference, nodes));  // nothing tells
+}
+
+TEST(MeasurementQuality, IsWhatASecondScanScores) {
+  const testing::Glossy first, second{.scale = 1.1};
+  const Scorer scorer(first, {.count = 2000, .image_size = 32});
+  MeasuredNodes nodes = nodes_of_source(first, 500);
+  nodes.samples.values[0] = -0.5;
+  const MeasurementQuality quality = quality_by_repeat(scorer, second, nodes);
+  EXPECT_TRUE(quality.repeated);
+  EXPECT_EQ(quality.figures.relative, scorer.score(second).relative);
+  EXPECT_NEAR(quality.negative_share, 1.0 / 1500, 1e-12);
+  EXPECT_EQ(quality.negative_rms, 0.5);  // one value
+}
+
+}  // namespace
+}  // namespace burnish
