@@ -10,6 +10,7 @@
 #include <burnish/math/angles.h>
 #include <burnish/math/parallel.h>
 #include <burnish/math/random.h>
+#include <burnish/metrics/albedo.h>
 #include <burnish/metrics/sphere_images.h>
 #include <burnish/parameterization/half_diff.h>
 #include <burnish/reflectance/angle_table.h>
@@ -24,7 +25,7 @@ constexpr double kRimCosine = 0.005, kRimWeight = 0.1;     // of pairs nearer to
 constexpr double kCrowdedPixelCosine = 1e-3;
 constexpr double kExposedShare = 0.97;  // as in the error figures
 constexpr std::size_t kChunk = 4096;
-constexpr double kMaxAlbedoTheta = radians(70), kLeastAlbedo = 1e-4;
+constexpr double kMaxAlbedoTheta = radians(70), kLeastAlbedo = 1e-4, kAlbedoPrecision = 2e-3;
 constexpr std::size_t kAlbedoThetas = 15, kAlbedoRings = 64, kAlbedoAzimuths = 16;
 
 // Points of the additive recurrence of the generalized golden ratio in five dimensions: phi^6 = phi + 1
@@ -206,35 +207,34 @@ TrainingSet draw_training_set(BrdfRef source, const TrainingOptions& options) {
 }
 
 AlbedoSet albedo_set(BrdfRef source) {
-  const BrdfRef raw = source.unclamped();
-  const auto channels = static_cast<std::size_t>(source.channels());
   const std::size_t sides = source.isotropic() ? 1 : 4;
   AlbedoSet set{.directions = kAlbedoThetas * sides};
-  std::vector<double> f(channels), sum(channels);
+  std::vector<double> f(static_cast<std::size_t>(source.channels()));
   for (std::size_t k = 0; k < set.directions; ++k) {
     const double theta = kMaxAlbedoTheta * static_cast<double>(k / sides) / (kAlbedoThetas - 1);
-    const Vec3 wi = spherical_direction(theta, kTwoPi * (static_cast<double>(k % sides) + 0.3) / 4);
+    const double phi = kTwoPi * (static_cast<double>(k % sides) + 0.3) / 4;
+    const Vec3 wi = spherical_direction(theta, phi);
 
     // rings crowd around the mirror direction: radius = most u^2, dr = 2 most u du
-    std::ranges::fill(sum, 0.0);
     for (std::size_t ring = 0; ring < kAlbedoRings; ++ring)
       for (std::size_t j = 0; j < kAlbedoAzimuths; ++j) {
         const double most = kHalfPi + theta, u = (static_cast<double>(ring) + 0.5) / kAlbedoRings;
-        const double radius = most * u * u;
-        const Vec3 wo = around_specular(theta, phi_of(wi),
-                                        kTwoPi * (static_cast<double>(j) + 0.5) / kAlbedoAzimuths, radius);
+        const double radius = most * u * u,
+                     azimuth = kTwoPi * (static_cast<double>(j) + 0.5) / kAlbedoAzimuths;
+        const Vec3 wo = around_specular(theta, phi, azimuth, radius);
         const double area = std::sin(radius) * 2 * most * u / kAlbedoRings * kTwoPi / kAlbedoAzimuths;
-        const bool counts = wo.z > kRimCosine && raw.eval(wi, wo, f);
-        const double weight = counts ? area * wo.z : 0;
+        const bool counts = wo.z > 0 && source.eval(wi, wo, f);
         set.pairs.push_back({wi, counts ? wo : Vec3{0, 0, 1}});
-        set.weights.push_back(static_cast<float>(weight));
-        for (std::size_t c = 0; counts && c < channels; ++c) sum[c] += weight * f[c];
+        set.weights.push_back(static_cast<float>(counts ? area * wo.z : 0));
       }
 
-    const double mean = std::accumulate(sum.begin(), sum.end(), 0.0) / static_cast<double>(channels);
-    for (const double albedo : sum) {
-      set.targets.push_back(static_cast<float>(std::max(albedo, 0.0)));
-      set.scales.push_back(static_cast<float>(std::max({albedo, mean, kLeastAlbedo})));
+    // noise takes more points than a model does
+    const std::vector<double> albedo = directional_albedo(source, wi, kAlbedoPrecision).albedo;
+    const double mean =
+        std::accumulate(albedo.begin(), albedo.end(), 0.0) / static_cast<double>(albedo.size());
+    for (const double a : albedo) {
+      set.targets.push_back(static_cast<float>(std::max(a, 0.0)));
+      set.scales.push_back(static_cast<float>(std::max({a, mean, kLeastAlbedo})));
     }
   }
   return set;
