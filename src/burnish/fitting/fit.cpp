@@ -28,6 +28,9 @@ namespace {
 
 // Scattered samples are few and noisy: they are fitted robustly, with the smoothness that predicts best.
 constexpr int kScatteredReweightings = 4;
+// Steps that look at albedos, and their share in the loss.
+constexpr int kAlbedoSteps = 20;
+constexpr double kAlbedoShare = 0.3;
 
 // Pairs drawn for one lobe from a source that is a function; an anisotropic one has one dimension more.
 constexpr std::size_t kIsotropicSamples = 200'000, kAnisotropicSamples = 500'000;
@@ -239,8 +242,18 @@ class Fitter {
                     most, channels(), to_string(format()), form.bytes));
   }
 
-  FactoredBrdf finish(const LobesFit& fit, const TrainingSet& set, const RefineOptions& refine,
-                      LobesReport report) {
+  /// Last steps that look at albedos too. Before, they would lead lobes that are not found yet astray.
+  void reflect_as_much(LogModel& model, TrainingSet& set, RefineOptions& refine) const {
+    set.albedo = albedo_set(reference());
+    refine.shares.albedo = kAlbedoShare;
+    RefineOptions steps = refine;
+    steps.max_iterations = kAlbedoSteps;
+    steps.progress = progress("matching albedos");
+    burnish::refine(model, set, steps);
+  }
+
+  FactoredBrdf finish(LobesFit fit, TrainingSet set, RefineOptions refine, LobesReport report) {
+    if (!samples() && report.loss == FitLoss::image) reflect_as_much(fit.model, set, refine);
     report.summary = fit.summary;
     report.samples = set.size();
     report.lobes = fit.model.spec.lobes.size();

@@ -41,10 +41,12 @@ struct MirrorLobe {
 
 TEST(DirectionalAlbedo, OfALambertianSurfaceIsItsReflectance) {
   for (const double theta_deg : {0.0, 30.0, 60.0, 85.0, 89.5}) {
-    const auto [albedo, unknown] = directional_albedo(Diffuse{}, spherical_direction(radians(theta_deg), 1));
+    const auto [albedo, clamped, unknown] =
+        directional_albedo(Diffuse{}, spherical_direction(radians(theta_deg), 1));
     EXPECT_NEAR(albedo[0], 0.5, 0.5 * kAlbedoTolerance);
     EXPECT_NEAR(albedo[1], 1, kAlbedoTolerance);
     EXPECT_EQ(unknown, 0);
+    EXPECT_EQ(clamped, albedo);  // nothing is below zero
   }
 }
 
@@ -75,9 +77,10 @@ TEST(DirectionalAlbedo, AgreesWithIntegrationOverTheHalfVector) {
 }
 
 TEST(DirectionalAlbedo, CountsTheUnknownShareOfTheHemisphere) {
-  const auto [albedo, unknown] = directional_albedo(Diffuse{true}, spherical_direction(0.3, 1));
+  const auto [albedo, clamped, unknown] = directional_albedo(Diffuse{true}, spherical_direction(0.3, 1));
   EXPECT_NEAR(unknown, 0.5, 0.01);
   EXPECT_NEAR(albedo[1], 0.5, 0.01);
+  EXPECT_NEAR(clamped[1], 0.5, 0.01);
 }
 
 TEST(AlbedoCurve, TurnsToTheOtherAxisWhereTheSourceIsAnisotropic) {

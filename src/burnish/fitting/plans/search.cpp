@@ -143,6 +143,7 @@ TrainingSet mean_of_channels(const TrainingSet& set) {
   grey.channels = 1;
   const auto channels = static_cast<std::size_t>(set.channels);
   grey.values.resize(set.size());
+  grey.albedo = {};
   for (std::size_t i = 0; i < set.size(); ++i) {
     double sum = 0;
     for (std::size_t c = 0; c < channels; ++c) sum += set.values[i * channels + c];

@@ -8,7 +8,8 @@ namespace burnish {
 namespace {
 
 // Added to the means in the objective: errors below do not matter, and ln stays finite.
-constexpr ErrorTerms kNegligible{.pictures = 1e-7, .dimmed = 1e-7, .relative = 1e-4, .log_cos = 1e-5};
+constexpr ErrorTerms kNegligible{
+    .pictures = 1e-7, .dimmed = 1e-7, .relative = 1e-4, .log_cos = 1e-5, .albedo = 3e-5};
 
 double rounded_abs(double error, double round) noexcept {
   return std::sqrt(error * error + round * round);
@@ -20,11 +21,12 @@ double PictureLoss::objective(const ErrorTerms& means) const noexcept {
   return shares.pictures * std::log(means.pictures + kNegligible.pictures) +
          shares.dimmed * std::log(means.dimmed + kNegligible.dimmed) +
          shares.relative * std::log(means.relative + kNegligible.relative) +
-         shares.log_cos * std::log(means.log_cos + kNegligible.log_cos);
+         shares.log_cos * std::log(means.log_cos + kNegligible.log_cos) +
+         shares.albedo * std::log1p(means.albedo / kNegligible.albedo);
 }
 
-ErrorTerms PictureLoss::derivatives(const ErrorTerms& means, double picture_weight,
-                                    double pair_weight) const noexcept {
+ErrorTerms PictureLoss::derivatives(const ErrorTerms& means, double picture_weight, double pair_weight,
+                                    double albedo_count) const noexcept {
   ErrorTerms d;
   if (picture_weight > 0) {
     d.pictures = shares.pictures / (means.pictures + kNegligible.pictures) / picture_weight;
@@ -34,6 +36,7 @@ ErrorTerms PictureLoss::derivatives(const ErrorTerms& means, double picture_weig
     d.relative = shares.relative / (means.relative + kNegligible.relative) / pair_weight;
     d.log_cos = shares.log_cos / (means.log_cos + kNegligible.log_cos) / pair_weight;
   }
+  if (albedo_count > 0) d.albedo = shares.albedo / (means.albedo + kNegligible.albedo) / albedo_count;
   return d;
 }
 

@@ -14,18 +14,22 @@ struct ErrorTerms {
   double dimmed = 0;
   double relative = 0;  ///< of pairs, |ln((f + 1e-3) / (f^ + 1e-3))|
   double log_cos = 0;   ///< of pairs, |ln(1 + f cos theta_i) - ln(1 + f^ cos theta_i)|
+  double albedo = 0;    ///< of albedos, the squared relative error; see AlbedoSet
 
   ErrorTerms& operator+=(const ErrorTerms& other) noexcept {
     pictures += other.pictures;
     dimmed += other.dimmed;
     relative += other.relative;
     log_cos += other.log_cos;
+    albedo += other.albedo;
     return *this;
   }
 };
 
 /// What refinement minimizes: the sum of share ln(mean) over the terms, so that a percent of one error is worth
-/// a percent of another whatever their sizes. Absolute values are rounded off near 0.
+/// a percent of another whatever their sizes. Absolute values are rounded off near 0. The noise of a measurement
+/// about small values, negative ones among them, is light to all terms but that of albedos, which are linear in
+/// the values as they were measured: it sees to it that the model reflects no more.
 struct PictureLoss {
   static constexpr double kInverseGamma = 1 / 2.2;
   static constexpr double kFloor = 1e-3;  ///< 1/sr, of `relative`
@@ -59,7 +63,8 @@ struct PictureLoss {
             const ErrorTerms& derivatives, ErrorTerms& sums) const noexcept;
 
   /// The derivative of the objective by each term's sum, given the means and the sums of weights.
-  ErrorTerms derivatives(const ErrorTerms& means, double picture_weight, double pair_weight) const noexcept;
+  ErrorTerms derivatives(const ErrorTerms& means, double picture_weight, double pair_weight,
+                         double albedo_count) const noexcept;
 };
 
 }  // namespace burnish

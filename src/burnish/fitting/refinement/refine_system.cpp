@@ -60,7 +60,9 @@ RefineSystem::RefineSystem(const LogModel& model, const TrainingSet& set, const 
       loss_(loss),
       first_channel_(first_channel),
       last_channel_(last_channel),
-      lanes_(numbered_tables(model, channels()), lookups, channels()) {
+      lanes_(numbered_tables(model, channels()), lookups, channels()),
+      albedo_(model.spec, lanes_.tables(), set.albedo, static_cast<std::size_t>(set.channels), first_channel,
+              channels()) {
   add_tables(model, format);
   for (std::size_t i = 0; i < set.size(); ++i)
     (i < set.picture_count ? picture_weight_ : pair_weight_) +=
@@ -188,7 +190,15 @@ ErrorTerms RefineSystem::errors(const Eigen::VectorXd& x) const {
   return {.pictures = mean(sums.pictures, picture_weight_),
           .dimmed = mean(sums.dimmed, picture_weight_),
           .relative = mean(sums.relative, pair_weight_),
-          .log_cos = mean(sums.log_cos, pair_weight_)};
+          .log_cos = mean(sums.log_cos, pair_weight_),
+          .albedo = mean(albedo_.residuals(x).squaredNorm(), static_cast<double>(albedo_.size()))};
+}
+
+RefineSystem::AlbedoPart RefineSystem::albedo_part(const Eigen::VectorXd& x,
+                                                   const ErrorTerms& derivatives) const {
+  const AlbedoTerm::Rows rows = albedo_.rows(x);
+  return {.gradient = 2 * derivatives.albedo * (rows.slopes * rows.residuals),
+          .roots = std::sqrt(2 * derivatives.albedo) * rows.slopes};
 }
 
 template <class Visit>
@@ -212,7 +222,8 @@ void RefineSystem::gauss_newton_matrix(const Eigen::VectorXd& x, const ErrorTerm
                                        GaussNewton& result) const {
   const LobeLanes::Values values = lanes_.values(x);
   const std::size_t unknowns = last_unknown - first_unknown;
-  const ErrorTerms derivatives = loss_.derivatives(means, picture_weight_, pair_weight_);
+  const ErrorTerms derivatives =
+      loss_.derivatives(means, picture_weight_, pair_weight_, static_cast<double>(albedo_.size()));
 
   // room for the factor's rows, of every so many pairs
   const std::size_t every =
@@ -245,11 +256,17 @@ void RefineSystem::gauss_newton_matrix(const Eigen::VectorXd& x, const ErrorTerm
   };
   result.gradient = segment(sum).cwiseProduct(segment(values.lambda));
   scaled_gram(factor, segment(values.lambda), result.matrix);
+  if (albedo_.size() == 0) return;
+  const AlbedoPart albedo = albedo_part(x, derivatives);
+  result.gradient += segment(albedo.gradient);
+  result.matrix.selfadjointView<Eigen::Lower>().rankUpdate(
+      albedo.roots.middleRows(static_cast<Eigen::Index>(first_unknown), static_cast<Eigen::Index>(unknowns)));
 }
 
 RefineSystem::GaussNewtonFactor RefineSystem::gauss_newton_factor(const Eigen::VectorXd& x,
                                                                   const ErrorTerms& means) const {
-  const ErrorTerms derivatives = loss_.derivatives(means, picture_weight_, pair_weight_);
+  const ErrorTerms derivatives =
+      loss_.derivatives(means, picture_weight_, pair_weight_, static_cast<double>(albedo_.size()));
   const std::size_t block_size = lanes_.shares_of_block();
   GaussNewtonFactor result;
   result.values = lanes_.values(x);
@@ -283,6 +300,10 @@ RefineSystem::GaussNewtonFactor RefineSystem::gauss_newton_factor(const Eigen::V
   const Eigen::VectorXd& lambda = result.values.lambda;
   result.gradient = result.gradient.cwiseProduct(lambda);
   result.diagonal = result.diagonal.cwiseProduct(lambda.cwiseProduct(lambda));
+  AlbedoPart albedo = albedo_part(x, derivatives);
+  result.gradient += albedo.gradient;
+  result.diagonal += albedo.roots.rowwise().squaredNorm();
+  result.albedo_roots = std::move(albedo.roots);
   return result;
 }
 

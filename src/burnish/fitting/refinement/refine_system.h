@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include <burnish/fitting/numerics/smoothness.h>
+#include <burnish/fitting/refinement/albedo_term.h>
 #include <burnish/fitting/refinement/lane_gram.h>
 #include <burnish/fitting/refinement/lobe_lanes.h>
 #include <burnish/fitting/refinement/log_model.h>
@@ -60,12 +61,15 @@ class RefineSystem {
     LobeLanes::Values values;
     /// curvature^(1/2) times the lobes' shares of f^, as LobeLanes::times takes them.
     AlignedVector<float> shares;
+    /// Columns whose squares albedos add to the matrix.
+    Eigen::MatrixXd albedo_roots;
   };
   GaussNewtonFactor gauss_newton_factor(const Eigen::VectorXd& x, const ErrorTerms& means) const;
   /// The Gauss-Newton matrix times v. As d lambda / dx = lambda, rows are multiplied by the values.
   Eigen::VectorXd gauss_newton_times(const GaussNewtonFactor& factor, const Eigen::VectorXd& v) const {
     const Eigen::VectorXd& lambda = factor.values.lambda;
-    return lambda.cwiseProduct(lanes_.times(factor.values, factor.shares, lambda.cwiseProduct(v)));
+    return lambda.cwiseProduct(lanes_.times(factor.values, factor.shares, lambda.cwiseProduct(v))) +
+           factor.albedo_roots * (factor.albedo_roots.transpose() * v);
   }
 
   /// Whether a table has three axes.
@@ -99,6 +103,12 @@ class RefineSystem {
   };
   void add_tables(const LogModel& model, TableFormat format);
   void fill_losses();
+  // What albedos add to the slope, and the roots of what they add to the matrix.
+  struct AlbedoPart {
+    Eigen::VectorXd gradient;
+    Eigen::MatrixXd roots;
+  };
+  AlbedoPart albedo_part(const Eigen::VectorXd& x, const ErrorTerms& derivatives) const;
   LossInputs loss_inputs(std::size_t block, std::size_t channel, const float* model) const noexcept;
   // visit(block, channel, lanes as differentiate leaves them, gradients, curvatures) of the blocks from
   // `begin` to `end`.
@@ -119,6 +129,7 @@ class RefineSystem {
   std::vector<LogRange> ranges_;  // of the unknowns, over their channel's mean in the table
   double picture_weight_ = 0, pair_weight_ = 0;
   LobeLanes lanes_;
+  AlbedoTerm albedo_;
 };
 
 }  // namespace burnish

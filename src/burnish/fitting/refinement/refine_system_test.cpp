@@ -1,3 +1,4 @@
+#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
 #include <burnish/fitting/refinement/refine_system.h>
@@ -11,7 +12,7 @@ using testing::small_set;
 
 TEST(RefineSystem, MatrixAndFactorAreTheSameSystem) {
   const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.2,alpha_y=0.2");
-  const TrainingSet set = small_set(ggx, 500);
+  TrainingSet set = small_set(ggx, 500);
   const std::string different = "p(wo) p(wi) q(h) + q(h) g(theta_d,theta_m)";
   // tables of one layout, more of them than a vector has lanes
   const std::string alike = "p(wo) p(wi) q(h) g(theta_d,theta_m) + a(wo) b(h) c(theta_d,theta_m)",
@@ -33,7 +34,10 @@ TEST(RefineSystem, MatrixAndFactorAreTheSameSystem) {
     const LogModel model = random_model(expression.c_str(), tables, 3);
     const bool shared = model.any_shared();
     const Lookups lookups = lookups_of(model.spec, set);
-    const PictureLoss loss{.exposure = 0.1};  // no pixel is white
+    // albedos count in every second; no pixel is white
+    set.albedo = unknowns % 2 == 0 ? albedo_set(ggx) : AlbedoSet{};
+    PictureLoss loss{.exposure = 0.1};
+    loss.shares.albedo = 0.3;
     const RefineSystem system(model, set, lookups, loss, TableFormat::half, shared ? 0 : 1, shared ? 3 : 2);
     const Eigen::VectorXd x = system.read(model);
     ASSERT_EQ(static_cast<std::size_t>(x.size()), unknowns);

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <optional>
 
 #include <burnish/error.h>
@@ -9,8 +10,10 @@
 #include <burnish/math/angles.h>
 #include <burnish/math/parallel.h>
 #include <burnish/math/random.h>
+#include <burnish/metrics/albedo.h>
 #include <burnish/metrics/sphere_images.h>
 #include <burnish/parameterization/half_diff.h>
+#include <burnish/reflectance/angle_table.h>
 
 namespace burnish {
 
@@ -22,6 +25,8 @@ constexpr double kRimCosine = 0.005, kRimWeight = 0.1;     // of pairs nearer to
 constexpr double kCrowdedPixelCosine = 1e-3;
 constexpr double kExposedShare = 0.97;  // as in the error figures
 constexpr std::size_t kChunk = 4096;
+constexpr double kMaxAlbedoTheta = radians(70), kLeastAlbedo = 1e-4, kAlbedoPrecision = 2e-3;
+constexpr std::size_t kAlbedoThetas = 15, kAlbedoRings = 64, kAlbedoAzimuths = 16;
 
 // Points of the additive recurrence of the generalized golden ratio in five dimensions: phi^6 = phi + 1
 // [Roberts 2018].
@@ -201,6 +206,40 @@ TrainingSet draw_training_set(BrdfRef source, const TrainingOptions& options) {
   return set;
 }
 
+AlbedoSet albedo_set(BrdfRef source) {
+  const std::size_t sides = source.isotropic() ? 1 : 4;
+  AlbedoSet set{.directions = kAlbedoThetas * sides};
+  std::vector<double> f(static_cast<std::size_t>(source.channels()));
+  for (std::size_t k = 0; k < set.directions; ++k) {
+    const double theta = kMaxAlbedoTheta * static_cast<double>(k / sides) / (kAlbedoThetas - 1);
+    const double phi = kTwoPi * (static_cast<double>(k % sides) + 0.3) / 4;
+    const Vec3 wi = spherical_direction(theta, phi);
+
+    // rings crowd around the mirror direction: radius = most u^2, dr = 2 most u du
+    for (std::size_t ring = 0; ring < kAlbedoRings; ++ring)
+      for (std::size_t j = 0; j < kAlbedoAzimuths; ++j) {
+        const double most = kHalfPi + theta, u = (static_cast<double>(ring) + 0.5) / kAlbedoRings;
+        const double radius = most * u * u,
+                     azimuth = kTwoPi * (static_cast<double>(j) + 0.5) / kAlbedoAzimuths;
+        const Vec3 wo = around_specular(theta, phi, azimuth, radius);
+        const double area = std::sin(radius) * 2 * most * u / kAlbedoRings * kTwoPi / kAlbedoAzimuths;
+        const bool counts = wo.z > 0 && source.eval(wi, wo, f);
+        set.pairs.push_back({wi, counts ? wo : Vec3{0, 0, 1}});
+        set.weights.push_back(static_cast<float>(counts ? area * wo.z : 0));
+      }
+
+    // noise takes more points than a model does
+    const std::vector<double> albedo = directional_albedo(source, wi, kAlbedoPrecision).albedo;
+    const double mean =
+        std::accumulate(albedo.begin(), albedo.end(), 0.0) / static_cast<double>(albedo.size());
+    for (const double a : albedo) {
+      set.targets.push_back(static_cast<float>(std::max(a, 0.0)));
+      set.scales.push_back(static_cast<float>(std::max({a, mean, kLeastAlbedo})));
+    }
+  }
+  return set;
+}
+
 TrainingSet training_set_of(const Samples& samples, bool symmetrize) {
   TrainingSet set{.channels = samples.channels, .isotropic = samples.isotropic};
   for (int turn = 0; turn < (symmetrize ? 2 : 1); ++turn)
@@ -216,7 +255,8 @@ TrainingSet training_set_of(const Samples& samples, bool symmetrize) {
 }
 
 TrainingSet thinned(const TrainingSet& set, std::size_t step) {
-  TrainingSet part{.channels = set.channels, .isotropic = set.isotropic, .exposure = set.exposure};
+  TrainingSet part{
+      .channels = set.channels, .isotropic = set.isotropic, .exposure = set.exposure, .albedo = set.albedo};
   const auto channels = static_cast<std::size_t>(set.channels);
   const auto take = [&](std::size_t i) {
     part.pairs.push_back(set.pairs[i]);

@@ -10,6 +10,18 @@
 
 namespace burnish {
 
+/// What of the light from some directions is reflected: sums over pairs of a direction wi and points wo.
+struct AlbedoSet {
+  std::size_t directions = 0;
+  std::vector<DirectionPair> pairs;  ///< [direction][point], as many points for each
+  std::vector<float> weights;        ///< cos(theta_o) times solid angle, one a pair; 0 where f is unknown
+  std::vector<float> targets;        ///< [direction][channel], >= 0
+  std::vector<float> scales;         ///< what errors of these are relative to, > 0
+
+  bool empty() const noexcept { return directions == 0; }
+  std::size_t points() const noexcept { return pairs.size() / directions; }
+};
+
 /// What a model of several lobes is refined on: pixels of lit spheres, which the eye judges, and direction
 /// pairs spread over all directions, which keep the model right where no picture looks.
 struct TrainingSet {
@@ -20,6 +32,7 @@ struct TrainingSet {
   std::vector<float> weights;        ///< one a pair, > 0
   std::size_t picture_count = 0;     ///< the first so many pairs are pixels
   double exposure = 1;               ///< 1 / (97th percentile of the pixels' f_r cos theta_i)
+  AlbedoSet albedo;                  ///< empty: albedos do not count
 
   std::size_t size() const noexcept { return pairs.size(); }
 };
@@ -41,10 +54,16 @@ struct TrainingOptions {
 /// - pairs with theta_d, phi_d and phi_h uniform and theta_h half uniform, half pi/2 u^2, weighted as if it
 ///   were uniform, as long as both cosines are above 0.05, and beside those asked for the ones that come
 ///   up with both above 0.005, a tenth of the weight: what hardly counts is kept from running away.
-/// Pairs of which the source knows nothing are left out. Throws Error if nothing is left.
+/// Pairs of which the source knows nothing are left out. Throws Error if nothing is left. No albedos.
 TrainingSet draw_training_set(BrdfRef source, const TrainingOptions& options);
 
-/// Scattered measurements above the horizon, weight 1, no pictures; with `symmetrize` each also stands for
+/// The albedos of a source's raw values (see BrdfRef::unclamped) under light from 0 to 70 degrees, of
+/// anisotropic sources from four sides, by rings about the mirror direction as directional_albedo takes them.
+/// Targets are at least 0, and errors are relative to at least the mean over the channels: in a colour
+/// outside the gamut one may be below zero.
+AlbedoSet albedo_set(BrdfRef source);
+
+/// Scattered measurements above the horizon, weight 1, no pictures, no albedos; with `symmetrize` each also stands for
 /// its swapped pair. Throws Error if nothing is left.
 TrainingSet training_set_of(const Samples& samples, bool symmetrize);
 
