@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include <burnish/baselines/evaluation_cost.h>
+#include <burnish/factors/fetches.h>
 #include <burnish/file.h>
 #include <burnish/fitting/baselines/baselines.h>
 #include <burnish/fitting/fit_file.h>
@@ -119,8 +120,9 @@ void print(const NodesReport& report) {
 }
 
 void print_model(const FactoredBrdf& model, const FitReport& report) {
-  fmt::print("model      {}, {} bytes ({} of them tables)\n", model_expression(model), model.bytes(),
-             model.table_bytes());
+  fmt::print("model      {}, {} bytes ({} of them tables), {} fetches, {} textures\n",
+             model_expression(model), model.bytes(), model.table_bytes(), fetch_count(model),
+             model.tables().size());
   const auto* one_lobe = std::get_if<OneLobeReport>(&report.how);
   if (one_lobe)
     print(*one_lobe);
@@ -183,9 +185,17 @@ void add_lobes_arguments(CLI::App& verb, FitArguments& arguments) {
   verb.add_option("--budget", budget.bytes,
                   "bytes: fits the best model of several lobes that this many hold; K and M count as 1024s")
       ->transform(CLI::AsSizeValue(false));
+  verb.add_option(
+          "--fetches", budget.fetches,
+          "of --budget: at most this many filtered reads of tables an evaluation (default: as many as serve "
+          "it best)")
+      ->check(CLI::Range(1, 256))
+      ->needs("--budget")
+      ->excludes("--method");
   verb.add_option("--lobes", budget.lobes, "of --budget (default: as many as serve it best)")
       ->check(CLI::Range(1, 64))
-      ->needs("--budget");
+      ->needs("--budget")
+      ->excludes("--fetches");
   verb.add_option(
           "--loss", arguments.loss,
           "what several lobes are refined for: pictures at every exposure beside both means, or one mean")
@@ -193,7 +203,8 @@ void add_lobes_arguments(CLI::App& verb, FitArguments& arguments) {
       ->capture_default_str();
   verb.add_flag("--search", budget.search,
                 "of --budget: search factors, projections, warps and sizes first (up to a minute)")
-      ->needs("--budget");
+      ->needs("--budget")
+      ->excludes("--fetches");
 }
 
 }  // namespace
@@ -202,13 +213,13 @@ void add_fit_command(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("fit", "Factor a BRDF into a product of small positive tables");
   verb->footer(
       "Examples: burnish fit paint.binary -o paint.exr --budget 2700\n"
+      "          burnish fit paint.binary -o paint.exr --budget 16K --fetches 2\n"
       "          burnish fit paint.binary -o paint.exr --model \"p(wo) q(h) r(theta_d) p(wi)\" --table q=96\n"
       "          burnish fit paint.binary -o paint.json --method svd --budget 2700");
   auto arguments = std::make_shared<FitArguments>();
   add_source_arguments(*verb, arguments->source);
   FitOptions& options = arguments->options;
   OneLobe& one_lobe = arguments->one_lobe;
-  add_lobes_arguments(*verb, *arguments);
   verb->add_option(
           "-o,--output", arguments->out,
           "model file to write (compact where it ends in .burnish, else OpenEXR; JSON with --method)")
@@ -218,6 +229,7 @@ void add_fit_command(CLI::App& app) {
       fmt::format("fit what others would instead of positive factors, at --budget bytes (default "
                   "{}): {}",
                   BaselineOptions{}.budget, fmt::join(baseline_methods(), ", ")));
+  add_lobes_arguments(*verb, *arguments);
   verb->add_option(
           "--model", one_lobe.model,
           "product of tables over projections: pqp, pqpr, or such as \"p(wo) q(h) s(wi+wo+0.5n) p(wi)\"")

@@ -12,6 +12,7 @@
 #include <burnish/fitting/fit.h>
 #include <burnish/fitting/one_lobe/cross_validation.h>
 #include <burnish/fitting/one_lobe/log_error.h>
+#include <burnish/fitting/plans/fetch_plan.h>
 #include <burnish/fitting/plans/fit_plan.h>
 #include <burnish/fitting/plans/overfit.h>
 #include <burnish/fitting/plans/scattered_plan.h>
@@ -39,6 +40,10 @@ constexpr std::size_t kBaselineSamples = 200'000;
 // Pairs that the fit did not see, for the error that is reported.
 constexpr std::size_t kHeldOutPairs = 20'000;
 constexpr int kHeldOutSphereSize = 128;  // of a baseline's the defaults of FigureOptions
+
+// Volumes follow all angles alike; what they lack shows in pictures first.
+constexpr ErrorTerms kVolumeShares{.pictures = 3, .dimmed = 0.3, .relative = 0.5, .log_cos = 0.5};
+constexpr double kVolumeSmooth = 1e-9;
 
 bool has_disk(const ModelSpec& spec) {
   return std::ranges::any_of(spec.tables,
@@ -98,6 +103,8 @@ class Fitter {
 
   Fitted fit(const Budget& form) {
     if (form.bytes == 0) throw Error("fit: expected a budget of at least one byte, found none");
+    if (form.fetches < 0 || (form.fetches > 0 && (form.lobes > 0 || form.search)))
+      throw Error("fit: expected fetches >= 0, and with them neither a number of lobes nor a search");
     // few scattered samples do not carry several lobes
     return samples() && !nodes_ ? fit_scattered(form) : fit_to_budget(form);
   }
@@ -195,6 +202,7 @@ class Fitter {
   }
 
   FactoredBrdf fit_to_budget(const Budget& form) {
+    if (form.fetches > 0) return fit_within(form);
     const std::size_t texel = texel_bytes(format(), channels());
     check_budget(form, texel);
     TrainingOptions drawn = training_for(form.bytes, texel, brdf_.isotropic());
@@ -240,6 +248,28 @@ class Fitter {
     throw Error(
         fmt::format("fit: expected a budget of at least {} bytes for {} channels in format {}, found {}",
                     most, channels(), to_string(format()), form.bytes));
+  }
+
+  /// Within a number of fetches: lobes of lines or hemispheres, or one lobe with a volume.
+  FactoredBrdf fit_within(const Budget& form) {
+    const CostLimit limit{
+        .bytes = form.bytes, .texel_bytes = texel_bytes(format(), channels()), .fetches = form.fetches};
+    LobesReport report{.loss = form.loss, .budget = form.bytes};
+    RefineOptions refine = refine_options(form.loss);
+    if (takes_lobes(reference(), limit)) {
+      TrainingOptions drawn = training_for(form.bytes, limit.texel_bytes, brdf_.isotropic());
+      drawn.seed = options_.seed;
+      const TrainingSet set = draw_training_set(reference(), drawn);
+      const LobePlan plan = plan_within(reference(), limit);
+      return finish(fit_plan(set, plan, limit.bytes, limit.texel_bytes, refine), set, refine,
+                    std::move(report));
+    }
+    if (form.loss == FitLoss::image) refine.shares = kVolumeShares;
+    if (!options_.smooth) refine.smooth = kVolumeSmooth;
+    TrainingOptions drawn = training_for_volumes(limit);
+    drawn.seed = options_.seed;
+    const TrainingSet set = draw_training_set(reference(), drawn);
+    return finish(fit_volumes(set, volume_specs(reference(), limit), refine), set, refine, std::move(report));
   }
 
   /// Last steps that look at albedos too. Before, they would lead lobes that are not found yet astray.

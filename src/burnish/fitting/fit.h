@@ -32,12 +32,13 @@ struct OneLobe {
   LogLinear how = {};
 };
 
-/// The model of several lobes that serves a number of bytes best: at most so many, as FactoredBrdf::bytes
-/// counts them.
+/// The model that serves a number of bytes best, at most so many as FactoredBrdf::bytes counts them, of several
+/// lobes of lines and grids, or within a number of fetches of whatever serves best within both.
 struct Budget {
   std::uint64_t bytes = 2700;
-  int lobes = 0;        ///< 0: as many as serve it best
-  bool search = false;  ///< search_plan first
+  int fetches = 0;      ///< filtered reads of one evaluation, see fetch_count; 0: as many as serve it best
+  int lobes = 0;        ///< 0: as many as serve it best; without fetches
+  bool search = false;  ///< search_plan first; without fetches
   FitLoss loss = FitLoss::image;
   LogLinear scattered = {};  ///< scattered samples are too few for several lobes: they get one
 };

@@ -31,7 +31,9 @@ SmoothnessRows smoothness_rows(const TableLayout& layout) {
   const double volume = 1 / (nx * ny * nz), root = std::sqrt(volume), twice = std::sqrt(2 * volume);
   const double xx = nx * nx * root, yy = ny * ny * root, zz = nz * nz * root, xy = nx * ny * twice,
                xz = nx * nz * twice, yz = ny * nz * twice;
-  const double slope = std::sqrt(kSlopeShare * volume), dx = nx * slope, dy = ny * slope, dz = nz * slope;
+  const double slope =
+                   std::sqrt((layout.shape == TableShape::volume ? kVolumeSlopeShare : kSlopeShare) * volume),
+               dx = nx * slope, dy = ny * slope, dz = nz * slope;
   for (int z = 0; z < d; ++z)
     for (int y = 0; y < h; ++y)
       for (int x = 0; x < w; ++x) {

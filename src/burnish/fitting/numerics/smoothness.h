@@ -23,5 +23,7 @@ struct SmoothnessRows {
 SmoothnessRows smoothness_rows(const TableLayout& layout);
 
 inline constexpr double kSlopeShare = 0.03;
+/// Of volumes, a quarter of whose nodes no pair of directions reaches: these lie about where their neighbours do.
+inline constexpr double kVolumeSlopeShare = 100;
 
 }  // namespace burnish

@@ -37,7 +37,8 @@ LogModel fit_one_lobe(const ModelSpec& spec, const TrainingSet& set, const std::
                       double smooth, double floor) {
   ModelSpec unrounded = spec;
   for (ModelSpec::TableSpec& table : unrounded.tables) table.format = TableFormat::single;
-  const HomomorphicFit fit = fit_homomorphic(as_source(set, values), unrounded, {.smooth = smooth, .floor = floor});
+  const HomomorphicFit fit =
+      fit_homomorphic(as_source(set, values), unrounded, {.smooth = smooth, .floor = floor});
   LogModel model{.spec = spec, .channels = set.channels, .log_values = {}};
   for (const Table& table : fit.brdf.tables()) {
     auto& logs = model.log_values.emplace_back(table.values.begin(), table.values.end());

@@ -24,6 +24,7 @@ constexpr int kMaxTrials = 6, kMaxSlowSteps = 3;
 // Pins what neither data nor smoothness determine, as shares of the mean diagonal.
 constexpr double kRidge = 1e-7, kDampedRidge = 1e-3;
 constexpr double kLongestStep = 2;  // change of a logarithm
+constexpr double kHeld = 1e6;       // of the largest diagonal entry: what does not move
 
 // A truncated solution is good enough for a step that is tried and judged.
 constexpr int kMaxCgIterations = 40;
@@ -61,11 +62,19 @@ class StepSolver {
     return dx.dot((direct() ? dense_.gradient : factor_.gradient) + 0.5 * bent);
   }
 
+  /// Steps from now on leave an unknown alone whose gradient leads out of the box at whose side it is.
+  void stay_within(const RefineSystem::Box& box, const Eigen::VectorXd& x) {
+    const Eigen::VectorXd& slope = gradient();
+    held_ = (x.array() <= box.least.array() && slope.array() > 0) ||
+            (x.array() >= box.most.array() && slope.array() < 0);
+  }
+
   Eigen::VectorXd step(double damping) {
     const Eigen::VectorXd diagonal = direct() ? Eigen::VectorXd(dense_.matrix.diagonal())
                                               : Eigen::VectorXd(factor_.diagonal + roughness_diagonal_);
-    const Eigen::VectorXd extra =
-        damping * diagonal.array() + (kRidge + damping * kDampedRidge) * diagonal.mean();
+    Eigen::VectorXd extra = damping * diagonal.array() + (kRidge + damping * kDampedRidge) * diagonal.mean();
+    for (Eigen::Index u = 0; u < held_.size(); ++u)
+      if (held_[u]) extra[u] = kHeld * diagonal.maxCoeff();
     Eigen::VectorXd dx;
     if (direct()) {
       factorized_ = dense_.matrix;
@@ -105,6 +114,7 @@ class StepSolver {
 
   const RefineSystem& system_;
   double smooth_;
+  Eigen::Array<bool, Eigen::Dynamic, 1> held_;
   Eigen::VectorXd roughness_diagonal_;
   RefineSystem::GaussNewton dense_;  ///< of a direct solution
   Eigen::MatrixXd factorized_;
@@ -128,17 +138,24 @@ class Descent {
   void run(BeforeStep before_step) {
     StepSolver solver(system_, options_.smooth);
     system_.clamp(x_);
+    // Large tables stay in a box: if their floor rose with their largest node, no step might lead down.
+    const bool boxed = system_.has_volume();
+    const RefineSystem::Box box = boxed ? system_.box(x_) : RefineSystem::Box{};
     ErrorTerms means = system_.errors(x_);
     before_ = after_ = objective(means, x_);
     double damping = solver.direct() ? kFirstDamping : kFirstIterativeDamping;
     for (int slow = 0; iterations_ < options_.max_iterations && slow < kMaxSlowSteps; ++iterations_) {
       before_step();
       solver.linearize(x_, means);
+      if (boxed) solver.stay_within(box, x_);
       // harder and harder damped, until a step leads down
       bool accepted = false;
       for (int trial = 0; trial < kMaxTrials && !accepted; ++trial) {
         Eigen::VectorXd next = x_ + solver.step(damping);
-        system_.clamp(next);
+        if (boxed)
+          next = next.cwiseMax(box.least).cwiseMin(box.most);
+        else
+          system_.clamp(next);
         const ErrorTerms next_means = system_.errors(next);
         const double value = objective(next_means, next);
         accepted = value < after_;

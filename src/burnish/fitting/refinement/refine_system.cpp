@@ -137,25 +137,39 @@ void RefineSystem::write(const Eigen::VectorXd& x, LogModel& model) const {
       [&](Eigen::Index unknown, std::size_t t, std::size_t at) { model.log_values[t][at] = x[unknown]; });
 }
 
-void RefineSystem::clamp(Eigen::VectorXd& x) const {
+// visit(unknown, largest and mean of its table's channel, what its table holds below the first)
+template <class Visit>
+void RefineSystem::for_each_limit(const Eigen::VectorXd& x, Visit visit) const {
   for (const SystemTable& table : tables_)
     for (std::size_t c = 0; c < table.number.copies; ++c) {
-      const auto value_of = [&](std::size_t n) -> double& {
-        return x[static_cast<Eigen::Index>(table.number(n, c))];
-      };
-      // largest and mean of the table's channel
-      double largest = value_of(0), mean = 0;
+      const auto unknown = [&](std::size_t n) { return static_cast<Eigen::Index>(table.number(n, c)); };
+      double largest = x[unknown(0)], mean = 0;
       for (std::size_t n = 0; n < table.nodes; ++n) {
-        largest = std::max(largest, value_of(n));
-        mean += value_of(n) / static_cast<double>(table.nodes);
+        largest = std::max(largest, x[unknown(n)]);
+        mean += x[unknown(n)] / static_cast<double>(table.nodes);
       }
-      // not below a share of the first, and about the second as far as an exponent reaches
-      for (std::size_t n = 0; n < table.nodes; ++n) {
-        const LogRange& range = ranges_[table.number(n, c)];
-        double& value = value_of(n);
-        value = std::clamp(std::max(value, largest - table.log_range), mean + range.least, mean + range.most);
-      }
+      for (std::size_t n = 0; n < table.nodes; ++n) visit(unknown(n), largest, mean, table.log_range);
     }
+}
+
+void RefineSystem::clamp(Eigen::VectorXd& x) const {
+  // not below a share of the largest, and about the mean as far as an exponent reaches
+  for_each_limit(x, [&](Eigen::Index unknown, double largest, double mean, double log_range) {
+    const LogRange& range = ranges_[static_cast<std::size_t>(unknown)];
+    double& value = x[unknown];
+    value = std::clamp(std::max(value, largest - log_range), mean + range.least, mean + range.most);
+  });
+}
+
+RefineSystem::Box RefineSystem::box(const Eigen::VectorXd& x) const {
+  Box box{.least = x, .most = x};
+  for_each_limit(x, [&](Eigen::Index unknown, double largest, double mean, double log_range) {
+    const LogRange& range = ranges_[static_cast<std::size_t>(unknown)];
+    const double top = largest + kHeadroom;
+    box.least[unknown] = std::min(x[unknown], std::max(top - log_range, mean + range.least));
+    box.most[unknown] = std::max(x[unknown], std::min(top, mean + range.most));
+  });
+  return box;
 }
 
 LossInputs RefineSystem::loss_inputs(std::size_t block, std::size_t channel,

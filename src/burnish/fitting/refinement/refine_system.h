@@ -37,6 +37,13 @@ class RefineSystem {
   /// and of rgb9e5 tables within a range around where the texel's channels stand in the model given.
   void clamp(Eigen::VectorXd& x) const;
 
+  /// Between which numbers clamp would keep each unknown if the others stayed at x, and a table's largest value
+  /// rose by no more than a little.
+  struct Box {
+    Eigen::VectorXd least, most;
+  };
+  Box box(const Eigen::VectorXd& x) const;
+
   /// Means of the errors at x.
   ErrorTerms errors(const Eigen::VectorXd& x) const;
 
@@ -117,6 +124,8 @@ class RefineSystem {
                       std::size_t end, Visit visit) const;
   template <class Visit>
   void for_each_unknown(Visit visit) const;
+  template <class Visit>
+  void for_each_limit(const Eigen::VectorXd& x, Visit visit) const;
   template <class Visit>
   void for_each_roughness_row(Visit visit) const;
 

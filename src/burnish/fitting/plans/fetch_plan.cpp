@@ -1,0 +1,252 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <burnish/error.h>
+#include <burnish/factors/fetches.h>
+#include <burnish/fitting/numerics/node_numbers.h>
+#include <burnish/fitting/plans/fetch_plan.h>
+#include <burnish/fitting/plans/trial_sets.h>
+#include <burnish/math/parallel.h>
+#include <burnish/reflectance/mirror_asymmetry.h>
+
+namespace burnish {
+
+namespace {
+
+// Below this many texels lines serve better, where there are fetches for them.
+constexpr double kMinVolumeTexels = 1200;
+constexpr std::size_t kNumberBytes = 4;  // of a scale or a warp's parameter
+
+// Of the texels: lines along theta_h, which rings of films need, and along other angles, which are smooth.
+constexpr double kRingShare = 0.07, kLineShare = 0.016, kGridShare = 0.14, kTwistShare = 0.1;
+constexpr int kMinLineNodes = 6, kMaxRingNodes = 512, kMaxLineNodes = 64, kTwistNodes = 5;
+constexpr Warp kDeviationWarp{WarpKind::power, 0.5}, kSkewWarp{WarpKind::power, 0.7};
+
+// How a volume's nodes are shared out, and the spacing of theta_h: the best differ among materials.
+struct VolumeForm {
+  double half, difference, azimuth;  ///< nodes along each axis, relative to each other
+  double power;                      ///< of theta_h's spacing
+};
+constexpr VolumeForm kForms[] = {
+    {30, 20, 6, 0.6}, {40, 15, 6, 0.6}, {24, 24, 6, 0.6}, {34, 18, 6, 0.5}, {30, 20, 6, 0.75}};
+constexpr int kMinDepth = 3;
+
+// The way to the last refinement is made on about this many pairs, in few steps, at this share of the nodes.
+constexpr std::size_t kCoarsePairs = 24'000, kCoarseNodes = 5000;
+constexpr double kCoarseShare = 0.25;
+constexpr int kCoarseSteps = 8, kFullSteps = 5, kHeldSteps = 2;
+// The log-linear start counts values about zero as the relative error does, and is smooth.
+constexpr double kStartFloor = PictureLoss::kFloor, kStartSmooth = 1e-5;
+// Trials: every so many pairs, in so few steps, for gains that another draw of pairs would not give.
+constexpr std::size_t kTrialPart = 4;
+constexpr int kTrialSteps = 5;
+
+/// Adds a model's tables and their uses, all of one lobe.
+class SpecBuilder {
+ public:
+  void add(const char* name, TableLayout layout, const std::vector<FactorUse>& uses) {
+    const int table = static_cast<int>(spec_.tables.size());
+    spec_.tables.push_back({.name = name, .layout = layout});
+    if (spec_.lobes.empty()) spec_.lobes.emplace_back();
+    for (FactorUse use : uses) {
+      use.table = table;
+      spec_.lobes.front().push_back(use);
+    }
+  }
+  void add_line(const char* name, int nodes, const std::vector<Projection>& over, Warp warp = {}) {
+    std::vector<FactorUse> uses;
+    for (const Projection& projection : over) uses.push_back({.projection = projection});
+    add(name, {.width = nodes, .warp = warp}, uses);
+  }
+  const ModelSpec& spec() const noexcept { return spec_; }
+
+ private:
+  ModelSpec spec_;
+};
+
+std::size_t bytes_of(const ModelSpec& spec, std::size_t texel_bytes, int channels) {
+  std::size_t numbers = spec.lobes.size() * static_cast<std::size_t>(channels), texels = 0;
+  for (const ModelSpec::TableSpec& table : spec.tables) {
+    texels += table.layout.node_count();
+    for (const Warp& warp : {table.layout.warp, table.layout.warp_y, table.layout.warp_z})
+      numbers += warp.kind != WarpKind::identity;
+  }
+  for (const std::vector<FactorUse>& lobe : spec.lobes)
+    for (const FactorUse& use : lobe)
+      for (const Projection& p : {use.projection, use.projection_y, use.projection_z})
+        numbers += coefficient_count(p);
+  return texels * texel_bytes + numbers * kNumberBytes;
+}
+
+// The largest volume of about a form within `nodes`.
+TableLayout volume_of(const VolumeForm& form, double nodes) {
+  const double scale = std::cbrt(nodes / (form.half * form.difference * form.azimuth));
+  const auto side = [](double n, int least) {
+    return std::clamp(static_cast<int>(std::lround(n)), least, kMaxVolumeSide);
+  };
+  TableLayout layout{.shape = TableShape::volume, .warp = {WarpKind::power, form.power}};
+  layout.depth = side(form.azimuth * scale, kMinDepth);
+  layout.height = side(std::sqrt(nodes / layout.depth * form.difference / form.half), 2);
+  layout.width = std::min(static_cast<int>(nodes) / (layout.depth * layout.height), kMaxVolumeSide);
+  return layout;
+}
+
+// The tables that a number of fetches has room for; the volume takes what the others leave.
+ModelSpec volume_spec(const VolumeForm& form, const CostLimit& limit, int channels, bool twisted) {
+  const double texels = static_cast<double>(limit.bytes / limit.texel_bytes);
+  const auto nodes = [&](double share, int most) {
+    return std::clamp(static_cast<int>(share * texels), kMinLineNodes, most);
+  };
+  const int line = nodes(kLineShare, kMaxLineNodes);
+  const Warp half_warp{WarpKind::power, form.power};
+  SpecBuilder builder;
+  int left = limit.fetches - 1;
+  const auto takes = [&](int fetches) {
+    const bool room = left >= fetches;
+    if (room) left -= fetches;
+    return room;
+  };
+  if (takes(1)) builder.add_line("z", nodes(kRingShare, kMaxRingNodes), {kProjectHalf}, half_warp);
+  if (twisted && takes(1))
+    builder.add("w",
+                {.shape = TableShape::grid,
+                 .width = kTwistNodes,
+                 .height = nodes(kTwistShare / kTwistNodes, kMaxRingNodes),
+                 .warp_y = half_warp},
+                {{.projection = kProjectTwist, .projection_y = kProjectHalf}});
+  if (takes(2)) builder.add_line("p", line, {kProjectWo, kProjectWi});
+  if (takes(1)) builder.add_line("r", line, {kProjectDifference});
+  if (takes(1)) {
+    const int side = std::max(4, static_cast<int>(std::sqrt(kGridShare * texels)));
+    builder.add("k", {.shape = TableShape::grid, .width = side, .height = side, .warp = kDeviationWarp},
+                {{.projection = kProjectDeviation, .projection_y = kProjectDifference}});
+  }
+  if (takes(2))
+    builder.add_line("s", line, {Projection{.wi = 1, .wo = 0.5}, Projection{.wi = 0.5, .wo = 1}}, kSkewWarp);
+
+  // the volume, whose numbers are a warp's
+  const std::size_t taken =
+      bytes_of(builder.spec(), limit.texel_bytes, builder.spec().lobes.empty() ? 0 : channels) +
+      kNumberBytes * (1 + (builder.spec().lobes.empty() ? static_cast<std::size_t>(channels) : 0));
+  const std::size_t rest = limit.bytes > taken ? (limit.bytes - taken) / limit.texel_bytes : 0;
+  const TableLayout volume = volume_of(form, static_cast<double>(rest));
+  if (volume.width < 2) throw Error("fit: expected a budget that holds a table of three axes");
+  builder.add(
+      "g", volume,
+      {{.projection = kProjectHalf, .projection_y = kProjectDifference, .projection_z = kProjectAzimuth}});
+  return builder.spec();
+}
+
+// The spec with volumes of fewer nodes.
+ModelSpec at_fewer_nodes(ModelSpec spec, double share) {
+  for (ModelSpec::TableSpec& table : spec.tables) {
+    if (table.layout.shape != TableShape::volume) continue;
+    for (int* side : {&table.layout.width, &table.layout.height, &table.layout.depth})
+      *side = std::max(kMinDepth, static_cast<int>(std::lround(*side * std::cbrt(share))));
+  }
+  return spec;
+}
+
+TrainingSet about(const TrainingSet& set, std::size_t pairs) {
+  return thinned(set, std::max<std::size_t>(1, set.size() / pairs));
+}
+
+/// The spec that serves a part of the pairs best that it was not fitted to.
+const ModelSpec& best_of(const std::vector<ModelSpec>& specs, const TrainingSet& set,
+                         const RefineOptions& options) {
+  if (specs.size() == 1) return specs.front();
+  const TrainingSet grey = mean_of_channels(set);
+  const TrainingSet fitted = part_of(grey, 0, kTrialPart), judged = part_of(grey, kTrialPart / 2, kTrialPart);
+  RefineOptions steps = options;
+  steps.format = TableFormat::single;
+  steps.max_iterations = kTrialSteps;
+  steps.progress = nullptr;
+  std::vector<double> values(specs.size(), std::numeric_limits<double>::infinity());
+  for_each_chunk(specs.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
+    const double nodes = static_cast<double>(coupled_unknowns(specs[k], 1));
+    const ModelSpec trial =
+        at_fewer_nodes(specs[k], std::min(1.0, static_cast<double>(fitted.size()) / (6 * nodes)));
+    LogModel model = fit_one_lobe(trial, fitted, fitted.values, kStartSmooth, kStartFloor);
+    refine(model, fitted, steps);
+    values[k] = objective(model, judged, options.shares);
+  });
+  return specs[static_cast<std::size_t>(std::ranges::min_element(values) - values.begin())];
+}
+
+}  // namespace
+
+bool takes_lobes(BrdfRef source, const CostLimit& limit) {
+  if (!source.isotropic()) return true;
+  if (static_cast<double>(limit.bytes / limit.texel_bytes) >= kMinVolumeTexels) return false;
+  const LobePlan plan = plan_for(source, limit.bytes, 0, limit.texel_bytes);
+  return plan_fits(plan, limit.bytes, source.channels(), limit.texel_bytes) &&
+         fetch_count(plan_to_spec(plan, limit.bytes, source.channels(), limit.texel_bytes)) <=
+             static_cast<std::size_t>(limit.fetches);
+}
+
+LobePlan plan_within(BrdfRef source, const CostLimit& limit) {
+  if (source.isotropic()) return plan_for(source, limit.bytes, 0, limit.texel_bytes);
+  LobePlan plan = default_plan(limit.bytes, 2, false, limit.texel_bytes);
+  const auto fetches = [&] {
+    std::size_t sum = 0;
+    for (const auto* factors : {&plan.factors, &plan.wide})
+      for (const PlannedFactor& factor : *factors) sum += factor.uses.size();
+    return sum;
+  };
+  // what serves least goes first: of what is spread wide all but theta_d, and at last all but the half vector
+  const auto drop = [&](const char* name) {
+    if (fetches() <= static_cast<std::size_t>(limit.fetches)) return;
+    for (auto* factors : {&plan.factors, &plan.wide})
+      std::erase_if(*factors, [&](const PlannedFactor& factor) { return factor.name == name; });
+  };
+  for (const char* name : {"b", "a", "m", "p", "r", "c"}) drop(name);
+  if (plan.wide.empty()) plan.wide_texels = 0;
+  return plan;
+}
+
+std::vector<ModelSpec> volume_specs(BrdfRef source, const CostLimit& limit) {
+  const bool twisted = mirror_asymmetry(source) > kMinAsymmetry;
+  std::vector<ModelSpec> specs;
+  for (const VolumeForm& form : kForms) specs.push_back(volume_spec(form, limit, source.channels(), twisted));
+  return specs;
+}
+
+TrainingOptions training_for_volumes(const CostLimit& limit) {
+  const std::size_t texels = limit.bytes / limit.texel_bytes,
+                    times = std::clamp<std::size_t>(texels / 8192, 1, 4);
+  return {.pictures = times * 40'000, .directions = times * 50'000, .crowded = true};
+}
+
+LobesFit fit_volumes(const TrainingSet& set, const std::vector<ModelSpec>& specs,
+                     const RefineOptions& options) {
+  const ModelSpec& spec = best_of(specs, set, options);
+
+  // few nodes and pairs
+  const TrainingSet coarse = about(set, kCoarsePairs);
+  const bool many = coupled_unknowns(spec, 1) > kCoarseNodes;
+  const ModelSpec start = many ? at_fewer_nodes(spec, kCoarseShare) : spec;
+  LobesFit fit{.model = fit_one_lobe(start, coarse, coarse.values, kStartSmooth, kStartFloor), .summary = {}};
+  const auto refine_part = [&](const TrainingSet& part, TableFormat format, int steps, double from,
+                               double to) {
+    RefineOptions these = options;
+    these.format = format;
+    these.max_iterations = std::min(steps, options.max_iterations);
+    if (options.progress)
+      these.progress = [&, from, to](double f) { options.progress(from + f * (to - from)); };
+    const FitSummary done = refine(fit.model, part, these);
+    const int before = fit.summary.iterations;
+    fit.summary = done;
+    fit.summary.iterations += before;
+  };
+  refine_part(coarse, TableFormat::single, kCoarseSteps, 0.1, 0.3);
+
+  // all of them; what shares an exponent is held in its reach only once it stands
+  if (many) fit.model = resampled(fit.model, spec);
+  refine_part(set, TableFormat::single, kFullSteps, 0.3, 0.8);
+  refine_part(set, options.format, kHeldSteps, 0.8, 1);
+  return fit;
+}
+
+}  // namespace burnish

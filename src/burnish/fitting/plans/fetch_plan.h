@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <burnish/fitting/plans/fit_plan.h>
+#include <burnish/fitting/plans/lobe_plan.h>
+#include <burnish/reflectance/brdf.h>
+
+namespace burnish {
+
+/// What a model may cost: bytes as FactoredBrdf::bytes counts them, reads as fetch_count does.
+struct CostLimit {
+  std::size_t bytes = 16'384, texel_bytes = 4;
+  int fetches = 2;  ///< >= 1
+};
+
+/// The lines of default_plan where they are within the limit and so few bytes hold no volume that serves as
+/// well, which isotropic models of some kilobytes do; of an anisotropic source the hemispheres of default_plan, as
+/// many of its factors as the limit allows.
+bool takes_lobes(BrdfRef source, const CostLimit& limit);
+LobePlan plan_within(BrdfRef source, const CostLimit& limit);
+
+/// Isotropic models of one lobe within the limit: g(theta_h,theta_d,phi_d), with a line z(theta_h) from two
+/// fetches on, p(wo) p(wi) from four, r(theta_d) of three and from five on, a grid k(theta_m,theta_d) from six on,
+/// s(wi + wo/2) s(wi/2 + wo) from eight on; of a source that is not its own mirror image a grid
+/// w(theta_t,theta_h) comes third. They differ in how the volume's nodes are shared out among its axes and how
+/// theta_h is spaced. Throws Error where the bytes hold no such tables.
+std::vector<ModelSpec> volume_specs(BrdfRef source, const CostLimit& limit);
+
+/// How many pairs to draw for volumes, and where.
+TrainingOptions training_for_volumes(const CostLimit& limit);
+
+/// Fits the spec that serves best: each is fitted to part of the pairs, the mean of their channels, in few steps,
+/// and judged on another part. The log-linear fit of its volume at fewer nodes is refined on part of the
+/// set, then at all nodes on the whole. Throws Error as fit_homomorphic does.
+LobesFit fit_volumes(const TrainingSet& set, const std::vector<ModelSpec>& specs,
+                     const RefineOptions& options);
+
+}  // namespace burnish

@@ -1,0 +1,37 @@
+#include <burnish/fitting/plans/trial_sets.h>
+
+namespace burnish {
+
+TrainingSet part_of(const TrainingSet& set, std::size_t first, std::size_t step) {
+  TrainingSet shifted = set;
+  // drop the first pairs of both kinds, so that thinning begins elsewhere
+  const auto channels = static_cast<std::ptrdiff_t>(set.channels);
+  const auto drop = [&](std::size_t at) {
+    const auto n = static_cast<std::ptrdiff_t>(at), m = static_cast<std::ptrdiff_t>(first);
+    shifted.pairs.erase(shifted.pairs.begin() + n, shifted.pairs.begin() + n + m);
+    shifted.weights.erase(shifted.weights.begin() + n, shifted.weights.begin() + n + m);
+    shifted.values.erase(shifted.values.begin() + n * channels, shifted.values.begin() + (n + m) * channels);
+  };
+  if (set.size() - set.picture_count > first) drop(set.picture_count);
+  if (set.picture_count > first) {
+    drop(0);
+    shifted.picture_count -= first;
+  }
+  return thinned(shifted, step);
+}
+
+TrainingSet mean_of_channels(const TrainingSet& set) {
+  TrainingSet grey = set;
+  grey.channels = 1;
+  const auto channels = static_cast<std::size_t>(set.channels);
+  grey.values.resize(set.size());
+  grey.albedo = {};
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    double sum = 0;
+    for (std::size_t c = 0; c < channels; ++c) sum += set.values[i * channels + c];
+    grey.values[i] = static_cast<float>(sum / static_cast<double>(channels));
+  }
+  return grey;
+}
+
+}  // namespace burnish
