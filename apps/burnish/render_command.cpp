@@ -4,10 +4,12 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <variant>
 
 #include <fmt/format.h>
 
 #include <burnish/error.h>
+#include <burnish/eval/factored_eval.h>
 #include <burnish/file.h>
 #include <burnish/image/png.h>
 #include <burnish/math/angles.h>
@@ -123,8 +125,14 @@ Image render_by_cpu(const Scene& scene, const std::optional<Environment>& enviro
                     const RenderArguments& arguments, int width, int height) {
   std::vector<Source> sources;
   for (const std::string& spec : arguments.materials) sources.push_back(open_source(spec, {}));
+  // factored BRDFs in float, as fast as one pair at a time goes
+  std::vector<FactoredEvaluator> evaluators;
+  evaluators.reserve(sources.size());
   std::vector<BrdfRef> materials;
-  for (const Source& source : sources) materials.push_back(source.ref());
+  for (const Source& source : sources) {
+    const auto* const model = std::get_if<FactoredBrdf>(&source.brdf);
+    materials.push_back(model ? BrdfRef(evaluators.emplace_back(*model)) : source.ref());
+  }
   return render_cpu(scene, materials,
                     {.width = width,
                      .height = height,

@@ -7,8 +7,8 @@
     bsdf = mi.load_dict({"type": "burnish", "filename": "paint.exr"})
 
 In the JIT variants (llvm_*_rgb, cuda_*_rgb) evaluation, sampling and densities are compiled with the scene, and the
-logarithms of the tables are differentiable parameters: `p.log_values` of table p, a tensor of shape (height, width,
-channels). scalar_rgb calls the C++ library, one direction at a time.
+logarithms of the tables are differentiable parameters: `p.log_values` of table p, a tensor of the shape of
+its values. scalar_rgb calls the C++ library, one direction at a time.
 
 Mitsuba's si.wi points to the viewer: it is the library's wo, and Mitsuba's wo its wi.
 """
@@ -66,7 +66,7 @@ def _make_bsdf_class():
             if self.factors:
                 f, pdf = self.factors.eval(wo, si.wi), self.sampler.pdf(dr.detach(wo), dr.detach(si.wi))
             else:
-                to_light, to_viewer = np.array(wo, dtype=np.float64), np.array(si.wi, dtype=np.float64)
+                to_light, to_viewer = np.array(wo, dtype=np.float32), np.array(si.wi, dtype=np.float32)
                 f = mi.Color3f(*np.broadcast_to(self.model.eval(to_light, to_viewer), 3))
                 pdf = float(self.model.pdf(to_light, to_viewer))
             return dr.select(active, f * wo.z, 0), dr.select(active, pdf, 0)
@@ -111,7 +111,7 @@ class FactoredFunction:
         """Call after log_values changed."""
         tables = self.model.tables
         self.values = {
-            name: (tables[i].values.shape[1], dr.exp(self.log_values[tables[i].name].array))
+            name: (tables[i].values.shape[-2], dr.exp(self.log_values[tables[i].name].array))
             for name, i in self.textures.items()
         }
 

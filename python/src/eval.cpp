@@ -1,3 +1,4 @@
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -56,6 +57,14 @@ Vec3 vector_at(const Rows<const T>& rows, std::size_t i) noexcept {
           static_cast<double>(*rows.at(i, 2))};
 }
 
+// One pair by the fast evaluator.
+void eval_one(const FactoredEvaluator& evaluator, const Job<float>& job) {
+  std::array<float, SymmetrizedBrdf::kMaxChannels> values;
+  const auto f = std::span(values).first(job.channels);
+  evaluator.eval(vector_at(job.wi, 0), vector_at(job.wo, 0), f);
+  for (std::size_t c = 0; c < job.channels; ++c) *job.f.at(0, c) = f[c];
+}
+
 // To 1 %, as readers of directions ask for; false for what is no number.
 bool is_direction(Vec3 w) noexcept {
   return std::abs(dot(w, w) - 1) < 0.02;
@@ -96,7 +105,9 @@ nb::object eval(const OpenedBrdf& brdf, const Array<const T>& wi, const Array<co
   const bool planes = job.wi.planes() && job.wo.planes() && job.count > 1;
   const Result<T> result = make_result<T>(out, job.count, job.channels, planes);
   job.f = result.rows;
-  {
+  if (std::is_same_v<T, float> && job.count == 1 && brdf.model()) {
+    if constexpr (std::is_same_v<T, float>) eval_one(brdf.evaluator(), job);
+  } else {
     const nb::gil_scoped_release released;
     for_each_chunk(job.count, kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
       if constexpr (std::is_same_v<T, float>)

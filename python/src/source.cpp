@@ -1,4 +1,7 @@
+#include <algorithm>
 #include <cmath>
+#include <span>
+#include <utility>
 
 #include <nanobind/stl/function.h>
 #include <nanobind/stl/optional.h>
@@ -23,18 +26,20 @@ OpenedBrdf* open(const std::string& spec, const OpenOptions& options) {
   return new OpenedBrdf(std::move(source));
 }
 
-const char* shape_name(TableShape shape) {
-  return shape == TableShape::line ? "line" : shape == TableShape::disk ? "disk" : "grid";
+// (height, width, channels), of a volume with its depth before them.
+std::vector<std::size_t> array_shape(const Table& table) {
+  std::vector<std::size_t> shape;
+  if (table.layout.shape == TableShape::volume) shape.push_back(static_cast<std::size_t>(table.layout.depth));
+  for (const int side : {table.layout.height, table.layout.width, table.channels})
+    shape.push_back(static_cast<std::size_t>(side));
+  return shape;
 }
 
 nb::object table_values(nb::handle self) {
   const auto& table = nb::cast<const Table&>(self);
+  const std::vector<std::size_t> shape = array_shape(table);
   // no copy: the array keeps the model alive
-  return nb::cast(nb::ndarray<nb::numpy, const float>(
-      table.values.data(),
-      {static_cast<std::size_t>(table.layout.height), static_cast<std::size_t>(table.layout.width),
-       static_cast<std::size_t>(table.channels)},
-      self));
+  return nb::cast(nb::ndarray<nb::numpy, const float>(table.values.data(), shape.size(), shape.data(), self));
 }
 
 nb::object projection_terms(const Projection& p) {
@@ -48,7 +53,7 @@ nb::tuple warp_terms(const Warp& warp) {
 }
 
 OpenedModel* with_log_tables(const OpenedModel& self,
-                             const std::vector<nb::ndarray<const double, nb::ndim<3>, nb::c_contig>>& logs,
+                             const std::vector<nb::ndarray<const double, nb::c_contig>>& logs,
                              const std::optional<std::string>& format) {
   const FactoredBrdf& brdf = self.brdf();
   std::vector<Table> tables(brdf.tables().begin(), brdf.tables().end());
@@ -57,9 +62,8 @@ OpenedModel* with_log_tables(const OpenedModel& self,
                 std::to_string(logs.size()));
   for (std::size_t t = 0; t < tables.size(); ++t) {
     Table& table = tables[t];
-    if (logs[t].shape(0) != static_cast<std::size_t>(table.layout.height) ||
-        logs[t].shape(1) != static_cast<std::size_t>(table.layout.width) ||
-        logs[t].shape(2) != static_cast<std::size_t>(table.channels))
+    const std::span<const std::int64_t> found(logs[t].shape_ptr(), logs[t].ndim());
+    if (!std::ranges::equal(array_shape(table), found, std::cmp_equal<std::size_t, std::int64_t>))
       throw Error("log_tables: expected the shape of table '" + table.name + "'");
     std::copy(logs[t].data(), logs[t].data() + logs[t].size(), table.values.begin());
     if (format) table.format = parse_table_format(*format);
@@ -73,15 +77,17 @@ OpenedModel* with_log_tables(const OpenedModel& self,
 }
 
 void bind_model_parts(nb::module_& m) {
-  nb::class_<Table>(m, "Table", "One positive factor lambda: nodes over one or two angles or a hemisphere.")
+  nb::class_<Table>(m, "Table", "One positive factor lambda: nodes over one to three angles or a hemisphere.")
       .def_ro("name", &Table::name)
       .def_ro("channels", &Table::channels, "1, shared by the BRDF's channels, or their number.")
-      .def_prop_ro("values", &table_values, nb::sig("def values(self) -> NDArray[numpy.float32]"),
-                   "float32 (height, width, channels), read-only, no copy: lambda at the nodes, largest 1.")
       .def_prop_ro(
-          "shape", [](const Table& t) { return shape_name(t.layout.shape); },
+          "values", &table_values, nb::sig("def values(self) -> NDArray[numpy.float32]"),
+          "float32 (height, width, channels), of a volume (depth, height, width, channels), read-only, no "
+          "copy: lambda at the nodes, largest 1.")
+      .def_prop_ro(
+          "shape", [](const Table& t) { return std::string(to_string(t.layout.shape)); },
           "What the nodes are spread over: \"line\" (a polar angle), \"disk\" (a hemisphere), \"grid\" (two "
-          "polar angles).")
+          "polar angles), \"volume\" (three).")
       .def_prop_ro("format", [](const Table& t) { return std::string(to_string(t.format)); })
       .def_prop_ro("byte_count", &Table::byte_count)
       .def_prop_ro(
@@ -90,7 +96,10 @@ void bind_model_parts(nb::module_& m) {
           "Spacing of the nodes: (\"identity\" | \"power\" | \"rational\", parameter).")
       .def_prop_ro(
           "warp_y", [](const Table& t) { return warp_terms(t.layout.warp_y); },
-          nb::sig("def warp_y(self) -> tuple[str, float]"), "Of grids, along y.");
+          nb::sig("def warp_y(self) -> tuple[str, float]"), "Of grids and volumes, along y.")
+      .def_prop_ro(
+          "warp_z", [](const Table& t) { return warp_terms(t.layout.warp_z); },
+          nb::sig("def warp_z(self) -> tuple[str, float]"), "Of volumes, along z.");
   nb::class_<FactorUse>(m, "FactorUse", "One use of a table in a product.")
       .def_ro("table", &FactorUse::table, "Index into Model.tables.")
       .def_prop_ro(
@@ -101,7 +110,11 @@ void bind_model_parts(nb::module_& m) {
           "as \"difference\".")
       .def_prop_ro(
           "projection_y", [](const FactorUse& u) { return projection_terms(u.projection_y); },
-          nb::sig("def projection_y(self) -> tuple[float, float, float, float] | str"), "Of grids only.");
+          nb::sig("def projection_y(self) -> tuple[float, float, float, float] | str"),
+          "Of grids and volumes.")
+      .def_prop_ro(
+          "projection_z", [](const FactorUse& u) { return projection_terms(u.projection_z); },
+          nb::sig("def projection_z(self) -> tuple[float, float, float, float] | str"), "Of volumes only.");
   nb::class_<Lobe>(m, "Lobe", "One product of factors.")
       .def_ro("scale", &Lobe::scale, "One entry a channel.")
       .def_ro("factors", &Lobe::factors);
@@ -165,7 +178,7 @@ void bind_model(nb::module_& m) {
       .def(
           "with_log_tables", &with_log_tables, nb::arg("log_tables"), nb::arg("format") = nb::none(),
           "The model with other tables, given by their natural logarithms.\n\n"
-          "log_tables: one float64 array a table, (height, width, channels). Each is scaled to a largest "
+          "log_tables: one float64 array a table, of the shape of its values. Each is scaled to a largest "
           "value\n"
           "of 1, what is divided out moves into the lobes' scales, and rounded to its format or to `format`\n"
           "(\"half\", \"float\", \"rgb9e5\", \"unorm8\").");

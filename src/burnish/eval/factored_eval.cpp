@@ -557,6 +557,10 @@ int FactoredEvaluator::channels() const noexcept {
   return static_cast<int>(plan_->channels);
 }
 
+bool FactoredEvaluator::isotropic() const noexcept {
+  return plan_->isotropic;
+}
+
 double FactoredEvaluator::rounding_bound() const noexcept {
   return plan_->rounding_bound;
 }
@@ -586,6 +590,13 @@ void FactoredEvaluator::eval(const DirectionRows& d, std::span<float> f) const n
 void FactoredEvaluator::eval(Vec3 wi, Vec3 wo, std::span<float> f) const noexcept {
   assert(f.size() == plan_->channels);
   HWY_DYNAMIC_DISPATCH(eval_one)(*plan_, wi, wo, f.data());
+}
+
+bool FactoredEvaluator::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+  std::array<float, SymmetrizedBrdf::kMaxChannels> values;  // touched up to the channels only
+  eval(wi, wo, std::span(values).first(plan_->channels));
+  std::copy_n(values.begin(), plan_->channels, f.begin());
+  return true;
 }
 
 }  // namespace burnish

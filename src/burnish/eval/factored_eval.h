@@ -27,7 +27,7 @@ struct DirectionRows {
 
 /// Evaluates a factored BRDF in float, prepared once for many directions: what the factors share (half
 /// vectors, projections, positions in tables) is found beforehand and computed once a direction, and tables
-/// are copied with their channels padded to whole vectors. Never allocates after construction; copies share
+/// are copied with their channels padded to whole vectors. Satisfies Brdf. Never allocates after construction; copies share
 /// the tables, threads may share a copy.
 ///
 /// Reciprocal models stay reciprocal to the last bit, and both forms of eval give the same bits. Against
@@ -40,6 +40,7 @@ class FactoredEvaluator {
   explicit FactoredEvaluator(const FactoredBrdf& brdf);
 
   int channels() const noexcept;
+  bool isotropic() const noexcept;
 
   /// f_r in 1/sr, without the cosine, zero below the horizon: f[c * directions.size() + i] is channel c of
   /// pair i; f has channels() * directions.size() entries. One plane a channel, as the directions have one a
@@ -53,8 +54,10 @@ class FactoredEvaluator {
   /// Rows in, rows out: f[channels() * i + c] is channel c of pair i. The same bits.
   void eval(const DirectionRows& directions, std::span<float> f) const noexcept;
 
-  /// One pair; f has channels() entries.
+  /// One pair, without a block's preparations; f has channels() entries. The same bits as of many.
   void eval(Vec3 wi, Vec3 wo, std::span<float> f) const noexcept;
+  /// The same as a Brdf, for renderers that take any: true, and f_r in doubles.
+  bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 
   /// The largest of the lobes' sums over their factors of 2^-24 (8 R + 16 axes (n - 1) (R - 1)): a position
   /// is off by at most 16 * 2^-24 of an axis of n nodes, and a table's neighbouring entries differ by at most
@@ -64,5 +67,7 @@ class FactoredEvaluator {
  private:
   std::shared_ptr<const FactoredPlan> plan_;
 };
+
+static_assert(Brdf<FactoredEvaluator>);
 
 }  // namespace burnish

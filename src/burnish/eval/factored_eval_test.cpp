@@ -29,6 +29,16 @@ const ModelCase kFurtherModels[] = {
     {"ShortLines", "pqpr", {"p=2", "q=65", "r=17"}, 3},
     {"TwoChannels", "pqpr", {"p=5", "q=8x8", "r=65,shared"}, 2},
     {"SharedPair", "p(wo) q(h) p(wi)", {"p=200,shared", "q=12"}, 4},
+    {"LongVolume", "g(theta_h,theta_d,phi_d)", {"g=28x14x8,power:0.5"}, 3},
+    {"VolumePair",
+     "v(wi,theta_h,phi_d) v(wo,theta_h,phi_d) + u(wi,wi+wo+0.4n,d)",
+     {"v=5x4x3,power:0.7", "u=3x3x5"},
+     4},
+    {"ManySteps",
+     "a(wo) b(wi) c(h) d(d) e(wi,wo) f(h,d) g(wi,wo,h) i(0.3wi+0.9wo) k(0.5wi+wo) l(m) o(theta_t) s(h)",
+     {"a=9x9", "b=8x8", "c=7,rational:0.3", "d=6", "e=5x6", "f=4x9", "g=3x4x5", "i=9", "k=8", "l=7", "o=6",
+      "s=5,power:0.4"},
+     3},
     {"Spectral", "p(wo) q(h) p(wi) + s(h) t(theta_d)", {"p=8x8", "q=32", "s=8,shared"}, 31},
 };
 
@@ -119,6 +129,24 @@ TEST_P(FactoredEvaluatorTest, GivesTheSameBitsForOneDirectionAndForMany) {
     evaluator.eval(pairs[i].wi, pairs[i].wo, one);
     for (std::size_t c = 0; c < one.size(); ++c) ASSERT_EQ(one[c], f[c * pairs.size() + i]) << i;
   }
+}
+
+TEST_P(FactoredEvaluatorTest, OneDirectionIsAnythingToo) {
+  const FactoredEvaluator evaluator(model());
+  std::vector<float> one(static_cast<std::size_t>(evaluator.channels()));
+  std::vector<double> doubles(one.size());
+  const Vec3 up{0, 0, 1};
+  for (const double odd : std::initializer_list<double>{NAN, INFINITY, 1e30, 1e-40, 0, 1.02}) {
+    evaluator.eval(up, {0, 0, odd}, one);
+    for (const float f : one) EXPECT_TRUE(std::isnan(f)) << odd;
+    evaluator.eval({odd, 0, 0}, up, one);
+    for (const float f : one) EXPECT_TRUE(std::isnan(f)) << odd;
+  }
+  evaluator.eval(up, {0.6, 0, -0.8}, one);
+  for (const float f : one) EXPECT_EQ(f, 0);
+  evaluator.eval({0.6, 0, 0.8}, up, one);
+  EXPECT_TRUE(evaluator.eval({0.6, 0, 0.8}, up, doubles));
+  EXPECT_TRUE(std::ranges::equal(one, doubles));
 }
 
 TEST_P(FactoredEvaluatorTest, IsReciprocalToTheLastBitWhereTheModelIs) {

@@ -92,7 +92,7 @@ bool FactoredPlan::Position::same_place(const Position& other) const noexcept {
          std::tie(other.disk, other.warp, other.parameter, other.size, other.cells);
 }
 
-FactoredPlan::FactoredPlan(const FactoredBrdf& brdf) : channels(static_cast<std::size_t>(brdf.channels())) {
+FactoredPlan::FactoredPlan(const FactoredBrdf& brdf) : channels(static_cast<std::size_t>(brdf.channels())), isotropic(brdf.isotropic()) {
   std::vector<Lookup> tables;
   for (const Table& table : brdf.tables()) tables.push_back(add_table(table));
   for (std::size_t j = 0; j < brdf.lobes().size(); ++j) {

@@ -90,6 +90,7 @@ struct FactoredPlan {
 
   std::size_t channels, slots = 0;
   bool needs_sum = false;  // wi + wo
+  bool isotropic;
   double rounding_bound = 0;
   std::vector<Source> sources;
   std::vector<Steps> steps;
