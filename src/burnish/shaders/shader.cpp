@@ -104,26 +104,33 @@ std::vector<int> exponents_in(const std::vector<ShaderTexture>& textures, std::s
   return exponents;
 }
 
-// [HomomorphicBrdf, eq. 4], each pair multiplied with itself first, as the definition does. `steps`: powers of 2
-// before each multiplication, for products in half precision; or empty.
+Expr scale_value(const Lobe& lobe, int exponent) {
+  std::vector<Expr> scale;
+  for (const double s : lobe.scale) scale.emplace_back(std::ldexp(s, exponent));
+  return scale.size() == 1 ? scale[0] : Expr(Op::vector, scale);
+}
+
+// [HomomorphicBrdf, eq. 4], each pair multiplied with itself first, as the definition does. Textures have their
+// tables times 2^exponents.
 Expr lobe_value(const Lookups& lookups, const FactoredBrdf& brdf, std::size_t j,
-                const std::vector<int>& exponents, const std::vector<int>& steps) {
+                const std::vector<int>& exponents, bool half_products) {
   const auto uses = brdf.ordered_factors(j);
-  const std::size_t pairs = brdf.pair_count(j);
   int in_tables = 0;
   for (const FactorUse& use : uses) in_tables += exponents[static_cast<std::size_t>(use.table)];
-  std::vector<Expr> scale;
-  for (const double s : brdf.lobes()[j].scale)
-    scale.emplace_back(std::ldexp(s, (steps.empty() ? 0 : steps[0]) - in_tables));
-  Expr product = brdf.channels() == 1 ? scale[0] : Expr(Op::vector, scale);
-  for (std::size_t step = 0, k = 0; k < uses.size(); ++step) {
-    // no constant above what half floats hold
-    constexpr int kMostStep = 14;
-    int rest = step == 0 || steps.empty() ? 0 : steps[step];
-    for (; rest != 0; rest -= std::clamp(rest, -kMostStep, kMostStep))
-      product = product * std::ldexp(1.0, std::clamp(rest, -kMostStep, kMostStep));
-    const Expr value = lookups.value(uses[k++]);
-    product = product * (step < pairs ? value * lookups.value(uses[k++]) : value);
+  if (half_products) {
+    const HalfProduct half = half_product(brdf, j, exponents);
+    const auto constants = static_cast<int>(std::ranges::count(half.order, HalfProduct::kConstant));
+    Expr product = scale_value(brdf.lobes()[j], -in_tables - constants * half.exponent);
+    for (const int k : half.order)
+      product = product * (k == HalfProduct::kConstant ? Expr(std::ldexp(1.0, half.exponent))
+                                                       : lookups.value(uses[static_cast<std::size_t>(k)]));
+    return named("lobe", product);
+  }
+  const std::size_t paired = 2 * brdf.pair_count(j);
+  Expr product = scale_value(brdf.lobes()[j], -in_tables);
+  for (std::size_t k = 0; k < uses.size(); k += k < paired ? 2 : 1) {
+    const Expr value = lookups.value(uses[k]);
+    product = product * (k < paired ? value * lookups.value(uses[k + 1]) : value);
   }
   return named("lobe", product);
 }
@@ -133,11 +140,8 @@ std::vector<Expr> lobe_values(const FactoredBrdf& brdf, const std::vector<Shader
   const Lookups lookups(brdf, textures, options.filter);
   const std::vector<int> exponents = exponents_in(textures, brdf.tables().size());
   std::vector<Expr> lobes;
-  for (std::size_t j = 0; j < brdf.lobes().size(); ++j) {
-    const std::vector<int> steps =
-        options.half_products ? step_exponents(brdf, j, exponents) : std::vector<int>{};
-    lobes.push_back(lobe_value(lookups, brdf, j, exponents, steps));
-  }
+  for (std::size_t j = 0; j < brdf.lobes().size(); ++j)
+    lobes.push_back(lobe_value(lookups, brdf, j, exponents, options.half_products));
   return lobes;
 }
 
