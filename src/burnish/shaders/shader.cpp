@@ -177,16 +177,26 @@ std::string declare_textures(const Language& l, const ShaderOptions& options,
   return fmt::format(fmt::runtime(l.texture_struct), "burnish_" + options.name + "_tables", text);
 }
 
-ShaderCost cost_of(const OperationCount& count) noexcept {
+ShaderCost cost_of(const OperationCount& count, std::size_t textures) noexcept {
   return {.fetches = count.fetches,
+          .textures = static_cast<int>(textures),
           .operations = count.multiplies + count.adds + count.compares,
           .divisions = count.divisions,
           .roots = count.roots,
           .powers = count.transcendentals};
 }
 
-std::string local_function(Expr total, const Language& l, const ShaderOptions& options,
-                           const std::string& name, std::string_view more, ShaderCost& cost) {
+// What functions take besides the directions.
+std::string more_of(const ShaderOptions& options) {
+  return options.language == ShaderLanguage::msl ? fmt::format("burnish_{}_tables tables", options.name) : "";
+}
+
+struct LocalFunction {
+  std::string text;
+  OperationCount count;
+};
+LocalFunction local_function(Expr total, const Language& l, const ShaderOptions& options,
+                             const std::string& name) {
   if (total.type() == ValueType::real) {
     total = named("f0", total);
     total = Expr(Op::vector, {total, total, total});
@@ -194,23 +204,17 @@ std::string local_function(Expr total, const Language& l, const ShaderOptions& o
   Graph graph;
   const std::size_t root = graph.add(total);
   const Writer writer(l, graph, {root}, options.half_products);
-  cost = cost_of(graph.count());
   std::string body = horizon_test(l);
   if (options.language == ShaderLanguage::msl && options.filter == ShaderFilter::hardware)
     body += "  constexpr sampler smooth_sampler(filter::linear, address::clamp_to_edge);\n";
   const std::string value =
       options.half_products ? fmt::format("{}({})", l.vector, writer.text(root)) : writer.text(root);
   body += writer.text() + fmt::format(fmt::runtime(l.result), value);
-  return l.function(ValueType::vector, name, kTwoDirections, more, body);
+  return {l.function(ValueType::vector, name, kTwoDirections, more_of(options), body), graph.count()};
 }
 
 std::string_view header_of(const Language& l, const ShaderOptions& options) noexcept {
   return options.half_products ? l.half_header : l.header;
-}
-
-// What functions take besides the directions.
-std::string more_of(const ShaderOptions& options) {
-  return options.language == ShaderLanguage::msl ? fmt::format("burnish_{}_tables tables", options.name) : "";
 }
 
 void check(const FactoredBrdf& brdf, const ShaderOptions& options) {
@@ -232,8 +236,11 @@ std::string_view to_string(ShaderLanguage language) noexcept {
 }
 
 std::string to_string(const ShaderCost& cost) {
-  return fmt::format("{} fetches, {} operations, {} divisions, {} roots, {} powers", cost.fetches,
-                     cost.operations, cost.divisions, cost.roots, cost.powers);
+  const std::string fetches = cost.fetches == 0 ? "0 fetches"
+                                                : fmt::format("{} fetches of {} texture{}", cost.fetches,
+                                                              cost.textures, cost.textures == 1 ? "" : "s");
+  return fmt::format("{}, {} operations, {} divisions, {} roots, {} powers", fetches, cost.operations,
+                     cost.divisions, cost.roots, cost.powers);
 }
 
 ShaderFormula shader_formula(const FactoredBrdf& brdf, const ShaderOptions& options) {
@@ -253,10 +260,8 @@ LobeFunctions lobe_functions(const FactoredBrdf& brdf, const ShaderOptions& opti
   functions.textures = std::move(formula.textures);
   functions.text += declare_textures(l, options, functions.textures);
   for (std::size_t j = 0; j < formula.lobes.size(); ++j) {
-    ShaderCost cost;
     functions.names.push_back(fmt::format("burnish_{}_lobe{}", options.name, j));
-    functions.text +=
-        local_function(formula.lobes[j], l, options, functions.names.back(), more_of(options), cost);
+    functions.text += local_function(formula.lobes[j], l, options, functions.names.back()).text;
   }
   return functions;
 }
@@ -267,9 +272,8 @@ Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options) {
   const bool cpp = options.language == ShaderLanguage::cpp;
   Shader shader;
   shader.textures = std::move(formula.textures);
-  const std::string more = more_of(options);
-  const std::string function =
-      local_function(formula.value, l, options, "burnish_" + options.name, more, shader.cost);
+  const LocalFunction function = local_function(formula.value, l, options, "burnish_" + options.name);
+  shader.cost = cost_of(function.count, shader.textures.size());
   const auto comment_of = [](std::string text) {  // a table's name may hold anything
     for (char& c : text) c = c < ' ' || c > '~' || c == '\\' ? '?' : c;
     return text;
@@ -282,7 +286,7 @@ Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options) {
       comment_of(model_expression(brdf)), options.name, to_string(shader.cost), header_of(l, options));
   if (cpp) shader.text += "namespace burnish_shader {\n";
   shader.text += declare_textures(l, options, shader.textures);
-  shader.text += function + world_function(l, options.name, more);
+  shader.text += function.text + world_function(l, options.name, more_of(options));
   if (cpp) shader.text += "}  // namespace burnish_shader\n";
   return shader;
 }
@@ -307,8 +311,8 @@ SplitShader split_shader(const FactoredBrdf& brdf, const ShaderOptions& options)
   }
   rest += writer.count(root);
   shader.value = fmt::format("{}({})", l.vector, writer.text(root));
-  shader.view_cost = cost_of(view);
-  shader.light_cost = cost_of(rest);
+  shader.view_cost = cost_of(view, shader.textures.size());
+  shader.light_cost = cost_of(rest, shader.textures.size());
   return shader;
 }
 
