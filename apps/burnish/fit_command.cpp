@@ -13,6 +13,7 @@
 #include <burnish/fitting/baselines/baselines.h>
 #include <burnish/fitting/fit_file.h>
 #include <burnish/math/parallel.h>
+#include <burnish/shaders/shader.h>
 
 #include "commands.h"
 #include "progress.h"
@@ -120,9 +121,10 @@ void print(const NodesReport& report) {
 }
 
 void print_model(const FactoredBrdf& model, const FitReport& report) {
-  fmt::print("model      {}, {} bytes ({} of them tables), {} fetches, {} textures\n",
-             model_expression(model), model.bytes(), model.table_bytes(), fetch_count(model),
-             model.tables().size());
+  fmt::print("model      {}, {} bytes ({} of them tables), {} fetches\n", model_expression(model),
+             model.bytes(), model.table_bytes(), fetch_count(model));
+  if (model.channels() == 1 || model.channels() == 3)
+    fmt::print("shader     {}\n", to_string(generate_shader(model, {.filter = ShaderFilter::hardware}).cost));
   const auto* one_lobe = std::get_if<OneLobeReport>(&report.how);
   if (one_lobe)
     print(*one_lobe);

@@ -1,10 +1,14 @@
 #include <memory>
+#include <optional>
+#include <string>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
 #include <burnish/io/source_report.h>
 #include <burnish/math/angles.h>
+#include <burnish/shaders/shader.h>
 
 #include "commands.h"
 #include "source_arguments.h"
@@ -12,6 +16,24 @@
 namespace burnish::cli {
 
 namespace {
+
+// Of the languages with textures, which have one or three channels.
+std::optional<ShaderCost> shader_cost(const FactoredBrdf& model) {
+  if (model.channels() != 1 && model.channels() != 3) return std::nullopt;
+  return generate_shader(model, {.filter = ShaderFilter::hardware}).cost;
+}
+
+// The report, of a model with what its shader costs.
+std::string json_text(const SourceReport& report) {
+  std::string text = to_json(report);
+  const auto cost = report.model ? shader_cost(*report.model) : std::nullopt;
+  if (!cost) return text;
+  auto json = nlohmann::ordered_json::parse(text);
+  json["shader"] = {{"fetches", cost->fetches},       {"textures", cost->textures},
+                    {"operations", cost->operations}, {"divisions", cost->divisions},
+                    {"roots", cost->roots},           {"powers", cost->powers}};
+  return json.dump(2);
+}
 
 void print_text(const SourceReport& report) {
   const auto& [source, albedos, reciprocity, model] = report;
@@ -56,12 +78,15 @@ void print_text(const SourceReport& report) {
        fmt::format("mean relative asymmetry {:.4g} over {} pairs", reciprocity.mean, reciprocity.pairs));
   if (const auto bytes = source.bytes()) line("bytes", fmt::format("{}", *bytes));
   if (!model) return;
+  if (const auto cost = shader_cost(*model)) line("shader", to_string(*cost));
   for (const Lobe& lobe : model->lobes())
     line("lobe", fmt::format("scale {:.4g}", fmt::join(lobe.scale, " ")));
   for (const Table& table : model->tables())
-    line("table", fmt::format("{}: {} x {}, {} channels, warp {}, {}, {} bytes", table.name,
-                              table.layout.width, table.layout.height, table.channels,
-                              to_string(table.layout.warp), to_string(table.format), table.byte_count()));
+    line("table",
+         fmt::format("{}: {} x {}{}, {} channels, warp {}, {}, {} bytes", table.name, table.layout.width,
+                     table.layout.height,
+                     table.layout.depth > 1 ? fmt::format(" x {}", table.layout.depth) : "", table.channels,
+                     to_string(table.layout.warp), to_string(table.format), table.byte_count()));
 }
 
 }  // namespace
@@ -78,7 +103,7 @@ void add_info_command(CLI::App& app) {
     const Source source = arguments->open();
     const SourceReport report = report_on(source);
     if (*as_json)
-      fmt::print("{}\n", to_json(report));
+      fmt::print("{}\n", json_text(report));
     else
       print_text(report);
   });

@@ -116,6 +116,8 @@ struct Models {
   FactoredBrdf disks = smooth_model({"", "pqp", {"p=64x64", "q=64x64,rational:0.2"}, 3});
   FactoredBrdf two = smooth_model(
       {"", "p(wo) q(h) r(theta_d) p(wi) + s(wo) t(h) s(wi)", {"p=24", "q=64", "r=16", "s=16", "t=32"}, 3});
+  FactoredBrdf volume = smooth_model(
+      {"", "z(theta_h) g(theta_h,theta_d,phi_d)", {"z=200,power:0.5", "g=48x12x6,power:0.5"}, 3});
   Ggx ggx{{0.1, 0.3}, 0.8, 0.3};
   HalfDiffTable merl = tabulate_half_diff(Ggx{{0.3, 0.3}, 0.8, 0.3}, 90, 90, 180, false);
   NeuralBrdf network = some_network();
@@ -133,6 +135,7 @@ std::vector<Peer> peers_of(const Models& models) {
     peers.push_back({fmt::format("factored `pqp`, lines, {}", how), shader(models.lines), models.lines});
     peers.push_back({fmt::format("factored `pqp`, disks, {}", how), shader(models.disks), models.disks});
     peers.push_back({fmt::format("factored, 2 lobes of lines, {}", how), shader(models.two), models.two});
+    peers.push_back({fmt::format("line times volume, {}", how), shader(models.volume), models.volume});
   };
   add(ShaderFilter::hardware, TableFormat::rgb9e5, "rgb9e5");
   add(ShaderFilter::hardware, TableFormat::half, "half");

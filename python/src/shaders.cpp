@@ -51,7 +51,8 @@ void write_ktx2(const std::filesystem::path& path, const ShaderTexture& texture,
 void bind_shaders(nb::module_& m) {
   nb::class_<PlacedTable>(m, "PlacedTable", "Where a table stands in a texture.")
       .def_ro("table", &PlacedTable::table, "Number of the model's table.")
-      .def_ro("first", &PlacedTable::first, "x, y and z of the texel that is its first node.");
+      .def_ro("first", &PlacedTable::first, "x, y and z of the texel that is its first node.")
+      .def_ro("exponent", &PlacedTable::exponent, "The table's values are there times 2^exponent.");
   nb::class_<ShaderTexture>(m, "ShaderTexture",
                             "What a shader reads: tables beside, above or behind each other.")
       .def_ro("name", &ShaderTexture::name, "Of the sampler.")
@@ -76,6 +77,7 @@ void bind_shaders(nb::module_& m) {
           [](const Shader& s) {
             nb::dict cost;
             cost["fetches"] = s.cost.fetches;
+            cost["textures"] = s.cost.textures;
             cost["operations"] = s.cost.operations;
             cost["divisions"] = s.cost.divisions;
             cost["roots"] = s.cost.roots;

@@ -16,28 +16,42 @@ const [folder, name, value] = process.argv.slice(2);
 const bytes = (file) => new Uint8Array(fs.readFileSync(path.join(folder, file)));
 const manifest = JSON.parse(fs.readFileSync(path.join(folder, `${name}.json`)));
 
-// Textures: ktx-parse and the loaders of three.js find the same texels, whose largest is 1.
-for (const [i, texture] of manifest.textures.entries()) {
+// Textures: ktx-parse and the loaders of three.js find the tables' texels, times a power of two.
+const tableNames = manifest.images.map((image) => image.table);
+for (const texture of manifest.textures) {
   const container = readKtx2(bytes(texture.file));
-  assert.deepEqual([container.pixelWidth, container.pixelHeight], [texture.width, texture.height]);
+  assert.deepEqual([container.pixelWidth, container.pixelHeight, container.pixelDepth],
+                   [texture.width, texture.height, texture.depth ?? 0]);
   assert.equal(container.levels.length, texture.levels ?? 1);
   const loader = new KTX2Loader();
   loader.workerConfig = {};  // no GPU to ask: the texels are not compressed for one
   const map = await new Promise((done, failed) => loader.parse(bytes(texture.file).buffer, done, failed));
-  const image = new EXRLoader().setDataType(THREE.FloatType).parse(bytes(manifest.images[i].file).buffer);
-  assert.deepEqual([image.width, image.height], [texture.width, texture.height]);
   const texels = map.mipmaps?.[0]?.data ?? map.image.data;
-  let largest = 0;
-  for (let y = 0; y < texture.height; ++y)
-    for (let x = 0; x < texture.width; ++x) {
-      const at = 4 * (y * texture.width + x), seen = 4 * ((texture.height - 1 - y) * texture.width + x);
-      for (let c = 0; c < 3; ++c) {
-        const half = THREE.DataUtils.fromHalfFloat(texels[at + c]);
-        assert.equal(half, image.data[seen + c]);  // EXRLoader turns images upside down
-        largest = Math.max(largest, half);
+  for (const {table, first, nodes, exponent} of texture.tables) {
+    const file = manifest.images[tableNames.indexOf(table)].file, [width, height, depth] = nodes;
+    const image = new EXRLoader().setDataType(THREE.FloatType).parse(bytes(file).buffer);
+    assert.deepEqual([image.width, image.height], [width, height * depth]);
+    let largest = 0;
+    for (let row = 0; row < height * depth; ++row)
+      for (let x = 0; x < width; ++x) {
+        const z = first[2] + Math.floor(row / height), y = first[1] + row % height;
+        const at = 4 * ((z * texture.height + y) * texture.width + first[0] + x);
+        const seen = 4 * ((height * depth - 1 - row) * width + x);  // EXRLoader turns images upside down
+        for (let c = 0; c < 3; ++c) {
+          const half = THREE.DataUtils.fromHalfFloat(texels[at + c]) / 2 ** exponent;
+          assert.equal(half, image.data[seen + c]);
+          largest = Math.max(largest, half);
+        }
       }
-    }
-  assert.equal(largest, 1);
+    assert.equal(largest, 1);
+  }
+}
+
+// Tables with their levels.
+for (const table of manifest.mips) {
+  const container = readKtx2(bytes(table.file));
+  assert.deepEqual([container.pixelWidth, container.pixelHeight, container.levels.length],
+                   [table.width, table.height, table.levels]);
 }
 
 // Cube maps with their levels.

@@ -102,7 +102,9 @@ void ModelExport::add_textures() {
     for (const PlacedTable& placed : shown.tables) {
       const TableLayout& layout = brdf_.tables()[placed.table].layout;
       json place = manifest_entry(brdf_.tables()[placed.table]);
-      place.update({{"first", placed.first}, {"nodes", {layout.width, layout.height, layout.depth}}});
+      place.update({{"first", placed.first},
+                    {"nodes", {layout.width, layout.height, layout.depth}},
+                    {"exponent", placed.exponent}});
       entry["tables"].push_back(std::move(place));
     }
     manifest_["textures"].push_back(std::move(entry));

@@ -37,6 +37,7 @@ json manifest_entry(ShaderLanguage language, const std::string& name, const Shad
           {"functions", {"burnish_" + name, "burnish_" + name + "_world"}},
           {"cost",
            {{"fetches", cost.fetches},
+            {"textures", cost.textures},
             {"operations", cost.operations},
             {"divisions", cost.divisions},
             {"roots", cost.roots},

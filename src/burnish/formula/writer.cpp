@@ -87,10 +87,10 @@ std::string Writer::operand(std::size_t i, int least_precedence) const {
 
 std::string Writer::formula(std::size_t i, int& precedence) const {
   const Graph::Node& node = graph_.nodes()[i];
-  const bool half = half_[i];
+  const bool half = half_[i], read = node.op == Op::texel || node.op == Op::sample;
   const auto of = [&](std::size_t k, int least) {
     const Graph::Node& argument = graph_.nodes()[node.arguments[k]];
-    const bool factor = half && argument.op == Op::constant && argument.type == ValueType::real;
+    const bool factor = half && !read && argument.op == Op::constant && argument.type == ValueType::real;
     return factor ? language_.literal(argument.constant, true) : operand(node.arguments[k], least);
   };
   // a op b; what stands to the right of an operator keeps its parentheses
@@ -136,11 +136,11 @@ std::string Writer::formula(std::size_t i, int& precedence) const {
       std::vector<std::string> all;
       for (std::size_t k = 0; k < node.arguments.size(); ++k) all.push_back(of(k, 0));
       if (node.op == Op::call) return fmt::format("{}({})", node.name, fmt::join(all, ", "));
-      const std::string read = node.op == Op::texel ? language_.fetch(node.name, all, node.type)
-                                                    : language_.filtered(node.name, all, node.type);
+      const std::string texel = node.op == Op::texel ? language_.fetch(node.name, all, node.type)
+                                                     : language_.filtered(node.name, all, node.type);
       const std::string_view convert =
           node.type == ValueType::vector ? language_.half_from_vector : language_.half_from_scalar;
-      return half && !convert.empty() ? fmt::format("{}({})", convert, read) : read;
+      return half && !convert.empty() ? fmt::format("{}({})", convert, texel) : texel;
     }
     default: {
       const Language::Call& call = language_.calls.at(node.op);

@@ -2,6 +2,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <utility>
 
 #include <burnish/math/angles.h>
 #include <burnish/math/random.h>
@@ -14,7 +16,8 @@ namespace {
 
 constexpr int kMostExponent = 15;
 // Logarithms to base 2 that products are kept between; what is darker than 2^kDark may lose digits.
-constexpr double kBright = 14, kFaint = -14, kDark = -10;
+constexpr double kBright = 14, kFaint = -13, kDark = -11;
+constexpr double kMostConstant = 12;
 
 double log_scale(const Lobe& lobe) noexcept {
   const double most = std::ranges::max(lobe.scale);
@@ -45,28 +48,40 @@ std::vector<DirectionsOfRange> directions_of_range() {
   return pairs;
 }
 
-// Of a lobe's first factors, the logarithms of the largest and the smallest channel for each pair.
-struct PartialLogs {
-  double most, least;
-};
-std::vector<PartialLogs> partial_logs(const FactoredBrdf& brdf, std::span<const FactorUse> factors,
-                                      std::span<const DirectionsOfRange> pairs) {
-  std::vector<double> ones(static_cast<std::size_t>(brdf.channels()), 1.0), f = ones;
+// Logarithms of a product of factors, of every channel of every pair.
+std::vector<double> logs_of(const FactoredBrdf& brdf, std::vector<double> scale,
+                            std::span<const FactorUse> factors, std::span<const DirectionsOfRange> pairs) {
+  std::vector<double> f(scale.size()), logs;
   const FactoredBrdf part(brdf.channels(), {brdf.tables().begin(), brdf.tables().end()},
-                          {{.scale = ones, .factors = {factors.begin(), factors.end()}}});
-  std::vector<PartialLogs> logs;
+                          {{.scale = std::move(scale), .factors = {factors.begin(), factors.end()}}});
   for (const auto& [wi, wo] : pairs) {
     part.eval(wi, wo, f);
-    logs.push_back({std::log2(std::ranges::max(f)), std::log2(std::ranges::min(f))});
+    for (const double value : f) logs.push_back(std::log2(value));
   }
   return logs;
+}
+
+// How far products leave the range: above it where f_r is within it, below where it is not dark.
+double excess(const std::vector<double>& products, const std::vector<double>& factor,
+              const std::vector<double>& whole) noexcept {
+  double sum = 0;
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    if (whole[i] > kBright) continue;
+    const double product = products[i] + factor[i], above = std::max(product - kBright, 0.0),
+                 below = whole[i] < kDark ? 0 : std::max(kFaint - product, 0.0);
+    sum += above * above + below * below;
+  }
+  return sum;
 }
 
 }  // namespace
 
 std::vector<int> table_exponents(const FactoredBrdf& brdf) {
-  const auto tables = brdf.tables();
-  std::vector<double> exponents(tables.size(), 0);
+  // the middle of each table's values
+  std::vector<double> exponents;
+  for (const Table& table : brdf.tables())
+    exponents.push_back(
+        table.format == TableFormat::unorm8 ? 0 : -0.5 * std::log2(double{std::ranges::min(table.values)}));
 
   // what a lobe's scale lacks or has too much is shared by its tables, in turn [Kaczmarz 1937]
   constexpr int kRounds = 50;
@@ -89,41 +104,47 @@ std::vector<int> table_exponents(const FactoredBrdf& brdf) {
   return whole;
 }
 
-std::vector<int> step_exponents(const FactoredBrdf& brdf, std::size_t lobe,
-                                const std::vector<int>& exponents) {
+HalfProduct half_product(const FactoredBrdf& brdf, std::size_t lobe, const std::vector<int>& exponents) {
   const auto factors = brdf.ordered_factors(lobe);
-  const std::size_t pairs = brdf.pair_count(lobe), steps = factors.size() - pairs;
-  std::vector<int> shifts(steps, 0);
-  if (steps == 0) return shifts;
+  const std::vector<double>& scale = brdf.lobes()[lobe].scale;
 
-  // products after each step as they are
+  // the scale as one constant that a half float holds, or several
+  double rest = log_scale(brdf.lobes()[lobe]);
+  for (const FactorUse& use : factors) rest -= exponents[static_cast<std::size_t>(use.table)];
+  const int constants = std::max(static_cast<int>(std::ceil(std::abs(rest) / kMostConstant)), 1);
+  HalfProduct product{.order = {}, .exponent = static_cast<int>(std::lround(rest / constants))};
+
+  // what there is to multiply, and what comes out
   const std::vector<DirectionsOfRange> directions = directions_of_range();
-  double shift = log_scale(brdf.lobes()[lobe]);  // of the scale and the tables so far
-  for (const FactorUse& use : factors) shift -= exponents[static_cast<std::size_t>(use.table)];
-  const std::vector<PartialLogs> whole = partial_logs(brdf, factors, directions);
-  const double scale = log_scale(brdf.lobes()[lobe]);
-  std::vector<double> brightest(steps, -std::numeric_limits<double>::infinity());
-  bool fits = shift <= kBright && shift >= kFaint;
-  for (std::size_t step = 0, used = 0; step < steps; ++step) {
-    const std::size_t next = used + (step < pairs ? 2 : 1);
-    for (; used < next; ++used) shift += exponents[static_cast<std::size_t>(factors[used].table)];
-    const std::vector<PartialLogs> logs = partial_logs(brdf, factors.first(used), directions);
-    for (std::size_t i = 0; i < logs.size(); ++i) {
-      brightest[step] = std::max(brightest[step], shift + logs[i].most);
-      if (scale + whole[i].most >= kDark && scale + whole[i].most <= kBright)
-        fits = fits && shift + logs[i].most <= kBright + 1 && shift + logs[i].least >= kFaint - 3;
-    }
+  const std::vector<double> whole = logs_of(brdf, scale, factors, directions);
+  std::vector<int> left;
+  std::vector<std::vector<double>> logs;
+  for (std::size_t k = 0; k < factors.size(); ++k) {
+    left.push_back(static_cast<int>(k));
+    logs.push_back(logs_of(brdf, std::vector(scale.size(), 1.0), factors.subspan(k, 1), directions));
+    for (double& log : logs.back()) log += exponents[static_cast<std::size_t>(factors[k].table)];
   }
-  if (fits) return shifts;
+  for (int i = 1; i < constants; ++i) {
+    left.push_back(HalfProduct::kConstant);
+    logs.emplace_back(whole.size(), product.exponent);
+  }
 
-  // else each as bright as it may be, and the last as it is
-  int before = 0;
-  for (std::size_t step = 0; step < steps; ++step) {
-    const int here = step + 1 == steps ? 0 : static_cast<int>(std::floor(kBright - brightest[step]));
-    shifts[step] = here - before;
-    before = here;
+  // next always what leaves the range least
+  std::vector<double> products(whole.size(), rest - (constants - 1) * product.exponent);
+  while (!left.empty()) {
+    std::size_t best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < left.size(); ++k)
+      if (const double e = excess(products, logs[k], whole); e < least) {
+        least = e;
+        best = k;
+      }
+    for (std::size_t i = 0; i < products.size(); ++i) products[i] += logs[best][i];
+    product.order.push_back(left[best]);
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(best));
+    logs.erase(logs.begin() + static_cast<std::ptrdiff_t>(best));
   }
-  return shifts;
+  return product;
 }
 
 }  // namespace burnish

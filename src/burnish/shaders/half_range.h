@@ -12,10 +12,16 @@ namespace burnish {
 /// unorm8.
 std::vector<int> table_exponents(const FactoredBrdf& brdf);
 
-/// What a lobe's product is multiplied with before each of its steps, as exponents of 2 that add up to 0: a step
-/// is a pair of factors or one factor, of values times their tables' `exponents`. All are 0 where the products
-/// that some thousand pairs of directions have stay within half floats as they are.
-std::vector<int> step_exponents(const FactoredBrdf& brdf, std::size_t lobe,
-                                const std::vector<int>& exponents);
+/// An order of a lobe's factors in which their products stay within half floats, where f_r does, for some
+/// thousand pairs of directions.
+struct HalfProduct {
+  static constexpr int kConstant = -1;
+
+  std::vector<int> order;  ///< numbers of ordered_factors(), or kConstant: the constant 2^exponent
+  int exponent = 0;        ///< what the scale has too much for one constant
+};
+/// Of values times 2^exponents, one a table, after a first factor: the scale with those exponents and the
+/// constants' taken out.
+HalfProduct half_product(const FactoredBrdf& brdf, std::size_t lobe, const std::vector<int>& exponents);
 
 }  // namespace burnish

@@ -104,26 +104,33 @@ std::vector<int> exponents_in(const std::vector<ShaderTexture>& textures, std::s
   return exponents;
 }
 
-// [HomomorphicBrdf, eq. 4], each pair multiplied with itself first, as the definition does. `steps`: powers of 2
-// before each multiplication, for products in half precision; or empty.
+Expr scale_value(const Lobe& lobe, int exponent) {
+  std::vector<Expr> scale;
+  for (const double s : lobe.scale) scale.emplace_back(std::ldexp(s, exponent));
+  return scale.size() == 1 ? scale[0] : Expr(Op::vector, scale);
+}
+
+// [HomomorphicBrdf, eq. 4], each pair multiplied with itself first, as the definition does. Textures have their
+// tables times 2^exponents.
 Expr lobe_value(const Lookups& lookups, const FactoredBrdf& brdf, std::size_t j,
-                const std::vector<int>& exponents, const std::vector<int>& steps) {
+                const std::vector<int>& exponents, bool half_products) {
   const auto uses = brdf.ordered_factors(j);
-  const std::size_t pairs = brdf.pair_count(j);
   int in_tables = 0;
   for (const FactorUse& use : uses) in_tables += exponents[static_cast<std::size_t>(use.table)];
-  std::vector<Expr> scale;
-  for (const double s : brdf.lobes()[j].scale)
-    scale.emplace_back(std::ldexp(s, (steps.empty() ? 0 : steps[0]) - in_tables));
-  Expr product = brdf.channels() == 1 ? scale[0] : Expr(Op::vector, scale);
-  for (std::size_t step = 0, k = 0; k < uses.size(); ++step) {
-    // no constant above what half floats hold
-    constexpr int kMostStep = 14;
-    int rest = step == 0 || steps.empty() ? 0 : steps[step];
-    for (; rest != 0; rest -= std::clamp(rest, -kMostStep, kMostStep))
-      product = product * std::ldexp(1.0, std::clamp(rest, -kMostStep, kMostStep));
-    const Expr value = lookups.value(uses[k++]);
-    product = product * (step < pairs ? value * lookups.value(uses[k++]) : value);
+  if (half_products) {
+    const HalfProduct half = half_product(brdf, j, exponents);
+    const auto constants = static_cast<int>(std::ranges::count(half.order, HalfProduct::kConstant));
+    Expr product = scale_value(brdf.lobes()[j], -in_tables - constants * half.exponent);
+    for (const int k : half.order)
+      product = product * (k == HalfProduct::kConstant ? Expr(std::ldexp(1.0, half.exponent))
+                                                       : lookups.value(uses[static_cast<std::size_t>(k)]));
+    return named("lobe", product);
+  }
+  const std::size_t paired = 2 * brdf.pair_count(j);
+  Expr product = scale_value(brdf.lobes()[j], -in_tables);
+  for (std::size_t k = 0; k < uses.size(); k += k < paired ? 2 : 1) {
+    const Expr value = lookups.value(uses[k]);
+    product = product * (k < paired ? value * lookups.value(uses[k + 1]) : value);
   }
   return named("lobe", product);
 }
@@ -133,11 +140,8 @@ std::vector<Expr> lobe_values(const FactoredBrdf& brdf, const std::vector<Shader
   const Lookups lookups(brdf, textures, options.filter);
   const std::vector<int> exponents = exponents_in(textures, brdf.tables().size());
   std::vector<Expr> lobes;
-  for (std::size_t j = 0; j < brdf.lobes().size(); ++j) {
-    const std::vector<int> steps =
-        options.half_products ? step_exponents(brdf, j, exponents) : std::vector<int>{};
-    lobes.push_back(lobe_value(lookups, brdf, j, exponents, steps));
-  }
+  for (std::size_t j = 0; j < brdf.lobes().size(); ++j)
+    lobes.push_back(lobe_value(lookups, brdf, j, exponents, options.half_products));
   return lobes;
 }
 
@@ -173,16 +177,26 @@ std::string declare_textures(const Language& l, const ShaderOptions& options,
   return fmt::format(fmt::runtime(l.texture_struct), "burnish_" + options.name + "_tables", text);
 }
 
-ShaderCost cost_of(const OperationCount& count) noexcept {
+ShaderCost cost_of(const OperationCount& count, std::size_t textures) noexcept {
   return {.fetches = count.fetches,
+          .textures = static_cast<int>(textures),
           .operations = count.multiplies + count.adds + count.compares,
           .divisions = count.divisions,
           .roots = count.roots,
           .powers = count.transcendentals};
 }
 
-std::string local_function(Expr total, const Language& l, const ShaderOptions& options,
-                           const std::string& name, std::string_view more, ShaderCost& cost) {
+// What functions take besides the directions.
+std::string more_of(const ShaderOptions& options) {
+  return options.language == ShaderLanguage::msl ? fmt::format("burnish_{}_tables tables", options.name) : "";
+}
+
+struct LocalFunction {
+  std::string text;
+  OperationCount count;
+};
+LocalFunction local_function(Expr total, const Language& l, const ShaderOptions& options,
+                             const std::string& name) {
   if (total.type() == ValueType::real) {
     total = named("f0", total);
     total = Expr(Op::vector, {total, total, total});
@@ -190,23 +204,17 @@ std::string local_function(Expr total, const Language& l, const ShaderOptions& o
   Graph graph;
   const std::size_t root = graph.add(total);
   const Writer writer(l, graph, {root}, options.half_products);
-  cost = cost_of(graph.count());
   std::string body = horizon_test(l);
   if (options.language == ShaderLanguage::msl && options.filter == ShaderFilter::hardware)
     body += "  constexpr sampler smooth_sampler(filter::linear, address::clamp_to_edge);\n";
   const std::string value =
       options.half_products ? fmt::format("{}({})", l.vector, writer.text(root)) : writer.text(root);
   body += writer.text() + fmt::format(fmt::runtime(l.result), value);
-  return l.function(ValueType::vector, name, kTwoDirections, more, body);
+  return {l.function(ValueType::vector, name, kTwoDirections, more_of(options), body), graph.count()};
 }
 
 std::string_view header_of(const Language& l, const ShaderOptions& options) noexcept {
   return options.half_products ? l.half_header : l.header;
-}
-
-// What functions take besides the directions.
-std::string more_of(const ShaderOptions& options) {
-  return options.language == ShaderLanguage::msl ? fmt::format("burnish_{}_tables tables", options.name) : "";
 }
 
 void check(const FactoredBrdf& brdf, const ShaderOptions& options) {
@@ -228,8 +236,11 @@ std::string_view to_string(ShaderLanguage language) noexcept {
 }
 
 std::string to_string(const ShaderCost& cost) {
-  return fmt::format("{} fetches, {} operations, {} divisions, {} roots, {} powers", cost.fetches,
-                     cost.operations, cost.divisions, cost.roots, cost.powers);
+  const std::string fetches = cost.fetches == 0 ? "0 fetches"
+                                                : fmt::format("{} fetches of {} texture{}", cost.fetches,
+                                                              cost.textures, cost.textures == 1 ? "" : "s");
+  return fmt::format("{}, {} operations, {} divisions, {} roots, {} powers", fetches, cost.operations,
+                     cost.divisions, cost.roots, cost.powers);
 }
 
 ShaderFormula shader_formula(const FactoredBrdf& brdf, const ShaderOptions& options) {
@@ -249,10 +260,8 @@ LobeFunctions lobe_functions(const FactoredBrdf& brdf, const ShaderOptions& opti
   functions.textures = std::move(formula.textures);
   functions.text += declare_textures(l, options, functions.textures);
   for (std::size_t j = 0; j < formula.lobes.size(); ++j) {
-    ShaderCost cost;
     functions.names.push_back(fmt::format("burnish_{}_lobe{}", options.name, j));
-    functions.text +=
-        local_function(formula.lobes[j], l, options, functions.names.back(), more_of(options), cost);
+    functions.text += local_function(formula.lobes[j], l, options, functions.names.back()).text;
   }
   return functions;
 }
@@ -263,9 +272,8 @@ Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options) {
   const bool cpp = options.language == ShaderLanguage::cpp;
   Shader shader;
   shader.textures = std::move(formula.textures);
-  const std::string more = more_of(options);
-  const std::string function =
-      local_function(formula.value, l, options, "burnish_" + options.name, more, shader.cost);
+  const LocalFunction function = local_function(formula.value, l, options, "burnish_" + options.name);
+  shader.cost = cost_of(function.count, shader.textures.size());
   const auto comment_of = [](std::string text) {  // a table's name may hold anything
     for (char& c : text) c = c < ' ' || c > '~' || c == '\\' ? '?' : c;
     return text;
@@ -278,7 +286,7 @@ Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options) {
       comment_of(model_expression(brdf)), options.name, to_string(shader.cost), header_of(l, options));
   if (cpp) shader.text += "namespace burnish_shader {\n";
   shader.text += declare_textures(l, options, shader.textures);
-  shader.text += function + world_function(l, options.name, more);
+  shader.text += function.text + world_function(l, options.name, more_of(options));
   if (cpp) shader.text += "}  // namespace burnish_shader\n";
   return shader;
 }
@@ -303,8 +311,8 @@ SplitShader split_shader(const FactoredBrdf& brdf, const ShaderOptions& options)
   }
   rest += writer.count(root);
   shader.value = fmt::format("{}({})", l.vector, writer.text(root));
-  shader.view_cost = cost_of(view);
-  shader.light_cost = cost_of(rest);
+  shader.view_cost = cost_of(view, shader.textures.size());
+  shader.light_cost = cost_of(rest, shader.textures.size());
   return shader;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <string>
@@ -38,11 +39,13 @@ struct ShaderOptions {
 /// component; integers, conversions and the test for the horizon are not counted.
 struct ShaderCost {
   int fetches = 0;     ///< of texels (exact), or filtered reads (hardware)
+  int textures = 0;    ///< that they are of (C++: arrays)
   int operations = 0;  ///< adds, subtracts, multiplies, minima, maxima, floors and selects
   int divisions = 0, roots = 0, powers = 0;
 
   ShaderCost& operator+=(const ShaderCost& other) noexcept {
     fetches += other.fetches;
+    textures = std::max(textures, other.textures);
     operations += other.operations;
     divisions += other.divisions;
     roots += other.roots;
@@ -108,7 +111,7 @@ struct SplitShader {
 /// languages.
 SplitShader split_shader(const FactoredBrdf& brdf, const ShaderOptions& options);
 
-/// "12 fetches, 87 operations, 4 divisions, 2 roots, 0 powers".
+/// "12 fetches of 2 textures, 87 operations, 4 divisions, 2 roots, 0 powers".
 std::string to_string(const ShaderCost& cost);
 
 }  // namespace burnish

@@ -79,6 +79,26 @@ TEST_F(GlRendererTest, AgreesWithTheReferenceRenderer) {
   EXPECT_GT(half.psnr, 50);
 }
 
+TEST_F(GlRendererTest, DrawsVolumesAsTheReferenceRenderer) {
+  const Scene scene = knot_and_sphere();
+  const FactoredBrdf volume = smooth_model(model_case("Volume")),
+                     volumes = smooth_model(model_case("Volumes"));
+  const Image truth =
+      render_cpu(scene, std::array{BrdfRef(volume), BrdfRef(volumes)}, {.width = kSize, .height = kSize});
+  const auto drawn = [&](ShaderFilter filter, TableFormat precision) {
+    return agreement(scene,
+                     draw(scene, std::array{surface_shader(volume, filter, precision),
+                                            surface_shader(volumes, filter, precision)}),
+                     truth);
+  };
+  const Agreement exact = drawn(ShaderFilter::exact, TableFormat::single),
+                  half = drawn(ShaderFilter::hardware, TableFormat::half);
+  EXPECT_LT(exact.worst, 1e-3);  // phi_d near the normal
+  EXPECT_GT(exact.psnr, 50);
+  EXPECT_LT(half.worst, 1e-2);
+  EXPECT_GT(half.psnr, 50);
+}
+
 TEST_F(GlRendererTest, InterpolatesWhatVerticesSend) {
   Scene scene = knot_and_sphere();
   std::vector<std::vector<Rgb>> values;
