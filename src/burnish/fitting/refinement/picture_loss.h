@@ -64,7 +64,7 @@ struct PictureLoss {
 
   /// The derivative of the objective by each term's sum, given the means and the sums of weights.
   ErrorTerms derivatives(const ErrorTerms& means, double picture_weight, double pair_weight,
-                         double albedo_count) const noexcept;
+                         double albedo_count = 0) const noexcept;
 };
 
 }  // namespace burnish
