@@ -176,8 +176,14 @@ std::size_t FactoredPlan::slot_of(const Projection& projection, Warp warp, int n
   source.radius |= !disk || warp.kind != WarpKind::identity;
   for (const Position& known : source.positions)
     if (known.same_place(position)) return known.slot;
-  source.positions.push_back(position);
   slots += disk ? 2 : 1;
+  // behind those of the same power
+  const auto same = std::ranges::find_if(source.positions, [&](const Position& known) {
+    return !disk && !known.disk && warp.kind == WarpKind::power && known.warp == warp.kind &&
+           known.parameter == position.parameter;
+  });
+  const bool shares = same != source.positions.end();
+  source.positions.insert(shares ? same + 1 : same, position)->shares_power = shares;
   return position.slot;
 }
 

@@ -27,6 +27,8 @@ struct FactoredPlan {
     WarpKind warp;
     float parameter, size, cells;
     std::size_t slot;
+    bool shares_power =
+        false;  // with the position before: a line's, of the same power of the same tan(theta / 2)
 
     bool same_place(const Position& other) const noexcept;
   };
