@@ -73,7 +73,8 @@ struct Projector {
   alignas(64) float directions[6][kMaxBlock];  // of rows
   // of the projection at hand: (x, y), its length r, and den with r / den = tan(theta / 2)
   alignas(64) float own_x[kMaxBlock], own_y[kMaxBlock], r[kMaxBlock], den[kMaxBlock];
-  const float* in[6];  // planes of wi and wo
+  alignas(64) float power[kMaxBlock];  // of tan(theta / 2)
+  const float* in[6];                  // planes of wi and wo
   const float *x, *y;
   std::size_t count;
   bool all_directions;
@@ -221,16 +222,22 @@ struct Projector {
     else
       for_each([&](std::size_t i) HWY_ATTR { store(within(warp(polar(i)), cells), to + i); });
   }
+  // A power is found once for lines of several sizes: of size 1, which changes no bit of what it is multiplied
+  // with.
   template <class Exponent>
   HWY_INLINE void place_by_power(const FactoredPlan::Position& k, float* to, std::size_t stride,
-                                 const Exponent& exponent) const {
-    const Lane size(k.size);
-    place(
-        k, to, stride, [&](const Polar<Lane>& p) HWY_ATTR { return power_warp(size, exponent, p); },
-        [&](const Polar<Lane>& p) HWY_ATTR { return power_stretch(size, exponent, p); });
+                                 const Exponent& exponent) {
+    const Lane size(k.size), cells(k.cells);
+    if (k.disk)
+      return place(
+          k, to, stride, [&](const Polar<Lane>& p) HWY_ATTR { return power_warp(size, exponent, p); },
+          [&](const Polar<Lane>& p) HWY_ATTR { return power_stretch(size, exponent, p); });
+    if (!k.shares_power)
+      for_each([&](std::size_t i) HWY_ATTR { store(power_warp(Lane(1.0), exponent, polar(i)), power + i); });
+    for_each([&](std::size_t i) HWY_ATTR { store(within(size * load(power + i), cells), to + i); });
   }
 
-  void find_positions(const FactoredPlan::Position& k, float* to, std::size_t stride) const {
+  void find_positions(const FactoredPlan::Position& k, float* to, std::size_t stride) {
     const Lane size(k.size), parameter(k.parameter);
     switch (k.warp) {
       case WarpKind::identity:

@@ -72,13 +72,17 @@ FactoredPlan::Spacing spacing_of(const FactoredPlan::Position& position) noexcep
   return Spacing::identity;
 }
 
-FactoredPlan::Angle angle_of(Projection::Kind kind) noexcept {
+FactoredPlan::Angle angle_of(FactoredPlan::Source::Kind source, Projection::Kind kind) noexcept {
   using Angle = FactoredPlan::Angle;
+  using Source = FactoredPlan::Source::Kind;
   using Kind = Projection::Kind;
-  return kind == Kind::deviation ? Angle::deviation
-         : kind == Kind::twist   ? Angle::twist
-         : kind == Kind::azimuth ? Angle::azimuth
-                                 : Angle::difference;
+  return source == Source::wi      ? Angle::wi
+         : source == Source::wo    ? Angle::wo
+         : source == Source::half  ? Angle::half
+         : kind == Kind::deviation ? Angle::deviation
+         : kind == Kind::twist     ? Angle::twist
+         : kind == Kind::azimuth   ? Angle::azimuth
+                                   : Angle::difference;
 }
 
 std::size_t up_to_multiple(std::size_t n, std::size_t of) noexcept {
@@ -92,7 +96,8 @@ bool FactoredPlan::Position::same_place(const Position& other) const noexcept {
          std::tie(other.disk, other.warp, other.parameter, other.size, other.cells);
 }
 
-FactoredPlan::FactoredPlan(const FactoredBrdf& brdf) : channels(static_cast<std::size_t>(brdf.channels())), isotropic(brdf.isotropic()) {
+FactoredPlan::FactoredPlan(const FactoredBrdf& brdf)
+    : channels(static_cast<std::size_t>(brdf.channels())), isotropic(brdf.isotropic()) {
   std::vector<Lookup> tables;
   for (const Table& table : brdf.tables()) tables.push_back(add_table(table));
   for (std::size_t j = 0; j < brdf.lobes().size(); ++j) {
@@ -171,8 +176,14 @@ std::size_t FactoredPlan::slot_of(const Projection& projection, Warp warp, int n
   source.radius |= !disk || warp.kind != WarpKind::identity;
   for (const Position& known : source.positions)
     if (known.same_place(position)) return known.slot;
-  source.positions.push_back(position);
   slots += disk ? 2 : 1;
+  // behind those of the same power
+  const auto same = std::ranges::find_if(source.positions, [&](const Position& known) {
+    return !disk && !known.disk && warp.kind == WarpKind::power && known.warp == warp.kind &&
+           known.parameter == position.parameter;
+  });
+  const bool shares = same != source.positions.end();
+  source.positions.insert(shares ? same + 1 : same, position)->shares_power = shares;
   return position.slot;
 }
 
@@ -192,21 +203,20 @@ std::array<std::uint32_t, 3> FactoredPlan::steps_of(const TableLayout& layout, c
 std::uint32_t FactoredPlan::steps_along(const Projection& projection, Warp warp, int nodes,
                                         std::size_t stride) {
   const Position position = position_in(warp, nodes, false, 0);
-  switch (kind_of(projection, false)) {
-    case Source::Kind::wi:
-      return lane_of(spacing_of(position), position, stride, Angle::wi);
-    case Source::Kind::wo:
-      return lane_of(spacing_of(position), position, stride, Angle::wo);
-    case Source::Kind::half:
-      return lane_of(spacing_of(position), position, stride, Angle::half);
-    case Source::Kind::affine:
-      break;
-    case Source::Kind::difference:
-    case Source::Kind::angle:
-      return lane_of(spacing_of(position), position, stride, angle_of(projection.kind));
+  const Spacing spacing = spacing_of(position);
+  const Source::Kind kind = kind_of(projection, false);
+  if (kind != Source::Kind::affine) {
+    const auto angle = static_cast<std::size_t>(angle_of(kind, projection.kind));
+    has_angle[angle] = true;
+    return lane_of(spacing, position, stride, angle, false);
   }
-  const std::uint32_t lane = lane_of(Spacing::given, position, stride, Angle::wi);
-  given.push_back({Source::Kind::affine, projection, position, spacing_of(position), lane, lane});
+  const auto known = static_cast<std::size_t>(std::ranges::find(affine, projection) - affine.begin());
+  if (known < Steps::kLanes) {
+    if (known == affine.size()) affine.push_back(projection);
+    return lane_of(spacing, position, stride, known, true);
+  }
+  const std::uint32_t lane = lane_of(Spacing::given, position, stride, 0, false);
+  given.push_back({kind, projection, position, spacing, lane, lane});
   return lane;
 }
 
@@ -215,23 +225,22 @@ std::array<std::uint32_t, 2> FactoredPlan::steps_across(const TableLayout& layou
   const Position position = position_in(layout.warp, layout.width, true, 0);
   for (const GivenSteps& known : given)
     if (known.projection == use.projection && known.position.same_place(position)) return {known.x, known.y};
-  const std::uint32_t x = lane_of(Spacing::given, position, 1, Angle::wi);
-  const std::uint32_t y =
-      lane_of(Spacing::given, position, static_cast<std::size_t>(layout.width), Angle::wi);
+  const std::uint32_t x = lane_of(Spacing::given, position, 1, 0, false);
+  const std::uint32_t y = lane_of(Spacing::given, position, static_cast<std::size_t>(layout.width), 0, false);
   given.push_back({kind_of(use.projection, true), use.projection, position, spacing_of(position), x, y});
   return {x, y};
 }
 
 // A lane with this position along this angle; a new one if it is given.
 std::uint32_t FactoredPlan::lane_of(Spacing spacing, const Position& position, std::size_t stride,
-                                    Angle angle) {
+                                    std::size_t angle, bool is_affine) {
   const auto floats = static_cast<std::int32_t>(stride * kRowStride),
-             number = static_cast<std::int32_t>(angle);
+             number = static_cast<std::int32_t>(angle), mask = is_affine ? -1 : 0;
   for (std::size_t i = 0; i < steps.size() && spacing != Spacing::given; ++i) {
     const Steps& s = steps[i];
     for (std::size_t k = 0; k < s.used; ++k)
-      if (std::tie(s.spacing[k], s.size[k], s.parameter[k], s.floats[k], s.angle[k]) ==
-          std::tie(spacing, position.size, position.parameter, floats, number))
+      if (std::tie(s.spacing[k], s.size[k], s.parameter[k], s.floats[k], s.angle[k], s.is_affine[k]) ==
+          std::tie(spacing, position.size, position.parameter, floats, number, mask))
         return static_cast<std::uint32_t>(i * Steps::kLanes + k);
   }
   if (steps.empty() || steps.back().used == Steps::kLanes) steps.emplace_back();
@@ -245,7 +254,8 @@ std::uint32_t FactoredPlan::lane_of(Spacing spacing, const Position& position, s
   open.cells[lane] = position.cells;
   open.floats[lane] = floats;
   open.angle[lane] = number;
-  has_angle[static_cast<std::size_t>(angle)] |= spacing != Spacing::given;
+  open.is_affine[lane] = mask;
+  open.has_affine |= is_affine;
   return static_cast<std::uint32_t>((steps.size() - 1) * Steps::kLanes + lane);
 }
 

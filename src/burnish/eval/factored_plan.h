@@ -27,6 +27,8 @@ struct FactoredPlan {
     WarpKind warp;
     float parameter, size, cells;
     std::size_t slot;
+    bool shares_power =
+        false;  // with the position before: a line's, of the same power of the same tan(theta / 2)
 
     bool same_place(const Position& other) const noexcept;
   };
@@ -69,9 +71,11 @@ struct FactoredPlan {
     alignas(32) std::array<std::array<std::int32_t, kLanes>, kSpacings> is{};  // -1 in lanes of a spacing
     alignas(32) std::array<float, kLanes> size{}, parameter{}, cells{};        // as in Position
     alignas(32) std::array<std::int32_t, kLanes> floats{};  // of the rows, from node to node
-    alignas(32) std::array<std::int32_t, kLanes> angle{};   // an Angle
+    alignas(32) std::array<std::int32_t, kLanes> angle{};   // an Angle, or one of `affine`
+    bool has_affine = false;
+    alignas(32) std::array<std::int32_t, kLanes> is_affine{};  // -1 in lanes whose angle is
   };
-  /// Positions that are found one by one: of disks and of affine combinations.
+  /// Positions that are found one by one: of disks and of further affine combinations.
   struct GivenSteps {
     Source::Kind kind;
     Projection projection;
@@ -94,6 +98,7 @@ struct FactoredPlan {
   double rounding_bound = 0;
   std::vector<Source> sources;
   std::vector<Steps> steps;
+  std::vector<Projection> affine;  // whose polar angles are found one by one, at most Steps::kLanes
   std::vector<GivenSteps> given;
   std::array<bool, Steps::kLanes> has_angle{};  // an Angle is asked for
   std::vector<Product> products;
@@ -105,7 +110,8 @@ struct FactoredPlan {
   std::array<std::size_t, 3> slots_of(const TableLayout& layout, const FactorUse& use);
   std::size_t slot_of(const Projection& projection, Warp warp, int nodes, bool disk);
   std::array<std::uint32_t, 3> steps_of(const TableLayout& layout, const FactorUse& use);
-  std::uint32_t lane_of(Spacing spacing, const Position& position, std::size_t stride, Angle angle);
+  std::uint32_t lane_of(Spacing spacing, const Position& position, std::size_t stride, std::size_t angle,
+                        bool is_affine);
   std::uint32_t steps_along(const Projection& projection, Warp warp, int nodes, std::size_t stride);
   std::array<std::uint32_t, 2> steps_across(const TableLayout& layout, const FactorUse& use);
   Source& source_of(const Projection& projection, bool azimuth);

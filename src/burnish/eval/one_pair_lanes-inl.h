@@ -190,10 +190,12 @@ HWY_NOINLINE void find_given(const FactoredPlan& plan, const OnePair& one, float
   }
 }
 
-/// The polar angles of eight lanes.
+/// Eight polar angles to choose from.
 class AngleTable {
  public:
 #if HWY_MAX_BYTES >= 32
+  HWY_INLINE AngleTable(const float* r, const float* den)
+      : r_(hn::Load(D8(), r)), den_(hn::Load(D8(), den)) {}
   HWY_INLINE explicit AngleTable(const PolarAngles& angles)
       : r_(hn::Combine(D8(), angles.high.r.raw, angles.low.r.raw)),
         den_(hn::Combine(D8(), angles.high.den.raw, angles.low.den.raw)) {}
@@ -205,6 +207,10 @@ class AngleTable {
  private:
   hn::Vec<D8> r_, den_;
 #else
+  HWY_INLINE AngleTable(const float* r, const float* den) {
+    std::copy(r, r + FactoredPlan::Steps::kLanes, r_);
+    std::copy(den, den + FactoredPlan::Steps::kLanes, den_);
+  }
   HWY_INLINE explicit AngleTable(const PolarAngles& angles) {
     hn::StoreU(angles.low.r.raw, D4(), r_);
     hn::StoreU(angles.high.r.raw, D4(), r_ + 4);
@@ -221,9 +227,22 @@ class AngleTable {
   }
 
  private:
-  float r_[8], den_[8];
+  float r_[FactoredPlan::Steps::kLanes], den_[FactoredPlan::Steps::kLanes];
 #endif
 };
+
+/// The polar angles of affine combinations; the lanes after them are filled up.
+HWY_NOINLINE AngleTable affine_angles(const FactoredPlan& plan, const OnePair& one) {
+  alignas(32) float r[FactoredPlan::Steps::kLanes], den[FactoredPlan::Steps::kLanes];
+  const LanesOf<D4> wi = one.of_all<0>(), wo = one.of_all<1>();
+  for (std::size_t k = 0; k < FactoredPlan::Steps::kLanes; ++k) {
+    Polar<Four> angle{Four(0.0), Four(1.0)};
+    if (k < plan.affine.size()) angle = affine(plan.affine[k], wi, wo).polar;
+    r[k] = hn::GetLane(angle.r.raw);
+    den[k] = hn::GetLane(angle.den.raw);
+  }
+  return AngleTable(r, den);
+}
 
 /// The positions of lanes that may have different spacings: of each that is among them, then chosen.
 HWY_INLINE Eight warped(const FactoredPlan::Steps& s, std::size_t lane, const Polar<Eight>& polar,
@@ -247,12 +266,23 @@ HWY_INLINE Eight warped(const FactoredPlan::Steps& s, std::size_t lane, const Po
 
 HWY_INLINE void find_cells(const FactoredPlan& plan, const OnePair& one, const AngleTable& angles,
                            OneCells& cells) {
+  const D8 d8;
   alignas(64) float given[OneCells::kMost];
   if (!plan.given.empty()) find_given(plan, one, given);
+  AngleTable affine_table = angles;
+  if (!plan.affine.empty()) affine_table = affine_angles(plan, one);
   std::size_t to = 0;
   for (const FactoredPlan::Steps& s : plan.steps)
-    for (std::size_t lane = 0; lane < FactoredPlan::Steps::kLanes; lane += kEight, to += kEight)
-      cells.put(warped(s, lane, angles.at(s.angle.data() + lane), given + to), s, lane, to);
+    for (std::size_t lane = 0; lane < FactoredPlan::Steps::kLanes; lane += kEight, to += kEight) {
+      Polar<Eight> polar = angles.at(s.angle.data() + lane);
+      if (s.has_affine) {
+        const Polar<Eight> other = affine_table.at(s.angle.data() + lane);
+        const auto is = hn::BitCast(d8, hn::Load(DI8(), s.is_affine.data() + lane));
+        polar = {Eight(hn::IfVecThenElse(is, other.r.raw, polar.r.raw)),
+                 Eight(hn::IfVecThenElse(is, other.den.raw, polar.den.raw))};
+      }
+      cells.put(warped(s, lane, polar, given + to), s, lane, to);
+    }
 }
 
 /// A table's value for one pair. `at`: the axes' lanes.
