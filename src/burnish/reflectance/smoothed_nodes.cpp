@@ -22,6 +22,8 @@ constexpr double kLeastCosine = 0.02, kFullCosine = 0.15;
 constexpr int kReweightings = 2;
 constexpr double kRound = 0.02;   // errors in ln f below this count as squares
 constexpr double kScale = 0.1;    // and those of this size weigh the same in both kinds of error
+constexpr double kLevel = 1e-7;   // share of squared slopes
+constexpr double kSame = 1;       // of slopes that cannot be
 constexpr double kRidge = 1e-10;  // of unknowns that nothing else holds
 
 /// The unknowns that a pair's ln(f + floor) is the weighted sum of.
@@ -82,6 +84,16 @@ void add_stiffness(EnvelopeMatrix& matrix, std::size_t first, std::size_t stride
             weight * kDifference[a] * kDifference[b];
 }
 
+// Adds share times the squared slope between an unknown and the one a stride before it, of `count` a line.
+void add_slope(EnvelopeMatrix& matrix, std::size_t unknown, std::size_t stride, std::size_t count,
+               double share) {
+  const double steps = static_cast<double>(count - 1), lines = static_cast<double>(kVolume / count);
+  const double weight = share * steps / lines;
+  matrix.at(unknown, unknown) += weight;
+  matrix.at(unknown - stride, unknown - stride) += weight;
+  matrix.at(unknown, unknown - stride) -= weight;
+}
+
 EnvelopeMatrix stiffness(const NodeSmoothness& smoothness) {
   std::vector<std::size_t> first(kUnknowns, 0);  // the line's rows are full
   for (std::size_t i = kBand; i < kVolume; ++i) first[i] = i - kBand;
@@ -93,6 +105,12 @@ EnvelopeMatrix stiffness(const NodeSmoothness& smoothness) {
         add_stiffness(matrix, i, kStrides[axis], kCounts[axis], smoothness.shares[axis] / lines);
   }
   add_stiffness(matrix, kVolume, 1, kLine, smoothness.shares[3]);
+  // trends die away where no node holds them; where h or d is the normal's or h's own, phi_d means nothing
+  for (std::size_t i = 0; i < kVolume; ++i) {
+    const std::size_t d = i / kStrides[1] % kCounts[1], p = i % kCounts[2];
+    if (d > 0) add_slope(matrix, i, kStrides[1], kCounts[1], kLevel);
+    if (p > 0) add_slope(matrix, i, kStrides[2], kCounts[2], i < kStrides[0] || d == 0 ? kSame : kLevel);
+  }
   for (std::size_t i = 0; i < kUnknowns; ++i) matrix.at(i, i) += kRidge;
   return matrix;
 }

@@ -14,7 +14,7 @@ namespace burnish {
 /// intervals of theta_h (spaced by its square root), theta_d, phi_d and of the angle to the normal, against the
 /// mean over the nodes of the error in ln f.
 struct NodeSmoothness {
-  std::array<double, 4> shares{1e-8, 1e-7, 1e-6, 1e-8};
+  std::array<double, 4> shares{1e-8, 1e-7, 1e-5, 1e-6};
 
   friend bool operator==(const NodeSmoothness&, const NodeSmoothness&) = default;
 };
