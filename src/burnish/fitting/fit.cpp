@@ -335,7 +335,8 @@ class Fitter {
     if (!nodes_->samples.isotropic) return;
     report.smoothness = choose_node_smoothness(*nodes_);
     report.held_out = held_out_figures(*nodes_, *report.smoothness);
-    smoothed_.emplace(*nodes_, *report.smoothness);
+    const BrdfRef function = symmetrized_ ? BrdfRef(*symmetrized_) : brdf_;
+    smoothed_.emplace(with_gaps_filled(*nodes_, measured_nodes(source_), function), *report.smoothness);
   }
 
   /// The source's own samples where it has some, a table's entries where one is given, else pairs drawn.

@@ -10,6 +10,7 @@
 
 #include <burnish/error.h>
 #include <burnish/math/angles.h>
+#include <burnish/math/random.h>
 #include <burnish/parameterization/half_diff.h>
 #include <burnish/reflectance/measured_nodes.h>
 #include <burnish/reflectance/scattered_brdf.h>
@@ -40,9 +41,8 @@ Key key_of(const DirectionPair& pair, bool isotropic) noexcept {
   return a < b ? Key{a[0], a[1], b[0], b[1]} : Key{b[0], b[1], a[0], a[1]};
 }
 
-// A coin for a group: a bit of its number multiplied by the golden ratio [Knuth 1998].
-std::uint8_t coin(std::uint32_t group) noexcept {
-  return static_cast<std::uint8_t>((group * 2654435769u) >> 31);
+std::uint8_t coin(std::uint32_t group) {
+  return Pcg32(group).uniform() < 0.5;
 }
 
 void number_incidences(MeasuredNodes& nodes) {
@@ -73,6 +73,18 @@ double rgl_node_scale(const RglData& data, const DirectionPair& pair) noexcept {
   const auto place = [](Vec3 w) { return rgl_square(theta_of(w), std::remainder(phi_of(w), kTwoPi)); };
   return rgl_lookup(data.ndf, place(half_vector(pair.wi, pair.wo))) /
          (4 * rgl_lookup(data.sigma, place(pair.wi)) * pair.wo.z);
+}
+
+bool is_valid(const RglData& data, std::size_t node) noexcept {
+  return data.valid[node / 8] >> (7 - node % 8) & 1;
+}
+
+// Whether to believe the mask of valid nodes. There are files whose mask denies nearly all of a good measurement.
+bool mask_holds(const RglData& data, std::size_t nodes) noexcept {
+  if (data.valid.size() * 8 < nodes) return false;
+  std::size_t valid = 0;
+  for (std::size_t node = 0; node < nodes; ++node) valid += is_valid(data, node);
+  return 2 * valid >= nodes;
 }
 
 // Groups by geometry, halves by coin, incidences; weights of 1 where there are none.
@@ -124,10 +136,11 @@ MeasuredNodes measured_nodes(const RglTable& table) {
       thetas * (table.isotropic() ? 1 : static_cast<std::uint32_t>(data.phi_i.size()));
   MeasuredNodes nodes{.samples = {.channels = data.channels, .isotropic = table.isotropic()}};
   std::vector<double> f(channels);
+  const bool masked = mask_holds(data, std::size_t{slices} * width * height);
 
   for (std::uint32_t node = 0; node < slices * width * height; ++node) {
     const std::uint32_t slice = node / (width * height), row = node / width % height, column = node % width;
-    if (!data.valid.empty() && !(data.valid[node / 8] >> (7 - node % 8) & 1)) continue;
+    if (masked && !is_valid(data, node)) continue;
 
     // what stands there, as a BRDF
     const DirectionPair pair =
@@ -138,10 +151,9 @@ MeasuredNodes measured_nodes(const RglTable& table) {
       f[c] = scale * static_cast<double>(data.spectra.values[node * channels + c]);
     if (!add(nodes.samples, pair, f)) continue;
 
-    // twins: mirrored rows; all rows where the half vector is the normal, or light falls along it
+    // mirror twins are one; rows that meet at the normal were measured one by one
     const std::uint32_t mirrored = table.isotropic() ? std::min(row, height - 1 - row) : row;
-    const bool one_row = column == 0 || (table.isotropic() && data.theta_i[slice % thetas] == 0);
-    nodes.groups.push_back((slice * height + (one_row ? 0 : mirrored)) * width + column);
+    nodes.groups.push_back((slice * height + mirrored) * width + column);
     nodes.half.push_back(static_cast<std::uint8_t>((mirrored + column) % 2));
   }
   nodes.weights.assign(nodes.size(), 1);

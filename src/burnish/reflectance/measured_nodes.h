@@ -19,9 +19,9 @@ namespace burnish {
 struct MeasuredNodes {
   Samples samples;              ///< f_r in 1/sr as stored, negative values kept
   std::vector<double> weights;  ///< one a node, > 0: 1, or of patches how much of both hemispheres they are
-  /// One a node. Nodes that a rotation about the normal or a reflection (isotropic sources) or an exchange of
-  /// the directions leads to one another have one number: the same physical value, measured again. What holds
-  /// nodes out holds all of a group out.
+  /// One a node. Nodes that are one measurement have one number: of an RGL table mirror twins, which it stores both; of
+  /// other sources what rotation about the normal, reflection (both if isotropic) and exchange of the directions lead
+  /// to one another. What holds nodes out holds all of a group out.
   std::vector<std::uint32_t> groups;
   /// One a node, 0 or 1: a checkerboard over the rows and columns of an RGL slice, in which mirror twins fall
   /// together; of other sources a coin for each group.
@@ -34,10 +34,11 @@ struct MeasuredNodes {
   std::uint32_t group_count() const noexcept;
 };
 
-/// The nodes of spectra that were measured (valid) at their directions through the warp by visible normals, and
-/// what eval returns there: spectra ndf / (4 sigma cos theta_o). Where rows meet (phi of -pi and pi, the
-/// normal) several nodes have one direction and values of their own; they are one group. A checkerboard half
-/// is made by (column + row counted from the nearer end of the rows) mod 2. [Dupuy 2018, sec. 4]
+/// The nodes of spectra that were measured at their directions through the warp by visible normals, and what eval
+/// returns there: spectra ndf / (4 sigma cos theta_o). Nodes that `valid` says were filled in are left out, unless it
+/// says so of most. Where rows meet (phi of -pi and pi, the normal) several nodes have one direction and values of
+/// their own. A checkerboard half is made by (column + row counted from the nearer end of the rows) mod 2.
+/// [Dupuy 2018, sec. 4]
 MeasuredNodes measured_nodes(const RglTable& table);
 /// The entries at the centres of their cells that are no holes, phi_h = 0.
 MeasuredNodes measured_nodes(const HalfDiffTable& table);

@@ -20,9 +20,12 @@ constexpr std::size_t kBand = 2 * kStrides[0];  // of second differences along t
 
 constexpr double kLeastCosine = 0.02, kFullCosine = 0.15;
 constexpr int kReweightings = 2;
-constexpr double kRound = 0.02;   // errors in ln f below this count as squares
-constexpr double kScale = 0.1;    // and those of this size weigh the same in both kinds of error
-constexpr double kRidge = 1e-10;  // of unknowns that nothing else holds
+constexpr double kRound = 0.02;       // errors in ln f below this count as squares
+constexpr double kScale = 0.1;        // and those of this size weigh the same in both kinds of error
+constexpr double kLevel = 1e-7;       // share of squared slopes
+constexpr double kSame = 1;           // of slopes that cannot be
+constexpr double kGuessWeight = 0.1;  // of what stands where nothing was measured
+constexpr double kRidge = 1e-10;      // of unknowns that nothing else holds
 
 /// The unknowns that a pair's ln(f + floor) is the weighted sum of.
 struct Row {
@@ -82,6 +85,16 @@ void add_stiffness(EnvelopeMatrix& matrix, std::size_t first, std::size_t stride
             weight * kDifference[a] * kDifference[b];
 }
 
+// Adds share times the squared slope between an unknown and the one a stride before it, of `count` a line.
+void add_slope(EnvelopeMatrix& matrix, std::size_t unknown, std::size_t stride, std::size_t count,
+               double share) {
+  const double steps = static_cast<double>(count - 1), lines = static_cast<double>(kVolume / count);
+  const double weight = share * steps / lines;
+  matrix.at(unknown, unknown) += weight;
+  matrix.at(unknown - stride, unknown - stride) += weight;
+  matrix.at(unknown, unknown - stride) -= weight;
+}
+
 EnvelopeMatrix stiffness(const NodeSmoothness& smoothness) {
   std::vector<std::size_t> first(kUnknowns, 0);  // the line's rows are full
   for (std::size_t i = kBand; i < kVolume; ++i) first[i] = i - kBand;
@@ -93,6 +106,12 @@ EnvelopeMatrix stiffness(const NodeSmoothness& smoothness) {
         add_stiffness(matrix, i, kStrides[axis], kCounts[axis], smoothness.shares[axis] / lines);
   }
   add_stiffness(matrix, kVolume, 1, kLine, smoothness.shares[3]);
+  // trends die away where no node holds them; where h or d is the normal's or h's own, phi_d means nothing
+  for (std::size_t i = 0; i < kVolume; ++i) {
+    const std::size_t d = i / kStrides[1] % kCounts[1], p = i % kCounts[2];
+    if (d > 0) add_slope(matrix, i, kStrides[1], kCounts[1], kLevel);
+    if (p > 0) add_slope(matrix, i, kStrides[2], kCounts[2], i < kStrides[0] || d == 0 ? kSame : kLevel);
+  }
   for (std::size_t i = 0; i < kUnknowns; ++i) matrix.at(i, i) += kRidge;
   return matrix;
 }
@@ -197,6 +216,36 @@ bool SmoothedNodes::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   for (std::size_t c = 0; c < f.size(); ++c)
     f[c] = std::clamp(std::exp(logarithm(row, values_, f.size(), c)) - kFloor, 0.0, 2 * largest_[c]);
   return true;
+}
+
+MeasuredNodes with_gaps_filled(const MeasuredNodes& fitted, const MeasuredNodes& all, BrdfRef function) {
+  // the places that nodes touch
+  std::vector<std::uint8_t> touched(kVolume);
+  for (const DirectionPair& pair : all.samples.pairs) {
+    if (!(least_cosine(pair) > kLeastCosine)) continue;
+    const Row row = row_of(pair.wi, pair.wo);
+    for (std::size_t corner = 0; corner < 8; ++corner) touched[row.index[corner]] = 1;
+  }
+
+  MeasuredNodes filled = fitted;
+  std::uint32_t group = all.group_count();
+  std::vector<double> f(static_cast<std::size_t>(function.channels()));
+  for (std::size_t i = 0; i < kVolume; ++i) {
+    if (touched[i]) continue;
+    const auto part = [&](std::size_t axis) {
+      return static_cast<double>(i / kStrides[axis] % kCounts[axis]) / static_cast<double>(kCounts[axis] - 1);
+    };
+    const auto [wi, wo] = from_half_diff(
+        {.theta_h = kHalfPi * part(0) * part(0), .theta_d = kHalfPi * part(1), .phi_d = kHalfPi * part(2)});
+    if (!(least_cosine({wi, wo}) > kLeastCosine) || !function.eval(wi, wo, f)) continue;
+    filled.samples.pairs.push_back({wi, wo});
+    filled.samples.values.insert(filled.samples.values.end(), f.begin(), f.end());
+    filled.weights.push_back(kGuessWeight);
+    filled.groups.push_back(group++);
+    filled.half.push_back(0);
+    filled.incidence.push_back(0);
+  }
+  return filled;
 }
 
 }  // namespace burnish

@@ -14,7 +14,7 @@ namespace burnish {
 /// intervals of theta_h (spaced by its square root), theta_d, phi_d and of the angle to the normal, against the
 /// mean over the nodes of the error in ln f.
 struct NodeSmoothness {
-  std::array<double, 4> shares{1e-8, 1e-7, 1e-6, 1e-8};
+  std::array<double, 4> shares{1e-8, 1e-7, 1e-5, 1e-6};
 
   friend bool operator==(const NodeSmoothness&, const NodeSmoothness&) = default;
 };
@@ -43,5 +43,10 @@ class SmoothedNodes {
 };
 
 static_assert(Brdf<SmoothedNodes>);
+
+/// `fitted` and, where no node of `all` lies near, what `function` says there, at a tenth of a node's weight: instruments
+/// leave whole regions out (wide half angles, the neighbourhood of the normal), and what stands there is a guess anyway.
+/// Both are isotropic and have the function's channels.
+MeasuredNodes with_gaps_filled(const MeasuredNodes& fitted, const MeasuredNodes& all, BrdfRef function);
 
 }  // namespace burnish
