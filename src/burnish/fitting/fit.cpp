@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -181,8 +182,9 @@ class Fitter {
     const std::size_t texel = texel_bytes(format(), channels());
     TrainingOptions drawn = training_for(form.bytes, texel, brdf_.isotropic());
     drawn.seed = options_.seed;
-    const TrainingSet set =
+    TrainingSet set =
         samples() ? training_set_of(*samples(), options_.symmetrize) : draw_training_set(reference(), drawn);
+    if (smoothed_) add_nodes(set);
     RefineOptions refine = refine_options(form.loss);
     LobesReport report{.loss = form.loss, .budget = form.bytes};
 
@@ -207,6 +209,25 @@ class Fitter {
     const LobesFit fit = fit_without_overfit(reference(), set, plan, form.bytes, texel, drawn, refine);
     report.smooth = refine.smooth;
     return finish(fit, set, refine, std::move(report));
+  }
+
+  /// Adds the function's values at the nodes, which crowd where highlights are, as pairs that together weigh what the
+  /// others do.
+  void add_nodes(TrainingSet& set) const {
+    const double others = std::accumulate(
+        set.weights.begin() + static_cast<std::ptrdiff_t>(set.picture_count), set.weights.end(), 0.0);
+    std::vector<std::size_t> near;
+    for (std::size_t i = 0; i < nodes_->size(); ++i)
+      if (std::min(nodes_->samples.pairs[i].wi.z, nodes_->samples.pairs[i].wo.z) > NodeScoring{}.least_cosine)
+        near.push_back(i);
+    std::vector<double> f(static_cast<std::size_t>(set.channels));
+    for (const std::size_t i : near) {
+      const DirectionPair& pair = nodes_->samples.pairs[i];
+      smoothed_->eval(pair.wi, pair.wo, f);
+      set.pairs.push_back(pair);
+      set.weights.push_back(static_cast<float>(others / static_cast<double>(near.size())));
+      for (const double value : f) set.values.push_back(static_cast<float>(value));
+    }
   }
 
   FactoredBrdf finish(const LobesFit& fit, const TrainingSet& set, const RefineOptions& refine,
