@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -207,8 +208,7 @@ class Fitter {
     check_budget(form, texel);
     TrainingOptions drawn = training_for(form.bytes, texel, brdf_.isotropic());
     drawn.seed = options_.seed;
-    const TrainingSet set =
-        samples() ? training_set_of(*samples(), options_.symmetrize) : draw_training_set(reference(), drawn);
+    const TrainingSet set = drawn_set(drawn);
     RefineOptions refine = refine_options(form.loss);
     LobesReport report{.loss = form.loss, .budget = form.bytes};
 
@@ -257,19 +257,43 @@ class Fitter {
     LobesReport report{.loss = form.loss, .budget = form.bytes};
     RefineOptions refine = refine_options(form.loss);
     if (takes_lobes(reference(), limit)) {
-      TrainingOptions drawn = training_for(form.bytes, limit.texel_bytes, brdf_.isotropic());
-      drawn.seed = options_.seed;
-      const TrainingSet set = draw_training_set(reference(), drawn);
+      const TrainingSet set = drawn_set(training_for(form.bytes, limit.texel_bytes, brdf_.isotropic()));
       const LobePlan plan = plan_within(reference(), limit);
       return finish(fit_plan(set, plan, limit.bytes, limit.texel_bytes, refine), set, refine,
                     std::move(report));
     }
     if (form.loss == FitLoss::image) refine.shares = kVolumeShares;
     if (!options_.smooth) refine.smooth = kVolumeSmooth;
-    TrainingOptions drawn = training_for_volumes(limit);
-    drawn.seed = options_.seed;
-    const TrainingSet set = draw_training_set(reference(), drawn);
+    const TrainingSet set = drawn_set(training_for_volumes(limit));
     return finish(fit_volumes(set, volume_specs(reference(), limit), refine), set, refine, std::move(report));
+  }
+
+  /// Pairs drawn from what is fitted, or the scattered samples themselves; with the nodes that are the target.
+  TrainingSet drawn_set(TrainingOptions drawn) const {
+    drawn.seed = options_.seed;
+    TrainingSet set =
+        samples() ? training_set_of(*samples(), options_.symmetrize) : draw_training_set(reference(), drawn);
+    if (smoothed_) add_nodes(set);
+    return set;
+  }
+
+  /// Adds the function's values at the nodes, which crowd where highlights are, as pairs that together weigh what the
+  /// others do.
+  void add_nodes(TrainingSet& set) const {
+    const double others = std::accumulate(
+        set.weights.begin() + static_cast<std::ptrdiff_t>(set.picture_count), set.weights.end(), 0.0);
+    std::vector<std::size_t> near;
+    for (std::size_t i = 0; i < nodes_->size(); ++i)
+      if (std::min(nodes_->samples.pairs[i].wi.z, nodes_->samples.pairs[i].wo.z) > NodeScoring{}.least_cosine)
+        near.push_back(i);
+    std::vector<double> f(static_cast<std::size_t>(set.channels));
+    for (const std::size_t i : near) {
+      const DirectionPair& pair = nodes_->samples.pairs[i];
+      smoothed_->eval(pair.wi, pair.wo, f);
+      set.pairs.push_back(pair);
+      set.weights.push_back(static_cast<float>(others / static_cast<double>(near.size())));
+      for (const double value : f) set.values.push_back(static_cast<float>(value));
+    }
   }
 
   /// Last steps that look at albedos too. Before, they would lead lobes that are not found yet astray.

@@ -7,7 +7,7 @@
 namespace burnish {
 
 /// A symmetric matrix of which each row is stored from its first entry that is not zero up to the diagonal:
-/// bands, and bands with a border of full rows. Cholesky factorization keeps that shape [George 1981].
+/// bands, and bands with a border of full rows. Cholesky factorization keeps that shape [George1981].
 class EnvelopeMatrix {
  public:
   /// Zero. first[i] <= i is the first column stored of row i.
