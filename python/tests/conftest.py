@@ -51,6 +51,17 @@ def lobes():
 
 
 @pytest.fixture(scope="session")
+def volume(ggx):
+    """A line times a table over three angles."""
+    return burnish.fit(
+        ggx,
+        model="z(theta_h) g(theta_h,theta_d,phi_d)",
+        tables=["z=32,power:0.5", "g=7x5x3,power:0.5"],
+        samples=20_000,
+    )
+
+
+@pytest.fixture(scope="session")
 def pairs():
     return burnish.draw_pairs(2000, seed=7, isotropic=False)
 

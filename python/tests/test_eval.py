@@ -12,7 +12,7 @@ def write_directions(path, wi, wo):
     np.savetxt(path, rows, delimiter=",", header="wi_x,wi_y,wi_z,wo_x,wo_y,wo_z", comments="", fmt="%.17g")
 
 
-@pytest.mark.parametrize("name", ["ggx", "model", "lobes"])
+@pytest.mark.parametrize("name", ["ggx", "model", "lobes", "volume"])
 def test_eval_gives_what_the_command_line_gives(name, request, cli, pairs, tmp_path):
     source = request.getfixturevalue(name)
     spec = GGX
@@ -25,7 +25,7 @@ def test_eval_gives_what_the_command_line_gives(name, request, cli, pairs, tmp_p
     np.testing.assert_array_equal(source.eval(*pairs), expected)
 
 
-@pytest.mark.parametrize("name", ["model", "lobes"])
+@pytest.mark.parametrize("name", ["model", "lobes", "volume"])
 def test_float32_is_near_the_definition(name, request, pairs):
     source = request.getfixturevalue(name)
     wi, wo = (w.astype(np.float32) for w in pairs)
@@ -52,6 +52,24 @@ def test_any_layout_gives_the_same_bits(name, dtype, request):
     assert np.shares_memory(source.eval(wi, wo, out=out[::2]), out)
     np.testing.assert_array_equal(out[::2], expected)
     assert not out[1::2].any()
+
+
+@pytest.mark.parametrize("name", ["model", "lobes", "volume"])
+def test_one_pair_gives_the_same_bits_as_many(name, request):
+    source = request.getfixturevalue(name)
+    wi, wo = hemisphere(300, 5), hemisphere(300, 6)
+    wi[7, 2] *= -1
+    wo[9] *= 2
+    many = source.eval(wi, wo)
+    assert not many[7].any() and np.isnan(many[9]).all()
+    for i in range(len(wi)):
+        one = source.eval(wi[i], wo[i])
+        assert one.dtype == np.float32 and one.shape == (source.channels,)
+        np.testing.assert_array_equal(one, many[i])
+    out = np.zeros((1, 6), np.float32)
+    source.eval(wi[:1], wo[0], out=out[:, ::2])
+    np.testing.assert_array_equal(out[0, ::2], many[0])
+    assert not out[0, 1::2].any()
 
 
 def test_one_direction_stands_for_all(model):

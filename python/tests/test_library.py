@@ -175,6 +175,22 @@ def test_tables_are_views_that_keep_their_model_alive(ggx):
         values[0, 0, 0] = 2
 
 
+def test_volumes_have_a_depth(volume):
+    line, table = volume.tables
+    assert line.shape == "line" and line.values.shape == (1, 32, 3)
+    assert table.shape == "volume" and table.values.shape == (3, 5, 7, 3)
+    assert table.warp == ("power", 0.5) and table.warp_z[0] == "identity"
+    use = volume.lobes[0].factors[1]
+    assert use.projection == (1, 1, 0, 0)
+    assert (use.projection_y, use.projection_z) == ("difference", "azimuth")
+    logs = [np.log(t.values.astype(np.float64)) for t in volume.tables]
+    np.testing.assert_array_equal(volume.with_log_tables(logs).tables[1].values, table.values)
+    with pytest.raises(burnish.Error, match="expected the shape of table 'g'"):
+        volume.with_log_tables([logs[0], logs[1].reshape(1, 15, 7, 3)])
+    with pytest.raises(burnish.Error, match="expected the shape of table 'g'"):
+        volume.with_log_tables([logs[0], logs[1].reshape(15, 7, 3)])
+
+
 def test_log_tables_restore_and_change_a_model(lobes, pairs):
     logs = [np.log(table.values.astype(np.float64)) for table in lobes.tables]
     anew = len(logs) / 512  # rounded anew: half a unit of a mantissa of at least 256 in each table

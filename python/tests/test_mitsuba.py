@@ -22,11 +22,12 @@ def llvm():
 
 
 @pytest.fixture(scope="session")
-def files(tmp_path_factory, model, lobes):
+def files(tmp_path_factory, model, lobes, volume):
     folder = tmp_path_factory.mktemp("models")
     models = {
         "model": model,
         "lobes": lobes,
+        "volume": volume,
         "white": burnish.fit(burnish.open_source("lambert:kd=1")),
     }
     for name, one in models.items():
@@ -40,7 +41,7 @@ def interaction(wo, count):
     return si
 
 
-@pytest.mark.parametrize("name", ["model", "lobes", "white"])
+@pytest.mark.parametrize("name", ["model", "lobes", "volume", "white"])
 def test_eval_and_pdf_are_the_librarys(name, files, llvm):
     source = burnish.open_source(files[name])
     wi, wo = hemisphere(20_000, 1), hemisphere(20_000, 2)
@@ -54,7 +55,7 @@ def test_eval_and_pdf_are_the_librarys(name, files, llvm):
     assert (abs(ratio - 1) < 1e-3).mean() > 0.995
 
 
-@pytest.mark.parametrize("name", ["model", "lobes"])
+@pytest.mark.parametrize("name", ["model", "lobes", "volume"])
 def test_draws_are_the_librarys(name, files, llvm):
     source = burnish.open_source(files[name])
     wo, u = hemisphere(20_000, 3), np.random.default_rng(4).random((20_000, 2)).astype(np.float32)
@@ -152,20 +153,21 @@ def test_what_is_no_model_is_refused(llvm, tmp_path):
         mi.load_dict({"type": "burnish", "filename": str(path)})
 
 
-def test_scalar_variants_call_the_library(files):
+@pytest.mark.parametrize("name", ["model", "volume"])
+def test_scalar_variants_call_the_library(name, files):
     before = mi.variant()
     mi.set_variant("scalar_rgb")
     try:
         import burnish.mitsuba
 
         burnish.mitsuba.register()
-        source = burnish.open_source(files["model"])
-        bsdf = mi.load_dict({"type": "burnish", "filename": files["model"]})
+        source = burnish.open_source(files[name])
+        bsdf = mi.load_dict({"type": "burnish", "filename": files[name]})
         si = mi.SurfaceInteraction3f()
         si.wi = [0.6, 0, 0.8]
         wi = np.array([0, 0.6, 0.8])
         f, pdf = bsdf.eval_pdf(mi.BSDFContext(), si, mi.Vector3f(wi))
-        np.testing.assert_allclose(f, 0.8 * source.eval(wi, np.array([0.6, 0, 0.8])), rtol=1e-6)
+        np.testing.assert_allclose(f, 0.8 * source.eval(wi, np.array([0.6, 0, 0.8])), rtol=2e-5)
         drawn, weight = bsdf.sample(mi.BSDFContext(), si, 0.5, [0.3, 0.6])
         assert drawn.pdf > 0 and np.all(np.array(weight) > 0)
         assert bsdf.pdf(mi.BSDFContext(), si, drawn.wo) == pytest.approx(drawn.pdf, rel=1e-3)

@@ -1,7 +1,13 @@
 // Evaluations a second of factored BRDFs beside tables and a formula, on one thread, three channels, random
 // directions: enough of them that a large table is read from where it lies, not from the cache.
+#include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <optional>
 #include <string>
 
 #include <benchmark/benchmark.h>
@@ -11,6 +17,8 @@
 #include <burnish/baselines/neural_brdf.h>
 #include <burnish/eval/factored_eval.h>
 #include <burnish/factors/model_spec.h>
+#include <burnish/fitting/fit.h>
+#include <burnish/io/open_source.h>
 #include <burnish/math/angles.h>
 #include <burnish/math/random.h>
 #include <burnish/reflectance/goniometer.h>
@@ -75,6 +83,26 @@ double relative_error(const Value& value, const Truth& truth) {
   return error / (3 * kChecked);
 }
 
+const Ggx& ggx();
+const NeuralBrdf& neural();
+
+// How long `run` takes beside `baseline`, each the shortest of some turns: what else the machine does changes
+// both alike.
+template <class Run, class Baseline>
+double ratio(const Run& run, const Baseline& baseline) {
+  const auto seconds = [](const auto& f) {
+    const auto start = std::chrono::steady_clock::now();
+    f();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  double least = seconds(run), least_baseline = seconds(baseline);
+  for (int turn = 0; turn < 30; ++turn) {
+    least = std::min(least, seconds(run));
+    least_baseline = std::min(least_baseline, seconds(baseline));
+  }
+  return least / least_baseline;
+}
+
 // One pair at a time. `truth` gives the values to compare with.
 template <class Real, class Eval, class Truth>
 void one_by_one(benchmark::State& state, const Eval& eval, const Truth& truth, double bound) {
@@ -95,6 +123,16 @@ void one_by_one(benchmark::State& state, const Eval& eval, const Truth& truth, d
   }
   state.SetItemsProcessed(state.iterations());
   state.counters["relative_error"] = error;
+  const auto all_of = [&](const auto& brdf, auto none) {
+    return [&pairs, &brdf, none] {
+      auto values = none;
+      for (std::size_t k = 0; k < kChecked; ++k) {
+        brdf.eval(pairs[k].wi, pairs[k].wo, values);
+        benchmark::DoNotOptimize(values);
+      }
+    };
+  };
+  state.counters["of_ggx"] = ratio(all_of(eval, f), all_of(ggx(), std::array<double, 3>{}));
 }
 
 // All pairs at once; run(directions, f).
@@ -124,6 +162,8 @@ void batched(benchmark::State& state, const Run& run, const Truth& truth, double
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kPairs));
   state.counters["relative_error"] = error;
+  state.counters["of_network"] =
+      ratio([&] { run(spans, std::span(f)); }, [&] { eval_neural(neural().weights(), spans, f); });
 }
 
 template <class F>
@@ -143,6 +183,50 @@ void add_model(const std::string& name, const char* expression, const std::vecto
     batched(state, run, model, evaluator.rounding_bound());
     state.counters["bytes"] = static_cast<double>(model.bytes());
     state.counters["multiplies"] = static_cast<double>(evaluation_cost(model).multiplies);
+  });
+}
+
+// What a fit gives, of a measured file in BURNISH_DATA or else of the formula. Made when its first row runs.
+struct Fitted {
+  FactoredBrdf model;
+  FactoredEvaluator evaluator;
+};
+Source measured() {
+  const char* const folder = std::getenv("BURNISH_DATA");
+  std::vector<std::string> files;
+  if (folder && std::filesystem::is_directory(folder))
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+      if (entry.path().extension() == ".bsdf") files.push_back(entry.path().string());
+  if (files.empty()) return open_source("ggx:alpha_x=0.2,alpha_y=0.2,f0=0.9/0.6/0.3,kd=0.05/0.1/0.2", {});
+  return open_source(*std::ranges::min_element(files), {});
+}
+
+void add_fit(const std::string& name, const FitForm& form) {
+  const auto fitted = std::make_shared<std::optional<Fitted>>();
+  const auto made = [=]() -> const Fitted& {
+    if (!*fitted) {
+      FactoredBrdf model = fit(measured(), {.form = form, .score = false}).model();
+      const FactoredEvaluator evaluator(model);
+      fitted->emplace(std::move(model), evaluator);
+    }
+    return **fitted;
+  };
+  const auto finish = [](benchmark::State& state, const FactoredBrdf& model) {
+    std::size_t lookups = 0;
+    for (const Lobe& lobe : model.lobes()) lookups += lobe.factors.size();
+    state.counters["lookups"] = static_cast<double>(lookups);
+    state.counters["bytes"] = static_cast<double>(model.bytes());
+  };
+  add(name + "/one_by_one", [=](benchmark::State& state) {
+    const auto& [model, evaluator] = made();
+    one_by_one<float>(state, evaluator, model, evaluator.rounding_bound());
+    finish(state, model);
+  });
+  add(name + "/batched", [=](benchmark::State& state) {
+    const auto& [model, evaluator] = made();
+    const auto run = [&](const DirectionSpans& w, std::span<float> f) { evaluator.eval(w, f); };
+    batched(state, run, model, evaluator.rounding_bound());
+    finish(state, model);
   });
 }
 
@@ -245,8 +329,12 @@ const bool registered = [] {
             {"p=40", "q=128,rational:0.05", "r=48", "s=40", "t=128,rational:0.3", "u=48"});
   add_model("grid_2k7", "p(wo) q(theta_h,theta_d) p(wi) + s(wo) s(wi)",
             {"p=32", "q=48x8,rational:0.1", "s=24"});
-  add_model("volume", "z(theta_h) g(theta_h,theta_d,phi_d)", {"z=256,power:0.5", "g=28x14x8,power:0.5"});
   add_model("pqp_64x64", "pqp", {"p=64x64", "q=64x64,rational:0.2"});
+  add_fit("fit_2_fetches", OneLobe{.model = "z(theta_h) g(theta_h,theta_d,phi_d)",
+                                   .tables = {"z=256,power:0.5", "g=28x14x8,power:0.5"}});
+  add_fit("fit_4_fetches", OneLobe{.model = "p(wo) z(theta_h) g(theta_h,theta_d,phi_d) p(wi)",
+                                   .tables = {"p=32", "z=256,power:0.5", "g=28x14x8,power:0.5"}});
+  add_fit("fit_2k7", Budget{.bytes = 2700});
   add_peers();
   add_limits();
   return true;

@@ -27,6 +27,7 @@ const ModelCase kModels[] = {
      {"p=8", "q=64,rational:0.02", "r=8", "s=8", "t=16"},
      3},
     {"Grid", "p(wo) g(theta_h,theta_d) p(wi) + s(wo) s(wi)", {"g=32x8,rational:0.1", "p=8", "s=8,shared"}, 3},
+    {"Volume", "z(theta_h) g(theta_h,theta_d,phi_d)", {"g=28x5x4,power:0.5", "z=32"}, 3},
     {"Affine", "q(wi+wo+0.4n) v(0.3wi+0.9wo) v(0.9wi+0.3wo) + q(h)", {"q=32", "v=9"}, 1},
     {"Mirror", "a(m+wo) q(h) b(d)", {"a=16,power:0.5", "q=32", "b=8"}, 3},
     {"Disks", "pqp", {"p=17x17", "q=33x33,rational:0.2"}, 3},
@@ -45,10 +46,11 @@ FactoredBrdf glossy_model(const ModelCase& model) {
   for (const ModelSpec::TableSpec& t : spec.tables) {
     Table table{.name = t.name, .layout = t.layout, .channels = t.shared ? 1 : model.channels, .values = {}};
     const double steepness = t.name == "q" || t.name == "g" ? 400 : 3;
-    for (int y = 0; y < t.layout.height; ++y)
+    for (int y = 0; y < t.layout.rows(); ++y)
       for (int x = 0; x < t.layout.width; ++x)
         for (int c = 0; c < table.channels; ++c) {
-          const Vec3 w = node_direction(t.layout, x, t.layout.shape == TableShape::grid ? 0 : y);
+          const bool angles = projection_count(t.layout.shape) > 1;
+          const Vec3 w = node_direction(t.layout, x, angles ? 0 : y);
           const double along = w.x + 0.5 * w.y, across = 3 * (w.y - 0.5 * w.x);
           const double tilt = 0.1 * y / t.layout.height;
           table.values.push_back(static_cast<float>(
