@@ -38,7 +38,7 @@ enum class Op {
   to_real,       // of an integer
   element,       // of an array `name`, at integer a
   texel,         // of texture `name` at integers (a, b) or (a, b, c)
-  sample,        // of texture `name`, filtered, at two or three coordinates
+  sample,        // of texture `name`, filtered, at one to three coordinates
   call,          // of a function `name` that the text around has
 };
 

@@ -93,7 +93,9 @@ Language c_like(std::string_view name, std::string_view suffix) {
           .texel_3d = {},
           .sample = {},
           .sample_3d = {},
+          .sample_1d = {},
           .array = {},
+          .texture_1d = {},
           .texture = {},
           .texture_3d = {},
           .filtered_texture = {},
@@ -157,6 +159,8 @@ Language glsl() {
   l.texel_3d = "texelFetch({0}, ivec3({1}, {2}, {3}), 0).{4}";
   l.sample = "textureLod({0}, vec2({1}, {2}), 0.0).{3}";
   l.sample_3d = "textureLod({0}, vec3({1}, {2}, {3}), 0.0).{4}";
+  l.sample_1d = "textureLod({0}, {1}, 0.0).{2}";
+  l.texture_1d = "uniform sampler1D {0};\n";
   l.array = "const float {0}[{1}] = float[]({2});\n";
   l.texture = l.filtered_texture = "uniform sampler2D {0};\n";
   l.texture_3d = l.filtered_texture_3d = "uniform sampler3D {0};\n";
@@ -169,6 +173,7 @@ Language glsl() {
 Language glsl_es() {
   Language l = glsl();
   l.name = "glsl_es";
+  l.sample_1d = l.texture_1d = {};
   l.header =
       "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\nprecision highp "
       "sampler3D;\n";
@@ -341,6 +346,7 @@ std::string Language::fetch(std::string_view texture_name, std::span<const std::
 
 std::string Language::filtered(std::string_view texture_name, std::span<const std::string> at,
                                ValueType type) const {
+  if (at.size() == 1) return fmt::format(fmt::runtime(sample_1d), texture_name, at[0], channels_of(type));
   return read_at(sample, sample_3d, texture_name, at, type);
 }
 

@@ -31,9 +31,10 @@ struct Language {
 
   std::string_view texel, texel_3d;    // {0} texture, {1} x, {2} y (, {3} z), last channels' letters
   std::string_view sample, sample_3d;  // likewise at texture coordinates
+  std::string_view sample_1d;          // {0} texture, {1} u, {2} channels' letters; empty: none
   std::string_view array;              // constant floats: {0} name, {1} how many, {2} values
   // declarations: {0} name, {1} number, {2} twice it, {3} and one; empty: none
-  std::string_view texture, texture_3d, filtered_texture, filtered_texture_3d;
+  std::string_view texture_1d, texture, texture_3d, filtered_texture, filtered_texture_3d;
   // products of texels in half precision: its types, what makes a vector, what converts from single (empty:
   // nothing has to), suffix of literals, and what stands instead of `header`
   std::string_view half_scalar, half_vector, half_constructor, half_from_scalar, half_from_vector,
@@ -51,7 +52,7 @@ struct Language {
                        std::string_view more, std::string_view body) const;
   /// Of a 2-D or 3-D texture, by as many integers.
   std::string fetch(std::string_view texture, std::span<const std::string> at, ValueType type) const;
-  /// Filtered, at two or three texture coordinates.
+  /// Filtered, at one to three texture coordinates.
   std::string filtered(std::string_view texture, std::span<const std::string> at, ValueType type) const;
   /// A constant array of floats.
   std::string declare_array(std::string_view name, std::span<const double> values) const;

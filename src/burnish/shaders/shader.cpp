@@ -48,7 +48,9 @@ class Lookups {
     const auto [x, y, z] = position_expressions(layout, use, axis(layout.width, first[0], texture->width),
                                                 axis(layout.height, first[1], texture->height),
                                                 axis(layout.depth, first[2], std::max(texture->depth, 1)));
-    std::vector<Expr> at{x, axis_count(layout.shape) == 1 ? Expr((first[1] + 0.5) / texture->height) : y};
+    std::vector<Expr> at{x};
+    if (texture->height > 0)
+      at.push_back(axis_count(layout.shape) == 1 ? Expr((first[1] + 0.5) / texture->height) : y);
     if (texture->depth > 0) at.push_back(z);
     return named("value", Expr::sample(texture->name, at, type));
   }
@@ -167,9 +169,10 @@ std::string declare_textures(const Language& l, const ShaderOptions& options,
   for (std::size_t i = 0; i < textures.size(); ++i) {
     const ShaderTexture& texture = textures[i];
     const bool filtered = options.filter == ShaderFilter::hardware;
-    const std::string_view pattern = texture.depth > 0 ? filtered ? l.filtered_texture_3d : l.texture_3d
-                                     : filtered        ? l.filtered_texture
-                                                       : l.texture;
+    const std::string_view pattern = texture.height == 0 ? l.texture_1d
+                                     : texture.depth > 0 ? filtered ? l.filtered_texture_3d : l.texture_3d
+                                     : filtered          ? l.filtered_texture
+                                                         : l.texture;
     text += l.texture.empty() ? declare_array(l, texture)
                               : fmt::format(fmt::runtime(pattern), texture.name, i, 2 * i, 2 * i + 1);
   }
@@ -224,6 +227,9 @@ void check(const FactoredBrdf& brdf, const ShaderOptions& options) {
     throw Error(fmt::format("shader: expected a model of 1 or 3 channels, found {}", brdf.channels()));
   if (cpp && options.filter == ShaderFilter::hardware)
     throw Error("shader: expected the exact filter for cpp, which has no texture units, found hardware");
+  if (options.lines_are_1d &&
+      (options.language != ShaderLanguage::glsl || options.filter != ShaderFilter::hardware))
+    throw Error("shader: expected glsl and the hardware filter with 1-D textures, found others");
   if (options.half_products && options.filter == ShaderFilter::exact)
     throw Error("shader: expected the hardware filter with half products, found exact");
 }
@@ -248,6 +254,8 @@ ShaderFormula shader_formula(const FactoredBrdf& brdf, const ShaderOptions& opti
   ShaderFormula formula;
   formula.textures = options.language == ShaderLanguage::cpp ? tables_apart(brdf, options.name)
                                                              : pack_tables(brdf, options.name);
+  for (ShaderTexture& texture : formula.textures)
+    if (options.lines_are_1d && texture.height == 1 && texture.depth == 0) texture.height = 0;
   formula.lobes = lobe_values(brdf, formula.textures, options);
   for (const Expr& lobe : formula.lobes) formula.value = formula.value + lobe;
   return formula;

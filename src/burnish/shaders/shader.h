@@ -33,6 +33,9 @@ struct ShaderOptions {
   /// Of the hardware filter: what comes out of textures is multiplied in half precision (mediump, half,
   /// min16float, f16), positions still found in single.
   bool half_products = false;
+  /// Of glsl with the hardware filter: a texture of one row is 1-D, which takes half the texels where no
+  /// texture unit reads them.
+  bool lines_are_1d = false;
 };
 
 /// What one evaluation in the local frame costs, above the horizon. Floating-point operations are counted a
@@ -64,9 +67,9 @@ struct PlacedTable {
 
 /// What a shader reads: tables beside, above or behind each other. Texels around a table repeat its edge.
 struct ShaderTexture {
-  std::string name;  ///< of the sampler; of the array in C++; of a member in MSL
-  int width = 0, height = 0;
-  int depth = 0;  ///< > 0: 3-D
+  std::string name;           ///< of the sampler; of the array in C++; of a member in MSL
+  int width = 0, height = 0;  ///< height 0: 1-D
+  int depth = 0;              ///< > 0: 3-D
   int channels = 1;
   TableFormat format = TableFormat::half;  ///< that `values` are rounded to
   std::vector<float> values;               ///< [z][y][x][channel]
@@ -93,7 +96,7 @@ struct Shader {
 /// smooth; what is brighter than 65504 becomes infinite.
 ///
 /// Throws Error if the name is not as above, channels are not 1 or 3, a texture's side would be above 16384,
-/// for C++ with the hardware filter, or for half products with the exact one.
+/// for C++ with the hardware filter, for half products with the exact one, or if lines_are_1d is not as above.
 Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options);
 
 /// What generate_shader computes, in two pieces of GLSL for a pixel that several lights shine on: `view`

@@ -206,6 +206,27 @@ TEST(Shader, ReadsRowsInTheirMiddleWithoutRounding) {
   EXPECT_EQ(shader.textures[0].height, 4);
 }
 
+TEST(Shader, MakesARowOfLinesOneDimensionalWhereAsked) {
+  const auto height = [](const ModelCase& model) {
+    return generate_shader(smooth_model(model), {.filter = ShaderFilter::hardware, .lines_are_1d = true})
+        .textures.at(0)
+        .height;
+  };
+  EXPECT_EQ(height(model_case("Volume")), 0);
+  EXPECT_GT(height(model_case("DiskPqp")), 1);
+}
+
+// A line times a volume, both over the root of tan(theta_h / 2).
+TEST(Shader, OfALineTimesAVolumeIsSmall) {
+  const Shader shader =
+      generate_shader(smooth_model(model_case("Volume")), {.filter = ShaderFilter::hardware});
+  EXPECT_EQ(shader.textures.size(), 2u);
+  EXPECT_EQ(shader.cost.fetches, 2);
+  EXPECT_LE(shader.cost.operations, 41);
+  EXPECT_LE(shader.cost.roots, 4);
+  EXPECT_EQ(shader.cost.powers, 0);
+}
+
 TEST(Shader, TakesAFormatThatHoldsAllTables) {
   const auto format_of_textures = [](TableFormat first, TableFormat second) {
     const FactoredBrdf brdf = smooth_model({"m", "a(h) b(theta_d)", {"a=8", "b=6"}, 3});
@@ -330,6 +351,7 @@ TEST(Shader, RefusesWhatItCannotWrite) {
     EXPECT_THROW(generate_shader(brdf, {.name = name}), Error) << name;
   EXPECT_THROW(generate_shader(brdf, {ShaderLanguage::cpp, ShaderFilter::hardware, "m"}), Error);
   EXPECT_THROW(shader_of({"m", "pqp", {"p=4", "q=4"}, 4}, ShaderLanguage::glsl), Error);
+  EXPECT_THROW(generate_shader(brdf, {.lines_are_1d = true}), Error);
 }
 
 TEST(SplitShader, PartsWhatNeedsTheViewAloneAndAddsNothing) {

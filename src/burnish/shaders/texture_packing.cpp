@@ -69,7 +69,7 @@ PackingPlan shelves(std::span<const Table> tables, const TableNumbers& order, in
   return plan;
 }
 
-// The width that takes fewest texels.
+// The width that takes fewest texels, of those the one with fewest rows.
 PackingPlan plan_2d(std::span<const Table> tables, TableNumbers order) {
   const auto size_of = [&](std::size_t i) {
     return std::pair(tables[i].layout.height, tables[i].layout.width);
@@ -80,7 +80,7 @@ PackingPlan plan_2d(std::span<const Table> tables, TableNumbers order) {
   PackingPlan best = shelves(tables, order, width);
   for (width = static_cast<int>(std::bit_ceil(static_cast<unsigned>(width))); width <= kMaxPackedWidth;
        width *= 2)
-    if (PackingPlan plan = shelves(tables, order, width); plan.texels() < best.texels())
+    if (PackingPlan plan = shelves(tables, order, width); plan.texels() <= best.texels())
       best = std::move(plan);
   return best;
 }

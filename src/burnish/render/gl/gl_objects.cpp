@@ -17,7 +17,7 @@ TexelFormat format_of(const GlTexture& texture) {
   const bool grey = texture.channels == 1;
   switch (texture.precision) {
     case TableFormat::single:
-      return {grey ? GLenum{GL_R32F} : GLenum{GL_RGB32F}, grey ? GLenum{GL_RED} : GLenum{GL_RGB}, GL_FLOAT};
+      return {grey ? GLenum{GL_R32F} : GLenum{GL_RGBA32F}, grey ? GLenum{GL_RED} : GLenum{GL_RGB}, GL_FLOAT};
     case TableFormat::half:
       return {grey ? GLenum{GL_R16F} : GLenum{GL_RGB16F}, grey ? GLenum{GL_RED} : GLenum{GL_RGB}, GL_FLOAT};
     case TableFormat::rgb9e5:
@@ -45,12 +45,15 @@ unsigned upload_texture(const GlTexture& texture) {
 
   // as many dimensions as there are sides
   GLuint name = 0;
-  glCreateTextures(texture.depth ? GL_TEXTURE_3D : GL_TEXTURE_2D, 1, &name);
+  glCreateTextures(texture.depth ? GL_TEXTURE_3D : texture.height ? GL_TEXTURE_2D : GL_TEXTURE_1D, 1, &name);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
   if (texture.depth) {
     glTextureStorage3D(name, 1, format.stored, texture.width, texture.height, texture.depth);
     glTextureSubImage3D(name, 0, 0, 0, 0, texture.width, texture.height, texture.depth, format.layout,
                         format.type, texture.values.data());
+  } else if (!texture.height) {
+    glTextureStorage1D(name, 1, format.stored, texture.width);
+    glTextureSubImage1D(name, 0, 0, texture.width, format.layout, format.type, texture.values.data());
   } else {
     glTextureStorage2D(name, 1, format.stored, texture.width, texture.height);
     glTextureSubImage2D(name, 0, 0, 0, texture.width, texture.height, format.layout, format.type,

@@ -87,7 +87,7 @@ std::string scene_fragment_shader(const SurfaceShader& surface) {
 
 SurfaceShader surface_shader(const FactoredBrdf& brdf, ShaderFilter filter, TableFormat precision) {
   const bool filtered = filter == ShaderFilter::hardware;
-  const SplitShader split = split_shader(brdf, {ShaderLanguage::glsl, filter, "model"});
+  const SplitShader split = split_shader(brdf, {.filter = filter, .name = "model", .lines_are_1d = filtered});
   SurfaceShader surface{split.declarations, split.view, split.light, split.value, {}};
   for (const ShaderTexture& texture : split.textures)
     surface.textures.push_back(upload_of(texture, precision, filtered));
