@@ -1,3 +1,4 @@
+#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
 #include <burnish/fitting/refinement/refine_system.h>
