@@ -45,6 +45,7 @@ constexpr int kHeldOutSphereSize = 128;  // of a baseline's the defaults of Figu
 // Volumes follow all angles alike; what they lack shows in pictures first.
 constexpr ErrorTerms kVolumeShares{.pictures = 3, .dimmed = 0.3, .relative = 0.5, .log_cos = 0.5};
 constexpr double kVolumeSmooth = 1e-9;
+constexpr double kFrontalShare = 0.1;  // of pixels, see with_frontal_pixels
 
 bool has_disk(const ModelSpec& spec) {
   return std::ranges::any_of(spec.tables,
@@ -264,7 +265,8 @@ class Fitter {
     }
     if (form.loss == FitLoss::image) refine.shares = kVolumeShares;
     if (!options_.smooth) refine.smooth = kVolumeSmooth;
-    const TrainingSet set = drawn_set(training_for_volumes(limit));
+    const TrainingSet set =
+        with_frontal_pixels(reference(), drawn_set(training_for_volumes(limit)), kFrontalShare);
     return finish(fit_volumes(set, volume_specs(reference(), limit), refine), set, refine, std::move(report));
   }
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -8,6 +9,7 @@
 #include <burnish/fitting/numerics/node_numbers.h>
 #include <burnish/fitting/plans/fetch_plan.h>
 #include <burnish/fitting/plans/trial_sets.h>
+#include <burnish/math/angles.h>
 #include <burnish/math/parallel.h>
 #include <burnish/reflectance/mirror_asymmetry.h>
 
@@ -29,8 +31,7 @@ struct VolumeForm {
   double half, difference, azimuth;  ///< nodes along each axis, relative to each other
   double power;                      ///< of theta_h's spacing
 };
-constexpr VolumeForm kForms[] = {
-    {30, 20, 6, 0.6}, {40, 15, 6, 0.6}, {24, 24, 6, 0.6}, {34, 18, 6, 0.5}, {30, 20, 6, 0.75}};
+constexpr VolumeForm kForms[] = {{30, 20, 6, 0.6}, {40, 15, 6, 0.6}, {24, 24, 6, 0.6}, {34, 18, 6, 0.5}};
 constexpr int kMinDepth = 3;
 
 // The way to the last refinement is made on about this many pairs, in few steps, at this share of the nodes.
@@ -40,8 +41,11 @@ constexpr int kCoarseSteps = 8, kFullSteps = 5, kHeldSteps = 2;
 // The log-linear start counts values about zero as the relative error does, and is smooth.
 constexpr double kStartFloor = PictureLoss::kFloor, kStartSmooth = 1e-5;
 // Trials: every so many pairs, in so few steps, for gains that another draw of pairs would not give.
-constexpr std::size_t kTrialPart = 4;
-constexpr int kTrialSteps = 5;
+constexpr std::size_t kTrialPart = 8;
+constexpr int kTrialSteps = 4;
+
+constexpr double kGoldenStep = 0.6180339887498949;  // of azimuths
+constexpr double kFrontalCosine = 1e-3;
 
 /// Adds a model's tables and their uses, all of one lobe.
 class SpecBuilder {
@@ -217,6 +221,52 @@ TrainingOptions training_for_volumes(const CostLimit& limit) {
   const std::size_t texels = limit.bytes / limit.texel_bytes,
                     times = std::clamp<std::size_t>(texels / 8192, 1, 4);
   return {.pictures = times * 40'000, .directions = times * 50'000, .crowded = true};
+}
+
+TrainingSet with_frontal_pixels(BrdfRef source, TrainingSet set, double share) {
+  const auto count = static_cast<std::size_t>(share * static_cast<double>(set.picture_count));
+  const auto channels = static_cast<std::size_t>(set.channels);
+
+  // low-discrepancy normals, half of them uniform on the disk, half with theta = pi/2 u^2
+  std::vector<DirectionPair> pairs;
+  std::vector<float> weights;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double u = (static_cast<double>(i) + 0.5) / static_cast<double>(count), v = std::fmod(2 * u, 1.0),
+                 phi = kTwoPi * std::fmod(static_cast<double>(i) * kGoldenStep, 1.0);
+    const double theta = u < 0.5 ? std::asin(std::sqrt(v)) : kHalfPi * v * v;
+    if (!(std::cos(theta) > kFrontalCosine) || !(theta > 0)) continue;
+    const double even = std::sin(2 * theta), crowded = 1 / std::sqrt(kTwoPi * theta);
+    const Vec3 w{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+    pairs.push_back({w, w});
+    weights.push_back(static_cast<float>(2 * even / (even + crowded)));
+  }
+  std::vector<double> values(pairs.size() * channels);
+  std::vector<std::uint8_t> known(pairs.size());
+  source.eval(pairs, values, known);
+
+  // after the pixels that there are
+  TrainingSet more = set;
+  const auto cut = [&](auto& v, std::size_t at) {
+    v.erase(v.begin() + static_cast<std::ptrdiff_t>(at), v.end());
+  };
+  cut(more.pairs, set.picture_count);
+  cut(more.weights, set.picture_count);
+  cut(more.values, set.picture_count * channels);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (!known[i]) continue;
+    more.pairs.push_back(pairs[i]);
+    more.weights.push_back(weights[i]);
+    for (std::size_t c = 0; c < channels; ++c)
+      more.values.push_back(static_cast<float>(std::max(values[i * channels + c], 0.0)));
+  }
+  more.picture_count = more.size();
+  const auto append = [](auto& to, const auto& from, std::size_t at) {
+    to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(at), from.end());
+  };
+  append(more.pairs, set.pairs, set.picture_count);
+  append(more.weights, set.weights, set.picture_count);
+  append(more.values, set.values, set.picture_count * channels);
+  return more;
 }
 
 LobesFit fit_volumes(const TrainingSet& set, const std::vector<ModelSpec>& specs,

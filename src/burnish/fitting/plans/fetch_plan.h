@@ -31,6 +31,11 @@ std::vector<ModelSpec> volume_specs(BrdfRef source, const CostLimit& limit);
 /// How many pairs to draw for volumes, and where.
 TrainingOptions training_for_volumes(const CostLimit& limit);
 
+/// The set with more pixels of spheres lit from the viewer: theta_d is 0 there, at the edge of a volume, whose
+/// nodes the pixels of other lights reach from one side only. As many as `share` of the pixels that there are,
+/// half of them where theta_h is small, weighted as if they were spread evenly over the disk.
+TrainingSet with_frontal_pixels(BrdfRef source, TrainingSet set, double share);
+
 /// Fits the spec that serves best: each is fitted to part of the pairs, the mean of their channels, in few steps,
 /// and judged on another part. The log-linear fit of its volume at fewer nodes is refined on part of the
 /// set, then at all nodes on the whole. Throws Error as fit_homomorphic does.
