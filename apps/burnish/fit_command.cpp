@@ -27,7 +27,7 @@ namespace {
 struct FitArguments {
   SourceArguments source;
   FitOptions options;
-  OneLobe one_lobe;
+  OneLobe one_lobe{.model = ""};
   Budget budget{.bytes = 0};
   std::string out, method, target = "function", hold_out, loss = "image", smooth = "default", format;
   int threads = 0;
@@ -64,8 +64,14 @@ FitForm fit_form(const FitArguments& arguments, bool isotropic) {
     budget.scattered = how;
     return budget;
   }
-  return usage(
-      [&] { return form_of(arguments.one_lobe.model, arguments.one_lobe.tables, isotropic, how, loss); });
+  if (arguments.one_lobe.model.empty() && arguments.one_lobe.tables.empty()) {
+    Budget budget = default_budget(isotropic);
+    budget.loss = loss;
+    budget.scattered = how;
+    return budget;
+  }
+  const std::string model = arguments.one_lobe.model.empty() ? OneLobe{}.model : arguments.one_lobe.model;
+  return usage([&] { return form_of(model, arguments.one_lobe.tables, isotropic, how, loss); });
 }
 
 FitOptions fit_options(const FitArguments& arguments, bool isotropic) {
@@ -214,7 +220,8 @@ void add_lobes_arguments(CLI::App& verb, FitArguments& arguments) {
 void add_fit_command(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("fit", "Factor a BRDF into a product of small positive tables");
   verb->footer(
-      "Examples: burnish fit paint.binary -o paint.exr --budget 2700\n"
+      "Examples: burnish fit paint.binary -o paint.exr\n"
+      "          burnish fit paint.binary -o paint.exr --budget 2700\n"
       "          burnish fit paint.binary -o paint.exr --budget 16K --fetches 2\n"
       "          burnish fit paint.binary -o paint.exr --model \"p(wo) q(h) r(theta_d) p(wi)\" --table q=96\n"
       "          burnish fit paint.binary -o paint.json --method svd --budget 2700");
@@ -233,13 +240,13 @@ void add_fit_command(CLI::App& app) {
                   BaselineOptions{}.budget, fmt::join(baseline_methods(), ", ")));
   add_lobes_arguments(*verb, *arguments);
   verb->add_option(
-          "--model", one_lobe.model,
-          "product of tables over projections: pqp, pqpr, or such as \"p(wo) q(h) s(wi+wo+0.5n) p(wi)\"")
-      ->capture_default_str();
+      "--model", one_lobe.model,
+      "product of tables over projections: pqp (the paper's), pqpr, or such as "
+      "\"p(wo) q(h) s(wi+wo+0.5n) p(wi)\" (default: --budget 16K --fetches 2, of anisotropic sources "
+      "--budget 64K --fetches 6)");
   verb->add_option("--table", one_lobe.tables,
-                   "size and spacing of a table: NAME=SIZE[,warp][,shared][,format], SIZE N (1-D), NxN "
-                   "(hemisphere) or "
-                   "NxM; warp identity, power:P or rational:K; format as --format")
+                   "size and spacing of a table: NAME=SIZE[,warp...][,shared][,format], SIZE N (1-D), NxN "
+                   "(hemisphere), NxM or NxMxK; warp identity, power:P or rational:K; format as --format")
       ->allow_extra_args(false);
   verb->add_option(
       "--smooth", arguments->smooth,

@@ -32,8 +32,8 @@ struct ModelSpec {
 /// three); warps as parse_warp reads them, one an axis in turn, the format as parse_table_format does. Where
 /// there is none, the table is a line of 32 nodes (64 and a rational warp for the half vector) if the source
 /// is `isotropic` or the projection has a theta name, and otherwise a disk of 64 x 64; a grid has 32 x 32, a
-/// volume 24 nodes along theta_h, with a root warp, 12 along theta_d and 8 along another. Throws Error on anything else, and on options for a table that the model
-/// does not have.
+/// volume 24 nodes along theta_h, with a root warp, 12 along theta_d and 8 along another. Throws Error on
+/// anything else, and on options for a table that the model does not have.
 ModelSpec parse_model_spec(std::string_view expression, std::span<const std::string> table_options,
                            bool isotropic);
 

@@ -78,7 +78,8 @@ class Fitter {
 
   Fit run() {
     const auto start = std::chrono::steady_clock::now();
-    auto brdf = std::visit([&](const auto& form) { return fit(form); }, options_.form);
+    auto brdf = std::visit([&](const auto& form) { return fit(form); },
+                           options_.form.value_or(default_budget(brdf_.isotropic())));
     report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report_.source = source_.name;
     report_.source_format = source_.findings.format;
@@ -438,6 +439,10 @@ class Fitter {
 };
 
 }  // namespace
+
+Budget default_budget(bool isotropic) {
+  return isotropic ? Budget{.bytes = 16 << 10, .fetches = 2} : Budget{.bytes = 64 << 10, .fetches = 6};
+}
 
 FitForm form_of(const std::string& model, const std::vector<std::string>& tables, bool isotropic,
                 const LogLinear& of_one_lobe, FitLoss of_several) {
