@@ -264,6 +264,13 @@ class Fitter {
       return finish(fit_plan(set, plan, limit.bytes, limit.texel_bytes, refine), set, refine,
                     std::move(report));
     }
+    if (!brdf_.isotropic()) {
+      const ModelSpec spec = hemisphere_spec(limit, channels());
+      TrainingOptions drawn = training_for(form.bytes, limit.texel_bytes, false);
+      drawn.seed = options_.seed;
+      const TrainingSet set = draw_training_set(reference(), drawn);
+      return finish(fit_lobes(set, spec, refine), set, refine, std::move(report));
+    }
     if (form.loss == FitLoss::image) refine.shares = kVolumeShares;
     if (!options_.smooth) refine.smooth = kVolumeSmooth;
     const TrainingSet set =

@@ -33,6 +33,11 @@ struct VolumeForm {
 };
 constexpr VolumeForm kForms[] = {{30, 20, 6, 0.6}, {40, 15, 6, 0.6}, {24, 24, 6, 0.6}, {34, 18, 6, 0.5}};
 constexpr int kMinDepth = 3;
+// Of the texels of hemispheres' models; what is left is q's.
+constexpr VolumeForm kBesideHemispheres{14, 12, 6, 0.5};
+constexpr double kBorderShare = 0.065, kVolumeShare = 0.065;
+constexpr std::size_t kWideNodes = 12;
+constexpr Warp kDiskWarp{WarpKind::rational, 0.25};
 
 // The way to the last refinement is made on about this many pairs, in few steps, at this share of the nodes.
 constexpr std::size_t kCoarsePairs = 24'000, kCoarseNodes = 5000;
@@ -182,8 +187,9 @@ const ModelSpec& best_of(const std::vector<ModelSpec>& specs, const TrainingSet&
 }  // namespace
 
 bool takes_lobes(BrdfRef source, const CostLimit& limit) {
-  if (!source.isotropic()) return true;
-  if (static_cast<double>(limit.bytes / limit.texel_bytes) >= kMinVolumeTexels) return false;
+  const bool few_bytes = static_cast<double>(limit.bytes / limit.texel_bytes) < kMinVolumeTexels;
+  if (!source.isotropic()) return few_bytes || limit.fetches < 4;
+  if (!few_bytes) return false;
   const LobePlan plan = plan_for(source, limit.bytes, 0, limit.texel_bytes);
   return plan_fits(plan, limit.bytes, source.channels(), limit.texel_bytes) &&
          fetch_count(plan_to_spec(plan, limit.bytes, source.channels(), limit.texel_bytes)) <=
@@ -215,6 +221,34 @@ std::vector<ModelSpec> volume_specs(BrdfRef source, const CostLimit& limit) {
   std::vector<ModelSpec> specs;
   for (const VolumeForm& form : kForms) specs.push_back(volume_spec(form, limit, source.channels(), twisted));
   return specs;
+}
+
+ModelSpec hemisphere_spec(const CostLimit& limit, int channels) {
+  const double texels = static_cast<double>(limit.bytes / limit.texel_bytes);
+  SpecBuilder builder;
+  const int p = std::max(5, static_cast<int>(std::sqrt(kBorderShare * texels)));
+  builder.add("p", {.shape = TableShape::disk, .width = p, .height = p},
+              {{.projection = kProjectWo}, {.projection = kProjectWi}});
+  const TableLayout volume = volume_of(kBesideHemispheres, kVolumeShare * texels);
+  builder.add(
+      "v", volume,
+      {{.projection = kProjectHalf, .projection_y = kProjectDifference, .projection_z = kProjectAzimuth}});
+  const bool wide = limit.fetches > 4;
+  const std::size_t taken =
+      bytes_of(builder.spec(), limit.texel_bytes, channels) + kNumberBytes +
+      (wide ? kWideNodes * limit.texel_bytes + static_cast<std::size_t>(channels) * kNumberBytes : 0);
+  const std::size_t rest = limit.bytes > taken ? (limit.bytes - taken) / limit.texel_bytes : 0;
+  const int q = static_cast<int>(std::sqrt(static_cast<double>(rest)));
+  if (volume.width < 2 || q < 5)
+    throw Error("fit: expected a budget that holds hemispheres and a table of three axes");
+  builder.add("q", {.shape = TableShape::disk, .width = q, .height = q, .warp = kDiskWarp},
+              {{.projection = kProjectHalf}});
+  ModelSpec spec = builder.spec();
+  if (wide) {
+    spec.lobes.push_back({{.table = static_cast<int>(spec.tables.size()), .projection = kProjectDifference}});
+    spec.tables.push_back({.name = "c", .layout = {.width = static_cast<int>(kWideNodes)}});
+  }
+  return spec;
 }
 
 TrainingOptions training_for_volumes(const CostLimit& limit) {

@@ -15,10 +15,10 @@ struct CostLimit {
   int fetches = 2;  ///< >= 1
 };
 
-/// The lines of default_plan where they are within the limit and so few bytes hold no volume that serves as
-/// well, which isotropic models of some kilobytes do; of an anisotropic source the hemispheres of default_plan, as
-/// many of its factors as the limit allows.
+/// Whether lobes of lines or hemispheres serve better than a model with a volume: of an isotropic source where few
+/// bytes are left and default_plan is within the limit, of another where few bytes or fewer than four fetches are.
 bool takes_lobes(BrdfRef source, const CostLimit& limit);
+/// default_plan, of an anisotropic source with as many of its factors as the fetches allow.
 LobePlan plan_within(BrdfRef source, const CostLimit& limit);
 
 /// Isotropic models of one lobe within the limit: g(theta_h,theta_d,phi_d), with a line z(theta_h) from two
@@ -27,6 +27,11 @@ LobePlan plan_within(BrdfRef source, const CostLimit& limit);
 /// w(theta_t,theta_h) comes third. They differ in how the volume's nodes are shared out among its axes and how
 /// theta_h is spaced. Throws Error where the bytes hold no such tables.
 std::vector<ModelSpec> volume_specs(BrdfRef source, const CostLimit& limit);
+
+/// An anisotropic model within the limit, of at least four fetches: hemispheres q(h) p(wo) p(wi) times a volume
+/// v(theta_h,theta_d,phi_d), which follows how they depend on each other, and from five fetches on c(theta_d) beside
+/// them for what is spread wide. Throws Error where the bytes hold no such tables.
+ModelSpec hemisphere_spec(const CostLimit& limit, int channels);
 
 /// How many pairs to draw for volumes, and where.
 TrainingOptions training_for_volumes(const CostLimit& limit);
