@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <burnish/error.h>
+#include <burnish/factors/fetches.h>
 #include <burnish/fitting/baselines/baselines.h>
 #include <burnish/fitting/fit_file.h>
 #include <burnish/math/parallel.h>
@@ -140,11 +141,11 @@ TEST(Fit, MakesEveryForm) {
     EXPECT_GT(made.report.seconds, 0) << name;
     ASSERT_TRUE(made.report.held_out) << name;
     EXPECT_NEAR(made.report.held_out->relative, mean_error(source.ref(), made.ref()), 0.1) << name;
-    if (const auto* budget = std::get_if<Budget>(&options.form)) {
+    if (const auto* budget = std::get_if<Budget>(&*options.form)) {
       EXPECT_LE(made.bytes(), budget->bytes) << name;
     }
     EXPECT_EQ(std::holds_alternative<BaselineBrdf>(made.brdf),
-              std::holds_alternative<BaselineMethod>(options.form));
+              std::holds_alternative<BaselineMethod>(*options.form));
     EXPECT_EQ(made.report.energy.has_value(), options.conserve_energy) << name;
   }
 }
@@ -197,6 +198,15 @@ TEST(Fit, LowersTheErrorThatItReports) {
   }
 }
 
+TEST(Fit, MakesByDefaultWhatTheDefaultBudgetSays) {
+  const Source source = source_of("paint", paint());
+  const Fit made = fit(source, {.seed = 3, .score = false});
+  const Fit named = fit(source, {.form = default_budget(true), .seed = 3, .score = false});
+  EXPECT_EQ(made.model(), named.model());
+  EXPECT_LE(made.bytes(), 16u << 10);
+  EXPECT_LE(fetch_count(made.model()), 2u);
+}
+
 TEST(Fit, TellsProgressByStagesAndEndsWhereTheCallerThrows) {
   const Source source = source_of("paint", paint());
   for (auto [name, options] : every_form()) {
@@ -209,7 +219,7 @@ TEST(Fit, TellsProgressByStagesAndEndsWhereTheCallerThrows) {
     };
     fit(source, options);
     // one lobe of few unknowns is solved at once
-    if (std::holds_alternative<OneLobe>(options.form)) continue;
+    if (std::holds_alternative<OneLobe>(*options.form)) continue;
     EXPECT_FALSE(stages.empty()) << name;
     options.progress = [](std::string_view, double) { throw Error("enough"); };
     EXPECT_EQ(error_of([&] { fit(source, options); }), "enough") << name;
