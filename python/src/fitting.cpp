@@ -23,7 +23,7 @@ std::function<void(std::string_view, double)> progress_of(nb::handle callback) {
 }
 
 OpenedModel* fit(const OpenedBrdf& source, const std::string& model, const std::vector<std::string>& tables,
-                 std::uint64_t budget, int lobes, bool search, const std::string& loss,
+                 std::uint64_t budget, int fetches, int lobes, bool search, const std::string& loss,
                  const std::variant<std::monostate, double, std::string>& smooth,
                  std::optional<int> reweightings, double floor, const std::optional<std::string>& format,
                  std::size_t samples, std::uint64_t seed, bool symmetrize, bool conserve_energy,
@@ -42,8 +42,12 @@ OpenedModel* fit(const OpenedBrdf& source, const std::string& model, const std::
   }
   if (format) options.format = parse_table_format(*format);
   if (budget > 0)
-    options.form = Budget{
-        .bytes = budget, .lobes = lobes, .search = search, .loss = parse_fit_loss(loss), .scattered = how};
+    options.form = Budget{.bytes = budget,
+                          .fetches = fetches,
+                          .lobes = lobes,
+                          .search = search,
+                          .loss = parse_fit_loss(loss),
+                          .scattered = how};
   else
     options.form = form_of(model, tables, source.ref().isotropic(), how, parse_fit_loss(loss));
   const nb::gil_scoped_release released;
@@ -55,17 +59,18 @@ OpenedModel* fit(const OpenedBrdf& source, const std::string& model, const std::
 void bind_fitting(nb::module_& m) {
   m.def(
       "fit", &fit, nb::arg("source"), nb::kw_only(), nb::arg("model") = "pqp",
-      nb::arg("tables") = std::vector<std::string>(), nb::arg("budget") = 0, nb::arg("lobes") = 0,
-      nb::arg("search") = false, nb::arg("loss") = "image", nb::arg("smooth") = nb::none(),
-      nb::arg("reweightings") = nb::none(), nb::arg("floor") = LogLinear{}.floor,
-      nb::arg("format") = nb::none(), nb::arg("samples") = 0, nb::arg("seed") = 1,
-      nb::arg("symmetrize") = true, nb::arg("conserve_energy") = false, nb::arg("progress") = nb::none(),
-      nb::rv_policy::take_ownership,
+      nb::arg("tables") = std::vector<std::string>(), nb::arg("budget") = 0, nb::arg("fetches") = 0,
+      nb::arg("lobes") = 0, nb::arg("search") = false, nb::arg("loss") = "image",
+      nb::arg("smooth") = nb::none(), nb::arg("reweightings") = nb::none(),
+      nb::arg("floor") = LogLinear{}.floor, nb::arg("format") = nb::none(), nb::arg("samples") = 0,
+      nb::arg("seed") = 1, nb::arg("symmetrize") = true, nb::arg("conserve_energy") = false,
+      nb::arg("progress") = nb::none(), nb::rv_policy::take_ownership,
       "Fits a factored BRDF as `burnish fit` does.\n\n"
       "model: product of tables over projections, \"pqp\", \"pqpr\" or such as\n"
       "\"p(wo) q(h) r(theta_d) p(wi)\", several lobes joined by +; tables: sizes such as \"q=96\" or\n"
       "\"p=16x16,identity\". budget: bytes, fits the best model of several lobes that they hold instead\n"
-      "(lobes: how many; search: look for factors and sizes first). loss: \"image\", \"relative\" or\n"
+      "(fetches: at most so many filtered reads of tables an evaluation; without them lobes: how many;\n"
+      "search: look for factors and sizes first). loss: \"image\", \"relative\" or\n"
       "\"log_cos\", what several lobes are refined for. smooth: number >= 0, \"auto\" (cross-validation) or\n"
       "None. floor: 1/sr, added before logarithms are taken. format: \"half\", \"float\", \"rgb9e5\",\n"
       "\"unorm8\". samples: pairs drawn from a source that is a function. symmetrize: fit the reciprocal "
