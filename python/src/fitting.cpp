@@ -72,7 +72,7 @@ void bind_fitting(nb::module_& m) {
       "model: product of tables over projections, \"pqp\", \"pqpr\" or such as\n"
       "\"p(wo) q(h) r(theta_d) p(wi)\", several lobes joined by +; tables: sizes such as \"q=96\" or\n"
       "\"p=16x16,identity\". budget: bytes, fits the best model of several lobes that they hold instead\n"
-      "(fetches: at most so many reads of tables an evaluation; lobes: how many; search: look for factors\n"
+      "(fetches: at most so many filtered reads of tables an evaluation; lobes: how many; search: look for factors\n"
       "and sizes first). loss: \"image\", \"relative\" or\n"
       "\"log_cos\", what several lobes are refined for. smooth: number >= 0, \"auto\" (cross-validation) or\n"
       "None. floor: 1/sr, added before logarithms are taken. format: \"half\", \"float\", \"rgb9e5\",\n"

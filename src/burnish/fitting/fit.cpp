@@ -256,7 +256,7 @@ class Fitter {
   FactoredBrdf fit_within(const Budget& form) {
     const CostLimit limit{
         .bytes = form.bytes, .texel_bytes = texel_bytes(format(), channels()), .fetches = form.fetches};
-    LobesReport report{.loss = form.loss, .budget = form.bytes};
+    LobesReport report{.loss = form.loss, .budget = form.bytes, .fetches = form.fetches};
     RefineOptions refine = refine_options(form.loss);
     if (takes_lobes(reference(), limit)) {
       const TrainingSet set = drawn_set(training_for(form.bytes, limit.texel_bytes, brdf_.isotropic()));

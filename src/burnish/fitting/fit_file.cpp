@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include <burnish/baselines/evaluation_cost.h>
+#include <burnish/factors/fetches.h>
 #include <burnish/fitting/fit_file.h>
 #include <burnish/fitting/fit_report_json.h>
 
@@ -29,6 +30,8 @@ std::string summary_json(const Fit& fit, const std::string& output, double secon
     json["model"] = model_expression(*model);
     json["bytes"] = model->bytes();
     json["table_bytes"] = model->table_bytes();
+    json["textures"] = model->tables().size();
+    json["fetches"] = fetch_count(*model);
     json["smallest_factor"] = model->smallest_factor();
     json["reciprocal"] = model->reciprocal();
   } else {

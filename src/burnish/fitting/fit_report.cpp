@@ -47,6 +47,7 @@ Json json_of(const LobesReport& report) {
     json["search"] = {{"trials", report.search->trials}, {"kept", std::move(kept)}};
   }
   if (report.budget > 0) json["budget"] = report.budget;
+  if (report.fetches > 0) json["fetches"] = report.fetches;
   if (report.smooth) json["smooth"] = *report.smooth;
   json["samples"] = report.samples;
   json["lobes"] = report.lobes;

@@ -52,6 +52,7 @@ struct LobesReport {
   std::size_t lobes = 0;
   FitLoss loss = FitLoss::image;
   std::uint64_t budget = 0;      ///< bytes; 0: the lobes were given
+  int fetches = 0;               ///< of the budget; 0: as many as serve it best
   std::optional<double> smooth;  ///< where it was chosen
   std::optional<SearchReport> search;
 };
@@ -102,7 +103,7 @@ struct FitReport {
 
 /// A JSON object in one line, the notes that a model's file keeps: source, source_format, symmetrized; of one
 /// lobe samples, smooth, floor, reweightings, rms_log_before, rms_log_after, iterations, stop_reason,
-/// smooth_shares, relative, relative_cross_validated; of several search, budget, smooth, samples, lobes,
+/// smooth_shares, relative, relative_cross_validated; of several search, budget, fetches, smooth, samples, lobes,
 /// loss, iterations, stop_reason, objective; of baselines method, budget, layouts_tried, error_before,
 /// error_after, starts, iterations, stop_reason; of nodes target, nodes, node_smoothness, node_held_out, node_fit,
 /// node_test; then conserve_energy, psnr, ssim, relative, rms_log, log_cos

@@ -19,6 +19,12 @@ GridTransfer::GridTransfer(const TableLayout& fine, int coarse_width, int coarse
   x_ = axis(fine.width, coarse_width);
   y_ = axis(fine.height, coarse_height);
   z_ = axis(fine.depth, coarse_depth);
+  for (int node = 0; node < fine_count(); ++node) {
+    const Corners at = corners({.node = node});
+    for (std::size_t k = 0; k < at.count; ++k)
+      if (at.weight[k] != 0) weighed_.push_back({static_cast<std::uint32_t>(at.node[k]), at.weight[k]});
+    starts_.push_back(static_cast<std::uint32_t>(weighed_.size()));
+  }
 }
 
 GridTransfer::Corners GridTransfer::corners(const Lookup& fine) const noexcept {
@@ -48,19 +54,17 @@ GridTransfer::Corners GridTransfer::corners(const Lookup& fine) const noexcept {
 
 void GridTransfer::restrict_to(const double* fine, double* coarse, std::size_t step) const {
   std::fill_n(coarse, coarse_count() * step, 0.0);
-  for (int node = 0; node < fine_count(); ++node, fine += step) {
-    const Corners at = corners({.node = node});
-    for (std::size_t k = 0; k < at.count; ++k)
-      for (std::size_t c = 0; c < step; ++c) coarse[at.node[k] * step + c] += at.weight[k] * fine[c];
-  }
+  for (std::size_t node = 0; node + 1 < starts_.size(); ++node, fine += step)
+    for (std::uint32_t k = starts_[node]; k < starts_[node + 1]; ++k)
+      for (std::size_t c = 0; c < step; ++c)
+        coarse[weighed_[k].node * step + c] += weighed_[k].weight * fine[c];
 }
 
 void GridTransfer::add_interpolated(const double* coarse, double* fine, std::size_t step) const {
-  for (int node = 0; node < fine_count(); ++node, fine += step) {
-    const Corners at = corners({.node = node});
-    for (std::size_t k = 0; k < at.count; ++k)
-      for (std::size_t c = 0; c < step; ++c) fine[c] += at.weight[k] * coarse[at.node[k] * step + c];
-  }
+  for (std::size_t node = 0; node + 1 < starts_.size(); ++node, fine += step)
+    for (std::uint32_t k = starts_[node]; k < starts_[node + 1]; ++k)
+      for (std::size_t c = 0; c < step; ++c)
+        fine[c] += weighed_[k].weight * coarse[weighed_[k].node * step + c];
 }
 
 std::vector<GridTransfer> coarser_levels(const TableLayout& layout) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include <burnish/factors/table.h>
@@ -38,9 +39,16 @@ class GridTransfer {
     int fine_nodes = 1, nodes = 1;
     double scale = 0;
   };
+  struct Weighed {
+    std::uint32_t node;
+    double weight;
+  };
   int fine_count() const noexcept { return x_.fine_nodes * y_.fine_nodes * z_.fine_nodes; }
 
   Axis x_, y_, z_;
+  // of fine node i those from starts_[i] to starts_[i + 1], without weights of 0
+  std::vector<Weighed> weighed_;
+  std::vector<std::uint32_t> starts_{0};
 };
 
 /// The resolutions below a table's own: sides halved down to 2, then 1; coarsest last.

@@ -43,8 +43,8 @@ constexpr Warp kDiskWarp{WarpKind::rational, 0.25};
 constexpr std::size_t kCoarsePairs = 24'000, kCoarseNodes = 5000;
 constexpr double kCoarseShare = 0.25;
 constexpr int kCoarseSteps = 8, kFullSteps = 5, kHeldSteps = 2;
-// The log-linear start counts values about zero as the relative error does, and is smooth.
-constexpr double kStartFloor = PictureLoss::kFloor, kStartSmooth = 1e-5;
+// The log-linear start counts values about zero as the relative error does, and is smooth and rough at once.
+const HomomorphicOptions kStart{.smooth = 1e-5, .floor = PictureLoss::kFloor, .tolerance = 0.03};
 // Trials: every so many pairs, in so few steps, for gains that another draw of pairs would not give.
 constexpr std::size_t kTrialPart = 8;
 constexpr int kTrialSteps = 4;
@@ -177,7 +177,7 @@ const ModelSpec& best_of(const std::vector<ModelSpec>& specs, const TrainingSet&
     const double nodes = static_cast<double>(coupled_unknowns(specs[k], 1));
     const ModelSpec trial =
         at_fewer_nodes(specs[k], std::min(1.0, static_cast<double>(fitted.size()) / (6 * nodes)));
-    LogModel model = fit_one_lobe(trial, fitted, fitted.values, kStartSmooth, kStartFloor);
+    LogModel model = fit_one_lobe(trial, fitted, fitted.values, kStart);
     refine(model, fitted, steps);
     values[k] = objective(model, judged, options.shares);
   });
@@ -311,7 +311,7 @@ LobesFit fit_volumes(const TrainingSet& set, const std::vector<ModelSpec>& specs
   const TrainingSet coarse = about(set, kCoarsePairs);
   const bool many = coupled_unknowns(spec, 1) > kCoarseNodes;
   const ModelSpec start = many ? at_fewer_nodes(spec, kCoarseShare) : spec;
-  LobesFit fit{.model = fit_one_lobe(start, coarse, coarse.values, kStartSmooth, kStartFloor), .summary = {}};
+  LobesFit fit{.model = fit_one_lobe(start, coarse, coarse.values, kStart), .summary = {}};
   const auto refine_part = [&](const TrainingSet& part, TableFormat format, int steps, double from,
                                double to) {
     RefineOptions these = options;

@@ -200,8 +200,8 @@ LobesFit fit_plan(const TrainingSet& set, const LobePlan& plan, std::size_t byte
 
   // one lobe, then one more at a time; the work grows with the square of the lobes
   const TrainingSet coarse = coarse_part(set);
-  LobesFit fit{
-      .model = fit_one_lobe(lobes.first(1), coarse, coarse.values, std::max(kStartSmooth, options.smooth))};
+  LobesFit fit{.model = fit_one_lobe(lobes.first(1), coarse, coarse.values,
+                                     {.smooth = std::max(kStartSmooth, options.smooth)})};
   const auto done = [count = lobes.count()](std::size_t j) {
     return 0.4 * static_cast<double>(j * j * j) / static_cast<double>(count * count * count);
   };
@@ -243,8 +243,8 @@ LobesFit fit_lobes(const TrainingSet& set, const ModelSpec& spec, const RefineOp
                          .wide = of_wide};
     std::vector<std::size_t> tables;
     const ModelSpec alone = lobe_spec(spec, j, tables);
-    const LogModel start =
-        fit_one_lobe(alone, set, values_of(part, set, low), std::max(kStartSmooth, options.smooth));
+    const LogModel start = fit_one_lobe(alone, set, values_of(part, set, low),
+                                        {.smooth = std::max(kStartSmooth, options.smooth)});
     for (std::size_t k = 0; k < tables.size(); ++k) fit.model.log_values[tables[k]] = start.log_values[k];
   }
   refine_fully(fit.model, coarse_part(set), set, options, 0.1, fit.summary);

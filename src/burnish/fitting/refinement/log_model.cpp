@@ -34,11 +34,10 @@ Cell find_cell(double u, int count) {
 }  // namespace
 
 LogModel fit_one_lobe(const ModelSpec& spec, const TrainingSet& set, const std::vector<float>& values,
-                      double smooth, double floor) {
+                      const HomomorphicOptions& options) {
   ModelSpec unrounded = spec;
   for (ModelSpec::TableSpec& table : unrounded.tables) table.format = TableFormat::single;
-  const HomomorphicFit fit =
-      fit_homomorphic(as_source(set, values), unrounded, {.smooth = smooth, .floor = floor});
+  const HomomorphicFit fit = fit_homomorphic(as_source(set, values), unrounded, options);
   LogModel model{.spec = spec, .channels = set.channels, .log_values = {}};
   for (const Table& table : fit.brdf.tables()) {
     auto& logs = model.log_values.emplace_back(table.values.begin(), table.values.end());

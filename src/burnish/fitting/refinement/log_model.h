@@ -30,10 +30,10 @@ struct LogModel {
   }
 };
 
-/// The log-linear fit of one lobe to the set with `values` in place of its own; `floor` as in
-/// HomomorphicOptions. Throws what fit_homomorphic throws.
+/// The log-linear fit of one lobe to the set with `values` in place of its own. Throws what fit_homomorphic
+/// throws.
 LogModel fit_one_lobe(const ModelSpec& spec, const TrainingSet& set, const std::vector<float>& values,
-                      double smooth, double floor = HomomorphicOptions{}.floor);
+                      const HomomorphicOptions& options);
 
 /// Splits lobe `lobe` in two that add up to it: its table over theta_d is multiplied with a step from 1 to 0
 /// (or 0 to 1) at tan(theta_d / 2) = `centre`, the other tables are copied. The new tables are named

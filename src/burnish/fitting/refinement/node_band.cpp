@@ -169,6 +169,21 @@ void NodeBand::add(std::uint32_t a, std::uint32_t b, double value) {
 }
 
 void NodeBand::add_row(std::span<const Term> row, double weight) {
+  if (std::ranges::all_of(row, [&](const Term& term) { return is_banded(term.unknown); })) {
+    // most rows: places alone
+    places_.clear();
+    for (const Term& term : row) places_.push_back(place_[term.unknown]);
+    for (std::size_t a = 0; a < row.size(); ++a) {
+      const double scale = weight * row[a].slope;
+      const std::uint32_t at = places_[a];
+      band_(at, at) += scale * row[a].slope;
+      for (std::size_t b = 0; b < a; ++b) {
+        const double product = scale * row[b].slope;
+        band_(std::max(at, places_[b]), std::min(at, places_[b])) += at == places_[b] ? 2 * product : product;
+      }
+    }
+    return;
+  }
   for (std::size_t a = 0; a < row.size(); ++a) {
     const double scale = weight * row[a].slope;
     add(row[a].unknown, row[a].unknown, scale * row[a].slope);

@@ -57,6 +57,7 @@ class NodeBand {
   std::vector<std::uint32_t> place_;  ///< of an unknown, in the band or in the rest
   std::vector<std::uint32_t> banded_;
   std::size_t rest_count_ = 0;
+  std::vector<std::uint32_t> places_;  ///< room of add_row
   BandMatrix band_;
   Eigen::MatrixXd rest_;  ///< its lower triangle; one column, the diagonal, where it is large
 };

@@ -67,7 +67,7 @@ TEST(Refine, IteratesWhereTheMatrixWouldBeTooLarge) {
   const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.3,alpha_y=0.5,kd=0");
   const TrainingSet set = small_set(ggx, 3000);
   LogModel model = fit_one_lobe(parse_model_spec("pqp", std::vector<std::string>{"p=5x5", "q=45x45"}, false),
-                                set, set.values, 1e-6);
+                                set, set.values, {.smooth = 1e-6});
   const FitSummary summary = refine(model, set, {.smooth = 1e-8, .max_iterations = 3});
   EXPECT_LT(summary.error_after, summary.error_before - 0.2);
 }

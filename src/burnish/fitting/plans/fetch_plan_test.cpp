@@ -1,0 +1,87 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <burnish/error.h>
+#include <burnish/factors/fetches.h>
+#include <burnish/fitting/plans/fetch_plan.h>
+#include <burnish/reflectance/analytic.h>
+
+namespace burnish {
+namespace {
+
+// The bytes of a model of the spec in texels of four bytes.
+std::size_t bytes_of(const ModelSpec& spec) {
+  LogModel model{.spec = spec, .channels = 3, .log_values = {}};
+  for (const ModelSpec::TableSpec& table : spec.tables)
+    model.log_values.emplace_back(3 * table.layout.node_count());
+  return to_brdf(model, TableFormat::rgb9e5).bytes();
+}
+
+TEST(FetchPlan, KeepsBothLimitsAndUsesTheBytes) {
+  const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3");
+  for (const std::size_t bytes : {6'000u, 16'384u, 65'536u})
+    for (int fetches = 1; fetches <= 24; ++fetches)
+      for (const ModelSpec& spec : volume_specs(ggx.ref(), {.bytes = bytes, .fetches = fetches})) {
+        EXPECT_LE(fetch_count(spec), static_cast<std::size_t>(fetches));
+        EXPECT_LE(bytes_of(spec), bytes);
+        EXPECT_GT(bytes_of(spec), bytes * 9 / 10);
+      }
+  EXPECT_THROW(volume_specs(ggx.ref(), {.bytes = 60}), Error);
+}
+
+TEST(FetchPlan, GivesHemispheresToAnisotropicSources) {
+  const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.1,alpha_y=0.3");
+  for (int fetches = 4; fetches <= 6; ++fetches) {
+    const CostLimit limit{.bytes = 20'000, .fetches = fetches};
+    EXPECT_FALSE(takes_lobes(ggx.ref(), limit));
+    const ModelSpec spec = hemisphere_spec(limit, 3);
+    EXPECT_LE(fetch_count(spec), static_cast<std::size_t>(fetches));
+    EXPECT_LE(bytes_of(spec), 20'000u);
+    EXPECT_GT(bytes_of(spec), 18'000u);
+  }
+  for (int fetches = 1; fetches < 4; ++fetches) {
+    const CostLimit limit{.bytes = 20'000, .fetches = fetches};
+    ASSERT_TRUE(takes_lobes(ggx.ref(), limit));
+    const LobePlan plan = plan_within(ggx.ref(), limit);
+    EXPECT_LE(fetch_count(plan_to_spec(plan, 20'000, 3, 4)), static_cast<std::size_t>(fetches));
+  }
+}
+
+TEST(FetchPlan, LeavesFewBytesToLines) {
+  const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3");
+  EXPECT_TRUE(takes_lobes(ggx.ref(), {.bytes = 2700, .fetches = 24}));
+  EXPECT_FALSE(takes_lobes(ggx.ref(), {.bytes = 2700, .fetches = 2}));
+  EXPECT_FALSE(takes_lobes(ggx.ref(), {.bytes = 16'384, .fetches = 24}));
+}
+
+TEST(FetchPlan, FrontalPixelsHaveOneDirectionAndStandAmongThePixels) {
+  const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3");
+  const TrainingSet set = draw_training_set(ggx.ref(), {.pictures = 1000, .directions = 500}),
+                    more = with_frontal_pixels(ggx.ref(), set, 0.1);
+  ASSERT_EQ(more.size() - set.size(), more.picture_count - set.picture_count);
+  EXPECT_NEAR(static_cast<double>(more.picture_count - set.picture_count), 100, 2);
+  double weight = 0;
+  for (std::size_t i = set.picture_count; i < more.picture_count; ++i) {
+    EXPECT_EQ(more.pairs[i].wi, more.pairs[i].wo);
+    weight += static_cast<double>(more.weights[i]) / 100;
+  }
+  EXPECT_NEAR(weight, 1, 0.05);  // as much as pixels that are spread evenly
+  EXPECT_EQ(more.values.size(), 3 * more.size());
+  EXPECT_EQ(more.pairs.back().wi, set.pairs.back().wi);
+}
+
+TEST(FetchPlan, FitsGgxWithTwoFetches) {
+  const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3,kd=0.2");
+  const CostLimit limit{.bytes = 8'000, .fetches = 2};
+  const TrainingSet set =
+      draw_training_set(ggx.ref(), {.pictures = 6'000, .directions = 10'000, .crowded = true});
+  const LobesFit fit = fit_volumes(set, volume_specs(ggx.ref(), limit), {.smooth = 1e-9});
+  // relative and log_cos errors of a percent, pictures of 40 dB
+  EXPECT_LT(objective(fit.model, set, {.relative = 1}), std::log(0.02));
+  EXPECT_LT(objective(fit.model, set, {.log_cos = 1}), std::log(0.01));
+  EXPECT_LT(objective(fit.model, set, {.pictures = 1}), std::log(1e-4));
+}
+
+}  // namespace
+}  // namespace burnish
