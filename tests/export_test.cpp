@@ -73,7 +73,7 @@ TEST_F(Export, WritesEveryLanguageWithItsTexturesAndAManifest) {
     const std::string name = entry.path().filename().string();
     EXPECT_TRUE(name.ends_with(".json") || manifest.find('"' + name + '"') != std::string::npos) << name;
   }
-  EXPECT_EQ(files, 6u + 3 + 1 + 1);
+  EXPECT_EQ(files, 6u + 1 + 1 + 1);  // languages, texture, page, manifest
   EXPECT_THAT(read(folder_ / "said"), HasSubstr("two_lobes.glsl: hardware filter, 4 fetches"));
 }
 
@@ -217,14 +217,18 @@ TEST_F(Export, WritesTheLightFromAllAroundInGlsl) {
 }
 
 TEST_F(Export, PutsManyTablesIntoFewTextures) {
+  const auto textures = [&] {
+    return std::ranges::count_if(
+        fs::directory_iterator(folder_ / "out"),
+        [](const fs::directory_entry& entry) { return entry.path().extension() == ".ktx2"; });
+  };
   write(folder_ / "two lobes.exr", format_model({smooth_model(model_case("ManyTables")), {}, "{}"}));
   ASSERT_EQ(exports("--to wgsl --to three --to html"), 0) << read(folder_ / "said");
-  EXPECT_THAT(read(folder_ / "out/two_lobes.json"), HasSubstr("\"first_row\": 10"));
-  EXPECT_TRUE(fs::exists(folder_ / "out/two_lobes_2.ktx2"));
-  EXPECT_FALSE(fs::exists(folder_ / "out/two_lobes_3.ktx2"));
-  EXPECT_EQ(exports("--to wgsl --mips"), 1);
-  EXPECT_EQ(exports("--to html --environment studio"), 1);
-  EXPECT_THAT(read(folder_ / "said"), HasSubstr("textures for the light from all around"));
+  EXPECT_EQ(textures(), 1);
+  EXPECT_EQ(exports("--to html --environment studio"), 0) << read(folder_ / "said");
+  write(folder_ / "two lobes.exr", format_model({smooth_model(model_case("Volumes")), {}, "{}"}));
+  ASSERT_EQ(exports("--to wgsl"), 0) << read(folder_ / "said");
+  EXPECT_EQ(textures(), 2);
 }
 
 }  // namespace

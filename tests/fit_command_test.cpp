@@ -65,7 +65,7 @@ TEST_F(FitCommand, IsTheLibrarysFit) {
       {.form = OneLobe{.model = "pqpr", .tables = {"q=24"}, .how = {.reweightings = 1, .floor = 1e-4}},
        .samples = 3000,
        .seed = 4});
-  expect_same(kPaint, "--smooth auto --samples 2000 --no-symmetrize",
+  expect_same(kPaint, "--model pqp --smooth auto --samples 2000 --no-symmetrize",
               {.form = OneLobe{.how = {.cross_validate = true}}, .samples = 2000, .symmetrize = false});
   expect_same(kPaint, "--budget 300 --loss relative --format half --smooth 1e-6 --conserve-energy",
               {.form = Budget{.bytes = 300, .loss = FitLoss::relative},

@@ -11,6 +11,7 @@
 #include <burnish/fitting/baselines/negative_lobes.h>
 #include <burnish/fitting/energy.h>
 #include <burnish/fitting/fit.h>
+#include <burnish/fitting/numerics/node_numbers.h>
 #include <burnish/fitting/one_lobe/cross_validation.h>
 #include <burnish/fitting/one_lobe/log_error.h>
 #include <burnish/fitting/plans/fetch_plan.h>
@@ -31,7 +32,7 @@ namespace {
 // Scattered samples are few and noisy: they are fitted robustly, with the smoothness that predicts best.
 constexpr int kScatteredReweightings = 4;
 // Steps that look at albedos, and their share in the loss.
-constexpr int kAlbedoSteps = 20;
+constexpr int kAlbedoSteps = 20, kLongAlbedoSteps = 6;
 constexpr double kAlbedoShare = 0.3;
 
 // Pairs drawn for one lobe from a source that is a function; an anisotropic one has one dimension more.
@@ -311,7 +312,9 @@ class Fitter {
     set.albedo = albedo_set(reference());
     refine.shares.albedo = kAlbedoShare;
     RefineOptions steps = refine;
-    steps.max_iterations = kAlbedoSteps;
+    const bool direct =
+        coupled_unknowns(model.spec, static_cast<std::size_t>(channels())) <= kMaxCholeskyUnknowns;
+    steps.max_iterations = direct ? kAlbedoSteps : kLongAlbedoSteps;
     steps.progress = progress("matching albedos");
     burnish::refine(model, set, steps);
   }

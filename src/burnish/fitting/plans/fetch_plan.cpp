@@ -26,12 +26,13 @@ constexpr double kRingShare = 0.07, kLineShare = 0.016, kGridShare = 0.14, kTwis
 constexpr int kMinLineNodes = 6, kMaxRingNodes = 512, kMaxLineNodes = 64, kTwistNodes = 5;
 constexpr Warp kDeviationWarp{WarpKind::power, 0.5}, kSkewWarp{WarpKind::power, 0.7};
 
-// How a volume's nodes are shared out, and the spacing of theta_h: the best differ among materials.
+// How a volume's nodes are shared out, relative to each other: the best differ among materials.
 struct VolumeForm {
-  double half, difference, azimuth;  ///< nodes along each axis, relative to each other
-  double power;                      ///< of theta_h's spacing
+  double half, difference, azimuth;
 };
-constexpr VolumeForm kForms[] = {{30, 20, 6, 0.6}, {40, 15, 6, 0.6}, {24, 24, 6, 0.6}, {34, 18, 6, 0.5}};
+constexpr VolumeForm kForms[] = {{30, 20, 6}, {40, 15, 6}, {24, 24, 6}, {20, 30, 6}};
+// Of theta_h. Shaders take a root where other powers take a logarithm.
+constexpr Warp kHalfWarp{WarpKind::power, 0.5};
 constexpr int kMinDepth = 3;
 // Of the texels of hemispheres' models; what is left is q's.
 constexpr VolumeForm kBesideHemispheres{14, 12, 6, 0.5};
@@ -95,7 +96,7 @@ TableLayout volume_of(const VolumeForm& form, double nodes) {
   const auto side = [](double n, int least) {
     return std::clamp(static_cast<int>(std::lround(n)), least, kMaxVolumeSide);
   };
-  TableLayout layout{.shape = TableShape::volume, .warp = {WarpKind::power, form.power}};
+  TableLayout layout{.shape = TableShape::volume, .warp = kHalfWarp};
   layout.depth = side(form.azimuth * scale, kMinDepth);
   layout.height = side(std::sqrt(nodes / layout.depth * form.difference / form.half), 2);
   layout.width = std::min(static_cast<int>(nodes) / (layout.depth * layout.height), kMaxVolumeSide);
@@ -109,7 +110,6 @@ ModelSpec volume_spec(const VolumeForm& form, const CostLimit& limit, int channe
     return std::clamp(static_cast<int>(share * texels), kMinLineNodes, most);
   };
   const int line = nodes(kLineShare, kMaxLineNodes);
-  const Warp half_warp{WarpKind::power, form.power};
   SpecBuilder builder;
   int left = limit.fetches - 1;
   const auto takes = [&](int fetches) {
@@ -117,13 +117,13 @@ ModelSpec volume_spec(const VolumeForm& form, const CostLimit& limit, int channe
     if (room) left -= fetches;
     return room;
   };
-  if (takes(1)) builder.add_line("z", nodes(kRingShare, kMaxRingNodes), {kProjectHalf}, half_warp);
+  if (takes(1)) builder.add_line("z", nodes(kRingShare, kMaxRingNodes), {kProjectHalf}, kHalfWarp);
   if (twisted && takes(1))
     builder.add("w",
                 {.shape = TableShape::grid,
                  .width = kTwistNodes,
                  .height = nodes(kTwistShare / kTwistNodes, kMaxRingNodes),
-                 .warp_y = half_warp},
+                 .warp_y = kHalfWarp},
                 {{.projection = kProjectTwist, .projection_y = kProjectHalf}});
   if (takes(2)) builder.add_line("p", line, {kProjectWo, kProjectWi});
   if (takes(1)) builder.add_line("r", line, {kProjectDifference});
