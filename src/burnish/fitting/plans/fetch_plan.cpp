@@ -35,7 +35,7 @@ constexpr VolumeForm kForms[] = {{30, 20, 6}, {40, 15, 6}, {24, 24, 6}, {20, 30,
 constexpr Warp kHalfWarp{WarpKind::power, 0.5};
 constexpr int kMinDepth = 3;
 // Of the texels of hemispheres' models; what is left is q's.
-constexpr VolumeForm kBesideHemispheres{14, 12, 6, 0.5};
+constexpr VolumeForm kBesideHemispheres{14, 12, 6};
 constexpr double kBorderShare = 0.065, kVolumeShare = 0.065;
 constexpr std::size_t kWideNodes = 12;
 constexpr Warp kDiskWarp{WarpKind::rational, 0.25};
