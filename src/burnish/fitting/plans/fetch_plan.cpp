@@ -43,7 +43,7 @@ constexpr Warp kDiskWarp{WarpKind::rational, 0.25};
 // The way to the last refinement is made on about this many pairs, in few steps, at this share of the nodes.
 constexpr std::size_t kCoarsePairs = 24'000, kCoarseNodes = 5000;
 constexpr double kCoarseShare = 0.25;
-constexpr int kCoarseSteps = 8, kFullSteps = 5, kHeldSteps = 2;
+constexpr int kCoarseSteps = 10, kFullSteps = 6, kHeldSteps = 4;
 // The log-linear start counts values about zero as the relative error does, and is smooth and rough at once.
 const HomomorphicOptions kStart{.smooth = 1e-5, .floor = PictureLoss::kFloor, .tolerance = 0.03};
 // Trials: every so many pairs, in so few steps, for gains that another draw of pairs would not give.
