@@ -162,10 +162,11 @@ TrainingSet about(const TrainingSet& set, std::size_t pairs) {
   return thinned(set, std::max<std::size_t>(1, set.size() / pairs));
 }
 
-/// The spec that serves a part of the pairs best that it was not fitted to.
+/// The spec that serves a part of the pairs best that it was not fitted to; of many nodes, which serve alike
+/// however they are shared out, the first.
 const ModelSpec& best_of(const std::vector<ModelSpec>& specs, const TrainingSet& set,
                          const RefineOptions& options) {
-  if (specs.size() == 1) return specs.front();
+  if (specs.size() == 1 || coupled_unknowns(specs.front(), 1) > kCoarseNodes) return specs.front();
   const TrainingSet grey = mean_of_channels(set);
   const TrainingSet fitted = part_of(grey, 0, kTrialPart), judged = part_of(grey, kTrialPart / 2, kTrialPart);
   RefineOptions steps = options;
