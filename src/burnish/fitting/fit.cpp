@@ -43,8 +43,11 @@ constexpr std::size_t kBaselineSamples = 200'000;
 constexpr std::size_t kHeldOutPairs = 20'000;
 constexpr int kHeldOutSphereSize = 128;  // of a baseline's the defaults of FigureOptions
 
-// Volumes follow all angles alike; what they lack shows in pictures first.
+// Volumes follow all angles alike; what they lack shows in pictures first. With p(wo) p(wi) beside them, of four
+// fetches, there is some to spare.
 constexpr ErrorTerms kVolumeShares{.pictures = 3, .dimmed = 0.3, .relative = 0.5, .log_cos = 0.5};
+constexpr int kSpareFetches = 4;
+constexpr double kSpareLogCos = 0.8;
 constexpr double kVolumeSmooth = 1e-9;
 constexpr double kFrontalShare = 0.1;  // of pixels, see with_frontal_pixels
 
@@ -272,7 +275,10 @@ class Fitter {
       const TrainingSet set = draw_training_set(reference(), drawn);
       return finish(fit_lobes(set, spec, refine), set, refine, std::move(report));
     }
-    if (form.loss == FitLoss::image) refine.shares = kVolumeShares;
+    if (form.loss == FitLoss::image) {
+      refine.shares = kVolumeShares;
+      if (form.fetches >= kSpareFetches) refine.shares.log_cos = kSpareLogCos;
+    }
     if (!options_.smooth) refine.smooth = kVolumeSmooth;
     const TrainingSet set =
         with_frontal_pixels(reference(), drawn_set(training_for_volumes(limit)), kFrontalShare);

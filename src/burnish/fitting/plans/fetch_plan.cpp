@@ -43,7 +43,7 @@ constexpr Warp kDiskWarp{WarpKind::rational, 0.25};
 // The way to the last refinement is made on about this many pairs, in few steps, at this share of the nodes.
 constexpr std::size_t kCoarsePairs = 24'000, kCoarseNodes = 5000;
 constexpr double kCoarseShare = 0.25;
-constexpr int kCoarseSteps = 10, kFullSteps = 6, kHeldSteps = 4;
+constexpr int kCoarseSteps = 10, kFullSteps = 6, kHeldSteps = 4, kManyFullSteps = 4, kManyHeldSteps = 3;
 // The log-linear start counts values about zero as the relative error does, and is smooth and rough at once.
 const HomomorphicOptions kStart{.smooth = 1e-5, .floor = PictureLoss::kFloor, .tolerance = 0.03};
 // Trials: every so many pairs, in so few steps, for gains that another draw of pairs would not give.
@@ -162,10 +162,11 @@ TrainingSet about(const TrainingSet& set, std::size_t pairs) {
   return thinned(set, std::max<std::size_t>(1, set.size() / pairs));
 }
 
-/// The spec that serves a part of the pairs best that it was not fitted to.
+/// The spec that serves a part of the pairs best that it was not fitted to; of many nodes, which serve alike
+/// however they are shared out, the first.
 const ModelSpec& best_of(const std::vector<ModelSpec>& specs, const TrainingSet& set,
                          const RefineOptions& options) {
-  if (specs.size() == 1) return specs.front();
+  if (specs.size() == 1 || coupled_unknowns(specs.front(), 1) > kCoarseNodes) return specs.front();
   const TrainingSet grey = mean_of_channels(set);
   const TrainingSet fitted = part_of(grey, 0, kTrialPart), judged = part_of(grey, kTrialPart / 2, kTrialPart);
   RefineOptions steps = options;
@@ -328,8 +329,8 @@ LobesFit fit_volumes(const TrainingSet& set, const std::vector<ModelSpec>& specs
 
   // all of them; what shares an exponent is held in its reach only once it stands
   if (many) fit.model = resampled(fit.model, spec);
-  refine_part(set, TableFormat::single, kFullSteps, 0.3, 0.8);
-  refine_part(set, options.format, kHeldSteps, 0.8, 1);
+  refine_part(set, TableFormat::single, many ? kManyFullSteps : kFullSteps, 0.3, 0.8);
+  refine_part(set, options.format, many ? kManyHeldSteps : kHeldSteps, 0.8, 1);
   return fit;
 }
 
