@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <charconv>
 #include <future>
 #include <thread>
 
@@ -29,11 +30,22 @@ std::array<double*, 6> figures(ErrorFigures& e) {
   return {&e.psnr, &e.ssim, &e.relative, &e.log_cos, &e.rms_log, &e.rms};
 }
 
-// "ours" or one of the baselines, at so many bytes; 0: whatever it takes.
+// "ours" within any number of fetches, "ours, N fetches" within so many.
+bool is_ours(std::string_view method) {
+  return method.starts_with("ours");
+}
+int fetches_of(std::string_view method) {
+  int fetches = 0;
+  if (const auto comma = method.find(", "); comma != method.npos)
+    std::from_chars(method.data() + comma + 2, method.data() + method.size(), fetches);
+  return fetches;
+}
+
+// One of ours or of the baselines, at so many bytes; 0: whatever it takes.
 Score run_method(const Material& material, std::string_view method, std::size_t budget) {
   FitOptions options{.score = false};
-  if (method == "ours")
-    options.form = Budget{.bytes = budget};
+  if (is_ours(method))
+    options.form = Budget{.bytes = budget, .fetches = fetches_of(method)};
   else
     options.form = BaselineMethod{.method = std::string(method), .bytes = budget};
   const Fit made = fit(material.source, options);
@@ -85,7 +97,7 @@ std::vector<Bold> bold_figures(const std::vector<MeanScore>& means) {
   for (std::size_t i = 0; i < means.size(); ++i)
     for (std::size_t j = 0; j < means.size(); ++j) {
       const Score &other = means[i].score, &ours = means[j].score;
-      if (other.method == "ours" || ours.method != "ours" || means[i].materials != means[j].materials ||
+      if (is_ours(other.method) || !is_ours(ours.method) || means[i].materials != means[j].materials ||
           (other.budget > 0 ? other.budget : other.bytes) > ours.budget)
         continue;
       const Bold ahead = ahead_of(other, ours);
