@@ -6,17 +6,19 @@ burnish=$1 out=$2 input=${3:-}
 mkdir -p "$out"
 reference=$input
 if [ -z "$input" ]; then
-  reference=satin
+  reference=satin:f0=0.85/0.35/0.16,kd=0.06/0.01/0.03
   input=$out/satin.csv
-  echo "== A virtual goniometer measures an anisotropic satin: 60,000 scattered samples, 5 % noise"
+  echo "== A virtual goniometer measures a copper satin, anisotropic: 60,000 scattered samples, 5 % noise"
   "$burnish" measure "$reference" -o "$input" --count 60000 --noise 0.05
 fi
 echo "== Factoring $input"
 "$burnish" fit "$input" -o "$out/model.exr"
+echo "== Rendering it"
+"$burnish" render --renderer cpu --mesh torus-knot --material "$out/model.exr" --size 480 -o "$out/knot.png"
 echo "== Comparing with $reference"
 "$burnish" compare "$reference" "$out/model.exr" -o "$out/report" | tee "$out/figures.txt"
 echo
 echo "The model:    $out/model.exr (any EXR viewer shows its textures)"
-echo "The pictures: $out/report/index.html, $out/report/overview.png"
+echo "The pictures: $out/knot.png, $out/report/index.html, $out/report/overview.png"
 awk 'NR == 2 {printf "The error:    psnr %s dB, ssim %s, relative %s, in %s bytes\n", $(NF-4), $(NF-3), $(NF-2), $(NF-5)}' \
   "$out/figures.txt"

@@ -243,7 +243,7 @@ void add_fit_command(CLI::App& app) {
       "--model", one_lobe.model,
       "product of tables over projections: pqp (the paper's), pqpr, or such as "
       "\"p(wo) q(h) s(wi+wo+0.5n) p(wi)\" (default: --budget 16K --fetches 2, of anisotropic sources "
-      "--budget 64K --fetches 6)");
+      "--budget 16K --fetches 6)");
   verb->add_option("--table", one_lobe.tables,
                    "size and spacing of a table: NAME=SIZE[,warp...][,shared][,format], SIZE N (1-D), NxN "
                    "(hemisphere), NxM or NxMxK; warp identity, power:P or rational:K; format as --format")

@@ -457,7 +457,7 @@ class Fitter {
 }  // namespace
 
 Budget default_budget(bool isotropic) {
-  return isotropic ? Budget{.bytes = 16 << 10, .fetches = 2} : Budget{.bytes = 64 << 10, .fetches = 6};
+  return {.bytes = 16 << 10, .fetches = isotropic ? 2 : 6};
 }
 
 FitForm form_of(const std::string& model, const std::vector<std::string>& tables, bool isotropic,

@@ -69,8 +69,8 @@ FitForm form_of(const std::string& model, const std::vector<std::string>& tables
 /// an anisotropic one are fitted as they are.
 enum class FitTarget { function, nodes };
 
-/// Where more bytes and fetches buy little more, by the curves of docs/results/accuracy.md: 16 KB and two fetches
-/// for an isotropic source, 64 KB and six for another.
+/// Where more bytes and fetches buy little more, by the curves of docs/results/accuracy.md: 16 KB, and two
+/// fetches for an isotropic source, six for another.
 Budget default_budget(bool isotropic);
 
 struct FitOptions {
