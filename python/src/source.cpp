@@ -145,7 +145,8 @@ void bind_opened_brdf(nb::module_& m) {
             }
             return from_json(text);
           },
-          nb::sig("def info(self) -> dict"), "What `burnish info --json` prints.")
+          nb::sig("def info(self) -> dict"),
+          "What `burnish info --json` prints, but what a shader costs: see generate_shader.")
       .def("__repr__", [](const OpenedBrdf& b) {
         return "<burnish " + b.source().findings.format + " '" + b.source().name + "'>";
       });

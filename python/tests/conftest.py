@@ -36,7 +36,7 @@ def ggx():
 
 @pytest.fixture(scope="session")
 def model(ggx):
-    return burnish.fit(ggx)
+    return burnish.fit(ggx, model="pqp")
 
 
 @pytest.fixture(scope="session")

@@ -37,7 +37,9 @@ def test_compare_and_info_print_the_same(cli, ggx, model, tmp_path):
     assert burnish.compare_models(ggx, [again], count=5000) == cli(
         "compare", GGX, path, "--count", "5000", "--json"
     )
-    assert again.info() == cli("info", path, "--json")
+    printed = cli("info", path, "--json")
+    assert printed.pop("shader") == burnish.generate_shader(again).cost
+    assert again.info() == printed
     figures = burnish.error_figures(ggx, again, count=5000)
     compared = burnish.compare_models(ggx, [again], count=5000)[0]
     for key in ("psnr", "ssim", "relative", "rms_log", "log_cos"):
@@ -78,9 +80,15 @@ def test_shaders_and_textures_are_the_command_lines(language, extension, cli, mo
     assert shader.text == (tmp_path / "out" / f"model.{extension}").read_text()
     manifest = json.loads((tmp_path / "out/model.json").read_text())
     assert shader.cost == manifest["shaders"][0]["cost"]
+    if language == "cpp":  # has its tables inside, in arrays of their own sizes
+        return
     for texture, entry in zip(shader.textures, manifest["textures"], strict=True):
         assert texture.values.shape == (entry["height"], entry["width"], entry["channels"])
-        np.testing.assert_array_equal(texture.values.ravel(), np.ravel(model.tables[texture.tables[0]].values))
+        for placed in texture.tables:
+            table = model.tables[placed.table].values
+            x, y, _ = placed.first
+            there = texture.values[y : y + table.shape[0], x : x + table.shape[1]]
+            np.testing.assert_array_equal(there, table * 2.0**placed.exponent)
         burnish.write_ktx2(tmp_path / "texture.ktx2", texture)
         assert (tmp_path / "texture.ktx2").read_bytes() == (tmp_path / "out" / entry["file"]).read_bytes()
 
@@ -110,7 +118,7 @@ def test_the_specular_family_is_exported(cli, tmp_path):
 def test_progress_rises_and_its_exceptions_end_the_fit(ggx):
     seen = []
     burnish.fit(ggx, budget=800, lobes=2, progress=lambda stage, fraction: seen.append((stage, fraction)))
-    assert seen and {stage for stage, _ in seen} == {"fitting"}
+    assert seen and {stage for stage, _ in seen} == {"fitting", "matching albedos"}
     assert all(0 <= fraction <= 1 for _, fraction in seen)
 
     def stop(stage, fraction):
@@ -168,7 +176,7 @@ def test_other_threads_go_on_during_a_fit(ggx):
 
 
 def test_tables_are_views_that_keep_their_model_alive(ggx):
-    values = burnish.fit(ggx).tables[0].values
+    values = burnish.fit(ggx, model="pqp").tables[0].values
     gc.collect()
     assert values.shape == (1, 32, 3) and values.max() == 1 and not values.flags.writeable
     with pytest.raises(ValueError):
@@ -204,7 +212,7 @@ def test_log_tables_restore_and_change_a_model(lobes, pairs):
 
 def test_energy_is_conserved():
     bright = burnish.open_source("ggx:alpha_x=0.3,alpha_y=0.3,kd=0.9")
-    model = burnish.conserve_energy(burnish.fit(bright))
+    model = burnish.conserve_energy(burnish.fit(bright, model="pqp"))
     angles = np.radians(np.linspace(0, 88, 9))
     wi = np.stack([np.sin(angles), np.zeros(9), np.cos(angles)], axis=1)
     assert burnish.directional_albedo(model, wi).max() <= 1.01
