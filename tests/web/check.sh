@@ -20,7 +20,7 @@ done
   (cd "$web" && timeout 120 npm install --silent --no-audit --no-fund > /dev/null 2>&1) ||
   skip "${1:-}" "npm cannot be reached, so exports were not opened elsewhere"
 
-"$burnish" fit ggx:alpha_x=0.2,alpha_y=0.35,f0=0.9/0.7/0.4 --samples 50000 -o "$web/brushed.exr" > /dev/null
+"$burnish" fit ggx:alpha_x=0.2,alpha_y=0.35,f0=0.9/0.7/0.4 --model pqp --samples 50000 -o "$web/brushed.exr" > /dev/null
 "$burnish" export "$web/brushed.exr" --to ktx2 --to cube --to exr --to gltf --to three --to glsl --environment sun --mips -o "$web/out" > /dev/null
 printf 'wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0,0,1,0,0,1\n' > "$web/normal.csv"
 "$burnish" eval "$web/brushed.exr" "$web/normal.csv" -o "$web/value.csv" > /dev/null
