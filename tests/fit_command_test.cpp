@@ -59,7 +59,6 @@ TEST_F(FitCommand, WritesTheFileThatTheNameAsksFor) {
 }
 
 TEST_F(FitCommand, IsTheLibrarysFit) {
-  expect_same(kPaint, "", {});
   expect_same(
       kPaint, "--model pqpr --table q=24 --floor 1e-4 --reweightings 1 --samples 3000 --seed 4",
       {.form = OneLobe{.model = "pqpr", .tables = {"q=24"}, .how = {.reweightings = 1, .floor = 1e-4}},
