@@ -64,14 +64,8 @@ FitForm fit_form(const FitArguments& arguments, bool isotropic) {
     budget.scattered = how;
     return budget;
   }
-  if (arguments.one_lobe.model.empty() && arguments.one_lobe.tables.empty()) {
-    Budget budget = default_budget(isotropic);
-    budget.loss = loss;
-    budget.scattered = how;
-    return budget;
-  }
-  const std::string model = arguments.one_lobe.model.empty() ? OneLobe{}.model : arguments.one_lobe.model;
-  return usage([&] { return form_of(model, arguments.one_lobe.tables, isotropic, how, loss); });
+  return usage(
+      [&] { return form_of(arguments.one_lobe.model, arguments.one_lobe.tables, isotropic, how, loss); });
 }
 
 FitOptions fit_options(const FitArguments& arguments, bool isotropic) {

@@ -41,17 +41,15 @@ OpenedModel* fit(const OpenedBrdf& source, const std::string& model, const std::
     how.cross_validate = true;
   }
   if (format) options.format = parse_table_format(*format);
-  const bool isotropic = source.ref().isotropic();
-  if (budget > 0 || (model.empty() && tables.empty())) {
-    Budget form = default_budget(isotropic);
-    if (budget > 0) form = {.bytes = budget, .fetches = fetches, .lobes = lobes, .search = search};
-    form.loss = parse_fit_loss(loss);
-    form.scattered = how;
-    options.form = form;
-  } else {
-    options.form =
-        form_of(model.empty() ? OneLobe{}.model : model, tables, isotropic, how, parse_fit_loss(loss));
-  }
+  if (budget > 0)
+    options.form = Budget{.bytes = budget,
+                          .fetches = fetches,
+                          .lobes = lobes,
+                          .search = search,
+                          .loss = parse_fit_loss(loss),
+                          .scattered = how};
+  else
+    options.form = form_of(model, tables, source.ref().isotropic(), how, parse_fit_loss(loss));
   const nb::gil_scoped_release released;
   return new OpenedModel(source.source().name, to_model(burnish::fit(source.source(), options)));
 }

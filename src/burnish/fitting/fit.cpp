@@ -270,9 +270,7 @@ class Fitter {
     }
     if (!brdf_.isotropic()) {
       const ModelSpec spec = hemisphere_spec(limit, channels());
-      TrainingOptions drawn = training_for(form.bytes, limit.texel_bytes, false);
-      drawn.seed = options_.seed;
-      const TrainingSet set = draw_training_set(reference(), drawn);
+      const TrainingSet set = drawn_set(training_for(form.bytes, limit.texel_bytes, false));
       return finish(fit_lobes(set, spec, refine), set, refine, std::move(report));
     }
     if (form.loss == FitLoss::image) {
@@ -462,6 +460,13 @@ Budget default_budget(bool isotropic) {
 
 FitForm form_of(const std::string& model, const std::vector<std::string>& tables, bool isotropic,
                 const LogLinear& of_one_lobe, FitLoss of_several) {
+  if (model.empty()) {
+    if (!tables.empty()) return form_of(OneLobe{}.model, tables, isotropic, of_one_lobe, of_several);
+    Budget budget = default_budget(isotropic);
+    budget.loss = of_several;
+    budget.scattered = of_one_lobe;
+    return budget;
+  }
   if (parse_model_spec(model, tables, isotropic).lobes.size() == 1)
     return OneLobe{.model = model, .tables = tables, .how = of_one_lobe};
   return GivenLobes{.model = model, .tables = tables, .loss = of_several};

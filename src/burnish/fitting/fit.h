@@ -59,8 +59,11 @@ struct BaselineMethod {
 /// What a fit makes.
 using FitForm = std::variant<OneLobe, Budget, GivenLobes, BaselineMethod>;
 
-/// The form for a model as parse_model_spec reads it: OneLobe or, where it has several, GivenLobes. Throws
-/// Error as that does.
+/// Bytes and fetches that serve most uses: 16 KB, and two fetches for an isotropic source, six for another.
+Budget default_budget(bool isotropic);
+
+/// The form for a model as parse_model_spec reads it: OneLobe or, where it has several, GivenLobes. Without a
+/// model default_budget, or where there are tables OneLobe's model. Throws Error as parse_model_spec does.
 FitForm form_of(const std::string& model, const std::vector<std::string>& tables, bool isotropic,
                 const LogLinear& of_one_lobe, FitLoss of_several);
 
@@ -68,10 +71,6 @@ FitForm form_of(const std::string& model, const std::vector<std::string>& tables
 /// nodes of an isotropic source a SmoothedNodes stands, as smooth as predicts nodes best that it has not seen; nodes of
 /// an anisotropic one are fitted as they are.
 enum class FitTarget { function, nodes };
-
-/// Where more bytes and fetches buy little more, by the curves of docs/results/accuracy.md: 16 KB, and two
-/// fetches for an isotropic source, six for another.
-Budget default_budget(bool isotropic);
 
 struct FitOptions {
   std::optional<FitForm> form = {};  ///< none: default_budget

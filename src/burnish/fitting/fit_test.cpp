@@ -267,6 +267,11 @@ TEST(FitForm, IsOneLobeOrSeveral) {
   ASSERT_TRUE(std::holds_alternative<GivenLobes>(form));
   EXPECT_EQ(std::get<GivenLobes>(form).loss, FitLoss::log_cos);
   EXPECT_THROW(form_of("p(wo) +", {}, true, {}, {}), Error);
+  const FitForm none = form_of("", {}, false, {.floor = 1e-4}, FitLoss::relative);
+  EXPECT_EQ(std::get<Budget>(none).bytes, default_budget(false).bytes);
+  EXPECT_EQ(std::get<Budget>(none).loss, FitLoss::relative);
+  EXPECT_EQ(std::get<Budget>(none).scattered.floor, 1e-4);
+  EXPECT_EQ(std::get<OneLobe>(form_of("", {"q=8"}, true, {}, {})).model, OneLobe{}.model);
 }
 
 TEST(FitLoss, RoundTripsThroughItsName) {
