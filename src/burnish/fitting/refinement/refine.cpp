@@ -1,14 +1,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <optional>
 #include <thread>
 
 #include <burnish/error.h>
-#include <burnish/fitting/numerics/dense.h>
-#include <burnish/fitting/numerics/preconditioned_cg.h>
 #include <burnish/fitting/refinement/refine.h>
 #include <burnish/fitting/refinement/refine_system.h>
+#include <burnish/fitting/refinement/step_solver.h>
 #include <burnish/math/parallel.h>
 
 namespace burnish {
@@ -21,109 +19,6 @@ namespace {
 constexpr double kFirstDamping = 1e-2, kFirstIterativeDamping = 0.1, kMinDamping = 1e-6;
 constexpr double kEase = 0.3, kHarden = 4, kGoodGain = 0.75, kPoorGain = 0.25;
 constexpr int kMaxTrials = 6, kMaxSlowSteps = 3;
-// Pins what neither data nor smoothness determine, as shares of the mean diagonal.
-constexpr double kRidge = 1e-7, kDampedRidge = 1e-3;
-constexpr double kLongestStep = 2;  // change of a logarithm
-constexpr double kHeld = 1e6;       // of the largest diagonal entry: what does not move
-
-// A truncated solution is good enough for a step that is tried and judged.
-constexpr int kMaxCgIterations = 40;
-constexpr double kCgTolerance = 1e-2;
-
-/// One channel's, or coupled channels', damped linear systems.
-class StepSolver {
- public:
-  StepSolver(const RefineSystem& system, double smooth) : system_(system), smooth_(smooth) {
-    if (direct()) return;
-    roughness_diagonal_ = 2 * smooth * system.roughness_diagonal();
-    if (system.has_volume()) band_ = system.node_band();
-  }
-
-  bool direct() const { return system_.size() <= kMaxCholeskyUnknowns; }
-
-  void linearize(const Eigen::VectorXd& x, const ErrorTerms& means) {
-    if (direct()) {
-      system_.gauss_newton_matrix(x, means, dense_);
-      system_.add_roughness_matrix(2 * smooth_, dense_.matrix);
-    } else {
-      factor_ = system_.gauss_newton_factor(x, means);
-      x_ = x;
-      means_ = means;
-    }
-    gradient() += 2 * smooth_ * system_.roughness_matrix_times(x);
-  }
-
-  /// What the quadratic model of linearize says that a step adds to the objective.
-  double predicted_change(const Eigen::VectorXd& dx) const {
-    const Eigen::VectorXd bent = direct()
-                                     ? Eigen::VectorXd(dense_.matrix.selfadjointView<Eigen::Lower>() * dx)
-                                     : Eigen::VectorXd(system_.gauss_newton_times(factor_, dx) +
-                                                       2 * smooth_ * system_.roughness_matrix_times(dx));
-    return dx.dot((direct() ? dense_.gradient : factor_.gradient) + 0.5 * bent);
-  }
-
-  /// Steps from now on leave an unknown alone whose gradient leads out of the box at whose side it is.
-  void stay_within(const RefineSystem::Box& box, const Eigen::VectorXd& x) {
-    const Eigen::VectorXd& slope = gradient();
-    held_ = (x.array() <= box.least.array() && slope.array() > 0) ||
-            (x.array() >= box.most.array() && slope.array() < 0);
-  }
-
-  Eigen::VectorXd step(double damping) {
-    const Eigen::VectorXd diagonal = direct() ? Eigen::VectorXd(dense_.matrix.diagonal())
-                                              : Eigen::VectorXd(factor_.diagonal + roughness_diagonal_);
-    Eigen::VectorXd extra = damping * diagonal.array() + (kRidge + damping * kDampedRidge) * diagonal.mean();
-    for (Eigen::Index u = 0; u < held_.size(); ++u)
-      if (held_[u]) extra[u] = kHeld * diagonal.maxCoeff();
-    Eigen::VectorXd dx;
-    if (direct()) {
-      factorized_ = dense_.matrix;
-      factorized_.diagonal() += extra;
-      dx = -dense_.gradient;
-      solve_in_place(factorized_, dx);
-    } else {
-      dx = solve_iteratively(extra, diagonal + extra);
-    }
-    return dx.cwiseMax(-kLongestStep).cwiseMin(kLongestStep);
-  }
-
- private:
-  Eigen::VectorXd& gradient() { return direct() ? dense_.gradient : factor_.gradient; }
-
-  /// The step where `extra` is added to the matrix's diagonal, which then is about `diagonal`.
-  Eigen::VectorXd solve_iteratively(const Eigen::VectorXd& extra, const Eigen::VectorXd& diagonal) {
-    using Vector = Eigen::VectorXd;
-    Vector x = Vector::Zero(extra.size());
-    const auto apply = [&](const Vector& v) -> Vector {
-      return system_.gauss_newton_times(factor_, v) + 2 * smooth_ * system_.roughness_matrix_times(v) +
-             extra.cwiseProduct(v);
-    };
-    bool banded = band_.has_value();
-    if (banded) {
-      system_.fill(x_, means_, 2 * smooth_, *band_);
-      banded = band_->factorize(extra);
-    }
-    const auto precondition = [&](const Vector& r) -> Vector {
-      return banded ? band_->solve(r) : r.cwiseQuotient(diagonal);
-    };
-    const auto dot = [](const Vector& a, const Vector& b) { return a.dot(b); };
-    preconditioned_cg(x, Vector(-factor_.gradient), kCgTolerance, kMaxCgIterations, apply, precondition, dot,
-                      [](const CgResult&) {});
-    return x;
-  }
-
-  const RefineSystem& system_;
-  double smooth_;
-  Eigen::Array<bool, Eigen::Dynamic, 1> held_;
-  Eigen::VectorXd roughness_diagonal_;
-  RefineSystem::GaussNewton dense_;  ///< of a direct solution
-  Eigen::MatrixXd factorized_;
-  RefineSystem::GaussNewtonFactor factor_;  ///< of an iterative one, and what it was made at
-  Eigen::VectorXd x_;
-  ErrorTerms means_;
-  std::optional<NodeBand> band_;  ///< of models with volumes
-};
-
 /// Levenberg-Marquardt steps of one channel, or of coupled channels.
 class Descent {
  public:
@@ -143,7 +38,7 @@ class Descent {
     const RefineSystem::Box box = boxed ? system_.box(x_) : RefineSystem::Box{};
     ErrorTerms means = system_.errors(x_);
     before_ = after_ = objective(means, x_);
-    double damping = solver.direct() ? kFirstDamping : kFirstIterativeDamping;
+    double damping = solver.is_direct() ? kFirstDamping : kFirstIterativeDamping;
     for (int slow = 0; iterations_ < options_.max_iterations && slow < kMaxSlowSteps; ++iterations_) {
       before_step();
       solver.linearize(x_, means);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <burnish/fitting/refinement/refine_system.h>
 #include <burnish/math/parallel.h>
@@ -390,6 +391,68 @@ void RefineSystem::fill(const Eigen::VectorXd& x, const ErrorTerms& means, doubl
           row.push_back({static_cast<std::uint32_t>(unknown(a)), coefficients[a]});
         band.add_wide_row(row, smooth * table.share);
       });
+}
+
+std::optional<VolumeGram> RefineSystem::volume_gram(double smooth) const {
+  std::optional<VolumeGram> gram =
+      channels() == 1 ? VolumeGram::of(lanes_.tables(), lookups_) : std::optional<VolumeGram>();
+  if (!gram) return {};
+  std::vector<Eigen::Triplet<double>> entries;
+  for_each_roughness_row([&](std::span<const double> row, const auto& unknown, const SystemTable& table) {
+    for (std::size_t a = 0; a < row.size(); ++a)
+      for (std::size_t b = 0; b < row.size(); ++b)
+        if (unknown(a) >= unknown(b))
+          entries.emplace_back(static_cast<int>(unknown(a)), static_cast<int>(unknown(b)),
+                               smooth * table.share * row[a] * row[b]);
+  });
+  gram->set_constant(std::move(entries));
+  return gram;
+}
+
+RefineSystem::SparseGaussNewton RefineSystem::linearize(const Eigen::VectorXd& x, const ErrorTerms& means,
+                                                        VolumeGram& gram) const {
+  const LobeLanes::Values values = lanes_.values(x);
+  const ErrorTerms derivatives =
+      loss_.derivatives(means, picture_weight_, pair_weight_, static_cast<double>(albedo_.size()));
+  const auto slot_of = [&](std::size_t lookup) {
+    return static_cast<std::size_t>(
+        std::ranges::find(lanes_.slots(), lookups_.place_of[lookup], &LobeLanes::Slot::place) -
+        lanes_.slots().begin());
+  };
+  const std::size_t volume = slot_of(gram.volume_lookup()),
+                    line = gram.has_line() ? slot_of(gram.line_lookup()) : volume;
+
+  // the slopes of all pairs
+  constexpr std::size_t kBlock = LobeLanes::kBlock;
+  gram.set_zero();
+  AlignedVector<float> slope(values.lambdas.size());
+  for_each_slope(values, derivatives, 0, lanes_.blocks(),
+                 [&](std::size_t b, std::size_t c, const LobeLanes::Block& at, const float* slopes,
+                     const float* curvatures) {
+                   lanes_.add_transposed(at, slopes, b, c, slope);
+                   const Lookups::Place* places = lanes_.places(b);
+                   const auto place = [&](std::size_t s, std::size_t i) -> const Lookups::Place& {
+                     return places[lanes_.slots()[s].place * kBlock + i];
+                   };
+                   const auto factor = [&](std::size_t s, std::size_t i) {
+                     return at.factor[s * LobeLanes::kBlockLanes + i * LobeLanes::kLanes];
+                   };
+                   const std::size_t count = std::min(kBlock, set_.size() - b * kBlock);
+                   for (std::size_t i = 0; i < count; ++i)
+                     gram.add(place(volume, i), place(line, i), factor(volume, i), factor(line, i),
+                              curvatures[i]);
+                 });
+  SparseGaussNewton result{.gradient = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(size_)),
+                           .albedo_roots = {}};
+  lanes_.gather(slope, result.gradient);
+
+  // by logarithms: d lambda / dx = lambda
+  result.gradient = result.gradient.cwiseProduct(values.lambda);
+  gram.by_logarithms(values.lambda);
+  AlbedoPart albedo = albedo_part(x, derivatives);
+  result.gradient += albedo.gradient;
+  result.albedo_roots = std::move(albedo.roots);
+  return result;
 }
 
 double RefineSystem::roughness(const Eigen::VectorXd& x) const {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include <burnish/fitting/refinement/node_band.h>
 #include <burnish/fitting/refinement/picture_loss_lanes.h>
 #include <burnish/fitting/refinement/training_set.h>
+#include <burnish/fitting/refinement/volume_gram.h>
 
 namespace burnish {
 
@@ -84,6 +86,15 @@ class RefineSystem {
   NodeBand node_band() const { return NodeBand(lanes_.tables(), lookups_, channels()); }
   /// Puts the Gauss-Newton matrix at x and `smooth` times that of the roughness into a band like node_band().
   void fill(const Eigen::VectorXd& x, const ErrorTerms& means, double smooth, NodeBand& band) const;
+
+  /// The sparse matrix of a system that has one, `smooth` times that of the roughness being its constant.
+  std::optional<VolumeGram> volume_gram(double smooth) const;
+  struct SparseGaussNewton {
+    Eigen::VectorXd gradient;
+    Eigen::MatrixXd albedo_roots;  ///< as in GaussNewtonFactor
+  };
+  /// Slope and matrix at x, the latter as `gram` gives it by logarithms().
+  SparseGaussNewton linearize(const Eigen::VectorXd& x, const ErrorTerms& means, VolumeGram& gram) const;
 
   /// Roughness of all tables, its gradient, its matrix times v and its diagonal.
   double roughness(const Eigen::VectorXd& x) const;

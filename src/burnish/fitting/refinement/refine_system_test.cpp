@@ -67,6 +67,59 @@ TEST(RefineSystem, MatrixAndFactorAreTheSameSystem) {
   }
 }
 
+TEST(VolumeGram, IsTheMatrixOfOneLobe) {
+  const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.2,alpha_y=0.2");
+  TrainingSet set = small_set(ggx, 500);
+  const struct {
+    const char* model;
+    std::vector<std::string> tables;
+  } cases[] = {{"z(h) v(theta_h,theta_d,phi_d)", {"z=23", "v=5x4x3"}},
+               {"v(theta_h,theta_d,phi_d) z(theta_d)", {"v=4x5x3,power:0.5", "z=3"}},
+               {"v(theta_h,theta_d,phi_d) z(phi_d)", {"v=4x5x3", "z=8"}},
+               {"v(theta_d,theta_h,phi_d)", {"v=5x4x3"}}};
+  for (const auto& [expression, tables] : cases) {
+    const LogModel model = random_model(expression, tables, 1);
+    const Lookups lookups = lookups_of(model.spec, set);
+    set.albedo = tables.size() == 1 ? albedo_set(ggx) : AlbedoSet{};
+    PictureLoss loss{.exposure = 0.1};
+    loss.shares.albedo = 0.3;
+    const RefineSystem system(model, set, lookups, loss, TableFormat::half, 0, 1);
+    const Eigen::VectorXd x = system.read(model);
+    const ErrorTerms means = system.errors(x);
+    RefineSystem::GaussNewton dense;
+    system.gauss_newton_matrix(x, means, dense);
+    system.add_roughness_matrix(0.5, dense.matrix);
+    const Eigen::MatrixXd matrix = dense.matrix.selfadjointView<Eigen::Lower>();
+
+    std::optional<VolumeGram> gram = system.volume_gram(0.5);
+    ASSERT_TRUE(gram) << expression;
+    for (int again = 0; again < 2; ++again) {  // nothing is left of the first time
+      const RefineSystem::SparseGaussNewton sparse = system.linearize(x, means, *gram);
+      EXPECT_LT((sparse.gradient - dense.gradient).norm(), 1e-5 * dense.gradient.norm()) << expression;
+      const Eigen::MatrixXd found = gram->matrix().toDense().selfadjointView<Eigen::Lower>();
+      const Eigen::MatrixXd whole = found + sparse.albedo_roots * sparse.albedo_roots.transpose();
+      EXPECT_LT((whole - matrix).norm(), 1e-5 * matrix.norm()) << expression;
+    }
+  }
+}
+
+TEST(VolumeGram, IsOfFewModels) {
+  const TrainingSet set = small_set(parse_analytic("ggx:alpha_x=0.2,alpha_y=0.2"), 50);
+  const struct {
+    const char* model;
+    std::vector<std::string> tables;
+  } cases[] = {{"p(wo) p(wi) v(theta_h,theta_d,phi_d)", {"p=5", "v=5x4x3"}},
+               {"z(theta_m) v(theta_h,theta_d,phi_d)", {"z=5", "v=5x4x3"}},
+               {"z(h) v(theta_h,theta_d,phi_d) + y(h)", {"z=5", "v=5x4x3", "y=5"}},
+               {"z(h) g(theta_d,theta_m)", {"z=5", "g=5x4"}}};
+  for (const auto& [expression, tables] : cases) {
+    const LogModel model = random_model(expression, tables, 1);
+    const Lookups lookups = lookups_of(model.spec, set);
+    const RefineSystem system(model, set, lookups, {.exposure = 0.1}, TableFormat::half, 0, 1);
+    EXPECT_FALSE(system.volume_gram(0)) << expression;
+  }
+}
+
 TEST(NodeBand, SolvesWhatTheMatrixSolves) {
   const TrainingSet set = small_set(parse_analytic("ggx:alpha_x=0.2,alpha_y=0.2"), 500);
   // all tables along theta_h, or another beside them

@@ -1,0 +1,160 @@
+#include <optional>
+#include <utility>
+
+#include <burnish/fitting/numerics/dense.h>
+#include <burnish/fitting/numerics/preconditioned_cg.h>
+#include <burnish/fitting/refinement/refine.h>
+#include <burnish/fitting/refinement/step_solver.h>
+
+namespace burnish {
+
+namespace {
+
+// Pins what neither data nor smoothness determine, as shares of the mean diagonal.
+constexpr double kRidge = 1e-7, kDampedRidge = 1e-3;
+constexpr double kLongestStep = 2;  // change of a logarithm
+constexpr double kHeld = 1e6;       // of the largest diagonal entry: what does not move
+
+// A truncated solution is good enough for a step that is tried and judged.
+constexpr int kMaxCgIterations = 40;
+constexpr double kCgTolerance = 1e-2;
+
+using Vector = Eigen::VectorXd;
+
+template <class Apply, class Precondition>
+Vector solve_iteratively(const Vector& b, const Apply& apply, const Precondition& precondition) {
+  Vector x = Vector::Zero(b.size());
+  preconditioned_cg(
+      x, b, kCgTolerance, kMaxCgIterations, apply, precondition,
+      [](const Vector& a, const Vector& c) { return a.dot(c); }, [](const CgResult&) {});
+  return x;
+}
+
+/// Of few unknowns: solved directly.
+class DenseModel final : public QuadraticModel {
+ public:
+  DenseModel(const RefineSystem& system, double smooth) : system_(system), smooth_(smooth) {}
+
+  void linearize(const Vector& x, const ErrorTerms& means) override {
+    system_.gauss_newton_matrix(x, means, dense_);
+    system_.add_roughness_matrix(2 * smooth_, dense_.matrix);
+    gradient_ = dense_.gradient + 2 * smooth_ * system_.roughness_matrix_times(x);
+  }
+  Vector diagonal() const override { return dense_.matrix.diagonal(); }
+  Vector times(const Vector& v) const override { return dense_.matrix.selfadjointView<Eigen::Lower>() * v; }
+  Vector step(const Vector& extra) override {
+    factorized_ = dense_.matrix;
+    factorized_.diagonal() += extra;
+    Vector dx = -gradient_;
+    solve_in_place(factorized_, dx);
+    return dx;
+  }
+
+ private:
+  const RefineSystem& system_;
+  double smooth_;
+  RefineSystem::GaussNewton dense_;
+  Eigen::MatrixXd factorized_;
+};
+
+/// Of many unknowns: by the factor of the matrix, and of models with volumes most of the matrix as a band.
+class FactorModel final : public QuadraticModel {
+ public:
+  FactorModel(const RefineSystem& system, double smooth)
+      : system_(system), smooth_(smooth), roughness_diagonal_(2 * smooth * system.roughness_diagonal()) {
+    if (system.has_volume()) band_ = system.node_band();
+  }
+
+  void linearize(const Vector& x, const ErrorTerms& means) override {
+    factor_ = system_.gauss_newton_factor(x, means);
+    gradient_ = factor_.gradient + 2 * smooth_ * system_.roughness_matrix_times(x);
+    x_ = x;
+    means_ = means;
+  }
+  Vector diagonal() const override { return factor_.diagonal + roughness_diagonal_; }
+  Vector times(const Vector& v) const override {
+    return system_.gauss_newton_times(factor_, v) + 2 * smooth_ * system_.roughness_matrix_times(v);
+  }
+  Vector step(const Vector& extra) override {
+    bool banded = band_.has_value();
+    if (banded) {
+      system_.fill(x_, means_, 2 * smooth_, *band_);
+      banded = band_->factorize(extra);
+    }
+    const Vector whole = diagonal() + extra;
+    return solve_iteratively(
+        -gradient_, [&](const Vector& v) -> Vector { return times(v) + extra.cwiseProduct(v); },
+        [&](const Vector& r) -> Vector { return banded ? band_->solve(r) : r.cwiseQuotient(whole); });
+  }
+
+ private:
+  const RefineSystem& system_;
+  double smooth_;
+  Vector roughness_diagonal_;
+  RefineSystem::GaussNewtonFactor factor_;  // and what it was made at
+  Vector x_;
+  ErrorTerms means_;
+  std::optional<NodeBand> band_;
+};
+
+/// Of one lobe with a volume: the matrix, sparse, but for what albedos add.
+class SparseModel final : public QuadraticModel {
+ public:
+  SparseModel(const RefineSystem& system, double smooth, VolumeGram gram)
+      : system_(system), smooth_(smooth), gram_(std::move(gram)) {}
+
+  void linearize(const Vector& x, const ErrorTerms& means) override {
+    RefineSystem::SparseGaussNewton slope = system_.linearize(x, means, gram_);
+    gradient_ = slope.gradient + 2 * smooth_ * system_.roughness_matrix_times(x);
+    albedo_roots_ = std::move(slope.albedo_roots);
+  }
+  Vector diagonal() const override {
+    return gram_.matrix().diagonal() + Vector(albedo_roots_.rowwise().squaredNorm());
+  }
+  Vector times(const Vector& v) const override {
+    return gram_.matrix().selfadjointView<Eigen::Lower>() * v +
+           albedo_roots_ * (albedo_roots_.transpose() * v);
+  }
+  Vector step(const Vector& extra) override {
+    SparseTriangle damped = gram_.matrix();
+    damped.diagonal() += extra;
+    const IncompleteCholesky factor(damped);
+    return solve_iteratively(
+        -gradient_, [&](const Vector& v) -> Vector { return times(v) + extra.cwiseProduct(v); },
+        [&](const Vector& r) -> Vector { return factor.solve(r); });
+  }
+
+ private:
+  const RefineSystem& system_;
+  double smooth_;
+  VolumeGram gram_;
+  Eigen::MatrixXd albedo_roots_;
+};
+
+}  // namespace
+
+StepSolver::StepSolver(const RefineSystem& system, double smooth)
+    : direct_(system.size() <= kMaxCholeskyUnknowns) {
+  if (direct_)
+    model_ = std::make_unique<DenseModel>(system, smooth);
+  else if (std::optional<VolumeGram> gram = system.volume_gram(2 * smooth))
+    model_ = std::make_unique<SparseModel>(system, smooth, *std::move(gram));
+  else
+    model_ = std::make_unique<FactorModel>(system, smooth);
+}
+
+void StepSolver::stay_within(const RefineSystem::Box& box, const Vector& x) {
+  const Vector& slope = model_->gradient();
+  held_ = (x.array() <= box.least.array() && slope.array() > 0) ||
+          (x.array() >= box.most.array() && slope.array() < 0);
+}
+
+Vector StepSolver::step(double damping) {
+  const Vector diagonal = model_->diagonal();
+  Vector extra = damping * diagonal.array() + (kRidge + damping * kDampedRidge) * diagonal.mean();
+  for (Eigen::Index u = 0; u < held_.size(); ++u)
+    if (held_[u]) extra[u] = kHeld * diagonal.maxCoeff();
+  return model_->step(extra).cwiseMax(-kLongestStep).cwiseMin(kLongestStep);
+}
+
+}  // namespace burnish
