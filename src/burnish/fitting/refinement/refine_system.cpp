@@ -393,9 +393,8 @@ void RefineSystem::fill(const Eigen::VectorXd& x, const ErrorTerms& means, doubl
       });
 }
 
-std::optional<VolumeGram> RefineSystem::volume_gram(double smooth) const {
-  std::optional<VolumeGram> gram =
-      channels() == 1 ? VolumeGram::of(lanes_.tables(), lookups_) : std::optional<VolumeGram>();
+std::optional<SparseGram> RefineSystem::sparse_gram(double smooth) const {
+  std::optional<SparseGram> gram = SparseGram::of(lanes_);
   if (!gram) return {};
   std::vector<Eigen::Triplet<double>> entries;
   for_each_roughness_row([&](std::span<const double> row, const auto& unknown, const SystemTable& table) {
@@ -405,24 +404,15 @@ std::optional<VolumeGram> RefineSystem::volume_gram(double smooth) const {
           entries.emplace_back(static_cast<int>(unknown(a)), static_cast<int>(unknown(b)),
                                smooth * table.share * row[a] * row[b]);
   });
-  gram->set_constant(std::move(entries));
+  gram->set_constant(entries);
   return gram;
 }
 
 RefineSystem::SparseGaussNewton RefineSystem::linearize(const Eigen::VectorXd& x, const ErrorTerms& means,
-                                                        VolumeGram& gram) const {
+                                                        SparseGram& gram) const {
   const LobeLanes::Values values = lanes_.values(x);
   const ErrorTerms derivatives =
       loss_.derivatives(means, picture_weight_, pair_weight_, static_cast<double>(albedo_.size()));
-  const auto slot_of = [&](std::size_t lookup) {
-    return static_cast<std::size_t>(
-        std::ranges::find(lanes_.slots(), lookups_.place_of[lookup], &LobeLanes::Slot::place) -
-        lanes_.slots().begin());
-  };
-  const std::size_t volume = slot_of(gram.volume_lookup()),
-                    line = gram.has_line() ? slot_of(gram.line_lookup()) : volume;
-
-  // the slopes of all pairs
   constexpr std::size_t kBlock = LobeLanes::kBlock;
   gram.set_zero();
   AlignedVector<float> slope(values.lambdas.size());
@@ -430,17 +420,7 @@ RefineSystem::SparseGaussNewton RefineSystem::linearize(const Eigen::VectorXd& x
                  [&](std::size_t b, std::size_t c, const LobeLanes::Block& at, const float* slopes,
                      const float* curvatures) {
                    lanes_.add_transposed(at, slopes, b, c, slope);
-                   const Lookups::Place* places = lanes_.places(b);
-                   const auto place = [&](std::size_t s, std::size_t i) -> const Lookups::Place& {
-                     return places[lanes_.slots()[s].place * kBlock + i];
-                   };
-                   const auto factor = [&](std::size_t s, std::size_t i) {
-                     return at.factor[s * LobeLanes::kBlockLanes + i * LobeLanes::kLanes];
-                   };
-                   const std::size_t count = std::min(kBlock, set_.size() - b * kBlock);
-                   for (std::size_t i = 0; i < count; ++i)
-                     gram.add(place(volume, i), place(line, i), factor(volume, i), factor(line, i),
-                              curvatures[i]);
+                   gram.add(b, at, curvatures, std::min(kBlock, set_.size() - b * kBlock));
                  });
   SparseGaussNewton result{.gradient = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(size_)),
                            .albedo_roots = {}};
@@ -448,7 +428,7 @@ RefineSystem::SparseGaussNewton RefineSystem::linearize(const Eigen::VectorXd& x
 
   // by logarithms: d lambda / dx = lambda
   result.gradient = result.gradient.cwiseProduct(values.lambda);
-  gram.by_logarithms(values.lambda);
+  gram.make(values.lambda);
   AlbedoPart albedo = albedo_part(x, derivatives);
   result.gradient += albedo.gradient;
   result.albedo_roots = std::move(albedo.roots);

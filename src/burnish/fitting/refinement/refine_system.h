@@ -16,8 +16,8 @@
 #include <burnish/fitting/refinement/lookups.h>
 #include <burnish/fitting/refinement/node_band.h>
 #include <burnish/fitting/refinement/picture_loss_lanes.h>
+#include <burnish/fitting/refinement/sparse_gram.h>
 #include <burnish/fitting/refinement/training_set.h>
-#include <burnish/fitting/refinement/volume_gram.h>
 
 namespace burnish {
 
@@ -88,13 +88,13 @@ class RefineSystem {
   void fill(const Eigen::VectorXd& x, const ErrorTerms& means, double smooth, NodeBand& band) const;
 
   /// The sparse matrix of a system that has one, `smooth` times that of the roughness being its constant.
-  std::optional<VolumeGram> volume_gram(double smooth) const;
+  std::optional<SparseGram> sparse_gram(double smooth) const;
   struct SparseGaussNewton {
     Eigen::VectorXd gradient;
     Eigen::MatrixXd albedo_roots;  ///< as in GaussNewtonFactor
   };
-  /// Slope and matrix at x, the latter as `gram` gives it by logarithms().
-  SparseGaussNewton linearize(const Eigen::VectorXd& x, const ErrorTerms& means, VolumeGram& gram) const;
+  /// Slope and matrix at x, the latter which `gram` holds.
+  SparseGaussNewton linearize(const Eigen::VectorXd& x, const ErrorTerms& means, SparseGram& gram) const;
 
   /// Roughness of all tables, its gradient, its matrix times v and its diagonal.
   double roughness(const Eigen::VectorXd& x) const;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -97,38 +98,46 @@ class FactorModel final : public QuadraticModel {
   std::optional<NodeBand> band_;
 };
 
-/// Of one lobe with a volume: the matrix, sparse, but for what albedos add.
+/// Of models with volumes: the matrix, sparse, but for what albedos add.
 class SparseModel final : public QuadraticModel {
  public:
-  SparseModel(const RefineSystem& system, double smooth, VolumeGram gram)
-      : system_(system), smooth_(smooth), gram_(std::move(gram)) {}
+  SparseModel(const RefineSystem& system, double smooth, SparseGram gram)
+      : system_(system), smooth_(smooth), gram_(std::move(gram)), order_(gram_.place().size()) {
+    std::ranges::copy(gram_.place(), order_.indices().data());
+  }
 
   void linearize(const Vector& x, const ErrorTerms& means) override {
     RefineSystem::SparseGaussNewton slope = system_.linearize(x, means, gram_);
     gradient_ = slope.gradient + 2 * smooth_ * system_.roughness_matrix_times(x);
-    albedo_roots_ = std::move(slope.albedo_roots);
+    albedo_roots_ = order_ * slope.albedo_roots;
   }
   Vector diagonal() const override {
-    return gram_.matrix().diagonal() + Vector(albedo_roots_.rowwise().squaredNorm());
+    return order_.transpose() * (gram_.matrix().diagonal() + Vector(albedo_roots_.rowwise().squaredNorm()));
   }
-  Vector times(const Vector& v) const override {
-    return gram_.matrix().selfadjointView<Eigen::Lower>() * v +
-           albedo_roots_ * (albedo_roots_.transpose() * v);
-  }
+  Vector times(const Vector& v) const override { return order_.transpose() * ordered_times(order_ * v); }
   Vector step(const Vector& extra) override {
+    const Vector ordered = order_ * extra;
     SparseTriangle damped = gram_.matrix();
-    damped.diagonal() += extra;
+    damped.diagonal() += ordered;
     const IncompleteCholesky factor(damped);
-    return solve_iteratively(
-        -gradient_, [&](const Vector& v) -> Vector { return times(v) + extra.cwiseProduct(v); },
-        [&](const Vector& r) -> Vector { return factor.solve(r); });
+    return order_.transpose() *
+           solve_iteratively(
+               order_ * -gradient_,
+               [&](const Vector& v) -> Vector { return ordered_times(v) + ordered.cwiseProduct(v); },
+               [&](const Vector& r) -> Vector { return factor.solve(r); });
   }
 
  private:
+  Vector ordered_times(const Vector& v) const {
+    return gram_.matrix().selfadjointView<Eigen::Lower>() * v +
+           albedo_roots_ * (albedo_roots_.transpose() * v);
+  }
+
   const RefineSystem& system_;
   double smooth_;
-  VolumeGram gram_;
-  Eigen::MatrixXd albedo_roots_;
+  SparseGram gram_;
+  Eigen::PermutationMatrix<Eigen::Dynamic> order_;  ///< from the unknowns' to the matrix's
+  Eigen::MatrixXd albedo_roots_;                    ///< in the matrix's order
 };
 
 }  // namespace
@@ -137,7 +146,7 @@ StepSolver::StepSolver(const RefineSystem& system, double smooth)
     : direct_(system.size() <= kMaxCholeskyUnknowns) {
   if (direct_)
     model_ = std::make_unique<DenseModel>(system, smooth);
-  else if (std::optional<VolumeGram> gram = system.volume_gram(2 * smooth))
+  else if (std::optional<SparseGram> gram = system.sparse_gram(2 * smooth))
     model_ = std::make_unique<SparseModel>(system, smooth, *std::move(gram));
   else
     model_ = std::make_unique<FactorModel>(system, smooth);

@@ -1,0 +1,278 @@
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <burnish/fitting/refinement/sparse_gram.h>
+
+namespace burnish {
+
+namespace {
+
+constexpr std::size_t kMaxUses = 12;
+constexpr std::size_t kMaxEntries = 2'000'000;
+// Nodes of tables of which all may meet all.
+constexpr std::size_t kMaxDense = 1000;
+
+constexpr std::size_t kProducts = 27;  // three along each axis
+
+// Corners a >= b of a cell, bits x, y, z, and which product of weights they have.
+struct CornerPair {
+  std::uint8_t a, b, product;
+};
+
+constexpr std::array<CornerPair, 36> corner_pairs() {
+  std::array<CornerPair, 36> pairs{};
+  std::size_t k = 0;
+  for (std::uint8_t a = 0; a < 8; ++a)
+    for (std::uint8_t b = 0; b <= a; ++b) {
+      // along an axis: both first, one of each, both second
+      const auto along = [&](int bit) { return (a >> bit & 1) + (b >> bit & 1); };
+      pairs[k++] = {a, b, static_cast<std::uint8_t>((along(2) * 3 + along(1)) * 3 + along(0))};
+    }
+  return pairs;
+}
+constexpr std::array<CornerPair, 36> kPairs = corner_pairs();
+
+std::array<float, 3> products(float f) {
+  const float g = 1 - f;
+  return {g * g, f * g, f * f};
+}
+
+}  // namespace
+
+std::optional<SparseGram> SparseGram::of(const LobeLanes& lanes) {
+  SparseGram gram(lanes);
+  if (lanes.channels() != 1 || !gram.find_uses() || !gram.find_meetings()) return {};
+  gram.find_order();
+  return gram;
+}
+
+bool SparseGram::find_uses() {
+  for (std::size_t s = 0; s < lanes_->slots().size(); ++s) {
+    const LobeLanes::Slot& slot = lanes_->slots()[s];
+    const std::vector<std::size_t>& of_lanes = lanes_->families()[slot.family].tables;
+    for (std::size_t lane = 0; lane < (slot.one_table ? 1 : of_lanes.size()); ++lane)
+      if (of_lanes[lane] != LobeLanes::kNone) uses_.push_back({of_lanes[lane], s, lane});
+  }
+  bool any_volume = false;
+  for (std::size_t t = 0; t < lanes_->tables().size(); ++t) {
+    const auto& [number, layout] = lanes_->tables()[t];
+    const auto width = static_cast<std::uint32_t>(layout.width),
+               height = static_cast<std::uint32_t>(layout.height);
+    Table table{.base = number.base, .nodes = layout.node_count(), .cells = {}};
+    table.corners = 1u << axis_count(layout.shape);
+    std::ranges::copy(std::array{1u, width, width * height}, table.steps);
+    std::ranges::copy(std::array{layout.width, layout.height, layout.depth}, table.sides);
+    const bool volume = layout.shape == TableShape::volume;
+    if (volume && std::ranges::count(uses_, t, &Use::table) == 1) table.cells.resize(table.nodes * kProducts);
+    any_volume = any_volume || volume;
+    tables_.push_back(std::move(table));
+  }
+  return any_volume && uses_.size() <= kMaxUses;
+}
+
+SparseGram::Terms SparseGram::terms(const Use& use, const Lookups::Place& place, float slope) const noexcept {
+  const Table& table = tables_[use.table];
+  Terms row;
+  row.count = table.corners;
+  for (std::uint32_t k = 0; k < row.count; ++k) {
+    row.node[k] = place.node + (k & 1) + (k & 2 ? table.steps[1] : 0) + (k & 4 ? table.steps[2] : 0);
+    row.weight[k] = slope * (k & 1 ? place.fx : 1 - place.fx);
+    if (row.count > 2) row.weight[k] *= k & 2 ? place.fy : 1 - place.fy;
+    if (row.count > 4) row.weight[k] *= k & 4 ? place.fz : 1 - place.fz;
+  }
+  return row;
+}
+
+template <class Visit>
+void SparseGram::for_each_product(const UsePair& pair, std::span<const Terms> row, Visit visit) {
+  const Terms &a = row[pair.first], &b = row[pair.second];
+  const bool same = pair.first == pair.second;
+  for (std::uint32_t i = 0; i < a.count; ++i)
+    for (std::uint32_t j = 0; j < (same ? i + 1 : b.count); ++j)
+      visit(a.node[i], b.node[j], a.weight[i] * b.weight[j]);
+}
+
+bool SparseGram::find_meetings() {
+  // which tables' uses meet
+  for (std::size_t u = 0; u < uses_.size(); ++u)
+    for (std::size_t v = 0; v <= u; ++v) {
+      std::size_t first = u, second = v;
+      if (u == v && !tables_[uses_[u].table].cells.empty()) continue;
+      if (tables_[uses_[first].table].nodes < tables_[uses_[second].table].nodes) std::swap(first, second);
+      const std::size_t a = uses_[first].table, b = uses_[second].table;
+      const auto known = std::ranges::find_if(
+          meetings_, [&](const Meeting& m) { return (m.a == a && m.b == b) || (m.a == b && m.b == a); });
+      const auto meeting = static_cast<std::size_t>(known - meetings_.begin());
+      if (known == meetings_.end()) {
+        meetings_.push_back({.a = a, .b = b, .first = {}, .starts = {}, .sums = {}});
+        meetings_.back().first.assign(tables_[a].nodes, static_cast<std::uint32_t>(tables_[b].nodes));
+        meetings_.back().starts.assign(tables_[a].nodes + 1, 0);
+      } else if (known->a != a) {
+        std::swap(first, second);
+      }
+      pairs_.push_back({meeting, first, second});
+    }
+
+  // the ranges; starts hold their ends until all are known
+  constexpr std::size_t kBlock = LobeLanes::kBlock;
+  std::vector<Terms> row(uses_.size());
+  for (std::size_t block = 0; block < lanes_->blocks(); ++block)
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      for (std::size_t u = 0; u < uses_.size(); ++u)
+        row[u] = terms(uses_[u], place_of(uses_[u], block, i), 1);
+      for (const UsePair& pair : pairs_) {
+        Meeting& meeting = meetings_[pair.meeting];
+        for_each_product(pair, row, [&](std::uint32_t a, std::uint32_t b, float) {
+          if (meeting.a == meeting.b && a < b) std::swap(a, b);
+          meeting.first[a] = std::min(meeting.first[a], b);
+          meeting.starts[a + 1] = std::max(meeting.starts[a + 1], b + 1);
+        });
+      }
+    }
+  std::size_t entries = 0;
+  for (Meeting& meeting : meetings_) {
+    for (std::size_t a = 0; a < tables_[meeting.a].nodes; ++a) {
+      const std::uint32_t end = meeting.starts[a + 1];
+      meeting.starts[a + 1] = meeting.starts[a] + (end > meeting.first[a] ? end - meeting.first[a] : 0);
+    }
+    entries += meeting.starts.back();
+  }
+  if (entries > kMaxEntries) return false;
+  for (Meeting& meeting : meetings_) meeting.sums.resize(meeting.starts.back());
+  return true;
+}
+
+void SparseGram::find_order() {
+  // lines looked up once, volumes, then what all meet
+  const auto rank = [&](std::size_t t) {
+    if (tables_[t].corners == 8) return 1;
+    return tables_[t].corners == 2 && std::ranges::count(uses_, t, &Use::table) == 1 ? 0 : 2;
+  };
+  std::uint32_t next = 0;
+  std::size_t nodes = 0;
+  for (int r = 0; r < 3; ++r)
+    for (std::size_t t = 0; t < tables_.size(); ++t) {
+      if (rank(t) != r) continue;
+      place_.resize(std::max(place_.size(), tables_[t].base + tables_[t].nodes));
+      for (std::size_t n = 0; n < tables_[t].nodes; ++n) place_[tables_[t].base + n] = next++;
+      if (r < 2) continue;
+      dense_.push_back(t);
+      nodes += tables_[t].nodes;
+    }
+  if (nodes > kMaxDense) dense_.clear();
+}
+
+void SparseGram::set_zero() {
+  for (Table& table : tables_) std::ranges::fill(table.cells, 0.0f);
+  for (Meeting& meeting : meetings_) std::ranges::fill(meeting.sums, 0.0f);
+}
+
+void SparseGram::add_to_cell(Table& table, const Lookups::Place& place, float amount) noexcept {
+  const std::array<float, 3> x = products(place.fx), y = products(place.fy), z = products(place.fz);
+  float plane[9];
+  for (std::size_t j = 0; j < 3; ++j)
+    for (std::size_t i = 0; i < 3; ++i) plane[3 * j + i] = y[j] * x[i];
+  float* cell = table.cells.data() + place.node * kProducts;
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t j = 0; j < 9; ++j) cell[9 * k + j] += amount * z[k] * plane[j];
+}
+
+void SparseGram::add(std::size_t block, const LobeLanes::Block& at, const float* curvatures,
+                     std::size_t count) {
+  Terms row[kMaxUses];
+  for (std::size_t i = 0; i < count; ++i) {
+    const float curvature = curvatures[i];
+    if (!(curvature > 0)) continue;
+    for (std::size_t u = 0; u < uses_.size(); ++u) {
+      const Use& use = uses_[u];
+      const Lookups::Place& place = place_of(use, block, i);
+      const float slope = at.factor[use.slot * LobeLanes::kBlockLanes + i * LobeLanes::kLanes + use.lane];
+      row[u] = terms(use, place, slope);
+      Table& table = tables_[use.table];
+      if (!table.cells.empty()) add_to_cell(table, place, curvature * slope * slope);
+    }
+    for (const UsePair& pair : pairs_) {
+      Meeting& meeting = meetings_[pair.meeting];
+      const auto sum = [&](std::uint32_t a, std::uint32_t b) -> float& {
+        return meeting.sums[meeting.starts[a] + b - meeting.first[a]];
+      };
+      if (meeting.a != meeting.b || pair.first == pair.second)
+        for_each_product(pair, {row, uses_.size()},
+                         [&](std::uint32_t a, std::uint32_t b, float w) { sum(a, b) += curvature * w; });
+      else  // two uses of a table: each product stands twice in the matrix
+        for_each_product(pair, {row, uses_.size()}, [&](std::uint32_t a, std::uint32_t b, float w) {
+          sum(std::max(a, b), std::min(a, b)) += (a == b ? 2 : 1) * curvature * w;
+        });
+    }
+  }
+}
+
+template <class Visit>
+void SparseGram::for_each_entry(Visit visit) const {
+  for (const Table& table : tables_) {
+    if (table.cells.empty()) continue;
+    for (std::size_t z = 0; z + 1 < table.sides[2]; ++z)
+      for (std::size_t y = 0; y + 1 < table.sides[1]; ++y)
+        for (std::size_t x = 0; x + 1 < table.sides[0]; ++x) {
+          const std::size_t first = z * table.steps[2] + y * table.steps[1] + x;
+          const auto corner = [&](unsigned k) {
+            return table.base + first + (k & 1) + (k & 2 ? table.steps[1] : 0) + (k & 4 ? table.steps[2] : 0);
+          };
+          for (const CornerPair& pair : kPairs)
+            visit(corner(pair.a), corner(pair.b), table.cells[first * kProducts + pair.product]);
+        }
+  }
+  for (const Meeting& meeting : meetings_)
+    for (std::size_t a = 0; a < tables_[meeting.a].nodes; ++a)
+      for (std::uint32_t k = meeting.starts[a]; k < meeting.starts[a + 1]; ++k)
+        visit(tables_[meeting.a].base + a,
+              tables_[meeting.b].base + meeting.first[a] + (k - meeting.starts[a]), meeting.sums[k]);
+}
+
+void SparseGram::set_constant(std::span<const Eigen::Triplet<double>> entries) {
+  // places for all that can be: every row has its diagonal
+  using Triplet = Eigen::Triplet<double>;
+  std::vector<Triplet> all;
+  const auto lower = [&](std::size_t a, std::size_t b) {
+    return std::pair(static_cast<int>(std::max(place_[a], place_[b])),
+                     static_cast<int>(std::min(place_[a], place_[b])));
+  };
+  const auto add = [&](std::size_t a, std::size_t b, double value) {
+    const auto [row, column] = lower(a, b);
+    all.emplace_back(row, column, value);
+  };
+  for (const Triplet& entry : entries)
+    add(static_cast<std::size_t>(entry.row()), static_cast<std::size_t>(entry.col()), entry.value());
+  for_each_entry([&](std::size_t a, std::size_t b, float) { add(a, b, 0); });
+  for (std::size_t u = 0; u < place_.size(); ++u) add(u, u, 0);
+  for (const std::size_t s : dense_)
+    for (const std::size_t t : dense_)
+      for (std::size_t a = 0; a < tables_[s].nodes; ++a)
+        for (std::size_t b = 0; b < (s == t ? a : s > t ? tables_[t].nodes : 0); ++b)
+          add(tables_[s].base + a, tables_[t].base + b, 0);
+  const auto size = static_cast<int>(place_.size());
+  matrix_.resize(size, size);
+  matrix_.setFromTriplets(all.begin(), all.end());
+  constant_.assign(matrix_.valuePtr(), matrix_.valuePtr() + matrix_.nonZeros());
+
+  // and where each is
+  slots_.clear();
+  for_each_entry([&](std::size_t a, std::size_t b, float) {
+    const auto [row, column] = lower(a, b);
+    const int *columns = matrix_.innerIndexPtr(), *starts = matrix_.outerIndexPtr();
+    slots_.push_back(static_cast<std::uint32_t>(
+        std::lower_bound(columns + starts[row], columns + starts[row + 1], column) - columns));
+  });
+}
+
+void SparseGram::make(const Eigen::VectorXd& lambda) {
+  std::ranges::copy(constant_, matrix_.valuePtr());
+  std::size_t k = 0;
+  for_each_entry([&](std::size_t a, std::size_t b, float sum) {
+    matrix_.valuePtr()[slots_[k++]] += static_cast<double>(sum) * lambda[static_cast<Eigen::Index>(a)] *
+                                       lambda[static_cast<Eigen::Index>(b)];
+  });
+}
+
+}  // namespace burnish
