@@ -12,11 +12,12 @@ constexpr double kMoreShare = 4;
 
 }  // namespace
 
-IncompleteCholesky::IncompleteCholesky(const SparseTriangle& matrix) : factor_(matrix) {
-  for (double share = 0; !factorize(matrix, share);) share = share > 0 ? kMoreShare * share : kFirstShare;
+IncompleteCholesky::IncompleteCholesky(const SparseTriangle& matrix, double last_share)
+    : factor_(matrix), share_(last_share > kFirstShare ? last_share / kMoreShare : 0) {
+  while (!factorize(matrix)) share_ = share_ > 0 ? kMoreShare * share_ : kFirstShare;
 }
 
-bool IncompleteCholesky::factorize(const SparseTriangle& matrix, double share) {
+bool IncompleteCholesky::factorize(const SparseTriangle& matrix) {
   const int *starts = factor_.outerIndexPtr(), *columns = factor_.innerIndexPtr();
   double* values = factor_.valuePtr();
   std::vector<double> row(static_cast<std::size_t>(matrix.rows()));  // row i, 0 where it has no entry
@@ -24,7 +25,7 @@ bool IncompleteCholesky::factorize(const SparseTriangle& matrix, double share) {
     const int diagonal = starts[i + 1] - 1;
     for (int at = starts[i]; at < diagonal; ++at)
       row[static_cast<std::size_t>(columns[at])] = matrix.valuePtr()[at];
-    double pivot = (1 + share) * matrix.valuePtr()[diagonal];
+    double pivot = (1 + share_) * matrix.valuePtr()[diagonal];
 
     // l_ij = (a_ij - sum over k < j of l_ik l_jk) / l_jj
     for (int at = starts[i]; at < diagonal; ++at) {

@@ -14,16 +14,19 @@ using SparseTriangle = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 class IncompleteCholesky {
  public:
   /// Every row of `matrix` has a diagonal entry. Where what is left out makes a pivot negative, a share of the
-  /// diagonal is added to it, larger until all are positive.
-  explicit IncompleteCholesky(const SparseTriangle& matrix);
+  /// diagonal is added to it, larger until all are positive. `last_share` is the one that a matrix much like this
+  /// one took: the search starts below it.
+  explicit IncompleteCholesky(const SparseTriangle& matrix, double last_share = 0);
+  double share() const noexcept { return share_; }
 
   /// (L L^T)^-1 b.
   Eigen::VectorXd solve(Eigen::VectorXd b) const;
 
  private:
-  bool factorize(const SparseTriangle& matrix, double share);
+  bool factorize(const SparseTriangle& matrix);
 
   SparseTriangle factor_;  ///< the diagonal's reciprocals in its place
+  double share_;
 };
 
 }  // namespace burnish

@@ -119,7 +119,8 @@ class SparseModel final : public QuadraticModel {
     const Vector ordered = order_ * extra;
     SparseTriangle damped = gram_.matrix();
     damped.diagonal() += ordered;
-    const IncompleteCholesky factor(damped);
+    const IncompleteCholesky factor(damped, share_);
+    share_ = factor.share();
     return order_.transpose() *
            solve_iteratively(
                order_ * -gradient_,
@@ -136,6 +137,7 @@ class SparseModel final : public QuadraticModel {
   const RefineSystem& system_;
   double smooth_;
   SparseGram gram_;
+  double share_ = 0;  ///< of the last incomplete factor
   Eigen::PermutationMatrix<Eigen::Dynamic> order_;  ///< from the unknowns' to the matrix's
   Eigen::MatrixXd albedo_roots_;                    ///< in the matrix's order
 };
