@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <optional>
 #include <string_view>
 
@@ -140,15 +139,6 @@ void report_rgl(Page& page, const fs::path& data) {
   page.write_rows("rgl", table_of(materials, scores));
   page.write_figure("accuracy-spheres.png", encode_png(compose(sheet)));
   plot_means(page, means);
-}
-
-// The first column of a CSV file.
-std::vector<std::string> row_names(const fs::path& file) {
-  std::vector<std::string> names;
-  std::ifstream rows(file);
-  for (std::string row; std::getline(rows, row);)
-    if (const auto comma = row.find(','); comma != row.npos) names.push_back(row.substr(0, comma));
-  return names;
 }
 
 // A table of the MERL size, decoded from a published code of the material.
