@@ -346,53 +346,73 @@ constexpr Look kLooks[] = {{"GGX", "#2a9d6f"},
 constexpr std::array kBlues{"#74aede", "#1b6ca8", "#0a2f52"};  // of our budgets
 constexpr const char* kReferenceColor = "#8a8f98";
 
-// The relative error over one figure. What has none of a figure is left out; a method that reads no texture is a
-// line across, and the reference, which has no error, one upwards.
+// One line a budget.
+std::vector<PlotSeries> series_of_fits(const std::vector<Row>& means, double Row::*x) {
+  std::vector<PlotSeries> series;
+  std::map<std::size_t, std::size_t> place;  // of a budget's series
+  for (const Row& row : means) {
+    if (row.method != "ours") continue;
+    const auto [at, added] = place.try_emplace(row.budget, series.size());
+    if (added)
+      series.push_back({.label = fmt::format("ours, {:.2g} KB", static_cast<double>(row.budget) / 1024),
+                        .style = PlotStyle::line_and_points,
+                        .color = kBlues[std::min(series.size(), kBlues.size() - 1)]});
+    series[at->second].x.push_back(row.*x);
+    series[at->second].y.push_back(row.relative);
+  }
+  return series;
+}
+
+struct Interval {
+  double least = std::numeric_limits<double>::max(), most = 0;
+};
+// Of what a figure has above 0.
+Interval interval_of(const std::vector<Row>& means, double Row::*figure) {
+  Interval interval;
+  for (const Row& row : means)
+    if (row.*figure > 0)
+      interval = {std::min(interval.least, row.*figure), std::max(interval.most, row.*figure)};
+  return interval;
+}
+
+// A point a budget; across the plot where x is 0, which a logarithmic axis does not have.
+PlotSeries series_of_peer(const std::vector<Row>& means, const Look& look, double Row::*x) {
+  PlotSeries series{.label = look.method, .style = PlotStyle::line_and_points, .color = look.color};
+  for (const Row& row : means) {
+    if (row.method != look.method || std::isnan(row.*x) || std::isnan(row.relative)) continue;
+    if (row.*x > 0) {
+      series.x.push_back(row.*x);
+      series.y.push_back(row.relative);
+    } else {
+      const Interval across = interval_of(means, x);
+      series.style = PlotStyle::dashed;
+      series.x = {across.least, across.most};
+      series.y = {row.relative, row.relative};
+    }
+  }
+  if (series.x.size() == 1) series.style = PlotStyle::points;
+  return series;
+}
+
+// The relative error over one figure. What has none of a figure is left out; the reference, which has no error, is a
+// line upwards.
 Plot plot_of(const std::vector<Row>& means, const std::string& x_label, double Row::*x) {
   Plot plot{.title = "Error against " + x_label,
             .x_label = x_label,
             .y_label = "relative",
             .log_x = true,
             .log_y = true,
+            .series = series_of_fits(means, x),
             .height = 520};
-  double least = 1e30, most = 0, left = 1e30, right = 0;
-  for (const Row& row : means) {
-    if (!std::isnan(row.relative)) least = std::min(least, row.relative), most = std::max(most, row.relative);
-    if (row.*x > 0) left = std::min(left, row.*x), right = std::max(right, row.*x);
-  }
-  std::map<std::size_t, std::size_t> place;  // of a budget's series
-  for (const Row& row : means)
-    if (row.method == "ours") {
-      const auto [at, added] = place.try_emplace(row.budget, plot.series.size());
-      if (added)
-        plot.series.push_back(
-            {.label = fmt::format("ours, {:.3g} KB", static_cast<double>(row.budget) / 1024),
-             .style = PlotStyle::line_and_points,
-             .color = kBlues[std::min(plot.series.size(), kBlues.size() - 1)]});
-      plot.series[at->second].x.push_back(row.*x);
-      plot.series[at->second].y.push_back(row.relative);
-    }
-  for (const auto& [method, color] : kLooks) {
-    PlotSeries series{.label = method, .style = PlotStyle::line_and_points, .color = color};
-    for (const Row& row : means) {
-      if (row.method != method || std::isnan(row.*x) || std::isnan(row.relative)) continue;
-      if (row.*x > 0) {
-        series.x.push_back(row.*x);
-        series.y.push_back(row.relative);
-      } else {
-        series.style = PlotStyle::dashed;
-        series.x = {left, right};
-        series.y = {row.relative, row.relative};
-      }
-    }
-    if (series.x.size() == 1) series.style = PlotStyle::points;
-    if (!series.x.empty()) plot.series.push_back(std::move(series));
-  }
+  for (const Look& look : kLooks)
+    if (PlotSeries series = series_of_peer(means, look, x); !series.x.empty())
+      plot.series.push_back(std::move(series));
+  const Interval upwards = interval_of(means, &Row::relative);
   for (const Row& row : means)
     if (std::isnan(row.relative) && row.*x > 0)
       plot.series.push_back({.label = row.method,
                              .x = {row.*x, row.*x},
-                             .y = {least, most},
+                             .y = {upwards.least, upwards.most},
                              .style = PlotStyle::dashed,
                              .color = kReferenceColor});
   return plot;
@@ -432,13 +452,12 @@ void report_cost(const ReportOptions& options) {
   for (const Row& row : means) table.add(cells_of({}, row));
   page["materials"] = fmt::format("{}", fmt::join(names, ", "));
   page["pairs"] = std::to_string(extent.pairs);
+  page["fetches"] = fmt::format("{}", fmt::join(extent.fetches, ", "));
   page["turns"] = std::to_string(extent.turns);
   page["rows"] = table.markdown();
-  page["frames"] =
-      context ? fmt::format("{} frames of {} x {} pixels in turn under {} light{}, the least; drawn by {}",
-                            extent.frames, kFrameSize, kFrameSize, extent.lights,
-                            extent.lights == 1 ? "" : "s", drawn_by(*context))
-              : "no OpenGL context was to be had, so they are left out";
+  page["frames"] = fmt::format("the least of {} of {} x {} pixels in turn under {} light{}", extent.frames,
+                               kFrameSize, kFrameSize, extent.lights, extent.lights == 1 ? "" : "s");
+  page["renderer"] = context ? "drawn by " + drawn_by(*context) : "left out: no OpenGL was to be had";
   page.write_plot("cost-batched", plot_of(means, "ns an evaluation, batched", &Row::batched));
   page.write_plot("cost-one-by-one", plot_of(means, "ns an evaluation, one by one", &Row::one_by_one));
   page.write_plot("cost-fetches", plot_of(means, "fetches an evaluation", &Row::fetches));
