@@ -93,7 +93,7 @@ Extent extent_of(bool quick) {
   return {.budgets = {2700, 16'384, 65'536},
           .fetches = {2, 3, 4, 6, 8, 12, 24},
           .pairs = 1 << 16,
-          .turns = 9,
+          .turns = 25,
           .lights = 16,
           .frames = 5,
           .figures = {}};
@@ -344,6 +344,7 @@ constexpr Look kLooks[] = {{"GGX", "#2a9d6f"},
                            {"svd", "#d1495b"},
                            {"nmf", "#e08e0b"}};
 constexpr std::array kBlues{"#74aede", "#1b6ca8", "#0a2f52"};  // of our budgets
+constexpr double kPointWidth = 8;
 constexpr const char* kReferenceColor = "#8a8f98";
 
 // One line a budget.
@@ -354,9 +355,10 @@ std::vector<PlotSeries> series_of_fits(const std::vector<Row>& means, double Row
     if (row.method != "ours") continue;
     const auto [at, added] = place.try_emplace(row.budget, series.size());
     if (added)
-      series.push_back({.label = fmt::format("ours, {:.2g} KB", static_cast<double>(row.budget) / 1024),
+      series.push_back({.label = fmt::format("ours, {} bytes", row.budget),
                         .style = PlotStyle::line_and_points,
-                        .color = kBlues[std::min(series.size(), kBlues.size() - 1)]});
+                        .color = kBlues[std::min(series.size(), kBlues.size() - 1)],
+                        .point_width = kPointWidth});
     series[at->second].x.push_back(row.*x);
     series[at->second].y.push_back(row.relative);
   }
@@ -377,7 +379,10 @@ Interval interval_of(const std::vector<Row>& means, double Row::*figure) {
 
 // A point a budget; across the plot where x is 0, which a logarithmic axis does not have.
 PlotSeries series_of_peer(const std::vector<Row>& means, const Look& look, double Row::*x) {
-  PlotSeries series{.label = look.method, .style = PlotStyle::line_and_points, .color = look.color};
+  PlotSeries series{.label = look.method,
+                    .style = PlotStyle::line_and_points,
+                    .color = look.color,
+                    .point_width = kPointWidth};
   for (const Row& row : means) {
     if (row.method != look.method || std::isnan(row.*x) || std::isnan(row.relative)) continue;
     if (row.*x > 0) {
@@ -397,7 +402,7 @@ PlotSeries series_of_peer(const std::vector<Row>& means, const Look& look, doubl
 // The relative error over one figure. What has none of a figure is left out; the reference, which has no error, is a
 // line upwards.
 Plot plot_of(const std::vector<Row>& means, const std::string& x_label, double Row::*x) {
-  Plot plot{.title = "Error against " + x_label,
+  Plot plot{.title = "Relative error against " + x_label,
             .x_label = x_label,
             .y_label = "relative",
             .log_x = true,
@@ -458,11 +463,12 @@ void report_cost(const ReportOptions& options) {
   page["frames"] = fmt::format("the least of {} of {} x {} pixels in turn under {} light{}", extent.frames,
                                kFrameSize, kFrameSize, extent.lights, extent.lights == 1 ? "" : "s");
   page["renderer"] = context ? "drawn by " + drawn_by(*context) : "left out: no OpenGL was to be had";
-  page.write_plot("cost-batched", plot_of(means, "ns an evaluation, batched", &Row::batched));
-  page.write_plot("cost-one-by-one", plot_of(means, "ns an evaluation, one by one", &Row::one_by_one));
+  page.write_plot("cost-batched", plot_of(means, "nanoseconds an evaluation, batched", &Row::batched));
+  page.write_plot("cost-one-by-one",
+                  plot_of(means, "nanoseconds an evaluation, one by one", &Row::one_by_one));
   page.write_plot("cost-fetches", plot_of(means, "fetches an evaluation", &Row::fetches));
   if (context) {
-    page.write_plot("cost-frame", plot_of(means, "ms a frame", &Row::frame));
+    page.write_plot("cost-frame", plot_of(means, "milliseconds a frame", &Row::frame));
     page["frame_plot"] = "![Error over milliseconds a frame](../figures/cost-frame.svg)";
   }
   page.write();
