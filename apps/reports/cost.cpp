@@ -260,12 +260,15 @@ void Contest::time_evaluations() {
 void Contest::time_all_frames() {
   std::vector<FrameMaterial> materials;
   std::vector<Row*> rows;
-  for (Entry& entry : entries_)
-    if (entry.frame) {
-      check_picture(*entry.frame);
-      materials.push_back(*entry.frame);
-      rows.push_back(&entry.row);
+  for (Entry& entry : entries_) {
+    if (!entry.frame) continue;
+    if (const double found = picture_psnr(*entry.frame); !(found >= kMinPicturePsnr)) {
+      tell(fmt::format("cost: {}: no frame, its picture has {:.1f} dB", entry.frame->name, found));
+      continue;
     }
+    materials.push_back(*entry.frame);
+    rows.push_back(&entry.row);
+  }
   const std::vector<Times> times = time_frames(materials, extent_.lights, extent_.frames);
   double of_ggx = kNone;
   for (std::size_t k = 0; k < times.size(); ++k) {
