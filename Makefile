@@ -2,9 +2,9 @@
 # make test   installs tools, builds with sanitizers and optimized, runs every test
 # make python the Python package in build/venv, tested
 # make build  the command line at build/release/apps/burnish/burnish
-# make bench, make fuzz, make report, make sampling-report, make shader-report, make frame-cost, make hw-report, make hw-exhaustive, make format:
+# make bench, make fuzz, make report, make cost-report, make sampling-report, make shader-report, make frame-cost, make hw-report, make hw-exhaustive, make format:
 # see CONTRIBUTING.md
-.PHONY: demo test build reports python deps test-deps bench fuzz report sampling-report shader-report frame-cost hw-report hw-exhaustive format format-check docs-check include-check api
+.PHONY: demo test build reports python deps test-deps bench fuzz report cost-report sampling-report shader-report frame-cost hw-report hw-exhaustive format format-check docs-check include-check api
 JOBS ?= $(shell nproc)
 BURNISH := build/release/apps/burnish/burnish
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
@@ -58,11 +58,12 @@ bench: test-deps
 
 # Pages of docs/results, by what burnish_reports calls them.
 REPORTS := build/release/apps/reports/burnish_reports
-report: NAMES := results accuracy
+report: NAMES := results accuracy cost
+cost-report: NAMES := cost
 sampling-report: NAMES := sampling
 shader-report: NAMES := shaders
 frame-cost: NAMES := frame-cost
-report sampling-report shader-report frame-cost: reports
+report cost-report sampling-report shader-report frame-cost: reports
 	@for name in $(NAMES); do $(REPORTS) $$name docs/results || exit 1; done
 
 HW := build/hw-report

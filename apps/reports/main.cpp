@@ -29,6 +29,8 @@ const Report kReports[] = {
      "what a number of bytes buys, beside other methods",
      report_accuracy,
      {"rgl", "merl", "others", "paints"}},
+    {"cost", "error beside nanoseconds, fetches and milliseconds a frame, of fits and of other methods",
+     report_cost},
     {"sampling", "ways of drawing directions: weights, variance, time", report_sampling},
     {"shaders",
      "precision and cost of generated shaders, and light from all around",

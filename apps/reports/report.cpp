@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <fstream>
 #include <span>
 
 #include <fmt/format.h>
@@ -50,11 +51,35 @@ void Page::write() {
                  fill_template(text_of(report_templates(), name_ + ".md.in"), values_));
 }
 
+std::vector<Times> time_in_turns(std::span<const std::function<void()>> tasks, int repetitions) {
+  std::vector<std::vector<double>> seconds(tasks.size());
+  for (int repetition = 0; repetition < repetitions; ++repetition)
+    for (std::size_t i = 0; i < tasks.size(); ++i) {
+      const Stopwatch watch;
+      tasks[i]();
+      seconds[i].push_back(watch.seconds());
+    }
+  std::vector<Times> times;
+  for (auto& list : seconds) {
+    std::ranges::sort(list);
+    times.push_back({list.front(), list[list.size() / 2]});
+  }
+  return times;
+}
+
 std::vector<fs::path> files_in(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
   std::ranges::sort(files);
   return files;
+}
+
+std::vector<std::string> row_names(const fs::path& file) {
+  std::vector<std::string> names;
+  std::ifstream rows(file);
+  for (std::string row; std::getline(rows, row);)
+    if (const auto comma = row.find(','); comma != row.npos) names.push_back(row.substr(0, comma));
+  return names;
 }
 
 void tell(const std::string& what) {

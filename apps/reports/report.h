@@ -2,8 +2,10 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -51,6 +53,7 @@ class Page {
 
 // One for each name of burnish_reports; they throw Error.
 void report_accuracy(const ReportOptions& options);
+void report_cost(const ReportOptions& options);
 void report_frame_cost(const ReportOptions& options);
 void report_results(const ReportOptions& options);
 void report_sampling(const ReportOptions& options);
@@ -73,8 +76,18 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// Seconds that a task took.
+struct Times {
+  double least = 0, median = 0;
+};
+/// Each task `repetitions` times, at least once, all tasks in turn, so that a busy moment meets them all.
+std::vector<Times> time_in_turns(std::span<const std::function<void()>> tasks, int repetitions);
+
 /// The files of a folder by name.
 std::vector<fs::path> files_in(const fs::path& folder);
+
+/// The first column of a CSV file.
+std::vector<std::string> row_names(const fs::path& file);
 
 /// A line on standard error about what takes time.
 void tell(const std::string& what);

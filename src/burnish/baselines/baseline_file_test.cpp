@@ -7,6 +7,7 @@
 #include <burnish/baselines/evaluation_cost.h>
 #include <burnish/error.h>
 #include <burnish/testing/baselines.h>
+#include <burnish/testing/models.h>
 #include <burnish/testing/tools.h>
 
 namespace burnish {
@@ -105,6 +106,9 @@ TEST(EvaluationCost, OfAFactoredBrdfGrowsByEveryUse) {
                               {.table = 1, .projection = kProjectHalf}}};
   const FactoredBrdf brdf(3, {p, q}, {lobe}, TableFormat::half);
   EXPECT_EQ(evaluation_cost(brdf), (EvaluationCost{2 + 2 + 12, 16 + 9}));
+
+  const FactoredBrdf volume = smooth_model({"", "g(theta_h,theta_d,phi_d)", {"g=3x3x3"}, 3});
+  EXPECT_EQ(evaluation_cost(volume), (EvaluationCost{8 * 3, 8 * 3 + 3}));
 }
 
 }  // namespace

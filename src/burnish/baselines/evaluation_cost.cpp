@@ -24,7 +24,7 @@ EvaluationCost evaluation_cost(const FactoredBrdf& brdf) noexcept {
   for (const Lobe& lobe : brdf.lobes())
     for (const FactorUse& use : lobe.factors) {
       const Table& table = brdf.table_of(use);
-      const std::size_t corners = table.layout.shape == TableShape::line ? 2 : 4;
+      const std::size_t corners = std::size_t{1} << axis_count(table.layout.shape);
       const std::size_t reads = corners * static_cast<std::size_t>(table.channels);
       cost += {reads, reads + static_cast<std::size_t>(brdf.channels())};  // into the product with the scale
     }

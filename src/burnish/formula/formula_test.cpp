@@ -50,6 +50,14 @@ TEST(Formula, KeepsTheNamesThatFormulasGive) {
   EXPECT_EQ(text_of((a + b) * named("sum", a + b)), "  float sum = a + b;\nsum * sum");
 }
 
+TEST(Formula, NoTwoLocalsHaveOneName) {
+  const Expr x = sqrt(a), y = sqrt(b), z = sqrt(c);
+  const Expr first = named("t", x * y + x * z), second = named("t", first * y);
+  EXPECT_EQ(text_of(second / z),
+            "  float t0 = sqrt(a);\n  float t1 = sqrt(b);\n  float t2 = sqrt(c);\n"
+            "  float t = t0 * t1 + t0 * t2;\n  float t3 = t * t1;\nt3 / t2");
+}
+
 TEST(Formula, FoldsWhatIsConstant) {
   EXPECT_EQ(text_of(Expr(1.0) * a + Expr(0.0) * b), "a");
   EXPECT_EQ(text_of(a + (Expr(3.0) - 1.0) * 2.0), "a + 4.0");

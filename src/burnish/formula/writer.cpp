@@ -19,7 +19,9 @@ Writer::Writer(const Language& language, const Graph& graph, const std::vector<s
   for (const Graph::Node& node : graph.nodes()) half_.push_back(halves && is_half(node));
   for (const Graph::Node& node : graph.nodes()) {
     for (const std::size_t argument : node.arguments) ++uses_[argument];
-    if (node.op == Op::input) times_[node.name] = 1;
+    if (node.op != Op::input) continue;
+    times_[node.name] = 1;
+    taken_.insert(node.name);
   }
   for (const std::size_t root : roots) ++uses_[root];
   for (std::size_t i = 0; i < graph.nodes().size(); ++i) {
@@ -71,9 +73,16 @@ OperationCount Writer::count_of_text(std::size_t i) const {
 }
 
 std::string Writer::new_name(std::string_view called) {
-  if (called.empty()) return fmt::format("t{}", unnamed_++);
-  const int time = ++times_[std::string(called)];
-  return time == 1 ? std::string(called) : fmt::format("{}{}", called, time);
+  for (;;) {
+    std::string name = "t";
+    if (called.empty()) {
+      name += std::to_string(unnamed_++);
+    } else {
+      name = called;
+      if (const int time = ++times_[name]; time > 1) name += std::to_string(time);
+    }
+    if (taken_.insert(name).second) return name;  // a name's second "t2" may be another's third
+  }
 }
 
 std::string Writer::operand(std::size_t i, int least_precedence) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -51,6 +52,7 @@ class Writer {
   std::vector<bool> half_;          // by node
   std::vector<std::string> names_;  // of locals, by node
   std::map<std::string, int, std::less<>> times_;
+  std::set<std::string> taken_;
   int unnamed_ = 0;
   std::vector<Statement> statements_;
 };

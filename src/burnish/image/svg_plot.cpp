@@ -20,7 +20,7 @@ constexpr Color kPaper{255, 255, 255}, kInk{32, 34, 38}, kMuted{98, 102, 110}, k
 constexpr std::array<std::string_view, 8> kPalette = {"#1b6ca8", "#d1495b", "#2a9d6f", "#e08e0b",
                                                       "#7a4fb0", "#17a2b8", "#8c5a2b", "#4c4f56"};
 constexpr double kTitleCap = 10.5, kLabelCap = 8.5, kTickCap = 8;
-constexpr double kCurveWidth = 1.9, kDotWidth = 4.5, kDashOn = 7, kDashOff = 5;
+constexpr double kCurveWidth = 1.9, kDashOn = 7, kDashOff = 5;
 
 struct Strokes {
   std::vector<std::vector<Point>> lines;
@@ -143,7 +143,8 @@ double lay_out_legend(Drawing& drawing, const Plot& plot, const std::vector<Colo
                                  series.style == PlotStyle::dashed,
                                  false});
     if (series.style == PlotStyle::points || series.style == PlotStyle::line_and_points)
-      drawing.strokes.push_back({{{{x + kSwatch / 2, middle}}}, kDotWidth + 1, colors[i], false, false});
+      drawing.strokes.push_back(
+          {{{{x + kSwatch / 2, middle}}}, series.point_width + 1, colors[i], false, false});
     drawing.texts.push_back({{x + kSwatch + kGap, y}, series.label, kTickCap, kInk});
     x += length + kBetween;
   }
@@ -214,7 +215,7 @@ void lay_out_axes(Drawing& drawing, const Plot& plot, const PlotArea& area) {
 // A line breaks where a value cannot be shown.
 void lay_out_series(Drawing& drawing, const PlotSeries& series, Color color, const PlotArea& area) {
   Strokes curve{{}, kCurveWidth, color, series.style == PlotStyle::dashed, true};
-  Strokes dots{{}, kDotWidth, color, false, true};
+  Strokes dots{{}, series.point_width, color, false, true};
   bool broken = true;
   for (std::size_t k = 0; k < series.x.size(); ++k) {
     if (!area.x.shows(series.x[k]) || !area.y.shows(series.y[k])) {

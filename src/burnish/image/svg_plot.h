@@ -17,7 +17,8 @@ struct PlotSeries {
   std::string label;  ///< in the legend; none if empty
   std::vector<double> x, y;
   PlotStyle style = PlotStyle::line;
-  std::string color = {};  ///< "#rrggbb"; empty takes the next colour of a colour-blind safe palette
+  std::string color = {};    ///< "#rrggbb"; empty takes the next colour of a colour-blind safe palette
+  double point_width = 4.5;  ///< pixels, of points
 };
 
 /// A picture of some series over common axes. Labels are UTF-8.

@@ -1,3 +1,8 @@
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <vector>
+
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 #include <fmt/format.h>
@@ -14,17 +19,13 @@ namespace {
   throw Error(fmt::format("OpenGL: expected {}, found EGL error 0x{:x}", what, code));
 }
 
-}  // namespace
-
-GlContext::GlContext() {
-  if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"))
-    throw Error("OpenGL: expected EGL with EGL_MESA_platform_surfaceless, found none");
-  display_ = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
-  if (!display_ || !eglInitialize(display_, nullptr, nullptr)) fail("a display without a surface");
+// The context, made current. Throws Error where the display has no OpenGL 4.5 without a surface.
+EGLContext open_display(EGLDisplay display) {
+  if (!display || !eglInitialize(display, nullptr, nullptr)) fail("a display without a surface");
   const EGLint wanted[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, 0, EGL_NONE};
   EGLConfig config = nullptr;
   EGLint count = 0;
-  if (!eglBindAPI(EGL_OPENGL_API) || !eglChooseConfig(display_, wanted, &config, 1, &count) || count == 0)
+  if (!eglBindAPI(EGL_OPENGL_API) || !eglChooseConfig(display, wanted, &config, 1, &count) || count == 0)
     fail("OpenGL");
   const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION,
                             4,
@@ -33,8 +34,48 @@ GlContext::GlContext() {
                             EGL_CONTEXT_OPENGL_PROFILE_MASK,
                             EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
                             EGL_NONE};
-  context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, version);
-  if (!context_ || !eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) fail("OpenGL 4.5");
+  const EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, version);
+  if (!context) fail("OpenGL 4.5");
+  if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {
+    eglDestroyContext(display, context);
+    fail("OpenGL 4.5");
+  }
+  return context;
+}
+
+// EGL's devices but those that run on the processor; none where EGL cannot list them.
+std::vector<EGLDeviceEXT> gpus() {
+  if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration") ||
+      !epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_query") ||
+      !epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device"))
+    return {};
+  EGLint count = 0;
+  if (!eglQueryDevicesEXT(0, nullptr, &count)) return {};
+  std::vector<EGLDeviceEXT> devices(static_cast<std::size_t>(count));
+  if (!eglQueryDevicesEXT(count, devices.data(), &count)) return {};
+  devices.resize(static_cast<std::size_t>(count));
+  std::erase_if(devices, [](EGLDeviceEXT device) {
+    const char* const extensions = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS);
+    return extensions &&
+           std::string_view(extensions).find("EGL_MESA_device_software") != std::string_view::npos;
+  });
+  return devices;
+}
+
+}  // namespace
+
+GlContext::GlContext(GlDevice device) {
+  if (device == GlDevice::gpu_first)
+    for (const EGLDeviceEXT gpu : gpus()) try {
+        display_ = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, gpu, nullptr);
+        context_ = open_display(display_);
+        return;
+      } catch (const Error&) {  // another may serve
+      }
+  if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"))
+    throw Error("OpenGL: expected EGL with EGL_MESA_platform_surfaceless, found none");
+  display_ = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+  context_ = open_display(display_);
 }
 
 GlContext::~GlContext() {
@@ -44,6 +85,12 @@ GlContext::~GlContext() {
 
 std::string GlContext::renderer() const {
   return reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+}
+
+bool GlContext::in_software() const {
+  constexpr std::array<std::string_view, 3> kSoftware{"llvmpipe", "softpipe", "swrast"};
+  const std::string name = renderer();
+  return std::ranges::any_of(kSoftware, [&](std::string_view s) { return name.find(s) != name.npos; });
 }
 
 }  // namespace burnish

@@ -1,0 +1,71 @@
+#include "frames.h"
+
+#include <cmath>
+#include <functional>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include <burnish/error.h>
+#include <burnish/math/angles.h>
+#include <burnish/metrics/sphere_images.h>
+#include <burnish/render/cpu_renderer.h>
+#include <burnish/render/mesh/shapes.h>
+#include <burnish/render/picture.h>
+
+namespace burnish::reports {
+
+namespace {
+
+Scene knot(int lights) {
+  Scene scene;
+  scene.parts = {{make_shape(Shape::torus_knot, kFrameVertices), 0}};
+  fit_to_unit_sphere(scene.parts);
+  for (int i = 0; i < lights; ++i) {
+    const double turn = kTwoPi * i / lights;
+    scene.lights.push_back({{3 * std::cos(turn), 3 * std::sin(turn), 3}, 20.0 / lights});
+  }
+  scene.camera = camera_for_unit_sphere(radians(20), radians(20));
+  return scene;
+}
+
+}  // namespace
+
+double picture_psnr(const FrameMaterial& material) {
+  const Scene scene = knot(4);
+  constexpr int kSmall = 192;
+  const GlRenderer renderer(scene, {&material.shader, 1}, kSmall, kSmall);
+  renderer.draw();
+  const Image truth = render_cpu(scene, {&material.truth, 1}, {.width = kSmall, .height = kSmall});
+  const double exposure = automatic_exposure(truth, scene.background);
+  return psnr(mean_squared_error(tone_map(renderer.read(), exposure), tone_map(truth, exposure)));
+}
+
+void check_picture(const FrameMaterial& material) {
+  const double found = picture_psnr(material);
+  if (!(found >= kMinPicturePsnr))
+    throw Error(fmt::format("{}: expected a picture of at least {} dB, found {:.1f}", material.name,
+                            kMinPicturePsnr, found));
+}
+
+std::vector<Times> time_frames(const std::vector<FrameMaterial>& materials, int lights, int repetitions) {
+  const Scene scene = knot(lights);
+  std::vector<std::unique_ptr<GlRenderer>> renderers;
+  std::vector<std::function<void()>> tasks;
+  for (const FrameMaterial& material : materials) {
+    renderers.push_back(
+        std::make_unique<GlRenderer>(scene, std::span(&material.shader, 1), kFrameSize, kFrameSize));
+    renderers.back()->draw();  // compiles
+    tasks.emplace_back([renderer = renderers.back().get()] { renderer->draw(); });
+  }
+  std::vector<Times> times = time_in_turns(tasks, repetitions);
+  for (Times& t : times) t = {1000 * t.least, 1000 * t.median};
+  return times;
+}
+
+std::string drawn_by(const GlContext& context) {
+  return context.in_software() ? fmt::format("software, no GPU: {} on {}", context.renderer(), processor())
+                               : fmt::format("a GPU: {}", context.renderer());
+}
+
+}  // namespace burnish::reports
