@@ -27,8 +27,8 @@ struct DirectionRows {
 
 /// Evaluates a factored BRDF in float, prepared once for many directions: what the factors share (half
 /// vectors, projections, positions in tables) is found beforehand and computed once a direction, and tables
-/// are copied with their channels padded to whole vectors. Satisfies Brdf. Never allocates after construction; copies share
-/// the tables, threads may share a copy.
+/// are copied with their channels padded to whole vectors. Satisfies Brdf. Never allocates after
+/// construction; copies share the tables, threads may share a copy.
 ///
 /// Reciprocal models stay reciprocal to the last bit, and both forms of eval give the same bits. Against
 /// FactoredBrdf::eval of the same directions the relative error of values above 2^-126 is at most

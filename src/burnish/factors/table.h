@@ -52,8 +52,9 @@ struct TableLayout {
 };
 
 /// One positive factor lambda: node (x, y, z), channel c at [((z * height + y) * width + x) * channels + c].
-/// Between nodes it is the (bi-, tri-)linear interpolation of the stored values, as a texture unit computes it. Largest value of a
-/// channel: 1 (rgb9e5: of the table; the channels have one geometric mean, because they share exponents).
+/// Between nodes it is the (bi-, tri-)linear interpolation of the stored values, as a texture unit computes
+/// it. Largest value of a channel: 1 (rgb9e5: of the table; the channels have one geometric mean, because
+/// they share exponents).
 struct Table {
   std::string name;
   TableLayout layout;

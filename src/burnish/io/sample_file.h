@@ -15,9 +15,10 @@ struct SampleFile {
 /// Most channels a scattered file may have.
 inline constexpr std::size_t kMaxFileChannels = 1024;
 
-/// The last step of the readers of scattered samples. Counts negatives, which stay; turns spectra (findings.lambda_nm not empty) into linear Rec. 709 unless they are kept; fills in
-/// the number of samples and the angles covered. Throws Error, naming `file`, if there are no samples or
-/// wavelengths do not increase.
+/// The last step of the readers of scattered samples. Counts negatives, which stay; turns spectra
+/// (findings.lambda_nm not empty) into linear Rec. 709 unless they are kept; fills in the number of samples
+/// and the angles covered. Throws Error, naming `file`, if there are no samples or wavelengths do not
+/// increase.
 void finish_samples(const std::string& file, const OpenOptions& options, SampleFile& result);
 
 /// True if all incident directions have the same azimuth: measurements in one setting of the sample.

@@ -21,8 +21,9 @@ bool looks_like_zemax(std::string_view text) noexcept;
 /// A Zemax (Radiant Imaging) tabular BRDF: values over sample rotation, angle of incidence, and the azimuth
 /// around and angle from the mirror direction (azimuth 0 to the normal, counter-clockwise). Rotation r means
 /// a light at phi_i = r + 90 degrees: the normal of the plane of incidence is then r from +x. Linear between
-/// the angles. Entries of exactly zero are holes; negatives are counted and kept. Monochrome is grey; XYZ becomes linear Rec. 709 for a D65 white. Throws Error on anything else,
-/// transmission included. Source: [Rykowski 2008].
+/// the angles. Entries of exactly zero are holes; negatives are counted and kept. Monochrome is grey; XYZ
+/// becomes linear Rec. 709 for a D65 white. Throws Error on anything else, transmission included. Source:
+/// [Rykowski 2008].
 ZemaxFile parse_zemax(const FileBytes& file);
 
 /// Frame and axes of the files that burnish makes, without values: isotropic ones folded, incidences

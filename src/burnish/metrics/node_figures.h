@@ -36,8 +36,9 @@ NodeFigures node_figures(const MeasuredNodes& nodes, BrdfRef model, const NodeSc
 NodeFigures held_out_figures(const MeasuredNodes& nodes, const NodeSmoothness& smoothness, int folds = 4);
 
 /// The smoothness whose held_out_figures are best, a mean of the logarithms of relative and log_cos; found by
-/// steps of ten from the default: all shares together, then one after the other, and then softened by what the gaps of
-/// nodes left out are wider than those between nodes. Of many nodes a part is taken. Deterministic. Throws Error as held_out_figures.
+/// steps of ten from the default: all shares together, then one after the other, and then softened by what
+/// the gaps of nodes left out are wider than those between nodes. Of many nodes a part is taken.
+/// Deterministic. Throws Error as held_out_figures.
 NodeSmoothness choose_node_smoothness(const MeasuredNodes& nodes);
 
 }  // namespace burnish

@@ -44,9 +44,9 @@ class SmoothedNodes {
 
 static_assert(Brdf<SmoothedNodes>);
 
-/// `fitted` and, where no node of `all` lies near, what `function` says there, at a tenth of a node's weight: instruments
-/// leave whole regions out (wide half angles, the neighbourhood of the normal), and what stands there is a guess anyway.
-/// Both are isotropic and have the function's channels.
+/// `fitted` and, where no node of `all` lies near, what `function` says there, at a tenth of a node's weight:
+/// instruments leave whole regions out (wide half angles, the neighbourhood of the normal), and what stands
+/// there is a guess anyway. Both are isotropic and have the function's channels.
 MeasuredNodes with_gaps_filled(const MeasuredNodes& fitted, const MeasuredNodes& all, BrdfRef function);
 
 }  // namespace burnish

@@ -9,11 +9,12 @@
 namespace burnish {
 
 /// The tables of a model in two textures at most: `NAME_tables`, 2-D, with every line a row and disks and
-/// grids beside and above each other, and `NAME_volumes`, 3-D, with volumes behind each other. Around each table, up to
-/// the next one or the texture's edge, its own outermost texels are repeated, so that a filtered read of it takes none of
-/// another; a texture with lines in rows is 2^n rows high, so that a row's middle is a coordinate without rounding.
-/// Channels are those of the widest table (others have theirs repeated), the format is the tables' or, of tables in
-/// several, half or else single. Values are multiplied by 2^table_exponents (half_range.h). Throws Error for sides above 16384.
+/// grids beside and above each other, and `NAME_volumes`, 3-D, with volumes behind each other. Around each
+/// table, up to the next one or the texture's edge, its own outermost texels are repeated, so that a filtered
+/// read of it takes none of another; a texture with lines in rows is 2^n rows high, so that a row's middle is
+/// a coordinate without rounding. Channels are those of the widest table (others have theirs repeated), the
+/// format is the tables' or, of tables in several, half or else single. Values are multiplied by
+/// 2^table_exponents (half_range.h). Throws Error for sides above 16384.
 std::vector<ShaderTexture> pack_tables(const FactoredBrdf& brdf, const std::string& name);
 
 /// Every table in a texture of its own, texel (x, z * height + y) node (x, y, z): what arrays hold.

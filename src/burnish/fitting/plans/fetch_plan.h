@@ -41,9 +41,9 @@ TrainingOptions training_for_volumes(const CostLimit& limit);
 /// half of them where theta_h is small, weighted as if they were spread evenly over the disk.
 TrainingSet with_frontal_pixels(BrdfRef source, TrainingSet set, double share);
 
-/// Fits the spec that serves best, of many nodes the first: each is fitted to part of the pairs, the mean of their channels, in few steps,
-/// and judged on another part. The log-linear fit of its volume at fewer nodes is refined on part of the
-/// set, then at all nodes on the whole. Throws Error as fit_homomorphic does.
+/// Fits the spec that serves best, of many nodes the first: each is fitted to part of the pairs, the mean of
+/// their channels, in few steps, and judged on another part. The log-linear fit of its volume at fewer nodes
+/// is refined on part of the set, then at all nodes on the whole. Throws Error as fit_homomorphic does.
 LobesFit fit_volumes(const TrainingSet& set, const std::vector<ModelSpec>& specs,
                      const RefineOptions& options);
 

@@ -137,7 +137,7 @@ class SparseModel final : public QuadraticModel {
   const RefineSystem& system_;
   double smooth_;
   SparseGram gram_;
-  double share_ = 0;  ///< of the last incomplete factor
+  double share_ = 0;                                ///< of the last incomplete factor
   Eigen::PermutationMatrix<Eigen::Dynamic> order_;  ///< from the unknowns' to the matrix's
   Eigen::MatrixXd albedo_roots_;                    ///< in the matrix's order
 };
