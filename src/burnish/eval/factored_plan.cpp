@@ -127,6 +127,50 @@ FactoredPlan::FactoredPlan(const FactoredBrdf& brdf)
   if (slots > kMaxSlots)
     throw Error(
         fmt::format("evaluator: expected at most {} positions in tables, found {}", kMaxSlots, slots));
+  volume_and_line = find_volume_and_line(brdf);
+}
+
+// Whether the model is of that form, see VolumeAndLine.
+std::optional<FactoredPlan::VolumeAndLine> FactoredPlan::find_volume_and_line(const FactoredBrdf& brdf) {
+  if (channels != kTogether || products.size() != 1 || lookups.empty() || lookups.size() > 2) return {};
+  VolumeAndLine found;
+  const auto set_lane = [&](std::size_t lane, Warp warp, int nodes, std::size_t stride) {
+    found.cells[lane] = static_cast<float>(nodes - 1);
+    found.root[lane] = warp == Warp{WarpKind::power, 0.5} ? -1 : 0;
+    found.floats[lane] = static_cast<std::int32_t>(stride * kRowStride);
+    return found.root[lane] != 0 || warp.kind == WarpKind::identity;
+  };
+  std::copy_n(products.front().scale.begin(), kTogether, found.scale.begin());
+  bool has_volume = false, has_line = false;
+  for (std::size_t k = 0; k < lookups.size(); ++k) {
+    const Lookup& lookup = lookups[k];
+    const FactorUse& use = brdf.ordered_factors(0)[k];
+    const TableLayout& layout = brdf.tables()[static_cast<std::size_t>(use.table)].layout;
+    if (lookup.pair || use.projection != kProjectHalf) return {};
+    if (layout.shape == TableShape::line && !has_line) {
+      has_line = true;
+      found.line = lookup.rows;
+      if (!set_lane(2, layout.warp, layout.width, 1)) return {};
+    } else if (layout.shape == TableShape::volume && !has_volume) {
+      has_volume = true;
+      found.volume = lookup.rows;
+      found.above = lookup.width * kRowStride;
+      found.layer = lookup.layer * kRowStride;
+      if (use.projection_y != kProjectDifference || use.projection_z != kProjectAzimuth ||
+          !set_lane(0, layout.warp, layout.width, 1) ||
+          !set_lane(3, layout.warp_y, layout.height, lookup.width) ||
+          !set_lane(1, layout.warp_z, layout.depth, lookup.layer))
+        return {};
+    } else {
+      return {};
+    }
+  }
+  if (!has_volume) return {};
+  if (!has_line) {
+    found.line = values.size();
+    values.resize(values.size() + 2 * kRowStride, 1.0f);
+  }
+  return found;
 }
 
 FactoredPlan::Lookup FactoredPlan::add_table(const Table& table) {
