@@ -509,12 +509,10 @@ void eval_volume_block(const FactoredPlan& plan, const DirectionPointers& in, st
   const float* const table = plan.values.data();
   for_each_quad(count, values,
                 [&](std::size_t i, float* to) HWY_ATTR { store(cells.value(v, table, i), to); });
-  Lane scale[kTogether];
-  for (std::size_t c = 0; c < kTogether; ++c) scale[c] = Lane(v.scale[c]);
   store_values<kTogether>(count, kTogether, out, [&](std::size_t i, Lane(&value)[kTogether]) HWY_ATTR {
     const Lane above = load(cells.above + i);
     transpose(values + i * FactoredPlan::kRowStride, value);
-    for (std::size_t c = 0; c < kTogether; ++c) value[c] = if_positive(above, value[c] * scale[c]);
+    for (std::size_t c = 0; c < kTogether; ++c) value[c] = if_positive(above, value[c]);
   });
   for (std::size_t i = 0; !all_directions && i < count; ++i)
     for (std::size_t c = 0; c < kTogether && std::isnan(cells.above[i]); ++c) *out.at(c, i) = cells.above[i];

@@ -87,16 +87,17 @@ struct FactoredPlan {
   };
 
   /// One lobe of a volume over theta_h, theta_d, phi_d times a line over theta_h, three channels: what a fit of two
-  /// fetches has. Without a line, one of ones. Lanes: theta_h and phi_d of the volume, theta_h of the line, theta_d.
+  /// fetches has. The line has the scale in it; without one it is the scale alone. Lanes: theta_d of the volume,
+  /// theta_h of the line and of the volume, phi_d.
   struct VolumeAndLine {
     static constexpr std::size_t kLanes = 4;
 
     alignas(16) std::array<float, kLanes> cells{};
-    alignas(16)
-        std::array<std::int32_t, kLanes> root{};  // -1: positions are even along the root of tan(theta / 2)
+    alignas(16) std::array<std::int32_t, kLanes> root{};    // -1: even along the root of tan(theta / 2)
     alignas(16) std::array<std::int32_t, kLanes> floats{};  // of the rows, from node to node
-    alignas(16) std::array<float, 4> scale{};
-    std::size_t volume = 0, line = 0;  // in `values`
+    /// What `floats` times the bits of 1.5 2^23 + node lack of the node's first float, modulo 2^32; of the volume the
+    /// sum of its lanes.
+    alignas(16) std::array<std::int32_t, kLanes> start{};
     std::size_t above = 0, layer = 0;  // floats to the next row and layer of the volume
   };
 

@@ -23,14 +23,22 @@ namespace {
 //   theta_h   r = |s_xy|                den = |s| + s_z
 //   theta_d   r = |d|                   den = |s| + 2
 //   phi_d     r = |s_y d_x - s_x d_y|   den = |(d_z |s|, r)| + |d_z| |s|
-// All four lengths depend on nothing but sums of squares, and none waits for another's root. r > den, of directions
-// that are no unit vectors and of squares that vanish, ends at the last node like r = den.
+// All four lengths are roots of sums of squares, and none waits for another's. r > den, of directions that are no unit
+// vectors and of squares that vanish, ends at the last node like r = den.
 
-/// The volume's value times the line's. Offsets in floats, fractions of the volume's x, y, z and of the line's cell.
-HWY_INLINE Quad product_of(const FactoredPlan::VolumeAndLine& v, const float* values, std::int32_t volume,
-                           std::int32_t line, float x, float y, float z, float along) {
-  const float* const node = values + v.volume + volume;
-  return interpolate(node, node + v.above, v.layer, x, y, z) * interpolate(values + v.line + line, along);
+/// Where lookups begin, in floats from the tables' start.
+template <class Tag>
+HWY_INLINE hn::Vec<hn::RebindToSigned<Tag>> first_floats(const LaneCellOf<Tag>& cell,
+                                                         hn::Vec<hn::RebindToSigned<Tag>> floats,
+                                                         hn::Vec<hn::RebindToSigned<Tag>> start) {
+  return hn::Add(hn::Mul(hn::BitCast(hn::RebindToSigned<Tag>(), cell.shifted.raw), floats), start);
+}
+
+/// The volume's value times the line's, at these floats and fractions of their cells.
+HWY_INLINE Quad product_of(const FactoredPlan::VolumeAndLine& v, const float* values, std::uint32_t volume,
+                           std::uint32_t line, float x, float y, float z, float along) {
+  const float* const node = values + volume;
+  return interpolate(values + line, along) * interpolate(node, node + v.above, v.layer, x, y, z);
 }
 
 #if HWY_TARGET != HWY_SCALAR
@@ -53,63 +61,63 @@ HWY_INLINE void eval_one_of_volume(const FactoredPlan& plan, const Vec3& wi, con
   const FactoredPlan::VolumeAndLine& v = *plan.volume_and_line;
   using Four = LaneOf<D4>;
   using D2 = hn::Half<D4>;
-  const D2 d2;
-  const hn::RebindToSigned<D2> di2;
   const D4 d4;
+  const D2 d2;
   const hn::RebindToSigned<D4> di4;
-  const hn::CappedTag<double, 1> one;
-  const hn::CappedTag<double, 2> two;
-  const hn::Repartition<double, D4> halves;
+  const hn::RebindToSigned<D2> di2;
+  const auto swapped = [](Four a) HWY_ATTR { return Four(hn::Shuffle2301(a.raw)); };
+  const auto odd_even = [](Four odd, Four even) HWY_ATTR { return Four(hn::OddEven(odd.raw, even.raw)); };
 
-  // wi, wo, s and -d, a lane each. Doubles are loaded one by one: they were often just stored like that.
-  alignas(16) static constexpr float kOther[] = {0, 0, 1, -1};
-  const auto other = hn::Load(d4, kOther);
-  const auto all_of = [&](const double* i, const double* o) HWY_ATTR {
-    const auto pair = hn::DemoteTo(d2, hn::Combine(two, hn::LoadU(one, o), hn::LoadU(one, i)));
-    const auto pairs = hn::Combine(d4, pair, pair);
-    return Four(hn::MulAdd(hn::Shuffle2301(pairs), other, pairs));
+  // wi and wo: x, x, y, y and z, z. Doubles are loaded one by one: they were often just stored like that.
+  const auto both = [](const double& i, const double& o) HWY_ATTR {
+    const hn::CappedTag<double, 2> two;
+    return hn::DemoteTo(D2(), hn::InterleaveLower(two, hn::Set(two, i), hn::Set(two, o)));
   };
-  const Four x = all_of(&wi.x, &wo.x), y = all_of(&wi.y, &wo.y), z = all_of(&wi.z, &wo.z);
-  const auto excess = hn::LowerHalf(di2, excess_of(x, y, z));
+  const auto z = both(wi.z, wo.z);
+  const Four xy(hn::Combine(d4, both(wi.y, wo.y), both(wi.x, wo.x))), zz(hn::Combine(d4, z, z));
+  const Four y(hn::ConcatUpperUpper(d4, xy.raw, xy.raw));
+  const auto excess = hn::LowerHalf(di2, excess_of(xy, y, zz));
   const auto no_directions = hn::Gt(excess, hn::BitCast(di2, hn::Set(d2, kMostExcess)));
-  const auto below = hn::Le(hn::LowerHalf(d2, z.raw), hn::Zero(d2));
+  const auto below = hn::Le(z, hn::Zero(d2));
   if (!hn::AllFalse(d2, hn::Or(hn::RebindMask(d2, no_directions), below))) {
     const auto none = hn::AllFalse(di2, no_directions) ? Real(0) : std::numeric_limits<Real>::quiet_NaN();
     f[0] = f[1] = f[2] = none;
     return;
   }
 
-  // lengths: |s_xy|, that of phi_d, |s|, |d|
-  const auto swapped = [&](Four a) HWY_ATTR { return Four(hn::Shuffle2301(a.raw)); };
-  const Four across = mul_add(x, x, y * y), square = mul_add(z, z, across);
-  const Four products = y * swapped(x), sine = abs(products - swapped(products)), d_z = swapped(abs(z));
-  const Four azimuth = mul_add(d_z * d_z, square, sine * sine);
-  const Four lengths =
-      sqrt(Four(hn::ConcatUpperLower(d4, square.raw, hn::InterleaveUpper(d4, across.raw, azimuth.raw))));
+  // d and s: x, x, y, y and z, z, once more
+  alignas(16) static constexpr float kSigns[] = {-1, 1, -1, 1};
+  const Four signs(hn::Load(d4, kSigns));
+  const Four ds = mul_add(swapped(xy), signs, xy), ds_z = mul_add(swapped(zz), signs, zz),
+             sd_z = swapped(ds_z);
 
-  // angles: theta_h, phi_d, theta_h, theta_d
-  const auto odd_even = [](Four odd, Four even) HWY_ATTR { return Four(hn::OddEven(odd.raw, even.raw)); };
-  const auto upper_lower = [&](Four upper, Four lower)
-                               HWY_ATTR { return Four(hn::ConcatUpperLower(d4, upper.raw, lower.raw)); };
-  const Four s(hn::Broadcast<2>(lengths.raw)), ones(1.0);
-  const Four sines(hn::InterleaveUpper(d4, sine.raw, sine.raw)),
-      d_zs(hn::InterleaveUpper(d4, d_z.raw, d_z.raw));
-  const Four r = odd_even(upper_lower(lengths, sines), Four(hn::Broadcast<0>(lengths.raw)));
-  const Four part = upper_lower(ones, odd_even(d_zs, ones));
-  const Four rest = odd_even(upper_lower(Four(2.0), lengths), Four(hn::Broadcast<2>(z.raw)));
-  const Four t = r / max(mul_add(part, s, rest), least_positive(Four()));
+  // lengths |d|, |s|, |s_xy| and that of phi_d
+  const Four ds_y(hn::ConcatUpperUpper(d4, ds.raw, ds.raw));
+  const Four across = mul_add(ds, ds, ds_y * ds_y), square = mul_add(ds_z, ds_z, across);
+  const Four products = ds * Four(hn::Shuffle0123(ds.raw)), sine = abs(products - swapped(products));
+  const Four azimuth = mul_add(sd_z * sd_z, square, sine * sine);
+  const Four lengths =
+      sqrt(Four(hn::ConcatUpperLower(d4, hn::InterleaveLower(d4, across.raw, azimuth.raw), square.raw)));
+
+  // angles: theta_d, theta_h twice, phi_d
+  const Four ones(1.0), s(hn::Broadcast<1>(lengths.raw));
+  const Four r = odd_even(Four(hn::ConcatLowerLower(d4, sine.raw, sine.raw)), lengths);
+  const Four rest = odd_even(lengths, Four(hn::ConcatUpperLower(d4, sd_z.raw, Four(2.0).raw)));
+  const Four den = max(mul_add(odd_even(abs(sd_z), ones), s, rest), least_positive(Four()));
+  alignas(16) static constexpr std::int32_t kAngles[] = {0, 2, 2, 3};
+  const Four t(hn::TableLookupLanes((r / den).raw, hn::SetTableIndices(d4, kAngles)));
 
   // cells
   const Four u(hn::IfVecThenElse(hn::BitCast(d4, hn::Load(di4, v.root.data())), sqrt(t).raw, t.raw));
   const Four cells(hn::Load(d4, v.cells.data()));
   const auto cell = cell_of(min(cells * u, cells));
-  const auto floats = hn::Mul(node_of(cell), hn::Load(di4, v.floats.data()));
+  const auto first = first_floats(cell, hn::Load(di4, v.floats.data()), hn::Load(di4, v.start.data()));
+  const auto volume = hn::Add(hn::Add(first, hn::Shuffle1032(first)), hn::Broadcast<3>(first));
   alignas(16) float fraction[4];
   hn::Store(cell.fraction.raw, d4, fraction);
-  const auto volume = hn::Add(hn::Add(floats, hn::Shuffle2301(floats)), hn::Broadcast<3>(floats));
-  const Quad value = product_of(v, plan.values.data(), hn::GetLane(volume), hn::ExtractLane(floats, 2),
-                                fraction[0], fraction[3], fraction[1], fraction[2]) *
-                     load_quad(v.scale.data());
+  const Quad value = product_of(v, plan.values.data(), static_cast<std::uint32_t>(hn::GetLane(volume)),
+                                static_cast<std::uint32_t>(hn::ExtractLane(first, 1)), fraction[2],
+                                fraction[0], fraction[3], fraction[1]);
   store_three(value.raw, f);
 }
 
@@ -118,12 +126,13 @@ HWY_INLINE void eval_one_of_volume(const FactoredPlan& plan, const Vec3& wi, con
 /// Where a block of pairs looks up.
 struct VolumeCells {
   static constexpr std::size_t kMost = FactoredPlan::kMaxBlock;
-  alignas(64) std::int32_t volume[kMost], line[kMost];  // offsets in floats
+  alignas(64) std::int32_t volume[kMost], line[kMost];  // first floats
   alignas(64) float x[kMost], y[kMost], z[kMost], along[kMost];
   alignas(64) float above[kMost];  // > 0: both above the horizon; not-a-number: no directions
 
   HWY_INLINE Quad value(const FactoredPlan::VolumeAndLine& v, const float* values, std::size_t i) const {
-    return product_of(v, values, volume[i], line[i], x[i], y[i], z[i], along[i]);
+    return product_of(v, values, static_cast<std::uint32_t>(volume[i]), static_cast<std::uint32_t>(line[i]),
+                      x[i], y[i], z[i], along[i]);
   }
 
   /// Of `count` pairs, whole vectors: wi_x, wi_y, wi_z, wo_x, wo_y, wo_z in planes, or wi from w[0] and wo from w[3] on
@@ -131,12 +140,12 @@ struct VolumeCells {
   template <bool kRows>
   HWY_INLINE bool find(const FactoredPlan::VolumeAndLine& v, const float* const (&w)[6], std::size_t count) {
     const Lane cells[] = {Lane(v.cells[0]), Lane(v.cells[1]), Lane(v.cells[2]), Lane(v.cells[3])};
-    const auto fraction = [&](std::size_t k, Lane t, Lane root, hn::Vec<DI>& floats) HWY_ATTR {
+    const auto fraction = [&](std::size_t k, Lane t, Lane root, hn::Vec<DI>& first) HWY_ATTR {
       const LaneCell cell = cell_of(within(cells[k] * (v.root[k] ? root : t), cells[k]));
-      floats = hn::Mul(node_of(cell), hn::Set(DI(), v.floats[k]));
+      first = first_floats(cell, hn::Set(DI(), v.floats[k]), hn::Set(DI(), v.start[k]));
       return cell.fraction;
     };
-    const bool any_root = v.root[1] || v.root[3];
+    const bool any_root = v.root[0] || v.root[3];
     auto worst = hn::Zero(DI());
     for (std::size_t i = 0; i < count; i += kLanes) {
       Lanes wi, wo;
@@ -163,10 +172,10 @@ struct VolumeCells {
       const Lane root_h = sqrt(t_h), root_d = any_root ? sqrt(t_d) : t_d,
                  root_phi = any_root ? sqrt(t_phi) : t_phi;
       hn::Vec<DI> along_x, along_y, along_z, along_line;
-      store(fraction(0, t_h, root_h, along_x), x + i);
-      store(fraction(3, t_d, root_d, along_y), y + i);
-      store(fraction(1, t_phi, root_phi, along_z), z + i);
-      store(fraction(2, t_h, root_h, along_line), along + i);
+      store(fraction(2, t_h, root_h, along_x), x + i);
+      store(fraction(0, t_d, root_d, along_y), y + i);
+      store(fraction(3, t_phi, root_phi, along_z), z + i);
+      store(fraction(1, t_h, root_h, along_line), along + i);
       hn::StoreU(hn::Add(along_x, hn::Add(along_y, along_z)), DI(), volume + i);
       hn::StoreU(along_line, DI(), line + i);
     }
