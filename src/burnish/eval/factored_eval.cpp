@@ -506,9 +506,8 @@ void eval_volume_block(const FactoredPlan& plan, const DirectionPointers& in, st
   const float* w[6];
   for (std::size_t k = 0; k < 6; ++k) w[k] = in.at(k, first);
   const bool all_directions = cells.find<kRows>(v, w, count);
-  const float* const table = plan.values.data();
-  for_each_quad(count, values,
-                [&](std::size_t i, float* to) HWY_ATTR { store(cells.value(v, table, i), to); });
+  const VolumeRows rows(plan);
+  for_each_quad(count, values, [&](std::size_t i, float* to) HWY_ATTR { store(cells.value(rows, i), to); });
   store_values<kTogether>(count, kTogether, out, [&](std::size_t i, Lane(&value)[kTogether]) HWY_ATTR {
     const Lane above = load(cells.above + i);
     transpose(values + i * FactoredPlan::kRowStride, value);

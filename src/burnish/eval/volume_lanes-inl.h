@@ -34,12 +34,21 @@ HWY_INLINE hn::Vec<hn::RebindToSigned<Tag>> first_floats(const LaneCellOf<Tag>& 
   return hn::Add(hn::Mul(hn::BitCast(hn::RebindToSigned<Tag>(), cell.shifted.raw), floats), start);
 }
 
-/// The volume's value times the line's, at these floats and fractions of their cells.
-HWY_INLINE Quad product_of(const FactoredPlan::VolumeAndLine& v, const float* values, std::uint32_t volume,
-                           std::uint32_t line, float x, float y, float z, float along) {
-  const float* const node = values + volume;
-  return interpolate(values + line, along) * interpolate(node, node + v.above, v.layer, x, y, z);
-}
+/// Where the rows lie, and floats to the next row and layer of the volume.
+struct VolumeRows {
+  const float* values;
+  std::size_t above, layer;
+
+  HWY_INLINE explicit VolumeRows(const FactoredPlan& plan)
+      : values(plan.values.data()), above(plan.volume_and_line->above), layer(plan.volume_and_line->layer) {}
+
+  /// The volume's value times the line's, at these floats and fractions of their cells.
+  HWY_INLINE Quad product(std::uint32_t volume, std::uint32_t line, float x, float y, float z,
+                          float along) const {
+    const float* const node = values + volume;
+    return interpolate(values + line, along) * interpolate(node, node + above, layer, x, y, z);
+  }
+};
 
 #if HWY_TARGET != HWY_SCALAR
 
@@ -115,9 +124,9 @@ HWY_INLINE void eval_one_of_volume(const FactoredPlan& plan, const Vec3& wi, con
   const auto volume = hn::Add(hn::Add(first, hn::Shuffle1032(first)), hn::Broadcast<3>(first));
   alignas(16) float fraction[4];
   hn::Store(cell.fraction.raw, d4, fraction);
-  const Quad value = product_of(v, plan.values.data(), static_cast<std::uint32_t>(hn::GetLane(volume)),
-                                static_cast<std::uint32_t>(hn::ExtractLane(first, 1)), fraction[2],
-                                fraction[0], fraction[3], fraction[1]);
+  const Quad value = VolumeRows(plan).product(static_cast<std::uint32_t>(hn::GetLane(volume)),
+                                              static_cast<std::uint32_t>(hn::ExtractLane(first, 1)),
+                                              fraction[2], fraction[0], fraction[3], fraction[1]);
   store_three(value.raw, f);
 }
 
@@ -130,9 +139,9 @@ struct VolumeCells {
   alignas(64) float x[kMost], y[kMost], z[kMost], along[kMost];
   alignas(64) float above[kMost];  // > 0: both above the horizon; not-a-number: no directions
 
-  HWY_INLINE Quad value(const FactoredPlan::VolumeAndLine& v, const float* values, std::size_t i) const {
-    return product_of(v, values, static_cast<std::uint32_t>(volume[i]), static_cast<std::uint32_t>(line[i]),
-                      x[i], y[i], z[i], along[i]);
+  HWY_INLINE Quad value(const VolumeRows& rows, std::size_t i) const {
+    return rows.product(static_cast<std::uint32_t>(volume[i]), static_cast<std::uint32_t>(line[i]), x[i],
+                        y[i], z[i], along[i]);
   }
 
   /// Of `count` pairs, whole vectors: wi_x, wi_y, wi_z, wo_x, wo_y, wo_z in planes, or wi from w[0] and wo from w[3] on
