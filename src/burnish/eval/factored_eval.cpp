@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <limits>
 
 #include <burnish/eval/factored_eval.h>
@@ -20,6 +21,7 @@
 #include <burnish/eval/lookup_lanes-inl.h>
 #include <burnish/eval/one_pair_lanes-inl.h>
 #include <burnish/eval/projection_lanes-inl.h>
+#include <burnish/eval/volume_lanes-inl.h>
 
 #ifndef BURNISH_EVAL_FACTORED_ARGUMENTS
 #define BURNISH_EVAL_FACTORED_ARGUMENTS
@@ -41,7 +43,6 @@ struct ValuePointers {
   ValuePointers from(std::size_t channel, std::size_t i) const { return {at(channel, i), plane, step}; }
 };
 
-constexpr std::size_t kMaxBlock = 128;  // directions that go through the steps together
 constexpr std::size_t kCacheLine = 16;  // floats
 }  // namespace burnish
 #endif
@@ -51,18 +52,10 @@ namespace burnish {
 namespace HWY_NAMESPACE {
 namespace {
 
-HWY_INLINE Lane load(const float* from) {
-  return Lane(hn::LoadU(D(), from));
-}
-HWY_INLINE void store(Lane v, float* to) {
-  hn::StoreU(v.raw, D(), to);
-}
+constexpr std::size_t kMaxBlock = FactoredPlan::kMaxBlock;
+
 HWY_INLINE hn::Vec<DI> excess(const Lane (&w)[6]) {  // of a pair
   return hn::Max(excess_of(w[0], w[1], w[2]), excess_of(w[3], w[4], w[5]));
-}
-// Lanes that hold no pair of directions.
-HWY_INLINE hn::Mask<DI> no_directions(hn::Vec<DI> excess) {
-  return hn::Gt(excess, hn::BitCast(DI(), hn::Set(D(), kMostExcess)));
 }
 
 // A block's directions on the way to positions in tables. Every step is a loop of its own, so that none has a
@@ -423,8 +416,37 @@ struct Scratch {
   alignas(64) float product[kTogether * kMaxBlock];
   alignas(64) float scale[kTogether * kLanes];
   Projector projector;
+  VolumeCells volume_cells;
   Rows rows;
 };
+
+// finish(i, value): the values of the vector of directions at i, `stored` of whose channels go to `to`.
+template <int kChannels, class Finish>
+HWY_INLINE void store_values(std::size_t count, std::size_t stored, const ValuePointers& to,
+                             const Finish& finish) {
+  Lane value[kChannels];
+  std::size_t i = 0;
+  if (to.step == 1) {
+    for (; i + kLanes <= count; i += kLanes) {
+      finish(i, value);
+      for (std::size_t c = 0; c < stored; ++c) store(value[c], to.at(c, i));
+    }
+  } else if (kChannels == 3 && to.step == 3) {
+    for (; i + kLanes <= count; i += kLanes) {
+      finish(i, value);
+      hn::StoreInterleaved3(value[0].raw, value[1 % kChannels].raw, value[2 % kChannels].raw, D(),
+                            to.at(0, i));
+    }
+  }
+  for (; i < count; i += kLanes) {
+    finish(i, value);
+    for (std::size_t c = 0; c < stored; ++c) {
+      float lanes[kLanes];
+      store(value[c], lanes);
+      for (std::size_t k = i; k < std::min(count, i + kLanes); ++k) *to.at(c, k) = lanes[k - i];
+    }
+  }
+}
 
 // Of the directions that the projector began with.
 template <int kChannels>
@@ -459,29 +481,7 @@ void eval_group(const FactoredPlan& plan, std::size_t group, std::size_t stride,
       value[c] = if_positive(lit, load(scratch.sum + c * kMaxBlock + i));
   };
   const std::size_t stored = std::min<std::size_t>(kChannels, plan.channels - group * kTogether);
-  const ValuePointers to = out.from(group * kTogether, 0);
-  Lane value[kChannels];
-  std::size_t i = 0;
-  if (to.step == 1) {
-    for (; i + kLanes <= count; i += kLanes) {
-      finish(i, value);
-      for (std::size_t c = 0; c < stored; ++c) store(value[c], to.at(c, i));
-    }
-  } else if (kChannels == 3 && to.step == 3) {
-    for (; i + kLanes <= count; i += kLanes) {
-      finish(i, value);
-      hn::StoreInterleaved3(value[0].raw, value[1 % kChannels].raw, value[2 % kChannels].raw, D(),
-                            to.at(0, i));
-    }
-  }
-  for (; i < count; i += kLanes) {
-    finish(i, value);
-    for (std::size_t c = 0; c < stored; ++c) {
-      float lanes[kLanes];
-      store(value[c], lanes);
-      for (std::size_t k = i; k < std::min(count, i + kLanes); ++k) *to.at(c, k) = lanes[k - i];
-    }
-  }
+  store_values<kChannels>(count, stored, out.from(group * kTogether, 0), finish);
 }
 
 // Not-a-number for what is no pair of directions.
@@ -497,9 +497,34 @@ void spoil_others(const Projector& p, std::size_t channels, const ValuePointers&
   }
 }
 
+// A block of a model that is a volume times a line. The steps are loops again: positions, where the time goes into
+// roots; lookups, where it goes into loads; values.
+template <bool kRows>
+void eval_volume_block(const FactoredPlan& plan, const DirectionPointers& in, std::size_t first,
+                       std::size_t count, VolumeCells& cells, float* values, const ValuePointers& out) {
+  const FactoredPlan::VolumeAndLine& v = *plan.volume_and_line;
+  const float* w[6];
+  for (std::size_t k = 0; k < 6; ++k) w[k] = in.at(k, first);
+  const bool all_directions = cells.find<kRows>(v, w, count);
+  const VolumeRows rows(plan);
+  for_each_quad(count, values, [&](std::size_t i, float* to) HWY_ATTR { store(cells.value(rows, i), to); });
+  store_values<kTogether>(count, kTogether, out, [&](std::size_t i, Lane(&value)[kTogether]) HWY_ATTR {
+    const Lane above = load(cells.above + i);
+    transpose(values + i * FactoredPlan::kRowStride, value);
+    for (std::size_t c = 0; c < kTogether; ++c) value[c] = if_positive(above, value[c]);
+  });
+  for (std::size_t i = 0; !all_directions && i < count; ++i)
+    for (std::size_t c = 0; c < kTogether && std::isnan(cells.above[i]); ++c) *out.at(c, i) = cells.above[i];
+}
+
 // Up to kMaxBlock directions from `first` on, in memory that whole vectors can be read from.
 void eval_block(const FactoredPlan& plan, const DirectionPointers& in, std::size_t first, std::size_t count,
                 std::size_t stride, Scratch& scratch, const ValuePointers& out) {
+  if (plan.volume_and_line)
+    return in.step == 3 ? eval_volume_block<true>(plan, in, first, count, scratch.volume_cells,
+                                                  scratch.rows.values, out)
+                        : eval_volume_block<false>(plan, in, first, count, scratch.volume_cells,
+                                                   scratch.rows.values, out);
   Projector& projector = scratch.projector;
   projector.begin(in, first, count, plan.needs_sum);
   for (const FactoredPlan::Source& source : plan.sources) {
@@ -537,13 +562,29 @@ void eval_directions(const FactoredPlan& plan, const DirectionPointers& in, std:
              scratch, out.from(0, whole));
 }
 
-void eval_one(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, float* f) {
+void eval_any_one(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, float* f) {
 #if HWY_TARGET != HWY_SCALAR
   if (plan.steps.size() <= FactoredPlan::kMaxSteps) return eval_one_pair(plan, wi, wo, f);
 #endif
   const float w[] = {static_cast<float>(wi.x), static_cast<float>(wi.y), static_cast<float>(wi.z),
                      static_cast<float>(wo.x), static_cast<float>(wo.y), static_cast<float>(wo.z)};
   eval_directions(plan, {{w, w + 1, w + 2, w + 3, w + 4, w + 5}}, 1, {f, 1, plan.channels});
+}
+
+void eval_one_in_floats(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, float* f) {
+#if HWY_TARGET != HWY_SCALAR
+  if (plan.volume_and_line) return eval_one_of_volume(plan, wi, wo, f);
+#endif
+  eval_any_one(plan, wi, wo, f);
+}
+
+void eval_one_in_doubles(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, double* f) {
+#if HWY_TARGET != HWY_SCALAR
+  if (plan.volume_and_line) return eval_one_of_volume(plan, wi, wo, f);
+#endif
+  std::array<float, SymmetrizedBrdf::kMaxChannels> values;  // touched up to the channels only
+  eval_any_one(plan, wi, wo, values.data());
+  std::copy_n(values.begin(), plan.channels, f);
 }
 
 }  // namespace
@@ -555,7 +596,8 @@ HWY_AFTER_NAMESPACE();
 namespace burnish {
 
 HWY_EXPORT(eval_directions);
-HWY_EXPORT(eval_one);
+HWY_EXPORT(eval_one_in_floats);
+HWY_EXPORT(eval_one_in_doubles);
 
 FactoredEvaluator::FactoredEvaluator(const FactoredBrdf& brdf)
     : plan_(std::make_shared<FactoredPlan>(brdf)) {}
@@ -596,13 +638,12 @@ void FactoredEvaluator::eval(const DirectionRows& d, std::span<float> f) const n
 
 void FactoredEvaluator::eval(Vec3 wi, Vec3 wo, std::span<float> f) const noexcept {
   assert(f.size() == plan_->channels);
-  HWY_DYNAMIC_DISPATCH(eval_one)(*plan_, wi, wo, f.data());
+  HWY_DYNAMIC_DISPATCH(eval_one_in_floats)(*plan_, wi, wo, f.data());
 }
 
 bool FactoredEvaluator::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
-  std::array<float, SymmetrizedBrdf::kMaxChannels> values;  // touched up to the channels only
-  eval(wi, wo, std::span(values).first(plan_->channels));
-  std::copy_n(values.begin(), plan_->channels, f.begin());
+  assert(f.size() == plan_->channels);
+  HWY_DYNAMIC_DISPATCH(eval_one_in_doubles)(*plan_, wi, wo, f.data());
   return true;
 }
 

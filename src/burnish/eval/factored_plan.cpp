@@ -10,6 +10,8 @@ namespace burnish {
 
 namespace {
 
+constexpr std::uint32_t kShiftedZero = 0x4b400000;  // the bits of 1.5 2^23
+
 // Largest ratio of entries that one lookup mixes.
 double steepest_ratio(const Table& table) noexcept {
   const auto channels = static_cast<std::size_t>(table.channels);
@@ -127,6 +129,51 @@ FactoredPlan::FactoredPlan(const FactoredBrdf& brdf)
   if (slots > kMaxSlots)
     throw Error(
         fmt::format("evaluator: expected at most {} positions in tables, found {}", kMaxSlots, slots));
+  volume_and_line = find_volume_and_line(brdf);
+}
+
+// Whether the model is of that form, see VolumeAndLine.
+std::optional<FactoredPlan::VolumeAndLine> FactoredPlan::find_volume_and_line(const FactoredBrdf& brdf) {
+  if (channels != kTogether || products.size() != 1 || lookups.empty() || lookups.size() > 2) return {};
+  VolumeAndLine found;
+  const auto set_lane = [&](std::size_t lane, Warp warp, int nodes, std::size_t stride, std::size_t start) {
+    found.cells[lane] = static_cast<float>(nodes - 1);
+    found.root[lane] = warp == Warp{WarpKind::power, 0.5} ? -1 : 0;
+    const auto floats = static_cast<std::uint32_t>(stride * kRowStride);
+    found.floats[lane] = static_cast<std::int32_t>(floats);
+    found.start[lane] = static_cast<std::int32_t>(static_cast<std::uint32_t>(start) - floats * kShiftedZero);
+    return found.root[lane] != 0 || warp.kind == WarpKind::identity;
+  };
+  std::optional<std::size_t> volume, line;  // in `lookups`
+  for (std::size_t k = 0; k < lookups.size(); ++k) {
+    const Lookup& lookup = lookups[k];
+    const FactorUse& use = brdf.ordered_factors(0)[k];
+    const TableLayout& layout = brdf.tables()[static_cast<std::size_t>(use.table)].layout;
+    if (lookup.pair || use.projection != kProjectHalf) return {};
+    if (layout.shape == TableShape::line && !line) {
+      line = k;
+      if (!set_lane(1, layout.warp, layout.width, 1, values.size())) return {};
+    } else if (layout.shape == TableShape::volume && !volume) {
+      volume = k;
+      found.above = lookup.width * kRowStride;
+      found.layer = lookup.layer * kRowStride;
+      if (use.projection_y != kProjectDifference || use.projection_z != kProjectAzimuth ||
+          !set_lane(0, layout.warp_y, layout.height, lookup.width, lookup.rows) ||
+          !set_lane(2, layout.warp, layout.width, 1, 0) ||
+          !set_lane(3, layout.warp_z, layout.depth, lookup.layer, 0))
+        return {};
+    } else {
+      return {};
+    }
+  }
+  if (!volume) return {};
+  // the line's nodes times the scale
+  if (!line) set_lane(1, {}, 2, 0, values.size());
+  const std::size_t from = line ? lookups[*line].rows : 0,
+                    count = line ? lookups[*line].row_block : 2 * kRowStride;
+  for (std::size_t i = 0; i < count; ++i)
+    values.push_back((line ? values[from + i] : 1.0f) * products.front().scale[i % kRowStride]);
+  return found;
 }
 
 FactoredPlan::Lookup FactoredPlan::add_table(const Table& table) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <burnish/factors/factored_brdf.h>
@@ -17,6 +18,7 @@ struct FactoredPlan {
   static constexpr std::size_t kPlaneVector = 16;  ///< floats of the vectors that hold planes
   static constexpr std::size_t kMaxVectors = 8;    ///< of a plane; longer lines have rows only
   static constexpr std::size_t kMaxSlots = 1024;   ///< different positions in tables
+  static constexpr std::size_t kMaxBlock = 128;    ///< directions that go through the steps together
   static constexpr std::size_t kMaxSteps = 64;     ///< of one pair; models of more go the way of batches
 
   /// A position along an axis of tables, in cells from 0 to `cells`. With (x, y) of length r of the projected
@@ -84,6 +86,21 @@ struct FactoredPlan {
     std::uint32_t x, y;  // lanes
   };
 
+  /// One lobe of a volume over theta_h, theta_d, phi_d times a line over theta_h, three channels: what a fit of two
+  /// fetches has. The line has the scale in it; without one it is the scale alone. Lanes: theta_d of the volume,
+  /// theta_h of the line and of the volume, phi_d.
+  struct VolumeAndLine {
+    static constexpr std::size_t kLanes = 4;
+
+    alignas(16) std::array<float, kLanes> cells{};
+    alignas(16) std::array<std::int32_t, kLanes> root{};    // -1: even along the root of tan(theta / 2)
+    alignas(16) std::array<std::int32_t, kLanes> floats{};  // of the rows, from node to node
+    /// What `floats` times the bits of 1.5 2^23 + node lack of the node's first float, modulo 2^32; of the volume the
+    /// sum of its lanes.
+    alignas(16) std::array<std::int32_t, kLanes> start{};
+    std::size_t above = 0, layer = 0;  // floats to the next row and layer of the volume
+  };
+
   struct Product {
     std::size_t first, last;   // in `lookups`
     std::vector<float> scale;  // a channel, filled up to whole groups and one more
@@ -102,10 +119,12 @@ struct FactoredPlan {
   std::vector<GivenSteps> given;
   std::array<bool, Steps::kLanes> has_angle{};  // an Angle is asked for
   std::vector<Product> products;
+  std::optional<VolumeAndLine> volume_and_line;  // the model is one
   std::vector<Lookup> lookups;
   std::vector<float> values;
 
  private:
+  std::optional<VolumeAndLine> find_volume_and_line(const FactoredBrdf& brdf);
   Lookup add_table(const Table& table);
   std::array<std::size_t, 3> slots_of(const TableLayout& layout, const FactorUse& use);
   std::size_t slot_of(const Projection& projection, Warp warp, int nodes, bool disk);

@@ -61,6 +61,13 @@ struct LaneOf {
 };
 using Lane = LaneOf<D>;
 
+HWY_INLINE Lane load(const float* from) {
+  return Lane(hn::LoadU(D(), from));
+}
+HWY_INLINE void store(Lane v, float* to) {
+  hn::StoreU(v.raw, D(), to);
+}
+
 /// Text alone keeps the names that formulas give.
 template <class T>
 HWY_INLINE T named(const char*, const T& x) {

@@ -54,14 +54,15 @@ concept SpanBrdf = Brdf<T> && requires(const T& brdf, std::span<const DirectionP
 };
 // clang-format on
 
-/// A non-owning reference to any Brdf. The indirection is paid once a span, not once a direction.
+/// A non-owning reference to any Brdf. Of a span the indirection is paid once, not once a direction.
 class BrdfRef {
  public:
   // clang-format off
   template <Brdf T>
     requires(!std::same_as<T, BrdfRef>)
   BrdfRef(const T& brdf) noexcept  // NOLINT: implicit like std::span
-      : brdf_(&brdf), channels_(brdf.channels()), isotropic_(brdf.isotropic()), eval_span_(&eval_span<T, false>),
+      : brdf_(&brdf), channels_(brdf.channels()), isotropic_(brdf.isotropic()), eval_one_(&eval_one<T, false>),
+        raw_one_(&eval_one<T, HasRawValues<T>>), eval_span_(&eval_span<T, false>),
         raw_span_(&eval_span<T, HasRawValues<T>>) {
     if constexpr (requires { brdf.reciprocal(); }) reciprocal_ = brdf.reciprocal();
   }
@@ -75,17 +76,13 @@ class BrdfRef {
   /// The same BRDF with eval_raw in the place of eval where it has one: for means, whose noise then cancels.
   BrdfRef unclamped() const noexcept {
     BrdfRef raw = *this;
+    raw.eval_one_ = raw_one_;
     raw.eval_span_ = raw_span_;
     return raw;
   }
 
   /// One pair; see Brdf.
-  bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
-    const DirectionPair pair{wi, wo};
-    std::uint8_t known = 0;
-    eval_span_(brdf_, {&pair, 1}, f, {&known, 1});
-    return known != 0;
-  }
+  bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept { return eval_one_(brdf_, wi, wo, f); }
 
   /// Many pairs: `values` has pairs.size() * channels() entries, channel fastest; `known` one flag a pair.
   void eval(std::span<const DirectionPair> pairs, std::span<double> values,
@@ -94,9 +91,18 @@ class BrdfRef {
   }
 
  private:
+  using EvalOne = bool(const void*, const Vec3&, const Vec3&, std::span<double>) noexcept;
   using EvalSpan = void(const void*, std::span<const DirectionPair>, std::span<double>,
                         std::span<std::uint8_t>) noexcept;
 
+  template <Brdf T, bool raw>
+  static bool eval_one(const void* brdf, const Vec3& wi, const Vec3& wo, std::span<double> f) noexcept {
+    const T& concrete = *static_cast<const T*>(brdf);
+    if constexpr (raw)
+      return concrete.eval_raw(wi, wo, f);
+    else
+      return concrete.eval(wi, wo, f);
+  }
   template <Brdf T, bool raw>
   static void eval_span(const void* brdf, std::span<const DirectionPair> pairs, std::span<double> values,
                         std::span<std::uint8_t> known) noexcept {
@@ -120,6 +126,8 @@ class BrdfRef {
   const void* brdf_;
   int channels_;
   bool isotropic_, reciprocal_ = false;
+  EvalOne* eval_one_;
+  EvalOne* raw_one_;
   EvalSpan* eval_span_;
   EvalSpan* raw_span_;
 };
