@@ -29,8 +29,9 @@ constexpr double kGridTexels = 1500, kThreeGridTexels = 6000, kMaxLineTexels = 2
 // better, and its share, where .04 to .4 did about as well.
 constexpr int kTwistNodes = 5;
 constexpr double kTwistShare = 0.25;
-// Of what the order of the directions changes: a grid for all lobes, its nodes along theta_i, and a line for each.
-constexpr int kOrderNodes = 4;
+// Of what the order of the directions changes: a grid for all lobes, its nodes along theta_i, more where other factors
+// have grids too, and a line for each lobe.
+constexpr int kOrderNodes = 4, kManyOrderNodes = 8;
 constexpr double kOrderShare = 0.3, kOrderLineShare = 0.1;
 constexpr Warp kOrderWarp{WarpKind::power, 0.5};
 constexpr int kMaxLineNodes = 1024;  // nodes of a line: finer than any measurement
@@ -177,6 +178,7 @@ LobePlan plan_for(BrdfRef source, std::size_t bytes, int lobes, std::size_t texe
     more.factors.insert(more.factors.end(), factors);
     if (plan_fits(more, bytes, source.channels(), texel_bytes)) plan = std::move(more);
   };
+  const bool many = static_cast<double>(bytes) > kGridTexels * static_cast<double>(texel_bytes);
   if (order_matters(source))
     add({{.name = "c",
           .shape = TableShape::grid,
@@ -184,7 +186,7 @@ LobePlan plan_for(BrdfRef source, std::size_t bytes, int lobes, std::size_t texe
           .share = kOrderShare * plan.lobes,
           .second = kProjectHalf,
           .second_warp = kOrderWarp,
-          .width = kOrderNodes,
+          .width = many ? kManyOrderNodes : kOrderNodes,
           .every_lobe = true},
          {.name = "a", .shape = TableShape::line, .uses = {kProjectWi}, .share = kOrderLineShare}});
   if (mirror_asymmetry(source) > kMinAsymmetry)
