@@ -46,6 +46,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("measurement", help="an isotropic RGB file of the RGL database")
     parser.add_argument("--budget", type=int, default=2700, help="bytes of the model")
+    parser.add_argument("--no-symmetrize", action="store_true", help="fit the measurement as it is")
     parser.add_argument("--spp", type=int, default=256)
     parser.add_argument("--size", type=int, default=320)
     parser.add_argument("--variant", default="llvm_ad_rgb")
@@ -56,7 +57,8 @@ def main():
     import burnish.mitsuba
 
     burnish.mitsuba.register()
-    model = burnish.fit(burnish.open_source(arguments.measurement), budget=arguments.budget)
+    source = burnish.open_source(arguments.measurement)
+    model = burnish.fit(source, budget=arguments.budget, symmetrize=not arguments.no_symmetrize)
     images = []
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "model.exr")

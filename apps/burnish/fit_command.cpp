@@ -272,8 +272,10 @@ void add_fit_command(CLI::App& app) {
           "tables half)")
       ->check(CLI::IsMember({"half", "float", "rgb9e5", "unorm8"}));
   verb->add_option("--threads", arguments->threads, "at most this many; 0: all")->check(CLI::Range(0, 1024));
-  verb->add_flag("--no-symmetrize", arguments->no_symmetrize,
-                 "fit f(wi, wo) as it is, not its reciprocal part");
+  verb->add_flag(
+      "--no-symmetrize", arguments->no_symmetrize,
+      "fit f(wi, wo) as it is, not its reciprocal part; with --budget an isotropic model gets tables\n"
+      "that wi alone looks up where the source is not reciprocal");
   verb->add_flag("--conserve-energy", options.conserve_energy,
                  "damp the model where it reflects more than it receives, and say what that cost");
   verb->add_flag("--json", arguments->json, "print the summary as JSON");

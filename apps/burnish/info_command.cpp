@@ -75,7 +75,8 @@ void print_text(const SourceReport& report) {
                          : "",
                      added_light(albedo)));
   line("reciprocity",
-       fmt::format("mean relative asymmetry {:.4g} over {} pairs", reciprocity.mean, reciprocity.pairs));
+       fmt::format("mean relative asymmetry {:.4g} over {} pairs{}", reciprocity.mean, reciprocity.pairs,
+                   model && !model->reciprocal() ? ": the model tells the directions apart" : ""));
   if (const auto bytes = source.bytes()) line("bytes", fmt::format("{}", *bytes));
   if (!model) return;
   if (const auto cost = shader_cost(*model)) line("shader", to_string(*cost));

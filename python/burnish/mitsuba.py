@@ -10,7 +10,10 @@ In the JIT variants (llvm_*_rgb, cuda_*_rgb) evaluation, sampling and densities 
 logarithms of the tables are differentiable parameters: `p.log_values` of table p, a tensor of the shape of
 its values. scalar_rgb calls the C++ library, one direction at a time.
 
-Mitsuba's si.wi points to the viewer: it is the library's wo, and Mitsuba's wo its wi.
+Mitsuba's si.wi points to the viewer: it is the library's wo, and Mitsuba's wo its wi. Only models that are not
+reciprocal tell the difference. Mitsuba's own `measured` takes si.wi for the first direction of a file, which is our wi,
+and a model of that file shall look like it: so the directions are exchanged when the value is looked up. With
+`"exchange": False` they are not, and the value is that of light from Mitsuba's wo.
 """
 
 import drjit as dr
@@ -36,6 +39,7 @@ def _make_bsdf_class():
             self.model = open_source(path)
             if not isinstance(self.model, Model) or self.model.lambda_nm or self.model.channels not in (1, 3):
                 raise Error(f"{path}: expected a burnish model of 1 or 3 channels, found {self.model!r}")
+            self.exchange = props.get("exchange", True)
             kind = mi.BSDFFlags.GlossyReflection | mi.BSDFFlags.FrontSide
             if not self.model.isotropic:
                 kind |= mi.BSDFFlags.Anisotropic
@@ -64,10 +68,10 @@ def _make_bsdf_class():
         def eval_pdf(self, ctx, si, wo, active=True):
             active = self._enabled(ctx, active) & (si.wi.z > 0) & (wo.z > 0)
             if self.factors:
-                f, pdf = self.factors.eval(wo, si.wi), self.sampler.pdf(dr.detach(wo), dr.detach(si.wi))
+                f, pdf = self._value(wo, si.wi), self.sampler.pdf(dr.detach(wo), dr.detach(si.wi))
             else:
                 to_light, to_viewer = np.array(wo, dtype=np.float32), np.array(si.wi, dtype=np.float32)
-                f = mi.Color3f(*np.broadcast_to(self.model.eval(to_light, to_viewer), 3))
+                f = mi.Color3f(*np.broadcast_to(self._value(to_light, to_viewer), 3))
                 pdf = float(self.model.pdf(to_light, to_viewer))
             return dr.select(active, f * wo.z, 0), dr.select(active, pdf, 0)
 
@@ -87,6 +91,10 @@ def _make_bsdf_class():
             active &= drawn.pdf > 0
             value = self.eval(ctx, si, drawn.wo, active)
             return drawn, dr.select(active, value / drawn.pdf, 0)
+
+        def _value(self, to_light, to_viewer):
+            first, second = (to_viewer, to_light) if self.exchange else (to_light, to_viewer)
+            return (self.factors or self.model).eval(first, second)
 
         def _enabled(self, ctx, active):
             return mi.Bool(active) & ctx.is_enabled(mi.BSDFFlags.GlossyReflection, 0)

@@ -55,6 +55,20 @@ def test_eval_and_pdf_are_the_librarys(name, files, llvm):
     assert (abs(ratio - 1) < 1e-3).mean() > 0.995
 
 
+def test_the_viewer_comes_first_as_in_measured_unless_told_otherwise(ggx, llvm, tmp_path):
+    model = burnish.fit(ggx, model="a(theta_i) q(h)", samples=20_000)
+    assert not model.reciprocal
+    path = str(tmp_path / "model.exr")
+    burnish.write_model(path, model)
+    to_light, to_viewer = hemisphere(2_000, 1), hemisphere(2_000, 2)
+    for settings, pair in (({}, (to_viewer, to_light)), ({"exchange": False}, (to_light, to_viewer))):
+        bsdf = mi.load_dict({"type": "burnish", "filename": path, **settings})
+        light = mi.Vector3f(*np.ascontiguousarray(to_light.T))
+        value = bsdf.eval(mi.BSDFContext(), interaction(to_viewer, len(to_viewer)), light)
+        expected = model.eval(*(w.astype(float) for w in pair)) * to_light[:, 2:]
+        np.testing.assert_allclose(np.array(value).T, expected, rtol=2e-5, atol=1e-5 * expected.mean())
+
+
 @pytest.mark.parametrize("name", ["model", "lobes", "volume"])
 def test_draws_are_the_librarys(name, files, llvm):
     source = burnish.open_source(files[name])
@@ -213,3 +227,33 @@ def test_rgl_files_are_what_mitsubas_measured_says(rgl_files, llvm):
         assert near >= 0.999 and strict >= 0.99, path
         # the results are cut, not the nodes
         np.testing.assert_array_equal(cut, np.maximum(raw, 0))
+
+
+def lit_spheres(bsdf):
+    """The pictures of docs/notation.md: lights at 0, 30 and 60 degrees from the view."""
+    angles = np.radians([0, 30, 60])
+    lights = [{"type": "directional", "direction": [-float(np.sin(a)), 0, -float(np.cos(a))]} for a in angles]
+    settings = dict(integrator={"type": "direct"}, spp=16, size=128)
+    return np.array([render(mi, bsdf, emitter=light, **settings)[1] for light in lights])
+
+
+@pytest.mark.parametrize("budget, least", [(2_700, 37), (16_384, 40)])
+def test_a_model_as_measured_looks_like_mitsubas_measured(budget, least, cli, rgl_files, llvm, tmp_path):
+    file = next((str(path) for path in rgl_files if path.stem == "vch_silk_blue_rgb"), None)
+    if not file:
+        pytest.skip("vch_silk_blue_rgb.bsdf is not there")
+    reference = lit_spheres({"type": "measured", "filename": file})
+    exposure = 1 / np.percentile(reference, 97)
+    shown = lambda image: np.clip(exposure * image, 0, 1) ** (1 / 2.2)
+    psnr = {}
+    for name, options in (("made reciprocal", []), ("as measured", ["--no-symmetrize"])):
+        path = str(tmp_path / "model.exr")
+        cli("fit", file, "--budget", budget, "-o", path, *options)
+        size = burnish.open_source(path).bytes
+        assert size <= budget
+        image = lit_spheres({"type": "burnish", "filename": path})
+        psnr[name] = -10 * np.log10(np.mean(np.square(shown(image) - shown(reference))))
+        print(f"\n{name}: {psnr[name]:.2f} dB with {size} bytes")
+    assert psnr["as measured"] >= least
+    # a reciprocal model cannot follow what is not
+    assert psnr["made reciprocal"] < psnr["as measured"] - 4

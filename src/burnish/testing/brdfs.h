@@ -42,6 +42,22 @@ struct Glossy {
   }
 };
 
+/// Glossy times 1 + slope cos theta_i in the first channel, 1 - slope cos theta_i / 2 in the others: isotropic, but not
+/// reciprocal.
+struct Ordered {
+  Glossy even;
+  double slope = 0.5;
+
+  int channels() const noexcept { return even.channels(); }
+  bool isotropic() const noexcept { return even.isotropic(); }
+  bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+    const bool known = even.eval(wi, wo, f);
+    for (std::size_t c = 0; c < f.size(); ++c)
+      f[c] *= 1 + (c == 0 ? slope : -0.5 * slope) * std::max(wi.z, 0.0);
+    return known;
+  }
+};
+
 /// Glossy, brighter on one side of the plane of h and n than on the other: isotropic, reciprocal, but not its
 /// own mirror image.
 struct Twisted {

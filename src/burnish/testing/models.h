@@ -45,6 +45,10 @@ inline const ModelCase kModelCases[] = {
     {"Twist", "a(theta_t) g(theta_h,theta_t)", {"a=16,power:0.7", "g=9x5"}, 3},
     {"Volume", "z(theta_h) g(theta_h,theta_d,phi_d)", {"z=24,power:0.5", "g=9x5x4,power:0.5"}, 3},
     {"Volumes", "v(phi_d,h,d) + s(wi,wo,theta_t) w(theta_d)", {"v=3x8x4", "s=4x4x3,shared", "w=6"}, 3},
+    {"OneDirection",
+     "a(theta_i) c(theta_i,theta_h) q(theta_h)",
+     {"a=8", "c=5x9,identity,power:0.5", "q=12"},
+     3},
     {"Azimuth", "a(phi_d) g(theta_d,phi_d)", {"a=16,rational:0.3", "g=9x5"}, 3},
 };
 

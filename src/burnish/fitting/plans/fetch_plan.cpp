@@ -8,6 +8,7 @@
 #include <burnish/factors/fetches.h>
 #include <burnish/fitting/numerics/node_numbers.h>
 #include <burnish/fitting/plans/fetch_plan.h>
+#include <burnish/fitting/plans/order_tables.h>
 #include <burnish/fitting/plans/trial_sets.h>
 #include <burnish/math/angles.h>
 #include <burnish/math/parallel.h>
@@ -25,6 +26,9 @@ constexpr std::size_t kNumberBytes = 4;  // of a scale or a warp's parameter
 constexpr double kRingShare = 0.07, kLineShare = 0.016, kGridShare = 0.14, kTwistShare = 0.1;
 constexpr int kMinLineNodes = 6, kMaxRingNodes = 512, kMaxLineNodes = 64, kTwistNodes = 5;
 constexpr Warp kDeviationWarp{WarpKind::power, 0.5}, kSkewWarp{WarpKind::power, 0.7};
+// Of what the order of the directions changes: nodes along theta_i and a share.
+constexpr int kOrderNodes = 8;
+constexpr double kOrderShare = 0.25;
 
 // How a volume's nodes are shared out, relative to each other: the best differ among materials.
 struct VolumeForm {
@@ -104,7 +108,8 @@ TableLayout volume_of(const VolumeForm& form, double nodes) {
 }
 
 // The tables that a number of fetches has room for; the volume takes what the others leave.
-ModelSpec volume_spec(const VolumeForm& form, const CostLimit& limit, int channels, bool twisted) {
+ModelSpec volume_spec(const VolumeForm& form, const CostLimit& limit, int channels, bool twisted,
+                      bool ordered) {
   const double texels = static_cast<double>(limit.bytes / limit.texel_bytes);
   const auto nodes = [&](double share, int most) {
     return std::clamp(static_cast<int>(share * texels), kMinLineNodes, most);
@@ -117,6 +122,13 @@ ModelSpec volume_spec(const VolumeForm& form, const CostLimit& limit, int channe
     if (room) left -= fetches;
     return room;
   };
+  if (ordered && takes(1))
+    builder.add("c",
+                {.shape = TableShape::grid,
+                 .width = kOrderNodes,
+                 .height = nodes(kOrderShare / kOrderNodes, kMaxRingNodes),
+                 .warp_y = kHalfWarp},
+                {{.projection = kProjectWi, .projection_y = kProjectHalf}});
   if (takes(1)) builder.add_line("z", nodes(kRingShare, kMaxRingNodes), {kProjectHalf}, kHalfWarp);
   if (twisted && takes(1))
     builder.add("w",
@@ -220,7 +232,13 @@ LobePlan plan_within(BrdfRef source, const CostLimit& limit) {
 std::vector<ModelSpec> volume_specs(BrdfRef source, const CostLimit& limit) {
   const bool twisted = mirror_asymmetry(source) > kMinAsymmetry;
   std::vector<ModelSpec> specs;
-  for (const VolumeForm& form : kForms) specs.push_back(volume_spec(form, limit, source.channels(), twisted));
+  const auto add = [&](bool ordered) {
+    for (const VolumeForm& form : kForms)
+      specs.push_back(volume_spec(form, limit, source.channels(), twisted, ordered));
+  };
+  // beside what matters more, the table may not be worth its bytes
+  if (limit.fetches > 1 && order_matters(source)) add(true);
+  add(false);
   return specs;
 }
 

@@ -5,7 +5,9 @@
 #include <burnish/error.h>
 #include <burnish/factors/fetches.h>
 #include <burnish/fitting/plans/fetch_plan.h>
+#include <burnish/metrics/error_figures.h>
 #include <burnish/reflectance/analytic.h>
+#include <burnish/testing/brdfs.h>
 
 namespace burnish {
 namespace {
@@ -28,6 +30,32 @@ TEST(FetchPlan, KeepsBothLimitsAndUsesTheBytes) {
         EXPECT_GT(bytes_of(spec), bytes * 9 / 10);
       }
   EXPECT_THROW(volume_specs(ggx.ref(), {.bytes = 60}), Error);
+}
+
+TEST(FetchPlan, GivesATableOfWiWhereTheOrderOfTheDirectionsMatters) {
+  const testing::Ordered source{{.a = 10, .b = 10}};
+  const CostLimit limit{.bytes = 6'000, .fetches = 2};
+  const std::vector<ModelSpec> specs = volume_specs(source, limit),
+                               even = volume_specs(SymmetrizedBrdf(source), limit);
+  ASSERT_EQ(specs.size(), 2 * even.size());
+  EXPECT_EQ(volume_specs(source, {.bytes = 6'000, .fetches = 1}).size(), even.size());
+  for (const ModelSpec& spec : specs) {
+    EXPECT_LE(fetch_count(spec), 2u);
+    EXPECT_LE(bytes_of(spec), 6'000u);
+    EXPECT_GT(bytes_of(spec), 5'400u);
+  }
+  const TrainingSet set =
+      draw_training_set(source, {.pictures = 4'000, .directions = 8'000, .crowded = true});
+  const auto fit = [&](const std::vector<ModelSpec>& of) {
+    return to_brdf(fit_volumes(set, of, {.smooth = 1e-9}).model, TableFormat::half);
+  };
+  const FactoredBrdf told = fit(specs), same = fit(even);
+  EXPECT_FALSE(told.reciprocal());
+  EXPECT_TRUE(same.reciprocal());
+  const FigureOptions figures{.count = 5000, .image_size = 32};
+  const double least = error_figures(source, told, figures).relative;
+  EXPECT_LT(least, 0.02);
+  EXPECT_LT(least, 0.3 * error_figures(source, same, figures).relative);
 }
 
 TEST(FetchPlan, GivesHemispheresToAnisotropicSources) {

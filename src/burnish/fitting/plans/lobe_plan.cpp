@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include <burnish/error.h>
 #include <burnish/fitting/plans/lobe_plan.h>
+#include <burnish/fitting/plans/order_tables.h>
 #include <burnish/reflectance/mirror_asymmetry.h>
 
 namespace burnish {
@@ -26,6 +29,11 @@ constexpr double kGridTexels = 1500, kThreeGridTexels = 6000, kMaxLineTexels = 2
 // better, and its share, where .04 to .4 did about as well.
 constexpr int kTwistNodes = 5;
 constexpr double kTwistShare = 0.25;
+// Of what the order of the directions changes: a grid for all lobes, its nodes along theta_i, more where other factors
+// have grids too, and a line for each lobe.
+constexpr int kOrderNodes = 4, kManyOrderNodes = 8;
+constexpr double kOrderShare = 0.3, kOrderLineShare = 0.1;
+constexpr Warp kOrderWarp{WarpKind::power, 0.5};
 constexpr int kMaxLineNodes = 1024;  // nodes of a line: finer than any measurement
 
 // More texels for each of few lobes resolve rings, more lobes follow how the highlight changes with the
@@ -163,17 +171,33 @@ LobePlan default_plan(std::size_t bytes, int lobes, bool isotropic, std::size_t 
 }
 
 LobePlan plan_for(BrdfRef source, std::size_t bytes, int lobes, std::size_t texel_bytes) {
-  const LobePlan plain = default_plan(bytes, lobes, source.isotropic(), texel_bytes);
-  if (!source.isotropic() || mirror_asymmetry(source) <= kMinAsymmetry) return plain;
-  LobePlan twisted = plain;
-  twisted.factors.push_back({.name = "w",
-                             .shape = TableShape::grid,
-                             .uses = {kProjectTwist},
-                             .share = kTwistShare,
-                             .second = kProjectHalf,
-                             .second_warp = kHalfWarp,
-                             .width = kTwistNodes});
-  return plan_fits(twisted, bytes, source.channels(), texel_bytes) ? twisted : plain;
+  LobePlan plan = default_plan(bytes, lobes, source.isotropic(), texel_bytes);
+  if (!source.isotropic()) return plan;
+  const auto add = [&](std::initializer_list<PlannedFactor> factors) {
+    LobePlan more = plan;
+    more.factors.insert(more.factors.end(), factors);
+    if (plan_fits(more, bytes, source.channels(), texel_bytes)) plan = std::move(more);
+  };
+  const bool many = static_cast<double>(bytes) > kGridTexels * static_cast<double>(texel_bytes);
+  if (order_matters(source))
+    add({{.name = "c",
+          .shape = TableShape::grid,
+          .uses = {kProjectWi},
+          .share = kOrderShare * plan.lobes,
+          .second = kProjectHalf,
+          .second_warp = kOrderWarp,
+          .width = many ? kManyOrderNodes : kOrderNodes,
+          .every_lobe = true},
+         {.name = "a", .shape = TableShape::line, .uses = {kProjectWi}, .share = kOrderLineShare}});
+  if (mirror_asymmetry(source) > kMinAsymmetry)
+    add({{.name = "w",
+          .shape = TableShape::grid,
+          .uses = {kProjectTwist},
+          .share = kTwistShare,
+          .second = kProjectHalf,
+          .second_warp = kHalfWarp,
+          .width = kTwistNodes}});
+  return plan;
 }
 
 bool plan_fits(const LobePlan& plan, std::size_t bytes, int channels, std::size_t texel_bytes) {

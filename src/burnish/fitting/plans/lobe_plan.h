@@ -44,7 +44,8 @@ struct LobePlan {
 LobePlan default_plan(std::size_t bytes, int lobes, bool isotropic, std::size_t texel_bytes);
 
 /// default_plan for a source; where an isotropic one is not its own mirror image, each lobe has also a factor
-/// w(theta_t, theta_h), unless the bytes hold no such table.
+/// w(theta_t, theta_h), and where the order of the directions matters (order_tables.h), each has a(theta_i) and all
+/// one c(theta_i, theta_h), unless the bytes hold no such tables.
 LobePlan plan_for(BrdfRef source, std::size_t bytes, int lobes, std::size_t texel_bytes);
 
 /// The largest model of the plan whose tables and numbers fit `bytes`, see FactoredBrdf::bytes. Throws Error

@@ -121,5 +121,34 @@ TEST(PlanFor, TellsMirrorImagesApartWhereTheSourceDoes) {
   EXPECT_TRUE(plan_fits(default_plan(kFewBytes, 1, true, kHalfRgb), kFewBytes, 3, kHalfRgb));
 }
 
+TEST(PlanFor, TellsTheDirectionsApartWhereTheirOrderMatters) {
+  const testing::Glossy even{.a = 10, .b = 10};
+  const testing::Ordered source{even};
+  constexpr std::size_t kBytes = 1500;
+  const LobePlan plain = default_plan(kBytes, 0, true, kHalfRgb);
+  EXPECT_EQ(plan_for(even, kBytes, 0, kHalfRgb), plain);
+  EXPECT_EQ(plan_for(SymmetrizedBrdf(source), kBytes, 0, kHalfRgb), plain);
+
+  const LobePlan plan = plan_for(source, kBytes, 0, kHalfRgb);
+  const TrainingSet set = draw_training_set(source, {.pictures = 2000, .directions = 5000});
+  const auto fit = [&](const LobePlan& p) {
+    FactoredBrdf brdf =
+        to_brdf(fit_plan(set, p, kBytes, kHalfRgb, {.max_iterations = 10}).model, TableFormat::half);
+    EXPECT_LE(brdf.bytes(), kBytes);
+    return brdf;
+  };
+  const auto relative = [&](const FactoredBrdf& brdf) {
+    return error_figures(source, brdf, {.count = 5000, .image_size = 32}).relative;
+  };
+  const FactoredBrdf told = fit(plan), same = fit(plain);
+  EXPECT_FALSE(told.reciprocal());
+  EXPECT_TRUE(same.reciprocal());
+  EXPECT_LT(relative(told), 0.02);
+  EXPECT_LT(relative(told), 0.3 * relative(same));
+  // no room for it
+  constexpr std::size_t kFewBytes = 180;
+  EXPECT_EQ(plan_for(source, kFewBytes, 1, kHalfRgb), default_plan(kFewBytes, 1, true, kHalfRgb));
+}
+
 }  // namespace
 }  // namespace burnish

@@ -1,0 +1,18 @@
+#include <burnish/fitting/plans/order_tables.h>
+#include <burnish/reflectance/statistics.h>
+
+namespace burnish {
+
+namespace {
+
+constexpr std::size_t kPairs = 4000;
+constexpr double kLeastError = 0.01;  // below what instruments repeat
+
+}  // namespace
+
+bool order_matters(BrdfRef source) {
+  return source.isotropic() && !source.reciprocal() &&
+         reciprocity_error(source, kPairs, 1).mean > kLeastError;
+}
+
+}  // namespace burnish
