@@ -51,6 +51,11 @@ constexpr double kSpareLogCos = 0.8;
 constexpr double kVolumeSmooth = 1e-9;
 constexpr double kFrontalShare = 0.1;  // of pixels, see with_frontal_pixels
 
+// What was measured is judged where it was measured; pictures keep the rest from running away.
+constexpr ErrorTerms kNodeShares{.pictures = 0.5, .dimmed = 0.1, .relative = 1, .log_cos = 1};
+constexpr int kMostFetches = 256;
+constexpr int kNodeFetches = 2;  // of the volume that serves nodes best, with a line over theta_h
+
 bool has_disk(const ModelSpec& spec) {
   return std::ranges::any_of(spec.tables,
                              [](const auto& table) { return table.layout.shape == TableShape::disk; });
@@ -211,6 +216,13 @@ class Fitter {
   FactoredBrdf fit_to_budget(const Budget& form) {
     if (form.fetches > 0) return fit_within(form);
     const std::size_t texel = texel_bytes(format(), channels());
+    // what is smooth between nodes is a volume's, where lines would make rings again
+    if (const CostLimit limit{.bytes = form.bytes, .texel_bytes = texel, .fetches = kMostFetches};
+        smoothed_ && form.lobes == 0 && !form.search && !takes_lobes(reference(), limit)) {
+      Budget volumes = form;
+      volumes.fetches = kNodeFetches;
+      return fit_within(volumes);
+    }
     check_budget(form, texel);
     TrainingOptions drawn = training_for(form.bytes, texel, brdf_.isotropic());
     drawn.seed = options_.seed;
@@ -276,6 +288,7 @@ class Fitter {
     if (form.loss == FitLoss::image) {
       refine.shares = kVolumeShares;
       if (form.fetches >= kSpareFetches) refine.shares.log_cos = kSpareLogCos;
+      if (smoothed_) refine.shares = kNodeShares;
     }
     if (!options_.smooth) refine.smooth = kVolumeSmooth;
     const TrainingSet set =
