@@ -53,8 +53,6 @@ constexpr double kFrontalShare = 0.1;  // of pixels, see with_frontal_pixels
 
 // What was measured is judged where it was measured; pictures keep the rest from running away.
 constexpr ErrorTerms kNodeShares{.pictures = 0.5, .dimmed = 0.1, .relative = 1, .log_cos = 1};
-constexpr int kMostFetches = 256;
-constexpr int kNodeFetches = 2;  // of the volume that serves nodes best, with a line over theta_h
 
 bool has_disk(const ModelSpec& spec) {
   return std::ranges::any_of(spec.tables,
@@ -216,18 +214,12 @@ class Fitter {
   FactoredBrdf fit_to_budget(const Budget& form) {
     if (form.fetches > 0) return fit_within(form);
     const std::size_t texel = texel_bytes(format(), channels());
-    // what is smooth between nodes is a volume's, where lines would make rings again
-    if (const CostLimit limit{.bytes = form.bytes, .texel_bytes = texel, .fetches = kMostFetches};
-        smoothed_ && form.lobes == 0 && !form.search && !takes_lobes(reference(), limit)) {
-      Budget volumes = form;
-      volumes.fetches = kNodeFetches;
-      return fit_within(volumes);
-    }
     check_budget(form, texel);
     TrainingOptions drawn = training_for(form.bytes, texel, brdf_.isotropic());
     drawn.seed = options_.seed;
     const TrainingSet set = drawn_set(drawn);
     RefineOptions refine = refine_options(form.loss);
+    if (smoothed_ && form.loss == FitLoss::image) refine.shares = kNodeShares;
     LobesReport report{.loss = form.loss, .budget = form.bytes};
 
     // which lobes
