@@ -8,6 +8,7 @@
 
 #include <burnish/io/source_report.h>
 #include <burnish/math/angles.h>
+#include <burnish/metrics/node_figures.h>
 #include <burnish/shaders/shader.h>
 
 #include "commands.h"
@@ -16,6 +17,9 @@
 namespace burnish::cli {
 
 namespace {
+
+constexpr std::size_t kFewIncidences = 100;
+constexpr std::size_t kManyNodes = 20'000;  // more take their time to be predicted
 
 // Of the languages with textures, which have one or three channels.
 std::optional<ShaderCost> shader_cost(const FactoredBrdf& model) {
@@ -33,6 +37,17 @@ std::string json_text(const SourceReport& report) {
                     {"operations", cost->operations}, {"divisions", cost->divisions},
                     {"roots", cost->roots},           {"powers", cost->powers}};
   return json.dump(2);
+}
+
+// How many places were measured, and what the measurement itself would score there.
+std::string nodes_text(const MeasuredNodes& nodes) {
+  std::string text = fmt::format("{} measured", nodes.size());
+  if (const auto& thetas = nodes.theta_i; thetas.size() <= kFewIncidences)
+    text += fmt::format(" at {} incident angles", thetas.size());
+  if (!nodes.samples.isotropic || nodes.size() > kManyNodes) return text;
+  const NodeFigures figures = held_out_figures(nodes, {});
+  return text + fmt::format(", predicted from the others to relative {:.4f}, log_cos {:.4f}",
+                            figures.relative, figures.log_cos);
 }
 
 void print_text(const SourceReport& report) {
@@ -56,6 +71,7 @@ void print_text(const SourceReport& report) {
   line("coverage", fmt::format("theta_i {:.1f} to {:.1f}, theta_o {:.1f} to {:.1f} degrees",
                                degrees(findings.theta_i_min), degrees(findings.theta_i_max),
                                degrees(findings.theta_o_min), degrees(findings.theta_o_max)));
+  if (is_measurement(source)) line("nodes", nodes_text(measured_nodes(source)));
   if (findings.negative_count > 0)
     line("negatives", fmt::format("{} values below zero, down to {:.3g} 1/sr", findings.negative_count,
                                   findings.most_negative));

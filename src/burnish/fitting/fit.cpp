@@ -51,6 +51,9 @@ constexpr double kSpareLogCos = 0.8;
 constexpr double kVolumeSmooth = 1e-9;
 constexpr double kFrontalShare = 0.1;  // of pixels, see with_frontal_pixels
 
+// What was measured is judged where it was measured; pictures keep the rest from running away.
+constexpr ErrorTerms kNodeShares{.pictures = 0.5, .dimmed = 0.1, .relative = 1, .log_cos = 1};
+
 bool has_disk(const ModelSpec& spec) {
   return std::ranges::any_of(spec.tables,
                              [](const auto& table) { return table.layout.shape == TableShape::disk; });
@@ -216,6 +219,7 @@ class Fitter {
     drawn.seed = options_.seed;
     const TrainingSet set = drawn_set(drawn);
     RefineOptions refine = refine_options(form.loss);
+    if (smoothed_ && form.loss == FitLoss::image) refine.shares = kNodeShares;
     LobesReport report{.loss = form.loss, .budget = form.bytes};
 
     // which lobes
@@ -276,6 +280,7 @@ class Fitter {
     if (form.loss == FitLoss::image) {
       refine.shares = kVolumeShares;
       if (form.fetches >= kSpareFetches) refine.shares.log_cos = kSpareLogCos;
+      if (smoothed_) refine.shares = kNodeShares;
     }
     if (!options_.smooth) refine.smooth = kVolumeSmooth;
     const TrainingSet set =

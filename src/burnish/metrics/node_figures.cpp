@@ -22,6 +22,11 @@ constexpr int kFolds = 4;
 // the length, the square of the area.
 constexpr double kGap = (2.0 * kFolds / (kFolds - 1)) * (2.0 * kFolds / (kFolds - 1));
 
+// Fewer places than SmoothedNodes has: as many as tell what smoothness is right.
+constexpr NodeVolume kTrialVolume{24, 16, 6};
+// Incidences are left out where an instrument stood at few; two of a hand are this far apart.
+constexpr std::size_t kLeastIncidences = 5, kMostIncidences = 24, kIncidenceHands = 3;
+
 /// Weighted sums of errors, to be means.
 struct ErrorSums {
   double log_cos = 0, log_ratio = 0, log_ratio_sq = 0, difference_sq = 0, weight = 0;
@@ -80,6 +85,23 @@ std::size_t hand_of(std::uint32_t group, std::size_t hands) {
   return static_cast<std::size_t>(Pcg32(group).uniform() * static_cast<double>(hands));
 }
 
+// Figures at the nodes of each hand as predicted from those of the others; what is in no hand is always seen.
+template <class Hand>
+NodeFigures held_out(const MeasuredNodes& nodes, const NodeSmoothness& smoothness, std::size_t hands,
+                     Hand hand) {
+  std::vector<ErrorSums> sums(hands);
+  for_each_chunk(hands, 1, [&](std::size_t fold, std::size_t, std::size_t) {
+    std::vector<std::size_t> seen, unseen;
+    for (std::size_t i = 0; i < nodes.size(); ++i) (hand(i) == fold ? unseen : seen).push_back(i);
+    if (unseen.empty() || seen.empty()) return;
+    sums[fold] =
+        sums_of(select(nodes, unseen), SmoothedNodes(select(nodes, seen), smoothness, kTrialVolume), {});
+  });
+  ErrorSums total;
+  for (const ErrorSums& sum : sums) total.add(sum);
+  return total.means({});
+}
+
 NodeSmoothness scaled(NodeSmoothness smoothness, double factor) {
   for (double& share : smoothness.shares) share *= factor;
   return smoothness;
@@ -99,17 +121,20 @@ NodeFigures node_figures(const MeasuredNodes& nodes, BrdfRef model, const NodeSc
 }
 
 NodeFigures held_out_figures(const MeasuredNodes& nodes, const NodeSmoothness& smoothness, int folds) {
-  std::vector<ErrorSums> sums(static_cast<std::size_t>(folds));
-  for_each_chunk(sums.size(), 1, [&](std::size_t fold, std::size_t, std::size_t) {
-    std::vector<std::size_t> seen, unseen;
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-      (hand_of(nodes.groups[i], sums.size()) == fold ? unseen : seen).push_back(i);
-    if (unseen.empty() || seen.empty()) return;
-    sums[fold] = sums_of(select(nodes, unseen), SmoothedNodes(select(nodes, seen), smoothness), {});
+  const auto hands = static_cast<std::size_t>(folds);
+  return held_out(nodes, smoothness, hands, [&](std::size_t i) { return hand_of(nodes.groups[i], hands); });
+}
+
+std::optional<NodeFigures> held_out_incidences(const MeasuredNodes& nodes, const NodeSmoothness& smoothness) {
+  std::vector<std::uint32_t> there(nodes.incidence);
+  std::ranges::sort(there);
+  there.erase(std::ranges::unique(there).begin(), there.end());
+  if (there.size() < kLeastIncidences || there.size() > kMostIncidences) return {};
+  return held_out(nodes, smoothness, kIncidenceHands, [&](std::size_t i) {
+    const auto place =
+        static_cast<std::size_t>(std::ranges::lower_bound(there, nodes.incidence[i]) - there.begin());
+    return place == 0 || place + 1 == there.size() ? kIncidenceHands : place % kIncidenceHands;
   });
-  ErrorSums total;
-  for (const ErrorSums& sum : sums) total.add(sum);
-  return total.means({});
 }
 
 NodeSmoothness choose_node_smoothness(const MeasuredNodes& nodes) {
@@ -124,8 +149,12 @@ NodeSmoothness choose_node_smoothness(const MeasuredNodes& nodes) {
 
   NodeSmoothness best = scaled(NodeSmoothness{}, kGap);
   const auto error_of = [&](const NodeSmoothness& trial) {
-    const NodeFigures figures = held_out_figures(part ? *part : nodes, trial, kFolds);
-    return std::log(figures.relative) + std::log(figures.log_cos);
+    const MeasuredNodes& all = part ? *part : nodes;
+    const auto error = [](const NodeFigures& figures) {
+      return std::log(figures.relative) + std::log(figures.log_cos);
+    };
+    const auto between = held_out_incidences(all, trial);
+    return error(held_out_figures(all, trial, kFolds)) + (between ? error(*between) : 0.0);
   };
   double smallest = error_of(best);
   const auto improves = [&](const NodeSmoothness& trial) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include <burnish/metrics/error_figures.h>
@@ -31,14 +32,19 @@ std::vector<PairError> node_errors(const MeasuredNodes& nodes, BrdfRef model,
 /// Throws Error as node_errors, or where no node is left to score.
 NodeFigures node_figures(const MeasuredNodes& nodes, BrdfRef model, const NodeScoring& scoring = {});
 
-/// Figures of SmoothedNodes at nodes that it was not made from: groups are dealt to `folds` hands, and each hand
-/// is predicted from the others. folds >= 2. Throws Error as SmoothedNodes and node_figures.
+/// Figures of SmoothedNodes, of fewer places, at nodes that it was not made from: groups are dealt to `folds`
+/// hands, and each hand is predicted from the others. folds >= 2. Throws Error as SmoothedNodes and node_figures.
 NodeFigures held_out_figures(const MeasuredNodes& nodes, const NodeSmoothness& smoothness, int folds = 4);
 
-/// The smoothness whose held_out_figures are best, a mean of the logarithms of relative and log_cos; found by
-/// steps of ten from the default: all shares together, then one after the other, and then softened by what
-/// the gaps of nodes left out are wider than those between nodes. Of many nodes a part is taken.
-/// Deterministic. Throws Error as held_out_figures.
+/// The same with incidences left out, all nodes of one together, two or more apart; the first and the last never are.
+/// Nothing where there are fewer than five incidences, or so many that each is only a few nodes.
+std::optional<NodeFigures> held_out_incidences(const MeasuredNodes& nodes, const NodeSmoothness& smoothness);
+
+/// The smoothness that predicts best: the least mean of the logarithms of relative and log_cos, of
+/// held_out_figures and, where there is such, of held_out_incidences; found by steps of ten from the default:
+/// all shares together, then one after the other, and then softened by what the gaps of nodes left out are
+/// wider than those between nodes. Of many nodes a part is taken. Deterministic. Throws Error as
+/// held_out_figures.
 NodeSmoothness choose_node_smoothness(const MeasuredNodes& nodes);
 
 }  // namespace burnish

@@ -74,6 +74,35 @@ TEST(NodeFigures, SmoothnessIsStifferWhereNodesAreNoisy) {
   EXPECT_LT(held_out, 0.26);
 }
 
+TEST(NodeFigures, IncidencesAreHeldOutWhereThereAreFew) {
+  const testing::Glossy source{.a = 8, .b = 8};
+  Samples samples{.channels = 3, .isotropic = true};
+  std::vector<double> f(3);
+  const auto add = [&](int incidences) {
+    for (int i = 0; i < incidences; ++i)
+      for (int o = 0; o < 200; ++o) {
+        const DirectionPair pair{spherical_direction(radians(70.0 * i / incidences), 0),
+                                 spherical_direction(radians(7 * (o / 20) + 1), kTwoPi * (o % 20) / 20)};
+        source.eval(pair.wi, pair.wo, f);
+        samples.pairs.push_back(pair);
+        samples.values.insert(samples.values.end(), f.begin(), f.end());
+      }
+  };
+  add(7);
+  const MeasuredNodes few = measured_nodes(samples);
+  const auto between = held_out_incidences(few, {});
+  ASSERT_TRUE(between);
+  EXPECT_EQ(between->count, 5 * 200u);  // the first and the last are always seen
+  // nodes between those of one incidence are nearer
+  EXPECT_LT(held_out_figures(few, {}).relative, between->relative);
+  EXPECT_LT(between->relative, 0.1);
+
+  EXPECT_FALSE(held_out_incidences(nodes_of_source(source, 500), {}));  // as many as samples
+  samples = {.channels = 3, .isotropic = true};
+  add(4);
+  EXPECT_FALSE(held_out_incidences(measured_nodes(samples), {}));
+}
+
 /// Lambert times 1 + slope (cos theta_i - cos theta_o): not reciprocal.
 struct Leaning {
   double slope = 0.2;

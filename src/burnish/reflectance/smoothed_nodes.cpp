@@ -12,25 +12,21 @@ namespace burnish {
 
 namespace {
 
-// Unknowns: the volume, theta_h slowest, then the line.
-constexpr std::array<std::size_t, 3> kCounts{48, 12, 6};
-constexpr std::array<std::size_t, 3> kStrides{kCounts[1] * kCounts[2], kCounts[2], 1};
-constexpr std::size_t kVolume = kCounts[0] * kStrides[0], kLine = 16, kUnknowns = kVolume + kLine;
-constexpr std::size_t kBand = 2 * kStrides[0];  // of second differences along theta_h
-
+constexpr std::size_t kLine = 64;
 constexpr double kLeastCosine = 0.02, kFullCosine = 0.15;
 constexpr int kReweightings = 2;
-constexpr double kRound = 0.02;       // errors in ln f below this count as squares
-constexpr double kScale = 0.1;        // and those of this size weigh the same in both kinds of error
-constexpr double kLevel = 1e-7;       // share of squared slopes
-constexpr double kSame = 1;           // of slopes that cannot be
-constexpr double kGuessWeight = 0.1;  // of what stands where nothing was measured
-constexpr double kRidge = 1e-10;      // of unknowns that nothing else holds
+constexpr double kRound = 0.02;            // errors in ln f below this count as squares
+constexpr double kScale = 0.1;             // and those of this size weigh the same in both kinds of error
+constexpr double kLevel = 1e-7;            // share of squared slopes
+constexpr double kSame = 1;                // of slopes that cannot be
+constexpr double kGuessWeight = 0.1;       // of what stands where nothing was measured
+constexpr NodeVolume kGuessed{48, 12, 6};  // nodes leave gaps where they touch none of its places
+constexpr double kRidge = 1e-10;           // of unknowns that nothing else holds
 
 /// The unknowns that a pair's ln(f + floor) is the weighted sum of.
 struct Row {
-  std::array<std::uint32_t, 12> index;
-  std::array<double, 12> weight;
+  std::array<std::uint32_t, 10> index;
+  std::array<double, 10> weight;
 };
 
 struct Place {
@@ -44,33 +40,57 @@ struct Place {
   }
 };
 
-Row row_of(Vec3 wi, Vec3 wo) noexcept {
-  const HalfDiff a = to_half_diff(wi, wo);
-  // phi_d folded by exchange and reflection
-  const double turn = std::abs(std::remainder(a.phi_d, kPi));
-  const std::array<Place, 3> place{Place(std::sqrt(a.theta_h / kHalfPi), kCounts[0]),
-                                   Place(a.theta_d / kHalfPi, kCounts[1]), Place(turn / kHalfPi, kCounts[2])};
-  Row row{};
-  for (std::size_t corner = 0; corner < 8; ++corner) {
-    std::size_t index = 0;
-    double weight = 1;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const bool high = corner >> k & 1;
-      index += (place[k].low + high) * kStrides[k];
-      weight *= high ? place[k].fraction : 1 - place[k].fraction;
+/// Where the unknowns are: the volume, theta_h slowest, then the line.
+struct Unknowns {
+  std::array<std::size_t, 3> counts, strides;
+  std::size_t volume;
+
+  explicit Unknowns(const NodeVolume& v) noexcept
+      : counts{v.half, v.difference, v.azimuth},
+        strides{v.difference * v.azimuth, v.azimuth, 1},
+        volume(v.count()) {}
+
+  std::size_t size() const noexcept { return volume + kLine; }
+  std::size_t band() const noexcept { return 2 * strides[0]; }  // of second differences along theta_h
+
+  Row row_of(Vec3 wi, Vec3 wo) const noexcept {
+    const HalfDiff a = to_half_diff(wi, wo);
+    // phi_d folded by exchange and reflection
+    const std::array<double, 3> x{std::sqrt(std::tan(a.theta_h / 2)), std::tan(a.theta_d / 2),
+                                  std::tan(std::abs(std::remainder(a.phi_d, kPi)) / 2)};
+    const std::array<Place, 3> place{Place(x[0], counts[0]), Place(x[1], counts[1]), Place(x[2], counts[2])};
+    Row row{};
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+      std::size_t index = 0;
+      double weight = 1;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const bool high = corner >> k & 1;
+        index += (place[k].low + high) * strides[k];
+        weight *= high ? place[k].fraction : 1 - place[k].fraction;
+      }
+      row.index[corner] = static_cast<std::uint32_t>(index);
+      row.weight[corner] = weight;
     }
-    row.index[corner] = static_cast<std::uint32_t>(index);
-    row.weight[corner] = weight;
-  }
-  for (std::size_t side = 0; side < 2; ++side) {
-    const Place at(theta_of(side ? wo : wi) / kHalfPi, kLine);
+    const Place at(x[0], kLine);
     for (std::size_t high = 0; high < 2; ++high) {
-      row.index[8 + 2 * side + high] = static_cast<std::uint32_t>(kVolume + at.low + high);
-      row.weight[8 + 2 * side + high] = high ? at.fraction : 1 - at.fraction;
+      row.index[8 + high] = static_cast<std::uint32_t>(volume + at.low + high);
+      row.weight[8 + high] = high ? at.fraction : 1 - at.fraction;
     }
+    return row;
   }
-  return row;
-}
+
+  /// The directions of a place of the volume.
+  DirectionPair directions(std::size_t place) const noexcept {
+    const auto part = [&](std::size_t axis) {
+      return static_cast<double>(place / strides[axis] % counts[axis]) /
+             static_cast<double>(counts[axis] - 1);
+    };
+    const auto [wi, wo] = from_half_diff({.theta_h = 2 * std::atan(part(0) * part(0)),
+                                          .theta_d = 2 * std::atan(part(1)),
+                                          .phi_d = 2 * std::atan(part(2))});
+    return {wi, wo};
+  }
+};
 
 // Adds share times the integral of the squared second derivative along unknowns first, first + stride, ...
 void add_stiffness(EnvelopeMatrix& matrix, std::size_t first, std::size_t stride, std::size_t count,
@@ -87,32 +107,36 @@ void add_stiffness(EnvelopeMatrix& matrix, std::size_t first, std::size_t stride
 
 // Adds share times the squared slope between an unknown and the one a stride before it, of `count` a line.
 void add_slope(EnvelopeMatrix& matrix, std::size_t unknown, std::size_t stride, std::size_t count,
-               double share) {
-  const double steps = static_cast<double>(count - 1), lines = static_cast<double>(kVolume / count);
-  const double weight = share * steps / lines;
+               double lines, double share) {
+  const double weight = share * static_cast<double>(count - 1) / lines;
   matrix.at(unknown, unknown) += weight;
   matrix.at(unknown - stride, unknown - stride) += weight;
   matrix.at(unknown, unknown - stride) -= weight;
 }
 
-EnvelopeMatrix stiffness(const NodeSmoothness& smoothness) {
-  std::vector<std::size_t> first(kUnknowns, 0);  // the line's rows are full
-  for (std::size_t i = kBand; i < kVolume; ++i) first[i] = i - kBand;
+EnvelopeMatrix stiffness(const Unknowns& unknowns, const NodeSmoothness& smoothness) {
+  std::vector<std::size_t> first(unknowns.size(), 0);  // the line's rows are full
+  for (std::size_t i = unknowns.band(); i < unknowns.volume; ++i) first[i] = i - unknowns.band();
   EnvelopeMatrix matrix(std::move(first));
+  std::array<double, 3> lines{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double lines = static_cast<double>(kVolume / kCounts[axis]);
-    for (std::size_t i = 0; i < kVolume; ++i)
-      if (i / kStrides[axis] % kCounts[axis] == 0)
-        add_stiffness(matrix, i, kStrides[axis], kCounts[axis], smoothness.shares[axis] / lines);
+    const std::size_t stride = unknowns.strides[axis], count = unknowns.counts[axis];
+    lines[axis] = static_cast<double>(unknowns.volume / count);
+    for (std::size_t i = 0; i < unknowns.volume; ++i)
+      if (i / stride % count == 0)
+        add_stiffness(matrix, i, stride, count, smoothness.shares[axis] / lines[axis]);
   }
-  add_stiffness(matrix, kVolume, 1, kLine, smoothness.shares[3]);
+  add_stiffness(matrix, unknowns.volume, 1, kLine, smoothness.shares[3]);
   // trends die away where no node holds them; where h or d is the normal's or h's own, phi_d means nothing
-  for (std::size_t i = 0; i < kVolume; ++i) {
-    const std::size_t d = i / kStrides[1] % kCounts[1], p = i % kCounts[2];
-    if (d > 0) add_slope(matrix, i, kStrides[1], kCounts[1], kLevel);
-    if (p > 0) add_slope(matrix, i, kStrides[2], kCounts[2], i < kStrides[0] || d == 0 ? kSame : kLevel);
+  for (std::size_t i = 0; i < unknowns.volume; ++i) {
+    const std::size_t h = i / unknowns.strides[0], d = i / unknowns.strides[1] % unknowns.counts[1],
+                      p = i % unknowns.counts[2];
+    if (d > 0) add_slope(matrix, i, unknowns.strides[1], unknowns.counts[1], lines[1], kLevel);
+    if (p > 0)
+      add_slope(matrix, i, unknowns.strides[2], unknowns.counts[2], lines[2],
+                h == 0 || d == 0 ? kSame : kLevel);
   }
-  for (std::size_t i = 0; i < kUnknowns; ++i) matrix.at(i, i) += kRidge;
+  for (std::size_t i = 0; i < unknowns.size(); ++i) matrix.at(i, i) += kRidge;
   return matrix;
 }
 
@@ -128,7 +152,7 @@ struct Problem {
   std::vector<double> largest;  // [channel]
 };
 
-Problem problem_of(const MeasuredNodes& nodes) {
+Problem problem_of(const MeasuredNodes& nodes, const Unknowns& unknowns) {
   const auto channels = static_cast<std::size_t>(nodes.samples.channels);
   Problem problem;
   problem.largest.assign(channels, 0);
@@ -136,7 +160,7 @@ Problem problem_of(const MeasuredNodes& nodes) {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const DirectionPair& pair = nodes.samples.pairs[i];
     if (!(least_cosine(pair) > kLeastCosine)) continue;
-    problem.rows.push_back(row_of(pair.wi, pair.wo));
+    problem.rows.push_back(unknowns.row_of(pair.wi, pair.wo));
     problem.weights.push_back(nodes.weights[i] * std::min(1.0, least_cosine(pair) / kFullCosine));
     total += problem.weights.back();
     for (std::size_t c = 0; c < channels; ++c) {
@@ -153,8 +177,8 @@ Problem problem_of(const MeasuredNodes& nodes) {
 
 /// Weighted least squares; the unknowns as [unknown][channel].
 std::vector<double> solve(const Problem& problem, const std::vector<double>& weights, EnvelopeMatrix matrix) {
-  const std::size_t channels = problem.largest.size();
-  std::vector<std::vector<double>> right(channels, std::vector<double>(kUnknowns));
+  const std::size_t channels = problem.largest.size(), unknowns = matrix.size();
+  std::vector<std::vector<double>> right(channels, std::vector<double>(unknowns));
   for (std::size_t i = 0; i < problem.rows.size(); ++i) {
     const Row& row = problem.rows[i];
     for (std::size_t a = 0; a < row.index.size(); ++a) {
@@ -168,10 +192,10 @@ std::vector<double> solve(const Problem& problem, const std::vector<double>& wei
     }
   }
   matrix.factor();
-  std::vector<double> values(kUnknowns * channels);
+  std::vector<double> values(unknowns * channels);
   for (std::size_t c = 0; c < channels; ++c) {
     matrix.solve(right[c]);
-    for (std::size_t u = 0; u < kUnknowns; ++u) values[u * channels + c] = right[c][u];
+    for (std::size_t u = 0; u < unknowns; ++u) values[u * channels + c] = right[c][u];
   }
   return values;
 }
@@ -186,13 +210,15 @@ double logarithm(const Row& row, const std::vector<double>& values, std::size_t 
 
 }  // namespace
 
-SmoothedNodes::SmoothedNodes(const MeasuredNodes& nodes, const NodeSmoothness& smoothness)
-    : channels_(nodes.samples.channels) {
+SmoothedNodes::SmoothedNodes(const MeasuredNodes& nodes, const NodeSmoothness& smoothness,
+                             const NodeVolume& volume)
+    : channels_(nodes.samples.channels), volume_(volume) {
   if (!nodes.samples.isotropic)
     throw Error("smooth function through nodes: expected an isotropic source, found an anisotropic one");
   const auto channels = static_cast<std::size_t>(channels_);
-  const Problem problem = problem_of(nodes);
-  const EnvelopeMatrix stiff = stiffness(smoothness);
+  const Unknowns unknowns(volume);
+  const Problem problem = problem_of(nodes, unknowns);
+  const EnvelopeMatrix stiff = stiffness(unknowns, smoothness);
   std::vector<double> weights = problem.weights;
   values_ = solve(problem, weights, stiff);
   // towards the absolute error, the mean over the channels
@@ -212,7 +238,7 @@ SmoothedNodes::SmoothedNodes(const MeasuredNodes& nodes, const NodeSmoothness& s
 bool SmoothedNodes::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   std::ranges::fill(f, 0.0);
   if (!(wi.z > 0 && wo.z > 0)) return true;
-  const Row row = row_of(wi, wo);
+  const Row row = Unknowns(volume_).row_of(wi, wo);
   for (std::size_t c = 0; c < f.size(); ++c)
     f[c] = std::clamp(std::exp(logarithm(row, values_, f.size(), c)) - kFloor, 0.0, 2 * largest_[c]);
   return true;
@@ -220,25 +246,22 @@ bool SmoothedNodes::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
 
 MeasuredNodes with_gaps_filled(const MeasuredNodes& fitted, const MeasuredNodes& all, BrdfRef function) {
   // the places that nodes touch
-  std::vector<std::uint8_t> touched(kVolume);
+  const Unknowns unknowns(kGuessed);
+  std::vector<std::uint8_t> touched(unknowns.volume);
   for (const DirectionPair& pair : all.samples.pairs) {
     if (!(least_cosine(pair) > kLeastCosine)) continue;
-    const Row row = row_of(pair.wi, pair.wo);
+    const Row row = unknowns.row_of(pair.wi, pair.wo);
     for (std::size_t corner = 0; corner < 8; ++corner) touched[row.index[corner]] = 1;
   }
 
   MeasuredNodes filled = fitted;
   std::uint32_t group = all.group_count();
   std::vector<double> f(static_cast<std::size_t>(function.channels()));
-  for (std::size_t i = 0; i < kVolume; ++i) {
+  for (std::size_t i = 0; i < unknowns.volume; ++i) {
     if (touched[i]) continue;
-    const auto part = [&](std::size_t axis) {
-      return static_cast<double>(i / kStrides[axis] % kCounts[axis]) / static_cast<double>(kCounts[axis] - 1);
-    };
-    const auto [wi, wo] = from_half_diff(
-        {.theta_h = kHalfPi * part(0) * part(0), .theta_d = kHalfPi * part(1), .phi_d = kHalfPi * part(2)});
-    if (!(least_cosine({wi, wo}) > kLeastCosine) || !function.eval(wi, wo, f)) continue;
-    filled.samples.pairs.push_back({wi, wo});
+    const DirectionPair pair = unknowns.directions(i);
+    if (!(least_cosine(pair) > kLeastCosine) || !function.eval(pair.wi, pair.wo, f)) continue;
+    filled.samples.pairs.push_back(pair);
     filled.samples.values.insert(filled.samples.values.end(), f.begin(), f.end());
     filled.weights.push_back(kGuessWeight);
     filled.groups.push_back(group++);
