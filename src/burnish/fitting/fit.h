@@ -35,7 +35,9 @@ struct OneLobe {
 /// The model that serves a number of bytes best, at most so many as FactoredBrdf::bytes counts them, of several
 /// lobes of lines and grids, or within a number of fetches of whatever serves best within both.
 struct Budget {
-  std::uint64_t bytes = 2700;
+  /// None: the least of some numbers of bytes beyond which more would store noise or hardly help, see
+  /// BudgetChoice; within the fetches of default_budget unless they, lobes or a search are asked for.
+  std::optional<std::uint64_t> bytes = 2700;
   int fetches = 0;      ///< filtered reads of one evaluation, see fetch_count; 0: as many as serve it best
   int lobes = 0;        ///< 0: as many as serve it best; without fetches
   bool search = false;  ///< search_plan first; without fetches

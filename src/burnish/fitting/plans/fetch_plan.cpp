@@ -197,6 +197,20 @@ bool takes_lobes(BrdfRef source, const CostLimit& limit) {
              static_cast<std::size_t>(limit.fetches);
 }
 
+bool holds_model(BrdfRef source, const CostLimit& limit) {
+  if (takes_lobes(source, limit))
+    return plan_fits(plan_within(source, limit), limit.bytes, source.channels(), limit.texel_bytes);
+  try {
+    if (source.isotropic())
+      volume_spec(kForms[0], limit, source.channels(), true);
+    else
+      hemisphere_spec(limit, source.channels());
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 LobePlan plan_within(BrdfRef source, const CostLimit& limit) {
   if (source.isotropic()) return plan_for(source, limit.bytes, 0, limit.texel_bytes);
   LobePlan plan = default_plan(limit.bytes, 2, false, limit.texel_bytes);

@@ -18,6 +18,8 @@ struct CostLimit {
 /// Whether lobes of lines or hemispheres serve better than a model with a volume: of an isotropic source where few
 /// bytes are left and default_plan is within the limit, of another where few bytes or fewer than four fetches are.
 bool takes_lobes(BrdfRef source, const CostLimit& limit);
+/// Whether the limit holds the tables of a model.
+bool holds_model(BrdfRef source, const CostLimit& limit);
 /// default_plan, of an anisotropic source with as many of its factors as the fetches allow.
 LobePlan plan_within(BrdfRef source, const CostLimit& limit);
 
