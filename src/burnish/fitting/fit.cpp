@@ -213,10 +213,32 @@ class Fitter {
     return parse_model_spec(form.model, form.tables, brdf_.isotropic());
   }
 
-  FactoredBrdf fit_to_budget(const Budget& form, std::uint64_t bytes) {
-    if (form.fetches > 0) return fit_within(form, bytes);
+  FactoredBrdf fit_to_budget(Budget form, std::uint64_t bytes) {
+    if (form.fetches == 0) check_budget(form, bytes);
+    std::vector<FetchTrial> trials = fetch_trials(form, bytes);
+    if (!trials.empty())
+      if (const FetchTrial& chosen = trial_at_knee(trials); !chosen.lobes) form.fetches = chosen.fetches;
+    FactoredBrdf brdf = form.fetches > 0 ? fit_within(form, bytes) : fit_lobes_to(form, bytes);
+    std::get<LobesReport>(report_.how).fetch_trials = std::move(trials);
+    return brdf;
+  }
+
+  /// How models of an isotropic source do with few fetches and with many, where a choice is left.
+  std::vector<FetchTrial> fetch_trials(const Budget& form, std::uint64_t bytes) const {
+    if (form.fetches > 0 || form.lobes > 0 || form.search || !brdf_.isotropic()) return {};
+    const CostLimit limit = limit_of(bytes, 0);
+    const TrainingSet set =
+        with_frontal_pixels(reference(), drawn_set(training_for_volumes(limit)), kFrontalShare);
+    return try_fetches(reference(), set, limit, refine_options(form.loss));
+  }
+
+  CostLimit limit_of(std::uint64_t bytes, int fetches) const {
+    return {.bytes = bytes, .texel_bytes = texel_bytes(format(), channels()), .fetches = fetches};
+  }
+
+  /// Lobes of lines or hemispheres.
+  FactoredBrdf fit_lobes_to(const Budget& form, std::uint64_t bytes) {
     const std::size_t texel = texel_bytes(format(), channels());
-    check_budget(form, bytes);
     TrainingOptions drawn = training_for(bytes, texel, brdf_.isotropic());
     drawn.seed = options_.seed;
     const TrainingSet set = drawn_set(drawn);
@@ -249,8 +271,7 @@ class Fitter {
   /// Whether the bytes hold every table of the plan that they give.
   bool fits(const Budget& form, std::size_t bytes) const {
     const std::size_t texel = texel_bytes(format(), channels());
-    if (form.fetches > 0)
-      return holds_model(reference(), {.bytes = bytes, .texel_bytes = texel, .fetches = form.fetches});
+    if (form.fetches > 0) return holds_model(reference(), limit_of(bytes, form.fetches));
     return plan_fits(default_plan(bytes, form.lobes, brdf_.isotropic(), texel), bytes, channels(), texel);
   }
 
@@ -309,8 +330,7 @@ class Fitter {
 
   /// Within a number of fetches: lobes of lines or hemispheres, or one lobe with a volume.
   FactoredBrdf fit_within(const Budget& form, std::uint64_t bytes) {
-    const CostLimit limit{
-        .bytes = bytes, .texel_bytes = texel_bytes(format(), channels()), .fetches = form.fetches};
+    const CostLimit limit = limit_of(bytes, form.fetches);
     LobesReport report{.loss = form.loss, .budget = bytes, .fetches = form.fetches};
     RefineOptions refine = refine_options(form.loss);
     if (takes_lobes(reference(), limit)) {

@@ -45,6 +45,14 @@ struct SearchReport {
   std::vector<std::pair<std::string, double>> kept;
 };
 
+/// A number of fetches that was tried on part of the pairs, the mean of their channels, in few steps.
+struct FetchTrial {
+  int fetches = 0;
+  bool lobes = false;  ///< several lobes of lines; else one with a volume
+  /// exp of the objective over the sum of its shares: a geometric mean of errors, on pairs that were not fitted.
+  double error = 0;
+};
+
 /// Several lobes, refined together.
 struct LobesReport {
   FitSummary summary;       ///< errors are objectives, see refine
@@ -52,7 +60,8 @@ struct LobesReport {
   std::size_t lobes = 0;
   FitLoss loss = FitLoss::image;
   std::uint64_t budget = 0;      ///< bytes; 0: the lobes were given
-  int fetches = 0;               ///< of the budget; 0: as many as serve it best
+  int fetches = 0;               ///< of the budget; 0: as many as the lobes take
+  std::vector<FetchTrial> fetch_trials = {};  ///< where they were chosen
   std::optional<double> smooth;  ///< where it was chosen
   std::optional<SearchReport> search;
 };
@@ -132,7 +141,7 @@ struct FitReport {
 
 /// A JSON object in one line, the notes that a model's file keeps: source, source_format, symmetrized; of one
 /// lobe samples, smooth, floor, reweightings, rms_log_before, rms_log_after, iterations, stop_reason,
-/// smooth_shares, relative, relative_cross_validated; of several search, budget, fetches, smooth, samples, lobes,
+/// smooth_shares, relative, relative_cross_validated; of several search, budget, fetches, fetch_trials, smooth, samples, lobes,
 /// loss, iterations, stop_reason, objective; of baselines method, budget, layouts_tried, error_before,
 /// error_after, starts, iterations, stop_reason; of a chosen number of bytes budget_choice; of nodes target, nodes, node_smoothness, node_held_out, node_fit,
 /// node_test; then conserve_energy, psnr, ssim, relative, rms_log, log_cos
