@@ -141,12 +141,15 @@ void print(const BudgetChoice& choice) {
       case BudgetStop::noise:
         return fmt::format("no worse than the measurement itself ({}; itself {})", text_of(last().error),
                            text_of(*choice.noise));
-      case BudgetStop::floor: return fmt::format("relative {:.4f} is little", last().error.relative);
+      case BudgetStop::floor:
+        return fmt::format("relative {:.4f} is little", last().error.relative);
       case BudgetStop::gain:
         return fmt::format("{} bytes would hardly help: relative {:.4f} instead of {:.4f}", last().bytes,
                            last().error.relative, choice.trials[choice.trials.size() - 2].error.relative);
-      case BudgetStop::largest: return std::string("the most that is tried");
-      case BudgetStop::cross_validation: return std::string("what predicts held-out samples best");
+      case BudgetStop::largest:
+        return std::string("the most that is tried");
+      case BudgetStop::cross_validation:
+        return std::string("what predicts held-out samples best");
     }
     return std::string();
   }();

@@ -110,7 +110,8 @@ class Fitter {
   }
 
   Fitted fit(const Budget& form) {
-    if (form.bytes == std::uint64_t{0}) throw Error("fit: expected a budget of at least one byte, found none");
+    if (form.bytes == std::uint64_t{0})
+      throw Error("fit: expected a budget of at least one byte, found none");
     if (form.fetches < 0 || (form.fetches > 0 && (form.lobes > 0 || form.search)))
       throw Error("fit: expected fetches >= 0, and with them neither a number of lobes nor a search");
     return form.bytes ? fit_to_bytes(form, *form.bytes) : fit_to_noise(form);

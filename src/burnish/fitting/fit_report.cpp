@@ -51,7 +51,8 @@ Json json_of(const LobesReport& report) {
   if (report.budget > 0) json["budget"] = report.budget;
   if (report.fetches > 0) json["fetches"] = report.fetches;
   for (const FetchTrial& trial : report.fetch_trials)
-    json["fetch_trials"].push_back({{"fetches", trial.fetches}, {"lobes", trial.lobes}, {"error", trial.error}});
+    json["fetch_trials"].push_back(
+        {{"fetches", trial.fetches}, {"lobes", trial.lobes}, {"error", trial.error}});
   if (report.smooth) json["smooth"] = *report.smooth;
   json["samples"] = report.samples;
   json["lobes"] = report.lobes;

@@ -59,10 +59,10 @@ struct LobesReport {
   std::size_t samples = 0;  ///< pairs fitted
   std::size_t lobes = 0;
   FitLoss loss = FitLoss::image;
-  std::uint64_t budget = 0;      ///< bytes; 0: the lobes were given
-  int fetches = 0;               ///< of the budget; 0: as many as the lobes take
+  std::uint64_t budget = 0;                   ///< bytes; 0: the lobes were given
+  int fetches = 0;                            ///< of the budget; 0: as many as the lobes take
   std::vector<FetchTrial> fetch_trials = {};  ///< where they were chosen
-  std::optional<double> smooth;  ///< where it was chosen
+  std::optional<double> smooth;               ///< where it was chosen
   std::optional<SearchReport> search;
 };
 

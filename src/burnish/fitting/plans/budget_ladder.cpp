@@ -12,8 +12,7 @@ namespace burnish {
 namespace {
 
 ErrorLevel level_of(const ErrorFigures& figures) {
-  return {
-      .relative = figures.relative, .log_cos = figures.log_cos, .rms = figures.rms, .psnr = figures.psnr};
+  return {.relative = figures.relative, .log_cos = figures.log_cos, .rms = figures.rms, .psnr = figures.psnr};
 }
 ErrorLevel level_of(const NodeFigures& figures) {
   return {.relative = figures.relative, .log_cos = figures.log_cos, .rms = figures.rms, .psnr = {}};
@@ -47,8 +46,7 @@ ErrorLevel NoiseScale::error_of(BrdfRef model) const {
 
 double NoiseScale::excess(const ErrorLevel& error) const noexcept {
   if (!noise_) return error.relative / kLeastRelative;
-  const double picture =
-      error.psnr && noise_->psnr ? std::pow(10, (*noise_->psnr - *error.psnr) / 20) : 0;
+  const double picture = error.psnr && noise_->psnr ? std::pow(10, (*noise_->psnr - *error.psnr) / 20) : 0;
   return std::max({error.relative / std::max(noise_->relative, kLeastRelative),
                    ratio(error.log_cos, noise_->log_cos), ratio(error.rms, noise_->rms), picture});
 }

@@ -49,7 +49,7 @@ constexpr int kCoarseSteps = 10, kFullSteps = 6, kHeldSteps = 4, kManyFullSteps 
 const HomomorphicOptions kStart{.smooth = 1e-5, .floor = PictureLoss::kFloor, .tolerance = 0.03};
 // Trials: every so many pairs, in so few steps, for gains that another draw of pairs would not give.
 constexpr std::size_t kTrialPart = 8;
-constexpr int kTrialSteps = 4, kLobesTrialSteps = 12;
+constexpr int kTrialSteps = 4, kLobesTrialSteps = 30;
 constexpr int kFetches[] = {2, 3, 4, 6, 8, 12, 24};
 
 constexpr double kGoldenStep = 0.6180339887498949;  // of azimuths
@@ -289,7 +289,8 @@ std::vector<FetchTrial> try_fetches(BrdfRef source, const TrainingSet& set, Cost
       next.spec = volume_spec(kForms[0], limit, source.channels(), twisted);
       next.fetches = static_cast<int>(fetch_count(*next.spec));
     }
-    if (candidates.empty() || candidates.back().fetches != next.fetches) candidates.push_back(std::move(next));
+    if (candidates.empty() || candidates.back().fetches != next.fetches)
+      candidates.push_back(std::move(next));
   }
 
   // side by side
@@ -308,8 +309,8 @@ std::vector<FetchTrial> try_fetches(BrdfRef source, const TrainingSet& set, Cost
 
 const FetchTrial& trial_at_knee(std::span<const FetchTrial> trials) {
   const double least = std::ranges::min(trials, {}, &FetchTrial::error).error;
-  return *std::ranges::find_if(
-      trials, [&](const FetchTrial& trial) { return trial.error <= kKneeFactor * least; });
+  return *std::ranges::find_if(trials,
+                               [&](const FetchTrial& trial) { return trial.error <= kKneeFactor * least; });
 }
 
 ModelSpec hemisphere_spec(const CostLimit& limit, int channels) {

@@ -38,7 +38,7 @@ std::vector<ModelSpec> volume_specs(BrdfRef source, const CostLimit& limit);
 ModelSpec hemisphere_spec(const CostLimit& limit, int channels);
 
 /// The error of the models of an isotropic source that try_fetches looks at may be this many times the least.
-inline constexpr double kKneeFactor = 1.1;
+inline constexpr double kKneeFactor = 1.02;
 
 /// Models of 2, 3, 4, 6, 8, 12 and 24 fetches that the bytes hold, and lobes of lines where takes_lobes has them for
 /// as many as they take: each fitted to part of the set in few steps and judged on another. By rising fetches; the
