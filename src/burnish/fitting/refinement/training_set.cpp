@@ -26,7 +26,8 @@ constexpr double kCrowdedPixelCosine = 1e-3;
 constexpr double kExposedShare = 0.97;  // as in the error figures
 constexpr std::size_t kChunk = 4096;
 constexpr double kMaxAlbedoTheta = radians(70), kLeastAlbedo = 1e-4, kAlbedoPrecision = 2e-3;
-constexpr std::size_t kAlbedoThetas = 15, kAlbedoRings = 64, kAlbedoAzimuths = 16;
+constexpr double kRingTurn = 0.6180339887498949;  // the golden ratio's: rings near one another differ
+constexpr std::size_t kAlbedoThetas = 15, kAlbedoRings = 64, kAlbedoAzimuths = 32;
 
 // Points of the additive recurrence of the generalized golden ratio in five dimensions: phi^6 = phi + 1
 // [Roberts 2018].
@@ -225,7 +226,9 @@ AlbedoSet albedo_set(BrdfRef source) {
         const double half = slope > 0   ? std::acos(std::clamp(-level / slope, -1.0, 1.0))
                             : level > 0 ? kPi
                                         : 0;
-        const double azimuth = half * ((2 * static_cast<double>(j) + 1) / kAlbedoAzimuths - 1);
+        // points of one ring stand between those of the next: a fine model would fit itself to a pattern
+        const double shift = std::fmod((static_cast<double>(ring) + 0.5) * kRingTurn, 1.0);
+        const double azimuth = half * (2 * (static_cast<double>(j) + shift) / kAlbedoAzimuths - 1);
         const Vec3 wo = around_specular(theta, phi, azimuth, radius);
         const double area = std::sin(radius) * 2 * most * u / kAlbedoRings * 2 * half / kAlbedoAzimuths;
         const bool counts = wo.z > 0 && source.eval(wi, wo, f);
