@@ -57,7 +57,9 @@ std::optional<BudgetStop> stop_after(std::span<const BudgetTrial> trials, bool n
   if (trials.size() > 1) {
     const BudgetTrial& before = trials[trials.size() - 2];
     const double doublings = std::log2(static_cast<double>(last.bytes) / static_cast<double>(before.bytes));
-    if (last.excess > before.excess * std::pow(1 - kLeastGain, doublings)) return BudgetStop::gain;
+    const double enough = std::pow(1 - kLeastGain, doublings);
+    if (last.excess > before.excess * enough && last.error.relative > before.error.relative * enough)
+      return BudgetStop::gain;
   }
   if (last.bytes >= kBudgetLadder.back()) return BudgetStop::largest;
   return {};

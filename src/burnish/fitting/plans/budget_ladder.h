@@ -46,8 +46,8 @@ class NoiseScale {
 };
 
 /// Why no more bytes are tried after these trials, whose bytes rise; nothing: go on. Noise (or without it the floor)
-/// where the last one's excess is at most 1, gain where it is not lower than that of the trial before by kLeastGain
-/// each time the bytes double, largest at the end of the ladder. Precondition: at least one trial.
+/// where the last one's excess is at most 1, gain where neither it nor the relative error is lower than that of the
+/// trial before by kLeastGain each time the bytes double, largest at the end of the ladder. Precondition: at least one trial.
 std::optional<BudgetStop> stop_after(std::span<const BudgetTrial> trials, bool noise_known);
 
 }  // namespace burnish

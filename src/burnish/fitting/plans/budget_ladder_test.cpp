@@ -12,7 +12,8 @@ namespace burnish {
 namespace {
 
 BudgetTrial trial(std::uint64_t bytes, double excess) {
-  return {.bytes = bytes, .error = {}, .excess = excess};
+  const ErrorLevel error{.relative = excess / 100, .log_cos = {}, .rms = {}, .psnr = {}};
+  return {.bytes = bytes, .error = error, .excess = excess};
 }
 
 TEST(BudgetLadder, EndsAtTheNoiseOrWhereBytesHardlyHelp) {
@@ -22,6 +23,10 @@ TEST(BudgetLadder, EndsAtTheNoiseOrWhereBytesHardlyHelp) {
   EXPECT_EQ(stop_after(Trials{trial(700, 1)}, false), BudgetStop::floor);
   EXPECT_EQ(stop_after(Trials{trial(700, 3), trial(1400, 2.8)}, true), BudgetStop::gain);
   EXPECT_EQ(stop_after(Trials{trial(700, 3), trial(1400, 2.6)}, true), std::nullopt);
+  // one error that falls is enough to go on
+  Trials relative{trial(700, 3), trial(1400, 3)};
+  relative.back().error.relative = 0.02;
+  EXPECT_EQ(stop_after(relative, true), std::nullopt);
   // over half a doubling half of that gain is asked for
   EXPECT_EQ(stop_after(Trials{trial(10'000, 3), trial(14'142, 2.8)}, true), std::nullopt);
   EXPECT_EQ(stop_after(Trials{trial(32'768, 9), trial(65'536, 3)}, true), BudgetStop::largest);
