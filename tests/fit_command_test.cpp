@@ -75,6 +75,8 @@ TEST_F(FitCommand, IsTheLibrarysFit) {
               {.form = GivenLobes{"p(wo) q(h) p(wi) + s(h)", {"s=6"}, FitLoss::log_cos}});
   expect_same(kPaint, "--method analytic:cook-torrance --samples 2000",
               {.form = BaselineMethod{"analytic:cook-torrance"}, .samples = 2000});
+  expect_same(kPaint, "--budget auto --loss log_cos",
+              {.form = Budget{.bytes = {}, .loss = FitLoss::log_cos}});
   expect_same(kPaint, "--method nd --budget 400", {.form = BaselineMethod{"nd", 400}});
   const std::string samples = scattered();
   expect_same(samples, "", {});

@@ -12,6 +12,7 @@
 #include <burnish/file.h>
 #include <burnish/fitting/baselines/baselines.h>
 #include <burnish/fitting/fit_file.h>
+#include <burnish/fitting/plans/fetch_plan.h>
 #include <burnish/math/parallel.h>
 #include <burnish/shaders/shader.h>
 
@@ -28,11 +29,30 @@ struct FitArguments {
   SourceArguments source;
   FitOptions options;
   OneLobe one_lobe{.model = ""};
-  Budget budget{.bytes = 0};
-  std::string out, method, target = "function", hold_out, loss = "image", smooth = "default", format;
+  Budget budget{.bytes = {}};
+  std::string bytes, out, method, target = "function", hold_out, loss = "image", smooth = "default", format;
   int threads = 0;
   bool no_symmetrize = false, json = false;
 };
+
+constexpr std::string_view kAuto = "auto";
+
+// A number as AsSizeValue leaves it; nothing for auto or where nothing is given.
+std::optional<std::uint64_t> parse_bytes(const std::string& text) {
+  std::uint64_t bytes = 0;
+  if (text.empty() || text == kAuto) return {};
+  if (!CLI::detail::lexical_cast(text, bytes) || bytes == 0)
+    throw CLI::ValidationError(
+        fmt::format("--budget: expected auto or a number of bytes above 0, found '{}'", text));
+  return bytes;
+}
+
+// Reads "16K" as 16384 and leaves auto.
+CLI::Validator bytes_or_auto() {
+  const CLI::AsSizeValue size(false);
+  return {[size](std::string& text) { return text == kAuto ? std::string() : size(text); },
+          "SIZE [b, kb(=1024b), ...] or auto", "bytes_or_auto"};
+}
 
 double parse_smooth(const std::string& text) {
   double smooth = -1;
@@ -53,13 +73,18 @@ std::function<void(std::string_view, double)> progress_bars() {
 }
 
 FitForm fit_form(const FitArguments& arguments, bool isotropic) {
-  if (!arguments.method.empty())
-    return BaselineMethod{.method = arguments.method, .bytes = arguments.budget.bytes};
+  const std::optional<std::uint64_t> bytes = parse_bytes(arguments.bytes);
+  if (!arguments.method.empty()) {
+    if (arguments.bytes == kAuto)
+      throw CLI::ValidationError("--budget: expected a number of bytes with --method, found 'auto'");
+    return BaselineMethod{.method = arguments.method, .bytes = bytes.value_or(0)};
+  }
   LogLinear how = arguments.one_lobe.how;
   how.cross_validate = arguments.smooth == "auto";
   const FitLoss loss = parse_fit_loss(arguments.loss);
-  if (arguments.budget.bytes > 0) {
+  if (!arguments.bytes.empty()) {
     Budget budget = arguments.budget;
+    budget.bytes = bytes;
     budget.loss = loss;
     budget.scattered = how;
     return budget;
@@ -95,10 +120,45 @@ void print(const OneLobeReport& report) {
 }
 
 void print(const LobesReport& report) {
+  if (const auto& trials = report.fetch_trials; !trials.empty())
+    fmt::print("fetches    {} of {} to {} tried, within {:.0f} % of the least error\n",
+               trial_at_knee(trials).fetches, trials.front().fetches, trials.back().fetches,
+               100 * (kKneeFactor - 1));
   fmt::print("fitted     {} samples, {} lobes, {} steps ({})\n", report.samples, report.lobes,
              report.summary.iterations, to_string(report.summary.stop_reason));
   if (report.search)
     fmt::print("searched   {} changes, {} kept\n", report.search->trials, report.search->kept.size());
+}
+
+std::string text_of(const ErrorLevel& level) {
+  std::string text = fmt::format("relative {:.4f}", level.relative);
+  if (level.log_cos) text += fmt::format(", log_cos {:.4f}", *level.log_cos);
+  if (level.rms) text += fmt::format(", rms {:.3g}", *level.rms);
+  if (level.psnr) text += fmt::format(", psnr {:.2f}", *level.psnr);
+  return text;
+}
+
+// One line: how many bytes, and why.
+void print(const BudgetChoice& choice) {
+  const auto last = [&] { return choice.trials.back(); };
+  const std::string why = [&] {
+    switch (choice.stop) {
+      case BudgetStop::noise:
+        return fmt::format("no worse than the measurement itself ({}; itself {})", text_of(last().error),
+                           text_of(*choice.noise));
+      case BudgetStop::floor:
+        return fmt::format("relative {:.4f} is little", last().error.relative);
+      case BudgetStop::gain:
+        return fmt::format("{} bytes would hardly help: relative {:.4f} instead of {:.4f}", last().bytes,
+                           last().error.relative, choice.trials[choice.trials.size() - 2].error.relative);
+      case BudgetStop::largest:
+        return std::string("the most that is tried");
+      case BudgetStop::cross_validation:
+        return std::string("what predicts held-out samples best");
+    }
+    return std::string();
+  }();
+  fmt::print("budget     {} bytes: {}\n", choice.bytes, why);
 }
 
 void print(const EnergyReport& report) {
@@ -130,6 +190,7 @@ void print_model(const FactoredBrdf& model, const FitReport& report) {
     print(*one_lobe);
   else
     print(std::get<LobesReport>(report.how));
+  if (report.budget_choice) print(*report.budget_choice);
   if (report.nodes) print(*report.nodes);
   if (report.energy) print(*report.energy);
   if (report.held_out) {
@@ -184,17 +245,19 @@ void fit(const FitArguments& arguments) {
 
 void add_lobes_arguments(CLI::App& verb, FitArguments& arguments) {
   Budget& budget = arguments.budget;
-  verb.add_option("--budget", budget.bytes,
-                  "bytes: fits the best model of several lobes that this many hold; K and M count as 1024s")
-      ->transform(CLI::AsSizeValue(false));
   verb.add_option(
-          "--fetches", budget.fetches,
-          "of --budget: at most this many filtered reads of tables an evaluation (default: as many as serve "
-          "it best)")
+          "--budget", arguments.bytes,
+          "bytes: fits the best model that this many hold; K and M count as 1024s; auto: until more would "
+          "store the measurement's noise or hardly help")
+      ->transform(bytes_or_auto());
+  verb.add_option("--fetches", budget.fetches,
+                  "of --budget: at most this many filtered reads of tables an evaluation (default: the "
+                  "fewest of those "
+                  "tried within two percent of the least error; with auto 2, of anisotropic sources 6)")
       ->check(CLI::Range(1, 256))
       ->needs("--budget")
       ->excludes("--method");
-  verb.add_option("--lobes", budget.lobes, "of --budget (default: as many as serve it best)")
+  verb.add_option("--lobes", budget.lobes, "of --budget: lobes of lines or hemispheres, this many")
       ->check(CLI::Range(1, 64))
       ->needs("--budget")
       ->excludes("--fetches");
@@ -217,6 +280,7 @@ void add_fit_command(CLI::App& app) {
       "Examples: burnish fit paint.binary -o paint.exr\n"
       "          burnish fit paint.binary -o paint.exr --budget 2700\n"
       "          burnish fit paint.binary -o paint.exr --budget 16K --fetches 2\n"
+      "          burnish fit paint.binary -o paint.exr --budget auto\n"
       "          burnish fit paint.binary -o paint.exr --model \"p(wo) q(h) r(theta_d) p(wi)\" --table q=96\n"
       "          burnish fit paint.binary -o paint.json --method svd --budget 2700");
   auto arguments = std::make_shared<FitArguments>();

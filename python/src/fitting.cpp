@@ -22,9 +22,17 @@ std::function<void(std::string_view, double)> progress_of(nb::handle callback) {
   };
 }
 
+// Nothing for "auto".
+std::optional<std::uint64_t> bytes_of(const std::variant<std::uint64_t, std::string>& budget) {
+  if (const auto* number = std::get_if<std::uint64_t>(&budget)) return *number;
+  if (const auto& word = std::get<std::string>(budget); word != "auto")
+    throw Error("budget: expected \"auto\" or a number of bytes, found '" + word + "'");
+  return {};
+}
+
 OpenedModel* fit(const OpenedBrdf& source, const std::string& model, const std::vector<std::string>& tables,
-                 std::uint64_t budget, int fetches, int lobes, bool search, const std::string& loss,
-                 const std::variant<std::monostate, double, std::string>& smooth,
+                 const std::variant<std::uint64_t, std::string>& budget, int fetches, int lobes, bool search,
+                 const std::string& loss, const std::variant<std::monostate, double, std::string>& smooth,
                  std::optional<int> reweightings, double floor, const std::optional<std::string>& format,
                  std::size_t samples, std::uint64_t seed, bool symmetrize, bool conserve_energy,
                  const nb::object& progress) {
@@ -41,8 +49,9 @@ OpenedModel* fit(const OpenedBrdf& source, const std::string& model, const std::
     how.cross_validate = true;
   }
   if (format) options.format = parse_table_format(*format);
-  if (budget > 0)
-    options.form = Budget{.bytes = budget,
+  const std::optional<std::uint64_t> bytes = bytes_of(budget);
+  if (bytes != std::uint64_t{0})
+    options.form = Budget{.bytes = bytes,
                           .fetches = fetches,
                           .lobes = lobes,
                           .search = search,
@@ -69,8 +78,11 @@ void bind_fitting(nb::module_& m) {
       "that serves most uses.\n\n"
       "model: product of tables over projections, \"pqp\", \"pqpr\" or such as\n"
       "\"p(wo) q(h) r(theta_d) p(wi)\", several lobes joined by +; tables: sizes such as \"q=96\" or\n"
-      "\"p=16x16,identity\". budget: bytes, fits the best model of several lobes that they hold instead\n"
-      "(fetches: at most so many filtered reads of tables an evaluation; lobes: how many; search: look for "
+      "\"p=16x16,identity\". budget: bytes, fits the best model that they hold instead; \"auto\": until "
+      "more\n"
+      "would store noise or hardly help\n"
+      "(fetches: at most so many filtered reads of tables an evaluation, else at the knee; lobes: how many; "
+      "search: look for "
       "factors\n"
       "and sizes first). loss: \"image\", \"relative\" or\n"
       "\"log_cos\", what several lobes are refined for. smooth: number >= 0, \"auto\" (cross-validation) or\n"

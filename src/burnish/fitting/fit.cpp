@@ -14,6 +14,7 @@
 #include <burnish/fitting/numerics/node_numbers.h>
 #include <burnish/fitting/one_lobe/cross_validation.h>
 #include <burnish/fitting/one_lobe/log_error.h>
+#include <burnish/fitting/plans/budget_ladder.h>
 #include <burnish/fitting/plans/fetch_plan.h>
 #include <burnish/fitting/plans/fit_plan.h>
 #include <burnish/fitting/plans/overfit.h>
@@ -112,11 +113,16 @@ class Fitter {
   }
 
   Fitted fit(const Budget& form) {
-    if (form.bytes == 0) throw Error("fit: expected a budget of at least one byte, found none");
+    if (form.bytes == std::uint64_t{0})
+      throw Error("fit: expected a budget of at least one byte, found none");
     if (form.fetches < 0 || (form.fetches > 0 && (form.lobes > 0 || form.search)))
       throw Error("fit: expected fetches >= 0, and with them neither a number of lobes nor a search");
+    return form.bytes ? fit_to_bytes(form, *form.bytes) : fit_to_noise(form);
+  }
+
+  FactoredBrdf fit_to_bytes(const Budget& form, std::uint64_t bytes) {
     // few scattered samples do not carry several lobes
-    return samples() && !nodes_ ? fit_scattered(form) : fit_to_budget(form);
+    return scattered() ? fit_scattered(form, bytes) : fit_to_budget(form, bytes);
   }
 
   Fitted fit(const BaselineMethod& form) {
@@ -169,12 +175,12 @@ class Fitter {
   }
 
   /// The lobe for scattered samples that predicts best within the budget.
-  FactoredBrdf fit_scattered(const Budget& form) {
+  FactoredBrdf fit_scattered(const Budget& form, std::uint64_t bytes) {
     // the lobe is reciprocal: samples exchanged would say the same again
     const SampleSource source = from_samples(*samples(), false);
     if (options_.format) check_format_of_source(*options_.format);
     HomomorphicOptions options = log_linear_options(form.scattered);
-    const ScatteredPlan plan = plan_scattered(source, form.bytes, options_.smooth, options_.format, options);
+    const ScatteredPlan plan = plan_scattered(source, bytes, options_.smooth, options_.format, options);
     options.smooth = plan.smooth;
     options.format = plan.format;
     OneLobeReport report;
@@ -211,25 +217,47 @@ class Fitter {
     return parse_model_spec(form.model, form.tables, brdf_.isotropic());
   }
 
-  FactoredBrdf fit_to_budget(const Budget& form) {
-    if (form.fetches > 0) return fit_within(form);
+  FactoredBrdf fit_to_budget(Budget form, std::uint64_t bytes) {
+    if (form.fetches == 0) check_budget(form, bytes);
+    std::vector<FetchTrial> trials = fetch_trials(form, bytes);
+    if (!trials.empty())
+      if (const FetchTrial& chosen = trial_at_knee(trials); !chosen.lobes) form.fetches = chosen.fetches;
+    FactoredBrdf brdf = form.fetches > 0 ? fit_within(form, bytes) : fit_lobes_to(form, bytes);
+    std::get<LobesReport>(report_.how).fetch_trials = std::move(trials);
+    return brdf;
+  }
+
+  /// How models of an isotropic source do with few fetches and with many, where a choice is left.
+  std::vector<FetchTrial> fetch_trials(const Budget& form, std::uint64_t bytes) const {
+    if (form.fetches > 0 || form.lobes > 0 || form.search || !brdf_.isotropic()) return {};
+    const CostLimit limit = limit_of(bytes, 0);
+    const TrainingSet set =
+        with_frontal_pixels(reference(), drawn_set(training_for_volumes(limit)), kFrontalShare);
+    return try_fetches(reference(), set, limit, refine_options(form.loss));
+  }
+
+  CostLimit limit_of(std::uint64_t bytes, int fetches) const {
+    return {.bytes = bytes, .texel_bytes = texel_bytes(format(), channels()), .fetches = fetches};
+  }
+
+  /// Lobes of lines or hemispheres.
+  FactoredBrdf fit_lobes_to(const Budget& form, std::uint64_t bytes) {
     const std::size_t texel = texel_bytes(format(), channels());
-    check_budget(form, texel);
-    TrainingOptions drawn = training_for(form.bytes, texel, brdf_.isotropic());
+    TrainingOptions drawn = training_for(bytes, texel, brdf_.isotropic());
     drawn.seed = options_.seed;
     const TrainingSet set = drawn_set(drawn);
     RefineOptions refine = refine_options(form.loss);
     if (smoothed_ && form.loss == FitLoss::image) refine.shares = kNodeShares;
-    LobesReport report{.loss = form.loss, .budget = form.bytes};
+    LobesReport report{.loss = form.loss, .budget = bytes};
 
     // which lobes
     RefineOptions trials = refine;
     trials.progress = progress("choosing lobes");
-    LobePlan plan = plan_for(reference(), set, form.bytes, form.lobes, texel, trials);
+    LobePlan plan = plan_for(reference(), set, bytes, form.lobes, texel, trials);
     if (form.search) {
       const SearchResult found = search_plan(
           set, plan,
-          {.bytes = form.bytes, .texel_bytes = texel, .refine = refine, .progress = progress("searching")});
+          {.bytes = bytes, .texel_bytes = texel, .refine = refine, .progress = progress("searching")});
       plan = found.plan;
       SearchReport& searched = report.search.emplace();
       searched.trials = found.trials.size();
@@ -239,42 +267,86 @@ class Fitter {
 
     // and their tables, as smooth as asked for or as needed
     if (options_.smooth)
-      return finish(fit_plan(set, plan, form.bytes, texel, refine), set, refine, std::move(report));
-    const LobesFit fit = fit_without_overfit(reference(), set, plan, form.bytes, texel, drawn, refine);
+      return finish(fit_plan(set, plan, bytes, texel, refine), set, refine, std::move(report));
+    const LobesFit fit = fit_without_overfit(reference(), set, plan, bytes, texel, drawn, refine);
     report.smooth = refine.smooth;
     return finish(fit, set, refine, std::move(report));
   }
 
-  /// Throws Error unless the bytes hold every table of the plan that they give.
-  void check_budget(const Budget& form, std::size_t texel) const {
-    const auto fits = [&](std::size_t bytes) {
-      return plan_fits(default_plan(bytes, form.lobes, brdf_.isotropic(), texel), bytes, channels(), texel);
-    };
-    if (fits(form.bytes)) return;
-    std::size_t most = form.bytes;
-    while (!fits(most)) most *= 2;
+  /// Whether the bytes hold every table of the plan that they give.
+  bool fits(const Budget& form, std::size_t bytes) const {
+    const std::size_t texel = texel_bytes(format(), channels());
+    if (form.fetches > 0) return holds_model(reference(), limit_of(bytes, form.fetches));
+    return plan_fits(default_plan(bytes, form.lobes, brdf_.isotropic(), texel), bytes, channels(), texel);
+  }
+
+  /// Throws Error unless they do.
+  void check_budget(const Budget& form, std::uint64_t bytes) const {
+    if (fits(form, bytes)) return;
+    std::size_t most = bytes;
+    while (!fits(form, most)) most *= 2;
     std::size_t least = most / 2;  // between what does not fit and what does
-    while (most - least > 1) (fits((least + most) / 2) ? most : least) = (least + most) / 2;
+    while (most - least > 1) (fits(form, (least + most) / 2) ? most : least) = (least + most) / 2;
     throw Error(
         fmt::format("fit: expected a budget of at least {} bytes for {} channels in format {}, found {}",
-                    most, channels(), to_string(format()), form.bytes));
+                    most, channels(), to_string(format()), bytes));
+  }
+
+  /// More and more bytes, until the model errs no more than the measurement itself or they hardly help.
+  FactoredBrdf fit_to_noise(Budget form) {
+    if (scattered() && samples()->size() <= kManySamples) {
+      FactoredBrdf brdf = fit_scattered(form, kBudgetLadder.back());
+      report_.budget_choice = {.bytes = brdf.bytes(), .stop = BudgetStop::cross_validation};
+      return brdf;
+    }
+    if (form.fetches == 0 && form.lobes == 0 && !form.search)
+      form.fetches = default_budget(brdf_.isotropic()).fetches;
+    const NoiseScale scale = noise_scale();
+    BudgetChoice choice{.noise = scale.noise()};
+    std::optional<FactoredBrdf> best;
+    decltype(report_.how) how_best;
+    for (const std::uint64_t bytes : kBudgetLadder) {
+      if (!scattered() && !fits(form, bytes)) continue;
+      at_bytes_ = fmt::format(" to {} bytes", bytes);
+      FactoredBrdf next = fit_to_bytes(form, bytes);
+      const ErrorLevel error = scale.error_of(next);
+      choice.trials.push_back({.bytes = bytes, .error = error, .excess = scale.excess(error)});
+      const auto stop = stop_after(choice.trials, scale.noise().has_value());
+      if (stop != BudgetStop::gain) {
+        best = std::move(next);
+        how_best = std::move(report_.how);
+        choice.bytes = bytes;
+      }
+      if (!stop) continue;
+      choice.stop = *stop;
+      break;
+    }
+    if (!best) return fit_to_bytes(form, kBudgetLadder.back());  // which says how many bytes it takes
+    report_.how = std::move(how_best);
+    report_.budget_choice = std::move(choice);
+    return std::move(*best);
+  }
+
+  NoiseScale noise_scale() const {
+    if (nodes_) return {*nodes_, report_.nodes->held_out};
+    if (const Samples* all = samples()) return {measured_nodes(*all), {}};
+    return {source_, reference(), options_.symmetrize, held_out_of_factors()};
   }
 
   /// Within a number of fetches: lobes of lines or hemispheres, or one lobe with a volume.
-  FactoredBrdf fit_within(const Budget& form) {
-    const CostLimit limit{
-        .bytes = form.bytes, .texel_bytes = texel_bytes(format(), channels()), .fetches = form.fetches};
-    LobesReport report{.loss = form.loss, .budget = form.bytes, .fetches = form.fetches};
+  FactoredBrdf fit_within(const Budget& form, std::uint64_t bytes) {
+    const CostLimit limit = limit_of(bytes, form.fetches);
+    LobesReport report{.loss = form.loss, .budget = bytes, .fetches = form.fetches};
     RefineOptions refine = refine_options(form.loss);
     if (takes_lobes(reference(), limit)) {
-      const TrainingSet set = drawn_set(training_for(form.bytes, limit.texel_bytes, brdf_.isotropic()));
+      const TrainingSet set = drawn_set(training_for(bytes, limit.texel_bytes, brdf_.isotropic()));
       const LobePlan plan = plan_within(reference(), limit);
       return finish(fit_plan(set, plan, limit.bytes, limit.texel_bytes, refine), set, refine,
                     std::move(report));
     }
     if (!brdf_.isotropic()) {
       const ModelSpec spec = hemisphere_spec(limit, channels());
-      const TrainingSet set = drawn_set(training_for(form.bytes, limit.texel_bytes, false));
+      const TrainingSet set = drawn_set(training_for(bytes, limit.texel_bytes, false));
       return finish(fit_lobes(set, spec, refine), set, refine, std::move(report));
     }
     if (form.loss == FitLoss::image) {
@@ -367,6 +439,8 @@ class Fitter {
     if (smoothed_) return nullptr;
     return nodes_ ? &nodes_->samples : source_.samples();
   }
+  /// Whether those are scattered samples of the source.
+  bool scattered() const { return samples() && !nodes_; }
   const HalfDiffTable* table() const { return nodes_ ? nullptr : std::get_if<HalfDiffTable>(&source_.brdf); }
   BrdfRef reference() const {
     if (smoothed_) return *smoothed_;
@@ -445,6 +519,7 @@ class Fitter {
 
   std::function<void(double)> progress(std::string stage) const {
     if (!options_.progress) return nullptr;
+    stage += at_bytes_;
     return [this, stage = std::move(stage)](double fraction) { options_.progress(stage, fraction); };
   }
 
@@ -455,6 +530,7 @@ class Fitter {
   std::optional<MeasuredNodes> nodes_;
   std::optional<SmoothedNodes> smoothed_;
   FitReport report_;
+  std::string at_bytes_;  ///< of a stage of progress, where several numbers of bytes are tried
 };
 
 }  // namespace

@@ -35,9 +35,13 @@ struct OneLobe {
 /// The model that serves a number of bytes best, at most so many as FactoredBrdf::bytes counts them, of several
 /// lobes of lines and grids, or within a number of fetches of whatever serves best within both.
 struct Budget {
-  std::uint64_t bytes = 2700;
-  int fetches = 0;      ///< filtered reads of one evaluation, see fetch_count; 0: as many as serve it best
-  int lobes = 0;        ///< 0: as many as serve it best; without fetches
+  /// None: the least of some numbers of bytes beyond which more would store noise or hardly help, see
+  /// BudgetChoice; within the fetches of default_budget unless they, lobes or a search are asked for.
+  std::optional<std::uint64_t> bytes = 2700;
+  /// Filtered reads of one evaluation, see fetch_count; 0: of an isotropic source the fewest of those tried whose
+  /// error is within two percent of the least, of another as many as its lobes take.
+  int fetches = 0;
+  int lobes = 0;        ///< lobes of lines or hemispheres, without fetches; 0: a choice
   bool search = false;  ///< search_plan first; without fetches
   FitLoss loss = FitLoss::image;
   LogLinear scattered = {};  ///< scattered samples are too few for several lobes: they get one

@@ -14,6 +14,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::array<std::string_view, 3> kLossNames = {"image", "relative", "log_cos"};
+constexpr std::array<std::string_view, 5> kStopNames = {"noise", "floor", "gain", "largest",
+                                                        "cross-validation"};
 
 Json json_of(const ErrorFigures& figures) {
   return {{"psnr", figures.psnr},
@@ -48,6 +50,9 @@ Json json_of(const LobesReport& report) {
   }
   if (report.budget > 0) json["budget"] = report.budget;
   if (report.fetches > 0) json["fetches"] = report.fetches;
+  for (const FetchTrial& trial : report.fetch_trials)
+    json["fetch_trials"].push_back(
+        {{"fetches", trial.fetches}, {"lobes", trial.lobes}, {"error", trial.error}});
   if (report.smooth) json["smooth"] = *report.smooth;
   json["samples"] = report.samples;
   json["lobes"] = report.lobes;
@@ -90,6 +95,25 @@ Json json_of(const NodeFigures& figures) {
           {"log_cos", figures.log_cos}};
 }
 
+Json json_of(const ErrorLevel& level) {
+  Json json{{"relative", level.relative}};
+  if (level.log_cos) json["log_cos"] = *level.log_cos;
+  if (level.rms) json["rms"] = *level.rms;
+  if (level.psnr) json["psnr"] = *level.psnr;
+  return json;
+}
+
+Json json_of(const BudgetChoice& choice) {
+  Json json{{"bytes", choice.bytes}, {"stop", to_string(choice.stop)}};
+  if (choice.noise) json["noise"] = json_of(*choice.noise);
+  for (const BudgetTrial& trial : choice.trials) {
+    Json entry{{"bytes", trial.bytes}};
+    entry.update(json_of(trial.error));
+    json["trials"].push_back(std::move(entry));
+  }
+  return json;
+}
+
 Json json_of(const NodesReport& report) {
   Json json{{"target", "nodes"}, {"nodes", report.fitted}};
   if (report.smoothness) json["node_smoothness"] = report.smoothness->shares;
@@ -114,6 +138,10 @@ std::string_view to_string(FitLoss loss) noexcept {
   return kLossNames[static_cast<std::size_t>(loss)];
 }
 
+std::string_view to_string(BudgetStop stop) noexcept {
+  return kStopNames[static_cast<std::size_t>(stop)];
+}
+
 FitLoss parse_fit_loss(std::string_view name) {
   for (const FitLoss loss : {FitLoss::image, FitLoss::relative, FitLoss::log_cos})
     if (name == to_string(loss)) return loss;
@@ -129,6 +157,7 @@ nlohmann::ordered_json json_of(const FitReport& report) {
             {"source_format", report.source_format},
             {"symmetrized", report.symmetrized}};
   json.update(std::visit([](const auto& part) { return json_of(part); }, report.how));
+  if (report.budget_choice) json["budget_choice"] = json_of(*report.budget_choice);
   if (report.nodes) json.update(json_of(*report.nodes));
   if (report.energy) json["conserve_energy"] = json_of(*report.energy);
   if (report.held_out) json.update(json_of(*report.held_out));

@@ -45,16 +45,53 @@ struct SearchReport {
   std::vector<std::pair<std::string, double>> kept;
 };
 
+/// A number of fetches that was tried on part of the pairs, the mean of their channels, in few steps.
+struct FetchTrial {
+  int fetches = 0;
+  bool lobes = false;  ///< several lobes of lines; else one with a volume
+  /// exp of the objective over the sum of its shares: a geometric mean of errors, on pairs that were not fitted.
+  double error = 0;
+};
+
 /// Several lobes, refined together.
 struct LobesReport {
   FitSummary summary;       ///< errors are objectives, see refine
   std::size_t samples = 0;  ///< pairs fitted
   std::size_t lobes = 0;
   FitLoss loss = FitLoss::image;
-  std::uint64_t budget = 0;      ///< bytes; 0: the lobes were given
-  int fetches = 0;               ///< of the budget; 0: as many as serve it best
-  std::optional<double> smooth;  ///< where it was chosen
+  std::uint64_t budget = 0;                   ///< bytes; 0: the lobes were given
+  int fetches = 0;                            ///< of the budget; 0: as many as the lobes take
+  std::vector<FetchTrial> fetch_trials = {};  ///< where they were chosen
+  std::optional<double> smooth;               ///< where it was chosen
   std::optional<SearchReport> search;
+};
+
+/// Why a number of bytes was chosen: the model errs no more than the measurement itself, or by less than half a
+/// percent; more bytes hardly help; the largest that is tried; what predicts held-out samples best.
+enum class BudgetStop { noise, floor, gain, largest, cross_validation };
+
+/// "noise", "floor", "gain", "largest" or "cross-validation".
+std::string_view to_string(BudgetStop stop) noexcept;
+
+/// Errors that a measurement and its models have alike, as in ErrorFigures or NodeFigures; those that are known.
+struct ErrorLevel {
+  double relative = 0;
+  std::optional<double> log_cos, rms, psnr;
+};
+
+/// A number of bytes that was tried.
+struct BudgetTrial {
+  std::uint64_t bytes = 0;
+  ErrorLevel error;   ///< of its model
+  double excess = 0;  ///< how many times that is above the noise, or without noise above half a percent
+};
+
+/// How a number of bytes was chosen.
+struct BudgetChoice {
+  std::uint64_t bytes = 0;
+  BudgetStop stop = BudgetStop::largest;
+  std::optional<ErrorLevel> noise;  ///< what the measurement itself would score, where something tells
+  std::vector<BudgetTrial> trials;  ///< of rising bytes; none of few scattered samples
 };
 
 /// What others would do.
@@ -90,6 +127,7 @@ struct FitReport {
   std::string source, source_format;
   bool symmetrized = true;
   std::variant<OneLobeReport, LobesReport, BaselineReport> how;
+  std::optional<BudgetChoice> budget_choice;
   std::optional<NodesReport> nodes;
   std::optional<EnergyReport> energy;
   /// Of the model as stored, on 20,000 pairs that were not fitted; none of factors fitted to scattered
@@ -103,9 +141,9 @@ struct FitReport {
 
 /// A JSON object in one line, the notes that a model's file keeps: source, source_format, symmetrized; of one
 /// lobe samples, smooth, floor, reweightings, rms_log_before, rms_log_after, iterations, stop_reason,
-/// smooth_shares, relative, relative_cross_validated; of several search, budget, fetches, smooth, samples, lobes,
+/// smooth_shares, relative, relative_cross_validated; of several search, budget, fetches, fetch_trials, smooth, samples, lobes,
 /// loss, iterations, stop_reason, objective; of baselines method, budget, layouts_tried, error_before,
-/// error_after, starts, iterations, stop_reason; of nodes target, nodes, node_smoothness, node_held_out, node_fit,
+/// error_after, starts, iterations, stop_reason; of a chosen number of bytes budget_choice; of nodes target, nodes, node_smoothness, node_held_out, node_fit,
 /// node_test; then conserve_energy, psnr, ssim, relative, rms_log, log_cos
 /// and negative_lobes. What there is none of is left out; what is not finite is null.
 std::string to_json(const FitReport& report);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -9,8 +10,10 @@
 #include <burnish/factors/fetches.h>
 #include <burnish/fitting/baselines/baselines.h>
 #include <burnish/fitting/fit_file.h>
+#include <burnish/fitting/plans/fetch_plan.h>
 #include <burnish/math/parallel.h>
 #include <burnish/math/random.h>
+#include <burnish/metrics/albedo.h>
 #include <burnish/reflectance/goniometer.h>
 #include <burnish/reflectance/rgl_builder.h>
 #include <burnish/testing/baselines.h>
@@ -307,6 +310,103 @@ TEST(Fit, TakesNodesOfAnisotropicSourcesAsTheyAre) {
   ASSERT_TRUE(made.report.nodes);
   EXPECT_FALSE(made.report.nodes->smoothness);
   EXPECT_LT(made.report.nodes->at_fitted.relative, 0.5);
+}
+
+// Of mean 0 and variance 1.
+double draw_even(Pcg32& random) {
+  return std::sqrt(12) * (random.uniform() - 0.5);
+}
+
+// A virtual measurement: GGX with noise in proportion, from which the light is taken off below which a third of the
+// values lies.
+AngleTable noisy_table() {
+  AngleTable layout;
+  layout.folded = true;
+  layout.axes = {make_axis({0}, kTwoPi), make_axis(cell_centres(30, kHalfPi)),
+                 make_axis(cell_centres(30, kHalfPi)), make_axis(cell_centres(36, kPi))};
+  AngleTable table = tabulate_angles(parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3,kd=0.2"), layout);
+  Pcg32 random(7);
+  std::vector<float> values;
+  for (float& value : table.values) {
+    if (std::isnan(value)) continue;
+    value *= static_cast<float>(1 + 0.3 * draw_even(random));
+    values.push_back(value);
+  }
+  const auto third = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 3);
+  std::ranges::nth_element(values, third);
+  for (float& value : table.values) value -= *third;
+  return table;
+}
+
+TEST(Fit, ReflectsWhatTheRawValuesOfANoisySourceDo) {
+  const Source source = source_of("noisy", noisy_table());
+  const SymmetrizedBrdf raw(source.ref());
+  for (const Budget budget : {Budget{.bytes = 2700}, Budget{.bytes = 16 << 10, .fetches = 2}}) {
+    const Fit made = fit(source, {.form = budget, .score = false});
+    for (const double degrees : {0, 15, 30, 45, 60}) {
+      const Vec3 wi = spherical_direction(radians(degrees), 0);
+      const std::vector<double> expected = directional_albedo(raw, wi, 2e-3).albedo,
+                                found = directional_albedo(made.ref(), wi, 2e-3).albedo;
+      for (std::size_t c = 0; c < expected.size(); ++c)
+        EXPECT_NEAR(found[c] / expected[c], 1, 0.01) << degrees << " degrees, channel " << c;
+    }
+  }
+}
+
+// Relative errors of all channels alike, those of exchanged directions apart.
+Source noisy_source(double noise) {
+  AngleTable table = tabulate_angles(paint(), angle_table());
+  Pcg32 random(3);
+  for (float& value : table.values) value *= static_cast<float>(std::exp(noise * draw_even(random)));
+  return source_of("noisy", std::move(table));
+}
+
+TEST(Fit, StoresNoNoiseWhereBytesAreAuto) {
+  // the more noise, the fewer bytes
+  std::uint64_t before = 1 << 20;
+  for (const double noise : {0.05, 0.4}) {
+    const Fit made = fit(noisy_source(noise), {.form = Budget{.bytes = {}}});
+    ASSERT_TRUE(made.report.budget_choice);
+    const BudgetChoice& choice = *made.report.budget_choice;
+    ASSERT_TRUE(choice.noise);
+    EXPECT_LE(made.bytes(), choice.bytes);
+    EXPECT_LE(choice.bytes, before);
+    before = choice.bytes;
+    if (choice.stop == BudgetStop::noise) {
+      EXPECT_LE(choice.trials.back().error.relative, choice.noise->relative);
+    }
+    EXPECT_NE(to_json(made.report).find("\"budget_choice\""), std::string::npos);
+  }
+}
+
+TEST(Fit, StopsOfASourceWithoutNoiseWhereLittleIsOff) {
+  const Source source = source_of("paint", paint());
+  const Fit made = fit(source, {.form = Budget{.bytes = {}}});
+  const BudgetChoice& choice = made.report.budget_choice.value();
+  EXPECT_EQ(choice.stop, BudgetStop::floor);
+  EXPECT_FALSE(choice.noise);
+  EXPECT_LE(choice.trials.back().error.relative, 0.005);
+  EXPECT_LE(fetch_count(made.model()), 2u);
+  // what is returned is the fit to the bytes that were chosen
+  const Fit named = fit(source, {.form = Budget{.bytes = choice.bytes, .fetches = 2}, .score = false});
+  EXPECT_EQ(made.model(), named.model());
+}
+
+TEST(Fit, ChoosesBytesOfScatteredSamplesByCrossValidation) {
+  const Source source = source_of("scattered", ScatteredBrdf(measure(paint(), {.count = 400, .noise = 0.2})));
+  const Fit made = fit(source, {.form = Budget{.bytes = {}, .scattered = {.reweightings = 0}}});
+  EXPECT_EQ(made.report.budget_choice.value().stop, BudgetStop::cross_validation);
+  EXPECT_EQ(made.report.budget_choice->bytes, made.bytes());
+}
+
+TEST(Fit, WithoutFetchesTakesThemAtTheKnee) {
+  const Source source = source_of("paint", paint());
+  const Fit made = fit(source, {.form = Budget{.bytes = 6000}, .score = false});
+  const auto& report = std::get<LobesReport>(made.report.how);
+  ASSERT_GT(report.fetch_trials.size(), 1u);
+  const FetchTrial& chosen = trial_at_knee(report.fetch_trials);
+  EXPECT_EQ(fetch_count(made.model()), static_cast<std::size_t>(chosen.fetches));
+  EXPECT_LE(made.bytes(), 6000u);
 }
 
 TEST(Fit, RefusesWhatDoesNotGoTogether) {

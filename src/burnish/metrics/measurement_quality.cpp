@@ -35,11 +35,26 @@ MeasurementQuality quality_by_repeat(const Scorer& scorer, BrdfRef second, const
   return quality;
 }
 
-std::optional<MeasurementQuality> quality_by_exchange(const Scorer& scorer, BrdfRef raw,
-                                                      const MeasuredNodes& nodes) {
+std::optional<ErrorFigures> exchanged_figures(const Scorer& scorer, BrdfRef raw) {
   const ErrorFigures half = scorer.score(raw);
   if (half.rms == 0) return {};
+  ErrorFigures figures = half;
+  figures.log_cos *= std::sqrt(2);
+  figures.relative = std::expm1(std::sqrt(2) * std::log1p(half.relative));
+  figures.rms_log *= std::sqrt(2);
+  figures.rms *= std::sqrt(2);
+  figures.mean_abs_log *= std::sqrt(2);
+  figures.psnr -= 10 * std::log10(2);
+  figures.ssim = 1 - 2 * (1 - half.ssim);  // near 1 it falls with the squared error
+  return figures;
+}
+
+std::optional<MeasurementQuality> quality_by_exchange(const Scorer& scorer, BrdfRef raw,
+                                                      const MeasuredNodes& nodes) {
+  const std::optional<ErrorFigures> figures = exchanged_figures(scorer, raw);
+  if (!figures) return {};
   MeasurementQuality quality = quality_of(nodes);
+  quality.figures = *figures;
   quality.errors = scorer.pair_errors(raw);
   for (PairError& error : quality.errors) {
     error.log_cos *= std::sqrt(2);
@@ -48,14 +63,6 @@ std::optional<MeasurementQuality> quality_by_exchange(const Scorer& scorer, Brdf
     error.log_ratio_sq *= 2;
     error.difference_sq *= 2;
   }
-  ErrorFigures& figures = quality.figures = half;
-  figures.log_cos *= std::sqrt(2);
-  figures.relative = std::expm1(std::sqrt(2) * std::log1p(half.relative));
-  figures.rms_log *= std::sqrt(2);
-  figures.rms *= std::sqrt(2);
-  figures.mean_abs_log *= std::sqrt(2);
-  figures.psnr -= 10 * std::log10(2);
-  figures.ssim = 1 - 2 * (1 - half.ssim);  // near 1 it falls with the squared error
   return quality;
 }
 

@@ -26,12 +26,15 @@ struct MeasurementQuality {
 /// Scores a second scan, symmetrized like the scorer's reference; of the first scan's nodes the rest.
 MeasurementQuality quality_by_repeat(const Scorer& scorer, BrdfRef second, const MeasuredNodes& nodes);
 
-/// The same without a second scan. Physics has f(wi, wo) = f(wo, wi), so where noise of the two is independent and
+/// The same without a second scan, as far as exchanged directions tell (exchanged_figures).
+std::optional<MeasurementQuality> quality_by_exchange(const Scorer& scorer, BrdfRef raw,
+                                                      const MeasuredNodes& nodes);
+
+/// What a second scan would score. Physics has f(wi, wo) = f(wo, wi), so where noise of the two is independent and
 /// of size s, f differs from the mean of both, the scorer's reference, by s / sqrt(2), and the mean of a second scan
 /// from it by s: what `raw` scores against the reference, times sqrt(2) (squares 2). What errs alike both ways is not
 /// seen, so this is the least that the measurement is off by. Nothing where the reference is `raw` itself: a source
 /// kept raw, or one reciprocal by construction.
-std::optional<MeasurementQuality> quality_by_exchange(const Scorer& scorer, BrdfRef raw,
-                                                      const MeasuredNodes& nodes);
+std::optional<ErrorFigures> exchanged_figures(const Scorer& scorer, BrdfRef raw);
 
 }  // namespace burnish

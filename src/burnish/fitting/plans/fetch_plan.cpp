@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <burnish/error.h>
@@ -52,7 +53,8 @@ constexpr int kCoarseSteps = 10, kFullSteps = 6, kHeldSteps = 4, kManyFullSteps 
 const HomomorphicOptions kStart{.smooth = 1e-5, .floor = PictureLoss::kFloor, .tolerance = 0.03};
 // Trials: every so many pairs, in so few steps, for gains that another draw of pairs would not give.
 constexpr std::size_t kTrialPart = 8;
-constexpr int kTrialSteps = 4;
+constexpr int kTrialSteps = 4, kLobesTrialSteps = 30;
+constexpr int kFetches[] = {2, 3, 4, 6, 8, 12, 24};
 
 constexpr double kGoldenStep = 0.6180339887498949;  // of azimuths
 constexpr double kFrontalCosine = 1e-3;
@@ -174,25 +176,50 @@ TrainingSet about(const TrainingSet& set, std::size_t pairs) {
   return thinned(set, std::max<std::size_t>(1, set.size() / pairs));
 }
 
+/// Parts of the pairs, the mean of their channels, to fit trials to and to judge them on.
+struct TrialSets {
+  explicit TrialSets(const TrainingSet& set) {
+    const TrainingSet grey = mean_of_channels(set);
+    fitted = part_of(grey, 0, kTrialPart);
+    judged = part_of(grey, kTrialPart / 2, kTrialPart);
+  }
+
+  /// Of a model with a volume, of as many nodes as the pairs determine.
+  double objective_of(const ModelSpec& spec, const RefineOptions& options) const {
+    const double nodes = static_cast<double>(coupled_unknowns(spec, 1));
+    const ModelSpec trial =
+        at_fewer_nodes(spec, std::min(1.0, static_cast<double>(fitted.size()) / (6 * nodes)));
+    LogModel model = fit_one_lobe(trial, fitted, fitted.values, kStart);
+    refine(model, fitted, in_few_steps(options, kTrialSteps));
+    return objective(model, judged, options.shares);
+  }
+  /// Of lobes of lines.
+  double objective_of(const LobePlan& plan, const CostLimit& limit, const RefineOptions& options) const {
+    const LobesFit fit =
+        fit_plan(fitted, plan, limit.bytes, limit.texel_bytes, in_few_steps(options, kLobesTrialSteps));
+    return objective(fit.model, judged, options.shares);
+  }
+
+  TrainingSet fitted, judged;
+
+ private:
+  static RefineOptions in_few_steps(RefineOptions options, int steps) {
+    options.format = TableFormat::single;
+    options.max_iterations = steps;
+    options.progress = nullptr;
+    return options;
+  }
+};
+
 /// The spec that serves a part of the pairs best that it was not fitted to; of many nodes, which serve alike
 /// however they are shared out, the first.
 const ModelSpec& best_of(const std::vector<ModelSpec>& specs, const TrainingSet& set,
                          const RefineOptions& options) {
   if (specs.size() == 1 || coupled_unknowns(specs.front(), 1) > kCoarseNodes) return specs.front();
-  const TrainingSet grey = mean_of_channels(set);
-  const TrainingSet fitted = part_of(grey, 0, kTrialPart), judged = part_of(grey, kTrialPart / 2, kTrialPart);
-  RefineOptions steps = options;
-  steps.format = TableFormat::single;
-  steps.max_iterations = kTrialSteps;
-  steps.progress = nullptr;
+  const TrialSets sets(set);
   std::vector<double> values(specs.size(), std::numeric_limits<double>::infinity());
   for_each_chunk(specs.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
-    const double nodes = static_cast<double>(coupled_unknowns(specs[k], 1));
-    const ModelSpec trial =
-        at_fewer_nodes(specs[k], std::min(1.0, static_cast<double>(fitted.size()) / (6 * nodes)));
-    LogModel model = fit_one_lobe(trial, fitted, fitted.values, kStart);
-    refine(model, fitted, steps);
-    values[k] = objective(model, judged, options.shares);
+    values[k] = sets.objective_of(specs[k], options);
   });
   return specs[static_cast<std::size_t>(std::ranges::min_element(values) - values.begin())];
 }
@@ -207,6 +234,20 @@ bool takes_lobes(BrdfRef source, const CostLimit& limit) {
   return plan_fits(plan, limit.bytes, source.channels(), limit.texel_bytes) &&
          fetch_count(plan_to_spec(plan, limit.bytes, source.channels(), limit.texel_bytes)) <=
              static_cast<std::size_t>(limit.fetches);
+}
+
+bool holds_model(BrdfRef source, const CostLimit& limit) {
+  if (takes_lobes(source, limit))
+    return plan_fits(plan_within(source, limit), limit.bytes, source.channels(), limit.texel_bytes);
+  try {
+    if (source.isotropic())
+      volume_spec(kForms[0], limit, source.channels(), true);
+    else
+      hemisphere_spec(limit, source.channels());
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 LobePlan plan_within(BrdfRef source, const CostLimit& limit) {
@@ -240,6 +281,54 @@ std::vector<ModelSpec> volume_specs(BrdfRef source, const CostLimit& limit) {
   if (limit.fetches > 1 && order_matters(source)) add(true);
   add(false);
   return specs;
+}
+
+std::vector<FetchTrial> try_fetches(BrdfRef source, const TrainingSet& set, CostLimit limit,
+                                    const RefineOptions& options) {
+  // what the bytes hold, each but once
+  const LobePlan lobes = plan_for(source, limit.bytes, 0, limit.texel_bytes);
+  std::vector<int> fetches(std::begin(kFetches), std::end(kFetches));
+  if (plan_fits(lobes, limit.bytes, source.channels(), limit.texel_bytes))
+    fetches.push_back(static_cast<int>(
+        fetch_count(plan_to_spec(lobes, limit.bytes, source.channels(), limit.texel_bytes))));
+  const int of_lobes = fetches.back();
+  std::ranges::sort(fetches);
+  const bool twisted = mirror_asymmetry(source) > kMinAsymmetry;
+  struct Candidate {
+    int fetches;
+    std::optional<ModelSpec> spec;  ///< none: lobes
+  };
+  std::vector<Candidate> candidates;
+  for (const int n : fetches) {
+    limit.fetches = n;
+    if (!holds_model(source, limit)) continue;
+    Candidate next{.fetches = of_lobes, .spec = {}};
+    if (!takes_lobes(source, limit)) {
+      next.spec = volume_spec(kForms[0], limit, source.channels(), twisted);
+      next.fetches = static_cast<int>(fetch_count(*next.spec));
+    }
+    if (candidates.empty() || candidates.back().fetches != next.fetches)
+      candidates.push_back(std::move(next));
+  }
+
+  // side by side
+  const TrialSets sets(set);
+  const ErrorTerms& of = options.shares;
+  const double shares = of.pictures + of.dimmed + of.relative + of.log_cos;
+  std::vector<FetchTrial> trials(candidates.size());
+  for_each_chunk(candidates.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
+    const Candidate& candidate = candidates[k];
+    const double value = candidate.spec ? sets.objective_of(*candidate.spec, options)
+                                        : sets.objective_of(lobes, limit, options);
+    trials[k] = {.fetches = candidate.fetches, .lobes = !candidate.spec, .error = std::exp(value / shares)};
+  });
+  return trials;
+}
+
+const FetchTrial& trial_at_knee(std::span<const FetchTrial> trials) {
+  const double least = std::ranges::min(trials, {}, &FetchTrial::error).error;
+  return *std::ranges::find_if(trials,
+                               [&](const FetchTrial& trial) { return trial.error <= kKneeFactor * least; });
 }
 
 ModelSpec hemisphere_spec(const CostLimit& limit, int channels) {

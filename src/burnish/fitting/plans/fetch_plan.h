@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
+#include <burnish/fitting/fit_report.h>
 #include <burnish/fitting/plans/fit_plan.h>
 #include <burnish/fitting/plans/lobe_plan.h>
 #include <burnish/reflectance/brdf.h>
@@ -18,6 +20,8 @@ struct CostLimit {
 /// Whether lobes of lines or hemispheres serve better than a model with a volume: of an isotropic source where few
 /// bytes are left and default_plan is within the limit, of another where few bytes or fewer than four fetches are.
 bool takes_lobes(BrdfRef source, const CostLimit& limit);
+/// Whether the limit holds the tables of a model.
+bool holds_model(BrdfRef source, const CostLimit& limit);
 /// default_plan, of an anisotropic source with as many of its factors as the fetches allow.
 LobePlan plan_within(BrdfRef source, const CostLimit& limit);
 
@@ -33,6 +37,17 @@ std::vector<ModelSpec> volume_specs(BrdfRef source, const CostLimit& limit);
 /// v(theta_h,theta_d,phi_d), which follows how they depend on each other, and from five fetches on c(theta_d) beside
 /// them for what is spread wide. Throws Error where the bytes hold no such tables.
 ModelSpec hemisphere_spec(const CostLimit& limit, int channels);
+
+/// The error of the models of an isotropic source that try_fetches looks at may be this many times the least.
+inline constexpr double kKneeFactor = 1.02;
+
+/// Models of 2, 3, 4, 6, 8, 12 and 24 fetches that the bytes hold, and lobes of lines where takes_lobes has them for
+/// as many as they take: each fitted to part of the set in few steps and judged on another. By rising fetches; the
+/// limit's own do not count. Deterministic.
+std::vector<FetchTrial> try_fetches(BrdfRef source, const TrainingSet& set, CostLimit limit,
+                                    const RefineOptions& options);
+/// That of the fewest fetches whose error is within kKneeFactor of the least. Precondition: at least one trial.
+const FetchTrial& trial_at_knee(std::span<const FetchTrial> trials);
 
 /// How many pairs to draw for volumes, and where.
 TrainingOptions training_for_volumes(const CostLimit& limit);

@@ -83,6 +83,28 @@ TEST(FetchPlan, LeavesFewBytesToLines) {
   EXPECT_FALSE(takes_lobes(ggx.ref(), {.bytes = 16'384, .fetches = 24}));
 }
 
+TEST(FetchPlan, TriesFewFetchesAndManyAndTakesTheKnee) {
+  const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3,kd=0.2");
+  const TrainingSet set =
+      draw_training_set(ggx.ref(), {.pictures = 8'000, .directions = 12'000, .crowded = true});
+  for (const std::size_t bytes : {2'700u, 16'384u}) {
+    const auto trials = try_fetches(ggx.ref(), set, {.bytes = bytes}, {});
+    ASSERT_GT(trials.size(), 3u);
+    EXPECT_EQ(trials.front().fetches, 2);
+    for (std::size_t k = 1; k < trials.size(); ++k) EXPECT_GT(trials[k].fetches, trials[k - 1].fetches);
+    EXPECT_EQ(trials.back().lobes, takes_lobes(ggx.ref(), {.bytes = bytes, .fetches = 24}));
+    const FetchTrial& knee = trial_at_knee(trials);
+    for (const FetchTrial& trial : trials) {
+      EXPECT_GT(trial.error, 0);
+      EXPECT_LE(knee.error, kKneeFactor * trial.error);
+      if (trial.fetches < knee.fetches) {
+        EXPECT_GT(trial.error, knee.error);
+      }
+    }
+  }
+  EXPECT_TRUE(try_fetches(ggx.ref(), set, {.bytes = 60}, {}).empty());
+}
+
 TEST(FetchPlan, FrontalPixelsHaveOneDirectionAndStandAmongThePixels) {
   const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3");
   const TrainingSet set = draw_training_set(ggx.ref(), {.pictures = 1000, .directions = 500}),

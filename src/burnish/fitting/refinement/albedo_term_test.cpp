@@ -37,6 +37,20 @@ TEST(AlbedoSet, IsTheAlbedoOfRawValues) {
   EXPECT_NEAR(noise.targets.front(), 0.1 * kPi, 0.05 * kPi);
 }
 
+TEST(AlbedoSet, SumsOfAModelAreItsAlbedo) {
+  const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.2,alpha_y=0.2,kd=0.4");
+  const AlbedoSet set = albedo_set(ggx.ref());
+  std::vector<double> f(3);
+  for (std::size_t k = 0; k < set.directions; ++k) {
+    double sum = 0;
+    for (std::size_t i = k * set.points(); i < (k + 1) * set.points(); ++i) {
+      ggx.ref().eval(set.pairs[i].wi, set.pairs[i].wo, f);
+      sum += static_cast<double>(set.weights[i]) * f[0];
+    }
+    EXPECT_NEAR(sum / static_cast<double>(set.targets[3 * k]), 1, 0.003) << k;
+  }
+}
+
 TEST(AlbedoTerm, HasTheSlopesOfItsResiduals) {
   const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.2,alpha_y=0.2,kd=0.1");
   const AlbedoSet set = albedo_set(ggx.ref());

@@ -26,7 +26,8 @@ constexpr double kCrowdedPixelCosine = 1e-3;
 constexpr double kExposedShare = 0.97;  // as in the error figures
 constexpr std::size_t kChunk = 4096;
 constexpr double kMaxAlbedoTheta = radians(70), kLeastAlbedo = 1e-4, kAlbedoPrecision = 2e-3;
-constexpr std::size_t kAlbedoThetas = 15, kAlbedoRings = 64, kAlbedoAzimuths = 16;
+constexpr double kRingTurn = 0.6180339887498949;  // the golden ratio's: rings near one another differ
+constexpr std::size_t kAlbedoThetas = 15, kAlbedoRings = 64, kAlbedoAzimuths = 32;
 
 // Points of the additive recurrence of the generalized golden ratio in five dimensions: phi^6 = phi + 1
 // [Roberts 2018].
@@ -215,14 +216,21 @@ AlbedoSet albedo_set(BrdfRef source) {
     const double phi = kTwoPi * (static_cast<double>(k % sides) + 0.3) / 4;
     const Vec3 wi = spherical_direction(theta, phi);
 
-    // rings crowd around the mirror direction: radius = most u^2, dr = 2 most u du
+    // rings crowd around the mirror direction: radius = most u^2, dr = 2 most u du; cut at the horizon, above which
+    // cos(theta_o) = level + slope cos(azimuth) is
     for (std::size_t ring = 0; ring < kAlbedoRings; ++ring)
       for (std::size_t j = 0; j < kAlbedoAzimuths; ++j) {
         const double most = kHalfPi + theta, u = (static_cast<double>(ring) + 0.5) / kAlbedoRings;
-        const double radius = most * u * u,
-                     azimuth = kTwoPi * (static_cast<double>(j) + 0.5) / kAlbedoAzimuths;
+        const double radius = most * u * u, level = std::cos(radius) * std::cos(theta),
+                     slope = std::sin(radius) * std::sin(theta);
+        const double half = slope > 0   ? std::acos(std::clamp(-level / slope, -1.0, 1.0))
+                            : level > 0 ? kPi
+                                        : 0;
+        // points of one ring stand between those of the next: a fine model would fit itself to a pattern
+        const double shift = std::fmod((static_cast<double>(ring) + 0.5) * kRingTurn, 1.0);
+        const double azimuth = half * (2 * (static_cast<double>(j) + shift) / kAlbedoAzimuths - 1);
         const Vec3 wo = around_specular(theta, phi, azimuth, radius);
-        const double area = std::sin(radius) * 2 * most * u / kAlbedoRings * kTwoPi / kAlbedoAzimuths;
+        const double area = std::sin(radius) * 2 * most * u / kAlbedoRings * 2 * half / kAlbedoAzimuths;
         const bool counts = wo.z > 0 && source.eval(wi, wo, f);
         set.pairs.push_back({wi, counts ? wo : Vec3{0, 0, 1}});
         set.weights.push_back(static_cast<float>(counts ? area * wo.z : 0));
