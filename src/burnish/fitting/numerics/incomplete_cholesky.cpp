@@ -1,6 +1,10 @@
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include <Eigen/Cholesky>
+
+#include <burnish/fitting/numerics/dense.h>
 #include <burnish/fitting/numerics/incomplete_cholesky.h>
 
 namespace burnish {
@@ -12,34 +16,65 @@ constexpr double kMoreShare = 4;
 
 }  // namespace
 
-IncompleteCholesky::IncompleteCholesky(const SparseTriangle& matrix, double last_share)
+IncompleteCholesky::IncompleteCholesky(const SparseTriangle& matrix, double last_share, int dense_rows)
     : factor_(matrix), share_(last_share > kFirstShare ? last_share / kMoreShare : 0) {
-  while (!factorize(matrix)) share_ = share_ > 0 ? kMoreShare * share_ : kFirstShare;
+  while (!factorize(matrix, dense_rows)) share_ = share_ > 0 ? kMoreShare * share_ : kFirstShare;
 }
 
-bool IncompleteCholesky::factorize(const SparseTriangle& matrix) {
-  const int *starts = factor_.outerIndexPtr(), *columns = factor_.innerIndexPtr();
+double IncompleteCholesky::eliminate(const SparseTriangle& matrix, int i, int columns,
+                                     std::vector<double>& row) {
+  const int *starts = factor_.outerIndexPtr(), *column = factor_.innerIndexPtr();
   double* values = factor_.valuePtr();
-  std::vector<double> row(static_cast<std::size_t>(matrix.rows()));  // row i, 0 where it has no entry
-  for (int i = 0; i < matrix.rows(); ++i) {
-    const int diagonal = starts[i + 1] - 1;
-    for (int at = starts[i]; at < diagonal; ++at)
-      row[static_cast<std::size_t>(columns[at])] = matrix.valuePtr()[at];
-    double pivot = (1 + share_) * matrix.valuePtr()[diagonal];
+  const int diagonal = starts[i + 1] - 1;
+  const int end = static_cast<int>(std::lower_bound(column + starts[i], column + diagonal, columns) - column);
+  for (int at = starts[i]; at < end; ++at) row[static_cast<std::size_t>(column[at])] = matrix.valuePtr()[at];
+  double pivot = (1 + share_) * matrix.valuePtr()[diagonal];
 
-    // l_ij = (a_ij - sum over k < j of l_ik l_jk) / l_jj
-    for (int at = starts[i]; at < diagonal; ++at) {
-      const int j = columns[at], last = starts[j + 1] - 1;
-      double sum = row[static_cast<std::size_t>(j)];
-      for (int of_j = starts[j]; of_j < last; ++of_j)
-        sum -= row[static_cast<std::size_t>(columns[of_j])] * values[of_j];
-      values[at] = row[static_cast<std::size_t>(j)] = sum * values[last];
-      pivot -= values[at] * values[at];
-    }
-    for (int at = starts[i]; at < diagonal; ++at) row[static_cast<std::size_t>(columns[at])] = 0;
-    if (!(pivot > 0)) return false;
-    values[diagonal] = 1 / std::sqrt(pivot);
+  // l_ij = (a_ij - sum over k < j of l_ik l_jk) / l_jj
+  for (int at = starts[i]; at < end; ++at) {
+    const int j = column[at], last = starts[j + 1] - 1;
+    double sum = row[static_cast<std::size_t>(j)];
+    for (int of_j = starts[j]; of_j < last; ++of_j)
+      sum -= row[static_cast<std::size_t>(column[of_j])] * values[of_j];
+    values[at] = row[static_cast<std::size_t>(j)] = sum * values[last];
+    pivot -= values[at] * values[at];
   }
+  for (int at = starts[i]; at < end; ++at) row[static_cast<std::size_t>(column[at])] = 0;
+  return pivot;
+}
+
+bool IncompleteCholesky::factorize(const SparseTriangle& matrix, int dense_rows) {
+  const int *starts = factor_.outerIndexPtr(), *column = factor_.innerIndexPtr();
+  double* values = factor_.valuePtr();
+  const int size = static_cast<int>(matrix.rows()), first_dense = size - dense_rows;
+  std::vector<double> row(static_cast<std::size_t>(size));
+  for (int i = 0; i < first_dense; ++i) {
+    const double pivot = eliminate(matrix, i, i, row);
+    if (!(pivot > 0)) return false;
+    values[starts[i + 1] - 1] = 1 / std::sqrt(pivot);
+  }
+  if (dense_rows == 0) return true;
+
+  // of the dense rows first what stands before them, then the complement that this leaves
+  RowMajorMatrix before = RowMajorMatrix::Zero(dense_rows, first_dense);
+  Eigen::MatrixXd complement(dense_rows, dense_rows);
+  for (int i = first_dense; i < size; ++i) {
+    eliminate(matrix, i, first_dense, row);
+    for (int at = starts[i]; at < starts[i + 1]; ++at)
+      if (column[at] < first_dense)
+        before(i - first_dense, column[at]) = values[at];
+      else
+        complement(i - first_dense, column[at] - first_dense) =
+            (column[at] == i ? 1 + share_ : 1) * matrix.valuePtr()[at];
+  }
+  complement.triangularView<Eigen::Lower>() -= products_of_rows(before);
+  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> in_place(complement);
+  if (in_place.info() != Eigen::Success) return false;
+  for (int i = first_dense; i < size; ++i)
+    for (int at = starts[i + 1] - (i - first_dense) - 1; at < starts[i + 1]; ++at) {
+      const double value = complement(i - first_dense, column[at] - first_dense);
+      values[at] = column[at] == i ? 1 / value : value;
+    }
   return true;
 }
 

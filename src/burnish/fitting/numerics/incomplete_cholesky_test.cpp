@@ -32,6 +32,21 @@ TEST(IncompleteCholesky, IsExactWhereNothingIsLeftOut) {
   EXPECT_LT((IncompleteCholesky(matrix).solve(b) - v).norm(), 1e-10 * v.norm());
 }
 
+TEST(IncompleteCholesky, IsTheSameWithDenseRows) {
+  SparseTriangle matrix = banded(40, 4, 0.1);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int i = 0; i < 40; ++i)
+    for (int j = 0; j <= i; ++j)
+      if (i >= 30 || matrix.coeff(i, j) != 0)
+        entries.emplace_back(i, j, matrix.coeff(i, j) + (i >= 30 ? 1e-3 * j : 0));
+  for (int i = 30; i < 40; ++i) entries.emplace_back(i, i, 5);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(40, -1, 1),
+                        sparse = IncompleteCholesky(matrix).solve(b);
+  for (const int rows : {1, 4, 10})
+    EXPECT_LT((IncompleteCholesky(matrix, 0, rows).solve(b) - sparse).norm(), 1e-12 * sparse.norm()) << rows;
+}
+
 TEST(IncompleteCholesky, StaysPositiveWherePivotsAreLost) {
   // a ring of strong negative neighbours: what is left out of the factor exceeds the last pivots
   constexpr int kSize = 40;

@@ -161,6 +161,7 @@ void SparseGram::find_order() {
       nodes += tables_[t].nodes;
     }
   if (nodes > kMaxDense) dense_.clear();
+  dense_rows_ = dense_.empty() ? 0 : static_cast<int>(nodes);
 }
 
 void SparseGram::set_zero() {

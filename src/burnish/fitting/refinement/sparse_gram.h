@@ -36,6 +36,8 @@ class SparseGram {
   /// The lower triangle in an order of its own: row place()[u] is unknown u's.
   const SparseTriangle& matrix() const noexcept { return matrix_; }
   std::span<const std::uint32_t> place() const noexcept { return place_; }
+  /// How many of its last rows have entries for each two of them.
+  int dense_rows() const noexcept { return dense_rows_; }
 
  private:
   /// A lookup of a lobe and where its slopes stand.
@@ -89,6 +91,7 @@ class SparseGram {
   std::vector<UsePair> pairs_;
   std::vector<std::size_t> dense_;  ///< tables all of whose nodes have entries with each other
   std::vector<std::uint32_t> place_;
+  int dense_rows_ = 0;
   SparseTriangle matrix_;
   std::vector<double> constant_;      ///< in the order of the matrix
   std::vector<std::uint32_t> slots_;  ///< where for_each_entry's entries stand in it

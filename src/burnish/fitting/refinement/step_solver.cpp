@@ -119,7 +119,7 @@ class SparseModel final : public QuadraticModel {
     const Vector ordered = order_ * extra;
     SparseTriangle damped = gram_.matrix();
     damped.diagonal() += ordered;
-    const IncompleteCholesky factor(damped, share_);
+    const IncompleteCholesky factor(damped, share_, gram_.dense_rows());
     share_ = factor.share();
     return order_.transpose() *
            solve_iteratively(
