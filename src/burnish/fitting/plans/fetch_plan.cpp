@@ -241,7 +241,7 @@ bool holds_model(BrdfRef source, const CostLimit& limit) {
     return plan_fits(plan_within(source, limit), limit.bytes, source.channels(), limit.texel_bytes);
   try {
     if (source.isotropic())
-      volume_spec(kForms[0], limit, source.channels(), true);
+      volume_spec(kForms[0], limit, source.channels(), true, limit.fetches > 1 && order_matters(source));
     else
       hemisphere_spec(limit, source.channels());
     return true;
@@ -293,7 +293,7 @@ std::vector<FetchTrial> try_fetches(BrdfRef source, const TrainingSet& set, Cost
         fetch_count(plan_to_spec(lobes, limit.bytes, source.channels(), limit.texel_bytes))));
   const int of_lobes = fetches.back();
   std::ranges::sort(fetches);
-  const bool twisted = mirror_asymmetry(source) > kMinAsymmetry;
+  const bool twisted = mirror_asymmetry(source) > kMinAsymmetry, ordered = order_matters(source);
   struct Candidate {
     int fetches;
     std::optional<ModelSpec> spec;  ///< none: lobes
@@ -304,7 +304,7 @@ std::vector<FetchTrial> try_fetches(BrdfRef source, const TrainingSet& set, Cost
     if (!holds_model(source, limit)) continue;
     Candidate next{.fetches = of_lobes, .spec = {}};
     if (!takes_lobes(source, limit)) {
-      next.spec = volume_spec(kForms[0], limit, source.channels(), twisted);
+      next.spec = volume_spec(kForms[0], limit, source.channels(), twisted, ordered && n > 1);
       next.fetches = static_cast<int>(fetch_count(*next.spec));
     }
     if (candidates.empty() || candidates.back().fetches != next.fetches)
