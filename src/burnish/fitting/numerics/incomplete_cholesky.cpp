@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kFirstShare = 1e-3;  // of the diagonal, where it must be larger
 constexpr double kMoreShare = 4;
+// Of the dense rows with what stands before them, tried in turn; then none.
+constexpr double kLessCoupling = 0.8, kLeastCoupling = 0.3;
 
 }  // namespace
 
@@ -67,9 +69,18 @@ bool IncompleteCholesky::factorize(const SparseTriangle& matrix, int dense_rows)
         complement(i - first_dense, column[at] - first_dense) =
             (column[at] == i ? 1 + share_ : 1) * matrix.valuePtr()[at];
   }
-  complement.triangularView<Eigen::Lower>() -= products_of_rows(before);
-  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> in_place(complement);
-  if (in_place.info() != Eigen::Success) return false;
+  // and with less of it where that is not positive: a smaller coupling of the two leaves a larger complement
+  const Eigen::MatrixXd products = products_of_rows(before), diagonal = complement;
+  double coupling = 1;
+  for (;; coupling = coupling > kLeastCoupling ? kLessCoupling * coupling : 0) {
+    complement.triangularView<Eigen::Lower>() = diagonal - coupling * products;
+    const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> in_place(complement);
+    if (in_place.info() == Eigen::Success) break;
+    if (coupling == 0) return false;
+  }
+  for (int i = first_dense; i < size; ++i)
+    for (int at = starts[i]; at < starts[i + 1] - (i - first_dense) - 1; ++at)
+      values[at] *= std::sqrt(coupling);
   for (int i = first_dense; i < size; ++i)
     for (int at = starts[i + 1] - (i - first_dense) - 1; at < starts[i + 1]; ++at) {
       const double value = complement(i - first_dense, column[at] - first_dense);

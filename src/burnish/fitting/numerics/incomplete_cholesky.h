@@ -15,8 +15,8 @@ class IncompleteCholesky {
  public:
   /// Every row of `matrix` has a diagonal entry. Where what is left out makes a pivot negative, a share of the
   /// diagonal is added to it, larger until all are positive. `last_share` is the one that a matrix much like this
-  /// one took: the search starts below it. The last `dense_rows` rows have an entry for each two of them, and are
-  /// factorized as a dense matrix.
+  /// one took: the search starts below it. The last `dense_rows` rows have an entry for each two of them: they make a
+  /// dense matrix, less coupled to what stands before them where that keeps it positive.
   explicit IncompleteCholesky(const SparseTriangle& matrix, double last_share = 0, int dense_rows = 0);
   double share() const noexcept { return share_; }
 
