@@ -87,6 +87,12 @@ TEST_F(FitCommand, TellsMisuseFromErrors) {
   EXPECT_EQ(run_fit(kPaint, "--model 'p(up)'").status, 2);
   EXPECT_EQ(run_fit(kPaint, "--smooth much").status, 2);
   EXPECT_EQ(run_fit(kPaint, "--lobes 2").status, 2);
+  for (const char* bytes : {"much", "-5", "0", "16Q"}) {
+    const Outcome outcome = run_fit(kPaint, fmt::format("--budget {}", bytes));
+    EXPECT_EQ(outcome.status, 2) << bytes;
+    EXPECT_NE(outcome.output.find(fmt::format("found '{}'", bytes)), std::string::npos) << outcome.output;
+  }
+  EXPECT_EQ(run_fit(kPaint, "--budget 4G").status, 1);
   EXPECT_EQ(run_fit(kPaint, "--method pca").status, 1);
   EXPECT_EQ(run_fit(kPaint, "--method svd --format half").status, 1);
   EXPECT_EQ(run_fit(kPaint, "--budget 20").status, 1);

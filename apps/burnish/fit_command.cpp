@@ -37,21 +37,32 @@ struct FitArguments {
 
 constexpr std::string_view kAuto = "auto";
 
+std::string no_budget(const std::string& text) {
+  return fmt::format("expected auto or a number of bytes above 0, as 2700, 16K or 1M, found '{}'", text);
+}
+
 // A number as AsSizeValue leaves it; nothing for auto or where nothing is given.
 std::optional<std::uint64_t> parse_bytes(const std::string& text) {
   std::uint64_t bytes = 0;
   if (text.empty() || text == kAuto) return {};
   if (!CLI::detail::lexical_cast(text, bytes) || bytes == 0)
-    throw CLI::ValidationError(
-        fmt::format("--budget: expected auto or a number of bytes above 0, found '{}'", text));
+    throw CLI::ValidationError("--budget", no_budget(text));
   return bytes;
 }
 
 // Reads "16K" as 16384 and leaves auto.
 CLI::Validator bytes_or_auto() {
   const CLI::AsSizeValue size(false);
-  return {[size](std::string& text) { return text == kAuto ? std::string() : size(text); },
-          "SIZE [b, kb(=1024b), ...] or auto", "bytes_or_auto"};
+  const auto read = [size](std::string& text) {
+    if (text == kAuto) return std::string();
+    const std::string given = text;
+    try {
+      if (!text.starts_with('-') && size(text).empty()) return std::string();
+    } catch (const CLI::ValidationError&) {  // of an unknown unit, naming all that there are
+    }
+    return no_budget(given);
+  };
+  return {read, "SIZE [b, kb(=1024b), ...] or auto", "bytes_or_auto"};
 }
 
 double parse_smooth(const std::string& text) {

@@ -113,8 +113,8 @@ class Fitter {
   }
 
   Fitted fit(const Budget& form) {
-    if (form.bytes == std::uint64_t{0})
-      throw Error("fit: expected a budget of at least one byte, found none");
+    if (form.bytes && (*form.bytes == 0 || *form.bytes > kMaxBudget))
+      throw Error(fmt::format("fit: expected a budget of 1 to {} bytes, found {}", kMaxBudget, *form.bytes));
     if (form.fetches < 0 || (form.fetches > 0 && (form.lobes > 0 || form.search)))
       throw Error("fit: expected fetches >= 0, and with them neither a number of lobes nor a search");
     return form.bytes ? fit_to_bytes(form, *form.bytes) : fit_to_noise(form);

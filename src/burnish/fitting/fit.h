@@ -32,11 +32,15 @@ struct OneLobe {
   LogLinear how = {};
 };
 
+/// The most bytes that a model may be asked to take.
+inline constexpr std::uint64_t kMaxBudget = std::uint64_t{64} << 20;
+
 /// The model that serves a number of bytes best, at most so many as FactoredBrdf::bytes counts them, of several
 /// lobes of lines and grids, or within a number of fetches of whatever serves best within both.
 struct Budget {
   /// None: the least of some numbers of bytes beyond which more would store noise or hardly help, see
-  /// BudgetChoice; within the fetches of default_budget unless they, lobes or a search are asked for.
+  /// BudgetChoice; within the fetches of default_budget unless they, lobes or a search are asked for. At most
+  /// kMaxBudget.
   std::optional<std::uint64_t> bytes = 2700;
   /// Filtered reads of one evaluation, see fetch_count; 0: of an isotropic source the fewest of those tried whose
   /// error is within two percent of the least, of another as many as its lobes take.

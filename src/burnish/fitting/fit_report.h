@@ -141,11 +141,12 @@ struct FitReport {
 
 /// A JSON object in one line, the notes that a model's file keeps: source, source_format, symmetrized; of one
 /// lobe samples, smooth, floor, reweightings, rms_log_before, rms_log_after, iterations, stop_reason,
-/// smooth_shares, relative, relative_cross_validated; of several search, budget, fetches, fetch_trials, smooth, samples, lobes,
-/// loss, iterations, stop_reason, objective; of baselines method, budget, layouts_tried, error_before,
-/// error_after, starts, iterations, stop_reason; of a chosen number of bytes budget_choice; of nodes target, nodes, node_smoothness, node_held_out, node_fit,
-/// node_test; then conserve_energy, psnr, ssim, relative, rms_log, log_cos
-/// and negative_lobes. What there is none of is left out; what is not finite is null.
+/// smooth_shares, relative, relative_cross_validated; of several search, budget, fetches, fetch_trials,
+/// smooth, samples, lobes, loss, iterations, stop_reason, objective; of baselines method, budget,
+/// layouts_tried, error_before, error_after, starts, iterations, stop_reason; of a chosen number of bytes
+/// budget_choice; of nodes target, nodes, node_smoothness, node_held_out, node_fit, node_test; then
+/// conserve_energy, psnr, ssim, relative, rms_log, log_cos and negative_lobes. What there is none of is left
+/// out; what is not finite is null.
 std::string to_json(const FitReport& report);
 
 }  // namespace burnish

@@ -35,8 +35,8 @@ class NoiseScale {
 
   const std::optional<ErrorLevel>& noise() const noexcept { return noise_; }
   ErrorLevel error_of(BrdfRef model) const;
-  /// How many times an error is above the noise, the largest of those that are known of both, no relative noise counting
-  /// as less than kLeastRelative; without noise the relative error over kLeastRelative.
+  /// How many times an error is above the noise, the largest of those that are known of both, no relative
+  /// noise counting as less than kLeastRelative; without noise the relative error over kLeastRelative.
   double excess(const ErrorLevel& error) const noexcept;
 
  private:
@@ -45,9 +45,10 @@ class NoiseScale {
   std::optional<ErrorLevel> noise_;
 };
 
-/// Why no more bytes are tried after these trials, whose bytes rise; nothing: go on. Noise (or without it the floor)
-/// where the last one's excess is at most 1, gain where neither it nor the relative error is lower than that of the
-/// trial before by kLeastGain each time the bytes double, largest at the end of the ladder. Precondition: at least one trial.
+/// Why no more bytes are tried after these trials, whose bytes rise; nothing: go on. Noise (or without it the
+/// floor) where the last one's excess is at most 1, gain where neither it nor the relative error is lower
+/// than that of the trial before by kLeastGain each time the bytes double, largest at the end of the ladder.
+/// Precondition: at least one trial.
 std::optional<BudgetStop> stop_after(std::span<const BudgetTrial> trials, bool noise_known);
 
 }  // namespace burnish

@@ -26,11 +26,11 @@ bool holds_model(BrdfRef source, const CostLimit& limit);
 LobePlan plan_within(BrdfRef source, const CostLimit& limit);
 
 /// Isotropic models of one lobe within the limit: g(theta_h,theta_d,phi_d), with a line z(theta_h) from two
-/// fetches on, p(wo) p(wi) from four, r(theta_d) of three and from five on, a grid k(theta_m,theta_d) from six on,
-/// s(wi + wo/2) s(wi/2 + wo) from eight on; of a source that is not its own mirror image a grid
-/// w(theta_t,theta_h) comes third, and of one for which the order of the directions matters (order_tables.h) a grid
-/// c(theta_i,theta_h) second, in half of the models. They differ in how the volume's nodes are shared out among its axes and how
-/// theta_h is spaced. Throws Error where the bytes hold no such tables.
+/// fetches on, p(wo) p(wi) from four, r(theta_d) of three and from five on, a grid k(theta_m,theta_d) from
+/// six on, s(wi + wo/2) s(wi/2 + wo) from eight on; of a source that is not its own mirror image a grid
+/// w(theta_t,theta_h) comes third, and of one for which the order of the directions matters (order_tables.h)
+/// a grid c(theta_i,theta_h) second, in half of the models. They differ in how the volume's nodes are shared
+/// out among its axes and how theta_h is spaced. Throws Error where the bytes hold no such tables.
 std::vector<ModelSpec> volume_specs(BrdfRef source, const CostLimit& limit);
 
 /// An anisotropic model within the limit, of at least four fetches: hemispheres q(h) p(wo) p(wi) times a volume
