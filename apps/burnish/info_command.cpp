@@ -27,27 +27,47 @@ std::optional<ShaderCost> shader_cost(const FactoredBrdf& model) {
   return generate_shader(model, {.filter = ShaderFilter::hardware}).cost;
 }
 
-// The report, of a model with what its shader costs.
+// What is known of the places that were measured.
+struct NodesKnown {
+  std::size_t count;
+  std::optional<std::size_t> incidences;  ///< where they are few
+  std::optional<NodeFigures>
+      predicted;  ///< each by the others: what the measurement itself would score there
+};
+
+std::optional<NodesKnown> nodes_of(const Source& source) {
+  if (!is_measurement(source)) return {};
+  const MeasuredNodes nodes = measured_nodes(source);
+  NodesKnown known{.count = nodes.size(), .incidences = {}, .predicted = {}};
+  if (nodes.theta_i.size() <= kFewIncidences) known.incidences = nodes.theta_i.size();
+  if (nodes.samples.isotropic && nodes.size() <= kManyNodes) known.predicted = held_out_figures(nodes, {});
+  return known;
+}
+
+// The report, with the nodes of a measurement, and of a model with what its shader costs.
 std::string json_text(const SourceReport& report) {
-  std::string text = to_json(report);
-  const auto cost = report.model ? shader_cost(*report.model) : std::nullopt;
-  if (!cost) return text;
-  auto json = nlohmann::ordered_json::parse(text);
-  json["shader"] = {{"fetches", cost->fetches},       {"textures", cost->textures},
-                    {"operations", cost->operations}, {"divisions", cost->divisions},
-                    {"roots", cost->roots},           {"powers", cost->powers}};
+  auto json = nlohmann::ordered_json::parse(to_json(report));
+  if (const auto nodes = nodes_of(report.source)) {
+    json["nodes"]["count"] = nodes->count;
+    if (nodes->incidences) json["nodes"]["incident_angles"] = *nodes->incidences;
+    if (nodes->predicted)
+      json["nodes"]["predicted"] = {{"relative", nodes->predicted->relative},
+                                    {"log_cos", nodes->predicted->log_cos}};
+  }
+  if (const auto cost = report.model ? shader_cost(*report.model) : std::nullopt)
+    json["shader"] = {{"fetches", cost->fetches},       {"textures", cost->textures},
+                      {"operations", cost->operations}, {"divisions", cost->divisions},
+                      {"roots", cost->roots},           {"powers", cost->powers}};
   return json.dump(2);
 }
 
-// How many places were measured, and what the measurement itself would score there.
-std::string nodes_text(const MeasuredNodes& nodes) {
-  std::string text = fmt::format("{} measured", nodes.size());
-  if (const auto& thetas = nodes.theta_i; thetas.size() <= kFewIncidences)
-    text += fmt::format(" at {} incident angles", thetas.size());
-  if (!nodes.samples.isotropic || nodes.size() > kManyNodes) return text;
-  const NodeFigures figures = held_out_figures(nodes, {});
-  return text + fmt::format(", predicted from the others to relative {:.4f}, log_cos {:.4f}",
-                            figures.relative, figures.log_cos);
+std::string to_string(const NodesKnown& nodes) {
+  std::string text = fmt::format("{} measured", nodes.count);
+  if (nodes.incidences) text += fmt::format(" at {} incident angles", *nodes.incidences);
+  if (nodes.predicted)
+    text += fmt::format(", predicted from the others to relative {:.4f}, log_cos {:.4f}",
+                        nodes.predicted->relative, nodes.predicted->log_cos);
+  return text;
 }
 
 void print_text(const SourceReport& report) {
@@ -71,7 +91,7 @@ void print_text(const SourceReport& report) {
   line("coverage", fmt::format("theta_i {:.1f} to {:.1f}, theta_o {:.1f} to {:.1f} degrees",
                                degrees(findings.theta_i_min), degrees(findings.theta_i_max),
                                degrees(findings.theta_o_min), degrees(findings.theta_o_max)));
-  if (is_measurement(source)) line("nodes", nodes_text(measured_nodes(source)));
+  if (const auto nodes = nodes_of(source)) line("nodes", to_string(*nodes));
   if (findings.negative_count > 0)
     line("negatives", fmt::format("{} values below zero, down to {:.3g} 1/sr", findings.negative_count,
                                   findings.most_negative));
