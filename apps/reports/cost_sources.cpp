@@ -7,7 +7,7 @@ namespace burnish::reports {
 
 namespace {
 
-constexpr std::size_t kEvery = 3;
+constexpr std::size_t kEvery = 4;
 
 Source virtual_measurement(const std::string& name, const std::string& formula) {
   const Source source = open_source(formula, {});
