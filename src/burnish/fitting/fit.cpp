@@ -17,6 +17,7 @@
 #include <burnish/fitting/plans/budget_ladder.h>
 #include <burnish/fitting/plans/fetch_plan.h>
 #include <burnish/fitting/plans/fit_plan.h>
+#include <burnish/fitting/plans/order_tables.h>
 #include <burnish/fitting/plans/overfit.h>
 #include <burnish/fitting/plans/scattered_plan.h>
 #include <burnish/fitting/plans/search.h>
@@ -227,9 +228,11 @@ class Fitter {
     return brdf;
   }
 
-  /// How models of an isotropic source do with few fetches and with many, where a choice is left.
+  /// How models of an isotropic source do with few fetches and with many, where a choice is left. Where the order
+  /// of the directions matters lobes share a table of wi and hold it better than the volumes of any trial.
   std::vector<FetchTrial> fetch_trials(const Budget& form, std::uint64_t bytes) const {
-    if (form.fetches > 0 || form.lobes > 0 || form.search || !brdf_.isotropic()) return {};
+    if (form.fetches > 0 || form.lobes > 0 || form.search || !brdf_.isotropic() || order_matters(reference()))
+      return {};
     const CostLimit limit = limit_of(bytes, 0);
     const TrainingSet set =
         with_frontal_pixels(reference(), drawn_set(training_for_volumes(limit)), kFrontalShare);
