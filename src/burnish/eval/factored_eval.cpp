@@ -6,17 +6,13 @@
 
 #include <burnish/eval/factored_eval.h>
 #include <burnish/eval/factored_plan.h>
-#include <burnish/math/highway_targets.h>
 
 // Compiled without contraction to fused multiply-adds (CMakeLists.txt): a fused a * x + b * y differs from
 // b * y + a * x, and swapping the directions would change the last bit. Where that cannot be, they are
 // written.
 
-#undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "burnish/eval/factored_eval.cpp"
-#include <hwy/cache_control.h>
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-#include <hwy/highway.h>
+#include <burnish/math/highway-inl.h>
 
 #include <burnish/eval/lookup_lanes-inl.h>
 #include <burnish/eval/one_pair_lanes-inl.h>
@@ -47,10 +43,7 @@ constexpr std::size_t kCacheLine = 16;  // floats
 }  // namespace burnish
 #endif
 
-HWY_BEFORE_NAMESPACE();
-namespace burnish {
-namespace HWY_NAMESPACE {
-namespace {
+BURNISH_BEGIN_TARGET;
 
 constexpr std::size_t kMaxBlock = FactoredPlan::kMaxBlock;
 
@@ -587,10 +580,7 @@ void eval_one_in_doubles(const FactoredPlan& plan, const Vec3& wi, const Vec3& w
   std::copy_n(values.begin(), plan.channels, f);
 }
 
-}  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace burnish
-HWY_AFTER_NAMESPACE();
+BURNISH_END_TARGET;
 
 #if HWY_ONCE
 namespace burnish {

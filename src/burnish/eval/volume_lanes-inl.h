@@ -14,12 +14,11 @@
 #include <burnish/eval/lookup_lanes-inl.h>
 #include <burnish/eval/projection_lanes-inl.h>
 
-HWY_BEFORE_NAMESPACE();
-namespace burnish {
-namespace HWY_NAMESPACE {
-namespace {
+BURNISH_BEGIN_TARGET;
 
-// With s = wi + wo and d = wi - wo, whose sign does not matter, and as in projection-inl.h:
+// With s = wi + wo and d = wi - wo, whose sign does not matter, the formulas of projection-inl.h. Polar angles of many
+// are instances of them; the rest is in an order of its own, lanes across angles, and held to the definition by
+// factored_eval_test.cpp:
 //   theta_h   r = |s_xy|                den = |s| + s_z
 //   theta_d   r = |d|                   den = |s| + 2
 //   phi_d     r = |s_y d_x - s_x d_y|   den = |(d_z |s|, r)| + |d_z| |s|
@@ -172,12 +171,13 @@ struct VolumeCells {
 
       const Lanes sum = wi + wo, apart = wi - wo;
       const Lane across = mul_add(sum.x, sum.x, sum.y * sum.y), square = mul_add(sum.z, sum.z, across);
-      const Lane apart_square = mul_add(apart.z, apart.z, mul_add(apart.x, apart.x, apart.y * apart.y));
       const Lane sine = abs(sum.y * apart.x - sum.x * apart.y), d_z = abs(apart.z);
-      const Lane azimuth = sqrt(mul_add(d_z * d_z, square, sine * sine)), s = sqrt(square);
+      const Lane azimuth = sqrt(mul_add(d_z * d_z, square, sine * sine));
 
-      const Lane t_h = sqrt(across) / (s + sum.z), t_d = sqrt(apart_square) / (s + Lane(2.0));
-      const Lane t_phi = sine / max(mul_add(d_z, s, azimuth), least_positive(Lane()));
+      const LanePairOf<D> pair{sum, apart, sqrt(square)};
+      const Polar<Lane> h = polar_of(sum, pair.sum_length()), d = difference_angle(pair);
+      const Lane t_h = h.r / h.den, t_d = d.r / d.den;
+      const Lane t_phi = sine / max(mul_add(d_z, pair.sum_length(), azimuth), least_positive(Lane()));
       const Lane root_h = sqrt(t_h), root_d = any_root ? sqrt(t_d) : t_d,
                  root_phi = any_root ? sqrt(t_phi) : t_phi;
       hn::Vec<DI> along_x, along_y, along_z, along_line;
@@ -192,9 +192,6 @@ struct VolumeCells {
   }
 };
 
-}  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace burnish
-HWY_AFTER_NAMESPACE();
+BURNISH_END_TARGET;
 
 #endif

@@ -124,21 +124,17 @@ ModelSpec volume_spec(const VolumeForm& form, const CostLimit& limit, int channe
     if (room) left -= fetches;
     return room;
   };
-  if (ordered && takes(1))
-    builder.add("c",
+  const auto add_by_half = [&](const char* name, int width, double share, const Projection& along_x) {
+    builder.add(name,
                 {.shape = TableShape::grid,
-                 .width = kOrderNodes,
-                 .height = nodes(kOrderShare / kOrderNodes, kMaxRingNodes),
+                 .width = width,
+                 .height = nodes(share / width, kMaxRingNodes),
                  .warp_y = kHalfWarp},
-                {{.projection = kProjectWi, .projection_y = kProjectHalf}});
+                {{.projection = along_x, .projection_y = kProjectHalf}});
+  };
+  if (ordered && takes(1)) add_by_half("c", kOrderNodes, kOrderShare, kProjectWi);
   if (takes(1)) builder.add_line("z", nodes(kRingShare, kMaxRingNodes), {kProjectHalf}, kHalfWarp);
-  if (twisted && takes(1))
-    builder.add("w",
-                {.shape = TableShape::grid,
-                 .width = kTwistNodes,
-                 .height = nodes(kTwistShare / kTwistNodes, kMaxRingNodes),
-                 .warp_y = kHalfWarp},
-                {{.projection = kProjectTwist, .projection_y = kProjectHalf}});
+  if (twisted && takes(1)) add_by_half("w", kTwistNodes, kTwistShare, kProjectTwist);
   if (takes(2)) builder.add_line("p", line, {kProjectWo, kProjectWi});
   if (takes(1)) builder.add_line("r", line, {kProjectDifference});
   if (takes(1)) {

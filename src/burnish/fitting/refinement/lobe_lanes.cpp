@@ -2,14 +2,10 @@
 #include <cmath>
 
 #include <burnish/fitting/refinement/lobe_lanes.h>
-#include <burnish/math/highway_targets.h>
 #include <burnish/math/parallel.h>
 
-#undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "burnish/fitting/refinement/lobe_lanes.cpp"
-#include <hwy/cache_control.h>
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-#include <hwy/highway.h>
+#include <burnish/math/highway-inl.h>
 
 #include <burnish/fitting/refinement/lobe_lanes-inl.h>
 
