@@ -592,8 +592,8 @@ HWY_EXPORT(eval_one_in_doubles);
 FactoredEvaluator::FactoredEvaluator(const FactoredBrdf& brdf)
     : plan_(std::make_shared<FactoredPlan>(brdf)) {}
 
-int FactoredEvaluator::channels() const noexcept {
-  return static_cast<int>(plan_->channels);
+std::size_t FactoredEvaluator::channels() const noexcept {
+  return plan_->channels;
 }
 
 bool FactoredEvaluator::isotropic() const noexcept {

@@ -138,7 +138,7 @@ struct TabulatedSampler::Tables {
     size("columns", options.columns, power(options.columns));
 
     // the map that suits this BRDF best, and the sizes of the tables
-    std::vector<double> f(static_cast<std::size_t>(brdf.channels()));
+    std::vector<double> f(brdf.channels());
     static_cast<VisibleHalfMap&>(view) = fit_map(brdf, options, f);
     view.thetas = options.wo_thetas;
     view.phis = options.wo_phis;

@@ -13,9 +13,9 @@ namespace burnish::testing {
 /// albedo / pi in every direction; one channel or three.
 struct Lambert {
   std::array<double, 3> albedo = {0.8, 0.5, 0.2};
-  int count = 3;
+  std::size_t count = 3;
 
-  int channels() const noexcept { return count; }
+  std::size_t channels() const noexcept { return count; }
   bool isotropic() const noexcept { return true; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     for (std::size_t c = 0; c < f.size(); ++c) f[c] = wi.z > 0 && wo.z > 0 ? albedo[c] / kPi : 0;
@@ -27,9 +27,9 @@ struct Lambert {
 /// where cos theta_d is below `blind_below`.
 struct Glossy {
   double a = 40, b = 40, scale = 1, blind_below = -1;
-  int count = 3;
+  std::size_t count = 3;
 
-  int channels() const noexcept { return count; }
+  std::size_t channels() const noexcept { return count; }
   bool isotropic() const noexcept { return a == b; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     const Vec3 h = half_vector(wi, wo);
@@ -48,7 +48,7 @@ struct GlossyTimes {
   Glossy even;
   double slope = Factor::kSlope;
 
-  int channels() const noexcept { return even.channels(); }
+  std::size_t channels() const noexcept { return even.channels(); }
   bool isotropic() const noexcept { return even.isotropic(); }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     const bool known = even.eval(wi, wo, f);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kHalfRgb = 6;
 
-FactoredBrdf zero_model(const ModelSpec& spec, int channels) {
+FactoredBrdf zero_model(const ModelSpec& spec, std::size_t channels) {
   LogModel model{.spec = spec, .channels = channels, .log_values = {}};
   for (std::size_t t = 0; t < spec.tables.size(); ++t)
     model.log_values.emplace_back(spec.tables[t].layout.node_count() * model.step(t));
@@ -39,7 +39,7 @@ TEST(LobePlan, MakesCompactFiles) {
   struct {
     std::size_t texel_bytes;
     TableFormat format;
-    int channels;
+    std::size_t channels;
   } const kinds[] = {{4, TableFormat::rgb9e5, 3}, {6, TableFormat::half, 3}, {2, TableFormat::half, 1}};
   for (const auto& [texel_bytes, format, channels] : kinds)
     for (const bool isotropic : {true, false})
