@@ -17,7 +17,11 @@ void run_to_planes(const float* rows, std::size_t count, float* x, float* y, flo
     hn::StoreU(b, d, y + i);
     hn::StoreU(c, d, z + i);
   }
-  for (; i < count; ++i) x[i] = rows[3 * i], y[i] = rows[3 * i + 1], z[i] = rows[3 * i + 2];
+  for (; i < count; ++i) {
+    x[i] = rows[3 * i];
+    y[i] = rows[3 * i + 1];
+    z[i] = rows[3 * i + 2];
+  }
 }
 
 BURNISH_END_TARGET;

@@ -157,6 +157,7 @@ HWY_NOINLINE void find_given(const FactoredPlan& plan, const OnePair& one, float
   using Kind = FactoredPlan::Source::Kind;
   const LanesOf<D4> wi = one.of_all<0>(), wo = one.of_all<1>();
   for (const FactoredPlan::GivenSteps& steps : plan.given) {
+    // the projected vector and its polar angle
     Affine<LanesOf<D4>, Four> at;
     switch (steps.kind) {
       case Kind::wi:
@@ -175,6 +176,7 @@ HWY_NOINLINE void find_given(const FactoredPlan& plan, const OnePair& one, float
       case Kind::angle:
         at = doubled_difference(one.pair);
     }
+    // its position: both of a disk, that of a line
     const FactoredPlan::Position& p = steps.position;
     const Four size(p.size), parameter(p.parameter), centre(0.5 * p.cells);
     if (p.disk) {

@@ -156,6 +156,7 @@ struct VolumeCells {
     const bool any_root = v.root[0] || v.root[3];
     auto worst = hn::Zero(DI());
     for (std::size_t i = 0; i < count; i += kLanes) {
+      // directions, and which are none
       Lanes wi, wo;
       if constexpr (kRows) {
         hn::LoadInterleaved3(D(), w[0] + 3 * i, wi.x.raw, wi.y.raw, wi.z.raw);
@@ -169,6 +170,7 @@ struct VolumeCells {
       const Lane lit = if_positive(wi.z, wo.z), none(std::numeric_limits<double>::quiet_NaN());
       store(Lane(hn::IfThenElse(hn::RebindMask(D(), no_directions(excess)), none.raw, lit.raw)), above + i);
 
+      // what the lengths and the polar angles take
       const Lanes sum = wi + wo, apart = wi - wo;
       const Lane across = mul_add(sum.x, sum.x, sum.y * sum.y), square = mul_add(sum.z, sum.z, across);
       const Lane sine = abs(sum.y * apart.x - sum.x * apart.y), d_z = abs(apart.z);
@@ -178,6 +180,7 @@ struct VolumeCells {
       const Polar<Lane> h = polar_of(sum, pair.sum_length()), d = difference_angle(pair);
       const Lane t_h = h.r / h.den, t_d = d.r / d.den;
       const Lane t_phi = sine / max(mul_add(d_z, pair.sum_length(), azimuth), least_positive(Lane()));
+      // cells, and where the two lookups begin
       const Lane root_h = sqrt(t_h), root_d = any_root ? sqrt(t_d) : t_d,
                  root_phi = any_root ? sqrt(t_phi) : t_phi;
       hn::Vec<DI> along_x, along_y, along_z, along_line;
