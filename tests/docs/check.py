@@ -6,6 +6,7 @@
 - Links lead to files of the tree, anchors to headings.
 - A page of docs/guide has at most 120 lines.
 - Daggers, which mark figures that no command prints, stand in docs/notes alone.
+- Every picture of docs/figures stands in a page.
 
 Prints what is wrong as FILE:LINE: MESSAGE and exits with 1 if anything is."""
 import functools
@@ -103,9 +104,17 @@ def check(path):
         yield count, f"{count} lines, a page of the guide has at most {GUIDE_LINES}"
 
 
+def unseen_figures(pages):
+    """Pictures that no page shows."""
+    text = "".join(page.read_text(encoding="utf-8") for page in pages)
+    return [figure for figure in sorted(ROOT.glob("docs/figures/*")) if f"/{figure.name})" not in text]
+
+
 def main():
     pages = [pathlib.Path(name).resolve() for name in sys.argv[1:]] or documents()
     wrong = [f"{path.relative_to(ROOT)}:{number}: {message}" for path in pages for number, message in check(path)]
+    if not sys.argv[1:]:
+        wrong += [f"{figure.relative_to(ROOT)}: stands in no page" for figure in unseen_figures(pages)]
     print("\n".join(wrong) if wrong else f"{len(pages)} documents, nothing wrong")
     return 1 if wrong else 0
 
