@@ -429,7 +429,10 @@ HWY_INLINE void store_values(std::size_t count, std::size_t stored, const ValueP
   if (to.step == 1) {
     for (; i + kLanes <= count; i += kLanes) {
       finish(i, value);
-      for (std::size_t c = 0; c < stored; ++c) store(value[c], to.at(c, i));
+      for (std::size_t c = 0; c < stored; ++c) {
+        store(value[c], to.at(c, i));
+        hwy::Prefetch(to.at(c, i) + kMaxBlock);  // for the next block
+      }
     }
   } else if (kChannels == 3 && to.step == 3) {
     for (; i + kLanes <= count; i += kLanes) {
