@@ -422,7 +422,10 @@ HWY_INLINE void store_values(std::size_t count, std::size_t stored, const ValueP
   if (to.step == 1) {
     for (; i + kLanes <= count; i += kLanes) {
       finish(i, value);
-      for (std::size_t c = 0; c < stored; ++c) store(value[c], to.at(c, i));
+      for (std::size_t c = 0; c < stored; ++c) {
+        store(value[c], to.at(c, i));
+        hwy::Prefetch(to.at(c, i) + kMaxBlock);  // for the next block
+      }
     }
   } else if (kChannels == 3 && to.step == 3) {
     for (; i + kLanes <= count; i += kLanes) {
@@ -555,7 +558,8 @@ void eval_directions(const FactoredPlan& plan, const DirectionPointers& in, std:
              scratch, out.from(0, whole));
 }
 
-void eval_any_one(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, float* f) {
+// Apart: its memory would be set up for volumes too.
+HWY_NOINLINE void eval_any_one(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, float* f) {
 #if HWY_TARGET != HWY_SCALAR
   if (plan.steps.size() <= FactoredPlan::kMaxSteps) return eval_one_pair(plan, wi, wo, f);
 #endif
@@ -571,13 +575,17 @@ void eval_one_in_floats(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo
   eval_any_one(plan, wi, wo, f);
 }
 
+HWY_NOINLINE void eval_any_one(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, double* f) {
+  std::array<float, SymmetrizedBrdf::kMaxChannels> values;  // touched up to the channels only
+  eval_any_one(plan, wi, wo, values.data());
+  std::copy_n(values.begin(), plan.channels, f);
+}
+
 void eval_one_in_doubles(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, double* f) {
 #if HWY_TARGET != HWY_SCALAR
   if (plan.volume_and_line) return eval_one_of_volume(plan, wi, wo, f);
 #endif
-  std::array<float, SymmetrizedBrdf::kMaxChannels> values;  // touched up to the channels only
-  eval_any_one(plan, wi, wo, values.data());
-  std::copy_n(values.begin(), plan.channels, f);
+  eval_any_one(plan, wi, wo, f);
 }
 
 BURNISH_END_TARGET;
@@ -589,8 +597,14 @@ HWY_EXPORT(eval_directions);
 HWY_EXPORT(eval_one_in_floats);
 HWY_EXPORT(eval_one_in_doubles);
 
-FactoredEvaluator::FactoredEvaluator(const FactoredBrdf& brdf)
-    : plan_(std::make_shared<FactoredPlan>(brdf)) {}
+FactoredEvaluator::FactoredEvaluator(const FactoredBrdf& brdf) {
+  const auto plan = std::make_shared<FactoredPlan>(brdf);
+  // asking for the instruction set takes a tenth of the time of one pair
+  if (!hwy::GetChosenTarget().IsInitialized()) hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  plan->one_in_floats = &HWY_DYNAMIC_DISPATCH(eval_one_in_floats);
+  plan->one_in_doubles = &HWY_DYNAMIC_DISPATCH(eval_one_in_doubles);
+  plan_ = plan;
+}
 
 std::size_t FactoredEvaluator::channels() const noexcept {
   return plan_->channels;
@@ -628,12 +642,12 @@ void FactoredEvaluator::eval(const DirectionRows& d, std::span<float> f) const n
 
 void FactoredEvaluator::eval(Vec3 wi, Vec3 wo, std::span<float> f) const noexcept {
   assert(f.size() == plan_->channels);
-  HWY_DYNAMIC_DISPATCH(eval_one_in_floats)(*plan_, wi, wo, f.data());
+  plan_->one_in_floats(*plan_, wi, wo, f.data());
 }
 
 bool FactoredEvaluator::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   assert(f.size() == plan_->channels);
-  HWY_DYNAMIC_DISPATCH(eval_one_in_doubles)(*plan_, wi, wo, f.data());
+  plan_->one_in_doubles(*plan_, wi, wo, f.data());
   return true;
 }
 

@@ -10,6 +10,8 @@
 
 #include <limits>
 
+#include <hwy/cache_control.h>
+
 #include <burnish/eval/factored_plan.h>
 #include <burnish/eval/lookup_lanes-inl.h>
 #include <burnish/eval/projection_lanes-inl.h>
@@ -164,6 +166,7 @@ struct VolumeCells {
       } else {
         wi = {load(w[0] + i), load(w[1] + i), load(w[2] + i)};
         wo = {load(w[3] + i), load(w[4] + i), load(w[5] + i)};
+        for (const float* plane : w) hwy::Prefetch(plane + i + kMost);  // for the next block
       }
       const auto excess = hn::Max(excess_of(wi.x, wi.y, wi.z), excess_of(wo.x, wo.y, wo.z));
       worst = hn::Max(worst, excess);
