@@ -46,10 +46,10 @@ constexpr std::size_t kHeldOutPairs = 20'000;
 constexpr int kHeldOutSphereSize = 128;  // of a baseline's the defaults of FigureOptions
 
 // Volumes follow all angles alike; what they lack shows in pictures first. With p(wo) p(wi) beside them, of four
-// fetches, there is some to spare.
-constexpr ErrorTerms kVolumeShares{.pictures = 3, .dimmed = 0.3, .relative = 0.5, .log_cos = 0.5};
+// fetches, there is some to spare, for absolute errors too: these lie near grazing, and p alone is as steep there.
+constexpr ErrorTerms kVolumeShares{.pictures = 3, .dimmed = 0.3, .relative = 0.5, .log_cos = 0.6};
 constexpr int kSpareFetches = 4;
-constexpr double kSpareLogCos = 0.8;
+constexpr double kSpareLogCos = 0.8, kSpareAbsolute = 0.1;
 constexpr double kVolumeSmooth = 1e-9;
 constexpr double kFrontalShare = 0.1;  // of pixels, see with_frontal_pixels
 
@@ -354,7 +354,10 @@ class Fitter {
     }
     if (form.loss == FitLoss::image) {
       refine.shares = kVolumeShares;
-      if (form.fetches >= kSpareFetches) refine.shares.log_cos = kSpareLogCos;
+      if (form.fetches >= kSpareFetches) {
+        refine.shares.log_cos = kSpareLogCos;
+        refine.shares.absolute = kSpareAbsolute;
+      }
       if (smoothed_) refine.shares = kNodeShares;
     }
     if (!options_.smooth) refine.smooth = kVolumeSmooth;
