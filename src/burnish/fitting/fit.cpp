@@ -21,6 +21,7 @@
 #include <burnish/fitting/plans/overfit.h>
 #include <burnish/fitting/plans/scattered_plan.h>
 #include <burnish/fitting/plans/search.h>
+#include <burnish/fitting/plans/volume_smoothness.h>
 #include <burnish/fitting/refinement/rounding.h>
 #include <burnish/metrics/error_figures.h>
 #include <burnish/metrics/node_figures.h>
@@ -51,6 +52,7 @@ constexpr ErrorTerms kVolumeShares{.pictures = 3, .dimmed = 0.3, .relative = 0.5
 constexpr int kSpareFetches = 4;
 constexpr double kSpareLogCos = 0.8, kSpareAbsolute = 0.1;
 constexpr double kVolumeSmooth = 1e-9;
+constexpr int kSmoothnessFetches = 2;  // of the models by which it is chosen
 constexpr double kFrontalShare = 0.1;  // of pixels, see with_frontal_pixels
 
 // What was measured is judged where it was measured; pictures keep the rest from running away.
@@ -360,10 +362,21 @@ class Fitter {
       }
       if (smoothed_) refine.shares = kNodeShares;
     }
-    if (!options_.smooth) refine.smooth = kVolumeSmooth;
+    if (!options_.smooth) {
+      refine.smooth = kVolumeSmooth;
+      if (form.scattered.cross_validate && !nodes_ && is_measurement(source_))
+        report.smooth = refine.smooth = volume_smoothness(limit);
+    }
     const TrainingSet set =
         with_frontal_pixels(reference(), drawn_set(training_for_volumes(limit)), kFrontalShare);
     return finish(fit_volumes(set, volume_specs(reference(), limit), refine), set, refine, std::move(report));
+  }
+
+  /// That which predicts nodes best, judged by a model of few fetches.
+  double volume_smoothness(CostLimit limit) const {
+    limit.fetches = std::min(limit.fetches, kSmoothnessFetches);
+    const std::vector<ModelSpec> specs = volume_specs(reference(), limit);
+    return choose_volume_smoothness(measured_nodes(source_), specs.front(), options_.symmetrize);
   }
 
   /// Pairs drawn from what is fitted, or the scattered samples themselves; with the nodes that are the target.
