@@ -51,6 +51,7 @@ constexpr int kHeldOutSphereSize = 128;  // of a baseline's the defaults of Figu
 constexpr ErrorTerms kVolumeShares{.pictures = 3, .dimmed = 0.3, .relative = 0.5, .log_cos = 0.6};
 constexpr int kSpareFetches = 4;
 constexpr double kSpareLogCos = 0.8, kSpareAbsolute = 0.1;
+constexpr std::size_t kSpareTexels = 1500;  // from here on, for absolute errors
 constexpr double kVolumeSmooth = 1e-9;
 constexpr int kSmoothnessFetches = 2;  // of the models by which it is chosen
 constexpr double kFrontalShare = 0.1;  // of pixels, see with_frontal_pixels
@@ -358,7 +359,7 @@ class Fitter {
       refine.shares = kVolumeShares;
       if (form.fetches >= kSpareFetches) {
         refine.shares.log_cos = kSpareLogCos;
-        refine.shares.absolute = kSpareAbsolute;
+        if (bytes >= kSpareTexels * limit.texel_bytes) refine.shares.absolute = kSpareAbsolute;
       }
       if (smoothed_) refine.shares = kNodeShares;
     }
