@@ -135,8 +135,9 @@ void print(const LobesReport& report) {
     fmt::print("fetches    {} of {} to {} tried, within {:.0f} % of the least error\n",
                trial_at_knee(trials).fetches, trials.front().fetches, trials.back().fetches,
                100 * (kKneeFactor - 1));
-  fmt::print("fitted     {} samples, {} lobes, {} steps ({})\n", report.samples, report.lobes,
-             report.summary.iterations, to_string(report.summary.stop_reason));
+  fmt::print("fitted     {} samples, {} lobes, {} steps ({}){}\n", report.samples, report.lobes,
+             report.summary.iterations, to_string(report.summary.stop_reason),
+             report.smooth ? fmt::format(", smooth {:.3g}", *report.smooth) : "");
   if (report.search)
     fmt::print("searched   {} changes, {} kept\n", report.search->trials, report.search->kept.size());
 }
@@ -319,8 +320,8 @@ void add_fit_command(CLI::App& app) {
       ->allow_extra_args(false);
   verb->add_option(
       "--smooth", arguments->smooth,
-      "smoothness of the tables: a number >= 0, or auto (cross-validation; the default for scattered "
-      "samples)");
+      "smoothness of the tables: a number >= 0, or auto (cross-validation: the default for scattered "
+      "samples; of volumes what predicts measured nodes best, which takes noise away)");
   verb->add_option("--target", arguments->target,
                    "fit the function that the source's owner makes of it, or nodes: what was measured")
       ->check(CLI::IsMember({"function", "nodes"}))

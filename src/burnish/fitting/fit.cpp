@@ -21,6 +21,7 @@
 #include <burnish/fitting/plans/overfit.h>
 #include <burnish/fitting/plans/scattered_plan.h>
 #include <burnish/fitting/plans/search.h>
+#include <burnish/fitting/plans/volume_smoothness.h>
 #include <burnish/fitting/refinement/rounding.h>
 #include <burnish/metrics/error_figures.h>
 #include <burnish/metrics/node_figures.h>
@@ -46,11 +47,13 @@ constexpr std::size_t kHeldOutPairs = 20'000;
 constexpr int kHeldOutSphereSize = 128;  // of a baseline's the defaults of FigureOptions
 
 // Volumes follow all angles alike; what they lack shows in pictures first. With p(wo) p(wi) beside them, of four
-// fetches, there is some to spare.
-constexpr ErrorTerms kVolumeShares{.pictures = 3, .dimmed = 0.3, .relative = 0.5, .log_cos = 0.5};
+// fetches, there is some to spare, for absolute errors too: these lie near grazing, and p alone is as steep there.
+constexpr ErrorTerms kVolumeShares{.pictures = 3, .dimmed = 0.3, .relative = 0.5, .log_cos = 0.6};
 constexpr int kSpareFetches = 4;
-constexpr double kSpareLogCos = 0.8;
+constexpr double kSpareLogCos = 0.8, kSpareAbsolute = 0.1;
+constexpr std::size_t kSpareTexels = 1500;  // from here on, for absolute errors
 constexpr double kVolumeSmooth = 1e-9;
+constexpr int kSmoothnessFetches = 2;  // of the models by which it is chosen
 constexpr double kFrontalShare = 0.1;  // of pixels, see with_frontal_pixels
 
 // What was measured is judged where it was measured; pictures keep the rest from running away.
@@ -354,13 +357,27 @@ class Fitter {
     }
     if (form.loss == FitLoss::image) {
       refine.shares = kVolumeShares;
-      if (form.fetches >= kSpareFetches) refine.shares.log_cos = kSpareLogCos;
+      if (form.fetches >= kSpareFetches) {
+        refine.shares.log_cos = kSpareLogCos;
+        if (bytes >= kSpareTexels * limit.texel_bytes) refine.shares.absolute = kSpareAbsolute;
+      }
       if (smoothed_) refine.shares = kNodeShares;
     }
-    if (!options_.smooth) refine.smooth = kVolumeSmooth;
+    if (!options_.smooth) {
+      refine.smooth = kVolumeSmooth;
+      if (form.scattered.cross_validate && !nodes_ && is_measurement(source_))
+        report.smooth = refine.smooth = volume_smoothness(limit);
+    }
     const TrainingSet set =
         with_frontal_pixels(reference(), drawn_set(training_for_volumes(limit)), kFrontalShare);
     return finish(fit_volumes(set, volume_specs(reference(), limit), refine), set, refine, std::move(report));
+  }
+
+  /// That which predicts nodes best, judged by a model of few fetches.
+  double volume_smoothness(CostLimit limit) const {
+    limit.fetches = std::min(limit.fetches, kSmoothnessFetches);
+    const std::vector<ModelSpec> specs = volume_specs(reference(), limit);
+    return choose_volume_smoothness(measured_nodes(source_), specs.front(), options_.symmetrize);
   }
 
   /// Pairs drawn from what is fitted, or the scattered samples themselves; with the nodes that are the target.

@@ -20,7 +20,7 @@ namespace burnish {
 
 /// How one lobe is fitted, log-linearly: see HomomorphicOptions.
 struct LogLinear {
-  bool cross_validate = false;           ///< choose the smoothness; scattered samples have it chosen anyway
+  bool cross_validate = false;           ///< choose the smoothness; of scattered samples always
   std::optional<int> reweightings = {};  ///< none: 4 for scattered samples, else 0
   double floor = 3e-5;                   ///< 1/sr, added to every value before its logarithm is taken
 };

@@ -361,6 +361,25 @@ Source noisy_source(double noise) {
   return source_of("noisy", std::move(table));
 }
 
+TEST(Fit, ChoosesTheSmoothnessOfVolumesByNodesWhereAsked) {
+  AngleTable layout;
+  layout.folded = true;
+  layout.axes = {make_axis({0}, kTwoPi), make_axis(cell_centres(10, kHalfPi)),
+                 make_axis(cell_centres(10, kHalfPi)), make_axis(cell_centres(12, kPi))};
+  const char* const ggx = "ggx:alpha_x=0.3,alpha_y=0.3,kd=0.2";
+  const Source table = source_of("table", tabulate_angles(parse_analytic(ggx), layout)),
+               formula = source_of("formula", parse_analytic(ggx));
+  const auto smooth_of = [](const Source& source, bool chosen) {
+    const Budget budget{.bytes = 2000, .fetches = 1, .scattered = {.cross_validate = chosen}};
+    const Fit made = fit(source, {.form = budget, .score = false});
+    return std::get<LobesReport>(made.report.how).smooth;
+  };
+  EXPECT_FALSE(smooth_of(table, false));
+  EXPECT_FALSE(smooth_of(formula, true));  // was measured nowhere
+  // few nodes predict one another best by a function that is smooth between them
+  EXPECT_GT(smooth_of(table, true).value_or(0), 1e-8);
+}
+
 TEST(Fit, StoresNoNoiseWhereBytesAreAuto) {
   // the more noise, the fewer bytes
   std::uint64_t before = 1 << 20;

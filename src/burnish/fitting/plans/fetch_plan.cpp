@@ -172,12 +172,11 @@ TrainingSet about(const TrainingSet& set, std::size_t pairs) {
   return thinned(set, std::max<std::size_t>(1, set.size() / pairs));
 }
 
-/// Parts of the pairs, the mean of their channels, to fit trials to and to judge them on.
+/// Parts of the pairs to fit trials to and to judge them on.
 struct TrialSets {
   explicit TrialSets(const TrainingSet& set) {
-    const TrainingSet grey = mean_of_channels(set);
-    fitted = part_of(grey, 0, kTrialPart);
-    judged = part_of(grey, kTrialPart / 2, kTrialPart);
+    fitted = part_of(set, 0, kTrialPart);
+    judged = part_of(set, kTrialPart / 2, kTrialPart);
   }
 
   /// Of a model with a volume, of as many nodes as the pairs determine.
@@ -308,9 +307,9 @@ std::vector<FetchTrial> try_fetches(BrdfRef source, const TrainingSet& set, Cost
   }
 
   // side by side
-  const TrialSets sets(set);
+  const TrialSets sets(mean_of_channels(set));
   const ErrorTerms& of = options.shares;
-  const double shares = of.pictures + of.dimmed + of.relative + of.log_cos;
+  const double shares = of.pictures + of.dimmed + of.relative + of.log_cos + of.absolute;
   std::vector<FetchTrial> trials(candidates.size());
   for_each_chunk(candidates.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
     const Candidate& candidate = candidates[k];

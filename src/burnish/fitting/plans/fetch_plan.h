@@ -42,7 +42,7 @@ ModelSpec hemisphere_spec(const CostLimit& limit, std::size_t channels);
 inline constexpr double kKneeFactor = 1.02;
 
 /// Models of 2, 3, 4, 6, 8, 12 and 24 fetches that the bytes hold, and lobes of lines where takes_lobes has them for
-/// as many as they take: each fitted to part of the set in few steps and judged on another. By rising fetches; the
+/// as many as they take: each fitted to part of the set, the mean of its channels, in few steps and judged on another. By rising fetches; the
 /// limit's own do not count. Deterministic.
 std::vector<FetchTrial> try_fetches(BrdfRef source, const TrainingSet& set, CostLimit limit,
                                     const RefineOptions& options);
@@ -57,9 +57,9 @@ TrainingOptions training_for_volumes(const CostLimit& limit);
 /// half of them where theta_h is small, weighted as if they were spread evenly over the disk.
 TrainingSet with_frontal_pixels(BrdfRef source, TrainingSet set, double share);
 
-/// Fits the spec that serves best, of many nodes the first: each is fitted to part of the pairs, the mean of
-/// their channels, in few steps, and judged on another part. The log-linear fit of its volume at fewer nodes
-/// is refined on part of the set, then at all nodes on the whole. Throws Error as fit_homomorphic does.
+/// Fits the spec that serves best, of many nodes the first: each is fitted to part of the pairs in few steps
+/// and judged on another part. The log-linear fit of its volume at fewer nodes is refined on part of the set,
+/// then at all nodes on the whole. Throws Error as fit_homomorphic does.
 LobesFit fit_volumes(const TrainingSet& set, const std::vector<ModelSpec>& specs,
                      const RefineOptions& options);
 

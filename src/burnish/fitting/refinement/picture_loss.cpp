@@ -9,7 +9,7 @@ namespace {
 
 // Added to the means in the objective: errors below do not matter, and ln stays finite.
 constexpr ErrorTerms kNegligible{
-    .pictures = 1e-7, .dimmed = 1e-7, .relative = 1e-4, .log_cos = 1e-5, .albedo = 3e-5};
+    .pictures = 1e-7, .dimmed = 1e-7, .relative = 1e-4, .log_cos = 1e-5, .absolute = 1e-8, .albedo = 3e-5};
 
 double rounded_abs(double error, double round) noexcept {
   return std::sqrt(error * error + round * round);
@@ -22,6 +22,7 @@ double PictureLoss::objective(const ErrorTerms& means) const noexcept {
          shares.dimmed * std::log(means.dimmed + kNegligible.dimmed) +
          shares.relative * std::log(means.relative + kNegligible.relative) +
          shares.log_cos * std::log(means.log_cos + kNegligible.log_cos) +
+         shares.absolute * std::log(means.absolute + kNegligible.absolute) +
          shares.albedo * std::log1p(means.albedo / kNegligible.albedo);
 }
 
@@ -35,6 +36,7 @@ ErrorTerms PictureLoss::derivatives(const ErrorTerms& means, double picture_weig
   if (pair_weight > 0) {
     d.relative = shares.relative / (means.relative + kNegligible.relative) / pair_weight;
     d.log_cos = shares.log_cos / (means.log_cos + kNegligible.log_cos) / pair_weight;
+    d.absolute = shares.absolute / (means.absolute + kNegligible.absolute) / pair_weight;
   }
   if (albedo_count > 0) d.albedo = shares.albedo / (means.albedo + kNegligible.albedo) / albedo_count;
   return d;
@@ -75,6 +77,12 @@ PictureLoss::Slope PictureLoss::add(Target target, double model, double cos_thet
                model / (model + kFloor), kRelativeRound);
   add_absolute(sums.log_cos, derivatives.log_cos, std::log1p(lit) - target.second, lit / (1 + lit),
                kLogCosRound);
+
+  // a model far below steps by no more than the ratio
+  const double f = std::exp(static_cast<double>(target.first)) - kFloor, error = model - f;
+  sums.absolute += weight * error * error;
+  slope.gradient += weight * derivatives.absolute * 2 * error * model;
+  slope.curvature += weight * derivatives.absolute * 2 * std::max(model, f) * model;
   return slope;
 }
 

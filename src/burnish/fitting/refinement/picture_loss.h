@@ -14,6 +14,7 @@ struct ErrorTerms {
   double dimmed = 0;
   double relative = 0;  ///< of pairs, |ln((f + 1e-3) / (f^ + 1e-3))|
   double log_cos = 0;   ///< of pairs, |ln(1 + f cos theta_i) - ln(1 + f^ cos theta_i)|
+  double absolute = 0;  ///< of pairs, (f - f^)^2, 1/sr^2: highlights near grazing rule it
   double albedo = 0;    ///< of albedos, the squared relative error; see AlbedoSet
 
   ErrorTerms& operator+=(const ErrorTerms& other) noexcept {
@@ -21,6 +22,7 @@ struct ErrorTerms {
     dimmed += other.dimmed;
     relative += other.relative;
     log_cos += other.log_cos;
+    absolute += other.absolute;
     albedo += other.albedo;
     return *this;
   }

@@ -15,7 +15,7 @@ V number(double v) {
 
 // What a vector of values adds.
 struct Part {
-  V pictures, dimmed, relative, log_cos;  // of ErrorTerms
+  V pictures, dimmed, relative, log_cos, absolute;  // of ErrorTerms
   V gradient, curvature;
 };
 
@@ -59,13 +59,20 @@ void add_pairs(const ErrorTerms& derivatives, V first, V second, V model, V lit,
                weight, derivatives.relative, part.relative, part);
   add_absolute(hn::Sub(hn::Log1p(d, lit), second), hn::Div(lit, brighter), PictureLoss::kLogCosRound, weight,
                derivatives.log_cos, part.log_cos, part);
+
+  // a model far below steps by no more than the ratio
+  const V f = hn::Sub(hn::Exp(d, first), number(PictureLoss::kFloor)), error = hn::Sub(model, f);
+  part.absolute = hn::MulAdd(weight, hn::Mul(error, error), part.absolute);
+  const V slope = hn::Mul(hn::Mul(weight, number(2 * derivatives.absolute)), model);
+  part.gradient = hn::MulAdd(slope, error, part.gradient);
+  part.curvature = hn::MulAdd(slope, hn::Max(model, f), part.curvature);
 }
 
 void add(const PictureLoss& loss, const LossInputs& in, std::size_t count, const ErrorTerms& derivatives,
          ErrorTerms& sums, float* gradient, float* curvature) {
   const D d;
   const V zero = hn::Zero(d);
-  Part part{zero, zero, zero, zero, zero, zero};
+  Part part{zero, zero, zero, zero, zero, zero, zero};
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
     const V model = hn::LoadU(d, in.model + i), lit = hn::Mul(model, hn::LoadU(d, in.cos_theta_i + i));
     const V first = hn::LoadU(d, in.first + i), second = hn::LoadU(d, in.second + i);
@@ -81,7 +88,8 @@ void add(const PictureLoss& loss, const LossInputs& in, std::size_t count, const
   sums += {.pictures = sum_of(part.pictures),
            .dimmed = sum_of(part.dimmed),
            .relative = sum_of(part.relative),
-           .log_cos = sum_of(part.log_cos)};
+           .log_cos = sum_of(part.log_cos),
+           .absolute = sum_of(part.absolute)};
 }
 
 BURNISH_END_TARGET;

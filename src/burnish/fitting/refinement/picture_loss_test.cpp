@@ -9,7 +9,7 @@
 namespace burnish {
 namespace {
 
-constexpr ErrorTerms kOnes{.pictures = 1, .dimmed = 1, .relative = 1, .log_cos = 1};
+constexpr ErrorTerms kOnes{.pictures = 1, .dimmed = 1, .relative = 1, .log_cos = 1, .absolute = 1};
 
 TEST(PictureLoss, SlopeIsTheDerivativeOfTheErrors) {
   const PictureLoss loss{.shares = kOnes, .exposure = 2};
@@ -19,7 +19,7 @@ TEST(PictureLoss, SlopeIsTheDerivativeOfTheErrors) {
         const auto value = [&](double log_model) {
           ErrorTerms sums{};
           loss.add(loss.target(f, 0.8, picture), std::exp(log_model), 0.8, picture, 1, kOnes, sums);
-          return sums.pictures + sums.dimmed + sums.relative + sums.log_cos;
+          return sums.pictures + sums.dimmed + sums.relative + sums.log_cos + sums.absolute;
         };
         ErrorTerms sums{};
         const auto slope = loss.add(loss.target(f, 0.8, picture), model, 0.8, picture, 1, kOnes, sums);
@@ -34,7 +34,8 @@ TEST(PictureLoss, IsZeroWhereTheModelIsRight) {
   for (const bool picture : {true, false}) {
     ErrorTerms sums{};
     const auto slope = loss.add(loss.target(0.1, 0.5, picture), 0.1, 0.5, picture, 1, kOnes, sums);
-    for (const double s : {sums.pictures, sums.dimmed, sums.relative, sums.log_cos}) EXPECT_NEAR(s, 0, 1e-12);
+    for (const double s : {sums.pictures, sums.dimmed, sums.relative, sums.log_cos, sums.absolute})
+      EXPECT_NEAR(s, 0, 1e-12);
     EXPECT_NEAR(slope.gradient, 0, 1e-4);
   }
 }
@@ -42,7 +43,7 @@ TEST(PictureLoss, IsZeroWhereTheModelIsRight) {
 TEST(PictureLoss, IsTheSameInLanes) {
   constexpr std::size_t kCount = 256;
   const PictureLoss loss{.exposure = 2};
-  const ErrorTerms derivatives{.pictures = 3, .dimmed = 1, .relative = 0.5, .log_cos = 2};
+  const ErrorTerms derivatives{.pictures = 3, .dimmed = 1, .relative = 0.5, .log_cos = 2, .absolute = 4};
   Pcg32 random(4);
   std::vector<float> first(kCount), second(kCount), model(kCount), cosine(kCount), pixels(kCount),
       pairs(kCount), gradient(kCount), curvature(kCount);
@@ -68,8 +69,8 @@ TEST(PictureLoss, IsTheSameInLanes) {
               .picture_weight = pixels.data(),
               .pair_weight = pairs.data()},
              kCount, derivatives, sums, gradient.data(), curvature.data());
-  for (const auto term :
-       {&ErrorTerms::pictures, &ErrorTerms::dimmed, &ErrorTerms::relative, &ErrorTerms::log_cos})
+  for (const auto term : {&ErrorTerms::pictures, &ErrorTerms::dimmed, &ErrorTerms::relative,
+                          &ErrorTerms::log_cos, &ErrorTerms::absolute})
     EXPECT_NEAR(sums.*term, expected.*term, 1e-5 * expected.*term);
   for (std::size_t i = 0; i < kCount; ++i) {
     EXPECT_NEAR(gradient[i], slopes[i].gradient, 1e-5 * (1 + std::abs(slopes[i].gradient))) << i;

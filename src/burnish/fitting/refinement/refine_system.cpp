@@ -205,6 +205,7 @@ ErrorTerms RefineSystem::errors(const Eigen::VectorXd& x) const {
           .dimmed = mean(sums.dimmed, picture_weight_),
           .relative = mean(sums.relative, pair_weight_),
           .log_cos = mean(sums.log_cos, pair_weight_),
+          .absolute = mean(sums.absolute, pair_weight_),
           .albedo = mean(albedo_.residuals(x).squaredNorm(), static_cast<double>(albedo_.size()))};
 }
 
