@@ -74,7 +74,7 @@ TEST(Hostile, DamagedBytesThrowClearlyOrGiveSoundValues) {
         damaged[at] = damage;
         if (throws_clearly(damaged)) continue;
         const Source source = parse_source(memory_file(damaged), {});
-        f.resize(static_cast<std::size_t>(source.ref().channels()));
+        f.resize(source.ref().channels());
         source.ref().eval({0.6, 0, 0.8}, {0, -0.6, 0.8}, f);
         for (const double value : f) EXPECT_TRUE(std::isfinite(value)) << name << " damaged at " << at;
       }

@@ -13,7 +13,7 @@ namespace burnish::cli {
 
 namespace {
 
-std::string header(int channels, const std::vector<double>& lambda_nm) {
+std::string header(std::size_t channels, const std::vector<double>& lambda_nm) {
   if (!lambda_nm.empty()) {
     std::vector<std::string> names;
     for (const double l : lambda_nm) names.push_back(fmt::format("value_{}", l));
@@ -43,7 +43,7 @@ void add_eval_command(CLI::App& app) {
     const Source source = arguments->source.open();
     const std::vector<DirectionPair> pairs = parse_directions(read_file(arguments->directions));
     const BrdfRef brdf = source.ref();
-    const auto channels = static_cast<std::size_t>(brdf.channels());
+    const auto channels = brdf.channels();
     std::vector<double> values(pairs.size() * channels);
     std::vector<std::uint8_t> known(pairs.size());
     for_each_chunk(pairs.size(), 4096, [&](std::size_t, std::size_t begin, std::size_t end) {

@@ -17,7 +17,7 @@ namespace burnish::reports {
 struct Measurement {
   const RglTable* table;
 
-  int channels() const noexcept { return table->channels(); }
+  std::size_t channels() const noexcept { return table->channels(); }
   bool isotropic() const noexcept { return table->isotropic(); }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept { return table->eval(wo, wi, f); }
 };
@@ -33,7 +33,7 @@ inline constexpr const char* kProportional = "in proportion";
 class Albedo {
  public:
   explicit Albedo(BrdfRef brdf) {
-    std::vector<double> f(static_cast<std::size_t>(brdf.channels()));
+    std::vector<double> f(brdf.channels());
     for (int i = 0; i <= kSteps; ++i) {
       const Vec3 wo = spherical_direction(std::min(radians(90.0 * i / kSteps), radians(89.9)), 0);
       double sum = 0;

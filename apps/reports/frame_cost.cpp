@@ -25,7 +25,7 @@ SurfaceShader matte() {
   return {.declarations = "", .view = "", .light = "", .value = "vec3(0.3183099)", .textures = {}};
 }
 struct Matte {
-  static int channels() noexcept { return 1; }
+  static std::size_t channels() noexcept { return 1; }
   static bool isotropic() noexcept { return true; }
   static bool eval(Vec3 wi, Vec3 wo, std::span<double> f) noexcept {
     f[0] = wi.z > 0 && wo.z > 0 ? 0.3183099 : 0;

@@ -69,7 +69,7 @@ struct Weights {
 
 Weights weights_of(BrdfRef brdf, SamplerRef sampler, Vec3 wo, int draws) {
   Pcg32 random(3);
-  std::vector<double> f(static_cast<std::size_t>(brdf.channels()));
+  std::vector<double> f(brdf.channels());
   double sum = 0, squares = 0, largest = 0, lost = 0;
   for (int i = 0; i < draws; ++i) {
     const double x = random.uniform();
@@ -111,7 +111,7 @@ Table weights_table(const std::vector<Material>& materials, const Effort& effort
 
 // What a BRDF reflects towards wo, the root mean square of the channels.
 double albedo_of(BrdfRef brdf, Vec3 wo) {
-  std::vector<double> f(static_cast<std::size_t>(brdf.channels()));
+  std::vector<double> f(brdf.channels());
   double sum = 0;
   for (const auto& [wi, weight] : half_vector_quadrature(wo, 64, 1024))
     sum += reflected_size(brdf, wi, wo, f) * weight;

@@ -27,7 +27,7 @@ const std::vector<std::string> kVariants{"exact, float", "exact, half", "hardwar
 
 // f of each pair, three components.
 std::vector<double> truth_of(const FactoredBrdf& brdf, std::span<const DirectionPair> pairs) {
-  const auto channels = static_cast<std::size_t>(brdf.channels());
+  const auto channels = brdf.channels();
   std::vector<double> truth(3 * pairs.size());
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     brdf.eval(pairs[i].wi, pairs[i].wo, std::span(truth).subspan(3 * i, channels));

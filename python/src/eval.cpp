@@ -95,11 +95,7 @@ void eval_source(BrdfRef brdf, const Job<T>& job, std::size_t begin, std::size_t
 template <class T>
 nb::object eval(const OpenedBrdf& brdf, const Array<const T>& wi, const Array<const T>& wo,
                 const nb::object& out) {
-  Job<T> job{rows_of<T>(wi, "wi", 3),
-             rows_of<T>(wo, "wo", 3),
-             {},
-             0,
-             static_cast<std::size_t>(brdf.ref().channels())};
+  Job<T> job{rows_of<T>(wi, "wi", 3), rows_of<T>(wo, "wo", 3), {}, 0, brdf.ref().channels()};
   const bool one = job.wi.one && job.wo.one;
   job.count = match(job.wi, job.wo, "wi and wo");
   const bool planes = job.wi.planes() && job.wo.planes() && job.count > 1;
@@ -122,11 +118,7 @@ nb::object eval(const OpenedBrdf& brdf, const Array<const T>& wi, const Array<co
 // in planes or all in rows: what Python's eval is measured against.
 double time_eval(const OpenedModel& model, const Array<const float>& wi, const Array<const float>& wo,
                  const nb::object& out, int repeats) {
-  Job<float> job{rows_of<float>(wi, "wi", 3),
-                 rows_of<float>(wo, "wo", 3),
-                 {},
-                 0,
-                 static_cast<std::size_t>(model.brdf().channels())};
+  Job<float> job{rows_of<float>(wi, "wi", 3), rows_of<float>(wo, "wo", 3), {}, 0, model.brdf().channels()};
   job.count = match(job.wi, job.wo, "wi and wo");
   job.f = make_result<float>(out, job.count, job.channels, false).rows;
   const nb::gil_scoped_release released;

@@ -49,7 +49,7 @@ nb::object compare_models(const OpenedBrdf& reference, const std::vector<const O
 
 nb::object directional_albedo(const OpenedBrdf& source, const Array<const double>& wi) {
   const Rows<const double> rows = rows_of<double>(wi, "wi", 3);
-  const std::size_t channels = static_cast<std::size_t>(source.ref().channels());
+  const std::size_t channels = source.ref().channels();
   std::vector<double> albedo;
   {
     const nb::gil_scoped_release released;
@@ -68,9 +68,8 @@ nb::object directional_albedo(const OpenedBrdf& source, const Array<const double
 
 template <class T>
 nb::object to_numpy_image(BasicImage<T> image) {
-  return to_numpy(std::move(image.pixels),
-                  {static_cast<std::size_t>(image.height), static_cast<std::size_t>(image.width),
-                   static_cast<std::size_t>(image.channels)});
+  return to_numpy(std::move(image.pixels), {static_cast<std::size_t>(image.height),
+                                            static_cast<std::size_t>(image.width), image.channels});
 }
 
 nb::tuple pair_arrays(const std::vector<DirectionPair>& pairs) {
@@ -151,8 +150,7 @@ void bind_metrics(nb::module_& m) {
         }();
         const nb::tuple pairs = pair_arrays(samples.pairs);
         return nb::make_tuple(pairs[0], pairs[1],
-                              to_numpy(std::move(samples.values),
-                                       {samples.size(), static_cast<std::size_t>(samples.channels)}));
+                              to_numpy(std::move(samples.values), {samples.size(), samples.channels}));
       },
       nb::arg("source"), nb::kw_only(), nb::arg("count") = MeasureOptions{}.count, nb::arg("noise") = 0.0,
       nb::arg("seed") = 1,

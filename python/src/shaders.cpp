@@ -63,8 +63,8 @@ void bind_shaders(nb::module_& m) {
           [](const ShaderTexture& t) {
             std::vector<std::size_t> shape;
             if (t.depth > 0) shape.push_back(static_cast<std::size_t>(t.depth));
-            for (const int side : {t.height, t.width, t.channels})
-              shape.push_back(static_cast<std::size_t>(side));
+            for (const int side : {t.height, t.width}) shape.push_back(static_cast<std::size_t>(side));
+            shape.push_back(t.channels);
             return to_numpy(t.values, shape);
           },
           nb::sig("def values(self) -> numpy.ndarray"),

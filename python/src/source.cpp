@@ -30,8 +30,9 @@ OpenedBrdf* open(const std::string& spec, const OpenOptions& options) {
 std::vector<std::size_t> array_shape(const Table& table) {
   std::vector<std::size_t> shape;
   if (table.layout.shape == TableShape::volume) shape.push_back(static_cast<std::size_t>(table.layout.depth));
-  for (const int side : {table.layout.height, table.layout.width, table.channels})
+  for (const int side : {table.layout.height, table.layout.width})
     shape.push_back(static_cast<std::size_t>(side));
+  shape.push_back(table.channels);
   return shape;
 }
 

@@ -16,7 +16,7 @@ namespace burnish {
 
 /// Traps unless the source is finite, and nowhere negative but in its raw values.
 inline void check_values(BrdfRef source) {
-  std::vector<double> f(static_cast<std::size_t>(source.channels()));
+  std::vector<double> f(source.channels());
   for (const double theta : {0.0, 0.7, 1.5707})
     for (const double phi : {-kPi, 0.1, 3.0}) {
       const Vec3 wi = spherical_direction(theta, phi), wo = spherical_direction(0.5, 1);

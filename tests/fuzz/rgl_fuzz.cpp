@@ -16,7 +16,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   options.keep_spectral = size % 2 == 0;
   try {
     const RglTable table = parse_rgl(file, options).table;
-    std::vector<double> f(static_cast<std::size_t>(table.channels()));
+    std::vector<double> f(table.channels());
     for (double theta : {0.0, 0.7, 1.5707})
       for (double phi : {-kPi, 0.1, 3.0}) {
         table.eval(spherical_direction(theta, phi), spherical_direction(0.5, 1), f);

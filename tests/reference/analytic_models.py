@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Reference values of src/burnish/reflectance/analytic/models_test.cpp.
+"""Reference values of the tests in src/burnish/reflectance/analytic.
 
 Prints each value with the name of the model it belongs to. The models are written from their papers in terms of
 angles, apart from the library, which works with vectors: a mistake in one of them shows. Needs the standard

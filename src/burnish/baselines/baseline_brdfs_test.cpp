@@ -110,7 +110,7 @@ TEST(DgfBrdf, IsTheProductOfItsFactorsOverADiffuseFloor) {
   const auto line = [&](const NodeTable& t, double at, std::size_t c) {
     const double x = at * (t.axes[0].count - 1);
     const auto i = static_cast<std::size_t>(x);
-    const std::size_t channels = static_cast<std::size_t>(t.channels), k = channels == 1 ? 0 : c;
+    const std::size_t channels = t.channels, k = channels == 1 ? 0 : c;
     return (1 - x + static_cast<double>(i)) * t.values[i * channels + k] +
            (x - static_cast<double>(i)) * t.values[(i + 1) * channels + k];
   };

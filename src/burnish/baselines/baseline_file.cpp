@@ -86,7 +86,7 @@ NodeTable read_table(const Json& tables, std::size_t index, std::string_view nam
   if (const auto found = json.at("name").get<std::string>(); found != name)
     throw Error(fmt::format("table {}: expected the name '{}', found '{}'", index + 1, name, found));
   NodeTable table{.axes = {},
-                  .channels = json.at("channels").get<int>(),
+                  .channels = json.at("channels").get<std::size_t>(),
                   .terms = json.at("terms").get<int>(),
                   .values = json.at("values").get<std::vector<float>>()};
   for (const Json& axis : json.at("axes")) {

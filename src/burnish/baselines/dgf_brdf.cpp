@@ -18,7 +18,7 @@ void check_constants(std::span<const float> constants, const char* name) {
       throw Error(fmt::format("dgf: {}: expected a number in [0, {}], found {}", name, kMaxConstant, c));
 }
 
-void check_factor(const NodeTable& table, PairCoordinate coordinate, int channels, const char* name) {
+void check_factor(const NodeTable& table, PairCoordinate coordinate, std::size_t channels, const char* name) {
   check_node_table(table, channels, name);
   if (table.axes.size() != 1 || table.axes[0].coordinate != coordinate || table.terms != 1)
     throw Error(

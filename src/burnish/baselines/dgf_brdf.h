@@ -20,7 +20,7 @@ class DgfBrdf {
   /// values >= 0, and diffuse and scale have one entry in [0, 1e30] a channel.
   DgfBrdf(std::vector<float> diffuse, std::vector<float> scale, NodeTable d, NodeTable g, NodeTable f);
 
-  int channels() const noexcept { return static_cast<int>(diffuse_.size()); }
+  std::size_t channels() const noexcept { return diffuse_.size(); }
   static constexpr bool isotropic() noexcept { return true; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 

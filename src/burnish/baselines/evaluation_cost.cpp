@@ -6,8 +6,8 @@ namespace {
 
 // One lookup of every channel and term of a table: 2^axes corners.
 EvaluationCost lookup_cost(const NodeTable& table) noexcept {
-  const std::size_t reads = (std::size_t{1} << table.axes.size()) * static_cast<std::size_t>(table.channels) *
-                            static_cast<std::size_t>(table.terms);
+  const std::size_t reads =
+      (std::size_t{1} << table.axes.size()) * table.channels * static_cast<std::size_t>(table.terms);
   return {reads, reads};
 }
 
@@ -25,8 +25,8 @@ EvaluationCost evaluation_cost(const FactoredBrdf& brdf) noexcept {
     for (const FactorUse& use : lobe.factors) {
       const Table& table = brdf.table_of(use);
       const std::size_t corners = std::size_t{1} << axis_count(table.layout.shape);
-      const std::size_t reads = corners * static_cast<std::size_t>(table.channels);
-      cost += {reads, reads + static_cast<std::size_t>(brdf.channels())};  // into the product with the scale
+      const std::size_t reads = corners * table.channels;
+      cost += {reads, reads + brdf.channels()};  // into the product with the scale
     }
   return cost;
 }
@@ -34,7 +34,7 @@ EvaluationCost evaluation_cost(const FactoredBrdf& brdf) noexcept {
 EvaluationCost evaluation_cost(const SeparableBrdf& brdf) noexcept {
   EvaluationCost cost = lookup_cost(brdf.u());
   cost += lookup_cost(brdf.v());
-  cost.multiplies += static_cast<std::size_t>(brdf.channels()) * static_cast<std::size_t>(brdf.u().terms + 1);
+  cost.multiplies += brdf.channels() * static_cast<std::size_t>(brdf.u().terms + 1);
   return cost;
 }
 
@@ -43,7 +43,7 @@ EvaluationCost evaluation_cost(const DgfBrdf& brdf) noexcept {
   cost += lookup_cost(brdf.f());
   cost += lookup_cost(brdf.g());
   cost += lookup_cost(brdf.g());
-  cost.multiplies += 4 * static_cast<std::size_t>(brdf.channels());  // D F G G scale
+  cost.multiplies += 4 * brdf.channels();  // D F G G scale
   return cost;
 }
 

@@ -25,7 +25,7 @@ class NeuralBrdf {
   /// Throws Error unless there are kWeights finite weights within kMaxWeight of 0.
   explicit NeuralBrdf(std::span<const float> weights);
 
-  static constexpr int channels() noexcept { return static_cast<int>(kOutputs); }
+  static constexpr std::size_t channels() noexcept { return kOutputs; }
   static constexpr bool isotropic() noexcept { return true; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 

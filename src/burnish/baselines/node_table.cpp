@@ -52,16 +52,15 @@ NodeCorners corners(std::span<const NodeAxis> axes, const PairPlace& place) noex
 
 double node_value(const NodeTable& table, const NodeCorners& at, std::size_t channel,
                   std::size_t term) noexcept {
-  assert(channel < static_cast<std::size_t>(table.channels) && term < static_cast<std::size_t>(table.terms));
-  const auto terms = static_cast<std::size_t>(table.terms),
-             stride = terms * static_cast<std::size_t>(table.channels);
+  assert(channel < table.channels && term < static_cast<std::size_t>(table.terms));
+  const auto terms = static_cast<std::size_t>(table.terms), stride = terms * table.channels;
   const float* const first = table.values.data() + channel * terms + term;
   double sum = 0;
   for (std::size_t k = 0; k < at.count; ++k) sum += at.weight[k] * first[at.node[k] * stride];
   return sum;
 }
 
-void check_node_table(const NodeTable& table, int brdf_channels, const std::string& name) {
+void check_node_table(const NodeTable& table, std::size_t brdf_channels, const std::string& name) {
   const auto fail = [&](const std::string& expected, const std::string& found) {
     throw Error(fmt::format("table '{}': expected {}, found {}", name, expected, found));
   };
@@ -73,7 +72,7 @@ void check_node_table(const NodeTable& table, int brdf_channels, const std::stri
     fail("at least 1 term", fmt::format("{}", table.terms));
 
   // the count stays in bounds while it is multiplied
-  std::size_t count = static_cast<std::size_t>(table.channels) * static_cast<std::size_t>(table.terms);
+  std::size_t count = table.channels * static_cast<std::size_t>(table.terms);
   for (const NodeAxis& axis : table.axes) {
     if (axis.count < 2 || axis.count > kMaxSide)
       fail(fmt::format("2 to {} nodes along {}", kMaxSide, to_string(axis.coordinate)),

@@ -27,7 +27,7 @@ struct NodeTable {
   static constexpr std::size_t kMaxAxes = 3;
 
   std::vector<NodeAxis> axes;  ///< 1 to kMaxAxes
-  int channels = 1;            ///< 1 (shared by the BRDF's channels) or the BRDF's channel count
+  std::size_t channels = 1;    ///< 1 (shared by the BRDF's channels) or the BRDF's channel count
   int terms = 1;
   std::vector<float> values;  ///< [node][channel][term], each exactly a half float
 
@@ -50,7 +50,7 @@ double node_value(const NodeTable& table, const NodeCorners& at, std::size_t cha
                   std::size_t term) noexcept;
 
 /// Throws Error, naming the table, unless the axes, channels and values are as documented.
-void check_node_table(const NodeTable& table, int brdf_channels, const std::string& name);
+void check_node_table(const NodeTable& table, std::size_t brdf_channels, const std::string& name);
 
 /// The nearest half float; beyond the largest of them, the largest.
 float round_to_half(double value) noexcept;

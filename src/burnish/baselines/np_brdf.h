@@ -27,7 +27,7 @@ class NpBrdf {
   /// Throws Error unless the code's numbers are within NpDecoder::kMaxWeight of 0. `decoder` is one.
   NpBrdf(std::shared_ptr<const NpDecoder> decoder, const Code& code, Value value);
 
-  static constexpr int channels() noexcept { return static_cast<int>(NpDecoder::kOutputs); }
+  static constexpr std::size_t channels() noexcept { return NpDecoder::kOutputs; }
   static constexpr bool isotropic() noexcept { return true; }
   static constexpr bool reciprocal() noexcept { return true; }
   /// One pair takes as long as 32 of a span.

@@ -5,12 +5,9 @@
 
 #include <burnish/baselines/np_decoder.h>
 #include <burnish/error.h>
-#include <burnish/math/highway_targets.h>
 
-#undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "burnish/baselines/np_decoder.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-#include <hwy/highway.h>
+#include <burnish/math/highway-inl.h>
 
 #ifndef BURNISH_BASELINES_NP_DECODER
 #define BURNISH_BASELINES_NP_DECODER
@@ -26,12 +23,8 @@ static_assert(kWidest % kTogether == 0);
 }  // namespace burnish
 #endif
 
-HWY_BEFORE_NAMESPACE();
-namespace burnish {
-namespace HWY_NAMESPACE {
-namespace {
+BURNISH_BEGIN_TARGET;
 
-namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::ScalableTag<float>;
 
 // Values of a unit for two vectors of inputs.
@@ -85,10 +78,7 @@ void decode(const float* packed, std::span<const NpDecoder::Inputs> inputs,
   }
 }
 
-}  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace burnish
-HWY_AFTER_NAMESPACE();
+BURNISH_END_TARGET;
 
 #if HWY_ONCE
 namespace burnish {

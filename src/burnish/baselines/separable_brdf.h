@@ -22,7 +22,7 @@ class SeparableBrdf {
   /// kMaxTerms, no coordinate stands twice, and there is one scale in [0, 1e9] a channel.
   SeparableBrdf(NodeTable u, NodeTable v, std::vector<float> scale);
 
-  int channels() const noexcept { return static_cast<int>(scale_.size()); }
+  std::size_t channels() const noexcept { return scale_.size(); }
   bool isotropic() const noexcept { return isotropic_; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 

@@ -6,20 +6,14 @@
 
 #include <burnish/baselines/neural_brdf.h>
 #include <burnish/math/angles.h>
-#include <burnish/math/highway_targets.h>
 #include <burnish/parameterization/half_diff.h>
 
-#undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "burnish/eval/evaluation_peers_bench.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-#include <hwy/highway.h>
+#include <burnish/math/highway-inl.h>
 
 #include <burnish/eval/lookup_lanes-inl.h>
 
-HWY_BEFORE_NAMESPACE();
-namespace burnish {
-namespace HWY_NAMESPACE {
-namespace {
+BURNISH_BEGIN_TARGET;
 
 struct Vector {
   Lane x, y, z;
@@ -191,10 +185,7 @@ std::size_t fuse_all(std::size_t steps, float factor, float* last) {
   return steps * kTogether * kLanes;
 }
 
-}  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace burnish
-HWY_AFTER_NAMESPACE();
+BURNISH_END_TARGET;
 
 #if HWY_ONCE
 namespace burnish {

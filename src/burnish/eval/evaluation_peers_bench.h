@@ -22,7 +22,7 @@ struct TabulatedMicrofacets {
   std::array<float, 3> diffuse{};
   std::array<std::vector<float>, 3> d, f, g;  // a channel, kAngles each
 
-  static constexpr int channels() noexcept { return 3; }
+  static constexpr std::size_t channels() noexcept { return 3; }
   static constexpr bool isotropic() noexcept { return true; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 };

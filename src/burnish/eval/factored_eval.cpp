@@ -6,17 +6,13 @@
 
 #include <burnish/eval/factored_eval.h>
 #include <burnish/eval/factored_plan.h>
-#include <burnish/math/highway_targets.h>
 
 // Compiled without contraction to fused multiply-adds (CMakeLists.txt): a fused a * x + b * y differs from
 // b * y + a * x, and swapping the directions would change the last bit. Where that cannot be, they are
 // written.
 
-#undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "burnish/eval/factored_eval.cpp"
-#include <hwy/cache_control.h>
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-#include <hwy/highway.h>
+#include <burnish/math/highway-inl.h>
 
 #include <burnish/eval/lookup_lanes-inl.h>
 #include <burnish/eval/one_pair_lanes-inl.h>
@@ -47,10 +43,7 @@ constexpr std::size_t kCacheLine = 16;  // floats
 }  // namespace burnish
 #endif
 
-HWY_BEFORE_NAMESPACE();
-namespace burnish {
-namespace HWY_NAMESPACE {
-namespace {
+BURNISH_BEGIN_TARGET;
 
 constexpr std::size_t kMaxBlock = FactoredPlan::kMaxBlock;
 
@@ -429,7 +422,10 @@ HWY_INLINE void store_values(std::size_t count, std::size_t stored, const ValueP
   if (to.step == 1) {
     for (; i + kLanes <= count; i += kLanes) {
       finish(i, value);
-      for (std::size_t c = 0; c < stored; ++c) store(value[c], to.at(c, i));
+      for (std::size_t c = 0; c < stored; ++c) {
+        store(value[c], to.at(c, i));
+        hwy::Prefetch(to.at(c, i) + kMaxBlock);  // for the next block
+      }
     }
   } else if (kChannels == 3 && to.step == 3) {
     for (; i + kLanes <= count; i += kLanes) {
@@ -562,7 +558,8 @@ void eval_directions(const FactoredPlan& plan, const DirectionPointers& in, std:
              scratch, out.from(0, whole));
 }
 
-void eval_any_one(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, float* f) {
+// Apart: its memory would be set up for volumes too.
+HWY_NOINLINE void eval_any_one(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, float* f) {
 #if HWY_TARGET != HWY_SCALAR
   if (plan.steps.size() <= FactoredPlan::kMaxSteps) return eval_one_pair(plan, wi, wo, f);
 #endif
@@ -578,19 +575,20 @@ void eval_one_in_floats(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo
   eval_any_one(plan, wi, wo, f);
 }
 
-void eval_one_in_doubles(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, double* f) {
-#if HWY_TARGET != HWY_SCALAR
-  if (plan.volume_and_line) return eval_one_of_volume(plan, wi, wo, f);
-#endif
+HWY_NOINLINE void eval_any_one(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, double* f) {
   std::array<float, SymmetrizedBrdf::kMaxChannels> values;  // touched up to the channels only
   eval_any_one(plan, wi, wo, values.data());
   std::copy_n(values.begin(), plan.channels, f);
 }
 
-}  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace burnish
-HWY_AFTER_NAMESPACE();
+void eval_one_in_doubles(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, double* f) {
+#if HWY_TARGET != HWY_SCALAR
+  if (plan.volume_and_line) return eval_one_of_volume(plan, wi, wo, f);
+#endif
+  eval_any_one(plan, wi, wo, f);
+}
+
+BURNISH_END_TARGET;
 
 #if HWY_ONCE
 namespace burnish {
@@ -599,11 +597,17 @@ HWY_EXPORT(eval_directions);
 HWY_EXPORT(eval_one_in_floats);
 HWY_EXPORT(eval_one_in_doubles);
 
-FactoredEvaluator::FactoredEvaluator(const FactoredBrdf& brdf)
-    : plan_(std::make_shared<FactoredPlan>(brdf)) {}
+FactoredEvaluator::FactoredEvaluator(const FactoredBrdf& brdf) {
+  const auto plan = std::make_shared<FactoredPlan>(brdf);
+  // asking for the instruction set takes a tenth of the time of one pair
+  if (!hwy::GetChosenTarget().IsInitialized()) hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  plan->one_in_floats = &HWY_DYNAMIC_DISPATCH(eval_one_in_floats);
+  plan->one_in_doubles = &HWY_DYNAMIC_DISPATCH(eval_one_in_doubles);
+  plan_ = plan;
+}
 
-int FactoredEvaluator::channels() const noexcept {
-  return static_cast<int>(plan_->channels);
+std::size_t FactoredEvaluator::channels() const noexcept {
+  return plan_->channels;
 }
 
 bool FactoredEvaluator::isotropic() const noexcept {
@@ -638,12 +642,12 @@ void FactoredEvaluator::eval(const DirectionRows& d, std::span<float> f) const n
 
 void FactoredEvaluator::eval(Vec3 wi, Vec3 wo, std::span<float> f) const noexcept {
   assert(f.size() == plan_->channels);
-  HWY_DYNAMIC_DISPATCH(eval_one_in_floats)(*plan_, wi, wo, f.data());
+  plan_->one_in_floats(*plan_, wi, wo, f.data());
 }
 
 bool FactoredEvaluator::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   assert(f.size() == plan_->channels);
-  HWY_DYNAMIC_DISPATCH(eval_one_in_doubles)(*plan_, wi, wo, f.data());
+  plan_->one_in_doubles(*plan_, wi, wo, f.data());
   return true;
 }
 

@@ -39,7 +39,7 @@ class FactoredEvaluator {
   /// Throws Error for models of more than 1024 different positions in tables.
   explicit FactoredEvaluator(const FactoredBrdf& brdf);
 
-  int channels() const noexcept;
+  std::size_t channels() const noexcept;
   bool isotropic() const noexcept;
 
   /// f_r in 1/sr, without the cosine, zero below the horizon: f[c * directions.size() + i] is channel c of

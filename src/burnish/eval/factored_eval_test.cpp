@@ -84,8 +84,7 @@ struct Planes {
 };
 
 std::vector<float> batched(const FactoredEvaluator& evaluator, std::span<const DirectionPair> pairs) {
-  std::vector<float> f(pairs.size() * static_cast<std::size_t>(evaluator.channels()),
-                       std::numeric_limits<float>::quiet_NaN());
+  std::vector<float> f(pairs.size() * evaluator.channels(), std::numeric_limits<float>::quiet_NaN());
   evaluator.eval(Planes(pairs).spans(), f);
   return f;
 }
@@ -106,7 +105,7 @@ TEST_P(FactoredEvaluatorTest, AgreesWithTheDoubleReferenceWithinItsBound) {
   EXPECT_LT(evaluator.rounding_bound(), 0.02);  // random tables are as steep as this
   const auto pairs = test_pairs();
   const std::vector<float> f = batched(evaluator, pairs);
-  std::vector<double> truth(static_cast<std::size_t>(brdf.channels()));
+  std::vector<double> truth(brdf.channels());
   double squares = 0;
   std::size_t count = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -131,7 +130,7 @@ TEST_P(FactoredEvaluatorTest, GivesTheSameBitsForOneDirectionAndForMany) {
   const FactoredEvaluator evaluator(model());
   const auto pairs = test_pairs();
   const std::vector<float> f = batched(evaluator, pairs);
-  std::vector<float> one(static_cast<std::size_t>(evaluator.channels()));
+  std::vector<float> one(evaluator.channels());
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     evaluator.eval(pairs[i].wi, pairs[i].wo, one);
     for (std::size_t c = 0; c < one.size(); ++c) ASSERT_EQ(one[c], f[c * pairs.size() + i]) << i;
@@ -140,7 +139,7 @@ TEST_P(FactoredEvaluatorTest, GivesTheSameBitsForOneDirectionAndForMany) {
 
 TEST_P(FactoredEvaluatorTest, OneDirectionIsAnythingToo) {
   const FactoredEvaluator evaluator(model());
-  std::vector<float> one(static_cast<std::size_t>(evaluator.channels()));
+  std::vector<float> one(evaluator.channels());
   std::vector<double> doubles(one.size());
   const Vec3 up{0, 0, 1};
   for (const double odd : std::initializer_list<double>{NAN, INFINITY, 1e30, 1e-40, 0, 1.02}) {
@@ -206,7 +205,7 @@ TEST_P(FactoredEvaluatorTest, RowsGiveTheSameBitsAsPlanes) {
   auto pairs = test_pairs();
   pairs[20].wi = {0, 0, 2};
   const std::vector<float> planes = batched(evaluator, pairs);
-  const auto channels = static_cast<std::size_t>(evaluator.channels());
+  const auto channels = evaluator.channels();
   std::vector<float> wi, wo;
   for (const DirectionPair& pair : pairs) {
     for (const double v : {pair.wi.x, pair.wi.y, pair.wi.z}) wi.push_back(static_cast<float>(v));

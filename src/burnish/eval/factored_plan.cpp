@@ -14,7 +14,7 @@ constexpr std::uint32_t kShiftedZero = 0x4b400000;  // the bits of 1.5 2^23
 
 // Largest ratio of entries that one lookup mixes.
 double steepest_ratio(const Table& table) noexcept {
-  const auto channels = static_cast<std::size_t>(table.channels);
+  const auto channels = table.channels;
   const auto width = static_cast<std::size_t>(table.layout.width),
              height = static_cast<std::size_t>(table.layout.height),
              depth = static_cast<std::size_t>(table.layout.depth);
@@ -99,7 +99,7 @@ bool FactoredPlan::Position::same_place(const Position& other) const noexcept {
 }
 
 FactoredPlan::FactoredPlan(const FactoredBrdf& brdf)
-    : channels(static_cast<std::size_t>(brdf.channels())), isotropic(brdf.isotropic()) {
+    : channels(brdf.channels()), isotropic(brdf.isotropic()) {
   std::vector<Lookup> tables;
   for (const Table& table : brdf.tables()) tables.push_back(add_table(table));
   for (std::size_t j = 0; j < brdf.lobes().size(); ++j) {
@@ -107,7 +107,7 @@ FactoredPlan::FactoredPlan(const FactoredBrdf& brdf)
     double bound = 0x1p-24 * static_cast<double>(brdf.lobes().size());
     std::size_t k = 0;
     for (const FactorUse& use : brdf.ordered_factors(j)) {
-      const Table& table = brdf.tables()[static_cast<std::size_t>(use.table)];
+      const Table& table = brdf.tables()[use.table];
       bound += lookup_bound(table);
       const auto at = slots_of(table.layout, use);
       if (k < paired && k % 2 == 1) {
@@ -115,7 +115,7 @@ FactoredPlan::FactoredPlan(const FactoredBrdf& brdf)
         lookups.back().pair_at = at;
         lookups.back().pair_steps_at = steps_of(table.layout, use);
       } else {
-        lookups.push_back(tables[static_cast<std::size_t>(use.table)]);
+        lookups.push_back(tables[use.table]);
         lookups.back().at = at;
         lookups.back().steps_at = steps_of(table.layout, use);
       }
@@ -148,7 +148,7 @@ std::optional<FactoredPlan::VolumeAndLine> FactoredPlan::find_volume_and_line(co
   for (std::size_t k = 0; k < lookups.size(); ++k) {
     const Lookup& lookup = lookups[k];
     const FactorUse& use = brdf.ordered_factors(0)[k];
-    const TableLayout& layout = brdf.tables()[static_cast<std::size_t>(use.table)].layout;
+    const TableLayout& layout = brdf.tables()[use.table].layout;
     if (lookup.pair || use.projection != kProjectHalf) return {};
     if (layout.shape == TableShape::line && !line) {
       line = k;
@@ -177,7 +177,7 @@ std::optional<FactoredPlan::VolumeAndLine> FactoredPlan::find_volume_and_line(co
 }
 
 FactoredPlan::Lookup FactoredPlan::add_table(const Table& table) {
-  const auto stored = static_cast<std::size_t>(table.channels), nodes = table.layout.node_count();
+  const auto stored = table.channels, nodes = table.layout.node_count();
   const std::size_t groups = up_to_multiple(stored, kTogether) / kTogether;
   Lookup lookup{.axes = axis_count(table.layout.shape),
                 .shared = table.channels == 1,

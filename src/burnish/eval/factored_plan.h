@@ -109,6 +109,12 @@ struct FactoredPlan {
   /// Throws Error for more than kMaxSlots slots.
   explicit FactoredPlan(const FactoredBrdf& brdf);
 
+  /// What evaluates one pair: of the instruction set that was chosen when the plan was made. f has the channels.
+  template <class Real>
+  using EvalOne = void (*)(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, Real* f);
+  EvalOne<float> one_in_floats = nullptr;
+  EvalOne<double> one_in_doubles = nullptr;
+
   std::size_t channels, slots = 0;
   bool needs_sum = false;  // wi + wo
   bool isotropic;

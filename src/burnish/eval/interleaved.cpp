@@ -1,17 +1,10 @@
 #include <burnish/eval/interleaved.h>
-#include <burnish/math/highway_targets.h>
 
-#undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "burnish/eval/interleaved.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-#include <hwy/highway.h>
+#include <burnish/math/highway-inl.h>
 
-HWY_BEFORE_NAMESPACE();
-namespace burnish {
-namespace HWY_NAMESPACE {
-namespace {
+BURNISH_BEGIN_TARGET;
 
-namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::ScalableTag<float>;
 
 void run_to_planes(const float* rows, std::size_t count, float* x, float* y, float* z) {
@@ -24,13 +17,14 @@ void run_to_planes(const float* rows, std::size_t count, float* x, float* y, flo
     hn::StoreU(b, d, y + i);
     hn::StoreU(c, d, z + i);
   }
-  for (; i < count; ++i) x[i] = rows[3 * i], y[i] = rows[3 * i + 1], z[i] = rows[3 * i + 2];
+  for (; i < count; ++i) {
+    x[i] = rows[3 * i];
+    y[i] = rows[3 * i + 1];
+    z[i] = rows[3 * i + 2];
+  }
 }
 
-}  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace burnish
-HWY_AFTER_NAMESPACE();
+BURNISH_END_TARGET;
 
 #if HWY_ONCE
 namespace burnish {

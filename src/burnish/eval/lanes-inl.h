@@ -6,14 +6,10 @@
 #define BURNISH_EVAL_LANES_INL_H_
 #endif
 
-#include <hwy/highway.h>
+#include <burnish/math/highway-inl.h>
 
-HWY_BEFORE_NAMESPACE();
-namespace burnish {
-namespace HWY_NAMESPACE {
-namespace {
+BURNISH_BEGIN_TARGET;
 
-namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::ScalableTag<float>;
 using DI = hn::RebindToSigned<D>;
 
@@ -74,9 +70,6 @@ HWY_INLINE T named(const char*, const T& x) {
   return x;
 }
 
-}  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace burnish
-HWY_AFTER_NAMESPACE();
+BURNISH_END_TARGET;
 
 #endif

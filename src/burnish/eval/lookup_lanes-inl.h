@@ -12,10 +12,7 @@
 
 #include <burnish/eval/lanes-inl.h>
 
-HWY_BEFORE_NAMESPACE();
-namespace burnish {
-namespace HWY_NAMESPACE {
-namespace {
+BURNISH_BEGIN_TARGET;
 
 constexpr std::size_t kLanes = hn::MaxLanes(D());
 
@@ -168,9 +165,6 @@ HWY_INLINE void transpose(const float* buffer, Lane (&channel)[3]) {
 #endif
 }
 
-}  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace burnish
-HWY_AFTER_NAMESPACE();
+BURNISH_END_TARGET;
 
 #endif

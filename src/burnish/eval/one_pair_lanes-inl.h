@@ -15,10 +15,7 @@
 #include <burnish/eval/lookup_lanes-inl.h>
 #include <burnish/eval/projection_lanes-inl.h>
 
-HWY_BEFORE_NAMESPACE();
-namespace burnish {
-namespace HWY_NAMESPACE {
-namespace {
+BURNISH_BEGIN_TARGET;
 
 constexpr std::size_t kTogether = FactoredPlan::kTogether;
 
@@ -160,6 +157,7 @@ HWY_NOINLINE void find_given(const FactoredPlan& plan, const OnePair& one, float
   using Kind = FactoredPlan::Source::Kind;
   const LanesOf<D4> wi = one.of_all<0>(), wo = one.of_all<1>();
   for (const FactoredPlan::GivenSteps& steps : plan.given) {
+    // the projected vector and its polar angle
     Affine<LanesOf<D4>, Four> at;
     switch (steps.kind) {
       case Kind::wi:
@@ -178,6 +176,7 @@ HWY_NOINLINE void find_given(const FactoredPlan& plan, const OnePair& one, float
       case Kind::angle:
         at = doubled_difference(one.pair);
     }
+    // its position: both of a disk, that of a line
     const FactoredPlan::Position& p = steps.position;
     const Four size(p.size), parameter(p.parameter), centre(0.5 * p.cells);
     if (p.disk) {
@@ -355,9 +354,6 @@ void eval_one_pair(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, flo
 
 #endif  // HWY_TARGET != HWY_SCALAR
 
-}  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace burnish
-HWY_AFTER_NAMESPACE();
+BURNISH_END_TARGET;
 
 #endif

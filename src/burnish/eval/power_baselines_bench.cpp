@@ -77,7 +77,8 @@ void repeated_squaring(Cosines c, float e, std::span<float> out) {
   const auto whole = static_cast<unsigned>(e);
   for (std::size_t i = 0; i + kBlock <= c.size(); i += kBlock) {
     float base[kBlock], result[kBlock];
-    for (std::size_t j = 0; j < kBlock; ++j) base[j] = c[i + j], result[j] = 1;
+    std::copy_n(c.begin() + static_cast<std::ptrdiff_t>(i), kBlock, base);
+    std::fill_n(result, kBlock, 1.0f);
     for (unsigned bits = whole; bits; bits >>= 1) {
       if (bits & 1)
         for (std::size_t j = 0; j < kBlock; ++j) result[j] *= base[j];

@@ -10,10 +10,7 @@
 
 #include <burnish/eval/lanes-inl.h>
 
-HWY_BEFORE_NAMESPACE();
-namespace burnish {
-namespace HWY_NAMESPACE {
-namespace {
+BURNISH_BEGIN_TARGET;
 
 // The exact power by Highway's own functions.
 HWY_INLINE Lane exp_of_log(Lane a) {
@@ -87,9 +84,6 @@ HWY_INLINE Lane squared_angle(const Cosine<Lane>& p) {
   return gamma * gamma;
 }
 
-}  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace burnish
-HWY_AFTER_NAMESPACE();
+BURNISH_END_TARGET;
 
 #endif

@@ -3,12 +3,9 @@
 
 #include <burnish/error.h>
 #include <burnish/eval/power_span.h>
-#include <burnish/math/highway_targets.h>
 
-#undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "burnish/eval/power_span.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-#include <hwy/highway.h>
+#include <burnish/math/highway-inl.h>
 
 #include <burnish/eval/power_lanes-inl.h>
 #include <burnish/eval/vector_loop-inl.h>
@@ -27,10 +24,7 @@ struct ShadeArguments {
 }  // namespace burnish
 #endif
 
-HWY_BEFORE_NAMESPACE();
-namespace burnish {
-namespace HWY_NAMESPACE {
-namespace {
+BURNISH_BEGIN_TARGET;
 
 using ConstantKernel = void (*)(const float* cosines, std::size_t count, const double* k, float* out);
 using VaryingKernel = void (*)(const float* cosines, const float* exponents, std::size_t count, float* out);
@@ -137,10 +131,7 @@ void run_shade(int method, const ShadeArguments& arguments, float* out) {
   AllKernels::kShade[method](arguments, out);
 }
 
-}  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace burnish
-HWY_AFTER_NAMESPACE();
+BURNISH_END_TARGET;
 
 #if HWY_ONCE
 namespace burnish {

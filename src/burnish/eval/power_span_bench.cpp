@@ -163,7 +163,10 @@ class TableReporter : public benchmark::ConsoleReporter {
       const std::string way = way_of(name), level = name.substr(way.size());
       std::printf("%-28s %10.4f", name.c_str(), least_[name]);
       const double error = errors()[way];
-      error < 0 ? std::printf(" %10s", "no power") : std::printf(" %10.2g", error);
+      if (error < 0)
+        std::printf(" %10s", "no power");
+      else
+        std::printf(" %10.2g", error);
       const bool shading = way.rfind("shade_", 0) == 0;
       const std::string base = shading ? "shade_no_power" : "powf";
       if (least_.count(base + level)) std::printf(" %12.2f", least_[base + level] / least_[name]);

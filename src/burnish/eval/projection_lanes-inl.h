@@ -14,10 +14,7 @@
 #include <burnish/eval/lanes-inl.h>
 #include <burnish/parameterization/projection.h>
 
-HWY_BEFORE_NAMESPACE();
-namespace burnish {
-namespace HWY_NAMESPACE {
-namespace {
+BURNISH_BEGIN_TARGET;
 
 /// Three vectors of floats: the components of directions.
 template <class Tag>
@@ -107,9 +104,6 @@ HWY_INLINE LaneOf<Tag> within(LaneOf<Tag> position, LaneOf<Tag> cells) {
   return if_positive(position, min(position, cells));
 }
 
-}  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace burnish
-HWY_AFTER_NAMESPACE();
+BURNISH_END_TARGET;
 
 #endif

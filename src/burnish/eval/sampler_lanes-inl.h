@@ -6,14 +6,11 @@
 #define BURNISH_EVAL_SAMPLER_LANES_INL_H_
 #endif
 
-#include <hwy/highway.h>
+#include <burnish/math/highway-inl.h>
 
 #include <burnish/eval/lanes-inl.h>
 
-HWY_BEFORE_NAMESPACE();
-namespace burnish {
-namespace HWY_NAMESPACE {
-namespace {
+BURNISH_BEGIN_TARGET;
 
 using Reals = Lane;
 struct Ints {
@@ -98,9 +95,6 @@ HWY_INLINE Ints search(const std::uint16_t* table, const Ints (&start)[kSlices],
 #include <burnish/eval/visible_half-inl.h>
 #undef SAMPLER_INLINE
 
-}  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace burnish
-HWY_AFTER_NAMESPACE();
+BURNISH_END_TARGET;
 
 #endif

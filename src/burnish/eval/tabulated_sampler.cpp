@@ -6,19 +6,13 @@
 #include <burnish/error.h>
 #include <burnish/eval/tabulated_sampler.h>
 #include <burnish/eval/visible_half_scalar.h>
-#include <burnish/math/highway_targets.h>
 
-#undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "burnish/eval/tabulated_sampler.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-#include <hwy/highway.h>
+#include <burnish/math/highway-inl.h>
 
 #include <burnish/eval/sampler_lanes-inl.h>
 
-HWY_BEFORE_NAMESPACE();
-namespace burnish {
-namespace HWY_NAMESPACE {
-namespace {
+BURNISH_BEGIN_TARGET;
 
 // Runs body(in, out) on whole vectors, then on the rest through buffers filled up with 0. Unlike the loop of
 // vector_loop-inl.h for any count of outputs, which may be inputs.
@@ -84,10 +78,7 @@ void run_density(bool isotropic, const SamplerView& view, const float* const (&i
     density_all<false>(view, in, out, count);
 }
 
-}  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace burnish
-HWY_AFTER_NAMESPACE();
+BURNISH_END_TARGET;
 
 #if HWY_ONCE
 namespace burnish {
@@ -147,7 +138,7 @@ struct TabulatedSampler::Tables {
     size("columns", options.columns, power(options.columns));
 
     // the map that suits this BRDF best, and the sizes of the tables
-    std::vector<double> f(static_cast<std::size_t>(brdf.channels()));
+    std::vector<double> f(brdf.channels());
     static_cast<VisibleHalfMap&>(view) = fit_map(brdf, options, f);
     view.thetas = options.wo_thetas;
     view.phis = options.wo_phis;

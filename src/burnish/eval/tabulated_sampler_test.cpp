@@ -48,7 +48,7 @@ FactoredBrdf glossy_model(const ModelCase& model) {
     const double steepness = t.name == "q" || t.name == "g" ? 400 : 3;
     for (int y = 0; y < t.layout.rows(); ++y)
       for (int x = 0; x < t.layout.width; ++x)
-        for (int c = 0; c < table.channels; ++c) {
+        for (std::size_t c = 0; c < table.channels; ++c) {
           const bool angles = projection_count(t.layout.shape) > 1;
           const Vec3 w = node_direction(t.layout, x, angles ? 0 : y);
           const double along = w.x + 0.5 * w.y, across = 3 * (w.y - 0.5 * w.x);
@@ -61,8 +61,7 @@ FactoredBrdf glossy_model(const ModelCase& model) {
   std::vector<Lobe> lobes;
   for (const auto& factors : spec.lobes)
     lobes.push_back(
-        {.scale = std::vector<double>(static_cast<std::size_t>(model.channels), lobes.empty() ? 0 : -3),
-         .factors = factors});
+        {.scale = std::vector<double>(model.channels, lobes.empty() ? 0 : -3), .factors = factors});
   return from_log_tables(model.channels, std::move(tables), std::move(lobes), TableFormat::half);
 }
 
@@ -146,7 +145,7 @@ TEST_P(TabulatedSamplerTest, TellsTheDensityThatPdfGives) {
 
 // Nothing is wasted, and the weights have their mean and a bound, at grazing wo too.
 TEST_P(TabulatedSamplerTest, WeightsAreBoundedWithTheAlbedoAsTheirMean) {
-  std::vector<double> f(static_cast<std::size_t>(brdf.channels()));
+  std::vector<double> f(brdf.channels());
   Pcg32 random(6);
   for (const Vec3 wo : wos) {
     double albedo = 0;

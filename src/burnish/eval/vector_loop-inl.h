@@ -12,10 +12,7 @@
 
 #include <burnish/eval/lanes-inl.h>
 
-HWY_BEFORE_NAMESPACE();
-namespace burnish {
-namespace HWY_NAMESPACE {
-namespace {
+BURNISH_BEGIN_TARGET;
 
 // The last values, through buffers of one vector filled up with the first of them. Not inlined: vectors
 // cannot stay in registers across the calls that copy a few floats.
@@ -60,9 +57,6 @@ HWY_INLINE void for_each_vector(const float* const (&from)[kInputs], std::size_t
   if (i < count) rest_through_buffers(from, i, count, out, body);
 }
 
-}  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace burnish
-HWY_AFTER_NAMESPACE();
+BURNISH_END_TARGET;
 
 #endif

@@ -10,16 +10,17 @@
 
 #include <limits>
 
+#include <hwy/cache_control.h>
+
 #include <burnish/eval/factored_plan.h>
 #include <burnish/eval/lookup_lanes-inl.h>
 #include <burnish/eval/projection_lanes-inl.h>
 
-HWY_BEFORE_NAMESPACE();
-namespace burnish {
-namespace HWY_NAMESPACE {
-namespace {
+BURNISH_BEGIN_TARGET;
 
-// With s = wi + wo and d = wi - wo, whose sign does not matter, and as in projection-inl.h:
+// With s = wi + wo and d = wi - wo, whose sign does not matter, the formulas of projection-inl.h. Polar angles of many
+// are instances of them; the rest is in an order of its own, lanes across angles, and held to the definition by
+// factored_eval_test.cpp:
 //   theta_h   r = |s_xy|                den = |s| + s_z
 //   theta_d   r = |d|                   den = |s| + 2
 //   phi_d     r = |s_y d_x - s_x d_y|   den = |(d_z |s|, r)| + |d_z| |s|
@@ -157,6 +158,7 @@ struct VolumeCells {
     const bool any_root = v.root[0] || v.root[3];
     auto worst = hn::Zero(DI());
     for (std::size_t i = 0; i < count; i += kLanes) {
+      // directions, and which are none
       Lanes wi, wo;
       if constexpr (kRows) {
         hn::LoadInterleaved3(D(), w[0] + 3 * i, wi.x.raw, wi.y.raw, wi.z.raw);
@@ -164,20 +166,24 @@ struct VolumeCells {
       } else {
         wi = {load(w[0] + i), load(w[1] + i), load(w[2] + i)};
         wo = {load(w[3] + i), load(w[4] + i), load(w[5] + i)};
+        for (const float* plane : w) hwy::Prefetch(plane + i + kMost);  // for the next block
       }
       const auto excess = hn::Max(excess_of(wi.x, wi.y, wi.z), excess_of(wo.x, wo.y, wo.z));
       worst = hn::Max(worst, excess);
       const Lane lit = if_positive(wi.z, wo.z), none(std::numeric_limits<double>::quiet_NaN());
       store(Lane(hn::IfThenElse(hn::RebindMask(D(), no_directions(excess)), none.raw, lit.raw)), above + i);
 
+      // what the lengths and the polar angles take
       const Lanes sum = wi + wo, apart = wi - wo;
       const Lane across = mul_add(sum.x, sum.x, sum.y * sum.y), square = mul_add(sum.z, sum.z, across);
-      const Lane apart_square = mul_add(apart.z, apart.z, mul_add(apart.x, apart.x, apart.y * apart.y));
       const Lane sine = abs(sum.y * apart.x - sum.x * apart.y), d_z = abs(apart.z);
-      const Lane azimuth = sqrt(mul_add(d_z * d_z, square, sine * sine)), s = sqrt(square);
+      const Lane azimuth = sqrt(mul_add(d_z * d_z, square, sine * sine));
 
-      const Lane t_h = sqrt(across) / (s + sum.z), t_d = sqrt(apart_square) / (s + Lane(2.0));
-      const Lane t_phi = sine / max(mul_add(d_z, s, azimuth), least_positive(Lane()));
+      const LanePairOf<D> pair{sum, apart, sqrt(square)};
+      const Polar<Lane> h = polar_of(sum, pair.sum_length()), d = difference_angle(pair);
+      const Lane t_h = h.r / h.den, t_d = d.r / d.den;
+      const Lane t_phi = sine / max(mul_add(d_z, pair.sum_length(), azimuth), least_positive(Lane()));
+      // cells, and where the two lookups begin
       const Lane root_h = sqrt(t_h), root_d = any_root ? sqrt(t_d) : t_d,
                  root_phi = any_root ? sqrt(t_phi) : t_phi;
       hn::Vec<DI> along_x, along_y, along_z, along_line;
@@ -192,9 +198,6 @@ struct VolumeCells {
   }
 };
 
-}  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace burnish
-HWY_AFTER_NAMESPACE();
+BURNISH_END_TARGET;
 
 #endif

@@ -75,13 +75,13 @@ json add_sphere(Binary& binary) {
 json factored_extension(const FactoredBrdf& brdf, Binary& binary) {
   json tables = json::array(), lobes = json::array();
   for (const Table& table : brdf.tables()) {
-    json entry{{"name", table.name},
-               {"shape", to_string(table.layout.shape)},
-               {"width", table.layout.width},
-               {"height", table.layout.height},
-               {"warp", to_string(table.layout.warp)},
-               {"values", binary.add(table.values, table.channels == 1 ? "SCALAR" : "VEC3",
-                                     static_cast<std::size_t>(table.channels), 0)}};
+    json entry{
+        {"name", table.name},
+        {"shape", to_string(table.layout.shape)},
+        {"width", table.layout.width},
+        {"height", table.layout.height},
+        {"warp", to_string(table.layout.warp)},
+        {"values", binary.add(table.values, table.channels == 1 ? "SCALAR" : "VEC3", table.channels, 0)}};
     const int projections = projection_count(table.layout.shape);
     if (projections > 1) entry["warpY"] = to_string(table.layout.warp_y);
     if (projections > 2)

@@ -25,9 +25,9 @@ std::string base64(std::span<const std::byte> bytes) {
   return text;
 }
 
-std::string half_texels(const std::vector<float>& values, int channels) {
+std::string half_texels(const std::vector<float>& values, std::size_t channels) {
   std::vector<float> all;
-  const auto step = static_cast<std::size_t>(channels);
+  const auto step = channels;
   for (std::size_t i = 0; i < values.size(); i += step)
     for (std::size_t c = 0; c < 4; ++c) all.push_back(c == 3 ? 1.0f : values[i + (step == 1 ? 0 : c)]);
   return base64(pack(TableFormat::half, 4, all));

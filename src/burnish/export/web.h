@@ -20,6 +20,6 @@ std::string web_script(std::string_view file, const std::string& model);
 std::string base64(std::span<const std::byte> bytes);
 
 /// Texels of 1 or 3 channels as half floats of four in base64: what WebGL2 filters without an extension.
-std::string half_texels(const std::vector<float>& values, int channels);
+std::string half_texels(const std::vector<float>& values, std::size_t channels);
 
 }  // namespace burnish

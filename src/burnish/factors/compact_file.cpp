@@ -21,7 +21,7 @@ constexpr std::uint64_t kSelfDescribed = 55799;  // [RFC8949, 3.4.6]
 constexpr std::string_view kName = "burnish";
 // name, version, channels, lambda_nm, kinds, tables, products, lobes; then notes
 constexpr std::size_t kParts = 8;
-constexpr int kMaxChannels = SymmetrizedBrdf::kMaxChannels;
+constexpr std::size_t kMaxChannels = SymmetrizedBrdf::kMaxChannels;
 constexpr std::size_t kTableItems = 3;  // name, kind, texels
 constexpr std::size_t kLongestName = 255, kLongestNotes = 1 << 20;
 constexpr int kDeepestNotes = 32;
@@ -79,7 +79,7 @@ std::vector<Projection> projections_of(const FactorUse& use, TableShape shape) {
   return projections;
 }
 
-FactorUse use_of(int table, std::span<const Projection> projections) {
+FactorUse use_of(std::size_t table, std::span<const Projection> projections) {
   FactorUse use{.table = table, .projection = projections[0], .projection_y = {}, .projection_z = {}};
   if (projections.size() > 1) use.projection_y = projections[1];
   if (projections.size() > 2) use.projection_z = projections[2];
@@ -106,7 +106,7 @@ std::optional<Json> parse_notes(const std::string& text) {
 struct TableKind {
   TableLayout layout;
   TableFormat format = TableFormat::single;
-  int channels = 1;
+  std::size_t channels = 1;
 
   friend bool operator==(const TableKind&, const TableKind&) = default;
 };
@@ -235,11 +235,11 @@ class CompactReader {
     if (const auto at = cbor_.offset(); cbor_.text("the name of the format", kName.size()) != kName)
       cbor_.fail(at, "'burnish'", "another name");
     cbor_.integer("version", kVersion, kVersion);
-    channels_ = static_cast<int>(cbor_.integer("channels", 1, kMaxChannels));
+    channels_ = static_cast<std::size_t>(cbor_.integer("channels", 1, kMaxChannels));
     Model model;
     const auto lambda_at = cbor_.offset();
-    model.lambda_nm = numbers("lambda_nm", 0, static_cast<std::size_t>(channels_));
-    if (!model.lambda_nm.empty() && model.lambda_nm.size() != static_cast<std::size_t>(channels_))
+    model.lambda_nm = numbers("lambda_nm", 0, channels_);
+    if (!model.lambda_nm.empty() && model.lambda_nm.size() != channels_)
       cbor_.fail(lambda_at, fmt::format("lambda_nm, none or {} wavelengths", channels_),
                  fmt::format("{}", model.lambda_nm.size()));
 
@@ -297,7 +297,8 @@ class CompactReader {
       cbor_.fail(at, fmt::format("a kind of tables with {} axes", axes_in_file(shape)),
                  fmt::format("{}", items - 3));
     TableKind kind{.layout = {}, .format = one_of(kFormats, "a table format")};
-    kind.channels = static_cast<int>(cbor_.integer("a table's channels", 1, channels_));
+    kind.channels = static_cast<std::size_t>(
+        cbor_.integer("a table's channels", 1, static_cast<std::int64_t>(channels_)));
     if (kind.channels != 1 && kind.channels != channels_)
       cbor_.fail(at, fmt::format("a kind of tables of 1 or {} channels", channels_),
                  fmt::format("{}", kind.channels));
@@ -357,7 +358,7 @@ class CompactReader {
     const auto at = cbor_.offset();
     const std::size_t items = cbor_.list("a lobe", 2, 2 + kMaxCompactItems - factor_count_);
     factor_count_ += items - 2;
-    const auto channels = static_cast<std::size_t>(channels_);
+    const auto channels = channels_;
     Lobe lobe{.scale = numbers("a lobe's scales", channels, channels), .factors = {}};
     const Product& product = one_of(products_, "a lobe's product");
     if (items != 2 + product.size())
@@ -368,9 +369,9 @@ class CompactReader {
 
   FactorUse factor(std::span<const Projection> projections) {
     const auto at = cbor_.offset();
-    const auto table =
-        static_cast<int>(cbor_.integer("a factor's table", 0, static_cast<std::int64_t>(tables_.size()) - 1));
-    const std::size_t axes = axes_in_file(tables_[static_cast<std::size_t>(table)].layout.shape);
+    const auto table = static_cast<std::size_t>(
+        cbor_.integer("a factor's table", 0, static_cast<std::int64_t>(tables_.size()) - 1));
+    const std::size_t axes = axes_in_file(tables_[table].layout.shape);
     if (projections.size() != axes)
       cbor_.fail(at, fmt::format("a table of {} axes", projections.size()), fmt::format("one of {}", axes));
     return use_of(table, projections);
@@ -398,7 +399,7 @@ class CompactReader {
 
   CborReader cbor_;
   std::string name_;
-  int channels_ = 0;
+  std::size_t channels_ = 0;
   std::vector<TableKind> kinds_;
   std::vector<Table> tables_;
   std::vector<Product> products_;

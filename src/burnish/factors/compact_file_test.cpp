@@ -42,12 +42,13 @@ void expect_twins(const Model& model) {
 TEST(CompactFile, RestoresModelsToTheLastBit) {
   for (const TableFormat format :
        {TableFormat::half, TableFormat::single, TableFormat::rgb9e5, TableFormat::unorm8})
-    for (const int channels : {1, 3, 31}) {
+    for (const std::size_t channels : {1, 3, 31}) {
       if (!holds_channels(format, channels)) continue;
       Model model{.brdf = random_model(kEverything, kEverySize, channels, format),
                   .lambda_nm = {},
                   .notes = R"({"error":0.1,"source":"random"})"};
-      for (int c = 0; channels == 31 && c < channels; ++c) model.lambda_nm.push_back(400 + 10.1 * c);
+      for (std::size_t c = 0; channels == 31 && c < channels; ++c)
+        model.lambda_nm.push_back(400 + 10.1 * static_cast<double>(c));
       expect_twins(model);
     }
 }

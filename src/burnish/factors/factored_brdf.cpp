@@ -15,7 +15,7 @@ namespace burnish {
 
 namespace {
 
-constexpr int kMaxChannels = SymmetrizedBrdf::kMaxChannels;
+constexpr std::size_t kMaxChannels = SymmetrizedBrdf::kMaxChannels;
 
 bool depends_on_azimuth(const TableLayout& layout) noexcept {
   return layout.shape == TableShape::disk;
@@ -35,7 +35,7 @@ std::optional<FactorUse> swapped_use(const FactorUse& use, const TableLayout& la
 constexpr double kMaxLogScale = 88;
 
 double lookup(const Table& table, const Lookup& at, std::size_t channel) noexcept {
-  const auto step = static_cast<std::size_t>(table.channels);
+  const auto step = table.channels;
   const std::size_t c = step == 1 ? 0 : channel;
   const float* node = table.values.data() + static_cast<std::size_t>(at.node) * step + c;
   const auto along = [&](const float* v) { return definition::mix<double>(v[0], v[step], at.fx); };
@@ -75,7 +75,7 @@ void check_stored(const Table& table) {
 // For each channel the logarithm that becomes 1: of its largest value. In rgb9e5 channels share an exponent:
 // there they are brought to one mean, and the largest value of all becomes 1.
 std::vector<double> logs_of_one(const Table& table) {
-  const auto channels = static_cast<std::size_t>(table.channels);
+  const auto channels = table.channels;
   std::vector<double> largest(channels, -std::numeric_limits<double>::infinity()), mean(channels, 0);
   for (std::size_t i = 0; i < table.values.size(); ++i) {
     largest[i % channels] = std::max<double>(largest[i % channels], table.values[i]);
@@ -97,11 +97,11 @@ std::size_t coefficient_count(const Projection& p) noexcept {
   return static_cast<std::size_t>((p.wi != 0) + (p.wo != 0) + (p.mirror != 0) + (p.n != 0));
 }
 
-FactoredBrdf::FactoredBrdf(int channels, std::vector<Table> tables, std::vector<Lobe> lobes,
+FactoredBrdf::FactoredBrdf(std::size_t channels, std::vector<Table> tables, std::vector<Lobe> lobes,
                            TableFormat format)
     : FactoredBrdf(channels, in_format(std::move(tables), format), std::move(lobes)) {}
 
-FactoredBrdf::FactoredBrdf(int channels, std::vector<Table> tables, std::vector<Lobe> lobes)
+FactoredBrdf::FactoredBrdf(std::size_t channels, std::vector<Table> tables, std::vector<Lobe> lobes)
     : channels_(channels), tables_(std::move(tables)), lobes_(std::move(lobes)) {
   if (channels < 1 || channels > kMaxChannels)
     throw Error(fmt::format("factored BRDF: expected 1 to {} channels, found {}", kMaxChannels, channels));
@@ -117,15 +117,14 @@ FactoredBrdf::FactoredBrdf(int channels, std::vector<Table> tables, std::vector<
     if (table.channels != 1 && table.channels != channels)
       throw Error(fmt::format("table '{}': expected 1 or {} channels, found {}", table.name, channels,
                               table.channels));
-    if (table.values.size() != table.layout.node_count() * static_cast<std::size_t>(table.channels))
+    if (table.values.size() != table.layout.node_count() * table.channels)
       throw Error(fmt::format("table '{}': expected {} values, found {}", table.name,
-                              table.layout.node_count() * static_cast<std::size_t>(table.channels),
-                              table.values.size()));
+                              table.layout.node_count() * table.channels, table.values.size()));
     check_positive(table);
     check_stored(table);
   }
   for (const Lobe& lobe : lobes_) {
-    if (lobe.scale.size() != static_cast<std::size_t>(channels))
+    if (lobe.scale.size() != channels)
       throw Error(fmt::format("lobe: expected {} scales, found {}", channels, lobe.scale.size()));
     for (const double s : lobe.scale)
       if (!(s >= 0) || !std::isfinite(s))
@@ -136,7 +135,7 @@ FactoredBrdf::FactoredBrdf(int channels, std::vector<Table> tables, std::vector<
     while (!rest.empty()) {
       const FactorUse use = rest.front();
       rest.erase(rest.begin());
-      if (use.table < 0 || static_cast<std::size_t>(use.table) >= tables_.size())
+      if (use.table >= tables_.size())
         throw Error(
             fmt::format("lobe: expected a table index below {}, found {}", tables_.size(), use.table));
       const TableLayout& layout = layout_of(use);
@@ -181,7 +180,7 @@ bool FactoredBrdf::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     places[p] = locate(layout_of(places_[p]), places_[p], wi, wo);
 
   // sum over lobes of scale times pairs times the other factors [HomomorphicBrdf, eq. 4]
-  const auto channels = static_cast<std::size_t>(channels_);
+  const auto channels = channels_;
   for (std::size_t j = 0; j < lobes_.size(); ++j) {
     for (std::size_t c = 0; c < channels; ++c) product[c] = lobes_[j].scale[c];
     const std::vector<FactorUse>& uses = ordered_[j];
@@ -252,22 +251,22 @@ std::vector<double> store_log_table(Table& table) {
   return divided;
 }
 
-FactoredBrdf from_log_tables(int channels, std::vector<Table> tables, std::vector<Lobe> lobes,
+FactoredBrdf from_log_tables(std::size_t channels, std::vector<Table> tables, std::vector<Lobe> lobes,
                              TableFormat format) {
   return from_log_tables(channels, in_format(std::move(tables), format), std::move(lobes));
 }
 
-FactoredBrdf from_log_tables(int channels, std::vector<Table> tables, std::vector<Lobe> lobes) {
+FactoredBrdf from_log_tables(std::size_t channels, std::vector<Table> tables, std::vector<Lobe> lobes) {
   std::vector<std::vector<double>> divided;
   for (Table& table : tables) divided.push_back(store_log_table(table));
   return from_stored_tables(channels, std::move(tables), divided, std::move(lobes));
 }
 
-FactoredBrdf from_stored_tables(int channels, std::vector<Table> tables,
+FactoredBrdf from_stored_tables(std::size_t channels, std::vector<Table> tables,
                                 std::span<const std::vector<double>> divided, std::vector<Lobe> lobes) {
   for (Lobe& lobe : lobes) {
     for (const FactorUse& use : lobe.factors) {
-      const std::vector<double>& logs = divided[static_cast<std::size_t>(use.table)];
+      const std::vector<double>& logs = divided[use.table];
       for (std::size_t c = 0; c < lobe.scale.size(); ++c) lobe.scale[c] += logs[logs.size() == 1 ? 0 : c];
     }
     for (double& s : lobe.scale) s = static_cast<float>(std::exp(std::min(s, kMaxLogScale)));

@@ -27,20 +27,18 @@ class FactoredBrdf {
   FactoredBrdf() = default;
   /// Throws Error if a table's size, name, channels or values (finite, > 0, held by its format to the last
   /// bit), a lobe's scale (finite, >= 0) or a factor's table index does not fit.
-  FactoredBrdf(int channels, std::vector<Table> tables, std::vector<Lobe> lobes);
+  FactoredBrdf(std::size_t channels, std::vector<Table> tables, std::vector<Lobe> lobes);
   /// The same with every table in `format`.
-  FactoredBrdf(int channels, std::vector<Table> tables, std::vector<Lobe> lobes, TableFormat format);
+  FactoredBrdf(std::size_t channels, std::vector<Table> tables, std::vector<Lobe> lobes, TableFormat format);
 
-  int channels() const noexcept { return channels_; }
+  std::size_t channels() const noexcept { return channels_; }
   bool isotropic() const noexcept { return isotropic_; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 
   std::span<const Table> tables() const noexcept { return tables_; }
   std::span<const Lobe> lobes() const noexcept { return lobes_; }
   /// The table that a factor looks up. Precondition: use.table is below tables().size().
-  const Table& table_of(const FactorUse& use) const noexcept {
-    return tables_[static_cast<std::size_t>(use.table)];
-  }
+  const Table& table_of(const FactorUse& use) const noexcept { return tables_[use.table]; }
   /// Factors of lobe j in evaluation order: first 2 * pair_count(j) in pairs that swapping wi and wo
   /// exchanges, each pair multiplied with itself before anything else, then the rest.
   std::span<const FactorUse> ordered_factors(std::size_t j) const noexcept { return ordered_[j]; }
@@ -61,7 +59,7 @@ class FactoredBrdf {
  private:
   const TableLayout& layout_of(const FactorUse& use) const noexcept { return table_of(use).layout; }
 
-  int channels_ = 0;
+  std::size_t channels_ = 0;
   bool isotropic_ = true, reciprocal_ = true;
   std::vector<Table> tables_;
   std::vector<Lobe> lobes_;
@@ -92,17 +90,18 @@ std::vector<double> store_log_table(Table& log_table);
 /// Tables as they are stored, each with what its channels were divided by, logarithms, as store_log_table
 /// returns them: what they were divided by goes into the lobes' scales, which hold logarithms, one entry a
 /// channel. Throws as the constructor does.
-FactoredBrdf from_stored_tables(int channels, std::vector<Table> tables,
+FactoredBrdf from_stored_tables(std::size_t channels, std::vector<Table> tables,
                                 std::span<const std::vector<double>> divided,
                                 std::vector<Lobe> log_scaled_lobes);
 
 /// Stores the tables by store_log_table, what they are divided by moved into the lobes' scales. The tables
 /// hold logarithms of lambda, channels as in Table; the lobes' scales logarithms, one entry a channel. Throws
 /// as the constructor does.
-FactoredBrdf from_log_tables(int channels, std::vector<Table> log_tables, std::vector<Lobe> log_scaled_lobes);
+FactoredBrdf from_log_tables(std::size_t channels, std::vector<Table> log_tables,
+                             std::vector<Lobe> log_scaled_lobes);
 /// The same with every table in `format`.
-FactoredBrdf from_log_tables(int channels, std::vector<Table> log_tables, std::vector<Lobe> log_scaled_lobes,
-                             TableFormat format);
+FactoredBrdf from_log_tables(std::size_t channels, std::vector<Table> log_tables,
+                             std::vector<Lobe> log_scaled_lobes, TableFormat format);
 
 /// "p(wo) q(h) p(wi) + ..." with the tables' names.
 std::string model_expression(const FactoredBrdf& brdf);

@@ -31,8 +31,7 @@ std::size_t fetch_count(const FactoredBrdf& brdf) {
 std::size_t fetch_count(const ModelSpec& spec) {
   std::vector<FactorUse> reads;
   for (const std::vector<FactorUse>& lobe : spec.lobes)
-    for (const FactorUse& use : lobe)
-      add_read(read_of(use, spec.tables[static_cast<std::size_t>(use.table)].layout.shape), reads);
+    for (const FactorUse& use : lobe) add_read(read_of(use, spec.tables[use.table].layout.shape), reads);
   return reads.size();
 }
 

@@ -18,7 +18,7 @@ TEST(LookupExpression, FindsWhatTheDefinitionFinds) {
     const FactoredBrdf brdf = smooth_model(model);
     for (const Lobe& lobe : brdf.lobes())
       for (const FactorUse& use : lobe.factors) {
-        const TableLayout& layout = brdf.tables()[static_cast<std::size_t>(use.table)].layout;
+        const TableLayout& layout = brdf.tables()[use.table].layout;
         const int nodes[3] = {layout.width, layout.height, layout.depth};
         const auto positions =
             position_expressions(layout, use, {nodes[0] - 1.0, 0}, {nodes[1] - 1.0, 0}, {nodes[2] - 1.0, 0});

@@ -171,7 +171,7 @@ class HeaderCheck {
 };
 
 // EXR keeps channels by name; viewers show Y as grey and R, G, B as colour.
-std::string channel_name(int channels, int c) {
+std::string channel_name(std::size_t channels, std::size_t c) {
   if (channels == 1) return "Y";
   if (channels == 3) return std::string(1, "RGB"[c]);
   return fmt::format("c{:04}", c);
@@ -231,7 +231,7 @@ std::vector<Imf::Header> headers(const Model& model) {
     header.setName(t.name);
     header.setType(Imf::SCANLINEIMAGE);
     header.compression() = Imf::NO_COMPRESSION;
-    for (int c = 0; c < t.channels; ++c)
+    for (std::size_t c = 0; c < t.channels; ++c)
       header.channels().insert(channel_name(t.channels, c), Imf::Channel(pixel_type(t.format)));
     result.push_back(std::move(header));
   }
@@ -240,10 +240,10 @@ std::vector<Imf::Header> headers(const Model& model) {
 }
 
 // A frame buffer over interleaved floats; OpenEXR converts halves.
-Imf::FrameBuffer frame_buffer(float* values, int width, int channels) {
+Imf::FrameBuffer frame_buffer(float* values, int width, std::size_t channels) {
   Imf::FrameBuffer buffer;
-  const std::size_t step = sizeof(float) * static_cast<std::size_t>(channels);
-  for (int c = 0; c < channels; ++c)
+  const std::size_t step = sizeof(float) * channels;
+  for (std::size_t c = 0; c < channels; ++c)
     buffer.insert(channel_name(channels, c), Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values + c), step,
                                                         step * static_cast<std::size_t>(width)));
   return buffer;
@@ -253,9 +253,16 @@ Projection read_projection(const Json& factor, const char* key) {
   return parse_projection(factor.at(key).get<std::string>()).projection;
 }
 
+// A count, of which there are not less than 0.
+std::size_t count_at(const Json& json, const char* key) {
+  const auto count = json.at(key).get<std::int64_t>();
+  if (count < 0) throw Error(fmt::format("expected {} of at least 0, found {}", key, count));
+  return static_cast<std::size_t>(count);
+}
+
 // Everything but the pixels, from the JSON; `old` files have one format for all.
-void read_tables(const Json& json, bool old, std::uint64_t file_size, int channels,
-                 std::vector<Table>& tables) {
+std::vector<Table> read_tables(const Json& json, bool old, std::uint64_t file_size, std::size_t channels) {
+  std::vector<Table> tables;
   std::uint64_t total = 0;
   for (const Json& t : json.at("tables")) {
     Table table{.name = t.at("name").get<std::string>(),
@@ -263,7 +270,7 @@ void read_tables(const Json& json, bool old, std::uint64_t file_size, int channe
                            .width = t.at("width").get<int>(),
                            .height = t.at("height").get<int>(),
                            .warp = parse_warp(t.at("warp").get<std::string>())},
-                .channels = t.at("channels").get<int>(),
+                .channels = count_at(t, "channels"),
                 .values = {},
                 .format = parse_table_format((old ? json : t).at("format").get<std::string>())};
     const int axes = projection_count(table.layout.shape);
@@ -277,12 +284,13 @@ void read_tables(const Json& json, bool old, std::uint64_t file_size, int channe
       throw Error(fmt::format("table '{}': expected 1 or {} channels, found {}", table.name, channels,
                               table.channels));
     // the tables are stored uncompressed, in halves or floats: they cannot be larger than the file
-    total += table.layout.node_count() * static_cast<std::uint64_t>(table.channels) * 2;
+    total += table.layout.node_count() * table.channels * 2;
     if (total > file_size)
       throw Error(fmt::format("table '{}': expected tables that fit the file's {} bytes, found {} or more",
                               table.name, file_size, total));
     tables.push_back(std::move(table));
   }
+  return tables;
 }
 
 // The values of a table from the part that holds it, which must have the table's name, size and channels.
@@ -298,16 +306,16 @@ void read_pixels(Imf::MultiPartInputFile& input, int part, Table& table) {
   if (header.compression() != Imf::NO_COMPRESSION)
     throw Error(fmt::format("part '{}': expected no compression, found compression {}", table.name,
                             static_cast<int>(header.compression())));
-  int found = 0;
+  std::size_t found = 0;
   for (auto c = header.channels().begin(); c != header.channels().end(); ++c, ++found)
     if (c.channel().xSampling != 1 || c.channel().ySampling != 1 || c.channel().type == Imf::UINT)
       throw Error(fmt::format("part '{}': expected half or float channels without subsampling", table.name));
-  for (int c = 0; c < table.channels; ++c)
+  for (std::size_t c = 0; c < table.channels; ++c)
     if (!header.channels().findChannel(channel_name(table.channels, c)) || found != table.channels)
       throw Error(fmt::format("part '{}': expected channels {}…, found others", table.name,
                               channel_name(table.channels, c)));
 
-  table.values.resize(table.layout.node_count() * static_cast<std::size_t>(table.channels));
+  table.values.resize(table.layout.node_count() * table.channels);
   Imf::InputPart pixels(input, part);
   pixels.setFrameBuffer(frame_buffer(table.values.data(), table.layout.width, table.channels));
   pixels.readPixels(0, table.layout.rows() - 1);
@@ -325,10 +333,9 @@ Model read_model(const FileBytes& file) {
   if (version != kVersion && version != kOldVersion)
     throw Error(fmt::format("expected version {} or {}, found {}", kOldVersion, kVersion, version));
 
-  const int channels = json.at("channels").get<int>();
+  const std::size_t channels = count_at(json, "channels");
   // a part a table
-  std::vector<Table> tables;
-  read_tables(json, version == kOldVersion, file.bytes.size(), channels, tables);
+  std::vector<Table> tables = read_tables(json, version == kOldVersion, file.bytes.size(), channels);
   if (static_cast<std::size_t>(input.parts()) != tables.size())
     throw Error(fmt::format("expected {} parts, found {}", tables.size(), input.parts()));
   for (int part = 0; part < input.parts(); ++part)
@@ -344,7 +351,7 @@ Model read_model(const FileBytes& file) {
           std::find_if(tables.begin(), tables.end(), [&](const Table& t) { return t.name == name; });
       if (table == tables.end())
         throw Error(fmt::format("factor: expected the name of a table, found '{}'", name));
-      FactorUse use{.table = static_cast<int>(table - tables.begin()),
+      FactorUse use{.table = static_cast<std::size_t>(table - tables.begin()),
                     .projection = read_projection(f, "projection"),
                     .projection_y = {},
                     .projection_z = {}};
@@ -360,7 +367,7 @@ Model read_model(const FileBytes& file) {
   Model model{.brdf = FactoredBrdf(channels, std::move(tables), std::move(lobes)),
               .lambda_nm = json.at("lambda_nm").get<std::vector<double>>(),
               .notes = json.at("notes").dump()};
-  if (!model.lambda_nm.empty() && model.lambda_nm.size() != static_cast<std::size_t>(channels))
+  if (!model.lambda_nm.empty() && model.lambda_nm.size() != channels)
     throw Error(fmt::format("lambda_nm: expected none or {} wavelengths, found {}", channels,
                             model.lambda_nm.size()));
   return model;
@@ -399,8 +406,8 @@ std::string format_model(const Model& model) {
       // what halves hold is written as halves
       std::vector<Imath::half> halves(values.begin(), values.end());
       Imf::FrameBuffer buffer;
-      const std::size_t step = sizeof(Imath::half) * static_cast<std::size_t>(table.channels);
-      for (int c = 0; c < table.channels; ++c)
+      const std::size_t step = sizeof(Imath::half) * table.channels;
+      for (std::size_t c = 0; c < table.channels; ++c)
         buffer.insert(channel_name(table.channels, c),
                       Imf::Slice(Imf::HALF, reinterpret_cast<char*>(halves.data() + c), step,
                                  step * static_cast<std::size_t>(table.layout.width)));

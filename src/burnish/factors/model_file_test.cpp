@@ -21,12 +21,13 @@ std::string replaced(std::string text, const std::string& from, std::string to) 
 TEST(ModelFile, RestoresModelsToTheLastBit) {
   for (const TableFormat format :
        {TableFormat::half, TableFormat::single, TableFormat::rgb9e5, TableFormat::unorm8})
-    for (const int channels : {1, 3, 31}) {
+    for (const std::size_t channels : {1, 3, 31}) {
       if (format == TableFormat::rgb9e5 && channels != 3) continue;
       Model model{.brdf = random_model(kEverything, kEverySize, channels, format),
                   .lambda_nm = {},
                   .notes = R"({"source":"random","error":0.1})"};
-      for (int c = 0; channels == 31 && c < channels; ++c) model.lambda_nm.push_back(400 + 10 * c);
+      for (std::size_t c = 0; channels == 31 && c < channels; ++c)
+        model.lambda_nm.push_back(400 + 10 * static_cast<double>(c));
       const std::string bytes = format_model(model);
       const FileBytes file = memory_file(bytes);
       EXPECT_TRUE(looks_like_exr(file.bytes));

@@ -43,6 +43,7 @@ TableOptions parse_table_options(std::span<const std::string> options) {
     if (equals == text.npos || equals == 0)
       throw Error(
           fmt::format("table option: expected NAME=SIZE[,warp...][,shared][,format], found '{}'", text));
+    // the sides first, then what else there is in any order
     TableOption option;
     std::string_view rest = std::string_view(text).substr(equals + 1);
     for (bool first = true; first || !rest.empty(); first = false) {
@@ -196,9 +197,9 @@ ModelSpec::TableSpec table_for(const ParsedFactor& factor, const TableOptions& o
 }
 
 /// The number of the table of that name, a new one for a new name.
-int add_table(ModelSpec& spec, ModelSpec::TableSpec table) {
+std::size_t add_table(ModelSpec& spec, ModelSpec::TableSpec table) {
   const auto known = std::ranges::find(spec.tables, table.name, &ModelSpec::TableSpec::name);
-  const auto number = static_cast<int>(known - spec.tables.begin());
+  const auto number = static_cast<std::size_t>(known - spec.tables.begin());
   if (known == spec.tables.end())
     spec.tables.push_back(std::move(table));
   else if (known->layout.shape != table.layout.shape)

@@ -58,7 +58,7 @@ struct TableLayout {
 struct Table {
   std::string name;
   TableLayout layout;
-  int channels = 1;  ///< 1 (shared by the BRDF's channels) or the BRDF's channel count
+  std::size_t channels = 1;  ///< 1 (shared by the BRDF's channels) or the BRDF's channel count
   std::vector<float> values;
   TableFormat format = TableFormat::single;  ///< in which `values` are stored, and which holds them exactly
 
@@ -69,7 +69,7 @@ struct Table {
 
 /// One use of a table in a product: which one, and what it is looked up by.
 struct FactorUse {
-  int table = 0;
+  std::size_t table = 0;
   Projection projection;
   Projection projection_y;  ///< grid and volume only
   Projection projection_z;  ///< volume only

@@ -106,20 +106,20 @@ TableFormat parse_table_format(std::string_view name) {
   throw Error(fmt::format("table format: expected half, float, rgb9e5 or unorm8, found '{}'", name));
 }
 
-bool holds_channels(TableFormat format, int channels) noexcept {
+bool holds_channels(TableFormat format, std::size_t channels) noexcept {
   return format != TableFormat::rgb9e5 || channels == 3;
 }
 
-std::size_t texel_bytes(TableFormat format, int channels) noexcept {
+std::size_t texel_bytes(TableFormat format, std::size_t channels) noexcept {
   assert(holds_channels(format, channels));
   if (format == TableFormat::rgb9e5) return 4;
   const std::size_t value = format == TableFormat::unorm8 ? 1 : format == TableFormat::half ? 2 : 4;
-  return value * static_cast<std::size_t>(channels);
+  return value * channels;
 }
 
-std::vector<std::byte> pack(TableFormat format, [[maybe_unused]] int channels,
+std::vector<std::byte> pack(TableFormat format, [[maybe_unused]] std::size_t channels,
                             std::span<const float> values) {
-  assert(holds_channels(format, channels) && values.size() % static_cast<std::size_t>(channels) == 0);
+  assert(holds_channels(format, channels) && values.size() % channels == 0);
   switch (format) {
     case TableFormat::half:
       return encode_all<std::uint16_t>(values, 1, [](const float* v) { return to_half(*v); });
@@ -133,7 +133,7 @@ std::vector<std::byte> pack(TableFormat format, [[maybe_unused]] int channels,
   return encode_all<float>(values, 1, [](const float* v) { return *v; });
 }
 
-std::vector<float> unpack(TableFormat format, [[maybe_unused]] int channels,
+std::vector<float> unpack(TableFormat format, [[maybe_unused]] std::size_t channels,
                           std::span<const std::byte> bytes) {
   assert(bytes.size() % texel_bytes(format, channels) == 0);
   switch (format) {
@@ -149,7 +149,7 @@ std::vector<float> unpack(TableFormat format, [[maybe_unused]] int channels,
   return decode_all<float>(bytes, 1, [](float f, float* v) { *v = f; });
 }
 
-std::vector<float> round_to_format(TableFormat format, int channels, std::span<const float> values) {
+std::vector<float> round_to_format(TableFormat format, std::size_t channels, std::span<const float> values) {
   return unpack(format, channels, pack(format, channels, values));
 }
 

@@ -29,22 +29,22 @@ std::optional<TableFormat> find_table_format(std::string_view name) noexcept;
 TableFormat parse_table_format(std::string_view name);
 
 /// True but for rgb9e5, which has three channels.
-bool holds_channels(TableFormat format, int channels) noexcept;
+bool holds_channels(TableFormat format, std::size_t channels) noexcept;
 
 /// Bytes of a texel; holds_channels must be true.
-std::size_t texel_bytes(TableFormat format, int channels) noexcept;
+std::size_t texel_bytes(TableFormat format, std::size_t channels) noexcept;
 
 /// Encodes finite values > 0, channels interleaved, each to the nearest that the format holds (rgb9e5:
 /// nearest with its texel's exponent), but never to 0: what would be, becomes the smallest positive value
 /// (rgb9e5: 1 in the mantissa), and what is above the range the largest. Little-endian; texel_bytes() *
 /// texels bytes; rgb9e5 as GL_RGB9_E5 and VK_FORMAT_E5B9G9R9_UFLOAT_PACK32 lay it out, red in the lowest bits
 /// [EXT_texture_shared_exponent].
-std::vector<std::byte> pack(TableFormat format, int channels, std::span<const float> values);
+std::vector<std::byte> pack(TableFormat format, std::size_t channels, std::span<const float> values);
 
 /// The values that pack's bytes stand for; exact.
-std::vector<float> unpack(TableFormat format, int channels, std::span<const std::byte> bytes);
+std::vector<float> unpack(TableFormat format, std::size_t channels, std::span<const std::byte> bytes);
 
 /// The values as they are after storing: unpack(pack(values)). Rounding twice changes nothing.
-std::vector<float> round_to_format(TableFormat format, int channels, std::span<const float> values);
+std::vector<float> round_to_format(TableFormat format, std::size_t channels, std::span<const float> values);
 
 }  // namespace burnish

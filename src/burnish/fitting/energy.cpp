@@ -77,7 +77,7 @@ std::vector<double> largest_of(const std::vector<double>& albedo, std::size_t ch
 }
 
 // The first table that a lobe looks up by both directions alike, and by nothing else.
-std::optional<int> damping_table(const FactoredBrdf& brdf, const Lobe& lobe) {
+std::optional<std::size_t> damping_table(const FactoredBrdf& brdf, const Lobe& lobe) {
   for (const FactorUse& use : lobe.factors) {
     if (projection_count(brdf.table_of(use).layout.shape) > 1) continue;
     FactorUse other = use;
@@ -94,8 +94,7 @@ class Damper {
   Damper(const FactoredBrdf& brdf, Grid grid) : brdf_(brdf), grid_(grid), gains_(brdf.tables().size()) {
     for (const Lobe& lobe : brdf.lobes())
       if (const auto table = damping_table(brdf, lobe)) {
-        const auto t = static_cast<std::size_t>(*table);
-        gains_[t].assign(brdf.tables()[t].values.size(), 1.0);
+        gains_[*table].assign(brdf.tables()[*table].values.size(), 1.0);
       }
     for (const Lobe& lobe : brdf.lobes()) most_uses_ = std::max(most_uses_, damped_uses(lobe));
   }
@@ -155,7 +154,7 @@ class Damper {
       const std::vector<double> divided = store_log_table(tables[t]);
       for (Lobe& lobe : scaled)
         for (const FactorUse& use : lobe.factors)
-          if (static_cast<std::size_t>(use.table) == t)
+          if (use.table == t)
             for (std::size_t c = 0; c < lobe.scale.size(); ++c)
               lobe.scale[c] =
                   static_cast<float>(lobe.scale[c] * std::exp(divided[divided.size() == 1 ? 0 : c]));
@@ -165,15 +164,14 @@ class Damper {
 
  private:
   std::ptrdiff_t damped_uses(const Lobe& lobe) const {
-    return std::ranges::count_if(lobe.factors, [&](const FactorUse& use) {
-      return !gains_[static_cast<std::size_t>(use.table)].empty();
-    });
+    return std::ranges::count_if(lobe.factors,
+                                 [&](const FactorUse& use) { return !gains_[use.table].empty(); });
   }
 
   // What changes of the grid mean for a table's nodes: each takes the least of those its interpolation
   // reaches, damping by its share in them; so no direction stays above 1 because its nodes look elsewhere.
   std::vector<double> node_changes(const Table& table, const std::vector<double>& change) const {
-    const auto step = static_cast<std::size_t>(table.channels);
+    const auto step = table.channels;
     std::vector<double> result(table.values.size(), std::numeric_limits<double>::infinity());
     const auto limit = [&](std::size_t node, std::size_t channel, double value) {
       double& least = result[node * step + (step == 1 ? 0 : channel)];
@@ -228,7 +226,7 @@ EnergyConservation conserve_energy(const FactoredBrdf& brdf, const EnergyOptions
   if (options.theta_count < 2 || options.phi_count < 1 || !(options.tolerance > 0) ||
       options.max_iterations < 0)
     throw Error("energy: expected at least 2 polar angles and 1 azimuth, a tolerance > 0, iterations >= 0");
-  const auto channels = static_cast<std::size_t>(brdf.channels());
+  const auto channels = brdf.channels();
   const Grid grid{static_cast<std::size_t>(options.theta_count),
                   brdf.isotropic() ? 1 : static_cast<std::size_t>(options.phi_count), channels};
   const auto albedos_of = [&](const FactoredBrdf& of) {

@@ -29,14 +29,14 @@ FactoredBrdf steep_model(const char* expression, std::vector<std::string> option
   const ModelSpec spec = parse_model_spec(expression, options, true);
   std::vector<Table> tables;
   for (const ModelSpec::TableSpec& t : spec.tables) {
-    Table table{.name = t.name, .layout = t.layout, .channels = t.shared ? 1 : 3, .values = {}};
+    Table table{.name = t.name, .layout = t.layout, .channels = t.shared ? std::size_t{1} : 3, .values = {}};
     table.format = format_of(t, format);
     const auto height = [&](double tan_half) {
       return t.name == "p" ? rise * std::pow(tan_half, 4) : -fall * tan_half;
     };
     for (int y = 0; y < t.layout.height; ++y)
       for (int x = 0; x < t.layout.width; ++x)
-        for (int c = 0; c < table.channels; ++c)
+        for (std::size_t c = 0; c < table.channels; ++c)
           table.values.push_back(static_cast<float>(height(tan_half_theta(node_direction(t.layout, x, y))) +
                                                     0.02 * random.uniform()));
     tables.push_back(std::move(table));

@@ -381,7 +381,7 @@ class Fitter {
     for (std::size_t i = 0; i < nodes_->size(); ++i)
       if (std::min(nodes_->samples.pairs[i].wi.z, nodes_->samples.pairs[i].wo.z) > NodeScoring{}.least_cosine)
         near.push_back(i);
-    std::vector<double> f(static_cast<std::size_t>(set.channels));
+    std::vector<double> f(set.channels);
     for (const std::size_t i : near) {
       const DirectionPair& pair = nodes_->samples.pairs[i];
       smoothed_->eval(pair.wi, pair.wo, f);
@@ -396,8 +396,7 @@ class Fitter {
     set.albedo = albedo_set(reference());
     refine.shares.albedo = kAlbedoShare;
     RefineOptions steps = refine;
-    const bool direct =
-        coupled_unknowns(model.spec, static_cast<std::size_t>(channels())) <= kMaxCholeskyUnknowns;
+    const bool direct = coupled_unknowns(model.spec, channels()) <= kMaxCholeskyUnknowns;
     steps.max_iterations = direct ? kAlbedoSteps : kLongAlbedoSteps;
     steps.progress = progress("matching albedos");
     burnish::refine(model, set, steps);
@@ -436,7 +435,7 @@ class Fitter {
 
   // ---- What is fitted
 
-  int channels() const { return brdf_.channels(); }
+  std::size_t channels() const { return brdf_.channels(); }
   /// Samples that are fitted as they are.
   const Samples* samples() const {
     if (smoothed_) return nullptr;

@@ -10,27 +10,26 @@ namespace burnish {
 /// Pixels row by row from the top, channel fastest.
 template <class T>
 struct BasicImage {
-  int width = 0, height = 0, channels = 0;
+  int width = 0, height = 0;
+  std::size_t channels = 0;
   std::vector<T> pixels;
 
   BasicImage() = default;
-  BasicImage(int image_width, int image_height, int image_channels)
+  BasicImage(int image_width, int image_height, std::size_t image_channels)
       : width(image_width),
         height(image_height),
         channels(image_channels),
         pixels(static_cast<std::size_t>(image_width) * static_cast<std::size_t>(image_height) *
-               static_cast<std::size_t>(image_channels)) {}
+               image_channels) {}
 
   std::size_t offset(int x, int y) const noexcept {
     return (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) *
-           static_cast<std::size_t>(channels);
+           channels;
   }
   /// The channels of pixel (x, y), x to the right and y downwards from the top left.
-  std::span<T> at(int x, int y) noexcept {
-    return std::span(pixels).subspan(offset(x, y), static_cast<std::size_t>(channels));
-  }
+  std::span<T> at(int x, int y) noexcept { return std::span(pixels).subspan(offset(x, y), channels); }
   std::span<const T> at(int x, int y) const noexcept {
-    return std::span(pixels).subspan(offset(x, y), static_cast<std::size_t>(channels));
+    return std::span(pixels).subspan(offset(x, y), channels);
   }
 
   friend bool operator==(const BasicImage&, const BasicImage&) = default;

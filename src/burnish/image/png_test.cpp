@@ -11,7 +11,7 @@
 namespace burnish {
 namespace {
 
-Image8 random_image(int width, int height, int channels) {
+Image8 random_image(int width, int height, std::size_t channels) {
   Image8 image(width, height, channels);
   Pcg32 random(7);
   for (auto& value : image.pixels) value = static_cast<std::uint8_t>(random.next() & 255);
@@ -19,7 +19,7 @@ Image8 random_image(int width, int height, int channels) {
 }
 
 TEST(Png, RoundTripsEveryByte) {
-  for (const int channels : {3, 4}) {
+  for (const std::size_t channels : {3, 4}) {
     const Image8 image = random_image(37, 11, channels);
     EXPECT_EQ(decode_png(encode_png(image), "memory"), image) << channels << " channels";
   }

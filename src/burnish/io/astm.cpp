@@ -107,7 +107,7 @@ SampleFile parse_astm(const FileBytes& file, const OpenOptions& options) {
   findings.lambda_nm = columns.lambda_nm;
 
   Samples& samples = result.samples;
-  samples.channels = static_cast<int>(columns.values.size());
+  samples.channels = columns.values.size();
   std::vector<double> row(names.size());
   for (; rows; rows = reader.next_content_line()) {
     for (std::size_t at = 0; at < row.size(); ++at) row[at] = reader.number(names[at]);
@@ -128,7 +128,7 @@ SampleFile parse_astm(const FileBytes& file, const OpenOptions& options) {
 }
 
 std::string samples_astm(const Samples& samples, std::span<const double> lambda_nm) {
-  const auto channels = static_cast<std::size_t>(samples.channels);
+  const auto channels = samples.channels;
   if (lambda_nm.empty() ? channels != 1 && channels != 3 : lambda_nm.size() != channels)
     throw Error(fmt::format(
         "ASTM columns: expected 1 or 3 channels or as many wavelengths, found {} channels", channels));

@@ -34,7 +34,7 @@ constexpr std::size_t kMirrorPairs = 500;
 struct OtherSide {
   BrdfRef source;
 
-  int channels() const noexcept { return source.channels(); }
+  std::size_t channels() const noexcept { return source.channels(); }
   bool isotropic() const noexcept { return source.isotropic(); }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     // an isotropic source sees both sides exchanged where both directions are reflected at any one plane
@@ -44,8 +44,7 @@ struct OtherSide {
 
 /// The figure `relative` over pairs that both know; nothing if there are none.
 std::optional<double> relative_difference(BrdfRef a, BrdfRef b, std::size_t count) {
-  const auto channels_a = static_cast<std::size_t>(a.channels()),
-             channels_b = static_cast<std::size_t>(b.channels());
+  const auto channels_a = a.channels(), channels_b = b.channels();
   const std::vector<DirectionPair> pairs = draw_pairs(count, 1, a.isotropic() && b.isotropic());
   std::vector<double> f(pairs.size() * channels_a), g(pairs.size() * channels_b);
   std::vector<std::uint8_t> known_a(pairs.size()), known_b(pairs.size());
@@ -99,7 +98,7 @@ class Converter {
   }
 
   void require_grey_or_rgb(const char* format) const {
-    if (const int channels = brdf_.channels(); channels != 1 && channels != 3)
+    if (const std::size_t channels = brdf_.channels(); channels != 1 && channels != 3)
       throw Error::in_file(source_.name, fmt::format("grey or RGB for {}, so no --spectral", format),
                            fmt::format("{} channels", channels));
   }
@@ -193,7 +192,7 @@ class Converter {
     lose_sides(brdf);
     const auto n = static_cast<std::size_t>(options_.cells);
     const AngleTable made = tabulate_angles(brdf, mbsdf_layout(n, 2 * n));
-    const auto entries = made.values.size() / static_cast<std::size_t>(made.channel_count);
+    const auto entries = made.values.size() / made.channel_count;
     const auto unknown = static_cast<std::size_t>(
         std::count_if(made.values.begin(), made.values.end(), [](float v) { return std::isnan(v); }) /
         made.channel_count);
@@ -252,7 +251,7 @@ class Converter {
 /// Collects what is known above the horizon.
 class EntryList {
  public:
-  explicit EntryList(BrdfRef brdf) : brdf_(brdf), f_(static_cast<std::size_t>(brdf.channels())) {
+  explicit EntryList(BrdfRef brdf) : brdf_(brdf), f_(brdf.channels()) {
     samples_.channels = brdf.channels();
     samples_.isotropic = brdf.isotropic();
   }
@@ -292,7 +291,7 @@ void add_entries(const RglTable& table, EntryList& list) {
 
 void add_entries(const AngleTable& table, EntryList& list) {
   for (std::size_t i = 0; i < entry_count(table); ++i)
-    if (!std::isnan(table.values[i * static_cast<std::size_t>(table.channel_count)]))
+    if (!std::isnan(table.values[i * table.channel_count]))
       list.add(node_directions(table, node_of_entry(table, i)));
 }
 

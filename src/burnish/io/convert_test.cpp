@@ -31,7 +31,7 @@ Source reread(const Converted& converted, const OpenOptions& options = {}) {
 // How many entries there are, and that each is the source's value in its direction.
 std::size_t expect_entries_of(const Source& table, BrdfRef source) {
   const Samples entries = table_entries(table);
-  std::vector<double> f(static_cast<std::size_t>(source.channels()));
+  std::vector<double> f(source.channels());
   std::size_t compared = 0;
   double worst = 0;
   for (std::size_t i = 0; i < entries.size(); ++i) {

@@ -66,7 +66,7 @@ SampleFile parse_cornell(const FileBytes& file, const OpenOptions& options) {
     result.findings.lambda_nm.push_back(wrapped_number(reader, "a wavelength"));
   reader.end_of_line();
 
-  samples.channels = static_cast<int>(bands);
+  samples.channels = bands;
   samples.isotropic = true;
   const std::size_t shortest_row = 2 * (4 + bands);  // a digit and a separator a number
   samples.values.reserve(reader.remaining() / shortest_row / 4 * bands);

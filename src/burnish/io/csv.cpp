@@ -153,7 +153,7 @@ SampleFile parse_csv(const FileBytes& file, const OpenOptions& options) {
 
   SampleFile result;
   Samples& samples = result.samples;
-  samples.channels = static_cast<int>(columns.values.size());
+  samples.channels = columns.values.size();
   std::vector<double> row(columns.count);
   while (lines.next()) {
     read_row(reader, row);
@@ -186,7 +186,7 @@ SampleFile parse_csv(const FileBytes& file, const OpenOptions& options) {
 }
 
 std::string samples_csv(const Samples& samples, std::span<const double> lambda_nm) {
-  const auto channels = static_cast<std::size_t>(samples.channels);
+  const auto channels = samples.channels;
   if (lambda_nm.empty() ? channels != 1 && channels != 3 : lambda_nm.size() != channels)
     throw Error(fmt::format("CSV columns: expected 1 or 3 channels or as many wavelengths, found {} channels",
                             channels));

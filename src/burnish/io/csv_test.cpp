@@ -83,9 +83,9 @@ TEST(Csv, SaysWhatIsWrong) {
 }
 
 TEST(Csv, RoundTripsSamplesToTheLastBit) {
-  for (const int channels : {1, 3, 5}) {
+  for (const std::size_t channels : {1, 3, 5}) {
     Samples samples{channels, channels == 3, draw_pairs(200, 9, false), {}};
-    for (std::size_t i = 0; i < samples.size() * static_cast<std::size_t>(channels); ++i)
+    for (std::size_t i = 0; i < samples.size() * channels; ++i)
       samples.values.push_back(std::exp(std::sin(static_cast<double>(i))));
     const std::vector<double> lambda =
         channels == 5 ? std::vector<double>{400, 450, 500, 550, 600.5} : std::vector<double>{};

@@ -89,7 +89,7 @@ MbsdfFile parse_mbsdf(const FileBytes& file) {
   // its values, all of which must be numbers
   AngleTable& table = result.table;
   table = mbsdf_layout(header.theta_count, header.phi_count);
-  table.channel_count = static_cast<int>(header.channels);
+  table.channel_count = header.channels;
   table.values.resize(header.value_count());
   std::memcpy(table.values.data(), bytes.data(), bytes.size());
   for (std::size_t i = 0; i < table.values.size(); ++i) {

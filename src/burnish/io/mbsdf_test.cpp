@@ -79,7 +79,7 @@ TEST(Mbsdf, CountsAndKeepsNegatives) {
 }
 
 TEST(Mbsdf, WritesWhatItReads) {
-  for (const int channels : {1, 3}) {
+  for (const std::size_t channels : {1, 3}) {
     AngleTable table = tabulate_angles(testing::Glossy{.count = channels}, mbsdf_layout(5, 7));
     ASSERT_TRUE(fits_mbsdf(table));
     EXPECT_EQ(parse_mbsdf(memory_file(format_mbsdf(table))).table.values, table.values);

@@ -162,9 +162,7 @@ std::string format_merl(const HalfDiffTable& table) {
   std::memcpy(bytes.data(), sizes.data(), kHeaderBytes);
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < entries; ++i) {
-      const float f =
-          table
-              .values[i * static_cast<std::size_t>(table.channel_count) + (table.channel_count == 3 ? c : 0)];
+      const float f = table.values[i * table.channel_count + (table.channel_count == 3 ? c : 0)];
       const double value = std::isnan(f) ? -1 : static_cast<double>(f) / kScale[c];
       std::memcpy(bytes.data() + kHeaderBytes + (c * entries + i) * sizeof(double), &value, sizeof(value));
     }

@@ -9,7 +9,7 @@ namespace burnish {
 namespace {
 
 struct Constant {
-  int channels() const noexcept { return 1; }
+  std::size_t channels() const noexcept { return 1; }
   bool isotropic() const noexcept { return true; }
   bool eval(Vec3, Vec3, std::span<double> f) const noexcept {
     f[0] = 0.25;

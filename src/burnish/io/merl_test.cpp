@@ -28,7 +28,7 @@ void store(FileBytes& file, std::size_t index, double value) {
 }
 
 struct Glossy {
-  int channels() const noexcept { return 3; }
+  std::size_t channels() const noexcept { return 3; }
   bool isotropic() const noexcept { return true; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     const double c = half_vector(wi, wo).z;

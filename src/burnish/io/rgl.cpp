@@ -114,7 +114,7 @@ std::string one_line(std::span<const std::byte> bytes) {
 /// The smallest value in 1/sr at nodes with a negative one; 0 where there is none.
 double most_negative(const RglTable& table) {
   const RglData& data = table.data();
-  const auto channels = static_cast<std::size_t>(data.channels), nodes = node_count(data.spectra);
+  const auto channels = data.channels, nodes = node_count(data.spectra);
   const auto width = static_cast<std::size_t>(data.spectra.width);
   std::vector<double> f(channels);
   double result = 0;
@@ -150,7 +150,7 @@ RglData read_data(const Fields& fields) {
     data.lambda_nm.assign(lambda_nm.begin(), lambda_nm.end());
   }
   const std::uint64_t channels = spectral ? data.lambda_nm.size() : 3;
-  data.channels = static_cast<int>(channels);
+  data.channels = channels;
   data.spectra = fields.grid(spectral ? "spectra" : "rgb", {phis, thetas, channels});
   data.spectra.values = transpose(data.spectra.values, channels, node_count(data.spectra));
 
@@ -239,7 +239,7 @@ std::string format_rgl(const RglTable& table) {
         spectra.insert(spectra.end(), values.begin(), values.end());
       }
   else
-    spectra = transpose(data.spectra.values, nodes, static_cast<std::size_t>(data.channels));
+    spectra = transpose(data.spectra.values, nodes, data.channels);
 
   const std::array<std::uint32_t, 2> version{1, 0};
   const std::array<std::uint8_t, 1> jacobian{data.jacobian};

@@ -25,10 +25,10 @@ const std::vector<double> kBands{420, 500, 580, 700};
 
 /// A smooth lobe, wider across than along, whose channels differ.
 struct Lobe {
-  int count;
+  std::size_t count;
   bool brushed;
 
-  int channels() const noexcept { return count; }
+  std::size_t channels() const noexcept { return count; }
   bool isotropic() const noexcept { return !brushed; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     const Vec3 h = half_vector(wi, wo);
@@ -40,7 +40,7 @@ struct Lobe {
 };
 static_assert(Brdf<Lobe>);
 
-RglTable small_table(int channels, bool brushed) {
+RglTable small_table(std::size_t channels, bool brushed) {
   RglOptions options;
   options.theta_i_count = 4;
   options.phi_i_count = 5;
@@ -57,7 +57,7 @@ RglFile parsed(std::string_view bytes, const OpenOptions& options = {}) {
 
 std::vector<double> values_of(const RglTable& table, std::uint64_t seed = 1) {
   Pcg32 random(seed);
-  std::vector<double> all, f(static_cast<std::size_t>(table.channels()));
+  std::vector<double> all, f(table.channels());
   for (int i = 0; i < 300; ++i) {
     const Vec3 wi = random_upper_direction(random), wo = random_upper_direction(random);
     table.eval(wi, wo, f);

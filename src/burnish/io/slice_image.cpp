@@ -20,7 +20,7 @@ std::string format_slice_image(const HalfDiffTable& table) {
                 " channels");
 
   // slices of phi_d in rows, as square as can be; holes stay transparent
-  const auto channels = static_cast<std::size_t>(table.channel_count);
+  const auto channels = table.channel_count;
   const int across = static_cast<int>(std::ceil(std::sqrt(table.phi_d_count)));
   const int down = (table.phi_d_count + across - 1) / across;
   const int width = across * table.theta_d_count, height = down * table.theta_h_count;

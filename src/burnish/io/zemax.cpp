@@ -240,7 +240,7 @@ void fill_values(const std::vector<double>& read, const Header& header, const Ta
 /// that each entry stands for.
 std::vector<Row> block_integrals(const AngleTable& table) {
   const auto& axes = table.axes;
-  const auto channels = static_cast<std::size_t>(table.channel_count);
+  const auto channels = table.channel_count;
   const std::size_t columns = axes[3].nodes.size(), block = axes[2].nodes.size() * columns;
   const std::vector<double> around = azimuth_widths(axes[2], table.folded), along = ring_heights(axes[3]);
   std::vector<Row> totals(axes[0].nodes.size() * axes[1].nodes.size(), Row{});
@@ -298,7 +298,7 @@ ZemaxFile parse_zemax(const FileBytes& file) {
   table.folded = header.words["symmetry"] == "planesymmetrical";
   table.axes = {make_axis(in_radians(rotations, 90), kTwoPi), make_axis(in_radians(incidences)),
                 make_axis(in_radians(azimuths), table.folded ? 0 : kTwoPi), make_axis(in_radians(radials))};
-  table.channel_count = static_cast<int>(sizes.channels);
+  table.channel_count = sizes.channels;
 
   // the file has one channel after another, the table all of an entry together
   std::vector<double> read(values);
@@ -355,7 +355,7 @@ std::string format_zemax(const AngleTable& table, std::string_view sample) {
   if (!fits_zemax(table))
     throw Error("Zemax table: expected values around the mirror direction, grey or RGB");
   const auto& axes = table.axes;
-  const auto channels = static_cast<std::size_t>(table.channel_count);
+  const auto channels = table.channel_count;
   const bool monochrome = channels == 1;
   std::string text =
       fmt::format("# Sample: {}\nSource\tMeasured\nSymmetry\t{}\nSpectralContent\t{}\nScatterType\tBRDF\n",

@@ -98,7 +98,7 @@ AngleTable coarse_layout(bool isotropic) {
 }
 
 TEST(Zemax, WritesWhatItReads) {
-  for (const int channels : {1, 3})
+  for (const std::size_t channels : {1, 3})
     for (const bool isotropic : {true, false}) {
       testing::Glossy glossy{.a = 20, .b = isotropic ? 20.0 : 5.0, .count = channels};
       const AngleTable table = tabulate_angles(glossy, coarse_layout(isotropic));

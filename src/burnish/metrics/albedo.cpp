@@ -31,7 +31,7 @@ struct Ring {
 
 Ring integrate_ring(BrdfRef source, Vec3 wi, const RingFrame& frame, double radius,
                     double solid_angle_per_azimuth, std::size_t azimuth_count) {
-  const auto channels = static_cast<std::size_t>(source.channels());
+  const auto channels = source.channels();
   Ring ring{.reflected = std::vector<double>(channels), .clamped = std::vector<double>(channels)};
   // cos(theta_o) = level + slope cos(azimuth) is above 0 within `half` of the azimuth towards the normal
   const double level = std::cos(radius) * frame.axis.z;
@@ -63,7 +63,7 @@ Ring integrate_ring(BrdfRef source, Vec3 wi, const RingFrame& frame, double radi
 }
 
 DirectionalAlbedo integrate(BrdfRef source, Vec3 wi, std::size_t ring_count) {
-  const auto channels = static_cast<std::size_t>(source.channels());
+  const auto channels = source.channels();
   const RingFrame frame = frame_around(mirror(wi));
   const double most_radius = kHalfPi + theta_of(wi);  // the farthest point of the horizon
 

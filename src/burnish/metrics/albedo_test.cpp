@@ -16,7 +16,7 @@ namespace {
 struct Diffuse {
   bool half = false;
 
-  int channels() const noexcept { return 2; }
+  std::size_t channels() const noexcept { return 2; }
   bool isotropic() const noexcept { return !half; }
   bool eval(Vec3, Vec3 wo, std::span<double> f) const noexcept {
     const bool known = !half || wo.x > 0;
@@ -31,7 +31,7 @@ struct Diffuse {
 struct MirrorLobe {
   double exponent;
 
-  int channels() const noexcept { return 1; }
+  std::size_t channels() const noexcept { return 1; }
   bool isotropic() const noexcept { return true; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     f[0] = (exponent + 1) / kTwoPi * std::pow(std::max(0.0, dot(mirror(wi), wo)), exponent) / wo.z;

@@ -59,7 +59,7 @@ Scorer::Scorer(BrdfRef reference, const FigureOptions& options) : reference_(ref
 }
 
 Scorer::Evaluated Scorer::evaluate(BrdfRef brdf, std::vector<DirectionPair> pairs) {
-  const auto channels = static_cast<std::size_t>(brdf.channels());
+  const auto channels = brdf.channels();
   Evaluated result{std::move(pairs), {}, {}};
   result.values.resize(result.pairs.size() * channels);
   result.known.resize(result.pairs.size());
@@ -83,8 +83,8 @@ std::vector<PairError> Scorer::pair_errors(BrdfRef model) const {
   const Evaluated guess = evaluate(model, truth.pairs);
 
   // errors of all pairs, on all threads
-  const auto reference_channels = static_cast<std::size_t>(reference_.channels());
-  const auto model_channels = static_cast<std::size_t>(model.channels());
+  const auto reference_channels = reference_.channels();
+  const auto model_channels = model.channels();
   std::vector<PairError> errors(truth.pairs.size());
   std::vector<std::uint8_t> known(truth.pairs.size());
   for_each_chunk(errors.size(), kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {

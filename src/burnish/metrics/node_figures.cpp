@@ -60,11 +60,11 @@ struct ErrorSums {
 /// Calls body(node, error) for the nodes that are scored.
 template <class Body>
 void for_each_error(const MeasuredNodes& nodes, BrdfRef model, const NodeScoring& scoring, Body body) {
-  const int channels = nodes.samples.channels;
+  const std::size_t channels = nodes.samples.channels;
   if (model.channels() != channels && model.channels() != 1 && channels != 1)
     throw Error(
         fmt::format("cannot compare nodes of {} channels with a model of {}", channels, model.channels()));
-  std::vector<double> f(static_cast<std::size_t>(model.channels()));
+  std::vector<double> f(model.channels());
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const DirectionPair& pair = nodes.samples.pairs[i];
     if (!(std::min(pair.wi.z, pair.wo.z) > scoring.least_cosine) || !model.eval(pair.wi, pair.wo, f))

@@ -107,7 +107,7 @@ TEST(NodeFigures, IncidencesAreHeldOutWhereThereAreFew) {
 struct Leaning {
   double slope = 0.2;
 
-  int channels() const noexcept { return 1; }
+  std::size_t channels() const noexcept { return 1; }
   bool isotropic() const noexcept { return true; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     f[0] = wi.z > 0 && wo.z > 0 ? 0.3 * (1 + slope * (wi.z - wo.z)) : 0;

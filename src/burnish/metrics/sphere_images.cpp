@@ -63,7 +63,7 @@ class Shading {
 };
 
 // Channels two images are compared in.
-int common_channels(const Image& a, const Image& b) {
+std::size_t common_channels(const Image& a, const Image& b) {
   if (a.width != b.width || a.height != b.height)
     throw Error(fmt::format("cannot compare an image of {} x {} with one of {} x {}", a.width, a.height,
                             b.width, b.height));
@@ -72,7 +72,7 @@ int common_channels(const Image& a, const Image& b) {
   return std::max(a.channels, b.channels);
 }
 
-double channel(const Image& image, int x, int y, int c) noexcept {
+double channel(const Image& image, int x, int y, std::size_t c) noexcept {
   return image.at(x, y)[image.channels == 1 ? 0 : as_size(c)];
 }
 
@@ -201,15 +201,15 @@ Image tone_map(Image image, double exposure) {
 }
 
 double mean_squared_error(const Image& a, const Image& b) {
-  const int channels = common_channels(a, b);
+  const std::size_t channels = common_channels(a, b);
   double sum = 0;
   for (int y = 0; y < a.height; ++y)
     for (int x = 0; x < a.width; ++x)
-      for (int c = 0; c < channels; ++c) {
+      for (std::size_t c = 0; c < channels; ++c) {
         const double difference = channel(a, x, y, c) - channel(b, x, y, c);
         sum += difference * difference;
       }
-  return sum / (static_cast<double>(a.width) * a.height * channels);
+  return sum / (static_cast<double>(a.width) * a.height * static_cast<double>(channels));
 }
 
 double psnr(double mean_squared_error) noexcept {
@@ -220,7 +220,8 @@ double psnr(double mean_squared_error) noexcept {
 double ssim(const Image& a, const Image& b) {
   constexpr int kRadius = 6, kWindow = 2 * kRadius + 1;
   constexpr double kSigma = 1.5, kC1 = 0.01 * 0.01, kC2 = 0.03 * 0.03;
-  const int channels = common_channels(a, b), width = a.width, height = a.height;
+  const std::size_t channels = common_channels(a, b);
+  const int width = a.width, height = a.height;
   if (std::min(width, height) < kRadius)
     throw Error(fmt::format("SSIM needs an image of at least {0} x {0} pixels", kRadius));
 
@@ -291,22 +292,25 @@ Image8 to_image8(const Image& shown) {
   return bytes;
 }
 
+namespace {
+
+// The exposure of the three lights together.
+double metered_exposure(BrdfRef brdf) {
+  constexpr int kMeterSize = 128;
+  std::vector<LitSphere> spheres;
+  for (const double light : kSphereLights) spheres.push_back(render_sphere(brdf, light, kMeterSize));
+  return sphere_exposure(spheres);
+}
+
+}  // namespace
+
 Image8 lit_sphere(BrdfRef brdf, const LitSphereOptions& options) {
   check_size(options.size);
   const int samples = options.supersampling;
   if (samples < 1 || samples > 16)
     throw Error(fmt::format("expected a supersampling of 1 to 16, found {}", samples));
 
-  // that of the three lights together, unless one is given
-  double exposure = 1;
-  if (options.exposure) {
-    exposure = *options.exposure;
-  } else {
-    constexpr int kMeterSize = 128;
-    std::vector<LitSphere> spheres;
-    for (const double light : kSphereLights) spheres.push_back(render_sphere(brdf, light, kMeterSize));
-    exposure = sphere_exposure(spheres);
-  }
+  const double exposure = options.exposure ? *options.exposure : metered_exposure(brdf);
 
   // light is averaged after clamping, so that the edge of a highlight is smooth too
   const Vec3 light = light_direction(options.light_angle);

@@ -20,7 +20,7 @@ void expect_near(Vec3 a, Vec3 b, double tolerance) {
   EXPECT_NEAR(a.z, b.z, tolerance);
 }
 
-Image noise(int width, int height, int channels, std::uint64_t seed) {
+Image noise(int width, int height, std::size_t channels, std::uint64_t seed) {
   Image image(width, height, channels);
   Pcg32 random(seed);
   for (float& value : image.pixels) value = static_cast<float>(random.uniform());

@@ -86,6 +86,7 @@ NamedProjection parse_projection(std::string_view text) {
         "projection: expected {} or a sum of terms of wi, wo, m and n such as wi+wo+0.5n, found '{}'", names,
         text));
   };
+  // terms: a sign, which only the first may lack, a number, a vector
   Projection p;
   std::string_view rest = text;
   while (!rest.empty()) {
@@ -112,6 +113,7 @@ NamedProjection parse_projection(std::string_view text) {
     };
     if (!(term("wi", p.wi) || term("wo", p.wo) || term("m", p.mirror) || term("n", p.n))) throw fail();
   }
+  // the normal alone says nothing of the directions
   if (p.wi == 0 && p.wo == 0 && p.mirror == 0) throw fail();
   return {p};
 }

@@ -45,7 +45,7 @@ class AnalyticBrdf {
   /// where one is outside its range, or where channels differ in a parameter that is no colour.
   AnalyticBrdf(const AnalyticModel& model, std::vector<Rgb> values);
 
-  static constexpr int channels() noexcept { return 3; }
+  static constexpr std::size_t channels() noexcept { return 3; }
   bool isotropic() const noexcept;
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 

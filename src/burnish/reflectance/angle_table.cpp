@@ -107,7 +107,7 @@ bool AngleTable::eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept 
       weight *= second ? near[k].fraction : 1 - near[k].fraction;
       index = index * axes[k].nodes.size() + near[k].index[second];
     }
-    const float* entry = &values[index * static_cast<std::size_t>(channel_count)];
+    const float* entry = &values[index * channel_count];
     if (weight == 0 || std::isnan(entry[0])) continue;
     total += weight;
     for (std::size_t c = 0; c < f.size(); ++c) f[c] += weight * static_cast<double>(entry[c]);
@@ -141,7 +141,7 @@ DirectionPair node_directions(const AngleTable& table, const std::array<std::siz
 }
 
 AngleTable tabulate_angles(BrdfRef source, AngleTable layout) {
-  const auto channels = static_cast<std::size_t>(source.channels());
+  const auto channels = source.channels();
   layout.channel_count = source.channels();
   layout.values.assign(entry_count(layout) * channels, std::numeric_limits<float>::quiet_NaN());
   for_each_chunk(entry_count(layout), 4096, [&](std::size_t, std::size_t begin, std::size_t end) {

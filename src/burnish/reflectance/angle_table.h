@@ -44,11 +44,11 @@ struct AngleTable {
   Frame frame = Frame::normal;
   bool folded = false;  ///< azimuths a and -a have one value; the axis covers [0, pi]
   std::array<AngleAxis, 4> axes;
-  int channel_count = 1;
+  std::size_t channel_count = 1;
   /// [axis 0][axis 1][axis 2][axis 3][channel], 1/sr; NaN in all channels is a hole
   std::vector<float> values;
 
-  int channels() const noexcept { return channel_count; }
+  std::size_t channels() const noexcept { return channel_count; }
   bool isotropic() const noexcept { return axes[0].nodes.size() == 1; }
   /// Linear along each angle. Holes have no weight, the others' weights are scaled to sum to 1; unknown where
   /// all neighbours are holes and outside an axis (see AxisNeighbours).

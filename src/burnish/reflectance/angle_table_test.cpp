@@ -150,7 +150,7 @@ TEST(AngleTable, GivesHolesNoWeight) {
 
 // Lopsided about the plane of incidence and anisotropic.
 struct Lopsided {
-  int channels() const noexcept { return 2; }
+  std::size_t channels() const noexcept { return 2; }
   bool isotropic() const noexcept { return false; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     f[0] = 2 + wi.x * wo.y - wi.y * wo.x;

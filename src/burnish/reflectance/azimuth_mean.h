@@ -20,7 +20,7 @@ class AzimuthMean {
   /// Refers to the source. Throws Error if it has more channels.
   explicit AzimuthMean(BrdfRef source, bool exchange = false);
 
-  int channels() const noexcept { return source_.channels(); }
+  std::size_t channels() const noexcept { return source_.channels(); }
   bool isotropic() const noexcept { return true; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
   bool eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;

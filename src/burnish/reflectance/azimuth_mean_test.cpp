@@ -14,7 +14,7 @@ namespace {
 struct Brushed {
   bool half = false;
 
-  int channels() const noexcept { return 1; }
+  std::size_t channels() const noexcept { return 1; }
   bool isotropic() const noexcept { return false; }
   bool eval(Vec3 wi, Vec3, std::span<double> f) const noexcept {
     const double phi = phi_of(wi);
@@ -37,7 +37,7 @@ TEST(AzimuthMean, AveragesAnisotropyAway) {
 TEST(AzimuthMean, ExchangesDirectionsAtEverySecondRotation) {
   // f(wi, wo) = (1 + cos(2 phi_i)) cos(theta_i): no harmonic is left in either half of the rotations
   struct OneWay {
-    int channels() const noexcept { return 1; }
+    std::size_t channels() const noexcept { return 1; }
     bool isotropic() const noexcept { return false; }
     bool eval(Vec3 wi, Vec3, std::span<double> f) const noexcept {
       f[0] = (1 + std::cos(2 * phi_of(wi))) * wi.z;

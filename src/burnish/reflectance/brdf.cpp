@@ -27,7 +27,7 @@ bool mean_of_orders(BrdfRef source, Vec3 wi, Vec3 wo, std::span<double> f) noexc
 void means_of_orders(BrdfRef source, std::span<const DirectionPair> pairs, std::span<double> values,
                      std::span<std::uint8_t> known) noexcept {
   if (source.reciprocal()) return source.eval(pairs, values, known);
-  const auto channels = static_cast<std::size_t>(source.channels());
+  const auto channels = source.channels();
   for (std::size_t i = 0; i < pairs.size(); ++i)
     known[i] = mean_of_orders(source, pairs[i].wi, pairs[i].wo, values.subspan(i * channels, channels));
 }

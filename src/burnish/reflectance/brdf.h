@@ -29,7 +29,7 @@ struct DirectionPair {
 // clang-format off
 template <class T>
 concept Brdf = requires(const T& brdf, Vec3 w, std::span<double> f) {
-  { brdf.channels() } noexcept -> std::convertible_to<int>;
+  { brdf.channels() } noexcept -> std::convertible_to<std::size_t>;
   { brdf.isotropic() } noexcept -> std::convertible_to<bool>;
   { brdf.eval(w, w, f) } noexcept -> std::same_as<bool>;
 };
@@ -61,14 +61,14 @@ class BrdfRef {
   template <Brdf T>
     requires(!std::same_as<T, BrdfRef>)
   BrdfRef(const T& brdf) noexcept  // NOLINT: implicit like std::span
-      : brdf_(&brdf), channels_(brdf.channels()), isotropic_(brdf.isotropic()), eval_one_(&eval_one<T, false>),
+      : brdf_(&brdf), channels_(static_cast<std::size_t>(brdf.channels())), isotropic_(brdf.isotropic()), eval_one_(&eval_one<T, false>),
         raw_one_(&eval_one<T, HasRawValues<T>>), eval_span_(&eval_span<T, false>),
         raw_span_(&eval_span<T, HasRawValues<T>>) {
     if constexpr (requires { brdf.reciprocal(); }) reciprocal_ = brdf.reciprocal();
   }
   // clang-format on
 
-  int channels() const noexcept { return channels_; }
+  std::size_t channels() const noexcept { return channels_; }
   bool isotropic() const noexcept { return isotropic_; }
   /// True where the source says that exchanged directions give the same bits.
   bool reciprocal() const noexcept { return reciprocal_; }
@@ -107,7 +107,7 @@ class BrdfRef {
   static void eval_span(const void* brdf, std::span<const DirectionPair> pairs, std::span<double> values,
                         std::span<std::uint8_t> known) noexcept {
     const T& concrete = *static_cast<const T*>(brdf);
-    const auto channels = static_cast<std::size_t>(concrete.channels());
+    const auto channels = concrete.channels();
     const auto each = [&](const auto& eval) {
       for (std::size_t i = 0; i < pairs.size(); ++i)
         known[i] = eval(pairs[i].wi, pairs[i].wo, values.subspan(i * channels, channels));
@@ -124,7 +124,7 @@ class BrdfRef {
   }
 
   const void* brdf_;
-  int channels_;
+  std::size_t channels_;
   bool isotropic_, reciprocal_ = false;
   EvalOne* eval_one_;
   EvalOne* raw_one_;
@@ -141,11 +141,11 @@ static_assert(SpanBrdf<BrdfRef>);
 /// kMaxChannels.
 class SymmetrizedBrdf {
  public:
-  static constexpr int kMaxChannels = 1024;
+  static constexpr std::size_t kMaxChannels = 1024;
 
   explicit SymmetrizedBrdf(BrdfRef source);
 
-  int channels() const noexcept { return source_.channels(); }
+  std::size_t channels() const noexcept { return source_.channels(); }
   bool isotropic() const noexcept { return source_.isotropic(); }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
   bool eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;

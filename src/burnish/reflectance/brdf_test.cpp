@@ -10,7 +10,7 @@ namespace {
 
 /// wi.x - wo.x - 0.1 in one channel, its negative in the other, unknown where wi.y < -0.5.
 struct Signed {
-  int channels() const noexcept { return 2; }
+  std::size_t channels() const noexcept { return 2; }
   bool isotropic() const noexcept { return false; }
   bool eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     f[0] = wi.x - wo.x - 0.1;

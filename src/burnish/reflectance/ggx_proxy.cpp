@@ -60,7 +60,7 @@ double GgxProxy::pdf(Vec3 wi, Vec3 wo) const noexcept {
 GgxProxy fit_ggx_proxy(BrdfRef brdf, bool with_cosine) {
   // what is reflected towards eight views
   std::vector<View> views;
-  std::vector<double> f(static_cast<std::size_t>(brdf.channels()));
+  std::vector<double> f(brdf.channels());
   for (int k = 0; k < 8; ++k) {
     const double phi = brdf.isotropic() ? 0 : k;  // radians: spread over the circle
     View view{.wo = spherical_direction(radians(12 * k), phi), .rule = {}, .size = {}};

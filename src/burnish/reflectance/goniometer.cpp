@@ -44,7 +44,7 @@ Samples measure(BrdfRef source, const MeasureOptions& options) {
   samples.pairs.reserve(options.count);
 
   // pairs and noise from streams of their own: noise does not change which pairs are drawn
-  std::vector<double> f(static_cast<std::size_t>(source.channels()));
+  std::vector<double> f(source.channels());
   Pcg32 random(options.seed), noise(options.seed, 1);
   std::size_t unknown = 0;
   while (samples.size() < options.count) {

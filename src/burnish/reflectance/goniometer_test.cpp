@@ -54,7 +54,7 @@ TEST(DrawPairs, IsUniformInHalfAndDifferenceAngles) {
 
 /// Known where wo.x > 0.
 struct HalfKnown {
-  int channels() const noexcept { return 2; }
+  std::size_t channels() const noexcept { return 2; }
   bool isotropic() const noexcept { return true; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     f[0] = wi.z;
@@ -64,7 +64,7 @@ struct HalfKnown {
 };
 
 struct Unknown {
-  int channels() const noexcept { return 1; }
+  std::size_t channels() const noexcept { return 1; }
   bool isotropic() const noexcept { return true; }
   bool eval(Vec3, Vec3, std::span<double>) const noexcept { return false; }
 };

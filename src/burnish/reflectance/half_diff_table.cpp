@@ -57,8 +57,7 @@ void write_zeros(std::span<double> f) noexcept {
 std::size_t HalfDiffTable::offset(int h, int d, int p) const noexcept {
   const auto row =
       static_cast<std::size_t>(h) * static_cast<std::size_t>(theta_d_count) + static_cast<std::size_t>(d);
-  return (row * static_cast<std::size_t>(phi_d_count) + static_cast<std::size_t>(p)) *
-         static_cast<std::size_t>(channel_count);
+  return (row * static_cast<std::size_t>(phi_d_count) + static_cast<std::size_t>(p)) * channel_count;
 }
 
 HalfDiff HalfDiffTable::centre(int h, int d, int p) const noexcept {
@@ -121,7 +120,7 @@ HalfDiffTable tabulate_half_diff(BrdfRef source, int theta_h_count, int theta_d_
   if (theta_h_count < 1 || theta_d_count < 1 || phi_d_count < 1)
     throw Error("a half/difference table needs at least one entry along each axis");
   HalfDiffTable table{theta_h_count, theta_d_count, phi_d_count, full_circle, source.channels(), {}};
-  const auto channels = static_cast<std::size_t>(table.channel_count);
+  const auto channels = table.channel_count;
   table.values.assign(table.entry_count() * channels, std::numeric_limits<float>::quiet_NaN());
   for_each_chunk(static_cast<std::size_t>(theta_h_count), 1, [&](std::size_t h, std::size_t, std::size_t) {
     const auto circle = static_cast<std::size_t>(phi_d_count);

@@ -17,10 +17,10 @@ namespace burnish {
 struct HalfDiffTable {
   int theta_h_count = 0, theta_d_count = 0, phi_d_count = 0;
   bool full_circle = false;  ///< phi_d over [0, 2 pi) instead of [0, pi)
-  int channel_count = 3;
+  std::size_t channel_count = 3;
   std::vector<float> values;  ///< [theta_h][theta_d][phi_d][channel], 1/sr; NaN in all channels marks a hole
 
-  int channels() const noexcept { return channel_count; }
+  std::size_t channels() const noexcept { return channel_count; }
   bool isotropic() const noexcept { return true; }
   /// Trilinear in (sqrt theta_h, theta_d, phi_d), phi_d periodic, constant beyond the outermost centres.
   /// Holes have no weight, the others' weights are scaled to sum to 1; unknown where all eight neighbours are
@@ -45,7 +45,7 @@ struct HalfDiffTable {
 struct NearestHalfDiff {
   const HalfDiffTable* table = nullptr;
 
-  int channels() const noexcept { return table->channels(); }
+  std::size_t channels() const noexcept { return table->channels(); }
   bool isotropic() const noexcept { return true; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 };

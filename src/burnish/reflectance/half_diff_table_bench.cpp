@@ -11,7 +11,7 @@ namespace {
 
 /// A glossy lobe over a diffuse floor.
 struct Glossy {
-  int channels() const noexcept { return 3; }
+  std::size_t channels() const noexcept { return 3; }
   bool isotropic() const noexcept { return true; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     const double lobe = std::pow(half_vector(wi, wo).z, 200);

@@ -17,7 +17,7 @@ namespace {
 struct LinearInTable {
   double slope_phi = 0;
 
-  int channels() const noexcept { return 3; }
+  std::size_t channels() const noexcept { return 3; }
   bool isotropic() const noexcept { return true; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     const HalfDiff angles = to_half_diff(wi, wo);
@@ -30,7 +30,7 @@ struct LinearInTable {
 
 /// Smooth, reciprocal, with a period of pi in phi_d.
 struct SmoothReciprocal {
-  int channels() const noexcept { return 1; }
+  std::size_t channels() const noexcept { return 1; }
   bool isotropic() const noexcept { return true; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     const HalfDiff angles = to_half_diff(wi, wo);
@@ -40,7 +40,7 @@ struct SmoothReciprocal {
 };
 
 struct Anisotropic {
-  int channels() const noexcept { return 1; }
+  std::size_t channels() const noexcept { return 1; }
   bool isotropic() const noexcept { return false; }
   bool eval(Vec3, Vec3, std::span<double> f) const noexcept {
     f[0] = 1;

@@ -130,7 +130,7 @@ MeasuredNodes measured_nodes(const RglTable& table) {
   const RglData& data = table.data();
   const auto width = static_cast<std::uint32_t>(data.spectra.width),
              height = static_cast<std::uint32_t>(data.spectra.height);
-  const auto channels = static_cast<std::size_t>(data.channels);
+  const auto channels = data.channels;
   const auto thetas = static_cast<std::uint32_t>(data.theta_i.size());
   const std::uint32_t slices =
       thetas * (table.isotropic() ? 1 : static_cast<std::uint32_t>(data.phi_i.size()));
@@ -167,8 +167,7 @@ MeasuredNodes measured_nodes(const HalfDiffTable& table) {
   for (int h = 0; h < table.theta_h_count; ++h)
     for (int d = 0; d < table.theta_d_count; ++d)
       for (int p = 0; p < table.phi_d_count; ++p) {
-        const auto f = std::span(table.values)
-                           .subspan(table.offset(h, d, p), static_cast<std::size_t>(table.channel_count));
+        const auto f = std::span(table.values).subspan(table.offset(h, d, p), table.channel_count);
         if (std::isnan(f[0])) continue;
         const auto [wi, wo] = from_half_diff(table.centre(h, d, p));
         add(nodes.samples, {wi, wo}, f);
@@ -178,7 +177,7 @@ MeasuredNodes measured_nodes(const HalfDiffTable& table) {
 
 MeasuredNodes measured_nodes(const AngleTable& table) {
   MeasuredNodes nodes{.samples = {.channels = table.channel_count, .isotropic = table.isotropic()}};
-  const auto channels = static_cast<std::size_t>(table.channel_count);
+  const auto channels = table.channel_count;
   for (std::size_t entry = 0; entry < entry_count(table); ++entry) {
     const auto f = std::span(table.values).subspan(entry * channels, channels);
     if (!std::isnan(f[0])) add(nodes.samples, node_directions(table, node_of_entry(table, entry)), f);

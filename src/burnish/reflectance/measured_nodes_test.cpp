@@ -31,7 +31,7 @@ RglTable small_rgl(BrdfRef source) {
 double worst_difference(const MeasuredNodes& nodes, BrdfRef table) {
   std::vector<int> members(nodes.group_count());
   for (const std::uint32_t group : nodes.groups) ++members[group];
-  std::vector<double> f(static_cast<std::size_t>(table.channels()));
+  std::vector<double> f(table.channels());
   double worst = 0;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const auto [wi, wo] = nodes.samples.pairs[i];

@@ -20,7 +20,7 @@ struct MetallicRoughness {
   double anisotropy = 0;  ///< strength in [0, 1]
   bool across = false;    ///< anisotropyRotation is pi/2
 
-  static int channels() noexcept { return 3; }
+  static std::size_t channels() noexcept { return 3; }
   bool isotropic() const noexcept { return anisotropy == 0; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 };

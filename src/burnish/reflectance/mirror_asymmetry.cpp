@@ -10,7 +10,7 @@ namespace burnish {
 double mirror_asymmetry(BrdfRef source) {
   constexpr double kFloor = 1e-3;
   constexpr std::size_t kPairs = 4000;
-  const auto channels = static_cast<std::size_t>(source.channels());
+  const auto channels = source.channels();
   std::vector<double> f(channels), mirrored(channels);
   double sum = 0, count = 0;
   for (const auto& [wi, wo] : draw_pairs(kPairs, 1, true)) {

@@ -13,7 +13,7 @@ namespace {
 struct TwoSides {
   double least = 0;
 
-  static int channels() noexcept { return 2; }
+  static std::size_t channels() noexcept { return 2; }
   static bool isotropic() noexcept { return true; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     f[0] = f[1] = 5 * std::exp(std::copysign(0.2, std::sin(2 * to_half_diff(wi, wo).phi_d)));

@@ -41,7 +41,7 @@ struct PatchTable {
   PatchBasis incident, outgoing;
   std::vector<float> values;  ///< [outgoing][incident], 1/sr, grey
 
-  int channels() const noexcept { return 1; }
+  std::size_t channels() const noexcept { return 1; }
   bool isotropic() const noexcept { return false; }
   /// Linear between patch centres in both directions, see PatchBasis::neighbours: continuous, unlike the
   /// patches.

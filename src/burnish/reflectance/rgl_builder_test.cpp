@@ -20,7 +20,7 @@ struct Glossy {
   bool hole = false;  // nothing known within 10 degrees of retro-reflection
   double diffuse = 1;
 
-  int channels() const noexcept { return count; }
+  std::size_t channels() const noexcept { return count; }
   bool isotropic() const noexcept { return alpha_x == alpha_y; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     std::fill(f.begin(), f.end(), 0.0);
@@ -54,7 +54,7 @@ RglOptions small() {
 /// Mean of |ln(a / b)| over random directions with cosines above 0.2 and over the channels.
 double mean_log_error(BrdfRef source, BrdfRef table, std::uint64_t seed) {
   Pcg32 random(seed);
-  std::vector<double> a(static_cast<std::size_t>(source.channels())), b(a.size());
+  std::vector<double> a(source.channels()), b(a.size());
   double sum = 0;
   int count = 0;
   while (count < 2000) {
@@ -74,7 +74,7 @@ double mean_log_error(BrdfRef source, BrdfRef table, std::uint64_t seed) {
 void expect_exact_at_nodes(BrdfRef source, const RglTable& table) {
   const RglData& data = table.data();
   Pcg32 random(11);
-  std::vector<double> a(static_cast<std::size_t>(source.channels())), b(a.size());
+  std::vector<double> a(source.channels()), b(a.size());
   const auto pick = [&](std::size_t n) {
     return static_cast<int>(random.uniform() * static_cast<double>(n));
   };
@@ -164,7 +164,7 @@ TEST(RglBuilder, GapsAreFilledAndMarked) {
 
 TEST(RglBuilder, BlackSourcesMakeBlackTables) {
   struct Black {
-    int channels() const noexcept { return 1; }
+    std::size_t channels() const noexcept { return 1; }
     bool isotropic() const noexcept { return true; }
     bool eval(Vec3, Vec3, std::span<double> f) const noexcept {
       f[0] = 0;

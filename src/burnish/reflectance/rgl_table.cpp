@@ -16,7 +16,7 @@ namespace {
 constexpr double kMinCosine = 1e-6;
 constexpr double kMinSigma = std::numeric_limits<float>::min();
 constexpr double kPhiTolerance = 1e-3;
-constexpr int kMaxChannels = 1 << 16;
+constexpr std::size_t kMaxChannels = 1 << 16;
 
 void require(bool condition, const char* expected) {
   if (!condition) throw Error(fmt::format("RGL table: expected {}", expected));
@@ -104,8 +104,7 @@ double rgl_lookup(const RglGrid& grid, Point2 p) noexcept {
 RglTable::RglTable(RglData data) : data_(std::move(data)) {
   const auto lambdas = data_.lambda_nm.size();
   require(data_.channels > 0 && data_.channels <= kMaxChannels, "1 to 65536 channels");
-  require(lambdas == 0 ? data_.channels == 1 || data_.channels == 3
-                       : static_cast<std::size_t>(data_.channels) == lambdas,
+  require(lambdas == 0 ? data_.channels == 1 || data_.channels == 3 : data_.channels == lambdas,
           "one channel, three, or one a wavelength");
   for (std::size_t k = 0; k < lambdas; ++k)
     require(std::isfinite(data_.lambda_nm[k]) && data_.lambda_nm[k] > (k > 0 ? data_.lambda_nm[k - 1] : 0),
@@ -123,7 +122,7 @@ RglTable::RglTable(RglData data) : data_(std::move(data)) {
   require_grid(data_.ndf, 1, "ndf");
   require_grid(data_.sigma, 1, "sigma");
   require_grid(data_.vndf, slices, "vndf");
-  require_grid(data_.spectra, slices * static_cast<std::size_t>(data_.channels), "spectra");
+  require_grid(data_.spectra, slices * data_.channels, "spectra");
   require_grid(data_.luminance, slices, "luminance");
   require_finite(data_.ndf.values, 0, "ndf");
   require_finite(data_.sigma.values, 0, "sigma");
@@ -259,7 +258,7 @@ bool RglTable::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
 }
 
 bool RglTable::eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
-  assert(f.size() == static_cast<std::size_t>(data_.channels));
+  assert(f.size() == data_.channels);
   std::fill(f.begin(), f.end(), 0.0);
   if (!(wi.z > 0 && wo.z > 0)) return true;
   const auto [theta_i, phi_i, half, sample, mix] = places_of(wi, wo);
@@ -271,7 +270,7 @@ bool RglTable::eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
              (4 * std::max(rgl_lookup(data_.sigma, rgl_square(theta_i, phi_i)), kMinSigma));
 
   // spectra, bilinear in the square and mixed over the slices
-  const auto channels = static_cast<std::size_t>(data_.channels);
+  const auto channels = data_.channels;
   const auto width = static_cast<std::size_t>(data_.spectra.width);
   const std::size_t slice_size = width * static_cast<std::size_t>(data_.spectra.height);
   const GridCell at(sample, data_.spectra.width, data_.spectra.height);

@@ -25,7 +25,7 @@ struct RglGrid {
 struct RglData {
   std::string description;
   std::vector<double> lambda_nm;  ///< of the channels; empty for linear Rec. 709 or grey
-  int channels = 0;               ///< 1, 3 or lambda_nm.size()
+  std::size_t channels = 0;       ///< 1, 3 or lambda_nm.size()
   std::vector<float> phi_i;       ///< increasing radians; at most two: isotropic (the first is used)
   std::vector<float> theta_i;     ///< increasing radians in [0, pi/2]
   RglGrid ndf;                    ///< normal distribution, 1/sr, [height][width]
@@ -47,7 +47,7 @@ class RglTable {
   explicit RglTable(RglData data);
 
   const RglData& data() const noexcept { return data_; }
-  int channels() const noexcept { return data_.channels; }
+  std::size_t channels() const noexcept { return data_.channels; }
   bool isotropic() const noexcept { return data_.phi_i.size() <= 2; }
   /// How often the range of phi_i fits in the circle: 1, 2 or 4.
   int reduction() const noexcept { return reduction_; }

@@ -36,7 +36,7 @@ SampleSource from_samples(const Samples& samples, bool symmetrize) {
           .isotropic = samples.isotropic,
           .fill = [&samples, n](std::size_t begin, std::span<DirectionPair> pairs, std::span<double> values,
                                 std::span<double> weights) {
-            const auto channels = static_cast<std::size_t>(samples.channels);
+            const auto channels = samples.channels;
             for (std::size_t i = 0; i < pairs.size(); ++i) {
               const std::size_t s = begin + i;
               const DirectionPair pair = samples.pairs[s % n];
@@ -102,7 +102,7 @@ SampleSource from_table(const HalfDiffTable& table, bool symmetrize, bool spread
                    phi_h = turns(kSpread, [](int i) { return kGoldenAngle * i; })](
                       std::size_t begin, std::span<DirectionPair> pairs, std::span<double> values,
                       std::span<double> weights) {
-            const auto channels = static_cast<std::size_t>(table.channel_count);
+            const auto channels = table.channel_count;
             const std::size_t n_phi = phi_d.size(), n_theta = theta_d.size();
             for (std::size_t i = 0; i < pairs.size(); ++i) {
               const std::size_t entry = begin + i, p = entry % n_phi;

@@ -15,7 +15,7 @@ namespace burnish {
 struct SampleSource {
   std::size_t count = 0;
   std::size_t distinct = 0;  ///< sample i + distinct is sample i with wi and wo exchanged
-  int channels = 0;
+  std::size_t channels = 0;
   bool isotropic = false;
   /// Writes samples [begin, begin + pairs.size()): directions, values (channel fastest, 1/sr) and the
   /// relative weight of each sample, 0 where there is none. Called from several threads.

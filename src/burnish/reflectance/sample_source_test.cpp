@@ -16,7 +16,7 @@ struct Filled {
 };
 
 Filled fill(const SampleSource& source, std::size_t begin, std::size_t count) {
-  const auto channels = static_cast<std::size_t>(source.channels);
+  const auto channels = source.channels;
   Filled result{std::vector<DirectionPair>(count), std::vector<double>(count * channels),
                 std::vector<double>(count)};
   source.fill(begin, result.pairs, result.values, result.weights);

@@ -80,7 +80,7 @@ void sort_into_tree(std::span<const std::array<double, 4>> points, std::span<std
 Samples select(const Samples& samples, std::span<const std::size_t> subset) {
   Samples part{samples.channels, samples.isotropic, {}, {}};
   part.pairs.reserve(subset.size());
-  part.values.reserve(subset.size() * static_cast<std::size_t>(samples.channels));
+  part.values.reserve(subset.size() * samples.channels);
   for (const std::size_t i : subset) {
     part.pairs.push_back(samples.pairs[i]);
     const auto values = samples.at(i);
@@ -96,7 +96,7 @@ ScatteredBrdf::ScatteredBrdf(Samples samples, SampleSpace space)
     : space_(space), samples_(std::move(samples)) {
   const std::size_t count = samples_.size();
   if (count == 0) throw Error("scattered samples: expected at least one, found none");
-  if (samples_.channels < 1 || samples_.values.size() != count * static_cast<std::size_t>(samples_.channels))
+  if (samples_.channels < 1 || samples_.values.size() != count * samples_.channels)
     throw Error("scattered samples: expected as many values as pairs times channels");
   if (space_ == SampleSpace::angles && !samples_.isotropic)
     throw Error("scattered samples: the space of angles is for isotropic ones");

@@ -39,7 +39,7 @@ class ScatteredBrdf {
   ScatteredBrdf(const Samples& samples, std::span<const std::size_t> subset,
                 SampleSpace space = SampleSpace::half_difference);
 
-  int channels() const noexcept { return samples_.channels; }
+  std::size_t channels() const noexcept { return samples_.channels; }
   bool isotropic() const noexcept { return samples_.isotropic; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
   bool eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;

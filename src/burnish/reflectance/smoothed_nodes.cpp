@@ -153,7 +153,7 @@ struct Problem {
 };
 
 Problem problem_of(const MeasuredNodes& nodes, const Unknowns& unknowns) {
-  const auto channels = static_cast<std::size_t>(nodes.samples.channels);
+  const auto channels = nodes.samples.channels;
   Problem problem;
   problem.largest.assign(channels, 0);
   double total = 0;
@@ -215,7 +215,7 @@ SmoothedNodes::SmoothedNodes(const MeasuredNodes& nodes, const NodeSmoothness& s
     : channels_(nodes.samples.channels), volume_(volume) {
   if (!nodes.samples.isotropic)
     throw Error("smooth function through nodes: expected an isotropic source, found an anisotropic one");
-  const auto channels = static_cast<std::size_t>(channels_);
+  const auto channels = channels_;
   const Unknowns unknowns(volume);
   const Problem problem = problem_of(nodes, unknowns);
   const EnvelopeMatrix stiff = stiffness(unknowns, smoothness);
@@ -256,7 +256,7 @@ MeasuredNodes with_gaps_filled(const MeasuredNodes& fitted, const MeasuredNodes&
 
   MeasuredNodes filled = fitted;
   std::uint32_t group = all.group_count();
-  std::vector<double> f(static_cast<std::size_t>(function.channels()));
+  std::vector<double> f(function.channels());
   for (std::size_t i = 0; i < unknowns.volume; ++i) {
     if (touched[i]) continue;
     const DirectionPair pair = unknowns.directions(i);

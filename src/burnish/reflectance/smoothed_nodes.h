@@ -41,12 +41,12 @@ class SmoothedNodes {
   explicit SmoothedNodes(const MeasuredNodes& nodes, const NodeSmoothness& smoothness = {},
                          const NodeVolume& volume = {});
 
-  int channels() const noexcept { return channels_; }
+  std::size_t channels() const noexcept { return channels_; }
   bool isotropic() const noexcept { return true; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 
  private:
-  int channels_ = 0;
+  std::size_t channels_ = 0;
   NodeVolume volume_;
   std::vector<double> values_;   // [unknown][channel]
   std::vector<double> largest_;  // [channel]

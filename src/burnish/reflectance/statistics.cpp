@@ -8,7 +8,7 @@
 namespace burnish {
 
 ReciprocityError reciprocity_error(BrdfRef source, std::size_t count, std::uint64_t seed) {
-  const auto channels = static_cast<std::size_t>(source.channels());
+  const auto channels = source.channels();
   std::vector<DirectionPair> pairs = draw_pairs(count, seed, false);
   std::vector<double> f(pairs.size() * channels), swapped(f.size());
   std::vector<std::uint8_t> known(pairs.size()), swapped_known(pairs.size());

@@ -12,7 +12,7 @@ namespace {
 struct Diffuse {
   bool half = false;
 
-  int channels() const noexcept { return 2; }
+  std::size_t channels() const noexcept { return 2; }
   bool isotropic() const noexcept { return false; }
   bool eval(Vec3, Vec3 wo, std::span<double> f) const noexcept {
     const bool known = !half || wo.x > 0;
@@ -23,7 +23,7 @@ struct Diffuse {
 };
 
 struct Skewed {
-  int channels() const noexcept { return 1; }
+  std::size_t channels() const noexcept { return 1; }
   bool isotropic() const noexcept { return true; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     f[0] = wi.z > wo.z ? 3 : 1;

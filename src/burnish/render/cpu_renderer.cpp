@@ -49,7 +49,7 @@ Rgb shade(const Scene& scene, BrdfRef material, const SurfacePoint& point,
     if (wi.z <= 0 || square == 0) continue;
     if (shadows && shadows->blocked(point.position, light.position)) continue;
     std::array<double, 3> f{};
-    material.eval(wi, wo, std::span(f).first(static_cast<std::size_t>(material.channels())));
+    material.eval(wi, wo, std::span(f).first(material.channels()));
     if (material.channels() == 1) f[1] = f[2] = f[0];
     sum = sum + Rgb(wi.z / square) * Rgb(f[0], f[1], f[2]) * light.intensity;
   }

@@ -110,7 +110,7 @@ TEST(CpuRenderer, TurnsTheFrameWhereTextureIsMirrored) {
   scene.lights = {{{3, 2, 4}, 10}};
   // reflects more towards +y of its frame than towards -y
   struct OneSided {
-    static int channels() noexcept { return 1; }
+    static std::size_t channels() noexcept { return 1; }
     static bool isotropic() noexcept { return false; }
     static bool eval(Vec3 wi, Vec3 wo, std::span<double> f) noexcept {
       f[0] = wi.z > 0 && wo.z > 0 ? 2 + wi.y : 0;
@@ -118,7 +118,7 @@ TEST(CpuRenderer, TurnsTheFrameWhereTextureIsMirrored) {
     }
   } const brdf;
   struct Flipped {
-    static int channels() noexcept { return 1; }
+    static std::size_t channels() noexcept { return 1; }
     static bool isotropic() noexcept { return false; }
     static bool eval(Vec3 wi, Vec3 wo, std::span<double> f) noexcept {
       f[0] = wi.z > 0 && wo.z > 0 ? 2 - wi.y : 0;

@@ -62,7 +62,7 @@ Image averaged(const Image& image, int factor) {
   const float share = 1.0f / static_cast<float>(factor * factor);
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x)
-      for (std::size_t c = 0; c < static_cast<std::size_t>(image.channels); ++c)
+      for (std::size_t c = 0; c < image.channels; ++c)
         result.at(x / factor, y / factor)[c] += share * image.at(x, y)[c];
   return result;
 }

@@ -278,7 +278,7 @@ Plot incidence_plane_plot(BrdfRef reference, std::span<const ComparedModel> mode
   const Vec3 wi = spherical_direction(theta_i, kPi);
   const auto add = [&](BrdfRef brdf, const std::string& name, PlotStyle style, std::string_view color) {
     PlotSeries series{name, {}, {}, style, std::string(color)};
-    std::vector<double> f(static_cast<std::size_t>(brdf.channels()));
+    std::vector<double> f(brdf.channels());
     for (int half_deg = -178; half_deg <= 178; ++half_deg) {
       const double theta = radians(0.5 * half_deg);
       const bool known = brdf.eval(wi, {std::sin(theta), 0, std::cos(theta)}, f);

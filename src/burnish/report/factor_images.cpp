@@ -16,11 +16,11 @@ Image8 factor_image(const Table& table) {
       // rows of a texture go up, rows of a picture down
       const int row = table.layout.height > 1 ? table.layout.height - 1 - y / scale : 0;
       const float* node = table.values.data() +
-                          static_cast<std::size_t>((row * table.layout.width + x / scale) * table.channels);
-      for (int c = 0; c < 3; ++c) {
+                          static_cast<std::size_t>(row * table.layout.width + x / scale) * table.channels;
+      for (std::size_t c = 0; c < 3; ++c) {
         const double value = node[std::min(c, table.channels - 1)];
         const double shown = std::clamp(1 - std::log2(value) / std::log2(kShownFactor), 0.0, 1.0);
-        image.at(x, y)[static_cast<std::size_t>(c)] = static_cast<std::uint8_t>(std::lround(255 * shown));
+        image.at(x, y)[c] = static_cast<std::uint8_t>(std::lround(255 * shown));
       }
     }
   return image;

@@ -90,12 +90,12 @@ std::vector<int> table_exponents(const FactoredBrdf& brdf) {
       double rest = log_scale(lobe);
       int movable = 0;
       for (const FactorUse& use : lobe.factors) {
-        rest -= exponents[static_cast<std::size_t>(use.table)];
+        rest -= exponents[use.table];
         movable += brdf.table_of(use).format != TableFormat::unorm8;
       }
       for (const FactorUse& use : lobe.factors)
         if (brdf.table_of(use).format != TableFormat::unorm8) {
-          double& exponent = exponents[static_cast<std::size_t>(use.table)];
+          double& exponent = exponents[use.table];
           exponent = std::clamp(exponent + rest / movable, 0.0, double{kMostExponent});
         }
     }
@@ -110,7 +110,7 @@ HalfProduct half_product(const FactoredBrdf& brdf, std::size_t lobe, const std::
 
   // the scale as one constant that a half float holds, or several
   double rest = log_scale(brdf.lobes()[lobe]);
-  for (const FactorUse& use : factors) rest -= exponents[static_cast<std::size_t>(use.table)];
+  for (const FactorUse& use : factors) rest -= exponents[use.table];
   const int constants = std::max(static_cast<int>(std::ceil(std::abs(rest) / kMostConstant)), 1);
   HalfProduct product{.order = {}, .exponent = static_cast<int>(std::lround(rest / constants))};
 
@@ -122,7 +122,7 @@ HalfProduct half_product(const FactoredBrdf& brdf, std::size_t lobe, const std::
   for (std::size_t k = 0; k < factors.size(); ++k) {
     left.push_back(static_cast<int>(k));
     logs.push_back(logs_of(brdf, std::vector(scale.size(), 1.0), factors.subspan(k, 1), directions));
-    for (double& log : logs.back()) log += exponents[static_cast<std::size_t>(factors[k].table)];
+    for (double& log : logs.back()) log += exponents[factors[k].table];
   }
   for (int i = 1; i < constants; ++i) {
     left.push_back(HalfProduct::kConstant);

@@ -28,7 +28,7 @@ class Lookups {
   /// The table's value.
   Expr value(const FactorUse& use) const {
     const TableLayout& layout = brdf_.table_of(use).layout;
-    const Place& place = places_[static_cast<std::size_t>(use.table)];
+    const Place& place = places_[use.table];
     const ValueType type = brdf_.table_of(use).channels == 1 ? ValueType::real : ValueType::vector;
     return filter_ == ShaderFilter::hardware ? filtered(layout, use, place, type)
                                              : weighed(layout, use, place, type);
@@ -118,7 +118,7 @@ Expr lobe_value(const Lookups& lookups, const FactoredBrdf& brdf, std::size_t j,
                 const std::vector<int>& exponents, bool half_products) {
   const auto uses = brdf.ordered_factors(j);
   int in_tables = 0;
-  for (const FactorUse& use : uses) in_tables += exponents[static_cast<std::size_t>(use.table)];
+  for (const FactorUse& use : uses) in_tables += exponents[use.table];
   if (half_products) {
     const HalfProduct half = half_product(brdf, j, exponents);
     const auto constants = static_cast<int>(std::ranges::count(half.order, HalfProduct::kConstant));

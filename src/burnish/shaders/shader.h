@@ -70,7 +70,7 @@ struct ShaderTexture {
   std::string name;           ///< of the sampler; of the array in C++; of a member in MSL
   int width = 0, height = 0;  ///< height 0: 1-D
   int depth = 0;              ///< > 0: 3-D
-  int channels = 1;
+  std::size_t channels = 1;
   TableFormat format = TableFormat::half;  ///< that `values` are rounded to
   std::vector<float> values;               ///< [z][y][x][channel]
   std::vector<PlacedTable> tables;

@@ -75,7 +75,7 @@ TEST(Shader, CppAgreesWithTheDefinitionToOnePartIn100000) {
       float found[6];
       ASSERT_TRUE(values.read(reinterpret_cast<char*>(found), sizeof found));
       double truth[3];
-      brdfs[m].eval(wi, wo, std::span(truth).first(static_cast<std::size_t>(brdfs[m].channels())));
+      brdfs[m].eval(wi, wo, std::span(truth).first(brdfs[m].channels()));
       const bool lit = wi.z > 0 && wo.z > 0;
       for (int c = 0; c < 6; ++c) {
         const double expected = truth[brdfs[m].channels() == 1 ? 0 : c % 3];
@@ -187,7 +187,7 @@ TEST(Shader, RepeatsTheEdgesOfTablesThatShareATexture) {
       for (const int z : each(2))
         for (const int y : each(1))
           for (const int x : each(0))
-            for (int c = 0; c < texture.channels; ++c) {
+            for (std::size_t c = 0; c < texture.channels; ++c) {
               const auto node = [&](int i, std::size_t axis) { return std::clamp(i, 0, nodes[axis] - 1); };
               const int from = (node(z, 2) * nodes[1] + node(y, 1)) * nodes[0] + node(x, 0),
                         row = (placed.first[2] + z) * sides[1] + placed.first[1] + y,
@@ -287,7 +287,7 @@ double half_error(const FactoredBrdf& brdf, double least) {
     inputs.values = {{"wi", {wi.x, wi.y, wi.z}}, {"wo", {wo.x, wo.y, wo.z}}};
     const auto found = graph_values(graph, inputs)[root];
     double truth[3];
-    const auto channels = static_cast<std::size_t>(brdf.channels());
+    const auto channels = brdf.channels();
     brdf.eval(wi, wo, std::span(truth).first(channels));
     for (std::size_t c = 0; c < channels; ++c)
       if (truth[c] >= least && truth[c] <= 3e4)

@@ -124,16 +124,15 @@ void fill(ShaderTexture& texture, const Spot& spot, const Table& table, int expo
   const auto node_of = [](int texel, const SpotAxis& axis) {
     return std::clamp(texel - axis.first, 0, axis.nodes - 1);
   };
-  const int channels = texture.channels, step = table.channels == 1 ? 0 : 1;
+  const std::size_t channels = texture.channels, step = table.channels == 1 ? 0 : 1;
   for (int z = az.low; z < az.high; ++z)
     for (int y = ay.low; y < ay.high; ++y)
       for (int x = ax.low; x < ax.high; ++x) {
         const int row = node_of(z, az) * ay.nodes + node_of(y, ay);
-        const auto from = static_cast<std::size_t>((row * ax.nodes + node_of(x, ax)) * table.channels),
-                   to = static_cast<std::size_t>(((z * texture.height + y) * texture.width + x) * channels);
-        for (int c = 0; c < channels; ++c)
-          texture.values[to + static_cast<std::size_t>(c)] =
-              std::ldexp(table.values[from + static_cast<std::size_t>(c * step)], exponent);
+        const auto from = static_cast<std::size_t>(row * ax.nodes + node_of(x, ax)) * table.channels,
+                   to = static_cast<std::size_t>((z * texture.height + y) * texture.width + x) * channels;
+        for (std::size_t c = 0; c < channels; ++c)
+          texture.values[to + c] = std::ldexp(table.values[from + c * step], exponent);
       }
 }
 

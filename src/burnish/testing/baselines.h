@@ -11,7 +11,7 @@
 namespace burnish::testing {
 
 /// Values in [low, 1), rounded to half floats.
-inline NodeTable random_table(std::vector<NodeAxis> axes, int channels, int terms, double low,
+inline NodeTable random_table(std::vector<NodeAxis> axes, std::size_t channels, int terms, double low,
                               std::uint64_t seed) {
   NodeTable table{std::move(axes), channels, terms, {}};
   Pcg32 random(seed);

@@ -13,9 +13,9 @@ namespace burnish::testing {
 /// albedo / pi in every direction; one channel or three.
 struct Lambert {
   std::array<double, 3> albedo = {0.8, 0.5, 0.2};
-  int count = 3;
+  std::size_t count = 3;
 
-  int channels() const noexcept { return count; }
+  std::size_t channels() const noexcept { return count; }
   bool isotropic() const noexcept { return true; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     for (std::size_t c = 0; c < f.size(); ++c) f[c] = wi.z > 0 && wo.z > 0 ? albedo[c] / kPi : 0;
@@ -27,9 +27,9 @@ struct Lambert {
 /// where cos theta_d is below `blind_below`.
 struct Glossy {
   double a = 40, b = 40, scale = 1, blind_below = -1;
-  int count = 3;
+  std::size_t count = 3;
 
-  int channels() const noexcept { return count; }
+  std::size_t channels() const noexcept { return count; }
   bool isotropic() const noexcept { return a == b; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     const Vec3 h = half_vector(wi, wo);
@@ -42,36 +42,37 @@ struct Glossy {
   }
 };
 
-/// Glossy times 1 + slope cos theta_i in the first channel, 1 - slope cos theta_i / 2 in the others: isotropic, but not
-/// reciprocal.
-struct Ordered {
+/// Glossy times a factor of the directions in each channel, Factor::of(slope, channel, wi, wo) > 0: isotropic.
+template <class Factor>
+struct GlossyTimes {
   Glossy even;
-  double slope = 0.5;
+  double slope = Factor::kSlope;
 
-  int channels() const noexcept { return even.channels(); }
+  std::size_t channels() const noexcept { return even.channels(); }
   bool isotropic() const noexcept { return even.isotropic(); }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     const bool known = even.eval(wi, wo, f);
-    for (std::size_t c = 0; c < f.size(); ++c)
-      f[c] *= 1 + (c == 0 ? slope : -0.5 * slope) * std::max(wi.z, 0.0);
+    for (std::size_t c = 0; c < f.size(); ++c) f[c] *= Factor::of(slope, c, wi, wo);
     return known;
   }
 };
 
-/// Glossy, brighter on one side of the plane of h and n than on the other: isotropic, reciprocal, but not its
-/// own mirror image.
-struct Twisted {
-  Glossy even;
-  double slope = 1.5;
-
-  int channels() const noexcept { return even.channels(); }
-  bool isotropic() const noexcept { return even.isotropic(); }
-  bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
-    const double side = project_tan_half(kProjectTwist, wi, wo) - 0.5;
-    const bool known = even.eval(wi, wo, f);
-    for (double& v : f) v *= std::exp(slope * side);
-    return known;
+/// 1 + slope cos theta_i in the first channel, 1 - slope cos theta_i / 2 in the others: not reciprocal.
+struct OrderFactor {
+  static constexpr double kSlope = 0.5;
+  static double of(double slope, std::size_t c, Vec3 wi, Vec3) noexcept {
+    return 1 + (c == 0 ? slope : -0.5 * slope) * std::max(wi.z, 0.0);
   }
 };
+using Ordered = GlossyTimes<OrderFactor>;
+
+/// Brighter on one side of the plane of h and n than on the other: reciprocal, but not its own mirror image.
+struct TwistFactor {
+  static constexpr double kSlope = 1.5;
+  static double of(double slope, std::size_t, Vec3 wi, Vec3 wo) noexcept {
+    return std::exp(slope * (project_tan_half(kProjectTwist, wi, wo) - 0.5));
+  }
+};
+using Twisted = GlossyTimes<TwistFactor>;
 
 }  // namespace burnish::testing

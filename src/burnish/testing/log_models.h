@@ -19,7 +19,7 @@ inline TrainingSet small_set(const AnalyticBrdf& brdf, std::size_t count = 3000)
 
 /// Random logarithms in [-1, 0].
 inline LogModel random_model(const std::string& expression, const std::vector<std::string>& tables,
-                             int channels) {
+                             std::size_t channels) {
   LogModel model{.spec = parse_model_spec(expression, tables, true), .channels = channels, .log_values = {}};
   Pcg32 random(3);
   for (std::size_t t = 0; t < model.spec.tables.size(); ++t) {
@@ -32,11 +32,9 @@ inline LogModel random_model(const std::string& expression, const std::vector<st
 /// The model's values at the set's pairs.
 inline std::vector<double> evaluate(const LogModel& model, const TrainingSet& set) {
   const FactoredBrdf brdf = to_brdf(model, TableFormat::single);
-  std::vector<double> f(set.size() * static_cast<std::size_t>(model.channels));
+  std::vector<double> f(set.size() * model.channels);
   for (std::size_t i = 0; i < set.size(); ++i)
-    brdf.eval(set.pairs[i].wi, set.pairs[i].wo,
-              std::span(f).subspan(i * static_cast<std::size_t>(model.channels),
-                                   static_cast<std::size_t>(model.channels)));
+    brdf.eval(set.pairs[i].wi, set.pairs[i].wo, std::span(f).subspan(i * model.channels, model.channels));
   return f;
 }
 

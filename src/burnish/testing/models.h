@@ -18,7 +18,7 @@ struct ModelCase {
   const char* name;
   const char* expression;
   std::vector<std::string> options;
-  int channels;
+  std::size_t channels;
 };
 
 /// Every kind of table, warp and projection, alone and together.
@@ -70,14 +70,14 @@ FactoredBrdf model_of(const ModelCase& model, TableFormat format, Pcg32& random,
         .name = form.name, .layout = form.layout, .channels = form.shared ? 1 : model.channels, .values = {}};
     for (int y = 0; y < form.layout.rows(); ++y)
       for (int x = 0; x < form.layout.width; ++x)
-        for (int c = 0; c < table.channels; ++c)
+        for (std::size_t c = 0; c < table.channels; ++c)
           table.values.push_back(static_cast<float>(log_value(t, form.layout, x, y, c)));
     tables.push_back(std::move(table));
   }
   std::vector<Lobe> lobes;
   for (const auto& factors : spec.lobes) {
     Lobe lobe{.scale = {}, .factors = factors};
-    for (int c = 0; c < model.channels; ++c) lobe.scale.push_back(random.uniform());
+    for (std::size_t c = 0; c < model.channels; ++c) lobe.scale.push_back(random.uniform());
     lobes.push_back(std::move(lobe));
   }
   return from_log_tables(model.channels, std::move(tables), std::move(lobes), format);
@@ -96,22 +96,21 @@ inline FactoredBrdf smooth_model(const ModelCase& model, TableFormat format = Ta
 }
 
 /// A model with random tables: log values uniform in [-span, 0].
-inline FactoredBrdf random_model(const char* expression, std::vector<std::string> options, int channels,
-                                 TableFormat format, double span = 3) {
+inline FactoredBrdf random_model(const char* expression, std::vector<std::string> options,
+                                 std::size_t channels, TableFormat format, double span = 3) {
   Pcg32 random(17);
   const ModelSpec spec = parse_model_spec(expression, options, true);
   std::vector<Table> tables;
   for (const ModelSpec::TableSpec& t : spec.tables) {
     Table table{.name = t.name, .layout = t.layout, .channels = t.shared ? 1 : channels, .values = {}};
-    for (std::size_t i = 0; i < t.layout.node_count() * static_cast<std::size_t>(table.channels); ++i)
+    for (std::size_t i = 0; i < t.layout.node_count() * table.channels; ++i)
       table.values.push_back(static_cast<float>(-span * random.uniform()));
     table.format = format_of(t, format);
     tables.push_back(std::move(table));
   }
   std::vector<Lobe> lobes;
   for (const auto& factors : spec.lobes)
-    lobes.push_back(
-        {.scale = std::vector<double>(static_cast<std::size_t>(channels), 0.3), .factors = factors});
+    lobes.push_back({.scale = std::vector<double>(channels, 0.3), .factors = factors});
   return from_log_tables(channels, std::move(tables), std::move(lobes));
 }
 

@@ -142,7 +142,7 @@ inline void write_webgl_page(std::span<const ModelCase> models, int side,
     for (std::size_t i = 0; i < textures.size(); ++i) {
       const ShaderTexture& texture = textures[i];
       std::vector<float> rgba, halves;
-      for (std::size_t k = 0; k < texture.values.size() / static_cast<std::size_t>(texture.channels); ++k)
+      for (std::size_t k = 0; k < texture.values.size() / texture.channels; ++k)
         for (std::size_t c = 0; c < 4; ++c) {
           rgba.push_back(texture.channels == 1 ? texture.values[k] : c == 3 ? 1 : texture.values[3 * k + c]);
           halves.push_back(round_to_half(rgba.back()));
@@ -157,7 +157,7 @@ inline void write_webgl_page(std::span<const ModelCase> models, int side,
     std::vector<float> truth, lenience;
     for (const auto& [a, b] : pairs) {
       double f[3];
-      brdf.eval(a, b, std::span(f).first(static_cast<std::size_t>(brdf.channels())));
+      brdf.eval(a, b, std::span(f).first(brdf.channels()));
       for (int c = 0; c < 3; ++c) truth.push_back(single(f[brdf.channels() == 1 ? 0 : c]));
       lenience.push_back(single(1 / shader_cancellation(brdf, a, b)));
     }

@@ -27,7 +27,7 @@ std::string encode(const Table& table, Imf::PixelType type) {
   std::vector<T> pixels(table.values.begin(), table.values.end());
   Imf::Header header(table.layout.width, table.layout.rows());
   Imf::FrameBuffer frame;
-  const auto channels = static_cast<std::size_t>(table.channels);
+  const auto channels = table.channels;
   for (std::size_t c = 0; c < channels; ++c) {
     const char* name = channels == 1 ? "Y" : c == 0 ? "R" : c == 1 ? "G" : "B";
     header.channels().insert(name, Imf::Channel(type));

@@ -15,14 +15,14 @@
 namespace burnish {
 namespace {
 
-Table random_table(TableFormat format, int channels) {
+Table random_table(TableFormat format, std::size_t channels) {
   Pcg32 random(3);
   Table table{.name = "t",
               .layout = {.shape = TableShape::grid, .width = 7, .height = 5},
               .channels = channels,
               .values = {},
               .format = format};
-  for (std::size_t i = 0; i < table.layout.node_count() * static_cast<std::size_t>(channels); ++i)
+  for (std::size_t i = 0; i < table.layout.node_count() * channels; ++i)
     table.values.push_back(static_cast<float>(random.uniform()));
   table.values = round_to_format(format, channels, table.values);
   return table;
@@ -31,7 +31,7 @@ Table random_table(TableFormat format, int channels) {
 TEST(ImageFiles, ExrHoldsEveryFormatToTheLastBit) {
   for (const TableFormat format :
        {TableFormat::half, TableFormat::single, TableFormat::rgb9e5, TableFormat::unorm8})
-    for (const int channels : {1, 3}) {
+    for (const std::size_t channels : {1, 3}) {
       if (format == TableFormat::rgb9e5 && channels == 1) continue;
       const Table table = random_table(format, channels);
       Imf::StdISStream stream;
@@ -42,8 +42,8 @@ TEST(ImageFiles, ExrHoldsEveryFormatToTheLastBit) {
       std::vector<float> values(table.values.size());
       Imf::FrameBuffer frame;
       const char* names[] = {"R", "G", "B"};
-      const auto step = static_cast<std::size_t>(channels) * sizeof(float);
-      for (int c = 0; c < channels; ++c)
+      const auto step = channels * sizeof(float);
+      for (std::size_t c = 0; c < channels; ++c)
         frame.insert(channels == 1 ? "Y" : names[c],
                      Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data() + c), step, 7 * step));
       file.setFrameBuffer(frame);
@@ -53,7 +53,7 @@ TEST(ImageFiles, ExrHoldsEveryFormatToTheLastBit) {
 }
 
 TEST(ImageFiles, PngIsWithinHalfAStep) {
-  for (const int channels : {1, 3}) {
+  for (const std::size_t channels : {1, 3}) {
     const Table table = random_table(TableFormat::single, channels);
     const Image8 image = decode_png(encode_png_table(table), "table");
     ASSERT_EQ(image.width, 7);

@@ -30,7 +30,7 @@ struct Texels {
   std::vector<ChannelSample> samples;
 };
 
-Texels texels_of(TableFormat format, int channels) {
+Texels texels_of(TableFormat format, std::size_t channels) {
   if (format == TableFormat::rgb9e5) {
     Texels texels{123, 4, 4, {}};
     for (std::uint32_t c = 0; c < 3; ++c) {

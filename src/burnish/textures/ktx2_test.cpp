@@ -17,7 +17,7 @@ namespace {
 
 struct Case {
   TableFormat format;
-  int channels;
+  std::size_t channels;
   std::uint32_t vk_format;
   std::size_t texel;
 };
@@ -33,7 +33,7 @@ Table random_table(const Case& c) {
               .channels = c.channels,
               .values = {},
               .format = c.format};
-  for (std::size_t i = 0; i < table.layout.node_count() * static_cast<std::size_t>(c.channels); ++i)
+  for (std::size_t i = 0; i < table.layout.node_count() * c.channels; ++i)
     table.values.push_back(static_cast<float>(random.uniform()));
   table.values = round_to_format(c.format, c.channels, table.values);
   return table;
@@ -72,8 +72,7 @@ TEST_P(Ktx2, HoldsTheTableToTheLastBit) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     const std::size_t node = i / static_cast<std::size_t>(stored),
                       channel = i % static_cast<std::size_t>(stored);
-    ASSERT_EQ(values[i],
-              channel == 3 ? 1.0f : table.values[node * static_cast<std::size_t>(c.channels) + channel]);
+    ASSERT_EQ(values[i], channel == 3 ? 1.0f : table.values[node * c.channels + channel]);
   }
 }
 

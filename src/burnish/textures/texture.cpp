@@ -19,7 +19,7 @@ using Sides = std::array<int, 3>;
 // Sums over footprints: weight, and weight times value for every channel.
 struct Sums {
   Sides sides;
-  int channels;
+  std::size_t channels;
   std::vector<double> weights, values;
 
   Sums(const Sides& s, int c)
@@ -31,8 +31,7 @@ struct Sums {
   void add(int texel, double weight, const double* value) {
     const auto i = static_cast<std::size_t>(texel);
     weights[i] += weight;
-    for (int c = 0; c < channels; ++c)
-      values[i * static_cast<std::size_t>(channels) + static_cast<std::size_t>(c)] += weight * value[c];
+    for (std::size_t c = 0; c < channels; ++c) values[i * channels + c] += weight * value[c];
   }
 };
 
@@ -66,7 +65,7 @@ void value_at(const Table& table, const std::array<double, 3>& place, double* va
     }
     if (weight == 0) continue;
     const int first = ((node[2] * sides[1] + node[1]) * sides[0] + node[0]) * table.channels;
-    for (int c = 0; c < table.channels; ++c)
+    for (std::size_t c = 0; c < table.channels; ++c)
       value[c] += weight * static_cast<double>(table.values[static_cast<std::size_t>(first + c)]);
   }
 }
@@ -120,7 +119,7 @@ Sums halved(const Sums& from) {
     shares[k] = shares_of(from.sides[k], small[k]);
   }
   Sums to(small, from.channels);
-  std::vector<double> mean(static_cast<std::size_t>(from.channels));
+  std::vector<double> mean(from.channels);
   for (const LevelShare& z : shares[2])
     for (const LevelShare& y : shares[1])
       for (const LevelShare& x : shares[0]) {
@@ -134,7 +133,7 @@ Sums halved(const Sums& from) {
 
 // Levels below the first, appended face by face.
 void add_levels(Texture& texture, Sums sums) {
-  const auto channels = static_cast<std::size_t>(texture.channels);
+  const auto channels = texture.channels;
   for (std::size_t level = 1; std::ranges::max(sums.sides) > 1; ++level) {
     sums = halved(sums);
     if (texture.levels.size() == level) texture.levels.emplace_back();

@@ -10,7 +10,7 @@ namespace burnish {
 /// What a GPU holds, of one table mostly.
 struct Texture {
   TableFormat format = TableFormat::single;
-  int channels = 1;  ///< 1 or 3
+  std::size_t channels = 1;  ///< 1 or 3
   int width = 0, height = 0;
   int depth = 0;  ///< > 0: 3-D
   int faces = 1;  ///< 6: a cube map, +x -x +y -y +z -z as OpenGL and KTX2 have them

@@ -53,7 +53,7 @@ int part_of(const AnalyticModel& model, std::string_view parameter) {
 /// Which parameters vary together and how, for a model.
 class Parameters {
  public:
-  Parameters(const AnalyticModel& model, bool isotropic, int channels) : model_(&model) {
+  Parameters(const AnalyticModel& model, bool isotropic, std::size_t channels) : model_(&model) {
     for (std::size_t p = 0; p < model.parameters.size(); ++p) {
       const AnalyticParameter& parameter = model.parameters[p];
       if (isotropic && twin_of_previous(p)) {
@@ -240,6 +240,7 @@ class Fit {
 
   /// One minimization from x over the unknowns of the first `parts` parts; the others keep their values.
   void run(std::vector<double> x, int parts) {
+    // what varies, within its bounds
     const std::vector<Unknown>& unknowns = parameters_.unknowns();
     std::vector<std::size_t> varied;
     for (std::size_t k = 0; k < unknowns.size(); ++k)
@@ -255,6 +256,7 @@ class Fit {
       problem.SetParameterLowerBound(at.data(), static_cast<int>(k), unknowns[varied[k]].lower);
       problem.SetParameterUpperBound(at.data(), static_cast<int>(k), unknowns[varied[k]].upper);
     }
+    // Levenberg-Marquardt, of which the best start is kept
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
     solver.max_num_iterations = options_.max_iterations;

@@ -176,7 +176,7 @@ class ChannelFit {
 };
 
 NodeTable make_table(PairCoordinate coordinate, std::size_t count, std::size_t channels) {
-  NodeTable table{{{coordinate, static_cast<int>(count)}}, static_cast<int>(channels), 1, {}};
+  NodeTable table{{{coordinate, static_cast<int>(count)}}, channels, 1, {}};
   table.values.resize(count * channels);
   return table;
 }
@@ -185,7 +185,7 @@ NodeTable make_table(PairCoordinate coordinate, std::size_t count, std::size_t c
 
 DgfFit fit_dgf(const SampleSource& source, const DgfOptions& options) {
   if (!source.isotropic) throw Error("dgf: expected an isotropic source, found an anisotropic one");
-  const auto channels = static_cast<std::size_t>(source.channels);
+  const auto channels = source.channels;
   const auto nodes =
       static_cast<int>((options.budget / channels - std::min<std::size_t>(options.budget / channels, 8)) / 2);
   const int size_d = std::min(kMaxD, nodes / 2), size_fg = std::min(kMaxFg, (nodes - size_d) / 2);

@@ -10,7 +10,7 @@
 namespace burnish {
 
 GatheredSamples gather_samples(const SampleSource& source, std::size_t most) {
-  GatheredSamples result{.channels = static_cast<std::size_t>(source.channels)};
+  GatheredSamples result{.channels = source.channels};
   const double step = std::max(1.0, static_cast<double>(source.count) / static_cast<double>(most));
   DirectionPair pair;
   std::vector<double> values(result.channels);

@@ -13,7 +13,7 @@ struct BiasedBrdf {
   const SeparableBrdf* brdf;
   double bias;
 
-  int channels() const noexcept { return brdf->channels(); }
+  std::size_t channels() const noexcept { return brdf->channels(); }
   bool isotropic() const noexcept { return brdf->isotropic(); }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     brdf->eval_signed(wi, wo, f);
@@ -34,7 +34,7 @@ NodeTable without_negatives(NodeTable table) {
 
 NegativeLobes negative_lobes(const SeparableBrdf& brdf, const Scorer& scorer) {
   const FigureOptions& options = scorer.options();
-  std::vector<double> f(static_cast<std::size_t>(brdf.channels()));
+  std::vector<double> f(brdf.channels());
   std::size_t negative = 0, count = 0;
   double least = 0;
   for (const auto& [wi, wo] : draw_pairs(options.count, options.seed, scorer.reference().isotropic())) {

@@ -5,14 +5,11 @@
 
 #include <burnish/fitting/baselines/low_rank.h>
 #include <burnish/fitting/numerics/aligned_vector.h>
-#include <burnish/math/highway_targets.h>
 #include <burnish/math/parallel.h>
 #include <burnish/math/random.h>
 
-#undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "burnish/fitting/baselines/nonnegative_factors.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-#include <hwy/highway.h>
+#include <burnish/math/highway-inl.h>
 
 #ifndef BURNISH_FITTING_NONNEGATIVE_FACTORS
 #define BURNISH_FITTING_NONNEGATIVE_FACTORS
@@ -43,12 +40,8 @@ struct Row {
 }  // namespace burnish
 #endif
 
-HWY_BEFORE_NAMESPACE();
-namespace burnish {
-namespace HWY_NAMESPACE {
-namespace {
+BURNISH_BEGIN_TARGET;
 
-namespace hn = hwy::HWY_NAMESPACE;
 using Tag = hn::ScalableTag<float>;
 using Vector = hn::Vec<Tag>;
 
@@ -122,10 +115,7 @@ void visit(const Row& row) {
   if (row.gather_far) gather_far(row);
 }
 
-}  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace burnish
-HWY_AFTER_NAMESPACE();
+BURNISH_END_TARGET;
 
 #if HWY_ONCE
 namespace burnish {

@@ -74,7 +74,7 @@ PairGrid sample_pair_grid(BrdfRef source, std::span<const NodeAxis> rows, std::s
                 .column_axes = {columns.begin(), columns.end()},
                 .rows = node_count(rows),
                 .columns = node_count(columns),
-                .channels = static_cast<std::size_t>(source.channels()),
+                .channels = source.channels(),
                 .values = {},
                 .measured = {}};
   std::vector<NodeAxis> axes(rows.begin(), rows.end());

@@ -62,14 +62,13 @@ void balance(LowRank& factors) {
 
 // Copies [node][term] into channel c of a table's [node][channel][term].
 void store(const std::vector<double>& x, std::size_t c, NodeTable& table) {
-  const auto terms = static_cast<std::size_t>(table.terms),
-             channels = static_cast<std::size_t>(table.channels);
+  const auto terms = static_cast<std::size_t>(table.terms), channels = table.channels;
   for (std::size_t i = 0; i < x.size(); ++i)
     table.values[(i / terms * channels + c) * terms + i % terms] = round_to_half(x[i]);
 }
 
 NodeTable make_table(const std::vector<NodeAxis>& axes, std::size_t channels, std::size_t terms) {
-  NodeTable table{axes, static_cast<int>(channels), static_cast<int>(terms), {}};
+  NodeTable table{axes, channels, static_cast<int>(terms), {}};
   table.values.resize(table.node_count() * channels * terms);
   return table;
 }
@@ -233,7 +232,7 @@ class Search {
 
   // Nodes along one side of the half vector that the budget leaves; 0 if too few.
   int half_nodes(const Layout& layout, const std::array<std::vector<NodeAxis>, 2>& sides) const {
-    const auto channels = static_cast<std::size_t>(source_.channels());
+    const auto channels = source_.channels();
     const auto values_with = [&](int n) {
       std::size_t values = 0;
       for (std::size_t side = 0; side < 2; ++side) {

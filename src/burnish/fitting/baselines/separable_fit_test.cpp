@@ -118,7 +118,7 @@ TEST(PairGrid, HoldsTheSourceAtItsNodes) {
 
 /// The lower of both cosines, as a grid stores it.
 struct LowerCosine {
-  static int channels() noexcept { return 1; }
+  static std::size_t channels() noexcept { return 1; }
   static bool isotropic() noexcept { return true; }
   static bool eval(Vec3 wi, Vec3 wo, std::span<double> f) noexcept {
     f[0] = std::min(wi.z, wo.z) / separable_divisor(wi, wo);

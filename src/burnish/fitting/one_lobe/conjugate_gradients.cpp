@@ -35,14 +35,14 @@ class LogOperator {
   LogOperator(const RowMaker& maker, const HomomorphicOptions& options)
       : spec_(*maker.spec),
         uses_(spec_.lobes.front()),
-        channels_(static_cast<std::size_t>(maker.source->channels)),
+        channels_(maker.source->channels),
         numbering_(number_nodes(spec_, step())) {
     for (const ModelSpec::TableSpec& table : spec_.tables) {
       smoothness_.push_back(smoothness_rows(table.layout));
       smooth_.push_back(options.smooth * table.smooth_share);
     }
     for (const FactorUse& use : uses_) {
-      const auto t = static_cast<std::size_t>(use.table);
+      const auto t = use.table;
       const TableLayout& layout = spec_.tables[t].layout;
       const auto [base, copies] = numbering_.tables[t];
       const std::size_t row = static_cast<std::size_t>(layout.width) * copies;
@@ -210,11 +210,12 @@ class LogOperator {
   Doubles inverse_diagonal(std::size_t table, const GridTransfer& level) const {
     constexpr std::size_t kSampleStride = 8;
     const std::size_t step_of = numbering_.tables[table].copies;
+    // of the data
     Doubles d(level.coarse_count() * step_of);
     for (const LogRows& rows : chunks_)
       for (std::size_t i = 0; i < rows.size; i += kSampleStride)
         for (std::size_t k = 0; k < uses_.size(); ++k) {
-          if (static_cast<std::size_t>(uses_[k].table) != table) continue;
+          if (uses_[k].table != table) continue;
           const std::size_t use = i * uses_.size() + k;
           const GridTransfer::Corners at = level.corners({.node = static_cast<int>(rows.node[use]),
                                                           .fx = static_cast<double>(rows.fx[use]),
@@ -225,6 +226,7 @@ class LogOperator {
               d[at.node[corner] * step_of + (step_of > 1 ? c : 0)] +=
                   kSampleStride * at.weight[corner] * at.weight[corner] * weight(rows, i, c);
         }
+    // and of the smoothness of the coarse table
     TableLayout layout = spec_.tables[table].layout;
     layout.width = level.coarse_width();
     layout.height = level.coarse_height();
@@ -363,7 +365,7 @@ LogSolution solve(const RowMaker& rows, const HomomorphicOptions& options) {
   solution.summary.error_after = op.error(x);
 
   // without the padding
-  const Numbering numbering = number_nodes(*rows.spec, static_cast<std::size_t>(rows.source->channels));
+  const Numbering numbering = number_nodes(*rows.spec, rows.source->channels);
   solution.log_values.resize(numbering.count);
   for (std::size_t t = 0; t < rows.spec->tables.size(); ++t)
     for (std::size_t node = 0; node < rows.spec->tables[t].layout.node_count(); ++node)

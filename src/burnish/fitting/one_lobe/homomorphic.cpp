@@ -19,7 +19,7 @@ constexpr std::size_t kMaxNormalEquations = 512;
 constexpr double kMaxFloor = 1;
 
 LogSolution solve(const RowMaker& rows, const HomomorphicOptions& options) {
-  const auto channels = static_cast<std::size_t>(rows.source->channels);
+  const auto channels = rows.source->channels;
   return coupled_unknowns(*rows.spec, channels) <= kMaxNormalEquations
              ? solve_normal_equations(rows, options)
              : solve_by_conjugate_gradients(rows, options);
@@ -34,7 +34,7 @@ std::vector<Table> to_tables(const LogSolution& solution, const Numbering& numbe
     const auto* first = solution.log_values.data() + base;
     tables.push_back({.name = spec.tables[t].name,
                       .layout = spec.tables[t].layout,
-                      .channels = static_cast<int>(copies),
+                      .channels = copies,
                       .values = {first, first + spec.tables[t].layout.node_count() * copies},
                       .format = format_of(spec.tables[t], format)});
   }
@@ -45,7 +45,7 @@ Lobe to_lobe(const LogSolution& solution, const ModelSpec& spec) {
   return {.scale = solution.channel_offset, .factors = spec.lobes.front()};
 }
 
-void check_formats(const ModelSpec& spec, int channels, TableFormat format) {
+void check_formats(const ModelSpec& spec, std::size_t channels, TableFormat format) {
   for (const ModelSpec::TableSpec& t : spec.tables)
     check_format(
         {.name = t.name, .channels = t.shared ? 1 : channels, .values = {}, .format = format_of(t, format)});
@@ -67,7 +67,7 @@ HomomorphicFit fit_homomorphic(const SampleSource& source, const ModelSpec& spec
 
   // least squares in log f
   RowMaker rows(source, spec, options.floor, options.error_floor);
-  const Numbering numbering = number_nodes(spec, static_cast<std::size_t>(source.channels));
+  const Numbering numbering = number_nodes(spec, source.channels);
   LogSolution solution = solve(rows, options);
   FitSummary summary = solution.summary;
   int reweightings = 0;

@@ -20,25 +20,24 @@ namespace {
 
 // A model whose tables vary little between nodes: the fit interpolates logarithms, the model values, which
 // differ by an eighth of the squared step.
-FactoredBrdf random_model(const ModelSpec& spec, int channels) {
+FactoredBrdf random_model(const ModelSpec& spec, std::size_t channels) {
   Pcg32 random(5);
   std::vector<Table> tables;
   for (const ModelSpec::TableSpec& t : spec.tables) {
     Table table{.name = t.name, .layout = t.layout, .channels = t.shared ? 1 : channels};
     for (int y = 0; y < t.layout.height; ++y)
       for (int x = 0; x < t.layout.width; ++x)
-        for (int c = 0; c < table.channels; ++c)
+        for (std::size_t c = 0; c < table.channels; ++c)
           table.values.push_back(
               static_cast<float>(std::sin(0.1 * x + 0.15 * y + c) + 0.02 * random.uniform()));
     tables.push_back(std::move(table));
   }
-  const Lobe lobe{.scale = std::vector<double>(static_cast<std::size_t>(channels), -1),
-                  .factors = spec.lobes[0]};
+  const Lobe lobe{.scale = std::vector<double>(channels, -1), .factors = spec.lobes[0]};
   return from_log_tables(channels, tables, {lobe}, TableFormat::single);
 }
 
 double mean_error(const FactoredBrdf& truth, const FactoredBrdf& fit) {
-  const auto channels = static_cast<std::size_t>(truth.channels());
+  const auto channels = truth.channels();
   std::vector<double> f(channels), g(channels);
   double sum = 0;
   const auto pairs = draw_pairs(2000, 77, false);
@@ -53,7 +52,7 @@ double mean_error(const FactoredBrdf& truth, const FactoredBrdf& fit) {
 struct Case {
   const char* model;
   std::vector<std::string> tables;
-  int channels;
+  std::size_t channels;
 };
 
 class Homomorphic : public testing::TestWithParam<Case> {};

@@ -9,7 +9,7 @@ namespace burnish {
 
 ErrorSum log_error(const SampleSource& source, const FactoredBrdf& model, double floor) {
   constexpr std::size_t kChunk = 4096;
-  const auto channels = static_cast<std::size_t>(source.channels);
+  const auto channels = source.channels;
   std::vector<ErrorSum> parts(chunk_count(source.count, kChunk));
   for_each_chunk(source.count, kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
     const std::size_t n = end - begin;

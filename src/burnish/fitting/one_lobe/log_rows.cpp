@@ -19,7 +19,8 @@ constexpr double kSmallError = 0.2, kLongestStep = 3, kMinShare = 1e-2;
 
 LogRows RowMaker::make(std::size_t begin, std::size_t end) const {
   const std::vector<FactorUse>& uses = spec->lobes.front();
-  const auto channels = static_cast<std::size_t>(source->channels);
+  const auto channels = source->channels;
+  // room for all samples
   LogRows rows;
   const std::size_t most = end - begin;
   rows.node.reserve(most * uses.size());
@@ -30,6 +31,7 @@ LogRows RowMaker::make(std::size_t begin, std::size_t end) const {
   rows.weight.reserve(most * (current ? channels : 1));
 
   rows.weight_channels = current ? channels : 1;
+  // a block at a time, those above the horizon that weigh something: lookups, then targets and weights
   std::vector<double> model(channels);
   std::vector<DirectionPair> pairs(kBlock);
   std::vector<double> values(kBlock * channels), sample_weights(kBlock);
@@ -42,7 +44,7 @@ LogRows RowMaker::make(std::size_t begin, std::size_t end) const {
       if (!(sample_weights[i] > 0) || wi.z <= 0 || wo.z <= 0) continue;
       ++rows.size;
       for (const FactorUse& use : uses) {
-        const Lookup at_nodes = locate(spec->tables[static_cast<std::size_t>(use.table)].layout, use, wi, wo);
+        const Lookup at_nodes = locate(spec->tables[use.table].layout, use, wi, wo);
         rows.node.push_back(static_cast<std::uint32_t>(at_nodes.node));
         rows.fx.push_back(static_cast<float>(at_nodes.fx));
         rows.fy.push_back(static_cast<float>(at_nodes.fy));

@@ -28,26 +28,28 @@ GridTransfer::GridTransfer(const TableLayout& fine, int coarse_width, int coarse
 }
 
 GridTransfer::Corners GridTransfer::corners(const Lookup& fine) const noexcept {
-  const auto place = [](const Axis& axis, double position, std::size_t node[2], double weight[2]) {
+  // the two coarse nodes along an axis, and what each weighs
+  struct Place {
+    std::size_t node[2];
+    double weight[2];
+  };
+  const auto place = [](const Axis& axis, double position) -> Place {
     const double at = position * axis.scale;
     const int low = std::clamp(static_cast<int>(at), 0, std::max(axis.nodes - 2, 0));
-    node[0] = static_cast<std::size_t>(low);
-    node[1] = static_cast<std::size_t>(std::min(low + 1, axis.nodes - 1));
-    weight[1] = at - low;
-    weight[0] = 1 - weight[1];
+    const double above = at - low;
+    return {{static_cast<std::size_t>(low), static_cast<std::size_t>(std::min(low + 1, axis.nodes - 1))},
+            {1 - above, above}};
   };
-  std::size_t x[2], y[2], z[2];
-  double wx[2], wy[2], wz[2];
   const int row = fine.node / x_.fine_nodes;
-  place(x_, fine.node % x_.fine_nodes + fine.fx, x, wx);
-  place(y_, row % y_.fine_nodes + fine.fy, y, wy);
-  place(z_, row / y_.fine_nodes + fine.fz, z, wz);
+  const Place x = place(x_, fine.node % x_.fine_nodes + fine.fx);
+  const Place y = place(y_, row % y_.fine_nodes + fine.fy);
+  const Place z = place(z_, row / y_.fine_nodes + fine.fz);
   const auto width = static_cast<std::size_t>(x_.nodes), height = static_cast<std::size_t>(y_.nodes);
   Corners at{.count = z_.fine_nodes > 1 ? std::size_t{8} : std::size_t{4}, .node = {}, .weight = {}};
   for (std::size_t k = 0; k < at.count; ++k) {
     const std::size_t i = k & 1, j = k >> 1 & 1, l = k >> 2;
-    at.node[k] = (z[l] * height + y[j]) * width + x[i];
-    at.weight[k] = wy[j] * wx[i] * (z_.fine_nodes > 1 ? wz[l] : 1);
+    at.node[k] = (z.node[l] * height + y.node[j]) * width + x.node[i];
+    at.weight[k] = y.weight[j] * x.weight[i] * (z_.fine_nodes > 1 ? z.weight[l] : 1);
   }
   return at;
 }

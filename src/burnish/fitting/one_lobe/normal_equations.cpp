@@ -58,7 +58,7 @@ class Gatherer {
   explicit Gatherer(const RowMaker& rows)
       : rows_(rows),
         uses_(rows.spec->lobes.front()),
-        channels_(static_cast<std::size_t>(rows.source->channels)),
+        channels_(rows.source->channels),
         coupled_(channels_ > 1 && std::ranges::any_of(rows.spec->tables, &ModelSpec::TableSpec::shared)),
         matrices_(!coupled_ && rows.current ? channels_ : 1),
         numbering_(number_nodes(*rows.spec, coupled_ ? channels_ : 1)) {}
@@ -128,7 +128,7 @@ class Gatherer {
   std::span<const Term> find_terms(const LogRows& rows, std::size_t i, std::vector<Term>& terms) const {
     std::size_t count = 0;
     for (std::size_t k = 0; k < uses_.size(); ++k) {
-      const auto t = static_cast<std::size_t>(uses_[k].table);
+      const auto t = uses_[k].table;
       const TableLayout& layout = rows_.spec->tables[t].layout;
       const std::size_t at = i * uses_.size() + k, node = rows.node[at];
       const double fx = rows.fx[at], fy = rows.fy[at], fz = rows.fz[at];
@@ -205,7 +205,7 @@ Solved solve(const Sums& sum, const ModelSpec& spec, const Gatherer& gatherer, d
 
 LogSolution solve_normal_equations(const RowMaker& rows, const HomomorphicOptions& options) {
   const Gatherer gatherer(rows);
-  const auto channels = static_cast<std::size_t>(rows.source->channels);
+  const auto channels = rows.source->channels;
 
   // One partial sum a group of samples, joined in order.
   const std::size_t groups = std::clamp<std::size_t>(kPartialBytes / gatherer.bytes(), 2, 32);

@@ -63,7 +63,7 @@ constexpr double kFrontalCosine = 1e-3;
 class SpecBuilder {
  public:
   void add(const char* name, TableLayout layout, const std::vector<FactorUse>& uses) {
-    const int table = static_cast<int>(spec_.tables.size());
+    const std::size_t table = spec_.tables.size();
     spec_.tables.push_back({.name = name, .layout = layout});
     if (spec_.lobes.empty()) spec_.lobes.emplace_back();
     for (FactorUse use : uses) {
@@ -82,8 +82,8 @@ class SpecBuilder {
   ModelSpec spec_;
 };
 
-std::size_t bytes_of(const ModelSpec& spec, std::size_t texel_bytes, int channels) {
-  std::size_t numbers = spec.lobes.size() * static_cast<std::size_t>(channels), texels = 0;
+std::size_t bytes_of(const ModelSpec& spec, std::size_t texel_bytes, std::size_t channels) {
+  std::size_t numbers = spec.lobes.size() * channels, texels = 0;
   for (const ModelSpec::TableSpec& table : spec.tables) {
     texels += table.layout.node_count();
     for (const Warp& warp : {table.layout.warp, table.layout.warp_y, table.layout.warp_z})
@@ -110,7 +110,7 @@ TableLayout volume_of(const VolumeForm& form, double nodes) {
 }
 
 // The tables that a number of fetches has room for; the volume takes what the others leave.
-ModelSpec volume_spec(const VolumeForm& form, const CostLimit& limit, int channels, bool twisted,
+ModelSpec volume_spec(const VolumeForm& form, const CostLimit& limit, std::size_t channels, bool twisted,
                       bool ordered) {
   const double texels = static_cast<double>(limit.bytes / limit.texel_bytes);
   const auto nodes = [&](double share, int most) {
@@ -124,21 +124,17 @@ ModelSpec volume_spec(const VolumeForm& form, const CostLimit& limit, int channe
     if (room) left -= fetches;
     return room;
   };
-  if (ordered && takes(1))
-    builder.add("c",
+  const auto add_by_half = [&](const char* name, int width, double share, const Projection& along_x) {
+    builder.add(name,
                 {.shape = TableShape::grid,
-                 .width = kOrderNodes,
-                 .height = nodes(kOrderShare / kOrderNodes, kMaxRingNodes),
+                 .width = width,
+                 .height = nodes(share / width, kMaxRingNodes),
                  .warp_y = kHalfWarp},
-                {{.projection = kProjectWi, .projection_y = kProjectHalf}});
+                {{.projection = along_x, .projection_y = kProjectHalf}});
+  };
+  if (ordered && takes(1)) add_by_half("c", kOrderNodes, kOrderShare, kProjectWi);
   if (takes(1)) builder.add_line("z", nodes(kRingShare, kMaxRingNodes), {kProjectHalf}, kHalfWarp);
-  if (twisted && takes(1))
-    builder.add("w",
-                {.shape = TableShape::grid,
-                 .width = kTwistNodes,
-                 .height = nodes(kTwistShare / kTwistNodes, kMaxRingNodes),
-                 .warp_y = kHalfWarp},
-                {{.projection = kProjectTwist, .projection_y = kProjectHalf}});
+  if (twisted && takes(1)) add_by_half("w", kTwistNodes, kTwistShare, kProjectTwist);
   if (takes(2)) builder.add_line("p", line, {kProjectWo, kProjectWi});
   if (takes(1)) builder.add_line("r", line, {kProjectDifference});
   if (takes(1)) {
@@ -152,7 +148,7 @@ ModelSpec volume_spec(const VolumeForm& form, const CostLimit& limit, int channe
   // the volume, whose numbers are a warp's
   const std::size_t taken =
       bytes_of(builder.spec(), limit.texel_bytes, builder.spec().lobes.empty() ? 0 : channels) +
-      kNumberBytes * (1 + (builder.spec().lobes.empty() ? static_cast<std::size_t>(channels) : 0));
+      kNumberBytes * (1 + (builder.spec().lobes.empty() ? channels : 0));
   const std::size_t rest = limit.bytes > taken ? (limit.bytes - taken) / limit.texel_bytes : 0;
   const TableLayout volume = volume_of(form, static_cast<double>(rest));
   if (volume.width < 2) throw Error("fit: expected a budget that holds a table of three axes");
@@ -331,7 +327,7 @@ const FetchTrial& trial_at_knee(std::span<const FetchTrial> trials) {
                                [&](const FetchTrial& trial) { return trial.error <= kKneeFactor * least; });
 }
 
-ModelSpec hemisphere_spec(const CostLimit& limit, int channels) {
+ModelSpec hemisphere_spec(const CostLimit& limit, std::size_t channels) {
   const double texels = static_cast<double>(limit.bytes / limit.texel_bytes);
   SpecBuilder builder;
   const int p = std::max(5, static_cast<int>(std::sqrt(kBorderShare * texels)));
@@ -342,9 +338,8 @@ ModelSpec hemisphere_spec(const CostLimit& limit, int channels) {
       "v", volume,
       {{.projection = kProjectHalf, .projection_y = kProjectDifference, .projection_z = kProjectAzimuth}});
   const bool wide = limit.fetches > 4;
-  const std::size_t taken =
-      bytes_of(builder.spec(), limit.texel_bytes, channels) + kNumberBytes +
-      (wide ? kWideNodes * limit.texel_bytes + static_cast<std::size_t>(channels) * kNumberBytes : 0);
+  const std::size_t taken = bytes_of(builder.spec(), limit.texel_bytes, channels) + kNumberBytes +
+                            (wide ? kWideNodes * limit.texel_bytes + channels * kNumberBytes : 0);
   const std::size_t rest = limit.bytes > taken ? (limit.bytes - taken) / limit.texel_bytes : 0;
   const int q = static_cast<int>(std::sqrt(static_cast<double>(rest)));
   if (volume.width < 2 || q < 5)
@@ -353,7 +348,7 @@ ModelSpec hemisphere_spec(const CostLimit& limit, int channels) {
               {{.projection = kProjectHalf}});
   ModelSpec spec = builder.spec();
   if (wide) {
-    spec.lobes.push_back({{.table = static_cast<int>(spec.tables.size()), .projection = kProjectDifference}});
+    spec.lobes.push_back({{.table = spec.tables.size(), .projection = kProjectDifference}});
     spec.tables.push_back({.name = "c", .layout = {.width = static_cast<int>(kWideNodes)}});
   }
   return spec;
@@ -367,7 +362,7 @@ TrainingOptions training_for_volumes(const CostLimit& limit) {
 
 TrainingSet with_frontal_pixels(BrdfRef source, TrainingSet set, double share) {
   const auto count = static_cast<std::size_t>(share * static_cast<double>(set.picture_count));
-  const auto channels = static_cast<std::size_t>(set.channels);
+  const auto channels = set.channels;
 
   // low-discrepancy normals, half of them uniform on the disk, half with theta = pi/2 u^2
   std::vector<DirectionPair> pairs;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <burnish/error.h>
@@ -63,17 +64,19 @@ TrainingSet coarse_part(const TrainingSet& set) {
 // The spec without its grids, the tables in the same order.
 ModelSpec without_grids(const ModelSpec& spec) {
   ModelSpec thin;
-  std::vector<int> place(spec.tables.size(), -1);
+  std::vector<std::optional<std::size_t>> place(spec.tables.size());
   for (std::size_t t = 0; t < spec.tables.size(); ++t) {
     if (spec.tables[t].layout.shape == TableShape::grid) continue;
-    place[t] = static_cast<int>(thin.tables.size());
+    place[t] = thin.tables.size();
     thin.tables.push_back(spec.tables[t]);
   }
   for (const std::vector<FactorUse>& lobe : spec.lobes) {
     std::vector<FactorUse>& uses = thin.lobes.emplace_back();
     for (FactorUse use : lobe) {
-      use.table = place[static_cast<std::size_t>(use.table)];
-      if (use.table >= 0) uses.push_back(use);
+      const std::optional<std::size_t> kept = place[use.table];
+      if (!kept) continue;
+      use.table = *kept;
+      uses.push_back(use);
     }
   }
   return thin;
@@ -84,24 +87,28 @@ double soft_step(double t, double centre) {
 }
 
 bool has_disk(const ModelSpec& spec, const std::vector<FactorUse>& lobe) {
-  return std::ranges::any_of(lobe, [&](const FactorUse& use) {
-    return spec.tables[static_cast<std::size_t>(use.table)].layout.shape == TableShape::disk;
-  });
+  return std::ranges::any_of(
+      lobe, [&](const FactorUse& use) { return spec.tables[use.table].layout.shape == TableShape::disk; });
 }
 
-// The tables of one lobe alone.
-ModelSpec lobe_spec(const ModelSpec& spec, std::size_t lobe, std::vector<std::size_t>& tables) {
-  ModelSpec part{.tables = {}, .lobes = {spec.lobes[lobe]}};
-  for (FactorUse& use : part.lobes.front()) {
-    const auto t = static_cast<std::size_t>(use.table);
-    auto known = std::ranges::find(tables, t);
-    if (known == tables.end()) {
-      part.tables.push_back(spec.tables[t]);
-      known = tables.insert(tables.end(), t);
+/// One lobe of a spec, its tables, and which of the spec's they are.
+struct LobeAlone {
+  ModelSpec spec;
+  std::vector<std::size_t> tables;
+};
+
+LobeAlone lobe_alone(const ModelSpec& spec, std::size_t lobe) {
+  LobeAlone alone{.spec = {.tables = {}, .lobes = {spec.lobes[lobe]}}, .tables = {}};
+  for (FactorUse& use : alone.spec.lobes.front()) {
+    const std::size_t t = use.table;
+    auto known = std::ranges::find(alone.tables, t);
+    if (known == alone.tables.end()) {
+      alone.spec.tables.push_back(spec.tables[t]);
+      known = alone.tables.insert(alone.tables.end(), t);
     }
-    use.table = static_cast<int>(known - tables.begin());
+    use.table = static_cast<std::size_t>(known - alone.tables.begin());
   }
-  return part;
+  return alone;
 }
 
 /// A plan's spec: first the tables that all lobes have in common, then each lobe's own.
@@ -141,7 +148,7 @@ LogModel with_next_lobe(LogModel model, const LobesInTurn& lobes, std::size_t co
 
 /// A low value of each channel, which stands for what is spread wide.
 std::vector<float> low_values(const TrainingSet& set) {
-  const auto channels = static_cast<std::size_t>(set.channels);
+  const auto channels = set.channels;
   std::vector<float> low(channels);
   for (std::size_t c = 0; c < channels; ++c) {
     std::vector<float> values;
@@ -161,7 +168,7 @@ struct StartPart {
 };
 
 std::vector<float> values_of(const StartPart& part, const TrainingSet& set, const std::vector<float>& low) {
-  const auto channels = static_cast<std::size_t>(set.channels);
+  const auto channels = set.channels;
   std::vector<float> values(set.values.size());
   for (std::size_t i = 0; i < set.size(); ++i) {
     const double t = project_tan_half(kProjectDifference, set.pairs[i].wi, set.pairs[i].wo);
@@ -189,7 +196,7 @@ LobesFit fit_plan(const TrainingSet& set, const LobePlan& plan, std::size_t byte
 
   // Of many unknowns the 1-D tables first: their steps are solved directly, and grids that start as 1 only
   // lower the error.
-  const bool direct = coupled_unknowns(whole, static_cast<std::size_t>(set.channels)) <= kMaxCholeskyUnknowns;
+  const bool direct = coupled_unknowns(whole, set.channels) <= kMaxCholeskyUnknowns;
   const LobesInTurn lobes(plan, direct ? whole : without_grids(whole));
   const bool grids = lobes.first(lobes.count()).tables.size() < whole.tables.size();
   RefineOptions thin_options = options;
@@ -241,11 +248,11 @@ LobesFit fit_lobes(const TrainingSet& set, const ModelSpec& spec, const RefineOp
     const StartPart part{.place = of_wide ? wide_seen++ : narrow_seen++,
                          .count = of_wide ? wide : lobes - wide,
                          .wide = of_wide};
-    std::vector<std::size_t> tables;
-    const ModelSpec alone = lobe_spec(spec, j, tables);
-    const LogModel start = fit_one_lobe(alone, set, values_of(part, set, low),
+    const LobeAlone alone = lobe_alone(spec, j);
+    const LogModel start = fit_one_lobe(alone.spec, set, values_of(part, set, low),
                                         {.smooth = std::max(kStartSmooth, options.smooth)});
-    for (std::size_t k = 0; k < tables.size(); ++k) fit.model.log_values[tables[k]] = start.log_values[k];
+    for (std::size_t k = 0; k < alone.tables.size(); ++k)
+      fit.model.log_values[alone.tables[k]] = start.log_values[k];
   }
   refine_fully(fit.model, coarse_part(set), set, options, 0.1, fit.summary);
   return fit;

@@ -51,18 +51,17 @@ std::size_t numbers(const PlannedFactor& factor, std::size_t lobes) {
   return factor.shape == TableShape::grid ? sum + lobes * coefficient_count(factor.second) : sum;
 }
 
-std::size_t number_bytes(const std::vector<PlannedFactor>& factors, std::size_t lobes, int channels) {
-  std::size_t sum = lobes * static_cast<std::size_t>(channels);
+std::size_t number_bytes(const std::vector<PlannedFactor>& factors, std::size_t lobes, std::size_t channels) {
+  std::size_t sum = lobes * channels;
   for (const PlannedFactor& factor : factors) sum += numbers(factor, lobes);
   return sum * kNumberBytes;
 }
 
 // A node of a table with one channel for all takes this share of a texel: shared exponents serve no single
 // channel, whose table is half floats.
-double node_cost(const PlannedFactor& factor, int channels, std::size_t texel_bytes) {
+double node_cost(const PlannedFactor& factor, std::size_t channels, std::size_t texel_bytes) {
   if (!factor.grey) return 1;
-  const std::size_t one =
-      texel_bytes == 4 && channels == 3 ? 2 : texel_bytes / static_cast<std::size_t>(channels);
+  const std::size_t one = texel_bytes == 4 && channels == 3 ? 2 : texel_bytes / channels;
   return static_cast<double>(one) / static_cast<double>(texel_bytes);
 }
 
@@ -88,8 +87,8 @@ void add_table(const PlannedFactor& factor, double nodes, const std::string& suf
 }
 
 // Appends lobes of at most `texels` texels together.
-void add_lobes(const std::vector<PlannedFactor>& factors, std::size_t lobes, double texels, int channels,
-               std::size_t texel_bytes, bool numbered, ModelSpec& spec) {
+void add_lobes(const std::vector<PlannedFactor>& factors, std::size_t lobes, double texels,
+               std::size_t channels, std::size_t texel_bytes, bool numbered, ModelSpec& spec) {
   double shares = 0;
   for (const PlannedFactor& factor : factors)
     shares += factor.share * static_cast<double>(factor.every_lobe ? 1 : lobes);
@@ -97,10 +96,10 @@ void add_lobes(const std::vector<PlannedFactor>& factors, std::size_t lobes, dou
   const auto nodes = [&](const PlannedFactor& factor) {
     return factor.share / shares * texels / node_cost(factor, channels, texel_bytes);
   };
-  std::vector<int> common(factors.size());
+  std::vector<std::size_t> common(factors.size());
   for (std::size_t k = 0; k < factors.size(); ++k)
     if (factors[k].every_lobe) {
-      common[k] = static_cast<int>(spec.tables.size());
+      common[k] = spec.tables.size();
       add_table(factors[k], nodes(factors[k]), "", spec);
     }
   for (std::size_t j = 0; j < lobes; ++j) {
@@ -108,7 +107,7 @@ void add_lobes(const std::vector<PlannedFactor>& factors, std::size_t lobes, dou
     for (std::size_t k = 0; k < factors.size(); ++k) {
       if (!factors[k].every_lobe)
         add_table(factors[k], nodes(factors[k]), numbered ? std::to_string(j + 1) : "", spec);
-      const int table = factors[k].every_lobe ? common[k] : static_cast<int>(spec.tables.size()) - 1;
+      const std::size_t table = factors[k].every_lobe ? common[k] : spec.tables.size() - 1;
       for (const Projection& use : factors[k].uses)
         lobe.push_back({.table = table, .projection = use, .projection_y = factors[k].second});
     }
@@ -200,7 +199,7 @@ LobePlan plan_for(BrdfRef source, std::size_t bytes, int lobes, std::size_t texe
   return plan;
 }
 
-bool plan_fits(const LobePlan& plan, std::size_t bytes, int channels, std::size_t texel_bytes) {
+bool plan_fits(const LobePlan& plan, std::size_t bytes, std::size_t channels, std::size_t texel_bytes) {
   try {
     plan_to_spec(plan, bytes, channels, texel_bytes);
     return true;
@@ -209,7 +208,8 @@ bool plan_fits(const LobePlan& plan, std::size_t bytes, int channels, std::size_
   }
 }
 
-ModelSpec plan_to_spec(const LobePlan& plan, std::size_t bytes, int channels, std::size_t texel_bytes) {
+ModelSpec plan_to_spec(const LobePlan& plan, std::size_t bytes, std::size_t channels,
+                       std::size_t texel_bytes) {
   const auto lobes = static_cast<std::size_t>(plan.lobes);
   if (lobes > 1 && std::ranges::all_of(plan.factors, &PlannedFactor::every_lobe))
     throw Error("fit: expected a factor that each lobe has its own table of");

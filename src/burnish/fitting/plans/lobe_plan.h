@@ -52,9 +52,10 @@ LobePlan plan_for(BrdfRef source, std::size_t bytes, int lobes, std::size_t texe
 /// if a table would have fewer than two nodes (a hemisphere: 3 x 3), or no factor of several lobes is a
 /// lobe's own. Tables for every lobe come first and keep the factor's name; the others' names end in the
 /// lobe's number.
-ModelSpec plan_to_spec(const LobePlan& plan, std::size_t bytes, int channels, std::size_t texel_bytes);
+ModelSpec plan_to_spec(const LobePlan& plan, std::size_t bytes, std::size_t channels,
+                       std::size_t texel_bytes);
 
 /// Whether plan_to_spec has room for every table.
-bool plan_fits(const LobePlan& plan, std::size_t bytes, int channels, std::size_t texel_bytes);
+bool plan_fits(const LobePlan& plan, std::size_t bytes, std::size_t channels, std::size_t texel_bytes);
 
 }  // namespace burnish

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kHalfRgb = 6;
 
-FactoredBrdf zero_model(const ModelSpec& spec, int channels) {
+FactoredBrdf zero_model(const ModelSpec& spec, std::size_t channels) {
   LogModel model{.spec = spec, .channels = channels, .log_values = {}};
   for (std::size_t t = 0; t < spec.tables.size(); ++t)
     model.log_values.emplace_back(spec.tables[t].layout.node_count() * model.step(t));
@@ -39,7 +39,7 @@ TEST(LobePlan, MakesCompactFiles) {
   struct {
     std::size_t texel_bytes;
     TableFormat format;
-    int channels;
+    std::size_t channels;
   } const kinds[] = {{4, TableFormat::rgb9e5, 3}, {6, TableFormat::half, 3}, {2, TableFormat::half, 1}};
   for (const auto& [texel_bytes, format, channels] : kinds)
     for (const bool isotropic : {true, false})
@@ -96,57 +96,51 @@ TEST(LobePlan, RefusesWhatDoesNotFit) {
   EXPECT_THROW(default_plan(2700, 1, false, kHalfRgb), Error);
 }
 
+// A plain source, for twisted and ordered variants, and how well plans of these bytes fit them.
+constexpr testing::Glossy kEven{.a = 10, .b = 10};
+constexpr std::size_t kBytes = 1500, kFewBytes = 180;
+
+LobePlan plain_plan() {
+  return default_plan(kBytes, 0, true, kHalfRgb);
+}
+FactoredBrdf fitted(const TrainingSet& set, const LobePlan& plan) {
+  FactoredBrdf brdf =
+      to_brdf(fit_plan(set, plan, kBytes, kHalfRgb, {.max_iterations = 10}).model, TableFormat::half);
+  EXPECT_LE(brdf.bytes(), kBytes);
+  return brdf;
+}
+double relative_error(BrdfRef source, const FactoredBrdf& brdf) {
+  return error_figures(source, brdf, {.count = 5000, .image_size = 32}).relative;
+}
+
 TEST(PlanFor, TellsMirrorImagesApartWhereTheSourceDoes) {
-  const testing::Glossy even{.a = 10, .b = 10};
-  const testing::Twisted source{even};
-  constexpr std::size_t kBytes = 1500;
-  const LobePlan plain = default_plan(kBytes, 0, true, kHalfRgb);
-  EXPECT_EQ(plan_for(even, kBytes, 0, kHalfRgb), plain);
+  const testing::Twisted source{kEven};
+  EXPECT_EQ(plan_for(kEven, kBytes, 0, kHalfRgb), plain_plan());
   const AnalyticBrdf brushed = parse_analytic("ggx:alpha_x=0.2,alpha_y=0.5");
   EXPECT_EQ(plan_for(brushed, kBytes, 0, kHalfRgb), default_plan(kBytes, 0, false, kHalfRgb));
 
-  const LobePlan plan = plan_for(source, kBytes, 0, kHalfRgb);
   const TrainingSet set = draw_training_set(source, {.pictures = 2000, .directions = 5000});
-  const auto relative = [&](const LobePlan& p) {
-    const FactoredBrdf brdf =
-        to_brdf(fit_plan(set, p, kBytes, kHalfRgb, {.max_iterations = 10}).model, TableFormat::half);
-    EXPECT_LE(brdf.bytes(), kBytes);
-    EXPECT_TRUE(brdf.isotropic() && brdf.reciprocal());
-    return error_figures(source, brdf, {.count = 5000, .image_size = 32}).relative;
-  };
-  EXPECT_LT(relative(plan), 0.3 * relative(plain));
+  const FactoredBrdf told = fitted(set, plan_for(source, kBytes, 0, kHalfRgb)),
+                     same = fitted(set, plain_plan());
+  for (const FactoredBrdf* brdf : {&told, &same}) EXPECT_TRUE(brdf->isotropic() && brdf->reciprocal());
+  EXPECT_LT(relative_error(source, told), 0.3 * relative_error(source, same));
   // no room for it
-  constexpr std::size_t kFewBytes = 180;
   EXPECT_EQ(plan_for(source, kFewBytes, 1, kHalfRgb), default_plan(kFewBytes, 1, true, kHalfRgb));
   EXPECT_TRUE(plan_fits(default_plan(kFewBytes, 1, true, kHalfRgb), kFewBytes, 3, kHalfRgb));
 }
 
 TEST(PlanFor, TellsTheDirectionsApartWhereTheirOrderMatters) {
-  const testing::Glossy even{.a = 10, .b = 10};
-  const testing::Ordered source{even};
-  constexpr std::size_t kBytes = 1500;
-  const LobePlan plain = default_plan(kBytes, 0, true, kHalfRgb);
-  EXPECT_EQ(plan_for(even, kBytes, 0, kHalfRgb), plain);
-  EXPECT_EQ(plan_for(SymmetrizedBrdf(source), kBytes, 0, kHalfRgb), plain);
+  const testing::Ordered source{kEven};
+  EXPECT_EQ(plan_for(SymmetrizedBrdf(source), kBytes, 0, kHalfRgb), plain_plan());
 
-  const LobePlan plan = plan_for(source, kBytes, 0, kHalfRgb);
   const TrainingSet set = draw_training_set(source, {.pictures = 2000, .directions = 5000});
-  const auto fit = [&](const LobePlan& p) {
-    FactoredBrdf brdf =
-        to_brdf(fit_plan(set, p, kBytes, kHalfRgb, {.max_iterations = 10}).model, TableFormat::half);
-    EXPECT_LE(brdf.bytes(), kBytes);
-    return brdf;
-  };
-  const auto relative = [&](const FactoredBrdf& brdf) {
-    return error_figures(source, brdf, {.count = 5000, .image_size = 32}).relative;
-  };
-  const FactoredBrdf told = fit(plan), same = fit(plain);
+  const FactoredBrdf told = fitted(set, plan_for(source, kBytes, 0, kHalfRgb)),
+                     same = fitted(set, plain_plan());
   EXPECT_FALSE(told.reciprocal());
   EXPECT_TRUE(same.reciprocal());
-  EXPECT_LT(relative(told), 0.02);
-  EXPECT_LT(relative(told), 0.3 * relative(same));
+  EXPECT_LT(relative_error(source, told), 0.02);
+  EXPECT_LT(relative_error(source, told), 0.3 * relative_error(source, same));
   // no room for it
-  constexpr std::size_t kFewBytes = 180;
   EXPECT_EQ(plan_for(source, kFewBytes, 1, kHalfRgb), default_plan(kFewBytes, 1, true, kHalfRgb));
 }
 

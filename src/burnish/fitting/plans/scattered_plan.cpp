@@ -65,6 +65,7 @@ std::vector<PlannedFactor> factors_of(const std::string& set, std::size_t texels
 // what is left. None where they do not suffice.
 std::optional<ModelSpec> spec_of(const std::string& set, std::size_t texels, bool isotropic) {
   const std::vector<PlannedFactor> factors = factors_of(set, texels, isotropic);
+  // sides by share, q's by what is left
   double shares = 0;
   for (const PlannedFactor& factor : factors) shares += factor.share;
   std::vector<int> sides;
@@ -82,6 +83,7 @@ std::optional<ModelSpec> spec_of(const std::string& set, std::size_t texels, boo
   if (side < least_side(*q)) return std::nullopt;
   sides[static_cast<std::size_t>(q - factors.begin())] = side;
 
+  // one lobe of all
   ModelSpec spec;
   spec.lobes.emplace_back();
   for (std::size_t k = 0; k < factors.size(); ++k) {
@@ -92,7 +94,7 @@ std::optional<ModelSpec> spec_of(const std::string& set, std::size_t texels, boo
                                       .height = is_disk(factor) ? sides[k] : 1,
                                       .warp = factor.warp}});
     for (const Projection& use : factor.uses)
-      spec.lobes.front().push_back({.table = static_cast<int>(k), .projection = use, .projection_y = {}});
+      spec.lobes.front().push_back({.table = k, .projection = use, .projection_y = {}});
   }
   return spec;
 }
@@ -136,10 +138,10 @@ std::size_t texels_of(const ModelSpec& spec) {
 
 // The source with at most kTrialChannels of its channels, evenly spread.
 SampleSource some_channels(const SampleSource& source) {
-  const auto channels = static_cast<std::size_t>(source.channels);
+  const auto channels = source.channels;
   if (channels <= kTrialChannels) return source;
   SampleSource part = source;
-  part.channels = static_cast<int>(kTrialChannels);
+  part.channels = kTrialChannels;
   part.fill = [&source, channels](std::size_t begin, std::span<DirectionPair> pairs, std::span<double> values,
                                   std::span<double> weights) {
     std::vector<double> all(pairs.size() * channels);
@@ -234,7 +236,7 @@ ScatteredPlan plan_many(const SampleSource& source, std::size_t bytes, std::opti
 
 }  // namespace
 
-std::size_t model_bytes(const ModelSpec& spec, int channels, TableFormat format) {
+std::size_t model_bytes(const ModelSpec& spec, std::size_t channels, TableFormat format) {
   std::size_t tables = 0, numbers = 0;
   for (const ModelSpec::TableSpec& table : spec.tables) {
     tables += table.layout.node_count() * texel_bytes(format_of(table, format), table.shared ? 1 : channels);
@@ -242,17 +244,17 @@ std::size_t model_bytes(const ModelSpec& spec, int channels, TableFormat format)
     numbers += table.layout.shape == TableShape::grid && table.layout.warp_y.kind != WarpKind::identity;
   }
   for (const std::vector<FactorUse>& lobe : spec.lobes) {
-    numbers += static_cast<std::size_t>(channels);
+    numbers += channels;
     for (const FactorUse& use : lobe) {
       numbers += coefficient_count(use.projection);
-      if (spec.tables[static_cast<std::size_t>(use.table)].layout.shape == TableShape::grid)
+      if (spec.tables[use.table].layout.shape == TableShape::grid)
         numbers += coefficient_count(use.projection_y);
     }
   }
   return tables + numbers * kNumberBytes;
 }
 
-std::size_t least_scattered_bytes(int channels, bool isotropic, TableFormat format) {
+std::size_t least_scattered_bytes(std::size_t channels, bool isotropic, TableFormat format) {
   const std::string& least = kFactorSets.back();
   std::size_t texels = 1;
   while (!spec_of(least, texels, isotropic)) ++texels;

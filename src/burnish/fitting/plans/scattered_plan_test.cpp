@@ -15,12 +15,12 @@ namespace burnish {
 namespace {
 
 // A measured highlight in so many channels, the first the darkest.
-Source scattered(int channels, const char* brdf = "ggx:alpha_x=0.3,alpha_y=0.3,f0=0.5,kd=0.2",
+Source scattered(std::size_t channels, const char* brdf = "ggx:alpha_x=0.3,alpha_y=0.3,f0=0.5,kd=0.2",
                  std::size_t count = 60) {
   const Samples grey = measure(parse_analytic(brdf), {.count = count, .noise = 0.1, .seed = 3});
   Samples samples{.channels = channels, .isotropic = grey.isotropic, .pairs = grey.pairs, .values = {}};
   for (std::size_t i = 0; i < grey.size(); ++i)
-    for (int c = 0; c < channels; ++c) samples.values.push_back(grey.at(i)[0] * (c + 1) / channels);
+    for (std::size_t c = 0; c < channels; ++c) samples.values.push_back(grey.at(i)[0] * (c + 1) / channels);
   return {"scattered", ScatteredBrdf(std::move(samples)), {}};
 }
 
@@ -29,7 +29,7 @@ std::size_t least(const Source& source, TableFormat format) {
 }
 
 TEST(ScatteredPlan, KeepsEveryBudget) {
-  for (const int channels : {1, 3, 31}) {
+  for (const std::size_t channels : {1, 3, 31}) {
     const Source source = scattered(channels);
     for (const auto& format :
          {std::optional<TableFormat>(), std::optional(TableFormat::half), std::optional(TableFormat::single),
@@ -43,7 +43,7 @@ TEST(ScatteredPlan, KeepsEveryBudget) {
         const Fit made = fit(source, options);
         EXPECT_LE(made.bytes(), bytes) << channels;
         // of few samples fine models predict no better
-        EXPECT_GE(made.bytes(), std::min<std::size_t>(bytes / 2, 140 * static_cast<std::size_t>(channels)))
+        EXPECT_GE(made.bytes(), std::min<std::size_t>(bytes / 2, 140 * channels))
             << channels << " channels, " << bytes << " bytes";
       }
     }
@@ -53,7 +53,7 @@ TEST(ScatteredPlan, KeepsEveryBudget) {
 TEST(ScatteredPlan, SaysTheLeastBudget) {
   for (const char* brdf :
        {"ggx:alpha_x=0.3,alpha_y=0.3,f0=0.5,kd=0.2", "ggx:alpha_x=0.2,alpha_y=0.5,f0=0.5,kd=0.2"})
-    for (const int channels : {1, 31}) {
+    for (const std::size_t channels : {1, 31}) {
       const Source source = scattered(channels, brdf);
       const std::size_t bytes = least(source, TableFormat::half);
       EXPECT_EQ(fit(source, {.form = Budget{.bytes = bytes}, .smooth = 1e-5}).bytes(), bytes);

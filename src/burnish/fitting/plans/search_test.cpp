@@ -16,7 +16,7 @@ struct Crossed {
   AnalyticBrdf one = parse_analytic("ggx:alpha_x=0.1,alpha_y=0.5,f0=0.9,kd=0.1"),
                other = parse_analytic("ggx:alpha_x=0.5,alpha_y=0.1,f0=0.01,kd=0");
 
-  static int channels() noexcept { return 3; }
+  static std::size_t channels() noexcept { return 3; }
   static bool isotropic() noexcept { return false; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     std::array<double, 3> more{};

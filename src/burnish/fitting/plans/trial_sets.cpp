@@ -23,7 +23,7 @@ TrainingSet part_of(const TrainingSet& set, std::size_t first, std::size_t step)
 TrainingSet mean_of_channels(const TrainingSet& set) {
   TrainingSet grey = set;
   grey.channels = 1;
-  const auto channels = static_cast<std::size_t>(set.channels);
+  const auto channels = set.channels;
   grey.values.resize(set.size());
   grey.albedo = {};
   for (std::size_t i = 0; i < set.size(); ++i) {

@@ -10,7 +10,7 @@ namespace {
 
 /// Grey; +-1 by turns about a mean of 0.1, which cutting at zero makes 0.55.
 struct Noise {
-  int channels() const noexcept { return 1; }
+  std::size_t channels() const noexcept { return 1; }
   bool isotropic() const noexcept { return true; }
   bool eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     const bool above = wi.z > 0 && wo.z > 0;

@@ -3,13 +3,10 @@
 #include <utility>
 
 #include <burnish/fitting/refinement/lane_gram.h>
-#include <burnish/math/highway_targets.h>
 #include <burnish/math/parallel.h>
 
-#undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "burnish/fitting/refinement/lane_gram.cpp"
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-#include <hwy/highway.h>
+#include <burnish/math/highway-inl.h>
 
 #ifndef BURNISH_FITTING_LANE_GRAM
 #define BURNISH_FITTING_LANE_GRAM
@@ -27,12 +24,7 @@ struct PieceRows {
 }  // namespace burnish
 #endif
 
-HWY_BEFORE_NAMESPACE();
-namespace burnish {
-namespace HWY_NAMESPACE {
-namespace {
-
-namespace hn = hwy::HWY_NAMESPACE;
+BURNISH_BEGIN_TARGET;
 
 // Adds `scale` times the products of two pieces of all rows to a matrix, a's nodes and lanes being the
 // columns. A vector ends with a node: what is stored is loaded again soon, and fast only if it is loaded as
@@ -71,10 +63,7 @@ void add_products(const PieceRows& a, const PieceRows& b, std::size_t rows, doub
   add(a, b, rows, scale, matrix, stride);
 }
 
-}  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace burnish
-HWY_AFTER_NAMESPACE();
+BURNISH_END_TARGET;
 
 #if HWY_ONCE
 namespace burnish {

@@ -10,16 +10,12 @@
 #include <type_traits>
 #include <utility>
 
-#include <hwy/highway.h>
+#include <burnish/math/highway-inl.h>
 
 #include <burnish/fitting/refinement/lobe_lanes.h>
 
-HWY_BEFORE_NAMESPACE();
-namespace burnish {
-namespace HWY_NAMESPACE {
-namespace {
+BURNISH_BEGIN_TARGET;
 
-namespace hn = hwy::HWY_NAMESPACE;
 constexpr std::size_t kLanes = LobeLanes::kLanes;
 using D = hn::CappedTag<float, kLanes>;
 using V = hn::Vec<D>;
@@ -243,9 +239,6 @@ void multiply(Slots slots, const Lookups::Place* places, const float* values, co
   add_transposed(slots, places, slopes, amounts, sums);
 }
 
-}  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace burnish
-HWY_AFTER_NAMESPACE();
+BURNISH_END_TARGET;
 
 #endif

@@ -2,14 +2,10 @@
 #include <cmath>
 
 #include <burnish/fitting/refinement/lobe_lanes.h>
-#include <burnish/math/highway_targets.h>
 #include <burnish/math/parallel.h>
 
-#undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "burnish/fitting/refinement/lobe_lanes.cpp"
-#include <hwy/cache_control.h>
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-#include <hwy/highway.h>
+#include <burnish/math/highway-inl.h>
 
 #include <burnish/fitting/refinement/lobe_lanes-inl.h>
 
@@ -50,7 +46,7 @@ LobeLanes::LobeLanes(std::span<const NumberedTable> tables, const Lookups& looku
         slots_.push_back({.place = lookups.place_of[k], .part = j / kLanes});
         lanes.emplace_back(kLanes, kNone);
       }
-      lanes[s][j % kLanes] = static_cast<std::size_t>(lookups.lookups[k].table);
+      lanes[s][j % kLanes] = lookups.lookups[k].table;
     }
 
   // families: slots of the same tables share values
@@ -123,8 +119,7 @@ LobeLanes::Values LobeLanes::values(const Eigen::VectorXd& x) const {
   for (std::size_t c = 0; c < channels_; ++c)
     for (std::size_t j = 0; j < lookups_.lobes.size(); ++j) {
       double sum = 0;
-      for (const std::size_t k : lookups_.lobes[j])
-        sum += means[static_cast<std::size_t>(lookups_.lookups[k].table) * channels_ + c];
+      for (const std::size_t k : lookups_.lobes[j]) sum += means[lookups_.lookups[k].table * channels_ + c];
       found.scales[c * parts_ * kLanes + j] = static_cast<float>(std::exp(sum));
     }
   return found;

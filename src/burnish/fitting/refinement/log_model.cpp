@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <burnish/error.h>
 #include <burnish/fitting/one_lobe/homomorphic.h>
@@ -46,9 +47,9 @@ LogModel fit_one_lobe(const ModelSpec& spec, const TrainingSet& set, const std::
   // The lobe's scale goes into tables used once; a shared table takes none.
   const Lobe& lobe = fit.brdf.lobes().front();
   for (std::size_t k = lobe.factors.size(); k-- > 0;) {
-    const auto t = static_cast<std::size_t>(lobe.factors[k].table);
+    const auto t = lobe.factors[k].table;
     const auto uses = std::ranges::count(lobe.factors, lobe.factors[k].table, &FactorUse::table);
-    if (model.step(t) != static_cast<std::size_t>(model.channels)) continue;
+    if (model.step(t) != model.channels) continue;
     for (std::size_t i = 0; i < model.log_values[t].size(); ++i)
       model.log_values[t][i] +=
           std::log(std::max(lobe.scale[i % model.step(t)], 1e-30)) / static_cast<double>(uses);
@@ -59,18 +60,18 @@ LogModel fit_one_lobe(const ModelSpec& spec, const TrainingSet& set, const std::
 
 LogModel with_lobe_split(LogModel model, std::size_t lobe, double centre, const std::string& suffix,
                          std::span<const std::string> common) {
-  const auto is_common = [&](int table) {
-    return std::ranges::find(common, model.spec.tables[static_cast<std::size_t>(table)].name) != common.end();
+  const auto is_common = [&](std::size_t table) {
+    return std::ranges::find(common, model.spec.tables[table].name) != common.end();
   };
   // the new lobe's own tables: copies, but for the step over theta_d
   std::vector<FactorUse> uses = model.spec.lobes[lobe];
-  std::vector<int> copy(model.spec.tables.size(), -1);
+  std::vector<std::optional<std::size_t>> copy(model.spec.tables.size());
   bool stepped = false;
   for (FactorUse& use : uses) {
-    const auto t = static_cast<std::size_t>(use.table);
+    const auto t = use.table;
     if (is_common(use.table)) continue;
-    if (copy[t] < 0) {
-      copy[t] = static_cast<int>(model.spec.tables.size());
+    if (!copy[t]) {
+      copy[t] = model.spec.tables.size();
       model.spec.tables.push_back(model.spec.tables[t]);
       model.spec.tables.back().name += suffix;
       model.log_values.push_back(model.log_values[t]);
@@ -86,17 +87,16 @@ LogModel with_lobe_split(LogModel model, std::size_t lobe, double centre, const 
         }
       }
     }
-    use.table = copy[t];
+    use.table = *copy[t];
   }
 
   // without one, halves
   const std::vector<FactorUse>& old = model.spec.lobes[lobe];
   const auto own = std::ranges::find_if(old, [&](const FactorUse& use) { return !is_common(use.table); });
   if (!stepped)
-    for (const int table : {own->table, uses[static_cast<std::size_t>(own - old.begin())].table}) {
+    for (const std::size_t table : {own->table, uses[static_cast<std::size_t>(own - old.begin())].table}) {
       const auto times = std::ranges::count(old, own->table, &FactorUse::table);
-      for (double& v : model.log_values[static_cast<std::size_t>(table)])
-        v -= std::log(2) / static_cast<double>(times);
+      for (double& v : model.log_values[table]) v -= std::log(2) / static_cast<double>(times);
     }
   model.spec.lobes.push_back(std::move(uses));
   return model;
@@ -153,20 +153,20 @@ std::vector<double> mean_of_channels(const std::vector<double>& logs, std::size_
 
 // Multiplies each lobe that uses the table as often with a colour, in a coloured table of the lobe's own.
 void give_colour(std::size_t table, std::span<const double> colour, LogModel& model) {
-  const auto uses_in = [&](const std::vector<FactorUse>& lobe, int t) {
+  const auto uses_in = [&](const std::vector<FactorUse>& lobe, std::size_t t) {
     return std::ranges::count(lobe, t, &FactorUse::table);
   };
   for (const std::vector<FactorUse>& lobe : model.spec.lobes) {
-    const auto times = uses_in(lobe, static_cast<int>(table));
+    const auto times = uses_in(lobe, table);
     const auto own = std::ranges::find_if(lobe, [&](const FactorUse& use) {
-      return model.step(static_cast<std::size_t>(use.table)) == colour.size() &&
+      return model.step(use.table) == colour.size() &&
              std::ranges::all_of(model.spec.lobes, [&](const auto& other) {
                return &other == &lobe || uses_in(other, use.table) == 0;
              });
     });
     if (times == 0 || own == lobe.end()) continue;
     const double share = static_cast<double>(times) / static_cast<double>(uses_in(lobe, own->table));
-    std::vector<double>& logs = model.log_values[static_cast<std::size_t>(own->table)];
+    std::vector<double>& logs = model.log_values[own->table];
     for (std::size_t i = 0; i < logs.size(); ++i) logs[i] += share * colour[i % colour.size()];
   }
 }
@@ -175,7 +175,7 @@ void give_colour(std::size_t table, std::span<const double> colour, LogModel& mo
 
 LogModel resampled(const LogModel& model, const ModelSpec& spec) {
   LogModel result{.spec = spec, .channels = model.channels, .log_values = {}};
-  const auto channels = static_cast<std::size_t>(model.channels);
+  const auto channels = model.channels;
   for (std::size_t t = 0; t < spec.tables.size(); ++t)
     result.log_values.emplace_back(spec.tables[t].layout.node_count() * result.step(t));
   for (std::size_t t = 0; t < spec.tables.size(); ++t) {
@@ -204,7 +204,7 @@ std::vector<Table> log_tables(const LogModel& model, TableFormat format) {
   for (std::size_t t = 0; t < model.spec.tables.size(); ++t)
     tables.push_back({.name = model.spec.tables[t].name,
                       .layout = model.spec.tables[t].layout,
-                      .channels = static_cast<int>(model.step(t)),
+                      .channels = model.step(t),
                       .values = {model.log_values[t].begin(), model.log_values[t].end()},
                       .format = format_of(model.spec.tables[t], format)});
   return tables;
@@ -213,8 +213,7 @@ std::vector<Table> log_tables(const LogModel& model, TableFormat format) {
 std::vector<Lobe> log_scaled_lobes(const LogModel& model) {
   std::vector<Lobe> lobes;
   for (const std::vector<FactorUse>& uses : model.spec.lobes)
-    lobes.push_back(
-        {.scale = std::vector<double>(static_cast<std::size_t>(model.channels)), .factors = uses});
+    lobes.push_back({.scale = std::vector<double>(model.channels), .factors = uses});
   return lobes;
 }
 

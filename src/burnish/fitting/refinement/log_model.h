@@ -17,13 +17,11 @@ namespace burnish {
 /// positive whatever the logarithms are.
 struct LogModel {
   ModelSpec spec;
-  int channels = 0;
+  std::size_t channels = 0;
   std::vector<std::vector<double>> log_values;  ///< of table t: [node * step(t) + channel]
 
   /// Channels of a table: 1 where it is shared.
-  std::size_t step(std::size_t table) const noexcept {
-    return spec.tables[table].shared ? 1 : static_cast<std::size_t>(channels);
-  }
+  std::size_t step(std::size_t table) const noexcept { return spec.tables[table].shared ? 1 : channels; }
   /// Whether a table couples the channels.
   bool any_shared() const noexcept {
     return channels > 1 && std::ranges::any_of(spec.tables, &ModelSpec::TableSpec::shared);

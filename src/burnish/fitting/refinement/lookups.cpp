@@ -26,7 +26,7 @@ Lookups lookups_of(const ModelSpec& spec, const TrainingSet& set) {
 
   // of these, what falls on the same place
   const auto layout_of = [&](const FactorUse& use) -> const TableLayout& {
-    return spec.tables[static_cast<std::size_t>(use.table)].layout;
+    return spec.tables[use.table].layout;
   };
   std::vector<FactorUse> distinct;
   for (const FactorUse& use : found.lookups) {

@@ -36,7 +36,7 @@ Axis axis_along(const Projection& projection, std::size_t table, const TableLayo
   if (layout.shape == TableShape::disk) return {};
   for (int axis = 0; axis < axis_count(layout.shape); ++axis)
     if (std::ranges::all_of(lookups.lookups, [&](const FactorUse& use) {
-          return static_cast<std::size_t>(use.table) != table || projection_of(use, axis) == projection;
+          return use.table != table || projection_of(use, axis) == projection;
         }))
       return axis_of(layout, axis);
   return {};
@@ -48,7 +48,7 @@ std::optional<Projection> key_projection(std::span<const LobeLanes::NumberedTabl
   std::optional<Projection> best;
   std::size_t fewest = static_cast<std::size_t>(-1);
   for (const FactorUse& use : lookups.lookups) {
-    if (tables[static_cast<std::size_t>(use.table)].layout.shape != TableShape::volume) continue;
+    if (tables[use.table].layout.shape != TableShape::volume) continue;
     for (int axis = 0; axis < 3; ++axis) {
       const Projection& candidate = projection_of(use, axis);
       std::size_t abreast = 0;
@@ -135,7 +135,7 @@ std::size_t NodeBand::band_width(std::span<const LobeLanes::NumberedTable> table
     for (std::size_t c = 0; c < channels; ++c) {
       std::uint32_t least = kInRest, most = 0;
       for (std::size_t k = 0; k < lookups.lookups.size(); ++k) {
-        const auto t = static_cast<std::size_t>(lookups.lookups[k].table);
+        const auto t = lookups.lookups[k].table;
         const Lookups::Place& place =
             lookups.places[(i / kBlock * lookups.place_count + lookups.place_of[k]) * kBlock + i % kBlock];
         if (!is_banded(static_cast<std::uint32_t>(tables[t].number.base))) continue;

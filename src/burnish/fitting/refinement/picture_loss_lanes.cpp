@@ -1,21 +1,11 @@
 #include <burnish/fitting/refinement/picture_loss_lanes.h>
-#include <burnish/math/highway_targets.h>
 
-#undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "burnish/fitting/refinement/picture_loss_lanes.cpp"
-// each target includes the last anew
-// clang-format off
-#include <hwy/foreach_target.h>  // IWYU pragma: keep
-#include <hwy/highway.h>
+#include <burnish/math/highway-inl.h>
 #include <hwy/contrib/math/math-inl.h>
-// clang-format on
 
-HWY_BEFORE_NAMESPACE();
-namespace burnish {
-namespace HWY_NAMESPACE {
-namespace {
+BURNISH_BEGIN_TARGET;
 
-namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<float, 8>;
 using V = hn::Vec<D>;
 
@@ -94,10 +84,7 @@ void add(const PictureLoss& loss, const LossInputs& in, std::size_t count, const
            .log_cos = sum_of(part.log_cos)};
 }
 
-}  // namespace
-}  // namespace HWY_NAMESPACE
-}  // namespace burnish
-HWY_AFTER_NAMESPACE();
+BURNISH_END_TARGET;
 
 #if HWY_ONCE
 namespace burnish {

@@ -105,7 +105,7 @@ FitSummary refine(LogModel& model, const TrainingSet& set, const Lookups& lookup
   if (model.channels != set.channels)
     throw Error("fit: expected as many channels in the model as in the data");
   const PictureLoss loss{.shares = options.shares, .exposure = set.exposure};
-  const auto channels = static_cast<std::size_t>(model.channels);
+  const auto channels = model.channels;
   const std::size_t together = model.any_shared() ? channels : 1;
   std::vector<Descent> descents;
   for (std::size_t c = 0; c < channels; c += together)
@@ -137,7 +137,7 @@ double objective(const LogModel& model, const TrainingSet& set, const ErrorTerms
 double objective(const LogModel& model, const TrainingSet& set, const Lookups& lookups,
                  const ErrorTerms& shares) {
   const PictureLoss loss{.shares = shares, .exposure = set.exposure};
-  const auto channels = static_cast<std::size_t>(model.channels);
+  const auto channels = model.channels;
   double sum = 0;
   for (std::size_t c = 0; c < channels; ++c) {
     const RefineSystem system(model, set, lookups, loss, TableFormat::single, c, c + 1);

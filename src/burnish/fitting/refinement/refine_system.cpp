@@ -62,8 +62,7 @@ RefineSystem::RefineSystem(const LogModel& model, const TrainingSet& set, const 
       first_channel_(first_channel),
       last_channel_(last_channel),
       lanes_(numbered_tables(model, channels()), lookups, channels()),
-      albedo_(model.spec, lanes_.tables(), set.albedo, static_cast<std::size_t>(set.channels), first_channel,
-              channels()) {
+      albedo_(model.spec, lanes_.tables(), set.albedo, set.channels, first_channel, channels()) {
   add_tables(model, format);
   for (std::size_t i = 0; i < set.size(); ++i)
     (i < set.picture_count ? picture_weight_ : pair_weight_) +=
@@ -105,7 +104,7 @@ void RefineSystem::fill_losses() {
       losses_.cos_theta_i[i] = static_cast<float>(set_.pairs[i].wi.z);
       (picture ? losses_.picture_weight : losses_.pair_weight)[i] = set_.weights[i];
       for (std::size_t c = 0; c < channels(); ++c) {
-        const double f = set_.values[i * static_cast<std::size_t>(set_.channels) + first_channel_ + c];
+        const double f = set_.values[i * set_.channels + first_channel_ + c];
         const PictureLoss::Target target = loss_.target(f, set_.pairs[i].wi.z, picture);
         float* targets = losses_.targets.data() + 2 * (i / kBlock * channels() + c) * kBlock + i % kBlock;
         targets[0] = target.first;

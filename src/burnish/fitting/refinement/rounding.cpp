@@ -46,7 +46,7 @@ class Rounding {
 
  private:
   TableFormat format_;
-  int channels_;
+  std::size_t channels_;
   std::vector<double> divided_;  // one a channel
 };
 
@@ -80,10 +80,10 @@ class CompensatedRounding {
       : model_(model),
         smooth_(options.smooth),
         roundings_(tables.begin(), tables.end()),
-        together_(model.any_shared() ? static_cast<std::size_t>(model.channels) : 1),
+        together_(model.any_shared() ? model.channels : 1),
         numbering_(number_nodes(model.spec, together_)) {
     const PictureLoss loss{.shares = options.shares, .exposure = set.exposure};
-    for (std::size_t c = 0; c < static_cast<std::size_t>(model.channels); c += together_) {
+    for (std::size_t c = 0; c < model.channels; c += together_) {
       RefineSystem system(model, set, lookups, loss, options.format, c, c + together_);
       Eigen::VectorXd x = system.read(model);
       const ErrorTerms means = system.errors(x);
@@ -255,7 +255,7 @@ FactoredBrdf from_stored(const LogModel& model, const std::vector<Rounding>& rou
 
 FactoredBrdf to_rounded_brdf(const LogModel& model, const TrainingSet& set, const RefineOptions& options) {
   const std::vector<Table> tables = log_tables(model, options.format);
-  if (static_cast<std::size_t>(model.channels) > kMaxChannels ||
+  if (model.channels > kMaxChannels ||
       std::ranges::none_of(tables, [](const Table& table) { return holds_few_bits(table.format); }))
     return to_brdf(model, options.format);
 

@@ -105,7 +105,7 @@ DirectionPair turned(const DirectionPair& pair, double angle) {
 
 // Evaluates the source and keeps what it knows.
 void fill_values(BrdfRef source, TrainingSet& set) {
-  const auto channels = static_cast<std::size_t>(set.channels);
+  const auto channels = set.channels;
   std::vector<std::uint8_t> known(set.size());
   std::vector<double> values(set.size() * channels);
   for_each_chunk(set.size(), kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -133,7 +133,7 @@ void fill_values(BrdfRef source, TrainingSet& set) {
 // Linear between the values at their places among the weights; `unlit` is that of black pixels beside the
 // set's.
 double exposure_of(const TrainingSet& set, double unlit) {
-  const auto channels = static_cast<std::size_t>(set.channels);
+  const auto channels = set.channels;
   struct Shown {
     float value, weight;
   };
@@ -210,7 +210,7 @@ TrainingSet draw_training_set(BrdfRef source, const TrainingOptions& options) {
 AlbedoSet albedo_set(BrdfRef source) {
   const std::size_t sides = source.isotropic() ? 1 : 4;
   AlbedoSet set{.directions = kAlbedoThetas * sides};
-  std::vector<double> f(static_cast<std::size_t>(source.channels()));
+  std::vector<double> f(source.channels());
   for (std::size_t k = 0; k < set.directions; ++k) {
     const double theta = kMaxAlbedoTheta * static_cast<double>(k / sides) / (kAlbedoThetas - 1);
     const double phi = kTwoPi * (static_cast<double>(k % sides) + 0.3) / 4;
@@ -265,7 +265,7 @@ TrainingSet training_set_of(const Samples& samples, bool symmetrize) {
 TrainingSet thinned(const TrainingSet& set, std::size_t step) {
   TrainingSet part{
       .channels = set.channels, .isotropic = set.isotropic, .exposure = set.exposure, .albedo = set.albedo};
-  const auto channels = static_cast<std::size_t>(set.channels);
+  const auto channels = set.channels;
   const auto take = [&](std::size_t i) {
     part.pairs.push_back(set.pairs[i]);
     part.weights.push_back(set.weights[i]);
@@ -278,19 +278,17 @@ TrainingSet thinned(const TrainingSet& set, std::size_t step) {
 }
 
 SampleSource as_source(const TrainingSet& set, const std::vector<float>& values) {
-  return {.count = set.size(),
-          .distinct = set.size(),
-          .channels = set.channels,
-          .isotropic = set.isotropic,
-          .fill = [&set, &values](std::size_t begin, std::span<DirectionPair> pairs, std::span<double> f,
-                                  std::span<double> weights) {
-            std::copy_n(set.pairs.begin() + static_cast<std::ptrdiff_t>(begin), pairs.size(), pairs.begin());
-            std::copy_n(set.weights.begin() + static_cast<std::ptrdiff_t>(begin), pairs.size(),
-                        weights.begin());
-            std::copy_n(
-                values.begin() + static_cast<std::ptrdiff_t>(begin * static_cast<std::size_t>(set.channels)),
-                f.size(), f.begin());
-          }};
+  return {
+      .count = set.size(),
+      .distinct = set.size(),
+      .channels = set.channels,
+      .isotropic = set.isotropic,
+      .fill = [&set, &values](std::size_t begin, std::span<DirectionPair> pairs, std::span<double> f,
+                              std::span<double> weights) {
+        std::copy_n(set.pairs.begin() + static_cast<std::ptrdiff_t>(begin), pairs.size(), pairs.begin());
+        std::copy_n(set.weights.begin() + static_cast<std::ptrdiff_t>(begin), pairs.size(), weights.begin());
+        std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(begin * set.channels), f.size(), f.begin());
+      }};
 }
 
 }  // namespace burnish

@@ -25,7 +25,7 @@ struct AlbedoSet {
 /// What a model of several lobes is refined on: pixels of lit spheres, which the eye judges, and direction
 /// pairs spread over all directions, which keep the model right where no picture looks.
 struct TrainingSet {
-  int channels = 0;
+  std::size_t channels = 0;
   bool isotropic = false;
   std::vector<DirectionPair> pairs;  ///< above the horizon
   std::vector<float> values;         ///< f_r >= 0 of pair i at [i * channels, (i + 1) * channels), 1/sr

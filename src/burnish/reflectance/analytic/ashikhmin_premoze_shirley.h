@@ -54,7 +54,7 @@ class AshikhminPremozeShirley {
         kd_(kd),
         correlation_(correlation) {}
 
-  static constexpr int channels() noexcept { return 3; }
+  static constexpr std::size_t channels() noexcept { return 3; }
   bool isotropic() const noexcept { return distribution_.isotropic(); }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     return eval_above_horizon(wi, wo, f, [&](const PairGeometry& g) {

@@ -29,7 +29,7 @@ struct Phong {
   double exponent = 20;
   bool normalized = true;
 
-  static constexpr int channels() noexcept { return 3; }
+  static constexpr std::size_t channels() noexcept { return 3; }
   static constexpr bool isotropic() noexcept { return true; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 };
@@ -41,7 +41,7 @@ struct BlinnPhong {
   double exponent = 80;
   bool normalized = true;
 
-  static constexpr int channels() noexcept { return 3; }
+  static constexpr std::size_t channels() noexcept { return 3; }
   static constexpr bool isotropic() noexcept { return true; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 };
@@ -57,7 +57,7 @@ struct Lafortune {
   Rgb kd = 0.2;
   std::array<Lobe, 3> lobes;
 
-  static constexpr int channels() noexcept { return 3; }
+  static constexpr std::size_t channels() noexcept { return 3; }
   bool isotropic() const noexcept;
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 };

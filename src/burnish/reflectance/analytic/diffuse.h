@@ -9,7 +9,7 @@ namespace burnish {
 struct Lambert {
   Rgb kd = 0.5;
 
-  static constexpr int channels() noexcept { return 3; }
+  static constexpr std::size_t channels() noexcept { return 3; }
   static constexpr bool isotropic() noexcept { return true; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 };
@@ -22,7 +22,7 @@ struct OrenNayar {
   Rgb kd = 0.5;
   double sigma = 0.5;
 
-  static constexpr int channels() noexcept { return 3; }
+  static constexpr std::size_t channels() noexcept { return 3; }
   static constexpr bool isotropic() noexcept { return true; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 };

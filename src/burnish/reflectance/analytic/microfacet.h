@@ -15,7 +15,7 @@ struct Microfacet {
   Rgb f0 = 0.9;
   Rgb kd = 0;
 
-  static constexpr int channels() noexcept { return 3; }
+  static constexpr std::size_t channels() noexcept { return 3; }
   bool isotropic() const noexcept { return distribution.isotropic(); }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     return eval_above_horizon(wi, wo, f, [&](const PairGeometry& g) {
@@ -38,7 +38,7 @@ struct CookTorrance {
   Rgb f0 = 0.5;        ///< reflectance at normal incidence, from which the index follows
   Rgb kd = 0;
 
-  static constexpr int channels() noexcept { return 3; }
+  static constexpr std::size_t channels() noexcept { return 3; }
   static constexpr bool isotropic() noexcept { return true; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 };
@@ -51,7 +51,7 @@ struct AshikhminShirley {
   Rgb f0 = 0.3;
   Rgb kd = 0.3;
 
-  static constexpr int channels() noexcept { return 3; }
+  static constexpr std::size_t channels() noexcept { return 3; }
   bool isotropic() const noexcept { return exponent_x == exponent_y; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 };

@@ -17,7 +17,7 @@ struct PoulinFournier {
   double exponent = 50;  ///< of the local lobe, >= 1
   Rgb kd = 0.2, ks = 0.8;
 
-  static constexpr int channels() noexcept { return 3; }
+  static constexpr std::size_t channels() noexcept { return 3; }
   static constexpr bool isotropic() noexcept { return false; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 

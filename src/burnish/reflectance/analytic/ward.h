@@ -17,7 +17,7 @@ struct Ward {
   Rgb kd = 0.2, ks = 0.2;
   Normalization normalization = Normalization::ward;
 
-  static constexpr int channels() noexcept { return 3; }
+  static constexpr std::size_t channels() noexcept { return 3; }
   bool isotropic() const noexcept { return alpha_x == alpha_y; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 };

@@ -33,7 +33,7 @@ class GlEvaluatorTest : public testing::TestWithParam<ModelCase> {
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       const auto& [wi, wo] = pairs[i];
       double f[3];
-      brdf.eval(wi, wo, std::span(f).first(static_cast<std::size_t>(brdf.channels())));
+      brdf.eval(wi, wo, std::span(f).first(brdf.channels()));
       for (std::size_t c = 0; c < 3; ++c) {
         const double truth = f[brdf.channels() == 1 ? 0 : c];
         if (truth > 0)

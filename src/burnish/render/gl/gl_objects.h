@@ -13,7 +13,7 @@ namespace burnish {
 struct GlTexture {
   std::string name;  ///< of its sampler in the shader
   int width = 1, height = 1, depth = 0;
-  int channels = 1;  ///< 1 or 3
+  std::size_t channels = 1;  ///< 1 or 3
   TableFormat precision = TableFormat::single;
   bool filtered = false;  ///< linear between texels, else the nearest
   std::vector<float> values;

@@ -72,7 +72,7 @@ using Channels = std::array<double, 3>;
 Channels light_from(BrdfRef brdf, Vec3 wi, Vec3 wo, Rgb radiance) noexcept {
   Channels f{};
   if (wi.z <= 0) return f;
-  brdf.eval(wi, wo, std::span(f).first(static_cast<std::size_t>(brdf.channels())));
+  brdf.eval(wi, wo, std::span(f).first(brdf.channels()));
   if (brdf.channels() == 1) f[1] = f[2] = f[0];
   return {f[0] * wi.z * radiance.r, f[1] * wi.z * radiance.g, f[2] * wi.z * radiance.b};
 }

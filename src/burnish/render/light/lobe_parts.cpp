@@ -15,9 +15,9 @@ bool of_view_alone(const Table& table, const FactorUse& use) noexcept {
 }
 
 // The table's place among those that are needed, made where it is new.
-int number_of(const Table& table, std::vector<Table>& tables) {
+std::size_t number_of(const Table& table, std::vector<Table>& tables) {
   const auto known = std::ranges::find(tables, table.name, &Table::name);
-  const auto number = static_cast<int>(known - tables.begin());
+  const auto number = static_cast<std::size_t>(known - tables.begin());
   if (known == tables.end()) tables.push_back(table);
   return number;
 }
@@ -58,7 +58,7 @@ FactoredBrdf joined(std::span<const FactoredBrdf> parts) {
 
 Channels eval_channels(const FactoredBrdf& brdf, Vec3 wi, Vec3 wo) noexcept {
   Channels f{};
-  brdf.eval(wi, wo, std::span(f).first(static_cast<std::size_t>(brdf.channels())));
+  brdf.eval(wi, wo, std::span(f).first(brdf.channels()));
   if (brdf.channels() == 1) f[1] = f[2] = f[0];
   return f;
 }

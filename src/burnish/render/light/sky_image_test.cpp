@@ -78,7 +78,7 @@ TEST(SkyImage, KeepsItsLightWhenItShrinks) {
 TEST(SkyImage, APictureOfAnEnvironmentLightsAsItDoes) {
   const GgxProxy material{{0.25, 0.25}, 0.6};
   struct Grey {
-    static constexpr int channels() noexcept { return 1; }
+    static constexpr std::size_t channels() noexcept { return 1; }
     static constexpr bool isotropic() noexcept { return true; }
     bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
       f[0] = wi.z > 0 && wo.z > 0 ? 0.3 : 0;
@@ -122,8 +122,8 @@ TEST(SkyImage, ReadsOpenExrAndRefusesWhatIsNone) {
   for (const char* name : {"dataWindow", "displayWindow"}) {
     const std::size_t box =
         lying.find(name) + std::string(name).size() + 1 + 6 + 4;  // type "box2i", its size
-    lying[box + 8] = '\xff', lying[box + 9] = '\x1f';
-    lying[box + 12] = '\xff', lying[box + 13] = '\x0f';
+    lying.replace(box + 8, 2, "\xff\x1f");
+    lying.replace(box + 12, 2, "\xff\x0f");
   }
   EXPECT_THROW(parse_sky(memory_file(lying)), Error);
 }

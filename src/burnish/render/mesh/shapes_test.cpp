@@ -80,7 +80,10 @@ int open_edges(const Mesh& mesh) {
   for (const auto& t : mesh.triangles)
     for (std::size_t k = 0; k < 3; ++k) {
       const Place a = place(t[k]), b = place(t[(k + 1) % 3]);
-      a < b ? ++runs[{a, b}] : --runs[{b, a}];
+      if (a < b)
+        ++runs[{a, b}];
+      else
+        --runs[{b, a}];
     }
   return static_cast<int>(std::ranges::count_if(runs, [](const auto& run) { return run.second != 0; }));
 }
