@@ -2,9 +2,10 @@
 # make test   installs tools, builds with sanitizers and optimized, runs every test
 # make python the Python package in build/venv, tested
 # make build  the command line at build/release/apps/burnish/burnish
+# make deb, make wheel: packages in build/packages; make release-check installs each in an empty system and runs it
 # make bench, make fuzz, make report, make cost-report, make sampling-report, make shader-report, make frame-cost, make hw-report, make hw-exhaustive, make format:
 # see CONTRIBUTING.md
-.PHONY: demo test build reports python deps test-deps bench fuzz report cost-report sampling-report shader-report frame-cost hw-report hw-exhaustive format format-check docs-check include-check api
+.PHONY: deb wheel packaging-deps release-check demo test build reports python deps test-deps bench fuzz report cost-report sampling-report shader-report frame-cost hw-report hw-exhaustive format format-check docs-check include-check api
 JOBS ?= $(shell nproc)
 BURNISH := build/release/apps/burnish/burnish
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
@@ -50,6 +51,22 @@ test: test-deps format-check docs-check include-check
 
 python: test-deps build
 	@python/check.sh
+
+# Packages for people without a compiler.
+PACKAGES := build/packages
+PACKAGING := dpkg-dev file lintian debootstrap python3-venv
+packaging-deps:
+	@dpkg-query -W $(PACKAGING) > /dev/null 2>&1 || $(SUDO) apt-get install -y -qq --no-install-recommends $(PACKAGING) > /dev/null
+
+deb: packaging-deps build
+	@rm -rf $(PACKAGES)/*.deb && cpack --config build/release/CPackConfig.cmake -B $(CURDIR)/$(PACKAGES) > /dev/null
+	@rm -rf $(PACKAGES)/_CPack_Packages && ls $(PACKAGES)/*.deb
+
+wheel: packaging-deps deps
+	@python/wheel.sh $(PACKAGES)
+
+release-check: deb wheel
+	@$(SUDO) tests/release/check.sh $(PACKAGES)
 
 bench: test-deps
 	@cmake --preset bench > /dev/null

@@ -8,6 +8,7 @@ namespace burnish::cli {
 // library.
 void add_compare_command(CLI::App& app);
 void add_convert_command(CLI::App& app);
+void add_describe_command(CLI::App& app);
 void add_eval_command(CLI::App& app);
 void add_export_command(CLI::App& app);
 void add_fit_command(CLI::App& app);

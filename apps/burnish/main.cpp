@@ -20,6 +20,7 @@ int main(int argc, char** argv) {
   burnish::cli::add_render_command(app);
   burnish::cli::add_specular_command(app);
   burnish::cli::add_hw_command(app);
+  burnish::cli::add_describe_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -5,9 +5,6 @@
 #include <optional>
 #include <vector>
 
-#include <ceres/cost_function.h>
-#include <ceres/problem.h>
-#include <ceres/solver.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -15,6 +12,7 @@
 #include <burnish/error.h>
 #include <burnish/fitting/baselines/analytic_fit.h>
 #include <burnish/fitting/baselines/gathered_samples.h>
+#include <burnish/fitting/numerics/bounded_least_squares.h>
 #include <burnish/math/parallel.h>
 
 namespace burnish {
@@ -125,7 +123,7 @@ constexpr double kMinSquare = 1e-8;
 
 /// Residuals sqrt(weight) (cbrt(f^ r) - cbrt(f r)), r the root of the cosines, a sample and channel each, as
 /// functions of some of the unknowns.
-class Cost : public ceres::CostFunction {
+class Cost {
  public:
   Cost(const GatheredSamples& samples, const Parameters& parameters)
       : samples_(samples), parameters_(parameters) {
@@ -139,28 +137,29 @@ class Cost : public ceres::CostFunction {
       for (std::size_t c = 0; c < samples.channels; ++c)
         targets_.push_back(std::cbrt(samples.values[i * samples.channels + c] * root));
     }
-    set_num_residuals(static_cast<int>(targets_.size()));
   }
 
   /// Holds all unknowns at x but those whose numbers are `varied`, rising, the channels of a colour together.
   void hold(std::vector<double> x, std::vector<std::size_t> varied) {
     held_ = std::move(x);
     varied_ = std::move(varied);
-    *mutable_parameter_block_sizes() = {static_cast<int>(varied_.size())};
   }
 
+  std::size_t residuals() const { return targets_.size(); }
+
   /// All unknowns.
-  std::vector<double> all(const double* varied) const {
+  std::vector<double> all(std::span<const double> varied) const {
     std::vector<double> x = held_;
     for (std::size_t k = 0; k < varied_.size(); ++k) x[varied_[k]] = varied[k];
     return x;
   }
 
-  bool Evaluate(double const* const* varied, double* residuals, double** jacobians) const override {
-    std::vector<double> x = all(varied[0]);
+  /// As LeastSquaresProblem::evaluate.
+  void evaluate(std::span<const double> varied, std::span<double> residuals, std::span<double> jacobian) {
+    std::vector<double> x = all(varied);
     if (x != evaluated_at_) {  // slopes are asked for where values were
       parts_.resize(static_cast<std::size_t>(parameters_.parts()));
-      for (std::size_t p = 0; p < parts_.size(); ++p) parts_[p] = evaluate(x, static_cast<int>(p));
+      for (std::size_t p = 0; p < parts_.size(); ++p) parts_[p] = evaluate_part(x, static_cast<int>(p));
       evaluated_at_ = std::move(x);
     }
     for (std::size_t r = 0; r < targets_.size(); ++r) {
@@ -168,13 +167,12 @@ class Cost : public ceres::CostFunction {
       for (const std::vector<double>& part : parts_) value += part[r];
       residuals[r] = weights_[r / samples_.channels] * (std::cbrt(value) - targets_[r]);
     }
-    if (jacobians && jacobians[0]) differentiate(residuals, jacobians[0]);
-    return true;
+    if (!jacobian.empty()) differentiate(residuals, jacobian);
   }
 
  private:
   // f r of every sample and channel, of one part.
-  std::vector<double> evaluate(std::span<const double> x, int part) const {
+  std::vector<double> evaluate_part(std::span<const double> x, int part) const {
     const AnalyticVariant variant = parameters_.model().build(parameters_.values(x, part));
     const BrdfRef brdf = std::visit([](const auto& any) -> BrdfRef { return any; }, variant);
     const std::size_t channels = samples_.channels;
@@ -192,7 +190,7 @@ class Cost : public ceres::CostFunction {
   }
 
   // Forward differences of f; the channels of a colour, which do not see each other, in one evaluation.
-  void differentiate(const double* residuals, double* jacobian) const {
+  void differentiate(std::span<const double> residuals, std::span<double> jacobian) const {
     const std::vector<Unknown>& unknowns = parameters_.unknowns();
     const std::size_t columns = varied_.size(), rows = targets_.size();
     std::vector<double> slopes(rows);  // of residuals by f r
@@ -213,7 +211,7 @@ class Cost : public ceres::CostFunction {
         at += step[g];
       }
       const std::vector<double>& values = parts_[static_cast<std::size_t>(first.part)];
-      const std::vector<double> moved_values = evaluate(moved, first.part);
+      const std::vector<double> moved_values = evaluate_part(moved, first.part);
       for (double& size : step) size = 1 / size;
       for (std::size_t r = 0; r < rows; ++r) {
         const double slope = slopes[r] * (moved_values[r] - values[r]);
@@ -228,8 +226,8 @@ class Cost : public ceres::CostFunction {
   const Parameters& parameters_;
   std::vector<double> roots_, weights_, targets_, held_;
   std::vector<std::size_t> varied_;
-  mutable std::vector<double> evaluated_at_;
-  mutable std::vector<std::vector<double>> parts_;
+  std::vector<double> evaluated_at_;
+  std::vector<std::vector<double>> parts_;
 };
 
 /// Minimizations from several starts of which the best is kept.
@@ -242,35 +240,27 @@ class Fit {
   void run(std::vector<double> x, int parts) {
     // what varies, within its bounds
     const std::vector<Unknown>& unknowns = parameters_.unknowns();
+    LeastSquaresProblem problem{.functions = cost_.residuals(), .evaluate = {}, .lower = {}, .upper = {}};
     std::vector<std::size_t> varied;
-    for (std::size_t k = 0; k < unknowns.size(); ++k)
-      if (unknowns[k].part < parts) varied.push_back(k);
-    std::vector<double> at;
-    for (const std::size_t k : varied) at.push_back(x[k]);
-    cost_.hold(std::move(x), varied);
-    ceres::Problem::Options problem_options;
-    problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    ceres::Problem problem(problem_options);
-    problem.AddResidualBlock(&cost_, nullptr, at.data());
-    for (std::size_t k = 0; k < varied.size(); ++k) {
-      problem.SetParameterLowerBound(at.data(), static_cast<int>(k), unknowns[varied[k]].lower);
-      problem.SetParameterUpperBound(at.data(), static_cast<int>(k), unknowns[varied[k]].upper);
+    std::vector<double> start;
+    for (std::size_t k = 0; k < unknowns.size(); ++k) {
+      if (unknowns[k].part >= parts) continue;
+      varied.push_back(k);
+      start.push_back(x[k]);
+      problem.lower.push_back(unknowns[k].lower);
+      problem.upper.push_back(unknowns[k].upper);
     }
-    // Levenberg-Marquardt, of which the best start is kept
-    ceres::Solver::Options solver;
-    solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
-    solver.max_num_iterations = options_.max_iterations;
-    solver.function_tolerance = 1e-7;
-    solver.logging_type = ceres::SILENT;
-    ceres::Solver::Summary summary;
-    ceres::Solve(solver, &problem, &summary);
+    cost_.hold(std::move(x), varied);
+    problem.evaluate = [this](auto at, auto values, auto slopes) { cost_.evaluate(at, values, slopes); };
+    const LeastSquaresSolution solution =
+        solve_least_squares(problem, std::move(start), {.max_iterations = options_.max_iterations});
     ++starts;
-    iterations += static_cast<int>(summary.iterations.size());
-    if (summary.final_cost >= best_cost) return;
-    best_cost = summary.final_cost;
-    first_cost = summary.initial_cost;
-    converged = summary.termination_type == ceres::CONVERGENCE;
-    best = cost_.all(at.data());
+    iterations += solution.iterations;
+    if (solution.cost >= best_cost) return;
+    best_cost = solution.cost;
+    first_cost = solution.first_cost;
+    converged = solution.converged;
+    best = cost_.all(solution.x);
   }
 
   std::vector<double> best;
@@ -366,7 +356,7 @@ AnalyticFit fit_analytic(const SampleSource& source, std::string_view name,
     };
     values[p] = {rounded(values[p].r), rounded(values[p].g), rounded(values[p].b)};
   }
-  // Ceres' cost is half the sum of squares
+  // the cost is half the sum of squares
   return {.brdf = AnalyticBrdf(model, std::move(values)),
           .summary = {.error_before = std::sqrt(2 * fit.first_cost),
                       .error_after = std::sqrt(2 * fit.best_cost),

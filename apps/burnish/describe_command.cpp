@@ -1,0 +1,40 @@
+#include <filesystem>
+
+#include <fmt/core.h>
+
+#include <burnish/file.h>
+
+#include "command_description.h"
+#include "commands.h"
+
+namespace burnish::cli {
+
+void add_describe_command(CLI::App& app) {
+  CLI::App* verb =
+      app.add_subcommand("describe", "What packages hold of the command line: manual pages, completions");
+  verb->group("");  // for whoever packages burnish
+  verb->footer(
+      "Examples: burnish describe --man share/man/man1\n"
+      "          burnish describe --bash > /etc/bash_completion.d/burnish\n"
+      "          burnish describe --zsh > \"${fpath[1]}/_burnish\"");
+  struct Options {
+    std::string man;
+    bool bash = false, zsh = false;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::Option_group* what = verb->add_option_group("what");
+  what->require_option(1);
+  what->add_option("--man", options->man, "write manual pages into this folder");
+  what->add_flag("--bash", options->bash, "print the completion for bash");
+  what->add_flag("--zsh", options->zsh, "print the completion for zsh");
+  verb->callback([&app, options] {
+    if (options->bash) fmt::print("{}", bash_completion(app));
+    if (options->zsh) fmt::print("{}", zsh_completion(app));
+    if (options->man.empty()) return;
+    std::filesystem::create_directories(options->man);
+    for (const ManualPage& page : manual_pages(app, BURNISH_VERSION))
+      write_then_rename(std::filesystem::path(options->man) / page.name, page.text);
+  });
+}
+
+}  // namespace burnish::cli

@@ -1,0 +1,140 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include <burnish/error.h>
+#include <burnish/fitting/numerics/bounded_least_squares.h>
+
+namespace burnish {
+
+namespace {
+
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+constexpr double kFirstDamping = 1e-4;
+constexpr double kMaxDamping = 1e16;  // steps that short change nothing
+constexpr double kMinDiagonal =
+    1e-12;  // of the normal matrix: what the functions do not depend on moves little
+
+double half_square(std::span<const double> values) {
+  double sum = 0;
+  for (const double v : values) sum += v * v;
+  return sum / 2;
+}
+
+/// Where the sum of squares is looked at: values, and a quadratic model of the sum around x.
+class State {
+ public:
+  State(const LeastSquaresProblem& problem, std::vector<double> start)
+      : problem_(problem), x_(std::move(start)), values_(problem.functions) {
+    problem_.evaluate(x_, values_, {});
+    cost_ = half_square(values_);
+    if (!std::isfinite(cost_)) throw Error("least squares: the start has values that are not finite");
+  }
+
+  const std::vector<double>& x() const { return x_; }
+  double cost() const { return cost_; }
+
+  /// Forms the model at x.
+  void linearize() {
+    RowMatrix slopes(values_.size(), x_.size());
+    problem_.evaluate(x_, values_, {slopes.data(), static_cast<std::size_t>(slopes.size())});
+    const Eigen::Map<const Eigen::VectorXd> values(values_.data(), static_cast<Eigen::Index>(values_.size()));
+    normal_ = slopes.transpose() * slopes;
+    gradient_ = slopes.transpose() * values;
+    // held: at a bound, with the sum falling beyond it
+    for (Eigen::Index k = 0; k < gradient_.size(); ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      if ((x_[i] > problem_.lower[i] || gradient_[k] <= 0) &&
+          (x_[i] < problem_.upper[i] || gradient_[k] >= 0))
+        continue;
+      normal_.row(k).setZero();
+      normal_.col(k).setZero();
+      gradient_[k] = 0;
+    }
+  }
+
+  /// Where the damped model is least, moved within the bounds.
+  std::vector<double> step(double damping) const {
+    Eigen::MatrixXd damped = normal_;
+    damped.diagonal() += damping * normal_.diagonal().cwiseMax(kMinDiagonal);
+    for (Eigen::Index k = 0; k < damped.rows(); ++k)
+      if (damped(k, k) == 0) damped(k, k) = 1;
+    const Eigen::VectorXd move = damped.llt().solve(-gradient_);
+    std::vector<double> to = x_;
+    for (std::size_t k = 0; k < to.size(); ++k)
+      to[k] = std::clamp(to[k] + move[static_cast<Eigen::Index>(k)], problem_.lower[k], problem_.upper[k]);
+    return to;
+  }
+
+  /// By how much the model says the sum falls.
+  double promised(const std::vector<double>& to) const {
+    Eigen::VectorXd move(gradient_.size());
+    for (Eigen::Index k = 0; k < move.size(); ++k)
+      move[k] = to[static_cast<std::size_t>(k)] - x_[static_cast<std::size_t>(k)];
+    return -gradient_.dot(move) - 0.5 * move.dot(normal_ * move);
+  }
+
+  /// Goes there if the sum is less; says what was gained.
+  double go(std::vector<double> to) {
+    std::vector<double> values(values_.size());
+    problem_.evaluate(to, values, {});
+    const double cost = half_square(values), gain = cost_ - cost;
+    if (!(gain > 0)) return 0;
+    x_ = std::move(to);
+    values_ = std::move(values);
+    cost_ = cost;
+    return gain;
+  }
+
+ private:
+  const LeastSquaresProblem& problem_;
+  std::vector<double> x_, values_;
+  double cost_ = 0;
+  Eigen::MatrixXd normal_;
+  Eigen::VectorXd gradient_;
+};
+
+}  // namespace
+
+LeastSquaresSolution solve_least_squares(const LeastSquaresProblem& problem, std::vector<double> start,
+                                         const LeastSquaresOptions& options) {
+  for (std::size_t k = 0; k < start.size(); ++k)
+    start[k] = std::clamp(start[k], problem.lower[k], problem.upper[k]);
+  State state(problem, std::move(start));
+  LeastSquaresSolution solution{
+      .x = {}, .first_cost = state.cost(), .cost = 0, .iterations = 0, .converged = false};
+  double damping = kFirstDamping, rise = 2;
+  bool moved = true;
+  while (solution.iterations < options.max_iterations && !solution.converged) {
+    if (moved) state.linearize();
+    std::vector<double> to = state.step(damping);
+    const double promised = state.promised(to), before = state.cost();
+    ++solution.iterations;
+    // nothing to gain, or nothing that the numbers can tell
+    if (promised <= options.tolerance * 1e-3 * before || damping > kMaxDamping) {
+      solution.converged = true;
+      break;
+    }
+    const double gain = state.go(std::move(to));
+    moved = gain > 0;
+    if (moved) {
+      // a good model is trusted more, up to three times
+      const double quality = gain / promised;
+      damping *= std::max(1.0 / 3, 1 - std::pow(2 * quality - 1, 3));
+      rise = 2;
+      solution.converged = gain < options.tolerance * before;
+    } else {
+      damping *= rise;
+      rise *= 2;
+    }
+  }
+  solution.x = state.x();
+  solution.cost = state.cost();
+  return solution;
+}
+
+}  // namespace burnish

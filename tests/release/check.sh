@@ -1,0 +1,55 @@
+#!/usr/bin/env bash
+# check.sh FOLDER: installs each package of FOLDER (a .deb, a .whl) where nothing else of burnish is, runs the demo
+# there, and prints what each takes. The .deb goes into a Debian made by debootstrap (BURNISH_ROOT=DIR keeps it for the
+# next time), the wheel into an empty virtual environment with no compiler in the path. Needs root for the first.
+set -euo pipefail
+here=$(cd "$(dirname "$0")/../.." && pwd)
+folder=$(cd "$1" && pwd)
+work=$(mktemp -d)
+root=${BURNISH_ROOT:-$work/debian}
+leave() { umount "$root/proc" 2> /dev/null || true; rm -rf "$work"; }
+trap leave EXIT
+size() { echo "$(($(stat -c %s "$1") / 1024)) KiB  $(basename "$1")"; }
+seconds() { echo "$(($(date +%s) - $1)) s"; }
+
+check_deb() {
+  echo "== $(size "$1")"
+  lintian --allow-root --fail-on error "$1"
+  if [ ! -x "$root/bin/sh" ]; then
+    debootstrap --variant=minbase bookworm "$root" "${DEBIAN_MIRROR:-http://deb.debian.org/debian}" > "$work/log" ||
+      { tail -20 "$work/log"; exit 1; }
+  fi
+  mount -t proc proc "$root/proc"
+  cp "$1" "$here/examples/demo.sh" "$root/tmp/"
+  chroot "$root" apt-get -qq purge burnish > /dev/null 2>&1 || true
+  local start
+  start=$(date +%s)
+  chroot "$root" sh -c "export DEBIAN_FRONTEND=noninteractive; apt-get -qq update &&
+    apt-get -qq install --no-install-recommends '/tmp/$(basename "$1")'" > "$work/log" 2>&1 || { tail -20 "$work/log"; exit 1; }
+  echo "installed in $(seconds "$start")"
+  # no compiler came with it
+  ! chroot "$root" sh -c 'command -v c++ || command -v cc'
+  chroot "$root" burnish --version
+  start=$(date +%s)
+  chroot "$root" bash -e /tmp/demo.sh burnish /tmp/demo | tail -3
+  echo "demo in $(seconds "$start")"
+  test -s "$root/tmp/demo/knot.png"
+  # what else a system looks for
+  test -s "$root/usr/share/man/man1/burnish-fit.1.gz" || chroot "$root" dpkg -L burnish | grep -q man1/burnish-fit.1.gz
+  bash -n "$root/usr/share/bash-completion/completions/burnish"
+  umount "$root/proc"
+}
+
+check_wheel() {
+  echo "== $(size "$1")"
+  local start
+  start=$(date +%s)
+  python3 -m venv "$work/venv"
+  mkdir "$work/empty"
+  (cd "$work/empty" && export PATH="$work/venv/bin" && pip --disable-pip-version-check -q install --only-binary :all: "$1" &&
+    python "$here/tests/release/first_fit.py")
+  echo "from pip install to the first fit: $(seconds "$start")"
+}
+
+for package in "$folder"/*.deb; do [ -e "$package" ] && check_deb "$package"; done
+for package in "$folder"/*.whl; do [ -e "$package" ] && check_wheel "$package"; done
