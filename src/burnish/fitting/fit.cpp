@@ -181,6 +181,7 @@ class Fitter {
     const SampleSource source = from_samples(*samples(), false);
     if (options_.format) check_format_of_source(*options_.format);
     HomomorphicOptions options = log_linear_options(form.scattered);
+    if (backscatters(source)) options.backscatter = kBackscatterReach;
     const ScatteredPlan plan = plan_scattered(source, bytes, options_.smooth, options_.format, options);
     options.smooth = plan.smooth;
     options.format = plan.format;

@@ -52,7 +52,7 @@ void finish_samples(const std::string& file, const OpenOptions& options, SampleF
         std::adjacent_find(lambda.begin(), lambda.end(), std::greater_equal<>{}) != lambda.end())
       throw Error::in_file(file, "positive, increasing wavelengths",
                            fmt::format("{} ... {} nm out of order", lambda.front(), lambda.back()));
-    if (!options.keep_spectral) {
+    if (!options.keep_spectral && lambda.size() > 1) {
       samples.values = to_rec709(samples, rec709_weights(lambda, options.illuminant));
       samples.channels = 3;
       findings.illuminant = options.illuminant == "E" ? "equal energy" : options.illuminant;
