@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -21,6 +22,7 @@
 #include <burnish/io/utia.h>
 #include <burnish/io/zemax.h>
 #include <burnish/math/angles.h>
+#include <burnish/math/closest_name.h>
 
 namespace burnish {
 
@@ -67,6 +69,16 @@ Source from_spec(const std::string& spec) {
   findings.description = fmt::format("{}: {}", brdf.model().description, format_analytic(brdf));
   findings.theta_i_max = findings.theta_o_max = kHalfPi;
   return {spec, std::move(brdf), std::move(findings)};
+}
+
+/// Throws Error if the text is no file and nearly the name of an analytic model.
+void check_spelling(const std::string& spec) {
+  if (std::error_code none; std::filesystem::exists(spec, none)) return;
+  std::vector<std::string_view> names;
+  for (const AnalyticModel& model : analytic_models()) names.push_back(model.name);
+  const std::string_view name = std::string_view(spec).substr(0, spec.find(':'));
+  if (const std::string meant = did_you_mean(name, names); !meant.empty())
+    throw Error(fmt::format("{}: expected a file or an analytic model, found neither{}", spec, meant));
 }
 
 Source parse_file(const FileBytes& file, const OpenOptions& options) {
@@ -116,6 +128,7 @@ Source open_source(const std::string& spec, const OpenOptions& options) {
     return from_neural(read_file(rest.substr(0, mark)),
                        std::string_view(rest).substr(std::min(mark + 1, rest.size())));
   }
+  check_spelling(spec);
   return parse_source(read_file(spec), options);
 }
 

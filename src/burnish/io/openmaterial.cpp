@@ -32,6 +32,8 @@ Json parse_document(const FileBytes& file) {
     return Json::parse(file.text());
   } catch (const Json::parse_error& error) {
     throw Error(file.name, error.byte, "well-formed JSON", "something else");
+  } catch (const Json::exception&) {
+    throw Error::in_file(file.name, "well-formed JSON", "a number beyond all bounds");
   }
 }
 

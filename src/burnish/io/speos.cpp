@@ -47,6 +47,12 @@ double next_number(TextReader& reader, std::string_view what) {
   }
 }
 
+/// Passes over the rest of a line that is no number.
+void skip_line(TextReader& reader) {
+  while (!reader.word().empty()) {
+  }
+}
+
 std::size_t next_count(TextReader& reader, std::string_view what, std::size_t most) {
   const double value = next_number(reader, what);
   if (!(value >= 1 && value <= static_cast<double>(most) && value == std::floor(value)))
@@ -103,6 +109,7 @@ Content read_preamble(TextReader& reader, bool anisotropic) {
   std::size_t read = 0;
   do read += line("a description").size() + 1;
   while (read < length);
+  skip_line(reader);
   if (anisotropic)
     for (int k = 0; k < 3; ++k) next_number(reader, "the anisotropy vector");
   const double reflection = next_number(reader, "whether there is reflection");
@@ -174,6 +181,7 @@ Content read_anisotropic(TextReader& reader, std::vector<std::string>& notes) {
   const double measured_deg = next_number(reader, "the incidence of the spectrum");
   next_number(reader, "the azimuth of the spectrum");
   reader.next_line();  // its description
+  skip_line(reader);
   std::vector<double> reflectance;
   for (std::size_t n = next_count(reader, "the number of wavelengths", kMaxFileChannels); n > 0; --n) {
     content.lambda_nm.push_back(next_number(reader, "a wavelength"));

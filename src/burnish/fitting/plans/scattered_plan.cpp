@@ -118,31 +118,33 @@ constexpr std::size_t kLeastNear = 3;
 
 // Nodes of the factors of a material that backscatters, at most; the grids' sides are equal.
 struct RetroSizes {
-  int p = 48, q = 64, k = 24, b_h = 16, b_d = 40;
+  int p = 48, q = 64, k = 24, b_h = 16, b_d = 40, a_d = 32, a_phi = 6;
 };
 
-// p(wo) p(wi) q(h) k(theta_m,theta_d) b(theta_h,theta_d): b alone sees wi = wo, where theta_h is the angle of both,
-// and its nodes crowd there.
+// p(wo) p(wi) q(h) k(theta_m,theta_d) b(theta_h,theta_d) a(theta_d,phi_d), their nodes crowded at wi = wo, where b
+// follows the angle of both, and a what is not round about it.
 ModelSpec retro_spec(const RetroSizes& sizes) {
   const Warp crowded{WarpKind::power, 0.5};
   const auto line = [](const char* name, int nodes) {
     return ModelSpec::TableSpec{.name = name,
                                 .layout = {.shape = TableShape::line, .width = nodes, .height = 1}};
   };
-  const auto grid = [&](const char* name, int width, int height, Warp warp) {
+  const auto grid = [](const char* name, int width, int height, Warp warp, Warp warp_y) {
     return ModelSpec::TableSpec{
         .name = name,
         .layout = {
-            .shape = TableShape::grid, .width = width, .height = height, .warp = warp, .warp_y = crowded}};
+            .shape = TableShape::grid, .width = width, .height = height, .warp = warp, .warp_y = warp_y}};
   };
   ModelSpec spec;
-  spec.tables = {line("p", sizes.p), line("q", sizes.q), grid("k", sizes.k, sizes.k, crowded),
-                 grid("b", sizes.b_h, sizes.b_d, Warp{})};
+  spec.tables = {line("p", sizes.p), line("q", sizes.q), grid("k", sizes.k, sizes.k, crowded, crowded),
+                 grid("b", sizes.b_h, sizes.b_d, Warp{}, crowded),
+                 grid("a", sizes.a_d, sizes.a_phi, crowded, Warp{})};
   spec.lobes = {{{.table = 0, .projection = kProjectWo, .projection_y = {}},
                  {.table = 0, .projection = kProjectWi, .projection_y = {}},
                  {.table = 1, .projection = kProjectHalf, .projection_y = {}},
                  {.table = 2, .projection = kProjectDeviation, .projection_y = kProjectDifference},
-                 {.table = 3, .projection = kProjectHalf, .projection_y = kProjectDifference}}};
+                 {.table = 3, .projection = kProjectHalf, .projection_y = kProjectDifference},
+                 {.table = 4, .projection = kProjectDifference, .projection_y = kProjectAzimuth}}};
   return spec;
 }
 
@@ -151,8 +153,8 @@ std::optional<ModelSpec> retro_spec_within(std::size_t bytes, int channels, Tabl
   for (const double share : {1.0, 0.7, 0.5, 0.35}) {
     const auto part = [share](int nodes) { return std::max(4, static_cast<int>(share * nodes)); };
     const RetroSizes whole;
-    const ModelSpec spec =
-        retro_spec({part(whole.p), part(whole.q), part(whole.k), part(whole.b_h), part(whole.b_d)});
+    const ModelSpec spec = retro_spec({part(whole.p), part(whole.q), part(whole.k), part(whole.b_h),
+                                       part(whole.b_d), part(whole.a_d), part(whole.a_phi)});
     if (model_bytes(spec, channels, format) <= bytes) return spec;
   }
   return std::nullopt;
