@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <burnish/io/illuminant.h>
 #include <burnish/io/sample_file.h>
 #include <burnish/io/speos.h>
 #include <burnish/io/text_reader.h>
@@ -341,8 +342,9 @@ AngleTable make_table(const FileBytes& file, const Content& content, Findings& f
 }
 
 /// One channel a wavelength becomes three.
-void convert_to_rec709(AngleTable& table, const std::vector<double>& lambda_nm, std::string_view illuminant) {
-  const auto weights = rec709_weights(lambda_nm, illuminant);
+void convert_to_rec709(AngleTable& table, const std::vector<double>& lambda_nm,
+                       const std::string& illuminant) {
+  const auto weights = rec709_weights(lambda_nm, open_illuminant(illuminant));
   std::vector<float> rgb(entry_count(table) * 3);
   for (std::size_t entry = 0; entry < rgb.size() / 3; ++entry)
     for (std::size_t c = 0; c < 3; ++c) {
@@ -393,7 +395,7 @@ SpeosFile parse_speos(const FileBytes& file, const OpenOptions& options) {
 
   if (!content.lambda_nm.empty() && !options.keep_spectral) {
     convert_to_rec709(result.table, content.lambda_nm, options.illuminant);
-    findings.illuminant = options.illuminant == "E" ? "equal energy" : options.illuminant;
+    findings.illuminant = illuminant_name(options.illuminant);
   } else {
     findings.lambda_nm = content.lambda_nm;
   }
