@@ -188,7 +188,8 @@ Baseline parse_baseline(const FileBytes& file) {
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", file.name, error.what()));
   } catch (const Json::parse_error& error) {  // whose message repeats what it read
-    throw Error(file.name, error.byte, "a baseline in JSON", "something that is none");
+    throw Error(
+        fmt::format("{}: expected a baseline in JSON, found: an error at byte {}", file.name, error.byte));
   } catch (const std::exception& error) {  // the JSON library's own
     throw Error(fmt::format("{}: expected a baseline in JSON, found: {:.120}", file.name, error.what()));
   }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include <fmt/format.h>
@@ -370,6 +371,12 @@ SpeosFile parse_speos(const FileBytes& file, const OpenOptions& options) {
   const bool anisotropic = file.text().starts_with(kAnisotropic);
   std::vector<std::string> notes;
   Content content = anisotropic ? read_anisotropic(reader, notes) : read_brdf(reader, notes);
+  const auto& lambda = content.lambda_nm;
+  if (!lambda.empty() &&
+      (lambda.front() <= 0 || lambda.back() >= 1e6 ||
+       std::adjacent_find(lambda.begin(), lambda.end(), std::greater_equal<>{}) != lambda.end()))
+    throw Error::in_file(file.name, "positive, increasing wavelengths",
+                         fmt::format("{} ... {} nm out of order", lambda.front(), lambda.back()));
   findings.format = anisotropic ? "Speos anisotropic BSDF" : "Speos BRDF";
   findings.description = content.comment;
   findings.conventions = {

@@ -28,7 +28,8 @@ TEST(TensorTreeXml, ReadsBracesAndWritesThemBack) {
   EXPECT_EQ(file.table.rank, 3);
   EXPECT_EQ(file.table.values.size(), 8u + 3 + 8 + 3);
   EXPECT_EQ(file.findings.negative_count, 1u);
-  EXPECT_EQ(file.findings.sample_count, 4u + 2 + 4);  // without the half of axis 0 that stands for nothing
+  EXPECT_EQ(file.findings.sample_count,
+            8u + 1 + 8 + 1);  // without the half of axis 0 that stands for nothing
   const TensorTreeFile again = parse_tensor_tree(memory_file(format_tensor_tree(file.table, "a<b&c")), {});
   EXPECT_EQ(again.table.values, file.table.values);
   EXPECT_EQ(again.table.links, file.table.links);
