@@ -1,14 +1,9 @@
-// before Highway, which it sets the targets of
-#include <burnish/math/highway_targets.h>
-
 #include <algorithm>
 #include <thread>
 
 #include <Eigen/Core>
 #include <OpenEXR/OpenEXRConfig.h>
 #include <fmt/format.h>
-#include <hwy/highway.h>
-#include <hwy/targets.h>
 #include <nlohmann/json.hpp>
 #include <png.h>
 #include <pugixml.hpp>
@@ -16,6 +11,11 @@
 #include <zstd.h>
 
 #include <burnish/math/build_info.h>
+#include <burnish/math/highway_targets.h>
+
+// after the list of its targets
+#include <hwy/highway.h>
+#include <hwy/targets.h>
 
 namespace burnish {
 
