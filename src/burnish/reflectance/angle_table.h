@@ -18,7 +18,8 @@ struct AngleAxis {
 };
 
 /// The two nodes next to an angle and the weight of the second. Not `inside` farther from the first or last
-/// node than half its step (the last: than the axis's reach): nothing is known there. A single node stands for every angle.
+/// node than half its step (the last: than the axis's reach): nothing is known there. A single node stands for
+/// every angle.
 struct AxisNeighbours {
   std::array<std::size_t, 2> index{};
   double fraction = 0;
