@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include <CLI/CLI.hpp>
 
 namespace burnish::cli {
@@ -12,10 +14,14 @@ void add_describe_command(CLI::App& app);
 void add_eval_command(CLI::App& app);
 void add_export_command(CLI::App& app);
 void add_fit_command(CLI::App& app);
+void add_help_command(CLI::App& app);
 void add_hw_command(CLI::App& app);
 void add_info_command(CLI::App& app);
 void add_measure_command(CLI::App& app);
 void add_render_command(CLI::App& app);
 void add_specular_command(CLI::App& app);
+
+/// What --version prints: versions, instruction sets, threads.
+std::string version_text();
 
 }  // namespace burnish::cli

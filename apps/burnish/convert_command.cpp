@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
 #include <burnish/file.h>
 #include <burnish/io/convert.h>
@@ -18,6 +19,7 @@ struct ConvertArguments {
   SourceArguments source;
   std::string out, to;
   ConvertOptions options;
+  bool json = false;
 };
 
 /// The format asked for, or the one the output's name ends in.
@@ -26,20 +28,24 @@ std::string target_format(const ConvertArguments& arguments) {
   const std::string extension = std::filesystem::path(arguments.out).extension().string();
   if (extension == ".binary") return "merl";
   if (extension == ".bsdf") return "rgl";
+  if (extension == ".xompt") return "openmaterial";
+  if (extension == ".bin") return "utia";
+  if (extension == ".xml") return "tensortree";
   for (const char* same : {"mbsdf", "astm", "csv", "exr", "burnish"})
     if (extension.substr(extension.empty() ? 0 : 1) == same) return same;
-  throw CLI::ValidationError(
-      arguments.out,
-      "expected a name that ends in .binary, .bsdf, .mbsdf, .astm, .csv, .exr or .burnish, or --to");
+  throw CLI::ValidationError(arguments.out,
+                             "expected a name that ends in .binary, .bin, .bsdf, .mbsdf, .xml, .xompt, "
+                             ".astm, .csv, .exr or .burnish, or "
+                             "--to");
 }
 
 }  // namespace
 
 void add_convert_command(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("convert",
-                                      "Convert a BRDF to a MERL, RGL, MBSDF or Zemax table, ASTM or CSV "
-                                      "samples, or an EXR image of slices; a "
-                                      "model to its other file");
+  CLI::App* verb =
+      app.add_subcommand("convert",
+                         "Convert a BRDF to another format, see `burnish help formats`; a model to its "
+                         "other file");
   verb->footer(
       "ASTM and CSV have the samples of a scattered source, of any other samples drawn as `measure` does, or "
       "with --entries a table's entries. What is lost is said on the standard error output.\n"
@@ -47,11 +53,13 @@ void add_convert_command(CLI::App& app) {
       "          burnish convert model.exr model.burnish");
   auto arguments = std::make_shared<ConvertArguments>();
   add_source_arguments(*verb, arguments->source);
-  verb->add_option("OUT", arguments->out, "file to write")->required();
-  verb->add_option("--to", arguments->to,
-                   "format; by default what OUT ends in: .binary (merl), .bsdf (rgl), .mbsdf, .astm, .csv, "
-                   ".exr (of a model: "
-                   "model, its OpenEXR file; else slices), .burnish")
+  auto* out = verb->add_option("OUT", arguments->out, "file to write");
+  verb->add_option("-o,--output", arguments->out, "the same")->excludes(out);
+  verb->add_option(
+          "--to", arguments->to,
+          "format; by default what OUT ends in: .binary (merl), .bin (utia), .bsdf (rgl), .mbsdf, .xml "
+          "(tensortree), .xompt (openmaterial), .astm, .csv, .exr (of a model: model, its OpenEXR file; "
+          "else slices), .burnish")
       ->check(CLI::IsMember(std::vector<std::string>(kConvertFormats.begin(), kConvertFormats.end())));
   verb->add_option("--cells", arguments->options.cells,
                    "along each polar angle of MERL, MBSDF and EXR, twice as many along the azimuth")
@@ -64,7 +72,9 @@ void add_convert_command(CLI::App& app) {
   verb->add_flag("--entries", arguments->options.entries, "a table's entries in an ASTM or CSV file")
       ->excludes(count);
   verb->add_flag("--notes", arguments->options.notes, "keep a model's notes of its fit in a .burnish file");
+  verb->add_flag("--json", arguments->json, "print what was written and lost as JSON");
   verb->callback([arguments] {
+    if (arguments->out.empty()) throw CLI::RequiredError("OUT or -o");
     std::string format = target_format(*arguments);
     const Source source = arguments->source.open();
     // slices of a model are asked for by name
@@ -72,7 +82,13 @@ void add_convert_command(CLI::App& app) {
     if (is_model && format == "exr" && arguments->to.empty()) format = "model";
     const Converted converted = convert(source, format, arguments->options);
     write_then_rename(arguments->out, converted.bytes);
-    if (!converted.losses.empty())
+    if (arguments->json)
+      fmt::print("{}\n", nlohmann::ordered_json{{"output", arguments->out},
+                                                {"format", format},
+                                                {"bytes", converted.bytes.size()},
+                                                {"lost", converted.losses}}
+                             .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    else if (!converted.losses.empty())
       fmt::print(stderr, "burnish: {}: lost: {}\n", arguments->out, fmt::join(converted.losses, "; "));
   });
 }

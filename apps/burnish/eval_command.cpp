@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <memory>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <burnish/file.h>
 #include <burnish/io/csv.h>
@@ -28,6 +30,7 @@ void add_eval_command(CLI::App& app) {
   struct Arguments {
     SourceArguments source;
     std::string directions, out;
+    bool json = false;
   };
   CLI::App* verb =
       app.add_subcommand("eval", "Evaluate a BRDF at direction pairs: f_r in 1/sr, without the cosine");
@@ -39,6 +42,7 @@ void add_eval_command(CLI::App& app) {
   add_source_arguments(*verb, arguments->source);
   verb->add_option("directions", arguments->directions, "CSV file of direction pairs")->required();
   verb->add_option("-o,--output", arguments->out, "CSV file to write")->required();
+  verb->add_flag("--json", arguments->json, "print how many values were written and known as JSON");
   verb->callback([arguments] {
     const Source source = arguments->source.open();
     const std::vector<DirectionPair> pairs = parse_directions(read_file(arguments->directions));
@@ -61,6 +65,12 @@ void add_eval_command(CLI::App& app) {
       text += '\n';
     }
     write_then_rename(arguments->out, text);
+    if (arguments->json)
+      fmt::print("{}\n", nlohmann::ordered_json{{"output", arguments->out},
+                                                {"pairs", pairs.size()},
+                                                {"known", std::count(known.begin(), known.end(), 1)},
+                                                {"channels", channels}}
+                             .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   });
 }
 

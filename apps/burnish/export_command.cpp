@@ -3,6 +3,7 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <burnish/export/export_model.h>
 #include <burnish/export/export_specular.h>
@@ -21,7 +22,7 @@ namespace {
 struct ExportArguments {
   std::string model, folder, name, power, environment;
   std::vector<std::string> to;
-  bool exact = false, plain = false, mips = false;
+  bool exact = false, plain = false, mips = false, json = false;
 };
 
 // What shaders can be called, of a file's name.
@@ -74,6 +75,18 @@ void run(const ExportArguments& arguments) {
   const ExportedFiles exported =
       is_analytic_spec(arguments.model) ? exported_specular(arguments) : exported_model(arguments);
   write_files(arguments.folder, exported.files);
+  if (arguments.json) {
+    auto files = nlohmann::ordered_json::array();
+    for (const ExportedFile& file : exported.files) files.push_back(file.name);
+    auto shaders = nlohmann::ordered_json::array();
+    for (const auto& [file, how, cost] : exported.shaders)
+      shaders.push_back({{"file", file}, {"how", how}, {"cost", to_string(cost)}});
+    fmt::print(
+        "{}\n",
+        nlohmann::ordered_json{{"output", arguments.folder}, {"files", files}, {"shaders", shaders}}.dump(
+            2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    return;
+  }
   for (const ExportedFile& file : exported.files) fmt::print("{}\n", file.name);
   for (const auto& [file, how, cost] : exported.shaders)
     fmt::print("{}: {}, {}\n", file, how, to_string(cost));
@@ -100,7 +113,7 @@ void add_export_command(CLI::App& app) {
   verb->add_option("--to", arguments->to, "what to write; may be given several times")
       ->required()
       ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())));
-  verb->add_option("-o,--out", arguments->folder, "folder, made where it is missing")->required();
+  verb->add_option("-o,--output,--out", arguments->folder, "folder, made where it is missing")->required();
   verb->add_option("--name", arguments->name, "of functions and files; by default from MODEL's name");
   verb->add_option(
       "--power", arguments->power,
@@ -110,6 +123,7 @@ void add_export_command(CLI::App& app) {
   verb->add_flag("--exact", arguments->exact, "shaders that weigh texels themselves, in floats");
   verb->add_flag("--mips", arguments->mips, "KTX2 with levels: averages over the directions of a texel");
   verb->add_flag("--plain", arguments->plain, "textures that are not compressed");
+  verb->add_flag("--json", arguments->json, "print the files and what shaders cost as JSON");
   verb->callback([arguments] { run(*arguments); });
 }
 

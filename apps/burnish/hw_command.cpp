@@ -76,7 +76,7 @@ void add_generate(CLI::App& verb) {
   sub->add_flag("--all", arguments->all, "every configuration of hw/, and a module `bench` around them");
   sub->add_flag("--blinn", arguments->blinn,
                 "with Blinn's front end: vectors in; for --method exact --input versine");
-  sub->add_option("-o,--out", arguments->out, "folder, made where it is missing")->required();
+  sub->add_option("-o,--output,--out", arguments->out, "folder, made where it is missing")->required();
   sub->callback([unit_arguments, arguments] {
     std::vector<std::string> names;
     std::vector<SpecularUnit> units;

@@ -1,15 +1,17 @@
 #include <exception>
+#include <span>
 
 #include <fmt/core.h>
 
 #include <burnish/error.h>
 
 #include "commands.h"
+#include "usage.h"
 
 int main(int argc, char** argv) {
   CLI::App app{"burnish: measured, scattered or analytic reflectance into a few small positive textures"};
   app.require_subcommand(1);
-  app.set_version_flag("--version", "burnish " BURNISH_VERSION);
+  app.set_version_flag("--version", burnish::cli::version_text);
   burnish::cli::add_info_command(app);
   burnish::cli::add_fit_command(app);
   burnish::cli::add_eval_command(app);
@@ -21,16 +23,22 @@ int main(int argc, char** argv) {
   burnish::cli::add_specular_command(app);
   burnish::cli::add_hw_command(app);
   burnish::cli::add_describe_command(app);
+  burnish::cli::add_help_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     // CLI11 returns its own codes; ours is 2 for every misuse, 0 for --help.
-    return app.exit(error) == 0 ? 0 : 2;
+    if (error.get_exit_code() == 0) return app.exit(error);
+    const auto meant =
+        burnish::cli::misspelling(app, std::span(argv, static_cast<std::size_t>(argc)).subspan(1));
+    fmt::print(stderr, "burnish: {}\nRun with --help for more information.\n",
+               burnish::cli::short_message(meant ? *meant : error.what()));
+    return 2;
   } catch (const burnish::Error& error) {
-    fmt::print(stderr, "burnish: {}\n", error.what());
+    fmt::print(stderr, "burnish: {}\n", burnish::cli::short_message(error.what()));
     return 1;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "burnish: {}\n", error.what());
+    fmt::print(stderr, "burnish: {}\n", burnish::cli::short_message(error.what()));
     return 1;
   }
   return 0;

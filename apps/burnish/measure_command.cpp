@@ -1,6 +1,7 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <burnish/file.h>
 #include <burnish/io/csv.h>
@@ -16,6 +17,7 @@ void add_measure_command(CLI::App& app) {
     SourceArguments source;
     MeasureOptions measurement;
     std::string out;
+    bool json = false;
   };
   CLI::App* verb =
       app.add_subcommand("measure", "Measure a BRDF with a virtual goniometer: scattered samples as CSV");
@@ -33,11 +35,18 @@ void add_measure_command(CLI::App& app) {
   verb->add_option("--seed", arguments->measurement.seed, "of directions and noise")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  verb->add_flag("--json", arguments->json, "print what was written as JSON");
   verb->callback([arguments] {
     const Source source = arguments->source.open();
     const Samples samples = measure(source.ref(), arguments->measurement);
     write_then_rename(arguments->out, samples_csv(samples, source.findings.lambda_nm));
-    fmt::print("{} samples to {}\n", samples.size(), arguments->out);
+    if (arguments->json)
+      fmt::print("{}\n",
+                 nlohmann::ordered_json{
+                     {"output", arguments->out}, {"samples", samples.size()}, {"channels", samples.channels}}
+                     .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    else
+      fmt::print("{} samples to {}\n", samples.size(), arguments->out);
   });
 }
 

@@ -10,12 +10,14 @@ void add_source_arguments(CLI::App& verb, SourceArguments& arguments) {
       ->required();
   OpenOptions& options = arguments.options;
   verb.add_flag("--spectral", options.keep_spectral, "keep one channel a wavelength");
-  verb.add_option("--illuminant", options.illuminant, "light under which spectra become RGB")
-      ->check(CLI::IsMember({"E", "D65"}))
+  verb.add_option("--illuminant", options.illuminant,
+                  "light under which spectra become RGB: E (equal energy), D50, D65, A, or a file of "
+                  "wavelengths in nm "
+                  "and powers")
       ->capture_default_str();
   verb.add_flag("--has-cosine", options.has_cosine, "CSV values are f_r cos(theta_i)");
   verb.add_flag("!--keep-negatives", options.clamp_negatives, "leave values below zero as they are");
-  verb.add_flag("--back", options.back_side, "Klems: the back side's reflection");
+  verb.add_flag("--back", options.back_side, "Klems and tensor trees: the back side's reflection");
 }
 
 }  // namespace burnish::cli

@@ -153,7 +153,7 @@ void add_specular_code(CLI::App& verb) {
   sub->add_option("--lang", arguments->language, "language: " + languages)->capture_default_str();
   sub->add_option("--exponent", arguments->exponent, "constants for this exponent; without it an argument");
   sub->add_flag("--normalize", arguments->normalize, "keep the energy of the power; needs --exponent");
-  sub->add_option("-o,--out", arguments->out, "file to write instead of standard output");
+  sub->add_option("-o,--output,--out", arguments->out, "file to write instead of standard output");
   sub->callback([arguments] {
     write_text(arguments->out, usage([&] {
                  return power_code(power_method(arguments->method),
@@ -207,7 +207,7 @@ void add_specular_table(CLI::App& verb) {
   sub->add_option("--count", arguments->count, "largest exponent")->capture_default_str();
   sub->add_option("--fraction-bits", arguments->fraction_bits, "of the PROM's fixed point words")
       ->capture_default_str();
-  sub->add_option("-o,--out", arguments->out, "file to write instead of standard output");
+  sub->add_option("-o,--output,--out", arguments->out, "file to write instead of standard output");
   sub->callback([arguments] {
     write_text(arguments->out, usage([&] {
                  return quadratic_table(arguments->format, arguments->count, arguments->fraction_bits);

@@ -126,7 +126,7 @@ void add_specular_plot(CLI::App& verb) {
       ->capture_default_str();
   sub->add_option("--method", arguments->methods, "members, see `specular list`")->capture_default_str();
   sub->add_option("--exponent", arguments->exponents, "exponents")->capture_default_str();
-  sub->add_option("-o,--out", arguments->out, "file to write")->required();
+  sub->add_option("-o,--output,--out", arguments->out, "file to write")->required();
   sub->callback([arguments] {
     const std::vector<PowerMethod> methods = parse_methods(arguments->methods);
     if (arguments->figure != "sphere") {
@@ -156,7 +156,8 @@ void add_specular_report(CLI::App& verb) {
       ->check(CLI::Range(4.0, kMaxExponent))
       ->capture_default_str();
   sub->add_flag("--json", arguments->json, "for programs");
-  sub->add_option("-o,--out", arguments->out, "folder for the figures as SVG and PNG; none without it");
+  sub->add_option("-o,--output,--out", arguments->out,
+                  "folder for the figures as SVG and PNG; none without it");
   sub->callback([arguments] {
     print_report(arguments->exponent, arguments->json);
     if (arguments->out.empty()) return;

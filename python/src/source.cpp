@@ -208,7 +208,8 @@ void bind_source(nb::module_& m) {
           "has_cosine: bool = False, clamp_negatives: bool = True, back_side: bool = False) -> Source"),
       "Opens a file of any known format (found by content), a neural encoding \"nbrdf:FILE#NAME\" or\n"
       "\"np:FOLDER#NAME\", or an analytic BRDF such as \"ggx:alpha_x=0.1,alpha_y=0.3\".\n\n"
-      "keep_spectral: one channel a wavelength instead of linear Rec. 709; illuminant: \"E\" or \"D65\", "
+      "keep_spectral: one channel a wavelength instead of linear Rec. 709; illuminant: \"E\", \"D50\", "
+      "\"D65\", \"A\" or a file, "
       "the\n"
       "light under which spectra become RGB; has_cosine: CSV values are f_r cos(theta_i); clamp_negatives: "
       "set\n"

@@ -20,12 +20,13 @@
 #include <burnish/reflectance/patch_table.h>
 #include <burnish/reflectance/rgl_table.h>
 #include <burnish/reflectance/scattered_brdf.h>
+#include <burnish/reflectance/tensor_tree.h>
 
 namespace burnish {
 
 /// Everything a BRDF argument can be. Files become one by open_source (io/open_source.h).
-using AnyBrdf = std::variant<HalfDiffTable, RglTable, ScatteredBrdf, AngleTable, PatchTable, AnalyticBrdf,
-                             NeuralBrdf, NpBrdf, SeparableBrdf, DgfBrdf, FactoredBrdf>;
+using AnyBrdf = std::variant<HalfDiffTable, RglTable, ScatteredBrdf, AngleTable, PatchTable, TensorTree,
+                             AnalyticBrdf, NeuralBrdf, NpBrdf, SeparableBrdf, DgfBrdf, FactoredBrdf>;
 
 /// An opened BRDF and what was found in it.
 struct Source {

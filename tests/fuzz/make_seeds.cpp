@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
     write(name, name, bytes);
     write("source", name, bytes);
   }
+  write("utia", "utia", burnish::seeds::kUtia);
   write("np", "np", burnish::seeds::kNpCode);
   write("directions", "directions", burnish::seeds::kDirections);
   return 0;

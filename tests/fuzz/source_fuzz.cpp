@@ -5,6 +5,6 @@
 // Whatever the content turns out to be.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return burnish::fuzz(data, size, [](const burnish::FileBytes& file, const burnish::OpenOptions& options) {
-    burnish::check_values(burnish::parse_source(file, options).ref(), false);
+    burnish::check_values(burnish::parse_source(file, options).ref());
   });
 }

@@ -187,8 +187,11 @@ Baseline parse_baseline(const FileBytes& file) {
     return baseline;
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", file.name, error.what()));
+  } catch (const Json::parse_error& error) {  // whose message repeats what it read
+    throw Error(
+        fmt::format("{}: expected a baseline in JSON, found: an error at byte {}", file.name, error.byte));
   } catch (const std::exception& error) {  // the JSON library's own
-    throw Error(fmt::format("{}: expected a baseline in JSON, found: {}", file.name, error.what()));
+    throw Error(fmt::format("{}: expected a baseline in JSON, found: {:.120}", file.name, error.what()));
   }
 }
 

@@ -34,6 +34,8 @@ namespace {
 
 // Scattered samples are few and noisy: they are fitted robustly, with the smoothness that predicts best.
 constexpr int kScatteredReweightings = 4;
+// Of samples that weigh differently, whose conjugate gradients take longer.
+constexpr double kBackscatterTolerance = 2e-4;
 // Steps that look at albedos, and their share in the loss.
 constexpr int kAlbedoSteps = 20, kLongAlbedoSteps = 6;
 constexpr double kAlbedoShare = 0.3;
@@ -184,6 +186,10 @@ class Fitter {
     const SampleSource source = from_samples(*samples(), false);
     if (options_.format) check_format_of_source(*options_.format);
     HomomorphicOptions options = log_linear_options(form.scattered);
+    if (backscatters(source)) {
+      options.backscatter = kBackscatterReach;
+      options.tolerance = kBackscatterTolerance;
+    }
     const ScatteredPlan plan = plan_scattered(source, bytes, options_.smooth, options_.format, options);
     options.smooth = plan.smooth;
     options.format = plan.format;

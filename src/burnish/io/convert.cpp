@@ -13,8 +13,11 @@
 #include <burnish/io/mbsdf.h>
 #include <burnish/io/merl.h>
 #include <burnish/io/open_source.h>
+#include <burnish/io/openmaterial.h>
 #include <burnish/io/rgl.h>
 #include <burnish/io/slice_image.h>
+#include <burnish/io/tensor_tree_xml.h>
+#include <burnish/io/utia.h>
 #include <burnish/io/zemax.h>
 #include <burnish/reflectance/azimuth_mean.h>
 #include <burnish/reflectance/goniometer.h>
@@ -29,6 +32,10 @@ constexpr std::size_t kComparedPairs = 2000;
 constexpr double kFloor = 1e-3;       // as in error_figures.h
 constexpr double kReciprocal = 1e-6;  // asymmetry that is rounding
 constexpr std::size_t kMirrorPairs = 500;
+constexpr double kTreeTolerance = 1e-3;  // of cubes that become one
+// Where a format of spectra has grey, and the dominant wavelengths of the primaries of Rec. 709.
+constexpr double kGrey_nm = 555;
+constexpr std::array kPrimaries_nm{611.4, 549.1, 464.2};
 
 /// A source with the plane of incidence as its mirror: the other side's values.
 struct OtherSide {
@@ -41,6 +48,30 @@ struct OtherSide {
     return source.eval({wi.x, -wi.y, wi.z}, {wo.x, -wo.y, wo.z}, f);
   }
 };
+
+/// The luminance of an RGB source, the value of a grey one.
+struct Luminance {
+  BrdfRef source;
+
+  std::size_t channels() const noexcept { return 1; }
+  bool isotropic() const noexcept { return source.isotropic(); }
+  bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+    if (source.channels() == 1) return source.eval(wi, wo, f);
+    std::array<double, 3> rgb;
+    const bool known = source.eval(wi, wo, rgb);
+    f[0] = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];  // [ITU 2015]
+    return known;
+  }
+};
+
+/// Each value three times.
+AngleTable in_three_channels(const AngleTable& grey) {
+  AngleTable table = grey;
+  table.channel_count = 3;
+  table.values.clear();
+  for (const float value : grey.values) table.values.insert(table.values.end(), 3, value);
+  return table;
+}
 
 /// The figure `relative` over pairs that both know; nothing if there are none.
 std::optional<double> relative_difference(BrdfRef a, BrdfRef b, std::size_t count) {
@@ -83,6 +114,9 @@ class Converter {
     if (format == "rgl") return rgl();
     if (format == "mbsdf") return mbsdf();
     if (format == "zemax") return zemax();
+    if (format == "utia") return utia();
+    if (format == "tensortree") return tensor_tree();
+    if (format == "openmaterial") return openmaterial();
     if (format == "exr") return slices();
     if (format == "model") return kept(format_model(to_model(source_)));
     if (format == "burnish") return compact();
@@ -100,6 +134,13 @@ class Converter {
   void require_grey_or_rgb(const char* format) const {
     if (const std::size_t channels = brdf_.channels(); channels != 1 && channels != 3)
       throw Error::in_file(source_.name, fmt::format("grey or RGB for {}, so no --spectral", format),
+                           fmt::format("{} channels", channels));
+  }
+
+  void require_grey_or_rgb_or_spectra() const {
+    const auto bands = source_.findings.lambda_nm.size();
+    if (const std::size_t channels = brdf_.channels(); channels != 1 && channels != 3 && bands == 0)
+      throw Error::in_file(source_.name, "grey, RGB or wavelengths for OpenMATERIAL",
                            fmt::format("{} channels", channels));
   }
 
@@ -122,14 +163,28 @@ class Converter {
       lose("the sides of the plane of incidence averaged (difference {:.3g} %)", 100 * error);
   }
 
-  /// The bytes, and how far from the source they are.
+  void lose_unknown(const AngleTable& made) {
+    const auto entries = made.values.size() / made.channel_count;
+    const auto unknown = static_cast<std::size_t>(
+        std::count_if(made.values.begin(), made.values.end(), [](float v) { return std::isnan(v); }) /
+        made.channel_count);
+    if (unknown > 0)
+      lose("unknown directions became 0 ({:.3g} % of the entries)",
+           100 * static_cast<double>(unknown) / static_cast<double>(entries));
+  }
+
   Converted sampled(const std::string& where, std::string bytes) {
+    return sampled(where, std::move(bytes), brdf_);
+  }
+
+  /// The bytes, and how far from `brdf` they are.
+  Converted sampled(const std::string& where, std::string bytes, BrdfRef brdf) {
     if (source_.samples()) lose("scattered samples interpolated");
     // read back, as another program would
     const auto* data = reinterpret_cast<const std::byte*>(bytes.data());
     const Source back = parse_source({"converted", {data, data + bytes.size()}},
                                      {.keep_spectral = !source_.findings.lambda_nm.empty()});
-    const auto difference = relative_difference(brdf_, back.ref(), kComparedPairs);
+    const auto difference = relative_difference(brdf, back.ref(), kComparedPairs);
     lose("sampled at {}{}", where,
          difference ? fmt::format(", {:.3g} % from the source on average", 100 * *difference) : "");
     return kept(std::move(bytes));
@@ -192,13 +247,7 @@ class Converter {
     lose_sides(brdf);
     const auto n = static_cast<std::size_t>(options_.cells);
     const AngleTable made = tabulate_angles(brdf, mbsdf_layout(n, 2 * n));
-    const auto entries = made.values.size() / made.channel_count;
-    const auto unknown = static_cast<std::size_t>(
-        std::count_if(made.values.begin(), made.values.end(), [](float v) { return std::isnan(v); }) /
-        made.channel_count);
-    if (unknown > 0)
-      lose("unknown directions became 0 ({:.3g} % of the entries)",
-           100 * static_cast<double>(unknown) / static_cast<double>(entries));
+    lose_unknown(made);
     return sampled(cells("angle"), format_mbsdf(made));
   }
 
@@ -214,6 +263,66 @@ class Converter {
         fmt::format("{} x {} x {} x {} angles around the mirror direction", made.axes[0].nodes.size(),
                     made.axes[1].nodes.size(), made.axes[2].nodes.size(), made.axes[3].nodes.size()),
         format_zemax(made, sample));
+  }
+
+  Converted utia() {
+    require_grey_or_rgb("UTIA");
+    const auto* table = std::get_if<AngleTable>(&source_.brdf);
+    if (table && fits_utia(*table)) return kept(format_utia(*table));
+    AngleTable layout = utia_layout();
+    layout.channel_count = brdf_.channels();
+    AngleTable made = tabulate_angles(brdf_, std::move(layout));
+    lose_unknown(made);
+    if (made.channel_count == 1) made = in_three_channels(made);
+    return sampled("6 x 48 x 6 x 48 angles, constant beyond 75 degrees", format_utia(made));
+  }
+
+  Converted tensor_tree() {
+    require_grey_or_rgb("a tensor tree");
+    if (const auto* tree = std::get_if<TensorTree>(&source_.brdf))
+      return kept(format_tensor_tree(*tree, sample_name()));
+    const Luminance grey{brdf_};
+    if (brdf_.channels() == 3) lose("colour: its luminance is kept");
+    // half the cells along a polar angle, a power of two
+    int depth = 1;
+    while (depth < 5 && 4 << depth <= options_.cells) ++depth;
+    const int along = 1 << depth;
+    const std::string text = format_tensor_tree(tabulate_tree(grey, depth, kTreeTolerance), sample_name());
+    return sampled(fmt::format("{0} x {0} x {0} x {0} cells of Shirley-Chiu squares", along), text, grey);
+  }
+
+  Converted openmaterial() {
+    require_grey_or_rgb_or_spectra();
+    // isotropic samples: as they are, a table's entries, or draws
+    std::optional<Samples> made;
+    const Samples* samples = source_.samples();
+    if (!brdf_.isotropic()) samples = nullptr;
+    if (!samples && options_.entries && brdf_.isotropic()) {
+      made = table_entries(source_);
+      lose("the table's grid: {} entries became scattered samples", made->size());
+    } else if (!samples) {
+      made = measure(isotropic(), {options_.count, 0, options_.seed});
+      lose("{} samples drawn at random directions", made->size());
+    }
+    if (made) samples = &*made;
+    if (const auto below = std::ranges::count_if(samples->values, [](double v) { return v < 0; }); below > 0)
+      lose("{} values below zero became zero", below);
+    std::vector<double> lambda_nm = source_.findings.lambda_nm;
+    if (lambda_nm.empty() && samples->channels == 1) {
+      lambda_nm = {kGrey_nm};
+      lose("grey stands at {} nm", kGrey_nm);
+    } else if (lambda_nm.empty()) {
+      // wavelengths increase
+      lambda_nm = {kPrimaries_nm[2], kPrimaries_nm[1], kPrimaries_nm[0]};
+      Samples turned = *samples;
+      for (std::size_t i = 0; i < turned.size(); ++i)
+        std::swap(turned.values[3 * i], turned.values[3 * i + 2]);
+      made = std::move(turned);
+      samples = &*made;
+      lose("red, green and blue stand at {}, {} and {} nm", kPrimaries_nm[0], kPrimaries_nm[1],
+           kPrimaries_nm[2]);
+    }
+    return kept(format_openmaterial(*samples, lambda_nm, sample_name()));
   }
 
   Converted compact() {
@@ -293,6 +402,10 @@ void add_entries(const AngleTable& table, EntryList& list) {
   for (std::size_t i = 0; i < entry_count(table); ++i)
     if (!std::isnan(table.values[i * table.channel_count]))
       list.add(node_directions(table, node_of_entry(table, i)));
+}
+
+void add_entries(const TensorTree& table, EntryList& list) {
+  for (const TreeLeaf& leaf : leaves(table)) list.add(leaf_directions(table, leaf));
 }
 
 void add_entries(const PatchTable& table, EntryList& list) {

@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <filesystem>
 
 #include <fmt/format.h>
 
 #include <burnish/baselines/baseline_file.h>
+#include <burnish/io/alta.h>
 #include <burnish/io/astm.h>
 #include <burnish/io/cornell.h>
 #include <burnish/io/csv.h>
@@ -12,10 +14,15 @@
 #include <burnish/io/neural.h>
 #include <burnish/io/np.h>
 #include <burnish/io/open_source.h>
+#include <burnish/io/openmaterial.h>
 #include <burnish/io/rgl.h>
+#include <burnish/io/speos.h>
+#include <burnish/io/tensor_tree_xml.h>
 #include <burnish/io/text_reader.h>
+#include <burnish/io/utia.h>
 #include <burnish/io/zemax.h>
 #include <burnish/math/angles.h>
+#include <burnish/math/closest_name.h>
 
 namespace burnish {
 
@@ -64,16 +71,31 @@ Source from_spec(const std::string& spec) {
   return {spec, std::move(brdf), std::move(findings)};
 }
 
+/// Throws Error if the text is no file and nearly the name of an analytic model.
+void check_spelling(const std::string& spec) {
+  if (std::error_code none; std::filesystem::exists(spec, none)) return;
+  std::vector<std::string_view> names;
+  for (const AnalyticModel& model : analytic_models()) names.push_back(model.name);
+  const std::string_view name = std::string_view(spec).substr(0, spec.find(':'));
+  if (const std::string meant = did_you_mean(name, names); !meant.empty())
+    throw Error(fmt::format("{}: expected a file or an analytic model, found neither{}", spec, meant));
+}
+
 Source parse_file(const FileBytes& file, const OpenOptions& options) {
   // Binary formats first: their first bytes are unmistakable.
   if (looks_like_model(file.bytes)) return to_source(file.name, parse_model(file));
   if (looks_like_rgl(file.bytes)) return from_table(file, parse_rgl(file, options));
   if (looks_like_mbsdf(file.bytes)) return from_table(file, parse_mbsdf(file));
+  if (looks_like_utia(file.bytes)) return from_table(file, parse_utia(file));
   if (looks_like_merl(file.bytes)) return from_table(file, parse_merl(file));
   const std::string_view text = file.text();
+  if (looks_like_openmaterial(text)) return from_samples(file, parse_openmaterial(file, options));
   if (looks_like_baseline(text)) return from_baseline(file);
+  if (looks_like_tensor_tree(text)) return from_table(file, parse_tensor_tree(file, options));
   if (looks_like_klems(text)) return from_table(file, parse_klems(file, options));
   if (looks_like_zemax(text)) return from_table(file, parse_zemax(file));
+  if (looks_like_speos(text)) return from_table(file, parse_speos(file, options));
+  if (looks_like_alta(text)) return from_samples(file, parse_alta(file, options));
   if (looks_like_neural(text)) return from_neural(file, {});
   if (looks_like_csv(text)) return from_samples(file, parse_csv(file, options));
   if (looks_like_astm(text)) return from_samples(file, parse_astm(file, options));
@@ -81,11 +103,11 @@ Source parse_file(const FileBytes& file, const OpenOptions& options) {
   if (looks_like_np(text))
     throw Error::in_file(file.name, "np:FILE#NAME for one of its codes, a decoder.f32 beside it",
                          "the file alone");
-  throw Error(
-      file.name, 0,
-      "a MERL, RGL, MBSDF, Zemax, Klems, ASTM E1392, Cornell or CSV measurement, a neural encoding, a "
-      "baseline or a burnish model",
-      fmt::format("something that starts with {}", in_quotes(text.substr(0, 16))));
+  throw Error(file.name, 0,
+              "a measurement (MERL, UTIA, RGL, MBSDF, Zemax, Klems, tensor tree, Speos, OpenMATERIAL, ALTA, "
+              "ASTM E1392, "
+              "Cornell, CSV), a neural encoding, a baseline or a burnish model",
+              fmt::format("something that starts with {}", in_quotes(text.substr(0, 16))));
 }
 
 }  // namespace
@@ -106,6 +128,7 @@ Source open_source(const std::string& spec, const OpenOptions& options) {
     return from_neural(read_file(rest.substr(0, mark)),
                        std::string_view(rest).substr(std::min(mark + 1, rest.size())));
   }
+  check_spelling(spec);
   return parse_source(read_file(spec), options);
 }
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <burnish/io/illuminant.h>
 #include <burnish/io/rgl.h>
 #include <burnish/io/tensor_file.h>
 #include <burnish/math/angles.h>
@@ -88,8 +89,8 @@ std::size_t node_count(const RglGrid& grid) noexcept {
   return static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height);
 }
 
-void convert_to_rec709(RglData& data, std::string_view illuminant) {
-  const auto weights = rec709_weights(data.lambda_nm, illuminant);
+void convert_to_rec709(RglData& data, const std::string& illuminant) {
+  const auto weights = rec709_weights(data.lambda_nm, open_illuminant(illuminant));
   const std::size_t bands = weights.size(), count = data.spectra.values.size() / bands;
   std::vector<float> rgb(3 * count);
   for (std::size_t i = 0; i < count; ++i)
@@ -206,7 +207,7 @@ RglFile parse_rgl(const FileBytes& file, const OpenOptions& options) {
       findings.lambda_nm = data.lambda_nm;
     } else if (spectral) {
       convert_to_rec709(data, options.illuminant);
-      findings.illuminant = options.illuminant == "E" ? "equal energy" : options.illuminant;
+      findings.illuminant = illuminant_name(options.illuminant);
     }
     RglTable table(std::move(data));
     if (table.reduction() > 1)

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <burnish/error.h>
+#include <burnish/io/illuminant.h>
 #include <burnish/io/sample_file.h>
 #include <burnish/math/angles.h>
 #include <burnish/math/spectrum.h>
@@ -52,10 +53,10 @@ void finish_samples(const std::string& file, const OpenOptions& options, SampleF
         std::adjacent_find(lambda.begin(), lambda.end(), std::greater_equal<>{}) != lambda.end())
       throw Error::in_file(file, "positive, increasing wavelengths",
                            fmt::format("{} ... {} nm out of order", lambda.front(), lambda.back()));
-    if (!options.keep_spectral) {
-      samples.values = to_rec709(samples, rec709_weights(lambda, options.illuminant));
+    if (!options.keep_spectral && lambda.size() > 1) {
+      samples.values = to_rec709(samples, rec709_weights(lambda, open_illuminant(options.illuminant)));
       samples.channels = 3;
-      findings.illuminant = options.illuminant == "E" ? "equal energy" : options.illuminant;
+      findings.illuminant = illuminant_name(options.illuminant);
       findings.conventions.push_back(fmt::format("{} wavelengths, {} to {} nm, became linear Rec. 709.",
                                                  lambda.size(), lambda.front(), lambda.back()));
       if (const auto outside = std::ranges::count_if(samples.values, [](double v) { return v < 0; }))

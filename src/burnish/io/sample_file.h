@@ -16,7 +16,7 @@ struct SampleFile {
 inline constexpr std::size_t kMaxFileChannels = 1024;
 
 /// The last step of the readers of scattered samples. Counts negatives, which stay; turns spectra
-/// (findings.lambda_nm not empty) into linear Rec. 709 unless they are kept; fills in the number of samples
+/// (findings.lambda_nm of two or more) into linear Rec. 709 unless they are kept; fills in the number of samples
 /// and the angles covered. Throws Error, naming `file`, if there are no samples or wavelengths do not
 /// increase.
 void finish_samples(const std::string& file, const OpenOptions& options, SampleFile& result);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include <burnish/error.h>
@@ -112,6 +113,32 @@ Vec3 adapt(Vec3 xyz, Vec3 from) noexcept {
   return inverse * Vec3{c.x * target.x / source.x, c.y * target.y / source.y, c.z * target.z / source.z};
 }
 
+/// Mean and first two components of daylight, every 10 nm from 380 nm on. [CIE 2018]
+constexpr std::array<std::array<double, 3>, 41> kDaylight{
+    {{63.4, 38.5, 3.0},   {65.8, 35.0, 1.2},   {94.8, 43.4, -1.1},  {104.8, 46.3, -0.5}, {105.9, 43.9, -0.7},
+     {96.8, 37.1, -1.2},  {113.9, 36.7, -2.6}, {125.6, 35.9, -2.9}, {125.5, 32.6, -2.8}, {121.3, 27.9, -2.6},
+     {121.3, 24.3, -2.6}, {113.5, 20.1, -1.8}, {113.1, 16.2, -1.5}, {110.8, 13.2, -1.3}, {106.5, 8.6, -1.2},
+     {108.8, 6.1, -1.0},  {105.3, 4.2, -0.5},  {104.4, 1.9, -0.3},  {100.0, 0.0, 0.0},   {96.0, -1.6, 0.2},
+     {95.1, -3.5, 0.5},   {89.1, -3.5, 2.1},   {90.5, -5.8, 3.2},   {90.3, -7.2, 4.1},   {88.4, -8.6, 4.7},
+     {84.0, -9.5, 5.1},   {85.1, -10.9, 6.7},  {81.9, -10.7, 7.3},  {82.6, -12.0, 8.6},  {84.9, -14.0, 9.8},
+     {81.3, -13.6, 10.2}, {71.9, -12.0, 8.3},  {74.3, -13.3, 9.6},  {76.4, -12.9, 8.5},  {63.3, -10.6, 7.0},
+     {71.7, -11.6, 7.6},  {77.0, -12.2, 8.0},  {65.2, -10.2, 6.7},  {47.7, -7.8, 5.2},   {68.6, -11.2, 7.4},
+     {65.0, -10.4, 6.8}}};
+constexpr double kD50x = 0.34567, kD50y = 0.35850;
+
+/// Daylight of a chromaticity. [CIE 2018]
+double daylight_power(const std::array<double, 3>& row, double x, double y) noexcept {
+  const double m = 0.0241 + 0.2562 * x - 0.7341 * y;
+  const double m1 = (-1.3515 - 1.7703 * x + 5.9114 * y) / m, m2 = (0.0300 - 31.4424 * x + 30.0717 * y) / m;
+  return row[0] + m1 * row[1] + m2 * row[2];
+}
+
+/// Illuminant A, 100 at 560 nm. [CIE 2018]
+double illuminant_a(double lambda_nm) noexcept {
+  constexpr double kSecond = 1.435e7 / 2848;  // nm
+  return 100 * std::pow(560 / lambda_nm, 5) * std::expm1(kSecond / 560) / std::expm1(kSecond / lambda_nm);
+}
+
 }  // namespace
 
 std::array<double, 3> cie_1931_xyz(double lambda_nm) noexcept {
@@ -123,11 +150,45 @@ double cie_d65(double lambda_nm) noexcept {
   return cie_at(lambda_nm).d65;
 }
 
+double Illuminant::at(double lambda) const noexcept {
+  if (lambda_nm.empty() || lambda < lambda_nm.front() || lambda > lambda_nm.back()) return 0;
+  const auto above = static_cast<std::size_t>(std::upper_bound(lambda_nm.begin(), lambda_nm.end(), lambda) -
+                                              lambda_nm.begin());
+  if (above == lambda_nm.size()) return power.back();
+  const double t = (lambda - lambda_nm[above - 1]) / (lambda_nm[above] - lambda_nm[above - 1]);
+  return (1 - t) * power[above - 1] + t * power[above];
+}
+
+Illuminant standard_illuminant(std::string_view name) {
+  Illuminant light{.name = std::string(name), .lambda_nm = {}, .power = {}};
+  if (name == "D50") {
+    for (std::size_t i = 0; i < kDaylight.size(); ++i) {
+      light.lambda_nm.push_back(kFirst_nm + 10 * static_cast<double>(i));
+      light.power.push_back(daylight_power(kDaylight[i], kD50x, kD50y));
+    }
+    return light;
+  }
+  for (int i = 0; i < kRows; ++i) {
+    const double lambda = kFirst_nm + kStep_nm * i;
+    light.lambda_nm.push_back(lambda);
+    if (name == "E")
+      light.power.push_back(1);
+    else if (name == "D65")
+      light.power.push_back(cie_d65(lambda));
+    else if (name == "A")
+      light.power.push_back(illuminant_a(lambda));
+    else
+      throw Error("illuminant: expected E, D50, D65, A or a file, found " + std::string(name));
+  }
+  return light;
+}
+
+std::vector<std::array<double, 3>> rec709_weights(std::span<const double> lambda_nm, std::string_view name) {
+  return rec709_weights(lambda_nm, standard_illuminant(name));
+}
+
 std::vector<std::array<double, 3>> rec709_weights(std::span<const double> lambda_nm,
-                                                  std::string_view illuminant) {
-  const bool d65 = illuminant == "D65";
-  if (!d65 && illuminant != "E")
-    throw Error("illuminant: expected E or D65, found " + std::string(illuminant));
+                                                  const Illuminant& illuminant) {
   const auto n = lambda_nm.size();
   if (n == 0) throw Error("wavelengths: expected at least one, found none");
   for (std::size_t k = 0; k < n; ++k)
@@ -138,14 +199,16 @@ std::vector<std::array<double, 3>> rec709_weights(std::span<const double> lambda
   // Between breakpoints the sample's hat function, the observer and the light are all linear.
   std::vector<double> breaks(lambda_nm.begin(), lambda_nm.end());
   for (int i = 0; i < kRows; ++i) breaks.push_back(kFirst_nm + kStep_nm * i);
+  breaks.insert(breaks.end(), illuminant.lambda_nm.begin(), illuminant.lambda_nm.end());
   std::erase_if(breaks, [](double l) { return l < kFirst_nm || l > kLast_nm; });
   std::sort(breaks.begin(), breaks.end());
+  breaks.erase(std::unique(breaks.begin(), breaks.end()), breaks.end());
 
   // XYZ of every sample's hat function under the light; beyond the ends the outermost samples go on
   std::vector<Vec3> xyz(n);
   const auto add = [&](double lambda, std::size_t upper, double width) {
     const CieRow row = cie_at(lambda);
-    const Vec3 v = width * (d65 ? row.d65 : 1) * Vec3{row.x, row.y, row.z};
+    const Vec3 v = width * illuminant.at(lambda) * Vec3{row.x, row.y, row.z};
     if (upper == 0 || upper == n) {
       xyz[std::min(upper, n - 1)] = xyz[std::min(upper, n - 1)] + v;
       return;
@@ -167,6 +230,8 @@ std::vector<std::array<double, 3>> rec709_weights(std::span<const double> lambda
   // a spectrum of ones is white
   Vec3 white;
   for (const Vec3& v : xyz) white = white + v;
+  if (!(white.y > 0))
+    throw Error("illuminant: expected light that is seen, found none in " + illuminant.name);
   std::vector<std::array<double, 3>> weights(n);
   for (std::size_t k = 0; k < n; ++k) {
     const Vec3 rgb = rec709_of_xyz(adapt(xyz[k], white));

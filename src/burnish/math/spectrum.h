@@ -2,6 +2,7 @@
 
 #include <array>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -16,16 +17,30 @@ std::array<double, 3> cie_1931_xyz(double lambda_nm) noexcept;
 /// tabulated values. Source: [CIE 2018].
 double cie_d65(double lambda_nm) noexcept;
 
+/// A light by its relative power: linear between wavelengths in nm, zero beyond them.
+struct Illuminant {
+  std::string name;
+  std::vector<double> lambda_nm, power;
+
+  double at(double lambda) const noexcept;
+};
+
+/// "E" (equal energy), "D50", "D65" or "A" of the CIE over [380, 780] nm; D50 from the components of daylight in steps
+/// of 10 nm, A from its formula in steps of 5 nm. Throws Error for another name. Source: [CIE 2018].
+Illuminant standard_illuminant(std::string_view name);
+
 /// Weights that turn a reflectance spectrum sampled at `lambda_nm` into linear Rec. 709, rgb = sum_k w_k f_k,
-/// under the illuminant "E" (equal energy) or "D65".
+/// under an illuminant.
 /// Domain: increasing, positive wavelengths, at least one; steps may vary. The spectrum is taken as linear
 /// between samples and constant beyond the first and the last, which defines the part of the visible range
 /// that is not covered.
 /// The illuminant's own white is adapted to that of Rec. 709 (Bradford), so the weights sum to (1, 1, 1)
 /// within 1e-12 and a flat spectrum f = 1 is white under either illuminant. Weights of single wavelengths may
-/// be negative: saturated colours lie outside the gamut. Throws Error for another illuminant or a list
-/// outside the domain. Source: [CIE 2018], [ITU 2015], [Lam 1985].
+/// be negative: saturated colours lie outside the gamut. Throws Error for an illuminant that is dark in the visible
+/// range or a list outside the domain. Source: [CIE 2018], [ITU 2015], [Lam 1985].
 std::vector<std::array<double, 3>> rec709_weights(std::span<const double> lambda_nm,
-                                                  std::string_view illuminant);
+                                                  const Illuminant& illuminant);
+/// Under standard_illuminant(name).
+std::vector<std::array<double, 3>> rec709_weights(std::span<const double> lambda_nm, std::string_view name);
 
 }  // namespace burnish

@@ -123,10 +123,35 @@ TEST(Spectrum, BadListsAndLightsThrow) {
   const std::vector<double> good{400, 500}, falling{500, 400}, twice{500, 500}, zero{0, 500},
       nan{400, std::nan("")}, infinite{400, INFINITY};
   EXPECT_NO_THROW(rec709_weights(good, "E"));
-  EXPECT_THROW(rec709_weights(good, "A"), Error);
+  EXPECT_THROW(rec709_weights(good, "F2"), Error);
+  EXPECT_THROW(rec709_weights(good, Illuminant{"dark", {400, 700}, {0, 0}}), Error);
   EXPECT_THROW(rec709_weights(good, ""), Error);
   EXPECT_THROW(rec709_weights({}, "E"), Error);
   for (const auto& bad : {falling, twice, zero, nan, infinite}) EXPECT_THROW(rec709_weights(bad, "E"), Error);
+}
+
+// Chromaticities of the CIE's own tables.
+TEST(Spectrum, HasTheStandardIlluminantsInTheirPlaces) {
+  for (const auto& [name, x, y] : {std::tuple{"E", 0.3333, 0.3333}, std::tuple{"D50", 0.3457, 0.3585},
+                                   std::tuple{"D65", 0.3127, 0.3290}, std::tuple{"A", 0.4476, 0.4074}}) {
+    const Illuminant light = standard_illuminant(name);
+    double sum[3] = {};
+    for (double lambda = 380; lambda <= 780; lambda += 1) {
+      const auto cie = cie_1931_xyz(lambda);
+      for (int c = 0; c < 3; ++c) sum[c] += light.at(lambda) * cie[static_cast<std::size_t>(c)];
+    }
+    const double total = sum[0] + sum[1] + sum[2];
+    EXPECT_NEAR(sum[0] / total, x, 5e-4) << name;
+    EXPECT_NEAR(sum[1] / total, y, 5e-4) << name;
+    EXPECT_NEAR(light.at(560), std::string_view(name) == "E" ? 1 : 100, 1e-9) << name;
+    EXPECT_EQ(light.at(379), 0);
+  }
+  // white is white under each of them
+  for (const char* name : {"D50", "A"}) {
+    const Rgb white = colour({400, 500, 600, 700}, name, [](double) { return 1.0; });
+    EXPECT_NEAR(white[0], 1, 1e-12);
+    EXPECT_NEAR(white[2], 1, 1e-12);
+  }
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ AxisNeighbours neighbours(const AngleAxis& axis, double angle) noexcept {
   // beyond the last node, before the first, between two
   if (angle > nodes[last]) {
     if (axis.closed) return {{last, 0}, (angle - nodes[last]) / (nodes[0] + axis.period - nodes[last]), true};
-    return {{last, last}, 0, angle <= nodes[last] + half_step + kSlack};
+    return {{last, last}, 0, angle <= nodes[last] + (axis.reach > 0 ? axis.reach : half_step) + kSlack};
   }
   if (angle < nodes[0]) return {{0, 0}, 0, angle >= nodes[0] - 0.5 * (nodes[1] - nodes[0]) - kSlack};
   const auto above = std::upper_bound(nodes.begin(), nodes.end() - 1, angle);

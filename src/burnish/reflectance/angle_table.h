@@ -14,10 +14,12 @@ struct AngleAxis {
   std::vector<double> nodes;  ///< increasing, radians, at least one
   double period = 0;          ///< 2 pi for an azimuth, 0 for an angle that does not wrap
   bool closed = false;        ///< the step from the last node around to the first is one to interpolate over
+  double reach = 0;           ///< how far beyond the last node its value holds; 0: half the last step
 };
 
 /// The two nodes next to an angle and the weight of the second. Not `inside` farther from the first or last
-/// node than half its step: nothing is known there. A single node stands for every angle.
+/// node than half its step (the last: than the axis's reach): nothing is known there. A single node stands for
+/// every angle.
 struct AxisNeighbours {
   std::array<std::size_t, 2> index{};
   double fraction = 0;

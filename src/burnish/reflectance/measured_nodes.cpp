@@ -200,6 +200,18 @@ MeasuredNodes measured_nodes(const PatchTable& table) {
   return finished(std::move(nodes));
 }
 
+MeasuredNodes measured_nodes(const TensorTree& table) {
+  MeasuredNodes nodes{.samples = {.channels = 1, .isotropic = table.isotropic()}};
+  double total = 0;
+  for (const TreeLeaf& leaf : leaves(table)) {
+    if (!add(nodes.samples, leaf_directions(table, leaf), std::span(&leaf.value, 1))) continue;
+    nodes.weights.push_back(leaf_weight(table, leaf));
+    total += nodes.weights.back();
+  }
+  for (double& weight : nodes.weights) weight *= static_cast<double>(nodes.size()) / total;
+  return finished(std::move(nodes));
+}
+
 MeasuredNodes measured_nodes(const Samples& samples) {
   MeasuredNodes nodes{.samples = {.channels = samples.channels, .isotropic = samples.isotropic}};
   for (std::size_t i = 0; i < samples.size(); ++i) add(nodes.samples, samples.pairs[i], samples.at(i));

@@ -11,6 +11,7 @@
 #include <burnish/reflectance/patch_table.h>
 #include <burnish/reflectance/rgl_table.h>
 #include <burnish/reflectance/samples.h>
+#include <burnish/reflectance/tensor_tree.h>
 
 namespace burnish {
 
@@ -47,6 +48,8 @@ MeasuredNodes measured_nodes(const AngleTable& table);
 /// The pairs of patches at the patches' centres, weighted by the product of both projected solid angles, the
 /// mean weight 1.
 MeasuredNodes measured_nodes(const PatchTable& table);
+/// The cubes at their centres, weighted by the products of projected solid angles, the mean weight 1.
+MeasuredNodes measured_nodes(const TensorTree& table);
 /// The samples themselves that lie above the horizon.
 MeasuredNodes measured_nodes(const Samples& samples);
 

@@ -137,6 +137,30 @@ inline const std::string kKlems =
     "1, 2, 3\n4 5 6\n7 8 "
     "-9</ScatteringData></WavelengthDataBlock></WavelengthData></Layer></Optical></WindowElement>";
 
+inline const std::string kOpenMaterial =
+    R"({"metadata":{"name":"seed","license":"CC0","authors":["nobody"]},"brdf":{"wavelengths":[4e-07,6e-07],)"
+    R"("lookupTable":[[4e-07,0.5,0.25,0,0.1],[4e-07,0.5,0.25,3.1,0.2],[6e-07,0.5,0.25,0,0.3],)"
+    R"([6e-07,0.5,0.25,3.1,0.4]]}})";
+inline const std::string kAlta =
+    "#SAMPLE \"seed\"\n#ORIGIN \"nowhere\"\n#DIM 3 1\n#VS 1\n#PARAM_IN ISOTROPIC_TL_TV_PROJ_DPHI\n#PARAM_OUT "
+    "INV_STERADIAN\n0.5 -0.3 0.1 0.25 0.01\n0.5 0.6 0 -0.1 0.01\n0.7 0.2 0.2 0.5 0.01\n";
+inline const std::string kSpeos =
+    "OPTIS - Anisotropic BSDF surface file v8.0\n0\nseed\n4\nnone\n1\t0\t0\n1\t0\n0\n2\n0 90\n1\n30\n1\n30\n"
+    "30\t0\nspectrum\n2\n450\t20\n650\t40\n2 3\n\t0\t120\t240\n0\t1\t1\t1\n60\t0.4\t0.5\t0.6\n"
+    "2 3\n\t0\t120\t240\n0\t1\t1\t1\n60\t0.4\t-0.5\t0.6\nEnd of file\n";
+inline const std::string kTensorTree =
+    "<WindowElement><Optical><Layer><DataDefinition><IncidentDataStructure>TensorTree3</"
+    "IncidentDataStructure>"
+    "</DataDefinition><WavelengthData><Wavelength>Visible</Wavelength><WavelengthDataBlock>"
+    "<WavelengthDataDirection>Reflection "
+    "Front</WavelengthDataDirection><AngleBasis>LBNL/Shirley-Chiu</AngleBasis>"
+    "<ScatteringData>{ { 1 2 3 4 5 6 7 8 } {.5} {-1} {0} {{1}{2}{3}{4}{5}{6}{7}{8}} {0} {2e-1} {0} "
+    "}</ScatteringData>"
+    "</WavelengthDataBlock></WavelengthData></Layer></Optical></WindowElement>";
+
+/// The bytes of a number over and over are a UTIA table of it.
+inline const std::string kUtia{"\x9a\x99\x99\x99\x99\x99\xf1\x3f", 8};
+
 /// Format names and bytes; the first `kBinaryCount` are binary and of fixed length.
 inline std::vector<std::pair<std::string, std::string>> all_seeds() {
   return {{"merl", merl_seed()},
@@ -149,6 +173,10 @@ inline std::vector<std::pair<std::string, std::string>> all_seeds() {
           {"csv", kCsv},
           {"zemax", kZemax},
           {"klems", kKlems},
+          {"openmaterial", kOpenMaterial},
+          {"alta", kAlta},
+          {"speos", kSpeos},
+          {"tensortree", kTensorTree},
           {"neural", neural_seed()},
           {"baseline", baseline_seed()}};
 }

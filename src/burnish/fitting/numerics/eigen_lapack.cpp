@@ -33,8 +33,7 @@ void dpotrf_(const char*, const int* n, double* matrix, const int* stride, int* 
 
 void dtrtri_(const char*, const char*, const int* n, double* matrix, const int* stride, int* info) {
   Matrix a(matrix, *n, *n, Eigen::OuterStride<>(*stride));
-  const Eigen::MatrixXd inverse =
-      a.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(*n, *n));
+  const Eigen::MatrixXd inverse = a.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(*n, *n));
   a.triangularView<Eigen::Lower>() = inverse;
   *info = 0;
 }

@@ -60,13 +60,14 @@ HomomorphicFit fit_homomorphic(const SampleSource& source, const ModelSpec& spec
   if (source.count == 0) throw Error("fit: expected samples, found none");
   const auto is_floor = [](double floor) { return floor > 0 && floor <= kMaxFloor; };
   if (!(options.smooth >= 0) || !std::isfinite(options.smooth) || !is_floor(options.floor) ||
-      !is_floor(options.error_floor) || options.reweightings < 0)
-    throw Error("fit: expected smooth >= 0, floors > 0 and at most 1, and reweightings >= 0");
+      !is_floor(options.error_floor) || options.reweightings < 0 || !(options.backscatter >= 0))
+    throw Error("fit: expected smooth >= 0, floors > 0 and at most 1, reweightings and backscatter >= 0");
 
   check_formats(spec, source.channels, options.format);
 
   // least squares in log f
   RowMaker rows(source, spec, options.floor, options.error_floor);
+  rows.backscatter = options.backscatter;
   const Numbering numbering = number_nodes(spec, source.channels);
   LogSolution solution = solve(rows, options);
   FitSummary summary = solution.summary;

@@ -22,7 +22,10 @@ struct HomomorphicOptions {
   /// log f, which outliers and noise below error_floor rule, into the mean absolute error of log(f +
   /// error_floor); the pass with the smallest is kept. 0: the plain least-squares fit.
   int reweightings = 0;
-  double error_floor = 1e-3;               ///< of the reweighted error, 1/sr, in (0, 1]
+  double error_floor = 1e-3;  ///< of the reweighted error, 1/sr, in (0, 1]
+  /// Samples of smaller theta_d weigh (backscatter / theta_d)^1.5, down to 1/64 of it: as many samples spread evenly
+  /// around wi = wo weigh the same for each step of sqrt(theta_d). Radians; 0: none does.
+  double backscatter = 0;
   TableFormat format = TableFormat::half;  ///< of tables without one in the spec; see format_of
   int max_iterations = 300;                ///< of conjugate gradients
   double tolerance = 1e-3;  ///< conjugate gradients stop when the preconditioned residual fell to this share

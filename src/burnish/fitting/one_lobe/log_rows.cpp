@@ -3,6 +3,7 @@
 
 #include <burnish/error.h>
 #include <burnish/fitting/one_lobe/log_rows.h>
+#include <burnish/math/angles.h>
 #include <burnish/math/parallel.h>
 
 namespace burnish {
@@ -14,6 +15,8 @@ constexpr std::size_t kBlock = 1024;  // samples produced at a time
 // Reweighting: errors below kSmallError count as squares, a step changes a value by at most e^kLongestStep,
 // and the model is taken as at least this share of the floor.
 constexpr double kSmallError = 0.2, kLongestStep = 3, kMinShare = 1e-2;
+
+constexpr double kNearest = 1.0 / 64;  // of HomomorphicOptions::backscatter
 
 }  // namespace
 
@@ -51,13 +54,22 @@ LogRows RowMaker::make(std::size_t begin, std::size_t end) const {
         rows.fz.push_back(static_cast<float>(at_nodes.fz));
       }
       const std::span<const double> f = std::span(values).subspan(i * channels, channels);
+      const double weight = sample_weights[i] * emphasis(pairs[i]);
       if (current)
-        add_reweighted(pairs[i], f, sample_weights[i], model, rows);
+        add_reweighted(pairs[i], f, weight, model, rows);
       else
-        add_plain(f, sample_weights[i], rows);
+        add_plain(f, weight, rows);
     }
   }
   return rows;
+}
+
+double RowMaker::emphasis(const DirectionPair& pair) const noexcept {
+  if (backscatter <= 0) return 1;
+  // of n samples spread evenly around wi = wo the number within theta_d grows with its square, that of each step of
+  // sqrt(theta_d) with its power of 1.5
+  const double share = angle_between(pair.wi, pair.wo) / 2 / backscatter;
+  return share < 1 ? std::pow(std::max(share, kNearest), -1.5) : 1;
 }
 
 void RowMaker::add_plain(std::span<const double> f, double weight, LogRows& rows) const {

@@ -35,6 +35,7 @@ class RowMaker {
   const SampleSource* source;
   const ModelSpec* spec;      ///< one lobe
   double floor, error_floor;  ///< see HomomorphicOptions
+  double backscatter = 0;     ///< see HomomorphicOptions
 
   const FactoredBrdf* current = nullptr;
 
@@ -42,6 +43,7 @@ class RowMaker {
   LogRows make(std::size_t begin, std::size_t end) const;
 
  private:
+  double emphasis(const DirectionPair& pair) const noexcept;
   void add_plain(std::span<const double> f, double weight, LogRows& rows) const;
   void add_reweighted(const DirectionPair& pair, std::span<const double> f, double weight,
                       std::span<double> model, LogRows& rows) const;

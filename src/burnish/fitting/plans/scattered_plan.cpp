@@ -12,6 +12,7 @@
 #include <burnish/fitting/one_lobe/cross_validation.h>
 #include <burnish/fitting/plans/lobe_plan.h>
 #include <burnish/fitting/plans/scattered_plan.h>
+#include <burnish/math/angles.h>
 
 namespace burnish {
 
@@ -106,6 +107,57 @@ std::optional<ModelSpec> spec_within(const std::string& set, std::size_t bytes, 
   for (std::size_t texels = std::min(most, bytes / texel); texels > 0; --texels) {
     std::optional<ModelSpec> spec = spec_of(set, texels, source.isotropic);
     if (!spec || model_bytes(*spec, source.channels, format) <= bytes) return spec;
+  }
+  return std::nullopt;
+}
+
+// A lobe about wi = wo: where it is looked for, what it is compared with, and how much higher it has to be.
+constexpr double kRetroNear = radians(1.5), kRetroRingLow = radians(4), kRetroRingHigh = radians(8);
+constexpr double kLeastTilt = radians(10);  // of the half vector: a highlight is there at the normal
+constexpr double kSameIncidence = radians(1);
+constexpr double kLeastRatio = 2;
+constexpr std::size_t kLeastNear = 3;
+
+// Nodes of the factors of a material that backscatters, at most; the grids' sides are equal.
+struct RetroSizes {
+  int p = 48, q = 64, k = 24, b_h = 16, b_d = 40, a_d = 32, a_phi = 6;
+};
+
+// p(wo) p(wi) q(h) k(theta_m,theta_d) b(theta_h,theta_d) a(theta_d,phi_d), their nodes crowded at wi = wo, where b
+// follows the angle of both, and a what is not round about it.
+ModelSpec retro_spec(const RetroSizes& sizes) {
+  const Warp crowded{WarpKind::power, 0.5};
+  const auto line = [](const char* name, int nodes) {
+    return ModelSpec::TableSpec{.name = name,
+                                .layout = {.shape = TableShape::line, .width = nodes, .height = 1}};
+  };
+  const auto grid = [](const char* name, int width, int height, Warp warp, Warp warp_y) {
+    return ModelSpec::TableSpec{
+        .name = name,
+        .layout = {
+            .shape = TableShape::grid, .width = width, .height = height, .warp = warp, .warp_y = warp_y}};
+  };
+  ModelSpec spec;
+  spec.tables = {line("p", sizes.p), line("q", sizes.q), grid("k", sizes.k, sizes.k, crowded, crowded),
+                 grid("b", sizes.b_h, sizes.b_d, Warp{}, crowded),
+                 grid("a", sizes.a_d, sizes.a_phi, crowded, Warp{})};
+  spec.lobes = {{{.table = 0, .projection = kProjectWo, .projection_y = {}},
+                 {.table = 0, .projection = kProjectWi, .projection_y = {}},
+                 {.table = 1, .projection = kProjectHalf, .projection_y = {}},
+                 {.table = 2, .projection = kProjectDeviation, .projection_y = kProjectDifference},
+                 {.table = 3, .projection = kProjectHalf, .projection_y = kProjectDifference},
+                 {.table = 4, .projection = kProjectDifference, .projection_y = kProjectAzimuth}}};
+  return spec;
+}
+
+// The largest of these that the bytes hold; none where the grids would be too coarse.
+std::optional<ModelSpec> retro_spec_within(std::size_t bytes, std::size_t channels, TableFormat format) {
+  for (const double share : {1.0, 0.7, 0.5, 0.35}) {
+    const auto part = [share](int nodes) { return std::max(4, static_cast<int>(share * nodes)); };
+    const RetroSizes whole;
+    const ModelSpec spec = retro_spec({part(whole.p), part(whole.q), part(whole.k), part(whole.b_h),
+                                       part(whole.b_d), part(whole.a_d), part(whole.a_phi)});
+    if (model_bytes(spec, channels, format) <= bytes) return spec;
   }
   return std::nullopt;
 }
@@ -261,6 +313,42 @@ std::size_t least_scattered_bytes(std::size_t channels, bool isotropic, TableFor
   return model_bytes(*spec_of(least, texels, isotropic), channels, format);
 }
 
+bool backscatters(const SampleSource& source) {
+  if (!source.isotropic) return false;
+  // values near wi = wo and around it, by incidence
+  struct Sums {
+    double near = 0, ring = 0;
+    std::size_t near_count = 0, ring_count = 0;
+  };
+  std::map<long, Sums> incidences;
+  std::vector<DirectionPair> pairs(source.count);
+  std::vector<double> weights(source.count);
+  std::vector<double> values(source.count * source.channels);
+  source.fill(0, pairs, values, weights);
+  for (std::size_t i = 0; i < source.count; ++i) {
+    const auto& [wi, wo] = pairs[i];
+    if (!(weights[i] > 0) || wi.z <= 0 || wo.z <= 0 || theta_of(half_vector(wi, wo)) < kLeastTilt) continue;
+    const double theta_d = angle_between(wi, wo) / 2;
+    Sums& sums = incidences[std::lround(theta_of(wi) / kSameIncidence)];
+    const double f = std::max(values[i * source.channels], 0.0);
+    if (theta_d <= kRetroNear) {
+      sums.near += f;
+      ++sums.near_count;
+    } else if (theta_d >= kRetroRingLow && theta_d <= kRetroRingHigh) {
+      sums.ring += f;
+      ++sums.ring_count;
+    }
+  }
+  std::size_t higher = 0, known = 0;
+  for (const auto& [place, sums] : incidences) {
+    if (sums.near_count < kLeastNear || sums.ring_count < kLeastNear) continue;
+    ++known;
+    higher += sums.near / static_cast<double>(sums.near_count) >
+              kLeastRatio * sums.ring / static_cast<double>(sums.ring_count);
+  }
+  return 2 * higher > known;
+}
+
 ScatteredPlan plan_scattered(const SampleSource& source, std::size_t bytes, std::optional<double> smooth,
                              std::optional<TableFormat> format, const HomomorphicOptions& options) {
   // the formats to choose from, the first one first
@@ -282,7 +370,10 @@ ScatteredPlan plan_scattered(const SampleSource& source, std::size_t bytes, std:
   // from the coarsest to finer ones as long as that helps, or every set of factors
   const SampleSource part = some_channels(source);
   Trials trials(part, smooth.has_value(), chosen);
-  const std::vector<ModelSpec> specs = candidates(source, bytes, formats.front());
+  std::vector<ModelSpec> specs = candidates(source, bytes, formats.front());
+  if (options.backscatter > 0)
+    if (auto spec = retro_spec_within(bytes, source.channels, formats.front()))
+      specs.push_back(std::move(*spec));
   std::vector<ScatteredPlan> found{trials.start(specs.front(), smooth, options.progress)};
   const auto best = [&] { return std::ranges::min_element(found, {}, &ScatteredPlan::error); };
   for (auto spec = specs.begin() + 1; spec != specs.end(); ++spec)

@@ -24,9 +24,18 @@ struct ScatteredPlan {
   TableFormat format = TableFormat::half;  ///< of all tables
 };
 
+/// Whether the samples of an isotropic source show a lobe about wi = wo: at most incidences that were measured there
+/// (theta_d up to 1.5 degrees, the half vector at least 10 degrees off the normal) they are on the mean more than twice
+/// as high as around it (theta_d of 4 to 8 degrees).
+bool backscatters(const SampleSource& source);
+
+/// The theta_d below which samples weigh more where a source backscatters, radians; HomomorphicOptions::backscatter.
+inline constexpr double kBackscatterReach = 0.03;
+
 /// The lobe of at most `bytes`, see model_bytes, that predicts held-out samples best: p(wo) p(wi) q(h)
 /// m(theta_m) r(theta_d), p and q hemispheres where the source is anisotropic, or fewer of these factors
-/// where the bytes are few. Smoothness is chosen by choose_smoothness for a coarse model, unless `smooth`
+/// where the bytes are few; with options.backscatter also p(wo) p(wi) q(h) k(theta_m,theta_d) b(theta_h,theta_d)
+/// a(theta_d,phi_d). Smoothness is chosen by choose_smoothness for a coarse model, unless `smooth`
 /// says it; finer ones, with a smoothness nearby, are taken where they predict better. More than three
 /// channels are represented by three of them in these trials, and all decide in the end. Sources of more than
 /// kManySamples samples get the finest that the bytes hold. The samples of `source` stand for their swapped

@@ -5,10 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <burnish/fitting/fit.h>
+#include <burnish/fitting/one_lobe/homomorphic.h>
 #include <burnish/fitting/plans/scattered_plan.h>
+#include <burnish/math/angles.h>
 #include <burnish/math/parallel.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/goniometer.h>
+#include <burnish/reflectance/sample_source.h>
 #include <burnish/testing/tools.h>
 
 namespace burnish {
@@ -91,6 +94,64 @@ TEST(ScatteredPlan, DoesNotDependOnTheNumberOfThreads) {
   const Fit all = fit(source, options);
   const ThreadLimit one(1);
   EXPECT_EQ(fit(source, options).model(), all.model());
+}
+
+/// A matt surface with a lobe about wi = wo, or about the mirror direction.
+struct PeakedBrdf {
+  bool back = true;
+  std::size_t channels() const noexcept { return 1; }
+  bool isotropic() const noexcept { return true; }
+  bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+    const double apart = angle_between(back ? wi : mirror(wi), wo);
+    f[0] = 0.1 + 20 * std::exp(-apart * apart / (2 * 0.03 * 0.03)) * wi.z;
+    return true;
+  }
+};
+
+// Three incidences, dense around the lobe, as instruments scan it.
+Samples scanned(const PeakedBrdf& brdf) {
+  Samples samples{1, true, {}, {}};
+  for (const double theta : {15.0, 30.0, 60.0}) {
+    const Vec3 wi = spherical_direction(radians(theta), 0), centre = brdf.back ? wi : mirror(wi);
+    for (int ring = 0; ring < 40; ++ring)
+      for (int k = 0; k < (ring == 0 ? 1 : 16); ++k) {
+        const double angle = radians(ring < 12 ? ring : 12 + 4 * (ring - 12)),
+                     turn = kTwoPi * (k + 0.5 * (ring % 2)) / 16;
+        const Vec3 up = normalize(Vec3{0, 1, 0}), side = cross(centre, up);
+        const Vec3 wo =
+            std::cos(angle) * centre + std::sin(angle) * (std::cos(turn) * side + std::sin(turn) * up);
+        if (wo.z < 0.05) continue;
+        samples.pairs.push_back({wi, wo});
+        samples.values.push_back(0);
+        brdf.eval(wi, wo, {&samples.values.back(), 1});
+      }
+  }
+  return samples;
+}
+
+TEST(ScatteredPlan, TellsALobeAboutTheLightFromAHighlight) {
+  const Samples back = scanned({true}), forth = scanned({false});
+  EXPECT_TRUE(backscatters(from_samples(back, false)));
+  EXPECT_FALSE(backscatters(from_samples(forth, false)));
+}
+
+TEST(ScatteredPlan, HoldsThePeakAboutTheLight) {
+  const PeakedBrdf brdf{true};
+  const Samples samples = scanned(brdf);
+  const SampleSource source = from_samples(samples, false);
+  HomomorphicOptions options;
+  options.reweightings = 2;
+  options.backscatter = kBackscatterReach;
+  const ScatteredPlan plan = plan_scattered(source, 16384, 1e-7, {}, options);
+  options.smooth = plan.smooth;
+  const FactoredBrdf model = fit_homomorphic(source, plan.spec, options).brdf;
+  for (const double theta : {15.0, 30.0, 60.0}) {
+    const Vec3 w = spherical_direction(radians(theta), 0);
+    double expected, found;
+    brdf.eval(w, w, {&expected, 1});
+    model.eval(w, w, {&found, 1});
+    EXPECT_NEAR(found / expected, 1, 0.05) << theta;
+  }
 }
 
 }  // namespace

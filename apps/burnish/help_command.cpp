@@ -1,0 +1,96 @@
+#include <array>
+#include <memory>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <burnish/math/build_info.h>
+
+#include "commands.h"
+
+namespace burnish::cli {
+
+namespace {
+
+/// A format as `burnish help formats` has it.
+struct FormatHelp {
+  const char *name, *to, *extension, *holds;
+  bool read, written;
+};
+
+constexpr std::array kFormats = {
+    FormatHelp{"MERL", "merl", ".binary", "half/difference cells, RGB, isotropic", true, true},
+    FormatHelp{"UTIA", "utia", ".bin", "6 x 48 directions of light and view, RGB", true, true},
+    FormatHelp{"RGL", "rgl", ".bsdf", "adaptive nodes, RGB or spectra", true, true},
+    FormatHelp{"MBSDF", "mbsdf", ".mbsdf", "even angles, grey or RGB, isotropic", true, true},
+    FormatHelp{"Zemax", "zemax", ".bsdf", "angles around the mirror direction, grey or XYZ", true, true},
+    FormatHelp{"tensor tree", "tensortree", ".xml",
+               "cubes of Shirley-Chiu squares, grey (rank 3: read alone)", true, true},
+    FormatHelp{"Klems", "", ".xml", "patches of both hemispheres, grey", true, false},
+    FormatHelp{"Speos", "", ".anisotropicbsdf, .brdf", "theta and phi of each incidence, grey or spectra",
+               true, false},
+    FormatHelp{"OpenMATERIAL 3D", "openmaterial", ".xompt", "scattered spectra, isotropic", true, true},
+    FormatHelp{"ALTA", "", ".dat", "scattered, in coordinates of its own, grey or RGB", true, false},
+    FormatHelp{"ASTM E1392", "astm", ".astm", "scattered, grey, RGB or spectra", true, true},
+    FormatHelp{"CSV", "csv", ".csv", "scattered, grey, RGB or spectra", true, true},
+    FormatHelp{"Cornell", "", ".brdf", "scattered spectra, isotropic", true, false},
+    FormatHelp{"EXR slices", "exr", ".exr", "half/difference cells to look at", false, true},
+    FormatHelp{"model, OpenEXR", "model", ".exr", "what fit writes", true, true},
+    FormatHelp{"model, compact", "burnish", ".burnish", "what fit writes", true, true},
+    FormatHelp{"baseline", "", ".json", "what fit --method writes", true, false},
+    FormatHelp{"network weights", "", ".csv", "nbrdf:FILE#NAME", true, false},
+    FormatHelp{"Neural Processes codes", "", ".csv", "np:FOLDER#NAME", true, false}};
+
+void print_formats(bool json) {
+  if (json) {
+    auto list = nlohmann::ordered_json::array();
+    for (const FormatHelp& f : kFormats)
+      list.push_back({{"name", f.name},
+                      {"to", f.to},
+                      {"extension", f.extension},
+                      {"read", f.read},
+                      {"written", f.written},
+                      {"holds", f.holds}});
+    fmt::print("{}\n", list.dump(2));
+    return;
+  }
+  fmt::print(
+      "Files are known by their content. `burnish convert IN OUT --to NAME` writes those with a name.\n\n");
+  fmt::print("{:23} {:13} {:24} {:6} {}\n", "format", "--to", "usual ending", "", "holds");
+  for (const FormatHelp& f : kFormats)
+    fmt::print("{:23} {:13} {:24} {:6} {}\n", f.name, f.to, f.extension,
+               f.read && f.written ? "both" : (f.read ? "read" : "write"), f.holds);
+}
+
+}  // namespace
+
+std::string version_text() {
+  const BuildInfo info = build_info();
+  std::string text = fmt::format("burnish {}\ninstruction sets  {}\nthreads           {}\ncompiled with     ",
+                                 BURNISH_VERSION, fmt::join(info.instruction_sets, ", "), info.threads);
+  text += fmt::format("CLI11 {}", CLI11_VERSION);
+  for (const auto& [name, version] : info.libraries) text += fmt::format(", {} {}", name, version);
+  return text;
+}
+
+void add_help_command(CLI::App& app) {
+  struct Arguments {
+    std::string topic;
+    bool json = false;
+  };
+  CLI::App* verb = app.add_subcommand("help", "Say what formats there are, or how a verb is used");
+  verb->footer("Examples: burnish help formats\n          burnish help fit");
+  auto arguments = std::make_shared<Arguments>();
+  verb->add_option("TOPIC", arguments->topic, "formats, or a verb; without it all verbs");
+  verb->add_flag("--json", arguments->json, "of formats: for programs");
+  verb->callback([arguments, &app] {
+    if (arguments->topic == "formats") return print_formats(arguments->json);
+    if (arguments->topic.empty()) return fmt::print("{}", app.help());
+    for (const CLI::App* found : app.get_subcommands([](const CLI::App*) { return true; }))
+      if (found->get_name() == arguments->topic) return fmt::print("{}", found->help());
+    throw CLI::ValidationError("help", "expected formats or a verb, found '" + arguments->topic + "'");
+  });
+}
+
+}  // namespace burnish::cli

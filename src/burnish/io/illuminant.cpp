@@ -1,0 +1,36 @@
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include <burnish/io/illuminant.h>
+#include <burnish/io/text_reader.h>
+
+namespace burnish {
+
+Illuminant open_illuminant(const std::string& spec) {
+  constexpr std::array<std::string_view, 4> kStandard{"E", "D50", "D65", "A"};
+  if (std::find(kStandard.begin(), kStandard.end(), spec) != kStandard.end())
+    return standard_illuminant(spec);
+  const FileBytes file = read_file(spec, 1 << 24);
+  Illuminant light{.name = spec, .lambda_nm = {}, .power = {}};
+  TextReader reader(file);
+  while (reader.next_content_line()) {
+    const double lambda = reader.number("a wavelength"), power = reader.number("a power");
+    reader.end_of_line();
+    if (!(lambda > 0) || (!light.lambda_nm.empty() && lambda <= light.lambda_nm.back()))
+      reader.fail("increasing wavelengths in nm", fmt::format("{}", lambda));
+    if (!(power >= 0 && power < 1e30)) reader.fail("a power of at least 0", fmt::format("{}", power));
+    light.lambda_nm.push_back(lambda);
+    light.power.push_back(power);
+  }
+  if (light.power.size() < 2)
+    throw Error::in_file(spec, "two rows of wavelength and power", fmt::format("{}", light.power.size()));
+  return light;
+}
+
+std::string illuminant_name(const std::string& spec) {
+  return spec == "E" ? "equal energy" : spec;
+}
+
+}  // namespace burnish

@@ -1,0 +1,103 @@
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <burnish/io/convert.h>
+#include <burnish/io/open_source.h>
+#include <burnish/io/openmaterial.h>
+#include <burnish/math/angles.h>
+#include <burnish/testing/files.h>
+#include <burnish/testing/seed_files.h>
+
+namespace burnish {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+const OpenOptions kSpectral{.keep_spectral = true};
+
+std::string file_of(std::string_view rows, std::string_view wavelengths = "4e-07,6e-07") {
+  return R"({"brdf":{"wavelengths":[)" + std::string(wavelengths) + R"(],"lookupTable":[)" +
+         std::string(rows) + "]}}";
+}
+
+TEST(OpenMaterial, ReadsSpectraByTheirDirections) {
+  EXPECT_TRUE(looks_like_openmaterial(seeds::kOpenMaterial));
+  const SampleFile file = parse_openmaterial(memory_file(seeds::kOpenMaterial), kSpectral);
+  ASSERT_EQ(file.samples.size(), 2u);
+  EXPECT_TRUE(file.samples.isotropic);
+  EXPECT_EQ(file.findings.lambda_nm, (std::vector<double>{400, 600}));
+  EXPECT_NEAR(length(file.samples.pairs[0].wi - spherical_direction(0.5, 0)), 0, 1e-15);
+  EXPECT_NEAR(length(file.samples.pairs[1].wo - spherical_direction(0.25, 3.1)), 0, 1e-15);
+  EXPECT_EQ(file.samples.values, (std::vector<double>{0.1, 0.3, 0.2, 0.4}));
+  EXPECT_EQ(file.findings.description, "seed");
+  EXPECT_THAT(file.findings.conventions, Contains("Licence: CC0."));
+}
+
+TEST(OpenMaterial, LeavesOutWhatIsNotWholeAndKeepsASingleWavelength) {
+  const SampleFile file = parse_openmaterial(
+      memory_file(file_of("[4e-07,0,0,0,1],[6e-07,0,0,0,2],[4e-07,1,0,0,3],[6e-07,1,0,0,null]")), kSpectral);
+  EXPECT_EQ(file.samples.size(), 1u);
+  EXPECT_EQ(file.findings.hole_count, 1u);
+  const SampleFile lidar = parse_openmaterial(memory_file(file_of("[9.05e-07,0,0,0,1]", "9.05e-07")), {});
+  EXPECT_EQ(lidar.samples.channels, 1);
+  EXPECT_EQ(lidar.findings.lambda_nm, std::vector<double>{905});
+  EXPECT_EQ(lidar.samples.values, std::vector<double>{1});
+}
+
+TEST(OpenMaterial, SaysWhatIsWrong) {
+  const auto error = [](const std::string& text) {
+    return error_of([&] { parse_openmaterial(memory_file(text), {}); });
+  };
+  EXPECT_THAT(error("{\"lookupTable\""), HasSubstr("well-formed JSON"));
+  EXPECT_THAT(error("{}"), HasSubstr("an object brdf"));
+  EXPECT_THAT(error(file_of("[4e-07,0,0,0]")), HasSubstr("five numbers in row 1"));
+  EXPECT_THAT(error(file_of("[4e-07,0,0,0,\"x\"]")), HasSubstr("a number for the value of row 1"));
+  EXPECT_THAT(error(file_of("[5e-07,0,0,0,1]")), HasSubstr("a listed wavelength in row 1"));
+  EXPECT_THAT(error(file_of("[4e-07,1.6,0,0,1]")), HasSubstr("[0, pi/2]"));
+  EXPECT_THAT(error(file_of("[4e-07,0,0,0,1],[4e-07,0,0,0,1]")), HasSubstr("one value for each"));
+  EXPECT_THAT(error(file_of("[4e-07,0,0,0,1]", "6e-07,4e-07")), HasSubstr("increasing wavelengths"));
+  EXPECT_THAT(error(file_of("[4e-07,0,0,0,1]")), HasSubstr("at least one measurement"));
+}
+
+TEST(OpenMaterial, IsWrittenAndReadToTheLastBit) {
+  const Source source = open_source("ggx:alpha_x=0.3,alpha_y=0.3", {});
+  const Converted converted = convert(source, "openmaterial", {.count = 50});
+  EXPECT_THAT(converted.losses, Contains(HasSubstr("red, green and blue stand at 611.4")));
+  const SampleFile file = parse_openmaterial(memory_file(converted.bytes), kSpectral);
+  ASSERT_EQ(file.samples.size(), 50u);
+  const std::string again =
+      format_openmaterial(file.samples, file.findings.lambda_nm, file.findings.description);
+  const SampleFile twice = parse_openmaterial(memory_file(again), kSpectral);
+  EXPECT_EQ(file.samples.values, twice.samples.values);
+  std::vector<double> f(3);
+  for (std::size_t i = 0; i < 50; ++i) {
+    const auto [wi, wo] = file.samples.pairs[i];
+    source.ref().eval(wi, wo, f);
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_NEAR(file.samples.at(i)[2 - c], f[c], 1e-5 * f[c]);  // angles have the schema's ends
+  }
+}
+
+TEST(OpenMaterial, ReadsAsphaltAsItsOwnJsonHasIt) {
+  BURNISH_NEEDS_DATA();
+  const FileBytes bytes = read_file(data_folder() / "openmaterial" / "example_material_camera_brdf.xompt");
+  const SampleFile file = parse_openmaterial(bytes, kSpectral);
+  const auto rows = nlohmann::json::parse(bytes.text())["brdf"]["lookupTable"];
+  ASSERT_EQ(file.samples.channels, 32);
+  ASSERT_EQ(file.samples.size() * 32, rows.size());
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const std::size_t band = row / file.samples.size(), sample = row % file.samples.size();
+    EXPECT_NEAR(file.findings.lambda_nm[band], rows[row][0].get<double>() * 1e9, 1e-6);
+    EXPECT_NEAR(theta_of(file.samples.pairs[sample].wi), rows[row][1].get<double>(), 1e-12);
+    EXPECT_EQ(file.samples.at(sample)[band], rows[row][4].get<double>());
+  }
+  const std::string again = format_openmaterial(file.samples, file.findings.lambda_nm, "asphalt");
+  EXPECT_EQ(parse_openmaterial(memory_file(again), kSpectral).samples.values, file.samples.values);
+}
+
+}  // namespace
+}  // namespace burnish

@@ -1,0 +1,412 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include <burnish/io/illuminant.h>
+#include <burnish/io/sample_file.h>
+#include <burnish/io/speos.h>
+#include <burnish/io/text_reader.h>
+#include <burnish/math/angles.h>
+#include <burnish/math/spectrum.h>
+
+namespace burnish {
+
+namespace {
+
+constexpr std::string_view kAnisotropic = "OPTIS - Anisotropic BSDF surface file",
+                           kBrdf = "OPTIS - brdf surface file";
+constexpr std::size_t kMaxAngles = 4096, kMaxValues = std::size_t{1} << 26;
+constexpr double kTrusted = 0.05;  // of a reflectance: quadrature and rounding
+constexpr double kHorizon = 1e-6;  // a cosine that stands for none
+constexpr double kSameDegree = 1e-6;
+
+/// Values over theta and phi, degrees, of one incidence.
+struct Block {
+  std::vector<double> theta_deg, phi_deg, values;  // [theta][phi]
+
+  friend bool operator==(const Block&, const Block&) = default;
+};
+
+/// What both kinds of file come to: blocks[channel][rotation][incidence].
+struct Content {
+  bool holds_f = true;  // f_r; else f_r cos(theta_o)
+  std::vector<double> rotations_deg, incidences_deg, lambda_nm;
+  std::vector<std::vector<std::vector<Block>>> blocks;
+  std::string comment;
+};
+
+/// The next number, on a later line where this one has none left.
+double next_number(TextReader& reader, std::string_view what) {
+  for (;;) {
+    if (const std::string_view word = reader.word(); !word.empty()) {
+      if (const auto value = parse_number(word)) return *value;
+      reader.fail(fmt::format("a finite number for {}", what), in_quotes(word));
+    }
+    if (!reader.next_content_line()) reader.fail(fmt::format("a number for {}", what), "the end of the file");
+  }
+}
+
+/// Passes over the rest of a line that is no number.
+void skip_line(TextReader& reader) {
+  while (!reader.word().empty()) {
+  }
+}
+
+std::size_t next_count(TextReader& reader, std::string_view what, std::size_t most) {
+  const double value = next_number(reader, what);
+  if (!(value >= 1 && value <= static_cast<double>(most) && value == std::floor(value)))
+    reader.fail(fmt::format("{} in [1, {}]", what, most), fmt::format("{}", value));
+  return static_cast<std::size_t>(value);
+}
+
+/// Increasing angles in [low, high] degrees.
+std::vector<double> next_angles(TextReader& reader, std::string_view what, std::size_t count, double high) {
+  std::vector<double> angles;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double angle = next_number(reader, what);
+    if (!(angle >= 0 && angle <= high + kSameDegree) || (i > 0 && angle <= angles.back()))
+      reader.fail(fmt::format("increasing {} in [0, {}] degrees", what, high), fmt::format("{}", angle));
+    angles.push_back(angle);
+  }
+  return angles;
+}
+
+Block next_block(TextReader& reader) {
+  const std::size_t thetas = next_count(reader, "the number of theta", kMaxAngles);
+  const std::size_t phis = next_count(reader, "the number of phi", kMaxAngles);
+  if (thetas * phis * 2 > reader.remaining())
+    reader.fail(fmt::format("{} x {} values", thetas, phis), fmt::format("{} bytes", reader.remaining()));
+  Block block;
+  block.phi_deg = next_angles(reader, "phi", phis, 360);
+  for (std::size_t t = 0; t < thetas; ++t) {
+    const double theta = next_number(reader, "theta");
+    if (!(theta >= 0 && theta <= 90 + kSameDegree) || (t > 0 && theta <= block.theta_deg.back()))
+      reader.fail("increasing theta in [0, 90] degrees", fmt::format("{}", theta));
+    block.theta_deg.push_back(theta);
+    for (std::size_t p = 0; p < phis; ++p) {
+      const double value = next_number(reader, "a value");
+      if (!(std::abs(value) < 1e30)) reader.fail("a value below 1e30", fmt::format("{}", value));
+      block.values.push_back(value);
+    }
+  }
+  return block;
+}
+
+/// The lines that both kinds begin with, up to the type of the values.
+Content read_preamble(TextReader& reader, bool anisotropic) {
+  Content content;
+  const auto line = [&](const char* what) {
+    if (!reader.next_line()) reader.fail(what, "the end of the file");
+    return trimmed(reader.line());
+  };
+  line("a header");
+  if (const std::string_view mode = line("the mode"); mode != "0")
+    reader.fail("text mode, 0", in_quotes(mode));
+  content.comment = printable(line("a comment"), 160);
+  line("the length of a description");
+  const std::size_t length = reader.count("the length of a description", 0, std::size_t{1} << 20);
+  std::size_t read = 0;
+  do read += line("a description").size() + 1;
+  while (read < length);
+  skip_line(reader);
+  if (anisotropic)
+    for (int k = 0; k < 3; ++k) next_number(reader, "the anisotropy vector");
+  const double reflection = next_number(reader, "whether there is reflection");
+  const double transmission = next_number(reader, "whether there is transmission");
+  if (reflection != 1 || transmission != 0)
+    reader.fail("reflection alone, 1 0", fmt::format("{} {}", reflection, transmission));
+  content.holds_f = next_number(reader, "the type of the values") != 0;
+  return content;
+}
+
+/// The integral over the hemisphere of a block's values times their cosine, or without where they contain it; linear
+/// between angles.
+double integral(const Block& block, bool holds_f) noexcept {
+  const auto at = [&](std::size_t t, std::size_t p) {
+    const double theta = radians(block.theta_deg[t]);
+    return block.values[t * block.phi_deg.size() + p] * std::sin(theta) * (holds_f ? std::cos(theta) : 1);
+  };
+  double sum = 0;
+  for (std::size_t t = 1; t < block.theta_deg.size(); ++t)
+    for (std::size_t p = 1; p < block.phi_deg.size(); ++p)
+      sum += radians(block.theta_deg[t] - block.theta_deg[t - 1]) *
+             radians(block.phi_deg[p] - block.phi_deg[p - 1]) *
+             (at(t - 1, p - 1) + at(t, p - 1) + at(t - 1, p) + at(t, p)) / 4;
+  return block.phi_deg.back() > 180 + kSameDegree ? sum : 2 * sum;
+}
+
+bool trusted(double reflectance, double found) noexcept {
+  return std::abs(reflectance - found) <= kTrusted * std::max(reflectance, kTrusted);
+}
+
+void scale(Block& block, double factor) noexcept {
+  for (double& value : block.values) value *= factor;
+}
+
+/// Weights of the nodes around x: the first, the second's weight. Constant beyond the ends.
+std::pair<std::size_t, double> place_of(const std::vector<double>& nodes, double x) noexcept {
+  if (nodes.size() == 1 || x <= nodes.front()) return {0, 0.0};
+  const auto above =
+      static_cast<std::size_t>(std::upper_bound(nodes.begin(), nodes.end(), x) - nodes.begin());
+  if (above == nodes.size()) return {nodes.size() - 2, 1.0};
+  return {above - 1, (x - nodes[above - 1]) / (nodes[above] - nodes[above - 1])};
+}
+
+double value_at(const Block& block, double theta_deg, double phi_deg) noexcept {
+  const auto [t, theta_weight] = place_of(block.theta_deg, theta_deg);
+  const auto [p, phi_weight] = place_of(block.phi_deg, phi_deg);
+  double sum = 0;
+  for (std::size_t corner = 0; corner < 4; ++corner) {
+    const double weight =
+        (corner & 1 ? theta_weight : 1 - theta_weight) * (corner & 2 ? phi_weight : 1 - phi_weight);
+    if (weight > 0)
+      sum += weight * block.values[(t + (corner & 1)) * block.phi_deg.size() + p + (corner >> 1)];
+  }
+  return sum;
+}
+
+/// One block for each rotation and incidence, and the spectrum they are scaled to.
+Content read_anisotropic(TextReader& reader, std::vector<std::string>& notes) {
+  Content content = read_preamble(reader, true);
+  const std::size_t rotations = next_count(reader, "the number of anisotropy angles", kMaxAngles);
+  content.rotations_deg = next_angles(reader, "anisotropy angles", rotations, 360);
+  for (std::size_t r = 0; r < rotations; ++r) {
+    const std::size_t count = next_count(reader, "the number of incidences", kMaxAngles);
+    auto angles = next_angles(reader, "incidences", count, 90);
+    if (r > 0 && angles != content.incidences_deg)
+      reader.fail("the same incidences for every anisotropy angle", "others");
+    content.incidences_deg = std::move(angles);
+  }
+  const double measured_deg = next_number(reader, "the incidence of the spectrum");
+  next_number(reader, "the azimuth of the spectrum");
+  reader.next_line();  // its description
+  skip_line(reader);
+  std::vector<double> reflectance;
+  for (std::size_t n = next_count(reader, "the number of wavelengths", kMaxFileChannels); n > 0; --n) {
+    content.lambda_nm.push_back(next_number(reader, "a wavelength"));
+    reflectance.push_back(next_number(reader, "a reflectance") / 100);
+  }
+  std::vector<std::vector<Block>> blocks(rotations);
+  for (auto& of_rotation : blocks)
+    for (std::size_t i = 0; i < content.incidences_deg.size(); ++i) of_rotation.push_back(next_block(reader));
+
+  // the reflectance that the blocks have where the spectrum was measured
+  const auto [first, weight] = place_of(content.incidences_deg, measured_deg);
+  double found = (1 - weight) * integral(blocks[0][first], content.holds_f);
+  if (weight > 0) found += weight * integral(blocks[0][first + 1], content.holds_f);
+  const auto [least, most] = std::minmax_element(reflectance.begin(), reflectance.end());
+  if (!(*least >= 0 && found > 0)) reader.fail("a positive reflectance", fmt::format("{}", found));
+  const bool kept = trusted(*least, found) && trusted(*most, found);
+  notes.push_back(fmt::format(
+      "The values integrate to {:.4g} % at {} degrees, stated {:.4g} to {:.4g} %: {}.", 100 * found,
+      measured_deg, 100 * *least, 100 * *most, kept ? "taken as they are" : "scaled"));
+  if (kept || *least == *most) {
+    reflectance = {kept ? found : *least};
+    content.lambda_nm.clear();
+  }
+  for (const double r : reflectance) {
+    content.blocks.push_back(blocks);
+    for (auto& of_rotation : content.blocks.back())
+      for (Block& block : of_rotation) scale(block, r / found);
+  }
+  return content;
+}
+
+/// One block for each incidence and wavelength, each with its reflectance.
+Content read_brdf(TextReader& reader, std::vector<std::string>& notes) {
+  Content content = read_preamble(reader, false);
+  const std::size_t incidences = next_count(reader, "the number of incidences", kMaxAngles);
+  const std::size_t bands = next_count(reader, "the number of wavelengths", kMaxFileChannels);
+  content.incidences_deg = next_angles(reader, "incidences", incidences, 90);
+  for (std::size_t k = 0; k < bands; ++k) content.lambda_nm.push_back(next_number(reader, "a wavelength"));
+  content.rotations_deg = {0};
+  content.blocks.assign(bands, {{}});
+  std::vector<std::vector<double>> factors(bands);
+  bool kept = true;
+  for (std::size_t i = 0; i < incidences; ++i)
+    for (std::size_t k = 0; k < bands; ++k) {
+      const double reflectance = next_number(reader, "a reflectance") / 100;
+      content.blocks[k][0].push_back(next_block(reader));
+      const double found = integral(content.blocks[k][0].back(), content.holds_f);
+      if (!(reflectance >= 0 && (found > 0 || reflectance == 0)))
+        reader.fail("a positive reflectance", fmt::format("{}", found));
+      kept = kept && trusted(reflectance, found);
+      factors[k].push_back(found > 0 ? reflectance / found : 0);
+    }
+  notes.push_back(kept ? "The values integrate to the stated reflectances: taken as they are."
+                       : "The values are scaled to the stated reflectances.");
+  if (!kept)
+    for (std::size_t k = 0; k < bands; ++k)
+      for (std::size_t i = 0; i < incidences; ++i) scale(content.blocks[k][0][i], factors[k][i]);
+  if (bands == 1) content.lambda_nm.clear();
+  return content;
+}
+
+/// Angles of any of the blocks, degrees, less than kSameDegree apart taken as one.
+std::vector<double> all_angles(const Content& content, std::vector<double> Block::*angles) {
+  std::vector<double> all;
+  for (const auto& of_channel : content.blocks)
+    for (const auto& of_rotation : of_channel)
+      for (const Block& block : of_rotation) {
+        const std::vector<double>& own = block.*angles;
+        if (std::includes(all.begin(), all.end(), own.begin(), own.end())) continue;
+        std::vector<double> both;
+        std::set_union(all.begin(), all.end(), own.begin(), own.end(), std::back_inserter(both));
+        all = std::move(both);
+      }
+  const auto same = [](double a, double b) { return b - a < kSameDegree; };
+  all.erase(std::unique(all.begin(), all.end(), same), all.end());
+  return all;
+}
+
+/// Where each node of the table comes from in the file.
+struct AzimuthNode {
+  double node_deg, phi_deg;
+};
+
+/// Azimuths phi_o - phi_i of the file's phi, whose 0 is the mirror direction.
+std::vector<AzimuthNode> azimuth_nodes(const std::vector<double>& phis_deg, bool folded) {
+  std::vector<AzimuthNode> nodes;
+  for (const double phi : phis_deg) {
+    if (!folded && phi >= 360 - kSameDegree && phis_deg.front() < kSameDegree) continue;  // 0 again
+    nodes.push_back({folded ? 180 - phi : std::fmod(phi + 180, 360), phi});
+  }
+  std::sort(nodes.begin(), nodes.end(), [](const auto& a, const auto& b) { return a.node_deg < b.node_deg; });
+  return nodes;
+}
+
+std::vector<double> in_radians(const std::vector<AzimuthNode>& nodes) {
+  std::vector<double> angles;
+  for (const AzimuthNode& node : nodes) angles.push_back(radians(node.node_deg));
+  return angles;
+}
+
+/// The table of all blocks; wi stands opposite to where the light travels, from which anisotropy angles count.
+AngleTable make_table(const FileBytes& file, const Content& content, Findings& findings) {
+  const std::vector<double> thetas = all_angles(content, &Block::theta_deg);
+  const std::vector<double> phis = all_angles(content, &Block::phi_deg);
+  AngleTable table;
+  table.folded = phis.back() <= 180 + kSameDegree;
+  const std::vector<AzimuthNode> azimuths = azimuth_nodes(phis, table.folded);
+  std::vector<AzimuthNode> rotations;
+  for (const double angle : content.rotations_deg) rotations.push_back({std::fmod(540 - angle, 360), angle});
+  if (rotations.size() > 1 && rotations.back().phi_deg - rotations.front().phi_deg >= 360 - kSameDegree)
+    rotations.pop_back();
+  std::sort(rotations.begin(), rotations.end(),
+            [](const auto& a, const auto& b) { return a.node_deg < b.node_deg; });
+
+  table.channel_count = content.blocks.size();
+  const std::size_t channels = content.blocks.size(), incidences = content.incidences_deg.size();
+  const std::size_t entries = rotations.size() * incidences * thetas.size() * azimuths.size();
+  if (entries > kMaxValues / channels)
+    throw Error::in_file(file.name, fmt::format("at most {} values at the angles of all blocks", kMaxValues),
+                         "more");
+  const auto polar = [](const std::vector<double>& degrees_) {
+    std::vector<double> angles;
+    for (const double angle : degrees_) angles.push_back(std::min(radians(angle), kHalfPi));
+    return make_axis(angles);
+  };
+  table.axes = {make_axis(in_radians(rotations), kTwoPi), polar(content.incidences_deg), polar(thetas),
+                make_axis(in_radians(azimuths), table.folded ? 0 : kTwoPi)};
+  table.values.resize(entries * channels);
+
+  // every entry from its block, a hole where a cosine cannot be divided out
+  std::size_t at = 0;
+  for (const AzimuthNode& rotation : rotations) {
+    const auto r = static_cast<std::size_t>(
+        std::find(content.rotations_deg.begin(), content.rotations_deg.end(), rotation.phi_deg) -
+        content.rotations_deg.begin());
+    for (std::size_t i = 0; i < incidences; ++i)
+      for (const double theta : thetas)
+        for (const AzimuthNode& azimuth : azimuths) {
+          const double cosine = content.holds_f ? 1 : std::cos(radians(theta));
+          const bool hole = cosine < kHorizon;
+          findings.hole_count += hole;
+          for (std::size_t c = 0; c < channels; ++c) {
+            const double f = value_at(content.blocks[c][r][i], theta, azimuth.phi_deg) / cosine;
+            table.values[at++] = hole ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(f);
+            if (hole || f >= 0) continue;
+            ++findings.negative_count;
+            findings.most_negative = std::min(findings.most_negative, f);
+          }
+        }
+  }
+  findings.sample_count = entries;
+  findings.theta_i_min = table.axes[1].nodes.front();
+  findings.theta_i_max = table.axes[1].nodes.back();
+  findings.theta_o_min = table.axes[2].nodes.front();
+  findings.theta_o_max = table.axes[2].nodes.back();
+  return table;
+}
+
+/// One channel a wavelength becomes three.
+void convert_to_rec709(AngleTable& table, const std::vector<double>& lambda_nm,
+                       const std::string& illuminant) {
+  const auto weights = rec709_weights(lambda_nm, open_illuminant(illuminant));
+  std::vector<float> rgb(entry_count(table) * 3);
+  for (std::size_t entry = 0; entry < rgb.size() / 3; ++entry)
+    for (std::size_t c = 0; c < 3; ++c) {
+      double sum = 0;
+      for (std::size_t k = 0; k < weights.size(); ++k)
+        sum += weights[k][c] * static_cast<double>(table.values[entry * weights.size() + k]);
+      rgb[3 * entry + c] = static_cast<float>(sum);
+    }
+  table.values = std::move(rgb);
+  table.channel_count = 3;
+}
+
+}  // namespace
+
+bool looks_like_speos(std::string_view text) noexcept {
+  return text.starts_with(kAnisotropic) || text.starts_with(kBrdf);
+}
+
+SpeosFile parse_speos(const FileBytes& file, const OpenOptions& options) {
+  TextReader reader(file);
+  SpeosFile result;
+  Findings& findings = result.findings;
+  const bool anisotropic = file.text().starts_with(kAnisotropic);
+  std::vector<std::string> notes;
+  Content content = anisotropic ? read_anisotropic(reader, notes) : read_brdf(reader, notes);
+  const auto& lambda = content.lambda_nm;
+  if (!lambda.empty() &&
+      (lambda.front() <= 0 || lambda.back() >= 1e6 ||
+       std::adjacent_find(lambda.begin(), lambda.end(), std::greater_equal<>{}) != lambda.end()))
+    throw Error::in_file(file.name, "positive, increasing wavelengths",
+                         fmt::format("{} ... {} nm out of order", lambda.front(), lambda.back()));
+  findings.format = anisotropic ? "Speos anisotropic BSDF" : "Speos BRDF";
+  findings.description = content.comment;
+  findings.conventions = {
+      "Angles in degrees; the mirror direction has phi = 0, retroreflection 180.",
+      content.holds_f ? "Values are f_r." : "Values contain cos(theta_o): it is divided out."};
+  for (std::string& note : notes) findings.conventions.push_back(std::move(note));
+
+  // rotations that change nothing
+  const auto alike = [](const auto& of_channel) {
+    return std::all_of(of_channel.begin(), of_channel.end(),
+                       [&](const auto& r) { return r == of_channel.front(); });
+  };
+  if (content.rotations_deg.size() > 1 && std::all_of(content.blocks.begin(), content.blocks.end(), alike)) {
+    findings.conventions.push_back(
+        fmt::format("Taken as isotropic: {} rotations of the sample have the same values.",
+                    content.rotations_deg.size()));
+    content.rotations_deg.resize(1);
+  } else if (content.rotations_deg.size() > 1) {
+    findings.conventions.push_back(
+        "Anisotropy angles are those from where the light travels to to the tangent.");
+  }
+  result.table = make_table(file, content, findings);
+
+  if (!content.lambda_nm.empty() && !options.keep_spectral) {
+    convert_to_rec709(result.table, content.lambda_nm, options.illuminant);
+    findings.illuminant = illuminant_name(options.illuminant);
+  } else {
+    findings.lambda_nm = content.lambda_nm;
+  }
+  return result;
+}
+
+}  // namespace burnish

@@ -1,0 +1,123 @@
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <burnish/io/speos.h>
+#include <burnish/math/angles.h>
+#include <burnish/testing/files.h>
+#include <burnish/testing/seed_files.h>
+
+namespace burnish {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+double value(const AngleTable& table, Vec3 wi, Vec3 wo, std::size_t channel = 0) {
+  std::vector<double> f(table.channels());
+  EXPECT_TRUE(table.eval_raw(wi, wo, f));
+  return f[channel];
+}
+
+// A white Lambertian surface's intensities at two wavelengths.
+std::string brdf_text(double reflectance) {
+  std::string text =
+      "OPTIS - brdf surface file v9.0\n0\nScattering surface\n0\n\n1\t0\n1\n2\t2\n0\t60\n450\t650\n";
+  for (int block = 0; block < 4; ++block) {
+    text += std::to_string(100 * reflectance) + "\n91 3\n\t0\t180\t360\n";
+    for (int theta = 0; theta <= 90; ++theta) text += std::to_string(theta) + "\t0.25\t0.25\t0.25\n";
+  }
+  return text;
+}
+
+TEST(Speos, TurnsRotationsAndAzimuthsIntoOurs) {
+  EXPECT_TRUE(looks_like_speos(seeds::kSpeos));
+  const SpeosFile file = parse_speos(memory_file(seeds::kSpeos), {.keep_spectral = true});
+  const AngleTable& table = file.table;
+  EXPECT_FALSE(table.isotropic());
+  EXPECT_EQ(table.channels(), 2);
+  EXPECT_EQ(file.findings.lambda_nm, (std::vector<double>{450, 650}));
+  EXPECT_EQ(file.findings.description, "seed");
+  EXPECT_EQ(file.findings.negative_count, 2u);
+  // light that travels to +x, rotation 0: phi = 120 degrees is 120 degrees from +x
+  const Vec3 wi = spherical_direction(radians(30), kPi);
+  const double at_120 = value(table, wi, spherical_direction(radians(60), radians(120)));
+  const double at_240 = value(table, wi, spherical_direction(radians(60), radians(240)));
+  EXPECT_NEAR(at_120 / at_240, 0.5 / 0.6, 1e-6);
+  // twice the reflectance, twice the value; the cosine is divided out
+  EXPECT_NEAR(value(table, wi, spherical_direction(radians(60), 0), 1),
+              2 * value(table, wi, spherical_direction(radians(60), 0)), 1e-6);
+  EXPECT_NEAR(value(table, wi, {0, 0, 1}) / at_120, 1 / (0.5 / std::cos(radians(60))), 1e-6);
+  // rotated by 90 degrees light travels to -y
+  const Vec3 turned = spherical_direction(radians(30), kPi / 2);
+  EXPECT_LT(value(table, turned, spherical_direction(radians(60), radians(30))), 0);
+  EXPECT_THAT(parse_speos(memory_file(seeds::kSpeos), {}).findings.illuminant, "equal energy");
+}
+
+TEST(Speos, ScalesABrdfToItsReflectanceUnlessItHasIt) {
+  const double reflectance = 0.25 * kPi;
+  const Vec3 wi = spherical_direction(0.3, 0), wo = spherical_direction(0.5, 1);
+  const SpeosFile kept = parse_speos(memory_file(brdf_text(reflectance)), {.keep_spectral = true});
+  EXPECT_TRUE(kept.table.isotropic());
+  EXPECT_NEAR(value(kept.table, wi, wo), 0.25, 1e-7);
+  const SpeosFile scaled = parse_speos(memory_file(brdf_text(reflectance / 2)), {.keep_spectral = true});
+  EXPECT_NEAR(value(scaled.table, wi, wo), 0.125, 1e-4);  // of the quadrature
+  EXPECT_EQ(parse_speos(memory_file(brdf_text(reflectance)), {}).table.channels(), 3);
+}
+
+TEST(Speos, SaysWhatIsWrong) {
+  const auto error = [](std::string text, std::string_view from, std::string_view to) {
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+    return error_of([&] { parse_speos(memory_file(text), {}); });
+  };
+  EXPECT_THAT(error(seeds::kSpeos, "v8.0\n0", "v8.0\n1"), HasSubstr("text mode, 0"));
+  EXPECT_THAT(error(seeds::kSpeos, "1\t0\n0\n", "1\t1\n0\n"), HasSubstr("reflection alone"));
+  EXPECT_THAT(error(seeds::kSpeos, "0 90\n", "90 0\n"), HasSubstr("increasing anisotropy angles"));
+  EXPECT_THAT(error(seeds::kSpeos, "30\n1\n30\n", "30\n1\n31\n"), HasSubstr("the same incidences"));
+  EXPECT_THAT(error(seeds::kSpeos, "2 3\n", "4000 4000\n"), HasSubstr("4000 x 4000 values"));
+  EXPECT_THAT(error(seeds::kSpeos, "0.4\t0.5", "0.4\tx"), HasSubstr("a finite number for a value"));
+  EXPECT_THAT(error(seeds::kSpeos, "60\t0.4", "91\t0.4"), HasSubstr("theta in [0, 90]"));
+}
+
+// Blocks begin with a line of two counts; values contain the cosine; phi = 0 is the mirror direction.
+TEST(Speos, ReadsASurfaceAsAFewLinesDo) {
+  BURNISH_NEEDS_DATA();
+  const FileBytes bytes = read_file(data_folder() / "speos" / "aniso_bsdf.anisotropicbsdf");
+  const SpeosFile file = parse_speos(bytes, {});
+  EXPECT_TRUE(file.table.isotropic());
+  EXPECT_THAT(file.findings.conventions, Contains(HasSubstr("taken as they are")));
+  const std::vector<double> incidences{5,  10, 15, 20, 25, 30, 35, 40, 45, 50,
+                                       55, 60, 65, 70, 75, 80, 85, 88, 89};
+  std::istringstream lines{std::string(bytes.text())};
+  std::size_t block = 0, compared = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (line != "21 41") continue;
+    std::getline(lines, line);
+    std::istringstream header(line);
+    const std::vector<double> phis(std::istream_iterator<double>(header), {});
+    const Vec3 wi = spherical_direction(radians(incidences[block++ % 19]), kPi);
+    for (int row = 0; row < 21; ++row) {
+      std::getline(lines, line);
+      std::istringstream numbers(line);
+      double theta, stored;
+      numbers >> theta;
+      for (const double phi : phis) {
+        numbers >> stored;
+        if (theta > 89.5) continue;
+        const double f = stored / std::cos(radians(theta));
+        EXPECT_NEAR(value(file.table, wi, spherical_direction(radians(theta), radians(phi))), f, 1e-5 * f);
+        ++compared;
+      }
+    }
+  }
+  EXPECT_EQ(compared, 57u * 20 * 41);
+}
+
+}  // namespace
+}  // namespace burnish

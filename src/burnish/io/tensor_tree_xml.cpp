@@ -1,0 +1,187 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include <burnish/io/tensor_tree_xml.h>
+#include <burnish/io/text_reader.h>
+#include <burnish/io/window_xml.h>
+#include <burnish/math/angles.h>
+
+namespace burnish {
+
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r\n,";
+constexpr int kDeepest = 24;
+
+/// Reads the braces of ScatteringData.
+class BraceReader {
+ public:
+  BraceReader(const WindowXml& xml, std::string_view text, int rank)
+      : xml_(xml), text_(text), children_(std::size_t{1} << rank) {
+    tree_.rank = rank;
+  }
+
+  TensorTree read() {
+    add_node(0);
+    skip_blanks();
+    if (!text_.empty()) xml_.fail("the end of ScatteringData after its tree", in_quotes(text_));
+    return std::move(tree_);
+  }
+
+ private:
+  void skip_blanks() noexcept {
+    text_.remove_prefix(std::min(text_.find_first_not_of(kBlanks), text_.size()));
+  }
+
+  bool at(char c) noexcept {
+    skip_blanks();
+    return text_.starts_with(c);
+  }
+
+  void eat(char c) {
+    if (!at(c)) xml_.fail(fmt::format("'{}' in ScatteringData", c), in_quotes(text_.substr(0, 20)));
+    text_.remove_prefix(1);
+  }
+
+  std::uint32_t add_node(int depth) {
+    if (depth > kDeepest) xml_.fail(fmt::format("a tree of at most {} levels", kDeepest), "a deeper one");
+    const auto number = static_cast<std::uint32_t>(tree_.nodes.size());
+    tree_.nodes.emplace_back();
+    eat('{');
+    if (at('{')) {
+      // the links of a branch stand together, its nodes need not
+      const std::size_t first = tree_.links.size();
+      tree_.nodes[number].first = static_cast<std::uint32_t>(first);
+      tree_.links.resize(first + children_);
+      for (std::size_t child = 0; child < children_; ++child) {
+        const std::uint32_t added = add_node(depth + 1);
+        tree_.links[first + child] = added;
+      }
+    } else {
+      tree_.nodes[number] = read_values();
+    }
+    eat('}');
+    return number;
+  }
+
+  TensorTree::Node read_values() {
+    const std::size_t first = tree_.values.size();
+    while (!at('}')) {
+      const std::string_view word = text_.substr(0, text_.find_first_of(" \t\r\n,{}"));
+      const auto value = parse_number(word);
+      if (!value || std::abs(*value) > std::numeric_limits<float>::max())
+        xml_.fail("finite numbers in ScatteringData", in_quotes(word));
+      tree_.values.push_back(static_cast<float>(*value));
+      text_.remove_prefix(word.size());
+    }
+    const std::size_t count = tree_.values.size() - first;
+    int log2 = 0;
+    while (std::size_t{1} << tree_.rank * log2 < count) ++log2;
+    if (std::size_t{1} << tree_.rank * log2 != count)
+      xml_.fail(fmt::format("2^({} k) values between braces", tree_.rank), fmt::format("{}", count));
+    return {log2, static_cast<std::uint32_t>(first)};
+  }
+
+  const WindowXml& xml_;
+  std::string_view text_;
+  const std::size_t children_;
+  TensorTree tree_;
+};
+
+void add_braces(const TensorTree& tree, std::size_t index, std::string& text) {
+  const TensorTree::Node node = tree.nodes[index];
+  text += '{';
+  if (node.log2 < 0)
+    for (std::size_t child = 0; child < std::size_t{1} << tree.rank; ++child)
+      add_braces(tree, tree.links[node.first + child], text);
+  else
+    for (std::size_t i = 0; i < std::size_t{1} << tree.rank * node.log2; ++i)
+      text += fmt::format(" {}", tree.values[node.first + i]);
+  text += " }\n";
+}
+
+/// A name as XML content.
+std::string escaped(std::string_view name) {
+  std::string text;
+  for (const char c : name) {
+    if (c == '<')
+      text += "&lt;";
+    else if (c == '&')
+      text += "&amp;";
+    else
+      text += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  }
+  return text;
+}
+
+}  // namespace
+
+bool looks_like_tensor_tree(std::string_view text) noexcept {
+  const std::string_view start = text.substr(0, 65536);
+  const std::size_t first = start.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  return first != std::string_view::npos && start[first] == '<' &&
+         start.find("<WindowElement") != std::string_view::npos &&
+         start.find("TensorTree") != std::string_view::npos;
+}
+
+TensorTreeFile parse_tensor_tree(const FileBytes& file, const OpenOptions& options) {
+  const WindowXml xml(file);
+  const std::string_view structure = xml.structure();
+  if (structure != "TensorTree3" && structure != "TensorTree4")
+    xml.fail("IncidentDataStructure TensorTree3 or TensorTree4", in_quotes(structure));
+
+  // one side's block, the other's where there is no other
+  const std::string_view front = "Reflection Front", back = "Reflection Back";
+  std::string_view direction = options.back_side ? back : front;
+  if (!xml.find_block(direction) && xml.find_block(options.back_side ? front : back))
+    direction = options.back_side ? front : back;
+  const pugi::xml_node block = xml.block(direction);
+  if (const std::string_view basis = trimmed(block.child_value("AngleBasis")); basis != "LBNL/Shirley-Chiu")
+    xml.fail("AngleBasis LBNL/Shirley-Chiu", in_quotes(basis));
+
+  TensorTreeFile result;
+  const int rank = structure == "TensorTree3" ? 3 : 4;
+  result.table = BraceReader(xml, block.child_value("ScatteringData"), rank).read();
+  Findings& findings = result.findings;
+  for (const TreeLeaf& leaf : leaves(result.table)) {
+    ++findings.sample_count;
+    findings.negative_count += leaf.value < 0;
+    findings.most_negative = std::min(findings.most_negative, static_cast<double>(leaf.value));
+  }
+  findings.format = fmt::format("tensor tree XML of rank {}", rank);
+  findings.description = xml.material();
+  findings.conventions = {
+      fmt::format("'{}'{}; values are f_r without the cosine.", direction,
+                  options.back_side == (direction == back) ? "" : ", the only reflection there is"),
+      "Incident directions are those the light travels to: the mirror direction has the same place.",
+      "Constant over each cube, as Radiance evaluates it."};
+  if (rank == 3) findings.conventions.push_back("Isotropic.");
+  findings.theta_i_max = findings.theta_o_max = kHalfPi;
+  return result;
+}
+
+std::string format_tensor_tree(const TensorTree& tree, std::string_view material) {
+  std::string braces;
+  add_braces(tree, 0, braces);
+  return fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<WindowElement xmlns=\"http://windows.lbl.gov\" "
+      "xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\" "
+      "xsi:schemaLocation=\"http://windows.lbl.gov/BSDF-v1.4.xsd\">\n"
+      "<WindowElementType>System</WindowElementType>\n<FileType>BSDF</FileType>\n<Optical>\n<Layer>\n"
+      "<Material>\n<Name>{}</Name>\n<Manufacturer>unknown</Manufacturer>\n<DeviceType>Other</DeviceType>\n"
+      "</Material>\n<DataDefinition>\n<IncidentDataStructure>TensorTree{}</IncidentDataStructure>\n"
+      "</DataDefinition>\n<WavelengthData>\n<LayerNumber>System</LayerNumber>\n"
+      "<Wavelength unit=\"Integral\">Visible</Wavelength>\n<WavelengthDataBlock>\n"
+      "<WavelengthDataDirection>Reflection Back</WavelengthDataDirection>\n"
+      "<AngleBasis>LBNL/Shirley-Chiu</AngleBasis>\n<ScatteringDataType>BTDF</ScatteringDataType>\n"
+      "<ScatteringData>\n{}</ScatteringData>\n</WavelengthDataBlock>\n</WavelengthData>\n</Layer>\n</"
+      "Optical>\n"
+      "</WindowElement>\n",
+      escaped(material), tree.rank, braces);
+}
+
+}  // namespace burnish

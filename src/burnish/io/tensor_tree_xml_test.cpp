@@ -1,0 +1,139 @@
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <sstream>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <burnish/io/convert.h>
+#include <burnish/io/open_source.h>
+#include <burnish/io/tensor_tree_xml.h>
+#include <burnish/math/angles.h>
+#include <burnish/math/random.h>
+#include <burnish/testing/files.h>
+#include <burnish/testing/seed_files.h>
+
+namespace burnish {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+TEST(TensorTreeXml, ReadsBracesAndWritesThemBack) {
+  EXPECT_TRUE(looks_like_tensor_tree(seeds::kTensorTree));
+  EXPECT_FALSE(looks_like_tensor_tree(seeds::kKlems));
+  const TensorTreeFile file = parse_tensor_tree(memory_file(seeds::kTensorTree), {});
+  EXPECT_EQ(file.table.rank, 3);
+  EXPECT_EQ(file.table.values.size(), 8u + 3 + 8 + 3);
+  EXPECT_EQ(file.findings.negative_count, 1u);
+  EXPECT_EQ(file.findings.sample_count,
+            8u + 1 + 8 + 1);  // without the half of axis 0 that stands for nothing
+  const TensorTreeFile again = parse_tensor_tree(memory_file(format_tensor_tree(file.table, "a<b&c")), {});
+  EXPECT_EQ(again.table.values, file.table.values);
+  EXPECT_EQ(again.table.links, file.table.links);
+  EXPECT_EQ(again.findings.description, "a<b&c");
+  EXPECT_THAT(again.findings.conventions.front(),
+              HasSubstr("'Reflection Back', the only reflection there is"));
+}
+
+TEST(TensorTreeXml, SaysWhatIsWrong) {
+  const auto error = [](std::string_view from, std::string_view to) {
+    std::string text = seeds::kTensorTree;
+    text.replace(text.find(from), from.size(), to);
+    return error_of([&] { parse_tensor_tree(memory_file(text), {}); });
+  };
+  EXPECT_THAT(error("{ 1 2", "{ 1"), HasSubstr("2^(3 k) values between braces, found 7"));
+  EXPECT_THAT(error("{0} }<", "{0} <"), HasSubstr("'}' in ScatteringData"));
+  EXPECT_THAT(error("{0} }<", "{0} } 1<"), HasSubstr("the end of ScatteringData"));
+  EXPECT_THAT(error("{0} }<", "}<"), HasSubstr("'{' in ScatteringData"));
+  EXPECT_THAT(error("2e-1", "2e99"), HasSubstr("finite numbers"));
+  EXPECT_THAT(error("Shirley-Chiu", "Klems Full"), HasSubstr("LBNL/Shirley-Chiu"));
+  EXPECT_THAT(error("Tree3", "Tree5"), HasSubstr("TensorTree3 or TensorTree4"));
+  EXPECT_THAT(error("Reflection Front", "Transmission Front"), HasSubstr("'Transmission Front'"));
+  EXPECT_THAT(error("{.5}", std::string(40, '{')), HasSubstr("at most 24 levels"));
+}
+
+TEST(TensorTreeXml, HoldsASourceAtRankFour) {
+  const Source source = open_source("ggx:alpha_x=0.5,alpha_y=0.7,f0=0.4", {});
+  const Converted converted = convert(source, "tensortree", {.cells = 16});
+  EXPECT_THAT(converted.losses, Contains(HasSubstr("luminance")));
+  const Source back = parse_source(memory_file(converted.bytes), {});
+  const auto& tree = std::get<TensorTree>(back.brdf);
+  EXPECT_EQ(tree.rank, 4);
+  std::array<double, 3> rgb;
+  for (const TreeLeaf& leaf : leaves(tree)) {
+    const auto [wi, wo] = leaf_directions(tree, leaf);
+    source.ref().eval(wi, wo, rgb);
+    const double luminance = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
+    EXPECT_NEAR(static_cast<double>(leaf.value), luminance, 2e-3 * luminance);
+  }
+  EXPECT_EQ(convert(back, "tensortree", {}).bytes.size(), converted.bytes.size());
+}
+
+// SDqueryTre and SDlookupTre on the text itself.
+struct Radiance {
+  std::string_view text;
+  std::size_t at = 0;
+
+  void blanks() { at = text.find_first_not_of(" \t\r\n", at); }
+  void skip() {
+    int depth = 0;
+    do {
+      depth += text[at] == '{';
+      depth -= text[at] == '}';
+      ++at;
+    } while (depth > 0);
+    blanks();
+  }
+  double look_up(std::array<double, 3> x) {
+    blanks();
+    ++at;
+    blanks();
+    if (text[at] == '{') {
+      int child = 0;
+      for (int i = 0; i < 3; ++i) {
+        x[static_cast<std::size_t>(i)] *= 2;
+        if (x[static_cast<std::size_t>(i)] < 1) continue;
+        child |= 1 << i;
+        x[static_cast<std::size_t>(i)] -= 1;
+      }
+      for (; child > 0; --child) skip();
+      return look_up(x);
+    }
+    const std::string inner(text.substr(at, text.find('}', at) - at));
+    std::istringstream numbers(inner);
+    const std::vector<double> values(std::istream_iterator<double>(numbers), {});
+    const auto n = static_cast<std::size_t>(std::lround(std::cbrt(values.size())));
+    std::size_t index = 0;
+    for (const double c : x) index = index * n + static_cast<std::size_t>(static_cast<double>(n) * c);
+    return values[index];
+  }
+};
+
+TEST(TensorTreeXml, EvaluatesAFabricAsRadianceDoes) {
+  BURNISH_NEEDS_DATA();
+  const FileBytes bytes = read_file(data_folder() / "tensortree" / "t3.xml");
+  const TensorTreeFile file = parse_tensor_tree(bytes, {});
+  EXPECT_TRUE(file.table.isotropic());
+  const std::size_t start = bytes.text().find("<ScatteringData>") + 16;
+  const std::string_view braces = bytes.text().substr(start, bytes.text().find("</Scatt", start) - start);
+  Pcg32 random(1);
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 wi = spherical_direction(kHalfPi * 0.99 * random.uniform(), kTwoPi * random.uniform());
+    const Vec3 wo = spherical_direction(kHalfPi * 0.99 * random.uniform(), kTwoPi * random.uniform());
+    const double turn = phi_of(wo) - std::atan2(-wi.y, -wi.x), sine = std::hypot(wo.x, wo.y);
+    const DiskPoint square = shirley_chiu_square({sine * std::cos(turn), sine * std::sin(turn)});
+    const double expected =
+        Radiance{braces}.look_up({0.5 - 0.5 * std::hypot(wi.x, wi.y), square.x, square.y});
+    double f;
+    file.table.eval(wi, wo, {&f, 1});
+    EXPECT_NEAR(f, expected, 1e-6 * expected);
+  }
+  const TensorTree again = parse_tensor_tree(memory_file(format_tensor_tree(file.table, "fabric")), {}).table;
+  EXPECT_EQ(again.values, file.table.values);
+}
+
+}  // namespace
+}  // namespace burnish

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace burnish {
+
+/// How many letters have to be put in, left out, replaced or exchanged with their neighbour to make one word of the
+/// other. Source: [Damerau 1964], of which no letter is changed twice.
+std::size_t edit_distance(std::string_view a, std::string_view b);
+
+/// The name that was meant by a misspelt word: the one of least edit_distance, the first of several, where that is at
+/// most a third of the word's letters and at least one; else empty.
+std::string_view closest_name(std::string_view word, std::span<const std::string_view> names);
+
+/// "; did you mean 'NAME'?" of that name, or nothing.
+std::string did_you_mean(std::string_view word, std::span<const std::string_view> names);
+
+}  // namespace burnish

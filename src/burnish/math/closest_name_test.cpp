@@ -1,0 +1,30 @@
+#include <array>
+
+#include <gtest/gtest.h>
+
+#include <burnish/math/closest_name.h>
+
+namespace burnish {
+namespace {
+
+TEST(ClosestName, CountsEdits) {
+  EXPECT_EQ(edit_distance("", "abc"), 3u);
+  EXPECT_EQ(edit_distance("fit", "fit"), 0u);
+  EXPECT_EQ(edit_distance("comapre", "compare"), 1u);
+  EXPECT_EQ(edit_distance("conver", "convert"), 1u);
+  EXPECT_EQ(edit_distance("kitten", "sitting"), 3u);
+}
+
+TEST(ClosestName, FindsWhatWasMeantAndNothingElse) {
+  constexpr std::array<std::string_view, 4> verbs{"info", "fit", "compare", "convert"};
+  EXPECT_EQ(closest_name("fti", verbs), "fit");
+  EXPECT_EQ(closest_name("compair", verbs), "compare");
+  EXPECT_EQ(closest_name("nonsense", verbs), "");
+  EXPECT_EQ(closest_name("", verbs), "");
+  EXPECT_EQ(closest_name(std::string(100, 'f'), verbs), "");
+  EXPECT_EQ(did_you_mean("inof", verbs), "; did you mean 'info'?");
+  EXPECT_EQ(did_you_mean("x-rays", verbs), "");
+}
+
+}  // namespace
+}  // namespace burnish
