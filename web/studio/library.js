@@ -1,0 +1,2 @@
+// The one door to the library.
+export {open} from "./package/burnish.js";
