@@ -10,9 +10,11 @@ layout(location = 2) in vec3 tangent;
 uniform mat3 turn;
 uniform vec2 zoom, jitter;
 uniform float eye;
+uniform float lift;  // along the normal
 out vec3 place, n, t;
+invariant gl_Position;
 void main() {
-  place = turn * position;
+  place = turn * (position + lift * normal);
   n = turn * normal;
   t = turn * tangent;
   float w = eye - place.z, near = eye - 1.5, far = eye + 1.5;
@@ -43,7 +45,7 @@ vec3 environment(vec3 d) {
     float y = d.y, glow = max(dot(d, sun), 0.0);
     vec3 sky = mix(vec3(0.75, 0.85, 1.0), vec3(0.18, 0.36, 0.8), pow(max(y, 0.0), 0.6));
     vec3 ground = vec3(0.2, 0.17, 0.14);
-    return mix(ground, sky, smoothstep(-0.02, 0.03, y)) + vec3(60.0, 52.0, 40.0) * smoothstep(0.9975, 0.9985, glow) +
+    return mix(ground, sky, smoothstep(-0.02, 0.03, y)) + vec3(16.0, 14.0, 11.0) * smoothstep(0.985, 0.995, glow) +
            vec3(0.6, 0.5, 0.35) * pow(glow, 24.0);
   }
   if (around == 3) return vec3(1.0);
@@ -167,8 +169,7 @@ void main() {
   color = vec4(seen, 1.0);
 }`;
 
-// Short lines along the tangents.
-export const lineVertex = objectVertex.replace("place = turn * position;", "place = turn * position + 0.004 * (turn * normal);");
+// Depths, and short lines along the tangents.
 export const lineFragment = `#version 300 es
 precision highp float;
 uniform vec3 ink;

@@ -1,7 +1,7 @@
 // The lit object: two materials beside each other, summed over frames until the light from all around is smooth.
 import {bind, mesh, program, target, texture} from "./gl.js";
 import {prepare} from "./gpu_brdf.js";
-import {environments, kLights, lineFragment, lineVertex, objectFragment, objectVertex, pictureFragment, screenVertex, sumFragment} from "./shading.js";
+import {environments, kLights, lineFragment, objectFragment, objectVertex, pictureFragment, screenVertex, sumFragment} from "./shading.js";
 import {knot, sphere, teapot} from "./shapes.js";
 import {normalize} from "./vectors.js";
 
@@ -25,12 +25,12 @@ export class View {
     this.programs = new Map();
     this.meshes = new Map();
     this.sides = [null, null];
-    this.samplesAFrame = 8;
+    this.samplesAFrame = 4;
     this.resolution = 1;  // 0.5 where drawing is slow
     const gl = this.gl;
     this.sum = program(gl, screenVertex, sumFragment);
     this.picture = program(gl, screenVertex, pictureFragment);
-    this.lines = program(gl, lineVertex, lineFragment);
+    this.lines = program(gl, objectVertex, lineFragment);
     this.black = texture(gl, {width: 1, height: 1, internal: gl.RGBA8, format: gl.RGBA, type: gl.UNSIGNED_BYTE, data: new Uint8Array(4)});
     this.sky = this.black;
     this.empty = gl.createVertexArray();
@@ -103,7 +103,8 @@ export class View {
     });
   }
   get wanted() {
-    return this.settings.around === "none" ? 16 : kEnough;
+    if (this.settings.around === "none") return 16;
+    return this.resolution < 1 ? kEnough / 4 : kEnough;
   }
   get settled() {
     return this.taken >= this.wanted;
@@ -123,22 +124,32 @@ export class View {
   }
 
   frame(time) {
-    if (this.gl.isContextLost()) return;
-    this.resize();
-    // as many samples a frame as the frames' pace allows; a frame that came after a pause tells nothing
-    if (this.lastTime && this.frames > 1) {
-      const took = time - this.lastTime;
-      if (took > kLongFrame && this.samplesAFrame > 2) this.samplesAFrame /= 2;
-      else if (took > 4 * kLongFrame && this.resolution > 0.5) this.resolution = 0.5;
-      else if (took < kLongFrame / 2) this.samplesAFrame = Math.min(this.samplesAFrame * 2, 32);
-      this.pace = 0.8 * (this.pace ?? took) + 0.2 * took;
+    const gl = this.gl;
+    if (gl.isContextLost()) return;
+    // the last frame is still being drawn
+    if (this.fence && gl.clientWaitSync(this.fence, 0, 0) === gl.TIMEOUT_EXPIRED) {
+      this.ask();
+      return;
     }
-    this.lastTime = time;
+    if (this.fence) this.measure(time - this.began);
+    this.resize();
     if (!this.settled) this.accumulate();
     this.compose();
+    this.began = time;
+    this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
     this.onframe(this);
     if (!this.settled) this.ask();
-    else this.lastTime = null;
+  }
+  // As many samples a frame, and at last pixels, as the pace allows; a frame after a pause tells nothing.
+  measure(took) {
+    this.gl.deleteSync(this.fence);
+    this.fence = null;
+    if (this.settled) return;
+    this.pace = this.pace ? 0.8 * this.pace + 0.2 * took : took;
+    if (took > kLongFrame && this.samplesAFrame > 2) this.samplesAFrame /= 2;
+    else if (took > 4 * kLongFrame && this.resolution > 0.5) this.resolution = 0.5;
+    else if (took < kLongFrame / 2) this.samplesAFrame = Math.min(this.samplesAFrame * 2, 32);
   }
 
   // One more frame of each material into its sum.
@@ -217,6 +228,15 @@ export class View {
     gl.uniform1i(at("samples"), count);
     gl.uniform1i(at("first_sample"), first);
     gl.uniform2f(at("alpha"), ...form.alpha);
+    // depths first: what is hidden costs nothing then
+    gl.colorMask(false, false, false, false);
+    gl.useProgram(this.lines.handle);
+    this.place(this.lines, goal, jitter);
+    gl.uniform1f(this.lines.at("lift"), 0);
+    this.drawMesh(shape);
+    gl.colorMask(true, true, true, true);
+    gl.useProgram(handle);
+    gl.depthFunc(gl.LEQUAL);
     this.drawMesh(shape);
   }
 
@@ -244,15 +264,14 @@ export class View {
     if (tangents) this.drawTangents();
   }
 
-  // Every so many vertices a short line along the tangent, hidden by the object's depth.
+  // At every so many vertices a short line along the tangent, hidden by the object's depth.
   drawTangents() {
     const gl = this.gl, {shape} = this.settings, name = `${shape} tangents`;
     if (!this.meshes.has(name)) {
-      const {vertices} = makers[shape](), lines = [], indices = [];
-      const step = {sphere: 97 * 4 + 4, knot: 49 * 5 + 4, teapot: 7}[shape];
-      for (let k = 0; k < vertices.length / 9; k += Math.max(Math.round(step / 6), 1)) {
+      const {vertices} = makers[shape](), lines = [], indices = [], every = {sphere: 131, knot: 167, teapot: 41}[shape];
+      for (let k = 0; k < vertices.length / 9; k += every) {
         const p = vertices.slice(9 * k, 9 * k + 9), t = p.slice(6);
-        for (const s of [-0.03, 0.03]) lines.push(p[0] + s * t[0], p[1] + s * t[1], p[2] + s * t[2], ...p.slice(3));
+        for (const s of [-0.025, 0.025]) lines.push(p[0] + s * t[0], p[1] + s * t[1], p[2] + s * t[2], ...p.slice(3));
         indices.push(indices.length, indices.length + 1);
       }
       this.meshes.set(name, mesh(gl, {vertices: lines, indices}));
@@ -262,9 +281,11 @@ export class View {
     gl.useProgram(this.lines.handle);
     this.place(this.lines, this.canvas, [0, 0]);
     gl.uniform3fv(this.lines.at("ink"), [0.2, 0.75, 0.95]);
+    gl.uniform1f(this.lines.at("lift"), 0);
     gl.colorMask(false, false, false, false);
     this.drawMesh(shape);
     gl.colorMask(true, true, true, true);
+    gl.uniform1f(this.lines.at("lift"), 0.006);
     const {array, count} = this.meshes.get(name);
     gl.bindVertexArray(array);
     gl.drawElements(gl.LINES, count, gl.UNSIGNED_INT, 0);
