@@ -5,9 +5,9 @@ import {segments} from "./segments.js";
 import {add, changed, modelsOf, onChange, referenceOf, show, state} from "./state.js";
 
 const presets = {
-  small: {title: "Small", text: "2.7 KB", budget: "2700", fetches: ""},
-  default: {title: "Default", text: "16 KB", budget: "16K", fetches: "2"},
-  best: {title: "Best", text: "64 KB", budget: "64K", fetches: ""},
+  small: {budget: "2700", fetches: ""},
+  default: {budget: "16K", fetches: "2"},
+  best: {budget: "64K", fetches: ""},
 };
 const kCurve = [700, 1400, 2800, 5600, 11200, 22400, 44800];
 
@@ -135,7 +135,7 @@ function enable() {
 
 export function start() {
   const budget = find("#budget"), fetches = find("#fetches");
-  choose = segments(find("#presets"), Object.entries(presets).map(([name, {title, text}]) => [name, make("span", {}, title), make("small", {}, text)]), "default", (name) => {
+  choose = segments(find("#presets"), (name) => {
     budget.value = presets[name].budget;
     fetches.value = presets[name].fetches;
   });

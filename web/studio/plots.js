@@ -131,7 +131,7 @@ const redrawSlices = guarded(async () => {
   const place = find("#slices");
   if (!state.shown) {
     place.replaceChildren(emptyChart(212));
-    find("#lobe").replaceChildren(emptyChart(260));
+    find("#lobe").replaceChildren(emptyChart(212));
     return;
   }
   const slice = await sliceLines();
@@ -205,7 +205,7 @@ export function redraw() {
 }
 
 export function start() {
-  segments(find("#coordinates"), [["polar", "Polar"], ["cartesian", "Cartesian"]], "polar", (coordinates) => {
+  segments(find("#coordinates"), (coordinates) => {
     settings.coordinates = coordinates;
     redrawSlices();
   });

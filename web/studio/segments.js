@@ -1,26 +1,28 @@
-// A row of buttons of which one is chosen, as a radio group: arrow keys move within it.
-import {make} from "./dom.js";
-
-export function segments(place, choices, chosen, told) {
-  const buttons = choices.map(([value, ...text]) => make("button", {type: "button", role: "radio", "data-value": value, onclick: () => choose(value, true)}, ...text));
-  function choose(value, tell) {
+// The buttons of a row as a radio group: one is chosen, arrow keys move within it. Returns a function that chooses without
+// telling; a value that no button has chooses none.
+export function segments(place, told) {
+  const buttons = [...place.children];
+  function choose(value) {
     for (const button of buttons) {
-      const is = button.dataset.value === String(value);
+      const is = button.dataset.value === value;
       button.setAttribute("aria-checked", String(is));
       button.tabIndex = is ? 0 : -1;
     }
     if (!buttons.some((button) => button.tabIndex === 0)) buttons[0].tabIndex = 0;
-    if (tell) told(value);
   }
-  place.replaceChildren(...buttons);
+  for (const button of buttons)
+    button.addEventListener("click", () => {
+      choose(button.dataset.value);
+      told(button.dataset.value);
+    });
   place.addEventListener("keydown", (event) => {
-    const step = {ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1}[event.key];
+    const step = {ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1}[event.key], able = buttons.filter((button) => !button.disabled);
     if (!step) return;
     event.preventDefault();
-    const next = buttons[(buttons.indexOf(document.activeElement) + step + buttons.length) % buttons.length];
+    const next = able[(able.indexOf(document.activeElement) + step + able.length) % able.length];
     next.focus();
     next.click();
   });
-  choose(chosen, false);
-  return (value) => choose(value, false);
+  choose(buttons.find((button) => button.getAttribute("aria-checked") === "true")?.dataset.value);
+  return choose;
 }

@@ -34,7 +34,7 @@ float box(vec3 d, vec3 middle, vec3 right, vec2 half_size, float soft) {
 }
 vec3 environment(vec3 d) {
   if (around == 1) {
-    vec3 sum = mix(vec3(0.05, 0.05, 0.055), vec3(0.22, 0.225, 0.24), smoothstep(-0.4, 1.0, d.y));
+    vec3 sum = mix(vec3(0.14, 0.135, 0.13), vec3(0.3, 0.305, 0.32), smoothstep(-0.5, 1.0, d.y));
     sum += vec3(7.0, 6.7, 6.2) * box(d, normalize(vec3(-0.75, 0.65, 0.55)), normalize(vec3(0.55, 0.0, 0.75)), vec2(0.42, 0.6), 0.04);
     sum += vec3(2.6, 2.9, 3.4) * box(d, normalize(vec3(0.95, 0.2, 0.25)), normalize(vec3(0.25, 0.0, -0.95)), vec2(0.2, 0.8), 0.03);
     sum += vec3(3.0) * box(d, vec3(0.0, 1.0, 0.0), vec3(1.0, 0.0, 0.0), vec2(0.9, 0.35), 0.05);

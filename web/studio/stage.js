@@ -143,7 +143,8 @@ export async function openPicture(file) {
     const {width, height, data} = readHdr(new Uint8Array(await file.arrayBuffer()));
     view?.setPicture(width, height, data);
     const around = find("#around");
-    around.querySelector("[value=picture]").disabled = false;
+    const choice = around.querySelector("[value=picture]");
+    [choice.disabled, choice.textContent] = [false, file.name];
     around.value = "picture";
     view?.set({around: "picture"});
     say(`${file.name} lights the object`);
@@ -163,12 +164,9 @@ export const picture = () => view?.png();
 export const currentView = () => view;
 
 function connect() {
-  segments(find("#shape"), [["sphere", "Sphere"], ["knot", "Knot"], ["teapot", "Teapot"]], "sphere", (shape) => view.set({shape}));
-  setShown = segments(find("#shown"), [["left", "Left"], ["split", "Split"], ["right", "Right"], ["error", "Error"]], "left", choose);
-  const names = {none: "nothing", studio: "studio", sky: "sky", uniform: "white", picture: "drop a .hdr"};
+  segments(find("#shape"), (shape) => view.set({shape}));
+  setShown = segments(find("#shown"), choose);
   const around = find("#around");
-  around.append(...environments.map((name) => make("option", {value: name, disabled: name === "picture"}, names[name])));
-  around.value = view.settings.around;
   around.addEventListener("change", () => view.set({around: around.value}));
   find("#exposure").addEventListener("input", (event) => setExposure(event.target.value));
   find("#expose").addEventListener("click", expose);
