@@ -12,7 +12,7 @@ import {chromium} from "playwright-core";
 const [site, burnish, folder, figures] = process.argv.slice(2);
 const kMostBytes = 3 << 20;       // of the page, compressed
 const kSame = 1e-6;               // relative, between the page's figures and the command line's
-const kMostShift = 0.02;          // of Chromium's layout shift while files are opened and fitted
+const kMostShift = 0.05;         // of Chromium's layout shift while files are opened and fitted
 const kPatience = 120_000;        // milliseconds; the renderer is software
 const axe = fs.readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const run = (...args) => execFileSync(burnish, args, {stdio: ["ignore", "pipe", "ignore"], maxBuffer: 1 << 28}).toString();

@@ -11,7 +11,7 @@ const fields = [
 const untouched = () => Object.fromEntries(fields.map(([name, , , , still]) => [name, still]));
 
 // States to go back and forth to: {entry, places}.
-let past = [], future = [], shownFor = null;
+let past = [], future = [], shownFor;
 
 const apply = latest(async (entry) => {
   try {
@@ -52,17 +52,16 @@ function step(from, to) {
 
 function draw(force) {
   const entry = modelShown(), able = typeof entry?.material.edit === "function";
-  find("#edit-panel").hidden = !able;
   find("#undo").disabled = past.length === 0;
   find("#redo").disabled = future.length === 0;
-  if (!able || (!force && shownFor === entry)) return;
+  if (!force && shownFor === entry) return;
   shownFor = entry;
-  const places = entry.places ?? untouched();
+  const places = entry?.places ?? untouched();
   // one step back is one drag: where it began is remembered, not each place between
   let before = null;
   find("#edit").replaceChildren(...fields.map(([name, title, least, most, , , text]) => {
     const output = make("output", {}, text(places[name]));
-    const input = make("input", {type: "range", min: least, max: most, step: (most - least) / 200, value: places[name], "data-edit": name,
+    const input = make("input", {type: "range", min: least, max: most, step: (most - least) / 200, value: places[name], "data-edit": name, disabled: !able,
       oninput: () => {
         before ??= {...(entry.places ?? untouched())};
         entry.places = {...(entry.places ?? untouched()), [name]: Number(input.value)};
@@ -78,7 +77,7 @@ function draw(force) {
         find("#redo").disabled = true;
       }});
     return make("label", {}, make("span", {}, title), input, output);
-  }), make("button", {type: "button", class: "quiet", onclick: () => set(entry, untouched(), true)}, "As fitted"));
+  }), make("button", {type: "button", class: "quiet", disabled: !able, onclick: () => set(entry, untouched(), true)}, "As fitted"));
 }
 
 export function start() {
@@ -91,5 +90,6 @@ export function start() {
     if (event.shiftKey) step(future, past);
     else step(past, future);
   });
+  draw();
   onChange((what) => draw(what === "shown"));
 }

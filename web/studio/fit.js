@@ -110,7 +110,7 @@ function drawCurve() {
 function drawFigures() {
   const reference = referenceOf(state.shown), place = find("#figures"), models = reference ? modelsOf(reference).filter((m) => m.figures) : [];
   if (!models.length) {
-    place.replaceChildren();
+    place.replaceChildren(make("p", {class: "hint"}, "The figures of each fit, as ", make("code", {}, "compare"), " prints them, and the cost of its shader."));
     return;
   }
   const heads = ["Model", "PSNR", "SSIM", "relative", "rms log", "log cos"];

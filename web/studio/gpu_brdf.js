@@ -67,22 +67,33 @@ function lifted(w) {
   return [(w[0] / flat) * side, (w[1] / flat) * side, kHorizon];
 }
 
-// Values at all nodes, rgb, theta_h fastest, then phi_d, theta_d, phi_h.
-async function tabulate(material, channels, {thetaH, phiH = 1, thetaD, phiD}, alive) {
-  const count = thetaH * phiH * thetaD * phiD, values = new Float32Array(3 * count);
+// Directions at all nodes, theta_h fastest, then phi_d, theta_d, phi_h; the last size asked for is kept.
+let kept = {};
+function nodesOf(size) {
+  if (kept.size === size) return kept;
+  const {thetaH, phiH = 1, thetaD, phiD} = size, count = thetaH * phiH * thetaD * phiD;
+  const wi = new Float32Array(3 * count), wo = new Float32Array(3 * count);
+  let at = 0;
+  for (let m = 0; m < phiH; ++m)
+    for (let l = 0; l < thetaD; ++l)
+      for (let j = 0; j < phiD; ++j)
+        for (let i = 0; i < thetaH; ++i, at += 3) {
+          const [light, view] = fromHalfDiff(kHalfPi * (i / (thetaH - 1)) ** 2, (2 * Math.PI * m) / phiH,
+                                             (kHalfPi * l) / (thetaD - 1), (2 * Math.PI * j) / phiD);
+          wi.set(lifted(light), at);
+          wo.set(lifted(view), at);
+        }
+  return (kept = {size, count, wi, wo});
+}
+
+// Values at all nodes, rgb.
+async function tabulate(material, channels, size, alive) {
+  const {count, wi, wo} = nodesOf(size), values = new Float32Array(3 * count);
   for (let first = 0; first < count; first += kChunk) {
-    const n = Math.min(kChunk, count - first), wi = new Float32Array(3 * n), wo = new Float32Array(3 * n);
-    for (let k = 0; k < n; ++k) {
-      const at = first + k, i = at % thetaH, j = Math.floor(at / thetaH) % phiD;
-      const l = Math.floor(at / (thetaH * phiD)) % thetaD, m = Math.floor(at / (thetaH * phiD * thetaD));
-      const [light, view] = fromHalfDiff(kHalfPi * (i / (thetaH - 1)) ** 2, (2 * Math.PI * m) / phiH,
-                                         (kHalfPi * l) / (thetaD - 1), (2 * Math.PI * j) / phiD);
-      wi.set(lifted(light), 3 * k);
-      wo.set(lifted(view), 3 * k);
-    }
-    const part = toRgb(await material.evaluate(wi, wo), channels);
+    const last = Math.min(first + kChunk, count), part = (all) => all.slice(3 * first, 3 * last);
+    const found = toRgb(await material.evaluate(part(wi), part(wo)), channels);
     if (!alive()) return null;
-    values.set(part, 3 * first);
+    values.set(found, 3 * first);
   }
   return values;
 }

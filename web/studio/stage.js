@@ -2,7 +2,7 @@
 import {css, find, lineOf, make, say} from "./dom.js";
 import {readHdr} from "./hdr.js";
 import {segments} from "./segments.js";
-import {environments, kLights} from "./shading.js";
+import {kLights} from "./shading.js";
 import {onChange, state} from "./state.js";
 import {clamp} from "./vectors.js";
 import {View} from "./view.js";
