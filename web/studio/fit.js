@@ -27,8 +27,7 @@ function readFetches(text) {
   return fetches;
 }
 
-function progress(first, second) {
-  const stage = typeof first === "string" ? first : first?.stage, fraction = typeof first === "number" ? first : first?.fraction ?? second;
+function progress(fraction, stage) {
   if (stage) find("#fit-stage").textContent = stage;
   if (Number.isFinite(fraction)) find("#fit-bar").value = fraction;
 }
@@ -56,10 +55,9 @@ async function fitOne(reference, options, signal) {
   const began = performance.now();
   const material = await reference.material.fit(options, {onProgress: progress, signal});
   const seconds = (performance.now() - began) / 1000;
-  progress("measuring the error");
+  find("#fit-stage").textContent = "measuring the error";
   find("#fit-bar").removeAttribute("value");
-  const [info, compared] = [await material.info(), await reference.material.compare(material)];
-  const figures = Array.isArray(compared) ? compared[0] : compared;
+  const info = await material.info({signal}), [figures] = await reference.material.compare(material, {}, {signal});
   return {name: `${reference.name.replace(/\.[^.]*$/, "")} ${bytesText(info.bytes)}`, material, info, figures, parent: reference.id, seconds};
 }
 
@@ -151,7 +149,7 @@ export function start() {
     if (what === "shown") {
       drawCurve();
       // an anisotropic source takes six fetches by default
-      presets.default.fetches = referenceOf(state.shown)?.info.isotropic === false ? "6" : "2";
+      presets.default.fetches = referenceOf(state.shown)?.material.isotropic === false ? "6" : "2";
       if (find("#presets [data-value=default]").getAttribute("aria-checked") === "true") fetches.value = presets.default.fetches;
     }
   });

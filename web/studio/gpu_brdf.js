@@ -87,11 +87,11 @@ function nodesOf(size) {
 }
 
 // Values at all nodes, rgb.
-async function tabulate(material, channels, size, alive) {
+async function tabulate(material, size, alive) {
   const {count, wi, wo} = nodesOf(size), values = new Float32Array(3 * count);
   for (let first = 0; first < count; first += kChunk) {
     const last = Math.min(first + kChunk, count), part = (all) => all.slice(3 * first, 3 * last);
-    const found = toRgb(await material.evaluate(part(wi), part(wo)), channels);
+    const found = toRgb(await material.evaluate(part(wi), part(wo)), material.channels);
     if (!alive()) return null;
     values.set(found, 3 * first);
   }
@@ -112,7 +112,7 @@ function storable(values) {
 }
 
 // alpha of the GGX lobe whose highlight is as wide as this one, along the tangent and across it.
-async function roughness(material, channels) {
+async function roughness(material) {
   const steps = 60, wi = [], wo = [], tilt = Math.PI / 9;
   const angles = Array.from({length: steps}, (_, k) => kHalfPi * 0.8 * (k / (steps - 1)) ** 2);
   for (const phi of [0, kHalfPi])
@@ -121,7 +121,7 @@ async function roughness(material, channels) {
       wi.push(...normalize(add(scale(h, Math.cos(tilt)), across, Math.sin(tilt))));
       wo.push(...normalize(add(scale(h, Math.cos(tilt)), across, -Math.sin(tilt))));
     }
-  const values = toRgb(await material.evaluate(new Float32Array(wi), new Float32Array(wo)), channels);
+  const values = toRgb(await material.evaluate(new Float32Array(wi), new Float32Array(wo)), material.channels);
   return [0, 1].map((axis) => {
     const at = (k) => [0, 1, 2].reduce((sum, c) => sum + values[3 * (axis * steps + k) + c], 0);
     const half = angles.findIndex((_, k) => k > 0 && at(k) < at(0) / 2);
@@ -129,34 +129,21 @@ async function roughness(material, channels) {
   });
 }
 
-// What the texels of a shader's texture are in WebGL2.
-function texelsOf(gl, {format, data}) {
-  const bytes = ArrayBuffer.isView(data) ? data.buffer.slice(data.byteOffset, data.byteOffset + data.byteLength) : data;
-  switch (format) {
-    case "rgba16f": return [gl.RGBA16F, gl.RGBA, gl.HALF_FLOAT, new Uint16Array(bytes)];
-    case "r16f": return [gl.R16F, gl.RED, gl.HALF_FLOAT, new Uint16Array(bytes)];
-    case "rgba32f": return [gl.RGBA16F, gl.RGBA, gl.FLOAT, new Float32Array(bytes)];
-    case "r32f": return [gl.R16F, gl.RED, gl.FLOAT, new Float32Array(bytes)];
-    case "rgb9e5": return [gl.RGB9_E5, gl.RGB, gl.UNSIGNED_INT_5_9_9_9_REV, new Uint32Array(bytes)];
-    case "rgba8": return [gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(bytes)];
-    case "r8": return [gl.R8, gl.RED, gl.UNSIGNED_BYTE, new Uint8Array(bytes)];
-  }
-  throw new Error(`texture: expected a known format, found ${format}`);
-}
+// Floats that WebGL2 would not filter are stored as halves; values are near 1.
+const kFiltered = {R32F: "R16F", RGB32F: "RGB16F", RGBA32F: "RGBA16F"};
 
 async function fromShader(gl, material) {
-  const {code, textures} = await material.shader("glsl_es");
-  const [, type, name] = code.match(/\b(float|vec3) (burnish_\w+)_world\(/);
-  const made = textures.map((given) => {
-    const [internal, format, type, data] = texelsOf(gl, given);
-    return {name: given.name, ...texture(gl, {...given, internal, format, type, data})};
+  const {code, textures, function: name} = await material.shader("glsl_es");
+  const made = textures.map(({name: sampler, width, height, depth, data, gl: how}) => {
+    const internal = gl[kFiltered[how.internalFormat] ?? how.internalFormat];
+    return {name: sampler, ...texture(gl, {width, height, depth, internal, format: gl[how.format], type: gl[how.type], data})};
   });
   const glsl = `${code}\nvec3 brdf(vec3 wi, vec3 wo) { return vec3(${name}(wi, wo)); }`;
   return {glsl, textures: made, set: () => {}};
 }
 
-async function fromTable(gl, material, info, size, alive) {
-  const values = await tabulate(material, info.channels, size, alive);
+async function fromTable(gl, material, size, alive) {
+  const values = await tabulate(material, size, alive);
   if (!values) return null;
   const factor = storable(values), {thetaH, phiH = 1, thetaD, phiD} = size;
   // isotropic: theta_d before phi_d, so that the axis which goes round is the last
@@ -179,15 +166,15 @@ async function fromTable(gl, material, info, size, alive) {
 
 // Calls ready(form) with {glsl, textures, set(program), alpha} once, and again where a finer table follows. alive() says
 // whether the material is still open.
-export async function prepare(gl, {material, info, model}, alive, ready) {
-  const alpha = await roughness(material, info.channels);
-  if (model && (info.channels === 1 || info.channels === 3)) {
+export async function prepare(gl, {material, model}, alive, ready) {
+  const alpha = await roughness(material);
+  if (model && (material.channels === 1 || material.channels === 3)) {
     const form = await fromShader(gl, material);
     if (alive()) ready({...form, alpha});
     return;
   }
-  for (const size of kSizes[info.isotropic ? "isotropic" : "anisotropic"]) {
-    const form = await fromTable(gl, material, info, size, alive);
+  for (const size of kSizes[material.isotropic ? "isotropic" : "anisotropic"]) {
+    const form = await fromTable(gl, material, size, alive);
     if (!form) return;
     ready({...form, alpha});
   }

@@ -37,7 +37,12 @@ export function draw() {
     place.replaceChildren(make("p", {class: "hint"}, "Format, conventions, holes, albedo and reciprocity of what is open."));
     return;
   }
-  const {info} = entry, notes = info.conventions?.filter((text) => !text.startsWith("notes of the fit")) ?? [];
+  const {info} = entry;
+  if (!info) {
+    place.replaceChildren(make("p", {class: "hint"}, `Looking at ${entry.name}…`));
+    return;
+  }
+  const notes = info.conventions?.filter((text) => !text.startsWith("notes of the fit")) ?? [];
   place.replaceChildren(
     make("dl", {}, ...facts(info).flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)])),
     albedos(info) ?? "", notes.length ? make("ul", {"aria-label": "Conventions"}, ...notes.map((text) => make("li", {}, text))) : "");

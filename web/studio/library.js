@@ -1,2 +1,2 @@
 // The one door to the library.
-export {open} from "./package/burnish.js";
+export {open, preload} from "./package/index.js";

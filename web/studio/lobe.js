@@ -52,11 +52,11 @@ function newCanvas(place) {
 
 // Quadrangles from the farthest to the nearest, on a ground of rings.
 function paint(canvas, points, theta) {
-  const pen = canvas.getContext("2d"), [width, height] = kSize, size = 330;
+  const pen = canvas.getContext("2d"), [width, height] = kSize, size = 300;
   const c = Math.cos(turned.yaw), s = Math.sin(turned.yaw), e = Math.sin(turned.pitch), d = Math.cos(turned.pitch);
   const see = ([x, y, z]) => {
     const u = c * x - s * y, v = s * x + c * y;
-    return [width / 2 + size * u, height * 0.8 - size * (z * d + v * e), v * d - z * e];
+    return [width / 2 + size * u, height * 0.76 - size * (z * d + v * e), v * d - z * e];
   };
   pen.clearRect(0, 0, width, height);
   pen.lineWidth = 1.5;

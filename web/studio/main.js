@@ -3,6 +3,7 @@ import {find, say} from "./dom.js";
 import * as edit from "./edit.js";
 import * as fit from "./fit.js";
 import * as info from "./info.js";
+import {preload} from "./library.js";
 import {openLink} from "./link.js";
 import * as materials from "./materials.js";
 import * as plots from "./plots.js";
@@ -35,4 +36,9 @@ light.addEventListener("change", () => setTheme(light.matches ? "light" : "dark"
 find("#theme").addEventListener("click", switchTheme);
 find("#message-close").addEventListener("click", () => say(""));
 window.addEventListener("hashchange", openLink);
-openLink();
+try {
+  await preload();
+  await openLink();
+} catch (error) {
+  say(`The library could not be loaded: ${error.message}`, "error");
+}

@@ -14,15 +14,14 @@ export async function openOne(data, name, more = {}) {
   find("#opening-text").textContent = name;
   find("#opening").hidden = false;
   try {
-    const onProgress = (first, second) => {
-      const fraction = typeof first === "number" ? first : first?.fraction ?? second;
-      if (Number.isFinite(fraction)) bar.value = fraction;
-    };
+    const onProgress = (fraction) => (bar.value = fraction);
     const material = await open(data, {name, signal: mine.signal, onProgress});
-    const info = await material.info();
-    const entry = add({name, material, info, ...more});
+    const entry = add({name, material, info: null, ...more});
     changed();
     show(entry);
+    // what it is in full takes longer than showing it
+    entry.info = await material.info({signal: mine.signal});
+    changed();
     return entry;
   } catch (error) {
     if (error?.name !== "AbortError") say(lineOf(error).includes(name) ? lineOf(error) : `${name}: ${lineOf(error)}`, "error");
@@ -42,8 +41,11 @@ export async function openFiles(files, onPicture) {
   }
 }
 
-const subtitle = ({info, parent}) =>
-  parent !== null ? `${bytesText(info.bytes ?? 0)} model` : [info.format, info.bytes ? bytesText(info.bytes) : ""].filter(Boolean).join(", ");
+function subtitle({info, parent}) {
+  if (!info) return "…";
+  if (parent !== null) return `${bytesText(info.bytes)} model`;
+  return info.bytes ? `${info.format}, ${bytesText(info.bytes)}` : info.format;
+}
 
 function row(entry) {
   const picture = (entry.picture ??= make("canvas", {width: 80, height: 80, "aria-hidden": "true"}));

@@ -28,7 +28,7 @@ async function evaluate(entry, pairs) {
     wi.set(a, 3 * k);
     wo.set(b, 3 * k);
   });
-  return toRgb(await entry.material.evaluate(wi, wo), entry.info.channels);
+  return toRgb(await entry.material.evaluate(wi, wo), entry.material.channels);
 }
 
 // In the plane of incidence; negative theta_o lie on the light's side.
@@ -188,7 +188,7 @@ const redrawAlbedo = guarded(async () => {
   const angles = [0, 10, 20, 30, 40, 50, 60, 65, 70, 75, 80, 85], lines = [];
   for (const entry of sides()) {
     const values = await entry.material.albedo(angles.map(radians));
-    const rgb = toRgb(Float32Array.from(values.flat?.() ?? values), entry.info.channels);
+    const rgb = toRgb(Float32Array.from(values.flat?.() ?? values), entry.material.channels);
     for (const line of channelsOf(rgb)) lines.push({...line, x: angles, dashed: entry === state.beside});
   }
   const top = Math.max(1, ...lines.flatMap((line) => line.values).filter(Number.isFinite));

@@ -13,14 +13,12 @@ let language = "glsl_es", textOpen = false;
 
 const stem = (entry) => entry.name.replace(/\.[^.]*$/, "").replace(/[^\w.-]+/g, "_").slice(0, 60) || "material";
 
-// Exports are bytes, or files {name, data}.
+const kExtensions = {merl: "binary", rgl: "bsdf", model: "exr"};
+
+// Exports are bytes, or files {name, bytes}.
 async function filesOf(entry, kind) {
-  const made = await entry.material.export(kind), extension = {merl: "binary", rgl: "bsdf", csv: "csv", burnish: "burnish", model: "exr"}[kind] ?? kind;
-  const asFile = (file) => ({name: file.name ?? `${stem(entry)}.${extension}`, data: file.data ?? file.bytes ?? file});
-  if (ArrayBuffer.isView(made) || made instanceof ArrayBuffer || typeof made === "string") return [{name: `${stem(entry)}.${extension}`, data: made}];
-  if (Array.isArray(made)) return made.map(asFile);
-  if (made.name) return [asFile(made)];
-  return Object.entries(made).map(([name, data]) => ({name, data}));
+  const made = await entry.material.export(kind, {name: stem(entry)});
+  return Array.isArray(made) ? made : [{name: `${stem(entry)}.${kExtensions[kind] ?? kind}`, bytes: made}];
 }
 
 const guarded = (task) => async (event) => {
@@ -37,7 +35,7 @@ const guarded = (task) => async (event) => {
 
 const saveButton = (entry, kind, title) =>
   make("button", {type: "button", "data-export": kind, onclick: guarded(async () => {
-    for (const {name, data} of await filesOf(entry, kind)) saveFile(name, data);
+    for (const {name, bytes} of await filesOf(entry, kind)) saveFile(name, bytes);
   })}, title);
 
 async function copy(text, what) {
@@ -81,7 +79,7 @@ function linkGroup(entry) {
   const said = make("p", {class: "hint"}, "The whole material in the address: nothing is uploaded.");
   return make("div", {}, make("h3", {}, "Link"), make("div", {class: "buttons"},
     make("button", {type: "button", id: "link", onclick: guarded(async () => {
-      const [{data}] = await filesOf(entry, "burnish"), bytes = new Uint8Array(data.buffer ?? data, data.byteOffset ?? 0, data.byteLength);
+      const [{bytes}] = await filesOf(entry, "burnish");
       const link = linkOf(stem(entry), bytes);
       find("#link").dataset.link = link;
       said.textContent = `${bytesText(bytes.length)} as ${link.length.toLocaleString("en")} characters${bytes.length > kLongLink ? "; some programs cut links this long" : ""}.`;

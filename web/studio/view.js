@@ -227,7 +227,8 @@ export class View {
     gl.uniform3fv(at("colors"), colors);
     gl.uniform1i(at("samples"), count);
     gl.uniform1i(at("first_sample"), first);
-    gl.uniform2f(at("alpha"), ...form.alpha);
+    // both sides draw the same directions, so that what they differ by is no noise
+    gl.uniform2f(at("alpha"), ...(this.formOf(this.sides[0]) ?? form).alpha);
     // depths first: what is hidden costs nothing then
     gl.colorMask(false, false, false, false);
     gl.useProgram(this.lines.handle);
@@ -307,13 +308,15 @@ export class View {
   thumbnail(entry, size) {
     const gl = this.gl, form = this.formOf(entry), goal = target(gl, size, size, true), settings = this.settings;
     const sums = new Float32Array(4 * size * size), pixels = new Float32Array(4 * size * size);
+    const {sides} = this;
+    this.sides = [entry, null];
     this.settings = {...settings, shape: "sphere", around: "studio", yaw: 0, pitch: 0, lights: []};
     for (let pass = 0; pass < 4; ++pass) {
       this.drawObject(form, goal, [fract(0.755 * pass) - 0.5, fract(0.57 * pass) - 0.5], 32 * pass, 32);
       gl.readPixels(0, 0, size, size, gl.RGBA, gl.FLOAT, pixels);
       for (let k = 0; k < sums.length; ++k) sums[k] += pixels[k] / 4;
     }
-    this.settings = settings;
+    [this.settings, this.sides] = [settings, sides];
     goal.free();
     const factor = 2 ** exposureOf(sums), image = new ImageData(size, size);
     for (let y = 0; y < size; ++y)
