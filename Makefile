@@ -2,9 +2,10 @@
 # make test   installs tools, builds with sanitizers and optimized, runs every test
 # make python the Python package in build/venv, tested
 # make build  the command line at build/release/apps/burnish/burnish
+# make studio the library as WebAssembly and its npm package in build/studio; make studio-test tests it
 # make bench, make fuzz, make report, make cost-report, make sampling-report, make shader-report, make frame-cost, make hw-report, make hw-exhaustive, make format:
 # see CONTRIBUTING.md
-.PHONY: demo test build reports python deps test-deps bench fuzz report cost-report sampling-report shader-report frame-cost hw-report hw-exhaustive format format-check docs-check include-check api
+.PHONY: demo test build reports python studio studio-test deps test-deps studio-deps bench fuzz report cost-report sampling-report shader-report frame-cost hw-report hw-exhaustive format format-check docs-check include-check api
 JOBS ?= $(shell nproc)
 BURNISH := build/release/apps/burnish/burnish
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
@@ -13,10 +14,12 @@ INPUT ?=
 OUT ?= out/demo
 FUZZ_SECONDS ?= 60
 
-# deps: what the command line is built with; test-deps: what everything else takes besides.
+# deps: what the command line is built with; test-deps: what everything else takes besides; studio-deps: what the
+# library as WebAssembly does.
 deps: PACKAGES := cmake/debian-packages.txt
 test-deps: PACKAGES := cmake/debian-packages.txt cmake/debian-test-packages.txt
-deps test-deps:
+studio-deps: PACKAGES := cmake/debian-packages.txt cmake/debian-studio-packages.txt
+deps test-deps studio-deps:
 	@missing=$$(for p in $$(grep -hv '^#' $(PACKAGES)); do \
 	  dpkg-query -W -f '$${Status}' $$p 2>/dev/null | grep -q 'ok installed' || echo $$p; done); \
 	if [ -n "$$missing" ]; then \
@@ -47,9 +50,17 @@ test: test-deps format-check docs-check include-check
 	done
 	@python/check.sh --skip-offline
 	@tests/web/check.sh --skip-offline
+	@tests/web/package.sh --if-built
 
 python: test-deps build
 	@python/check.sh
+
+studio: studio-deps
+	@cmake --preset studio > /dev/null
+	@cmake --build --preset studio -j $(JOBS)
+
+studio-test: studio build
+	@tests/web/package.sh
 
 bench: test-deps
 	@cmake --preset bench > /dev/null
