@@ -58,6 +58,7 @@ python: test-deps build
 studio: studio-deps
 	@cmake --preset studio > /dev/null
 	@cmake --build --preset studio -j $(JOBS)
+	@cp web/studio/* build/studio
 
 studio-test: studio build
 	@tests/web/package.sh

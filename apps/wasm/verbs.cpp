@@ -16,6 +16,7 @@
 #include <burnish/error.h>
 #include <burnish/export/export_model.h>
 #include <burnish/factors/compact_file.h>
+#include <burnish/factors/edit.h>
 #include <burnish/factors/fetches.h>
 #include <burnish/fitting/fit.h>
 #include <burnish/fitting/fit_file.h>
@@ -389,6 +390,17 @@ Reply export_material(const Request& request) {
   return reply_of(files, Json::array());
 }
 
+// The edited model's file comes back: whoever asked opens it.
+Reply edit(const Request& request) {
+  const Json& a = request.arguments;
+  Edit changes;
+  read_if(a, "scale", changes.scale);
+  read_if(a, "hue", changes.hue);
+  read_if(a, "roughness", changes.roughness);
+  read_if(a, "diffuse", changes.diffuse);
+  return {.json = "{}", .blobs = {format_compact({.brdf = edited(model_of(a), changes)})}};
+}
+
 Reply close(const Request& request) {
   materials().erase(request.arguments.at("id").get<int>());
   return {};
@@ -408,6 +420,7 @@ Reply run(Request request, const Progress& progress) {
   if (verb == "images") return images(request);
   if (verb == "shader") return shader(request);
   if (verb == "export") return export_material(request);
+  if (verb == "edit") return edit(request);
   if (verb == "close") return close(request);
   throw Error(fmt::format("expected a verb of the package, found '{}'", verb));
 }

@@ -16,15 +16,32 @@ function libraryModule() {
   return compiled;
 }
 
+// In browsers: the worker's code with the library's glue inside, so that no later worker asks for a file.
+let workerUrl;
+function workerCode() {
+  workerUrl ??= (async () => {
+    const [glue, worker] = await Promise.all(["./burnish.js", "./worker.js"].map(async (name) => {
+      const response = await fetch(new URL(name, import.meta.url));
+      if (!response.ok) throw new Error(`${name}: expected the library's code, found status ${response.status}`);
+      return response.text();
+    }));
+    const parts = [glue.replace(/export default burnish_wasm;\s*$/, ""),
+                   worker.replace(/^import createLibrary .*$/m, "const createLibrary = burnish_wasm;")];
+    return URL.createObjectURL(new Blob(parts, {type: "text/javascript"}));
+  })();
+  workerUrl.catch(() => { workerUrl = undefined; });
+  return workerUrl;
+}
+
 async function newWorker(receive, fail) {
-  const module = await libraryModule(), url = new URL("./worker.js", import.meta.url);
+  const module = await libraryModule();
   let worker;
   if (inNode) {
-    worker = new (await import("node:worker_threads")).Worker(url);
+    worker = new (await import("node:worker_threads")).Worker(new URL("./worker.js", import.meta.url));
     worker.on("message", receive);
     worker.on("error", fail);
   } else {
-    worker = new Worker(url, {type: "module"});
+    worker = new Worker(await workerCode(), {type: "module"});
     worker.onmessage = (event) => receive(event.data);
     worker.onerror = (event) => fail(new Error(event.message ?? "the worker could not be started"));
   }
@@ -267,6 +284,15 @@ export class Model extends Material {
     });
     return {...json, textures};
   }
+
+  /// Another model: scale times f, the lobes' colours turned by hue (radians), highlights as much wider as roughness says,
+  /// a diffuse albedo added.
+  async edit({scale = 1, hue = 0, roughness = 1, diffuse = 0} = {}, {signal} = {}) {
+    const {blobs} = await answers.run({
+      request: {scale, hue, roughness, diffuse, verb: "edit", id: this.id}, materials: [this.recipe], signal,
+    });
+    return open(new Blob([blobs[0]]), {name: this.name, report: this.report, signal});
+  }
 }
 
 /// Opens a file's bytes, whatever its format, or an analytic BRDF such as "ggx:alpha=0.2".
@@ -291,5 +317,5 @@ export async function open(data, {name, report, onProgress, signal, ...options} 
 
 /// Loads and compiles the library before it is needed.
 export async function preload() {
-  await libraryModule();
+  await Promise.all([libraryModule(), inNode ? undefined : workerCode()]);
 }

@@ -3,7 +3,8 @@ import {find, latest, lineOf, make, say} from "./dom.js";
 import {open} from "./library.js";
 import {openOne} from "./materials.js";
 import {changed, state} from "./state.js";
-import {direction, radians} from "./vectors.js";
+
+const kCells = 40;  // of the sample, along theta_h and theta_d
 
 // Parameters: [name, kind, value, least, most]; a "log" slider has even factors. Ranges are those of docs/guide/analytic.md.
 const alpha = (name, value = 0.2) => [name, "log", value, 0.005, 1];
@@ -88,33 +89,25 @@ function random(seed) {
   };
 }
 
-// Red paint under varnish: a coloured base and a sharp coat, with the noise of a goniometer, as CSV.
+// Red paint under varnish, a coloured base and a sharp coat, with 2 % of noise: the bytes of a MERL file.
 async function samplePaint() {
-  const wi = [], wo = [], rows = [], u = random(7);
-  for (let thetaI = 0; thetaI <= 80; thetaI += 10)
-    for (let thetaO = 0; thetaO <= 84; thetaO += 4)
-      for (let phi = 0; phi <= 180; phi += 12) {
-        if (thetaO === 0 && phi > 0) continue;
-        // closer around the mirror direction
-        const near = phi > 150 ? (u() - 0.5) * 4 : 0;
-        const a = direction(radians(thetaI), 0), b = direction(radians(Math.min(Math.abs(thetaO + near), 88)), radians(phi));
-        wi.push(...a);
-        wo.push(...b);
-      }
   const part = async (text) => {
-    const material = await open(text);
-    const values = await material.evaluate(new Float32Array(wi), new Float32Array(wo));
-    material.close?.();
-    return values;
+    const material = await open(text), {data} = await material.volume({thetaH: kCells, thetaD: kCells, phiD: 4 * kCells});
+    material.close();
+    return data;
   };
   const base = await part("ggx:alpha_x=0.4,alpha_y=0.4,f0=0.3/0.03/0.02,kd=0.3/0.02/0.015");
   const coat = await part("ggx:alpha_x=0.12,alpha_y=0.12,f0=0.05");
-  for (let k = 0; k < wi.length / 3; ++k) {
-    const noise = Math.exp(0.03 * Math.sqrt(-2 * Math.log(1 - u())) * Math.cos(2 * Math.PI * u()));
-    const value = [0, 1, 2].map((c) => ((base[3 * k + c] + coat[3 * k + c]) * noise).toPrecision(5));
-    rows.push([...wi.slice(3 * k, 3 * k + 3), ...wo.slice(3 * k, 3 * k + 3)].map((x) => x.toFixed(6)).concat(value).join(","));
+  // three planes of doubles, phi_d in half a circle fastest, then theta_d, theta_h
+  const cells = kCells * kCells * 2 * kCells, bytes = new DataView(new ArrayBuffer(12 + 24 * cells)), u = random(7);
+  [kCells, kCells, 2 * kCells].forEach((size, k) => bytes.setInt32(4 * k, size, true));
+  for (let at = 0; at < cells; ++at) {
+    const j = at % (2 * kCells), l = Math.floor(at / (2 * kCells)) % kCells, i = Math.floor(at / (2 * kCells * kCells));
+    const from = 3 * ((j * kCells + l) * kCells + i), noise = Math.exp(0.02 * Math.sqrt(-2 * Math.log(1 - u())) * Math.cos(2 * Math.PI * u()));
+    for (let c = 0; c < 3; ++c)
+      bytes.setFloat64(12 + 8 * (c * cells + at), ((base[from + c] + coat[from + c]) * noise * 1500) / [1, 1.15, 1.66][c], true);
   }
-  return `# isotropic\nwi_x,wi_y,wi_z,wo_x,wo_y,wo_z,r,g,b\n${rows.join("\n")}\n`;
+  return bytes.buffer;
 }
 
 export function drawSliders() {
@@ -131,7 +124,7 @@ export function start() {
     const name = select.value;
     select.value = "";
     try {
-      if (name === "sample") await openOne(new TextEncoder().encode(await samplePaint()), "red-paint.csv");
+      if (name === "sample") await openOne(await samplePaint(), "red-paint.binary");
       else if (name) await openModel(name);
     } catch (error) {
       say(lineOf(error), "error");

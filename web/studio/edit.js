@@ -1,10 +1,11 @@
 // Changes to a model by sliders, each one undone and redone.
 import {find, latest, lineOf, make, say} from "./dom.js";
 import {changed, modelShown, onChange, state} from "./state.js";
+import {radians} from "./vectors.js";
 
 const fields = [
   ["scale", "Scale", -3, 3, 0, (x) => 2 ** x, (x) => `×${(2 ** x).toFixed(2)}`],
-  ["hue", "Hue", -180, 180, 0, (x) => x, (x) => `${Math.round(x)}°`],
+  ["hue", "Hue", -180, 180, 0, radians, (x) => `${Math.round(x)}°`],
   ["roughness", "Roughness", -1, 1, 0, (x) => 2 ** x, (x) => `×${(2 ** x).toFixed(2)}`],
   ["diffuse", "Diffuse", 0, 0.5, 0, (x) => x, (x) => `+${x.toFixed(2)}`],
 ];

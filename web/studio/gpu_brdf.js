@@ -1,17 +1,15 @@
 // A material as GLSL: `vec3 brdf(vec3 wi, vec3 wo)` in the local frame, the textures it reads, and the roughness of its
 // highlight. A model brings its own shader; anything else is tabulated over half/difference angles and read from a texture.
 import {texture} from "./gl.js";
-import {add, direction, fromHalfDiff, normalize, scale, toRgb} from "./vectors.js";
+import {add, direction, normalize, scale, toRgb} from "./vectors.js";
 
 const kHalfPi = Math.PI / 2;
-const kChunk = 1 << 18;      // pairs an evaluation
-const kHorizon = 1e-3;       // cosine at which a direction below the horizon is looked up
 const kLargestHalf = 32768;  // of what is stored; larger values are scaled down
 
-// Nodes of theta_h crowd at the normal: theta_h = pi/2 x^2. Azimuths go round and have their nodes at k / count.
+// Cells of the table: theta_h crowds at the normal, azimuths go round. A coarse one comes first where the other takes long.
 const kSizes = {
-  isotropic: [{thetaH: 128, thetaD: 48, phiD: 48}],
-  anisotropic: [{thetaH: 40, phiH: 24, thetaD: 12, phiD: 16}, {thetaH: 80, phiH: 36, thetaD: 24, phiD: 24}],
+  isotropic: [{thetaH: 128, thetaD: 64, phiD: 48}],
+  anisotropic: [{thetaH: 48, thetaD: 16, phiD: 16, phiH: 16}, {thetaH: 80, thetaD: 24, phiD: 24, phiH: 36}],
 };
 
 const kAngles = `
@@ -32,68 +30,37 @@ uniform float brdf_scale;
 vec3 brdf(vec3 wi, vec3 wo) {
   if (wi.z <= 0.0 || wo.z <= 0.0) return vec3(0.0);
   vec4 a = angles(wi, wo);
-  vec3 size = vec3(textureSize(brdf_table, 0));
-  vec2 nodes = vec2(sqrt(a.x / kHalfPi), a.z / kHalfPi) * (size.xy - 1.0);
-  vec3 at = vec3((nodes + 0.5) / size.xy, a.w / (4.0 * kHalfPi) + 0.5 / size.z);
+  vec3 at = vec3(sqrt(a.x / kHalfPi), a.z / kHalfPi, a.w / (4.0 * kHalfPi));
   return brdf_scale * textureLod(brdf_table, at, 0.0).rgb;
 }`;
 
-// theta_h and phi_d are filtered; slices of the other two angles are mixed here.
+// theta_h and theta_d are filtered; slices of the two azimuths are mixed here.
 const kAnisotropic = `
 uniform highp sampler3D brdf_table;
 uniform float brdf_scale;
-uniform vec2 brdf_slices;  // of phi_h, theta_d
-vec3 slice(vec2 at, float phi, float theta) {
-  float depth = brdf_slices.x * brdf_slices.y;
-  return textureLod(brdf_table, vec3(at, (phi * brdf_slices.y + theta + 0.5) / depth), 0.0).rgb;
+uniform vec2 brdf_slices;  // of phi_h, phi_d
+vec3 slice(vec2 at, float phi_h, float phi_d) {
+  return textureLod(brdf_table, vec3(at, (phi_h * brdf_slices.y + phi_d + 0.5) / (brdf_slices.x * brdf_slices.y)), 0.0).rgb;
 }
 vec3 brdf(vec3 wi, vec3 wo) {
   if (wi.z <= 0.0 || wo.z <= 0.0) return vec3(0.0);
   vec4 a = angles(wi, wo);
-  vec2 size = vec2(textureSize(brdf_table, 0).xy);
-  vec2 at = vec2((sqrt(a.x / kHalfPi) * (size.x - 1.0) + 0.5) / size.x, a.w / (4.0 * kHalfPi) + 0.5 / size.y);
-  float phi = fract(a.y / (4.0 * kHalfPi)) * brdf_slices.x, theta = a.z / kHalfPi * (brdf_slices.y - 1.0);
-  float p0 = min(floor(phi), brdf_slices.x - 1.0), p1 = mod(p0 + 1.0, brdf_slices.x);
-  float t0 = clamp(floor(theta), 0.0, brdf_slices.y - 2.0);
-  vec3 low = mix(slice(at, p0, t0), slice(at, p0, t0 + 1.0), theta - t0);
-  vec3 high = mix(slice(at, p1, t0), slice(at, p1, t0 + 1.0), theta - t0);
-  return brdf_scale * mix(low, high, phi - p0);
+  vec2 at = vec2(sqrt(a.x / kHalfPi), a.z / kHalfPi);
+  // slices of phi_h stand at k / count, those of phi_d at (k + 1/2) / count
+  vec2 place = fract(a.yw / (4.0 * kHalfPi)) * brdf_slices + vec2(0.0, brdf_slices.y - 0.5);
+  vec2 low = mod(floor(place), brdf_slices), high = mod(low + 1.0, brdf_slices), part = fract(place);
+  vec3 first = mix(slice(at, low.x, low.y), slice(at, low.x, high.y), part.y);
+  vec3 second = mix(slice(at, high.x, low.y), slice(at, high.x, high.y), part.y);
+  return brdf_scale * mix(first, second, part.x);
 }`;
 
-// A direction below the horizon becomes one just above it: what is interpolated at grazing angles must not be 0.
-function lifted(w) {
-  if (w[2] >= kHorizon) return w;
-  const flat = Math.hypot(w[0], w[1]) || 1, side = Math.sqrt(1 - kHorizon * kHorizon);
-  return [(w[0] / flat) * side, (w[1] / flat) * side, kHorizon];
-}
-
-// Directions at all nodes, theta_h fastest, then phi_d, theta_d, phi_h; the last size asked for is kept.
-let kept = {};
-function nodesOf(size) {
-  if (kept.size === size) return kept;
-  const {thetaH, phiH = 1, thetaD, phiD} = size, count = thetaH * phiH * thetaD * phiD;
-  const wi = new Float32Array(3 * count), wo = new Float32Array(3 * count);
-  let at = 0;
-  for (let m = 0; m < phiH; ++m)
-    for (let l = 0; l < thetaD; ++l)
-      for (let j = 0; j < phiD; ++j)
-        for (let i = 0; i < thetaH; ++i, at += 3) {
-          const [light, view] = fromHalfDiff(kHalfPi * (i / (thetaH - 1)) ** 2, (2 * Math.PI * m) / phiH,
-                                             (kHalfPi * l) / (thetaD - 1), (2 * Math.PI * j) / phiD);
-          wi.set(lifted(light), at);
-          wo.set(lifted(view), at);
-        }
-  return (kept = {size, count, wi, wo});
-}
-
-// Values at all nodes, rgb.
-async function tabulate(material, size, alive) {
-  const {count, wi, wo} = nodesOf(size), values = new Float32Array(3 * count);
-  for (let first = 0; first < count; first += kChunk) {
-    const last = Math.min(first + kChunk, count), part = (all) => all.slice(3 * first, 3 * last);
-    const found = toRgb(await material.evaluate(part(wi), part(wo)), material.channels);
+// rgb of all cells, theta_h fastest, then theta_d, phi_d, phi_h; nothing where the material was closed meanwhile.
+async function tabulate(material, {phiH = 1, ...size}, alive) {
+  const count = size.thetaH * size.thetaD * size.phiD, values = new Float32Array(3 * count * phiH);
+  for (let m = 0; m < phiH; ++m) {
+    const {data} = await material.volume({...size, phiH: (2 * Math.PI * m) / phiH});
     if (!alive()) return null;
-    values.set(found, 3 * first);
+    values.set(toRgb(data, material.channels), 3 * count * m);
   }
   return values;
 }
@@ -103,11 +70,10 @@ function storable(values) {
   let largest = 0;
   for (let i = 0; i < values.length; ++i) {
     if (!(values[i] > 0)) values[i] = 0;
-    if (!Number.isFinite(values[i])) values[i] = kLargestHalf;
     if (values[i] > largest) largest = values[i];
   }
-  const factor = largest > 0 ? 2 ** Math.ceil(Math.log2(largest / kLargestHalf)) : 1;
-  for (let i = 0; i < values.length; ++i) values[i] /= factor;
+  const factor = largest > kLargestHalf ? largest / kLargestHalf : 1;
+  if (factor > 1) for (let i = 0; i < values.length; ++i) values[i] /= factor;
   return factor;
 }
 
@@ -145,23 +111,14 @@ async function fromShader(gl, material) {
 async function fromTable(gl, material, size, alive) {
   const values = await tabulate(material, size, alive);
   if (!values) return null;
-  const factor = storable(values), {thetaH, phiH = 1, thetaD, phiD} = size;
-  // isotropic: theta_d before phi_d, so that the axis which goes round is the last
-  const isotropic = phiH === 1, data = isotropic ? new Float32Array(values.length) : values;
-  if (isotropic)
-    for (let l = 0; l < thetaD; ++l)
-      for (let j = 0; j < phiD; ++j) {
-        const from = 3 * thetaH * (l * phiD + j);
-        data.set(values.subarray(from, from + 3 * thetaH), 3 * thetaH * (j * thetaD + l));
-      }
-  const shape = isotropic ? {width: thetaH, height: thetaD, depth: phiD, repeat: "r"}
-                          : {width: thetaH, height: phiD, depth: phiH * thetaD, repeat: "t"};
-  const made = texture(gl, {...shape, internal: gl.RGB16F, format: gl.RGB, type: gl.FLOAT, data});
+  const factor = storable(values), {thetaH, thetaD, phiD, phiH} = size;
+  const made = texture(gl, {width: thetaH, height: thetaD, depth: phiD * (phiH ?? 1), repeat: phiH ? "" : "r",
+                            internal: gl.RGB16F, format: gl.RGB, type: gl.FLOAT, data: values});
   const set = ({at}) => {
     gl.uniform1f(at("brdf_scale"), factor);
-    if (!isotropic) gl.uniform2f(at("brdf_slices"), phiH, thetaD);
+    if (phiH) gl.uniform2f(at("brdf_slices"), phiH, phiD);
   };
-  return {glsl: kAngles + (isotropic ? kIsotropic : kAnisotropic), textures: [{name: "brdf_table", ...made}], set};
+  return {glsl: kAngles + (phiH ? kAnisotropic : kIsotropic), textures: [{name: "brdf_table", ...made}], set};
 }
 
 // Calls ready(form) with {glsl, textures, set(program), alpha} once, and again where a finer table follows. alive() says
