@@ -14,7 +14,7 @@ function facts(info) {
   if (info.samples > 0) rows.push(["Holes", info.holes ? `${info.holes.toLocaleString("en")}, ${number((100 * info.holes) / info.samples, 3)} %` : "none"]);
   if (info.negatives > 0) rows.push(["Negatives", `${info.negatives.toLocaleString("en")}, down to ${number(info.most_negative, 3)}`]);
   rows.push(["θ to the light", span(info.theta_i_deg)], ["θ to the viewer", span(info.theta_o_deg)]);
-  rows.push(["Reciprocity", `${number(100 * info.reciprocity_error, 3)} % off on average`]);
+  rows.push(["Reciprocity", info.reciprocity_error < 1e-9 ? "exact" : `${number(100 * info.reciprocity_error, 3)} % off on average`]);
   if (info.mirror_asymmetry !== undefined) rows.push(["Mirror asymmetry", `${number(100 * info.mirror_asymmetry, 3)} %`]);
   if (info.nodes) rows.push(["Measured at", `${info.nodes.count.toLocaleString("en")} nodes${info.nodes.incident_angles ? `, ${info.nodes.incident_angles} angles of incidence` : ""}`]);
   if (info.bytes) rows.push(["Size", bytesText(info.bytes)]);
