@@ -68,9 +68,9 @@ async function save(page, selector, name) {
 }
 const settled = (page) => page.waitForFunction(() => document.documentElement.dataset.view === "settled");
 
-// Numbers alike to kSame, at the same places; a path in a name is no difference. Nodes of which a cosine is the threshold are
-// counted on either side of it, by the last bit of another library's arc cosine.
-const kNames = ["name", "model", "note"], kCounts = {count: 1e-3};
+// Numbers alike to kSame, at the same places; a path in a name is no difference. A node whose cosine is the threshold counts
+// or not by the last bit of another library's arc cosine, and what predicts such nodes from others hangs on them.
+const kNames = ["name", "model", "note", "predicted"], kCounts = {count: 1e-3};
 function same(found, expected, at, within = kSame) {
   if (typeof expected === "number") {
     assert.ok(Math.abs(found - expected) <= within * Math.max(Math.abs(expected), 1e-9), `${at}: expected ${expected}, found ${found}`);
