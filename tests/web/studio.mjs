@@ -214,6 +214,7 @@ async function pictures() {
     await until(shown, 1);
     await shown.click(`#shape [data-value=${shape}]`);
     await shown.selectOption("#around", around);
+    if (shape === "teapot") await shown.selectOption("#curve", "2");
     await shown.fill("#budget", "2700");
     await shown.fill("#fetches", "2");
     await shown.click("#fit-start");

@@ -6,9 +6,9 @@ import {add, direction, normalize, scale, toRgb} from "./vectors.js";
 const kHalfPi = Math.PI / 2;
 const kLargestHalf = 32768;  // of what is stored; larger values are scaled down
 
-// Cells of the table: theta_h crowds at the normal, azimuths go round. A coarse one comes first where the other takes long.
+// Cells of the table: theta_h crowds at the normal, azimuths go round. A coarse one comes first.
 const kSizes = {
-  isotropic: [{thetaH: 128, thetaD: 64, phiD: 48}],
+  isotropic: [{thetaH: 64, thetaD: 24, phiD: 16}, {thetaH: 128, thetaD: 64, phiD: 48}],
   anisotropic: [{thetaH: 48, thetaD: 16, phiD: 16, phiH: 16}, {thetaH: 80, thetaD: 24, phiD: 24, phiH: 36}],
 };
 

@@ -25,7 +25,7 @@ function facts(info) {
 function albedos({albedo}) {
   if (!albedo?.length) return null;
   const cells = (values) => values.slice(0, 3).map((x) => make("td", {}, number(x, 3)));
-  const names = albedo[0].albedo.length === 3 ? ["red", "green", "blue"] : albedo[0].albedo.slice(0, 3).map((_, k) => `${k + 1}`);
+  const names = {1: ["grey"], 3: ["red", "green", "blue"]}[albedo[0].albedo.length] ?? ["1", "2", "3"];
   return make("table", {}, make("caption", {}, "Albedo"),
     make("thead", {}, make("tr", {}, make("th", {scope: "col"}, "at"), ...names.map((name) => make("th", {scope: "col"}, name)))),
     make("tbody", {}, ...albedo.map((row) => make("tr", {}, make("td", {}, `${number(row.theta_i_deg, 3)}°${row.phi_i_deg > 0 ? `, ${number(row.phi_i_deg, 3)}°` : ""}`), ...cells(row.albedo)))));

@@ -46,7 +46,7 @@ function range(lines) {
   const values = lines.flatMap((line) => line.values).filter(Number.isFinite), top = Math.max(...values, 1e-6);
   if (!settings.log) return [0, top * 1.05];
   const high = Math.ceil(Math.log10(top) - 1e-9), positive = values.filter((x) => x > 0);
-  const low = clamp(Math.floor(Math.log10(Math.min(...positive, top))), high - kDecades, high - 1);
+  const low = clamp(Math.floor(Math.log10(Math.min(...positive, top))), high - kDecades, high - 2);
   return [10 ** low, 10 ** high];
 }
 

@@ -7,7 +7,7 @@ import {onChange, state} from "./state.js";
 import {clamp} from "./vectors.js";
 import {View} from "./view.js";
 
-let view = null, exposedFor = null;
+let view = null, exposedFor = null, exposes = true;  // until the slider is moved
 
 // Where a light's handle stands: its direction seen from the front, at this share of the half frame.
 const kRing = 0.94;
@@ -105,6 +105,7 @@ function setExposure(stops) {
   view.set({exposure: Number(stops)});
 }
 function expose() {
+  if (!exposes) return;
   const stops = view.autoExposure();
   if (stops !== null) setExposure(clamp(Math.round(20 * stops) / 20, -10, 10));
 }
@@ -147,6 +148,7 @@ export async function openPicture(file) {
     [choice.disabled, choice.textContent] = [false, file.name];
     around.value = "picture";
     view?.set({around: "picture"});
+    if (view) expose();
     say(`${file.name} lights the object`);
   } catch (error) {
     say(`${file.name}: ${lineOf(error)}`, "error");
@@ -164,12 +166,24 @@ export const picture = () => view?.png();
 export const currentView = () => view;
 
 function connect() {
-  segments(find("#shape"), (shape) => view.set({shape}));
+  segments(find("#shape"), (shape) => {
+    view.set({shape});
+    expose();
+  });
   setShown = segments(find("#shown"), choose);
   const around = find("#around");
-  around.addEventListener("change", () => view.set({around: around.value}));
-  find("#exposure").addEventListener("input", (event) => setExposure(event.target.value));
-  find("#expose").addEventListener("click", expose);
+  around.addEventListener("change", () => {
+    view.set({around: around.value});
+    expose();
+  });
+  find("#exposure").addEventListener("input", (event) => {
+    exposes = false;
+    setExposure(event.target.value);
+  });
+  find("#expose").addEventListener("click", () => {
+    exposes = true;
+    expose();
+  });
   find("#curve").addEventListener("change", (event) => view.set({curve: Number(event.target.value)}));
   find("#tangents").addEventListener("change", (event) => view.set({tangents: event.target.checked}));
   find("#add-light").addEventListener("click", (event) => {
