@@ -256,6 +256,13 @@ export class Model extends Material {
     this.report = report;
   }
 
+  async edit(edit, {signal} = {}) {
+    const {blobs} = await answers.run({
+      request: {verb: "edit", id: this.id, edit}, materials: [this.recipe], signal,
+    });
+    return open(new Blob([blobs[0]]), {name: `${this.name} edited`, signal});
+  }
+
   async shader(language, options = {}, {signal} = {}) {
     const {json, blobs} = await answers.run({
       request: {...options, language, verb: "shader", id: this.id}, materials: [this.recipe], signal,
