@@ -21,6 +21,7 @@
 #include <burnish/fitting/fit.h>
 #include <burnish/fitting/fit_file.h>
 #include <burnish/io/convert.h>
+#include <burnish/io/neural.h>
 #include <burnish/io/open_source.h>
 #include <burnish/math/angles.h>
 #include <burnish/metrics/albedo.h>
@@ -112,6 +113,11 @@ Reply open(Request request) {
     }
     const FileBytes file{a.value("name", "file"), std::move(request.bytes)};
     if (file.bytes.empty()) throw Error::in_file(file.name, "at least one byte", "an empty file");
+    if (a.contains("entry")) {
+      NeuralFile parsed = parse_neural(file, a.at("entry").get<std::string>());
+      return {fmt::format("{}#{}", file.name, parsed.name), std::move(parsed.brdf),
+              std::move(parsed.findings)};
+    }
     return parse_source(file, options);
   };
   const auto [place, added] = materials().insert_or_assign(a.at("id").get<int>(), open_it());
@@ -275,6 +281,40 @@ Reply fit_material(const Request& request, const Progress& progress) {
           .blobs = {format_compact(to_model(std::move(found)), CompactContent::model_and_notes)}};
 }
 
+// A number for all channels or one a channel, times the scale.
+void multiply(std::vector<double>& scale, const Json& by) {
+  const auto factors = by.is_array() ? by.get<std::vector<double>>() : std::vector<double>{by.get<double>()};
+  if (factors.size() > 1 && scale.size() == 1) scale.resize(factors.size(), scale.front());
+  if (factors.size() != 1 && factors.size() != scale.size())
+    throw Error(fmt::format("edit: expected 1 or {} factors, found {}", scale.size(), factors.size()));
+  for (std::size_t c = 0; c < scale.size(); ++c) scale[c] *= factors[factors.size() == 1 ? 0 : c];
+}
+
+// A model with other scales and a Lambertian part; its file comes back, as a fit's does.
+Reply edit(const Request& request) {
+  const Json& how = request.arguments.at("edit");
+  const FactoredBrdf& model = model_of(request.arguments);
+  std::vector<Lobe> lobes(model.lobes().begin(), model.lobes().end());
+  if (const auto scale = how.find("scale"); scale != how.end()) {
+    // a list of lists is one a lobe
+    const bool each =
+        scale->is_array() && std::ranges::any_of(*scale, [](const Json& s) { return s.is_array(); });
+    if (each && scale->size() != lobes.size())
+      throw Error(fmt::format("edit: expected scales of {} lobes, found {}", lobes.size(), scale->size()));
+    for (std::size_t l = 0; l < lobes.size(); ++l) multiply(lobes[l].scale, each ? (*scale)[l] : *scale);
+  }
+  if (const auto diffuse = how.find("diffuse"); diffuse != how.end()) {
+    Lobe lambertian{.scale = std::vector<double>(static_cast<std::size_t>(model.channels()), 1 / kPi),
+                    .factors = {}};
+    multiply(lambertian.scale, *diffuse);
+    lobes.push_back(std::move(lambertian));
+  }
+  Model edited{.brdf = FactoredBrdf(model.channels(), {model.tables().begin(), model.tables().end()},
+                                    std::move(lobes)),
+               .lambda_nm = material(request.arguments).findings.lambda_nm};
+  return {.json = "{}", .blobs = {format_compact(edited, CompactContent::model_and_notes)}};
+}
+
 Reply compare(const Request& request) {
   const Json& a = request.arguments;
   const bool symmetrize = a.value("symmetrize", true), nodes_only = a.value("target", "function") == "nodes";
@@ -416,6 +456,7 @@ Reply run(Request request, const Progress& progress) {
   if (verb == "albedo") return albedo(request);
   if (verb == "volume") return volume(request, progress);
   if (verb == "fit") return fit_material(request, progress);
+  if (verb == "edit") return edit(request);
   if (verb == "compare") return compare(request);
   if (verb == "images") return images(request);
   if (verb == "shader") return shader(request);

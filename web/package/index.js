@@ -59,6 +59,7 @@ class Engine {
   #jobs = [];
   #running = false;
   #calls = 0;
+  #stops = 0;
   #waiting;
 
   /// {request, bytes?, materials?, onProgress?, signal?} to {json, blobs, memory}
@@ -82,6 +83,7 @@ class Engine {
 
   /// Ends the worker, whatever it does; its memory is the system's again.
   stop() {
+    ++this.#stops;
     this.#worker?.terminate();
     this.#worker = undefined;
     this.#known.clear();
@@ -124,17 +126,20 @@ class Engine {
   }
 
   async #call({request, bytes}, onProgress) {
-    let stopped = false;
     if (!this.#worker) {
+      const stops = this.#stops;
       const worker = await newWorker((message) => this.#worker === worker && this.#receive(message),
                                      (error) => this.#worker === worker && this.#fail(error));
+      if (stops !== this.#stops) {  // while it was started
+        worker.terminate();
+        throw new Error("the worker was stopped");
+      }
       this.#worker = worker;
     }
     if (inNode) this.#worker.ref();
     const call = ++this.#calls;
     return new Promise((resolve, reject) => {
       this.#waiting = {call, resolve, reject, onProgress};
-      if (stopped) return;
       this.#worker.postMessage({call, request, bytes});
     });
   }
@@ -271,6 +276,13 @@ export class Model extends Material {
     this.fetches = summary.fetches;
     this.expression = summary.expression;
     this.report = report;
+  }
+
+  async edit(edit, {signal} = {}) {
+    const {blobs} = await answers.run({
+      request: {verb: "edit", id: this.id, edit}, materials: [this.recipe], signal,
+    });
+    return open(new Blob([blobs[0]]), {name: `${this.name} edited`, signal});
   }
 
   async shader(language, options = {}, {signal} = {}) {
