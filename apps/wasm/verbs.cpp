@@ -290,10 +290,13 @@ void multiply(std::vector<double>& scale, const Json& by) {
   for (std::size_t c = 0; c < scale.size(); ++c) scale[c] *= factors[factors.size() == 1 ? 0 : c];
 }
 
-// A model with other scales and a Lambertian part; its file comes back, as a fit's does.
+// A model with other colours, widths and scales and a Lambertian part; its file comes back, as a fit's does.
 Reply edit(const Request& request) {
   const Json& how = request.arguments.at("edit");
-  const FactoredBrdf& model = model_of(request.arguments);
+  Edit changes;
+  read_if(how, "hue", changes.hue);
+  read_if(how, "roughness", changes.roughness);
+  const FactoredBrdf model = edited(model_of(request.arguments), changes);
   std::vector<Lobe> lobes(model.lobes().begin(), model.lobes().end());
   if (const auto scale = how.find("scale"); scale != how.end()) {
     // a list of lists is one a lobe
@@ -309,10 +312,10 @@ Reply edit(const Request& request) {
     multiply(lambertian.scale, *diffuse);
     lobes.push_back(std::move(lambertian));
   }
-  Model edited{.brdf = FactoredBrdf(model.channels(), {model.tables().begin(), model.tables().end()},
-                                    std::move(lobes)),
-               .lambda_nm = material(request.arguments).findings.lambda_nm};
-  return {.json = "{}", .blobs = {format_compact(edited, CompactContent::model_and_notes)}};
+  const Model result{.brdf = FactoredBrdf(model.channels(), {model.tables().begin(), model.tables().end()},
+                                          std::move(lobes)),
+                     .lambda_nm = material(request.arguments).findings.lambda_nm};
+  return {.json = "{}", .blobs = {format_compact(result, CompactContent::model_and_notes)}};
 }
 
 Reply compare(const Request& request) {
@@ -430,17 +433,6 @@ Reply export_material(const Request& request) {
   return reply_of(files, Json::array());
 }
 
-// The edited model's file comes back: whoever asked opens it.
-Reply edit(const Request& request) {
-  const Json& a = request.arguments;
-  Edit changes;
-  read_if(a, "scale", changes.scale);
-  read_if(a, "hue", changes.hue);
-  read_if(a, "roughness", changes.roughness);
-  read_if(a, "diffuse", changes.diffuse);
-  return {.json = "{}", .blobs = {format_compact({.brdf = edited(model_of(a), changes)})}};
-}
-
 Reply close(const Request& request) {
   materials().erase(request.arguments.at("id").get<int>());
   return {};
@@ -456,7 +448,6 @@ Reply run(Request request, const Progress& progress) {
   if (verb == "albedo") return albedo(request);
   if (verb == "volume") return volume(request, progress);
   if (verb == "fit") return fit_material(request, progress);
-  if (verb == "edit") return edit(request);
   if (verb == "compare") return compare(request);
   if (verb == "images") return images(request);
   if (verb == "shader") return shader(request);

@@ -166,7 +166,11 @@ export interface Shader {
 
 /** What `edit` does, in this order. */
 export interface Edit {
-  /** Of all lobes, or of each: a factor for all channels, or one a channel (a hue). */
+  /** Radians by which the lobes' colours turn about grey; three channels only. */
+  hue?: number;
+  /** Factor of tan(theta_h / 2) in tables over theta_h, 0.1 to 10: how much wider highlights become. */
+  roughness?: number;
+  /** Of all lobes, or of each: a factor for all channels, or one a channel. */
   scale?: number | number[] | (number | number[])[];
   /** A Lambertian part to add: albedo / pi, one number or one a channel. */
   diffuse?: number | number[];

@@ -297,14 +297,6 @@ export class Model extends Material {
     return {...json, textures};
   }
 
-  /// Another model: scale times f, the lobes' colours turned by hue (radians), highlights as much wider as roughness says,
-  /// a diffuse albedo added.
-  async edit({scale = 1, hue = 0, roughness = 1, diffuse = 0} = {}, {signal} = {}) {
-    const {blobs} = await answers.run({
-      request: {scale, hue, roughness, diffuse, verb: "edit", id: this.id}, materials: [this.recipe], signal,
-    });
-    return open(new Blob([blobs[0]]), {name: this.name, report: this.report, signal});
-  }
 }
 
 /// Opens a file's bytes, whatever its format, or an analytic BRDF such as "ggx:alpha=0.2".

@@ -18,9 +18,9 @@ const apply = latest(async (entry) => {
   try {
     entry.original ??= entry.material;
     const places = {...entry.places};
-    const still = fields.every(([name, , , , at]) => places[name] === at);
-    const options = Object.fromEntries(fields.map(([name, , , , , value]) => [name, value(places[name])]));
-    const material = still ? entry.original : await entry.original.edit(options);
+    const moved = fields.filter(([name, , , , at]) => places[name] !== at);
+    const options = Object.fromEntries(moved.map(([name, , , , , value]) => [name, value(places[name])]));
+    const material = moved.length === 0 ? entry.original : await entry.original.edit(options);
     const info = await material.info();
     if (!state.entries.includes(entry)) return;
     if (entry.material !== entry.original && entry.material !== material) entry.material.close?.();

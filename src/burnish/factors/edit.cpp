@@ -1,17 +1,17 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <string>
 
 #include <fmt/format.h>
 
 #include <burnish/error.h>
 #include <burnish/factors/edit.h>
-#include <burnish/math/angles.h>
 
 namespace burnish {
 
 namespace {
+
+constexpr double kLeastScale = 1e-30;  // for 0, which has no logarithm
 
 void require(const char* what, double value, double least, double most) {
   if (!(value >= least && value <= most))
@@ -97,39 +97,25 @@ void widen(const FactoredBrdf& model, std::vector<Table>& log_tables, double fac
     }
 }
 
-// A line of ones, which a constant lobe looks up: a lobe has a factor.
-void add_diffuse(std::vector<Table>& log_tables, std::vector<Lobe>& lobes, int channels, double albedo) {
-  std::string name = "diffuse";
-  while (std::ranges::any_of(log_tables, [&](const Table& table) { return table.name == name; })) name += '_';
-  log_tables.push_back(
-      {.name = name, .layout = {.width = 2}, .channels = 1, .values = {0, 0}, .format = TableFormat::half});
-  lobes.push_back(
-      {.scale = std::vector<double>(static_cast<std::size_t>(channels), std::log(albedo / kPi)),
-       .factors = {{.table = static_cast<int>(log_tables.size()) - 1, .projection = kProjectHalf}}});
-}
-
 }  // namespace
 
 FactoredBrdf edited(const FactoredBrdf& model, const Edit& edit) {
-  require("a scale", edit.scale, 1e-4, 1e4);
   require("a roughness", edit.roughness, 0.1, 10);
-  require("a diffuse albedo", edit.diffuse, 0, 1);
   require("a hue", edit.hue, -100, 100);
   if (edit.hue != 0 && model.channels() != 3)
     throw Error(fmt::format("edit: expected three channels where a hue turns, found {}", model.channels()));
+  std::vector<Table> tables(model.tables().begin(), model.tables().end());
+  std::vector<Lobe> lobes(model.lobes().begin(), model.lobes().end());
+  if (edit.hue != 0)
+    for (Lobe& lobe : lobes) lobe.scale = turned(lobe.scale, edit.hue);
+  if (edit.roughness == 1) return {model.channels(), std::move(tables), std::move(lobes)};
 
   // everything as logarithms, which tables are stored from
-  std::vector<Table> tables(model.tables().begin(), model.tables().end());
   for (Table& table : tables)
     std::ranges::transform(table.values, table.values.begin(), [](float v) { return std::log(v); });
-  std::vector<Lobe> lobes(model.lobes().begin(), model.lobes().end());
-  for (Lobe& lobe : lobes) {
-    if (edit.hue != 0) lobe.scale = turned(lobe.scale, edit.hue);
-    for (double& s : lobe.scale) s = std::log(std::max(edit.scale * s, 1e-30));
-  }
-
-  if (edit.roughness != 1) widen(model, tables, edit.roughness);
-  if (edit.diffuse > 0) add_diffuse(tables, lobes, model.channels(), edit.diffuse);
+  for (Lobe& lobe : lobes)
+    for (double& s : lobe.scale) s = std::log(std::max(s, kLeastScale));
+  widen(model, tables, edit.roughness);
   return from_log_tables(model.channels(), std::move(tables), std::move(lobes));
 }
 

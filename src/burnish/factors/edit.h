@@ -4,12 +4,10 @@
 
 namespace burnish {
 
-/// What is changed in a model; the defaults change nothing.
+/// What is changed in a model; the defaults change nothing, not a bit.
 struct Edit {
-  double scale = 1;      ///< factor of f, in (0, 1e4]
   double hue = 0;        ///< radians by which the lobes' colours turn about grey; three channels only
   double roughness = 1;  ///< factor of tan(theta_h / 2) in tables over theta_h, in [0.1, 10]
-  double diffuse = 0;    ///< added albedo of a constant lobe, in [0, 1]
 
   friend bool operator==(const Edit&, const Edit&) = default;
 };
