@@ -124,14 +124,14 @@ async function fromTable(gl, material, size, alive) {
 // Calls ready(form) with {glsl, textures, set(program), alpha} once, and again where a finer table follows. alive() says
 // whether the material is still open.
 export async function prepare(gl, {material, model}, alive, ready) {
-  const alpha = await roughness(material);
-  if (model && (material.channels === 1 || material.channels === 3)) {
-    const form = await fromShader(gl, material);
-    if (alive()) ready({...form, alpha});
-    return;
-  }
-  for (const size of kSizes[material.isotropic ? "isotropic" : "anisotropic"]) {
-    const form = await fromTable(gl, material, size, alive);
+  const [size, ...finer] = kSizes[material.isotropic ? "isotropic" : "anisotropic"], drawn = model && (material.channels === 1 || material.channels === 3);
+  // asked for at once, before what others ask the same worker for
+  const [alpha, first] = await Promise.all([roughness(material), drawn ? fromShader(gl, material) : fromTable(gl, material, size, alive)]);
+  if (!first || !alive()) return;
+  ready({...first, alpha});
+  if (drawn) return;
+  for (const next of finer) {
+    const form = await fromTable(gl, material, next, alive);
     if (!form) return;
     ready({...form, alpha});
   }
