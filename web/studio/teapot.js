@@ -1,4 +1,4 @@
-// The control points of src/burnish/render/mesh/teapot.h, three numbers each and 16 points a patch; tests compare them.
+// The control points of src/burnish/render/mesh/teapot.h, three numbers each and 16 points a patch.
 export const parts = [
   [1.4, 0, 2.4, 1.4, -0.784, 2.4, 0.784, -1.4, 2.4, 0, -1.4, 2.4, 1.3375, 0, 2.53125, 1.3375, -0.749, 2.53125, 0.749,
    -1.3375, 2.53125, 0, -1.3375, 2.53125, 1.4375, 0, 2.53125, 1.4375, -0.805, 2.53125, 0.805, -1.4375, 2.53125, 0,
