@@ -26,8 +26,10 @@ const models = {
   lambert: [color("kd", [0.6, 0.6, 0.6])],
   oren_nayar: [color("kd", [0.6, 0.4, 0.3]), line("sigma", 0.5, 0, 1.57)],
   satin: threads, ashikhmin_premoze_shirley: threads,
-  poulin_fournier: [line("spacing", 2.5, 2, 20), line("height", 1, 0.001, 1), exponent("exponent", 50), color("kd", [0.2, 0.2, 0.2]), color("ks", [0.8, 0.8, 0.8])],
-  lafortune: [color("kd", [0.2, 0.2, 0.2]), line("cx", -0.9, -1.5, 1.5), line("cy", -0.9, -1.5, 1.5), line("cz", 0.9, -1.5, 1.5), ["exponent", "log", 20, 1, 1000], color("ks", [1, 1, 1])],
+  poulin_fournier: [line("spacing", 2.5, 2, 20), line("height", 1, 0.001, 1), exponent("exponent", 50),
+                    color("kd", [0.2, 0.2, 0.2]), color("ks", [0.8, 0.8, 0.8])],
+  lafortune: [color("kd", [0.2, 0.2, 0.2]), line("cx", -0.9, -1.5, 1.5), line("cy", -0.9, -1.5, 1.5),
+              line("cz", 0.9, -1.5, 1.5), ["exponent", "log", 20, 1, 1000], color("ks", [1, 1, 1])],
 };
 
 const digits = (x) => String(Number(x.toPrecision(4)));

@@ -122,7 +122,9 @@ function drawFigures() {
   const costText = cost && `${model.name}: ${cost.fetches} fetches of ${cost.textures} texture${cost.textures === 1 ? "" : "s"}, ${cost.operations} operations, ` +
     `${cost.divisions} divisions, ${cost.roots} roots, ${cost.powers} powers a light. Fitted in ${number(model.seconds, 2)} s.`;
   place.replaceChildren(
-    make("div", {class: "scroll", tabindex: 0, role: "region", "aria-label": "Figures of the models"}, make("table", {}, make("thead", {}, make("tr", {}, ...heads.map((name) => make("th", {scope: "col"}, name)))), make("tbody", {}, ...rows))),
+    make("div", {class: "scroll", tabindex: 0, role: "region", "aria-label": "Figures of the models"},
+      make("table", {}, make("thead", {}, make("tr", {}, ...heads.map((name) => make("th", {scope: "col"}, name)))),
+        make("tbody", {}, ...rows))),
     cost ? make("p", {class: "cost"}, costText) : "");
 }
 

@@ -16,7 +16,8 @@ function facts(info) {
   rows.push(["θ to the light", span(info.theta_i_deg)], ["θ to the viewer", span(info.theta_o_deg)]);
   rows.push(["Reciprocity", info.reciprocity_error < 1e-9 ? "exact" : `${number(100 * info.reciprocity_error, 3)} % off on average`]);
   if (info.mirror_asymmetry !== undefined) rows.push(["Mirror asymmetry", `${number(100 * info.mirror_asymmetry, 3)} %`]);
-  if (info.nodes) rows.push(["Measured at", `${info.nodes.count.toLocaleString("en")} nodes${info.nodes.incident_angles ? `, ${info.nodes.incident_angles} angles of incidence` : ""}`]);
+  const angles = info.nodes?.incident_angles ? `, ${info.nodes.incident_angles} angles of incidence` : "";
+  if (info.nodes) rows.push(["Measured at", `${info.nodes.count.toLocaleString("en")} nodes${angles}`]);
   if (info.bytes) rows.push(["Size", bytesText(info.bytes)]);
   if (info.shader) rows.push(["Shader", `${info.shader.fetches} fetches, ${info.shader.operations} operations`]);
   return rows;
@@ -24,11 +25,12 @@ function facts(info) {
 
 function albedos({albedo}) {
   if (!albedo?.length) return null;
+  const place = (row) => `${number(row.theta_i_deg, 3)}°${row.phi_i_deg > 0 ? `, ${number(row.phi_i_deg, 3)}°` : ""}`;
   const cells = (values) => values.slice(0, 3).map((x) => make("td", {}, number(x, 3)));
   const names = {1: ["grey"], 3: ["red", "green", "blue"]}[albedo[0].albedo.length] ?? ["1", "2", "3"];
   return make("table", {}, make("caption", {}, "Albedo"),
     make("thead", {}, make("tr", {}, make("th", {scope: "col"}, "at"), ...names.map((name) => make("th", {scope: "col"}, name)))),
-    make("tbody", {}, ...albedo.map((row) => make("tr", {}, make("td", {}, `${number(row.theta_i_deg, 3)}°${row.phi_i_deg > 0 ? `, ${number(row.phi_i_deg, 3)}°` : ""}`), ...cells(row.albedo)))));
+    make("tbody", {}, ...albedo.map((row) => make("tr", {}, make("td", {}, place(row)), ...cells(row.albedo)))));
 }
 
 export function draw() {

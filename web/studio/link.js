@@ -4,13 +4,13 @@ import {say} from "./dom.js";
 
 const kLongest = 1 << 20;  // characters of a fragment that is read
 
-export function toBase64Url(bytes) {
+function toBase64Url(bytes) {
   let text = "";
   for (let k = 0; k < bytes.length; k += 0x8000) text += String.fromCharCode(...bytes.subarray(k, k + 0x8000));
   return btoa(text).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
 }
 // Throws Error where the text is not base64url.
-export function fromBase64Url(text) {
+function fromBase64Url(text) {
   if (!/^[A-Za-z0-9_-]*$/.test(text)) throw new Error("expected base64url");
   return Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (c) => c.charCodeAt(0));
 }

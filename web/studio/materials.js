@@ -34,7 +34,7 @@ export async function openOne(data, name, more = {}) {
   }
 }
 
-export async function openFiles(files, onPicture) {
+async function openFiles(files, onPicture) {
   for (const file of files) {
     if (/\.(hdr|exr)$/i.test(file.name) && (await onPicture(file))) continue;
     if (!(await openOne(file, file.name)) && files.length === 1) return;

@@ -80,7 +80,8 @@ function drawPolar({angles, lines}) {
   }
   for (const {color, values, dashed} of lines) {
     const points = values.map((v, k) => place(at(angles[k], grow(v))));
-    figure.append(svg("path", {d: `M${points.join("L")}`, fill: "none", stroke: color, "stroke-width": 1.8, "stroke-dasharray": dashed ? "5 4" : null, "stroke-linejoin": "round"}));
+    figure.append(svg("path", {d: `M${points.join("L")}`, fill: "none", stroke: color, "stroke-width": 1.8,
+                               "stroke-dasharray": dashed ? "5 4" : null, "stroke-linejoin": "round"}));
   }
   const tip = at(-degrees(settings.theta), 1), accent = css("--accent");
   figure.append(svg("path", {d: `M${place(tip)}L${place(middle)}`, stroke: accent, "stroke-width": 1.6}),

@@ -163,7 +163,6 @@ export function themeChanged() {
 }
 
 export const picture = () => view?.png();
-export const currentView = () => view;
 
 function connect() {
   segments(find("#shape"), (shape) => {
