@@ -8,7 +8,7 @@ import {pathToFileURL} from "node:url";
 import {promisify} from "node:util";
 
 const cli = path.resolve(process.env.BURNISH_CLI), folder = path.resolve(process.env.BURNISH_INPUTS);
-const {Model, open} = await import(pathToFileURL(path.resolve(process.env.BURNISH_PACKAGE, "index.js")).href);
+const {memory, Model, open} = await import(pathToFileURL(path.resolve(process.env.BURNISH_PACKAGE, "index.js")).href);
 
 const kSpec = "ggx:alpha_x=0.25,alpha_y=0.25,f0=0.8/0.5/0.3,kd=0.05/0.1/0.15";
 const kTolerance = 1e-6;  // relative, of every figure
@@ -254,14 +254,15 @@ test("Shaders, exports and volumes have what they say", async () => {
 
 test("Memory of closed materials is used again", async () => {
   await run("convert", kSpec, at("whole.binary"));  // 35 MB
-  const bytes = bytesOf(at("whole.binary")), keep = await open(kSpec), before = process.memoryUsage().rss;
-  let begin = performance.now();
-  const first = await open(bytes, {name: "whole"});
+  const bytes = bytesOf(at("whole.binary")), keep = await open(kSpec), begin = performance.now();
+  (await open(bytes, {name: "whole"})).close();
   console.log(`MERL of ${bytes.length} bytes opened in ${((performance.now() - begin) / 1000).toFixed(2)} s`);
-  first.close();
-  for (let i = 0; i < 8; ++i) (await open(bytes, {name: "whole"})).close();
-  const grown = (process.memoryUsage().rss - before) / 2 ** 20;
-  console.log(`memory grown by ${grown.toFixed(0)} MB by nine of them`);
-  assert.ok(grown < 300, `${grown} MB`);
+  await keep.info();
+  const once = memory();
+  for (let i = 0; i < 4; ++i) (await open(bytes, {name: "whole"})).close();
+  await keep.info();
+  console.log(`${(once / 2 ** 20).toFixed(0)} MB by one of them, ${(memory() / 2 ** 20).toFixed(0)} MB by five`);
+  assert.ok(once > bytes.length && memory() < once + bytes.length);
   keep.close();
+  assert.equal(memory(), 0);
 });
