@@ -33,6 +33,9 @@ export function open(data: Uint8Array | ArrayBuffer | Blob | string, options?: O
 /** Loads and compiles the library before it is needed. */
 export function preload(): Promise<void>;
 
+/** Bytes that the open materials' worker holds, used or free; 0 where none is open. */
+export function memory(): number;
+
 export interface FitOptions {
   /** Of the model; by default the material's, "fitted". */
   name?: string;

@@ -61,6 +61,7 @@ class Engine {
   #calls = 0;
   #stops = 0;
   #waiting;
+  memory = 0;  // of the library in the worker, bytes
 
   /// {request, bytes?, materials?, onProgress?, signal?} to {json, blobs, memory}
   run(job) {
@@ -86,6 +87,7 @@ class Engine {
     ++this.#stops;
     this.#worker?.terminate();
     this.#worker = undefined;
+    this.memory = 0;
     this.#known.clear();
     this.#waiting?.reject(new Error("the worker was stopped"));
     this.#waiting = undefined;
@@ -153,6 +155,7 @@ class Engine {
     }
     this.#waiting = undefined;
     if (fatal) this.stop();
+    this.memory = reply?.memory ?? this.memory;
     if (error !== undefined) waiting.reject(new Error(error));
     else waiting.resolve(reply);
   }
@@ -322,4 +325,9 @@ export async function open(data, {name, report, onProgress, signal, ...options} 
 /// Loads and compiles the library before it is needed.
 export async function preload() {
   await Promise.all([libraryModule(), inNode ? undefined : workerCode()]);
+}
+
+/// Bytes that the open materials' worker holds, used or free; 0 where none is open.
+export function memory() {
+  return answers.memory;
 }
