@@ -3,9 +3,10 @@
 # make python the Python package in build/venv, tested
 # make build  the command line at build/release/apps/burnish/burnish
 # make deb, make wheel: packages in build/packages; make release-check installs each in an empty system and runs it
+# make studio the library as WebAssembly, its npm package and the page in build/studio; make studio-test tests them
 # make bench, make fuzz, make report, make cost-report, make sampling-report, make shader-report, make frame-cost, make hw-report, make hw-exhaustive, make format:
 # see CONTRIBUTING.md
-.PHONY: deb wheel packaging-deps release-check demo test build reports python deps test-deps bench fuzz report cost-report sampling-report shader-report frame-cost hw-report hw-exhaustive format format-check docs-check include-check api
+.PHONY: demo test build reports python deb wheel packaging-deps release-check studio studio-test deps test-deps studio-deps bench fuzz report cost-report sampling-report shader-report frame-cost hw-report hw-exhaustive format format-check docs-check include-check api
 JOBS ?= $(shell nproc)
 BURNISH := build/release/apps/burnish/burnish
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
@@ -14,10 +15,12 @@ INPUT ?=
 OUT ?= out/demo
 FUZZ_SECONDS ?= 60
 
-# deps: what the command line is built with; test-deps: what everything else takes besides.
+# deps: what the command line is built with; test-deps: what everything else takes besides; studio-deps: what the
+# library as WebAssembly does.
 deps: PACKAGES := cmake/debian-packages.txt
 test-deps: PACKAGES := cmake/debian-packages.txt cmake/debian-test-packages.txt
-deps test-deps:
+studio-deps: PACKAGES := cmake/debian-packages.txt cmake/debian-studio-packages.txt
+deps test-deps studio-deps:
 	@missing=$$(for p in $$(grep -hv '^#' $(PACKAGES)); do \
 	  dpkg-query -W -f '$${Status}' $$p 2>/dev/null | grep -q 'ok installed' || echo $$p; done); \
 	if [ -n "$$missing" ]; then \
@@ -48,6 +51,7 @@ test: test-deps format-check docs-check include-check
 	done
 	@python/check.sh --skip-offline
 	@tests/web/check.sh --skip-offline
+	@tests/web/package.sh --if-built
 
 python: test-deps build
 	@python/check.sh
@@ -67,6 +71,14 @@ wheel: packaging-deps deps
 
 release-check: deb wheel
 	@$(SUDO) tests/release/check.sh $(PACKAGES)
+
+studio: studio-deps
+	@cmake --preset studio > /dev/null
+	@cmake --build --preset studio -j $(JOBS)
+	@cp web/studio/* build/studio
+
+studio-test: studio build
+	@tests/web/package.sh
 
 bench: test-deps
 	@cmake --preset bench > /dev/null

@@ -12,6 +12,7 @@
 #include <burnish/report/factor_images.h>
 
 #include "commands.h"
+#include "comparison.h"
 #include "source_arguments.h"
 
 namespace burnish::cli {
@@ -24,23 +25,6 @@ struct CompareArguments {
   std::string folder, target = "function", repeat, only;
   FigureOptions figures;
   bool no_symmetrize = false, json = false;
-};
-
-/// An opened BRDF, made reciprocal like the others unless it is so by construction.
-class Candidate {
- public:
-  Candidate(Source source, bool symmetrize) : source_(std::move(source)) {
-    if (symmetrize && !(model() && model()->reciprocal())) symmetrized_.emplace(source_.ref());
-  }
-  Candidate(const Candidate&) = delete;
-
-  BrdfRef ref() const { return symmetrized_ ? BrdfRef(*symmetrized_) : source_.ref(); }
-  const Source& source() const { return source_; }
-  const FactoredBrdf* model() const { return std::get_if<FactoredBrdf>(&source_.brdf); }
-
- private:
-  Source source_;
-  std::optional<SymmetrizedBrdf> symmetrized_;
 };
 
 // folder/factors/model_N_TABLE.png for the models that are factored.
@@ -83,25 +67,14 @@ void print_quality(const MeasurementQuality& quality) {
              f.ssim, f.relative, f.rms_log, f.log_cos);
 }
 
-// What is known of a reference that is a measurement; nothing of a formula or model unless it is asked for.
-std::optional<Measurement> measurement_of(const Candidate& reference, const CompareArguments& arguments) {
-  const bool asked = arguments.target == "nodes" || !arguments.only.empty();
-  if (!asked && !is_measurement(reference.source())) return {};
-  Measurement measurement{.nodes = measured_nodes(reference.source()), .itself = {}, .quality = {}};
-  if (!arguments.only.empty())
-    measurement.nodes = nodes_of(measurement.nodes, parse_node_part(arguments.only));
-  measurement.itself = node_figures(measurement.nodes, reference.ref());
-  return measurement;
-}
-
 void add_quality(Measurement& measurement, const Candidate& reference, const Scorer& scorer,
                  const CompareArguments& arguments) {
   if (arguments.repeat.empty()) {
     measurement.quality = quality_by_exchange(scorer, reference.source().ref(), measurement.nodes);
     return;
   }
-  const Candidate second(open_source(arguments.repeat, arguments.reference.options),
-                         !arguments.no_symmetrize);
+  const Source repeat = open_source(arguments.repeat, arguments.reference.options);
+  const Candidate second(repeat, !arguments.no_symmetrize);
   measurement.quality = quality_by_repeat(scorer, second.ref(), measurement.nodes);
 }
 
@@ -124,19 +97,19 @@ void compare_nodes(const Measurement& measurement, std::span<const ComparedModel
 }
 
 void compare(const CompareArguments& arguments) {
-  // a list: models refer to their candidates
-  const Candidate reference(arguments.reference.open(), !arguments.no_symmetrize);
+  const Source opened = arguments.reference.open();
+  const Candidate reference(opened, !arguments.no_symmetrize);
+  // lists: models refer to their candidates, these to their sources
+  std::list<Source> sources;
   std::list<Candidate> candidates;
   std::vector<ComparedModel> models;
   for (const std::string& spec : arguments.models) {
-    const Candidate& c =
-        candidates.emplace_back(open_source(spec, arguments.reference.options), !arguments.no_symmetrize);
-    ComparedModel model{.name = spec, .brdf = c.ref(), .note = c.source().findings.description};
-    model.bytes = c.source().bytes();
-    models.push_back(std::move(model));
+    sources.push_back(open_source(spec, arguments.reference.options));
+    models.push_back(candidates.emplace_back(sources.back(), !arguments.no_symmetrize).compared(spec));
   }
 
-  std::optional<Measurement> measurement = measurement_of(reference, arguments);
+  std::optional<Measurement> measurement =
+      measurement_of(reference, arguments.target == "nodes", arguments.only);
   if (arguments.target == "nodes" && arguments.folder.empty()) {
     compare_nodes(*measurement, models, arguments.json);
     return;

@@ -1,65 +1,19 @@
 #include <memory>
-#include <optional>
 #include <string>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include <burnish/io/source_report.h>
 #include <burnish/math/angles.h>
-#include <burnish/metrics/node_figures.h>
-#include <burnish/shaders/shader.h>
 
 #include "commands.h"
+#include "info_json.h"
 #include "source_arguments.h"
 
 namespace burnish::cli {
 
 namespace {
-
-constexpr std::size_t kFewIncidences = 100;
-constexpr std::size_t kManyNodes = 20'000;  // more take their time to be predicted
-
-// Of the languages with textures, which have one or three channels.
-std::optional<ShaderCost> shader_cost(const FactoredBrdf& model) {
-  if (model.channels() != 1 && model.channels() != 3) return std::nullopt;
-  return generate_shader(model, {.filter = ShaderFilter::hardware}).cost;
-}
-
-// What is known of the places that were measured.
-struct NodesKnown {
-  std::size_t count;
-  std::optional<std::size_t> incidences;  ///< where they are few
-  std::optional<NodeFigures>
-      predicted;  ///< each by the others: what the measurement itself would score there
-};
-
-std::optional<NodesKnown> nodes_of(const Source& source) {
-  if (!is_measurement(source)) return {};
-  const MeasuredNodes nodes = measured_nodes(source);
-  NodesKnown known{.count = nodes.size(), .incidences = {}, .predicted = {}};
-  if (nodes.theta_i.size() <= kFewIncidences) known.incidences = nodes.theta_i.size();
-  if (nodes.samples.isotropic && nodes.size() <= kManyNodes) known.predicted = held_out_figures(nodes, {});
-  return known;
-}
-
-// The report, with the nodes of a measurement, and of a model with what its shader costs.
-std::string json_text(const SourceReport& report) {
-  auto json = nlohmann::ordered_json::parse(to_json(report));
-  if (const auto nodes = nodes_of(report.source)) {
-    json["nodes"]["count"] = nodes->count;
-    if (nodes->incidences) json["nodes"]["incident_angles"] = *nodes->incidences;
-    if (nodes->predicted)
-      json["nodes"]["predicted"] = {{"relative", nodes->predicted->relative},
-                                    {"log_cos", nodes->predicted->log_cos}};
-  }
-  if (const auto cost = report.model ? shader_cost(*report.model) : std::nullopt)
-    json["shader"] = {{"fetches", cost->fetches},       {"textures", cost->textures},
-                      {"operations", cost->operations}, {"divisions", cost->divisions},
-                      {"roots", cost->roots},           {"powers", cost->powers}};
-  return json.dump(2);
-}
 
 std::string to_string(const NodesKnown& nodes) {
   std::string text = fmt::format("{} measured", nodes.count);
@@ -140,7 +94,7 @@ void add_info_command(CLI::App& app) {
     const Source source = arguments->open();
     const SourceReport report = report_on(source);
     if (*as_json)
-      fmt::print("{}\n", json_text(report));
+      fmt::print("{}\n", info_json(report));
     else
       print_text(report);
   });

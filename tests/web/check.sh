@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Opens exports in ktx-parse, three.js, Chromium and the glTF validator, and compares tangent frames with MikkTSpace, installed from
-# npm into build/web. With --skip-offline it says so and succeeds where npm, Chromium or the registry cannot be reached.
+# npm into build/web; and the page in build/studio, where `make studio` made it. With --skip-offline it says so and succeeds where npm, Chromium or the registry cannot be reached.
 set -eu
 cd "$(dirname "$0")/../.."
 skip() {
@@ -11,7 +11,7 @@ skip() {
 burnish=${BURNISH_CLI:-build/release/apps/burnish/burnish}
 web=build/web
 mkdir -p "$web"
-cp tests/web/check.mjs tests/web/frames.mjs "$web"
+cp tests/web/*.mjs "$web"
 cmp -s tests/web/package.json "$web/package.json" || cp tests/web/package.json "$web"
 for tool in node npm chromium; do
   command -v "$tool" > /dev/null || skip "${1:-}" "no $tool, so exports were not opened elsewhere"
@@ -26,3 +26,9 @@ printf 'wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0,0,1,0,0,1\n' > "$web/normal.csv"
 "$burnish" eval "$web/brushed.exr" "$web/normal.csv" -o "$web/value.csv" > /dev/null
 NODE_FOLDER=node_modules node "$web/check.mjs" "$web/out" brushed "$(tail -1 "$web/value.csv" | cut -d, -f1)"
 node "$web/frames.mjs" build/release/tests/burnish_mesh_frames "$web"
+
+if [ -f build/studio/package/burnish.js ]; then
+  node "$web/studio.mjs" "$PWD/build/studio" "$burnish" "$web/studio"
+else
+  echo "web: SKIPPED: no build/studio, so the page was not opened; make studio makes it" >&2
+fi

@@ -49,7 +49,7 @@ class ModelExport {
   }
   // The last file's name.
   const std::string& add(std::string name, std::string bytes) {
-    return result_.files.emplace_back(std::move(name), std::move(bytes)).name;
+    return result_.files.emplace_back(ExportedFile{std::move(name), std::move(bytes)}).name;
   }
 
   void add_shader(ShaderLanguage language);

@@ -47,7 +47,9 @@ ExportedFiles export_specular(const std::string& spec, std::optional<PowerMethod
   for (const ExportTarget target : options.to) {
     if (target == ExportTarget::html) {
       manifest["page"] =
-          result.files.emplace_back(options.name + ".html", html_page(model, spec, options.name)).name;
+          result.files
+              .emplace_back(ExportedFile{options.name + ".html", html_page(model, spec, options.name)})
+              .name;
       continue;
     }
     const std::optional<ShaderLanguage> language = language_of(target);

@@ -249,7 +249,9 @@ class Fitter {
   }
 
   CostLimit limit_of(std::uint64_t bytes, int fetches) const {
-    return {.bytes = bytes, .texel_bytes = texel_bytes(format(), channels()), .fetches = fetches};
+    return {.bytes = static_cast<std::size_t>(bytes),
+            .texel_bytes = texel_bytes(format(), channels()),
+            .fetches = fetches};
   }
 
   /// Lobes of lines or hemispheres.
@@ -267,9 +269,11 @@ class Fitter {
     trials.progress = progress("choosing lobes");
     LobePlan plan = plan_for(reference(), set, bytes, form.lobes, texel, trials);
     if (form.search) {
-      const SearchResult found = search_plan(
-          set, plan,
-          {.bytes = bytes, .texel_bytes = texel, .refine = refine, .progress = progress("searching")});
+      const SearchResult found = search_plan(set, plan,
+                                             {.bytes = static_cast<std::size_t>(bytes),
+                                              .texel_bytes = texel,
+                                              .refine = refine,
+                                              .progress = progress("searching")});
       plan = found.plan;
       SearchReport& searched = report.search.emplace();
       searched.trials = found.trials.size();

@@ -67,7 +67,8 @@ class Lookups {
   }
 
   static Expr weighed(const TableLayout& layout, const FactorUse& use, const Place& place, ValueType type) {
-    const auto& [texture, first] = place;
+    const ShaderTexture* const texture = place.texture;  // a binding cannot be captured by clang 14
+    const auto& first = place.first;
     const auto axis = [](int nodes) { return TableAxis{nodes - 1.0, 0}; };
     const auto [x, y, z] =
         position_expressions(layout, use, axis(layout.width), axis(layout.height), axis(layout.depth));

@@ -1,0 +1,44 @@
+#include "info_json.h"
+
+#include <nlohmann/json.hpp>
+
+namespace burnish::cli {
+
+namespace {
+
+constexpr std::size_t kFewIncidences = 100;
+constexpr std::size_t kManyNodes = 20'000;  // more take their time to be predicted
+
+}  // namespace
+
+std::optional<NodesKnown> nodes_of(const Source& source) {
+  if (!is_measurement(source)) return {};
+  const MeasuredNodes nodes = measured_nodes(source);
+  NodesKnown known{.count = nodes.size(), .incidences = {}, .predicted = {}};
+  if (nodes.theta_i.size() <= kFewIncidences) known.incidences = nodes.theta_i.size();
+  if (nodes.samples.isotropic && nodes.size() <= kManyNodes) known.predicted = held_out_figures(nodes, {});
+  return known;
+}
+
+std::optional<ShaderCost> shader_cost(const FactoredBrdf& model) {
+  if (model.channels() != 1 && model.channels() != 3) return std::nullopt;
+  return generate_shader(model, {.filter = ShaderFilter::hardware}).cost;
+}
+
+std::string info_json(const SourceReport& report) {
+  auto json = nlohmann::ordered_json::parse(to_json(report));
+  if (const auto nodes = nodes_of(report.source)) {
+    json["nodes"]["count"] = nodes->count;
+    if (nodes->incidences) json["nodes"]["incident_angles"] = *nodes->incidences;
+    if (nodes->predicted)
+      json["nodes"]["predicted"] = {{"relative", nodes->predicted->relative},
+                                    {"log_cos", nodes->predicted->log_cos}};
+  }
+  if (const auto cost = report.model ? shader_cost(*report.model) : std::nullopt)
+    json["shader"] = {{"fetches", cost->fetches},       {"textures", cost->textures},
+                      {"operations", cost->operations}, {"divisions", cost->divisions},
+                      {"roots", cost->roots},           {"powers", cost->powers}};
+  return json.dump(2);
+}
+
+}  // namespace burnish::cli

@@ -1,0 +1,1 @@
+#include <OpenEXR/ImfStandIn.h>

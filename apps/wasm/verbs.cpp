@@ -1,0 +1,460 @@
+#include "verbs.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <list>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <burnish/error.h>
+#include <burnish/export/export_model.h>
+#include <burnish/factors/compact_file.h>
+#include <burnish/factors/edit.h>
+#include <burnish/factors/fetches.h>
+#include <burnish/fitting/fit.h>
+#include <burnish/fitting/fit_file.h>
+#include <burnish/io/convert.h>
+#include <burnish/io/neural.h>
+#include <burnish/io/open_source.h>
+#include <burnish/math/angles.h>
+#include <burnish/metrics/albedo.h>
+#include <burnish/parameterization/half_diff.h>
+#include <burnish/report/compare_report.h>
+#include <burnish/shaders/shader.h>
+
+#include "comparison.h"
+#include "info_json.h"
+
+namespace burnish::wasm {
+
+namespace {
+
+std::map<int, Source>& materials() {
+  static std::map<int, Source> opened;
+  return opened;
+}
+
+const Source& material(const Json& arguments, const char* key = "id") {
+  const auto found = materials().find(arguments.at(key).get<int>());
+  if (found == materials().end()) throw Error("expected an open material, found one that was closed");
+  return found->second;
+}
+
+const FactoredBrdf& model_of(const Json& arguments) {
+  const Source& source = material(arguments);
+  const auto* model = std::get_if<FactoredBrdf>(&source.brdf);
+  if (!model) throw Error(fmt::format("{}: expected a factored BRDF, found another", source.name));
+  return *model;
+}
+
+template <class T>
+void read_if(const Json& from, const char* key, T& to) {
+  if (const auto found = from.find(key); found != from.end() && !found->is_null()) to = found->get<T>();
+}
+
+template <class T>
+void read_if(const Json& from, const char* key, std::optional<T>& to) {
+  if (const auto found = from.find(key); found != from.end() && !found->is_null()) to = found->get<T>();
+}
+
+template <class T>
+std::string bytes_of(const std::vector<T>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+}
+
+std::vector<float> floats_of(const std::vector<std::byte>& bytes) {
+  std::vector<float> values(bytes.size() / sizeof(float));
+  std::memcpy(values.data(), bytes.data(), values.size() * sizeof(float));
+  return values;
+}
+
+/// What is known without a report.
+Json summary_of(const Source& source) {
+  const BrdfRef ref = source.ref();
+  const auto* model = std::get_if<FactoredBrdf>(&source.brdf);
+  Json json{{"name", source.name},
+            {"channels", ref.channels()},
+            {"isotropic", ref.isotropic()},
+            {"model", model != nullptr},
+            {"measurement", is_measurement(source)}};
+  if (const auto bytes = source.bytes()) json["bytes"] = *bytes;
+  if (model) {
+    json["expression"] = model_expression(*model);
+    json["fetches"] = fetch_count(*model);
+  }
+  return json;
+}
+
+Reply open(Request request) {
+  const Json& a = request.arguments;
+  OpenOptions options;
+  read_if(a, "spectral", options.keep_spectral);
+  read_if(a, "illuminant", options.illuminant);
+  read_if(a, "hasCosine", options.has_cosine);
+  read_if(a, "clampNegatives", options.clamp_negatives);
+  read_if(a, "back", options.back_side);
+  if (options.illuminant != "E" && options.illuminant != "D65")
+    throw Error(fmt::format("illuminant: expected E or D65, found '{}'", options.illuminant));
+  const auto open_it = [&]() -> Source {
+    if (a.contains("spec")) {
+      const std::string spec = a.at("spec").get<std::string>();
+      if (!is_analytic_spec(spec))
+        throw Error(
+            fmt::format("expected a file's bytes or an analytic BRDF such as ggx:alpha=0.2, found '{}'",
+                        spec.substr(0, 80)));
+      return open_source(spec, options);
+    }
+    const FileBytes file{a.value("name", "file"), std::move(request.bytes)};
+    if (file.bytes.empty()) throw Error::in_file(file.name, "at least one byte", "an empty file");
+    if (a.contains("entry")) {
+      NeuralFile parsed = parse_neural(file, a.at("entry").get<std::string>());
+      return {fmt::format("{}#{}", file.name, parsed.name), std::move(parsed.brdf),
+              std::move(parsed.findings)};
+    }
+    return parse_source(file, options);
+  };
+  const auto [place, added] = materials().insert_or_assign(a.at("id").get<int>(), open_it());
+  return {.json = summary_of(place->second).dump(), .blobs = {}};
+}
+
+Reply info(const Request& request) {
+  return {.json = cli::info_json(report_on(material(request.arguments))), .blobs = {}};
+}
+
+// Directions n x 3, those to the light before those to the viewer; values n x channels.
+Reply evaluate(const Request& request) {
+  const BrdfRef brdf = material(request.arguments).ref();
+  const std::vector<float> directions = floats_of(request.bytes);
+  if (directions.size() % 6 != 0) throw Error("evaluate: expected as many wi as wo, three numbers each");
+  const std::size_t n = directions.size() / 6, channels = static_cast<std::size_t>(brdf.channels());
+  constexpr std::size_t kChunk = 4096;
+  std::vector<float> result;
+  result.reserve(n * channels);
+  std::vector<DirectionPair> pairs;
+  std::vector<double> values(kChunk * channels);
+  std::vector<std::uint8_t> known(kChunk);
+  const auto direction = [&](std::size_t i) {
+    const Vec3 w{directions[3 * i], directions[3 * i + 1], directions[3 * i + 2]};
+    const double size = std::sqrt(w.x * w.x + w.y * w.y + w.z * w.z);
+    if (!(std::abs(size - 1) < 1e-3))
+      throw Error(fmt::format("evaluate: expected unit vectors, found one of length {:.4g}", size));
+    return Vec3{w.x / size, w.y / size, w.z / size};
+  };
+  for (std::size_t begin = 0; begin < n; begin += kChunk) {
+    const std::size_t count = std::min(kChunk, n - begin);
+    pairs.clear();
+    for (std::size_t i = begin; i < begin + count; ++i) pairs.push_back({direction(i), direction(n + i)});
+    brdf.eval(pairs, std::span(values).first(count * channels), std::span(known).first(count));
+    for (std::size_t i = 0; i < count * channels; ++i) result.push_back(static_cast<float>(values[i]));
+  }
+  return {.json = Json{{"channels", channels}}.dump(), .blobs = {bytes_of(result)}};
+}
+
+// Of light from theta_i (radians) at azimuth phi.
+Reply albedo(const Request& request) {
+  const Source& source = material(request.arguments);
+  const double phi = request.arguments.value("phi", 0.0);
+  std::vector<float> result;
+  for (const float theta : floats_of(request.bytes)) {
+    if (!(theta >= 0 && theta < kHalfPi))
+      throw Error(fmt::format("albedo: expected theta_i in [0, pi/2) radians, found {}", theta));
+    const Vec3 wi{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+    for (const double value : directional_albedo(source.ref(), wi).albedo)
+      result.push_back(static_cast<float>(value));
+  }
+  return {.json = Json{{"channels", source.ref().channels()}}.dump(), .blobs = {bytes_of(result)}};
+}
+
+// Along a row of theta_d, what lies beyond the horizon or is unknown takes the nearest value that is known.
+void fill_unknown(std::vector<std::vector<float>>& row) {
+  std::size_t last = row.size();
+  for (std::size_t d = 0; d < row.size(); ++d) {
+    if (row[d].empty()) {
+      if (last < row.size()) row[d] = row[last];
+      continue;
+    }
+    for (std::size_t before = last < row.size() ? d : 0; before < d; ++before) row[before] = row[d];
+    last = d;
+  }
+}
+
+// Centres of cells: theta_h = ((x + 1/2) / thetaH)^2 pi/2, theta_d = (y + 1/2) / thetaD pi/2,
+// phi_d = (z + 1/2) / phiD 2 pi.
+Reply volume(const Request& request, const Progress& progress) {
+  const BrdfRef brdf = material(request.arguments).ref();
+  std::array<int, 3> size{90, 90, 180};
+  read_if(request.arguments, "thetaH", size[0]);
+  read_if(request.arguments, "thetaD", size[1]);
+  read_if(request.arguments, "phiD", size[2]);
+  const double phi_h = request.arguments.value("phiH", 0.0);
+  for (const int side : size)
+    if (side < 2 || side > 512)
+      throw Error(fmt::format("volume: expected 2 to 512 cells a side, found {}", side));
+  const auto channels = static_cast<std::size_t>(brdf.channels());
+  const auto [nh, nd, np] = size;
+  std::vector<float> data(static_cast<std::size_t>(nh) * static_cast<std::size_t>(nd) *
+                          static_cast<std::size_t>(np) * channels);
+  std::vector<double> f(channels);
+  for (int p = 0; p < np; ++p) {
+    for (int h = 0; h < nh; ++h) {
+      const double x = (h + 0.5) / nh;
+      std::vector<std::vector<float>> row(static_cast<std::size_t>(nd));
+      for (int d = 0; d < nd; ++d) {
+        const auto [wi, wo] = from_half_diff({.theta_h = x * x * kHalfPi,
+                                              .phi_h = phi_h,
+                                              .theta_d = (d + 0.5) / nd * kHalfPi,
+                                              .phi_d = (p + 0.5) / np * 2 * kPi});
+        if (wi.z > 0 && wo.z > 0 && brdf.eval(wi, wo, f))
+          row[static_cast<std::size_t>(d)].assign(f.begin(), f.end());
+      }
+      fill_unknown(row);
+      for (int d = 0; d < nd; ++d) {
+        const auto& cell = row[static_cast<std::size_t>(d)];
+        const std::size_t at = (static_cast<std::size_t>(p * nd + d) * static_cast<std::size_t>(nh) +
+                                static_cast<std::size_t>(h)) *
+                               channels;
+        std::copy(cell.begin(), cell.end(), data.begin() + static_cast<std::ptrdiff_t>(at));
+      }
+    }
+    progress("sampling", (p + 1.0) / np);
+  }
+  return {.json = Json{{"size", {nh, nd, np}}, {"channels", channels}}.dump(), .blobs = {bytes_of(data)}};
+}
+
+// As the verb fit reads its options.
+FitForm fit_form(const Json& a, bool isotropic) {
+  LogLinear how;
+  how.cross_validate = a.contains("smooth") && a.at("smooth") == "auto";
+  read_if(a, "reweightings", how.reweightings);
+  read_if(a, "floor", how.floor);
+  const FitLoss loss = parse_fit_loss(a.value("loss", "image"));
+  if (a.contains("budget") && !a.at("budget").is_null()) {
+    Budget budget{.bytes = {}, .loss = loss, .scattered = how};
+    if (a.at("budget") != "auto") {
+      if (!a.at("budget").is_number_unsigned() || a.at("budget") == 0)
+        throw Error(fmt::format("budget: expected auto or a number of bytes above 0, found {}",
+                                a.at("budget").dump().substr(0, 40)));
+      budget.bytes = a.at("budget").get<std::uint64_t>();
+    }
+    read_if(a, "fetches", budget.fetches);
+    read_if(a, "lobes", budget.lobes);
+    read_if(a, "search", budget.search);
+    return budget;
+  }
+  return form_of(a.value("model", ""), a.value("tables", std::vector<std::string>()), isotropic, how, loss);
+}
+
+FitOptions fit_options(const Json& a, bool isotropic) {
+  FitOptions options;
+  options.form = fit_form(a, isotropic);
+  const std::string target = a.value("target", "function");
+  if (target != "function" && target != "nodes")
+    throw Error(fmt::format("target: expected function or nodes, found '{}'", target));
+  if (target == "nodes") options.target = FitTarget::nodes;
+  if (a.contains("holdOut")) options.hold_out = parse_node_part(a.at("holdOut").get<std::string>());
+  if (a.contains("format")) options.format = parse_table_format(a.at("format").get<std::string>());
+  if (a.contains("smooth") && a.at("smooth").is_number()) options.smooth = a.at("smooth").get<double>();
+  read_if(a, "samples", options.samples);
+  read_if(a, "seed", options.seed);
+  read_if(a, "symmetrize", options.symmetrize);
+  read_if(a, "conserveEnergy", options.conserve_energy);
+  return options;
+}
+
+// The model's file comes back: whoever asked opens it.
+Reply fit_material(const Request& request, const Progress& progress) {
+  const Source& source = material(request.arguments);
+  FitOptions options = fit_options(request.arguments.at("options"), source.ref().isotropic());
+  options.progress = progress;
+  const auto start = std::chrono::steady_clock::now();
+  Fit found = fit(source, options);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  std::string report = summary_json(found, request.arguments.value("name", "model"), seconds);
+  return {.json = std::move(report),
+          .blobs = {format_compact(to_model(std::move(found)), CompactContent::model_and_notes)}};
+}
+
+// A number for all channels or one a channel, times the scale.
+void multiply(std::vector<double>& scale, const Json& by) {
+  const auto factors = by.is_array() ? by.get<std::vector<double>>() : std::vector<double>{by.get<double>()};
+  if (factors.size() > 1 && scale.size() == 1) scale.resize(factors.size(), scale.front());
+  if (factors.size() != 1 && factors.size() != scale.size())
+    throw Error(fmt::format("edit: expected 1 or {} factors, found {}", scale.size(), factors.size()));
+  for (std::size_t c = 0; c < scale.size(); ++c) scale[c] *= factors[factors.size() == 1 ? 0 : c];
+}
+
+// A model with other colours, widths and scales and a Lambertian part; its file comes back, as a fit's does.
+Reply edit(const Request& request) {
+  const Json& how = request.arguments.at("edit");
+  Edit changes;
+  read_if(how, "hue", changes.hue);
+  read_if(how, "roughness", changes.roughness);
+  const FactoredBrdf model = edited(model_of(request.arguments), changes);
+  std::vector<Lobe> lobes(model.lobes().begin(), model.lobes().end());
+  if (const auto scale = how.find("scale"); scale != how.end()) {
+    // a list of lists is one a lobe
+    const bool each =
+        scale->is_array() && std::ranges::any_of(*scale, [](const Json& s) { return s.is_array(); });
+    if (each && scale->size() != lobes.size())
+      throw Error(fmt::format("edit: expected scales of {} lobes, found {}", lobes.size(), scale->size()));
+    for (std::size_t l = 0; l < lobes.size(); ++l) multiply(lobes[l].scale, each ? (*scale)[l] : *scale);
+  }
+  if (const auto diffuse = how.find("diffuse"); diffuse != how.end()) {
+    Lobe lambertian{.scale = std::vector<double>(static_cast<std::size_t>(model.channels()), 1 / kPi),
+                    .factors = {}};
+    multiply(lambertian.scale, *diffuse);
+    lobes.push_back(std::move(lambertian));
+  }
+  const Model result{.brdf = FactoredBrdf(model.channels(), {model.tables().begin(), model.tables().end()},
+                                          std::move(lobes)),
+                     .lambda_nm = material(request.arguments).findings.lambda_nm};
+  return {.json = "{}", .blobs = {format_compact(result, CompactContent::model_and_notes)}};
+}
+
+Reply compare(const Request& request) {
+  const Json& a = request.arguments;
+  const bool symmetrize = a.value("symmetrize", true), nodes_only = a.value("target", "function") == "nodes";
+  FigureOptions figures;
+  read_if(a, "count", figures.count);
+  read_if(a, "seed", figures.seed);
+  const cli::Candidate reference(material(a), symmetrize);
+  std::list<cli::Candidate> candidates;
+  std::vector<ComparedModel> models;
+  for (const Json& id : a.at("models")) {
+    const Source& source = material(Json{{"id", id}});
+    models.push_back(candidates.emplace_back(source, symmetrize).compared(source.name));
+  }
+  const auto measurement = cli::measurement_of(reference, nodes_only, a.value("only", ""));
+  if (nodes_only) return {.json = nodes_json(*measurement, models), .blobs = {}};
+  const Measurement* const measured = measurement ? &*measurement : nullptr;
+  const Scorer scorer(reference.ref(), figures);
+  return {.json = to_json(compare_models(scorer, models, measured), measured), .blobs = {}};
+}
+
+// The scored pictures, RGB bytes: those of the reference, then those of the model under its exposure.
+Reply images(const Request& request) {
+  const Json& a = request.arguments;
+  const bool symmetrize = a.value("symmetrize", true);
+  const cli::Candidate reference(material(a), symmetrize), model(material(a, "model"), symmetrize);
+  const int size = a.value("size", kSphereSize);
+  const Scorer scorer(reference.ref(), {.count = 1, .image_size = size});
+  Reply reply{.json = Json{{"size", size}, {"exposure", scorer.exposure()}}.dump(), .blobs = {}};
+  const SpherePictures of_model = scorer.pictures(model.ref());
+  for (const SpherePictures* pictures : {&scorer.reference_pictures(), &of_model})
+    for (const Image& shown : pictures->shown) reply.blobs.push_back(bytes_of(to_image8(shown).pixels));
+  return reply;
+}
+
+ShaderLanguage language_named(const std::string& name) {
+  for (const ShaderLanguage language : kShaderLanguages)
+    if (to_string(language) == name) return language;
+  throw Error(fmt::format("shader: expected glsl, glsl_es, hlsl, msl, wgsl or cpp, found '{}'", name));
+}
+
+Json to_json(const ShaderCost& cost) {
+  return {{"fetches", cost.fetches},     {"textures", cost.textures}, {"operations", cost.operations},
+          {"divisions", cost.divisions}, {"roots", cost.roots},       {"powers", cost.powers}};
+}
+
+// Textures follow as blobs of floats, [z][y][x][channel].
+Reply shader(const Request& request) {
+  const Json& a = request.arguments;
+  const ShaderLanguage language = language_named(a.at("language").get<std::string>());
+  ShaderOptions options{.language = language, .name = a.value("name", "brdf")};
+  const bool exact = a.value("exact", language == ShaderLanguage::cpp);
+  options.filter = exact ? ShaderFilter::exact : ShaderFilter::hardware;
+  read_if(a, "halfProducts", options.half_products);
+  read_if(a, "linesAre1d", options.lines_are_1d);
+  const Shader made = generate_shader(model_of(a), options);
+  Reply reply;
+  Json textures = Json::array();
+  for (const ShaderTexture& t : made.textures) {
+    textures.push_back({{"name", t.name},
+                        {"width", t.width},
+                        {"height", t.height},
+                        {"depth", t.depth},
+                        {"channels", t.channels},
+                        {"format", to_string(t.format)}});
+    reply.blobs.push_back(bytes_of(t.values));
+  }
+  reply.json = Json{{"code", made.text},
+                    {"language", to_string(language)},
+                    {"filter", exact ? "exact" : "hardware"},
+                    {"function", fmt::format("burnish_{}", options.name)},
+                    {"functionWorld", fmt::format("burnish_{}_world", options.name)},
+                    {"cost", to_json(made.cost)},
+                    {"costText", burnish::to_string(made.cost)},
+                    {"textures", std::move(textures)}}
+                   .dump();
+  return reply;
+}
+
+Reply reply_of(std::span<const std::pair<std::string, std::string>> files, Json losses) {
+  Reply reply;
+  Json names = Json::array();
+  for (const auto& [name, bytes] : files) {
+    names.push_back(name);
+    reply.blobs.push_back(bytes);
+  }
+  reply.json = Json{{"names", std::move(names)}, {"losses", std::move(losses)}}.dump();
+  return reply;
+}
+
+// A format of the verb convert, or a target of the verb export.
+Reply export_material(const Request& request) {
+  const Json& a = request.arguments;
+  const std::string kind = a.at("kind").get<std::string>(), name = a.value("name", "brdf");
+  const Source& source = material(a);
+  const bool is_model = std::holds_alternative<FactoredBrdf>(source.brdf);
+  if (std::ranges::find(kConvertFormats, kind) != kConvertFormats.end()) {
+    ConvertOptions options;
+    read_if(a, "count", options.count);
+    read_if(a, "seed", options.seed);
+    read_if(a, "entries", options.entries);
+    read_if(a, "cells", options.cells);
+    read_if(a, "notes", options.notes);
+    Converted converted = convert(source, is_model && kind == "exr" ? "model" : kind, options);
+    const std::pair<std::string, std::string> file{name, std::move(converted.bytes)};
+    return reply_of(std::span(&file, 1), converted.losses);
+  }
+  ExportOptions options{.to = {export_target(kind)}, .name = name, .compressed = false};
+  read_if(a, "exact", options.exact);
+  read_if(a, "mips", options.mips);
+  ExportedFiles exported = export_model(model_of(a), options);
+  std::vector<std::pair<std::string, std::string>> files;
+  for (ExportedFile& file : exported.files) files.emplace_back(std::move(file.name), std::move(file.bytes));
+  return reply_of(files, Json::array());
+}
+
+Reply close(const Request& request) {
+  materials().erase(request.arguments.at("id").get<int>());
+  return {};
+}
+
+}  // namespace
+
+Reply run(Request request, const Progress& progress) {
+  const std::string verb = request.arguments.at("verb").get<std::string>();
+  if (verb == "open") return open(std::move(request));
+  if (verb == "info") return info(request);
+  if (verb == "evaluate") return evaluate(request);
+  if (verb == "albedo") return albedo(request);
+  if (verb == "volume") return volume(request, progress);
+  if (verb == "fit") return fit_material(request, progress);
+  if (verb == "compare") return compare(request);
+  if (verb == "images") return images(request);
+  if (verb == "shader") return shader(request);
+  if (verb == "export") return export_material(request);
+  if (verb == "edit") return edit(request);
+  if (verb == "close") return close(request);
+  throw Error(fmt::format("expected a verb of the package, found '{}'", verb));
+}
+
+}  // namespace burnish::wasm

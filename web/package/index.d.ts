@@ -1,0 +1,193 @@
+/** Linear Rec. 709 or grey, 1/sr, without the cosine; directions are unit vectors, z the normal, x the tangent. */
+
+/** Told a rising share in [0, 1] and what is done. */
+export type Progress = (fraction: number, stage: string) => void;
+
+export interface Call {
+  /** Stops the work: the promise rejects with the signal's reason (an AbortError), other materials stay open. */
+  signal?: AbortSignal;
+  onProgress?: Progress;
+}
+
+export interface OpenOptions extends Call {
+  /** What errors and reports call it; by default the File's own. */
+  name?: string;
+  /** One channel a wavelength. */
+  spectral?: boolean;
+  illuminant?: "E" | "D65";
+  /** CSV values are f_r cos(theta_i). */
+  hasCosine?: boolean;
+  /** By default true: interpolated values below zero become zero. */
+  clampNegatives?: boolean;
+  /** Klems: the back side. */
+  back?: boolean;
+  /** Of a file of several neural encodings, the one of that name. */
+  entry?: string;
+}
+
+/** A file's bytes, whatever its format, or an analytic BRDF such as "ggx:alpha_x=0.2,alpha_y=0.2,f0=0.8". A model is a
+ * Model. Rejects with an Error of one line. The bytes are kept (a Blob need not be in memory): a worker that was stopped
+ * reads them again. */
+export function open(data: Uint8Array | ArrayBuffer | Blob | string, options?: OpenOptions): Promise<Material | Model>;
+
+/** Loads and compiles the library before it is needed. */
+export function preload(): Promise<void>;
+
+/** Bytes that the open materials' worker holds, used or free; 0 where none is open. */
+export function memory(): number;
+
+export interface FitOptions {
+  /** Of the model; by default the material's, "fitted". */
+  name?: string;
+  /** Bytes, or "auto"; without a budget or model 16384 within two fetches (anisotropic: six). */
+  budget?: number | "auto";
+  fetches?: number;
+  lobes?: number;
+  search?: boolean;
+  loss?: "image" | "relative" | "log_cos";
+  /** A product of tables, as the command line's --model. */
+  model?: string;
+  tables?: string[];
+  target?: "function" | "nodes";
+  holdOut?: string;
+  smooth?: number | "auto";
+  format?: "half" | "float" | "rgb9e5" | "unorm8";
+  reweightings?: number;
+  floor?: number;
+  samples?: number;
+  seed?: number;
+  symmetrize?: boolean;
+  conserveEnergy?: boolean;
+}
+
+export interface CompareOptions {
+  target?: "function" | "nodes";
+  only?: string;
+  symmetrize?: boolean;
+  count?: number;
+  seed?: number;
+}
+
+export interface ExportOptions {
+  /** Of functions and files: letters, digits, single underscores. */
+  name?: string;
+  exact?: boolean;
+  mips?: boolean;
+  cells?: number;
+  count?: number;
+  seed?: number;
+  entries?: boolean;
+  /** Keep the fit's notes in "burnish". */
+  notes?: boolean;
+}
+
+/** One file: those of the verb `convert`. "exr" is a model's own file, of others an image of slices. */
+export type FileKind = "burnish" | "model" | "exr" | "merl" | "rgl" | "mbsdf" | "zemax" | "astm" | "csv";
+/** Several files, of models: those of the verb `export`. */
+export type FilesKind = "ktx2" | "cube" | "png" | "gltf" | "three" | "html" | Language;
+export interface NamedFile { name: string; bytes: Uint8Array; }
+
+export type Language = "glsl" | "glsl_es" | "hlsl" | "msl" | "wgsl" | "cpp";
+
+export interface Volume {
+  /** Cells along theta_h, theta_d and phi_d. */
+  size: [number, number, number];
+  channels: number;
+  /** [phi_d][theta_d][theta_h][channel]. Cell (x, y, z) is the value at theta_h = ((x + 1/2) / size[0])^2 pi/2,
+   * theta_d = (y + 1/2) / size[1] pi/2, phi_d = (z + 1/2) / size[2] 2 pi; one beyond the horizon or unknown has the
+   * nearest known value of its row along theta_d. */
+  data: Float32Array;
+}
+
+export interface Images {
+  size: number;
+  exposure: number;
+  /** RGB bytes of the three scored spheres, tone mapped, both under the reference's exposure. */
+  reference: Uint8Array[];
+  model: Uint8Array[];
+}
+
+export class Material {
+  readonly id: number;
+  readonly name: string;
+  readonly channels: number;
+  readonly isotropic: boolean;
+  readonly measurement: boolean;
+  /** The JSON of `burnish info --json`. */
+  info(call?: Call): Promise<Record<string, any>>;
+  /** n x 3 unit vectors each, to n x channels values. */
+  evaluate(wi: ArrayLike<number>, wo: ArrayLike<number>, call?: Call): Promise<Float32Array>;
+  /** Share reflected of light from theta_i (radians, below pi/2), n x channels. */
+  albedo(thetas: ArrayLike<number>, options?: Call & {phi?: number}): Promise<Float32Array>;
+  /** The material resampled for a 3-D texture; of an anisotropic one at one phi_h. */
+  volume(cells?: {thetaH?: number; thetaD?: number; phiD?: number; phiH?: number}, call?: Call): Promise<Volume>;
+  /** In a worker of its own, which ends afterwards. The options are the verb's. */
+  fit(options?: FitOptions, call?: Call): Promise<Model>;
+  /** The JSON of `burnish compare --json`: a list, an object a model. */
+  compare(models: Material | Material[], options?: CompareOptions, call?: Call): Promise<Record<string, any>[]>;
+  images(model: Material, options?: {size?: number; symmetrize?: boolean}, call?: Call): Promise<Images>;
+  export(kind: FileKind, options?: ExportOptions, call?: Call): Promise<Uint8Array>;
+  export(kind: FilesKind, options?: ExportOptions, call?: Call): Promise<NamedFile[]>;
+  /** Gives its memory back; whatever is asked of it afterwards rejects. */
+  close(): void;
+}
+
+export interface ShaderOptions {
+  /** burnish_NAME(wi, wo) and burnish_NAME_world(n, t, l, v). */
+  name?: string;
+  /** Texels are weighed by the shader, in floats (C++: always); else one filtered read a lookup. */
+  exact?: boolean;
+  halfProducts?: boolean;
+  linesAre1d?: boolean;
+}
+
+export interface ShaderTexture {
+  /** Of the uniform: a sampler2D, or where depth > 0 a sampler3D; clamp to the edge, linear (exact: nearest). */
+  name: string;
+  width: number;
+  height: number;
+  depth: number;
+  channels: number;
+  format: "half" | "float" | "rgb9e5" | "unorm8";
+  /** [z][y][x][channel], ready for texImage2D or texImage3D with `gl`. */
+  data: Float32Array | Uint8Array;
+  /** Names of WebGL2's constants. */
+  gl: {internalFormat: string; format: string; type: string};
+}
+
+export interface Shader {
+  language: Language;
+  filter: "exact" | "hardware";
+  /** Without a #version line; its textures are its only uniforms. */
+  code: string;
+  function: string;
+  functionWorld: string;
+  cost: {fetches: number; textures: number; operations: number; divisions: number; roots: number; powers: number};
+  costText: string;
+  textures: ShaderTexture[];
+}
+
+/** What `edit` does, in this order. */
+export interface Edit {
+  /** Radians by which the lobes' colours turn about grey; three channels only. */
+  hue?: number;
+  /** Factor of tan(theta_h / 2) in tables over theta_h, 0.1 to 10: how much wider highlights become. */
+  roughness?: number;
+  /** Of all lobes, or of each: a factor for all channels, or one a channel. */
+  scale?: number | number[] | (number | number[])[];
+  /** A Lambertian part to add: albedo / pi, one number or one a channel. */
+  diffuse?: number | number[];
+}
+
+export class Model extends Material {
+  /** Size as the library counts it. */
+  readonly bytes: number;
+  /** Filtered reads of one evaluation. */
+  readonly fetches: number;
+  readonly expression: string;
+  /** Of what fit made: the JSON of `burnish fit --json`. */
+  readonly report?: Record<string, any>;
+  shader(language: Language, options?: ShaderOptions, call?: Call): Promise<Shader>;
+  /** A new model; this one stays as it is. */
+  edit(edit: Edit, call?: Call): Promise<Model>;
+}

@@ -1,0 +1,333 @@
+// burnish: measured BRDFs in the browser and in Node. README.md says how it is used, index.d.ts what there is.
+
+const inNode = typeof process === "object" && Boolean(process.versions?.node);
+
+let compiled;
+// The library's code, once for all workers.
+function libraryModule() {
+  compiled ??= (async () => {
+    const url = new URL("./burnish.wasm", import.meta.url);
+    if (inNode) return WebAssembly.compile(await (await import("node:fs/promises")).readFile(url));
+    const response = await fetch(url);
+    if (!response.ok) throw new Error(`burnish.wasm: expected the library's code, found status ${response.status}`);
+    return WebAssembly.compile(await response.arrayBuffer());
+  })();
+  compiled.catch(() => { compiled = undefined; });
+  return compiled;
+}
+
+// In browsers: the worker's code with the library's glue inside, so that no later worker asks for a file.
+let workerUrl;
+function workerCode() {
+  workerUrl ??= (async () => {
+    const [glue, worker] = await Promise.all(["./burnish.js", "./worker.js"].map(async (name) => {
+      const response = await fetch(new URL(name, import.meta.url));
+      if (!response.ok) throw new Error(`${name}: expected the library's code, found status ${response.status}`);
+      return response.text();
+    }));
+    const parts = [glue.replace(/export default burnish_wasm;\s*$/, ""),
+                   worker.replace(/^import createLibrary .*$/m, "const createLibrary = burnish_wasm;")];
+    return URL.createObjectURL(new Blob(parts, {type: "text/javascript"}));
+  })();
+  workerUrl.catch(() => { workerUrl = undefined; });
+  return workerUrl;
+}
+
+async function newWorker(receive, fail) {
+  const module = await libraryModule();
+  let worker;
+  if (inNode) {
+    worker = new (await import("node:worker_threads")).Worker(new URL("./worker.js", import.meta.url));
+    worker.on("message", receive);
+    worker.on("error", fail);
+  } else {
+    worker = new Worker(await workerCode(), {type: "module"});
+    worker.onmessage = (event) => receive(event.data);
+    worker.onerror = (event) => fail(new Error(event.message ?? "the worker could not be started"));
+  }
+  worker.postMessage({module});
+  return worker;
+}
+
+const aborted = (signal) => signal.reason ?? new DOMException("The operation was aborted.", "AbortError");
+
+// One worker and its queue of jobs. Materials are told to it when a job needs them; where the worker was stopped, to the
+// next one again.
+class Engine {
+  #worker;
+  #known = new Set();
+  #jobs = [];
+  #running = false;
+  #calls = 0;
+  #stops = 0;
+  #waiting;
+  memory = 0;  // of the library in the worker, bytes
+
+  /// {request, bytes?, materials?, onProgress?, signal?} to {json, blobs, memory}
+  run(job) {
+    const {signal} = job;
+    if (signal?.aborted) return Promise.reject(aborted(signal));
+    return new Promise((resolve, reject) => {
+      const entry = {job, resolve, reject};
+      entry.abort = () => {
+        const place = this.#jobs.indexOf(entry);
+        if (place >= 0) this.#jobs.splice(place, 1);
+        else this.stop();
+        entry.stopped = true;
+        reject(aborted(signal));
+      };
+      signal?.addEventListener("abort", entry.abort, {once: true});
+      this.#jobs.push(entry);
+      this.#next();
+    });
+  }
+
+  /// Ends the worker, whatever it does; its memory is the system's again.
+  stop() {
+    ++this.#stops;
+    this.#worker?.terminate();
+    this.#worker = undefined;
+    this.memory = 0;
+    this.#known.clear();
+    this.#waiting?.reject(new Error("the worker was stopped"));
+    this.#waiting = undefined;
+  }
+
+  /// Forgets a material.
+  close(id) {
+    if (!this.#known.has(id)) return;
+    this.#known.delete(id);
+    if (this.#known.size === 0 && !this.#running && this.#jobs.length === 0) this.stop();
+    else this.run({request: {verb: "close", id}}).catch(() => {});
+  }
+
+  async #next() {
+    if (this.#running) return;
+    this.#running = true;
+    while (this.#jobs.length > 0) {
+      const entry = this.#jobs.shift(), {job} = entry;
+      try {
+        for (const material of job.materials ?? []) {
+          if (entry.stopped) break;
+          if (!this.#known.has(material.id)) await this.#call({request: material.request, bytes: await material.bytes()});
+          this.#known.add(material.id);
+        }
+        if (!entry.stopped) {
+          const reply = await this.#call(job, job.onProgress);
+          if (job.request.verb === "open") this.#known.add(job.request.id);
+          entry.resolve(reply);
+        }
+      } catch (error) {
+        entry.reject(error);
+      }
+      job.signal?.removeEventListener("abort", entry.abort);
+    }
+    this.#running = false;
+    if (this.#known.size === 0) this.stop();
+    else if (inNode) this.#worker?.unref();
+  }
+
+  async #call({request, bytes}, onProgress) {
+    if (!this.#worker) {
+      const stops = this.#stops;
+      const worker = await newWorker((message) => this.#worker === worker && this.#receive(message),
+                                     (error) => this.#worker === worker && this.#fail(error));
+      if (stops !== this.#stops) {  // while it was started
+        worker.terminate();
+        throw new Error("the worker was stopped");
+      }
+      this.#worker = worker;
+    }
+    if (inNode) this.#worker.ref();
+    const call = ++this.#calls;
+    return new Promise((resolve, reject) => {
+      this.#waiting = {call, resolve, reject, onProgress};
+      this.#worker.postMessage({call, request, bytes});
+    });
+  }
+
+  #receive({call, progress, reply, error, fatal}) {
+    const waiting = this.#waiting;
+    if (waiting?.call !== call) return;
+    if (progress) {
+      waiting.onProgress?.(progress.fraction, progress.stage);
+      return;
+    }
+    this.#waiting = undefined;
+    if (fatal) this.stop();
+    this.memory = reply?.memory ?? this.memory;
+    if (error !== undefined) waiting.reject(new Error(error));
+    else waiting.resolve(reply);
+  }
+
+  #fail(error) {
+    const waiting = this.#waiting;
+    this.#waiting = undefined;
+    this.stop();
+    waiting?.reject(error instanceof Error ? error : new Error(String(error)));
+  }
+}
+
+// Questions are answered by one worker; fits, which take seconds and memory, have another, which ends after each.
+const answers = new Engine(), fits = new Engine();
+
+let ids = 0;
+
+const floats = (buffer) => new Float32Array(buffer);
+
+export class Material {
+  #recipe;
+  #closed = false;
+
+  /// Made by open and fit.
+  constructor(recipe, summary) {
+    this.#recipe = recipe;
+    this.id = recipe.id;
+    this.name = summary.name;
+    this.channels = summary.channels;
+    this.isotropic = summary.isotropic;
+    this.measurement = summary.measurement;
+  }
+
+  /// For methods of this file.
+  get recipe() {
+    if (this.#closed) throw new Error(`${this.name}: expected an open material, found one that was closed`);
+    return this.#recipe;
+  }
+
+  #ask(verb, rest = {}, {bytes, others = [], onProgress, signal} = {}) {
+    return answers.run({
+      request: {...rest, verb, id: this.id},
+      materials: [this.recipe, ...others.map((other) => other.recipe)],
+      bytes, onProgress, signal,
+    });
+  }
+
+  async info({signal} = {}) {
+    return (await this.#ask("info", {}, {signal})).json;
+  }
+
+  async evaluate(wi, wo, {signal} = {}) {
+    if (wi.length !== wo.length || wi.length % 3 !== 0)
+      throw new Error("evaluate: expected as many wi as wo, three numbers each");
+    const both = new Float32Array(2 * wi.length);
+    both.set(wi);
+    both.set(wo, wi.length);
+    return floats((await this.#ask("evaluate", {}, {bytes: both.buffer, signal})).blobs[0]);
+  }
+
+  async albedo(thetas, {phi = 0, signal} = {}) {
+    return floats((await this.#ask("albedo", {phi}, {bytes: Float32Array.from(thetas).buffer, signal})).blobs[0]);
+  }
+
+  async volume({thetaH = 90, thetaD = 90, phiD = 180, phiH = 0} = {}, {onProgress, signal} = {}) {
+    const {json, blobs} = await this.#ask("volume", {thetaH, thetaD, phiD, phiH}, {onProgress, signal});
+    return {...json, data: floats(blobs[0])};
+  }
+
+  async compare(models, options = {}, {signal} = {}) {
+    const several = Array.isArray(models) ? models : [models];
+    const {json} = await this.#ask("compare", {...options, models: several.map((m) => m.id)}, {others: several, signal});
+    return json;
+  }
+
+  async images(model, options = {}, {signal} = {}) {
+    const {json, blobs} = await this.#ask("images", {...options, model: model.id}, {others: [model], signal});
+    const pictures = blobs.map((blob) => new Uint8Array(blob));
+    return {...json, reference: pictures.slice(0, pictures.length / 2), model: pictures.slice(pictures.length / 2)};
+  }
+
+  async fit(options = {}, {onProgress, signal} = {}) {
+    const {name = `${this.name} fitted`, ...how} = options;
+    const {json, blobs} = await fits.run({
+      request: {verb: "fit", id: this.id, name, options: how}, materials: [this.recipe], onProgress, signal,
+    });
+    // the worker's memory, which never shrinks, goes back
+    fits.close(this.id);
+    return open(new Blob([blobs[0]]), {name, report: json, signal});
+  }
+
+  /// One file as bytes, or a list of files where there are several.
+  async export(kind, options = {}, {signal} = {}) {
+    const {json, blobs} = await this.#ask("export", {...options, kind}, {signal});
+    if (kConverted.has(kind)) return new Uint8Array(blobs[0]);
+    return json.names.map((name, i) => ({name, bytes: new Uint8Array(blobs[i])}));
+  }
+
+  close() {
+    if (this.#closed) return;
+    this.#closed = true;
+    answers.close(this.id);
+    fits.close(this.id);
+  }
+}
+
+const kConverted = new Set(["merl", "rgl", "mbsdf", "zemax", "astm", "csv", "exr", "model", "burnish"]);
+
+// What WebGL2 takes texels of a format as: [internal format, format, type], by channels.
+const kTexels = {
+  half: {1: ["R16F", "RED", "FLOAT"], 3: ["RGB16F", "RGB", "FLOAT"]},
+  float: {1: ["R32F", "RED", "FLOAT"], 3: ["RGB32F", "RGB", "FLOAT"]},
+  rgb9e5: {3: ["RGB9_E5", "RGB", "FLOAT"]},
+  unorm8: {1: ["R8", "RED", "UNSIGNED_BYTE"], 3: ["RGB8", "RGB", "UNSIGNED_BYTE"]},
+};
+
+export class Model extends Material {
+  constructor(recipe, summary, report) {
+    super(recipe, summary);
+    this.bytes = summary.bytes;
+    this.fetches = summary.fetches;
+    this.expression = summary.expression;
+    this.report = report;
+  }
+
+  async edit(edit, {signal} = {}) {
+    const {blobs} = await answers.run({
+      request: {verb: "edit", id: this.id, edit}, materials: [this.recipe], signal,
+    });
+    return open(new Blob([blobs[0]]), {name: `${this.name} edited`, signal});
+  }
+
+  async shader(language, options = {}, {signal} = {}) {
+    const {json, blobs} = await answers.run({
+      request: {...options, language, verb: "shader", id: this.id}, materials: [this.recipe], signal,
+    });
+    const textures = json.textures.map((texture, i) => {
+      const values = floats(blobs[i]), [internalFormat, format, type] = kTexels[texture.format][texture.channels];
+      const data = texture.format === "unorm8" ? Uint8Array.from(values, (v) => Math.round(255 * v)) : values;
+      return {...texture, data, gl: {internalFormat, format, type}};
+    });
+    return {...json, textures};
+  }
+
+}
+
+/// Opens a file's bytes, whatever its format, or an analytic BRDF such as "ggx:alpha=0.2".
+export async function open(data, {name, report, onProgress, signal, ...options} = {}) {
+  const id = ++ids, request = {...options, verb: "open", id};
+  const recipe = {id, request, bytes: async () => undefined};
+  if (typeof data === "string") {
+    request.spec = data;
+  } else {
+    // a Blob need not be in memory
+    const blob = data instanceof Blob ? data : new Blob([data]);
+    request.name = name ?? data.name ?? "file";
+    recipe.bytes = () => blob.arrayBuffer();
+  }
+  onProgress?.(0, "reading");
+  const bytes = await recipe.bytes();
+  onProgress?.(0.5, "parsing");
+  const {json} = await answers.run({request, bytes, signal});
+  onProgress?.(1, "opened");
+  return json.model ? new Model(recipe, json, report) : new Material(recipe, json);
+}
+
+/// Loads and compiles the library before it is needed.
+export async function preload() {
+  await Promise.all([libraryModule(), inNode ? undefined : workerCode()]);
+}
+
+/// Bytes that the open materials' worker holds, used or free; 0 where none is open.
+export function memory() {
+  return answers.memory;
+}

@@ -1,0 +1,79 @@
+// The library in a worker, a Web Worker or one of Node's: a request in, its progress and its reply out, one at a time.
+import createLibrary from "./burnish.js";
+
+const inNode = typeof process === "object" && Boolean(process.versions?.node);
+const port = inNode ? (await import("node:worker_threads")).parentPort : self;
+if (inNode) globalThis.self ??= {location: {href: import.meta.url}};
+
+let library, current;
+
+async function start(module) {
+  library = await createLibrary({
+    instantiateWasm: (imports, done) => {
+      WebAssembly.instantiate(module, imports).then((instance) => done(instance, module));
+      return {};
+    },
+    print: () => {},
+    printErr: () => {},
+    progress: (stage, fraction) => port.postMessage({call: current, progress: {stage, fraction}}),
+  });
+}
+
+function withText(text, use) {
+  const bytes = new TextEncoder().encode(text + "\0"), place = library._malloc(bytes.length);
+  if (!place) throw new Error("expected enough memory, found none left");
+  try {
+    library.HEAPU8.set(bytes, place);
+    return use(place);
+  } finally {
+    library._free(place);
+  }
+}
+
+function textAt(place) {
+  const end = library.HEAPU8.indexOf(0, place);
+  return new TextDecoder().decode(library.HEAPU8.subarray(place, end));
+}
+
+function answer({request, bytes}) {
+  if (bytes) {
+    const place = library._burnish_buffer(bytes.byteLength);
+    if (!place) throw new Error("expected enough memory, found none left");
+    library.HEAPU8.set(new Uint8Array(bytes), place);
+  }
+  const done = withText(JSON.stringify(request), (text) => library._burnish_call(text));
+  const text = textAt(library._burnish_text());
+  if (!done) throw new Error(text);
+  const blobs = [];
+  for (let i = 0; i < library._burnish_blobs(); ++i) {
+    const at = library._burnish_blob(i);
+    blobs.push(library.HEAPU8.slice(at, at + library._burnish_blob_size(i)).buffer);
+  }
+  library._burnish_clear();
+  return {json: JSON.parse(text), blobs, memory: library.HEAPU8.length};
+}
+
+const receive = async (message) => {
+  if (message.module) {
+    await start(message.module);
+    return;
+  }
+  current = message.call;
+  try {
+    const reply = answer(message);
+    port.postMessage({call: message.call, reply}, reply.blobs);
+  } catch (error) {
+    // what is no error of the library leaves it in an unknown state
+    const fatal = error instanceof WebAssembly.RuntimeError || error instanceof RangeError ||
+                  error instanceof WebAssembly.Exception;
+    port.postMessage({call: message.call, error: fatal ? `the library stopped: ${error.message}` : error.message, fatal});
+  }
+};
+
+// in their order, the first being the module
+let last = Promise.resolve();
+const queue = (message) => {
+  last = last.then(() => receive(message));
+};
+if (inNode) port.on("message", queue);
+else self.onmessage = (event) => queue(event.data);

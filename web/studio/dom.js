@@ -1,0 +1,73 @@
+// Elements from data. Text only ever becomes text: nothing here parses markup.
+
+export const find = (selector) => document.querySelector(selector);
+
+function fill(node, attributes, children) {
+  for (const [name, value] of Object.entries(attributes)) {
+    if (value === undefined || value === null || value === false) continue;
+    if (name.startsWith("on")) node.addEventListener(name.slice(2), value);
+    else node.setAttribute(name, value === true ? "" : value);
+  }
+  node.append(...children.flat().filter((child) => child !== undefined && child !== null && child !== false));
+  return node;
+}
+
+// make("button", {class: "quiet", onclick: f}, "Text", node, ...)
+export const make = (tag, attributes = {}, ...children) => fill(document.createElement(tag), attributes, children);
+export const svg = (tag, attributes = {}, ...children) =>
+  fill(document.createElementNS("http://www.w3.org/2000/svg", tag), attributes, children);
+
+export const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+// 2700 -> "2.6 KB"; figures with a few digits.
+export function bytesText(bytes) {
+  if (bytes < 1024) return `${bytes} B`;
+  return bytes < 1024 * 1024 ? `${(bytes / 1024).toFixed(1)} KB` : `${(bytes / 1048576).toFixed(1)} MB`;
+}
+export function number(x, digits = 4) {
+  if (x === null || x === undefined || Number.isNaN(x)) return "–";
+  if (!Number.isFinite(x)) return x > 0 ? "∞" : "−∞";
+  const size = Math.abs(x);
+  const text = size !== 0 && (size < 1e-3 || size >= 1e5) ? x.toExponential(2) : String(Number(x.toPrecision(digits)));
+  return text.replace("-", "−");
+}
+
+export function saveFile(name, data, type = "application/octet-stream") {
+  const url = URL.createObjectURL(data instanceof Blob ? data : new Blob([data], {type}));
+  make("a", {href: url, download: name}).click();
+  setTimeout(() => URL.revokeObjectURL(url), 10000);
+}
+
+// Runs the latest of many asked-for tasks, one at a time; what came between is forgotten.
+export function latest(task) {
+  let running = false, again = null;
+  return async function ask(...args) {
+    if (running) {
+      again = args;
+      return;
+    }
+    running = true;
+    try {
+      await task(...args);
+    } finally {
+      running = false;
+      if (again) {
+        const next = again;
+        again = null;
+        ask(...next);
+      }
+    }
+  };
+}
+
+// One line above the page, said aloud too; an error stays until the next or until it is closed.
+export function say(text, kind = "note") {
+  const line = find("#message");
+  line.dataset.kind = kind;
+  find("#message-text").textContent = text;
+  line.hidden = !text;
+  clearTimeout(say.timer);
+  if (kind === "note" && text) say.timer = setTimeout(() => (line.hidden = true), 5000);
+}
+// A thrown thing as one line.
+export const lineOf = (error) => String(error?.message ?? error).split("\n")[0].slice(0, 400);

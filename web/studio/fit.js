@@ -1,0 +1,162 @@
+// Fits with progress and stop, their figures beside the reference's, and error against bytes.
+import {plot} from "./chart.js";
+import {bytesText, css, find, lineOf, make, number, say} from "./dom.js";
+import {segments} from "./segments.js";
+import {add, changed, modelsOf, onChange, referenceOf, show, state} from "./state.js";
+
+const presets = {
+  small: {budget: "2700", fetches: ""},
+  default: {budget: "16K", fetches: "2"},
+  best: {budget: "64K", fetches: ""},
+};
+const kCurve = [700, 1400, 2800, 5600, 11200, 22400, 44800];
+
+let stop = null, choose = () => {};
+
+// "16K" as bytes; "auto" as itself. Throws Error.
+function readBudget(text) {
+  if (/^auto$/i.test(text.trim())) return "auto";
+  const found = text.trim().match(/^(\d+(?:\.\d+)?)\s*([kKmM]?)[bB]?$/), bytes = found ? found[1] * {"": 1, k: 1024, m: 1048576}[found[2].toLowerCase()] : 0;
+  if (!(bytes >= 1)) throw new Error(`Bytes: expected a number such as 2700, 16K or 1M, or auto, found '${text}'`);
+  return Math.round(bytes);
+}
+function readFetches(text) {
+  if (text.trim() === "" || /^auto$/i.test(text.trim())) return undefined;
+  const fetches = Number(text);
+  if (!(Number.isInteger(fetches) && fetches >= 1 && fetches <= 256)) throw new Error(`Fetches: expected 1 to 256 or nothing, found '${text}'`);
+  return fetches;
+}
+
+function progress(fraction, stage) {
+  if (stage) find("#fit-stage").textContent = stage;
+  if (Number.isFinite(fraction)) find("#fit-bar").value = fraction;
+}
+
+// Runs the task with a signal that the button of stopping aborts; what it throws is said, unless it was stopped.
+async function busy(task) {
+  const mine = (stop = new AbortController());
+  find("#fit-bar").removeAttribute("value");
+  find("#fit-stage").textContent = "starting";
+  find("#fitting").hidden = false;
+  enable();
+  try {
+    await task(mine.signal);
+  } catch (error) {
+    if (error?.name === "AbortError") say("Stopped");
+    else say(lineOf(error), "error");
+  } finally {
+    stop = null;
+    find("#fitting").hidden = true;
+    enable();
+  }
+}
+
+async function fitOne(reference, options, signal) {
+  const began = performance.now();
+  const material = await reference.material.fit(options, {onProgress: progress, signal});
+  const seconds = (performance.now() - began) / 1000;
+  find("#fit-stage").textContent = "measuring the error";
+  find("#fit-bar").removeAttribute("value");
+  const info = await material.info({signal}), [figures] = await reference.material.compare(material, {}, {signal});
+  return {name: `${reference.name.replace(/\.[^.]*$/, "")} ${bytesText(info.bytes)}`, material, info, figures, parent: reference.id, seconds};
+}
+
+async function fit(event) {
+  event.preventDefault();
+  const reference = referenceOf(state.shown);
+  if (!reference || stop) return;
+  await busy(async (signal) => {
+    const options = {budget: readBudget(find("#budget").value), fetches: readFetches(find("#fetches").value)};
+    const found = await fitOne(reference, options, signal);
+    if (!state.entries.includes(reference)) {
+      found.material.close?.();
+      return;
+    }
+    const entry = add(found);
+    changed();
+    show(entry);
+  });
+}
+
+// One fit a size; what is done so far is kept where it is stopped.
+async function errorCurve() {
+  const reference = referenceOf(state.shown);
+  if (!reference || stop) return;
+  reference.curve = [];
+  await busy(async (signal) => {
+    for (const budget of kCurve) {
+      find("#fit-stage").textContent = `${bytesText(budget)}`;
+      const {material, info, figures} = await fitOne(reference, {budget, fetches: readFetches(find("#fetches").value)}, signal);
+      material.close?.();
+      reference.curve.push({bytes: info.bytes, psnr: figures.psnr});
+      drawCurve();
+    }
+  });
+}
+
+function drawCurve() {
+  const curve = referenceOf(state.shown)?.curve ?? [], place = find("#bytes-curve");
+  place.hidden = curve.length === 0;
+  if (place.hidden) return;
+  const psnr = curve.map((p) => p.psnr), [low, high] = [Math.floor(Math.min(...psnr) - 1), Math.ceil(Math.max(...psnr) + 1)];
+  place.replaceChildren(plot({
+    label: "Picture error in decibels against bytes", x: [500, 65536], logX: true, xTicks: [1024, 4096, 16384, 65536], xTick: bytesText, y: [low, high],
+    xName: "bytes", yName: "PSNR, dB", lines: [{x: curve.map((p) => p.bytes), values: psnr, color: css("--accent"), dots: true}],
+  }));
+}
+
+function drawFigures() {
+  const reference = referenceOf(state.shown), place = find("#figures"), models = reference ? modelsOf(reference).filter((m) => m.figures) : [];
+  if (!models.length) {
+    place.replaceChildren(make("p", {class: "hint"}, "The figures of each fit, as ", make("code", {}, "compare"), " prints them, and the cost of its shader."));
+    return;
+  }
+  const heads = ["Model", "PSNR", "SSIM", "relative", "rms log", "log cos"];
+  const rows = models.map((model) => {
+    const f = model.figures;
+    return make("tr", {"data-shown": model === state.beside},
+      make("td", {}, make("button", {type: "button", title: model.name, onclick: () => show(model)}, bytesText(model.info.bytes))),
+      ...[f.psnr, f.ssim, f.relative, f.rms_log, f.log_cos].map((x, k) => make("td", {}, number(x, k === 0 ? 4 : 3))));
+  });
+  const model = models.includes(state.beside) ? state.beside : models.at(-1), cost = model.info.shader;
+  const costText = cost && `${model.name}: ${cost.fetches} fetches of ${cost.textures} texture${cost.textures === 1 ? "" : "s"}, ${cost.operations} operations, ` +
+    `${cost.divisions} divisions, ${cost.roots} roots, ${cost.powers} powers a light. Fitted in ${number(model.seconds, 2)} s.`;
+  place.replaceChildren(
+    make("div", {class: "scroll", tabindex: 0, role: "region", "aria-label": "Figures of the models"},
+      make("table", {}, make("thead", {}, make("tr", {}, ...heads.map((name) => make("th", {scope: "col"}, name)))),
+        make("tbody", {}, ...rows))),
+    cost ? make("p", {class: "cost"}, costText) : "");
+}
+
+function enable() {
+  const able = referenceOf(state.shown) !== null && !stop;
+  find("#fit-start").disabled = find("#curve-start").disabled = !able;
+}
+
+export function start() {
+  const budget = find("#budget"), fetches = find("#fetches");
+  choose = segments(find("#presets"), (name) => {
+    budget.value = presets[name].budget;
+    fetches.value = presets[name].fetches;
+  });
+  const other = () => choose(Object.keys(presets).find((name) => presets[name].budget === budget.value.trim() && presets[name].fetches === fetches.value.trim()));
+  budget.addEventListener("input", other);
+  fetches.addEventListener("input", other);
+  find("#fit").addEventListener("submit", fit);
+  find("#fit-stop").addEventListener("click", () => stop?.abort());
+  find("#curve-start").addEventListener("click", errorCurve);
+  onChange((what) => {
+    enable();
+    drawFigures();
+    if (what === "shown") {
+      drawCurve();
+      // an anisotropic source takes six fetches by default
+      presets.default.fetches = referenceOf(state.shown)?.material.isotropic === false ? "6" : "2";
+      if (find("#presets [data-value=default]").getAttribute("aria-checked") === "true") fetches.value = presets.default.fetches;
+    }
+  });
+}
+export const redraw = () => {
+  drawCurve();
+  drawFigures();
+};

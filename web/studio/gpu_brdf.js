@@ -1,0 +1,138 @@
+// A material as GLSL: `vec3 brdf(vec3 wi, vec3 wo)` in the local frame, the textures it reads, and the roughness of its
+// highlight. A model brings its own shader; anything else is tabulated over half/difference angles and read from a texture.
+import {texture} from "./gl.js";
+import {add, direction, normalize, scale, toRgb} from "./vectors.js";
+
+const kHalfPi = Math.PI / 2;
+const kLargestHalf = 32768;  // of what is stored; larger values are scaled down
+
+// Cells of the table: theta_h crowds at the normal, azimuths go round. A coarse one comes first.
+const kSizes = {
+  isotropic: [{thetaH: 64, thetaD: 24, phiD: 16}, {thetaH: 128, thetaD: 64, phiD: 48}],
+  anisotropic: [{thetaH: 48, thetaD: 16, phiD: 16, phiH: 16}, {thetaH: 80, thetaD: 24, phiD: 24, phiH: 36}],
+};
+
+const kAngles = `
+const float kHalfPi = 1.5707963268;
+// theta_h, phi_h, theta_d, phi_d [Rusinkiewicz 1998]
+vec4 angles(vec3 wi, vec3 wo) {
+  vec3 h = normalize(wi + wo);
+  float sine = length(h.xy);
+  vec2 along = sine > 1e-6 ? h.xy / sine : vec2(1.0, 0.0);
+  vec3 e1 = vec3(h.z * along, -sine), e2 = vec3(-along.y, along.x, 0.0);
+  vec2 d = vec2(dot(wi, e1), dot(wi, e2));
+  return vec4(atan(sine, h.z), atan(along.y, along.x), atan(length(d), dot(wi, h)), atan(d.y, d.x));
+}`;
+
+const kIsotropic = `
+uniform highp sampler3D brdf_table;
+uniform float brdf_scale;
+vec3 brdf(vec3 wi, vec3 wo) {
+  if (wi.z <= 0.0 || wo.z <= 0.0) return vec3(0.0);
+  vec4 a = angles(wi, wo);
+  vec3 at = vec3(sqrt(a.x / kHalfPi), a.z / kHalfPi, a.w / (4.0 * kHalfPi));
+  return brdf_scale * textureLod(brdf_table, at, 0.0).rgb;
+}`;
+
+// theta_h and theta_d are filtered; slices of the two azimuths are mixed here.
+const kAnisotropic = `
+uniform highp sampler3D brdf_table;
+uniform float brdf_scale;
+uniform vec2 brdf_slices;  // of phi_h, phi_d
+vec3 slice(vec2 at, float phi_h, float phi_d) {
+  return textureLod(brdf_table, vec3(at, (phi_h * brdf_slices.y + phi_d + 0.5) / (brdf_slices.x * brdf_slices.y)), 0.0).rgb;
+}
+vec3 brdf(vec3 wi, vec3 wo) {
+  if (wi.z <= 0.0 || wo.z <= 0.0) return vec3(0.0);
+  vec4 a = angles(wi, wo);
+  vec2 at = vec2(sqrt(a.x / kHalfPi), a.z / kHalfPi);
+  // slices of phi_h stand at k / count, those of phi_d at (k + 1/2) / count
+  vec2 place = fract(a.yw / (4.0 * kHalfPi)) * brdf_slices + vec2(0.0, brdf_slices.y - 0.5);
+  vec2 low = mod(floor(place), brdf_slices), high = mod(low + 1.0, brdf_slices), part = fract(place);
+  vec3 first = mix(slice(at, low.x, low.y), slice(at, low.x, high.y), part.y);
+  vec3 second = mix(slice(at, high.x, low.y), slice(at, high.x, high.y), part.y);
+  return brdf_scale * mix(first, second, part.x);
+}`;
+
+// rgb of all cells, theta_h fastest, then theta_d, phi_d, phi_h; nothing where the material was closed meanwhile.
+async function tabulate(material, {phiH = 1, ...size}, alive) {
+  const count = size.thetaH * size.thetaD * size.phiD, values = new Float32Array(3 * count * phiH);
+  for (let m = 0; m < phiH; ++m) {
+    const {data} = await material.volume({...size, phiH: (2 * Math.PI * m) / phiH});
+    if (!alive()) return null;
+    values.set(toRgb(data, material.channels), 3 * count * m);
+  }
+  return values;
+}
+
+// Stored as halves: no value is negative, unknown or too large for them.
+function storable(values) {
+  let largest = 0;
+  for (let i = 0; i < values.length; ++i) {
+    if (!(values[i] > 0)) values[i] = 0;
+    if (values[i] > largest) largest = values[i];
+  }
+  const factor = largest > kLargestHalf ? largest / kLargestHalf : 1;
+  if (factor > 1) for (let i = 0; i < values.length; ++i) values[i] /= factor;
+  return factor;
+}
+
+// alpha of the GGX lobe whose highlight is as wide as this one, along the tangent and across it.
+async function roughness(material) {
+  const steps = 60, wi = [], wo = [], tilt = Math.PI / 9;
+  const angles = Array.from({length: steps}, (_, k) => kHalfPi * 0.8 * (k / (steps - 1)) ** 2);
+  for (const phi of [0, kHalfPi])
+    for (const theta of angles) {
+      const h = direction(theta, phi), across = direction(kHalfPi, phi + kHalfPi);
+      wi.push(...normalize(add(scale(h, Math.cos(tilt)), across, Math.sin(tilt))));
+      wo.push(...normalize(add(scale(h, Math.cos(tilt)), across, -Math.sin(tilt))));
+    }
+  const values = toRgb(await material.evaluate(new Float32Array(wi), new Float32Array(wo)), material.channels);
+  return [0, 1].map((axis) => {
+    const at = (k) => [0, 1, 2].reduce((sum, c) => sum + values[3 * (axis * steps + k) + c], 0);
+    const half = angles.findIndex((_, k) => k > 0 && at(k) < at(0) / 2);
+    return half < 0 ? 0.7 : Math.min(Math.max(Math.tan(angles[half]) / 0.64, 0.008), 0.7);
+  });
+}
+
+// Floats that WebGL2 would not filter are stored as halves; values are near 1.
+const kFiltered = {R32F: "R16F", RGB32F: "RGB16F", RGBA32F: "RGBA16F"};
+
+async function fromShader(gl, material) {
+  const {code, textures, function: name} = await material.shader("glsl_es");
+  const made = textures.map(({name: sampler, width, height, depth, data, gl: how}) => {
+    const internal = gl[kFiltered[how.internalFormat] ?? how.internalFormat];
+    return {name: sampler, ...texture(gl, {width, height, depth, internal, format: gl[how.format], type: gl[how.type], data})};
+  });
+  const glsl = `${code}\nvec3 brdf(vec3 wi, vec3 wo) { return vec3(${name}(wi, wo)); }`;
+  return {glsl, textures: made, set: () => {}};
+}
+
+async function fromTable(gl, material, size, alive) {
+  const values = await tabulate(material, size, alive);
+  if (!values) return null;
+  const factor = storable(values), {thetaH, thetaD, phiD, phiH} = size;
+  const made = texture(gl, {width: thetaH, height: thetaD, depth: phiD * (phiH ?? 1), repeat: phiH ? "" : "r",
+                            internal: gl.RGB16F, format: gl.RGB, type: gl.FLOAT, data: values});
+  const set = ({at}) => {
+    gl.uniform1f(at("brdf_scale"), factor);
+    if (phiH) gl.uniform2f(at("brdf_slices"), phiH, phiD);
+  };
+  return {glsl: kAngles + (phiH ? kAnisotropic : kIsotropic), textures: [{name: "brdf_table", ...made}], set};
+}
+
+// Calls ready(form) with {glsl, textures, set(program), alpha} once, and again where a finer table follows. alive() says
+// whether the material is still open.
+export async function prepare(gl, {material, model}, alive, ready) {
+  const [size, ...finer] = kSizes[material.isotropic ? "isotropic" : "anisotropic"], drawn = model && (material.channels === 1 || material.channels === 3);
+  // asked for at once, before what others ask the same worker for
+  const [alpha, first] = await Promise.all([roughness(material), drawn ? fromShader(gl, material) : fromTable(gl, material, size, alive)]);
+  if (!first || !alive()) return;
+  ready({...first, alpha});
+  if (drawn) return;
+  for (const next of finer) {
+    const form = await fromTable(gl, material, next, alive);
+    if (!form) return;
+    ready({...form, alpha});
+  }
+}

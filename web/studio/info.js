@@ -1,0 +1,51 @@
+// What `info --json` says, as a panel.
+import {bytesText, find, make, number} from "./dom.js";
+import {state} from "./state.js";
+
+const span = ([low, high]) => `${number(low, 3)}° to ${number(high, 3)}°`;
+
+function facts(info) {
+  const rows = [["Format", info.format]];
+  if (info.description) rows.push(["Description", info.description]);
+  const waves = info.lambda_nm?.length ? `, ${number(info.lambda_nm[0])} to ${number(info.lambda_nm.at(-1))} nm` : "";
+  rows.push(["Channels", `${info.channels}${waves}${info.illuminant ? `, under ${info.illuminant}` : ""}`]);
+  rows.push(["Material", info.isotropic ? "isotropic" : "anisotropic"]);
+  if (info.samples > 0) rows.push(["Samples", info.samples.toLocaleString("en")]);
+  if (info.samples > 0) rows.push(["Holes", info.holes ? `${info.holes.toLocaleString("en")}, ${number((100 * info.holes) / info.samples, 3)} %` : "none"]);
+  if (info.negatives > 0) rows.push(["Negatives", `${info.negatives.toLocaleString("en")}, down to ${number(info.most_negative, 3)}`]);
+  rows.push(["θ to the light", span(info.theta_i_deg)], ["θ to the viewer", span(info.theta_o_deg)]);
+  rows.push(["Reciprocity", info.reciprocity_error < 1e-9 ? "exact" : `${number(100 * info.reciprocity_error, 3)} % off on average`]);
+  if (info.mirror_asymmetry !== undefined) rows.push(["Mirror asymmetry", `${number(100 * info.mirror_asymmetry, 3)} %`]);
+  const angles = info.nodes?.incident_angles ? `, ${info.nodes.incident_angles} angles of incidence` : "";
+  if (info.nodes) rows.push(["Measured at", `${info.nodes.count.toLocaleString("en")} nodes${angles}`]);
+  if (info.bytes) rows.push(["Size", bytesText(info.bytes)]);
+  if (info.shader) rows.push(["Shader", `${info.shader.fetches} fetches, ${info.shader.operations} operations`]);
+  return rows;
+}
+
+function albedos({albedo}) {
+  if (!albedo?.length) return null;
+  const place = (row) => `${number(row.theta_i_deg, 3)}°${row.phi_i_deg > 0 ? `, ${number(row.phi_i_deg, 3)}°` : ""}`;
+  const cells = (values) => values.slice(0, 3).map((x) => make("td", {}, number(x, 3)));
+  const names = {1: ["grey"], 3: ["red", "green", "blue"]}[albedo[0].albedo.length] ?? ["1", "2", "3"];
+  return make("table", {}, make("caption", {}, "Albedo"),
+    make("thead", {}, make("tr", {}, make("th", {scope: "col"}, "at"), ...names.map((name) => make("th", {scope: "col"}, name)))),
+    make("tbody", {}, ...albedo.map((row) => make("tr", {}, make("td", {}, place(row)), ...cells(row.albedo)))));
+}
+
+export function draw() {
+  const place = find("#info"), entry = state.shown;
+  if (!entry) {
+    place.replaceChildren(make("p", {class: "hint"}, "Format, conventions, holes, albedo and reciprocity of what is open."));
+    return;
+  }
+  const {info} = entry;
+  if (!info) {
+    place.replaceChildren(make("p", {class: "hint"}, `Looking at ${entry.name}…`));
+    return;
+  }
+  const notes = info.conventions?.filter((text) => !text.startsWith("notes of the fit")) ?? [];
+  place.replaceChildren(
+    make("dl", {}, ...facts(info).flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)])),
+    albedos(info) ?? "", notes.length ? make("ul", {"aria-label": "Conventions"}, ...notes.map((text) => make("li", {}, text))) : "");
+}

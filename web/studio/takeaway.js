@@ -1,0 +1,130 @@
+// Everything that can be taken away: shaders, files, pictures, a link.
+import {bytesText, css, find, lineOf, make, saveFile, say} from "./dom.js";
+import {linkOf} from "./link.js";
+import {modelShown, onChange, referenceOf, state} from "./state.js";
+import {picture} from "./stage.js";
+
+const languages = {glsl: "GLSL 4.50", glsl_es: "GLSL ES 3.00", hlsl: "HLSL", wgsl: "WGSL", msl: "Metal", cpp: "C++"};
+const modelFiles = {burnish: ".burnish", model: "OpenEXR", ktx2: "KTX2 textures", three: "three.js"};
+const anyFiles = {merl: "MERL", rgl: "RGL", csv: "CSV"};
+const kLongLink = 32 << 10;
+
+let language = "glsl_es", textOpen = false;
+
+const stem = (entry) => entry.name.replace(/\.[^.]*$/, "").replace(/[^\w.-]+/g, "_").slice(0, 60) || "material";
+
+const kExtensions = {merl: "binary", rgl: "bsdf", model: "exr"};
+
+// Exports are bytes, or files {name, bytes}.
+async function filesOf(entry, kind) {
+  const made = await entry.material.export(kind, {name: stem(entry)});
+  return Array.isArray(made) ? made : [{name: `${stem(entry)}.${kExtensions[kind] ?? kind}`, bytes: made}];
+}
+
+const guarded = (task) => async (event) => {
+  const button = event.currentTarget;
+  button.disabled = true;
+  try {
+    await task(button);
+  } catch (error) {
+    say(lineOf(error), "error");
+  } finally {
+    button.disabled = false;
+  }
+};
+
+const saveButton = (entry, kind, title) =>
+  make("button", {type: "button", "data-export": kind, onclick: guarded(async () => {
+    for (const {name, bytes} of await filesOf(entry, kind)) saveFile(name, bytes);
+  })}, title);
+
+async function copy(text, what) {
+  try {
+    await navigator.clipboard.writeText(text);
+    say(`${what} copied`);
+  } catch {
+    say("The browser lets nothing be copied here", "error");
+  }
+}
+
+function shaderGroup(entry) {
+  const text = make("pre", {tabindex: 0, role: "region", "aria-label": "Shader", hidden: !textOpen});
+  const fill = async () => {
+    if (textOpen) text.textContent = (await entry.material.shader(language)).code;
+  };
+  const told = (error) => say(lineOf(error), "error");
+  const select = make("select", {"aria-label": "Language", onchange: () => {
+    language = select.value;
+    fill().catch(told);
+  }}, ...Object.entries(languages).map(([value, title]) => make("option", {value}, title)));
+  select.value = language;
+  const toggle = make("button", {type: "button", "aria-expanded": String(textOpen), onclick: () => {
+    textOpen = text.hidden;
+    text.hidden = !textOpen;
+    toggle.setAttribute("aria-expanded", String(textOpen));
+    toggle.textContent = textOpen ? "Hide" : "Show";
+    fill().catch(told);
+  }}, textOpen ? "Hide" : "Show");
+  const extension = {glsl: "glsl", glsl_es: "es.glsl", hlsl: "hlsl", wgsl: "wgsl", msl: "metal", cpp: "h"};
+  fill().catch(told);
+  return make("div", {}, make("h3", {}, `Shader of ${entry.name}`),
+    make("div", {class: "buttons"}, select, toggle,
+      make("button", {type: "button", onclick: guarded(async () => copy((await entry.material.shader(language)).code, "Shader"))}, "Copy"),
+      make("button", {type: "button", "data-export": "shader", onclick: guarded(async () => {
+        saveFile(`${stem(entry)}.${extension[language]}`, (await entry.material.shader(language)).code, "text/plain");
+      })}, "Save")), text);
+}
+
+function linkGroup(entry) {
+  const said = make("p", {class: "hint"}, "The whole material in the address: nothing is uploaded.");
+  return make("div", {}, make("h3", {}, "Link"), make("div", {class: "buttons"},
+    make("button", {type: "button", id: "link", onclick: guarded(async () => {
+      const [{bytes}] = await filesOf(entry, "burnish");
+      const link = linkOf(stem(entry), bytes);
+      find("#link").dataset.link = link;
+      said.textContent = `${bytesText(bytes.length)} as ${link.length.toLocaleString("en")} characters${bytes.length > kLongLink ? "; some programs cut links this long" : ""}.`;
+      await copy(link, "Link");
+    })}, "Copy link")), said);
+}
+
+// The chart as a file that stands alone.
+function svgText(figure) {
+  const copied = figure.cloneNode(true), [, , width, height] = copied.getAttribute("viewBox").split(" ");
+  for (const [name, value] of Object.entries({xmlns: "http://www.w3.org/2000/svg", width, height, "font-family": "system-ui, sans-serif", "font-size": 11}))
+    copied.setAttribute(name, value);
+  const ground = document.createElementNS("http://www.w3.org/2000/svg", "rect");
+  for (const [name, value] of Object.entries({width, height, fill: css("--panel")})) ground.setAttribute(name, value);
+  copied.prepend(ground);
+  return new XMLSerializer().serializeToString(copied);
+}
+
+function pictureGroup() {
+  const chart = (title, selector, name) => make("button", {type: "button", "data-export": name, onclick: guarded(async () => {
+    saveFile(`${stem(state.shown)}-${name}.svg`, svgText(find(`${selector} svg`)), "image/svg+xml");
+  })}, title);
+  return make("div", {}, make("h3", {}, "Pictures"), make("div", {class: "buttons"},
+    make("button", {type: "button", "data-export": "png", onclick: guarded(async () => {
+      const blob = await picture();
+      if (blob) saveFile(`${stem(state.shown)}.png`, blob);
+    })}, "View as PNG"), chart("Slice as SVG", "#slices", "slice"), chart("Albedo as SVG", "#albedo", "albedo")));
+}
+
+function draw() {
+  const place = find("#take"), model = modelShown(), entry = state.beside ?? state.shown;
+  if (!entry) {
+    place.replaceChildren(make("p", {class: "hint"}, "Shaders, textures and files of what is open; pictures; a link that carries a model."));
+    return;
+  }
+  const reference = referenceOf(entry), converted = Object.entries(anyFiles);
+  place.replaceChildren(
+    model ? shaderGroup(model) : make("p", {class: "hint"}, "Fit first: a model has a shader, textures and a link."),
+    model ? make("div", {}, make("h3", {}, "Model"), make("div", {class: "buttons"}, ...Object.entries(modelFiles).map(([kind, title]) => saveButton(model, kind, title)))) : "",
+    model ? linkGroup(model) : "",
+    make("div", {}, make("h3", {}, `${reference.name} as`), make("div", {class: "buttons"}, ...converted.map(([kind, title]) => saveButton(reference, kind, title)))),
+    pictureGroup());
+}
+
+export function start() {
+  draw();
+  onChange(draw);
+}

@@ -1,0 +1,347 @@
+// The lit object: two materials beside each other, summed over frames until the light from all around is smooth.
+import {bind, mesh, program, target, texture} from "./gl.js";
+import {prepare} from "./gpu_brdf.js";
+import {environments, kLights, lineFragment, objectFragment, objectVertex, pictureFragment, screenVertex, sumFragment} from "./shading.js";
+import {knot, sphere, teapot} from "./shapes.js";
+import {normalize} from "./vectors.js";
+
+const kEye = 4.6, kReach = 2.4;      // distances of the viewer and of the point lights from the middle
+const kEnough = 512, kLongFrame = 40;  // samples a pixel; milliseconds after which a frame takes less
+const kMostPixels = 1.1e6;
+const makers = {sphere, knot, teapot};
+
+export class View {
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.gl = canvas.getContext("webgl2", {antialias: false, alpha: false, powerPreference: "high-performance"});
+    if (!this.gl) throw new Error("This browser has no WebGL2, so nothing is drawn; all else works.");
+    if (!this.gl.getExtension("EXT_color_buffer_float"))
+      throw new Error("This GPU draws into no float textures, so nothing is drawn; all else works.");
+    this.settings = {
+      shape: "sphere", around: "studio", exposure: 0, curve: 0, shown: 0, divider: 0.5, yaw: 0.5, pitch: 0.35,
+      tangents: false, lights: [{place: normalize([-0.5, 0.55, 0.7]), color: [14, 14, 14]}],
+    };
+    this.forms = new Map();
+    this.programs = new Map();
+    this.meshes = new Map();
+    this.sides = [null, null];
+    this.samplesAFrame = 4;
+    this.resolution = 1;  // 0.5 where drawing is slow
+    const gl = this.gl;
+    this.sum = program(gl, screenVertex, sumFragment);
+    this.picture = program(gl, screenVertex, pictureFragment);
+    this.lines = program(gl, objectVertex, lineFragment);
+    this.black = texture(gl, {width: 1, height: 1, internal: gl.RGBA8, format: gl.RGBA, type: gl.UNSIGNED_BYTE, data: new Uint8Array(4)});
+    this.sky = this.black;
+    this.empty = gl.createVertexArray();
+    this.onframe = () => {};
+    this.onready = () => {};
+    this.onerror = () => {};
+    new ResizeObserver(() => this.restart()).observe(canvas);
+  }
+
+  set(changes) {
+    Object.assign(this.settings, changes);
+    const onlyPicture = Object.keys(changes).every((name) => ["exposure", "curve", "divider"].includes(name));
+    if (onlyPicture) this.ask();
+    else this.restart();
+  }
+  // Entries or null.
+  show(left, right) {
+    this.sides = [left, right];
+    for (const entry of this.sides) if (entry) this.load(entry);
+    this.restart();
+  }
+  forget(entry) {
+    const form = this.forms.get(entry.id);
+    this.forms.delete(entry.id);
+    if (!form?.glsl) return;
+    for (const {handle} of form.textures) this.gl.deleteTexture(handle);
+    if (form.program) this.gl.deleteProgram(form.program.handle);
+  }
+  load(entry) {
+    if (!this.forms.has(entry.id)) this.refresh(entry);
+  }
+  // Takes the entry's material anew; until it is there the old one is drawn.
+  async refresh(entry) {
+    const {material} = entry, known = this.forms.get(entry.id);
+    this.forms.set(entry.id, known ?? {});
+    const alive = () => this.forms.has(entry.id) && entry.material === material;
+    try {
+      await prepare(this.gl, entry, alive, (form) => {
+        form.program = program(this.gl, objectVertex, objectFragment(form.glsl));
+        const first = !this.formOf(entry);
+        this.forget(entry);
+        this.forms.set(entry.id, form);
+        if (this.sides.includes(entry)) this.restart();
+        this.onready(entry, first);
+      });
+    } catch (error) {
+      if (alive()) this.onerror(error);
+    }
+  }
+  formOf(entry) {
+    const form = entry && this.forms.get(entry.id);
+    return form?.glsl ? form : null;
+  }
+  // rgb floats, `rows` from the top, of all directions.
+  setPicture(width, height, data) {
+    const gl = this.gl;
+    if (this.sky !== this.black) gl.deleteTexture(this.sky.handle);
+    this.sky = texture(gl, {width, height, internal: gl.RGB16F, format: gl.RGB, type: gl.FLOAT, data, repeat: "s"});
+    this.restart();
+  }
+
+  restart() {
+    this.frames = this.taken = 0;
+    this.ask();
+  }
+  ask() {
+    this.request ??= requestAnimationFrame((time) => {
+      this.request = null;
+      this.frame(time);
+    });
+  }
+  get wanted() {
+    if (this.settings.around === "none") return 16;
+    return this.resolution < 1 ? kEnough / 4 : kEnough;
+  }
+  get settled() {
+    return this.taken >= this.wanted;
+  }
+
+  resize() {
+    const {clientWidth, clientHeight} = this.canvas;
+    let ratio = Math.min(window.devicePixelRatio, 2);
+    ratio = Math.min(ratio, Math.sqrt(kMostPixels / Math.max(clientWidth * clientHeight, 1)));
+    ratio *= this.resolution;
+    const width = Math.max(Math.round(clientWidth * ratio), 1), height = Math.max(Math.round(clientHeight * ratio), 1);
+    if (this.targets && this.canvas.width === width && this.canvas.height === height) return;
+    [this.canvas.width, this.canvas.height] = [width, height];
+    this.targets?.forEach((t) => t.free());
+    this.targets = [true, false, false, false, false].map((deep) => target(this.gl, width, height, deep));
+    this.frames = this.taken = 0;
+  }
+
+  frame(time) {
+    const gl = this.gl;
+    if (gl.isContextLost()) return;
+    // the last frame is still being drawn
+    if (this.fence && gl.clientWaitSync(this.fence, 0, 0) === gl.TIMEOUT_EXPIRED) {
+      this.ask();
+      return;
+    }
+    if (this.fence) this.measure(time - this.began);
+    this.resize();
+    if (!this.settled) this.accumulate();
+    this.compose();
+    this.began = time;
+    this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+    this.onframe(this);
+    if (!this.settled) this.ask();
+  }
+  // As many samples a frame, and at last pixels, as the pace allows; a frame after a pause tells nothing.
+  measure(took) {
+    this.gl.deleteSync(this.fence);
+    this.fence = null;
+    if (this.settled) return;
+    this.pace = this.pace ? 0.8 * this.pace + 0.2 * took : took;
+    if (took > kLongFrame && this.samplesAFrame > 2) this.samplesAFrame /= 2;
+    else if (took > 4 * kLongFrame && this.resolution > 0.5) this.resolution = 0.5;
+    else if (took < kLongFrame / 2) this.samplesAFrame = Math.min(this.samplesAFrame * 2, 32);
+  }
+
+  // One more frame of each material into its sum.
+  accumulate() {
+    const [frame, ...sums] = this.targets, count = this.samplesAFrame;
+    const jitter = [fract(this.frames * 0.7548776662 + 0.5) - 0.5, fract(this.frames * 0.569840291 + 0.5) - 0.5];
+    this.sides.forEach((entry, side) => {
+      if (!this.isSeen(side)) return;
+      const old = sums[2 * side + (this.frames % 2)], next = sums[2 * side + 1 - (this.frames % 2)];
+      this.drawObject(this.formOf(entry), frame, jitter, this.taken, count);
+      this.into(next, this.sum, ({at}) => {
+        bind(this.gl, 0, old.color);
+        bind(this.gl, 1, frame.color);
+        this.gl.uniform1i(at("before"), 0);
+        this.gl.uniform1i(at("frame"), 1);
+        this.gl.uniform1f(at("share"), 1 / (this.frames + 1));
+      });
+    });
+    this.frames += 1;
+    this.taken += this.settings.around === "none" ? 1 : count;
+  }
+
+  isSeen(side) {
+    const {shown} = this.settings;
+    return side === 0 ? shown !== 1 || !this.sides[1] : this.sides[1] !== null && shown !== 0;
+  }
+
+  into(goal, made, set) {
+    const gl = this.gl;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, goal ? goal.frame : null);
+    gl.viewport(0, 0, goal?.width ?? this.canvas.width, goal?.height ?? this.canvas.height);
+    gl.disable(gl.DEPTH_TEST);
+    gl.useProgram(made.handle);
+    set(made);
+    gl.bindVertexArray(this.empty);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+  }
+
+  place({at}, goal, jitter) {
+    const gl = this.gl, {yaw, pitch} = this.settings, least = Math.min(goal.width, goal.height);
+    const c = Math.cos(yaw), s = Math.sin(yaw), d = Math.cos(pitch), e = Math.sin(pitch);
+    gl.uniformMatrix3fv(at("turn"), false, [c, s * e, -s * d, 0, d, e, s, -c * e, c * d]);
+    const zoom = 0.86 * Math.sqrt(kEye * kEye - 1);
+    gl.uniform2f(at("zoom"), (zoom * least) / goal.width, (zoom * least) / goal.height);
+    gl.uniform2f(at("jitter"), (2 * jitter[0]) / goal.width, (2 * jitter[1]) / goal.height);
+    gl.uniform1f(at("eye"), kEye);
+  }
+
+  drawObject(form, goal, jitter, first, count) {
+    const gl = this.gl, {lights, around, shape} = this.settings;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, goal.frame);
+    gl.viewport(0, 0, goal.width, goal.height);
+    gl.enable(gl.DEPTH_TEST);
+    gl.clearColor(0, 0, 0, 0);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    if (!form) return;
+    const {handle, at} = form.program;
+    gl.useProgram(handle);
+    this.place(form.program, goal, jitter);
+    form.textures.forEach((map, unit) => {
+      bind(gl, unit, map);
+      gl.uniform1i(at(map.name), unit);
+    });
+    bind(gl, form.textures.length, this.sky);
+    gl.uniform1i(at("picture"), form.textures.length);
+    form.set(form.program);
+    gl.uniform1i(at("around"), environments.indexOf(around));
+    gl.uniform1i(at("light_count"), lights.length);
+    const places = new Float32Array(3 * kLights), colors = new Float32Array(3 * kLights);
+    lights.forEach(({place, color}, k) => {
+      places.set(place.map((x) => kReach * x), 3 * k);
+      colors.set(color, 3 * k);
+    });
+    gl.uniform3fv(at("lights"), places);
+    gl.uniform3fv(at("colors"), colors);
+    gl.uniform1i(at("samples"), count);
+    gl.uniform1i(at("first_sample"), first);
+    // both sides draw the same directions, so that what they differ by is no noise
+    gl.uniform2f(at("alpha"), ...(this.formOf(this.sides[0]) ?? form).alpha);
+    // depths first: what is hidden costs nothing then
+    gl.colorMask(false, false, false, false);
+    gl.useProgram(this.lines.handle);
+    this.place(this.lines, goal, jitter);
+    gl.uniform1f(this.lines.at("lift"), 0);
+    this.drawMesh(shape);
+    gl.colorMask(true, true, true, true);
+    gl.useProgram(handle);
+    gl.depthFunc(gl.LEQUAL);
+    this.drawMesh(shape);
+  }
+
+  drawMesh(shape) {
+    if (!this.meshes.has(shape)) this.meshes.set(shape, mesh(this.gl, makers[shape]()));
+    const {array, count} = this.meshes.get(shape);
+    this.gl.bindVertexArray(array);
+    this.gl.drawElements(this.gl.TRIANGLES, count, this.gl.UNSIGNED_INT, 0);
+  }
+
+  compose() {
+    const gl = this.gl, {exposure, curve, shown, divider, tangents} = this.settings;
+    const [left, right] = [0, 1].map((side) => this.targets[1 + 2 * side + (this.frames % 2)]);
+    this.into(null, this.picture, ({at}) => {
+      bind(gl, 0, left.color);
+      bind(gl, 1, right.color);
+      gl.uniform1i(at("left"), 0);
+      gl.uniform1i(at("right"), 1);
+      gl.uniform1f(at("exposure"), 2 ** exposure);
+      gl.uniform1i(at("curve"), curve);
+      gl.uniform1i(at("shown"), this.sides[1] ? shown : 0);
+      gl.uniform1f(at("divider"), divider * this.canvas.width);
+      gl.uniform3fv(at("background"), this.background ?? [0.1, 0.1, 0.1]);
+    });
+    if (tangents) this.drawTangents();
+  }
+
+  // At every so many vertices a short line along the tangent, hidden by the object's depth.
+  drawTangents() {
+    const gl = this.gl, {shape} = this.settings, name = `${shape} tangents`;
+    if (!this.meshes.has(name)) {
+      const {vertices} = makers[shape](), lines = [], indices = [], every = {sphere: 131, knot: 167, teapot: 41}[shape];
+      for (let k = 0; k < vertices.length / 9; k += every) {
+        const p = vertices.slice(9 * k, 9 * k + 9), t = p.slice(6);
+        for (const s of [-0.025, 0.025]) lines.push(p[0] + s * t[0], p[1] + s * t[1], p[2] + s * t[2], ...p.slice(3));
+        indices.push(indices.length, indices.length + 1);
+      }
+      this.meshes.set(name, mesh(gl, {vertices: lines, indices}));
+    }
+    gl.enable(gl.DEPTH_TEST);
+    gl.clear(gl.DEPTH_BUFFER_BIT);
+    gl.useProgram(this.lines.handle);
+    this.place(this.lines, this.canvas, [0, 0]);
+    gl.uniform3fv(this.lines.at("ink"), [0.2, 0.75, 0.95]);
+    gl.uniform1f(this.lines.at("lift"), 0);
+    gl.colorMask(false, false, false, false);
+    this.drawMesh(shape);
+    gl.colorMask(true, true, true, true);
+    gl.uniform1f(this.lines.at("lift"), 0.006);
+    const {array, count} = this.meshes.get(name);
+    gl.bindVertexArray(array);
+    gl.drawElements(gl.LINES, count, gl.UNSIGNED_INT, 0);
+  }
+
+  // The exposure, in stops, that takes all but the brightest 3 % of the left object to white.
+  autoExposure() {
+    const gl = this.gl;
+    if (!this.formOf(this.sides[0]) || !this.targets) return null;
+    if (this.frames === 0) this.accumulate();
+    const {frame, width, height} = this.targets[1 + (this.frames % 2)];
+    gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+    const pixels = new Float32Array(4 * width * height);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, pixels);
+    return exposureOf(pixels);
+  }
+
+  // A small picture of a sphere under the studio's light.
+  thumbnail(entry, size) {
+    const gl = this.gl, form = this.formOf(entry), goal = target(gl, size, size, true), settings = this.settings;
+    const sums = new Float32Array(4 * size * size), pixels = new Float32Array(4 * size * size);
+    const {sides} = this;
+    this.sides = [entry, null];
+    this.settings = {...settings, shape: "sphere", around: "studio", yaw: 0, pitch: 0, lights: []};
+    for (let pass = 0; pass < 4; ++pass) {
+      this.drawObject(form, goal, [fract(0.755 * pass) - 0.5, fract(0.57 * pass) - 0.5], 32 * pass, 32);
+      gl.readPixels(0, 0, size, size, gl.RGBA, gl.FLOAT, pixels);
+      for (let k = 0; k < sums.length; ++k) sums[k] += pixels[k] / 4;
+    }
+    [this.settings, this.sides] = [settings, sides];
+    goal.free();
+    const factor = 2 ** exposureOf(sums), image = new ImageData(size, size);
+    for (let y = 0; y < size; ++y)
+      for (let x = 0; x < size; ++x) {
+        const from = 4 * ((size - 1 - y) * size + x), to = 4 * (y * size + x), cover = sums[from + 3];
+        for (let c = 0; c < 3; ++c) image.data[to + c] = 255 * Math.min(factor * sums[from + c] / Math.max(cover, 1e-6), 1) ** (1 / 2.2);
+        image.data[to + 3] = 255 * cover;
+      }
+    return image;
+  }
+
+  png() {
+    this.compose();
+    return new Promise((done) => this.canvas.toBlob(done, "image/png"));
+  }
+}
+
+const fract = (x) => x - Math.floor(x);
+
+function exposureOf(pixels) {
+  const values = [];
+  for (let k = 0; k < pixels.length; k += 4)
+    if (pixels[k + 3] > 0.99) values.push(Math.max(pixels[k], pixels[k + 1], pixels[k + 2]));
+  if (!values.length) return 0;
+  values.sort((a, b) => a - b);
+  const bright = values[Math.floor(0.97 * (values.length - 1))];
+  return bright > 0 ? Math.min(Math.max(Math.log2(1 / bright), -12), 12) : 0;
+}
