@@ -57,20 +57,20 @@ python: test-deps build
 	@python/check.sh
 
 # Packages for people without a compiler.
-PACKAGES := build/packages
+RELEASE := build/packages
 PACKAGING := dpkg-dev file lintian debootstrap python3-venv
 packaging-deps:
 	@dpkg-query -W $(PACKAGING) > /dev/null 2>&1 || $(SUDO) apt-get install -y -qq --no-install-recommends $(PACKAGING) > /dev/null
 
 deb: packaging-deps build
-	@rm -rf $(PACKAGES)/*.deb && cpack --config build/release/CPackConfig.cmake -B $(CURDIR)/$(PACKAGES) > /dev/null
-	@rm -rf $(PACKAGES)/_CPack_Packages && ls $(PACKAGES)/*.deb
+	@rm -rf $(RELEASE)/*.deb && cpack --config build/release/CPackConfig.cmake -B $(CURDIR)/$(RELEASE) > /dev/null
+	@rm -rf $(RELEASE)/_CPack_Packages && ls $(RELEASE)/*.deb
 
 wheel: packaging-deps deps
-	@python/wheel.sh $(PACKAGES)
+	@python/wheel.sh $(RELEASE)
 
 release-check: deb wheel
-	@$(SUDO) tests/release/check.sh $(PACKAGES)
+	@$(SUDO) tests/release/check.sh $(RELEASE)
 
 studio: studio-deps
 	@cmake --preset studio > /dev/null
