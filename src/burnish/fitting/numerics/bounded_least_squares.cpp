@@ -57,16 +57,30 @@ class State {
     }
   }
 
-  /// Where the damped model is least, moved within the bounds.
+  /// Where the damped model is least within the bounds: unknowns that would leave them go as far as they may, and the
+  /// others are found again, until all stay within.
   std::vector<double> step(double damping) const {
     Eigen::MatrixXd damped = normal_;
     damped.diagonal() += damping * normal_.diagonal().cwiseMax(kMinDiagonal);
-    for (Eigen::Index k = 0; k < damped.rows(); ++k)
-      if (damped(k, k) == 0) damped(k, k) = 1;
-    const Eigen::VectorXd move = damped.llt().solve(-gradient_);
+    Eigen::VectorXd right = -gradient_;
     std::vector<double> to = x_;
-    for (std::size_t k = 0; k < to.size(); ++k)
-      to[k] = std::clamp(to[k] + move[static_cast<Eigen::Index>(k)], problem_.lower[k], problem_.upper[k]);
+    std::vector<bool> settled(x_.size(), false);
+    for (bool again = true; again;) {
+      again = false;
+      const Eigen::VectorXd move = damped.llt().solve(right);
+      for (std::size_t i = 0; i < to.size(); ++i) {
+        if (settled[i]) continue;
+        const auto k = static_cast<Eigen::Index>(i);
+        to[i] = std::clamp(x_[i] + move[k], problem_.lower[i], problem_.upper[i]);
+        if (to[i] == x_[i] + move[k]) continue;
+        settled[i] = again = true;
+        right -= damped.col(k) * (to[i] - x_[i]);
+        damped.row(k).setZero();
+        damped.col(k).setZero();
+        damped(k, k) = 1;
+        right[k] = 0;
+      }
+    }
     return to;
   }
 
@@ -115,11 +129,11 @@ LeastSquaresSolution solve_least_squares(const LeastSquaresProblem& problem, std
     const double promised = state.promised(to), before = state.cost();
     ++solution.iterations;
     // nothing to gain, or nothing that the numbers can tell
-    if (promised <= options.tolerance * 1e-3 * before || damping > kMaxDamping) {
+    if (std::abs(promised) <= options.tolerance * 1e-3 * before || damping > kMaxDamping) {
       solution.converged = true;
       break;
     }
-    const double gain = state.go(std::move(to));
+    const double gain = promised > 0 ? state.go(std::move(to)) : 0;
     moved = gain > 0;
     if (moved) {
       // a good model is trusted more, up to three times
