@@ -26,8 +26,9 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "measured reflectance as a few small posit
 set(CPACK_PACKAGE_DESCRIPTION
 "Turns any BRDF, measured, scattered or analytic, into a few small positive
 textures and a short shader, with a known error. Reads MERL, RGL, Cornell,
-MBSDF, Zemax, Klems, ASTM E1392 and CSV files as they are. Also evaluates
-glossy highlights without pow, from SIMD code to a hardware block.
+MBSDF, Zemax, Klems, ASTM E1392, OpenMATERIAL, ALTA, Speos, UTIA, tensor trees
+and CSV files as they are. Also evaluates glossy highlights without pow, from
+SIMD code to a hardware block.
 .
 This package holds the command line, its manual pages, and the C++ library.")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
