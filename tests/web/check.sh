@@ -27,7 +27,7 @@ printf 'wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0,0,1,0,0,1\n' > "$web/normal.csv"
 NODE_FOLDER=node_modules node "$web/check.mjs" "$web/out" brushed "$(tail -1 "$web/value.csv" | cut -d, -f1)"
 node "$web/frames.mjs" build/release/tests/burnish_mesh_frames "$web"
 
-if [ -f build/studio/package/burnish.js ]; then
+if [ -f build/studio/package/burnish.js ] && [ -f build/studio/index.html ]; then
   node "$web/studio.mjs" "$PWD/build/studio" "$burnish" "$web/studio"
 else
   echo "web: SKIPPED: no build/studio, so the page was not opened; make studio makes it" >&2

@@ -104,9 +104,7 @@ Source parse_file(const FileBytes& file, const OpenOptions& options) {
     throw Error::in_file(file.name, "np:FILE#NAME for one of its codes, a decoder.f32 beside it",
                          "the file alone");
   throw Error(file.name, 0,
-              "a measurement (MERL, UTIA, RGL, MBSDF, Zemax, Klems, tensor tree, Speos, OpenMATERIAL, ALTA, "
-              "ASTM E1392, "
-              "Cornell, CSV), a neural encoding, a baseline or a burnish model",
+              "a measurement, neural encoding, baseline or model (`burnish help formats` lists what is read)",
               fmt::format("something that starts with {}", in_quotes(text.substr(0, 16))));
 }
 
