@@ -16,6 +16,7 @@ install(CODE "
   file(GLOB pages \"\${share}/man/man1/burnish*.1\")
   execute_process(COMMAND gzip -9nf \${pages} \"\${share}/doc/burnish/changelog\" COMMAND_ERROR_IS_FATAL ANY)")
 
+find_package(embree REQUIRED)  # for its version
 configure_file(cmake/burnish.pc.in burnish.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/burnish.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 
