@@ -18,6 +18,7 @@
 #include <burnish/reflectance/rgl_builder.h>
 #include <burnish/testing/baselines.h>
 #include <burnish/testing/brdfs.h>
+#include <burnish/testing/sanitized.h>
 #include <burnish/testing/tools.h>
 
 namespace burnish {
@@ -162,6 +163,7 @@ TEST(Fit, GivesScatteredSamplesOneLobeOfTheBudget) {
 }
 
 TEST(Fit, GivesTheSameBitsForTheSameOptions) {
+  BURNISH_SKIP_WHERE_SANITIZED();
   const Source source = source_of("paint", paint());
   for (const auto& [name, options] : every_form()) {
     const auto file = [&](int threads) {
@@ -202,6 +204,7 @@ TEST(Fit, LowersTheErrorThatItReports) {
 }
 
 TEST(Fit, MakesByDefaultWhatTheDefaultBudgetSays) {
+  BURNISH_SKIP_WHERE_SANITIZED();
   const Source source = source_of("paint", paint());
   const Fit made = fit(source, {.seed = 3, .score = false});
   const Fit named = fit(source, {.form = default_budget(true), .seed = 3, .score = false});
@@ -339,6 +342,7 @@ AngleTable noisy_table() {
 }
 
 TEST(Fit, ReflectsWhatTheRawValuesOfANoisySourceDo) {
+  BURNISH_SKIP_WHERE_SANITIZED();
   const Source source = source_of("noisy", noisy_table());
   const SymmetrizedBrdf raw(source.ref());
   for (const Budget budget : {Budget{.bytes = 2700}, Budget{.bytes = 16 << 10, .fetches = 2}}) {
@@ -362,6 +366,7 @@ Source noisy_source(double noise) {
 }
 
 TEST(Fit, ChoosesTheSmoothnessOfVolumesByNodesWhereAsked) {
+  BURNISH_SKIP_WHERE_SANITIZED();
   AngleTable layout;
   layout.folded = true;
   layout.axes = {make_axis({0}, kTwoPi), make_axis(cell_centres(10, kHalfPi)),
@@ -381,6 +386,7 @@ TEST(Fit, ChoosesTheSmoothnessOfVolumesByNodesWhereAsked) {
 }
 
 TEST(Fit, StoresNoNoiseWhereBytesAreAuto) {
+  BURNISH_SKIP_WHERE_SANITIZED();
   // the more noise, the fewer bytes
   std::uint64_t before = 1 << 20;
   for (const double noise : {0.05, 0.4}) {
@@ -419,6 +425,7 @@ TEST(Fit, ChoosesBytesOfScatteredSamplesByCrossValidation) {
 }
 
 TEST(Fit, WithoutFetchesTakesThemAtTheKnee) {
+  BURNISH_SKIP_WHERE_SANITIZED();
   const Source source = source_of("paint", paint());
   const Fit made = fit(source, {.form = Budget{.bytes = 6000}, .score = false});
   const auto& report = std::get<LobesReport>(made.report.how);

@@ -9,6 +9,7 @@
 #include <burnish/metrics/node_figures.h>
 #include <burnish/reflectance/goniometer.h>
 #include <burnish/testing/brdfs.h>
+#include <burnish/testing/sanitized.h>
 
 namespace burnish {
 namespace {
@@ -64,6 +65,7 @@ TEST(NodeFigures, RefuseWhatCannotBeScored) {
 }
 
 TEST(NodeFigures, SmoothnessIsStifferWhereNodesAreNoisy) {
+  BURNISH_SKIP_WHERE_SANITIZED();
   const testing::Glossy source{.a = 8, .b = 8};
   const MeasuredNodes clean = nodes_of_source(source, 1500), noisy = nodes_of_source(source, 1500, 0.25);
   const NodeSmoothness of_clean = choose_node_smoothness(clean), of_noisy = choose_node_smoothness(noisy);
@@ -116,6 +118,7 @@ struct Leaning {
 };
 
 TEST(MeasurementQuality, IsEstimatedFromExchangedDirections) {
+  BURNISH_SKIP_WHERE_SANITIZED();
   const Leaning raw;
   const SymmetrizedBrdf reference(raw);
   const Scorer scorer(reference, {.count = 5000, .image_size = 32});
@@ -131,6 +134,7 @@ TEST(MeasurementQuality, IsEstimatedFromExchangedDirections) {
 }
 
 TEST(MeasurementQuality, IsWhatASecondScanScores) {
+  BURNISH_SKIP_WHERE_SANITIZED();
   const testing::Glossy first, second{.scale = 1.1};
   const Scorer scorer(first, {.count = 2000, .image_size = 32});
   MeasuredNodes nodes = nodes_of_source(first, 500);

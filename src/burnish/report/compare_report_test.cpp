@@ -12,6 +12,7 @@
 #include <burnish/reflectance/goniometer.h>
 #include <burnish/report/compare_report.h>
 #include <burnish/testing/brdfs.h>
+#include <burnish/testing/sanitized.h>
 
 namespace burnish {
 namespace {
@@ -84,6 +85,7 @@ TEST_F(CompareReport, FolderHoldsEveryFileItsPageShows) {
 }
 
 TEST_F(CompareReport, OfAMeasurementSaysWhatItWouldScoreItself) {
+  BURNISH_SKIP_WHERE_SANITIZED();
   const Scorer scorer(reference_, kQuick);
   const MeasuredNodes nodes = measured_nodes(measure(reference_, {.count = 300}));
   const Measurement measurement{.nodes = nodes,

@@ -5,6 +5,7 @@
 
 #include <burnish/fitting/plans/search.h>
 #include <burnish/reflectance/analytic.h>
+#include <burnish/testing/sanitized.h>
 
 namespace burnish {
 namespace {
@@ -27,6 +28,7 @@ struct Crossed {
 };
 
 TEST(PlanFor, GivesAnAnisotropicSourceTheLobesItHas) {
+  BURNISH_SKIP_WHERE_SANITIZED();
   constexpr std::size_t kBytes = 9000;
   const AnalyticBrdf single = parse_analytic("ggx:alpha_x=0.15,alpha_y=0.5,kd=0.1");
   const auto lobes = [&](BrdfRef source, int wanted) {
