@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Opens exports in ktx-parse, three.js, Chromium and the glTF validator, and compares tangent frames with MikkTSpace, installed from
-# npm into build/web; and the page in build/studio, where `make studio` made it. With --skip-offline it says so and succeeds where npm, Chromium or the registry cannot be reached.
+# Opens exports in ktx-parse, three.js, Chromium and the glTF validator, and compares tangent frames with MikkTSpace,
+# installed from npm into build/web; and the page in build/studio, where `make studio` made it. With --skip-offline it
+# says so and succeeds where npm, Chromium or the registry cannot be reached.
 set -eu
 cd "$(dirname "$0")/../.."
 skip() {

@@ -6,8 +6,8 @@
 
 namespace burnish {
 
-/// A standard_illuminant by its name, or a text file of rows: wavelength in nm, increasing, and relative power, at least
-/// two. Throws Error for neither, or a power that is not finite or below zero.
+/// A standard_illuminant by its name, or a text file of rows: wavelength in nm, increasing, and relative power, at
+/// least two. Throws Error for neither, or a power that is not finite or below zero.
 Illuminant open_illuminant(const std::string& spec);
 
 /// What findings call it: "equal energy" for "E".

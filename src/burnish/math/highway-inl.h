@@ -2,8 +2,8 @@
 // compiler comes by, it is for another set. A file of kernels starts with
 //   #define HWY_TARGET_INCLUDE "burnish/FOLDER/FILE.cpp"
 //   #include <burnish/math/highway-inl.h>
-// before any other header of Highway, and has what is compiled anew between BURNISH_BEGIN_TARGET and BURNISH_END_TARGET;
-// so have headers for such files, between guards that Highway's toggle opens again.
+// before any other header of Highway, and has what is compiled anew between BURNISH_BEGIN_TARGET and
+// BURNISH_END_TARGET; so have headers for such files, between guards that Highway's toggle opens again.
 
 #include <burnish/math/highway_targets.h>
 

@@ -61,9 +61,9 @@ class BrdfRef {
   template <Brdf T>
     requires(!std::same_as<T, BrdfRef>)
   BrdfRef(const T& brdf) noexcept  // NOLINT: implicit like std::span
-      : brdf_(&brdf), channels_(static_cast<std::size_t>(brdf.channels())), isotropic_(brdf.isotropic()), eval_one_(&eval_one<T, false>),
-        raw_one_(&eval_one<T, HasRawValues<T>>), eval_span_(&eval_span<T, false>),
-        raw_span_(&eval_span<T, HasRawValues<T>>) {
+      : brdf_(&brdf), channels_(static_cast<std::size_t>(brdf.channels())), isotropic_(brdf.isotropic()),
+        eval_one_(&eval_one<T, false>), raw_one_(&eval_one<T, HasRawValues<T>>),
+        eval_span_(&eval_span<T, false>), raw_span_(&eval_span<T, HasRawValues<T>>) {
     if constexpr (requires { brdf.reciprocal(); }) reciprocal_ = brdf.reciprocal();
   }
   // clang-format on

@@ -1,5 +1,6 @@
-// In place of LAPACK and BLAS where BURNISH_EIGEN_LAPACK is on: the routines that fitting/numerics calls, with Eigen.
-// Always the lower triangle, as they are called. Without wider vectors than all processors have, a fit takes a quarter longer.
+// In place of LAPACK and BLAS where BURNISH_EIGEN_LAPACK is on, and in WebAssembly: the routines that fitting/numerics
+// calls, with Eigen. Always the lower triangle, as they are called. Compiled for any processor, without its widest
+// vectors, so fits take longer than with OpenBLAS.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -41,9 +41,9 @@ ModelSpec hemisphere_spec(const CostLimit& limit, std::size_t channels);
 /// The error of the models of an isotropic source that try_fetches looks at may be this many times the least.
 inline constexpr double kKneeFactor = 1.02;
 
-/// Models of 2, 3, 4, 6, 8, 12 and 24 fetches that the bytes hold, and lobes of lines where takes_lobes has them for
-/// as many as they take: each fitted to part of the set, the mean of its channels, in few steps and judged on another. By rising fetches; the
-/// limit's own do not count. Deterministic.
+/// Models of 2, 3, 4, 6, 8, 12 and 24 fetches that the bytes hold, and lobes of lines where takes_lobes has them for as
+/// many as they take: each fitted to part of the set, the mean of its channels, in few steps and judged on another. By
+/// rising fetches; the limit's own do not count. Deterministic.
 std::vector<FetchTrial> try_fetches(BrdfRef source, const TrainingSet& set, CostLimit limit,
                                     const RefineOptions& options);
 /// That of the fewest fetches whose error is within kKneeFactor of the least. Precondition: at least one trial.
