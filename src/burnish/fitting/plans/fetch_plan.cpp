@@ -48,7 +48,8 @@ constexpr Warp kDiskWarp{WarpKind::rational, 0.25};
 // The way to the last refinement is made on about this many pairs, in few steps, at this share of the nodes.
 constexpr std::size_t kCoarsePairs = 24'000, kCoarseNodes = 5000;
 constexpr double kCoarseShare = 0.25;
-constexpr int kCoarseSteps = 10, kFullSteps = 6, kHeldSteps = 4, kManyFullSteps = 4, kManyHeldSteps = 3;
+constexpr int kCoarseSteps = 10, kCoarseStepsAfterTrial = 4, kFullSteps = 6, kHeldSteps = 4,
+              kManyFullSteps = 4, kManyHeldSteps = 3;
 // The log-linear start counts values about zero as the relative error does, and is smooth and rough at once.
 const HomomorphicOptions kStart{.smooth = 1e-5, .floor = PictureLoss::kFloor, .tolerance = 0.03};
 // Trials: every so many pairs, in so few steps, for gains that another draw of pairs would not give.
@@ -179,14 +180,20 @@ struct TrialSets {
     judged = part_of(set, kTrialPart / 2, kTrialPart);
   }
 
+  struct Trial {
+    LogModel model;
+    double objective = std::numeric_limits<double>::infinity();
+  };
+
   /// Of a model with a volume, of as many nodes as the pairs determine.
-  double objective_of(const ModelSpec& spec, const RefineOptions& options) const {
+  Trial try_volume(const ModelSpec& spec, const RefineOptions& options) const {
     const double nodes = static_cast<double>(coupled_unknowns(spec, 1));
     const ModelSpec trial =
         at_fewer_nodes(spec, std::min(1.0, static_cast<double>(fitted.size()) / (6 * nodes)));
     LogModel model = fit_one_lobe(trial, fitted, fitted.values, kStart);
     refine(model, fitted, in_few_steps(options, kTrialSteps));
-    return objective(model, judged, options.shares);
+    const double value = objective(model, judged, options.shares);
+    return {.model = std::move(model), .objective = value};
   }
   /// Of lobes of lines.
   double objective_of(const LobePlan& plan, const CostLimit& limit, const RefineOptions& options) const {
@@ -206,17 +213,23 @@ struct TrialSets {
   }
 };
 
+struct BestSpec {
+  const ModelSpec& spec;
+  std::optional<LogModel> trial;  ///< what was tried of it, where several were
+};
+
 /// The spec that serves a part of the pairs best that it was not fitted to; of many nodes, which serve alike
 /// however they are shared out, the first.
-const ModelSpec& best_of(const std::vector<ModelSpec>& specs, const TrainingSet& set,
-                         const RefineOptions& options) {
-  if (specs.size() == 1 || coupled_unknowns(specs.front(), 1) > kCoarseNodes) return specs.front();
+BestSpec best_of(const std::vector<ModelSpec>& specs, const TrainingSet& set, const RefineOptions& options) {
+  if (specs.size() == 1 || coupled_unknowns(specs.front(), 1) > kCoarseNodes) return {specs.front(), {}};
   const TrialSets sets(set);
-  std::vector<double> values(specs.size(), std::numeric_limits<double>::infinity());
+  std::vector<TrialSets::Trial> trials(specs.size());
   for_each_chunk(specs.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
-    values[k] = sets.objective_of(specs[k], options);
+    trials[k] = sets.try_volume(specs[k], options);
   });
-  return specs[static_cast<std::size_t>(std::ranges::min_element(values) - values.begin())];
+  const auto best = static_cast<std::size_t>(
+      std::ranges::min_element(trials, {}, &TrialSets::Trial::objective) - trials.begin());
+  return {specs[best], std::move(trials[best].model)};
 }
 
 }  // namespace
@@ -313,7 +326,7 @@ std::vector<FetchTrial> try_fetches(BrdfRef source, const TrainingSet& set, Cost
   std::vector<FetchTrial> trials(candidates.size());
   for_each_chunk(candidates.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
     const Candidate& candidate = candidates[k];
-    const double value = candidate.spec ? sets.objective_of(*candidate.spec, options)
+    const double value = candidate.spec ? sets.try_volume(*candidate.spec, options).objective
                                         : sets.objective_of(lobes, limit, options);
     trials[k] = {.fetches = candidate.fetches, .lobes = !candidate.spec, .error = std::exp(value / shares)};
   });
@@ -407,13 +420,14 @@ TrainingSet with_frontal_pixels(BrdfRef source, TrainingSet set, double share) {
 
 LobesFit fit_volumes(const TrainingSet& set, const std::vector<ModelSpec>& specs,
                      const RefineOptions& options) {
-  const ModelSpec& spec = best_of(specs, set, options);
+  const auto [spec, trial] = best_of(specs, set, options);
 
-  // few nodes and pairs
+  // few nodes and pairs, from where a trial came to
   const TrainingSet coarse = about(set, kCoarsePairs);
   const bool many = coupled_unknowns(spec, 1) > kCoarseNodes;
   const ModelSpec start = many ? at_fewer_nodes(spec, kCoarseShare) : spec;
-  LobesFit fit{.model = fit_one_lobe(start, coarse, coarse.values, kStart), .summary = {}};
+  LobesFit fit{.model = trial ? resampled(*trial, start) : fit_one_lobe(start, coarse, coarse.values, kStart),
+               .summary = {}};
   const auto refine_part = [&](const TrainingSet& part, TableFormat format, int steps, double from,
                                double to) {
     RefineOptions these = options;
@@ -426,7 +440,7 @@ LobesFit fit_volumes(const TrainingSet& set, const std::vector<ModelSpec>& specs
     fit.summary = done;
     fit.summary.iterations += before;
   };
-  refine_part(coarse, TableFormat::single, kCoarseSteps, 0.1, 0.3);
+  refine_part(coarse, TableFormat::single, trial ? kCoarseStepsAfterTrial : kCoarseSteps, 0.1, 0.3);
 
   // all of them; what shares an exponent is held in its reach only once it stands
   if (many) fit.model = resampled(fit.model, spec);
