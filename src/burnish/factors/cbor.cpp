@@ -20,7 +20,7 @@ namespace {
 enum Major { kUnsigned, kNegative, kBytes, kText, kList, kMap, kTag, kOther };
 constexpr int kOneByte = 24, kHalf = 25, kSingle = 26, kDouble = 27;  // 25, 26, 27: also 2, 4 and 8 bytes
 constexpr std::uint64_t kDecimalFraction = 4;                         // [RFC8949, 3.4.4]
-constexpr int kMaxExponent = 400;                                     // of ten; doubles end before
+constexpr int kMaxDecimalExponent = 400;                              // of ten; doubles end before
 
 // `value` in 2^width bytes, the highest first.
 void append(std::string& bytes, std::uint64_t value, int width) {
@@ -257,7 +257,7 @@ double CborReader::floating(std::string_view what, const Head& head) const {
 
 double CborReader::decimal_fraction(std::string_view what, const Head& head) {
   list(fmt::format("the decimal fraction of {}", what), 2, 2);
-  const auto exponent = integer("an exponent of ten", -kMaxExponent, kMaxExponent);
+  const auto exponent = integer("an exponent of ten", -kMaxDecimalExponent, kMaxDecimalExponent);
   const auto mantissa = integer("the digits of a decimal fraction", std::numeric_limits<std::int64_t>::min(),
                                 std::numeric_limits<std::int64_t>::max());
   const std::string text = fmt::format("{}e{}", mantissa, exponent);

@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kVersion = 1;
+constexpr int kCompactVersion = 1;
 constexpr std::uint64_t kSelfDescribed = 55799;  // [RFC8949, 3.4.6]
 constexpr std::string_view kName = "burnish";
 // name, version, channels, lambda_nm, kinds, tables, products, lobes; then notes
@@ -150,7 +150,7 @@ class CompactWriter {
     cbor_.tag(kSelfDescribed);
     cbor_.list(notes ? kParts + 1 : kParts);
     cbor_.text(kName);
-    cbor_.integer(kVersion);
+    cbor_.integer(kCompactVersion);
     cbor_.integer(brdf.channels());
     numbers(model.lambda_nm);
 
@@ -234,7 +234,7 @@ class CompactReader {
     const std::size_t parts = cbor_.list("a model", kParts, kParts + 1);
     if (const auto at = cbor_.offset(); cbor_.text("the name of the format", kName.size()) != kName)
       cbor_.fail(at, "'burnish'", "another name");
-    cbor_.integer("version", kVersion, kVersion);
+    cbor_.integer("version", kCompactVersion, kCompactVersion);
     channels_ = static_cast<std::size_t>(cbor_.integer("channels", 1, kMaxChannels));
     Model model;
     const auto lambda_at = cbor_.offset();

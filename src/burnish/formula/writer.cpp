@@ -9,7 +9,7 @@ namespace burnish {
 namespace {
 
 // How tightly operators bind.
-constexpr int kTernary = 0, kSum = 1, kProduct = 2, kCall = 3;
+constexpr int kChoice = 0, kSum = 1, kProduct = 2, kCall = 3;
 
 }  // namespace
 
@@ -110,7 +110,7 @@ std::string Writer::formula(std::size_t i, int& precedence) const {
   precedence = kCall;
   switch (node.op) {
     case Op::constant:
-      if (node.constant < 0) precedence = kTernary;
+      if (node.constant < 0) precedence = kChoice;
       return node.type == ValueType::integer ? fmt::format("{}", node.constant)
                                              : language_.literal(node.constant);
     case Op::input:
@@ -130,7 +130,7 @@ std::string Writer::formula(std::size_t i, int& precedence) const {
       precedence = kSum;
       return fmt::format("{} - {} * {}", of(2, kSum), of(0, kProduct), of(1, kCall));
     case Op::negate:
-      precedence = kTernary;
+      precedence = kChoice;
       return "-" + of(0, kCall);
     case Op::vector:
       return fmt::format("{}({}, {}, {})", half ? language_.half_constructor : language_.vector, of(0, 0),

@@ -38,16 +38,16 @@ std::size_t words_left(TextReader reader) noexcept {
 constexpr std::array<std::string_view, 4> kAngles = {"theta_i", "phi_i", "theta_s", "phi_s"};
 
 /// Where each thing stands in a row.
-struct Columns {
+struct AstmColumns {
   std::array<std::size_t, 4> angle{};  // of kAngles
   std::vector<std::size_t> values;
   std::vector<double> lambda_nm;  // of the values, or empty
 };
 
 /// Sorts the columns into the four angles and the values.
-Columns sort_columns(const TextReader& reader, const std::vector<std::string>& names,
-                     const std::string& vars_line) {
-  Columns columns;
+AstmColumns sort_columns(const TextReader& reader, const std::vector<std::string>& names,
+                         const std::string& vars_line) {
+  AstmColumns columns;
   for (std::size_t k = 0; k < 4; ++k) {
     if (std::count(names.begin(), names.end(), kAngles[k]) != 1)
       reader.fail(fmt::format("{} once in the VARS line", kAngles[k]), in_quotes(vars_line));
@@ -103,7 +103,7 @@ SampleFile parse_astm(const FileBytes& file, const OpenOptions& options) {
     findings.conventions.push_back("The VARS line forgets phi_s; the rows have it, after theta_s.");
   }
 
-  const Columns columns = sort_columns(reader, names, vars_line);
+  const AstmColumns columns = sort_columns(reader, names, vars_line);
   findings.lambda_nm = columns.lambda_nm;
 
   Samples& samples = result.samples;

@@ -26,7 +26,7 @@ std::vector<std::string> split_header(std::string_view line) {
 }
 
 /// Where each thing stands in a row.
-struct Columns {
+struct CsvColumns {
   std::size_t count = 0;
   bool vectors = false;
   std::array<std::size_t, 6> direction{};  // columns of kVectorNames, or of kAngleNames
@@ -40,8 +40,8 @@ std::size_t position(const std::vector<std::string>& names, std::string_view nam
 }
 
 /// Columns with those of the directions; the rest is empty.
-Columns find_directions(const TextReader& reader, const std::vector<std::string>& names) {
-  Columns columns;
+CsvColumns find_directions(const TextReader& reader, const std::vector<std::string>& names) {
+  CsvColumns columns;
   columns.count = names.size();
   columns.vectors = position(names, kVectorNames[0]) < names.size();
   const auto need = [&](std::string_view name) {
@@ -63,7 +63,7 @@ Columns find_directions(const TextReader& reader, const std::vector<std::string>
 }
 
 /// Adds those of the values.
-void find_values(const TextReader& reader, const std::vector<std::string>& names, Columns& columns) {
+void find_values(const TextReader& reader, const std::vector<std::string>& names, CsvColumns& columns) {
   // one of: value; r, g and b; value_<nm> for every wavelength
   const std::size_t size = names.size();
   if (const std::size_t at = position(names, "value"); at < size) columns.values = {at};
@@ -84,9 +84,9 @@ void find_values(const TextReader& reader, const std::vector<std::string>& names
                 fmt::format("{}", columns.values.size()));
 }
 
-Columns read_header(TextReader& reader, bool with_values) {
+CsvColumns read_header(TextReader& reader, bool with_values) {
   const std::vector<std::string> names = split_header(reader.line());
-  Columns columns = find_directions(reader, names);
+  CsvColumns columns = find_directions(reader, names);
   if (with_values) find_values(reader, names, columns);
   const std::size_t used = (columns.vectors ? 6 : 4) + columns.values.size();
   if (used != names.size())
@@ -107,7 +107,7 @@ Vec3 unit_vector(const TextReader& reader, Vec3 w) {
   return std::abs(l - 1) < 1e-12 ? w : (1 / l) * w;
 }
 
-DirectionPair read_pair(const TextReader& reader, const Columns& columns, std::span<const double> row) {
+DirectionPair read_pair(const TextReader& reader, const CsvColumns& columns, std::span<const double> row) {
   const auto at = [&](std::size_t k) { return row[columns.direction[k]]; };
   if (columns.vectors)
     return {unit_vector(reader, {at(0), at(1), at(2)}), unit_vector(reader, {at(3), at(4), at(5)})};
@@ -149,7 +149,7 @@ SampleFile parse_csv(const FileBytes& file, const OpenOptions& options) {
   TaggedLines lines{TextReader(file)};
   TextReader& reader = lines.reader;
   if (!lines.next()) reader.fail("a header line", "the end of the file");
-  const Columns columns = read_header(reader, true);
+  const CsvColumns columns = read_header(reader, true);
 
   SampleFile result;
   Samples& samples = result.samples;
@@ -209,7 +209,7 @@ std::string samples_csv(const Samples& samples, std::span<const double> lambda_n
 std::vector<DirectionPair> parse_directions(const FileBytes& file) {
   TextReader reader(file);
   if (!reader.next_content_line()) reader.fail("a header line", "the end of the file");
-  const Columns columns = read_header(reader, false);
+  const CsvColumns columns = read_header(reader, false);
   std::vector<DirectionPair> pairs;
   std::vector<double> row(columns.count);
   while (reader.next_content_line()) {

@@ -47,7 +47,7 @@ std::string window(std::string_view bases, std::string_view matrices,
 const std::string kBasis = basis(ring(0, 30, 1) + ring(30, 90, 2));  // patches at the normal, +x and -x
 constexpr std::string_view kValues = "1, 2, 3\n4 5 6\n7 8 -9\n";     // rows outgoing, columns incident
 
-std::string error(const std::string& text) {
+std::string klems_error(const std::string& text) {
   return error_of([&] { parse_klems(memory_file(text), {}); });
 }
 
@@ -75,21 +75,23 @@ TEST(Klems, ReadsTheMatrixOfTheChosenSide) {
 
 TEST(Klems, SaysWhatIsWrong) {
   const std::string good = matrix("Reflection Front", kValues);
-  EXPECT_THAT(error("<WindowElement>"), HasSubstr("well-formed XML"));
-  EXPECT_THAT(error("<WindowElement/>"), HasSubstr("Layer"));
-  EXPECT_THAT(error(window(kBasis, good, "TensorTree3")), HasSubstr("Columns"));
-  EXPECT_THAT(error(window(kBasis, matrix("Reflection Back", kValues))),
+  EXPECT_THAT(klems_error("<WindowElement>"), HasSubstr("well-formed XML"));
+  EXPECT_THAT(klems_error("<WindowElement/>"), HasSubstr("Layer"));
+  EXPECT_THAT(klems_error(window(kBasis, good, "TensorTree3")), HasSubstr("Columns"));
+  EXPECT_THAT(klems_error(window(kBasis, matrix("Reflection Back", kValues))),
               HasSubstr("'Reflection Front', found 'Reflection Back'"));
-  EXPECT_THAT(error(window("", good)), HasSubstr("AngleBasis named"));
-  EXPECT_THAT(error(window(basis(ring(0, 30, 1)), good)), HasSubstr("up to 90"));
-  EXPECT_THAT(error(window(basis(ring(0, 30, 1) + ring(40, 90, 2)), good)), HasSubstr("follow each other"));
-  EXPECT_THAT(error(window(basis(ring(0, 90, -3)), good)), HasSubstr("patches"));
-  EXPECT_THAT(error(window(basis(ring(0, 90, 2000000000)), good)), HasSubstr("patches"));
-  EXPECT_THAT(error(window(kBasis, matrix("Reflection Front", "1 2 3"))),
+  EXPECT_THAT(klems_error(window("", good)), HasSubstr("AngleBasis named"));
+  EXPECT_THAT(klems_error(window(basis(ring(0, 30, 1)), good)), HasSubstr("up to 90"));
+  EXPECT_THAT(klems_error(window(basis(ring(0, 30, 1) + ring(40, 90, 2)), good)),
+              HasSubstr("follow each other"));
+  EXPECT_THAT(klems_error(window(basis(ring(0, 90, -3)), good)), HasSubstr("patches"));
+  EXPECT_THAT(klems_error(window(basis(ring(0, 90, 2000000000)), good)), HasSubstr("patches"));
+  EXPECT_THAT(klems_error(window(kBasis, matrix("Reflection Front", "1 2 3"))),
               HasSubstr("9 values in ScatteringData, found 3"));
-  EXPECT_THAT(error(window(kBasis, matrix("Reflection Front", "1 2 3 4 5 6 7 8 9 10"))),
+  EXPECT_THAT(klems_error(window(kBasis, matrix("Reflection Front", "1 2 3 4 5 6 7 8 9 10"))),
               HasSubstr("found more"));
-  EXPECT_THAT(error(window(kBasis, matrix("Reflection Front", "1 2 3 4 5 6 7 8 nan"))), HasSubstr("finite"));
+  EXPECT_THAT(klems_error(window(kBasis, matrix("Reflection Front", "1 2 3 4 5 6 7 8 nan"))),
+              HasSubstr("finite"));
 }
 
 TEST(Klems, ReadsAShadeFabricThatReflectsLessThanItGets) {

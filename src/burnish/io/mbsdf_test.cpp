@@ -34,7 +34,7 @@ const std::string kStart = "NVIDIA ARC MBSDF V1\n";
 const std::string kReflection = "MBSDF_DATA_REFLECTION=\n";
 const std::string kTransmission = "MBSDF_DATA_TRANSMISSION=\n";
 
-std::string error(const std::string& bytes) {
+std::string mbsdf_error(const std::string& bytes) {
   return error_of([&] { parse_mbsdf(memory_file(bytes)); });
 }
 
@@ -67,7 +67,7 @@ TEST(Mbsdf, SkipsMetadataAndTransmission) {
     ASSERT_TRUE(file.table.eval({0, 0, 1}, {0, 0, 1}, f));
     EXPECT_EQ(f, (std::array<double, 3>{1, 2, 3}));
   }
-  EXPECT_THAT(error(kStart + transmission), HasSubstr("transmission only"));
+  EXPECT_THAT(mbsdf_error(kStart + transmission), HasSubstr("transmission only"));
 }
 
 TEST(Mbsdf, CountsAndKeepsNegatives) {
@@ -96,15 +96,16 @@ TEST(Mbsdf, WritesWhatItReads) {
 
 TEST(Mbsdf, RefusesWhatIsNoMbsdf) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_THAT(error("NVIDIA ARC MBSDF V2\n"), HasSubstr("NVIDIA ARC MBSDF V1"));
-  EXPECT_THAT(error(kStart), HasSubstr("a line of text"));
-  EXPECT_THAT(error(kStart + block(kReflection, 0, 2, 2, {1, 2, 3})), HasSubstr("32 bytes of values"));
-  EXPECT_THAT(error(kStart + block(kReflection, 0, 1, 1, {1, 2})), HasSubstr("end of the file"));
-  EXPECT_THAT(error(kStart + block(kReflection, 7, 1, 1, {1})), HasSubstr("block type"));
-  EXPECT_THAT(error(kStart + block(kReflection, 0, 0, 1, {})), HasSubstr("resolution in"));
-  EXPECT_THAT(error(kStart + block(kReflection, 0, 0xffffffff, 0xffffffff, {1})), HasSubstr("resolution in"));
-  EXPECT_THAT(error(kStart + block(kReflection, 0, 2048, 2048, {1})), HasSubstr("bytes of values"));
-  EXPECT_THAT(error(kStart + block(kReflection, 0, 1, 1, {nan})),
+  EXPECT_THAT(mbsdf_error("NVIDIA ARC MBSDF V2\n"), HasSubstr("NVIDIA ARC MBSDF V1"));
+  EXPECT_THAT(mbsdf_error(kStart), HasSubstr("a line of text"));
+  EXPECT_THAT(mbsdf_error(kStart + block(kReflection, 0, 2, 2, {1, 2, 3})), HasSubstr("32 bytes of values"));
+  EXPECT_THAT(mbsdf_error(kStart + block(kReflection, 0, 1, 1, {1, 2})), HasSubstr("end of the file"));
+  EXPECT_THAT(mbsdf_error(kStart + block(kReflection, 7, 1, 1, {1})), HasSubstr("block type"));
+  EXPECT_THAT(mbsdf_error(kStart + block(kReflection, 0, 0, 1, {})), HasSubstr("resolution in"));
+  EXPECT_THAT(mbsdf_error(kStart + block(kReflection, 0, 0xffffffff, 0xffffffff, {1})),
+              HasSubstr("resolution in"));
+  EXPECT_THAT(mbsdf_error(kStart + block(kReflection, 0, 2048, 2048, {1})), HasSubstr("bytes of values"));
+  EXPECT_THAT(mbsdf_error(kStart + block(kReflection, 0, 1, 1, {nan})),
               HasSubstr("offset 55: expected a finite value"));
 }
 

@@ -27,7 +27,7 @@ std::string replaced(std::string text, std::string_view what, std::string_view w
   return text.replace(text.find(what), what.size(), with);
 }
 
-std::string error(const std::string& text) {
+std::string zemax_error(const std::string& text) {
   return error_of([&] { parse_zemax(memory_file(text)); });
 }
 
@@ -147,21 +147,22 @@ TEST(Zemax, WritesZeroSaturationAndTotals) {
 }
 
 TEST(Zemax, SaysWhatIsWrong) {
-  EXPECT_THAT(error(replaced(kHeader, "BRDF", "BTDF")), HasSubstr("ScatterType BRDF"));
-  EXPECT_THAT(error(replaced(kHeader, "Symmetry\tPlaneSymmetrical\n", "")), HasSubstr("keyword symmetry"));
-  EXPECT_THAT(error(replaced(kHeader, "ScatterRadial", "Scatter")), HasSubstr("keyword of the header"));
-  EXPECT_THAT(error(replaced(kHeader, "10 30", "30 10")), HasSubstr("increasing"));
-  EXPECT_THAT(error(replaced(kHeader, "10 30", "10 95")), HasSubstr("[0, 90]"));
-  EXPECT_THAT(error(replaced(kHeader, "10 30", "10 30 50")), HasSubstr("end of the line"));
-  EXPECT_THAT(error(replaced(kHeader, "SampleRotation\t1\n", "SampleRotation\t999999999\n")),
+  EXPECT_THAT(zemax_error(replaced(kHeader, "BRDF", "BTDF")), HasSubstr("ScatterType BRDF"));
+  EXPECT_THAT(zemax_error(replaced(kHeader, "Symmetry\tPlaneSymmetrical\n", "")),
+              HasSubstr("keyword symmetry"));
+  EXPECT_THAT(zemax_error(replaced(kHeader, "ScatterRadial", "Scatter")), HasSubstr("keyword of the header"));
+  EXPECT_THAT(zemax_error(replaced(kHeader, "10 30", "30 10")), HasSubstr("increasing"));
+  EXPECT_THAT(zemax_error(replaced(kHeader, "10 30", "10 95")), HasSubstr("[0, 90]"));
+  EXPECT_THAT(zemax_error(replaced(kHeader, "10 30", "10 30 50")), HasSubstr("end of the line"));
+  EXPECT_THAT(zemax_error(replaced(kHeader, "SampleRotation\t1\n", "SampleRotation\t999999999\n")),
               HasSubstr("[1, 4096]"));
-  EXPECT_THAT(error(kHeader), HasSubstr("12 values"));
-  EXPECT_THAT(error(kHeader + replaced(kData, "1 3\n", "1\n")), HasSubstr("finite number for a value"));
-  EXPECT_THAT(error(kHeader + replaced(kData, "1 3\n", "1 3 4\n")), HasSubstr("end of the line"));
-  EXPECT_THAT(error(kHeader + replaced(kData, "1 3\n", "1 inf\n")), HasSubstr("finite"));
-  EXPECT_THAT(error(kHeader + replaced(kData, "1 3\n", "1 1e200\n")), HasSubstr("below 1e38"));
-  EXPECT_THAT(error(kHeader + replaced(kData, "TIS 0.2\n", "")), HasSubstr("tis"));
-  EXPECT_THAT(error(kHeader + replaced(kData, "DataEnd\n", "")), HasSubstr("dataend"));
+  EXPECT_THAT(zemax_error(kHeader), HasSubstr("12 values"));
+  EXPECT_THAT(zemax_error(kHeader + replaced(kData, "1 3\n", "1\n")), HasSubstr("finite number for a value"));
+  EXPECT_THAT(zemax_error(kHeader + replaced(kData, "1 3\n", "1 3 4\n")), HasSubstr("end of the line"));
+  EXPECT_THAT(zemax_error(kHeader + replaced(kData, "1 3\n", "1 inf\n")), HasSubstr("finite"));
+  EXPECT_THAT(zemax_error(kHeader + replaced(kData, "1 3\n", "1 1e200\n")), HasSubstr("below 1e38"));
+  EXPECT_THAT(zemax_error(kHeader + replaced(kData, "TIS 0.2\n", "")), HasSubstr("tis"));
+  EXPECT_THAT(zemax_error(kHeader + replaced(kData, "DataEnd\n", "")), HasSubstr("dataend"));
 }
 
 TEST(Zemax, ReadsABlackCoatingMeasuredTo80Degrees) {

@@ -9,7 +9,7 @@
 namespace burnish {
 namespace {
 
-constexpr double kMinAlpha = 0.004;
+constexpr double kMinProxyAlpha = 0.004;
 
 // What is reflected towards one view.
 struct View {
@@ -76,7 +76,7 @@ GgxProxy fit_ggx_proxy(BrdfRef brdf, bool with_cosine) {
   GgxProxy best;
   double least = std::numeric_limits<double>::infinity();
   const auto consider = [&](double alpha_x, double alpha_y, double share) {
-    const auto bounded = [](double alpha) { return std::clamp(alpha, kMinAlpha, 1.0); };
+    const auto bounded = [](double alpha) { return std::clamp(alpha, kMinProxyAlpha, 1.0); };
     const GgxProxy proxy{{bounded(alpha_x), bounded(alpha_y)}, share};
     const double moment = second_moment(views, proxy);
     if (!(moment < least)) return;
@@ -84,7 +84,7 @@ GgxProxy fit_ggx_proxy(BrdfRef brdf, bool with_cosine) {
     best = proxy;
   };
   // a coarse grid, then neighbours at shrinking ratios
-  for (double alpha = kMinAlpha; alpha < 1; alpha *= 1.6)
+  for (double alpha = kMinProxyAlpha; alpha < 1; alpha *= 1.6)
     for (double share = 1; share > (with_cosine ? 0 : 0.9); share -= 0.25) consider(alpha, alpha, share);
   for (const double ratio : {1.5, 1.3, 1.15, 1.07, 1.03, 1.02})
     for (int pass = 0; pass < 2; ++pass) {

@@ -13,6 +13,8 @@
 
 namespace burnish::testing {
 
+constexpr std::size_t kHalfRgb = 6;  ///< bytes of a texel
+
 inline TrainingSet small_set(const AnalyticBrdf& brdf, std::size_t count = 3000) {
   return draw_training_set(brdf.ref(), {.pictures = count, .directions = count});
 }

@@ -15,7 +15,7 @@ namespace burnish {
 namespace {
 
 constexpr std::size_t kChunk = 16384;
-constexpr double kRidge = 1e-8;
+constexpr double kIterativeRidge = 1e-8;
 
 using Floats = std::vector<float>;
 using Doubles = std::vector<double>;
@@ -83,7 +83,7 @@ class LogOperator {
       });
     });
     add_smoothness(x, y);
-    for (std::size_t i = 0; i < count(); ++i) y[i] += kRidge * x[i];
+    for (std::size_t i = 0; i < count(); ++i) y[i] += kIterativeRidge * x[i];
     return y;
   }
 
@@ -232,7 +232,7 @@ class LogOperator {
     layout.height = level.coarse_height();
     layout.depth = level.coarse_depth();
     const SmoothnessRows smoothness = smoothness_rows(layout);
-    for (double& v : d) v = v / total_weight_ + kRidge;
+    for (double& v : d) v = v / total_weight_ + kIterativeRidge;
     for (std::size_t k = 0; k < smoothness.nodes.size(); ++k)
       for (std::size_t c = 0; c < step_of; ++c)
         d[smoothness.nodes[k] * step_of + c] +=

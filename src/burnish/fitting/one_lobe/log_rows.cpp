@@ -10,7 +10,7 @@ namespace burnish {
 
 namespace {
 
-constexpr std::size_t kBlock = 1024;  // samples produced at a time
+constexpr std::size_t kSamplesAtOnce = 1024;
 
 // Reweighting: errors below kSmallError count as squares, a step changes a value by at most e^kLongestStep,
 // and the model is taken as at least this share of the floor.
@@ -36,10 +36,10 @@ LogRows RowMaker::make(std::size_t begin, std::size_t end) const {
   rows.weight_channels = current ? channels : 1;
   // a block at a time, those above the horizon that weigh something: lookups, then targets and weights
   std::vector<double> model(channels);
-  std::vector<DirectionPair> pairs(kBlock);
-  std::vector<double> values(kBlock * channels), sample_weights(kBlock);
-  for (std::size_t at = begin; at < end; at += kBlock) {
-    const std::size_t n = std::min(kBlock, end - at);
+  std::vector<DirectionPair> pairs(kSamplesAtOnce);
+  std::vector<double> values(kSamplesAtOnce * channels), sample_weights(kSamplesAtOnce);
+  for (std::size_t at = begin; at < end; at += kSamplesAtOnce) {
+    const std::size_t n = std::min(kSamplesAtOnce, end - at);
     source->fill(at, std::span(pairs).first(n), std::span(values).first(n * channels),
                  std::span(sample_weights).first(n));
     for (std::size_t i = 0; i < n; ++i) {

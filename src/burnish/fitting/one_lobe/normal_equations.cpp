@@ -17,13 +17,13 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 
 // Pins what neither data nor smoothness determine (the share of a constant between the tables).
-constexpr double kRidge = 1e-7;
+constexpr double kDirectRidge = 1e-7;
 
 // Memory for the partial sums that run side by side.
 constexpr std::size_t kPartialBytes = std::size_t{128} << 20;
 
 // Samples made into rows at a time.
-constexpr std::size_t kBlock = 4096;
+constexpr std::size_t kGatheredSamples = 4096;
 
 /// Sums over samples for one matrix of the normal equations. Where a table is shared between channels, all
 /// channels are the unknowns of one system. Where none is, each channel is a system of its own; they have one
@@ -188,7 +188,7 @@ Solved solve(const Sums& sum, const ModelSpec& spec, const Gatherer& gatherer, d
   const Matrix right = sum.right / sum.weight;
   Matrix matrix = data;
   add_smoothness(spec, gatherer, smooth, matrix);
-  matrix.diagonal().array() += kRidge * matrix.trace() / static_cast<double>(matrix.rows());
+  matrix.diagonal().array() += kDirectRidge * matrix.trace() / static_cast<double>(matrix.rows());
   Solved solved{.x = matrix.ldlt().solve(right)};
 
   // sum over rows of (A x - t)^2 = x A^T A x - 2 x A^T t + t^2
@@ -209,13 +209,13 @@ LogSolution solve_normal_equations(const RowMaker& rows, const HomomorphicOption
 
   // One partial sum a group of samples, joined in order.
   const std::size_t groups = std::clamp<std::size_t>(kPartialBytes / gatherer.bytes(), 2, 32);
-  const std::size_t group_size = std::max(kBlock, (rows.source->count + groups - 1) / groups);
+  const std::size_t group_size = std::max(kGatheredSamples, (rows.source->count + groups - 1) / groups);
   std::vector<std::vector<Sums>> partial(chunk_count(rows.source->count, group_size));
   std::vector<std::size_t> samples(partial.size());
   for_each_chunk(rows.source->count, group_size, [&](std::size_t group, std::size_t begin, std::size_t end) {
     partial[group] = gatherer.zero();
-    for (std::size_t at = begin; at < end; at += kBlock)
-      samples[group] += gatherer.add(at, std::min(end, at + kBlock), partial[group]);
+    for (std::size_t at = begin; at < end; at += kGatheredSamples)
+      samples[group] += gatherer.add(at, std::min(end, at + kGatheredSamples), partial[group]);
   });
 
   const Numbering all = number_nodes(*rows.spec, channels);

@@ -9,6 +9,7 @@
 #include <burnish/factors/fetches.h>
 #include <burnish/fitting/numerics/node_numbers.h>
 #include <burnish/fitting/plans/fetch_plan.h>
+#include <burnish/fitting/plans/lobe_plan.h>
 #include <burnish/fitting/plans/order_tables.h>
 #include <burnish/fitting/plans/trial_sets.h>
 #include <burnish/math/angles.h>
@@ -21,7 +22,6 @@ namespace {
 
 // Below this many texels lines serve better, where there are fetches for them.
 constexpr double kMinVolumeTexels = 1200;
-constexpr std::size_t kNumberBytes = 4;  // of a scale or a warp's parameter
 
 // Of the texels: lines along theta_h, which rings of films need, and along other angles, which are smooth.
 constexpr double kRingShare = 0.07, kLineShare = 0.016, kGridShare = 0.14, kTwistShare = 0.1;

@@ -5,11 +5,12 @@
 #include <burnish/fitting/plans/fit_plan.h>
 #include <burnish/metrics/error_figures.h>
 #include <burnish/reflectance/analytic.h>
+#include <burnish/testing/log_models.h>
 
 namespace burnish {
 namespace {
 
-constexpr std::size_t kHalfRgb = 6;
+using testing::kHalfRgb;
 
 TEST(FitPlan, MoreBytesMeanSmallerErrors) {
   const AnalyticBrdf ward = parse_analytic("ggx:alpha_x=0.15,alpha_y=0.15,kd=0.3,f0=0.5");

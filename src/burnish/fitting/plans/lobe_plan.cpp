@@ -22,7 +22,6 @@ constexpr Warp kSkewWarp{WarpKind::power, 0.7};
 constexpr Projection kProjectSkew{.wi = 1, .wo = 0.5}, kProjectSkewSwapped{.wi = 0.5, .wo = 1};
 constexpr Warp kDiskWarp{WarpKind::rational, 0.25};
 
-constexpr std::size_t kNumberBytes = 4;  // of a scale, a warp's parameter or a projection's coefficient
 // Of an isotropic model: from how many texels on it has grids, and how many its 1-D tables take at most.
 constexpr double kGridTexels = 1500, kThreeGridTexels = 6000, kMaxLineTexels = 2000;
 // Of the factor that tells mirror images apart: nodes from one side to the other, where 3 and 7 did no

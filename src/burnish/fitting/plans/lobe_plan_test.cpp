@@ -8,11 +8,12 @@
 #include <burnish/metrics/error_figures.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/testing/brdfs.h>
+#include <burnish/testing/log_models.h>
 
 namespace burnish {
 namespace {
 
-constexpr std::size_t kHalfRgb = 6;
+using testing::kHalfRgb;
 
 FactoredBrdf zero_model(const ModelSpec& spec, std::size_t channels) {
   LogModel model{.spec = spec, .channels = channels, .log_values = {}};

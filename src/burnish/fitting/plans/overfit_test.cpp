@@ -8,23 +8,23 @@ namespace {
 
 TEST(FitWithoutOverfit, IsSmootherWhereThatPredictsBetterAndNowhereElse) {
   const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3,kd=0.2");
-  constexpr std::size_t kBytes = 3200, kFewBytes = 200, kHalf = 2;
-  const LobePlan plan = default_plan(kBytes, 1, true, kHalf);
+  constexpr std::size_t kManyBytes = 3200, kScantBytes = 200, kHalf = 2;
+  const LobePlan plan = default_plan(kManyBytes, 1, true, kHalf);
   const RefineOptions given{.max_iterations = 4};
   const TrainingSet other = draw_training_set(ggx, {.pictures = 500, .directions = 1500, .seed = 9});
   const TrainingSet few = draw_training_set(ggx, {.pictures = 80, .directions = 300});
   RefineOptions options = given;
-  const LobesFit smoother = fit_without_overfit(ggx, few, plan, kBytes, kHalf, {}, options);
+  const LobesFit smoother = fit_without_overfit(ggx, few, plan, kManyBytes, kHalf, {}, options);
   EXPECT_GT(options.smooth, given.smooth);
   EXPECT_LT(objective(smoother.model, other, given.shares),
-            objective(fit_plan(few, plan, kBytes, kHalf, given).model, other, given.shares));
+            objective(fit_plan(few, plan, kManyBytes, kHalf, given).model, other, given.shares));
 
   const TrainingSet many = draw_training_set(ggx, {.pictures = 1000, .directions = 4000});
-  const LobePlan small = default_plan(kFewBytes, 1, true, kHalf);
+  const LobePlan small = default_plan(kScantBytes, 1, true, kHalf);
   options = given;
-  const LobesFit same = fit_without_overfit(ggx, many, small, kFewBytes, kHalf, {}, options);
+  const LobesFit same = fit_without_overfit(ggx, many, small, kScantBytes, kHalf, {}, options);
   EXPECT_EQ(options.smooth, given.smooth);
-  EXPECT_EQ(same.model.log_values, fit_plan(many, small, kFewBytes, kHalf, given).model.log_values);
+  EXPECT_EQ(same.model.log_values, fit_plan(many, small, kScantBytes, kHalf, given).model.log_values);
 }
 
 }  // namespace

@@ -18,7 +18,6 @@ namespace burnish {
 
 namespace {
 
-constexpr std::size_t kNumberBytes = 4;  // of a scale, a warp's parameter or a projection's coefficient
 constexpr std::size_t kFolds = 5;
 
 // Smoothness is common to all channels: a few tell it.

@@ -61,7 +61,7 @@ TEST(ScatteredPlan, SaysTheLeastBudget) {
       const std::size_t bytes = least(source, TableFormat::half);
       EXPECT_EQ(fit(source, {.form = Budget{.bytes = bytes}, .smooth = 1e-5}).bytes(), bytes);
       EXPECT_THAT(error_of([&] { fit(source, {.form = Budget{.bytes = bytes - 1}}); }),
-                  testing::HasSubstr(fmt::format("at least {} bytes", bytes)));
+                  ::testing::HasSubstr(fmt::format("at least {} bytes", bytes)));
     }
 }
 

@@ -5,12 +5,13 @@
 
 #include <burnish/fitting/plans/search.h>
 #include <burnish/reflectance/analytic.h>
+#include <burnish/testing/log_models.h>
 #include <burnish/testing/sanitized.h>
 
 namespace burnish {
 namespace {
 
-constexpr std::size_t kHalfRgb = 6;
+using testing::kHalfRgb;
 
 // Brushed metal along x under lacquer along y, which shows at grazing angles alone.
 struct Crossed {
@@ -29,7 +30,7 @@ struct Crossed {
 
 TEST(PlanFor, GivesAnAnisotropicSourceTheLobesItHas) {
   BURNISH_SKIP_WHERE_SANITIZED();
-  constexpr std::size_t kBytes = 9000;
+  constexpr std::size_t kBytesOfTwo = 9000;
   const AnalyticBrdf single = parse_analytic("ggx:alpha_x=0.15,alpha_y=0.5,kd=0.1");
   const auto lobes = [&](BrdfRef source, int wanted) {
     const TrainingSet set = draw_training_set(source, {.pictures = 12'000, .directions = 36'000});
@@ -40,7 +41,7 @@ TEST(PlanFor, GivesAnAnisotropicSourceTheLobesItHas) {
       EXPECT_LE(f, 1);
       progress = f;
     };
-    return plan_for(source, set, kBytes, wanted, kHalfRgb, options).lobes;
+    return plan_for(source, set, kBytesOfTwo, wanted, kHalfRgb, options).lobes;
   };
   EXPECT_EQ(lobes(single, 0), 1);
   EXPECT_GT(lobes(Crossed{}, 0), 1);

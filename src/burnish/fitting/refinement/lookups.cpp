@@ -5,12 +5,6 @@
 
 namespace burnish {
 
-namespace {
-
-constexpr std::size_t kChunk = 64;  // blocks
-
-}  // namespace
-
 Lookups lookups_of(const ModelSpec& spec, const TrainingSet& set) {
   Lookups found;
 
@@ -42,7 +36,7 @@ Lookups lookups_of(const ModelSpec& spec, const TrainingSet& set) {
   found.pairs = set.size();
   const std::size_t blocks = chunk_count(set.size(), Lookups::kBlock);
   found.places.resize(blocks * Lookups::kBlock * distinct.size());
-  for_each_chunk(blocks, kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+  for_each_chunk(blocks, Lookups::kBlocksATask, [&](std::size_t, std::size_t begin, std::size_t end) {
     auto place =
         found.places.begin() + static_cast<std::ptrdiff_t>(begin * Lookups::kBlock * distinct.size());
     for (std::size_t block = begin; block < end; ++block)

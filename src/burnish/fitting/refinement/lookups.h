@@ -24,6 +24,8 @@ struct Lookups {
 
   /// Pairs follow each other in blocks of this many.
   static constexpr std::size_t kBlock = 32;
+  /// What one thread takes at a time.
+  static constexpr std::size_t kBlocksATask = 64;
   std::size_t pairs = 0;
   std::vector<Place> places;  ///< [pair / kBlock][place][pair % kBlock]
 };

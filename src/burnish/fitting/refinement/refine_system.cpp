@@ -10,7 +10,6 @@ namespace burnish {
 
 namespace {
 
-constexpr std::size_t kChunk = 64;  // blocks
 // Of many pairs an even part makes a matrix good enough for a step; the slope is that of all.
 constexpr std::size_t kMatrixPairsPerUnknown = 40;
 
@@ -98,20 +97,21 @@ void RefineSystem::fill_losses() {
   losses_.cos_theta_i.resize(padded);
   losses_.picture_weight.resize(padded);
   losses_.pair_weight.resize(padded);
-  for_each_chunk(set_.size(), kChunk * kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const bool picture = i < set_.picture_count;
-      losses_.cos_theta_i[i] = static_cast<float>(set_.pairs[i].wi.z);
-      (picture ? losses_.picture_weight : losses_.pair_weight)[i] = set_.weights[i];
-      for (std::size_t c = 0; c < channels(); ++c) {
-        const double f = set_.values[i * set_.channels + first_channel_ + c];
-        const PictureLoss::Target target = loss_.target(f, set_.pairs[i].wi.z, picture);
-        float* targets = losses_.targets.data() + 2 * (i / kBlock * channels() + c) * kBlock + i % kBlock;
-        targets[0] = target.first;
-        targets[kBlock] = target.second;
-      }
-    }
-  });
+  for_each_chunk(
+      set_.size(), Lookups::kBlocksATask * kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const bool picture = i < set_.picture_count;
+          losses_.cos_theta_i[i] = static_cast<float>(set_.pairs[i].wi.z);
+          (picture ? losses_.picture_weight : losses_.pair_weight)[i] = set_.weights[i];
+          for (std::size_t c = 0; c < channels(); ++c) {
+            const double f = set_.values[i * set_.channels + first_channel_ + c];
+            const PictureLoss::Target target = loss_.target(f, set_.pairs[i].wi.z, picture);
+            float* targets = losses_.targets.data() + 2 * (i / kBlock * channels() + c) * kBlock + i % kBlock;
+            targets[0] = target.first;
+            targets[kBlock] = target.second;
+          }
+        }
+      });
 }
 
 // visit(unknown, table, place in the model's log_values)
@@ -187,17 +187,18 @@ LossInputs RefineSystem::loss_inputs(std::size_t block, std::size_t channel,
 
 ErrorTerms RefineSystem::errors(const Eigen::VectorXd& x) const {
   const LobeLanes::Values values = lanes_.values(x);
-  std::vector<ErrorTerms> partial(chunk_count(lanes_.blocks(), kChunk));
-  for_each_chunk(lanes_.blocks(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-    LobeLanes::Block at = lanes_.block();
-    float gradient[LobeLanes::kBlock], curvature[LobeLanes::kBlock];
-    for (std::size_t b = begin; b < end; ++b)
-      for (std::size_t c = 0; c < channels(); ++c) {
-        lanes_.evaluate(values, b, c, at);
-        add_losses(loss_, loss_inputs(b, c, at.total.data()), LobeLanes::kBlock, {}, partial[chunk], gradient,
-                   curvature);
-      }
-  });
+  std::vector<ErrorTerms> partial(chunk_count(lanes_.blocks(), Lookups::kBlocksATask));
+  for_each_chunk(lanes_.blocks(), Lookups::kBlocksATask,
+                 [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+                   LobeLanes::Block at = lanes_.block();
+                   float gradient[LobeLanes::kBlock], curvature[LobeLanes::kBlock];
+                   for (std::size_t b = begin; b < end; ++b)
+                     for (std::size_t c = 0; c < channels(); ++c) {
+                       lanes_.evaluate(values, b, c, at);
+                       add_losses(loss_, loss_inputs(b, c, at.total.data()), LobeLanes::kBlock, {},
+                                  partial[chunk], gradient, curvature);
+                     }
+                 });
   ErrorTerms sums;
   for (const ErrorTerms& part : partial) sums += part;
   const auto mean = [](double sum, double weight) { return weight > 0 ? sum / weight : 0; };

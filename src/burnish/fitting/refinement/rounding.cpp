@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMaxTogether = 2000;  // unknowns of a system whose errors are made good together
 // Keeps what makes good within what a linear model sees: shares of a diagonal entry and of their mean.
-constexpr double kDamping = 1e-2, kRidge = 1e-3;
+constexpr double kRoundingDamping = 1e-2, kRoundingRidge = 1e-3;
 constexpr std::size_t kMaxChannels = 64;
 
 bool holds_few_bits(TableFormat format) {
@@ -140,8 +140,8 @@ class CompensatedRounding {
     part.upper = gauss_newton_.matrix;
     part.system.add_roughness_matrix(2 * smooth_, first, part.upper);
     const Eigen::VectorXd diagonal = part.upper.diagonal();
-    part.upper.diagonal() += kDamping * diagonal;
-    part.upper.diagonal().array() += kRidge * diagonal.mean();
+    part.upper.diagonal() += kRoundingDamping * diagonal;
+    part.upper.diagonal().array() += kRoundingRidge * diagonal.mean();
     if (!factorize_inverse(part.upper)) part.upper.resize(0, 0);
   }
 
@@ -166,7 +166,7 @@ class CompensatedRounding {
     const RefineSystem::GaussNewtonFactor factor = part.system.gauss_newton_factor(part.x, part.means);
     const Eigen::VectorXd diagonal = factor.diagonal + 2 * smooth_ * part.system.roughness_diagonal();
     part.system.fill(part.x, part.means, 2 * smooth_, *part.band);
-    return part.band->factorize(kDamping * diagonal.array() + kRidge * diagonal.mean());
+    return part.band->factorize(kRoundingDamping * diagonal.array() + kRoundingRidge * diagonal.mean());
   }
 
   /// From the last node to the first, each where those after it ask it to be.

@@ -12,7 +12,7 @@ namespace burnish {
 namespace {
 
 // Pins what neither data nor smoothness determine, as shares of the mean diagonal.
-constexpr double kRidge = 1e-7, kDampedRidge = 1e-3;
+constexpr double kStepRidge = 1e-7, kDampedRidge = 1e-3;
 constexpr double kLongestStep = 2;  // change of a logarithm
 constexpr double kHeld = 1e6;       // of the largest diagonal entry: what does not move
 
@@ -162,7 +162,7 @@ void StepSolver::stay_within(const RefineSystem::Box& box, const Vector& x) {
 
 Vector StepSolver::step(double damping) {
   const Vector diagonal = model_->diagonal();
-  Vector extra = damping * diagonal.array() + (kRidge + damping * kDampedRidge) * diagonal.mean();
+  Vector extra = damping * diagonal.array() + (kStepRidge + damping * kDampedRidge) * diagonal.mean();
   for (Eigen::Index u = 0; u < held_.size(); ++u)
     if (held_[u]) extra[u] = kHeld * diagonal.maxCoeff();
   return model_->step(extra).cwiseMax(-kLongestStep).cwiseMin(kLongestStep);

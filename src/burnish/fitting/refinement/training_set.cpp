@@ -24,7 +24,7 @@ constexpr double kPixelCosine = 0.01, kPairCosine = 0.05;  // the second as in t
 constexpr double kRimCosine = 0.005, kRimWeight = 0.1;     // of pairs nearer to the horizon than that
 constexpr double kCrowdedPixelCosine = 1e-3;
 constexpr double kExposedShare = 0.97;  // as in the error figures
-constexpr std::size_t kChunk = 4096;
+constexpr std::size_t kPairsATask = 4096;
 constexpr double kMaxAlbedoTheta = radians(70), kLeastAlbedo = 1e-4, kAlbedoPrecision = 2e-3;
 constexpr double kRingTurn = 0.6180339887498949;  // the golden ratio's: rings near one another differ
 constexpr std::size_t kAlbedoThetas = 15, kAlbedoRings = 64, kAlbedoAzimuths = 32;
@@ -108,7 +108,7 @@ void fill_values(BrdfRef source, TrainingSet& set) {
   const auto channels = set.channels;
   std::vector<std::uint8_t> known(set.size());
   std::vector<double> values(set.size() * channels);
-  for_each_chunk(set.size(), kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+  for_each_chunk(set.size(), kPairsATask, [&](std::size_t, std::size_t begin, std::size_t end) {
     source.eval(std::span(set.pairs).subspan(begin, end - begin),
                 std::span(values).subspan(begin * channels, (end - begin) * channels),
                 std::span(known).subspan(begin, end - begin));

@@ -43,14 +43,13 @@ std::array<float, 16> projection_of(const Scene& scene, int width, int height) {
   return m;
 }
 
-// As the shader's uniform block has it.
-struct LightEntry {
-  float place[4], intensity[4];
-};
-
 }  // namespace
 
 struct GlRenderer::State {
+  // As the shader's uniform block has it.
+  struct LightEntry {
+    float place[4], intensity[4];
+  };
   struct Material {
     GLuint program = 0;
     std::vector<GLuint> textures;
@@ -189,7 +188,8 @@ GlRenderer::GlRenderer(const Scene& scene, std::span<const SurfaceShader> materi
   }
   if (interpolated) s.lights.clear();  // they shine already
   glCreateBuffers(1, &s.light_buffer);
-  glNamedBufferStorage(s.light_buffer, kLightsAPass * sizeof(LightEntry), nullptr, GL_DYNAMIC_STORAGE_BIT);
+  glNamedBufferStorage(s.light_buffer, kLightsAPass * sizeof(State::LightEntry), nullptr,
+                       GL_DYNAMIC_STORAGE_BIT);
 }
 
 GlRenderer::GlRenderer(const Scene& scene, std::span<const SurfaceShader> materials, int width, int height)
@@ -225,7 +225,7 @@ void GlRenderer::draw() const {
   do {
     const std::size_t count = std::min(s.lights.size() - first, std::size_t{kLightsAPass});
     if (count > 0)
-      glNamedBufferSubData(s.light_buffer, 0, static_cast<GLsizeiptr>(count * sizeof(LightEntry)),
+      glNamedBufferSubData(s.light_buffer, 0, static_cast<GLsizeiptr>(count * sizeof(State::LightEntry)),
                            &s.lights[first]);
     if (first > 0) glEnable(GL_BLEND);  // more lights: added to what is there
     for (const State::Part& part : s.parts) {

@@ -28,15 +28,15 @@ bool has_half_vectors(const Lobe& lobe) noexcept {
 }
 
 std::vector<LobeCell> cells_of(const FactoredBrdf& inside, bool of_half) {
-  constexpr int kRings = 96, kSpokes = 96;
+  constexpr int kCellRings = 96, kCellSpokes = 96;
   // mass is a power below 1 of what is reflected: wide parts of a lobe send light too
   constexpr double kPower = 0.85;
   std::vector<LobeCell> cells;
-  const auto angle = [](double ring) { return 0.5 * kPi * (ring / kRings) * (ring / kRings); };
-  for (int ring = 0; ring < kRings; ++ring)
-    for (int spoke = 0; spoke < kSpokes; ++spoke) {
-      const double theta = angle(ring + 0.5), phi = kTwoPi * (spoke + 0.5 * (ring % 2)) / kSpokes;
-      const double area = kTwoPi / kSpokes * (std::cos(angle(ring)) - std::cos(angle(ring + 1)));
+  const auto angle = [](double ring) { return 0.5 * kPi * (ring / kCellRings) * (ring / kCellRings); };
+  for (int ring = 0; ring < kCellRings; ++ring)
+    for (int spoke = 0; spoke < kCellSpokes; ++spoke) {
+      const double theta = angle(ring + 0.5), phi = kTwoPi * (spoke + 0.5 * (ring % 2)) / kCellSpokes;
+      const double area = kTwoPi / kCellSpokes * (std::cos(angle(ring)) - std::cos(angle(ring + 1)));
       const Vec3 w{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
       double value = 1;
       if (of_half) {

@@ -14,7 +14,7 @@
 namespace burnish {
 namespace {
 
-constexpr BlurOptions kSmall{.side = 32, .levels = 8, .narrowest = 0.04, .step = 1.5};
+constexpr BlurOptions kSmallBlur{.side = 32, .levels = 8, .narrowest = 0.04, .step = 1.5};
 
 // A highlight three times as long across the tangent as along it.
 FactoredBrdf brushed() {
@@ -30,9 +30,9 @@ FactoredBrdf brushed() {
 }
 
 TEST(BlurredEnvironment, KeepsAnEvenSkyAndTheLightOfADisc) {
-  const BlurredEnvironment even = blur(kEven, kSmall);
+  const BlurredEnvironment even = blur(kEven, kSmallBlur);
   const Environment lamp{"lamp", 0, 0, 0, {{{0, 1, 0}, 0.1, 5}}};
-  const BlurredEnvironment one = blur(lamp, kSmall);
+  const BlurredEnvironment one = blur(lamp, kSmallBlur);
   const double light = 5 * kTwoPi * (1 - std::cos(0.1));
   for (const double width : {0.04, 0.2, 0.5}) {
     for (const Vec3 w : {Vec3{0, 1, 0}, Vec3{0, -1, 0}, Vec3{1, 0, 0}, normalize({1, -2, 3})})
@@ -51,7 +51,7 @@ TEST(BlurredEnvironment, KeepsAnEvenSkyAndTheLightOfADisc) {
 TEST(TappedLight, AnEvenSkyOnAMattSurfaceGivesPiTimesItsValue) {
   const FactoredBrdf matt(1, {}, {Lobe{.scale = {0.25}, .factors = {}}});
   const TappedBrdf tapped = tap(matt, 48);
-  const BlurredEnvironment even = blur(kEven, kSmall);
+  const BlurredEnvironment even = blur(kEven, kSmallBlur);
   for (const Vec3 v : {Vec3{0, 0, 1}, normalize({0.5, 0.1, 0.2}), normalize({1, 1, 0.01})})
     EXPECT_NEAR(tapped.radiance(even, sphere_frame({0, 0, 1}), v).g, kPi * 0.25 * 2, 0.03);
   EXPECT_EQ(tapped.radiance(even, sphere_frame({0, 0, 1}), {0, 0, -1}), Rgb());
@@ -60,19 +60,19 @@ TEST(TappedLight, AnEvenSkyOnAMattSurfaceGivesPiTimesItsValue) {
 TEST(TappedLight, IsCloseToMonteCarloOnBrushedMetalAndCloserWithMoreTaps) {
   const FactoredBrdf brdf = brushed();
   ASSERT_FALSE(brdf.isotropic());
-  constexpr int kSize = 14;
+  constexpr int kPictureSize = 14;
   const Image truth =
-      moments_in_environment(brdf, CosineSampler{}, {}, kLamps, {.size = kSize, .samples = 900}).mean;
+      moments_in_environment(brdf, CosineSampler{}, {}, kLamps, {.size = kPictureSize, .samples = 900}).mean;
   const LitSphere sphere{truth, {}};
   const double exposure = sphere_exposure({&sphere, 1});
   const BlurredEnvironment blurred = blur(kLamps);
   double last = 0;
   for (const int taps : {12, 96}) {
     const TappedBrdf tapped = tap(brdf, taps);
-    Image found(kSize, kSize, 3);
-    for (int y = 0; y < kSize; ++y)
-      for (int x = 0; x < kSize; ++x)
-        if (const auto n = sphere_normal(kSize, x + 0.5, y + 0.5)) {
+    Image found(kPictureSize, kPictureSize, 3);
+    for (int y = 0; y < kPictureSize; ++y)
+      for (int x = 0; x < kPictureSize; ++x)
+        if (const auto n = sphere_normal(kPictureSize, x + 0.5, y + 0.5)) {
           const Rgb value = tapped.radiance(blurred, sphere_frame(*n), {0, 0, 1});
           const auto pixel = found.at(x, y);
           pixel[0] = static_cast<float>(value.r);
@@ -90,7 +90,7 @@ TEST(TappedLight, TheShaderAgreesWithTheDefinition) {
   const TestContext gl;
   if (!gl.context) GTEST_SKIP() << gl.reason;
   const TappedBrdf tapped = tap(brushed(), 24);
-  const BlurredEnvironment blurred = blur(kLamps, kSmall);
+  const BlurredEnvironment blurred = blur(kLamps, kSmallBlur);
   const TappedShader shader = generate_shader(tapped, blurred.options, ShaderLanguage::glsl, "m");
   GlFunction function(shader.text +
                           "vec3 on_sphere(vec3 n, vec3 v) {\n"
