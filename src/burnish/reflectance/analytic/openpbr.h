@@ -83,4 +83,52 @@ inline constexpr std::array<OpenPbrInput, 21> kOpenPbrInputs = {{
     {"thin_film_ior", "index of refraction of the film", 1, 5, &OpenPbrParameters::thin_film_ior},
 }};
 
+/// OpenPBR Surface 1.1 as MaterialX 1.39 makes shaders of it, without transmission, subsurface and emission: fuzz over
+/// coat over a mixture of metal and glossy-diffuse base, each layer letting through what its directional albedo towards
+/// the viewer leaves. Facets are GGX with Smith's masking of the mean roughness and lose no energy to multiple
+/// reflections [Turquin 2019]; the dielectric's Fresnel factor is exact, the metal's is Schlick's with a tint at 82
+/// degrees [Hoffman 2019], under a film Airy's with two orders of interference, antialiased spectrally [Belcour 2017];
+/// the diffuse base is Fujii's with what it loses given back, the fuzz a linearly transformed cosine [Zeltner 2022].
+/// Values below 0, which the metal's factor has for dark specular_color, become 0. Not reciprocal: the layers see the
+/// viewer alone. Domain: parameters in the ranges of kOpenPbrInputs. Channels: 3. Source: [OpenPBR 2024].
+class OpenPbr {
+ public:
+  explicit OpenPbr(const OpenPbrParameters& parameters = {}) noexcept;
+
+  static constexpr std::size_t channels() noexcept { return 3; }
+  bool isotropic() const noexcept;
+  bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
+
+  const OpenPbrParameters& parameters() const noexcept { return p_; }
+
+ private:
+  struct Geometry;
+  struct Layer;
+  struct Highlight;
+
+  /// GGX roughnesses: along the tangent, across, and their geometric mean.
+  struct Roughness {
+    double x, y, mean;
+  };
+  static Roughness roughness(double roughness, double anisotropy) noexcept;
+
+  Highlight highlight(const Roughness& alpha, const Geometry& g) const noexcept;
+  Rgb dielectric_under_film(const Geometry& g) const noexcept;
+  Rgb metal_fresnel(double cosine) const noexcept;
+  Rgb metal_under_film(const Geometry& g) const noexcept;
+  Rgb diffuse_base(const Geometry& g) const noexcept;
+  Rgb dielectric_base(const Highlight& facets, const Geometry& g) const noexcept;
+  Rgb metal_base(const Highlight& facets, const Geometry& g) const noexcept;
+  Layer coat(const Geometry& g) const noexcept;
+  Layer fuzz(const Geometry& g) const noexcept;
+
+  OpenPbrParameters p_;
+  Roughness base_alpha_, coat_alpha_;
+  double base_ior_;  ///< of the dielectric base against what lies on it, scaled by specular_weight
+  Rgb metal_f0_;
+  Rgb under_coat_;  ///< what the coat's colour and the reflections inside it leave of the base
+};
+
+static_assert(Brdf<OpenPbr>);
+
 }  // namespace burnish
