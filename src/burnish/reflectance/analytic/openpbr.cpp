@@ -78,28 +78,28 @@ Polarized fresnel_polarized(double cosine, double ior) noexcept {
   return {s * (t3 - t4) / (t3 + t4), s};
 }
 
-constexpr int kOrders = 2;  // of interference
-
-/// Light in a film: its index of refraction, the cosine inside, and what X, Y and Z see of each order of interference,
+/// Light in a film: its index of refraction, the cosine inside, and what X, Y and Z see of both orders of interference,
 /// for phases that do not turn. Gaussians in the Fourier domain, their constants those of the paper's code.
 struct Film {
   double ior = 1, cos_inside = 1;
-  std::array<std::array<double, 3>, kOrders> response{};
+  std::array<std::array<double, 3>, 2> response{};
 
   Film() = default;
   Film(double film_ior, double micrometres, double cosine) noexcept
       : ior(film_ior), cos_inside(std::sqrt(1 - (1 - square(cosine)) / square(film_ior))) {
+    // of the first order; the second has twice the phase
     constexpr double kNorm = 1.0685e-7;
-    for (int order = 1; order <= kOrders; ++order) {
-      const double phase = kTwoPi * order * 2 * ior * cos_inside * 1e-6 * micrometres;
-      const auto gaussian = [&](double value, double position, double variance) {
-        return value * std::sqrt(kTwoPi * variance) * std::cos(position * phase) *
-               std::exp(-variance * phase * phase) / kNorm;
-      };
-      response[static_cast<std::size_t>(order - 1)] = {
-          gaussian(5.4856e-13, 1.6810e6, 4.3278e9) + gaussian(9.7470e-14, 2.2399e6, 4.5282e9),
-          gaussian(4.4201e-13, 1.7953e6, 9.3046e9), gaussian(5.2481e-13, 2.2084e6, 6.6121e9)};
-    }
+    const double phase = kTwoPi * 2 * ior * cos_inside * 1e-6 * micrometres;
+    const auto add = [&](std::size_t i, double value, double position, double variance) {
+      const double height = value * std::sqrt(kTwoPi * variance) / kNorm;
+      const double wave = std::cos(position * phase), decay = std::exp(-variance * phase * phase);
+      response[0][i] += height * decay * wave;
+      response[1][i] += height * square(square(decay)) * (2 * wave * wave - 1);
+    };
+    add(0, 5.4856e-13, 1.6810e6, 4.3278e9);
+    add(0, 9.7470e-14, 2.2399e6, 4.5282e9);
+    add(1, 4.4201e-13, 1.7953e6, 9.3046e9);
+    add(2, 5.2481e-13, 2.2084e6, 6.6121e9);
   }
 };
 
