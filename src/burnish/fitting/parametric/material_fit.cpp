@@ -85,7 +85,8 @@ Json report_of(const MaterialFit& fit) {
     json["factored"] = json_of(fit.factored->figures);
     json["factored"]["bytes"] = fit.factored->bytes;
   }
-  if (fit.starts > 0) {
+  if (const auto* openpbr = std::get_if<OpenPbr>(&fit.material)) {
+    json["spec"] = format_analytic(analytic_openpbr(openpbr->parameters()));
     json["starts"] = fit.starts;
     json["iterations"] = fit.summary.iterations;
   }
@@ -106,10 +107,11 @@ MaterialFit fit_material(const Source& source, std::string_view target, const Ma
   if (std::ranges::find(kTargets, target) == kTargets.end())
     throw Error(fmt::format("material: expected {}, found '{}'{}", fmt::join(kTargets, " or "), target,
                             did_you_mean(target, kTargets)));
-  const BrdfRef brdf = source.ref();
-  if (brdf.channels() != 1 && brdf.channels() != 3)
-    throw Error(
-        fmt::format("{}: expected 1 or 3 channels for {}, found {}", source.name, target, brdf.channels()));
+  if (source.ref().channels() != 1 && source.ref().channels() != 3)
+    throw Error(fmt::format("{}: expected 1 or 3 channels for {}, found {}", source.name, target,
+                            source.ref().channels()));
+  const SymmetrizedBrdf symmetrized(source.ref());
+  const BrdfRef brdf = is_measurement(source) ? BrdfRef(symmetrized) : source.ref();
   const Scorer scorer(brdf, options.figures);
   MaterialFit fit{.target = std::string(target), .source = source.name};
   const auto start = std::chrono::steady_clock::now();

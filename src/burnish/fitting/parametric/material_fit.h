@@ -60,8 +60,8 @@ struct MaterialFitOptions {
   std::function<void(std::string_view stage, double fraction)> progress = {};
 };
 
-/// Fits a material as `burnish fit --to TARGET` does, to the source as it is: neither is reciprocal. The same bits for
-/// every number of threads. Throws Error for another target, and for a source of other than 1 or 3 channels.
+/// Fits a material as `burnish fit --to TARGET` does: to the reciprocal part of a measurement (SymmetrizedBrdf), to
+/// anything else as it is. The same bits for every number of threads. Throws Error for another target, and for a source of other than 1 or 3 channels.
 MaterialFit fit_material(const Source& source, std::string_view target,
                          const MaterialFitOptions& options = {});
 
@@ -70,7 +70,8 @@ MaterialFit fit_material(const Source& source, std::string_view target,
 std::string format_material(const MaterialFit& fit);
 
 /// The JSON that `burnish fit --to TARGET --json` prints, indented by two: target, source, parameters, psnr, ssim,
-/// relative, rms_log, log_cos, beyond, factored, starts, iterations, output and seconds.
+/// relative, rms_log, log_cos, beyond, factored, of openpbr spec (see parse_analytic), starts and iterations, output and
+/// seconds.
 std::string summary_json(const MaterialFit& fit, const std::string& output);
 
 }  // namespace burnish

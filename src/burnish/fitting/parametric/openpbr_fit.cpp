@@ -29,7 +29,7 @@ struct Effort {
   int max_iterations;
   double tolerance, pull;
 };
-constexpr Effort kTaste{6, 1e-4, 1e-4}, kFirst{20, 1e-5, 1e-4}, kAgain{15, 1e-6, 1e-6}, kEnd{40, 1e-6, 1e-6},
+constexpr Effort kTaste{6, 1e-4, 1e-4}, kFirst{30, 1e-5, 1e-4}, kAgain{10, 1e-6, 1e-6}, kEnd{40, 1e-6, 1e-6},
     kLast{80, 1e-8, 1e-6};
 
 // A pixel in thirty of a highlight: what shows less, as an index that a coat hides, is not trusted to go far.
@@ -325,6 +325,11 @@ OpenPbrParameters tidied(OpenPbrParameters p) {
   reset("coat", p.coat_weight);
   reset("fuzz", p.fuzz_weight);
   reset("thin_film", p.thin_film_weight);
+  // under a whole coat an index shows as does the coat's square over it: the one that is more like glass
+  const double twin = p.coat_ior * p.coat_ior / p.specular_ior;
+  const auto unlike = [&](double ior) { return std::abs(ior - defaults.specular_ior); };
+  if (p.coat_weight == 1 && unlike(twin) < unlike(p.specular_ior))
+    p.specular_ior = std::clamp(twin, 1.0, 3.0);
   return p;
 }
 
@@ -398,7 +403,7 @@ constexpr std::size_t kKept = 2;  // trials that are built upon
 /// The best of the base alone and of all layers; best first.
 std::vector<Trial> search_layers(Search& search, const PicturePairs& pairs, const OpenPbrFitOptions& options,
                                  const std::function<void(double)>& progress) {
-  constexpr int kRandom = 4;
+  constexpr int kRandom = 6;
   const Inputs always = always_held(options);
   std::vector<Search::Start> starts;
   for (const double metalness : {0.0, 1.0})
