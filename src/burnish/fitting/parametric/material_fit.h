@@ -61,7 +61,8 @@ struct MaterialFitOptions {
 };
 
 /// Fits a material as `burnish fit --to TARGET` does: to the reciprocal part of a measurement (SymmetrizedBrdf), to
-/// anything else as it is. The same bits for every number of threads. Throws Error for another target, and for a source of other than 1 or 3 channels.
+/// anything else as it is. The same bits for every number of threads. Throws Error for another target, and for a
+/// source of other than 1 or 3 channels.
 MaterialFit fit_material(const Source& source, std::string_view target,
                          const MaterialFitOptions& options = {});
 
