@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include <burnish/export/metallic_roughness_fit.h>
+#include <burnish/fitting/parametric/metallic_roughness_fit.h>
 #include <burnish/factors/factored_brdf.h>
 
 namespace burnish {

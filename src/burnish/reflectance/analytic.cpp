@@ -91,6 +91,20 @@ constexpr AnalyticParameter kGenerator[] = {
 constexpr AnalyticParameter kSatin[] = {
     alpha_x(kMinTableAlpha, 0.1), alpha_y(kMinTableAlpha, 0.5), cross(0.15), f0(0.6), kd(0.1), kCorrelation};
 
+// OpenPBR's inputs as parameters of a model.
+constexpr auto kOpenPbr = [] {
+  std::array<AnalyticParameter, kOpenPbrInputs.size()> parameters{};
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const OpenPbrInput& input = kOpenPbrInputs[i];
+    const bool color = std::holds_alternative<Rgb OpenPbrParameters::*>(input.member);
+    const OpenPbrParameters defaults;
+    const double value = color ? (defaults.*std::get<Rgb OpenPbrParameters::*>(input.member)).r
+                               : defaults.*std::get<double OpenPbrParameters::*>(input.member);
+    parameters[i] = {input.name, input.description, input.min, input.max, value, color};
+  }
+  return parameters;
+}();
+
 template <bool normalized>
 AnalyticVariant phong(Values v) {
   return Phong{.kd = v[0], .ks = v[1], .exponent = v[2].r, .normalized = normalized};
@@ -118,6 +132,16 @@ AnalyticVariant ward(Values v) {
 AnalyticVariant generator(Values v) {
   const CrossedGaussians threads{.alpha_x = v[0].r, .alpha_y = v[1].r, .cross = v[2].r};
   return Satin(threads, v[3], v[4], v[5].r);
+}
+
+AnalyticVariant openpbr(Values v) {
+  OpenPbrParameters parameters;
+  for (std::size_t i = 0; i < kOpenPbrInputs.size(); ++i)
+    if (const auto* number = std::get_if<double OpenPbrParameters::*>(&kOpenPbrInputs[i].member))
+      parameters.*(*number) = v[i].r;
+    else
+      parameters.*std::get<Rgb OpenPbrParameters::*>(kOpenPbrInputs[i].member) = v[i];
+  return OpenPbr(parameters);
 }
 
 constexpr AnalyticModel kModels[] = {
@@ -159,6 +183,8 @@ constexpr AnalyticModel kModels[] = {
     {"ashikhmin_premoze_shirley", "generator from tabulated masking, crossed Gaussian slopes", kGenerator,
      true, generator},
     {"satin", "ashikhmin_premoze_shirley with the threads of satin", kSatin, true, generator},
+    {"openpbr", "OpenPBR Surface 1.1 as MaterialX shades it, reflection only", kOpenPbr, false, openpbr,
+     false},
 };
 
 const AnalyticModel* find_model(std::string_view name) {
@@ -286,6 +312,13 @@ AnalyticBrdf parse_analytic(std::string_view spec) {
     values[index] = read_value(*model, *found, text);
   }
   return AnalyticBrdf(*model, std::move(values));
+}
+
+AnalyticBrdf analytic_openpbr(const OpenPbrParameters& parameters) {
+  std::vector<Rgb> values;
+  for (const OpenPbrInput& input : kOpenPbrInputs)
+    values.push_back(std::visit([&](auto member) { return Rgb(parameters.*member); }, input.member));
+  return AnalyticBrdf(*find_model("openpbr"), std::move(values));
 }
 
 std::string format_analytic(const AnalyticBrdf& brdf) {

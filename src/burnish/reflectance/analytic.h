@@ -9,6 +9,7 @@
 #include <burnish/reflectance/analytic/cosine_lobes.h>
 #include <burnish/reflectance/analytic/diffuse.h>
 #include <burnish/reflectance/analytic/microfacet.h>
+#include <burnish/reflectance/analytic/openpbr.h>
 #include <burnish/reflectance/analytic/poulin_fournier.h>
 #include <burnish/reflectance/analytic/ward.h>
 #include <burnish/reflectance/brdf.h>
@@ -24,7 +25,7 @@ struct AnalyticParameter {
 };
 
 using AnalyticVariant = std::variant<Lambert, OrenNayar, Phong, BlinnPhong, Lafortune, Ward, CookTorrance,
-                                     AshikhminShirley, Ggx, Beckmann, PoulinFournier, Satin>;
+                                     AshikhminShirley, Ggx, Beckmann, PoulinFournier, Satin, OpenPbr>;
 
 /// A model that has a name.
 struct AnalyticModel {
@@ -33,9 +34,10 @@ struct AnalyticModel {
   bool conserving;  ///< directional albedo <= 1 where kd, or kd + ks if it has ks, leaves room
   /// Builds it from one value a parameter, in order, each within its range.
   AnalyticVariant (*build)(std::span<const Rgb> values);
+  bool reciprocal = true;  ///< f(wi, wo) = f(wo, wi)
 };
 
-/// All models, in the order help lists them. All are reciprocal.
+/// All models, in the order help lists them.
 std::span<const AnalyticModel> analytic_models();
 
 /// An analytic BRDF: a model with its parameters. Channels: 3.
@@ -75,6 +77,9 @@ bool is_analytic_spec(std::string_view spec);
 /// "ggx:alpha_x=0.1,alpha_y=0.3,f0=1/0.8/0.5". Throws Error naming the parameter, what is expected and what
 /// was found.
 AnalyticBrdf parse_analytic(std::string_view spec);
+
+/// OpenPBR as an analytic BRDF. Throws Error naming an input that is outside its range.
+AnalyticBrdf analytic_openpbr(const OpenPbrParameters& parameters);
 
 /// The spec with every parameter, which parse_analytic reads back to the same values, bit for bit.
 std::string format_analytic(const AnalyticBrdf& brdf);

@@ -36,6 +36,7 @@ GlFunction::GlFunction(const std::string& text, const std::string& name)
 }
 
 GlFunction::~GlFunction() {
+  glDeleteBuffers(static_cast<GLsizei>(numbers_.size()), numbers_.data());
   glDeleteTextures(static_cast<GLsizei>(textures_.size()), textures_.data());
   glDeleteProgram(program_);
 }
@@ -44,6 +45,13 @@ void GlFunction::set_texture(const GlTexture& texture) {
   glProgramUniform1i(program_, glGetUniformLocation(program_, texture.name.c_str()),
                      static_cast<GLint>(textures_.size()));
   textures_.push_back(upload_texture(texture));
+}
+
+void GlFunction::set_numbers(std::span<const float> numbers) {
+  glDeleteBuffers(static_cast<GLsizei>(numbers_.size()), numbers_.data());
+  numbers_.resize(1);
+  glCreateBuffers(1, numbers_.data());
+  glNamedBufferStorage(numbers_[0], static_cast<GLsizeiptr>(numbers.size_bytes()), numbers.data(), 0);
 }
 
 std::vector<float> GlFunction::call(std::span<const GlVectors> arguments) const {
@@ -56,6 +64,7 @@ std::vector<float> GlFunction::call(std::span<const GlVectors> arguments) const 
   const auto size = static_cast<GLsizeiptr>(values.size() * sizeof(float));
   glNamedBufferStorage(buffers[1], size, nullptr, 0);
   glBindBuffersBase(GL_SHADER_STORAGE_BUFFER, 0, 2, buffers);
+  if (!numbers_.empty()) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, numbers_[0]);
   glBindTextures(0, static_cast<GLsizei>(textures_.size()), textures_.data());
   glUseProgram(program_);
   const auto count = static_cast<GLuint>(arguments.size());

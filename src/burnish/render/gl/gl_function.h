@@ -27,6 +27,10 @@ class GlFunction {
   /// Gives a texture to the sampler of its name. Throws Error as upload_texture.
   void set_texture(const GlTexture& texture);
 
+  /// Gives numbers to `readonly buffer` of the text with `layout(std430, binding = 2)`, an array of floats. The call
+  /// that asks is gl_GlobalInvocationID.x.
+  void set_numbers(std::span<const float> numbers);
+
   /// Three values a call. At most kMaxCalls.
   std::vector<float> call(std::span<const GlVectors> arguments) const;
 
@@ -35,6 +39,7 @@ class GlFunction {
  private:
   unsigned program_ = 0;
   std::vector<unsigned> textures_;
+  std::vector<unsigned> numbers_;  // a buffer, if there is one
 };
 
 }  // namespace burnish

@@ -1,0 +1,134 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+#include <variant>
+
+#include <burnish/math/rgb.h>
+#include <burnish/reflectance/brdf.h>
+
+namespace burnish {
+
+/// The inputs of OpenPBR Surface 1.1 that reflection at an opaque surface sees, under the specification's names and
+/// with its defaults; ranges in kOpenPbrInputs. Source: [OpenPBR 2024].
+struct OpenPbrParameters {
+  double base_weight = 1;
+  Rgb base_color = 0.8;
+  double base_metalness = 0;
+  double base_diffuse_roughness = 0;
+
+  double specular_weight = 1;
+  Rgb specular_color = 1;
+  double specular_roughness = 0.3;
+  double specular_roughness_anisotropy = 0;
+  double specular_ior = 1.5;
+
+  double coat_weight = 0;
+  Rgb coat_color = 1;
+  double coat_roughness = 0;
+  double coat_roughness_anisotropy = 0;
+  double coat_ior = 1.6;
+  double coat_darkening = 1;
+
+  double fuzz_weight = 0;
+  Rgb fuzz_color = 1;
+  double fuzz_roughness = 0.5;
+
+  double thin_film_weight = 0;
+  double thin_film_thickness = 0.5;  ///< micrometres
+  double thin_film_ior = 1.4;
+
+  friend bool operator==(const OpenPbrParameters&, const OpenPbrParameters&) = default;
+};
+
+/// One of the inputs: its name in the specification, what it is, the range we take (both allowed) and its place.
+struct OpenPbrInput {
+  std::string_view name, description;
+  double min, max;
+  std::variant<double OpenPbrParameters::*, Rgb OpenPbrParameters::*> member;
+};
+
+/// All inputs, in the order of OpenPbrParameters. Indices of refraction end at 5 and the film at 5 micrometres, where
+/// the specification has no bound; specular_weight ends at 1, above which it has no meaning for metals.
+inline constexpr std::array<OpenPbrInput, 21> kOpenPbrInputs = {{
+    {"base_weight", "multiplier of base_color", 0, 1, &OpenPbrParameters::base_weight},
+    {"base_color", "colour of the diffuse or metallic base", 0, 1, &OpenPbrParameters::base_color},
+    {"base_metalness", "share of metal in the base", 0, 1, &OpenPbrParameters::base_metalness},
+    {"base_diffuse_roughness", "roughness of the diffuse base", 0, 1,
+     &OpenPbrParameters::base_diffuse_roughness},
+    {"specular_weight", "multiplier of the base's specular reflectance", 0, 1,
+     &OpenPbrParameters::specular_weight},
+    {"specular_color", "tint of a dielectric's highlight, a metal's colour at 82 degrees", 0, 1,
+     &OpenPbrParameters::specular_color},
+    {"specular_roughness", "roughness of the base's highlight, root of alpha", 0, 1,
+     &OpenPbrParameters::specular_roughness},
+    {"specular_roughness_anisotropy", "stretch of the base's highlight along the tangent", 0, 1,
+     &OpenPbrParameters::specular_roughness_anisotropy},
+    {"specular_ior", "index of refraction of the dielectric base", 1, 5, &OpenPbrParameters::specular_ior},
+    {"coat_weight", "presence of the clear coat", 0, 1, &OpenPbrParameters::coat_weight},
+    {"coat_color", "transmittance of the coat", 0, 1, &OpenPbrParameters::coat_color},
+    {"coat_roughness", "roughness of the coat's highlight", 0, 1, &OpenPbrParameters::coat_roughness},
+    {"coat_roughness_anisotropy", "stretch of the coat's highlight along the tangent", 0, 1,
+     &OpenPbrParameters::coat_roughness_anisotropy},
+    {"coat_ior", "index of refraction of the coat", 1, 5, &OpenPbrParameters::coat_ior},
+    {"coat_darkening", "share of the darkening by reflections inside the coat", 0, 1,
+     &OpenPbrParameters::coat_darkening},
+    {"fuzz_weight", "presence of the fuzz", 0, 1, &OpenPbrParameters::fuzz_weight},
+    {"fuzz_color", "colour of the fuzz", 0, 1, &OpenPbrParameters::fuzz_color},
+    {"fuzz_roughness", "roughness of the fuzz", 0, 1, &OpenPbrParameters::fuzz_roughness},
+    {"thin_film_weight", "share covered by a thin film on the base", 0, 1,
+     &OpenPbrParameters::thin_film_weight},
+    {"thin_film_thickness", "thickness of the film, micrometres", 0, 5,
+     &OpenPbrParameters::thin_film_thickness},
+    {"thin_film_ior", "index of refraction of the film", 1, 5, &OpenPbrParameters::thin_film_ior},
+}};
+
+/// OpenPBR Surface 1.1 as MaterialX 1.39 makes shaders of it, without transmission, subsurface and emission: fuzz over
+/// coat over a mixture of metal and glossy-diffuse base, each layer letting through what its directional albedo towards
+/// the viewer leaves. Facets are GGX with Smith's masking of the mean roughness and lose no energy to multiple
+/// reflections [Turquin 2019]; the dielectric's Fresnel factor is exact, the metal's is Schlick's with a tint at 82
+/// degrees [Hoffman 2019], under a film Airy's with two orders of interference, antialiased spectrally [Belcour 2017];
+/// the diffuse base is Fujii's with what it loses given back, the fuzz a linearly transformed cosine [Zeltner 2022].
+/// Values below 0, which the metal's factor has for dark specular_color, become 0. Not reciprocal: the layers see the
+/// viewer alone. Domain: parameters in the ranges of kOpenPbrInputs. Channels: 3. Source: [OpenPBR 2024].
+class OpenPbr {
+ public:
+  explicit OpenPbr(const OpenPbrParameters& parameters = {}) noexcept;
+
+  static constexpr std::size_t channels() noexcept { return 3; }
+  bool isotropic() const noexcept;
+  bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
+
+  const OpenPbrParameters& parameters() const noexcept { return p_; }
+
+ private:
+  struct Geometry;
+  struct Layer;
+  struct Highlight;
+
+  /// GGX roughnesses: along the tangent, across, and their geometric mean.
+  struct Roughness {
+    double x, y, mean;
+  };
+  static Roughness roughness(double roughness, double anisotropy) noexcept;
+
+  Highlight highlight(const Roughness& alpha, const Geometry& g) const noexcept;
+  Rgb dielectric_under_film(const Geometry& g) const noexcept;
+  Rgb metal_fresnel(double cosine) const noexcept;
+  Rgb metal_under_film(const Geometry& g) const noexcept;
+  Rgb diffuse_base(const Geometry& g) const noexcept;
+  Rgb dielectric_base(const Highlight& facets, const Geometry& g) const noexcept;
+  Rgb metal_base(const Highlight& facets, const Geometry& g) const noexcept;
+  Layer coat(const Geometry& g) const noexcept;
+  Layer fuzz(const Geometry& g) const noexcept;
+
+  OpenPbrParameters p_;
+  Roughness base_alpha_, coat_alpha_;
+  double base_ior_;  ///< of the dielectric base against what lies on it, scaled by specular_weight
+  Rgb metal_f0_;
+  Rgb under_coat_;  ///< what the coat's colour and the reflections inside it leave of the base
+};
+
+static_assert(Brdf<OpenPbr>);
+
+}  // namespace burnish
