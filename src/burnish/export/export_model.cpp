@@ -10,7 +10,11 @@
 #include <burnish/export/gltf_binary.h>
 #include <burnish/export/html_page.h>
 #include <burnish/export/manifest.h>
-#include <burnish/export/three_module.h>
+#include <burnish/export/materialx.h>
+#include <burnish/export/mdl.h>
+#include <burnish/export/metallic_roughness_fit.h>
+#include <burnish/export/usda.h>
+#include <burnish/export/web_module.h>
 #include <burnish/io/rgl.h>
 #include <burnish/reflectance/rgl_builder.h>
 #include <burnish/render/gl/surface_environment.h>
@@ -57,13 +61,16 @@ class ModelExport {
   void add_levels();
   void add_cube_maps();
   void add_images(ExportTarget target, std::string (*encode)(const Table& table));
-  void add_gltf();
+  const MetallicRoughness& core();
+  void add_materialx();
+  void add_mdl();
   void add_light(const SurfaceLight& light);
 
   const FactoredBrdf& brdf_;
   const ExportOptions& options_;
   json manifest_;
   ExportedFiles result_;
+  std::optional<MetallicRoughnessFit> core_;
 };
 
 void ModelExport::add_shader(ShaderLanguage language) {
@@ -151,13 +158,29 @@ void ModelExport::add_images(ExportTarget target, std::string (*encode)(const Ta
   }
 }
 
-void ModelExport::add_gltf() {
-  GltfBinary binary = gltf_binary(brdf_, options_.name);
-  manifest_["gltf"] = add(options_.name + ".glb", std::move(binary.bytes));
-  json core = core_entry(binary.core.material);
-  core["anisotropyStrength"] = binary.core.material.anisotropy;
-  core["psnr"] = binary.core.psnr;
-  manifest_["core_material"] = std::move(core);
+// The core material of glTF that looks most alike, which takes a second: found when it is first asked for.
+const MetallicRoughness& ModelExport::core() {
+  if (!core_) {
+    core_ = fit_metallic_roughness(brdf_);
+    json entry = core_entry(core_->material);
+    entry["anisotropyStrength"] = core_->material.anisotropy;
+    entry["psnr"] = core_->psnr;
+    manifest_["core_material"] = std::move(entry);
+  }
+  return core_->material;
+}
+
+void ModelExport::add_materialx() {
+  const ShaderFilter filter = options_.exact ? ShaderFilter::exact : ShaderFilter::hardware;
+  for (ExportedFile& file : materialx_files(brdf_, filter, options_.name))
+    manifest_["materialx"].push_back(add(std::move(file.name), std::move(file.bytes)));
+}
+
+void ModelExport::add_mdl() {
+  MdlModule module = mdl_module(to_source(options_.name, {brdf_, {}, {}}), options_.cells, options_.name);
+  for (ExportedFile& file : module.files)
+    manifest_["mdl"]["files"].push_back(add(std::move(file.name), std::move(file.bytes)));
+  manifest_["mdl"]["losses"] = std::move(module.losses);
 }
 
 // Shaders of the light that comes from all around, as far as their languages are asked for, and its textures.
@@ -208,8 +231,13 @@ ExportedFiles ModelExport::run() && {
   if (wants(ExportTarget::png)) add_images(ExportTarget::png, encode_png_table);
 
   // materials of other programs
-  if (wants(ExportTarget::gltf)) add_gltf();
+  if (wants(ExportTarget::gltf)) manifest_["gltf"] = add(name + ".glb", gltf_binary(brdf_, core(), name));
+  if (wants(ExportTarget::materialx) || wants(ExportTarget::usda)) add_materialx();
+  if (wants(ExportTarget::usda)) manifest_["usda"] = add(name + ".usda", usda_layer(core(), name));
+  if (wants(ExportTarget::mdl)) add_mdl();
   if (wants(ExportTarget::three)) manifest_["three"] = add(name + ".three.js", three_module(brdf_, name));
+  if (wants(ExportTarget::babylon))
+    manifest_["babylon"] = add(name + ".babylon.js", babylon_module(brdf_, name));
   if (wants(ExportTarget::rgl))
     manifest_["rgl"] = add(name + ".bsdf", format_rgl(make_rgl_table(brdf_, {.description = name})));
 
