@@ -172,7 +172,7 @@ const MetallicRoughness& ModelExport::core() {
 
 void ModelExport::add_materialx() {
   const ShaderFilter filter = options_.exact ? ShaderFilter::exact : ShaderFilter::hardware;
-  for (ExportedFile& file : materialx_files(brdf_, filter, options_.name))
+  for (ExportedFile& file : materialx_files(brdf_, core(), filter, options_.name))
     manifest_["materialx"].push_back(add(std::move(file.name), std::move(file.bytes)));
 }
 

@@ -9,7 +9,6 @@
 
 #include <burnish/export/materialx.h>
 #include <burnish/math/rgb.h>
-#include <burnish/metrics/albedo.h>
 #include <burnish/shaders/frame_function.h>
 #include <burnish/shaders/shader.h>
 #include <burnish/textures/image_files.h>
@@ -61,36 +60,58 @@ std::string picture_of(const ShaderTexture& texture) {
   return encode_exr(picture, texture.format);
 }
 
-// Light that a white surrounding sends back towards the normal, red, green, blue.
-Rgb albedo_at_normal(const FactoredBrdf& brdf) {
-  const std::vector<double> albedo = directional_albedo(brdf, {0, 0, 1}).albedo;
-  return albedo.size() == 1 ? Rgb(albedo[0]) : Rgb(albedo[0], albedo[1], albedo[2]);
-}
-
 // The BSDF node: MaterialX asks it for the light of one direction, times the cosine, or for that from all
-// around.
-std::string closure_code(const FactoredBrdf& brdf, const Shader& shader, const std::string& name) {
+// around, which `surround` has.
+std::string closure_code(const Shader& shader, const std::string& name) {
   std::string parameters, arguments;
   for (const ShaderTexture& texture : shader.textures) {
     parameters += fmt::format("sampler2D {}, ", kind_of(texture));
     arguments += fmt::format(", {}", kind_of(texture));
   }
-  const Rgb albedo = albedo_at_normal(brdf);
   return fmt::format(
-      "\nvoid burnish_{0}_bsdf(ClosureData closureData, {1}vec3 normal, vec3 tangent, inout BSDF bsdf) {{\n"
+      "\nvoid burnish_{0}_bsdf(ClosureData closureData, {1}BSDF surround, vec3 normal, vec3 tangent,\n"
+      "                      inout BSDF bsdf) {{\n"
       "  bsdf.throughput = vec3(0.0);\n"
-      "  vec3 n = mx_forward_facing_normal(normal, closureData.V);\n"
       "  if (closureData.closureType == CLOSURE_TYPE_REFLECTION) {{\n"
+      "    vec3 n = mx_forward_facing_normal(normal, closureData.V);\n"
       "    vec3 t = normalize(tangent - dot(tangent, n) * n);\n"
       "    bsdf.response = burnish_{0}_world(n, t, closureData.L, closureData.V{2}) *\n"
       "                    (max(dot(n, closureData.L), 0.0) * closureData.occlusion);\n"
       "  }} else if (closureData.closureType == CLOSURE_TYPE_INDIRECT) {{\n"
-      "    bsdf.response = vec3({3:.6f}, {4:.6f}, {5:.6f}) * mx_environment_irradiance(n);\n"
+      "    bsdf.response = surround.response;\n"
       "  }}\n}}\n",
-      name, parameters, arguments, albedo.r, albedo.g, albedo.b);
+      name, parameters, arguments);
 }
 
-std::string factored_document(const std::vector<ShaderTexture>& textures, const std::string& name) {
+std::string value_of(const Rgb& c) {
+  return fmt::format("{}, {}, {}", c.r, c.g, c.b);
+}
+
+// The nodes of a core material of glTF; returns the last one's name.
+std::string add_core(pugi::xml_node root, const MetallicRoughness& core, const std::string& name) {
+  const pugi::xml_node diffuse =
+      add(root, "oren_nayar_diffuse_bsdf", {{"name", name + "_diffuse"}, {"type", "BSDF"}});
+  add(diffuse, "input",
+      {{"name", "weight"}, {"type", "float"}, {"value", fmt::format("{}", 1 - core.metallic)}});
+  add(diffuse, "input", {{"name", "color"}, {"type", "color3"}, {"value", value_of(core.base_color)}});
+
+  double alpha_x = core.roughness * core.roughness, alpha_y = alpha_x;
+  (core.across ? alpha_y : alpha_x) += (1 - alpha_x) * core.anisotropy * core.anisotropy;
+  const pugi::xml_node facets =
+      add(root, "generalized_schlick_bsdf", {{"name", name + "_facets"}, {"type", "BSDF"}});
+  const Rgb f0 = (1 - core.metallic) * Rgb(0.04) + core.metallic * core.base_color;
+  add(facets, "input", {{"name", "color0"}, {"type", "color3"}, {"value", value_of(f0)}});
+  add(facets, "input",
+      {{"name", "roughness"}, {"type", "vector2"}, {"value", fmt::format("{}, {}", alpha_x, alpha_y)}});
+
+  const pugi::xml_node both = add(root, "layer", {{"name", name + "_core"}, {"type", "BSDF"}});
+  add(both, "input", {{"name", "top"}, {"type", "BSDF"}, {"nodename", name + "_facets"}});
+  add(both, "input", {{"name", "base"}, {"type", "BSDF"}, {"nodename", name + "_diffuse"}});
+  return name + "_core";
+}
+
+std::string factored_document(const std::vector<ShaderTexture>& textures, const MetallicRoughness& core,
+                              const std::string& name) {
   const std::string node = fmt::format("burnish_{}_bsdf", name), definition = "ND_" + node;
   pugi::xml_document document;
   pugi::xml_node root = add_root(document);
@@ -106,6 +127,7 @@ std::string factored_document(const std::vector<ShaderTexture>& textures, const 
   for (const ShaderTexture& texture : textures)
     add(nodedef, "input",
         {{"name", std::string(kind_of(texture))}, {"type", "filename"}, {"value", ""}, {"uniform", "true"}});
+  add(nodedef, "input", {{"name", "surround"}, {"type", "BSDF"}, {"value", ""}});
   add(nodedef, "input", {{"name", "normal"}, {"type", "vector3"}, {"defaultgeomprop", "Nworld"}});
   add(nodedef, "input", {{"name", "tangent"}, {"type", "vector3"}, {"defaultgeomprop", "Tworld"}});
   add(nodedef, "output", {{"name", "out"}, {"type", "BSDF"}});
@@ -117,10 +139,12 @@ std::string factored_document(const std::vector<ShaderTexture>& textures, const 
        {"target", "genglsl"}});
 
   // the material
+  const std::string surround = add_core(root, core, name);
   const pugi::xml_node bsdf = add(root, node.c_str(), {{"name", name + "_bsdf"}, {"type", "BSDF"}});
   for (const ShaderTexture& texture : textures)
     add(bsdf, "input",
         {{"name", std::string(kind_of(texture))}, {"type", "filename"}, {"value", file_of(texture, name)}});
+  add(bsdf, "input", {{"name", "surround"}, {"type", "BSDF"}, {"nodename", surround}});
   const pugi::xml_node surface =
       add(root, "surface", {{"name", name + "_surface"}, {"type", "surfaceshader"}});
   add(surface, "input", {{"name", "bsdf"}, {"type", "BSDF"}, {"nodename", name + "_bsdf"}});
@@ -130,13 +154,13 @@ std::string factored_document(const std::vector<ShaderTexture>& textures, const 
 
 }  // namespace
 
-std::vector<ExportedFile> materialx_files(const FactoredBrdf& brdf, ShaderFilter filter,
-                                          const std::string& name) {
+std::vector<ExportedFile> materialx_files(const FactoredBrdf& brdf, const MetallicRoughness& core,
+                                          ShaderFilter filter, const std::string& name) {
   const Shader shader = generate_shader(
       brdf,
       {.language = ShaderLanguage::glsl, .filter = filter, .name = name, .textures_are_arguments = true});
-  std::vector<ExportedFile> files{{name + ".mtlx", factored_document(shader.textures, name)},
-                                  {name + ".mtlx.glsl", shader.text + closure_code(brdf, shader, name)}};
+  std::vector<ExportedFile> files{{name + ".mtlx", factored_document(shader.textures, core, name)},
+                                  {name + ".mtlx.glsl", shader.text + closure_code(shader, name)}};
   for (const ShaderTexture& texture : shader.textures)
     files.push_back({file_of(texture, name), picture_of(texture)});
   return files;
@@ -156,10 +180,7 @@ ExportedFile materialx_file(const OpenPbrParameters& parameters, const std::stri
       continue;
     }
     const Rgb color = parameters.*std::get<Rgb OpenPbrParameters::*>(input.member);
-    add(surface, "input",
-        {{"name", input_name},
-         {"type", "color3"},
-         {"value", fmt::format("{}, {}, {}", color.r, color.g, color.b)}});
+    add(surface, "input", {{"name", input_name}, {"type", "color3"}, {"value", value_of(color)}});
   }
   add_material(root, name, name + "_surface");
   return {name + ".mtlx", text_of(document)};
