@@ -277,7 +277,7 @@ import bpy, math, sys
 file, out, size, eye, lamp, intensity, fov = *sys.argv[1:3], int(sys.argv[3]), *map(eval, sys.argv[4:8])
 bpy.ops.wm.read_factory_settings(use_empty=True)
 if file.endswith(".glb"): bpy.ops.import_scene.gltf(filepath=file)
-else: bpy.ops.wm.usd_import(filepath=file)
+else: bpy.ops.wm.usd_import(filepath=file, import_all_materials=True)
 material = bpy.data.materials[0]
 for shape in list(bpy.data.objects): bpy.data.objects.remove(shape)
 bpy.ops.mesh.primitive_uv_sphere_add(segments=256, ring_count=128)
@@ -306,7 +306,7 @@ bpy.ops.render.render(write_still=True)
 
 
 def in_blender(python, file, size, folder):
-    out = folder / "blender.exr"
+    out = folder / f"{file.suffix[1:]}.blender.exr"
     done = subprocess.run([python, "-c", BLENDER, file, out, str(size), *map(str, (EYE, LIGHT, INTENSITY, FIELD_OF_VIEW))],
                           capture_output=True, text=True)
     if not out.exists():

@@ -232,8 +232,9 @@ ExportedFiles ModelExport::run() && {
 
   // materials of other programs
   if (wants(ExportTarget::gltf)) manifest_["gltf"] = add(name + ".glb", gltf_binary(brdf_, core(), name));
-  if (wants(ExportTarget::materialx) || wants(ExportTarget::usda)) add_materialx();
-  if (wants(ExportTarget::usda)) manifest_["usda"] = add(name + ".usda", usda_layer(core(), name));
+  if (wants(ExportTarget::materialx)) add_materialx();
+  if (wants(ExportTarget::usda))
+    manifest_["usda"] = add(name + ".usda", usda_layer(openpbr_of(core()), name));
   if (wants(ExportTarget::mdl)) add_mdl();
   if (wants(ExportTarget::three)) manifest_["three"] = add(name + ".three.js", three_module(brdf_, name));
   if (wants(ExportTarget::babylon))

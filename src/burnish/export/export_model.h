@@ -24,7 +24,7 @@ struct ExportOptions {
 
 /// A factored BRDF as every target of `to`, each once; shaders but C++ bring their textures along. Throws
 /// Error as generate_shader does, for an environment that no target shows, and for glTF of other than 1 or 3
-/// channels. materialx's code is in GLSL, and usda brings it along.
+/// channels. usda has the core material that gltf has too.
 ExportedFiles export_model(const FactoredBrdf& brdf, const ExportOptions& options);
 
 }  // namespace burnish

@@ -20,7 +20,7 @@ enum class ExportTarget {
   png,        ///< a table a PNG image
   gltf,       ///< GLB: the nearest core material, the factors in an extension
   materialx,  ///< a MaterialX document, with a node of its own where the model is factored
-  usda,       ///< a USD layer: a preview surface and the MaterialX document
+  usda,       ///< a USD layer: OpenPBR, or the nearest core material as that, and a preview surface
   mdl,        ///< an MDL module and its measured BSDF
   three,      ///< a module that makes a material of three.js
   babylon,    ///< a module that makes a material of Babylon.js

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <string_view>
 #include <variant>
 
@@ -20,7 +21,7 @@ std::string color_text(const Rgb& c) {
   return fmt::format("({}, {}, {})", c.r, c.g, c.b);
 }
 
-// {0} name, {1} metadata of the material, {2} preview's inputs, {3} what else the material has
+// {0} name, {1} preview's inputs, {2} what else the material has
 constexpr std::string_view kLayer = R"(#usda 1.0
 (
     defaultPrim = "{0}"
@@ -42,21 +43,20 @@ def Xform "{0}" (
         rel material:binding = </{0}/material>
     }}
 
-    def Material "material"{1}
+    def Material "material"
     {{
         token outputs:surface.connect = </{0}/material/preview.outputs:surface>
 
         def Shader "preview"
         {{
             uniform token info:id = "UsdPreviewSurface"
-{2}            token outputs:surface
+{1}            token outputs:surface
         }}
-{3}    }}
+{2}    }}
 }}
 )";
 
-std::string layer(const std::string& name, const std::string& metadata, const Preview& preview,
-                  const std::string& more) {
+std::string layer(const std::string& name, const Preview& preview, const std::string& more) {
   check_shader_name(name);
   std::string inputs =
       fmt::format("            color3f inputs:diffuseColor = {}\n", color_text(preview.color));
@@ -66,7 +66,7 @@ std::string layer(const std::string& name, const std::string& metadata, const Pr
                                      {"clearcoat", preview.coat},
                                      {"clearcoatRoughness", preview.coat_roughness}})
     inputs += fmt::format("            float inputs:{} = {}\n", input, value);
-  return fmt::format(kLayer, name, metadata, inputs, more);
+  return fmt::format(kLayer, name, inputs, more);
 }
 
 std::string open_pbr_surface(const OpenPbrParameters& parameters, const std::string& name) {
@@ -87,16 +87,8 @@ std::string open_pbr_surface(const OpenPbrParameters& parameters, const std::str
 
 }  // namespace
 
-std::string usda_layer(const MetallicRoughness& preview, const std::string& name) {
-  const std::string metadata =
-      fmt::format(" (\n        prepend references = @{0}.mtlx@</MaterialX/Materials/{0}>\n    )", name);
-  return layer(name, metadata,
-               {.color = preview.base_color, .metallic = preview.metallic, .roughness = preview.roughness},
-               "");
-}
-
 std::string usda_layer(const OpenPbrParameters& parameters, const std::string& name) {
-  return layer(name, "",
+  return layer(name,
                {.color = parameters.base_weight * parameters.base_color,
                 .metallic = parameters.base_metalness,
                 .roughness = parameters.specular_roughness,
@@ -104,6 +96,18 @@ std::string usda_layer(const OpenPbrParameters& parameters, const std::string& n
                 .coat = parameters.coat_weight,
                 .coat_roughness = parameters.coat_roughness},
                open_pbr_surface(parameters, name));
+}
+
+OpenPbrParameters openpbr_of(const MetallicRoughness& core) noexcept {
+  const double alpha_y = core.roughness * core.roughness,
+               alpha_x = core.across ? alpha_y : alpha_y + (1 - alpha_y) * core.anisotropy * core.anisotropy;
+  const double across = alpha_y / alpha_x;
+  OpenPbrParameters parameters;
+  parameters.base_color = core.base_color;
+  parameters.base_metalness = core.metallic;
+  parameters.specular_roughness = std::sqrt(alpha_x * std::sqrt((1 + across * across) / 2));
+  parameters.specular_roughness_anisotropy = 1 - across;
+  return parameters;
 }
 
 }  // namespace burnish

@@ -7,13 +7,14 @@
 
 namespace burnish {
 
-/// A USD layer, text: a sphere NAME with a material whose surface is a UsdPreviewSurface of the core material,
-/// and whose MaterialX surface is that of NAME.mtlx beside it, by reference. Throws Error for a name that
-/// check_shader_name refuses. Source: [UsdPreviewSurface 2021].
-std::string usda_layer(const MetallicRoughness& preview, const std::string& name);
-
-/// The same of OpenPBR: the preview has metal, coat and index of refraction of it, without film, fuzz,
-/// anisotropy and the colours of highlights; the MaterialX surface is in the layer itself.
+/// A USD layer, text: a sphere NAME with a material whose MaterialX surface is one open_pbr_surface node, and
+/// whose universal surface a UsdPreviewSurface with its base, coat and index of refraction: without film, fuzz,
+/// anisotropy and the colours of highlights. Throws Error for a name that check_shader_name refuses. Source:
+/// [UsdPreviewSurface 2021], [MaterialX 2024].
 std::string usda_layer(const OpenPbrParameters& parameters, const std::string& name);
+
+/// OpenPBR with the core material's alphas and reflectance at normal incidence; without its anisotropy where
+/// that is across the tangent.
+OpenPbrParameters openpbr_of(const MetallicRoughness& core) noexcept;
 
 }  // namespace burnish
