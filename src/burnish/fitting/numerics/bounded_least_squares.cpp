@@ -16,8 +16,6 @@ using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::R
 
 constexpr double kFirstDamping = 1e-4;
 constexpr double kMaxDamping = 1e16;  // steps that short change nothing
-constexpr double kMinDiagonal =
-    1e-12;  // of the normal matrix: what the functions do not depend on moves little
 
 double half_square(std::span<const double> values) {
   double sum = 0;
@@ -28,8 +26,8 @@ double half_square(std::span<const double> values) {
 /// Where the sum of squares is looked at: values, and a quadratic model of the sum around x.
 class State {
  public:
-  State(const LeastSquaresProblem& problem, std::vector<double> start)
-      : problem_(problem), x_(std::move(start)), values_(problem.functions) {
+  State(const LeastSquaresProblem& problem, std::vector<double> start, double least_diagonal)
+      : problem_(problem), least_diagonal_(least_diagonal), x_(std::move(start)), values_(problem.functions) {
     problem_.evaluate(x_, values_, {});
     cost_ = half_square(values_);
     if (!std::isfinite(cost_)) throw Error("least squares: the start has values that are not finite");
@@ -61,7 +59,7 @@ class State {
   /// others are found again, until all stay within.
   std::vector<double> step(double damping) const {
     Eigen::MatrixXd damped = normal_;
-    damped.diagonal() += damping * normal_.diagonal().cwiseMax(kMinDiagonal);
+    damped.diagonal() += damping * normal_.diagonal().cwiseMax(least_diagonal_);
     Eigen::VectorXd right = -gradient_;
     std::vector<double> to = x_;
     std::vector<bool> settled(x_.size(), false);
@@ -106,6 +104,7 @@ class State {
 
  private:
   const LeastSquaresProblem& problem_;
+  const double least_diagonal_;
   std::vector<double> x_, values_;
   double cost_ = 0;
   Eigen::MatrixXd normal_;
@@ -118,7 +117,7 @@ LeastSquaresSolution solve_least_squares(const LeastSquaresProblem& problem, std
                                          const LeastSquaresOptions& options) {
   for (std::size_t k = 0; k < start.size(); ++k)
     start[k] = std::clamp(start[k], problem.lower[k], problem.upper[k]);
-  State state(problem, std::move(start));
+  State state(problem, std::move(start), options.least_diagonal);
   LeastSquaresSolution solution{
       .x = {}, .first_cost = state.cost(), .cost = 0, .iterations = 0, .converged = false};
   double damping = kFirstDamping, rise = 2;

@@ -19,6 +19,8 @@ struct LeastSquaresProblem {
 struct LeastSquaresOptions {
   int max_iterations = 50;
   double tolerance = 1e-7;  ///< ends where a step lowers the sum by less than this part of it
+  /// Of the normal matrix, where it is damped: what the functions hardly depend on moves little.
+  double least_diagonal = 1e-12;
 };
 
 struct LeastSquaresSolution {

@@ -78,56 +78,50 @@ Polarized fresnel_polarized(double cosine, double ior) noexcept {
   return {s * (t3 - t4) / (t3 + t4), s};
 }
 
-/// Responses X, Y, Z to a cosine of the path difference (m) with phase shifts, one a response: Gaussians in the Fourier
-/// domain, their constants those of the paper's code.
-std::array<double, 3> sensitivity(double path, const std::array<double, 3>& shift) noexcept {
-  constexpr double kNorm = 1.0685e-7;
-  const auto gaussian = [&](double value, double position, double variance, double phase_shift) {
-    const double phase = kTwoPi * path;
-    return value * std::sqrt(kTwoPi * variance) * std::cos(position * phase + phase_shift) *
-           std::exp(-variance * phase * phase) / kNorm;
-  };
-  return {
-      gaussian(5.4856e-13, 1.6810e6, 4.3278e9, shift[0]) + gaussian(9.7470e-14, 2.2399e6, 4.5282e9, shift[0]),
-      gaussian(4.4201e-13, 1.7953e6, 9.3046e9, shift[1]), gaussian(5.2481e-13, 2.2084e6, 6.6121e9, shift[2])};
-}
-
-/// Of the light in a film: index of refraction and thickness (m), and the cosine inside.
+/// Light in a film: its index of refraction, the cosine inside, and what X, Y and Z see of both orders of interference,
+/// for phases that do not turn. Gaussians in the Fourier domain, their constants those of the paper's code.
 struct Film {
-  double ior, thickness, cos_inside;
+  double ior = 1, cos_inside = 1;
+  std::array<std::array<double, 3>, 2> response{};
 
+  Film() = default;
   Film(double film_ior, double micrometres, double cosine) noexcept
-      : ior(film_ior),
-        thickness(1e-6 * micrometres),
-        cos_inside(std::sqrt(1 - (1 - square(cosine)) / square(film_ior))) {}
+      : ior(film_ior), cos_inside(std::sqrt(1 - (1 - square(cosine)) / square(film_ior))) {
+    // of the first order; the second has twice the phase
+    constexpr double kNorm = 1.0685e-7;
+    const double phase = kTwoPi * 2 * ior * cos_inside * 1e-6 * micrometres;
+    const auto add = [&](std::size_t i, double value, double position, double variance) {
+      const double height = value * std::sqrt(kTwoPi * variance) / kNorm;
+      const double wave = std::cos(position * phase), decay = std::exp(-variance * phase * phase);
+      response[0][i] += height * decay * wave;
+      response[1][i] += height * square(square(decay)) * (2 * wave * wave - 1);
+    };
+    add(0, 5.4856e-13, 1.6810e6, 4.3278e9);
+    add(0, 9.7470e-14, 2.2399e6, 4.5282e9);
+    add(1, 4.4201e-13, 1.7953e6, 9.3046e9);
+    add(2, 5.2481e-13, 2.2084e6, 6.6121e9);
+  }
 };
 
-/// The film's lower face in one polarization: reflectances and phase shifts, one a response.
+/// The film's lower face in one polarization, one a response: reflectance, and whether the phase turns by pi.
 struct LowerFace {
-  std::array<double, 3> reflectance, shift;
+  std::array<double, 3> reflectance;
+  std::array<bool, 3> turns;
 };
 
 /// Adds one polarization's share of the film's reflectance (X, Y, Z) [Belcour 2017, eq. 3, 7]. `upper` and
-/// `upper_shift` are the upper face's.
-void add_airy(const Film& film, double upper, double upper_shift, const LowerFace& lower,
+/// `upper_turns` are the upper face's.
+void add_airy(const Film& film, double upper, bool upper_turns, const LowerFace& lower,
               std::array<double, 3>& sum) noexcept {
-  constexpr int kOrders = 2;
-  const double path = 2 * film.ior * film.cos_inside * film.thickness;
-  std::array<double, 3> amplitude, ratio;
   for (std::size_t i = 0; i < 3; ++i) {
     const double both = upper * lower.reflectance[i];
     const double through = square(1 - upper) * lower.reflectance[i] / (1 - both);
+    const double ratio = std::sqrt(std::max(both, 0.0)) * (lower.turns[i] == upper_turns ? 1 : -1);
     sum[i] += upper + through;
-    amplitude[i] = through - (1 - upper);
-    ratio[i] = std::sqrt(std::max(both, 0.0));
-  }
-  for (int order = 1; order <= kOrders; ++order) {
-    std::array<double, 3> shift;
-    for (std::size_t i = 0; i < 3; ++i) shift[i] = order * (lower.shift[i] + upper_shift);
-    const std::array<double, 3> response = sensitivity(order * path, shift);
-    for (std::size_t i = 0; i < 3; ++i) {
-      amplitude[i] *= ratio[i];
-      sum[i] += 2 * amplitude[i] * response[i];
+    double amplitude = through - (1 - upper);
+    for (const std::array<double, 3>& response : film.response) {
+      amplitude *= ratio;
+      sum[i] += 2 * amplitude * response[i];
     }
   }
 }
@@ -138,8 +132,8 @@ Rgb fresnel_airy(double cosine, const Film& film, const LowerFace& lower_p,
   const Polarized upper = film.cos_inside > 0 ? fresnel_polarized(cosine, film.ior) : Polarized{1, 1};
   const double cos_brewster = 1 / std::sqrt(1 + square(film.ior));
   std::array<double, 3> xyz{};
-  add_airy(film, upper.p, cosine < cos_brewster ? 0 : kPi, lower_p, xyz);
-  add_airy(film, upper.s, kPi, lower_s, xyz);
+  add_airy(film, upper.p, cosine >= cos_brewster, lower_p, xyz);
+  add_airy(film, upper.s, true, lower_s, xyz);
   const auto row = [&](double x, double y, double z) {
     return std::clamp(0.5 * (x * xyz[0] + y * xyz[1] + z * xyz[2]), 0.0, 1.0);
   };
@@ -164,15 +158,18 @@ double fujii_albedo(double cosine, double roughness) noexcept {
 struct OpenPbr::Geometry {
   Vec3 wi, wo, h;
   double cos_i, cos_o, cos_d, cos_between;
+  Film film;  // where there is one
 
-  Geometry(Vec3 to_light, Vec3 to_viewer) noexcept
+  Geometry(Vec3 to_light, Vec3 to_viewer, const OpenPbrParameters& p) noexcept
       : wi(to_light),
         wo(to_viewer),
         h(half_vector(wi, wo)),
         cos_i(std::clamp(wi.z, kEpsilon, 1.0)),
         cos_o(std::clamp(wo.z, kEpsilon, 1.0)),
         cos_d(std::clamp(dot(wo, h), kEpsilon, 1.0)),
-        cos_between(std::clamp(dot(wi, wo), kEpsilon, 1.0)) {}
+        cos_between(std::clamp(dot(wi, wo), kEpsilon, 1.0)) {
+    if (p.thin_film_weight > 0) film = Film(p.thin_film_ior, p.thin_film_thickness, cos_d);
+  }
 };
 
 /// f_r of a layer, 1/sr, and the share of what lies below that it lets through.
@@ -236,16 +233,14 @@ OpenPbr::Highlight OpenPbr::highlight(const Roughness& alpha, const Geometry& g)
 }
 
 Rgb OpenPbr::dielectric_under_film(const Geometry& g) const noexcept {
-  const Film film(p_.thin_film_ior, p_.thin_film_thickness, g.cos_d);
+  const Film& film = g.film;
   const Polarized lower = fresnel_polarized(film.cos_inside, base_ior_ / film.ior);
   // Phases turn by pi at the denser side; parallel ones not beyond Brewster's angle.
   const double base2 = square(base_ior_), film2 = square(film.ior), cos2 = square(film.cos_inside);
   const double beyond = base2 - film2 * (1 - cos2);
-  const double shift_s = base2 < film2 ? kPi : 0, shift_p = base2 * base2 * cos2 < film2 * beyond ? kPi : 0;
-  const auto face = [](double reflectance, double shift) {
-    return LowerFace{{reflectance, reflectance, reflectance}, {shift, shift, shift}};
-  };
-  return fresnel_airy(g.cos_d, film, face(lower.p, shift_p), face(lower.s, shift_s));
+  const bool turns_p = base2 * base2 * cos2 < film2 * beyond, turns_s = base2 < film2;
+  return fresnel_airy(g.cos_d, film, {{lower.p, lower.p, lower.p}, {turns_p, turns_p, turns_p}},
+                      {{lower.s, lower.s, lower.s}, {turns_s, turns_s, turns_s}});
 }
 
 Rgb OpenPbr::metal_fresnel(double cosine) const noexcept {
@@ -261,13 +256,14 @@ Rgb OpenPbr::metal_fresnel(double cosine) const noexcept {
 }
 
 Rgb OpenPbr::metal_under_film(const Geometry& g) const noexcept {
-  const Film film(p_.thin_film_ior, p_.thin_film_thickness, g.cos_d);
+  const Film& film = g.film;
   const Rgb half = 0.5 * metal_fresnel(film.cos_inside);
-  const Rgb shift = each(metal_f0_, [&](double f0) {
+  const auto turns = [&](double f0) {
     const double root = std::sqrt(std::clamp(f0, 0.01, 0.99));
-    return (1 + root) / (1 - root) < film.ior ? kPi : 0;
-  });
-  const LowerFace face{{half.r, half.g, half.b}, {shift.r, shift.g, shift.b}};
+    return (1 + root) / (1 - root) < film.ior;
+  };
+  const LowerFace face{{half.r, half.g, half.b},
+                       {turns(metal_f0_.r), turns(metal_f0_.g), turns(metal_f0_.b)}};
   return fresnel_airy(g.cos_d, film, face, face);
 }
 
@@ -347,7 +343,7 @@ OpenPbr::Layer OpenPbr::fuzz(const Geometry& g) const noexcept {
 bool OpenPbr::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   Rgb value;
   if (wi.z > 0 && wo.z > 0) {
-    const Geometry g(wi, wo);
+    const Geometry g(wi, wo, p_);
     const Highlight facets = highlight(base_alpha_, g);
     const Rgb dielectric = p_.base_metalness < 1 ? dielectric_base(facets, g) : Rgb();
     const Rgb metal = p_.base_metalness > 0 ? metal_base(facets, g) : Rgb();

@@ -40,7 +40,7 @@ generation.HwShaderGenerator.bindLightShader(light, 1, context)
 open(sys.argv[1], 'w').write(generator.generate('m', material, context).getSourceCode('pixel'))
 )";
 
-constexpr std::size_t kNumbers = 31;  // of the 21 inputs, colours having three
+constexpr std::size_t kNumbers = 29;  // of the 21 inputs, colours having three
 
 // The interpreter that has MaterialX; empty if there is none.
 std::string python() {
@@ -58,7 +58,11 @@ std::string as_function(std::string text) {
   const auto replace = [&](const char* from, const char* to) {
     text = std::regex_replace(text, std::regex(from), to);
   };
-  replace("#version [^\n]*\n", "#define fwidth(x) vec3(1.0)\n");
+  // without an environment the generator forgets one uniform; derivatives are of fragments alone
+  const bool declared = text.find("bool u_refractionTwoSided") != std::string::npos;
+  replace("#version [^\n]*\n", declared
+                                   ? "#define fwidth(x) vec3(1.0)\n"
+                                   : "#define fwidth(x) vec3(1.0)\nbool u_refractionTwoSided = false;\n");
   replace("\nuniform ", "\n");
   replace("\nin VertexData\n(\\{[^}]*\\}) vd;", "\nstruct VertexData $1;\nVertexData vd;");
   replace("\nout vec4 out1;", "\nvec4 out1;");
@@ -93,6 +97,10 @@ std::string as_function(std::string text) {
 )";
 }
 
+// Sharper highlights are narrower than what directions of single precision resolve: with roughnesses from 0, and half of
+// the pairs in highlights, 0.2 % of the pairs differ by more than 1e-3.
+constexpr double kLeastRoughness = 0.02;
+
 // Each lobe absent, whole or in between; numbers that floats hold.
 OpenPbrParameters draw_parameters(Pcg32& random) {
   OpenPbrParameters p;
@@ -101,10 +109,12 @@ OpenPbrParameters draw_parameters(Pcg32& random) {
   };
   for (const OpenPbrInput& input : kOpenPbrInputs) {
     const bool share = input.name.ends_with("weight") || input.name == "base_metalness";
+    const bool width = input.name == "specular_roughness" || input.name == "coat_roughness";
+    const double min = width ? kLeastRoughness : input.min;
     const double max = input.name.ends_with("ior") ? 3 : input.name == "thin_film_thickness" ? 1 : input.max;
     if (const auto* number = std::get_if<double OpenPbrParameters::*>(&input.member)) {
       const double dice = random.uniform();
-      p.*(*number) = share && dice < 0.4 ? (dice < 0.2 ? 0 : 1) : within(input.min, max);
+      p.*(*number) = share && dice < 0.4 ? (dice < 0.2 ? 0 : 1) : within(min, max);
     } else {
       p.*std::get<Rgb OpenPbrParameters::*>(input.member) = {within(0, 1), within(0, 1), within(0, 1)};
     }

@@ -1,0 +1,471 @@
+#include <algorithm>
+#include <array>
+#include <bitset>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <burnish/fitting/numerics/bounded_least_squares.h>
+#include <burnish/fitting/parametric/openpbr_fit.h>
+#include <burnish/fitting/refinement/picture_loss.h>
+#include <burnish/math/parallel.h>
+
+namespace burnish {
+
+namespace {
+
+// The dimmed pictures: what the exposure makes of a pixel, and the error's weight.
+const double kDim = std::pow(1.0 / 32, PictureLoss::kInverseGamma);
+constexpr double kDimmedShare = 0.05;
+
+/// How long a minimization goes on, and how strongly inputs are drawn to their defaults: one that is a whole range off
+/// counts as an error of -20 log10(pull) dB.
+struct Effort {
+  int max_iterations;
+  double tolerance, pull;
+};
+constexpr Effort kFirst{20, 1e-5, 1e-4}, kAgain{15, 1e-6, 1e-6}, kEnd{40, 1e-6, 1e-6}, kLast{80, 1e-8, 1e-6};
+
+// A pixel in thirty of a highlight: what shows less, as an index that a coat hides, is not trusted to go far.
+constexpr double kLeastDiagonal = 1e-3;
+
+/// An input, or a channel of a colour.
+struct Unknown {
+  std::size_t input;
+  int channel;  ///< -1: a number, or all channels alike
+  double min, max, normal;
+};
+
+/// Inputs that keep their values, one bit each.
+using Inputs = std::bitset<kOpenPbrInputs.size()>;
+
+/// Those whose names begin so.
+Inputs inputs_named(std::string_view beginning) {
+  Inputs named;
+  for (std::size_t i = 0; i < kOpenPbrInputs.size(); ++i)
+    named[i] = kOpenPbrInputs[i].name.starts_with(beginning);
+  return named;
+}
+
+const Inputs kCoat = inputs_named("coat"), kFuzz = inputs_named("fuzz"), kFilm = inputs_named("thin_film");
+
+/// What a fit never varies.
+Inputs always_held(const OpenPbrFitOptions& options) {
+  Inputs held = inputs_named("base_weight");
+  if (!options.anisotropic)
+    held |= inputs_named("specular_roughness_anisotropy") | inputs_named("coat_roughness_anisotropy");
+  return held;
+}
+
+bool is_color(const OpenPbrInput& input) {
+  return std::holds_alternative<Rgb OpenPbrParameters::*>(input.member);
+}
+
+double& channel_of(Rgb& color, int channel) {
+  return channel == 0 ? color.r : channel == 1 ? color.g : color.b;
+}
+
+double get(OpenPbrParameters p, const Unknown& unknown) {
+  const auto& member = kOpenPbrInputs[unknown.input].member;
+  if (const auto* number = std::get_if<double OpenPbrParameters::*>(&member)) return p.*(*number);
+  return channel_of(p.*std::get<Rgb OpenPbrParameters::*>(member), std::max(unknown.channel, 0));
+}
+
+void set(OpenPbrParameters& p, const Unknown& unknown, double value) {
+  const auto& member = kOpenPbrInputs[unknown.input].member;
+  if (const auto* number = std::get_if<double OpenPbrParameters::*>(&member)) {
+    p.*(*number) = value;
+    return;
+  }
+  Rgb& color = p.*std::get<Rgb OpenPbrParameters::*>(member);
+  if (unknown.channel < 0)
+    color = value;
+  else
+    channel_of(color, unknown.channel) = value;
+}
+
+std::vector<Unknown> unknowns_of(const Inputs& held, const OpenPbrFitOptions& options) {
+  std::vector<Unknown> unknowns;
+  for (std::size_t i = 0; i < kOpenPbrInputs.size(); ++i) {
+    if (held[i]) continue;
+    const OpenPbrInput& input = kOpenPbrInputs[i];
+    Unknown unknown{i, -1, input.min, input.max, 0};
+    unknown.normal = get({}, unknown);
+    // sharper highlights are not seen; indices and films are those of known materials
+    if (input.name == "specular_roughness" || input.name == "coat_roughness") unknown.min = 0.02;
+    if (input.name.ends_with("ior")) unknown.max = 3;
+    if (input.name == "thin_film_thickness") unknown.max = 1.5;
+    const bool split = is_color(input) && !options.grey;
+    for (int c = 0; c < (split ? 3 : 1); ++c) {
+      unknown.channel = split ? c : -1;
+      unknowns.push_back(unknown);
+    }
+  }
+  return unknowns;
+}
+
+/// The pictures' differences, and the inputs' from their defaults, as functions of the unknowns.
+class Cost {
+ public:
+  Cost(const PicturePairs& pairs, const OpenPbrParameters& fixed, std::vector<Unknown> unknowns, double pull,
+       bool film)
+      : pairs_(pairs), fixed_(fixed), unknowns_(std::move(unknowns)), pull_(pull), film_(film) {}
+
+  /// One a channel of a pixel, one for what is left of them, one an unknown.
+  std::size_t functions() const { return pairs_.shown.size() + 1 + unknowns_.size(); }
+
+  OpenPbrParameters parameters(std::span<const double> x) const {
+    OpenPbrParameters p = fixed_;
+    for (std::size_t k = 0; k < x.size(); ++k) set(p, unknowns_[k], x[k]);
+    return p;
+  }
+
+  /// As LeastSquaresProblem::evaluate.
+  void evaluate(std::span<const double> x, std::span<double> values, std::span<double> slopes) {
+    const std::size_t pixels = pairs_.shown.size();
+    evaluate_brdf(x, f_);
+    shown_.resize(pixels);
+    for (std::size_t r = 0; r < pixels; ++r)
+      shown_[r] = std::pow(std::max(pairs_.exposure * f_[r] * pairs_.pairs[r / 3].wi.z, 0.0),
+                           PictureLoss::kInverseGamma);
+    double rest = 0;
+    for (std::size_t r = 0; r < pixels; ++r) {
+      const Pixel pixel = pixel_of(r);
+      values[r] = pixel.along;
+      rest += pixel.across * pixel.across;
+    }
+    values[pixels] = std::sqrt(rest);
+    for (std::size_t k = 0; k < x.size(); ++k)
+      values[pixels + 1 + k] = pull_ * (x[k] - unknowns_[k].normal) / (unknowns_[k].max - unknowns_[k].min);
+    if (!slopes.empty()) differentiate(x, slopes);
+  }
+
+ private:
+  void evaluate_brdf(std::span<const double> x, std::vector<double>& f) const {
+    const OpenPbr brdf(parameters(x));
+    f.resize(pairs_.shown.size());
+    for (std::size_t i = 0; i < pairs_.pairs.size(); ++i)
+      brdf.eval(pairs_.pairs[i].wi, pairs_.pairs[i].wo, std::span(f).subspan(3 * i, 3));
+  }
+
+  // Forward differences of f; the channels of a colour, which only a film lets see each other, in one evaluation.
+  void differentiate(std::span<const double> x, std::span<double> slopes) {
+    const std::size_t columns = x.size(), pixels = pairs_.shown.size();
+    std::ranges::fill(slopes, 0.0);
+    for (std::size_t k = 0; k < columns;) {
+      const std::size_t group = unknowns_[k].channel < 0 || film_ ? 1 : 3;
+      std::vector<double> moved(x.begin(), x.end());
+      std::array<double, 3> step{};
+      for (std::size_t g = 0; g < group; ++g) {
+        const Unknown& unknown = unknowns_[k + g];
+        const double size = 1e-5 * (unknown.max - unknown.min);
+        step[g] = x[k + g] + size > unknown.max ? -size : size;
+        moved[k + g] += step[g];
+      }
+      evaluate_brdf(moved, moved_f_);
+      for (std::size_t r = 0; r < pixels; ++r) {
+        const std::size_t column = group == 3 ? k + r % 3 : k;
+        const double slope = shown_slope(r) * (moved_f_[r] - f_[r]) / step[column - k];
+        slopes[r * columns + column] = pixel_of(r).gain * slope;
+      }
+      k += group;
+    }
+    for (std::size_t k = 0; k < columns; ++k)
+      slopes[(pixels + 1 + k) * columns + k] = pull_ / (unknowns_[k].max - unknowns_[k].min);
+  }
+
+  // Derivative of what is shown by f, bounded where f is next to nothing.
+  double shown_slope(std::size_t r) const {
+    constexpr double kDark = 1e-9;
+    return PictureLoss::kInverseGamma * shown_[r] / std::max(f_[r], kDark);
+  }
+
+  /// A channel of a pixel has two errors, at both exposures, whose slopes have one direction: the error along it, what
+  /// is left across it, and the slope by what is shown.
+  struct Pixel {
+    double along, across, gain;
+  };
+  Pixel pixel_of(std::size_t r) const {
+    std::array<double, 2> error, gain;
+    for (std::size_t e = 0; e < 2; ++e) {
+      const double weight = std::sqrt(pairs_.weights[r / 3] / 3) * kShares[e];
+      const double ours = kDims[e] * shown_[r], theirs = kDims[e] * pairs_.shown[r];
+      error[e] = weight * (std::min(1.0, ours) - std::min(1.0, theirs));
+      // a pixel too bright that should not be is told so
+      gain[e] = weight * kDims[e] * (ours <= 1 ? 1 : theirs < 1 ? PictureLoss::kSaturatedSlope : 0);
+    }
+    const double length = std::hypot(gain[0], gain[1]);
+    if (length == 0) return {0, std::hypot(error[0], error[1]), 0};
+    return {(gain[0] * error[0] + gain[1] * error[1]) / length,
+            (gain[1] * error[0] - gain[0] * error[1]) / length, length};
+  }
+
+  static inline const std::array<double, 2> kShares = {1, std::sqrt(kDimmedShare)}, kDims = {1, kDim};
+
+  const PicturePairs& pairs_;
+  const OpenPbrParameters fixed_;
+  const std::vector<Unknown> unknowns_;
+  const double pull_;
+  const bool film_;
+  std::vector<double> f_, shown_, moved_f_;
+};
+
+/// Where a minimization ended.
+struct Trial {
+  OpenPbrParameters parameters;
+  Inputs held;
+  double first_cost = 0, cost = 0;
+  int iterations = 0;
+  bool converged = false;
+};
+
+Trial minimize(const PicturePairs& pairs, const OpenPbrFitOptions& options, const OpenPbrParameters& start,
+               const Inputs& held, const Effort& effort) {
+  const std::vector<Unknown> unknowns = unknowns_of(held, options);
+  Cost cost(pairs, start, unknowns, effort.pull, !held[kFilm._Find_first()]);
+  LeastSquaresProblem problem{.functions = cost.functions(), .evaluate = {}, .lower = {}, .upper = {}};
+  std::vector<double> x;
+  for (const Unknown& unknown : unknowns) {
+    problem.lower.push_back(unknown.min);
+    problem.upper.push_back(unknown.max);
+    x.push_back(get(start, unknown));
+  }
+  problem.evaluate = [&](auto at, auto values, auto slopes) { cost.evaluate(at, values, slopes); };
+  const LeastSquaresSolution solution = solve_least_squares(problem, std::move(x),
+                                                            {.max_iterations = effort.max_iterations,
+                                                             .tolerance = effort.tolerance,
+                                                             .least_diagonal = kLeastDiagonal});
+  return {cost.parameters(solution.x), held, solution.first_cost, solution.cost, solution.iterations,
+          solution.converged};
+}
+
+/// Runs minimizations side by side.
+class Search {
+ public:
+  Search(const PicturePairs& pairs, const OpenPbrFitOptions& options) : pairs_(pairs), options_(options) {}
+
+  struct Start {
+    OpenPbrParameters parameters;
+    Inputs held;
+  };
+
+  /// The trials of these starts, best first.
+  std::vector<Trial> run(const std::vector<Start>& starts, const Effort& effort) {
+    std::vector<Trial> trials(starts.size());
+    for_each_chunk(starts.size(), 1, [&](std::size_t i, std::size_t, std::size_t) {
+      trials[i] = minimize(pairs_, options_, starts[i].parameters, starts[i].held, effort);
+    });
+    for (const Trial& trial : trials) {
+      iterations += trial.iterations;
+      ++count;
+    }
+    std::ranges::stable_sort(trials, {}, &Trial::cost);
+    return trials;
+  }
+
+  int iterations = 0, count = 0;
+
+ private:
+  const PicturePairs& pairs_;
+  const OpenPbrFitOptions& options_;
+};
+
+/// What each colour is guessed at: a grey that shows the mean of the pictures if it is diffuse.
+Rgb mean_color(const PicturePairs& pairs) {
+  std::array<double, 3> sum{};
+  double total = 0;
+  for (std::size_t i = 0; i < pairs.pairs.size(); ++i) {
+    total += pairs.weights[i] * pairs.pairs[i].wi.z;
+    for (std::size_t c = 0; c < 3; ++c)
+      sum[c] +=
+          pairs.weights[i] * std::pow(std::min(1.0, pairs.shown[3 * i + c]), 1 / PictureLoss::kInverseGamma);
+  }
+  const auto of = [&](double s) {
+    return std::clamp(3.141592653589793 * s / (pairs.exposure * total), 0.02, 0.98);
+  };
+  return {of(sum[0]), of(sum[1]), of(sum[2])};
+}
+
+double round6(double x) {
+  return std::round(x * 1e6) / 1e6;
+}
+
+OpenPbrParameters rounded(OpenPbrParameters p) {
+  for (const OpenPbrInput& input : kOpenPbrInputs)
+    if (const auto* number = std::get_if<double OpenPbrParameters::*>(&input.member)) {
+      p.*(*number) = round6(p.*(*number));
+    } else {
+      Rgb& color = p.*std::get<Rgb OpenPbrParameters::*>(input.member);
+      color = {round6(color.r), round6(color.g), round6(color.b)};
+    }
+  return p;
+}
+
+/// Without what none of the weights shows.
+OpenPbrParameters tidied(OpenPbrParameters p) {
+  constexpr double kNothing = 1e-5;
+  const OpenPbrParameters defaults;
+  const auto reset = [&](std::string_view layer, double weight) {
+    if (weight > kNothing) return;
+    for (const OpenPbrInput& input : kOpenPbrInputs)
+      if (input.name.starts_with(layer))
+        std::visit([&](auto member) { p.*member = defaults.*member; }, input.member);
+  };
+  reset("coat", p.coat_weight);
+  reset("fuzz", p.fuzz_weight);
+  reset("thin_film", p.thin_film_weight);
+  return p;
+}
+
+OpenPbrFit to_fit(const PicturePairs& pairs, const Trial& trial, double first_cost) {
+  OpenPbrFit fit{.parameters = rounded(tidied(trial.parameters)), .summary = {}};
+  std::vector<double> shown;
+  pairs.show(OpenPbr(fit.parameters), shown);
+  fit.summary = {.error_before = std::sqrt(2 * first_cost),
+                 .error_after = std::sqrt(pairs.mean_squared_error(shown)),
+                 .iterations = trial.iterations,
+                 .stop_reason = trial.converged ? StopReason::converged : StopReason::iteration_limit};
+  return fit;
+}
+
+/// The two thicknesses of a film that show the colours best, of steps through the first fringes: errors have a minimum a
+/// fringe.
+std::array<double, 2> film_thicknesses(const PicturePairs& pairs, OpenPbrParameters p) {
+  constexpr double kStep = 0.06;
+  constexpr int kSteps = 18;
+  std::vector<std::pair<double, double>> tried;  // error, thickness
+  std::vector<double> shown;
+  for (int i = 1; i <= kSteps; ++i) {
+    p.thin_film_thickness = kStep * i;
+    pairs.show(OpenPbr(p), shown);
+    tried.emplace_back(pairs.mean_squared_error(shown), p.thin_film_thickness);
+  }
+  // least among their neighbours, best first
+  std::vector<std::pair<double, double>> minima;
+  for (std::size_t i = 0; i < tried.size(); ++i)
+    if ((i == 0 || tried[i] < tried[i - 1]) && (i + 1 == tried.size() || tried[i] < tried[i + 1]))
+      minima.push_back(tried[i]);
+  std::ranges::sort(minima);
+  return {minima.front().second, minima[std::min<std::size_t>(1, minima.size() - 1)].second};
+}
+
+/// What a layer begins with, on what was found without it.
+void append_layers(const PicturePairs& pairs, const Trial& trial, const Inputs& always,
+                   std::vector<Search::Start>& starts) {
+  const OpenPbrParameters& p = trial.parameters;
+  const auto absent = [&](const Inputs& layer) { return trial.held[layer._Find_first()]; };
+  const auto add = [&](const Inputs& layer, OpenPbrParameters changed) {
+    if (absent(layer)) starts.push_back({changed, (trial.held & ~layer) | always});
+  };
+  // a coat above the highlight, or as the highlight with a rough base below
+  OpenPbrParameters coated = p;
+  coated.coat_weight = 1;
+  coated.coat_roughness = p.specular_roughness;
+  coated.coat_roughness_anisotropy = p.specular_roughness_anisotropy;
+  coated.specular_roughness = std::max(p.specular_roughness, 0.5);
+  add(kCoat, coated);
+  for (const double roughness : {0.1, 0.35}) {
+    coated = p;
+    coated.coat_weight = 0.5;
+    coated.coat_roughness = roughness;
+    add(kCoat, coated);
+  }
+  OpenPbrParameters fuzzy = p;
+  fuzzy.fuzz_weight = 0.2;
+  add(kFuzz, fuzzy);
+  if (!absent(kFilm)) return;
+  // a film that colours what is grey, or adds to the colours
+  OpenPbrParameters filmed = p;
+  filmed.base_color = (p.base_color.r + p.base_color.g + p.base_color.b) / 3;
+  filmed.specular_color = 1;
+  filmed.thin_film_weight = 1;
+  for (const double thickness : film_thicknesses(pairs, filmed)) {
+    filmed.thin_film_thickness = thickness;
+    add(kFilm, filmed);
+  }
+  filmed = p;
+  filmed.thin_film_weight = 0.5;
+  filmed.thin_film_thickness = film_thicknesses(pairs, filmed).front();
+  add(kFilm, filmed);
+}
+
+constexpr std::size_t kKept = 2;  // trials that are built upon
+
+/// The best of the base alone, and of more layers, one after another; best first.
+std::vector<Trial> search_layers(Search& search, const PicturePairs& pairs, const OpenPbrFitOptions& options,
+                                 const std::function<void(double)>& progress) {
+  const Inputs base = always_held(options) | kCoat | kFuzz | kFilm;
+  std::vector<Search::Start> starts;
+  for (const double metalness : {0.0, 1.0})
+    for (const double roughness : {0.15, 0.35, 0.65})
+      starts.push_back(
+          {{.base_color = mean_color(pairs), .base_metalness = metalness, .specular_roughness = roughness},
+           base});
+  std::vector<Trial> kept = search.run(starts, kFirst);
+  constexpr int kRounds = 3;
+  for (int round = 0; round < kRounds; ++round) {
+    progress(0.2 * (round + 1));
+    starts.clear();
+    for (std::size_t i = 0; i < std::min(kept.size(), kKept); ++i)
+      append_layers(pairs, kept[i], always_held(options), starts);
+    if (starts.empty()) break;
+    const std::vector<Trial> trials = search.run(starts, kFirst);
+    kept.insert(kept.end(), trials.begin(), trials.end());
+    std::ranges::stable_sort(kept, {}, &Trial::cost);
+  }
+  return kept;
+}
+
+/// The same with what shows too little at its default: layers first, then what others say as well.
+Trial simplified(Search& search, Trial best) {
+  constexpr double kAsGood = 1.01, kExact = 2e-11;
+  const double most = kAsGood * best.cost + kExact;
+  const OpenPbrParameters defaults;
+  for (const std::string_view name :
+       {"thin_film", "fuzz", "coat", "specular_color", "coat_color", "coat_darkening", "specular_weight",
+        "fuzz_color", "base_diffuse_roughness", "specular_roughness_anisotropy",
+        "coat_roughness_anisotropy"}) {
+    const Inputs group = inputs_named(name);
+    if ((best.held & group) == group) continue;
+    OpenPbrParameters without = best.parameters;
+    for (std::size_t i = 0; i < kOpenPbrInputs.size(); ++i)
+      if (group[i])
+        std::visit([&](auto member) { without.*member = defaults.*member; }, kOpenPbrInputs[i].member);
+    const Trial trial = search.run({{without, best.held | group}}, kAgain).front();
+    if (trial.cost <= most) best = trial;
+  }
+  return best;
+}
+
+}  // namespace
+
+OpenPbrFit refine_openpbr(const PicturePairs& pairs, const OpenPbrParameters& start,
+                          const OpenPbrFitOptions& options) {
+  const Trial trial = minimize(pairs, options, start, always_held(options), kLast);
+  OpenPbrFit fit = to_fit(pairs, trial, trial.first_cost);
+  fit.starts = 1;
+  return fit;
+}
+
+OpenPbrFit fit_openpbr(const PicturePairs& pairs, const OpenPbrFitOptions& options) {
+  Search search(pairs, options);
+  const auto progress = [&](double fraction) {
+    if (options.progress) options.progress(fraction);
+  };
+  const std::vector<Trial> kept = search_layers(search, pairs, options, progress);
+
+  // the best few to their ends, the best of them without what it does not need, and that to its end
+  std::vector<Search::Start> starts;
+  for (std::size_t i = 0; i < std::min(kept.size(), kKept); ++i)
+    starts.push_back({kept[i].parameters, kept[i].held});
+  const Trial simple = simplified(search, search.run(starts, kEnd).front());
+  progress(0.9);
+  const Trial best = search.run({{simple.parameters, simple.held}}, kLast).front();
+  progress(1);
+  OpenPbrFit fit = to_fit(pairs, best, kept.front().first_cost);
+  fit.summary.iterations = search.iterations;
+  fit.starts = search.count;
+  return fit;
+}
+
+}  // namespace burnish

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+#include <burnish/fitting/fit_summary.h>
+#include <burnish/fitting/parametric/picture_pairs.h>
+#include <burnish/reflectance/analytic/openpbr.h>
+
+namespace burnish {
+
+struct OpenPbrFit {
+  OpenPbrParameters parameters;  ///< rounded to six decimals
+  /// Errors are rms ones of the pictures: before of the best first start, after of the result. Iterations are those of
+  /// all minimizations.
+  FitSummary summary;
+  int starts = 0;  ///< minimizations run
+};
+
+struct OpenPbrFitOptions {
+  bool grey = false;         ///< colours are grey
+  bool anisotropic = false;  ///< stretches are looked for
+  std::function<void(double fraction)> progress = {};
+};
+
+/// The OpenPBR material whose lit spheres have the least mean squared difference from those of `pairs`, pictures at
+/// 1/32 of the exposure adding a little, so that highlights keep their height: Levenberg-Marquardt steps within the
+/// ranges of kOpenPbrInputs. Smooth to rough metals and dielectrics are tried first, then the best with coat, fuzz and
+/// film, one after another. Layers and inputs without which the squared error is less than a percent greater go back to
+/// their defaults, so that of inputs that say the same one is left; base_weight is 1. The same bits for every number
+/// of threads.
+OpenPbrFit fit_openpbr(const PicturePairs& pairs, const OpenPbrFitOptions& options = {});
+
+/// One minimization over all inputs from given ones.
+OpenPbrFit refine_openpbr(const PicturePairs& pairs, const OpenPbrParameters& start,
+                          const OpenPbrFitOptions& options = {});
+
+}  // namespace burnish

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <burnish/reflectance/brdf.h>
+
+namespace burnish {
+
+/// What the three lit spheres (metrics/sphere_images.h) show of a BRDF, at few places that crowd at the highlights: a
+/// quadrature of the pictures' squared error.
+struct PicturePairs {
+  std::vector<DirectionPair> pairs;  ///< lit and seen
+  std::vector<double> weights;       ///< shares of the three frames' area
+  std::vector<double> shown;         ///< (exposure f cos theta_i)^(1/2.2), not clamped; three a pair
+  double exposure = 1;
+
+  /// (exposure f cos theta_i)^(1/2.2) of another BRDF of three channels; resized.
+  void show(BrdfRef brdf, std::vector<double>& out) const;
+
+  /// Mean squared difference of min(1, dim * shown) from what another BRDF shows.
+  double mean_squared_error(std::span<const double> other, double dim = 1) const noexcept;
+};
+
+/// Places of a source of 1 or 3 channels that it knows. Of isotropic sources half of each sphere. `exposure` as
+/// sphere_exposure.
+PicturePairs picture_pairs(BrdfRef source, double exposure);
+
+}  // namespace burnish

@@ -1,0 +1,89 @@
+#include <array>
+
+#include <gtest/gtest.h>
+
+#include <burnish/math/random.h>
+#include <burnish/reflectance/analytic.h>
+#include <burnish/testing/albedo.h>
+#include <burnish/testing/directions.h>
+
+namespace burnish {
+namespace {
+
+Rgb eval(const OpenPbrParameters& parameters, Vec3 wi, Vec3 wo) {
+  std::array<double, 3> f;
+  OpenPbr(parameters).eval(wi, wo, f);
+  return {f[0], f[1], f[2]};
+}
+
+const Vec3 kLight = normalize({0.4, 0.2, 0.7}), kViewer = normalize({-0.5, 0.1, 0.6});
+
+// Of index 1 the highlight is gone, but the fit of its albedo keeps a little off the base.
+TEST(OpenPbr, ItsBaseIsLambertianWhereItIsSmooth) {
+  const OpenPbrParameters matt{.base_color = {0.2, 0.5, 0.8}, .specular_ior = 1};
+  const Rgb here = eval(matt, kLight, kViewer), there = eval(matt, normalize({-0.7, 0.2, 0.3}), kViewer);
+  EXPECT_NEAR(here.r, there.r, 1e-12);
+  EXPECT_NEAR(here.b / here.r, 4, 1e-6);  // as if a little were lost between walls
+  EXPECT_LE(here.b, 0.8 / kPi);
+}
+
+TEST(OpenPbr, AsAMetalHasTheDensityOfItsFacets) {
+  const OpenPbrParameters metal{.base_color = 0.9, .base_metalness = 1, .specular_roughness = 0.05};
+  // D F / 4 at the peak, nothing masked
+  const double alpha = 0.0025;
+  EXPECT_NEAR(eval(metal, {0, 0, 1}, {0, 0, 1}).g, 0.9 / (4 * kPi * alpha * alpha),
+              0.01 * 0.9 / (4 * kPi * alpha * alpha));
+}
+
+TEST(OpenPbr, LosesNoLightBetweenRoughFacets) {
+  for (const double roughness : {0.3, 0.6, 0.9}) {
+    const OpenPbrParameters white{.base_color = 1, .base_metalness = 1, .specular_roughness = roughness};
+    const OpenPbr metal(white);
+    // the fit of the albedo, in its source within 2 %, and the albedo itself
+    EXPECT_NEAR((albedo<128, 192>)(metal, normalize({0.3, 0.2, 0.8})), 1, 0.05) << roughness;
+  }
+}
+
+TEST(OpenPbr, StretchesAlongTheTangent) {
+  const OpenPbrParameters brushed{.base_metalness = 1, .specular_roughness_anisotropy = 0.8};
+  const Vec3 along = normalize({0.3, 0, 1}), across = normalize({0, 0.3, 1});
+  EXPECT_GT(eval(brushed, along, {0, 0, 1}).g, 2 * eval(brushed, across, {0, 0, 1}).g);
+  EXPECT_FALSE(OpenPbr(brushed).isotropic());
+}
+
+TEST(OpenPbr, WeightsOfZeroLeaveNothingOfALayer) {
+  const OpenPbrParameters plain;
+  OpenPbrParameters dressed;
+  dressed.coat_color = {0.1, 0.2, 0.3};
+  dressed.coat_roughness = 0.7;
+  dressed.fuzz_color = {1, 0, 0};
+  dressed.thin_film_thickness = 0.3;
+  EXPECT_EQ(eval(plain, kLight, kViewer), eval(dressed, kLight, kViewer));
+}
+
+TEST(OpenPbr, ACoatDarkensAndAFilmColours) {
+  OpenPbrParameters p;
+  const Rgb bare = eval(p, kLight, {0, 0, 1});
+  p.coat_weight = 1;
+  const Rgb coated = eval(p, kLight, {0, 0, 1});
+  EXPECT_LT(coated.g, bare.g);
+  EXPECT_EQ(coated.r, coated.b);
+  p.coat_weight = 0;
+  p.thin_film_weight = 1;
+  const Vec3 mirrored = normalize({0.05, 0, 1});
+  const Rgb filmed = eval(p, mirrored, mirror(mirrored));
+  EXPECT_GT(std::abs(filmed.r - filmed.b), 0.01 * filmed.g);
+}
+
+TEST(OpenPbr, KeepsItsParametersAsAnAnalyticBrdf) {
+  OpenPbrParameters p;
+  p.base_color = {0.1, 0.2, 0.3};
+  p.coat_ior = 1.7;
+  p.thin_film_thickness = 0.25;
+  const AnalyticBrdf brdf = parse_analytic(format_analytic(analytic_openpbr(p)));
+  EXPECT_EQ(std::get<OpenPbr>(brdf.variant()).parameters(), p);
+  EXPECT_FALSE(brdf.model().reciprocal);
+}
+
+}  // namespace
+}  // namespace burnish
