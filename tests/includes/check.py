@@ -26,7 +26,7 @@ ALLOWED = {
     "hardware": [],
     "report": [],
     "render": ["shaders"],
-    "export": ["io", "render", "shaders", "textures"],
+    "export": ["fitting", "io", "render", "shaders", "textures"],
 }
 DOOR = "burnish.h"
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)

@@ -13,9 +13,11 @@
 #include <burnish/export/materialx.h>
 #include <burnish/export/mdl.h>
 #include <burnish/export/metallic_roughness_fit.h>
+#include <burnish/export/nearest_openpbr.h>
 #include <burnish/export/usda.h>
 #include <burnish/export/web_module.h>
 #include <burnish/io/rgl.h>
+#include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/rgl_builder.h>
 #include <burnish/render/gl/surface_environment.h>
 #include <burnish/shaders/shader.h>
@@ -61,7 +63,9 @@ class ModelExport {
   void add_levels();
   void add_cube_maps();
   void add_images(ExportTarget target, std::string (*encode)(const Table& table));
-  const MetallicRoughness& core();
+  const MetallicRoughnessFit& core();
+  const NearestOpenPbr& openpbr();
+  void add_gltf();
   void add_materialx();
   void add_mdl();
   void add_light(const SurfaceLight& light);
@@ -70,7 +74,9 @@ class ModelExport {
   const ExportOptions& options_;
   json manifest_;
   ExportedFiles result_;
+  // found when first asked for
   std::optional<MetallicRoughnessFit> core_;
+  std::optional<NearestOpenPbr> openpbr_;
 };
 
 void ModelExport::add_shader(ShaderLanguage language) {
@@ -158,8 +164,8 @@ void ModelExport::add_images(ExportTarget target, std::string (*encode)(const Ta
   }
 }
 
-// The core material of glTF that looks most alike, which takes a second: found when it is first asked for.
-const MetallicRoughness& ModelExport::core() {
+// The core material of glTF that looks most alike.
+const MetallicRoughnessFit& ModelExport::core() {
   if (!core_) {
     core_ = fit_metallic_roughness(brdf_);
     json entry = core_entry(core_->material);
@@ -167,12 +173,30 @@ const MetallicRoughness& ModelExport::core() {
     entry["psnr"] = core_->psnr;
     manifest_["core_material"] = std::move(entry);
   }
-  return core_->material;
+  return *core_;
+}
+
+// The parameters of OpenPBR that look most alike.
+const NearestOpenPbr& ModelExport::openpbr() {
+  if (!openpbr_) {
+    openpbr_ = nearest_openpbr(brdf_);
+    manifest_["openpbr"] = {{"spec", format_analytic(analytic_openpbr(openpbr_->parameters))},
+                            {"psnr", openpbr_->psnr}};
+  }
+  return *openpbr_;
+}
+
+// The core material, or OpenPBR's with its layers in extensions where that comes closer.
+void ModelExport::add_gltf() {
+  const bool layered = openpbr().psnr > core().psnr;
+  json material = layered ? gltf_material(openpbr().parameters) : gltf_material(core().material);
+  manifest_["gltf"] = add(options_.name + ".glb", gltf_binary(brdf_, std::move(material), options_.name));
+  manifest_["gltf_material"] = layered ? "openpbr" : "core_material";
 }
 
 void ModelExport::add_materialx() {
   const ShaderFilter filter = options_.exact ? ShaderFilter::exact : ShaderFilter::hardware;
-  for (ExportedFile& file : materialx_files(brdf_, core(), filter, options_.name))
+  for (ExportedFile& file : materialx_files(brdf_, core().material, filter, options_.name))
     manifest_["materialx"].push_back(add(std::move(file.name), std::move(file.bytes)));
 }
 
@@ -231,10 +255,10 @@ ExportedFiles ModelExport::run() && {
   if (wants(ExportTarget::png)) add_images(ExportTarget::png, encode_png_table);
 
   // materials of other programs
-  if (wants(ExportTarget::gltf)) manifest_["gltf"] = add(name + ".glb", gltf_binary(brdf_, core(), name));
+  if (wants(ExportTarget::gltf)) add_gltf();
   if (wants(ExportTarget::materialx)) add_materialx();
   if (wants(ExportTarget::usda))
-    manifest_["usda"] = add(name + ".usda", usda_layer(openpbr_of(core()), name));
+    manifest_["usda"] = add(name + ".usda", usda_layer(openpbr().parameters, core().material, name));
   if (wants(ExportTarget::mdl)) add_mdl();
   if (wants(ExportTarget::three)) manifest_["three"] = add(name + ".three.js", three_module(brdf_, name));
   if (wants(ExportTarget::babylon))

@@ -10,6 +10,7 @@
 #include <burnish/export/manifest.h>
 #include <burnish/export/materialx.h>
 #include <burnish/export/mdl.h>
+#include <burnish/export/metallic_roughness_fit.h>
 #include <burnish/export/usda.h>
 #include <burnish/io/open_source.h>
 #include <burnish/io/rgl.h>
@@ -38,10 +39,10 @@ std::vector<ExportedFile> files_of(const std::string& spec, ExportTarget target,
     case ExportTarget::materialx:
       return {materialx_file(parameters, name)};
     case ExportTarget::usda:
-      return {{name + ".usda", usda_layer(parameters, name)}};
+      return {{name + ".usda", usda_layer(parameters, fit_metallic_roughness(brdf).material, name)}};
     case ExportTarget::gltf:
       manifest["material"] = gltf_material(parameters);
-      return {{name + ".glb", gltf_binary(parameters, name)}};
+      return {{name + ".glb", gltf_binary(gltf_material(parameters), name)}};
     case ExportTarget::mdl: {
       MdlModule module = mdl_module(open_source(spec, {}), options.cells, name);
       manifest["losses"] = std::move(module.losses);

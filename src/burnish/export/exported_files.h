@@ -18,9 +18,9 @@ enum class ExportTarget {
   cube,       ///< tables of one direction as cube maps, KTX2
   exr,        ///< a table an OpenEXR image
   png,        ///< a table a PNG image
-  gltf,       ///< GLB: the nearest core material, the factors in an extension
+  gltf,       ///< GLB: the nearest material with extensions, the factors in one of ours
   materialx,  ///< a MaterialX document, with a node of its own where the model is factored
-  usda,       ///< a USD layer: OpenPBR, or the nearest core material as that, and a preview surface
+  usda,       ///< a USD layer: the nearest OpenPBR and a preview surface
   mdl,        ///< an MDL module and its measured BSDF
   three,      ///< a module that makes a material of three.js
   babylon,    ///< a module that makes a material of Babylon.js

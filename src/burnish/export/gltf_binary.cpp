@@ -149,18 +149,22 @@ double reflectance_at_normal(double ior) {
 
 }  // namespace
 
-std::string gltf_binary(const FactoredBrdf& brdf, const MetallicRoughness& core, const std::string& name) {
+std::string gltf_binary(const FactoredBrdf& brdf, json material, const std::string& name) {
   Binary binary;
-  json extensions{{"BURNISH_materials_factored", factored_extension(brdf, binary)}};
+  material["extensions"]["BURNISH_materials_factored"] = factored_extension(brdf, binary);
+  return scene_of(std::move(material), name, std::move(binary));
+}
+
+std::string gltf_binary(json material, const std::string& name) {
+  return scene_of(std::move(material), name, {});
+}
+
+json gltf_material(const MetallicRoughness& core) {
+  json extensions = json::object();
   if (core.anisotropy > 0)
     extensions["KHR_materials_anisotropy"] = {{"anisotropyStrength", core.anisotropy},
                                               {"anisotropyRotation", core.across ? kHalfPi : 0}};
-  return scene_of({{"pbrMetallicRoughness", core_entry(core)}, {"extensions", extensions}}, name,
-                  std::move(binary));
-}
-
-std::string gltf_binary(const OpenPbrParameters& parameters, const std::string& name) {
-  return scene_of(gltf_material(parameters), name, {});
+  return {{"pbrMetallicRoughness", core_entry(core)}, {"extensions", extensions}};
 }
 
 json gltf_material(const OpenPbrParameters& p) {

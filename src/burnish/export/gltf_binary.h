@@ -10,18 +10,21 @@
 
 namespace burnish {
 
-/// A glTF 2.0 file (GLB): a sphere with tangents whose material is `core`, and whose extension
-/// BURNISH_materials_factored holds the factors.
-std::string gltf_binary(const FactoredBrdf& brdf, const MetallicRoughness& core, const std::string& name);
+/// A glTF 2.0 file (GLB): a sphere with tangents whose material is `material`, as gltf_material makes it, and
+/// whose extension BURNISH_materials_factored holds the factors.
+std::string gltf_binary(const FactoredBrdf& brdf, nlohmann::json material, const std::string& name);
 
-/// The same with the nearest that glTF has to OpenPBR: the core material with KHR_materials_ior, _specular,
-/// _anisotropy, _clearcoat, _sheen and _iridescence, those of them that do something. Roughness and anisotropy
-/// are exact, the coat's reflectance at normal incidence is that of its index of refraction up to 0.04, its
-/// colour goes to the base; lost are the diffuse base's roughness and the coat's anisotropy and
-/// darkening. Source: [glTF 2021], [OpenPBR 2024].
-std::string gltf_binary(const OpenPbrParameters& parameters, const std::string& name);
+/// The same without factors.
+std::string gltf_binary(nlohmann::json material, const std::string& name);
 
-/// That material as JSON of glTF's, without its name.
+/// A core material as JSON of glTF's, without a name, with KHR_materials_anisotropy where it has a grain.
+nlohmann::json gltf_material(const MetallicRoughness& core);
+
+/// The nearest that glTF has to OpenPBR: the core material with KHR_materials_ior, _specular, _anisotropy,
+/// _clearcoat, _sheen and _iridescence, those of them that do something. Roughness and anisotropy are exact,
+/// the coat's reflectance at normal incidence is that of its index of refraction up to 0.04, its colour goes
+/// to the base; lost are the diffuse base's roughness and the coat's anisotropy and darkening. Source:
+/// [glTF 2021], [OpenPBR 2024].
 nlohmann::json gltf_material(const OpenPbrParameters& parameters);
 
 }  // namespace burnish

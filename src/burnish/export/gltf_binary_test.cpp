@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include <burnish/export/gltf_binary.h>
-#include <burnish/export/usda.h>
 
 namespace burnish {
 namespace {
@@ -12,7 +11,7 @@ namespace {
 using nlohmann::json;
 
 json material(const OpenPbrParameters& parameters) {
-  const std::string file = gltf_binary(parameters, "paint");
+  const std::string file = gltf_binary(gltf_material(parameters), "paint");
   EXPECT_EQ(file.substr(0, 4), "glTF");
   const std::size_t size =
       static_cast<unsigned char>(file[12]) + (std::size_t{static_cast<unsigned char>(file[13])} << 8);
@@ -53,12 +52,22 @@ TEST(GltfBinary, HasAnExtensionForEachLayerOfOpenPbr) {
   EXPECT_DOUBLE_EQ(color[1].get<double>(), 0.4);  // half of it under a coat that lets no green through
 }
 
+// alpha^2 of the core material across, and mix(alpha, 1, strength^2) along: OpenPBR's, eq. of its roughness.
 TEST(GltfBinary, HasOpenPbrsAlphas) {
-  const MetallicRoughness core{{0.9, 0.5, 0.1}, 1, 0.4, 0.6, false};
-  const json entry = material(openpbr_of(core));
-  EXPECT_NEAR(entry["pbrMetallicRoughness"]["roughnessFactor"].get<double>(), core.roughness, 1e-9);
-  EXPECT_NEAR(entry["extensions"]["KHR_materials_anisotropy"]["anisotropyStrength"].get<double>(),
-              core.anisotropy, 1e-9);
+  for (const double anisotropy : {0.0, 0.2, 0.7, 1.0})
+    for (const double roughness : {0.0, 0.3, 0.8}) {
+      OpenPbrParameters p;
+      p.specular_roughness = roughness;
+      p.specular_roughness_anisotropy = anisotropy;
+      const double across = 1 - anisotropy,
+                   alpha_x = roughness * roughness * std::sqrt(2 / (1 + across * across));
+      const json entry = material(p);
+      const double alpha = std::pow(entry["pbrMetallicRoughness"]["roughnessFactor"].get<double>(), 2);
+      const double strength =
+          entry.value("/extensions/KHR_materials_anisotropy/anisotropyStrength"_json_pointer, 0.0);
+      EXPECT_NEAR(alpha, across * alpha_x, 1e-12);
+      EXPECT_NEAR(alpha + (1 - alpha) * strength * strength, alpha_x, 1e-12);
+    }
 }
 
 }  // namespace

@@ -1,4 +1,3 @@
-#include <cmath>
 #include <string_view>
 #include <variant>
 
@@ -11,17 +10,11 @@ namespace burnish {
 
 namespace {
 
-// What a preview surface is given.
-struct Preview {
-  Rgb color;
-  double metallic = 0, roughness = 0.5, ior = 1.5, coat = 0, coat_roughness = 0;
-};
-
 std::string color_text(const Rgb& c) {
   return fmt::format("({}, {}, {})", c.r, c.g, c.b);
 }
 
-// {0} name, {1} preview's inputs, {2} what else the material has
+// {0} name, {1} to {3} colour, metallic and roughness of the preview, {4} the node's inputs
 constexpr std::string_view kLayer = R"(#usda 1.0
 (
     defaultPrim = "{0}"
@@ -50,26 +43,28 @@ def Xform "{0}" (
         def Shader "preview"
         {{
             uniform token info:id = "UsdPreviewSurface"
-{1}            token outputs:surface
+            color3f inputs:diffuseColor = {1}
+            float inputs:metallic = {2}
+            float inputs:roughness = {3}
+            token outputs:surface
         }}
-{2}    }}
+
+        token outputs:mtlx:surface.connect = </{0}/material/openpbr.outputs:out>
+
+        def Shader "openpbr"
+        {{
+            uniform token info:id = "ND_open_pbr_surface_surfaceshader"
+{4}            token outputs:out
+        }}
+    }}
 }}
 )";
 
-std::string layer(const std::string& name, const Preview& preview, const std::string& more) {
-  check_shader_name(name);
-  std::string inputs =
-      fmt::format("            color3f inputs:diffuseColor = {}\n", color_text(preview.color));
-  for (const auto& [input, value] : {std::pair<const char*, double>{"metallic", preview.metallic},
-                                     {"roughness", preview.roughness},
-                                     {"ior", preview.ior},
-                                     {"clearcoat", preview.coat},
-                                     {"clearcoatRoughness", preview.coat_roughness}})
-    inputs += fmt::format("            float inputs:{} = {}\n", input, value);
-  return fmt::format(kLayer, name, inputs, more);
-}
+}  // namespace
 
-std::string open_pbr_surface(const OpenPbrParameters& parameters, const std::string& name) {
+std::string usda_layer(const OpenPbrParameters& parameters, const MetallicRoughness& preview,
+                       const std::string& name) {
+  check_shader_name(name);
   std::string inputs;
   for (const OpenPbrInput& input : kOpenPbrInputs) {
     const auto* number = std::get_if<double OpenPbrParameters::*>(&input.member);
@@ -77,37 +72,8 @@ std::string open_pbr_surface(const OpenPbrParameters& parameters, const std::str
                      : fmt::format("            color3f inputs:{} = {}\n", input.name,
                                    color_text(parameters.*std::get<Rgb OpenPbrParameters::*>(input.member)));
   }
-  return fmt::format(
-      "\n        token outputs:mtlx:surface.connect = </{}/material/openpbr.outputs:out>\n\n"
-      "        def Shader \"openpbr\"\n        {{\n"
-      "            uniform token info:id = \"ND_open_pbr_surface_surfaceshader\"\n"
-      "{}            token outputs:out\n        }}\n",
-      name, inputs);
-}
-
-}  // namespace
-
-std::string usda_layer(const OpenPbrParameters& parameters, const std::string& name) {
-  return layer(name,
-               {.color = parameters.base_weight * parameters.base_color,
-                .metallic = parameters.base_metalness,
-                .roughness = parameters.specular_roughness,
-                .ior = parameters.specular_ior,
-                .coat = parameters.coat_weight,
-                .coat_roughness = parameters.coat_roughness},
-               open_pbr_surface(parameters, name));
-}
-
-OpenPbrParameters openpbr_of(const MetallicRoughness& core) noexcept {
-  const double alpha_y = core.roughness * core.roughness,
-               alpha_x = core.across ? alpha_y : alpha_y + (1 - alpha_y) * core.anisotropy * core.anisotropy;
-  const double across = alpha_y / alpha_x;
-  OpenPbrParameters parameters;
-  parameters.base_color = core.base_color;
-  parameters.base_metalness = core.metallic;
-  parameters.specular_roughness = std::sqrt(alpha_x * std::sqrt((1 + across * across) / 2));
-  parameters.specular_roughness_anisotropy = 1 - across;
-  return parameters;
+  return fmt::format(kLayer, name, color_text(preview.base_color), preview.metallic, preview.roughness,
+                     inputs);
 }
 
 }  // namespace burnish
