@@ -31,6 +31,7 @@ namespace {
 using nlohmann::json;
 
 constexpr float kMaxHalf = 65504;
+constexpr double kSeenAlike = 45;  // dB: a core material that is as close needs no layers
 
 // Files so far and what the manifest says of them.
 class ModelExport {
@@ -186,9 +187,9 @@ const NearestOpenPbr& ModelExport::openpbr() {
   return *openpbr_;
 }
 
-// The core material, or OpenPBR's with its layers in extensions where that comes closer.
+// The core material, or OpenPBR's with its layers in extensions where that comes closer by half the squared error.
 void ModelExport::add_gltf() {
-  const bool layered = openpbr().psnr > core().psnr;
+  const bool layered = core().psnr < kSeenAlike && openpbr().psnr > core().psnr + 3;
   json material = layered ? gltf_material(openpbr().parameters) : gltf_material(core().material);
   manifest_["gltf"] = add(options_.name + ".glb", gltf_binary(brdf_, std::move(material), options_.name));
   manifest_["gltf_material"] = layered ? "openpbr" : "core_material";

@@ -9,6 +9,7 @@
 #include <burnish/file.h>
 #include <burnish/io/mbsdf.h>
 #include <burnish/testing/models.h>
+#include <burnish/testing/sanitized.h>
 #include <burnish/testing/tools.h>
 
 namespace burnish {
@@ -45,7 +46,9 @@ TEST(Base64, WritesTheVectorsOfItsStandard) {  // RFC 4648, section 10
 
 TEST(ExportModel, DescribesEveryFileInTheLastOne) {
   ExportOptions options{.to = {}, .name = "paint", .cells = 6};
-  for (const std::string_view name : export_target_names()) options.to.push_back(export_target(name));
+  for (const std::string_view name : export_target_names())
+    if (!BURNISH_SANITIZED || (name != "gltf" && name != "usda"))  // which look for materials for seconds
+      options.to.push_back(export_target(name));
   const ExportedFiles exported = export_model(small_model(), options);
   const ExportedFile& manifest = exported.files.back();
   EXPECT_EQ(manifest.name, "paint.json");

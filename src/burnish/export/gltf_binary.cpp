@@ -110,10 +110,9 @@ void put_chunk(std::string& file, const char* type, std::string data, char paddi
   file.append(reinterpret_cast<const char*>(&size), 4).append(type, 4).append(data);
 }
 
-// A scene of a sphere that has the material.
-std::string scene_of(json material, const std::string& name, Binary binary) {
+// A scene of a mesh that has the material.
+std::string scene_of(const json& primitive, json material, const std::string& name, const Binary& binary) {
   static_assert(std::endian::native == std::endian::little);
-  const json primitive = add_sphere(binary);
   json used = json::array();
   for (const auto& [extension, value] : material["extensions"].items()) used.push_back(extension);
   if (used.empty()) material.erase("extensions");
@@ -151,12 +150,15 @@ double reflectance_at_normal(double ior) {
 
 std::string gltf_binary(const FactoredBrdf& brdf, json material, const std::string& name) {
   Binary binary;
+  const json primitive = add_sphere(binary);
   material["extensions"]["BURNISH_materials_factored"] = factored_extension(brdf, binary);
-  return scene_of(std::move(material), name, std::move(binary));
+  return scene_of(primitive, std::move(material), name, binary);
 }
 
 std::string gltf_binary(json material, const std::string& name) {
-  return scene_of(std::move(material), name, {});
+  Binary binary;
+  const json primitive = add_sphere(binary);
+  return scene_of(primitive, std::move(material), name, binary);
 }
 
 json gltf_material(const MetallicRoughness& core) {
