@@ -86,11 +86,13 @@ TEST_F(Export, RefusesWhatIsNoModelAndNoTargetAndLeavesNothing) {
 }
 
 TEST_F(Export, WritesTexturesAsImagesAndOtherFormatsOfTheMaterial) {
-  ASSERT_EQ(exports("--to exr --to png --to gltf --to three --to rgl"), 0) << read(folder_ / "said");
+  ASSERT_EQ(exports("--to exr --to png --to three --to babylon --to materialx --to rgl"), 0)
+      << read(folder_ / "said");
   const fs::path out = folder_ / "out";
   EXPECT_EQ(read_png(out / "two_lobes_0.png").width, 32);
   EXPECT_TRUE(read(out / "two_lobes_2.exr").starts_with("v/1\x01"));
-  EXPECT_TRUE(read(out / "two_lobes.glb").starts_with("glTF"));
+  EXPECT_THAT(read(out / "two_lobes.babylon.js"), HasSubstr("export function createMaterial(BABYLON, scene"));
+  EXPECT_TRUE(read(out / "two_lobes.tables.exr").starts_with("v/1\x01"));
   EXPECT_THAT(read(out / "two_lobes.three.js"), HasSubstr("export function createMaterial(THREE)"));
   const RglTable table = parse_rgl(read_file(out / "two_lobes.bsdf"), {}).table;
   const FactoredBrdf brdf = smooth_model(model_case("Pqpr"));
@@ -124,6 +126,17 @@ TEST_F(Export, WritesTheSpecularFamilyInEveryLanguage) {
   EXPECT_EQ(exports_model("phong --to ktx2"), 1);
   EXPECT_EQ(exports_model("phong --to glsl --power w9"), 2);
   EXPECT_EQ(exports("--to glsl --power w8"), 2);
+}
+
+TEST_F(Export, WritesOpenPbrAsParameters) {
+  const std::string files = " --to materialx --to usda --to gltf -o " + (folder_ / "out").string() + " 2>&1";
+  const Outcome done = run(fmt::format("{} export openpbr:coat_weight=1{}", BURNISH_CLI, files));
+  ASSERT_EQ(done.status, 0) << done.output;
+  EXPECT_TRUE(read(folder_ / "out/openpbr.glb").starts_with("glTF"));
+  EXPECT_THAT(read(folder_ / "out/openpbr.usda"), HasSubstr("inputs:coat_weight = 1\n"));
+  EXPECT_EQ(run(fmt::format("{} export openpbr:coat_weight=2{}", BURNISH_CLI, files)).status, 1);
+  EXPECT_EQ(run(fmt::format("{} export openpbr --to three -o {}", BURNISH_CLI, folder_.string())).status, 1);
+  EXPECT_EQ(run(fmt::format("{} export openpbr --power w8{}", BURNISH_CLI, files)).status, 2);
 }
 
 TEST_F(Export, ThePageLoadsNothing) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <burnish/export/export_model.h>
+#include <burnish/export/export_openpbr.h>
 #include <burnish/export/export_specular.h>
 #include <burnish/factors/model_file.h>
 #include <burnish/file.h>
@@ -49,11 +50,17 @@ ExportOptions options_of(const ExportArguments& arguments) {
   return options;
 }
 
-ExportedFiles exported_specular(const ExportArguments& arguments) {
+ExportedFiles exported_analytic(const ExportArguments& arguments) {
   if (!arguments.environment.empty())
     throw CLI::ValidationError("--environment: expected a factored BRDF with it, found " + arguments.model);
+  const std::string model(parse_analytic(arguments.model).model().name);
   ExportOptions options = options_of(arguments);
-  if (options.name.empty()) options.name = parse_analytic(arguments.model).model().name;
+  if (options.name.empty()) options.name = model;
+  if (model == "openpbr") {
+    if (!arguments.power.empty())
+      throw CLI::ValidationError("--power: expected phong or blinn_phong with it, found openpbr");
+    return export_openpbr(arguments.model, options);
+  }
   std::optional<PowerMethod> power;
   if (!arguments.power.empty()) power = usage([&] { return power_method(arguments.power); });
   return export_specular(arguments.model, power, options);
@@ -73,7 +80,7 @@ ExportedFiles exported_model(const ExportArguments& arguments) {
 
 void run(const ExportArguments& arguments) {
   const ExportedFiles exported =
-      is_analytic_spec(arguments.model) ? exported_specular(arguments) : exported_model(arguments);
+      is_analytic_spec(arguments.model) ? exported_analytic(arguments) : exported_model(arguments);
   write_files(arguments.folder, exported.files);
   if (arguments.json) {
     auto files = nlohmann::ordered_json::array();
@@ -97,17 +104,21 @@ void run(const ExportArguments& arguments) {
 void add_export_command(CLI::App& app) {
   CLI::App* verb =
       app.add_subcommand("export",
-                         "Write a factored BRDF as shaders, textures, glTF, a three.js module, "
-                         "an RGL table, or a page that shows it; or Phong's and Blinn's models as shaders");
+                         "Write a factored BRDF as shaders, textures, MaterialX, USD, MDL, glTF, a module of "
+                         "three.js or Babylon.js, an RGL table, or a page that shows it; OpenPBR as files of "
+                         "these formats; or Phong's and Blinn's models as shaders");
   verb->footer(
       "Every shader comes with its textures but C++, which has them inside; NAME.json says what is in the "
-      "folder and what an evaluation costs. See docs/guide/shaders.md.\n"
+      "folder and what an evaluation costs. See docs/guide/shaders.md and docs/guide/export.md.\n"
       "Examples: burnish export paint.exr --to glsl --to html -o paint\n"
       "          burnish export paint.exr --to glsl_es --to html --environment studio -o paint\n"
+      "          burnish export paint.exr --to materialx --to usda -o paint\n"
+      "          burnish export openpbr:coat_weight=1 --to materialx --to gltf -o coated\n"
       "          burnish export blinn_phong:exponent=60,ks=0.8 --to wgsl --power cubic2 -o highlight");
   auto arguments = std::make_shared<ExportArguments>();
   verb->add_option("MODEL", arguments->model,
-                   "factored BRDF, as `burnish fit` writes it, or one such as blinn_phong:exponent=60")
+                   "factored BRDF, as `burnish fit` writes it, or one such as blinn_phong:exponent=60 or "
+                   "openpbr:coat_weight=1")
       ->required();
   const auto names = export_target_names();
   verb->add_option("--to", arguments->to, "what to write; may be given several times")

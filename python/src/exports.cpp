@@ -10,7 +10,9 @@
 #include <nanobind/stl/vector.h>
 
 #include <burnish/export/export_model.h>
+#include <burnish/export/export_openpbr.h>
 #include <burnish/export/export_specular.h>
+#include <burnish/reflectance/analytic.h>
 
 #include "opened_brdf.h"
 
@@ -51,9 +53,11 @@ nb::dict exported_model(const OpenedModel& model, const Names& to,
   return handed_out(exported, folder);
 }
 
-nb::dict exported_specular(const std::string& spec, const Names& to,
+nb::dict exported_analytic(const std::string& spec, const Names& to,
                            const std::optional<std::filesystem::path>& folder, const std::string& name,
                            const std::optional<std::string>& power) {
+  if (!power && parse_analytic(spec).model().name == "openpbr")
+    return handed_out(export_openpbr(spec, {.to = targets_of(to), .name = name}), folder);
   const std::optional<PowerMethod> method = power ? std::optional(power_method(*power)) : std::nullopt;
   return handed_out(export_specular(spec, method, {.to = targets_of(to), .name = name}), folder);
 }
@@ -72,19 +76,21 @@ void bind_exports(nb::module_& m) {
         "What `burnish export` writes, by the files' names, the last one the manifest NAME.json; into the "
         "folder\n"
         "too where one is given.\n\n"
-        "to: one or several of \"ktx2\", \"cube\", \"exr\", \"png\", \"gltf\", \"three\", \"rgl\", \"html\" "
-        "and the "
-        "shaders\n\"glsl\", \"glsl_es\", \"hlsl\", \"msl\", \"wgsl\" and \"cpp\", which bring their textures "
+        "to: one or several of \"ktx2\", \"cube\", \"exr\", \"png\", \"gltf\", \"materialx\", \"usda\", "
+        "\"mdl\",\n\"three\", \"babylon\", \"rgl\", \"html\" and the shaders \"glsl\", \"glsl_es\", "
+        "\"hlsl\", \"msl\", \"wgsl\" and \"cpp\", which bring their textures "
         "along. "
         "name: of files\nand functions. exact: shaders weigh texels themselves, in floats. mips: KTX2 with "
         "levels. "
         "compressed: KTX2\nwith Zstandard. environment: \"sun\", \"studio\" or an OpenEXR picture of all "
         "directions, "
         "whose light glsl,\nglsl_es and html show.");
-  m.def("export", &exported_specular, nb::arg("spec"), nb::arg("to"), nb::arg("folder") = nb::none(),
+  m.def("export", &exported_analytic, nb::arg("spec"), nb::arg("to"), nb::arg("folder") = nb::none(),
         nb::kw_only(), nb::arg("name") = defaults.name, nb::arg("power") = nb::none(),
         nb::sig("def export(spec: str, to: str | list[str], folder: str | os.PathLike | None = None, *, "
                 "name: str = 'brdf', power: str | None = None) -> dict[str, bytes]"),
+        "OpenPBR, such as \"openpbr:coat_weight=1\", as \"materialx\", \"usda\", \"mdl\", \"gltf\" or "
+        "\"rgl\";\n"
         "Phong's or Blinn's model, such as \"blinn_phong:exponent=60\", as shaders or \"html\". power: how "
         "it is\n"
         "computed, a member of the specular family; by default the cheapest that is never one of 255 levels "

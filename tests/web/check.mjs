@@ -82,15 +82,29 @@ assert.equal(mesh.material.anisotropy ?? 0, core.anisotropyStrength);
 assert.ok(mesh.geometry.attributes.tangent.count > 1000);
 assert.ok(mesh.material.userData.gltfExtensions.BURNISH_materials_factored.lobes.length >= 1);
 
-// three.js: a plane seen and lit along its normal, drawn into floats by Chromium.
+// OpenPBR as glTF: the validator knows its extensions, and three.js makes a physical material of them.
+{
+  const coated = new Uint8Array(fs.readFileSync(path.join(folder, "openpbr.glb")));
+  const said = await validator.validateBytes(coated);
+  assert.equal(said.issues.numErrors + said.issues.numWarnings, 0, JSON.stringify(said.issues.messages));
+  const {scene} = await new GLTFLoader().parseAsync(coated.buffer, "");
+  const {material} = scene.getObjectByProperty("isMesh", true);
+  assert.ok(material.isMeshPhysicalMaterial);
+  assert.ok(Math.abs(material.clearcoat - 0.25) < 1e-6);
+  assert.equal(material.sheenRoughness, 0.5);
+  assert.ok(material.anisotropy > 0 && material.iridescence > 0 && material.ior === 1.7);
+}
+
+// three.js and Babylon.js: a plane seen and lit along its normal, drawn into floats by Chromium.
 const {createMaterial} = await import(pathToFileURL(path.resolve(folder, manifest.three)));
 assert.equal(Object.values(createMaterial(THREE).uniforms).filter((u) => u.value?.isTexture).length,
              manifest.textures.length);
-const page = path.resolve(folder, "three.html");
-const three = (file) => pathToFileURL(path.resolve(import.meta.dirname, process.env.NODE_FOLDER, "three/build", file));
-fs.writeFileSync(page, `<!DOCTYPE html><body><script type="module">
-import * as THREE from "${three("three.module.js")}";
+const page = path.resolve(folder, "modules.html");
+const modules = (file) => pathToFileURL(path.resolve(import.meta.dirname, process.env.NODE_FOLDER, file));
+fs.writeFileSync(page, `<!DOCTYPE html><body><script src="${modules("babylonjs/babylon.js")}"></script><script type="module">
+import * as THREE from "${modules("three/build/three.module.js")}";
 import {createMaterial} from "./${manifest.three}";
+import {createMaterial as createBabylon} from "./${manifest.babylon}";
 let errors = 0;
 console.error = (...text) => { ++errors; document.body.dataset.said = text.join(" "); };
 const renderer = new THREE.WebGLRenderer(), target = new THREE.WebGLRenderTarget(8, 8, {type: THREE.FloatType});
@@ -103,14 +117,29 @@ renderer.setRenderTarget(target);
 renderer.render(scene, camera);
 const pixel = new Float32Array(4);
 renderer.readRenderTargetPixels(target, 4, 4, 1, 1, pixel);
-document.body.dataset.result = [pixel[0], errors].join(" ");
+
+const canvas = document.createElement("canvas"), engine = new BABYLON.Engine(canvas), world = new BABYLON.Scene(engine);
+const eye = new BABYLON.FreeCamera("eye", new BABYLON.Vector3(0, 0, -2), world), at = new BABYLON.Vector3(0, 0, -4);
+const sun = new BABYLON.DirectionalLight("sun", new BABYLON.Vector3(0, 0, 1), world);
+sun.intensity = 1;
+new BABYLON.PointLight("lamp", at, world).intensity = 16;
+const plane = BABYLON.MeshBuilder.CreatePlane("plane", {size: 2}, world);  // left-handed: it faces -z
+plane.material = createBabylon(BABYLON, world, {linear: true});
+const drawn = new BABYLON.RenderTargetTexture("drawn", 9, world, false, true, BABYLON.Constants.TEXTURETYPE_FLOAT);
+Object.assign(drawn, {activeCamera: eye, renderList: [plane]});
+await world.whenReadyAsync();
+while (!plane.material.isReady(plane)) await new Promise((next) => setTimeout(next, 20));
+drawn.render();
+const other = await drawn.readPixels();
+document.body.dataset.result = [pixel[0], other[4 * (4 * 9 + 4)], errors].join(" ");
 </script></body>`);
 const dom = execFileSync("timeout", ["300", "chromium", "--headless", "--no-sandbox", "--use-gl=angle",
   "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--allow-file-access-from-files",
   `--user-data-dir=${path.resolve(folder, "profile")}`, "--virtual-time-budget=10000", "--dump-dom",
   pathToFileURL(page).href], {stdio: ["ignore", "pipe", "ignore"]}).toString();
-const result = dom.match(/data-result="([^ ]+) ([^"]+)"/);
+const result = dom.match(/data-result="([^ ]+) ([^ ]+) ([^"]+)"/);
 assert.ok(result, dom);
-assert.equal(Number(result[2]), 0, dom);
-assert.ok(Math.abs(result[1] / (2 * value) - 1) < 2e-3, `expected ${2 * value}, found ${result[1]}`);
-console.log(`web: ${manifest.textures.length} KTX2, EXR, glTF and three.js exports open elsewhere`);
+assert.equal(Number(result[3]), 0, dom);
+for (const found of [result[1], result[2]])
+  assert.ok(Math.abs(found / (2 * value) - 1) < 2e-3, `expected ${2 * value}, found ${found}`);
+console.log(`web: ${manifest.textures.length} KTX2, EXR, glTF, three.js and Babylon.js exports open elsewhere`);

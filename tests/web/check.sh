@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Opens exports in ktx-parse, three.js, Chromium and the glTF validator, and compares tangent frames with MikkTSpace,
+# Opens exports in ktx-parse, three.js, Babylon.js, Chromium and the glTF validator, and compares tangent frames with MikkTSpace,
 # installed from npm into build/web; and the page in build/studio, where `make studio` made it. With --skip-offline it
 # says so and succeeds where npm, Chromium or the registry cannot be reached.
 set -eu
@@ -22,7 +22,9 @@ done
   skip "${1:-}" "npm cannot be reached, so exports were not opened elsewhere"
 
 "$burnish" fit ggx:alpha_x=0.2,alpha_y=0.35,f0=0.9/0.7/0.4 --model pqp --samples 50000 -o "$web/brushed.exr" > /dev/null
-"$burnish" export "$web/brushed.exr" --to ktx2 --to cube --to exr --to gltf --to three --to glsl --environment sun --mips -o "$web/out" > /dev/null
+"$burnish" export "$web/brushed.exr" --to ktx2 --to cube --to exr --to gltf --to three --to babylon --to glsl --environment sun --mips -o "$web/out" > /dev/null
+"$burnish" export openpbr:specular_ior=1.7,specular_roughness_anisotropy=0.5,coat_weight=0.25,coat_ior=1.5,fuzz_weight=0.3,thin_film_weight=0.5 \
+  --to gltf -o "$web/out" > /dev/null
 printf 'wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0,0,1,0,0,1\n' > "$web/normal.csv"
 "$burnish" eval "$web/brushed.exr" "$web/normal.csv" -o "$web/value.csv" > /dev/null
 NODE_FOLDER=node_modules node "$web/check.mjs" "$web/out" brushed "$(tail -1 "$web/value.csv" | cut -d, -f1)"

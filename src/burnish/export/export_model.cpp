@@ -10,8 +10,14 @@
 #include <burnish/export/gltf_binary.h>
 #include <burnish/export/html_page.h>
 #include <burnish/export/manifest.h>
-#include <burnish/export/three_module.h>
+#include <burnish/export/materialx.h>
+#include <burnish/export/mdl.h>
+#include <burnish/export/nearest_openpbr.h>
+#include <burnish/export/usda.h>
+#include <burnish/export/web_module.h>
+#include <burnish/fitting/parametric/metallic_roughness_fit.h>
 #include <burnish/io/rgl.h>
+#include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/rgl_builder.h>
 #include <burnish/render/gl/surface_environment.h>
 #include <burnish/shaders/shader.h>
@@ -25,6 +31,7 @@ namespace {
 using nlohmann::json;
 
 constexpr float kMaxHalf = 65504;
+constexpr double kSeenAlike = 45;  // dB: a core material that is as close needs no layers
 
 // Files so far and what the manifest says of them.
 class ModelExport {
@@ -57,13 +64,20 @@ class ModelExport {
   void add_levels();
   void add_cube_maps();
   void add_images(ExportTarget target, std::string (*encode)(const Table& table));
+  const MetallicRoughnessFit& core();
+  const NearestOpenPbr& openpbr();
   void add_gltf();
+  void add_materialx();
+  void add_mdl();
   void add_light(const SurfaceLight& light);
 
   const FactoredBrdf& brdf_;
   const ExportOptions& options_;
   json manifest_;
   ExportedFiles result_;
+  // found when first asked for
+  std::optional<MetallicRoughnessFit> core_;
+  std::optional<NearestOpenPbr> openpbr_;
 };
 
 void ModelExport::add_shader(ShaderLanguage language) {
@@ -151,13 +165,47 @@ void ModelExport::add_images(ExportTarget target, std::string (*encode)(const Ta
   }
 }
 
+// The core material of glTF that looks most alike.
+const MetallicRoughnessFit& ModelExport::core() {
+  if (!core_) {
+    core_ = fit_metallic_roughness(brdf_);
+    json entry = core_entry(core_->material);
+    entry["anisotropyStrength"] = core_->material.anisotropy;
+    entry["psnr"] = core_->psnr;
+    manifest_["core_material"] = std::move(entry);
+  }
+  return *core_;
+}
+
+// The parameters of OpenPBR that look most alike.
+const NearestOpenPbr& ModelExport::openpbr() {
+  if (!openpbr_) {
+    openpbr_ = nearest_openpbr(brdf_);
+    manifest_["openpbr"] = {{"spec", format_analytic(analytic_openpbr(openpbr_->parameters))},
+                            {"psnr", openpbr_->psnr}};
+  }
+  return *openpbr_;
+}
+
+// The core material, or OpenPBR's with its layers in extensions where that comes closer by half the squared error.
 void ModelExport::add_gltf() {
-  GltfBinary binary = gltf_binary(brdf_, options_.name);
-  manifest_["gltf"] = add(options_.name + ".glb", std::move(binary.bytes));
-  json core = core_entry(binary.core.material);
-  core["anisotropyStrength"] = binary.core.material.anisotropy;
-  core["psnr"] = binary.core.psnr;
-  manifest_["core_material"] = std::move(core);
+  const bool layered = core().psnr < kSeenAlike && openpbr().psnr > core().psnr + 3;
+  json material = layered ? gltf_material(openpbr().parameters) : gltf_material(core().material);
+  manifest_["gltf"] = add(options_.name + ".glb", gltf_binary(brdf_, std::move(material), options_.name));
+  manifest_["gltf_material"] = layered ? "openpbr" : "core_material";
+}
+
+void ModelExport::add_materialx() {
+  const ShaderFilter filter = options_.exact ? ShaderFilter::exact : ShaderFilter::hardware;
+  for (ExportedFile& file : materialx_files(brdf_, core().material, filter, options_.name))
+    manifest_["materialx"].push_back(add(std::move(file.name), std::move(file.bytes)));
+}
+
+void ModelExport::add_mdl() {
+  MdlModule module = mdl_module(to_source(options_.name, {brdf_, {}, {}}), options_.cells, options_.name);
+  for (ExportedFile& file : module.files)
+    manifest_["mdl"]["files"].push_back(add(std::move(file.name), std::move(file.bytes)));
+  manifest_["mdl"]["losses"] = std::move(module.losses);
 }
 
 // Shaders of the light that comes from all around, as far as their languages are asked for, and its textures.
@@ -209,7 +257,13 @@ ExportedFiles ModelExport::run() && {
 
   // materials of other programs
   if (wants(ExportTarget::gltf)) add_gltf();
+  if (wants(ExportTarget::materialx)) add_materialx();
+  if (wants(ExportTarget::usda))
+    manifest_["usda"] = add(name + ".usda", usda_layer(openpbr().parameters, core().material, name));
+  if (wants(ExportTarget::mdl)) add_mdl();
   if (wants(ExportTarget::three)) manifest_["three"] = add(name + ".three.js", three_module(brdf_, name));
+  if (wants(ExportTarget::babylon))
+    manifest_["babylon"] = add(name + ".babylon.js", babylon_module(brdf_, name));
   if (wants(ExportTarget::rgl))
     manifest_["rgl"] = add(name + ".bsdf", format_rgl(make_rgl_table(brdf_, {.description = name})));
 

@@ -17,13 +17,15 @@ struct ExportOptions {
   bool exact = false;      ///< shaders weigh texels themselves, in floats; always so in C++
   bool mips = false;       ///< KTX2 a table with levels too: averages over the directions of a texel
   bool compressed = true;  ///< KTX2 with Zstandard
+  int cells = 90;          ///< of mdl: along each polar angle, in [2, 1000]; twice as many along the azimuth
   /// Light from all around, for the targets of shows_environment.
   std::optional<Environment> environment = {};
 };
 
 /// A factored BRDF as every target of `to`, each once; shaders but C++ bring their textures along. Throws
 /// Error as generate_shader does, for an environment that no target shows, and for glTF of other than 1 or 3
-/// channels.
+/// channels. gltf and usda have the nearest OpenPBR or core material, which
+/// take seconds to find.
 ExportedFiles export_model(const FactoredBrdf& brdf, const ExportOptions& options);
 
 }  // namespace burnish

@@ -12,8 +12,9 @@ namespace burnish {
 
 namespace {
 
-constexpr std::array<std::string_view, 14> kNames{"ktx2", "cube", "exr",     "png",  "gltf", "three", "rgl",
-                                                  "html", "glsl", "glsl_es", "hlsl", "msl",  "wgsl",  "cpp"};
+constexpr std::array<std::string_view, 18> kNames{"ktx2", "cube",    "exr",   "png",     "gltf", "materialx",
+                                                  "usda", "mdl",     "three", "babylon", "rgl",  "html",
+                                                  "glsl", "glsl_es", "hlsl",  "msl",     "wgsl", "cpp"};
 constexpr auto kFirstLanguage = static_cast<std::size_t>(ExportTarget::glsl);
 static_assert(kFirstLanguage + kShaderLanguages.size() == kNames.size());
 

@@ -14,14 +14,18 @@ namespace burnish {
 
 /// What a model can be written as.
 enum class ExportTarget {
-  ktx2,   ///< the textures that shaders read
-  cube,   ///< tables of one direction as cube maps, KTX2
-  exr,    ///< a table an OpenEXR image
-  png,    ///< a table a PNG image
-  gltf,   ///< GLB: the nearest core material, the factors in an extension
-  three,  ///< a module that makes a material of three.js
-  rgl,    ///< a table of the RGL database's format
-  html,   ///< a page that shows the material
+  ktx2,       ///< the textures that shaders read
+  cube,       ///< tables of one direction as cube maps, KTX2
+  exr,        ///< a table an OpenEXR image
+  png,        ///< a table a PNG image
+  gltf,       ///< GLB: the nearest material with extensions, the factors in one of ours
+  materialx,  ///< a MaterialX document, with a node of its own where the model is factored
+  usda,       ///< a USD layer: the nearest OpenPBR and a preview surface
+  mdl,        ///< an MDL module and its measured BSDF
+  three,      ///< a module that makes a material of three.js
+  babylon,    ///< a module that makes a material of Babylon.js
+  rgl,        ///< a table of the RGL database's format
+  html,       ///< a page that shows the material
   // shaders, in the order of ShaderLanguage
   glsl,
   glsl_es,

@@ -1,5 +1,8 @@
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -107,44 +110,97 @@ void put_chunk(std::string& file, const char* type, std::string data, char paddi
   file.append(reinterpret_cast<const char*>(&size), 4).append(type, 4).append(data);
 }
 
-}  // namespace
-
-GltfBinary gltf_binary(const FactoredBrdf& brdf, const std::string& name) {
+// A scene of a mesh that has the material.
+std::string scene_of(const json& primitive, json material, const std::string& name, const Binary& binary) {
   static_assert(std::endian::native == std::endian::little);
-  GltfBinary result{.bytes = {}, .core = fit_metallic_roughness(brdf)};
-  const MetallicRoughness& core = result.core.material;
-
-  // geometry and tables fill the binary chunk
-  Binary binary;
-  const json primitive = add_sphere(binary);
-  json extensions{{"BURNISH_materials_factored", factored_extension(brdf, binary)}};
-  json used{"BURNISH_materials_factored"};
-  if (core.anisotropy > 0) {
-    extensions["KHR_materials_anisotropy"] = {{"anisotropyStrength", core.anisotropy},
-                                              {"anisotropyRotation", core.across ? kHalfPi : 0}};
-    used.push_back("KHR_materials_anisotropy");
-  }
-  const json document{
-      {"asset", {{"version", "2.0"}, {"generator", "burnish"}}},
-      {"extensionsUsed", used},
-      {"scene", 0},
-      {"scenes", {{{"nodes", {0}}}}},
-      {"nodes", {{{"mesh", 0}, {"name", name}}}},
-      {"meshes", {{{"primitives", {primitive}}}}},
-      {"materials",
-       {{{"name", name}, {"pbrMetallicRoughness", core_entry(core)}, {"extensions", extensions}}}},
-      {"buffers", {{{"byteLength", binary.bytes().size()}}}},
-      {"bufferViews", binary.views()},
-      {"accessors", binary.accessors()}};
+  json used = json::array();
+  for (const auto& [extension, value] : material["extensions"].items()) used.push_back(extension);
+  if (used.empty()) material.erase("extensions");
+  material["name"] = name;
+  json document{{"asset", {{"version", "2.0"}, {"generator", "burnish"}}},
+                {"scene", 0},
+                {"scenes", {{{"nodes", {0}}}}},
+                {"nodes", {{{"mesh", 0}, {"name", name}}}},
+                {"meshes", {{{"primitives", {primitive}}}}},
+                {"materials", {material}},
+                {"buffers", {{{"byteLength", binary.bytes().size()}}}},
+                {"bufferViews", binary.views()},
+                {"accessors", binary.accessors()}};
+  if (!used.empty()) document["extensionsUsed"] = used;
 
   // header, then the document and what it points into
   std::string chunks;
   put_chunk(chunks, "JSON", document.dump(-1, ' ', true, json::error_handler_t::replace), ' ');
   put_chunk(chunks, std::string("BIN\0", 4).c_str(), binary.bytes(), '\0');
-  result.bytes = std::string("glTF\x02\0\0\0", 8);
+  std::string file("glTF\x02\0\0\0", 8);
   const auto size = static_cast<std::uint32_t>(chunks.size() + 12);
-  result.bytes.append(reinterpret_cast<const char*>(&size), 4).append(chunks);
-  return result;
+  return file.append(reinterpret_cast<const char*>(&size), 4).append(chunks);
+}
+
+json color_entry(const Rgb& c) {
+  return {c.r, c.g, c.b};
+}
+
+// Of a dielectric in air.
+double reflectance_at_normal(double ior) {
+  return ((ior - 1) / (ior + 1)) * ((ior - 1) / (ior + 1));
+}
+
+}  // namespace
+
+std::string gltf_binary(const FactoredBrdf& brdf, json material, const std::string& name) {
+  Binary binary;
+  const json primitive = add_sphere(binary);
+  material["extensions"]["BURNISH_materials_factored"] = factored_extension(brdf, binary);
+  return scene_of(primitive, std::move(material), name, binary);
+}
+
+std::string gltf_binary(json material, const std::string& name) {
+  Binary binary;
+  const json primitive = add_sphere(binary);
+  return scene_of(primitive, std::move(material), name, binary);
+}
+
+json gltf_material(const MetallicRoughness& core) {
+  json extensions = json::object();
+  if (core.anisotropy > 0)
+    extensions["KHR_materials_anisotropy"] = {{"anisotropyStrength", core.anisotropy},
+                                              {"anisotropyRotation", core.across ? kHalfPi : 0}};
+  return {{"pbrMetallicRoughness", core_entry(core)}, {"extensions", extensions}};
+}
+
+json gltf_material(const OpenPbrParameters& p) {
+  // alphas of the base along and across: glTF has sqrt of the smaller, and how much of the rest to 1 the larger takes
+  const double across = 1 - p.specular_roughness_anisotropy,
+               alpha_x = p.specular_roughness * p.specular_roughness * std::sqrt(2 / (1 + across * across)),
+               alpha_y = across * alpha_x;
+  const double strength =
+      alpha_y < 1 ? std::sqrt(std::clamp((alpha_x - alpha_y) / (1 - alpha_y), 0.0, 1.0)) : 0;
+  const Rgb through_coat = (1 - p.coat_weight) * Rgb(1) + p.coat_weight * p.coat_color;
+
+  json extensions = json::object();
+  const OpenPbrParameters defaults;
+  if (p.specular_ior != defaults.specular_ior) extensions["KHR_materials_ior"] = {{"ior", p.specular_ior}};
+  if (p.specular_weight != 1 || p.specular_color != Rgb(1))
+    extensions["KHR_materials_specular"] = {{"specularFactor", p.specular_weight},
+                                            {"specularColorFactor", color_entry(p.specular_color)}};
+  if (strength > 0)
+    extensions["KHR_materials_anisotropy"] = {{"anisotropyStrength", strength}, {"anisotropyRotation", 0}};
+  if (p.coat_weight > 0)
+    extensions["KHR_materials_clearcoat"] = {
+        {"clearcoatFactor", std::min(1.0, p.coat_weight * reflectance_at_normal(p.coat_ior) / 0.04)},
+        {"clearcoatRoughnessFactor", p.coat_roughness}};
+  if (p.fuzz_weight > 0)
+    extensions["KHR_materials_sheen"] = {{"sheenColorFactor", color_entry(p.fuzz_weight * p.fuzz_color)},
+                                         {"sheenRoughnessFactor", p.fuzz_roughness}};
+  if (p.thin_film_weight > 0)
+    extensions["KHR_materials_iridescence"] = {{"iridescenceFactor", p.thin_film_weight},
+                                               {"iridescenceIor", p.thin_film_ior},
+                                               {"iridescenceThicknessMaximum", 1000 * p.thin_film_thickness}};
+  return {{"pbrMetallicRoughness", core_entry({.base_color = p.base_weight * p.base_color * through_coat,
+                                               .metallic = p.base_metalness,
+                                               .roughness = std::sqrt(alpha_y)})},
+          {"extensions", extensions}};
 }
 
 }  // namespace burnish

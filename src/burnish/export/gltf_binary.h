@@ -2,19 +2,29 @@
 
 #include <string>
 
-#include <burnish/fitting/parametric/metallic_roughness_fit.h>
+#include <nlohmann/json_fwd.hpp>
+
 #include <burnish/factors/factored_brdf.h>
+#include <burnish/reflectance/analytic/openpbr.h>
+#include <burnish/reflectance/metallic_roughness.h>
 
 namespace burnish {
 
-struct GltfBinary {
-  std::string bytes;
-  MetallicRoughnessFit core;  ///< its material
-};
+/// A glTF 2.0 file (GLB): a sphere with tangents whose material is `material`, as gltf_material makes it, and
+/// whose extension BURNISH_materials_factored holds the factors.
+std::string gltf_binary(const FactoredBrdf& brdf, nlohmann::json material, const std::string& name);
 
-/// A glTF 2.0 file (GLB): a sphere with tangents whose material is the core one that looks most like the
-/// model, and whose extension BURNISH_materials_factored holds the factors. Throws Error for other than 1 or
-/// 3 channels.
-GltfBinary gltf_binary(const FactoredBrdf& brdf, const std::string& name);
+/// The same without factors.
+std::string gltf_binary(nlohmann::json material, const std::string& name);
+
+/// A core material as JSON of glTF's, without a name, with KHR_materials_anisotropy where it has a grain.
+nlohmann::json gltf_material(const MetallicRoughness& core);
+
+/// The nearest that glTF has to OpenPBR: the core material with KHR_materials_ior, _specular, _anisotropy,
+/// _clearcoat, _sheen and _iridescence, those of them that do something. Roughness and anisotropy are exact,
+/// the coat's reflectance at normal incidence is that of its index of refraction up to 0.04, its colour goes
+/// to the base; lost are the diffuse base's roughness and the coat's anisotropy and darkening. Source:
+/// [glTF 2021], [OpenPBR 2024].
+nlohmann::json gltf_material(const OpenPbrParameters& parameters);
 
 }  // namespace burnish

@@ -26,15 +26,15 @@ std::string horizon_test(const Language& l) {
                      l.vector);
 }
 
-std::string world_function(const Language& l, const std::string& name, std::string_view more) {
+std::string world_function(const Language& l, const std::string& name, const MoreParameters& more) {
   const auto local = [&](char w) {
     return fmt::format("{0}(dot(t, {1}), dot(s, {1}), dot(n, {1}))", l.vector, w);
   };
   constexpr std::array<std::string_view, 4> kVectors{"n", "t", "l", "v"};
-  const std::string value =
-      fmt::format("burnish_{}({}, {}{})", name, local('l'), local('v'), more.empty() ? "" : ", tables");
+  const std::string value = fmt::format("burnish_{}({}, {}{}{})", name, local('l'), local('v'),
+                                        more.names.empty() ? "" : ", ", more.names);
   return l.function(
-      ValueType::vector, "burnish_" + name + "_world", kVectors, more,
+      ValueType::vector, "burnish_" + name + "_world", kVectors, more.declarations,
       l.declaration(ValueType::vector, "s", "cross(n, t)") + fmt::format(fmt::runtime(l.result), value));
 }
 

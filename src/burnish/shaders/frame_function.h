@@ -19,8 +19,12 @@ inline constexpr std::array<std::string_view, 2> kTwoDirections{"wi", "wo"};
 /// A statement that returns zero where one of wi and wo is not above the horizon.
 std::string horizon_test(const Language& language);
 
-/// `burnish_NAME_world(n, t, l, v)`, which calls `burnish_NAME(wi, wo)`; `more` declares a third parameter of
-/// both, called tables.
-std::string world_function(const Language& language, const std::string& name, std::string_view more);
+/// What functions take besides the directions: declarations, and the names in them; both may be empty.
+struct MoreParameters {
+  std::string declarations, names;
+};
+
+/// `burnish_NAME_world(n, t, l, v)`, which calls `burnish_NAME(wi, wo)`, both with `more`.
+std::string world_function(const Language& language, const std::string& name, const MoreParameters& more);
 
 }  // namespace burnish

@@ -164,9 +164,31 @@ std::string declare_array(const Language& l, const ShaderTexture& texture) {
                     texture.name, at);
 }
 
+// Functions that read a picture of layers. A position is within the middles of the outermost texels, so that no layer mixes with
+// another.
+std::string layer_functions(const ShaderTexture& texture, ShaderFilter filter) {
+  if (filter == ShaderFilter::exact)
+    return fmt::format(
+        "vec4 {0}_texel(sampler2D layers, ivec3 at) {{\n"
+        "  return texelFetch(layers, ivec2(at.x, at.z * {1} + at.y), 0);\n}}\n",
+        texture.name, texture.height);
+  return fmt::format(
+      "vec4 {0}_between(sampler2D layers, vec3 at) {{\n"
+      "  float z = at.z * {1:d}.0 - 0.5, low = clamp(floor(z), 0.0, {2:d}.0);\n"
+      "  vec4 below = textureLod(layers, vec2(at.x, (low + at.y) / {1:d}.0), 0.0);\n"
+      "  vec4 above = textureLod(layers, vec2(at.x, (low + 1.0 + at.y) / {1:d}.0), 0.0);\n"
+      "  return mix(below, above, clamp(z - low, 0.0, 1.0));\n}}\n",
+      texture.name, texture.depth, std::max(texture.depth - 2, 0));
+}
+
 std::string declare_textures(const Language& l, const ShaderOptions& options,
                              const std::vector<ShaderTexture>& textures) {
   std::string text;
+  if (options.textures_are_arguments) {
+    for (const ShaderTexture& texture : textures)
+      if (texture.depth > 0) text += layer_functions(texture, options.filter);
+    return text;
+  }
   for (std::size_t i = 0; i < textures.size(); ++i) {
     const ShaderTexture& texture = textures[i];
     const bool filtered = options.filter == ShaderFilter::hardware;
@@ -191,8 +213,26 @@ ShaderCost cost_of(const OperationCount& count, std::size_t textures) noexcept {
 }
 
 // What functions take besides the directions.
-std::string more_of(const ShaderOptions& options) {
-  return options.language == ShaderLanguage::msl ? fmt::format("burnish_{}_tables tables", options.name) : "";
+MoreParameters more_of(const ShaderOptions& options, const std::vector<ShaderTexture>& textures) {
+  if (options.language == ShaderLanguage::msl)
+    return {fmt::format("burnish_{}_tables tables", options.name), "tables"};
+  MoreParameters more;
+  if (!options.textures_are_arguments) return more;
+  for (const ShaderTexture& texture : textures) {
+    const char* const comma = more.names.empty() ? "" : ", ";
+    more.declarations += fmt::format("{}sampler2D {}", comma, texture.name);
+    more.names += comma + texture.name;
+  }
+  return more;
+}
+
+// The language, with what reads a 3-D texture of which a picture has the layers.
+Language language_of(const ShaderOptions& options) {
+  Language l = language(to_string(options.language));
+  if (!options.textures_are_arguments) return l;
+  l.sample_3d = "{0}_between({0}, vec3({1}, {2}, {3})).{4}";
+  l.texel_3d = "{0}_texel({0}, ivec3({1}, {2}, {3})).{4}";
+  return l;
 }
 
 struct LocalFunction {
@@ -200,7 +240,7 @@ struct LocalFunction {
   OperationCount count;
 };
 LocalFunction local_function(Expr total, const Language& l, const ShaderOptions& options,
-                             const std::string& name) {
+                             const std::string& name, const MoreParameters& more) {
   if (total.type() == ValueType::real) {
     total = named("f0", total);
     total = Expr(Op::vector, {total, total, total});
@@ -214,7 +254,7 @@ LocalFunction local_function(Expr total, const Language& l, const ShaderOptions&
   const std::string value =
       options.half_products ? fmt::format("{}({})", l.vector, writer.text(root)) : writer.text(root);
   body += writer.text() + fmt::format(fmt::runtime(l.result), value);
-  return {l.function(ValueType::vector, name, kTwoDirections, more_of(options), body), graph.count()};
+  return {l.function(ValueType::vector, name, kTwoDirections, more.declarations, body), graph.count()};
 }
 
 std::string_view header_of(const Language& l, const ShaderOptions& options) noexcept {
@@ -231,6 +271,8 @@ void check(const FactoredBrdf& brdf, const ShaderOptions& options) {
   if (options.lines_are_1d &&
       (options.language != ShaderLanguage::glsl || options.filter != ShaderFilter::hardware))
     throw Error("shader: expected glsl and the hardware filter with 1-D textures, found others");
+  if (options.textures_are_arguments && (options.language != ShaderLanguage::glsl || options.lines_are_1d))
+    throw Error("shader: expected glsl without 1-D textures where textures are arguments, found others");
   if (options.half_products && options.filter == ShaderFilter::exact)
     throw Error("shader: expected the hardware filter with half products, found exact");
 }
@@ -264,24 +306,26 @@ ShaderFormula shader_formula(const FactoredBrdf& brdf, const ShaderOptions& opti
 
 LobeFunctions lobe_functions(const FactoredBrdf& brdf, const ShaderOptions& options) {
   ShaderFormula formula = shader_formula(brdf, options);
-  const Language& l = language(to_string(options.language));
+  const Language l = language_of(options);
   LobeFunctions functions{.text = std::string(header_of(l, options)), .names = {}, .textures = {}};
   functions.textures = std::move(formula.textures);
   functions.text += declare_textures(l, options, functions.textures);
+  const MoreParameters more = more_of(options, functions.textures);
   for (std::size_t j = 0; j < formula.lobes.size(); ++j) {
     functions.names.push_back(fmt::format("burnish_{}_lobe{}", options.name, j));
-    functions.text += local_function(formula.lobes[j], l, options, functions.names.back()).text;
+    functions.text += local_function(formula.lobes[j], l, options, functions.names.back(), more).text;
   }
   return functions;
 }
 
 Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options) {
   ShaderFormula formula = shader_formula(brdf, options);
-  const Language& l = language(to_string(options.language));
+  const Language l = language_of(options);
   const bool cpp = options.language == ShaderLanguage::cpp;
   Shader shader;
   shader.textures = std::move(formula.textures);
-  const LocalFunction function = local_function(formula.value, l, options, "burnish_" + options.name);
+  const MoreParameters more = more_of(options, shader.textures);
+  const LocalFunction function = local_function(formula.value, l, options, "burnish_" + options.name, more);
   shader.cost = cost_of(function.count, shader.textures.size());
   const auto comment_of = [](std::string text) {  // a table's name may hold anything
     for (char& c : text) c = c < ' ' || c > '~' || c == '\\' ? '?' : c;
@@ -295,7 +339,7 @@ Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options) {
       comment_of(model_expression(brdf)), options.name, to_string(shader.cost), header_of(l, options));
   if (cpp) shader.text += "namespace burnish_shader {\n";
   shader.text += declare_textures(l, options, shader.textures);
-  shader.text += function.text + world_function(l, options.name, more_of(options));
+  shader.text += function.text + world_function(l, options.name, more);
   if (cpp) shader.text += "}  // namespace burnish_shader\n";
   return shader;
 }
@@ -304,6 +348,7 @@ SplitShader split_shader(const FactoredBrdf& brdf, const ShaderOptions& options)
   if (options.language != ShaderLanguage::glsl && options.language != ShaderLanguage::glsl_es)
     throw Error(
         fmt::format("shader: expected glsl or glsl_es to split, found {}", to_string(options.language)));
+  if (options.textures_are_arguments) throw Error("shader: expected textures that are uniforms to split");
   const Language& l = language(to_string(options.language));
   ShaderFormula formula = shader_formula(brdf, options);
   SplitShader shader;

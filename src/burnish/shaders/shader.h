@@ -36,6 +36,9 @@ struct ShaderOptions {
   /// Of glsl with the hardware filter: a texture of one row is 1-D, which takes half the texels where no
   /// texture unit reads them.
   bool lines_are_1d = false;
+  /// Of glsl: no uniforms are declared; the functions take the textures as their last arguments, all of them
+  /// sampler2D, the 3-D one as a picture of its layers, the first at v = 0 and the others behind it.
+  bool textures_are_arguments = false;
 };
 
 /// What one evaluation in the local frame costs, above the horizon. Floating-point operations are counted a
@@ -96,7 +99,8 @@ struct Shader {
 /// smooth; what is brighter than 65504 becomes infinite.
 ///
 /// Throws Error if the name is not as above, channels are not 1 or 3, a texture's side would be above 16384,
-/// for C++ with the hardware filter, for half products with the exact one, or if lines_are_1d is not as above.
+/// for C++ with the hardware filter, for half products with the exact one, or if lines_are_1d or
+/// textures_are_arguments are not as above.
 Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options);
 
 /// What generate_shader computes, in two pieces of GLSL for a pixel that several lights shine on: `view`

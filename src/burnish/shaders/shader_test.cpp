@@ -352,6 +352,8 @@ TEST(Shader, RefusesWhatItCannotWrite) {
   EXPECT_THROW(generate_shader(brdf, {ShaderLanguage::cpp, ShaderFilter::hardware, "m"}), Error);
   EXPECT_THROW(shader_of({"m", "pqp", {"p=4", "q=4"}, 4}, ShaderLanguage::glsl), Error);
   EXPECT_THROW(generate_shader(brdf, {.lines_are_1d = true}), Error);
+  EXPECT_THROW(generate_shader(brdf, {.language = ShaderLanguage::wgsl, .textures_are_arguments = true}),
+               Error);
 }
 
 TEST(SplitShader, PartsWhatNeedsTheViewAloneAndAddsNothing) {

@@ -95,7 +95,7 @@ Shader generate_shader(const SpecularModel& model, ShaderLanguage language, cons
   shader.text += l.function(ValueType::vector, "burnish_" + name, kTwoDirections, "",
                             horizon_test(l) + writer.text() + l.declaration(ValueType::real, "lobe", lobe) +
                                 fmt::format(fmt::runtime(l.result), value));
-  shader.text += world_function(l, name, "");
+  shader.text += world_function(l, name, {});
   if (cpp) shader.text += "}  // namespace burnish_shader\n";
   return shader;
 }

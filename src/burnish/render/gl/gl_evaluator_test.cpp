@@ -1,5 +1,6 @@
 #include <memory>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <burnish/error.h>
@@ -18,9 +19,14 @@ class GlEvaluatorTest : public testing::TestWithParam<ModelCase> {
     if (!context_->context) GTEST_SKIP() << context_->reason;
   }
 
-  // The largest relative error over the pairs, divided by how much projections cancel.
   static double error(ShaderFilter filter, TableFormat precision) {
     const FactoredBrdf brdf = smooth_model(GetParam());
+    return error(brdf, GlEvaluator(brdf, filter, precision));
+  }
+
+  // The largest relative error over the pairs, divided by how much projections cancel.
+  template <class Evaluator>
+  static double error(const FactoredBrdf& brdf, const Evaluator& evaluator) {
     const auto pairs = corner_and_random_pairs(5000);
     std::vector<GlVectors> directions;
     for (const auto& [a, b] : pairs) {
@@ -28,7 +34,7 @@ class GlEvaluatorTest : public testing::TestWithParam<ModelCase> {
       directions.push_back(
           {{single(a.x), single(a.y), single(a.z)}, {single(b.x), single(b.y), single(b.z)}});
     }
-    const std::vector<float> found = GlEvaluator(brdf, filter, precision).eval(directions);
+    const std::vector<float> found = evaluator.eval(directions);
     double worst = 0;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       const auto& [wi, wo] = pairs[i];
@@ -54,6 +60,41 @@ TEST_P(GlEvaluatorTest, StaysWithinTheErrorOfEveryFilterAndPrecision) {
   EXPECT_LE(error(ShaderFilter::hardware, TableFormat::single), 5e-3);
   EXPECT_LE(error(ShaderFilter::exact, TableFormat::half), 2e-3);
   EXPECT_LE(error(ShaderFilter::hardware, TableFormat::half), 5e-3 + 2e-3);
+}
+
+// Shaders whose textures are arguments, 3-D ones as pictures of their layers.
+struct ArgumentsEvaluator {
+  GlFunction function;
+
+  static std::string call_of(const Shader& shader) {
+    std::string uniforms, arguments;
+    for (const ShaderTexture& texture : shader.textures) {
+      uniforms += fmt::format("uniform sampler2D given_{};\n", texture.name);
+      arguments += fmt::format(", given_{}", texture.name);
+    }
+    return fmt::format("{}{}vec3 call(vec3 wi, vec3 wo) {{ return burnish_model(wi, wo{}); }}\n", shader.text,
+                       uniforms, arguments);
+  }
+
+  explicit ArgumentsEvaluator(const Shader& shader, bool filtered) : function(call_of(shader), "call") {
+    for (const ShaderTexture& texture : shader.textures) {
+      GlTexture picture = upload_of(texture, TableFormat::single, filtered);
+      picture.name = "given_" + picture.name;
+      picture.height *= std::max(picture.depth, 1);
+      picture.depth = 0;
+      function.set_texture(picture);
+    }
+  }
+  std::vector<float> eval(std::span<const GlVectors> pairs) const { return function.call(pairs); }
+};
+
+TEST_P(GlEvaluatorTest, ReadsTexturesThatAreArguments) {
+  const FactoredBrdf brdf = smooth_model(GetParam());
+  for (const auto& [filter, most] : {std::pair{ShaderFilter::exact, 1e-5}, {ShaderFilter::hardware, 5e-3}}) {
+    const Shader shader =
+        generate_shader(brdf, {.filter = filter, .name = "model", .textures_are_arguments = true});
+    EXPECT_LE(error(brdf, ArgumentsEvaluator(shader, filter == ShaderFilter::hardware)), most);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, GlEvaluatorTest, testing::ValuesIn(kModelCases),
