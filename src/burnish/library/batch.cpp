@@ -33,10 +33,10 @@ using Clock = std::chrono::steady_clock;
 
 namespace {
 
-constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 constexpr std::chrono::milliseconds kPoll{500};
 constexpr std::string_view kAssembly = "~assembly";  // no material has such a name
 constexpr std::string_view kStaging = "staging";
+constexpr std::uint64_t kInputCopies = 2;  // of an input's bytes: the file's, and the numbers in it
 
 /// Ends a fit that nobody waits for.
 struct Stopped {};
@@ -78,10 +78,6 @@ std::string digest_of_file(const fs::path& path) {
 
 }  // namespace
 
-std::uint64_t fit_memory(std::uint64_t input_bytes) {
-  return 128 * kMiB + 6 * input_bytes;
-}
-
 class Batch::State {
  public:
   State(std::vector<LibraryEntry> entries, BatchOptions options);
@@ -91,6 +87,7 @@ class Batch::State {
   BatchSummary summary() const;
 
  private:
+  class MemoryShare;
   void work();
   std::optional<std::size_t> take();
   void process(std::size_t index);
@@ -98,8 +95,7 @@ class Batch::State {
   MaterialRecord fitted(const LibraryEntry& entry, const std::string& key);
   void stage(FittedMaterial& made);
   void give(std::size_t index, MaterialRecord record);
-  void enter_fit(std::uint64_t bytes);
-  void leave_fit(std::uint64_t bytes);
+  void wait_for_memory(std::uint64_t bytes, int& others);
   void share_threads();
   void assemble();
   void check_stopped() const {
@@ -126,11 +122,43 @@ class Batch::State {
   std::size_t working_ = 0;  // threads
   bool assembled_ = false;
   std::uint64_t reserved_ = 0;
-  int fitting_ = 0;  // threads within a fit
+  int active_ = 0, fitting_ = 0;  // threads that reserved memory, and those of them that are within a fit
   std::unique_ptr<ThreadLimit> limit_;
   BatchSummary summary_;
   double fitted_seconds_ = 0;  // when the last result of this run came, since the start
   std::vector<std::thread> workers_;
+};
+
+/// What a material takes of the memory, and of the threads while it is fitted.
+class Batch::State::MemoryShare {
+ public:
+  MemoryShare(State& state, std::uint64_t input) : state_(state), bytes_(input) {
+    state_.wait_for_memory(input, state_.active_);
+  }
+  ~MemoryShare() {
+    ::malloc_trim(0);  // what was freed goes back to the system, since the next fit may need it elsewhere
+    const std::lock_guard lock(state_.mutex_);
+    state_.reserved_ -= bytes_;
+    --state_.active_;
+    if (fits_) --state_.fitting_;
+    state_.share_threads();
+    state_.changed_.notify_all();
+  }
+  MemoryShare(const MemoryShare&) = delete;
+  MemoryShare& operator=(const MemoryShare&) = delete;
+
+  void begin_fit(std::uint64_t bytes) {
+    state_.wait_for_memory(bytes, state_.fitting_);
+    const std::lock_guard lock(state_.mutex_);
+    bytes_ += bytes;
+    fits_ = true;
+    state_.share_threads();
+  }
+
+ private:
+  State& state_;
+  std::uint64_t bytes_;
+  bool fits_ = false;
 };
 
 Batch::State::State(std::vector<LibraryEntry> entries, BatchOptions options)
@@ -151,17 +179,17 @@ Batch::State::State(std::vector<LibraryEntry> entries, BatchOptions options)
   summary_.total = entries_.size();
   reserved_ = memory_taken();
 
-  const std::uint64_t room = std::max(memory_, reserved_) - reserved_;
-  const auto beside = static_cast<int>(std::clamp<std::uint64_t>(room / fit_memory(0), 1, 1024));
-  const int count =
-      std::min({threads_, beside, static_cast<int>(std::min<std::size_t>(entries_.size(), 1024))});
+  const auto count = std::min(static_cast<std::size_t>(threads_), entries_.size());
   share_threads();
-  working_ = static_cast<std::size_t>(count);
-  for (int k = 0; k < count; ++k) workers_.emplace_back([this] { work(); });
+  working_ = count;
+  for (std::size_t k = 0; k < count; ++k) workers_.emplace_back([this] { work(); });
 }
 
 Batch::State::~State() {
-  stopping_ = true;
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
   changed_.notify_all();
   for (std::thread& worker : workers_) worker.join();
 }
@@ -242,25 +270,29 @@ std::optional<MaterialRecord> Batch::State::settled(const LibraryEntry& entry, c
 }
 
 MaterialRecord Batch::State::fitted(const LibraryEntry& entry, const std::string& key) {
-  const std::uint64_t needed = fit_memory(input_size(entry));
+  const auto start = Clock::now();
   journal_.append_began(entry.name, key);
-  enter_fit(needed);
   const auto failed = [&](std::string why, const std::string& under) {
-    return FittedMaterial{
-        {.name = entry.name, .argument = entry.argument, .key = under, .reason = std::move(why)}, {}};
+    return FittedMaterial{{.name = entry.name,
+                           .argument = entry.argument,
+                           .key = under,
+                           .reason = std::move(why),
+                           .seconds = std::chrono::duration<double>(Clock::now() - start).count()},
+                          {}};
   };
   FittedMaterial made;
-  try {
-    made = fit_material(entry, key, options_, [this] { check_stopped(); });
-  } catch (const Stopped&) {
-    leave_fit(needed);
-    throw;
-  } catch (const std::bad_alloc&) {
-    made = failed("expected enough memory, found too little", {});  // another time there may be more
-  } catch (const std::exception& error) {
-    made = failed(error.what(), key);
+  {
+    MemoryShare share(*this, kInputCopies * input_size(entry));
+    try {
+      made = fit_material(entry, key, options_,
+                          {.stop = [this] { check_stopped(); },
+                           .reserve = [&share](std::uint64_t bytes) { share.begin_fit(bytes); }});
+    } catch (const std::bad_alloc&) {
+      made = failed("expected enough memory, found too little", {});  // another time there may be more
+    } catch (const std::exception& error) {
+      made = failed(error.what(), key);
+    }
   }
-  leave_fit(needed);
   stage(made);
   return std::move(made.record);
 }
@@ -288,24 +320,14 @@ void Batch::State::give(std::size_t index, MaterialRecord record) {
   changed_.notify_all();
 }
 
-// Waits until so many bytes fit beside what other fits reserved; what is larger than all goes alone.
-void Batch::State::enter_fit(std::uint64_t bytes) {
+// Waits until so many bytes fit beside all that is reserved, and joins the others who wait no more; what is larger than
+// all goes where there are no others.
+void Batch::State::wait_for_memory(std::uint64_t bytes, int& others) {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return stopping_ || fitting_ == 0 || reserved_ + bytes <= memory_; });
+  changed_.wait(lock, [&] { return stopping_ || others == 0 || reserved_ + bytes <= memory_; });
   check_stopped();
   reserved_ += bytes;
-  ++fitting_;
-  share_threads();
-}
-
-// What a fit freed goes back to the system, since the next one may need it elsewhere.
-void Batch::State::leave_fit(std::uint64_t bytes) {
-  ::malloc_trim(0);
-  const std::lock_guard lock(mutex_);
-  reserved_ -= bytes;
-  --fitting_;
-  share_threads();
-  changed_.notify_all();
+  ++others;
 }
 
 // Each fit has a thread of its own; those that are left help within fits.

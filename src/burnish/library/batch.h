@@ -80,8 +80,7 @@ class Batch {
   std::unique_ptr<State> state_;
 };
 
-/// What a fit is taken to need while it runs, bytes: generous for an input of so many bytes and the largest of the
-/// usual budgets.
-std::uint64_t fit_memory(std::uint64_t input_bytes);
+/// What a fit is taken to need while it runs beside its input, bytes: a little more than was seen (docs/notes/library.md).
+std::uint64_t fit_memory(const FitOptions& options, bool isotropic);
 
 }  // namespace burnish

@@ -108,7 +108,7 @@ std::vector<fs::path> files_of(const std::string& argument) {
 }  // namespace
 
 FittedMaterial fit_material(const LibraryEntry& entry, const std::string& key, const BatchOptions& options,
-                            const std::function<void()>& stop) {
+                            const FitWatch& watch) {
   const auto start = std::chrono::steady_clock::now();
   FittedMaterial made{.record = {.name = entry.name, .argument = entry.argument, .key = key}};
   MaterialRecord& record = made.record;
@@ -120,13 +120,14 @@ FittedMaterial fit_material(const LibraryEntry& entry, const std::string& key, c
   // the model
   const Source source = open_source(entry.argument, options.open);
   FitOptions how = fit_options(options, source.ref().isotropic());
-  how.progress = [&stop](std::string_view, double) { stop(); };
+  how.progress = [&watch](std::string_view, double) { watch.stop(); };
+  watch.reserve(fit_memory(how, source.ref().isotropic()));
   const Fit fit = burnish::fit(source, how);
   const auto* model = std::get_if<FactoredBrdf>(&fit.brdf);
   const std::string ending = !model ? ".json" : options.compact ? ".burnish" : ".exr";
   const std::string path = "models/" + entry.name + ending;
   add(path, format_fit(fit, path));
-  stop();
+  watch.stop();
 
   // what is said of it
   record.format = source.findings.format;
@@ -147,6 +148,15 @@ FittedMaterial fit_material(const LibraryEntry& entry, const std::string& key, c
   }
   record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return made;
+}
+
+std::uint64_t fit_memory(const FitOptions& options, bool isotropic) {
+  constexpr std::uint64_t kLeast = std::uint64_t{48} << 20, kUsual = 16384, kLargestAuto = 65536;
+  const std::uint64_t for_each_byte = isotropic ? 6600 : 17000;
+  const FitForm form = options.form.value_or(default_budget(isotropic));
+  if (std::holds_alternative<OneLobe>(form)) return kLeast;
+  const auto* budget = std::get_if<Budget>(&form);
+  return kLeast + for_each_byte * (budget ? budget->bytes.value_or(kLargestAuto) : kUsual);
 }
 
 InputDigests::InputDigests(const BatchOptions& options) : options_(options) {

@@ -18,10 +18,16 @@ struct FittedMaterial {
   std::vector<std::string> bytes;
 };
 
-/// Opens and fits one material, makes its picture and what is exported. `stop` is called now and then; what it throws
-/// ends the fit. Throws Error as open_source, fit and export_model do.
+/// Who waits for a material.
+struct FitWatch {
+  std::function<void()> stop;                        ///< called now and then; what it throws ends the fit
+  std::function<void(std::uint64_t bytes)> reserve;  ///< called before the fit, which takes so much memory
+};
+
+/// Opens and fits one material, makes its picture and what is exported. Throws Error as open_source, fit and
+/// export_model do.
 FittedMaterial fit_material(const LibraryEntry& entry, const std::string& key, const BatchOptions& options,
-                            const std::function<void()>& stop);
+                            const FitWatch& watch);
 
 /// Digests of what materials are made of. Files that many name, as those of np:FOLDER#NAME, are read once. Safe to call
 /// from several threads.
