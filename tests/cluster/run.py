@@ -35,7 +35,7 @@ SlurmctldPort={port}
 SlurmUser={user}
 SlurmdUser={user}
 AuthType=auth/munge
-AuthInfo=socket={folder}/munge.socket,cred_expire=3
+AuthInfo=socket={folder}/munge.socket
 CredType=cred/munge
 StateSaveLocation={folder}/state
 SlurmctldPidFile={folder}/slurmctld.pid
@@ -144,7 +144,12 @@ class Cluster:
         return found.group()
 
     def waits_for(self, job):
-        return bool(self.ask("squeue", "-h", "-j", job).strip())
+        """Whether a task of the job is to run or running. A requeued one, which would rest for minutes, starts now."""
+        tasks = [line.split() for line in self.ask("squeue", "-h", "-r", "-j", job, "-o", "%i %r").splitlines()]
+        for task, reason in tasks:
+            if reason == "BeginTime":
+                self.ask("scontrol", "update", f"JobId={task}", "StartTime=now")
+        return bool(tasks)
 
 
 def burnish_processes(folder, node=None):
@@ -245,6 +250,7 @@ def main():
     seed = arguments.seed if arguments.seed is not None else random.randrange(1 << 32)
     print(f"seed {seed}")
     draw = random.Random(seed)
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit("cluster: expected time to end, found a signal"))
     with tempfile.TemporaryDirectory(prefix="burnish-cluster-") as name:
         scratch = pathlib.Path(name)
         scratch.chmod(0o755)

@@ -3,15 +3,15 @@
 "use strict";
 (() => {
   const kWidth = 188, kHeight = 218, kSphere = 96, kAround = 2;  // pixels of a card with its gap; rows beyond the edges
-  const kMostCompared = 8;
+  const kMostCompared = 8, kThousands = new Intl.NumberFormat("en");
   // What can be sorted and compared by: a heading, the text of a value, and which way is better.
   const kFigures = {
     name: {label: "name", text: (v) => v, better: 0},
     psnr: {label: "psnr", text: (v) => `${v.toFixed(2)} dB`, better: 1},
     ssim: {label: "ssim", text: (v) => v.toFixed(4), better: 1},
-    relative: {label: "relative error", text: (v) => v.toFixed(4), better: -1},
-    log_cos: {label: "log_cos", text: (v) => v.toFixed(5), better: -1},
-    bytes: {label: "bytes", text: (v) => v.toLocaleString("en"), better: -1},
+    relative: {label: "relative error", text: (v) => v.toFixed(3), better: -1},
+    log_cos: {label: "log_cos", text: (v) => v.toFixed(4), better: -1},
+    bytes: {label: "bytes", text: (v) => kThousands.format(v), better: -1},
     fetches: {label: "fetches", text: (v) => String(v), better: -1},
     albedo: {label: "albedo", text: (v) => v.toFixed(3), better: 0},
     seconds: {label: "seconds", text: (v) => v.toFixed(2), better: -1},
@@ -55,7 +55,7 @@
       return sign * (figure === "name" ? a.order - b.order : x - y) || a.index - b.index;
     };
     shown = library.materials.filter((material) => tests.every((test) => test(material))).sort(compare);
-    for (const card of cards.values()) card.remove();
+    at("materials").replaceChildren();
     cards.clear();
     at("count").textContent = shown.length === library.materials.length ? `${shown.length} materials` : `${shown.length} of ${library.materials.length} materials`;
     draw();
@@ -65,25 +65,26 @@
 
   // Makes the cards that are seen and takes the others away.
   function draw() {
-    const list = at("materials"), across = columns();
-    list.style.height = `${Math.ceil(shown.length / across) * kHeight}px`;
-    const top = -list.getBoundingClientRect().top;
+    const list = at("materials"), across = columns(), top = -list.getBoundingClientRect().top;
     const first = Math.max(0, Math.floor(top / kHeight) - kAround) * across;
     const last = Math.min(shown.length, (Math.ceil((top + window.innerHeight) / kHeight) + kAround) * across);
+    list.style.height = `${Math.ceil(shown.length / across) * kHeight}px`;
     for (const [place, card] of cards) {
       if (place >= first && place < last) continue;
       if (card.contains(document.activeElement)) continue;  // the keyboard is there
       card.remove();
       cards.delete(place);
     }
+    const made = document.createDocumentFragment();
     for (let place = first; place < last; ++place) {
       if (!cards.has(place)) {
         cards.set(place, cardOf(shown[place], place));
-        list.append(cards.get(place));
+        made.append(cards.get(place));
       }
-      const card = cards.get(place);
-      card.style.transform = `translate(${(place % across) * kWidth}px, ${Math.floor(place / across) * kHeight}px)`;
     }
+    for (const [place, card] of cards)
+      card.style.transform = `translate(${(place % across) * kWidth}px, ${Math.floor(place / across) * kHeight}px)`;
+    list.append(made);
   }
 
   function sphereOf(material) {
@@ -107,7 +108,7 @@
     compare.setAttribute("aria-label", `Compare ${material.name}`);
     compare.setAttribute("aria-pressed", picked.includes(material));
     const card = element("li", {className: picked.includes(material) ? "card picked" : "card"}, sphereOf(material), link,
-      element("p", {textContent: material.psnr === null ? `relative ${textOf(material, "relative")}` : `${textOf(material, "psnr")}, relative ${textOf(material, "relative")}`}),
+      element("p", {textContent: `${material.psnr === null ? "" : `${textOf(material, "psnr")}, `}error ${textOf(material, "relative")}`}),
       element("p", {textContent: `${textOf(material, "bytes")} bytes, ${textOf(material, "fetches")} fetches`}),
       element("p", {textContent: `albedo ${textOf(material, "albedo")}`}), compare);
     if (material.warnings.length > 0)

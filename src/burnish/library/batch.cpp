@@ -33,7 +33,7 @@ using Clock = std::chrono::steady_clock;
 
 namespace {
 
-constexpr std::chrono::milliseconds kPoll{500};
+constexpr std::chrono::milliseconds kPoll{500}, kTold{100};
 constexpr std::string_view kAssembly = "~assembly";  // no material has such a name
 constexpr std::string_view kStaging = "staging";
 constexpr std::uint64_t kInputCopies = 2;  // of an input's bytes: the file's, and the numbers in it
@@ -83,7 +83,7 @@ class Batch::State {
   State(std::vector<LibraryEntry> entries, BatchOptions options);
   ~State();
 
-  std::optional<MaterialRecord> next();
+  std::optional<MaterialRecord> next(const std::function<void()>& waiting);
   BatchSummary summary() const;
 
  private:
@@ -336,9 +336,13 @@ void Batch::State::share_threads() {
   limit_ = std::move(limit);
 }
 
-std::optional<MaterialRecord> Batch::State::next() {
+std::optional<MaterialRecord> Batch::State::next(const std::function<void()>& waiting) {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return !results_.empty() || error_ || working_ == 0; });
+  while (!changed_.wait_for(lock, kTold, [&] { return !results_.empty() || error_ || working_ == 0; })) {
+    lock.unlock();
+    if (waiting) waiting();
+    lock.lock();
+  }
   if (!results_.empty()) {
     MaterialRecord record = std::move(results_.front());
     results_.pop_front();
@@ -392,8 +396,8 @@ Batch::Batch(std::vector<LibraryEntry> entries, BatchOptions options)
 
 Batch::~Batch() = default;
 
-std::optional<MaterialRecord> Batch::next() {
-  return state_->next();
+std::optional<MaterialRecord> Batch::next(const std::function<void()>& waiting) {
+  return state_->next(waiting);
 }
 
 BatchSummary Batch::summary() const {

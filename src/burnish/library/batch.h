@@ -69,8 +69,9 @@ class Batch {
 
   /// The next material that is done, in the order they come; each once. Waits for it. After the last one, when table and
   /// page are made, nothing. What is wrong with a material is in its record; what is wrong with the folder (full, gone,
-  /// not to be written) ends the batch and is thrown as Error, by every later call too.
-  std::optional<MaterialRecord> next();
+  /// not to be written) ends the batch and is thrown as Error, by every later call too. `waiting` is called ten times a
+  /// second meanwhile; what it throws reaches the caller, and the batch goes on.
+  std::optional<MaterialRecord> next(const std::function<void()>& waiting = {});
 
   /// Of what next has given out.
   BatchSummary summary() const;
