@@ -6,7 +6,8 @@
 # make studio the library as WebAssembly, its npm package and the page in build/studio; make studio-test tests them
 # make bench, make fuzz, make report, make cost-report, make sampling-report, make shader-report, make frame-cost, make hw-report, make hw-exhaustive, make format:
 # see CONTRIBUTING.md
-.PHONY: demo test build reports python deb wheel packaging-deps release-check studio studio-test deps test-deps studio-deps bench fuzz report cost-report sampling-report shader-report frame-cost hw-report hw-exhaustive format format-check docs-check include-check api
+# make cluster-test  a batch on a real Slurm of two nodes on this machine, killed now and then
+.PHONY: cluster-test demo test build reports python deb wheel packaging-deps release-check studio studio-test deps test-deps studio-deps bench fuzz report cost-report sampling-report shader-report frame-cost hw-report hw-exhaustive format format-check docs-check include-check api
 JOBS ?= $(shell nproc)
 BURNISH := build/release/apps/burnish/burnish
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
@@ -52,6 +53,7 @@ test: test-deps format-check docs-check include-check
 	@python/check.sh --skip-offline
 	@tests/web/check.sh --skip-offline
 	@tests/web/package.sh --if-built
+	@tests/cluster/run.py $(BURNISH) --if-there
 
 python: test-deps build
 	@python/check.sh
@@ -79,6 +81,12 @@ studio: studio-deps
 
 studio-test: studio build
 	@tests/web/package.sh
+
+cluster-test: build
+	@missing=$$(for p in slurmctld slurmd slurm-client munge; do \
+	  dpkg-query -W -f '$${Status}' $$p 2>/dev/null | grep -q 'ok installed' || echo $$p; done); \
+	[ -z "$$missing" ] || $(SUDO) apt-get install -y -qq --no-install-recommends $$missing > /dev/null
+	@tests/cluster/run.py $(BURNISH)
 
 bench: test-deps
 	@cmake --preset bench > /dev/null

@@ -39,5 +39,5 @@ set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # What a program needs to link the static library.
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libtbb-dev, libhwy-dev, libopenexr-dev, libpng-dev, libpugixml-dev, \
-libopenblas-serial-dev, libepoxy-dev, libembree-dev, libzstd-dev, libfmt-dev")
+libopenblas-serial-dev, libepoxy-dev, libembree-dev, libzstd-dev, libfmt-dev, libsqlite3-dev")
 include(CPack)

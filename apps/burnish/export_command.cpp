@@ -26,20 +26,6 @@ struct ExportArguments {
   bool exact = false, plain = false, mips = false, json = false;
 };
 
-// What shaders can be called, of a file's name.
-std::string name_of(const std::string& path) {
-  std::string name;
-  for (const char c : std::filesystem::path(path).stem().string()) {
-    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'), digit = c >= '0' && c <= '9';
-    if (letter || (digit && !name.empty()))
-      name += c;
-    else if (!name.empty() && name.back() != '_')
-      name += '_';
-  }
-  while (name.ends_with('_')) name.pop_back();
-  return name.empty() ? "brdf" : name;
-}
-
 ExportOptions options_of(const ExportArguments& arguments) {
   ExportOptions options{.to = {},
                         .name = arguments.name,
@@ -72,7 +58,7 @@ ExportedFiles exported_model(const ExportArguments& arguments) {
   ExportOptions options = options_of(arguments);
   if (!arguments.environment.empty() && std::ranges::none_of(options.to, shows_environment))
     throw CLI::ValidationError("--environment: expected --to glsl, glsl_es or html with it, found others");
-  if (options.name.empty()) options.name = name_of(arguments.model);
+  if (options.name.empty()) options.name = export_name(std::filesystem::path(arguments.model).stem().string());
   const FactoredBrdf brdf = parse_model(read_file(arguments.model)).brdf;
   options.environment = environment_of(arguments.environment);
   return export_model(brdf, options);

@@ -8,7 +8,10 @@ void add_source_arguments(CLI::App& verb, SourceArguments& arguments) {
                   "analytic BRDF such as "
                   "ggx:alpha_x=0.1,alpha_y=0.1")
       ->required();
-  OpenOptions& options = arguments.options;
+  add_open_options(verb, arguments.options);
+}
+
+void add_open_options(CLI::App& verb, OpenOptions& options) {
   verb.add_flag("--spectral", options.keep_spectral, "keep one channel a wavelength");
   verb.add_option("--illuminant", options.illuminant,
                   "light under which spectra become RGB: E (equal energy), D50, D65, A, or a file of "

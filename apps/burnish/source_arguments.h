@@ -19,4 +19,7 @@ struct SourceArguments {
 /// Adds the positional BRDF and the options of OpenOptions to a verb. `arguments` must outlive the parse.
 void add_source_arguments(CLI::App& verb, SourceArguments& arguments);
 
+/// The same without the positional argument.
+void add_open_options(CLI::App& verb, OpenOptions& options);
+
 }  // namespace burnish::cli

@@ -12,6 +12,7 @@ wo to the viewer. Functions are named as in C++ and on the command line; angles 
 """
 
 from ._burnish import (
+    Batch,
     Error,
     ErrorFigures,
     FactorUse,
@@ -23,6 +24,7 @@ from ._burnish import (
     Source,
     Table,
     ThreadLimit,
+    batch,
     compare_models,
     conserve_energy,
     convert,

@@ -9,6 +9,7 @@
 #include <burnish/fitting/fit_file.h>
 #include <burnish/fitting/parametric/material_fit.h>
 
+#include "fit_keywords.h"
 #include "opened_brdf.h"
 
 namespace burnish::python {
@@ -38,29 +39,10 @@ OpenedModel* fit(const OpenedBrdf& source, const std::string& model, const std::
                  std::optional<int> reweightings, double floor, const std::optional<std::string>& format,
                  std::size_t samples, std::uint64_t seed, bool symmetrize, bool conserve_energy,
                  const nb::object& progress) {
-  LogLinear how{.reweightings = reweightings, .floor = floor};
-  FitOptions options{.samples = samples,
-                     .seed = seed,
-                     .symmetrize = symmetrize,
-                     .conserve_energy = conserve_energy,
-                     .progress = progress_of(progress)};
-  if (const auto* number = std::get_if<double>(&smooth)) options.smooth = *number;
-  if (const auto* word = std::get_if<std::string>(&smooth)) {
-    if (*word != "auto")
-      throw Error("smooth: expected None, \"auto\" or a number >= 0, found '" + *word + "'");
-    how.cross_validate = true;
-  }
-  if (format) options.format = parse_table_format(*format);
-  const std::optional<std::uint64_t> bytes = bytes_of(budget);
-  if (bytes != std::uint64_t{0})
-    options.form = Budget{.bytes = bytes,
-                          .fetches = fetches,
-                          .lobes = lobes,
-                          .search = search,
-                          .loss = parse_fit_loss(loss),
-                          .scattered = how};
-  else
-    options.form = form_of(model, tables, source.ref().isotropic(), how, parse_fit_loss(loss));
+  FitOptions options = fit_options({model, tables, budget, fetches, lobes, search, loss, smooth, reweightings,
+                                    floor, format, samples, seed, symmetrize, conserve_energy},
+                                   source.source().ref().isotropic());
+  options.progress = progress_of(progress);
   const nb::gil_scoped_release released;
   return new OpenedModel(source.source().name, to_model(burnish::fit(source.source(), options)));
 }
@@ -80,6 +62,32 @@ nb::object fit_to_material(const OpenedBrdf& source, const std::string& to,
 }
 
 }  // namespace
+
+FitOptions fit_options(const FitKeywords& given, bool isotropic) {
+  LogLinear how{.reweightings = given.reweightings, .floor = given.floor};
+  FitOptions options{.samples = given.samples,
+                     .seed = given.seed,
+                     .symmetrize = given.symmetrize,
+                     .conserve_energy = given.conserve_energy};
+  if (const auto* number = std::get_if<double>(&given.smooth)) options.smooth = *number;
+  if (const auto* word = std::get_if<std::string>(&given.smooth)) {
+    if (*word != "auto")
+      throw Error("smooth: expected None, \"auto\" or a number >= 0, found '" + *word + "'");
+    how.cross_validate = true;
+  }
+  if (given.format) options.format = parse_table_format(*given.format);
+  const std::optional<std::uint64_t> bytes = bytes_of(given.budget);
+  if (bytes != std::uint64_t{0})
+    options.form = Budget{.bytes = bytes,
+                          .fetches = given.fetches,
+                          .lobes = given.lobes,
+                          .search = given.search,
+                          .loss = parse_fit_loss(given.loss),
+                          .scattered = how};
+  else
+    options.form = form_of(given.model, given.tables, isotropic, how, parse_fit_loss(given.loss));
+  return options;
+}
 
 void bind_fitting(nb::module_& m) {
   m.def(

@@ -14,6 +14,7 @@ namespace burnish::python {
 namespace nb = nanobind;
 
 // Each part of the library is bound in the file of its name.
+void bind_batch(nb::module_& m);
 void bind_source(nb::module_& m);
 void bind_eval(nb::module_& m);
 void bind_exports(nb::module_& m);

@@ -225,6 +225,26 @@ def test_a_measurement_is_reproducible(ggx):
     assert 0.05 < np.std(np.log(noisy / f)) < 0.2
 
 
+def test_a_batch_yields_its_materials_as_they_are_done(tmp_path, cli):
+    specs = ["ggx:alpha_x=0.3,alpha_y=0.3", str(tmp_path / "missing.csv"), "ward:alpha_x=0.2,alpha_y=0.2"]
+    how = {"model": "pqp", "samples": 2000}
+    rows = {row["argument"]: row for row in burnish.batch(specs, tmp_path / "out", threads=1, **how)}
+    assert set(rows) == set(specs)
+    assert "no such file" in rows[specs[1]]["reason"]
+    burnish.write_model(tmp_path / "alone.burnish", burnish.fit(burnish.open_source(specs[0]), **how))
+    made = tmp_path / "out" / rows[specs[0]]["files"][0]["path"]
+    assert made.read_bytes() == (tmp_path / "alone.burnish").read_bytes()
+    assert not rows[specs[0]]["earlier"] and (tmp_path / "out/index.html").exists()
+
+    # the command line goes on with it: nothing is left to do
+    (tmp_path / "list").write_text("\n".join([specs[0], specs[2]]))
+    told = cli("batch", tmp_path / "list", "-o", tmp_path / "out", "--resume", "--model", "pqp", "--samples", "2000",
+               "--json")
+    assert told["earlier"] == told["fitted"] == 2
+    with pytest.raises(burnish.Error, match="expected an option of fit"):
+        burnish.batch(specs, tmp_path / "other", bugdet=2700)
+
+
 def test_every_public_name_says_what_it_is():
     for name in burnish.__all__:
         assert getattr(burnish, name).__doc__, name

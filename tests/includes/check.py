@@ -27,6 +27,7 @@ ALLOWED = {
     "report": [],
     "render": ["shaders"],
     "export": ["fitting", "io", "render", "shaders", "textures"],
+    "library": ["io", "fitting", "export"],
 }
 DOOR = "burnish.h"
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)

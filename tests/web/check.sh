@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Opens exports in ktx-parse, three.js, Babylon.js, Chromium and the glTF validator, and compares tangent frames with MikkTSpace,
-# installed from npm into build/web; and the page in build/studio, where `make studio` made it. With --skip-offline it
+# Opens exports in ktx-parse, three.js, Babylon.js, Chromium and the glTF validator, and compares tangent frames with
+# MikkTSpace, installed from npm into build/web; the page of a library; and the one in build/studio, where `make studio`
+# made it. With --skip-offline it
 # says so and succeeds where npm, Chromium or the registry cannot be reached.
 set -eu
 cd "$(dirname "$0")/../.."
@@ -29,6 +30,14 @@ printf 'wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0,0,1,0,0,1\n' > "$web/normal.csv"
 "$burnish" eval "$web/brushed.exr" "$web/normal.csv" -o "$web/value.csv" > /dev/null
 NODE_FOLDER=node_modules node "$web/check.mjs" "$web/out" brushed "$(tail -1 "$web/value.csv" | cut -d, -f1)"
 node "$web/frames.mjs" build/release/tests/burnish_mesh_frames "$web"
+
+# a library's page
+rm -rf "$web/library" && mkdir -p "$web/library"
+for alpha in 10 12 14 16 18 20 22 24 26 28 30 32 34 36 38 40; do
+  echo "ggx:alpha_x=0.$alpha,alpha_y=0.$alpha,f0=0.9/0.$alpha/0.2"
+done > "$web/library.txt"
+"$burnish" batch "$web/library.txt" -o "$web/library" --model pqp --samples 2000 > /dev/null
+node "$web/catalogue.mjs" "$web/library"
 
 if [ -f build/studio/package/burnish.js ] && [ -f build/studio/index.html ]; then
   node "$web/studio.mjs" "$PWD/build/studio" "$burnish" "$web/studio"

@@ -41,6 +41,19 @@ std::optional<ShaderLanguage> language_of(ExportTarget target) noexcept {
   return kShaderLanguages[i - kFirstLanguage];
 }
 
+std::string export_name(std::string_view text) {
+  std::string name;
+  for (const char c : text) {
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'), digit = c >= '0' && c <= '9';
+    if (letter || (digit && !name.empty()))
+      name += c;
+    else if (!name.empty() && name.back() != '_')
+      name += '_';
+  }
+  while (name.ends_with('_')) name.pop_back();
+  return name.empty() ? "brdf" : name;
+}
+
 bool shows_environment(ExportTarget target) noexcept {
   return target == ExportTarget::glsl || target == ExportTarget::glsl_es || target == ExportTarget::html;
 }

@@ -46,6 +46,9 @@ std::optional<ShaderLanguage> language_of(ExportTarget target) noexcept;
 /// Whether the target can show light from all around: glsl, glsl_es and html.
 bool shows_environment(ExportTarget target) noexcept;
 
+/// What functions and files of an export can be called, made of a text's letters and digits; "brdf" where it has none.
+std::string export_name(std::string_view text);
+
 struct ExportedFile {
   std::string name, bytes;
 };

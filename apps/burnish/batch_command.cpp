@@ -1,0 +1,189 @@
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include <burnish/error.h>
+#include <burnish/file.h>
+#include <burnish/library/batch.h>
+#include <burnish/library/catalogue.h>
+#include <burnish/library/figures_table.h>
+
+#include "commands.h"
+#include "fit_arguments.h"
+#include "slurm_script.h"
+#include "source_arguments.h"
+#include "usage.h"
+
+namespace burnish::cli {
+
+namespace {
+
+struct BatchArguments {
+  std::string place, out;
+  std::vector<std::string> to;
+  FitArguments fit;
+  BatchOptions batch;
+  SlurmArguments slurm;
+  double patience = 60;
+  bool exr = false, plain = false, json = false;
+};
+
+BatchOptions batch_options(const BatchArguments& arguments) {
+  BatchOptions options = arguments.batch;
+  options.folder = arguments.out;
+  options.fit = [&fit = arguments.fit](bool isotropic) { return fit_options(fit, isotropic); };
+  options.compact = !arguments.exr;
+  options.exports.compressed = !arguments.plain;
+  for (const std::string& to : arguments.to) options.exports.to.push_back(export_target(to));
+  options.patience = std::chrono::duration<double>(arguments.patience);
+  return options;
+}
+
+std::string duration(double seconds) {
+  const auto s = static_cast<long>(std::ceil(seconds));
+  if (s < 100) return fmt::format("{} s", s);
+  if (s < 100 * 60) return fmt::format("{} min", (s + 59) / 60);
+  return fmt::format("{} h {} min", s / 3600, s % 3600 / 60);
+}
+
+// One line on standard error, redrawn in place; nothing where that is no terminal.
+void show_progress(const BatchSummary& summary) {
+  if (::isatty(STDERR_FILENO) == 0) return;
+  const std::size_t done = summary.fitted + summary.failed;
+  fmt::print(stderr, "\r{} of {} done", done, summary.total);
+  if (summary.failed > 0) fmt::print(stderr, ", {} failed", summary.failed);
+  if (summary.seconds_left) fmt::print(stderr, ", {} left", duration(*summary.seconds_left));
+  fmt::print(stderr, "\033[K");
+  if (done == summary.total) fmt::print(stderr, "\r\033[K");
+  std::fflush(stderr);
+}
+
+void print_json(const BatchArguments& arguments, const BatchSummary& summary,
+                const std::vector<MaterialRecord>& failed) {
+  auto failures = nlohmann::ordered_json::array();
+  for (const MaterialRecord& record : failed)
+    failures.push_back({{"name", record.name}, {"path", record.argument}, {"reason", record.reason}});
+  const std::filesystem::path folder(arguments.out);
+  const nlohmann::ordered_json json{{"output", arguments.out},
+                                    {"materials", summary.total},
+                                    {"fitted", summary.fitted},
+                                    {"failed", summary.failed},
+                                    {"earlier", summary.earlier},
+                                    {"table", (folder / kFiguresTable).string()},
+                                    {"page", (folder / kCataloguePage).string()},
+                                    {"seconds", summary.seconds},
+                                    {"failures", failures}};
+  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+void print_text(const BatchArguments& arguments, const BatchSummary& summary,
+                const std::vector<MaterialRecord>& failed) {
+  const std::filesystem::path folder(arguments.out);
+  fmt::print("fitted     {} of {} materials{} in {}\n", summary.fitted, summary.total,
+             summary.earlier > 0 ? fmt::format(" ({} done before or elsewhere)", summary.earlier) : "",
+             duration(summary.seconds));
+  for (const MaterialRecord& record : failed)
+    fmt::print("failed     {}: {}\n", record.name, short_message(record.reason));
+  fmt::print("written    {} and {}\n", (folder / kFiguresTable).string(), (folder / kCataloguePage).string());
+}
+
+void write_script(const BatchArguments& arguments, const CLI::App& verb) {
+  library_entries(arguments.place);  // what is wrong with it is said now
+  std::vector<std::string> words = command_words(verb);
+  if (!arguments.batch.resume) words.insert(words.begin() + 2, "--resume");
+  const std::filesystem::path folder(arguments.out);
+  std::filesystem::create_directories(folder);
+  const std::string path = (folder / "batch.slurm").string();
+  write_then_rename(
+      path, slurm_script(arguments.slurm, folder, words, arguments.batch.threads, arguments.batch.memory));
+  fmt::print("written    {}: start it with sbatch {}\n", path, path);
+}
+
+void run(const BatchArguments& arguments, const CLI::App& verb) {
+  const BatchOptions options = batch_options(arguments);
+  for (const bool isotropic : {false, true})
+    options.fit(isotropic);  // contradictions are misuses, before all else
+  if (arguments.slurm.wanted) return write_script(arguments, verb);
+  Batch batch(library_entries(arguments.place), options);
+  std::vector<MaterialRecord> failed;
+  while (const auto record = batch.next()) {
+    if (!record->fitted()) failed.push_back(*record);
+    show_progress(batch.summary());
+  }
+  const BatchSummary summary = batch.summary();
+  if (arguments.json)
+    print_json(arguments, summary, failed);
+  else
+    print_text(arguments, summary, failed);
+  std::fflush(stdout);
+  if (!failed.empty())
+    throw Error(fmt::format("{} of {} materials were not fitted; the others are all there", failed.size(),
+                            summary.total));
+}
+
+void add_folder_arguments(CLI::App& verb, BatchArguments& arguments) {
+  BatchOptions& options = arguments.batch;
+  verb.add_option("LIST", arguments.place,
+                  "a folder with measurements, or a text with an argument of `burnish fit` a line: files, "
+                  "ggx:alpha_x=0.1,alpha_y=0.1, np:FOLDER#NAME")
+      ->required();
+  verb.add_option("-o,--output,--out", arguments.out, "folder, made where it is missing")->required();
+  verb.add_flag("--resume", options.resume,
+                "go on in a folder with a batch: what is done and whole is not done again");
+  verb.add_option(
+          "--memory", options.memory,
+          "bytes to take at most, as 4G: fewer materials are fitted at once (default: four fifths of what is "
+          "free)")
+      ->transform(CLI::AsSizeValue(false));
+  verb.add_option("--threads", options.threads, "at most this many; 0: all")->check(CLI::Range(0, 1024));
+  verb.add_option("--patience", arguments.patience,
+                  "seconds after which a process on another machine that says nothing is taken over")
+      ->check(CLI::Range(0.1, 86400.0))
+      ->capture_default_str();
+  verb.add_option("--studio", options.studio, "where the studio lies, as from the page")
+      ->capture_default_str();
+  verb.add_flag("--exr", arguments.exr, "models as OpenEXR with notes of the fit, not as .burnish");
+}
+
+void add_export_arguments(CLI::App& verb, BatchArguments& arguments) {
+  const auto names = export_target_names();
+  ExportOptions& exports = arguments.batch.exports;
+  CLI::Option* to =
+      verb.add_option("--to", arguments.to, "also export each as this; may be given several times")
+          ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())))
+          ->allow_extra_args(false)
+          ->excludes("--method");
+  verb.add_flag("--exact", exports.exact, "of --to: shaders that weigh texels themselves, in floats")
+      ->needs(to);
+  verb.add_flag("--mips", exports.mips, "of --to: KTX2 with levels")->needs(to);
+  verb.add_flag("--plain", arguments.plain, "of --to: textures that are not compressed")->needs(to);
+}
+
+}  // namespace
+
+void add_batch_command(CLI::App& app) {
+  CLI::App* verb = app.add_subcommand("batch", "Fit a whole library: a folder or a list of BRDFs");
+  verb->footer(
+      "Models go to OUT/models, their figures to OUT/library.sqlite, and OUT/index.html shows them all. What "
+      "cannot "
+      "be fitted is said at the end, with exit status 1. See docs/guide/library.md and "
+      "docs/guide/cluster.md.\n"
+      "Examples: burnish batch measurements -o library\n"
+      "          burnish batch list.txt -o library --budget 2700 --memory 4G --to glsl\n"
+      "          burnish batch list.txt -o library --resume\n"
+      "          burnish batch list.txt -o library --slurm --tasks 16 --sbatch=--partition=long");
+  auto arguments = std::make_shared<BatchArguments>();
+  add_folder_arguments(*verb, *arguments);
+  add_open_options(*verb, arguments->batch.open);
+  add_fit_arguments(*verb, arguments->fit);
+  add_export_arguments(*verb, *arguments);
+  add_slurm_arguments(*verb, arguments->slurm);
+  verb->add_flag("--json", arguments->json, "print the summary as JSON");
+  verb->callback([arguments, verb] { run(*arguments, *verb); });
+}
+
+}  // namespace burnish::cli

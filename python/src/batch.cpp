@@ -1,0 +1,121 @@
+#include <filesystem>
+#include <type_traits>
+
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/variant.h>
+#include <nanobind/stl/vector.h>
+
+#include <burnish/error.h>
+#include <burnish/library/batch.h>
+
+#include "fit_keywords.h"
+#include "module.h"
+
+namespace burnish::python {
+
+namespace {
+
+// The keywords of `fit` but progress. Throws nb::type_error (through the cast) and Error naming one that is none.
+FitKeywords keywords_of(const nb::kwargs& given) {
+  FitKeywords keywords;
+  const auto take = [](nb::handle value, auto& into) {
+    into = nb::cast<std::decay_t<decltype(into)>>(value);
+  };
+  for (const auto& [key, value] : given) {
+    const auto name = nb::cast<std::string>(key);
+    if (name == "model")
+      take(value, keywords.model);
+    else if (name == "tables")
+      take(value, keywords.tables);
+    else if (name == "budget")
+      take(value, keywords.budget);
+    else if (name == "fetches")
+      take(value, keywords.fetches);
+    else if (name == "lobes")
+      take(value, keywords.lobes);
+    else if (name == "search")
+      take(value, keywords.search);
+    else if (name == "loss")
+      take(value, keywords.loss);
+    else if (name == "smooth")
+      take(value, keywords.smooth);
+    else if (name == "reweightings")
+      take(value, keywords.reweightings);
+    else if (name == "floor")
+      take(value, keywords.floor);
+    else if (name == "format")
+      take(value, keywords.format);
+    else if (name == "samples")
+      take(value, keywords.samples);
+    else if (name == "seed")
+      take(value, keywords.seed);
+    else if (name == "symmetrize")
+      take(value, keywords.symmetrize);
+    else if (name == "conserve_energy")
+      take(value, keywords.conserve_energy);
+    else
+      throw Error("batch: expected an option of fit, found '" + name + "'");
+  }
+  return keywords;
+}
+
+using Materials = std::variant<std::vector<std::string>, std::filesystem::path>;
+
+// Starts a batch; iterating gives a dictionary a material.
+Batch* batch(const Materials& materials, const std::filesystem::path& folder,
+             const std::vector<std::string>& to, bool compact, bool resume, int threads, std::uint64_t memory,
+             const std::string& studio, const nb::kwargs& how) {
+  BatchOptions options{.folder = folder,
+                       .compact = compact,
+                       .threads = threads,
+                       .memory = memory,
+                       .resume = resume,
+                       .studio = studio};
+  options.fit = [keywords = keywords_of(how)](bool isotropic) { return fit_options(keywords, isotropic); };
+  for (const std::string& target : to) options.exports.to.push_back(export_target(target));
+  const auto* arguments = std::get_if<std::vector<std::string>>(&materials);
+  std::vector<LibraryEntry> entries =
+      arguments ? named_entries(*arguments) : library_entries(std::get<std::filesystem::path>(materials));
+  const nb::gil_scoped_release released;
+  return new Batch(std::move(entries), std::move(options));
+}
+
+// Ctrl-C leaves the wait.
+nb::object next_of(Batch& batch) {
+  std::optional<MaterialRecord> record;
+  {
+    const nb::gil_scoped_release released;
+    record = batch.next([] {
+      const nb::gil_scoped_acquire acquired;
+      if (PyErr_CheckSignals() != 0) throw nb::python_error();
+    });
+  }
+  if (!record) throw nb::stop_iteration();
+  nb::object row = from_json(to_json(*record));
+  row["earlier"] = record->earlier;
+  return row;
+}
+
+}  // namespace
+
+void bind_batch(nb::module_& m) {
+  nb::class_<Batch>(m, "Batch", "A batch at work; iterating gives a dictionary a material, as they are done.")
+      .def("__iter__", [](nb::handle self) { return nb::borrow(self); })
+      .def("__next__", &next_of);
+  m.def(
+      "batch", &batch, nb::arg("materials"), nb::arg("folder"), nb::kw_only(),
+      nb::arg("to") = std::vector<std::string>(), nb::arg("compact") = true, nb::arg("resume") = false,
+      nb::arg("threads") = 0, nb::arg("memory") = 0, nb::arg("studio") = BatchOptions{}.studio,
+      nb::arg("how"), nb::rv_policy::take_ownership,
+      "Fits a library as `burnish batch` does, and yields a dictionary a material as they are done: name,\n"
+      "argument, files, bytes, fetches, psnr, ..., or reason where it failed; earlier says that it was done\n"
+      "before. Table and page are made after the last one; a batch that is left goes on with resume=True.\n\n"
+      "materials: a folder, a list's name, or arguments of open_source. to: exports, as export takes them.\n"
+      "compact: .burnish, else OpenEXR with notes. memory: bytes to take at most. All other options are "
+      "those\n"
+      "of fit.");
+}
+
+}  // namespace burnish::python

@@ -1,0 +1,112 @@
+#include <algorithm>
+#include <set>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include <burnish/error.h>
+#include <burnish/file.h>
+#include <burnish/library/entries.h>
+#include <burnish/reflectance/analytic.h>
+
+namespace burnish {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::uint64_t kLongestList = std::uint64_t{64} << 20;  // bytes
+constexpr std::size_t kLongestName = 80;
+
+bool is_letter_or_digit(char c) noexcept {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+}
+
+// A name made of a text's own characters, those that serve.
+std::string safe_name(std::string_view text) {
+  std::string name;
+  for (const char c : text) {
+    const bool kept = is_letter_or_digit(c) || (!name.empty() && (c == '.' || c == '-'));
+    if (kept)
+      name += c;
+    else if (!name.empty() && name.back() != '_')
+      name += '_';
+  }
+  name.resize(std::min(name.size(), kLongestName));
+  while (!name.empty() && !is_letter_or_digit(name.back())) name.pop_back();
+  return name.empty() ? "material" : name;
+}
+
+// What stands behind the # of nbrdf:FILE#NAME, an analytic BRDF, or a file's name without its ending.
+std::string name_of(const std::string& argument) {
+  if (is_analytic_spec(argument)) return safe_name(argument);
+  const bool has_address = argument.starts_with("np:") || argument.starts_with("nbrdf:");
+  if (const std::size_t mark = argument.rfind('#'); has_address && mark + 1 < argument.size())
+    return safe_name(std::string_view(argument).substr(mark + 1));
+  return safe_name(fs::path(argument).stem().string());
+}
+
+// Names beside their arguments, made different where they meet.
+std::vector<LibraryEntry> told_apart(std::vector<LibraryEntry> entries) {
+  std::set<std::string> taken;
+  for (LibraryEntry& entry : entries) {
+    const std::string name = entry.name;
+    for (int k = 2; !taken.insert(entry.name).second; ++k) entry.name = fmt::format("{}-{}", name, k);
+  }
+  return entries;
+}
+
+std::vector<LibraryEntry> entries_of_folder(const fs::path& folder) {
+  std::vector<fs::path> files;
+  try {
+    for (auto at = fs::recursive_directory_iterator(folder, fs::directory_options::follow_directory_symlink);
+         at != fs::recursive_directory_iterator(); ++at) {
+      const bool hidden = at->path().filename().string().starts_with('.');
+      if (hidden && at->is_directory()) at.disable_recursion_pending();
+      if (!hidden && at->is_regular_file()) files.push_back(at->path());
+    }
+  } catch (const fs::filesystem_error& error) {
+    throw Error::in_file(folder.string(), "a folder that can be read", error.code().message());
+  }
+  if (files.empty()) throw Error::in_file(folder.string(), "a folder with files", "none");
+  std::ranges::sort(files);
+  std::vector<LibraryEntry> entries;
+  for (const fs::path& file : files)
+    entries.push_back(
+        {safe_name(file.lexically_relative(folder).replace_extension().string()), file.string()});
+  return told_apart(std::move(entries));
+}
+
+std::vector<std::string> lines_of(std::string_view text) {
+  std::vector<std::string> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    const std::size_t first = line.find_first_not_of(" \t\r");
+    if (first == std::string_view::npos || line[first] == '#') continue;
+    lines.emplace_back(line.substr(first, line.find_last_not_of(" \t\r") + 1 - first));
+  }
+  return lines;
+}
+
+}  // namespace
+
+std::vector<LibraryEntry> named_entries(const std::vector<std::string>& arguments) {
+  std::vector<LibraryEntry> entries;
+  for (const std::string& argument : arguments) entries.push_back({name_of(argument), argument});
+  return told_apart(std::move(entries));
+}
+
+std::vector<LibraryEntry> library_entries(const fs::path& list_or_folder) {
+  std::error_code error;
+  if (fs::is_directory(list_or_folder, error)) return entries_of_folder(list_or_folder);
+  const FileBytes list = read_file(list_or_folder, kLongestList);
+  if (const std::size_t zero = list.text().find('\0'); zero != std::string_view::npos)
+    throw Error(list.name, zero, "a folder, or a list with an argument a line", "a byte 0");
+  const std::vector<std::string> arguments = lines_of(list.text());
+  if (arguments.empty()) throw Error::in_file(list.name, "a list with an argument a line", "no argument");
+  return named_entries(arguments);
+}
+
+}  // namespace burnish

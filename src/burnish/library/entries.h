@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace burnish {
+
+/// A material of a library: what open_source opens, and what its files are called.
+struct LibraryEntry {
+  std::string name;      ///< letters, digits, '.', '-' and '_', a letter or digit first; no two alike
+  std::string argument;  ///< a file, an analytic BRDF, np:FOLDER#NAME, ...
+
+  friend bool operator==(const LibraryEntry&, const LibraryEntry&) = default;
+};
+
+/// The materials of a list or of a folder. A list is a text with an argument a line; empty lines and those that start
+/// with # are skipped, files are named as from the working directory. Of a folder it is every regular file below it,
+/// by name, without those whose name or whose folder's name starts with a dot. Names come of the arguments: a file's
+/// without its ending, what stands behind a #, an analytic BRDF as it is; names that meet get "-2", "-3" and so on.
+/// Throws Error where the place cannot be read, holds nothing, or is a file that is no text.
+std::vector<LibraryEntry> library_entries(const std::filesystem::path& list_or_folder);
+
+/// The same for arguments that are at hand.
+std::vector<LibraryEntry> named_entries(const std::vector<std::string>& arguments);
+
+}  // namespace burnish

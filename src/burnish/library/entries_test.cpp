@@ -1,0 +1,55 @@
+#include <gmock/gmock.h>
+
+#include <burnish/library/entries.h>
+#include <burnish/testing/tools.h>
+
+namespace burnish {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+TEST(LibraryEntries, NameWhatALineNames) {
+  EXPECT_THAT(
+      named_entries({"a/gold paint.binary", "np:codes#alum-bronze", "nbrdf:f.csv#red_felt",
+                     "ggx:alpha_x=0.1,alpha_y=0.1", "../..", "b/gold paint.csv"}),
+      ElementsAre(LibraryEntry{"gold_paint", "a/gold paint.binary"},
+                  LibraryEntry{"alum-bronze", "np:codes#alum-bronze"},
+                  LibraryEntry{"red_felt", "nbrdf:f.csv#red_felt"},
+                  LibraryEntry{"ggx_alpha_x_0.1_alpha_y_0.1", "ggx:alpha_x=0.1,alpha_y=0.1"},
+                  LibraryEntry{"material", "../.."}, LibraryEntry{"gold_paint-2", "b/gold paint.csv"}));
+}
+
+TEST(LibraryEntries, AreTheLinesOfAListWithoutRemarks) {
+  const TemporaryFolder folder("entries");
+  write(folder.path / "list", "# metals\n\n  a.binary \r\n\tggx:alpha_x=0.1\nlast.csv");
+  EXPECT_THAT(library_entries(folder.path / "list"),
+              ElementsAre(LibraryEntry{"a", "a.binary"}, LibraryEntry{"ggx_alpha_x_0.1", "ggx:alpha_x=0.1"},
+                          LibraryEntry{"last", "last.csv"}));
+}
+
+TEST(LibraryEntries, AreTheFilesBelowAFolderByName) {
+  const TemporaryFolder folder("entries_folder");
+  std::filesystem::create_directories(folder.path / "b/.cache");
+  for (const char* name : {"c.csv", "b/x.csv", "b/.cache/y.csv", ".hidden"}) write(folder.path / name, "1");
+  EXPECT_THAT(library_entries(folder.path),
+              ElementsAre(LibraryEntry{"b_x", (folder.path / "b/x.csv").string()},
+                          LibraryEntry{"c", (folder.path / "c.csv").string()}));
+}
+
+TEST(LibraryEntries, SayWhatIsWrongWithTheirPlace) {
+  const TemporaryFolder folder("entries_wrong");
+  const auto said = [&](const std::string& name) {
+    return error_of([&] { library_entries(folder.path / name); });
+  };
+  write(folder.path / "binary", std::string("abc\0def", 7));
+  write(folder.path / "remarks", "# nothing\n");
+  std::filesystem::create_directory(folder.path / "empty");
+  EXPECT_THAT(said("binary"), HasSubstr("offset 3"));
+  EXPECT_THAT(said("remarks"), HasSubstr("no argument"));
+  EXPECT_THAT(said("empty"), HasSubstr("a folder with files"));
+  EXPECT_THAT(said("missing"), HasSubstr("no such file"));
+}
+
+}  // namespace
+}  // namespace burnish

@@ -1,0 +1,82 @@
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include <burnish/library/fit_settings.h>
+
+namespace burnish {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class T>
+Json json_of(const std::optional<T>& value) {
+  return value ? Json(*value) : Json();
+}
+
+Json json_of(const LogLinear& how) {
+  return {{"cross_validate", how.cross_validate},
+          {"reweightings", json_of(how.reweightings)},
+          {"floor", how.floor}};
+}
+
+Json json_of(const OneLobe& form) {
+  return {{"model", form.model}, {"tables", form.tables}, {"how", json_of(form.how)}};
+}
+
+Json json_of(const Budget& form) {
+  return {{"bytes", json_of(form.bytes)}, {"fetches", form.fetches},
+          {"lobes", form.lobes},          {"search", form.search},
+          {"loss", to_string(form.loss)}, {"scattered", json_of(form.scattered)}};
+}
+
+Json json_of(const GivenLobes& form) {
+  return {{"lobes", form.model}, {"tables", form.tables}, {"loss", to_string(form.loss)}};
+}
+
+Json json_of(const BaselineMethod& form) {
+  return {{"method", form.method}, {"bytes", form.bytes}};
+}
+
+std::string text_of(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+std::string settings_text(const FitOptions& options) {
+  Json json{{"form", nullptr}, {"target", options.target == FitTarget::nodes ? "nodes" : "function"}};
+  if (options.form) json["form"] = std::visit([](const auto& form) { return json_of(form); }, *options.form);
+  if (options.hold_out)
+    json["hold_out"] = {static_cast<int>(options.hold_out->kind), options.hold_out->number};
+  json["smooth"] = json_of(options.smooth);
+  if (options.format) json["format"] = to_string(*options.format);
+  json["samples"] = options.samples;
+  json["seed"] = options.seed;
+  json["symmetrize"] = options.symmetrize;
+  json["conserve_energy"] = options.conserve_energy;
+  json["score"] = options.score;
+  return text_of(json);
+}
+
+std::string settings_text(const OpenOptions& options) {
+  return text_of(Json{{"spectral", options.keep_spectral},
+                      {"illuminant", options.illuminant},
+                      {"has_cosine", options.has_cosine},
+                      {"clamp_negatives", options.clamp_negatives},
+                      {"back", options.back_side}});
+}
+
+std::string settings_text(const ExportOptions& options) {
+  Json to = Json::array();
+  for (const ExportTarget target : options.to) to.push_back(to_string(target));
+  return text_of(
+      Json{{"to", to}, {"exact", options.exact}, {"mips", options.mips}, {"compressed", options.compressed}});
+}
+
+std::string library_version() {
+  return BURNISH_VERSION;
+}
+
+}  // namespace burnish

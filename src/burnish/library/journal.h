@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <burnish/library/folder_file.h>
+#include <burnish/library/material_record.h>
+
+namespace burnish {
+
+/// What became of a batch's materials, as the files of FOLDER/journal say together. Each process that works on the batch
+/// appends to a file of its own, named `writer`.jsonl, and reads those of the others: so they need no lock and no
+/// server, and none can spoil what another wrote. A line is a JSON object: {"event": "began", "name", "key"} before a
+/// fit, {"event": "fitted", ...} and {"event": "failed", ...} with a MaterialRecord, {"event": "assembled", "of"} when
+/// table and page were made of records whose keys and names have that digest. A line that is no such object, as a process
+/// leaves that was killed while it wrote, counts as not written. Safe to call from several threads.
+class Journal {
+ public:
+  /// Reads what is there, and makes a file where there is none yet as soon as something is appended. Throws Error as
+  /// make_folder does.
+  Journal(const std::filesystem::path& folder, const std::string& writer);
+
+  /// The last record of that material with that key, of this process or, as far as refresh has read, of others. One that
+  /// was fitted goes before one that failed.
+  std::optional<MaterialRecord> record(const std::string& name, const std::string& key) const;
+  /// Whether table and page were made of these records.
+  bool assembled(const std::string& digest) const;
+  /// Whether the folder holds any line.
+  bool empty() const;
+
+  /// Reads what others appended since the last time. Throws Error where the folder cannot be read.
+  void refresh();
+
+  /// Each returns when the line is on the disk; throws Error as GrowingFile does.
+  void append_began(const std::string& name, const std::string& key);
+  void append(const MaterialRecord& record);
+  void append_assembled(const std::string& digest);
+
+ private:
+  void read_lines(const std::filesystem::path& file);
+  void take(const std::string& line);
+  void write(const std::string& json);
+
+  std::filesystem::path folder_, own_;
+  mutable std::mutex mutex_;
+  std::unique_ptr<GrowingFile> file_;
+  bool broken_ = false;
+  std::map<std::string, std::uint64_t> read_;  // bytes of each file that were taken
+  std::map<std::pair<std::string, std::string>, MaterialRecord> records_;
+  std::set<std::string> assembled_;
+  bool empty_ = true;
+};
+
+}  // namespace burnish

@@ -1,0 +1,270 @@
+#!/usr/bin/env python3
+"""A batch on a real Slurm of two nodes on this machine: tests/cluster/run.py BURNISH [--if-there] [--seed S] [--materials N].
+
+Starts munged, slurmctld and two slurmd of one processor each, with files, ports and a key of their own, in a folder that
+goes afterwards; as root each node has process numbers of its own, so that a node can be killed with all that runs on it
+and nobody sees its processes. Then the job array that `burnish batch --slurm` writes:
+
+- on one node, and on both: the same bits as without Slurm, and how many times as fast;
+- on both, while processes are killed and a task is requeued at random moments: the same bits, nothing finished done twice;
+- on both, while one node is killed: the job ends complete, with the same bits.
+
+With --if-there it says so and succeeds where Slurm and munge (Debian: slurmctld, slurmd, slurm-client, munge) are not
+installed. Exits with 1 where something else is found."""
+import argparse
+import getpass
+import os
+import pathlib
+import random
+import re
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+
+PROGRAMS = ["munged", "slurmctld", "slurmd", "sbatch", "squeue", "scontrol", "sinfo"]
+HOW = ["--model", "pqp", "--samples", "100000", "--threads", "1", "--patience", "2"]
+PATIENCE = 60  # seconds of any wait
+CONFIGURATION = """\
+ClusterName=burnish
+SlurmctldHost={host}(127.0.0.1)
+SlurmctldPort={port}
+SlurmUser={user}
+SlurmdUser={user}
+AuthType=auth/munge
+AuthInfo=socket={folder}/munge.socket
+CredType=cred/munge
+StateSaveLocation={folder}/state
+SlurmctldPidFile={folder}/slurmctld.pid
+SlurmctldLogFile={folder}/slurmctld.log
+SlurmdSpoolDir={folder}/spool-%n
+SlurmdPidFile={folder}/slurmd-%n.pid
+SlurmdLogFile={folder}/slurmd-%n.log
+SlurmdParameters=config_overrides
+ProctrackType=proctrack/pgid
+TaskPlugin=task/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_CPU
+SchedulerType=sched/builtin
+JobCompType=jobcomp/none
+MpiDefault=none
+ReturnToService=2
+SlurmdTimeout=5
+MinJobAge=300
+KillWait=2
+NodeName=node1 NodeHostname={host} NodeAddr=127.0.0.1 Port={first} CPUs=1 State=UNKNOWN
+NodeName=node2 NodeHostname={host} NodeAddr=127.0.0.1 Port={second} CPUs=1 State=UNKNOWN
+PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP
+"""
+
+
+def check(condition, message):
+    if not condition:
+        sys.exit(f"cluster: {message}")
+
+
+def free_ports(count):
+    sockets = [socket.socket() for _ in range(count)]
+    for each in sockets:
+        each.bind(("127.0.0.1", 0))
+    ports = [each.getsockname()[1] for each in sockets]
+    for each in sockets:
+        each.close()
+    return ports
+
+
+def until(condition, what):
+    start = time.monotonic()
+    while not condition():
+        check(time.monotonic() - start < PATIENCE, f"expected {what} within {PATIENCE} s, found none")
+        time.sleep(0.1)
+
+
+class Cluster:
+    """Two nodes; `with` starts and ends it."""
+
+    def __init__(self, folder):
+        self.folder, self.daemons = folder, {}
+        port, first, second = free_ports(3)
+        self.environment = {**os.environ, "SLURM_CONF": str(folder / "slurm.conf")}
+        (folder / "slurm.conf").write_text(CONFIGURATION.format(
+            host=socket.gethostname(), port=port, first=first, second=second, folder=folder, user=getpass.getuser()))
+        (folder / "state").mkdir()
+
+    def __enter__(self):
+        key = self.folder / "munge.key"
+        key.write_bytes(os.urandom(128))
+        key.chmod(0o600)
+        self.start("munged", "munged", "-F", "--force", "--key-file", str(key), "--socket", f"{self.folder}/munge.socket",
+                   "--pid-file", f"{self.folder}/munge.pid", "--seed-file", f"{self.folder}/munge.seed",
+                   "--log-file", f"{self.folder}/munge.log")
+        until((self.folder / "munge.socket").exists, "munged")
+        self.start("slurmctld", "slurmctld", "-D")
+        for node in ("node1", "node2"):
+            self.start_node(node)
+        until(lambda: self.states() == {"node1": "idle", "node2": "idle"}, "two idle nodes")
+        return self
+
+    def __exit__(self, *_):
+        for name in ("node1", "node2", "slurmctld", "munged"):
+            self.end(name)
+
+    def start(self, name, *command):
+        with open(self.folder / f"{name}.out", "a") as said:
+            self.daemons[name] = subprocess.Popen(command, env=self.environment, stdout=said, stderr=said,
+                                                  start_new_session=True)
+
+    def start_node(self, node):
+        apart = ["unshare", "--pid", "--fork", "--mount-proc", "--kill-child"] if os.geteuid() == 0 else []
+        self.start(node, *apart, "slurmd", "-D", "-N", node)
+
+    def end(self, name):
+        """Ends a daemon; a node with all that runs on it."""
+        if process := self.daemons.pop(name, None):
+            process.kill()
+            process.wait()
+            if name.startswith("node") and os.geteuid() != 0:
+                for pid in burnish_processes(self.folder, name):
+                    os.kill(pid, signal.SIGKILL)
+
+    def ask(self, *command):
+        done = subprocess.run(command, env=self.environment, capture_output=True, text=True)
+        return done.stdout if done.returncode == 0 else ""
+
+    def states(self):
+        return dict(line.split() for line in self.ask("sinfo", "-h", "-N", "-o", "%N %T").splitlines())
+
+    def submit(self, script):
+        said = self.ask("sbatch", str(script))
+        found = re.search(r"\d+", said)
+        check(found, f"expected sbatch to take {script}, found '{said}'; see {self.folder}")
+        return found.group()
+
+    def waits_for(self, job):
+        """Whether a task of the job is to run or running. A requeued one, which would rest for minutes, starts now."""
+        tasks = [line.split() for line in self.ask("squeue", "-h", "-r", "-j", job, "-o", "%i %r").splitlines()]
+        for task, reason in tasks:
+            if reason == "BeginTime":
+                self.ask("scontrol", "update", f"JobId={task}", "StartTime=now")
+        return bool(tasks)
+
+
+def burnish_processes(folder, node=None):
+    """Process numbers of the batches that run below a folder; of a node where one is named."""
+    found = []
+    for entry in pathlib.Path("/proc").iterdir():
+        try:
+            words = (entry / "cmdline").read_bytes().split(b"\0")
+            if len(words) > 1 and words[1] == b"batch" and str(folder).encode() in b" ".join(words):
+                environment = (entry / "environ").read_bytes()
+                if node is None or f"SLURMD_NODENAME={node}".encode() in environment.split(b"\0"):
+                    found.append(int(entry.name))
+        except (OSError, ValueError):
+            continue
+    return found
+
+
+class Library:
+    def __init__(self, burnish, scratch, count):
+        self.burnish, self.list = burnish, scratch / "list"
+        alphas = [0.1 + 0.3 * k / count for k in range(count)]
+        self.list.write_text("\n".join(f"ggx:alpha_x={alpha:.4f},alpha_y={alpha:.4f}" for alpha in alphas))
+
+    def batch(self, folder, *more):
+        return subprocess.run([self.burnish, "batch", self.list, "-o", folder, *HOW, *more], check=True,
+                              capture_output=True, text=True)
+
+    def script(self, folder, tasks, *sbatch):
+        self.batch(folder, "--slurm", "--tasks", str(tasks), *(f"--sbatch={option}" for option in sbatch))
+        return folder / "batch.slurm"
+
+    def check_complete(self, folder, models):
+        found = {path.name: path.read_bytes() for path in (folder / "models").iterdir()}
+        check(found == models, f"expected the bits of a batch without Slurm in {folder}, found {len(found)} models")
+        check((folder / "library.sqlite").exists() and (folder / "index.html").exists(),
+              "expected table and page of a complete batch")
+        lines = [line for path in (folder / "journal").iterdir() for line in path.read_text().splitlines()]
+        kinds = [re.match(r'{"event":"(\w*)"', line).group(1) for line in lines if line.endswith("}")]
+        check(kinds.count("fitted") == len(models), f"expected {len(models)} fits, found {kinds.count('fitted')}")
+        return kinds.count("began") - kinds.count("fitted")
+
+
+def seconds_of(library, cluster, folder, tasks, models):
+    """From the first fit's beginning to the last one's end, as the journal's files were written."""
+    job = cluster.submit(library.script(folder, tasks))
+    until(lambda: (folder / "journal").exists(), "the first task")
+    start = time.monotonic()
+    until(lambda: not cluster.waits_for(job), "the job")
+    seconds = time.monotonic() - start
+    library.check_complete(folder, models)
+    return seconds
+
+
+def kill_some(library, cluster, folder, models, draw):
+    job = cluster.submit(library.script(folder, 2))
+    until(lambda: (folder / "models").exists(), "the first task")
+    kills = requeues = 0
+    while cluster.waits_for(job) and kills + requeues < 4:
+        time.sleep(draw.uniform(0.2, 0.8))
+        running = burnish_processes(folder)
+        if running and kills <= requeues:
+            os.kill(draw.choice(running), signal.SIGKILL)
+            kills += 1
+        elif running:
+            cluster.ask("scontrol", "requeue", f"{job}_{draw.choice([1, 2])}")
+            requeues += 1
+    until(lambda: not cluster.waits_for(job), "the job whose tasks were killed")
+    if len(list((folder / "models").iterdir())) < len(models):  # all were killed: the job is started again
+        job = cluster.submit(folder / "batch.slurm")
+        until(lambda: not cluster.waits_for(job), "the job that was started again")
+    cut = library.check_complete(folder, models)
+    print(f"{kills} processes killed, {requeues} tasks requeued, {cut} fits cut short: the same bits, nothing done twice")
+
+
+def kill_node(library, cluster, folder, models, draw):
+    job = cluster.submit(library.script(folder, 2))
+    until(lambda: len(burnish_processes(folder)) == 2, "both nodes at work")
+    time.sleep(draw.uniform(0.2, 1.0))
+    cluster.end("node2")
+    until(lambda: len(list((folder / "models").glob("*"))) == len(models) and not burnish_processes(folder),
+          "the node that is left")
+    cut = library.check_complete(folder, models)
+    cluster.ask("scancel", job)
+    print(f"a node killed in the middle, {cut} fits cut short: complete, the same bits, nothing done twice")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("burnish")
+    parser.add_argument("--if-there", action="store_true")
+    parser.add_argument("--seed", type=int, default=None, help="of the moments; by default another each time")
+    parser.add_argument("--materials", type=int, default=24, help="to fit; more tell better how many times as fast it is")
+    arguments = parser.parse_args()
+    os.environ["PATH"] += ":/usr/sbin:/sbin"
+    if missing := [program for program in PROGRAMS if not shutil.which(program)]:
+        print(f"cluster: SKIPPED: no {', '.join(missing)} here")
+        sys.exit(0 if arguments.if_there else 1)
+    seed = arguments.seed if arguments.seed is not None else random.randrange(1 << 32)
+    print(f"seed {seed}")
+    draw = random.Random(seed)
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit("cluster: expected time to end, found a signal"))
+    with tempfile.TemporaryDirectory(prefix="burnish-cluster-") as name:
+        scratch = pathlib.Path(name)
+        scratch.chmod(0o755)
+        library = Library(os.path.abspath(arguments.burnish), scratch, arguments.materials)
+        library.batch(scratch / "alone")
+        models = {path.name: path.read_bytes() for path in (scratch / "alone/models").iterdir()}
+        (scratch / "slurm").mkdir()
+        with Cluster(scratch / "slurm") as cluster:
+            one = seconds_of(library, cluster, scratch / "one", 1, models)
+            both = seconds_of(library, cluster, scratch / "both", 2, models)
+            print(f"one node {one:.1f} s, two nodes {both:.1f} s, {one / both:.2f} times as fast: the same bits")
+            kill_some(library, cluster, scratch / "killed", models, draw)
+            kill_node(library, cluster, scratch / "node", models, draw)
+
+
+if __name__ == "__main__":
+    main()
