@@ -19,8 +19,8 @@ namespace {
 const double kDim = std::pow(1.0 / 32, PictureLoss::kInverseGamma);
 constexpr double kDimmedShare = 0.05;
 
-// Relative errors, of ln(f + floor): at most a tenth of the whole where pictures differ visibly, but what tells where they
-// are dark or saturated.
+// Relative errors, of ln(f + floor): at most a tenth of the whole where pictures differ visibly, but what tells where
+// they are dark or saturated.
 constexpr double kRelativeShare = 1e-3;
 
 /// How long a minimization goes on, and how strongly inputs are drawn to their defaults: one that is a whole range off
