@@ -17,7 +17,7 @@ namespace burnish {
 
 /// What a BRDF does that a material does not: 1, 1 and 0 of one that is the same.
 struct Unexplained {
-  /// Light that returns to where it came from (wi = wo, 20 to 60 degrees), that of the source over that of the material.
+  /// Light that returns to where it came from (wi = wo, 20 to 60 degrees), of the source over that of the material.
   double backscatter = 1;
   /// By what factor values rise again away from the highlight (theta_h to 60 degrees, theta_d 15 and 40), the greatest
   /// of the source over the greatest of the material, at least 1.
@@ -71,8 +71,8 @@ MaterialFit fit_material(const Source& source, std::string_view target,
 std::string format_material(const MaterialFit& fit);
 
 /// The JSON that `burnish fit --to TARGET --json` prints, indented by two: target, source, parameters, psnr, ssim,
-/// relative, rms_log, log_cos, beyond, factored, of openpbr spec (see parse_analytic), starts and iterations, output and
-/// seconds.
+/// relative, rms_log, log_cos, beyond, factored, of openpbr spec (see parse_analytic), starts and iterations, then
+/// output and seconds.
 std::string summary_json(const MaterialFit& fit, const std::string& output);
 
 }  // namespace burnish

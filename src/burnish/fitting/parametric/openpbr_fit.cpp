@@ -19,8 +19,8 @@ namespace {
 const double kDim = std::pow(1.0 / 32, PictureLoss::kInverseGamma);
 constexpr double kDimmedShare = 0.05;
 
-// Relative errors, of ln(f + floor): at most a tenth of the whole where pictures differ visibly, but what tells where they
-// are dark or saturated.
+// Relative errors, of ln(f + floor): at most a tenth of the whole where pictures differ visibly, but what tells where
+// they are dark or saturated.
 constexpr double kRelativeShare = 1e-3;
 
 /// How long a minimization goes on, and how strongly inputs are drawn to their defaults: one that is a whole range off
@@ -156,12 +156,18 @@ class Cost {
       brdf.eval(pairs_.pairs[i].wi, pairs_.pairs[i].wo, std::span(f).subspan(3 * i, 3));
   }
 
-  // Forward differences of f; the channels of a colour, which only a film lets see each other, in one evaluation.
+  // The colours whose channels a film lets see each other.
+  static bool under_film(const Unknown& unknown) {
+    const std::string_view name = kOpenPbrInputs[unknown.input].name;
+    return name == "base_color" || name == "specular_color";
+  }
+
+  // Forward differences of f; the channels of a colour that do not see each other in one evaluation.
   void differentiate(std::span<const double> x, std::span<double> slopes) {
     const std::size_t columns = x.size(), pixels = pairs_.shown.size();
     std::ranges::fill(slopes, 0.0);
     for (std::size_t k = 0; k < columns;) {
-      const std::size_t group = unknowns_[k].channel < 0 || film_ ? 1 : 3;
+      const std::size_t group = unknowns_[k].channel < 0 || (film_ && under_film(unknowns_[k])) ? 1 : 3;
       std::vector<double> moved(x.begin(), x.end());
       std::array<double, 3> step{};
       for (std::size_t g = 0; g < group; ++g) {
@@ -233,7 +239,7 @@ struct Trial {
 Trial minimize(const PicturePairs& pairs, const OpenPbrFitOptions& options, const OpenPbrParameters& start,
                const Inputs& held, const Effort& effort) {
   const std::vector<Unknown> unknowns = unknowns_of(held, options);
-  Cost cost(pairs, start, unknowns, effort.pull, !held[kFilm._Find_first()]);
+  Cost cost(pairs, start, unknowns, effort.pull, (held & kFilm) != kFilm);
   LeastSquaresProblem problem{.functions = cost.functions(), .evaluate = {}, .lower = {}, .upper = {}};
   std::vector<double> x;
   for (const Unknown& unknown : unknowns) {
