@@ -1,10 +1,12 @@
 // `burnish fit` writes and prints what the library gives.
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include <burnish/fitting/fit_file.h>
+#include <burnish/fitting/parametric/material_fit.h>
 #include <burnish/io/open_source.h>
 #include <burnish/testing/tools.h>
 
@@ -56,6 +58,34 @@ TEST_F(FitCommand, WritesTheFileThatTheNameAsksFor) {
   EXPECT_EQ(read(out() + ".exr"), format_model(model));
   EXPECT_EQ(run(command + "convert " + name + ' ' + out() + ".exr --to exr --cells 4").status, 0);
   EXPECT_THROW(open_source(out() + ".exr", {}), Error);
+}
+
+TEST_F(FitCommand, ToAMaterialIsTheLibrarysFit) {
+  const Outcome outcome = run_fit(kPaint, "--to gltf --alone");
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const MaterialFit made = fit_material(open_source(kPaint, {}), "gltf", {.beside = false});
+  EXPECT_EQ(read(out()), format_material(made));
+  auto expected = nlohmann::json::parse(summary_json(made, out())),
+       found = nlohmann::json::parse(outcome.output);
+  expected.erase("seconds");
+  found.erase("seconds");
+  EXPECT_EQ(found, expected);
+}
+
+TEST_F(FitCommand, ToAMaterialNeedsNoFileAndSaysWhatIsBeyondIt) {
+  // brighter where light comes from than elsewhere
+  const std::string command =
+      std::string(BURNISH_CLI) + " fit lafortune:cx=0.9,cy=0.9,cz=0.9,ks=0.5 --alone --to gltf";
+  const Outcome outcome = run(command);
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.output, testing::HasSubstr("base colour"));
+  EXPECT_THAT(outcome.output, testing::HasSubstr("beyond     backscatter"));
+  for (const char* with : {" --budget 100", " --model pqp", " --conserve-energy"})
+    EXPECT_EQ(run(command + with).status, 2) << with;
+  const Outcome misspelt = run(std::string(BURNISH_CLI) + " fit ggx --to opnpbr");
+  EXPECT_EQ(misspelt.status, 2);
+  EXPECT_THAT(misspelt.output, testing::HasSubstr("openpbr"));
+  EXPECT_EQ(run(std::string(BURNISH_CLI) + " fit ggx").status, 2);  // factors do
 }
 
 TEST_F(FitCommand, IsTheLibrarysFit) {

@@ -12,6 +12,7 @@
 #include <burnish/file.h>
 #include <burnish/fitting/baselines/baselines.h>
 #include <burnish/fitting/fit_file.h>
+#include <burnish/fitting/parametric/material_fit.h>
 #include <burnish/fitting/plans/fetch_plan.h>
 #include <burnish/math/parallel.h>
 #include <burnish/shaders/shader.h>
@@ -30,9 +31,10 @@ struct FitArguments {
   FitOptions options;
   OneLobe one_lobe{.model = ""};
   Budget budget{.bytes = {}};
-  std::string bytes, out, method, target = "function", hold_out, loss = "image", smooth = "default", format;
+  std::string bytes, out, to, method, target = "function", hold_out, loss = "image", smooth = "default",
+                                      format;
   int threads = 0;
-  bool no_symmetrize = false, json = false;
+  bool no_symmetrize = false, json = false, alone = false;
 };
 
 constexpr std::string_view kAuto = "auto";
@@ -231,7 +233,80 @@ void print_baseline(const BaselineBrdf& brdf, const FitReport& fit) {
   }
 }
 
+void print_figures(std::string_view name, const ErrorFigures& e, const std::string& size) {
+  if (std::isfinite(e.psnr))
+    fmt::print("{:<10} psnr {:.2f} dB, relative {:.4f}{}\n", name, e.psnr, e.relative, size);
+  else
+    fmt::print("{:<10} the same pictures, relative {:.4f}{}\n", name, e.relative, size);
+}
+
+// Inputs that are not at their defaults, those of a layer in a line.
+void print(const OpenPbr& material) {
+  const OpenPbrParameters p = material.parameters(), defaults;
+  for (const std::string_view layer : {"base", "specular", "coat", "fuzz", "thin_film"}) {
+    std::string text;
+    for (const OpenPbrInput& input : kOpenPbrInputs) {
+      if (!input.name.starts_with(layer)) continue;
+      const auto value = [](const OpenPbrParameters& of, auto member) {
+        const Rgb v = of.*member;
+        return v.r == v.g && v.g == v.b ? fmt::format("{:.4g}", v.r)
+                                        : fmt::format("{:.4g}/{:.4g}/{:.4g}", v.r, v.g, v.b);
+      };
+      if (std::visit([&](auto member) { return p.*member == defaults.*member; }, input.member)) continue;
+      text += fmt::format("{}{}={}", text.empty() ? "" : ", ", input.name,
+                          std::visit([&](auto member) { return value(p, member); }, input.member));
+    }
+    if (!text.empty()) fmt::print("{:<10} {}\n", layer, text);
+  }
+}
+
+void print(const MetallicRoughness& m) {
+  fmt::print("material   base colour {:.4g}/{:.4g}/{:.4g}, metallic {:.4g}, roughness {:.4g}", m.base_color.r,
+             m.base_color.g, m.base_color.b, m.metallic, m.roughness);
+  if (m.anisotropy > 0)
+    fmt::print(", anisotropy {:.4g} along the {}", m.anisotropy, m.across ? "bitangent" : "tangent");
+  fmt::print("\n");
+}
+
+// What the material leaves out, a line each; nothing that is too small to be seen.
+void print(const Unexplained& beyond) {
+  constexpr double kSeenFactor = 1.25, kSeenShift = 0.05;
+  if (beyond.backscatter > kSeenFactor || beyond.backscatter < 1 / kSeenFactor)
+    fmt::print("beyond     backscatter: {:.2f} times the material's where wi = wo\n", beyond.backscatter);
+  if (beyond.rings > kSeenFactor)
+    fmt::print("beyond     rings: values rise again by {:.2f} times as much away from the highlight\n",
+               beyond.rings);
+  if (beyond.colour_shift > kSeenShift)
+    fmt::print("beyond     colour shift: the highlight's chromaticity differs by up to {:.3f}\n",
+               beyond.colour_shift);
+}
+
+void fit_to_material(const FitArguments& arguments) {
+  const ThreadLimit limit(arguments.threads);
+  const Source source = arguments.source.open();
+  const MaterialFit fit =
+      fit_material(source, arguments.to, {.beside = !arguments.alone, .progress = progress_bars()});
+  if (!arguments.out.empty()) write_then_rename(arguments.out, format_material(fit));
+  if (arguments.json) {
+    fmt::print("{}\n", summary_json(fit, arguments.out));
+    return;
+  }
+  fmt::print("{}: {}\n", fit.source, source.findings.format);
+  std::visit([](const auto& material) { print(material); }, fit.material);
+  print_figures(fit.target, fit.figures, "");
+  if (fit.factored)
+    print_figures("factored", fit.factored->figures, fmt::format(", {} bytes", fit.factored->bytes));
+  print(fit.beyond);
+  fmt::print("fitted     in {:.2f} s{}\n", fit.seconds,
+             arguments.out.empty() ? std::string() : fmt::format(", written {}", arguments.out));
+}
+
 void fit(const FitArguments& arguments) {
+  if (!arguments.to.empty()) {
+    fit_to_material(arguments);
+    return;
+  }
+  if (arguments.out.empty()) throw CLI::RequiredError("--output");
   const auto start = std::chrono::steady_clock::now();
   const ThreadLimit limit(arguments.threads);
   const Source source = arguments.source.open();
@@ -284,6 +359,22 @@ void add_lobes_arguments(CLI::App& verb, FitArguments& arguments) {
       ->excludes("--fetches");
 }
 
+// A renderer's material instead of factors, for which options of factors say nothing.
+void add_material_arguments(CLI::App& verb, FitArguments& arguments) {
+  const auto targets = material_targets();
+  CLI::Option* const to =
+      verb.add_option("--to", arguments.to,
+                      fmt::format("fit a renderer's material instead, its parameters written as JSON: {}",
+                                  fmt::join(targets, ", ")));
+  to->check(CLI::IsMember(std::vector<std::string>(targets.begin(), targets.end())));
+  for (const char* of_factors :
+       {"--budget", "--fetches", "--lobes", "--search", "--loss", "--method", "--model", "--table",
+        "--smooth", "--target", "--hold-out", "--floor", "--reweightings", "--samples", "--seed", "--format",
+        "--no-symmetrize", "--conserve-energy"})
+    to->excludes(of_factors);
+  verb.add_flag("--alone", arguments.alone, "of --to: fit no factored model beside it")->needs(to);
+}
+
 }  // namespace
 
 void add_fit_command(CLI::App& app) {
@@ -294,15 +385,15 @@ void add_fit_command(CLI::App& app) {
       "          burnish fit paint.binary -o paint.exr --budget 16K --fetches 2\n"
       "          burnish fit paint.binary -o paint.exr --budget auto\n"
       "          burnish fit paint.binary -o paint.exr --model \"p(wo) q(h) r(theta_d) p(wi)\" --table q=96\n"
-      "          burnish fit paint.binary -o paint.json --method svd --budget 2700");
+      "          burnish fit paint.binary -o paint.json --method svd --budget 2700\n"
+      "          burnish fit paint.binary --to openpbr -o paint.json");
   auto arguments = std::make_shared<FitArguments>();
   add_source_arguments(*verb, arguments->source);
   FitOptions& options = arguments->options;
   OneLobe& one_lobe = arguments->one_lobe;
   verb->add_option(
-          "-o,--output", arguments->out,
-          "model file to write (compact where it ends in .burnish, else OpenEXR; JSON with --method)")
-      ->required();
+      "-o,--output", arguments->out,
+      "model file to write (compact where it ends in .burnish, else OpenEXR; JSON with --method and --to)");
   verb->add_option(
       "--method", arguments->method,
       fmt::format("fit what others would instead of positive factors, at --budget bytes (default "
@@ -355,6 +446,7 @@ void add_fit_command(CLI::App& app) {
   verb->add_flag("--conserve-energy", options.conserve_energy,
                  "damp the model where it reflects more than it receives, and say what that cost");
   verb->add_flag("--json", arguments->json, "print the summary as JSON");
+  add_material_arguments(*verb, *arguments);
   verb->callback([arguments] { fit(*arguments); });
 }
 

@@ -31,6 +31,7 @@ from ._burnish import (
     error_figures,
     export,
     fit,
+    fit_material,
     generate_shader,
     measure,
     open_source,

@@ -1,3 +1,4 @@
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/variant.h>
@@ -6,6 +7,7 @@
 #include <burnish/error.h>
 #include <burnish/fitting/energy.h>
 #include <burnish/fitting/fit_file.h>
+#include <burnish/fitting/parametric/material_fit.h>
 
 #include "opened_brdf.h"
 
@@ -63,6 +65,20 @@ OpenedModel* fit(const OpenedBrdf& source, const std::string& model, const std::
   return new OpenedModel(source.source().name, to_model(burnish::fit(source.source(), options)));
 }
 
+nb::object fit_to_material(const OpenedBrdf& source, const std::string& to,
+                           const std::optional<std::filesystem::path>& path, bool beside,
+                           const nb::object& progress) {
+  std::string summary;
+  {
+    const nb::gil_scoped_release released;
+    const MaterialFit fit =
+        fit_material(source.source(), to, {.beside = beside, .progress = progress_of(progress)});
+    if (path) write_then_rename(*path, format_material(fit));
+    summary = summary_json(fit, path ? path->string() : std::string());
+  }
+  return from_json(summary);
+}
+
 }  // namespace
 
 void bind_fitting(nb::module_& m) {
@@ -93,6 +109,17 @@ void bind_fitting(nb::module_& m) {
       "progress(stage, fraction) is called from this thread; what it raises ends the fit, and so does "
       "Ctrl-C.\n"
       "Model.notes says what was done and how far off the model is.");
+  m.def("fit_material", &fit_to_material, nb::arg("source"), nb::arg("to"), nb::arg("path") = nb::none(),
+        nb::kw_only(), nb::arg("beside") = true, nb::arg("progress") = nb::none(),
+        nb::sig("def fit_material(source: Source, to: str, path: str | os.PathLike | None = None, *, beside: "
+                "bool = True, progress: object | None = None) -> dict"),
+        "Fits the parameters of a renderer's material, \"openpbr\" or \"gltf\", as `burnish fit --to` does, "
+        "and "
+        "returns\nwhat its --json prints: parameters, errors, what the BRDF does that the material cannot, "
+        "and, "
+        "beside, the\nerrors of a factored model. path: a file for the parameters. Of openpbr open_source "
+        "takes "
+        "the file and the\nsummary's \"spec\".");
   m.def(
       "conserve_energy",
       [](const OpenedModel& model) {

@@ -238,3 +238,22 @@ def test_a_real_measurement_is_read_and_fitted(rgl_file, cli):
     nodes = told.pop("nodes")  # what the command line says besides
     assert nodes["incident_angles"] == 8 and 0 < nodes["predicted"]["relative"] < 1
     assert source.info() == told
+
+
+def test_a_material_is_the_command_lines(cli, tmp_path):
+    printed = cli("fit", GGX, "--to", "gltf", "--alone", "-o", tmp_path / "cli.json", "--json")
+    summary = burnish.fit_material(burnish.open_source(GGX), "gltf", tmp_path / "python.json", beside=False)
+    for changing in ("output", "seconds"):
+        printed.pop(changing), summary.pop(changing)
+    assert summary == printed
+    assert (tmp_path / "python.json").read_bytes() == (tmp_path / "cli.json").read_bytes()
+    with pytest.raises(burnish.Error, match="expected openpbr or gltf, found 'obj'"):
+        burnish.fit_material(burnish.open_source(GGX), "obj")
+
+
+def test_an_openpbr_material_is_opened_again(tmp_path):
+    source = burnish.open_source("openpbr:base_metalness=1,base_color=0.9/0.6/0.3,specular_roughness=0.5")
+    summary = burnish.fit_material(source, "openpbr", tmp_path / "metal.json", beside=False)
+    assert summary["parameters"]["specular_roughness"] == pytest.approx(0.5, abs=0.005)
+    for spec in (summary["spec"], tmp_path / "metal.json"):
+        assert burnish.error_figures(source, burnish.open_source(spec), count=1000).relative < 0.01

@@ -18,6 +18,7 @@
 #include <burnish/factors/model_spec.h>
 #include <burnish/fitting/fit.h>
 #include <burnish/fitting/fit_file.h>
+#include <burnish/fitting/parametric/material_fit.h>
 #include <burnish/metrics/error_figures.h>
 
 // Many values and draws at a time.

@@ -12,10 +12,10 @@
 #include <burnish/export/manifest.h>
 #include <burnish/export/materialx.h>
 #include <burnish/export/mdl.h>
-#include <burnish/export/metallic_roughness_fit.h>
 #include <burnish/export/nearest_openpbr.h>
 #include <burnish/export/usda.h>
 #include <burnish/export/web_module.h>
+#include <burnish/fitting/parametric/metallic_roughness_fit.h>
 #include <burnish/io/rgl.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/rgl_builder.h>

@@ -9,6 +9,7 @@
 #include <burnish/fitting/parametric/openpbr_fit.h>
 #include <burnish/fitting/refinement/picture_loss.h>
 #include <burnish/math/parallel.h>
+#include <burnish/math/random.h>
 
 namespace burnish {
 
@@ -18,13 +19,18 @@ namespace {
 const double kDim = std::pow(1.0 / 32, PictureLoss::kInverseGamma);
 constexpr double kDimmedShare = 0.05;
 
+// Relative errors, of ln(f + floor): at most a tenth of the whole where pictures differ visibly, but what tells where
+// they are dark or saturated.
+constexpr double kRelativeShare = 1e-3;
+
 /// How long a minimization goes on, and how strongly inputs are drawn to their defaults: one that is a whole range off
 /// counts as an error of -20 log10(pull) dB.
 struct Effort {
   int max_iterations;
   double tolerance, pull;
 };
-constexpr Effort kFirst{20, 1e-5, 1e-4}, kAgain{15, 1e-6, 1e-6}, kEnd{40, 1e-6, 1e-6}, kLast{80, 1e-8, 1e-6};
+constexpr Effort kTaste{6, 1e-4, 1e-4}, kFirst{30, 1e-5, 1e-4}, kAgain{10, 1e-6, 1e-6}, kEnd{40, 1e-6, 1e-6},
+    kLast{80, 1e-8, 1e-6};
 
 // A pixel in thirty of a highlight: what shows less, as an index that a coat hides, is not trusted to go far.
 constexpr double kLeastDiagonal = 1e-3;
@@ -129,9 +135,11 @@ class Cost {
       shown_[r] = std::pow(std::max(pairs_.exposure * f_[r] * pairs_.pairs[r / 3].wi.z, 0.0),
                            PictureLoss::kInverseGamma);
     double rest = 0;
+    pixel_slopes_.resize(pixels);
     for (std::size_t r = 0; r < pixels; ++r) {
       const Pixel pixel = pixel_of(r);
       values[r] = pixel.along;
+      pixel_slopes_[r] = pixel.slope;
       rest += pixel.across * pixel.across;
     }
     values[pixels] = std::sqrt(rest);
@@ -148,12 +156,18 @@ class Cost {
       brdf.eval(pairs_.pairs[i].wi, pairs_.pairs[i].wo, std::span(f).subspan(3 * i, 3));
   }
 
-  // Forward differences of f; the channels of a colour, which only a film lets see each other, in one evaluation.
+  // The colours whose channels a film lets see each other.
+  static bool under_film(const Unknown& unknown) {
+    const std::string_view name = kOpenPbrInputs[unknown.input].name;
+    return name == "base_color" || name == "specular_color";
+  }
+
+  // Forward differences of f; the channels of a colour that do not see each other in one evaluation.
   void differentiate(std::span<const double> x, std::span<double> slopes) {
     const std::size_t columns = x.size(), pixels = pairs_.shown.size();
     std::ranges::fill(slopes, 0.0);
     for (std::size_t k = 0; k < columns;) {
-      const std::size_t group = unknowns_[k].channel < 0 || film_ ? 1 : 3;
+      const std::size_t group = unknowns_[k].channel < 0 || (film_ && under_film(unknowns_[k])) ? 1 : 3;
       std::vector<double> moved(x.begin(), x.end());
       std::array<double, 3> step{};
       for (std::size_t g = 0; g < group; ++g) {
@@ -165,8 +179,7 @@ class Cost {
       evaluate_brdf(moved, moved_f_);
       for (std::size_t r = 0; r < pixels; ++r) {
         const std::size_t column = group == 3 ? k + r % 3 : k;
-        const double slope = shown_slope(r) * (moved_f_[r] - f_[r]) / step[column - k];
-        slopes[r * columns + column] = pixel_of(r).gain * slope;
+        slopes[r * columns + column] = pixel_slopes_[r] * (moved_f_[r] - f_[r]) / step[column - k];
       }
       k += group;
     }
@@ -174,30 +187,34 @@ class Cost {
       slopes[(pixels + 1 + k) * columns + k] = pull_ / (unknowns_[k].max - unknowns_[k].min);
   }
 
-  // Derivative of what is shown by f, bounded where f is next to nothing.
-  double shown_slope(std::size_t r) const {
-    constexpr double kDark = 1e-9;
-    return PictureLoss::kInverseGamma * shown_[r] / std::max(f_[r], kDark);
-  }
-
-  /// A channel of a pixel has two errors, at both exposures, whose slopes have one direction: the error along it, what
-  /// is left across it, and the slope by what is shown.
+  /// A channel of a pixel has an error at each exposure and a relative one, all functions of f: the error along their
+  /// slopes, what is left across them, and the slope.
   struct Pixel {
-    double along, across, gain;
+    double along, across, slope;
   };
   Pixel pixel_of(std::size_t r) const {
-    std::array<double, 2> error, gain;
+    constexpr double kDark = 1e-9;  // bounds slopes where f is next to nothing
+    const double area = std::sqrt(pairs_.weights[r / 3] / 3), f = f_[r];
+    const double shown_slope = PictureLoss::kInverseGamma * shown_[r] / std::max(f, kDark);
+    std::array<double, 3> error, slope;
     for (std::size_t e = 0; e < 2; ++e) {
-      const double weight = std::sqrt(pairs_.weights[r / 3] / 3) * kShares[e];
       const double ours = kDims[e] * shown_[r], theirs = kDims[e] * pairs_.shown[r];
-      error[e] = weight * (std::min(1.0, ours) - std::min(1.0, theirs));
+      error[e] = area * kShares[e] * (std::min(1.0, ours) - std::min(1.0, theirs));
       // a pixel too bright that should not be is told so
-      gain[e] = weight * kDims[e] * (ours <= 1 ? 1 : theirs < 1 ? PictureLoss::kSaturatedSlope : 0);
+      const double seen = ours <= 1 ? 1 : theirs < 1 ? PictureLoss::kSaturatedSlope : 0;
+      slope[e] = area * kShares[e] * kDims[e] * seen * shown_slope;
     }
-    const double length = std::hypot(gain[0], gain[1]);
-    if (length == 0) return {0, std::hypot(error[0], error[1]), 0};
-    return {(gain[0] * error[0] + gain[1] * error[1]) / length,
-            (gain[1] * error[0] - gain[0] * error[1]) / length, length};
+    const double log_weight = area * std::sqrt(kRelativeShare), above = f + PictureLoss::kFloor;
+    error[2] = log_weight * std::log(above / (pairs_.values[r] + PictureLoss::kFloor));
+    slope[2] = log_weight / above;
+    double squares = 0, products = 0, slopes = 0;
+    for (std::size_t e = 0; e < 3; ++e) {
+      squares += error[e] * error[e];
+      products += error[e] * slope[e];
+      slopes += slope[e] * slope[e];
+    }
+    const double length = std::sqrt(slopes), along = products / length;
+    return {along, std::sqrt(std::max(squares - along * along, 0.0)), length};
   }
 
   static inline const std::array<double, 2> kShares = {1, std::sqrt(kDimmedShare)}, kDims = {1, kDim};
@@ -207,7 +224,7 @@ class Cost {
   const std::vector<Unknown> unknowns_;
   const double pull_;
   const bool film_;
-  std::vector<double> f_, shown_, moved_f_;
+  std::vector<double> f_, shown_, moved_f_, pixel_slopes_;
 };
 
 /// Where a minimization ended.
@@ -222,7 +239,7 @@ struct Trial {
 Trial minimize(const PicturePairs& pairs, const OpenPbrFitOptions& options, const OpenPbrParameters& start,
                const Inputs& held, const Effort& effort) {
   const std::vector<Unknown> unknowns = unknowns_of(held, options);
-  Cost cost(pairs, start, unknowns, effort.pull, !held[kFilm._Find_first()]);
+  Cost cost(pairs, start, unknowns, effort.pull, (held & kFilm) != kFilm);
   LeastSquaresProblem problem{.functions = cost.functions(), .evaluate = {}, .lower = {}, .upper = {}};
   std::vector<double> x;
   for (const Unknown& unknown : unknowns) {
@@ -314,6 +331,11 @@ OpenPbrParameters tidied(OpenPbrParameters p) {
   reset("coat", p.coat_weight);
   reset("fuzz", p.fuzz_weight);
   reset("thin_film", p.thin_film_weight);
+  // under a whole coat an index shows as does the coat's square over it: the one that is more like glass
+  const double twin = p.coat_ior * p.coat_ior / p.specular_ior;
+  const auto unlike = [&](double ior) { return std::abs(ior - defaults.specular_ior); };
+  if (p.coat_weight == 1 && unlike(twin) < unlike(p.specular_ior))
+    p.specular_ior = std::clamp(twin, 1.0, 3.0);
   return p;
 }
 
@@ -328,91 +350,84 @@ OpenPbrFit to_fit(const PicturePairs& pairs, const Trial& trial, double first_co
   return fit;
 }
 
-/// The two thicknesses of a film that show the colours best, of steps through the first fringes: errors have a minimum a
-/// fringe.
-std::array<double, 2> film_thicknesses(const PicturePairs& pairs, OpenPbrParameters p) {
-  constexpr double kStep = 0.06;
-  constexpr int kSteps = 18;
-  std::vector<std::pair<double, double>> tried;  // error, thickness
-  std::vector<double> shown;
-  for (int i = 1; i <= kSteps; ++i) {
-    p.thin_film_thickness = kStep * i;
-    pairs.show(OpenPbr(p), shown);
-    tried.emplace_back(pairs.mean_squared_error(shown), p.thin_film_thickness);
+/// All layers at once on what was found without them: coats as sharp or rough highlights above the base's, or as its
+/// highlight with a rough base below.
+void append_coats(const Trial& trial, const Inputs& always, std::vector<Search::Start>& starts) {
+  OpenPbrParameters p = trial.parameters;
+  p.fuzz_weight = 0.2;
+  p.coat_weight = 0.5;
+  for (const double roughness : {0.1, 0.35}) {
+    p.coat_roughness = roughness;
+    starts.push_back({p, always});
   }
-  // least among their neighbours, best first
-  std::vector<std::pair<double, double>> minima;
-  for (std::size_t i = 0; i < tried.size(); ++i)
-    if ((i == 0 || tried[i] < tried[i - 1]) && (i + 1 == tried.size() || tried[i] < tried[i + 1]))
-      minima.push_back(tried[i]);
-  std::ranges::sort(minima);
-  return {minima.front().second, minima[std::min<std::size_t>(1, minima.size() - 1)].second};
+  p.coat_weight = 1;
+  p.coat_roughness = p.specular_roughness;
+  p.coat_roughness_anisotropy = p.specular_roughness_anisotropy;
+  p.specular_roughness = std::max(p.specular_roughness, 0.5);
+  starts.push_back({p, always});
 }
 
-/// What a layer begins with, on what was found without it.
-void append_layers(const PicturePairs& pairs, const Trial& trial, const Inputs& always,
-                   std::vector<Search::Start>& starts) {
-  const OpenPbrParameters& p = trial.parameters;
-  const auto absent = [&](const Inputs& layer) { return trial.held[layer._Find_first()]; };
-  const auto add = [&](const Inputs& layer, OpenPbrParameters changed) {
-    if (absent(layer)) starts.push_back({changed, (trial.held & ~layer) | always});
-  };
-  // a coat above the highlight, or as the highlight with a rough base below
-  OpenPbrParameters coated = p;
-  coated.coat_weight = 1;
-  coated.coat_roughness = p.specular_roughness;
-  coated.coat_roughness_anisotropy = p.specular_roughness_anisotropy;
-  coated.specular_roughness = std::max(p.specular_roughness, 0.5);
-  add(kCoat, coated);
-  for (const double roughness : {0.1, 0.35}) {
-    coated = p;
-    coated.coat_weight = 0.5;
-    coated.coat_roughness = roughness;
-    add(kCoat, coated);
+/// Films: errors have a minimum a fringe, so that thin to thick ones are tasted on a grey base and the best two handed
+/// on, and the better one on the colours as they are.
+void append_films(Search& search, const Trial& trial, const Inputs& always,
+                  std::vector<Search::Start>& starts) {
+  constexpr double kStep = 0.1;
+  constexpr int kSteps = 12;
+  const Inputs tasted = inputs_named("base_color") | inputs_named("specular_roughness") | kFilm;
+  std::vector<Search::Start> tastes;
+  OpenPbrParameters p = trial.parameters;
+  p.base_color = (p.base_color.r + p.base_color.g + p.base_color.b) / 3;
+  p.specular_color = 1;
+  p.thin_film_weight = 1;
+  for (int i = 1; i <= kSteps; ++i) {
+    p.thin_film_thickness = kStep * i;
+    tastes.push_back({p, ~tasted | always});
   }
-  OpenPbrParameters fuzzy = p;
-  fuzzy.fuzz_weight = 0.2;
-  add(kFuzz, fuzzy);
-  if (!absent(kFilm)) return;
-  // a film that colours what is grey, or adds to the colours
-  OpenPbrParameters filmed = p;
-  filmed.base_color = (p.base_color.r + p.base_color.g + p.base_color.b) / 3;
-  filmed.specular_color = 1;
-  filmed.thin_film_weight = 1;
-  for (const double thickness : film_thicknesses(pairs, filmed)) {
-    filmed.thin_film_thickness = thickness;
-    add(kFilm, filmed);
+  const std::vector<Trial> best = search.run(tastes, kTaste);
+  p = trial.parameters;
+  p.thin_film_weight = 0.5;
+  p.thin_film_thickness = best[0].parameters.thin_film_thickness;
+  for (OpenPbrParameters filmed : {best[0].parameters, best[1].parameters, p}) {
+    starts.push_back({filmed, (trial.held & ~kFilm) | always});
+    filmed.coat_weight = 0.3;
+    filmed.coat_roughness = 0.2;
+    filmed.fuzz_weight = 0.2;
+    starts.push_back({filmed, always});
   }
-  filmed = p;
-  filmed.thin_film_weight = 0.5;
-  filmed.thin_film_thickness = film_thicknesses(pairs, filmed).front();
-  add(kFilm, filmed);
+}
+
+/// All inputs anywhere in their ranges.
+Search::Start random_start(Pcg32& random, const Inputs& always, const OpenPbrFitOptions& options) {
+  Search::Start start{{}, always};
+  for (const Unknown& unknown : unknowns_of(always, options))
+    set(start.parameters, unknown, unknown.min + (unknown.max - unknown.min) * random.uniform());
+  return start;
 }
 
 constexpr std::size_t kKept = 2;  // trials that are built upon
 
-/// The best of the base alone, and of more layers, one after another; best first.
+/// The best of the base alone and of all layers; best first.
 std::vector<Trial> search_layers(Search& search, const PicturePairs& pairs, const OpenPbrFitOptions& options,
                                  const std::function<void(double)>& progress) {
-  const Inputs base = always_held(options) | kCoat | kFuzz | kFilm;
+  constexpr int kRandom = 6;
+  const Inputs always = always_held(options);
   std::vector<Search::Start> starts;
   for (const double metalness : {0.0, 1.0})
     for (const double roughness : {0.15, 0.35, 0.65})
       starts.push_back(
           {{.base_color = mean_color(pairs), .base_metalness = metalness, .specular_roughness = roughness},
-           base});
+           always | kCoat | kFuzz | kFilm});
   std::vector<Trial> kept = search.run(starts, kFirst);
-  constexpr int kRounds = 3;
-  for (int round = 0; round < kRounds; ++round) {
-    progress(0.2 * (round + 1));
-    starts.clear();
-    for (std::size_t i = 0; i < std::min(kept.size(), kKept); ++i)
-      append_layers(pairs, kept[i], always_held(options), starts);
-    if (starts.empty()) break;
-    const std::vector<Trial> trials = search.run(starts, kFirst);
-    kept.insert(kept.end(), trials.begin(), trials.end());
-    std::ranges::stable_sort(kept, {}, &Trial::cost);
-  }
+  progress(0.2);
+  starts.clear();
+  for (std::size_t i = 0; i < kKept; ++i) append_coats(kept[i], always, starts);
+  append_films(search, kept.front(), always, starts);
+  Pcg32 random(1);
+  for (int i = 0; i < kRandom; ++i) starts.push_back(random_start(random, always, options));
+  const std::vector<Trial> trials = search.run(starts, kFirst);
+  kept.insert(kept.end(), trials.begin(), trials.end());
+  std::ranges::stable_sort(kept, {}, &Trial::cost);
+  progress(0.7);
   return kept;
 }
 

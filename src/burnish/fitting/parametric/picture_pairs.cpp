@@ -110,8 +110,10 @@ PicturePairs picture_pairs(BrdfRef source, double exposure) {
     if (!source.eval(pair.wi, pair.wo, std::span(f).first(channels))) continue;
     result.pairs.push_back(pair);
     result.weights.push_back(all.weights[i]);
-    for (std::size_t c = 0; c < 3; ++c)
-      result.shown.push_back(shown_of(exposure, f[channels == 1 ? 0 : c], pair.wi.z));
+    for (std::size_t c = 0; c < 3; ++c) {
+      result.values.push_back(f[channels == 1 ? 0 : c]);
+      result.shown.push_back(shown_of(exposure, result.values.back(), pair.wi.z));
+    }
   }
   return result;
 }

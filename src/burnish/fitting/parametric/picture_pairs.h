@@ -12,6 +12,7 @@ namespace burnish {
 struct PicturePairs {
   std::vector<DirectionPair> pairs;  ///< lit and seen
   std::vector<double> weights;       ///< shares of the three frames' area
+  std::vector<double> values;        ///< f, 1/sr, three a pair
   std::vector<double> shown;         ///< (exposure f cos theta_i)^(1/2.2), not clamped; three a pair
   double exposure = 1;
 

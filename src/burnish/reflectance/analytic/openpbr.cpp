@@ -274,8 +274,9 @@ Rgb OpenPbr::diffuse_base(const Geometry& g) const noexcept {
   // light reflected more than once
   const double mean_albedo = single * (1 + kFujii2 * rough);
   const auto lost = [](double albedo) { return std::max(kEpsilon, 1 - albedo); };
-  const double multiple =
-      lost(fujii_albedo(g.cos_i, rough)) * lost(fujii_albedo(g.cos_o, rough)) / lost(mean_albedo);
+  const double multiple = rough == 0 ? kEpsilon  // nothing is lost
+                                     : lost(fujii_albedo(g.cos_i, rough)) *
+                                           lost(fujii_albedo(g.cos_o, rough)) / lost(mean_albedo);
   return each(p_.base_color, [&](double color) {
     const double again = square(color) * mean_albedo / (1 - color * std::max(0.0, 1 - mean_albedo));
     return p_.base_weight / kPi * (color * lobe + again * multiple);

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <burnish/error.h>
-#include <burnish/export/metallic_roughness_fit.h>
 #include <burnish/factors/factored_brdf.h>
+#include <burnish/fitting/parametric/metallic_roughness_fit.h>
 #include <burnish/reflectance/analytic.h>
 
 namespace burnish {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include <burnish/error.h>
-#include <burnish/export/metallic_roughness_fit.h>
+#include <burnish/fitting/parametric/metallic_roughness_fit.h>
 #include <burnish/metrics/sphere_images.h>
 
 namespace burnish {

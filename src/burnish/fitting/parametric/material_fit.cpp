@@ -1,0 +1,157 @@
+#include <algorithm>
+#include <array>
+#include <chrono>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <burnish/baselines/baseline_file.h>
+#include <burnish/error.h>
+#include <burnish/fitting/fit.h>
+#include <burnish/fitting/fit_report_json.h>
+#include <burnish/fitting/parametric/material_fit.h>
+#include <burnish/fitting/parametric/metallic_roughness_fit.h>
+#include <burnish/fitting/parametric/openpbr_fit.h>
+#include <burnish/math/angles.h>
+#include <burnish/math/closest_name.h>
+
+namespace burnish {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<std::string_view, 2> kTargets = {"openpbr", "gltf"};
+
+void fit_material_of(BrdfRef source, double exposure, const MaterialFitOptions& options, MaterialFit& fit) {
+  if (fit.target == "gltf") {
+    fit.material = fit_metallic_roughness(source).material;
+    return;
+  }
+  OpenPbrFitOptions how{.grey = source.channels() == 1, .anisotropic = !source.isotropic()};
+  if (options.progress)
+    how.progress = [&](double fraction) { options.progress("fitting openpbr", fraction); };
+  const OpenPbrFit found = fit_openpbr(picture_pairs(source, exposure), how);
+  fit.material = OpenPbr(found.parameters);
+  fit.summary = found.summary;
+  fit.starts = found.starts;
+}
+
+Json json_of_rgb(Rgb color) {
+  return {color.r, color.g, color.b};
+}
+
+/// Inputs by name, colours as three numbers.
+Json json_of(const OpenPbrParameters& p) {
+  Json json = Json::object();
+  for (const OpenPbrInput& input : kOpenPbrInputs) {
+    if (const auto* number = std::get_if<double OpenPbrParameters::*>(&input.member))
+      json[std::string(input.name)] = p.*(*number);
+    else
+      json[std::string(input.name)] = json_of_rgb(p.*std::get<Rgb OpenPbrParameters::*>(input.member));
+  }
+  return json;
+}
+
+/// A glTF material.
+Json json_of(const MetallicRoughness& m) {
+  Json json{{"pbrMetallicRoughness",
+             {{"baseColorFactor", {m.base_color.r, m.base_color.g, m.base_color.b, 1}},
+              {"metallicFactor", m.metallic},
+              {"roughnessFactor", m.roughness}}}};
+  if (m.anisotropy > 0)
+    json["extensions"]["KHR_materials_anisotropy"] = {{"anisotropyStrength", m.anisotropy},
+                                                      {"anisotropyRotation", m.across ? kHalfPi : 0}};
+  return json;
+}
+
+Json json_of(const ErrorFigures& figures) {
+  return {{"psnr", figures.psnr},
+          {"ssim", figures.ssim},
+          {"relative", figures.relative},
+          {"rms_log", figures.rms_log},
+          {"log_cos", figures.log_cos}};
+}
+
+/// What is reported about a fit.
+Json report_of(const MaterialFit& fit) {
+  Json json{{"target", fit.target}, {"source", fit.source}};
+  json.update(json_of(fit.figures));
+  json["beyond"] = {{"backscatter", fit.beyond.backscatter},
+                    {"rings", fit.beyond.rings},
+                    {"colour_shift", fit.beyond.colour_shift}};
+  if (fit.factored) {
+    json["factored"] = json_of(fit.factored->figures);
+    json["factored"]["bytes"] = fit.factored->bytes;
+  }
+  if (const auto* openpbr = std::get_if<OpenPbr>(&fit.material)) {
+    json["spec"] = format_analytic(analytic_openpbr(openpbr->parameters()));
+    json["starts"] = fit.starts;
+    json["iterations"] = fit.summary.iterations;
+  }
+  return json;
+}
+
+}  // namespace
+
+BrdfRef MaterialFit::ref() const noexcept {
+  return std::visit([](const auto& any) -> BrdfRef { return any; }, material);
+}
+
+std::span<const std::string_view> material_targets() {
+  return kTargets;
+}
+
+MaterialFit fit_material(const Source& source, std::string_view target, const MaterialFitOptions& options) {
+  if (std::ranges::find(kTargets, target) == kTargets.end())
+    throw Error(fmt::format("material: expected {}, found '{}'{}", fmt::join(kTargets, " or "), target,
+                            did_you_mean(target, kTargets)));
+  if (source.ref().channels() != 1 && source.ref().channels() != 3)
+    throw Error(fmt::format("{}: expected 1 or 3 channels for {}, found {}", source.name, target,
+                            source.ref().channels()));
+  const SymmetrizedBrdf symmetrized(source.ref());
+  const BrdfRef brdf = is_measurement(source) ? BrdfRef(symmetrized) : source.ref();
+  const Scorer scorer(brdf, options.figures);
+  MaterialFit fit{.target = std::string(target), .source = source.name};
+  const auto start = std::chrono::steady_clock::now();
+  fit_material_of(brdf, scorer.exposure(), options, fit);
+  fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  fit.figures = scorer.score(fit.ref());
+  fit.beyond = unexplained(brdf, fit.ref());
+  if (options.beside) {
+    const Fit factored = burnish::fit(source, {.score = false, .progress = options.progress});
+    fit.factored = {.bytes = factored.bytes(), .figures = scorer.score(factored.ref())};
+  }
+  return fit;
+}
+
+std::string format_material(const MaterialFit& fit) {
+  if (const auto* openpbr = std::get_if<OpenPbr>(&fit.material))
+    return format_baseline({.kind = "analytic",
+                            .brdf = analytic_openpbr(openpbr->parameters()),
+                            .notes = to_text(report_of(fit), -1)});
+  Json material = json_of(std::get<MetallicRoughness>(fit.material));
+  Json asset{{"asset", {{"version", "2.0"}, {"generator", "burnish"}}}};
+  if (material.contains("extensions")) asset["extensionsUsed"] = {"KHR_materials_anisotropy"};
+  material["extras"] = report_of(fit);
+  asset["materials"] = Json::array({material});
+  return to_text(asset, 2) + "\n";
+}
+
+std::string summary_json(const MaterialFit& fit, const std::string& output) {
+  Json json = report_of(fit);
+  json["parameters"] = std::visit(
+      [](const auto& any) {
+        if constexpr (requires { any.parameters(); })
+          return json_of(any.parameters());
+        else
+          return json_of(any);
+      },
+      fit.material);
+  json["output"] = output;
+  json["seconds"] = fit.seconds;
+  return to_text(json, 2);
+}
+
+}  // namespace burnish

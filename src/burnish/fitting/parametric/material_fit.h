@@ -1,0 +1,78 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include <burnish/fitting/fit_summary.h>
+#include <burnish/metrics/error_figures.h>
+#include <burnish/reflectance/analytic/openpbr.h>
+#include <burnish/reflectance/metallic_roughness.h>
+#include <burnish/source.h>
+
+namespace burnish {
+
+/// What a BRDF does that a material does not: 1, 1 and 0 of one that is the same.
+struct Unexplained {
+  /// Light that returns to where it came from (wi = wo, 20 to 60 degrees), of the source over that of the material.
+  double backscatter = 1;
+  /// By what factor values rise again away from the highlight (theta_h to 60 degrees, theta_d 15 and 40), the greatest
+  /// of the source over the greatest of the material, at least 1.
+  double rings = 1;
+  /// Greatest distance of the highlight's chromaticities (r, g, b over their sum; theta_h 0, theta_d to 75 degrees).
+  double colour_shift = 0;
+};
+
+/// Compares the luminances, means over four azimuths unless both are isotropic.
+Unexplained unexplained(BrdfRef source, BrdfRef material);
+
+/// What is to be known about a factored model beside a material.
+struct FactoredBeside {
+  std::size_t bytes = 0;
+  ErrorFigures figures;
+};
+
+/// A renderer's material that looks like a BRDF, and how well.
+struct MaterialFit {
+  std::string target, source;  ///< one of material_targets(); the source's name
+  std::variant<OpenPbr, MetallicRoughness> material;
+  FitSummary summary;  ///< of openpbr: errors as OpenPbrFit has them; none of gltf
+  int starts = 0;      ///< minimizations run
+  ErrorFigures figures;
+  Unexplained beyond;
+  std::optional<FactoredBeside> factored;  ///< the default fit of the source, scored alike
+  double seconds = 0;                      ///< of the material's fit alone, by the wall clock
+
+  /// Refers to this object, which must outlive it and stay where it is.
+  BrdfRef ref() const noexcept;
+};
+
+/// "openpbr" (fit_openpbr) and "gltf" (fit_metallic_roughness).
+std::span<const std::string_view> material_targets();
+
+struct MaterialFitOptions {
+  bool beside = true;          ///< fit a factored model too, for its figures
+  FigureOptions figures = {};  ///< of the scores
+  /// Called from the calling thread with what is done and a rising share of it, as FitOptions::progress.
+  std::function<void(std::string_view stage, double fraction)> progress = {};
+};
+
+/// Fits a material as `burnish fit --to TARGET` does: to the reciprocal part of a measurement (SymmetrizedBrdf), to
+/// anything else as it is. The same bits for every number of threads. Throws Error for another target, and for a
+/// source of other than 1 or 3 channels.
+MaterialFit fit_material(const Source& source, std::string_view target,
+                         const MaterialFitOptions& options = {});
+
+/// The file of it: of openpbr JSON that open_source reads (format_baseline), of gltf a glTF asset of one material. The
+/// report stands in it as notes or extras.
+std::string format_material(const MaterialFit& fit);
+
+/// The JSON that `burnish fit --to TARGET --json` prints, indented by two: target, source, parameters, psnr, ssim,
+/// relative, rms_log, log_cos, beyond, factored, of openpbr spec (see parse_analytic), starts and iterations, then
+/// output and seconds.
+std::string summary_json(const MaterialFit& fit, const std::string& output);
+
+}  // namespace burnish

@@ -1,0 +1,79 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <burnish/error.h>
+#include <burnish/fitting/parametric/material_fit.h>
+#include <burnish/io/open_source.h>
+#include <burnish/testing/sanitized.h>
+#include <burnish/testing/tools.h>
+
+namespace burnish {
+namespace {
+
+using ::testing::HasSubstr;
+
+const MaterialFitOptions kAlone{.beside = false, .figures = {.count = 2000, .image_size = 64}};
+
+TEST(Unexplained, IsNothingOfTheSameAndSomethingOfWhatReturnsLight) {
+  const AnalyticBrdf matt = parse_analytic("lambert:kd=0.3"),
+                     back = parse_analytic("lafortune:kd=0.3,cx=0.9,cy=0.9,cz=0.9,exponent=20,ks=1"),
+                     red = parse_analytic("lambert:kd=0.3/0.1/0.1");
+  const Unexplained same = unexplained(matt.ref(), matt.ref());
+  EXPECT_EQ(same.backscatter, 1);
+  EXPECT_EQ(same.rings, 1);
+  EXPECT_EQ(same.colour_shift, 0);
+  EXPECT_GT(unexplained(back.ref(), matt.ref()).backscatter, 1.2);
+  EXPECT_GT(unexplained(red.ref(), matt.ref()).colour_shift, 0.2);
+}
+
+TEST(Unexplained, SeesARing) {
+  // brighter away from theta_h = 0
+  const AnalyticBrdf ring = parse_analytic("lafortune:kd=0.1,cx=1.2,cy=1.2,cz=0.3,exponent=8,ks=1"),
+                     matt = parse_analytic("lambert:kd=0.1");
+  EXPECT_GT(unexplained(ring.ref(), matt.ref()).rings, 1.5);
+}
+
+TEST(MaterialFit, OfOpenPbrIsAFileThatIsOpenedAgain) {
+  BURNISH_SKIP_WHERE_SANITIZED();
+  const Source source = open_source("openpbr:base_color=0.2/0.3/0.5,specular_roughness=0.5", {});
+  const MaterialFit fit = fit_material(source, "openpbr", kAlone);
+  EXPECT_GT(fit.figures.psnr, 80);
+  EXPECT_FALSE(fit.factored);
+  const Source again = parse_source(memory_file(format_material(fit)), {});
+  const auto& brdf = std::get<AnalyticBrdf>(again.brdf);
+  EXPECT_EQ(std::get<OpenPbr>(brdf.variant()).parameters(), std::get<OpenPbr>(fit.material).parameters());
+  const auto json = nlohmann::json::parse(summary_json(fit, "x.json"));
+  EXPECT_EQ(json.at("parameters").at("specular_roughness"), brdf.values()[6].r);
+  EXPECT_EQ(json.at("spec"), format_analytic(brdf));
+}
+
+TEST(MaterialFit, OfGltfIsAGltfMaterial) {
+  const Source source = open_source("ggx:alpha_x=0.16,alpha_y=0.16,f0=0.9/0.6/0.3", {});
+  const MaterialFit fit = fit_material(source, "gltf", kAlone);
+  EXPECT_GT(fit.figures.psnr, 30);
+  const auto json = nlohmann::json::parse(format_material(fit));
+  EXPECT_EQ(json.at("asset").at("version"), "2.0");
+  const auto& material = json.at("materials").at(0).at("pbrMetallicRoughness");
+  EXPECT_NEAR(material.at("roughnessFactor").get<double>(), 0.4, 0.05);
+  EXPECT_FALSE(json.contains("extensionsUsed"));
+}
+
+TEST(MaterialFit, SaysTheFactoredModelsFiguresBeside) {
+  BURNISH_SKIP_WHERE_SANITIZED();
+  MaterialFitOptions options = kAlone;
+  options.beside = true;
+  const MaterialFit fit = fit_material(open_source("lambert", {}), "gltf", options);
+  ASSERT_TRUE(fit.factored);
+  EXPECT_GT(fit.factored->figures.psnr, 40);
+  EXPECT_GT(fit.factored->bytes, 0);
+}
+
+TEST(MaterialFit, RefusesWhatItDoesNotKnow) {
+  const Source source = open_source("lambert", {});
+  EXPECT_THAT(error_of([&] { fit_material(source, "opnpbr", kAlone); }),
+              HasSubstr("expected openpbr or gltf, found 'opnpbr'; did you mean 'openpbr'?"));
+}
+
+}  // namespace
+}  // namespace burnish
