@@ -2,7 +2,7 @@
 """One sphere in every program that exports are written for, beside our own renderer's.
 
     examples/export_pictures.py build/release/apps/burnish/burnish paint.exr --measurement paint.bsdf \
-      --openpbr openpbr:base_color=0.5/0.1/0.05,coat_weight=1 --npm FOLDER --blender PYTHON -o export.png
+      --openpbr paint.json --npm FOLDER --blender PYTHON -o export.png
 
 Exports the factored model paint.exr and the OpenPBR parameters, shows each export in the program it is for, under the
 same camera and the same point light, prints how far each picture is from our renderer's of the same model, and writes
@@ -388,7 +388,7 @@ def main():
     parser.add_argument("burnish", help="the command line")
     parser.add_argument("model", help="a factored BRDF of three channels, as `burnish fit` writes it")
     parser.add_argument("--measurement", help="what it was fitted to")
-    parser.add_argument("--openpbr", help="parameters: openpbr:NAME=VALUE,...")
+    parser.add_argument("--openpbr", help="OpenPBR: openpbr:NAME=VALUE,... or what `burnish fit --to openpbr` writes")
     parser.add_argument("--openpbr-model", help="a factored model of them")
     parser.add_argument("--npm", help="folder with node_modules that have three and babylonjs")
     parser.add_argument("--blender", default=sys.executable, help="a Python with bpy")

@@ -8,9 +8,9 @@
 #include <burnish/export/export_model.h>
 #include <burnish/export/export_openpbr.h>
 #include <burnish/export/export_specular.h>
-#include <burnish/factors/model_file.h>
-#include <burnish/file.h>
+#include <burnish/io/open_source.h>
 #include <burnish/reflectance/analytic.h>
+#include <burnish/source.h>
 
 #include "commands.h"
 #include "environment_argument.h"
@@ -26,6 +26,10 @@ struct ExportArguments {
   bool exact = false, plain = false, mips = false, json = false;
 };
 
+std::string name_of(const std::string& path) {
+  return export_name(std::filesystem::path(path).stem().string());
+}
+
 ExportOptions options_of(const ExportArguments& arguments) {
   ExportOptions options{.to = {},
                         .name = arguments.name,
@@ -36,37 +40,40 @@ ExportOptions options_of(const ExportArguments& arguments) {
   return options;
 }
 
-ExportedFiles exported_analytic(const ExportArguments& arguments) {
+ExportedFiles exported_analytic(const ExportArguments& arguments, const AnalyticBrdf& brdf) {
+  const std::string_view model = brdf.model().name;
   if (!arguments.environment.empty())
     throw CLI::ValidationError("--environment: expected a factored BRDF with it, found " + arguments.model);
-  const std::string model(parse_analytic(arguments.model).model().name);
   ExportOptions options = options_of(arguments);
-  if (options.name.empty()) options.name = model;
-  if (model == "openpbr") {
-    if (!arguments.power.empty())
-      throw CLI::ValidationError("--power: expected phong or blinn_phong with it, found openpbr");
-    return export_openpbr(arguments.model, options);
-  }
+  if (options.name.empty())
+    options.name = is_analytic_spec(arguments.model) ? std::string(model) : name_of(arguments.model);
   std::optional<PowerMethod> power;
   if (!arguments.power.empty()) power = usage([&] { return power_method(arguments.power); });
-  return export_specular(arguments.model, power, options);
+  if (model != "openpbr") return export_specular(format_analytic(brdf), power, options);
+  if (power) throw CLI::ValidationError("--power: expected phong or blinn_phong with it, found openpbr");
+  return export_openpbr(brdf, options);
 }
 
-ExportedFiles exported_model(const ExportArguments& arguments) {
+ExportedFiles exported_model(const ExportArguments& arguments, const Source& source) {
   if (!arguments.power.empty())
     throw CLI::ValidationError("--power: expected phong or blinn_phong with it, found a file");
   ExportOptions options = options_of(arguments);
   if (!arguments.environment.empty() && std::ranges::none_of(options.to, shows_environment))
     throw CLI::ValidationError("--environment: expected --to glsl, glsl_es or html with it, found others");
-  if (options.name.empty()) options.name = export_name(std::filesystem::path(arguments.model).stem().string());
-  const FactoredBrdf brdf = parse_model(read_file(arguments.model)).brdf;
+  if (options.name.empty()) options.name = name_of(arguments.model);
+  const FactoredBrdf brdf = to_model(source).brdf;
   options.environment = environment_of(arguments.environment);
   return export_model(brdf, options);
 }
 
+ExportedFiles exported_files(const ExportArguments& arguments) {
+  const Source source = open_source(arguments.model, {});
+  const auto* const analytic = std::get_if<AnalyticBrdf>(&source.brdf);
+  return analytic ? exported_analytic(arguments, *analytic) : exported_model(arguments, source);
+}
+
 void run(const ExportArguments& arguments) {
-  const ExportedFiles exported =
-      is_analytic_spec(arguments.model) ? exported_analytic(arguments) : exported_model(arguments);
+  const ExportedFiles exported = exported_files(arguments);
   write_files(arguments.folder, exported.files);
   if (arguments.json) {
     auto files = nlohmann::ordered_json::array();
@@ -103,8 +110,8 @@ void add_export_command(CLI::App& app) {
       "          burnish export blinn_phong:exponent=60,ks=0.8 --to wgsl --power cubic2 -o highlight");
   auto arguments = std::make_shared<ExportArguments>();
   verb->add_option("MODEL", arguments->model,
-                   "factored BRDF, as `burnish fit` writes it, or one such as blinn_phong:exponent=60 or "
-                   "openpbr:coat_weight=1")
+                   "factored BRDF or OpenPBR, as `burnish fit` writes them, or one such as "
+                   "blinn_phong:exponent=60 or openpbr:coat_weight=1")
       ->required();
   const auto names = export_target_names();
   verb->add_option("--to", arguments->to, "what to write; may be given several times")

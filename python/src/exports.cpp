@@ -56,8 +56,8 @@ nb::dict exported_model(const OpenedModel& model, const Names& to,
 nb::dict exported_analytic(const std::string& spec, const Names& to,
                            const std::optional<std::filesystem::path>& folder, const std::string& name,
                            const std::optional<std::string>& power) {
-  if (!power && parse_analytic(spec).model().name == "openpbr")
-    return handed_out(export_openpbr(spec, {.to = targets_of(to), .name = name}), folder);
+  if (const AnalyticBrdf brdf = parse_analytic(spec); !power && brdf.model().name == "openpbr")
+    return handed_out(export_openpbr(brdf, {.to = targets_of(to), .name = name}), folder);
   const std::optional<PowerMethod> method = power ? std::optional(power_method(*power)) : std::nullopt;
   return handed_out(export_specular(spec, method, {.to = targets_of(to), .name = name}), folder);
 }

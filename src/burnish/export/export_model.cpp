@@ -187,9 +187,9 @@ const NearestOpenPbr& ModelExport::openpbr() {
   return *openpbr_;
 }
 
-// The core material, or OpenPBR's with its layers in extensions where that comes closer by half the squared error.
+// The core material, or OpenPBR's with its layers in extensions where that comes closer by a decibel.
 void ModelExport::add_gltf() {
-  const bool layered = core().psnr < kSeenAlike && openpbr().psnr > core().psnr + 3;
+  const bool layered = core().psnr < kSeenAlike && openpbr().psnr > core().psnr + 1;
   json material = layered ? gltf_material(openpbr().parameters) : gltf_material(core().material);
   manifest_["gltf"] = add(options_.name + ".glb", gltf_binary(brdf_, std::move(material), options_.name));
   manifest_["gltf_material"] = layered ? "openpbr" : "core_material";

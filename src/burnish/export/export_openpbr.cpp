@@ -12,7 +12,6 @@
 #include <burnish/export/mdl.h>
 #include <burnish/export/usda.h>
 #include <burnish/fitting/parametric/metallic_roughness_fit.h>
-#include <burnish/io/open_source.h>
 #include <burnish/io/rgl.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/rgl_builder.h>
@@ -30,9 +29,8 @@ const OpenPbrParameters& parameters_of(const AnalyticBrdf& brdf) {
 }
 
 // The files of one target, without the manifest.
-std::vector<ExportedFile> files_of(const std::string& spec, ExportTarget target, const ExportOptions& options,
-                                   json& manifest) {
-  const AnalyticBrdf brdf = parse_analytic(spec);
+std::vector<ExportedFile> files_of(const AnalyticBrdf& brdf, ExportTarget target,
+                                   const ExportOptions& options, json& manifest) {
   const OpenPbrParameters& parameters = parameters_of(brdf);
   const std::string& name = options.name;
   switch (target) {
@@ -44,7 +42,7 @@ std::vector<ExportedFile> files_of(const std::string& spec, ExportTarget target,
       manifest["material"] = gltf_material(parameters);
       return {{name + ".glb", gltf_binary(gltf_material(parameters), name)}};
     case ExportTarget::mdl: {
-      MdlModule module = mdl_module(open_source(spec, {}), options.cells, name);
+      MdlModule module = mdl_module({.name = name, .brdf = brdf, .findings = {}}, options.cells, name);
       manifest["losses"] = std::move(module.losses);
       return std::move(module.files);
     }
@@ -60,15 +58,13 @@ std::vector<ExportedFile> files_of(const std::string& spec, ExportTarget target,
 
 }  // namespace
 
-ExportedFiles export_openpbr(const std::string& spec, const ExportOptions& options) {
-  json manifest{{"generator", "burnish"},
-                {"name", options.name},
-                {"model", format_analytic(parse_analytic(spec))},
-                {"channels", 3}};
+ExportedFiles export_openpbr(const AnalyticBrdf& brdf, const ExportOptions& options) {
+  json manifest{
+      {"generator", "burnish"}, {"name", options.name}, {"model", format_analytic(brdf)}, {"channels", 3}};
   ExportedFiles result;
   for (const ExportTarget target : options.to) {
     json& entry = manifest[std::string(to_string(target))];
-    for (ExportedFile& file : files_of(spec, target, options, entry)) {
+    for (ExportedFile& file : files_of(brdf, target, options, entry)) {
       entry["files"].push_back(file.name);
       result.files.push_back(std::move(file));
     }

@@ -170,17 +170,30 @@ json gltf_material(const MetallicRoughness& core) {
 }
 
 json gltf_material(const OpenPbrParameters& p) {
-  // alphas of the base along and across: glTF has sqrt of the smaller, and how much of the rest to 1 the larger takes
+  // what a coat does to the base under it: blurs it, changes its index, lets part of the light through
+  const auto fourth = [](double x) { return x * x * x * x; };
+  const double blurred =
+      std::pow(std::min(1.0, fourth(p.specular_roughness) + 2 * fourth(p.coat_roughness)), 0.25);
+  const double roughness = std::lerp(p.specular_roughness, blurred, p.coat_weight);
+  const double ior = std::lerp(
+      p.specular_ior, std::max(p.specular_ior / p.coat_ior, p.coat_ior / p.specular_ior), p.coat_weight);
+  const double inside = 1 - (1 - reflectance_at_normal(p.coat_ior)) / (p.coat_ior * p.coat_ior);
+  const Rgb base = p.base_weight * p.base_color;
+  const auto under_coat = [&](double albedo, double coat_color) {
+    const double darkening = (1 - inside) / (1 - albedo * inside);
+    return albedo * std::lerp(1, darkening, p.coat_weight * p.coat_darkening) *
+           std::lerp(1, coat_color, p.coat_weight);
+  };
+
+  // alphas along and across: glTF has the root of the smaller, and how much of the rest to 1 the larger takes
   const double across = 1 - p.specular_roughness_anisotropy,
-               alpha_x = p.specular_roughness * p.specular_roughness * std::sqrt(2 / (1 + across * across)),
+               alpha_x = std::min(1.0, roughness * roughness * std::sqrt(2 / (1 + across * across))),
                alpha_y = across * alpha_x;
-  const double strength =
-      alpha_y < 1 ? std::sqrt(std::clamp((alpha_x - alpha_y) / (1 - alpha_y), 0.0, 1.0)) : 0;
-  const Rgb through_coat = (1 - p.coat_weight) * Rgb(1) + p.coat_weight * p.coat_color;
+  const double strength = alpha_y < 1 ? std::sqrt((alpha_x - alpha_y) / (1 - alpha_y)) : 0;
 
   json extensions = json::object();
   const OpenPbrParameters defaults;
-  if (p.specular_ior != defaults.specular_ior) extensions["KHR_materials_ior"] = {{"ior", p.specular_ior}};
+  if (ior != defaults.specular_ior) extensions["KHR_materials_ior"] = {{"ior", ior}};
   if (p.specular_weight != 1 || p.specular_color != Rgb(1))
     extensions["KHR_materials_specular"] = {{"specularFactor", p.specular_weight},
                                             {"specularColorFactor", color_entry(p.specular_color)}};
@@ -197,9 +210,11 @@ json gltf_material(const OpenPbrParameters& p) {
     extensions["KHR_materials_iridescence"] = {{"iridescenceFactor", p.thin_film_weight},
                                                {"iridescenceIor", p.thin_film_ior},
                                                {"iridescenceThicknessMaximum", 1000 * p.thin_film_thickness}};
-  return {{"pbrMetallicRoughness", core_entry({.base_color = p.base_weight * p.base_color * through_coat,
-                                               .metallic = p.base_metalness,
-                                               .roughness = std::sqrt(alpha_y)})},
+  return {{"pbrMetallicRoughness",
+           core_entry({.base_color = {under_coat(base.r, p.coat_color.r), under_coat(base.g, p.coat_color.g),
+                                      under_coat(base.b, p.coat_color.b)},
+                       .metallic = p.base_metalness,
+                       .roughness = std::sqrt(alpha_y)})},
           {"extensions", extensions}};
 }
 

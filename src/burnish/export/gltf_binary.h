@@ -21,10 +21,10 @@ std::string gltf_binary(nlohmann::json material, const std::string& name);
 nlohmann::json gltf_material(const MetallicRoughness& core);
 
 /// The nearest that glTF has to OpenPBR: the core material with KHR_materials_ior, _specular, _anisotropy,
-/// _clearcoat, _sheen and _iridescence, those of them that do something. Roughness and anisotropy are exact,
-/// the coat's reflectance at normal incidence is that of its index of refraction up to 0.04, its colour goes
-/// to the base; lost are the diffuse base's roughness and the coat's anisotropy and darkening. Source:
-/// [glTF 2021], [OpenPBR 2024].
+/// _clearcoat, _sheen and _iridescence, those of them that do something. Alphas of the base are exact, the
+/// coat's reflectance at normal incidence is that of its index of refraction up to 0.04; its colour, its
+/// darkening and what it does to the base's roughness and index go to the base. Lost are the diffuse base's
+/// roughness and the coat's anisotropy. Source: [glTF 2021], [OpenPBR 2024].
 nlohmann::json gltf_material(const OpenPbrParameters& parameters);
 
 }  // namespace burnish

@@ -30,19 +30,20 @@ TEST(GltfBinary, HasNoExtensionThatDoesNothing) {
 
 TEST(GltfBinary, HasAnExtensionForEachLayerOfOpenPbr) {
   OpenPbrParameters p;
-  p.specular_ior = 1.8;
+  p.specular_ior = 2;
   p.specular_color = {1, 0.5, 0.5};
   p.specular_roughness_anisotropy = 0.5;
   p.coat_weight = 0.5;
   p.coat_ior = 1.5;
   p.coat_color = {1, 0, 1};
-  p.coat_roughness = 0.1;
+  p.coat_darkening = 0;
   p.fuzz_weight = 0.5;
   p.fuzz_color = {1, 0.5, 0};
   p.thin_film_weight = 0.25;
   p.thin_film_thickness = 0.5;
   const json entry = material(p), &found = entry["extensions"];
-  EXPECT_EQ(found["KHR_materials_ior"]["ior"], 1.8);
+  EXPECT_NEAR(found["KHR_materials_ior"]["ior"].get<double>(), (2 + 2 / 1.5) / 2,
+              1e-12);  // half of it coated
   EXPECT_EQ(found["KHR_materials_specular"]["specularColorFactor"], json({1, 0.5, 0.5}));
   EXPECT_EQ(found["KHR_materials_sheen"]["sheenColorFactor"], json({0.5, 0.25, 0}));
   EXPECT_EQ(found["KHR_materials_iridescence"]["iridescenceThicknessMaximum"], 500);  // nanometres
@@ -53,6 +54,19 @@ TEST(GltfBinary, HasAnExtensionForEachLayerOfOpenPbr) {
 }
 
 // alpha^2 of the core material across, and mix(alpha, 1, strength^2) along: OpenPBR's, eq. of its roughness.
+TEST(GltfBinary, GivesTheBaseWhatACoatDoesToIt) {
+  OpenPbrParameters p;
+  p.specular_roughness = 0.3;
+  p.coat_weight = 1;
+  p.coat_roughness = 0.4;
+  const json coated = material(p)["pbrMetallicRoughness"];
+  EXPECT_NEAR(std::pow(coated["roughnessFactor"].get<double>(), 4), std::pow(0.3, 4) + 2 * std::pow(0.4, 4),
+              1e-12);
+  EXPECT_LT(coated["baseColorFactor"][0], 0.8);
+  p.coat_darkening = 0;
+  EXPECT_DOUBLE_EQ(material(p)["pbrMetallicRoughness"]["baseColorFactor"][0].get<double>(), 0.8);
+}
+
 TEST(GltfBinary, HasOpenPbrsAlphas) {
   for (const double anisotropy : {0.0, 0.2, 0.7, 1.0})
     for (const double roughness : {0.0, 0.3, 0.8}) {
