@@ -1,16 +1,18 @@
 #!/usr/bin/env python3
-"""A batch on a real Slurm of two nodes on this machine: tests/cluster/run.py BURNISH [--if-there] [--seed S] [--materials N].
+"""A batch on a real Slurm of two nodes on this machine: tests/cluster/run.py BURNISH [--if-there] [--seed S]
+[--materials N].
 
-Starts munged, slurmctld and two slurmd of one processor each, with files, ports and a key of their own, in a folder that
-goes afterwards; as root each node has process numbers of its own, so that a node can be killed with all that runs on it
-and nobody sees its processes. Then the job array that `burnish batch --slurm` writes:
+Starts munged, slurmctld and two slurmd of one processor each, with files, ports and a key of their own, in a folder
+that goes afterwards; as root each node has process numbers of its own, so that a node can be killed with all that
+runs on it and nobody sees its processes. Then the job array that `burnish batch --slurm` writes:
 
 - on one node, and on both: the same bits as without Slurm, and how many times as fast;
-- on both, while processes are killed and a task is requeued at random moments: the same bits, nothing finished done twice;
+- on both, while processes are killed and a task is requeued at random moments: the same bits, nothing finished done
+  twice;
 - on both, while one node is killed: the job ends complete, with the same bits.
 
-With --if-there it says so and succeeds where Slurm and munge (Debian: slurmctld, slurmd, slurm-client, munge) are not
-installed. Exits with 1 where something else is found."""
+With --if-there it says so and succeeds where Slurm and munge (Debian: slurmctld, slurmd, slurm-client, munge) are
+not installed. Exits with 1 where something else is found."""
 import argparse
 import getpass
 import os
