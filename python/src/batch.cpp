@@ -67,12 +67,13 @@ using Materials = std::variant<std::vector<std::string>, std::filesystem::path>;
 Batch* batch(const Materials& materials, const std::filesystem::path& folder,
              const std::vector<std::string>& to, bool compact, bool resume, int threads, std::uint64_t memory,
              const std::string& studio, const nb::kwargs& how) {
-  BatchOptions options{.folder = folder,
-                       .compact = compact,
-                       .threads = threads,
-                       .memory = memory,
-                       .resume = resume,
-                       .studio = studio};
+  BatchOptions options;
+  options.folder = folder;
+  options.compact = compact;
+  options.threads = threads;
+  options.memory = memory;
+  options.resume = resume;
+  options.studio = studio;
   options.fit = [keywords = keywords_of(how)](bool isotropic) { return fit_options(keywords, isotropic); };
   for (const std::string& target : to) options.exports.to.push_back(export_target(target));
   const auto* arguments = std::get_if<std::vector<std::string>>(&materials);
@@ -107,7 +108,7 @@ void bind_batch(nb::module_& m) {
   m.def(
       "batch", &batch, nb::arg("materials"), nb::arg("folder"), nb::kw_only(),
       nb::arg("to") = std::vector<std::string>(), nb::arg("compact") = true, nb::arg("resume") = false,
-      nb::arg("threads") = 0, nb::arg("memory") = 0, nb::arg("studio") = BatchOptions{}.studio,
+      nb::arg("threads") = 0, nb::arg("memory") = 0, nb::arg("studio") = BatchOptions().studio,
       nb::arg("how"), nb::rv_policy::take_ownership,
       "Fits a library as `burnish batch` does, and yields a dictionary a material as they are done: name,\n"
       "argument, files, bytes, fetches, psnr, ..., or reason where it failed; earlier says that it was done\n"

@@ -32,6 +32,9 @@
 #include <burnish/shaders/shader.h>
 #include <burnish/textures/ktx2.h>
 
+// Whole libraries of materials.
+#include <burnish/library/batch.h>
+
 // Glossy highlights without pow.
 #include <burnish/eval/power_span.h>
 #include <burnish/power/power.h>

@@ -1,16 +1,18 @@
 #!/usr/bin/env python3
-"""A batch on a real Slurm of two nodes on this machine: tests/cluster/run.py BURNISH [--if-there] [--seed S] [--materials N].
+"""A batch on a real Slurm of two nodes on this machine: tests/cluster/run.py BURNISH [--if-there] [--seed S]
+[--materials N].
 
-Starts munged, slurmctld and two slurmd of one processor each, with files, ports and a key of their own, in a folder that
-goes afterwards; as root each node has process numbers of its own, so that a node can be killed with all that runs on it
-and nobody sees its processes. Then the job array that `burnish batch --slurm` writes:
+Starts munged, slurmctld and two slurmd of one processor each, with files, ports and a key of their own, in a folder
+that goes afterwards; as root each node has process numbers of its own, so that a node can be killed with all that
+runs on it and nobody sees its processes. Then the job array that `burnish batch --slurm` writes:
 
 - on one node, and on both: the same bits as without Slurm, and how many times as fast;
-- on both, while processes are killed and a task is requeued at random moments: the same bits, nothing finished done twice;
+- on both, while processes are killed and a task is requeued at random moments: the same bits, nothing finished done
+  twice;
 - on both, while one node is killed: the job ends complete, with the same bits.
 
-With --if-there it says so and succeeds where Slurm and munge (Debian: slurmctld, slurmd, slurm-client, munge) are not
-installed. Exits with 1 where something else is found."""
+With --if-there it says so and succeeds where Slurm and munge (Debian: slurmctld, slurmd, slurm-client, munge) are
+not installed. Exits with 1 where something else is found."""
 import argparse
 import getpass
 import os
@@ -98,7 +100,8 @@ class Cluster:
         key = self.folder / "munge.key"
         key.write_bytes(os.urandom(128))
         key.chmod(0o600)
-        self.start("munged", "munged", "-F", "--force", "--key-file", str(key), "--socket", f"{self.folder}/munge.socket",
+        self.start("munged", "munged", "-F", "--force", "--key-file", str(key),
+                   "--socket", f"{self.folder}/munge.socket",
                    "--pid-file", f"{self.folder}/munge.pid", "--seed-file", f"{self.folder}/munge.seed",
                    "--log-file", f"{self.folder}/munge.log")
         until((self.folder / "munge.socket").exists, "munged")
@@ -192,15 +195,21 @@ class Library:
         return kinds.count("began") - kinds.count("fitted")
 
 
+def journal_times(folder, event):
+    """When such events were, a list a process."""
+    return [[float(found) for found in re.findall(rf'{{"event":"{event}".*"at":([\d.]+)}}', path.read_text())]
+            for path in (folder / "journal").iterdir()]
+
+
 def seconds_of(library, cluster, folder, tasks, models):
-    """From the first fit's beginning to the last one's end, as the journal's files were written."""
+    """From when all tasks were at work to the last fit's end, by the journal, over the share of fits in that time."""
     job = cluster.submit(library.script(folder, tasks))
-    until(lambda: (folder / "journal").exists(), "the first task")
-    start = time.monotonic()
     until(lambda: not cluster.waits_for(job), "the job")
-    seconds = time.monotonic() - start
     library.check_complete(folder, models)
-    return seconds
+    begun = [min(times) for times in journal_times(folder, "began") if times]
+    ends = sorted(time for times in journal_times(folder, "fitted") for time in times)
+    start = max(begun)
+    return (ends[-1] - start) * len(models) / sum(end > start for end in ends)
 
 
 def kill_some(library, cluster, folder, models, draw):
@@ -221,7 +230,8 @@ def kill_some(library, cluster, folder, models, draw):
         job = cluster.submit(folder / "batch.slurm")
         until(lambda: not cluster.waits_for(job), "the job that was started again")
     cut = library.check_complete(folder, models)
-    print(f"{kills} processes killed, {requeues} tasks requeued, {cut} fits cut short: the same bits, nothing done twice")
+    print(f"{kills} processes killed, {requeues} tasks requeued, {cut} fits cut short: "
+          "the same bits, nothing done twice")
 
 
 def kill_node(library, cluster, folder, models, draw):
@@ -241,7 +251,7 @@ def main():
     parser.add_argument("burnish")
     parser.add_argument("--if-there", action="store_true")
     parser.add_argument("--seed", type=int, default=None, help="of the moments; by default another each time")
-    parser.add_argument("--materials", type=int, default=24, help="to fit; more tell better how many times as fast it is")
+    parser.add_argument("--materials", type=int, default=24, help="to fit")
     arguments = parser.parse_args()
     os.environ["PATH"] += ":/usr/sbin:/sbin"
     if missing := [program for program in PROGRAMS if not shutil.which(program)]:

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Kills batches at random moments and takes their folder away: tests/library/kill.py BURNISH [--kills N] [--seed S].
 
-A library of analytic materials and damaged files is fitted undisturbed. Then it is fitted again, killed by SIGKILL at
-random moments and resumed, N kills in all. Expected: the same bits, and no material begun again whose journal said that
-it was fitted. Then its folder is full (a tmpfs), read-only and moved away meanwhile. Expected: exit code 1 and one line
-that says so, nothing lost that was finished, and the same bits when it is resumed. Mounting takes root: without it these
-two are said to be skipped. Prints what was found, and exits with 1 where something else was."""
+A library of analytic materials and damaged files is fitted undisturbed. Then it is fitted again, killed by SIGKILL
+at random moments and resumed, N kills in all. Expected: the same bits, and no material begun again whose journal
+said that it was fitted. Then its folder is full (a tmpfs), read-only and moved away meanwhile. Expected: exit code 1
+and one line that says so, nothing lost that was finished, and the same bits when it is resumed. Mounting takes root:
+without it these two are said to be skipped. Prints what was found, and exits with 1 where something else was."""
 import argparse
 import collections
 import json

@@ -2,9 +2,9 @@
 """A library of 1,000 beside its fits one by one: tests/library/scale.py BURNISH [--count N] [--cells C] [FIT OPTIONS].
 
 Of COUNT materials 5 % are damaged files, 25 % analytic, the rest MERL files of C x C x 2 C cells: twenty stand-ins of
-BURNISH_DATA/np, each in other colours and sizes. FIT OPTIONS are those of `burnish fit`, by default
---model pqp. Prints what was fitted and what failed, the processor time of the batch over that of its fits one by one, its
-largest memory, and how long the table takes to answer. Exits with 1 where a good material is missing, a damaged one is
+BURNISH_DATA/np in other and other colours. FIT OPTIONS are those of `burnish fit`, by default --model pqp. Prints what
+was fitted and what failed, the processor time of the batch over that of its fits one by one, its largest memory, and
+how long the table takes to answer. Exits with 1 where a good material is missing, a damaged one is
 not named with its reason, or a model has other bits than its fit alone."""
 import argparse
 import array
@@ -24,8 +24,8 @@ STAND_INS = 20
 def timed(command):
     """Exit code, what was printed, processor seconds and the largest memory in MiB."""
     with tempfile.TemporaryFile("w+") as said:
-        pid = os.posix_spawnp(command[0], command, os.environ,
-                              file_actions=[(os.POSIX_SPAWN_DUP2, said.fileno(), 1), (os.POSIX_SPAWN_OPEN, 2, os.devnull, os.O_WRONLY, 0)])
+        streams = [(os.POSIX_SPAWN_DUP2, said.fileno(), 1), (os.POSIX_SPAWN_OPEN, 2, os.devnull, os.O_WRONLY, 0)]
+        pid = os.posix_spawnp(command[0], command, os.environ, file_actions=streams)
         _, status, usage = os.wait4(pid, 0)
         said.seek(0)
         return os.waitstatus_to_exitcode(status), said.read(), usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
@@ -61,10 +61,12 @@ def make_library(burnish, data, folder, count, cells):
     for k in range(count):
         if k % 20 == 7:
             path = folder / f"damaged{k}.binary"
-            path.write_bytes([b"", b"nothing of the kind", tables[0][:5000], struct.pack("<3i", -1, 7, 1 << 30)][k // 20 % 4])
+            kinds = [b"", b"nothing of the kind", tables[0][:5000], struct.pack("<3i", -1, 7, 1 << 30)]
+            path.write_bytes(kinds[k // 20 % 4])
             damaged.append(str(path))
         elif k % 4 == 1:
-            arguments.append(f"ggx:alpha_x={0.05 + 0.0005 * k:.4f},alpha_y={0.05 + 0.0005 * k:.4f},f0=0.9/{0.1 + k / 2000:.4f}/0.2")
+            alpha, green = 0.05 + 0.0005 * k, 0.1 + k / 2000
+            arguments.append(f"ggx:alpha_x={alpha:.4f},alpha_y={alpha:.4f},f0=0.9/{green:.4f}/0.2")
         else:
             path = folder / f"stand-in{k}.binary"
             path.write_bytes(coloured(tables[k % len(tables)], k) if k >= len(tables) else tables[k])
@@ -94,7 +96,8 @@ def main():
                                              "--memory", arguments.memory, *how])
         wall = time.monotonic() - start
         summary = json.loads(said)
-        print(f"{summary['fitted']} of {len(good)} good ones fitted, {summary['failed']} of {len(damaged)} damaged ones named")
+        print(f"{summary['fitted']} of {len(good)} good ones fitted, "
+              f"{summary['failed']} of {len(damaged)} damaged ones named")
         print(f"{seconds:.1f} s of processor time, {wall:.1f} s by the clock, {memory:.0f} MiB of {arguments.memory}")
         reasons = {failure["path"]: failure["reason"] for failure in summary["failures"]}
         if code != 1 or summary["fitted"] != len(good) or set(reasons) != set(damaged) or not all(reasons.values()):

@@ -21,7 +21,7 @@ constexpr const char* kScattered =
     "11,0,62,110,0.2\n28,0,29,175,0.6\n62,0,23,50,0.2\n";
 
 FitOptions small_fit(bool) {
-  return {.form = OneLobe{.model = "pqp", .tables = {"p=8x8", "q=9x9"}}, .samples = 500};
+  return {.form = OneLobe{.model = "pqp", .tables = {"p=8x8", "q=9x9"}}, .samples = 500, .score = false};
 }
 
 class BatchOfMaterials : public testing::Test {
@@ -86,6 +86,11 @@ TEST_F(BatchOfMaterials, HasTheBitsOfEachFitAlone) {
 }
 
 TEST_F(BatchOfMaterials, SaysWhatIsWrongWithEachThatFails) {
+  options.fit = [](bool isotropic) {
+    FitOptions how = small_fit(isotropic);
+    how.score = true;
+    return how;
+  };
   const auto records = run();
   EXPECT_THAT(records.at("damaged").reason, HasSubstr("damaged.csv: line 2"));
   EXPECT_THAT(records.at("missing").reason, HasSubstr("missing.csv"));
@@ -121,7 +126,7 @@ TEST_F(BatchOfMaterials, GoesOnWithoutDoingAgainWhatIsWhole) {
 
   // other options: all of them
   options.fit = [](bool) {
-    return FitOptions{.form = OneLobe{.model = "pqp", .tables = {"p=9x9"}}, .samples = 500};
+    return FitOptions{.form = OneLobe{.model = "pqp", .tables = {"p=9x9"}}, .samples = 500, .score = false};
   };
   run();
   EXPECT_EQ(fits_begun(), 10u);

@@ -187,7 +187,9 @@ std::string InputDigests::of_file(const fs::path& path) {
   std::error_code error;
   const std::uintmax_t size = fs::file_size(path, error);
   const fs::file_time_type time = error ? fs::file_time_type{} : fs::last_write_time(path, error);
-  if (error) throw Error::in_file(path.string(), "a readable file", "no such file");
+  if (error)
+    throw Error::in_file(path.string(), "a readable file",
+                         fs::exists(path, error) ? "something else" : "no such file");
   {
     const std::lock_guard lock(mutex_);
     const auto known = files_.find(path.string());

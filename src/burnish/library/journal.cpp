@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <chrono>
 #include <fstream>
 #include <system_error>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <burnish/error.h>
@@ -77,7 +79,8 @@ void Journal::write(const std::string& json) {
   if (broken_) throw Error::in_file(own_.string(), "a journal that takes lines", "one that failed to");
   broken_ = true;
   if (!file_) file_ = std::make_unique<GrowingFile>(own_);
-  file_->append(json + "\n");
+  const std::chrono::duration<double> now = std::chrono::system_clock::now().time_since_epoch();
+  file_->append(fmt::format("{},\"at\":{:.3f}}}\n", json.substr(0, json.size() - 1), now.count()));
   broken_ = false;
   take(json);
 }

@@ -20,8 +20,9 @@ namespace burnish {
 /// appends to a file of its own, named `writer`.jsonl, and reads those of the others: so they need no lock and no
 /// server, and none can spoil what another wrote. A line is a JSON object: {"event": "began", "name", "key"} before a
 /// fit, {"event": "fitted", ...} and {"event": "failed", ...} with a MaterialRecord, {"event": "assembled", "of"} when
-/// table and page were made of records whose keys and names have that digest. A line that is no such object, as a process
-/// leaves that was killed while it wrote, counts as not written. Safe to call from several threads.
+/// table and page were made of records whose keys and names have that digest; each with "at", seconds since 1970. A line
+/// that is no such object, as a process leaves that was killed while it wrote, counts as not written. Safe to call from
+/// several threads.
 class Journal {
  public:
   /// Reads what is there, and makes a file where there is none yet as soon as something is appended. Throws Error as

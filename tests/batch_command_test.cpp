@@ -1,0 +1,82 @@
+// `burnish batch` from the outside: exit codes, what it says, and the script for Slurm.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <burnish/testing/tools.h>
+
+namespace burnish {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+class BatchCommand : public testing::Test {
+ protected:
+  BatchCommand() {
+    write(folder_.path / "a list",
+          "ggx:alpha_x=0.3,alpha_y=0.3\nmissing.csv\nward:alpha_x=0.2,alpha_y=0.2\n");
+  }
+  Outcome batch(const std::string& arguments) const {
+    return run(fmt::format("cd {} && {} batch {}", folder_.path.string(), BURNISH_CLI, arguments));
+  }
+  static constexpr const char* kQuick = " --model pqp --table p=8x8 --table q=9x9 --samples 500";
+  TemporaryFolder folder_{"batch_command"};
+};
+
+TEST_F(BatchCommand, SaysAtTheEndWhatFailedAndHasTheRest) {
+  const Outcome outcome = batch(std::string("'a list' -o out") + kQuick);
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.output, HasSubstr("fitted     2 of 3 materials"));
+  EXPECT_THAT(outcome.output, HasSubstr("failed     missing: missing.csv"));
+  EXPECT_THAT(outcome.output,
+              HasSubstr("burnish: 1 of 3 materials were not fitted; the others are all there\n"));
+  // the bits of the fit alone
+  ASSERT_EQ(run(fmt::format("{} fit ggx:alpha_x=0.3,alpha_y=0.3 -o {}{}", BURNISH_CLI,
+                            (folder_.path / "alone.burnish").string(), kQuick))
+                .status,
+            0);
+  EXPECT_EQ(read(folder_.path / "out/models/ggx_alpha_x_0.3_alpha_y_0.3.burnish"),
+            read(folder_.path / "alone.burnish"));
+
+  EXPECT_THAT(batch(std::string("'a list' -o out") + kQuick).output, HasSubstr("to resume it"));
+  const Outcome again = batch(std::string("'a list' -o out --resume --json 2> /dev/null") + kQuick);
+  EXPECT_EQ(again.status, 1);
+  const auto json = nlohmann::json::parse(again.output);
+  EXPECT_EQ(json["materials"], 3);
+  EXPECT_EQ(json["earlier"], 2);
+  EXPECT_EQ(json["failures"][0]["name"], "missing");
+}
+
+TEST_F(BatchCommand, TakesTheOptionsOfAFitAndRefusesWhatContradictsItself) {
+  EXPECT_EQ(batch("'a list' -o out --method svd --budget auto").status, 2);
+  EXPECT_EQ(batch("'a list' -o out --method svd --to glsl").status, 2);
+  EXPECT_EQ(batch("'a list' -o out --mips").status, 2);
+  EXPECT_EQ(batch("'a list'").status, 2);
+  EXPECT_THAT(batch("nowhere -o out").output, HasSubstr("nowhere: expected a readable file"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.path / "out"));
+}
+
+TEST_F(BatchCommand, WritesAJobArrayThatRunsTheSameCommand) {
+  const Outcome outcome =
+      batch(std::string("'a list' -o 'an out' --slurm --tasks 7 --sbatch=--partition=long "
+                        "--threads 2 --memory 1G --keep-negatives") +
+            kQuick);
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const std::string script = read(folder_.path / "an out/batch.slurm");
+  EXPECT_THAT(script, HasSubstr("#SBATCH --array=1-7\n"));
+  EXPECT_THAT(script, HasSubstr("#SBATCH --cpus-per-task=2\n"));
+  EXPECT_THAT(script, HasSubstr("#SBATCH --mem=1280M\n"));
+  EXPECT_THAT(script, HasSubstr("#SBATCH --partition=long\n"));
+  EXPECT_THAT(script, Not(HasSubstr("--slurm ")));
+
+  // a shell that runs it does what the command does
+  EXPECT_EQ(run(fmt::format("cd {} && bash 'an out/batch.slurm'", folder_.path.string())).status, 1);
+  ASSERT_EQ(batch(std::string("'a list' -o out --keep-negatives") + kQuick).status, 1);
+  const std::string model = "models/ward_alpha_x_0.2_alpha_y_0.2.burnish";
+  EXPECT_EQ(read(folder_.path / "an out" / model), read(folder_.path / "out" / model));
+}
+
+}  // namespace
+}  // namespace burnish
