@@ -16,6 +16,7 @@
 #include <burnish/io/rgl.h>
 #include <burnish/render/light/image_based_light.h>
 #include <burnish/testing/models.h>
+#include <burnish/testing/sanitized.h>
 #include <burnish/testing/tools.h>
 
 namespace burnish {
@@ -147,6 +148,7 @@ TEST_F(Export, ThePageLoadsNothing) {
 }
 
 TEST_F(Export, ThePageShowsTheMaterialUnderALightThatIsDragged) {
+  BURNISH_SKIP_WHERE_SANITIZED();
   if (!has_tool("chromium")) GTEST_SKIP() << "no chromium";
   ASSERT_EQ(exports("--to html"), 0);
   EXPECT_EQ(run_page(R"(
@@ -171,6 +173,7 @@ document.body.dataset.result = [hovered === start, dragged !== start, back !== d
 }
 
 TEST_F(Export, ThePageShowsTheLightFromAllAround) {
+  BURNISH_SKIP_WHERE_SANITIZED();
   if (!has_tool("chromium")) GTEST_SKIP() << "no chromium";
   const FactoredBrdf brdf = smooth_model(model_case("Pqpr"));
   write(folder_ / "two lobes.exr", format_model({brdf, {}, "{}"}));

@@ -5,11 +5,13 @@
 #include <burnish/fitting/fit.h>
 #include <burnish/io/open_source.h>
 #include <burnish/testing/files.h>
+#include <burnish/testing/sanitized.h>
 
 namespace burnish {
 namespace {
 
 TEST(Scattered, EveryFileKeepsItsBudgets) {
+  BURNISH_SKIP_WHERE_SANITIZED();
   BURNISH_NEEDS_DATA();
   std::size_t files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(data_folder() / "cornell")) {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <burnish/testing/sanitized.h>
 #include <burnish/testing/tools.h>
 #include <burnish/testing/webgl.h>
 
@@ -12,6 +13,7 @@ namespace burnish {
 namespace {
 
 TEST(WebGl, AgreesWithTheDefinitionInEveryVariant) {
+  BURNISH_SKIP_WHERE_SANITIZED();
   if (!has_tool("chromium")) GTEST_SKIP() << "no chromium";
   const TemporaryFolder folder("webgl");
   const auto worst = run_webgl(kModelCases, 64, folder.path);

@@ -12,4 +12,21 @@ std::string_view text_of(std::span<const EmbeddedFile> files, std::string_view n
   return found->text;
 }
 
+std::string with_marks(std::string_view text, const std::map<std::string_view, std::string>& marks) {
+  const auto is_capital = [](char c) { return 'A' <= c && c <= 'Z'; };
+  std::string result;
+  while (true) {
+    // up to the next mark, then what stands for it
+    const std::size_t at = text.find('@');
+    result += text.substr(0, at);
+    if (at == std::string_view::npos) return result;
+    text.remove_prefix(at + 1);
+    const std::string_view mark(text.begin(), std::ranges::find_if_not(text, is_capital));
+    const auto found = marks.find(mark);
+    if (found == marks.end()) throw std::logic_error("no text for the mark @" + std::string(mark));
+    result += found->second;
+    text.remove_prefix(mark.size());
+  }
+}
+
 }  // namespace burnish

@@ -12,6 +12,7 @@
 
 #include <burnish/error.h>
 #include <burnish/power/code.h>
+#include <burnish/testing/sanitized.h>
 #include <burnish/testing/tools.h>
 
 namespace burnish {
@@ -75,6 +76,7 @@ class EmittedShaders : public testing::TestWithParam<std::array<const char*, 4>>
 
 TEST_P(EmittedShaders, AreAcceptedByTheirCompiler) {
   const auto [language, tool, extension, command] = GetParam();
+  BURNISH_SKIP_WHERE_SANITIZED();
   if (!has_tool(tool)) GTEST_SKIP() << "no " << tool;
   const TemporaryFolder folder("code");
   for (const bool constant : {true, false}) {

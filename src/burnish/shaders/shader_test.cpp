@@ -18,6 +18,7 @@
 #include <burnish/testing/compilers.h>
 #include <burnish/testing/graph_values.h>
 #include <burnish/testing/models.h>
+#include <burnish/testing/sanitized.h>
 #include <burnish/testing/tools.h>
 
 namespace burnish {
@@ -118,6 +119,7 @@ class ShaderCompilers : public testing::TestWithParam<Checked> {};
 
 TEST_P(ShaderCompilers, AcceptEveryModelWithEveryFilter) {
   const Checked& checked = GetParam();
+  BURNISH_SKIP_WHERE_SANITIZED();
   if (!has_tool(checked.tool)) GTEST_SKIP() << "no " << checked.tool;
   const TemporaryFolder folder("shaders");
   std::string files;

@@ -6,6 +6,7 @@
 #include <burnish/shaders/specular_shader.h>
 #include <burnish/testing/compilers.h>
 #include <burnish/testing/models.h>
+#include <burnish/testing/sanitized.h>
 #include <burnish/testing/tools.h>
 
 namespace burnish {
@@ -114,6 +115,7 @@ class SpecularCompilers : public testing::TestWithParam<Checked> {};
 
 TEST_P(SpecularCompilers, AcceptEveryMember) {
   const Checked& checked = GetParam();
+  BURNISH_SKIP_WHERE_SANITIZED();
   if (!has_tool(checked.tool)) GTEST_SKIP() << "no " << checked.tool;
   const TemporaryFolder folder("specular");
   std::string files;

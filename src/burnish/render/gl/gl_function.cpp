@@ -2,8 +2,10 @@
 #include <cassert>
 
 #include <epoxy/gl.h>
+#include <fmt/format.h>
 
 #include <burnish/render/gl/gl_function.h>
+#include <burnish/render/glsl_files.h>
 
 namespace burnish {
 
@@ -11,29 +13,15 @@ namespace {
 
 constexpr unsigned kGroup = 64;
 
-constexpr const char* kMain = R"(
-layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer Arguments { float arguments[]; };
-layout(std430, binding = 1) writeonly buffer Values { float values[]; };
-uniform uint count;
-void main() {
-  uint i = gl_GlobalInvocationID.x;
-  if (i >= count) return;
-  vec3 a = vec3(arguments[6u * i], arguments[6u * i + 1u], arguments[6u * i + 2u]);
-  vec3 b = vec3(arguments[6u * i + 3u], arguments[6u * i + 4u], arguments[6u * i + 5u]);
-  vec3 f = burnish_called(a, b);
-  values[3u * i] = f.x;
-  values[3u * i + 1u] = f.y;
-  values[3u * i + 2u] = f.z;
+std::string whole_program(const std::string& text, const std::string& name) {
+  return fmt::format("{}\n#define burnish_called {}\n{}", text, name,
+                     text_of(glsl_files(), "function.comp.glsl"));
 }
-)";
 
 }  // namespace
 
 GlFunction::GlFunction(const std::string& text, const std::string& name)
-    : program_(link_program(
-          std::array{GlShaderSource{GL_COMPUTE_SHADER, text + "\n#define burnish_called " + name + kMain}})) {
-}
+    : program_(link_program(std::array{GlShaderSource{GL_COMPUTE_SHADER, whole_program(text, name)}})) {}
 
 GlFunction::~GlFunction() {
   glDeleteBuffers(static_cast<GLsizei>(numbers_.size()), numbers_.data());

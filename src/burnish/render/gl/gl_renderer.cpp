@@ -97,7 +97,8 @@ struct GlRenderer::State {
 
   // A program for the scene's camera.
   GLuint linked(const std::string& fragment, const Scene& scene) const {
-    const GlShaderSource sources[] = {{GL_VERTEX_SHADER, kSceneVertexShader}, {GL_FRAGMENT_SHADER, fragment}};
+    const GlShaderSource sources[] = {{GL_VERTEX_SHADER, scene_vertex_shader()},
+                                      {GL_FRAGMENT_SHADER, fragment}};
     const GLuint program = link_program(sources);
     glProgramUniformMatrix4fv(program, glGetUniformLocation(program, "burnish_projection"), 1, GL_FALSE,
                               projection_of(scene, width, height).data());
@@ -173,7 +174,7 @@ GlRenderer::GlRenderer(const Scene& scene, std::span<const SurfaceShader> materi
   // programs: one that only finds depths, then one a material
   s.make_target();
   s.depth_program = s.linked("void main() {}\n", scene);
-  if (interpolated) s.add_material(kInterpolatedFragmentShader, {}, scene);
+  if (interpolated) s.add_material(interpolated_fragment_shader(), {}, scene);
   for (const SurfaceShader& surface : materials)
     s.add_material(scene_fragment_shader(surface), surface.textures, scene);
 

@@ -27,9 +27,9 @@ SurfaceShader surface_shader(const FactoredBrdf& brdf, ShaderFilter filter, Tabl
 
 /// GlRenderer's programs, without #version lines. Vertices have place, normal, tangent, side and a value at
 /// locations 0 to 4; `burnish_projection` takes places to the screen.
-extern const char* const kSceneVertexShader;
+std::string scene_vertex_shader();
 /// Shows the values of vertices.
-extern const char* const kInterpolatedFragmentShader;
+std::string interpolated_fragment_shader();
 /// Light of a buffer of points (binding 0, `burnish_light_count` of them) and, where `burnish_first` is set,
 /// from all around, that the surface reflects towards `burnish_eye`.
 std::string scene_fragment_shader(const SurfaceShader& surface);
