@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include <burnish/fitting/parametric/metallic_roughness_fit.h>
 #include <burnish/factors/factored_brdf.h>
+#include <burnish/fitting/parametric/metallic_roughness_fit.h>
 
 namespace burnish {
 
