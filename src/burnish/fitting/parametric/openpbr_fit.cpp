@@ -339,7 +339,7 @@ OpenPbrParameters tidied(OpenPbrParameters p) {
 }
 
 OpenPbrFit to_fit(const PicturePairs& pairs, const Trial& trial, double first_cost) {
-  OpenPbrFit fit{.parameters = rounded(tidied(trial.parameters)), .summary = {}};
+  OpenPbrFit fit{.parameters = rounded(tidied(rounded(trial.parameters))), .summary = {}};
   std::vector<double> shown;
   pairs.show(OpenPbr(fit.parameters), shown);
   fit.summary = {.error_before = std::sqrt(2 * first_cost),
