@@ -1,3 +1,4 @@
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <functional>
@@ -171,14 +172,14 @@ void print(const OpenPbr& material) {
     std::string text;
     for (const OpenPbrInput& input : kOpenPbrInputs) {
       if (!input.name.starts_with(layer)) continue;
-      const auto value = [](const OpenPbrParameters& of, auto member) {
-        const Rgb v = of.*member;
-        return v.r == v.g && v.g == v.b ? fmt::format("{:.4g}", v.r)
-                                        : fmt::format("{:.4g}/{:.4g}/{:.4g}", v.r, v.g, v.b);
+      const auto value = [&](const OpenPbrParameters& of) {
+        const Rgb v = std::visit([&](auto member) { return Rgb(of.*member); }, input.member);
+        const std::array<std::string, 3> rgb = {fmt::format("{:.4g}", v.r), fmt::format("{:.4g}", v.g),
+                                                fmt::format("{:.4g}", v.b)};
+        return rgb[0] == rgb[1] && rgb[0] == rgb[2] ? rgb[0] : fmt::format("{}", fmt::join(rgb, "/"));
       };
-      if (std::visit([&](auto member) { return p.*member == defaults.*member; }, input.member)) continue;
-      text += fmt::format("{}{}={}", text.empty() ? "" : ", ", input.name,
-                          std::visit([&](auto member) { return value(p, member); }, input.member));
+      if (const std::string shown = value(p); shown != value(defaults))
+        text += fmt::format("{}{}={}", text.empty() ? "" : ", ", input.name, shown);
     }
     if (!text.empty()) fmt::print("{:<10} {}\n", layer, text);
   }

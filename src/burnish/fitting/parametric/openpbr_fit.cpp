@@ -15,8 +15,7 @@ namespace burnish {
 
 namespace {
 
-// The dimmed pictures: what the exposure makes of a pixel, and the error's weight.
-const double kDim = std::pow(1.0 / 32, PictureLoss::kInverseGamma);
+// Of the pictures at 1/32 of the exposure.
 constexpr double kDimmedShare = 0.05;
 
 // Relative errors, of ln(f + floor): at most a tenth of the whole where pictures differ visibly, but what tells where
@@ -217,7 +216,9 @@ class Cost {
     return {along, std::sqrt(std::max(squares - along * along, 0.0)), length};
   }
 
-  static inline const std::array<double, 2> kShares = {1, std::sqrt(kDimmedShare)}, kDims = {1, kDim};
+  /// Of both exposures: the root of the error's weight, and what the exposure makes of a pixel.
+  static inline const std::array<double, 2> kShares = {1, std::sqrt(kDimmedShare)},
+                                            kDims = {1, std::pow(1.0 / 32, PictureLoss::kInverseGamma)};
 
   const PicturePairs& pairs_;
   const OpenPbrParameters fixed_;
@@ -334,13 +335,12 @@ OpenPbrParameters tidied(OpenPbrParameters p) {
   // under a whole coat an index shows as does the coat's square over it: the one that is more like glass
   const double twin = p.coat_ior * p.coat_ior / p.specular_ior;
   const auto unlike = [&](double ior) { return std::abs(ior - defaults.specular_ior); };
-  if (p.coat_weight == 1 && unlike(twin) < unlike(p.specular_ior))
-    p.specular_ior = std::clamp(twin, 1.0, 3.0);
+  if (p.coat_weight == 1 && twin >= 1 && unlike(twin) < unlike(p.specular_ior)) p.specular_ior = twin;
   return p;
 }
 
 OpenPbrFit to_fit(const PicturePairs& pairs, const Trial& trial, double first_cost) {
-  OpenPbrFit fit{.parameters = rounded(tidied(trial.parameters)), .summary = {}};
+  OpenPbrFit fit{.parameters = rounded(tidied(rounded(trial.parameters))), .summary = {}};
   std::vector<double> shown;
   pairs.show(OpenPbr(fit.parameters), shown);
   fit.summary = {.error_before = std::sqrt(2 * first_cost),
