@@ -334,8 +334,7 @@ OpenPbrParameters tidied(OpenPbrParameters p) {
   // under a whole coat an index shows as does the coat's square over it: the one that is more like glass
   const double twin = p.coat_ior * p.coat_ior / p.specular_ior;
   const auto unlike = [&](double ior) { return std::abs(ior - defaults.specular_ior); };
-  if (p.coat_weight == 1 && unlike(twin) < unlike(p.specular_ior))
-    p.specular_ior = std::clamp(twin, 1.0, 3.0);
+  if (p.coat_weight == 1 && twin >= 1 && unlike(twin) < unlike(p.specular_ior)) p.specular_ior = twin;
   return p;
 }
 
