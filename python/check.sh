@@ -15,4 +15,7 @@ fi
 # The compiler and flags of the release build: ccache has its objects.
 CXX=${CXX:-c++} "${pip[@]}" install --no-build-isolation --no-deps --force-reinstall \
   -C cmake.define.BURNISH_WERROR=ON .
+# What C++ tests need of these packages: MaterialX, whose shader OpenPBR is held to.
+tests=build/release/src/burnish/burnish_tests
+[ ! -x "$tests" ] || "$tests" --gtest_brief=1 --gtest_filter='GlOpenPbr.*'
 exec "$venv/bin/python" -m pytest -q

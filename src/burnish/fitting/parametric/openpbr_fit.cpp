@@ -15,8 +15,7 @@ namespace burnish {
 
 namespace {
 
-// The dimmed pictures: what the exposure makes of a pixel, and the error's weight.
-const double kDim = std::pow(1.0 / 32, PictureLoss::kInverseGamma);
+// Of the pictures at 1/32 of the exposure.
 constexpr double kDimmedShare = 0.05;
 
 // Relative errors, of ln(f + floor): at most a tenth of the whole where pictures differ visibly, but what tells where
@@ -217,7 +216,9 @@ class Cost {
     return {along, std::sqrt(std::max(squares - along * along, 0.0)), length};
   }
 
-  static inline const std::array<double, 2> kShares = {1, std::sqrt(kDimmedShare)}, kDims = {1, kDim};
+  /// Of both exposures: the root of the error's weight, and what the exposure makes of a pixel.
+  static inline const std::array<double, 2> kShares = {1, std::sqrt(kDimmedShare)},
+                                            kDims = {1, std::pow(1.0 / 32, PictureLoss::kInverseGamma)};
 
   const PicturePairs& pairs_;
   const OpenPbrParameters fixed_;
@@ -339,7 +340,7 @@ OpenPbrParameters tidied(OpenPbrParameters p) {
 }
 
 OpenPbrFit to_fit(const PicturePairs& pairs, const Trial& trial, double first_cost) {
-  OpenPbrFit fit{.parameters = rounded(tidied(trial.parameters)), .summary = {}};
+  OpenPbrFit fit{.parameters = rounded(tidied(rounded(trial.parameters))), .summary = {}};
   std::vector<double> shown;
   pairs.show(OpenPbr(fit.parameters), shown);
   fit.summary = {.error_before = std::sqrt(2 * first_cost),
