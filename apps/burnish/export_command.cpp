@@ -23,6 +23,7 @@ namespace {
 struct ExportArguments {
   std::string model, folder, name, power, environment;
   std::vector<std::string> to;
+  int cells = ExportOptions{}.cells;
   bool exact = false, plain = false, mips = false, json = false;
 };
 
@@ -35,7 +36,8 @@ ExportOptions options_of(const ExportArguments& arguments) {
                         .name = arguments.name,
                         .exact = arguments.exact,
                         .mips = arguments.mips,
-                        .compressed = !arguments.plain};
+                        .compressed = !arguments.plain,
+                        .cells = arguments.cells};
   for (const std::string& to : arguments.to) options.to.push_back(export_target(to));
   return options;
 }
@@ -124,6 +126,9 @@ void add_export_command(CLI::App& app) {
       "of phong and blinn_phong: how the power is computed, see `burnish specular list`; by default the "
       "cheapest that is never one of 255 levels off");
   add_environment_argument(*verb, arguments->environment);
+  verb->add_option("--cells", arguments->cells, "of mdl: cells along each polar angle of the measurement")
+      ->check(CLI::Range(2, 1000))
+      ->capture_default_str();
   verb->add_flag("--exact", arguments->exact, "shaders that weigh texels themselves, in floats");
   verb->add_flag("--mips", arguments->mips, "KTX2 with levels: averages over the directions of a texel");
   verb->add_flag("--plain", arguments->plain, "textures that are not compressed");

@@ -41,12 +41,16 @@ nb::dict handed_out(const ExportedFiles& exported, const std::optional<std::file
 
 nb::dict exported_model(const OpenedModel& model, const Names& to,
                         const std::optional<std::filesystem::path>& folder, const std::string& name,
-                        bool exact, bool mips, bool compressed,
+                        bool exact, bool mips, bool compressed, int cells,
                         const std::optional<std::string>& environment) {
   const ExportedFiles exported = [&] {
     const nb::gil_scoped_release unlocked;
-    ExportOptions options{
-        .to = targets_of(to), .name = name, .exact = exact, .mips = mips, .compressed = compressed};
+    ExportOptions options{.to = targets_of(to),
+                          .name = name,
+                          .exact = exact,
+                          .mips = mips,
+                          .compressed = compressed,
+                          .cells = cells};
     if (environment) options.environment = open_environment(*environment);
     return export_model(model.brdf(), options);
   }();
@@ -69,10 +73,10 @@ void bind_exports(nb::module_& m) {
   m.def("export", &exported_model, nb::arg("model"), nb::arg("to"), nb::arg("folder") = nb::none(),
         nb::kw_only(), nb::arg("name") = defaults.name, nb::arg("exact") = defaults.exact,
         nb::arg("mips") = defaults.mips, nb::arg("compressed") = defaults.compressed,
-        nb::arg("environment") = nb::none(),
+        nb::arg("cells") = defaults.cells, nb::arg("environment") = nb::none(),
         nb::sig("def export(model: Model, to: str | list[str], folder: str | os.PathLike | None = None, *, "
                 "name: str = 'brdf', exact: bool = False, mips: bool = False, compressed: bool = True, "
-                "environment: str | None = None) -> dict[str, bytes]"),
+                "cells: int = 90, environment: str | None = None) -> dict[str, bytes]"),
         "What `burnish export` writes, by the files' names, the last one the manifest NAME.json; into the "
         "folder\n"
         "too where one is given.\n\n"
@@ -82,7 +86,8 @@ void bind_exports(nb::module_& m) {
         "along. "
         "name: of files\nand functions. exact: shaders weigh texels themselves, in floats. mips: KTX2 with "
         "levels. "
-        "compressed: KTX2\nwith Zstandard. environment: \"sun\", \"studio\" or an OpenEXR picture of all "
+        "compressed: KTX2\nwith Zstandard. cells: of \"mdl\", along each polar angle. environment: \"sun\", "
+        "\"studio\" or an OpenEXR picture of all "
         "directions, "
         "whose light glsl,\nglsl_es and html show.");
   m.def("export", &exported_analytic, nb::arg("spec"), nb::arg("to"), nb::arg("folder") = nb::none(),

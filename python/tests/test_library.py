@@ -95,10 +95,14 @@ def test_shaders_and_textures_are_the_command_lines(language, extension, cli, mo
 
 def test_exports_are_the_command_lines(cli, model, tmp_path):
     burnish.write_model(tmp_path / "model.exr", model)
-    options = [word for to in ("three", "gltf", "glsl", "html") for word in ("--to", to)]
+    options = [word for to in ("three", "babylon", "materialx", "glsl", "html") for word in ("--to", to)]
     cli("export", tmp_path / "model.exr", *options, "--environment", "sun", "-o", tmp_path / "cli")
     files = burnish.export(
-        model, ["three", "gltf", "glsl", "html"], tmp_path / "python", name="model", environment="sun"
+        model,
+        ["three", "babylon", "materialx", "glsl", "html"],
+        tmp_path / "python",
+        name="model",
+        environment="sun",
     )
     assert list(files)[-1] == "model.json"
     for name, content in files.items():
