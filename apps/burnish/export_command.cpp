@@ -51,7 +51,8 @@ ExportedFiles exported_model(const ExportArguments& arguments) {
   ExportOptions options = options_of(arguments);
   if (!arguments.environment.empty() && std::ranges::none_of(options.to, shows_environment))
     throw CLI::ValidationError("--environment: expected --to glsl, glsl_es or html with it, found others");
-  if (options.name.empty()) options.name = export_name(std::filesystem::path(arguments.model).stem().string());
+  if (options.name.empty())
+    options.name = export_name(std::filesystem::path(arguments.model).stem().string());
   const FactoredBrdf brdf = parse_model(read_file(arguments.model)).brdf;
   options.environment = environment_of(arguments.environment);
   return export_model(brdf, options);
