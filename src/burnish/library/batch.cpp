@@ -94,6 +94,7 @@ class Batch::State {
   std::optional<MaterialRecord> settled(const LibraryEntry& entry, const std::string& key);
   MaterialRecord fitted(const LibraryEntry& entry, const std::string& key);
   void stage(FittedMaterial& made);
+  void place(const RecordedFile& file);
   void give(std::size_t index, MaterialRecord record);
   void wait_for_memory(std::uint64_t bytes, int& others);
   void share_threads();
@@ -261,8 +262,7 @@ std::optional<MaterialRecord> Batch::State::settled(const LibraryEntry& entry, c
   for (const RecordedFile& file : record->files) {
     if (digest_of_file(options_.folder / file.path) == file.sha256) continue;
     if (digest_of_file(options_.folder / file.staged) != file.sha256) return std::nullopt;
-    make_folder((options_.folder / file.path).parent_path());
-    rename_durably(options_.folder / file.staged, options_.folder / file.path);
+    place(file);
   }
   record->argument = entry.argument;
   record->earlier = true;
@@ -306,9 +306,17 @@ void Batch::State::stage(FittedMaterial& made) {
     write_durably(options_.folder / record.files[k].staged, made.bytes[k]);
   }
   journal_.append(record);
-  for (const RecordedFile& file : record.files) {
-    if (file.path.starts_with("exports/")) make_folder((options_.folder / file.path).parent_path());
-    rename_durably(options_.folder / file.staged, options_.folder / file.path);
+  for (const RecordedFile& file : record.files) place(file);
+}
+
+// Gives a file its name. Another process that read the journal may do so in the same moment.
+void Batch::State::place(const RecordedFile& file) {
+  const fs::path path = options_.folder / file.path, staged = options_.folder / file.staged;
+  if (fs::exists(staged)) make_folder(path.parent_path());  // not in a folder that is gone
+  try {
+    rename_durably(staged, path);
+  } catch (const Error&) {
+    if (digest_of_file(path) != file.sha256) throw;
   }
 }
 
