@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", burnish::cli::version_text);
   burnish::cli::add_info_command(app);
   burnish::cli::add_fit_command(app);
+  burnish::cli::add_fit_surface_command(app);
   burnish::cli::add_eval_command(app);
   burnish::cli::add_compare_command(app);
   burnish::cli::add_measure_command(app);

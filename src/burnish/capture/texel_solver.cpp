@@ -1,0 +1,484 @@
+#include <algorithm>
+#include <cmath>
+
+#include <burnish/capture/texel_solver.h>
+#include <burnish/math/parallel.h>
+
+namespace burnish {
+
+namespace {
+
+constexpr std::size_t kBlock = 32;  // texels side by side
+constexpr std::size_t kChannels = 3;
+constexpr double kRidge = 1e-6;  // of the mean diagonal
+// A pixel's error counts as that of x^(1/2), x = exposure f cos; below this x as if it were this.
+constexpr float kFloor = 0.004f;
+// Beyond white what is lost shows in no picture: the slope of a value above falls as its square.
+constexpr float kWhite = 1.0f;
+// Lobes may run away where nothing holds them: squares of their values stay finite.
+constexpr float kMostValue = 1e4f;
+// Errors of the root at which a pixel counts a quarter, pass by pass.
+constexpr std::array<float, 3> kTrustedError{1e6f, 0.2f, 0.08f};
+// Shadows are darker than a model: what is brighter is rather a highlight that lobes lack yet, trusted four times as far.
+constexpr float kBrighter = 1.0f / 16;
+constexpr float kNormalDelta = 0.01f;  // of finite differences
+constexpr double kMostSlope = 0.95;    // length of a normal's x and y
+constexpr double kMostStep = 0.15;
+constexpr double kDamping = 1e-3;
+constexpr double kGrey = 1 / 2.2;
+
+Vec3 normal_of(const float* xy) noexcept {
+  const double x = static_cast<double>(xy[0]), y = static_cast<double>(xy[1]);
+  return {x, y, std::sqrt(std::max(0.0, 1 - x * x - y * y))};
+}
+
+}  // namespace
+
+void solve_nonnegative(std::span<const double> a, std::span<const double> b, std::span<double> w) noexcept {
+  const std::size_t n = b.size();
+  constexpr std::size_t kMost = kMaxSurfaceLobes;
+  std::array<bool, kMost> free{};
+  std::array<double, kMost> solution{};
+  std::array<std::array<double, kMost>, kMost> factor;
+  std::array<std::size_t, kMost> member;
+  std::ranges::fill(w, 0.0);
+  for (const double value : b)
+    if (!std::isfinite(value)) return;
+  for (const double value : a)
+    if (!std::isfinite(value)) return;
+
+  // the least for the free unknowns, by Cholesky
+  const auto solve_free = [&] {
+    std::size_t m = 0;
+    for (std::size_t i = 0; i < n; ++i)
+      if (free[i]) member[m++] = i;
+    for (std::size_t i = 0; i < m; ++i) {
+      double rest = b[member[i]];
+      for (std::size_t j = 0; j <= i; ++j) {
+        double sum = a[member[i] * n + member[j]];
+        for (std::size_t k = 0; k < j; ++k) sum -= factor[i][k] * factor[j][k];
+        factor[i][j] = i == j ? std::sqrt(std::max(sum, 1e-300)) : sum / factor[j][j];
+      }
+      for (std::size_t k = 0; k < i; ++k) rest -= factor[i][k] * solution[member[k]];
+      solution[member[i]] = rest / factor[i][i];
+    }
+    for (std::size_t i = m; i-- > 0;) {
+      double rest = solution[member[i]];
+      for (std::size_t k = i + 1; k < m; ++k) rest -= factor[k][i] * solution[member[k]];
+      solution[member[i]] = rest / factor[i][i];
+    }
+  };
+
+  std::size_t changes = 0;
+  while (changes < 3 * n) {
+    // the unknown that the sum falls by fastest
+    std::size_t best = n;
+    double steepest = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (free[i]) continue;
+      double slope = b[i];
+      for (std::size_t j = 0; j < n; ++j) slope -= a[i * n + j] * w[j];
+      const double scaled = slope / std::sqrt(std::max(a[i * n + i], 1e-300));
+      constexpr double kSmallest = 1e-12;
+      if (scaled > steepest && slope > kSmallest * std::abs(b[i])) {
+        steepest = scaled;
+        best = i;
+      }
+    }
+    if (best == n) return;
+    free[best] = true;
+    // as far as all stay positive
+    for (; changes < 3 * n;) {
+      ++changes;
+      solve_free();
+      double step = 1;
+      std::size_t blocking = n;
+      for (std::size_t i = 0; i < n; ++i)
+        if (free[i] && solution[i] <= 0) {
+          const double share = w[i] > solution[i] ? w[i] / (w[i] - solution[i]) : 0;
+          if (share < step || blocking == n) {
+            step = share;
+            blocking = i;
+          }
+        }
+      for (std::size_t i = 0; i < n; ++i)
+        if (free[i]) w[i] += step * (solution[i] - w[i]);
+      if (blocking == n) break;
+      free[blocking] = false;
+      w[blocking] = 0;
+    }
+  }
+}
+
+TexelSamples samples_of(CaptureRows rows) {
+  TexelSamples samples{.texels = {},
+                       .pictures = rows.pictures,
+                       .values = std::move(rows.values),
+                       .states = std::move(rows.states)};
+  for (int y = 0; y < rows.rows; ++y)
+    for (int x = 0; x < rows.width; ++x) samples.texels.push_back({x, rows.first_row + y});
+  return samples;
+}
+
+TexelSolver::TexelSolver(const FactoredBrdf& lobes, const CaptureForm& form, double exposure)
+    : evaluator_(lobes), form_(form), exposure_(exposure) {}
+
+/// Some texels side by side, and room for what is computed of them.
+class TexelSolver::Block {
+ public:
+  Block(const TexelSolver& solver, const TexelSamples& samples, bool held_out)
+      : solver_(solver),
+        samples_(samples),
+        lobes_(solver.lobes()),
+        exposure_(static_cast<float>(solver.exposure_)) {
+    const auto& pictures = solver.form_.pictures;
+    for (std::size_t p = 0; p < pictures.size(); ++p)
+      if (pictures[p].held_out == held_out) pictures_.push_back(p);
+    model_.resize(pictures_.size() * lobes_ * kChannels * kBlock);
+    trust_.resize(pictures_.size() * kBlock, 1);
+    weights_.resize(lobes_ * kBlock);
+  }
+
+  std::span<const std::size_t> pictures() const noexcept { return pictures_; }
+  std::size_t count() const noexcept { return count_; }
+
+  void begin(std::size_t first, std::size_t count, const float* normals) {
+    first_ = first;
+    const bool same_places = solver_.form_.directional() && !normals;
+    const bool known = same_places && evaluated_;  // all blocks see the same directions
+    count_ = count;
+    std::ranges::fill(trust_, 1.0f);
+    if (known) return;
+    evaluate(normals, 0, 0, model_);
+    evaluated_ = true;
+  }
+
+  /// f cos(theta_i) of the lobes under normals moved by (dx, dy), [picture][lobe][channel][texel].
+  void evaluate(const float* normals, float dx, float dy, std::vector<float>& to) const {
+    std::array<std::array<float, kBlock>, 6> w;
+    std::vector<float> f(lobes_ * kChannels * kBlock);
+    std::array<ShadingFrame, kBlock> frames;
+    std::array<Vec3, kBlock> points;
+    const float most = kMostValue / exposure_;
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      const std::size_t t = first_ + std::min(i, count_ - 1);
+      points[i] = solver_.form_.point(samples_.texels[t][0], samples_.texels[t][1]);
+      if (!normals) continue;
+      const std::array<float, 2> xy{normals[2 * t] + dx, normals[2 * t + 1] + dy};
+      frames[i] = frame_about(normalize(normal_of(xy.data())), {1, 0, 0});
+    }
+    for (std::size_t k = 0; k < pictures_.size(); ++k) {
+      const CapturePicture& picture = solver_.form_.pictures[pictures_[k]];
+      for (std::size_t i = 0; i < kBlock; ++i) {
+        const Vec3 light = frames[i].local(picture.light.seen_from(points[i])),
+                   view = frames[i].local(picture.view.seen_from(points[i]));
+        w[0][i] = static_cast<float>(light.x);
+        w[1][i] = static_cast<float>(light.y);
+        w[2][i] = static_cast<float>(light.z);
+        w[3][i] = static_cast<float>(view.x);
+        w[4][i] = static_cast<float>(view.y);
+        w[5][i] = static_cast<float>(view.z);
+      }
+      solver_.evaluator_.eval(DirectionSpans{w[0], w[1], w[2], w[3], w[4], w[5]}, f);
+      float* const out = &to[k * lobes_ * kChannels * kBlock];
+      for (std::size_t r = 0; r < lobes_ * kChannels; ++r)
+        for (std::size_t i = 0; i < kBlock; ++i)
+          out[r * kBlock + i] = std::min(f[r * kBlock + i] * w[2][i], most);
+    }
+  }
+
+  /// Least squares for the weights, each pass trusting pixels by the errors that the one before left.
+  void fit_weights(int passes, int first_pass) {
+    for (int pass = 0; pass < passes; ++pass) {
+      gram(pass + first_pass);
+      std::array<double, kMaxSurfaceLobes * kMaxSurfaceLobes> a;
+      std::array<double, kMaxSurfaceLobes> b, w;
+      for (std::size_t i = 0; i < count_; ++i) {
+        double trace = 0;
+        for (std::size_t k = 0, at = 0; k < lobes_; ++k) {
+          for (std::size_t l = 0; l <= k; ++l, ++at)
+            a[k * lobes_ + l] = a[l * lobes_ + k] = static_cast<double>(matrix_[at][i]);
+          b[k] = static_cast<double>(vector_[k][i]);
+          trace += a[k * lobes_ + k];
+        }
+        for (std::size_t k = 0; k < lobes_; ++k)
+          a[k * lobes_ + k] += kRidge * trace / static_cast<double>(lobes_) + 1e-30;
+        solve_nonnegative(std::span(a).first(lobes_ * lobes_), std::span(b).first(lobes_),
+                          std::span(w).first(lobes_));
+        for (std::size_t k = 0; k < lobes_; ++k) weights_[k * kBlock + i] = static_cast<float>(w[k]);
+      }
+    }
+  }
+
+  /// A damped step of every normal with weights as they are; returns whether any moved.
+  void step_normals(float* normals) {
+    if (slopes_[0].empty())
+      for (auto& slope : slopes_) slope.resize(model_.size());
+    evaluate(normals, kNormalDelta, 0, slopes_[0]);
+    evaluate(normals, 0, kNormalDelta, slopes_[1]);
+    std::array<std::array<double, kBlock>, 5> sums{};  // xx, xy, yy and the right side
+    for (std::size_t k = 0; k < pictures_.size(); ++k)
+      for (std::size_t c = 0; c < kChannels; ++c) {
+        const Terms terms = terms_of(k, c, static_cast<int>(kTrustedError.size()) - 1);
+        for (std::size_t i = 0; i < kBlock; ++i) {
+          float sx = 0, sy = 0;
+          for (std::size_t j = 0; j < lobes_; ++j) {
+            const std::size_t at = ((k * lobes_ + j) * kChannels + c) * kBlock + i;
+            const float weight = weights_[j * kBlock + i];
+            sx += weight * (slopes_[0][at] - model_[at]);
+            sy += weight * (slopes_[1][at] - model_[at]);
+          }
+          const float omega = terms.omega[i], rest = terms.value[i] - terms.model[i];
+          sums[0][i] += static_cast<double>(omega * sx * sx);
+          sums[1][i] += static_cast<double>(omega * sx * sy);
+          sums[2][i] += static_cast<double>(omega * sy * sy);
+          sums[3][i] += static_cast<double>(omega * sx * rest);
+          sums[4][i] += static_cast<double>(omega * sy * rest);
+        }
+      }
+    for (std::size_t i = 0; i < count_; ++i) {
+      const double damp = kDamping * (sums[0][i] + sums[2][i]) + 1e-30;
+      const double xx = sums[0][i] + damp, yy = sums[2][i] + damp, xy = sums[1][i];
+      const double over = 1 / (xx * yy - xy * xy);
+      double x = over * (yy * sums[3][i] - xy * sums[4][i]) * static_cast<double>(kNormalDelta);
+      double y = over * (xx * sums[4][i] - xy * sums[3][i]) * static_cast<double>(kNormalDelta);
+      if (!std::isfinite(x) || !std::isfinite(y)) continue;
+      const double step = std::min(1.0, kMostStep / std::max(std::hypot(x, y), 1e-12));
+      float* const n = normals + 2 * (first_ + i);
+      x = static_cast<double>(n[0]) + step * x;
+      y = static_cast<double>(n[1]) + step * y;
+      const double within = std::min(1.0, kMostSlope / std::max(std::hypot(x, y), 1e-12));
+      n[0] = static_cast<float>(within * x);
+      n[1] = static_cast<float>(within * y);
+    }
+    evaluate(normals, 0, 0, model_);
+  }
+
+  /// What is left of the pixels of each texel, as weights count it.
+  std::array<double, kBlock> costs() const {
+    std::array<double, kBlock> sums{};
+    for (std::size_t k = 0; k < pictures_.size(); ++k)
+      for (std::size_t c = 0; c < kChannels; ++c) {
+        const Terms terms = terms_of(k, c, 0);
+        constexpr float kReach = 0.08f * 0.08f;
+        for (std::size_t i = 0; i < kBlock; ++i) {
+          const float rest = terms.value[i] - terms.model[i], square = terms.omega[i] * rest * rest;
+          sums[i] += static_cast<double>(square / (1 + square / kReach));
+        }
+      }
+    return sums;
+  }
+
+  void load_weights(const float* weights) {
+    for (std::size_t i = 0; i < count_; ++i)
+      for (std::size_t k = 0; k < lobes_; ++k) weights_[k * kBlock + i] = weights[(first_ + i) * lobes_ + k];
+  }
+  float weight(std::size_t i, std::size_t lobe) const noexcept { return weights_[lobe * kBlock + i]; }
+  void restore(std::size_t i, std::span<const float> weights) {
+    for (std::size_t k = 0; k < lobes_; ++k) weights_[k * kBlock + i] = weights[k];
+  }
+  float trust(std::size_t k, std::size_t i) const noexcept { return trust_[k * kBlock + i]; }
+  /// The model's f cos(theta_i).
+  float value(std::size_t k, std::size_t c, std::size_t i) const noexcept {
+    float sum = 0;
+    for (std::size_t j = 0; j < lobes_; ++j)
+      sum += weights_[j * kBlock + i] * model_[((k * lobes_ + j) * kChannels + c) * kBlock + i];
+    return sum;
+  }
+  std::size_t pixel(std::size_t k, std::size_t i) const noexcept {
+    return pictures_[k] * samples_.size() + first_ + std::min(i, count_ - 1);
+  }
+
+  /// Trust in pixels by the errors that are left.
+  void find_trust(int pass) {
+    for (std::size_t k = 0; k < pictures_.size(); ++k) {
+      std::array<float, kBlock> worst{};
+      std::array<bool, kBlock> there{};
+      for (std::size_t c = 0; c < kChannels; ++c) {
+        const Terms terms = terms_of(k, c, 0);
+        for (std::size_t i = 0; i < kBlock; ++i) {
+          const float rest = terms.value[i] - terms.model[i];
+          worst[i] = std::max(worst[i], (rest < 0 ? 1 : kBrighter) * terms.omega[i] * rest * rest);
+          there[i] = there[i] || terms.omega[i] > 0;
+        }
+      }
+      const float reach = kTrustedError[static_cast<std::size_t>(pass)];
+      for (std::size_t i = 0; i < kBlock; ++i) {
+        const float share = 1 + worst[i] / (reach * reach);
+        trust_[k * kBlock + i] = there[i] ? 1 / (share * share) : 0;
+      }
+    }
+  }
+
+ private:
+  struct Terms {
+    std::array<float, kBlock> value, model, omega;  // of one picture and channel
+  };
+  // omega: the square of d (x^(1/2)) / d value, x = exposure value, of the mean of measured and modelled value; 0 of
+  // what does not count.
+  Terms terms_of(std::size_t k, std::size_t c, int pass) const {
+    Terms terms;
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      const std::size_t pixel = this->pixel(k, i);
+      terms.value[i] = samples_.values[pixel * kChannels + c];
+      const PixelState state = samples_.states[pixel];
+      terms.omega[i] = state == PixelState::there || state == PixelState::clipped ? 1.0f : 0.0f;
+      terms.model[i] = value(k, c, i);
+      if (state == PixelState::clipped && (pass == 0 || terms.model[i] > terms.value[i])) terms.omega[i] = 0;
+    }
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      const float mean = pass == 0 ? terms.value[i] : 0.5f * (terms.value[i] + terms.model[i]);
+      const float x = std::max(exposure_ * mean, kFloor);
+      terms.omega[i] *= exposure_ * exposure_ / (4 * x * std::max(1.0f, x * x / (kWhite * kWhite)));
+    }
+    return terms;
+  }
+
+  void gram(int pass) {
+    const int step = std::min(pass, static_cast<int>(kTrustedError.size()) - 1);
+    if (pass > 0) find_trust(step);
+    for (auto& row : matrix_) row.fill(0);
+    for (auto& row : vector_) row.fill(0);
+    for (std::size_t k = 0; k < pictures_.size(); ++k)
+      for (std::size_t c = 0; c < kChannels; ++c) {
+        Terms terms = terms_of(k, c, pass);
+        const float* const trust = &trust_[k * kBlock];
+        for (std::size_t i = 0; i < kBlock; ++i) terms.omega[i] *= trust[i];
+        const float* const model = &model_[(k * lobes_ * kChannels + c) * kBlock];
+        for (std::size_t j = 0, at = 0; j < lobes_; ++j) {
+          std::array<float, kBlock> scaled;
+          const float* const row = model + j * kChannels * kBlock;
+          for (std::size_t i = 0; i < kBlock; ++i) scaled[i] = terms.omega[i] * row[i];
+          for (std::size_t i = 0; i < kBlock; ++i) vector_[j][i] += scaled[i] * terms.value[i];
+          for (std::size_t l = 0; l <= j; ++l, ++at) {
+            const float* const other = model + l * kChannels * kBlock;
+            for (std::size_t i = 0; i < kBlock; ++i) matrix_[at][i] += scaled[i] * other[i];
+          }
+        }
+      }
+  }
+
+  const TexelSolver& solver_;
+  const TexelSamples& samples_;
+  std::size_t lobes_, first_ = 0, count_ = 0;
+  float exposure_;
+  bool evaluated_ = false;
+  std::vector<std::size_t> pictures_;
+  std::vector<float> model_, trust_, weights_;
+  std::array<std::vector<float>, 2> slopes_;
+  std::array<std::array<float, kBlock>, kMaxSurfaceLobes*(kMaxSurfaceLobes + 1) / 2> matrix_;
+  std::array<std::array<float, kBlock>, kMaxSurfaceLobes> vector_;
+};
+
+namespace {
+
+constexpr std::size_t kBlocksTogether = 8;  // of one thread, sharing what is allocated
+
+}  // namespace
+
+TexelFits TexelSolver::solve(const TexelSamples& samples, std::vector<float> normals,
+                             const Options& options) const {
+  TexelFits fits{.weights = std::vector<float>(samples.size() * lobes()),
+                 .normals = std::move(normals),
+                 .trust = {},
+                 .costs = {}};
+  if (options.normals && fits.normals.empty()) fits.normals.resize(2 * samples.size());
+  if (options.trust) fits.trust.resize(samples.states.size());
+  if (options.costs) fits.costs.resize(samples.size());
+  float* const xy = fits.normals.empty() ? nullptr : fits.normals.data();
+  for_each_chunk(samples.size(), kBlock * kBlocksTogether,
+                 [&](std::size_t, std::size_t begin, std::size_t end) {
+                   const auto block = std::make_unique<Block>(*this, samples, false);
+                   for (std::size_t first = begin; first < end; first += kBlock) {
+                     const std::size_t count = std::min(kBlock, end - first);
+                     block->begin(first, count, xy);
+                     block->fit_weights(options.normals ? 1 : options.passes, 0);
+                     if (options.normals) {
+                       // steps that lead up are taken back, texel by texel
+                       std::vector<float> best_weights(count * lobes()), best_normals(2 * count);
+                       std::array<double, kBlock> best;
+                       best.fill(INFINITY);
+                       for (int step = 0; step <= options.normal_steps; ++step) {
+                         if (step > 0) {
+                           block->step_normals(xy);
+                           block->fit_weights(1, std::min(step, 2));
+                         }
+                         const std::array<double, kBlock> costs = block->costs();
+                         for (std::size_t i = 0; i < count; ++i) {
+                           if (!(costs[i] < best[i])) continue;
+                           best[i] = costs[i];
+                           for (std::size_t j = 0; j < lobes(); ++j)
+                             best_weights[i * lobes() + j] = block->weight(i, j);
+                           std::copy_n(xy + 2 * (first + i), 2, &best_normals[2 * i]);
+                         }
+                       }
+                       for (std::size_t i = 0; i < count; ++i) {
+                         block->restore(i, std::span(best_weights).subspan(i * lobes(), lobes()));
+                         std::copy_n(&best_normals[2 * i], 2, xy + 2 * (first + i));
+                       }
+                       block->begin(first, count, xy);
+                       block->fit_weights(options.passes, 1);
+                     }
+                     for (std::size_t i = 0; i < count; ++i)
+                       for (std::size_t j = 0; j < lobes(); ++j)
+                         fits.weights[(first + i) * lobes() + j] = block->weight(i, j);
+                     if (options.costs)
+                       std::ranges::copy_n(block->costs().begin(), static_cast<std::ptrdiff_t>(count),
+                                           &fits.costs[first]);
+                     if (!options.trust) continue;
+                     block->find_trust(static_cast<int>(kTrustedError.size()) - 1);
+                     for (std::size_t k = 0; k < block->pictures().size(); ++k)
+                       for (std::size_t i = 0; i < count; ++i)
+                         fits.trust[block->pixel(k, i)] = block->trust(k, i);
+                   }
+                 });
+  return fits;
+}
+
+std::vector<TexelSolver::PictureError> TexelSolver::errors(const TexelSamples& samples,
+                                                           const TexelFits& fits) const {
+  const float* const xy = fits.normals.empty() ? nullptr : fits.normals.data();
+  const std::size_t chunk = kBlock * kBlocksTogether;
+  std::vector<std::vector<PictureError>> partial(chunk_count(samples.size(), chunk));
+  const auto seen_as = [&](float value) {
+    return std::pow(std::clamp(exposure_ * static_cast<double>(value), 0.0, 1.0), kGrey);
+  };
+  for_each_chunk(samples.size(), chunk, [&](std::size_t number, std::size_t begin, std::size_t end) {
+    std::vector<PictureError>& errors = partial[number];
+    errors.resize(samples.pictures);
+    for (const bool held_out : {false, true}) {
+      const auto block = std::make_unique<Block>(*this, samples, held_out);
+      for (std::size_t first = begin; first < end; first += kBlock) {
+        const std::size_t count = std::min(kBlock, end - first);
+        block->begin(first, count, xy);
+        block->load_weights(fits.weights.data());
+        for (std::size_t k = 0; k < block->pictures().size(); ++k) {
+          PictureError& error = errors[block->pictures()[k]];
+          for (std::size_t i = 0; i < count; ++i) {
+            const std::size_t pixel = block->pixel(k, i);
+            const PixelState state = samples.states[pixel];
+            if (state == PixelState::missing) continue;
+            double square = 0;
+            for (std::size_t c = 0; c < kChannels; ++c) {
+              const double off =
+                  seen_as(samples.values[pixel * kChannels + c]) - seen_as(block->value(k, c, i));
+              square += off * off;
+            }
+            const auto units = static_cast<std::uint64_t>(std::llround(square / PictureError::kUnit));
+            error.all += units;
+            error.all_count += kChannels;
+            if (state == PixelState::masked) continue;
+            error.seen += units;
+            error.seen_count += kChannels;
+          }
+        }
+      }
+    }
+  });
+  std::vector<PictureError> sums(samples.pictures);
+  for (const auto& part : partial)
+    for (std::size_t p = 0; p < sums.size(); ++p) sums[p] += part[p];
+  return sums;
+}
+
+}  // namespace burnish
