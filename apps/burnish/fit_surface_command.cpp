@@ -5,9 +5,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <burnish/capture/surface_baselines.h>
 #include <burnish/capture/surface_fit.h>
+#include <burnish/capture/surface_picture.h>
 #include <burnish/factors/model_file.h>
 #include <burnish/file.h>
+#include <burnish/image/png.h>
 #include <burnish/math/parallel.h>
 
 #include "commands.h"
@@ -18,10 +21,10 @@ namespace burnish::cli {
 namespace {
 
 struct FitSurfaceArguments {
-  std::string capture, out, book, normals = "auto";
+  std::string capture, out, book, picture, normals = "auto";
   SurfaceFitOptions options;
   int threads = 0;
-  bool resume = false, json = false;
+  bool resume = false, compare = false, json = false;
 };
 
 // One bar a stage; nothing where standard error is no terminal.
@@ -43,6 +46,15 @@ std::string text_of(const PictureScore& score) {
                          : "");
 }
 
+// Of the first picture that was held out, or the first.
+void write_comparison(const FitSurfaceArguments& arguments, const SurfaceFit& fit) {
+  Capture capture(arguments.capture);
+  const auto& pictures = capture.form().pictures;
+  const auto held_out = std::ranges::find(pictures, true, &CapturePicture::held_out);
+  const auto number = held_out == pictures.end() ? 0 : static_cast<std::size_t>(held_out - pictures.begin());
+  write_png(arguments.picture, surface_picture(capture, fit.surface.brdf, number, fit.report.exposure));
+}
+
 void fit_surface(FitSurfaceArguments& arguments) {
   const ThreadLimit limit(arguments.threads);
   SurfaceFitOptions& options = arguments.options;
@@ -58,11 +70,19 @@ void fit_surface(FitSurfaceArguments& arguments) {
   std::filesystem::remove(options.checkpoint);
 
   const SurfaceReport& report = fit.report;
+  if (!arguments.picture.empty()) write_comparison(arguments, fit);
+  std::vector<BaselineScore> others;
+  if (arguments.compare) others = score_surface_baselines(Capture(arguments.capture), fit, options);
   if (arguments.json) {
     auto json = nlohmann::ordered_json::parse(report_json(report));
     json["output"] = arguments.out;
     json["seconds"] = report.seconds;
     json["weight_seconds"] = report.weight_seconds;
+    for (const BaselineScore& other : others)
+      json["methods"].push_back(
+          {{"method", other.method},
+           {"bytes_a_texel", other.bytes_a_texel},
+           {"held_out_psnr", other.held_out ? nlohmann::ordered_json(*other.held_out) : nullptr}});
     fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
     return;
   }
@@ -85,6 +105,7 @@ void add_fit_surface_command(CLI::App& app) {
   verb->footer(
       "Examples: burnish fit-surface capture/ -o wall.burnish\n"
       "          burnish fit-surface capture/ -o wall.burnish --lobes 4 --normals estimate\n"
+      "          burnish fit-surface capture/ -o wall.burnish --lobes 4 --compare\n"
       "          burnish fit-surface capture/ -o wall.burnish --book library.burnish");
   auto arguments = std::make_shared<FitSurfaceArguments>();
   SurfaceFitOptions& options = arguments->options;

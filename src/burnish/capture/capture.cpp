@@ -34,7 +34,10 @@ Station parse_station(const JsonMember& member) {
   const JsonMember direction = member.at("direction");
   const Vec3 found = direction.vector();
   if (std::abs(length(found) - 1) > kUnitTolerance) direction.fail("a vector of length 1");
-  const Station station{.is_direction = true, .at = normalize(found)};
+  // what is a unit vector but for rounding is kept to the bit
+  constexpr double kRounding = 1e-12;
+  const Station station{.is_direction = true,
+                        .at = std::abs(length(found) - 1) < kRounding ? found : normalize(found)};
   if (!(station.at.z >= kLeastHeight)) direction.fail("a direction above the surface");
   return station;
 }

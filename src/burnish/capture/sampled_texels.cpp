@@ -2,10 +2,12 @@
 #include <cmath>
 #include <numeric>
 
+#include <Eigen/Dense>
 #include <fmt/format.h>
 
 #include <burnish/capture/sampled_texels.h>
 #include <burnish/math/angles.h>
+#include <burnish/math/parallel.h>
 #include <burnish/math/random.h>
 #include <burnish/metrics/sphere_images.h>
 
@@ -96,7 +98,7 @@ Groups grouped(const Points& points, std::size_t count) {
 }
 
 /// The groups that stand out: the farthest from 0, and each next the farthest from the span of those before
-/// (successive projections [AraujoSaldanhaGalvao2001]). Small groups are of odd texels.
+/// (successive projections [Araujo2001]). Small groups are of odd texels.
 std::vector<std::size_t> corners(const Groups& groups, std::size_t count, std::size_t least_size) {
   Points rest = groups.centres;
   std::vector<std::size_t> found;
@@ -187,6 +189,53 @@ double exposure_of(const TexelSamples& samples, const CaptureForm& form) {
   }
   const double white = values.empty() ? 0 : percentile(std::move(values), kWhitePercentile);
   return white > 0 ? 1 / white : 1;
+}
+
+std::vector<float> diffuse_normals(const TexelSamples& samples, const CaptureForm& form) {
+  constexpr int kPasses = 8;
+  constexpr double kRound = 0.02, kMostSlope = 0.866;  // the first of the mean value
+  std::vector<float> normals(2 * samples.size());
+  for_each_chunk(samples.size(), 64, [&](std::size_t, std::size_t begin, std::size_t end) {
+    struct Row {
+      Vec3 light;
+      double value;
+    };
+    std::vector<Row> rows;
+    for (std::size_t t = begin; t < end; ++t) {
+      const Vec3 point = form.point(samples.texels[t][0], samples.texels[t][1]);
+      rows.clear();
+      double mean = 0;
+      for (std::size_t p = 0; p < samples.pictures; ++p) {
+        const std::size_t pixel = p * samples.size() + t;
+        if (form.pictures[p].held_out || samples.states[pixel] != PixelState::there) continue;
+        const float* const rgb = &samples.values[3 * pixel];
+        rows.push_back(
+            {form.pictures[p].light.seen_from(point), static_cast<double>(rgb[0] + rgb[1] + rgb[2]) / 3});
+        mean += rows.back().value;
+      }
+      if (rows.size() < 4) continue;
+      mean /= static_cast<double>(rows.size());
+      // albedo times normal, by least squares reweighted towards least absolute errors
+      Eigen::Vector3d b(0, 0, mean);
+      for (int pass = 0; pass < kPasses; ++pass) {
+        Eigen::Matrix3d a = 1e-9 * Eigen::Matrix3d::Identity();
+        Eigen::Vector3d right = Eigen::Vector3d::Zero();
+        for (const Row& row : rows) {
+          const Eigen::Vector3d l(row.light.x, row.light.y, row.light.z);
+          const double rest = std::abs(row.value - std::max(0.0, b.dot(l)));
+          const double weight = pass == 0 ? 1 : 1 / (rest + kRound * mean);
+          a += weight * l * l.transpose();
+          right += weight * row.value * l;
+        }
+        b = a.ldlt().solve(right);
+      }
+      Vec3 n = normalize({b.x(), b.y(), std::max(b.z(), 1e-6 * mean)});
+      const double slope = std::hypot(n.x, n.y), within = std::min(1.0, kMostSlope / std::max(slope, 1e-12));
+      normals[2 * t] = static_cast<float>(within * n.x);
+      normals[2 * t + 1] = static_cast<float>(within * n.y);
+    }
+  });
+  return normals;
 }
 
 FactoredBrdf general_lobes() {

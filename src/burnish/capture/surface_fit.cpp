@@ -112,7 +112,8 @@ class SurfaceFitter {
     find_weights();
     SurfaceFit fit{.surface = surface(), .report = std::move(report_)};
     fit.report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    fit.surface.notes = report_json(fit.report);
+    fit.surface.notes =
+        nlohmann::json::parse(report_json(fit.report)).dump();  // as a file's reader orders it
     return fit;
   }
 
@@ -156,20 +157,17 @@ class SurfaceFitter {
     return normals;
   }
 
-  /// By what general lobes make of the texels.
+  /// As if texels were diffuse, then by what general lobes make of them.
   void start_normals() {
     if (normals_from_ != NormalsFrom::estimate) return;
     progress("normals", 0);
-    fits_.normals = first_normals(samples_);
-    progress("normals", 1);
-  }
-  std::vector<float> first_normals(const TexelSamples& samples) const {
-    constexpr int kSteps = 10;
+    constexpr int kSteps = 6;
     const TexelSolver solver(general_lobes(), capture_.form(), exposure_);
-    return solver
-        .solve(samples, std::vector<float>(2 * samples.size()),
-               {.passes = 1, .normals = true, .normal_steps = kSteps})
-        .normals;
+    fits_.normals = solver
+                        .solve(samples_, diffuse_normals(samples_, capture_.form()),
+                               {.passes = 1, .normals = true, .normal_steps = kSteps})
+                        .normals;
+    progress("normals", 1);
   }
 
   /// Each the log-linear fit to texels that look like one material.
@@ -412,7 +410,7 @@ class SurfaceFitter {
                      all_normals_.begin() + static_cast<std::ptrdiff_t>(first + 2 * tile.size()));
     }
     const bool estimate = normals_from_ == NormalsFrom::estimate;
-    if (estimate) normals = first_normals(tile);
+    if (estimate) normals = diffuse_normals(tile, capture_.form());
     return solver.solve(tile, std::move(normals), {.passes = 3, .normals = estimate, .normal_steps = 8});
   }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <burnish/capture/texel_lanes.h>
 #include <burnish/capture/texel_solver.h>
 #include <burnish/math/parallel.h>
 
@@ -8,13 +9,11 @@ namespace burnish {
 
 namespace {
 
-constexpr std::size_t kBlock = 32;  // texels side by side
+constexpr std::size_t kBlock = kTexelLanes;
 constexpr std::size_t kChannels = 3;
 constexpr double kRidge = 1e-6;  // of the mean diagonal
 // A pixel's error counts as that of x^(1/2), x = exposure f cos; below this x as if it were this.
 constexpr float kFloor = 0.004f;
-// Beyond white what is lost shows in no picture: the slope of a value above falls as its square.
-constexpr float kWhite = 1.0f;
 // Lobes may run away where nothing holds them: squares of their values stay finite.
 constexpr float kMostValue = 1e4f;
 // Errors of the root at which a pixel counts a quarter, pass by pass.
@@ -136,7 +135,9 @@ class TexelSolver::Block {
       if (pictures[p].held_out == held_out) pictures_.push_back(p);
     model_.resize(pictures_.size() * lobes_ * kChannels * kBlock);
     trust_.resize(pictures_.size() * kBlock, 1);
-    weights_.resize(lobes_ * kBlock);
+    weights_.resize(lobes_);
+    values_.resize(pictures_.size() * kChannels);
+    states_.resize(pictures_.size());
   }
 
   std::span<const std::size_t> pictures() const noexcept { return pictures_; }
@@ -148,6 +149,7 @@ class TexelSolver::Block {
     const bool known = same_places && evaluated_;  // all blocks see the same directions
     count_ = count;
     std::ranges::fill(trust_, 1.0f);
+    load();
     if (known) return;
     evaluate(normals, 0, 0, model_);
     evaluated_ = true;
@@ -205,7 +207,7 @@ class TexelSolver::Block {
           a[k * lobes_ + k] += kRidge * trace / static_cast<double>(lobes_) + 1e-30;
         solve_nonnegative(std::span(a).first(lobes_ * lobes_), std::span(b).first(lobes_),
                           std::span(w).first(lobes_));
-        for (std::size_t k = 0; k < lobes_; ++k) weights_[k * kBlock + i] = static_cast<float>(w[k]);
+        for (std::size_t k = 0; k < lobes_; ++k) weights_[k][i] = static_cast<float>(w[k]);
       }
     }
   }
@@ -224,7 +226,7 @@ class TexelSolver::Block {
           float sx = 0, sy = 0;
           for (std::size_t j = 0; j < lobes_; ++j) {
             const std::size_t at = ((k * lobes_ + j) * kChannels + c) * kBlock + i;
-            const float weight = weights_[j * kBlock + i];
+            const float weight = weights_[j][i];
             sx += weight * (slopes_[0][at] - model_[at]);
             sy += weight * (slopes_[1][at] - model_[at]);
           }
@@ -271,19 +273,18 @@ class TexelSolver::Block {
 
   void load_weights(const float* weights) {
     for (std::size_t i = 0; i < count_; ++i)
-      for (std::size_t k = 0; k < lobes_; ++k) weights_[k * kBlock + i] = weights[(first_ + i) * lobes_ + k];
+      for (std::size_t k = 0; k < lobes_; ++k) weights_[k][i] = weights[(first_ + i) * lobes_ + k];
   }
-  float weight(std::size_t i, std::size_t lobe) const noexcept { return weights_[lobe * kBlock + i]; }
+  float weight(std::size_t i, std::size_t lobe) const noexcept { return weights_[lobe][i]; }
   void restore(std::size_t i, std::span<const float> weights) {
-    for (std::size_t k = 0; k < lobes_; ++k) weights_[k * kBlock + i] = weights[k];
+    for (std::size_t k = 0; k < lobes_; ++k) weights_[k][i] = weights[k];
   }
   float trust(std::size_t k, std::size_t i) const noexcept { return trust_[k * kBlock + i]; }
-  /// The model's f cos(theta_i).
-  float value(std::size_t k, std::size_t c, std::size_t i) const noexcept {
-    float sum = 0;
-    for (std::size_t j = 0; j < lobes_; ++j)
-      sum += weights_[j * kBlock + i] * model_[((k * lobes_ + j) * kChannels + c) * kBlock + i];
-    return sum;
+  /// The model's f cos(theta_i) of one picture and channel.
+  TexelRow values(std::size_t k, std::size_t c) const noexcept {
+    TexelRow total;
+    sum_lobes(pixels(k, c), weights_.data(), total.data());
+    return total;
   }
   std::size_t pixel(std::size_t k, std::size_t i) const noexcept {
     return pictures_[k] * samples_.size() + first_ + std::min(i, count_ - 1);
@@ -291,71 +292,77 @@ class TexelSolver::Block {
 
   /// Trust in pixels by the errors that are left.
   void find_trust(int pass) {
-    for (std::size_t k = 0; k < pictures_.size(); ++k) {
-      std::array<float, kBlock> worst{};
-      std::array<bool, kBlock> there{};
-      for (std::size_t c = 0; c < kChannels; ++c) {
-        const Terms terms = terms_of(k, c, 0);
-        for (std::size_t i = 0; i < kBlock; ++i) {
-          const float rest = terms.value[i] - terms.model[i];
-          worst[i] = std::max(worst[i], (rest < 0 ? 1 : kBrighter) * terms.omega[i] * rest * rest);
-          there[i] = there[i] || terms.omega[i] > 0;
-        }
-      }
-      const float reach = kTrustedError[static_cast<std::size_t>(pass)];
-      for (std::size_t i = 0; i < kBlock; ++i) {
-        const float share = 1 + worst[i] / (reach * reach);
-        trust_[k * kBlock + i] = there[i] ? 1 / (share * share) : 0;
-      }
-    }
+    for (std::size_t k = 0; k < pictures_.size(); ++k) find_trust(k, all_terms(k, pass), pass);
   }
 
  private:
   struct Terms {
-    std::array<float, kBlock> value, model, omega;  // of one picture and channel
+    TexelRow value, model, omega;  // of one picture and channel
   };
-  // omega: the square of d (x^(1/2)) / d value, x = exposure value, of the mean of measured and modelled value; 0 of
-  // what does not count.
+  // omega: see find_omega, of the mean of measured and modelled value; 0 of what does not count.
   Terms terms_of(std::size_t k, std::size_t c, int pass) const {
-    Terms terms;
+    Terms terms{.value = values_[k * kChannels + c], .model = values(k, c), .omega = {}};
+    TexelRow share, at;
     for (std::size_t i = 0; i < kBlock; ++i) {
-      const std::size_t pixel = this->pixel(k, i);
-      terms.value[i] = samples_.values[pixel * kChannels + c];
-      const PixelState state = samples_.states[pixel];
-      terms.omega[i] = state == PixelState::there || state == PixelState::clipped ? 1.0f : 0.0f;
-      terms.model[i] = value(k, c, i);
-      if (state == PixelState::clipped && (pass == 0 || terms.model[i] > terms.value[i])) terms.omega[i] = 0;
+      const bool clipped = states_[k][i] == PixelState::clipped;
+      const bool above = clipped && (pass == 0 || terms.model[i] > terms.value[i]);
+      share[i] = (states_[k][i] == PixelState::there || clipped) && !above ? 1.0f : 0.0f;
+      at[i] = pass == 0 ? terms.value[i] : 0.5f * (terms.value[i] + terms.model[i]);
     }
-    for (std::size_t i = 0; i < kBlock; ++i) {
-      const float mean = pass == 0 ? terms.value[i] : 0.5f * (terms.value[i] + terms.model[i]);
-      const float x = std::max(exposure_ * mean, kFloor);
-      terms.omega[i] *= exposure_ * exposure_ / (4 * x * std::max(1.0f, x * x / (kWhite * kWhite)));
-    }
+    find_omega(exposure_, kFloor, at.data(), share.data(), terms.omega.data());
     return terms;
   }
 
+  /// What was measured, as rows.
+  void load() {
+    for (std::size_t k = 0; k < pictures_.size(); ++k)
+      for (std::size_t i = 0; i < kBlock; ++i) {
+        const std::size_t from = pixel(k, i);
+        states_[k][i] = samples_.states[from];
+        for (std::size_t c = 0; c < kChannels; ++c)
+          values_[k * kChannels + c][i] = samples_.values[from * kChannels + c];
+      }
+  }
+
+  TexelPixels pixels(std::size_t k, std::size_t c) const noexcept {
+    return {.lobes = lobes_,
+            .model = &model_[(k * lobes_ * kChannels + c) * kBlock],
+            .stride = kChannels * kBlock,
+            .value = values_[k * kChannels + c].data()};
+  }
+
+  std::array<Terms, kChannels> all_terms(std::size_t k, int pass) const {
+    return {terms_of(k, 0, pass), terms_of(k, 1, pass), terms_of(k, 2, pass)};
+  }
+
+  /// By the worst channel.
+  void find_trust(std::size_t k, const std::array<Terms, kChannels>& terms, int pass) {
+    const float reach = kTrustedError[std::min(static_cast<std::size_t>(pass), kTrustedError.size() - 1)];
+    float* const trust = &trust_[k * kBlock];
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      float worst = 0, there = 0;
+      for (std::size_t c = 0; c < kChannels; ++c) {
+        const float rest = terms[c].value[i] - terms[c].model[i];
+        worst = std::max(worst, (rest < 0 ? 1 : kBrighter) * terms[c].omega[i] * rest * rest);
+        there = std::max(there, terms[c].omega[i]);
+      }
+      const float share = 1 + worst / (reach * reach);
+      trust[i] = there > 0 ? 1 / (share * share) : 0;
+    }
+  }
+
   void gram(int pass) {
-    const int step = std::min(pass, static_cast<int>(kTrustedError.size()) - 1);
-    if (pass > 0) find_trust(step);
     for (auto& row : matrix_) row.fill(0);
     for (auto& row : vector_) row.fill(0);
-    for (std::size_t k = 0; k < pictures_.size(); ++k)
+    for (std::size_t k = 0; k < pictures_.size(); ++k) {
+      std::array<Terms, kChannels> terms = all_terms(k, pass);
+      if (pass > 0) find_trust(k, terms, pass);
+      const float* const trust = &trust_[k * kBlock];
       for (std::size_t c = 0; c < kChannels; ++c) {
-        Terms terms = terms_of(k, c, pass);
-        const float* const trust = &trust_[k * kBlock];
-        for (std::size_t i = 0; i < kBlock; ++i) terms.omega[i] *= trust[i];
-        const float* const model = &model_[(k * lobes_ * kChannels + c) * kBlock];
-        for (std::size_t j = 0, at = 0; j < lobes_; ++j) {
-          std::array<float, kBlock> scaled;
-          const float* const row = model + j * kChannels * kBlock;
-          for (std::size_t i = 0; i < kBlock; ++i) scaled[i] = terms.omega[i] * row[i];
-          for (std::size_t i = 0; i < kBlock; ++i) vector_[j][i] += scaled[i] * terms.value[i];
-          for (std::size_t l = 0; l <= j; ++l, ++at) {
-            const float* const other = model + l * kChannels * kBlock;
-            for (std::size_t i = 0; i < kBlock; ++i) matrix_[at][i] += scaled[i] * other[i];
-          }
-        }
+        for (std::size_t i = 0; i < kBlock; ++i) terms[c].omega[i] *= trust[i];
+        add_normal_equations(pixels(k, c), terms[c].omega.data(), matrix_.data(), vector_.data());
       }
+    }
   }
 
   const TexelSolver& solver_;
@@ -364,10 +371,12 @@ class TexelSolver::Block {
   float exposure_;
   bool evaluated_ = false;
   std::vector<std::size_t> pictures_;
-  std::vector<float> model_, trust_, weights_;
+  std::vector<float> model_, trust_;
+  std::vector<TexelRow> weights_, values_;
+  std::vector<std::array<PixelState, kBlock>> states_;
   std::array<std::vector<float>, 2> slopes_;
-  std::array<std::array<float, kBlock>, kMaxSurfaceLobes*(kMaxSurfaceLobes + 1) / 2> matrix_;
-  std::array<std::array<float, kBlock>, kMaxSurfaceLobes> vector_;
+  std::array<TexelRow, kMaxSurfaceLobes*(kMaxSurfaceLobes + 1) / 2> matrix_;
+  std::array<TexelRow, kMaxSurfaceLobes> vector_;
 };
 
 namespace {
@@ -454,14 +463,15 @@ std::vector<TexelSolver::PictureError> TexelSolver::errors(const TexelSamples& s
         block->load_weights(fits.weights.data());
         for (std::size_t k = 0; k < block->pictures().size(); ++k) {
           PictureError& error = errors[block->pictures()[k]];
+          const std::array<TexelRow, kChannels> model{block->values(k, 0), block->values(k, 1),
+                                                      block->values(k, 2)};
           for (std::size_t i = 0; i < count; ++i) {
             const std::size_t pixel = block->pixel(k, i);
             const PixelState state = samples.states[pixel];
             if (state == PixelState::missing) continue;
             double square = 0;
             for (std::size_t c = 0; c < kChannels; ++c) {
-              const double off =
-                  seen_as(samples.values[pixel * kChannels + c]) - seen_as(block->value(k, c, i));
+              const double off = seen_as(samples.values[pixel * kChannels + c]) - seen_as(model[c][i]);
               square += off * off;
             }
             const auto units = static_cast<std::uint64_t>(std::llround(square / PictureError::kUnit));

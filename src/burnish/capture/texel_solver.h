@@ -44,7 +44,7 @@ struct TexelFits {
 
 /// Fits weights, and normals if asked for, of texels whose lobes are known. What is minimized is the squared error of
 /// pixels as they are seen, about (exposure f cos)^(1/2), each pixel weighted by what it deserves: errors beyond a few
-/// percent of white count less and less (Geman and McClure's weights), so that shadows and misregistered edges do not
+/// percent of white count less and less (weights of [GemanMcClure1987]), so that shadows and misregistered edges do not
 /// lead. Clipped pixels count where the model is below them. Texels are independent: the same bits for any number of
 /// threads and any cut into blocks.
 class TexelSolver {

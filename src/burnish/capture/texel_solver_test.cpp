@@ -50,13 +50,14 @@ TEST(SolveNonnegative, GivesZerosForWhatIsNotFinite) {
 
 /// Pixels of texels with weights and normals at random, seen by `pictures` lights and views.
 struct Scene {
-  FactoredBrdf lobes = random_model("q(theta_h) r(theta_d) + s(theta_h) + t(theta_d)",
-                                    {"q=16,power:0.5", "r=5", "s=8", "t=4"}, 3, TableFormat::single, 2);
+  FactoredBrdf lobes;
   CaptureForm form;
   TexelSamples samples;
   TexelFits truth;
 
-  Scene(std::size_t texels, std::size_t pictures, bool bumps, double noise) {
+  Scene(std::size_t texels, std::size_t pictures, bool bumps, double noise, double span = 2)
+      : lobes(random_model("q(theta_h) r(theta_d) + s(theta_h) + t(theta_d)",
+                           {"q=16,power:0.5", "r=5", "s=8", "t=4"}, 3, TableFormat::single, span)) {
     form = {.width = static_cast<int>(texels), .height = 1, .normals = {}, .pictures = {}};
     Pcg32 random(21);
     for (std::size_t p = 0; p < pictures; ++p)
@@ -113,6 +114,7 @@ TEST(TexelSolver, RecoversWeightsOfKnownLobes) {
 // A twentieth of the pixels in shadow or torn off its place changes weights little.
 TEST(TexelSolver, IsNotLedByShadows) {
   Scene scene(70, 40, false, 0);
+  const std::vector<float> lit = scene.samples.values;
   Pcg32 random(2);
   for (std::size_t i = 0; i < scene.samples.states.size(); ++i)
     if (random.next() % 20 == 0) std::fill_n(&scene.samples.values[3 * i], 3, 0.0f);
@@ -127,28 +129,35 @@ TEST(TexelSolver, IsNotLedByShadows) {
   EXPECT_LT(robust_sum, 0.3 * plain_sum);
   std::size_t trusted = 0;
   for (std::size_t i = 0; i < robust.trust.size(); ++i)
-    trusted += scene.samples.values[3 * i] == 0 && robust.trust[i] > 0.3f;
-  EXPECT_LT(trusted, robust.trust.size() / 200);
+    trusted += scene.samples.values[3 * i] == 0 && lit[3 * i] > 0.1f && robust.trust[i] > 0.3f;
+  EXPECT_EQ(trusted, 0u);
 }
 
-// What is clipped says only how bright it is at least.
+// What is clipped says only how bright it is at least: taken for values, it would lead weights astray.
 TEST(TexelSolver, TakesClippedPixelsForLowerBounds) {
-  Scene scene(70, 40, false, 0);
+  Scene scene(70, 40, false, 0), taken = scene;
   std::size_t clipped = 0;
   for (std::size_t i = 0; i < scene.samples.states.size(); ++i)
     for (std::size_t c = 0; c < 3; ++c)
-      if (float& value = scene.samples.values[3 * i + c]; value > 0.6f) {
-        value = 0.6f;
+      if (float& value = scene.samples.values[3 * i + c]; value > 0.4f) {
+        taken.samples.values[3 * i + c] = value = 0.4f;
         scene.samples.states[i] = PixelState::clipped;
         ++clipped;
       }
-  ASSERT_GT(clipped, 100u);
+  ASSERT_GT(clipped, 50u);
   const TexelSolver solver(scene.lobes, scene.form, 1);
-  EXPECT_LT(scene.worst_weight(solver.solve(scene.samples, {}, {})), 0.02);
+  const auto mean_error = [&](const TexelSamples& samples) {
+    const TexelFits fits = solver.solve(samples, {}, {});
+    double sum = 0;
+    for (std::size_t i = 0; i < fits.weights.size(); ++i)
+      sum += std::abs(static_cast<double>(fits.weights[i] - scene.truth.weights[i]));
+    return sum / static_cast<double>(fits.weights.size());
+  };
+  EXPECT_LT(mean_error(scene.samples), 0.3 * mean_error(taken.samples));
 }
 
 TEST(TexelSolver, FindsNormals) {
-  const Scene scene(70, 40, true, 0);
+  const Scene scene(70, 40, true, 0, 0.3);  // as smooth as diffuse surfaces
   const TexelSolver solver(scene.lobes, scene.form, 1);
   const TexelFits fits = solver.solve(scene.samples, {}, {.normals = true, .normal_steps = 12});
   double sum = 0;
@@ -183,6 +192,23 @@ TEST(TexelSolver, GivesTheSameBitsForAnyThreadsAndBlocks) {
   const TexelFits some = solver.solve(part, {}, options);
   EXPECT_TRUE(std::equal(some.weights.begin(), some.weights.end(), all.weights.begin() + 120));
   EXPECT_TRUE(std::equal(some.normals.begin(), some.normals.end(), all.normals.begin() + 80));
+}
+
+// Of diffuse texels, a tenth of them in shadow or white, photometric stereo finds the normals.
+TEST(DiffuseNormals, AreNotLedByHighlights) {
+  Scene scene(40, 40, true, 0);
+  Pcg32 random(4);
+  for (std::size_t p = 0; p < 40; ++p)
+    for (std::size_t t = 0; t < 40; ++t) {
+      Vec3 n{scene.truth.normals[2 * t], scene.truth.normals[2 * t + 1], 0};
+      n.z = std::sqrt(1 - n.x * n.x - n.y * n.y);
+      double value = 0.5 * std::max(0.0, dot(n, scene.form.pictures[p].light.at));
+      if (random.next() % 20 == 0) value += 0.8;
+      if (random.next() % 20 == 0) value = 0;
+      std::fill_n(&scene.samples.values[3 * (p * 40 + t)], 3, static_cast<float>(value));
+    }
+  const std::vector<float> found = diffuse_normals(scene.samples, scene.form);
+  for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], scene.truth.normals[i], 0.03);
 }
 
 // Diffuse texels of three colours and of their mixtures: each set is of one colour.

@@ -639,10 +639,18 @@ HWY_EXPORT(eval_directions);
 HWY_EXPORT(eval_one_in_floats);
 HWY_EXPORT(eval_one_in_doubles);
 
+namespace {
+
+/// Once: a kernel whose address is taken before would ask for the instruction set at every call.
+void choose_instructions() {
+  if (!hwy::GetChosenTarget().IsInitialized()) hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+}  // namespace
+
 FactoredEvaluator::FactoredEvaluator(const FactoredBrdf& brdf) {
   const auto plan = std::make_shared<FactoredPlan>(brdf);
-  // asking for the instruction set takes a tenth of the time of one pair
-  if (!hwy::GetChosenTarget().IsInitialized()) hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  choose_instructions();
   plan->one_in_floats = &HWY_DYNAMIC_DISPATCH(eval_one_in_floats);
   plan->one_in_doubles = &HWY_DYNAMIC_DISPATCH(eval_one_in_doubles);
   plan_ = plan;
@@ -698,6 +706,7 @@ LobeEvaluator::LobeEvaluator(const FactoredBrdf& brdf) {
     throw Error(fmt::format("lobes apart: expected 1 or 3 channels and at most {} lobes, found {} and {}",
                             kMaxLobes, brdf.channels(), brdf.lobes().size()));
   const auto plan = std::make_shared<FactoredPlan>(brdf);
+  choose_instructions();
   plan->one_weighted = &HWY_DYNAMIC_DISPATCH(eval_one_weighted);
   plan_ = plan;
 }
