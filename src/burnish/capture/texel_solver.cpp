@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Dense>
+
 #include <burnish/capture/texel_lanes.h>
 #include <burnish/capture/texel_solver.h>
 #include <burnish/math/parallel.h>
@@ -23,7 +25,7 @@ constexpr float kBrighter = 1.0f / 16;
 constexpr float kNormalDelta = 0.01f;  // of finite differences
 constexpr double kMostSlope = 0.95;    // length of a normal's x and y
 constexpr double kMostStep = 0.15;
-constexpr double kDamping = 1e-3;
+constexpr double kDamping = 1e-2, kEase = 0.4, kHarden = 8;
 constexpr double kGrey = 1 / 2.2;
 
 Vec3 normal_of(const float* xy) noexcept {
@@ -212,48 +214,36 @@ class TexelSolver::Block {
     }
   }
 
-  /// A damped step of every normal with weights as they are; returns whether any moved.
-  void step_normals(float* normals) {
-    if (slopes_[0].empty())
-      for (auto& slope : slopes_) slope.resize(model_.size());
-    evaluate(normals, kNormalDelta, 0, slopes_[0]);
-    evaluate(normals, 0, kNormalDelta, slopes_[1]);
-    std::array<std::array<double, kBlock>, 5> sums{};  // xx, xy, yy and the right side
-    for (std::size_t k = 0; k < pictures_.size(); ++k)
-      for (std::size_t c = 0; c < kChannels; ++c) {
-        const Terms terms = terms_of(k, c, static_cast<int>(kTrustedError.size()) - 1);
-        for (std::size_t i = 0; i < kBlock; ++i) {
-          float sx = 0, sy = 0;
-          for (std::size_t j = 0; j < lobes_; ++j) {
-            const std::size_t at = ((k * lobes_ + j) * kChannels + c) * kBlock + i;
-            const float weight = weights_[j][i];
-            sx += weight * (slopes_[0][at] - model_[at]);
-            sy += weight * (slopes_[1][at] - model_[at]);
-          }
-          const float omega = terms.omega[i], rest = terms.value[i] - terms.model[i];
-          sums[0][i] += static_cast<double>(omega * sx * sx);
-          sums[1][i] += static_cast<double>(omega * sx * sy);
-          sums[2][i] += static_cast<double>(omega * sy * sy);
-          sums[3][i] += static_cast<double>(omega * sx * rest);
-          sums[4][i] += static_cast<double>(omega * sy * rest);
+  /// Normals and weights from where they are, by damped steps; those that lead up are taken back, texel by texel.
+  void find_normals(float* normals, int steps) {
+    std::vector<float> best_weights(count_ * lobes_), best_normals(2 * count_);
+    std::array<double, kBlock> best, damping;
+    best.fill(INFINITY);
+    damping.fill(kDamping);
+    for (int step = 0; step <= steps; ++step) {
+      if (step > 0) {
+        step_normals(normals, damping);
+        fit_weights(1, 2);
+      }
+      const std::array<double, kBlock> found = costs();
+      bool taken_back = false;
+      for (std::size_t i = 0; i < count_; ++i) {
+        float* const n = normals + 2 * (first_ + i);
+        const std::span<float> kept(&best_weights[i * lobes_], lobes_);
+        if (found[i] < best[i]) {
+          best[i] = found[i];
+          damping[i] *= kEase;
+          for (std::size_t j = 0; j < lobes_; ++j) kept[j] = weights_[j][i];
+          std::copy_n(n, 2, &best_normals[2 * i]);
+        } else {
+          damping[i] *= kHarden;
+          taken_back = true;
+          for (std::size_t j = 0; j < lobes_; ++j) weights_[j][i] = kept[j];
+          std::copy_n(&best_normals[2 * i], 2, n);
         }
       }
-    for (std::size_t i = 0; i < count_; ++i) {
-      const double damp = kDamping * (sums[0][i] + sums[2][i]) + 1e-30;
-      const double xx = sums[0][i] + damp, yy = sums[2][i] + damp, xy = sums[1][i];
-      const double over = 1 / (xx * yy - xy * xy);
-      double x = over * (yy * sums[3][i] - xy * sums[4][i]) * static_cast<double>(kNormalDelta);
-      double y = over * (xx * sums[4][i] - xy * sums[3][i]) * static_cast<double>(kNormalDelta);
-      if (!std::isfinite(x) || !std::isfinite(y)) continue;
-      const double step = std::min(1.0, kMostStep / std::max(std::hypot(x, y), 1e-12));
-      float* const n = normals + 2 * (first_ + i);
-      x = static_cast<double>(n[0]) + step * x;
-      y = static_cast<double>(n[1]) + step * y;
-      const double within = std::min(1.0, kMostSlope / std::max(std::hypot(x, y), 1e-12));
-      n[0] = static_cast<float>(within * x);
-      n[1] = static_cast<float>(within * y);
+      if (taken_back) evaluate(normals, 0, 0, model_);
     }
-    evaluate(normals, 0, 0, model_);
   }
 
   /// What is left of the pixels of each texel, as weights count it.
@@ -276,9 +266,6 @@ class TexelSolver::Block {
       for (std::size_t k = 0; k < lobes_; ++k) weights_[k][i] = weights[(first_ + i) * lobes_ + k];
   }
   float weight(std::size_t i, std::size_t lobe) const noexcept { return weights_[lobe][i]; }
-  void restore(std::size_t i, std::span<const float> weights) {
-    for (std::size_t k = 0; k < lobes_; ++k) weights_[k][i] = weights[k];
-  }
   float trust(std::size_t k, std::size_t i) const noexcept { return trust_[k * kBlock + i]; }
   /// The model's f cos(theta_i) of one picture and channel.
   TexelRow values(std::size_t k, std::size_t c) const noexcept {
@@ -305,12 +292,99 @@ class TexelSolver::Block {
     TexelRow share, at;
     for (std::size_t i = 0; i < kBlock; ++i) {
       const bool clipped = states_[k][i] == PixelState::clipped;
-      const bool above = clipped && (pass == 0 || terms.model[i] > terms.value[i]);
+      const bool above = clipped && pass > 0 && terms.model[i] > terms.value[i];
       share[i] = (states_[k][i] == PixelState::there || clipped) && !above ? 1.0f : 0.0f;
       at[i] = pass == 0 ? terms.value[i] : 0.5f * (terms.value[i] + terms.model[i]);
     }
     find_omega(exposure_, kFloor, at.data(), share.data(), terms.omega.data());
     return terms;
+  }
+
+  /// A damped step of every normal, weights free to follow: Gauss and Newton's for both, weights eliminated.
+  void step_normals(float* normals, const std::array<double, kBlock>& damping) {
+    if (slopes_[0].empty())
+      for (auto& slope : slopes_) slope.resize(model_.size());
+    evaluate(normals, kNormalDelta, 0, slopes_[0]);
+    evaluate(normals, 0, kNormalDelta, slopes_[1]);
+    gram(static_cast<int>(kTrustedError.size()) - 1);
+    const NormalSums sums = normal_sums();
+    for (std::size_t i = 0; i < count_; ++i) {
+      Eigen::Matrix2d a;
+      a << sums.xx[i], sums.xy[i], sums.xy[i], sums.yy[i];
+      const double damp = damping[i] * a.trace() + 1e-30;
+      a -= eliminated(i, sums);
+      a.diagonal().array() += damp;
+      const Eigen::Vector2d way =
+          static_cast<double>(kNormalDelta) * a.ldlt().solve(Eigen::Vector2d(sums.x[i], sums.y[i]));
+      if (!way.allFinite()) continue;
+      const double step = std::min(1.0, kMostStep / std::max(way.norm(), 1e-12));
+      float* const n = normals + 2 * (first_ + i);
+      const double x = static_cast<double>(n[0]) + step * way.x(),
+                   y = static_cast<double>(n[1]) + step * way.y();
+      const double within = std::min(1.0, kMostSlope / std::max(std::hypot(x, y), 1e-12));
+      n[0] = static_cast<float>(within * x);
+      n[1] = static_cast<float>(within * y);
+    }
+    evaluate(normals, 0, 0, model_);
+  }
+
+  using Sums = std::array<double, kBlock>;
+  /// Of a texel's normal: matrix, right side, and products with the weights, by differences of kNormalDelta.
+  struct NormalSums {
+    Sums xx{}, xy{}, yy{}, x{}, y{};
+    std::vector<Sums> cross_x, cross_y;  // [lobe]
+  };
+  NormalSums normal_sums() const {
+    NormalSums sums;
+    sums.cross_x.resize(lobes_);
+    sums.cross_y.resize(lobes_);
+    for (std::size_t k = 0; k < pictures_.size(); ++k)
+      for (std::size_t c = 0; c < kChannels; ++c) {
+        const Terms terms = terms_of(k, c, static_cast<int>(kTrustedError.size()) - 1);
+        const std::size_t first = (k * lobes_ * kChannels + c) * kBlock, stride = kChannels * kBlock;
+        for (std::size_t i = 0; i < kBlock; ++i) {
+          float sx = 0, sy = 0;
+          for (std::size_t j = 0; j < lobes_; ++j) {
+            const std::size_t at = first + j * stride + i;
+            sx += weights_[j][i] * (slopes_[0][at] - model_[at]);
+            sy += weights_[j][i] * (slopes_[1][at] - model_[at]);
+          }
+          const float omega = terms.omega[i] * trust_[k * kBlock + i], rest = terms.value[i] - terms.model[i];
+          sums.xx[i] += static_cast<double>(omega * sx * sx);
+          sums.xy[i] += static_cast<double>(omega * sx * sy);
+          sums.yy[i] += static_cast<double>(omega * sy * sy);
+          sums.x[i] += static_cast<double>(omega * sx * rest);
+          sums.y[i] += static_cast<double>(omega * sy * rest);
+          for (std::size_t j = 0; j < lobes_; ++j) {
+            const float lobe = omega * model_[first + j * stride + i];
+            sums.cross_x[j][i] += static_cast<double>(lobe * sx);
+            sums.cross_y[j][i] += static_cast<double>(lobe * sy);
+          }
+        }
+      }
+    return sums;
+  }
+
+  /// What of a texel's matrix of the normal goes into weights that follow it: those that are not 0.
+  Eigen::Matrix2d eliminated(std::size_t i, const NormalSums& sums) const {
+    constexpr int kMost = static_cast<int>(kMaxSurfaceLobes);
+    constexpr double kAlike = 1e-4;  // lobes may be alike
+    std::array<std::size_t, kMaxSurfaceLobes> free;
+    Eigen::Index count = 0;
+    for (std::size_t j = 0; j < lobes_; ++j)
+      if (weights_[j][i] > 0) free[static_cast<std::size_t>(count++)] = j;
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMost, kMost> own(count, count);
+    Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::ColMajor, kMost, 2> with(count, 2);
+    for (Eigen::Index r = 0; r < count; ++r) {
+      const std::size_t j = free[static_cast<std::size_t>(r)];
+      for (Eigen::Index q = 0; q <= r; ++q)
+        own(r, q) = own(q, r) =
+            static_cast<double>(matrix_[j * (j + 1) / 2 + free[static_cast<std::size_t>(q)]][i]);
+      with(r, 0) = sums.cross_x[j][i];
+      with(r, 1) = sums.cross_y[j][i];
+    }
+    own.diagonal().array() += kAlike * own.trace() + 1e-30;
+    return with.transpose() * own.ldlt().solve(with);
   }
 
   /// What was measured, as rows.
@@ -403,29 +477,7 @@ TexelFits TexelSolver::solve(const TexelSamples& samples, std::vector<float> nor
                      block->begin(first, count, xy);
                      block->fit_weights(options.normals ? 1 : options.passes, 0);
                      if (options.normals) {
-                       // steps that lead up are taken back, texel by texel
-                       std::vector<float> best_weights(count * lobes()), best_normals(2 * count);
-                       std::array<double, kBlock> best;
-                       best.fill(INFINITY);
-                       for (int step = 0; step <= options.normal_steps; ++step) {
-                         if (step > 0) {
-                           block->step_normals(xy);
-                           block->fit_weights(1, std::min(step, 2));
-                         }
-                         const std::array<double, kBlock> costs = block->costs();
-                         for (std::size_t i = 0; i < count; ++i) {
-                           if (!(costs[i] < best[i])) continue;
-                           best[i] = costs[i];
-                           for (std::size_t j = 0; j < lobes(); ++j)
-                             best_weights[i * lobes() + j] = block->weight(i, j);
-                           std::copy_n(xy + 2 * (first + i), 2, &best_normals[2 * i]);
-                         }
-                       }
-                       for (std::size_t i = 0; i < count; ++i) {
-                         block->restore(i, std::span(best_weights).subspan(i * lobes(), lobes()));
-                         std::copy_n(&best_normals[2 * i], 2, xy + 2 * (first + i));
-                       }
-                       block->begin(first, count, xy);
+                       block->find_normals(xy, options.normal_steps);
                        block->fit_weights(options.passes, 1);
                      }
                      for (std::size_t i = 0; i < count; ++i)
