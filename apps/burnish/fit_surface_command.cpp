@@ -136,6 +136,12 @@ void add_fit_surface_command(CLI::App& app) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   verb->add_option("--threads", arguments->threads, "at most this many; 0: all")->check(CLI::Range(0, 1024));
+  verb->add_option(
+      "--picture", arguments->picture,
+      "a PNG to write: a picture that was held out, the surface in its place, and the lobes' weights");
+  verb->add_flag(
+      "--compare", arguments->compare,
+      "also score what others would do: GGX in each texel, the nearest lobe alone, principal components");
   verb->add_flag(
       "--resume", arguments->resume,
       "go on from OUTPUT.part, which a fit of the same capture and options left when it was stopped");

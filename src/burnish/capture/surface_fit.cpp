@@ -158,15 +158,18 @@ class SurfaceFitter {
   }
 
   /// As if texels were diffuse, then by what general lobes make of them.
+  std::vector<float> first_normals(const TexelSamples& samples) const {
+    constexpr int kSteps = 4;
+    const TexelSolver solver(general_lobes(), capture_.form(), exposure_);
+    return solver
+        .solve(samples, diffuse_normals(samples, capture_.form()),
+               {.passes = 1, .normals = true, .normal_steps = kSteps})
+        .normals;
+  }
   void start_normals() {
     if (normals_from_ != NormalsFrom::estimate) return;
     progress("normals", 0);
-    constexpr int kSteps = 6;
-    const TexelSolver solver(general_lobes(), capture_.form(), exposure_);
-    fits_.normals = solver
-                        .solve(samples_, diffuse_normals(samples_, capture_.form()),
-                               {.passes = 1, .normals = true, .normal_steps = kSteps})
-                        .normals;
+    fits_.normals = first_normals(samples_);
     progress("normals", 1);
   }
 
@@ -410,7 +413,7 @@ class SurfaceFitter {
                      all_normals_.begin() + static_cast<std::ptrdiff_t>(first + 2 * tile.size()));
     }
     const bool estimate = normals_from_ == NormalsFrom::estimate;
-    if (estimate) normals = diffuse_normals(tile, capture_.form());
+    if (estimate) normals = first_normals(tile);
     return solver.solve(tile, std::move(normals), {.passes = 3, .normals = estimate, .normal_steps = 8});
   }
 
