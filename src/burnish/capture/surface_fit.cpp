@@ -41,7 +41,7 @@ constexpr int kCoarseSteps = 4, kFullSteps = 4, kLastSteps = 6, kFullRounds = 3;
 const HomomorphicOptions kStart{
     .smooth = 1e-5, .floor = PictureLoss::kFloor, .tolerance = 0.03, .progress = {}};
 // Nodes of a lobe's tables, relative to each other: theta_h, theta_d, phi_d.
-constexpr double kHalfNodes = 30, kDifferenceNodes = 16, kAzimuthNodes = 5;
+constexpr double kHalfNodes = 30, kDifferenceNodes = 20, kAzimuthNodes = 6;
 constexpr double kLineShare = 0.07;
 constexpr std::size_t kTexelBytes = 4;  // rgb9e5
 constexpr double kCodeRoom = 1.25;      // of weights' scale over what nearly all texels have
