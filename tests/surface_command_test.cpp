@@ -21,7 +21,7 @@ class SurfaceCommand : public testing::Test {
   void SetUp() override {
     write(
         file("scene.json"),
-        R"({"version":1,"width":20,"height":20,"materials":["lambert:kd=0.6/0.3/0.1","satin"],)"
+        R"({"version":1,"width":20,"height":20,"materials":["lambert:kd=0.6/0.3/0.1","ggx:alpha_x=0.4,alpha_y=0.4"],)"
         R"("shares":{"cells":2},"heights":{"cells":2,"amplitude":0.02},"lights":{"count":9,"angle_deg":60},)"
         R"("views":{"count":2,"angle_deg":40},"held_out":6})");
     const Outcome made = burnish("measure --surface '{0}/scene.json' -o '{0}/capture'");
