@@ -15,6 +15,7 @@ void add_describe_command(CLI::App& app);
 void add_eval_command(CLI::App& app);
 void add_export_command(CLI::App& app);
 void add_fit_command(CLI::App& app);
+void add_fit_surface_command(CLI::App& app);
 void add_help_command(CLI::App& app);
 void add_hw_command(CLI::App& app);
 void add_info_command(CLI::App& app);

@@ -3,28 +3,56 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <burnish/capture/virtual_capture.h>
 #include <burnish/file.h>
 #include <burnish/io/csv.h>
 #include <burnish/reflectance/goniometer.h>
 
 #include "commands.h"
+#include "progress.h"
 #include "source_arguments.h"
 
 namespace burnish::cli {
+
+namespace {
+
+void measure_surface(const std::string& scene, const std::string& out, bool json) {
+  const std::filesystem::path path(scene);
+  const CaptureForm form = write_virtual_capture(parse_surface_scene(read_file(path), path.parent_path()),
+                                                 out, progress_bar("pictures"));
+  if (json)
+    fmt::print("{}\n", nlohmann::ordered_json{{"output", out},
+                                              {"width", form.width},
+                                              {"height", form.height},
+                                              {"pictures", form.pictures.size()}}
+                           .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  else
+    fmt::print("{} pictures of {} x {} texels to {}\n", form.pictures.size(), form.width, form.height, out);
+}
+
+}  // namespace
 
 void add_measure_command(CLI::App& app) {
   struct Arguments {
     SourceArguments source;
     MeasureOptions measurement;
-    std::string out;
+    std::string out, surface;
     bool json = false;
   };
-  CLI::App* verb =
-      app.add_subcommand("measure", "Measure a BRDF with a virtual goniometer: scattered samples as CSV");
-  verb->footer("Example: burnish measure ggx:alpha_x=0.2 -o samples.csv --count 5000 --noise 0.05");
+  CLI::App* verb = app.add_subcommand("measure",
+                                      "Measure a BRDF with a virtual goniometer: scattered samples as CSV; "
+                                      "or a surface with a virtual camera");
+  verb->footer(
+      "Examples: burnish measure ggx:alpha_x=0.2 -o samples.csv --count 5000 --noise 0.05\n"
+      "          burnish measure --surface scene.json -o capture/");
   auto arguments = std::make_shared<Arguments>();
   add_source_arguments(*verb, arguments->source);
-  verb->add_option("-o,--output", arguments->out, "CSV file to write")->required();
+  CLI::Option* const positional = verb->get_option("BRDF")->required(false);
+  verb->add_option(
+          "--surface", arguments->surface,
+          "a scene of materials, heights, lights and views (docs/guide/surfaces.md): writes a capture")
+      ->excludes(positional);
+  verb->add_option("-o,--output", arguments->out, "CSV file to write; with --surface a folder")->required();
   // Ten million samples are a gigabyte of text.
   verb->add_option("--count", arguments->measurement.count, "how many samples")
       ->check(CLI::Range(1, 10000000))
@@ -37,6 +65,9 @@ void add_measure_command(CLI::App& app) {
       ->capture_default_str();
   verb->add_flag("--json", arguments->json, "print what was written as JSON");
   verb->callback([arguments] {
+    if (!arguments->surface.empty())
+      return measure_surface(arguments->surface, arguments->out, arguments->json);
+    if (arguments->source.spec.empty()) throw CLI::RequiredError("BRDF or --surface");
     const Source source = arguments->source.open();
     const Samples samples = measure(source.ref(), arguments->measurement);
     write_then_rename(arguments->out, samples_csv(samples, source.findings.lambda_nm));

@@ -15,6 +15,8 @@ int main(int argc, char** argv) {
     write(name, name, bytes);
     write("source", name, bytes);
   }
+  write("surface", "surface", burnish::seeds::surface_seed());
+  write("capture", "capture", burnish::seeds::kCapture);
   write("utia", "utia", burnish::seeds::kUtia);
   write("np", "np", burnish::seeds::kNpCode);
   write("directions", "directions", burnish::seeds::kDirections);

@@ -15,7 +15,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2] / "src/burnish"
 # Folders and files, each of which may include those before it.
 FOUNDATIONS = ["error", "file", "embedded_file", "math", "formula", "power", "parameterization", "image",
-               "reflectance", "factors", "baselines", "source", "metrics"]
+               "reflectance", "factors", "baselines", "source", "metrics", "surface"]
 # Workers, and the workers each may include.
 ALLOWED = {
     "io": [],
@@ -28,6 +28,7 @@ ALLOWED = {
     "render": ["shaders"],
     "export": ["fitting", "io", "render", "shaders", "textures"],
     "library": ["io", "fitting", "export"],
+    "capture": ["eval", "fitting", "io", "render"],
 }
 DOOR = "burnish.h"
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)

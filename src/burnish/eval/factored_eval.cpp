@@ -4,8 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
+#include <burnish/error.h>
 #include <burnish/eval/factored_eval.h>
 #include <burnish/eval/factored_plan.h>
+#include <burnish/eval/lobe_evaluator.h>
 
 // Compiled without contraction to fused multiply-adds (CMakeLists.txt): a fused a * x + b * y differs from
 // b * y + a * x, and swapping the directions would change the last bit. Where that cannot be, they are
@@ -444,13 +448,27 @@ HWY_INLINE void store_values(std::size_t count, std::size_t stored, const ValueP
   }
 }
 
-// Of the directions that the projector began with.
-template <int kChannels>
+// Of the directions that the projector began with. kApart: each lobe's value, its channels behind those of the lobe
+// before; else their sum.
+template <int kChannels, bool kApart>
 void eval_group(const FactoredPlan& plan, std::size_t group, std::size_t stride, Scratch& scratch,
                 const ValuePointers& out) {
   const std::size_t count = scratch.projector.count;
+  // zero below the horizon
+  const float *const wi_z = scratch.projector.in[2], *const wo_z = scratch.projector.in[5];
+  const std::size_t stored = std::min<std::size_t>(kChannels, plan.channels - group * kTogether);
+  const auto store_sum = [&](std::size_t channel) HWY_ATTR {
+    const auto finish = [&](std::size_t i, Lane(&value)[kChannels]) HWY_ATTR {
+      const Lane lit = if_positive(load(wi_z + i), load(wo_z + i));
+      for (std::size_t c = 0; c < kChannels; ++c)
+        value[c] = if_positive(lit, load(scratch.sum + c * kMaxBlock + i));
+    };
+    store_values<kChannels>(count, stored, out.from(channel, 0), finish);
+  };
+
   for (const FactoredPlan::Product& product : plan.products) {
-    const bool first = &product == plan.products.data();
+    const auto lobe = static_cast<std::size_t>(&product - plan.products.data());
+    const bool first = kApart || lobe == 0;
     for (std::size_t c = 0; c < kChannels; ++c)
       store(Lane(product.scale[group * kTogether + c]), scratch.scale + c * kLanes);
     Block block{stride, count, scratch.positions, first ? scratch.sum : scratch.product, scratch.scale,
@@ -468,16 +486,9 @@ void eval_group(const FactoredPlan& plan, std::size_t group, std::size_t stride,
         float* const sum = scratch.sum + c * kMaxBlock + i;
         if (!first) store(load(sum) + load(scratch.product + c * kMaxBlock + i), sum);
       }
+    if constexpr (kApart) store_sum(lobe * plan.channels + group * kTogether);
   }
-  // zero below the horizon
-  const float *const wi_z = scratch.projector.in[2], *const wo_z = scratch.projector.in[5];
-  const auto finish = [&](std::size_t i, Lane(&value)[kChannels]) HWY_ATTR {
-    const Lane lit = if_positive(load(wi_z + i), load(wo_z + i));
-    for (std::size_t c = 0; c < kChannels; ++c)
-      value[c] = if_positive(lit, load(scratch.sum + c * kMaxBlock + i));
-  };
-  const std::size_t stored = std::min<std::size_t>(kChannels, plan.channels - group * kTogether);
-  store_values<kChannels>(count, stored, out.from(group * kTogether, 0), finish);
+  if constexpr (!kApart) store_sum(group * kTogether);
 }
 
 // Not-a-number for what is no pair of directions.
@@ -513,7 +524,8 @@ void eval_volume_block(const FactoredPlan& plan, const DirectionPointers& in, st
     for (std::size_t c = 0; c < kTogether && std::isnan(cells.above[i]); ++c) *out.at(c, i) = cells.above[i];
 }
 
-// Up to kMaxBlock directions from `first` on, in memory that whole vectors can be read from.
+// Up to kMaxBlock directions from `first` on, in memory that whole vectors can be read from. kApart: see eval_group.
+template <bool kApart>
 void eval_block(const FactoredPlan& plan, const DirectionPointers& in, std::size_t first, std::size_t count,
                 std::size_t stride, Scratch& scratch, const ValuePointers& out) {
   if (plan.volume_and_line)
@@ -531,22 +543,24 @@ void eval_block(const FactoredPlan& plan, const DirectionPointers& in, std::size
   for (std::size_t group = 0; group * kTogether < plan.channels; ++group) {
     const std::size_t left = plan.channels - group * kTogether;
     if (left == 1)
-      eval_group<1>(plan, group, stride, scratch, out);
+      eval_group<1, kApart>(plan, group, stride, scratch, out);
     else
-      eval_group<3>(plan, group, stride, scratch, out);
+      eval_group<3, kApart>(plan, group, stride, scratch, out);
   }
-  if (!projector.all_directions) spoil_others(projector, plan.channels, out);
+  if (!projector.all_directions)
+    spoil_others(projector, plan.channels * (kApart ? plan.products.size() : 1), out);
 }
 
-void eval_directions(const FactoredPlan& plan, const DirectionPointers& in, std::size_t count,
-                     const ValuePointers& out) {
+template <bool kApart>
+void eval_all(const FactoredPlan& plan, const DirectionPointers& in, std::size_t count,
+              const ValuePointers& out) {
   Scratch scratch;
   constexpr std::size_t kPositions = FactoredPlan::kMaxSlots * kLanes;
   const std::size_t slots = std::max<std::size_t>(plan.slots, 1);
   const std::size_t stride = std::min(kMaxBlock, kPositions / slots / kLanes * kLanes);
   const std::size_t whole = count / kLanes * kLanes;
   for (std::size_t i = 0; i < whole; i += stride)
-    eval_block(plan, in, i, std::min(stride, whole - i), stride, scratch, out.from(0, i));
+    eval_block<kApart>(plan, in, i, std::min(stride, whole - i), stride, scratch, out.from(0, i));
   if (whole == count) return;
   // the rest, filled up to a vector with the first of them
   float rest[6][kLanes];
@@ -554,8 +568,18 @@ void eval_directions(const FactoredPlan& plan, const DirectionPointers& in, std:
     std::fill(rest[k], rest[k] + kLanes, *in.at(k, whole));
     for (std::size_t i = 1; i < count - whole; ++i) rest[k][i] = *in.at(k, whole + i);
   }
-  eval_block(plan, {{rest[0], rest[1], rest[2], rest[3], rest[4], rest[5]}}, 0, count - whole, stride,
-             scratch, out.from(0, whole));
+  eval_block<kApart>(plan, {{rest[0], rest[1], rest[2], rest[3], rest[4], rest[5]}}, 0, count - whole, stride,
+                     scratch, out.from(0, whole));
+}
+
+void eval_directions(const FactoredPlan& plan, const DirectionPointers& in, std::size_t count,
+                     const ValuePointers& out) {
+  eval_all<false>(plan, in, count, out);
+}
+
+void eval_lobes_apart(const FactoredPlan& plan, const DirectionPointers& in, std::size_t count,
+                      const ValuePointers& out) {
+  eval_all<true>(plan, in, count, out);
 }
 
 // Apart: its memory would be set up for volumes too.
@@ -588,19 +612,45 @@ void eval_one_in_doubles(const FactoredPlan& plan, const Vec3& wi, const Vec3& w
   eval_any_one(plan, wi, wo, f);
 }
 
+// Of one or three channels.
+void eval_one_weighted(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, const float* weights,
+                       float* f) {
+#if HWY_TARGET != HWY_SCALAR
+  if (plan.steps.size() <= FactoredPlan::kMaxSteps) return eval_one_pair<true>(plan, wi, wo, f, weights);
+#endif
+  const float w[] = {static_cast<float>(wi.x), static_cast<float>(wi.y), static_cast<float>(wi.z),
+                     static_cast<float>(wo.x), static_cast<float>(wo.y), static_cast<float>(wo.z)};
+  std::array<float, kTogether * LobeEvaluator::kMaxLobes> apart;
+  eval_lobes_apart(plan, {{w, w + 1, w + 2, w + 3, w + 4, w + 5}}, 1, {apart.data(), 1, plan.channels});
+  std::fill_n(f, plan.channels, 0.0f);
+  for (std::size_t j = 0; j < plan.products.size(); ++j)
+    for (std::size_t c = 0; c < plan.channels; ++c)
+      f[c] += weights[FactoredPlan::kRowStride * j + c] * apart[j * plan.channels + c];
+}
+
 BURNISH_END_TARGET;
 
 #if HWY_ONCE
 namespace burnish {
 
+HWY_EXPORT(eval_lobes_apart);
+HWY_EXPORT(eval_one_weighted);
 HWY_EXPORT(eval_directions);
 HWY_EXPORT(eval_one_in_floats);
 HWY_EXPORT(eval_one_in_doubles);
 
+namespace {
+
+/// Once: a kernel whose address is taken before would ask for the instruction set at every call.
+void choose_instructions() {
+  if (!hwy::GetChosenTarget().IsInitialized()) hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+}  // namespace
+
 FactoredEvaluator::FactoredEvaluator(const FactoredBrdf& brdf) {
   const auto plan = std::make_shared<FactoredPlan>(brdf);
-  // asking for the instruction set takes a tenth of the time of one pair
-  if (!hwy::GetChosenTarget().IsInitialized()) hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  choose_instructions();
   plan->one_in_floats = &HWY_DYNAMIC_DISPATCH(eval_one_in_floats);
   plan->one_in_doubles = &HWY_DYNAMIC_DISPATCH(eval_one_in_doubles);
   plan_ = plan;
@@ -649,6 +699,42 @@ bool FactoredEvaluator::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexce
   assert(f.size() == plan_->channels);
   plan_->one_in_doubles(*plan_, wi, wo, f.data());
   return true;
+}
+
+LobeEvaluator::LobeEvaluator(const FactoredBrdf& brdf) {
+  if ((brdf.channels() != 1 && brdf.channels() != 3) || brdf.lobes().size() > kMaxLobes)
+    throw Error(fmt::format("lobes apart: expected 1 or 3 channels and at most {} lobes, found {} and {}",
+                            kMaxLobes, brdf.channels(), brdf.lobes().size()));
+  const auto plan = std::make_shared<FactoredPlan>(brdf);
+  choose_instructions();
+  plan->one_weighted = &HWY_DYNAMIC_DISPATCH(eval_one_weighted);
+  plan_ = plan;
+}
+
+std::size_t LobeEvaluator::channels() const noexcept {
+  return plan_->channels;
+}
+
+std::size_t LobeEvaluator::lobes() const noexcept {
+  return plan_->products.size();
+}
+
+double LobeEvaluator::rounding_bound() const noexcept {
+  return plan_->rounding_bound;
+}
+
+void LobeEvaluator::eval(const DirectionSpans& d, std::span<float> f) const noexcept {
+  const std::size_t count = d.size();
+  assert(f.size() == plan_->products.size() * plan_->channels * count);
+  HWY_DYNAMIC_DISPATCH(eval_lobes_apart)
+  (*plan_, {{d.wi_x.data(), d.wi_y.data(), d.wi_z.data(), d.wo_x.data(), d.wo_y.data(), d.wo_z.data()}},
+   count, {f.data(), count, 1});
+}
+
+void LobeEvaluator::eval(Vec3 wi, Vec3 wo, std::span<const float> weights,
+                         std::span<float> f) const noexcept {
+  assert(f.size() == plan_->channels && weights.size() == kWeightStride * plan_->products.size());
+  plan_->one_weighted(*plan_, wi, wo, weights.data(), f.data());
 }
 
 }  // namespace burnish

@@ -114,6 +114,9 @@ struct FactoredPlan {
   using EvalOne = void (*)(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, Real* f);
   EvalOne<float> one_in_floats = nullptr;
   EvalOne<double> one_in_doubles = nullptr;
+  /// The same with kRowStride weights a lobe, of one or three channels.
+  void (*one_weighted)(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, const float* weights,
+                       float* f) = nullptr;
 
   std::size_t channels, slots = 0;
   bool needs_sum = false;  // wi + wo

@@ -306,13 +306,20 @@ HWY_INLINE Quad looked_up(const FactoredPlan::Lookup& lookup, const float* rows,
   return lookup.pair ? value * looked_up<kAxes>(lookup, rows, cells, lookup.pair_steps_at) : value;
 }
 
-/// Three channels: sum over lobes of scale times lookups [HomomorphicBrdf, eq. 4].
-HWY_INLINE Quad sum_of_products(const FactoredPlan& plan, std::size_t group, const OneCells& cells) {
+/// Three channels: sum over lobes of scale times lookups [HomomorphicBrdf, eq. 4], and with `weights` times those,
+/// four a lobe.
+template <bool kWeighted>
+HWY_INLINE Quad sum_of_products(const FactoredPlan& plan, std::size_t group, const OneCells& cells,
+                                const float* weights) {
   Quad sum{hn::Zero(D4())};
   const FactoredPlan::Lookup* lookup = plan.lookups.data();
   const float* const values = plan.values.data();
   for (const FactoredPlan::Product& product : plan.products) {
     Quad value = load_quad(product.scale.data() + group * kTogether);
+    if constexpr (kWeighted) {
+      value = value * load_quad(weights);
+      weights += FactoredPlan::kRowStride;
+    }
     for (std::size_t k = product.first; k < product.last; ++k, ++lookup) {
       const float* const rows = values + lookup->rows + group * lookup->next_group;
       if (lookup->axes == 1)
@@ -327,8 +334,11 @@ HWY_INLINE Quad sum_of_products(const FactoredPlan& plan, std::size_t group, con
   return sum;
 }
 
-/// f has the plan's channels; the plan at most kMaxSteps steps.
-void eval_one_pair(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, float* f) {
+/// f has the plan's channels; the plan at most kMaxSteps steps, and with weights, see sum_of_products, at most three
+/// channels.
+template <bool kWeighted = false>
+void eval_one_pair(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, float* f,
+                   const float* weights = nullptr) {
   using DI2 = hn::RebindToSigned<D2>;
   const D2 d2;
   const DI2 di2;
@@ -344,7 +354,7 @@ void eval_one_pair(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, flo
   OneCells cells;
   find_cells(plan, one, AngleTable(PolarAngles(plan, one)), cells);
   for (std::size_t group = 0; group * kTogether < plan.channels; ++group, f += kTogether) {
-    const auto sum = sum_of_products(plan, group, cells).raw;
+    const auto sum = sum_of_products<kWeighted>(plan, group, cells, weights).raw;
     const std::size_t left = plan.channels - group * kTogether;
     f[0] = hn::GetLane(sum);
     if (left > 1) f[1] = hn::GetLane(hn::Broadcast<1>(sum));

@@ -8,6 +8,7 @@
 
 #include <burnish/error.h>
 #include <burnish/factors/cbor.h>
+#include <burnish/factors/compact_extension.h>
 #include <burnish/factors/compact_file.h>
 
 namespace burnish {
@@ -19,8 +20,8 @@ using Json = nlohmann::json;
 constexpr int kCompactVersion = 1;
 constexpr std::uint64_t kSelfDescribed = 55799;  // [RFC8949, 3.4.6]
 constexpr std::string_view kName = "burnish";
-// name, version, channels, lambda_nm, kinds, tables, products, lobes; then notes
-constexpr std::size_t kParts = 8;
+// name, version, channels, lambda_nm, kinds, tables, products, lobes; then notes; then what the model is part of
+constexpr std::size_t kParts = 8, kExtendedParts = kParts + 2;
 constexpr std::size_t kMaxChannels = SymmetrizedBrdf::kMaxChannels;
 constexpr std::size_t kTableItems = 3;  // name, kind, texels
 constexpr std::size_t kLongestName = 255, kLongestNotes = 1 << 20;
@@ -144,11 +145,13 @@ std::vector<Product> products_of(const FactoredBrdf& brdf) {
 /// One file in the making.
 class CompactWriter {
  public:
-  std::string run(const Model& model, CompactContent content) {
+  using Append = std::function<void(CborWriter&)>;
+
+  std::string run(const Model& model, CompactContent content, const Append& append = nullptr) {
     const FactoredBrdf& brdf = model.brdf;
     const bool notes = content == CompactContent::model_and_notes;
     cbor_.tag(kSelfDescribed);
-    cbor_.list(notes ? kParts + 1 : kParts);
+    cbor_.list(append ? kExtendedParts : notes ? kParts + 1 : kParts);
     cbor_.text(kName);
     cbor_.integer(kCompactVersion);
     cbor_.integer(brdf.channels());
@@ -177,6 +180,7 @@ class CompactWriter {
       for (const FactorUse& use : lobe.factors) cbor_.integer(use.table);
     }
     if (notes) cbor_.text(model.notes);
+    if (append) append(cbor_);
     return cbor_.written();
   }
 
@@ -229,9 +233,18 @@ class CompactReader {
  public:
   explicit CompactReader(const FileBytes& file) : cbor_(file), name_(file.name) {}
 
-  Model run() {
+  using Read = std::function<void(CborReader&, const Model&)>;
+
+  Model run(const Read& read = nullptr) {
     cbor_.tag("a compact file", kSelfDescribed);
-    const std::size_t parts = cbor_.list("a model", kParts, kParts + 1);
+    const auto parts_at = cbor_.offset();
+    const std::size_t parts = cbor_.list("a model", kParts, kExtendedParts);
+    if (parts == kExtendedParts && !read)
+      cbor_.fail(parts_at, "a model that is the same everywhere",
+                 "a surface, whose lobes have maps of weights");
+    if (parts != kExtendedParts && read)
+      cbor_.fail(parts_at, "a surface, whose lobes have maps of weights",
+                 "a model that is the same everywhere");
     if (const auto at = cbor_.offset(); cbor_.text("the name of the format", kName.size()) != kName)
       cbor_.fail(at, "'burnish'", "another name");
     cbor_.integer("version", kCompactVersion, kCompactVersion);
@@ -250,13 +263,17 @@ class CompactReader {
     std::vector<Lobe> lobes;
     read_list("lobes", 0, kMaxCompactItems, [&] { lobes.push_back(lobe()); });
     if (parts > kParts) model.notes = notes();
-    cbor_.end();
+    if (!read) cbor_.end();
 
     // the constructor checks how all of it fits together
     try {
       model.brdf = FactoredBrdf(channels_, std::move(tables_), std::move(lobes));
     } catch (const Error& error) {
       throw Error(fmt::format("{}: {}", name_, error.what()));
+    }
+    if (read) {
+      read(cbor_, model);
+      cbor_.end();
     }
     return model;
   }
@@ -449,6 +466,20 @@ std::string format_compact(const Model& model, CompactContent content) {
 
 Model parse_compact(const FileBytes& file) {
   return CompactReader(file).run();
+}
+
+std::string format_compact_with(const Model& model, const std::function<void(CborWriter&)>& append) {
+  check_writable(model, CompactContent::model_and_notes);
+  return CompactWriter().run(model, CompactContent::model_and_notes, append);
+}
+
+Model parse_compact_with(const FileBytes& file, const std::function<void(CborReader&, const Model&)>& read) {
+  return CompactReader(file).run(read);
+}
+
+bool looks_like_extended_compact(std::span<const std::byte> head) noexcept {
+  constexpr std::size_t kTagBytes = 3;
+  return looks_like_compact(head) && head[kTagBytes] == std::byte{0x80 + kExtendedParts};
 }
 
 }  // namespace burnish

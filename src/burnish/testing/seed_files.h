@@ -14,6 +14,7 @@
 #include <burnish/io/rgl.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/rgl_builder.h>
+#include <burnish/surface/surface_file.h>
 
 namespace burnish::seeds {
 
@@ -160,6 +161,22 @@ inline const std::string kTensorTree =
 
 /// The bytes of a number over and over are a UTIA table of it.
 inline const std::string kUtia{"\x9a\x99\x99\x99\x99\x99\xf1\x3f", 8};
+
+/// A surface of the small model, with normals.
+inline std::string surface_seed() {
+  using namespace burnish;
+  const std::vector<float> weights{0, 1, 0.5f, 0.25f, 1, 0},
+      normals{0, 0, 0.1f, 0, 0, 0.5f, -0.5f, 0, 0.1f, 0.2f, 0, 0};
+  SurfaceMaps maps{.weights = {SurfaceMap(3, 2, 1, TableFormat::unorm8, 1, weights)},
+                   .normals = SurfaceMap(3, 2, 2, TableFormat::half, 1, normals),
+                   .tangents = {}};
+  return format_surface({.brdf = SpatialBrdf(small_model().brdf, std::move(maps)), .notes = "{}"});
+}
+
+inline const std::string kCapture =
+    R"({"version":1,"width":4,"height":3,"size":[0.2,0.15],"transfer":"srgb","clip":0.99,"normals":"n.exr","pictures":[)"
+    R"({"file":"a.png","light":{"direction":[0,0.6,0.8]},"view":{"position":[0,0,2.5]},"scale":[1,2,3],"mask":"m.png"},)"
+    R"({"file":"b.png","light":{"position":[1,0,3]},"view":{"direction":[0,0,1]},"scale":0.5,"held_out":true}]})";
 
 /// Format names and bytes; the first `kBinaryCount` are binary and of fixed length.
 inline std::vector<std::pair<std::string, std::string>> all_seeds() {

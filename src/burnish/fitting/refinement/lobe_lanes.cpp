@@ -144,6 +144,13 @@ void LobeLanes::evaluate(const Values& values, std::size_t block, std::size_t ch
     for (std::size_t i = 0; i < kBlock; ++i)
       std::copy_n(scales, kLanes, at.product.data() + p * kBlockLanes + i * kLanes);
   }
+  if (!lookups_.lobe_weights.empty()) {
+    const std::size_t lobes = lookups_.lobes.size();
+    const float* weight = lookups_.lobe_weights.data() + block * kBlock * lobes;
+    for (std::size_t i = 0; i < kBlock; ++i)
+      for (std::size_t j = 0; j < lobes; ++j)
+        at.product[j / kLanes * kBlockLanes + i * kLanes + j % kLanes] *= *weight++;
+  }
   HWY_DYNAMIC_DISPATCH(evaluate)
   (slots_, parts_, places(block), values.lambdas.data() + channel * channel_size_, at.factor.data(),
    at.product.data(), at.total.data());

@@ -1,5 +1,8 @@
 #include <algorithm>
 
+#include <fmt/format.h>
+
+#include <burnish/error.h>
 #include <burnish/fitting/refinement/lookups.h>
 #include <burnish/math/parallel.h>
 
@@ -48,6 +51,16 @@ Lookups lookups_of(const ModelSpec& spec, const TrainingSet& set) {
                       static_cast<float>(at.fy), static_cast<float>(at.fz)};
         }
   });
+
+  // what fills the last block up weighs as the last pair does
+  if (set.lobe_weights.empty()) return found;
+  const std::size_t lobes = spec.lobes.size();
+  if (set.lobe_weights.size() != lobes * set.size())
+    throw Error(fmt::format("fit: expected {} weights of lobes, found {}", lobes * set.size(),
+                            set.lobe_weights.size()));
+  found.lobe_weights = set.lobe_weights;
+  while (found.lobe_weights.size() < blocks * Lookups::kBlock * lobes)
+    found.lobe_weights.push_back(found.lobe_weights[found.lobe_weights.size() - lobes]);
   return found;
 }
 

@@ -28,6 +28,9 @@ struct Lookups {
   static constexpr std::size_t kBlocksATask = 64;
   std::size_t pairs = 0;
   std::vector<Place> places;  ///< [pair / kBlock][place][pair % kBlock]
+
+  /// The set's weights of lobes, [pair][lobe], as many pairs as the blocks have; empty: 1.
+  std::vector<float> lobe_weights;
 };
 
 Lookups lookups_of(const ModelSpec& spec, const TrainingSet& set);

@@ -60,8 +60,9 @@ void add_pairs(const ErrorTerms& derivatives, V first, V second, V model, V lit,
   add_absolute(hn::Sub(hn::Log1p(d, lit), second), hn::Div(lit, brighter), PictureLoss::kLogCosRound, weight,
                derivatives.log_cos, part.log_cos, part);
 
-  // a model far below steps by no more than the ratio
-  const V f = hn::Sub(hn::Exp(d, first), number(PictureLoss::kFloor)), error = hn::Sub(model, f);
+  // a model far below steps by no more than the ratio; of a pixel in the same vector `first` is no logarithm
+  const V log_f = hn::IfThenElseZero(hn::Gt(weight, hn::Zero(d)), first);
+  const V f = hn::Sub(hn::Exp(d, log_f), number(PictureLoss::kFloor)), error = hn::Sub(model, f);
   part.absolute = hn::MulAdd(weight, hn::Mul(error, error), part.absolute);
   const V slope = hn::Mul(hn::Mul(weight, number(2 * derivatives.absolute)), model);
   part.gradient = hn::MulAdd(slope, error, part.gradient);

@@ -270,6 +270,8 @@ TrainingSet thinned(const TrainingSet& set, std::size_t step) {
     part.pairs.push_back(set.pairs[i]);
     part.weights.push_back(set.weights[i]);
     for (std::size_t c = 0; c < channels; ++c) part.values.push_back(set.values[i * channels + c]);
+    const std::size_t lobes = set.lobe_weights.size() / set.size();
+    for (std::size_t j = 0; j < lobes; ++j) part.lobe_weights.push_back(set.lobe_weights[i * lobes + j]);
   };
   for (std::size_t i = 0; i < set.picture_count; i += step) take(i);
   part.picture_count = part.size();

@@ -30,9 +30,12 @@ struct TrainingSet {
   std::vector<DirectionPair> pairs;  ///< above the horizon
   std::vector<float> values;         ///< f_r >= 0 of pair i at [i * channels, (i + 1) * channels), 1/sr
   std::vector<float> weights;        ///< one a pair, > 0
-  std::size_t picture_count = 0;     ///< the first so many pairs are pixels
-  double exposure = 1;               ///< 1 / (97th percentile of the pixels' f_r cos theta_i)
-  AlbedoSet albedo;                  ///< empty: albedos do not count
+  /// What each lobe's value is multiplied by at each pair, >= 0, [pair][lobe]: the places of a surface that pairs are
+  /// of differ in these. Empty: 1. It counts in refinement, not in log-linear fits.
+  std::vector<float> lobe_weights;
+  std::size_t picture_count = 0;  ///< the first so many pairs are pixels
+  double exposure = 1;            ///< 1 / (97th percentile of the pixels' f_r cos theta_i)
+  AlbedoSet albedo;               ///< empty: albedos do not count
 
   std::size_t size() const noexcept { return pairs.size(); }
 };

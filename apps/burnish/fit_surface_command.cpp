@@ -1,0 +1,152 @@
+#include <chrono>
+#include <map>
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <burnish/capture/surface_baselines.h>
+#include <burnish/capture/surface_fit.h>
+#include <burnish/capture/surface_picture.h>
+#include <burnish/factors/model_file.h>
+#include <burnish/file.h>
+#include <burnish/image/png.h>
+#include <burnish/math/parallel.h>
+
+#include "commands.h"
+#include "progress.h"
+
+namespace burnish::cli {
+
+namespace {
+
+struct FitSurfaceArguments {
+  std::string capture, out, book, picture, normals = "auto";
+  SurfaceFitOptions options;
+  int threads = 0;
+  bool resume = false, compare = false, json = false;
+};
+
+// One bar a stage; nothing where standard error is no terminal.
+std::function<void(std::string_view, double)> surface_bars() {
+  if (!progress_bar("")) return nullptr;
+  return [bars = std::map<std::string, std::function<void(double)>, std::less<>>()](std::string_view stage,
+                                                                                    double fraction) mutable {
+    auto bar = bars.find(stage);
+    if (bar == bars.end()) bar = bars.emplace(stage, progress_bar(std::string(stage))).first;
+    bar->second(fraction);
+  };
+}
+
+std::string text_of(const PictureScore& score) {
+  if (!score.psnr) return fmt::format("{} pictures", score.pictures);
+  return fmt::format("psnr {:.2f} dB of {} pictures{}", *score.psnr, score.pictures,
+                     score.psnr_of_all && *score.psnr_of_all != *score.psnr
+                         ? fmt::format(", {:.2f} dB with what masks leave out", *score.psnr_of_all)
+                         : "");
+}
+
+// Of the first picture that was held out, or the first.
+void write_comparison(const FitSurfaceArguments& arguments, const SurfaceFit& fit) {
+  Capture capture(arguments.capture);
+  const auto& pictures = capture.form().pictures;
+  const auto held_out = std::ranges::find(pictures, true, &CapturePicture::held_out);
+  const auto number = held_out == pictures.end() ? 0 : static_cast<std::size_t>(held_out - pictures.begin());
+  write_png(arguments.picture, surface_picture(capture, fit.surface.brdf, number, fit.report.exposure));
+}
+
+void fit_surface(FitSurfaceArguments& arguments) {
+  const ThreadLimit limit(arguments.threads);
+  SurfaceFitOptions& options = arguments.options;
+  if (!arguments.book.empty()) options.book = parse_model(read_file(arguments.book)).brdf;
+  if (arguments.normals == "flat") options.normals = NormalsFrom::flat;
+  if (arguments.normals == "capture") options.normals = NormalsFrom::capture;
+  if (arguments.normals == "estimate") options.normals = NormalsFrom::estimate;
+  options.progress = surface_bars();
+  options.checkpoint = arguments.out + ".part";
+  if (!arguments.resume) std::filesystem::remove(options.checkpoint);
+  const SurfaceFit fit = burnish::fit_surface(Capture(arguments.capture), options);
+  write_then_rename(arguments.out, format_surface(fit.surface));
+  std::filesystem::remove(options.checkpoint);
+
+  const SurfaceReport& report = fit.report;
+  if (!arguments.picture.empty()) write_comparison(arguments, fit);
+  std::vector<BaselineScore> others;
+  if (arguments.compare) others = score_surface_baselines(Capture(arguments.capture), fit, options);
+  if (arguments.json) {
+    auto json = nlohmann::ordered_json::parse(report_json(report));
+    json["output"] = arguments.out;
+    json["seconds"] = report.seconds;
+    json["weight_seconds"] = report.weight_seconds;
+    for (const BaselineScore& other : others)
+      json["methods"].push_back(
+          {{"method", other.method},
+           {"bytes_a_texel", other.bytes_a_texel},
+           {"held_out_psnr", other.held_out ? nlohmann::ordered_json(*other.held_out) : nullptr}});
+    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    return;
+  }
+  for (const auto& [file, why] : report.left_out) fmt::print("left out   {}: {}\n", file, why);
+  fmt::print("capture    {} x {} texels, {} pictures; {} pixels clipped, {} missing\n", report.width,
+             report.height, report.pictures, report.clipped_pixels, report.missing_pixels);
+  fmt::print("surface    {} lobes of {} bytes together, {} + {} bytes a texel (weights, normals)\n",
+             report.lobes, report.lobe_bytes, report.weight_bytes, report.frame_bytes);
+  fmt::print("fitted     {}\n", text_of(report.fitted));
+  if (report.held_out.pictures > 0) fmt::print("held out   {}\n", text_of(report.held_out));
+  fmt::print("written    {} in {:.2f} s, of these {:.2f} s weights of all texels\n", arguments.out,
+             report.seconds, report.weight_seconds);
+}
+
+}  // namespace
+
+void add_fit_surface_command(CLI::App& app) {
+  CLI::App* verb =
+      app.add_subcommand("fit-surface", "Fit a surface to registered pictures: lobes whose scales are maps");
+  verb->footer(
+      "Examples: burnish fit-surface capture/ -o wall.burnish\n"
+      "          burnish fit-surface capture/ -o wall.burnish --lobes 4 --normals estimate\n"
+      "          burnish fit-surface capture/ -o wall.burnish --lobes 4 --compare\n"
+      "          burnish fit-surface capture/ -o wall.burnish --book library.burnish");
+  auto arguments = std::make_shared<FitSurfaceArguments>();
+  SurfaceFitOptions& options = arguments->options;
+  verb->add_option("capture", arguments->capture, "a folder with capture.json and its pictures")->required();
+  verb->add_option("-o,--output", arguments->out, "the surface's .burnish file to write")->required();
+  verb->add_option("--lobes", options.lobes, "how many lobes")
+      ->check(CLI::Range(std::size_t{1}, kMaxSurfaceLobes))
+      ->capture_default_str();
+  verb->add_option("--lobe-bytes", options.lobe_bytes, "of each lobe's tables; K counts as 1024")
+      ->transform(CLI::AsSizeValue(false))
+      ->capture_default_str();
+  verb->add_option("--book", arguments->book,
+                   "a model whose lobes are taken as they are: weights alone are fitted")
+      ->excludes("--lobes")
+      ->excludes("--lobe-bytes");
+  verb->add_option(
+          "--normals", arguments->normals,
+          "those of the capture, none (flat) or estimated; auto: the capture's, estimated where it has none")
+      ->check(CLI::IsMember({"auto", "capture", "flat", "estimate"}))
+      ->capture_default_str();
+  verb->add_option("--rounds", options.rounds, "of lobes and weights in turn")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  verb->add_option("--memory", options.tile_bytes,
+                   "bytes of pictures in memory at a time; M counts as 1024^2")
+      ->transform(CLI::AsSizeValue(false));
+  verb->add_option("--seed", options.seed, "of the texels and pixels that lobes are fitted to")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  verb->add_option("--threads", arguments->threads, "at most this many; 0: all")->check(CLI::Range(0, 1024));
+  verb->add_option(
+      "--picture", arguments->picture,
+      "a PNG to write: a picture that was held out, the surface in its place, and the lobes' weights");
+  verb->add_flag(
+      "--compare", arguments->compare,
+      "also score what others would do: GGX in each texel, the nearest lobe alone, principal components");
+  verb->add_flag(
+      "--resume", arguments->resume,
+      "go on from OUTPUT.part, which a fit of the same capture and options left when it was stopped");
+  verb->add_flag("--json", arguments->json, "print the report as JSON");
+  verb->callback([arguments] { fit_surface(*arguments); });
+}
+
+}  // namespace burnish::cli

@@ -1,0 +1,256 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+
+#include <burnish/capture/capture.h>
+#include <burnish/capture/json_member.h>
+#include <burnish/capture/picture_rows.h>
+#include <burnish/error.h>
+#include <burnish/math/parallel.h>
+
+namespace burnish {
+
+namespace {
+
+constexpr int kVersion = 1, kMaxSide = 16'384;
+constexpr std::uint64_t kMaxJson = std::uint64_t{64} << 20;
+constexpr double kLeastHeight = 1e-3;    // z of a unit vector towards a light or view
+constexpr double kUnitTolerance = 0.02;  // of a direction's length
+// Noise about zero may be negative by so much of the picture's white.
+constexpr float kLeastValue = -0.05f;
+
+}  // namespace
+
+Station parse_station(const JsonMember& member) {
+  if (member.has("position")) {
+    const JsonMember position = member.at("position");
+    const Station station{.is_direction = false, .at = position.vector()};
+    if (!(station.at.z > 0)) position.fail("a point above the surface");
+    return station;
+  }
+  const JsonMember direction = member.at("direction");
+  const Vec3 found = direction.vector();
+  if (std::abs(length(found) - 1) > kUnitTolerance) direction.fail("a vector of length 1");
+  // what is a unit vector but for rounding is kept to the bit
+  constexpr double kRounding = 1e-12;
+  const Station station{.is_direction = true,
+                        .at = std::abs(length(found) - 1) < kRounding ? found : normalize(found)};
+  if (!(station.at.z >= kLeastHeight)) direction.fail("a direction above the surface");
+  return station;
+}
+
+namespace {
+
+Rgb parse_scale(const JsonMember& member) {
+  constexpr double kLeast = 1e-12, kMost = 1e12;
+  if (!member.is_list()) return member.number(kLeast, kMost);
+  const std::vector<JsonMember> rgb = member.list(3, 3);
+  return {rgb[0].number(kLeast, kMost), rgb[1].number(kLeast, kMost), rgb[2].number(kLeast, kMost)};
+}
+
+CapturePicture parse_picture(const JsonMember& member) {
+  CapturePicture picture{.file = member.at("file").file(),
+                         .light = parse_station(member.at("light")),
+                         .view = parse_station(member.at("view")),
+                         .mask = {}};
+  if (member.has("scale")) picture.scale = parse_scale(member.at("scale"));
+  if (member.has("mask")) picture.mask = member.at("mask").file();
+  if (member.has("held_out")) picture.held_out = member.at("held_out").truth();
+  return picture;
+}
+
+Json to_json(const Station& station) {
+  return {{station.is_direction ? "direction" : "position", {station.at.x, station.at.y, station.at.z}}};
+}
+
+}  // namespace
+
+bool CaptureForm::directional() const noexcept {
+  return std::ranges::all_of(pictures, [](const CapturePicture& picture) {
+    return picture.light.is_direction && picture.view.is_direction;
+  });
+}
+
+CaptureForm parse_capture(const FileBytes& file) {
+  const Json json = parse_json(file);
+  const JsonMember root(file, json, "");
+  root.at("version").integer(kVersion, kVersion);
+  CaptureForm form{.width = root.at("width").integer(1, kMaxSide),
+                   .height = root.at("height").integer(1, kMaxSide),
+                   .normals = {},
+                   .pictures = {}};
+  if (root.has("size")) {
+    constexpr double kLeast = 1e-6, kMost = 1e6;
+    const std::vector<JsonMember> size = root.at("size").list(2, 2);
+    form.size_x = size[0].number(kLeast, kMost);
+    form.size_y = size[1].number(kLeast, kMost);
+  }
+  if (root.has("transfer")) {
+    const JsonMember transfer = root.at("transfer");
+    const std::string name = transfer.text();
+    if (name != "linear" && name != "srgb") transfer.fail("linear or srgb");
+    form.transfer = name == "srgb" ? Transfer::srgb : Transfer::linear;
+  }
+  if (root.has("clip")) form.clip = root.at("clip").number(1e-9, 1e9);
+  if (root.has("normals")) form.normals = root.at("normals").file();
+  std::set<std::string> names;
+  for (const JsonMember& member : root.at("pictures").list(1, kMaxPictures)) {
+    form.pictures.push_back(parse_picture(member));
+    if (!names.insert(form.pictures.back().file).second) member.fail("pictures of different files");
+  }
+  return form;
+}
+
+std::string format_capture(const CaptureForm& form) {
+  Json pictures = Json::array();
+  for (const CapturePicture& picture : form.pictures) {
+    Json item{{"file", picture.file},
+              {"light", to_json(picture.light)},
+              {"view", to_json(picture.view)},
+              {"scale", {picture.scale.r, picture.scale.g, picture.scale.b}}};
+    if (!picture.mask.empty()) item["mask"] = picture.mask;
+    if (picture.held_out) item["held_out"] = true;
+    pictures.push_back(std::move(item));
+  }
+  Json json{{"version", kVersion},
+            {"width", form.width},
+            {"height", form.height},
+            {"size", {form.size_x, form.size_y}},
+            {"transfer", form.transfer == Transfer::srgb ? "srgb" : "linear"}};
+  if (form.clip) json["clip"] = *form.clip;
+  if (!form.normals.empty()) json["normals"] = form.normals;
+  json["pictures"] = std::move(pictures);
+  return json.dump(1) + "\n";
+}
+
+Capture::Capture(std::filesystem::path folder) : folder_(std::move(folder)) {
+  const FileBytes file = read_file(folder_ / "capture.json", kMaxJson);
+  form_ = parse_capture(file);
+
+  // what is there and has the right size
+  std::vector<std::string> why(form_.pictures.size());
+  for_each_chunk(why.size(), 1, [&](std::size_t p, std::size_t, std::size_t) {
+    try {
+      for (const std::string& name : {form_.pictures[p].file, form_.pictures[p].mask}) {
+        if (name.empty()) continue;
+        const PictureSize size = picture_size(folder_ / name);
+        if (size.width != form_.width || size.height != form_.height)
+          throw Error::in_file((folder_ / name).string(),
+                               fmt::format("{} x {} pixels", form_.width, form_.height),
+                               fmt::format("{} x {}", size.width, size.height));
+      }
+    } catch (const Error& error) {
+      why[p] = error.what();
+    }
+  });
+  std::vector<LeftOut> damaged;
+  for (std::size_t p = 0; p < why.size(); ++p)
+    if (!why[p].empty()) damaged.push_back({form_.pictures[p].file, why[p]});
+  fingerprint_ = hash_of(file.text());
+  leave_out(damaged);
+}
+
+void Capture::leave_out(const std::vector<LeftOut>& damaged) {
+  for (const LeftOut& picture : damaged) {
+    std::erase_if(form_.pictures, [&](const CapturePicture& p) { return p.file == picture.file; });
+    left_out_.push_back(picture);
+    fingerprint_ = hash_of(picture.file, fingerprint_);
+  }
+  const auto fitted = std::ranges::count(form_.pictures, false, &CapturePicture::held_out);
+  if (static_cast<std::size_t>(fitted) < kLeastPictures)
+    throw Error::in_file(
+        (folder_ / "capture.json").string(), fmt::format("at least {} pictures to fit", kLeastPictures),
+        left_out_.empty() ? fmt::format("{}", fitted)
+                          : fmt::format("{}; the first that is left out: {}", fitted, left_out_.front().why));
+}
+
+int Capture::rows_within(std::size_t bytes) const noexcept {
+  const std::size_t row = static_cast<std::size_t>(form_.width) * form_.pictures.size() *
+                          (3 * sizeof(float) + sizeof(PixelState));
+  return static_cast<int>(std::clamp<std::size_t>(bytes / std::max<std::size_t>(row, 1), 1,
+                                                  static_cast<std::size_t>(form_.height)));
+}
+
+Capture::Read Capture::read(int first, int count) const {
+  const bool srgb = form_.transfer == Transfer::srgb;
+  Read read;
+  CaptureRows& rows = read.rows;
+  rows = {.first_row = first,
+          .rows = count,
+          .width = form_.width,
+          .pictures = form_.pictures.size(),
+          .values = {},
+          .states = {}};
+  const std::size_t texels = rows.texels();
+  rows.values.resize(rows.pictures * texels * 3);
+  rows.states.resize(rows.pictures * texels, PixelState::missing);
+  std::vector<std::string> why(rows.pictures);
+  for_each_chunk(rows.pictures, 1, [&](std::size_t p, std::size_t, std::size_t) {
+    const CapturePicture& picture = form_.pictures[p];
+    const std::array<double, 3> scale{picture.scale.r, picture.scale.g, picture.scale.b};
+    try {
+      const Image pixels = read_picture_rows(folder_ / picture.file, first, count, srgb);
+      if (pixels.width != form_.width)
+        throw Error::in_file(picture.file, fmt::format("{} pixels a row", form_.width),
+                             fmt::format("{}", pixels.width));
+      Image mask;
+      if (!picture.mask.empty()) mask = read_picture_rows(folder_ / picture.mask, first, count, false);
+      if (!mask.pixels.empty() && mask.width != form_.width)
+        throw Error::in_file(picture.mask, fmt::format("{} pixels a row", form_.width),
+                             fmt::format("{}", mask.width));
+      for (std::size_t i = 0; i < texels; ++i) {
+        PixelState state =
+            mask.pixels.empty() || mask.pixels[3 * i] > 0 ? PixelState::there : PixelState::masked;
+        float* const to = &rows.values[(p * texels + i) * 3];
+        // at a point, a light's irradiance falls with its distance
+        const int x = static_cast<int>(i % static_cast<std::size_t>(form_.width));
+        const Vec3 point =
+            form_.point(x, first + static_cast<int>(i / static_cast<std::size_t>(form_.width)));
+        const Vec3 way = picture.light.at - point;
+        const double fall = picture.light.is_direction ? 1 : dot(way, way);
+        for (std::size_t c = 0; c < 3; ++c) {
+          const float value = pixels.pixels[3 * i + c];
+          if (!(value >= kLeastValue) || !std::isfinite(value)) state = PixelState::missing;
+          if (form_.clip && static_cast<double>(value) >= *form_.clip && state == PixelState::there)
+            state = PixelState::clipped;
+          to[c] = static_cast<float>(static_cast<double>(value) * scale[c] * fall);
+        }
+        if (state == PixelState::missing) std::fill_n(to, 3, 0.0f);
+        rows.states[p * texels + i] = state;
+      }
+    } catch (const Error& error) {
+      why[p] = error.what();
+      std::fill_n(rows.states.begin() + static_cast<std::ptrdiff_t>(p * texels), texels, PixelState::missing);
+    }
+  });
+  for (std::size_t p = 0; p < why.size(); ++p)
+    if (!why[p].empty()) read.damaged.push_back({form_.pictures[p].file, why[p]});
+  return read;
+}
+
+std::vector<float> Capture::normals() const {
+  if (form_.normals.empty()) return {};
+  const std::filesystem::path path = folder_ / form_.normals;
+  const Image picture = read_picture_rows(path, 0, form_.height, false);
+  if (picture.width != form_.width)
+    throw Error::in_file(path.string(), fmt::format("{} pixels a row", form_.width),
+                         fmt::format("{}", picture.width));
+  std::vector<float> normals;
+  normals.reserve(picture.pixels.size() / 3 * 2);
+  for (std::size_t i = 0; i < picture.pixels.size(); i += 3) {
+    const Vec3 found{static_cast<double>(picture.pixels[i]), static_cast<double>(picture.pixels[i + 1]),
+                     static_cast<double>(picture.pixels[i + 2])};
+    const double size = length(found);
+    if (!(std::abs(size - 1) < kUnitTolerance) || !(found.z > 0))
+      throw Error::in_file(path.string(), "unit vectors above the surface",
+                           fmt::format("({}, {}, {}) in pixel {}", found.x, found.y, found.z, i / 3));
+    normals.push_back(static_cast<float>(found.x / size));
+    normals.push_back(static_cast<float>(found.y / size));
+  }
+  return normals;
+}
+
+}  // namespace burnish

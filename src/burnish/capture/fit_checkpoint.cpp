@@ -1,0 +1,97 @@
+#include <cstring>
+#include <limits>
+
+#include <burnish/capture/fit_checkpoint.h>
+#include <burnish/factors/cbor.h>
+#include <burnish/factors/compact_file.h>
+
+namespace burnish {
+
+namespace {
+
+constexpr int kVersion = 1;
+constexpr std::string_view kName = "burnish fit";
+constexpr std::size_t kParts = 13, kErrorItems = 4;
+constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+constexpr std::size_t kLongestText = 4096;
+
+template <class T>
+std::span<const std::byte> bytes_of(const std::vector<T>& values) {
+  return std::as_bytes(std::span(values));
+}
+
+}  // namespace
+
+std::string format_checkpoint(const FitCheckpoint& checkpoint) {
+  CborWriter cbor;
+  cbor.list(kParts);
+  cbor.text(kName);
+  cbor.integer(kVersion);
+  cbor.integer(static_cast<std::int64_t>(checkpoint.key >> 1));
+  cbor.list(2 * checkpoint.damaged.size());
+  for (const auto& [file, why] : checkpoint.damaged) {
+    cbor.text(file);
+    cbor.text(std::string_view(why).substr(0, kLongestText));
+  }
+  cbor.integer(static_cast<std::int64_t>(checkpoint.missing_pixels));
+  cbor.integer(static_cast<std::int64_t>(checkpoint.clipped_pixels));
+  cbor.number(checkpoint.exposure);
+  const std::string lobes = format_compact({.brdf = checkpoint.lobes, .lambda_nm = {}});
+  cbor.integer(static_cast<std::int64_t>(lobes.size()));
+  cbor.bytes(std::as_bytes(std::span(lobes)));
+  cbor.list(checkpoint.scales.size());
+  for (const float scale : checkpoint.scales) cbor.number(static_cast<double>(scale));
+  cbor.integer(checkpoint.rows);
+  // codes of all lobes, then normals
+  cbor.list(checkpoint.codes.size() + !checkpoint.normals.empty());
+  for (const auto& codes : checkpoint.codes) cbor.bytes(codes);
+  if (!checkpoint.normals.empty()) cbor.bytes(bytes_of(checkpoint.normals));
+  cbor.list(kErrorItems * checkpoint.errors.size());
+  for (const auto& error : checkpoint.errors)
+    for (const std::uint64_t sum : {error.seen, error.all, error.seen_count, error.all_count})
+      cbor.integer(static_cast<std::int64_t>(sum));
+  return cbor.written();
+}
+
+FitCheckpoint parse_checkpoint(const FileBytes& file, int width) {
+  CborReader cbor(file);
+  FitCheckpoint read;
+  cbor.list("a checkpoint", kParts, kParts);
+  if (cbor.text("its name", kName.size()) != kName)
+    cbor.fail(0, "a checkpoint of a surface's fit", "another file");
+  cbor.integer("its version", kVersion, kVersion);
+  read.key = static_cast<std::uint64_t>(cbor.integer("its key", 0, kMost)) << 1;
+  for (std::size_t left = cbor.list("damaged pictures", 0, 2 * kMaxPictures) / 2; left > 0; --left) {
+    std::string name = cbor.text("a picture", kLongestText);
+    read.damaged.push_back({std::move(name), cbor.text("what is damaged", kLongestText)});
+  }
+  read.missing_pixels = static_cast<std::uint64_t>(cbor.integer("missing pixels", 0, kMost));
+  read.clipped_pixels = static_cast<std::uint64_t>(cbor.integer("clipped pixels", 0, kMost));
+  read.exposure = cbor.number("the exposure");
+  const auto size = static_cast<std::uint64_t>(cbor.integer("the size of the lobes", 0, kMost));
+  const auto lobes = cbor.bytes("the lobes", size);
+  read.lobes = parse_compact({file.name + ": its lobes", {lobes.begin(), lobes.end()}}).brdf;
+  const std::size_t count = read.lobes.lobes().size();
+  read.scales.resize(cbor.list("scales", count, count));
+  for (float& scale : read.scales) scale = static_cast<float>(cbor.number("a scale"));
+  read.rows = static_cast<int>(cbor.integer("rows", 0, kMaxMapSide));
+  const auto texels = static_cast<std::uint64_t>(read.rows) * static_cast<std::uint64_t>(width);
+  const std::size_t maps = cbor.list("codes and normals", count, count + 1);
+  for (std::size_t j = 0; j < count; ++j) {
+    const auto codes = cbor.bytes("a lobe's codes", texels);
+    read.codes.emplace_back(codes.begin(), codes.end());
+  }
+  if (maps > count) {
+    const auto normals = cbor.bytes("normals", texels * 2 * sizeof(float));
+    read.normals.resize(texels * 2);
+    std::memcpy(read.normals.data(), normals.data(), normals.size());
+  }
+  read.errors.resize(cbor.list("errors", 0, kErrorItems * kMaxPictures) / kErrorItems);
+  for (auto& error : read.errors)
+    for (std::uint64_t* sum : {&error.seen, &error.all, &error.seen_count, &error.all_count})
+      *sum = static_cast<std::uint64_t>(cbor.integer("an error", 0, kMost));
+  cbor.end();
+  return read;
+}
+
+}  // namespace burnish

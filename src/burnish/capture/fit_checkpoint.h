@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <burnish/capture/capture.h>
+#include <burnish/capture/texel_solver.h>
+#include <burnish/factors/factored_brdf.h>
+#include <burnish/file.h>
+
+namespace burnish {
+
+/// How far the fit of a surface is: its lobes, and the rows whose weights are found.
+struct FitCheckpoint {
+  std::uint64_t key = 0;  ///< of the capture and the options; what has another is not gone on from
+  std::vector<Capture::LeftOut> damaged;  ///< pictures that turned out so since the capture was opened
+  std::uint64_t missing_pixels = 0, clipped_pixels = 0;
+  double exposure = 1;
+  FactoredBrdf lobes;
+  std::vector<float> scales;                  ///< of the lobes' codes
+  int rows = 0;                               ///< that are done, from the first on
+  std::vector<std::vector<std::byte>> codes;  ///< [lobe][row][x] of these
+  std::vector<float> normals;                 ///< [row][x][2] of these, or none
+  std::vector<TexelSolver::PictureError> errors;
+};
+
+/// One CBOR item; it is read by the program that wrote it.
+std::string format_checkpoint(const FitCheckpoint& checkpoint);
+/// Throws Error, naming the offset, for other bytes, and where a number of rows of `width` texels contradicts what
+/// is there.
+FitCheckpoint parse_checkpoint(const FileBytes& file, int width);
+
+}  // namespace burnish

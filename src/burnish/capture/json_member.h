@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <burnish/capture/capture.h>
+#include <burnish/error.h>
+#include <burnish/file.h>
+
+namespace burnish {
+
+using Json = nlohmann::ordered_json;
+
+/// A member of a JSON text and the way to it, which errors name. Every function throws Error where the text has
+/// something else.
+class JsonMember {
+ public:
+  JsonMember(const FileBytes& file, const Json& json, std::string name)
+      : file_(&file), json_(&json), name_(std::move(name)) {}
+
+  [[noreturn]] void fail(const std::string& expected) const {
+    std::string found = json_->dump(-1, ' ', false, Json::error_handler_t::replace);
+    if (found.size() > 40) found = found.substr(0, 40) + "...";
+    throw Error::in_file(file_->name, name_ + ": " + expected, found);
+  }
+  bool has(const char* key) const { return json_->is_object() && json_->contains(key); }
+  JsonMember at(const char* key) const {
+    if (!json_->is_object()) fail("an object");
+    if (!json_->contains(key)) throw Error::in_file(file_->name, child(key), "none");
+    return {*file_, (*json_)[key], child(key)};
+  }
+  std::vector<JsonMember> list(std::size_t least, std::size_t most) const {
+    if (!json_->is_array() || json_->size() < least || json_->size() > most)
+      fail(fmt::format("a list of {} to {}", least, most));
+    std::vector<JsonMember> items;
+    for (std::size_t i = 0; i < json_->size(); ++i)
+      items.emplace_back(*file_, (*json_)[i], fmt::format("{}[{}]", name_, i));
+    return items;
+  }
+  double number(double least, double most) const {
+    const double value = json_->is_number() ? json_->get<double>() : NAN;
+    if (!(value >= least && value <= most)) fail(fmt::format("a number from {} to {}", least, most));
+    return value;
+  }
+  int integer(int least, int most) const {
+    if (!json_->is_number_integer()) fail(fmt::format("a whole number from {} to {}", least, most));
+    return static_cast<int>(number(least, most));
+  }
+  bool truth() const {
+    if (!json_->is_boolean()) fail("true or false");
+    return json_->get<bool>();
+  }
+  std::string text() const {
+    if (!json_->is_string()) fail("a text");
+    return json_->get<std::string>();
+  }
+  /// The name of a file within the folder.
+  std::string file() const {
+    std::string name = text();
+    const std::filesystem::path path(name);
+    const bool outside = path.is_absolute() || std::ranges::find(path, "..") != path.end();
+    if (name.empty() || outside || name.find('\0') != std::string::npos)
+      fail("the name of a file in the folder");
+    return name;
+  }
+  Vec3 vector() const {
+    constexpr double kMost = 1e9;
+    const std::vector<JsonMember> xyz = list(3, 3);
+    return {xyz[0].number(-kMost, kMost), xyz[1].number(-kMost, kMost), xyz[2].number(-kMost, kMost)};
+  }
+  bool is_list() const { return json_->is_array(); }
+
+ private:
+  std::string child(const char* key) const { return name_.empty() ? key : name_ + "." + key; }
+
+  const FileBytes* file_;
+  const Json* json_;
+  std::string name_;
+};
+
+/// The text of a file as JSON at most 32 deep. Throws Error if it is none.
+inline Json parse_json(const FileBytes& file) {
+  constexpr int kDeepest = 32;
+  bool shallow = true;
+  const auto measure = [&](int depth, Json::parse_event_t, Json&) {
+    return shallow = shallow && depth <= kDeepest;
+  };
+  Json json = Json::parse(file.text(), measure, false);
+  if (json.is_discarded() || !shallow)
+    throw Error::in_file(file.name, "JSON text", "none, or one nested too deep");
+  return json;
+}
+
+/// {"direction": [x, y, z]}, a unit vector above the surface, or {"position": [x, y, z]}, a point above it.
+Station parse_station(const JsonMember& member);
+
+}  // namespace burnish

@@ -1,0 +1,224 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <memory>
+
+#include <Imath/half.h>
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStdIO.h>
+#include <fmt/format.h>
+#include <png.h>
+
+#include <burnish/capture/picture_rows.h>
+#include <burnish/error.h>
+#include <burnish/factors/model_file.h>
+
+namespace burnish {
+
+namespace {
+
+constexpr int kMaxSide = 32'768;
+constexpr std::size_t kMaxHead = std::size_t{1} << 20;
+
+[[noreturn]] void fail(const std::filesystem::path& path, const std::string& expected,
+                       const std::string& found) {
+  throw Error::in_file(path.string(), expected, found);
+}
+
+std::vector<std::byte> head_of(const std::filesystem::path& path, std::size_t most) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) fail(path, "a file that can be read", "none");
+  std::vector<std::byte> bytes(most);
+  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(most));
+  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  return bytes;
+}
+
+bool is_png(std::span<const std::byte> head) {
+  constexpr std::array<unsigned char, 8> kMagic{0x89, 'P', 'N', 'G', 0x0d, 0x0a, 0x1a, 0x0a};
+  return head.size() >= kMagic.size() && std::memcmp(head.data(), kMagic.data(), kMagic.size()) == 0;
+}
+
+/// Walks an EXR's header before OpenEXR sees it, which allocates what an attribute's size says before it reads: every
+/// size must lie within the file, and the data window be one of kMaxSide at most.
+void check_exr_head(const std::filesystem::path& path) {
+  const auto size = std::filesystem::file_size(path);
+  const std::vector<std::byte> head = head_of(path, std::min<std::uintmax_t>(size, kMaxHead));
+  std::size_t at = 8;  // magic and version
+  const auto text = [&] {
+    std::string found;
+    for (; at < head.size() && head[at] != std::byte{0}; ++at) found.push_back(static_cast<char>(head[at]));
+    if (at++ >= head.size()) fail(path, "a whole header of an OpenEXR file", "its end");
+    return found;
+  };
+  const auto number = [&](std::size_t where) {
+    std::int32_t value;
+    if (where + sizeof(value) > head.size()) fail(path, "a whole header of an OpenEXR file", "its end");
+    std::memcpy(&value, head.data() + where, sizeof(value));
+    return value;
+  };
+  constexpr std::int32_t kKnownFlags = 0x4ff;  // version 2, long names
+  if (const std::int32_t version = number(4); (version & ~kKnownFlags) != 0 || (version & 0xff) != 2)
+    fail(path, "an OpenEXR file of one part of scan lines", fmt::format("version and flags {:#x}", version));
+  for (;;) {
+    const std::string name = text();
+    if (name.empty()) return;
+    text();  // its type
+    const std::int32_t bytes = number(at);
+    at += sizeof(bytes);
+    if (bytes < 0 || static_cast<std::size_t>(bytes) > head.size() - at)
+      fail(path, fmt::format("attribute '{}' within the header", name), fmt::format("{} bytes", bytes));
+    if (name == "dataWindow" || name == "displayWindow")
+      for (std::size_t side = 0; side < 4; ++side)
+        if (std::abs(std::int64_t{number(at + 4 * side)}) > kMaxSide)
+          fail(path, fmt::format("'{}' within {}", name, kMaxSide), fmt::format("{}", number(at + 4 * side)));
+    at += static_cast<std::size_t>(bytes);
+  }
+}
+
+/// Runs what calls OpenEXR.
+template <class Use>
+auto with_exr(const std::filesystem::path& path, const Use& use) {
+  check_exr_head(path);
+  try {
+    Imf::InputFile file(path.string().c_str(), 0);
+    return use(file);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {  // OpenEXR's own
+    fail(path, "a whole OpenEXR picture", error.what());
+  }
+}
+
+Image read_exr_rows(const std::filesystem::path& path, int first, int count) {
+  return with_exr(path, [&](Imf::InputFile& file) {
+    const Imath::Box2i window = file.header().dataWindow();
+    const int width = window.max.x - window.min.x + 1, height = window.max.y - window.min.y + 1;
+    if (first < 0 || count < 1 || first + count > height)
+      fail(path, fmt::format("rows {} to {}", first, first + count), fmt::format("{} rows", height));
+    const Imf::ChannelList& channels = file.header().channels();
+    const bool colour = channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B");
+    if (!colour && !channels.findChannel("Y")) fail(path, "channels R, G, B or Y", "others");
+    Image rows(width, count, 3);
+    Imf::FrameBuffer buffer;
+    constexpr std::size_t kPixel = 3 * sizeof(float);
+    const std::size_t row = kPixel * static_cast<std::size_t>(width);
+    for (std::size_t c = 0; c < (colour ? 3u : 1u); ++c) {
+      const char* const name = colour ? std::array{"R", "G", "B"}[c] : "Y";
+      const Imf::Channel& channel = *channels.findChannel(name);
+      if (channel.xSampling != 1 || channel.ySampling != 1)
+        fail(path, "channels without subsampling", "others");
+      buffer.insert(name, Imf::Slice::Make(Imf::FLOAT, rows.pixels.data() + c,
+                                           Imath::Box2i({window.min.x, window.min.y + first},
+                                                        {window.max.x, window.min.y + first + count - 1}),
+                                           kPixel, row));
+    }
+    file.setFrameBuffer(buffer);
+    file.readPixels(window.min.y + first, window.min.y + first + count - 1);
+    for (std::size_t i = 0; !colour && i < rows.pixels.size(); i += 3)
+      rows.pixels[i + 1] = rows.pixels[i + 2] = rows.pixels[i];
+    return rows;
+  });
+}
+
+float linear_of_srgb(float value) noexcept {  // [IEC61966]
+  return value <= 0.04045f ? value / 12.92f : std::pow((value + 0.055f) / 1.055f, 2.4f);
+}
+
+/// A PNG being read.
+struct PngFile {
+  png_image image{};
+
+  explicit PngFile(const std::filesystem::path& path) {
+    image.version = PNG_IMAGE_VERSION;
+    if (!png_image_begin_read_from_file(&image, path.string().c_str()))
+      fail(path, "a PNG picture", image.message);
+    if (image.width > static_cast<unsigned>(kMaxSide) || image.height > static_cast<unsigned>(kMaxSide)) {
+      png_image_free(&image);
+      fail(path, fmt::format("sides of at most {}", kMaxSide),
+           fmt::format("{} x {}", image.width, image.height));
+    }
+  }
+  PngFile(const PngFile&) = delete;
+  PngFile& operator=(const PngFile&) = delete;
+  ~PngFile() { png_image_free(&image); }
+};
+
+Image read_png_rows(const std::filesystem::path& path, int first, int count, bool srgb) {
+  PngFile png(path);
+  const int width = static_cast<int>(png.image.width), height = static_cast<int>(png.image.height);
+  if (first < 0 || count < 1 || first + count > height)
+    fail(path, fmt::format("rows {} to {}", first, first + count), fmt::format("{} rows", height));
+  // 8 bits as they stand, 16 as linear ones, which libpng does not touch
+  const bool wide = (png.image.format & PNG_FORMAT_FLAG_LINEAR) != 0;
+  png.image.format = wide ? PNG_FORMAT_LINEAR_RGB : PNG_FORMAT_RGB;
+  std::vector<std::uint16_t> words(wide ? PNG_IMAGE_SIZE(png.image) / 2 : 0);
+  std::vector<std::uint8_t> bytes(wide ? 0 : PNG_IMAGE_SIZE(png.image));
+  const png_color black{0, 0, 0};
+  if (!png_image_finish_read(&png.image, &black, wide ? static_cast<void*>(words.data()) : bytes.data(), 0,
+                             nullptr))
+    fail(path, "a whole PNG picture", png.image.message);
+  Image rows(width, count, 3);
+  const std::size_t begin = static_cast<std::size_t>(first) * static_cast<std::size_t>(width) * 3;
+  for (std::size_t i = 0; i < rows.pixels.size(); ++i) {
+    const float value = wide ? static_cast<float>(words[begin + i]) / 65535.0f
+                             : static_cast<float>(bytes[begin + i]) / 255.0f;
+    rows.pixels[i] = srgb ? linear_of_srgb(value) : value;
+  }
+  return rows;
+}
+
+}  // namespace
+
+PictureSize picture_size(const std::filesystem::path& path) {
+  if (!std::filesystem::is_regular_file(path)) fail(path, "a regular file", "none");
+  const std::vector<std::byte> head = head_of(path, 16);
+  if (is_png(head)) {
+    const PngFile png(path);
+    return {static_cast<int>(png.image.width), static_cast<int>(png.image.height)};
+  }
+  if (!looks_like_exr(head)) fail(path, "an OpenEXR or PNG picture", "other bytes");
+  return with_exr(path, [&](const Imf::InputFile& file) {
+    const Imath::Box2i window = file.header().dataWindow();
+    return PictureSize{window.max.x - window.min.x + 1, window.max.y - window.min.y + 1};
+  });
+}
+
+Image read_picture_rows(const std::filesystem::path& path, int first, int count, bool srgb) {
+  return is_png(head_of(path, 16)) ? read_png_rows(path, first, count, srgb)
+                                   : read_exr_rows(path, first, count);
+}
+
+std::string encode_half_exr(const Image& image) {
+  if (image.channels != 3) throw Error(fmt::format("picture: expected 3 channels, found {}", image.channels));
+  static constexpr float kLargest = 65504;
+  std::vector<Imath::half> halves(image.pixels.size());
+  std::ranges::transform(image.pixels, halves.begin(),
+                         [](float v) { return Imath::half(std::clamp(v, -kLargest, kLargest)); });
+  Imf::Header header(image.width, image.height);
+  header.compression() = Imf::NO_COMPRESSION;
+  Imf::FrameBuffer frame;
+  constexpr std::size_t kPixel = 3 * sizeof(Imath::half);
+  Imath::half* base = halves.data();
+  for (const char* name : {"R", "G", "B"}) {
+    header.channels().insert(name, Imf::Channel(Imf::HALF));
+    frame.insert(name, Imf::Slice(Imf::HALF, reinterpret_cast<char*>(base++), kPixel,
+                                  kPixel * static_cast<std::size_t>(image.width)));
+  }
+  Imf::StdOSStream stream;
+  {
+    Imf::OutputFile file(stream, header, 0);
+    file.setFrameBuffer(frame);
+    file.writePixels(image.height);
+  }
+  return stream.str();
+}
+
+}  // namespace burnish

@@ -1,0 +1,319 @@
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <Eigen/Dense>
+#include <fmt/format.h>
+
+#include <burnish/capture/sampled_texels.h>
+#include <burnish/math/angles.h>
+#include <burnish/math/parallel.h>
+#include <burnish/math/random.h>
+#include <burnish/metrics/sphere_images.h>
+
+namespace burnish {
+
+namespace {
+
+constexpr double kWhitePercentile = 0.97;
+constexpr double kGlossWidths[] = {0.08, 0.2, 0.45};  // alpha of GGX
+constexpr int kGlossNodes = 48;
+constexpr std::size_t kGroupsPerLobe = 12, kMostGroups = 96, kLeastTexels = 24;
+constexpr int kGroupingSteps = 10;
+
+/// x and y of the sampled texels, row by row.
+std::vector<std::array<int, 2>> spread_texels(int width, int height, std::size_t count, std::uint64_t seed) {
+  const double cell =
+      std::max(1.0, std::sqrt(static_cast<double>(width) * height / static_cast<double>(count)));
+  const int across = std::max(1, static_cast<int>(width / cell)),
+            down = std::max(1, static_cast<int>(height / cell));
+  Pcg32 random(seed, 77);
+  std::vector<std::array<int, 2>> texels;
+  for (int j = 0; j < down; ++j)
+    for (int i = 0; i < across; ++i) {
+      const double x = (i + random.uniform()) * width / across, y = (j + random.uniform()) * height / down;
+      texels.push_back({std::min(width - 1, static_cast<int>(x)), std::min(height - 1, static_cast<int>(y))});
+    }
+  std::ranges::sort(texels, {}, [](const std::array<int, 2>& t) { return std::pair(t[1], t[0]); });
+  return texels;
+}
+
+double distance(std::span<const double> a, std::span<const double> b) noexcept {
+  double sum = 0;
+  for (std::size_t d = 0; d < a.size(); ++d) sum += (a[d] - b[d]) * (a[d] - b[d]);
+  return sum;
+}
+
+/// Points of so many coordinates, one after the other.
+struct Points {
+  std::size_t size = 0, coordinates = 0;
+  std::vector<double> values;
+
+  std::span<const double> operator[](std::size_t i) const noexcept {
+    return std::span(values).subspan(i * coordinates, coordinates);
+  }
+  std::span<double> operator[](std::size_t i) noexcept {
+    return std::span(values).subspan(i * coordinates, coordinates);
+  }
+};
+
+struct Groups {
+  Points centres;
+  std::vector<std::size_t> of;  ///< of each point its group
+  std::vector<std::size_t> sizes;
+};
+
+/// k-means [Lloyd1982] from centres far from each other.
+Groups grouped(const Points& points, std::size_t count) {
+  Groups groups{.centres = {count, points.coordinates, std::vector<double>(count * points.coordinates)},
+                .of = std::vector<std::size_t>(points.size),
+                .sizes = {}};
+  std::vector<double> nearest(points.size, INFINITY);
+  for (std::size_t g = 0, next = 0; g < count; ++g) {
+    std::ranges::copy(points[next], groups.centres[g].begin());
+    for (std::size_t i = 0; i < points.size; ++i)
+      nearest[i] = std::min(nearest[i], distance(points[i], groups.centres[g]));
+    next = static_cast<std::size_t>(std::ranges::max_element(nearest) - nearest.begin());
+  }
+  for (int step = 0; step < kGroupingSteps; ++step) {
+    for (std::size_t i = 0; i < points.size; ++i) {
+      double best = INFINITY;
+      for (std::size_t g = 0; g < count; ++g)
+        if (const double d = distance(points[i], groups.centres[g]); d < best) {
+          best = d;
+          groups.of[i] = g;
+        }
+    }
+    Points sums{count, points.coordinates, std::vector<double>(groups.centres.values.size())};
+    groups.sizes.assign(count, 0);
+    for (std::size_t i = 0; i < points.size; ++i) {
+      ++groups.sizes[groups.of[i]];
+      for (std::size_t d = 0; d < points.coordinates; ++d) sums[groups.of[i]][d] += points[i][d];
+    }
+    for (std::size_t g = 0; g < count; ++g)
+      for (std::size_t d = 0; groups.sizes[g] > 0 && d < points.coordinates; ++d)
+        groups.centres[g][d] = sums[g][d] / static_cast<double>(groups.sizes[g]);
+  }
+  return groups;
+}
+
+/// The groups that stand out: the farthest from 0, and each next the farthest from the span of those before
+/// (successive projections [Araujo2001]). Small groups are of odd texels.
+std::vector<std::size_t> corners(const Groups& groups, std::size_t count, std::size_t least_size) {
+  Points rest = groups.centres;
+  std::vector<std::size_t> found;
+  while (found.size() < count) {
+    std::size_t best = rest.size;
+    double farthest = -1;
+    for (std::size_t g = 0; g < rest.size; ++g) {
+      const std::vector<double> zero(rest.coordinates);
+      const double far = distance(rest[g], zero);
+      const bool taken = std::ranges::find(found, g) != found.end();
+      if (!taken && groups.sizes[g] >= least_size && far > farthest) {
+        farthest = far;
+        best = g;
+      }
+    }
+    if (best == rest.size) {
+      if (least_size == 0) break;
+      least_size = 0;  // rather odd ones than none
+      continue;
+    }
+    found.push_back(best);
+    const std::vector<double> along(rest[best].begin(), rest[best].end());
+    const double square = std::inner_product(along.begin(), along.end(), along.begin(), 0.0);
+    for (std::size_t g = 0; g < rest.size && square > 0; ++g) {
+      const double share = std::inner_product(along.begin(), along.end(), rest[g].begin(), 0.0) / square;
+      for (std::size_t d = 0; d < rest.coordinates; ++d) rest[g][d] -= share * along[d];
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+SampledTexels sample_texels(Capture& capture, std::size_t most_values, std::size_t tile_bytes,
+                            std::uint64_t seed, const std::function<void(double)>& progress) {
+  for (;;) {
+    const CaptureForm& form = capture.form();
+    const std::size_t pictures = form.pictures.size();
+    SampledTexels found;
+    TexelSamples& all = found.samples;
+    all.texels =
+        spread_texels(form.width, form.height, std::max<std::size_t>(1, most_values / (3 * pictures)), seed);
+    all.pictures = pictures;
+    all.values.resize(pictures * all.size() * 3);
+    all.states.resize(pictures * all.size());
+    std::vector<Capture::LeftOut> damaged;
+    const int step = capture.rows_within(tile_bytes);
+    std::size_t begin = 0;
+    for (int row = 0; row < form.height && damaged.empty(); row += step) {
+      const int rows = std::min(step, form.height - row);
+      const Capture::Read read = capture.read(row, rows);
+      damaged = read.damaged;
+      std::size_t end = begin;
+      while (end < all.size() && all.texels[end][1] < row + rows) ++end;
+      const std::size_t texels = read.rows.texels();
+      for (std::size_t p = 0; p < pictures; ++p) {
+        for (std::size_t t = begin; t < end; ++t) {
+          const std::size_t from =
+              p * texels +
+              static_cast<std::size_t>(all.texels[t][1] - row) * static_cast<std::size_t>(form.width) +
+              static_cast<std::size_t>(all.texels[t][0]);
+          std::copy_n(&read.rows.values[3 * from], 3, &all.values[3 * (p * all.size() + t)]);
+          all.states[p * all.size() + t] = read.rows.states[from];
+        }
+        if (form.pictures[p].held_out) continue;
+        const auto states = std::span(read.rows.states).subspan(p * texels, texels);
+        found.missing += static_cast<std::size_t>(std::ranges::count(states, PixelState::missing));
+        found.clipped += static_cast<std::size_t>(std::ranges::count(states, PixelState::clipped));
+      }
+      begin = end;
+      if (progress) progress(static_cast<double>(row + rows) / form.height);
+    }
+    if (damaged.empty()) return found;
+    capture.leave_out(damaged);
+  }
+}
+
+double exposure_of(const TexelSamples& samples, const CaptureForm& form) {
+  std::vector<float> values;
+  for (std::size_t p = 0; p < samples.pictures; ++p) {
+    if (form.pictures[p].held_out) continue;
+    for (std::size_t t = 0; t < samples.size(); ++t) {
+      const std::size_t pixel = p * samples.size() + t;
+      if (samples.states[pixel] != PixelState::there && samples.states[pixel] != PixelState::clipped)
+        continue;
+      values.insert(values.end(), &samples.values[3 * pixel], &samples.values[3 * pixel] + 3);
+    }
+  }
+  const double white = values.empty() ? 0 : percentile(std::move(values), kWhitePercentile);
+  return white > 0 ? 1 / white : 1;
+}
+
+std::vector<float> diffuse_normals(const TexelSamples& samples, const CaptureForm& form) {
+  constexpr int kPasses = 8;
+  constexpr double kRound = 0.02, kMostSlope = 0.866;  // the first of the mean value
+  std::vector<float> normals(2 * samples.size());
+  for_each_chunk(samples.size(), 64, [&](std::size_t, std::size_t begin, std::size_t end) {
+    struct Row {
+      Vec3 light;
+      double value;
+    };
+    std::vector<Row> rows;
+    for (std::size_t t = begin; t < end; ++t) {
+      const Vec3 point = form.point(samples.texels[t][0], samples.texels[t][1]);
+      rows.clear();
+      double mean = 0;
+      for (std::size_t p = 0; p < samples.pictures; ++p) {
+        const std::size_t pixel = p * samples.size() + t;
+        if (form.pictures[p].held_out || samples.states[pixel] != PixelState::there) continue;
+        const float* const rgb = &samples.values[3 * pixel];
+        rows.push_back(
+            {form.pictures[p].light.seen_from(point), static_cast<double>(rgb[0] + rgb[1] + rgb[2]) / 3});
+        mean += rows.back().value;
+      }
+      if (rows.size() < 4) continue;
+      mean /= static_cast<double>(rows.size());
+      // albedo times normal, by least squares reweighted towards least absolute errors
+      Eigen::Vector3d b(0, 0, mean);
+      for (int pass = 0; pass < kPasses; ++pass) {
+        Eigen::Matrix3d a = 1e-9 * Eigen::Matrix3d::Identity();
+        Eigen::Vector3d right = Eigen::Vector3d::Zero();
+        for (const Row& row : rows) {
+          const Eigen::Vector3d l(row.light.x, row.light.y, row.light.z);
+          const double rest = std::abs(row.value - std::max(0.0, b.dot(l)));
+          const double weight = pass == 0 ? 1 : 1 / (rest + kRound * mean);
+          a += weight * l * l.transpose();
+          right += weight * row.value * l;
+        }
+        b = a.ldlt().solve(right);
+      }
+      Vec3 n = normalize({b.x(), b.y(), std::max(b.z(), 1e-6 * mean)});
+      const double slope = std::hypot(n.x, n.y), within = std::min(1.0, kMostSlope / std::max(slope, 1e-12));
+      normals[2 * t] = static_cast<float>(within * n.x);
+      normals[2 * t + 1] = static_cast<float>(within * n.y);
+    }
+  });
+  return normals;
+}
+
+FactoredBrdf general_lobes() {
+  std::vector<Table> tables;
+  std::vector<Lobe> lobes;
+  for (std::size_t c = 0; c < 3; ++c) {
+    Lobe diffuse{.scale = {0, 0, 0}, .factors = {}};
+    diffuse.scale[c] = 1 / kPi;
+    lobes.push_back(diffuse);
+  }
+  for (const double alpha : kGlossWidths) {
+    // the shape of GGX's distribution [Walter2007], 1 at the normal
+    Table table{.name = fmt::format("d{}", tables.size()),
+                .layout = {.width = kGlossNodes, .warp = {WarpKind::power, 0.5}, .warp_y = {}, .warp_z = {}},
+                .channels = 1,
+                .values = {}};
+    for (int x = 0; x < kGlossNodes; ++x) {
+      const double z = node_direction(table.layout, x, 0).z, square = alpha * alpha;
+      const double shape = square / (z * z * (square - 1) + 1);
+      table.values.push_back(static_cast<float>(shape * shape));
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+      Lobe glossy{
+          .scale = {0, 0, 0},
+          .factors = {
+              {.table = tables.size(), .projection = kProjectHalf, .projection_y = {}, .projection_z = {}}}};
+      glossy.scale[c] = 1 / (4 * kPi * alpha * alpha);
+      lobes.push_back(glossy);
+    }
+    tables.push_back(std::move(table));
+  }
+  return FactoredBrdf(3, std::move(tables), std::move(lobes), TableFormat::single);
+}
+
+std::vector<std::vector<std::size_t>> pure_texels(const TexelSamples& samples, const CaptureForm& form,
+                                                  const std::vector<float>& normals, double exposure,
+                                                  std::size_t count) {
+  const TexelSolver solver(general_lobes(), form, exposure);
+  const TexelFits fits = solver.solve(samples, normals, {.passes = 2});
+
+  // shares of each lobe, so that mixtures lie between what they are made of
+  Points points{samples.size(), solver.lobes(),
+                std::vector<double>(fits.weights.begin(), fits.weights.end())};
+  std::vector<double> mean(points.coordinates);
+  for (std::size_t i = 0; i < points.size; ++i)
+    for (std::size_t d = 0; d < points.coordinates; ++d)
+      mean[d] += points[i][d] / static_cast<double>(points.size);
+  const double all = std::accumulate(mean.begin(), mean.end(), 0.0);
+  for (std::size_t i = 0; i < points.size; ++i) {
+    double sum = 0;
+    for (std::size_t d = 0; d < points.coordinates; ++d) {
+      points[i][d] /= std::sqrt(mean[d] * all) + 1e-9 * all + 1e-30;
+      sum += points[i][d];
+    }
+    for (double& value : points[i]) value /= sum + 1e-30;
+  }
+
+  const std::size_t group_count = std::min({count * kGroupsPerLobe, kMostGroups, points.size});
+  const Groups groups = grouped(points, group_count);
+  const std::size_t least = std::max<std::size_t>(3, points.size / (8 * group_count));
+  std::vector<std::vector<std::size_t>> sets;
+  for (const std::size_t g : corners(groups, std::min(count, group_count), least)) {
+    // the texels nearest to the group's centre
+    std::vector<std::size_t> order(points.size);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::vector<double> far(points.size);
+    for (std::size_t i = 0; i < points.size; ++i) far[i] = distance(points[i], groups.centres[g]);
+    const std::size_t size =
+        std::min(points.size, std::max({kLeastTexels, groups.sizes[g], points.size / (8 * count)}));
+    std::ranges::nth_element(
+        order, order.begin() + static_cast<std::ptrdiff_t>(size - 1),
+        [&](std::size_t a, std::size_t b) { return std::pair(far[a], a) < std::pair(far[b], b); });
+    order.resize(size);
+    std::ranges::sort(order);
+    sets.push_back(std::move(order));
+  }
+  while (sets.size() < count) sets.push_back(sets.front());
+  return sets;
+}
+
+}  // namespace burnish

@@ -1,0 +1,553 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <burnish/capture/fit_checkpoint.h>
+#include <burnish/capture/sampled_texels.h>
+#include <burnish/capture/surface_fit.h>
+#include <burnish/error.h>
+#include <burnish/factors/compact_file.h>
+#include <burnish/fitting/refinement/log_model.h>
+#include <burnish/fitting/refinement/refine.h>
+#include <burnish/fitting/refinement/rounding.h>
+#include <burnish/math/parallel.h>
+#include <burnish/math/random.h>
+
+namespace burnish {
+
+namespace {
+
+constexpr std::size_t kChannels = 3;
+// What of a capture is kept to fit lobes to.
+constexpr std::size_t kSampleValues = 6'000'000;
+// Pixels that lobes are refined on: half of them count as pixels, half as pairs.
+constexpr std::size_t kTrainingPixels = 60'000, kStartPixels = 15'000;
+constexpr std::size_t kHalfBins = 32;  // even along the root of theta_h
+constexpr double kLeastCosine = 0.05;  // of what counts as a pair; pixels may be lower
+constexpr double kLeastPixelCosine = 0.02;
+constexpr float kLeastTrust = 0.05f;
+// As of models with volumes (fitting/fit.cpp).
+constexpr ErrorTerms kShares{.pictures = 3, .dimmed = 0.3, .relative = 0.4, .log_cos = 0.4};
+constexpr double kSmooth = 1e-9;
+// The way there is made at few nodes and on few pixels.
+constexpr double kCoarseShare = 0.25;
+constexpr std::size_t kCoarsePixels = 24'000;
+constexpr int kCoarseSteps = 4, kFullSteps = 4, kLastSteps = 6, kFullRounds = 3;
+const HomomorphicOptions kStart{
+    .smooth = 1e-5, .floor = PictureLoss::kFloor, .tolerance = 0.03, .progress = {}};
+// Nodes of a lobe's tables, relative to each other: theta_h, theta_d, phi_d.
+constexpr double kHalfNodes = 30, kDifferenceNodes = 20, kAzimuthNodes = 6;
+constexpr double kLineShare = 0.07;
+constexpr std::size_t kTexelBytes = 4;  // rgb9e5
+constexpr double kCodeRoom = 1.25;      // of weights' scale over what nearly all texels have
+constexpr double kNearlyAll = 0.999;
+
+const char* name_of(NormalsFrom normals) noexcept {
+  return normals == NormalsFrom::capture ? "capture" : normals == NormalsFrom::flat ? "flat" : "estimated";
+}
+
+/// K lobes z(theta_h) g(theta_h,theta_d,phi_d) of so many bytes each.
+ModelSpec spec_of_lobes(std::size_t lobes, std::size_t bytes) {
+  const double texels = static_cast<double>(bytes / kTexelBytes) - 4;
+  const int line = std::clamp(static_cast<int>(kLineShare * texels), 8, 256);
+  const double scale = std::cbrt((texels - line) / (kHalfNodes * kDifferenceNodes * kAzimuthNodes));
+  const auto nodes = [&](double share, int least) {
+    return std::max(least, static_cast<int>(share * scale));
+  };
+  const int x = nodes(kHalfNodes, 4), y = nodes(kDifferenceNodes, 3), z = nodes(kAzimuthNodes, 2);
+  std::string model;
+  std::vector<std::string> tables;
+  for (std::size_t j = 0; j < lobes; ++j) {
+    // names are letters
+    const std::string suffix(1, static_cast<char>('a' + j));
+    model += fmt::format("{}z{}(theta_h) g{}(theta_h,theta_d,phi_d)", j > 0 ? " + " : "", suffix, suffix);
+    tables.push_back(fmt::format("z{}={},power:0.5", suffix, line));
+    tables.push_back(fmt::format("g{}={}x{}x{},power:0.5", suffix, x, y, z));
+  }
+  return parse_model_spec(model, tables, true);
+}
+
+Vec3 normal_of(const std::vector<float>& normals, std::size_t t) noexcept {
+  if (normals.empty()) return {0, 0, 1};
+  const double x = static_cast<double>(normals[2 * t]), y = static_cast<double>(normals[2 * t + 1]);
+  return normalize({x, y, std::sqrt(std::max(0.0, 1 - x * x - y * y))});
+}
+
+/// A pixel that may be fitted: which, and its directions in the texel's frame.
+struct Candidate {
+  std::uint32_t picture, texel;
+  DirectionPair pair;
+  std::size_t bin;  // of theta_h
+};
+
+/// The fit of one capture.
+class SurfaceFitter {
+ public:
+  SurfaceFitter(Capture capture, const SurfaceFitOptions& options)
+      : capture_(std::move(capture)), options_(options), left_out_at_first_(capture_.left_out().size()) {
+    const std::size_t lobes = options.book ? options.book->lobes().size() : options.lobes;
+    if (lobes < 1 || lobes > kMaxSurfaceLobes)
+      throw Error(fmt::format("surface fit: expected 1 to {} lobes, found {}", kMaxSurfaceLobes, lobes));
+    if (options.lobe_bytes < kLeastLobeBytes || options.lobe_bytes > kMostLobeBytes)
+      throw Error(fmt::format("surface fit: expected lobes of {} to {} bytes, found {}", kLeastLobeBytes,
+                              kMostLobeBytes, options.lobe_bytes));
+    if (options.book && options.book->channels() != kChannels)
+      throw Error(fmt::format("surface fit: expected a book of {} channels, found {}", kChannels,
+                              options.book->channels()));
+    normals_from_ = options.normals.value_or(capture_.form().normals.empty() ? NormalsFrom::estimate
+                                                                             : NormalsFrom::capture);
+    if (normals_from_ == NormalsFrom::capture && capture_.form().normals.empty())
+      throw Error::in_file((capture_.folder() / "capture.json").string(), "normals", "none");
+  }
+
+  SurfaceFit run() {
+    const auto start = std::chrono::steady_clock::now();
+    if (normals_from_ == NormalsFrom::capture) all_normals_ = capture_.normals();
+    if (!resume()) find_lobes();
+    find_weights();
+    SurfaceFit fit{.surface = surface(), .report = std::move(report_)};
+    fit.report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    fit.surface.notes =
+        nlohmann::json::parse(report_json(fit.report)).dump();  // as a file's reader orders it
+    return fit;
+  }
+
+ private:
+  void progress(std::string_view stage, double fraction) const {
+    if (options_.progress) options_.progress(stage, fraction);
+  }
+
+  // ---- Lobes
+
+  void find_lobes() {
+    SampledTexels sampled = sample_texels(capture_, kSampleValues, options_.tile_bytes, options_.seed,
+                                          [&](double f) { progress("reading pictures", f); });
+    samples_ = std::move(sampled.samples);
+    report_.missing_pixels = sampled.missing;
+    report_.clipped_pixels = sampled.clipped;
+    exposure_ = exposure_of(samples_, capture_.form());
+    fits_.normals = sampled_normals();
+    if (options_.book) {
+      lobes_ = *options_.book;
+      if (normals_from_ == NormalsFrom::estimate) start_normals();
+      fit_samples(true);
+    } else {
+      start_normals();
+      start_lobes();
+      for (int round = 0; round < options_.rounds; ++round) refine_round(round);
+    }
+    find_scales();
+    samples_ = {};
+  }
+
+  std::vector<float> sampled_normals() const {
+    std::vector<float> normals;
+    if (all_normals_.empty()) return normals;
+    for (const auto& [x, y] : samples_.texels) {
+      const std::size_t at =
+          2 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(capture_.form().width) +
+               static_cast<std::size_t>(x));
+      normals.insert(normals.end(), {all_normals_[at], all_normals_[at + 1]});
+    }
+    return normals;
+  }
+
+  /// As if texels were diffuse, then by what general lobes make of them.
+  std::vector<float> first_normals(const TexelSamples& samples) const {
+    constexpr int kSteps = 4;
+    const TexelSolver solver(general_lobes(), capture_.form(), exposure_);
+    return solver
+        .solve(samples, diffuse_normals(samples, capture_.form()),
+               {.passes = 1, .normals = true, .normal_steps = kSteps})
+        .normals;
+  }
+  void start_normals() {
+    if (normals_from_ != NormalsFrom::estimate) return;
+    progress("normals", 0);
+    fits_.normals = first_normals(samples_);
+    progress("normals", 1);
+  }
+
+  /// Each the log-linear fit to texels that look like one material.
+  void start_lobes() {
+    progress("starting lobes", 0);
+    const auto sets = pure_texels(samples_, capture_.form(), fits_.normals, exposure_, options_.lobes);
+    const std::size_t bytes = bytes_in(0);
+    const ModelSpec spec = spec_of_lobes(options_.lobes, bytes), alone = spec_of_lobes(1, bytes);
+    model_ = LogModel{.spec = spec, .channels = kChannels, .log_values = {}};
+    for (std::size_t j = 0; j < sets.size(); ++j) {
+      std::vector<bool> chosen(samples_.size());
+      for (const std::size_t t : sets[j]) chosen[t] = true;
+      const TrainingSet set = training_set(kStartPixels, j, [&](std::size_t t) { return chosen[t]; });
+      const LogModel lobe = fit_one_lobe(alone, set, set.values, kStart);
+      for (const auto& table : lobe.log_values) model_.log_values.push_back(table);
+      progress("starting lobes", static_cast<double>(j + 1) / static_cast<double>(sets.size()));
+    }
+    lobes_ = to_brdf(model_, TableFormat::single);
+    fit_samples(false);
+  }
+
+  void fit_samples(bool last) {
+    const TexelSolver solver(*lobes_, capture_.form(), exposure_);
+    const bool normals = normals_from_ == NormalsFrom::estimate;
+    TexelFits fits =
+        solver.solve(samples_, std::move(fits_.normals),
+                     {.passes = 3, .normals = normals, .normal_steps = last ? 8 : 4, .trust = true});
+    fits_ = std::move(fits);
+  }
+
+  bool is_coarse(int round) const noexcept { return round + kFullRounds < options_.rounds; }
+  std::size_t bytes_in(int round) const noexcept {
+    const auto few = static_cast<std::size_t>(kCoarseShare * static_cast<double>(options_.lobe_bytes));
+    return is_coarse(round) ? std::max(few, kLeastLobeBytes) : options_.lobe_bytes;
+  }
+
+  void refine_round(int round) {
+    const bool last = round + 1 == options_.rounds, coarse = is_coarse(round);
+    if (round > 0 && bytes_in(round) != bytes_in(round - 1))
+      model_ = resampled(model_, spec_of_lobes(options_.lobes, bytes_in(round)));
+    const TrainingSet set =
+        training_set(coarse ? kCoarsePixels : kTrainingPixels, 100 + static_cast<std::size_t>(round),
+                     [](std::size_t) { return true; });
+    RefineOptions options{
+        .shares = kShares,
+        .smooth = kSmooth,
+        .format = last ? TableFormat::rgb9e5 : TableFormat::single,
+        .max_iterations = last     ? kLastSteps
+                          : coarse ? kCoarseSteps
+                                   : kFullSteps,
+        .progress = [&](double f) { progress("fitting lobes", (round + f) / options_.rounds); }};
+    refine(model_, set, options);
+    lobes_ = last ? to_rounded_brdf(model_, set, options) : to_brdf(model_, TableFormat::single);
+    rounds_done_ = round + 1;
+    fit_samples(last);
+  }
+
+  /// Pixels of the sampled texels that `takes` has: as many of each theta_h as there are, up to an even part; weighted
+  /// as all of them for pictures, evenly over theta_h for the pairs.
+  template <class Takes>
+  TrainingSet training_set(std::size_t count, std::size_t stream, const Takes& takes) const {
+    const CaptureForm& form = capture_.form();
+    // a few times as many as are taken, at random
+    std::vector<Candidate> candidates;
+    Pcg32 random(options_.seed, 1000 + stream);
+    std::vector<std::size_t> fitted;
+    for (std::size_t p = 0; p < form.pictures.size(); ++p)
+      if (!form.pictures[p].held_out) fitted.push_back(p);
+    std::vector<std::uint32_t> texels;
+    for (std::size_t t = 0; t < samples_.size(); ++t)
+      if (takes(t)) texels.push_back(static_cast<std::uint32_t>(t));
+    std::vector<std::size_t> in_bin(kHalfBins);
+    const std::size_t draws = 6 * count;
+    for (std::size_t d = 0; d < draws; ++d) {
+      const auto t = texels[random.next() % texels.size()];
+      const std::size_t p = fitted[random.next() % fitted.size()], pixel = p * samples_.size() + t;
+      if (samples_.states[pixel] != PixelState::there) continue;
+      if (trusts(pixel) < kLeastTrust) continue;
+      const Vec3 point = form.point(samples_.texels[t][0], samples_.texels[t][1]);
+      const ShadingFrame frame = frame_about(normal_of(fits_.normals, t), {1, 0, 0});
+      Candidate c{.picture = static_cast<std::uint32_t>(p),
+                  .texel = t,
+                  .pair = {frame.local(form.pictures[p].light.seen_from(point)),
+                           frame.local(form.pictures[p].view.seen_from(point))},
+                  .bin = 0};
+      if (c.pair.wi.z < kLeastPixelCosine || c.pair.wo.z < kLeastPixelCosine) continue;
+      const Vec3 h = half_vector(c.pair.wi, c.pair.wo);
+      const double theta_h = std::acos(std::clamp(h.z, -1.0, 1.0));
+      c.bin = std::min(kHalfBins - 1, static_cast<std::size_t>(std::sqrt(theta_h / 1.5707963) * kHalfBins));
+      ++in_bin[c.bin];
+      candidates.push_back(c);
+    }
+    if (candidates.empty()) throw Error("surface fit: expected pixels that can be fitted, found none");
+
+    // an even part of the bins
+    const std::size_t bins = kHalfBins - static_cast<std::size_t>(std::ranges::count(in_bin, std::size_t{0}));
+    std::size_t part = std::max<std::size_t>(1, count / bins);
+    for (int pass = 0; pass < 4; ++pass) {  // what small bins leave goes to the others
+      std::size_t used = 0, open = 0;
+      for (const std::size_t n : in_bin) {
+        used += std::min(n, part);
+        open += n > part;
+      }
+      if (open == 0 || used >= count) break;
+      part += (count - used) / open;
+    }
+    std::vector<std::size_t> taken(kHalfBins);
+    std::vector<const Candidate*> chosen;
+    for (const Candidate& c : candidates)
+      if (taken[c.bin]++ < part) chosen.push_back(&c);
+
+    TrainingSet set{.channels = kChannels,
+                    .isotropic = true,
+                    .pairs = {},
+                    .values = {},
+                    .weights = {},
+                    .lobe_weights = {},
+                    .exposure = exposure_,
+                    .albedo = {}};
+    const std::size_t lobes = fits_.weights.size() / samples_.size();
+    const auto add = [&](const Candidate& c, double weight) {
+      const std::size_t pixel = c.picture * samples_.size() + c.texel;
+      set.pairs.push_back(c.pair);
+      for (std::size_t k = 0; k < kChannels; ++k)
+        set.values.push_back(std::max(0.0f, samples_.values[kChannels * pixel + k]) /
+                             static_cast<float>(c.pair.wi.z));
+      set.weights.push_back(static_cast<float>(weight) * trusts(pixel));
+      for (std::size_t j = 0; j < lobes; ++j) set.lobe_weights.push_back(fits_.weights[c.texel * lobes + j]);
+    };
+    for (std::size_t i = 0; i < chosen.size(); i += 2)
+      add(*chosen[i], static_cast<double>(in_bin[chosen[i]->bin]) /
+                          static_cast<double>(std::min(in_bin[chosen[i]->bin], part)));
+    set.picture_count = set.size();
+    for (std::size_t i = 1; i < chosen.size(); i += 2)
+      if (std::min(chosen[i]->pair.wi.z, chosen[i]->pair.wo.z) > kLeastCosine) add(*chosen[i], 1);
+    return set;
+  }
+
+  /// How much lobes are fitted to a pixel. Before they have been refined once, it is they that are wrong.
+  float trusts(std::size_t pixel) const noexcept { return rounds_done_ == 0 ? 1 : fits_.trust[pixel]; }
+
+  /// Of each lobe's weights, by the sampled texels.
+  void find_scales() {
+    const std::size_t lobes = lobes_->lobes().size();
+    for (std::size_t j = 0; j < lobes; ++j) {
+      std::vector<float> weights;
+      for (std::size_t t = 0; t < samples_.size(); ++t) weights.push_back(fits_.weights[t * lobes + j]);
+      const std::size_t at = static_cast<std::size_t>(kNearlyAll * static_cast<double>(weights.size() - 1));
+      std::ranges::nth_element(weights, weights.begin() + static_cast<std::ptrdiff_t>(at));
+      const auto scale = static_cast<float>(kCodeRoom * static_cast<double>(weights[at]));
+      scales_.push_back(scale > 0 ? scale : 1);
+    }
+  }
+
+  // ---- Checkpoints
+
+  /// Of the capture as it was opened and of all that changes the result.
+  std::uint64_t key() const {
+    const std::string text = fmt::format(
+        "{} {} {} {} {} {} {}", capture_.fingerprint(), options_.book ? 0 : options_.lobes,
+        options_.lobe_bytes, name_of(normals_from_), options_.rounds, options_.seed,
+        options_.book ? format_compact({.brdf = *options_.book, .lambda_nm = {}}) : std::string());
+    return hash_of(text) & ~std::uint64_t{1};
+  }
+
+  bool resume() {
+    key_ = key();
+    if (options_.checkpoint.empty() || !std::filesystem::exists(options_.checkpoint)) return false;
+    FitCheckpoint found = parse_checkpoint(read_file(options_.checkpoint), capture_.form().width);
+    if (found.key != key_)
+      throw Error::in_file(options_.checkpoint.string(), "a checkpoint of this capture and these options",
+                           "one of others");
+    capture_.leave_out(found.damaged);
+    done_ = std::move(found);
+    lobes_ = done_.lobes;
+    exposure_ = done_.exposure;
+    scales_ = done_.scales;
+    report_.missing_pixels = done_.missing_pixels;
+    report_.clipped_pixels = done_.clipped_pixels;
+    report_.resumed_rows = done_.rows;
+    return true;
+  }
+
+  void save() {
+    if (options_.checkpoint.empty()) return;
+    done_.key = key_;
+    done_.damaged.assign(capture_.left_out().begin() + static_cast<std::ptrdiff_t>(left_out_at_first_),
+                         capture_.left_out().end());
+    done_.missing_pixels = report_.missing_pixels;
+    done_.clipped_pixels = report_.clipped_pixels;
+    done_.exposure = exposure_;
+    done_.lobes = *lobes_;
+    done_.scales = scales_;
+    write_then_rename(options_.checkpoint, format_checkpoint(done_));
+  }
+
+  // ---- Weights of all texels
+
+  void find_weights() {
+    const CaptureForm& form = capture_.form();
+    done_.codes.resize(lobes_->lobes().size());
+    done_.errors.resize(form.pictures.size());
+    const TexelSolver solver(*lobes_, form, exposure_);
+    const int step = capture_.rows_within(options_.tile_bytes);
+    int saved = done_.rows;
+    if (saved == 0) save();
+    while (done_.rows < form.height) {
+      const int row = done_.rows, rows = std::min(step, form.height - row);
+      Capture::Read read = capture_.read(row, rows);
+      if (!read.damaged.empty())
+        throw Error::in_file((capture_.folder() / read.damaged.front().file).string(),
+                             "a picture that stays as it was when it was read first",
+                             read.damaged.front().why);
+      const TexelSamples tile = samples_of(std::move(read.rows));
+      const auto start = std::chrono::steady_clock::now();
+      TexelFits fits = fit_tile(solver, tile, row);
+      store(fits, form.width);
+      report_.weight_seconds +=
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      const auto part = solver.errors(tile, fits);
+      for (std::size_t p = 0; p < part.size(); ++p) done_.errors[p] += part[p];
+      done_.rows = row + rows;
+      // a checkpoint holds all rows that are done: not too often
+      if (constexpr int kParts = 16; done_.rows - saved >= std::max(form.height / kParts, 1)) {
+        save();
+        saved = done_.rows;
+      }
+      progress("fitting weights", static_cast<double>(done_.rows) / form.height);
+    }
+    report_.fitted = score(done_.errors, false);
+    report_.held_out = score(done_.errors, true);
+  }
+
+  TexelFits fit_tile(const TexelSolver& solver, const TexelSamples& tile, int row) const {
+    std::vector<float> normals;
+    if (normals_from_ == NormalsFrom::capture) {
+      const std::size_t first =
+          2 * static_cast<std::size_t>(row) * static_cast<std::size_t>(capture_.form().width);
+      normals.assign(all_normals_.begin() + static_cast<std::ptrdiff_t>(first),
+                     all_normals_.begin() + static_cast<std::ptrdiff_t>(first + 2 * tile.size()));
+    }
+    const bool estimate = normals_from_ == NormalsFrom::estimate;
+    if (estimate) normals = first_normals(tile);
+    return solver.solve(tile, std::move(normals), {.passes = 3, .normals = estimate, .normal_steps = 8});
+  }
+
+  /// Rounds what was found to what is stored, and appends it.
+  void store(TexelFits& fits, int width) {
+    const std::size_t lobes = scales_.size(), count = fits.weights.size() / lobes;
+    const int rows = static_cast<int>(count) / width;
+    for (std::size_t j = 0; j < lobes; ++j) {
+      std::vector<float> weights(count);
+      for (std::size_t t = 0; t < count; ++t) weights[t] = std::min(fits.weights[t * lobes + j], scales_[j]);
+      const SurfaceMap map(width, rows, 1, TableFormat::unorm8, scales_[j], weights);
+      done_.codes[j].insert(done_.codes[j].end(), map.stored_bytes().begin(), map.stored_bytes().end());
+      for (std::size_t t = 0; t < count; ++t)
+        fits.weights[t * lobes + j] = map.texel(static_cast<int>(t) % width, static_cast<int>(t) / width)[0];
+    }
+    if (fits.normals.empty()) return;
+    fits.normals = round_normals(fits.normals, width);
+    done_.normals.insert(done_.normals.end(), fits.normals.begin(), fits.normals.end());
+  }
+  static std::vector<float> round_normals(const std::vector<float>& normals, int width) {
+    const int rows = static_cast<int>(normals.size() / 2) / width;
+    const SurfaceMap map(width, rows, 2, TableFormat::half, 1, normals);
+    std::vector<float> rounded;
+    rounded.reserve(normals.size());
+    for (int y = 0; y < rows; ++y)
+      for (int x = 0; x < width; ++x) {
+        const SurfaceMap::Value n = map.texel(x, y);
+        rounded.insert(rounded.end(), {n[0], n[1]});
+      }
+    return rounded;
+  }
+
+  PictureScore score(const std::vector<TexelSolver::PictureError>& errors, bool held_out) const {
+    PictureScore score;
+    double seen = 0, all = 0;
+    std::size_t seen_pictures = 0, all_pictures = 0;
+    for (std::size_t p = 0; p < errors.size(); ++p) {
+      if (capture_.form().pictures[p].held_out != held_out) continue;
+      ++score.pictures;
+      if (const auto mean = errors[p].seen_mean()) {
+        seen += *mean;
+        ++seen_pictures;
+      }
+      if (const auto mean = errors[p].all_mean()) {
+        all += *mean;
+        ++all_pictures;
+      }
+    }
+    const auto psnr = [](double sum, std::size_t count) -> std::optional<double> {
+      if (count == 0) return std::nullopt;
+      return -10 * std::log10(sum / static_cast<double>(count));
+    };
+    score.psnr = psnr(seen, seen_pictures);
+    score.psnr_of_all = psnr(all, all_pictures);
+    return score;
+  }
+
+  SurfaceModel surface() {
+    const CaptureForm& form = capture_.form();
+    SurfaceMaps maps;
+    for (std::size_t j = 0; j < scales_.size(); ++j)
+      maps.weights.emplace_back(form.width, form.height, std::size_t{1}, TableFormat::unorm8, scales_[j],
+                                std::span<const std::byte>(done_.codes[j]));
+    if (!done_.normals.empty())
+      maps.normals.emplace(form.width, form.height, std::size_t{2}, TableFormat::half, 1.0f,
+                           std::span<const float>(done_.normals));
+    SurfaceModel surface{.brdf = SpatialBrdf(*lobes_, std::move(maps)), .notes = "{}"};
+    report_.width = static_cast<std::size_t>(form.width);
+    report_.height = static_cast<std::size_t>(form.height);
+    report_.pictures = form.pictures.size();
+    report_.lobes = scales_.size();
+    report_.left_out = capture_.left_out();
+    report_.normals = normals_from_;
+    report_.exposure = exposure_;
+    report_.weight_bytes = surface.brdf.weight_bytes();
+    report_.frame_bytes = surface.brdf.frame_bytes();
+    report_.lobe_bytes = lobes_->bytes();
+    report_.bytes_a_texel =
+        static_cast<double>(report_.weight_bytes) +
+        static_cast<double>(report_.lobe_bytes) / (static_cast<double>(form.width) * form.height);
+    return surface;
+  }
+
+  Capture capture_;
+  const SurfaceFitOptions& options_;
+  NormalsFrom normals_from_ = NormalsFrom::flat;
+  std::vector<float> all_normals_;
+  TexelSamples samples_;
+  TexelFits fits_;
+  double exposure_ = 1;
+  int rounds_done_ = 0;
+  LogModel model_;
+  std::optional<FactoredBrdf> lobes_;
+  std::vector<float> scales_;
+  FitCheckpoint done_;
+  std::uint64_t key_ = 0;
+  std::size_t left_out_at_first_ = 0;
+  SurfaceReport report_;
+};
+
+}  // namespace
+
+SurfaceFit fit_surface(Capture capture, const SurfaceFitOptions& options) {
+  return SurfaceFitter(std::move(capture), options).run();
+}
+
+std::string report_json(const SurfaceReport& report) {
+  using Json = nlohmann::ordered_json;
+  const auto number = [](const std::optional<double>& value) -> Json {
+    if (!value || !std::isfinite(*value)) return nullptr;
+    return *value;
+  };
+  const auto score = [&](const PictureScore& of) {
+    return Json{
+        {"pictures", of.pictures}, {"psnr", number(of.psnr)}, {"psnr_of_all", number(of.psnr_of_all)}};
+  };
+  Json left_out = Json::array();
+  for (const auto& [file, why] : report.left_out) left_out.push_back({{"file", file}, {"why", why}});
+  return Json{{"width", report.width},
+              {"height", report.height},
+              {"pictures", report.pictures},
+              {"left_out", std::move(left_out)},
+              {"missing_pixels", report.missing_pixels},
+              {"clipped_pixels", report.clipped_pixels},
+              {"normals", name_of(report.normals)},
+              {"lobes", report.lobes},
+              {"exposure", report.exposure},
+              {"fitted", score(report.fitted)},
+              {"held_out", score(report.held_out)},
+              {"weight_bytes", report.weight_bytes},
+              {"frame_bytes", report.frame_bytes},
+              {"lobe_bytes", report.lobe_bytes},
+              {"bytes_a_texel", report.bytes_a_texel}}
+      .dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace burnish

@@ -1,0 +1,546 @@
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Dense>
+
+#include <burnish/capture/texel_lanes.h>
+#include <burnish/capture/texel_solver.h>
+#include <burnish/math/parallel.h>
+
+namespace burnish {
+
+namespace {
+
+constexpr std::size_t kBlock = kTexelLanes;
+constexpr std::size_t kChannels = 3;
+constexpr double kRidge = 1e-6;  // of the mean diagonal
+// A pixel's error counts as that of x^(1/2), x = exposure f cos; below this x as if it were this.
+constexpr float kFloor = 0.004f;
+// Lobes may run away where nothing holds them: squares of their values stay finite.
+constexpr float kMostValue = 1e4f;
+// Errors of the root at which a pixel counts a quarter, pass by pass.
+constexpr std::array<float, 3> kTrustedError{1e6f, 0.2f, 0.08f};
+// Shadows are darker than a model: what is brighter is rather a highlight that lobes lack yet, trusted four times as far.
+constexpr float kBrighter = 1.0f / 16;
+constexpr float kNormalDelta = 0.01f;  // of finite differences
+constexpr double kMostSlope = 0.95;    // length of a normal's x and y
+constexpr double kMostStep = 0.15;
+constexpr double kDamping = 1e-2, kEase = 0.4, kHarden = 8;
+constexpr double kGrey = 1 / 2.2;
+
+Vec3 normal_of(const float* xy) noexcept {
+  const double x = static_cast<double>(xy[0]), y = static_cast<double>(xy[1]);
+  return {x, y, std::sqrt(std::max(0.0, 1 - x * x - y * y))};
+}
+
+}  // namespace
+
+void solve_nonnegative(std::span<const double> a, std::span<const double> b, std::span<double> w) noexcept {
+  const std::size_t n = b.size();
+  constexpr std::size_t kMost = kMaxSurfaceLobes;
+  std::array<bool, kMost> free{};
+  std::array<double, kMost> solution{};
+  std::array<std::array<double, kMost>, kMost> factor;
+  std::array<std::size_t, kMost> member;
+  std::ranges::fill(w, 0.0);
+  for (const double value : b)
+    if (!std::isfinite(value)) return;
+  for (const double value : a)
+    if (!std::isfinite(value)) return;
+
+  // the least for the free unknowns, by Cholesky
+  const auto solve_free = [&] {
+    std::size_t m = 0;
+    for (std::size_t i = 0; i < n; ++i)
+      if (free[i]) member[m++] = i;
+    for (std::size_t i = 0; i < m; ++i) {
+      double rest = b[member[i]];
+      for (std::size_t j = 0; j <= i; ++j) {
+        double sum = a[member[i] * n + member[j]];
+        for (std::size_t k = 0; k < j; ++k) sum -= factor[i][k] * factor[j][k];
+        factor[i][j] = i == j ? std::sqrt(std::max(sum, 1e-300)) : sum / factor[j][j];
+      }
+      for (std::size_t k = 0; k < i; ++k) rest -= factor[i][k] * solution[member[k]];
+      solution[member[i]] = rest / factor[i][i];
+    }
+    for (std::size_t i = m; i-- > 0;) {
+      double rest = solution[member[i]];
+      for (std::size_t k = i + 1; k < m; ++k) rest -= factor[k][i] * solution[member[k]];
+      solution[member[i]] = rest / factor[i][i];
+    }
+  };
+
+  std::size_t changes = 0;
+  while (changes < 3 * n) {
+    // the unknown that the sum falls by fastest
+    std::size_t best = n;
+    double steepest = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (free[i]) continue;
+      double slope = b[i];
+      for (std::size_t j = 0; j < n; ++j) slope -= a[i * n + j] * w[j];
+      const double scaled = slope / std::sqrt(std::max(a[i * n + i], 1e-300));
+      constexpr double kSmallest = 1e-12;
+      if (scaled > steepest && slope > kSmallest * std::abs(b[i])) {
+        steepest = scaled;
+        best = i;
+      }
+    }
+    if (best == n) return;
+    free[best] = true;
+    // as far as all stay positive
+    for (; changes < 3 * n;) {
+      ++changes;
+      solve_free();
+      double step = 1;
+      std::size_t blocking = n;
+      for (std::size_t i = 0; i < n; ++i)
+        if (free[i] && solution[i] <= 0) {
+          const double share = w[i] > solution[i] ? w[i] / (w[i] - solution[i]) : 0;
+          if (share < step || blocking == n) {
+            step = share;
+            blocking = i;
+          }
+        }
+      for (std::size_t i = 0; i < n; ++i)
+        if (free[i]) w[i] += step * (solution[i] - w[i]);
+      if (blocking == n) break;
+      free[blocking] = false;
+      w[blocking] = 0;
+    }
+  }
+}
+
+TexelSamples samples_of(CaptureRows rows) {
+  TexelSamples samples{.texels = {},
+                       .pictures = rows.pictures,
+                       .values = std::move(rows.values),
+                       .states = std::move(rows.states)};
+  for (int y = 0; y < rows.rows; ++y)
+    for (int x = 0; x < rows.width; ++x) samples.texels.push_back({x, rows.first_row + y});
+  return samples;
+}
+
+TexelSolver::TexelSolver(const FactoredBrdf& lobes, const CaptureForm& form, double exposure)
+    : evaluator_(lobes), form_(form), exposure_(exposure) {}
+
+/// Some texels side by side, and room for what is computed of them.
+class TexelSolver::Block {
+ public:
+  Block(const TexelSolver& solver, const TexelSamples& samples, bool held_out)
+      : solver_(solver),
+        samples_(samples),
+        lobes_(solver.lobes()),
+        exposure_(static_cast<float>(solver.exposure_)) {
+    const auto& pictures = solver.form_.pictures;
+    for (std::size_t p = 0; p < pictures.size(); ++p)
+      if (pictures[p].held_out == held_out) pictures_.push_back(p);
+    model_.resize(pictures_.size() * lobes_ * kChannels * kBlock);
+    trust_.resize(pictures_.size() * kBlock, 1);
+    weights_.resize(lobes_);
+    values_.resize(pictures_.size() * kChannels);
+    states_.resize(pictures_.size());
+  }
+
+  std::span<const std::size_t> pictures() const noexcept { return pictures_; }
+  std::size_t count() const noexcept { return count_; }
+
+  void begin(std::size_t first, std::size_t count, const float* normals) {
+    first_ = first;
+    const bool same_places = solver_.form_.directional() && !normals;
+    const bool known = same_places && evaluated_;  // all blocks see the same directions
+    count_ = count;
+    std::ranges::fill(trust_, 1.0f);
+    load();
+    if (known) return;
+    evaluate(normals, 0, 0, model_);
+    evaluated_ = true;
+  }
+
+  /// f cos(theta_i) of the lobes under normals moved by (dx, dy), [picture][lobe][channel][texel].
+  void evaluate(const float* normals, float dx, float dy, std::vector<float>& to) const {
+    std::array<std::array<float, kBlock>, 6> w;
+    std::vector<float> f(lobes_ * kChannels * kBlock);
+    std::array<ShadingFrame, kBlock> frames;
+    std::array<Vec3, kBlock> points;
+    const float most = kMostValue / exposure_;
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      const std::size_t t = first_ + std::min(i, count_ - 1);
+      points[i] = solver_.form_.point(samples_.texels[t][0], samples_.texels[t][1]);
+      if (!normals) continue;
+      const std::array<float, 2> xy{normals[2 * t] + dx, normals[2 * t + 1] + dy};
+      frames[i] = frame_about(normalize(normal_of(xy.data())), {1, 0, 0});
+    }
+    for (std::size_t k = 0; k < pictures_.size(); ++k) {
+      const CapturePicture& picture = solver_.form_.pictures[pictures_[k]];
+      for (std::size_t i = 0; i < kBlock; ++i) {
+        const Vec3 light = frames[i].local(picture.light.seen_from(points[i])),
+                   view = frames[i].local(picture.view.seen_from(points[i]));
+        w[0][i] = static_cast<float>(light.x);
+        w[1][i] = static_cast<float>(light.y);
+        w[2][i] = static_cast<float>(light.z);
+        w[3][i] = static_cast<float>(view.x);
+        w[4][i] = static_cast<float>(view.y);
+        w[5][i] = static_cast<float>(view.z);
+      }
+      solver_.evaluator_.eval(DirectionSpans{w[0], w[1], w[2], w[3], w[4], w[5]}, f);
+      float* const out = &to[k * lobes_ * kChannels * kBlock];
+      for (std::size_t r = 0; r < lobes_ * kChannels; ++r)
+        for (std::size_t i = 0; i < kBlock; ++i)
+          out[r * kBlock + i] = std::min(f[r * kBlock + i] * w[2][i], most);
+    }
+  }
+
+  /// Least squares for the weights, each pass trusting pixels by the errors that the one before left.
+  void fit_weights(int passes, int first_pass) {
+    for (int pass = 0; pass < passes; ++pass) {
+      gram(pass + first_pass);
+      std::array<double, kMaxSurfaceLobes * kMaxSurfaceLobes> a;
+      std::array<double, kMaxSurfaceLobes> b, w;
+      for (std::size_t i = 0; i < count_; ++i) {
+        double trace = 0;
+        for (std::size_t k = 0, at = 0; k < lobes_; ++k) {
+          for (std::size_t l = 0; l <= k; ++l, ++at)
+            a[k * lobes_ + l] = a[l * lobes_ + k] = static_cast<double>(matrix_[at][i]);
+          b[k] = static_cast<double>(vector_[k][i]);
+          trace += a[k * lobes_ + k];
+        }
+        for (std::size_t k = 0; k < lobes_; ++k)
+          a[k * lobes_ + k] += kRidge * trace / static_cast<double>(lobes_) + 1e-30;
+        solve_nonnegative(std::span(a).first(lobes_ * lobes_), std::span(b).first(lobes_),
+                          std::span(w).first(lobes_));
+        for (std::size_t k = 0; k < lobes_; ++k) weights_[k][i] = static_cast<float>(w[k]);
+      }
+    }
+  }
+
+  /// Normals and weights from where they are, by damped steps; those that lead up are taken back, texel by texel.
+  void find_normals(float* normals, int steps) {
+    std::vector<float> best_weights(count_ * lobes_), best_normals(2 * count_);
+    std::array<double, kBlock> best, damping;
+    best.fill(INFINITY);
+    damping.fill(kDamping);
+    for (int step = 0; step <= steps; ++step) {
+      if (step > 0) {
+        step_normals(normals, damping);
+        fit_weights(1, 2);
+      }
+      const std::array<double, kBlock> found = costs();
+      bool taken_back = false;
+      for (std::size_t i = 0; i < count_; ++i) {
+        float* const n = normals + 2 * (first_ + i);
+        const std::span<float> kept(&best_weights[i * lobes_], lobes_);
+        if (found[i] < best[i]) {
+          best[i] = found[i];
+          damping[i] *= kEase;
+          for (std::size_t j = 0; j < lobes_; ++j) kept[j] = weights_[j][i];
+          std::copy_n(n, 2, &best_normals[2 * i]);
+        } else {
+          damping[i] *= kHarden;
+          taken_back = true;
+          for (std::size_t j = 0; j < lobes_; ++j) weights_[j][i] = kept[j];
+          std::copy_n(&best_normals[2 * i], 2, n);
+        }
+      }
+      if (taken_back) evaluate(normals, 0, 0, model_);
+    }
+  }
+
+  /// What is left of the pixels of each texel, as weights count it.
+  std::array<double, kBlock> costs() const {
+    std::array<double, kBlock> sums{};
+    for (std::size_t k = 0; k < pictures_.size(); ++k)
+      for (std::size_t c = 0; c < kChannels; ++c) {
+        const Terms terms = terms_of(k, c, 0);
+        constexpr float kReach = 0.08f * 0.08f;
+        for (std::size_t i = 0; i < kBlock; ++i) {
+          const float rest = terms.value[i] - terms.model[i], square = terms.omega[i] * rest * rest;
+          sums[i] += static_cast<double>(square / (1 + square / kReach));
+        }
+      }
+    return sums;
+  }
+
+  void load_weights(const float* weights) {
+    for (std::size_t i = 0; i < count_; ++i)
+      for (std::size_t k = 0; k < lobes_; ++k) weights_[k][i] = weights[(first_ + i) * lobes_ + k];
+  }
+  float weight(std::size_t i, std::size_t lobe) const noexcept { return weights_[lobe][i]; }
+  float trust(std::size_t k, std::size_t i) const noexcept { return trust_[k * kBlock + i]; }
+  /// The model's f cos(theta_i) of one picture and channel.
+  TexelRow values(std::size_t k, std::size_t c) const noexcept {
+    TexelRow total;
+    sum_lobes(pixels(k, c), weights_.data(), total.data());
+    return total;
+  }
+  std::size_t pixel(std::size_t k, std::size_t i) const noexcept {
+    return pictures_[k] * samples_.size() + first_ + std::min(i, count_ - 1);
+  }
+
+  /// Trust in pixels by the errors that are left.
+  void find_trust(int pass) {
+    for (std::size_t k = 0; k < pictures_.size(); ++k) find_trust(k, all_terms(k, pass), pass);
+  }
+
+ private:
+  struct Terms {
+    TexelRow value, model, omega;  // of one picture and channel
+  };
+  // omega: see find_omega, of the mean of measured and modelled value; 0 of what does not count.
+  Terms terms_of(std::size_t k, std::size_t c, int pass) const {
+    Terms terms{.value = values_[k * kChannels + c], .model = values(k, c), .omega = {}};
+    TexelRow share, at;
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      const bool clipped = states_[k][i] == PixelState::clipped;
+      const bool above = clipped && pass > 0 && terms.model[i] > terms.value[i];
+      share[i] = (states_[k][i] == PixelState::there || clipped) && !above ? 1.0f : 0.0f;
+      at[i] = pass == 0 ? terms.value[i] : 0.5f * (terms.value[i] + terms.model[i]);
+    }
+    find_omega(exposure_, kFloor, at.data(), share.data(), terms.omega.data());
+    return terms;
+  }
+
+  /// A damped step of every normal, weights free to follow: Gauss and Newton's for both, weights eliminated.
+  void step_normals(float* normals, const std::array<double, kBlock>& damping) {
+    if (slopes_[0].empty())
+      for (auto& slope : slopes_) slope.resize(model_.size());
+    evaluate(normals, kNormalDelta, 0, slopes_[0]);
+    evaluate(normals, 0, kNormalDelta, slopes_[1]);
+    gram(static_cast<int>(kTrustedError.size()) - 1);
+    const NormalSums sums = normal_sums();
+    for (std::size_t i = 0; i < count_; ++i) {
+      Eigen::Matrix2d a;
+      a << sums.xx[i], sums.xy[i], sums.xy[i], sums.yy[i];
+      const double damp = damping[i] * a.trace() + 1e-30;
+      a -= eliminated(i, sums);
+      a.diagonal().array() += damp;
+      const Eigen::Vector2d way =
+          static_cast<double>(kNormalDelta) * a.ldlt().solve(Eigen::Vector2d(sums.x[i], sums.y[i]));
+      if (!way.allFinite()) continue;
+      const double step = std::min(1.0, kMostStep / std::max(way.norm(), 1e-12));
+      float* const n = normals + 2 * (first_ + i);
+      const double x = static_cast<double>(n[0]) + step * way.x(),
+                   y = static_cast<double>(n[1]) + step * way.y();
+      const double within = std::min(1.0, kMostSlope / std::max(std::hypot(x, y), 1e-12));
+      n[0] = static_cast<float>(within * x);
+      n[1] = static_cast<float>(within * y);
+    }
+    evaluate(normals, 0, 0, model_);
+  }
+
+  using Sums = std::array<double, kBlock>;
+  /// Of a texel's normal: matrix, right side, and products with the weights, by differences of kNormalDelta.
+  struct NormalSums {
+    Sums xx{}, xy{}, yy{}, x{}, y{};
+    std::vector<Sums> cross_x, cross_y;  // [lobe]
+  };
+  NormalSums normal_sums() const {
+    NormalSums sums;
+    sums.cross_x.resize(lobes_);
+    sums.cross_y.resize(lobes_);
+    for (std::size_t k = 0; k < pictures_.size(); ++k)
+      for (std::size_t c = 0; c < kChannels; ++c) {
+        const Terms terms = terms_of(k, c, static_cast<int>(kTrustedError.size()) - 1);
+        const std::size_t first = (k * lobes_ * kChannels + c) * kBlock, stride = kChannels * kBlock;
+        for (std::size_t i = 0; i < kBlock; ++i) {
+          float sx = 0, sy = 0;
+          for (std::size_t j = 0; j < lobes_; ++j) {
+            const std::size_t at = first + j * stride + i;
+            sx += weights_[j][i] * (slopes_[0][at] - model_[at]);
+            sy += weights_[j][i] * (slopes_[1][at] - model_[at]);
+          }
+          const float omega = terms.omega[i] * trust_[k * kBlock + i], rest = terms.value[i] - terms.model[i];
+          sums.xx[i] += static_cast<double>(omega * sx * sx);
+          sums.xy[i] += static_cast<double>(omega * sx * sy);
+          sums.yy[i] += static_cast<double>(omega * sy * sy);
+          sums.x[i] += static_cast<double>(omega * sx * rest);
+          sums.y[i] += static_cast<double>(omega * sy * rest);
+          for (std::size_t j = 0; j < lobes_; ++j) {
+            const float lobe = omega * model_[first + j * stride + i];
+            sums.cross_x[j][i] += static_cast<double>(lobe * sx);
+            sums.cross_y[j][i] += static_cast<double>(lobe * sy);
+          }
+        }
+      }
+    return sums;
+  }
+
+  /// What of a texel's matrix of the normal goes into weights that follow it: those that are not 0.
+  Eigen::Matrix2d eliminated(std::size_t i, const NormalSums& sums) const {
+    constexpr int kMost = static_cast<int>(kMaxSurfaceLobes);
+    constexpr double kAlike = 1e-4;  // lobes may be alike
+    std::array<std::size_t, kMaxSurfaceLobes> free;
+    Eigen::Index count = 0;
+    for (std::size_t j = 0; j < lobes_; ++j)
+      if (weights_[j][i] > 0) free[static_cast<std::size_t>(count++)] = j;
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMost, kMost> own(count, count);
+    Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::ColMajor, kMost, 2> with(count, 2);
+    for (Eigen::Index r = 0; r < count; ++r) {
+      const std::size_t j = free[static_cast<std::size_t>(r)];
+      for (Eigen::Index q = 0; q <= r; ++q)
+        own(r, q) = own(q, r) =
+            static_cast<double>(matrix_[j * (j + 1) / 2 + free[static_cast<std::size_t>(q)]][i]);
+      with(r, 0) = sums.cross_x[j][i];
+      with(r, 1) = sums.cross_y[j][i];
+    }
+    own.diagonal().array() += kAlike * own.trace() + 1e-30;
+    return with.transpose() * own.ldlt().solve(with);
+  }
+
+  /// What was measured, as rows.
+  void load() {
+    for (std::size_t k = 0; k < pictures_.size(); ++k)
+      for (std::size_t i = 0; i < kBlock; ++i) {
+        const std::size_t from = pixel(k, i);
+        states_[k][i] = samples_.states[from];
+        for (std::size_t c = 0; c < kChannels; ++c)
+          values_[k * kChannels + c][i] = samples_.values[from * kChannels + c];
+      }
+  }
+
+  TexelPixels pixels(std::size_t k, std::size_t c) const noexcept {
+    return {.lobes = lobes_,
+            .model = &model_[(k * lobes_ * kChannels + c) * kBlock],
+            .stride = kChannels * kBlock,
+            .value = values_[k * kChannels + c].data()};
+  }
+
+  std::array<Terms, kChannels> all_terms(std::size_t k, int pass) const {
+    return {terms_of(k, 0, pass), terms_of(k, 1, pass), terms_of(k, 2, pass)};
+  }
+
+  /// By the worst channel.
+  void find_trust(std::size_t k, const std::array<Terms, kChannels>& terms, int pass) {
+    const float reach = kTrustedError[std::min(static_cast<std::size_t>(pass), kTrustedError.size() - 1)];
+    float* const trust = &trust_[k * kBlock];
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      float worst = 0, there = 0;
+      for (std::size_t c = 0; c < kChannels; ++c) {
+        const float rest = terms[c].value[i] - terms[c].model[i];
+        worst = std::max(worst, (rest < 0 ? 1 : kBrighter) * terms[c].omega[i] * rest * rest);
+        there = std::max(there, terms[c].omega[i]);
+      }
+      const float share = 1 + worst / (reach * reach);
+      trust[i] = there > 0 ? 1 / (share * share) : 0;
+    }
+  }
+
+  void gram(int pass) {
+    for (auto& row : matrix_) row.fill(0);
+    for (auto& row : vector_) row.fill(0);
+    for (std::size_t k = 0; k < pictures_.size(); ++k) {
+      std::array<Terms, kChannels> terms = all_terms(k, pass);
+      if (pass > 0) find_trust(k, terms, pass);
+      const float* const trust = &trust_[k * kBlock];
+      for (std::size_t c = 0; c < kChannels; ++c) {
+        for (std::size_t i = 0; i < kBlock; ++i) terms[c].omega[i] *= trust[i];
+        add_normal_equations(pixels(k, c), terms[c].omega.data(), matrix_.data(), vector_.data());
+      }
+    }
+  }
+
+  const TexelSolver& solver_;
+  const TexelSamples& samples_;
+  std::size_t lobes_, first_ = 0, count_ = 0;
+  float exposure_;
+  bool evaluated_ = false;
+  std::vector<std::size_t> pictures_;
+  std::vector<float> model_, trust_;
+  std::vector<TexelRow> weights_, values_;
+  std::vector<std::array<PixelState, kBlock>> states_;
+  std::array<std::vector<float>, 2> slopes_;
+  std::array<TexelRow, kMaxSurfaceLobes*(kMaxSurfaceLobes + 1) / 2> matrix_;
+  std::array<TexelRow, kMaxSurfaceLobes> vector_;
+};
+
+namespace {
+
+constexpr std::size_t kBlocksTogether = 8;  // of one thread, sharing what is allocated
+
+}  // namespace
+
+TexelFits TexelSolver::solve(const TexelSamples& samples, std::vector<float> normals,
+                             const Options& options) const {
+  TexelFits fits{.weights = std::vector<float>(samples.size() * lobes()),
+                 .normals = std::move(normals),
+                 .trust = {},
+                 .costs = {}};
+  if (options.normals && fits.normals.empty()) fits.normals.resize(2 * samples.size());
+  if (options.trust) fits.trust.resize(samples.states.size());
+  if (options.costs) fits.costs.resize(samples.size());
+  float* const xy = fits.normals.empty() ? nullptr : fits.normals.data();
+  for_each_chunk(samples.size(), kBlock * kBlocksTogether,
+                 [&](std::size_t, std::size_t begin, std::size_t end) {
+                   const auto block = std::make_unique<Block>(*this, samples, false);
+                   for (std::size_t first = begin; first < end; first += kBlock) {
+                     const std::size_t count = std::min(kBlock, end - first);
+                     block->begin(first, count, xy);
+                     block->fit_weights(options.normals ? 1 : options.passes, 0);
+                     if (options.normals) {
+                       block->find_normals(xy, options.normal_steps);
+                       block->fit_weights(options.passes, 1);
+                     }
+                     for (std::size_t i = 0; i < count; ++i)
+                       for (std::size_t j = 0; j < lobes(); ++j)
+                         fits.weights[(first + i) * lobes() + j] = block->weight(i, j);
+                     if (options.costs)
+                       std::ranges::copy_n(block->costs().begin(), static_cast<std::ptrdiff_t>(count),
+                                           &fits.costs[first]);
+                     if (!options.trust) continue;
+                     block->find_trust(static_cast<int>(kTrustedError.size()) - 1);
+                     for (std::size_t k = 0; k < block->pictures().size(); ++k)
+                       for (std::size_t i = 0; i < count; ++i)
+                         fits.trust[block->pixel(k, i)] = block->trust(k, i);
+                   }
+                 });
+  return fits;
+}
+
+std::vector<TexelSolver::PictureError> TexelSolver::errors(const TexelSamples& samples,
+                                                           const TexelFits& fits) const {
+  const float* const xy = fits.normals.empty() ? nullptr : fits.normals.data();
+  const std::size_t chunk = kBlock * kBlocksTogether;
+  std::vector<std::vector<PictureError>> partial(chunk_count(samples.size(), chunk));
+  const auto seen_as = [&](float value) {
+    return std::pow(std::clamp(exposure_ * static_cast<double>(value), 0.0, 1.0), kGrey);
+  };
+  for_each_chunk(samples.size(), chunk, [&](std::size_t number, std::size_t begin, std::size_t end) {
+    std::vector<PictureError>& errors = partial[number];
+    errors.resize(samples.pictures);
+    for (const bool held_out : {false, true}) {
+      const auto block = std::make_unique<Block>(*this, samples, held_out);
+      for (std::size_t first = begin; first < end; first += kBlock) {
+        const std::size_t count = std::min(kBlock, end - first);
+        block->begin(first, count, xy);
+        block->load_weights(fits.weights.data());
+        for (std::size_t k = 0; k < block->pictures().size(); ++k) {
+          PictureError& error = errors[block->pictures()[k]];
+          const std::array<TexelRow, kChannels> model{block->values(k, 0), block->values(k, 1),
+                                                      block->values(k, 2)};
+          for (std::size_t i = 0; i < count; ++i) {
+            const std::size_t pixel = block->pixel(k, i);
+            const PixelState state = samples.states[pixel];
+            if (state == PixelState::missing) continue;
+            double square = 0;
+            for (std::size_t c = 0; c < kChannels; ++c) {
+              const double off = seen_as(samples.values[pixel * kChannels + c]) - seen_as(model[c][i]);
+              square += off * off;
+            }
+            const auto units = static_cast<std::uint64_t>(std::llround(square / PictureError::kUnit));
+            error.all += units;
+            error.all_count += kChannels;
+            if (state == PixelState::masked) continue;
+            error.seen += units;
+            error.seen_count += kChannels;
+          }
+        }
+      }
+    }
+  });
+  std::vector<PictureError> sums(samples.pictures);
+  for (const auto& part : partial)
+    for (std::size_t p = 0; p < sums.size(); ++p) sums[p] += part[p];
+  return sums;
+}
+
+}  // namespace burnish

@@ -1,0 +1,102 @@
+#include <array>
+
+#include <fmt/format.h>
+
+#include <burnish/error.h>
+#include <burnish/factors/compact_extension.h>
+#include <burnish/surface/surface_file.h>
+
+namespace burnish {
+
+namespace {
+
+constexpr int kVersion = 1;
+constexpr std::size_t kHeadItems = 4, kMapItems = 4;
+constexpr int kHasNormals = 1, kHasTangents = 2;
+// The numbers that stand for them in files: places in this list.
+constexpr std::array kFormats{TableFormat::unorm8, TableFormat::half};
+
+/// Weights, then normals and tangents.
+std::vector<const SurfaceMap*> all_maps(const SurfaceMaps& maps) {
+  std::vector<const SurfaceMap*> all;
+  for (const SurfaceMap& map : maps.weights) all.push_back(&map);
+  if (maps.normals) all.push_back(&*maps.normals);
+  if (maps.tangents) all.push_back(&*maps.tangents);
+  return all;
+}
+
+void write_maps(CborWriter& cbor, const SpatialBrdf& brdf) {
+  const std::vector<const SurfaceMap*> maps = all_maps(brdf.maps());
+  cbor.list(kHeadItems + kMapItems * maps.size());
+  cbor.integer(kVersion);
+  cbor.integer(brdf.width());
+  cbor.integer(brdf.height());
+  cbor.integer((brdf.maps().normals ? kHasNormals : 0) + (brdf.maps().tangents ? kHasTangents : 0));
+  for (const SurfaceMap* map : maps) {
+    cbor.integer(static_cast<std::int64_t>(map->channels()));
+    cbor.integer(map->format() == kFormats[0] ? 0 : 1);
+    cbor.number(static_cast<double>(map->scale()));
+    cbor.bytes(map->stored_bytes());
+  }
+}
+
+SurfaceMap read_map(CborReader& cbor, int width, int height) {
+  const auto at = cbor.offset();
+  const auto channels = static_cast<std::size_t>(cbor.integer("a map's channels", 1, kMaxMapChannels));
+  const TableFormat format = kFormats[static_cast<std::size_t>(
+      cbor.integer("a map's format", 0, static_cast<std::int64_t>(kFormats.size()) - 1))];
+  const double scale = cbor.number("a map's scale");
+  const auto narrow = static_cast<float>(scale);
+  if (static_cast<double>(narrow) != scale)
+    cbor.fail(at, "a map's scale that a float holds", fmt::format("{}", scale));
+  const std::uint64_t texels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+  const auto bytes = cbor.bytes("the texels of a map", texels * texel_bytes(format, channels));
+  try {
+    return {width, height, channels, format, narrow, bytes};
+  } catch (const Error& error) {
+    cbor.fail(at, "a sound map", error.what());
+  }
+}
+
+SurfaceMaps read_maps(CborReader& cbor, const Model& model) {
+  const std::size_t lobes = model.brdf.lobes().size();
+  const auto at = cbor.offset();
+  const std::size_t items =
+      cbor.list("a surface", kHeadItems + kMapItems * lobes, kHeadItems + kMapItems * (lobes + 2));
+  cbor.integer("the version of a surface", kVersion, kVersion);
+  const auto width = static_cast<int>(cbor.integer("a surface's width", 1, kMaxMapSide));
+  const auto height = static_cast<int>(cbor.integer("a surface's height", 1, kMaxMapSide));
+  const auto has = cbor.integer("which maps a surface has", 0, kHasNormals + kHasTangents);
+  const std::size_t maps = lobes + ((has & kHasNormals) != 0) + ((has & kHasTangents) != 0);
+  if (items != kHeadItems + kMapItems * maps)
+    cbor.fail(at, fmt::format("a surface of {} maps", maps), fmt::format("{} items", items));
+  SurfaceMaps read;
+  for (std::size_t j = 0; j < lobes; ++j) read.weights.push_back(read_map(cbor, width, height));
+  if ((has & kHasNormals) != 0) read.normals = read_map(cbor, width, height);
+  if ((has & kHasTangents) != 0) read.tangents = read_map(cbor, width, height);
+  return read;
+}
+
+}  // namespace
+
+std::string format_surface(const SurfaceModel& surface) {
+  return format_compact_with({.brdf = surface.brdf.lobes(), .lambda_nm = {}, .notes = surface.notes},
+                             [&](CborWriter& cbor) { write_maps(cbor, surface.brdf); });
+}
+
+SurfaceModel parse_surface(const FileBytes& file) {
+  SurfaceMaps maps;
+  Model model =
+      parse_compact_with(file, [&](CborReader& cbor, const Model& lobes) { maps = read_maps(cbor, lobes); });
+  try {
+    return {.brdf = SpatialBrdf(std::move(model.brdf), std::move(maps)), .notes = std::move(model.notes)};
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", file.name, error.what()));
+  }
+}
+
+bool looks_like_surface(std::span<const std::byte> head) noexcept {
+  return looks_like_extended_compact(head);
+}
+
+}  // namespace burnish

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include <burnish/file.h>
+#include <burnish/surface/spatial_brdf.h>
+
+namespace burnish {
+
+/// A surface with what its file says about it.
+struct SurfaceModel {
+  SpatialBrdf brdf;
+  std::string notes = "{}";  ///< a JSON object: capture, fit options, errors
+
+  friend bool operator==(const SurfaceModel&, const SurfaceModel&) = default;
+};
+
+/// The `.burnish` file of a surface: that of its lobes (factors/compact_file.h), whose last item is
+/// [version, width, height, normals and tangents there or not (bits 1 and 2), maps], a map being channels, format,
+/// scale and the bytes of its level 0, weights first. Mip levels are made again when it is read. What format_surface
+/// writes, parse_surface restores to the last bit. Throws Error as format_compact does.
+std::string format_surface(const SurfaceModel& surface);
+
+/// Throws Error, naming file and offset, if the bytes are no such file or contradict themselves in any way. Memory taken is at most a fixed multiple of the file's size.
+SurfaceModel parse_surface(const FileBytes& file);
+
+/// True if the bytes start as a surface's `.burnish` does.
+bool looks_like_surface(std::span<const std::byte> head) noexcept;
+
+}  // namespace burnish

@@ -1,0 +1,70 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <burnish/error.h>
+#include <burnish/factors/compact_file.h>
+#include <burnish/surface/surface_file.h>
+#include <burnish/testing/surfaces.h>
+#include <burnish/testing/tools.h>
+
+namespace burnish {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+std::string seed() {
+  return format_surface({.brdf = random_surface(3, 2), .notes = R"({"from":"a test"})"});
+}
+
+TEST(SurfaceFile, RestoresASurfaceToTheLastBit) {
+  for (const auto& [width, height] : {std::pair(1, 1), std::pair(6, 5), std::pair(64, 33)}) {
+    const SurfaceModel surface{.brdf = random_surface(width, height), .notes = R"({"a":[1,2]})"};
+    const std::string bytes = format_surface(surface);
+    const SurfaceModel read = parse_surface(memory_file(bytes));
+    EXPECT_EQ(read, surface);
+    EXPECT_EQ(format_surface(read), bytes);
+  }
+}
+
+TEST(SurfaceFile, IsKnownFromAModelThatIsTheSameEverywhere) {
+  const std::string surface = seed(),
+                    model = format_compact({.brdf = random_surface(1, 1).lobes(), .lambda_nm = {}});
+  EXPECT_TRUE(looks_like_surface(memory_file(surface).bytes));
+  EXPECT_FALSE(looks_like_surface(memory_file(model).bytes));
+  EXPECT_THAT([&] { parse_compact(memory_file(surface)); },
+              ThrowsMessage<Error>(HasSubstr("found a surface")));
+  EXPECT_THAT([&] { parse_surface(memory_file(model)); },
+              ThrowsMessage<Error>(HasSubstr("expected a surface")));
+}
+
+TEST(SurfaceFile, EveryTruncatedFileThrows) {
+  const std::string bytes = seed();
+  for (std::size_t length = 0; length < bytes.size(); ++length)
+    EXPECT_THROW(parse_surface(memory_file(bytes.substr(0, length))), Error) << length;
+  EXPECT_THROW(parse_surface(memory_file(bytes + '\0')), Error);
+}
+
+TEST(SurfaceFile, DamagedBytesThrowOrGiveASoundSurface) {
+  const std::string bytes = seed();
+  std::array<double, 3> f;
+  std::size_t thrown = 0;
+  for (std::size_t at = 0; at < bytes.size(); ++at)
+    for (const char damage : {'\0', '\xff', '\x1b', '9'}) {
+      std::string damaged = bytes;
+      damaged[at] = damage;
+      try {
+        const SurfaceModel surface = parse_surface(memory_file(damaged));
+        surface.brdf.eval(0.3, 0.6, 0.4, {0.6, 0, 0.8}, {0, -0.6, 0.8},
+                          std::span(f).first(surface.brdf.channels()));
+        for (const double value : f) EXPECT_TRUE(std::isfinite(value) && value >= 0) << at;
+      } catch (const Error& error) {
+        ++thrown;
+        EXPECT_THAT(error.what(), HasSubstr("expected")) << at;
+      }
+    }
+  EXPECT_GT(thrown, bytes.size() / 4);
+}
+
+}  // namespace
+}  // namespace burnish

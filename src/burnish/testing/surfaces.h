@@ -1,0 +1,50 @@
+#pragma once
+
+// Small surfaces for tests.
+
+#include <string>
+#include <vector>
+
+#include <burnish/math/random.h>
+#include <burnish/surface/surface_file.h>
+#include <burnish/testing/models.h>
+
+namespace burnish {
+
+/// Weights at random in [0, scale], every fourth 0.
+inline SurfaceMap random_map(int width, int height, std::size_t channels, TableFormat format, float scale,
+                             std::uint64_t seed) {
+  Pcg32 random(seed);
+  std::vector<float> values(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * channels);
+  for (float& value : values)
+    value = random.next() % 4 == 0 ? 0.0f : static_cast<float>(scale * random.uniform());
+  return {width, height, channels, format, scale, values};
+}
+
+/// x and y of vectors at random, no longer than `longest` and no shorter than `shortest`.
+inline SurfaceMap random_vectors(int width, int height, double shortest, double longest, std::uint64_t seed) {
+  Pcg32 random(seed);
+  std::vector<float> values;
+  for (int i = 0; i < width * height; ++i) {
+    const double length = shortest + (longest - shortest) * random.uniform(),
+                 angle = 6.2831853 * random.uniform();
+    values.push_back(static_cast<float>(length * std::cos(angle)));
+    values.push_back(static_cast<float>(length * std::sin(angle)));
+  }
+  return {width, height, 2, TableFormat::half, 1, values};
+}
+
+/// Three lobes, of volumes, lines and a hemisphere; grey and coloured weights in both formats, normals and tangents.
+inline SpatialBrdf random_surface(int width, int height) {
+  FactoredBrdf lobes =
+      random_model("z(theta_h) g(theta_h,theta_d,phi_d) + p(wo) q(h) p(wi) + r(theta_d)",
+                   {"z=12,power:0.5", "g=5x4x3,power:0.5", "p=6", "q=7x7", "r=5"}, 3, TableFormat::half);
+  return {std::move(lobes),
+          {.weights = {random_map(width, height, 1, TableFormat::unorm8, 1.7f, 1),
+                       random_map(width, height, 3, TableFormat::unorm8, 0.4f, 2),
+                       random_map(width, height, 1, TableFormat::half, 3.0f, 3)},
+           .normals = random_vectors(width, height, 0, 0.6, 4),
+           .tangents = random_vectors(width, height, 1, 1, 5)}};
+}
+
+}  // namespace burnish

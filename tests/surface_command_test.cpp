@@ -1,0 +1,83 @@
+// burnish measure --surface and fit-surface, as people call them.
+
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <burnish/surface/surface_file.h>
+#include <burnish/testing/tools.h>
+
+namespace burnish {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class SurfaceCommand : public testing::Test {
+ protected:
+  void SetUp() override {
+    write(
+        file("scene.json"),
+        R"({"version":1,"width":20,"height":20,"materials":["lambert:kd=0.6/0.3/0.1","ggx:alpha_x=0.4,alpha_y=0.4"],)"
+        R"("shares":{"cells":2},"heights":{"cells":2,"amplitude":0.02},"lights":{"count":9,"angle_deg":60},)"
+        R"("views":{"count":2,"angle_deg":40},"held_out":6})");
+    const Outcome made = burnish("measure --surface '{0}/scene.json' -o '{0}/capture'");
+    ASSERT_EQ(made.status, 0) << made.output;
+    EXPECT_THAT(made.output, HasSubstr("18 pictures of 20 x 20 texels"));
+  }
+  fs::path file(const std::string& name) const { return folder_.path / name; }
+  /// {0} is the folder.
+  Outcome burnish(const std::string& arguments) const {
+    return run(fmt::format("'{}' {} 2>&1", BURNISH_CLI,
+                           fmt::format(fmt::runtime(arguments), folder_.path.string())));
+  }
+  static constexpr const char* kFit =
+      "fit-surface '{0}/capture' -o '{0}/wall.burnish' --lobes 2 --lobe-bytes 1K --rounds 2";
+
+ private:
+  TemporaryFolder folder_{"surface_command"};
+};
+
+TEST_F(SurfaceCommand, FitsWhatWasMeasured) {
+  const Outcome fit = burnish(std::string(kFit) + " --json --compare --picture '{0}/wall.png'");
+  ASSERT_EQ(fit.status, 0) << fit.output;
+  const auto report = nlohmann::json::parse(fit.output);
+  EXPECT_EQ(report["held_out"]["pictures"], 3);
+  EXPECT_GT(report["fitted"]["psnr"].get<double>(), 25);
+  EXPECT_EQ(report["methods"].size(), 4u);
+  EXPECT_EQ(parse_surface(read_file(file("wall.burnish"))).brdf.width(), 20);
+  EXPECT_TRUE(fs::exists(file("wall.png")));
+  EXPECT_FALSE(fs::exists(file("wall.burnish.part")));
+  // the same file again, by one thread and few bytes at a time
+  const std::string bytes = read(file("wall.burnish"));
+  const Outcome again = burnish(std::string(kFit) + " --threads 1 --memory 20K");
+  EXPECT_EQ(again.status, 0);
+  EXPECT_THAT(again.output, HasSubstr("held out"));
+  EXPECT_EQ(read(file("wall.burnish")), bytes);
+}
+
+TEST_F(SurfaceCommand, SaysWhatIsWrongInOneLine) {
+  fs::remove(file("capture/00002.exr"));
+  const Outcome left_out = burnish(kFit);
+  EXPECT_EQ(left_out.status, 0);
+  EXPECT_THAT(left_out.output, HasSubstr("left out   00002.exr"));
+  fs::remove(file("wall.burnish"));
+
+  write(file("capture/capture.json"), "{\"version\":1,\"width\":0}");
+  for (const char* arguments : {kFit, "measure --surface '{0}/capture/capture.json' -o '{0}/other'"}) {
+    const Outcome outcome = burnish(arguments);
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;
+    EXPECT_THAT(outcome.output, HasSubstr("width"));
+  }
+  EXPECT_FALSE(fs::exists(file("wall.burnish")));
+  EXPECT_FALSE(fs::exists(file("other")));
+  EXPECT_EQ(burnish("measure -o '{0}/x.csv'").status, 2);
+  EXPECT_EQ(burnish("fit-surface '{0}/capture' -o '{0}/w.burnish' --lobes 99").status, 2);
+}
+
+}  // namespace
+}  // namespace burnish
