@@ -27,6 +27,11 @@
 #include <burnish/eval/tabulated_sampler.h>
 #include <burnish/formula/graph.h>
 
+// Surfaces: lobes whose scales are maps, from registered pictures.
+#include <burnish/capture/surface_fit.h>
+#include <burnish/eval/spatial_eval.h>
+#include <burnish/surface/surface_file.h>
+
 // Shaders, textures, and all that a model can be exported as.
 #include <burnish/export/export_model.h>
 #include <burnish/shaders/shader.h>

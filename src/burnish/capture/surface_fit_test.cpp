@@ -63,6 +63,7 @@ TEST(SurfaceFit, FindsNormalsWhereTheCaptureHasNone) {
 }
 
 TEST(SurfaceFit, TakesTheLobesOfABook) {
+  BURNISH_SKIP_WHERE_SANITIZED();
   const SmallCapture capture("book");
   SurfaceFitOptions options = small_options();
   const SurfaceFit first = capture.fit(options);
@@ -74,6 +75,7 @@ TEST(SurfaceFit, TakesTheLobesOfABook) {
 
 // The same bytes whatever the number of threads and the size of tiles.
 TEST(SurfaceFit, GivesTheSameBytesForAnyThreadsAndTiles) {
+  BURNISH_SKIP_WHERE_SANITIZED();
   const SmallCapture capture("threads");
   SurfaceFitOptions options = small_options();
   const std::string all = format_surface(capture.fit(options).surface);
@@ -84,6 +86,7 @@ TEST(SurfaceFit, GivesTheSameBytesForAnyThreadsAndTiles) {
 
 // Stopped anywhere, the fit goes on from its checkpoint and ends in the same bytes.
 TEST(SurfaceFit, GoesOnFromACheckpoint) {
+  BURNISH_SKIP_WHERE_SANITIZED();
   const SmallCapture capture("resume");
   SurfaceFitOptions options = small_options();
   options.tile_bytes = 50'000;
@@ -122,6 +125,7 @@ TEST(SurfaceFit, SaysWhichPicturesItLeftOut) {
 
 // The picture that was taken and the model's are alike where they stand side by side.
 TEST(SurfacePicture, ShowsWhatWasTakenBesideTheModel) {
+  BURNISH_SKIP_WHERE_SANITIZED();
   const SmallCapture folder("picture");
   const SurfaceFit fit = folder.fit(small_options());
   const Capture capture(folder.folder.path);
