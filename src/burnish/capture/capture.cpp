@@ -15,7 +15,7 @@ namespace burnish {
 
 namespace {
 
-constexpr int kVersion = 1, kMaxSide = 16'384;
+constexpr int kCaptureVersion = 1, kMaxSide = 16'384;
 constexpr std::uint64_t kMaxJson = std::uint64_t{64} << 20;
 constexpr double kLeastHeight = 1e-3;    // z of a unit vector towards a light or view
 constexpr double kUnitTolerance = 0.02;  // of a direction's length
@@ -77,7 +77,7 @@ bool CaptureForm::directional() const noexcept {
 CaptureForm parse_capture(const FileBytes& file) {
   const Json json = parse_json(file);
   const JsonMember root(file, json, "");
-  root.at("version").integer(kVersion, kVersion);
+  root.at("version").integer(kCaptureVersion, kCaptureVersion);
   CaptureForm form{.width = root.at("width").integer(1, kMaxSide),
                    .height = root.at("height").integer(1, kMaxSide),
                    .normals = {},
@@ -115,7 +115,7 @@ std::string format_capture(const CaptureForm& form) {
     if (picture.held_out) item["held_out"] = true;
     pictures.push_back(std::move(item));
   }
-  Json json{{"version", kVersion},
+  Json json{{"version", kCaptureVersion},
             {"width", form.width},
             {"height", form.height},
             {"size", {form.size_x, form.size_y}},

@@ -15,6 +15,8 @@
 
 namespace burnish {
 
+constexpr std::size_t kCaptureChannels = 3;  ///< of every picture
+
 /// Where a light or a view stands: a unit vector towards it, or a point in the capture's unit of length.
 struct Station {
   bool is_direction = true;

@@ -9,7 +9,7 @@ namespace burnish {
 
 namespace {
 
-constexpr int kVersion = 1;
+constexpr int kCheckpointVersion = 1;
 constexpr std::string_view kName = "burnish fit";
 constexpr std::size_t kParts = 13, kErrorItems = 4;
 constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
@@ -26,7 +26,7 @@ std::string format_checkpoint(const FitCheckpoint& checkpoint) {
   CborWriter cbor;
   cbor.list(kParts);
   cbor.text(kName);
-  cbor.integer(kVersion);
+  cbor.integer(kCheckpointVersion);
   cbor.integer(static_cast<std::int64_t>(checkpoint.key >> 1));
   cbor.list(2 * checkpoint.damaged.size());
   for (const auto& [file, why] : checkpoint.damaged) {
@@ -59,7 +59,7 @@ FitCheckpoint parse_checkpoint(const FileBytes& file, int width) {
   cbor.list("a checkpoint", kParts, kParts);
   if (cbor.text("its name", kName.size()) != kName)
     cbor.fail(0, "a checkpoint of a surface's fit", "another file");
-  cbor.integer("its version", kVersion, kVersion);
+  cbor.integer("its version", kCheckpointVersion, kCheckpointVersion);
   read.key = static_cast<std::uint64_t>(cbor.integer("its key", 0, kMost)) << 1;
   for (std::size_t left = cbor.list("damaged pictures", 0, 2 * kMaxPictures) / 2; left > 0; --left) {
     std::string name = cbor.text("a picture", kLongestText);

@@ -24,7 +24,7 @@ namespace burnish {
 
 namespace {
 
-constexpr int kMaxSide = 32'768;
+constexpr int kMaxPictureSide = 32'768;
 constexpr std::size_t kMaxHead = std::size_t{1} << 20;
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& expected,
@@ -47,7 +47,7 @@ bool is_png(std::span<const std::byte> head) {
 }
 
 /// Walks an EXR's header before OpenEXR sees it, which allocates what an attribute's size says before it reads: every
-/// size must lie within the file, and the data window be one of kMaxSide at most.
+/// size must lie within the file, and the data window be one of kMaxPictureSide at most.
 void check_exr_head(const std::filesystem::path& path) {
   const auto size = std::filesystem::file_size(path);
   const std::vector<std::byte> head = head_of(path, std::min<std::uintmax_t>(size, kMaxHead));
@@ -77,8 +77,9 @@ void check_exr_head(const std::filesystem::path& path) {
       fail(path, fmt::format("attribute '{}' within the header", name), fmt::format("{} bytes", bytes));
     if (name == "dataWindow" || name == "displayWindow")
       for (std::size_t side = 0; side < 4; ++side)
-        if (std::abs(std::int64_t{number(at + 4 * side)}) > kMaxSide)
-          fail(path, fmt::format("'{}' within {}", name, kMaxSide), fmt::format("{}", number(at + 4 * side)));
+        if (std::abs(std::int64_t{number(at + 4 * side)}) > kMaxPictureSide)
+          fail(path, fmt::format("'{}' within {}", name, kMaxPictureSide),
+               fmt::format("{}", number(at + 4 * side)));
     at += static_cast<std::size_t>(bytes);
   }
 }
@@ -140,9 +141,10 @@ struct PngFile {
     image.version = PNG_IMAGE_VERSION;
     if (!png_image_begin_read_from_file(&image, path.string().c_str()))
       fail(path, "a PNG picture", image.message);
-    if (image.width > static_cast<unsigned>(kMaxSide) || image.height > static_cast<unsigned>(kMaxSide)) {
+    if (image.width > static_cast<unsigned>(kMaxPictureSide) ||
+        image.height > static_cast<unsigned>(kMaxPictureSide)) {
       png_image_free(&image);
-      fail(path, fmt::format("sides of at most {}", kMaxSide),
+      fail(path, fmt::format("sides of at most {}", kMaxPictureSide),
            fmt::format("{} x {}", image.width, image.height));
     }
   }

@@ -12,7 +12,6 @@ namespace burnish {
 
 namespace {
 
-constexpr std::size_t kChannels = 3;
 constexpr std::size_t kMostTexels = 4096;
 constexpr int kRoughnesses = 16, kNodes = 64;
 constexpr double kLeastAlpha = 0.03, kMostAlpha = 0.8, kDielectric = 0.04;
@@ -47,7 +46,7 @@ FactoredBrdf ggx_lobes(double alpha) {
     return FactorUse{.table = table, .projection = projection, .projection_y = {}, .projection_z = {}};
   };
   std::vector<Lobe> lobes;
-  for (std::size_t c = 0; c < kChannels; ++c) {
+  for (std::size_t c = 0; c < kCaptureChannels; ++c) {
     Lobe diffuse{.scale = {0, 0, 0}, .factors = {}}, glossy = diffuse;
     diffuse.scale[c] = 1 / kPi;
     glossy.scale[c] = most_d * most_g * most_g * most_f;
@@ -56,7 +55,7 @@ FactoredBrdf ggx_lobes(double alpha) {
     lobes.push_back(diffuse);
     lobes.push_back(glossy);
   }
-  return FactoredBrdf(kChannels, {d, g, f}, std::move(lobes), TableFormat::single);
+  return FactoredBrdf(kCaptureChannels, {d, g, f}, std::move(lobes), TableFormat::single);
 }
 
 /// The comparison of one capture.
@@ -64,7 +63,7 @@ class Comparison {
  public:
   Comparison(Capture capture, const SurfaceFit& fit, const SurfaceFitOptions& options)
       : capture_(std::move(capture)), fit_(fit) {
-    const std::size_t values = kMostTexels * capture_.form().pictures.size() * kChannels;
+    const std::size_t values = kMostTexels * capture_.form().pictures.size() * kCaptureChannels;
     samples_ = sample_texels(capture_, values, options.tile_bytes, options.seed + 1, nullptr).samples;
     const SurfaceMaps& maps = fit.surface.brdf.maps();
     for (const auto& [x, y] : samples_.texels) {
@@ -115,8 +114,8 @@ class Comparison {
     for (std::size_t p = 0; p < samples_.pictures; ++p)
       for (const std::size_t t : texels) {
         const std::size_t pixel = p * samples_.size() + t;
-        part.values.insert(part.values.end(), &samples_.values[kChannels * pixel],
-                           &samples_.values[kChannels * pixel] + kChannels);
+        part.values.insert(part.values.end(), &samples_.values[kCaptureChannels * pixel],
+                           &samples_.values[kCaptureChannels * pixel] + kCaptureChannels);
         part.states.push_back(samples_.states[pixel]);
       }
     return part;
@@ -165,7 +164,8 @@ class Comparison {
   }
 
   double log_value(std::size_t pixel, std::size_t c) const {
-    const double x = fit_.report.exposure * static_cast<double>(samples_.values[kChannels * pixel + c]);
+    const double x =
+        fit_.report.exposure * static_cast<double>(samples_.values[kCaptureChannels * pixel + c]);
     return std::log(std::max(x, 0.0) + kLogFloor);
   }
 
@@ -175,13 +175,13 @@ class Comparison {
     for (std::size_t p = 0; p < pictures.size(); ++p)
       if (!pictures[p].held_out) fitted.push_back(p);
     // texels as columns of logarithms
-    const auto rows = static_cast<Eigen::Index>(kChannels * fitted.size()),
+    const auto rows = static_cast<Eigen::Index>(kCaptureChannels * fitted.size()),
                columns = static_cast<Eigen::Index>(samples_.size());
     Eigen::MatrixXd logs(rows, columns);
     for (std::size_t k = 0; k < fitted.size(); ++k)
       for (std::size_t t = 0; t < samples_.size(); ++t)
-        for (std::size_t c = 0; c < kChannels; ++c)
-          logs(static_cast<Eigen::Index>(kChannels * k + c), static_cast<Eigen::Index>(t)) =
+        for (std::size_t c = 0; c < kCaptureChannels; ++c)
+          logs(static_cast<Eigen::Index>(kCaptureChannels * k + c), static_cast<Eigen::Index>(t)) =
               log_value(fitted[k] * samples_.size() + t, c);
     const Eigen::VectorXd mean = logs.rowwise().mean();
     logs.colwise() -= mean;
@@ -212,11 +212,11 @@ class Comparison {
         const std::size_t pixel = p * samples_.size() + t;
         if (samples_.states[pixel] == PixelState::missing || samples_.states[pixel] == PixelState::masked)
           continue;
-        for (std::size_t c = 0; c < kChannels; ++c, ++values) {
+        for (std::size_t c = 0; c < kCaptureChannels; ++c, ++values) {
           double log = 0, all = 0;
           for (std::size_t n = 0; n < count; ++n) {
             const double share = 1 / (near[n].first + 1e-6);
-            log += share * modelled(static_cast<Eigen::Index>(kChannels * near[n].second + c),
+            log += share * modelled(static_cast<Eigen::Index>(kCaptureChannels * near[n].second + c),
                                     static_cast<Eigen::Index>(t));
             all += share;
           }

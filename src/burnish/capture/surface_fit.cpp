@@ -22,7 +22,6 @@ namespace burnish {
 
 namespace {
 
-constexpr std::size_t kChannels = 3;
 // What of a capture is kept to fit lobes to.
 constexpr std::size_t kSampleValues = 6'000'000;
 // Pixels that lobes are refined on: half of them count as pixels, half as pairs.
@@ -96,8 +95,8 @@ class SurfaceFitter {
     if (options.lobe_bytes < kLeastLobeBytes || options.lobe_bytes > kMostLobeBytes)
       throw Error(fmt::format("surface fit: expected lobes of {} to {} bytes, found {}", kLeastLobeBytes,
                               kMostLobeBytes, options.lobe_bytes));
-    if (options.book && options.book->channels() != kChannels)
-      throw Error(fmt::format("surface fit: expected a book of {} channels, found {}", kChannels,
+    if (options.book && options.book->channels() != kCaptureChannels)
+      throw Error(fmt::format("surface fit: expected a book of {} channels, found {}", kCaptureChannels,
                               options.book->channels()));
     normals_from_ = options.normals.value_or(capture_.form().normals.empty() ? NormalsFrom::estimate
                                                                              : NormalsFrom::capture);
@@ -179,7 +178,7 @@ class SurfaceFitter {
     const auto sets = pure_texels(samples_, capture_.form(), fits_.normals, exposure_, options_.lobes);
     const std::size_t bytes = bytes_in(0);
     const ModelSpec spec = spec_of_lobes(options_.lobes, bytes), alone = spec_of_lobes(1, bytes);
-    model_ = LogModel{.spec = spec, .channels = kChannels, .log_values = {}};
+    model_ = LogModel{.spec = spec, .channels = kCaptureChannels, .log_values = {}};
     for (std::size_t j = 0; j < sets.size(); ++j) {
       std::vector<bool> chosen(samples_.size());
       for (const std::size_t t : sets[j]) chosen[t] = true;
@@ -282,7 +281,7 @@ class SurfaceFitter {
     for (const Candidate& c : candidates)
       if (taken[c.bin]++ < part) chosen.push_back(&c);
 
-    TrainingSet set{.channels = kChannels,
+    TrainingSet set{.channels = kCaptureChannels,
                     .isotropic = true,
                     .pairs = {},
                     .values = {},
@@ -294,8 +293,8 @@ class SurfaceFitter {
     const auto add = [&](const Candidate& c, double weight) {
       const std::size_t pixel = c.picture * samples_.size() + c.texel;
       set.pairs.push_back(c.pair);
-      for (std::size_t k = 0; k < kChannels; ++k)
-        set.values.push_back(std::max(0.0f, samples_.values[kChannels * pixel + k]) /
+      for (std::size_t k = 0; k < kCaptureChannels; ++k)
+        set.values.push_back(std::max(0.0f, samples_.values[kCaptureChannels * pixel + k]) /
                              static_cast<float>(c.pair.wi.z));
       set.weights.push_back(static_cast<float>(weight) * trusts(pixel));
       for (std::size_t j = 0; j < lobes; ++j) set.lobe_weights.push_back(fits_.weights[c.texel * lobes + j]);
@@ -394,7 +393,7 @@ class SurfaceFitter {
       for (std::size_t p = 0; p < part.size(); ++p) done_.errors[p] += part[p];
       done_.rows = row + rows;
       // a checkpoint holds all rows that are done: not too often
-      if (constexpr int kParts = 16; done_.rows - saved >= std::max(form.height / kParts, 1)) {
+      if (constexpr int kSavedParts = 16; done_.rows - saved >= std::max(form.height / kSavedParts, 1)) {
         save();
         saved = done_.rows;
       }
@@ -521,33 +520,33 @@ SurfaceFit fit_surface(Capture capture, const SurfaceFitOptions& options) {
 }
 
 std::string report_json(const SurfaceReport& report) {
-  using Json = nlohmann::ordered_json;
-  const auto number = [](const std::optional<double>& value) -> Json {
+  using Object = nlohmann::ordered_json;
+  const auto number = [](const std::optional<double>& value) -> Object {
     if (!value || !std::isfinite(*value)) return nullptr;
     return *value;
   };
   const auto score = [&](const PictureScore& of) {
-    return Json{
+    return Object{
         {"pictures", of.pictures}, {"psnr", number(of.psnr)}, {"psnr_of_all", number(of.psnr_of_all)}};
   };
-  Json left_out = Json::array();
+  Object left_out = Object::array();
   for (const auto& [file, why] : report.left_out) left_out.push_back({{"file", file}, {"why", why}});
-  return Json{{"width", report.width},
-              {"height", report.height},
-              {"pictures", report.pictures},
-              {"left_out", std::move(left_out)},
-              {"missing_pixels", report.missing_pixels},
-              {"clipped_pixels", report.clipped_pixels},
-              {"normals", name_of(report.normals)},
-              {"lobes", report.lobes},
-              {"exposure", report.exposure},
-              {"fitted", score(report.fitted)},
-              {"held_out", score(report.held_out)},
-              {"weight_bytes", report.weight_bytes},
-              {"frame_bytes", report.frame_bytes},
-              {"lobe_bytes", report.lobe_bytes},
-              {"bytes_a_texel", report.bytes_a_texel}}
-      .dump(-1, ' ', false, Json::error_handler_t::replace);
+  return Object{{"width", report.width},
+                {"height", report.height},
+                {"pictures", report.pictures},
+                {"left_out", std::move(left_out)},
+                {"missing_pixels", report.missing_pixels},
+                {"clipped_pixels", report.clipped_pixels},
+                {"normals", name_of(report.normals)},
+                {"lobes", report.lobes},
+                {"exposure", report.exposure},
+                {"fitted", score(report.fitted)},
+                {"held_out", score(report.held_out)},
+                {"weight_bytes", report.weight_bytes},
+                {"frame_bytes", report.frame_bytes},
+                {"lobe_bytes", report.lobe_bytes},
+                {"bytes_a_texel", report.bytes_a_texel}}
+      .dump(-1, ' ', false, Object::error_handler_t::replace);
 }
 
 }  // namespace burnish

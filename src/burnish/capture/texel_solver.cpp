@@ -12,7 +12,6 @@ namespace burnish {
 namespace {
 
 constexpr std::size_t kBlock = kTexelLanes;
-constexpr std::size_t kChannels = 3;
 constexpr double kRidge = 1e-6;  // of the mean diagonal
 // A pixel's error counts as that of x^(1/2), x = exposure f cos; below this x as if it were this.
 constexpr float kFloor = 0.004f;
@@ -135,10 +134,10 @@ class TexelSolver::Block {
     const auto& pictures = solver.form_.pictures;
     for (std::size_t p = 0; p < pictures.size(); ++p)
       if (pictures[p].held_out == held_out) pictures_.push_back(p);
-    model_.resize(pictures_.size() * lobes_ * kChannels * kBlock);
+    model_.resize(pictures_.size() * lobes_ * kCaptureChannels * kBlock);
     trust_.resize(pictures_.size() * kBlock, 1);
     weights_.resize(lobes_);
-    values_.resize(pictures_.size() * kChannels);
+    values_.resize(pictures_.size() * kCaptureChannels);
     states_.resize(pictures_.size());
   }
 
@@ -160,7 +159,7 @@ class TexelSolver::Block {
   /// f cos(theta_i) of the lobes under normals moved by (dx, dy), [picture][lobe][channel][texel].
   void evaluate(const float* normals, float dx, float dy, std::vector<float>& to) const {
     std::array<std::array<float, kBlock>, 6> w;
-    std::vector<float> f(lobes_ * kChannels * kBlock);
+    std::vector<float> f(lobes_ * kCaptureChannels * kBlock);
     std::array<ShadingFrame, kBlock> frames;
     std::array<Vec3, kBlock> points;
     const float most = kMostValue / exposure_;
@@ -184,8 +183,8 @@ class TexelSolver::Block {
         w[5][i] = static_cast<float>(view.z);
       }
       solver_.evaluator_.eval(DirectionSpans{w[0], w[1], w[2], w[3], w[4], w[5]}, f);
-      float* const out = &to[k * lobes_ * kChannels * kBlock];
-      for (std::size_t r = 0; r < lobes_ * kChannels; ++r)
+      float* const out = &to[k * lobes_ * kCaptureChannels * kBlock];
+      for (std::size_t r = 0; r < lobes_ * kCaptureChannels; ++r)
         for (std::size_t i = 0; i < kBlock; ++i)
           out[r * kBlock + i] = std::min(f[r * kBlock + i] * w[2][i], most);
     }
@@ -250,7 +249,7 @@ class TexelSolver::Block {
   std::array<double, kBlock> costs() const {
     std::array<double, kBlock> sums{};
     for (std::size_t k = 0; k < pictures_.size(); ++k)
-      for (std::size_t c = 0; c < kChannels; ++c) {
+      for (std::size_t c = 0; c < kCaptureChannels; ++c) {
         const Terms terms = terms_of(k, c, 0);
         constexpr float kReach = 0.08f * 0.08f;
         for (std::size_t i = 0; i < kBlock; ++i) {
@@ -288,7 +287,7 @@ class TexelSolver::Block {
   };
   // omega: see find_omega, of the mean of measured and modelled value; 0 of what does not count.
   Terms terms_of(std::size_t k, std::size_t c, int pass) const {
-    Terms terms{.value = values_[k * kChannels + c], .model = values(k, c), .omega = {}};
+    Terms terms{.value = values_[k * kCaptureChannels + c], .model = values(k, c), .omega = {}};
     TexelRow share, at;
     for (std::size_t i = 0; i < kBlock; ++i) {
       const bool clipped = states_[k][i] == PixelState::clipped;
@@ -339,9 +338,10 @@ class TexelSolver::Block {
     sums.cross_x.resize(lobes_);
     sums.cross_y.resize(lobes_);
     for (std::size_t k = 0; k < pictures_.size(); ++k)
-      for (std::size_t c = 0; c < kChannels; ++c) {
+      for (std::size_t c = 0; c < kCaptureChannels; ++c) {
         const Terms terms = terms_of(k, c, static_cast<int>(kTrustedError.size()) - 1);
-        const std::size_t first = (k * lobes_ * kChannels + c) * kBlock, stride = kChannels * kBlock;
+        const std::size_t first = (k * lobes_ * kCaptureChannels + c) * kBlock,
+                          stride = kCaptureChannels * kBlock;
         for (std::size_t i = 0; i < kBlock; ++i) {
           float sx = 0, sy = 0;
           for (std::size_t j = 0; j < lobes_; ++j) {
@@ -393,29 +393,29 @@ class TexelSolver::Block {
       for (std::size_t i = 0; i < kBlock; ++i) {
         const std::size_t from = pixel(k, i);
         states_[k][i] = samples_.states[from];
-        for (std::size_t c = 0; c < kChannels; ++c)
-          values_[k * kChannels + c][i] = samples_.values[from * kChannels + c];
+        for (std::size_t c = 0; c < kCaptureChannels; ++c)
+          values_[k * kCaptureChannels + c][i] = samples_.values[from * kCaptureChannels + c];
       }
   }
 
   TexelPixels pixels(std::size_t k, std::size_t c) const noexcept {
     return {.lobes = lobes_,
-            .model = &model_[(k * lobes_ * kChannels + c) * kBlock],
-            .stride = kChannels * kBlock,
-            .value = values_[k * kChannels + c].data()};
+            .model = &model_[(k * lobes_ * kCaptureChannels + c) * kBlock],
+            .stride = kCaptureChannels * kBlock,
+            .value = values_[k * kCaptureChannels + c].data()};
   }
 
-  std::array<Terms, kChannels> all_terms(std::size_t k, int pass) const {
+  std::array<Terms, kCaptureChannels> all_terms(std::size_t k, int pass) const {
     return {terms_of(k, 0, pass), terms_of(k, 1, pass), terms_of(k, 2, pass)};
   }
 
   /// By the worst channel.
-  void find_trust(std::size_t k, const std::array<Terms, kChannels>& terms, int pass) {
+  void find_trust(std::size_t k, const std::array<Terms, kCaptureChannels>& terms, int pass) {
     const float reach = kTrustedError[std::min(static_cast<std::size_t>(pass), kTrustedError.size() - 1)];
     float* const trust = &trust_[k * kBlock];
     for (std::size_t i = 0; i < kBlock; ++i) {
       float worst = 0, there = 0;
-      for (std::size_t c = 0; c < kChannels; ++c) {
+      for (std::size_t c = 0; c < kCaptureChannels; ++c) {
         const float rest = terms[c].value[i] - terms[c].model[i];
         worst = std::max(worst, (rest < 0 ? 1 : kBrighter) * terms[c].omega[i] * rest * rest);
         there = std::max(there, terms[c].omega[i]);
@@ -429,10 +429,10 @@ class TexelSolver::Block {
     for (auto& row : matrix_) row.fill(0);
     for (auto& row : vector_) row.fill(0);
     for (std::size_t k = 0; k < pictures_.size(); ++k) {
-      std::array<Terms, kChannels> terms = all_terms(k, pass);
+      std::array<Terms, kCaptureChannels> terms = all_terms(k, pass);
       if (pass > 0) find_trust(k, terms, pass);
       const float* const trust = &trust_[k * kBlock];
-      for (std::size_t c = 0; c < kChannels; ++c) {
+      for (std::size_t c = 0; c < kCaptureChannels; ++c) {
         for (std::size_t i = 0; i < kBlock; ++i) terms[c].omega[i] *= trust[i];
         add_normal_equations(pixels(k, c), terms[c].omega.data(), matrix_.data(), vector_.data());
       }
@@ -515,23 +515,23 @@ std::vector<TexelSolver::PictureError> TexelSolver::errors(const TexelSamples& s
         block->load_weights(fits.weights.data());
         for (std::size_t k = 0; k < block->pictures().size(); ++k) {
           PictureError& error = errors[block->pictures()[k]];
-          const std::array<TexelRow, kChannels> model{block->values(k, 0), block->values(k, 1),
-                                                      block->values(k, 2)};
+          const std::array<TexelRow, kCaptureChannels> model{block->values(k, 0), block->values(k, 1),
+                                                             block->values(k, 2)};
           for (std::size_t i = 0; i < count; ++i) {
             const std::size_t pixel = block->pixel(k, i);
             const PixelState state = samples.states[pixel];
             if (state == PixelState::missing) continue;
             double square = 0;
-            for (std::size_t c = 0; c < kChannels; ++c) {
-              const double off = seen_as(samples.values[pixel * kChannels + c]) - seen_as(model[c][i]);
+            for (std::size_t c = 0; c < kCaptureChannels; ++c) {
+              const double off = seen_as(samples.values[pixel * kCaptureChannels + c]) - seen_as(model[c][i]);
               square += off * off;
             }
             const auto units = static_cast<std::uint64_t>(std::llround(square / PictureError::kUnit));
             error.all += units;
-            error.all_count += kChannels;
+            error.all_count += kCaptureChannels;
             if (state == PixelState::masked) continue;
             error.seen += units;
-            error.seen_count += kChannels;
+            error.seen_count += kCaptureChannels;
           }
         }
       }

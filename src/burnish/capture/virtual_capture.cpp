@@ -22,7 +22,7 @@ namespace burnish {
 
 namespace {
 
-constexpr int kVersion = 1, kMostSide = 16'384, kMaxStations = 4096, kOctaves = 3;
+constexpr int kSceneVersion = 1, kMostSide = 16'384, kMaxStations = 4096, kOctaves = 3;
 
 std::size_t place(int width, int x, int y) noexcept {
   return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
@@ -243,7 +243,7 @@ class SceneCamera {
 SurfaceScene parse_surface_scene(const FileBytes& file, const std::filesystem::path& folder) {
   const Json json = parse_json(file);
   const JsonMember root(file, json, "");
-  root.at("version").integer(kVersion, kVersion);
+  root.at("version").integer(kSceneVersion, kSceneVersion);
   SurfaceScene scene;
   scene.width = root.at("width").integer(1, kMostSide);
   scene.height = root.at("height").integer(1, kMostSide);

@@ -11,9 +11,9 @@
 namespace burnish {
 namespace {
 
-struct Planes {
+struct PairPlanes {
   std::array<std::vector<float>, 6> w;
-  explicit Planes(const std::vector<DirectionPair>& pairs) {
+  explicit PairPlanes(const std::vector<DirectionPair>& pairs) {
     for (const auto& [wi, wo] : pairs) {
       const double all[] = {wi.x, wi.y, wi.z, wo.x, wo.y, wo.z};
       for (std::size_t k = 0; k < 6; ++k) w[k].push_back(static_cast<float>(all[k]));
@@ -28,7 +28,7 @@ TEST(LobeEvaluator, GivesEveryLobeApart) {
     const FactoredBrdf brdf = smooth_model(model_case(name));
     const LobeEvaluator lobes(brdf);
     const std::vector<DirectionPair> pairs = corner_and_random_pairs(333);
-    const Planes planes(pairs);
+    const PairPlanes planes(pairs);
     const std::size_t channels = brdf.channels();
     std::vector<float> f(lobes.lobes() * channels * pairs.size());
     lobes.eval(planes.spans(), f);
