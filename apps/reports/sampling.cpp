@@ -309,14 +309,14 @@ ErrorRun error_of(BrdfRef brdf, SamplerRef sampler, const Environment& environme
 }
 
 void report_errors(Page& page, const Material& m, const Effort& effort) {
-  constexpr int kSize = 64;
+  constexpr int kPixels = 64;
   constexpr const char* kStratified = "burnish, stratified";
   const Measurement measurement{&m.table};
   const BrdfRef brdf = measurement;
   const Drawers drawers(brdf, m.table);
   const Environment& studio = environments()[1];
   const Image reference = moments_in_environment(brdf, drawers.tabulated, {}, studio,
-                                                 {.size = kSize, .samples = effort.reference_samples})
+                                                 {.size = kPixels, .samples = effort.reference_samples})
                               .mean;
   double energy = 0;
   for (const float value : reference.pixels) energy += value * value;
@@ -338,10 +338,10 @@ void report_errors(Page& page, const Material& m, const Effort& effort) {
     for (std::size_t k = 0; k <= kWays; ++k) {
       const auto [error, seconds] =
           error_of(brdf, drawers.all()[std::min(k, kWays - 1)], studio,
-                   {.size = kSize, .samples = samples, .stratified = k == kWays}, reference, energy);
+                   {.size = kPixels, .samples = samples, .stratified = k == kWays}, reference, energy);
       errors.push_back(error);
       by_count.series[k].x.push_back(samples);
-      by_time.series[k].x.push_back(1e6 * seconds / (kPi / 4 * kSize * kSize));
+      by_time.series[k].x.push_back(1e6 * seconds / (kPi / 4 * kPixels * kPixels));
       by_count.series[k].y.push_back(error);
       by_time.series[k].y.push_back(error);
     }
@@ -363,21 +363,21 @@ void draw_noise(const Page& page, const std::vector<Material>& materials) {
     if (m == materials.end()) continue;
     const Measurement measurement{&m->table};
     const Drawers drawers(measurement, m->table);
-    constexpr int kSize = 128;
+    constexpr int kPixels = 128;
     const Image reference =
-        moments_in_environment(measurement, drawers.tabulated, {}, studio, {.size = kSize, .samples = 576})
+        moments_in_environment(measurement, drawers.tabulated, {}, studio, {.size = kPixels, .samples = 576})
             .mean;
     std::vector<float> values;
-    for (int i = 0; i < kSize * kSize; ++i)
-      if (sphere_normal(kSize, i % kSize + 0.5, i / kSize + 0.5))
-        for (const float v : reference.at(i % kSize, i / kSize)) values.push_back(v);
+    for (int i = 0; i < kPixels * kPixels; ++i)
+      if (sphere_normal(kPixels, i % kPixels + 0.5, i / kPixels + 0.5))
+        for (const float v : reference.at(i % kPixels, i / kPixels)) values.push_back(v);
     const double exposure = 1 / percentile(values, 0.95);
     sheet.row_labels.push_back(m->name);
     std::vector<Image8>& row = sheet.cells.emplace_back();
     row.push_back(to_image8(tone_map(reference, exposure)));
     for (const SamplerRef sampler : drawers.all())
       row.push_back(to_image8(
-          tone_map(render_in_environment(measurement, sampler, studio, {.size = kSize, .samples = 16}).mean,
+          tone_map(render_in_environment(measurement, sampler, studio, {.size = kPixels, .samples = 16}).mean,
                    exposure)));
   }
   page.write_figure("sampling-noise.png", encode_png(compose(sheet)));
