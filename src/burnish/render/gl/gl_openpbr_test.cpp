@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <regex>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -18,9 +17,10 @@
 namespace burnish {
 namespace {
 
-// One directional light and no environment; every input a uniform.
+// One directional light and no environment; every input a uniform. Then what is a fragment's becomes a function's:
+// without an environment the generator forgets one uniform, and derivatives are of fragments alone.
 constexpr const char* kGenerate = R"(
-import sys
+import re, sys
 import MaterialX as mx, MaterialX.PyMaterialXGenShader as generation, MaterialX.PyMaterialXGenGlsl as glsl
 path = mx.getDefaultDataSearchPath()
 library = mx.createDocument()
@@ -37,7 +37,13 @@ options.hwSpecularEnvironmentMethod = generation.HwSpecularEnvironmentMethod.SPE
 options.shaderInterfaceType = generation.ShaderInterfaceType.SHADER_INTERFACE_COMPLETE
 light = document.getNodeDef('ND_directional_light')
 generation.HwShaderGenerator.bindLightShader(light, 1, context)
-open(sys.argv[1], 'w').write(generator.generate('m', material, context).getSourceCode('pixel'))
+text = generator.generate('m', material, context).getSourceCode('pixel')
+missing = '' if 'bool u_refractionTwoSided' in text else 'bool u_refractionTwoSided = false;\n'
+for old, new in [(r'#version [^\n]*\n', '#define fwidth(x) vec3(1.0)\n' + missing), (r'\nuniform ', '\n'),
+                 (r'\nin VertexData\n(\{[^}]*\}) vd;', r'\nstruct VertexData \1;\nVertexData vd;'),
+                 (r'\nout vec4 out1;', '\nvec4 out1;'), (r'void main\(\)', 'void shade()')]:
+    text = re.sub(old, new, text)
+open(sys.argv[1], 'w').write(text)
 )";
 
 constexpr std::size_t kNumbers = 29;  // of the 21 inputs, colours having three
@@ -55,18 +61,6 @@ std::string python() {
 
 // The fragment shader as a function of a light, a viewer and the numbers of a material, one after another.
 std::string as_function(std::string text) {
-  const auto replace = [&](const char* from, const char* to) {
-    text = std::regex_replace(text, std::regex(from), to);
-  };
-  // without an environment the generator forgets one uniform; derivatives are of fragments alone
-  const bool declared = text.find("bool u_refractionTwoSided") != std::string::npos;
-  replace("#version [^\n]*\n", declared
-                                   ? "#define fwidth(x) vec3(1.0)\n"
-                                   : "#define fwidth(x) vec3(1.0)\nbool u_refractionTwoSided = false;\n");
-  replace("\nuniform ", "\n");
-  replace("\nin VertexData\n(\\{[^}]*\\}) vd;", "\nstruct VertexData $1;\nVertexData vd;");
-  replace("\nout vec4 out1;", "\nvec4 out1;");
-  replace("void main\\(\\)", "void shade()");
   text += fmt::format(
       "layout(std430, binding = 2) readonly buffer Numbers {{ float numbers[]; }};\n"
       "vec3 reflected(vec3 wi, vec3 wo) {{\n"
@@ -97,8 +91,8 @@ std::string as_function(std::string text) {
 )";
 }
 
-// Sharper highlights are narrower than what directions of single precision resolve: with roughnesses from 0, and half of
-// the pairs in highlights, 0.2 % of the pairs differ by more than 1e-3.
+// Sharper highlights are narrower than what directions of single precision resolve: with roughnesses from 0, and half
+// of the pairs in highlights, 0.2 % of the pairs differ by more than 1e-3.
 constexpr double kLeastRoughness = 0.02;
 
 // Each lobe absent, whole or in between; numbers that floats hold.
