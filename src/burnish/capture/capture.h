@@ -76,7 +76,8 @@ CaptureForm parse_capture(const FileBytes& file);
 /// What parse_capture reads.
 std::string format_capture(const CaptureForm& form);
 
-/// State of a pixel: there; without a value (not finite, negative beyond noise); clipped; there, but left out by a mask.
+/// State of a pixel: there; without a value (not finite, negative beyond noise); clipped; there, but left out by a
+/// mask.
 enum class PixelState : std::uint8_t { there, missing, clipped, masked };
 
 /// Rows of all pictures of a capture: outgoing radiance over irradiance, f cos(theta_i), of texels.

@@ -19,7 +19,8 @@ constexpr float kFloor = 0.004f;
 constexpr float kMostValue = 1e4f;
 // Errors of the root at which a pixel counts a quarter, pass by pass.
 constexpr std::array<float, 3> kTrustedError{1e6f, 0.2f, 0.08f};
-// Shadows are darker than a model: what is brighter is rather a highlight that lobes lack yet, trusted four times as far.
+// Shadows are darker than a model: what is brighter is rather a highlight that lobes lack yet, trusted four times as
+// far.
 constexpr float kBrighter = 1.0f / 16;
 constexpr float kNormalDelta = 0.01f;  // of finite differences
 constexpr double kMostSlope = 0.95;    // length of a normal's x and y

@@ -35,8 +35,8 @@ TexelSamples samples_of(CaptureRows rows);
 struct TexelFits {
   std::vector<float> weights;  ///< [texel][lobe], >= 0
   std::vector<float> normals;  ///< x and y, [texel][2]
-  /// How much a pixel counts, in [0, 1]: 0 where it is missing or clipped as it should be, little where it lies far from
-  /// the model; [picture][texel], 0 of held-out pictures. Empty unless asked for.
+  /// How much a pixel counts, in [0, 1]: 0 where it is missing or clipped as it should be, little where it lies far
+  /// from the model; [picture][texel], 0 of held-out pictures. Empty unless asked for.
   std::vector<float> trust;
   /// What is left of each texel's errors, as they count; empty unless asked for.
   std::vector<double> costs;

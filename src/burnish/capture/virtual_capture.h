@@ -43,8 +43,9 @@ SurfaceScene parse_surface_scene(const FileBytes& file, const std::filesystem::p
 /// The normal of a texel, by differences of its neighbours' heights.
 Vec3 scene_normal(const SurfaceScene& scene, int x, int y) noexcept;
 
-/// Shares of the materials at a texel times their values, reciprocal parts of what was measured, under the texel's normal, f cos(theta_i) a channel, without
-/// shadows, noise and clipping. wi and wo are unit vectors of the surface's frame.
+/// Shares of the materials at a texel times their values, reciprocal parts of what was measured, under the texel's
+/// normal, f cos(theta_i) a channel, without shadows, noise and clipping. wi and wo are unit vectors of the surface's
+/// frame.
 std::array<double, 3> scene_radiance(const SurfaceScene& scene, int x, int y, Vec3 wi, Vec3 wo);
 
 /// Takes the pictures: a folder with capture.json, halves without compression, one picture for each light and view,
