@@ -21,7 +21,8 @@ std::string with_marks(std::string_view text, const std::map<std::string_view, s
     result += text.substr(0, at);
     if (at == std::string_view::npos) return result;
     text.remove_prefix(at + 1);
-    const std::string_view mark(text.begin(), std::find_if_not(text.begin(), text.end(), is_capital));
+    const auto end = std::find_if_not(text.begin(), text.end(), is_capital);
+    const std::string_view mark = text.substr(0, static_cast<std::size_t>(end - text.begin()));
     const auto found = marks.find(mark);
     if (found == marks.end()) throw std::logic_error("no text for the mark @" + std::string(mark));
     result += found->second;
