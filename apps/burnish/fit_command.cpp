@@ -2,7 +2,6 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
-#include <map>
 #include <memory>
 
 #include <fmt/format.h>
@@ -33,17 +32,6 @@ struct FitCommand {
   int threads = 0;
   bool json = false, alone = false;
 };
-
-// One bar a stage; nothing where standard error is no terminal.
-std::function<void(std::string_view, double)> progress_bars() {
-  if (!progress_bar("")) return nullptr;
-  return [bars = std::map<std::string, std::function<void(double)>, std::less<>>()](std::string_view stage,
-                                                                                    double fraction) mutable {
-    auto bar = bars.find(stage);
-    if (bar == bars.end()) bar = bars.emplace(stage, progress_bar(std::string(stage))).first;
-    bar->second(fraction);
-  };
-}
 
 std::string figures(const ErrorFigures& e) {
   return fmt::format("psnr {:.2f}, ssim {:.4f}, relative {:.4f}, rms_log {:.4f}, log_cos {:.4f}", e.psnr,

@@ -1,5 +1,4 @@
 #include <chrono>
-#include <map>
 #include <memory>
 
 #include <fmt/format.h>
@@ -27,17 +26,6 @@ struct FitSurfaceArguments {
   bool resume = false, compare = false, json = false;
 };
 
-// One bar a stage; nothing where standard error is no terminal.
-std::function<void(std::string_view, double)> surface_bars() {
-  if (!progress_bar("")) return nullptr;
-  return [bars = std::map<std::string, std::function<void(double)>, std::less<>>()](std::string_view stage,
-                                                                                    double fraction) mutable {
-    auto bar = bars.find(stage);
-    if (bar == bars.end()) bar = bars.emplace(stage, progress_bar(std::string(stage))).first;
-    bar->second(fraction);
-  };
-}
-
 std::string text_of(const PictureScore& score) {
   if (!score.psnr) return fmt::format("{} pictures", score.pictures);
   return fmt::format("psnr {:.2f} dB of {} pictures{}", *score.psnr, score.pictures,
@@ -62,7 +50,7 @@ void fit_surface(FitSurfaceArguments& arguments) {
   if (arguments.normals == "flat") options.normals = NormalsFrom::flat;
   if (arguments.normals == "capture") options.normals = NormalsFrom::capture;
   if (arguments.normals == "estimate") options.normals = NormalsFrom::estimate;
-  options.progress = surface_bars();
+  options.progress = progress_bars();
   options.checkpoint = arguments.out + ".part";
   if (!arguments.resume) std::filesystem::remove(options.checkpoint);
   const SurfaceFit fit = burnish::fit_surface(Capture(arguments.capture), options);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -19,6 +20,16 @@ std::function<void(double)> progress_bar(std::string label) {
     fmt::print(stderr, "\r{} [{:=<{}}{: <{}}] {:3d} %", label, "", filled, "", kWidth - filled, percent);
     if (percent == 100) fmt::print(stderr, "\r\033[K");
     std::fflush(stderr);
+  };
+}
+
+std::function<void(std::string_view, double)> progress_bars() {
+  if (!progress_bar("")) return nullptr;
+  return [bars = std::map<std::string, std::function<void(double)>, std::less<>>()](std::string_view stage,
+                                                                                    double fraction) mutable {
+    auto bar = bars.find(stage);
+    if (bar == bars.end()) bar = bars.emplace(stage, progress_bar(std::string(stage))).first;
+    bar->second(fraction);
   };
 }
 

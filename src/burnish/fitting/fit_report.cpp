@@ -17,14 +17,6 @@ constexpr std::array<std::string_view, 3> kLossNames = {"image", "relative", "lo
 constexpr std::array<std::string_view, 5> kStopNames = {"noise", "floor", "gain", "largest",
                                                         "cross-validation"};
 
-Json json_of(const ErrorFigures& figures) {
-  return {{"psnr", figures.psnr},
-          {"ssim", figures.ssim},
-          {"relative", figures.relative},
-          {"rms_log", figures.rms_log},
-          {"log_cos", figures.log_cos}};
-}
-
 Json json_of(const OneLobeReport& report) {
   Json json{{"samples", report.samples},
             {"smooth", report.smooth},
@@ -150,6 +142,14 @@ FitLoss parse_fit_loss(std::string_view name) {
 
 std::optional<FitSummary> FitReport::summary() const {
   return std::visit([](const auto& part) -> std::optional<FitSummary> { return part.summary; }, how);
+}
+
+nlohmann::ordered_json json_of(const ErrorFigures& figures) {
+  return {{"psnr", figures.psnr},
+          {"ssim", figures.ssim},
+          {"relative", figures.relative},
+          {"rms_log", figures.rms_log},
+          {"log_cos", figures.log_cos}};
 }
 
 nlohmann::ordered_json json_of(const FitReport& report) {

@@ -66,14 +66,6 @@ Json json_of(const MetallicRoughness& m) {
   return json;
 }
 
-Json json_of(const ErrorFigures& figures) {
-  return {{"psnr", figures.psnr},
-          {"ssim", figures.ssim},
-          {"relative", figures.relative},
-          {"rms_log", figures.rms_log},
-          {"log_cos", figures.log_cos}};
-}
-
 /// What is reported about a fit.
 Json report_of(const MaterialFit& fit) {
   Json json{{"target", fit.target}, {"source", fit.source}};
