@@ -312,7 +312,8 @@ void Batch::State::stage(FittedMaterial& made) {
 // Gives a file its name. Another process that read the journal may do so in the same moment.
 void Batch::State::place(const RecordedFile& file) {
   const fs::path path = options_.folder / file.path, staged = options_.folder / file.staged;
-  if (fs::exists(staged)) make_folder(path.parent_path());  // not in a folder that is gone
+  std::error_code ignored;  // where the batch's folder is gone, which is not made again
+  fs::create_directory(path.parent_path(), ignored);
   try {
     rename_durably(staged, path);
   } catch (const Error&) {

@@ -1,6 +1,3 @@
-#include <cerrno>
-#include <csignal>
-#include <cstring>
 #include <fstream>
 #include <random>
 #include <sstream>
@@ -84,15 +81,13 @@ fs::path Claims::file(const std::string& name, int generation) const {
   return folder_ / fmt::format("{}.{}", name, generation);
 }
 
-// Whether the file was made. Who dies before it is written is not known to be gone, only silent.
+// Whether the file was made. It is written through what was opened, since the folder may be moved in this moment: a
+// claim without its lines is of someone who may live. Who is killed before they are written is not known to be gone,
+// only silent.
 bool Claims::make(const fs::path& path) const {
-  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (descriptor < 0 && errno == EEXIST) return false;
-  if (descriptor < 0) throw Error::in_file(path.string(), "a path that can be written", std::strerror(errno));
-  ::close(descriptor);
   const std::string process = std::to_string(::getpid());
-  write_durably(path, fmt::format("{}\n{}\n{}\n{}\n", process_space(), process, start_of(process), owner_));
-  return true;
+  return write_new_durably(
+      path, fmt::format("{}\n{}\n{}\n{}\n", process_space(), process, start_of(process), owner_));
 }
 
 bool Claims::take(const std::string& name) {

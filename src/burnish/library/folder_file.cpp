@@ -29,17 +29,30 @@ int write_all(int descriptor, std::string_view bytes) {
   return 0;
 }
 
-}  // namespace
-
-void write_durably(const fs::path& path, std::string_view bytes) {
-  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (descriptor < 0) throw cannot_write(path, errno);
+// What was opened, which is closed whatever happens, and the file is removed where it cannot be written.
+void write_and_close(int descriptor, const fs::path& path, std::string_view bytes) {
   int code = write_all(descriptor, bytes);
   if (code == 0 && ::fdatasync(descriptor) != 0) code = errno;
   if (::close(descriptor) != 0 && code == 0) code = errno;
   if (code == 0) return;
   ::unlink(path.c_str());
   throw cannot_write(path, code);
+}
+
+}  // namespace
+
+void write_durably(const fs::path& path, std::string_view bytes) {
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (descriptor < 0) throw cannot_write(path, errno);
+  write_and_close(descriptor, path, bytes);
+}
+
+bool write_new_durably(const fs::path& path, std::string_view bytes) {
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor < 0 && errno == EEXIST) return false;
+  if (descriptor < 0) throw cannot_write(path, errno);
+  write_and_close(descriptor, path, bytes);
+  return true;
 }
 
 void rename_durably(const fs::path& from, const fs::path& to) {

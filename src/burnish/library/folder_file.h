@@ -12,6 +12,9 @@ namespace burnish {
 /// The whole file; nothing else is left where that fails.
 void write_durably(const std::filesystem::path& path, std::string_view bytes);
 
+/// Makes a file that was not there; of several callers one does. Returns whether this one did.
+bool write_new_durably(const std::filesystem::path& path, std::string_view bytes);
+
 /// Gives a file of the same folder its final name, in place of what is there.
 void rename_durably(const std::filesystem::path& from, const std::filesystem::path& to);
 
