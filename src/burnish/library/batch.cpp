@@ -312,8 +312,11 @@ void Batch::State::stage(FittedMaterial& made) {
 // Gives a file its name. Another process that read the journal may do so in the same moment.
 void Batch::State::place(const RecordedFile& file) {
   const fs::path path = options_.folder / file.path, staged = options_.folder / file.staged;
-  std::error_code ignored;  // where the batch's folder is gone, which is not made again
-  fs::create_directory(path.parent_path(), ignored);
+  fs::path below = options_.folder;
+  for (const fs::path& part : fs::path(file.path).parent_path()) {
+    std::error_code ignored;  // where the batch's folder is gone, which is not made again
+    fs::create_directory(below /= part, ignored);
+  }
   try {
     rename_durably(staged, path);
   } catch (const Error&) {
