@@ -8,6 +8,7 @@
 #include <burnish/fitting/fit_file.h>
 #include <burnish/fitting/parametric/material_fit.h>
 #include <burnish/io/open_source.h>
+#include <burnish/testing/sanitized.h>
 #include <burnish/testing/tools.h>
 
 namespace burnish {
@@ -89,6 +90,7 @@ TEST_F(FitCommand, ToAMaterialNeedsNoFileAndSaysWhatIsBeyondIt) {
 }
 
 TEST_F(FitCommand, IsTheLibrarysFit) {
+  BURNISH_SKIP_WHERE_SANITIZED();
   expect_same(
       kPaint, "--model pqpr --table q=24 --floor 1e-4 --reweightings 1 --samples 3000 --seed 4",
       {.form = OneLobe{.model = "pqpr", .tables = {"q=24"}, .how = {.reweightings = 1, .floor = 1e-4}},

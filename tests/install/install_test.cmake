@@ -1,5 +1,5 @@
-# Installs BUILD under SCRATCH, where ALONE compiles each installed header alone, then configures, builds and runs the
-# consumer beside this file, which holds the example of SOURCE/README.md.
+# Installs BUILD under SCRATCH, compiles each installed header alone, then configures, builds and runs the consumer beside
+# this file, which holds the example of SOURCE/README.md.
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output
     WORKING_DIRECTORY ${SCRATCH})
@@ -16,9 +16,6 @@ run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${SCRATCH}/prefix)
 file(GLOB_RECURSE headers RELATIVE ${SCRATCH}/prefix/include ${SCRATCH}/prefix/include/*.h)
 if(NOT EXISTS ${SCRATCH}/prefix/include/burnish/burnish.h)
   message(FATAL_ERROR "burnish/burnish.h was not installed")
-endif()
-if(NOT ALONE)
-  set(headers)
 endif()
 foreach(header IN LISTS headers)
   run(${COMPILER} -std=c++20 -Wall -Wextra -Wpedantic -Werror -fsyntax-only -I ${SCRATCH}/prefix/include

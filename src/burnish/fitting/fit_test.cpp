@@ -191,6 +191,7 @@ TEST(Fit, DependsOnTheSeedAndOnWhatIsAskedFor) {
 }
 
 TEST(Fit, LowersTheErrorThatItReports) {
+  BURNISH_SKIP_WHERE_SANITIZED();
   const Source source = source_of("paint", paint());
   for (const auto& [name, options] : every_form()) {
     const auto summary = fit(source, options).report.summary();
@@ -233,6 +234,7 @@ TEST(Fit, TellsProgressByStagesAndEndsWhereTheCallerThrows) {
 }
 
 TEST(Fit, KeepsItsReportInItsFile) {
+  BURNISH_SKIP_WHERE_SANITIZED();
   const Source source = source_of("paint", paint());
   for (const auto& [name, options] : every_form()) {
     const Fit made = fit(source, options);
@@ -287,6 +289,7 @@ TEST(FitLoss, RoundTripsThroughItsName) {
 }
 
 TEST(Fit, ToNodesPredictsThoseHeldOut) {
+  BURNISH_SKIP_WHERE_SANITIZED();
   constexpr double kNoise = 0.25;
   const testing::Glossy truth{.a = 8, .b = 8};
   const Source source =

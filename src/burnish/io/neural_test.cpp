@@ -7,6 +7,7 @@
 #include <burnish/io/open_source.h>
 #include <burnish/metrics/error_figures.h>
 #include <burnish/testing/files.h>
+#include <burnish/testing/sanitized.h>
 
 namespace burnish {
 namespace {
@@ -51,6 +52,7 @@ TEST(Neural, SaysWhatIsWrong) {
 }
 
 TEST(Neural, EncodingsOfMeasuredMaterialsMeetThem) {
+  BURNISH_SKIP_WHERE_SANITIZED();
   BURNISH_NEEDS_DATA();
   for (const std::string name : {"aurora_white_rgb", "acrylic_felt_green_rgb"}) {
     const Source measured = open_source((data_folder() / "rgl" / (name + ".bsdf")).string(), {});

@@ -13,6 +13,7 @@
 #include <burnish/metrics/error_figures.h>
 #include <burnish/testing/files.h>
 #include <burnish/testing/np_model.h>
+#include <burnish/testing/sanitized.h>
 #include <burnish/testing/seed_files.h>
 
 namespace burnish {
@@ -97,6 +98,7 @@ TEST(Np, OpensAFolderOrAFileOfIt) {
 }
 
 TEST(Np, BecomesAMerlTableOfItsOwnValues) {
+  BURNISH_SKIP_WHERE_SANITIZED();
   const Source source{"seed", parse_np(memory_file(kCodes), "seed", random_np_decoder(1)).brdf, {}};
   const Converted made = convert(source, "merl", {.cells = 6});
   const Source back = parse_source(memory_file(made.bytes), {});
@@ -114,6 +116,7 @@ TEST(Np, BecomesAMerlTableOfItsOwnValues) {
 }
 
 TEST(Np, EncodingsOfMeasuredMaterialsMeetThem) {
+  BURNISH_SKIP_WHERE_SANITIZED();
   BURNISH_NEEDS_DATA();
   for (const std::string name : {"aurora_white_rgb", "acrylic_felt_green_rgb"}) {
     const Source measured = open_source((data_folder() / "rgl" / (name + ".bsdf")).string(), {});
