@@ -50,8 +50,9 @@ test: test-deps format-check docs-check include-check
 	  ctest --preset $$preset -j $(JOBS) || exit 1; \
 	  sed -n '/: Skipped$$/{n;p}' build/$$preset/Testing/Temporary/LastTest.log | sort | uniq -c | sed 's/^/skipped/'; \
 	done
-	@python/check.sh --skip-offline
-	@tests/web/check.sh --skip-offline
+	@tests/web/check.sh --skip-offline > build/web.log 2>&1 & web=$$!; \
+	python/check.sh --skip-offline; python=$$?; \
+	wait $$web; web=$$?; cat build/web.log; exit $$((python || web))
 	@tests/web/package.sh --if-built
 	@tests/cluster/run.py $(BURNISH) --if-there
 

@@ -8,7 +8,10 @@ function(burnish_target name)
     target_compile_options(${name} PRIVATE -Werror)
   endif()
   if(BURNISH_SANITIZE)
-    target_compile_options(${name} PRIVATE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    # g++ takes a third of its time for checks of each pointer: the address sanitizer sees null and ends of objects as
+    # well, and bytes become numbers by copies here. The fuzz preset, by clang, has all.
+    target_compile_options(${name} PRIVATE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+      $<$<CXX_COMPILER_ID:GNU>:-fno-sanitize=null,alignment,object-size,vptr,pointer-overflow>)
     target_link_options(${name} PUBLIC -fsanitize=address,undefined)
   endif()
 endfunction()
