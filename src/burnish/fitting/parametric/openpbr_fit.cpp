@@ -462,6 +462,36 @@ OpenPbrFit refine_openpbr(const PicturePairs& pairs, const OpenPbrParameters& st
   return fit;
 }
 
+OpenPbrFit fit_openpbr_at_random(const PicturePairs& pairs, int count, std::uint64_t seed,
+                                 const OpenPbrFitOptions& options) {
+  constexpr Effort kSift{15, 1e-5, 1e-6}, kSiftAgain{25, 1e-6, 1e-6};
+  Search search(pairs, options);
+  Pcg32 random(seed);
+  std::vector<Search::Start> starts;
+  for (int i = 0; i < count; ++i) starts.push_back(random_start(random, always_held(options), options));
+  double first_cost = 0;
+  std::vector<Trial> trials;
+  const auto continue_best = [&](std::size_t share, const Effort& effort) {
+    if (!trials.empty()) {
+      starts.clear();
+      for (std::size_t i = 0; i < (static_cast<std::size_t>(count) + share - 1) / share; ++i)
+        starts.push_back({trials[i].parameters, trials[i].held});
+    }
+    trials = search.run(starts, effort);
+  };
+  continue_best(1, kSift);
+  first_cost = std::ranges::min(trials, {}, &Trial::first_cost).first_cost;
+  continue_best(3, kSiftAgain);
+  continue_best(10, kLast);
+  std::vector<OpenPbrFit> fits;
+  for (const Trial& trial : trials) fits.push_back(to_fit(pairs, trial, first_cost));
+  OpenPbrFit best =
+      *std::ranges::min_element(fits, {}, [](const OpenPbrFit& fit) { return fit.summary.error_after; });
+  best.summary.iterations = search.iterations;
+  best.starts = count;
+  return best;
+}
+
 OpenPbrFit fit_openpbr(const PicturePairs& pairs, const OpenPbrFitOptions& options) {
   Search search(pairs, options);
   const auto progress = [&](double fraction) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 
 #include <burnish/fitting/fit_summary.h>
@@ -30,6 +31,12 @@ struct OpenPbrFitOptions {
 /// their defaults, so that of inputs that say the same one is left; base_weight is 1. The same bits for every number
 /// of threads.
 OpenPbrFit fit_openpbr(const PicturePairs& pairs, const OpenPbrFitOptions& options = {});
+
+/// What fit_openpbr is measured by: the best of `count` >= 1 starts anywhere in the inputs' ranges, every input varied.
+/// The better third goes on after 15 iterations, the better tenth of all after 25 more, to where refine_openpbr ends;
+/// the best is the one whose pictures differ least. errors_before is of the best start.
+OpenPbrFit fit_openpbr_at_random(const PicturePairs& pairs, int count, std::uint64_t seed,
+                                 const OpenPbrFitOptions& options = {});
 
 /// One minimization over all inputs from given ones.
 OpenPbrFit refine_openpbr(const PicturePairs& pairs, const OpenPbrParameters& start,
