@@ -133,7 +133,9 @@ TEST(CommandLine, HasJsonHelpAndExamplesInEveryVerb) {
     EXPECT_THAT(names, testing::IsSupersetOf({"--help", "--json"})) << name;
     // what is written is named alike
     for (const char* other : {"--out", "--folder", "--file"})
-      if (std::ranges::find(names, other) != names.end()) EXPECT_THAT(names, testing::Contains("-o")) << name;
+      if (std::ranges::find(names, other) != names.end()) {
+        EXPECT_THAT(names, testing::Contains("-o")) << name;
+      }
     EXPECT_THAT(examples, HasSubstr("burnish " + name)) << name;
     EXPECT_THAT(burnish(name + " --help").output, HasSubstr(examples.substr(0, examples.find('\n')))) << name;
     for (const nlohmann::json& argument : verb["arguments"])

@@ -66,7 +66,11 @@ Verb verb_of(const CLI::App& app, const std::string& name) {
   for (const CLI::Option* option : app.get_options()) verb.arguments.push_back(argument_of(*option));
   for (const CLI::App* below :
        app.get_subcommands([](const CLI::App* each) { return !each->get_group().empty(); }))
-    verb.verbs.push_back(verb_of(*below, name.empty() ? below->get_name() : name + " " + below->get_name()));
+    if (below->get_name().empty())  // a group of options
+      for (const CLI::Option* option : below->get_options()) verb.arguments.push_back(argument_of(*option));
+    else
+      verb.verbs.push_back(
+          verb_of(*below, name.empty() ? below->get_name() : name + " " + below->get_name()));
   return verb;
 }
 

@@ -84,10 +84,10 @@ void add_convert_command(CLI::App& app) {
     const Converted converted = convert(source, format, arguments->options);
     write_then_rename(arguments->out, converted.bytes);
     if (arguments->json)
-      print_json({{"output", arguments->out},
-                  {"format", format},
-                  {"bytes", converted.bytes.size()},
-                  {"lost", converted.losses}});
+      print_as_json({{"output", arguments->out},
+                     {"format", format},
+                     {"bytes", converted.bytes.size()},
+                     {"lost", converted.losses}});
     else if (!converted.losses.empty())
       fmt::print(stderr, "burnish: {}: lost: {}\n", arguments->out, fmt::join(converted.losses, "; "));
   });

@@ -34,7 +34,7 @@ void add_describe_command(CLI::App& app) {
   verb->callback([&app, options] {
     if (options->bash) fmt::print("{}", bash_completion(app));
     if (options->zsh) fmt::print("{}", zsh_completion(app));
-    if (options->json) print_json(description_json(app));
+    if (options->json) print_as_json(description_json(app));
     if (options->man.empty()) return;
     std::filesystem::create_directories(options->man);
     for (const ManualPage& page : manual_pages(app, BURNISH_VERSION))

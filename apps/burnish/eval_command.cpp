@@ -67,10 +67,10 @@ void add_eval_command(CLI::App& app) {
     }
     write_then_rename(arguments->out, text);
     if (arguments->json)
-      print_json({{"output", arguments->out},
-                  {"pairs", pairs.size()},
-                  {"known", std::count(known.begin(), known.end(), 1)},
-                  {"channels", channels}});
+      print_as_json({{"output", arguments->out},
+                     {"pairs", pairs.size()},
+                     {"known", std::count(known.begin(), known.end(), 1)},
+                     {"channels", channels}});
   });
 }
 

@@ -84,7 +84,7 @@ void run(const ExportArguments& arguments) {
     auto shaders = nlohmann::ordered_json::array();
     for (const auto& [file, how, cost] : exported.shaders)
       shaders.push_back({{"file", file}, {"how", how}, {"cost", to_string(cost)}});
-    print_json({{"output", arguments.folder}, {"files", files}, {"shaders", shaders}});
+    print_as_json({{"output", arguments.folder}, {"files", files}, {"shaders", shaders}});
     return;
   }
   for (const ExportedFile& file : exported.files) fmt::print("{}\n", file.name);

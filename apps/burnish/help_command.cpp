@@ -101,10 +101,10 @@ void add_help_command(CLI::App& app) {
   verb->add_flag("--json", arguments->json, "the same as JSON: of a verb its options, defaults and examples");
   verb->callback([arguments, &app] {
     if (arguments->topic == std::vector<std::string>{"formats"})
-      return arguments->json ? print_json(formats_json()) : print_formats();
+      return arguments->json ? print_as_json(formats_json()) : print_formats();
     const CLI::App& topic = verb_of_names(app, arguments->topic);
     if (arguments->json)
-      print_json(description_json(topic));
+      print_as_json(description_json(topic));
     else
       fmt::print("{}", topic.help());
   });

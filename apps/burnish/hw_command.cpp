@@ -107,7 +107,7 @@ void add_generate(CLI::App& verb) {
         write_files(arguments->out, generate_unit(units[i], names[i], arguments->vectors), written);
       write_files(arguments->out, {generate_bench(names, units)}, written);
     }
-    if (arguments->json) print_json({{"output", arguments->out}, {"modules", names}, {"files", written}});
+    if (arguments->json) print_as_json({{"output", arguments->out}, {"modules", names}, {"files", written}});
   });
 }
 
@@ -142,16 +142,17 @@ void add_model(CLI::App& verb) {
             "'" + line + "'");
       const std::uint32_t word = *real ? unit.input(input) : static_cast<std::uint32_t>(input);
       const std::uint32_t value = unit.value(static_cast<std::uint32_t>(exponent), word);
-      if (*json)
-        answers.push_back({{"exponent", exponent},
-                           {"input", input},
-                           {"value", *real ? nlohmann::ordered_json(value / full) : value}});
-      else if (*real)
+      if (*json) {
+        nlohmann::ordered_json answer{{"exponent", exponent}, {"input", input}, {"value", value}};
+        if (*real) answer["value"] = value / full;
+        answers.push_back(answer);
+      } else if (*real) {
         fmt::print("{:.6f}\n", value / full);
-      else
+      } else {
         fmt::print("{}\n", value);
+      }
     }
-    if (*json) print_json(answers);
+    if (*json) print_as_json(answers);
   });
 }
 

@@ -5,7 +5,7 @@
 
 namespace burnish::cli {
 
-void print_json(const nlohmann::ordered_json& json) {
+void print_as_json(const nlohmann::ordered_json& json) {
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 

@@ -22,10 +22,10 @@ void measure_surface(const std::string& scene, const std::string& out, bool json
   const CaptureForm form = write_virtual_capture(parse_surface_scene(read_file(path), path.parent_path()),
                                                  out, progress_bar("pictures"));
   if (json)
-    print_json({{"output", out},
-                {"width", form.width},
-                {"height", form.height},
-                {"pictures", form.pictures.size()}});
+    print_as_json({{"output", out},
+                   {"width", form.width},
+                   {"height", form.height},
+                   {"pictures", form.pictures.size()}});
   else
     fmt::print("{} pictures of {} x {} texels to {}\n", form.pictures.size(), form.width, form.height, out);
 }
@@ -72,7 +72,8 @@ void add_measure_command(CLI::App& app) {
     const Samples samples = measure(source.ref(), arguments->measurement);
     write_then_rename(arguments->out, samples_csv(samples, source.findings.lambda_nm));
     if (arguments->json)
-      print_json({{"output", arguments->out}, {"samples", samples.size()}, {"channels", samples.channels}});
+      print_as_json(
+          {{"output", arguments->out}, {"samples", samples.size()}, {"channels", samples.channels}});
     else
       fmt::print("{} samples to {}\n", samples.size(), arguments->out);
   });

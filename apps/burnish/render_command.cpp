@@ -185,7 +185,7 @@ void render(const RenderArguments& arguments) {
                               {"renderer", arguments.renderer},
                               {"triangles", triangles}};
   if (extension == ".png") json["exposure"] = exposure;
-  print_json(json);
+  print_as_json(json);
 }
 
 }  // namespace

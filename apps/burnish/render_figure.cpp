@@ -97,7 +97,7 @@ void draw_figure(const FigureArguments& arguments, const std::string& mesh, cons
     sheet.cells.push_back(row_of(f));
   }
   write_png(out, compose(sheet));
-  if (json) return print_json(rows);
+  if (json) return print_as_json(rows);
   fmt::print("{}, {} bytes, psnr against the truth at pixels (dB)\n vertices  at vertices  factored\n",
              model_expression(model), model.bytes());
   for (const auto& row : rows)

@@ -27,7 +27,7 @@ void write_text(const TextOutput& to, const std::string& what, const std::string
   if (!to.output.empty()) write_then_rename(to.output, text);
   if (to.json) {
     about[to.output.empty() ? what : "output"] = to.output.empty() ? text : to.output;
-    print_json(about);
+    print_as_json(about);
   } else if (to.output.empty()) {
     fmt::print("{}", text);
   }

@@ -203,7 +203,7 @@ void add_specular_eval(CLI::App& verb) {
       else
         fmt::print("{:.17g}\n", value);
     }
-    if (arguments->json) print_json(list);
+    if (arguments->json) print_as_json(list);
   });
 }
 

@@ -136,7 +136,7 @@ void add_specular_plot(CLI::App& verb) {
     if (arguments->figure != "sphere") {
       write_plot(arguments->out,
                  usage([&] { return figure(arguments->figure, methods, arguments->exponents); }));
-      if (arguments->json) print_json(about);
+      if (arguments->json) print_as_json(about);
       return;
     }
     if (fs::path(arguments->out).extension() != ".png")
@@ -145,7 +145,7 @@ void add_specular_plot(CLI::App& verb) {
     write_png(arguments->out, sphere.image);
     about["white_in_last_row"] = sphere.max_difference;
     if (arguments->json)
-      print_json(about);
+      print_as_json(about);
     else
       fmt::print("white in the last row: +{:.4g}\n", sphere.max_difference);
   });

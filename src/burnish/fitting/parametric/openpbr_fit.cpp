@@ -396,6 +396,21 @@ void append_films(Search& search, const Trial& trial, const Inputs& always,
   }
 }
 
+/// Every so manyth pixel.
+PicturePairs thinned(const PicturePairs& pairs, std::size_t every) {
+  PicturePairs thin;
+  thin.exposure = pairs.exposure;
+  for (std::size_t i = 0; i < pairs.pairs.size(); i += every) {
+    thin.pairs.push_back(pairs.pairs[i]);
+    thin.weights.push_back(static_cast<double>(every) * pairs.weights[i]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      thin.values.push_back(pairs.values[3 * i + c]);
+      thin.shown.push_back(pairs.shown[3 * i + c]);
+    }
+  }
+  return thin;
+}
+
 /// All inputs anywhere in their ranges.
 Search::Start random_start(Pcg32& random, const Inputs& always, const OpenPbrFitOptions& options) {
   Search::Start start{{}, always};
@@ -464,30 +479,27 @@ OpenPbrFit refine_openpbr(const PicturePairs& pairs, const OpenPbrParameters& st
 
 OpenPbrFit fit_openpbr_at_random(const PicturePairs& pairs, int count, std::uint64_t seed,
                                  const OpenPbrFitOptions& options) {
-  constexpr Effort kSift{15, 1e-5, 1e-6}, kSiftAgain{25, 1e-6, 1e-6};
-  Search search(pairs, options);
+  constexpr Effort kSift{15, 1e-5, 1e-6}, kSiftAgain{20, 1e-6, 1e-6};
+  const PicturePairs coarse = thinned(pairs, 3);
+  Search sift(coarse, options), search(pairs, options);
   Pcg32 random(seed);
   std::vector<Search::Start> starts;
   for (int i = 0; i < count; ++i) starts.push_back(random_start(random, always_held(options), options));
-  double first_cost = 0;
-  std::vector<Trial> trials;
-  const auto continue_best = [&](std::size_t share, const Effort& effort) {
-    if (!trials.empty()) {
-      starts.clear();
-      for (std::size_t i = 0; i < (static_cast<std::size_t>(count) + share - 1) / share; ++i)
-        starts.push_back({trials[i].parameters, trials[i].held});
-    }
-    trials = search.run(starts, effort);
+  const auto best_of = [&](const std::vector<Trial>& trials, std::size_t share) {
+    std::vector<Search::Start> best;
+    for (std::size_t i = 0; i < (starts.size() + share - 1) / share; ++i)
+      best.push_back({trials[i].parameters, trials[i].held});
+    return best;
   };
-  continue_best(1, kSift);
-  first_cost = std::ranges::min(trials, {}, &Trial::first_cost).first_cost;
-  continue_best(3, kSiftAgain);
-  continue_best(10, kLast);
+  const std::vector<Trial> again = sift.run(best_of(sift.run(starts, kSift), 4), kSiftAgain);
+  const std::vector<Trial> ends = search.run(best_of(again, 20), kLast);
+
+  const double first_cost = std::ranges::min(ends, {}, &Trial::first_cost).first_cost;
   std::vector<OpenPbrFit> fits;
-  for (const Trial& trial : trials) fits.push_back(to_fit(pairs, trial, first_cost));
+  for (const Trial& trial : ends) fits.push_back(to_fit(pairs, trial, first_cost));
   OpenPbrFit best =
       *std::ranges::min_element(fits, {}, [](const OpenPbrFit& fit) { return fit.summary.error_after; });
-  best.summary.iterations = search.iterations;
+  best.summary.iterations = sift.iterations + search.iterations;
   best.starts = count;
   return best;
 }

@@ -33,8 +33,9 @@ struct OpenPbrFitOptions {
 OpenPbrFit fit_openpbr(const PicturePairs& pairs, const OpenPbrFitOptions& options = {});
 
 /// What fit_openpbr is measured by: the best of `count` >= 1 starts anywhere in the inputs' ranges, every input varied.
-/// The better third goes on after 15 iterations, the better tenth of all after 25 more, to where refine_openpbr ends;
-/// the best is the one whose pictures differ least. errors_before is of the best start.
+/// Hopeless ones are given up: on a third of the pixels each has 15 iterations, the better quarter 20 more, and the better
+/// twentieth of all goes, on all pixels, to where refine_openpbr ends; the best is the one whose pictures differ least.
+/// error_before is the least of these last beginnings.
 OpenPbrFit fit_openpbr_at_random(const PicturePairs& pairs, int count, std::uint64_t seed,
                                  const OpenPbrFitOptions& options = {});
 
