@@ -2,12 +2,12 @@
 # make test   installs tools, builds with sanitizers and optimized, runs every test
 # make python the Python package in build/venv, tested
 # make build  the command line at build/release/apps/burnish/burnish
-# make deb, make wheel: packages in build/packages; make release-check installs each in an empty system and runs it
+# make deb, make wheel, make npm: packages in build/packages; make release-check installs each in an empty system and runs it
 # make studio the library as WebAssembly, its npm package and the page in build/studio; make studio-test tests them
-# make bench, make fuzz, make report, make cost-report, make sampling-report, make shader-report, make frame-cost, make hw-report, make hw-exhaustive, make format:
+# make bench, make fuzz, make report, make cost-report, make sampling-report, make shader-report, make openpbr-report, make frame-cost, make hw-report, make hw-exhaustive, make format:
 # see CONTRIBUTING.md
 # make cluster-test  a batch on a real Slurm of two nodes on this machine, killed now and then
-.PHONY: cluster-test demo test build reports python deb wheel packaging-deps release-check studio studio-test deps test-deps studio-deps bench fuzz report cost-report sampling-report shader-report frame-cost hw-report hw-exhaustive format format-check docs-check include-check api
+.PHONY: cluster-test demo test build reports python deb wheel npm packaging-deps release-check studio studio-test deps test-deps studio-deps bench fuzz report cost-report sampling-report shader-report openpbr-report frame-cost hw-report hw-exhaustive format format-check docs-check include-check api
 JOBS ?= $(shell nproc)
 BURNISH := build/release/apps/burnish/burnish
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
@@ -72,7 +72,11 @@ deb: packaging-deps build
 wheel: packaging-deps deps
 	@python/wheel.sh $(RELEASE)
 
-release-check: deb wheel
+npm: studio
+	@mkdir -p $(RELEASE) && rm -f $(RELEASE)/*.tgz
+	@npm pack --silent --pack-destination $(RELEASE) ./build/studio/package > /dev/null && ls $(RELEASE)/*.tgz
+
+release-check: deb wheel npm
 	@$(SUDO) tests/release/check.sh $(RELEASE)
 
 studio: studio-deps
@@ -100,8 +104,9 @@ report: NAMES := results accuracy cost
 cost-report: NAMES := cost
 sampling-report: NAMES := sampling
 shader-report: NAMES := shaders
+openpbr-report: NAMES := openpbr
 frame-cost: NAMES := frame-cost
-report cost-report sampling-report shader-report frame-cost: reports
+report cost-report sampling-report shader-report openpbr-report frame-cost: reports
 	@for name in $(NAMES); do $(REPORTS) $$name docs/results || exit 1; done
 
 HW := build/hw-report

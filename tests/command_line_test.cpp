@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <sstream>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -92,6 +94,71 @@ TEST(CommandLine, PrintsJsonForPrograms) {
   EXPECT_EQ(json("info lambert")["format"], "analytic");
   EXPECT_EQ(json(fmt::format("export phong:exponent=9 --to glsl -o '{}/e'", out))["output"], out + "/e");
   EXPECT_GT(json("help formats").size(), 15u);
+  EXPECT_EQ(json("help specular code")["name"], "specular code");
+  const std::string ball = "render --renderer cpu --material lambert --size 8x6 --vertices 64 --samples 1";
+  EXPECT_EQ(json(fmt::format("{} -o '{}/ball.png'", ball, out))["height"], 6);
+  EXPECT_EQ(json("specular code --method cubic2 --lang glsl")["language"], "glsl");
+  EXPECT_EQ(json(fmt::format("specular table --count 3 -o '{}/t.csv'", out))["output"], out + "/t.csv");
+  EXPECT_EQ(json(fmt::format("specular plot -o '{}/p.svg'", out))["figure"], "2a");
+  EXPECT_FALSE(json(fmt::format("hw generate --vectors 2 -o '{}/unit'", out))["files"].empty());
+  const auto piped = [&](const char* lines, const char* arguments) {
+    return nlohmann::json::parse(
+        run(fmt::format("printf '{}' | '{}' {} --json", lines, BURNISH_CLI, arguments)).output);
+  };
+  EXPECT_EQ(piped("1\\n0.5\\n", "specular eval --method exact --exponent 2")[1]["value"], 0.25);
+  EXPECT_EQ(piped("50 32768\\n", "hw model --method exact")[0]["input"], 32768);
+}
+
+/// Every verb that does something, with what `describe --json` says of it.
+void append_leaves(const nlohmann::json& verb, std::vector<nlohmann::json>& leaves) {
+  if (verb["verbs"].empty()) leaves.push_back(verb);
+  for (const nlohmann::json& below : verb["verbs"]) append_leaves(below, leaves);
+}
+
+std::vector<std::string> names_of(const nlohmann::json& verb) {
+  std::vector<std::string> names;
+  for (const nlohmann::json& argument : verb["arguments"])
+    for (const nlohmann::json& name : argument["names"]) names.push_back(name.get<std::string>());
+  return names;
+}
+
+TEST(CommandLine, HasJsonHelpAndExamplesInEveryVerb) {
+  std::vector<nlohmann::json> verbs;
+  append_leaves(nlohmann::json::parse(burnish("describe --json").output), verbs);
+  verbs.push_back(nlohmann::json::parse(burnish("help describe --json").output));
+  EXPECT_GT(verbs.size(), 20u);
+  for (const nlohmann::json& verb : verbs) {
+    const std::string name = verb["name"], examples = verb["examples"];
+    const std::vector<std::string> names = names_of(verb);
+    EXPECT_THAT(names, testing::IsSupersetOf({"--help", "--json"})) << name;
+    // what is written is named alike
+    for (const char* other : {"--out", "--folder", "--file"})
+      if (std::ranges::find(names, other) != names.end()) {
+        EXPECT_THAT(names, testing::Contains("-o")) << name;
+      }
+    EXPECT_THAT(examples, HasSubstr("burnish " + name)) << name;
+    EXPECT_THAT(burnish(name + " --help").output, HasSubstr(examples.substr(0, examples.find('\n')))) << name;
+    for (const nlohmann::json& argument : verb["arguments"])
+      EXPECT_FALSE(argument["description"].get<std::string>().empty()) << name << argument["names"];
+  }
+}
+
+TEST(CommandLine, ShowsExamplesOfOptionsThatThereAre) {
+  std::vector<nlohmann::json> verbs;
+  append_leaves(nlohmann::json::parse(burnish("describe --json").output), verbs);
+  for (const nlohmann::json& verb : verbs) {
+    const std::vector<std::string> names = names_of(verb);
+    std::istringstream lines(verb["examples"].get<std::string>());
+    for (std::string line; std::getline(lines, line);) {
+      const std::size_t call = line.find(fmt::format("burnish {} ", verb["name"].get<std::string>()));
+      if (call == std::string::npos) continue;
+      std::istringstream words(line.substr(call, line.find(" | ", call) - call));
+      for (std::string word; words >> word;)
+        if (word.starts_with("--")) {
+          EXPECT_THAT(names, testing::Contains(word.substr(0, word.find('=')))) << line;
+        }
+    }
+  }
 }
 
 TEST(CommandLine, ExplainsItsFormatsAndItself) {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace burnish::cli {
 namespace {
@@ -65,7 +66,11 @@ Verb verb_of(const CLI::App& app, const std::string& name) {
   for (const CLI::Option* option : app.get_options()) verb.arguments.push_back(argument_of(*option));
   for (const CLI::App* below :
        app.get_subcommands([](const CLI::App* each) { return !each->get_group().empty(); }))
-    verb.verbs.push_back(verb_of(*below, name.empty() ? below->get_name() : name + " " + below->get_name()));
+    if (below->get_name().empty())  // a group of options
+      for (const CLI::Option* option : below->get_options()) verb.arguments.push_back(argument_of(*option));
+    else
+      verb.verbs.push_back(
+          verb_of(*below, name.empty() ? below->get_name() : name + " " + below->get_name()));
   return verb;
 }
 
@@ -208,7 +213,32 @@ std::string zsh_functions(const Verb& verb) {
   return text;
 }
 
+// --- JSON
+
+nlohmann::ordered_json json_of(const Verb& verb) {
+  nlohmann::ordered_json json{
+      {"name", verb.name}, {"description", verb.description}, {"examples", verb.examples}};
+  json["arguments"] = nlohmann::ordered_json::array();
+  for (const Argument& argument : verb.arguments)
+    json["arguments"].push_back({{"names", argument.names},
+                                 {"value", argument.value},
+                                 {"choices", argument.choices},
+                                 {"default", argument.standard},
+                                 {"description", argument.description},
+                                 {"positional", argument.positional}});
+  json["verbs"] = nlohmann::ordered_json::array();
+  for (const Verb& below : verb.verbs) json["verbs"].push_back(json_of(below));
+  return json;
+}
+
 }  // namespace
+
+nlohmann::ordered_json description_json(const CLI::App& app) {
+  std::string name;
+  for (const CLI::App* verb = &app; verb->get_parent(); verb = verb->get_parent())
+    name = verb->get_name() + (name.empty() ? "" : " " + name);
+  return json_of(verb_of(app, name));
+}
 
 std::vector<ManualPage> manual_pages(const CLI::App& app, std::string_view version) {
   const Verb program = verb_of(app, "");

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 namespace burnish::cli {
 
@@ -19,6 +20,10 @@ struct ManualPage {
 
 /// One page of the program and one of each verb, which holds the verbs below it. `version` is printed at the foot.
 std::vector<ManualPage> manual_pages(const CLI::App& app, std::string_view version);
+
+/// What --help of a verb and of those below it says: name, description, examples, arguments (names, value, choices,
+/// default, description), verbs.
+nlohmann::ordered_json description_json(const CLI::App& app);
 
 /// Completion of verbs, options, and values where an option takes one of a few; of files elsewhere.
 /// A script that bash sources.

@@ -9,6 +9,7 @@
 #include <burnish/io/convert.h>
 
 #include "commands.h"
+#include "json_output.h"
 #include "source_arguments.h"
 
 namespace burnish::cli {
@@ -83,11 +84,10 @@ void add_convert_command(CLI::App& app) {
     const Converted converted = convert(source, format, arguments->options);
     write_then_rename(arguments->out, converted.bytes);
     if (arguments->json)
-      fmt::print("{}\n", nlohmann::ordered_json{{"output", arguments->out},
-                                                {"format", format},
-                                                {"bytes", converted.bytes.size()},
-                                                {"lost", converted.losses}}
-                             .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+      print_as_json({{"output", arguments->out},
+                     {"format", format},
+                     {"bytes", converted.bytes.size()},
+                     {"lost", converted.losses}});
     else if (!converted.losses.empty())
       fmt::print(stderr, "burnish: {}: lost: {}\n", arguments->out, fmt::join(converted.losses, "; "));
   });

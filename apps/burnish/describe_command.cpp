@@ -1,25 +1,28 @@
 #include <filesystem>
 
 #include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include <burnish/file.h>
 
 #include "command_description.h"
 #include "commands.h"
+#include "json_output.h"
 
 namespace burnish::cli {
 
 void add_describe_command(CLI::App& app) {
-  CLI::App* verb =
-      app.add_subcommand("describe", "What packages hold of the command line: manual pages, completions");
+  CLI::App* verb = app.add_subcommand(
+      "describe", "What packages hold of the command line: manual pages, completions, a description");
   verb->group("");  // for whoever packages burnish
   verb->footer(
       "Examples: burnish describe --man share/man/man1\n"
       "          burnish describe --bash > /etc/bash_completion.d/burnish\n"
-      "          burnish describe --zsh > \"${fpath[1]}/_burnish\"");
+      "          burnish describe --zsh > \"${fpath[1]}/_burnish\"\n"
+      "          burnish describe --json");
   struct Options {
     std::string man;
-    bool bash = false, zsh = false;
+    bool bash = false, zsh = false, json = false;
   };
   auto options = std::make_shared<Options>();
   CLI::Option_group* what = verb->add_option_group("what");
@@ -27,9 +30,11 @@ void add_describe_command(CLI::App& app) {
   what->add_option("--man", options->man, "write manual pages into this folder");
   what->add_flag("--bash", options->bash, "print the completion for bash");
   what->add_flag("--zsh", options->zsh, "print the completion for zsh");
+  what->add_flag("--json", options->json, "print all verbs, their options and examples as JSON");
   verb->callback([&app, options] {
     if (options->bash) fmt::print("{}", bash_completion(app));
     if (options->zsh) fmt::print("{}", zsh_completion(app));
+    if (options->json) print_as_json(description_json(app));
     if (options->man.empty()) return;
     std::filesystem::create_directories(options->man);
     for (const ManualPage& page : manual_pages(app, BURNISH_VERSION))

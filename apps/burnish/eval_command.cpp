@@ -9,6 +9,7 @@
 #include <burnish/math/parallel.h>
 
 #include "commands.h"
+#include "json_output.h"
 #include "source_arguments.h"
 
 namespace burnish::cli {
@@ -66,11 +67,10 @@ void add_eval_command(CLI::App& app) {
     }
     write_then_rename(arguments->out, text);
     if (arguments->json)
-      fmt::print("{}\n", nlohmann::ordered_json{{"output", arguments->out},
-                                                {"pairs", pairs.size()},
-                                                {"known", std::count(known.begin(), known.end(), 1)},
-                                                {"channels", channels}}
-                             .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+      print_as_json({{"output", arguments->out},
+                     {"pairs", pairs.size()},
+                     {"known", std::count(known.begin(), known.end(), 1)},
+                     {"channels", channels}});
   });
 }
 

@@ -14,6 +14,7 @@
 
 #include "commands.h"
 #include "environment_argument.h"
+#include "json_output.h"
 #include "usage.h"
 
 namespace burnish::cli {
@@ -83,10 +84,7 @@ void run(const ExportArguments& arguments) {
     auto shaders = nlohmann::ordered_json::array();
     for (const auto& [file, how, cost] : exported.shaders)
       shaders.push_back({{"file", file}, {"how", how}, {"cost", to_string(cost)}});
-    fmt::print(
-        "{}\n",
-        nlohmann::ordered_json{{"output", arguments.folder}, {"files", files}, {"shaders", shaders}}.dump(
-            2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    print_as_json({{"output", arguments.folder}, {"files", files}, {"shaders", shaders}});
     return;
   }
   for (const ExportedFile& file : exported.files) fmt::print("{}\n", file.name);

@@ -7,7 +7,9 @@
 
 #include <burnish/math/build_info.h>
 
+#include "command_description.h"
 #include "commands.h"
+#include "json_output.h"
 
 namespace burnish::cli {
 
@@ -42,25 +44,36 @@ constexpr std::array kFormats = {
     FormatHelp{"network weights", "", ".csv", "nbrdf:FILE#NAME", true, false},
     FormatHelp{"Neural Processes codes", "", ".csv", "np:FOLDER#NAME", true, false}};
 
-void print_formats(bool json) {
-  if (json) {
-    auto list = nlohmann::ordered_json::array();
-    for (const FormatHelp& f : kFormats)
-      list.push_back({{"name", f.name},
-                      {"to", f.to},
-                      {"extension", f.extension},
-                      {"read", f.read},
-                      {"written", f.written},
-                      {"holds", f.holds}});
-    fmt::print("{}\n", list.dump(2));
-    return;
-  }
+nlohmann::ordered_json formats_json() {
+  auto list = nlohmann::ordered_json::array();
+  for (const FormatHelp& f : kFormats)
+    list.push_back({{"name", f.name},
+                    {"to", f.to},
+                    {"extension", f.extension},
+                    {"read", f.read},
+                    {"written", f.written},
+                    {"holds", f.holds}});
+  return list;
+}
+
+void print_formats() {
   fmt::print(
       "Files are known by their content. `burnish convert IN OUT --to NAME` writes those with a name.\n\n");
   fmt::print("{:23} {:13} {:24} {:6} {}\n", "format", "--to", "usual ending", "", "holds");
   for (const FormatHelp& f : kFormats)
     fmt::print("{:23} {:13} {:24} {:6} {}\n", f.name, f.to, f.extension,
                f.read && f.written ? "both" : (f.read ? "read" : "write"), f.holds);
+}
+
+/// The verb of these names, each below the one before; throws a misuse where there is none.
+const CLI::App& verb_of_names(const CLI::App& app, const std::vector<std::string>& names) {
+  const CLI::App* verb = &app;
+  for (const std::string& name : names) {
+    const auto found = verb->get_subcommands([&](const CLI::App* each) { return each->get_name() == name; });
+    if (found.empty()) throw CLI::ValidationError("help", "expected formats or a verb, found '" + name + "'");
+    verb = found.front();
+  }
+  return *verb;
 }
 
 }  // namespace
@@ -76,20 +89,24 @@ std::string version_text() {
 
 void add_help_command(CLI::App& app) {
   struct Arguments {
-    std::string topic;
+    std::vector<std::string> topic;
     bool json = false;
   };
   CLI::App* verb = app.add_subcommand("help", "Say what formats there are, or how a verb is used");
-  verb->footer("Examples: burnish help formats\n          burnish help fit");
+  verb->footer(
+      "Examples: burnish help formats\n          burnish help specular code\n"
+      "          burnish help fit --json");
   auto arguments = std::make_shared<Arguments>();
-  verb->add_option("TOPIC", arguments->topic, "formats, or a verb; without it all verbs");
-  verb->add_flag("--json", arguments->json, "of formats: for programs");
+  verb->add_option("TOPIC", arguments->topic, "formats, or a verb and verbs below it; without it all verbs");
+  verb->add_flag("--json", arguments->json, "the same as JSON: of a verb its options, defaults and examples");
   verb->callback([arguments, &app] {
-    if (arguments->topic == "formats") return print_formats(arguments->json);
-    if (arguments->topic.empty()) return fmt::print("{}", app.help());
-    for (const CLI::App* found : app.get_subcommands([](const CLI::App*) { return true; }))
-      if (found->get_name() == arguments->topic) return fmt::print("{}", found->help());
-    throw CLI::ValidationError("help", "expected formats or a verb, found '" + arguments->topic + "'");
+    if (arguments->topic == std::vector<std::string>{"formats"})
+      return arguments->json ? print_as_json(formats_json()) : print_formats();
+    const CLI::App& topic = verb_of_names(app, arguments->topic);
+    if (arguments->json)
+      print_as_json(description_json(topic));
+    else
+      fmt::print("{}", topic.help());
   });
 }
 

@@ -11,6 +11,7 @@
 #include <burnish/hardware/generate.h>
 
 #include "commands.h"
+#include "json_output.h"
 
 namespace burnish::cli {
 namespace {
@@ -51,21 +52,25 @@ SpecularUnit make_unit(const UnitArguments& arguments) {
   return SpecularUnit(config);
 }
 
-void write_files(const std::string& folder, const std::vector<GeneratedFile>& files) {
-  for (const GeneratedFile& file : files)
+/// Writes the files and appends their names.
+void write_files(const std::string& folder, const std::vector<GeneratedFile>& files,
+                 std::vector<std::string>& names) {
+  for (const GeneratedFile& file : files) {
     write_then_rename(std::filesystem::path(folder) / file.name, file.text);
+    names.push_back(file.name);
+  }
 }
 
 void add_generate(CLI::App& verb) {
   CLI::App* sub =
       verb.add_subcommand("generate", "Write module, table images, test bench and golden vectors");
   sub->footer(
-      "Example: burnish hw generate --method exact --out-bits 10 --depth 8 --name highlight --out highlight\n"
+      "Example: burnish hw generate --method exact --out-bits 10 --depth 8 --name highlight -o highlight\n"
       "         cd highlight && iverilog -g2012 -f highlight.f highlight_tb.sv && ./a.out");
   struct Arguments {
     std::string name, out;
     int vectors = 2000;
-    bool all = false, blinn = false;
+    bool all = false, blinn = false, json = false;
   };
   auto unit_arguments = add_unit_options(*sub);
   auto arguments = std::make_shared<Arguments>();
@@ -77,8 +82,9 @@ void add_generate(CLI::App& verb) {
   sub->add_flag("--blinn", arguments->blinn,
                 "with Blinn's front end: vectors in; for --method exact --input versine");
   sub->add_option("-o,--output,--out", arguments->out, "folder, made where it is missing")->required();
+  sub->add_flag("--json", arguments->json, "print the files as JSON");
   sub->callback([unit_arguments, arguments] {
-    std::vector<std::string> names;
+    std::vector<std::string> names, written;
     std::vector<SpecularUnit> units;
     if (arguments->all) {
       for (const ShippedUnit& unit : shipped_units()) {
@@ -95,12 +101,13 @@ void add_generate(CLI::App& verb) {
     std::filesystem::create_directories(arguments->out, failed);
     if (failed) throw Error::in_file(arguments->out, "a folder", failed.message());
     if (arguments->blinn) {
-      write_files(arguments->out, generate_blinn(units[0], names[0], arguments->vectors));
-      return;
+      write_files(arguments->out, generate_blinn(units[0], names[0], arguments->vectors), written);
+    } else {
+      for (std::size_t i = 0; i < units.size(); ++i)
+        write_files(arguments->out, generate_unit(units[i], names[i], arguments->vectors), written);
+      write_files(arguments->out, {generate_bench(names, units)}, written);
     }
-    for (std::size_t i = 0; i < units.size(); ++i)
-      write_files(arguments->out, generate_unit(units[i], names[i], arguments->vectors));
-    write_files(arguments->out, {generate_bench(names, units)});
+    if (arguments->json) print_as_json({{"output", arguments->out}, {"modules", names}, {"files", written}});
   });
 }
 
@@ -109,11 +116,13 @@ void add_model(CLI::App& verb) {
       verb.add_subcommand("model", "Answer `exponent input` lines as the hardware does, to the bit");
   sub->footer("Example: printf '50 32700\\n50 32768\\n' | burnish hw model --method exact");
   auto unit_arguments = add_unit_options(*sub);
-  auto real = std::make_shared<bool>(false);
+  auto real = std::make_shared<bool>(false), json = std::make_shared<bool>(false);
   sub->add_flag(
       "--real", *real,
       "the input is a cosine in [0, 1], rounded to the input's format; the answer a value in [0, 1]");
-  sub->callback([unit_arguments, real] {
+  sub->add_flag("--json", *json, "print questions and answers as JSON");
+  sub->callback([unit_arguments, real, json] {
+    auto answers = nlohmann::ordered_json::array();
     const SpecularUnit unit = make_unit(*unit_arguments);
     const double one = static_cast<double>(1U << unit.config().cosine_bits);
     const double full = (1 << unit.config().output_bits) - 1;
@@ -133,11 +142,17 @@ void add_model(CLI::App& verb) {
             "'" + line + "'");
       const std::uint32_t word = *real ? unit.input(input) : static_cast<std::uint32_t>(input);
       const std::uint32_t value = unit.value(static_cast<std::uint32_t>(exponent), word);
-      if (*real)
+      if (*json) {
+        nlohmann::ordered_json answer{{"exponent", exponent}, {"input", input}, {"value", value}};
+        if (*real) answer["value"] = value / full;
+        answers.push_back(answer);
+      } else if (*real) {
         fmt::print("{:.6f}\n", value / full);
-      else
+      } else {
         fmt::print("{}\n", value);
+      }
     }
+    if (*json) print_as_json(answers);
   });
 }
 
@@ -208,7 +223,7 @@ void add_hw_command(CLI::App& app) {
   CLI::App* verb =
       app.add_subcommand("hw", "The specular unit in hardware: SystemVerilog and its bit-exact model");
   verb->require_subcommand(1);
-  verb->footer("Example: burnish hw generate --method exact --out unit");
+  verb->footer("Example: burnish hw generate --method exact -o unit");
   add_generate(*verb);
   add_model(*verb);
   add_error(*verb);

@@ -9,6 +9,7 @@
 #include <burnish/reflectance/goniometer.h>
 
 #include "commands.h"
+#include "json_output.h"
 #include "progress.h"
 #include "source_arguments.h"
 
@@ -21,11 +22,10 @@ void measure_surface(const std::string& scene, const std::string& out, bool json
   const CaptureForm form = write_virtual_capture(parse_surface_scene(read_file(path), path.parent_path()),
                                                  out, progress_bar("pictures"));
   if (json)
-    fmt::print("{}\n", nlohmann::ordered_json{{"output", out},
-                                              {"width", form.width},
-                                              {"height", form.height},
-                                              {"pictures", form.pictures.size()}}
-                           .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    print_as_json({{"output", out},
+                   {"width", form.width},
+                   {"height", form.height},
+                   {"pictures", form.pictures.size()}});
   else
     fmt::print("{} pictures of {} x {} texels to {}\n", form.pictures.size(), form.width, form.height, out);
 }
@@ -72,10 +72,8 @@ void add_measure_command(CLI::App& app) {
     const Samples samples = measure(source.ref(), arguments->measurement);
     write_then_rename(arguments->out, samples_csv(samples, source.findings.lambda_nm));
     if (arguments->json)
-      fmt::print("{}\n",
-                 nlohmann::ordered_json{
-                     {"output", arguments->out}, {"samples", samples.size()}, {"channels", samples.channels}}
-                     .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+      print_as_json(
+          {{"output", arguments->out}, {"samples", samples.size()}, {"channels", samples.channels}});
     else
       fmt::print("{} samples to {}\n", samples.size(), arguments->out);
   });

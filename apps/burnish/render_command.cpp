@@ -7,6 +7,7 @@
 #include <variant>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <burnish/error.h>
 #include <burnish/eval/factored_eval.h>
@@ -23,6 +24,7 @@
 
 #include "commands.h"
 #include "environment_argument.h"
+#include "json_output.h"
 #include "render_figure.h"
 #include "source_arguments.h"
 #include "usage.h"
@@ -38,7 +40,7 @@ struct RenderArguments {
   std::vector<double> view{0, 0};
   std::string environment;
   int vertices = 40000, samples = 2, draws = 64;
-  bool exact = false, shadows = false, figure1 = false;
+  bool exact = false, shadows = false, figure1 = false, json = false;
   FigureArguments figure;
 };
 
@@ -174,6 +176,16 @@ void render(const RenderArguments& arguments) {
     write_then_rename(arguments.out, encode_exr(image));
   else
     write_png(arguments.out, to_bytes(image, exposure, arguments.tone == "aces" ? Tone::aces : Tone::srgb));
+  if (!arguments.json) return;
+  std::size_t triangles = 0;
+  for (const MeshPart& part : scene.parts) triangles += part.mesh.triangles.size();
+  nlohmann::ordered_json json{{"output", arguments.out},
+                              {"width", width},
+                              {"height", height},
+                              {"renderer", arguments.renderer},
+                              {"triangles", triangles}};
+  if (extension == ".png") json["exposure"] = exposure;
+  print_as_json(json);
 }
 
 }  // namespace
@@ -233,9 +245,10 @@ void add_render_command(CLI::App& app) {
   verb->add_flag("--exact", arguments->exact, "weigh texels in the shader, not by the texture unit");
   verb->add_flag("--shadows", arguments->shadows, "of --renderer cpu: lights are blocked by triangles");
   add_figure_arguments(*verb, arguments->figure, arguments->figure1);
+  verb->add_flag("--json", arguments->json, "print what was drawn as JSON, of --figure1 the table");
   verb->callback([arguments] {
     if (arguments->figure1)
-      draw_figure(arguments->figure, arguments->mesh, arguments->out);
+      draw_figure(arguments->figure, arguments->mesh, arguments->out, arguments->json);
     else
       render(*arguments);
   });

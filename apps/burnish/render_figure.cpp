@@ -15,6 +15,8 @@
 #include <burnish/render/picture.h>
 #include <burnish/render/vertex_figure.h>
 
+#include "json_output.h"
+
 namespace burnish::cli {
 
 namespace {
@@ -69,10 +71,10 @@ void add_figure_arguments(CLI::App& verb, FigureArguments& arguments, bool& figu
       ->needs(figure)
       ->check(CLI::Range(16, 4096))
       ->capture_default_str();
-  verb.add_flag("--json", arguments.json, "of --figure1: print the table as JSON")->needs(figure);
 }
 
-void draw_figure(const FigureArguments& arguments, const std::string& mesh, const std::string& out) {
+void draw_figure(const FigureArguments& arguments, const std::string& mesh, const std::string& out,
+                 bool json) {
   if (out.empty()) throw CLI::RequiredError("--output");
   scene_of(mesh, 64);  // a name that is none is told before anything is fitted
   const Source truth = open_source(arguments.truth, {});
@@ -95,10 +97,7 @@ void draw_figure(const FigureArguments& arguments, const std::string& mesh, cons
     sheet.cells.push_back(row_of(f));
   }
   write_png(out, compose(sheet));
-  if (arguments.json) {
-    fmt::print("{}\n", rows.dump(2));
-    return;
-  }
+  if (json) return print_as_json(rows);
   fmt::print("{}, {} bytes, psnr against the truth at pixels (dB)\n vertices  at vertices  factored\n",
              model_expression(model), model.bytes());
   for (const auto& row : rows)

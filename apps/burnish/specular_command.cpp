@@ -1,10 +1,12 @@
 #include "specular_command.h"
 
 #include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include <burnish/file.h>
 
 #include "commands.h"
+#include "json_output.h"
 #include "usage.h"
 
 namespace burnish::cli {
@@ -15,11 +17,20 @@ std::vector<PowerMethod> parse_methods(const std::vector<std::string>& names) {
   return methods;
 }
 
-void write_text(const std::string& path, const std::string& text) {
-  if (path.empty())
+void add_text_output(CLI::App& verb, TextOutput& to) {
+  verb.add_option("-o,--output,--out", to.output, "file to write instead of standard output");
+  verb.add_flag("--json", to.json, "print what was made as JSON");
+}
+
+void write_text(const TextOutput& to, const std::string& what, const std::string& text,
+                nlohmann::ordered_json about) {
+  if (!to.output.empty()) write_then_rename(to.output, text);
+  if (to.json) {
+    about[to.output.empty() ? what : "output"] = to.output.empty() ? text : to.output;
+    print_as_json(about);
+  } else if (to.output.empty()) {
     fmt::print("{}", text);
-  else
-    write_then_rename(path, text);
+  }
 }
 
 void add_specular_command(CLI::App& app) {

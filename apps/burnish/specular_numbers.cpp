@@ -11,6 +11,7 @@
 #include <burnish/power/choose.h>
 #include <burnish/power/code.h>
 
+#include "json_output.h"
 #include "specular_command.h"
 #include "usage.h"
 
@@ -140,7 +141,8 @@ void add_specular_choose(CLI::App& verb) {
 
 void add_specular_code(CLI::App& verb) {
   struct Arguments {
-    std::string method = "cubic2", language = "c", out;
+    std::string method = "cubic2", language = "c";
+    TextOutput to;
     std::optional<double> exponent;
     bool normalize = false;
   };
@@ -153,12 +155,17 @@ void add_specular_code(CLI::App& verb) {
   sub->add_option("--lang", arguments->language, "language: " + languages)->capture_default_str();
   sub->add_option("--exponent", arguments->exponent, "constants for this exponent; without it an argument");
   sub->add_flag("--normalize", arguments->normalize, "keep the energy of the power; needs --exponent");
-  sub->add_option("-o,--output,--out", arguments->out, "file to write instead of standard output");
+  add_text_output(*sub, arguments->to);
   sub->callback([arguments] {
-    write_text(arguments->out, usage([&] {
-                 return power_code(power_method(arguments->method),
-                                   {arguments->language, arguments->exponent, arguments->normalize});
-               }));
+    const std::string code = usage([&] {
+      return power_code(power_method(arguments->method),
+                        {arguments->language, arguments->exponent, arguments->normalize});
+    });
+    nlohmann::ordered_json about{{"method", arguments->method}, {"language", arguments->language}};
+    if (arguments->exponent) about["exponent"] = *arguments->exponent;
+    about["normalized"] = arguments->normalize;
+    about["cost"] = cost_json(power_info(power_method(arguments->method)).cost);
+    write_text(arguments->to, "code", code, about);
   });
 }
 
@@ -166,7 +173,7 @@ void add_specular_eval(CLI::App& verb) {
   struct Arguments {
     std::string method = "exact";
     double exponent = 1;
-    bool normalize = false;
+    bool normalize = false, json = false;
   };
   CLI::App* sub = verb.add_subcommand("eval", "Values for cosines from standard input, one a line");
   sub->footer("Example: printf '1\\n0.9\\n' | burnish specular eval --method cubic2 --exponent 50");
@@ -174,7 +181,9 @@ void add_specular_eval(CLI::App& verb) {
   sub->add_option("--method", arguments->method, "see `specular list`")->required();
   sub->add_option("--exponent", arguments->exponent, "the exponent")->required();
   sub->add_flag("--normalize", arguments->normalize, "keep the energy of the power");
+  sub->add_flag("--json", arguments->json, "print cosines and values as JSON");
   sub->callback([arguments] {
+    auto list = nlohmann::ordered_json::array();
     const PowerCoefficients k =
         usage([&] { return power_coefficients(power_method(arguments->method), arguments->exponent); });
     const double scale = arguments->normalize ? power_normalization(k.method, arguments->exponent) : 1;
@@ -188,14 +197,20 @@ void add_specular_eval(CLI::App& verb) {
       }
       if (!(cosine >= 0 && cosine <= 1))
         throw Error::in_line("standard input", number, "a cosine in [0, 1]", "'" + line + "'");
-      fmt::print("{:.17g}\n", scale * power(k, cosine));
+      const double value = scale * power(k, cosine);
+      if (arguments->json)
+        list.push_back({{"cosine", cosine}, {"value", value}});
+      else
+        fmt::print("{:.17g}\n", value);
     }
+    if (arguments->json) print_as_json(list);
   });
 }
 
 void add_specular_table(CLI::App& verb) {
   struct Arguments {
-    std::string format = "csv", out;
+    std::string format = "csv";
+    TextOutput to;
     int count = 1000, fraction_bits = 8;
   };
   CLI::App* sub = verb.add_subcommand("table", "The paper's coefficient a(e) for e = 1, 2, …");
@@ -207,11 +222,11 @@ void add_specular_table(CLI::App& verb) {
   sub->add_option("--count", arguments->count, "largest exponent")->capture_default_str();
   sub->add_option("--fraction-bits", arguments->fraction_bits, "of the PROM's fixed point words")
       ->capture_default_str();
-  sub->add_option("-o,--output,--out", arguments->out, "file to write instead of standard output");
+  add_text_output(*sub, arguments->to);
   sub->callback([arguments] {
-    write_text(arguments->out, usage([&] {
-                 return quadratic_table(arguments->format, arguments->count, arguments->fraction_bits);
-               }));
+    const std::string table =
+        usage([&] { return quadratic_table(arguments->format, arguments->count, arguments->fraction_bits); });
+    write_text(arguments->to, "table", table, {{"format", arguments->format}, {"count", arguments->count}});
   });
 }
 

@@ -9,6 +9,7 @@
 #include <burnish/power/bounds.h>
 #include <burnish/report/specular_figures.h>
 
+#include "json_output.h"
 #include "specular_command.h"
 #include "usage.h"
 
@@ -111,6 +112,7 @@ void add_specular_plot(CLI::App& verb) {
     std::string figure = "2a", out;
     std::vector<std::string> methods{"quadratic"};
     std::vector<double> exponents{10};
+    bool json = false;
   };
   CLI::App* sub = verb.add_subcommand("plot", "One figure, SVG or PNG by the name's end");
   sub->footer(
@@ -127,18 +129,25 @@ void add_specular_plot(CLI::App& verb) {
   sub->add_option("--method", arguments->methods, "members, see `specular list`")->capture_default_str();
   sub->add_option("--exponent", arguments->exponents, "exponents")->capture_default_str();
   sub->add_option("-o,--output,--out", arguments->out, "file to write")->required();
+  sub->add_flag("--json", arguments->json, "print what was drawn as JSON");
   sub->callback([arguments] {
+    nlohmann::ordered_json about{{"output", arguments->out}, {"figure", arguments->figure}};
     const std::vector<PowerMethod> methods = parse_methods(arguments->methods);
     if (arguments->figure != "sphere") {
       write_plot(arguments->out,
                  usage([&] { return figure(arguments->figure, methods, arguments->exponents); }));
+      if (arguments->json) print_as_json(about);
       return;
     }
     if (fs::path(arguments->out).extension() != ".png")
       throw CLI::ValidationError(arguments->out, "expected a name that ends in .png");
     const SphereFigure sphere = usage([&] { return sphere_figure(methods, arguments->exponents.front()); });
     write_png(arguments->out, sphere.image);
-    fmt::print("white in the last row: +{:.4g}\n", sphere.max_difference);
+    about["white_in_last_row"] = sphere.max_difference;
+    if (arguments->json)
+      print_as_json(about);
+    else
+      fmt::print("white in the last row: +{:.4g}\n", sphere.max_difference);
   });
 }
 

@@ -36,6 +36,7 @@ const Report kReports[] = {
      "precision and cost of generated shaders, and light from all around",
      report_shaders,
      {"precision", "webgl", "cost", "environment"}},
+    {"openpbr", "the OpenPBR fit beside the best of 200 random starts", report_openpbr, {"rgl", "merl"}},
     {"frame-cost", "milliseconds a frame beside other materials", report_frame_cost},
 };
 

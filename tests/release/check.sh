@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# check.sh FOLDER: installs each package of FOLDER (a .deb, a .whl) where nothing else of burnish is, runs the demo
-# there, and prints what each takes. The .deb goes into a Debian made by debootstrap (BURNISH_ROOT=DIR keeps it for the
-# next time), the wheel into an empty virtual environment with no compiler in the path. Needs root for the first.
+# check.sh FOLDER: installs each package of FOLDER (a .deb, a .whl, a .tgz of npm) where nothing else of burnish is, runs
+# the demo there, and prints what each takes. The .deb goes into a Debian made by debootstrap (BURNISH_ROOT=DIR keeps it
+# for the next time), the wheel into an empty virtual environment with no compiler in the path, the .tgz into an empty
+# folder. Each has to be below its limit. Needs root for the first.
 set -euo pipefail
 here=$(cd "$(dirname "$0")/../.." && pwd)
 folder=$(cd "$1" && pwd)
@@ -10,10 +11,15 @@ root=${BURNISH_ROOT:-$work/debian}
 leave() { umount "$root/proc" 2> /dev/null || true; rm -rf "$work"; }
 trap leave EXIT
 size() { echo "$(($(stat -c %s "$1") / 1024)) KiB  $(basename "$1")"; }
+# at_most FILE MIB
+at_most() {
+  [ "$(stat -c %s "$1")" -le "$(($2 << 20))" ] || { echo "$1: larger than $2 MiB" >&2; exit 1; }
+}
 seconds() { echo "$(($(date +%s) - $1)) s"; }
 
 check_deb() {
   echo "== $(size "$1")"
+  at_most "$1" 15
   lintian --allow-root --fail-on error "$1"
   if [ ! -x "$root/bin/sh" ]; then
     debootstrap --variant=minbase bookworm "$root" "${DEBIAN_MIRROR:-http://deb.debian.org/debian}" > "$work/log" ||
@@ -37,11 +43,16 @@ check_deb() {
   # what else a system looks for
   test -s "$root/usr/share/man/man1/burnish-fit.1.gz" || chroot "$root" dpkg -L burnish | grep -q man1/burnish-fit.1.gz
   bash -n "$root/usr/share/bash-completion/completions/burnish"
+  test -s "$root/usr/share/zsh/vendor-completions/_burnish"
+  chroot "$root" bash -c 'source /usr/share/bash-completion/completions/burnish
+    COMP_WORDS=(burnish fit --los) COMP_CWORD=2; _burnish; [ "${COMPREPLY[*]}" = --loss ]'
+  chroot "$root" burnish help formats | grep -q OpenMATERIAL
   umount "$root/proc"
 }
 
 check_wheel() {
   echo "== $(size "$1")"
+  at_most "$1" 12
   local start
   start=$(date +%s)
   python3 -m venv "$work/venv"
@@ -51,5 +62,17 @@ check_wheel() {
   echo "from pip install to the first fit: $(seconds "$start")"
 }
 
+check_npm() {
+  echo "== $(size "$1")"
+  local start
+  start=$(date +%s)
+  mkdir "$work/npm"
+  cp "$here/tests/release/first_fit.mjs" "$work/npm/"
+  (cd "$work/npm" && echo '{"private": true}' > package.json &&
+    npm install --offline --no-audit --no-fund --loglevel=error "$1" > /dev/null && node first_fit.mjs)
+  echo "from npm install to the first fit: $(seconds "$start")"
+}
+
 for package in "$folder"/*.deb; do [ -e "$package" ] && check_deb "$package"; done
 for package in "$folder"/*.whl; do [ -e "$package" ] && check_wheel "$package"; done
+for package in "$folder"/*.tgz; do [ -e "$package" ] && check_npm "$package"; done

@@ -190,7 +190,8 @@ class Fitter {
       options.backscatter = kBackscatterReach;
       options.tolerance = kBackscatterTolerance;
     }
-    const ScatteredPlan plan = plan_scattered(source, bytes, options_.smooth, options_.format, options);
+    const ScatteredPlan plan = plan_scattered(source, bytes, options_.smooth, options_.format, options,
+                                              options_.form ? form.fetches : 0);  // no default's
     options.smooth = plan.smooth;
     options.format = plan.format;
     OneLobeReport report;

@@ -28,8 +28,8 @@ struct Effort {
   int max_iterations;
   double tolerance, pull;
 };
-constexpr Effort kTaste{6, 1e-4, 1e-4}, kFirst{30, 1e-5, 1e-4}, kAgain{10, 1e-6, 1e-6}, kEnd{40, 1e-6, 1e-6},
-    kLast{80, 1e-8, 1e-6};
+constexpr Effort kTaste{6, 1e-4, 1e-4}, kFirst{30, 1e-5, 1e-4}, kSift{15, 1e-5, 1e-6},
+    kSiftAgain{20, 1e-6, 1e-6}, kAgain{10, 1e-6, 1e-6}, kEnd{40, 1e-6, 1e-6}, kLast{80, 1e-8, 1e-6};
 
 // A pixel in thirty of a highlight: what shows less, as an index that a coat hides, is not trusted to go far.
 constexpr double kLeastDiagonal = 1e-3;
@@ -396,6 +396,22 @@ void append_films(Search& search, const Trial& trial, const Inputs& always,
   }
 }
 
+/// A third of the pixels.
+PicturePairs thinned(const PicturePairs& pairs) {
+  constexpr std::size_t kEvery = 3;
+  PicturePairs thin;
+  thin.exposure = pairs.exposure;
+  for (std::size_t i = 0; i < pairs.pairs.size(); i += kEvery) {
+    thin.pairs.push_back(pairs.pairs[i]);
+    thin.weights.push_back(static_cast<double>(kEvery) * pairs.weights[i]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      thin.values.push_back(pairs.values[3 * i + c]);
+      thin.shown.push_back(pairs.shown[3 * i + c]);
+    }
+  }
+  return thin;
+}
+
 /// All inputs anywhere in their ranges.
 Search::Start random_start(Pcg32& random, const Inputs& always, const OpenPbrFitOptions& options) {
   Search::Start start{{}, always};
@@ -404,12 +420,30 @@ Search::Start random_start(Pcg32& random, const Inputs& always, const OpenPbrFit
   return start;
 }
 
-constexpr std::size_t kKept = 2;  // trials that are built upon
+/// Where the first of the trials go on.
+std::vector<Search::Start> best_of(const std::vector<Trial>& trials, std::size_t count) {
+  std::vector<Search::Start> starts;
+  for (std::size_t i = 0; i < std::min(count, trials.size()); ++i)
+    starts.push_back({trials[i].parameters, trials[i].held});
+  return starts;
+}
+
+/// Random starts, of which the better quarter goes on; best first.
+std::vector<Trial> search_at_random(Search& search, int count, std::uint64_t seed,
+                                    const OpenPbrFitOptions& options) {
+  Pcg32 random(seed);
+  std::vector<Search::Start> starts;
+  for (int i = 0; i < count; ++i) starts.push_back(random_start(random, always_held(options), options));
+  const std::vector<Trial> sifted = search.run(starts, kSift);
+  return search.run(best_of(sifted, (sifted.size() + 3) / 4), kSiftAgain);
+}
+
+constexpr std::size_t kKept = 2, kContinued = 6;  // trials that are built upon, and seen on all pixels
 
 /// The best of the base alone and of all layers; best first.
 std::vector<Trial> search_layers(Search& search, const PicturePairs& pairs, const OpenPbrFitOptions& options,
                                  const std::function<void(double)>& progress) {
-  constexpr int kRandom = 6;
+  constexpr int kRandom = 40;
   const Inputs always = always_held(options);
   std::vector<Search::Start> starts;
   for (const double metalness : {0.0, 1.0})
@@ -422,10 +456,10 @@ std::vector<Trial> search_layers(Search& search, const PicturePairs& pairs, cons
   starts.clear();
   for (std::size_t i = 0; i < kKept; ++i) append_coats(kept[i], always, starts);
   append_films(search, kept.front(), always, starts);
-  Pcg32 random(1);
-  for (int i = 0; i < kRandom; ++i) starts.push_back(random_start(random, always, options));
-  const std::vector<Trial> trials = search.run(starts, kFirst);
-  kept.insert(kept.end(), trials.begin(), trials.end());
+  const std::vector<Trial> layered = search.run(starts, kFirst),
+                           random = search_at_random(search, kRandom, 1, options);
+  kept.insert(kept.end(), layered.begin(), layered.end());
+  kept.insert(kept.end(), random.begin(), random.end());
   std::ranges::stable_sort(kept, {}, &Trial::cost);
   progress(0.7);
   return kept;
@@ -462,24 +496,42 @@ OpenPbrFit refine_openpbr(const PicturePairs& pairs, const OpenPbrParameters& st
   return fit;
 }
 
+OpenPbrFit fit_openpbr_at_random(const PicturePairs& pairs, int count, std::uint64_t seed,
+                                 const OpenPbrFitOptions& options) {
+  const PicturePairs coarse = thinned(pairs);
+  Search sift(coarse, options), search(pairs, options);
+  const std::vector<Trial> trials = search_at_random(sift, count, seed, options);
+  const std::vector<Trial> ends =
+      search.run(best_of(trials, (static_cast<std::size_t>(count) + 19) / 20), kLast);
+
+  const double first_cost = std::ranges::min(ends, {}, &Trial::first_cost).first_cost;
+  std::vector<OpenPbrFit> fits;
+  for (const Trial& trial : ends) fits.push_back(to_fit(pairs, trial, first_cost));
+  OpenPbrFit best =
+      *std::ranges::min_element(fits, {}, [](const OpenPbrFit& fit) { return fit.summary.error_after; });
+  best.summary.iterations = sift.iterations + search.iterations;
+  best.starts = count;
+  return best;
+}
+
 OpenPbrFit fit_openpbr(const PicturePairs& pairs, const OpenPbrFitOptions& options) {
-  Search search(pairs, options);
+  const PicturePairs coarse = thinned(pairs);
+  Search sift(coarse, options), search(pairs, options);
   const auto progress = [&](double fraction) {
     if (options.progress) options.progress(fraction);
   };
-  const std::vector<Trial> kept = search_layers(search, pairs, options, progress);
+  const std::vector<Trial> found = search_layers(sift, coarse, options, progress);
 
-  // the best few to their ends, the best of them without what it does not need, and that to its end
-  std::vector<Search::Start> starts;
-  for (std::size_t i = 0; i < std::min(kept.size(), kKept); ++i)
-    starts.push_back({kept[i].parameters, kept[i].held});
-  const Trial simple = simplified(search, search.run(starts, kEnd).front());
+  // the best few on all pixels, the better ones to their ends, the best of them without what it does not need, and that
+  // to its end
+  const std::vector<Trial> kept = search.run(best_of(found, kContinued), kSiftAgain);
+  const Trial simple = simplified(search, search.run(best_of(kept, kKept), kEnd).front());
   progress(0.9);
   const Trial best = search.run({{simple.parameters, simple.held}}, kLast).front();
   progress(1);
   OpenPbrFit fit = to_fit(pairs, best, kept.front().first_cost);
-  fit.summary.iterations = search.iterations;
-  fit.starts = search.count;
+  fit.summary.iterations = sift.iterations + search.iterations;
+  fit.starts = sift.count + search.count;
   return fit;
 }
 

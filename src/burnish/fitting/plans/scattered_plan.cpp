@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <burnish/error.h>
+#include <burnish/factors/fetches.h>
 #include <burnish/fitting/one_lobe/cross_validation.h>
 #include <burnish/fitting/plans/lobe_plan.h>
 #include <burnish/fitting/plans/scattered_plan.h>
@@ -118,6 +119,7 @@ constexpr double kLeastRatio = 2;
 constexpr std::size_t kLeastNear = 3;
 
 // Nodes of the factors of a material that backscatters, at most; the grids' sides are equal.
+constexpr int kRetroFetches = 6;
 struct RetroSizes {
   int p = 48, q = 64, k = 24, b_h = 16, b_d = 40, a_d = 32, a_phi = 6;
 };
@@ -161,9 +163,23 @@ std::optional<ModelSpec> retro_spec_within(std::size_t bytes, std::size_t channe
   return std::nullopt;
 }
 
+// The factor sets of at most so many fetches, any for 0; the last one has one.
+std::vector<std::string> sets_within(int fetches, bool isotropic) {
+  std::vector<std::string> sets(kFactorSets.begin(), kFactorSets.end());
+  if (fetches > 0)
+    std::erase_if(sets, [&](const std::string& set) {
+      std::size_t uses = 0;
+      for (const PlannedFactor& factor : factors_of(set, kDiskSizes.front(), isotropic))
+        uses += factor.uses.size();
+      return uses > static_cast<std::size_t>(fetches);
+    });
+  return sets;
+}
+
 // What is compared: the fullest set from coarse to fine; where that is no choice, because the bytes hold few
-// texels, the other sets too.
-std::vector<ModelSpec> candidates(const SampleSource& source, std::size_t bytes, TableFormat format) {
+// texels, or where fetches forbid a fuller one, the other sets too.
+std::vector<ModelSpec> candidates(const SampleSource& source, std::size_t bytes, TableFormat format,
+                                  const std::vector<std::string>& sets) {
   std::vector<ModelSpec> specs;
   const auto add = [&](const std::string& set, std::size_t most) {
     std::optional<ModelSpec> spec = spec_within(set, bytes, most, source, format);
@@ -175,9 +191,9 @@ std::vector<ModelSpec> candidates(const SampleSource& source, std::size_t bytes,
     };
     if (std::ranges::none_of(specs, same)) specs.push_back(std::move(*spec));
   };
-  for (const std::size_t size : source.isotropic ? kLineSizes : kDiskSizes) add(kFactorSets.front(), size);
-  if (specs.size() <= 1)
-    for (const std::string& set : kFactorSets) add(set, kLineSizes.front());
+  for (const std::size_t size : source.isotropic ? kLineSizes : kDiskSizes) add(sets.front(), size);
+  if (specs.size() <= 1 || sets.size() < kFactorSets.size())
+    for (const std::string& set : sets) add(set, kLineSizes.front());
   return specs;
 }
 
@@ -270,7 +286,13 @@ class Trials {
 
 // Of many samples: as fine as the bytes hold.
 ScatteredPlan plan_many(const SampleSource& source, std::size_t bytes, std::optional<double> smooth,
-                        const HomomorphicOptions& options) {
+                        const HomomorphicOptions& options, int fetches) {
+  const auto planned = [&](ModelSpec spec) {
+    Trials trials(source, smooth.has_value(), options);
+    ScatteredPlan best = trials.start(std::move(spec), smooth, options.progress);
+    best.error.reset();
+    return best;
+  };
   const std::size_t texel = texel_bytes(options.format, source.channels);
   for (std::size_t within = bytes;; within -= std::min(within, texel)) {
     LobePlan plan = default_plan(within, source.isotropic ? 1 : 2, source.isotropic, texel);
@@ -278,10 +300,10 @@ ScatteredPlan plan_many(const SampleSource& source, std::size_t bytes, std::opti
     plan.wide_texels = 0;
     ModelSpec spec = plan_to_spec(plan, within, source.channels, texel);
     if (model_bytes(spec, source.channels, options.format) > bytes) continue;
-    Trials trials(source, smooth.has_value(), options);
-    ScatteredPlan best = trials.start(std::move(spec), smooth, options.progress);
-    best.error.reset();
-    return best;
+    if (fetches > 0 && fetch_count(spec) > static_cast<std::size_t>(fetches))
+      for (const std::string& set : sets_within(fetches, source.isotropic))
+        if (auto fewer = spec_within(set, bytes, bytes, source, options.format)) return planned(*fewer);
+    return planned(std::move(spec));
   }
 }
 
@@ -349,7 +371,8 @@ bool backscatters(const SampleSource& source) {
 }
 
 ScatteredPlan plan_scattered(const SampleSource& source, std::size_t bytes, std::optional<double> smooth,
-                             std::optional<TableFormat> format, const HomomorphicOptions& options) {
+                             std::optional<TableFormat> format, const HomomorphicOptions& options,
+                             int fetches) {
   // the formats to choose from, the first one first
   std::vector<TableFormat> formats{format.value_or(TableFormat::half)};
   if (!format && source.channels == 3) formats.push_back(TableFormat::rgb9e5);
@@ -364,13 +387,14 @@ ScatteredPlan plan_scattered(const SampleSource& source, std::size_t bytes, std:
   std::erase_if(formats, too_large);
   HomomorphicOptions chosen = options;
   chosen.format = formats.front();
-  if (source.distinct > kManySamples) return plan_many(source, bytes, smooth, chosen);
+  if (source.distinct > kManySamples) return plan_many(source, bytes, smooth, chosen, fetches);
 
   // from the coarsest to finer ones as long as that helps, or every set of factors
   const SampleSource part = some_channels(source);
   Trials trials(part, smooth.has_value(), chosen);
-  std::vector<ModelSpec> specs = candidates(source, bytes, formats.front());
-  if (options.backscatter > 0)
+  const std::vector<std::string> sets = sets_within(fetches, source.isotropic);
+  std::vector<ModelSpec> specs = candidates(source, bytes, formats.front(), sets);
+  if (options.backscatter > 0 && (fetches == 0 || fetches >= kRetroFetches))
     if (auto spec = retro_spec_within(bytes, source.channels, formats.front()))
       specs.push_back(std::move(*spec));
   std::vector<ScatteredPlan> found{trials.start(specs.front(), smooth, options.progress)};
@@ -380,7 +404,7 @@ ScatteredPlan plan_scattered(const SampleSource& source, std::size_t bytes, std:
   // the smaller format where it resolves more
   for (auto other = formats.begin() + 1; other != formats.end(); ++other) {
     trials.store_as(*other);
-    const ModelSpec finest = candidates(source, bytes, *other).back();
+    const ModelSpec finest = candidates(source, bytes, *other, sets).back();
     if (texels_of(finest) > texels_of(specs.back())) found.push_back(trials.near(finest, *best()));
   }
 

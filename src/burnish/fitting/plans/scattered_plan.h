@@ -41,8 +41,10 @@ inline constexpr double kBackscatterReach = 0.03;
 /// kManySamples samples get the finest that the bytes hold. The samples of `source` stand for their swapped
 /// pairs too: the models are reciprocal. Tables are in `format`; without one they are half, or rgb9e5 where
 /// that predicts better. The same bits for any number of threads. Throws Error if bytes <
-/// least_scattered_bytes of the format, and what fit_homomorphic throws.
+/// least_scattered_bytes of the format, and what fit_homomorphic throws. With `fetches` > 0 the lobe has at most so
+/// many.
 ScatteredPlan plan_scattered(const SampleSource& source, std::size_t bytes, std::optional<double> smooth,
-                             std::optional<TableFormat> format, const HomomorphicOptions& options);
+                             std::optional<TableFormat> format, const HomomorphicOptions& options,
+                             int fetches = 0);
 
 }  // namespace burnish

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <burnish/factors/fetches.h>
 #include <burnish/fitting/fit.h>
 #include <burnish/fitting/one_lobe/homomorphic.h>
 #include <burnish/fitting/plans/scattered_plan.h>
@@ -133,6 +134,16 @@ TEST(ScatteredPlan, TellsALobeAboutTheLightFromAHighlight) {
   const Samples back = scanned({true}), forth = scanned({false});
   EXPECT_TRUE(backscatters(from_samples(back, false)));
   EXPECT_FALSE(backscatters(from_samples(forth, false)));
+}
+
+TEST(ScatteredPlan, KeepsWithinFetches) {
+  const Samples samples = scanned(PeakedBrdf{true});
+  HomomorphicOptions options;
+  options.backscatter = kBackscatterReach;
+  for (const int fetches : {1, 2, 3, 4, 5, 6})
+    EXPECT_LE(
+        fetch_count(plan_scattered(from_samples(samples, false), 16384, 1e-6, {}, options, fetches).spec),
+        static_cast<std::size_t>(fetches));
 }
 
 TEST(ScatteredPlan, HoldsThePeakAboutTheLight) {

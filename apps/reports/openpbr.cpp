@@ -1,0 +1,114 @@
+// How close the OpenPBR fit comes to the best of many random starts.
+#include <algorithm>
+#include <ctime>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include <burnish/fitting/parametric/openpbr_fit.h>
+#include <burnish/io/open_source.h>
+#include <burnish/metrics/error_figures.h>
+#include <burnish/reflectance/analytic.h>
+#include <burnish/reflectance/brdf.h>
+
+#include "report.h"
+
+namespace burnish::reports {
+
+namespace {
+
+constexpr int kStarts = 200, kQuickStarts = 10;
+
+// Of the processor, all threads together.
+double processor_seconds() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+/// A fit's score and time.
+struct Scored {
+  OpenPbrParameters parameters;
+  double psnr, seconds;
+};
+
+struct Row {
+  std::string material;
+  Scored ours, random;
+};
+
+template <class Find>
+Scored scored(const Scorer& scorer, const Find& find) {
+  const double start = processor_seconds();
+  const OpenPbrFit found = find();
+  const double seconds = processor_seconds() - start;
+  return {found.parameters, scorer.picture_psnr(scorer.pictures(OpenPbr(found.parameters))), seconds};
+}
+
+// As fit_material: of measurements the reciprocal part.
+Row row_of(const std::string& material, const std::string& place, int starts) {
+  tell(fmt::format("openpbr: {}", material));
+  const Source source = open_source(place, {});
+  const SymmetrizedBrdf symmetrized(source.ref());
+  const BrdfRef brdf = is_measurement(source) ? BrdfRef(symmetrized) : source.ref();
+  const Scorer scorer(brdf, {.count = 1000});  // the pictures alone are looked at
+  const PicturePairs pairs = picture_pairs(brdf, scorer.exposure());
+  const OpenPbrFitOptions options{.grey = brdf.channels() == 1, .anisotropic = !brdf.isotropic()};
+  Row row{.material = material,
+          .ours = scored(scorer, [&] { return fit_openpbr(pairs, options); }),
+          .random = {}};
+  row.random = scored(scorer, [&] { return fit_openpbr_at_random(pairs, starts, 1, options); });
+  tell(fmt::format("openpbr: {}: {:.2f} dB in {:.1f} s, at random {:.2f} dB in {:.0f} s", material,
+                   row.ours.psnr, row.ours.seconds, row.random.psnr, row.random.seconds));
+  return row;
+}
+
+void show(Page& page, const std::string& group, const std::vector<Row>& rows) {
+  Table shown({"material", "fit, dB", "at random, dB", "behind, dB", "fit, s", "at random, s"});
+  Table full({"material", "psnr", "psnr_at_random", "behind", "seconds", "seconds_at_random", "spec",
+              "spec_at_random"});
+  double worst = -std::numeric_limits<double>::infinity(), slowest = 0;
+  for (const auto& [material, ours, random] : rows) {
+    const double behind = random.psnr - ours.psnr;
+    shown.add({material, fmt::format("{:.2f}", ours.psnr), fmt::format("{:.2f}", random.psnr),
+               fmt::format("{:.2f}", behind), fmt::format("{:.1f}", ours.seconds),
+               fmt::format("{:.0f}", random.seconds)});
+    full.add({material, fmt::format("{:.4f}", ours.psnr), fmt::format("{:.4f}", random.psnr),
+              fmt::format("{:.4f}", behind), fmt::format("{:.2f}", ours.seconds),
+              fmt::format("{:.2f}", random.seconds), format_analytic(analytic_openpbr(ours.parameters)),
+              format_analytic(analytic_openpbr(random.parameters))});
+    worst = std::max(worst, behind);
+    slowest = std::max(slowest, ours.seconds);
+  }
+  page[group] = shown.markdown();
+  page[group + "_worst"] = fmt::format("{:.2f}", worst);
+  page[group + "_slowest"] = fmt::format("{:.1f}", slowest);
+  page.write_rows(group, full);
+}
+
+}  // namespace
+
+void report_openpbr(const ReportOptions& options) {
+  Page page(options, "openpbr");
+  const int starts = options.quick ? kQuickStarts : kStarts;
+  page["starts"] = std::to_string(starts);
+  if (options.data && options.wants("rgl")) {
+    std::vector<fs::path> files = files_in(*options.data / "rgl");
+    if (options.quick) files.resize(1);
+    std::vector<Row> rows;
+    for (const fs::path& file : files) rows.push_back(row_of(file.stem().string(), file.string(), starts));
+    show(page, "rgl", rows);
+  }
+  if (options.data && options.wants("merl")) {
+    std::vector<std::string> names = row_names(*options.data / "np/codes.csv");
+    std::erase_if(names,
+                  [](const std::string& name) { return name.ends_with("_rgb"); });  // of the RGL database
+    const std::size_t every = options.quick ? 50 : 5;
+    std::vector<Row> rows;
+    for (std::size_t i = 0; i < names.size(); i += every)
+      rows.push_back(
+          row_of(names[i], fmt::format("np:{}#{}", (*options.data / "np").string(), names[i]), starts));
+    show(page, "merl", rows);
+  }
+  page.write();
+}
+
+}  // namespace burnish::reports

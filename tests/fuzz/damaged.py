@@ -1,0 +1,219 @@
+#!/usr/bin/env python3
+"""damaged.py BURNISH FOLDER...: damaged files through the command line.
+
+Takes the files of the folders (seeds that build/fuzz/tests/fuzz/make_seeds writes, real measurements) and some that
+the program makes, damages one after another in one of several ways and gives it to a verb that reads such files. The program has to end with 0 or 1,
+with 1 to say one line that names the file and to leave nothing behind, with 0 to have written what it was to write, all
+below 1 GB and within 5 s of the processor. Whatever does not is told, kept in --keep, and the end is 1.
+"""
+import argparse
+import collections
+import os
+import pathlib
+import random
+import resource
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+
+MOST_BYTES, MOST_SECONDS, LONGEST_LINE = 1 << 30, 5, 309
+LARGE = 100_000  # larger files are taken once in SELDOM times: they are read more slowly
+SELDOM = 200
+NO_SOURCE = {".f32", ".fit", ".ktx2", ".js", ".html"}
+KINDS = {"directions": "eval", "capture": "capture", "np": "np", "mesh.obj": "mesh", "mesh.glb": "mesh",
+         "environment.exr": "light"}
+MADE = (["convert", "ggx:alpha_x=0.3", "made.binary", "--cells", "6"], ["convert", "ggx", "made.mbsdf", "--cells", "5"],
+        ["convert", "openpbr", "made.bsdf"], ["convert", "lambert", "zemax", "--to", "zemax"],
+        ["convert", "ggx", "made.xml", "--cells", "8"], ["measure", "ggx", "-o", "cloud.csv", "--count", "99"],
+        ["convert", "cloud.csv", "made.xompt"], ["convert", "ggx", "made.astm", "--count", "99"],
+        ["convert", "ggx", "made.csv", "--count", "99"], ["fit", "ggx", "-o", "made.exr", "--budget", "1350"],
+        ["convert", "made.exr", "made.burnish"], ["fit", "ggx", "-o", "nmf.json", "--method", "nmf"],
+        ["fit", "ggx", "-o", "svd.json", "--method", "svd"], ["fit", "ggx", "-o", "openpbr.json", "--to", "openpbr", "--alone"],
+        ["render", "--renderer", "cpu", "--material", "lambert", "--size", "16x8", "-o", "environment.exr"],
+        ["export", "made.exr", "--to", "gltf", "-o", "."])
+TRIANGLES = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\nf 1 3 4\n"
+
+
+def truncated(data, other, rng):
+    return data[:rng.randrange(len(data))]
+
+
+def flipped(data, other, rng):
+    damaged = bytearray(data)
+    for _ in range(rng.choice((1, 1, 2, 5, 20))):
+        damaged[rng.randrange(len(damaged))] ^= 1 << rng.randrange(8)
+    return bytes(damaged)
+
+
+def overwritten(data, other, rng):
+    damaged = bytearray(data)
+    word = rng.choice((b"\xff" * 4, b"\xff\xff\xff\x7f", b"\0" * 4, b"\0\0\xc0\x7f", b"\0\0\x80\x7f", b"\x01\0\0\0",
+                       struct.pack("<d", float("nan")), struct.pack("<d", 1e300), struct.pack("<q", -1), b"\0\0\x10\0"))
+    at = rng.randrange(len(damaged))
+    damaged[at:at + len(word)] = word
+    return bytes(damaged)
+
+
+def cut_out(data, other, rng):
+    at = rng.randrange(len(data))
+    return data[:at] + data[at + rng.choice((1, 2, 8, 64, 1000)):]
+
+
+def repeated(data, other, rng):
+    at, count = rng.randrange(len(data)), rng.choice((1, 8, 64, 1000))
+    return data[:at] + data[at:at + count] * rng.choice((2, 3, 50)) + data[at + count:]
+
+
+def spliced(data, other, rng):
+    return data[:rng.randrange(len(data))] + other[rng.randrange(len(other)):]
+
+
+def renumbered(data, other, rng):
+    """A number of a text becomes another; in a binary file, whatever bytes look like one."""
+    places = [i for i in range(*sorted(rng.randrange(len(data) + 1) for _ in range(2))) if 48 <= data[i] <= 57]
+    if not places:
+        return overwritten(data, other, rng)
+    start = end = rng.choice(places[:5000])
+    while end < len(data) and (48 <= data[end] <= 57 or data[end] in b".eE"):
+        end += 1
+    number = rng.choice((b"-1", b"0", b"1e308", b"1e999", b"nan", b"inf", b"4294967296", b"99999999999999999999", b"-0.5",
+                         b"1e-320", b"2147483647", b"65536", b"x", b""))
+    return data[:start] + number + data[end:]
+
+
+DAMAGES = (truncated, flipped, flipped, overwritten, cut_out, repeated, spliced, renumbered, renumbered)
+
+
+def command_for(kind, path, out, rng):
+    """What is run, and the file it writes."""
+    if kind == "eval":
+        return ["eval", "lambert", path, "-o", out], out
+    if kind == "capture":
+        return ["fit-surface", path, "-o", out], out
+    if kind == "mesh":
+        return ["render", "--renderer", "cpu", "--material", "lambert", "--size", "8", "--mesh", path, "-o", out + ".png"], out + ".png"
+    if kind == "light":
+        return ["render", "--renderer", "cpu", "--material", "lambert", "--vertices", "64", "--size", "4", "--draws", "1",
+                "--environment", path, "-o", out + ".png"], out + ".png"
+    if kind == "np":
+        return ["info", f"np:{path}#seed"], None
+    verb = rng.randrange(100)
+    if verb < 60:
+        return ["info", path] + rng.choice(([], ["--json"], ["--illuminant", "D65"])), None
+    if verb < 85:
+        to = rng.choice(("csv", "csv", "astm", "openmaterial", "mbsdf", "tensortree", "burnish"))
+        return ["convert", path, out, "--to", to] + (["--count", "20"] if to in ("csv", "astm") else ["--cells", "4"] if to == "mbsdf" else []), out
+    if verb < 95:
+        return ["measure", path, "-o", out, "--count", "20"], out
+    return ["fit", path, "-o", out + ".exr", "--method", rng.choice(("analytic:lambert", "nmf", "svd"))] if verb < 97 else \
+        ["fit", path, "-o", out + ".exr", "--model", "p(wo) q(h) p(wi)"], out + ".exr"
+
+
+def make_files(program, folder):
+    """What the program itself writes."""
+    pathlib.Path(folder, "mesh.obj").write_text(TRIANGLES)
+    for command in MADE:
+        subprocess.run([os.path.abspath(program), *command], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+    for path in pathlib.Path(folder).glob("*.glb"):
+        path.rename(path.with_name("mesh.glb"))
+
+
+class Runner:
+    def __init__(self, program, folder):
+        self.program, self.folder = program, folder
+        self.out, self.err = folder + "/stdout", folder + "/stderr"
+
+    def run(self, arguments):
+        """Status, lines on the stream of errors, processor seconds, bytes at most."""
+        flags = os.O_WRONLY | os.O_CREAT | os.O_TRUNC
+        pid = os.posix_spawn(self.program, [self.program, *arguments], os.environ,
+                             file_actions=[(os.POSIX_SPAWN_OPEN, 0, "/dev/null", os.O_RDONLY, 0),
+                                           (os.POSIX_SPAWN_OPEN, 1, self.out, flags, 0o600),
+                                           (os.POSIX_SPAWN_OPEN, 2, self.err, flags, 0o600)])
+        resource.prlimit(pid, resource.RLIMIT_CPU, (4 * MOST_SECONDS, 4 * MOST_SECONDS))
+        _, status, usage = os.wait4(pid, 0)
+        said = pathlib.Path(self.err).read_bytes().decode(errors="replace")
+        return os.waitstatus_to_exitcode(status), said, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024
+
+
+def fault_of(outcome, path, written):
+    status, said, seconds, most = outcome
+    if status not in (0, 1):
+        return f"ended with {status}"
+    if seconds > MOST_SECONDS:
+        return f"took {seconds:.1f} s"
+    if most > MOST_BYTES:
+        return f"took {most >> 20} MiB"
+    if said.count("\n") > 1 or any(len(line) > LONGEST_LINE for line in said.splitlines()):
+        return "said more than a line"
+    if status == 1 and not (said.startswith("burnish: ") and os.path.dirname(path) in said):
+        return "said nothing of the file"
+    if written and os.path.exists(written) != (status == 0):
+        return "left its output" if status else "wrote nothing"
+    return None
+
+
+def sources(folders):
+    """Kind and bytes of each file, small ones and large ones."""
+    small, large = [], []
+    for folder in folders:
+        for path in sorted(p for p in pathlib.Path(folder).rglob("*") if p.is_file()):
+            data = path.read_bytes()
+            if not data or path.suffix in NO_SOURCE or path.name == "codes.csv":  # parts of sources
+                continue
+            (small if len(data) <= LARGE else large).append((KINDS.get(path.name, "source"), path.name, data))
+    return small, large
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("burnish")
+    parser.add_argument("folders", nargs="+")
+    parser.add_argument("--files", type=int, default=100_000)
+    parser.add_argument("--seed", type=int, default=1, help="of the damage; the same seed damages alike")
+    parser.add_argument("--keep", default="build/damaged", help="folder for what fails")
+    arguments = parser.parse_args()
+    work = tempfile.mkdtemp(prefix="burnish_damaged_")
+    os.makedirs(work + "/made")
+    make_files(arguments.burnish, work + "/made")
+    small, large = sources([work + "/made", *arguments.folders])
+    decoder = next((str(p.resolve()) for f in arguments.folders for p in pathlib.Path(f).rglob("decoder.f32")), None)
+    runner = Runner(os.path.abspath(arguments.burnish), work)
+    counts, faults, slowest, largest, began = collections.Counter(), 0, (0, ""), (0, ""), time.time()
+    for number in range(arguments.files):
+        rng = random.Random(f"{arguments.seed} {number}")
+        kind, name, data = rng.choice(large if large and number % SELDOM == 0 else small)
+        damage = rng.choice(DAMAGES)
+        damaged = damage(data, rng.choice(small)[2], rng)
+        folder = work + "/f"
+        os.makedirs(folder)
+        if decoder and kind == "np":
+            os.symlink(decoder, folder + "/decoder.f32")
+        path = folder + "/" + ("codes.csv" if kind == "np" else "capture.json" if kind == "capture" else name)
+        pathlib.Path(path).write_bytes(damaged)
+        command, written = command_for(kind, folder if kind in ("np", "capture") else path, folder + "/out", rng)
+        outcome = runner.run(command)
+        fault = fault_of(outcome, path, written)
+        counts[f"{command[0]} {outcome[0]}"] += 1
+        slowest, largest = max(slowest, (outcome[2], name)), max(largest, (outcome[3], name))
+        if fault:
+            faults += 1
+            os.makedirs(arguments.keep, exist_ok=True)
+            kept = os.path.join(arguments.keep, f"{arguments.seed}-{number}-{os.path.basename(path)}")
+            pathlib.Path(kept).write_bytes(damaged)
+            print(f"{kept}: {damage.__name__}: {fault}: {' '.join(command)}: {outcome[1][:400].strip()}", flush=True)
+        shutil.rmtree(folder)
+        if number % 5000 == 4999:
+            print(f"{number + 1} files, {faults} faults, {time.time() - began:.0f} s", file=sys.stderr, flush=True)
+    shutil.rmtree(work)
+    print(f"{arguments.files} damaged files of {len(small) + len(large)}: {faults} faults; at most {slowest[0]:.2f} s "
+          f"({slowest[1]}) and {largest[0] / 2**20:.0f} MiB ({largest[1]}); verbs and how they ended: "
+          + ", ".join(f"{what}: {count}" for what, count in sorted(counts.items())))
+    sys.exit(1 if faults else 0)
+
+
+if __name__ == "__main__":
+    main()
