@@ -25,6 +25,7 @@
 #include <burnish/fitting/refinement/rounding.h>
 #include <burnish/metrics/error_figures.h>
 #include <burnish/metrics/node_figures.h>
+#include <burnish/reflectance/goniometer.h>
 #include <burnish/reflectance/sample_source.h>
 #include <burnish/reflectance/smoothed_nodes.h>
 
@@ -43,6 +44,7 @@ constexpr double kAlbedoShare = 0.3;
 // Pairs drawn for one lobe from a source that is a function; an anisotropic one has one dimension more.
 constexpr std::size_t kIsotropicSamples = 200'000, kAnisotropicSamples = 500'000;
 constexpr std::size_t kBaselineSamples = 200'000;
+constexpr std::size_t kBookSamples = 1000;
 
 // Pairs that the fit did not see, for the error that is reported.
 constexpr std::size_t kHeldOutPairs = 20'000;
@@ -147,6 +149,20 @@ class Fitter {
                                  .starts = fit.starts,
                                  .negative_lobes = {}};
     return std::move(fit.brdf);
+  }
+
+  Fitted fit(const FromBook& form) {
+    if (options_.smooth || options_.target == FitTarget::nodes)
+      throw Error("fit: expected neither a smoothness nor nodes as the target with a book");
+    const TableFormat format = this->format();
+    Completion completion =
+        samples() ? complete(*form.book, *samples(), format)
+                  : complete(*form.book,
+                             measure(reference(), {.count = options_.samples > 0 ? options_.samples : kBookSamples,
+                                                   .seed = options_.seed}),
+                             format);
+    report_.how = std::move(completion.report);
+    return std::move(completion.brdf);
   }
 
   // ---- One lobe

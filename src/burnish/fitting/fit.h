@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include <burnish/baselines/baseline_file.h>
+#include <burnish/book/material_book.h>
 #include <burnish/factors/factored_brdf.h>
 #include <burnish/factors/table_format.h>
 #include <burnish/fitting/fit_report.h>
@@ -65,8 +67,15 @@ struct BaselineMethod {
   std::uint64_t bytes = 0;  ///< at most so many; 0: the default of BaselineOptions
 };
 
+/// One volume, completed by what the materials of a book have in common: see complete (fitting/book/complete.h).
+/// Scattered samples are what is known; of any other source it is as many pairs as FitOptions::samples says, by default
+/// 1,000. The model is reciprocal whatever FitOptions::symmetrize says.
+struct FromBook {
+  std::shared_ptr<const MaterialBook> book;  ///< not null
+};
+
 /// What a fit makes.
-using FitForm = std::variant<OneLobe, Budget, GivenLobes, BaselineMethod>;
+using FitForm = std::variant<OneLobe, Budget, GivenLobes, BaselineMethod, FromBook>;
 
 /// Bytes and fetches that serve most uses: 16 KB, and two fetches for an isotropic source, six for another.
 Budget default_budget(bool isotropic);
@@ -122,8 +131,8 @@ struct Fit {
 /// and to tables of half and difference angles as they are, to pairs drawn from any other source; several
 /// lobes as fit_plan or fit_lobes do; baselines as fit_baseline does. The same bits for the same options,
 /// whatever the number of threads. Throws Error for options that the form or the source does not take (a
-/// model, table or format that does not fit; a baseline with a format, a smoothness or conserve_energy), and
-/// what the solvers throw.
+/// model, table or format that does not fit; a baseline with a format, a smoothness or conserve_energy; a book with
+/// nodes as the target or a smoothness), and what the solvers throw.
 Fit fit(const Source& source, const FitOptions& options);
 
 }  // namespace burnish

@@ -70,6 +70,23 @@ Json json_of(const BaselineReport& report) {
   return json;
 }
 
+Json json_of(const CompletionPrior& prior) {
+  return {{"near_one", prior.near_one},
+          {"spread", prior.spread},
+          {"residual", prior.residual},
+          {"noise", prior.noise}};
+}
+
+Json json_of(const CompletionReport& report) {
+  Json json{{"samples", report.samples}, {"used", report.used}, {"book_materials", report.materials}};
+  if (!report.nearest.empty()) json["nearest"] = report.nearest;
+  json["brightness"] = json_of(report.brightness);
+  json["colour"] = json_of(report.colour);
+  json["relative_at_samples"] = report.relative;
+  json["relative_left_out"] = report.relative_left_out;
+  return json;
+}
+
 Json json_of(const EnergyReport& report) {
   return {{"largest_albedo_before", report.largest_albedo_before},
           {"largest_albedo_after", report.largest_albedo_after},
@@ -141,7 +158,14 @@ FitLoss parse_fit_loss(std::string_view name) {
 }
 
 std::optional<FitSummary> FitReport::summary() const {
-  return std::visit([](const auto& part) -> std::optional<FitSummary> { return part.summary; }, how);
+  return std::visit(
+      [](const auto& part) -> std::optional<FitSummary> {
+        if constexpr (requires { part.summary; })
+          return part.summary;
+        else
+          return std::nullopt;
+      },
+      how);
 }
 
 nlohmann::ordered_json json_of(const ErrorFigures& figures) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <burnish/fitting/baselines/negative_lobes.h>
+#include <burnish/fitting/book/complete.h>
 #include <burnish/fitting/fit_summary.h>
 #include <burnish/metrics/error_figures.h>
 #include <burnish/metrics/node_figures.h>
@@ -126,7 +127,7 @@ struct NodesReport {
 struct FitReport {
   std::string source, source_format;
   bool symmetrized = true;
-  std::variant<OneLobeReport, LobesReport, BaselineReport> how;
+  std::variant<OneLobeReport, LobesReport, BaselineReport, CompletionReport> how;
   std::optional<BudgetChoice> budget_choice;
   std::optional<NodesReport> nodes;
   std::optional<EnergyReport> energy;
@@ -135,7 +136,7 @@ struct FitReport {
   std::optional<ErrorFigures> held_out;
   double seconds = 0;  ///< of the fit by the wall clock, without what was measured afterwards
 
-  /// Of the solver; nothing for decompositions.
+  /// Of the solver; nothing for decompositions and completions.
   std::optional<FitSummary> summary() const;
 };
 
@@ -143,7 +144,8 @@ struct FitReport {
 /// lobe samples, smooth, floor, reweightings, rms_log_before, rms_log_after, iterations, stop_reason,
 /// smooth_shares, relative, relative_cross_validated; of several search, budget, fetches, fetch_trials,
 /// smooth, samples, lobes, loss, iterations, stop_reason, objective; of baselines method, budget,
-/// layouts_tried, error_before, error_after, starts, iterations, stop_reason; of a chosen number of bytes
+/// layouts_tried, error_before, error_after, starts, iterations, stop_reason; of completions samples, used,
+/// book_materials, nearest, brightness, colour, relative_at_samples, relative_left_out; of a chosen number of bytes
 /// budget_choice; of nodes target, nodes, node_smoothness, node_held_out, node_fit, node_test; then
 /// conserve_energy, psnr, ssim, relative, rms_log, log_cos and negative_lobes. What there is none of is left
 /// out; what is not finite is null.

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <burnish/baselines/baseline_file.h>
+#include <burnish/book/book_file.h>
 #include <burnish/io/alta.h>
 #include <burnish/io/astm.h>
 #include <burnish/io/cornell.h>
@@ -62,6 +63,20 @@ Source from_np(std::string_view address) {
   return {fmt::format("np:{}", address), std::move(parsed.brdf), std::move(parsed.findings)};
 }
 
+Source from_book(const std::string& file, std::string_view name) {
+  const MaterialBook book = parse_book(read_file(file));
+  const auto found = book.find(name);
+  if (!found) {
+    std::vector<std::string_view> names;
+    for (const MaterialBook::Material& material : book.materials()) names.push_back(material.name);
+    throw Error::in_file(file, fmt::format("a material named '{}'", name),
+                         fmt::format("{} others{}", names.size(), did_you_mean(name, names)));
+  }
+  Source source = to_source(fmt::format("book:{}#{}", file, name), {.brdf = book.brdf(*found), .lambda_nm = {}});
+  source.findings.format = "material of a book";
+  return source;
+}
+
 Source from_spec(const std::string& spec) {
   AnalyticBrdf brdf = parse_analytic(spec);
   Findings findings;
@@ -83,6 +98,9 @@ void check_spelling(const std::string& spec) {
 
 Source parse_file(const FileBytes& file, const OpenOptions& options) {
   // Binary formats first: their first bytes are unmistakable.
+  if (looks_like_book(file.bytes))
+    throw Error::in_file(file.name, "book:FILE#NAME for one of its materials (`burnish info FILE` names them)",
+                         "the book alone");
   if (looks_like_model(file.bytes)) return to_source(file.name, parse_model(file));
   if (looks_like_rgl(file.bytes)) return from_table(file, parse_rgl(file, options));
   if (looks_like_mbsdf(file.bytes)) return from_table(file, parse_mbsdf(file));
@@ -118,13 +136,17 @@ Source parse_source(const FileBytes& file, const OpenOptions& options) {
 
 Source open_source(const std::string& spec, const OpenOptions& options) {
   if (is_analytic_spec(spec)) return from_spec(spec);
-  constexpr std::string_view kNeural = "nbrdf:", kNp = "np:";
+  constexpr std::string_view kNeural = "nbrdf:", kNp = "np:", kBook = "book:";
   if (spec.starts_with(kNp)) return from_np(std::string_view(spec).substr(kNp.size()));
   if (spec.starts_with(kNeural)) {
     const std::string rest = spec.substr(kNeural.size());
     const std::size_t mark = std::min(rest.rfind('#'), rest.size());
     return from_neural(read_file(rest.substr(0, mark)),
                        std::string_view(rest).substr(std::min(mark + 1, rest.size())));
+  }
+  if (spec.starts_with(kBook) && spec.find('#') != std::string::npos) {
+    const std::string rest = spec.substr(kBook.size());
+    return from_book(rest.substr(0, rest.rfind('#')), std::string_view(rest).substr(rest.rfind('#') + 1));
   }
   check_spelling(spec);
   return parse_source(read_file(spec), options);

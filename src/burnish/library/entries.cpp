@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <set>
 #include <system_error>
 
@@ -17,6 +18,7 @@ namespace {
 
 constexpr std::uint64_t kLongestList = std::uint64_t{64} << 20;  // bytes
 constexpr std::size_t kLongestName = 80;
+constexpr std::array<std::string_view, 3> kAddresses = {"np:", "nbrdf:", "book:"};
 
 bool is_letter_or_digit(char c) noexcept {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
@@ -40,7 +42,8 @@ std::string safe_name(std::string_view text) {
 // What stands behind the # of nbrdf:FILE#NAME, an analytic BRDF, or a file's name without its ending.
 std::string name_of(const std::string& argument) {
   if (is_analytic_spec(argument)) return safe_name(argument);
-  const bool has_address = argument.starts_with("np:") || argument.starts_with("nbrdf:");
+  const bool has_address = std::ranges::any_of(
+      kAddresses, [&](std::string_view prefix) { return argument.starts_with(prefix); });
   if (const std::size_t mark = argument.rfind('#'); has_address && mark + 1 < argument.size())
     return safe_name(std::string_view(argument).substr(mark + 1));
   return safe_name(fs::path(argument).stem().string());

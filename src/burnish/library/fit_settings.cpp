@@ -2,7 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include <burnish/book/book_file.h>
 #include <burnish/library/fit_settings.h>
+#include <burnish/library/sha256.h>
 
 namespace burnish {
 
@@ -37,6 +39,10 @@ Json json_of(const GivenLobes& form) {
 
 Json json_of(const BaselineMethod& form) {
   return {{"method", form.method}, {"bytes", form.bytes}};
+}
+
+Json json_of(const FromBook& form) {
+  return {{"book", sha256(format_book(*form.book))}};
 }
 
 std::string text_of(const Json& json) {

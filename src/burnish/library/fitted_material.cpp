@@ -89,6 +89,8 @@ void set_figures(const FitReport& report, MaterialRecord& record) {
     record.relative =
         one_lobe->relative_cross_validated ? one_lobe->relative_cross_validated : one_lobe->relative;
     record.rms_log = finite(one_lobe->summary.error_after);
+  } else if (const auto* completion = std::get_if<CompletionReport>(&report.how)) {
+    record.relative = finite(completion->relative_left_out);
   }
 }
 
@@ -97,7 +99,8 @@ std::vector<fs::path> files_of(const std::string& argument) {
     const std::string rest = argument.substr(prefix.size());
     return fs::path(rest.substr(0, rest.rfind('#')));
   };
-  if (argument.starts_with("nbrdf:")) return {address("nbrdf:")};
+  for (const std::string_view prefix : {"nbrdf:", "book:"})
+    if (argument.starts_with(prefix)) return {address(prefix)};
   if (!argument.starts_with("np:")) return {argument};
   std::error_code error;
   fs::path codes = address("np:");
@@ -154,7 +157,7 @@ std::uint64_t fit_memory(const FitOptions& options, bool isotropic) {
   constexpr std::uint64_t kLeast = std::uint64_t{48} << 20, kUsual = 16384, kLargestAuto = 65536;
   const std::uint64_t for_each_byte = isotropic ? 6600 : 17000;
   const FitForm form = options.form.value_or(default_budget(isotropic));
-  if (std::holds_alternative<OneLobe>(form)) return kLeast;
+  if (std::holds_alternative<OneLobe>(form) || std::holds_alternative<FromBook>(form)) return kLeast;
   const auto* budget = std::get_if<Budget>(&form);
   return kLeast + for_each_byte * (budget ? budget->bytes.value_or(kLargestAuto) : kUsual);
 }
