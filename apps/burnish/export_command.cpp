@@ -8,9 +8,11 @@
 #include <burnish/export/export_model.h>
 #include <burnish/export/export_openpbr.h>
 #include <burnish/export/export_specular.h>
+#include <burnish/export/export_surface.h>
 #include <burnish/io/open_source.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/source.h>
+#include <burnish/surface/surface_file.h>
 
 #include "commands.h"
 #include "environment_argument.h"
@@ -69,7 +71,19 @@ ExportedFiles exported_model(const ExportArguments& arguments, const Source& sou
   return export_model(brdf, options);
 }
 
+ExportedFiles exported_surface(const ExportArguments& arguments, const FileBytes& file) {
+  if (!arguments.power.empty() || !arguments.environment.empty())
+    throw CLI::ValidationError("--power, --environment: expected a model with them, found a surface");
+  ExportOptions options = options_of(arguments);
+  if (options.name.empty()) options.name = name_of(arguments.model);
+  return export_surface(parse_surface(file).brdf, options);
+}
+
 ExportedFiles exported_files(const ExportArguments& arguments) {
+  if (std::filesystem::is_regular_file(arguments.model)) {
+    const FileBytes file = read_file(arguments.model);
+    if (looks_like_surface(file.bytes)) return exported_surface(arguments, file);
+  }
   const Source source = open_source(arguments.model, {});
   const auto* const analytic = std::get_if<AnalyticBrdf>(&source.brdf);
   return analytic ? exported_analytic(arguments, *analytic) : exported_model(arguments, source);
@@ -95,22 +109,23 @@ void run(const ExportArguments& arguments) {
 }  // namespace
 
 void add_export_command(CLI::App& app) {
-  CLI::App* verb =
-      app.add_subcommand("export",
-                         "Write a factored BRDF as shaders, textures, MaterialX, USD, MDL, glTF, a module of "
-                         "three.js or Babylon.js, an RGL table, or a page that shows it; OpenPBR as files of "
-                         "these formats; or Phong's and Blinn's models as shaders");
+  CLI::App* verb = app.add_subcommand(
+      "export",
+      "Write a factored BRDF as shaders, textures, MaterialX, USD, MDL, glTF, a module of "
+      "three.js or Babylon.js, an RGL table, or a page that shows it; a surface as shaders and textures; "
+      "OpenPBR as files of these formats; or Phong's and Blinn's models as shaders");
   verb->footer(
       "Every shader comes with its textures but C++, which has them inside; NAME.json says what is in the "
       "folder and what an evaluation costs. See docs/guide/shaders.md and docs/guide/export.md.\n"
       "Examples: burnish export paint.exr --to glsl --to html -o paint\n"
       "          burnish export paint.exr --to glsl_es --to html --environment studio -o paint\n"
       "          burnish export paint.exr --to materialx --to usda -o paint\n"
+      "          burnish export wall.burnish --to glsl --to hlsl -o wall\n"
       "          burnish export openpbr:coat_weight=1 --to materialx --to gltf -o coated\n"
       "          burnish export blinn_phong:exponent=60,ks=0.8 --to wgsl --power cubic2 -o highlight");
   auto arguments = std::make_shared<ExportArguments>();
   verb->add_option("MODEL", arguments->model,
-                   "factored BRDF or OpenPBR, as `burnish fit` writes them, or one such as "
+                   "factored BRDF, surface or OpenPBR, as `burnish fit` writes them, or one such as "
                    "blinn_phong:exponent=60 or openpbr:coat_weight=1")
       ->required();
   const auto names = export_target_names();

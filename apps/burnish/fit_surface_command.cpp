@@ -46,7 +46,10 @@ void write_comparison(const FitSurfaceArguments& arguments, const SurfaceFit& fi
 void fit_surface(FitSurfaceArguments& arguments) {
   const ThreadLimit limit(arguments.threads);
   SurfaceFitOptions& options = arguments.options;
-  if (!arguments.book.empty()) options.book = parse_model(read_file(arguments.book)).brdf;
+  if (!arguments.book.empty()) {
+    const FileBytes book = read_file(arguments.book);
+    options.book = looks_like_surface(book.bytes) ? parse_surface(book).brdf.lobes() : parse_model(book).brdf;
+  }
   if (arguments.normals == "flat") options.normals = NormalsFrom::flat;
   if (arguments.normals == "capture") options.normals = NormalsFrom::capture;
   if (arguments.normals == "estimate") options.normals = NormalsFrom::estimate;

@@ -1,15 +1,18 @@
+#include <filesystem>
 #include <memory>
 #include <string>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <burnish/file.h>
 #include <burnish/io/source_report.h>
 #include <burnish/math/angles.h>
 
 #include "commands.h"
 #include "info_json.h"
 #include "source_arguments.h"
+#include "surface_info.h"
 
 namespace burnish::cli {
 
@@ -91,6 +94,17 @@ void add_info_command(CLI::App& app) {
   add_source_arguments(*verb, *arguments);
   verb->add_flag("--json", *as_json, "for programs");
   verb->callback([=] {
+    if (std::filesystem::is_regular_file(arguments->spec)) {
+      const FileBytes file = read_file(arguments->spec);
+      if (looks_like_surface(file.bytes)) {
+        const SurfaceModel surface = parse_surface(file);
+        if (*as_json)
+          fmt::print("{}\n", surface_info_json(surface, arguments->spec));
+        else
+          fmt::print("{}", surface_info(surface, arguments->spec));
+        return;
+      }
+    }
     const Source source = arguments->open();
     const SourceReport report = report_on(source);
     if (*as_json)

@@ -21,6 +21,7 @@
 #include <burnish/render/mesh/mesh_file.h>
 #include <burnish/render/mesh/shapes.h>
 #include <burnish/render/picture.h>
+#include <burnish/surface/surface_file.h>
 
 #include "commands.h"
 #include "environment_argument.h"
@@ -105,6 +106,14 @@ std::vector<MeshPart> parts_of(const RenderArguments& arguments) {
   return parts;
 }
 
+// The surface that a material's file is, if it is one.
+std::optional<SpatialBrdf> surface_of(const std::string& material) {
+  if (!std::filesystem::is_regular_file(material)) return {};
+  const FileBytes file = read_file(material);
+  if (!looks_like_surface(file.bytes)) return {};
+  return parse_surface(file).brdf;
+}
+
 Image render_gl(const Scene& scene, const std::optional<Environment>& environment,
                 const RenderArguments& arguments, int width, int height) {
   std::vector<SurfaceShader> materials;
@@ -112,9 +121,15 @@ Image render_gl(const Scene& scene, const std::optional<Environment>& environmen
     if (!std::filesystem::is_regular_file(file))
       throw Error::in_file(file, "the file of a factored BRDF (others are drawn by --renderer cpu)",
                            "no file");
+    const ShaderFilter filter = arguments.exact ? ShaderFilter::exact : ShaderFilter::hardware;
+    if (const auto surface = surface_of(file)) {
+      if (environment)
+        throw CLI::ValidationError("--environment: expected --renderer cpu with a surface, found gl");
+      materials.push_back(surface_shader(*surface, filter, TableFormat::single));
+      continue;
+    }
     const FactoredBrdf brdf = parse_model(read_file(file)).brdf;
-    materials.push_back(surface_shader(brdf, arguments.exact ? ShaderFilter::exact : ShaderFilter::hardware,
-                                       TableFormat::single));
+    materials.push_back(surface_shader(brdf, filter, TableFormat::single));
     if (environment) add_environment(materials.back(), brdf, *environment);
   }
   const GlContext context;
@@ -125,15 +140,23 @@ Image render_gl(const Scene& scene, const std::optional<Environment>& environmen
 
 Image render_by_cpu(const Scene& scene, const std::optional<Environment>& environment,
                     const RenderArguments& arguments, int width, int height) {
+  const std::size_t count = arguments.materials.size();
+  std::vector<SpatialBrdf> surfaces;
   std::vector<Source> sources;
-  for (const std::string& spec : arguments.materials) sources.push_back(open_source(spec, {}));
   // factored BRDFs in float, as fast as one pair at a time goes
   std::vector<FactoredEvaluator> evaluators;
-  evaluators.reserve(sources.size());
-  std::vector<BrdfRef> materials;
-  for (const Source& source : sources) {
+  surfaces.reserve(count);
+  sources.reserve(count);
+  evaluators.reserve(count);
+  std::vector<SceneMaterial> materials;
+  for (const std::string& spec : arguments.materials) {
+    if (auto surface = surface_of(spec)) {
+      materials.emplace_back(&surfaces.emplace_back(std::move(*surface)));
+      continue;
+    }
+    const Source& source = sources.emplace_back(open_source(spec, {}));
     const auto* const model = std::get_if<FactoredBrdf>(&source.brdf);
-    materials.push_back(model ? BrdfRef(evaluators.emplace_back(*model)) : source.ref());
+    materials.emplace_back(model ? BrdfRef(evaluators.emplace_back(*model)) : source.ref());
   }
   return render_cpu(scene, materials,
                     {.width = width,
@@ -203,15 +226,16 @@ void add_render_command(CLI::App& app) {
       "          burnish render --figure1 -o figure1.png\n"
       "See docs/guide/rendering.md.");
   auto arguments = std::make_shared<RenderArguments>();
-  verb->add_option("--mesh", arguments->mesh, "sphere, teapot, torus-knot, or an OBJ or glTF file")
+  verb->add_option("--mesh", arguments->mesh, "sphere, teapot, torus-knot, plane, or an OBJ or glTF file")
       ->capture_default_str();
   verb->add_option("--vertices", arguments->vertices, "of a built-in mesh, about")
       ->check(CLI::Range(64, 1 << 22))
       ->capture_default_str();
-  verb->add_option(
-          "--material", arguments->materials,
-          "factored BRDF as `burnish fit` writes it (with --renderer cpu any BRDF); several times: for "
-          "the file's materials in their order")
+  verb->add_option("--material", arguments->materials,
+                   "factored BRDF as `burnish fit` writes it, or a surface as fit-surface does, over the "
+                   "mesh's texture "
+                   "coordinates (with --renderer cpu any BRDF); several times: for the file's materials in "
+                   "their order")
       ->allow_extra_args(false);
   verb->add_option(
           "--lights", arguments->lights,

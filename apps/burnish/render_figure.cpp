@@ -28,7 +28,7 @@ Scene scene_of(const std::string& mesh, int vertices) {
   const auto shape = parse_shape(mesh);
   if (!shape)
     throw CLI::ValidationError(
-        fmt::format("--mesh: expected sphere, teapot or torus-knot with --figure1, found '{}'", mesh));
+        fmt::format("--mesh: expected sphere, teapot, torus-knot or plane with --figure1, found '{}'", mesh));
   Scene scene;
   scene.parts = {{make_shape(*shape, vertices), 0}};
   fit_to_unit_sphere(scene.parts);

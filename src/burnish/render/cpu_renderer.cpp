@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -63,6 +65,40 @@ void check(const Scene& scene, std::span<const BrdfRef> materials, int width, in
       throw Error(fmt::format("scene: expected materials of 1 or 3 channels, found {}", material.channels()));
 }
 
+/// A surface at one place, in the frame there.
+struct PlacedBrdf {
+  const SpatialBrdf& surface;
+  SpatialBrdf::Place place;
+
+  std::size_t channels() const noexcept { return surface.channels(); }
+  static bool isotropic() noexcept { return false; }
+  bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+    surface.eval(place, wi, wo, f);
+    return true;
+  }
+};
+
+// The weights of a triangle's second and third corner where a ray meets its plane; nothing where it is parallel.
+std::optional<std::array<double, 2>> weights_in_plane(const std::array<Vec3, 3>& corners, Vec3 origin,
+                                                      Vec3 direction) noexcept {
+  const Vec3 a = corners[1] - corners[0], b = corners[2] - corners[0], p = cross(direction, b),
+             to = origin - corners[0], q = cross(to, a);
+  const double under = dot(a, p);  // [Moeller1997]
+  if (under == 0) return {};
+  return std::array{dot(to, p) / under, dot(direction, q) / under};
+}
+
+struct TexturePlace {
+  double u = 0, v = 0;  ///< v downwards
+};
+TexturePlace texture_place(const std::array<const Vertex*, 3>& corners, double u, double v) noexcept {
+  const auto mix = [&](std::size_t k) {
+    return (1 - u - v) * static_cast<double>(corners[0]->uv[k]) + u * static_cast<double>(corners[1]->uv[k]) +
+           v * static_cast<double>(corners[2]->uv[k]);
+  };
+  return {mix(0), 1 - mix(1)};
+}
+
 // The ray's direction through the middle of a pixel.
 class Pixels {
  public:
@@ -82,10 +118,59 @@ class Pixels {
   int width_, height_;
 };
 
+// Where a pixel's ray meets a surface.
+SpatialBrdf::Place place_of(const SpatialBrdf& surface, const Mesh& mesh, const SurfaceHit& hit, Vec3 eye,
+                            const Pixels& pixels, int x, int y) noexcept {
+  std::array<const Vertex*, 3> corners{};
+  std::array<Vec3, 3> positions{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    corners[k] = &mesh.vertices[mesh.triangles[hit.triangle][k]];
+    positions[k] = to_vec3(corners[k]->position);
+  }
+  const TexturePlace here = texture_place(corners, hit.u, hit.v);
+  // a pixel's steps, by the rays through its neighbours
+  double largest = 1;
+  for (const auto& [i, j] : {std::pair(x + 1, y), std::pair(x, y + 1)})
+    if (const auto weights = weights_in_plane(positions, eye, pixels.direction(i, j))) {
+      const TexturePlace next = texture_place(corners, (*weights)[0], (*weights)[1]);
+      const double across = surface.width() * (next.u - here.u), down = surface.height() * (next.v - here.v);
+      largest = std::max(largest, across * across + down * down);
+    }
+  return surface.place(here.u, here.v, 0.5 * std::log2(largest));
+}
+
+void turn(SurfacePoint& point, const ShadingFrame& frame) noexcept {
+  const auto world = [&](Vec3 w) { return w.x * point.tangent + w.y * point.bitangent + w.z * point.normal; };
+  const Vec3 tangent = world(frame.tangent), bitangent = world(frame.bitangent), normal = world(frame.normal);
+  point.tangent = tangent;
+  point.bitangent = bitangent;
+  point.normal = normal;
+}
+
+// What of materials is the same all over: BRDFs, of surfaces their mean.
+struct MaterialMeans {
+  std::vector<FactoredBrdf> models;
+  std::vector<BrdfRef> refs;
+
+  explicit MaterialMeans(std::span<const SceneMaterial> materials) {
+    models.reserve(materials.size());
+    for (const SceneMaterial& material : materials) {
+      const auto* const surface = std::get_if<const SpatialBrdf*>(&material);
+      refs.push_back(surface ? BrdfRef(models.emplace_back((*surface)->at(0, 0, 64)))
+                             : std::get<BrdfRef>(material));
+    }
+  }
+};
+
 }  // namespace
 
 Image render_cpu(const Scene& scene, std::span<const BrdfRef> materials, const CpuOptions& options) {
-  check(scene, materials, options.width, options.height);
+  return render_cpu(scene, std::vector<SceneMaterial>(materials.begin(), materials.end()), options);
+}
+
+Image render_cpu(const Scene& scene, std::span<const SceneMaterial> materials, const CpuOptions& options) {
+  const MaterialMeans means(materials);
+  check(scene, means.refs, options.width, options.height);
   const int side = static_cast<int>(std::lround(std::sqrt(std::max(options.draws, 0))));
   if (side < 1 || side > 1024 || side * side != options.draws)
     throw Error(fmt::format("scene: expected draws that are a square, found {}", options.draws));
@@ -93,7 +178,7 @@ Image render_cpu(const Scene& scene, std::span<const BrdfRef> materials, const C
   // light from all around is drawn by a lobe like each material's
   std::vector<GgxProxy> guides;
   if (options.environment)
-    for (const BrdfRef& material : materials) guides.push_back(fit_ggx_proxy(material, true));
+    for (const BrdfRef& material : means.refs) guides.push_back(fit_ggx_proxy(material, true));
 
   // one ray a pixel; random numbers depend on the pixel alone
   const RayCaster caster(scene.parts);
@@ -107,15 +192,22 @@ Image render_cpu(const Scene& scene, std::span<const BrdfRef> materials, const C
             if (const auto hit = caster.nearest(scene.camera.eye, pixels.direction(x, y))) {
               const MeshPart& part = scene.parts[hit->part];
               const auto material = static_cast<std::size_t>(part.material);
-              const SurfacePoint point = point_of(part.mesh, *hit);
-              value = shade(scene, materials[material], point, options.shadows ? &caster : nullptr);
+              SurfacePoint point = point_of(part.mesh, *hit);
+              std::optional<PlacedBrdf> placed;
+              if (const auto* const surface = std::get_if<const SpatialBrdf*>(&materials[material])) {
+                placed.emplace(**surface,
+                               place_of(**surface, part.mesh, *hit, scene.camera.eye, pixels, x, y));
+                turn(point, placed->place.frame);
+              }
+              const BrdfRef brdf = placed ? BrdfRef(*placed) : means.refs[material];
+              value = shade(scene, brdf, point, options.shadows ? &caster : nullptr);
               if (options.environment) {
                 Pcg32 random(1, static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(options.width) +
                                     static_cast<std::uint64_t>(x));
-                value = value +
-                        radiance_in_environment(materials[material], guides[material], *options.environment,
-                                                {point.normal, point.tangent, point.bitangent},
-                                                normalize(scene.camera.eye - point.position), side, random);
+                value = value + radiance_in_environment(brdf, guides[material], *options.environment,
+                                                        {point.normal, point.tangent, point.bitangent},
+                                                        normalize(scene.camera.eye - point.position), side,
+                                                        random);
               }
             }
             const auto pixel = image.at(x, y);

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <span>
+#include <variant>
 #include <vector>
 
 #include <burnish/reflectance/brdf.h>
 #include <burnish/render/light/environment_light.h>
 #include <burnish/render/scene.h>
+#include <burnish/surface/spatial_brdf.h>
 
 namespace burnish {
 
@@ -23,6 +25,13 @@ struct CpuOptions {
 /// for every number of threads. Throws Error as check_scene, for materials of other channels and for draws
 /// that are not the square of 1 to 1024.
 Image render_cpu(const Scene& scene, std::span<const BrdfRef> materials, const CpuOptions& options);
+
+/// A material of a scene: the same everywhere, or a surface, not null, over the meshes' texture coordinates.
+using SceneMaterial = std::variant<BrdfRef, const SpatialBrdf*>;
+
+/// The same with surfaces among the materials. A surface's level of detail is log2 of the larger of a pixel's steps along
+/// columns and rows, in texels; light from all around is drawn by a lobe like its mean over the texels.
+Image render_cpu(const Scene& scene, std::span<const SceneMaterial> materials, const CpuOptions& options);
 
 /// What render_cpu gives where a vertex is, without shadows: for every part, in order, a value a vertex.
 std::vector<std::vector<Rgb>> shade_vertices(const Scene& scene, std::span<const BrdfRef> materials);

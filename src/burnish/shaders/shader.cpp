@@ -344,13 +344,29 @@ Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options) {
   return shader;
 }
 
+FormulaSurroundings formula_surroundings(const ShaderOptions& options,
+                                         const std::vector<ShaderTexture>& textures) {
+  const Language l = language_of(options);
+  return {std::string(header_of(l, options)) + declare_textures(l, options, textures),
+          more_of(options, textures)};
+}
+
+FormulaFunction formula_function(const Expr& value, const ShaderOptions& options, const std::string& name,
+                                 const MoreParameters& more, std::size_t textures) {
+  const LocalFunction function = local_function(value, language_of(options), options, name, more);
+  return {function.text, cost_of(function.count, textures)};
+}
+
 SplitShader split_shader(const FactoredBrdf& brdf, const ShaderOptions& options) {
+  return split_formula(shader_formula(brdf, options), options);
+}
+
+SplitShader split_formula(ShaderFormula formula, const ShaderOptions& options) {
   if (options.language != ShaderLanguage::glsl && options.language != ShaderLanguage::glsl_es)
     throw Error(
         fmt::format("shader: expected glsl or glsl_es to split, found {}", to_string(options.language)));
   if (options.textures_are_arguments) throw Error("shader: expected textures that are uniforms to split");
   const Language& l = language(to_string(options.language));
-  ShaderFormula formula = shader_formula(brdf, options);
   SplitShader shader;
   shader.textures = std::move(formula.textures);
   shader.declarations = std::string(header_of(l, options)) + declare_textures(l, options, shader.textures);

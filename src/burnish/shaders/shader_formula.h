@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <burnish/formula/expression.h>
+#include <burnish/shaders/frame_function.h>
 #include <burnish/shaders/shader.h>
 
 namespace burnish {
@@ -25,5 +26,25 @@ struct LobeFunctions {
   std::vector<ShaderTexture> textures;
 };
 LobeFunctions lobe_functions(const FactoredBrdf& brdf, const ShaderOptions& options);
+
+/// What a formula's function stands between: a language's header with the declarations of textures, and what functions
+/// take besides the directions to read them.
+struct FormulaSurroundings {
+  std::string declarations;
+  MoreParameters more;
+};
+FormulaSurroundings formula_surroundings(const ShaderOptions& options,
+                                         const std::vector<ShaderTexture>& textures);
+
+/// A function `vec3 NAME(vec3 wi, vec3 wo, ...)` that returns a formula's value, zero below the horizon.
+struct FormulaFunction {
+  std::string text;
+  ShaderCost cost;
+};
+FormulaFunction formula_function(const Expr& value, const ShaderOptions& options, const std::string& name,
+                                 const MoreParameters& more, std::size_t textures);
+
+/// A formula as split_shader parts it. Throws Error as split_shader does.
+SplitShader split_formula(ShaderFormula formula, const ShaderOptions& options);
 
 }  // namespace burnish

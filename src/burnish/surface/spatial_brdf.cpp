@@ -113,17 +113,25 @@ ShadingFrame SpatialBrdf::frame(double u, double v, double lod) const noexcept {
   return frame_about(normal, tangent);
 }
 
-void SpatialBrdf::eval(double u, double v, double lod, Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+SpatialBrdf::Place SpatialBrdf::place(double u, double v, double lod) const noexcept {
+  Place place{.frame = frame(u, v, lod), .weights = {}};
+  for (std::size_t j = 0; j < apart_.size(); ++j) place.weights[j] = weight(j, u, v, lod);
+  return place;
+}
+
+void SpatialBrdf::eval(const Place& place, Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   std::ranges::fill(f, 0.0);
-  const ShadingFrame turned = frame(u, v, lod);
-  const Vec3 light = turned.local(wi), view = turned.local(wo);
   std::array<double, kMaxMapChannels> value;
   const std::span<double> lobe(value.data(), channels());
   for (std::size_t j = 0; j < apart_.size(); ++j) {
-    apart_[j].eval(light, view, lobe);
-    const Weight scale = weight(j, u, v, lod);
-    for (std::size_t c = 0; c < channels(); ++c) f[c] += static_cast<double>(scale[c]) * lobe[c];
+    apart_[j].eval(wi, wo, lobe);
+    for (std::size_t c = 0; c < channels(); ++c) f[c] += static_cast<double>(place.weights[j][c]) * lobe[c];
   }
+}
+
+void SpatialBrdf::eval(double u, double v, double lod, Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+  const Place at = place(u, v, lod);
+  eval(at, at.frame.local(wi), at.frame.local(wo), f);
 }
 
 FactoredBrdf SpatialBrdf::at(double u, double v, double lod) const {

@@ -58,6 +58,15 @@ class SpatialBrdf {
   Weight weight(std::size_t lobe, double u, double v, double lod = 0) const noexcept;
   ShadingFrame frame(double u, double v, double lod = 0) const noexcept;
 
+  /// What of a place is the same for all directions.
+  struct Place {
+    ShadingFrame frame;
+    std::array<Weight, kMaxSurfaceLobes> weights;  ///< the first of them, one a lobe
+  };
+  Place place(double u, double v, double lod = 0) const noexcept;
+  /// f_r in 1/sr at a place, of unit vectors of its own frame; zero below the horizon. f has channels() entries.
+  void eval(const Place& place, Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
+
   /// f_r in 1/sr at a place of the surface and a level of detail, see SurfaceMap::sample; the definition. Unit vectors
   /// of the surface's frame; zero where either is below the shading horizon. f has channels() entries.
   void eval(double u, double v, double lod, Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;

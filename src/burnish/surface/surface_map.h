@@ -43,8 +43,10 @@ class SurfaceMap {
 
   /// Bytes of a texel as stored.
   std::size_t texel_bytes() const noexcept { return burnish::texel_bytes(format_, channels_); }
-  /// Level 0, row by row: bytes, or halves in little-endian order.
-  std::span<const std::byte> stored_bytes() const noexcept { return levels_.front().bytes; }
+  /// A level, row by row: bytes, or halves in little-endian order.
+  std::span<const std::byte> stored_bytes(std::size_t level = 0) const noexcept {
+    return levels_[level].bytes;
+  }
 
   using Value = std::array<float, kMaxMapChannels>;  ///< channels that the map has not are 0
   /// Of one texel. Precondition: within the level.

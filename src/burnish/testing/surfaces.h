@@ -2,6 +2,7 @@
 
 // Small surfaces for tests.
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,24 @@ inline SpatialBrdf random_surface(int width, int height) {
                        random_map(width, height, 1, TableFormat::half, 3.0f, 3)},
            .normals = random_vectors(width, height, 0, 0.6, 4),
            .tangents = random_vectors(width, height, 1, 1, 5)}};
+}
+
+/// Two smooth lobes whose weights and normals run in waves, side by side texels.
+inline SpatialBrdf smooth_surface(int side) {
+  std::vector<float> first, second, normals;
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) {
+      const double u = 6.2831853 * (x + 0.5) / side, v = 6.2831853 * (y + 0.5) / side;
+      first.push_back(static_cast<float>(0.5 + 0.5 * std::sin(3 * u) * std::cos(2 * v)));
+      second.push_back(static_cast<float>(0.5 + 0.5 * std::cos(5 * u + v)));
+      normals.push_back(static_cast<float>(0.2 * std::sin(2 * u)));
+      normals.push_back(static_cast<float>(0.2 * std::cos(3 * v)));
+    }
+  return {smooth_model(model_case("Volumes")),
+          {.weights = {SurfaceMap(side, side, 1, TableFormat::unorm8, 1, first),
+                       SurfaceMap(side, side, 1, TableFormat::unorm8, 1, second)},
+           .normals = SurfaceMap(side, side, 2, TableFormat::half, 1, normals),
+           .tangents = {}}};
 }
 
 }  // namespace burnish

@@ -115,14 +115,14 @@ std::string compress(const std::string& data) {
   return packed;
 }
 
-}  // namespace
+struct Extent {
+  int width, height, depth, faces;
+};
 
-std::string encode_ktx2(const Texture& texture, bool compressed) {
-  if (texture.channels != 1 && texture.channels != 3)
-    throw Error(fmt::format("KTX2: expected a texture of 1 or 3 channels, found {}", texture.channels));
-  const Texels texels = texels_of(texture.format, texture.channels);
+std::string encoded(const Texels& texels, const Extent& extent, const std::vector<std::string>& unpacked,
+                    bool compressed) {
   const std::string format = descriptor(texels, compressed), notes = key_value("KTXwriter", "burnish");
-  const std::size_t levels = texture.levels.size();
+  const std::size_t levels = unpacked.size();
   const std::size_t format_at = kHeaderSize + levels * kLevelSize, notes_at = format_at + format.size();
   const std::size_t alignment = compressed ? 1 : std::max<std::size_t>(texels.bytes, 4);
 
@@ -134,10 +134,9 @@ std::string encode_ktx2(const Texture& texture, bool compressed) {
   std::string data;
   const std::size_t head = (notes_at + notes.size() + alignment - 1) / alignment * alignment;
   for (std::size_t l = levels; l-- > 0;) {
-    const std::string unpacked = texel_data(texture, texture.levels[l]);
-    const std::string level = compressed ? compress(unpacked) : unpacked;
+    const std::string level = compressed ? compress(unpacked[l]) : unpacked[l];
     pad(data, alignment);
-    places[l] = {head + data.size(), level.size(), unpacked.size()};
+    places[l] = {head + data.size(), level.size(), unpacked[l].size()};
     data += level;
   }
 
@@ -145,11 +144,11 @@ std::string encode_ktx2(const Texture& texture, bool compressed) {
   std::string file(kIdentifier);
   const std::size_t words[] = {texels.vk_format,
                                texels.type_size,
-                               static_cast<std::size_t>(texture.width),
-                               static_cast<std::size_t>(texture.height),
-                               static_cast<std::size_t>(texture.depth),
+                               static_cast<std::size_t>(extent.width),
+                               static_cast<std::size_t>(extent.height),
+                               static_cast<std::size_t>(extent.depth),
                                0,  // layers
-                               static_cast<std::size_t>(texture.faces),
+                               static_cast<std::size_t>(extent.faces),
                                levels,
                                compressed ? kZstandard : 0,
                                format_at,
@@ -164,6 +163,26 @@ std::string encode_ktx2(const Texture& texture, bool compressed) {
   file += format + notes;
   pad(file, alignment);
   return file + data;
+}
+
+}  // namespace
+
+std::string encode_ktx2(const Texture& texture, bool compressed) {
+  if (texture.channels != 1 && texture.channels != 3)
+    throw Error(fmt::format("KTX2: expected a texture of 1 or 3 channels, found {}", texture.channels));
+  std::vector<std::string> levels;
+  for (const std::vector<float>& level : texture.levels) levels.push_back(texel_data(texture, level));
+  return encoded(texels_of(texture.format, texture.channels),
+                 {texture.width, texture.height, texture.depth, texture.faces}, levels, compressed);
+}
+
+std::string encode_ktx2(const StoredTexels& texels, bool compressed) {
+  if (texels.format != TableFormat::unorm8 && texels.format != TableFormat::half)
+    throw Error(fmt::format("KTX2: expected bytes or halves, found {}", to_string(texels.format)));
+  std::vector<std::string> levels;
+  for (const std::vector<std::byte>& level : texels.levels)
+    levels.emplace_back(reinterpret_cast<const char*>(level.data()), level.size());
+  return encoded(texels_of(texels.format, 4), {texels.width, texels.height, 0, 1}, levels, compressed);
 }
 
 std::string encode_ktx2(const Table& table, bool compressed) {

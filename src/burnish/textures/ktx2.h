@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <string>
+#include <vector>
 
 #include <burnish/textures/texture.h>
 
@@ -12,6 +15,15 @@ namespace burnish {
 /// R8G8B8A8_UNORM. The largest value is 1 in each, so that bytes need no scale of their own. `compressed`:
 /// with Zstandard. Throws Error for channels other than 1 or 3. Source: [KTX2].
 std::string encode_ktx2(const Texture& texture, bool compressed);
+
+/// A texture whose texels are stored already: four channels of bytes (R8G8B8A8_UNORM) or halves
+/// (R16G16B16A16_SFLOAT), level after level, each [y][x][4]. Throws Error for other formats.
+struct StoredTexels {
+  TableFormat format = TableFormat::unorm8;
+  int width = 0, height = 0;
+  std::span<const std::vector<std::byte>> levels;
+};
+std::string encode_ktx2(const StoredTexels& texels, bool compressed);
 
 /// make_texture(table, false): what generated shaders read (shaders/shader.h).
 std::string encode_ktx2(const Table& table, bool compressed);

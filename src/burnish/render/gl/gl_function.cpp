@@ -29,10 +29,18 @@ GlFunction::~GlFunction() {
   glDeleteProgram(program_);
 }
 
-void GlFunction::set_texture(const GlTexture& texture) {
-  glProgramUniform1i(program_, glGetUniformLocation(program_, texture.name.c_str()),
+void GlFunction::add_texture(const std::string& name, unsigned texture) {
+  glProgramUniform1i(program_, glGetUniformLocation(program_, name.c_str()),
                      static_cast<GLint>(textures_.size()));
-  textures_.push_back(upload_texture(texture));
+  textures_.push_back(texture);
+}
+
+void GlFunction::set_texture(const GlTexture& texture) {
+  add_texture(texture.name, upload_texture(texture));
+}
+
+void GlFunction::set_texture(const MapTexture& texture, bool single) {
+  add_texture(texture.name, upload_texture(texture, single));
 }
 
 void GlFunction::set_numbers(std::span<const float> numbers) {

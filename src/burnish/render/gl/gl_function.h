@@ -26,6 +26,8 @@ class GlFunction {
 
   /// Gives a texture to the sampler of its name. Throws Error as upload_texture.
   void set_texture(const GlTexture& texture);
+  /// The same of a surface's maps; see upload_texture.
+  void set_texture(const MapTexture& texture, bool single);
 
   /// Gives numbers to `readonly buffer` of the text with `layout(std430, binding = 2)`, an array of floats. The call
   /// that asks is gl_GlobalInvocationID.x.
@@ -37,6 +39,8 @@ class GlFunction {
   static constexpr std::size_t kMaxCalls = 64 * 65535;
 
  private:
+  void add_texture(const std::string& name, unsigned texture);
+
   unsigned program_ = 0;
   std::vector<unsigned> textures_;
   std::vector<unsigned> numbers_;  // a buffer, if there is one

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
@@ -64,6 +66,27 @@ unsigned upload_texture(const GlTexture& texture) {
     glTextureParameteri(name, filters, texture.filtered ? GL_LINEAR : GL_NEAREST);
   for (const GLenum edges : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
     glTextureParameteri(name, edges, GL_CLAMP_TO_EDGE);
+  return name;
+}
+
+unsigned upload_texture(const MapTexture& texture, bool single) {
+  const bool half = texture.format == TableFormat::half;
+  GLuint name = 0;
+  glCreateTextures(GL_TEXTURE_2D, 1, &name);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTextureStorage2D(name, static_cast<GLsizei>(texture.levels.size()),
+                     single ? GL_RGBA32F
+                     : half ? GL_RGBA16F
+                            : GL_RGBA8,
+                     texture.width, texture.height);
+  for (std::size_t l = 0; l < texture.levels.size(); ++l)
+    glTextureSubImage2D(name, static_cast<GLint>(l), 0, 0, std::max(texture.width >> l, 1),
+                        std::max(texture.height >> l, 1), GL_RGBA, half ? GL_HALF_FLOAT : GL_UNSIGNED_BYTE,
+                        texture.levels[l].data());
+  glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  for (const GLenum edges : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
+    glTextureParameteri(name, edges, GL_REPEAT);
   return name;
 }
 

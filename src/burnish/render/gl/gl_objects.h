@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <burnish/factors/table_format.h>
+#include <burnish/shaders/map_packing.h>
 #include <burnish/shaders/shader.h>
 
 namespace burnish {
@@ -33,6 +34,9 @@ inline GlTexture upload_of(const ShaderTexture& texture, TableFormat precision, 
 
 /// Uploads it. Throws Error for a precision other than half, single and rgb9e5 (of three channels).
 unsigned upload_texture(const GlTexture& texture);
+/// A surface's maps with their levels, repeated, linear within and between levels; as bytes and halves, or with
+/// `single` as floats of what these are, which no unit rounds while it filters.
+unsigned upload_texture(const MapTexture& texture, bool single = false);
 
 /// Links shaders given as pairs of type and source without their `#version 450` line. Throws Error with what
 /// the driver says if it refuses them.

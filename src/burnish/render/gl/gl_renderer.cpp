@@ -106,15 +106,18 @@ struct GlRenderer::State {
   }
 
   // A surface's program and its textures, bound to units 0, 1, ... in their order.
-  void add_material(const std::string& fragment, std::span<const GlTexture> textures, const Scene& scene) {
+  void add_material(const std::string& fragment, std::span<const GlTexture> textures,
+                    std::span<const MapTexture> maps, const Scene& scene) {
     Material& m = materials.emplace_back();
     m.program = linked(fragment, scene);
     const auto at = [&](const std::string& name) { return glGetUniformLocation(m.program, name.c_str()); };
     glProgramUniform3fv(m.program, at("burnish_eye"), 1, to_floats(scene.camera.eye).data());
-    for (const GlTexture& texture : textures) {
+    const auto add = [&](const auto& texture) {
       glProgramUniform1i(m.program, at(texture.name), static_cast<GLint>(m.textures.size()));
       m.textures.push_back(upload_texture(texture));
-    }
+    };
+    for (const GlTexture& texture : textures) add(texture);
+    for (const MapTexture& texture : maps) add(texture);
   }
 
   void draw_part(const Part& part, GLuint program) const {
@@ -139,7 +142,7 @@ struct GlRenderer::State {
     glVertexArrayVertexBuffer(p.array, 0, p.buffers[0], 0, sizeof(Vertex));
     glVertexArrayElementBuffer(p.array, p.buffers[1]);
 
-    // attributes as the vertex shader numbers them: position, normal, tangent, side, value
+    // attributes as the vertex shader numbers them: position, normal, tangent, side, value, uv
     const auto attribute = [&](GLuint index, GLuint binding, GLint count, std::size_t offset) {
       glEnableVertexArrayAttrib(p.array, index);
       glVertexArrayAttribFormat(p.array, index, count, GL_FLOAT, GL_FALSE, static_cast<GLuint>(offset));
@@ -156,6 +159,7 @@ struct GlRenderer::State {
       attribute(1, 0, 3, offsetof(Vertex, normal));
       attribute(2, 0, 3, offsetof(Vertex, tangent));
       attribute(3, 0, 1, offsetof(Vertex, side));
+      attribute(5, 0, 2, offsetof(Vertex, uv));
     }
   }
 };
@@ -174,9 +178,9 @@ GlRenderer::GlRenderer(const Scene& scene, std::span<const SurfaceShader> materi
   // programs: one that only finds depths, then one a material
   s.make_target();
   s.depth_program = s.linked("void main() {}\n", scene);
-  if (interpolated) s.add_material(interpolated_fragment_shader(), {}, scene);
+  if (interpolated) s.add_material(interpolated_fragment_shader(), {}, {}, scene);
   for (const SurfaceShader& surface : materials)
-    s.add_material(scene_fragment_shader(surface), surface.textures, scene);
+    s.add_material(scene_fragment_shader(surface), surface.textures, surface.maps, scene);
 
   // meshes and lights
   for (std::size_t i = 0; i < scene.parts.size(); ++i)

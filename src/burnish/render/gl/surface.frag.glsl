@@ -2,6 +2,7 @@
 // [HomomorphicBrdf, eq. 2]
 in vec3 burnish_place, burnish_normal, burnish_tangent;
 in float burnish_side;
+in vec2 burnish_uv;  // v upwards
 out vec4 burnish_color;
 struct burnish_Light { vec4 place, intensity; };
 layout(std140, binding = 0) uniform burnish_Lights { burnish_Light burnish_lights[512]; };
@@ -13,6 +14,7 @@ void main() {
   vec3 burnish_n = normalize(burnish_normal);
   vec3 burnish_t = normalize(burnish_tangent - dot(burnish_tangent, burnish_n) * burnish_n);
   vec3 burnish_s = sign(burnish_side) * cross(burnish_n, burnish_t);
+@PLACE
   vec3 burnish_v = normalize(burnish_eye - burnish_place);
   vec3 wo = vec3(dot(burnish_t, burnish_v), dot(burnish_s, burnish_v), dot(burnish_n, burnish_v));
   vec3 burnish_sum = vec3(0.0);

@@ -6,6 +6,7 @@
 #include <burnish/factors/factored_brdf.h>
 #include <burnish/render/gl/gl_objects.h>
 #include <burnish/shaders/shader.h>
+#include <burnish/surface/spatial_brdf.h>
 
 namespace burnish {
 
@@ -20,13 +21,20 @@ struct SurfaceShader {
   /// burnish_n, burnish_t, burnish_s, burnish_v, unit vectors of the world: normal, tangent, s at right
   /// angles, to the viewer.
   std::string environment{};
+  /// Statements, once a pixel, before directions are found: have floats u, v (downwards) and lod, and may turn
+  /// burnish_n, burnish_t, burnish_s.
+  std::string place{};
+  std::vector<MapTexture> maps{};
 };
 
 /// Of a factored BRDF; textures of `precision`. Throws Error as split_shader.
 SurfaceShader surface_shader(const FactoredBrdf& brdf, ShaderFilter filter, TableFormat precision);
 
-/// GlRenderer's programs, without #version lines. Vertices have place, normal, tangent, side and a value at
-/// locations 0 to 4; `burnish_projection` takes places to the screen.
+/// Of a surface, drawn over the meshes' texture coordinates. Throws Error as split_shader.
+SurfaceShader surface_shader(const SpatialBrdf& surface, ShaderFilter filter, TableFormat precision);
+
+/// GlRenderer's programs, without #version lines. Vertices have place, normal, tangent, side, a value and texture
+/// coordinates at locations 0 to 5; `burnish_projection` takes places to the screen.
 std::string scene_vertex_shader();
 /// Shows the values of vertices.
 std::string interpolated_fragment_shader();

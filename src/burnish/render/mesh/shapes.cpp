@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -91,6 +92,7 @@ std::optional<Shape> parse_shape(std::string_view name) noexcept {
   if (name == "sphere") return Shape::sphere;
   if (name == "teapot") return Shape::teapot;
   if (name == "torus-knot") return Shape::torus_knot;
+  if (name == "plane") return Shape::plane;
   return {};
 }
 
@@ -137,6 +139,16 @@ Mesh make_teapot(int segments) {
   return mesh;
 }
 
+Mesh make_plane(int cells) {
+  require("cells", cells, 1, 8192);
+  Mesh mesh;
+  append_grid(mesh, cells, cells, [](double u, double v) -> SurfacePoint {
+    constexpr double kSide = std::numbers::sqrt2;
+    return {{kSide * (u - 0.5), kSide * (v - 0.5), 0}, {0, 0, 1}, {1, 0, 0}};
+  });
+  return mesh;
+}
+
 Mesh make_shape(Shape shape, int vertices) {
   require("a number of vertices", vertices, 64, 1 << 24);
   const auto nearest = [](double x) { return static_cast<int>(std::lround(x)); };
@@ -146,6 +158,8 @@ Mesh make_shape(Shape shape, int vertices) {
       return make_sphere(nearest(root * std::sqrt(2)), nearest(root / std::sqrt(2)));
     case Shape::teapot:
       return make_teapot(std::max(nearest(root / std::sqrt(32.0)) - 1, 1));
+    case Shape::plane:
+      return make_plane(std::max(nearest(root) - 1, 1));
     case Shape::torus_knot:
       break;
   }

@@ -9,9 +9,9 @@ namespace burnish {
 
 /// The built-in meshes, y up, centred on the origin, within the unit sphere. Tangents follow u, normals are
 /// those of the exact surface. `columns` run along u, `rows` along v; vertices where u wraps are there twice.
-enum class Shape { sphere, teapot, torus_knot };
+enum class Shape { sphere, teapot, torus_knot, plane };
 
-/// "sphere", "teapot" or "torus-knot"; nothing for other names.
+/// "sphere", "teapot", "torus-knot" or "plane"; nothing for other names.
 std::optional<Shape> parse_shape(std::string_view name) noexcept;
 
 /// Unit sphere, tangents around the y axis: (columns + 1) (rows + 1) vertices. Throws Error unless columns is
@@ -27,6 +27,10 @@ Mesh make_torus_knot(int columns, int rows);
 /// vertical axis on body and lid, across handle and spout. 32 (segments + 1)^2 vertices. Throws Error unless
 /// segments is in [1, 1024].
 Mesh make_teapot(int segments);
+
+/// A square that faces +z, its corners on the unit sphere, tangents along x: (cells + 1)^2 vertices. Throws Error unless
+/// cells is in [1, 8192].
+Mesh make_plane(int cells);
 
 /// The shape with about `vertices` vertices (within a fifth from 1,000 up), nearly square cells. Throws Error
 /// unless it is in [64, 2^24].

@@ -61,7 +61,7 @@ TEST_P(Shapes, HaveAboutAsManyVerticesAsAskedForAndAnAreaThatSettles) {
   EXPECT_NEAR(area / before, 1, 0.005);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Shapes, testing::Values("sphere", "teapot", "torus-knot"),
+INSTANTIATE_TEST_SUITE_P(All, Shapes, testing::Values("sphere", "teapot", "torus-knot", "plane"),
                          [](const auto& test) {
                            std::string name = test.param;
                            std::erase(name, '-');

@@ -1,0 +1,198 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <burnish/error.h>
+#include <burnish/export/export_surface.h>
+#include <burnish/export/manifest.h>
+#include <burnish/image/png.h>
+#include <burnish/shaders/spatial_shader.h>
+#include <burnish/textures/image_files.h>
+#include <burnish/textures/ktx2.h>
+
+namespace burnish {
+
+namespace {
+
+using nlohmann::json;
+
+json entry_of(const ShaderCost& cost) {
+  return {{"fetches", cost.fetches},     {"textures", cost.textures}, {"operations", cost.operations},
+          {"divisions", cost.divisions}, {"roots", cost.roots},       {"powers", cost.powers}};
+}
+
+json entry_of(std::span<const MapComponent> places) {
+  json list = json::array();
+  for (const auto& [texture, component] : places) list.push_back({texture, component});
+  return list;
+}
+
+// The lobes as they are exported alone: their textures and pictures, and the manifest that this one begins with.
+struct LobeFiles {
+  std::vector<ExportedFile> files;
+  json manifest;
+};
+LobeFiles lobe_files(const SpatialBrdf& surface, const ExportOptions& options) {
+  ExportOptions of_lobes = options;
+  of_lobes.to.clear();
+  const auto wants = [&](ExportTarget target) {
+    return std::ranges::find(options.to, target) != options.to.end();
+  };
+  const bool shaders = std::ranges::any_of(options.to, [](ExportTarget target) {
+    return language_of(target).value_or(ShaderLanguage::cpp) != ShaderLanguage::cpp;
+  });
+  if (shaders || wants(ExportTarget::ktx2)) of_lobes.to.push_back(ExportTarget::ktx2);
+  for (const ExportTarget target : {ExportTarget::exr, ExportTarget::png})
+    if (wants(target)) of_lobes.to.push_back(target);
+  ExportedFiles exported = export_model(surface.lobes(), of_lobes);
+  LobeFiles lobes{.files = std::move(exported.files), .manifest = {}};
+  lobes.manifest = json::parse(lobes.files.back().bytes);
+  lobes.files.pop_back();
+  return lobes;
+}
+
+class SurfaceExport {
+ public:
+  SurfaceExport(const SpatialBrdf& surface, const ExportOptions& options)
+      : surface_(surface),
+        options_(options),
+        maps_(pack_maps(surface, fmt::format("burnish_{}_map", options.name))) {
+    LobeFiles lobes = lobe_files(surface, options);
+    result_.files = std::move(lobes.files);
+    manifest_ = std::move(lobes.manifest);
+    manifest_["surface"] = {{"width", surface.width()},
+                            {"height", surface.height()},
+                            {"bytes_a_texel", surface.weight_bytes() + surface.frame_bytes()}};
+  }
+
+  ExportedFiles run() && {
+    for (const ShaderLanguage language : kShaderLanguages)
+      if (std::ranges::find(options_.to, language, language_of) != options_.to.end()) add_shader(language);
+    if (manifest_.contains("textures")) add_textures();
+    for (const ExportTarget target : {ExportTarget::exr, ExportTarget::png})
+      if (std::ranges::find(options_.to, target) != options_.to.end()) add_pictures(target);
+    describe_maps();
+    add_manifest(manifest_, options_.name, result_.files);
+    return std::move(result_);
+  }
+
+ private:
+  void add_shader(ShaderLanguage language) {
+    const bool cpp = language == ShaderLanguage::cpp;
+    const ShaderFilter filter = options_.exact || cpp ? ShaderFilter::exact : ShaderFilter::hardware;
+    const SpatialShader shader = generate_shader(surface_, {language, filter, options_.name});
+    const std::string file = shader_file(language, options_.name),
+                      filter_name = filter == ShaderFilter::exact ? "exact" : "hardware";
+    json textures = json::array();
+    for (const ShaderTexture& texture : shader.textures)
+      if (!cpp) textures.push_back(texture.name);
+    for (const MapTexture& texture : shader.maps.textures) textures.push_back(texture.name);
+    const std::string function = "burnish_" + options_.name;
+    manifest_["shaders"].push_back(
+        {{"language", to_string(language)},
+         {"file", file},
+         {"functions", {function + "_at", function + "_lod", function, function + "_world"}},
+         {"filter", filter_name},
+         {"textures", std::move(textures)},
+         {"place_cost", entry_of(shader.place_cost)},
+         {"cost", entry_of(shader.light_cost)}});
+    result_.files.push_back({file, shader.text});
+    result_.shaders.push_back({file, filter_name + " filter, once a pixel", shader.place_cost});
+    result_.shaders.push_back({file, filter_name + " filter, once a light", shader.light_cost});
+  }
+
+  // Maps side by side, as shaders read them.
+  void add_textures() {
+    for (std::size_t i = 0; i < maps_.textures.size(); ++i) {
+      const MapTexture& texture = maps_.textures[i];
+      const std::string file = fmt::format("{}_map{}.ktx2", options_.name, i);
+      result_.files.push_back(
+          {file, encode_ktx2(StoredTexels{texture.format, texture.width, texture.height, texture.levels},
+                             options_.compressed)});
+      manifest_["maps"]["textures"].push_back({{"sampler", texture.name},
+                                               {"file", file},
+                                               {"width", texture.width},
+                                               {"height", texture.height},
+                                               {"levels", texture.levels.size()},
+                                               {"channels", 4},
+                                               {"format", to_string(texture.format)},
+                                               {"wrap", "repeat"},
+                                               {"filter", "linear, linear between levels"}});
+    }
+  }
+
+  // A map a picture; three channels of two: z of a normal, 0 of a tangent.
+  void add_picture(ExportTarget target, const std::string& name, const SurfaceMap& map, bool vectors,
+                   bool normals) {
+    Image image(map.width(), map.height(), 3);
+    for (int y = 0; y < map.height(); ++y)
+      for (int x = 0; x < map.width(); ++x) {
+        SurfaceMap::Value value = map.texel(x, y);
+        if (map.channels() == 1) value.fill(value[0]);
+        if (normals) value[2] = std::sqrt(std::max(0.0f, 1 - value[0] * value[0] - value[1] * value[1]));
+        std::ranges::copy(value, image.at(x, y).begin());
+      }
+    std::string bytes;
+    if (target == ExportTarget::exr) {
+      bytes = encode_exr(image, TableFormat::single);
+    } else {
+      float most = map.scale();
+      if (map.format() == TableFormat::half && !vectors)
+        most = std::max(std::ranges::max(image.pixels), 1e-30f);
+      Image8 shown(map.width(), map.height(), 3);
+      for (std::size_t i = 0; i < shown.pixels.size(); ++i) {
+        const float part = vectors ? 0.5f * (image.pixels[i] + 1) : image.pixels[i] / most;
+        shown.pixels[i] = static_cast<std::uint8_t>(std::lround(255 * std::clamp(part, 0.0f, 1.0f)));
+      }
+      bytes = encode_png(shown);
+    }
+    const std::string file = fmt::format("{}_{}.{}", options_.name, name, to_string(target));
+    manifest_["map_images"].push_back({{"map", name}, {"file", file}});
+    result_.files.push_back({file, std::move(bytes)});
+  }
+  void add_pictures(ExportTarget target) {
+    const SurfaceMaps& maps = surface_.maps();
+    for (std::size_t j = 0; j < maps.weights.size(); ++j)
+      add_picture(target, fmt::format("weight{}", j), maps.weights[j], false, false);
+    if (maps.normals) add_picture(target, "normals", *maps.normals, true, true);
+    if (maps.tangents) add_picture(target, "tangents", *maps.tangents, true, false);
+  }
+
+  void describe_maps() {
+    json& entry = manifest_["maps"];
+    for (std::size_t j = 0; j < maps_.weights.size(); ++j) {
+      const SurfaceMap& map = surface_.maps().weights[j];
+      entry["weights"].push_back(
+          {{"places", entry_of(std::span(maps_.weights[j]).first(map.channels()))}, {"scale", map.scale()}});
+    }
+    if (maps_.normals) entry["normals"] = entry_of(*maps_.normals);
+    if (maps_.tangents) entry["tangents"] = entry_of(*maps_.tangents);
+  }
+
+  const SpatialBrdf& surface_;
+  const ExportOptions& options_;
+  PackedMaps maps_;
+  json manifest_;
+  ExportedFiles result_;
+};
+
+}  // namespace
+
+bool takes_surfaces(ExportTarget target) noexcept {
+  return language_of(target) || target == ExportTarget::ktx2 || target == ExportTarget::exr ||
+         target == ExportTarget::png;
+}
+
+ExportedFiles export_surface(const SpatialBrdf& surface, const ExportOptions& options) {
+  if (options.environment)
+    throw Error("environment: expected a model that is the same everywhere, found a surface");
+  for (const ExportTarget target : options.to)
+    if (!takes_surfaces(target))
+      throw Error(fmt::format("export: expected ktx2, exr, png or a shader language of a surface, found {}",
+                              to_string(target)));
+  return SurfaceExport(surface, options).run();
+}
+
+}  // namespace burnish
