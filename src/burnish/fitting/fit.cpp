@@ -156,11 +156,12 @@ class Fitter {
       throw Error("fit: expected neither a smoothness nor nodes as the target with a book");
     const TableFormat format = this->format();
     Completion completion =
-        samples() ? complete(*form.book, *samples(), format)
-                  : complete(*form.book,
-                             measure(reference(), {.count = options_.samples > 0 ? options_.samples : kBookSamples,
-                                                   .seed = options_.seed}),
-                             format);
+        samples()
+            ? complete(*form.book, *samples(), format)
+            : complete(*form.book,
+                       measure(reference(), {.count = options_.samples > 0 ? options_.samples : kBookSamples,
+                                             .seed = options_.seed}),
+                       format);
     report_.how = std::move(completion.report);
     return std::move(completion.brdf);
   }
@@ -207,7 +208,7 @@ class Fitter {
       options.tolerance = kBackscatterTolerance;
     }
     const ScatteredPlan plan = plan_scattered(source, bytes, options_.smooth, options_.format, options,
-                                              options_.form ? form.fetches : 0);  // no default's
+                                              form.default_fetches ? 0 : form.fetches);
     options.smooth = plan.smooth;
     options.format = plan.format;
     OneLobeReport report;
@@ -332,8 +333,10 @@ class Fitter {
       report_.budget_choice = {.bytes = brdf.bytes(), .stop = BudgetStop::cross_validation};
       return brdf;
     }
-    if (form.fetches == 0 && form.lobes == 0 && !form.search)
+    if (form.fetches == 0 && form.lobes == 0 && !form.search) {
       form.fetches = default_budget(brdf_.isotropic()).fetches;
+      form.default_fetches = true;
+    }
     const NoiseScale scale = noise_scale();
     BudgetChoice choice{.noise = scale.noise()};
     std::optional<FactoredBrdf> best;
@@ -582,7 +585,7 @@ class Fitter {
 }  // namespace
 
 Budget default_budget(bool isotropic) {
-  return {.bytes = 16 << 10, .fetches = isotropic ? 2 : 6};
+  return {.bytes = 16 << 10, .fetches = isotropic ? 2 : 6, .default_fetches = true};
 }
 
 FitForm form_of(const std::string& model, const std::vector<std::string>& tables, bool isotropic,

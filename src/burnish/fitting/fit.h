@@ -46,10 +46,11 @@ struct Budget {
   std::optional<std::uint64_t> bytes = 2700;
   /// Filtered reads of one evaluation, see fetch_count; 0: of an isotropic source the fewest of those tried whose
   /// error is within two percent of the least, of another as many as its lobes take. The one lobe of scattered samples
-  /// has at most so many.
+  /// has at most so many, where somebody chose them.
   int fetches = 0;
-  int lobes = 0;        ///< lobes of lines or hemispheres, without fetches; 0: a choice
-  bool search = false;  ///< search_plan first; without fetches
+  bool default_fetches = false;  ///< nobody did: they are default_budget's
+  int lobes = 0;                 ///< lobes of lines or hemispheres, without fetches; 0: a choice
+  bool search = false;           ///< search_plan first; without fetches
   FitLoss loss = FitLoss::image;
   LogLinear scattered = {};  ///< scattered samples are too few for several lobes: they get one
 };

@@ -28,7 +28,7 @@ Json json_of(const OneLobe& form) {
 }
 
 Json json_of(const Budget& form) {
-  return {{"bytes", json_of(form.bytes)}, {"fetches", form.fetches},
+  return {{"bytes", json_of(form.bytes)}, {"fetches", form.default_fetches ? Json() : Json(form.fetches)},
           {"lobes", form.lobes},          {"search", form.search},
           {"loss", to_string(form.loss)}, {"scattered", json_of(form.scattered)}};
 }
