@@ -36,6 +36,7 @@ const Report kReports[] = {
      "precision and cost of generated shaders, and light from all around",
      report_shaders,
      {"precision", "webgl", "cost", "environment"}},
+    {"surfaces", "surfaces: milliseconds a frame beside a uniform model, and mip levels", report_surfaces},
     {"frame-cost", "milliseconds a frame beside other materials", report_frame_cost},
 };
 
