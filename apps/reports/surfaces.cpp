@@ -143,7 +143,7 @@ void report_surfaces(const ReportOptions& options) {
   Page page(options, "surface-results");
   const SurfaceScene scene = parse_surface_scene(bytes_of(kScene), ".");
   const Surfaces surfaces = surfaces_of(scene);
-  const int repetitions = options.quick ? 1 : 15;
+  const int repetitions = options.quick ? 1 : 5;
   page["lobes"] = fmt::format("{}", surfaces.flat.lobes().lobes().size());
   page["levels"] = levels_table(surfaces, scene).markdown();
   const GlContext context(GlDevice::gpu_first);
