@@ -4,6 +4,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include <burnish/capture/fit_crew.h>
+
 namespace burnish::cli {
 
 // Each verb lives in NAME_command.cpp: it adds its options to the application and a callback that calls the
@@ -15,7 +17,8 @@ void add_describe_command(CLI::App& app);
 void add_eval_command(CLI::App& app);
 void add_export_command(CLI::App& app);
 void add_fit_command(CLI::App& app);
-void add_fit_surface_command(CLI::App& app);
+/// `crew`: the ranks that fit together, or null.
+void add_fit_surface_command(CLI::App& app, FitCrew* crew = nullptr);
 void add_help_command(CLI::App& app);
 void add_hw_command(CLI::App& app);
 void add_info_command(CLI::App& app);

@@ -43,7 +43,7 @@ void write_comparison(const FitSurfaceArguments& arguments, const SurfaceFit& fi
   write_png(arguments.picture, surface_picture(capture, fit.surface.brdf, number, fit.report.exposure));
 }
 
-void fit_surface(FitSurfaceArguments& arguments) {
+void fit_surface(FitSurfaceArguments& arguments, FitCrew* crew) {
   const ThreadLimit limit(arguments.threads);
   SurfaceFitOptions& options = arguments.options;
   if (!arguments.book.empty()) {
@@ -53,6 +53,11 @@ void fit_surface(FitSurfaceArguments& arguments) {
   if (arguments.normals == "flat") options.normals = NormalsFrom::flat;
   if (arguments.normals == "capture") options.normals = NormalsFrom::capture;
   if (arguments.normals == "estimate") options.normals = NormalsFrom::estimate;
+  options.crew = crew;
+  if (crew && crew->rank() != 0) {
+    help_fit_surface(Capture(arguments.capture), options);
+    return;
+  }
   options.progress = progress_bars();
   options.checkpoint = arguments.out + ".part";
   if (!arguments.resume) std::filesystem::remove(options.checkpoint);
@@ -90,7 +95,7 @@ void fit_surface(FitSurfaceArguments& arguments) {
 
 }  // namespace
 
-void add_fit_surface_command(CLI::App& app) {
+void add_fit_surface_command(CLI::App& app, FitCrew* crew) {
   CLI::App* verb =
       app.add_subcommand("fit-surface", "Fit a surface to registered pictures: lobes whose scales are maps");
   verb->footer(
@@ -137,7 +142,7 @@ void add_fit_surface_command(CLI::App& app) {
       "--resume", arguments->resume,
       "go on from OUTPUT.part, which a fit of the same capture and options left when it was stopped");
   verb->add_flag("--json", arguments->json, "print the report as JSON");
-  verb->callback([arguments] { fit_surface(*arguments); });
+  verb->callback([arguments, crew] { fit_surface(*arguments, crew); });
 }
 
 }  // namespace burnish::cli

@@ -37,6 +37,7 @@ const Report kReports[] = {
      report_shaders,
      {"precision", "webgl", "cost", "environment"}},
     {"openpbr", "the OpenPBR fit beside the best of 200 random starts", report_openpbr, {"rgl", "merl"}},
+    {"surfaces", "surfaces: milliseconds a frame beside a uniform model, and mip levels", report_surfaces},
     {"frame-cost", "milliseconds a frame beside other materials", report_frame_cost},
 };
 

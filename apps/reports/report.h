@@ -59,6 +59,7 @@ void report_openpbr(const ReportOptions& options);
 void report_results(const ReportOptions& options);
 void report_sampling(const ReportOptions& options);
 void report_shaders(const ReportOptions& options);
+void report_surfaces(const ReportOptions& options);
 
 /// The `exponent input` line of every pixel of a sphere, for a simulation of a unit of hw/, to standard
 /// output.

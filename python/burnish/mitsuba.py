@@ -21,13 +21,15 @@ import mitsuba as mi
 import numpy as np
 
 from . import Error, Model, open_source
+from .mitsuba_spatial import make_bsdf_class as _make_spatial_class
 
 
 def register():
-    """Makes `burnish` known to the variant that is set. Call it again after setting another."""
+    """Makes `burnish` and `burnish_spatial` known to the variant that is set. Call it again after setting another."""
     if not mi.is_rgb:
         raise Error(f"mitsuba: expected an rgb variant, found '{mi.variant()}'")
     mi.register_bsdf("burnish", _make_bsdf_class())
+    mi.register_bsdf("burnish_spatial", _make_spatial_class(Formula, CompiledSampler))
 
 
 def _make_bsdf_class():

@@ -36,6 +36,12 @@ nb::tuple eval_graph(const OpenedModel& model) {
   return nb::make_tuple(graph_of({formula.value}), tables);
 }
 
+// The same of each lobe.
+nb::tuple lobe_graph(const OpenedModel& model) {
+  return nb::make_tuple(graph_of(shader_formula(model.brdf(), {.language = ShaderLanguage::cpp}).lobes),
+                        eval_graph(model)[1]);
+}
+
 SamplerTables tables_of(const OpenedBrdf& brdf) {
   const nb::gil_scoped_release released;
   return brdf.sampler().tables();
@@ -58,7 +64,8 @@ void bind_graphs(nb::module_& m) {
   nb::borrow<nb::class_<OpenedModel>>(m.attr("Model"))
       .def("_eval_graph", &eval_graph,
            "f_r as a graph over the vectors wi and wo, for programs that compile their own code: nodes\n"
-           "(operation, type, constant, name, arguments), the outputs' nodes; the tables of its texels.");
+           "(operation, type, constant, name, arguments), the outputs' nodes; the tables of its texels.")
+      .def("_lobe_graph", &lobe_graph, "The same with each lobe an output.");
   nb::borrow<nb::class_<OpenedBrdf>>(m.attr("Source"))
       .def("_sampler_graphs", &sampler_graphs,
            "sample_wi and pdf as such graphs, and the arrays of integers that they read.");

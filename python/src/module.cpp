@@ -53,6 +53,7 @@ NB_MODULE(_burnish, m) {
   bind_shaders(m);
   bind_exports(m);
   bind_writers(m);
+  bind_surfaces(m);
 }
 
 }  // namespace burnish::python

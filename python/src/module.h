@@ -23,6 +23,7 @@ void bind_graphs(nb::module_& m);
 void bind_metrics(nb::module_& m);
 void bind_sampling(nb::module_& m);
 void bind_shaders(nb::module_& m);
+void bind_surfaces(nb::module_& m);
 void bind_writers(nb::module_& m);
 
 /// A JSON text as Python objects.

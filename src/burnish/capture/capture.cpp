@@ -214,8 +214,8 @@ Capture::Read Capture::read(int first, int count) const {
         for (std::size_t c = 0; c < 3; ++c) {
           const float value = pixels.pixels[3 * i + c];
           if (!(value >= kLeastValue) || !std::isfinite(value)) state = PixelState::missing;
-          if (form_.clip && static_cast<double>(value) >= *form_.clip && state == PixelState::there)
-            state = PixelState::clipped;
+          if (form_.clip && static_cast<double>(value) >= *form_.clip && is_there(state))
+            state = clipped_in(state, c);
           to[c] = static_cast<float>(static_cast<double>(value) * scale[c] * fall);
         }
         if (state == PixelState::missing) std::fill_n(to, 3, 0.0f);

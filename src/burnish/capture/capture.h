@@ -76,9 +76,26 @@ CaptureForm parse_capture(const FileBytes& file);
 /// What parse_capture reads.
 std::string format_capture(const CaptureForm& form);
 
-/// State of a pixel: there; without a value (not finite, negative beyond noise); clipped; there, but left out by a
-/// mask.
-enum class PixelState : std::uint8_t { there, missing, clipped, masked };
+/// State of a pixel: there; without a value (not finite, negative beyond noise); there, but left out by a mask; there,
+/// with channels that are clipped, which clipped_in says.
+enum class PixelState : std::uint8_t { there, missing, masked, clipped = 8 };
+
+constexpr bool is_clipped(PixelState state) noexcept {
+  return (static_cast<unsigned>(state) & static_cast<unsigned>(PixelState::clipped)) != 0;
+}
+/// Whether a channel's value is a lower bound.
+constexpr bool is_clipped(PixelState state, std::size_t channel) noexcept {
+  return is_clipped(state) && (static_cast<unsigned>(state) >> channel & 1U) != 0;
+}
+/// The state of a pixel that is there or clipped, with one more channel clipped.
+constexpr PixelState clipped_in(PixelState state, std::size_t channel) noexcept {
+  return static_cast<PixelState>(static_cast<unsigned>(state) | static_cast<unsigned>(PixelState::clipped) |
+                                 1U << channel);
+}
+/// Whether a pixel has values that count.
+constexpr bool is_there(PixelState state) noexcept {
+  return state == PixelState::there || is_clipped(state);
+}
 
 /// Rows of all pictures of a capture: outgoing radiance over irradiance, f cos(theta_i), of texels.
 struct CaptureRows {

@@ -138,7 +138,10 @@ TEST(Capture, TakesScaleDistanceClipAndMaskIntoAccount) {
   EXPECT_NEAR(rows.values[2 * 3 * kPixels], 2 * (4 + dot(corner, corner)), 1e-5);
   EXPECT_EQ(rows.states[3 * kPixels], PixelState::there);
   EXPECT_EQ(rows.states[3 * kPixels + 1], PixelState::masked);
-  EXPECT_EQ(rows.states[4 * kPixels], PixelState::clipped);  // 4.25 and 4.5 beside 4
+  const PixelState clipped = rows.states[4 * kPixels];  // 4, 4.25 and 4.5
+  EXPECT_TRUE(is_clipped(clipped) && is_there(clipped));
+  EXPECT_FALSE(is_clipped(clipped, 0)) << "a channel below";
+  EXPECT_TRUE(is_clipped(clipped, 1) && is_clipped(clipped, 2));
 }
 
 TEST(Capture, ReadsPngOfEightBits) {

@@ -166,7 +166,8 @@ SampledTexels sample_texels(Capture& capture, std::size_t most_values, std::size
         if (form.pictures[p].held_out) continue;
         const auto states = std::span(read.rows.states).subspan(p * texels, texels);
         found.missing += static_cast<std::size_t>(std::ranges::count(states, PixelState::missing));
-        found.clipped += static_cast<std::size_t>(std::ranges::count(states, PixelState::clipped));
+        found.clipped += static_cast<std::size_t>(
+            std::ranges::count_if(states, [](PixelState state) { return is_clipped(state); }));
       }
       begin = end;
       if (progress) progress(static_cast<double>(row + rows) / form.height);
@@ -182,8 +183,7 @@ double exposure_of(const TexelSamples& samples, const CaptureForm& form) {
     if (form.pictures[p].held_out) continue;
     for (std::size_t t = 0; t < samples.size(); ++t) {
       const std::size_t pixel = p * samples.size() + t;
-      if (samples.states[pixel] != PixelState::there && samples.states[pixel] != PixelState::clipped)
-        continue;
+      if (!is_there(samples.states[pixel])) continue;
       values.insert(values.end(), &samples.values[3 * pixel], &samples.values[3 * pixel] + 3);
     }
   }

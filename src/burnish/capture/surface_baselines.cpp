@@ -220,8 +220,9 @@ class Comparison {
                                     static_cast<Eigen::Index>(t));
             all += share;
           }
-          const double off =
-              seen_as(std::exp(log / all) - kLogFloor) - seen_as(std::exp(log_value(pixel, c)) - kLogFloor);
+          const double value = std::exp(log_value(pixel, c)), found = std::exp(log / all),
+                       shown = is_clipped(samples_.states[pixel], c) ? std::min(found, value) : found;
+          const double off = seen_as(shown - kLogFloor) - seen_as(value - kLogFloor);
           sum += off * off;
         }
       }

@@ -11,6 +11,7 @@
 #include <burnish/capture/sampled_texels.h>
 #include <burnish/capture/surface_fit.h>
 #include <burnish/error.h>
+#include <burnish/eval/lobe_evaluator.h>
 #include <burnish/factors/compact_file.h>
 #include <burnish/fitting/refinement/log_model.h>
 #include <burnish/fitting/refinement/refine.h>
@@ -30,6 +31,8 @@ constexpr std::size_t kHalfBins = 32;  // even along the root of theta_h
 constexpr double kLeastCosine = 0.05;  // of what counts as a pair; pixels may be lower
 constexpr double kLeastPixelCosine = 0.02;
 constexpr float kLeastTrust = 0.05f;
+constexpr float kEarlyError = 0.07f;  // of squared errors beside those of the last rounds
+constexpr float kHeld = 0.02f;        // weight of clipped pixels that the model already is above
 // As of models with volumes (fitting/fit.cpp).
 constexpr ErrorTerms kShares{.pictures = 3, .dimmed = 0.3, .relative = 0.4, .log_cos = 0.4};
 constexpr double kSmooth = 1e-9;
@@ -108,6 +111,7 @@ class SurfaceFitter {
     const auto start = std::chrono::steady_clock::now();
     if (normals_from_ == NormalsFrom::capture) all_normals_ = capture_.normals();
     if (!resume()) find_lobes();
+    if (crew_ranks() > 1) options_.crew->broadcast(format_checkpoint(noted()));
     find_weights();
     SurfaceFit fit{.surface = surface(), .report = std::move(report_)};
     fit.report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -116,7 +120,22 @@ class SurfaceFitter {
     return fit;
   }
 
+  /// The share of a rank that does not lead.
+  void help() {
+    if (normals_from_ == NormalsFrom::capture) all_normals_ = capture_.normals();
+    adopt(parse_checkpoint({"what rank 0 sent", bytes_of_text(options_.crew->broadcast({}))},
+                           capture_.form().width));
+    find_weights();
+  }
+
  private:
+  int crew_ranks() const noexcept { return options_.crew ? options_.crew->ranks() : 1; }
+  int crew_rank() const noexcept { return options_.crew ? options_.crew->rank() : 0; }
+  static std::vector<std::byte> bytes_of_text(const std::string& text) {
+    const auto bytes = std::as_bytes(std::span(text));
+    return {bytes.begin(), bytes.end()};
+  }
+
   void progress(std::string_view stage, double fraction) const {
     if (options_.progress) options_.progress(stage, fraction);
   }
@@ -227,8 +246,22 @@ class SurfaceFitter {
     fit_samples(last);
   }
 
+  /// f of the lobes as they are, with the texel's weights.
+  std::array<float, kCaptureChannels> modelled_at(const LobeEvaluator& lobes, const Candidate& c) const {
+    std::array<float, LobeEvaluator::kWeightStride * kMaxSurfaceLobes> weights{};
+    for (std::size_t j = 0; j < lobes.lobes(); ++j)
+      for (std::size_t k = 0; k < kCaptureChannels; ++k)
+        weights[LobeEvaluator::kWeightStride * j + k] = fits_.weights[c.texel * lobes.lobes() + j];
+    std::array<float, kCaptureChannels> f{};
+    lobes.eval(c.pair.wi, c.pair.wo, std::span(weights).first(LobeEvaluator::kWeightStride * lobes.lobes()),
+               f);
+    return f;
+  }
+
   /// Pixels of the sampled texels that `takes` has: as many of each theta_h as there are, up to an even part; weighted
-  /// as all of them for pictures, evenly over theta_h for the pairs.
+  /// as all of them for pictures, evenly over theta_h for the pairs. A clipped value is a lower bound: it stands for
+  /// what the lobes make of it, where that is more. So a step never raises the one-sided error, and lobes stay where
+  /// they are where nothing else holds them.
   template <class Takes>
   TrainingSet training_set(std::size_t count, std::size_t stream, const Takes& takes) const {
     const CaptureForm& form = capture_.form();
@@ -246,7 +279,7 @@ class SurfaceFitter {
     for (std::size_t d = 0; d < draws; ++d) {
       const auto t = texels[random.next() % texels.size()];
       const std::size_t p = fitted[random.next() % fitted.size()], pixel = p * samples_.size() + t;
-      if (samples_.states[pixel] != PixelState::there) continue;
+      if (!is_there(samples_.states[pixel])) continue;
       if (trusts(pixel) < kLeastTrust) continue;
       const Vec3 point = form.point(samples_.texels[t][0], samples_.texels[t][1]);
       const ShadingFrame frame = frame_about(normal_of(fits_.normals, t), {1, 0, 0});
@@ -290,13 +323,23 @@ class SurfaceFitter {
                     .exposure = exposure_,
                     .albedo = {}};
     const std::size_t lobes = fits_.weights.size() / samples_.size();
+    std::optional<LobeEvaluator> known;
+    if (lobes_ && lobes > 0) known.emplace(*lobes_);
     const auto add = [&](const Candidate& c, double weight) {
       const std::size_t pixel = c.picture * samples_.size() + c.texel;
+      const PixelState state = samples_.states[pixel];
+      std::array<float, kCaptureChannels> modelled{};
+      if (known && is_clipped(state)) modelled = modelled_at(*known, c);
       set.pairs.push_back(c.pair);
-      for (std::size_t k = 0; k < kCaptureChannels; ++k)
-        set.values.push_back(std::max(0.0f, samples_.values[kCaptureChannels * pixel + k]) /
-                             static_cast<float>(c.pair.wi.z));
-      set.weights.push_back(static_cast<float>(weight) * trusts(pixel));
+      bool held = false;
+      for (std::size_t k = 0; k < kCaptureChannels; ++k) {
+        const float value =
+            std::max(0.0f, samples_.values[kCaptureChannels * pixel + k]) / static_cast<float>(c.pair.wi.z);
+        const bool above = is_clipped(state, k) && modelled[k] > value;
+        held = held || above;
+        set.values.push_back(above ? modelled[k] : value);
+      }
+      set.weights.push_back(static_cast<float>(weight) * trusts(pixel) * (held ? kHeld : 1));
       for (std::size_t j = 0; j < lobes; ++j) set.lobe_weights.push_back(fits_.weights[c.texel * lobes + j]);
     };
     for (std::size_t i = 0; i < chosen.size(); i += 2)
@@ -308,8 +351,16 @@ class SurfaceFitter {
     return set;
   }
 
-  /// How much lobes are fitted to a pixel. Before they have been refined once, it is they that are wrong.
-  float trusts(std::size_t pixel) const noexcept { return rounds_done_ == 0 ? 1 : fits_.trust[pixel]; }
+  /// How much lobes are fitted to a pixel. Before they have been refined once, it is they that are wrong. Where
+  /// highlights are clipped, the few that are not say how bright lobes are, and look like outliers until lobes are: while
+  /// they have few nodes, only large errors count against a pixel.
+  float trusts(std::size_t pixel) const noexcept {
+    if (rounds_done_ == 0) return 1;
+    const float trust = fits_.trust[pixel];
+    if (report_.clipped_pixels == 0 || !is_coarse(rounds_done_) || trust == 0) return trust;
+    const float share = 1 + kEarlyError * (1 / std::sqrt(trust) - 1);  // as TexelSolver finds trust
+    return 1 / (share * share);
+  }
 
   /// Of each lobe's weights, by the sampled texels.
   void find_scales() {
@@ -342,6 +393,12 @@ class SurfaceFitter {
     if (found.key != key_)
       throw Error::in_file(options_.checkpoint.string(), "a checkpoint of this capture and these options",
                            "one of others");
+    adopt(std::move(found));
+    report_.resumed_rows = done_.rows;
+    return true;
+  }
+
+  void adopt(FitCheckpoint found) {
     capture_.leave_out(found.damaged);
     done_ = std::move(found);
     lobes_ = done_.lobes;
@@ -349,12 +406,9 @@ class SurfaceFitter {
     scales_ = done_.scales;
     report_.missing_pixels = done_.missing_pixels;
     report_.clipped_pixels = done_.clipped_pixels;
-    report_.resumed_rows = done_.rows;
-    return true;
   }
 
-  void save() {
-    if (options_.checkpoint.empty()) return;
+  const FitCheckpoint& noted() {
     done_.key = key_;
     done_.damaged.assign(capture_.left_out().begin() + static_cast<std::ptrdiff_t>(left_out_at_first_),
                          capture_.left_out().end());
@@ -363,6 +417,13 @@ class SurfaceFitter {
     done_.exposure = exposure_;
     done_.lobes = *lobes_;
     done_.scales = scales_;
+    done_.codes.resize(lobes_->lobes().size());
+    return done_;
+  }
+
+  void save() {
+    if (options_.checkpoint.empty() || crew_rank() != 0) return;
+    noted();
     write_then_rename(options_.checkpoint, format_checkpoint(done_));
   }
 
@@ -373,25 +434,23 @@ class SurfaceFitter {
     done_.codes.resize(lobes_->lobes().size());
     done_.errors.resize(form.pictures.size());
     const TexelSolver solver(*lobes_, form, exposure_);
-    const int step = capture_.rows_within(options_.tile_bytes);
+    const int ranks = crew_ranks(), step = tile_rows();
     int saved = done_.rows;
     if (saved == 0) save();
     while (done_.rows < form.height) {
-      const int row = done_.rows, rows = std::min(step, form.height - row);
-      Capture::Read read = capture_.read(row, rows);
-      if (!read.damaged.empty())
-        throw Error::in_file((capture_.folder() / read.damaged.front().file).string(),
-                             "a picture that stays as it was when it was read first",
-                             read.damaged.front().why);
-      const TexelSamples tile = samples_of(std::move(read.rows));
-      const auto start = std::chrono::steady_clock::now();
-      TexelFits fits = fit_tile(solver, tile, row);
-      store(fits, form.width);
-      report_.weight_seconds +=
-          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      const auto part = solver.errors(tile, fits);
-      for (std::size_t p = 0; p < part.size(); ++p) done_.errors[p] += part[p];
-      done_.rows = row + rows;
+      // a tile a rank, which rank 0 puts together in their order
+      const int begin = done_.rows, end = std::min(begin + ranks * step, form.height),
+                row = std::min(begin + crew_rank() * step, end), rows = std::min(step, end - row);
+      FitCheckpoint tile{.lobes = *lobes_, .scales = scales_, .codes = {}, .normals = {}, .errors = {}};
+      tile.codes.resize(done_.codes.size());
+      if (rows > 0) tile = fitted_tile(solver, row, rows, std::move(tile));
+      if (ranks == 1) {
+        append(tile);
+      } else {
+        for (const std::string& sent : options_.crew->gather(format_checkpoint(tile)))
+          append(parse_checkpoint({"what a rank sent", bytes_of_text(sent)}, form.width));
+      }
+      done_.rows = end;
       // a checkpoint holds all rows that are done: not too often
       if (constexpr int kSavedParts = 16; done_.rows - saved >= std::max(form.height / kSavedParts, 1)) {
         save();
@@ -401,6 +460,37 @@ class SurfaceFitter {
     }
     report_.fitted = score(done_.errors, false);
     report_.held_out = score(done_.errors, true);
+  }
+
+  /// Of a tile: what memory holds, of several ranks an even part of what is left.
+  int tile_rows() const {
+    const int most = capture_.rows_within(options_.tile_bytes), ranks = crew_ranks();
+    if (ranks == 1) return most;
+    constexpr int kLeastTurns = 4;  // of each rank, so that a lost one costs little
+    const int turns = std::max(kLeastTurns, (capture_.form().height + most * ranks - 1) / (most * ranks));
+    return std::max(1, (capture_.form().height + turns * ranks - 1) / (turns * ranks));
+  }
+
+  FitCheckpoint fitted_tile(const TexelSolver& solver, int row, int rows, FitCheckpoint tile) {
+    Capture::Read read = capture_.read(row, rows);
+    if (!read.damaged.empty())
+      throw Error::in_file((capture_.folder() / read.damaged.front().file).string(),
+                           "a picture that stays as it was when it was read first", read.damaged.front().why);
+    const TexelSamples samples = samples_of(std::move(read.rows));
+    const auto start = std::chrono::steady_clock::now();
+    TexelFits fits = fit_tile(solver, samples, row);
+    store(fits, capture_.form().width, tile);
+    report_.weight_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    tile.errors = solver.errors(samples, fits);
+    tile.rows = rows;
+    return tile;
+  }
+
+  void append(const FitCheckpoint& tile) {
+    for (std::size_t j = 0; j < done_.codes.size(); ++j)
+      done_.codes[j].insert(done_.codes[j].end(), tile.codes[j].begin(), tile.codes[j].end());
+    done_.normals.insert(done_.normals.end(), tile.normals.begin(), tile.normals.end());
+    for (std::size_t p = 0; p < tile.errors.size(); ++p) done_.errors[p] += tile.errors[p];
   }
 
   TexelFits fit_tile(const TexelSolver& solver, const TexelSamples& tile, int row) const {
@@ -416,21 +506,21 @@ class SurfaceFitter {
     return solver.solve(tile, std::move(normals), {.passes = 3, .normals = estimate, .normal_steps = 8});
   }
 
-  /// Rounds what was found to what is stored, and appends it.
-  void store(TexelFits& fits, int width) {
+  /// Rounds what was found to what is stored, and keeps it in the tile.
+  void store(TexelFits& fits, int width, FitCheckpoint& tile) const {
     const std::size_t lobes = scales_.size(), count = fits.weights.size() / lobes;
     const int rows = static_cast<int>(count) / width;
     for (std::size_t j = 0; j < lobes; ++j) {
       std::vector<float> weights(count);
       for (std::size_t t = 0; t < count; ++t) weights[t] = std::min(fits.weights[t * lobes + j], scales_[j]);
       const SurfaceMap map(width, rows, 1, TableFormat::unorm8, scales_[j], weights);
-      done_.codes[j].insert(done_.codes[j].end(), map.stored_bytes().begin(), map.stored_bytes().end());
+      tile.codes[j].assign(map.stored_bytes().begin(), map.stored_bytes().end());
       for (std::size_t t = 0; t < count; ++t)
         fits.weights[t * lobes + j] = map.texel(static_cast<int>(t) % width, static_cast<int>(t) / width)[0];
     }
     if (fits.normals.empty()) return;
     fits.normals = round_normals(fits.normals, width);
-    done_.normals.insert(done_.normals.end(), fits.normals.begin(), fits.normals.end());
+    tile.normals = fits.normals;
   }
   static std::vector<float> round_normals(const std::vector<float>& normals, int width) {
     const int rows = static_cast<int>(normals.size() / 2) / width;
@@ -517,6 +607,10 @@ class SurfaceFitter {
 
 SurfaceFit fit_surface(Capture capture, const SurfaceFitOptions& options) {
   return SurfaceFitter(std::move(capture), options).run();
+}
+
+void help_fit_surface(Capture capture, const SurfaceFitOptions& options) {
+  SurfaceFitter(std::move(capture), options).help();
 }
 
 std::string report_json(const SurfaceReport& report) {

@@ -1,3 +1,6 @@
+#include <barrier>
+#include <thread>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -110,6 +113,65 @@ TEST(SurfaceFit, GoesOnFromACheckpoint) {
   write(options.checkpoint, read(options.checkpoint).substr(0, 1000));
   options.seed = 1;
   EXPECT_THROW(capture.fit(options), Error);
+}
+
+// Ranks that are threads.
+class ThreadCrew {
+ public:
+  explicit ThreadCrew(int ranks) : barrier_(ranks), sent_(static_cast<std::size_t>(ranks)) {}
+
+  class Member : public FitCrew {
+   public:
+    Member(ThreadCrew& crew, int rank) : crew_(crew), rank_(rank) {}
+    int ranks() const noexcept override { return static_cast<int>(crew_.sent_.size()); }
+    int rank() const noexcept override { return rank_; }
+    std::vector<std::string> gather(const std::string& bytes) override {
+      crew_.sent_[static_cast<std::size_t>(rank_)] = bytes;
+      crew_.barrier_.arrive_and_wait();
+      std::vector<std::string> all;
+      if (rank_ == 0) all = crew_.sent_;
+      crew_.barrier_.arrive_and_wait();
+      return all;
+    }
+    std::string broadcast(const std::string& bytes) override {
+      if (rank_ == 0) crew_.sent_[0] = bytes;
+      crew_.barrier_.arrive_and_wait();
+      std::string first = crew_.sent_[0];
+      crew_.barrier_.arrive_and_wait();
+      return first;
+    }
+
+   private:
+    ThreadCrew& crew_;
+    int rank_;
+  };
+
+ private:
+  std::barrier<> barrier_;
+  std::vector<std::string> sent_;
+};
+
+TEST(SurfaceFit, IsTheSameForAnyNumberOfRanks) {
+  const SmallCapture folder("ranks");
+  SurfaceFitOptions options = small_options();
+  options.rounds = 2;
+  const std::string alone = format_surface(folder.fit(options).surface);
+  for (const int ranks : {2, 3}) {
+    ThreadCrew crew(ranks);
+    std::vector<std::thread> helpers;
+    for (int rank = 1; rank < ranks; ++rank)
+      helpers.emplace_back([&, rank] {
+        ThreadCrew::Member member(crew, rank);
+        SurfaceFitOptions own = options;
+        own.crew = &member;
+        help_fit_surface(Capture(folder.folder.path), own);
+      });
+    ThreadCrew::Member leader(crew, 0);
+    SurfaceFitOptions own = options;
+    own.crew = &leader;
+    EXPECT_EQ(format_surface(folder.fit(own).surface), alone) << ranks;
+    for (std::thread& helper : helpers) helper.join();
+  }
 }
 
 TEST(SurfaceFit, SaysWhichPicturesItLeftOut) {

@@ -291,9 +291,8 @@ class TexelSolver::Block {
     Terms terms{.value = values_[k * kCaptureChannels + c], .model = values(k, c), .omega = {}};
     TexelRow share, at;
     for (std::size_t i = 0; i < kBlock; ++i) {
-      const bool clipped = states_[k][i] == PixelState::clipped;
-      const bool above = clipped && pass > 0 && terms.model[i] > terms.value[i];
-      share[i] = (states_[k][i] == PixelState::there || clipped) && !above ? 1.0f : 0.0f;
+      const bool above = is_clipped(states_[k][i], c) && pass > 0 && terms.model[i] > terms.value[i];
+      share[i] = is_there(states_[k][i]) && !above ? 1.0f : 0.0f;
       at[i] = pass == 0 ? terms.value[i] : 0.5f * (terms.value[i] + terms.model[i]);
     }
     find_omega(exposure_, kFloor, at.data(), share.data(), terms.omega.data());
@@ -415,14 +414,13 @@ class TexelSolver::Block {
     const float reach = kTrustedError[std::min(static_cast<std::size_t>(pass), kTrustedError.size() - 1)];
     float* const trust = &trust_[k * kBlock];
     for (std::size_t i = 0; i < kBlock; ++i) {
-      float worst = 0, there = 0;
+      float worst = 0;
       for (std::size_t c = 0; c < kCaptureChannels; ++c) {
         const float rest = terms[c].value[i] - terms[c].model[i];
         worst = std::max(worst, (rest < 0 ? 1 : kBrighter) * terms[c].omega[i] * rest * rest);
-        there = std::max(there, terms[c].omega[i]);
       }
       const float share = 1 + worst / (reach * reach);
-      trust[i] = there > 0 ? 1 / (share * share) : 0;
+      trust[i] = is_there(states_[k][i]) ? 1 / (share * share) : 0;
     }
   }
 
@@ -524,7 +522,10 @@ std::vector<TexelSolver::PictureError> TexelSolver::errors(const TexelSamples& s
             if (state == PixelState::missing) continue;
             double square = 0;
             for (std::size_t c = 0; c < kCaptureChannels; ++c) {
-              const double off = seen_as(samples.values[pixel * kCaptureChannels + c]) - seen_as(model[c][i]);
+              // what took the picture would clip the model too
+              const float value = samples.values[pixel * kCaptureChannels + c],
+                          shown = is_clipped(state, c) ? std::min(model[c][i], value) : model[c][i];
+              const double off = seen_as(value) - seen_as(shown);
               square += off * off;
             }
             const auto units = static_cast<std::uint64_t>(std::llround(square / PictureError::kUnit));

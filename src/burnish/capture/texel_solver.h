@@ -61,7 +61,8 @@ class TexelSolver {
   };
   TexelFits solve(const TexelSamples& samples, std::vector<float> normals, const Options& options) const;
 
-  /// Squared differences of min(1, exposure f cos)^(1/2.2) between pictures and model, summed over the channels. In
+  /// Squared differences of min(1, exposure f cos)^(1/2.2) between pictures and model, summed over the channels; where a
+  /// picture's channel is clipped, the model is clipped at its value too, as what took the picture would have done. In
   /// units of kUnit: integers add up to the same in any order.
   struct PictureError {
     static constexpr double kUnit = 0x1p-32;

@@ -144,7 +144,7 @@ TEST(TexelSolver, TakesClippedPixelsForLowerBounds) {
   for (std::size_t i = 0; i < scene.samples.values.size(); ++i)
     if (float& value = scene.samples.values[i]; value > clip) {
       taken.samples.values[i] = value = clip;
-      scene.samples.states[i / 3] = PixelState::clipped;
+      scene.samples.states[i / 3] = clipped_in(scene.samples.states[i / 3], i % 3);
     }
   const TexelSolver solver(scene.lobes, scene.form, 1);
   const auto mean_error = [&](const TexelSamples& samples) {

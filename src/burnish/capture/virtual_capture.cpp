@@ -4,6 +4,7 @@
 #include <cmath>
 #include <thread>
 
+#include <Imath/half.h>
 #include <fmt/format.h>
 
 #include <burnish/capture/json_member.h>
@@ -310,7 +311,7 @@ CaptureForm write_virtual_capture(const SurfaceScene& scene, const std::filesyst
                    .height = scene.height,
                    .size_x = scene.size_x,
                    .size_y = scene.size_y,
-                   .clip = scene.clip,
+                   .clip = {},
                    .normals = {},
                    .pictures = {}};
   for (std::size_t v = 0; v < scene.views.size(); ++v)
@@ -327,6 +328,9 @@ CaptureForm write_virtual_capture(const SurfaceScene& scene, const std::filesyst
       form.pictures.push_back(std::move(picture));
     }
 
+  // pictures are halves: a clipped pixel is the half next to the scene's
+  if (scene.clip)
+    form.clip = static_cast<double>(static_cast<float>(Imath::half(static_cast<float>(*scene.clip))));
   const SceneCamera camera(scene, form);
   std::atomic<std::size_t> done = 0;
   const std::thread::id caller = std::this_thread::get_id();

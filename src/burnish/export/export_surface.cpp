@@ -140,7 +140,7 @@ class SurfaceExport {
     } else {
       float most = map.scale();
       if (map.format() == TableFormat::half && !vectors)
-        most = std::max(std::ranges::max(image.pixels), 1e-30f);
+        most = std::max(*std::ranges::max_element(image.pixels), 1e-30f);
       Image8 shown(map.width(), map.height(), 3);
       for (std::size_t i = 0; i < shown.pixels.size(); ++i) {
         const float part = vectors ? 0.5f * (image.pixels[i] + 1) : image.pixels[i] / most;

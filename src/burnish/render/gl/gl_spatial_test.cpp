@@ -103,8 +103,9 @@ TEST_F(GlSpatial, ShaderAgreesWithTheEvaluator) {
 constexpr int kSpatialSize = 160;
 
 Image drawn(const Scene& scene, const SpatialBrdf& surface) {
-  const GlRenderer renderer(
-      scene, std::array{surface_shader(surface, ShaderFilter::hardware, TableFormat::single)}, kSpatialSize, kSpatialSize);
+  const GlRenderer renderer(scene,
+                            std::array{surface_shader(surface, ShaderFilter::hardware, TableFormat::single)},
+                            kSpatialSize, kSpatialSize);
   renderer.draw();
   return renderer.read();
 }
@@ -117,8 +118,8 @@ TEST_F(GlSpatial, RendererAgreesWithTheReference) {
     scene.parts = {{make_shape(shape, 4000), 0}};
     scene.lights = {{{2, 3, 4}, 20}, {{-3, 1, 3}, {9, 6, 3}}};
     scene.camera = camera_for_unit_sphere(0.3, 0.2);
-    const Image truth =
-        render_cpu(scene, std::array<SceneMaterial, 1>{&surface}, {.width = kSpatialSize, .height = kSpatialSize});
+    const Image truth = render_cpu(scene, std::array<SceneMaterial, 1>{&surface},
+                                   {.width = kSpatialSize, .height = kSpatialSize});
     const double exposure = 1 / percentile(truth.pixels, 0.97);
     EXPECT_GT(psnr(mean_squared_error(tone_map(drawn(scene, surface), exposure), tone_map(truth, exposure))),
               40)

@@ -1,0 +1,158 @@
+// What a surface costs beside a uniform model, and what its mip levels are worth.
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <burnish/capture/virtual_capture.h>
+#include <burnish/file.h>
+#include <burnish/fitting/fit.h>
+#include <burnish/metrics/sphere_images.h>
+#include <burnish/render/scene.h>
+#include <burnish/surface/spatial_brdf.h>
+
+#include "frames.h"
+#include "report.h"
+
+namespace burnish::reports {
+
+namespace {
+
+constexpr const char* kScene = R"({"version": 1, "width": 256, "height": 256,
+  "materials": ["ggx:alpha_x=0.08,alpha_y=0.08,f0=0.6,kd=0.05", "ggx:alpha_x=0.3,alpha_y=0.3,f0=0.04,kd=0.6",
+                "ggx:alpha_x=0.2,alpha_y=0.2,f0=0.8,kd=0", "ggx:alpha_x=0.6,alpha_y=0.6,f0=0.1,kd=0.3"],
+  "shares": {"cells": 6, "seed": 3, "sharpness": 8}, "heights": {"cells": 12, "seed": 11, "amplitude": 0.012},
+  "lights": {"count": 9, "angle_deg": 60}, "views": {"count": 1, "angle_deg": 30}})";
+
+FileBytes bytes_of(std::string_view text) {
+  const auto* const first = reinterpret_cast<const std::byte*>(text.data());
+  return {.name = "scene", .bytes = {first, first + text.size()}};
+}
+
+// The scene's materials, each fitted with one lobe, their shares as weights.
+struct Surfaces {
+  SpatialBrdf flat, bumpy;
+};
+Surfaces surfaces_of(const SurfaceScene& scene) {
+  std::vector<burnish::Table> tables;
+  std::vector<Lobe> lobes;
+  for (const Source& material : scene.materials) {
+    tell(fmt::format("surfaces: {}", material.name));
+    const std::vector<std::string> nodes{"z=200,power:0.5", "g=20x13x4,power:0.5"};
+    const GivenLobes one{.model = "z(theta_h) g(theta_h,theta_d,phi_d)", .tables = nodes};
+    const FactoredBrdf model = fit(material, {.form = one, .score = false}).model();
+    for (Lobe lobe : model.lobes()) {
+      for (FactorUse& use : lobe.factors) use.table += tables.size();
+      if (lobe.scale.size() == 1) lobe.scale.resize(3, lobe.scale[0]);
+      lobes.push_back(std::move(lobe));
+    }
+    for (burnish::Table table : model.tables()) {
+      table.name += fmt::format("{}", lobes.size());
+      tables.push_back(std::move(table));
+    }
+  }
+  SurfaceMaps maps;
+  for (const std::vector<float>& share : scene.shares)
+    maps.weights.emplace_back(scene.width, scene.height, std::size_t{1}, TableFormat::unorm8, 1.0f,
+                              std::span<const float>(share));
+  const FactoredBrdf brdf(3, std::move(tables), std::move(lobes));
+  SpatialBrdf flat(brdf, maps);
+  std::vector<float> normals;
+  for (int y = 0; y < scene.height; ++y)
+    for (int x = 0; x < scene.width; ++x) {
+      const Vec3 n = scene_normal(scene, x, y);
+      normals.push_back(static_cast<float>(n.x));
+      normals.push_back(static_cast<float>(n.y));
+    }
+  maps.normals.emplace(scene.width, scene.height, std::size_t{2}, TableFormat::half, 1.0f,
+                       std::span<const float>(normals));
+  return {std::move(flat), SpatialBrdf(brdf, std::move(maps))};
+}
+
+// f cos of a whole level under one light.
+Image lit_level(const SpatialBrdf& surface, std::size_t level, Vec3 light, Vec3 view) {
+  const SurfaceMap& map = surface.maps().weights.front();
+  const int width = map.level_width(level), height = map.level_height(level);
+  Image image(width, height, 3);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const SpatialBrdf::Place place =
+          surface.place((x + 0.5) / width, (y + 0.5) / height, static_cast<double>(level));
+      const Vec3 wi = place.frame.local(light), wo = place.frame.local(view);
+      std::array<double, 3> f{};
+      surface.eval(place, wi, wo, f);
+      for (std::size_t c = 0; c < f.size(); ++c)
+        image.at(x, y)[c] = static_cast<float>(f[c] * std::max(wi.z, 0.0));
+    }
+  return image;
+}
+
+// The psnr of a level's pictures against averages of full ones, all lights together.
+double level_psnr(const SpatialBrdf& surface, const SurfaceScene& scene, std::size_t level) {
+  double sum = 0;
+  for (const Station& light : scene.lights) {
+    const Vec3 view = scene.views.front().at;
+    const Image full = lit_level(surface, 0, light.at, view), truth = averaged(full, 1 << level);
+    const double exposure = 1 / percentile(full.pixels, 0.97);
+    sum += mean_squared_error(tone_map(lit_level(surface, level, light.at, view), exposure),
+                              tone_map(truth, exposure));
+  }
+  return psnr(sum / static_cast<double>(scene.lights.size()));
+}
+
+Table levels_table(const Surfaces& surfaces, const SurfaceScene& scene) {
+  Table table({"level", "texels", "weights alone, dB", "with normals, dB"});
+  for (std::size_t level = 1; level <= 5; ++level)
+    table.add({fmt::format("{}", level), fmt::format("{0} x {0}", scene.width >> level),
+               fmt::format("{:.1f}", level_psnr(surfaces.flat, scene, level)),
+               fmt::format("{:.1f}", level_psnr(surfaces.bumpy, scene, level))});
+  return table;
+}
+
+Table frames_table(const Surfaces& surfaces, int repetitions) {
+  const FactoredBrdf& uniform = surfaces.flat.lobes();
+  const auto shader = [](const auto& model) {
+    return surface_shader(model, ShaderFilter::hardware, TableFormat::rgb9e5);
+  };
+  const std::vector<FrameMaterial> materials{{"uniform model", shader(uniform), uniform},
+                                             {"surface, weights alone", shader(surfaces.flat), uniform},
+                                             {"surface with normals", shader(surfaces.bumpy), uniform}};
+  check_picture(materials.front());
+  std::vector<std::string> head{"material"};
+  std::vector<std::vector<std::string>> rows;
+  for (const FrameMaterial& material : materials) rows.push_back({material.name});
+  for (const int lights : {1, 4}) {
+    tell(fmt::format("surfaces: lights: {}", lights));
+    head.push_back(fmt::format("{} light{}", lights, lights == 1 ? "" : "s"));
+    head.emplace_back("of the uniform model");
+    const std::vector<Times> times = time_frames(materials, lights, repetitions);
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+      rows[i].push_back(fmt::format("{:.1f} ({:.1f})", times[i].least, times[i].median));
+      rows[i].push_back(fmt::format("{:.2f}", times[i].least / times[0].least));
+    }
+  }
+  Table table(head);
+  for (const auto& row : rows) table.add(row);
+  return table;
+}
+
+}  // namespace
+
+void report_surfaces(const ReportOptions& options) {
+  Page page(options, "surface-results");
+  const SurfaceScene scene = parse_surface_scene(bytes_of(kScene), ".");
+  const Surfaces surfaces = surfaces_of(scene);
+  const int repetitions = options.quick ? 1 : 5;
+  page["lobes"] = fmt::format("{}", surfaces.flat.lobes().lobes().size());
+  page["levels"] = levels_table(surfaces, scene).markdown();
+  const GlContext context(GlDevice::gpu_first);
+  page["vertices"] = std::to_string(kFrameVertices);
+  page["size"] = std::to_string(kFrameSize);
+  page["repetitions"] = std::to_string(repetitions);
+  page["renderer"] = drawn_by(context);
+  page["times"] = frames_table(surfaces, repetitions).markdown();
+  page.write();
+}
+
+}  // namespace burnish::reports
