@@ -17,6 +17,7 @@ using std::numbers::sqrt2, std::numbers::inv_sqrt3;
 
 constexpr double kSqrt6 = sqrt2 / inv_sqrt3;
 constexpr double kLeast = 1e-6;  // 1/sr: what is at or below the floor stays positive
+constexpr double kMostOfLine = 7;  // logarithm of the volume's largest value
 constexpr double kMostLog = 80;  // of f at a node: single floats end soon after
 constexpr std::size_t kHalfBytes = 2, kNumbersAComponent = 3;
 
@@ -58,7 +59,7 @@ TableLayout book_layout(std::array<int, 3> sides) {
 }
 
 FactorUse book_use() {
-  return {.table = 0,
+  return {.table = 1,
           .projection = kProjectHalf,
           .projection_y = kProjectDifference,
           .projection_z = kProjectAzimuth};
@@ -77,17 +78,36 @@ std::array<NodeShare, 8> book_nodes(const TableLayout& layout, const DirectionPa
 }
 
 FactoredBrdf brdf_of_logs(const TableLayout& layout, std::span<const double> logs, TableFormat format) {
-  Table table{.name = "g",
-              .layout = layout,
-              .channels = MaterialBook::kChannels,
-              .values = std::vector<float>(logs.size()),
-              .format = format};
-  for (std::size_t i = 0; i < logs.size(); ++i) {
-    const double f = std::exp(std::min(logs[i], kMostLog)) - MaterialBook::kFloor;
-    table.values[i] = static_cast<float>(std::log(std::max(f, kLeast)));
+  constexpr std::size_t kChannels = MaterialBook::kChannels;
+  std::vector<double> log_f;
+  for (const double log : logs)
+    log_f.push_back(std::log(std::max(std::exp(std::min(log, kMostLog)) - MaterialBook::kFloor, kLeast)));
+
+  // the line: the mean of what its theta_h holds away from grazing, as far as a table's range goes
+  const auto width = static_cast<std::size_t>(layout.width), height = static_cast<std::size_t>(layout.height);
+  std::vector<double> mean(width, 0.0), counts(width, 0.0);
+  for (std::size_t i = 0; i < log_f.size(); ++i) {
+    const std::size_t node = i / kChannels;
+    if (node / width % height > height / 2) continue;
+    mean[node % width] += log_f[i];
+    ++counts[node % width];
   }
-  Lobe lobe{.scale = std::vector<double>(MaterialBook::kChannels, 0.0), .factors = {book_use()}};
-  return from_log_tables(MaterialBook::kChannels, {std::move(table)}, {std::move(lobe)});
+  for (std::size_t x = 0; x < width; ++x) mean[x] /= counts[x];
+  const double floor = std::ranges::max(mean) + std::log(2 * kTableFloor);
+  for (double& log : mean) log = std::max(log, floor);
+
+  // the volume: what is left, nowhere so bright that dark texels had no bits
+  Table line{.name = "z",
+             .layout = {.width = layout.width, .warp = layout.warp, .warp_y = {}, .warp_z = {}},
+             .channels = 1,
+             .values = {mean.begin(), mean.end()},
+             .format = format == TableFormat::rgb9e5 ? TableFormat::half : format};
+  Table volume{.name = "g", .layout = layout, .channels = kChannels, .values = {}, .format = format};
+  for (std::size_t i = 0; i < log_f.size(); ++i)
+    volume.values.push_back(static_cast<float>(std::min(log_f[i] - mean[i / kChannels % width], kMostOfLine)));
+  Lobe lobe{.scale = std::vector<double>(kChannels, 0.0),
+            .factors = {{.table = 0, .projection = kProjectHalf, .projection_y = {}, .projection_z = {}}, book_use()}};
+  return from_log_tables(kChannels, {std::move(line), std::move(volume)}, {std::move(lobe)});
 }
 
 MaterialBook::MaterialBook(std::array<int, 3> sides, std::array<BookAxis, kAxes> axes,

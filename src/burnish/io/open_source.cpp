@@ -99,7 +99,7 @@ void check_spelling(const std::string& spec) {
 Source parse_file(const FileBytes& file, const OpenOptions& options) {
   // Binary formats first: their first bytes are unmistakable.
   if (looks_like_book(file.bytes))
-    throw Error::in_file(file.name, "book:FILE#NAME for one of its materials (`burnish info FILE` names them)",
+    throw Error::in_file(file.name, "book:FILE#NAME for one material of a book (`burnish info FILE` names them)",
                          "the book alone");
   if (looks_like_model(file.bytes)) return to_source(file.name, parse_model(file));
   if (looks_like_rgl(file.bytes)) return from_table(file, parse_rgl(file, options));

@@ -11,6 +11,7 @@
 
 #include <burnish/error.h>
 #include <burnish/fitting/book/complete.h>
+#include <burnish/fitting/book/three_channels.h>
 #include <burnish/fitting/refinement/training_set.h>
 #include <burnish/math/angles.h>
 #include <burnish/math/parallel.h>
@@ -233,8 +234,8 @@ std::vector<std::size_t> evenly(std::size_t count, std::size_t most) {
 
 void check_completed(const MaterialBook& book, const Samples& samples) {
   if (book.materials().empty()) throw Error("book: expected materials in it, found none");
-  if (!samples.isotropic || samples.channels != kRgb)
-    throw Error(fmt::format("book: expected pairs of an isotropic material in three channels, found {} in {}",
+  if (!samples.isotropic || !book_takes(samples.channels))
+    throw Error(fmt::format("book: expected pairs of an isotropic material in one channel or three, found {} in {}",
                             samples.isotropic ? "an isotropic one" : "an anisotropic one", samples.channels));
 }
 
@@ -242,7 +243,7 @@ void check_completed(const MaterialBook& book, const Samples& samples) {
 
 Completion complete(const MaterialBook& book, const Samples& samples, TableFormat format) {
   check_completed(book, samples);
-  const TrainingSet set = training_set_of(samples, false);
+  const TrainingSet set = in_three_channels(training_set_of(samples, false));
   const std::vector<std::size_t> used = evenly(set.size(), kMostCompletionPairs);
 
   // what to believe, from a part of the pairs where they are many

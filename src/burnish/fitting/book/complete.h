@@ -35,7 +35,7 @@ struct CompletionReport {
 inline constexpr std::size_t kMostCompletionPairs = 1000;
 
 struct Completion {
-  FactoredBrdf brdf;  ///< one volume of the book's layout: reciprocal and positive, one fetch
+  FactoredBrdf brdf;  ///< of brdf_of_logs: reciprocal and positive, two fetches
   CompletionReport report;
 };
 
@@ -44,7 +44,8 @@ struct Completion {
 /// components with normal weights, plus what is smooth and not in the book, plus noise; how far each may go
 /// (CompletionPrior) is what makes the pairs likeliest [Rasmussen 2006, eq. 5.8], of a list of values. Far from pairs the
 /// book speaks, near them they do. The same bits whatever the number of threads. Throws Error where the samples are
-/// anisotropic, have not three channels, or none lies above the horizon, and where the book has no materials.
+/// anisotropic, have neither one channel (grey) nor three, or none lies above the horizon, and where the book has no
+/// materials.
 Completion complete(const MaterialBook& book, const Samples& samples, TableFormat format = TableFormat::rgb9e5);
 
 }  // namespace burnish

@@ -30,8 +30,8 @@ struct BookMaterial {
 std::array<int, 3> book_sides(const BookOptions& options);
 
 /// Draws pixels of lit spheres and pairs of all directions from a source (draw_training_set), made reciprocal, and fits
-/// the logarithms of one volume to them (fit_homomorphic). Scattered samples are fitted as they are. Throws Error where
-/// the source is anisotropic, has not three channels, or knows no directions.
+/// the logarithms of one volume to them, by linear least squares. Scattered samples are fitted as they are. Throws Error where
+/// the source is anisotropic, has neither one channel (grey) nor three, or knows no directions.
 BookMaterial book_material(const Source& source, const std::string& name, std::array<int, 3> sides, std::uint64_t seed);
 
 /// Principal components of the materials' logarithms, of each axis of colour on its own, each node as heavy as pictures
