@@ -48,32 +48,36 @@ void make(const BookArguments& arguments) {
   MaterialBook shared;
   if (!arguments.shared.empty()) shared = parse_book(read_file(arguments.shared));
   const std::vector<LibraryEntry> entries = library_entries(arguments.place);
-  const BookOfLibrary made = book_of_library(entries, arguments.open, arguments.options,
-                                             arguments.shared.empty() ? nullptr : &shared, progress_bar("reading"));
+  const BookOfLibrary made =
+      book_of_library(entries, arguments.open, arguments.options,
+                      arguments.shared.empty() ? nullptr : &shared, progress_bar("reading"));
   write_then_rename(arguments.out, format_book(made.book));
   print_made(arguments, made);
   std::fflush(stdout);
   if (!made.left_out.empty())
-    throw Error(fmt::format("{} of {} materials are not in the book; the others all are", made.left_out.size(),
-                            entries.size()));
+    throw Error(fmt::format("{} of {} materials are not in the book; the others all are",
+                            made.left_out.size(), entries.size()));
 }
 
 }  // namespace
 
 void add_book_command(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand(
-      "book", "Write what a library of materials shares, and a few bytes a material: a prior for sparse measurements");
+  CLI::App* verb = app.add_subcommand("book",
+                                      "Write what a library of materials shares, and a few bytes a material: "
+                                      "a prior for sparse measurements");
   verb->footer(
-      "A book's material is opened as book:FILE#NAME; `burnish fit PAIRS --book FILE` completes a few measured pairs. "
+      "A book's material is opened as book:FILE#NAME; `burnish fit PAIRS --book FILE` completes a few "
+      "measured pairs. "
       "See docs/guide/library.md.\n"
       "Examples: burnish book measurements -o library.burnish\n"
       "          burnish book list.txt -o library.burnish --bytes 32K --bytes-a-material 32\n"
       "          burnish book new.txt -o new.burnish --shared library.burnish\n"
       "          burnish fit pairs.csv --book library.burnish -o paint.burnish");
   auto arguments = std::make_shared<BookArguments>();
-  verb->add_option("LIST", arguments->place,
-                   "a folder with measurements, or a text with an argument of `burnish fit` a line; isotropic, of one "
-                   "channel or three")
+  verb->add_option(
+          "LIST", arguments->place,
+          "a folder with measurements, or a text with an argument of `burnish fit` a line; isotropic, of one "
+          "channel or three")
       ->required();
   verb->add_option("-o,--output", arguments->out, "file to write")->required();
   CLI::Option* bytes = verb->add_option("--bytes", arguments->options.bytes,

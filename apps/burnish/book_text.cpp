@@ -45,8 +45,10 @@ void print_book(const std::string& name, const MaterialBook& book) {
   line("book", book_line(book));
   line("volume", fmt::format("{} x {} x {} nodes of theta_h, theta_d, phi_d", book.layout().width,
                              book.layout().height, book.layout().depth));
-  line("components", fmt::format("{} of brightness and both axes of colour", fmt::join(component_counts(book), ", ")));
-  line("left over", fmt::format("{:.3f} of the logarithms at nodes, root mean square", fmt::join(residuals(book), ", ")));
+  line("components",
+       fmt::format("{} of brightness and both axes of colour", fmt::join(component_counts(book), ", ")));
+  line("left over",
+       fmt::format("{:.3f} of the logarithms at nodes, root mean square", fmt::join(residuals(book), ", ")));
   for (const MaterialBook::Material& material : book.materials()) line("material", material.name);
 }
 

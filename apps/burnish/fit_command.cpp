@@ -73,7 +73,8 @@ void print(const CompletionReport& report) {
   fmt::print("completed  {} pairs by a book of {} materials{}\n", report.used, report.materials,
              report.nearest.empty() ? "" : fmt::format(", near {}", report.nearest));
   fmt::print("believed   brightness {}; colour {}\n", prior(report.brightness), prior(report.colour));
-  fmt::print("relative   {:.4f} at the pairs, {:.4f} left out in turn\n", report.relative, report.relative_left_out);
+  fmt::print("relative   {:.4f} at the pairs, {:.4f} left out in turn\n", report.relative,
+             report.relative_left_out);
 }
 
 // One line: how many bytes, and why.

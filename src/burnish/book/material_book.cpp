@@ -16,9 +16,9 @@ namespace {
 using std::numbers::sqrt2, std::numbers::inv_sqrt3;
 
 constexpr double kSqrt6 = sqrt2 / inv_sqrt3;
-constexpr double kLeast = 1e-6;  // 1/sr: what is at or below the floor stays positive
+constexpr double kLeast = 1e-6;    // 1/sr: what is at or below the floor stays positive
 constexpr double kMostOfLine = 7;  // logarithm of the volume's largest value
-constexpr double kMostLog = 80;  // of f at a node: single floats end soon after
+constexpr double kMostLog = 80;    // of f at a node: single floats end soon after
 constexpr std::size_t kHalfBytes = 2, kNumbersAComponent = 3;
 
 bool positive(float value) {
@@ -35,7 +35,8 @@ void check_axis(const BookAxis& axis, std::size_t nodes) {
   check(count <= MaterialBook::kMaxComponents, "at most 256 components of an axis", fmt::format("{}", count));
   check(axis.components.size() == count * nodes, "a number of every node and component",
         fmt::format("{}", axis.components.size()));
-  check(axis.steps.size() == count && axis.deviations.size() == count, "a step and a deviation of every component",
+  check(axis.steps.size() == count && axis.deviations.size() == count,
+        "a step and a deviation of every component",
         fmt::format("{} and {}", axis.steps.size(), axis.deviations.size()));
   check(std::ranges::all_of(axis.mean, [](float v) { return std::isfinite(v); }), "finite means", "others");
   check(positive(axis.residual) && std::ranges::all_of(axis.scales, positive) &&
@@ -67,7 +68,8 @@ FactorUse book_use() {
 
 std::array<NodeShare, 8> book_nodes(const TableLayout& layout, const DirectionPair& pair) noexcept {
   const Lookup at = locate(layout, book_use(), pair.wi, pair.wo);
-  const auto width = static_cast<std::size_t>(layout.width), layer = width * static_cast<std::size_t>(layout.height);
+  const auto width = static_cast<std::size_t>(layout.width),
+             layer = width * static_cast<std::size_t>(layout.height);
   std::array<NodeShare, 8> shares;
   for (std::size_t corner = 0; corner < shares.size(); ++corner) {
     const bool x = (corner & 1) != 0, y = (corner & 2) != 0, z = (corner & 4) != 0;
@@ -104,9 +106,11 @@ FactoredBrdf brdf_of_logs(const TableLayout& layout, std::span<const double> log
              .format = format == TableFormat::rgb9e5 ? TableFormat::half : format};
   Table volume{.name = "g", .layout = layout, .channels = kChannels, .values = {}, .format = format};
   for (std::size_t i = 0; i < log_f.size(); ++i)
-    volume.values.push_back(static_cast<float>(std::min(log_f[i] - mean[i / kChannels % width], kMostOfLine)));
+    volume.values.push_back(
+        static_cast<float>(std::min(log_f[i] - mean[i / kChannels % width], kMostOfLine)));
   Lobe lobe{.scale = std::vector<double>(kChannels, 0.0),
-            .factors = {{.table = 0, .projection = kProjectHalf, .projection_y = {}, .projection_z = {}}, book_use()}};
+            .factors = {{.table = 0, .projection = kProjectHalf, .projection_y = {}, .projection_z = {}},
+                        book_use()}};
   return from_log_tables(kChannels, {std::move(line), std::move(volume)}, {std::move(lobe)});
 }
 
@@ -115,7 +119,8 @@ MaterialBook::MaterialBook(std::array<int, 3> sides, std::array<BookAxis, kAxes>
     : layout_(book_layout(sides)), axes_(std::move(axes)), materials_(std::move(materials)) {
   check_layout(layout_, "g");
   for (const BookAxis& axis : axes_) check_axis(axis, node_count());
-  check(materials_.size() <= kMaxMaterials, "at most 1048576 materials", fmt::format("{}", materials_.size()));
+  check(materials_.size() <= kMaxMaterials, "at most 1048576 materials",
+        fmt::format("{}", materials_.size()));
   std::set<std::string_view> names;
   for (const Material& material : materials_) {
     check(!material.name.empty() && names.insert(material.name).second, "names, no two alike",

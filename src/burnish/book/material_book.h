@@ -16,12 +16,12 @@ namespace burnish {
 /// What a library of materials shares, of one axis of colour: logarithms at the nodes of one volume are the mean plus
 /// a sum of components, each with a weight of the material's own.
 struct BookAxis {
-  std::vector<float> mean;                ///< one a node, halves
-  std::vector<std::int8_t> components;    ///< [component][node]
-  std::vector<float> scales;              ///< one a component, > 0: what its numbers are multiplied by
-  std::vector<float> steps;               ///< one a component, > 0: what a stored weight is multiplied by
-  std::vector<float> deviations;          ///< one a component, > 0: standard deviation of the library's weights
-  float residual = 0;                     ///< > 0: standard deviation of what the components leave of a node
+  std::vector<float> mean;              ///< one a node, halves
+  std::vector<std::int8_t> components;  ///< [component][node]
+  std::vector<float> scales;            ///< one a component, > 0: what its numbers are multiplied by
+  std::vector<float> steps;             ///< one a component, > 0: what a stored weight is multiplied by
+  std::vector<float> deviations;        ///< one a component, > 0: standard deviation of the library's weights
+  float residual = 0;                   ///< > 0: standard deviation of what the components leave of a node
 
   std::size_t component_count() const noexcept { return scales.size(); }
 

@@ -156,11 +156,12 @@ class Fitter {
       throw Error("fit: expected neither a smoothness nor nodes as the target with a book");
     const TableFormat format = this->format();
     Completion completion =
-        samples() ? complete(*form.book, *samples(), format)
-                  : complete(*form.book,
-                             measure(reference(), {.count = options_.samples > 0 ? options_.samples : kBookSamples,
-                                                   .seed = options_.seed}),
-                             format);
+        samples()
+            ? complete(*form.book, *samples(), format)
+            : complete(*form.book,
+                       measure(reference(), {.count = options_.samples > 0 ? options_.samples : kBookSamples,
+                                             .seed = options_.seed}),
+                       format);
     report_.how = std::move(completion.report);
     return std::move(completion.brdf);
   }

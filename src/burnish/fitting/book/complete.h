@@ -22,9 +22,9 @@ struct CompletionPrior {
 
 /// How a completion went.
 struct CompletionReport {
-  std::size_t samples = 0;            ///< pairs above the horizon
-  std::size_t used = 0;               ///< of these, evenly: at most kMostCompletionPairs
-  std::size_t materials = 0;          ///< in the book
+  std::size_t samples = 0;    ///< pairs above the horizon
+  std::size_t used = 0;       ///< of these, evenly: at most kMostCompletionPairs
+  std::size_t materials = 0;  ///< in the book
   CompletionPrior brightness, colour;
   std::string nearest;  ///< the likeliest of the library's materials in brightness, where it is near one
   /// exp(mean |ln((f + floor) / (model + floor))|) - 1 at the pairs, and of each one left out in turn, by the same
@@ -46,6 +46,7 @@ struct Completion {
 /// book speaks, near them they do. The same bits whatever the number of threads. Throws Error where the samples are
 /// anisotropic, have neither one channel (grey) nor three, or none lies above the horizon, and where the book has no
 /// materials.
-Completion complete(const MaterialBook& book, const Samples& samples, TableFormat format = TableFormat::rgb9e5);
+Completion complete(const MaterialBook& book, const Samples& samples,
+                    TableFormat format = TableFormat::rgb9e5);
 
 }  // namespace burnish

@@ -133,7 +133,8 @@ BookAxis make_axis(std::size_t u, const std::vector<BookMaterial>& materials, co
         static_cast<float>(std::max(kRoom * weights.row(k).cwiseAbs().maxCoeff() / 127, 1e-6)));
   }
   const MatrixXd left = root.asDiagonal() * (data - components * weights);
-  axis.residual = static_cast<float>(std::max(std::sqrt(left.squaredNorm() / (number * node_weights.sum())), 1e-3));
+  axis.residual =
+      static_cast<float>(std::max(std::sqrt(left.squaredNorm() / (number * node_weights.sum())), 1e-3));
   return axis;
 }
 
@@ -151,14 +152,16 @@ std::array<int, 3> sides_of(const TableLayout& layout) {
 
 // Each material's weights, in steps.
 std::vector<MaterialBook::Material> stored(const std::array<BookAxis, kAxes>& axes,
-                                           const std::vector<BookMaterial>& materials, const VectorXd& heavy) {
+                                           const std::vector<BookMaterial>& materials,
+                                           const VectorXd& heavy) {
   std::vector<MaterialBook::Material> all;
   for (const BookMaterial& material : materials) all.push_back({.name = material.name, .weights = {}});
   for (std::size_t u = 0; u < kAxes; ++u) {
     const MatrixXd weights = weights_of(decoded(axes[u]), heavy, deviations(axes[u], u, materials));
     for (Eigen::Index m = 0; m < weights.cols(); ++m)
       for (Eigen::Index k = 0; k < weights.rows(); ++k) {
-        const double in_steps = weights(k, m) / static_cast<double>(axes[u].steps[static_cast<std::size_t>(k)]);
+        const double in_steps =
+            weights(k, m) / static_cast<double>(axes[u].steps[static_cast<std::size_t>(k)]);
         all[static_cast<std::size_t>(m)].weights.push_back(
             static_cast<std::int8_t>(std::lround(std::clamp(in_steps, -127.0, 127.0))));
       }
@@ -176,13 +179,15 @@ void add_smoothness(const TableLayout& layout, MatrixXd& normal) {
                                     strides = {1, layout.width, layout.width * layout.height};
   constexpr std::array kSecondDifference = {1.0, -2.0, 1.0};
   for (std::size_t axis = 0; axis < sides.size(); ++axis) {
-    const double share = kSmooth * std::pow(static_cast<double>(sides[axis] - 1), 4) / static_cast<double>(normal.rows());
+    const double share =
+        kSmooth * std::pow(static_cast<double>(sides[axis] - 1), 4) / static_cast<double>(normal.rows());
     for (Eigen::Index n = 0; n < normal.rows(); ++n) {
       if (n / strides[axis] % sides[axis] + 2 >= sides[axis]) continue;
       for (Eigen::Index a = 0; a < 3; ++a)
         for (Eigen::Index b = 0; b < 3; ++b)
           normal(n + a * strides[axis], n + b * strides[axis]) +=
-              share * kSecondDifference[static_cast<std::size_t>(a)] * kSecondDifference[static_cast<std::size_t>(b)];
+              share * kSecondDifference[static_cast<std::size_t>(a)] *
+              kSecondDifference[static_cast<std::size_t>(b)];
     }
   }
 }
@@ -201,10 +206,12 @@ MatrixXd fitted_logs(const TableLayout& layout, const TrainingSet& set, std::vec
     for (const auto& [node, weight] : corners) {
       heavy[node] += share * weight;
       for (const auto& [other, other_weight] : corners)
-        normal(static_cast<Eigen::Index>(node), static_cast<Eigen::Index>(other)) += share * weight * other_weight;
+        normal(static_cast<Eigen::Index>(node), static_cast<Eigen::Index>(other)) +=
+            share * weight * other_weight;
       for (std::size_t c = 0; c < kChannels; ++c)
         right(static_cast<Eigen::Index>(node), static_cast<Eigen::Index>(c)) +=
-            share * weight * std::log(static_cast<double>(set.values[i * kChannels + c]) + MaterialBook::kFloor);
+            share * weight *
+            std::log(static_cast<double>(set.values[i * kChannels + c]) + MaterialBook::kFloor);
     }
   }
   add_smoothness(layout, normal);
@@ -240,15 +247,17 @@ BookMaterial book_material(const Source& source, const std::string& name, std::a
                            std::uint64_t seed) {
   const BrdfRef ref = source.ref();
   if (!ref.isotropic() || !book_takes(ref.channels()))
-    throw Error::in_file(source.name, "an isotropic material of one channel or three",
-                         fmt::format("{} one of {}", ref.isotropic() ? "an isotropic" : "an anisotropic", ref.channels()));
+    throw Error::in_file(
+        source.name, "an isotropic material of one channel or three",
+        fmt::format("{} one of {}", ref.isotropic() ? "an isotropic" : "an anisotropic", ref.channels()));
   const SymmetrizedBrdf reciprocal(ref);
   TrainingOptions drawn{.pictures = kPixels, .directions = kDirections};
   drawn.seed = seed;
   TrainingSet set = in_three_channels(source.samples() ? training_set_of(*source.samples(), true)
                                                        : draw_training_set(reciprocal, drawn));
   // pairs are half crowded at theta_h = 0, and shall weigh so: highlights are where materials differ
-  for (std::size_t i = set.picture_count; i < set.size(); ++i) set.weights[i] = at_rim(set.pairs[i]) ? kRimWeight : 1;
+  for (std::size_t i = set.picture_count; i < set.size(); ++i)
+    set.weights[i] = at_rim(set.pairs[i]) ? kRimWeight : 1;
   const TableLayout layout = book_layout(sides);
   const std::size_t nodes = layout.node_count();
   BookMaterial material{
