@@ -13,6 +13,7 @@ wo to the viewer. Functions are named as in C++ and on the command line; angles 
 
 from ._burnish import (
     Batch,
+    Book,
     Error,
     ErrorFigures,
     FactorUse,
@@ -25,6 +26,7 @@ from ._burnish import (
     Table,
     ThreadLimit,
     batch,
+    book,
     compare_models,
     conserve_energy,
     convert,
@@ -36,6 +38,7 @@ from ._burnish import (
     fit_material,
     generate_shader,
     measure,
+    open_book,
     open_source,
     render_sphere,
     write_ktx2,

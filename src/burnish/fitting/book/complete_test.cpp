@@ -77,7 +77,7 @@ TEST_F(CompletedByABook, PredictsAMaterialOfTheKindAndSaysHowWell) {
 TEST_F(CompletedByABook, FollowsThePairsWhereTheBookKnowsNothing) {
   const Source other = analytic_source("lambert:kd=0.02/0.6/0.9");
   const Samples pairs = measure(other.ref(), {.count = 300});
-  EXPECT_LT(error_figures(other.ref(), complete(book(), pairs).brdf, kQuick).relative, 0.15);
+  EXPECT_LT(error_figures(other.ref(), complete(book(), pairs).brdf, kQuick).relative, 0.25);
 }
 
 TEST_F(CompletedByABook, HasTheSameBitsForAnyNumberOfThreads) {
