@@ -30,8 +30,7 @@ class BookCommand : public testing::Test {
 TEST_F(BookCommand, CompletesPairsAndOpensItsMaterials) {
   const Outcome made = burnish(std::string("book list -o a.book") + kSmall);
   ASSERT_EQ(made.status, 0) << made.output;
-  EXPECT_THAT(made.output,
-              HasSubstr("5 materials of 8 bytes each"));
+  EXPECT_THAT(made.output, HasSubstr("5 materials of 8 bytes each"));
   EXPECT_THAT(burnish("info a.book").output, HasSubstr("ggx_alpha_x_0.3_alpha_y_0.3"));
   const auto json = nlohmann::json::parse(burnish("info --json a.book").output);
   EXPECT_EQ(json["format"], "book");

@@ -48,7 +48,8 @@ void bind_book(nb::module_& m) {
       .def_prop_ro("names",
                    [](const MaterialBook& book) {
                      std::vector<std::string> names;
-                     for (const MaterialBook::Material& material : book.materials()) names.push_back(material.name);
+                     for (const MaterialBook::Material& material : book.materials())
+                       names.push_back(material.name);
                      return names;
                    })
       .def_prop_ro("shared_bytes", &MaterialBook::shared_bytes)
@@ -71,8 +72,10 @@ void bind_book(nb::module_& m) {
         nb::arg("bytes_a_material") = BookOptions().bytes_a_material, nb::arg("seed") = BookOptions().seed,
         nb::arg("shared") = nb::none(),
         "Makes a book as `burnish book` does, for fit(..., book=).\n\n"
-        "materials: a folder, a list's name, or arguments of open_source, isotropic, of one channel or three; the\n"
-        "first that cannot be in a book is raised. bytes: of what they share, at most. bytes_a_material: weights, at\n"
+        "materials: a folder, a list's name, or arguments of open_source, isotropic, of one channel or "
+        "three; the\n"
+        "first that cannot be in a book is raised. bytes: of what they share, at most. bytes_a_material: "
+        "weights, at\n"
         "most. shared: a Book whose shared part serves, only weights are found.");
 }
 
