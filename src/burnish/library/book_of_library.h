@@ -24,9 +24,9 @@ struct BookOfLibrary {
 };
 
 /// Opens the materials, as many at once as there are threads, and makes a book of those that can be one's: see
-/// make_book. With `shared` that book's shared part serves, and only the weights are found: see with_materials. The same
-/// bits whatever the number of threads. `progress` is called with rising shares of the work done, from any thread, one
-/// call at a time. Throws Error where too few are left, and as book_sides does.
+/// make_book. With `shared` that book's shared part serves, and only the weights are found: see with_materials. The
+/// same bits whatever the number of threads. `progress` is called with rising shares of the work done, from any
+/// thread, one call at a time. Throws Error where too few are left, and as book_sides does.
 BookOfLibrary book_of_library(const std::vector<LibraryEntry>& entries, const OpenOptions& open,
                               const BookOptions& options, const MaterialBook* shared = nullptr,
                               const std::function<void(double fraction)>& progress = {});

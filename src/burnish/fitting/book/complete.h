@@ -8,8 +8,8 @@
 
 namespace burnish {
 
-/// What is believed of a material before it is measured, on one or two axes of colour; chosen by what the pairs make
-/// likeliest.
+/// What is believed of a material before it is measured, on one or two axes of colour; chosen by what the pairs
+/// make likeliest.
 struct CompletionPrior {
   /// Whether it is taken to be near one of the library's materials, whichever; else near their mean.
   bool near_one = false;
@@ -39,13 +39,13 @@ struct Completion {
   CompletionReport report;
 };
 
-/// Completes a few measured pairs by what a book's materials have in common: the mean of a Gaussian process given the
-/// pairs [Rasmussen 2006, eq. 2.23]. A material's logarithm is the book's mean, or that of one of its materials, plus its
-/// components with normal weights, plus what is smooth and not in the book, plus noise; how far each may go
-/// (CompletionPrior) is what makes the pairs likeliest [Rasmussen 2006, eq. 5.8], of a list of values. Far from pairs the
-/// book speaks, near them they do. The same bits whatever the number of threads. Throws Error where the samples are
-/// anisotropic, have neither one channel (grey) nor three, or none lies above the horizon, and where the book has no
-/// materials.
+/// Completes a few measured pairs by what a book's materials have in common: the mean of a Gaussian process given
+/// the pairs [Rasmussen 2006, eq. 2.23]. A material's logarithm is the book's mean, or that of one of its
+/// materials, plus its components with normal weights, plus what is smooth and not in the book, plus noise; how far
+/// each may go (CompletionPrior) is what makes the pairs likeliest [Rasmussen 2006, eq. 5.8], of a list of values.
+/// Far from pairs the book speaks, near them they do. The same bits whatever the number of threads. Throws Error
+/// where the samples are anisotropic, have neither one channel (grey) nor three, or none lies above the horizon,
+/// and where the book has no materials.
 Completion complete(const MaterialBook& book, const Samples& samples,
                     TableFormat format = TableFormat::rgb9e5);
 
