@@ -11,6 +11,7 @@ namespace burnish::cli {
 // Each verb lives in NAME_command.cpp: it adds its options to the application and a callback that calls the
 // library.
 void add_batch_command(CLI::App& app);
+void add_book_command(CLI::App& app);
 void add_compare_command(CLI::App& app);
 void add_convert_command(CLI::App& app);
 void add_describe_command(CLI::App& app);

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <burnish/book/book_file.h>
+#include <burnish/file.h>
 #include <burnish/fitting/baselines/baselines.h>
 
 #include "usage.h"
@@ -49,6 +51,7 @@ double parse_smooth(const std::string& text) {
 }
 
 FitForm fit_form(const FitArguments& arguments, bool isotropic) {
+  if (arguments.book) return FromBook{arguments.book};
   const std::optional<std::uint64_t> bytes = parse_bytes(arguments.bytes);
   if (!arguments.method.empty()) {
     if (arguments.bytes == kAuto)
@@ -163,6 +166,15 @@ void add_fit_arguments(CLI::App& verb, FitArguments& arguments) {
       "--no-symmetrize", arguments.no_symmetrize,
       "fit f(wi, wo) as it is, not its reciprocal part; with --budget an isotropic model gets tables\n"
       "that wi alone looks up where the source is not reciprocal");
+  CLI::Option* book = verb.add_option_function<std::string>(
+      "--book",
+      [&arguments](const std::string& file) {
+        arguments.book = std::make_shared<const MaterialBook>(parse_book(read_file(file)));
+      },
+      "complete a few measured pairs by what the materials of this book have in common (see `burnish book`)");
+  for (const char* other : {"--budget", "--method", "--model", "--table", "--smooth", "--target", "--floor",
+                            "--reweightings", "--no-symmetrize"})
+    book->excludes(other);
   verb.add_flag("--conserve-energy", options.conserve_energy,
                 "damp the model where it reflects more than it receives, and say what that cost");
 }

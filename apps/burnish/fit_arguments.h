@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -14,6 +15,7 @@ struct FitArguments {
   OneLobe one_lobe{.model = ""};
   Budget budget{.bytes = {}};
   std::string bytes, method, target = "function", hold_out, loss = "image", smooth = "default", format;
+  std::shared_ptr<const MaterialBook> book;
   bool no_symmetrize = false;
 };
 

@@ -65,6 +65,18 @@ std::string text_of(const ErrorLevel& level) {
   return text;
 }
 
+void print(const CompletionReport& report) {
+  const auto prior = [](const CompletionPrior& p) {
+    return fmt::format("{} of the book's spread, {} of what it leaves, noise {:.0f} %", p.spread, p.residual,
+                       100 * std::sqrt(p.noise));
+  };
+  fmt::print("completed  {} pairs by a book of {} materials{}\n", report.used, report.materials,
+             report.nearest.empty() ? "" : fmt::format(", near {}", report.nearest));
+  fmt::print("believed   brightness {}; colour {}\n", prior(report.brightness), prior(report.colour));
+  fmt::print("relative   {:.4f} at the pairs, {:.4f} left out in turn\n", report.relative,
+             report.relative_left_out);
+}
+
 // One line: how many bytes, and why.
 void print(const BudgetChoice& choice) {
   const auto last = [&] { return choice.trials.back(); };
@@ -113,8 +125,11 @@ void print_model(const FactoredBrdf& model, const FitReport& report) {
   if (model.channels() == 1 || model.channels() == 3)
     fmt::print("shader     {}\n", to_string(generate_shader(model, {.filter = ShaderFilter::hardware}).cost));
   const auto* one_lobe = std::get_if<OneLobeReport>(&report.how);
+  const auto* completion = std::get_if<CompletionReport>(&report.how);
   if (one_lobe)
     print(*one_lobe);
+  else if (completion)
+    print(*completion);
   else
     print(std::get<LobesReport>(report.how));
   if (report.budget_choice) print(*report.budget_choice);
@@ -256,7 +271,7 @@ void add_material_arguments(CLI::App& verb, FitCommand& arguments) {
   for (const char* of_factors :
        {"--budget", "--fetches", "--lobes", "--search", "--loss", "--method", "--model", "--table",
         "--smooth", "--target", "--hold-out", "--floor", "--reweightings", "--samples", "--seed", "--format",
-        "--no-symmetrize", "--conserve-energy"})
+        "--no-symmetrize", "--conserve-energy", "--book"})
     to->excludes(of_factors);
   verb.add_flag("--alone", arguments.alone, "of --to: fit no factored model beside it")->needs(to);
 }
@@ -272,6 +287,7 @@ void add_fit_command(CLI::App& app) {
       "          burnish fit paint.binary -o paint.exr --budget auto\n"
       "          burnish fit paint.binary -o paint.exr --model \"p(wo) q(h) r(theta_d) p(wi)\" --table q=96\n"
       "          burnish fit paint.binary -o paint.json --method svd --budget 2700\n"
+      "          burnish fit pairs.csv -o paint.burnish --book library.burnish\n"
       "          burnish fit paint.binary --to openpbr -o paint.json");
   auto arguments = std::make_shared<FitCommand>();
   add_source_arguments(*verb, arguments->source);

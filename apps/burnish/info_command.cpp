@@ -1,14 +1,20 @@
+#include <array>
 #include <filesystem>
+#include <fstream>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <burnish/book/book_file.h>
 #include <burnish/file.h>
 #include <burnish/io/source_report.h>
 #include <burnish/math/angles.h>
 
+#include "book_text.h"
 #include "commands.h"
 #include "info_json.h"
 #include "source_arguments.h"
@@ -83,6 +89,15 @@ void print_text(const SourceReport& report) {
                      to_string(table.layout.warp), to_string(table.format), table.byte_count()));
 }
 
+// The book that a file is.
+std::optional<MaterialBook> book_of(const std::string& spec) {
+  std::ifstream file(spec, std::ios::binary);
+  std::array<char, 32> head{};
+  file.read(head.data(), head.size());
+  if (!looks_like_book(std::as_bytes(std::span(head)))) return std::nullopt;
+  return parse_book(read_file(spec));
+}
+
 }  // namespace
 
 void add_info_command(CLI::App& app) {
@@ -94,6 +109,13 @@ void add_info_command(CLI::App& app) {
   add_source_arguments(*verb, *arguments);
   verb->add_flag("--json", *as_json, "for programs");
   verb->callback([=] {
+    if (const auto book = book_of(arguments->spec)) {
+      if (*as_json)
+        fmt::print("{}\n", book_json(*book).dump(2));
+      else
+        print_book(arguments->spec, *book);
+      return;
+    }
     if (std::filesystem::is_regular_file(arguments->spec)) {
       const FileBytes file = read_file(arguments->spec);
       if (looks_like_surface(file.bytes)) {

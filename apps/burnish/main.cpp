@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
   burnish::cli::add_info_command(app);
   burnish::cli::add_fit_command(app);
   burnish::cli::add_batch_command(app);
+  burnish::cli::add_book_command(app);
   burnish::cli::add_fit_surface_command(app);
   burnish::cli::add_eval_command(app);
   burnish::cli::add_compare_command(app);

@@ -13,6 +13,7 @@ wo to the viewer. Functions are named as in C++ and on the command line; angles 
 
 from ._burnish import (
     Batch,
+    Book,
     Error,
     ErrorFigures,
     FactorUse,
@@ -26,6 +27,7 @@ from ._burnish import (
     Table,
     ThreadLimit,
     batch,
+    book,
     compare_models,
     conserve_energy,
     convert,
@@ -38,6 +40,7 @@ from ._burnish import (
     fit_surface,
     generate_shader,
     measure,
+    open_book,
     open_source,
     open_surface,
     render_sphere,

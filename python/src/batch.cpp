@@ -3,6 +3,7 @@
 
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
@@ -55,6 +56,8 @@ FitKeywords keywords_of(const nb::kwargs& given) {
       take(value, keywords.symmetrize);
     else if (name == "conserve_energy")
       take(value, keywords.conserve_energy);
+    else if (name == "book")
+      take(value, keywords.book);
     else
       throw Error("batch: expected an option of fit, found '" + name + "'");
   }

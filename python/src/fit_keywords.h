@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -25,6 +26,7 @@ struct FitKeywords {
   std::size_t samples = 0;
   std::uint64_t seed = 1;
   bool symmetrize = true, conserve_energy = false;
+  std::shared_ptr<const MaterialBook> book = nullptr;
 };
 
 /// What they ask for; throws Error on a word that is none.

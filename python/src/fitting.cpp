@@ -1,5 +1,6 @@
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
@@ -38,9 +39,9 @@ OpenedModel* fit(const OpenedBrdf& source, const std::string& model, const std::
                  const std::string& loss, const std::variant<std::monostate, double, std::string>& smooth,
                  std::optional<int> reweightings, double floor, const std::optional<std::string>& format,
                  std::size_t samples, std::uint64_t seed, bool symmetrize, bool conserve_energy,
-                 const nb::object& progress) {
+                 const std::shared_ptr<const MaterialBook>& book, const nb::object& progress) {
   FitOptions options = fit_options({model, tables, budget, fetches, lobes, search, loss, smooth, reweightings,
-                                    floor, format, samples, seed, symmetrize, conserve_energy},
+                                    floor, format, samples, seed, symmetrize, conserve_energy, book},
                                    source.source().ref().isotropic());
   options.progress = progress_of(progress);
   const nb::gil_scoped_release released;
@@ -77,7 +78,9 @@ FitOptions fit_options(const FitKeywords& given, bool isotropic) {
   }
   if (given.format) options.format = parse_table_format(*given.format);
   const std::optional<std::uint64_t> bytes = bytes_of(given.budget);
-  if (bytes != std::uint64_t{0})
+  if (given.book)
+    options.form = FromBook{given.book};
+  else if (bytes != std::uint64_t{0})
     options.form = Budget{.bytes = bytes,
                           .fetches = given.fetches,
                           .lobes = given.lobes,
@@ -97,7 +100,7 @@ void bind_fitting(nb::module_& m) {
       nb::arg("smooth") = nb::none(), nb::arg("reweightings") = nb::none(),
       nb::arg("floor") = LogLinear{}.floor, nb::arg("format") = nb::none(), nb::arg("samples") = 0,
       nb::arg("seed") = 1, nb::arg("symmetrize") = true, nb::arg("conserve_energy") = false,
-      nb::arg("progress") = nb::none(), nb::rv_policy::take_ownership,
+      nb::arg("book") = nb::none(), nb::arg("progress") = nb::none(), nb::rv_policy::take_ownership,
       "Fits a factored BRDF as `burnish fit` does: by default the model of some kilobytes and few fetches\n"
       "that serves most uses.\n\n"
       "model: product of tables over projections, \"pqp\", \"pqpr\" or such as\n"
@@ -113,7 +116,9 @@ void bind_fitting(nb::module_& m) {
       "None. floor: 1/sr, added before logarithms are taken. format: \"half\", \"float\", \"rgb9e5\",\n"
       "\"unorm8\". samples: pairs drawn from a source that is a function. symmetrize: fit the reciprocal "
       "part.\n"
-      "conserve_energy: damp the model where it reflects more than it receives.\n\n"
+      "conserve_energy: damp the model where it reflects more than it receives. book: a Book, by which a "
+      "few\n"
+      "measured pairs are completed instead.\n\n"
       "progress(stage, fraction) is called from this thread; what it raises ends the fit, and so does "
       "Ctrl-C.\n"
       "Model.notes says what was done and how far off the model is.");

@@ -49,6 +49,7 @@ NB_MODULE(_burnish, m) {
   bind_graphs(m);
   bind_fitting(m);
   bind_batch(m);
+  bind_book(m);
   bind_metrics(m);
   bind_shaders(m);
   bind_exports(m);

@@ -15,6 +15,7 @@ namespace nb = nanobind;
 
 // Each part of the library is bound in the file of its name.
 void bind_batch(nb::module_& m);
+void bind_book(nb::module_& m);
 void bind_source(nb::module_& m);
 void bind_eval(nb::module_& m);
 void bind_exports(nb::module_& m);

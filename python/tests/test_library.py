@@ -281,3 +281,21 @@ def test_an_openpbr_material_is_opened_again(tmp_path):
     assert summary["parameters"]["specular_roughness"] == pytest.approx(0.5, abs=0.005)
     for spec in (summary["spec"], tmp_path / "metal.json"):
         assert burnish.error_figures(source, burnish.open_source(spec), count=1000).relative < 0.01
+
+
+def test_a_book_completes_a_few_pairs(tmp_path):
+    specs = [f"ggx:alpha_x={alpha},alpha_y={alpha}" for alpha in (0.15, 0.2, 0.3, 0.4, 0.5)]
+    book = burnish.book(specs, bytes=8192, bytes_a_material=8)
+    assert len(book) == 5 and book.shared_bytes <= 8192 and book.bytes_a_material <= 8
+    book.write(tmp_path / "a.book")
+    again = burnish.open_book(tmp_path / "a.book")
+    assert again.names == book.names
+    assert isinstance(book[book.names[2]], burnish.Model)
+    with pytest.raises(KeyError):
+        book["none"]
+
+    unseen = burnish.open_source("ggx:alpha_x=0.35,alpha_y=0.35")
+    model = burnish.fit(unseen, book=again, samples=15)
+    assert burnish.error_figures(unseen, model, count=1000).relative < 0.2
+    with pytest.raises(burnish.Error, match="anisotropic"):
+        burnish.book([*specs, "ggx:alpha_x=0.1,alpha_y=0.3"])

@@ -2,7 +2,9 @@
 // DIR/source.
 #include <filesystem>
 
+#include <burnish/book/book_file.h>
 #include <burnish/file.h>
+#include <burnish/testing/books.h>
 #include <burnish/testing/seed_files.h>
 
 int main(int argc, char** argv) {
@@ -16,6 +18,7 @@ int main(int argc, char** argv) {
     write("source", name, bytes);
   }
   write("surface", "surface", burnish::seeds::surface_seed());
+  write("book", "book", burnish::format_book(burnish::random_book()));
   write("capture", "capture", burnish::seeds::kCapture);
   write("utia", "utia", burnish::seeds::kUtia);
   write("np", "np", burnish::seeds::kNpCode);

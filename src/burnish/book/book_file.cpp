@@ -165,8 +165,9 @@ MaterialBook parse_book(const FileBytes& file) {
 }
 
 bool looks_like_book(std::span<const std::byte> head) noexcept {
-  constexpr std::string_view kStart = "\xd9\xd9\xf7\x86\x6c"
-                                      "burnish book";
+  constexpr std::string_view kStart =
+      "\xd9\xd9\xf7\x86\x6c"
+      "burnish book";
   const std::string_view found(reinterpret_cast<const char*>(head.data()), head.size());
   return found.starts_with(kStart);
 }

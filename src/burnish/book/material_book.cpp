@@ -16,8 +16,9 @@ namespace {
 using std::numbers::sqrt2, std::numbers::inv_sqrt3;
 
 constexpr double kSqrt6 = sqrt2 / inv_sqrt3;
-constexpr double kLeast = 1e-6;  // 1/sr: what is at or below the floor stays positive
-constexpr double kMostLog = 80;  // of f at a node: single floats end soon after
+constexpr double kLeast = 1e-6;    // 1/sr: what is at or below the floor stays positive
+constexpr double kMostOfLine = 7;  // logarithm of the volume's largest value
+constexpr double kMostLog = 80;    // of f at a node: single floats end soon after
 constexpr std::size_t kHalfBytes = 2, kNumbersAComponent = 3;
 
 bool positive(float value) {
@@ -34,7 +35,8 @@ void check_axis(const BookAxis& axis, std::size_t nodes) {
   check(count <= MaterialBook::kMaxComponents, "at most 256 components of an axis", fmt::format("{}", count));
   check(axis.components.size() == count * nodes, "a number of every node and component",
         fmt::format("{}", axis.components.size()));
-  check(axis.steps.size() == count && axis.deviations.size() == count, "a step and a deviation of every component",
+  check(axis.steps.size() == count && axis.deviations.size() == count,
+        "a step and a deviation of every component",
         fmt::format("{} and {}", axis.steps.size(), axis.deviations.size()));
   check(std::ranges::all_of(axis.mean, [](float v) { return std::isfinite(v); }), "finite means", "others");
   check(positive(axis.residual) && std::ranges::all_of(axis.scales, positive) &&
@@ -58,7 +60,7 @@ TableLayout book_layout(std::array<int, 3> sides) {
 }
 
 FactorUse book_use() {
-  return {.table = 0,
+  return {.table = 1,
           .projection = kProjectHalf,
           .projection_y = kProjectDifference,
           .projection_z = kProjectAzimuth};
@@ -66,7 +68,8 @@ FactorUse book_use() {
 
 std::array<NodeShare, 8> book_nodes(const TableLayout& layout, const DirectionPair& pair) noexcept {
   const Lookup at = locate(layout, book_use(), pair.wi, pair.wo);
-  const auto width = static_cast<std::size_t>(layout.width), layer = width * static_cast<std::size_t>(layout.height);
+  const auto width = static_cast<std::size_t>(layout.width),
+             layer = width * static_cast<std::size_t>(layout.height);
   std::array<NodeShare, 8> shares;
   for (std::size_t corner = 0; corner < shares.size(); ++corner) {
     const bool x = (corner & 1) != 0, y = (corner & 2) != 0, z = (corner & 4) != 0;
@@ -77,17 +80,38 @@ std::array<NodeShare, 8> book_nodes(const TableLayout& layout, const DirectionPa
 }
 
 FactoredBrdf brdf_of_logs(const TableLayout& layout, std::span<const double> logs, TableFormat format) {
-  Table table{.name = "g",
-              .layout = layout,
-              .channels = MaterialBook::kChannels,
-              .values = std::vector<float>(logs.size()),
-              .format = format};
-  for (std::size_t i = 0; i < logs.size(); ++i) {
-    const double f = std::exp(std::min(logs[i], kMostLog)) - MaterialBook::kFloor;
-    table.values[i] = static_cast<float>(std::log(std::max(f, kLeast)));
+  constexpr std::size_t kChannels = MaterialBook::kChannels;
+  std::vector<double> log_f;
+  for (const double log : logs)
+    log_f.push_back(std::log(std::max(std::exp(std::min(log, kMostLog)) - MaterialBook::kFloor, kLeast)));
+
+  // the line: the mean of what its theta_h holds away from grazing, as far as a table's range goes
+  const auto width = static_cast<std::size_t>(layout.width), height = static_cast<std::size_t>(layout.height);
+  std::vector<double> mean(width, 0.0), counts(width, 0.0);
+  for (std::size_t i = 0; i < log_f.size(); ++i) {
+    const std::size_t node = i / kChannels;
+    if (node / width % height > height / 2) continue;
+    mean[node % width] += log_f[i];
+    ++counts[node % width];
   }
-  Lobe lobe{.scale = std::vector<double>(MaterialBook::kChannels, 0.0), .factors = {book_use()}};
-  return from_log_tables(MaterialBook::kChannels, {std::move(table)}, {std::move(lobe)});
+  for (std::size_t x = 0; x < width; ++x) mean[x] /= counts[x];
+  const double floor = std::ranges::max(mean) + std::log(2 * kTableFloor);
+  for (double& log : mean) log = std::max(log, floor);
+
+  // the volume: what is left, nowhere so bright that dark texels had no bits
+  Table line{.name = "z",
+             .layout = {.width = layout.width, .warp = layout.warp, .warp_y = {}, .warp_z = {}},
+             .channels = 1,
+             .values = {mean.begin(), mean.end()},
+             .format = format == TableFormat::rgb9e5 ? TableFormat::half : format};
+  Table volume{.name = "g", .layout = layout, .channels = kChannels, .values = {}, .format = format};
+  for (std::size_t i = 0; i < log_f.size(); ++i)
+    volume.values.push_back(
+        static_cast<float>(std::min(log_f[i] - mean[i / kChannels % width], kMostOfLine)));
+  Lobe lobe{.scale = std::vector<double>(kChannels, 0.0),
+            .factors = {{.table = 0, .projection = kProjectHalf, .projection_y = {}, .projection_z = {}},
+                        book_use()}};
+  return from_log_tables(kChannels, {std::move(line), std::move(volume)}, {std::move(lobe)});
 }
 
 MaterialBook::MaterialBook(std::array<int, 3> sides, std::array<BookAxis, kAxes> axes,
@@ -95,7 +119,8 @@ MaterialBook::MaterialBook(std::array<int, 3> sides, std::array<BookAxis, kAxes>
     : layout_(book_layout(sides)), axes_(std::move(axes)), materials_(std::move(materials)) {
   check_layout(layout_, "g");
   for (const BookAxis& axis : axes_) check_axis(axis, node_count());
-  check(materials_.size() <= kMaxMaterials, "at most 1048576 materials", fmt::format("{}", materials_.size()));
+  check(materials_.size() <= kMaxMaterials, "at most 1048576 materials",
+        fmt::format("{}", materials_.size()));
   std::set<std::string_view> names;
   for (const Material& material : materials_) {
     check(!material.name.empty() && names.insert(material.name).second, "names, no two alike",

@@ -16,12 +16,12 @@ namespace burnish {
 /// What a library of materials shares, of one axis of colour: logarithms at the nodes of one volume are the mean plus
 /// a sum of components, each with a weight of the material's own.
 struct BookAxis {
-  std::vector<float> mean;                ///< one a node, halves
-  std::vector<std::int8_t> components;    ///< [component][node]
-  std::vector<float> scales;              ///< one a component, > 0: what its numbers are multiplied by
-  std::vector<float> steps;               ///< one a component, > 0: what a stored weight is multiplied by
-  std::vector<float> deviations;          ///< one a component, > 0: standard deviation of the library's weights
-  float residual = 0;                     ///< > 0: standard deviation of what the components leave of a node
+  std::vector<float> mean;              ///< one a node, halves
+  std::vector<std::int8_t> components;  ///< [component][node]
+  std::vector<float> scales;            ///< one a component, > 0: what its numbers are multiplied by
+  std::vector<float> steps;             ///< one a component, > 0: what a stored weight is multiplied by
+  std::vector<float> deviations;        ///< one a component, > 0: standard deviation of the library's weights
+  float residual = 0;                   ///< > 0: standard deviation of what the components leave of a node
 
   std::size_t component_count() const noexcept { return scales.size(); }
 
@@ -34,7 +34,8 @@ struct BookAxis {
 ///   ln(f + floor) = sum over axes u (mean_u + sum_k w_uk g_uk)(theta_h, theta_d, phi_d),
 ///
 /// a product of powers of shared tables. Whatever the weights are, f is positive, reciprocal and its own mirror image,
-/// and one volume holds it: a material of a book is an ordinary model of one fetch.
+/// and one volume holds it: a material of a book is an ordinary model, that volume times a line of theta_h, which takes
+/// the range of a highlight that a texel has no bits for. Two fetches.
 class MaterialBook {
  public:
   static constexpr std::size_t kChannels = 3, kAxes = 3;
@@ -71,7 +72,7 @@ class MaterialBook {
   std::array<std::vector<double>, kAxes> weights(std::size_t i) const;
   /// Logarithms ln(f + kFloor) at the nodes, [node][channel]. Precondition: as many weights as components.
   std::vector<double> logs(const std::array<std::vector<double>, kAxes>& weights) const;
-  /// Material i as a model: one volume, rgb9e5 unless told otherwise.
+  /// Material i as a model, rgb9e5 unless told otherwise.
   FactoredBrdf brdf(std::size_t i, TableFormat format = TableFormat::rgb9e5) const;
 
   friend bool operator==(const MaterialBook&, const MaterialBook&) = default;
@@ -88,7 +89,7 @@ extern const std::array<std::array<double, 3>, MaterialBook::kAxes> kBookAxes;
 /// The volume's layout for a number of nodes along each axis.
 TableLayout book_layout(std::array<int, 3> sides);
 
-/// The product that a book's materials are: one volume over theta_h, theta_d and phi_d.
+/// The volume's use in the models that brdf_of_logs makes: over theta_h, theta_d and phi_d.
 FactorUse book_use();
 
 /// A node of a volume and its share of a lookup.
@@ -100,8 +101,8 @@ struct NodeShare {
 /// The nodes of a book's volume that a pair of directions above the horizon looks up; the shares' sum is 1.
 std::array<NodeShare, 8> book_nodes(const TableLayout& layout, const DirectionPair& pair) noexcept;
 
-/// The model of logarithms ln(f + MaterialBook::kFloor) at a volume's nodes, [node][channel]: positive, whatever they
-/// are. Throws Error as from_log_tables does.
+/// The model "z(h) g(h,d,azimuth)" of logarithms ln(f + MaterialBook::kFloor) at a volume's nodes, [node][channel]:
+/// positive, whatever they are. Throws Error as from_log_tables does.
 FactoredBrdf brdf_of_logs(const TableLayout& layout, std::span<const double> logs, TableFormat format);
 
 }  // namespace burnish

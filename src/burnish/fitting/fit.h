@@ -68,7 +68,7 @@ struct BaselineMethod {
   std::uint64_t bytes = 0;  ///< at most so many; 0: the default of BaselineOptions
 };
 
-/// One volume, completed by what the materials of a book have in common: see complete (fitting/book/complete.h).
+/// A line and a volume, completed by what the materials of a book have in common: see complete (fitting/book/complete.h).
 /// Scattered samples are what is known; of any other source it is as many pairs as FitOptions::samples says, by default
 /// 1,000. The model is reciprocal whatever FitOptions::symmetrize says.
 struct FromBook {

@@ -72,7 +72,8 @@ Source from_book(const std::string& file, std::string_view name) {
     throw Error::in_file(file, fmt::format("a material named '{}'", name),
                          fmt::format("{} others{}", names.size(), did_you_mean(name, names)));
   }
-  Source source = to_source(fmt::format("book:{}#{}", file, name), {.brdf = book.brdf(*found), .lambda_nm = {}});
+  Source source =
+      to_source(fmt::format("book:{}#{}", file, name), {.brdf = book.brdf(*found), .lambda_nm = {}});
   source.findings.format = "material of a book";
   return source;
 }
@@ -99,7 +100,8 @@ void check_spelling(const std::string& spec) {
 Source parse_file(const FileBytes& file, const OpenOptions& options) {
   // Binary formats first: their first bytes are unmistakable.
   if (looks_like_book(file.bytes))
-    throw Error::in_file(file.name, "book:FILE#NAME for one of its materials (`burnish info FILE` names them)",
+    throw Error::in_file(file.name,
+                         "book:FILE#NAME for one material of a book (`burnish info FILE` names them)",
                          "the book alone");
   if (looks_like_model(file.bytes)) return to_source(file.name, parse_model(file));
   if (looks_like_rgl(file.bytes)) return from_table(file, parse_rgl(file, options));

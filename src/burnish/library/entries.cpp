@@ -42,8 +42,8 @@ std::string safe_name(std::string_view text) {
 // What stands behind the # of nbrdf:FILE#NAME, an analytic BRDF, or a file's name without its ending.
 std::string name_of(const std::string& argument) {
   if (is_analytic_spec(argument)) return safe_name(argument);
-  const bool has_address = std::ranges::any_of(
-      kAddresses, [&](std::string_view prefix) { return argument.starts_with(prefix); });
+  const bool has_address =
+      std::ranges::any_of(kAddresses, [&](std::string_view prefix) { return argument.starts_with(prefix); });
   if (const std::size_t mark = argument.rfind('#'); has_address && mark + 1 < argument.size())
     return safe_name(std::string_view(argument).substr(mark + 1));
   return safe_name(fs::path(argument).stem().string());

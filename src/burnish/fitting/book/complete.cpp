@@ -11,6 +11,7 @@
 
 #include <burnish/error.h>
 #include <burnish/fitting/book/complete.h>
+#include <burnish/fitting/book/three_channels.h>
 #include <burnish/fitting/refinement/training_set.h>
 #include <burnish/math/angles.h>
 #include <burnish/math/parallel.h>
@@ -65,7 +66,8 @@ std::vector<Place> places_of_nodes(const TableLayout& layout) {
   for (int z = 0; z < layout.depth; ++z)
     for (int y = 0; y < layout.height; ++y)
       for (int x = 0; x < layout.width; ++x) {
-        const double theta_h = angle(layout.warp, x, layout.width), theta_d = angle(layout.warp_y, y, layout.height);
+        const double theta_h = angle(layout.warp, x, layout.width),
+                     theta_d = angle(layout.warp_y, y, layout.height);
         const double phi_d = angle(layout.warp_z, z, layout.depth);
         places.push_back(scaled(theta_h, theta_d, std::sin(theta_h) * std::sin(theta_d) * std::cos(phi_d)));
       }
@@ -124,7 +126,8 @@ PairData pair_data(const MaterialBook& book, const TrainingSet& set, std::span<c
       const std::size_t at = chosen[static_cast<std::size_t>(i)];
       double value = 0;
       for (std::size_t c = 0; c < kRgb; ++c)
-        value += kBookAxes[u][c] * std::log(static_cast<double>(set.values[at * kRgb + c]) + MaterialBook::kFloor);
+        value +=
+            kBookAxes[u][c] * std::log(static_cast<double>(set.values[at * kRgb + c]) + MaterialBook::kFloor);
       for (const auto& [node, share] : book_nodes(book.layout(), set.pairs[at])) {
         value -= share * static_cast<double>(axis.mean[node]);
         for (std::size_t k = 0; k < axis.component_count(); ++k)
@@ -142,7 +145,8 @@ PairData pair_data(const MaterialBook& book, const TrainingSet& set, std::span<c
   return data;
 }
 
-Eigen::LLT<MatrixXd> factored(const AxisData& axis, const MatrixXd& likenesses, const CompletionPrior& prior) {
+Eigen::LLT<MatrixXd> factored(const AxisData& axis, const MatrixXd& likenesses,
+                              const CompletionPrior& prior) {
   const MatrixXd spread = axis.components * (prior.spread * axis.deviations).asDiagonal();
   MatrixXd covariance = spread * spread.transpose() + prior.residual * axis.residual2 * likenesses;
   covariance.diagonal().array() += prior.noise;
@@ -233,21 +237,23 @@ std::vector<std::size_t> evenly(std::size_t count, std::size_t most) {
 
 void check_completed(const MaterialBook& book, const Samples& samples) {
   if (book.materials().empty()) throw Error("book: expected materials in it, found none");
-  if (!samples.isotropic || samples.channels != kRgb)
-    throw Error(fmt::format("book: expected pairs of an isotropic material in three channels, found {} in {}",
-                            samples.isotropic ? "an isotropic one" : "an anisotropic one", samples.channels));
+  if (!samples.isotropic || !book_takes(samples.channels))
+    throw Error(
+        fmt::format("book: expected pairs of an isotropic material in one channel or three, found {} in {}",
+                    samples.isotropic ? "an isotropic one" : "an anisotropic one", samples.channels));
 }
 
 }  // namespace
 
 Completion complete(const MaterialBook& book, const Samples& samples, TableFormat format) {
   check_completed(book, samples);
-  const TrainingSet set = training_set_of(samples, false);
+  const TrainingSet set = in_three_channels(training_set_of(samples, false));
   const std::vector<std::size_t> used = evenly(set.size(), kMostCompletionPairs);
 
   // what to believe, from a part of the pairs where they are many
   const PairData part = pair_data(book, set, evenly(set.size(), kEvidencePairs));
-  const CompletionPrior brightness = likeliest_prior(part, kBrightness), colour = likeliest_prior(part, kColour);
+  const CompletionPrior brightness = likeliest_prior(part, kBrightness),
+                        colour = likeliest_prior(part, kColour);
 
   // what follows from that and all pairs
   const PairData data = pair_data(book, set, used);

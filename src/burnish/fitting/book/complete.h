@@ -8,8 +8,8 @@
 
 namespace burnish {
 
-/// What is believed of a material before it is measured, on one or two axes of colour; chosen by what the pairs make
-/// likeliest.
+/// What is believed of a material before it is measured, on one or two axes of colour; chosen by what the pairs
+/// make likeliest.
 struct CompletionPrior {
   /// Whether it is taken to be near one of the library's materials, whichever; else near their mean.
   bool near_one = false;
@@ -22,9 +22,9 @@ struct CompletionPrior {
 
 /// How a completion went.
 struct CompletionReport {
-  std::size_t samples = 0;            ///< pairs above the horizon
-  std::size_t used = 0;               ///< of these, evenly: at most kMostCompletionPairs
-  std::size_t materials = 0;          ///< in the book
+  std::size_t samples = 0;    ///< pairs above the horizon
+  std::size_t used = 0;       ///< of these, evenly: at most kMostCompletionPairs
+  std::size_t materials = 0;  ///< in the book
   CompletionPrior brightness, colour;
   std::string nearest;  ///< the likeliest of the library's materials in brightness, where it is near one
   /// exp(mean |ln((f + floor) / (model + floor))|) - 1 at the pairs, and of each one left out in turn, by the same
@@ -35,16 +35,18 @@ struct CompletionReport {
 inline constexpr std::size_t kMostCompletionPairs = 1000;
 
 struct Completion {
-  FactoredBrdf brdf;  ///< one volume of the book's layout: reciprocal and positive, one fetch
+  FactoredBrdf brdf;  ///< of brdf_of_logs: reciprocal and positive, two fetches
   CompletionReport report;
 };
 
-/// Completes a few measured pairs by what a book's materials have in common: the mean of a Gaussian process given the
-/// pairs [Rasmussen 2006, eq. 2.23]. A material's logarithm is the book's mean, or that of one of its materials, plus its
-/// components with normal weights, plus what is smooth and not in the book, plus noise; how far each may go
-/// (CompletionPrior) is what makes the pairs likeliest [Rasmussen 2006, eq. 5.8], of a list of values. Far from pairs the
-/// book speaks, near them they do. The same bits whatever the number of threads. Throws Error where the samples are
-/// anisotropic, have not three channels, or none lies above the horizon, and where the book has no materials.
-Completion complete(const MaterialBook& book, const Samples& samples, TableFormat format = TableFormat::rgb9e5);
+/// Completes a few measured pairs by what a book's materials have in common: the mean of a Gaussian process given
+/// the pairs [Rasmussen 2006, eq. 2.23]. A material's logarithm is the book's mean, or that of one of its
+/// materials, plus its components with normal weights, plus what is smooth and not in the book, plus noise; how far
+/// each may go (CompletionPrior) is what makes the pairs likeliest [Rasmussen 2006, eq. 5.8], of a list of values.
+/// Far from pairs the book speaks, near them they do. The same bits whatever the number of threads. Throws Error
+/// where the samples are anisotropic, have neither one channel (grey) nor three, or none lies above the horizon,
+/// and where the book has no materials.
+Completion complete(const MaterialBook& book, const Samples& samples,
+                    TableFormat format = TableFormat::rgb9e5);
 
 }  // namespace burnish

@@ -12,7 +12,7 @@
 
 #include <burnish/error.h>
 #include <burnish/fitting/book/make_book.h>
-#include <burnish/fitting/one_lobe/homomorphic.h>
+#include <burnish/fitting/book/three_channels.h>
 #include <burnish/fitting/refinement/training_set.h>
 
 namespace burnish {
@@ -30,6 +30,8 @@ constexpr std::array<std::array<int, 3>, 8> kSides = {
 // Pairs drawn of a material, and how smooth its volume is: what fills nodes that no pair touches.
 constexpr std::size_t kPixels = 5000, kDirections = 6000;
 constexpr double kSmooth = 1e-6;
+constexpr double kRimCosine = 0.05;  // of directions nearer to the horizon, which weigh less
+constexpr float kRimWeight = 0.02f;
 constexpr double kLeastWeight = 1e-4;  // of a node, of the mean of all
 constexpr double kRoom = 1.5;          // of stored weights, beyond the library's largest
 constexpr double kRidge = 1e-9;        // of the least squares of weights, of the largest diagonal element
@@ -131,7 +133,8 @@ BookAxis make_axis(std::size_t u, const std::vector<BookMaterial>& materials, co
         static_cast<float>(std::max(kRoom * weights.row(k).cwiseAbs().maxCoeff() / 127, 1e-6)));
   }
   const MatrixXd left = root.asDiagonal() * (data - components * weights);
-  axis.residual = static_cast<float>(std::max(std::sqrt(left.squaredNorm() / (number * node_weights.sum())), 1e-3));
+  axis.residual =
+      static_cast<float>(std::max(std::sqrt(left.squaredNorm() / (number * node_weights.sum())), 1e-3));
   return axis;
 }
 
@@ -147,21 +150,80 @@ std::array<int, 3> sides_of(const TableLayout& layout) {
   return {layout.width, layout.height, layout.depth};
 }
 
-// Nothing else counts of how a node weighs: it is not stored, since even weights serve as well after the rounding.
+// Each material's weights, in steps.
 std::vector<MaterialBook::Material> stored(const std::array<BookAxis, kAxes>& axes,
-                                           const std::vector<BookMaterial>& materials, const VectorXd& heavy) {
+                                           const std::vector<BookMaterial>& materials,
+                                           const VectorXd& heavy) {
   std::vector<MaterialBook::Material> all;
   for (const BookMaterial& material : materials) all.push_back({.name = material.name, .weights = {}});
   for (std::size_t u = 0; u < kAxes; ++u) {
     const MatrixXd weights = weights_of(decoded(axes[u]), heavy, deviations(axes[u], u, materials));
     for (Eigen::Index m = 0; m < weights.cols(); ++m)
       for (Eigen::Index k = 0; k < weights.rows(); ++k) {
-        const double in_steps = weights(k, m) / static_cast<double>(axes[u].steps[static_cast<std::size_t>(k)]);
+        const double in_steps =
+            weights(k, m) / static_cast<double>(axes[u].steps[static_cast<std::size_t>(k)]);
         all[static_cast<std::size_t>(m)].weights.push_back(
             static_cast<std::int8_t>(std::lround(std::clamp(in_steps, -127.0, 127.0))));
       }
   }
   return all;
+}
+
+bool at_rim(const DirectionPair& pair) {
+  return std::min(pair.wi.z, pair.wo.z) <= kRimCosine;
+}
+
+// Adds the squared second differences along each axis, as smoothness of the unit cube.
+void add_smoothness(const TableLayout& layout, MatrixXd& normal) {
+  const std::array<Eigen::Index, 3> sides = {layout.width, layout.height, layout.depth},
+                                    strides = {1, layout.width, layout.width * layout.height};
+  constexpr std::array kSecondDifference = {1.0, -2.0, 1.0};
+  for (std::size_t axis = 0; axis < sides.size(); ++axis) {
+    const double share =
+        kSmooth * std::pow(static_cast<double>(sides[axis] - 1), 4) / static_cast<double>(normal.rows());
+    for (Eigen::Index n = 0; n < normal.rows(); ++n) {
+      if (n / strides[axis] % sides[axis] + 2 >= sides[axis]) continue;
+      for (Eigen::Index a = 0; a < 3; ++a)
+        for (Eigen::Index b = 0; b < 3; ++b)
+          normal(n + a * strides[axis], n + b * strides[axis]) +=
+              share * kSecondDifference[static_cast<std::size_t>(a)] *
+              kSecondDifference[static_cast<std::size_t>(b)];
+    }
+  }
+}
+
+// ln(f + floor) at the nodes, [node][channel], by least squares of the set's logarithms, pixels together as heavy as all
+// other pairs. Nodes that no pair is near end with the values that were seen. What each node weighs is added to `heavy`.
+MatrixXd fitted_logs(const TableLayout& layout, const TrainingSet& set, std::vector<double>& heavy) {
+  const auto nodes = static_cast<Eigen::Index>(layout.node_count());
+  MatrixXd normal = MatrixXd::Zero(nodes, nodes), right = MatrixXd::Zero(nodes, kChannels);
+  double pixels = 0, others = 0;
+  for (std::size_t i = 0; i < set.size(); ++i)
+    (i < set.picture_count ? pixels : others) += static_cast<double>(set.weights[i]);
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    const double share = static_cast<double>(set.weights[i]) / (i < set.picture_count ? pixels : others);
+    const auto corners = book_nodes(layout, set.pairs[i]);
+    for (const auto& [node, weight] : corners) {
+      heavy[node] += share * weight;
+      for (const auto& [other, other_weight] : corners)
+        normal(static_cast<Eigen::Index>(node), static_cast<Eigen::Index>(other)) +=
+            share * weight * other_weight;
+      for (std::size_t c = 0; c < kChannels; ++c)
+        right(static_cast<Eigen::Index>(node), static_cast<Eigen::Index>(c)) +=
+            share * weight *
+            std::log(static_cast<double>(set.values[i * kChannels + c]) + MaterialBook::kFloor);
+    }
+  }
+  add_smoothness(layout, normal);
+  normal.diagonal().array() += kRidge * normal.diagonal().maxCoeff();
+
+  float most = 0;
+  for (std::size_t i = 0; i < set.values.size(); ++i)
+    if (!at_rim(set.pairs[i / kChannels])) most = std::max(most, set.values[i]);
+  return Eigen::LLT<MatrixXd>(std::move(normal))
+      .solve(right)
+      .cwiseMax(std::log(MaterialBook::kFloor))
+      .cwiseMin(std::log(2 * static_cast<double>(most) + MaterialBook::kFloor));
 }
 
 void check_materials(const std::vector<BookMaterial>& materials, std::size_t nodes) {
@@ -184,44 +246,28 @@ std::array<int, 3> book_sides(const BookOptions& options) {
 BookMaterial book_material(const Source& source, const std::string& name, std::array<int, 3> sides,
                            std::uint64_t seed) {
   const BrdfRef ref = source.ref();
-  if (!ref.isotropic() || ref.channels() != kChannels)
-    throw Error::in_file(source.name, "an isotropic material of three channels",
-                         fmt::format("{} one of {}", ref.isotropic() ? "an isotropic" : "an anisotropic", ref.channels()));
+  if (!ref.isotropic() || !book_takes(ref.channels()))
+    throw Error::in_file(
+        source.name, "an isotropic material of one channel or three",
+        fmt::format("{} one of {}", ref.isotropic() ? "an isotropic" : "an anisotropic", ref.channels()));
   const SymmetrizedBrdf reciprocal(ref);
-  const TrainingSet set = source.samples() ? training_set_of(*source.samples(), true)
-                                           : draw_training_set(reciprocal, {.pictures = kPixels,
-                                                                            .directions = kDirections,
-                                                                            .crowded = false,
-                                                                            .seed = seed,
-                                                                            .spread_phi_h = false});
+  TrainingOptions drawn{.pictures = kPixels, .directions = kDirections};
+  drawn.seed = seed;
+  TrainingSet set = in_three_channels(source.samples() ? training_set_of(*source.samples(), true)
+                                                       : draw_training_set(reciprocal, drawn));
+  // pairs are half crowded at theta_h = 0, and shall weigh so: highlights are where materials differ
+  for (std::size_t i = set.picture_count; i < set.size(); ++i)
+    set.weights[i] = at_rim(set.pairs[i]) ? kRimWeight : 1;
   const TableLayout layout = book_layout(sides);
-  const ModelSpec spec{.tables = {{.name = "g", .layout = layout, .shared = false, .smooth_share = 1, .format = {}}},
-                       .lobes = {{book_use()}}};
-  HomomorphicOptions options;
-  options.smooth = kSmooth;
-  options.floor = MaterialBook::kFloor;
-  options.format = TableFormat::single;
-  const FactoredBrdf fitted = fit_homomorphic(as_source(set, set.values), spec, options).brdf;
-
-  // the model's logarithms along the axes of colour
   const std::size_t nodes = layout.node_count();
   BookMaterial material{
       .name = name, .logs = std::vector<double>(kAxes * nodes), .weights = std::vector<double>(nodes)};
-  const std::vector<float>& values = fitted.tables().front().values;
-  for (std::size_t n = 0; n < nodes; ++n)
-    for (std::size_t u = 0; u < kAxes; ++u)
+  const MatrixXd logs = fitted_logs(layout, set, material.weights);
+  for (std::size_t u = 0; u < kAxes; ++u)
+    for (std::size_t n = 0; n < nodes; ++n)
       for (std::size_t c = 0; c < kChannels; ++c)
-        material.logs[u * nodes + n] += kBookAxes[u][c] * std::log(fitted.lobes().front().scale[c] *
-                                                                   static_cast<double>(values[n * kChannels + c]));
-
-  // what the nodes weigh: pixels as much as the others together
-  double pixels = 0, others = 0;
-  for (std::size_t i = 0; i < set.size(); ++i)
-    (i < set.picture_count ? pixels : others) += static_cast<double>(set.weights[i]);
-  for (std::size_t i = 0; i < set.size(); ++i) {
-    const double share = static_cast<double>(set.weights[i]) / (i < set.picture_count ? pixels : others);
-    for (const auto& [node, weight] : book_nodes(layout, set.pairs[i])) material.weights[node] += share * weight;
-  }
+        material.logs[u * nodes + n] +=
+            kBookAxes[u][c] * logs(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(c));
   return material;
 }
 

@@ -1,0 +1,103 @@
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <burnish/book/book_file.h>
+#include <burnish/error.h>
+#include <burnish/file.h>
+#include <burnish/library/book_of_library.h>
+#include <burnish/math/parallel.h>
+
+#include "book_text.h"
+#include "commands.h"
+#include "progress.h"
+#include "source_arguments.h"
+#include "usage.h"
+
+namespace burnish::cli {
+
+namespace {
+
+struct BookArguments {
+  std::string place, out, shared;
+  OpenOptions open;
+  BookOptions options;
+  int threads = 0;
+  bool json = false;
+};
+
+void print_made(const BookArguments& arguments, const BookOfLibrary& made) {
+  if (arguments.json) {
+    auto json = book_json(made.book);
+    json["output"] = arguments.out;
+    json["left_out"] = nlohmann::ordered_json::array();
+    for (const auto& [entry, reason] : made.left_out)
+      json["left_out"].push_back({{"name", entry.name}, {"path", entry.argument}, {"reason", reason}});
+    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    return;
+  }
+  fmt::print("book       {}\n", book_line(made.book));
+  for (const auto& [entry, reason] : made.left_out)
+    fmt::print("left out   {}: {}\n", entry.name, short_message(reason));
+  fmt::print("written    {}\n", arguments.out);
+}
+
+void make(const BookArguments& arguments) {
+  const ThreadLimit limit(arguments.threads);
+  MaterialBook shared;
+  if (!arguments.shared.empty()) shared = parse_book(read_file(arguments.shared));
+  const std::vector<LibraryEntry> entries = library_entries(arguments.place);
+  const BookOfLibrary made =
+      book_of_library(entries, arguments.open, arguments.options,
+                      arguments.shared.empty() ? nullptr : &shared, progress_bar("reading"));
+  write_then_rename(arguments.out, format_book(made.book));
+  print_made(arguments, made);
+  std::fflush(stdout);
+  if (!made.left_out.empty())
+    throw Error(fmt::format("{} of {} materials are not in the book; the others all are",
+                            made.left_out.size(), entries.size()));
+}
+
+}  // namespace
+
+void add_book_command(CLI::App& app) {
+  CLI::App* verb = app.add_subcommand("book",
+                                      "Write what a library of materials shares, and a few bytes a material: "
+                                      "a prior for sparse measurements");
+  verb->footer(
+      "A book's material is opened as book:FILE#NAME; `burnish fit PAIRS --book FILE` completes a few "
+      "measured pairs. "
+      "See docs/guide/library.md.\n"
+      "Examples: burnish book measurements -o library.burnish\n"
+      "          burnish book list.txt -o library.burnish --bytes 32K --bytes-a-material 32\n"
+      "          burnish book new.txt -o new.burnish --shared library.burnish\n"
+      "          burnish fit pairs.csv --book library.burnish -o paint.burnish");
+  auto arguments = std::make_shared<BookArguments>();
+  verb->add_option(
+          "LIST", arguments->place,
+          "a folder with measurements, or a text with an argument of `burnish fit` a line; isotropic, of one "
+          "channel or three")
+      ->required();
+  verb->add_option("-o,--output", arguments->out, "file to write")->required();
+  CLI::Option* bytes = verb->add_option("--bytes", arguments->options.bytes,
+                                        "of what the materials share, at most; K counts as 1024")
+                           ->transform(CLI::AsSizeValue(false))
+                           ->capture_default_str();
+  CLI::Option* each = verb->add_option("--bytes-a-material", arguments->options.bytes_a_material,
+                                       "of the weights of each, at most: a byte a weight")
+                          ->check(CLI::Range(std::size_t{4}, MaterialBook::kMaxComponents))
+                          ->capture_default_str();
+  verb->add_option("--shared", arguments->shared, "a book whose shared part serves: only weights are found")
+      ->excludes(bytes)
+      ->excludes(each);
+  verb->add_option("--seed", arguments->options.seed, "of the pairs that are drawn of each material")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  add_open_options(*verb, arguments->open);
+  verb->add_option("--threads", arguments->threads, "at most this many; 0: all")->check(CLI::Range(0, 1024));
+  verb->add_flag("--json", arguments->json, "print the summary as JSON");
+  verb->callback([arguments] { make(*arguments); });
+}
+
+}  // namespace burnish::cli

@@ -1,0 +1,82 @@
+#include <filesystem>
+#include <memory>
+
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/variant.h>
+#include <nanobind/stl/vector.h>
+
+#include <burnish/book/book_file.h>
+#include <burnish/error.h>
+#include <burnish/library/book_of_library.h>
+
+#include "opened_brdf.h"
+
+namespace burnish::python {
+
+namespace {
+
+using Materials = std::variant<std::vector<std::string>, std::filesystem::path>;
+
+// A book of what can be in one; what cannot ends it.
+std::shared_ptr<const MaterialBook> make(const Materials& materials, std::uint64_t bytes,
+                                         std::size_t bytes_a_material, std::uint64_t seed,
+                                         const std::shared_ptr<const MaterialBook>& shared) {
+  const auto* arguments = std::get_if<std::vector<std::string>>(&materials);
+  const std::vector<LibraryEntry> entries =
+      arguments ? named_entries(*arguments) : library_entries(std::get<std::filesystem::path>(materials));
+  const nb::gil_scoped_release released;
+  BookOfLibrary made = book_of_library(
+      entries, {}, {.bytes = bytes, .bytes_a_material = bytes_a_material, .seed = seed}, shared.get());
+  if (!made.left_out.empty())
+    throw Error(made.left_out.front().entry.argument + ": " + made.left_out.front().reason);
+  return std::make_shared<const MaterialBook>(std::move(made.book));
+}
+
+OpenedModel* model_of(const MaterialBook& book, const std::string& name) {
+  const auto found = book.find(name);
+  if (!found) throw nb::key_error(name.c_str());
+  return new OpenedModel(name, {.brdf = book.brdf(*found), .lambda_nm = {}});
+}
+
+}  // namespace
+
+void bind_book(nb::module_& m) {
+  nb::class_<MaterialBook>(m, "Book", "What a library of materials shares, and a few bytes a material.")
+      .def_prop_ro("names",
+                   [](const MaterialBook& book) {
+                     std::vector<std::string> names;
+                     for (const MaterialBook::Material& material : book.materials())
+                       names.push_back(material.name);
+                     return names;
+                   })
+      .def_prop_ro("shared_bytes", &MaterialBook::shared_bytes)
+      .def_prop_ro("bytes_a_material", &MaterialBook::bytes_a_material)
+      .def("__len__", [](const MaterialBook& book) { return book.materials().size(); })
+      .def("__getitem__", &model_of, nb::arg("name"), nb::rv_policy::take_ownership, "A material as a model.")
+      .def(
+          "write",
+          [](const MaterialBook& book, const std::filesystem::path& path) {
+            write_then_rename(path, format_book(book));
+          },
+          nb::arg("path"));
+  m.def(
+      "open_book",
+      [](const std::filesystem::path& path) {
+        return std::make_shared<const MaterialBook>(parse_book(read_file(path)));
+      },
+      nb::arg("path"), "Reads what Book.write and `burnish book` write.");
+  m.def("book", &make, nb::arg("materials"), nb::kw_only(), nb::arg("bytes") = BookOptions().bytes,
+        nb::arg("bytes_a_material") = BookOptions().bytes_a_material, nb::arg("seed") = BookOptions().seed,
+        nb::arg("shared") = nb::none(),
+        "Makes a book as `burnish book` does, for fit(..., book=).\n\n"
+        "materials: a folder, a list's name, or arguments of open_source, isotropic, of one channel or "
+        "three; the\n"
+        "first that cannot be in a book is raised. bytes: of what they share, at most. bytes_a_material: "
+        "weights, at\n"
+        "most. shared: a Book whose shared part serves, only weights are found.");
+}
+
+}  // namespace burnish::python

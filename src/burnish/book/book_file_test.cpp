@@ -1,0 +1,114 @@
+#include <gmock/gmock.h>
+
+#include <burnish/book/book_file.h>
+#include <burnish/error.h>
+#include <burnish/factors/compact_file.h>
+#include <burnish/factors/model_file.h>
+#include <burnish/reflectance/goniometer.h>
+#include <burnish/testing/books.h>
+#include <burnish/testing/tools.h>
+
+namespace burnish {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+TEST(BookFile, RestoresABookToTheLastBit) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    const MaterialBook book = random_book(seed);
+    const std::string bytes = format_book(book);
+    EXPECT_EQ(parse_book(memory_file(bytes)), book);
+    EXPECT_EQ(format_book(parse_book(memory_file(bytes))), bytes);
+  }
+}
+
+TEST(BookFile, IsKnownFromAModel) {
+  const std::string bytes = format_book(random_book());
+  EXPECT_TRUE(looks_like_book(memory_file(bytes).bytes));
+  const std::string model = format_compact({.brdf = random_book().brdf(0), .lambda_nm = {}});
+  EXPECT_FALSE(looks_like_book(memory_file(model).bytes));
+  EXPECT_FALSE(looks_like_model(memory_file(bytes).bytes));
+  EXPECT_THAT([&] { parse_book(memory_file(model)); }, ThrowsMessage<Error>(HasSubstr("offset")));
+}
+
+TEST(BookFile, EveryTruncatedFileThrows) {
+  const std::string bytes = format_book(random_book());
+  for (std::size_t length = 0; length < bytes.size(); ++length)
+    EXPECT_THROW(parse_book(memory_file(bytes.substr(0, length))), Error) << length;
+  EXPECT_THROW(parse_book(memory_file(bytes + '\0')), Error);
+}
+
+TEST(BookFile, DamagedBytesThrowOrGiveSoundMaterials) {
+  const std::string bytes = format_book(random_book());
+  std::array<double, 3> f{};
+  std::size_t thrown = 0;
+  for (std::size_t at = 0; at < bytes.size(); ++at)
+    for (const char damage : {'\0', '\xff', '\x1b', '9'}) {
+      std::string damaged = bytes;
+      damaged[at] = damage;
+      try {
+        const MaterialBook book = parse_book(memory_file(damaged));
+        for (std::size_t i = 0; i < book.materials().size(); ++i) {
+          book.brdf(i).eval({0.6, 0, 0.8}, {0, -0.6, 0.8}, f);
+          for (const double value : f) EXPECT_TRUE(std::isfinite(value) && value >= 0) << at;
+        }
+      } catch (const Error&) {
+        ++thrown;
+      }
+    }
+  EXPECT_GT(thrown, bytes.size() / 4);
+}
+
+TEST(MaterialBook, GivesReciprocalPositiveModelsThatMirrorThemselves) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    const MaterialBook book = random_book(seed);
+    const FactoredBrdf brdf = book.brdf(1);
+    EXPECT_TRUE(brdf.reciprocal());
+    std::array<double, 3> f{}, swapped{}, mirrored{};
+    for (const auto& [wi, wo] : draw_pairs(200, seed, false)) {
+      brdf.eval(wi, wo, f);
+      brdf.eval(wo, wi, swapped);
+      brdf.eval({wi.x, -wi.y, wi.z}, {wo.x, -wo.y, wo.z}, mirrored);
+      EXPECT_EQ(f, swapped);
+      EXPECT_EQ(f, mirrored);
+      EXPECT_GT(*std::ranges::min_element(f), 0);
+    }
+  }
+}
+
+TEST(MaterialBook, HasTheLogarithmsThatItSays) {
+  const MaterialBook book = random_book();
+  const auto weights = book.weights(0);
+  const std::vector<double> logs = book.logs(weights);
+  // the sum by its definition, at one node
+  const std::size_t node = 13;
+  for (std::size_t c = 0; c < 3; ++c) {
+    double expected = 0;
+    for (std::size_t u = 0; u < 3; ++u) {
+      const BookAxis& axis = book.axes()[u];
+      double of_axis = static_cast<double>(axis.mean[node]);
+      for (std::size_t k = 0; k < axis.component_count(); ++k)
+        of_axis += weights[u][k] * static_cast<double>(axis.scales[k]) *
+                   axis.components[k * book.node_count() + node];
+      expected += kBookAxes[u][c] * of_axis;
+    }
+    EXPECT_NEAR(logs[node * 3 + c], expected, 1e-12);
+  }
+}
+
+TEST(MaterialBook, RefusesWhatDoesNotFit) {
+  const MaterialBook book = random_book();
+  auto axes = book.axes();
+  const std::vector<MaterialBook::Material> materials(book.materials().begin(), book.materials().end());
+  axes[0].steps[0] = 0;
+  EXPECT_THROW(MaterialBook({4, 3, 2}, axes, materials), Error);
+  EXPECT_THROW(MaterialBook({4, 3, 3}, book.axes(), materials), Error);
+  EXPECT_THROW(MaterialBook({4, 3, 2}, book.axes(), {materials[0], materials[0]}), Error);
+  EXPECT_THROW(MaterialBook({4, 3, 2}, book.axes(), {{.name = "short", .weights = {1}}}), Error);
+  EXPECT_EQ(book.find("paint"), 1u);
+  EXPECT_FALSE(book.find("pain"));
+}
+
+}  // namespace
+}  // namespace burnish
