@@ -3,7 +3,7 @@
 
 Takes the files of the folders (seeds that build/fuzz/tests/fuzz/make_seeds writes, real measurements) and some that
 the program makes, damages one after another in one of several ways and gives it to a verb that reads such files. The program has to end with 0 or 1,
-with 1 to say one line that names the file and to leave nothing behind, with 0 to have written what it was to write, all
+with 1 to say one line (which names the file, unless a fit failed) and to leave nothing behind, with 0 to have written what it was to write, all
 below 1 GB and within 5 s of the processor. Whatever does not is told, kept in --keep, and the end is 1.
 """
 import argparse
@@ -22,6 +22,7 @@ import time
 MOST_BYTES, MOST_SECONDS, LONGEST_LINE = 1 << 30, 5, 309
 LARGE = 100_000  # larger files are taken once in SELDOM times: they are read more slowly
 SELDOM = 200
+READS = ("info", "convert", "eval", "measure")  # what does not more than read and write names the file
 NO_SOURCE = {".f32", ".fit", ".ktx2", ".js", ".html"}
 KINDS = {"directions": "eval", "capture": "capture", "np": "np", "mesh.obj": "mesh", "mesh.glb": "mesh",
          "environment.exr": "light"}
@@ -108,7 +109,7 @@ def command_for(kind, path, out, rng):
         return ["convert", path, out, "--to", to] + (["--count", "20"] if to in ("csv", "astm") else ["--cells", "4"] if to == "mbsdf" else []), out
     if verb < 95:
         return ["measure", path, "-o", out, "--count", "20"], out
-    return ["fit", path, "-o", out + ".exr", "--method", rng.choice(("analytic:lambert", "nmf", "svd"))] if verb < 97 else \
+    return ["fit", path, "-o", out + ".exr", "--method", rng.choice(("analytic:ggx", "nmf", "svd"))] if verb < 97 else \
         ["fit", path, "-o", out + ".exr", "--model", "p(wo) q(h) p(wi)"], out + ".exr"
 
 
@@ -139,7 +140,7 @@ class Runner:
         return os.waitstatus_to_exitcode(status), said, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024
 
 
-def fault_of(outcome, path, written):
+def fault_of(verb, outcome, path, written):
     status, said, seconds, most = outcome
     if status not in (0, 1):
         return f"ended with {status}"
@@ -149,7 +150,9 @@ def fault_of(outcome, path, written):
         return f"took {most >> 20} MiB"
     if said.count("\n") > 1 or any(len(line) > LONGEST_LINE for line in said.splitlines()):
         return "said more than a line"
-    if status == 1 and not (said.startswith("burnish: ") and os.path.dirname(path) in said):
+    if status == 1 and not said.startswith("burnish: "):
+        return "said nothing"
+    if status == 1 and verb in READS and os.path.dirname(path) not in said:
         return "said nothing of the file"
     if written and os.path.exists(written) != (status == 0):
         return "left its output" if status else "wrote nothing"
@@ -196,7 +199,7 @@ def main():
         pathlib.Path(path).write_bytes(damaged)
         command, written = command_for(kind, folder if kind in ("np", "capture") else path, folder + "/out", rng)
         outcome = runner.run(command)
-        fault = fault_of(outcome, path, written)
+        fault = fault_of(command[0], outcome, path, written)
         counts[f"{command[0]} {outcome[0]}"] += 1
         slowest, largest = max(slowest, (outcome[2], name)), max(largest, (outcome[3], name))
         if fault:
