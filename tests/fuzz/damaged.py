@@ -109,8 +109,7 @@ def command_for(kind, path, out, rng):
         return ["convert", path, out, "--to", to] + (["--count", "20"] if to in ("csv", "astm") else ["--cells", "4"] if to == "mbsdf" else []), out
     if verb < 95:
         return ["measure", path, "-o", out, "--count", "20"], out
-    return ["fit", path, "-o", out + ".exr", "--method", rng.choice(("analytic:ggx", "nmf", "svd"))] if verb < 97 else \
-        ["fit", path, "-o", out + ".exr", "--model", "p(wo) q(h) p(wi)"], out + ".exr"
+    return ["fit", path, "-o", out + ".exr", "--method", rng.choice(("analytic:ggx", "nmf", "svd"))], out + ".exr"
 
 
 def make_files(program, folder):
@@ -176,8 +175,10 @@ def main():
     parser.add_argument("burnish")
     parser.add_argument("folders", nargs="+")
     parser.add_argument("--files", type=int, default=100_000)
+    parser.add_argument("--first", type=int, default=0, help="number of the first: several processes share the work")
+    parser.add_argument("--seconds", type=float, default=float("inf"), help="ends after so many")
     parser.add_argument("--seed", type=int, default=1, help="of the damage; the same seed damages alike")
-    parser.add_argument("--keep", default="build/damaged", help="folder for what fails")
+    parser.add_argument("--keep", default="build/damaged/kept", help="folder for what fails")
     arguments = parser.parse_args()
     work = tempfile.mkdtemp(prefix="burnish_damaged_")
     os.makedirs(work + "/made")
@@ -186,7 +187,9 @@ def main():
     decoder = next((str(p.resolve()) for f in arguments.folders for p in pathlib.Path(f).rglob("decoder.f32")), None)
     runner = Runner(os.path.abspath(arguments.burnish), work)
     counts, faults, slowest, largest, began = collections.Counter(), 0, (0, ""), (0, ""), time.time()
-    for number in range(arguments.files):
+    for number in range(arguments.first, arguments.first + arguments.files):
+        if time.time() - began > arguments.seconds:
+            break
         rng = random.Random(f"{arguments.seed} {number}")
         kind, name, data = rng.choice(large if large and number % SELDOM == 0 else small)
         damage = rng.choice(DAMAGES)
@@ -209,10 +212,10 @@ def main():
             pathlib.Path(kept).write_bytes(damaged)
             print(f"{kept}: {damage.__name__}: {fault}: {' '.join(command)}: {outcome[1][:400].strip()}", flush=True)
         shutil.rmtree(folder)
-        if number % 5000 == 4999:
-            print(f"{number + 1} files, {faults} faults, {time.time() - began:.0f} s", file=sys.stderr, flush=True)
+        if number % 1000 == 999:
+            print(f"{counts.total()} files, {faults} faults, {time.time() - began:.0f} s", file=sys.stderr, flush=True)
     shutil.rmtree(work)
-    print(f"{arguments.files} damaged files of {len(small) + len(large)}: {faults} faults; at most {slowest[0]:.2f} s "
+    print(f"{counts.total()} damaged files of {len(small) + len(large)}: {faults} faults; at most {slowest[0]:.2f} s "
           f"({slowest[1]}) and {largest[0] / 2**20:.0f} MiB ({largest[1]}); verbs and how they ended: "
           + ", ".join(f"{what}: {count}" for what, count in sorted(counts.items())))
     sys.exit(1 if faults else 0)

@@ -440,9 +440,9 @@ std::vector<Trial> search_at_random(Search& search, int count, std::uint64_t see
 
 constexpr std::size_t kKept = 2;  // trials that are built upon
 
-/// Where to go on: the best of the base alone and below coats, of films, and of random starts, each by themselves, since
-/// on a third of the pixels the better of two kinds may look worse.
-std::vector<Search::Start> search_layers(Search& search, const PicturePairs& pairs,
+/// Where to go on: the best of the base alone and below coats, of films, and of random starts, which are sifted on a
+/// third of the pixels, so that their costs are no measure of the others.
+std::vector<Search::Start> search_layers(Search& search, Search& sift, const PicturePairs& pairs,
                                          const OpenPbrFitOptions& options,
                                          const std::function<void(double)>& progress) {
   constexpr int kRandom = 40;
@@ -464,7 +464,7 @@ std::vector<Search::Start> search_layers(Search& search, const PicturePairs& pai
 
   std::vector<Search::Start> best = best_of(coated, kCoated);
   for (const Search::Start& start : best_of(search.run(films, kFirst), kFilmed)) best.push_back(start);
-  for (const Search::Start& start : best_of(search_at_random(search, kRandom, 1, options), kDrawn))
+  for (const Search::Start& start : best_of(search_at_random(sift, kRandom, 1, options), kDrawn))
     best.push_back(start);
   progress(0.7);
   return best;
@@ -525,7 +525,7 @@ OpenPbrFit fit_openpbr(const PicturePairs& pairs, const OpenPbrFitOptions& optio
   const auto progress = [&](double fraction) {
     if (options.progress) options.progress(fraction);
   };
-  const std::vector<Search::Start> found = search_layers(sift, coarse, options, progress);
+  const std::vector<Search::Start> found = search_layers(search, sift, pairs, options, progress);
 
   // these on all pixels, and films on the best of them
   std::vector<Trial> kept = search.run(found, kSiftAgain);
