@@ -4,10 +4,10 @@
 # make build  the command line at build/release/apps/burnish/burnish
 # make deb, make wheel, make npm: packages in build/packages; make release-check installs each in an empty system and runs it
 # make studio the library as WebAssembly, its npm package and the page in build/studio; make studio-test tests them
-# make bench, make fuzz, make report, make cost-report, make sampling-report, make shader-report, make openpbr-report, make frame-cost, make surface-report, make hw-report, make hw-exhaustive, make format:
+# make bench, make fuzz, make damaged, make report, make cost-report, make sampling-report, make shader-report, make openpbr-report, make frame-cost, make surface-report, make hw-report, make hw-exhaustive, make format:
 # see CONTRIBUTING.md
 # make cluster-test  a batch on a real Slurm of two nodes on this machine, killed now and then
-.PHONY: cluster-test demo test build reports python deb wheel npm packaging-deps release-check studio studio-test deps test-deps studio-deps bench fuzz report cost-report sampling-report shader-report openpbr-report frame-cost surface-report hw-report hw-exhaustive format format-check docs-check include-check api
+.PHONY: cluster-test demo test build reports python deb wheel npm packaging-deps release-check studio studio-test deps test-deps studio-deps bench fuzz damaged report cost-report sampling-report shader-report openpbr-report frame-cost surface-report hw-report hw-exhaustive format format-check docs-check include-check api
 JOBS ?= $(shell nproc)
 BURNISH := build/release/apps/burnish/burnish
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
@@ -125,6 +125,11 @@ hw-exhaustive: test-deps build
 
 fuzz: test-deps
 	@tests/fuzz/run.sh $(FUZZ_SECONDS)
+
+damaged: build
+	@cmake --preset fuzz > /dev/null && cmake --build --preset fuzz --target make_seeds
+	@build/fuzz/tests/fuzz/make_seeds build/damaged/seeds
+	@tests/fuzz/damaged.py $(BURNISH) build/damaged/seeds $(BURNISH_DATA)
 
 format: test-deps
 	@clang-format -i $(SOURCES)

@@ -161,6 +161,15 @@ TEST(CommandLine, ShowsExamplesOfOptionsThatThereAre) {
   }
 }
 
+TEST(CommandLine, TellsWhatItCanOfSamplesNearGrazing) {
+  const TemporaryFolder folder("grazing");
+  write(folder.path / "g.csv",
+        "theta_i,phi_i,theta_o,phi_o,value\n85,0,85,180,1\n86,0,84,180,2\n84,0,86,170,1\n");
+  const Outcome outcome = burnish(fmt::format("info '{}/g.csv'", folder.path.string()));
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr("3 measured"));
+}
+
 TEST(CommandLine, ExplainsItsFormatsAndItself) {
   const Outcome formats = burnish("help formats");
   EXPECT_EQ(formats.status, 0);

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <burnish/error.h>
+
 namespace burnish::cli {
 
 namespace {
@@ -16,7 +18,12 @@ std::optional<NodesKnown> nodes_of(const Source& source) {
   const MeasuredNodes nodes = measured_nodes(source);
   NodesKnown known{.count = nodes.size(), .incidences = {}, .predicted = {}};
   if (nodes.theta_i.size() <= kFewIncidences) known.incidences = nodes.theta_i.size();
-  if (nodes.samples.isotropic && nodes.size() <= kManyNodes) known.predicted = held_out_figures(nodes, {});
+  if (nodes.samples.isotropic && nodes.size() <= kManyNodes) {
+    try {
+      known.predicted = held_out_figures(nodes, {});
+    } catch (const Error&) {  // too few, or all of them near grazing: nothing to predict
+    }
+  }
   return known;
 }
 

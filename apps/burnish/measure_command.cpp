@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include <burnish/capture/virtual_capture.h>
+#include <burnish/error.h>
 #include <burnish/file.h>
 #include <burnish/io/csv.h>
 #include <burnish/reflectance/goniometer.h>
@@ -69,7 +70,13 @@ void add_measure_command(CLI::App& app) {
       return measure_surface(arguments->surface, arguments->out, arguments->json);
     if (arguments->source.spec.empty()) throw CLI::RequiredError("BRDF or --surface");
     const Source source = arguments->source.open();
-    const Samples samples = measure(source.ref(), arguments->measurement);
+    const Samples samples = [&] {
+      try {
+        return measure(source.ref(), arguments->measurement);
+      } catch (const Error& error) {
+        throw Error(fmt::format("{}: {}", arguments->source.spec, error.what()));
+      }
+    }();
     write_then_rename(arguments->out, samples_csv(samples, source.findings.lambda_nm));
     if (arguments->json)
       print_as_json(

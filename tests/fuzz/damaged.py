@@ -3,7 +3,7 @@
 
 Takes the files of the folders (seeds that build/fuzz/tests/fuzz/make_seeds writes, real measurements) and some that
 the program makes, damages one after another in one of several ways and gives it to a verb that reads such files. The program has to end with 0 or 1,
-with 1 to say one line that names the file and to leave nothing behind, with 0 to have written what it was to write, all
+with 1 to say one line (which names the file, unless a fit failed) and to leave nothing behind, with 0 to have written what it was to write, all
 below 1 GB and within 5 s of the processor. Whatever does not is told, kept in --keep, and the end is 1.
 """
 import argparse
@@ -22,6 +22,7 @@ import time
 MOST_BYTES, MOST_SECONDS, LONGEST_LINE = 1 << 30, 5, 309
 LARGE = 100_000  # larger files are taken once in SELDOM times: they are read more slowly
 SELDOM = 200
+READS = ("info", "convert", "eval", "measure")  # what does not more than read and write names the file
 NO_SOURCE = {".f32", ".fit", ".ktx2", ".js", ".html"}
 KINDS = {"directions": "eval", "capture": "capture", "np": "np", "mesh.obj": "mesh", "mesh.glb": "mesh",
          "environment.exr": "light"}
@@ -108,8 +109,7 @@ def command_for(kind, path, out, rng):
         return ["convert", path, out, "--to", to] + (["--count", "20"] if to in ("csv", "astm") else ["--cells", "4"] if to == "mbsdf" else []), out
     if verb < 95:
         return ["measure", path, "-o", out, "--count", "20"], out
-    return ["fit", path, "-o", out + ".exr", "--method", rng.choice(("analytic:lambert", "nmf", "svd"))] if verb < 97 else \
-        ["fit", path, "-o", out + ".exr", "--model", "p(wo) q(h) p(wi)"], out + ".exr"
+    return ["fit", path, "-o", out + ".exr", "--method", rng.choice(("analytic:ggx", "nmf", "svd"))], out + ".exr"
 
 
 def make_files(program, folder):
@@ -139,7 +139,7 @@ class Runner:
         return os.waitstatus_to_exitcode(status), said, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024
 
 
-def fault_of(outcome, path, written):
+def fault_of(verb, outcome, path, written):
     status, said, seconds, most = outcome
     if status not in (0, 1):
         return f"ended with {status}"
@@ -149,7 +149,9 @@ def fault_of(outcome, path, written):
         return f"took {most >> 20} MiB"
     if said.count("\n") > 1 or any(len(line) > LONGEST_LINE for line in said.splitlines()):
         return "said more than a line"
-    if status == 1 and not (said.startswith("burnish: ") and os.path.dirname(path) in said):
+    if status == 1 and not said.startswith("burnish: "):
+        return "said nothing"
+    if status == 1 and verb in READS and os.path.dirname(path) not in said:
         return "said nothing of the file"
     if written and os.path.exists(written) != (status == 0):
         return "left its output" if status else "wrote nothing"
@@ -173,8 +175,10 @@ def main():
     parser.add_argument("burnish")
     parser.add_argument("folders", nargs="+")
     parser.add_argument("--files", type=int, default=100_000)
+    parser.add_argument("--first", type=int, default=0, help="number of the first: several processes share the work")
+    parser.add_argument("--seconds", type=float, default=float("inf"), help="ends after so many")
     parser.add_argument("--seed", type=int, default=1, help="of the damage; the same seed damages alike")
-    parser.add_argument("--keep", default="build/damaged", help="folder for what fails")
+    parser.add_argument("--keep", default="build/damaged/kept", help="folder for what fails")
     arguments = parser.parse_args()
     work = tempfile.mkdtemp(prefix="burnish_damaged_")
     os.makedirs(work + "/made")
@@ -183,7 +187,9 @@ def main():
     decoder = next((str(p.resolve()) for f in arguments.folders for p in pathlib.Path(f).rglob("decoder.f32")), None)
     runner = Runner(os.path.abspath(arguments.burnish), work)
     counts, faults, slowest, largest, began = collections.Counter(), 0, (0, ""), (0, ""), time.time()
-    for number in range(arguments.files):
+    for number in range(arguments.first, arguments.first + arguments.files):
+        if time.time() - began > arguments.seconds:
+            break
         rng = random.Random(f"{arguments.seed} {number}")
         kind, name, data = rng.choice(large if large and number % SELDOM == 0 else small)
         damage = rng.choice(DAMAGES)
@@ -196,7 +202,7 @@ def main():
         pathlib.Path(path).write_bytes(damaged)
         command, written = command_for(kind, folder if kind in ("np", "capture") else path, folder + "/out", rng)
         outcome = runner.run(command)
-        fault = fault_of(outcome, path, written)
+        fault = fault_of(command[0], outcome, path, written)
         counts[f"{command[0]} {outcome[0]}"] += 1
         slowest, largest = max(slowest, (outcome[2], name)), max(largest, (outcome[3], name))
         if fault:
@@ -206,10 +212,10 @@ def main():
             pathlib.Path(kept).write_bytes(damaged)
             print(f"{kept}: {damage.__name__}: {fault}: {' '.join(command)}: {outcome[1][:400].strip()}", flush=True)
         shutil.rmtree(folder)
-        if number % 5000 == 4999:
-            print(f"{number + 1} files, {faults} faults, {time.time() - began:.0f} s", file=sys.stderr, flush=True)
+        if number % 1000 == 999:
+            print(f"{counts.total()} files, {faults} faults, {time.time() - began:.0f} s", file=sys.stderr, flush=True)
     shutil.rmtree(work)
-    print(f"{arguments.files} damaged files of {len(small) + len(large)}: {faults} faults; at most {slowest[0]:.2f} s "
+    print(f"{counts.total()} damaged files of {len(small) + len(large)}: {faults} faults; at most {slowest[0]:.2f} s "
           f"({slowest[1]}) and {largest[0] / 2**20:.0f} MiB ({largest[1]}); verbs and how they ended: "
           + ", ".join(f"{what}: {count}" for what, count in sorted(counts.items())))
     sys.exit(1 if faults else 0)

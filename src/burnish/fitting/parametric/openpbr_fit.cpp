@@ -438,12 +438,15 @@ std::vector<Trial> search_at_random(Search& search, int count, std::uint64_t see
   return search.run(best_of(sifted, (sifted.size() + 3) / 4), kSiftAgain);
 }
 
-constexpr std::size_t kKept = 2, kContinued = 6;  // trials that are built upon, and seen on all pixels
+constexpr std::size_t kKept = 2;  // trials that are built upon
 
-/// The best of the base alone and of all layers; best first.
-std::vector<Trial> search_layers(Search& search, const PicturePairs& pairs, const OpenPbrFitOptions& options,
-                                 const std::function<void(double)>& progress) {
+/// Where to go on: the best of the base alone and below coats, of films, and of random starts, which are sifted on a
+/// third of the pixels, so that their costs are no measure of the others.
+std::vector<Search::Start> search_layers(Search& search, Search& sift, const PicturePairs& pairs,
+                                         const OpenPbrFitOptions& options,
+                                         const std::function<void(double)>& progress) {
   constexpr int kRandom = 40;
+  constexpr std::size_t kCoated = 3, kFilmed = 3, kDrawn = 4;
   const Inputs always = always_held(options);
   std::vector<Search::Start> starts;
   for (const double metalness : {0.0, 1.0})
@@ -451,18 +454,20 @@ std::vector<Trial> search_layers(Search& search, const PicturePairs& pairs, cons
       starts.push_back(
           {{.base_color = mean_color(pairs), .base_metalness = metalness, .specular_roughness = roughness},
            always | kCoat | kFuzz | kFilm});
-  std::vector<Trial> kept = search.run(starts, kFirst);
+  std::vector<Trial> coated = search.run(starts, kFirst);
   progress(0.2);
-  starts.clear();
-  for (std::size_t i = 0; i < kKept; ++i) append_coats(kept[i], always, starts);
-  append_films(search, kept.front(), always, starts);
-  const std::vector<Trial> layered = search.run(starts, kFirst),
-                           random = search_at_random(search, kRandom, 1, options);
-  kept.insert(kept.end(), layered.begin(), layered.end());
-  kept.insert(kept.end(), random.begin(), random.end());
-  std::ranges::stable_sort(kept, {}, &Trial::cost);
+  std::vector<Search::Start> coats, films;
+  for (std::size_t i = 0; i < kKept; ++i) append_coats(coated[i], always, coats);
+  append_films(search, coated.front(), always, films);
+  for (const Trial& trial : search.run(coats, kFirst)) coated.push_back(trial);
+  std::ranges::stable_sort(coated, {}, &Trial::cost);
+
+  std::vector<Search::Start> best = best_of(coated, kCoated);
+  for (const Search::Start& start : best_of(search.run(films, kFirst), kFilmed)) best.push_back(start);
+  for (const Search::Start& start : best_of(search_at_random(sift, kRandom, 1, options), kDrawn))
+    best.push_back(start);
   progress(0.7);
-  return kept;
+  return best;
 }
 
 /// The same with what shows too little at its default: layers first, then what others say as well.
@@ -520,11 +525,18 @@ OpenPbrFit fit_openpbr(const PicturePairs& pairs, const OpenPbrFitOptions& optio
   const auto progress = [&](double fraction) {
     if (options.progress) options.progress(fraction);
   };
-  const std::vector<Trial> found = search_layers(sift, coarse, options, progress);
+  const std::vector<Search::Start> found = search_layers(search, sift, pairs, options, progress);
 
-  // the best few on all pixels, the better ones to their ends, the best of them without what it does not need, and that
-  // to its end
-  const std::vector<Trial> kept = search.run(best_of(found, kContinued), kSiftAgain);
+  // these on all pixels, and films on the best of them
+  std::vector<Trial> kept = search.run(found, kSiftAgain);
+  std::vector<Search::Start> films;
+  append_films(sift, kept.front(), always_held(options), films);
+  for (const Trial& trial : search.run(best_of(sift.run(films, kFirst), kKept), kSiftAgain))
+    kept.push_back(trial);
+  std::ranges::stable_sort(kept, {}, &Trial::cost);
+  progress(0.8);
+
+  // the better ones to their ends, the best of them without what it does not need, and that to its end
   const Trial simple = simplified(search, search.run(best_of(kept, kKept), kEnd).front());
   progress(0.9);
   const Trial best = search.run({{simple.parameters, simple.held}}, kLast).front();

@@ -26,8 +26,9 @@ struct OpenPbrFitOptions {
 
 /// The OpenPBR material whose lit spheres have the least mean squared difference from those of `pairs`, pictures at
 /// 1/32 of the exposure adding a little, so that highlights keep their height: Levenberg-Marquardt steps within the
-/// ranges of kOpenPbrInputs. Smooth to rough metals and dielectrics are tried first, then the best with coat, fuzz and
-/// film, one after another. Layers and inputs without which the squared error is less than a percent greater go back to
+/// ranges of kOpenPbrInputs. Smooth to rough metals and dielectrics are tried first, then the best with coats, fuzz and
+/// films, and, on a third of the pixels, random starts; the best of each kind go on, and films once more on the best of
+/// all. Layers and inputs without which the squared error is less than a percent greater go back to
 /// their defaults, so that of inputs that say the same one is left; base_weight is 1. The same bits for every number
 /// of threads.
 OpenPbrFit fit_openpbr(const PicturePairs& pairs, const OpenPbrFitOptions& options = {});
