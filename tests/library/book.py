@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """How far a book carries a library: tests/library/book.py BURNISH [--folds N] [--every N] [--counts 5 20 100].
 
-The library is the 100 MERL stand-ins of BURNISH_DATA/np and the measured materials of BURNISH_DATA/rgl. One book is made
-of all of it, and N more, each of all but an Nth: with eight folds each measured material is left out alone. Scored are
-the measured materials and every 10th stand-in: as one of the book's; left out, its weights found of all that is known
-of it; and left out, completed from a few random pairs by the book and by `fit` on these pairs alone. Prints means of
-`burnish compare --count 20000`."""
+The library is the 100 MERL stand-ins of BURNISH_DATA/np, its stand-ins of RGL materials (--without-films: without
+them), and the measured materials of BURNISH_DATA/rgl, of which no stand-in is taken. One book is made of all of it, and
+N more, each of all but an Nth: with eight folds each measured material is left out alone. Scored are the measured
+materials and every 10th MERL stand-in: as one of the book's; left out, its weights found of all that is known of it;
+and left out, completed from a few random pairs by the book and by `fit` on these pairs alone. Prints means of `burnish
+compare --count 20000`."""
 import argparse
 import json
 import os
@@ -56,21 +57,26 @@ def main():
     parser.add_argument("--folds", type=int, default=8)
     parser.add_argument("--every", type=int, default=10, help="of the stand-ins, this one is scored")
     parser.add_argument("--counts", type=int, nargs="+", default=[5, 20, 100])
+    parser.add_argument("--without-films", action="store_true", help="leave the stand-ins of RGL materials out")
     arguments = parser.parse_args()
     data = os.environ.get("BURNISH_DATA")
     if not data:
         sys.exit("book.py: expected BURNISH_DATA to name the measurements")
     names = [line.split(",")[0] for line in pathlib.Path(data, "np/codes.csv").read_text().splitlines()]
-    stand_ins = [f"np:{data}/np#{name}" for name in names if not name.endswith("_rgb")]
     measured = [str(path) for path in sorted(pathlib.Path(data, "rgl").glob("*.bsdf"))]
+    known = {path.stem for below in ("rgl", "repeat") for path in pathlib.Path(data, below).glob("*.bsdf")}
+    stand_ins = [f"np:{data}/np#{name}" for name in names if not name.endswith("_rgb")]
+    films = [f"np:{data}/np#{name}" for name in names if name.endswith("_rgb") and name not in known]
+    if arguments.without_films:
+        films = []
     scored = set(measured + stand_ins[::arguments.every])
     with tempfile.TemporaryDirectory() as name:
         bench = Bench(os.path.abspath(arguments.burnish), pathlib.Path(name), arguments.counts)
-        library = stand_ins + measured
+        library = stand_ins + films + measured
         whole, said = bench.book("whole", library)
         print(f"{len(library)} materials of {said['bytes_a_material']} bytes, {said['shared_bytes']} shared")
         for fold in range(arguments.folds):
-            out = stand_ins[fold::arguments.folds] + measured[fold::arguments.folds]
+            out = [argument for kind in (stand_ins, films, measured) for argument in kind[fold::arguments.folds]]
             shared, _ = bench.book("shared", [argument for argument in library if argument not in out])
             for argument in out:
                 if argument in scored:
