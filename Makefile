@@ -126,7 +126,7 @@ hw-exhaustive: test-deps build
 fuzz: test-deps
 	@tests/fuzz/run.sh $(FUZZ_SECONDS)
 
-damaged: build
+damaged: test-deps build
 	@cmake --preset fuzz > /dev/null && cmake --build --preset fuzz --target make_seeds
 	@build/fuzz/tests/fuzz/make_seeds build/damaged/seeds
 	@tests/fuzz/damaged.py $(BURNISH) build/damaged/seeds $(BURNISH_DATA)

@@ -11,6 +11,7 @@
 
 #include "book_text.h"
 #include "commands.h"
+#include "json_output.h"
 #include "progress.h"
 #include "source_arguments.h"
 #include "usage.h"
@@ -34,8 +35,7 @@ void print_made(const BookArguments& arguments, const BookOfLibrary& made) {
     json["left_out"] = nlohmann::ordered_json::array();
     for (const auto& [entry, reason] : made.left_out)
       json["left_out"].push_back({{"name", entry.name}, {"path", entry.argument}, {"reason", reason}});
-    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
-    return;
+    return print_as_json(json);
   }
   fmt::print("book       {}\n", book_line(made.book));
   for (const auto& [entry, reason] : made.left_out)

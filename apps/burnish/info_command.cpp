@@ -17,6 +17,7 @@
 #include "book_text.h"
 #include "commands.h"
 #include "info_json.h"
+#include "json_output.h"
 #include "source_arguments.h"
 #include "surface_info.h"
 
@@ -111,7 +112,7 @@ void add_info_command(CLI::App& app) {
   verb->callback([=] {
     if (const auto book = book_of(arguments->spec)) {
       if (*as_json)
-        fmt::print("{}\n", book_json(*book).dump(2));
+        print_as_json(book_json(*book));
       else
         print_book(arguments->spec, *book);
       return;

@@ -108,26 +108,6 @@ std::vector<FrameMaterial> materials_of(const Models& models) {
   return materials;
 }
 
-Table times_table(const std::vector<FrameMaterial>& materials, const std::vector<int>& lights,
-                  int repetitions) {
-  std::vector<std::string> head{"material"};
-  std::vector<std::vector<std::string>> rows;
-  for (const FrameMaterial& material : materials) rows.push_back({material.name});
-  for (const int count : lights) {
-    head.push_back(fmt::format("{} light{}", count, count == 1 ? "" : "s"));
-    head.emplace_back("of GGX");
-    tell(fmt::format("frame-cost: lights: {}", count));
-    const std::vector<Times> times = time_frames(materials, count, repetitions);
-    for (std::size_t i = 0; i < materials.size(); ++i) {
-      rows[i].push_back(fmt::format("{:.1f} ({:.1f})", times[i].least, times[i].median));
-      rows[i].push_back(fmt::format("{:.2f}", times[i].least / times[0].least));
-    }
-  }
-  Table table(head);
-  for (const auto& row : rows) table.add(row);
-  return table;
-}
-
 }  // namespace
 
 void report_frame_cost(const ReportOptions& options) {
@@ -146,7 +126,7 @@ void report_frame_cost(const ReportOptions& options) {
   page["size"] = std::to_string(kFrameSize);
   page["repetitions"] = std::to_string(repetitions);
   page["renderer"] = drawn_by(context);
-  page["times"] = times_table(materials, lights, repetitions).markdown();
+  page["times"] = frame_times("frame-cost", "GGX", materials, lights, repetitions).markdown();
   page.write();
 }
 

@@ -63,6 +63,27 @@ std::vector<Times> time_frames(const std::vector<FrameMaterial>& materials, int 
   return times;
 }
 
+Table frame_times(const std::string& report, const std::string& first,
+                  const std::vector<FrameMaterial>& materials, const std::vector<int>& lights,
+                  int repetitions) {
+  std::vector<std::string> head{"material"};
+  std::vector<std::vector<std::string>> rows;
+  for (const FrameMaterial& material : materials) rows.push_back({material.name});
+  for (const int count : lights) {
+    head.push_back(fmt::format("{} light{}", count, count == 1 ? "" : "s"));
+    head.push_back("of " + first);
+    tell(fmt::format("{}: lights: {}", report, count));
+    const std::vector<Times> times = time_frames(materials, count, repetitions);
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+      rows[i].push_back(fmt::format("{:.1f} ({:.1f})", times[i].least, times[i].median));
+      rows[i].push_back(fmt::format("{:.2f}", times[i].least / times[0].least));
+    }
+  }
+  Table table(head);
+  for (const auto& row : rows) table.add(row);
+  return table;
+}
+
 std::string drawn_by(const GlContext& context) {
   return context.in_software() ? fmt::format("software, no GPU: {} on {}", context.renderer(), processor())
                                : fmt::format("a GPU: {}", context.renderer());

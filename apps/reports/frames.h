@@ -32,6 +32,12 @@ void check_picture(const FrameMaterial& material);
 /// Milliseconds a frame of each material under so many lights, all in turn. Needs a GlContext.
 std::vector<Times> time_frames(const std::vector<FrameMaterial>& materials, int lights, int repetitions);
 
+/// The least milliseconds a frame of each material, the median in brackets, under each number of lights, and how many
+/// times the first one's that is; `first` names it in the table, `report` in what is told meanwhile. Needs a GlContext.
+Table frame_times(const std::string& report, const std::string& first,
+                  const std::vector<FrameMaterial>& materials, const std::vector<int>& lights,
+                  int repetitions);
+
 /// What draws, in words: "a GPU: NAME", or "software, no GPU: llvmpipe (...) on PROCESSOR".
 std::string drawn_by(const GlContext& context);
 

@@ -119,22 +119,7 @@ Table frames_table(const Surfaces& surfaces, int repetitions) {
                                              {"surface, weights alone", shader(surfaces.flat), uniform},
                                              {"surface with normals", shader(surfaces.bumpy), uniform}};
   check_picture(materials.front());
-  std::vector<std::string> head{"material"};
-  std::vector<std::vector<std::string>> rows;
-  for (const FrameMaterial& material : materials) rows.push_back({material.name});
-  for (const int lights : {1, 4}) {
-    tell(fmt::format("surfaces: lights: {}", lights));
-    head.push_back(fmt::format("{} light{}", lights, lights == 1 ? "" : "s"));
-    head.emplace_back("of the uniform model");
-    const std::vector<Times> times = time_frames(materials, lights, repetitions);
-    for (std::size_t i = 0; i < materials.size(); ++i) {
-      rows[i].push_back(fmt::format("{:.1f} ({:.1f})", times[i].least, times[i].median));
-      rows[i].push_back(fmt::format("{:.2f}", times[i].least / times[0].least));
-    }
-  }
-  Table table(head);
-  for (const auto& row : rows) table.add(row);
-  return table;
+  return frame_times("surfaces", "the uniform model", materials, {1, 4}, repetitions);
 }
 
 }  // namespace
