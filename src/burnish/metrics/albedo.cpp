@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <burnish/math/angles.h>
 #include <burnish/math/parallel.h>
@@ -92,6 +93,14 @@ DirectionalAlbedo integrate(BrdfRef source, Vec3 wi, std::size_t ring_count) {
   return result;
 }
 
+/// Whether no channel differs by more than `tolerance` of it or of the channels' mean: negative values may take one to 0.
+bool agree(std::span<const double> a, std::span<const double> b, double tolerance) {
+  const double mean = std::accumulate(a.begin(), a.end(), 0.0) / static_cast<double>(a.size());
+  for (std::size_t c = 0; c < a.size(); ++c)
+    if (!(std::abs(a[c] - b[c]) <= tolerance * std::max(a[c], mean))) return false;
+  return true;
+}
+
 }  // namespace
 
 DirectionalAlbedo directional_albedo(BrdfRef source, Vec3 wi, double tolerance) {
@@ -100,9 +109,7 @@ DirectionalAlbedo directional_albedo(BrdfRef source, Vec3 wi, double tolerance) 
   DirectionalAlbedo result = integrate(source, wi, kMinRings);
   for (std::size_t rings = 2 * kMinRings; rings <= kMaxRings; rings *= 2) {
     DirectionalAlbedo finer = integrate(source, wi, rings);
-    bool settled = true;
-    for (std::size_t c = 0; c < finer.albedo.size(); ++c)
-      settled &= std::abs(finer.albedo[c] - result.albedo[c]) <= tolerance * finer.albedo[c];
+    const bool settled = agree(finer.albedo, result.albedo, tolerance);
     result = std::move(finer);
     if (settled) break;
   }
