@@ -72,6 +72,33 @@ void check_stored(const Table& table) {
                             to_string(table.format), *rounded, *value));
 }
 
+/// Names, sizes and values.
+void check_tables(std::span<const Table> tables, std::size_t channels) {
+  std::set<std::string> names;
+  for (const Table& table : tables) {
+    check_layout(table.layout, table.name);
+    if (table.name.empty() || !names.insert(table.name).second)
+      throw Error(
+          fmt::format("factored BRDF: expected distinct table names, found '{}' twice or empty", table.name));
+    if (table.channels != 1 && table.channels != channels)
+      throw Error(fmt::format("table '{}': expected 1 or {} channels, found {}", table.name, channels,
+                              table.channels));
+    if (table.values.size() != table.layout.node_count() * table.channels)
+      throw Error(fmt::format("table '{}': expected {} values, found {}", table.name,
+                              table.layout.node_count() * table.channels, table.values.size()));
+    check_positive(table);
+    check_stored(table);
+  }
+}
+
+void check_scales(const Lobe& lobe, std::size_t channels) {
+  if (lobe.scale.size() != channels)
+    throw Error(fmt::format("lobe: expected {} scales, found {}", channels, lobe.scale.size()));
+  for (const double s : lobe.scale)
+    if (!(s >= 0) || !std::isfinite(s))
+      throw Error(fmt::format("lobe: expected finite scales >= 0, found {}", s));
+}
+
 // For each channel the logarithm that becomes 1: of its largest value. In rgb9e5 channels share an exponent:
 // there they are brought to one mean, and the largest value of all becomes 1.
 std::vector<double> logs_of_one(const Table& table) {
@@ -107,28 +134,9 @@ FactoredBrdf::FactoredBrdf(std::size_t channels, std::vector<Table> tables, std:
     throw Error(fmt::format("factored BRDF: expected 1 to {} channels, found {}", kMaxChannels, channels));
   if (lobes_.empty()) throw Error("factored BRDF: expected at least one lobe, found none");
 
-  // tables: names, sizes, values
-  std::set<std::string> names;
-  for (const Table& table : tables_) {
-    check_layout(table.layout, table.name);
-    if (table.name.empty() || !names.insert(table.name).second)
-      throw Error(
-          fmt::format("factored BRDF: expected distinct table names, found '{}' twice or empty", table.name));
-    if (table.channels != 1 && table.channels != channels)
-      throw Error(fmt::format("table '{}': expected 1 or {} channels, found {}", table.name, channels,
-                              table.channels));
-    if (table.values.size() != table.layout.node_count() * table.channels)
-      throw Error(fmt::format("table '{}': expected {} values, found {}", table.name,
-                              table.layout.node_count() * table.channels, table.values.size()));
-    check_positive(table);
-    check_stored(table);
-  }
+  check_tables(tables_, channels);
   for (const Lobe& lobe : lobes_) {
-    if (lobe.scale.size() != channels)
-      throw Error(fmt::format("lobe: expected {} scales, found {}", channels, lobe.scale.size()));
-    for (const double s : lobe.scale)
-      if (!(s >= 0) || !std::isfinite(s))
-        throw Error(fmt::format("lobe: expected finite scales >= 0, found {}", s));
+    check_scales(lobe, channels);
 
     // order the factors so that those exchanged by swapping stand side by side
     std::vector<FactorUse> rest = lobe.factors, pairs, singles;
