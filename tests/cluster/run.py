@@ -263,7 +263,7 @@ def kill_node(library, cluster, folder, models, draw):
 
 def fit_by_ranks(burnish, burnish_mpi, cluster, scratch, draw):
     scene, capture, alone, out = (scratch / name for name in ("scene.json", "capture", "alone.burnish", "out.burnish"))
-    scene.write_text(json.dumps(SCENE | {"width": 64, "height": 64}))
+    scene.write_text(json.dumps(SCENE | {"width": 128, "height": 128}))
     subprocess.run([burnish, "measure", "--surface", scene, "-o", capture], check=True, capture_output=True)
     start = time.monotonic()
     subprocess.run([burnish, "fit-surface", capture, "-o", alone, *OPTIONS], check=True, capture_output=True)
@@ -272,23 +272,30 @@ def fit_by_ranks(burnish, burnish_mpi, cluster, scratch, draw):
     script, log = scratch / "ranks.slurm", scratch / "ranks.log"
     script.write_text(MPI_SCRIPT.format(log=log, fit=" ".join(map(str, fit))))
 
-    # undisturbed, on both nodes; then a rank is killed and the job started again
-    for kills in (0, 1):
-        job, killed = cluster.submit(script), 0
-        until(lambda: burnish_processes(scratch, verb=b"fit-surface") or not cluster.waits_for(job), "ranks")
-        if kills:
-            time.sleep(draw.uniform(0, seconds))
-            if running := burnish_processes(scratch, verb=b"fit-surface"):
-                os.kill(draw.choice(running), signal.SIGKILL)
-                killed = 1
-            until(lambda: not cluster.waits_for(job), "the job whose rank was killed")
-            job = cluster.submit(script)
+    def ranks(node=None):
+        return burnish_processes(scratch, node, b"fit-surface")
+
+    def run_job(kill):
+        """Submits the job, kills a rank if asked, and says whether one was there to be killed."""
+        job = cluster.submit(script)
+        until(lambda: ranks("node1") and ranks("node2") or not cluster.waits_for(job), "a rank on each node")
+        if kill:
+            time.sleep(draw.uniform(0, seconds / 2))
+        running = ranks() if kill else []
+        if running:
+            os.kill(draw.choice(running), signal.SIGKILL)
         until(lambda: not cluster.waits_for(job), "the surface's job")
+        return bool(running)
+
+    # undisturbed; then killed, and started again
+    for kill in (False, True):
+        killed = kill and run_job(kill=True)
+        run_job(kill=False)
         check(out.exists() and out.read_bytes() == alone.read_bytes(),
               f"expected the bytes of burnish fit-surface, found {'others' if out.exists() else 'none'}; it said: "
               f"{log.read_text()[-800:]}")
         out.unlink()
-        print(f"a surface by a rank on each node, {killed} killed: the bytes of burnish fit-surface")
+        print(f"a surface by a rank on each node, {int(killed)} killed: the bytes of burnish fit-surface")
 
 
 def main():
