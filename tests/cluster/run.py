@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """A batch on a real Slurm of two nodes on this machine: tests/cluster/run.py BURNISH [--if-there] [--seed S]
-[--materials N].
+[--materials N] [--mpi BURNISH_MPI].
 
 Starts munged, slurmctld and two slurmd of one processor each, with files, ports and a key of their own, in a folder
 that goes afterwards; as root each node has process numbers of its own, so that a node can be killed with all that
@@ -11,10 +11,15 @@ runs on it and nobody sees its processes. Then the job array that `burnish batch
   twice;
 - on both, while one node is killed: the job ends complete, with the same bits.
 
+And with --mpi a job of `burnish-mpi fit-surface`, a rank on each node: the bytes of `burnish fit-surface`, also where
+a rank is killed at a random moment and the job is started again. Without it burnish-mpi is looked for beside BURNISH's
+folder, where -DBURNISH_MPI=ON builds it.
+
 With --if-there it says so and succeeds where Slurm and munge (Debian: slurmctld, slurmd, slurm-client, munge) are
 not installed. Exits with 1 where something else is found."""
 import argparse
 import getpass
+import json
 import os
 import pathlib
 import random
@@ -27,9 +32,19 @@ import sys
 import tempfile
 import time
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent / "mpi"))
+from surface import OPTIONS, SCENE  # noqa: E402
+
 PROGRAMS = ["munged", "slurmctld", "slurmd", "sbatch", "squeue", "scontrol", "sinfo"]
 HOW = ["--model", "pqp", "--samples", "100000", "--threads", "1", "--patience", "2"]
 PATIENCE = 60  # seconds of any wait
+# mpirun starts a daemon on each node by srun. Both are this machine, and its ranks speak by TCP as on two.
+MPI_SCRIPT = """\
+#!/bin/bash
+#SBATCH --nodes=2 --ntasks=2 --ntasks-per-node=1 --output={log}
+export OMPI_MCA_btl=tcp,self
+mpirun --allow-run-as-root --bind-to none -n 2 {fit}
+"""
 CONFIGURATION = """\
 ClusterName=burnish
 SlurmctldHost={host}(127.0.0.1)
@@ -155,13 +170,13 @@ class Cluster:
         return bool(tasks)
 
 
-def burnish_processes(folder, node=None):
-    """Process numbers of the batches that run below a folder; of a node where one is named."""
+def burnish_processes(folder, node=None, verb=b"batch"):
+    """Process numbers of the batches, or of another verb, that run below a folder; of a node where one is named."""
     found = []
     for entry in pathlib.Path("/proc").iterdir():
         try:
             words = (entry / "cmdline").read_bytes().split(b"\0")
-            if len(words) > 1 and words[1] == b"batch" and str(folder).encode() in b" ".join(words):
+            if len(words) > 1 and words[1] == verb and str(folder).encode() in b" ".join(words):
                 environment = (entry / "environ").read_bytes()
                 if node is None or f"SLURMD_NODENAME={node}".encode() in environment.split(b"\0"):
                     found.append(int(entry.name))
@@ -246,12 +261,50 @@ def kill_node(library, cluster, folder, models, draw):
     print(f"a node killed in the middle, {cut} fits cut short: complete, the same bits, nothing done twice")
 
 
+def fit_by_ranks(burnish, burnish_mpi, cluster, scratch, draw):
+    scene, capture, alone, out = (scratch / name for name in ("scene.json", "capture", "alone.burnish", "out.burnish"))
+    scene.write_text(json.dumps(SCENE | {"width": 128, "height": 128}))
+    subprocess.run([burnish, "measure", "--surface", scene, "-o", capture], check=True, capture_output=True)
+    start = time.monotonic()
+    subprocess.run([burnish, "fit-surface", capture, "-o", alone, *OPTIONS], check=True, capture_output=True)
+    seconds = time.monotonic() - start
+    fit = [burnish_mpi, "fit-surface", capture, "-o", out, *OPTIONS, "--resume", "--memory", "1M"]
+    script, log = scratch / "ranks.slurm", scratch / "ranks.log"
+    script.write_text(MPI_SCRIPT.format(log=log, fit=" ".join(map(str, fit))))
+
+    def ranks(node=None):
+        return burnish_processes(scratch, node, b"fit-surface")
+
+    def run_job(kill):
+        """Submits the job, kills a rank if asked, and says whether one was there to be killed."""
+        job = cluster.submit(script)
+        until(lambda: ranks("node1") and ranks("node2") or not cluster.waits_for(job), "a rank on each node")
+        if kill:
+            time.sleep(draw.uniform(0, seconds / 2))
+        running = ranks() if kill else []
+        if running:
+            os.kill(draw.choice(running), signal.SIGKILL)
+        until(lambda: not cluster.waits_for(job), "the surface's job")
+        return bool(running)
+
+    # undisturbed; then killed, and started again
+    for kill in (False, True):
+        killed = kill and run_job(kill=True)
+        run_job(kill=False)
+        check(out.exists() and out.read_bytes() == alone.read_bytes(),
+              f"expected the bytes of burnish fit-surface, found {'others' if out.exists() else 'none'}; it said: "
+              f"{log.read_text()[-800:]}")
+        out.unlink()
+        print(f"a surface by a rank on each node, {int(killed)} killed: the bytes of burnish fit-surface")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("burnish")
     parser.add_argument("--if-there", action="store_true")
     parser.add_argument("--seed", type=int, default=None, help="of the moments; by default another each time")
     parser.add_argument("--materials", type=int, default=24, help="to fit")
+    parser.add_argument("--mpi", help="burnish-mpi")
     arguments = parser.parse_args()
     os.environ["PATH"] += ":/usr/sbin:/sbin"
     if missing := [program for program in PROGRAMS if not shutil.which(program)]:
@@ -273,6 +326,12 @@ def main():
             both = seconds_of(library, cluster, scratch / "both", 2, models)
             print(f"one node {one:.1f} s, two nodes {both:.1f} s, {one / both:.2f} times as fast: the same bits")
             kill_some(library, cluster, scratch / "killed", models, draw)
+            burnish_mpi = arguments.mpi or pathlib.Path(library.burnish).parent.parent / "mpi/burnish-mpi"
+            if not os.path.exists(burnish_mpi) or not shutil.which("mpirun"):
+                print("no burnish-mpi (-DBURNISH_MPI=ON) or no mpirun: no surface by ranks")
+            else:
+                (scratch / "surface").mkdir()
+                fit_by_ranks(library.burnish, os.path.abspath(burnish_mpi), cluster, scratch / "surface", draw)
             kill_node(library, cluster, scratch / "node", models, draw)
 
 

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""How far a book carries a library: tests/library/book.py BURNISH [--folds N] [--every N] [--counts 5 20 100].
+"""How far a book carries a library: tests/library/book.py BURNISH [--folds N] [--every N] [--counts 5 20 100]
+[--draws N].
 
 The library is the 100 MERL stand-ins of BURNISH_DATA/np, its stand-ins of RGL materials (--without-films: without
 them), and the measured materials of BURNISH_DATA/rgl, of which no stand-in is taken. One book is made of all of it, and
 N more, each of all but an Nth: with eight folds each measured material is left out alone. Scored are the measured
 materials and every 10th MERL stand-in: as one of the book's; left out, its weights found of all that is known of it;
-and left out, completed from a few random pairs by the book and by `fit` on these pairs alone. Prints means of `burnish
-compare --count 20000`."""
+and left out, completed from a few random pairs by the book and by `fit` on these pairs alone, several draws of them.
+Prints means of `burnish compare --count 20000`, of each draw as they come."""
 import argparse
 import json
 import os
@@ -16,10 +17,12 @@ import subprocess
 import sys
 import tempfile
 
+FIRST_SEED = 7
+
 
 class Bench:
-    def __init__(self, burnish, folder, counts):
-        self.burnish, self.folder, self.counts, self.rows = burnish, folder, counts, {}
+    def __init__(self, burnish, folder, counts, draws):
+        self.burnish, self.folder, self.counts, self.draws, self.rows = burnish, folder, counts, draws, {}
 
     def run(self, *arguments):
         done = subprocess.run([self.burnish, *map(str, arguments)], capture_output=True, text=True)
@@ -37,15 +40,17 @@ class Bench:
         """Adds the figures of one material that is left out of `shared`."""
         held, said = self.book("held", [argument], "--shared", shared)
         name = said["materials"][0]
-        models = {"in the book": f"book:{whole}#{name}", "left out, all known": f"book:{held}#{name}"}
+        models = [("in the book", f"book:{whole}#{name}"), ("left out, all known", f"book:{held}#{name}")]
         for count in self.counts:
-            pairs = self.folder / "pairs.csv"
-            self.run("measure", argument, "-o", pairs, "--count", count, "--seed", 7)
-            for how, options in (("book", ["--book", shared]), ("fit", [])):
-                models[f"{count} pairs, {how}"] = path = self.folder / f"{count}-{how}.burnish"
-                self.run("fit", pairs, "-o", path, *options)
-        figures = json.loads(self.run("compare", argument, *models.values(), "--count", 20000, "--json"))
-        for what, figure in zip(models, figures):
+            for seed in range(FIRST_SEED, FIRST_SEED + self.draws):
+                pairs = self.folder / "pairs.csv"
+                self.run("measure", argument, "-o", pairs, "--count", count, "--seed", seed)
+                for how, options in (("book", ["--book", shared]), ("fit", [])):
+                    path = self.folder / f"{count}-{seed}-{how}.burnish"
+                    self.run("fit", pairs, "-o", path, *options)
+                    models.append((f"{count} pairs, {how}", path))
+        figures = json.loads(self.run("compare", argument, *(path for _, path in models), "--count", 20000, "--json"))
+        for (what, _), figure in zip(models, figures):
             self.rows.setdefault(what, {}).setdefault(of, []).append((figure["psnr"], figure["relative"]))
         print(f"{name}: " + ", ".join(f"{figure['psnr']:.1f} dB {figure['relative']:.3f}" for figure in figures),
               file=sys.stderr)
@@ -57,6 +62,7 @@ def main():
     parser.add_argument("--folds", type=int, default=8)
     parser.add_argument("--every", type=int, default=10, help="of the stand-ins, this one is scored")
     parser.add_argument("--counts", type=int, nargs="+", default=[5, 20, 100])
+    parser.add_argument("--draws", type=int, default=3, help="of the pairs of a count")
     parser.add_argument("--without-films", action="store_true", help="leave the stand-ins of RGL materials out")
     arguments = parser.parse_args()
     data = os.environ.get("BURNISH_DATA")
@@ -71,7 +77,7 @@ def main():
         films = []
     scored = set(measured + stand_ins[::arguments.every])
     with tempfile.TemporaryDirectory() as name:
-        bench = Bench(os.path.abspath(arguments.burnish), pathlib.Path(name), arguments.counts)
+        bench = Bench(os.path.abspath(arguments.burnish), pathlib.Path(name), arguments.counts, arguments.draws)
         library = stand_ins + films + measured
         whole, said = bench.book("whole", library)
         print(f"{len(library)} materials of {said['bytes_a_material']} bytes, {said['shared_bytes']} shared")

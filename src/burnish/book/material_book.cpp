@@ -44,6 +44,34 @@ void check_axis(const BookAxis& axis, std::size_t nodes) {
         "scales, steps and deviations above 0", "others");
 }
 
+// With a node between any two along theta_d and phi_d. Tables are linear in f where a book is in its logarithm, and
+// between nodes that are far apart these differ; along theta_h nodes are near one another.
+TableLayout refined(TableLayout layout) {
+  layout.height = 2 * layout.height - 1;
+  layout.depth = 2 * layout.depth - 1;
+  return layout;
+}
+
+std::vector<double> refined(const TableLayout& coarse, std::span<const double> logs) {
+  const TableLayout fine = refined(coarse);
+  const auto row = static_cast<std::size_t>(coarse.width) * MaterialBook::kChannels;
+  const auto coarse_height = static_cast<std::size_t>(coarse.height),
+             height = static_cast<std::size_t>(fine.height), depth = static_cast<std::size_t>(fine.depth);
+  std::vector<double> all(row * height * depth);
+  for (std::size_t z = 0; z < depth; ++z)
+    for (std::size_t y = 0; y < height; ++y)
+      for (std::size_t x = 0; x < row; ++x) {
+        // an odd place is the mean of its neighbours, an even one of itself and itself
+        const auto at = [&](std::size_t layer, std::size_t line) {
+          return logs[(layer * coarse_height + line) * row + x];
+        };
+        all[(z * height + y) * row + x] = (at(z / 2, y / 2) + at(z / 2, (y + 1) / 2) +
+                                           at((z + 1) / 2, y / 2) + at((z + 1) / 2, (y + 1) / 2)) /
+                                          4;
+      }
+  return all;
+}
+
 }  // namespace
 
 const std::array<std::array<double, 3>, MaterialBook::kAxes> kBookAxes = {
@@ -79,8 +107,11 @@ std::array<NodeShare, 8> book_nodes(const TableLayout& layout, const DirectionPa
   return shares;
 }
 
-FactoredBrdf brdf_of_logs(const TableLayout& layout, std::span<const double> logs, TableFormat format) {
+FactoredBrdf brdf_of_logs(const TableLayout& coarse, std::span<const double> coarse_logs,
+                          TableFormat format) {
   constexpr std::size_t kChannels = MaterialBook::kChannels;
+  const TableLayout layout = refined(coarse);
+  const std::vector<double> logs = refined(coarse, coarse_logs);
   std::vector<double> log_f;
   for (const double log : logs)
     log_f.push_back(std::log(std::max(std::exp(std::min(log, kMostLog)) - MaterialBook::kFloor, kLeast)));

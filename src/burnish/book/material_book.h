@@ -102,7 +102,8 @@ struct NodeShare {
 std::array<NodeShare, 8> book_nodes(const TableLayout& layout, const DirectionPair& pair) noexcept;
 
 /// The model "z(h) g(h,d,azimuth)" of logarithms ln(f + MaterialBook::kFloor) at a volume's nodes, [node][channel]:
-/// positive, whatever they are. Throws Error as from_log_tables does.
-FactoredBrdf brdf_of_logs(const TableLayout& layout, std::span<const double> logs, TableFormat format);
+/// positive, whatever they are. Its volume has a node more between any two along theta_d and phi_d, since tables are
+/// linear in f. Throws Error as from_log_tables does.
+FactoredBrdf brdf_of_logs(const TableLayout& coarse, std::span<const double> coarse_logs, TableFormat format);
 
 }  // namespace burnish

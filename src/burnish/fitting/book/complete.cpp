@@ -27,11 +27,20 @@ constexpr std::size_t kEvidencePairs = 150;  // by which the prior is chosen
 
 // What is tried: near one of the library's materials, or near their mean, where far out is allowed.
 constexpr std::array kNearSpreads = {0.1, 0.2, 0.4, 0.7}, kMeanSpreads = {1.0, 2.0, 4.0, 8.0};
-constexpr std::array kResiduals = {0.1, 1.0, 10.0, 100.0}, kNoises = {1e-4, 1e-3, 1e-2, 1e-1};
+constexpr std::array kResiduals = {0.3, 3.0, 30.0, 300.0};
+constexpr std::array kNoises = {1e-4, 1e-3, 1e-2, 3e-2, 0.1, 0.3};
+
+// What is believed is the mean of all that is at least so likely beside the likeliest.
+constexpr double kLeastShare = 0.01;
+
+// Where one direction is near the horizon measurements are less certain: variances are 1 + (this / cosine)^2 times as
+// large, as those of scans of RGL materials about a smooth reciprocal volume are.
+constexpr double kGrazingCosine = 0.3, kLeastCosine = 1e-3;
 
 // How far what is not in the book reaches: along sqrt(theta_h / (pi/2)), theta_d / (pi/2) and
-// |cos theta_i - cos theta_o| / 2.
+// |cos theta_i - cos theta_o| / 2; a third each of it so many times as far.
 constexpr std::array kReach = {0.15, 0.25, 0.25};
+constexpr std::array kReaches = {0.7, 2.0, 6.0};
 
 std::vector<CompletionPrior> priors() {
   std::vector<CompletionPrior> all;
@@ -77,7 +86,9 @@ std::vector<Place> places_of_nodes(const TableLayout& layout) {
 double likeness(const Place& a, const Place& b) {
   double distance2 = 0;
   for (std::size_t k = 0; k < a.size(); ++k) distance2 += (a[k] - b[k]) * (a[k] - b[k]);
-  return std::exp(-0.5 * distance2);
+  double sum = 0;
+  for (const double reach : kReaches) sum += std::exp(-0.5 * distance2 / (reach * reach));
+  return sum / static_cast<double>(kReaches.size());
 }
 
 /// The pairs as one axis of colour sees them.
@@ -94,6 +105,7 @@ struct PairData {
   std::array<AxisData, kColours> axes;
   MatrixXd likenesses;
   std::vector<Place> places;
+  VectorXd noises;  // variances of the logarithms, beside those of the most certain pairs
 };
 
 // Weights of all materials, [component][material].
@@ -110,7 +122,13 @@ PairData pair_data(const MaterialBook& book, const TrainingSet& set, std::span<c
   const auto count = static_cast<Eigen::Index>(chosen.size());
   PairData data;
   data.likenesses.resize(count, count);
-  for (const std::size_t i : chosen) data.places.push_back(place_of(set.pairs[i]));
+  data.noises.resize(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const DirectionPair& pair = set.pairs[chosen[static_cast<std::size_t>(i)]];
+    data.places.push_back(place_of(pair));
+    const double relative = kGrazingCosine / std::max(std::min(pair.wi.z, pair.wo.z), kLeastCosine);
+    data.noises(i) = 1 + relative * relative;
+  }
   for (Eigen::Index i = 0; i < count; ++i)
     for (Eigen::Index j = 0; j < count; ++j)
       data.likenesses(i, j) =
@@ -145,17 +163,18 @@ PairData pair_data(const MaterialBook& book, const TrainingSet& set, std::span<c
   return data;
 }
 
-Eigen::LLT<MatrixXd> factored(const AxisData& axis, const MatrixXd& likenesses,
-                              const CompletionPrior& prior) {
+Eigen::LLT<MatrixXd> factored(const PairData& data, std::size_t u, const CompletionPrior& prior) {
+  const AxisData& axis = data.axes[u];
   const MatrixXd spread = axis.components * (prior.spread * axis.deviations).asDiagonal();
-  MatrixXd covariance = spread * spread.transpose() + prior.residual * axis.residual2 * likenesses;
-  covariance.diagonal().array() += prior.noise;
+  MatrixXd covariance = spread * spread.transpose() + prior.residual * axis.residual2 * data.likenesses;
+  covariance.diagonal() += prior.noise * data.noises;
   return Eigen::LLT<MatrixXd>(std::move(covariance));
 }
 
 /// How likely pairs are by a prior, of one material each where it is near one: logarithms less a constant.
-VectorXd log_evidences(const AxisData& axis, const MatrixXd& likenesses, const CompletionPrior& prior) {
-  const Eigen::LLT<MatrixXd> llt = factored(axis, likenesses, prior);
+VectorXd log_evidences(const PairData& data, std::size_t u, const CompletionPrior& prior) {
+  const AxisData& axis = data.axes[u];
+  const Eigen::LLT<MatrixXd> llt = factored(data, u, prior);
   MatrixXd left = prior.near_one ? MatrixXd((-axis.library).colwise() + axis.values) : MatrixXd(axis.values);
   llt.matrixL().solveInPlace(left);
   const MatrixXd triangle = llt.matrixL();
@@ -174,27 +193,46 @@ constexpr std::array<std::size_t, 1> kBrightness = {0};
 constexpr std::array<std::size_t, 2> kColour = {1, 2};
 
 VectorXd group_evidences(const PairData& data, AxisGroup group, const CompletionPrior& prior) {
-  VectorXd sum = log_evidences(data.axes[group.front()], data.likenesses, prior);
-  for (const std::size_t u : group.subspan(1)) sum += log_evidences(data.axes[u], data.likenesses, prior);
+  VectorXd sum = log_evidences(data, group.front(), prior);
+  for (const std::size_t u : group.subspan(1)) sum += log_evidences(data, u, prior);
   return sum;
 }
 
-CompletionPrior likeliest_prior(const PairData& data, AxisGroup group) {
+/// A prior and how much it counts.
+struct Belief {
+  CompletionPrior prior;
+  double share = 0;
+};
+
+// The likeliest first, with the others that are likely; their shares' sum is 1.
+std::vector<Belief> beliefs_of(const PairData& data, AxisGroup group) {
   const std::vector<CompletionPrior> all = priors();
   std::vector<double> evidence(all.size());
   for_each_chunk(all.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
     evidence[k] = log_mean(group_evidences(data, group, all[k]));
   });
-  return all[static_cast<std::size_t>(std::ranges::max_element(evidence) - evidence.begin())];
+  const double most = std::ranges::max(evidence);
+  std::vector<Belief> beliefs;
+  double sum = 0;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const double share = std::exp(evidence[k] - most);
+    if (share < kLeastShare) continue;
+    beliefs.push_back({all[k], share});
+    sum += share;
+  }
+  std::ranges::stable_sort(beliefs, std::ranges::greater(), &Belief::share);
+  for (Belief& belief : beliefs) belief.share /= sum;
+  return beliefs;
 }
 
 /// What the pairs say of one axis: weights, and what is not in the book, as a sum of likenesses to the pairs.
 struct AxisMean {
-  std::vector<double> weights;
+  VectorXd weights;
   VectorXd beyond;
   VectorXd errors, errors_left_out;  // of each pair, by what all say and by what the others say
 };
 
+// `shares`: of the library's materials, where the prior is near one of them.
 AxisMean mean_given(const PairData& data, std::size_t u, const CompletionPrior& prior, const VectorXd& shares,
                     const MatrixXd& weights_of_library) {
   const AxisData& axis = data.axes[u];
@@ -203,16 +241,54 @@ AxisMean mean_given(const PairData& data, std::size_t u, const CompletionPrior& 
     centre = weights_of_library * shares;
     left -= axis.library * shares;
   }
-  const Eigen::LLT<MatrixXd> llt = factored(axis, data.likenesses, prior);
+  const Eigen::LLT<MatrixXd> llt = factored(data, u, prior);
   const VectorXd solved = llt.solve(left);
   const VectorXd variances = (prior.spread * axis.deviations).array().square();
-  const VectorXd weights = centre + variances.cwiseProduct(axis.components.transpose() * solved);
   // the pair that is left out: [Rasmussen 2006, eq. 5.12]
   const MatrixXd inverse = llt.solve(MatrixXd::Identity(left.size(), left.size()));
-  return {.weights = {weights.begin(), weights.end()},
+  return {.weights = centre + variances.cwiseProduct(axis.components.transpose() * solved),
           .beyond = prior.residual * axis.residual2 * solved,
-          .errors = prior.noise * solved,
+          .errors = prior.noise * data.noises.cwiseProduct(solved),
           .errors_left_out = solved.cwiseQuotient(inverse.diagonal())};
+}
+
+/// The axes of a group by all that is believed of them.
+struct GroupMean {
+  std::vector<AxisMean> axes;
+  std::string nearest;  // the likeliest of the library's materials, where the likeliest prior is near one
+};
+
+GroupMean mean_of(const MaterialBook& book, const PairData& data, AxisGroup group,
+                  const std::vector<Belief>& beliefs) {
+  GroupMean mean;
+  std::vector<MatrixXd> library;
+  for (const std::size_t u : group) {
+    const Eigen::Index pairs = data.noises.size(), components = data.axes[u].components.cols();
+    mean.axes.push_back({.weights = VectorXd::Zero(components),
+                         .beyond = VectorXd::Zero(pairs),
+                         .errors = VectorXd::Zero(pairs),
+                         .errors_left_out = VectorXd::Zero(pairs)});
+    library.push_back(library_weights(book, u));
+  }
+  for (std::size_t k = 0; k < beliefs.size(); ++k) {
+    const auto& [prior, share] = beliefs[k];
+    VectorXd shares;
+    if (prior.near_one) {
+      const VectorXd evidences = group_evidences(data, group, prior);
+      shares = (evidences.array() - evidences.maxCoeff()).exp();
+      shares /= shares.sum();
+      Eigen::Index likeliest = 0;
+      shares.maxCoeff(&likeliest);
+      if (k == 0) mean.nearest = book.materials()[static_cast<std::size_t>(likeliest)].name;
+    }
+    for (std::size_t j = 0; j < group.size(); ++j) {
+      const AxisMean one = mean_given(data, group[j], prior, shares, library[j]);
+      for (VectorXd AxisMean::*part :
+           {&AxisMean::weights, &AxisMean::beyond, &AxisMean::errors, &AxisMean::errors_left_out})
+        mean.axes[j].*part += share * one.*part;
+    }
+  }
+  return mean;
 }
 
 // exp of the mean absolute logarithm over pairs and channels, less 1.
@@ -235,6 +311,26 @@ std::vector<std::size_t> evenly(std::size_t count, std::size_t most) {
   return places;
 }
 
+// ln(f + floor), [node][channel], by what is believed of each axis.
+std::vector<double> logs_at_nodes(const MaterialBook& book, const std::vector<Place>& pairs,
+                                  const std::array<AxisMean, kColours>& means) {
+  std::array<std::vector<double>, kColours> weights;
+  for (std::size_t u = 0; u < kColours; ++u)
+    weights[u].assign(means[u].weights.begin(), means[u].weights.end());
+  std::vector<double> logs = book.logs(weights);
+  const std::vector<Place> places = places_of_nodes(book.layout());
+  for_each_chunk(places.size(), 64, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n)
+      for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const double like = likeness(places[n], pairs[i]);
+        for (std::size_t u = 0; u < kColours; ++u)
+          for (std::size_t c = 0; c < kRgb; ++c)
+            logs[n * kRgb + c] += kBookAxes[u][c] * like * means[u].beyond(static_cast<Eigen::Index>(i));
+      }
+  });
+  return logs;
+}
+
 void check_completed(const MaterialBook& book, const Samples& samples) {
   if (book.materials().empty()) throw Error("book: expected materials in it, found none");
   if (!samples.isotropic || !book_takes(samples.channels))
@@ -252,46 +348,22 @@ Completion complete(const MaterialBook& book, const Samples& samples, TableForma
 
   // what to believe, from a part of the pairs where they are many
   const PairData part = pair_data(book, set, evenly(set.size(), kEvidencePairs));
-  const CompletionPrior brightness = likeliest_prior(part, kBrightness),
-                        colour = likeliest_prior(part, kColour);
+  const std::vector<Belief> brightness = beliefs_of(part, kBrightness), colour = beliefs_of(part, kColour);
 
   // what follows from that and all pairs
   const PairData data = pair_data(book, set, used);
-  std::array<AxisMean, kColours> means;
-  std::string nearest;
-  for (const AxisGroup group : {AxisGroup(kBrightness), AxisGroup(kColour)}) {
-    const CompletionPrior& prior = group.size() == 1 ? brightness : colour;
-    VectorXd shares;
-    if (prior.near_one) {
-      const VectorXd evidences = group_evidences(data, group, prior);
-      shares = (evidences.array() - evidences.maxCoeff()).exp();
-      shares /= shares.sum();
-      Eigen::Index likeliest = 0;
-      shares.maxCoeff(&likeliest);
-      if (group.size() == 1) nearest = book.materials()[static_cast<std::size_t>(likeliest)].name;
-    }
-    for (const std::size_t u : group) means[u] = mean_given(data, u, prior, shares, library_weights(book, u));
-  }
+  GroupMean bright = mean_of(book, data, kBrightness, brightness),
+            coloured = mean_of(book, data, kColour, colour);
+  const std::array means = {std::move(bright.axes[0]), std::move(coloured.axes[0]),
+                            std::move(coloured.axes[1])};
 
-  // at the nodes
-  std::vector<double> logs = book.logs({means[0].weights, means[1].weights, means[2].weights});
-  const std::vector<Place> places = places_of_nodes(book.layout());
-  for_each_chunk(places.size(), 64, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n)
-      for (std::size_t i = 0; i < used.size(); ++i) {
-        const double like = likeness(places[n], data.places[i]);
-        for (std::size_t u = 0; u < kColours; ++u)
-          for (std::size_t c = 0; c < kRgb; ++c)
-            logs[n * kRgb + c] += kBookAxes[u][c] * like * means[u].beyond(static_cast<Eigen::Index>(i));
-      }
-  });
-  return {.brdf = brdf_of_logs(book.layout(), logs, format),
+  return {.brdf = brdf_of_logs(book.layout(), logs_at_nodes(book, data.places, means), format),
           .report = {.samples = set.size(),
                      .used = used.size(),
                      .materials = book.materials().size(),
-                     .brightness = brightness,
-                     .colour = colour,
-                     .nearest = std::move(nearest),
+                     .brightness = brightness.front().prior,
+                     .colour = colour.front().prior,
+                     .nearest = std::move(bright.nearest),
                      .relative = relative_of(means, &AxisMean::errors),
                      .relative_left_out = relative_of(means, &AxisMean::errors_left_out)}};
 }
