@@ -128,7 +128,7 @@ NodeFigures held_out_figures(const MeasuredNodes& nodes, const NodeSmoothness& s
 std::optional<NodeFigures> held_out_incidences(const MeasuredNodes& nodes, const NodeSmoothness& smoothness) {
   std::vector<std::uint32_t> there(nodes.incidence);
   std::ranges::sort(there);
-  there.erase(std::ranges::unique(there).begin(), there.end());
+  there.erase(std::unique(there.begin(), there.end()), there.end());
   if (there.size() < kLeastIncidences || there.size() > kMostIncidences) return {};
   return held_out(nodes, smoothness, kIncidenceHands, [&](std::size_t i) {
     const auto place =

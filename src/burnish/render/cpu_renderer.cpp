@@ -67,13 +67,13 @@ void check(const Scene& scene, std::span<const BrdfRef> materials, int width, in
 
 /// A surface at one place, in the frame there.
 struct PlacedBrdf {
-  const SpatialBrdf& surface;
+  const SpatialBrdf* surface;
   SpatialBrdf::Place place;
 
-  std::size_t channels() const noexcept { return surface.channels(); }
+  std::size_t channels() const noexcept { return surface->channels(); }
   static bool isotropic() noexcept { return false; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
-    surface.eval(place, wi, wo, f);
+    surface->eval(place, wi, wo, f);
     return true;
   }
 };
@@ -195,8 +195,8 @@ Image render_cpu(const Scene& scene, std::span<const SceneMaterial> materials, c
               SurfacePoint point = point_of(part.mesh, *hit);
               std::optional<PlacedBrdf> placed;
               if (const auto* const surface = std::get_if<const SpatialBrdf*>(&materials[material])) {
-                placed.emplace(**surface,
-                               place_of(**surface, part.mesh, *hit, scene.camera.eye, pixels, x, y));
+                placed = PlacedBrdf{*surface,
+                                    place_of(**surface, part.mesh, *hit, scene.camera.eye, pixels, x, y)};
                 turn(point, placed->place.frame);
               }
               const BrdfRef brdf = placed ? BrdfRef(*placed) : means.refs[material];
