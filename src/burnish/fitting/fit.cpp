@@ -14,7 +14,6 @@
 #include <burnish/fitting/numerics/node_numbers.h>
 #include <burnish/fitting/one_lobe/cross_validation.h>
 #include <burnish/fitting/one_lobe/log_error.h>
-#include <burnish/fitting/plans/backscatter.h>
 #include <burnish/fitting/plans/budget_ladder.h>
 #include <burnish/fitting/plans/fetch_plan.h>
 #include <burnish/fitting/plans/fit_plan.h>
@@ -382,7 +381,7 @@ class Fitter {
                     std::move(report));
     }
     if (!brdf_.isotropic()) {
-      const ModelSpec spec = hemisphere_spec(limit, channels(), backscatters(reference()));
+      const ModelSpec spec = hemisphere_spec(limit, channels());
       const TrainingSet set = drawn_set(training_for(bytes, limit.texel_bytes, false));
       return finish(fit_lobes(set, spec, refine), set, refine, std::move(report));
     }

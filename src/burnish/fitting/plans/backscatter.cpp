@@ -10,19 +10,18 @@ namespace burnish {
 namespace {
 
 constexpr double kLeastHeight = 1.5;
-constexpr double kTilts_deg[] = {20, 30, 40, 50, 60}, kTurns_deg[] = {0, 90};
+constexpr double kTilts_deg[] = {20, 30, 40, 50, 60};
 constexpr double kNear_deg[] = {0.25, 0.75}, kRing_deg[] = {10, 12, 14};
 constexpr int kAzimuths = 8;
 
 /// The mean over channels and azimuths at some theta_d; nothing where a value is not known.
 template <class Angles>
-std::optional<double> mean_at(BrdfRef source, double theta_h, double phi_h, const Angles& theta_d_deg) {
+std::optional<double> mean_at(BrdfRef source, double theta_h, const Angles& theta_d_deg) {
   std::vector<double> f(source.channels());
   double sum = 0;
   for (const double angle_deg : theta_d_deg)
     for (int i = 0; i < kAzimuths; ++i) {
-      const auto [wi, wo] =
-          from_half_diff({theta_h, phi_h, radians(angle_deg), kTwoPi * (i + 0.5) / kAzimuths});
+      const auto [wi, wo] = from_half_diff({theta_h, 0, radians(angle_deg), kTwoPi * (i + 0.5) / kAzimuths});
       if (!source.eval(wi, wo, f)) return {};
       for (const double value : f) sum += value;
     }
@@ -32,17 +31,15 @@ std::optional<double> mean_at(BrdfRef source, double theta_h, double phi_h, cons
 }  // namespace
 
 bool backscatters(BrdfRef source) {
+  if (!source.isotropic()) return false;
   int known = 0, higher = 0;
-  for (const double tilt_deg : kTilts_deg)
-    for (const double turn_deg : kTurns_deg) {
-      if (turn_deg > 0 && source.isotropic()) continue;
-      const double theta_h = radians(tilt_deg), phi_h = radians(turn_deg);
-      const auto near = mean_at(source, theta_h, phi_h, kNear_deg),
-                 ring = mean_at(source, theta_h, phi_h, kRing_deg);
-      if (!near || !ring) continue;
-      ++known;
-      higher += *near > kLeastHeight * *ring;
-    }
+  for (const double tilt_deg : kTilts_deg) {
+    const auto near = mean_at(source, radians(tilt_deg), kNear_deg),
+               ring = mean_at(source, radians(tilt_deg), kRing_deg);
+    if (!near || !ring) continue;
+    ++known;
+    higher += *near > kLeastHeight * *ring;
+  }
   return 2 * higher > known;
 }
 

@@ -14,23 +14,23 @@
 namespace burnish {
 namespace {
 
-/// Ten times as high where wi = wo, half of that 2.1 degrees from there.
+/// Ten times as high where wi = wo, half of that 3.3 degrees from there.
 struct RetroFactor {
   static constexpr double kSlope = 9;
   static double of(double slope, std::size_t, Vec3 wi, Vec3 wo) noexcept {
-    const double share = angle_between(wi, wo) / radians(2.5);
+    const double share = angle_between(wi, wo) / radians(4);
     return 1 + slope * std::exp(-share * share);
   }
 };
 using Tape = testing::GlossyTimes<RetroFactor>;
 
 /// The largest relative error of a model at wi = wo and a degree from there, 15 to 60 degrees off the normal.
-double error_of_peak(const Tape& tape, const FactoredBrdf& model, double phi) {
+double error_of_peak(const Tape& tape, const FactoredBrdf& model) {
   double largest = 0;
   for (const double theta_deg : {15.0, 30.0, 60.0})
     for (const double off_deg : {0.0, 1.0}) {
-      const Vec3 wi = spherical_direction(radians(theta_deg), phi),
-                 wo = spherical_direction(radians(theta_deg + off_deg), phi);
+      const Vec3 wi = spherical_direction(radians(theta_deg), 0.7),
+                 wo = spherical_direction(radians(theta_deg + off_deg), 0.7);
       std::array<double, 3> truth, found;
       tape.eval(wi, wo, truth);
       model.eval(wi, wo, found);
@@ -41,7 +41,6 @@ double error_of_peak(const Tape& tape, const FactoredBrdf& model, double phi) {
 
 TEST(Backscatter, IsSeenWhereALobeStandsAtThetaD0) {
   EXPECT_TRUE(backscatters(Tape{}));
-  EXPECT_TRUE(backscatters(Tape{.even = {.a = 40, .b = 10}}));
   EXPECT_FALSE(backscatters(Tape{.slope = 0.3}));
   EXPECT_FALSE(backscatters(Tape{.even = {.blind_below = 1}}));  // knows nothing
   for (const char* spec : {"ggx:alpha_x=0.1", "ggx:alpha_x=0.5,alpha_y=0.2", "lambert", "openpbr"})
@@ -56,22 +55,7 @@ TEST(Backscatter, APeakIsHeldToFivePercentInTwoFetches) {
       tape, draw_training_set(tape, {.pictures = 8'000, .directions = 20'000, .crowded = true}), 0.1);
   const FactoredBrdf model =
       to_brdf(fit_volumes(set, volume_specs(tape, limit), {.smooth = 1e-8}).model, TableFormat::half);
-  EXPECT_LT(error_of_peak(tape, model, 0.7), 0.05);
-}
-
-TEST(Backscatter, AnAnisotropicPeakIsHeldBesideHemispheres) {
-  BURNISH_SKIP_WHERE_SANITIZED();
-  const Tape tape{.even = {.a = 40, .b = 10}};
-  const TrainingSet set =
-      draw_training_set(tape, {.pictures = 10'000, .directions = 60'000, .crowded = true});
-  const auto error = [&](bool retro) {
-    const ModelSpec spec = hemisphere_spec({.bytes = 32'768, .fetches = 4}, 3, retro);
-    const FactoredBrdf model = to_brdf(fit_lobes(set, spec, {.smooth = 1e-8}).model, TableFormat::half);
-    return std::max(error_of_peak(tape, model, 0.7), error_of_peak(tape, model, 1.5));
-  };
-  const double held = error(true);
-  EXPECT_LT(held, 0.1);
-  EXPECT_LT(held, 0.5 * error(false));
+  EXPECT_LT(error_of_peak(tape, model), 0.05);
 }
 
 }  // namespace

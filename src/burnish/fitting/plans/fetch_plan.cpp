@@ -266,7 +266,7 @@ bool holds_model(BrdfRef source, const CostLimit& limit) {
       volume_spec(kForms[0], limit, source.channels(),
                   {.twisted = true, .ordered = limit.fetches > 1 && order_matters(source), .retro = true});
     else
-      hemisphere_spec(limit, source.channels(), true);
+      hemisphere_spec(limit, source.channels());
     return true;
   } catch (const Error&) {
     return false;
@@ -356,13 +356,13 @@ const FetchTrial& trial_at_knee(std::span<const FetchTrial> trials) {
                                [&](const FetchTrial& trial) { return trial.error <= kKneeFactor * least; });
 }
 
-ModelSpec hemisphere_spec(const CostLimit& limit, std::size_t channels, bool retro) {
+ModelSpec hemisphere_spec(const CostLimit& limit, std::size_t channels) {
   const double texels = static_cast<double>(limit.bytes / limit.texel_bytes);
   SpecBuilder builder;
   const int p = std::max(5, static_cast<int>(std::sqrt(kBorderShare * texels)));
   builder.add("p", {.shape = TableShape::disk, .width = p, .height = p},
               {{.projection = kProjectWo}, {.projection = kProjectWi}});
-  const TableLayout volume = volume_of(kBesideHemispheres, kVolumeShare * texels, retro);
+  const TableLayout volume = volume_of(kBesideHemispheres, kVolumeShare * texels, false);
   builder.add(
       "v", volume,
       {{.projection = kProjectHalf, .projection_y = kProjectDifference, .projection_z = kProjectAzimuth}});

@@ -36,9 +36,8 @@ std::vector<ModelSpec> volume_specs(BrdfRef source, const CostLimit& limit);
 
 /// An anisotropic model within the limit, of at least four fetches: hemispheres q(h) p(wo) p(wi) times a volume
 /// v(theta_h,theta_d,phi_d), which follows how they depend on each other, and from five fetches on c(theta_d) beside
-/// them for what is spread wide. With `retro` nodes crowd at theta_d = 0. Throws Error where the bytes hold no such
-/// tables.
-ModelSpec hemisphere_spec(const CostLimit& limit, std::size_t channels, bool retro = false);
+/// them for what is spread wide. Throws Error where the bytes hold no such tables.
+ModelSpec hemisphere_spec(const CostLimit& limit, std::size_t channels);
 
 /// The error of the models of an isotropic source that try_fetches looks at may be this many times the least.
 inline constexpr double kKneeFactor = 1.02;
