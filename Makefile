@@ -126,9 +126,9 @@ hw-exhaustive: test-deps build
 fuzz: test-deps
 	@tests/fuzz/run.sh $(FUZZ_SECONDS)
 
-damaged: test-deps build
-	@cmake --preset fuzz > /dev/null && cmake --build --preset fuzz --target make_seeds
-	@build/fuzz/tests/fuzz/make_seeds build/damaged/seeds
+damaged: test-deps
+	@cmake --preset release > /dev/null && cmake --build --preset release -j $(JOBS) --target burnish_cli make_seeds
+	@build/release/tests/fuzz/make_seeds build/damaged/seeds
 	@tests/fuzz/damaged.py $(BURNISH) build/damaged/seeds $(BURNISH_DATA)
 
 format: test-deps

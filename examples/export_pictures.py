@@ -10,8 +10,9 @@ all of them as one sheet. Needs numpy, materialx, moderngl, mitsuba and the pack
 in FOLDER/node_modules, and Chromium; and a Python with bpy (Blender), by default this one. A program that is missing
 is named and left out.
 
-OpenPBR is a node of MaterialX and has the KHR extensions of glTF. three.js, Babylon.js and Mitsuba have no such
-material, so a factored model of the parameters stands for it there: --openpbr-model, or else fitted.
+OpenPBR is a node of MaterialX and has the KHR extensions of glTF. three.js and Mitsuba have no such material, and
+Babylon.js one with formulas of its own, so a factored model of the parameters stands for it there: --openpbr-model, or
+else fitted. Babylon's own is drawn beside it.
 """
 import argparse
 import base64
@@ -21,6 +22,7 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import xml.etree.ElementTree
 
 import numpy as np
 
@@ -215,6 +217,23 @@ scene.whenReadyAsync().then(async () => {
 """
 
 
+def babylon_openpbr(mtlx):
+    """BABYLON with the program's own OpenPBRMaterial, its inputs those of a .mtlx's open_pbr_surface."""
+    node = xml.etree.ElementTree.parse(mtlx).getroot().find(".//open_pbr_surface")
+    camel = lambda name: name.split("_")[0] + "".join(word.capitalize() for word in name.split("_")[1:])
+    lines = ['mesh.material = new BABYLON.OpenPBRMaterial("m", scene);',
+             "scene.imageProcessingConfiguration.applyByPostProcess = true;  // linear"]
+    for given in node.findall("input"):
+        value = given.get("value")
+        if given.get("type") == "color3":
+            value = f"new BABYLON.Color3({value})"
+        if given.get("type") in ("color3", "float"):
+            lines.append(f'mesh.material.{camel(given.get("name"))} = {value};')
+    loaded, made = 'import {createMaterial} from "./m.babylon.js";\n', "mesh.material = createMaterial(BABYLON, scene, {linear: true});"
+    assert loaded in BABYLON and made in BABYLON
+    return BABYLON.replace(loaded, "").replace(made, "\n".join(lines))
+
+
 def in_chromium(script, folder, size, **addresses):
     side = size * SAMPLES
     position, tangent, triangles = sphere()
@@ -349,6 +368,11 @@ def jobs_of(cli, model, openpbr, openpbr_model, arguments, folder):
 
         return [("three.js", draw_three, True), ("Babylon.js", draw_babylon, True)]
 
+    def babylon_own(at):
+        if not babylon.exists():
+            raise RuntimeError("no babylonjs in --npm")
+        return in_chromium(babylon_openpbr(at / "m.mtlx"), at, size, babylon=babylon.as_uri())
+
     def blender(at):
         return [("Blender, glTF", lambda: in_blender(arguments.blender, at / "m.glb", size, at), False),
                 ("Blender, USD", lambda: in_blender(arguments.blender, at / "m.usda", size, at), False)]
@@ -362,6 +386,7 @@ def jobs_of(cli, model, openpbr, openpbr_model, arguments, folder):
         exported(cli, openpbr_model, b / "web", "three", "babylon")
         rows.append(("OpenPBR", openpbr,
                      [("MaterialX GLSL", lambda: in_materialx(b / "m.mtlx", size, b), True), *web(b / "web"),
+                      ("Babylon's own", lambda: babylon_own(b), False),
                       ("Mitsuba", lambda: in_mitsuba({"type": "burnish", "filename": openpbr_model}, size, b), True),
                       *blender(b)]))
     return rows

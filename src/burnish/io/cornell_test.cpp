@@ -55,6 +55,8 @@ TEST(Cornell, NamesTheLineOfWhatIsWrong) {
   EXPECT_THAT(error("1\n400\n0.1 0 0.2 0 1 2\n"), HasSubstr("end of the line"));
   EXPECT_THAT(error("99999999\n400\n"), HasSubstr("number of wavelengths in [1, 1024]"));
   EXPECT_THAT(error("2\n500 400\n0.1 0 0.2 0 1 2\n"), HasSubstr("increasing wavelengths"));
+  EXPECT_THAT(error("2\n500 5e10\n0.1 0 0.2 0 1 2\n"),
+              HasSubstr("test.file: wavelengths: expected increasing"));
   EXPECT_THAT(error("1\n400\n"), HasSubstr("at least one measurement"));
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <burnish/error.h>
 #include <burnish/io/illuminant.h>
 #include <burnish/io/text_reader.h>
 
@@ -27,6 +28,17 @@ Illuminant open_illuminant(const std::string& spec) {
   if (light.power.size() < 2)
     throw Error::in_file(spec, "two rows of wavelength and power", fmt::format("{}", light.power.size()));
   return light;
+}
+
+std::vector<std::array<double, 3>> rec709_weights_of(const std::string& file,
+                                                     std::span<const double> lambda_nm,
+                                                     const std::string& spec) {
+  const Illuminant light = open_illuminant(spec);
+  try {
+    return rec709_weights(lambda_nm, light);
+  } catch (const Error& error) {
+    throw Error(file + ": " + error.what());
+  }
 }
 
 std::string illuminant_name(const std::string& spec) {

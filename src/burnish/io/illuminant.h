@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
+#include <span>
 #include <string>
+#include <vector>
 
 #include <burnish/math/spectrum.h>
 
@@ -9,6 +12,12 @@ namespace burnish {
 /// A standard_illuminant by its name, or a text file of rows: wavelength in nm, increasing, and relative power, at
 /// least two. Throws Error for neither, or a power that is not finite or below zero.
 Illuminant open_illuminant(const std::string& spec);
+
+/// rec709_weights of a file's wavelengths under open_illuminant(spec). Throws Error as they do, naming the file where its
+/// wavelengths are what is wrong.
+std::vector<std::array<double, 3>> rec709_weights_of(const std::string& file,
+                                                     std::span<const double> lambda_nm,
+                                                     const std::string& spec);
 
 /// What findings call it: "equal energy" for "E".
 std::string illuminant_name(const std::string& spec);

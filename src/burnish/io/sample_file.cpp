@@ -7,7 +7,6 @@
 #include <burnish/io/illuminant.h>
 #include <burnish/io/sample_file.h>
 #include <burnish/math/angles.h>
-#include <burnish/math/spectrum.h>
 
 namespace burnish {
 
@@ -54,7 +53,7 @@ void finish_samples(const std::string& file, const OpenOptions& options, SampleF
       throw Error::in_file(file, "positive, increasing wavelengths",
                            fmt::format("{} ... {} nm out of order", lambda.front(), lambda.back()));
     if (!options.keep_spectral && lambda.size() > 1) {
-      samples.values = to_rec709(samples, rec709_weights(lambda, open_illuminant(options.illuminant)));
+      samples.values = to_rec709(samples, rec709_weights_of(file, lambda, options.illuminant));
       samples.channels = 3;
       findings.illuminant = illuminant_name(options.illuminant);
       findings.conventions.push_back(fmt::format("{} wavelengths, {} to {} nm, became linear Rec. 709.",

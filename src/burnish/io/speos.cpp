@@ -10,7 +10,6 @@
 #include <burnish/io/speos.h>
 #include <burnish/io/text_reader.h>
 #include <burnish/math/angles.h>
-#include <burnish/math/spectrum.h>
 
 namespace burnish {
 
@@ -343,9 +342,9 @@ AngleTable make_table(const FileBytes& file, const Content& content, Findings& f
 }
 
 /// One channel a wavelength becomes three.
-void convert_to_rec709(AngleTable& table, const std::vector<double>& lambda_nm,
+void convert_to_rec709(const std::string& file, AngleTable& table, const std::vector<double>& lambda_nm,
                        const std::string& illuminant) {
-  const auto weights = rec709_weights(lambda_nm, open_illuminant(illuminant));
+  const auto weights = rec709_weights_of(file, lambda_nm, illuminant);
   std::vector<float> rgb(entry_count(table) * 3);
   for (std::size_t entry = 0; entry < rgb.size() / 3; ++entry)
     for (std::size_t c = 0; c < 3; ++c) {
@@ -401,7 +400,7 @@ SpeosFile parse_speos(const FileBytes& file, const OpenOptions& options) {
   result.table = make_table(file, content, findings);
 
   if (!content.lambda_nm.empty() && !options.keep_spectral) {
-    convert_to_rec709(result.table, content.lambda_nm, options.illuminant);
+    convert_to_rec709(file.name, result.table, content.lambda_nm, options.illuminant);
     findings.illuminant = illuminant_name(options.illuminant);
   } else {
     findings.lambda_nm = content.lambda_nm;

@@ -3,10 +3,12 @@
 
 #include <Eigen/Core>
 #include <OpenEXR/OpenEXRConfig.h>
+#include <embree3/rtcore_config.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <png.h>
 #include <pugixml.hpp>
+#include <sqlite3.h>
 #include <tbb/version.h>
 #include <zstd.h>
 
@@ -33,6 +35,8 @@ BuildInfo build_info() {
       {"OpenEXR", OPENEXR_VERSION_STRING},
       {"libpng", PNG_LIBPNG_VER_STRING},
       {"pugixml", fmt::format("{}.{}", PUGIXML_VERSION / 1000, PUGIXML_VERSION % 1000 / 10)},
+      {"Embree", RTC_VERSION_STRING},
+      {"SQLite", SQLITE_VERSION},
       {"TBB", TBB_VERSION_STRING},
       {"zstd", ZSTD_VERSION_STRING}};
   return info;

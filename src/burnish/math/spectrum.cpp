@@ -2,6 +2,8 @@
 #include <cmath>
 #include <string>
 
+#include <fmt/format.h>
+
 #include <burnish/error.h>
 #include <burnish/math/spectrum.h>
 #include <burnish/math/vec3.h>
@@ -193,8 +195,8 @@ std::vector<std::array<double, 3>> rec709_weights(std::span<const double> lambda
   if (n == 0) throw Error("wavelengths: expected at least one, found none");
   for (std::size_t k = 0; k < n; ++k)
     if (!(lambda_nm[k] > 0 && lambda_nm[k] < 1e6) || (k > 0 && lambda_nm[k] <= lambda_nm[k - 1]))
-      throw Error("wavelengths: expected increasing nanometres, found " + std::to_string(lambda_nm[k]) +
-                  " at index " + std::to_string(k));
+      throw Error(fmt::format("wavelengths: expected increasing nanometres below 1e6, found {} at index {}",
+                              lambda_nm[k], k));
 
   // Between breakpoints the sample's hat function, the observer and the light are all linear.
   std::vector<double> breaks(lambda_nm.begin(), lambda_nm.end());

@@ -45,7 +45,9 @@ std::vector<SmoothTrial> choose_smoothness(const SampleSource& source, const Mod
                                            const HomomorphicOptions& options) {
   constexpr int kFirstDecade = -1, kLastDecade = -10, kWorseDecades = 2;
   const bool many = source.distinct > kManySamples;
-  const std::size_t folds = many ? 2 : 5, tables = spec.tables.size();
+  // a fold without samples would be one more fit to all
+  const std::size_t folds = many ? 2 : std::clamp<std::size_t>(source.distinct, 2, 5),
+                    tables = spec.tables.size();
   const int rounds = many || tables == 1 ? 0 : 2;
   const double expected = kFirstDecade - kLastDecade + 3 + 2.5 * rounds * static_cast<double>(tables);
   HomomorphicOptions trial_options = options;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <type_traits>
 
 #include <burnish/fitting/one_lobe/multilevel.h>
 
@@ -8,6 +9,17 @@ namespace {
 
 int halved(int n) {
   return n > 2 ? (n + 1) / 2 : 1;
+}
+
+/// Runs body(step), the step a constant to the compiler where it is one of the usual ones.
+template <class Body>
+void with_constant(std::size_t step, const Body& body) {
+  if (step == 1)
+    body(std::integral_constant<std::size_t, 1>());
+  else if (step == 4)
+    body(std::integral_constant<std::size_t, 4>());
+  else
+    body(step);
 }
 
 }  // namespace
@@ -56,17 +68,23 @@ GridTransfer::Corners GridTransfer::corners(const Lookup& fine) const noexcept {
 
 void GridTransfer::restrict_to(const double* fine, double* coarse, std::size_t step) const {
   std::fill_n(coarse, coarse_count() * step, 0.0);
-  for (std::size_t node = 0; node + 1 < starts_.size(); ++node, fine += step)
-    for (std::uint32_t k = starts_[node]; k < starts_[node + 1]; ++k)
-      for (std::size_t c = 0; c < step; ++c)
-        coarse[weighed_[k].node * step + c] += weighed_[k].weight * fine[c];
+  with_constant(step, [&](auto channels) {
+    const double* from = fine;
+    for (std::size_t node = 0; node + 1 < starts_.size(); ++node, from += channels)
+      for (std::uint32_t k = starts_[node]; k < starts_[node + 1]; ++k)
+        for (std::size_t c = 0; c < channels; ++c)
+          coarse[weighed_[k].node * channels + c] += weighed_[k].weight * from[c];
+  });
 }
 
 void GridTransfer::add_interpolated(const double* coarse, double* fine, std::size_t step) const {
-  for (std::size_t node = 0; node + 1 < starts_.size(); ++node, fine += step)
-    for (std::uint32_t k = starts_[node]; k < starts_[node + 1]; ++k)
-      for (std::size_t c = 0; c < step; ++c)
-        fine[c] += weighed_[k].weight * coarse[weighed_[k].node * step + c];
+  with_constant(step, [&](auto channels) {
+    double* to = fine;
+    for (std::size_t node = 0; node + 1 < starts_.size(); ++node, to += channels)
+      for (std::uint32_t k = starts_[node]; k < starts_[node + 1]; ++k)
+        for (std::size_t c = 0; c < channels; ++c)
+          to[c] += weighed_[k].weight * coarse[weighed_[k].node * channels + c];
+  });
 }
 
 std::vector<GridTransfer> coarser_levels(const TableLayout& layout) {

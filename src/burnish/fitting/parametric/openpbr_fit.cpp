@@ -127,33 +127,45 @@ class Cost {
 
   /// As LeastSquaresProblem::evaluate.
   void evaluate(std::span<const double> x, std::span<double> values, std::span<double> slopes) {
-    const std::size_t pixels = pairs_.shown.size();
-    evaluate_brdf(x, f_);
-    shown_.resize(pixels);
-    for (std::size_t r = 0; r < pixels; ++r)
-      shown_[r] = std::pow(std::max(pairs_.exposure * f_[r] * pairs_.pairs[r / 3].wi.z, 0.0),
-                           PictureLoss::kInverseGamma);
+    const std::vector<Step> steps = slopes.empty() ? std::vector<Step>() : steps_from(x);
+    const OpenPbrVariants materials(OpenPbr(parameters(x)), moved(x, steps));
+    const std::size_t pixels = pairs_.shown.size(), columns = x.size();
+    std::ranges::fill(slopes, 0.0);
+    across_.resize(pixels);
+    for_each_chunk(pairs_.pairs.size(), kPairsAtOnce, [&](std::size_t, std::size_t begin, std::size_t end) {
+      std::vector<double> f(3 * (1 + steps.size()));
+      for (std::size_t i = begin; i < end; ++i) {
+        materials.eval(pairs_.pairs[i].wi, pairs_.pairs[i].wo, f);
+        for (std::size_t c = 0; c < 3; ++c) {
+          const Pixel pixel = pixel_of(3 * i + c, f[c]);
+          values[3 * i + c] = pixel.along;
+          across_[3 * i + c] = pixel.across;
+          for (std::size_t s = 0; s < steps.size(); ++s) {
+            const std::size_t channel = steps[s].count == 3 ? c : 0;
+            slopes[(3 * i + c) * columns + steps[s].first + channel] =
+                pixel.slope * (f[3 * (s + 1) + c] - f[c]) / steps[s].size[channel];
+          }
+        }
+      }
+    });
     double rest = 0;
-    pixel_slopes_.resize(pixels);
-    for (std::size_t r = 0; r < pixels; ++r) {
-      const Pixel pixel = pixel_of(r);
-      values[r] = pixel.along;
-      pixel_slopes_[r] = pixel.slope;
-      rest += pixel.across * pixel.across;
-    }
+    for (const double across : across_) rest += across * across;
     values[pixels] = std::sqrt(rest);
-    for (std::size_t k = 0; k < x.size(); ++k)
+    for (std::size_t k = 0; k < columns; ++k)
       values[pixels + 1 + k] = pull_ * (x[k] - unknowns_[k].normal) / (unknowns_[k].max - unknowns_[k].min);
-    if (!slopes.empty()) differentiate(x, slopes);
+    if (!slopes.empty())
+      for (std::size_t k = 0; k < columns; ++k)
+        slopes[(pixels + 1 + k) * columns + k] = pull_ / (unknowns_[k].max - unknowns_[k].min);
   }
 
  private:
-  void evaluate_brdf(std::span<const double> x, std::vector<double>& f) const {
-    const OpenPbr brdf(parameters(x));
-    f.resize(pairs_.shown.size());
-    for (std::size_t i = 0; i < pairs_.pairs.size(); ++i)
-      brdf.eval(pairs_.pairs[i].wi, pairs_.pairs[i].wo, std::span(f).subspan(3 * i, 3));
-  }
+  static constexpr std::size_t kPairsAtOnce = 128;
+
+  /// A difference that slopes are found by: of one unknown, or of the channels of a colour that do not see each other.
+  struct Step {
+    std::size_t first, count;
+    std::array<double, 3> size;
+  };
 
   // The colours whose channels a film lets see each other.
   static bool under_film(const Unknown& unknown) {
@@ -161,29 +173,29 @@ class Cost {
     return name == "base_color" || name == "specular_color";
   }
 
-  // Forward differences of f; the channels of a colour that do not see each other in one evaluation.
-  void differentiate(std::span<const double> x, std::span<double> slopes) {
-    const std::size_t columns = x.size(), pixels = pairs_.shown.size();
-    std::ranges::fill(slopes, 0.0);
-    for (std::size_t k = 0; k < columns;) {
-      const std::size_t group = unknowns_[k].channel < 0 || (film_ && under_film(unknowns_[k])) ? 1 : 3;
-      std::vector<double> moved(x.begin(), x.end());
-      std::array<double, 3> step{};
-      for (std::size_t g = 0; g < group; ++g) {
-        const Unknown& unknown = unknowns_[k + g];
+  /// Forwards, but backwards at an upper bound.
+  std::vector<Step> steps_from(std::span<const double> x) const {
+    std::vector<Step> steps;
+    for (std::size_t k = 0; k < x.size(); k += steps.back().count) {
+      Step step{k, unknowns_[k].channel < 0 || (film_ && under_film(unknowns_[k])) ? 1u : 3u, {}};
+      for (std::size_t c = 0; c < step.count; ++c) {
+        const Unknown& unknown = unknowns_[k + c];
         const double size = 1e-5 * (unknown.max - unknown.min);
-        step[g] = x[k + g] + size > unknown.max ? -size : size;
-        moved[k + g] += step[g];
+        step.size[c] = x[k + c] + size > unknown.max ? -size : size;
       }
-      evaluate_brdf(moved, moved_f_);
-      for (std::size_t r = 0; r < pixels; ++r) {
-        const std::size_t column = group == 3 ? k + r % 3 : k;
-        slopes[r * columns + column] = pixel_slopes_[r] * (moved_f_[r] - f_[r]) / step[column - k];
-      }
-      k += group;
+      steps.push_back(step);
     }
-    for (std::size_t k = 0; k < columns; ++k)
-      slopes[(pixels + 1 + k) * columns + k] = pull_ / (unknowns_[k].max - unknowns_[k].min);
+    return steps;
+  }
+
+  std::vector<OpenPbr> moved(std::span<const double> x, std::span<const Step> steps) const {
+    std::vector<OpenPbr> materials;
+    for (const Step& step : steps) {
+      std::vector<double> at(x.begin(), x.end());
+      for (std::size_t c = 0; c < step.count; ++c) at[step.first + c] += step.size[c];
+      materials.emplace_back(parameters(at));
+    }
+    return materials;
   }
 
   /// A channel of a pixel has an error at each exposure and a relative one, all functions of f: the error along their
@@ -191,13 +203,15 @@ class Cost {
   struct Pixel {
     double along, across, slope;
   };
-  Pixel pixel_of(std::size_t r) const {
+  Pixel pixel_of(std::size_t r, double f) const {
     constexpr double kDark = 1e-9;  // bounds slopes where f is next to nothing
-    const double area = std::sqrt(pairs_.weights[r / 3] / 3), f = f_[r];
-    const double shown_slope = PictureLoss::kInverseGamma * shown_[r] / std::max(f, kDark);
+    const double area = std::sqrt(pairs_.weights[r / 3] / 3);
+    const double shown =
+        std::pow(std::max(pairs_.exposure * f * pairs_.pairs[r / 3].wi.z, 0.0), PictureLoss::kInverseGamma);
+    const double shown_slope = PictureLoss::kInverseGamma * shown / std::max(f, kDark);
     std::array<double, 3> error, slope;
     for (std::size_t e = 0; e < 2; ++e) {
-      const double ours = kDims[e] * shown_[r], theirs = kDims[e] * pairs_.shown[r];
+      const double ours = kDims[e] * shown, theirs = kDims[e] * pairs_.shown[r];
       error[e] = area * kShares[e] * (std::min(1.0, ours) - std::min(1.0, theirs));
       // a pixel too bright that should not be is told so
       const double seen = ours <= 1 ? 1 : theirs < 1 ? PictureLoss::kSaturatedSlope : 0;
@@ -225,7 +239,7 @@ class Cost {
   const std::vector<Unknown> unknowns_;
   const double pull_;
   const bool film_;
-  std::vector<double> f_, shown_, moved_f_, pixel_slopes_;
+  std::vector<double> across_;
 };
 
 /// Where a minimization ended.

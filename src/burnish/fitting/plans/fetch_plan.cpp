@@ -8,6 +8,7 @@
 #include <burnish/error.h>
 #include <burnish/factors/fetches.h>
 #include <burnish/fitting/numerics/node_numbers.h>
+#include <burnish/fitting/plans/backscatter.h>
 #include <burnish/fitting/plans/fetch_plan.h>
 #include <burnish/fitting/plans/lobe_plan.h>
 #include <burnish/fitting/plans/order_tables.h>
@@ -38,6 +39,8 @@ struct VolumeForm {
 constexpr VolumeForm kForms[] = {{30, 20, 6}, {40, 15, 6}, {24, 24, 6}, {20, 30, 6}};
 // Of theta_h. Shaders take a root where other powers take a logarithm.
 constexpr Warp kHalfWarp{WarpKind::power, 0.5};
+// Of theta_d where a lobe stands at 0.
+constexpr Warp kRetroWarp{WarpKind::power, 0.5};
 constexpr int kMinDepth = 3;
 // Of the texels of hemispheres' models; what is left is q's.
 constexpr VolumeForm kBesideHemispheres{14, 12, 6};
@@ -98,21 +101,32 @@ std::size_t bytes_of(const ModelSpec& spec, std::size_t texel_bytes, std::size_t
 }
 
 // The largest volume of about a form within `nodes`.
-TableLayout volume_of(const VolumeForm& form, double nodes) {
+TableLayout volume_of(const VolumeForm& form, double nodes, bool retro) {
   const double scale = std::cbrt(nodes / (form.half * form.difference * form.azimuth));
   const auto side = [](double n, int least) {
     return std::clamp(static_cast<int>(std::lround(n)), least, kMaxVolumeSide);
   };
-  TableLayout layout{.shape = TableShape::volume, .warp = kHalfWarp};
+  TableLayout layout{.shape = TableShape::volume, .warp = kHalfWarp, .warp_y = retro ? kRetroWarp : Warp{}};
   layout.depth = side(form.azimuth * scale, kMinDepth);
   layout.height = side(std::sqrt(nodes / layout.depth * form.difference / form.half), 2);
   layout.width = std::min(static_cast<int>(nodes) / (layout.depth * layout.height), kMaxVolumeSide);
   return layout;
 }
 
+/// What a source asks of its tables.
+struct SourceTraits {
+  bool twisted;  ///< not its own mirror image
+  bool ordered;  ///< the order of the directions matters
+  bool retro;    ///< has a lobe about wi = wo
+};
+
+SourceTraits traits_of(BrdfRef source) {
+  return {mirror_asymmetry(source) > kMinAsymmetry, order_matters(source), backscatters(source)};
+}
+
 // The tables that a number of fetches has room for; the volume takes what the others leave.
-ModelSpec volume_spec(const VolumeForm& form, const CostLimit& limit, std::size_t channels, bool twisted,
-                      bool ordered) {
+ModelSpec volume_spec(const VolumeForm& form, const CostLimit& limit, std::size_t channels,
+                      const SourceTraits& traits) {
   const double texels = static_cast<double>(limit.bytes / limit.texel_bytes);
   const auto nodes = [&](double share, int most) {
     return std::clamp(static_cast<int>(share * texels), kMinLineNodes, most);
@@ -133,11 +147,11 @@ ModelSpec volume_spec(const VolumeForm& form, const CostLimit& limit, std::size_
                  .warp_y = kHalfWarp},
                 {{.projection = along_x, .projection_y = kProjectHalf}});
   };
-  if (ordered && takes(1)) add_by_half("c", kOrderNodes, kOrderShare, kProjectWi);
+  if (traits.ordered && takes(1)) add_by_half("c", kOrderNodes, kOrderShare, kProjectWi);
   if (takes(1)) builder.add_line("z", nodes(kRingShare, kMaxRingNodes), {kProjectHalf}, kHalfWarp);
-  if (twisted && takes(1)) add_by_half("w", kTwistNodes, kTwistShare, kProjectTwist);
+  if (traits.twisted && takes(1)) add_by_half("w", kTwistNodes, kTwistShare, kProjectTwist);
   if (takes(2)) builder.add_line("p", line, {kProjectWo, kProjectWi});
-  if (takes(1)) builder.add_line("r", line, {kProjectDifference});
+  if (takes(1)) builder.add_line("r", line, {kProjectDifference}, traits.retro ? kRetroWarp : Warp{});
   if (takes(1)) {
     const int side = std::max(4, static_cast<int>(std::sqrt(kGridShare * texels)));
     builder.add("k", {.shape = TableShape::grid, .width = side, .height = side, .warp = kDeviationWarp},
@@ -149,9 +163,9 @@ ModelSpec volume_spec(const VolumeForm& form, const CostLimit& limit, std::size_
   // the volume, whose numbers are a warp's
   const std::size_t taken =
       bytes_of(builder.spec(), limit.texel_bytes, builder.spec().lobes.empty() ? 0 : channels) +
-      kNumberBytes * (1 + (builder.spec().lobes.empty() ? channels : 0));
+      kNumberBytes * (1 + traits.retro + (builder.spec().lobes.empty() ? channels : 0));
   const std::size_t rest = limit.bytes > taken ? (limit.bytes - taken) / limit.texel_bytes : 0;
-  const TableLayout volume = volume_of(form, static_cast<double>(rest));
+  const TableLayout volume = volume_of(form, static_cast<double>(rest), traits.retro);
   if (volume.width < 2) throw Error("fit: expected a budget that holds a table of three axes");
   builder.add(
       "g", volume,
@@ -249,7 +263,8 @@ bool holds_model(BrdfRef source, const CostLimit& limit) {
     return plan_fits(plan_within(source, limit), limit.bytes, source.channels(), limit.texel_bytes);
   try {
     if (source.isotropic())
-      volume_spec(kForms[0], limit, source.channels(), true, limit.fetches > 1 && order_matters(source));
+      volume_spec(kForms[0], limit, source.channels(),
+                  {.twisted = true, .ordered = limit.fetches > 1 && order_matters(source), .retro = true});
     else
       hemisphere_spec(limit, source.channels());
     return true;
@@ -279,15 +294,16 @@ LobePlan plan_within(BrdfRef source, const CostLimit& limit) {
 }
 
 std::vector<ModelSpec> volume_specs(BrdfRef source, const CostLimit& limit) {
-  const bool twisted = mirror_asymmetry(source) > kMinAsymmetry;
+  SourceTraits traits = traits_of(source);
   std::vector<ModelSpec> specs;
-  const auto add = [&](bool ordered) {
+  const auto add = [&] {
     for (const VolumeForm& form : kForms)
-      specs.push_back(volume_spec(form, limit, source.channels(), twisted, ordered));
+      specs.push_back(volume_spec(form, limit, source.channels(), traits));
   };
   // beside what matters more, the table may not be worth its bytes
-  if (limit.fetches > 1 && order_matters(source)) add(true);
-  add(false);
+  if (limit.fetches > 1 && traits.ordered) add();
+  traits.ordered = false;
+  add();
   return specs;
 }
 
@@ -301,7 +317,7 @@ std::vector<FetchTrial> try_fetches(BrdfRef source, const TrainingSet& set, Cost
         fetch_count(plan_to_spec(lobes, limit.bytes, source.channels(), limit.texel_bytes))));
   const int of_lobes = fetches.back();
   std::ranges::sort(fetches);
-  const bool twisted = mirror_asymmetry(source) > kMinAsymmetry, ordered = order_matters(source);
+  const SourceTraits traits = traits_of(source);
   struct Candidate {
     int fetches;
     std::optional<ModelSpec> spec;  ///< none: lobes
@@ -312,7 +328,8 @@ std::vector<FetchTrial> try_fetches(BrdfRef source, const TrainingSet& set, Cost
     if (!holds_model(source, limit)) continue;
     Candidate next{.fetches = of_lobes, .spec = {}};
     if (!takes_lobes(source, limit)) {
-      next.spec = volume_spec(kForms[0], limit, source.channels(), twisted, ordered && n > 1);
+      next.spec = volume_spec(kForms[0], limit, source.channels(),
+                              {traits.twisted, traits.ordered && n > 1, traits.retro});
       next.fetches = static_cast<int>(fetch_count(*next.spec));
     }
     if (candidates.empty() || candidates.back().fetches != next.fetches)
@@ -345,7 +362,7 @@ ModelSpec hemisphere_spec(const CostLimit& limit, std::size_t channels) {
   const int p = std::max(5, static_cast<int>(std::sqrt(kBorderShare * texels)));
   builder.add("p", {.shape = TableShape::disk, .width = p, .height = p},
               {{.projection = kProjectWo}, {.projection = kProjectWi}});
-  const TableLayout volume = volume_of(kBesideHemispheres, kVolumeShare * texels);
+  const TableLayout volume = volume_of(kBesideHemispheres, kVolumeShare * texels, false);
   builder.add(
       "v", volume,
       {{.projection = kProjectHalf, .projection_y = kProjectDifference, .projection_z = kProjectAzimuth}});

@@ -30,7 +30,8 @@ LobePlan plan_within(BrdfRef source, const CostLimit& limit);
 /// six on, s(wi + wo/2) s(wi/2 + wo) from eight on; of a source that is not its own mirror image a grid
 /// w(theta_t,theta_h) comes third, and of one for which the order of the directions matters (order_tables.h)
 /// a grid c(theta_i,theta_h) second, in half of the models. They differ in how the volume's nodes are shared
-/// out among its axes and how theta_h is spaced. Throws Error where the bytes hold no such tables.
+/// out among its axes; of a source that backscatters() their nodes crowd at theta_d = 0. Throws Error where the bytes
+/// hold no such tables.
 std::vector<ModelSpec> volume_specs(BrdfRef source, const CostLimit& limit);
 
 /// An anisotropic model within the limit, of at least four fetches: hemispheres q(h) p(wo) p(wi) times a volume

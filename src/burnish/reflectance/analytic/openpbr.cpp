@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <burnish/math/angles.h>
 #include <burnish/reflectance/analytic/openpbr.h>
@@ -42,8 +43,9 @@ double fresnel(double cosine, double ior) noexcept {
 /// Directional albedo of GGX facets whose Fresnel factor is f0 + (1 - f0) (1 - cos)^5: f0 scale + bias.
 /// Rational fit of MaterialX to simulated values. Domain: cosine and alpha in [0, 1].
 struct FacetAlbedo {
-  double scale, bias;
+  double scale = 0, bias = 0;
 
+  FacetAlbedo() = default;
   FacetAlbedo(double cosine, double alpha) noexcept {
     const double x = cosine, y = alpha;
     const double terms[] = {1, x, y, x * y, x * x, y * y, x * x * y, x * y * y, x * x * y * y};
@@ -158,18 +160,15 @@ double fujii_albedo(double cosine, double roughness) noexcept {
 struct OpenPbr::Geometry {
   Vec3 wi, wo, h;
   double cos_i, cos_o, cos_d, cos_between;
-  Film film;  // where there is one
 
-  Geometry(Vec3 to_light, Vec3 to_viewer, const OpenPbrParameters& p) noexcept
+  Geometry(Vec3 to_light, Vec3 to_viewer) noexcept
       : wi(to_light),
         wo(to_viewer),
         h(half_vector(wi, wo)),
         cos_i(std::clamp(wi.z, kEpsilon, 1.0)),
         cos_o(std::clamp(wo.z, kEpsilon, 1.0)),
         cos_d(std::clamp(dot(wo, h), kEpsilon, 1.0)),
-        cos_between(std::clamp(dot(wi, wo), kEpsilon, 1.0)) {
-    if (p.thin_film_weight > 0) film = Film(p.thin_film_ior, p.thin_film_thickness, cos_d);
-  }
+        cos_between(std::clamp(dot(wi, wo), kEpsilon, 1.0)) {}
 };
 
 /// f_r of a layer, 1/sr, and the share of what lies below that it lets through.
@@ -182,7 +181,7 @@ struct OpenPbr::Layer {
 
 /// Facets without their Fresnel factor: D G / (4 cos_i cos_o) and albedos towards the viewer.
 struct OpenPbr::Highlight {
-  double value;
+  double value = 0;
   FacetAlbedo albedo;
 
   /// What multiple reflections between facets give back, as a factor [Turquin 2019, eq. 14, 16].
@@ -190,6 +189,14 @@ struct OpenPbr::Highlight {
     const double single = albedo.scale + albedo.bias;
     return 1 + (1 - single) / single * fresnel;
   }
+};
+
+/// One of each Part.
+struct OpenPbr::Parts {
+  Film film;
+  Highlight facets;
+  Rgb diffuse, metal;
+  Layer gloss, coating, fuzz;
 };
 
 OpenPbr::Roughness OpenPbr::roughness(double roughness, double anisotropy) noexcept {
@@ -232,14 +239,14 @@ OpenPbr::Highlight OpenPbr::highlight(const Roughness& alpha, const Geometry& g)
   return {density * visibility, FacetAlbedo(g.cos_o, alpha.mean)};
 }
 
-Rgb OpenPbr::dielectric_under_film(const Geometry& g) const noexcept {
-  const Film& film = g.film;
-  const Polarized lower = fresnel_polarized(film.cos_inside, base_ior_ / film.ior);
+Rgb OpenPbr::dielectric_under_film(const Parts& parts, const Geometry& g) const noexcept {
+  const Film& under = parts.film;
+  const Polarized lower = fresnel_polarized(under.cos_inside, base_ior_ / under.ior);
   // Phases turn by pi at the denser side; parallel ones not beyond Brewster's angle.
-  const double base2 = square(base_ior_), film2 = square(film.ior), cos2 = square(film.cos_inside);
+  const double base2 = square(base_ior_), film2 = square(under.ior), cos2 = square(under.cos_inside);
   const double beyond = base2 - film2 * (1 - cos2);
   const bool turns_p = base2 * base2 * cos2 < film2 * beyond, turns_s = base2 < film2;
-  return fresnel_airy(g.cos_d, film, {{lower.p, lower.p, lower.p}, {turns_p, turns_p, turns_p}},
+  return fresnel_airy(g.cos_d, under, {{lower.p, lower.p, lower.p}, {turns_p, turns_p, turns_p}},
                       {{lower.s, lower.s, lower.s}, {turns_s, turns_s, turns_s}});
 }
 
@@ -255,16 +262,16 @@ Rgb OpenPbr::metal_fresnel(double cosine) const noexcept {
           channel(metal_f0_.b, p_.specular_color.b)};
 }
 
-Rgb OpenPbr::metal_under_film(const Geometry& g) const noexcept {
-  const Film& film = g.film;
-  const Rgb half = 0.5 * metal_fresnel(film.cos_inside);
+Rgb OpenPbr::metal_under_film(const Parts& parts, const Geometry& g) const noexcept {
+  const Film& under = parts.film;
+  const Rgb half = 0.5 * metal_fresnel(under.cos_inside);
   const auto turns = [&](double f0) {
     const double root = std::sqrt(std::clamp(f0, 0.01, 0.99));
-    return (1 + root) / (1 - root) < film.ior;
+    return (1 + root) / (1 - root) < under.ior;
   };
   const LowerFace face{{half.r, half.g, half.b},
                        {turns(metal_f0_.r), turns(metal_f0_.g), turns(metal_f0_.b)}};
-  return fresnel_airy(g.cos_d, film, face, face);
+  return fresnel_airy(g.cos_d, under, face, face);
 }
 
 Rgb OpenPbr::diffuse_base(const Geometry& g) const noexcept {
@@ -283,45 +290,47 @@ Rgb OpenPbr::diffuse_base(const Geometry& g) const noexcept {
   });
 }
 
-Rgb OpenPbr::dielectric_base(const Highlight& facets, const Geometry& g) const noexcept {
-  const Rgb diffuse = diffuse_base(g);
+OpenPbr::Layer OpenPbr::gloss_layer(const Parts& parts, const Geometry& g) const noexcept {
+  const Highlight& peak = parts.facets;
   const double f0 = reflectance_of_ior(base_ior_);
-  const double albedo = f0 * facets.albedo.scale + facets.albedo.bias;
-  Layer gloss{.reflected = 0, .transmitted = 1};
+  const double albedo = f0 * peak.albedo.scale + peak.albedo.bias;
+  Layer layer{.reflected = 0, .transmitted = 1};
   const auto add = [&](Rgb fresnel, double weight) {
-    const Rgb compensation = facets.compensation(fresnel);
-    gloss.reflected = gloss.reflected + weight * facets.value * fresnel * compensation * p_.specular_color;
-    gloss.transmitted = gloss.transmitted + -weight * albedo * compensation;
+    const Rgb compensation = peak.compensation(fresnel);
+    layer.reflected = layer.reflected + weight * peak.value * fresnel * compensation * p_.specular_color;
+    layer.transmitted = layer.transmitted + -weight * albedo * compensation;
   };
   if (p_.thin_film_weight < 1) add(fresnel(g.cos_d, base_ior_), 1 - p_.thin_film_weight);
   if (p_.thin_film_weight > 0)
-    add(p_.thin_film_thickness > 0 ? dielectric_under_film(g) : Rgb(fresnel(g.cos_d, base_ior_)),
+    add(p_.thin_film_thickness > 0 ? dielectric_under_film(parts, g) : Rgb(fresnel(g.cos_d, base_ior_)),
         p_.thin_film_weight);
-  return gloss.over(diffuse);
+  return layer;
 }
 
-Rgb OpenPbr::metal_base(const Highlight& facets, const Geometry& g) const noexcept {
+Rgb OpenPbr::metal_base(const Parts& parts, const Geometry& g) const noexcept {
+  const Highlight& peak = parts.facets;
   Rgb sum;
   const auto add = [&](Rgb fresnel, double weight) {
-    sum = sum + p_.specular_weight * weight * facets.value * fresnel * facets.compensation(fresnel);
+    sum = sum + p_.specular_weight * weight * peak.value * fresnel * peak.compensation(fresnel);
   };
   if (p_.thin_film_weight < 1) add(metal_fresnel(g.cos_d), 1 - p_.thin_film_weight);
   if (p_.thin_film_weight > 0)
-    add(p_.thin_film_thickness > 0 ? metal_under_film(g) : metal_fresnel(g.cos_d), p_.thin_film_weight);
+    add(p_.thin_film_thickness > 0 ? metal_under_film(parts, g) : metal_fresnel(g.cos_d),
+        p_.thin_film_weight);
   return sum;
 }
 
-OpenPbr::Layer OpenPbr::coat(const Geometry& g) const noexcept {
+OpenPbr::Layer OpenPbr::coat_layer(const Geometry& g) const noexcept {
   if (p_.coat_weight == 0) return {};
-  const Highlight facets = highlight(coat_alpha_, g);
+  const Highlight peak = highlight(coat_alpha_, g);
   const double reflectance = fresnel(g.cos_d, p_.coat_ior);
-  const double compensation = facets.compensation(reflectance).r;
-  const double albedo = reflectance_of_ior(p_.coat_ior) * facets.albedo.scale + facets.albedo.bias;
-  return {p_.coat_weight * facets.value * reflectance * compensation,
+  const double compensation = peak.compensation(reflectance).r;
+  const double albedo = reflectance_of_ior(p_.coat_ior) * peak.albedo.scale + peak.albedo.bias;
+  return {p_.coat_weight * peak.value * reflectance * compensation,
           1 - p_.coat_weight * albedo * compensation};
 }
 
-OpenPbr::Layer OpenPbr::fuzz(const Geometry& g) const noexcept {
+OpenPbr::Layer OpenPbr::fuzz_layer(const Geometry& g) const noexcept {
   if (p_.fuzz_weight == 0) return {};
   const double x = g.cos_o, y = std::clamp(p_.fuzz_roughness, 0.01, 1.0);
   // albedo and matrix as MaterialX fits the tables of [Zeltner 2022]
@@ -341,20 +350,81 @@ OpenPbr::Layer OpenPbr::fuzz(const Geometry& g) const noexcept {
   return {value * p_.fuzz_color, 1 - p_.fuzz_weight * albedo};
 }
 
-bool OpenPbr::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
-  Rgb value;
-  if (wi.z > 0 && wo.z > 0) {
-    const Geometry g(wi, wo, p_);
-    const Highlight facets = highlight(base_alpha_, g);
-    const Rgb dielectric = p_.base_metalness < 1 ? dielectric_base(facets, g) : Rgb();
-    const Rgb metal = p_.base_metalness > 0 ? metal_base(facets, g) : Rgb();
-    const Rgb base = mix(dielectric, metal, p_.base_metalness);
-    value = fuzz(g).over(coat(g).over(under_coat_ * base));
-  }
+OpenPbr::PartSet OpenPbr::needed() const noexcept {
+  PartSet parts;
+  parts[film] = p_.thin_film_weight > 0 && p_.thin_film_thickness > 0;
+  parts[facets] = parts[coating] = parts[fuzz] = true;
+  parts[diffuse] = parts[gloss] = p_.base_metalness < 1;
+  parts[metal] = p_.base_metalness > 0;
+  return parts;
+}
+
+/// What the other's parts do not serve.
+OpenPbr::PartSet OpenPbr::needed_beside(const OpenPbr& other) const noexcept {
+  const auto differ = [&](auto... members) { return (... || (p_.*members != other.p_.*members)); };
+  using P = OpenPbrParameters;
+  PartSet parts;
+  parts[film] = differ(&P::thin_film_ior, &P::thin_film_thickness);
+  parts[facets] = base_alpha_ != other.base_alpha_;
+  parts[diffuse] = differ(&P::base_weight, &P::base_color, &P::base_diffuse_roughness);
+  const bool lit = parts[film] || parts[facets] || differ(&P::thin_film_weight, &P::specular_color);
+  parts[gloss] = lit || base_ior_ != other.base_ior_;
+  parts[metal] = lit || metal_f0_ != other.metal_f0_ || differ(&P::specular_weight);
+  parts[coating] = coat_alpha_ != other.coat_alpha_ || differ(&P::coat_weight, &P::coat_ior);
+  parts[fuzz] = differ(&P::fuzz_weight, &P::fuzz_color, &P::fuzz_roughness);
+  return needed() & (parts | ~other.needed());
+}
+
+void OpenPbr::compute(const PartSet& which, const Geometry& g, Parts& parts) const noexcept {
+  if (which[film]) parts.film = Film(p_.thin_film_ior, p_.thin_film_thickness, g.cos_d);
+  if (which[facets]) parts.facets = highlight(base_alpha_, g);
+  if (which[diffuse]) parts.diffuse = diffuse_base(g);
+  if (which[gloss]) parts.gloss = gloss_layer(parts, g);
+  if (which[metal]) parts.metal = metal_base(parts, g);
+  if (which[coating]) parts.coating = coat_layer(g);
+  if (which[fuzz]) parts.fuzz = fuzz_layer(g);
+}
+
+void OpenPbr::join(const Parts& parts, std::span<double> f) const noexcept {
+  const Rgb dielectric = p_.base_metalness < 1 ? parts.gloss.over(parts.diffuse) : Rgb();
+  const Rgb base = mix(dielectric, p_.base_metalness > 0 ? parts.metal : Rgb(), p_.base_metalness);
+  const Rgb value = parts.fuzz.over(parts.coating.over(under_coat_ * base));
   f[0] = std::max(value.r, 0.0);
   f[1] = std::max(value.g, 0.0);
   f[2] = std::max(value.b, 0.0);
+}
+
+bool OpenPbr::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+  if (!(wi.z > 0 && wo.z > 0)) {
+    f[0] = f[1] = f[2] = 0;
+    return true;
+  }
+  const Geometry g(wi, wo);
+  Parts parts;
+  compute(needed(), g, parts);
+  join(parts, f);
   return true;
+}
+
+OpenPbrVariants::OpenPbrVariants(const OpenPbr& material, std::vector<OpenPbr> others)
+    : material_(material), others_(std::move(others)) {
+  for (const OpenPbr& other : others_) fresh_.push_back(other.needed_beside(material_));
+}
+
+void OpenPbrVariants::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+  if (!(wi.z > 0 && wo.z > 0)) {
+    std::ranges::fill(f, 0.0);
+    return;
+  }
+  const OpenPbr::Geometry g(wi, wo);
+  OpenPbr::Parts parts;
+  material_.compute(material_.needed(), g, parts);
+  material_.join(parts, f.first(3));
+  for (std::size_t i = 0; i < others_.size(); ++i) {
+    OpenPbr::Parts own = parts;
+    others_[i].compute(fresh_[i], g, own);
+    others_[i].join(own, f.subspan(3 * (i + 1), 3));
+  }
 }
 
 }  // namespace burnish

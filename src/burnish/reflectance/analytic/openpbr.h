@@ -1,8 +1,11 @@
 #pragma once
 
 #include <array>
+#include <bitset>
+#include <span>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include <burnish/math/rgb.h>
 #include <burnish/reflectance/brdf.h>
@@ -102,25 +105,38 @@ class OpenPbr {
   const OpenPbrParameters& parameters() const noexcept { return p_; }
 
  private:
+  friend class OpenPbrVariants;
   struct Geometry;
   struct Layer;
   struct Highlight;
+  struct Parts;
+
+  /// What a value is put together from, in the order in which one needs another.
+  enum Part { film, facets, diffuse, gloss, metal, coating, fuzz, part_count };
+  using PartSet = std::bitset<part_count>;
 
   /// GGX roughnesses: along the tangent, across, and their geometric mean.
   struct Roughness {
     double x, y, mean;
+
+    friend bool operator==(const Roughness&, const Roughness&) = default;
   };
   static Roughness roughness(double roughness, double anisotropy) noexcept;
 
   Highlight highlight(const Roughness& alpha, const Geometry& g) const noexcept;
-  Rgb dielectric_under_film(const Geometry& g) const noexcept;
+  Rgb dielectric_under_film(const Parts& parts, const Geometry& g) const noexcept;
   Rgb metal_fresnel(double cosine) const noexcept;
-  Rgb metal_under_film(const Geometry& g) const noexcept;
+  Rgb metal_under_film(const Parts& parts, const Geometry& g) const noexcept;
   Rgb diffuse_base(const Geometry& g) const noexcept;
-  Rgb dielectric_base(const Highlight& facets, const Geometry& g) const noexcept;
-  Rgb metal_base(const Highlight& facets, const Geometry& g) const noexcept;
-  Layer coat(const Geometry& g) const noexcept;
-  Layer fuzz(const Geometry& g) const noexcept;
+  Layer gloss_layer(const Parts& parts, const Geometry& g) const noexcept;
+  Rgb metal_base(const Parts& parts, const Geometry& g) const noexcept;
+  Layer coat_layer(const Geometry& g) const noexcept;
+  Layer fuzz_layer(const Geometry& g) const noexcept;
+
+  PartSet needed() const noexcept;
+  PartSet needed_beside(const OpenPbr& other) const noexcept;
+  void compute(const PartSet& which, const Geometry& g, Parts& parts) const noexcept;
+  void join(const Parts& parts, std::span<double> f) const noexcept;
 
   OpenPbrParameters p_;
   Roughness base_alpha_, coat_alpha_;
@@ -130,5 +146,20 @@ class OpenPbr {
 };
 
 static_assert(Brdf<OpenPbr>);
+
+/// A material and others that differ from it in an input or a few, evaluated side by side: of those only what differs
+/// is computed. The same bits as each one's OpenPbr::eval.
+class OpenPbrVariants {
+ public:
+  OpenPbrVariants(const OpenPbr& material, std::vector<OpenPbr> others);
+
+  /// Three values a material, the first's first. Precondition: f.size() == 3 * (1 + others).
+  void eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
+
+ private:
+  OpenPbr material_;
+  std::vector<OpenPbr> others_;
+  std::vector<OpenPbr::PartSet> fresh_;  ///< of each of the others: what the first has not
+};
 
 }  // namespace burnish

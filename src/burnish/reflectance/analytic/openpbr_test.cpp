@@ -51,6 +51,37 @@ TEST(OpenPbr, StretchesAlongTheTangent) {
   EXPECT_FALSE(OpenPbr(brushed).isotropic());
 }
 
+// Every input moved on its own, from a material with all layers and from one that lacks some.
+TEST(OpenPbr, VariantsHaveTheBitsOfEachAlone) {
+  const OpenPbrParameters all{.base_metalness = 0.4,
+                              .base_diffuse_roughness = 0.3,
+                              .coat_weight = 0.5,
+                              .coat_roughness = 0.2,
+                              .fuzz_weight = 0.4,
+                              .thin_film_weight = 0.6,
+                              .thin_film_thickness = 0.4};
+  const OpenPbrParameters bare{.base_metalness = 1, .thin_film_weight = 0.5, .thin_film_thickness = 0};
+  for (const OpenPbrParameters& start : {all, bare, OpenPbrParameters{}}) {
+    std::vector<OpenPbr> others;
+    for (const OpenPbrInput& input : kOpenPbrInputs)
+      for (const double value : {0.0, 0.37, 1.0}) {
+        OpenPbrParameters moved = start;
+        std::visit([&](auto member) { moved.*member = std::max(value, input.min); }, input.member);
+        others.emplace_back(moved);
+      }
+    const OpenPbrVariants variants(OpenPbr(start), others);
+    std::vector<double> found(3 * (1 + others.size()));
+    std::array<double, 3> alone;
+    for (const Vec3 wi : {kLight, kViewer, Vec3{0, 0, 1}, normalize({0.9, 0.1, 0.05}), Vec3{0, 0.6, -0.8}}) {
+      variants.eval(wi, kViewer, found);
+      for (std::size_t i = 0; i <= others.size(); ++i) {
+        (i == 0 ? OpenPbr(start) : others[i - 1]).eval(wi, kViewer, alone);
+        for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(found[3 * i + c], alone[c]) << i;
+      }
+    }
+  }
+}
+
 TEST(OpenPbr, WeightsOfZeroLeaveNothingOfALayer) {
   const OpenPbrParameters plain;
   OpenPbrParameters dressed;
