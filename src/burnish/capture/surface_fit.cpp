@@ -18,6 +18,7 @@
 #include <burnish/fitting/refinement/rounding.h>
 #include <burnish/math/parallel.h>
 #include <burnish/math/random.h>
+#include <burnish/surface/widened_lobes.h>
 
 namespace burnish {
 
@@ -569,7 +570,7 @@ class SurfaceFitter {
     if (!done_.normals.empty())
       maps.normals.emplace(form.width, form.height, std::size_t{2}, TableFormat::half, 1.0f,
                            std::span<const float>(done_.normals));
-    SurfaceModel surface{.brdf = SpatialBrdf(*lobes_, std::move(maps)), .notes = "{}"};
+    SurfaceModel surface{.brdf = with_widened_lobes(SpatialBrdf(*lobes_, std::move(maps))), .notes = "{}"};
     report_.width = static_cast<std::size_t>(form.width);
     report_.height = static_cast<std::size_t>(form.height);
     report_.pictures = form.pictures.size();
@@ -579,7 +580,7 @@ class SurfaceFitter {
     report_.exposure = exposure_;
     report_.weight_bytes = surface.brdf.weight_bytes();
     report_.frame_bytes = surface.brdf.frame_bytes();
-    report_.lobe_bytes = lobes_->bytes();
+    report_.lobe_bytes = surface.brdf.lobes().bytes();
     report_.bytes_a_texel =
         static_cast<double>(report_.weight_bytes) +
         static_cast<double>(report_.lobe_bytes) / (static_cast<double>(form.width) * form.height);
