@@ -218,8 +218,8 @@ std::optional<SampledTexels> sample_by_crew(Capture& capture, std::size_t most_v
     const auto [begin, count] = range_of(tile);
     for (std::size_t p = 0; p < all.pictures; ++p) {
       const std::size_t first = p * all.size() + begin;
-      take_values(rest, std::span(&all.values[3 * first], 3 * count));
-      take_values(rest, std::span(&all.states[first], count));
+      take_values(rest, std::span(all.values.data() + 3 * first, 3 * count));
+      take_values(rest, std::span(all.states.data() + first, count));
     }
   }
   return found;
