@@ -11,8 +11,8 @@
 namespace burnish {
 
 /// Texels spread evenly over a capture's surface, one at random in each cell of a grid, as many as hold about so many
-/// values in all pictures. Reads every picture once, tile by tile, and leaves out those that turn out damaged. Ranks of a
-/// crew, all of which call this, read tiles in turn, and every picture again, each of them, where one is damaged.
+/// values in all pictures. Reads every picture once, tile by tile, and leaves out those that turn out damaged. Ranks of
+/// a crew, all of which call this, read tiles in turn, and every picture again, each of them, where one is damaged.
 struct SampledTexels {
   TexelSamples samples;
   std::size_t missing = 0, clipped = 0;  ///< pixels of all texels in pictures that are fitted

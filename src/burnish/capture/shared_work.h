@@ -13,8 +13,8 @@
 
 namespace burnish {
 
-/// The bytes that make(0) to make(count - 1) return, in this order and at every rank of the crew; rank r makes those whose
-/// number is r modulo their count. All of them in this process where there is no crew.
+/// The bytes that make(0) to make(count - 1) return, in this order and at every rank of the crew; rank r makes those
+/// whose number is r modulo their count. All of them in this process where there is no crew.
 std::vector<std::string> made_together(FitCrew* crew, std::size_t count,
                                        const std::function<std::string(std::size_t)>& make);
 

@@ -75,8 +75,8 @@ struct SurfaceFit {
 /// what Capture throws.
 SurfaceFit fit_surface(Capture capture, const SurfaceFitOptions& options);
 
-/// What ranks other than 0 of options.crew call: finds its share of the lobes, which all exchange, and the weights of its
-/// share of the rows, which rank 0 gathers. Progress and checkpoint are rank 0's. The result is the same to the bit for any number of
+/// What ranks other than 0 of options.crew call: finds its share of lobes, which all exchange, and the weights of its
+/// rows, which rank 0 gathers. Progress and checkpoint are rank 0's. The result is the same to the bit for any count of
 /// ranks. Throws Error as fit_surface does; the ranks that wait for one that threw have to be ended by whoever started
 /// them.
 void help_fit_surface(Capture capture, const SurfaceFitOptions& options);

@@ -34,9 +34,9 @@ struct TexelPictures {
       clipped;  ///< rows [picture][channel]: 1 of values that are clipped, else 0; null: there are none
 };
 
-/// How pixels count in a pass. The first, `of_measured`: as find_omega says of the measured values, all trusted alike. Any
-/// other: of the mean of measured and modelled values, not at all where a clipped one is below the model; and trusted by
-/// the largest of the channels' squared errors e, those of what is brighter than the model times `brighter`, as
+/// How pixels count in a pass. The first, `of_measured`: as find_omega says of the measured values, all trusted alike.
+/// Any other: of the mean of measured and modelled values, not at all where a clipped one is below the model; trusted
+/// by the largest of the channels' squared errors e, those of what is brighter than the model times `brighter`, as
 /// 1 / (1 + e / reach^2)^2 [GemanMcClure1987].
 struct TexelPass {
   bool of_measured;

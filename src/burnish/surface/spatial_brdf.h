@@ -53,8 +53,8 @@ class SpatialBrdf {
   /// Throws Error unless there are 1 to kMaxSurfaceLobes lobes of one or three channels, a weight map for each of one
   /// channel or the lobes', and every map has the same size, weights no negative values, and normals and tangents two
   /// channels of halves within their ranges.
-  /// The last lobes may be widened ones, see with_widened_lobes: no maps are given for them, but normals have to be. Their
-  /// weights are made: they have some in mip levels alone, and the lobes that they are copies of have so much less there.
+  /// The last lobes may be widened ones, see with_widened_lobes: no maps are given for them, but normals have to be.
+  /// Their weights are made: some in mip levels alone, and their lobes have so much less there.
   /// Those of a lobe stand together, by rising variance.
   SpatialBrdf(FactoredBrdf lobes, SurfaceMaps maps, std::vector<WidenedLobe> widened = {});
 

@@ -31,7 +31,7 @@ class SurfaceMap {
   SurfaceMap(int width, int height, std::size_t channels, TableFormat format, float scale,
              std::span<const std::byte> bytes);
 
-  /// The same map with other values in the levels from 1 on, as many of each as it has, to the nearest. Throws Error for
+  /// The same map with other values in the levels from 1 on, as many as it has, to the nearest. Throws Error for
   /// other counts, and values as the constructor does.
   SurfaceMap with_coarse_levels(std::span<const std::vector<float>> values) const;
 
