@@ -59,6 +59,40 @@ TEST_F(SurfaceCommand, FitsWhatWasMeasured) {
   EXPECT_EQ(read(file("wall.burnish")), bytes);
 }
 
+TEST_F(SurfaceCommand, SurfacesAreDescribedAndDrawn) {
+  ASSERT_EQ(burnish(kFit).status, 0);
+  const Outcome text = burnish("info '{0}/wall.burnish'"), json = burnish("info '{0}/wall.burnish' --json");
+  ASSERT_EQ(text.status, 0) << text.output;
+  EXPECT_THAT(text.output, HasSubstr("20 x 20"));
+  EXPECT_THAT(text.output, HasSubstr("widened for mip levels"));
+  const auto says = nlohmann::json::parse(json.output);
+  EXPECT_EQ(says["format"], "surface");
+  EXPECT_EQ(says["lobes"], 2);
+  EXPECT_EQ(says["weights"].size(), 2u);
+  EXPECT_GT(says["albedo"]["largest"].get<double>(), 0.1);
+  // near and far, where mip levels are seen
+  for (const char* vertices : {"100", "400"}) {
+    const Outcome drawn =
+        burnish(fmt::format("render --mesh plane --vertices {} --renderer cpu --size 24 --samples 1 "
+                            "--material '{{0}}/wall.burnish' "
+                            "-o '{{0}}/wall{}.png'",
+                            vertices, vertices));
+    EXPECT_EQ(drawn.status, 0) << drawn.output;
+  }
+  EXPECT_TRUE(fs::exists(file("wall100.png")));
+  // what is damaged is refused in one line
+  const std::string bytes = read(file("wall.burnish"));
+  write(file("cut.burnish"), bytes.substr(0, bytes.size() / 2));
+  for (const char* arguments :
+       {"info '{0}/cut.burnish'", "render --mesh plane --material '{0}/cut.burnish' -o '{0}/cut.png'"}) {
+    const Outcome refused = burnish(arguments);
+    EXPECT_EQ(refused.status, 1);
+    EXPECT_EQ(std::count(refused.output.begin(), refused.output.end(), '\n'), 1) << refused.output;
+    EXPECT_THAT(refused.output, HasSubstr("cut.burnish"));
+  }
+  EXPECT_FALSE(fs::exists(file("cut.png")));
+}
+
 TEST_F(SurfaceCommand, SaysWhatIsWrongInOneLine) {
   fs::remove(file("capture/00002.exr"));
   const Outcome left_out = burnish(kFit);

@@ -48,7 +48,8 @@ void fit_surface(FitSurfaceArguments& arguments, FitCrew* crew) {
   SurfaceFitOptions& options = arguments.options;
   if (!arguments.book.empty()) {
     const FileBytes book = read_file(arguments.book);
-    options.book = looks_like_surface(book.bytes) ? parse_surface(book).brdf.lobes() : parse_model(book).brdf;
+    options.book =
+        looks_like_surface(book.bytes) ? parse_surface(book).brdf.own_model() : parse_model(book).brdf;
   }
   if (arguments.normals == "flat") options.normals = NormalsFrom::flat;
   if (arguments.normals == "capture") options.normals = NormalsFrom::capture;

@@ -1,6 +1,7 @@
 #include "surface_info.h"
 
 #include <iterator>
+#include <span>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -31,8 +32,9 @@ std::string surface_info(const SurfaceModel& surface, const std::string& name) {
   line("format", "surface");
   line("texels", fmt::format("{} x {}", brdf.width(), brdf.height()));
   line("channels", fmt::format("{}", brdf.channels()));
-  line("lobes", fmt::format("{}, {} bytes", brdf.lobes().lobes().size(), brdf.lobes().bytes()));
-  for (const SurfaceMap& map : brdf.maps().weights)
+  line("lobes", fmt::format("{}, {} widened for mip levels, {} bytes", brdf.own_lobes(),
+                            brdf.widened().size(), brdf.lobes().bytes()));
+  for (const SurfaceMap& map : std::span(brdf.maps().weights).first(brdf.own_lobes()))
     line("weights", fmt::format("{} channel{}, {}, up to {:.4g}", map.channels(),
                                 map.channels() == 1 ? "" : "s", to_string(map.format()), map.scale()));
   line("frames", fmt::format("normals {}, tangents {}", brdf.maps().normals ? "from a map" : "of the plane",
@@ -52,13 +54,15 @@ std::string surface_info_json(const SurfaceModel& surface, const std::string& na
   const SpatialBrdf& brdf = surface.brdf;
   const SurfaceAlbedo albedo = surface_albedo(brdf);
   Object weights = Object::array();
-  for (const SurfaceMap& map : brdf.maps().weights) weights.push_back(entry_of(map));
+  for (const SurfaceMap& map : std::span(brdf.maps().weights).first(brdf.own_lobes()))
+    weights.push_back(entry_of(map));
   return Object{{"name", name},
                 {"format", "surface"},
                 {"width", brdf.width()},
                 {"height", brdf.height()},
                 {"channels", brdf.channels()},
-                {"lobes", brdf.lobes().lobes().size()},
+                {"lobes", brdf.own_lobes()},
+                {"widened_lobes", brdf.widened().size()},
                 {"lobe_bytes", brdf.lobes().bytes()},
                 {"weights", std::move(weights)},
                 {"normals", brdf.maps().normals.has_value()},

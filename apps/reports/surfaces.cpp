@@ -10,7 +10,7 @@
 #include <burnish/fitting/fit.h>
 #include <burnish/metrics/sphere_images.h>
 #include <burnish/render/scene.h>
-#include <burnish/surface/spatial_brdf.h>
+#include <burnish/surface/widened_lobes.h>
 
 #include "frames.h"
 #include "report.h"
@@ -32,7 +32,7 @@ FileBytes bytes_of(std::string_view text) {
 
 // The scene's materials, each fitted with one lobe, their shares as weights.
 struct Surfaces {
-  SpatialBrdf flat, bumpy;
+  SpatialBrdf flat, bumpy, widened;
 };
 Surfaces surfaces_of(const SurfaceScene& scene) {
   std::vector<burnish::Table> tables;
@@ -67,7 +67,8 @@ Surfaces surfaces_of(const SurfaceScene& scene) {
     }
   maps.normals.emplace(scene.width, scene.height, std::size_t{2}, TableFormat::half, 1.0f,
                        std::span<const float>(normals));
-  return {std::move(flat), SpatialBrdf(brdf, std::move(maps))};
+  SpatialBrdf bumpy(brdf, std::move(maps)), widened = with_widened_lobes(bumpy);
+  return {std::move(flat), std::move(bumpy), std::move(widened)};
 }
 
 // f cos of a whole level under one light.
@@ -102,11 +103,12 @@ double level_psnr(const SpatialBrdf& surface, const SurfaceScene& scene, std::si
 }
 
 Table levels_table(const Surfaces& surfaces, const SurfaceScene& scene) {
-  Table table({"level", "texels", "weights alone, dB", "with normals, dB"});
+  Table table({"level", "texels", "weights alone, dB", "with normals, dB", "lobes widened, dB"});
   for (std::size_t level = 1; level <= 5; ++level)
     table.add({fmt::format("{}", level), fmt::format("{0} x {0}", scene.width >> level),
                fmt::format("{:.1f}", level_psnr(surfaces.flat, scene, level)),
-               fmt::format("{:.1f}", level_psnr(surfaces.bumpy, scene, level))});
+               fmt::format("{:.1f}", level_psnr(surfaces.bumpy, scene, level)),
+               fmt::format("{:.1f}", level_psnr(surfaces.widened, scene, level))});
   return table;
 }
 
@@ -115,9 +117,11 @@ Table frames_table(const Surfaces& surfaces, int repetitions) {
   const auto shader = [](const auto& model) {
     return surface_shader(model, ShaderFilter::hardware, TableFormat::rgb9e5);
   };
-  const std::vector<FrameMaterial> materials{{"uniform model", shader(uniform), uniform},
-                                             {"surface, weights alone", shader(surfaces.flat), uniform},
-                                             {"surface with normals", shader(surfaces.bumpy), uniform}};
+  const std::vector<FrameMaterial> materials{
+      {"uniform model", shader(uniform), uniform},
+      {"surface, weights alone", shader(surfaces.flat), uniform},
+      {"surface with normals", shader(surfaces.bumpy), uniform},
+      {"surface with normals, lobes widened", shader(surfaces.widened), uniform}};
   check_picture(materials.front());
   return frame_times("surfaces", "the uniform model", materials, {1, 4}, repetitions);
 }

@@ -67,7 +67,8 @@ class Comparison {
     samples_ = sample_texels(capture_, values, options.tile_bytes, options.seed + 1, nullptr).samples;
     const SurfaceMaps& maps = fit.surface.brdf.maps();
     for (const auto& [x, y] : samples_.texels) {
-      for (const SurfaceMap& map : maps.weights) weights_.push_back(map.texel(x, y)[0]);
+      for (std::size_t j = 0; j < fit.surface.brdf.own_lobes(); ++j)
+        weights_.push_back(maps.weights[j].texel(x, y)[0]);
       if (!maps.normals) continue;
       const SurfaceMap::Value n = maps.normals->texel(x, y);
       normals_.insert(normals_.end(), {n[0], n[1]});
@@ -76,7 +77,7 @@ class Comparison {
 
   std::vector<BaselineScore> run() {
     const double bytes = fit_.report.bytes_a_texel;
-    return {{"lobes", bytes, score(fit_.surface.brdf.lobes(), fits_with(weights_))},
+    return {{"lobes", bytes, score(fit_.surface.brdf.own_model(), fits_with(weights_))},
             {"ggx", 7, ggx()},
             {"nearest", 2, nearest()},
             {"pca", std::floor(bytes), pca(static_cast<std::size_t>(bytes))}};
@@ -158,7 +159,7 @@ class Comparison {
 
   std::optional<double> nearest() const {
     std::vector<FactoredBrdf> models;
-    const FactoredBrdf& lobes = fit_.surface.brdf.lobes();
+    const FactoredBrdf lobes = fit_.surface.brdf.own_model();
     for (std::size_t j = 0; j < lobes.lobes().size(); ++j) models.push_back(lobe_alone(lobes, j));
     return best_of(models);
   }

@@ -9,6 +9,7 @@
 
 #include <burnish/capture/fit_checkpoint.h>
 #include <burnish/capture/sampled_texels.h>
+#include <burnish/capture/shared_work.h>
 #include <burnish/capture/surface_fit.h>
 #include <burnish/error.h>
 #include <burnish/eval/lobe_evaluator.h>
@@ -18,6 +19,7 @@
 #include <burnish/fitting/refinement/rounding.h>
 #include <burnish/math/parallel.h>
 #include <burnish/math/random.h>
+#include <burnish/surface/widened_lobes.h>
 
 namespace burnish {
 
@@ -48,6 +50,9 @@ constexpr double kLineShare = 0.07;
 constexpr std::size_t kTexelBytes = 4;  // rgb9e5
 constexpr double kCodeRoom = 1.25;      // of weights' scale over what nearly all texels have
 constexpr double kNearlyAll = 0.999;
+
+// What rank 0 tells the others first.
+constexpr const char *kResumed = "resumed", *kFromTheStart = "from the start";
 
 const char* name_of(NormalsFrom normals) noexcept {
   return normals == NormalsFrom::capture ? "capture" : normals == NormalsFrom::flat ? "flat" : "estimated";
@@ -110,7 +115,9 @@ class SurfaceFitter {
   SurfaceFit run() {
     const auto start = std::chrono::steady_clock::now();
     if (normals_from_ == NormalsFrom::capture) all_normals_ = capture_.normals();
-    if (!resume()) find_lobes();
+    const bool resumed = resume();
+    if (crew_ranks() > 1) options_.crew->broadcast(resumed ? kResumed : kFromTheStart);
+    if (!resumed) find_lobes();
     if (crew_ranks() > 1) options_.crew->broadcast(format_checkpoint(noted()));
     find_weights();
     SurfaceFit fit{.surface = surface(), .report = std::move(report_)};
@@ -123,6 +130,7 @@ class SurfaceFitter {
   /// The share of a rank that does not lead.
   void help() {
     if (normals_from_ == NormalsFrom::capture) all_normals_ = capture_.normals();
+    if (options_.crew->broadcast({}) == kFromTheStart) find_lobes();
     adopt(parse_checkpoint({"what rank 0 sent", bytes_of_text(options_.crew->broadcast({}))},
                            capture_.form().width));
     find_weights();
@@ -137,14 +145,16 @@ class SurfaceFitter {
   }
 
   void progress(std::string_view stage, double fraction) const {
-    if (options_.progress) options_.progress(stage, fraction);
+    if (options_.progress && crew_rank() == 0) options_.progress(stage, fraction);
   }
 
   // ---- Lobes
 
+  /// Every rank does what is small, and its share of the rest: reading, starts, channels and texels.
   void find_lobes() {
-    SampledTexels sampled = sample_texels(capture_, kSampleValues, options_.tile_bytes, options_.seed,
-                                          [&](double f) { progress("reading pictures", f); });
+    SampledTexels sampled = sample_texels(
+        capture_, kSampleValues, options_.tile_bytes, options_.seed,
+        [&](double f) { progress("reading pictures", f); }, options_.crew);
     samples_ = std::move(sampled.samples);
     report_.missing_pixels = sampled.missing;
     report_.clipped_pixels = sampled.clipped;
@@ -176,18 +186,17 @@ class SurfaceFitter {
   }
 
   /// As if texels were diffuse, then by what general lobes make of them.
-  std::vector<float> first_normals(const TexelSamples& samples) const {
+  std::vector<float> first_normals(const TexelSamples& samples, FitCrew* crew) const {
     constexpr int kSteps = 4;
     const TexelSolver solver(general_lobes(), capture_.form(), exposure_);
-    return solver
-        .solve(samples, diffuse_normals(samples, capture_.form()),
-               {.passes = 1, .normals = true, .normal_steps = kSteps})
+    return solve_together(crew, solver, samples, diffuse_normals(samples, capture_.form()),
+                          {.passes = 1, .normals = true, .normal_steps = kSteps})
         .normals;
   }
   void start_normals() {
     if (normals_from_ != NormalsFrom::estimate) return;
     progress("normals", 0);
-    fits_.normals = first_normals(samples_);
+    fits_.normals = first_normals(samples_, options_.crew);
     progress("normals", 1);
   }
 
@@ -198,14 +207,21 @@ class SurfaceFitter {
     const std::size_t bytes = bytes_in(0);
     const ModelSpec spec = spec_of_lobes(options_.lobes, bytes), alone = spec_of_lobes(1, bytes);
     model_ = LogModel{.spec = spec, .channels = kCaptureChannels, .log_values = {}};
-    for (std::size_t j = 0; j < sets.size(); ++j) {
+    const auto started = made_together(options_.crew, sets.size(), [&](std::size_t j) {
       std::vector<bool> chosen(samples_.size());
       for (const std::size_t t : sets[j]) chosen[t] = true;
       const TrainingSet set = training_set(kStartPixels, j, [&](std::size_t t) { return chosen[t]; });
       const LogModel lobe = fit_one_lobe(alone, set, set.values, kStart);
-      for (const auto& table : lobe.log_values) model_.log_values.push_back(table);
+      std::string made;
+      for (const auto& table : lobe.log_values) append_values<double>(made, table);
       progress("starting lobes", static_cast<double>(j + 1) / static_cast<double>(sets.size()));
-    }
+      return made;
+    });
+    for (const ModelSpec::TableSpec& table : spec.tables)
+      model_.log_values.emplace_back(table.layout.node_count() * kCaptureChannels);
+    for (std::size_t j = 0, t = 0; j < started.size(); ++j)
+      for (std::string_view rest = started[j]; !rest.empty(); ++t)
+        take_values<double>(rest, model_.log_values[t]);
     lobes_ = to_brdf(model_, TableFormat::single);
     fit_samples(false);
   }
@@ -214,8 +230,8 @@ class SurfaceFitter {
     const TexelSolver solver(*lobes_, capture_.form(), exposure_);
     const bool normals = normals_from_ == NormalsFrom::estimate;
     TexelFits fits =
-        solver.solve(samples_, std::move(fits_.normals),
-                     {.passes = 3, .normals = normals, .normal_steps = last ? 8 : 4, .trust = true});
+        solve_together(options_.crew, solver, samples_, std::move(fits_.normals),
+                       {.passes = 3, .normals = normals, .normal_steps = last ? 8 : 4, .trust = true});
     fits_ = std::move(fits);
   }
 
@@ -240,10 +256,35 @@ class SurfaceFitter {
                           : coarse ? kCoarseSteps
                                    : kFullSteps,
         .progress = [&](double f) { progress("fitting lobes", (round + f) / options_.rounds); }};
-    refine(model_, set, options);
+    refine_channels(set, options);
     lobes_ = last ? to_rounded_brdf(model_, set, options) : to_brdf(model_, TableFormat::single);
     rounds_done_ = round + 1;
     fit_samples(last);
+  }
+
+  /// Each channel on its own, by a rank of its own.
+  void refine_channels(const TrainingSet& set, const RefineOptions& options) {
+    if (crew_ranks() == 1) {
+      refine(model_, set, options);
+      return;
+    }
+    const auto refined = made_together(options_.crew, kCaptureChannels, [&](std::size_t c) {
+      LogModel model = model_;
+      RefineOptions own = options;
+      own.channel = c;
+      refine(model, set, own);
+      std::string bytes;
+      for (const std::vector<double>& table : model.log_values) append_values<double>(bytes, table);
+      return bytes;
+    });
+    for (std::size_t c = 0; c < kCaptureChannels; ++c) {
+      std::string_view rest = refined[c];
+      for (std::vector<double>& table : model_.log_values) {
+        std::vector<double> all(table.size());
+        take_values<double>(rest, all);
+        for (std::size_t i = c; i < table.size(); i += kCaptureChannels) table[i] = all[i];
+      }
+    }
   }
 
   /// f of the lobes as they are, with the texel's weights.
@@ -502,7 +543,7 @@ class SurfaceFitter {
                      all_normals_.begin() + static_cast<std::ptrdiff_t>(first + 2 * tile.size()));
     }
     const bool estimate = normals_from_ == NormalsFrom::estimate;
-    if (estimate) normals = first_normals(tile);
+    if (estimate) normals = first_normals(tile, nullptr);
     return solver.solve(tile, std::move(normals), {.passes = 3, .normals = estimate, .normal_steps = 8});
   }
 
@@ -569,7 +610,7 @@ class SurfaceFitter {
     if (!done_.normals.empty())
       maps.normals.emplace(form.width, form.height, std::size_t{2}, TableFormat::half, 1.0f,
                            std::span<const float>(done_.normals));
-    SurfaceModel surface{.brdf = SpatialBrdf(*lobes_, std::move(maps)), .notes = "{}"};
+    SurfaceModel surface{.brdf = with_widened_lobes(SpatialBrdf(*lobes_, std::move(maps))), .notes = "{}"};
     report_.width = static_cast<std::size_t>(form.width);
     report_.height = static_cast<std::size_t>(form.height);
     report_.pictures = form.pictures.size();
@@ -579,7 +620,7 @@ class SurfaceFitter {
     report_.exposure = exposure_;
     report_.weight_bytes = surface.brdf.weight_bytes();
     report_.frame_bytes = surface.brdf.frame_bytes();
-    report_.lobe_bytes = lobes_->bytes();
+    report_.lobe_bytes = surface.brdf.lobes().bytes();
     report_.bytes_a_texel =
         static_cast<double>(report_.weight_bytes) +
         static_cast<double>(report_.lobe_bytes) / (static_cast<double>(form.width) * form.height);

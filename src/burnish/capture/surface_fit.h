@@ -31,7 +31,7 @@ struct SurfaceFitOptions {
   /// A file that says how far the work is, written after each part and removed at the end; empty: none. One that is
   /// there and of the same capture and options is gone on from.
   std::filesystem::path checkpoint = {};
-  /// Ranks that share the rows of the last pass; null: this process alone. Rank 0 calls fit_surface, the others
+  /// Ranks that share the work; null: this process alone. Rank 0 calls fit_surface, the others
   /// help_fit_surface, with the same capture and options.
   FitCrew* crew = nullptr;
   /// Called from the calling thread with what is done and a rising share of it. What it throws ends the fit.
@@ -75,8 +75,8 @@ struct SurfaceFit {
 /// what Capture throws.
 SurfaceFit fit_surface(Capture capture, const SurfaceFitOptions& options);
 
-/// What ranks other than 0 of options.crew call: takes the lobes from rank 0 and finds the weights of its share of the
-/// rows, which rank 0 gathers. Progress and checkpoint are rank 0's. The result is the same to the bit for any number of
+/// What ranks other than 0 of options.crew call: finds its share of lobes, which all exchange, and the weights of its
+/// rows, which rank 0 gathers. Progress and checkpoint are rank 0's. The result is the same to the bit for any count of
 /// ranks. Throws Error as fit_surface does; the ranks that wait for one that threw have to be ended by whoever started
 /// them.
 void help_fit_surface(Capture capture, const SurfaceFitOptions& options);

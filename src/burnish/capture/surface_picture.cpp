@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -62,7 +63,8 @@ Image8 surface_picture(const Capture& capture, const SpatialBrdf& surface, std::
   // side by side
   std::vector<Image8> panels{to_bytes(measured, exposure, Tone::srgb),
                              to_bytes(modelled(form, surface, form.pictures[picture]), exposure, Tone::srgb)};
-  for (const SurfaceMap& map : surface.maps().weights) panels.push_back(weights_of(map));
+  for (const SurfaceMap& map : std::span(surface.maps().weights).first(surface.own_lobes()))
+    panels.push_back(weights_of(map));
   const int step = form.width + kGap;
   Image8 sheet(step * static_cast<int>(panels.size()) - kGap, form.height, 3);
   std::ranges::fill(sheet.pixels, std::uint8_t{255});

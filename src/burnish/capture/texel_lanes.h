@@ -24,8 +24,32 @@ void sum_lobes(const TexelPixels& pixels, const TexelRow* weights, float* total)
 /// `floor`; from 1 on that of 1 over x^2; times the pixel's own `share`.
 void find_omega(float exposure, float floor, const float* at, const float* share, float* omega) noexcept;
 
-/// Adds omega times products of the lobes to the lower triangles, row by row, and omega times those with the value.
-void add_normal_equations(const TexelPixels& pixels, const float* omega, TexelRow* matrix,
-                          TexelRow* vector) noexcept;
+/// All fitted pixels of the texels, picture by picture.
+struct TexelPictures {
+  std::size_t lobes, channels, pictures;
+  const float* model;  ///< rows [picture][lobe][channel]
+  const float* value;  ///< rows [picture][channel]
+  const float* there;  ///< rows [picture]: 1 of pixels that count, else 0
+  const float*
+      clipped;  ///< rows [picture][channel]: 1 of values that are clipped, else 0; null: there are none
+};
+
+/// How pixels count in a pass. The first, `of_measured`: as find_omega says of the measured values, all trusted alike.
+/// Any other: of the mean of measured and modelled values, not at all where a clipped one is below the model; trusted
+/// by the largest of the channels' squared errors e, those of what is brighter than the model times `brighter`, as
+/// 1 / (1 + e / reach^2)^2 [GemanMcClure1987].
+struct TexelPass {
+  bool of_measured;
+  float exposure, floor, reach, brighter;
+};
+
+/// The normal equations of a pass: sums over pictures and channels of omega times products of the lobes, the lower
+/// triangles row by row, and omega times those with the value. Sets trust, rows [picture], but in the first pass, where
+/// it is not read.
+void find_normal_equations(const TexelPictures& pictures, const TexelPass& pass, const TexelRow* weights,
+                           float* trust, TexelRow* matrix, TexelRow* vector) noexcept;
+
+/// clamp(exposure value, 0, 1)^(1/2.2), off by at most 1e-6.
+void find_seen(float exposure, const float* value, float* seen) noexcept;
 
 }  // namespace burnish

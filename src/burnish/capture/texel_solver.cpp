@@ -26,7 +26,6 @@ constexpr float kNormalDelta = 0.01f;  // of finite differences
 constexpr double kMostSlope = 0.95;    // length of a normal's x and y
 constexpr double kMostStep = 0.15;
 constexpr double kDamping = 1e-2, kEase = 0.4, kHarden = 8;
-constexpr double kGrey = 1 / 2.2;
 
 Vec3 normal_of(const float* xy) noexcept {
   const double x = static_cast<double>(xy[0]), y = static_cast<double>(xy[1]);
@@ -35,18 +34,19 @@ Vec3 normal_of(const float* xy) noexcept {
 
 }  // namespace
 
-void solve_nonnegative(std::span<const double> a, std::span<const double> b, std::span<double> w) noexcept {
+void solve_nonnegative(std::span<const double> a, std::span<const double> b, std::span<double> w,
+                       bool near) noexcept {
   const std::size_t n = b.size();
   constexpr std::size_t kMost = kMaxSurfaceLobes;
   std::array<bool, kMost> free{};
   std::array<double, kMost> solution{};
   std::array<std::array<double, kMost>, kMost> factor;
+  std::array<double, kMost> inverse;  // of the factor's diagonal
   std::array<std::size_t, kMost> member;
-  std::ranges::fill(w, 0.0);
-  for (const double value : b)
-    if (!std::isfinite(value)) return;
-  for (const double value : a)
-    if (!std::isfinite(value)) return;
+  const auto finite = [](double value) { return std::isfinite(value); };
+  const bool sound = std::ranges::all_of(b, finite) && std::ranges::all_of(a, finite);
+  if (!near || !sound) std::ranges::fill(w, 0.0);
+  if (!sound) return;
 
   // the least for the free unknowns, by Cholesky
   const auto solve_free = [&] {
@@ -58,38 +58,23 @@ void solve_nonnegative(std::span<const double> a, std::span<const double> b, std
       for (std::size_t j = 0; j <= i; ++j) {
         double sum = a[member[i] * n + member[j]];
         for (std::size_t k = 0; k < j; ++k) sum -= factor[i][k] * factor[j][k];
-        factor[i][j] = i == j ? std::sqrt(std::max(sum, 1e-300)) : sum / factor[j][j];
+        factor[i][j] = i == j ? std::sqrt(std::max(sum, 1e-300)) : sum * inverse[j];
       }
+      inverse[i] = 1 / factor[i][i];
       for (std::size_t k = 0; k < i; ++k) rest -= factor[i][k] * solution[member[k]];
-      solution[member[i]] = rest / factor[i][i];
+      solution[member[i]] = rest * inverse[i];
     }
     for (std::size_t i = m; i-- > 0;) {
       double rest = solution[member[i]];
       for (std::size_t k = i + 1; k < m; ++k) rest -= factor[k][i] * solution[member[k]];
-      solution[member[i]] = rest / factor[i][i];
+      solution[member[i]] = rest * inverse[i];
     }
   };
 
   std::size_t changes = 0;
-  while (changes < 3 * n) {
-    // the unknown that the sum falls by fastest
-    std::size_t best = n;
-    double steepest = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (free[i]) continue;
-      double slope = b[i];
-      for (std::size_t j = 0; j < n; ++j) slope -= a[i * n + j] * w[j];
-      const double scaled = slope / std::sqrt(std::max(a[i * n + i], 1e-300));
-      constexpr double kSmallest = 1e-12;
-      if (scaled > steepest && slope > kSmallest * std::abs(b[i])) {
-        steepest = scaled;
-        best = i;
-      }
-    }
-    if (best == n) return;
-    free[best] = true;
-    // as far as all stay positive
-    for (; changes < 3 * n;) {
+  // as far as all stay positive
+  const auto settle = [&] {
+    while (changes < 3 * n) {
       ++changes;
       solve_free();
       double step = 1;
@@ -108,6 +93,29 @@ void solve_nonnegative(std::span<const double> a, std::span<const double> b, std
       free[blocking] = false;
       w[blocking] = 0;
     }
+  };
+  if (near) {
+    for (std::size_t i = 0; i < n; ++i) free[i] = w[i] > 0;
+    settle();
+  }
+  while (changes < 3 * n) {
+    // the unknown that the sum falls by fastest
+    std::size_t best = n;
+    double steepest = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (free[i]) continue;
+      double slope = b[i];
+      for (std::size_t j = 0; j < n; ++j) slope -= a[i * n + j] * w[j];
+      const double scaled = slope / std::sqrt(std::max(a[i * n + i], 1e-300));
+      constexpr double kSmallest = 1e-12;
+      if (scaled > steepest && slope > kSmallest * std::abs(b[i])) {
+        steepest = scaled;
+        best = i;
+      }
+    }
+    if (best == n) return;
+    free[best] = true;
+    settle();
   }
 }
 
@@ -140,6 +148,8 @@ class TexelSolver::Block {
     weights_.resize(lobes_);
     values_.resize(pictures_.size() * kCaptureChannels);
     states_.resize(pictures_.size());
+    there_.resize(pictures_.size());
+    clipped_.resize(values_.size());
   }
 
   std::span<const std::size_t> pictures() const noexcept { return pictures_; }
@@ -205,10 +215,12 @@ class TexelSolver::Block {
           b[k] = static_cast<double>(vector_[k][i]);
           trace += a[k * lobes_ + k];
         }
-        for (std::size_t k = 0; k < lobes_; ++k)
+        for (std::size_t k = 0; k < lobes_; ++k) {
           a[k * lobes_ + k] += kRidge * trace / static_cast<double>(lobes_) + 1e-30;
+          w[k] = static_cast<double>(weights_[k][i]);
+        }
         solve_nonnegative(std::span(a).first(lobes_ * lobes_), std::span(b).first(lobes_),
-                          std::span(w).first(lobes_));
+                          std::span(w).first(lobes_), pass + first_pass > 0);
         for (std::size_t k = 0; k < lobes_; ++k) weights_[k][i] = static_cast<float>(w[k]);
       }
     }
@@ -273,14 +285,15 @@ class TexelSolver::Block {
     sum_lobes(pixels(k, c), weights_.data(), total.data());
     return total;
   }
+  const TexelRow& measured(std::size_t k, std::size_t c) const noexcept {
+    return values_[k * kCaptureChannels + c];
+  }
   std::size_t pixel(std::size_t k, std::size_t i) const noexcept {
     return pictures_[k] * samples_.size() + first_ + std::min(i, count_ - 1);
   }
 
   /// Trust in pixels by the errors that are left.
-  void find_trust(int pass) {
-    for (std::size_t k = 0; k < pictures_.size(); ++k) find_trust(k, all_terms(k, pass), pass);
-  }
+  void find_trust(int pass) { gram(pass); }
 
  private:
   struct Terms {
@@ -389,12 +402,18 @@ class TexelSolver::Block {
 
   /// What was measured, as rows.
   void load() {
+    any_clipped_ = false;
     for (std::size_t k = 0; k < pictures_.size(); ++k)
       for (std::size_t i = 0; i < kBlock; ++i) {
         const std::size_t from = pixel(k, i);
         states_[k][i] = samples_.states[from];
-        for (std::size_t c = 0; c < kCaptureChannels; ++c)
+        there_[k][i] = is_there(states_[k][i]) ? 1.0f : 0.0f;
+        for (std::size_t c = 0; c < kCaptureChannels; ++c) {
+          const bool clipped = is_clipped(states_[k][i], c);
           values_[k * kCaptureChannels + c][i] = samples_.values[from * kCaptureChannels + c];
+          clipped_[k * kCaptureChannels + c][i] = clipped ? 1.0f : 0.0f;
+          any_clipped_ = any_clipped_ || clipped;
+        }
       }
   }
 
@@ -405,37 +424,26 @@ class TexelSolver::Block {
             .value = values_[k * kCaptureChannels + c].data()};
   }
 
-  std::array<Terms, kCaptureChannels> all_terms(std::size_t k, int pass) const {
-    return {terms_of(k, 0, pass), terms_of(k, 1, pass), terms_of(k, 2, pass)};
-  }
-
-  /// By the worst channel.
-  void find_trust(std::size_t k, const std::array<Terms, kCaptureChannels>& terms, int pass) {
-    const float reach = kTrustedError[std::min(static_cast<std::size_t>(pass), kTrustedError.size() - 1)];
-    float* const trust = &trust_[k * kBlock];
-    for (std::size_t i = 0; i < kBlock; ++i) {
-      float worst = 0;
-      for (std::size_t c = 0; c < kCaptureChannels; ++c) {
-        const float rest = terms[c].value[i] - terms[c].model[i];
-        worst = std::max(worst, (rest < 0 ? 1 : kBrighter) * terms[c].omega[i] * rest * rest);
-      }
-      const float share = 1 + worst / (reach * reach);
-      trust[i] = is_there(states_[k][i]) ? 1 / (share * share) : 0;
-    }
-  }
-
   void gram(int pass) {
-    for (auto& row : matrix_) row.fill(0);
-    for (auto& row : vector_) row.fill(0);
-    for (std::size_t k = 0; k < pictures_.size(); ++k) {
-      std::array<Terms, kCaptureChannels> terms = all_terms(k, pass);
-      if (pass > 0) find_trust(k, terms, pass);
-      const float* const trust = &trust_[k * kBlock];
-      for (std::size_t c = 0; c < kCaptureChannels; ++c) {
-        for (std::size_t i = 0; i < kBlock; ++i) terms[c].omega[i] *= trust[i];
-        add_normal_equations(pixels(k, c), terms[c].omega.data(), matrix_.data(), vector_.data());
-      }
+    if (pictures_.empty()) {
+      for (auto& row : matrix_) row.fill(0);
+      for (auto& row : vector_) row.fill(0);
+      return;
     }
+    const float reach = kTrustedError[std::min(static_cast<std::size_t>(pass), kTrustedError.size() - 1)];
+    find_normal_equations({.lobes = lobes_,
+                           .channels = kCaptureChannels,
+                           .pictures = pictures_.size(),
+                           .model = model_.data(),
+                           .value = values_.front().data(),
+                           .there = there_.front().data(),
+                           .clipped = any_clipped_ ? clipped_.front().data() : nullptr},
+                          {.of_measured = pass == 0,
+                           .exposure = exposure_,
+                           .floor = kFloor,
+                           .reach = reach,
+                           .brighter = kBrighter},
+                          weights_.data(), trust_.data(), matrix_.data(), vector_.data());
   }
 
   const TexelSolver& solver_;
@@ -445,7 +453,8 @@ class TexelSolver::Block {
   bool evaluated_ = false;
   std::vector<std::size_t> pictures_;
   std::vector<float> model_, trust_;
-  std::vector<TexelRow> weights_, values_;
+  std::vector<TexelRow> weights_, values_, there_, clipped_;
+  bool any_clipped_ = false;
   std::vector<std::array<PixelState, kBlock>> states_;
   std::array<std::vector<float>, 2> slopes_;
   std::array<TexelRow, kMaxSurfaceLobes*(kMaxSurfaceLobes + 1) / 2> matrix_;
@@ -500,9 +509,7 @@ std::vector<TexelSolver::PictureError> TexelSolver::errors(const TexelSamples& s
   const float* const xy = fits.normals.empty() ? nullptr : fits.normals.data();
   const std::size_t chunk = kBlock * kBlocksTogether;
   std::vector<std::vector<PictureError>> partial(chunk_count(samples.size(), chunk));
-  const auto seen_as = [&](float value) {
-    return std::pow(std::clamp(exposure_ * static_cast<double>(value), 0.0, 1.0), kGrey);
-  };
+  const auto exposure = static_cast<float>(exposure_);
   for_each_chunk(samples.size(), chunk, [&](std::size_t number, std::size_t begin, std::size_t end) {
     std::vector<PictureError>& errors = partial[number];
     errors.resize(samples.pictures);
@@ -514,18 +521,23 @@ std::vector<TexelSolver::PictureError> TexelSolver::errors(const TexelSamples& s
         block->load_weights(fits.weights.data());
         for (std::size_t k = 0; k < block->pictures().size(); ++k) {
           PictureError& error = errors[block->pictures()[k]];
-          const std::array<TexelRow, kCaptureChannels> model{block->values(k, 0), block->values(k, 1),
-                                                             block->values(k, 2)};
+          // what took the picture would clip the model too
+          std::array<TexelRow, kCaptureChannels> seen, shown;
+          for (std::size_t c = 0; c < kCaptureChannels; ++c) {
+            const TexelRow& measured = block->measured(k, c);
+            TexelRow model = block->values(k, c);
+            for (std::size_t i = 0; i < count; ++i)
+              if (is_clipped(samples.states[block->pixel(k, i)], c))
+                model[i] = std::min(model[i], measured[i]);
+            find_seen(exposure, measured.data(), seen[c].data());
+            find_seen(exposure, model.data(), shown[c].data());
+          }
           for (std::size_t i = 0; i < count; ++i) {
-            const std::size_t pixel = block->pixel(k, i);
-            const PixelState state = samples.states[pixel];
+            const PixelState state = samples.states[block->pixel(k, i)];
             if (state == PixelState::missing) continue;
             double square = 0;
             for (std::size_t c = 0; c < kCaptureChannels; ++c) {
-              // what took the picture would clip the model too
-              const float value = samples.values[pixel * kCaptureChannels + c],
-                          shown = is_clipped(state, c) ? std::min(model[c][i], value) : model[c][i];
-              const double off = seen_as(value) - seen_as(shown);
+              const double off = static_cast<double>(seen[c][i]) - static_cast<double>(shown[c][i]);
               square += off * off;
             }
             const auto units = static_cast<std::uint64_t>(std::llround(square / PictureError::kUnit));

@@ -15,8 +15,10 @@ namespace burnish {
 
 /// The w >= 0 with the least w^T A w / 2 - b^T w, A symmetric and positive definite, by the active-set method of
 /// Lawson and Hanson on the normal equations [LawsonHanson1974]. A row by row, of b.size() unknowns, at most
-/// kMaxSurfaceLobes. Ends after 3 unknowns changes of the active set at most. What is not finite gives zeros.
-void solve_nonnegative(std::span<const double> a, std::span<const double> b, std::span<double> w) noexcept;
+/// kMaxSurfaceLobes. Begins at 0, or where `near` at the w given, finite and >= 0, which ends soonest where the same
+/// unknowns stay 0. Ends after 3 unknowns changes of the active set at most. What is not finite gives zeros.
+void solve_nonnegative(std::span<const double> a, std::span<const double> b, std::span<double> w,
+                       bool near = false) noexcept;
 
 /// Some texels in every picture of a capture.
 struct TexelSamples {
@@ -61,7 +63,7 @@ class TexelSolver {
   };
   TexelFits solve(const TexelSamples& samples, std::vector<float> normals, const Options& options) const;
 
-  /// Squared differences of min(1, exposure f cos)^(1/2.2) between pictures and model, summed over the channels; where a
+  /// Squared differences of min(1, exposure f cos)^(1/2.2), each to 1e-6, of pictures and model, over channels; where a
   /// picture's channel is clipped, the model is clipped at its value too, as what took the picture would have done. In
   /// units of kUnit: integers add up to the same in any order.
   struct PictureError {

@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include <burnish/capture/sampled_texels.h>
+#include <burnish/capture/texel_lanes.h>
 #include <burnish/capture/texel_solver.h>
 #include <burnish/math/angles.h>
 #include <burnish/math/parallel.h>
@@ -38,6 +40,11 @@ TEST(SolveNonnegative, FindsTheLeastAtTheBounds) {
       }
       at_bound += w[i] == 0;
     }
+    // the same from anywhere
+    std::vector<double> near(n);
+    for (double& value : near) value = random.next() % 3 == 0 ? 0 : 2 * random.uniform();
+    solve_nonnegative(a, b, near, true);
+    for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(near[i], w[i], 1e-6) << trial;
   }
   EXPECT_GT(at_bound, 500u);
 }
@@ -46,6 +53,19 @@ TEST(SolveNonnegative, GivesZerosForWhatIsNotFinite) {
   std::array<double, 1> w{7};
   solve_nonnegative(std::array{1.0}, std::array<double, 1>{NAN}, w);
   EXPECT_EQ(w[0], 0);
+}
+
+TEST(TexelLanes, SeenValuesAreRoots) {
+  TexelRow value, seen;
+  for (std::size_t i = 0; i < kTexelLanes; ++i)
+    value[i] = static_cast<float>(std::exp2(1.0 - static_cast<double>(i)));
+  value[30] = 0;
+  value[31] = -1;
+  find_seen(0.7f, value.data(), seen.data());
+  for (std::size_t i = 0; i < kTexelLanes; ++i)
+    EXPECT_NEAR(static_cast<double>(seen[i]),
+                std::pow(std::clamp(0.7 * static_cast<double>(value[i]), 0.0, 1.0), 1 / 2.2), 1e-6)
+        << i;
 }
 
 /// Pixels of texels with weights and normals at random, seen by `pictures` lights and views.

@@ -154,7 +154,7 @@ class SurfaceExport {
   }
   void add_pictures(ExportTarget target) {
     const SurfaceMaps& maps = surface_.maps();
-    for (std::size_t j = 0; j < maps.weights.size(); ++j)
+    for (std::size_t j = 0; j < surface_.own_lobes(); ++j)
       add_picture(target, fmt::format("weight{}", j), maps.weights[j], false, false);
     if (maps.normals) add_picture(target, "normals", *maps.normals, true, true);
     if (maps.tangents) add_picture(target, "tangents", *maps.tangents, true, false);

@@ -8,6 +8,7 @@
 #include <burnish/math/parallel.h>
 #include <burnish/metrics/albedo.h>
 #include <burnish/surface/spatial_brdf.h>
+#include <burnish/surface/widened_weights.h>
 
 namespace burnish {
 
@@ -46,6 +47,22 @@ void check_weights(const SurfaceMap& map, std::size_t channels) {
           throw Error(fmt::format("surface: expected weights >= 0, found {} in texel ({}, {})", value, x, y));
 }
 
+/// Copies of one of `own` lobes each, those of a lobe together, by rising variance.
+void check_widened(std::span<const WidenedLobe> widened, std::size_t own, const SurfaceMaps& maps) {
+  if (!widened.empty() && !maps.normals)
+    throw Error("surface: expected normals beside widened lobes, found none");
+  for (std::size_t i = 0; i < widened.size(); ++i) {
+    const WidenedLobe* const before = i > 0 ? &widened[i - 1] : nullptr;
+    const bool follows = !before || before->lobe < widened[i].lobe ||
+                         (before->lobe == widened[i].lobe && before->variance < widened[i].variance);
+    if (!follows || widened[i].lobe >= own || !(widened[i].variance > 0) || !(widened[i].variance <= 1))
+      throw Error(
+          fmt::format("surface: expected widened lobes in the order of lobes and variances in (0, 1], found "
+                      "lobe {} of variance {}",
+                      widened[i].lobe, widened[i].variance));
+  }
+}
+
 }  // namespace
 
 ShadingFrame frame_about(Vec3 normal, Vec3 tangent) noexcept {
@@ -56,27 +73,42 @@ ShadingFrame frame_about(Vec3 normal, Vec3 tangent) noexcept {
   return frame;
 }
 
-FactoredBrdf lobe_alone(const FactoredBrdf& brdf, std::size_t lobe) {
-  Lobe alone = brdf.lobes()[lobe];
+namespace {
+
+/// Some lobes with the tables that they look up.
+FactoredBrdf lobes_alone(const FactoredBrdf& brdf, std::span<const Lobe> some) {
+  std::vector<Lobe> lobes(some.begin(), some.end());
   std::vector<Table> tables;
-  for (FactorUse& use : alone.factors) {
-    const Table& table = brdf.table_of(use);
-    const auto known = std::ranges::find(tables, table.name, &Table::name);
-    use.table = static_cast<std::size_t>(known - tables.begin());
-    if (known == tables.end()) tables.push_back(table);
-  }
-  return FactoredBrdf(brdf.channels(), std::move(tables), {std::move(alone)});
+  for (Lobe& lobe : lobes)
+    for (FactorUse& use : lobe.factors) {
+      const Table& table = brdf.table_of(use);
+      const auto known = std::ranges::find(tables, table.name, &Table::name);
+      use.table = static_cast<std::size_t>(known - tables.begin());
+      if (known == tables.end()) tables.push_back(table);
+    }
+  return FactoredBrdf(brdf.channels(), std::move(tables), std::move(lobes));
 }
 
-SpatialBrdf::SpatialBrdf(FactoredBrdf lobes, SurfaceMaps maps)
-    : lobes_(std::move(lobes)), maps_(std::move(maps)) {
+}  // namespace
+
+FactoredBrdf lobe_alone(const FactoredBrdf& brdf, std::size_t lobe) {
+  return lobes_alone(brdf, brdf.lobes().subspan(lobe, 1));
+}
+
+FactoredBrdf SpatialBrdf::own_model() const {
+  return widened_.empty() ? lobes_ : lobes_alone(lobes_, lobes_.lobes().first(own_lobes()));
+}
+
+SpatialBrdf::SpatialBrdf(FactoredBrdf lobes, SurfaceMaps maps, std::vector<WidenedLobe> widened)
+    : lobes_(std::move(lobes)), maps_(std::move(maps)), widened_(std::move(widened)) {
   const std::size_t count = lobes_.lobes().size();
   if (channels() != 1 && channels() != 3)
     throw Error(fmt::format("surface: expected lobes of 1 or 3 channels, found {}", channels()));
   if (count < 1 || count > kMaxSurfaceLobes)
     throw Error(fmt::format("surface: expected 1 to {} lobes, found {}", kMaxSurfaceLobes, count));
-  if (maps_.weights.size() != count)
-    throw Error(fmt::format("surface: expected {} maps of weights, found {}", count, maps_.weights.size()));
+  if (widened_.size() >= count || maps_.weights.size() != own_lobes())
+    throw Error(fmt::format("surface: expected maps of weights for {} lobes, {} of them widened, found {}",
+                            count, widened_.size(), maps_.weights.size()));
   for (const SurfaceMap& map : maps_.weights) {
     check_size(map, maps_.weights.front());
     check_weights(map, channels());
@@ -89,6 +121,8 @@ SpatialBrdf::SpatialBrdf(FactoredBrdf lobes, SurfaceMaps maps)
     check_size(*maps_.tangents, maps_.weights.front());
     check_vectors(*maps_.tangents, 0.5, "tangents");
   }
+  check_widened(widened_, own_lobes(), maps_);
+  if (!widened_.empty()) maps_ = with_widened_weights(std::move(maps_), widened_);
   for (std::size_t j = 0; j < count; ++j) apart_.push_back(lobe_alone(lobes_, j));
 }
 
@@ -145,7 +179,7 @@ FactoredBrdf SpatialBrdf::at(double u, double v, double lod) const {
 
 std::size_t SpatialBrdf::weight_bytes() const noexcept {
   std::size_t bytes = 0;
-  for (const SurfaceMap& map : maps_.weights) bytes += map.texel_bytes();
+  for (const SurfaceMap& map : std::span(maps_.weights).first(own_lobes())) bytes += map.texel_bytes();
   return bytes;
 }
 
@@ -163,7 +197,7 @@ SurfaceAlbedo surface_albedo(const SpatialBrdf& surface) {
   // of each lobe from each direction
   std::vector<double> theta_i;
   for (const double theta_deg : {0.0, 30.0, 50.0, 65.0, 75.0}) theta_i.push_back(radians(theta_deg));
-  const std::size_t lobes = surface.lobes().lobes().size(), channels = surface.channels();
+  const std::size_t lobes = surface.own_lobes(), channels = surface.channels();
   std::vector<std::vector<AlbedoAt>> curves(lobes);
   for (std::size_t j = 0; j < lobes; ++j) curves[j] = albedo_curve(lobe_alone(surface.lobes(), j), theta_i);
   std::size_t directions = theta_i.size();

@@ -26,6 +26,14 @@ struct SurfaceMaps {
   friend bool operator==(const SurfaceMaps&, const SurfaceMaps&) = default;
 };
 
+/// A lobe as bumps that a mip level no longer shows make it look: a copy of another, wider one.
+struct WidenedLobe {
+  std::size_t lobe = 0;  ///< which it is a copy of
+  double variance = 0;   ///< of the bumps' normals, along each axis; > 0
+
+  friend bool operator==(const WidenedLobe&, const WidenedLobe&) = default;
+};
+
 /// Three unit vectors at right angles to each other, tangent x bitangent = normal.
 struct ShadingFrame {
   Vec3 tangent{1, 0, 0}, bitangent{0, 1, 0}, normal{0, 0, 1};
@@ -45,13 +53,23 @@ class SpatialBrdf {
   /// Throws Error unless there are 1 to kMaxSurfaceLobes lobes of one or three channels, a weight map for each of one
   /// channel or the lobes', and every map has the same size, weights no negative values, and normals and tangents two
   /// channels of halves within their ranges.
-  SpatialBrdf(FactoredBrdf lobes, SurfaceMaps maps);
+  /// The last lobes may be widened ones, see with_widened_lobes: no maps are given for them, but normals have to be.
+  /// Their weights are made: some in mip levels alone, and their lobes have so much less there.
+  /// Those of a lobe stand together, by rising variance.
+  SpatialBrdf(FactoredBrdf lobes, SurfaceMaps maps, std::vector<WidenedLobe> widened = {});
 
   std::size_t channels() const noexcept { return lobes_.channels(); }
   int width() const noexcept { return maps_.weights.front().width(); }
   int height() const noexcept { return maps_.weights.front().height(); }
   const FactoredBrdf& lobes() const noexcept { return lobes_; }
+  /// Weights of all lobes, the widened ones' too.
   const SurfaceMaps& maps() const noexcept { return maps_; }
+  /// What the last lobes are, as many as there are here.
+  std::span<const WidenedLobe> widened() const noexcept { return widened_; }
+  /// How many lobes have weights of their own: the first.
+  std::size_t own_lobes() const noexcept { return lobes_.lobes().size() - widened_.size(); }
+  /// These, with the tables that they look up.
+  FactoredBrdf own_model() const;
 
   /// A lobe's weight, one a channel: those of a grey map three times the same.
   using Weight = SurfaceMap::Value;
@@ -74,19 +92,20 @@ class SpatialBrdf {
   /// The uniform model of that place, in its own frame: the lobes' scales times their weights.
   FactoredBrdf at(double u, double v, double lod = 0) const;
 
-  /// Bytes of the weights, and of normals and tangents, a texel of level 0.
+  /// Bytes of the weights, and of normals and tangents, a texel of level 0, as a file has them.
   std::size_t weight_bytes() const noexcept;
   std::size_t frame_bytes() const noexcept;
   /// All maps' bytes of level 0 plus those of the lobes.
   std::size_t bytes() const noexcept;
 
   friend bool operator==(const SpatialBrdf& a, const SpatialBrdf& b) {
-    return a.lobes_ == b.lobes_ && a.maps_ == b.maps_;
+    return a.lobes_ == b.lobes_ && a.maps_ == b.maps_ && a.widened_ == b.widened_;
   }
 
  private:
   FactoredBrdf lobes_;
   SurfaceMaps maps_;
+  std::vector<WidenedLobe> widened_;
   std::vector<FactoredBrdf> apart_;  // one lobe each
 };
 

@@ -10,28 +10,37 @@ namespace burnish {
 
 namespace {
 
-constexpr int kVersion = 1;
+constexpr int kVersion = 1, kWidenedVersion = 2;
 constexpr std::size_t kHeadItems = 4, kMapItems = 4;
 constexpr int kHasNormals = 1, kHasTangents = 2;
 // The numbers that stand for them in files: places in this list.
 constexpr std::array kFormats{TableFormat::unorm8, TableFormat::half};
 
 /// Weights, then normals and tangents.
-std::vector<const SurfaceMap*> all_maps(const SurfaceMaps& maps) {
+std::vector<const SurfaceMap*> all_maps(const SpatialBrdf& brdf) {
+  const SurfaceMaps& maps = brdf.maps();
   std::vector<const SurfaceMap*> all;
-  for (const SurfaceMap& map : maps.weights) all.push_back(&map);
+  for (const SurfaceMap& map : std::span(maps.weights).first(brdf.own_lobes())) all.push_back(&map);
   if (maps.normals) all.push_back(&*maps.normals);
   if (maps.tangents) all.push_back(&*maps.tangents);
   return all;
 }
 
 void write_maps(CborWriter& cbor, const SpatialBrdf& brdf) {
-  const std::vector<const SurfaceMap*> maps = all_maps(brdf.maps());
-  cbor.list(kHeadItems + kMapItems * maps.size());
-  cbor.integer(kVersion);
+  const std::vector<const SurfaceMap*> maps = all_maps(brdf);
+  const std::span<const WidenedLobe> widened = brdf.widened();
+  cbor.list(kHeadItems + (widened.empty() ? 0 : 1) + kMapItems * maps.size());
+  cbor.integer(widened.empty() ? kVersion : kWidenedVersion);
   cbor.integer(brdf.width());
   cbor.integer(brdf.height());
   cbor.integer((brdf.maps().normals ? kHasNormals : 0) + (brdf.maps().tangents ? kHasTangents : 0));
+  if (!widened.empty()) {
+    cbor.list(2 * widened.size());
+    for (const auto& [lobe, variance] : widened) {
+      cbor.integer(static_cast<std::int64_t>(lobe));
+      cbor.number(variance);
+    }
+  }
   for (const SurfaceMap* map : maps) {
     cbor.integer(static_cast<std::int64_t>(map->channels()));
     cbor.integer(map->format() == kFormats[0] ? 0 : 1);
@@ -58,22 +67,43 @@ SurfaceMap read_map(CborReader& cbor, int width, int height) {
   }
 }
 
-SurfaceMaps read_maps(CborReader& cbor, const Model& model) {
+std::vector<WidenedLobe> read_widened(CborReader& cbor, std::size_t lobes) {
+  const auto at = cbor.offset();
+  const std::size_t items = cbor.list("widened lobes", 2, 2 * (lobes - 1));
+  if (items % 2 != 0) cbor.fail(at, "pairs of widened lobes", fmt::format("{} items", items));
+  std::vector<WidenedLobe> widened(items / 2);
+  for (WidenedLobe& copy : widened) {
+    copy.lobe = static_cast<std::size_t>(
+        cbor.integer("a widened lobe's original", 0, static_cast<std::int64_t>(lobes) - 1));
+    copy.variance = cbor.number("a widened lobe's variance");
+  }
+  return widened;
+}
+
+struct ReadMaps {
+  SurfaceMaps maps;
+  std::vector<WidenedLobe> widened;
+};
+ReadMaps read_maps(CborReader& cbor, const Model& model) {
   const std::size_t lobes = model.brdf.lobes().size();
   const auto at = cbor.offset();
-  const std::size_t items =
-      cbor.list("a surface", kHeadItems + kMapItems * lobes, kHeadItems + kMapItems * (lobes + 2));
-  cbor.integer("the version of a surface", kVersion, kVersion);
+  const std::size_t items = cbor.list("a surface", kHeadItems, kHeadItems + 1 + kMapItems * (lobes + 2));
+  const auto version = cbor.integer("the version of a surface", kVersion, kWidenedVersion);
   const auto width = static_cast<int>(cbor.integer("a surface's width", 1, kMaxMapSide));
   const auto height = static_cast<int>(cbor.integer("a surface's height", 1, kMaxMapSide));
   const auto has = cbor.integer("which maps a surface has", 0, kHasNormals + kHasTangents);
-  const std::size_t maps = lobes + ((has & kHasNormals) != 0) + ((has & kHasTangents) != 0);
-  if (items != kHeadItems + kMapItems * maps)
+  ReadMaps read;
+  if (version == kWidenedVersion) {
+    if (lobes < 2) cbor.fail(at, "a surface of one lobe in version 1", "version 2");
+    read.widened = read_widened(cbor, lobes);
+  }
+  const std::size_t own = lobes - read.widened.size(),
+                    maps = own + ((has & kHasNormals) != 0) + ((has & kHasTangents) != 0);
+  if (items != kHeadItems + (version == kWidenedVersion) + kMapItems * maps)
     cbor.fail(at, fmt::format("a surface of {} maps", maps), fmt::format("{} items", items));
-  SurfaceMaps read;
-  for (std::size_t j = 0; j < lobes; ++j) read.weights.push_back(read_map(cbor, width, height));
-  if ((has & kHasNormals) != 0) read.normals = read_map(cbor, width, height);
-  if ((has & kHasTangents) != 0) read.tangents = read_map(cbor, width, height);
+  for (std::size_t j = 0; j < own; ++j) read.maps.weights.push_back(read_map(cbor, width, height));
+  if ((has & kHasNormals) != 0) read.maps.normals = read_map(cbor, width, height);
+  if ((has & kHasTangents) != 0) read.maps.tangents = read_map(cbor, width, height);
   return read;
 }
 
@@ -85,11 +115,12 @@ std::string format_surface(const SurfaceModel& surface) {
 }
 
 SurfaceModel parse_surface(const FileBytes& file) {
-  SurfaceMaps maps;
+  ReadMaps read;
   Model model =
-      parse_compact_with(file, [&](CborReader& cbor, const Model& lobes) { maps = read_maps(cbor, lobes); });
+      parse_compact_with(file, [&](CborReader& cbor, const Model& lobes) { read = read_maps(cbor, lobes); });
   try {
-    return {.brdf = SpatialBrdf(std::move(model.brdf), std::move(maps)), .notes = std::move(model.notes)};
+    return {.brdf = SpatialBrdf(std::move(model.brdf), std::move(read.maps), std::move(read.widened)),
+            .notes = std::move(model.notes)};
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", file.name, error.what()));
   }

@@ -18,8 +18,9 @@ struct SurfaceModel {
 
 /// The `.burnish` file of a surface: that of its lobes (factors/compact_file.h), whose last item is
 /// [version, width, height, normals and tangents there or not (bits 1 and 2), maps], a map being channels, format,
-/// scale and the bytes of its level 0, weights first. Mip levels are made again when it is read. What format_surface
-/// writes, parse_surface restores to the last bit. Throws Error as format_compact does.
+/// scale and the bytes of its level 0, weights first. Mip levels are made again when it is read. Version 2 has besides,
+/// before the maps, the widened lobes, pairs of a lobe and a variance; these have no maps. Without widened
+/// lobes version 1 is written. parse_surface restores all to the last bit. Throws Error as format_compact does.
 std::string format_surface(const SurfaceModel& surface);
 
 /// Throws Error, naming file and offset, if the bytes are no such file or contradict themselves in any way. Memory taken

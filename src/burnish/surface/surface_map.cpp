@@ -33,6 +33,14 @@ void SurfaceMap::check() const {
     throw Error(fmt::format("surface map: expected a finite scale > 0, found {}", scale_));
 }
 
+void SurfaceMap::check_values(std::span<const float> values) const {
+  const bool half = format_ == TableFormat::half;
+  const float least = half ? -kLargestHalf : 0, most = half ? kLargestHalf : scale_;
+  for (const float value : values)
+    if (!(value >= least && value <= most))
+      throw Error(fmt::format("surface map: expected values from {} to {}, found {}", least, most, value));
+}
+
 SurfaceMap::SurfaceMap(int width, int height, std::size_t channels, TableFormat format, float scale,
                        std::span<const float> values)
     : width_(width),
@@ -44,11 +52,7 @@ SurfaceMap::SurfaceMap(int width, int height, std::size_t channels, TableFormat 
   if (values.size() != texels(width, height) * channels)
     throw Error(fmt::format("surface map: expected {} values, found {}", texels(width, height) * channels,
                             values.size()));
-  const bool half = format == TableFormat::half;
-  const float least = half ? -kLargestHalf : 0, most = half ? kLargestHalf : scale_;
-  for (const float value : values)
-    if (!(value >= least && value <= most))
-      throw Error(fmt::format("surface map: expected values from {} to {}, found {}", least, most, value));
+  check_values(values);
   levels_.push_back(stored(width, height, values));
   make_levels();
 }
@@ -93,15 +97,10 @@ void SurfaceMap::make_levels() {
     const int width = std::max(1, from_width / 2), height = std::max(1, from_height / 2);
     const std::size_t from = levels_.size() - 1;
     std::vector<float> values(texels(width, height) * channels_);
-    // of odd sides the last texel has three
-    const auto range = [](int i, int count, int from_count) {
-      const int first = std::min(2 * i, from_count - 1);
-      return std::pair(first, i + 1 == count ? from_count : std::min(2 * i + 2, from_count));
-    };
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
-        const auto [x0, x1] = range(x, width, from_width);
-        const auto [y0, y1] = range(y, height, from_height);
+        const auto [x0, x1] = covered_texels(x, width, from_width);
+        const auto [y0, y1] = covered_texels(y, height, from_height);
         float* const to = &values[(texels(width, y) + static_cast<std::size_t>(x)) * channels_];
         std::array<double, kMaxMapChannels> sum{};
         for (int j = y0; j < y1; ++j)
@@ -114,6 +113,22 @@ void SurfaceMap::make_levels() {
       }
     levels_.push_back(stored(width, height, values));
   }
+}
+
+SurfaceMap SurfaceMap::with_coarse_levels(std::span<const std::vector<float>> values) const {
+  if (values.size() + 1 != levels_.size())
+    throw Error(fmt::format("surface map: expected values of {} levels, found {}", levels_.size() - 1,
+                            values.size()));
+  SurfaceMap map = *this;
+  for (std::size_t l = 0; l < values.size(); ++l) {
+    const int width = level_width(l + 1), height = level_height(l + 1);
+    if (values[l].size() != texels(width, height) * channels_)
+      throw Error(fmt::format("surface map: expected {} values of a level, found {}",
+                              texels(width, height) * channels_, values[l].size()));
+    check_values(values[l]);
+    map.levels_[l + 1] = stored(width, height, values[l]);
+  }
+  return map;
 }
 
 SurfaceMap::Value SurfaceMap::texel(int x, int y, std::size_t level) const noexcept {
@@ -132,6 +147,11 @@ SurfaceMap::Value SurfaceMap::texel(int x, int y, std::size_t level) const noexc
     }
   }
   return value;
+}
+
+CoveredTexels covered_texels(int i, int count, int from_count) noexcept {
+  const int first = std::min(2 * i, from_count - 1);
+  return {first, i + 1 == count ? from_count : std::min(2 * i + 2, from_count)};
 }
 
 SurfaceMap::Value SurfaceMap::bilinear(double u, double v, std::size_t level) const noexcept {

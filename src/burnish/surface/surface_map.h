@@ -31,6 +31,10 @@ class SurfaceMap {
   SurfaceMap(int width, int height, std::size_t channels, TableFormat format, float scale,
              std::span<const std::byte> bytes);
 
+  /// The same map with other values in the levels from 1 on, as many as it has, to the nearest. Throws Error for
+  /// other counts, and values as the constructor does.
+  SurfaceMap with_coarse_levels(std::span<const std::vector<float>> values) const;
+
   int width() const noexcept { return width_; }
   int height() const noexcept { return height_; }
   std::size_t channels() const noexcept { return channels_; }
@@ -64,6 +68,7 @@ class SurfaceMap {
     friend bool operator==(const Level&, const Level&) = default;
   };
   void check() const;
+  void check_values(std::span<const float> values) const;
   void make_levels();
   Level stored(int width, int height, std::span<const float> values) const;
   Value bilinear(double u, double v, std::size_t level) const noexcept;
@@ -74,5 +79,12 @@ class SurfaceMap {
   float scale_ = 1;
   std::vector<Level> levels_;
 };
+
+/// What texel i, of `count` along a side of a level, covers of the level before, `from_count` long: its first and the
+/// one behind its last. Of odd sides the last texel has three.
+struct CoveredTexels {
+  int begin, end;
+};
+CoveredTexels covered_texels(int i, int count, int from_count) noexcept;
 
 }  // namespace burnish

@@ -109,7 +109,8 @@ FitSummary refine(LogModel& model, const TrainingSet& set, const Lookups& lookup
   const std::size_t together = model.any_shared() ? channels : 1;
   std::vector<Descent> descents;
   for (std::size_t c = 0; c < channels; c += together)
-    descents.emplace_back(model, set, lookups, loss, options, c, c + together);
+    if (together > 1 || options.channel.value_or(c) == c)
+      descents.emplace_back(model, set, lookups, loss, options, c, c + together);
 
   // Side by side, as much of a step is too small to share out.
   std::atomic<int> steps = 0;

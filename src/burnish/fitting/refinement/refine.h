@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include <burnish/fitting/fit_summary.h>
 #include <burnish/fitting/refinement/log_model.h>
@@ -20,7 +21,9 @@ struct RefineOptions {
   double smooth = 1e-8;
   /// In which tables without one of their own will be stored: values stay within its range.
   TableFormat format = TableFormat::half;
-  int max_iterations = 40;       ///< Gauss-Newton steps a channel
+  int max_iterations = 40;  ///< Gauss-Newton steps a channel
+  /// Of a model without tables that channels share: the one to refine; none: all.
+  std::optional<std::size_t> channel = {};
   double least_progress = 2e-4;  ///< stop after three steps in a row that lowered the objective by less
   /// Called with rising shares of the work done, from the calling thread.
   std::function<void(double fraction)> progress;
