@@ -187,6 +187,7 @@ export class Material {
     this.channels = summary.channels;
     this.isotropic = summary.isotropic;
     this.measurement = summary.measurement;
+    this.entries = summary.entries ?? [];
   }
 
   /// For methods of this file.
@@ -223,6 +224,15 @@ export class Material {
   async volume({thetaH = 90, thetaD = 90, phiD = 180, phiH = 0} = {}, {onProgress, signal} = {}) {
     const {json, blobs} = await this.#ask("volume", {thetaH, thetaD, phiD, phiH}, {onProgress, signal});
     return {...json, data: floats(blobs[0])};
+  }
+
+  async table({signal} = {}) {
+    const {json, blobs} = await this.#ask("table", {}, {signal});
+    if (!json) return null;
+    const values = blobs.map(floats);
+    if (json.kind === "half_diff") return {...json, data: values[0]};
+    const [phi, theta, ndf, sigma, vndf, spectra] = values;
+    return {...json, phi, theta, data: {ndf, sigma, vndf, spectra}};
   }
 
   async compare(models, options = {}, {signal} = {}) {
@@ -262,7 +272,7 @@ export class Material {
   }
 }
 
-const kConverted = new Set(["merl", "rgl", "mbsdf", "zemax", "astm", "csv", "exr", "model", "burnish"]);
+const kConverted = new Set(["merl", "utia", "rgl", "mbsdf", "zemax", "tensortree", "openmaterial", "astm", "csv", "exr", "model", "burnish"]);
 
 // What WebGL2 takes texels of a format as: [internal format, format, type], by channels.
 const kTexels = {
@@ -297,13 +307,38 @@ export class Model extends Material {
       const data = texture.format === "unorm8" ? Uint8Array.from(values, (v) => Math.round(255 * v)) : values;
       return {...texture, data, gl: {internalFormat, format, type}};
     });
-    return {...json, textures};
+    return {...json, textures, ...(json.maps && {maps: mapsOf(json.maps, blobs.slice(textures.length))})};
+  }
+}
+
+// Maps with the texels of their levels, the largest first.
+function mapsOf(maps, blobs) {
+  let next = 0;
+  return maps.map(({levels, ...map}) => {
+    const half = map.format === "half", data = blobs.slice(next, (next += levels));
+    const [internalFormat, type] = half ? ["RGBA16F", "HALF_FLOAT"] : ["RGBA8", "UNSIGNED_BYTE"];
+    return {...map, levels: data.map((level) => (half ? new Uint16Array(level) : new Uint8Array(level))), gl: {internalFormat, format: "RGBA", type}};
+  });
+}
+
+/// What of it is asked as of a model is answered of its mean; info, shader and export are those of the surface.
+export class Surface extends Model {
+  constructor(recipe, summary) {
+    super(recipe, summary);
+    this.width = summary.surface.width;
+    this.height = summary.surface.height;
   }
 
+  async place(u, v, {lod = 0, signal} = {}) {
+    const {blobs} = await answers.run({
+      request: {verb: "place", id: this.id, u, v, lod}, materials: [this.recipe], signal,
+    });
+    return open(new Blob([blobs[0]]), {name: `${this.name} at ${u.toFixed(3)}, ${v.toFixed(3)}`, signal});
+  }
 }
 
 /// Opens a file's bytes, whatever its format, or an analytic BRDF such as "ggx:alpha=0.2".
-export async function open(data, {name, report, onProgress, signal, ...options} = {}) {
+export async function open(data, {name, report, decoder, onProgress, signal, ...options} = {}) {
   const id = ++ids, request = {...options, verb: "open", id};
   const recipe = {id, request, bytes: async () => undefined};
   if (typeof data === "string") {
@@ -312,13 +347,16 @@ export async function open(data, {name, report, onProgress, signal, ...options} 
     // a Blob need not be in memory
     const blob = data instanceof Blob ? data : new Blob([data]);
     request.name = name ?? data.name ?? "file";
-    recipe.bytes = () => blob.arrayBuffer();
+    if (decoder) request.decoderAt = blob.size;
+    const whole = decoder ? new Blob([blob, decoder]) : blob;
+    recipe.bytes = () => whole.arrayBuffer();
   }
   onProgress?.(0, "reading");
   const bytes = await recipe.bytes();
   onProgress?.(0.5, "parsing");
   const {json} = await answers.run({request, bytes, signal});
   onProgress?.(1, "opened");
+  if (json.surface) return new Surface(recipe, json);
   return json.model ? new Model(recipe, json, report) : new Material(recipe, json);
 }
 

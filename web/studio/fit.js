@@ -2,7 +2,7 @@
 import {plot} from "./chart.js";
 import {bytesText, css, find, lineOf, make, number, say} from "./dom.js";
 import {segments} from "./segments.js";
-import {add, changed, modelsOf, onChange, referenceOf, show, state} from "./state.js";
+import {add, changed, isSurface, modelsOf, onChange, referenceOf, show, state} from "./state.js";
 
 const presets = {
   small: {budget: "2700", fetches: ""},
@@ -64,7 +64,7 @@ async function fitOne(reference, options, signal) {
 async function fit(event) {
   event.preventDefault();
   const reference = referenceOf(state.shown);
-  if (!reference || stop) return;
+  if (!reference || isSurface(reference) || stop) return;
   await busy(async (signal) => {
     const options = {budget: readBudget(find("#budget").value), fetches: readFetches(find("#fetches").value)};
     const found = await fitOne(reference, options, signal);
@@ -129,7 +129,7 @@ function drawFigures() {
 }
 
 function enable() {
-  const able = referenceOf(state.shown) !== null && !stop;
+  const able = referenceOf(state.shown) !== null && !isSurface(state.shown) && !stop;
   find("#fit-start").disabled = find("#curve-start").disabled = !able;
 }
 
