@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <list>
 #include <map>
 #include <memory>
@@ -143,7 +144,7 @@ Reply info(const Request& request) {
   return {.json = cli::info_json(report_on(material(request.arguments))), .blobs = {}};
 }
 
-// Directions n x 3, those to the light before those to the viewer; values n x channels.
+// Directions n x 3, those to the light before those to the viewer; values n x channels, NaN where none is known.
 Reply evaluate(const Request& request) {
   const BrdfRef brdf = material(request.arguments).ref();
   const std::vector<float> directions = floats_of(request.bytes);
@@ -167,7 +168,9 @@ Reply evaluate(const Request& request) {
     pairs.clear();
     for (std::size_t i = begin; i < begin + count; ++i) pairs.push_back({direction(i), direction(n + i)});
     brdf.eval(pairs, std::span(values).first(count * channels), std::span(known).first(count));
-    for (std::size_t i = 0; i < count * channels; ++i) result.push_back(static_cast<float>(values[i]));
+    for (std::size_t i = 0; i < count * channels; ++i)
+      result.push_back(known[i / channels] ? static_cast<float>(values[i])
+                                           : std::numeric_limits<float>::quiet_NaN());
   }
   return {.json = Json{{"channels", channels}}.dump(), .blobs = {bytes_of(result)}};
 }
@@ -188,57 +191,70 @@ Reply albedo(const Request& request) {
 }
 
 // Along a row of theta_d, what lies beyond the horizon or is unknown takes the nearest value that is known.
-void fill_unknown(std::vector<std::vector<float>>& row) {
-  std::size_t last = row.size();
-  for (std::size_t d = 0; d < row.size(); ++d) {
-    if (row[d].empty()) {
-      if (last < row.size()) row[d] = row[last];
+void fill_unknown(std::span<float> values, std::span<const std::uint8_t> known, std::size_t channels,
+                  std::size_t stride) {
+  const std::size_t count = known.size();
+  std::size_t last = count;
+  const auto copy = [&](std::size_t from, std::size_t to) {
+    std::copy_n(&values[from * stride], channels, &values[to * stride]);
+  };
+  for (std::size_t d = 0; d < count; ++d) {
+    if (!known[d]) {
+      if (last < count) copy(last, d);
       continue;
     }
-    for (std::size_t before = last < row.size() ? d : 0; before < d; ++before) row[before] = row[d];
+    for (std::size_t before = last < count ? d : 0; before < d; ++before) copy(d, before);
     last = d;
   }
+}
+
+// Cells of one phi_d: centres [theta_d][theta_h].
+std::vector<DirectionPair> layer_pairs(std::size_t thetas_h, std::size_t thetas_d, double phi_h,
+                                       double phi_d) {
+  std::vector<DirectionPair> pairs;
+  for (std::size_t d = 0; d < thetas_d; ++d)
+    for (std::size_t h = 0; h < thetas_h; ++h) {
+      const double x = (static_cast<double>(h) + 0.5) / static_cast<double>(thetas_h);
+      const double theta_d = (static_cast<double>(d) + 0.5) / static_cast<double>(thetas_d) * kHalfPi;
+      const auto [wi, wo] =
+          from_half_diff({.theta_h = x * x * kHalfPi, .phi_h = phi_h, .theta_d = theta_d, .phi_d = phi_d});
+      pairs.push_back({wi, wo});
+    }
+  return pairs;
 }
 
 // Centres of cells: theta_h = ((x + 1/2) / thetaH)^2 pi/2, theta_d = (y + 1/2) / thetaD pi/2,
 // phi_d = (z + 1/2) / phiD 2 pi.
 Reply volume(const Request& request, const Progress& progress) {
   const BrdfRef brdf = material(request.arguments).ref();
-  std::array<int, 3> size{90, 90, 180};
+  std::array<std::size_t, 3> size{90, 90, 180};
   read_if(request.arguments, "thetaH", size[0]);
   read_if(request.arguments, "thetaD", size[1]);
   read_if(request.arguments, "phiD", size[2]);
   const double phi_h = request.arguments.value("phiH", 0.0);
-  for (const int side : size)
+  for (const std::size_t side : size)
     if (side < 2 || side > 512)
       throw Error(fmt::format("volume: expected 2 to 512 cells a side, found {}", side));
-  const auto channels = static_cast<std::size_t>(brdf.channels());
+  const auto channels = brdf.channels();
   const auto [nh, nd, np] = size;
-  std::vector<float> data(static_cast<std::size_t>(nh) * static_cast<std::size_t>(nd) *
-                          static_cast<std::size_t>(np) * channels);
-  std::vector<double> f(channels);
-  for (int p = 0; p < np; ++p) {
-    for (int h = 0; h < nh; ++h) {
-      const double x = (h + 0.5) / nh;
-      std::vector<std::vector<float>> row(static_cast<std::size_t>(nd));
-      for (int d = 0; d < nd; ++d) {
-        const auto [wi, wo] = from_half_diff({.theta_h = x * x * kHalfPi,
-                                              .phi_h = phi_h,
-                                              .theta_d = (d + 0.5) / nd * kHalfPi,
-                                              .phi_d = (p + 0.5) / np * 2 * kPi});
-        if (wi.z > 0 && wo.z > 0 && brdf.eval(wi, wo, f))
-          row[static_cast<std::size_t>(d)].assign(f.begin(), f.end());
+  std::vector<float> data;
+  data.reserve(nh * nd * np * channels);
+  std::vector<double> values(nh * nd * channels);
+  std::vector<std::uint8_t> known(nh * nd), column(nd);
+  for (std::size_t p = 0; p < np; ++p) {
+    const double phi_d = (static_cast<double>(p) + 0.5) / static_cast<double>(np) * 2 * kPi;
+    const std::vector<DirectionPair> pairs = layer_pairs(nh, nd, phi_h, phi_d);
+    brdf.eval(pairs, values, known);
+    const std::size_t first = data.size();
+    data.insert(data.end(), values.begin(), values.end());
+    for (std::size_t h = 0; h < nh; ++h) {
+      for (std::size_t d = 0; d < nd; ++d) {
+        const auto& [wi, wo] = pairs[d * nh + h];
+        column[d] = known[d * nh + h] && wi.z > 0 && wo.z > 0;
       }
-      fill_unknown(row);
-      for (int d = 0; d < nd; ++d) {
-        const auto& cell = row[static_cast<std::size_t>(d)];
-        const std::size_t at = (static_cast<std::size_t>(p * nd + d) * static_cast<std::size_t>(nh) +
-                                static_cast<std::size_t>(h)) *
-                               channels;
-        std::copy(cell.begin(), cell.end(), data.begin() + static_cast<std::ptrdiff_t>(at));
-      }
+      fill_unknown(std::span(data).subspan(first + h * channels), column, channels, nh * channels);
     }
-    progress("sampling", (p + 1.0) / np);
+    progress("sampling", (static_cast<double>(p) + 1) / static_cast<double>(np));
   }
   return {.json = Json{{"size", {nh, nd, np}}, {"channels", channels}}.dump(), .blobs = {bytes_of(data)}};
 }

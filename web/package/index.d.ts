@@ -128,7 +128,7 @@ export class Material {
   readonly entries: string[];
   /** The JSON of `burnish info --json`. */
   info(call?: Call): Promise<Record<string, any>>;
-  /** n x 3 unit vectors each, to n x channels values. */
+  /** n x 3 unit vectors each, to n x channels values; NaN where the material knows none. */
   evaluate(wi: ArrayLike<number>, wo: ArrayLike<number>, call?: Call): Promise<Float32Array>;
   /** Share reflected of light from theta_i (radians, below pi/2), n x channels. */
   albedo(thetas: ArrayLike<number>, options?: Call & {phi?: number}): Promise<Float32Array>;

@@ -239,17 +239,18 @@ function huffman(from, size) {
 }
 
 // Sums and differences back to the two values that they are of.
-function pair14(l, h) {
-  const low = (l << 16) >> 16, high = (h << 16) >> 16, a = low + (high & 1) + (high >> 1);
-  return [a & 65535, (a - high) & 65535];
+function pair14(words, i, j) {
+  const high = (words[j] << 16) >> 16, a = ((words[i] << 16) >> 16) + (high & 1) + (high >> 1);
+  words[i] = a;
+  words[j] = a - high;
 }
-function pair16(l, h) {
-  const b = (l - (h >> 1)) & 65535;
-  return [(h + b - 32768) & 65535, b];
+function pair16(words, i, j) {
+  const high = words[j], b = (words[i] - (high >> 1)) & 65535;
+  words[i] = high + b - 32768;
+  words[j] = b;
 }
 function wavelet(words, start, width, stepX, height, stepY, largest) {
   const pair = largest < 1 << 14 ? pair14 : pair16, least = Math.min(width, height);
-  const along = (i, j) => ([words[i], words[j]] = pair(words[i], words[j]));
   let p = 1;
   while (p <= least) p <<= 1;
   p >>= 1;
@@ -260,13 +261,13 @@ function wavelet(words, start, width, stepX, height, stepY, largest) {
       const row = start + y * stepY, next = row + one * stepY;
       for (; x + two <= width; x += two) {
         const i = x * stepX, j = (x + one) * stepX;
-        along(row + i, next + i);
-        along(row + j, next + j);
-        along(row + i, row + j);
-        along(next + i, next + j);
+        pair(words, row + i, next + i);
+        pair(words, row + j, next + j);
+        pair(words, row + i, row + j);
+        pair(words, next + i, next + j);
       }
-      if (width & one) along(row + x * stepX, next + x * stepX);
+      if (width & one) pair(words, row + x * stepX, next + x * stepX);
     }
-    if (height & one) for (let x = 0; x + two <= width; x += two) along(start + y * stepY + x * stepX, start + y * stepY + (x + one) * stepX);
+    if (height & one) for (let x = 0; x + two <= width; x += two) pair(words, start + y * stepY + x * stepX, start + y * stepY + (x + one) * stepX);
   }
 }

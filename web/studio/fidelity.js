@@ -21,7 +21,7 @@ function lit(light) {
 }
 
 // rgb of each pair, as it is drawn.
-function drawnValues(gl, form, pairs) {
+export function drawnValues(gl, form, pairs) {
   const made = program(gl, screenVertex, pairsFragment(form.glsl)), count = pairs.length, goal = target(gl, count, 1, false);
   const data = new Float32Array(8 * count);
   pairs.forEach(([wi, wo], k) => [data.set(wi, 4 * k), data.set(wo, 4 * (count + k))]);
@@ -60,13 +60,14 @@ export async function fidelity(gl, form, material, current) {
     const exact = toRgb(await material.evaluate(wi, wo), material.channels);
     if (!current()) return undefined;
     const drawn = drawnValues(gl, form, pairs);
-    const bright = pairs.map(([light], k) => light[2] * Math.max(...exact.subarray(3 * k, 3 * k + 3))).sort((a, b) => a - b);
+    const bright = pairs.map(([light], k) => light[2] * Math.max(...exact.subarray(3 * k, 3 * k + 3))).filter((x) => x >= 0).sort((a, b) => a - b);
     const factor = 1 / Math.max(bright[Math.floor(0.97 * (bright.length - 1))], 1e-9);
     exact.forEach((value, i) => {
+      if (Number.isNaN(value)) return;
       const cosine = pairs[Math.floor(i / 3)][0][2];
       squares += (display(factor * cosine * value) - display(factor * cosine * drawn[i])) ** 2;
+      ++count;
     });
-    count += exact.length;
   }
-  return -10 * Math.log10(Math.max(squares / count, 1e-10));
+  return -10 * Math.log10(Math.max(squares / Math.max(count, 1), 1e-10));
 }

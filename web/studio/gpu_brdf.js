@@ -77,7 +77,7 @@ async function roughness(material) {
       wi.push(...normalize(add(scale(h, Math.cos(tilt)), across, Math.sin(tilt))));
       wo.push(...normalize(add(scale(h, Math.cos(tilt)), across, -Math.sin(tilt))));
     }
-  const values = toRgb(await material.evaluate(new Float32Array(wi), new Float32Array(wo)), material.channels);
+  const values = toRgb(await material.evaluate(new Float32Array(wi), new Float32Array(wo)), material.channels).map((x) => x || 0);
   return [0, 1].map((axis) => {
     const at = (k) => [0, 1, 2].reduce((sum, c) => sum + values[3 * (axis * steps + k) + c], 0);
     const half = angles.findIndex((_, k) => k > 0 && at(k) < at(0) / 2);
