@@ -135,7 +135,9 @@ Reply open(Request request) {
     return open_bytes({a.value("name", "file"), std::move(request.bytes)}, a, options);
   };
   const auto [place, added] = materials().insert_or_assign(a.at("id").get<int>(), open_it());
-  return {.json = summary_of(place->second).dump(), .blobs = {}};
+  // names need not be UTF-8
+  return {.json = summary_of(place->second).dump(-1, ' ', false, Json::error_handler_t::replace),
+          .blobs = {}};
 }
 
 Reply info(const Request& request) {
