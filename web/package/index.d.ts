@@ -136,7 +136,7 @@ export class Material {
   volume(cells?: {thetaH?: number; thetaD?: number; phiD?: number; phiH?: number}, call?: Call): Promise<Volume>;
   /** Null where the material is no such table. */
   table(call?: Call): Promise<Table | null>;
-  /** In a worker of its own, which ends afterwards. The options are the verb's. */
+  /** In a worker of its own, which ends afterwards; several may run at once. The options are the verb's. */
   fit(options?: FitOptions, call?: Call): Promise<Model>;
   /** The JSON of `burnish compare --json`: a list, an object a model. */
   compare(models: Material | Material[], options?: CompareOptions, call?: Call): Promise<Record<string, any>[]>;

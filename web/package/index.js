@@ -168,8 +168,8 @@ class Engine {
   }
 }
 
-// Questions are answered by one worker; fits, which take seconds and memory, have another, which ends after each.
-const answers = new Engine(), fits = new Engine();
+// Questions are answered by one worker; each fit, which takes seconds and memory, has its own, which ends with it.
+const answers = new Engine();
 
 let ids = 0;
 
@@ -249,11 +249,9 @@ export class Material {
 
   async fit(options = {}, {onProgress, signal} = {}) {
     const {name = `${this.name} fitted`, ...how} = options;
-    const {json, blobs} = await fits.run({
-      request: {verb: "fit", id: this.id, name, options: how}, materials: [this.recipe], onProgress, signal,
-    });
+    const engine = new Engine(), request = {verb: "fit", id: this.id, name, options: how};
     // the worker's memory, which never shrinks, goes back
-    fits.close(this.id);
+    const {json, blobs} = await engine.run({request, materials: [this.recipe], onProgress, signal}).finally(() => engine.stop());
     return open(new Blob([blobs[0]]), {name, report: json, signal});
   }
 
@@ -268,7 +266,6 @@ export class Material {
     if (this.#closed) return;
     this.#closed = true;
     answers.close(this.id);
-    fits.close(this.id);
   }
 }
 

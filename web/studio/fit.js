@@ -10,6 +10,7 @@ const presets = {
   best: {budget: "64K", fetches: ""},
 };
 const kCurve = [700, 1400, 2800, 5600, 11200, 22400, 44800];
+const kMostFits = 4;  // at once, each with memory of its own
 
 let stop = null, choose = () => {};
 
@@ -78,19 +79,24 @@ async function fit(event) {
   });
 }
 
-// One fit a size; what is done so far is kept where it is stopped.
+// One fit a size, as many at once as there are processors to spare; what is done so far is kept where it is stopped.
 async function errorCurve() {
   const reference = referenceOf(state.shown);
   if (!reference || stop) return;
   reference.curve = [];
   await busy(async (signal) => {
-    for (const budget of kCurve) {
-      find("#fit-stage").textContent = `${bytesText(budget)}`;
-      const {material, info, figures} = await fitOne(reference, {budget, fetches: readFetches(find("#fetches").value)}, signal);
-      material.close?.();
-      reference.curve.push({bytes: info.bytes, psnr: figures.psnr});
-      drawCurve();
-    }
+    const fetches = readFetches(find("#fetches").value), left = [...kCurve];
+    const one = async () => {
+      for (let budget; (budget = left.shift()) !== undefined;) {
+        const {material, info, figures} = await fitOne(reference, {budget, fetches}, signal);
+        material.close?.();
+        reference.curve.push({bytes: info.bytes, psnr: figures.psnr});
+        reference.curve.sort((a, b) => a.bytes - b.bytes);
+        drawCurve();
+      }
+    };
+    const workers = Math.min(Math.max((navigator.hardwareConcurrency ?? 2) - 1, 1), kMostFits);
+    await Promise.all(Array.from({length: workers}, one));
   });
 }
 

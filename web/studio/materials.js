@@ -53,13 +53,13 @@ export async function openOne(data, name, more = {}, options = {}) {
 }
 
 // Gives an entry another material, the latest that made() opened.
-export function renewer(entry, made) {
+export function renewer(entry, made, name = () => entry.name) {
   return latest(async () => {
     if (!state.entries.includes(entry)) return;
     try {
-      const material = await made(), info = await material.info();
+      const called = name(), material = await made(), info = await material.info();
       entry.material.close?.();
-      Object.assign(entry, {material, info, original: undefined, places: undefined});
+      Object.assign(entry, {name: called, material, info, original: undefined, places: undefined});
       changed({renewed: entry});
     } catch (error) {
       say(lineOf(error), "error");
@@ -70,10 +70,7 @@ export function renewer(entry, made) {
 // One of several materials of a file.
 function chooser(entry, data, file, options) {
   const select = make("select", {onchange: () => renew()}, ...entry.material.entries.slice(0, kMostChoices).map((name) => make("option", {value: name}, name)));
-  const renew = renewer(entry, () => {
-    entry.name = `${file}#${select.value}`;
-    return open(data, {...options, name: file, entry: select.value});
-  });
+  const renew = renewer(entry, () => open(data, {...options, name: file, entry: select.value}), () => `${file}#${select.value}`);
   return make("label", {}, make("span", {}, "Material"), select, make("output", {}, String(entry.material.entries.length)));
 }
 
@@ -111,7 +108,7 @@ function row(entry) {
 function draw() {
   find("#list").replaceChildren(...state.entries.map(row));
   const beside = find("#beside");
-  beside.replaceChildren(make("option", {value: ""}, "nothing"),
+  beside.replaceChildren(make("option", {value: ""}, "nothing beside"),
     ...state.entries.filter((e) => e !== state.shown).map((e) => make("option", {value: e.id}, e.name)));
   beside.value = state.beside?.id ?? "";
   beside.disabled = state.entries.length < 2;
