@@ -18,18 +18,21 @@ const run = async (...args) => (await promisify(execFile)(cli, args, {maxBuffer:
 const at = (name) => path.join(folder, name);
 const bytesOf = (file) => new Uint8Array(fs.readFileSync(file));
 
-// Where the two differ, or nothing; numbers by kTolerance.
-function difference(found, expected, place = "") {
+// Where the two differ, or nothing; numbers by kTolerance, what nodes of the same file predict of themselves by kChance.
+// Rings of an albedo are halved until two sums agree: where they hardly do, a last bit decides (`rings`).
+const kChance = 0.05, kRings = 2e-3;
+function difference(found, expected, rings = false, place = "") {
   if (typeof expected === "number" && typeof found === "number") {
     const scale = Math.max(Math.abs(expected), Math.abs(found), 1e-9);
-    return Math.abs(found - expected) <= kTolerance * scale ? undefined : `${place}: ${found} instead of ${expected}`;
+    const tolerance = place.includes("/itself/") ? kChance : rings && place.includes("/albedo/") ? kRings : kTolerance;
+    return Math.abs(found - expected) <= tolerance * scale ? undefined : `${place}: ${found} instead of ${expected}`;
   }
   if (expected === null || typeof expected !== "object")
     return Object.is(found, expected) ? undefined : `${place}: ${found} instead of ${expected}`;
   if (found === null || typeof found !== "object") return `${place}: ${found} instead of an object`;
   const names = new Set([...Object.keys(expected), ...Object.keys(found)]);
   for (const name of names) {
-    const differs = difference(found[name], expected[name], `${place}/${name}`);
+    const differs = difference(found[name], expected[name], rings, `${place}/${name}`);
     if (differs) return differs;
   }
   return undefined;
@@ -110,7 +113,7 @@ for (const [format, file] of Object.entries(sources))
     test("is told about as `info --json` does", async () => {
       const expected = JSON.parse(await run("info", file, "--json"));
       const [ours, theirs] = [nodesApart(await material.info()), nodesApart(expected)];
-      assert.equal(difference(ours.rest, theirs.rest), undefined);
+      assert.equal(difference(ours.rest, theirs.rest, format === "measured OpenMATERIAL"), undefined);
       for (const i of ours.nodes?.keys() ?? [])
         assert.ok(ours.nodes[i] === theirs.nodes[i] || Math.abs(Math.log2(ours.nodes[i] / theirs.nodes[i])) < 1, `${ours.nodes}, ${theirs.nodes}`);
     });
@@ -132,7 +135,7 @@ for (const [format, file] of Object.entries(sources))
       const expected = JSON.parse(await run("compare", file, at("a.burnish"), "--json", "--count", "20000"));
       const found = await material.compare(model, {count: 20000});
       model.close();
-      assert.equal(difference(found, expected), undefined);
+      assert.equal(difference(found, expected, format === "measured OpenMATERIAL"), undefined);
     });
   });
 
