@@ -83,6 +83,11 @@ function same(found, expected, at, within = kSame) {
     assert.equal(found, expected, at);
   }
 }
+// Nothing moved since the last time that this was asked.
+async function steady(page, what) {
+  const shifted = await page.evaluate(() => [window.shifted, (window.shifted = 0)][0]);
+  assert.ok(shifted <= kMostShift, `${what}: layout shifted by ${shifted}`);
+}
 async function accessible(page, what) {
   await page.evaluate(axe);
   const violations = await page.evaluate(async () => (await window.axe.run()).violations.map((v) => `${v.id}: ${v.nodes.map((n) => n.html).join(" ").slice(0, 400)}`));
@@ -156,6 +161,8 @@ for (let k = 0; k < formats.length; ++k) await page.click("#list .close >> nth=0
 await until(page, 0);
 
 
+await steady(page, "formats");
+
 // Damaged files, as tests/hostile_test.cpp makes them: what is refused is refused in one line, and again where it is
 // dropped, many at once; the library never stops, and its memory does not grow.
 const hostile = await page.evaluate(damage, {seeds: seeds.map((name) => fs.readFileSync(file(name)).toString("base64")), step: kHostileStep});
@@ -191,6 +198,8 @@ for (let k = 0; k < 3; ++k) {
 assert.ok(held[2] < 1.1 * held[0], `${held} bytes held`);
 await page.click("#list .close >> nth=0");
 await page.waitForFunction(async () => (await import("./package/index.js")).memory() === 0);
+
+await steady(page, "damaged and large files");
 
 // Of a book one is opened, and others are chosen.
 await drop(page, ["seed.book"]);
@@ -228,6 +237,8 @@ await drop(page, ["light-b44.exr"]);
 await page.waitForFunction(() => /expected a compression of .*, found B44/.test(document.querySelector("#message-text").textContent));
 await page.click("#message-close");
 await page.selectOption("#around", "studio");
+
+await steady(page, "books, surfaces and pictures");
 
 // Fit: figures equal those of the command line for the saved model.
 await drop(page, ["a.binary"]);
@@ -280,7 +291,7 @@ await page.click("#link");
 await page.waitForFunction(() => document.querySelector("#link").dataset.link);
 const link = await page.getAttribute("#link", "data-link");
 assert.deepEqual(requests.filter((url) => !url.startsWith("blob:")), [], "requests after loading");
-assert.ok((await page.evaluate(() => window.shifted)) <= kMostShift, `layout shifted by ${await page.evaluate(() => window.shifted)}`);
+await steady(page, "fit");
 
 const other = await visit(link, {colorScheme: "dark"});
 await until(other, 1);
