@@ -22,7 +22,9 @@ layout(location = 2) in vec3 tangent;
 uniform mat3 turn;
 uniform vec2 zoom;
 out vec3 n, t;
+out vec2 at;  // of a surface, v downwards
 void main() {
+  at = vec2(0.5, 0.5) + vec2(position.x, -position.y) / 1.7;
   vec3 p = turn * position;
   n = turn * normal;
   t = turn * tangent;
@@ -31,13 +33,20 @@ void main() {
 const around = model.environment;
 gl.attachShader(program, shader(gl.FRAGMENT_SHADER, "#version 300 es\n" + model.shader + (around?.shader ?? "") + `
 in vec3 n, t;
+in vec2 at;
 uniform vec3 light;
 uniform vec2 exposures;
 out vec4 color;
 void main() {
   vec3 normal = normalize(n), tangent = normalize(t - dot(t, normal) * normal), view = vec3(0, 0, 1);
-  vec3 sum = exposures.x * max(dot(normal, light), 0.0) *
-             burnish_${model.name}_world(normal, tangent, light, view);
+  vec3 facing = normal;
+  ${model.maps ? `
+  vec2 across = dFdx(at), down = dFdy(at);
+  burnish_${model.name}_place place = burnish_${model.name}_at(
+      at.x, at.y, burnish_${model.name}_lod(across.x, across.y, down.x, down.y));` : ""}
+  ${model.framed ? "facing = mat3(tangent, cross(normal, tangent), normal) * place.n;" : ""}
+  vec3 sum = exposures.x * max(dot(facing, light), 0.0) *
+             burnish_${model.name}_world(normal, tangent, light, view${model.maps ? ", place" : ""});
   ${around ? `if (exposures.y > 0.0) sum += exposures.y * ${around.call};` : ""}
   color = vec4(pow(min(sum, 1.0), vec3(1.0 / 2.2)), 1);
 }`));
@@ -59,6 +68,23 @@ const decode = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buf
   for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(kind, filter, gl.LINEAR);
   gl.uniform1i(uniform(texture.name), unit);
 });
+// Maps of a surface with their levels.
+(model.maps ?? []).forEach(({name, width, height, half, levels}, k) => {
+  const unit = model.textures.length + k;
+  gl.activeTexture(gl.TEXTURE0 + unit);
+  gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
+  levels.map(decode).forEach((texels, level) => {
+    const size = [Math.max(width >> level, 1), Math.max(height >> level, 1)];
+    if (half) gl.texImage2D(gl.TEXTURE_2D, level, gl.RGBA16F, ...size, 0, gl.RGBA, gl.HALF_FLOAT, new Uint16Array(texels));
+    else gl.texImage2D(gl.TEXTURE_2D, level, gl.RGBA8, ...size, 0, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(texels));
+  });
+  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
+  gl.uniform1i(uniform(name), unit);
+});
+if (model.maps) {
+  find("select").prepend(new Option("plane"));
+  find("select").selectedIndex = 0;
+}
 for (const box of ["#lamp", "#around"]) find(box).parentElement.hidden = !around;
 
 const add = (a, b, s = 1) => a.map((x, i) => x + s * b[i]);
@@ -103,6 +129,7 @@ const shapes = {
     const normal = add(up.map((x) => x * Math.cos(2 * Math.PI * v)), side, Math.sin(2 * Math.PI * v));
     return [add(p, normal, 0.14), normal, along];
   }),
+  plane: grid(1, 1, (u, v) => [[1.7 * u - 0.85, 1.7 * v - 0.85, 0], [0, 0, 1], [1, 0, 0]]),
   sphere: grid(96, 96, (u, v) => {
     const phi = 2 * Math.PI * u, theta = 1e-4 + (Math.PI - 2e-4) * v;
     const normal = [Math.sin(theta) * Math.sin(phi), Math.cos(theta), Math.sin(theta) * Math.cos(phi)];

@@ -2,12 +2,13 @@
 export const model = MODEL;
 
 // A ShaderMaterial under the directional and point lights of its scene. THREE: the module of three.js. Meshes
-// need tangents (BufferGeometry.computeTangents); others get one around the vertical axis.
+// need tangents (BufferGeometry.computeTangents); others get one around the vertical axis. A surface lies over the
+// meshes' uv, u along the tangent, and repeats.
 export function createMaterial(THREE) {
   const uniforms = THREE.UniformsUtils.clone(THREE.UniformsLib.lights);
+  const bytesOf = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
   for (const texture of model.textures) {
-    const bytes = Uint8Array.from(atob(texture.rgba16f), (c) => c.charCodeAt(0));
-    const texels = new Uint16Array(bytes.buffer), {width, height, depth} = texture;
+    const texels = new Uint16Array(bytesOf(texture.rgba16f).buffer), {width, height, depth} = texture;
     const map = depth ? new THREE.Data3DTexture(texels, width, height, depth) : new THREE.DataTexture(texels, width, height);
     map.format = THREE.RGBAFormat;
     map.type = THREE.HalfFloatType;
@@ -15,6 +16,21 @@ export function createMaterial(THREE) {
     map.needsUpdate = true;
     uniforms[texture.name] = {value: map};
   }
+  for (const {name, width, height, half, levels} of model.maps ?? []) {
+    const type = half ? THREE.HalfFloatType : THREE.UnsignedByteType;
+    const mipmaps = levels.map(bytesOf).map((bytes, k) => ({
+      data: half ? new Uint16Array(bytes.buffer) : bytes, width: Math.max(width >> k, 1), height: Math.max(height >> k, 1),
+    }));
+    const map = new THREE.DataTexture(mipmaps[0].data, width, height, THREE.RGBAFormat, type);
+    map.mipmaps = mipmaps;
+    map.wrapS = map.wrapT = THREE.RepeatWrapping;
+    map.magFilter = THREE.LinearFilter;
+    map.minFilter = THREE.LinearMipmapLinearFilter;
+    map.needsUpdate = true;
+    uniforms[name] = {value: map};
+  }
+  // weights and frame once a pixel, lobes once a light
+  const call = (light) => `burnish_${model.name}_world(normal, tangent, ${light}, view${model.maps ? ", place" : ""})`;
   const material = new THREE.ShaderMaterial({
     name: model.name, uniforms, lights: true, glslVersion: THREE.GLSL3,
     vertexShader: `
@@ -22,7 +38,9 @@ export function createMaterial(THREE) {
 attribute vec4 tangent;
 #endif
 varying vec3 seen, n, t;
+varying vec2 at;
 void main() {
+  at = uv;
   vec4 place = modelViewMatrix * vec4(position, 1.0);
   seen = place.xyz;
   n = normalMatrix * normal;
@@ -35,23 +53,28 @@ void main() {
 #include <lights_pars_begin>
 ${model.shader}
 varying vec3 seen, n, t;
+varying vec2 at;
 out vec4 color;
 void main() {
   vec3 normal = normalize(n), view = isOrthographic ? vec3(0.0, 0.0, 1.0) : -normalize(seen);
   vec3 sum = vec3(0.0);
-  vec3 tangent = normalize(t - dot(t, normal) * normal);
+  vec3 tangent = normalize(t - dot(t, normal) * normal), facing = normal;
+${model.maps ? `
+  vec2 across = dFdx(at), down = dFdy(at);
+  burnish_${model.name}_place place = burnish_${model.name}_at(
+      at.x, 1.0 - at.y, burnish_${model.name}_lod(across.x, across.y, down.x, down.y));` : ""}
+${model.framed ? "  facing = mat3(tangent, cross(normal, tangent), normal) * place.n;" : ""}
 #if NUM_DIR_LIGHTS > 0
   for (int i = 0; i < NUM_DIR_LIGHTS; ++i) {
     vec3 l = directionalLights[i].direction;
-    sum += burnish_${model.name}_world(normal, tangent, l, view) * max(dot(normal, l), 0.0) *
-           directionalLights[i].color;
+    sum += ${call("l")} * max(dot(facing, l), 0.0) * directionalLights[i].color;
   }
 #endif
 #if NUM_POINT_LIGHTS > 0
   for (int i = 0; i < NUM_POINT_LIGHTS; ++i) {
     vec3 to = pointLights[i].position - seen;
-    sum += burnish_${model.name}_world(normal, tangent, normalize(to), view) *
-           max(dot(normal, normalize(to)), 0.0) * pointLights[i].color / dot(to, to);
+    vec3 l = normalize(to);
+    sum += ${call("l")} * max(dot(facing, l), 0.0) * pointLights[i].color / dot(to, to);
   }
 #endif
   color = vec4(sum, 1.0);

@@ -112,7 +112,8 @@ void add_export_command(CLI::App& app) {
   CLI::App* verb = app.add_subcommand(
       "export",
       "Write a factored BRDF as shaders, textures, MaterialX, USD, MDL, glTF, a module of "
-      "three.js or Babylon.js, an RGL table, or a page that shows it; a surface as shaders and textures; "
+      "three.js or Babylon.js, an RGL table, or a page that shows it; a surface as shaders and textures, "
+      "for three.js or as a page; "
       "OpenPBR as files of these formats; or Phong's and Blinn's models as shaders");
   verb->footer(
       "Every shader comes with its textures but C++, which has them inside; NAME.json says what is in the "

@@ -1,4 +1,5 @@
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -35,7 +36,7 @@ std::string to_string(const NodesKnown& nodes) {
 }
 
 void print_text(const SourceReport& report) {
-  const auto& [source, albedos, reciprocity, model] = report;
+  const auto& [source, albedos, reciprocity, model, mirror_asymmetry] = report;
   const Findings& findings = source.findings;
   const auto line = [](std::string_view name, const std::string& text) {
     fmt::print("{:<13}{}\n", name, text);
@@ -77,6 +78,9 @@ void print_text(const SourceReport& report) {
   line("reciprocity",
        fmt::format("mean relative asymmetry {:.4g} over {} pairs{}", reciprocity.mean, reciprocity.pairs,
                    model && !model->reciprocal() ? ": the model tells the directions apart" : ""));
+  if (mirror_asymmetry)
+    line("mirror", fmt::format("{:.2f} % from its mirror image in the plane of incidence, on average",
+                               100 * std::expm1(*mirror_asymmetry)));
   if (const auto bytes = source.bytes()) line("bytes", fmt::format("{}", *bytes));
   if (!model) return;
   if (const auto cost = shader_cost(*model)) line("shader", to_string(*cost));

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <list>
 #include <map>
 #include <memory>
@@ -15,36 +16,50 @@
 
 #include <burnish/error.h>
 #include <burnish/export/export_model.h>
+#include <burnish/export/export_surface.h>
 #include <burnish/factors/compact_file.h>
 #include <burnish/factors/edit.h>
 #include <burnish/factors/fetches.h>
 #include <burnish/fitting/fit.h>
 #include <burnish/fitting/fit_file.h>
 #include <burnish/io/convert.h>
-#include <burnish/io/neural.h>
 #include <burnish/io/open_source.h>
 #include <burnish/math/angles.h>
 #include <burnish/metrics/albedo.h>
 #include <burnish/parameterization/half_diff.h>
 #include <burnish/report/compare_report.h>
 #include <burnish/shaders/shader.h>
+#include <burnish/shaders/spatial_shader.h>
+#include <burnish/surface/surface_file.h>
 
 #include "comparison.h"
 #include "info_json.h"
+#include "opened.h"
+#include "surface_info.h"
 
 namespace burnish::wasm {
 
 namespace {
 
-std::map<int, Source>& materials() {
-  static std::map<int, Source> opened;
+std::map<int, Opened>& materials() {
+  static std::map<int, Opened> opened;
   return opened;
 }
 
-const Source& material(const Json& arguments, const char* key = "id") {
+const Opened& opened(const Json& arguments, const char* key = "id") {
   const auto found = materials().find(arguments.at(key).get<int>());
   if (found == materials().end()) throw Error("expected an open material, found one that was closed");
   return found->second;
+}
+
+const Source& material(const Json& arguments, const char* key = "id") {
+  return opened(arguments, key).source;
+}
+
+const SurfaceModel& surface_of(const Json& arguments) {
+  const Opened& found = opened(arguments);
+  if (!found.surface) throw Error(fmt::format("{}: expected a surface, found another", found.source.name));
+  return *found.surface;
 }
 
 const FactoredBrdf& model_of(const Json& arguments) {
@@ -76,7 +91,8 @@ std::vector<float> floats_of(const std::vector<std::byte>& bytes) {
 }
 
 /// What is known without a report.
-Json summary_of(const Source& source) {
+Json summary_of(const Opened& opened) {
+  const Source& source = opened.source;
   const BrdfRef ref = source.ref();
   const auto* model = std::get_if<FactoredBrdf>(&source.brdf);
   Json json{{"name", source.name},
@@ -88,6 +104,11 @@ Json summary_of(const Source& source) {
   if (model) {
     json["expression"] = model_expression(*model);
     json["fetches"] = fetch_count(*model);
+  }
+  if (!opened.entries.empty()) json["entries"] = opened.entries;
+  if (const auto& surface = opened.surface) {
+    json["surface"] = {{"width", surface->brdf.width()}, {"height", surface->brdf.height()}};
+    json["bytes"] = surface->brdf.bytes();
   }
   return json;
 }
@@ -102,33 +123,30 @@ Reply open(Request request) {
   read_if(a, "back", options.back_side);
   if (options.illuminant != "E" && options.illuminant != "D65")
     throw Error(fmt::format("illuminant: expected E or D65, found '{}'", options.illuminant));
-  const auto open_it = [&]() -> Source {
+  const auto open_it = [&]() -> Opened {
     if (a.contains("spec")) {
       const std::string spec = a.at("spec").get<std::string>();
       if (!is_analytic_spec(spec))
         throw Error(
             fmt::format("expected a file's bytes or an analytic BRDF such as ggx:alpha=0.2, found '{}'",
                         spec.substr(0, 80)));
-      return open_source(spec, options);
+      return {open_source(spec, options), {}, {}};
     }
-    const FileBytes file{a.value("name", "file"), std::move(request.bytes)};
-    if (file.bytes.empty()) throw Error::in_file(file.name, "at least one byte", "an empty file");
-    if (a.contains("entry")) {
-      NeuralFile parsed = parse_neural(file, a.at("entry").get<std::string>());
-      return {fmt::format("{}#{}", file.name, parsed.name), std::move(parsed.brdf),
-              std::move(parsed.findings)};
-    }
-    return parse_source(file, options);
+    return open_bytes({a.value("name", "file"), std::move(request.bytes)}, a, options);
   };
   const auto [place, added] = materials().insert_or_assign(a.at("id").get<int>(), open_it());
-  return {.json = summary_of(place->second).dump(), .blobs = {}};
+  // names need not be UTF-8
+  return {.json = summary_of(place->second).dump(-1, ' ', false, Json::error_handler_t::replace),
+          .blobs = {}};
 }
 
 Reply info(const Request& request) {
+  if (const Opened& found = opened(request.arguments); found.surface)
+    return {.json = cli::surface_info_json(*found.surface, found.source.name)};
   return {.json = cli::info_json(report_on(material(request.arguments))), .blobs = {}};
 }
 
-// Directions n x 3, those to the light before those to the viewer; values n x channels.
+// Directions n x 3, those to the light before those to the viewer; values n x channels, NaN where none is known.
 Reply evaluate(const Request& request) {
   const BrdfRef brdf = material(request.arguments).ref();
   const std::vector<float> directions = floats_of(request.bytes);
@@ -152,7 +170,9 @@ Reply evaluate(const Request& request) {
     pairs.clear();
     for (std::size_t i = begin; i < begin + count; ++i) pairs.push_back({direction(i), direction(n + i)});
     brdf.eval(pairs, std::span(values).first(count * channels), std::span(known).first(count));
-    for (std::size_t i = 0; i < count * channels; ++i) result.push_back(static_cast<float>(values[i]));
+    for (std::size_t i = 0; i < count * channels; ++i)
+      result.push_back(known[i / channels] ? static_cast<float>(values[i])
+                                           : std::numeric_limits<float>::quiet_NaN());
   }
   return {.json = Json{{"channels", channels}}.dump(), .blobs = {bytes_of(result)}};
 }
@@ -173,59 +193,105 @@ Reply albedo(const Request& request) {
 }
 
 // Along a row of theta_d, what lies beyond the horizon or is unknown takes the nearest value that is known.
-void fill_unknown(std::vector<std::vector<float>>& row) {
-  std::size_t last = row.size();
-  for (std::size_t d = 0; d < row.size(); ++d) {
-    if (row[d].empty()) {
-      if (last < row.size()) row[d] = row[last];
+void fill_unknown(std::span<float> values, std::span<const std::uint8_t> known, std::size_t channels,
+                  std::size_t stride) {
+  const std::size_t count = known.size();
+  std::size_t last = count;
+  const auto copy = [&](std::size_t from, std::size_t to) {
+    std::copy_n(&values[from * stride], channels, &values[to * stride]);
+  };
+  for (std::size_t d = 0; d < count; ++d) {
+    if (!known[d]) {
+      if (last < count) copy(last, d);
       continue;
     }
-    for (std::size_t before = last < row.size() ? d : 0; before < d; ++before) row[before] = row[d];
+    for (std::size_t before = last < count ? d : 0; before < d; ++before) copy(d, before);
     last = d;
   }
+}
+
+// Cells of one phi_d: centres [theta_d][theta_h].
+std::vector<DirectionPair> layer_pairs(std::size_t thetas_h, std::size_t thetas_d, double phi_h,
+                                       double phi_d) {
+  std::vector<DirectionPair> pairs;
+  for (std::size_t d = 0; d < thetas_d; ++d)
+    for (std::size_t h = 0; h < thetas_h; ++h) {
+      const double x = (static_cast<double>(h) + 0.5) / static_cast<double>(thetas_h);
+      const double theta_d = (static_cast<double>(d) + 0.5) / static_cast<double>(thetas_d) * kHalfPi;
+      const auto [wi, wo] =
+          from_half_diff({.theta_h = x * x * kHalfPi, .phi_h = phi_h, .theta_d = theta_d, .phi_d = phi_d});
+      pairs.push_back({wi, wo});
+    }
+  return pairs;
 }
 
 // Centres of cells: theta_h = ((x + 1/2) / thetaH)^2 pi/2, theta_d = (y + 1/2) / thetaD pi/2,
 // phi_d = (z + 1/2) / phiD 2 pi.
 Reply volume(const Request& request, const Progress& progress) {
   const BrdfRef brdf = material(request.arguments).ref();
-  std::array<int, 3> size{90, 90, 180};
+  std::array<std::size_t, 3> size{90, 90, 180};
   read_if(request.arguments, "thetaH", size[0]);
   read_if(request.arguments, "thetaD", size[1]);
   read_if(request.arguments, "phiD", size[2]);
   const double phi_h = request.arguments.value("phiH", 0.0);
-  for (const int side : size)
+  for (const std::size_t side : size)
     if (side < 2 || side > 512)
       throw Error(fmt::format("volume: expected 2 to 512 cells a side, found {}", side));
-  const auto channels = static_cast<std::size_t>(brdf.channels());
+  const auto channels = brdf.channels();
   const auto [nh, nd, np] = size;
-  std::vector<float> data(static_cast<std::size_t>(nh) * static_cast<std::size_t>(nd) *
-                          static_cast<std::size_t>(np) * channels);
-  std::vector<double> f(channels);
-  for (int p = 0; p < np; ++p) {
-    for (int h = 0; h < nh; ++h) {
-      const double x = (h + 0.5) / nh;
-      std::vector<std::vector<float>> row(static_cast<std::size_t>(nd));
-      for (int d = 0; d < nd; ++d) {
-        const auto [wi, wo] = from_half_diff({.theta_h = x * x * kHalfPi,
-                                              .phi_h = phi_h,
-                                              .theta_d = (d + 0.5) / nd * kHalfPi,
-                                              .phi_d = (p + 0.5) / np * 2 * kPi});
-        if (wi.z > 0 && wo.z > 0 && brdf.eval(wi, wo, f))
-          row[static_cast<std::size_t>(d)].assign(f.begin(), f.end());
+  std::vector<float> data;
+  data.reserve(nh * nd * np * channels);
+  std::vector<double> values(nh * nd * channels);
+  std::vector<std::uint8_t> known(nh * nd), column(nd);
+  for (std::size_t p = 0; p < np; ++p) {
+    const double phi_d = (static_cast<double>(p) + 0.5) / static_cast<double>(np) * 2 * kPi;
+    const std::vector<DirectionPair> pairs = layer_pairs(nh, nd, phi_h, phi_d);
+    brdf.eval(pairs, values, known);
+    const std::size_t first = data.size();
+    data.insert(data.end(), values.begin(), values.end());
+    for (std::size_t h = 0; h < nh; ++h) {
+      for (std::size_t d = 0; d < nd; ++d) {
+        const auto& [wi, wo] = pairs[d * nh + h];
+        column[d] = known[d * nh + h] && wi.z > 0 && wo.z > 0;
       }
-      fill_unknown(row);
-      for (int d = 0; d < nd; ++d) {
-        const auto& cell = row[static_cast<std::size_t>(d)];
-        const std::size_t at = (static_cast<std::size_t>(p * nd + d) * static_cast<std::size_t>(nh) +
-                                static_cast<std::size_t>(h)) *
-                               channels;
-        std::copy(cell.begin(), cell.end(), data.begin() + static_cast<std::ptrdiff_t>(at));
-      }
+      fill_unknown(std::span(data).subspan(first + h * channels), column, channels, nh * channels);
     }
-    progress("sampling", (p + 1.0) / np);
+    progress("sampling", (static_cast<double>(p) + 1) / static_cast<double>(np));
   }
   return {.json = Json{{"size", {nh, nd, np}}, {"channels", channels}}.dump(), .blobs = {bytes_of(data)}};
+}
+
+Json size_of(const RglGrid& grid) {
+  return {grid.width, grid.height};
+}
+
+// What a measurement is interpolated from, so that a GPU can do the same; null of what has no such table.
+Reply table(const Request& request) {
+  const Source& source = material(request.arguments);
+  if (const auto* cells = std::get_if<HalfDiffTable>(&source.brdf))
+    return {.json = Json{{"kind", "half_diff"},
+                         {"size", {cells->theta_h_count, cells->theta_d_count, cells->phi_d_count}},
+                         {"fullCircle", cells->full_circle},
+                         {"channels", cells->channel_count}}
+                        .dump(),
+            .blobs = {bytes_of(cells->values)}};
+  if (const auto* rgl = std::get_if<RglTable>(&source.brdf)) {
+    const RglData& data = rgl->data();
+    return {
+        .json = Json{{"kind", "rgl"},
+                     {"channels", data.channels},
+                     {"isotropic", rgl->isotropic()},
+                     {"reduction", rgl->reduction()},
+                     {"jacobian", data.jacobian},
+                     {"ndf", size_of(data.ndf)},
+                     {"sigma", size_of(data.sigma)},
+                     {"vndf", size_of(data.vndf)},
+                     {"spectra", size_of(data.spectra)}}
+                    .dump(),
+        .blobs = {bytes_of(data.phi_i), bytes_of(data.theta_i), bytes_of(data.ndf.values),
+                  bytes_of(data.sigma.values), bytes_of(data.vndf.values), bytes_of(data.spectra.values)}};
+  }
+  return {};
 }
 
 // As the verb fit reads its options.
@@ -290,13 +356,24 @@ void multiply(std::vector<double>& scale, const Json& by) {
   for (std::size_t c = 0; c < scale.size(); ++c) scale[c] *= factors[factors.size() == 1 ? 0 : c];
 }
 
+// The lobes' colours turned: all by one angle, or each by its own.
+FactoredBrdf hued(const FactoredBrdf& model, const Json& how) {
+  const auto hue = how.find("hue");
+  if (hue == how.end() || !hue->is_array())
+    return edited(model, {.hue = how.value("hue", 0.0), .roughness = 1});
+  std::vector<Lobe> lobes(model.lobes().begin(), model.lobes().end());
+  if (hue->size() != lobes.size())
+    throw Error(fmt::format("edit: expected hues of {} lobes, found {}", lobes.size(), hue->size()));
+  for (std::size_t l = 0; l < lobes.size(); ++l)
+    lobes[l].scale = edited(model, {.hue = (*hue)[l].get<double>(), .roughness = 1}).lobes()[l].scale;
+  return {model.channels(), {model.tables().begin(), model.tables().end()}, std::move(lobes)};
+}
+
 // A model with other colours, widths and scales and a Lambertian part; its file comes back, as a fit's does.
 Reply edit(const Request& request) {
   const Json& how = request.arguments.at("edit");
-  Edit changes;
-  read_if(how, "hue", changes.hue);
-  read_if(how, "roughness", changes.roughness);
-  const FactoredBrdf model = edited(model_of(request.arguments), changes);
+  const FactoredBrdf model =
+      edited(hued(model_of(request.arguments), how), {.hue = 0, .roughness = how.value("roughness", 1.0)});
   std::vector<Lobe> lobes(model.lobes().begin(), model.lobes().end());
   if (const auto scale = how.find("scale"); scale != how.end()) {
     // a list of lists is one a lobe
@@ -363,6 +440,59 @@ Json to_json(const ShaderCost& cost) {
           {"divisions", cost.divisions}, {"roots", cost.roots},       {"powers", cost.powers}};
 }
 
+void add_textures(std::span<const ShaderTexture> textures, Json& list, Reply& reply) {
+  for (const ShaderTexture& t : textures) {
+    list.push_back({{"name", t.name},
+                    {"width", t.width},
+                    {"height", t.height},
+                    {"depth", t.depth},
+                    {"channels", t.channels},
+                    {"format", to_string(t.format)}});
+    reply.blobs.push_back(bytes_of(t.values));
+  }
+}
+
+// The same of a surface; its maps, four components of bytes or halves, follow with a blob a level.
+Reply surface_shader_of(const Request& request, const ShaderOptions& options) {
+  const SpatialShader made = generate_shader(surface_of(request.arguments).brdf, options);
+  Reply reply;
+  Json textures = Json::array(), maps = Json::array();
+  add_textures(made.textures, textures, reply);
+  for (const MapTexture& map : made.maps.textures) {
+    maps.push_back({{"name", map.name},
+                    {"width", map.width},
+                    {"height", map.height},
+                    {"levels", map.levels.size()},
+                    {"format", to_string(map.format)}});
+    for (const std::vector<std::byte>& level : map.levels) reply.blobs.push_back(bytes_of(level));
+  }
+  reply.json = Json{{"code", made.text},
+                    {"language", to_string(options.language)},
+                    {"filter", options.filter == ShaderFilter::exact ? "exact" : "hardware"},
+                    {"function", fmt::format("burnish_{}", options.name)},
+                    {"functionWorld", fmt::format("burnish_{}_world", options.name)},
+                    {"framed", made.maps.normals.has_value() || made.maps.tangents.has_value()},
+                    {"cost", to_json(made.light_cost)},
+                    {"placeCost", to_json(made.place_cost)},
+                    {"costText", burnish::to_string(made.light_cost)},
+                    {"textures", std::move(textures)},
+                    {"maps", std::move(maps)}}
+                   .dump();
+  return reply;
+}
+
+// The uniform model of a surface's place; its file comes back.
+Reply place(const Request& request) {
+  const Json& a = request.arguments;
+  const SpatialBrdf& surface = surface_of(a).brdf;
+  return {.json = "{}",
+          .blobs = {format_compact(
+              {.brdf = surface.at(a.at("u").get<double>(), a.at("v").get<double>(), a.value("lod", 0.0)),
+               .lambda_nm = {},
+               .notes = "{}"},
+              CompactContent::model_and_notes)}};
+}
+
 // Textures follow as blobs of floats, [z][y][x][channel].
 Reply shader(const Request& request) {
   const Json& a = request.arguments;
@@ -372,18 +502,11 @@ Reply shader(const Request& request) {
   options.filter = exact ? ShaderFilter::exact : ShaderFilter::hardware;
   read_if(a, "halfProducts", options.half_products);
   read_if(a, "linesAre1d", options.lines_are_1d);
+  if (opened(a).surface) return surface_shader_of(request, options);
   const Shader made = generate_shader(model_of(a), options);
   Reply reply;
   Json textures = Json::array();
-  for (const ShaderTexture& t : made.textures) {
-    textures.push_back({{"name", t.name},
-                        {"width", t.width},
-                        {"height", t.height},
-                        {"depth", t.depth},
-                        {"channels", t.channels},
-                        {"format", to_string(t.format)}});
-    reply.blobs.push_back(bytes_of(t.values));
-  }
+  add_textures(made.textures, textures, reply);
   reply.json = Json{{"code", made.text},
                     {"language", to_string(language)},
                     {"filter", exact ? "exact" : "hardware"},
@@ -407,10 +530,26 @@ Reply reply_of(std::span<const std::pair<std::string, std::string>> files, Json 
   return reply;
 }
 
+Reply reply_of(ExportedFiles exported) {
+  std::vector<std::pair<std::string, std::string>> files;
+  for (ExportedFile& file : exported.files) files.emplace_back(std::move(file.name), std::move(file.bytes));
+  return reply_of(files, Json::array());
+}
+
+Reply export_surface_of(const SurfaceModel& surface, const std::string& kind, const std::string& name) {
+  if (kind == "burnish") {
+    const std::pair<std::string, std::string> file{name, format_surface(surface)};
+    return reply_of(std::span(&file, 1), Json::array());
+  }
+  return reply_of(export_surface(
+      surface.brdf, {.to = {export_target(kind)}, .name = export_name(name), .compressed = false}));
+}
+
 // A format of the verb convert, or a target of the verb export.
 Reply export_material(const Request& request) {
   const Json& a = request.arguments;
   const std::string kind = a.at("kind").get<std::string>(), name = a.value("name", "brdf");
+  if (const auto& surface = opened(a).surface) return export_surface_of(*surface, kind, name);
   const Source& source = material(a);
   const bool is_model = std::holds_alternative<FactoredBrdf>(source.brdf);
   if (std::ranges::find(kConvertFormats, kind) != kConvertFormats.end()) {
@@ -427,10 +566,7 @@ Reply export_material(const Request& request) {
   ExportOptions options{.to = {export_target(kind)}, .name = name, .compressed = false};
   read_if(a, "exact", options.exact);
   read_if(a, "mips", options.mips);
-  ExportedFiles exported = export_model(model_of(a), options);
-  std::vector<std::pair<std::string, std::string>> files;
-  for (ExportedFile& file : exported.files) files.emplace_back(std::move(file.name), std::move(file.bytes));
-  return reply_of(files, Json::array());
+  return reply_of(export_model(model_of(a), options));
 }
 
 Reply close(const Request& request) {
@@ -447,6 +583,8 @@ Reply run(Request request, const Progress& progress) {
   if (verb == "evaluate") return evaluate(request);
   if (verb == "albedo") return albedo(request);
   if (verb == "volume") return volume(request, progress);
+  if (verb == "table") return table(request);
+  if (verb == "place") return place(request);
   if (verb == "fit") return fit_material(request, progress);
   if (verb == "compare") return compare(request);
   if (verb == "images") return images(request);

@@ -99,11 +99,13 @@ assert.ok(mesh.material.userData.gltfExtensions.BURNISH_materials_factored.lobes
 const {createMaterial} = await import(pathToFileURL(path.resolve(folder, manifest.three)));
 assert.equal(Object.values(createMaterial(THREE).uniforms).filter((u) => u.value?.isTexture).length,
              manifest.textures.length);
+const surfaceValue = Number(fs.readFileSync(path.join(folder, "flat.txt"), "utf8"));
 const page = path.resolve(folder, "modules.html");
 const modules = (file) => pathToFileURL(path.resolve(import.meta.dirname, process.env.NODE_FOLDER, file));
 fs.writeFileSync(page, `<!DOCTYPE html><body><script src="${modules("babylonjs/babylon.js")}"></script><script type="module">
 import * as THREE from "${modules("three/build/three.module.js")}";
 import {createMaterial} from "./${manifest.three}";
+import {createMaterial as createSurface} from "./flat.three.js";
 import {createMaterial as createBabylon} from "./${manifest.babylon}";
 let errors = 0;
 console.error = (...text) => { ++errors; document.body.dataset.said = text.join(" "); };
@@ -118,6 +120,11 @@ renderer.render(scene, camera);
 const pixel = new Float32Array(4);
 renderer.readRenderTargetPixels(target, 4, 4, 1, 1, pixel);
 
+scene.children[1].material = createSurface(THREE);
+renderer.render(scene, camera);
+const onSurface = new Float32Array(4);
+renderer.readRenderTargetPixels(target, 4, 3, 1, 1, onSurface);
+
 const canvas = document.createElement("canvas"), engine = new BABYLON.Engine(canvas), world = new BABYLON.Scene(engine);
 const eye = new BABYLON.FreeCamera("eye", new BABYLON.Vector3(0, 0, -2), world), at = new BABYLON.Vector3(0, 0, -4);
 const sun = new BABYLON.DirectionalLight("sun", new BABYLON.Vector3(0, 0, 1), world);
@@ -131,15 +138,16 @@ await world.whenReadyAsync();
 while (!plane.material.isReady(plane)) await new Promise((next) => setTimeout(next, 20));
 drawn.render();
 const other = await drawn.readPixels();
-document.body.dataset.result = [pixel[0], other[4 * (4 * 9 + 4)], errors].join(" ");
+document.body.dataset.result = [pixel[0], other[4 * (4 * 9 + 4)], errors, onSurface[0]].join(" ");
 </script></body>`);
 const dom = execFileSync("timeout", ["300", "chromium", "--headless", "--no-sandbox", "--use-gl=angle",
   "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--allow-file-access-from-files",
   `--user-data-dir=${path.resolve(folder, "profile")}`, "--virtual-time-budget=10000", "--dump-dom",
   pathToFileURL(page).href], {stdio: ["ignore", "pipe", "ignore"]}).toString();
-const result = dom.match(/data-result="([^ ]+) ([^ ]+) ([^"]+)"/);
+const result = dom.match(/data-result="([^ ]+) ([^ ]+) ([^ ]+) ([^"]+)"/);
 assert.ok(result, dom);
 assert.equal(Number(result[3]), 0, dom);
 for (const found of [result[1], result[2]])
   assert.ok(Math.abs(found / (2 * value) - 1) < 2e-3, `expected ${2 * value}, found ${found}`);
+assert.ok(Math.abs(result[4] / (2 * surfaceValue) - 1) < 5e-3, `surface: expected ${2 * surfaceValue}, found ${result[4]}`);
 console.log(`web: ${manifest.textures.length} KTX2, EXR, glTF, three.js and Babylon.js exports open elsewhere`);

@@ -26,6 +26,8 @@ done
 "$burnish" export "$web/brushed.exr" --to ktx2 --to cube --to exr --to gltf --to three --to babylon --to glsl --environment sun --mips -o "$web/out" > /dev/null
 "$burnish" export openpbr:specular_ior=1.7,specular_roughness_anisotropy=0.5,coat_weight=0.25,coat_ior=1.5,fuzz_weight=0.3,thin_film_weight=0.5 \
   --to gltf -o "$web/out" > /dev/null
+build/release/tests/burnish_input_files "$web/out"
+"$burnish" export "$web/out/flat.burnish" --to three -o "$web/out" > /dev/null
 printf 'wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0,0,1,0,0,1\n' > "$web/normal.csv"
 "$burnish" eval "$web/brushed.exr" "$web/normal.csv" -o "$web/value.csv" > /dev/null
 NODE_FOLDER=node_modules node "$web/check.mjs" "$web/out" brushed "$(tail -1 "$web/value.csv" | cut -d, -f1)"
@@ -40,6 +42,7 @@ done > "$web/library.txt"
 node "$web/catalogue.mjs" "$web/library"
 
 if [ -f build/studio/package/burnish.js ] && [ -f build/studio/index.html ]; then
+  build/release/tests/burnish_input_files "$web/studio"
   node "$web/studio.mjs" "$PWD/build/studio" "$burnish" "$web/studio"
 else
   echo "web: SKIPPED: no build/studio, so the page was not opened; make studio makes it" >&2

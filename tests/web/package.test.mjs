@@ -18,18 +18,21 @@ const run = async (...args) => (await promisify(execFile)(cli, args, {maxBuffer:
 const at = (name) => path.join(folder, name);
 const bytesOf = (file) => new Uint8Array(fs.readFileSync(file));
 
-// Where the two differ, or nothing; numbers by kTolerance.
-function difference(found, expected, place = "") {
+// Where the two differ, or nothing; numbers by kTolerance, what nodes of the same file predict of themselves by kChance.
+// Rings of an albedo are halved until two sums agree: where they hardly do, a last bit decides (`rings`).
+const kChance = 0.05, kRings = 2e-3;
+function difference(found, expected, rings = false, place = "") {
   if (typeof expected === "number" && typeof found === "number") {
     const scale = Math.max(Math.abs(expected), Math.abs(found), 1e-9);
-    return Math.abs(found - expected) <= kTolerance * scale ? undefined : `${place}: ${found} instead of ${expected}`;
+    const tolerance = place.includes("/itself/") ? kChance : rings && place.includes("/albedo/") ? kRings : kTolerance;
+    return Math.abs(found - expected) <= tolerance * scale ? undefined : `${place}: ${found} instead of ${expected}`;
   }
   if (expected === null || typeof expected !== "object")
     return Object.is(found, expected) ? undefined : `${place}: ${found} instead of ${expected}`;
   if (found === null || typeof found !== "object") return `${place}: ${found} instead of an object`;
   const names = new Set([...Object.keys(expected), ...Object.keys(found)]);
   for (const name of names) {
-    const differs = difference(found[name], expected[name], `${place}/${name}`);
+    const differs = difference(found[name], expected[name], rings, `${place}/${name}`);
     if (differs) return differs;
   }
   return undefined;
@@ -73,13 +76,16 @@ const kKlems = (() => {
 // One source of every format; measured ones where $BURNISH_DATA has them.
 const sources = {
   MERL: at("a.binary"), RGL: at("a.bsdf"), MBSDF: at("a.mbsdf"), Zemax: at("a.zemax"), ASTM: at("a.astm"),
-  CSV: at("a.csv"), Klems: at("a.xml"), "a compact model": at("a.burnish"), "an OpenEXR model": at("a.exr"),
+  CSV: at("a.csv"), Klems: at("a.xml"), UTIA: at("a.bin"), OpenMATERIAL: at("a.xompt"), "a tensor tree": at("tree.xml"),
+  "a baseline": at("a.json"), "a compact model": at("a.burnish"), "an OpenEXR model": at("a.exr"),
 };
 const data = process.env.BURNISH_DATA;
 if (data)
   for (const [name, file] of Object.entries({
     "measured Cornell": "cornell/cayman.brdf", "measured Klems": "klems/mecho_shade_fabric_aniso.xml",
-    "measured MBSDF": "mbsdf/carpaint_blue.mbsdf"}))
+    "measured MBSDF": "mbsdf/carpaint_blue.mbsdf", "measured ALTA": "retro/retro-gray-tape.dat", "measured Speos": "speos/aniso_bsdf.anisotropicbsdf",
+    "a measured tensor tree": "tensortree/t3.xml", "measured OpenMATERIAL": "openmaterial/example_material_camera_brdf.xompt",
+    "measured Zemax": "zemax/AnoBlackEC1onAlum.bsdf"}))
     if (fs.existsSync(path.join(data, file))) sources[name] = path.join(data, file);
 
 before(async () => {
@@ -92,6 +98,10 @@ before(async () => {
   await run("convert", kSpec, at("a.zemax"), "--to", "zemax");
   await run("convert", kSpec, at("a.astm"), "--count", "3000");
   await run("convert", kSpec, at("a.csv"), "--count", "3000");
+  await run("convert", kSpec, at("a.bin"), "--to", "utia");
+  await run("convert", kSpec, at("a.xompt"), "--count", "3000");
+  await run("convert", "lambert:kd=0.4", at("tree.xml"), "--to", "tensortree");
+  await run("fit", kSpec, "--method", "dgf", "--budget", "600", "-o", at("a.json"));
 });
 
 for (const [format, file] of Object.entries(sources))
@@ -103,7 +113,7 @@ for (const [format, file] of Object.entries(sources))
     test("is told about as `info --json` does", async () => {
       const expected = JSON.parse(await run("info", file, "--json"));
       const [ours, theirs] = [nodesApart(await material.info()), nodesApart(expected)];
-      assert.equal(difference(ours.rest, theirs.rest), undefined);
+      assert.equal(difference(ours.rest, theirs.rest, format === "measured OpenMATERIAL"), undefined);
       for (const i of ours.nodes?.keys() ?? [])
         assert.ok(ours.nodes[i] === theirs.nodes[i] || Math.abs(Math.log2(ours.nodes[i] / theirs.nodes[i])) < 1, `${ours.nodes}, ${theirs.nodes}`);
     });
@@ -117,7 +127,7 @@ for (const [format, file] of Object.entries(sources))
       const found = await material.evaluate(wi, wo);
       assert.equal(found.length, expected.length);
       for (let i = 0; i < found.length; ++i)
-        assert.ok(Math.abs(found[i] - expected[i]) <= 1e-5 * Math.abs(expected[i]) + 1e-9, `${i}: ${found[i]}, ${expected[i]}`);
+        assert.ok(Object.is(found[i], expected[i]) || Math.abs(found[i] - expected[i]) <= 1e-5 * Math.abs(expected[i]) + 1e-9, `${i}: ${found[i]}, ${expected[i]}`);
     });
 
     test("is compared as `compare --json` does", async () => {
@@ -125,7 +135,7 @@ for (const [format, file] of Object.entries(sources))
       const expected = JSON.parse(await run("compare", file, at("a.burnish"), "--json", "--count", "20000"));
       const found = await material.compare(model, {count: 20000});
       model.close();
-      assert.equal(difference(found, expected), undefined);
+      assert.equal(difference(found, expected, format === "measured OpenMATERIAL"), undefined);
     });
   });
 
@@ -214,7 +224,7 @@ test("Shaders, exports and volumes have what they say", async () => {
     const files = await model.export(kind);
     assert.ok(files.length > 0 && files.every((file) => file.name && file.bytes.length > 0), kind);
   }
-  for (const kind of ["merl", "mbsdf", "rgl", "csv", "exr"]) {
+  for (const kind of ["merl", "utia", "mbsdf", "rgl", "zemax", "openmaterial", "astm", "csv", "exr"]) {
     const bytes = await model.export(kind, {cells: 12, count: 500});
     if (kind === "exr") fs.writeFileSync(at("back.exr"), bytes);
     const again = await open(bytes);
@@ -232,6 +242,15 @@ test("Shaders, exports and volumes have what they say", async () => {
     assert.ok(Math.abs(changed[c] / (factor * plain[c] + 0.1 / Math.PI) - 1) < 1e-5);
   assert.ok((await edited.shader("glsl_es")).code.includes("burnish_brdf"));
   edited.close();
+
+  // each lobe by its own hue
+  const {lobes, scales} = await model.info(), turned = await model.edit({hue: scales.map((_, l) => (l === 0 ? 2 * Math.PI / 3 : 0))});
+  const {scales: after} = await turned.info();
+  assert.equal(lobes, after.length);
+  assert.ok([0, 1, 2].every((c) => Math.abs(after[0][(c + 1) % 3] / scales[0][c] - 1) < 1e-6), `${scales[0]}, ${after[0]}`);
+  assert.deepEqual(after.slice(1), scales.slice(1));
+  await assert.rejects(model.edit({hue: [1, 2, 3, 4, 5, 6, 7]}), /expected hues of/);
+  turned.close();
 
   const {size, data: cells} = await model.volume({thetaH: 8, thetaD: 9, phiD: 10});
   assert.deepEqual(size, [8, 9, 10]);

@@ -21,14 +21,16 @@ export interface OpenOptions extends Call {
   clampNegatives?: boolean;
   /** Klems: the back side. */
   back?: boolean;
-  /** Of a file of several neural encodings, the one of that name. */
+  /** Of a file of several materials (a book, neural encodings), the one of that name; by default the first. */
   entry?: string;
+  /** Of codes of Neural Processes: their decoder, which is another file. */
+  decoder?: Blob | Uint8Array | ArrayBuffer;
 }
 
 /** A file's bytes, whatever its format, or an analytic BRDF such as "ggx:alpha_x=0.2,alpha_y=0.2,f0=0.8". A model is a
- * Model. Rejects with an Error of one line. The bytes are kept (a Blob need not be in memory): a worker that was stopped
+ * Model, a surface a Surface. Rejects with an Error of one line. The bytes are kept (a Blob need not be in memory): a worker that was stopped
  * reads them again. */
-export function open(data: Uint8Array | ArrayBuffer | Blob | string, options?: OpenOptions): Promise<Material | Model>;
+export function open(data: Uint8Array | ArrayBuffer | Blob | string, options?: OpenOptions): Promise<Material | Model | Surface>;
 
 /** Loads and compiles the library before it is needed. */
 export function preload(): Promise<void>;
@@ -82,8 +84,9 @@ export interface ExportOptions {
 }
 
 /** One file: those of the verb `convert`. "exr" is a model's own file, of others an image of slices. */
-export type FileKind = "burnish" | "model" | "exr" | "merl" | "rgl" | "mbsdf" | "zemax" | "astm" | "csv";
-/** Several files, of models: those of the verb `export`. */
+export type FileKind = "burnish" | "model" | "exr" | "merl" | "utia" | "rgl" | "mbsdf" | "zemax" | "tensortree" | "openmaterial" |
+  "astm" | "csv";
+/** Several files, of models: those of the verb `export`; of surfaces ktx2, png, three, html and languages. */
 export type FilesKind = "ktx2" | "cube" | "png" | "gltf" | "three" | "html" | Language;
 export interface NamedFile { name: string; bytes: Uint8Array; }
 
@@ -107,21 +110,33 @@ export interface Images {
   model: Uint8Array[];
 }
 
+/** What a measurement is interpolated from: cells of a half/difference table, [theta_h][theta_d][phi_d][channel], NaN a
+ * hole, or the tables of an RGL file. */
+export type Table =
+  | {kind: "half_diff"; size: [number, number, number]; fullCircle: boolean; channels: number; data: Float32Array}
+  | {kind: "rgl"; channels: number; isotropic: boolean; reduction: 1 | 2 | 4; jacobian: boolean; phi: Float32Array;
+     theta: Float32Array; ndf: [number, number]; sigma: [number, number]; vndf: [number, number]; spectra: [number, number];
+     data: {ndf: Float32Array; sigma: Float32Array; vndf: Float32Array; spectra: Float32Array}};
+
 export class Material {
   readonly id: number;
   readonly name: string;
   readonly channels: number;
   readonly isotropic: boolean;
   readonly measurement: boolean;
+  /** Names of what a file of several materials holds; empty of others. */
+  readonly entries: string[];
   /** The JSON of `burnish info --json`. */
   info(call?: Call): Promise<Record<string, any>>;
-  /** n x 3 unit vectors each, to n x channels values. */
+  /** n x 3 unit vectors each, to n x channels values; NaN where the material knows none. */
   evaluate(wi: ArrayLike<number>, wo: ArrayLike<number>, call?: Call): Promise<Float32Array>;
   /** Share reflected of light from theta_i (radians, below pi/2), n x channels. */
   albedo(thetas: ArrayLike<number>, options?: Call & {phi?: number}): Promise<Float32Array>;
   /** The material resampled for a 3-D texture; of an anisotropic one at one phi_h. */
   volume(cells?: {thetaH?: number; thetaD?: number; phiD?: number; phiH?: number}, call?: Call): Promise<Volume>;
-  /** In a worker of its own, which ends afterwards. The options are the verb's. */
+  /** Null where the material is no such table. */
+  table(call?: Call): Promise<Table | null>;
+  /** In a worker of its own, which ends afterwards; several may run at once. The options are the verb's. */
   fit(options?: FitOptions, call?: Call): Promise<Model>;
   /** The JSON of `burnish compare --json`: a list, an object a model. */
   compare(models: Material | Material[], options?: CompareOptions, call?: Call): Promise<Record<string, any>[]>;
@@ -169,8 +184,8 @@ export interface Shader {
 
 /** What `edit` does, in this order. */
 export interface Edit {
-  /** Radians by which the lobes' colours turn about grey; three channels only. */
-  hue?: number;
+  /** Radians by which the lobes' colours turn about grey, of all or of each; three channels only. */
+  hue?: number | number[];
   /** Factor of tan(theta_h / 2) in tables over theta_h, 0.1 to 10: how much wider highlights become. */
   roughness?: number;
   /** Of all lobes, or of each: a factor for all channels, or one a channel. */
@@ -190,4 +205,32 @@ export class Model extends Material {
   shader(language: Language, options?: ShaderOptions, call?: Call): Promise<Shader>;
   /** A new model; this one stays as it is. */
   edit(edit: Edit, call?: Call): Promise<Model>;
+}
+
+export interface SurfaceMap {
+  /** Of the uniform, a sampler2D that repeats, linear within levels and between them. */
+  name: string;
+  width: number;
+  height: number;
+  format: "half" | "unorm8";
+  /** Four components a texel, ready for texImage2D with `gl`; the largest level first. */
+  levels: (Uint8Array | Uint16Array)[];
+  gl: {internalFormat: string; format: string; type: string};
+}
+
+export interface SurfaceShader extends Shader {
+  /** burnish_NAME_at(u, v, lod) gives a place, once a pixel, by these; burnish_NAME(wi, wo, place) its f_r, once a light. */
+  maps: SurfaceMap[];
+  /** Whether a place has a frame of its own: place.n is its normal. */
+  framed: boolean;
+  placeCost: Shader["cost"];
+}
+
+/** A model whose lobes' weights are maps. Evaluation, slices and figures are those of its mean. */
+export class Surface extends Model {
+  readonly width: number;
+  readonly height: number;
+  /** The uniform model of a place; v runs downwards. */
+  place(u: number, v: number, options?: Call & {lod?: number}): Promise<Model>;
+  shader(language: Language, options?: ShaderOptions, call?: Call): Promise<SurfaceShader>;
 }

@@ -168,8 +168,8 @@ class Engine {
   }
 }
 
-// Questions are answered by one worker; fits, which take seconds and memory, have another, which ends after each.
-const answers = new Engine(), fits = new Engine();
+// Questions are answered by one worker; each fit, which takes seconds and memory, has its own, which ends with it.
+const answers = new Engine();
 
 let ids = 0;
 
@@ -187,6 +187,7 @@ export class Material {
     this.channels = summary.channels;
     this.isotropic = summary.isotropic;
     this.measurement = summary.measurement;
+    this.entries = summary.entries ?? [];
   }
 
   /// For methods of this file.
@@ -225,6 +226,15 @@ export class Material {
     return {...json, data: floats(blobs[0])};
   }
 
+  async table({signal} = {}) {
+    const {json, blobs} = await this.#ask("table", {}, {signal});
+    if (!json) return null;
+    const values = blobs.map(floats);
+    if (json.kind === "half_diff") return {...json, data: values[0]};
+    const [phi, theta, ndf, sigma, vndf, spectra] = values;
+    return {...json, phi, theta, data: {ndf, sigma, vndf, spectra}};
+  }
+
   async compare(models, options = {}, {signal} = {}) {
     const several = Array.isArray(models) ? models : [models];
     const {json} = await this.#ask("compare", {...options, models: several.map((m) => m.id)}, {others: several, signal});
@@ -239,11 +249,9 @@ export class Material {
 
   async fit(options = {}, {onProgress, signal} = {}) {
     const {name = `${this.name} fitted`, ...how} = options;
-    const {json, blobs} = await fits.run({
-      request: {verb: "fit", id: this.id, name, options: how}, materials: [this.recipe], onProgress, signal,
-    });
+    const engine = new Engine(), request = {verb: "fit", id: this.id, name, options: how};
     // the worker's memory, which never shrinks, goes back
-    fits.close(this.id);
+    const {json, blobs} = await engine.run({request, materials: [this.recipe], onProgress, signal}).finally(() => engine.stop());
     return open(new Blob([blobs[0]]), {name, report: json, signal});
   }
 
@@ -258,11 +266,10 @@ export class Material {
     if (this.#closed) return;
     this.#closed = true;
     answers.close(this.id);
-    fits.close(this.id);
   }
 }
 
-const kConverted = new Set(["merl", "rgl", "mbsdf", "zemax", "astm", "csv", "exr", "model", "burnish"]);
+const kConverted = new Set(["merl", "utia", "rgl", "mbsdf", "zemax", "tensortree", "openmaterial", "astm", "csv", "exr", "model", "burnish"]);
 
 // What WebGL2 takes texels of a format as: [internal format, format, type], by channels.
 const kTexels = {
@@ -297,13 +304,38 @@ export class Model extends Material {
       const data = texture.format === "unorm8" ? Uint8Array.from(values, (v) => Math.round(255 * v)) : values;
       return {...texture, data, gl: {internalFormat, format, type}};
     });
-    return {...json, textures};
+    return {...json, textures, ...(json.maps && {maps: mapsOf(json.maps, blobs.slice(textures.length))})};
+  }
+}
+
+// Maps with the texels of their levels, the largest first.
+function mapsOf(maps, blobs) {
+  let next = 0;
+  return maps.map(({levels, ...map}) => {
+    const half = map.format === "half", data = blobs.slice(next, (next += levels));
+    const [internalFormat, type] = half ? ["RGBA16F", "HALF_FLOAT"] : ["RGBA8", "UNSIGNED_BYTE"];
+    return {...map, levels: data.map((level) => (half ? new Uint16Array(level) : new Uint8Array(level))), gl: {internalFormat, format: "RGBA", type}};
+  });
+}
+
+/// What of it is asked as of a model is answered of its mean; info, shader and export are those of the surface.
+export class Surface extends Model {
+  constructor(recipe, summary) {
+    super(recipe, summary);
+    this.width = summary.surface.width;
+    this.height = summary.surface.height;
   }
 
+  async place(u, v, {lod = 0, signal} = {}) {
+    const {blobs} = await answers.run({
+      request: {verb: "place", id: this.id, u, v, lod}, materials: [this.recipe], signal,
+    });
+    return open(new Blob([blobs[0]]), {name: `${this.name} at ${u.toFixed(3)}, ${v.toFixed(3)}`, signal});
+  }
 }
 
 /// Opens a file's bytes, whatever its format, or an analytic BRDF such as "ggx:alpha=0.2".
-export async function open(data, {name, report, onProgress, signal, ...options} = {}) {
+export async function open(data, {name, report, decoder, onProgress, signal, ...options} = {}) {
   const id = ++ids, request = {...options, verb: "open", id};
   const recipe = {id, request, bytes: async () => undefined};
   if (typeof data === "string") {
@@ -312,13 +344,16 @@ export async function open(data, {name, report, onProgress, signal, ...options} 
     // a Blob need not be in memory
     const blob = data instanceof Blob ? data : new Blob([data]);
     request.name = name ?? data.name ?? "file";
-    recipe.bytes = () => blob.arrayBuffer();
+    if (decoder) request.decoderAt = blob.size;
+    const whole = decoder ? new Blob([blob, decoder]) : blob;
+    recipe.bytes = () => whole.arrayBuffer();
   }
   onProgress?.(0, "reading");
   const bytes = await recipe.bytes();
   onProgress?.(0.5, "parsing");
   const {json} = await answers.run({request, bytes, signal});
   onProgress?.(1, "opened");
+  if (json.surface) return new Surface(recipe, json);
   return json.model ? new Model(recipe, json, report) : new Material(recipe, json);
 }
 

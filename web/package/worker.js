@@ -36,7 +36,7 @@ function textAt(place) {
 }
 
 function answer({request, bytes}) {
-  if (bytes) {
+  if (bytes?.byteLength > 0) {
     const place = library._burnish_buffer(bytes.byteLength);
     if (!place) throw new Error("expected enough memory, found none left");
     library.HEAPU8.set(new Uint8Array(bytes), place);

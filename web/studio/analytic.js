@@ -1,7 +1,7 @@
 // Analytic BRDFs with sliders, and a sample as a goniometer would have measured it.
-import {find, latest, lineOf, make, say} from "./dom.js";
+import {find, lineOf, make, say} from "./dom.js";
 import {open} from "./library.js";
-import {openOne} from "./materials.js";
+import {openOne, renewer} from "./materials.js";
 import {changed, state} from "./state.js";
 
 const kCells = 40;  // of the sample, along theta_h and theta_d
@@ -16,7 +16,18 @@ const threads = [["alpha_x", "log", 0.1, 0.05, 1], ["alpha_y", "log", 0.5, 0.05,
                  color("f0", [0.35, 0.1, 0.45]), color("kd", [0.08, 0.02, 0.1])];
 const ward = [alpha("alpha_x", 0.15), alpha("alpha_y", 0.15), color("kd", [0.25, 0.05, 0.04]), color("ks", [0.2, 0.2, 0.2])];
 const phong = (value, ks) => [color("kd", [0.05, 0.15, 0.3]), color("ks", [ks, ks, ks]), exponent("exponent", value)];
+const share = (name, value) => line(name, value, 0, 1);
+const index = (name, value) => line(name, value, 1, 5);
+const openpbr = [
+  share("base_weight", 1), color("base_color", [0.5, 0.04, 0.03]), share("base_metalness", 0), share("base_diffuse_roughness", 0),
+  share("specular_weight", 1), color("specular_color", [1, 1, 1]), share("specular_roughness", 0.4), share("specular_roughness_anisotropy", 0),
+  index("specular_ior", 1.5), share("coat_weight", 1), color("coat_color", [1, 1, 1]), share("coat_roughness", 0.1),
+  share("coat_roughness_anisotropy", 0), index("coat_ior", 1.6), share("coat_darkening", 1), share("fuzz_weight", 0),
+  color("fuzz_color", [1, 1, 1]), share("fuzz_roughness", 0.5), share("thin_film_weight", 0), line("thin_film_thickness", 0.5, 0, 5),
+  index("thin_film_ior", 1.4),
+];
 const models = {
+  openpbr,
   ggx: facets,
   beckmann: facets,
   cook_torrance: [alpha("alpha"), color("f0", [0.5, 0.5, 0.5]), color("kd", [0, 0, 0])],
@@ -60,20 +71,9 @@ function field([name, kind, value, least, most], told) {
 // An entry that its sliders change in place: its material is another one each time.
 async function openModel(name) {
   const values = models[name].map(([, , value]) => value);
-  let entry = await openOne(spec(name, values), name, {spec: name});
+  const entry = await openOne(spec(name, values), name, {spec: name});
   if (!entry) return;
-  const renew = latest(async () => {
-    if (!state.entries.includes(entry)) return;
-    try {
-      const material = await open(spec(name, values));
-      const info = await material.info();
-      entry.material.close?.();
-      Object.assign(entry, {material, info});
-      changed({renewed: entry});
-    } catch (error) {
-      say(lineOf(error), "error");
-    }
-  });
+  const renew = renewer(entry, () => open(spec(name, values)));
   entry.sliders = models[name].map((parameter, k) => field(parameter, (value) => {
     values[k] = value;
     renew();

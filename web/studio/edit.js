@@ -1,6 +1,6 @@
 // Changes to a model by sliders, each one undone and redone.
 import {find, latest, lineOf, make, say} from "./dom.js";
-import {changed, modelShown, onChange, state} from "./state.js";
+import {changed, isSurface, modelShown, onChange, state} from "./state.js";
 import {radians} from "./vectors.js";
 
 const fields = [
@@ -9,18 +9,31 @@ const fields = [
   ["roughness", "Roughness", -1, 1, 0, (x) => 2 ** x, (x) => `×${(2 ** x).toFixed(2)}`],
   ["diffuse", "Diffuse", 0, 0.5, 0, (x) => x, (x) => `+${x.toFixed(2)}`],
 ];
-const untouched = () => Object.fromEntries(fields.map(([name, , , , still]) => [name, still]));
+const ofLobes = ["scale", "hue"];  // what each lobe has too
+
+// Places of sliders: "hue" of all lobes, "hue:1" of one; what was not moved has none.
+const placeOf = (places, [name, , , , still], lobe) => places?.[lobe === "" ? name : `${name}:${lobe}`] ?? still;
+
+// What `edit` takes: a number for all lobes, a list where one has its own.
+function optionsOf(places, lobes) {
+  const options = {};
+  for (const field of fields) {
+    const [name, , , , still, value] = field, all = placeOf(places, field, "");
+    const each = Array.from({length: ofLobes.includes(name) ? lobes : 0}, (_, k) => placeOf(places, field, k));
+    if (each.some((at) => at !== still)) options[name] = each.map((at) => (name === "hue" ? value(all + at) : [value(all + at)]));
+    else if (all !== still) options[name] = value(all);
+  }
+  return options;
+}
 
 // States to go back and forth to: {entry, places}.
-let past = [], future = [], shownFor;
+let past = [], future = [], shownFor, lobe = "";
 
 const apply = latest(async (entry) => {
   try {
-    entry.original ??= entry.material;
-    const places = {...entry.places};
-    const moved = fields.filter(([name, , , , at]) => places[name] !== at);
-    const options = Object.fromEntries(moved.map(([name, , , , , value]) => [name, value(places[name])]));
-    const material = moved.length === 0 ? entry.original : await entry.original.edit(options);
+    if (!entry.original) Object.assign(entry, {original: entry.material, lobes: entry.info.lobes});
+    const options = optionsOf(entry.places, entry.lobes);
+    const material = Object.keys(options).length === 0 ? entry.original : await entry.original.edit(options);
     const info = await material.info();
     if (!state.entries.includes(entry)) return;
     if (entry.material !== entry.original && entry.material !== material) entry.material.close?.();
@@ -33,7 +46,7 @@ const apply = latest(async (entry) => {
 
 function set(entry, places, remember) {
   if (remember) {
-    past.push({entry, places: entry.places ?? untouched()});
+    past.push({entry, places: entry.places ?? {}});
     future = [];
   }
   entry.places = places;
@@ -45,27 +58,30 @@ function step(from, to) {
   while (from.length) {
     const {entry, places} = from.pop();
     if (!state.entries.includes(entry)) continue;
-    to.push({entry, places: entry.places ?? untouched()});
+    to.push({entry, places: entry.places ?? {}});
     set(entry, places, false);
     return;
   }
 }
 
 function draw(force) {
-  const entry = modelShown(), able = typeof entry?.material.edit === "function";
+  const entry = modelShown(), able = entry?.info && !isSurface(entry), lobes = able ? (entry.lobes ?? entry.info.lobes) : 0;
   find("#undo").disabled = past.length === 0;
   find("#redo").disabled = future.length === 0;
-  if (!force && shownFor === entry) return;
-  shownFor = entry;
-  const places = entry?.places ?? untouched();
+  const key = entry && `${entry.id} ${lobes}`;
+  if (!force && shownFor === key) return;
+  if (shownFor !== key) lobe = "";
+  shownFor = key;
   // one step back is one drag: where it began is remembered, not each place between
   let before = null;
-  find("#edit").replaceChildren(...fields.map(([name, title, least, most, , , text]) => {
-    const output = make("output", {}, text(places[name]));
-    const input = make("input", {type: "range", min: least, max: most, step: (most - least) / 200, value: places[name], "data-edit": name, disabled: !able,
+  const shown = fields.filter(([name]) => lobe === "" || ofLobes.includes(name));
+  find("#edit").replaceChildren(lobeChoice(lobes), ...shown.map((field) => {
+    const [name, title, least, most, , , text] = field, place = placeOf(entry?.places, field, lobe), gray = name === "hue" && entry?.material.channels !== 3;
+    const output = make("output", {}, text(place));
+    const input = make("input", {type: "range", min: least, max: most, step: (most - least) / 200, value: place, "data-edit": name, disabled: !able || gray,
       oninput: () => {
-        before ??= {...(entry.places ?? untouched())};
-        entry.places = {...(entry.places ?? untouched()), [name]: Number(input.value)};
+        before ??= {...entry.places};
+        entry.places = {...entry.places, [lobe === "" ? name : `${name}:${lobe}`]: Number(input.value)};
         output.textContent = text(Number(input.value));
         apply(entry);
       },
@@ -78,7 +94,19 @@ function draw(force) {
         find("#redo").disabled = true;
       }});
     return make("label", {}, make("span", {}, title), input, output);
-  }), make("button", {type: "button", class: "quiet", disabled: !able, onclick: () => set(entry, untouched(), true)}, "As fitted"));
+  }), make("button", {type: "button", class: "quiet", disabled: !able, onclick: () => set(entry, {}, true)}, "As fitted"));
+}
+
+// All lobes or one of several; nothing where there is one.
+function lobeChoice(lobes) {
+  if (!(lobes > 1)) return "";
+  const numbers = Array.from({length: lobes}, (_, k) => make("option", {value: k}, `lobe ${k + 1}`));
+  const select = make("select", {"data-edit": "lobe", onchange: () => {
+    lobe = select.value;
+    draw(true);
+  }}, make("option", {value: ""}, "all lobes"), ...numbers);
+  select.value = lobe;
+  return make("label", {}, make("span", {}, "Of"), select, make("output"));
 }
 
 export function start() {

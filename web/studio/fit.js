@@ -2,7 +2,7 @@
 import {plot} from "./chart.js";
 import {bytesText, css, find, lineOf, make, number, say} from "./dom.js";
 import {segments} from "./segments.js";
-import {add, changed, modelsOf, onChange, referenceOf, show, state} from "./state.js";
+import {add, changed, isSurface, modelsOf, onChange, referenceOf, show, state} from "./state.js";
 
 const presets = {
   small: {budget: "2700", fetches: ""},
@@ -10,6 +10,7 @@ const presets = {
   best: {budget: "64K", fetches: ""},
 };
 const kCurve = [700, 1400, 2800, 5600, 11200, 22400, 44800];
+const kMostFits = 4;  // at once, each with memory of its own
 
 let stop = null, choose = () => {};
 
@@ -64,7 +65,7 @@ async function fitOne(reference, options, signal) {
 async function fit(event) {
   event.preventDefault();
   const reference = referenceOf(state.shown);
-  if (!reference || stop) return;
+  if (!reference || isSurface(reference) || stop) return;
   await busy(async (signal) => {
     const options = {budget: readBudget(find("#budget").value), fetches: readFetches(find("#fetches").value)};
     const found = await fitOne(reference, options, signal);
@@ -78,19 +79,24 @@ async function fit(event) {
   });
 }
 
-// One fit a size; what is done so far is kept where it is stopped.
+// One fit a size, as many at once as there are processors to spare; what is done so far is kept where it is stopped.
 async function errorCurve() {
   const reference = referenceOf(state.shown);
   if (!reference || stop) return;
   reference.curve = [];
   await busy(async (signal) => {
-    for (const budget of kCurve) {
-      find("#fit-stage").textContent = `${bytesText(budget)}`;
-      const {material, info, figures} = await fitOne(reference, {budget, fetches: readFetches(find("#fetches").value)}, signal);
-      material.close?.();
-      reference.curve.push({bytes: info.bytes, psnr: figures.psnr});
-      drawCurve();
-    }
+    const fetches = readFetches(find("#fetches").value), left = [...kCurve];
+    const one = async () => {
+      for (let budget; (budget = left.shift()) !== undefined;) {
+        const {material, info, figures} = await fitOne(reference, {budget, fetches}, signal);
+        material.close?.();
+        reference.curve.push({bytes: info.bytes, psnr: figures.psnr});
+        reference.curve.sort((a, b) => a.bytes - b.bytes);
+        drawCurve();
+      }
+    };
+    const workers = Math.min(Math.max((navigator.hardwareConcurrency ?? 2) - 1, 1), kMostFits);
+    await Promise.all(Array.from({length: workers}, one));
   });
 }
 
@@ -129,7 +135,7 @@ function drawFigures() {
 }
 
 function enable() {
-  const able = referenceOf(state.shown) !== null && !stop;
+  const able = referenceOf(state.shown) !== null && !isSurface(state.shown) && !stop;
   find("#fit-start").disabled = find("#curve-start").disabled = !able;
 }
 

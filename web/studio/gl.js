@@ -50,6 +50,20 @@ export function texture(gl, {width, height, depth = 0, internal, format, type, d
   return {handle, kind};
 }
 
+// A map of a surface with its levels, which repeats.
+export function mapTexture(gl, {width, height, levels, gl: {internalFormat, format, type}}) {
+  const handle = gl.createTexture(), kind = gl.TEXTURE_2D;
+  gl.activeTexture(gl.TEXTURE0);
+  gl.bindTexture(kind, handle);
+  gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+  levels.forEach((texels, level) =>
+    gl.texImage2D(kind, level, gl[internalFormat], Math.max(width >> level, 1), Math.max(height >> level, 1), 0, gl[format], gl[type], texels));
+  gl.texParameteri(kind, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
+  gl.texParameteri(kind, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
+  gl.bindTexture(kind, null);
+  return {handle, kind};
+}
+
 // A texture to draw into; with `deep` a depth buffer too.
 export function target(gl, width, height, deep) {
   const color = texture(gl, {width, height, internal: gl.RGBA32F, format: gl.RGBA, type: gl.FLOAT, data: null, filter: gl.NEAREST});

@@ -1,6 +1,8 @@
 // A material as GLSL: `vec3 brdf(vec3 wi, vec3 wo)` in the local frame, the textures it reads, and the roughness of its
-// highlight. A model brings its own shader; anything else is tabulated over half/difference angles and read from a texture.
-import {texture} from "./gl.js";
+// highlight. A model or surface brings its own shader, MERL's and RGL's tables are read as they are; anything else is
+// tabulated over half/difference angles.
+import {mapTexture, texture} from "./gl.js";
+import {fromHalfDiff, fromRgl, kAngles} from "./gpu_exact.js";
 import {add, direction, normalize, scale, toRgb} from "./vectors.js";
 
 const kHalfPi = Math.PI / 2;
@@ -11,18 +13,6 @@ const kSizes = {
   isotropic: [{thetaH: 64, thetaD: 24, phiD: 16}, {thetaH: 128, thetaD: 64, phiD: 48}],
   anisotropic: [{thetaH: 48, thetaD: 16, phiD: 16, phiH: 16}, {thetaH: 80, thetaD: 24, phiD: 24, phiH: 36}],
 };
-
-const kAngles = `
-const float kHalfPi = 1.5707963268;
-// theta_h, phi_h, theta_d, phi_d [Rusinkiewicz 1998]
-vec4 angles(vec3 wi, vec3 wo) {
-  vec3 h = normalize(wi + wo);
-  float sine = length(h.xy);
-  vec2 along = sine > 1e-6 ? h.xy / sine : vec2(1.0, 0.0);
-  vec3 e1 = vec3(h.z * along, -sine), e2 = vec3(-along.y, along.x, 0.0);
-  vec2 d = vec2(dot(wi, e1), dot(wi, e2));
-  return vec4(atan(sine, h.z), atan(along.y, along.x), atan(length(d), dot(wi, h)), atan(d.y, d.x));
-}`;
 
 const kIsotropic = `
 uniform highp sampler3D brdf_table;
@@ -87,7 +77,7 @@ async function roughness(material) {
       wi.push(...normalize(add(scale(h, Math.cos(tilt)), across, Math.sin(tilt))));
       wo.push(...normalize(add(scale(h, Math.cos(tilt)), across, -Math.sin(tilt))));
     }
-  const values = toRgb(await material.evaluate(new Float32Array(wi), new Float32Array(wo)), material.channels);
+  const values = toRgb(await material.evaluate(new Float32Array(wi), new Float32Array(wo)), material.channels).map((x) => x || 0);
   return [0, 1].map((axis) => {
     const at = (k) => [0, 1, 2].reduce((sum, c) => sum + values[3 * (axis * steps + k) + c], 0);
     const half = angles.findIndex((_, k) => k > 0 && at(k) < at(0) / 2);
@@ -98,14 +88,36 @@ async function roughness(material) {
 // Floats that WebGL2 would not filter are stored as halves; values are near 1.
 const kFiltered = {R32F: "R16F", RGB32F: "RGB16F", RGBA32F: "RGBA16F"};
 
+// What of a pixel is the same for all lights: nothing, or the place of a surface, whose texels may be turned.
+const kUniform = `
+void begin(vec2 at) {}
+float facing(vec3 wi) { return wi.z; }`;
+const ofSurface = (name, framed) => `
+${name}_place here;
+void begin(vec2 at) {
+  vec2 across = dFdx(at), down = dFdy(at);
+  here = ${name}_at(at.x, at.y, ${name}_lod(across.x, across.y, down.x, down.y));
+}
+float facing(vec3 wi) { return ${framed ? "dot(here.n, wi)" : "wi.z"}; }
+vec3 brdf(vec3 wi, vec3 wo) { return vec3(${name}(wi, wo, here)); }`;
+
 async function fromShader(gl, material) {
-  const {code, textures, function: name} = await material.shader("glsl_es");
+  const {code, textures, maps, framed, function: name} = await material.shader("glsl_es");
   const made = textures.map(({name: sampler, width, height, depth, data, gl: how}) => {
     const internal = gl[kFiltered[how.internalFormat] ?? how.internalFormat];
     return {name: sampler, ...texture(gl, {width, height, depth, internal, format: gl[how.format], type: gl[how.type], data})};
   });
-  const glsl = `${code}\nvec3 brdf(vec3 wi, vec3 wo) { return vec3(${name}(wi, wo)); }`;
-  return {glsl, textures: made, set: () => {}};
+  for (const map of maps ?? []) made.push({name: map.name, ...mapTexture(gl, map)});
+  const call = maps ? ofSurface(name, framed) : `${kUniform}\nvec3 brdf(vec3 wi, vec3 wo) { return vec3(${name}(wi, wo)); }`;
+  return {glsl: code + call, textures: made, set: () => {}, how: "shader"};
+}
+
+// As it is interpolated; nothing of what has no such table.
+async function fromTables(gl, material) {
+  const table = await material.table();
+  if (!table) return null;
+  const form = table.kind === "rgl" ? fromRgl(gl, table) : fromHalfDiff(gl, table);
+  return {...form, glsl: form.glsl + kUniform, how: "whole"};
 }
 
 async function fromTable(gl, material, size, alive) {
@@ -118,18 +130,19 @@ async function fromTable(gl, material, size, alive) {
     gl.uniform1f(at("brdf_scale"), factor);
     if (phiH) gl.uniform2f(at("brdf_slices"), phiH, phiD);
   };
-  return {glsl: kAngles + (phiH ? kAnisotropic : kIsotropic), textures: [{name: "brdf_table", ...made}], set};
+  return {glsl: kAngles + (phiH ? kAnisotropic : kIsotropic) + kUniform, textures: [{name: "brdf_table", ...made}], set, how: "table"};
 }
 
-// Calls ready(form) with {glsl, textures, set(program), alpha} once, and again where a finer table follows. alive() says
-// whether the material is still open.
+// Calls ready(form) with {glsl, textures, set(program), alpha, how} once, and again where a finer table follows. alive()
+// says whether the material is still open.
 export async function prepare(gl, {material, model}, alive, ready) {
   const [size, ...finer] = kSizes[material.isotropic ? "isotropic" : "anisotropic"], drawn = model && (material.channels === 1 || material.channels === 3);
   // asked for at once, before what others ask the same worker for
-  const [alpha, first] = await Promise.all([roughness(material), drawn ? fromShader(gl, material) : fromTable(gl, material, size, alive)]);
+  const own = drawn ? fromShader(gl, material) : fromTables(gl, material);
+  const [alpha, first] = await Promise.all([roughness(material), own.then((form) => form ?? fromTable(gl, material, size, alive))]);
   if (!first || !alive()) return;
   ready({...first, alpha});
-  if (drawn) return;
+  if (first.how !== "table") return;
   for (const next of finer) {
     const form = await fromTable(gl, material, next, alive);
     if (!form) return;

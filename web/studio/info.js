@@ -4,7 +4,23 @@ import {state} from "./state.js";
 
 const span = ([low, high]) => `${number(low, 3)}° to ${number(high, 3)}°`;
 
-function facts(info) {
+const kDrawn = {
+  shader: () => "by the shader that is given away",
+  whole: (db) => `from its own tables, ${number(db, 3)} dB from what is measured`,
+  table: (db) => `through a table, ${number(db, 3)} dB from what is measured`,
+};
+
+const channelsOf = ({channels}) => `${channels} channel${channels === 1 ? "" : "s"}`;
+
+function surfaceFacts(info) {
+  const maps = info.weights.map((map, k) => [`Weights ${k + 1}`, `${channelsOf(map)}, ${map.format}, up to ${number(map.scale, 3)}`]);
+  return [["Format", "surface"], ["Texels", `${info.width} × ${info.height}`], ["Lobes", `${info.weights.length}, ${channelsOf(info)}`], ...maps,
+          ["Normals", info.normals ? "a map" : "of the plane"], ["Tangents", info.tangents ? "a map" : "along u"],
+          ["Albedo", `${number(info.albedo.mean, 3)} on average, at most ${number(info.albedo.largest, 3)}`], ["Size", bytesText(info.bytes)]];
+}
+
+function facts(info, drawn) {
+  if (info.width) return surfaceFacts(info);
   const rows = [["Format", info.format]];
   if (info.description) rows.push(["Description", info.description]);
   const waves = info.lambda_nm?.length ? `, ${number(info.lambda_nm[0])} to ${number(info.lambda_nm.at(-1))} nm` : "";
@@ -15,10 +31,11 @@ function facts(info) {
   if (info.negatives > 0) rows.push(["Negatives", `${info.negatives.toLocaleString("en")}, down to ${number(info.most_negative, 3)}`]);
   rows.push(["θ to the light", span(info.theta_i_deg)], ["θ to the viewer", span(info.theta_o_deg)]);
   rows.push(["Reciprocity", info.reciprocity_error < 1e-9 ? "exact" : `${number(100 * info.reciprocity_error, 3)} % off on average`]);
-  if (info.mirror_asymmetry !== undefined) rows.push(["Mirror asymmetry", `${number(100 * info.mirror_asymmetry, 3)} %`]);
+  if (info.mirror_asymmetry !== undefined) rows.push(["Mirror asymmetry", `${number(100 * Math.expm1(info.mirror_asymmetry), 3)} %`]);
   const angles = info.nodes?.incident_angles ? `, ${info.nodes.incident_angles} angles of incidence` : "";
   if (info.nodes) rows.push(["Measured at", `${info.nodes.count.toLocaleString("en")} nodes${angles}`]);
   if (info.bytes) rows.push(["Size", bytesText(info.bytes)]);
+  if (drawn) rows.push(["Drawn", kDrawn[drawn.how](drawn.decibels)]);
   if (info.shader) rows.push(["Shader", `${info.shader.fetches} fetches, ${info.shader.operations} operations`]);
   return rows;
 }
@@ -46,6 +63,6 @@ export function draw() {
   }
   const notes = info.conventions?.filter((text) => !text.startsWith("notes of the fit")) ?? [];
   place.replaceChildren(
-    make("dl", {}, ...facts(info).flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)])),
+    make("dl", {}, ...facts(info, entry.drawn).flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)])),
     albedos(info) ?? "", notes.length ? make("ul", {"aria-label": "Conventions"}, ...notes.map((text) => make("li", {}, text))) : "");
 }

@@ -1,48 +1,97 @@
 // Opening and listing: files dropped, chosen or pasted, analytic models, the sample, links.
-import {bytesText, find, lineOf, make, say} from "./dom.js";
+import {bytesText, find, latest, lineOf, make, say} from "./dom.js";
 import {open} from "./library.js";
 import {add, changed, entryOf, onChange, remove, show, showBeside, state} from "./state.js";
 
 let stop = null;
 
-// Opens one thing, adds it to the list and shows it; nothing where it was stopped or is no BRDF, and then says why.
-export async function openOne(data, name, more = {}) {
+const kMostChoices = 5000;  // of a file of several materials
+
+// Opens one thing, adds it to the list and shows it. Throws what is wrong with it.
+async function opening(data, name, more, options) {
   stop?.abort();
   const mine = (stop = new AbortController());
   const bar = find("#opening-bar");
   bar.removeAttribute("value");
   find("#opening-text").textContent = name;
   find("#opening").hidden = false;
+  let entry;
   try {
     const onProgress = (fraction) => (bar.value = fraction);
-    const material = await open(data, {name, signal: mine.signal, onProgress});
-    const entry = add({name, material, info: null, ...more});
+    const material = await open(data, {...options, name, signal: mine.signal, onProgress});
+    entry = add({name, material, info: null, ...more});
+    if (material.entries.length) entry.sliders = [chooser(entry, data, name, options)];
     changed();
     show(entry);
-    // what it is in full takes longer than showing it
-    entry.info = await material.info({signal: mine.signal});
-    changed();
-    return entry;
-  } catch (error) {
-    if (error?.name !== "AbortError") say(lineOf(error).includes(name) ? lineOf(error) : `${name}: ${lineOf(error)}`, "error");
-    return null;
   } finally {
     if (stop === mine) {
       stop = null;
       find("#opening").hidden = true;
     }
   }
+  // what it is in full takes longer than showing it
+  try {
+    entry.info = await entry.material.info();
+  } catch (error) {
+    if (state.entries.includes(entry)) remove(entry);
+    throw error;
+  }
+  changed();
+  return entry;
 }
 
-async function openFiles(files, onPicture) {
-  for (const file of files) {
-    if (/\.(hdr|exr)$/i.test(file.name) && (await onPicture(file))) continue;
-    if (!(await openOne(file, file.name)) && files.length === 1) return;
+const wrong = (error, name) => (lineOf(error).includes(name) ? lineOf(error) : `${name}: ${lineOf(error)}`);
+
+// The same; nothing where it was stopped or is no BRDF, and then says why.
+export async function openOne(data, name, more = {}, options = {}) {
+  try {
+    return await opening(data, name, more, options);
+  } catch (error) {
+    if (error?.name !== "AbortError") say(wrong(error, name), "error");
+    return null;
   }
+}
+
+// Gives an entry another material, the latest that made() opened.
+export function renewer(entry, made, name = () => entry.name) {
+  return latest(async () => {
+    if (!state.entries.includes(entry)) return;
+    try {
+      const called = name(), material = await made(), info = await material.info();
+      entry.material.close?.();
+      Object.assign(entry, {name: called, material, info, original: undefined, places: undefined});
+      changed({renewed: entry});
+    } catch (error) {
+      say(lineOf(error), "error");
+    }
+  });
+}
+
+// One of several materials of a file.
+function chooser(entry, data, file, options) {
+  const select = make("select", {onchange: () => renew()}, ...entry.material.entries.slice(0, kMostChoices).map((name) => make("option", {value: name}, name)));
+  const renew = renewer(entry, () => open(data, {...options, name: file, entry: select.value}), () => `${file}#${select.value}`);
+  return make("label", {}, make("span", {}, "Material"), select, make("output", {}, String(entry.material.entries.length)));
+}
+
+// One message for all that are none. A decoder of Neural Processes belongs to the codes beside it.
+async function openFiles(files, onPicture) {
+  const decoder = files.find(({name}) => /\.f32$/i.test(name)), codes = decoder && files.find(({name}) => /\.csv$/i.test(name)), said = [];
+  for (const file of files.filter((f) => !codes || f !== decoder)) {
+    try {
+      if (/\.(hdr|exr)$/i.test(file.name) && (await onPicture(file))) continue;
+      await opening(file, file.name, {}, file === codes ? {decoder} : {});
+    } catch (error) {
+      if (error?.name === "AbortError") break;
+      said.push(wrong(error, file.name));
+    }
+  }
+  if (said.length) say(said.length > 1 ? `${said[0]} (and ${said.length - 1} more of ${files.length} files could not be opened)` : said[0], "error");
 }
 
 function subtitle({info, parent}) {
   if (!info) return "…";
+  if (info.width) return `surface, ${info.width} × ${info.height}`;
   if (parent !== null) return `${bytesText(info.bytes)} model`;
   return info.bytes ? `${info.format}, ${bytesText(info.bytes)}` : info.format;
 }
@@ -59,7 +108,7 @@ function row(entry) {
 function draw() {
   find("#list").replaceChildren(...state.entries.map(row));
   const beside = find("#beside");
-  beside.replaceChildren(make("option", {value: ""}, "nothing"),
+  beside.replaceChildren(make("option", {value: ""}, "nothing beside"),
     ...state.entries.filter((e) => e !== state.shown).map((e) => make("option", {value: e.id}, e.name)));
   beside.value = state.beside?.id ?? "";
   beside.disabled = state.entries.length < 2;
@@ -97,5 +146,5 @@ export function start(onPicture) {
   window.addEventListener("paste", (event) => {
     if (event.clipboardData.files.length) openFiles([...event.clipboardData.files], onPicture);
   });
-  onChange(draw);
+  onChange((what) => what !== "judged" && draw());
 }

@@ -28,7 +28,7 @@ async function evaluate(entry, pairs) {
     wi.set(a, 3 * k);
     wo.set(b, 3 * k);
   });
-  return toRgb(await entry.material.evaluate(wi, wo), entry.material.channels);
+  return toRgb(await entry.material.evaluate(wi, wo), entry.material.channels).map((x) => (Number.isNaN(x) ? 0 : x));
 }
 
 // In the plane of incidence; negative theta_o lie on the light's side.

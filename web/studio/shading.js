@@ -12,8 +12,10 @@ uniform vec2 zoom, jitter;
 uniform float eye;
 uniform float lift;  // along the normal
 out vec3 place, n, t;
+out vec2 at;  // of a surface laid over it from the front, v downwards
 invariant gl_Position;
 void main() {
+  at = 0.5 + vec2(position.x, -position.y) / 1.7;
   place = turn * (position + lift * normal);
   n = turn * normal;
   t = turn * tangent;
@@ -65,6 +67,7 @@ precision highp sampler3D;
 ${brdf}
 ${kEnvironment}
 in vec3 place, n, t;
+in vec2 at;
 uniform float eye;
 uniform vec3 lights[${kLights}], colors[${kLights}];
 uniform int light_count, samples, first_sample;
@@ -96,11 +99,12 @@ vec3 around_light(mat3 frame, vec3 wo) {
     vec3 scaled = vec3(h.xy / alpha, h.z);
     float length2 = dot(scaled, scaled), d = 1.0 / (3.14159265 * alpha.x * alpha.y * length2 * length2);
     float pdf = 0.5 * wi.z / 3.14159265 + 0.5 * d * h.z / (4.0 * max(dot(wo, h), 1e-4));
-    sum += brdf(wi, wo) * environment(frame * wi) * (wi.z / pdf);
+    sum += brdf(wi, wo) * environment(frame * wi) * (max(facing(wi), 0.0) / pdf);
   }
   return sum / float(samples);
 }
 void main() {
+  begin(at);
   vec3 normal = normalize(n), v = normalize(vec3(0.0, 0.0, eye) - place);
   // a pixel of the silhouette may have a normal that looks away
   normal = normalize(normal + max(1e-3 - dot(normal, v), 0.0) * v);
@@ -110,10 +114,25 @@ void main() {
   for (int i = 0; i < light_count; ++i) {
     vec3 to = lights[i] - place;
     vec3 wi = normalize(to) * frame;
-    if (wi.z > 0.0) sum += brdf(wi, wo) * wi.z * colors[i] / dot(to, to);
+    if (wi.z > 0.0) sum += brdf(wi, wo) * max(facing(wi), 0.0) * colors[i] / dot(to, to);
   }
   if (around > 0) sum += around_light(frame, wo);
   color = vec4(max(sum, 0.0), 1.0);
+}`;
+
+// The values at given pairs, one a pixel.
+export const pairsFragment = (brdf) => `#version 300 es
+precision highp float;
+precision highp int;
+precision highp sampler2D;
+precision highp sampler3D;
+${brdf}
+uniform highp sampler2D pairs;  // wi in the upper row, wo in the lower one
+out vec4 color;
+void main() {
+  int k = int(gl_FragCoord.x);
+  begin(vec2(0.5));
+  color = vec4(brdf(texelFetch(pairs, ivec2(k, 0), 0).xyz, texelFetch(pairs, ivec2(k, 1), 0).xyz), 1.0);
 }`;
 
 export const screenVertex = `#version 300 es

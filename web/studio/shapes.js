@@ -23,6 +23,9 @@ export const sphere = () =>
     return [scale(n, 0.92), n, [Math.cos(phi), 0, -Math.sin(phi)]];
   });
 
+export const plane = () =>
+  appendGrid(empty(), 1, 1, (u, v) => [[1.7 * u - 0.85, 1.7 * v - 0.85, 0], [0, 0, 1], [1, 0, 0]]);
+
 export function knot() {
   const curve = (u) => {
     const a = 4 * Math.PI * u, b = 6 * Math.PI * u, r = 0.29 * (2 + Math.cos(b));

@@ -1,9 +1,10 @@
 // The view's controls: shape, lights, exposure, divider.
 import {css, find, lineOf, make, say} from "./dom.js";
+import {isPicture, readExr} from "./exr.js";
 import {readHdr} from "./hdr.js";
 import {segments} from "./segments.js";
 import {kLights} from "./shading.js";
-import {onChange, state} from "./state.js";
+import {changed, isSurface, onChange, state} from "./state.js";
 import {clamp} from "./vectors.js";
 import {View} from "./view.js";
 
@@ -116,7 +117,7 @@ function drawThumbnail(entry) {
 }
 
 const kShown = {left: 0, right: 1, split: 2, error: 3};
-let setShown = () => {};
+let setShown = () => {}, setShape = () => {};
 
 function show() {
   const both = state.beside !== null;
@@ -126,6 +127,10 @@ function show() {
   for (const button of find("#shown").children) button.disabled = !both && button.dataset.value !== "left";
   if (!both) choose("left");
   else if (view?.settings.shown === 0) choose("split");
+  if (isSurface(state.shown) && view?.settings.shape !== "plane") {
+    setShape("plane");
+    view?.set({shape: "plane"});
+  }
   view?.show(state.shown, state.beside);
 }
 function choose(name) {
@@ -139,9 +144,10 @@ function choose(name) {
 
 // Light from all around out of a dropped picture; false where it is none that is read here.
 export async function openPicture(file) {
-  if (!/\.hdr$/i.test(file.name)) return false;
+  const bytes = new Uint8Array(await file.arrayBuffer()), hdr = /\.hdr$/i.test(file.name);
+  if (!hdr && !isPicture(bytes)) return false;
   try {
-    const {width, height, data} = readHdr(new Uint8Array(await file.arrayBuffer()));
+    const {width, height, data} = hdr ? readHdr(bytes) : await readExr(bytes);
     view?.setPicture(width, height, data);
     const around = find("#around");
     const choice = around.querySelector("[value=picture]");
@@ -165,7 +171,7 @@ export function themeChanged() {
 export const picture = () => view?.png();
 
 function connect() {
-  segments(find("#shape"), (shape) => {
+  setShape = segments(find("#shape"), (shape) => {
     view.set({shape});
     expose();
   });
@@ -215,6 +221,10 @@ export function start() {
       exposedFor = entry.id;
       expose();
     }
+  };
+  view.onjudged = (entry, drawn) => {
+    entry.drawn = drawn;
+    changed("judged");
   };
   view.onerror = (error) => say(lineOf(error), "error");
   connect();

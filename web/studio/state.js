@@ -15,6 +15,7 @@ export const entryOf = (id) => state.entries.find((entry) => entry.id === id) ??
 export const modelsOf = (entry) => state.entries.filter((other) => other.parent === entry.id);
 // What a fit is compared with: an entry's own source, or itself.
 export const referenceOf = (entry) => (entry && entry.parent !== null ? entryOf(entry.parent) : entry);
+export const isSurface = (entry) => typeof entry?.material.place === "function";
 // The model whose shader is given away: the right one if it is a model, else the left one.
 export const modelShown = () => [state.beside, state.shown].find((entry) => entry?.model) ?? null;
 

@@ -1,19 +1,21 @@
 // Everything that can be taken away: shaders, files, pictures, a link.
 import {bytesText, css, find, lineOf, make, saveFile, say} from "./dom.js";
 import {linkOf} from "./link.js";
-import {modelShown, onChange, referenceOf, state} from "./state.js";
+import {isSurface, modelShown, onChange, referenceOf, state} from "./state.js";
 import {picture} from "./stage.js";
 
 const languages = {glsl: "GLSL 4.50", glsl_es: "GLSL ES 3.00", hlsl: "HLSL", wgsl: "WGSL", msl: "Metal", cpp: "C++"};
-const modelFiles = {burnish: ".burnish", model: "OpenEXR", ktx2: "KTX2 textures", three: "three.js"};
-const anyFiles = {merl: "MERL", rgl: "RGL", csv: "CSV"};
+const modelFiles = {burnish: ".burnish", model: "OpenEXR", ktx2: "KTX2 textures", three: "three.js", html: "Page"};
+const surfaceFiles = {burnish: ".burnish", ktx2: "KTX2 textures", png: "PNG maps", three: "three.js", html: "Page"};
+// what anything can be written as, and the endings of names
+const anyFiles = {merl: "MERL", utia: "UTIA", rgl: "RGL", mbsdf: "MBSDF", zemax: "Zemax", tensortree: "Tensor tree", openmaterial: "OpenMATERIAL",
+                  astm: "ASTM", csv: "CSV", exr: "EXR slices"};
+const kExtensions = {merl: "binary", utia: "bin", rgl: "bsdf", zemax: "zemax.bsdf", tensortree: "xml", openmaterial: "xompt", model: "exr"};
 const kLongLink = 32 << 10;
 
 let language = "glsl_es", textOpen = false;
 
 const stem = (entry) => entry.name.replace(/\.[^.]*$/, "").replace(/[^\w.-]+/g, "_").slice(0, 60) || "material";
-
-const kExtensions = {merl: "binary", rgl: "bsdf", model: "exr"};
 
 // Exports are bytes, or files {name, bytes}.
 async function filesOf(entry, kind) {
@@ -115,16 +117,17 @@ function draw() {
     place.replaceChildren(make("p", {class: "hint"}, "Shaders, textures and files of what is open; pictures; a link that carries a model."));
     return;
   }
-  const reference = referenceOf(entry), converted = Object.entries(anyFiles);
+  const reference = referenceOf(entry), surface = isSurface(model), files = surface ? surfaceFiles : modelFiles;
   place.replaceChildren(
     model ? shaderGroup(model) : make("p", {class: "hint"}, "Fit first: a model has a shader, textures and a link."),
-    model ? make("div", {}, make("h3", {}, "Model"), make("div", {class: "buttons"}, ...Object.entries(modelFiles).map(([kind, title]) => saveButton(model, kind, title)))) : "",
+    model ? make("div", {}, make("h3", {}, surface ? "Surface" : "Model"), make("div", {class: "buttons"}, ...Object.entries(files).map(([kind, title]) => saveButton(model, kind, title)))) : "",
     model ? linkGroup(model) : "",
-    make("div", {}, make("h3", {}, `${reference.name} as`), make("div", {class: "buttons"}, ...converted.map(([kind, title]) => saveButton(reference, kind, title)))),
+    isSurface(reference) ? "" : make("div", {}, make("h3", {}, `${reference.name} as`),
+      make("div", {class: "buttons"}, ...Object.entries(anyFiles).map(([kind, title]) => saveButton(reference, kind, title)))),
     pictureGroup());
 }
 
 export function start() {
   draw();
-  onChange(draw);
+  onChange((what) => what !== "judged" && draw());
 }

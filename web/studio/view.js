@@ -1,14 +1,15 @@
 // The lit object: two materials beside each other, summed over frames until the light from all around is smooth.
+import {fidelity} from "./fidelity.js";
 import {bind, mesh, program, target, texture} from "./gl.js";
 import {prepare} from "./gpu_brdf.js";
 import {environments, kLights, lineFragment, objectFragment, objectVertex, pictureFragment, screenVertex, sumFragment} from "./shading.js";
-import {knot, sphere, teapot} from "./shapes.js";
+import {knot, plane, sphere, teapot} from "./shapes.js";
 import {normalize} from "./vectors.js";
 
 const kEye = 4.6, kReach = 2.4;      // distances of the viewer and of the point lights from the middle
 const kEnough = 512, kLongFrame = 40;  // samples a pixel; milliseconds after which a frame takes less
 const kMostPixels = 1.1e6;
-const makers = {sphere, knot, teapot};
+const makers = {sphere, knot, teapot, plane};
 
 export class View {
   constructor(canvas) {
@@ -36,6 +37,7 @@ export class View {
     this.empty = gl.createVertexArray();
     this.onframe = () => {};
     this.onready = () => {};
+    this.onjudged = () => {};
     this.onerror = () => {};
     new ResizeObserver(() => this.restart()).observe(canvas);
   }
@@ -75,10 +77,17 @@ export class View {
         this.forms.set(entry.id, form);
         if (this.sides.includes(entry)) this.restart();
         this.onready(entry, first);
+        this.judge(entry, form, alive).catch(this.onerror);
       });
     } catch (error) {
       if (alive()) this.onerror(error);
     }
+  }
+  // Tells how the entry is drawn, and how far that is from what was measured.
+  async judge(entry, form, alive) {
+    const current = () => alive() && this.forms.get(entry.id) === form;
+    const decibels = form.how === "shader" ? undefined : await fidelity(this.gl, form, entry.material, current);
+    if (current()) this.onjudged(entry, {how: form.how, decibels});
   }
   formOf(entry) {
     const form = entry && this.forms.get(entry.id);
@@ -269,7 +278,7 @@ export class View {
   drawTangents() {
     const gl = this.gl, {shape} = this.settings, name = `${shape} tangents`;
     if (!this.meshes.has(name)) {
-      const {vertices} = makers[shape](), lines = [], indices = [], every = {sphere: 131, knot: 167, teapot: 41}[shape];
+      const {vertices} = makers[shape](), lines = [], indices = [], every = {sphere: 131, knot: 167, teapot: 41, plane: 1}[shape];
       for (let k = 0; k < vertices.length / 9; k += every) {
         const p = vertices.slice(9 * k, 9 * k + 9), t = p.slice(6);
         for (const s of [-0.025, 0.025]) lines.push(p[0] + s * t[0], p[1] + s * t[1], p[2] + s * t[2], ...p.slice(3));

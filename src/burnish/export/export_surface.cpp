@@ -6,7 +6,9 @@
 
 #include <burnish/error.h>
 #include <burnish/export/export_surface.h>
+#include <burnish/export/html_page.h>
 #include <burnish/export/manifest.h>
+#include <burnish/export/web_module.h>
 #include <burnish/image/png.h>
 #include <burnish/shaders/spatial_shader.h>
 #include <burnish/textures/image_files.h>
@@ -72,13 +74,25 @@ class SurfaceExport {
       if (std::ranges::find(options_.to, language, language_of) != options_.to.end()) add_shader(language);
     if (manifest_.contains("textures")) add_textures();
     for (const ExportTarget target : {ExportTarget::exr, ExportTarget::png})
-      if (std::ranges::find(options_.to, target) != options_.to.end()) add_pictures(target);
+      if (wants(target)) add_pictures(target);
     describe_maps();
+    if (wants(ExportTarget::three)) add_page("three", ".three.js", three_module(surface_, options_.name));
+    if (wants(ExportTarget::html)) add_page("page", ".html", html_page(surface_, options_.name));
     add_manifest(manifest_, options_.name, result_.files);
     return std::move(result_);
   }
 
  private:
+  bool wants(ExportTarget target) const {
+    return std::ranges::find(options_.to, target) != options_.to.end();
+  }
+
+  // What a browser opens.
+  void add_page(const char* kind, const char* ending, std::string text) {
+    manifest_[kind] = options_.name + ending;
+    result_.files.push_back({options_.name + ending, std::move(text)});
+  }
+
   void add_shader(ShaderLanguage language) {
     const bool cpp = language == ShaderLanguage::cpp;
     const ShaderFilter filter = options_.exact || cpp ? ShaderFilter::exact : ShaderFilter::hardware;
@@ -181,8 +195,9 @@ class SurfaceExport {
 }  // namespace
 
 bool takes_surfaces(ExportTarget target) noexcept {
-  return language_of(target) || target == ExportTarget::ktx2 || target == ExportTarget::exr ||
-         target == ExportTarget::png;
+  using enum ExportTarget;
+  return language_of(target) || target == ktx2 || target == exr || target == png || target == three ||
+         target == html;
 }
 
 ExportedFiles export_surface(const SpatialBrdf& surface, const ExportOptions& options) {
@@ -190,8 +205,9 @@ ExportedFiles export_surface(const SpatialBrdf& surface, const ExportOptions& op
     throw Error("environment: expected a model that is the same everywhere, found a surface");
   for (const ExportTarget target : options.to)
     if (!takes_surfaces(target))
-      throw Error(fmt::format("export: expected ktx2, exr, png or a shader language of a surface, found {}",
-                              to_string(target)));
+      throw Error(fmt::format(
+          "export: expected ktx2, exr, png, three, html or a shader language of a surface, found {}",
+          to_string(target)));
   return SurfaceExport(surface, options).run();
 }
 

@@ -7,6 +7,8 @@
 
 #include <burnish/error.h>
 #include <burnish/export/export_surface.h>
+#include <burnish/export/web.h>
+#include <burnish/export/web_module.h>
 #include <burnish/shaders/map_packing.h>
 #include <burnish/testing/surfaces.h>
 
@@ -54,6 +56,21 @@ TEST(ExportSurface, GivesEachMapAsAPicture) {
     EXPECT_EQ(bytes_of(exported, std::string("wall_") + map + ".png").substr(1, 3), "PNG");
     EXPECT_EQ(bytes_of(exported, std::string("wall_") + map + ".exr").substr(0, 2), "\x76\x2f");
   }
+}
+
+TEST(ExportSurface, BringsEverythingIntoModuleAndPage) {
+  const SpatialBrdf surface = random_surface(8, 4);
+  const ExportedFiles exported =
+      export_surface(surface, {.to = {ExportTarget::three, ExportTarget::html}, .name = "wall"});
+  const PackedMaps packed = pack_maps(surface, "burnish_wall_map");
+  for (const char* file : {"wall.three.js", "wall.html"}) {
+    const std::string& text = bytes_of(exported, file);
+    EXPECT_THAT(text, testing::HasSubstr("burnish_wall_place burnish_wall_at(float u, float v, float lod)"));
+    for (const MapTexture& map : packed.textures)
+      for (const std::vector<std::byte>& level : map.levels)
+        EXPECT_THAT(text, testing::HasSubstr(base64(level))) << file;
+  }
+  EXPECT_EQ(web_model(surface, "wall")["framed"], true);
 }
 
 TEST(ExportSurface, RefusesWhatHasNoSurfaces) {

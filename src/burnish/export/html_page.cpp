@@ -7,6 +7,7 @@
 
 #include <burnish/export/html_page.h>
 #include <burnish/export/web.h>
+#include <burnish/export/web_module.h>
 #include <burnish/render/mesh/shapes.h>
 #include <burnish/shaders/shader.h>
 
@@ -81,6 +82,10 @@ std::string html_page(const FactoredBrdf& brdf, const std::string& name, const S
     model["textures"].push_back(texel_entry(upload_of(texture, TableFormat::half, true)));
   if (around) model["environment"] = light_entry(*around);
   return page_of(std::move(model));
+}
+
+std::string html_page(const SpatialBrdf& surface, const std::string& name) {
+  return page_of(web_model(surface, name));
 }
 
 std::string html_page(const SpecularModel& model, const std::string& expression, const std::string& name) {

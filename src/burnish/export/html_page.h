@@ -13,6 +13,8 @@ namespace burnish {
 /// web/page.html and web/page.js. Throws Error as generate_shader does, and for a light whose textures leave
 /// none to the model.
 std::string html_page(const FactoredBrdf& brdf, const std::string& name, const SurfaceLight* light = nullptr);
+/// The same for a surface, on a plane first.
+std::string html_page(const SpatialBrdf& surface, const std::string& name);
 /// The same for a specular model that is called `expression` there.
 std::string html_page(const SpecularModel& model, const std::string& expression, const std::string& name);
 

@@ -1,3 +1,4 @@
+#include <span>
 #include <string_view>
 
 #include <nlohmann/json.hpp>
@@ -5,33 +6,70 @@
 #include <burnish/export/web.h>
 #include <burnish/export/web_module.h>
 #include <burnish/shaders/shader.h>
+#include <burnish/shaders/spatial_shader.h>
 
 namespace burnish {
 
 namespace {
 
-// The script with what both of them read of a model: shader and textures.
-std::string module_of(std::string_view script, const FactoredBrdf& brdf, const std::string& name) {
-  const Shader shader = generate_shader(brdf, {ShaderLanguage::glsl_es, ShaderFilter::hardware, name});
-  nlohmann::json model{{"name", name}, {"expression", model_expression(brdf)}, {"shader", shader.text}};
-  model["textures"] = nlohmann::json::array();
-  for (const ShaderTexture& texture : shader.textures)
-    model["textures"].push_back({{"name", texture.name},
-                                 {"width", texture.width},
-                                 {"height", texture.height},
-                                 {"depth", texture.depth},
-                                 {"rgba16f", half_texels(texture.values, texture.channels)}});
-  return web_script(script, model.dump(1, ' ', true, nlohmann::json::error_handler_t::replace));
+using nlohmann::json;
+
+json entry_of(const ShaderTexture& texture) {
+  return {{"name", texture.name},
+          {"width", texture.width},
+          {"height", texture.height},
+          {"depth", texture.depth},
+          {"rgba16f", half_texels(texture.values, texture.channels)}};
+}
+
+// What all scripts read of a model.
+template <class Shader>
+json shared(const FactoredBrdf& brdf, const std::string& name, const Shader& shader) {
+  json model{{"name", name},
+             {"expression", model_expression(brdf)},
+             {"shader", shader.text},
+             {"textures", json::array()}};
+  for (const ShaderTexture& texture : shader.textures) model["textures"].push_back(entry_of(texture));
+  return model;
+}
+
+std::string module_of(std::string_view script, const json& model) {
+  return web_script(script, model.dump(1, ' ', true, json::error_handler_t::replace));
+}
+
+json model_of(const FactoredBrdf& brdf, const std::string& name) {
+  return shared(brdf, name, generate_shader(brdf, {ShaderLanguage::glsl_es, ShaderFilter::hardware, name}));
 }
 
 }  // namespace
 
+json web_model(const SpatialBrdf& surface, const std::string& name) {
+  const SpatialShader shader =
+      generate_shader(surface, {ShaderLanguage::glsl_es, ShaderFilter::hardware, name});
+  json model = shared(surface.lobes(), name, shader);
+  for (const MapTexture& map : shader.maps.textures) {
+    json levels = json::array();
+    for (const std::vector<std::byte>& level : map.levels) levels.push_back(base64(level));
+    model["maps"].push_back({{"name", map.name},
+                             {"width", map.width},
+                             {"height", map.height},
+                             {"half", map.format == TableFormat::half},
+                             {"levels", std::move(levels)}});
+  }
+  model["framed"] = shader.maps.normals || shader.maps.tangents;
+  return model;
+}
+
 std::string three_module(const FactoredBrdf& brdf, const std::string& name) {
-  return module_of("three.js", brdf, name);
+  return module_of("three.js", model_of(brdf, name));
+}
+
+std::string three_module(const SpatialBrdf& surface, const std::string& name) {
+  return module_of("three.js", web_model(surface, name));
 }
 
 std::string babylon_module(const FactoredBrdf& brdf, const std::string& name) {
-  return module_of("babylon.js", brdf, name);
+  return module_of("babylon.js", model_of(brdf, name));
 }
 
 }  // namespace burnish

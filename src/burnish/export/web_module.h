@@ -2,13 +2,21 @@
 
 #include <string>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <burnish/factors/factored_brdf.h>
+#include <burnish/surface/spatial_brdf.h>
 
 namespace burnish {
 
 /// JavaScript modules that make a ShaderMaterial of three.js or Babylon.js, textures inside: web/three.js and
-/// web/babylon.js with the model. Throw Error as generate_shader does.
+/// web/babylon.js with the model. A surface brings its maps with their levels. Throw Error as generate_shader does.
 std::string three_module(const FactoredBrdf& brdf, const std::string& name);
+std::string three_module(const SpatialBrdf& surface, const std::string& name);
 std::string babylon_module(const FactoredBrdf& brdf, const std::string& name);
+
+/// What scripts of web/ read of a surface: name, expression, shader, textures of the lobes, maps, and whether places have
+/// a frame. Throws Error as generate_shader does.
+nlohmann::json web_model(const SpatialBrdf& surface, const std::string& name);
 
 }  // namespace burnish

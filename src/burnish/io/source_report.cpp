@@ -4,6 +4,7 @@
 
 #include <burnish/io/source_report.h>
 #include <burnish/math/angles.h>
+#include <burnish/reflectance/mirror_asymmetry.h>
 
 namespace burnish {
 
@@ -15,12 +16,17 @@ constexpr std::array kAlbedoAngles{0.0, radians(30), radians(60)};
 }  // namespace
 
 SourceReport report_on(const Source& source) {
-  return {source, albedo_curve(source.ref(), kAlbedoAngles),
-          reciprocity_error(source.ref(), kReciprocityPairs, 1), std::get_if<FactoredBrdf>(&source.brdf)};
+  SourceReport report{source,
+                      albedo_curve(source.ref(), kAlbedoAngles),
+                      reciprocity_error(source.ref(), kReciprocityPairs, 1),
+                      std::get_if<FactoredBrdf>(&source.brdf),
+                      {}};
+  if (source.ref().isotropic()) report.mirror_asymmetry = mirror_asymmetry(source.ref());
+  return report;
 }
 
 std::string to_json(const SourceReport& report) {
-  const auto& [source, albedos, reciprocity, model] = report;
+  const auto& [source, albedos, reciprocity, model, mirror_asymmetry] = report;
   const Findings& findings = source.findings;
   nlohmann::ordered_json json{{"name", source.name},
                               {"format", findings.format},
@@ -38,6 +44,7 @@ std::string to_json(const SourceReport& report) {
                               {"theta_o_deg", {degrees(findings.theta_o_min), degrees(findings.theta_o_max)}},
                               {"reciprocity_error", reciprocity.mean},
                               {"reciprocity_pairs", reciprocity.pairs}};
+  if (mirror_asymmetry) json["mirror_asymmetry"] = *mirror_asymmetry;
   for (const auto& [theta_i, phi_i, albedo] : albedos)
     json["albedo"].push_back({{"theta_i_deg", degrees(theta_i)},
                               {"phi_i_deg", degrees(phi_i)},
