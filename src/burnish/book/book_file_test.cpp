@@ -97,6 +97,22 @@ TEST(MaterialBook, HasTheLogarithmsThatItSays) {
   }
 }
 
+TEST(MaterialBook, IsLinearInLogarithmsHalfwayBetweenNodes) {
+  const MaterialBook book = random_book();
+  const FactoredBrdf brdf = book.brdf(0, TableFormat::single);
+  const Table &line = brdf.tables()[0], &volume = brdf.tables()[1];
+  const auto width = static_cast<std::size_t>(volume.layout.width);
+  ASSERT_EQ(volume.layout.height, 2 * book.layout().height - 1);
+  ASSERT_EQ(volume.layout.depth, 2 * book.layout().depth - 1);
+  const auto raised = [&](std::size_t x, std::size_t y) {
+    return brdf.lobes()[0].scale[0] *
+               static_cast<double>(line.values[x] * volume.values[(y * width + x) * 3]) +
+           MaterialBook::kFloor;
+  };
+  for (std::size_t x = 0; x < width; ++x)
+    EXPECT_NEAR(raised(x, 1), std::sqrt(raised(x, 0) * raised(x, 2)), 1e-3 * raised(x, 1)) << x;
+}
+
 TEST(MaterialBook, RefusesWhatDoesNotFit) {
   const MaterialBook book = random_book();
   auto axes = book.axes();
