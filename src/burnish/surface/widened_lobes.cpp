@@ -13,9 +13,9 @@ namespace burnish {
 namespace {
 
 constexpr std::size_t kProfileNodes = 800;
-constexpr double kMostTheta = 1.4;     // of theta_h, radians; farther out a copy is its lobe times a constant
-constexpr double kPeakStep = 1.0 / 3;  // from one copy to the next
-constexpr double kWorthwhile = 0.75;   // how much the last copy has to lower the peak at least
+constexpr double kMostTheta = 1.4;    // of theta_h, radians; farther out a copy is its lobe times a constant
+constexpr double kPeakStep = 0.18;    // from one copy to the next
+constexpr double kWorthwhile = 0.75;  // how much the last copy has to lower the peak at least
 constexpr double kLeastVariance = 2e-5;
 constexpr int kRatioNodes = 128;
 constexpr TableFormat kRatioFormat = TableFormat::half;
