@@ -19,7 +19,7 @@ const at = (name) => path.join(folder, name);
 const bytesOf = (file) => new Uint8Array(fs.readFileSync(file));
 
 // Where the two differ, or nothing; numbers by kTolerance, what nodes of the same file predict of themselves by kChance.
-// Rings of an albedo are halved until two sums agree: where they hardly do, a last bit decides (`rings`).
+// Rings of an albedo are halved until two sums agree: where holes leave them apart, a last bit decides (`rings`).
 const kChance = 0.05, kRings = 2e-3;
 function difference(found, expected, rings = false, place = "") {
   if (typeof expected === "number" && typeof found === "number") {
@@ -113,7 +113,7 @@ for (const [format, file] of Object.entries(sources))
     test("is told about as `info --json` does", async () => {
       const expected = JSON.parse(await run("info", file, "--json"));
       const [ours, theirs] = [nodesApart(await material.info()), nodesApart(expected)];
-      assert.equal(difference(ours.rest, theirs.rest, format === "measured OpenMATERIAL"), undefined);
+      assert.equal(difference(ours.rest, theirs.rest, format === "measured Zemax"), undefined);
       for (const i of ours.nodes?.keys() ?? [])
         assert.ok(ours.nodes[i] === theirs.nodes[i] || Math.abs(Math.log2(ours.nodes[i] / theirs.nodes[i])) < 1, `${ours.nodes}, ${theirs.nodes}`);
     });
@@ -135,7 +135,7 @@ for (const [format, file] of Object.entries(sources))
       const expected = JSON.parse(await run("compare", file, at("a.burnish"), "--json", "--count", "20000"));
       const found = await material.compare(model, {count: 20000});
       model.close();
-      assert.equal(difference(found, expected, format === "measured OpenMATERIAL"), undefined);
+      assert.equal(difference(found, expected, format === "measured Zemax"), undefined);
     });
   });
 

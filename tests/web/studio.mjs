@@ -187,7 +187,7 @@ for (let k = 0; k < 3; ++k) {
     const entry = () => window.studio.entries.find(({name}) => name === "whole.binary");
     await wait(() => entry());
     const parsed = performance.now();
-    await wait(() => document.documentElement.dataset.view === "drawing" || document.documentElement.dataset.view === "settled");
+    await wait(() => entry().seen);
     return [parsed - begin, performance.now() - parsed];
   }));
   await until(page, 2);

@@ -216,6 +216,7 @@ export function start() {
     document.documentElement.dataset.view = state.shown && view.formOf(state.shown) ? (view.settled ? "settled" : "drawing") : "empty";
   };
   view.onready = (entry, first) => {
+    entry.seen = true;
     drawThumbnail(entry);
     if (entry === state.shown && first && exposedFor !== entry.id) {
       exposedFor = entry.id;

@@ -1,4 +1,4 @@
-// What is open and what is shown: entries {id, name, material, model, parent, info, figures, shader}, `shown` at the left
+// What is open and what is shown: entries {id, name, material, model, parent, info, figures, drawn, seen}, `shown` at the left
 // and, where it is not null, `beside` it at the right.
 
 const listeners = [];
