@@ -60,7 +60,7 @@ TEST_F(SurfaceCommand, FitsWhatWasMeasured) {
 }
 
 TEST_F(SurfaceCommand, SurfacesAreDescribedAndDrawn) {
-  ASSERT_EQ(burnish(kFit).status, 0);
+  ASSERT_EQ(burnish(std::string(kFit) + " --widen").status, 0);
   const Outcome text = burnish("info '{0}/wall.burnish'"), json = burnish("info '{0}/wall.burnish' --json");
   ASSERT_EQ(text.status, 0) << text.output;
   EXPECT_THAT(text.output, HasSubstr("20 x 20"));

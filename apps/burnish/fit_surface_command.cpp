@@ -132,6 +132,9 @@ void add_fit_surface_command(CLI::App& app, FitCrew* crew) {
   verb->add_option("--seed", options.seed, "of the texels and pixels that lobes are fitted to")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  verb->add_flag("--widen", options.widened,
+                 "add copies of the lobes for the bumps that mip levels lose: better from afar, one fetch "
+                 "a light more for each");
   verb->add_option("--threads", arguments->threads, "at most this many; 0: all")->check(CLI::Range(0, 1024));
   verb->add_option(
       "--picture", arguments->picture,

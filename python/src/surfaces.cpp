@@ -115,11 +115,13 @@ NormalsFrom normals_from(const std::string& name) {
 
 nb::tuple fit_surface(const std::filesystem::path& capture, std::size_t lobes, std::size_t lobe_bytes,
                       const OpenedModel* book, const std::optional<std::string>& normals, int rounds,
-                      std::uint64_t seed, const std::optional<std::filesystem::path>& checkpoint) {
+                      bool widened, std::uint64_t seed,
+                      const std::optional<std::filesystem::path>& checkpoint) {
   SurfaceFitOptions options;
   options.lobes = lobes;
   options.lobe_bytes = lobe_bytes;
   options.rounds = rounds;
+  options.widened = widened;
   options.seed = seed;
   if (book) options.book = book->brdf();
   if (normals) options.normals = normals_from(*normals);
@@ -196,8 +198,8 @@ void bind_surfaces(nb::module_& m) {
         "Reads the .burnish file of a surface.");
   m.def("fit_surface", &fit_surface, nb::arg("capture"), nb::kw_only(), nb::arg("lobes") = 6,
         nb::arg("lobe_bytes") = 16 << 10, nb::arg("book").none() = nb::none(),
-        nb::arg("normals") = nb::none(), nb::arg("rounds") = 9, nb::arg("seed") = 1,
-        nb::arg("checkpoint") = nb::none(),
+        nb::arg("normals") = nb::none(), nb::arg("rounds") = 9, nb::arg("widened") = false,
+        nb::arg("seed") = 1, nb::arg("checkpoint") = nb::none(),
         "(Surface, report) of a capture's folder, as `burnish fit-surface`.");
 }
 

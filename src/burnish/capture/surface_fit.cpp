@@ -610,7 +610,9 @@ class SurfaceFitter {
     if (!done_.normals.empty())
       maps.normals.emplace(form.width, form.height, std::size_t{2}, TableFormat::half, 1.0f,
                            std::span<const float>(done_.normals));
-    SurfaceModel surface{.brdf = with_widened_lobes(SpatialBrdf(*lobes_, std::move(maps))), .notes = "{}"};
+    SpatialBrdf brdf(*lobes_, std::move(maps));
+    SurfaceModel surface{.brdf = options_.widened ? with_widened_lobes(brdf) : std::move(brdf),
+                         .notes = "{}"};
     report_.width = static_cast<std::size_t>(form.width);
     report_.height = static_cast<std::size_t>(form.height);
     report_.pictures = form.pictures.size();

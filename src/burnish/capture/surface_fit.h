@@ -25,7 +25,9 @@ struct SurfaceFitOptions {
   std::optional<FactoredBrdf> book = {};
   /// None: those of the capture, or estimated where it has none.
   std::optional<NormalsFrom> normals = {};
-  int rounds = 9;                      ///< of lobes and weights in turn
+  int rounds = 9;  ///< of lobes and weights in turn
+  /// Copies of the lobes, widened by the bumps that mip levels lose; each costs a light one fetch more.
+  bool widened = false;
   std::size_t tile_bytes = 256 << 20;  ///< of pictures in memory at a time
   std::uint64_t seed = 1;              ///< of the texels and pixels that lobes are fitted to
   /// A file that says how far the work is, written after each part and removed at the end; empty: none. One that is
