@@ -18,6 +18,7 @@ namespace {
 constexpr std::string_view kAnisotropic = "OPTIS - Anisotropic BSDF surface file",
                            kBrdf = "OPTIS - brdf surface file";
 constexpr std::size_t kMaxAngles = 4096, kMaxValues = std::size_t{1} << 26;
+constexpr double kMostValue = 1e30;
 constexpr double kTrusted = 0.05;  // of a reflectance: quadrature and rounding
 constexpr double kHorizon = 1e-6;  // a cosine that stands for none
 constexpr double kSameDegree = 1e-6;
@@ -87,7 +88,8 @@ Block next_block(TextReader& reader) {
     block.theta_deg.push_back(theta);
     for (std::size_t p = 0; p < phis; ++p) {
       const double value = next_number(reader, "a value");
-      if (!(std::abs(value) < 1e30)) reader.fail("a value below 1e30", fmt::format("{}", value));
+      if (!(std::abs(value) < kMostValue))
+        reader.fail(fmt::format("a value below {:g}", kMostValue), fmt::format("{}", value));
       block.values.push_back(value);
     }
   }
@@ -141,8 +143,13 @@ bool trusted(double reflectance, double found) noexcept {
   return std::abs(reflectance - found) <= kTrusted * std::max(reflectance, kTrusted);
 }
 
-void scale(Block& block, double factor) noexcept {
-  for (double& value : block.values) value *= factor;
+void scale(Block& block, double factor, const TextReader& reader) {
+  for (double& value : block.values) {
+    value *= factor;
+    if (!(std::abs(value) < kMostValue))
+      reader.fail(fmt::format("reflectances that values below {:g} have", kMostValue),
+                  fmt::format("{}", value));
+  }
 }
 
 /// Weights of the nodes around x: the first, the second's weight. Constant beyond the ends.
@@ -209,7 +216,7 @@ Content read_anisotropic(TextReader& reader, std::vector<std::string>& notes) {
   for (const double r : reflectance) {
     content.blocks.push_back(blocks);
     for (auto& of_rotation : content.blocks.back())
-      for (Block& block : of_rotation) scale(block, r / found);
+      for (Block& block : of_rotation) scale(block, r / found, reader);
   }
   return content;
 }
@@ -239,7 +246,7 @@ Content read_brdf(TextReader& reader, std::vector<std::string>& notes) {
                        : "The values are scaled to the stated reflectances.");
   if (!kept)
     for (std::size_t k = 0; k < bands; ++k)
-      for (std::size_t i = 0; i < incidences; ++i) scale(content.blocks[k][0][i], factors[k][i]);
+      for (std::size_t i = 0; i < incidences; ++i) scale(content.blocks[k][0][i], factors[k][i], reader);
   if (bands == 1) content.lambda_nm.clear();
   return content;
 }
