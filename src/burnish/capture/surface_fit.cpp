@@ -300,28 +300,59 @@ class SurfaceFitter {
   }
 
   /// Pixels of the sampled texels that `takes` has: as many of each theta_h as there are, up to an even part; weighted
-  /// as all of them for pictures, evenly over theta_h for the pairs. A clipped value is a lower bound: it stands for
-  /// what the lobes make of it, where that is more. So a step never raises the one-sided error, and lobes stay where
-  /// they are where nothing else holds them.
+  /// as all of them for pictures, evenly over theta_h for the pairs.
   template <class Takes>
   TrainingSet training_set(std::size_t count, std::size_t stream, const Takes& takes) const {
+    const Candidates all = candidates(6 * count, stream, takes);
+    const std::size_t part = even_part(all.in_bin, count);
+    std::vector<std::size_t> taken(kHalfBins);
+    std::vector<const Candidate*> chosen;
+    for (const Candidate& c : all.pixels)
+      if (taken[c.bin]++ < part) chosen.push_back(&c);
+
+    TrainingSet set{.channels = kCaptureChannels,
+                    .isotropic = true,
+                    .pairs = {},
+                    .values = {},
+                    .weights = {},
+                    .lobe_weights = {},
+                    .exposure = exposure_,
+                    .albedo = {}};
+    std::optional<LobeEvaluator> known;
+    if (lobes_ && !fits_.weights.empty()) known.emplace(*lobes_);
+    const auto model = known ? &*known : nullptr;
+    for (std::size_t i = 0; i < chosen.size(); i += 2) {
+      const std::size_t there = all.in_bin[chosen[i]->bin];
+      add(set, *chosen[i], static_cast<double>(there) / static_cast<double>(std::min(there, part)), model);
+    }
+    set.picture_count = set.size();
+    for (std::size_t i = 1; i < chosen.size(); i += 2)
+      if (std::min(chosen[i]->pair.wi.z, chosen[i]->pair.wo.z) > kLeastCosine) add(set, *chosen[i], 1, model);
+    return set;
+  }
+
+  struct Candidates {
+    std::vector<Candidate> pixels;
+    std::vector<std::size_t> in_bin;  // how many of each theta_h
+  };
+
+  /// Pixels at random of the texels that `takes` has, those that are there and can be trusted.
+  template <class Takes>
+  Candidates candidates(std::size_t draws, std::size_t stream, const Takes& takes) const {
     const CaptureForm& form = capture_.form();
-    // a few times as many as are taken, at random
-    std::vector<Candidate> candidates;
-    Pcg32 random(options_.seed, 1000 + stream);
     std::vector<std::size_t> fitted;
     for (std::size_t p = 0; p < form.pictures.size(); ++p)
       if (!form.pictures[p].held_out) fitted.push_back(p);
     std::vector<std::uint32_t> texels;
     for (std::size_t t = 0; t < samples_.size(); ++t)
       if (takes(t)) texels.push_back(static_cast<std::uint32_t>(t));
-    std::vector<std::size_t> in_bin(kHalfBins);
-    const std::size_t draws = 6 * count;
+
+    Candidates found{.pixels = {}, .in_bin = std::vector<std::size_t>(kHalfBins)};
+    Pcg32 random(options_.seed, 1000 + stream);
     for (std::size_t d = 0; d < draws; ++d) {
       const auto t = texels[random.next() % texels.size()];
       const std::size_t p = fitted[random.next() % fitted.size()], pixel = p * samples_.size() + t;
-      if (!is_there(samples_.states[pixel])) continue;
-      if (trusts(pixel) < kLeastTrust) continue;
+      if (!is_there(samples_.states[pixel]) || trusts(pixel) < kLeastTrust) continue;
       const Vec3 point = form.point(samples_.texels[t][0], samples_.texels[t][1]);
       const ShadingFrame frame = frame_about(normal_of(fits_.normals, t), {1, 0, 0});
       Candidate c{.picture = static_cast<std::uint32_t>(p),
@@ -333,15 +364,18 @@ class SurfaceFitter {
       const Vec3 h = half_vector(c.pair.wi, c.pair.wo);
       const double theta_h = std::acos(std::clamp(h.z, -1.0, 1.0));
       c.bin = std::min(kHalfBins - 1, static_cast<std::size_t>(std::sqrt(theta_h / 1.5707963) * kHalfBins));
-      ++in_bin[c.bin];
-      candidates.push_back(c);
+      ++found.in_bin[c.bin];
+      found.pixels.push_back(c);
     }
-    if (candidates.empty()) throw Error("surface fit: expected pixels that can be fitted, found none");
+    if (found.pixels.empty()) throw Error("surface fit: expected pixels that can be fitted, found none");
+    return found;
+  }
 
-    // an even part of the bins
+  /// How many each bin may give, so that together they give `count`: what small ones leave goes to the others.
+  static std::size_t even_part(const std::vector<std::size_t>& in_bin, std::size_t count) {
     const std::size_t bins = kHalfBins - static_cast<std::size_t>(std::ranges::count(in_bin, std::size_t{0}));
     std::size_t part = std::max<std::size_t>(1, count / bins);
-    for (int pass = 0; pass < 4; ++pass) {  // what small bins leave goes to the others
+    for (int pass = 0; pass < 4; ++pass) {
       std::size_t used = 0, open = 0;
       for (const std::size_t n : in_bin) {
         used += std::min(n, part);
@@ -350,46 +384,28 @@ class SurfaceFitter {
       if (open == 0 || used >= count) break;
       part += (count - used) / open;
     }
-    std::vector<std::size_t> taken(kHalfBins);
-    std::vector<const Candidate*> chosen;
-    for (const Candidate& c : candidates)
-      if (taken[c.bin]++ < part) chosen.push_back(&c);
+    return part;
+  }
 
-    TrainingSet set{.channels = kCaptureChannels,
-                    .isotropic = true,
-                    .pairs = {},
-                    .values = {},
-                    .weights = {},
-                    .lobe_weights = {},
-                    .exposure = exposure_,
-                    .albedo = {}};
+  /// A clipped value is a lower bound: it stands for what the lobes make of it, where that is more. So a step never
+  /// raises the one-sided error, and lobes stay where they are where nothing else holds them.
+  void add(TrainingSet& set, const Candidate& c, double weight, const LobeEvaluator* known) const {
+    const std::size_t pixel = c.picture * samples_.size() + c.texel;
+    const PixelState state = samples_.states[pixel];
+    std::array<float, kCaptureChannels> modelled{};
+    if (known && is_clipped(state)) modelled = modelled_at(*known, c);
+    set.pairs.push_back(c.pair);
+    bool held = false;
+    for (std::size_t k = 0; k < kCaptureChannels; ++k) {
+      const float value =
+          std::max(0.0f, samples_.values[kCaptureChannels * pixel + k]) / static_cast<float>(c.pair.wi.z);
+      const bool above = is_clipped(state, k) && modelled[k] > value;
+      held = held || above;
+      set.values.push_back(above ? modelled[k] : value);
+    }
+    set.weights.push_back(static_cast<float>(weight) * trusts(pixel) * (held ? kHeld : 1));
     const std::size_t lobes = fits_.weights.size() / samples_.size();
-    std::optional<LobeEvaluator> known;
-    if (lobes_ && lobes > 0) known.emplace(*lobes_);
-    const auto add = [&](const Candidate& c, double weight) {
-      const std::size_t pixel = c.picture * samples_.size() + c.texel;
-      const PixelState state = samples_.states[pixel];
-      std::array<float, kCaptureChannels> modelled{};
-      if (known && is_clipped(state)) modelled = modelled_at(*known, c);
-      set.pairs.push_back(c.pair);
-      bool held = false;
-      for (std::size_t k = 0; k < kCaptureChannels; ++k) {
-        const float value =
-            std::max(0.0f, samples_.values[kCaptureChannels * pixel + k]) / static_cast<float>(c.pair.wi.z);
-        const bool above = is_clipped(state, k) && modelled[k] > value;
-        held = held || above;
-        set.values.push_back(above ? modelled[k] : value);
-      }
-      set.weights.push_back(static_cast<float>(weight) * trusts(pixel) * (held ? kHeld : 1));
-      for (std::size_t j = 0; j < lobes; ++j) set.lobe_weights.push_back(fits_.weights[c.texel * lobes + j]);
-    };
-    for (std::size_t i = 0; i < chosen.size(); i += 2)
-      add(*chosen[i], static_cast<double>(in_bin[chosen[i]->bin]) /
-                          static_cast<double>(std::min(in_bin[chosen[i]->bin], part)));
-    set.picture_count = set.size();
-    for (std::size_t i = 1; i < chosen.size(); i += 2)
-      if (std::min(chosen[i]->pair.wi.z, chosen[i]->pair.wo.z) > kLeastCosine) add(*chosen[i], 1);
-    return set;
+    for (std::size_t j = 0; j < lobes; ++j) set.lobe_weights.push_back(fits_.weights[c.texel * lobes + j]);
   }
 
   /// How much lobes are fitted to a pixel. Before they have been refined once, it is they that are wrong. Where

@@ -32,91 +32,115 @@ Vec3 normal_of(const float* xy) noexcept {
   return {x, y, std::sqrt(std::max(0.0, 1 - x * x - y * y))};
 }
 
-}  // namespace
+/// The least of w' a w / 2 - b' w with w >= 0, by unknowns that are set free one by one [LawsonHanson1974].
+class ActiveSet {
+ public:
+  ActiveSet(std::span<const double> a, std::span<const double> b, std::span<double> w) noexcept
+      : a_(a), b_(b), w_(w), n_(b.size()) {}
 
-void solve_nonnegative(std::span<const double> a, std::span<const double> b, std::span<double> w,
-                       bool near) noexcept {
-  const std::size_t n = b.size();
-  constexpr std::size_t kMost = kMaxSurfaceLobes;
-  std::array<bool, kMost> free{};
-  std::array<double, kMost> solution{};
-  std::array<std::array<double, kMost>, kMost> factor;
-  std::array<double, kMost> inverse;  // of the factor's diagonal
-  std::array<std::size_t, kMost> member;
-  const auto finite = [](double value) { return std::isfinite(value); };
-  const bool sound = std::ranges::all_of(b, finite) && std::ranges::all_of(a, finite);
-  if (!near || !sound) std::ranges::fill(w, 0.0);
-  if (!sound) return;
+  /// From the unknowns of w that are not 0.
+  void start_near() noexcept {
+    for (std::size_t i = 0; i < n_; ++i) free_[i] = w_[i] > 0;
+    settle();
+  }
 
-  // the least for the free unknowns, by Cholesky
-  const auto solve_free = [&] {
-    std::size_t m = 0;
-    for (std::size_t i = 0; i < n; ++i)
-      if (free[i]) member[m++] = i;
-    for (std::size_t i = 0; i < m; ++i) {
-      double rest = b[member[i]];
-      for (std::size_t j = 0; j <= i; ++j) {
-        double sum = a[member[i] * n + member[j]];
-        for (std::size_t k = 0; k < j; ++k) sum -= factor[i][k] * factor[j][k];
-        factor[i][j] = i == j ? std::sqrt(std::max(sum, 1e-300)) : sum * inverse[j];
+  void run() noexcept {
+    while (changes_ < 3 * n_) {
+      const std::size_t next = steepest();
+      if (next == n_) return;
+      free_[next] = true;
+      settle();
+    }
+  }
+
+ private:
+  static constexpr double kLeastSquare = 1e-300, kSmallestSlope = 1e-12;
+
+  /// The unknown at 0 that the sum falls by fastest; their number where there is none.
+  std::size_t steepest() const noexcept {
+    std::size_t best = n_;
+    double most = 0;
+    for (std::size_t i = 0; i < n_; ++i) {
+      if (free_[i]) continue;
+      double slope = b_[i];
+      for (std::size_t j = 0; j < n_; ++j) slope -= a_[i * n_ + j] * w_[j];
+      const double scaled = slope / std::sqrt(std::max(a_[i * n_ + i], kLeastSquare));
+      if (scaled > most && slope > kSmallestSlope * std::abs(b_[i])) {
+        most = scaled;
+        best = i;
       }
-      inverse[i] = 1 / factor[i][i];
-      for (std::size_t k = 0; k < i; ++k) rest -= factor[i][k] * solution[member[k]];
-      solution[member[i]] = rest * inverse[i];
+    }
+    return best;
+  }
+
+  /// The least for the free unknowns, by Cholesky.
+  void solve_free() noexcept {
+    std::size_t m = 0;
+    for (std::size_t i = 0; i < n_; ++i)
+      if (free_[i]) member_[m++] = i;
+    for (std::size_t i = 0; i < m; ++i) {
+      double rest = b_[member_[i]];
+      for (std::size_t j = 0; j <= i; ++j) {
+        double sum = a_[member_[i] * n_ + member_[j]];
+        for (std::size_t k = 0; k < j; ++k) sum -= factor_[i][k] * factor_[j][k];
+        factor_[i][j] = i == j ? std::sqrt(std::max(sum, kLeastSquare)) : sum * inverse_[j];
+      }
+      inverse_[i] = 1 / factor_[i][i];
+      for (std::size_t k = 0; k < i; ++k) rest -= factor_[i][k] * solution_[member_[k]];
+      solution_[member_[i]] = rest * inverse_[i];
     }
     for (std::size_t i = m; i-- > 0;) {
-      double rest = solution[member[i]];
-      for (std::size_t k = i + 1; k < m; ++k) rest -= factor[k][i] * solution[member[k]];
-      solution[member[i]] = rest * inverse[i];
+      double rest = solution_[member_[i]];
+      for (std::size_t k = i + 1; k < m; ++k) rest -= factor_[k][i] * solution_[member_[k]];
+      solution_[member_[i]] = rest * inverse_[i];
     }
-  };
+  }
 
-  std::size_t changes = 0;
-  // as far as all stay positive
-  const auto settle = [&] {
-    while (changes < 3 * n) {
-      ++changes;
+  /// Goes there as far as all stay positive; what would not is fixed at 0, and so on.
+  void settle() noexcept {
+    while (changes_ < 3 * n_) {
+      ++changes_;
       solve_free();
       double step = 1;
-      std::size_t blocking = n;
-      for (std::size_t i = 0; i < n; ++i)
-        if (free[i] && solution[i] <= 0) {
-          const double share = w[i] > solution[i] ? w[i] / (w[i] - solution[i]) : 0;
-          if (share < step || blocking == n) {
+      std::size_t blocking = n_;
+      for (std::size_t i = 0; i < n_; ++i)
+        if (free_[i] && solution_[i] <= 0) {
+          const double share = w_[i] > solution_[i] ? w_[i] / (w_[i] - solution_[i]) : 0;
+          if (share < step || blocking == n_) {
             step = share;
             blocking = i;
           }
         }
-      for (std::size_t i = 0; i < n; ++i)
-        if (free[i]) w[i] += step * (solution[i] - w[i]);
-      if (blocking == n) break;
-      free[blocking] = false;
-      w[blocking] = 0;
+      for (std::size_t i = 0; i < n_; ++i)
+        if (free_[i]) w_[i] += step * (solution_[i] - w_[i]);
+      if (blocking == n_) break;
+      free_[blocking] = false;
+      w_[blocking] = 0;
     }
-  };
-  if (near) {
-    for (std::size_t i = 0; i < n; ++i) free[i] = w[i] > 0;
-    settle();
   }
-  while (changes < 3 * n) {
-    // the unknown that the sum falls by fastest
-    std::size_t best = n;
-    double steepest = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (free[i]) continue;
-      double slope = b[i];
-      for (std::size_t j = 0; j < n; ++j) slope -= a[i * n + j] * w[j];
-      const double scaled = slope / std::sqrt(std::max(a[i * n + i], 1e-300));
-      constexpr double kSmallest = 1e-12;
-      if (scaled > steepest && slope > kSmallest * std::abs(b[i])) {
-        steepest = scaled;
-        best = i;
-      }
-    }
-    if (best == n) return;
-    free[best] = true;
-    settle();
-  }
+
+  static constexpr std::size_t kMost = kMaxSurfaceLobes;
+  std::span<const double> a_, b_;
+  std::span<double> w_;
+  std::size_t n_, changes_ = 0;
+  std::array<bool, kMost> free_{};
+  std::array<double, kMost> solution_{};
+  std::array<std::array<double, kMost>, kMost> factor_;
+  std::array<double, kMost> inverse_;  // of the factor's diagonal
+  std::array<std::size_t, kMost> member_;
+};
+
+}  // namespace
+
+void solve_nonnegative(std::span<const double> a, std::span<const double> b, std::span<double> w,
+                       bool near) noexcept {
+  const auto finite = [](double value) { return std::isfinite(value); };
+  const bool sound = std::ranges::all_of(b, finite) && std::ranges::all_of(a, finite);
+  if (!near || !sound) std::ranges::fill(w, 0.0);
+  if (!sound) return;
+  ActiveSet set(a, b, w);
+  if (near) set.start_near();
+  set.run();
 }
 
 TexelSamples samples_of(CaptureRows rows) {

@@ -204,8 +204,9 @@ struct Belief {
   double share = 0;
 };
 
-// The likeliest first, with the others that are likely; their shares' sum is 1.
-std::vector<Belief> beliefs_of(const PairData& data, AxisGroup group) {
+// The likeliest first, with the others that are likely; their shares' sum is 1. `part`: what share of the pairs tells,
+// of which all would say so much more surely.
+std::vector<Belief> beliefs_of(const PairData& data, AxisGroup group, double part) {
   const std::vector<CompletionPrior> all = priors();
   std::vector<double> evidence(all.size());
   for_each_chunk(all.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
@@ -215,7 +216,7 @@ std::vector<Belief> beliefs_of(const PairData& data, AxisGroup group) {
   std::vector<Belief> beliefs;
   double sum = 0;
   for (std::size_t k = 0; k < all.size(); ++k) {
-    const double share = std::exp(evidence[k] - most);
+    const double share = std::exp((evidence[k] - most) / part);
     if (share < kLeastShare) continue;
     beliefs.push_back({all[k], share});
     sum += share;
@@ -245,11 +246,12 @@ AxisMean mean_given(const PairData& data, std::size_t u, const CompletionPrior& 
   const VectorXd solved = llt.solve(left);
   const VectorXd variances = (prior.spread * axis.deviations).array().square();
   // the pair that is left out: [Rasmussen 2006, eq. 5.12]
-  const MatrixXd inverse = llt.solve(MatrixXd::Identity(left.size(), left.size()));
+  const VectorXd inverse =
+      llt.matrixL().solve(MatrixXd::Identity(left.size(), left.size())).colwise().squaredNorm().transpose();
   return {.weights = centre + variances.cwiseProduct(axis.components.transpose() * solved),
           .beyond = prior.residual * axis.residual2 * solved,
           .errors = prior.noise * data.noises.cwiseProduct(solved),
-          .errors_left_out = solved.cwiseQuotient(inverse.diagonal())};
+          .errors_left_out = solved.cwiseQuotient(inverse)};
 }
 
 /// The axes of a group by all that is believed of them.
@@ -348,7 +350,9 @@ Completion complete(const MaterialBook& book, const Samples& samples, TableForma
 
   // what to believe, from a part of the pairs where they are many
   const PairData part = pair_data(book, set, evenly(set.size(), kEvidencePairs));
-  const std::vector<Belief> brightness = beliefs_of(part, kBrightness), colour = beliefs_of(part, kColour);
+  const double share = static_cast<double>(part.places.size()) / static_cast<double>(used.size());
+  const std::vector<Belief> brightness = beliefs_of(part, kBrightness, share),
+                            colour = beliefs_of(part, kColour, share);
 
   // what follows from that and all pairs
   const PairData data = pair_data(book, set, used);
