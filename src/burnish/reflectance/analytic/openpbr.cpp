@@ -354,7 +354,7 @@ OpenPbr::PartSet OpenPbr::needed() const noexcept {
   PartSet parts;
   parts[film] = p_.thin_film_weight > 0 && p_.thin_film_thickness > 0;
   parts[facets] = parts[coating] = parts[fuzz] = true;
-  parts[diffuse] = parts[gloss] = p_.base_metalness < 1;
+  parts[base_diffuse] = parts[gloss] = p_.base_metalness < 1;
   parts[metal] = p_.base_metalness > 0;
   return parts;
 }
@@ -366,7 +366,7 @@ OpenPbr::PartSet OpenPbr::needed_beside(const OpenPbr& other) const noexcept {
   PartSet parts;
   parts[film] = differ(&P::thin_film_ior, &P::thin_film_thickness);
   parts[facets] = base_alpha_ != other.base_alpha_;
-  parts[diffuse] = differ(&P::base_weight, &P::base_color, &P::base_diffuse_roughness);
+  parts[base_diffuse] = differ(&P::base_weight, &P::base_color, &P::base_diffuse_roughness);
   const bool lit = parts[film] || parts[facets] || differ(&P::thin_film_weight, &P::specular_color);
   parts[gloss] = lit || base_ior_ != other.base_ior_;
   parts[metal] = lit || metal_f0_ != other.metal_f0_ || differ(&P::specular_weight);
@@ -378,7 +378,7 @@ OpenPbr::PartSet OpenPbr::needed_beside(const OpenPbr& other) const noexcept {
 void OpenPbr::compute(const PartSet& which, const Geometry& g, Parts& parts) const noexcept {
   if (which[film]) parts.film = Film(p_.thin_film_ior, p_.thin_film_thickness, g.cos_d);
   if (which[facets]) parts.facets = highlight(base_alpha_, g);
-  if (which[diffuse]) parts.diffuse = diffuse_base(g);
+  if (which[base_diffuse]) parts.diffuse = diffuse_base(g);
   if (which[gloss]) parts.gloss = gloss_layer(parts, g);
   if (which[metal]) parts.metal = metal_base(parts, g);
   if (which[coating]) parts.coating = coat_layer(g);

@@ -112,7 +112,7 @@ class OpenPbr {
   struct Parts;
 
   /// What a value is put together from, in the order in which one needs another.
-  enum Part { film, facets, diffuse, gloss, metal, coating, fuzz, part_count };
+  enum Part { film, facets, base_diffuse, gloss, metal, coating, fuzz, part_count };
   using PartSet = std::bitset<part_count>;
 
   /// GGX roughnesses: along the tangent, across, and their geometric mean.
