@@ -132,10 +132,6 @@ std::vector<std::size_t> corners(const Groups& groups, std::size_t count, std::s
   return found;
 }
 
-}  // namespace
-
-namespace {
-
 SampledTexels empty_sample(const CaptureForm& form, std::size_t most_values, std::uint64_t seed) {
   const std::size_t pictures = form.pictures.size();
   SampledTexels found;

@@ -409,8 +409,8 @@ class SurfaceFitter {
   }
 
   /// How much lobes are fitted to a pixel. Before they have been refined once, it is they that are wrong. Where
-  /// highlights are clipped, the few that are not say how bright lobes are, and look like outliers until lobes are: while
-  /// they have few nodes, only large errors count against a pixel.
+  /// highlights are clipped, the few that are not say how bright lobes are, and look like outliers until lobes are:
+  /// while they have few nodes, only large errors count against a pixel.
   float trusts(std::size_t pixel) const noexcept {
     if (rounds_done_ == 0) return 1;
     const float trust = fits_.trust[pixel];

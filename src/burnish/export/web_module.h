@@ -15,8 +15,8 @@ std::string three_module(const FactoredBrdf& brdf, const std::string& name);
 std::string three_module(const SpatialBrdf& surface, const std::string& name);
 std::string babylon_module(const FactoredBrdf& brdf, const std::string& name);
 
-/// What scripts of web/ read of a surface: name, expression, shader, textures of the lobes, maps, and whether places have
-/// a frame. Throws Error as generate_shader does.
+/// What scripts of web/ read of a surface: name, expression, shader, textures of the lobes, maps, and whether places
+/// have a frame. Throws Error as generate_shader does.
 nlohmann::json web_model(const SpatialBrdf& surface, const std::string& name);
 
 }  // namespace burnish

@@ -13,8 +13,8 @@ namespace burnish {
 /// least two. Throws Error for neither, or a power that is not finite or below zero.
 Illuminant open_illuminant(const std::string& spec);
 
-/// rec709_weights of a file's wavelengths under open_illuminant(spec). Throws Error as they do, naming the file where its
-/// wavelengths are what is wrong.
+/// rec709_weights of a file's wavelengths under open_illuminant(spec). Throws Error as they do, naming the file where
+/// its wavelengths are what is wrong.
 std::vector<std::array<double, 3>> rec709_weights_of(const std::string& file,
                                                      std::span<const double> lambda_nm,
                                                      const std::string& spec);

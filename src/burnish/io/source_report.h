@@ -24,9 +24,9 @@ SourceReport report_on(const Source& source);
 
 /// A JSON object, indented by two spaces: name, format, description, channels, isotropic, lambda_nm,
 /// illuminant, conventions, samples, holes, negatives, most_negative, theta_i_deg and theta_o_deg (ranges
-/// covered), reciprocity_error, reciprocity_pairs, of isotropic sources mirror_asymmetry, albedo (of it clamped_albedo, where values below zero are
-/// cut); of a compressed BRDF bytes; of a model
-/// table_bytes, lobes, scales, expression, reciprocal, tables.
+/// covered), reciprocity_error, reciprocity_pairs, of isotropic sources mirror_asymmetry, albedo (of it clamped_albedo,
+/// where values below zero are cut); of a compressed BRDF bytes; of a model table_bytes, lobes, scales, expression,
+/// reciprocal, tables.
 std::string to_json(const SourceReport& report);
 
 }  // namespace burnish

@@ -22,8 +22,8 @@ inline constexpr double kAlbedoTolerance = 0.005;
 /// rings around the mirror direction, their radii spaced as squares so that narrow peaks are met, each ring
 /// cut exactly at the horizon. The number of rings (and that of points on a ring, half as many) doubles from
 /// 64 until no channel changes by more than `tolerance` of itself or of the channels' mean, whichever is larger, up to
-/// 512. Within `tolerance` of the integral for Lambertian surfaces, cosine lobes up to exponent 10^5 and GGX down to alpha 0.02, up to 85
-/// degrees; peaks away from the mirror direction that fall between the first rings go unseen.
+/// 512. Within `tolerance` of the integral for Lambertian surfaces, cosine lobes up to exponent 10^5 and GGX down to
+/// alpha 0.02, up to 85 degrees; peaks away from the mirror direction that fall between the first rings go unseen.
 DirectionalAlbedo directional_albedo(BrdfRef source, Vec3 wi, double tolerance = kAlbedoTolerance);
 
 /// The albedo of light from one direction, in radians.

@@ -23,8 +23,8 @@ struct SurfaceModel {
 /// lobes version 1 is written. parse_surface restores all to the last bit. Throws Error as format_compact does.
 std::string format_surface(const SurfaceModel& surface);
 
-/// Throws Error, naming file and offset, if the bytes are no such file or contradict themselves in any way. Memory taken
-/// is at most a fixed multiple of the file's size.
+/// Throws Error, naming file and offset, if the bytes are no such file or contradict themselves in any way. Memory
+/// taken is at most a fixed multiple of the file's size.
 SurfaceModel parse_surface(const FileBytes& file);
 
 /// True if the bytes start as a surface's `.burnish` does.

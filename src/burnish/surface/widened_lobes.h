@@ -12,8 +12,8 @@ namespace burnish {
 /// other lookups are shared: the lobe's mean profile over half vectors, convolved with a normal distribution of slopes,
 /// over itself. Each copy's peak is 0.18 of that of the one before, up to the largest variance of the normals; lobes
 /// without a highlight get none, and lobes stay at most kMaxSurfaceLobes, the brightest peaks first. Level 0 stays as
-/// it is: copies have weights in other levels alone (see WidenedLobe). Returns the surface as it is if it has no normals
-/// or copies already. Deterministic.
+/// it is: copies have weights in other levels alone (see WidenedLobe). Returns the surface as it is if it has no
+/// normals or copies already. Deterministic.
 SpatialBrdf with_widened_lobes(const SpatialBrdf& surface);
 
 }  // namespace burnish

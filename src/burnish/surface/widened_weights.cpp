@@ -8,8 +8,8 @@ namespace burnish {
 
 namespace {
 
-/// Means over the texels that one covers: a lobe's weights, and their mean over the channels times the normal's x, y and
-/// squared length of these.
+/// Means over the texels that one covers: a lobe's weights, and their mean over the channels times the normal's x, y
+/// and squared length of these.
 struct Moments {
   std::array<double, kMaxMapChannels> weight{};
   double x = 0, y = 0, square = 0;

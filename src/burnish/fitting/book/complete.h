@@ -44,8 +44,8 @@ struct Completion {
 /// the pairs [Rasmussen 2006, eq. 2.23]. A material's logarithm is the book's mean, or that of one of its
 /// materials, plus its components with normal weights, plus what is smooth and not in the book, plus noise; how far
 /// each may go (CompletionPrior) is weighed by how likely it makes the pairs [Rasmussen 2006, eq. 5.8], of a list of
-/// values. Far from pairs the book speaks, near them they do. The same bits whatever the number of threads. Throws Error
-/// where the samples are anisotropic, have neither one channel (grey) nor three, or none lies above the horizon,
+/// values. Far from pairs the book speaks, near them they do. The same bits whatever the number of threads. Throws
+/// Error where the samples are anisotropic, have neither one channel (grey) nor three, or none lies above the horizon,
 /// and where the book has no materials.
 Completion complete(const MaterialBook& book, const Samples& samples,
                     TableFormat format = TableFormat::rgb9e5);

@@ -26,9 +26,9 @@ struct SmoothTrial {
 
 /// Finds the smoothness with the smallest held_out_error. First smooth = 10^k for falling k from -1 to -10 until
 /// two decades in a row do not help; then, for each table in turn, twice, ever smaller or larger shares by
-/// factors of ten as long as that helps; then half a decade either way. Five folds, or one a sample; for more than 20,000
-/// samples, where little hangs on it, two folds without reweighting, and all tables alike. Returns all
-/// trials, the best first. options.progress is called with the share of the trials that are expected.
+/// factors of ten as long as that helps; then half a decade either way. Five folds, or one a sample; for more than
+/// 20,000 samples, where little hangs on it, two folds without reweighting, and all tables alike. Returns all trials,
+/// the best first. options.progress is called with the share of the trials that are expected.
 std::vector<SmoothTrial> choose_smoothness(const SampleSource& source, const ModelSpec& spec,
                                            const HomomorphicOptions& options);
 
