@@ -37,6 +37,14 @@ TEST(CommandLine, SaysWhatAMisspeltWordMayHaveMeant) {
     EXPECT_EQ(outcome.status, 2) << arguments;
     EXPECT_THAT(first_line(outcome), HasSubstr(fmt::format("did you mean {}?", meant)));
   }
+  // values of options, parameters of models, topics
+  for (const auto& [arguments, meant] :
+       {std::pair{"export x -o y --to matrialx", "'materialx'"}, std::pair{"convert ggx a --to cvs", "'csv'"},
+        std::pair{"render ggx --renderer cpuu", "'cpu'"}, std::pair{"fit ggx -o x --method nfm", "'nmf'"},
+        std::pair{"info openpbr:base_colr=1", "'base_color'"}, std::pair{"info ggx:alhpa_x=1", "'alpha_x'"},
+        std::pair{"help formts", "'formats'"}})
+    EXPECT_THAT(first_line(burnish(arguments)), HasSubstr(fmt::format("; did you mean {}?", meant)))
+        << arguments;
   EXPECT_THAT(first_line(burnish("gibberish")), testing::Not(HasSubstr("did you mean")));
   for (const char* model : {"ggxx", "beckman:alpha_x=0.1", "lambertt"}) {
     const Outcome outcome = burnish(fmt::format("info {}", model));

@@ -154,7 +154,7 @@ void add_export_arguments(CLI::App& verb, BatchArguments& arguments) {
   ExportOptions& exports = arguments.batch.exports;
   CLI::Option* to =
       verb.add_option("--to", arguments.to, "also export each as this; may be given several times")
-          ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())))
+          ->check(one_of({names.begin(), names.end()}))
           ->allow_extra_args(false)
           ->excludes("--method");
   verb.add_flag("--exact", exports.exact, "of --to: shaders that weigh texels themselves, in floats")

@@ -14,6 +14,7 @@
 #include "commands.h"
 #include "comparison.h"
 #include "source_arguments.h"
+#include "usage.h"
 
 namespace burnish::cli {
 
@@ -162,7 +163,7 @@ void add_compare_command(CLI::App& app) {
       ->capture_default_str();
   verb->add_option("--target", arguments->target,
                    "score the function between what was measured too, or nodes: only what was measured")
-      ->check(CLI::IsMember({"function", "nodes"}))
+      ->check(one_of({"function", "nodes"}))
       ->capture_default_str();
   verb->add_option("--only", arguments->only,
                    "score these nodes only: half=0, half=1 (of a checkerboard) or theta_i=K, counted from 0");

@@ -11,6 +11,7 @@
 #include "commands.h"
 #include "json_output.h"
 #include "source_arguments.h"
+#include "usage.h"
 
 namespace burnish::cli {
 
@@ -61,7 +62,7 @@ void add_convert_command(CLI::App& app) {
           "format; by default what OUT ends in: .binary (merl), .bin (utia), .bsdf (rgl), .mbsdf, .xml "
           "(tensortree), .xompt (openmaterial), .astm, .csv, .exr (of a model: model, its OpenEXR file; "
           "else slices), .burnish")
-      ->check(CLI::IsMember(std::vector<std::string>(kConvertFormats.begin(), kConvertFormats.end())));
+      ->check(one_of({kConvertFormats.begin(), kConvertFormats.end()}));
   verb->add_option("--cells", arguments->options.cells,
                    "along each polar angle of MERL, MBSDF and EXR, twice as many along the azimuth")
       ->check(CLI::Range(2, 1000))

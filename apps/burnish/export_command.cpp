@@ -132,7 +132,7 @@ void add_export_command(CLI::App& app) {
   const auto names = export_target_names();
   verb->add_option("--to", arguments->to, "what to write; may be given several times")
       ->required()
-      ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())));
+      ->check(one_of({names.begin(), names.end()}));
   verb->add_option("-o,--output,--out", arguments->folder, "folder, made where it is missing")->required();
   verb->add_option("--name", arguments->name, "of functions and files; by default from MODEL's name");
   verb->add_option(

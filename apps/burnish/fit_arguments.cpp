@@ -93,7 +93,7 @@ void add_lobes_arguments(CLI::App& verb, FitArguments& arguments) {
   verb.add_option(
           "--loss", arguments.loss,
           "what several lobes are refined for: pictures at every exposure beside both means, or one mean")
-      ->check(CLI::IsMember({"image", "relative", "log_cos"}))
+      ->check(one_of({"image", "relative", "log_cos"}))
       ->capture_default_str();
   verb.add_flag("--search", budget.search,
                 "of --budget: search factors, projections, warps and sizes first (up to a minute)")
@@ -139,7 +139,7 @@ void add_fit_arguments(CLI::App& verb, FitArguments& arguments) {
       "samples; of volumes what predicts measured nodes best, which takes noise away)");
   verb.add_option("--target", arguments.target,
                   "fit the function that the source's owner makes of it, or nodes: what was measured")
-      ->check(CLI::IsMember({"function", "nodes"}))
+      ->check(one_of({"function", "nodes"}))
       ->capture_default_str();
   verb.add_option("--hold-out", arguments.hold_out,
                   "of --target nodes: leave these out, half=0, half=1 (of a checkerboard) or theta_i=K, "
@@ -161,7 +161,7 @@ void add_fit_arguments(CLI::App& verb, FitArguments& arguments) {
           "--format", arguments.format,
           "of the stored tables (default: half; with --budget and three channels rgb9e5, which leaves shared "
           "tables half)")
-      ->check(CLI::IsMember({"half", "float", "rgb9e5", "unorm8"}));
+      ->check(one_of({"half", "float", "rgb9e5", "unorm8"}));
   verb.add_flag(
       "--no-symmetrize", arguments.no_symmetrize,
       "fit f(wi, wo) as it is, not its reciprocal part; with --budget an isotropic model gets tables\n"

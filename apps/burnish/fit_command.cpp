@@ -267,7 +267,7 @@ void add_material_arguments(CLI::App& verb, FitCommand& arguments) {
       verb.add_option("--to", arguments.to,
                       fmt::format("fit a renderer's material instead, its parameters written as JSON: {}",
                                   fmt::join(targets, ", ")));
-  to->check(CLI::IsMember(std::vector<std::string>(targets.begin(), targets.end())));
+  to->check(one_of({targets.begin(), targets.end()}));
   for (const char* of_factors :
        {"--budget", "--fetches", "--lobes", "--search", "--loss", "--method", "--model", "--table",
         "--smooth", "--target", "--hold-out", "--floor", "--reweightings", "--samples", "--seed", "--format",

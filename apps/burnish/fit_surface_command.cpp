@@ -14,6 +14,7 @@
 
 #include "commands.h"
 #include "progress.h"
+#include "usage.h"
 
 namespace burnish::cli {
 
@@ -121,7 +122,7 @@ void add_fit_surface_command(CLI::App& app, FitCrew* crew) {
   verb->add_option(
           "--normals", arguments->normals,
           "those of the capture, none (flat) or estimated; auto: the capture's, estimated where it has none")
-      ->check(CLI::IsMember({"auto", "capture", "flat", "estimate"}))
+      ->check(one_of({"auto", "capture", "flat", "estimate"}))
       ->capture_default_str();
   verb->add_option("--rounds", options.rounds, "of lobes and weights in turn")
       ->check(CLI::Range(1, 100))

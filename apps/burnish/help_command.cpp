@@ -10,6 +10,7 @@
 #include "command_description.h"
 #include "commands.h"
 #include "json_output.h"
+#include "usage.h"
 
 namespace burnish::cli {
 
@@ -71,7 +72,13 @@ const CLI::App& verb_of_names(const CLI::App& app, const std::vector<std::string
   const CLI::App* verb = &app;
   for (const std::string& name : names) {
     const auto found = verb->get_subcommands([&](const CLI::App* each) { return each->get_name() == name; });
-    if (found.empty()) throw CLI::ValidationError("help", "expected formats or a verb, found '" + name + "'");
+    if (found.empty()) {
+      std::vector<std::string> known{"formats"};
+      for (const CLI::App* each : verb->get_subcommands([](const CLI::App*) { return true; }))
+        known.push_back(each->get_name());
+      throw CLI::ValidationError(
+          "help", fmt::format("expected formats or a verb, found '{}'{}", name, suggestion(name, known)));
+    }
     verb = found.front();
   }
   return *verb;

@@ -12,6 +12,7 @@
 
 #include "commands.h"
 #include "json_output.h"
+#include "usage.h"
 
 namespace burnish::cli {
 namespace {
@@ -37,7 +38,7 @@ std::shared_ptr<UnitArguments> add_unit_options(CLI::App& sub) {
   sub.add_option("--out-bits", arguments->config.output_bits, "width of the output")->capture_default_str();
   sub.add_option("--depth", arguments->config.depth, "clocks from input to output; 0: the fewest");
   sub.add_option("--input", arguments->input, "cosine: c; versine: v = 1 - c")
-      ->check(CLI::IsMember({"cosine", "versine"}))
+      ->check(one_of({"cosine", "versine"}))
       ->capture_default_str();
   sub.add_option("--unit", arguments->shipped,
                  "a configuration of hw/ instead of the options above: " + units);

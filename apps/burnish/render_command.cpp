@@ -250,7 +250,7 @@ void add_render_command(CLI::App& app) {
       ->capture_default_str();
   verb->add_option("-o,--output", arguments->out, "picture to write: PNG, or EXR of linear values");
   verb->add_option("--renderer", arguments->renderer, "OpenGL, or the reference on the CPU")
-      ->check(CLI::IsMember({"gl", "cpu"}))
+      ->check(one_of({"gl", "cpu"}))
       ->capture_default_str();
   verb->add_option("--view", arguments->view, "degrees to the right and upwards that the mesh is seen from")
       ->expected(2)
@@ -260,7 +260,7 @@ void add_render_command(CLI::App& app) {
       ->check(CLI::Range(1, 8))
       ->capture_default_str();
   verb->add_option("--tone", arguments->tone, "of a PNG: clamped, or with a filmic curve")
-      ->check(CLI::IsMember({"srgb", "aces"}))
+      ->check(one_of({"srgb", "aces"}))
       ->capture_default_str();
   verb->add_option("--exposure", arguments->exposure,
                    "of a PNG: a factor, or auto: 3 % of the object are white")

@@ -217,7 +217,7 @@ void add_specular_table(CLI::App& verb) {
   sub->footer("Example: burnish specular table --format mem --fraction-bits 8 -o quadratic_a.mem");
   auto arguments = std::make_shared<Arguments>();
   sub->add_option("--format", arguments->format, "csv; c: a C header; mem: a PROM image for $readmemh")
-      ->check(CLI::IsMember({"csv", "c", "mem"}))
+      ->check(one_of({"csv", "c", "mem"}))
       ->capture_default_str();
   sub->add_option("--count", arguments->count, "largest exponent")->capture_default_str();
   sub->add_option("--fraction-bits", arguments->fraction_bits, "of the PROM's fixed point words")

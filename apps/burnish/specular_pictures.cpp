@@ -124,7 +124,7 @@ void add_specular_plot(CLI::App& verb) {
       "lobe.svg");
   auto arguments = std::make_shared<Arguments>();
   sub->add_option("--figure", arguments->figure, "what to draw")
-      ->check(CLI::IsMember({"2a", "2b", "3", "coefficient", "front", "sphere"}))
+      ->check(one_of({"2a", "2b", "3", "coefficient", "front", "sphere"}))
       ->capture_default_str();
   sub->add_option("--method", arguments->methods, "members, see `specular list`")->capture_default_str();
   sub->add_option("--exponent", arguments->exponents, "exponents")->capture_default_str();

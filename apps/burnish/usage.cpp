@@ -1,9 +1,11 @@
 #include "usage.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <burnish/math/closest_name.h>
 
@@ -27,12 +29,22 @@ std::vector<std::string> options_of(const CLI::App& app) {
   return names;
 }
 
+}  // namespace
+
 std::string suggestion(std::string_view word, const std::vector<std::string>& names) {
   const std::vector<std::string_view> views(names.begin(), names.end());
   return did_you_mean(word, views);
 }
 
-}  // namespace
+CLI::Validator one_of(std::vector<std::string> names) {
+  std::string description = fmt::format("{{{}}}", fmt::join(names, ","));
+  const auto check = [names = std::move(names)](std::string& value) {
+    if (std::find(names.begin(), names.end(), value) != names.end()) return std::string();
+    return fmt::format("expected one of {}, found '{}'{}", fmt::join(names, ", "), value,
+                       suggestion(value, names));
+  };
+  return {check, std::move(description)};
+}
 
 std::string short_message(std::string_view message) {
   std::string line(message.substr(0, message.find_last_not_of("\r\n \t") + 1));

@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -20,6 +21,12 @@ auto usage(F f) -> decltype(f()) {
     throw CLI::ValidationError(error.what());
   }
 }
+
+/// That an option's value is one of these; of another it says which it may have meant.
+CLI::Validator one_of(std::vector<std::string> names);
+
+/// "; did you mean 'NAME'?" of the name that is closest to a misspelt word, or nothing.
+std::string suggestion(std::string_view word, const std::vector<std::string>& names);
 
 /// What is said of an error: one line of at most 299 characters, of longer ones the beginning and the end.
 std::string short_message(std::string_view message);

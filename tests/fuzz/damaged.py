@@ -20,7 +20,7 @@ import tempfile
 import time
 
 MOST_BYTES, MOST_SECONDS, LONGEST_LINE = 1 << 30, 5, 309
-LARGE = 100_000  # larger files are taken once in SELDOM times: they are read more slowly
+LARGE = 100_000  # larger files, and networks of 800,000 weights, are taken once in SELDOM times: they take longer
 SELDOM = 200
 READS = ("info", "convert", "eval", "measure")  # what does not more than read and write names the file
 NO_SOURCE = {".f32", ".fit", ".ktx2", ".js", ".html"}
@@ -166,7 +166,8 @@ def sources(folders):
             data = path.read_bytes()
             if not data or path.suffix in NO_SOURCE or path.name == "codes.csv":  # parts of sources
                 continue
-            (small if len(data) <= LARGE else large).append((KINDS.get(path.name, "source"), path.name, data))
+            kind = KINDS.get(path.name, "source")
+            (small if len(data) <= LARGE and kind != "np" else large).append((kind, path.name, data))
     return small, large
 
 

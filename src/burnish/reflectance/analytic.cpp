@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include <burnish/error.h>
+#include <burnish/math/closest_name.h>
 #include <burnish/reflectance/analytic.h>
 
 namespace burnish {
@@ -303,9 +304,12 @@ AnalyticBrdf parse_analytic(std::string_view spec) {
     const auto found =
         std::find_if(model->parameters.begin(), model->parameters.end(),
                      [&](const AnalyticParameter& parameter) { return parameter.name == key; });
-    if (found == model->parameters.end())
-      throw Error(fmt::format("{}: expected NAME=VALUE with one of {}, found '{}'", name,
-                              names(model->parameters), item));
+    if (found == model->parameters.end()) {
+      std::vector<std::string_view> known;
+      for (const AnalyticParameter& parameter : model->parameters) known.push_back(parameter.name);
+      throw Error(fmt::format("{}: expected NAME=VALUE with one of {}, found '{}'{}", name,
+                              names(model->parameters), item, did_you_mean(key, known)));
+    }
     const auto index = static_cast<std::size_t>(found - model->parameters.begin());
     if (given[index]) throw Error(fmt::format("{}: {}: expected once, found again", name, key));
     given[index] = true;

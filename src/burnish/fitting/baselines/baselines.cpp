@@ -9,6 +9,7 @@
 #include <burnish/fitting/baselines/baselines.h>
 #include <burnish/fitting/baselines/dgf_fit.h>
 #include <burnish/fitting/baselines/separable_fit.h>
+#include <burnish/math/closest_name.h>
 
 namespace burnish {
 
@@ -36,7 +37,8 @@ BaselineFit fit_baseline(BrdfRef source, const SampleSource& samples, std::strin
   std::string name(method);
   std::replace(name.begin(), name.end(), '-', '_');
   if (std::find(kMethods.begin(), kMethods.end(), name) == kMethods.end())
-    throw Error(fmt::format("method: expected one of {}, found '{}'", fmt::join(kMethods, ", "), method));
+    throw Error(fmt::format("method: expected one of {}, found '{}'{}", fmt::join(kMethods, ", "), method,
+                            did_you_mean(name, kMethods)));
 
   for (const Decomposition d : {Decomposition::svd, Decomposition::nd, Decomposition::nmf})
     if (name == to_string(d)) {
