@@ -293,11 +293,14 @@ class Converter {
 
   Converted openmaterial() {
     require_grey_or_rgb_or_spectra();
-    // isotropic samples: as they are, a table's entries, or draws
+    // samples as they are but for their orientation, a table's entries, or draws
     std::optional<Samples> made;
     const Samples* samples = source_.samples();
-    if (!brdf_.isotropic()) samples = nullptr;
-    if (!samples && options_.entries && brdf_.isotropic()) {
+    if (samples && !samples->isotropic) {
+      made = *samples;
+      made->isotropic = true;
+      lose("the orientation of {} samples: only the azimuth between wi and wo is kept", made->size());
+    } else if (!samples && options_.entries && brdf_.isotropic()) {
       made = table_entries(source_);
       lose("the table's grid: {} entries became scattered samples", made->size());
     } else if (!samples) {

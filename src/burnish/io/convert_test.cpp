@@ -160,6 +160,24 @@ TEST(Convert, ScatteredSamplesStayBetweenCsvAndAstm) {
   }
 }
 
+TEST(Convert, ScatteredSamplesKeepTheirAnglesInAnIsotropicFormat) {
+  const Source csv = reread(convert(open_source(kBrushed, {}), "csv", kSmall));
+  ASSERT_FALSE(csv.ref().isotropic());
+  const Converted converted = convert(csv, "openmaterial", kSmall);
+  EXPECT_THAT(converted.losses, Contains(HasSubstr("the orientation of 300 samples")));
+  const Source read = reread(converted);
+  EXPECT_TRUE(read.ref().isotropic());
+  const Samples &from = *csv.samples(), &to = *read.samples();
+  ASSERT_EQ(to.size(), from.size());
+  for (const DirectionPair& a : from.pairs) {
+    double nearest = 1;
+    for (const DirectionPair& b : to.pairs)
+      nearest = std::min(nearest, std::abs(a.wi.z - b.wi.z) + std::abs(a.wo.z - b.wo.z) +
+                                      std::abs(dot(a.wi, a.wo) - dot(b.wi, b.wo)));
+    ASSERT_LT(nearest, kTolerance);
+  }
+}
+
 constexpr const char* kSpectra =
     "# isotropic\ntheta_i,phi_i,theta_o,phi_o,value_450,value_550,value_600,value_650\n"
     "10,0,20,180,0.1,0.2,0.3,0.4\n30,0,20,180,0.2,0.3,0.4,0.5\n10,0,60,180,0.3,0.4,0.5,0.6\n"

@@ -50,7 +50,7 @@ Samples measure(BrdfRef source, const MeasureOptions& options) {
   while (samples.size() < options.count) {
     const DirectionPair pair = draw_pair(random, false);
     if (!source.eval(pair.wi, pair.wo, f)) {
-      if (++unknown > 100 * (options.count + 10))
+      if (++unknown > 100 * (samples.size() + 10))
         throw Error("the source knows too few direction pairs to measure");
       continue;
     }
