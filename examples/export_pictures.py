@@ -11,7 +11,7 @@ in FOLDER/node_modules, and Chromium; and a Python with bpy (Blender), by defaul
 is named and left out.
 
 OpenPBR is a node of MaterialX and has the KHR extensions of glTF. three.js and Mitsuba have no such material and get its
-formulas; so does Babylon.js, whose own material of that name is drawn beside it.
+formulas; so does Babylon.js, whose own material of that name is drawn last.
 """
 import argparse
 import base64
@@ -384,9 +384,8 @@ def jobs_of(cli, model, openpbr, arguments, folder):
         b = exported(cli, openpbr, folder / "openpbr", "materialx", "three", "babylon", "gltf", "usda")
         rows.append(("OpenPBR", openpbr,
                      [("MaterialX GLSL", lambda: in_materialx(b / "m.mtlx", size, b), True), *web(b),
-                      ("Babylon's own", lambda: babylon_own(b), False),
                       ("Mitsuba", lambda: in_mitsuba({"type": "burnish", "filename": openpbr}, size, b), True),
-                      *blender(b)]))
+                      *blender(b), ("Babylon's own", lambda: babylon_own(b), False)]))
     return rows
 
 
