@@ -10,8 +10,8 @@ all of them as one sheet. Needs numpy, materialx, moderngl, mitsuba and the pack
 in FOLDER/node_modules, and Chromium; and a Python with bpy (Blender), by default this one. A program that is missing
 is named and left out.
 
-OpenPBR is a node of MaterialX and has the KHR extensions of glTF. three.js and Mitsuba have no such material and get its
-formulas; so does Babylon.js, whose own material of that name is drawn last.
+OpenPBR is a node of MaterialX and has the KHR extensions of glTF. three.js and Mitsuba have no such material and get
+its formulas; so does Babylon.js, whose own material of that name is drawn last.
 """
 import argparse
 import base64

@@ -151,7 +151,8 @@ const kSide = 64, kSamples = 4;  // pixels of --size, and of each --samples alon
 for (const shown of [name, "openpbr"]) {
   const truth = new EXRLoader().setDataType(THREE.FloatType).parse(bytes(`${shown}.sphere.exr`).buffer);
   assert.deepEqual([truth.width, truth.height], [kSide, kSide]);
-  const lit = truth.data.filter((value, i) => i % 4 < 3 && value > 0).sort(), exposure = 1 / lit[Math.floor(0.97 * lit.length)];
+  const lit = truth.data.filter((value, i) => i % 4 < 3 && value > 0).sort();
+  const exposure = 1 / lit[Math.floor(0.97 * lit.length)];
   const level = (value) => Math.min(Math.max(exposure * value, 0), 1);
   const pictures = spheres(shown);
   for (const program of ["three.js", "Babylon.js"]) {
@@ -172,7 +173,8 @@ function spheres(shown) {
 import * as THREE from "${modules("three/build/three.module.js")}";
 import {createMaterial as createThree} from "./${shown}.three.js";
 import {createMaterial as createBabylon} from "./${shown}.babylon.js";
-const n = ${kSamples}, small = ${kSide}, side = n * small, fov = 0.6, far = 1.04 / Math.sin(fov / 2), lamp = [2, 3, 4], intensity = 20;
+const n = ${kSamples}, small = ${kSide}, side = n * small, fov = 0.6, far = 1.04 / Math.sin(fov / 2);
+const lamp = [2, 3, 4], intensity = 20;
 const positions = [], tangents = [], indices = [], columns = 256, rows = 128;
 for (let j = 0; j <= rows; ++j)
   for (let i = 0; i <= columns; ++i) {
@@ -204,7 +206,8 @@ renderer.render(scene, camera);
 const pixels = new Float32Array(4 * side * side);
 renderer.readRenderTargetPixels(target, 0, 0, side, side, pixels);
 
-const square = Object.assign(document.createElement("canvas"), {width: small, height: small});  // its shape is the camera's
+// the canvas has the camera's shape
+const square = Object.assign(document.createElement("canvas"), {width: small, height: small});
 const engine = new BABYLON.Engine(square), world = new BABYLON.Scene(engine);
 world.useRightHandedSystem = true;
 world.clearColor = new BABYLON.Color4(0, 0, 0, 0);
@@ -222,7 +225,8 @@ Object.assign(drawn, {clearColor: world.clearColor, activeCamera: eye, renderLis
 await world.whenReadyAsync();
 while (!ball.material.isReady(ball)) await new Promise((next) => setTimeout(next, 20));
 drawn.render();
-document.body.dataset.result = JSON.stringify({"three.js": averaged(pixels), "Babylon.js": averaged(await drawn.readPixels())});
+const drawings = {"three.js": averaged(pixels), "Babylon.js": averaged(await drawn.readPixels())};
+document.body.dataset.result = JSON.stringify(drawings);
 </script></body>`);
   return JSON.parse(resultOf(place).replaceAll("&quot;", '"'));
 }

@@ -50,10 +50,9 @@ struct ExprColor {
 
   ExprColor() = default;
   ExprColor(Expr red, Expr green, Expr blue) : r(std::move(red)), g(std::move(green)), b(std::move(blue)) {}
-  ExprColor(const Expr& grey) : ExprColor(grey, grey, grey) {}  // NOLINT: as Rgb
-  ExprColor(double grey) : ExprColor(Expr(grey)) {}             // NOLINT: likewise
-  ExprColor(const Rgb& color)
-      : ExprColor(color.r, color.g, color.b) {}  // NOLINT: a colour is one of constants
+  ExprColor(const Expr& grey) : ExprColor(grey, grey, grey) {}           // NOLINT: as Rgb
+  ExprColor(double grey) : ExprColor(Expr(grey)) {}                      // NOLINT: likewise
+  ExprColor(const Rgb& color) : ExprColor(color.r, color.g, color.b) {}  // NOLINT: of constants
 
   friend ExprColor operator+(const ExprColor& p, const ExprColor& q) {
     return {p.r + q.r, p.g + q.g, p.b + q.b};
