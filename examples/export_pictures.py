@@ -10,9 +10,8 @@ all of them as one sheet. Needs numpy, materialx, moderngl, mitsuba and the pack
 in FOLDER/node_modules, and Chromium; and a Python with bpy (Blender), by default this one. A program that is missing
 is named and left out.
 
-OpenPBR is a node of MaterialX and has the KHR extensions of glTF. three.js and Mitsuba have no such material, and
-Babylon.js one with formulas of its own, so a factored model of the parameters stands for it there: --openpbr-model, or
-else fitted. Babylon's own is drawn beside it.
+OpenPBR is a node of MaterialX and has the KHR extensions of glTF. three.js and Mitsuba have no such material and get
+its formulas; so does Babylon.js, whose own material of that name is drawn last.
 """
 import argparse
 import base64
@@ -349,7 +348,7 @@ def encoded(picture):
     return (255 * np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055) + 0.5).astype("u1")
 
 
-def jobs_of(cli, model, openpbr, openpbr_model, arguments, folder):
+def jobs_of(cli, model, openpbr, arguments, folder):
     """Rows of names and (heading, what draws, whether the program has all of the model)."""
     npm = pathlib.Path(arguments.npm or folder).resolve() / "node_modules"
     three, babylon = npm / "three/build/three.module.js", npm / "babylonjs/babylon.js"
@@ -382,13 +381,11 @@ def jobs_of(cli, model, openpbr, openpbr_model, arguments, folder):
                                  ("Mitsuba", lambda: in_mitsuba({"type": "burnish", "filename": model}, size, a), True),
                                  *blender(a)])]
     if openpbr:
-        b = exported(cli, openpbr, folder / "openpbr", "materialx", "gltf", "usda")
-        exported(cli, openpbr_model, b / "web", "three", "babylon")
+        b = exported(cli, openpbr, folder / "openpbr", "materialx", "three", "babylon", "gltf", "usda")
         rows.append(("OpenPBR", openpbr,
-                     [("MaterialX GLSL", lambda: in_materialx(b / "m.mtlx", size, b), True), *web(b / "web"),
-                      ("Babylon's own", lambda: babylon_own(b), False),
-                      ("Mitsuba", lambda: in_mitsuba({"type": "burnish", "filename": openpbr_model}, size, b), True),
-                      *blender(b)]))
+                     [("MaterialX GLSL", lambda: in_materialx(b / "m.mtlx", size, b), True), *web(b),
+                      ("Mitsuba", lambda: in_mitsuba({"type": "burnish", "filename": openpbr}, size, b), True),
+                      *blender(b), ("Babylon's own", lambda: babylon_own(b), False)]))
     return rows
 
 
@@ -414,7 +411,6 @@ def main():
     parser.add_argument("model", help="a factored BRDF of three channels, as `burnish fit` writes it")
     parser.add_argument("--measurement", help="what it was fitted to")
     parser.add_argument("--openpbr", help="OpenPBR: openpbr:NAME=VALUE,... or what `burnish fit --to openpbr` writes")
-    parser.add_argument("--openpbr-model", help="a factored model of them")
     parser.add_argument("--npm", help="folder with node_modules that have three and babylonjs")
     parser.add_argument("--blender", default=sys.executable, help="a Python with bpy")
     parser.add_argument("--size", type=int, default=160)
@@ -424,14 +420,10 @@ def main():
 
     with tempfile.TemporaryDirectory() as scratch:
         folder = pathlib.Path(scratch)
-        openpbr_model = arguments.openpbr_model and os.path.abspath(arguments.openpbr_model)
-        if arguments.openpbr and not openpbr_model:
-            openpbr_model = str(folder / "openpbr.exr")
-            subprocess.run([cli, "fit", arguments.openpbr, "-o", openpbr_model], check=True, stdout=subprocess.DEVNULL)
         pictures, labels = [], []
         first = arguments.measurement or model
         exposure = exposure_of(in_burnish(cli, first, arguments.size, folder))
-        for name, reference, jobs in jobs_of(cli, model, arguments.openpbr, openpbr_model, arguments, folder):
+        for name, reference, jobs in jobs_of(cli, model, arguments.openpbr, arguments, folder):
             truth = in_burnish(cli, reference, arguments.size, folder)
             row, names = [], []
             if arguments.measurement:

@@ -136,7 +136,7 @@ TEST_F(Export, WritesOpenPbrAsParameters) {
   EXPECT_TRUE(read(folder_ / "out/openpbr.glb").starts_with("glTF"));
   EXPECT_THAT(read(folder_ / "out/openpbr.usda"), HasSubstr("inputs:coat_weight = 1\n"));
   EXPECT_EQ(run(fmt::format("{} export openpbr:coat_weight=2{}", BURNISH_CLI, files)).status, 1);
-  EXPECT_EQ(run(fmt::format("{} export openpbr --to three -o {}", BURNISH_CLI, folder_.string())).status, 1);
+  EXPECT_EQ(run(fmt::format("{} export openpbr --to ktx2 -o {}", BURNISH_CLI, folder_.string())).status, 1);
   EXPECT_EQ(run(fmt::format("{} export openpbr --power w8{}", BURNISH_CLI, files)).status, 2);
 }
 

@@ -114,7 +114,7 @@ void add_export_command(CLI::App& app) {
       "Write a factored BRDF as shaders, textures, MaterialX, USD, MDL, glTF, a module of "
       "three.js or Babylon.js, an RGL table, or a page that shows it; a surface as shaders and textures, "
       "for three.js or as a page; "
-      "OpenPBR as files of these formats; or Phong's and Blinn's models as shaders");
+      "OpenPBR as all of these but textures; or Phong's and Blinn's models as shaders");
   verb->footer(
       "Every shader comes with its textures but C++, which has them inside; NAME.json says what is in the "
       "folder and what an evaluation costs. See docs/guide/shaders.md and docs/guide/export.md.\n"
@@ -122,7 +122,7 @@ void add_export_command(CLI::App& app) {
       "          burnish export paint.exr --to glsl_es --to html --environment studio -o paint\n"
       "          burnish export paint.exr --to materialx --to usda -o paint\n"
       "          burnish export wall.burnish --to glsl --to hlsl -o wall\n"
-      "          burnish export openpbr:coat_weight=1 --to materialx --to gltf -o coated\n"
+      "          burnish export openpbr:coat_weight=1 --to materialx --to three --to glsl -o coated\n"
       "          burnish export blinn_phong:exponent=60,ks=0.8 --to wgsl --power cubic2 -o highlight");
   auto arguments = std::make_shared<ExportArguments>();
   verb->add_option("MODEL", arguments->model,

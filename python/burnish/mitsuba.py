@@ -1,10 +1,13 @@
-"""The BSDF plugin `burnish` of Mitsuba 3: a factored BRDF from its native file.
+"""The BSDF plugin `burnish` of Mitsuba 3: a factored BRDF from its native file, or OpenPBR.
 
     import mitsuba as mi
     mi.set_variant("llvm_ad_rgb")
     import burnish.mitsuba
     burnish.mitsuba.register()
     bsdf = mi.load_dict({"type": "burnish", "filename": "paint.exr"})
+    coat = mi.load_dict({"type": "burnish", "filename": "openpbr:coat_weight=1"})
+
+OpenPBR is a spec as above or what `burnish fit --to openpbr` writes, and its formulas are OpenPBR's own.
 
 In the JIT variants (llvm_*_rgb, cuda_*_rgb) evaluation, sampling and densities are compiled with the scene, and the
 logarithms of the tables are differentiable parameters: `p.log_values` of table p, a tensor of the shape of
@@ -13,7 +16,7 @@ its values. scalar_rgb calls the C++ library, one direction at a time.
 Mitsuba's si.wi points to the viewer: it is the library's wo, and Mitsuba's wo its wi. Only models that are not
 reciprocal tell the difference. Mitsuba's own `measured` takes si.wi for the first direction of a file, which is our wi,
 and a model of that file shall look like it: so the directions are exchanged when the value is looked up. With
-`"exchange": False` they are not, and the value is that of light from Mitsuba's wo.
+`"exchange": False` they are not, and the value is that of light from Mitsuba's wo. OpenPBR's are not unless told to.
 """
 
 import drjit as dr
@@ -34,14 +37,11 @@ def register():
 
 def _make_bsdf_class():
     # mi.BSDF is another class in every variant
-    class FactoredBsdf(mi.BSDF):
+    class BurnishBsdf(mi.BSDF):
         def __init__(self, props):
             super().__init__(props)
-            path = str(mi.file_resolver().resolve(props["filename"]))
-            self.model = open_source(path)
-            if not isinstance(self.model, Model) or self.model.lambda_nm or self.model.channels not in (1, 3):
-                raise Error(f"{path}: expected a burnish model of 1 or 3 channels, found {self.model!r}")
-            self.exchange = props.get("exchange", True)
+            self.model = _opened(str(props["filename"]))
+            self.exchange = props.get("exchange", isinstance(self.model, Model))
             kind = mi.BSDFFlags.GlossyReflection | mi.BSDFFlags.FrontSide
             if not self.model.isotropic:
                 kind |= mi.BSDFFlags.Anisotropic
@@ -49,7 +49,7 @@ def _make_bsdf_class():
             self.m_flags = kind
             self.factors = self.sampler = None
             if dr.is_jit_v(mi.Float):
-                self.factors = FactoredFunction(self.model)
+                self.factors = BrdfFunction(self.model)
                 self.sampler = CompiledSampler(self.model)
 
         def traverse(self, callback):
@@ -102,31 +102,43 @@ def _make_bsdf_class():
             return mi.Bool(active) & ctx.is_enabled(mi.BSDFFlags.GlossyReflection, 0)
 
         def to_string(self):
-            return f"FactoredBsdf[{self.model.expression}, {self.model.bytes} bytes]"
+            if isinstance(self.model, Model):
+                return f"BurnishBsdf[{self.model.expression}, {self.model.bytes} bytes]"
+            return f"BurnishBsdf[{self.model.name}]"
 
-    return FactoredBsdf
+    return BurnishBsdf
 
 
-class FactoredFunction:
-    """FactoredBrdf::eval in Dr.Jit: f_r in 1/sr without the cosine, differentiable in `log_values`."""
+def _opened(name):
+    path = name if name.partition(":")[0] == "openpbr" else str(mi.file_resolver().resolve(name))
+    source = open_source(path)
+    if not isinstance(source, Model):
+        source._eval_graph()  # says what it expects
+    elif source.lambda_nm or source.channels not in (1, 3):
+        raise Error(f"{path}: expected a burnish model of 1 or 3 channels, found {source!r}")
+    return source
+
+
+class BrdfFunction:
+    """A factored BRDF, or OpenPBR, in Dr.Jit: f_r in 1/sr without the cosine, differentiable in `log_values`."""
 
     def __init__(self, model):
         self.model = model
         graph, self.textures = model._eval_graph()
         self.formula = Formula(graph)
-        self.log_values = {t.name: mi.TensorXf(np.log(t.values)) for t in model.tables}
+        self.tables = model.tables if isinstance(model, Model) else []
+        self.log_values = {t.name: mi.TensorXf(np.log(t.values)) for t in self.tables}
         self.update()
 
     def update(self):
         """Call after log_values changed."""
-        tables = self.model.tables
         self.values = {
-            name: (tables[i].values.shape[-2], dr.exp(self.log_values[tables[i].name].array))
+            name: (self.tables[i].values.shape[-2], dr.exp(self.log_values[self.tables[i].name].array))
             for name, i in self.textures.items()
         }
 
     def current_model(self):
-        """The model with the tables as they are now, rounded to their formats."""
+        """The model with the tables as they are now, rounded to their formats; of factored BRDFs only."""
         return self.model.with_log_tables([np.array(v, dtype=np.float64) for v in self.log_values.values()])
 
     def eval(self, wi, wo):
@@ -169,6 +181,9 @@ class Formula:
         "floor": lambda a: dr.floor(a),
         "sqrt": lambda a: dr.sqrt(a),
         "power": lambda a, b: a**b,
+        "exp2": lambda a: dr.exp2(a),
+        "acos": lambda a: dr.acos(a),
+        "cos": lambda a: dr.cos(a),
         "vector": lambda x, y, z: mi.Color3f(x, y, z),
         "to_integer": lambda a: mi.Int32(a),
         "to_real": lambda a: mi.Float(a),

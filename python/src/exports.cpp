@@ -9,10 +9,13 @@
 #include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
 
+#include <burnish/error.h>
 #include <burnish/export/export_model.h>
 #include <burnish/export/export_openpbr.h>
 #include <burnish/export/export_specular.h>
+#include <burnish/io/open_source.h>
 #include <burnish/reflectance/analytic.h>
+#include <burnish/source.h>
 
 #include "opened_brdf.h"
 
@@ -60,10 +63,14 @@ nb::dict exported_model(const OpenedModel& model, const Names& to,
 nb::dict exported_analytic(const std::string& spec, const Names& to,
                            const std::optional<std::filesystem::path>& folder, const std::string& name,
                            const std::optional<std::string>& power) {
-  if (const AnalyticBrdf brdf = parse_analytic(spec); !power && brdf.model().name == "openpbr")
-    return handed_out(export_openpbr(brdf, {.to = targets_of(to), .name = name}), folder);
+  const Source source = open_source(spec, {});
+  const auto* const brdf = std::get_if<AnalyticBrdf>(&source.brdf);
+  if (!brdf)
+    throw Error(spec + ": expected an analytic BRDF, found another; open_source or fit make a Model of it");
+  const ExportOptions options{.to = targets_of(to), .name = name};
+  if (!power && brdf->model().name == "openpbr") return handed_out(export_openpbr(*brdf, options), folder);
   const std::optional<PowerMethod> method = power ? std::optional(power_method(*power)) : std::nullopt;
-  return handed_out(export_specular(spec, method, {.to = targets_of(to), .name = name}), folder);
+  return handed_out(export_specular(format_analytic(*brdf), method, options), folder);
 }
 
 }  // namespace
@@ -94,8 +101,8 @@ void bind_exports(nb::module_& m) {
         nb::kw_only(), nb::arg("name") = defaults.name, nb::arg("power") = nb::none(),
         nb::sig("def export(spec: str, to: str | list[str], folder: str | os.PathLike | None = None, *, "
                 "name: str = 'brdf', power: str | None = None) -> dict[str, bytes]"),
-        "OpenPBR, such as \"openpbr:coat_weight=1\", as \"materialx\", \"usda\", \"mdl\", \"gltf\" or "
-        "\"rgl\";\n"
+        "OpenPBR, such as \"openpbr:coat_weight=1\" or a file of it, as shaders or \"three\", \"babylon\", "
+        "\"materialx\",\n\"usda\", \"mdl\", \"gltf\", \"rgl\" or \"html\";\n"
         "Phong's or Blinn's model, such as \"blinn_phong:exponent=60\", as shaders or \"html\". power: how "
         "it is\n"
         "computed, a member of the specular family; by default the cheapest that is never one of 255 levels "

@@ -1,8 +1,11 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <burnish/error.h>
 #include <burnish/eval/sampler_expression.h>
 #include <burnish/formula/graph.h>
+#include <burnish/reflectance/analytic.h>
+#include <burnish/reflectance/analytic/openpbr_expression.h>
 #include <burnish/shaders/shader_formula.h>
 
 #include "opened_brdf.h"
@@ -36,6 +39,15 @@ nb::tuple eval_graph(const OpenedModel& model) {
   return nb::make_tuple(graph_of({formula.value}), tables);
 }
 
+// Of OpenPBR, which has no tables.
+nb::tuple formula_graph(const OpenedBrdf& opened) {
+  const auto* const analytic = std::get_if<AnalyticBrdf>(&opened.source().brdf);
+  const auto* const material = analytic ? std::get_if<OpenPbr>(&analytic->variant()) : nullptr;
+  if (!material)
+    throw Error(opened.source().name + ": expected a burnish model or OpenPBR, found another BRDF");
+  return nb::make_tuple(graph_of({openpbr_expression(*material)}), nb::dict());
+}
+
 // The same of each lobe.
 nb::tuple lobe_graph(const OpenedModel& model) {
   return nb::make_tuple(graph_of(shader_formula(model.brdf(), {.language = ShaderLanguage::cpp}).lobes),
@@ -67,6 +79,7 @@ void bind_graphs(nb::module_& m) {
            "(operation, type, constant, name, arguments), the outputs' nodes; the tables of its texels.")
       .def("_lobe_graph", &lobe_graph, "The same with each lobe an output.");
   nb::borrow<nb::class_<OpenedBrdf>>(m.attr("Source"))
+      .def("_eval_graph", &formula_graph, "The same as a Model's of OpenPBR, without tables.")
       .def("_sampler_graphs", &sampler_graphs,
            "sample_wi and pdf as such graphs, and the arrays of integers that they read.");
 }

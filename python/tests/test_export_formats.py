@@ -1,5 +1,6 @@
 """What is exported is valid to the libraries of the formats' owners."""
 
+import json
 import shutil
 import subprocess
 import sys
@@ -70,10 +71,18 @@ def test_a_surface_has_the_inputs_that_materialx_defines(folders):
 
 
 def test_openpbr_is_exported_as_the_command_line_does(cli, tmp_path):
-    cli("export", OPENPBR, "--to", "materialx", "--to", "gltf", "-o", tmp_path, "--name", "m")
-    files = burnish.export(OPENPBR, ["materialx", "gltf"], name="m")
-    assert list(files) == ["m.mtlx", "m.glb", "m.json"]
+    to = ["materialx", "gltf", "three", "babylon", "html", "glsl", "wgsl"]
+    cli("export", OPENPBR, *(word for target in to for word in ("--to", target)), "-o", tmp_path, "--name", "m")
+    files = burnish.export(OPENPBR, to, name="m")
+    assert list(files) == ["m.mtlx", "m.glb", "m.three.js", "m.babylon.js", "m.html", "m.glsl", "m.wgsl", "m.json"]
     for name, content in files.items():
         assert (tmp_path / name).read_bytes() == content
-    with pytest.raises(burnish.Error, match="expected materialx, usda"):
-        burnish.export(OPENPBR, "three")
+    with pytest.raises(burnish.Error, match="which has no tables"):
+        burnish.export(OPENPBR, "ktx2")
+
+
+def test_openpbr_is_exported_from_its_file_too(cli, tmp_path):
+    path = tmp_path / "coated.json"
+    cli("fit", "ggx:alpha_x=0.2,alpha_y=0.2", "--to", "openpbr", "--alone", "-o", path)
+    spec = json.loads(path.read_text())["notes"]["spec"]
+    assert burnish.export(str(path), "glsl")["brdf.glsl"] == burnish.export(spec, "glsl")["brdf.glsl"]

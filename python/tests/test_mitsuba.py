@@ -69,6 +69,72 @@ def test_the_viewer_comes_first_as_in_measured_unless_told_otherwise(ggx, llvm, 
         np.testing.assert_allclose(np.array(value).T, expected, rtol=2e-5, atol=1e-5 * expected.mean())
 
 
+OPENPBR = (
+    "openpbr:base_color=0.5/0.1/0.05,base_metalness=0.2,base_diffuse_roughness=0.4,specular_roughness_anisotropy=0.5,"
+    "coat_weight=0.7,coat_roughness=0.1,fuzz_weight=0.3,thin_film_weight=0.4"
+)
+
+
+@pytest.fixture(scope="session", params=["spec", "file"])
+def openpbr(request, cli, tmp_path_factory):
+    """OpenPBR as a spec, and as what a fit writes."""
+    if request.param == "spec":
+        return OPENPBR
+    path = str(tmp_path_factory.mktemp("openpbr") / "coated.json")
+    cli("fit", "ggx:alpha_x=0.2,alpha_y=0.2,kd=0.05/0.1/0.2", "--to", "openpbr", "--alone", "-o", path)
+    return path
+
+
+def test_openpbr_is_the_librarys_and_sees_the_viewer(openpbr, llvm):
+    source = burnish.open_source(openpbr)
+    wi, wo = hemisphere(20_000, 1), hemisphere(20_000, 2)
+    bsdf = mi.load_dict({"type": "burnish", "filename": openpbr})
+    light = mi.Vector3f(*np.ascontiguousarray(wi.T))
+    f, pdf = bsdf.eval_pdf(mi.BSDFContext(), interaction(wo, len(wo)), light)
+    expected = source.eval(wi.astype(float), wo.astype(float)) * wi[:, 2:]
+    error = abs(np.array(f).T / expected - 1).max(axis=1)
+    assert np.median(error) < 1e-5 and (error < 1e-3).mean() >= 0.999
+    assert (abs(np.array(pdf) / source.pdf(wi, wo) - 1) < 1e-3).mean() > 0.995
+    turned = mi.load_dict({"type": "burnish", "filename": openpbr, "exchange": True})
+    value = np.array(turned.eval(mi.BSDFContext(), interaction(wo, len(wo)), light)).T
+    expected = source.eval(wo.astype(float), wi.astype(float)) * wi[:, 2:]
+    assert np.median(abs(value / expected - 1)) < 1e-5
+
+
+def test_openpbr_looks_as_in_our_renderer(cli, llvm, tmp_path):
+    size, picture = 64, str(tmp_path / "sphere.exr")
+    how = ["--renderer", "cpu", "--size", size, "--samples", 4, "--lights", "2,3,4:20", "-o", picture]
+    cli("render", "--mesh", "sphere", "--material", OPENPBR, *how)
+    bitmap = mi.Bitmap(picture).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, srgb_gamma=False)
+    view = mi.ScalarTransform4f().look_at([0, 0, 1.04 / np.sin(0.3)], [0, 0, 0], [0, 1, 0])
+    scene = mi.load_dict(
+        {
+            "type": "scene",
+            "integrator": {"type": "direct", "hide_emitters": True},
+            "sensor": {
+                "type": "perspective",
+                "fov": float(np.degrees(0.6)),
+                "to_world": view,
+                "film": {"type": "hdrfilm", "width": size, "height": size, "rfilter": {"type": "box"}},
+                "sampler": {"type": "stratified", "sample_count": 64},
+            },
+            "light": {"type": "point", "position": [2, 3, 4], "intensity": {"type": "rgb", "value": 20.0}},
+            # its tangents run around z
+            "sphere": {
+                "type": "sphere",
+                "to_world": mi.ScalarTransform4f().rotate([1, 0, 0], -90),
+                "bsdf": {"type": "burnish", "filename": OPENPBR},
+            },
+        }
+    )
+    expected, found = np.array(bitmap), np.array(mi.render(scene))[..., :3]
+    exposure = 1 / np.percentile(expected[expected > 0], 97)
+    shown = lambda image: np.clip(exposure * image, 0, 1)
+    distance = -10 * np.log10(np.mean(np.square(shown(found) - shown(expected))))
+    print(f"\nOpenPBR in Mitsuba: {distance:.2f} dB")
+    assert distance >= 40
+
+
 @pytest.mark.parametrize("name", ["model", "lobes", "volume"])
 def test_draws_are_the_librarys(name, files, llvm):
     source = burnish.open_source(files[name])

@@ -1,5 +1,6 @@
 // node check.mjs FOLDER NAME F: opens what `burnish export ... --name NAME -o FOLDER` wrote in the programs it was written
-// for. F is f_r of the first channel at the normal.
+// for. F is f_r of the first channel at the normal. NAME.sphere.exr and openpbr.sphere.exr in FOLDER are our renderer's
+// pictures of the sphere that spheres() draws.
 import assert from "node:assert/strict";
 import {execFileSync} from "node:child_process";
 import fs from "node:fs";
@@ -140,14 +141,105 @@ drawn.render();
 const other = await drawn.readPixels();
 document.body.dataset.result = [pixel[0], other[4 * (4 * 9 + 4)], errors, onSurface[0]].join(" ");
 </script></body>`);
-const dom = execFileSync("timeout", ["300", "chromium", "--headless", "--no-sandbox", "--use-gl=angle",
-  "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--allow-file-access-from-files",
-  `--user-data-dir=${path.resolve(folder, "profile")}`, "--virtual-time-budget=10000", "--dump-dom",
-  pathToFileURL(page).href], {stdio: ["ignore", "pipe", "ignore"]}).toString();
-const result = dom.match(/data-result="([^ ]+) ([^ ]+) ([^ ]+) ([^"]+)"/);
-assert.ok(result, dom);
+const dom = resultOf(page), result = dom.match(/([^ ]+) ([^ ]+) ([^ ]+) (.+)/);
 assert.equal(Number(result[3]), 0, dom);
 for (const found of [result[1], result[2]])
   assert.ok(Math.abs(found / (2 * value) - 1) < 2e-3, `expected ${2 * value}, found ${found}`);
 assert.ok(Math.abs(result[4] / (2 * surfaceValue) - 1) < 5e-3, `surface: expected ${2 * surfaceValue}, found ${result[4]}`);
+// The same sphere in both programs and by our renderer, of a factored model and of OpenPBR.
+const kSide = 64, kSamples = 4;  // pixels of --size, and of each --samples along both axes
+for (const shown of [name, "openpbr"]) {
+  const truth = new EXRLoader().setDataType(THREE.FloatType).parse(bytes(`${shown}.sphere.exr`).buffer);
+  assert.deepEqual([truth.width, truth.height], [kSide, kSide]);
+  const lit = truth.data.filter((value, i) => i % 4 < 3 && value > 0).sort();
+  const exposure = 1 / lit[Math.floor(0.97 * lit.length)];
+  const level = (value) => Math.min(Math.max(exposure * value, 0), 1);
+  const pictures = spheres(shown);
+  for (const program of ["three.js", "Babylon.js"]) {
+    let error = 0;
+    for (let i = 0; i < kSide * kSide; ++i)
+      for (let c = 0; c < 3; ++c) error += (level(pictures[program][3 * i + c]) - level(truth.data[4 * i + c])) ** 2;
+    const psnr = -10 * Math.log10(error / (3 * kSide * kSide));
+    console.log(`web: ${shown} in ${program}: ${psnr.toFixed(2)} dB`);
+    assert.ok(psnr >= 40, `${shown} in ${program}: expected 40 dB, found ${psnr}`);
+  }
+}
+
+// Linear floats of SHOWN.three.js and SHOWN.babylon.js in Chromium, rows from the bottom: the scene of
+// `burnish render --mesh sphere --lights 2,3,4:20`.
+function spheres(shown) {
+  const place = path.resolve(folder, "spheres.html");
+  fs.writeFileSync(place, `<!DOCTYPE html><body><script src="${modules("babylonjs/babylon.js")}"></script><script type="module">
+import * as THREE from "${modules("three/build/three.module.js")}";
+import {createMaterial as createThree} from "./${shown}.three.js";
+import {createMaterial as createBabylon} from "./${shown}.babylon.js";
+const n = ${kSamples}, small = ${kSide}, side = n * small, fov = 0.6, far = 1.04 / Math.sin(fov / 2);
+const lamp = [2, 3, 4], intensity = 20;
+const positions = [], tangents = [], indices = [], columns = 256, rows = 128;
+for (let j = 0; j <= rows; ++j)
+  for (let i = 0; i <= columns; ++i) {
+    const u = 2 * Math.PI * i / columns, v = Math.PI * j / rows, at = j * (columns + 1) + i, up = at + columns + 1;
+    positions.push(Math.sin(v) * Math.sin(u), -Math.cos(v), Math.sin(v) * Math.cos(u));
+    tangents.push(Math.cos(u), 0, -Math.sin(u), 1);
+    if (i < columns && j < rows) indices.push(at, at + 1, up + 1, at, up + 1, up);
+  }
+const averaged = (pixels) => {
+  const sum = new Float32Array(3 * small * small);
+  for (let y = 0; y < side; ++y)
+    for (let x = 0; x < side; ++x)
+      for (let c = 0; c < 3; ++c)
+        sum[3 * (Math.floor(y / n) * small + Math.floor(x / n)) + c] += pixels[4 * (y * side + x) + c] / n ** 2;
+  return Array.from(sum);
+};
+
+const renderer = new THREE.WebGLRenderer(), target = new THREE.WebGLRenderTarget(side, side, {type: THREE.FloatType});
+const scene = new THREE.Scene(), camera = new THREE.PerspectiveCamera(fov * 180 / Math.PI, 1, 0.5, 10);
+camera.position.z = far;
+const light = new THREE.PointLight(0xffffff, intensity), shape = new THREE.BufferGeometry();
+light.position.set(...lamp);
+for (const [called, values, width] of [["position", positions, 3], ["normal", positions, 3], ["tangent", tangents, 4]])
+  shape.setAttribute(called, new THREE.BufferAttribute(new Float32Array(values), width));
+shape.setIndex(indices);
+scene.add(light, new THREE.Mesh(shape, createThree(THREE)));
+renderer.setRenderTarget(target);
+renderer.render(scene, camera);
+const pixels = new Float32Array(4 * side * side);
+renderer.readRenderTargetPixels(target, 0, 0, side, side, pixels);
+
+// the canvas has the camera's shape
+const square = Object.assign(document.createElement("canvas"), {width: small, height: small});
+const engine = new BABYLON.Engine(square), world = new BABYLON.Scene(engine);
+world.useRightHandedSystem = true;
+world.clearColor = new BABYLON.Color4(0, 0, 0, 0);
+const eye = new BABYLON.FreeCamera("eye", new BABYLON.Vector3(0, 0, far), world);
+eye.setTarget(BABYLON.Vector3.Zero());
+Object.assign(eye, {fov, minZ: 0.5, maxZ: 10});
+new BABYLON.PointLight("lamp", new BABYLON.Vector3(...lamp), world).intensity = intensity;
+const ball = new BABYLON.Mesh("ball", world), data = new BABYLON.VertexData();
+Object.assign(data, {positions, normals: positions, tangents, indices});
+data.applyToMesh(ball);
+ball.material = createBabylon(BABYLON, world, {linear: true});
+ball.material.backFaceCulling = false;
+const drawn = new BABYLON.RenderTargetTexture("drawn", side, world, false, true, BABYLON.Constants.TEXTURETYPE_FLOAT);
+Object.assign(drawn, {clearColor: world.clearColor, activeCamera: eye, renderList: [ball]});
+await world.whenReadyAsync();
+while (!ball.material.isReady(ball)) await new Promise((next) => setTimeout(next, 20));
+drawn.render();
+const drawings = {"three.js": averaged(pixels), "Babylon.js": averaged(await drawn.readPixels())};
+document.body.dataset.result = JSON.stringify(drawings);
+</script></body>`);
+  return JSON.parse(resultOf(place).replaceAll("&quot;", '"'));
+}
+
+// What a page leaves in data-result of its body.
+function resultOf(file) {
+  const seen = execFileSync("timeout", ["300", "chromium", "--headless", "--no-sandbox", "--use-gl=angle",
+    "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--allow-file-access-from-files",
+    `--user-data-dir=${path.resolve(folder, "profile")}`, "--virtual-time-budget=60000", "--dump-dom",
+    pathToFileURL(file).href], {stdio: ["ignore", "pipe", "ignore"], maxBuffer: 2 ** 26}).toString();
+  const found = seen.match(/data-result="([^"]+)"/);
+  assert.ok(found, seen);
+  return found[1];
+}
+
 console.log(`web: ${manifest.textures.length} KTX2, EXR, glTF, three.js and Babylon.js exports open elsewhere`);

@@ -24,8 +24,15 @@ done
 
 "$burnish" fit ggx:alpha_x=0.2,alpha_y=0.35,f0=0.9/0.7/0.4 --model pqp --samples 50000 -o "$web/brushed.exr" > /dev/null
 "$burnish" export "$web/brushed.exr" --to ktx2 --to cube --to exr --to gltf --to three --to babylon --to glsl --environment sun --mips -o "$web/out" > /dev/null
-"$burnish" export openpbr:specular_ior=1.7,specular_roughness_anisotropy=0.5,coat_weight=0.25,coat_ior=1.5,fuzz_weight=0.3,thin_film_weight=0.5 \
-  --to gltf -o "$web/out" > /dev/null
+openpbr=openpbr:base_color=0.6/0.3/0.1,specular_ior=1.7,specular_roughness_anisotropy=0.5,coat_weight=0.25
+openpbr=$openpbr,coat_roughness=0.1,coat_ior=1.5,fuzz_weight=0.3,thin_film_weight=0.5
+"$burnish" export "$openpbr" --to gltf --to three --to babylon -o "$web/out" > /dev/null
+sphere() {
+  "$burnish" render --mesh sphere --material "$1" --renderer cpu --size 64 --samples 4 --lights 2,3,4:20 \
+    -o "$web/out/$2.sphere.exr" > /dev/null
+}
+sphere "$web/brushed.exr" brushed
+sphere "$openpbr" openpbr
 build/release/tests/burnish_input_files "$web/out"
 "$burnish" export "$web/out/flat.burnish" --to three -o "$web/out" > /dev/null
 printf 'wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0,0,1,0,0,1\n' > "$web/normal.csv"

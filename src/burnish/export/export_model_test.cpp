@@ -114,7 +114,24 @@ TEST(ExportOpenPbr, WritesParametersAndTables) {
                 exported.files.back().bytes.find('"' + name + '"') != std::string::npos)
         << name;
   EXPECT_THROW(export_openpbr(parse_analytic("ggx"), options), Error);
-  EXPECT_THROW(export_openpbr(parse_analytic("openpbr"), {.to = {ExportTarget::three}}), Error);
+  EXPECT_THROW(export_openpbr(parse_analytic("openpbr"), {.to = {ExportTarget::ktx2}}), Error);
+}
+
+TEST(ExportOpenPbr, WritesItsFormulasForEveryLanguageAndTheWeb) {
+  ExportOptions options{.to = {ExportTarget::three, ExportTarget::babylon, ExportTarget::html},
+                        .name = "paint"};
+  for (const ShaderLanguage language : kShaderLanguages)
+    options.to.push_back(export_target(to_string(language)));
+  const ExportedFiles exported = export_openpbr(parse_analytic("openpbr:coat_weight=1"), options);
+  EXPECT_EQ(exported.shaders.size(), kShaderLanguages.size());
+  EXPECT_EQ(exported.files.size(), options.to.size() + 1) << "no textures";
+  for (const ExportedShader& shader : exported.shaders) EXPECT_EQ(shader.cost, exported.shaders[0].cost);
+  for (const ExportedFile& file : exported.files) {
+    EXPECT_THAT(file.bytes, HasSubstr("burnish_paint_world")) << file.name;
+    EXPECT_TRUE(file.name == "paint.json" ||
+                exported.files.back().bytes.find('"' + file.name + '"') != std::string::npos)
+        << file.name;
+  }
 }
 
 TEST(WriteFiles, MakesTheFolder) {

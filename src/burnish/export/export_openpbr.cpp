@@ -7,14 +7,17 @@
 #include <burnish/error.h>
 #include <burnish/export/export_openpbr.h>
 #include <burnish/export/gltf_binary.h>
+#include <burnish/export/html_page.h>
 #include <burnish/export/manifest.h>
 #include <burnish/export/materialx.h>
 #include <burnish/export/mdl.h>
 #include <burnish/export/usda.h>
+#include <burnish/export/web_module.h>
 #include <burnish/fitting/parametric/metallic_roughness_fit.h>
 #include <burnish/io/rgl.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/rgl_builder.h>
+#include <burnish/shaders/openpbr_shader.h>
 
 namespace burnish {
 
@@ -22,16 +25,17 @@ namespace {
 
 using nlohmann::json;
 
-const OpenPbrParameters& parameters_of(const AnalyticBrdf& brdf) {
+const OpenPbr& material_of(const AnalyticBrdf& brdf) {
   const auto* const model = std::get_if<OpenPbr>(&brdf.variant());
   if (!model) throw Error(fmt::format("export: expected openpbr, found {}", brdf.model().name));
-  return model->parameters();
+  return *model;
 }
 
-// The files of one target, without the manifest.
+// The files of one target that is no shader, without the manifest.
 std::vector<ExportedFile> files_of(const AnalyticBrdf& brdf, ExportTarget target,
                                    const ExportOptions& options, json& manifest) {
-  const OpenPbrParameters& parameters = parameters_of(brdf);
+  const OpenPbr& material = material_of(brdf);
+  const OpenPbrParameters& parameters = material.parameters();
   const std::string& name = options.name;
   switch (target) {
     case ExportTarget::materialx:
@@ -48,11 +52,17 @@ std::vector<ExportedFile> files_of(const AnalyticBrdf& brdf, ExportTarget target
     }
     case ExportTarget::rgl:
       return {{name + ".bsdf", format_rgl(make_rgl_table(brdf, {.description = name}))}};
+    case ExportTarget::three:
+      return {{name + ".three.js", three_module(material, name)}};
+    case ExportTarget::babylon:
+      return {{name + ".babylon.js", babylon_module(material, name)}};
+    case ExportTarget::html:
+      return {{name + ".html", html_page(material, name)}};
     default:
-      throw Error(
-          fmt::format("export: expected materialx, usda, mdl, gltf or rgl for openpbr, found {}; "
-                      "`burnish fit` makes a model of it for that",
-                      to_string(target)));
+      throw Error(fmt::format(
+          "export: expected a target other than ktx2, cube, exr and png for openpbr, which has no "
+          "tables, found {}; `burnish fit` makes a model of it for that",
+          to_string(target)));
   }
 }
 
@@ -63,6 +73,14 @@ ExportedFiles export_openpbr(const AnalyticBrdf& brdf, const ExportOptions& opti
       {"generator", "burnish"}, {"name", options.name}, {"model", format_analytic(brdf)}, {"channels", 3}};
   ExportedFiles result;
   for (const ExportTarget target : options.to) {
+    if (const std::optional<ShaderLanguage> language = language_of(target)) {
+      const Shader shader = generate_shader(material_of(brdf), *language, options.name);
+      const std::string file = shader_file(*language, options.name);
+      result.files.push_back({file, shader.text});
+      result.shaders.push_back({file, "formulas", shader.cost});
+      manifest["shaders"].push_back(manifest_entry(*language, options.name, shader));
+      continue;
+    }
     json& entry = manifest[std::string(to_string(target))];
     for (ExportedFile& file : files_of(brdf, target, options, entry)) {
       entry["files"].push_back(file.name);

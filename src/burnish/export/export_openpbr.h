@@ -5,8 +5,9 @@
 
 namespace burnish {
 
-/// OpenPBR as materialx, usda, mdl, gltf and rgl, in the order of `options.to`; of the other options only name
-/// and cells count. Throws Error for other models, and for other targets, which take a factored BRDF of it.
+/// OpenPBR as materialx, usda, mdl, gltf, rgl, three, babylon, html and shaders, in the order of `options.to`; of the
+/// other options only name and cells count. Throws Error for other models, and for targets that are tables, which take
+/// a factored BRDF of it.
 ExportedFiles export_openpbr(const AnalyticBrdf& brdf, const ExportOptions& options);
 
 }  // namespace burnish

@@ -89,10 +89,11 @@ std::string html_page(const SpatialBrdf& surface, const std::string& name) {
 }
 
 std::string html_page(const SpecularModel& model, const std::string& expression, const std::string& name) {
-  return page_of({{"name", name},
-                  {"expression", expression},
-                  {"shader", generate_shader(model, ShaderLanguage::glsl_es, name).text},
-                  {"textures", json::array()}});
+  return page_of(web_model(generate_shader(model, ShaderLanguage::glsl_es, name), expression, name));
+}
+
+std::string html_page(const OpenPbr& material, const std::string& name) {
+  return page_of(web_model(material, name));
 }
 
 }  // namespace burnish

@@ -3,6 +3,7 @@
 #include <string>
 
 #include <burnish/factors/factored_brdf.h>
+#include <burnish/reflectance/analytic/openpbr.h>
 #include <burnish/render/gl/surface_environment.h>
 #include <burnish/shaders/specular_shader.h>
 
@@ -17,5 +18,7 @@ std::string html_page(const FactoredBrdf& brdf, const std::string& name, const S
 std::string html_page(const SpatialBrdf& surface, const std::string& name);
 /// The same for a specular model that is called `expression` there.
 std::string html_page(const SpecularModel& model, const std::string& expression, const std::string& name);
+/// The same for OpenPBR.
+std::string html_page(const OpenPbr& material, const std::string& name);
 
 }  // namespace burnish

@@ -5,6 +5,8 @@
 
 #include <burnish/export/web.h>
 #include <burnish/export/web_module.h>
+#include <burnish/reflectance/analytic.h>
+#include <burnish/shaders/openpbr_shader.h>
 #include <burnish/shaders/shader.h>
 #include <burnish/shaders/spatial_shader.h>
 
@@ -60,6 +62,15 @@ json web_model(const SpatialBrdf& surface, const std::string& name) {
   return model;
 }
 
+json web_model(const Shader& shader, const std::string& expression, const std::string& name) {
+  return {{"name", name}, {"expression", expression}, {"shader", shader.text}, {"textures", json::array()}};
+}
+
+json web_model(const OpenPbr& material, const std::string& name) {
+  return web_model(generate_shader(material, ShaderLanguage::glsl_es, name),
+                   format_analytic(analytic_openpbr(material.parameters())), name);
+}
+
 std::string three_module(const FactoredBrdf& brdf, const std::string& name) {
   return module_of("three.js", model_of(brdf, name));
 }
@@ -68,8 +79,16 @@ std::string three_module(const SpatialBrdf& surface, const std::string& name) {
   return module_of("three.js", web_model(surface, name));
 }
 
+std::string three_module(const OpenPbr& material, const std::string& name) {
+  return module_of("three.js", web_model(material, name));
+}
+
 std::string babylon_module(const FactoredBrdf& brdf, const std::string& name) {
   return module_of("babylon.js", model_of(brdf, name));
+}
+
+std::string babylon_module(const OpenPbr& material, const std::string& name) {
+  return module_of("babylon.js", web_model(material, name));
 }
 
 }  // namespace burnish

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <numbers>
 #include <utility>
 
 #include <burnish/formula/expression.h>
@@ -161,6 +162,12 @@ Expr cos(const Expr& a) {
 }
 Expr sin(const Expr& a) {
   return {Op::sin, {a}};
+}
+Expr acos(const Expr& a) {
+  return {Op::acos, {a}};
+}
+Expr exp(const Expr& a) {
+  return {Op::exp2, {std::numbers::log2e * a}};
 }
 Expr power(const Expr& a, double exponent) {
   return exponent == 0.5 ? sqrt(a) : Expr(Op::power, {a, exponent});

@@ -107,6 +107,9 @@ Expr floor(const Expr& a);
 Expr sqrt(const Expr& a);
 Expr cos(const Expr& a);
 Expr sin(const Expr& a);
+Expr acos(const Expr& a);
+/// e^a, as a power of 2.
+Expr exp(const Expr& a);
 /// a^exponent, a >= 0; a root where the exponent is 1/2.
 Expr power(const Expr& a, double exponent);
 

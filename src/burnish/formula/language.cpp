@@ -140,7 +140,11 @@ Language cpp() {
   l.local = "  {0} {1} = {2};\n";
   l.definition = "BURNISH_FUNCTION {0} {1}({2}) {{\n{3}}}\n";
   l.header = kCppHeader;
-  l.calls = kShaderMath;
+  l.calls = with(kShaderMath, {{Op::exp2, {"::exp2f({0})"}},
+                               {Op::log2, {"::log2f({0})"}},
+                               {Op::acos, {"::acosf({0})"}},
+                               {Op::cos, {"::cosf({0})"}},
+                               {Op::sin, {"::sinf({0})"}}});
   l.texel = "{0}_at({1}, {2})";
   return l;
 }

@@ -45,6 +45,9 @@ static Counted fmaxf(Counted a, Counted b) { return ++operations, a.v < b.v ? b 
 static Counted fabsf(Counted a) { return fabs(a.v); }
 static Counted floorf(Counted a) { return ++operations, floor(a.v); }
 static Counted powf(Counted a, Counted b) { return ++powers, pow(a.v, b.v); }
+static Counted exp2f(Counted a) { return ++powers, exp2(a.v); }
+static Counted acosf(Counted a) { return ++powers, acos(a.v); }
+static Counted cosf(Counted a) { return ++powers, cos(a.v); }
 #define float Counted
 )";
 

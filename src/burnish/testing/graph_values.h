@@ -78,6 +78,12 @@ inline std::vector<std::array<double, 3>> graph_values(const Graph& graph, const
             return std::sqrt(a(0));
           case Op::power:
             return std::pow(a(0), a(1));
+          case Op::exp2:
+            return std::exp2(a(0));
+          case Op::acos:
+            return std::acos(a(0));
+          case Op::cos:
+            return std::cos(a(0));
           case Op::vector:
             return argument(i, 0);
           case Op::component:

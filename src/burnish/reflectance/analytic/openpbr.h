@@ -12,6 +12,8 @@
 
 namespace burnish {
 
+class Expr;
+
 /// The inputs of OpenPBR Surface 1.1 that reflection at an opaque surface sees, under the specification's names and
 /// with its defaults; ranges in kOpenPbrInputs. Source: [OpenPBR 2024].
 struct OpenPbrParameters {
@@ -106,9 +108,16 @@ class OpenPbr {
 
  private:
   friend class OpenPbrVariants;
+  friend Expr openpbr_expression(const OpenPbr& material);
+
+  // The formulas, over double or nodes of expression graphs.
+  template <class T>
   struct Geometry;
+  template <class T>
   struct Layer;
+  template <class T>
   struct Highlight;
+  template <class T>
   struct Parts;
 
   /// What a value is put together from, in the order in which one needs another.
@@ -123,20 +132,31 @@ class OpenPbr {
   };
   static Roughness roughness(double roughness, double anisotropy) noexcept;
 
-  Highlight highlight(const Roughness& alpha, const Geometry& g) const noexcept;
-  Rgb dielectric_under_film(const Parts& parts, const Geometry& g) const noexcept;
-  Rgb metal_fresnel(double cosine) const noexcept;
-  Rgb metal_under_film(const Parts& parts, const Geometry& g) const noexcept;
-  Rgb diffuse_base(const Geometry& g) const noexcept;
-  Layer gloss_layer(const Parts& parts, const Geometry& g) const noexcept;
-  Rgb metal_base(const Parts& parts, const Geometry& g) const noexcept;
-  Layer coat_layer(const Geometry& g) const noexcept;
-  Layer fuzz_layer(const Geometry& g) const noexcept;
+  template <class T>
+  Highlight<T> highlight(const Roughness& alpha, const Geometry<T>& g) const;
+  template <class T>
+  auto dielectric_under_film(const Parts<T>& parts, const Geometry<T>& g) const;
+  template <class T>
+  auto metal_fresnel(const T& cosine) const;
+  template <class T>
+  auto metal_under_film(const Parts<T>& parts, const Geometry<T>& g) const;
+  template <class T>
+  auto diffuse_base(const Geometry<T>& g) const;
+  template <class T>
+  Layer<T> gloss_layer(const Parts<T>& parts, const Geometry<T>& g) const;
+  template <class T>
+  auto metal_base(const Parts<T>& parts, const Geometry<T>& g) const;
+  template <class T>
+  Layer<T> coat_layer(const Geometry<T>& g) const;
+  template <class T>
+  Layer<T> fuzz_layer(const Geometry<T>& g) const;
 
   PartSet needed() const noexcept;
   PartSet needed_beside(const OpenPbr& other) const noexcept;
-  void compute(const PartSet& which, const Geometry& g, Parts& parts) const noexcept;
-  void join(const Parts& parts, std::span<double> f) const noexcept;
+  template <class T>
+  void compute(const PartSet& which, const Geometry<T>& g, Parts<T>& parts) const;
+  template <class T>
+  auto join(const Parts<T>& parts) const;
 
   OpenPbrParameters p_;
   Roughness base_alpha_, coat_alpha_;

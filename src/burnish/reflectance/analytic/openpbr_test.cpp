@@ -2,10 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <burnish/formula/graph.h>
 #include <burnish/math/random.h>
 #include <burnish/reflectance/analytic.h>
+#include <burnish/reflectance/analytic/openpbr_expression.h>
 #include <burnish/testing/albedo.h>
 #include <burnish/testing/directions.h>
+#include <burnish/testing/graph_values.h>
+#include <burnish/testing/openpbr_materials.h>
 
 namespace burnish {
 namespace {
@@ -80,6 +84,56 @@ TEST(OpenPbr, VariantsHaveTheBitsOfEachAlone) {
       }
     }
   }
+}
+
+// Materials with and without each layer; directions anywhere, in highlights, and in corners: along the normal, equal,
+// mirrored, at the horizon.
+TEST(OpenPbr, ItsExpressionIsTheDefinition) {
+  Pcg32 random(8);
+  for (int m = 0; m < 200; ++m) {
+    OpenPbrParameters p = m == 0 ? OpenPbrParameters{} : draw_openpbr(random);
+    if (m % 10 == 1) p.base_diffuse_roughness = p.thin_film_thickness = 0;
+    const OpenPbr material(p);
+    Graph graph;
+    const std::size_t root = graph.add(openpbr_expression(material));
+    std::vector<DirectionPair> pairs = {{{0, 0, 1}, {0, 0, 1}},
+                                        {{0, 0, 1}, kViewer},
+                                        {kLight, {0, 0, 1}},
+                                        {kLight, kLight},
+                                        {mirror(kViewer), kViewer},
+                                        {normalize({1, 0, 1e-3}), kViewer},
+                                        {kLight, normalize({0, 1, 1e-3})},
+                                        {normalize({1, 0, 1e-3}), normalize({-1, 0, 1e-3})}};
+    for (int i = 0; i < 50; ++i)
+      pairs.push_back(draw_highlight_pair(random, i % 2 == 0 ? p.specular_roughness : p.coat_roughness));
+    for (const auto& [wi, wo] : pairs) {
+      std::array<double, 3> f;
+      material.eval(wi, wo, f);
+      const auto found =
+          graph_values(graph, {.values = {{"wi", {wi.x, wi.y, wi.z}}, {"wo", {wo.x, wo.y, wo.z}}}})[root];
+      for (std::size_t c = 0; c < 3; ++c)
+        EXPECT_NEAR(found[c], f[c], 1e-9 * f[c])
+            << format_analytic(analytic_openpbr(p)) << " at " << wi.x << " " << wi.y << " " << wi.z << ", "
+            << wo.x << " " << wo.y << " " << wo.z;
+    }
+  }
+}
+
+TEST(OpenPbr, ItsExpressionHasNothingOfLayersWithoutWeight) {
+  const auto nodes = [](const OpenPbrParameters& p) {
+    Graph graph;
+    graph.add(openpbr_expression(OpenPbr(p)));
+    return graph.nodes().size();
+  };
+  OpenPbrParameters p;
+  const std::size_t plain = nodes(p);
+  p.coat_roughness = p.fuzz_roughness = p.thin_film_thickness = 0.3;
+  p.coat_color = p.fuzz_color = {0.1, 0.2, 0.3};
+  EXPECT_EQ(nodes(p), plain);
+  p.base_metalness = 1;
+  EXPECT_LT(nodes(p), plain) << "no diffuse base";
+  p.coat_weight = 0.5;
+  EXPECT_GT(nodes(p), plain);
 }
 
 TEST(OpenPbr, WeightsOfZeroLeaveNothingOfALayer) {
