@@ -140,6 +140,29 @@ TEST_F(GlRendererTest, AddsAsManyLightsAsThereAre) {
   EXPECT_EQ(*std::ranges::max_element(none.pixels), 0);
 }
 
+// Pixels go from one light above their surface to the next, each to its own.
+TEST_F(GlRendererTest, SkipsOnlyLightsBelowTheSurface) {
+  Scene scene = knot_and_sphere();
+  const auto materials = shaders(ShaderFilter::exact, TableFormat::single);
+  scene.background = 0;
+  const PointLight light = scene.lights[0], opposite{-1.0 * light.position, light.intensity};
+  scene.lights = {light};
+  const Image front = draw(scene, materials);
+  scene.lights = {opposite};
+  const Image back = draw(scene, materials);
+  scene.lights = {opposite, light, light, opposite, light};
+  const Image all = draw(scene, materials);
+  int of_front = 0, of_back = 0;  // numbers that one of them alone makes
+  for (std::size_t i = 0; i < all.pixels.size(); ++i) {
+    const float sum = 3 * front.pixels[i] + 2 * back.pixels[i];
+    EXPECT_NEAR(all.pixels[i], sum, 1e-5f * sum);
+    of_front += front.pixels[i] > 0 && back.pixels[i] == 0;
+    of_back += back.pixels[i] > 0 && front.pixels[i] == 0;
+  }
+  EXPECT_GT(of_front, 100);
+  EXPECT_GT(of_back, 100);
+}
+
 TEST_F(GlRendererTest, ShowsTheBackgroundWhereNothingIs) {
   Scene scene;
   scene.background = {0.25, 0.5, 2};

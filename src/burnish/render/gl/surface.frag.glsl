@@ -21,15 +21,22 @@ void main() {
 @ENVIRONMENT
   if (wo.z > 0.0) {
 @VIEW
-    for (int burnish_i = 0; burnish_i < burnish_light_count; ++burnish_i) {
-      vec3 burnish_away = burnish_lights[burnish_i].place.xyz - burnish_place;
+    int burnish_i = 0;
+    while (true) {
+      // The next light above the surface, of every pixel its own: pixels that are drawn together take as many turns as
+      // shine on one of them, not as many as shine on any.
+      vec3 burnish_away;
+      for (; burnish_i < burnish_light_count; ++burnish_i) {
+        burnish_away = burnish_lights[burnish_i].place.xyz - burnish_place;
+        if (dot(burnish_n, burnish_away) > 0.0) break;
+      }
+      if (burnish_i >= burnish_light_count) break;
       float burnish_square = dot(burnish_away, burnish_away);
       vec3 burnish_l = burnish_away * inversesqrt(burnish_square);
       vec3 wi = vec3(dot(burnish_t, burnish_l), dot(burnish_s, burnish_l), dot(burnish_n, burnish_l));
-      if (wi.z > 0.0) {
 @LIGHT
-        burnish_sum += wi.z / burnish_square * burnish_lights[burnish_i].intensity.rgb * (@VALUE);
-      }
+      burnish_sum += wi.z / burnish_square * burnish_lights[burnish_i].intensity.rgb * (@VALUE);
+      ++burnish_i;
     }
   }
   burnish_color = vec4(burnish_sum, 1.0);
