@@ -94,7 +94,7 @@ export class View {
     }
   }
   *judging(entry, form, alive) {
-    this.judge(entry, form, alive).catch(this.onerror);
+    if (alive()) this.judge(entry, form, alive).catch((error) => alive() && this.onerror(error));
   }
   // Tells how the entry is drawn, and how far that is from what was measured.
   async judge(entry, form, alive) {
