@@ -211,6 +211,7 @@ void main() {
 export const pictureFragment = `#version 300 es
 precision highp float;
 uniform highp sampler2D left, right, left_off, right_off;
+uniform vec2 shrunk;  // sides of what is read, of what is drawn
 uniform float exposure, divider;
 uniform int curve, shown;
 uniform vec3 background;
@@ -229,7 +230,7 @@ vec3 heat(float x) {
   return mix(a, vec3(0.99, 0.95, 0.6), smoothstep(0.66, 1.0, x));
 }
 void main() {
-  ivec2 p = ivec2(gl_FragCoord.xy);
+  ivec2 p = ivec2(gl_FragCoord.xy * shrunk);
   vec4 a = texelFetch(left, p, 0) + texelFetch(left_off, p, 0), b = texelFetch(right, p, 0) + texelFetch(right_off, p, 0);
   if (shown == 3) {
     vec3 apart = abs(tone(a) - tone(b));

@@ -31,6 +31,8 @@ export class View {
     this.sides = [null, null];
     this.off = [null, null];  // of each side, what its sum is off: {passes, targets}
     this.chores = [];         // what is drawn between frames, in steps
+    this.drawn = [];          // of the sides, those in the last frame
+    this.small = null;        // a small picture that is not on the screen yet
     this.samplesAFrame = 4;
     this.resolution = 1;  // 0.5 where drawing is slow
     const gl = this.gl;
@@ -184,8 +186,10 @@ export class View {
     }
     this.stale = false;
     this.resize();
-    if (!this.settled) this.accumulate();
-    this.compose();
+    if (!this.settled && !this.small) this.accumulate();
+    this.compose(this.small);
+    this.small?.free();
+    this.small = null;
     this.began = time;
     this.drawn = this.sides.filter((entry, side) => this.isSeen(side) && this.formOf(entry));
     this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
@@ -211,8 +215,7 @@ export class View {
 
   // One more frame of each material into its sum.
   accumulate() {
-    // the first frame is there soon
-    const [frame, ...sums] = this.targets, count = this.frames ? this.samplesAFrame : 2;
+    const [frame, ...sums] = this.targets, count = this.samplesAFrame;
     const jitter = jitterOf(this.frames);
     this.sides.forEach((entry, side) => {
       if (!this.isSeen(side)) return;
@@ -361,18 +364,20 @@ export class View {
     this.gl.drawElements(this.gl.TRIANGLES, count, this.gl.UNSIGNED_INT, 0);
   }
 
-  compose() {
-    const gl = this.gl, {exposure, curve, shown, divider, tangents} = this.settings;
-    const [left, right] = [0, 1].map((side) => this.targets[1 + 2 * side + (this.frames % 2)]);
-    const [leftOff, rightOff] = this.off.map((off) => (off?.passes ? off.targets[off.passes % 2].color : this.black));
+  // The sums as a picture, or a small one of the left object.
+  compose(small) {
+    const gl = this.gl, {exposure, curve, shown, divider, tangents} = this.settings, {width, height} = this.canvas;
+    const sums = [0, 1].map((side) => this.targets[1 + 2 * side + (this.frames % 2)].color);
+    const off = this.off.map((is) => (is?.passes ? is.targets[is.passes % 2].color : this.black));
     this.into(null, this.picture, ({at}) => {
-      [left.color, right.color, leftOff, rightOff].forEach((map, unit) => {
+      (small ? [small.color, this.black, this.black, this.black] : [...sums, ...off]).forEach((map, unit) => {
         bind(gl, unit, map);
         gl.uniform1i(at(["left", "right", "left_off", "right_off"][unit]), unit);
       });
+      gl.uniform2f(at("shrunk"), small ? small.width / width : 1, small ? small.height / height : 1);
       gl.uniform1f(at("exposure"), 2 ** exposure);
       gl.uniform1i(at("curve"), curve);
-      gl.uniform1i(at("shown"), this.sides[1] ? shown : 0);
+      gl.uniform1i(at("shown"), this.sides[1] && !small ? shown : 0);
       gl.uniform1f(at("divider"), divider * this.canvas.width);
       gl.uniform3fv(at("background"), this.background ?? [0.1, 0.1, 0.1]);
     });
@@ -406,7 +411,8 @@ export class View {
     gl.drawElements(gl.LINES, count, gl.UNSIGNED_INT, 0);
   }
 
-  // The exposure, in stops, that takes all but the brightest 3 % of the left object to white, by a small picture of it.
+  // The exposure, in stops, that takes all but the brightest 3 % of the left object to white, by a small picture of it. That
+  // is seen before larger ones where nothing has been seen yet.
   autoExposure() {
     const gl = this.gl, form = this.formOf(this.sides[0]), {clientWidth, clientHeight} = this.canvas;
     if (!form || !clientWidth || !clientHeight) return null;
@@ -415,7 +421,11 @@ export class View {
     const goal = target(gl, width, height, true), pixels = new Float32Array(4 * width * height);
     this.drawObject(form, goal, [0, 0], 0, kExposureSamples);
     gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, pixels);
-    goal.free();
+    const seen = this.sides[1] || this.drawn.includes(this.sides[0]);
+    this.small?.free();
+    this.small = seen ? null : goal;
+    if (seen) goal.free();
+    else this.stale = true;
     return exposureOf(pixels);
   }
 
