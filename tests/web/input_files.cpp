@@ -18,6 +18,7 @@
 #include <burnish/book/book_file.h>
 #include <burnish/error.h>
 #include <burnish/testing/books.h>
+#include <burnish/testing/np_model.h>
 #include <burnish/testing/seed_files.h>
 #include <burnish/testing/surfaces.h>
 
@@ -66,10 +67,19 @@ void write_flat(const fs::path& folder) {
   write(folder / "flat.txt", fmt::format("{:.9g}", f[0]));
 }
 
+// A code of Neural Processes beside a decoder, as the command line takes them.
+void write_np(const fs::path& folder) {
+  fs::create_directories(folder);
+  write(folder / "codes.csv", seeds::kNpCode);
+  const std::vector<float> weights = random_np_weights(1);
+  write(folder / "decoder.f32", {reinterpret_cast<const char*>(weights.data()), NpDecoder::bytes()});
+}
+
 void write_all(const fs::path& folder) {
   fs::create_directories(folder);
   for (const auto& [name, bytes] : seeds::all_seeds()) write(folder / ("seed." + name), bytes);
   write(folder / "seed.book", format_book(random_book()));
+  write_np(folder / "np");
   write(folder / "seed.surface", seeds::surface_seed());
   write(folder / "wall.burnish", format_surface({.brdf = random_surface(32, 16), .notes = "{}"}));
   write_flat(folder);

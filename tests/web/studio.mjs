@@ -15,6 +15,7 @@ const kMostBytes = 3 << 20;       // of the page, compressed
 const kSame = 1e-6;               // relative, between the page's figures and the command line's
 const kMostShift = 0.05;         // of Chromium's layout shift while files are opened and fitted
 const kExact = 60;               // dB, of what is drawn from a measurement's own tables
+const kComputed = 1e-5;          // of the brightest light, between what is computed and what is drawn of RGL's own tables
 const kPatience = 120_000;        // milliseconds; the renderer is software
 const kHostileStep = Number(process.env.HOSTILE_STEP ?? 11);
 const axe = fs.readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
@@ -52,6 +53,7 @@ async function visit(link = address, options = {}) {
   return page;
 }
 
+const compared = (source) => JSON.parse(run("compare", "--json", "--count", "2000", source, file("a.burnish")))[0];
 // What the page has open, and messages.
 const opened = (page) => page.evaluate(() => window.studio.entries.map(({name, info, figures, parent}) => ({name, info, figures, parent})));
 const until = (page, count) => page.waitForFunction((n) => window.studio.entries.length === n && window.studio.entries.every((entry) => entry.info), count);
@@ -83,6 +85,26 @@ function same(found, expected, at, within = kSame) {
     assert.equal(found, expected, at);
   }
 }
+// The second entry's info and figures are those of a source of the command line, the first one's a.burnish.
+async function sameAs(source, at) {
+  const [, {info}] = await opened(page);
+  same(info, JSON.parse(run("info", "--json", source)), at);
+  const figures = await page.evaluate(() => window.studio.entries[1].material.compare(window.studio.entries[0].material, {count: 2000}));
+  same(figures[0], compared(source), `compare ${at}`);
+}
+// Scattered samples in the formats that are read alone, their cosines above the threshold of figures.
+function writeScattered() {
+  const alta = ["#SAMPLE \"a\"", "#DIM 3 1", "#VS 1", "#PARAM_IN ISOTROPIC_TL_TV_PROJ_DPHI", "#PARAM_OUT INV_STERADIAN"], cornell = ["# a", "# a", "3", "450 550 650"];
+  for (const thetaI of [0.2, 0.5, 0.9])
+    for (const thetaO of [0.1, 0.4, 0.7, 1])
+      for (const phi of [0.3, 1.2, 2.1, 3]) {
+        const cosine = Math.cos(thetaI) * Math.cos(thetaO) - Math.sin(thetaI) * Math.sin(thetaO) * Math.cos(phi), f = 0.05 + 0.4 * Math.max(cosine, 0) ** 9;
+        alta.push([thetaI, thetaO * Math.cos(phi), thetaO * Math.sin(phi), f, 0.01].join(" "));
+        cornell.push([thetaI, 0, thetaO, phi, f, 0.8 * f, 0.5 * f].join(" "));
+      }
+  fs.writeFileSync(file("a.alta"), `${alta.join("\n")}\n`);
+  fs.writeFileSync(file("a.cornell"), `${cornell.join("\n")}\n`);
+}
 // Nothing moved since the last time that this was asked.
 async function steady(page, what) {
   const shifted = await page.evaluate(() => [window.shifted, (window.shifted = 0)][0]);
@@ -100,7 +122,7 @@ const sizes = ofPage.map((name) => path.join(site, name)).map((name) => zlib.gzi
 const size = sizes.reduce((sum, bytes) => sum + bytes, 0);
 assert.ok(size <= kMostBytes, `expected at most ${kMostBytes} bytes compressed, found ${size}`);
 
-// A file of every format that is written.
+// A file of every format that is read, and of both kinds of baselines.
 const spec = "ggx:alpha_x=0.25,alpha_y=0.25,f0=0.9/0.6/0.3,kd=0.05";
 for (const [name, ...more] of [["a.binary", "--to", "merl", "--cells", "20"], ["a.bsdf", "--to", "rgl"], ["a.mbsdf", "--to", "mbsdf"], ["z.bsdf", "--to", "zemax"],
                                ["a.astm", "--to", "astm", "--count", "2000"], ["a.csv", "--to", "csv", "--count", "2000"],
@@ -110,9 +132,16 @@ for (const [name, ...more] of [["a.binary", "--to", "merl", "--cells", "20"], ["
 run("convert", "lambert:kd=0.4", file("tree.xml"), "--to", "tensortree");
 run("fit", spec, "--model", "pqp", "--samples", "20000", "-o", file("a.burnish"));
 run("convert", file("a.burnish"), file("a.exr"));
+run("fit", spec, "--method", "dgf", "--samples", "5000", "-o", file("dgf.json"));
+writeScattered();
 const seeds = fs.readdirSync(folder).filter((name) => name.startsWith("seed.") && !["seed.book", "seed.surface"].includes(name));
-const kRead = ["seed.alta", "seed.baseline", "seed.cornell", "seed.klems", "seed.neural", "seed.speos"];
-const formats = ["a.binary", "a.bsdf", "a.mbsdf", "z.bsdf", "a.astm", "a.csv", "a.burnish", "a.exr", "a.bin", "a.xompt", "tree.xml", ...kRead];
+const kFormats = {"MERL": "a.binary", "UTIA": "a.bin", "RGL": "a.bsdf", "MBSDF": "a.mbsdf", "Zemax": "z.bsdf", "tensor tree": "tree.xml", "Klems": "seed.klems",
+                  "Speos": "seed.speos", "OpenMATERIAL 3D": "a.xompt", "ALTA": "a.alta", "ASTM E1392": "a.astm", "CSV": "a.csv", "Cornell": "a.cornell",
+                  "model, OpenEXR": "a.exr", "model, compact": "a.burnish", "baseline": "seed.baseline", "network weights": "seed.neural"};
+const kMoreFormats = ["book of a library", "Neural Processes codes"];  // tried apart
+const listed = run("help", "formats").split("\n").filter((line) => / (both|read) /.test(line)).map((line) => line.split(/ {2,}/)[0]);
+assert.deepEqual([...Object.keys(kFormats), ...kMoreFormats].sort(), listed.sort());
+const formats = [...Object.values(kFormats), "dgf.json"];
 fs.writeFileSync(file("garbage.bin"), "nothing of the kind <img src=x onerror=alert(1)>");
 fs.writeFileSync(file("cut.bsdf"), fs.readFileSync(file("a.bsdf")).subarray(0, 3000));
 fs.writeFileSync(file("huge.binary"), Buffer.from([255, 255, 255, 127, 255, 255, 255, 127, 255, 255, 255, 127, 0, 0]));
@@ -131,24 +160,19 @@ assert.match(await page.textContent("#info"), /isotropic/);
 // Figures are those of `compare --json`, for a source of every format.
 const figuresOf = await page.evaluate(async () => {
   const {entries} = window.studio, model = entries.find(({name}) => name === "a.burnish").material, found = {};
-  for (const {name, material} of entries) found[name] = await material.compare(model, {count: 2000}).then(([figures]) => figures, ({message}) => message);
+  for (const {name, material} of entries) [found[name]] = await material.compare(model, {count: 2000});
   return found;
 });
-for (const name of formats) {
-  let expected = "string";  // an error's line: some are too small
-  try {
-    [expected] = JSON.parse(run("compare", "--json", "--count", "2000", file(name), file("a.burnish")));
-  } catch {
-    assert.equal(typeof figuresOf[name], expected, name);
-    continue;
-  }
-  same(figuresOf[name], expected, `compare ${name}`);
-}
+for (const name of formats) same(figuresOf[name], compared(file(name)), `compare ${name}`);
 
 // MERL's and RGL's tables are drawn as they are interpolated.
 await page.waitForFunction(() => window.studio.entries.filter(({drawn}) => drawn?.how === "whole").length >= 2);
 for (const {name, drawn} of await page.evaluate(() => window.studio.entries.map(({name, drawn}) => ({name, drawn}))))
   if (["a.binary", "a.bsdf"].includes(name)) assert.ok(drawn.how === "whole" && drawn.decibels > kExact, `${name}: ${JSON.stringify(drawn)}`);
+
+// What is drawn through a table is computed where the view rests. RGL's without their own tables become what these draw.
+const computed = await page.evaluate(computedApart, fs.readFileSync(file("a.bsdf")).toString("base64"));
+assert.ok(computed.computed < kComputed && computed.table > 100 * kComputed, JSON.stringify(computed));
 
 // Garbage: one clear line each, and the page works on.
 for (const name of ["garbage.bin", "cut.bsdf", "huge.binary", "empty.csv"]) {
@@ -202,15 +226,24 @@ await page.waitForFunction(async () => (await import("./package/index.js")).memo
 await steady(page, "damaged and large files");
 
 // Of a book one is opened, and others are chosen.
-await drop(page, ["seed.book"]);
+await drop(page, ["a.burnish"]);
 await until(page, 1);
-const names = await page.evaluate(() => window.studio.entries[0].material.entries);
-same((await opened(page))[0].info, JSON.parse(run("info", "--json", `book:${file("seed.book")}#${names[0]}`)), "book");
+await drop(page, ["seed.book"]);
+await until(page, 2);
+const names = await page.evaluate(() => window.studio.entries[1].material.entries);
+await sameAs(`book:${file("seed.book")}#${names[0]}`, "book");
 await page.selectOption("#analytic select", names[1]);
-await page.waitForFunction((name) => window.studio.entries[0].name.endsWith(name), `#${names[1]}`);
-await page.waitForFunction(() => window.studio.entries[0].info);
-same((await opened(page))[0].info, JSON.parse(run("info", "--json", `book:${file("seed.book")}#${names[1]}`)), "book");
-await page.click("#list .close >> nth=0");
+await page.waitForFunction((name) => window.studio.entries[1].name.endsWith(name), `#${names[1]}`);
+await page.waitForFunction(() => window.studio.entries[1].info);
+await sameAs(`book:${file("seed.book")}#${names[1]}`, "book");
+await page.click("#list .close >> nth=1");
+
+// Codes of Neural Processes with their decoder.
+await drop(page, ["np/codes.csv", "np/decoder.f32"]);
+await until(page, 2);
+await sameAs(`np:${file("np")}#seed`, "Neural Processes");
+for (let k = 0; k < 2; ++k) await page.click("#list .close >> nth=0");
+await until(page, 0);
 
 // A surface: what `info --json` says, drawn as its places are, and the module that the command line writes.
 await drop(page, ["flat.burnish"]);
@@ -250,11 +283,11 @@ await page.click("#fit-start");
 await until(page, 2);
 const [, model] = await opened(page);
 const saved = await save(page, "[data-export=burnish]", "fitted.burnish");
-const [compared] = JSON.parse(run("compare", "--json", file("a.binary"), saved));
-same(model.figures, compared, "compare");
+const [expected] = JSON.parse(run("compare", "--json", file("a.binary"), saved));
+same(model.figures, expected, "compare");
 run("fit", file("a.binary"), "--budget", "2700", "--fetches", "2", "-o", file("native.burnish"));
 const [native] = JSON.parse(run("compare", "--json", file("a.binary"), file("native.burnish")));
-assert.ok(Math.abs(native.psnr - compared.psnr) < 0.05, `fitted natively ${native.psnr} dB, in the page ${compared.psnr} dB`);
+assert.ok(Math.abs(native.psnr - expected.psnr) < 0.05, `fitted natively ${native.psnr} dB, in the page ${expected.psnr} dB`);
 await accessible(page, "dark or light");
 
 // A fit that is stopped leaves nothing, and the next one runs.
@@ -319,7 +352,7 @@ if (figures) await pictures();
 await browser.close();
 server.close();
 console.log(`studio: MERL's size parsed in ${times.map(([ms]) => ms.toFixed(0))} ms, seen ${times.map(([, ms]) => ms.toFixed(0))} ms later; ${hostile.refused} damaged files refused`);
-console.log(`studio: ${formats.length} formats, fit, export and link in Chromium; ${(size / 1048576).toFixed(2)} MB compressed`);
+console.log(`studio: ${formats.length + kMoreFormats.length} formats, fit, export and link in Chromium; ${(size / 1048576).toFixed(2)} MB compressed`);
 
 // In the page: opens files cut short and bent, noise and lying sizes; keeps those that are refused for dropDamaged.
 async function damage({seeds, step}) {
@@ -360,6 +393,37 @@ async function dropDamaged({done, count}) {
   return document.querySelector("#message-text").textContent;
 }
 
+// In the page: how far RGL's tables drawn through another table, and computed besides, are from the same drawn as they are;
+// largest differences, relative to the brightest light. Under a point light alone the frames settle on the same pixels.
+async function computedApart(text) {
+  const {View} = await import("./view.js"), {open} = await import("./package/index.js");
+  const material = await open(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)), {name: "a.bsdf"});
+  const methods = {evaluate: (...pairs) => material.evaluate(...pairs), volume: (size) => material.volume(size), table: async () => null};
+  async function pictures(shown, ended) {
+    const canvas = document.createElement("canvas"), view = new View(canvas), {gl} = view;
+    Object.assign(canvas.style, {width: "80px", height: "60px", position: "fixed", top: "0"});
+    document.body.append(canvas);
+    view.set({around: "none"});
+    view.show({id: 1, material: shown, model: false}, null);
+    while (!ended(view)) await new Promise((next) => setTimeout(next, 20));
+    const pixelsOf = ({frame, width, height}) => {
+      const pixels = new Float32Array(4 * width * height);
+      gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+      gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, pixels);
+      return pixels;
+    };
+    const sum = pixelsOf(view.targets[1 + (view.frames % 2)]), off = view.off[0] && pixelsOf(view.off[0].targets[view.off[0].passes % 2]);
+    canvas.remove();
+    view.show(null, null);
+    return {sum, off};
+  }
+  const whole = await pictures(material, (view) => view.settled && view.formOf(view.sides[0]));
+  const other = await pictures({...methods, channels: material.channels, isotropic: material.isotropic}, (view) => view.off[0]?.passes === 16);
+  const brightest = whole.sum.reduce((most, x, i) => (i % 4 < 3 ? Math.max(most, x) : most), 0);
+  const apart = (picture) => picture.reduce((most, x, i) => (i % 4 < 3 ? Math.max(most, Math.abs(x - whole.sum[i])) : most), 0) / brightest;
+  material.close();
+  return {table: apart(other.sum), computed: apart(other.sum.map((x, i) => x + other.off[i]))};
+}
 // In the page: the largest relative difference between a surface as it is drawn, away from its edges, and its place.
 async function surfaceApart() {
   const {drawnValues} = await import("./fidelity.js"), {prepare} = await import("./gpu_brdf.js"), {normalize} = await import("./vectors.js");

@@ -7,7 +7,11 @@ const span = ([low, high]) => `${number(low, 3)}° to ${number(high, 3)}°`;
 const kDrawn = {
   shader: () => "by the shader that is given away",
   whole: (db) => `from its own tables, ${number(db, 3)} dB from what is measured`,
-  table: (db) => `through a table, ${number(db, 3)} dB from what is measured`,
+  table: (db, computed) => {
+    const table = `through a table, ${number(db, 3)} dB from what is measured`;
+    if (!computed) return table;
+    return `computed by the library${computed < 1 ? `, ${Math.round(100 * computed)} % of it` : ""}; while it moves, ${table}`;
+  },
 };
 
 const channelsOf = ({channels}) => `${channels} channel${channels === 1 ? "" : "s"}`;
@@ -19,7 +23,7 @@ function surfaceFacts(info) {
           ["Albedo", `${number(info.albedo.mean, 3)} on average, at most ${number(info.albedo.largest, 3)}`], ["Size", bytesText(info.bytes)]];
 }
 
-function facts(info, drawn) {
+function facts(info, {drawn, computed}) {
   if (info.width) return surfaceFacts(info);
   const rows = [["Format", info.format]];
   if (info.description) rows.push(["Description", info.description]);
@@ -35,7 +39,7 @@ function facts(info, drawn) {
   const angles = info.nodes?.incident_angles ? `, ${info.nodes.incident_angles} angles of incidence` : "";
   if (info.nodes) rows.push(["Measured at", `${info.nodes.count.toLocaleString("en")} nodes${angles}`]);
   if (info.bytes) rows.push(["Size", bytesText(info.bytes)]);
-  if (drawn) rows.push(["Drawn", kDrawn[drawn.how](drawn.decibels)]);
+  if (drawn) rows.push(["Drawn", kDrawn[drawn.how](drawn.decibels, computed)]);
   if (info.shader) rows.push(["Shader", `${info.shader.fetches} fetches, ${info.shader.operations} operations`]);
   return rows;
 }
@@ -63,6 +67,6 @@ export function draw() {
   }
   const notes = info.conventions?.filter((text) => !text.startsWith("notes of the fit")) ?? [];
   place.replaceChildren(
-    make("dl", {}, ...facts(info, entry.drawn).flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)])),
+    make("dl", {}, ...facts(info, entry).flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)])),
     albedos(info) ?? "", notes.length ? make("ul", {"aria-label": "Conventions"}, ...notes.map((text) => make("li", {}, text))) : "");
 }

@@ -58,7 +58,52 @@ vec3 environment(vec3 d) {
   return vec3(0.0);
 }`;
 
-// Half the directions are drawn by the cosine, half by the highlight of GGX facets as wide as the material's.
+// What a pixel is, and the directions from which it is lit. Of those from all around half are drawn by the cosine, half
+// by the highlight of GGX facets as wide as the material's.
+const kPixel = `
+in vec3 place, n, t;
+in vec2 at;
+uniform float eye;
+uniform vec3 lights[${kLights}], colors[${kLights}];
+uniform int light_count, samples, first_sample;
+uniform vec2 alpha;
+vec3 viewer() { return normalize(vec3(0.0, 0.0, eye) - place); }
+mat3 frame_of(vec3 v) {
+  vec3 normal = normalize(n);
+  // a pixel of the silhouette may have a normal that looks away
+  normal = normalize(normal + max(1e-3 - dot(normal, v), 0.0) * v);
+  vec3 tangent = normalize(t - dot(t, normal) * normal);
+  return mat3(tangent, cross(normal, tangent), normal);
+}
+uint hash(uint x) {
+  x = (x ^ (x >> 16)) * 0x7feb352du;
+  x = (x ^ (x >> 15)) * 0x846ca68bu;
+  return x ^ (x >> 16);
+}
+vec2 offset_of(uvec2 pixel) {
+  uint seed = hash(pixel.x + hash(pixel.y));
+  return vec2(seed & 0xffffu, seed >> 16) / 65536.0;
+}
+// wi and its density; none where it is below the horizon
+vec4 direction(int k, vec2 offset, vec3 wo) {
+  vec2 u = fract(offset + float(k) * vec2(0.7548776662, 0.5698402910));
+  float phi = 6.2831853 * u.y;
+  vec3 wi;
+  if ((k & 1) == 0) {
+    float r = sqrt(u.x);
+    wi = vec3(r * cos(phi), r * sin(phi), sqrt(1.0 - u.x));
+  } else {
+    float m = sqrt(u.x / max(1.0 - u.x, 1e-6));
+    vec3 h = normalize(vec3(-alpha.x * m * cos(phi), -alpha.y * m * sin(phi), 1.0));
+    wi = 2.0 * dot(wo, h) * h - wo;
+  }
+  if (wi.z <= 0.0) return vec4(wi, 0.0);
+  vec3 h = normalize(wi + wo);
+  vec3 scaled = vec3(h.xy / alpha, h.z);
+  float length2 = dot(scaled, scaled), d = 1.0 / (3.14159265 * alpha.x * alpha.y * length2 * length2);
+  return vec4(wi, 0.5 * wi.z / 3.14159265 + 0.5 * d * h.z / (4.0 * max(dot(wo, h), 1e-4)));
+}`;
+
 export const objectFragment = (brdf) => `#version 300 es
 precision highp float;
 precision highp int;
@@ -66,50 +111,21 @@ precision highp sampler2D;
 precision highp sampler3D;
 ${brdf}
 ${kEnvironment}
-in vec3 place, n, t;
-in vec2 at;
-uniform float eye;
-uniform vec3 lights[${kLights}], colors[${kLights}];
-uniform int light_count, samples, first_sample;
-uniform vec2 alpha;
+${kPixel}
 out vec4 color;
-uint hash(uint x) {
-  x = (x ^ (x >> 16)) * 0x7feb352du;
-  x = (x ^ (x >> 15)) * 0x846ca68bu;
-  return x ^ (x >> 16);
-}
 vec3 around_light(mat3 frame, vec3 wo) {
-  uvec2 pixel = uvec2(gl_FragCoord.xy);
-  uint seed = hash(pixel.x + hash(pixel.y));
-  vec2 offset = vec2(seed & 0xffffu, seed >> 16) / 65536.0;
+  vec2 offset = offset_of(uvec2(gl_FragCoord.xy));
   vec3 sum = vec3(0.0);
   for (int k = 0; k < samples; ++k) {
-    vec2 u = fract(offset + float(first_sample + k) * vec2(0.7548776662, 0.5698402910));
-    vec3 wi;
-    if ((k & 1) == 0) {
-      float r = sqrt(u.x), phi = 6.2831853 * u.y;
-      wi = vec3(r * cos(phi), r * sin(phi), sqrt(1.0 - u.x));
-    } else {
-      float phi = 6.2831853 * u.y, m = sqrt(u.x / max(1.0 - u.x, 1e-6));
-      vec3 h = normalize(vec3(-alpha.x * m * cos(phi), -alpha.y * m * sin(phi), 1.0));
-      wi = 2.0 * dot(wo, h) * h - wo;
-    }
-    if (wi.z <= 0.0) continue;
-    vec3 h = normalize(wi + wo);
-    vec3 scaled = vec3(h.xy / alpha, h.z);
-    float length2 = dot(scaled, scaled), d = 1.0 / (3.14159265 * alpha.x * alpha.y * length2 * length2);
-    float pdf = 0.5 * wi.z / 3.14159265 + 0.5 * d * h.z / (4.0 * max(dot(wo, h), 1e-4));
-    sum += brdf(wi, wo) * environment(frame * wi) * (max(facing(wi), 0.0) / pdf);
+    vec4 wi = direction(first_sample + k, offset, wo);
+    if (wi.w > 0.0) sum += brdf(wi.xyz, wo) * environment(frame * wi.xyz) * (max(facing(wi.xyz), 0.0) / wi.w);
   }
   return sum / float(samples);
 }
 void main() {
   begin(at);
-  vec3 normal = normalize(n), v = normalize(vec3(0.0, 0.0, eye) - place);
-  // a pixel of the silhouette may have a normal that looks away
-  normal = normalize(normal + max(1e-3 - dot(normal, v), 0.0) * v);
-  vec3 tangent = normalize(t - dot(t, normal) * normal);
-  mat3 frame = mat3(tangent, cross(normal, tangent), normal);
+  vec3 v = viewer();
+  mat3 frame = frame_of(v);
   vec3 wo = v * frame, sum = vec3(0.0);
   for (int i = 0; i < light_count; ++i) {
     vec3 to = lights[i] - place;
@@ -118,6 +134,32 @@ void main() {
   }
   if (around > 0) sum += around_light(frame, wo);
   color = vec4(max(sum, 0.0), 1.0);
+}`;
+
+// What the light of a pixel is summed of: the lights, then the directions from all around. Of one of them wi, wo or what
+// f_r is multiplied by; alpha where there is light.
+export const partFragment = `#version 300 es
+precision highp float;
+precision highp int;
+${kEnvironment}
+${kPixel}
+uniform int part, which;
+out vec4 color;
+void main() {
+  vec3 v = viewer();
+  mat3 frame = frame_of(v);
+  vec3 wo = v * frame, weight;
+  vec4 wi;
+  if (part < light_count) {
+    vec3 to = lights[part] - place;
+    wi = vec4(normalize(to) * frame, 1.0);
+    weight = colors[part] / dot(to, to);
+  } else {
+    wi = direction(first_sample + part - light_count, offset_of(uvec2(gl_FragCoord.xy)), wo);
+    weight = environment(frame * wi.xyz) / float(samples);
+  }
+  bool is = wi.z > 0.0 && wi.w > 0.0;
+  color = vec4(which == 0 ? wi.xyz : which == 1 ? wo : is ? weight * wi.z / wi.w : vec3(0.0), is);
 }`;
 
 // The values at given pairs, one a pixel.
@@ -152,10 +194,24 @@ void main() {
   color = mix(texelFetch(before, p, 0), texelFetch(frame, p, 0), share);
 }`;
 
-// What is shown: 0 the left material, 1 the right one, 2 both around the divider, 3 their difference.
+// The mean of what frames are off, where it is known.
+export const offFragment = `#version 300 es
+precision highp float;
+uniform highp sampler2D before, frame, exact;
+uniform float share;
+out vec4 color;
+void main() {
+  ivec2 p = ivec2(gl_FragCoord.xy);
+  vec4 is = texelFetch(exact, p, 0), drawn = texelFetch(frame, p, 0);
+  vec3 off = is.a > 0.0 && drawn.a > 0.0 ? is.rgb - drawn.rgb : vec3(0.0);
+  color = vec4(mix(texelFetch(before, p, 0).rgb, off, share), 0.0);
+}`;
+
+// Each side is its sum and what that is off. What is shown: 0 the left material, 1 the right one, 2 both around the divider, 3 their difference.
 export const pictureFragment = `#version 300 es
 precision highp float;
-uniform highp sampler2D left, right;
+uniform highp sampler2D left, right, left_off, right_off;
+uniform vec2 shrunk;  // sides of what is read, of what is drawn
 uniform float exposure, divider;
 uniform int curve, shown;
 uniform vec3 background;
@@ -174,8 +230,8 @@ vec3 heat(float x) {
   return mix(a, vec3(0.99, 0.95, 0.6), smoothstep(0.66, 1.0, x));
 }
 void main() {
-  ivec2 p = ivec2(gl_FragCoord.xy);
-  vec4 a = texelFetch(left, p, 0), b = texelFetch(right, p, 0);
+  ivec2 p = ivec2(gl_FragCoord.xy * shrunk);
+  vec4 a = texelFetch(left, p, 0) + texelFetch(left_off, p, 0), b = texelFetch(right, p, 0) + texelFetch(right_off, p, 0);
   if (shown == 3) {
     vec3 apart = abs(tone(a) - tone(b));
     float error = max(apart.r, max(apart.g, apart.b));

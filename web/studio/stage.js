@@ -113,7 +113,7 @@ function expose() {
 
 function drawThumbnail(entry) {
   const size = 80, canvas = (entry.picture ??= make("canvas", {width: size, height: size, "aria-hidden": "true"}));
-  canvas.getContext("2d").putImageData(view.thumbnail(entry, size), 0, 0);
+  view.thumbnail(entry, size, (image) => canvas.getContext("2d").putImageData(image, 0, 0));
 }
 
 const kShown = {left: 0, right: 1, split: 2, error: 3};
@@ -216,12 +216,16 @@ export function start() {
     document.documentElement.dataset.view = state.shown && view.formOf(state.shown) ? (view.settled ? "settled" : "drawing") : "empty";
   };
   view.onready = (entry, first) => {
-    entry.seen = true;
-    drawThumbnail(entry);
     if (entry === state.shown && first && exposedFor !== entry.id) {
       exposedFor = entry.id;
       expose();
     }
+    drawThumbnail(entry);
+  };
+  view.onseen = (entry) => (entry.seen = true);
+  view.onexact = (entry, share) => {
+    entry.computed = share;
+    changed("judged");
   };
   view.onjudged = (entry, drawn) => {
     entry.drawn = drawn;

@@ -1,5 +1,5 @@
-// What is open and what is shown: entries {id, name, material, model, parent, info, figures, drawn, seen}, `shown` at the left
-// and, where it is not null, `beside` it at the right.
+// What is open and what is shown: entries {id, name, material, model, parent, info, figures, drawn, computed, seen}, `shown`
+// at the left and, where it is not null, `beside` it at the right. `computed`: how much of the picture the library did.
 
 const listeners = [];
 let counter = 0;

@@ -1,14 +1,17 @@
 // The lit object: two materials beside each other, summed over frames until the light from all around is smooth.
+import {exactLight, kDirections, kPasses} from "./exact.js";
 import {fidelity} from "./fidelity.js";
 import {bind, mesh, program, target, texture} from "./gl.js";
 import {prepare} from "./gpu_brdf.js";
-import {environments, kLights, lineFragment, objectFragment, objectVertex, pictureFragment, screenVertex, sumFragment} from "./shading.js";
+import {environments, kLights, lineFragment, objectFragment, objectVertex, offFragment, partFragment, pictureFragment, screenVertex, sumFragment} from "./shading.js";
 import {knot, plane, sphere, teapot} from "./shapes.js";
 import {normalize} from "./vectors.js";
 
 const kEye = 4.6, kReach = 2.4;      // distances of the viewer and of the point lights from the middle
 const kEnough = 512, kLongFrame = 40;  // samples a pixel; milliseconds after which a frame takes less
 const kMostPixels = 1.1e6;
+const kPortraitPasses = 16, kPortraitSamples = 8;  // of a thumbnail
+const kExposurePixels = 4e4, kExposureSamples = 8;
 const makers = {sphere, knot, teapot, plane};
 
 export class View {
@@ -26,17 +29,24 @@ export class View {
     this.programs = new Map();
     this.meshes = new Map();
     this.sides = [null, null];
+    this.off = [null, null];  // of each side, what its sum is off: {passes, targets}
+    this.chores = [];         // what is drawn between frames, in steps
+    this.drawn = [];          // of the sides, those in the last frame
+    this.small = null;        // a small picture that is not on the screen yet
     this.samplesAFrame = 4;
     this.resolution = 1;  // 0.5 where drawing is slow
     const gl = this.gl;
     this.sum = program(gl, screenVertex, sumFragment);
     this.picture = program(gl, screenVertex, pictureFragment);
     this.lines = program(gl, objectVertex, lineFragment);
+    this.part = this.takeOff = null;  // made when they are needed
     this.black = texture(gl, {width: 1, height: 1, internal: gl.RGBA8, format: gl.RGBA, type: gl.UNSIGNED_BYTE, data: new Uint8Array(4)});
     this.sky = this.black;
     this.empty = gl.createVertexArray();
     this.onframe = () => {};
     this.onready = () => {};
+    this.onseen = () => {};
+    this.onexact = () => {};
     this.onjudged = () => {};
     this.onerror = () => {};
     new ResizeObserver(() => this.restart()).observe(canvas);
@@ -76,12 +86,17 @@ export class View {
         this.forget(entry);
         this.forms.set(entry.id, form);
         if (this.sides.includes(entry)) this.restart();
+        // once it is seen
+        this.chores.push(this.judging(entry, form, alive));
         this.onready(entry, first);
-        this.judge(entry, form, alive).catch(this.onerror);
+        this.tick();
       });
     } catch (error) {
       if (alive()) this.onerror(error);
     }
+  }
+  *judging(entry, form, alive) {
+    if (alive()) this.judge(entry, form, alive).catch((error) => alive() && this.onerror(error));
   }
   // Tells how the entry is drawn, and how far that is from what was measured.
   async judge(entry, form, alive) {
@@ -102,10 +117,24 @@ export class View {
   }
 
   restart() {
-    this.frames = this.taken = 0;
+    this.forgetSum();
     this.ask();
   }
+  forgetSum() {
+    this.frames = this.taken = 0;
+    this.rests = null;
+    this.off.forEach((off, side) => {
+      if (!off?.passes) return;
+      off.passes = 0;
+      if (this.sides[side]) this.onexact(this.sides[side], 0);
+    });
+  }
+  // A picture is wanted; and a look at whether the last one is there.
   ask() {
+    this.stale = true;
+    this.tick();
+  }
+  tick() {
     this.request ??= requestAnimationFrame((time) => {
       this.request = null;
       this.frame(time);
@@ -129,7 +158,9 @@ export class View {
     [this.canvas.width, this.canvas.height] = [width, height];
     this.targets?.forEach((t) => t.free());
     this.targets = [true, false, false, false, false].map((deep) => target(this.gl, width, height, deep));
-    this.frames = this.taken = 0;
+    for (const off of this.off) off?.targets.forEach((t) => t.free());
+    this.off = [null, null];
+    this.forgetSum();
   }
 
   frame(time) {
@@ -137,24 +168,45 @@ export class View {
     if (gl.isContextLost()) return;
     // the last frame is still being drawn
     if (this.fence && gl.clientWaitSync(this.fence, 0, 0) === gl.TIMEOUT_EXPIRED) {
-      this.ask();
+      this.tick();
       return;
     }
-    if (this.fence) this.measure(time - this.began);
+    if (this.fence) this.finished(time - this.began);
+    // thumbnails take turns with frames
+    if (this.chores.length && !this.stale && !this.choreWas) {
+      if (this.chores[0].next().done) this.chores.shift();
+      this.choreWas = true;
+      this.tick();
+      return;
+    }
+    this.choreWas = false;
+    if (this.settled && !this.stale) {
+      if (this.chores.length) this.tick();
+      return;
+    }
+    this.stale = false;
     this.resize();
-    if (!this.settled) this.accumulate();
-    this.compose();
+    if (!this.settled && !this.small) this.accumulate();
+    this.compose(this.small);
+    this.small?.free();
+    this.small = null;
     this.began = time;
+    this.drawn = this.sides.filter((entry, side) => this.isSeen(side) && this.formOf(entry));
     this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl.flush();
     this.onframe(this);
-    if (!this.settled) this.ask();
+    this.tick();
   }
-  // As many samples a frame, and at last pixels, as the pace allows; a frame after a pause tells nothing.
-  measure(took) {
+  // The last frame is on the screen. A frame after a pause tells nothing of the pace.
+  finished(took) {
     this.gl.deleteSync(this.fence);
     this.fence = null;
-    if (this.settled) return;
+    for (const entry of this.drawn) this.onseen(entry);
+    if (this.settled) this.rest();
+    else this.measure(took);
+  }
+  // As many samples a frame, and at last pixels, as the pace allows.
+  measure(took) {
     this.pace = this.pace ? 0.8 * this.pace + 0.2 * took : took;
     if (took > kLongFrame && this.samplesAFrame > 2) this.samplesAFrame /= 2;
     else if (took > 4 * kLongFrame && this.resolution > 0.5) this.resolution = 0.5;
@@ -164,7 +216,7 @@ export class View {
   // One more frame of each material into its sum.
   accumulate() {
     const [frame, ...sums] = this.targets, count = this.samplesAFrame;
-    const jitter = [fract(this.frames * 0.7548776662 + 0.5) - 0.5, fract(this.frames * 0.569840291 + 0.5) - 0.5];
+    const jitter = jitterOf(this.frames);
     this.sides.forEach((entry, side) => {
       if (!this.isSeen(side)) return;
       const old = sums[2 * side + (this.frames % 2)], next = sums[2 * side + 1 - (this.frames % 2)];
@@ -179,6 +231,56 @@ export class View {
     });
     this.frames += 1;
     this.taken += this.settings.around === "none" ? 1 : count;
+  }
+
+  // While the view rests, what is drawn through a table is computed.
+  async rest() {
+    if (this.rests) return;
+    const rests = (this.rests = {}), materials = this.sides.map((entry) => entry?.material);
+    const current = () => this.rests === rests && this.sides.every((entry, side) => entry?.material === materials[side]);
+    try {
+      for (let pass = 0; pass < kPasses; ++pass)
+        for (const side of [0, 1]) {
+          if (!this.isSeen(side) || this.formOf(this.sides[side])?.how !== "table") continue;
+          await this.computePass(side, pass, current);
+          if (!current()) return;
+        }
+    } catch (error) {
+      if (current()) this.onerror(error);
+    }
+  }
+  async computePass(side, pass, current) {
+    const gl = this.gl, entry = this.sides[side], form = this.formOf(entry), [frame] = this.targets, {width, height} = frame;
+    const {lights, around} = this.settings, directions = around === "none" ? 0 : kDirections, parts = lights.length + directions;
+    this.part ??= program(gl, objectVertex, partFragment);
+    this.takeOff ??= program(gl, screenVertex, offFragment);
+    this.off[side] ??= {passes: 0, targets: [0, 1].map(() => target(gl, width, height, false))};
+    const material = entry.material, plain = {...form, textures: [], set: () => {}};
+    const read = (part, which) => {
+      const pixels = new Float32Array(4 * width * height);
+      gl.useProgram(this.part.handle);
+      gl.uniform1i(this.part.at("part"), part);
+      gl.uniform1i(this.part.at("which"), which);
+      this.drawObject(plain, frame, jitterOf(pass), directions * pass, directions, this.part);
+      gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, pixels);
+      return pixels;
+    };
+    const data = await exactLight(material, parts, read, current);
+    if (!data) return;
+    const off = this.off[side], [before, next] = [off.targets[off.passes % 2], off.targets[1 - (off.passes % 2)]];
+    const exact = texture(gl, {width, height, internal: gl.RGBA32F, format: gl.RGBA, type: gl.FLOAT, data, filter: gl.NEAREST});
+    this.drawObject(form, frame, jitterOf(pass), directions * pass, directions);
+    this.into(next, this.takeOff, ({at}) => {
+      [before.color, frame.color, exact].forEach((map, unit) => {
+        bind(gl, unit, map);
+        gl.uniform1i(at(["before", "frame", "exact"][unit]), unit);
+      });
+      gl.uniform1f(at("share"), 1 / (pass + 1));
+    });
+    gl.deleteTexture(exact.handle);
+    off.passes = pass + 1;
+    this.onexact(entry, off.passes / kPasses);
+    this.ask();
   }
 
   isSeen(side) {
@@ -207,24 +309,41 @@ export class View {
     gl.uniform1f(at("eye"), kEye);
   }
 
-  drawObject(form, goal, jitter, first, count) {
-    const gl = this.gl, {lights, around, shape} = this.settings;
+  drawObject(form, goal, jitter, first, count, made = form?.program) {
+    const gl = this.gl, {shape} = this.settings;
     gl.bindFramebuffer(gl.FRAMEBUFFER, goal.frame);
     gl.viewport(0, 0, goal.width, goal.height);
     gl.enable(gl.DEPTH_TEST);
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     if (!form) return;
-    const {handle, at} = form.program;
-    gl.useProgram(handle);
-    this.place(form.program, goal, jitter);
+    gl.useProgram(made.handle);
+    this.place(made, goal, jitter);
+    this.setLight(form, made);
+    gl.uniform1i(made.at("samples"), count);
+    gl.uniform1i(made.at("first_sample"), first);
+    // depths first: what is hidden costs nothing then
+    gl.colorMask(false, false, false, false);
+    gl.useProgram(this.lines.handle);
+    this.place(this.lines, goal, jitter);
+    gl.uniform1f(this.lines.at("lift"), 0);
+    this.drawMesh(shape);
+    gl.colorMask(true, true, true, true);
+    gl.useProgram(made.handle);
+    gl.depthFunc(gl.LEQUAL);
+    this.drawMesh(shape);
+  }
+
+  // The form's textures, lights and what is around.
+  setLight(form, {at}) {
+    const gl = this.gl, {lights, around} = this.settings;
     form.textures.forEach((map, unit) => {
       bind(gl, unit, map);
       gl.uniform1i(at(map.name), unit);
     });
     bind(gl, form.textures.length, this.sky);
     gl.uniform1i(at("picture"), form.textures.length);
-    form.set(form.program);
+    form.set({at});
     gl.uniform1i(at("around"), environments.indexOf(around));
     gl.uniform1i(at("light_count"), lights.length);
     const places = new Float32Array(3 * kLights), colors = new Float32Array(3 * kLights);
@@ -234,20 +353,8 @@ export class View {
     });
     gl.uniform3fv(at("lights"), places);
     gl.uniform3fv(at("colors"), colors);
-    gl.uniform1i(at("samples"), count);
-    gl.uniform1i(at("first_sample"), first);
     // both sides draw the same directions, so that what they differ by is no noise
     gl.uniform2f(at("alpha"), ...(this.formOf(this.sides[0]) ?? form).alpha);
-    // depths first: what is hidden costs nothing then
-    gl.colorMask(false, false, false, false);
-    gl.useProgram(this.lines.handle);
-    this.place(this.lines, goal, jitter);
-    gl.uniform1f(this.lines.at("lift"), 0);
-    this.drawMesh(shape);
-    gl.colorMask(true, true, true, true);
-    gl.useProgram(handle);
-    gl.depthFunc(gl.LEQUAL);
-    this.drawMesh(shape);
   }
 
   drawMesh(shape) {
@@ -257,17 +364,20 @@ export class View {
     this.gl.drawElements(this.gl.TRIANGLES, count, this.gl.UNSIGNED_INT, 0);
   }
 
-  compose() {
-    const gl = this.gl, {exposure, curve, shown, divider, tangents} = this.settings;
-    const [left, right] = [0, 1].map((side) => this.targets[1 + 2 * side + (this.frames % 2)]);
+  // The sums as a picture, or a small one of the left object.
+  compose(small) {
+    const gl = this.gl, {exposure, curve, shown, divider, tangents} = this.settings, {width, height} = this.canvas;
+    const sums = [0, 1].map((side) => this.targets[1 + 2 * side + (this.frames % 2)].color);
+    const off = this.off.map((is) => (is?.passes ? is.targets[is.passes % 2].color : this.black));
     this.into(null, this.picture, ({at}) => {
-      bind(gl, 0, left.color);
-      bind(gl, 1, right.color);
-      gl.uniform1i(at("left"), 0);
-      gl.uniform1i(at("right"), 1);
+      (small ? [small.color, this.black, this.black, this.black] : [...sums, ...off]).forEach((map, unit) => {
+        bind(gl, unit, map);
+        gl.uniform1i(at(["left", "right", "left_off", "right_off"][unit]), unit);
+      });
+      gl.uniform2f(at("shrunk"), small ? small.width / width : 1, small ? small.height / height : 1);
       gl.uniform1f(at("exposure"), 2 ** exposure);
       gl.uniform1i(at("curve"), curve);
-      gl.uniform1i(at("shown"), this.sides[1] ? shown : 0);
+      gl.uniform1i(at("shown"), this.sides[1] && !small ? shown : 0);
       gl.uniform1f(at("divider"), divider * this.canvas.width);
       gl.uniform3fv(at("background"), this.background ?? [0.1, 0.1, 0.1]);
     });
@@ -301,32 +411,44 @@ export class View {
     gl.drawElements(gl.LINES, count, gl.UNSIGNED_INT, 0);
   }
 
-  // The exposure, in stops, that takes all but the brightest 3 % of the left object to white.
+  // The exposure, in stops, that takes all but the brightest 3 % of the left object to white, by a small picture of it. That
+  // is seen before larger ones where nothing has been seen yet.
   autoExposure() {
-    const gl = this.gl;
-    if (!this.formOf(this.sides[0]) || !this.targets) return null;
-    if (this.frames === 0) this.accumulate();
-    const {frame, width, height} = this.targets[1 + (this.frames % 2)];
-    gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
-    const pixels = new Float32Array(4 * width * height);
+    const gl = this.gl, form = this.formOf(this.sides[0]), {clientWidth, clientHeight} = this.canvas;
+    if (!form || !clientWidth || !clientHeight) return null;
+    const shrunk = Math.min(Math.sqrt(kExposurePixels / (clientWidth * clientHeight)), 1);
+    const [width, height] = [clientWidth, clientHeight].map((side) => Math.max(Math.round(shrunk * side), 1));
+    const goal = target(gl, width, height, true), pixels = new Float32Array(4 * width * height);
+    this.drawObject(form, goal, [0, 0], 0, kExposureSamples);
     gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, pixels);
+    const seen = this.sides[1] || this.drawn.includes(this.sides[0]);
+    this.small?.free();
+    this.small = seen ? null : goal;
+    if (seen) goal.free();
+    else this.stale = true;
     return exposureOf(pixels);
   }
 
-  // A small picture of a sphere under the studio's light.
-  thumbnail(entry, size) {
-    const gl = this.gl, form = this.formOf(entry), goal = target(gl, size, size, true), settings = this.settings;
+  // A small picture of a sphere under the studio's light, drawn between frames.
+  thumbnail(entry, size, told) {
+    this.chores.push(this.portrait(entry, size, told));
+    this.tick();
+  }
+  *portrait(entry, size, told) {
+    const gl = this.gl, form = this.formOf(entry), studio = {shape: "sphere", around: "studio", yaw: 0, pitch: 0, lights: []};
     const sums = new Float32Array(4 * size * size), pixels = new Float32Array(4 * size * size);
-    const {sides} = this;
-    this.sides = [entry, null];
-    this.settings = {...settings, shape: "sphere", around: "studio", yaw: 0, pitch: 0, lights: []};
-    for (let pass = 0; pass < 4; ++pass) {
-      this.drawObject(form, goal, [fract(0.755 * pass) - 0.5, fract(0.57 * pass) - 0.5], 32 * pass, 32);
+    for (let pass = 0; pass < kPortraitPasses; ++pass) {
+      if (this.formOf(entry) !== form) return;
+      const {settings, sides} = this, goal = target(gl, size, size, true);
+      this.sides = [entry, null];
+      this.settings = {...settings, ...studio};
+      this.drawObject(form, goal, jitterOf(pass), kPortraitSamples * pass, kPortraitSamples);
+      [this.settings, this.sides] = [settings, sides];
       gl.readPixels(0, 0, size, size, gl.RGBA, gl.FLOAT, pixels);
-      for (let k = 0; k < sums.length; ++k) sums[k] += pixels[k] / 4;
+      goal.free();
+      for (let k = 0; k < sums.length; ++k) sums[k] += pixels[k] / kPortraitPasses;
+      yield;
     }
-    [this.settings, this.sides] = [settings, sides];
-    goal.free();
     const factor = 2 ** exposureOf(sums), image = new ImageData(size, size);
     for (let y = 0; y < size; ++y)
       for (let x = 0; x < size; ++x) {
@@ -334,7 +456,7 @@ export class View {
         for (let c = 0; c < 3; ++c) image.data[to + c] = 255 * Math.min(factor * sums[from + c] / Math.max(cover, 1e-6), 1) ** (1 / 2.2);
         image.data[to + 3] = 255 * cover;
       }
-    return image;
+    told(image);
   }
 
   png() {
@@ -344,6 +466,7 @@ export class View {
 }
 
 const fract = (x) => x - Math.floor(x);
+const jitterOf = (k) => [fract(k * 0.7548776662 + 0.5) - 0.5, fract(k * 0.569840291 + 0.5) - 0.5];
 
 function exposureOf(pixels) {
   const values = [];

@@ -52,8 +52,8 @@ struct AngleTable {
 
   std::size_t channels() const noexcept { return channel_count; }
   bool isotropic() const noexcept { return axes[0].nodes.size() == 1; }
-  /// Linear along each angle. Holes have no weight, the others' weights are scaled to sum to 1; unknown where
-  /// all neighbours are holes and outside an axis (see AxisNeighbours).
+  /// Linear along each angle. Holes have no weight, the others' weights are scaled to sum to 1; unknown where those that
+  /// are no holes have less than 1e-9 of it and outside an axis (see AxisNeighbours).
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
   bool eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 };

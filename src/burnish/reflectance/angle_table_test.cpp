@@ -148,6 +148,20 @@ TEST(AngleTable, GivesHolesNoWeight) {
   EXPECT_EQ(f, 0);
 }
 
+TEST(AngleTable, KnowsNothingAtAHoleWhoseNeighbourHasOnlyRoundingsWeight) {
+  AngleTable table;
+  table.axes = {make_axis({0}), make_axis({0.5}), make_axis({0.4, 0.6}), make_axis({0})};
+  table.values = {std::numeric_limits<float>::quiet_NaN(), 7};
+  double f = 1;
+  const Vec3 wi = spherical_direction(0.5, 0);
+  for (const double rounding : {-1e-15, 0.0, 1e-15, 1e-11}) {
+    EXPECT_FALSE(table.eval(wi, spherical_direction(0.4 + rounding, 0), {&f, 1}));
+    EXPECT_EQ(f, 0);
+  }
+  EXPECT_TRUE(table.eval(wi, spherical_direction(0.4 + 1e-6, 0), {&f, 1}));
+  EXPECT_DOUBLE_EQ(f, 7);
+}
+
 // Lopsided about the plane of incidence and anisotropic.
 struct Lopsided {
   std::size_t channels() const noexcept { return 2; }
