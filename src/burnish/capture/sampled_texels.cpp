@@ -3,7 +3,8 @@
 #include <numeric>
 #include <optional>
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <fmt/format.h>
 
 #include <burnish/capture/sampled_texels.h>

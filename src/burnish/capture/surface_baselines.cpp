@@ -1,11 +1,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <fmt/format.h>
 
 #include <burnish/capture/sampled_texels.h>
 #include <burnish/capture/surface_baselines.h>
+#include <burnish/fitting/numerics/eigenvectors.h>
 #include <burnish/math/angles.h>
 
 namespace burnish {
@@ -186,9 +187,8 @@ class Comparison {
               log_value(fitted[k] * samples_.size() + t, c);
     const Eigen::VectorXd mean = logs.rowwise().mean();
     logs.colwise() -= mean;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(logs * logs.transpose());
-    const Eigen::MatrixXd basis =
-        solver.eigenvectors().rightCols(std::min<Eigen::Index>(rows, static_cast<Eigen::Index>(components)));
+    const Eigen::MatrixXd basis = leading_eigenvectors(
+        logs * logs.transpose(), std::min<Eigen::Index>(rows, static_cast<Eigen::Index>(components)));
     Eigen::MatrixXd modelled = basis * (basis.transpose() * logs);
     modelled.colwise() += mean;
 

@@ -1,7 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
 
 #include <burnish/capture/texel_lanes.h>
 #include <burnish/capture/texel_solver.h>

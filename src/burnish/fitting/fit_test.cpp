@@ -215,6 +215,7 @@ TEST(Fit, MakesByDefaultWhatTheDefaultBudgetSays) {
 }
 
 TEST(Fit, TellsProgressByStagesAndEndsWhereTheCallerThrows) {
+  BURNISH_SKIP_WHERE_SANITIZED();
   const Source source = source_of("paint", paint());
   for (auto [name, options] : every_form()) {
     std::map<std::string, double, std::less<>> stages;
@@ -408,6 +409,7 @@ TEST(Fit, StoresNoNoiseWhereBytesAreAuto) {
 }
 
 TEST(Fit, StopsOfASourceWithoutNoiseWhereLittleIsOff) {
+  BURNISH_SKIP_WHERE_SANITIZED();
   const Source source = source_of("paint", paint());
   const Fit made = fit(source, {.form = Budget{.bytes = {}}});
   const BudgetChoice& choice = made.report.budget_choice.value();

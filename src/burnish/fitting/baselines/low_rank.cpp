@@ -2,10 +2,10 @@
 #include <cmath>
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 
 #include <burnish/fitting/baselines/low_rank.h>
 #include <burnish/fitting/numerics/dense.h>
+#include <burnish/fitting/numerics/eigenvectors.h>
 
 namespace burnish {
 
@@ -33,10 +33,9 @@ LowRank singular_values(const Matrix& m, std::size_t terms) {
   const ConstMap a = map(m);
   const bool wide = m.columns > m.rows;
   const Eigen::MatrixXd gram = wide ? products_of_rows(a) : products_of_columns(a);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(gram);
   const Index kept = std::min(static_cast<Index>(terms), gram.rows());
-  // eigenvalues rise: the last are the squares of the largest singular values
-  RowMajor near = solver.eigenvectors().rightCols(kept).rowwise().reverse();
+  // eigenvalues are the squares of singular values
+  RowMajor near = leading_eigenvectors(gram, kept);
   RowMajor far = wide ? RowMajor(a.transpose() * near) : RowMajor(a * near);
   for (Index k = 0; k < kept; ++k) {
     const double sigma = far.col(k).norm();

@@ -6,13 +6,13 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <Imath/half.h>
 #include <fmt/format.h>
 
 #include <burnish/error.h>
 #include <burnish/fitting/book/make_book.h>
 #include <burnish/fitting/book/three_channels.h>
+#include <burnish/fitting/numerics/eigenvectors.h>
 #include <burnish/fitting/refinement/training_set.h>
 
 namespace burnish {
@@ -80,8 +80,7 @@ MatrixXd deviations(const BookAxis& axis, std::size_t u, const std::vector<BookM
 MatrixXd principal_directions(const MatrixXd& data, Eigen::Index count) {
   const bool by_node = data.rows() <= data.cols();
   const MatrixXd gram = by_node ? MatrixXd(data * data.transpose()) : MatrixXd(data.transpose() * data);
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(gram);
-  MatrixXd found = solver.eigenvectors().rightCols(count).rowwise().reverse();
+  MatrixXd found = leading_eigenvectors(gram, count);
   if (!by_node) found = data * found;
   for (Eigen::Index k = 0; k < count; ++k) {
     Eigen::Index largest = 0;

@@ -1,7 +1,10 @@
 #include <utility>
 
+#include <fmt/format.h>
+
 #include <burnish/fitting/numerics/dense.h>
 #include <burnish/fitting/numerics/lapack_lock.h>
+#include <burnish/fitting/numerics/linear_algebra.h>
 
 // LAPACK and BLAS as Fortran knows them have no header of their own.
 extern "C" {
@@ -13,6 +16,7 @@ void dpotrs_(const char* triangle, const int* n, const int* columns, const doubl
 void dsyrk_(const char* triangle, const char* transpose, const int* n, const int* inner, const double* scale,
             const double* matrix, const int* stride, const double* keep, double* result,
             const int* result_stride);
+void ilaver_(int* major, int* minor, int* patch);
 }
 
 namespace burnish {
@@ -32,6 +36,12 @@ Eigen::MatrixXd products(const char* transpose, Eigen::Index size, Eigen::Index 
 }
 
 }  // namespace
+
+std::string linear_algebra() {
+  int major = 0, minor = 0, patch = 0;
+  ilaver_(&major, &minor, &patch);
+  return major == 0 ? "Eigen in place of LAPACK" : fmt::format("LAPACK {}.{}.{}", major, minor, patch);
+}
 
 std::mutex& lapack_mutex() {
   static std::mutex mutex;

@@ -25,6 +25,10 @@ const double* column(const double* band, int stride, int j) {
 
 extern "C" {
 
+void ilaver_(int* major, int* minor, int* patch) {
+  *major = *minor = *patch = 0;
+}
+
 void dpotrf_(const char*, const int* n, double* matrix, const int* stride, int* info) {
   Matrix a(matrix, *n, *n, Eigen::OuterStride<>(*stride));
   // in place: the upper triangle stays as it is
