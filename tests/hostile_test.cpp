@@ -10,6 +10,7 @@
 
 #include <burnish/io/open_source.h>
 #include <burnish/math/random.h>
+#include <burnish/testing/sanitized.h>
 #include <burnish/testing/seed_files.h>
 #include <burnish/testing/tools.h>
 
@@ -187,7 +188,9 @@ TEST_F(HostileCommandLine, ConvertsWhatIsWell) {
   EXPECT_EQ(averaged.status, 0);
   EXPECT_THAT(averaged.output, HasSubstr("/a.binary: lost: anisotropy averaged"));
   EXPECT_EQ(std::count(averaged.output.begin(), averaged.output.end(), '\n'), 1) << averaged.output;
-  for (const char* format : {"half", "float", "rgb9e5", "unorm8"})
+  std::vector<std::string> formats = {"rgb9e5"};
+  if (!BURNISH_SANITIZED) formats.insert(formats.end(), {"half", "float", "unorm8"});  // each is a fit
+  for (const std::string& format : formats)
     EXPECT_EQ(
         run_burnish(
             fmt::format("fit ggx:kd=0.3/0.2/0.1 --budget 600 --format {} --conserve-energy --loss relative "
