@@ -124,7 +124,7 @@ hw-exhaustive: test-deps build
 	@hw/verify.sh exhaustive $(CURDIR)/$(BURNISH) $(LIBRARY) build/hw-exhaustive
 
 fuzz: test-deps
-	@tests/fuzz/run.sh $(FUZZ_SECONDS)
+	@JOBS=$(JOBS) tests/fuzz/run.sh $(FUZZ_SECONDS)
 
 damaged: test-deps
 	@cmake --preset release > /dev/null && cmake --build --preset release -j $(JOBS) --target burnish_cli make_seeds

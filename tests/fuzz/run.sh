@@ -1,25 +1,34 @@
 #!/usr/bin/env bash
-# run.sh [SECONDS]: builds every fuzzer and runs each for SECONDS (60), printing its speed. A find ends the run with
-# the input in build/fuzz/finds. Corpora grow in build/fuzz/corpus.
+# run.sh [SECONDS]: builds every fuzzer and runs each for SECONDS (60) of the processor, as many at a time as there are
+# cores, printing what each tried. A find ends the run with the input in build/fuzz/finds. Corpora grow in
+# build/fuzz/corpus. BUILT=DIR runs the programs of a folder instead of building them.
 set -euo pipefail
 seconds=${1:-60}
 cd "$(dirname "$0")/../.."
-cmake --preset fuzz > /dev/null
-cmake --build --preset fuzz
-build=build/fuzz/tests/fuzz
-corpus=build/fuzz/corpus
+if [ -z "${BUILT:-}" ]; then
+  cmake --preset fuzz > /dev/null
+  cmake --build --preset fuzz
+fi
+export build=${BUILT:-build/fuzz/tests/fuzz} corpus=build/fuzz/corpus seconds
 mkdir -p build/fuzz/finds
 "$build/make_seeds" "$corpus"
-for source in tests/fuzz/*_fuzz.cpp; do
-  name=$(basename "$source" _fuzz.cpp)
+
+# libFuzzer knows the clock only: what a busy machine kept from a fuzzer is given to it in further runs.
+fuzz() {
+  local name=$1 log=build/fuzz/$1.log used=0 inputs=0 TIMEFORMAT='%U %S'
   mkdir -p "$corpus/$name"
-  log=build/fuzz/$name.log
-  if ! "$build/${name}_fuzz" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
-      -artifact_prefix="build/fuzz/finds/$name-" "$corpus/$name" > "$log" 2>&1; then
-    tail -n 40 "$log"
-    echo "$name: failed, see $log" >&2
-    exit 1
-  fi
-  awk -v name="$name" '/^stat::number_of_executed_units/ {n = $2} /^stat::average_exec_per_sec/ {s = $2}
-    END {printf "%-11s %9d inputs, %7d a second\n", name, n, s}' "$log"
-done
+  while [ "$used" -lt "$seconds" ]; do
+    if ! { time "$build/${name}_fuzz" -max_total_time=$((seconds - used)) -timeout=10 -rss_limit_mb=2048 \
+        -print_final_stats=1 -artifact_prefix="build/fuzz/finds/$name-" "$corpus/$name" > "$log" 2>&1; } 2> "$log.time"; then
+      tail -n 40 "$log"
+      echo "$name: failed, see $log" >&2
+      return 255  # ends xargs
+    fi
+    inputs=$((inputs + $(awk '/^stat::number_of_executed_units/ {print $2}' "$log")))
+    used=$((used + 1 + $(awk '{printf "%d", $1 + $2}' "$log.time")))
+  done
+  printf '%-12s %10d inputs in %4d s of the processor\n' "$name" "$inputs" "$used"
+}
+export -f fuzz
+
+basename -a tests/fuzz/*_fuzz.cpp | sed 's/_fuzz\.cpp$//' | xargs -P "${JOBS:-$(nproc)}" -I{} bash -euo pipefail -c 'fuzz {}'
