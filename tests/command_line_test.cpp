@@ -78,7 +78,7 @@ TEST(CommandLine, WritesWhereItIsToldTo) {
                                        fmt::format("convert lambert '{}/a.csv' --count 5", out),
                                        fmt::format("measure lambert -o '{}/a.csv' --count 5", out),
                                        fmt::format("specular table --output '{}/a.csv' --count 5", out),
-                                       fmt::format("specular table --out '{}/a.csv' --count 5", out)}) {
+                                       fmt::format("specular table --out '{}/a.csv' --last 5", out)}) {
     std::filesystem::remove(folder.path / "a.csv");
     EXPECT_EQ(burnish(arguments).status, 0) << arguments;
     EXPECT_TRUE(std::filesystem::exists(folder.path / "a.csv")) << arguments;
@@ -139,10 +139,12 @@ TEST(CommandLine, HasJsonHelpAndExamplesInEveryVerb) {
     const std::string name = verb["name"], examples = verb["examples"];
     const std::vector<std::string> names = names_of(verb);
     EXPECT_THAT(names, testing::IsSupersetOf({"--help", "--json"})) << name;
-    // what is written is named alike
-    for (const char* other : {"--out", "--folder", "--file"})
+    // what is written is named alike, and so is the form in which
+    for (const char* output : {"-o", "--output", "--out"})
+      EXPECT_EQ(std::ranges::count(names, output), std::ranges::count(names, "-o")) << name;
+    for (const auto& [other, common] : {std::pair{"--folder", "-o"}, {"--file", "-o"}, {"--lang", "--to"}})
       if (std::ranges::find(names, other) != names.end()) {
-        EXPECT_THAT(names, testing::Contains("-o")) << name;
+        EXPECT_THAT(names, testing::Contains(common)) << name;
       }
     EXPECT_THAT(examples, HasSubstr("burnish " + name)) << name;
     EXPECT_THAT(burnish(name + " --help").output, HasSubstr(examples.substr(0, examples.find('\n')))) << name;
@@ -187,7 +189,8 @@ TEST(CommandLine, ExplainsItsFormatsAndItself) {
   EXPECT_EQ(burnish("help nonsense").status, 2);
   const Outcome version = burnish("--version");
   EXPECT_EQ(version.status, 0);
-  for (const char* said : {"burnish ", "instruction sets", "threads", "CLI11 2", "OpenEXR 3", "zstd 1"})
+  for (const char* said :
+       {"burnish ", "instruction sets", "threads", "CLI11 2", "OpenEXR 3", "zstd 1", "libepoxy 1", "LAPACK"})
     EXPECT_THAT(version.output, HasSubstr(said));
 }
 

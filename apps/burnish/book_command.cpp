@@ -70,7 +70,7 @@ void add_book_command(CLI::App& app) {
       "measured pairs. "
       "See docs/guide/library.md.\n"
       "Examples: burnish book measurements -o library.burnish\n"
-      "          burnish book list.txt -o library.burnish --bytes 32K --bytes-a-material 32\n"
+      "          burnish book list.txt -o library.burnish --budget 32K --bytes-a-material 32\n"
       "          burnish book new.txt -o new.burnish --shared library.burnish\n"
       "          burnish fit pairs.csv --book library.burnish -o paint.burnish");
   auto arguments = std::make_shared<BookArguments>();
@@ -79,8 +79,8 @@ void add_book_command(CLI::App& app) {
           "a folder with measurements, or a text with an argument of `burnish fit` a line; isotropic, of one "
           "channel or three")
       ->required();
-  verb->add_option("-o,--output", arguments->out, "file to write")->required();
-  CLI::Option* bytes = verb->add_option("--bytes", arguments->options.bytes,
+  verb->add_option("-o,--output,--out", arguments->out, "file to write")->required();
+  CLI::Option* bytes = verb->add_option("--budget,--bytes", arguments->options.bytes,
                                         "of what the materials share, at most; K counts as 1024")
                            ->transform(CLI::AsSizeValue(false))
                            ->capture_default_str();

@@ -56,7 +56,7 @@ void add_convert_command(CLI::App& app) {
   auto arguments = std::make_shared<ConvertArguments>();
   add_source_arguments(*verb, arguments->source);
   auto* out = verb->add_option("OUT", arguments->out, "file to write");
-  verb->add_option("-o,--output", arguments->out, "the same")->excludes(out);
+  verb->add_option("-o,--output,--out", arguments->out, "the same")->excludes(out);
   verb->add_option(
           "--to", arguments->to,
           "format; by default what OUT ends in: .binary (merl), .bin (utia), .bsdf (rgl), .mbsdf, .xml "

@@ -16,7 +16,7 @@ void add_describe_command(CLI::App& app) {
       "describe", "What packages hold of the command line: manual pages, completions, a description");
   verb->group("");  // for whoever packages burnish
   verb->footer(
-      "Examples: burnish describe --man share/man/man1\n"
+      "Examples: burnish describe -o share/man/man1\n"
       "          burnish describe --bash > /etc/bash_completion.d/burnish\n"
       "          burnish describe --zsh > \"${fpath[1]}/_burnish\"\n"
       "          burnish describe --json");
@@ -27,7 +27,7 @@ void add_describe_command(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::Option_group* what = verb->add_option_group("what");
   what->require_option(1);
-  what->add_option("--man", options->man, "write manual pages into this folder");
+  what->add_option("-o,--output,--out,--man", options->man, "write manual pages into this folder");
   what->add_flag("--bash", options->bash, "print the completion for bash");
   what->add_flag("--zsh", options->zsh, "print the completion for zsh");
   what->add_flag("--json", options->json, "print all verbs, their options and examples as JSON");

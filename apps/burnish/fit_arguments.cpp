@@ -152,7 +152,7 @@ void add_fit_arguments(CLI::App& verb, FitArguments& arguments) {
   verb.add_option("--reweightings", one_lobe.how.reweightings,
                   "passes towards the mean absolute error (default: 4 for scattered samples, else 0)")
       ->check(CLI::Range(0, 100));
-  verb.add_option("--samples", options.samples, "pairs drawn from a source that is a function")
+  verb.add_option("--count,--samples", options.samples, "pairs drawn from a source that is a function")
       ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}));
   verb.add_option("--seed", options.seed, "of the drawn pairs")
       ->check(CLI::NonNegativeNumber)

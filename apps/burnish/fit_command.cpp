@@ -292,7 +292,7 @@ void add_fit_command(CLI::App& app) {
   auto arguments = std::make_shared<FitCommand>();
   add_source_arguments(*verb, arguments->source);
   verb->add_option(
-      "-o,--output", arguments->out,
+      "-o,--output,--out", arguments->out,
       "model file to write (compact where it ends in .burnish, else OpenEXR; JSON with --method and --to)");
   add_fit_arguments(*verb, arguments->how);
   verb->add_option("--threads", arguments->threads, "at most this many; 0: all")->check(CLI::Range(0, 1024));

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <burnish/fitting/numerics/linear_algebra.h>
 #include <burnish/math/build_info.h>
 
 #include "command_description.h"
@@ -92,7 +93,7 @@ std::string version_text() {
                                  BURNISH_VERSION, fmt::join(info.instruction_sets, ", "), info.threads);
   text += fmt::format("CLI11 {}", CLI11_VERSION);
   for (const auto& [name, version] : info.libraries) text += fmt::format(", {} {}", name, version);
-  return text;
+  return text + "\nlinear algebra    " + linear_algebra();
 }
 
 void add_help_command(CLI::App& app) {

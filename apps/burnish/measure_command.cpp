@@ -53,7 +53,8 @@ void add_measure_command(CLI::App& app) {
           "--surface", arguments->surface,
           "a scene of materials, heights, lights and views (docs/guide/surfaces.md): writes a capture")
       ->excludes(positional);
-  verb->add_option("-o,--output", arguments->out, "CSV file to write; with --surface a folder")->required();
+  verb->add_option("-o,--output,--out", arguments->out, "CSV file to write; with --surface a folder")
+      ->required();
   // Ten million samples are a gigabyte of text.
   verb->add_option("--count", arguments->measurement.count, "how many samples")
       ->check(CLI::Range(1, 10000000))

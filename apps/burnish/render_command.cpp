@@ -248,7 +248,7 @@ void add_render_command(CLI::App& app) {
           "of --renderer cpu: directions a ray draws of the environment, and of each of its lamps; a square")
       ->check(CLI::Range(1, 1 << 20))
       ->capture_default_str();
-  verb->add_option("-o,--output", arguments->out, "picture to write: PNG, or EXR of linear values");
+  verb->add_option("-o,--output,--out", arguments->out, "picture to write: PNG, or EXR of linear values");
   verb->add_option("--renderer", arguments->renderer, "OpenGL, or the reference on the CPU")
       ->check(one_of({"gl", "cpu"}))
       ->capture_default_str();
@@ -256,7 +256,7 @@ void add_render_command(CLI::App& app) {
       ->expected(2)
       ->delimiter(',');
   verb->add_option("--size", arguments->size, "pixels: N or WxH")->capture_default_str();
-  verb->add_option("--samples", arguments->samples, "a pixel along each axis")
+  verb->add_option("--pixel-samples,--samples", arguments->samples, "a pixel along each axis")
       ->check(CLI::Range(1, 8))
       ->capture_default_str();
   verb->add_option("--tone", arguments->tone, "of a PNG: clamped, or with a filmic curve")

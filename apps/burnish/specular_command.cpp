@@ -38,7 +38,7 @@ void add_specular_command(CLI::App& app) {
   verb->require_subcommand(1);
   verb->footer(
       "Example: burnish specular choose --max-error 1/255 --exponents 1:1000\n"
-      "         burnish specular code --method cubic2 --lang glsl");
+      "         burnish specular code --method cubic2 --to glsl");
   add_specular_list(*verb);
   add_specular_choose(*verb);
   add_specular_code(*verb);

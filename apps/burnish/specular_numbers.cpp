@@ -97,7 +97,7 @@ void add_specular_choose(CLI::App& verb) {
   sub->add_option("--max-error", arguments->max_error, "largest absolute error, a number or a fraction")
       ->capture_default_str();
   sub->add_option("--exponents", arguments->exponents, "FIRST:LAST, or one exponent")->capture_default_str();
-  sub->add_option("--lang", arguments->language, "language of the code")->capture_default_str();
+  sub->add_option("--to,--lang", arguments->language, "language of the code")->capture_default_str();
   sub->add_flag("--json", arguments->json, "for programs");
   sub->callback([arguments] {
     // FIRST:LAST, or one exponent, for which the code has constants
@@ -147,12 +147,12 @@ void add_specular_code(CLI::App& verb) {
     bool normalize = false;
   };
   CLI::App* sub = verb.add_subcommand("code", "Write a member as a function in another language");
-  sub->footer("Example: burnish specular code --method cubic2 --lang glsl --exponent 50");
+  sub->footer("Example: burnish specular code --method cubic2 --to glsl --exponent 50");
   auto arguments = std::make_shared<Arguments>();
   std::string languages;
   for (const auto name : code_languages()) languages += (languages.empty() ? "" : ", ") + std::string(name);
   sub->add_option("--method", arguments->method, "see `specular list`")->capture_default_str();
-  sub->add_option("--lang", arguments->language, "language: " + languages)->capture_default_str();
+  sub->add_option("--to,--lang", arguments->language, "language: " + languages)->capture_default_str();
   sub->add_option("--exponent", arguments->exponent, "constants for this exponent; without it an argument");
   sub->add_flag("--normalize", arguments->normalize, "keep the energy of the power; needs --exponent");
   add_text_output(*sub, arguments->to);
@@ -214,12 +214,12 @@ void add_specular_table(CLI::App& verb) {
     int count = 1000, fraction_bits = 8;
   };
   CLI::App* sub = verb.add_subcommand("table", "The paper's coefficient a(e) for e = 1, 2, …");
-  sub->footer("Example: burnish specular table --format mem --fraction-bits 8 -o quadratic_a.mem");
+  sub->footer("Example: burnish specular table --to mem --fraction-bits 8 -o quadratic_a.mem");
   auto arguments = std::make_shared<Arguments>();
-  sub->add_option("--format", arguments->format, "csv; c: a C header; mem: a PROM image for $readmemh")
+  sub->add_option("--to,--format", arguments->format, "csv; c: a C header; mem: a PROM image for $readmemh")
       ->check(one_of({"csv", "c", "mem"}))
       ->capture_default_str();
-  sub->add_option("--count", arguments->count, "largest exponent")->capture_default_str();
+  sub->add_option("--last,--count", arguments->count, "largest exponent")->capture_default_str();
   sub->add_option("--fraction-bits", arguments->fraction_bits, "of the PROM's fixed point words")
       ->capture_default_str();
   add_text_output(*sub, arguments->to);

@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <OpenEXR/OpenEXRConfig.h>
-#include <embree3/rtcore_config.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <png.h>
@@ -14,6 +13,12 @@
 
 #include <burnish/math/build_info.h>
 #include <burnish/math/highway_targets.h>
+
+#if __has_include(<embree4/rtcore_config.h>)
+#include <embree4/rtcore_config.h>
+#else
+#include <embree3/rtcore_config.h>
+#endif
 
 // after the list of its targets
 #include <hwy/highway.h>
@@ -36,6 +41,7 @@ BuildInfo build_info() {
       {"libpng", PNG_LIBPNG_VER_STRING},
       {"pugixml", fmt::format("{}.{}", PUGIXML_VERSION / 1000, PUGIXML_VERSION % 1000 / 10)},
       {"Embree", RTC_VERSION_STRING},
+      {"libepoxy", BURNISH_EPOXY_VERSION},
       {"SQLite", SQLITE_VERSION},
       {"TBB", TBB_VERSION_STRING},
       {"zstd", ZSTD_VERSION_STRING}};
