@@ -70,6 +70,17 @@ TEST(CommandLine, KeepsErrorsShort) {
   EXPECT_LT(first_line(burnish(fmt::format("render lambert --tone {}", digits))).size(), 310u);
 }
 
+TEST(CommandLine, CutsErrorsBetweenCharacters) {
+  // letters of two bytes each, at odd and even places
+  std::string letters;
+  for (int i = 0; i < 200; ++i) letters += "\u00e9";
+  for (const char* before : {"", "x"}) {
+    const std::string line = first_line(burnish(fmt::format("info '{}{}{}'", before, letters, before)));
+    EXPECT_THAT(line, HasSubstr(" ... "));
+    EXPECT_NO_THROW(nlohmann::json(line).dump()) << line;  // which takes whole characters only
+  }
+}
+
 TEST(CommandLine, WritesWhereItIsToldTo) {
   const TemporaryFolder folder("output_option");
   const std::string out = folder.path.string();

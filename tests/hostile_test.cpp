@@ -81,6 +81,33 @@ TEST(Hostile, DamagedBytesThrowClearlyOrGiveSoundValues) {
       }
 }
 
+// Its length is fixed, so this one file is large and few of its bytes are tried.
+TEST(Hostile, UtiaCutOrDamagedThrowsClearlyOrGivesSoundValues) {
+  constexpr std::size_t kNumbers = 3 * 288 * 288;
+  std::string whole;
+  for (std::size_t i = 0; i < kNumbers; ++i) whole += seeds::kUtia;
+  EXPECT_FALSE(throws_clearly(whole));
+  for (const std::size_t length :
+       {0ul, 1ul, 8ul, whole.size() / 3, whole.size() / 2, whole.size() - 8, whole.size() - 1})
+    EXPECT_TRUE(throws_clearly(std::string_view(whole).substr(0, length))) << length;
+  EXPECT_TRUE(throws_clearly(whole + '\0'));
+
+  std::vector<double> f(3);
+  Pcg32 random(1);
+  for (int i = 0; i < 20; ++i) {
+    // the byte of a number's sign and exponent, which makes it huge or none at all, tiny or negative
+    const std::size_t at = random.next() % kNumbers * 8 + 7;
+    const char damage = "\xff\x7f\0-n\xbf"[i % 6];
+    std::string damaged = whole;
+    damaged[at] = damage;
+    const bool beyond = damage == '\xff' || damage == '\x7f' || damage == 'n';
+    EXPECT_EQ(throws_clearly(damaged), beyond) << at << ": " << static_cast<int>(damage);
+    if (beyond) continue;
+    parse_source(memory_file(damaged), {}).ref().eval({0.6, 0, 0.8}, {0, -0.6, 0.8}, f);
+    for (const double value : f) EXPECT_TRUE(std::isfinite(value)) << at;
+  }
+}
+
 TEST(Hostile, NoiseThrows) {
   Pcg32 random(1);
   for (int i = 0; i < 300; ++i) {

@@ -1,9 +1,13 @@
 // Real scattered samples keep the budget that they are given.
 
+#include <cmath>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include <burnish/fitting/fit.h>
 #include <burnish/io/open_source.h>
+#include <burnish/math/angles.h>
 #include <burnish/testing/files.h>
 #include <burnish/testing/sanitized.h>
 
@@ -33,6 +37,31 @@ TEST(Scattered, EveryFileKeepsItsBudgets) {
         << entry.path();
   }
   EXPECT_GT(files, 0u);
+}
+
+// The height of a tape's peak: samples nearest to wi = wo at each incidence, by their own values.
+TEST(Scattered, TheDefaultFitHoldsATapesPeak) {
+  BURNISH_SKIP_WHERE_SANITIZED();
+  BURNISH_NEEDS_DATA();
+  const Source source = open_source((data_folder() / "retro" / "retro-gray-tape.dat").string(), {});
+  const Fit made = fit(source, {});
+  EXPECT_LE(std::get<OneLobeReport>(made.report.how).relative_cross_validated.value(), 0.10);
+  const Samples& samples = *source.samples();
+  for (const double theta_deg : {15.0, 30.0, 60.0}) {
+    std::size_t best = samples.size();
+    double least = radians(1);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const auto& [wi, wo] = samples.pairs[i];
+      if (std::abs(theta_of(wi) - radians(theta_deg)) > radians(0.5) || angle_between(wi, wo) >= least)
+        continue;
+      least = angle_between(wi, wo);
+      best = i;
+    }
+    ASSERT_LT(best, samples.size()) << theta_deg;
+    std::vector<double> f(samples.channels);
+    made.ref().eval(samples.pairs[best].wi, samples.pairs[best].wo, f);
+    EXPECT_NEAR(f[0] / samples.at(best)[0], 1, 0.05) << theta_deg;
+  }
 }
 
 }  // namespace

@@ -196,17 +196,16 @@ void print(const MetallicRoughness& m) {
   fmt::print("\n");
 }
 
-// What the material leaves out, a line each; nothing that is too small to be seen.
+// What the material leaves out, a line each; nothing that is too small to be seen or not known.
 void print(const Unexplained& beyond) {
   constexpr double kSeenFactor = 1.25, kSeenShift = 0.05;
-  if (beyond.backscatter > kSeenFactor || beyond.backscatter < 1 / kSeenFactor)
-    fmt::print("beyond     backscatter: {:.2f} times the material's where wi = wo\n", beyond.backscatter);
-  if (beyond.rings > kSeenFactor)
+  if (const double back = beyond.backscatter.value_or(1); back > kSeenFactor || back < 1 / kSeenFactor)
+    fmt::print("beyond     backscatter: {:.2f} times the material's where wi = wo\n", back);
+  if (const double rings = beyond.rings.value_or(1); rings > kSeenFactor)
     fmt::print("beyond     rings: values rise again by {:.2f} times as much away from the highlight\n",
-               beyond.rings);
-  if (beyond.colour_shift > kSeenShift)
-    fmt::print("beyond     colour shift: the highlight's chromaticity differs by up to {:.3f}\n",
-               beyond.colour_shift);
+               rings);
+  if (const double shift = beyond.colour_shift.value_or(0); shift > kSeenShift)
+    fmt::print("beyond     colour shift: the highlight's chromaticity differs by up to {:.3f}\n", shift);
 }
 
 void fit_to_material(const FitCommand& arguments) {

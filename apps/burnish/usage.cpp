@@ -51,9 +51,15 @@ std::string short_message(std::string_view message) {
   std::replace_if(
       line.begin(), line.end(), [](unsigned char c) { return c < 0x20; }, ' ');
   if (line.size() <= kLongestMessage) return line;
+  // whole characters of UTF-8: no cut before a byte that continues one
   constexpr std::string_view kGap = " ... ";
-  return line.substr(0, kLongestMessage - kGap.size() - kKeptEnd) + std::string(kGap) +
-         line.substr(line.size() - kKeptEnd);
+  const auto continues = [&](std::size_t at) {
+    return at < line.size() && (static_cast<unsigned char>(line[at]) & 0xc0) == 0x80;
+  };
+  std::size_t begin = kLongestMessage - kGap.size() - kKeptEnd, end = line.size() - kKeptEnd;
+  while (begin > 0 && continues(begin)) --begin;
+  while (continues(end)) ++end;
+  return line.substr(0, begin) + std::string(kGap) + line.substr(end);
 }
 
 std::optional<std::string> misspelling(const CLI::App& app, std::span<char* const> arguments) {

@@ -22,12 +22,15 @@ import time
 MOST_BYTES, MOST_SECONDS, LONGEST_LINE = 1 << 30, 5, 309
 LARGE = 100_000  # larger files, and networks of 800,000 weights, are taken once in SELDOM times: they take longer
 SELDOM = 200
-READS = ("info", "convert", "eval", "measure")  # what does not more than read and write names the file
+READS = ("info", "convert", "eval", "measure", "compare", "export")  # what does not more than read and write names the file
 NO_SOURCE = {".f32", ".fit", ".ktx2", ".js", ".html"}
 KINDS = {"directions": "eval", "capture": "capture", "np": "np", "mesh.obj": "mesh", "mesh.glb": "mesh",
-         "environment.exr": "light"}
+         "environment.exr": "light", "neural": "neural", "book": "book"}
+SPECS = {"neural": "nbrdf:{}#seed", "book": "book:{}#felt"}  # of one of several in a file
+MODELS = {"model", "compact", "made.exr", "made.burnish"}
 MADE = (["convert", "ggx:alpha_x=0.3", "made.binary", "--cells", "6"], ["convert", "ggx", "made.mbsdf", "--cells", "5"],
-        ["convert", "openpbr", "made.bsdf"], ["convert", "lambert", "zemax", "--to", "zemax"],
+        ["convert", "openpbr", "made.bsdf"],
+        ["convert", "ggx", "made.bin", "--to", "utia"], ["convert", "lambert", "zemax", "--to", "zemax"],
         ["convert", "ggx", "made.xml", "--cells", "8"], ["measure", "ggx", "-o", "cloud.csv", "--count", "99"],
         ["convert", "cloud.csv", "made.xompt"], ["convert", "ggx", "made.astm", "--count", "99"],
         ["convert", "ggx", "made.csv", "--count", "99"], ["fit", "ggx", "-o", "made.exr", "--budget", "1350"],
@@ -101,7 +104,13 @@ def command_for(kind, path, out, rng):
                 "--environment", path, "-o", out + ".png"], out + ".png"
     if kind == "np":
         return ["info", f"np:{path}#seed"], None
+    if kind in SPECS and rng.random() < 0.5:
+        path = SPECS[kind].format(path)
     verb = rng.randrange(100)
+    if os.path.basename(path) in MODELS and verb % 10 == 0:
+        return ["compare", "lambert", path, "--count", "20"], None
+    if os.path.basename(path) in MODELS and verb % 10 == 1:
+        return ["export", path, "--to", "glsl", "-o", out], out
     if verb < 60:
         return ["info", path] + rng.choice(([], ["--json"], ["--illuminant", "D65"])), None
     if verb < 85:

@@ -325,7 +325,10 @@ class Converter {
       lose("red, green and blue stand at {}, {} and {} nm", kPrimaries_nm[0], kPrimaries_nm[1],
            kPrimaries_nm[2]);
     }
-    return kept(format_openmaterial(*samples, lambda_nm, sample_name()));
+    OpenMaterialText made_text = format_openmaterial(*samples, lambda_nm, sample_name());
+    if (made_text.averaged > 0)
+      lose("{} samples averaged with others of the same angles", made_text.averaged);
+    return kept(std::move(made_text.text));
   }
 
   Converted compact() {

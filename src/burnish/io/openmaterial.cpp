@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -208,35 +208,40 @@ SampleFile parse_openmaterial(const FileBytes& file, const OpenOptions& options)
   return result;
 }
 
-std::string format_openmaterial(const Samples& samples, std::span<const double> lambda_nm,
-                                std::string_view name) {
+OpenMaterialText format_openmaterial(const Samples& samples, std::span<const double> lambda_nm,
+                                     std::string_view name) {
   const std::size_t channels = samples.channels;
   if (!samples.isotropic) throw Error("OpenMATERIAL: expected isotropic samples, found anisotropic ones");
   if (lambda_nm.size() != channels)
     throw Error(fmt::format("OpenMATERIAL: expected {} wavelengths, found {}", channels, lambda_nm.size()));
 
-  // angles, then the order of the columns
-  std::vector<Angles> angles;
-  for (const auto& [wi, wo] : samples.pairs) {
+  // sums by angles, in the order of the columns
+  struct Sum {
+    std::vector<double> values;
+    std::size_t count = 0;
+  };
+  std::map<Angles, Sum> sums;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const auto& [wi, wo] = samples.pairs[i];
     double turn = std::remainder(phi_of(wo) - phi_of(wi), kTwoPi);
     if (turn < 0) turn += kTwoPi;
-    angles.push_back({std::min(theta_of(wi), kHalfPiOfSchema), std::min(theta_of(wo), kHalfPiOfSchema),
-                      std::min(turn, kTwoPiOfSchema)});
+    Sum& sum = sums[{std::min(theta_of(wi), kHalfPiOfSchema), std::min(theta_of(wo), kHalfPiOfSchema),
+                     std::min(turn, kTwoPiOfSchema)}];
+    sum.values.resize(channels);
+    for (std::size_t c = 0; c < channels; ++c) sum.values[c] += std::max(samples.at(i)[c], 0.0);
+    ++sum.count;
   }
-  std::vector<std::size_t> order(samples.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return angles[a] < angles[b]; });
 
   std::string rows;
   for (std::size_t c = 0; c < channels; ++c)
-    for (const std::size_t i : order)
-      rows += fmt::format("{}[{},{},{},{},{}]", rows.empty() ? "\n" : ",\n", lambda_nm[c] * 1e-9,
-                          angles[i][0], angles[i][1], angles[i][2], std::max(samples.at(i)[c], 0.0));
+    for (const auto& [angles, sum] : sums)
+      rows += fmt::format("{}[{},{},{},{},{}]", rows.empty() ? "\n" : ",\n", lambda_nm[c] * 1e-9, angles[0],
+                          angles[1], angles[2], sum.values[c] / static_cast<double>(sum.count));
   std::string wavelengths;
   for (const double lambda : lambda_nm)
     wavelengths += fmt::format("{}{}", wavelengths.empty() ? "" : ",", lambda * 1e-9);
   const std::string quoted = Json(name).dump(-1, ' ', true, Json::error_handler_t::replace);
-  return fmt::format(
+  std::string text = fmt::format(
       "{{\"$schema\":\"https://raw.githubusercontent.com/asam-ev/OpenMATERIAL-3D/refs/tags/v1.0.0/schemas/"
       "material_brdf_schema.json\",\n\"metadata\":{{\"name\":{},\"uuid\":\"{}\",\"materialVersion\":\"1.0."
       "0\","
@@ -245,6 +250,7 @@ std::string format_openmaterial(const Samples& samples, std::span<const double> 
       "burnish\"}},\n\"brdf\":{{\"wavelengths\":[{}],\n\"lookupTable\":[{}\n]"
       "}}}}\n",
       quoted, identifier(rows), wavelengths, rows);
+  return {.text = std::move(text), .averaged = samples.size() - sums.size()};
 }
 
 }  // namespace burnish

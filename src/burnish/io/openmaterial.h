@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,11 +22,17 @@ bool looks_like_openmaterial(std::string_view text) noexcept;
 /// azimuth 0. Source: [ASAM 2025].
 SampleFile parse_openmaterial(const FileBytes& file, const OpenOptions& options);
 
+struct OpenMaterialText {
+  std::string text;
+  std::size_t averaged = 0;  ///< samples whose angles another one has, so that no row of their own is left
+};
+
 /// The text that parse_openmaterial reads back to the same isotropic samples, sorted as the schema asks, values and
 /// angles with all their digits (angles beyond the schema's pi/2 = 1.570796 are set to it); negative values become 0,
-/// which is the schema's least. `lambda_nm` has one wavelength a channel; the identifier is made from the content.
-/// Throws Error if the samples are anisotropic or the wavelengths are not one a channel.
-std::string format_openmaterial(const Samples& samples, std::span<const double> lambda_nm,
-                                std::string_view name);
+/// which is the schema's least, and samples of then equal angles are averaged. `lambda_nm` has one wavelength a channel;
+/// the identifier is made from the content. Throws Error if the samples are anisotropic or the wavelengths are not one
+/// a channel.
+OpenMaterialText format_openmaterial(const Samples& samples, std::span<const double> lambda_nm,
+                                     std::string_view name);
 
 }  // namespace burnish

@@ -70,7 +70,7 @@ TEST(OpenMaterial, IsWrittenAndReadToTheLastBit) {
   const SampleFile file = parse_openmaterial(memory_file(converted.bytes), kSpectral);
   ASSERT_EQ(file.samples.size(), 50u);
   const std::string again =
-      format_openmaterial(file.samples, file.findings.lambda_nm, file.findings.description);
+      format_openmaterial(file.samples, file.findings.lambda_nm, file.findings.description).text;
   const SampleFile twice = parse_openmaterial(memory_file(again), kSpectral);
   EXPECT_EQ(file.samples.values, twice.samples.values);
   std::vector<double> f(3);
@@ -80,6 +80,34 @@ TEST(OpenMaterial, IsWrittenAndReadToTheLastBit) {
     for (std::size_t c = 0; c < 3; ++c)
       EXPECT_NEAR(file.samples.at(i)[2 - c], f[c], 1e-5 * f[c]);  // angles have the schema's ends
   }
+}
+
+TEST(OpenMaterial, AveragesSamplesOfTheSameAngles) {
+  // a repeated row, a turned one, and two beyond the schema's pi/2
+  const Vec3 low = spherical_direction(0.5, 0), high = spherical_direction(0.7, kPi);
+  const Vec3 grazing = spherical_direction(1.5707961, 0), lower = spherical_direction(1.5707962, 0);
+  const Samples samples{.channels = 1,
+                        .isotropic = true,
+                        .pairs = {{low, high},
+                                  {low, high},
+                                  {{-low.x, 0, low.z}, {-high.x, 0, high.z}},
+                                  {low, grazing},
+                                  {low, lower},
+                                  {high, low}},
+                        .values = {1, 2, 6, 4, -2, 5}};
+  const OpenMaterialText written = format_openmaterial(samples, std::vector<double>{555}, "twice");
+  EXPECT_EQ(written.averaged, 3u);
+  const SampleFile file = parse_openmaterial(memory_file(written.text), kSpectral);
+  EXPECT_EQ(file.samples.values, (std::vector<double>{3, 2, 5}));
+}
+
+TEST(OpenMaterial, SaysWhatIsAveragedWhereTheOrientationIsLost) {
+  const Source source = parse_source(
+      memory_file("theta_i,phi_i,theta_o,phi_o,value\n30,0,40,180,1\n30,180,40,0,3\n30,90,40,0,7\n"), {});
+  const Converted converted = convert(source, "openmaterial", {});
+  EXPECT_THAT(converted.losses, Contains("1 samples averaged with others of the same angles"));
+  const SampleFile file = parse_openmaterial(memory_file(converted.bytes), kSpectral);
+  EXPECT_THAT(file.samples.values, testing::UnorderedElementsAre(2, 7));
 }
 
 TEST(OpenMaterial, ReadsAsphaltAsItsOwnJsonHasIt) {
@@ -92,10 +120,15 @@ TEST(OpenMaterial, ReadsAsphaltAsItsOwnJsonHasIt) {
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const std::size_t band = row / file.samples.size(), sample = row % file.samples.size();
     EXPECT_NEAR(file.findings.lambda_nm[band], rows[row][0].get<double>() * 1e9, 1e-6);
-    EXPECT_NEAR(theta_of(file.samples.pairs[sample].wi), rows[row][1].get<double>(), 1e-12);
+    const auto& [wi, wo] = file.samples.pairs[sample];
+    const double theta_o = rows[row][2].get<double>();
     EXPECT_EQ(file.samples.at(sample)[band], rows[row][4].get<double>());
+    EXPECT_NEAR(theta_of(wi), rows[row][1].get<double>(), 1e-12);
+    EXPECT_NEAR(theta_of(wo), theta_o, 1e-12);
+    if (theta_o == 0) continue;  // of no azimuth
+    EXPECT_NEAR(std::remainder(phi_of(wo) - phi_of(wi) - rows[row][3].get<double>(), kTwoPi), 0, 1e-12);
   }
-  const std::string again = format_openmaterial(file.samples, file.findings.lambda_nm, "asphalt");
+  const std::string again = format_openmaterial(file.samples, file.findings.lambda_nm, "asphalt").text;
   EXPECT_EQ(parse_openmaterial(memory_file(again), kSpectral).samples.values, file.samples.values);
 }
 

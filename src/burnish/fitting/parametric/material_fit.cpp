@@ -70,9 +70,10 @@ Json json_of(const MetallicRoughness& m) {
 Json report_of(const MaterialFit& fit) {
   Json json{{"target", fit.target}, {"source", fit.source}};
   json.update(json_of(fit.figures));
-  json["beyond"] = {{"backscatter", fit.beyond.backscatter},
-                    {"rings", fit.beyond.rings},
-                    {"colour_shift", fit.beyond.colour_shift}};
+  const auto or_null = [](std::optional<double> figure) { return figure ? Json(*figure) : Json(); };
+  json["beyond"] = {{"backscatter", or_null(fit.beyond.backscatter)},
+                    {"rings", or_null(fit.beyond.rings)},
+                    {"colour_shift", or_null(fit.beyond.colour_shift)}};
   if (fit.factored) {
     json["factored"] = json_of(fit.factored->figures);
     json["factored"]["bytes"] = fit.factored->bytes;

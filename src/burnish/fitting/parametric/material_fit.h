@@ -15,15 +15,16 @@
 
 namespace burnish {
 
-/// What a BRDF does that a material does not: 1, 1 and 0 of one that is the same.
+/// What a BRDF does that a material does not: 1, 1 and 0 of one that is the same. Nothing where the BRDF is not known
+/// at any of the directions; those that it does not know are left out.
 struct Unexplained {
   /// Light that returns to where it came from (wi = wo, 20 to 60 degrees), of the source over that of the material.
-  double backscatter = 1;
+  std::optional<double> backscatter;
   /// By what factor values rise again away from the highlight (theta_h to 60 degrees, theta_d 15 and 40), the greatest
   /// of the source over the greatest of the material, at least 1.
-  double rings = 1;
+  std::optional<double> rings;
   /// Greatest distance of the highlight's chromaticities (r, g, b over their sum; theta_h 0, theta_d to 75 degrees).
-  double colour_shift = 0;
+  std::optional<double> colour_shift;
 };
 
 /// Compares the luminances, means over four azimuths unless both are isotropic.
@@ -71,8 +72,8 @@ MaterialFit fit_material(const Source& source, std::string_view target,
 std::string format_material(const MaterialFit& fit);
 
 /// The JSON that `burnish fit --to TARGET --json` prints, indented by two: target, source, parameters, psnr, ssim,
-/// relative, rms_log, log_cos, beyond, factored, of openpbr spec (see parse_analytic), starts and iterations, then
-/// output and seconds.
+/// relative, rms_log, log_cos, beyond (null what is not known), factored, of openpbr spec (see parse_analytic), starts
+/// and iterations, then output and seconds.
 std::string summary_json(const MaterialFit& fit, const std::string& output);
 
 }  // namespace burnish

@@ -26,17 +26,17 @@ struct OpenPbrFitOptions {
 
 /// The OpenPBR material whose lit spheres have the least mean squared difference from those of `pairs`, pictures at
 /// 1/32 of the exposure adding a little, so that highlights keep their height: Levenberg-Marquardt steps within the
-/// ranges of kOpenPbrInputs. Smooth to rough metals and dielectrics are tried first, then the best with coats, fuzz and
+/// ranges of kOpenPbrInputs, of roughnesses from .02, of indices to 3, of films to 1.5 micrometres. Smooth to rough metals and dielectrics are tried first, then the best with coats, fuzz and
 /// films, and, on a third of the pixels, random starts; the best of each kind go on, and films once more on the best of
 /// all. Layers and inputs without which the squared error is less than a percent greater go back to
 /// their defaults, so that of inputs that say the same one is left; base_weight is 1. The same bits for every number
 /// of threads.
 OpenPbrFit fit_openpbr(const PicturePairs& pairs, const OpenPbrFitOptions& options = {});
 
-/// What fit_openpbr is measured by: the best of `count` >= 1 starts anywhere in the inputs' ranges, every input varied.
+/// What fit_openpbr is measured by: the best of `count` >= 1 starts anywhere in the same ranges, every input varied.
 /// Hopeless ones are given up: on a third of the pixels each has 15 iterations, the better quarter 20 more, and the better
 /// twentieth of all goes, on all pixels, to where refine_openpbr ends; the best is the one whose pictures differ least.
-/// error_before is the least of these last beginnings.
+/// error_before is the least of these last beginnings. Seed 1 begins with the random starts of fit_openpbr.
 OpenPbrFit fit_openpbr_at_random(const PicturePairs& pairs, int count, std::uint64_t seed,
                                  const OpenPbrFitOptions& options = {});
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
+#include <optional>
 
 #include <burnish/fitting/parametric/material_fit.h>
 #include <burnish/math/angles.h>
@@ -12,62 +12,105 @@ namespace {
 
 constexpr double kFloor = 1e-3;  // 1/sr, of ratios of values
 
-/// Mean colour of a pair over azimuths of both together; grey of one channel.
-Rgb mean_value(BrdfRef brdf, Vec3 wi, Vec3 wo, bool isotropic) {
-  const int azimuths = isotropic ? 1 : 4;
-  Rgb sum;
+/// What both show.
+struct Seen {
+  Rgb source, material;
+};
+
+/// The colour of a pair, grey of one channel; nothing where it is not known.
+std::optional<Rgb> value_of(BrdfRef brdf, Vec3 wi, Vec3 wo) {
+  std::array<double, 3> f{};
+  if (!brdf.eval(wi, wo, std::span(f).first(brdf.channels()))) return {};
+  if (brdf.channels() == 1) f[1] = f[2] = f[0];
+  return Rgb(f[0], f[1], f[2]);
+}
+
+/// Mean colours of a pair over the azimuths of both directions together at which both are known; nothing if none is.
+std::optional<Seen> mean_seen(BrdfRef source, BrdfRef material, Vec3 wi, Vec3 wo) {
+  const int azimuths = source.isotropic() && material.isotropic() ? 1 : 4;
+  Seen sum;
+  int known = 0;
   for (int i = 0; i < azimuths; ++i) {
     const double phi = kTwoPi * i / azimuths, c = std::cos(phi), s = std::sin(phi);
     const auto turned = [&](Vec3 w) { return Vec3{c * w.x - s * w.y, s * w.x + c * w.y, w.z}; };
-    std::array<double, 3> f{};
-    if (!brdf.eval(turned(wi), turned(wo), std::span(f).first(brdf.channels()))) continue;
-    if (brdf.channels() == 1) f[1] = f[2] = f[0];
-    sum = sum + Rgb(f[0], f[1], f[2]);
+    const auto of_source = value_of(source, turned(wi), turned(wo)),
+               of_material = value_of(material, turned(wi), turned(wo));
+    if (!of_source || !of_material) continue;
+    sum = {sum.source + *of_source, sum.material + *of_material};
+    ++known;
   }
-  return 1.0 / azimuths * sum;
+  if (known == 0) return {};
+  return Seen{1.0 / known * sum.source, 1.0 / known * sum.material};
 }
 
 double luminance(Rgb f) {
   return 0.2126 * f.r + 0.7152 * f.g + 0.0722 * f.b;
 }
 
-double backscatter(BrdfRef brdf, bool isotropic) {
-  double sum = 0;
+/// Sums along wi = wo, source over material.
+std::optional<double> backscatter(BrdfRef source, BrdfRef material) {
+  double of_source = kFloor, of_material = kFloor;
+  bool known = false;
   for (int theta_deg = 20; theta_deg <= 60; theta_deg += 5) {
     const Vec3 w = spherical_direction(radians(theta_deg), 0);
-    sum += luminance(mean_value(brdf, w, w, isotropic));
+    const auto seen = mean_seen(source, material, w, w);
+    if (!seen) continue;
+    of_source += luminance(seen->source);
+    of_material += luminance(seen->material);
+    known = true;
   }
-  return sum + kFloor;
+  if (!known) return {};
+  return of_source / of_material;
 }
 
-/// Greatest factor by which values rise again as theta_h grows.
-double greatest_rise(BrdfRef brdf, bool isotropic) {
-  double greatest = 1;
+/// The greatest factor by which values rise again.
+class Rise {
+ public:
+  void add(double value) {
+    least_ = std::min(least_, value + kFloor);
+    greatest_ = std::max(greatest_, (value + kFloor) / least_);
+  }
+  void begin_again() { least_ = INFINITY; }
+  double greatest() const { return greatest_; }
+
+ private:
+  double least_ = INFINITY, greatest_ = 1;
+};
+
+/// Of the rises as theta_h grows, source over material.
+std::optional<double> rings(BrdfRef source, BrdfRef material) {
+  Rise of_source, of_material;
+  bool known = false;
   for (const double theta_d_deg : {15.0, 40.0}) {
-    double least = INFINITY;
+    of_source.begin_again();
+    of_material.begin_again();
+    int count = 0;
     for (int theta_h_deg = 0; theta_h_deg <= 60; theta_h_deg += 2) {
       // the difference vector across the plane of h and the normal: both directions at one height
       const Vec3 h = spherical_direction(radians(theta_h_deg), 0);
       const Vec3 aside = std::sin(radians(theta_d_deg)) * Vec3{0, 1, 0},
                  along = std::cos(radians(theta_d_deg)) * h;
-      const double value = luminance(mean_value(brdf, along + aside, along - aside, isotropic)) + kFloor;
-      least = std::min(least, value);
-      greatest = std::max(greatest, value / least);
+      const auto seen = mean_seen(source, material, along + aside, along - aside);
+      if (!seen) continue;
+      of_source.add(luminance(seen->source));
+      of_material.add(luminance(seen->material));
+      ++count;
     }
+    known |= count > 1;
   }
-  return greatest;
+  if (!known) return {};
+  return std::max(1.0, of_source.greatest() / of_material.greatest());
 }
 
-double greatest_colour_shift(BrdfRef source, BrdfRef material, bool isotropic) {
-  double greatest = 0;
+std::optional<double> colour_shift(BrdfRef source, BrdfRef material) {
+  std::optional<double> greatest;
   for (int theta_deg = 0; theta_deg <= 75; theta_deg += 5) {
     const Vec3 wi = spherical_direction(radians(theta_deg), 0);
-    const auto chromaticity = [&](BrdfRef brdf) {
-      const Rgb f = mean_value(brdf, wi, mirror(wi), isotropic);
-      return 1 / std::max(f.r + f.g + f.b, kFloor) * f;
-    };
-    const Rgb difference = chromaticity(source) + -1.0 * chromaticity(material);
-    greatest = std::max(greatest, std::hypot(difference.r, difference.g, difference.b));
+    const auto seen = mean_seen(source, material, wi, mirror(wi));
+    if (!seen) continue;
+    const auto chromaticity = [](Rgb f) { return 1 / std::max(f.r + f.g + f.b, kFloor) * f; };
+    const Rgb difference = chromaticity(seen->source) + -1.0 * chromaticity(seen->material);
+    greatest = std::max(greatest.value_or(0), std::hypot(difference.r, difference.g, difference.b));
   }
   return greatest;
 }
@@ -75,10 +118,9 @@ double greatest_colour_shift(BrdfRef source, BrdfRef material, bool isotropic) {
 }  // namespace
 
 Unexplained unexplained(BrdfRef source, BrdfRef material) {
-  const bool isotropic = source.isotropic() && material.isotropic();
-  return {.backscatter = backscatter(source, isotropic) / backscatter(material, isotropic),
-          .rings = std::max(1.0, greatest_rise(source, isotropic) / greatest_rise(material, isotropic)),
-          .colour_shift = greatest_colour_shift(source, material, isotropic)};
+  return {.backscatter = backscatter(source, material),
+          .rings = rings(source, material),
+          .colour_shift = colour_shift(source, material)};
 }
 
 }  // namespace burnish

@@ -1,4 +1,6 @@
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -6,6 +8,7 @@
 
 #include <burnish/factors/fetches.h>
 #include <burnish/fitting/fit.h>
+#include <burnish/fitting/one_lobe/cross_validation.h>
 #include <burnish/fitting/one_lobe/homomorphic.h>
 #include <burnish/fitting/plans/scattered_plan.h>
 #include <burnish/math/angles.h>
@@ -13,10 +16,14 @@
 #include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/goniometer.h>
 #include <burnish/reflectance/sample_source.h>
+#include <burnish/testing/sanitized.h>
 #include <burnish/testing/tools.h>
 
 namespace burnish {
 namespace {
+
+using ::testing::DoubleNear;
+using ::testing::Each;
 
 // A measured highlight in so many channels, the first the darkest.
 Source scattered(std::size_t channels, const char* brdf = "ggx:alpha_x=0.3,alpha_y=0.3,f0=0.5,kd=0.2",
@@ -109,16 +116,20 @@ struct PeakedBrdf {
   }
 };
 
-// Three incidences, dense around the lobe, as instruments scan it.
-Samples scanned(const PeakedBrdf& brdf) {
+constexpr double kIncidences_deg[] = {15, 30, 60};
+
+// Three incidences, dense around the lobe, as instruments scan it: rings a degree apart and then four, or finer.
+Samples scanned(const PeakedBrdf& brdf, int fineness = 1) {
   Samples samples{1, true, {}, {}};
-  for (const double theta : {15.0, 30.0, 60.0}) {
-    const Vec3 wi = spherical_direction(radians(theta), 0), centre = brdf.back ? wi : mirror(wi);
-    for (int ring = 0; ring < 40; ++ring)
-      for (int k = 0; k < (ring == 0 ? 1 : 16); ++k) {
-        const double angle = radians(ring < 12 ? ring : 12 + 4 * (ring - 12)),
-                     turn = kTwoPi * (k + 0.5 * (ring % 2)) / 16;
-        const Vec3 up = normalize(Vec3{0, 1, 0}), side = cross(centre, up);
+  for (const double theta_deg : kIncidences_deg) {
+    const Vec3 wi = spherical_direction(radians(theta_deg), 0), centre = brdf.back ? wi : mirror(wi);
+    const int turns = 16 * fineness;
+    for (int ring = 0; ring < 40 * fineness; ++ring)
+      for (int k = 0; k < (ring == 0 ? 1 : turns); ++k) {
+        const double steps = static_cast<double>(ring) / fineness,
+                     angle = radians(steps < 12 ? steps : 12 + 4 * (steps - 12)),
+                     turn = kTwoPi * (k + 0.5 * (ring % 2)) / turns;
+        const Vec3 side = normalize(cross(centre, {0, 1, 0})), up = cross(side, centre);
         const Vec3 wo =
             std::cos(angle) * centre + std::sin(angle) * (std::cos(turn) * side + std::sin(turn) * up);
         if (wo.z < 0.05) continue;
@@ -146,23 +157,39 @@ TEST(ScatteredPlan, KeepsWithinFetches) {
         static_cast<std::size_t>(fetches));
 }
 
-TEST(ScatteredPlan, HoldsThePeakAboutTheLight) {
-  const PeakedBrdf brdf{true};
-  const Samples samples = scanned(brdf);
+// The model at wi = wo over the truth, at each incidence.
+std::vector<double> heights_of_peak(const PeakedBrdf& brdf, const Samples& samples,
+                                    std::optional<double> smooth, int reweightings,
+                                    std::size_t bytes = 16384) {
   const SampleSource source = from_samples(samples, false);
   HomomorphicOptions options;
-  options.reweightings = 2;
+  options.reweightings = reweightings;
   options.backscatter = kBackscatterReach;
-  const ScatteredPlan plan = plan_scattered(source, 16384, 1e-7, {}, options);
+  const ScatteredPlan plan = plan_scattered(source, bytes, smooth, {}, options);
   options.smooth = plan.smooth;
   const FactoredBrdf model = fit_homomorphic(source, plan.spec, options).brdf;
-  for (const double theta : {15.0, 30.0, 60.0}) {
+  std::vector<double> heights;
+  for (const double theta : kIncidences_deg) {
     const Vec3 w = spherical_direction(radians(theta), 0);
     double expected, found;
     brdf.eval(w, w, {&expected, 1});
     model.eval(w, w, {&found, 1});
-    EXPECT_NEAR(found / expected, 1, 0.05) << theta;
+    heights.push_back(found / expected);
   }
+  return heights;
+}
+
+TEST(ScatteredPlan, HoldsThePeakAboutTheLight) {
+  const PeakedBrdf brdf;
+  EXPECT_THAT(heights_of_peak(brdf, scanned(brdf), 1e-7, 2), Each(DoubleNear(1, 0.05)));
+}
+
+TEST(ScatteredPlan, HoldsThePeakOfManySamplesToo) {
+  BURNISH_SKIP_WHERE_SANITIZED();
+  const PeakedBrdf brdf;
+  const Samples samples = scanned(brdf, 5);
+  ASSERT_GT(samples.size(), kManySamples);
+  EXPECT_THAT(heights_of_peak(brdf, samples, {}, 0, 4096), Each(DoubleNear(1, 0.03)));
 }
 
 }  // namespace
