@@ -80,9 +80,9 @@ release-check: deb wheel npm
 	@$(SUDO) tests/release/check.sh $(RELEASE)
 
 studio: studio-deps
-	@cmake --preset studio > /dev/null
-	@cmake --build --preset studio -j $(JOBS)
-	@cp web/studio/* build/studio
+	@cmake --preset wasm > /dev/null
+	@cmake --build --preset wasm -j $(JOBS)
+	@rm -rf build/studio && mkdir -p build/studio && cp -r web/studio/* build/wasm/package build/studio
 
 studio-test: studio build
 	@tests/web/package.sh

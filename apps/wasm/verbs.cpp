@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -24,6 +25,7 @@
 #include <burnish/fitting/fit_file.h>
 #include <burnish/io/convert.h>
 #include <burnish/io/open_source.h>
+#include <burnish/io/text_reader.h>
 #include <burnish/math/angles.h>
 #include <burnish/metrics/albedo.h>
 #include <burnish/parameterization/half_diff.h>
@@ -121,8 +123,11 @@ Reply open(Request request) {
   read_if(a, "hasCosine", options.has_cosine);
   read_if(a, "clampNegatives", options.clamp_negatives);
   read_if(a, "back", options.back_side);
-  if (options.illuminant != "E" && options.illuminant != "D65")
-    throw Error(fmt::format("illuminant: expected E or D65, found '{}'", options.illuminant));
+  // no file of a light is at hand here
+  constexpr std::array<std::string_view, 4> kLights{"E", "D50", "D65", "A"};
+  if (std::ranges::find(kLights, options.illuminant) == kLights.end())
+    throw Error(
+        fmt::format("illuminant: expected E, D50, D65 or A, found {}", in_quotes(options.illuminant)));
   const auto open_it = [&]() -> Opened {
     if (a.contains("spec")) {
       const std::string spec = a.at("spec").get<std::string>();

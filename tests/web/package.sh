@@ -17,7 +17,7 @@ size=$(cat "$package/burnish.wasm" "$package/burnish.js" "$package/index.js" "$p
 echo "studio: the package is $size bytes compressed, of at most $limit"
 [ "$size" -le "$limit" ] || exit 1
 
-inputs=build/studio/test-inputs
+inputs=build/wasm/test-inputs
 mkdir -p "$inputs"
 BURNISH_CLI=${BURNISH_CLI:-build/release/apps/burnish/burnish} BURNISH_PACKAGE=$package BURNISH_INPUTS=$inputs \
   node --test --test-reporter=spec tests/web/package.test.mjs

@@ -178,6 +178,39 @@ test("An answer that is aborted does not close other materials", async () => {
   other.close();
 });
 
+test("What was asked of a material before it is closed is answered, and the worker ends", async () => {
+  const material = await open(kSpec), up = [0, 0, 1];
+  const asked = [material.volume({thetaH: 20, thetaD: 20, phiD: 20}), material.evaluate(up, up), material.albedo([0.5])];
+  material.close();
+  for (const answer of await Promise.all(asked)) assert.ok(answer);
+  await new Promise((next) => setTimeout(next, 50));
+  assert.equal(memory(), 0);
+});
+
+test("Lights, the back side and values with the cosine are read as the command line reads them", async () => {
+  const rows = [], waves = [400, 450, 500, 550, 600, 650, 700];
+  for (const thetaI of [10, 40, 70])
+    for (const thetaO of [5, 30, 60])
+      for (const phi of [0, 90, 180]) rows.push([thetaI, 0, thetaO, phi, ...waves.map((w) => (0.1 + w / 2000 + thetaI * thetaO * 1e-5).toFixed(5))].join(","));
+  fs.writeFileSync(at("waves.csv"), `theta_i,phi_i,theta_o,phi_o,${waves.map((w) => `value_${w}`).join(",")}\n${rows.join("\n")}\n`);
+  const albedos = [];
+  for (const [options, ...args] of [[{illuminant: "D50"}, "--illuminant", "D50"], [{illuminant: "A"}, "--illuminant", "A"], [{hasCosine: true}, "--has-cosine"]]) {
+    const expected = JSON.parse(await run("info", at("waves.csv"), "--json", ...args)), material = await open(bytesOf(at("waves.csv")), {name: at("waves.csv"), ...options});
+    const found = await material.info();
+    assert.equal(difference(nodesApart(found).rest, nodesApart(expected).rest), undefined);
+    albedos.push(JSON.stringify(found.albedo));
+    material.close();
+  }
+  assert.equal(new Set(albedos).size, 3);
+  await assert.rejects(open(bytesOf(at("waves.csv")), {illuminant: "F2"}), /expected E, D50, D65 or A, found 'F2'/);
+  const back = new TextEncoder().encode(kKlems.replace("Reflection Front", "Reflection Back"));
+  await assert.rejects(open(back), /Reflection Front/);
+  const material = await open(back, {back: true}), front = await open(new TextEncoder().encode(kKlems)), up = [0, 0, 1];
+  assert.deepEqual(await material.evaluate(up, up), await front.evaluate(up, up));
+  material.close();
+  front.close();
+});
+
 test("Garbage is one clear line, and the next file opens", async () => {
   const clear = (error) => {
     assert.ok(error instanceof Error && !error.message.includes("\n") && error.message.includes("expected"), error.message);
@@ -220,7 +253,7 @@ test("Shaders, exports and volumes have what they say", async () => {
   assert.ok(native, fs.readdirSync(at("shaders")).join());
   assert.equal((await model.shader("glsl_es")).code, fs.readFileSync(path.join(at("shaders"), native), "utf8"));
   assert.deepEqual(Buffer.from(await model.export("burnish")), fs.readFileSync(at("a.burnish")));
-  for (const kind of ["ktx2", "three", "html", "gltf", "png"]) {
+  for (const kind of ["ktx2", "cube", "png", "gltf", "materialx", "usda", "mdl", "three", "babylon", "html"]) {
     const files = await model.export(kind);
     assert.ok(files.length > 0 && files.every((file) => file.name && file.bytes.length > 0), kind);
   }

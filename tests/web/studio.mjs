@@ -1,5 +1,6 @@
 // node studio.mjs SITE BURNISH FOLDER [FIGURES]: the page in SITE (build/studio) in headless Chromium, beside the command
 // line BURNISH. Files go into FOLDER, where burnish_input_files wrote its own; screenshots into FIGURES if it is given.
+// Prints how fast it is and what it takes; asserted is only what a busy machine does not change.
 // $HOSTILE_STEP: every how many-th damaged file is dropped, 1 for all.
 import assert from "node:assert/strict";
 import {execFileSync} from "node:child_process";
@@ -16,6 +17,8 @@ const kSame = 1e-6;               // relative, between the page's figures and th
 const kMostShift = 0.05;         // of Chromium's layout shift while files are opened and fitted
 const kExact = 60;               // dB, of what is drawn from a measurement's own tables
 const kComputed = 1e-5;          // of the brightest light, between what is computed and what is drawn of RGL's own tables
+const kMostMemory = 512 << 20;    // of the process with page and workers while a file of MERL's size is fitted, bytes
+const kDrawn = 12;               // damaged files that are no longer refused, of which the picture is waited for
 const kPatience = 120_000;        // milliseconds; the renderer is software
 const kHostileStep = Number(process.env.HOSTILE_STEP ?? 11);
 const axe = fs.readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
@@ -44,6 +47,21 @@ async function visit(link = address, options = {}) {
   page.on("pageerror", (error) => complaints.push(error.stack));
   page.on("request", (request) => requests.push(request.url()));
   await page.addInitScript(() => {
+    // as on a machine with processors to spare; and in a browser that does not say how far a pointer moved
+    Object.defineProperty(navigator, "hardwareConcurrency", {value: 4});
+    Object.defineProperty(MouseEvent.prototype, "movementX", {value: 0});
+    Object.defineProperty(MouseEvent.prototype, "movementY", {value: 0});
+    window.textures = new Set();
+    const {createTexture, deleteTexture} = WebGL2RenderingContext.prototype;
+    WebGL2RenderingContext.prototype.createTexture = function () {
+      const made = createTexture.call(this);
+      window.textures.add(made);
+      return made;
+    };
+    WebGL2RenderingContext.prototype.deleteTexture = function (gone) {
+      window.textures.delete(gone);
+      deleteTexture.call(this, gone);
+    };
     window.shifted = 0;
     new PerformanceObserver((list) => list.getEntries().forEach((entry) => !entry.hadRecentInput && (window.shifted += entry.value)))
       .observe({type: "layout-shift", buffered: true});
@@ -117,10 +135,17 @@ async function accessible(page, what) {
 }
 
 // The page's size.
-const ofPage = [...fs.readdirSync(site).filter((name) => /\.(html|js|css|svg)$/.test(name)), ...fs.readdirSync(path.join(site, "package")).map((name) => `package/${name}`)];
-const sizes = ofPage.map((name) => path.join(site, name)).map((name) => zlib.gzipSync(fs.readFileSync(name), {level: 9}).length);
-const size = sizes.reduce((sum, bytes) => sum + bytes, 0);
+const compressed = (folder) => fs.readdirSync(folder, {withFileTypes: true}).reduce((sum, each) => {
+  const name = path.join(folder, each.name);
+  return sum + (each.isDirectory() ? compressed(name) : zlib.gzipSync(fs.readFileSync(name), {level: 9}).length);
+}, 0);
+const size = compressed(site);
 assert.ok(size <= kMostBytes, `expected at most ${kMostBytes} bytes compressed, found ${size}`);
+
+// What the page lets itself do: nothing but its own files, and nothing within its text.
+const policy = fs.readFileSync(path.join(site, "index.html"), "utf8").match(/http-equiv="Content-Security-Policy" content="([^"]+)"/)[1];
+assert.match(policy, /^default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src blob:; style-src 'self';/);
+assert.doesNotMatch(policy, /'unsafe-|\*|https?:|data:/);
 
 // A file of every format that is read, and of both kinds of baselines.
 const spec = "ggx:alpha_x=0.25,alpha_y=0.25,f0=0.9/0.6/0.3,kd=0.05";
@@ -150,6 +175,87 @@ fs.writeFileSync(file("empty.csv"), "");
 const page = await visit();
 requests.length = 0;
 await accessible(page, "empty page");
+assert.equal(await page.evaluate(() => {
+  const text = document.createElement("script");
+  text.textContent = "window.broken = true";
+  document.head.append(text);
+  return window.broken;
+}), undefined, "a script within the page's text runs");
+complaints.splice(0, complaints.length, ...complaints.filter((text) => !/Content Security Policy/.test(text)));
+
+// Unknown values are gaps in lines.
+assert.equal(await page.evaluate(async () => {
+  const {linePath} = await import("./chart.js");
+  return linePath([[0, 0], [1, 1], [2, NaN], [3, 3], [NaN, 4], [5, 5], [6, 6]], {color: "red"}).getAttribute("d");
+}), "M0.00,0.00L1.00,1.00M3.00,3.00h0M5.00,5.00L6.00,6.00");
+
+// What is dropped while other files are opened comes after them.
+await drop(page, ["a.binary", "a.mbsdf"]);
+await drop(page, ["a.csv"]);
+await until(page, 3);
+assert.deepEqual((await opened(page)).map(({name}) => name), ["a.binary", "a.mbsdf", "a.csv"]);
+await page.click("#list .close >> nth=0");
+await page.click("#list .close >> nth=0");
+
+// What a format leaves open is chosen; what a file does not have is said, and the choice goes back.
+const chooses = async (name, how) => {
+  const control = page.locator(`#readings [data-reading=${name}]`);
+  if (how === true) await control.check();
+  else await control.selectOption(how);
+};
+await chooses("hasCosine", true);
+await page.waitForFunction((most) => Math.abs(window.studio.entries[0].info.albedo.at(-1).albedo[0] - most) < 1e-6 * most,
+                           JSON.parse(run("info", "--json", "--has-cosine", file("a.csv"))).albedo.at(-1).albedo[0]);
+await page.click("#list .close >> nth=0");
+await drop(page, ["a.cornell"]);
+await until(page, 1);
+for (const light of ["D50", "A"]) {
+  await chooses("illuminant", light);
+  await page.waitForFunction((name) => window.studio.entries[0].info.illuminant === name, light);
+  same((await opened(page))[0].info, JSON.parse(run("info", "--json", "--illuminant", light, file("a.cornell"))), light);
+}
+await page.click("#list .close >> nth=0");
+await drop(page, ["seed.klems"]);
+await until(page, 1);
+await page.locator("#readings [data-reading=back]").click();
+await page.waitForFunction(() => /Reflection Back/.test(document.querySelector("#message-text").textContent));
+assert.equal(await page.isChecked("#readings [data-reading=back]"), false);
+await page.click("#message-close");
+await page.click("#list .close >> nth=0");
+
+// Whatever is closed while it is changed leaves nothing open: the worker ends, and textures are given back.
+const ended = () => page.waitForFunction(async () => (await import("./package/index.js")).memory() === 0);
+await ended();
+await page.selectOption("#start", "ggx");
+await until(page, 1);
+await page.waitForFunction(() => window.studio.entries[0].seen);
+const before = await page.evaluate(() => window.textures.size);
+await page.evaluate(() => {
+  for (const at of [0.2, 0.4, 0.6]) {
+    const slider = document.querySelector("#analytic input[type=range]");
+    slider.value = at;
+    slider.dispatchEvent(new Event("input"));
+  }
+  document.querySelector("#list .close").click();
+});
+await ended();
+for (const edits of [1, 2]) {
+  await drop(page, ["a.burnish"]);
+  await until(page, 1);
+  await page.focus("#edit input[data-edit=roughness]");
+  for (let k = 0; k < edits; ++k) await page.keyboard.press("ArrowRight");
+  if (edits === 1) await page.waitForFunction(() => window.studio.entries[0].material !== window.studio.entries[0].original);
+  await page.click("#list .close");
+  await ended();
+}
+await page.selectOption("#start", "ggx");
+await until(page, 1);
+await page.waitForFunction(() => window.studio.entries[0].seen);
+await page.waitForFunction((most) => window.textures.size <= most, before);
+await page.click("#list .close");
+await until(page, 0);
+await ended();
+await page.evaluate(() => (window.shifted = 0));
 
 // Every format at once: what the panel says is what `info --json` says.
 await drop(page, formats);
@@ -198,6 +304,13 @@ for (let done = 0; done < hostile.refused; done += 200) {
 }
 assert.equal((await opened(page)).length, 0);
 await page.click("#message-close");
+for (let k = 0; k < Math.min(hostile.accepted, kDrawn); ++k) {
+  await page.evaluate(dropAccepted, Math.floor((k * hostile.accepted) / kDrawn) % hostile.accepted);
+  await until(page, 1);
+  await page.waitForFunction(() => window.studio.entries[0].seen);
+  assert.equal(await message(page), "");
+  await page.click("#list .close");
+}
 
 // Memory of a file of MERL's size is given back; how long until it is seen.
 if (!fs.existsSync(file("whole.binary"))) run("convert", spec, file("whole.binary"), "--to", "merl");
@@ -259,7 +372,23 @@ await page.click("#list .close >> nth=0");
 await until(page, 0);
 await page.click("#shape [data-value=sphere]");
 
-// Light from pictures, in every compression that is read.
+// Light from pictures, in every compression that is read. Sizes that lie and those that are too large are said.
+assert.deepEqual(await page.evaluate(hdrApart), []);
+const wide = (name, width, data) => {
+  const attribute = (called, type, bytes) => [Buffer.from(`${called}\0${type}\0`), words(bytes.length), bytes];
+  const words = (...list) => Buffer.from(new Int32Array(list).buffer), channels = ["B", "G", "R"].map((c) => Buffer.concat([Buffer.from(`${c}\0`), words(1, 0, 1, 1)]));
+  const header = [words(20000630, 2), ...attribute("channels", "chlist", Buffer.concat([...channels, Buffer.from([0])])), ...attribute("compression", "compression", Buffer.from([data ? 0 : 3])),
+                  ...attribute("dataWindow", "box2i", words(0, 0, width - 1, data ? 0 : 8191)), Buffer.from([0])];
+  const at = Buffer.concat(header).length + 8;
+  fs.writeFileSync(file(name), Buffer.concat([...header, words(at, 0), ...(data ? [words(0, 6 * width), Buffer.alloc(6 * width)] : [Buffer.alloc(9000)])]));
+};
+wide("wide.exr", 20000, true);
+wide("lie.exr", 8192, false);
+fs.writeFileSync(file("lie.hdr"), "#?RADIANCE\n\n-Y 8192 +X 8192\n0000");
+for (const [name, said] of [["wide.exr", "pixels, found 20000 x 1"], ["lie.exr", "the bytes of 8192 x 8192 pixels"], ["lie.hdr", "4 bytes at byte"]]) {
+  await drop(page, [name]);
+  await page.waitForFunction(([name, said]) => ((text) => text.startsWith(name) && text.includes(said))(document.querySelector("#message-text").textContent), [name, said]);
+}
 for (const kind of ["none", "rle", "zips", "zip", "piz"]) {
   await drop(page, [`light-${kind}.exr`]);
   await page.waitForFunction((name) => document.querySelector("#message-text").textContent === `${name} lights the object`, `light-${kind}.exr`);
@@ -298,8 +427,30 @@ await page.click("#fit-stop");
 await page.waitForSelector("#fitting", {state: "hidden"});
 assert.equal((await opened(page)).length, 2);
 
+// The curve ends with the first fit that fails, and so do others; whole it is taken away.
+const calls = await page.evaluate(async () => {
+  const {material} = window.studio.entries[0], fit = material.fit.bind(material), signals = [];
+  let fails = true;
+  window.fitsAgain = () => (fails = false);
+  material.fit = async ({budget}, call) => {
+    signals.push(call.signal);
+    if (fails && budget === 1400) throw new Error("no fit of 1400 bytes");
+    return fit(fails ? {budget: 65536} : {model: "pqp", samples: 5000, seed: budget}, call);
+  };
+  document.querySelector("#curve-start").click();
+  while (!document.querySelector("#fitting").hidden) await new Promise((next) => setTimeout(next, 5));
+  return {count: signals.length, left: signals.filter(({aborted}) => !aborted).length, points: window.studio.entries[0].curve.length};
+});
+assert.deepEqual(calls, {count: 3, left: 0, points: 0});
+assert.equal(await message(page), "no fit of 1400 bytes");
+await page.evaluate(() => window.fitsAgain());
+await page.click("#curve-start");
+await page.waitForFunction(() => window.studio.entries[0].curve.length === 7 && document.querySelector("[data-export=curve]"));
+assert.match(fs.readFileSync(await save(page, "[data-export=curve]", "curve.svg"), "utf8"), /<svg[^]*PSNR/);
+
 // What is taken away is there; shaders say what they are.
-for (const [kind, name] of [["ktx2", "fitted.ktx2"], ["three", "fitted.three.js"], ["merl", "out.binary"], ["csv", "out.csv"], ["png", "view.png"], ["slice", "slice.svg"]])
+for (const [kind, name] of [["ktx2", "fitted.ktx2"], ["three", "fitted.three.js"], ["merl", "out.binary"], ["csv", "out.csv"], ["png", "view.png"], ["slice", "slice.svg"],
+                            ["half-diff", "half-diff.png"]])
   assert.ok(fs.statSync(await save(page, `[data-export=${kind}]`, name)).size > 100, kind);
 for (const language of ["glsl", "glsl_es", "hlsl", "wgsl", "msl", "cpp"]) {
   await page.selectOption("#take select", language);
@@ -326,18 +477,40 @@ const link = await page.getAttribute("#link", "data-link");
 assert.deepEqual(requests.filter((url) => !url.startsWith("blob:")), [], "requests after loading");
 await steady(page, "fit");
 
+// Without a clipboard it is shown to be copied; what would be too long to be read is not made.
+await page.evaluate(() => Object.defineProperty(navigator, "clipboard", {value: undefined}));
+await page.click("#link");
+await page.waitForSelector("#link-text", {state: "visible"});
+assert.equal(await page.inputValue("#link-text"), link);
+assert.match(await page.evaluate(async () => {
+  const {linkOf} = await import("./link.js");
+  try {
+    return linkOf("x", new Uint8Array(800_000));
+  } catch (error) {
+    return error.message;
+  }
+}), /at most 1,048,576 characters/);
+
+requests.length = 0;
 const other = await visit(link, {colorScheme: "dark"});
+const loaded = requests.length;
+await other.context().setOffline(true);
 await until(other, 1);
 const [linked] = await opened(other);
 same(linked.info, JSON.parse(run("info", "--json", saved)), "linked");
 await settled(other);
 await accessible(other, "dark");
-for (const bad of ["#m=x.!!!", "#m=<b>.AAAA", "#m=x.AAAAAAAA", `#m=x.${"A".repeat(5000)}`]) {
+const foreign = fs.readFileSync(file("a.exr")).toString("base64url");  // read where it is dropped
+for (const bad of ["#m=x.!!!", "#m=<b>.AAAA", "#m=x.AAAAAAAA", `#m=x.${"A".repeat(5000)}`, `#m=x.${foreign}`, `#m=x.${"A".repeat(1 << 20)}`]) {
   await other.evaluate((hash) => (location.hash = hash), bad);
   await other.waitForFunction(() => document.querySelector("#message").dataset.kind === "error" && !document.querySelector("#message").hidden);
   await other.click("#message-close");
 }
 assert.equal((await opened(other)).length, 1);
+await other.evaluate((hash) => (location.hash = hash), new URL(link).hash);
+await until(other, 2);
+// Chromium itself asks for an icon again where the address changes
+assert.deepEqual(requests.slice(loaded).filter((url) => !url.startsWith("blob:") && url !== `${address}icon.svg`), [], "requests after loading a link");
 
 // Phone: nothing is wider than the page.
 const phone = await visit(address, {viewport: {width: 390, height: 844}, deviceScaleFactor: 2, hasTouch: true, isMobile: true, colorScheme: "light"});
@@ -345,13 +518,42 @@ await phone.selectOption("#start", "sample");
 await until(phone, 1);
 await settled(phone);
 assert.ok(await phone.evaluate(() => document.documentElement.scrollWidth <= 390));
+
+// A finger turns the object and the lobe, both ways, and the page stays where it is; a tap removes a light.
+const fingers = await phone.context().newCDPSession(phone);
+async function swipe(selector, dx, dy) {
+  await phone.locator(selector).scrollIntoViewIfNeeded();
+  const {x, y, width, height} = await phone.locator(selector).boundingBox();
+  const touch = (type, ...touchPoints) => fingers.send("Input.dispatchTouchEvent", {type, touchPoints});
+  const at = (k) => ({x: x + 0.4 * width + dx * k, y: y + 0.5 * height + dy * k});
+  await touch("touchStart", at(0));
+  for (let k = 1; k <= 6; ++k) await touch("touchMove", at(k / 6));
+  await touch("touchEnd");
+}
+for (const [selector, dx, dy] of [["#view", 80, 0], ["#view", 0, 60], ["#lobe canvas", 60, 0], ["#lobe canvas", 0, 60]]) {
+  await phone.locator(selector).scrollIntoViewIfNeeded();
+  await settled(phone);
+  const before = await phone.locator(selector).screenshot(), top = await phone.evaluate(() => scrollY);
+  await swipe(selector, dx, dy);
+  await settled(phone);
+  assert.notDeepEqual(await phone.locator(selector).screenshot(), before, `${selector} by ${dx}, ${dy}`);
+  assert.equal(await phone.evaluate(() => scrollY), top);
+}
+await phone.tap("#remove-light");
+assert.equal(await phone.locator("#handles button").count(), 0);
+assert.ok(await phone.isDisabled("#remove-light"));
+await phone.tap("#add-light");
+await phone.evaluate(() => scrollTo(0, 0));
+await settled(phone);
 await accessible(phone, "phone");
+const pace = await measured();
 assert.deepEqual(complaints, [], "console");
 
 if (figures) await pictures();
 await browser.close();
 server.close();
 console.log(`studio: MERL's size parsed in ${times.map(([ms]) => ms.toFixed(0))} ms, seen ${times.map(([, ms]) => ms.toFixed(0))} ms later; ${hostile.refused} damaged files refused`);
+console.log(`studio: MERL's size fitted to 16 KB and two fetches in ${pace.seconds.toFixed(1)} s, ${(pace.memory / 1048576).toFixed(0)} MB of the page's process at most; ${pace.frames} frames a second of SwiftShader`);
 console.log(`studio: ${formats.length + kMoreFormats.length} formats, fit, export and link in Chromium; ${(size / 1048576).toFixed(2)} MB compressed`);
 
 // In the page: opens files cut short and bent, noise and lying sizes; keeps those that are refused for dropDamaged.
@@ -365,7 +567,8 @@ async function damage({seeds, step}) {
     for (let at = 0; at < whole.length; at += whole.length > 2000 ? 7 : 1)
       for (const byte of [0, 255, 45, 57, 110]) add(() => whole.map((b, k) => (k === at ? byte : b)));
   }
-  for (let k = 0; k < 300; ++k) add(() => crypto.getRandomValues(new Uint8Array((37 * k) % 400)));
+  let noise = 1;
+  for (let k = 0; k < 300; ++k) add(() => Uint8Array.from({length: (37 * k) % 400}, () => (noise = (Math.imul(noise, 1664525) + 1013904223) >>> 0) >>> 24));
   const words = (...list) => [...new Uint8Array(new Uint32Array(list).buffer)], text = (of) => [...new TextEncoder().encode(of)];
   const mbsdf = text("NVIDIA ARC MBSDF V1\nMBSDF_DATA_REFLECTION=\n"), zeros = Array(1000).fill(0);
   for (const bytes of [[...words(0x5a000000, 0x5a000000, 0xb4000000), ...zeros], [...words(3600, 3600, 3600), ...zeros], [...words(0xffffffff, 90, 180), ...zeros],
@@ -373,16 +576,18 @@ async function damage({seeds, step}) {
                        text("999999999999999999999\n400\n"), text("-3\n400\n"), [...text("tensor_file"), 0, 1, 0, 255, 255, 255, 255]])
     cases.push(new Uint8Array(bytes));
   window.refused = [];
+  window.accepted = [];
   for (const bytes of cases) {
     try {
       (await open(bytes, {name: "bad.file"})).close();
+      window.accepted.push(bytes);
     } catch ({message}) {
       window.refused.push(bytes);
       if (message.includes("\n") || !message.includes("expected") || !message.includes("bad.file")) unclear.push(message);
     }
   }
   keep.close();
-  return {refused: window.refused.length, unclear: unclear.slice(0, 5)};
+  return {refused: window.refused.length, accepted: window.accepted.length, unclear: unclear.slice(0, 5)};
 }
 async function dropDamaged({done, count}) {
   const transfer = new DataTransfer(), message = document.querySelector("#message");
@@ -391,6 +596,79 @@ async function dropDamaged({done, count}) {
   for (const type of ["dragenter", "dragover", "drop"]) window.dispatchEvent(new DragEvent(type, {dataTransfer: transfer, cancelable: true}));
   while (message.hidden) await new Promise((next) => setTimeout(next, 5));
   return document.querySelector("#message-text").textContent;
+}
+
+function dropAccepted(k) {
+  const transfer = new DataTransfer();
+  transfer.items.add(new File([window.accepted[k]], "bent.file"));
+  for (const type of ["dragenter", "dragover", "drop"]) window.dispatchEvent(new DragEvent(type, {dataTransfer: transfer, cancelable: true}));
+}
+
+// A page of its own that opens and fits a file of MERL's size: seconds, the most memory of its process without what
+// processes share, and frames a second while its object is turned.
+async function measured() {
+  const session = await browser.newBrowserCDPSession(), ids = async () => (await session.send("SystemInfo.getProcessInfo")).processInfo.filter(({type}) => type === "renderer").map(({id}) => id);
+  const before = await ids(), shown = await visit();
+  const own = (await ids()).filter((id) => !before.includes(id));
+  let memory = 0;
+  const look = setInterval(() => {
+    for (const id of own) {
+      const text = fs.existsSync(`/proc/${id}/status`) ? fs.readFileSync(`/proc/${id}/status`, "utf8") : "";
+      memory = Math.max(memory, 1024 * Number(text.match(/RssAnon:\s+(\d+)/)?.[1] ?? 0));
+    }
+  }, 20);
+  // chosen, since the text that drop() makes of a file takes more than the page
+  await shown.setInputFiles("#files", file("whole.binary"));
+  await until(shown, 1);
+  await shown.waitForFunction(() => window.studio.entries[0].seen);
+  await shown.focus("#view");
+  let frames = 0;
+  for (let k = 0; k < 40; ++k) {
+    await shown.keyboard.press("ArrowRight");
+    await new Promise((next) => setTimeout(next, 50));
+    frames = (await shown.textContent("#pace")) || frames;
+  }
+  const seconds = await shown.evaluate(async () => {
+    const begin = performance.now(), model = await window.studio.entries[0].material.fit({budget: 16384, fetches: 2});
+    const took = (performance.now() - begin) / 1000;
+    if (model.bytes > 16384 || model.fetches > 2) throw new Error(`${model.bytes} bytes, ${model.fetches} fetches`);
+    model.close();
+    return took;
+  });
+  clearInterval(look);
+  await shown.context().close();
+  if (own.length) assert.ok(memory > 0 && memory <= kMostMemory, `${memory} bytes of a page that fits`);
+  return {seconds, memory, frames: parseInt(frames)};
+}
+
+// In the page: what is wrong with pictures of .hdr: flat rows, rows by planes, and the older repeats; lies.
+async function hdrApart() {
+  const {readHdr} = await import("./hdr.js"), wrong = [];
+  const bytesOf = (width, height, ...rows) => new Uint8Array([...new TextEncoder().encode(`#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y ${height} +X ${width}\n`), ...rows.flat()]);
+  const check = (name, bytes, expected) => {
+    const {data} = readHdr(bytes);
+    if (data.length !== expected.length || expected.some((x, k) => data[k] !== x)) wrong.push(`${name}: ${data}`);
+  };
+  const refused = (name, bytes, most) => {
+    try {
+      readHdr(bytes, most);
+      wrong.push(`${name}: taken`);
+    } catch ({message}) {
+      if (!message.startsWith(".hdr: expected")) wrong.push(`${name}: ${message}`);
+    }
+  };
+  const pixel = (r, g, b) => [r / 128, g / 128, b / 128], [a, c] = [[128, 64, 32, 129], [64, 128, 255, 129]], [ofA, ofC] = [pixel(128, 64, 32), pixel(64, 128, 255)];
+  check("flat", bytesOf(2, 2, a, c, c, a), [...ofA, ...ofC, ...ofC, ...ofA]);
+  check("planes", bytesOf(9, 1, [2, 2, 0, 9], [128 + 9, 128], [128 + 8, 64, 1, 128], [9, ...Array(9).fill(32)], [128 + 9, 129]),
+        [...Array(8).fill(ofA).flat(), ...pixel(128, 128, 32)]);
+  check("repeats", bytesOf(5, 2, a, [1, 1, 1, 3], c, c, [1, 1, 1, 4]), [...Array(4).fill(ofA).flat(), ...Array(6).fill(ofC).flat()]);
+  check("repeats of two digits", bytesOf(300, 1, a, [1, 1, 1, 43], [1, 1, 1, 1]), Array(300).fill(ofA).flat());
+  refused("repeats before a pixel", bytesOf(5, 1, [1, 1, 1, 4], a));
+  refused("repeats beyond the row", bytesOf(5, 1, a, [1, 1, 1, 5]));
+  refused("a row cut", bytesOf(5, 1, a, c));
+  refused("a lie", bytesOf(8192, 8192, a));
+  refused("too large", bytesOf(20, 1, a, [1, 1, 1, 19]), 16);
+  return wrong;
 }
 
 // In the page: how far RGL's tables drawn through another table, and computed besides, are from the same drawn as they are;

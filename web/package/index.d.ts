@@ -14,12 +14,13 @@ export interface OpenOptions extends Call {
   name?: string;
   /** One channel a wavelength. */
   spectral?: boolean;
-  illuminant?: "E" | "D65";
-  /** CSV values are f_r cos(theta_i). */
+  /** The light under which spectra become RGB; by default E. */
+  illuminant?: "E" | "D50" | "D65" | "A";
+  /** CSV values are f_r cos(theta_i), which is divided out. */
   hasCosine?: boolean;
   /** By default true: interpolated values below zero become zero. */
   clampNegatives?: boolean;
-  /** Klems: the back side. */
+  /** Klems and tensor trees: the back side. */
   back?: boolean;
   /** Of a file of several materials (a book, neural encodings), the one of that name; by default the first. */
   entry?: string;
@@ -87,7 +88,7 @@ export interface ExportOptions {
 export type FileKind = "burnish" | "model" | "exr" | "merl" | "utia" | "rgl" | "mbsdf" | "zemax" | "tensortree" | "openmaterial" |
   "astm" | "csv";
 /** Several files, of models: those of the verb `export`; of surfaces ktx2, png, three, html and languages. */
-export type FilesKind = "ktx2" | "cube" | "png" | "gltf" | "three" | "html" | Language;
+export type FilesKind = "ktx2" | "cube" | "png" | "gltf" | "materialx" | "usda" | "mdl" | "three" | "babylon" | "html" | Language;
 export interface NamedFile { name: string; bytes: Uint8Array; }
 
 export type Language = "glsl" | "glsl_es" | "hlsl" | "msl" | "wgsl" | "cpp";

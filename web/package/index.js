@@ -93,12 +93,15 @@ class Engine {
     this.#waiting = undefined;
   }
 
-  /// Forgets a material.
+  /// Forgets a material once what was asked of it is answered.
   close(id) {
-    if (!this.#known.has(id)) return;
-    this.#known.delete(id);
-    if (this.#known.size === 0 && !this.#running && this.#jobs.length === 0) this.stop();
+    if (!this.#running && !this.#known.has(id)) return;
+    if (!this.#running && this.#known.size === 1) this.stop();
     else this.run({request: {verb: "close", id}}).catch(() => {});
+  }
+  // Whether the worker has to be told: it ends with the last one.
+  #forgets(id) {
+    return this.#known.delete(id) && (this.#known.size > 0 || this.#jobs.length > 0);
   }
 
   async #next() {
@@ -112,7 +115,9 @@ class Engine {
           if (!this.#known.has(material.id)) await this.#call({request: material.request, bytes: await material.bytes()});
           this.#known.add(material.id);
         }
-        if (!entry.stopped) {
+        if (job.request.verb === "close" && !this.#forgets(job.request.id)) {
+          entry.resolve();
+        } else if (!entry.stopped) {
           const reply = await this.#call(job, job.onProgress);
           if (job.request.verb === "open") this.#known.add(job.request.id);
           entry.resolve(reply);

@@ -28,12 +28,23 @@ export function plot(given) {
     figure.append(svg("path", {d: `M${toX(mark)},${kTop}V${bottom}`, stroke: ink, "stroke-width": 1.6}),
                   svg("circle", {cx: toX(mark), cy: bottom, r: 6, fill: ink, cursor: "ew-resize"}));
   for (const line of given.lines) {
-    const points = line.values.map((v, k) => [toX(line.x[k]), toY(v)]).filter((p) => p.every(Number.isFinite));
-    figure.append(svg("path", {d: `M${points.map((p) => p.map((x) => x.toFixed(2)).join(",")).join("L")}`, fill: "none", stroke: line.color,
-                               "stroke-width": 1.8, "stroke-dasharray": line.dashed ? "5 4" : null, "stroke-linejoin": "round"}));
-    if (line.dots) for (const [cx, cy] of points) figure.append(svg("circle", {cx, cy, r: 3, fill: line.color}));
+    const points = line.values.map((v, k) => [toX(line.x[k]), toY(v)]);
+    figure.append(linePath(points, line));
+    if (line.dots) for (const [cx, cy] of points.filter(isKnown)) figure.append(svg("circle", {cx, cy, r: 3, fill: line.color}));
   }
   return figure;
+}
+const isKnown = (point) => point.every(Number.isFinite);
+// A line through points, with gaps where a number of one is not known; what stands alone between gaps is a dot.
+export function linePath(points, {color, dashed}) {
+  const pieces = [[]];
+  for (const point of points) {
+    if (!isKnown(point)) pieces.push([]);
+    else pieces.at(-1).push(point.map((x) => x.toFixed(2)).join(","));
+  }
+  const d = pieces.filter((piece) => piece.length).map((piece) => `M${piece.join("L")}${piece.length === 1 ? "h0" : ""}`).join("");
+  return svg("path", {d, fill: "none", stroke: color, "stroke-width": 1.8, "stroke-dasharray": dashed ? "5 4" : null, "stroke-linejoin": "round",
+                      "stroke-linecap": dashed ? null : "round"});
 }
 // The place on x, in [0, 1] of the axis, that lies at this share of a chart's width.
 export const shareOfAxis = (share) => (share * kWidth - kLeft) / (kWidth - kLeft - kRight);

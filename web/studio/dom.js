@@ -32,6 +32,22 @@ export function number(x, digits = 4) {
   return text.replace("-", "−");
 }
 
+// told(dx, dy) in pixels while a pointer drags the element; by its places, since not every browser says how far a finger moved.
+export function onDrag(element, told) {
+  let last = null;
+  element.addEventListener("pointerdown", (event) => {
+    if (!event.isPrimary) return;
+    element.setPointerCapture(event.pointerId);
+    last = event;
+  });
+  element.addEventListener("pointermove", (event) => {
+    if (event.pointerId !== last?.pointerId) return;
+    told(event.clientX - last.clientX, event.clientY - last.clientY);
+    last = event;
+  });
+  for (const end of ["pointerup", "pointercancel"]) element.addEventListener(end, () => (last = null));
+}
+
 export function saveFile(name, data, type = "application/octet-stream") {
   const url = URL.createObjectURL(data instanceof Blob ? data : new Blob([data], {type}));
   make("a", {href: url, download: name}).click();

@@ -1,5 +1,6 @@
 // Changes to a model by sliders, each one undone and redone.
 import {find, latest, lineOf, make, say} from "./dom.js";
+import {infoOf} from "./library.js";
 import {changed, isSurface, modelShown, onChange, state} from "./state.js";
 import {radians} from "./vectors.js";
 
@@ -30,13 +31,17 @@ function optionsOf(places, lobes) {
 let past = [], future = [], shownFor, lobe = "";
 
 const apply = latest(async (entry) => {
+  if (!state.entries.includes(entry)) return;
   try {
     if (!entry.original) Object.assign(entry, {original: entry.material, lobes: entry.info.lobes});
-    const options = optionsOf(entry.places, entry.lobes);
-    const material = Object.keys(options).length === 0 ? entry.original : await entry.original.edit(options);
-    const info = await material.info();
-    if (!state.entries.includes(entry)) return;
-    if (entry.material !== entry.original && entry.material !== material) entry.material.close?.();
+    const {original} = entry, options = optionsOf(entry.places, entry.lobes), same = Object.keys(options).length === 0;
+    const material = same ? original : await original.edit(options), info = same ? await original.info() : await infoOf(material);
+    // closed or another one meanwhile
+    if (!state.entries.includes(entry) || entry.original !== original) {
+      if (!same) material.close();
+      return;
+    }
+    if (entry.material !== original && entry.material !== material) entry.material.close();
     Object.assign(entry, {material, info});
     changed({renewed: entry});
   } catch (error) {

@@ -1,6 +1,7 @@
 // Fits with progress and stop, their figures beside the reference's, and error against bytes.
 import {plot} from "./chart.js";
 import {bytesText, css, find, lineOf, make, number, say} from "./dom.js";
+import {infoOf} from "./library.js";
 import {segments} from "./segments.js";
 import {add, changed, isSurface, modelsOf, onChange, referenceOf, show, state} from "./state.js";
 
@@ -33,7 +34,7 @@ function progress(fraction, stage) {
   if (Number.isFinite(fraction)) find("#fit-bar").value = fraction;
 }
 
-// Runs the task with a signal that the button of stopping aborts; what it throws is said, unless it was stopped.
+// Runs the task with a signal that the button of stopping aborts, as the task itself may; what it throws is said, unless it was stopped.
 async function busy(task) {
   const mine = (stop = new AbortController());
   find("#fit-bar").removeAttribute("value");
@@ -41,7 +42,7 @@ async function busy(task) {
   find("#fitting").hidden = false;
   enable();
   try {
-    await task(mine.signal);
+    await task(mine.signal, () => mine.abort());
   } catch (error) {
     if (error?.name === "AbortError") say("Stopped");
     else say(lineOf(error), "error");
@@ -58,7 +59,14 @@ async function fitOne(reference, options, signal) {
   const seconds = (performance.now() - began) / 1000;
   find("#fit-stage").textContent = "measuring the error";
   find("#fit-bar").removeAttribute("value");
-  const info = await material.info({signal}), [figures] = await reference.material.compare(material, {}, {signal});
+  const info = await infoOf(material, {signal});
+  let figures;
+  try {
+    [figures] = await reference.material.compare(material, {}, {signal});
+  } catch (error) {
+    material.close();
+    throw error;
+  }
   return {name: `${reference.name.replace(/\.[^.]*$/, "")} ${bytesText(info.bytes)}`, material, info, figures, parent: reference.id, seconds};
 }
 
@@ -79,13 +87,19 @@ async function fit(event) {
   });
 }
 
-// One fit a size, as many at once as there are processors to spare; what is done so far is kept where it is stopped.
+// One fit a size, as many at once as there are processors to spare; what is done so far is kept where it is stopped. One
+// that fails ends all.
 async function errorCurve() {
   const reference = referenceOf(state.shown);
   if (!reference || stop) return;
   reference.curve = [];
-  await busy(async (signal) => {
+  await busy(async (signal, abort) => {
     const fetches = readFetches(find("#fetches").value), left = [...kCurve];
+    let wrong;
+    const failed = (error) => {
+      wrong ??= error;
+      abort();
+    };
     const one = async () => {
       for (let budget; (budget = left.shift()) !== undefined;) {
         const {material, info, figures} = await fitOne(reference, {budget, fetches}, signal);
@@ -96,8 +110,10 @@ async function errorCurve() {
       }
     };
     const workers = Math.min(Math.max((navigator.hardwareConcurrency ?? 2) - 1, 1), kMostFits);
-    await Promise.all(Array.from({length: workers}, one));
+    await Promise.all(Array.from({length: workers}, () => one().catch(failed)));
+    if (wrong) throw wrong;
   });
+  changed();
 }
 
 function drawCurve() {

@@ -138,9 +138,19 @@ async function fromTable(gl, material, size, alive) {
 export async function prepare(gl, {material, model}, alive, ready) {
   const [size, ...finer] = kSizes[material.isotropic ? "isotropic" : "anisotropic"], drawn = model && (material.channels === 1 || material.channels === 3);
   // asked for at once, before what others ask the same worker for
-  const own = drawn ? fromShader(gl, material) : fromTables(gl, material);
-  const [alpha, first] = await Promise.all([roughness(material), own.then((form) => form ?? fromTable(gl, material, size, alive))]);
-  if (!first || !alive()) return;
+  const own = (drawn ? fromShader(gl, material) : fromTables(gl, material)).then((form) => form ?? fromTable(gl, material, size, alive));
+  const freed = () => own.then((form) => form?.textures.forEach(({handle}) => gl.deleteTexture(handle)), () => {});
+  let alpha, first;
+  try {
+    [alpha, first] = await Promise.all([roughness(material), own]);
+  } catch (error) {
+    freed();
+    throw error;
+  }
+  if (!first || !alive()) {
+    freed();
+    return;
+  }
   ready({...first, alpha});
   if (first.how !== "table") return;
   for (const next of finer) {

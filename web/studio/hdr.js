@@ -1,5 +1,7 @@
-// Radiance .hdr pictures: rgb floats, rows from the top. Throws Error where the bytes say something else.
-export function readHdr(bytes) {
+// Radiance .hdr pictures: rgb floats, rows from the top, at most `most` pixels a side. Throws Error where the bytes say
+// something else. Source: Radiance, its file formats and color.c: rows that are flat, coded by planes, or by pixels of
+// (1, 1, 1, n) that repeat the one before.
+export function readHdr(bytes, most = 8192) {
   let at = 0;
   const line = () => {
     const end = bytes.indexOf(10, at);
@@ -13,10 +15,14 @@ export function readHdr(bytes) {
   const size = line().match(/^-Y (\d+) \+X (\d+)$/);
   if (!size) throw new Error(".hdr: expected a size such as -Y 512 +X 1024");
   const [height, width] = [Number(size[1]), Number(size[2])];
-  if (!(width > 0 && height > 0 && width <= 8192 && height <= 8192)) throw new Error(`.hdr: expected at most 8192 x 8192 pixels, found ${width} x ${height}`);
-  const data = new Float32Array(3 * width * height), row = new Uint8Array(4 * width);
+  if (!(width > 0 && height > 0 && width <= most && height <= most)) throw new Error(`.hdr: expected at most ${most} x ${most} pixels, found ${width} x ${height}`);
+  const row = new Uint8Array(4 * width), begin = at;
+  // once through the bytes: memory for the picture is only taken where all of it is there
+  for (let y = 0; y < height; ++y) readRow();
+  at = begin;
+  const data = new Float32Array(3 * width * height);
   for (let y = 0; y < height; ++y) {
-    readRow(bytes, row, width);
+    readRow();
     for (let x = 0; x < width; ++x) {
       const factor = row[3 * width + x] ? 2 ** (row[3 * width + x] - 136) : 0;
       for (let c = 0; c < 3; ++c) data[3 * (y * width + x) + c] = Math.min(row[c * width + x] * factor, 60000);
@@ -24,17 +30,15 @@ export function readHdr(bytes) {
   }
   return {width, height, data};
 
+  function need(count) {
+    if (at + count > bytes.length) throw new Error(`.hdr: expected ${count} bytes at byte ${at}, found ${bytes.length - at}`);
+  }
   // One row as planes of r, g, b and exponent.
-  function readRow(bytes, row, width) {
-    const packed = width >= 8 && width < 32768 && bytes[at] === 2 && bytes[at + 1] === 2 && ((bytes[at + 2] << 8) | bytes[at + 3]) === width;
-    const need = (count) => {
-      if (at + count > bytes.length) throw new Error(`.hdr: expected ${count} bytes at byte ${at}, found ${bytes.length - at}`);
-    };
-    if (!packed) {
-      need(4 * width);
-      for (let x = 0; x < width; ++x) for (let c = 0; c < 4; ++c) row[c * width + x] = bytes[at++];
-      return;
-    }
+  function readRow() {
+    if (width >= 8 && width < 32768 && bytes[at] === 2 && bytes[at + 1] === 2 && ((bytes[at + 2] << 8) | bytes[at + 3]) === width) readPlanes();
+    else readPixels();
+  }
+  function readPlanes() {
     at += 4;
     for (let to = 0; to < 4 * width;) {
       need(2);
@@ -44,6 +48,19 @@ export function readHdr(bytes) {
       if (!run) need(count);
       for (let k = 0; k < count; ++k) row[to++] = run ? bytes[at] : bytes[at++];
       if (run) ++at;
+    }
+  }
+  // Repeats that follow each other are digits of one number, the lowest first.
+  function readPixels() {
+    for (let x = 0, digit = 1; x < width;) {
+      need(4);
+      const repeats = bytes[at] === 1 && bytes[at + 1] === 1 && bytes[at + 2] === 1, count = repeats ? bytes[at + 3] * digit : 1;
+      const left = repeats && x === 0 ? 0 : width - x;
+      if (count > left || digit > 1 << 24) throw new Error(`.hdr: expected at most ${left} repeats at byte ${at}, found ${count}`);
+      for (let c = 0; c < 4; ++c) row.fill(repeats ? row[c * width + x - 1] : bytes[at + c], c * width + x, c * width + x + count);
+      at += 4;
+      x += count;
+      digit = repeats ? 256 * digit : 1;
     }
   }
 }

@@ -54,8 +54,16 @@ function albedos({albedo}) {
     make("tbody", {}, ...albedo.map((row) => make("tr", {}, make("td", {}, place(row)), ...cells(row.albedo)))));
 }
 
+// Where a format leaves open how it is read; the same controls stay, and keep the focus.
+function drawReadings(controls = []) {
+  const place = find("#readings");
+  place.hidden = controls.length === 0;
+  if (controls.length !== place.children.length || controls.some((control, k) => control !== place.children[k])) place.replaceChildren(...controls);
+}
+
 export function draw() {
   const place = find("#info"), entry = state.shown;
+  drawReadings(entry?.readings);
   if (!entry) {
     place.replaceChildren(make("p", {class: "hint"}, "Format, conventions, holes, albedo and reciprocity of what is open."));
     return;

@@ -1,8 +1,12 @@
 // A link that carries a model: #m=NAME.BASE64URL, the bytes those of its .burnish file. Nothing of it becomes markup.
 import {openOne} from "./materials.js";
-import {say} from "./dom.js";
+import {lineOf, say} from "./dom.js";
 
-const kLongest = 1 << 20;  // characters of a fragment that is read
+const kLongest = 1 << 20;  // characters of a fragment, whether it is written or read
+const kTag = [0xd9, 0xd9, 0xf7], kText = [0x67, ...new TextEncoder().encode("burnish")];
+
+// Whether the bytes start as a .burnish file does: a tag, a list, its name. No other reader sees a link's bytes.
+const isCompact = (bytes) => [...kTag, 0x80, ...kText].every((byte, k) => (k === kTag.length ? bytes[k] & 0xe0 : bytes[k]) === byte);
 
 function toBase64Url(bytes) {
   let text = "";
@@ -15,20 +19,25 @@ function fromBase64Url(text) {
   return Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (c) => c.charCodeAt(0));
 }
 
+// Throws Error where the fragment would be longer than what is read.
 export function linkOf(name, bytes) {
-  const short = name.replace(/[^\w-]+/g, "_").slice(0, 40);
-  return `${location.origin}${location.pathname}#m=${short}.${toBase64Url(bytes)}`;
+  const short = name.replace(/[^\w-]+/g, "_").slice(0, 40), fragment = `#m=${short}.${toBase64Url(bytes)}`;
+  if (fragment.length > kLongest) throw new Error(`A link holds at most ${kLongest.toLocaleString("en")} characters, this model takes ${fragment.length.toLocaleString("en")}: give its .burnish file away`);
+  return `${location.origin}${location.pathname}${fragment}`;
 }
 
 // Opens what the page's fragment carries, if it does.
 export async function openLink() {
   const fragment = location.hash;
   if (!fragment.startsWith("#m=")) return;
-  const [, name, data] = fragment.slice(0, kLongest).match(/^#m=([\w-]{0,40})\.(.*)$/) ?? [];
   try {
-    if (!data || fragment.length > kLongest) throw new Error("expected #m=NAME.DATA");
-    await openOne(fromBase64Url(data), `${name || "linked"}.burnish`);
+    if (fragment.length > kLongest) throw new Error(`expected at most ${kLongest.toLocaleString("en")} characters, found ${fragment.length.toLocaleString("en")}`);
+    const [, name, data] = fragment.match(/^#m=([\w-]{0,40})\.(.*)$/) ?? [];
+    if (!data) throw new Error("expected #m=NAME.DATA");
+    const bytes = fromBase64Url(data);
+    if (!isCompact(bytes)) throw new Error("expected the bytes of a .burnish file, found others");
+    await openOne(bytes, `${name || "linked"}.burnish`);
   } catch (error) {
-    say(`The link carries no material: ${error.message}`, "error");
+    say(`The link carries no material: ${lineOf(error)}`, "error");
   }
 }

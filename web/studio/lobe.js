@@ -1,5 +1,5 @@
 // The lobe in three dimensions: a surface whose distance from the middle is f, or its logarithm, at one theta_i.
-import {css, make, number} from "./dom.js";
+import {css, make, number, onDrag} from "./dom.js";
 import {add, cross, degrees, direction, dot, normalize, radians, scale} from "./vectors.js";
 
 const kThetas = 31, kPhis = 60, kDecades = 3.5, kSize = [760, 424];
@@ -15,7 +15,7 @@ function hemisphere(theta) {
 }
 
 export async function drawLobe(place, entry, {theta, log}, evaluate) {
-  const pairs = hemisphere(theta), rgb = await evaluate(entry, pairs), largest = Math.max(...rgb, 1e-9);
+  const pairs = hemisphere(theta), rgb = await evaluate(entry, pairs), largest = rgb.reduce((most, x) => (x > most ? x : most), 1e-9);
   const low = largest * 10 ** -kDecades;
   const points = pairs.map(([, wo], k) => {
     const value = Math.max((rgb[3 * k] + rgb[3 * k + 1] + rgb[3 * k + 2]) / 3, 0);
@@ -36,10 +36,7 @@ function newCanvas(place) {
     turned.pitch = Math.min(Math.max(turned.pitch + dy, -0.2), 1.5);
     redraw();
   };
-  canvas.addEventListener("pointerdown", (event) => canvas.setPointerCapture(event.pointerId));
-  canvas.addEventListener("pointermove", (event) => {
-    if (canvas.hasPointerCapture(event.pointerId)) turn(event.movementX / 120, event.movementY / 120);
-  });
+  onDrag(canvas, (dx, dy) => turn(dx / 120, dy / 120));
   canvas.addEventListener("keydown", (event) => {
     const step = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[event.key];
     if (!step) return;
@@ -71,6 +68,7 @@ function paint(canvas, points, theta) {
     for (let i = 0; i + 1 < kThetas; ++i) {
       const next = ((j + 1) % kPhis) * kThetas + i, here = j * kThetas + i;
       const corners = [here, here + 1, next + 1, next].map((k) => points[k]);
+      if (corners.some(({at}) => at.some(Number.isNaN))) continue;
       const normal = cross(add(corners[2].at, corners[0].at, -1), add(corners[3].at, corners[1].at, -1));
       const seen = corners.map(({at}) => see(at));
       faces.push({seen, depth: seen.reduce((sum, p) => sum + p[2], 0), normal, color: corners[0].color});

@@ -1,37 +1,44 @@
 // Opening and listing: files dropped, chosen or pasted, analytic models, the sample, links.
 import {bytesText, find, latest, lineOf, make, say} from "./dom.js";
-import {open} from "./library.js";
-import {add, changed, entryOf, onChange, remove, show, showBeside, state} from "./state.js";
+import {infoOf, open} from "./library.js";
+import {add, changed, entryOf, onChange, release, remove, show, showBeside, state} from "./state.js";
 
-let stop = null;
+let stop = null;                // of what is being opened
+let opens = Promise.resolve();  // ends with the last that was asked for
 
 const kMostChoices = 5000;  // of a file of several materials
 
+// One task after another, in their order; what was dropped first is opened first.
+function queued(task) {
+  const mine = opens.then(task);
+  opens = mine.catch(() => {});
+  return mine;
+}
+
 // Opens one thing, adds it to the list and shows it. Throws what is wrong with it.
 async function opening(data, name, more, options) {
-  stop?.abort();
   const mine = (stop = new AbortController());
   const bar = find("#opening-bar");
   bar.removeAttribute("value");
   find("#opening-text").textContent = name;
   find("#opening").hidden = false;
-  let entry;
+  let entry, wanted;
   try {
     const onProgress = (fraction) => (bar.value = fraction);
     const material = await open(data, {...options, name, signal: mine.signal, onProgress});
     entry = add({name, material, info: null, ...more});
-    if (material.entries.length) entry.sliders = [chooser(entry, data, name, options)];
+    wanted = reader(entry, data, name, options);
+    if (material.entries.length) entry.sliders = [chooser(entry, wanted)];
     changed();
     show(entry);
   } finally {
-    if (stop === mine) {
-      stop = null;
-      find("#opening").hidden = true;
-    }
+    stop = null;
+    find("#opening").hidden = true;
   }
   // what it is in full takes longer than showing it
   try {
     entry.info = await entry.material.info();
+    entry.readings = readings(entry, wanted);
   } catch (error) {
     if (state.entries.includes(entry)) remove(entry);
     throw error;
@@ -45,7 +52,7 @@ const wrong = (error, name) => (lineOf(error).includes(name) ? lineOf(error) : `
 // The same; nothing where it was stopped or is no BRDF, and then says why.
 export async function openOne(data, name, more = {}, options = {}) {
   try {
-    return await opening(data, name, more, options);
+    return await queued(() => opening(data, name, more, options));
   } catch (error) {
     if (error?.name !== "AbortError") say(wrong(error, name), "error");
     return null;
@@ -57,8 +64,13 @@ export function renewer(entry, made, name = () => entry.name) {
   return latest(async () => {
     if (!state.entries.includes(entry)) return;
     try {
-      const called = name(), material = await made(), info = await material.info();
-      entry.material.close?.();
+      const called = name(), material = await made();
+      const info = await infoOf(material);
+      if (!state.entries.includes(entry)) {
+        material.close();
+        return;
+      }
+      release(entry);
       Object.assign(entry, {name: called, material, info, original: undefined, places: undefined});
       changed({renewed: entry});
     } catch (error) {
@@ -67,22 +79,66 @@ export function renewer(entry, made, name = () => entry.name) {
   });
 }
 
-// One of several materials of a file.
-function chooser(entry, data, file, options) {
-  const select = make("select", {onchange: () => renew()}, ...entry.material.entries.slice(0, kMostChoices).map((name) => make("option", {value: name}, name)));
-  const renew = renewer(entry, () => open(data, {...options, name: file, entry: select.value}), () => `${file}#${select.value}`);
-  return make("label", {}, make("span", {}, "Material"), select, make("output", {}, String(entry.material.entries.length)));
+// Reads an entry's file again, another way: {how, last, renew, undone}. What cannot be read leaves the last way that could,
+// which functions in `undone` are told.
+function reader(entry, data, file, options) {
+  const how = {...options}, last = {...options}, undone = [];
+  const renew = renewer(entry, async () => {
+    try {
+      const asked = {...how}, material = await open(data, {...asked, name: file});
+      Object.assign(last, asked);
+      return material;
+    } catch (error) {
+      Object.assign(how, last);
+      undone.forEach((tell) => tell());
+      throw error;
+    }
+  }, () => (how.entry ? `${file}#${how.entry}` : file));
+  return {how, last, renew, undone};
 }
 
-// One message for all that are none. A decoder of Neural Processes belongs to the codes beside it.
-async function openFiles(files, onPicture) {
+// A list or a box that sets how[name].
+function choice(title, name, input, {how, last, renew, undone}, aside = "") {
+  const box = input.type === "checkbox", before = box ? input.checked : input.value;
+  input.dataset.reading = name;
+  input.addEventListener("change", () => {
+    how[name] = box ? input.checked : input.value;
+    renew();
+  });
+  last[name] = how[name] ??= before;
+  undone.push(() => (input[box ? "checked" : "value"] = how[name]));
+  return make("label", {}, make("span", {}, title), input, make("output", {}, aside));
+}
+const listOf = (values) => make("select", {}, ...values.map((value) => make("option", {value}, value)));
+
+// One of several materials of a file.
+const chooser = ({material: {entries}}, wanted) =>
+  choice("Material", "entry", listOf(entries.slice(0, kMostChoices)), wanted, String(entries.length));
+
+// What a format leaves open: the light under which spectra became colours, the side, whether values have the cosine.
+function readings({info}, wanted) {
+  const box = () => make("input", {type: "checkbox"}), choices = [];
+  if (info.illuminant) choices.push(choice("Light", "illuminant", listOf(["E", "D50", "D65", "A"]), wanted));
+  if (/^(measured )?(Klems|tensor tree)/.test(info.format)) choices.push(choice("Back side", "back", box(), wanted));
+  if (/^(measured )?CSV/.test(info.format)) choices.push(choice("Times cos", "hasCosine", box(), wanted));
+  return choices;
+}
+
+// One message for all that are none; stopping one leaves out what was given with it, and says so. A decoder of Neural
+// Processes belongs to the codes beside it.
+const openFiles = (files, onPicture) => queued(() => openEach(files, onPicture));
+async function openEach(files, onPicture) {
   const decoder = files.find(({name}) => /\.f32$/i.test(name)), codes = decoder && files.find(({name}) => /\.csv$/i.test(name)), said = [];
-  for (const file of files.filter((f) => !codes || f !== decoder)) {
+  const wanted = files.filter((f) => !codes || f !== decoder);
+  for (const [k, file] of wanted.entries()) {
     try {
       if (/\.(hdr|exr)$/i.test(file.name) && (await onPicture(file))) continue;
       await opening(file, file.name, {}, file === codes ? {decoder} : {});
     } catch (error) {
-      if (error?.name === "AbortError") break;
+      if (error?.name === "AbortError") {
+        if (!said.length && k + 1 < wanted.length) say(`Stopped: ${wanted.length - k} of ${wanted.length} files were not opened`);
+        break;
+      }
       said.push(wrong(error, file.name));
     }
   }

@@ -1,5 +1,5 @@
 // Slices, the (theta_h, theta_d) picture, albedo and lobe of what is shown: the left material solid, the right one dashed.
-import {plot, shareOfAxis} from "./chart.js";
+import {linePath, plot, shareOfAxis} from "./chart.js";
 import {css, find, latest, lineOf, make, number, say, svg} from "./dom.js";
 import {drawLobe} from "./lobe.js";
 import {segments} from "./segments.js";
@@ -17,18 +17,19 @@ function channelsOf(rgb) {
   if (settings.channel === "mean")
     return [{color: css("--mean"), values: Array.from({length: rgb.length / 3}, (_, i) => (rgb[3 * i] + rgb[3 * i + 1] + rgb[3 * i + 2]) / 3)}];
   const all = [0, 1, 2].map((c) => ({color: css(names[c]), values: take(c)}));
-  const grey = settings.channel === "rgb" && rgb.every((x, i) => Math.abs(x - rgb[i - (i % 3)]) <= 1e-6 * Math.abs(x));
+  const grey = settings.channel === "rgb" && rgb.every((x, i) => Number.isNaN(x) || Math.abs(x - rgb[i - (i % 3)]) <= 1e-6 * Math.abs(x));
   if (grey) return [{color: css("--mean"), values: all[0].values}];
   return settings.channel === "rgb" ? all : [all[Number(settings.channel)]];
 }
 
+// rgb of each pair, NaN where nothing is known.
 async function evaluate(entry, pairs) {
   const wi = new Float32Array(pairs.length * 3), wo = new Float32Array(pairs.length * 3);
   pairs.forEach(([a, b], k) => {
     wi.set(a, 3 * k);
     wo.set(b, 3 * k);
   });
-  return toRgb(await entry.material.evaluate(wi, wo), entry.material.channels).map((x) => (Number.isNaN(x) ? 0 : x));
+  return toRgb(await entry.material.evaluate(wi, wo), entry.material.channels);
 }
 
 // In the plane of incidence; negative theta_o lie on the light's side.
@@ -78,11 +79,7 @@ function drawPolar({angles, lines}) {
     figure.append(svg("path", {d: `M${place(middle)}L${place(at(degree, 1))}`, stroke: grid}),
                   degree === 0 ? "" : svg("text", {x, y: y + 3, fill: soft, "text-anchor": degree < 0 ? "end" : "start"}, `${Math.abs(degree)}°`));
   }
-  for (const {color, values, dashed} of lines) {
-    const points = values.map((v, k) => place(at(angles[k], grow(v))));
-    figure.append(svg("path", {d: `M${points.join("L")}`, fill: "none", stroke: color, "stroke-width": 1.8,
-                               "stroke-dasharray": dashed ? "5 4" : null, "stroke-linejoin": "round"}));
-  }
+  for (const line of lines) figure.append(linePath(line.values.map((v, k) => at(angles[k], grow(v))), line));
   const tip = at(-degrees(settings.theta), 1), accent = css("--accent");
   figure.append(svg("path", {d: `M${place(tip)}L${place(middle)}`, stroke: accent, "stroke-width": 1.6}),
                 svg("circle", {cx: tip[0], cy: tip[1], r: 6, fill: accent, cursor: "ew-resize"}));
@@ -154,6 +151,7 @@ async function halfDiffImage(entry, scaleOf) {
   const rgb = await evaluate(entry, pairs), scale = scaleOf ?? logScale(rgb);
   const image = new ImageData(size, size);
   places.forEach((place, k) => {
+    if (Number.isNaN(rgb[3 * k])) return;
     for (let c = 0; c < 3; ++c) image.data[4 * place + c] = 255 * scale(rgb[3 * k + c]);
     image.data[4 * place + 3] = 255;
   });

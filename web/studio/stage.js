@@ -1,5 +1,5 @@
 // The view's controls: shape, lights, exposure, divider.
-import {css, find, lineOf, make, say} from "./dom.js";
+import {css, find, lineOf, make, onDrag, say} from "./dom.js";
 import {isPicture, readExr} from "./exr.js";
 import {readHdr} from "./hdr.js";
 import {segments} from "./segments.js";
@@ -8,6 +8,7 @@ import {changed, isSurface, onChange, state} from "./state.js";
 import {clamp} from "./vectors.js";
 import {View} from "./view.js";
 
+let touched = 0;  // the light that was moved last
 let view = null, exposedFor = null, exposes = true;  // until the slider is moved
 
 // Where a light's handle stands: its direction seen from the front, at this share of the half frame.
@@ -23,6 +24,8 @@ function drawHandles() {
   while (place.children.length > lights.length) place.lastChild.remove();
   while (place.children.length < lights.length) place.append(handle(place.children.length));
   const {clientWidth: width, clientHeight: height} = find("#scene"), half = (kRing * Math.min(width, height)) / 2;
+  find("#add-light").disabled = lights.length >= kLights;
+  find("#remove-light").disabled = lights.length === 0;
   lights.forEach(({place: [x, y]}, k) => {
     place.children[k].style.transform = `translate(${width / 2 + half * x}px, ${height / 2 - half * y}px)`;
   });
@@ -30,28 +33,33 @@ function drawHandles() {
 
 function moveLight(k, x, y) {
   const r = Math.max(Math.hypot(x, y), 1), lights = [...view.settings.lights];
+  touched = k;
   lights[k] = {...lights[k], place: [x / r, y / r, Math.sqrt(Math.max(1 - (x * x + y * y) / (r * r), 0))]};
   view.set({lights});
   drawHandles();
 }
 
+function removeLight(k) {
+  view.set({lights: view.settings.lights.filter((_, other) => other !== k)});
+  touched = view.settings.lights.length - 1;
+  drawHandles();
+}
+
 function handle(k) {
   const button = make("button", {type: "button", "aria-label": `Light ${k + 1}: arrow keys move it, Delete removes it`, title: "Drag the light; double click removes it"});
-  const remove = () => {
-    view.set({lights: view.settings.lights.filter((_, other) => other !== k)});
-    drawHandles();
-    find("#add-light").disabled = false;
-  };
-  button.addEventListener("pointerdown", (event) => button.setPointerCapture(event.pointerId));
+  button.addEventListener("pointerdown", (event) => {
+    touched = k;
+    button.setPointerCapture(event.pointerId);
+  });
   button.addEventListener("pointermove", (event) => {
     if (!button.hasPointerCapture(event.pointerId)) return;
     const box = find("#scene").getBoundingClientRect(), half = (kRing * Math.min(box.width, box.height)) / 2;
     moveLight(k, (event.clientX - box.left - box.width / 2) / half, (box.top + box.height / 2 - event.clientY) / half);
   });
-  button.addEventListener("dblclick", remove);
+  button.addEventListener("dblclick", () => removeLight(k));
   button.addEventListener("keydown", (event) => {
     const step = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]}[event.key];
-    if (event.key === "Delete") remove();
+    if (event.key === "Delete") removeLight(k);
     if (!step) return;
     event.preventDefault();
     const [x, y] = view.settings.lights[k].place;
@@ -66,10 +74,7 @@ function turn(dx, dy) {
 
 function connectCanvas() {
   const canvas = find("#view");
-  canvas.addEventListener("pointerdown", (event) => canvas.setPointerCapture(event.pointerId));
-  canvas.addEventListener("pointermove", (event) => {
-    if (canvas.hasPointerCapture(event.pointerId)) turn(event.movementX / 150, event.movementY / 150);
-  });
+  onDrag(canvas, (dx, dy) => turn(dx / 150, dy / 150));
   canvas.addEventListener("keydown", (event) => {
     const step = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[event.key];
     if (!step) return;
@@ -147,7 +152,7 @@ export async function openPicture(file) {
   const bytes = new Uint8Array(await file.arrayBuffer()), hdr = /\.hdr$/i.test(file.name);
   if (!hdr && !isPicture(bytes)) return false;
   try {
-    const {width, height, data} = hdr ? readHdr(bytes) : await readExr(bytes);
+    const {width, height, data} = hdr ? readHdr(bytes, view?.largestPicture) : await readExr(bytes, view?.largestPicture);
     view?.setPicture(width, height, data);
     const around = find("#around");
     const choice = around.querySelector("[value=picture]");
@@ -191,12 +196,13 @@ function connect() {
   });
   find("#curve").addEventListener("change", (event) => view.set({curve: Number(event.target.value)}));
   find("#tangents").addEventListener("change", (event) => view.set({tangents: event.target.checked}));
-  find("#add-light").addEventListener("click", (event) => {
+  find("#add-light").addEventListener("click", () => {
     const {lights} = view.settings;
     view.set({lights: [...lights, {place: [[0.6, 0.3, 0.74], [-0.6, -0.4, 0.69], [0.1, -0.7, 0.71], [-0.5, 0.55, 0.67]][lights.length % 4], color: [10, 10, 10]}]});
+    touched = view.settings.lights.length - 1;
     drawHandles();
-    event.currentTarget.disabled = view.settings.lights.length >= kLights;
   });
+  find("#remove-light").addEventListener("click", () => removeLight(touched));
   connectCanvas();
   connectDivider();
   new ResizeObserver(drawHandles).observe(find("#scene"));

@@ -38,11 +38,17 @@ export function showBeside(entry) {
   changed("shown");
 }
 
+// Closes what an entry has open: its material and, where that was edited, what it was made of.
+export function release({material, original}) {
+  material.close?.();
+  if (original !== material) original?.close?.();
+}
+
 // Closes an entry and the models fitted to it; their memory is given back.
 export function remove(entry) {
   const gone = [entry, ...modelsOf(entry)];
   state.entries = state.entries.filter((e) => !gone.includes(e));
-  for (const e of gone) e.material.close?.();
+  gone.forEach(release);
   if (gone.includes(state.shown)) show(state.entries[0] ?? null);
   else if (gone.includes(state.beside)) showBeside(null);
   changed();

@@ -40,12 +40,15 @@ const saveButton = (entry, kind, title) =>
     for (const {name, bytes} of await filesOf(entry, kind)) saveFile(name, bytes);
   })}, title);
 
+// Whether it was; pages that are not served securely have no clipboard.
 async function copy(text, what) {
   try {
     await navigator.clipboard.writeText(text);
     say(`${what} copied`);
+    return true;
   } catch {
     say("The browser lets nothing be copied here", "error");
+    return false;
   }
 }
 
@@ -79,14 +82,19 @@ function shaderGroup(entry) {
 
 function linkGroup(entry) {
   const said = make("p", {class: "hint"}, "The whole material in the address: nothing is uploaded.");
+  const shown = make("input", {type: "text", id: "link-text", readonly: true, hidden: true, "aria-label": "Link", onfocus: () => shown.select()});
   return make("div", {}, make("h3", {}, "Link"), make("div", {class: "buttons"},
     make("button", {type: "button", id: "link", onclick: guarded(async () => {
       const [{bytes}] = await filesOf(entry, "burnish");
       const link = linkOf(stem(entry), bytes);
       find("#link").dataset.link = link;
       said.textContent = `${bytesText(bytes.length)} as ${link.length.toLocaleString("en")} characters${bytes.length > kLongLink ? "; some programs cut links this long" : ""}.`;
-      await copy(link, "Link");
-    })}, "Copy link")), said);
+      if (await copy(link, "Link")) return;
+      // to be copied by hand
+      [shown.value, shown.hidden] = [link, false];
+      shown.focus();
+      say("The browser lets nothing be copied here; the link is below its button");
+    })}, "Copy link")), shown, said);
 }
 
 // The chart as a file that stands alone.
@@ -100,6 +108,21 @@ function svgText(figure) {
   return new XMLSerializer().serializeToString(copied);
 }
 
+// What stands over theta_h and theta_d, side by side, each cell a square of pixels.
+function halfDiffPng() {
+  const shown = [...document.querySelectorAll("#half-diff canvas")], kCell = 4, kGap = 16, kText = 24;
+  if (!shown.length) throw new Error("The picture over the angles is not drawn yet");
+  const side = kCell * shown[0].width, canvas = make("canvas", {width: shown.length * (side + kGap) - kGap, height: side + kText}), pen = canvas.getContext("2d");
+  pen.fillStyle = css("--panel");
+  pen.fillRect(0, 0, canvas.width, canvas.height);
+  [pen.imageSmoothingEnabled, pen.fillStyle, pen.font] = [false, css("--soft"), "13px system-ui, sans-serif"];
+  shown.forEach((from, k) => {
+    pen.drawImage(from, k * (side + kGap), 0, side, side);
+    pen.fillText(from.nextElementSibling.textContent, k * (side + kGap), side + 17, side);
+  });
+  return new Promise((done) => canvas.toBlob(done, "image/png"));
+}
+
 function pictureGroup() {
   const chart = (title, selector, name) => make("button", {type: "button", "data-export": name, onclick: guarded(async () => {
     saveFile(`${stem(state.shown)}-${name}.svg`, svgText(find(`${selector} svg`)), "image/svg+xml");
@@ -108,7 +131,9 @@ function pictureGroup() {
     make("button", {type: "button", "data-export": "png", onclick: guarded(async () => {
       const blob = await picture();
       if (blob) saveFile(`${stem(state.shown)}.png`, blob);
-    })}, "View as PNG"), chart("Slice as SVG", "#slices", "slice"), chart("Albedo as SVG", "#albedo", "albedo")));
+    })}, "View as PNG"), chart("Slice as SVG", "#slices", "slice"), chart("Albedo as SVG", "#albedo", "albedo"),
+    make("button", {type: "button", "data-export": "half-diff", onclick: guarded(async () => saveFile(`${stem(state.shown)}-half-diff.png`, await halfDiffPng()))}, "θh, θd as PNG"),
+    referenceOf(state.shown).curve?.length ? chart("Bytes curve as SVG", "#bytes-curve", "curve") : ""));
 }
 
 function draw() {

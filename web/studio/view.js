@@ -108,6 +108,10 @@ export class View {
     const form = entry && this.forms.get(entry.id);
     return form?.glsl ? form : null;
   }
+  // Pixels a side.
+  get largestPicture() {
+    return this.gl.getParameter(this.gl.MAX_TEXTURE_SIZE);
+  }
   // rgb floats, `rows` from the top, of all directions.
   setPicture(width, height, data) {
     const gl = this.gl;
