@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # check.sh FOLDER: installs each package of FOLDER (a .deb, a .whl, a .tgz of npm) where nothing else of burnish is, runs
-# the demo there, and prints what each takes. The .deb goes into a Debian made by debootstrap (BURNISH_ROOT=DIR keeps it
+# the demo there (a first fit where there is no command line), and prints what each takes. A package that is missing is
+# a fault. The .deb goes into a Debian made by debootstrap (BURNISH_ROOT=DIR keeps it
 # for the next time), the wheel into an empty virtual environment with no compiler in the path, the .tgz into an empty
 # folder. Each has to be below its limit. Needs root for the first.
 set -euo pipefail
@@ -33,8 +34,10 @@ check_deb() {
   chroot "$root" sh -c "export DEBIAN_FRONTEND=noninteractive; apt-get -qq update &&
     apt-get -qq install --no-install-recommends '/tmp/$(basename "$1")'" > "$work/log" 2>&1 || { tail -20 "$work/log"; exit 1; }
   echo "installed in $(seconds "$start")"
-  # no compiler came with it
-  ! chroot "$root" sh -c 'command -v c++ || command -v cc'
+  if [ -z "${BURNISH_ROOT:-}" ] && chroot "$root" sh -c 'command -v c++ || command -v cc'; then
+    echo "a compiler came with the package" >&2
+    exit 1
+  fi
   chroot "$root" burnish --version
   start=$(date +%s)
   chroot "$root" bash -e /tmp/demo.sh burnish /tmp/demo | tail -3
@@ -47,7 +50,23 @@ check_deb() {
   chroot "$root" bash -c 'source /usr/share/bash-completion/completions/burnish
     COMP_WORDS=(burnish fit --los) COMP_CWORD=2; _burnish; [ "${COMPREPLY[*]}" = --loss ]'
   chroot "$root" burnish help formats | grep -q OpenMATERIAL
+  check_library
   umount "$root/proc"
+}
+
+# What the package suggests is enough for a program against the library, found by pkg-config and by CMake.
+check_library() {
+  local suggested=$(chroot "$root" dpkg-query -W -f '${Suggests}' burnish | tr -d ,)
+  chroot "$root" sh -c "export DEBIAN_FRONTEND=noninteractive
+    apt-get -qq install --no-install-recommends g++ make cmake pkgconf $suggested" > "$work/log" 2>&1 ||
+    { tail -20 "$work/log"; exit 1; }
+  rm -rf "$root/tmp/consumer" && cp -r "$here/tests/install" "$root/tmp/consumer"
+  sed -n '/^```cpp$/,/^```$/{/^```/d;p}' "$here/README.md" > "$root/tmp/consumer/readme_example.inc"
+  chroot "$root" sh -ec 'cd /tmp/consumer
+    burnish measure ggx:alpha_x=0.3,alpha_y=0.3 -o paint.binary --count 2000 > /dev/null
+    c++ -std=c++20 -I. consumer.cpp $(pkg-config --cflags --libs burnish) -o by_pkg_config && ./by_pkg_config
+    cmake -B built -DEXAMPLE_FOLDER=/tmp/consumer > /dev/null && cmake --build built > /dev/null && built/consumer'
+  echo "a program is built against its library, by pkg-config and by CMake"
 }
 
 check_wheel() {
@@ -59,7 +78,9 @@ check_wheel() {
   mkdir "$work/empty"
   (cd "$work/empty" && export PATH="$work/venv/bin" && pip --disable-pip-version-check -q install --only-binary :all: "$1" &&
     python "$here/tests/release/first_fit.py")
-  echo "from pip install to the first fit: $(seconds "$start")"
+  local taken=$(seconds "$start")
+  echo "from pip install to the first fit: $taken"
+  [ "${taken% s}" -le 30 ] || { echo "more than 30 s" >&2; exit 1; }
 }
 
 check_npm() {
@@ -73,6 +94,10 @@ check_npm() {
   echo "from npm install to the first fit: $(seconds "$start")"
 }
 
-for package in "$folder"/*.deb; do [ -e "$package" ] && check_deb "$package"; done
-for package in "$folder"/*.whl; do [ -e "$package" ] && check_wheel "$package"; done
-for package in "$folder"/*.tgz; do [ -e "$package" ] && check_npm "$package"; done
+check() {
+  [ -e "$2" ] || { echo "$folder: no ${2##*/}" >&2; exit 1; }
+  "check_$1" "$2"
+}
+for package in "$folder"/*.deb; do check deb "$package"; done
+for package in "$folder"/*.whl; do check wheel "$package"; done
+for package in "$folder"/*.tgz; do check npm "$package"; done
