@@ -91,6 +91,9 @@ cluster-test: build
 	@missing=$$(for p in slurmctld slurmd slurm-client munge; do \
 	  dpkg-query -W -f '$${Status}' $$p 2>/dev/null | grep -q 'ok installed' || echo $$p; done); \
 	[ -z "$$missing" ] || $(SUDO) apt-get install -y -qq --no-install-recommends $$missing > /dev/null
+	@if command -v mpicxx > /dev/null; then \
+	  cmake --preset programs -DBURNISH_MPI=ON > /dev/null && \
+	  cmake --build --preset programs -j $(JOBS) --target burnish_mpi; fi
 	@tests/cluster/run.py $(BURNISH)
 
 bench: test-deps

@@ -1,3 +1,4 @@
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -51,16 +52,33 @@ std::string duration(double seconds) {
 }
 
 // One line on standard error, redrawn in place; nothing where that is no terminal.
-void show_progress(const BatchSummary& summary) {
-  if (::isatty(STDERR_FILENO) == 0) return;
-  const std::size_t done = summary.fitted + summary.failed;
-  fmt::print(stderr, "\r{} of {} done", done, summary.total);
-  if (summary.failed > 0) fmt::print(stderr, ", {} failed", summary.failed);
-  if (summary.seconds_left) fmt::print(stderr, ", {} left", duration(*summary.seconds_left));
-  fmt::print(stderr, "\033[K");
-  if (done == summary.total) fmt::print(stderr, "\r\033[K");
-  std::fflush(stderr);
-}
+class Redrawn {
+ public:
+  explicit Redrawn(const Batch& batch) : batch_(batch) {}
+
+  void draw() {
+    if (!terminal_) return;
+    drawn_ = std::chrono::steady_clock::now();
+    const BatchSummary summary = batch_.summary();
+    const std::size_t done = summary.fitted + summary.failed;
+    fmt::print(stderr, "\r{} of {} done", done, summary.total);
+    if (summary.failed > 0) fmt::print(stderr, ", {} failed", summary.failed);
+    fmt::print(stderr, ", {}", duration(summary.seconds));
+    if (summary.seconds_left) fmt::print(stderr, ", {} left", duration(*summary.seconds_left));
+    fmt::print(stderr, "\033[K");
+    if (done == summary.total) fmt::print(stderr, "\r\033[K");
+    std::fflush(stderr);
+  }
+  /// While a fit takes long: once a second.
+  void draw_if_due() {
+    if (std::chrono::steady_clock::now() - drawn_ >= std::chrono::seconds(1)) draw();
+  }
+
+ private:
+  const Batch& batch_;
+  const bool terminal_ = ::isatty(STDERR_FILENO) != 0;
+  std::chrono::steady_clock::time_point drawn_ = {};
+};
 
 void print_json(const BatchArguments& arguments, const BatchSummary& summary,
                 const std::vector<MaterialRecord>& failed) {
@@ -110,9 +128,10 @@ void run(const BatchArguments& arguments, const CLI::App& verb) {
   if (arguments.slurm.wanted) return write_script(arguments, verb);
   Batch batch(library_entries(arguments.place), options);
   std::vector<MaterialRecord> failed;
-  while (const auto record = batch.next()) {
+  Redrawn progress(batch);
+  while (const auto record = batch.next([&progress] { progress.draw_if_due(); })) {
     if (!record->fitted()) failed.push_back(*record);
-    show_progress(batch.summary());
+    progress.draw();
   }
   const BatchSummary summary = batch.summary();
   if (arguments.json)
@@ -137,7 +156,7 @@ void add_folder_arguments(CLI::App& verb, BatchArguments& arguments) {
   verb.add_option(
           "--memory", options.memory,
           "bytes to take at most, as 4G: fewer materials are fitted at once (default: four fifths of what is "
-          "free)")
+          "free, and of the limits of its control groups and Slurm job)")
       ->transform(CLI::AsSizeValue(false));
   verb.add_option("--threads", options.threads, "at most this many; 0: all")->check(CLI::Range(0, 1024));
   verb.add_option("--patience", arguments.patience,

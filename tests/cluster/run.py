@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """A batch on a real Slurm of two nodes on this machine: tests/cluster/run.py BURNISH [--if-there] [--seed S]
-[--materials N] [--mpi BURNISH_MPI].
+[--materials N] [--least TIMES] [--mpi BURNISH_MPI].
 
 Starts munged, slurmctld and two slurmd of one processor each, with files, ports and a key of their own, in a folder
 that goes afterwards; as root each node has process numbers of its own, so that a node can be killed with all that
 runs on it and nobody sees its processes. Then the job array that `burnish batch --slurm` writes:
 
-- on one node, and on both: the same bits as without Slurm, and how many times as fast;
+- on one node, and on both: the same bits as without Slurm, and how many times as fast, which has to be --least (on an
+  idle machine with --materials 100: 1.8);
 - on both, while processes are killed and a task is requeued at random moments: the same bits, nothing finished done
   twice;
 - on both, while one node is killed: the job ends complete, with the same bits.
@@ -304,6 +305,8 @@ def main():
     parser.add_argument("--if-there", action="store_true")
     parser.add_argument("--seed", type=int, default=None, help="of the moments; by default another each time")
     parser.add_argument("--materials", type=int, default=24, help="to fit")
+    parser.add_argument("--least", type=float, default=0, metavar="TIMES",
+                        help="fail where two nodes are not so many times as fast as one")
     parser.add_argument("--mpi", help="burnish-mpi")
     arguments = parser.parse_args()
     os.environ["PATH"] += ":/usr/sbin:/sbin"
@@ -325,6 +328,8 @@ def main():
             one = seconds_of(library, cluster, scratch / "one", 1, models)
             both = seconds_of(library, cluster, scratch / "both", 2, models)
             print(f"one node {one:.1f} s, two nodes {both:.1f} s, {one / both:.2f} times as fast: the same bits")
+            check(one / both >= arguments.least,
+                  f"expected two nodes {arguments.least} times as fast as one, found {one / both:.2f}")
             kill_some(library, cluster, scratch / "killed", models, draw)
             burnish_mpi = arguments.mpi or pathlib.Path(library.burnish).parent.parent / "mpi/burnish-mpi"
             if not os.path.exists(burnish_mpi) or not shutil.which("mpirun"):

@@ -4,8 +4,9 @@
 Of COUNT materials 5 % are damaged files, 25 % analytic, the rest MERL files of C x C x 2 C cells: twenty stand-ins of
 BURNISH_DATA/np in other and other colours. FIT OPTIONS are those of `burnish fit`, by default --model pqp. Prints what
 was fitted and what failed, the processor time of the batch over that of its fits one by one, its largest memory, and
-how long the table takes to answer. Exits with 1 where a good material is missing, a damaged one is
-not named with its reason, or a model has other bits than its fit alone."""
+how long the table takes to answer. Exits with 1 where a good material is missing, a damaged one is not named with its
+reason, a model has other bits than its fit alone, or more was taken than MOST_PROCESSOR_TIME, --memory or
+MOST_QUERY_SECONDS."""
 import argparse
 import array
 import json
@@ -19,6 +20,20 @@ import tempfile
 import time
 
 STAND_INS = 20
+MOST_PROCESSOR_TIME = 1.1  # of a batch, of its fits one by one
+MOST_QUERY_SECONDS = 0.05
+UNITS = {"K": 1 << 10, "M": 1 << 20, "G": 1 << 30}
+
+
+def check(condition, message):
+    if not condition:
+        sys.exit(f"scale.py: {message}")
+
+
+def mebibytes(size):
+    """Of a size as --memory takes it: 500M, 4G or bytes."""
+    unit = UNITS.get(size[-1].upper())
+    return (float(size[:-1]) * unit if unit else float(size)) / UNITS["M"]
 
 
 def timed(command):
@@ -99,6 +114,7 @@ def main():
         print(f"{summary['fitted']} of {len(good)} good ones fitted, "
               f"{summary['failed']} of {len(damaged)} damaged ones named")
         print(f"{seconds:.1f} s of processor time, {wall:.1f} s by the clock, {memory:.0f} MiB of {arguments.memory}")
+        check(memory <= mebibytes(arguments.memory), f"expected at most {arguments.memory}, found {memory:.0f} MiB")
         reasons = {failure["path"]: failure["reason"] for failure in summary["failures"]}
         if code != 1 or summary["fitted"] != len(good) or set(reasons) != set(damaged) or not all(reasons.values()):
             sys.exit(f"scale.py: expected every good one fitted and every damaged one named, found exit code {code}")
@@ -112,9 +128,12 @@ def main():
             if (folder / "alone.burnish").read_bytes() != (out / models[argument]).read_bytes():
                 sys.exit(f"scale.py: {argument}: expected the bits of its fit alone, found others")
         print(f"{alone:.1f} s for the fits one by one, the same bits: {seconds / alone:.3f} times as much")
+        check(seconds <= MOST_PROCESSOR_TIME * alone,
+              f"expected at most {MOST_PROCESSOR_TIME} times as much processor time, found {seconds / alone:.3f}")
 
         best = min(query_time(out / "library.sqlite") for _ in range(5))
         print(f"SELECT name FROM materials WHERE psnr < 40: {1000 * best:.1f} ms")
+        check(best <= MOST_QUERY_SECONDS, f"expected the query in {1000 * MOST_QUERY_SECONDS:.0f} ms")
 
 
 def query_time(path):

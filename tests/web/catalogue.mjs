@@ -122,6 +122,22 @@ await page.keyboard.press("/");
 assert.equal(await page.evaluate(() => document.activeElement.id), "find");
 await accessible(page, "dark");
 
+// One card is reached by Tab, after a search and wherever the page was scrolled to.
+const tabbed = () => page.$$eval('.card a[tabindex="0"]', (links) => links.map((link) => Number(link.dataset.place)));
+await page.keyboard.press("Escape");
+await timed(page, "#find", "input", all.materials.at(-1).name);
+assert.deepEqual(await tabbed(), [0], "expected Tab to go to the first card found");
+await timed(page, "#find", "input", "");
+assert.deepEqual(await tabbed(), [0], "expected Tab to go to the first card of all");
+await page.evaluate(async () => {
+  document.activeElement.blur();
+  window.scrollTo(0, document.documentElement.scrollHeight);
+  window.dispatchEvent(new Event("scroll"));
+  await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+});
+assert.equal((await tabbed()).length, 1, "expected one card that Tab goes to at the end of the list");
+await page.evaluate(() => window.scrollTo(0, 0));
+
 // A link carries the model's own bytes, loaded when the pointer is there.
 await page.hover(".card a.name[href]");
 const href = await page.waitForFunction(() => [...document.querySelectorAll("a.name")].find((a) => a.href.includes("#m="))?.href).then((handle) => handle.jsonValue());

@@ -10,6 +10,7 @@
     psnr: {label: "psnr", text: (v) => `${v.toFixed(2)} dB`, better: 1},
     ssim: {label: "ssim", text: (v) => v.toFixed(4), better: 1},
     relative: {label: "relative error", text: (v) => v.toFixed(3), better: -1},
+    rms_log: {label: "rms_log", text: (v) => v.toFixed(3), better: -1},
     log_cos: {label: "log_cos", text: (v) => v.toFixed(4), better: -1},
     bytes: {label: "bytes", text: (v) => kThousands.format(v), better: -1},
     fetches: {label: "fetches", text: (v) => String(v), better: -1},
@@ -19,6 +20,7 @@
   };
   const at = (id) => document.getElementById(id);
   let library = null, shown = [], picked = [];
+  let focused = 0;  // place of the card that Tab goes to
   const cards = new Map();  // place among the shown -> card
   const parts = new Map();  // number -> {promise, links}
 
@@ -57,6 +59,7 @@
     shown = library.materials.filter((material) => tests.every((test) => test(material))).sort(compare);
     at("materials").replaceChildren();
     cards.clear();
+    focused = 0;
     at("count").textContent = shown.length === library.materials.length ? `${shown.length} materials` : `${shown.length} of ${library.materials.length} materials`;
     draw();
   }
@@ -85,6 +88,11 @@
     for (const [place, card] of cards)
       card.style.transform = `translate(${(place % across) * kWidth}px, ${Math.floor(place / across) * kHeight}px)`;
     list.append(made);
+    // Tab goes to a card that is there: where the one it went to was scrolled away, to the first that is seen
+    if (cards.size === 0 || cards.has(focused)) return;
+    const seen = Math.max(0, Math.ceil(top / kHeight)) * across;
+    focused = cards.has(seen) ? seen : first;
+    cards.get(focused).querySelector("a").tabIndex = 0;
   }
 
   function sphereOf(material) {
@@ -179,7 +187,6 @@
 
   // --- keyboard and pointer
 
-  let focused = 0;
   function focus(place) {
     const to = Math.min(Math.max(place, 0), shown.length - 1);
     if (to < 0) return;

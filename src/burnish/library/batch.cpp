@@ -23,6 +23,7 @@
 #include <burnish/library/fitted_material.h>
 #include <burnish/library/folder_file.h>
 #include <burnish/library/journal.h>
+#include <burnish/library/memory_budget.h>
 #include <burnish/library/sha256.h>
 #include <burnish/math/parallel.h>
 
@@ -48,16 +49,12 @@ int processors() {
              : static_cast<int>(std::thread::hardware_concurrency());
 }
 
-// The number in a line "NAME: N kB" of /proc, in bytes.
-std::uint64_t number_of(const char* file, std::string_view name) {
-  std::ifstream in(file);
-  for (std::string line; std::getline(in, line);)
-    if (line.starts_with(name)) return std::strtoull(line.c_str() + name.size(), nullptr, 10) * 1024;
-  return 0;
-}
-
+// Resident memory, bytes: the second number of the line, in pages.
 std::uint64_t memory_taken() {
-  return number_of("/proc/self/status", "VmRSS:");
+  std::ifstream in("/proc/self/statm");
+  std::uint64_t all = 0, resident = 0;
+  in >> all >> resident;
+  return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
 std::string digest_of(const std::vector<MaterialRecord>& records, const std::string& studio) {
@@ -96,7 +93,6 @@ class Batch::State {
   void stage(FittedMaterial& made);
   void place(const RecordedFile& file);
   void give(std::size_t index, MaterialRecord record);
-  void wait_for_memory(std::uint64_t bytes, int& others);
   void share_threads();
   void assemble();
   void check_stopped() const {
@@ -106,7 +102,7 @@ class Batch::State {
   const std::vector<LibraryEntry> entries_;
   const BatchOptions options_;
   const int threads_;
-  const std::uint64_t memory_;
+  MemoryBudget memory_;
   const std::string identity_ = process_identity();
   const Clock::time_point start_ = Clock::now();
   Journal journal_;
@@ -122,43 +118,51 @@ class Batch::State {
   std::exception_ptr error_;
   std::size_t working_ = 0;  // threads
   bool assembled_ = false;
-  std::uint64_t reserved_ = 0;
-  int active_ = 0, fitting_ = 0;  // threads that reserved memory, and those of them that are within a fit
+  int fitting_ = 0;  // threads that are within a fit
   std::unique_ptr<ThreadLimit> limit_;
   BatchSummary summary_;
   double fitted_seconds_ = 0;  // when the last result of this run came, since the start
   std::vector<std::thread> workers_;
 };
 
-/// What a material takes of the memory, and of the threads while it is fitted.
+/// What a material takes of the memory, and of the threads while it is fitted. All that it may come to is reserved
+/// before it is opened, since only then is it known whether it is isotropic.
 class Batch::State::MemoryShare {
  public:
-  MemoryShare(State& state, std::uint64_t input) : state_(state), bytes_(input) {
-    state_.wait_for_memory(input, state_.active_);
+  MemoryShare(State& state, std::uint64_t input)
+      : state_(state),
+        fit_(std::max(most_of_a_fit(state.options_, false), most_of_a_fit(state.options_, true))),
+        bytes_(input + fit_) {
+    if (!state_.memory_.reserve(bytes_)) throw Stopped{};
   }
   ~MemoryShare() {
     ::malloc_trim(0);  // what was freed goes back to the system, since the next fit may need it elsewhere
+    state_.memory_.release(bytes_);
+    if (!fits_) return;
     const std::lock_guard lock(state_.mutex_);
-    state_.reserved_ -= bytes_;
-    --state_.active_;
-    if (fits_) --state_.fitting_;
+    --state_.fitting_;
     state_.share_threads();
-    state_.changed_.notify_all();
   }
   MemoryShare(const MemoryShare&) = delete;
   MemoryShare& operator=(const MemoryShare&) = delete;
 
   void begin_fit(std::uint64_t bytes) {
-    state_.wait_for_memory(bytes, state_.fitting_);
-    const std::lock_guard lock(state_.mutex_);
-    bytes_ += bytes;
+    const std::uint64_t unused = fit_ - std::min(bytes, fit_);
+    state_.memory_.give_back(unused);
+    bytes_ -= unused;
     fits_ = true;
+    const std::lock_guard lock(state_.mutex_);
+    ++state_.fitting_;
     state_.share_threads();
   }
 
  private:
+  static std::uint64_t most_of_a_fit(const BatchOptions& options, bool isotropic) {
+    return fit_memory(options.fit ? options.fit(isotropic) : FitOptions{}, isotropic);
+  }
+
   State& state_;
-  std::uint64_t bytes_;
+  std::uint64_t fit_, bytes_;
   bool fits_ = false;
 };
 
@@ -166,7 +170,7 @@ Batch::State::State(std::vector<LibraryEntry> entries, BatchOptions options)
     : entries_(std::move(entries)),
       options_(std::move(options)),
       threads_(options_.threads > 0 ? options_.threads : processors()),
-      memory_(options_.memory > 0 ? options_.memory : number_of("/proc/meminfo", "MemAvailable:") / 5 * 4),
+      memory_(options_.memory > 0 ? options_.memory : usable_memory() / 5 * 4, memory_taken()),
       journal_((make_folder(options_.folder), options_.folder), identity_),
       claims_(options_.folder, identity_, options_.patience),
       digests_(options_),
@@ -178,7 +182,6 @@ Batch::State::State(std::vector<LibraryEntry> entries, BatchOptions options)
     make_folder(options_.folder / below);
   for (std::size_t k = 0; k < entries_.size(); ++k) pending_.push_back(k);
   summary_.total = entries_.size();
-  reserved_ = memory_taken();
 
   const auto count = std::min(static_cast<std::size_t>(threads_), entries_.size());
   share_threads();
@@ -191,6 +194,7 @@ Batch::State::~State() {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
   }
+  memory_.stop();
   changed_.notify_all();
   for (std::thread& worker : workers_) worker.join();
 }
@@ -203,6 +207,7 @@ void Batch::State::work() {
     const std::lock_guard lock(mutex_);
     if (!error_) error_ = std::current_exception();
     stopping_ = true;
+    memory_.stop();
   }
   const std::lock_guard lock(mutex_);
   --working_;
@@ -332,16 +337,6 @@ void Batch::State::give(std::size_t index, MaterialRecord record) {
   changed_.notify_all();
 }
 
-// Waits until so many bytes fit beside all that is reserved, and joins the others who wait no more; what is larger than
-// all goes where there are no others.
-void Batch::State::wait_for_memory(std::uint64_t bytes, int& others) {
-  std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return stopping_ || others == 0 || reserved_ + bytes <= memory_; });
-  check_stopped();
-  reserved_ += bytes;
-  ++others;
-}
-
 // Each fit has a thread of its own; those that are left help within fits.
 void Batch::State::share_threads() {
   auto limit = std::make_unique<ThreadLimit>(std::max(threads_ - std::max(fitting_, 1) + 1, 1));
@@ -383,8 +378,10 @@ BatchSummary Batch::State::summary() const {
 void Batch::State::assemble() {
   const std::string digest = digest_of(records_, options_.studio);
   const auto whole = [&] {
-    return journal_.assembled(digest) && fs::exists(options_.folder / kFiguresTable) &&
-           fs::exists(options_.folder / kCataloguePage);
+    const auto files = journal_.assembled(digest);
+    return files && std::ranges::all_of(*files, [&](const AssembledFile& file) {
+             return digest_of_file(options_.folder / file.path) == file.sha256;
+           });
   };
   const std::string claim(kAssembly);
   while (!whole()) {
@@ -392,8 +389,11 @@ void Batch::State::assemble() {
       journal_.refresh();
       if (!whole()) {
         write_figures_table(options_.folder, records_);
-        write_catalogue(options_.folder, records_, options_.studio);
-        journal_.append_assembled(digest);
+        std::vector<std::string> paths = write_catalogue(options_.folder, records_, options_.studio);
+        paths.emplace_back(kFiguresTable);
+        std::vector<AssembledFile> files;
+        for (const std::string& path : paths) files.push_back({path, digest_of_file(options_.folder / path)});
+        journal_.append_assembled(digest, files);
       }
       claims_.release(claim);
       return;

@@ -28,7 +28,7 @@ struct BatchOptions {
   ExportOptions exports =
       {};           ///< to folder/exports/NAME, of the name's own functions; nothing where `to` is empty
   int threads = 0;  ///< at most this many; 0: as many processors as this process may use
-  std::uint64_t memory = 0;  ///< bytes that the process may take; 0: four fifths of what is free
+  std::uint64_t memory = 0;  ///< bytes that the process may take; 0: four fifths of usable_memory()
   bool resume = false;       ///< go on in a folder that holds a batch's journal
   std::string studio = "studio/index.html";  ///< where the page's links to the studio lead
   /// How long another process that holds a material may be silent before it is taken over.

@@ -134,6 +134,20 @@ TEST_F(BatchOfMaterials, GoesOnWithoutDoingAgainWhatIsWhole) {
   EXPECT_EQ(fits_begun(), 10u);
 }
 
+TEST_F(BatchOfMaterials, MakesTableAndPageAgainThatAreNotWhole) {
+  run();
+  options.resume = true;
+  for (const std::filesystem::path file : {"library.sqlite", "index.html", "page/materials.js"}) {
+    const std::string whole = read(options.folder / file);
+    write((options.folder / file).string(), whole.substr(0, whole.size() / 2));
+    run();
+    EXPECT_EQ(read(options.folder / file), whole) << file;
+  }
+  const auto before = std::filesystem::last_write_time(options.folder / kFiguresTable);
+  run();
+  EXPECT_EQ(std::filesystem::last_write_time(options.folder / kFiguresTable), before);
+}
+
 // As of a process that was killed between its journal's line and the last rename.
 TEST_F(BatchOfMaterials, GivesFilesTheirNamesThatAreWholeUnderOthers) {
   const auto records = run();

@@ -30,7 +30,7 @@ constexpr int kSheetColumns = 8, kSheetRows = 8;
 constexpr std::size_t kPerSheet = kSheetColumns * kSheetRows, kPerPart = 32;
 constexpr std::size_t kLongestLink = 1'000'000;  // digits; the studio reads 2^20 characters
 
-void write(const fs::path& path, std::string_view bytes) {
+void write_and_rename(const fs::path& path, std::string_view bytes) {
   const fs::path temporary = path.string() + fmt::format(".{}.partial", ::getpid());
   write_durably(temporary, bytes);
   rename_durably(temporary, path);
@@ -92,6 +92,7 @@ Json row_of(const MaterialRecord& record, bool linked) {
           {"psnr", number(record.psnr)},
           {"ssim", number(record.ssim)},
           {"relative", number(record.relative)},
+          {"rms_log", number(record.rms_log)},
           {"log_cos", number(record.log_cos)},
           {"albedo", number(record.albedo)},
           {"seconds", record.seconds},
@@ -101,10 +102,14 @@ Json row_of(const MaterialRecord& record, bool linked) {
 
 }  // namespace
 
-void write_catalogue(const fs::path& folder, std::span<const MaterialRecord> records,
-                     const std::string& studio) {
-  const fs::path page = folder / "page";
-  make_folder(page);
+std::vector<std::string> write_catalogue(const fs::path& folder, std::span<const MaterialRecord> records,
+                                         const std::string& studio) {
+  make_folder(folder / "page");
+  std::vector<std::string> written;
+  const auto write = [&](std::string path, std::string_view bytes) {
+    write_and_rename(folder / path, bytes);
+    written.push_back(std::move(path));
+  };
   std::vector<MaterialRecord> fitted;
   Json failed = Json::array();
   for (const MaterialRecord& record : records)
@@ -119,7 +124,7 @@ void write_catalogue(const fs::path& folder, std::span<const MaterialRecord> rec
 
   // pictures
   for (std::size_t begin = 0; begin < all.size(); begin += kPerSheet)
-    write(page / fmt::format("pictures-{}.png", begin / kPerSheet),
+    write(fmt::format("page/pictures-{}.png", begin / kPerSheet),
           encode_png(sheet(folder, part_of(begin, kPerSheet))));
 
   // models
@@ -130,20 +135,21 @@ void write_catalogue(const fs::path& folder, std::span<const MaterialRecord> rec
       links.push_back(link_of(folder, record));
       rows.push_back(row_of(record, !links.back().get_ref<const std::string&>().empty()));
     }
-    write(page / fmt::format("models-{}.js", begin / kPerPart),
+    write(fmt::format("page/models-{}.js", begin / kPerPart),
           script("catalogueModels", {{"part", begin / kPerPart}, {"links", std::move(links)}}));
   }
 
   // figures, and the page last: what it names is there
-  write(page / "materials.js", script("catalogueMaterials", {{"studio", studio},
-                                                             {"perSheet", kPerSheet},
-                                                             {"columns", kSheetColumns},
-                                                             {"perPart", kPerPart},
-                                                             {"materials", std::move(rows)},
-                                                             {"failed", std::move(failed)}}));
+  write("page/materials.js", script("catalogueMaterials", {{"studio", studio},
+                                                           {"perSheet", kPerSheet},
+                                                           {"columns", kSheetColumns},
+                                                           {"perPart", kPerPart},
+                                                           {"materials", std::move(rows)},
+                                                           {"failed", std::move(failed)}}));
   for (const EmbeddedFile& file : catalogue_files())
-    if (file.name != kCataloguePage) write(page / file.name, file.text);
-  write(folder / kCataloguePage, text_of(catalogue_files(), kCataloguePage));
+    if (file.name != kCataloguePage) write(fmt::format("page/{}", file.name), file.text);
+  write(std::string(kCataloguePage), text_of(catalogue_files(), kCataloguePage));
+  return written;
 }
 
 }  // namespace burnish

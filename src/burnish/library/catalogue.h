@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <burnish/library/material_record.h>
 
@@ -15,7 +16,8 @@ inline constexpr std::string_view kCataloguePage = "index.html";
 /// pictures on sheets, their figures, and parts with the models themselves, which links to `studio`, an address as from
 /// the page, carry behind their #. Models and pictures are read from the folder, some at a time; a baseline, a model that
 /// is too large for a link and what failed have none. Throws Error where that cannot be done.
-void write_catalogue(const std::filesystem::path& folder, std::span<const MaterialRecord> records,
-                     const std::string& studio);
+/// Returns the files' paths below the folder.
+std::vector<std::string> write_catalogue(const std::filesystem::path& folder,
+                                         std::span<const MaterialRecord> records, const std::string& studio);
 
 }  // namespace burnish

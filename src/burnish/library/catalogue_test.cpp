@@ -46,6 +46,7 @@ TEST_F(Catalogue, HoldsFiguresPicturesAndModels) {
   std::vector<MaterialRecord> records;
   for (int k = 0; k < 70; ++k) records.push_back(add("material" + std::to_string(k), ".burnish"));
   records[3].warnings = {"only 7 samples"};
+  records[4].rms_log = 0.25;
   records.push_back(add("svd", ".json"));
   records.push_back({.name = "lost", .argument = "lost.csv", .reason = "no such file"});
   write_catalogue(folder.path, records, "studio/index.html");
@@ -55,6 +56,7 @@ TEST_F(Catalogue, HoldsFiguresPicturesAndModels) {
   ASSERT_EQ(all["materials"].size(), 71u);
   EXPECT_EQ(all["materials"][3]["warnings"][0], "only 7 samples");
   EXPECT_EQ(all["materials"][3]["psnr"], nullptr);
+  EXPECT_EQ(all["materials"][4]["rms_log"], 0.25);
   EXPECT_TRUE(all["materials"][69]["linked"]);
   EXPECT_FALSE(all["materials"][70]["linked"]);  // the studio opens no baseline
   ASSERT_EQ(all["failed"].size(), 1u);

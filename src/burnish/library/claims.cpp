@@ -117,7 +117,9 @@ void Claims::release(const std::string& name) noexcept {
   const std::lock_guard lock(mutex_);
   const auto found = held_.find(name);
   if (found == held_.end()) return;
-  for (int generation = found->second; generation > 0; --generation) ::unlink(file(name, generation).c_str());
+  // the highest goes last: without it those below look abandoned, and a successor would stand beside a new first
+  for (int generation = 1; generation <= found->second; ++generation)
+    ::unlink(file(name, generation).c_str());
   held_.erase(found);
 }
 

@@ -1,5 +1,8 @@
+#include <atomic>
 #include <csignal>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -64,6 +67,42 @@ TEST(Claims, OfAProcessOfThisMachineThatEndedAreTakenOverAtOnce) {
   ASSERT_EQ(status, 0);
   EXPECT_TRUE(std::filesystem::exists(folder.path / "claims/gold.1"));
   EXPECT_TRUE(Claims(folder.path, "one", 60s).take("gold"));
+}
+
+// Each round begins with the claim of a process that is gone, which one takes over and gives back.
+TEST(Claims, AreHeldByOneWhileATakenOverOneIsGivenBack) {
+  const TemporaryFolder folder("claims_handed_on");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    auto* never_destroyed = new Claims(folder.path, "gone", 60s);
+    ::_exit(never_destroyed->take("gold") ? 0 : 1);
+  }
+  int status = 1;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  const std::string first = (folder.path / "claims/gold.1").string(), abandoned = read(first);
+
+  constexpr int kRounds = 100, kOthers = 3;
+  Claims one(folder.path, "one", 60s), two(folder.path, "two", 60s), three(folder.path, "three", 60s);
+  for (int round = 0; round < kRounds; ++round) {
+    if (round > 0) write(first, abandoned);
+    std::atomic<int> holders{0}, most{0}, taken{0};
+    std::vector<std::thread> threads;
+    for (Claims* claims : {&one, &two, &three})
+      threads.emplace_back([&, claims] {
+        while (taken < kOthers) {
+          if (!claims->take("gold")) continue;
+          const int now = ++holders;
+          for (int seen = most; seen < now && !most.compare_exchange_weak(seen, now);) {
+          }
+          std::this_thread::sleep_for(1ms);
+          --holders;
+          claims->release("gold");
+          ++taken;
+        }
+      });
+    for (std::thread& thread : threads) thread.join();
+    ASSERT_EQ(most, 1) << "in round " << round;
+  }
 }
 
 TEST(Claims, SayWhereTheyCannotBeWritten) {

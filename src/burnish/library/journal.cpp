@@ -26,9 +26,10 @@ std::optional<MaterialRecord> Journal::record(const std::string& name, const std
   return found == records_.end() ? std::nullopt : std::optional(found->second);
 }
 
-bool Journal::assembled(const std::string& digest) const {
+std::optional<std::vector<AssembledFile>> Journal::assembled(const std::string& digest) const {
   const std::lock_guard lock(mutex_);
-  return assembled_.contains(digest);
+  const auto found = assembled_.find(digest);
+  return found == assembled_.end() ? std::nullopt : std::optional(found->second);
 }
 
 bool Journal::empty() const {
@@ -63,13 +64,23 @@ void Journal::take(const std::string& line) {
   if (!json.is_object()) return;
   empty_ = false;
   const std::string event = json.value("event", "");
-  if (event == "assembled") assembled_.insert(json.value("of", ""));
+  if (event == "assembled") take_assembled(json);
   if (event != "fitted" && event != "failed") return;
   try {
     MaterialRecord record = parse_material_record(line);
     const auto [at, is_new] = records_.try_emplace({record.name, record.key}, record);
     if (!is_new && (record.fitted() || !at->second.fitted())) at->second = std::move(record);
   } catch (const Error&) {  // not written whole
+  }
+}
+
+// One of an earlier version names no files, and counts as not written.
+void Journal::take_assembled(const nlohmann::ordered_json& json) {
+  try {
+    std::vector<AssembledFile> files;
+    for (const Json& file : json.at("files")) files.push_back({file.at("path"), file.at("sha256")});
+    assembled_[json.at("of")] = std::move(files);
+  } catch (const Json::exception&) {
   }
 }
 
@@ -94,8 +105,11 @@ void Journal::append(const MaterialRecord& record) {
   write((record.fitted() ? R"({"event":"fitted",)" : R"({"event":"failed",)") + json.substr(1));
 }
 
-void Journal::append_assembled(const std::string& digest) {
-  write(Json{{"event", "assembled"}, {"of", digest}}.dump());
+void Journal::append_assembled(const std::string& digest, const std::vector<AssembledFile>& files) {
+  Json json{{"event", "assembled"}, {"of", digest}, {"files", Json::array()}};
+  for (const AssembledFile& file : files)
+    json["files"].push_back({{"path", file.path}, {"sha256", file.sha256}});
+  write(json.dump());
 }
 
 }  // namespace burnish

@@ -7,22 +7,31 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
+
+#include <nlohmann/json_fwd.hpp>
 
 #include <burnish/library/folder_file.h>
 #include <burnish/library/material_record.h>
 
 namespace burnish {
 
+/// A file that came of all materials together.
+struct AssembledFile {
+  std::string path;    ///< below the batch's folder
+  std::string sha256;  ///< of its bytes
+
+  friend bool operator==(const AssembledFile&, const AssembledFile&) = default;
+};
+
 /// What became of a batch's materials, as the files of FOLDER/journal say together. Each process that works on the batch
 /// appends to a file of its own, named `writer`.jsonl, and reads those of the others: so they need no lock and no
 /// server, and none can spoil what another wrote. A line is a JSON object: {"event": "began", "name", "key"} before a
-/// fit, {"event": "fitted", ...} and {"event": "failed", ...} with a MaterialRecord, {"event": "assembled", "of"} when
-/// table and page were made of records whose keys and names have that digest; each with "at", seconds since 1970. A line
-/// that is no such object, as a process leaves that was killed while it wrote, counts as not written. Safe to call from
-/// several threads.
+/// fit, {"event": "fitted", ...} and {"event": "failed", ...} with a MaterialRecord, {"event": "assembled", "of",
+/// "files"} when table and page, these files, were made of records whose keys and names have that digest; each with
+/// "at", seconds since 1970. A line that is no such object, as a process leaves that was killed while it wrote, counts
+/// as not written. Safe to call from several threads.
 class Journal {
  public:
   /// Reads what is there, and makes a file where there is none yet as soon as something is appended. Throws Error as
@@ -32,8 +41,8 @@ class Journal {
   /// The last record of that material with that key, of this process or, as far as refresh has read, of others. One that
   /// was fitted goes before one that failed.
   std::optional<MaterialRecord> record(const std::string& name, const std::string& key) const;
-  /// Whether table and page were made of these records.
-  bool assembled(const std::string& digest) const;
+  /// The files that table and page were made of when these records were last assembled.
+  std::optional<std::vector<AssembledFile>> assembled(const std::string& digest) const;
   /// Whether the folder holds any line.
   bool empty() const;
 
@@ -43,11 +52,12 @@ class Journal {
   /// Each returns when the line is on the disk; throws Error as GrowingFile does.
   void append_began(const std::string& name, const std::string& key);
   void append(const MaterialRecord& record);
-  void append_assembled(const std::string& digest);
+  void append_assembled(const std::string& digest, const std::vector<AssembledFile>& files);
 
  private:
   void read_lines(const std::filesystem::path& file);
   void take(const std::string& line);
+  void take_assembled(const nlohmann::ordered_json& json);
   void write(const std::string& json);
 
   std::filesystem::path folder_, own_;
@@ -56,7 +66,7 @@ class Journal {
   bool broken_ = false;
   std::map<std::string, std::uint64_t> read_;  // bytes of each file that were taken
   std::map<std::pair<std::string, std::string>, MaterialRecord> records_;
-  std::set<std::string> assembled_;
+  std::map<std::string, std::vector<AssembledFile>> assembled_;
   bool empty_ = true;
 };
 

@@ -35,7 +35,7 @@ TEST(Journal, GivesBackWhatWasAppended) {
     journal.append_began("gold", "k");
     journal.append(gold());
     journal.append(broken());
-    journal.append_assembled("digest");
+    journal.append_assembled("digest", {{"index.html", "1f"}});
     EXPECT_EQ(journal.record("gold", "k"), gold());
   }
   const Journal again(folder.path, "two");
@@ -43,7 +43,7 @@ TEST(Journal, GivesBackWhatWasAppended) {
   EXPECT_EQ(again.record("gold", "k"), gold());
   EXPECT_EQ(again.record("broken", "k")->reason, broken().reason);
   EXPECT_FALSE(again.record("gold", "another"));
-  EXPECT_TRUE(again.assembled("digest"));
+  EXPECT_EQ(again.assembled("digest"), (std::vector<AssembledFile>{{"index.html", "1f"}}));
   EXPECT_FALSE(again.assembled("another"));
 }
 

@@ -233,9 +233,16 @@ struct AxisMean {
   VectorXd errors, errors_left_out;  // of each pair, by what all say and by what the others say
 };
 
+/// The same by one prior; what the others say of each pair apart for each of the library's materials.
+struct AxisGiven {
+  VectorXd weights, beyond, errors;
+  MatrixXd left_out;   // [pair][material], of one column where the prior is near none
+  VectorXd certainty;  // of each pair given the others: 1 / variance
+};
+
 // `shares`: of the library's materials, where the prior is near one of them.
-AxisMean mean_given(const PairData& data, std::size_t u, const CompletionPrior& prior, const VectorXd& shares,
-                    const MatrixXd& weights_of_library) {
+AxisGiven mean_given(const PairData& data, std::size_t u, const CompletionPrior& prior,
+                     const VectorXd& shares, const MatrixXd& weights_of_library) {
   const AxisData& axis = data.axes[u];
   VectorXd centre = VectorXd::Zero(axis.components.cols()), left = axis.values;
   if (prior.near_one) {
@@ -248,11 +255,44 @@ AxisMean mean_given(const PairData& data, std::size_t u, const CompletionPrior& 
   // the pair that is left out: [Rasmussen 2006, eq. 5.12]
   const VectorXd inverse =
       llt.matrixL().solve(MatrixXd::Identity(left.size(), left.size())).colwise().squaredNorm().transpose();
+  const MatrixXd solved_of_each =
+      prior.near_one ? MatrixXd(llt.solve((-axis.library).colwise() + axis.values)) : MatrixXd(solved);
   return {.weights = centre + variances.cwiseProduct(axis.components.transpose() * solved),
           .beyond = prior.residual * axis.residual2 * solved,
           .errors = prior.noise * data.noises.cwiseProduct(solved),
-          .errors_left_out = solved.cwiseQuotient(inverse)};
+          .left_out = inverse.cwiseInverse().asDiagonal() * solved_of_each,
+          .certainty = inverse};
 }
+
+/// What pairs that are left out are taken for. A prior or a material that saw the pair counts for what it did without
+/// it: its share is divided by how likely it made this pair given the others.
+class LeftOut {
+ public:
+  LeftOut(std::size_t axes, Eigen::Index pairs)
+      : sums_(axes, VectorXd::Zero(pairs)), weights_(VectorXd::Zero(pairs)) {}
+
+  // `shares`: of the columns of what is given, of one prior for all axes of a group.
+  void add(const std::vector<AxisGiven>& given, const VectorXd& shares) {
+    for (Eigen::Index m = 0; m < shares.size(); ++m) {
+      if (shares(m) <= 0) continue;
+      for (Eigen::Index i = 0; i < weights_.size(); ++i) {
+        double log_weight = std::log(shares(m));
+        for (const AxisGiven& axis : given)
+          log_weight += 0.5 * (axis.left_out(i, m) * axis.left_out(i, m) * axis.certainty(i) -
+                               std::log(axis.certainty(i)));
+        const double weight = std::exp(std::min(log_weight, kLargestLogWeight));
+        weights_(i) += weight;
+        for (std::size_t j = 0; j < given.size(); ++j) sums_[j](i) += weight * given[j].left_out(i, m);
+      }
+    }
+  }
+  VectorXd errors(std::size_t axis) const { return sums_[axis].cwiseQuotient(weights_); }
+
+ private:
+  static constexpr double kLargestLogWeight = 600;
+  std::vector<VectorXd> sums_;
+  VectorXd weights_;
+};
 
 /// The axes of a group by all that is believed of them.
 struct GroupMean {
@@ -269,12 +309,13 @@ GroupMean mean_of(const MaterialBook& book, const PairData& data, AxisGroup grou
     mean.axes.push_back({.weights = VectorXd::Zero(components),
                          .beyond = VectorXd::Zero(pairs),
                          .errors = VectorXd::Zero(pairs),
-                         .errors_left_out = VectorXd::Zero(pairs)});
+                         .errors_left_out = {}});
     library.push_back(library_weights(book, u));
   }
+  LeftOut left_out(group.size(), data.noises.size());
   for (std::size_t k = 0; k < beliefs.size(); ++k) {
     const auto& [prior, share] = beliefs[k];
-    VectorXd shares;
+    VectorXd shares = VectorXd::Ones(1);
     if (prior.near_one) {
       const VectorXd evidences = group_evidences(data, group, prior);
       shares = (evidences.array() - evidences.maxCoeff()).exp();
@@ -283,13 +324,16 @@ GroupMean mean_of(const MaterialBook& book, const PairData& data, AxisGroup grou
       shares.maxCoeff(&likeliest);
       if (k == 0) mean.nearest = book.materials()[static_cast<std::size_t>(likeliest)].name;
     }
+    std::vector<AxisGiven> given;
     for (std::size_t j = 0; j < group.size(); ++j) {
-      const AxisMean one = mean_given(data, group[j], prior, shares, library[j]);
-      for (VectorXd AxisMean::*part :
-           {&AxisMean::weights, &AxisMean::beyond, &AxisMean::errors, &AxisMean::errors_left_out})
-        mean.axes[j].*part += share * one.*part;
+      given.push_back(mean_given(data, group[j], prior, shares, library[j]));
+      mean.axes[j].weights += share * given[j].weights;
+      mean.axes[j].beyond += share * given[j].beyond;
+      mean.axes[j].errors += share * given[j].errors;
     }
+    left_out.add(given, share * shares);
   }
+  for (std::size_t j = 0; j < group.size(); ++j) mean.axes[j].errors_left_out = left_out.errors(j);
   return mean;
 }
 

@@ -28,8 +28,8 @@ struct CompletionReport {
   std::size_t materials = 0;           ///< in the book
   CompletionPrior brightness, colour;  ///< the likeliest; what was likely beside these had its share
   std::string nearest;  ///< the likeliest of the library's materials in brightness, where it is near one
-  /// exp(mean |ln((f + floor) / (model + floor))|) - 1 at the pairs, and of each one left out in turn, by the same
-  /// prior; floor as in the figure `relative`.
+  /// exp(mean |ln((f + floor) / (model + floor))|) - 1 at the pairs, and of each one left out in turn, where what is
+  /// believed counts for what the others say of it; floor as in the figure `relative`.
   double relative = 0, relative_left_out = 0;
 };
 

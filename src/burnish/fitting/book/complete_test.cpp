@@ -122,5 +122,25 @@ TEST_F(CompletedByABook, TakesOtherMaterialsIntoWhatIsShared) {
   EXPECT_GT(error_figures(unseen.ref(), with.brdf(0), kQuick).psnr, 28);
 }
 
+TEST_F(CompletedByABook, GivesAMaterialWeightsOfItsOwnWhateverElseIsListed) {
+  const std::array sides = {book().layout().width, book().layout().height, book().layout().depth};
+  const BookMaterial one = book_material(unseen, "one", sides, 1);
+  BookMaterial other = book_material(analytic_source("lambert:kd=0.5/0.2/0.1"), "other", sides, 1);
+  for (std::size_t n = 0; n < other.weights.size(); ++n) other.weights[n] *= n % 3 == 0 ? 50 : 1;
+  EXPECT_EQ(with_materials(book(), {one}).weights(0), with_materials(book(), {other, one}).weights(1));
+}
+
+// Few pairs of a material that is not in the book: what is said of the error is not less than it is, on average.
+TEST_F(CompletedByABook, ExpectsNoLessErrorOfFewPairsThanThereIs) {
+  double said = 0, found = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const Completion completion = complete(book(), measure(unseen.ref(), {.count = 4, .seed = seed}));
+    said += std::log1p(completion.report.relative_left_out);
+    found += std::log1p(error_figures(unseen.ref(), completion.brdf, kQuick).relative);
+  }
+  EXPECT_GT(said, 0.9 * found);
+  EXPECT_LT(said, 2 * found);
+}
+
 }  // namespace
 }  // namespace burnish

@@ -289,7 +289,9 @@ MaterialBook make_book(std::array<int, 3> sides, const std::vector<BookMaterial>
 
 MaterialBook with_materials(const MaterialBook& book, const std::vector<BookMaterial>& materials) {
   check_materials(materials, book.node_count());
-  auto all = stored(book.axes(), materials, node_weights(materials, book.node_count()));
+  std::vector<MaterialBook::Material> all;
+  for (const BookMaterial& material : materials)  // each by itself: the same whatever others are listed
+    all.push_back(stored(book.axes(), {material}, node_weights({material}, book.node_count())).front());
   return {sides_of(book.layout()), book.axes(), std::move(all)};
 }
 

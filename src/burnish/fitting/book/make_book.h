@@ -45,7 +45,8 @@ BookMaterial book_material(const Source& source, const std::string& name, std::a
 MaterialBook make_book(std::array<int, 3> sides, const std::vector<BookMaterial>& materials,
                        const BookOptions& options);
 
-/// The same shared part with other materials: each one's weights by least squares, rounded and, where they are
+/// The same shared part with other materials: each one's weights by least squares, nodes as heavy as this material
+/// makes them whatever others are given, rounded and, where they are
 /// further out than any of the library's were by half, clamped.
 MaterialBook with_materials(const MaterialBook& book, const std::vector<BookMaterial>& materials);
 
