@@ -161,7 +161,7 @@ void Contest::add_fit(std::size_t budget, int asked) {
     evaluator->eval(in, f);
   };
   entries_.push_back(
-      {row, one_by_one<float>(set_, evaluator), batched(name, set_, run, *model, evaluator->rounding_bound()),
+      {row, one_by_one(set_, evaluator), batched(name, set_, run, *model, evaluator->rounding_bound()),
        FrameMaterial{name, surface_shader(*model, ShaderFilter::hardware, TableFormat::rgb9e5), *model}});
 }
 
@@ -175,7 +175,7 @@ void Contest::add_ggx() {
   row.fetches = row.textures = 0;
   row.seconds = made.report.seconds;
   const auto run = [ggx](const DirectionSpans& in, std::span<float> f) { eval_ggx(*ggx, in, f); };
-  entries_.push_back({row, one_by_one<double>(set_, ggx), batched(name, set_, run, *ggx, 1e-3),
+  entries_.push_back({row, one_by_one(set_, ggx), batched(name, set_, run, *ggx, 1e-3),
                       FrameMaterial{name, shader_of(*ggx), *ggx}});
 }
 
@@ -187,7 +187,7 @@ void Contest::add_network(const NeuralBrdf& network) {
   const auto run = [kept](const DirectionSpans& in, std::span<float> f) {
     eval_neural(kept->weights(), in, f);
   };
-  entries_.push_back({row, one_by_one<double>(set_, kept), batched(name, set_, run, *kept, 1e-2),
+  entries_.push_back({row, one_by_one(set_, kept), batched(name, set_, run, *kept, 1e-2),
                       FrameMaterial{name, shader_of(*kept), *kept}});
 }
 
@@ -198,7 +198,7 @@ void Contest::add_measurement() {
   const auto kept = std::make_shared<const RglTable>(*table);
   Row row;
   row.method = "RGL table, the reference";
-  entries_.push_back({row, one_by_one<double>(set_, kept), {}, {}});
+  entries_.push_back({row, one_by_one(set_, kept), {}, {}});
 }
 
 // As its readers use it, and as a texture unit would.
@@ -214,11 +214,10 @@ void Contest::add_merl() {
   Row row = row_of("MERL table, nearest", bytes, *nearest);
   row.fetches = 1;
   const auto run = [table](const DirectionSpans& in, std::span<float> f) { eval_nearest(*table, in, f); };
-  entries_.push_back({row, one_by_one<double>(set_, nearest), batched(name, set_, run, *nearest, 0.1), {}});
+  entries_.push_back({row, one_by_one(set_, nearest), batched(name, set_, run, *nearest, 0.1), {}});
   row = row_of("MERL table, filtered", bytes, *table);
   row.fetches = row.textures = 1;
-  entries_.push_back(
-      {row, one_by_one<double>(set_, table), {}, FrameMaterial{name, shader_of(*table), *table}});
+  entries_.push_back({row, one_by_one(set_, table), {}, FrameMaterial{name, shader_of(*table), *table}});
 }
 
 void Contest::add_separable(const std::string& method, std::size_t budget) {
@@ -231,7 +230,7 @@ void Contest::add_separable(const std::string& method, std::size_t budget) {
   row.budget = budget;
   row.fetches = kept->u().terms + kept->v().terms;  // a texel holds the channels of a term
   row.seconds = made.report.seconds;
-  entries_.push_back({row, one_by_one<double>(set_, kept), {}, {}});
+  entries_.push_back({row, one_by_one(set_, kept), {}, {}});
 }
 
 void Contest::time_evaluations() {

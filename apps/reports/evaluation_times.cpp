@@ -24,6 +24,16 @@ DirectionSpans PairSet::spans() const noexcept {
   return {components_[0], components_[1], components_[2], components_[3], components_[4], components_[5]};
 }
 
+std::function<void()> one_by_one(const PairSet& set, BrdfRef eval) {
+  return [&set, eval] {
+    std::array<double, 3> f{};
+    for (const auto& [wi, wo] : set.pairs()) {
+      eval.eval(wi, wo, f);
+      [[maybe_unused]] volatile double used = f[0] + f[1] + f[2];
+    }
+  };
+}
+
 std::function<void()> batched(const std::string& name, const PairSet& set, const SpanEval& eval,
                               BrdfRef truth, double bound) {
   const auto values = std::make_shared<std::vector<float>>(3 * set.pairs().size());

@@ -26,16 +26,14 @@ class PairSet {
   std::array<std::vector<float>, 6> components_;
 };
 
-/// Evaluates all pairs one by one; Real is what `eval` gives three of. `set` must outlive what is returned.
-template <class Real, class Eval>
+/// Evaluates all pairs one by one as a renderer does, which knows no type, only a BrdfRef. `set` and what `eval` refers to
+/// must outlive what is returned.
+std::function<void()> one_by_one(const PairSet& set, BrdfRef eval);
+
+/// The same, and keeps what evaluates.
+template <Brdf Eval>
 std::function<void()> one_by_one(const PairSet& set, std::shared_ptr<const Eval> eval) {
-  return [&set, eval] {
-    std::array<Real, 3> f{};
-    for (const auto& [wi, wo] : set.pairs()) {
-      eval->eval(wi, wo, f);
-      [[maybe_unused]] volatile Real used = f[0] + f[1] + f[2];
-    }
-  };
+  return [run = one_by_one(set, BrdfRef(*eval)), eval] { run(); };
 }
 
 /// Evaluates many pairs at once into three planes, as FactoredEvaluator does.

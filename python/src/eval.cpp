@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -73,11 +74,12 @@ bool is_direction(Vec3 w) noexcept {
 // The definition, in double precision.
 template <class T>
 void eval_source(BrdfRef brdf, const Job<T>& job, std::size_t begin, std::size_t end) {
-  std::vector<DirectionPair> pairs(kBlock);
-  std::vector<double> values(kBlock * job.channels);
-  std::vector<std::uint8_t> known(kBlock), valid(kBlock);
-  for (std::size_t i = begin; i < end; i += kBlock) {
-    const std::size_t count = std::min(kBlock, end - i);
+  const std::size_t block = std::min(kBlock, end - begin);
+  std::vector<DirectionPair> pairs(block);
+  std::vector<double> values(block * job.channels);
+  std::vector<std::uint8_t> known(block), valid(block);
+  for (std::size_t i = begin; i < end; i += block) {
+    const std::size_t count = std::min(block, end - i);
     for (std::size_t k = 0; k < count; ++k) {
       pairs[k] = {vector_at(job.wi, i + k), vector_at(job.wo, i + k)};
       valid[k] = is_direction(pairs[k].wi) && is_direction(pairs[k].wo);
@@ -103,6 +105,8 @@ nb::object eval(const OpenedBrdf& brdf, const Array<const T>& wi, const Array<co
   job.f = result.rows;
   if (std::is_same_v<T, float> && job.count == 1 && brdf.model()) {
     if constexpr (std::is_same_v<T, float>) eval_one(brdf.evaluator(), job);
+  } else if (job.count == 1) {
+    eval_source(brdf.ref(), job, 0, 1);
   } else {
     const nb::gil_scoped_release released;
     for_each_chunk(job.count, kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {

@@ -83,11 +83,15 @@ ExprInt search(const char* table, const ExprInt (&start)[kSlices], const Expr (&
 
 // What the formulas read.
 struct View : SamplerTables {
-  double per_row, per_column;
+  double last_ring, turn_per_row, per_column, cells;
   const char *row_edges = "row_edges", *cell_edges = "cell_edges";
 
   explicit View(const SamplerTables& tables)
-      : SamplerTables(tables), per_row(1.0 / tables.rows), per_column(1.0 / tables.columns) {}
+      : SamplerTables(tables),
+        last_ring(tables.thetas - 1),
+        turn_per_row((tables.isotropic ? 2.0 : 4.0) / tables.rows),
+        per_column(1.0 / tables.columns),
+        cells(cells_per_unit(tables.rows, tables.columns)) {}
 };
 
 }  // namespace

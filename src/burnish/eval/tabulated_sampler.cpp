@@ -10,7 +10,37 @@
 #define HWY_TARGET_INCLUDE "burnish/eval/tabulated_sampler.cpp"
 #include <burnish/math/highway-inl.h>
 
+#include <burnish/eval/one_draw-inl.h>
 #include <burnish/eval/sampler_lanes-inl.h>
+
+#ifndef BURNISH_EVAL_ONE_DRAW
+#define BURNISH_EVAL_ONE_DRAW
+namespace burnish {
+/// SamplerView in floats, and what draws from it: of the instruction set that was chosen when the sampler was made.
+struct OneDraw {
+  float sharpness = 0, share = 0, xx = 0, xy = 0, yy = 0, theta_scale = 0, last_ring = 0, turn_per_row = 0,
+        per_column = 0, cells = 0;
+  int thetas = 0, phis = 0, rows = 0, columns = 0;
+  const std::uint16_t *row_edges = nullptr, *cell_edges = nullptr;
+  DrawnDirection (*draw)(const OneDraw& view, const Vec3& wo, const Point2& u) = nullptr;
+
+  OneDraw() = default;
+  explicit OneDraw(const SamplerView& v)
+      : thetas(v.thetas),
+        phis(v.phis),
+        rows(v.rows),
+        columns(v.columns),
+        row_edges(v.row_edges),
+        cell_edges(v.cell_edges) {
+    const double from[] = {v.sharpness,   v.share,     v.xx,           v.xy,         v.yy,
+                           v.theta_scale, v.last_ring, v.turn_per_row, v.per_column, v.cells};
+    float* const to[] = {&sharpness,   &share,     &xx,           &xy,         &yy,
+                         &theta_scale, &last_ring, &turn_per_row, &per_column, &cells};
+    for (std::size_t k = 0; k < std::size(from); ++k) *to[k] = static_cast<float>(from[k]);
+  }
+};
+}  // namespace burnish
+#endif
 
 BURNISH_BEGIN_TARGET;
 
@@ -78,11 +108,21 @@ void run_density(bool isotropic, const SamplerView& view, const float* const (&i
     density_all<false>(view, in, out, count);
 }
 
+template <bool kIsotropic>
+DrawnDirection draw_one(const OneDraw& view, const Vec3& wo, const Point2& u) {
+  const auto d = draw<kIsotropic, Real, Int>(view, Real(wo.x), Real(wo.y), Real(wo.z), Real(u.x), Real(u.y));
+  return {{d.x.raw, d.y.raw, d.z.raw}, d.pdf.raw};
+}
+void choose_draw(bool isotropic, OneDraw& one) {
+  one.draw = isotropic ? &draw_one<true> : &draw_one<false>;
+}
+
 BURNISH_END_TARGET;
 
 #if HWY_ONCE
 namespace burnish {
 
+HWY_EXPORT(choose_draw);
 HWY_EXPORT(run_draw);
 HWY_EXPORT(run_density);
 
@@ -123,6 +163,7 @@ struct TabulatedSampler::Tables {
   bool isotropic;
   std::vector<std::uint16_t> row_edges, cell_edges;
   SamplerView view;
+  OneDraw one_draw;
 
   Tables(BrdfRef brdf, const SamplerOptions& options) : isotropic(brdf.isotropic()) {
     const auto size = [](const char* name, int value, bool fits) {
@@ -144,9 +185,11 @@ struct TabulatedSampler::Tables {
     view.phis = options.wo_phis;
     view.rows = options.rows;
     view.columns = options.columns;
-    view.per_row = 1.0 / view.rows;
+    view.turn_per_row = (isotropic ? 2.0 : 4.0) / view.rows;
     view.per_column = 1.0 / view.columns;
-    view.theta_scale = (options.wo_thetas - 1) / last_ring();
+    view.last_ring = view.thetas - 1;
+    view.theta_scale = view.last_ring / last_ring();
+    view.cells = scalar::cells_per_unit(view.rows, view.columns);
 
     // one slice a wo; an edge of 0 follows the last, where 65536 would be
     for (int ring = 0; ring < view.thetas; ++ring)
@@ -159,6 +202,8 @@ struct TabulatedSampler::Tables {
     cell_edges.push_back(0);
     view.row_edges = row_edges.data();
     view.cell_edges = cell_edges.data();
+    one_draw = OneDraw(view);
+    HWY_DYNAMIC_DISPATCH(choose_draw)(isotropic, one_draw);
   }
   Tables(const Tables&) = delete;
 
@@ -197,7 +242,7 @@ struct TabulatedSampler::Tables {
         double mass = 0;
         for (int i = 0; i < kAcross; ++i)
           for (int j = 0; j < kAcross; ++j) {
-            const auto wi = scalar::place<kIsotropic>(view, wo.x, wo.y, wo.z, scalar::unit_axis(wo.x, wo.y),
+            const auto wi = scalar::place<kIsotropic>(view, wo.x, wo.y, wo.z, scalar::arrow(wo.x, wo.y),
                                                       turn * (row + (i + 0.5) / kAcross),
                                                       (column + (j + 0.5) / kAcross) / view.columns, 1.0);
             if (wi.z > 0) mass += size_of(brdf, {wi.x, wi.y, wi.z}, wo, f) / wi.density;
@@ -224,10 +269,7 @@ TabulatedSampler::TabulatedSampler(BrdfRef brdf, const SamplerOptions& options)
     : tables_(std::make_shared<const Tables>(brdf, options)) {}
 
 DrawnDirection TabulatedSampler::sample_wi(Vec3 wo, Point2 u) const noexcept {
-  const auto d = tables_->isotropic
-                     ? scalar::draw<true, double, std::int32_t>(tables_->view, wo.x, wo.y, wo.z, u.x, u.y)
-                     : scalar::draw<false, double, std::int32_t>(tables_->view, wo.x, wo.y, wo.z, u.x, u.y);
-  return {{d.x, d.y, d.z}, d.pdf};
+  return tables_->one_draw.draw(tables_->one_draw, wo, u);
 }
 
 double TabulatedSampler::pdf(Vec3 wi, Vec3 wo) const noexcept {

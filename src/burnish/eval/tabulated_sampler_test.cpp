@@ -7,6 +7,7 @@
 
 #include <burnish/error.h>
 #include <burnish/eval/tabulated_sampler.h>
+#include <burnish/eval/visible_half_scalar.h>
 #include <burnish/math/random.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/half_vector_quadrature.h>
@@ -79,6 +80,27 @@ Point2 random_point(Pcg32& random) {
   return {x, random.uniform()};
 }
 
+// The draw's definition, in double precision: the sampler's is in float.
+DrawnDirection defined_draw(const TabulatedSampler& sampler, Vec3 wo, Point2 u) {
+  const SamplerTables t = sampler.tables();
+  SamplerView view;
+  static_cast<VisibleHalfMap&>(view) = {t.sharpness, t.share, t.xx, t.xy, t.yy};
+  view.thetas = t.thetas;
+  view.phis = t.phis;
+  view.rows = t.rows;
+  view.columns = t.columns;
+  view.theta_scale = t.theta_scale;
+  view.last_ring = t.thetas - 1;
+  view.turn_per_row = (t.isotropic ? 2.0 : 4.0) / t.rows;
+  view.per_column = 1.0 / t.columns;
+  view.cells = scalar::cells_per_unit(t.rows, t.columns);
+  view.row_edges = t.row_edges.data();
+  view.cell_edges = t.cell_edges.data();
+  const auto d = t.isotropic ? scalar::draw<true, double, std::int32_t>(view, wo.x, wo.y, wo.z, u.x, u.y)
+                             : scalar::draw<false, double, std::int32_t>(view, wo.x, wo.y, wo.z, u.x, u.y);
+  return {{d.x, d.y, d.z}, d.pdf};
+}
+
 // A model and its sampler, made once for all tests.
 struct Prepared {
   FactoredBrdf brdf;
@@ -119,11 +141,10 @@ TEST_P(TabulatedSamplerTest, JacobianOfTheDrawIsTheDensity) {
       const double e = 1e-7;
       Point2 u = random_point(random);
       u = {e + (1 - 3 * e) * u.x, e + (1 - 3 * e) * u.y};
-      const DrawnDirection drawn = sampler.sample_wi(wo, u);
-      const Vec3 along_x =
-          sampler.sample_wi(wo, {u.x + e, u.y}).wi - sampler.sample_wi(wo, {u.x - e, u.y}).wi;
-      const Vec3 along_y =
-          sampler.sample_wi(wo, {u.x, u.y + e}).wi - sampler.sample_wi(wo, {u.x, u.y - e}).wi;
+      const DrawnDirection drawn = defined_draw(sampler, wo, u);
+      const auto at = [&](double x, double y) { return defined_draw(sampler, wo, {x, y}).wi; };
+      const Vec3 along_x = at(u.x + e, u.y) - at(u.x - e, u.y);
+      const Vec3 along_y = at(u.x, u.y + e) - at(u.x, u.y - e);
       const double area = length(cross(along_x, along_y)) / (4 * e * e);
       at_borders += std::abs(area * drawn.pdf - 1) > 1e-3;
     }
@@ -136,11 +157,24 @@ TEST_P(TabulatedSamplerTest, TellsTheDensityThatPdfGives) {
   for (const Vec3 wo : wos)
     for (int i = 0; i < 500; ++i, ++count) {
       const DrawnDirection drawn = sampler.sample_wi(wo, random_point(random));
-      EXPECT_NEAR(length(drawn.wi), 1, 1e-12);
-      EXPECT_GT(drawn.wi.z, -1e-12);
-      at_borders += std::abs(sampler.pdf(drawn.wi, wo) / drawn.pdf - 1) > 1e-6;
+      EXPECT_NEAR(length(drawn.wi), 1, 2e-6);
+      EXPECT_GT(drawn.wi.z, -2e-6);
+      at_borders += std::abs(sampler.pdf(drawn.wi, wo) / drawn.pdf - 1) > 1e-3;
     }
-  EXPECT_LE(at_borders, count / 1000);
+  EXPECT_LE(at_borders, count / 200);
+}
+
+TEST_P(TabulatedSamplerTest, DrawsInFloatWhatIsDefined) {
+  Pcg32 random(11);
+  int at_borders = 0, count = 0;
+  for (const Vec3 wo : wos)
+    for (int i = 0; i < 500; ++i, ++count) {
+      const Point2 u = random_point(random);
+      const DrawnDirection drawn = sampler.sample_wi(wo, u), expected = defined_draw(sampler, wo, u);
+      EXPECT_LT(length(drawn.wi - expected.wi), 1e-4);
+      at_borders += std::abs(drawn.pdf / expected.pdf - 1) > 1e-3;
+    }
+  EXPECT_LE(at_borders, count / 200);
 }
 
 // Nothing is wasted, and the weights have their mean and a bound, at grazing wo too.
@@ -208,7 +242,7 @@ TEST_P(TabulatedSamplerTest, TurnsWithTheMaterial) {
     for (int i = 0; i < 50; ++i) {
       const Point2 u = random_point(random);
       const DrawnDirection here = sampler.sample_wi(wo, u), there = sampler.sample_wi(turned(wo), u);
-      EXPECT_LT(length(turned(here.wi) - there.wi), 1e-9);
+      EXPECT_LT(length(turned(here.wi) - there.wi), 1e-5);
     }
   }
 }

@@ -2,6 +2,8 @@
 // double and again in one per instruction set for vectors of floats, so that every copy is compiled with that
 // set's flags.
 //
+// `view` has the tables, their sizes and what of SamplerView is read, as any type of number.
+//
 // F is a number or a vector of numbers, I of 32-bit integers. They need + - * (F also /), min, max, of F
 // sqrt, abs, copy_sign, less_or_equal and if_true(mask, a, b), to_int (truncating), to_real, and
 //   next_around(i, last)  i + 1, but 0 for i = last
@@ -76,7 +78,7 @@ struct Ray {
   SAMPLER_INLINE Ray(const View& view, F narrowing, F along, F up, F up2) {
     K = F(view.sharpness) * narrowing;
     a = F(view.share) * (F(1.0) + K);
-    b = F(1.0 - view.share);
+    b = F(1.0) - F(view.share);
     slope = a + b * K;
     largest = largest_half(along, up, up2);
     end = largest + K;
@@ -115,7 +117,7 @@ template <int kSlices, class F, class I, class View>
 SAMPLER_INLINE Mix<kSlices, F, I> mix_for(const View& view, F x, F y, F z) {
   const Arrow<F> to = arrow(x, y);
   const F short_of = F(kRingReach) * (F(1.0) + z) - to.length;
-  const F at = min(to.length / short_of * F(view.theta_scale), F(view.thetas - 1.0));
+  const F at = min(to.length / short_of * F(view.theta_scale), F(view.last_ring));
   const I ring = max(min(to_int(at), I(view.thetas - 2)), I(0));
   const F outer = at - to_real(ring), inner = F(1.0) - outer;
   const I inner_ring = ring * I(view.phis * view.rows), outer_ring = inner_ring + I(view.phis * view.rows);
@@ -178,20 +180,22 @@ struct Placed {
   F x, y, z, density;
 };
 
-/// The direction at turn and v. Of isotropic tables the turn is that from the azimuth `plane` of wo, to the
-/// side that the sign of `side` tells.
+/// The direction at turn and v. Of isotropic tables the turn is that from the azimuth of wo, of whose x and y `plane`
+/// is the arrow, to the side that the sign of `side` tells.
 template <bool kIsotropic, class F, class View>
-SAMPLER_INLINE Placed<F> place(const View& view, F wo_x, F wo_y, F wo_z, PlaneAxis<F> plane, F turned, F v,
+SAMPLER_INLINE Placed<F> place(const View& view, F wo_x, F wo_y, F wo_z, const Arrow<F>& plane, F turned, F v,
                                F side) {
   // the half vector's azimuth
   const F w = abs(turned - F(2.0)) - F(1.0);
-  F x, y, length2, length, narrowing(1.0);  // (x, y): towards the azimuth
+  F x, y, length2, length, along,
+      narrowing(1.0);  // (x, y): towards the azimuth, from that of wo if isotropic
   if constexpr (kIsotropic) {
     const auto axis = on_half_circle(w, side);
-    x = axis.x * plane.x - axis.y * plane.y;
-    y = axis.x * plane.y + axis.y * plane.x;
+    x = axis.x;
+    y = axis.y;
     length = axis.length;
     length2 = length * length;
+    along = plane.length * x;
   } else {
     const auto axis = on_half_circle(w, F(2.0) - turned);
     x = F(view.yy) * axis.x - F(view.xy) * axis.y;  // M^-1
@@ -199,17 +203,24 @@ SAMPLER_INLINE Placed<F> place(const View& view, F wo_x, F wo_y, F wo_z, PlaneAx
     length2 = x * x + y * y;
     length = sqrt(length2);
     narrowing = length2 / (axis.length * axis.length);
+    along = wo_x * x + wo_y * y;
   }
   // its polar angle, m = tan^2(theta_h / 2)
-  const F along = wo_x * x + wo_y * y;
   const Ray<F> ray(view, narrowing, along, wo_z * length, wo_z * wo_z * length2);
   const F m = ray.from_unit(v);
   // wo reflected about it
   const F norm = F(1.0) / (F(1.0) + m), cosine = (F(1.0) - m) * norm;
   const F sine = F(2.0) / length * norm * sqrt(m);  // over length
   const F to_half = along * sine + wo_z * cosine, twice = to_half + to_half;
-  return {twice * sine * x - wo_x, twice * sine * y - wo_y, twice * cosine - wo_z,
-          ray.density(m, to_half, turning(w, narrowing))};
+  const F density = ray.density(m, to_half, turning(w, narrowing)), z = twice * cosine - wo_z;
+  F across = twice * sine;
+  if constexpr (kIsotropic) {
+    across = across * (F(1.0) / plane.length);
+    return {across * (x * plane.x - y * plane.y) - wo_x, across * (x * plane.y + y * plane.x) - wo_y, z,
+            density};
+  } else {
+    return {across * x - wo_x, across * y - wo_y, z, density};
+  }
 }
 
 template <class F>
@@ -218,11 +229,15 @@ struct Drawn {
 };
 
 inline constexpr double kEdgeUnit = 65536;
+/// Cells on the half circles' turn and v, per square of an edge's unit.
+SAMPLER_INLINE double cells_per_unit(int rows, int columns) {
+  return 0.25 / (kEdgeUnit * kEdgeUnit) * rows * columns;
+}
 
 template <bool kIsotropic, class F, class I, class View>
 SAMPLER_INLINE Drawn<F> draw(const View& view, F wo_x, F wo_y, F wo_z, F u_x, F u_y) {
   constexpr int kSlices = kIsotropic ? 2 : 3;
-  const PlaneAxis<F> plane = unit_axis(wo_x, wo_y);
+  const Arrow<F> plane = arrow(wo_x, wo_y);
   const Mix<kSlices, F, I> mix = mix_for<kSlices, F, I>(view, wo_x, wo_y, wo_z);
   // the place in a cell, linear between its edges
   const auto within = [](F target, const Interval<kSlices, F, I>& i) {
@@ -233,7 +248,7 @@ SAMPLER_INLINE Drawn<F> draw(const View& view, F wo_x, F wo_y, F wo_z, F u_x, F 
   const F uniform = kIsotropic ? abs(u_x + u_x - F(1.0)) : u_x;
   const F row_target = uniform * F(kEdgeUnit);
   const auto row = find_interval<kSlices, F, I>(view.row_edges, mix.row, mix.weight, view.rows, row_target);
-  const F around = within(row_target, row) * F((kIsotropic ? 2.0 : 4.0) * view.per_row);
+  const F around = within(row_target, row) * F(view.turn_per_row);
 
   // the column in that row, its slices weighed by what the row has in each
   I start[kSlices];
@@ -245,7 +260,7 @@ SAMPLER_INLINE Drawn<F> draw(const View& view, F wo_x, F wo_y, F wo_z, F u_x, F 
 
   // the direction there; the cell's density times the map's
   const Placed<F> wi = place<kIsotropic>(view, wo_x, wo_y, wo_z, plane, around, v, u_x - F(0.5));
-  const F cells = F(0.25 / (kEdgeUnit * kEdgeUnit) * view.rows * view.columns);
+  const F cells = F(view.cells);
   return {wi.x, wi.y, wi.z, if_true(less_or_equal(wi.z, F(0.0)), F(0.0), column.mass * cells * wi.density)};
 }
 
@@ -281,7 +296,7 @@ SAMPLER_INLINE F density(const View& view, F wi_x, F wi_y, F wi_z, F wo_x, F wo_
   for (int s = 0; s < kSlices; ++s) start[s] = (mix.row[s] + row_index) * I(view.columns);
   const auto column = interval_at<kSlices, F, I>(view.cell_edges, start, row.slice_mass, column_index);
 
-  const F cells = F(0.25 / (kEdgeUnit * kEdgeUnit) * view.rows * view.columns);
+  const F cells = F(view.cells);
   const F pdf = column.mass * cells * ray.density(m, F(0.5) * length, turning(w, narrowing));
   const F least = min(wi_z, wo_z);
   return if_true(less_or_equal(least, F(0.0)), F(0.0), pdf);

@@ -12,12 +12,14 @@ namespace burnish {
 /// What the formulas of visible_half-inl.h read.
 struct SamplerView : VisibleHalfMap {
   int thetas = 0, phis = 0, rows = 0, columns = 0;
-  double theta_scale = 0;              ///< rings per t / (kRingReach - t), t = tan(theta_o / 2)
-  double per_row = 0, per_column = 0;  ///< 1 / rows, 1 / columns
+  double theta_scale = 0,
+         last_ring = 0;  ///< rings per t / (kRingReach - t), t = tan(theta_o / 2); thetas - 1
+  double turn_per_row = 0, per_column = 0;  ///< turn of a row, 2 in all if isotropic, else 4; 1 / columns
+  double cells = 0;                         ///< cells_per_unit
   const std::uint16_t *row_edges = nullptr, *cell_edges = nullptr;
 };
 
-/// The formulas for double.
+/// The formulas for double: what draws in float are tested against, and densities.
 namespace scalar {
 
 using std::abs;
@@ -50,8 +52,8 @@ inline double to_real(std::int32_t i) noexcept {
 inline std::int32_t next_around(std::int32_t i, int last) noexcept {
   return i < last ? i + 1 : 0;
 }
-// Counts the edges up to the target: a search by halves waits for every comparison. In float; what rounding
-// puts into the neighbouring cell lands on its border.
+// Counts the edges up to the target. In float, as all draws do; what rounding puts into the neighbouring cell lands on
+// its border.
 template <int kSlices>
 inline __attribute__((always_inline)) std::int32_t search(const std::uint16_t* table,
                                                           const std::int32_t (&start)[kSlices],
