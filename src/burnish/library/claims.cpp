@@ -96,7 +96,13 @@ bool Claims::take(const std::string& name) {
   int generation = 1;
   if (!make(file(name, generation))) {
     while (fs::exists(file(name, generation + 1))) ++generation;
-    if (!abandoned(file(name, generation)) || !make(file(name, ++generation))) return false;
+    const fs::path last = file(name, generation);
+    if (!abandoned(last) || !make(file(name, ++generation))) return false;
+    // a successor may have given all back since, and another begun anew: whatever `last` is now is asked again
+    if (!abandoned(last)) {
+      ::unlink(file(name, generation).c_str());
+      return false;
+    }
   }
   held_[name] = generation;
   return true;
@@ -117,7 +123,8 @@ void Claims::release(const std::string& name) noexcept {
   const std::lock_guard lock(mutex_);
   const auto found = held_.find(name);
   if (found == held_.end()) return;
-  // the highest goes last: without it those below look abandoned, and a successor would stand beside a new first
+  // the highest goes last: without it those below look abandoned, and a successor would stand beside a new first; and
+  // who can make it again finds the one below gone or new
   for (int generation = 1; generation <= found->second; ++generation)
     ::unlink(file(name, generation).c_str());
   held_.erase(found);
