@@ -78,13 +78,21 @@ FactoredPlan::Angle angle_of(FactoredPlan::Source::Kind source, Projection::Kind
   using Angle = FactoredPlan::Angle;
   using Source = FactoredPlan::Source::Kind;
   using Kind = Projection::Kind;
-  return source == Source::wi      ? Angle::wi
-         : source == Source::wo    ? Angle::wo
-         : source == Source::half  ? Angle::half
-         : kind == Kind::deviation ? Angle::deviation
-         : kind == Kind::twist     ? Angle::twist
-         : kind == Kind::azimuth   ? Angle::azimuth
-                                   : Angle::difference;
+  if (source == Source::wi) return Angle::wi;
+  if (source == Source::wo) return Angle::wo;
+  if (source == Source::half) return Angle::half;
+  switch (kind) {
+    case Kind::deviation:
+      return Angle::deviation;
+    case Kind::twist:
+      return Angle::twist;
+    case Kind::azimuth:
+      return Angle::azimuth;
+    case Kind::affine:  // its vector is none of the above: not asked for
+    case Kind::difference:
+      break;
+  }
+  return Angle::difference;
 }
 
 std::size_t up_to_multiple(std::size_t n, std::size_t of) noexcept {

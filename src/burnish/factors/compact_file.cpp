@@ -220,6 +220,8 @@ class CompactWriter {
   void projection(const Projection& p) {
     if (const auto known = std::ranges::find(kProjections, p); known != kProjections.end())
       return cbor_.integer(known - kProjections.begin());
+    if (p.kind != Projection::Kind::affine)
+      throw Error("compact file: a projection that has no number in it");
     std::vector<double> terms{p.wi, p.wo, p.mirror, p.n};
     while (!terms.empty() && terms.back() == 0) terms.pop_back();
     numbers(terms);

@@ -47,6 +47,7 @@ const MapLanguage& map_language(ShaderLanguage language) {
        "struct {0} {{\n{1}}}\n", kCall, "log2"},
       {"", "", "  const auto {0} = maps.sample({2}, u, v, lod);\n", "const Maps& maps",
        "template <class Maps>\n", kMember, kStruct, "  return {{{1}}};\n", "::log2f"}};
+  static_assert(std::size(kAll) == kShaderLanguages.size());
   return kAll[static_cast<std::size_t>(language)];
 }
 
