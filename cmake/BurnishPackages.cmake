@@ -6,7 +6,7 @@ install(CODE "
   set(share \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}\")
   file(MAKE_DIRECTORY \"\${share}/bash-completion/completions\" \"\${share}/zsh/vendor-completions\"
     \"\${share}/doc/burnish\")
-  execute_process(COMMAND ${describe} --man \"\${share}/man/man1\" COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND ${describe} -o \"\${share}/man/man1\" COMMAND_ERROR_IS_FATAL ANY)
   execute_process(COMMAND ${describe} --bash COMMAND_ERROR_IS_FATAL ANY
     OUTPUT_FILE \"\${share}/bash-completion/completions/burnish\")
   execute_process(COMMAND ${describe} --zsh COMMAND_ERROR_IS_FATAL ANY
