@@ -26,6 +26,7 @@ def cli():
             raise RuntimeError(done.stderr.strip())
         return json.loads(done.stdout) if "--json" in arguments else done.stdout
 
+    run.program = str(program)
     return run
 
 

@@ -41,6 +41,29 @@ def test_materialx_finds_its_document_valid_and_makes_glsl_of_it(name, folders, 
         assert done.returncode == 0, done.stdout
 
 
+@pytest.mark.parametrize("name", ["model", "volume", "openpbr"])
+def test_materialx_glsl_looks_as_in_our_renderer(name, folders, cli, request, tmp_path):
+    moderngl, mi = pytest.importorskip("moderngl"), pytest.importorskip("mitsuba")
+    sys.path.insert(0, str(ROOT / "examples"))
+    from export_pictures import exposure_of, in_burnish, in_materialx, psnr
+
+    try:  # pictures are read by Mitsuba
+        mi.set_variant("llvm_ad_rgb")
+        mi.Float(1) + mi.Float([2, 3])
+        moderngl.create_standalone_context(backend="egl").release()
+    except Exception as error:
+        pytest.skip(f"no LLVM or no OpenGL: {error}")
+    material, size = OPENPBR, 64
+    if name != "openpbr":
+        material = tmp_path / "m.exr"
+        burnish.write_model(material, request.getfixturevalue(name))
+    expected = in_burnish(cli.program, material, size, tmp_path)
+    exposure = exposure_of(expected)
+    distance = psnr(exposure * in_materialx(folders / name / "m.mtlx", size, None), exposure * expected)
+    print(f"\n{name} in MaterialX's GLSL: {distance:.2f} dB")
+    assert distance >= 40
+
+
 @pytest.mark.parametrize("name", ["model", "openpbr"])
 def test_usd_finds_a_preview_and_a_materialx_surface(name, folders):
     pytest.importorskip("pxr")

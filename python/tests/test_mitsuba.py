@@ -101,10 +101,12 @@ def test_openpbr_is_the_librarys_and_sees_the_viewer(openpbr, llvm):
     assert np.median(abs(value / expected - 1)) < 1e-5
 
 
-def test_openpbr_looks_as_in_our_renderer(cli, llvm, tmp_path):
+@pytest.mark.parametrize("name", ["openpbr", "model", "volume"])
+def test_looks_as_in_our_renderer(name, files, cli, llvm, tmp_path):
+    material = files.get(name, OPENPBR)
     size, picture = 64, str(tmp_path / "sphere.exr")
     how = ["--renderer", "cpu", "--size", size, "--samples", 4, "--lights", "2,3,4:20", "-o", picture]
-    cli("render", "--mesh", "sphere", "--material", OPENPBR, *how)
+    cli("render", "--mesh", "sphere", "--material", material, *how)
     bitmap = mi.Bitmap(picture).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, srgb_gamma=False)
     view = mi.ScalarTransform4f().look_at([0, 0, 1.04 / np.sin(0.3)], [0, 0, 0], [0, 1, 0])
     scene = mi.load_dict(
@@ -123,7 +125,7 @@ def test_openpbr_looks_as_in_our_renderer(cli, llvm, tmp_path):
             "sphere": {
                 "type": "sphere",
                 "to_world": mi.ScalarTransform4f().rotate([1, 0, 0], -90),
-                "bsdf": {"type": "burnish", "filename": OPENPBR},
+                "bsdf": {"type": "burnish", "filename": material},
             },
         }
     )
@@ -131,7 +133,7 @@ def test_openpbr_looks_as_in_our_renderer(cli, llvm, tmp_path):
     exposure = 1 / np.percentile(expected[expected > 0], 97)
     shown = lambda image: np.clip(exposure * image, 0, 1)
     distance = -10 * np.log10(np.mean(np.square(shown(found) - shown(expected))))
-    print(f"\nOpenPBR in Mitsuba: {distance:.2f} dB")
+    print(f"\n{name} in Mitsuba: {distance:.2f} dB")
     assert distance >= 40
 
 
