@@ -2,6 +2,7 @@ import json
 import os
 import pathlib
 import subprocess
+import sys
 
 import numpy
 import pytest
@@ -9,6 +10,7 @@ import pytest
 import burnish
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "examples"))  # whose pictures tests compare
 GGX = "ggx:alpha_x=0.2,alpha_y=0.2,kd=0.05/0.1/0.2"
 BRUSHED = "ggx:alpha_x=0.1,alpha_y=0.4"
 
@@ -28,6 +30,21 @@ def cli():
 
     run.program = str(program)
     return run
+
+
+@pytest.fixture(scope="session")
+def llvm():
+    """Mitsuba's variant by LLVM, with our plug-in."""
+    mi = pytest.importorskip("mitsuba")
+    try:
+        mi.set_variant("llvm_ad_rgb")
+        mi.Float(1) + mi.Float([2, 3])
+    except Exception as error:  # Dr.Jit loads libLLVM when it is first needed
+        pytest.skip(f"llvm_ad_rgb is not available: {error}")
+    import burnish.mitsuba
+
+    burnish.mitsuba.register()
+    return mi
 
 
 @pytest.fixture(scope="session")

@@ -2,23 +2,11 @@ import numpy as np
 import pytest
 
 import burnish
+import export_pictures
 from conftest import hemisphere
 
 mi = pytest.importorskip("mitsuba")
 dr = pytest.importorskip("drjit")
-
-
-@pytest.fixture(scope="session")
-def llvm():
-    try:
-        mi.set_variant("llvm_ad_rgb")
-        mi.Float(1) + mi.Float([2, 3])
-    except Exception as error:  # Dr.Jit loads libLLVM when it is first needed
-        pytest.skip(f"llvm_ad_rgb is not available: {error}")
-    import burnish.mitsuba
-
-    burnish.mitsuba.register()
-    return mi
 
 
 @pytest.fixture(scope="session")
@@ -103,36 +91,11 @@ def test_openpbr_is_the_librarys_and_sees_the_viewer(openpbr, llvm):
 
 @pytest.mark.parametrize("name", ["openpbr", "model", "volume"])
 def test_looks_as_in_our_renderer(name, files, cli, llvm, tmp_path):
-    material = files.get(name, OPENPBR)
-    size, picture = 64, str(tmp_path / "sphere.exr")
-    how = ["--renderer", "cpu", "--size", size, "--samples", 4, "--lights", "2,3,4:20", "-o", picture]
-    cli("render", "--mesh", "sphere", "--material", material, *how)
-    bitmap = mi.Bitmap(picture).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, srgb_gamma=False)
-    view = mi.ScalarTransform4f().look_at([0, 0, 1.04 / np.sin(0.3)], [0, 0, 0], [0, 1, 0])
-    scene = mi.load_dict(
-        {
-            "type": "scene",
-            "integrator": {"type": "direct", "hide_emitters": True},
-            "sensor": {
-                "type": "perspective",
-                "fov": float(np.degrees(0.6)),
-                "to_world": view,
-                "film": {"type": "hdrfilm", "width": size, "height": size, "rfilter": {"type": "box"}},
-                "sampler": {"type": "stratified", "sample_count": 64},
-            },
-            "light": {"type": "point", "position": [2, 3, 4], "intensity": {"type": "rgb", "value": 20.0}},
-            # its tangents run around z
-            "sphere": {
-                "type": "sphere",
-                "to_world": mi.ScalarTransform4f().rotate([1, 0, 0], -90),
-                "bsdf": {"type": "burnish", "filename": material},
-            },
-        }
-    )
-    expected, found = np.array(bitmap), np.array(mi.render(scene))[..., :3]
-    exposure = 1 / np.percentile(expected[expected > 0], 97)
-    shown = lambda image: np.clip(exposure * image, 0, 1)
-    distance = -10 * np.log10(np.mean(np.square(shown(found) - shown(expected))))
+    material, size = files.get(name, OPENPBR), 64
+    expected = export_pictures.in_burnish(cli.program, material, size, tmp_path)
+    found = export_pictures.in_mitsuba({"type": "burnish", "filename": material}, size, None)
+    exposure = export_pictures.exposure_of(expected)
+    distance = export_pictures.psnr(exposure * found, exposure * expected)
     print(f"\n{name} in Mitsuba: {distance:.2f} dB")
     assert distance >= 40
 
