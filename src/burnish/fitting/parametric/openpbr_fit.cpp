@@ -295,6 +295,12 @@ class Search {
     return trials;
   }
 
+  /// Counts another's as its own.
+  void add(const Search& other) {
+    iterations += other.iterations;
+    count += other.count;
+  }
+
   int iterations = 0, count = 0;
 
  private:
@@ -410,14 +416,15 @@ void append_films(Search& search, const Trial& trial, const Inputs& always,
   }
 }
 
-/// A third of the pixels.
-PicturePairs thinned(const PicturePairs& pairs) {
-  constexpr std::size_t kEvery = 3;
+constexpr std::size_t kCoarse = 3, kCoarser = 12;
+
+/// Every n-th of the pixels.
+PicturePairs thinned(const PicturePairs& pairs, std::size_t n) {
   PicturePairs thin;
   thin.exposure = pairs.exposure;
-  for (std::size_t i = 0; i < pairs.pairs.size(); i += kEvery) {
+  for (std::size_t i = 0; i < pairs.pairs.size(); i += n) {
     thin.pairs.push_back(pairs.pairs[i]);
-    thin.weights.push_back(static_cast<double>(kEvery) * pairs.weights[i]);
+    thin.weights.push_back(static_cast<double>(n) * pairs.weights[i]);
     for (std::size_t c = 0; c < 3; ++c) {
       thin.values.push_back(pairs.values[3 * i + c]);
       thin.shown.push_back(pairs.shown[3 * i + c]);
@@ -453,14 +460,15 @@ std::vector<Trial> search_at_random(Search& search, int count, std::uint64_t see
 }
 
 constexpr std::size_t kKept = 2;  // trials that are built upon
+constexpr std::size_t kEnds = 4;  // and that go to their ends
 
 /// Where to go on: the best of the base alone and below coats, of films, and of random starts, which are sifted on a
-/// third of the pixels, so that their costs are no measure of the others.
+/// twelfth and then a third of the pixels, so that their costs are no measure of the others.
 std::vector<Search::Start> search_layers(Search& search, Search& sift, const PicturePairs& pairs,
                                          const OpenPbrFitOptions& options,
                                          const std::function<void(double)>& progress) {
-  constexpr int kRandom = 40;
-  constexpr std::size_t kCoated = 3, kFilmed = 3, kDrawn = 4;
+  constexpr int kRandom = 240;
+  constexpr std::size_t kCoated = 3, kFilmed = 3, kTasted = 16, kDrawn = 5;
   const Inputs always = always_held(options);
   std::vector<Search::Start> starts;
   for (const double metalness : {0.0, 1.0})
@@ -478,8 +486,12 @@ std::vector<Search::Start> search_layers(Search& search, Search& sift, const Pic
 
   std::vector<Search::Start> best = best_of(coated, kCoated);
   for (const Search::Start& start : best_of(search.run(films, kFirst), kFilmed)) best.push_back(start);
-  for (const Search::Start& start : best_of(search_at_random(sift, kRandom, 1, options), kDrawn))
+  const PicturePairs coarser = thinned(pairs, kCoarser);
+  Search taste(coarser, options);
+  const std::vector<Trial> tasted = search_at_random(taste, kRandom, 1, options);
+  for (const Search::Start& start : best_of(sift.run(best_of(tasted, kTasted), kSiftAgain), kDrawn))
     best.push_back(start);
+  sift.add(taste);
   progress(0.7);
   return best;
 }
@@ -517,7 +529,7 @@ OpenPbrFit refine_openpbr(const PicturePairs& pairs, const OpenPbrParameters& st
 
 OpenPbrFit fit_openpbr_at_random(const PicturePairs& pairs, int count, std::uint64_t seed,
                                  const OpenPbrFitOptions& options) {
-  const PicturePairs coarse = thinned(pairs);
+  const PicturePairs coarse = thinned(pairs, kCoarse);
   Search sift(coarse, options), search(pairs, options);
   const std::vector<Trial> trials = search_at_random(sift, count, seed, options);
   const std::vector<Trial> ends =
@@ -534,7 +546,7 @@ OpenPbrFit fit_openpbr_at_random(const PicturePairs& pairs, int count, std::uint
 }
 
 OpenPbrFit fit_openpbr(const PicturePairs& pairs, const OpenPbrFitOptions& options) {
-  const PicturePairs coarse = thinned(pairs);
+  const PicturePairs coarse = thinned(pairs, kCoarse);
   Search sift(coarse, options), search(pairs, options);
   const auto progress = [&](double fraction) {
     if (options.progress) options.progress(fraction);
@@ -550,8 +562,11 @@ OpenPbrFit fit_openpbr(const PicturePairs& pairs, const OpenPbrFitOptions& optio
   std::ranges::stable_sort(kept, {}, &Trial::cost);
   progress(0.8);
 
-  // the better ones to their ends, the best of them without what it does not need, and that to its end
-  const Trial simple = simplified(search, search.run(best_of(kept, kKept), kEnd).front());
+  // the better ones to their ends, the one whose pictures differ least without what it does not need, and that to its
+  // end
+  const std::vector<Trial> ends = search.run(best_of(kept, kEnds), kEnd);
+  const auto difference = [&](const Trial& trial) { return to_fit(pairs, trial, 0).summary.error_after; };
+  const Trial simple = simplified(search, *std::ranges::min_element(ends, {}, difference));
   progress(0.9);
   const Trial best = search.run({{simple.parameters, simple.held}}, kLast).front();
   progress(1);

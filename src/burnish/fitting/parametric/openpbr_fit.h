@@ -26,11 +26,11 @@ struct OpenPbrFitOptions {
 
 /// The OpenPBR material whose lit spheres have the least mean squared difference from those of `pairs`, pictures at
 /// 1/32 of the exposure adding a little, so that highlights keep their height: Levenberg-Marquardt steps within the
-/// ranges of kOpenPbrInputs, of roughnesses from .02, of indices to 3, of films to 1.5 micrometres. Smooth to rough metals and dielectrics are tried first, then the best with coats, fuzz and
-/// films, and, on a third of the pixels, random starts; the best of each kind go on, and films once more on the best of
-/// all. Layers and inputs without which the squared error is less than a percent greater go back to
-/// their defaults, so that of inputs that say the same one is left; base_weight is 1. The same bits for every number
-/// of threads.
+/// ranges of kOpenPbrInputs, of roughnesses from .02, of indices to 3, of films to 1.5 micrometres. Smooth to rough
+/// metals and dielectrics are tried first, then the best with coats, fuzz and films, and 240 random starts, on a
+/// twelfth and then a third of the pixels; the best of each kind go on, and films once more on the best of all. Layers
+/// and inputs without which the squared error is less than a percent greater go back to their defaults, so that of
+/// inputs that say the same one is left; base_weight is 1. The same bits for every number of threads.
 OpenPbrFit fit_openpbr(const PicturePairs& pairs, const OpenPbrFitOptions& options = {});
 
 /// What fit_openpbr is measured by: the best of `count` >= 1 starts anywhere in the same ranges, every input varied.
