@@ -5,9 +5,8 @@
 #include <optional>
 #include <utility>
 
-#include <burnish/fitting/numerics/bounded_least_squares.h>
 #include <burnish/fitting/parametric/openpbr_fit.h>
-#include <burnish/fitting/refinement/picture_loss.h>
+#include <burnish/fitting/parametric/picture_fit.h>
 #include <burnish/math/parallel.h>
 #include <burnish/math/random.h>
 
@@ -15,30 +14,14 @@ namespace burnish {
 
 namespace {
 
-// Of the pictures at 1/32 of the exposure.
-constexpr double kDimmedShare = 0.05;
-
-// Relative errors, of ln(f + floor): at most a tenth of the whole where pictures differ visibly, but what tells where
-// they are dark or saturated.
-constexpr double kRelativeShare = 1e-3;
-
-/// How long a minimization goes on, and how strongly inputs are drawn to their defaults: one that is a whole range off
-/// counts as an error of -20 log10(pull) dB.
-struct Effort {
-  int max_iterations;
-  double tolerance, pull;
-};
-constexpr Effort kTaste{6, 1e-4, 1e-4}, kFirst{30, 1e-5, 1e-4}, kSift{15, 1e-5, 1e-6},
+constexpr FitEffort kTaste{6, 1e-4, 1e-4}, kFirst{30, 1e-5, 1e-4}, kSift{15, 1e-5, 1e-6},
     kSiftAgain{20, 1e-6, 1e-6}, kAgain{10, 1e-6, 1e-6}, kEnd{40, 1e-6, 1e-6}, kLast{80, 1e-8, 1e-6};
-
-// A pixel in thirty of a highlight: what shows less, as an index that a coat hides, is not trusted to go far.
-constexpr double kLeastDiagonal = 1e-3;
 
 /// An input, or a channel of a colour.
 struct Unknown {
   std::size_t input;
   int channel;  ///< -1: a number, or all channels alike
-  double min, max, normal;
+  FittedNumber range;
 };
 
 /// Inputs that keep their values, one bit each.
@@ -94,12 +77,12 @@ std::vector<Unknown> unknowns_of(const Inputs& held, const OpenPbrFitOptions& op
   for (std::size_t i = 0; i < kOpenPbrInputs.size(); ++i) {
     if (held[i]) continue;
     const OpenPbrInput& input = kOpenPbrInputs[i];
-    Unknown unknown{i, -1, input.min, input.max, 0};
-    unknown.normal = get({}, unknown);
+    Unknown unknown{i, -1, {input.min, input.max, 0}};
+    unknown.range.normal = get({}, unknown);
     // sharper highlights are not seen; indices and films are those of known materials
-    if (input.name == "specular_roughness" || input.name == "coat_roughness") unknown.min = 0.02;
-    if (input.name.ends_with("ior")) unknown.max = 3;
-    if (input.name == "thin_film_thickness") unknown.max = 1.5;
+    if (input.name == "specular_roughness" || input.name == "coat_roughness") unknown.range.min = 0.02;
+    if (input.name.ends_with("ior")) unknown.range.max = 3;
+    if (input.name == "thin_film_thickness") unknown.range.max = 1.5;
     const bool split = is_color(input) && !options.grey;
     for (int c = 0; c < (split ? 3 : 1); ++c) {
       unknown.channel = split ? c : -1;
@@ -109,138 +92,11 @@ std::vector<Unknown> unknowns_of(const Inputs& held, const OpenPbrFitOptions& op
   return unknowns;
 }
 
-/// The pictures' differences, and the inputs' from their defaults, as functions of the unknowns.
-class Cost {
- public:
-  Cost(const PicturePairs& pairs, const OpenPbrParameters& fixed, std::vector<Unknown> unknowns, double pull,
-       bool film)
-      : pairs_(pairs), fixed_(fixed), unknowns_(std::move(unknowns)), pull_(pull), film_(film) {}
-
-  /// One a channel of a pixel, one for what is left of them, one an unknown.
-  std::size_t functions() const { return pairs_.shown.size() + 1 + unknowns_.size(); }
-
-  OpenPbrParameters parameters(std::span<const double> x) const {
-    OpenPbrParameters p = fixed_;
-    for (std::size_t k = 0; k < x.size(); ++k) set(p, unknowns_[k], x[k]);
-    return p;
-  }
-
-  /// As LeastSquaresProblem::evaluate.
-  void evaluate(std::span<const double> x, std::span<double> values, std::span<double> slopes) {
-    const std::vector<Step> steps = slopes.empty() ? std::vector<Step>() : steps_from(x);
-    const OpenPbrVariants materials(OpenPbr(parameters(x)), moved(x, steps));
-    const std::size_t pixels = pairs_.shown.size(), columns = x.size();
-    std::ranges::fill(slopes, 0.0);
-    across_.resize(pixels);
-    for_each_chunk(pairs_.pairs.size(), kPairsAtOnce, [&](std::size_t, std::size_t begin, std::size_t end) {
-      std::vector<double> f(3 * (1 + steps.size()));
-      for (std::size_t i = begin; i < end; ++i) {
-        materials.eval(pairs_.pairs[i].wi, pairs_.pairs[i].wo, f);
-        for (std::size_t c = 0; c < 3; ++c) {
-          const Pixel pixel = pixel_of(3 * i + c, f[c]);
-          values[3 * i + c] = pixel.along;
-          across_[3 * i + c] = pixel.across;
-          for (std::size_t s = 0; s < steps.size(); ++s) {
-            const std::size_t channel = steps[s].count == 3 ? c : 0;
-            slopes[(3 * i + c) * columns + steps[s].first + channel] =
-                pixel.slope * (f[3 * (s + 1) + c] - f[c]) / steps[s].size[channel];
-          }
-        }
-      }
-    });
-    double rest = 0;
-    for (const double across : across_) rest += across * across;
-    values[pixels] = std::sqrt(rest);
-    for (std::size_t k = 0; k < columns; ++k)
-      values[pixels + 1 + k] = pull_ * (x[k] - unknowns_[k].normal) / (unknowns_[k].max - unknowns_[k].min);
-    if (!slopes.empty())
-      for (std::size_t k = 0; k < columns; ++k)
-        slopes[(pixels + 1 + k) * columns + k] = pull_ / (unknowns_[k].max - unknowns_[k].min);
-  }
-
- private:
-  static constexpr std::size_t kPairsAtOnce = 128;
-
-  /// A difference that slopes are found by: of one unknown, or of the channels of a colour that do not see each other.
-  struct Step {
-    std::size_t first, count;
-    std::array<double, 3> size;
-  };
-
-  // The colours whose channels a film lets see each other.
-  static bool under_film(const Unknown& unknown) {
-    const std::string_view name = kOpenPbrInputs[unknown.input].name;
-    return name == "base_color" || name == "specular_color";
-  }
-
-  /// Forwards, but backwards at an upper bound.
-  std::vector<Step> steps_from(std::span<const double> x) const {
-    std::vector<Step> steps;
-    for (std::size_t k = 0; k < x.size(); k += steps.back().count) {
-      Step step{k, unknowns_[k].channel < 0 || (film_ && under_film(unknowns_[k])) ? 1u : 3u, {}};
-      for (std::size_t c = 0; c < step.count; ++c) {
-        const Unknown& unknown = unknowns_[k + c];
-        const double size = 1e-5 * (unknown.max - unknown.min);
-        step.size[c] = x[k + c] + size > unknown.max ? -size : size;
-      }
-      steps.push_back(step);
-    }
-    return steps;
-  }
-
-  std::vector<OpenPbr> moved(std::span<const double> x, std::span<const Step> steps) const {
-    std::vector<OpenPbr> materials;
-    for (const Step& step : steps) {
-      std::vector<double> at(x.begin(), x.end());
-      for (std::size_t c = 0; c < step.count; ++c) at[step.first + c] += step.size[c];
-      materials.emplace_back(parameters(at));
-    }
-    return materials;
-  }
-
-  /// A channel of a pixel has an error at each exposure and a relative one, all functions of f: the error along their
-  /// slopes, what is left across them, and the slope.
-  struct Pixel {
-    double along, across, slope;
-  };
-  Pixel pixel_of(std::size_t r, double f) const {
-    constexpr double kDark = 1e-9;  // bounds slopes where f is next to nothing
-    const double area = std::sqrt(pairs_.weights[r / 3] / 3);
-    const double shown =
-        std::pow(std::max(pairs_.exposure * f * pairs_.pairs[r / 3].wi.z, 0.0), PictureLoss::kInverseGamma);
-    const double shown_slope = PictureLoss::kInverseGamma * shown / std::max(f, kDark);
-    std::array<double, 3> error, slope;
-    for (std::size_t e = 0; e < 2; ++e) {
-      const double ours = kDims[e] * shown, theirs = kDims[e] * pairs_.shown[r];
-      error[e] = area * kShares[e] * (std::min(1.0, ours) - std::min(1.0, theirs));
-      // a pixel too bright that should not be is told so
-      const double seen = ours <= 1 ? 1 : theirs < 1 ? PictureLoss::kSaturatedSlope : 0;
-      slope[e] = area * kShares[e] * kDims[e] * seen * shown_slope;
-    }
-    const double log_weight = area * std::sqrt(kRelativeShare), above = f + PictureLoss::kFloor;
-    error[2] = log_weight * std::log(above / (pairs_.values[r] + PictureLoss::kFloor));
-    slope[2] = log_weight / above;
-    double squares = 0, products = 0, slopes = 0;
-    for (std::size_t e = 0; e < 3; ++e) {
-      squares += error[e] * error[e];
-      products += error[e] * slope[e];
-      slopes += slope[e] * slope[e];
-    }
-    const double length = std::sqrt(slopes), along = products / length;
-    return {along, std::sqrt(std::max(squares - along * along, 0.0)), length};
-  }
-
-  /// Of both exposures: the root of the error's weight, and what the exposure makes of a pixel.
-  static inline const std::array<double, 2> kShares = {1, std::sqrt(kDimmedShare)},
-                                            kDims = {1, std::pow(1.0 / 32, PictureLoss::kInverseGamma)};
-
-  const PicturePairs& pairs_;
-  const OpenPbrParameters fixed_;
-  const std::vector<Unknown> unknowns_;
-  const double pull_;
-  const bool film_;
-  std::vector<double> across_;
-};
+// The colours whose channels a film lets see each other.
+bool under_film(const Unknown& unknown) {
+  const std::string_view name = kOpenPbrInputs[unknown.input].name;
+  return name == "base_color" || name == "specular_color";
+}
 
 /// Where a minimization ended.
 struct Trial {
@@ -252,22 +108,31 @@ struct Trial {
 };
 
 Trial minimize(const PicturePairs& pairs, const OpenPbrFitOptions& options, const OpenPbrParameters& start,
-               const Inputs& held, const Effort& effort) {
+               const Inputs& held, const FitEffort& effort) {
   const std::vector<Unknown> unknowns = unknowns_of(held, options);
-  Cost cost(pairs, start, unknowns, effort.pull, (held & kFilm) != kFilm);
-  LeastSquaresProblem problem{.functions = cost.functions(), .evaluate = {}, .lower = {}, .upper = {}};
+  const bool film = (held & kFilm) != kFilm;
+  const auto parameters = [&](std::span<const double> x) {
+    OpenPbrParameters p = start;
+    for (std::size_t k = 0; k < x.size(); ++k) set(p, unknowns[k], x[k]);
+    return p;
+  };
+  FittedMaterial material;
   std::vector<double> x;
   for (const Unknown& unknown : unknowns) {
-    problem.lower.push_back(unknown.min);
-    problem.upper.push_back(unknown.max);
+    material.numbers.push_back(unknown.range);
     x.push_back(get(start, unknown));
   }
-  problem.evaluate = [&](auto at, auto values, auto slopes) { cost.evaluate(at, values, slopes); };
-  const LeastSquaresSolution solution = solve_least_squares(problem, std::move(x),
-                                                            {.max_iterations = effort.max_iterations,
-                                                             .tolerance = effort.tolerance,
-                                                             .least_diagonal = kLeastDiagonal});
-  return {cost.parameters(solution.x), held, solution.first_cost, solution.cost, solution.iterations,
+  material.together = [&](std::size_t k) -> std::size_t {
+    return unknowns[k].channel < 0 || (film && under_film(unknowns[k])) ? 1 : 3;
+  };
+  material.at = [&](const std::vector<std::vector<double>>& points) -> MaterialsEval {
+    std::vector<OpenPbr> others;
+    for (std::size_t i = 1; i < points.size(); ++i) others.emplace_back(parameters(points[i]));
+    return [variants = OpenPbrVariants(OpenPbr(parameters(points[0])), std::move(others))](
+               Vec3 wi, Vec3 wo, std::span<double> f) { variants.eval(wi, wo, f); };
+  };
+  const LeastSquaresSolution solution = fit_pictures(pairs, material, std::move(x), effort);
+  return {parameters(solution.x), held, solution.first_cost, solution.cost, solution.iterations,
           solution.converged};
 }
 
@@ -282,7 +147,7 @@ class Search {
   };
 
   /// The trials of these starts, best first.
-  std::vector<Trial> run(const std::vector<Start>& starts, const Effort& effort) {
+  std::vector<Trial> run(const std::vector<Start>& starts, const FitEffort& effort) {
     std::vector<Trial> trials(starts.size());
     for_each_chunk(starts.size(), 1, [&](std::size_t i, std::size_t, std::size_t) {
       trials[i] = minimize(pairs_, options_, starts[i].parameters, starts[i].held, effort);
@@ -307,22 +172,6 @@ class Search {
   const PicturePairs& pairs_;
   const OpenPbrFitOptions& options_;
 };
-
-/// What each colour is guessed at: a grey that shows the mean of the pictures if it is diffuse.
-Rgb mean_color(const PicturePairs& pairs) {
-  std::array<double, 3> sum{};
-  double total = 0;
-  for (std::size_t i = 0; i < pairs.pairs.size(); ++i) {
-    total += pairs.weights[i] * pairs.pairs[i].wi.z;
-    for (std::size_t c = 0; c < 3; ++c)
-      sum[c] +=
-          pairs.weights[i] * std::pow(std::min(1.0, pairs.shown[3 * i + c]), 1 / PictureLoss::kInverseGamma);
-  }
-  const auto of = [&](double s) {
-    return std::clamp(3.141592653589793 * s / (pairs.exposure * total), 0.02, 0.98);
-  };
-  return {of(sum[0]), of(sum[1]), of(sum[2])};
-}
 
 double round6(double x) {
   return std::round(x * 1e6) / 1e6;
@@ -418,26 +267,12 @@ void append_films(Search& search, const Trial& trial, const Inputs& always,
 
 constexpr std::size_t kCoarse = 3, kCoarser = 12;
 
-/// Every n-th of the pixels.
-PicturePairs thinned(const PicturePairs& pairs, std::size_t n) {
-  PicturePairs thin;
-  thin.exposure = pairs.exposure;
-  for (std::size_t i = 0; i < pairs.pairs.size(); i += n) {
-    thin.pairs.push_back(pairs.pairs[i]);
-    thin.weights.push_back(static_cast<double>(n) * pairs.weights[i]);
-    for (std::size_t c = 0; c < 3; ++c) {
-      thin.values.push_back(pairs.values[3 * i + c]);
-      thin.shown.push_back(pairs.shown[3 * i + c]);
-    }
-  }
-  return thin;
-}
-
 /// All inputs anywhere in their ranges.
 Search::Start random_start(Pcg32& random, const Inputs& always, const OpenPbrFitOptions& options) {
   Search::Start start{{}, always};
   for (const Unknown& unknown : unknowns_of(always, options))
-    set(start.parameters, unknown, unknown.min + (unknown.max - unknown.min) * random.uniform());
+    set(start.parameters, unknown,
+        unknown.range.min + (unknown.range.max - unknown.range.min) * random.uniform());
   return start;
 }
 
