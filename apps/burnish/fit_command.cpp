@@ -188,12 +188,26 @@ void print(const OpenPbr& material) {
   }
 }
 
-void print(const MetallicRoughness& m) {
-  fmt::print("material   base colour {:.4g}/{:.4g}/{:.4g}, metallic {:.4g}, roughness {:.4g}", m.base_color.r,
-             m.base_color.g, m.base_color.b, m.metallic, m.roughness);
+void print(const GltfMaterial& m) {
+  const auto color = [](Rgb c) {
+    return c.r == c.g && c.g == c.b ? fmt::format("{:.4g}", c.r)
+                                    : fmt::format("{:.4g}/{:.4g}/{:.4g}", c.r, c.g, c.b);
+  };
+  const GltfMaterial neutral;
+  fmt::print("material   base colour {}, metallic {:.4g}, roughness {:.4g}\n", color(m.base_color),
+             m.metallic, m.roughness);
+  if (m.ior != neutral.ior) fmt::print("ior        {:.4g}\n", m.ior);
+  if (m.specular != neutral.specular || m.specular_color != neutral.specular_color)
+    fmt::print("specular   {:.4g}, colour {}\n", m.specular, color(m.specular_color));
   if (m.anisotropy > 0)
-    fmt::print(", anisotropy {:.4g} along the {}", m.anisotropy, m.across ? "bitangent" : "tangent");
-  fmt::print("\n");
+    fmt::print("anisotropy {:.4g} along the {}\n", m.anisotropy, m.across ? "bitangent" : "tangent");
+  if (m.iridescence > 0)
+    fmt::print("film       {:.4g}, index {:.4g}, {:.4g} nm\n", m.iridescence, m.iridescence_ior,
+               m.iridescence_thickness);
+  if (m.sheen_color != neutral.sheen_color)
+    fmt::print("sheen      {}, roughness {:.4g}\n", color(m.sheen_color), m.sheen_roughness);
+  if (m.clearcoat > 0)
+    fmt::print("clearcoat  {:.4g}, roughness {:.4g}\n", m.clearcoat, m.clearcoat_roughness);
 }
 
 // What the material leaves out, a line each; nothing that is too small to be seen or not known.

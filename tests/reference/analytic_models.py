@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Reference values of the tests in src/burnish/reflectance/analytic.
+"""Reference values of the tests in src/burnish/reflectance/analytic and of gltf_material_test.cpp.
 
 Prints each value with the name of the model it belongs to. The models are written from their papers in terms of
 angles, apart from the library, which works with vectors: a mistake in one of them shows. Needs the standard
@@ -235,6 +235,80 @@ def poulin_fournier(spacing, height, exponent, part, wi, wo):
 
 # What the test holds the library to -----------------------------------------------------------------------------
 
+
+def gltf_facets(alpha_t, alpha_b, wi, wo):
+    """D V of [glTF 2021] with the alphas of KHR_materials_anisotropy, in the extension's form."""
+    theta, phi, _ = half(wi, wo)
+    t, b, n = sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta)
+    w2 = alpha_t * alpha_b / ((alpha_b * t) ** 2 + (alpha_t * b) ** 2 + (alpha_t * alpha_b * n) ** 2)
+    distribution = alpha_t * alpha_b * w2 ** 2 / pi
+
+    def stretched(w):
+        x, y, z = vector(w)
+        return hypot(alpha_t * x, alpha_b * y, z)
+    visibility = 0.5 / (cos(wi[0]) * stretched(wo) + cos(wo[0]) * stretched(wi))
+    return distribution * visibility
+
+
+def gltf_film(ior, nanometres, base_f0, cosine):
+    """KHR_materials_iridescence; f0 of the base for red, green and blue."""
+    inside = sqrt(1 - (1 - cosine ** 2) / ior ** 2)
+    schlick = lambda f0, c: f0 + (1 - f0) * (1 - c) ** 5
+    r12 = schlick(((ior - 1) / (ior + 1)) ** 2, cosine)
+    base_ior = [(1 + sqrt(f + 0.0001)) / (1 - sqrt(f + 0.0001)) for f in base_f0]
+    r23 = [schlick(((n - ior) / (n + ior)) ** 2, inside) for n in base_ior]
+    phi = [pi + (pi if n < ior else 0) for n in base_ior]
+    both = [min(max(r12 * r, 1e-5), 0.9999) for r in r23]
+    returned = [(1 - r12) ** 2 * r / (1 - q) for r, q in zip(r23, both)]
+    result = [r12 + r for r in returned]
+    for m in (1, 2):
+        phase = 2 * pi * m * 2 * ior * nanometres * 1e-9 * inside
+
+        def gauss(v, p, s, shift):
+            return v * sqrt(2 * pi * s) * cos(p * phase + m * shift) * exp(-s * phase ** 2) / 1.0685e-7
+        x = gauss(5.4856e-13, 1.6810e6, 4.3278e9, phi[0]) + gauss(9.7470e-14, 2.2399e6, 4.5282e9, phi[0])
+        y, z = gauss(4.4201e-13, 1.7953e6, 9.3046e9, phi[1]), gauss(5.2481e-13, 2.2084e6, 6.6121e9, phi[2])
+        seen = (3.2404542 * x - 1.5371385 * y - 0.4985314 * z, -0.9692660 * x + 1.8760108 * y + 0.0415560 * z,
+                0.0556434 * x - 0.2040259 * y + 1.0572252 * z)
+        for k in range(3):
+            result[k] += (returned[k] - (1 - r12)) * both[k] ** (m / 2) * 2 * seen[k]
+    return [max(v, 0) for v in result]
+
+
+def gltf_sheen(roughness, wi, wo):
+    """Charlie of KHR_materials_sheen."""
+    alpha, (theta, _, _) = roughness ** 2, half(wi, wo)
+    distribution = (2 + 1 / alpha) * sin(theta) ** (1 / alpha) / (2 * pi)
+    mix = lambda x, y: x + (y - x) * (1 - alpha) ** 2
+    a, b, c = mix(21.5473, 25.3245), mix(3.82987, 3.32435), mix(0.19823, 0.16801)
+    d, e = mix(-1.97760, -1.27393), mix(-4.32054, -4.85967)
+    l = lambda x: a / (1 + b * x ** c) + d * x + e
+    masked = lambda x: exp(l(x)) if x < 0.5 else exp(2 * l(0.5) - l(1 - x))
+    i, o = cos(wi[0]), cos(wo[0])
+    return distribution / ((1 + masked(i) + masked(o)) * 4 * i * o)
+
+
+def gltf_base(wi, wo):
+    """Base (0.6, 0.3, 0.1), a quarter metal, roughness 0.4, index 1.8, half a specular of (1, 0.5, 0.2), strength 0.5
+    along the tangent, three quarters of a film of index 1.4 and 420 nm."""
+    alpha, (_, _, theta_d) = 0.4 ** 2, half(wi, wo)
+    facets = gltf_facets(alpha + (1 - alpha) * 0.25, alpha, wi, wo)
+    base, grazing = (0.6, 0.3, 0.1), (1 - cos(theta_d)) ** 5
+    schlick = lambda f0: f0 + (1 - f0) * grazing
+    f0 = [(0.8 / 2.8) ** 2 * c for c in (1, 0.5, 0.2)]
+    film = gltf_film(1.4, 420, [0.5 * f for f in f0], cos(theta_d))
+    gloss = [0.25 * 0.5 * schlick(f) + 0.75 * g for f, g in zip(f0, film)]
+    on_metal = [0.25 * schlick(f) + 0.75 * g for f, g in zip(base, gltf_film(1.4, 420, base, cos(theta_d)))]
+    dielectric = [(1 - max(gloss)) * c / pi + facets * g for c, g in zip(base, gloss)]
+    return [0.75 * d + 0.25 * facets * m for d, m in zip(dielectric, on_metal)]
+
+
+def gltf_coated(wi, wo):
+    """The same under 0.7 of a coat of roughness 0.3."""
+    share = 0.7 * (0.04 + 0.96 * (1 - cos(wo[0])) ** 5)
+    return [(1 - share) * c + share * gltf_facets(0.09, 0.09, wi, wo) for c in gltf_base(wi, wo)]
+
+
 def main():
     a, b, view = at(50, 20), at(35, 170), at(60, 30)
     grazing = at(75, 0), at(80, 160)
@@ -263,6 +337,13 @@ def main():
         "PoulinFournier{3, 0.4, 200} specular": poulin_fournier(3, 0.4, 200, "specular", a, b),
         "PoulinFournier{2.2, 0.9} diffuse": poulin_fournier(2.2, 0.9, 50, "diffuse", *low),
         "PoulinFournier{2.2, 0.9, 20} specular": poulin_fournier(2.2, 0.9, 20, "specular", *low),
+        "GltfMaterial": gltf_base(a, b),
+        "GltfMaterial grazing": gltf_base(*grazing),
+        "GltfMaterial coated": gltf_coated(a, b),
+        "GltfMaterial sheen of roughness 0.5": gltf_sheen(0.5, a, b),
+        "GltfMaterial sheen of roughness 0.3, grazing": gltf_sheen(0.3, *low),
+        "sheen_albedo(cos(60 degrees), 0.5)": albedo(lambda wi, wo: gltf_sheen(0.5, wi, wo), at(60, 30)),
+        "sheen_albedo(cos(80 degrees), 0.3)": albedo(lambda wi, wo: gltf_sheen(0.3, wi, wo), at(80, 30)),
     }
     for name, value in values.items():
         print(f"{name:40} {value!r}")

@@ -12,9 +12,10 @@
 #include <burnish/export/manifest.h>
 #include <burnish/export/materialx.h>
 #include <burnish/export/mdl.h>
-#include <burnish/export/nearest_openpbr.h>
+#include <burnish/export/nearest_material.h>
 #include <burnish/export/usda.h>
 #include <burnish/export/web_module.h>
+#include <burnish/fitting/parametric/gltf_json.h>
 #include <burnish/fitting/parametric/metallic_roughness_fit.h>
 #include <burnish/io/rgl.h>
 #include <burnish/reflectance/analytic.h>
@@ -31,7 +32,6 @@ namespace {
 using nlohmann::json;
 
 constexpr float kMaxHalf = 65504;
-constexpr double kSeenAlike = 45;  // dB: a core material that is as close needs no layers
 
 // Files so far and what the manifest says of them.
 class ModelExport {
@@ -187,12 +187,11 @@ const NearestOpenPbr& ModelExport::openpbr() {
   return *openpbr_;
 }
 
-// The core material, or OpenPBR's with its layers in extensions where that comes closer by a decibel.
 void ModelExport::add_gltf() {
-  const bool layered = core().psnr < kSeenAlike && openpbr().psnr > core().psnr + 1;
-  json material = layered ? gltf_material(openpbr().parameters) : gltf_material(core().material);
-  manifest_["gltf"] = add(options_.name + ".glb", gltf_binary(brdf_, std::move(material), options_.name));
-  manifest_["gltf_material"] = layered ? "openpbr" : "core_material";
+  const NearestGltf nearest = nearest_gltf(brdf_);
+  manifest_["gltf"] =
+      add(options_.name + ".glb", gltf_binary(brdf_, gltf_json(nearest.material), options_.name));
+  manifest_["gltf_material"] = gltf_entry(nearest);
 }
 
 void ModelExport::add_materialx() {

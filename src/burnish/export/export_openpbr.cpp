@@ -11,8 +11,10 @@
 #include <burnish/export/manifest.h>
 #include <burnish/export/materialx.h>
 #include <burnish/export/mdl.h>
+#include <burnish/export/nearest_material.h>
 #include <burnish/export/usda.h>
 #include <burnish/export/web_module.h>
+#include <burnish/fitting/parametric/gltf_json.h>
 #include <burnish/fitting/parametric/metallic_roughness_fit.h>
 #include <burnish/io/rgl.h>
 #include <burnish/reflectance/analytic.h>
@@ -31,6 +33,11 @@ const OpenPbr& material_of(const AnalyticBrdf& brdf) {
   return *model;
 }
 
+std::vector<ExportedFile> gltf_file(const NearestGltf& nearest, const std::string& name, json& manifest) {
+  manifest["material"] = gltf_entry(nearest);
+  return {{name + ".glb", gltf_binary(gltf_json(nearest.material), name)}};
+}
+
 // The files of one target that is no shader, without the manifest.
 std::vector<ExportedFile> files_of(const AnalyticBrdf& brdf, ExportTarget target,
                                    const ExportOptions& options, json& manifest) {
@@ -43,8 +50,7 @@ std::vector<ExportedFile> files_of(const AnalyticBrdf& brdf, ExportTarget target
     case ExportTarget::usda:
       return {{name + ".usda", usda_layer(parameters, fit_metallic_roughness(brdf).material, name)}};
     case ExportTarget::gltf:
-      manifest["material"] = gltf_material(parameters);
-      return {{name + ".glb", gltf_binary(gltf_material(parameters), name)}};
+      return gltf_file(nearest_gltf(brdf), name, manifest);
     case ExportTarget::mdl: {
       MdlModule module = mdl_module({.name = name, .brdf = brdf, .findings = {}}, options.cells, name);
       manifest["losses"] = std::move(module.losses);

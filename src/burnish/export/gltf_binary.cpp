@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -8,8 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include <burnish/export/gltf_binary.h>
-#include <burnish/export/manifest.h>
-#include <burnish/math/angles.h>
 #include <burnish/render/mesh/shapes.h>
 
 namespace burnish {
@@ -137,15 +134,6 @@ std::string scene_of(const json& primitive, json material, const std::string& na
   return file.append(reinterpret_cast<const char*>(&size), 4).append(chunks);
 }
 
-json color_entry(const Rgb& c) {
-  return {c.r, c.g, c.b};
-}
-
-// Of a dielectric in air.
-double reflectance_at_normal(double ior) {
-  return ((ior - 1) / (ior + 1)) * ((ior - 1) / (ior + 1));
-}
-
 }  // namespace
 
 std::string gltf_binary(const FactoredBrdf& brdf, json material, const std::string& name) {
@@ -159,63 +147,6 @@ std::string gltf_binary(json material, const std::string& name) {
   Binary binary;
   const json primitive = add_sphere(binary);
   return scene_of(primitive, std::move(material), name, binary);
-}
-
-json gltf_material(const MetallicRoughness& core) {
-  json extensions = json::object();
-  if (core.anisotropy > 0)
-    extensions["KHR_materials_anisotropy"] = {{"anisotropyStrength", core.anisotropy},
-                                              {"anisotropyRotation", core.across ? kHalfPi : 0}};
-  return {{"pbrMetallicRoughness", core_entry(core)}, {"extensions", extensions}};
-}
-
-json gltf_material(const OpenPbrParameters& p) {
-  // what a coat does to the base under it: blurs it, changes its index, lets part of the light through
-  const auto fourth = [](double x) { return x * x * x * x; };
-  const double blurred =
-      std::pow(std::min(1.0, fourth(p.specular_roughness) + 2 * fourth(p.coat_roughness)), 0.25);
-  const double roughness = std::lerp(p.specular_roughness, blurred, p.coat_weight);
-  const double ior = std::lerp(
-      p.specular_ior, std::max(p.specular_ior / p.coat_ior, p.coat_ior / p.specular_ior), p.coat_weight);
-  const double inside = 1 - (1 - reflectance_at_normal(p.coat_ior)) / (p.coat_ior * p.coat_ior);
-  const Rgb base = p.base_weight * p.base_color;
-  const auto under_coat = [&](double albedo, double coat_color) {
-    const double darkening = (1 - inside) / (1 - albedo * inside);
-    return albedo * std::lerp(1, darkening, p.coat_weight * p.coat_darkening) *
-           std::lerp(1, coat_color, p.coat_weight);
-  };
-
-  // alphas along and across: glTF has the root of the smaller, and how much of the rest to 1 the larger takes
-  const double across = 1 - p.specular_roughness_anisotropy,
-               alpha_x = std::min(1.0, roughness * roughness * std::sqrt(2 / (1 + across * across))),
-               alpha_y = across * alpha_x;
-  const double strength = alpha_y < 1 ? std::sqrt((alpha_x - alpha_y) / (1 - alpha_y)) : 0;
-
-  json extensions = json::object();
-  const OpenPbrParameters defaults;
-  if (ior != defaults.specular_ior) extensions["KHR_materials_ior"] = {{"ior", ior}};
-  if (p.specular_weight != 1 || p.specular_color != Rgb(1))
-    extensions["KHR_materials_specular"] = {{"specularFactor", p.specular_weight},
-                                            {"specularColorFactor", color_entry(p.specular_color)}};
-  if (strength > 0)
-    extensions["KHR_materials_anisotropy"] = {{"anisotropyStrength", strength}, {"anisotropyRotation", 0}};
-  if (p.coat_weight > 0)
-    extensions["KHR_materials_clearcoat"] = {
-        {"clearcoatFactor", std::min(1.0, p.coat_weight * reflectance_at_normal(p.coat_ior) / 0.04)},
-        {"clearcoatRoughnessFactor", p.coat_roughness}};
-  if (p.fuzz_weight > 0)
-    extensions["KHR_materials_sheen"] = {{"sheenColorFactor", color_entry(p.fuzz_weight * p.fuzz_color)},
-                                         {"sheenRoughnessFactor", p.fuzz_roughness}};
-  if (p.thin_film_weight > 0)
-    extensions["KHR_materials_iridescence"] = {{"iridescenceFactor", p.thin_film_weight},
-                                               {"iridescenceIor", p.thin_film_ior},
-                                               {"iridescenceThicknessMaximum", 1000 * p.thin_film_thickness}};
-  return {{"pbrMetallicRoughness",
-           core_entry({.base_color = {under_coat(base.r, p.coat_color.r), under_coat(base.g, p.coat_color.g),
-                                      under_coat(base.b, p.coat_color.b)},
-                       .metallic = p.base_metalness,
-                       .roughness = std::sqrt(alpha_y)})},
-          {"extensions", extensions}};
 }
 
 }  // namespace burnish

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include <burnish/export/manifest.h>
+#include <burnish/fitting/parametric/gltf_json.h>
 
 namespace burnish {
 
@@ -67,6 +68,12 @@ json manifest_entry(const Table& table) {
 json manifest_entry(const std::string& file, const GlTexture& texture) {
   return {{"sampler", texture.name},  {"file", file},           {"width", texture.width},
           {"height", texture.height}, {"depth", texture.depth}, {"wrap", "clamp_to_edge"}};
+}
+
+json gltf_entry(const NearestGltf& nearest) {
+  json entry = gltf_json(nearest.material);
+  entry.update({{"psnr", nearest.psnr}, {"relative", nearest.relative}});
+  return entry;
 }
 
 json core_entry(const MetallicRoughness& material) {

@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <burnish/export/exported_files.h>
+#include <burnish/export/nearest_material.h>
 #include <burnish/reflectance/metallic_roughness.h>
 #include <burnish/render/gl/gl_objects.h>
 #include <burnish/textures/ktx2.h>
@@ -22,6 +23,9 @@ nlohmann::json manifest_entry(const std::string& file, const Texture& texture);
 nlohmann::json manifest_entry(const Table& table);
 /// A texture of light from all around.
 nlohmann::json manifest_entry(const std::string& file, const GlTexture& texture);
+
+/// What glTF shows: the material without its name, and its score.
+nlohmann::json gltf_entry(const NearestGltf& nearest);
 
 /// A core material as glTF has it.
 nlohmann::json core_entry(const MetallicRoughness& material);

@@ -10,10 +10,10 @@
 #include <burnish/error.h>
 #include <burnish/fitting/fit.h>
 #include <burnish/fitting/fit_report_json.h>
+#include <burnish/fitting/parametric/gltf_fit.h>
+#include <burnish/fitting/parametric/gltf_json.h>
 #include <burnish/fitting/parametric/material_fit.h>
-#include <burnish/fitting/parametric/metallic_roughness_fit.h>
 #include <burnish/fitting/parametric/openpbr_fit.h>
-#include <burnish/math/angles.h>
 #include <burnish/math/closest_name.h>
 
 namespace burnish {
@@ -25,17 +25,25 @@ using Json = nlohmann::ordered_json;
 constexpr std::array<std::string_view, 2> kTargets = {"openpbr", "gltf"};
 
 void fit_material_of(BrdfRef source, double exposure, const MaterialFitOptions& options, MaterialFit& fit) {
-  if (fit.target == "gltf") {
-    fit.material = fit_metallic_roughness(source).material;
-    return;
-  }
-  OpenPbrFitOptions how{.grey = source.channels() == 1, .anisotropic = !source.isotropic()};
+  const PicturePairs pairs = picture_pairs(source, exposure);
+  const bool grey = source.channels() == 1, anisotropic = !source.isotropic();
+  std::function<void(double)> progress;
   if (options.progress)
-    how.progress = [&](double fraction) { options.progress("fitting openpbr", fraction); };
-  const OpenPbrFit found = fit_openpbr(picture_pairs(source, exposure), how);
-  fit.material = OpenPbr(found.parameters);
-  fit.summary = found.summary;
-  fit.starts = found.starts;
+    progress = [&](double fraction) { options.progress("fitting " + fit.target, fraction); };
+  const auto take = [&](const auto& found) {
+    fit.summary = found.summary;
+    fit.starts = found.starts;
+  };
+  if (fit.target == "gltf") {
+    const GltfFit found = fit_gltf(pairs, {.grey = grey, .anisotropic = anisotropic, .progress = progress});
+    fit.material = found.material;
+    take(found);
+  } else {
+    const OpenPbrFit found =
+        fit_openpbr(pairs, {.grey = grey, .anisotropic = anisotropic, .progress = progress});
+    fit.material = OpenPbr(found.parameters);
+    take(found);
+  }
 }
 
 Json json_of_rgb(Rgb color) {
@@ -54,18 +62,6 @@ Json json_of(const OpenPbrParameters& p) {
   return json;
 }
 
-/// A glTF material.
-Json json_of(const MetallicRoughness& m) {
-  Json json{{"pbrMetallicRoughness",
-             {{"baseColorFactor", {m.base_color.r, m.base_color.g, m.base_color.b, 1}},
-              {"metallicFactor", m.metallic},
-              {"roughnessFactor", m.roughness}}}};
-  if (m.anisotropy > 0)
-    json["extensions"]["KHR_materials_anisotropy"] = {{"anisotropyStrength", m.anisotropy},
-                                                      {"anisotropyRotation", m.across ? kHalfPi : 0}};
-  return json;
-}
-
 /// What is reported about a fit.
 Json report_of(const MaterialFit& fit) {
   Json json{{"target", fit.target}, {"source", fit.source}};
@@ -78,11 +74,10 @@ Json report_of(const MaterialFit& fit) {
     json["factored"] = json_of(fit.factored->figures);
     json["factored"]["bytes"] = fit.factored->bytes;
   }
-  if (const auto* openpbr = std::get_if<OpenPbr>(&fit.material)) {
+  if (const auto* openpbr = std::get_if<OpenPbr>(&fit.material))
     json["spec"] = format_analytic(analytic_openpbr(openpbr->parameters()));
-    json["starts"] = fit.starts;
-    json["iterations"] = fit.summary.iterations;
-  }
+  json["starts"] = fit.starts;
+  json["iterations"] = fit.summary.iterations;
   return json;
 }
 
@@ -124,9 +119,11 @@ std::string format_material(const MaterialFit& fit) {
     return format_baseline({.kind = "analytic",
                             .brdf = analytic_openpbr(openpbr->parameters()),
                             .notes = to_text(report_of(fit), -1)});
-  Json material = json_of(std::get<MetallicRoughness>(fit.material));
+  Json material = gltf_json(std::get<GltfMaterial>(fit.material));
   Json asset{{"asset", {{"version", "2.0"}, {"generator", "burnish"}}}};
-  if (material.contains("extensions")) asset["extensionsUsed"] = {"KHR_materials_anisotropy"};
+  if (material.contains("extensions"))
+    for (const auto& [name, extension] : material["extensions"].items())
+      asset["extensionsUsed"].push_back(name);
   material["extras"] = report_of(fit);
   asset["materials"] = Json::array({material});
   return to_text(asset, 2) + "\n";
@@ -139,7 +136,7 @@ std::string summary_json(const MaterialFit& fit, const std::string& output) {
         if constexpr (requires { any.parameters(); })
           return json_of(any.parameters());
         else
-          return json_of(any);
+          return gltf_json(any);
       },
       fit.material);
   json["output"] = output;

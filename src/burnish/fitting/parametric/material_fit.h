@@ -10,7 +10,7 @@
 #include <burnish/fitting/fit_summary.h>
 #include <burnish/metrics/error_figures.h>
 #include <burnish/reflectance/analytic/openpbr.h>
-#include <burnish/reflectance/metallic_roughness.h>
+#include <burnish/reflectance/gltf_material.h>
 #include <burnish/source.h>
 
 namespace burnish {
@@ -39,8 +39,8 @@ struct FactoredBeside {
 /// A renderer's material that looks like a BRDF, and how well.
 struct MaterialFit {
   std::string target, source;  ///< one of material_targets(); the source's name
-  std::variant<OpenPbr, MetallicRoughness> material;
-  FitSummary summary;  ///< of openpbr: errors as OpenPbrFit has them; none of gltf
+  std::variant<OpenPbr, GltfMaterial> material;
+  FitSummary summary;  ///< errors as OpenPbrFit has them
   int starts = 0;      ///< minimizations run
   ErrorFigures figures;
   Unexplained beyond;
@@ -51,7 +51,7 @@ struct MaterialFit {
   BrdfRef ref() const noexcept;
 };
 
-/// "openpbr" (fit_openpbr) and "gltf" (fit_metallic_roughness).
+/// "openpbr" (fit_openpbr) and "gltf" (fit_gltf).
 std::span<const std::string_view> material_targets();
 
 struct MaterialFitOptions {
@@ -72,8 +72,8 @@ MaterialFit fit_material(const Source& source, std::string_view target,
 std::string format_material(const MaterialFit& fit);
 
 /// The JSON that `burnish fit --to TARGET --json` prints, indented by two: target, source, parameters, psnr, ssim,
-/// relative, rms_log, log_cos, beyond (null what is not known), factored, of openpbr spec (see parse_analytic), starts
-/// and iterations, then output and seconds.
+/// relative, rms_log, log_cos, beyond (null what is not known), factored, starts and iterations, of openpbr spec (see
+/// parse_analytic), then output and seconds.
 std::string summary_json(const MaterialFit& fit, const std::string& output);
 
 }  // namespace burnish

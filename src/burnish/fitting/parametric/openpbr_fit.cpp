@@ -49,10 +49,6 @@ bool is_color(const OpenPbrInput& input) {
   return std::holds_alternative<Rgb OpenPbrParameters::*>(input.member);
 }
 
-double& channel_of(Rgb& color, int channel) {
-  return channel == 0 ? color.r : channel == 1 ? color.g : color.b;
-}
-
 double get(OpenPbrParameters p, const Unknown& unknown) {
   const auto& member = kOpenPbrInputs[unknown.input].member;
   if (const auto* number = std::get_if<double OpenPbrParameters::*>(&member)) return p.*(*number);
@@ -98,14 +94,8 @@ bool under_film(const Unknown& unknown) {
   return name == "base_color" || name == "specular_color";
 }
 
-/// Where a minimization ended.
-struct Trial {
-  OpenPbrParameters parameters;
-  Inputs held;
-  double first_cost = 0, cost = 0;
-  int iterations = 0;
-  bool converged = false;
-};
+using Search = FitSearch<OpenPbrParameters, Inputs>;
+using Trial = Search::Trial;
 
 Trial minimize(const PicturePairs& pairs, const OpenPbrFitOptions& options, const OpenPbrParameters& start,
                const Inputs& held, const FitEffort& effort) {
@@ -136,45 +126,10 @@ Trial minimize(const PicturePairs& pairs, const OpenPbrFitOptions& options, cons
           solution.converged};
 }
 
-/// Runs minimizations side by side.
-class Search {
- public:
-  Search(const PicturePairs& pairs, const OpenPbrFitOptions& options) : pairs_(pairs), options_(options) {}
-
-  struct Start {
-    OpenPbrParameters parameters;
-    Inputs held;
-  };
-
-  /// The trials of these starts, best first.
-  std::vector<Trial> run(const std::vector<Start>& starts, const FitEffort& effort) {
-    std::vector<Trial> trials(starts.size());
-    for_each_chunk(starts.size(), 1, [&](std::size_t i, std::size_t, std::size_t) {
-      trials[i] = minimize(pairs_, options_, starts[i].parameters, starts[i].held, effort);
-    });
-    for (const Trial& trial : trials) {
-      iterations += trial.iterations;
-      ++count;
-    }
-    std::ranges::stable_sort(trials, {}, &Trial::cost);
-    return trials;
-  }
-
-  /// Counts another's as its own.
-  void add(const Search& other) {
-    iterations += other.iterations;
-    count += other.count;
-  }
-
-  int iterations = 0, count = 0;
-
- private:
-  const PicturePairs& pairs_;
-  const OpenPbrFitOptions& options_;
-};
-
-double round6(double x) {
-  return std::round(x * 1e6) / 1e6;
+Search search_on(const PicturePairs& pairs, const OpenPbrFitOptions& options) {
+  return Search([&](const Search::Start& start, const FitEffort& effort) {
+    return minimize(pairs, options, start.material, start.held, effort);
+  });
 }
 
 OpenPbrParameters rounded(OpenPbrParameters p) {
@@ -209,20 +164,15 @@ OpenPbrParameters tidied(OpenPbrParameters p) {
 }
 
 OpenPbrFit to_fit(const PicturePairs& pairs, const Trial& trial, double first_cost) {
-  OpenPbrFit fit{.parameters = rounded(tidied(rounded(trial.parameters))), .summary = {}};
-  std::vector<double> shown;
-  pairs.show(OpenPbr(fit.parameters), shown);
-  fit.summary = {.error_before = std::sqrt(2 * first_cost),
-                 .error_after = std::sqrt(pairs.mean_squared_error(shown)),
-                 .iterations = trial.iterations,
-                 .stop_reason = trial.converged ? StopReason::converged : StopReason::iteration_limit};
+  OpenPbrFit fit{.parameters = rounded(tidied(rounded(trial.material))), .summary = {}};
+  fit.summary = summary_of(pairs, OpenPbr(fit.parameters), first_cost, trial.iterations, trial.converged);
   return fit;
 }
 
 /// All layers at once on what was found without them: coats as sharp or rough highlights above the base's, or as its
 /// highlight with a rough base below.
 void append_coats(const Trial& trial, const Inputs& always, std::vector<Search::Start>& starts) {
-  OpenPbrParameters p = trial.parameters;
+  OpenPbrParameters p = trial.material;
   p.fuzz_weight = 0.2;
   p.coat_weight = 0.5;
   for (const double roughness : {0.1, 0.35}) {
@@ -244,7 +194,7 @@ void append_films(Search& search, const Trial& trial, const Inputs& always,
   constexpr int kSteps = 12;
   const Inputs tasted = inputs_named("base_color") | inputs_named("specular_roughness") | kFilm;
   std::vector<Search::Start> tastes;
-  OpenPbrParameters p = trial.parameters;
+  OpenPbrParameters p = trial.material;
   p.base_color = (p.base_color.r + p.base_color.g + p.base_color.b) / 3;
   p.specular_color = 1;
   p.thin_film_weight = 1;
@@ -253,10 +203,10 @@ void append_films(Search& search, const Trial& trial, const Inputs& always,
     tastes.push_back({p, ~tasted | always});
   }
   const std::vector<Trial> best = search.run(tastes, kTaste);
-  p = trial.parameters;
+  p = trial.material;
   p.thin_film_weight = 0.5;
-  p.thin_film_thickness = best[0].parameters.thin_film_thickness;
-  for (OpenPbrParameters filmed : {best[0].parameters, best[1].parameters, p}) {
+  p.thin_film_thickness = best[0].material.thin_film_thickness;
+  for (OpenPbrParameters filmed : {best[0].material, best[1].material, p}) {
     starts.push_back({filmed, (trial.held & ~kFilm) | always});
     filmed.coat_weight = 0.3;
     filmed.coat_roughness = 0.2;
@@ -271,17 +221,9 @@ constexpr std::size_t kCoarse = 3, kCoarser = 12;
 Search::Start random_start(Pcg32& random, const Inputs& always, const OpenPbrFitOptions& options) {
   Search::Start start{{}, always};
   for (const Unknown& unknown : unknowns_of(always, options))
-    set(start.parameters, unknown,
+    set(start.material, unknown,
         unknown.range.min + (unknown.range.max - unknown.range.min) * random.uniform());
   return start;
-}
-
-/// Where the first of the trials go on.
-std::vector<Search::Start> best_of(const std::vector<Trial>& trials, std::size_t count) {
-  std::vector<Search::Start> starts;
-  for (std::size_t i = 0; i < std::min(count, trials.size()); ++i)
-    starts.push_back({trials[i].parameters, trials[i].held});
-  return starts;
 }
 
 /// Random starts, of which the better quarter goes on; best first.
@@ -322,7 +264,7 @@ std::vector<Search::Start> search_layers(Search& search, Search& sift, const Pic
   std::vector<Search::Start> best = best_of(coated, kCoated);
   for (const Search::Start& start : best_of(search.run(films, kFirst), kFilmed)) best.push_back(start);
   const PicturePairs coarser = thinned(pairs, kCoarser);
-  Search taste(coarser, options);
+  Search taste = search_on(coarser, options);
   const std::vector<Trial> tasted = search_at_random(taste, kRandom, 1, options);
   for (const Search::Start& start : best_of(sift.run(best_of(tasted, kTasted), kSiftAgain), kDrawn))
     best.push_back(start);
@@ -342,7 +284,7 @@ Trial simplified(Search& search, Trial best) {
         "coat_roughness_anisotropy"}) {
     const Inputs group = inputs_named(name);
     if ((best.held & group) == group) continue;
-    OpenPbrParameters without = best.parameters;
+    OpenPbrParameters without = best.material;
     for (std::size_t i = 0; i < kOpenPbrInputs.size(); ++i)
       if (group[i])
         std::visit([&](auto member) { without.*member = defaults.*member; }, kOpenPbrInputs[i].member);
@@ -365,7 +307,7 @@ OpenPbrFit refine_openpbr(const PicturePairs& pairs, const OpenPbrParameters& st
 OpenPbrFit fit_openpbr_at_random(const PicturePairs& pairs, int count, std::uint64_t seed,
                                  const OpenPbrFitOptions& options) {
   const PicturePairs coarse = thinned(pairs, kCoarse);
-  Search sift(coarse, options), search(pairs, options);
+  Search sift = search_on(coarse, options), search = search_on(pairs, options);
   const std::vector<Trial> trials = search_at_random(sift, count, seed, options);
   const std::vector<Trial> ends =
       search.run(best_of(trials, (static_cast<std::size_t>(count) + 19) / 20), kLast);
@@ -382,7 +324,7 @@ OpenPbrFit fit_openpbr_at_random(const PicturePairs& pairs, int count, std::uint
 
 OpenPbrFit fit_openpbr(const PicturePairs& pairs, const OpenPbrFitOptions& options) {
   const PicturePairs coarse = thinned(pairs, kCoarse);
-  Search sift(coarse, options), search(pairs, options);
+  Search sift = search_on(coarse, options), search = search_on(pairs, options);
   const auto progress = [&](double fraction) {
     if (options.progress) options.progress(fraction);
   };
@@ -403,7 +345,7 @@ OpenPbrFit fit_openpbr(const PicturePairs& pairs, const OpenPbrFitOptions& optio
   const auto difference = [&](const Trial& trial) { return to_fit(pairs, trial, 0).summary.error_after; };
   const Trial simple = simplified(search, *std::ranges::min_element(ends, {}, difference));
   progress(0.9);
-  const Trial best = search.run({{simple.parameters, simple.held}}, kLast).front();
+  const Trial best = search.run({{simple.material, simple.held}}, kLast).front();
   progress(1);
   OpenPbrFit fit = to_fit(pairs, best, kept.front().first_cost);
   fit.summary.iterations = sift.iterations + search.iterations;

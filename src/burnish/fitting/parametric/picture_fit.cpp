@@ -157,6 +157,16 @@ LeastSquaresSolution fit_pictures(const PicturePairs& pairs, const FittedMateria
                               .least_diagonal = kLeastDiagonal});
 }
 
+FitSummary summary_of(const PicturePairs& pairs, BrdfRef shown, double first_cost, int iterations,
+                      bool converged) {
+  std::vector<double> pixels;
+  pairs.show(shown, pixels);
+  return {.error_before = std::sqrt(2 * first_cost),
+          .error_after = std::sqrt(pairs.mean_squared_error(pixels)),
+          .iterations = iterations,
+          .stop_reason = converged ? StopReason::converged : StopReason::iteration_limit};
+}
+
 Rgb mean_color(const PicturePairs& pairs) {
   std::array<double, 3> sum{};
   double total = 0;

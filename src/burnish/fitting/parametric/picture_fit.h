@@ -1,11 +1,17 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include <burnish/fitting/fit_summary.h>
 #include <burnish/fitting/numerics/bounded_least_squares.h>
 #include <burnish/fitting/parametric/picture_pairs.h>
+#include <burnish/math/parallel.h>
 #include <burnish/math/rgb.h>
 
 namespace burnish {
@@ -40,6 +46,81 @@ struct FitEffort {
 /// dark or saturated, add a little. Throws as solve_least_squares.
 LeastSquaresSolution fit_pictures(const PicturePairs& pairs, const FittedMaterial& material,
                                   std::vector<double> start, const FitEffort& effort);
+
+/// Where a minimization begins, and which of the material's inputs keep their values.
+template <class Material, class Inputs>
+struct FitStart {
+  Material material;
+  Inputs held;
+};
+
+/// Where one ended.
+template <class Material, class Inputs>
+struct FitTrial {
+  Material material;
+  Inputs held;
+  double first_cost = 0, cost = 0;
+  int iterations = 0;
+  bool converged = false;
+};
+
+/// Runs minimizations side by side, and counts them.
+template <class Material, class Inputs>
+class FitSearch {
+ public:
+  using Start = FitStart<Material, Inputs>;
+  using Trial = FitTrial<Material, Inputs>;
+  using Minimize = std::function<Trial(const Start& start, const FitEffort& effort)>;
+
+  explicit FitSearch(Minimize minimize) : minimize_(std::move(minimize)) {}
+
+  /// The trials of these starts, best first.
+  std::vector<Trial> run(const std::vector<Start>& starts, const FitEffort& effort) {
+    std::vector<Trial> trials(starts.size());
+    for_each_chunk(starts.size(), 1, [&](std::size_t i, std::size_t, std::size_t) {
+      trials[i] = minimize_(starts[i], effort);
+    });
+    for (const Trial& trial : trials) iterations += trial.iterations;
+    count += static_cast<int>(trials.size());
+    std::ranges::stable_sort(trials, {}, &Trial::cost);
+    return trials;
+  }
+
+  /// Counts another's as its own.
+  void add(const FitSearch& other) {
+    iterations += other.iterations;
+    count += other.count;
+  }
+
+  int iterations = 0, count = 0;
+
+ private:
+  Minimize minimize_;
+};
+
+/// Where the first of the trials go on.
+template <class Material, class Inputs>
+std::vector<FitStart<Material, Inputs>> best_of(const std::vector<FitTrial<Material, Inputs>>& trials,
+                                                std::size_t count) {
+  std::vector<FitStart<Material, Inputs>> starts;
+  for (std::size_t i = 0; i < std::min(count, trials.size()); ++i)
+    starts.push_back({trials[i].material, trials[i].held});
+  return starts;
+}
+
+/// What a fit says of a trial whose material is `shown`: the beginning's cost as an error, and the pictures'.
+FitSummary summary_of(const PicturePairs& pairs, BrdfRef shown, double first_cost, int iterations,
+                      bool converged);
+
+/// A colour's channel, of 0 to 2.
+constexpr double& channel_of(Rgb& color, int channel) noexcept {
+  return channel == 0 ? color.r : channel == 1 ? color.g : color.b;
+}
+
+/// To six decimals, as fits write their numbers.
+inline double round6(double x) {
+  return std::round(x * 1e6) / 1e6;
+}
 
 /// What a colour is guessed at: a diffuse albedo that shows the mean of the pictures, in [.02, .98].
 Rgb mean_color(const PicturePairs& pairs);

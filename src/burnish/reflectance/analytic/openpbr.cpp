@@ -6,6 +6,7 @@
 
 #include <burnish/formula/expression.h>
 #include <burnish/math/angles.h>
+#include <burnish/reflectance/analytic/film_response.h>
 #include <burnish/reflectance/analytic/openpbr.h>
 #include <burnish/reflectance/analytic/openpbr_expression.h>
 
@@ -156,7 +157,7 @@ Polarized<T> fresnel_polarized(const T& cosine, double ior) {
 }
 
 /// Light in a film: its index of refraction, the cosine inside, and what X, Y and Z see of both orders of interference,
-/// for phases that do not turn. Gaussians in the Fourier domain, their constants those of the paper's code.
+/// for phases that do not turn.
 template <class T>
 struct Film {
   double ior = 1;
@@ -167,19 +168,14 @@ struct Film {
   Film(double film_ior, double micrometres, const T& cosine)
       : ior(film_ior), cos_inside(named("inside", sqrt(1 - (1 - square(cosine)) / square(film_ior)))) {
     // of the first order; the second has twice the phase
-    constexpr double kNorm = 1.0685e-7;
     const T phase = named("phase", kTwoPi * 2 * ior * cos_inside * 1e-6 * micrometres);
-    const auto add = [&](std::size_t i, double value, double position, double variance) {
-      const double height = value * std::sqrt(kTwoPi * variance) / kNorm;
+    for (const auto& [i, value, position, variance] : kFilmResponses) {
+      const double height = value * std::sqrt(kTwoPi * variance) / kFilmNorm;
       const T wave = named("wave", cos(position * phase)),
               decay = named("decay", exp(-variance * phase * phase));
       response[0][i] = response[0][i] + height * decay * wave;
       response[1][i] = response[1][i] + height * square(square(decay)) * (2 * wave * wave - 1);
-    };
-    add(0, 5.4856e-13, 1.6810e6, 4.3278e9);
-    add(0, 9.7470e-14, 2.2399e6, 4.5282e9);
-    add(1, 4.4201e-13, 1.7953e6, 9.3046e9);
-    add(2, 5.2481e-13, 2.2084e6, 6.6121e9);
+    }
   }
 };
 

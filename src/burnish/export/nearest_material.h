@@ -2,6 +2,7 @@
 
 #include <burnish/reflectance/analytic/openpbr.h>
 #include <burnish/reflectance/brdf.h>
+#include <burnish/reflectance/gltf_material.h>
 
 namespace burnish {
 
@@ -10,7 +11,16 @@ struct NearestOpenPbr {
   double psnr = 0;  ///< dB, of the pictures of metrics/sphere_images.h, 64 pixels
 };
 
+struct NearestGltf {
+  GltfMaterial material;
+  double psnr = 0;      ///< as NearestOpenPbr has it
+  double relative = 0;  ///< as ErrorFigures has it, of 20,000 pairs
+};
+
 /// What fit_openpbr finds for a BRDF of 1 or 3 channels, and how much it looks like it. Takes seconds.
 NearestOpenPbr nearest_openpbr(BrdfRef brdf);
+
+/// What fit_gltf finds, likewise.
+NearestGltf nearest_gltf(BrdfRef brdf);
 
 }  // namespace burnish

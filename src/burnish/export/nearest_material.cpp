@@ -1,13 +1,21 @@
 #include <vector>
 
-#include <burnish/export/nearest_openpbr.h>
+#include <burnish/export/nearest_material.h>
+#include <burnish/fitting/parametric/gltf_fit.h>
 #include <burnish/fitting/parametric/openpbr_fit.h>
+#include <burnish/metrics/error_figures.h>
 #include <burnish/metrics/sphere_images.h>
 
 namespace burnish {
 
+namespace {
+
+constexpr int kSize = 64;
+constexpr std::size_t kPairs = 20'000;
+
+}  // namespace
+
 NearestOpenPbr nearest_openpbr(BrdfRef brdf) {
-  constexpr int kSize = 64;
   std::vector<LitSphere> truth;
   for (const double light : kSphereLights) truth.push_back(render_sphere(brdf, light, kSize));
   const double exposure = sphere_exposure(truth);
@@ -22,6 +30,14 @@ NearestOpenPbr nearest_openpbr(BrdfRef brdf) {
         tone_map(truth[i].image, exposure));
   nearest.psnr = psnr(error / static_cast<double>(truth.size()));
   return nearest;
+}
+
+NearestGltf nearest_gltf(BrdfRef brdf) {
+  const Scorer scorer(brdf, {.count = kPairs, .image_size = kSize});
+  const GltfFit fit = fit_gltf(picture_pairs(brdf, scorer.exposure()),
+                               {.grey = brdf.channels() == 1, .anisotropic = !brdf.isotropic()});
+  const ErrorFigures figures = scorer.score(fit.material);
+  return {fit.material, figures.psnr, figures.relative};
 }
 
 }  // namespace burnish
