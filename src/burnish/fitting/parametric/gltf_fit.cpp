@@ -182,14 +182,23 @@ Start random_start(Pcg32& random, const Layers& always, bool grey) {
   return start;
 }
 
-/// The same with layers back at what nobody set, where that shows too little.
-Trial simplified(Search& search, Trial best) {
+/// The same with layers back at what nobody set, where that shows too little; without a film the others are tried too.
+Trial simplified(Search& search, Trial best, const std::vector<Trial>& others) {
   constexpr double kAsGood = 1.01, kExact = 2e-11;
+  constexpr double kFilmsWorth = 1.12;  // half a decibel: programs have films of their own, of other colours
+  const auto without_layer = [](const Trial& trial, Layer layer) -> Start {
+    return {without(trial.material, only({layer})), trial.held | only({layer})};
+  };
+  if (!best.held[kFilm]) {
+    std::vector<Start> starts = {without_layer(best, kFilm)};
+    for (const Trial& trial : others) starts.push_back(without_layer(trial, kFilm));
+    const Trial trial = search.run(starts, kAgain).front();
+    if (trial.cost <= kFilmsWorth * best.cost + kExact) best = trial;
+  }
   const double most = kAsGood * best.cost + kExact;
-  for (const Layer layer : {kFilm, kSheen, kCoat, kGrain, kSpecular, kIor}) {
+  for (const Layer layer : {kSheen, kCoat, kGrain, kSpecular, kIor}) {
     if (best.held[layer]) continue;
-    const Start start{without(best.material, only({layer})), best.held | only({layer})};
-    const Trial trial = search.run({start}, kAgain).front();
+    const Trial trial = search.run({without_layer(best, layer)}, kAgain).front();
     if (trial.cost <= most) best = trial;
   }
   return best;
@@ -260,7 +269,7 @@ GltfFit fit_gltf(const PicturePairs& pairs, const GltfFitOptions& options) {
   const std::vector<Trial> kept = search.run(best_of(found, kFound), kAgain);
   const std::vector<Trial> ends = search.run(best_of(kept, kEnds), kEnd);
   const auto difference = [&](const Trial& trial) { return to_fit(pairs, trial, 0).summary.error_after; };
-  const Trial simple = simplified(search, *std::ranges::min_element(ends, {}, difference));
+  const Trial simple = simplified(search, *std::ranges::min_element(ends, {}, difference), ends);
   progress(0.9);
   const Trial best = search.run({{simple.material, simple.held}}, kEnd).front();
   progress(1);

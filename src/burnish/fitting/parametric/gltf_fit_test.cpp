@@ -69,6 +69,27 @@ TEST(GltfFit, RecoversAClothWithSheen) {
   EXPECT_EQ(found.clearcoat, 0);
 }
 
+TEST(GltfFit, RecoversAFilmThatColoursTheHighlight) {
+  BURNISH_SKIP_WHERE_SANITIZED();
+  const GltfMaterial soap{.base_color = {0.5, 0.5, 0.5},
+                          .metallic = 1,
+                          .roughness = 0.4,
+                          .iridescence = 1,
+                          .iridescence_ior = 1.6,
+                          .iridescence_thickness = 450};
+  const GltfMaterial found = recovered(soap);
+  expect_near(found.iridescence_thickness * found.iridescence_ior,
+              soap.iridescence_thickness * soap.iridescence_ior);
+  EXPECT_GT(found.iridescence, 0.5);
+}
+
+// Which would earn .05 dB or more, and be another film in other programs.
+TEST(GltfFit, LeavesOutAFilmThatEarnsLittle) {
+  BURNISH_SKIP_WHERE_SANITIZED();
+  const AnalyticBrdf cloth = parse_analytic("openpbr:fuzz_weight=1,fuzz_color=0,base_color=0.2/0.2/0.6");
+  EXPECT_EQ(fit_gltf(pairs_of(cloth.ref())).material.iridescence, 0);
+}
+
 // Another formula's coat and base: closer than any core material is.
 TEST(GltfFit, SaysOfOpenPbrWhatExtensionsCan) {
   BURNISH_SKIP_WHERE_SANITIZED();
