@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
@@ -413,7 +412,7 @@ struct Scratch {
   alignas(64) float product[kTogether * kMaxBlock];
   alignas(64) float scale[kTogether * kLanes];
   Projector projector;
-  VolumeCells volume_cells;
+  VolumePipeline volumes;
   Rows rows;
 };
 
@@ -504,35 +503,40 @@ void spoil_others(const Projector& p, std::size_t channels, const ValuePointers&
   }
 }
 
-// A block of a model that is a volume times a line. The steps are loops again: positions, where the time goes into
-// roots; lookups, where it goes into loads; values.
+// Where the values of a volume times a line go, in whole vectors.
+struct VolumeValues {
+  ValuePointers to;
+
+  HWY_INLINE void operator()(std::size_t i, const Lane (&value)[kTogether]) const {
+    if (to.step == 1) {
+      for (std::size_t c = 0; c < kTogether; ++c) {
+        store(value[c], to.at(c, i));
+        hwy::Prefetch(to.at(c, i) + kMaxBlock);
+      }
+    } else {
+      hn::StoreInterleaved3(value[0].raw, value[1].raw, value[2].raw, D(), to.at(0, i));
+    }
+  }
+};
+
+// Whole vectors of directions of a model that is one.
 template <bool kRows>
-void eval_volume_block(const FactoredPlan& plan, const DirectionPointers& in, std::size_t first,
-                       std::size_t count, VolumeCells& cells, float* values, const ValuePointers& out) {
+void eval_volumes(const FactoredPlan& plan, const DirectionPointers& in, std::size_t count,
+                  VolumePipeline& pipeline, const ValuePointers& out) {
   const FactoredPlan::VolumeAndLine& v = *plan.volume_and_line;
   const float* w[6];
-  for (std::size_t k = 0; k < 6; ++k) w[k] = in.at(k, first);
-  const bool all_directions = cells.find<kRows>(v, w, count);
-  const VolumeRows rows(plan);
-  for_each_quad(count, values, [&](std::size_t i, float* to) HWY_ATTR { store(cells.value(rows, i), to); });
-  store_values<kTogether>(count, kTogether, out, [&](std::size_t i, Lane(&value)[kTogether]) HWY_ATTR {
-    const Lane above = load(cells.above + i);
-    transpose(values + i * FactoredPlan::kRowStride, value);
-    for (std::size_t c = 0; c < kTogether; ++c) value[c] = if_positive(above, value[c]);
-  });
-  for (std::size_t i = 0; !all_directions && i < count; ++i)
-    for (std::size_t c = 0; c < kTogether && std::isnan(cells.above[i]); ++c) *out.at(c, i) = cells.above[i];
+  for (std::size_t k = 0; k < 6; ++k) w[k] = in.at(k, 0);
+  const VolumeValues put{out};
+  if (v.root[0] || v.root[3])
+    pipeline.run<kRows, true>(plan, w, count, put);
+  else
+    pipeline.run<kRows, false>(plan, w, count, put);
 }
 
 // Up to kMaxBlock directions from `first` on, in memory that whole vectors can be read from. kApart: see eval_group.
 template <bool kApart>
 void eval_block(const FactoredPlan& plan, const DirectionPointers& in, std::size_t first, std::size_t count,
                 std::size_t stride, Scratch& scratch, const ValuePointers& out) {
-  if (plan.volume_and_line)
-    return in.step == 3 ? eval_volume_block<true>(plan, in, first, count, scratch.volume_cells,
-                                                  scratch.rows.values, out)
-                        : eval_volume_block<false>(plan, in, first, count, scratch.volume_cells,
-                                                   scratch.rows.values, out);
   Projector& projector = scratch.projector;
   projector.begin(in, first, count, plan.needs_sum);
   for (const FactoredPlan::Source& source : plan.sources) {
@@ -559,17 +563,30 @@ void eval_all(const FactoredPlan& plan, const DirectionPointers& in, std::size_t
   const std::size_t slots = std::max<std::size_t>(plan.slots, 1);
   const std::size_t stride = std::min(kMaxBlock, kPositions / slots / kLanes * kLanes);
   const std::size_t whole = count / kLanes * kLanes;
-  for (std::size_t i = 0; i < whole; i += stride)
-    eval_block<kApart>(plan, in, i, std::min(stride, whole - i), stride, scratch, out.from(0, i));
+  if (plan.volume_and_line && whole != 0) {
+    if (in.step == 3)
+      eval_volumes<true>(plan, in, whole, scratch.volumes, out);
+    else
+      eval_volumes<false>(plan, in, whole, scratch.volumes, out);
+  } else {
+    for (std::size_t i = 0; i < whole; i += stride)
+      eval_block<kApart>(plan, in, i, std::min(stride, whole - i), stride, scratch, out.from(0, i));
+  }
   if (whole == count) return;
   // the rest, filled up to a vector with the first of them
+  const std::size_t left = count - whole;
   float rest[6][kLanes];
   for (std::size_t k = 0; k < 6; ++k) {
     std::fill(rest[k], rest[k] + kLanes, *in.at(k, whole));
-    for (std::size_t i = 1; i < count - whole; ++i) rest[k][i] = *in.at(k, whole + i);
+    for (std::size_t i = 1; i < left; ++i) rest[k][i] = *in.at(k, whole + i);
   }
-  eval_block<kApart>(plan, {{rest[0], rest[1], rest[2], rest[3], rest[4], rest[5]}}, 0, count - whole, stride,
-                     scratch, out.from(0, whole));
+  const DirectionPointers filled{{rest[0], rest[1], rest[2], rest[3], rest[4], rest[5]}};
+  if (!plan.volume_and_line)
+    return eval_block<kApart>(plan, filled, 0, left, stride, scratch, out.from(0, whole));
+  float values[kTogether * kLanes];
+  eval_volumes<false>(plan, filled, kLanes, scratch.volumes, {values, kLanes, 1});
+  for (std::size_t c = 0; c < kTogether; ++c)
+    for (std::size_t i = 0; i < left; ++i) *out.at(c, whole + i) = values[c * kLanes + i];
 }
 
 void eval_directions(const FactoredPlan& plan, const DirectionPointers& in, std::size_t count,

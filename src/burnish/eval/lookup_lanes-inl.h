@@ -147,21 +147,44 @@ HWY_INLINE Quad interpolate(const float* node, const float* above, std::size_t l
 #endif
 }
 
-/// The first, second and third floats of each of kLanes quads; quad j is at k kLanes + 4 (j / 4), k = j % 4.
-HWY_INLINE void transpose(const float* buffer, Lane (&channel)[3]) {
-#if HWY_TARGET == HWY_SCALAR
-  for (int c = 0; c < 3; ++c) channel[c] = Lane(hn::LoadU(D(), buffer + c));
-#else
+#if HWY_TARGET == HWY_AVX3
+/// Two nodes from each of two places.
+HWY_INLINE Lane load_nodes(const float* node, const float* other) {
+  const hn::Half<D> d8;
+  return Lane(hn::Combine(D(), hn::LoadU(d8, other), hn::LoadU(d8, node)));
+}
+/// Of four places, two a vector, the first nodes and the second ones.
+HWY_INLINE Lane first_nodes(Lane two, Lane others) {
+  return Lane(hn::Vec<D>{_mm512_shuffle_f32x4(two.raw.raw, others.raw.raw, 0x88)});
+}
+HWY_INLINE Lane second_nodes(Lane two, Lane others) {
+  return Lane(hn::Vec<D>{_mm512_shuffle_f32x4(two.raw.raw, others.raw.raw, 0xdd)});
+}
+#endif
+
+#if HWY_TARGET != HWY_SCALAR
+/// The first, second and third floats of each of kLanes quads; quad j is the j / 4-th of part[j % 4].
+HWY_INLINE void transpose(const Lane (&part)[4], Lane (&channel)[3]) {
   const D d;
   const hn::Repartition<std::uint64_t, D> pairs;
-  const auto part = [&](std::size_t k) HWY_ATTR { return hn::LoadU(d, buffer + k * kLanes); };
-  const auto low01 = hn::BitCast(pairs, hn::InterleaveLower(d, part(0), part(1)));
-  const auto low23 = hn::BitCast(pairs, hn::InterleaveLower(d, part(2), part(3)));
-  const auto high01 = hn::BitCast(pairs, hn::InterleaveUpper(d, part(0), part(1)));
-  const auto high23 = hn::BitCast(pairs, hn::InterleaveUpper(d, part(2), part(3)));
+  const auto low01 = hn::BitCast(pairs, hn::InterleaveLower(d, part[0].raw, part[1].raw));
+  const auto low23 = hn::BitCast(pairs, hn::InterleaveLower(d, part[2].raw, part[3].raw));
+  const auto high01 = hn::BitCast(pairs, hn::InterleaveUpper(d, part[0].raw, part[1].raw));
+  const auto high23 = hn::BitCast(pairs, hn::InterleaveUpper(d, part[2].raw, part[3].raw));
   channel[0] = Lane(hn::BitCast(d, hn::InterleaveLower(pairs, low01, low23)));
   channel[1] = Lane(hn::BitCast(d, hn::InterleaveUpper(pairs, low01, low23)));
   channel[2] = Lane(hn::BitCast(d, hn::InterleaveLower(pairs, high01, high23)));
+}
+#endif
+
+/// The same of quads in memory; quad j is at k kLanes + 4 (j / 4), k = j % 4.
+HWY_INLINE void transpose(const float* buffer, Lane (&channel)[3]) {
+#if HWY_TARGET == HWY_SCALAR
+  for (int c = 0; c < 3; ++c) channel[c] = load(buffer + c);
+#else
+  const Lane part[] = {load(buffer), load(buffer + kLanes), load(buffer + 2 * kLanes),
+                       load(buffer + 3 * kLanes)};
+  transpose(part, channel);
 #endif
 }
 

@@ -8,6 +8,7 @@
 #define BURNISH_EVAL_VOLUME_LANES_INL_H_
 #endif
 
+#include <algorithm>
 #include <limits>
 
 #include <hwy/cache_control.h>
@@ -43,11 +44,14 @@ struct VolumeRows {
   HWY_INLINE explicit VolumeRows(const FactoredPlan& plan)
       : values(plan.values.data()), above(plan.volume_and_line->above), layer(plan.volume_and_line->layer) {}
 
+  HWY_INLINE const float* at(std::int32_t floats) const {
+    return values + static_cast<std::uint32_t>(floats);
+  }
   /// The volume's value times the line's, at these floats and fractions of their cells.
-  HWY_INLINE Quad product(std::uint32_t volume, std::uint32_t line, float x, float y, float z,
+  HWY_INLINE Quad product(std::int32_t volume, std::int32_t line, float x, float y, float z,
                           float along) const {
-    const float* const node = values + volume;
-    return interpolate(values + line, along) * interpolate(node, node + above, layer, x, y, z);
+    const float* const node = at(volume);
+    return interpolate(at(line), along) * interpolate(node, node + above, layer, x, y, z);
   }
 };
 
@@ -125,76 +129,182 @@ HWY_INLINE void eval_one_of_volume(const FactoredPlan& plan, const Vec3& wi, con
   const auto volume = hn::Add(hn::Add(first, hn::Shuffle1032(first)), hn::Broadcast<3>(first));
   alignas(16) float fraction[4];
   hn::Store(cell.fraction.raw, d4, fraction);
-  const Quad value = VolumeRows(plan).product(static_cast<std::uint32_t>(hn::GetLane(volume)),
-                                              static_cast<std::uint32_t>(hn::ExtractLane(first, 1)),
-                                              fraction[2], fraction[0], fraction[3], fraction[1]);
+  const Quad value = VolumeRows(plan).product(hn::GetLane(volume), hn::ExtractLane(first, 1), fraction[2],
+                                              fraction[0], fraction[3], fraction[1]);
   store_three(value.raw, f);
 }
 
 #endif  // HWY_TARGET != HWY_SCALAR
 
-/// Where a block of pairs looks up.
-struct VolumeCells {
-  static constexpr std::size_t kMost = FactoredPlan::kMaxBlock;
-  alignas(64) std::int32_t volume[kMost], line[kMost];  // first floats
-  alignas(64) float x[kMost], y[kMost], z[kMost], along[kMost];
-  alignas(64) float above[kMost];  // > 0: both above the horizon; not-a-number: no directions
+/// Many pairs, a vector of them in every turn: those whose places were found two turns before are looked up, while
+/// places, tangents and lengths of later ones are found. What waits for roots or divisions is done a turn after they
+/// began, so that instructions that wait do not fill the processor's queues; places have two turns, because single
+/// numbers are loaded from vectors that were stored. Nothing is called in the loop: all registers would go to memory.
+struct VolumePipeline {
+  static constexpr std::size_t kAhead = 2 * kLanes, kRing = 4 * kLanes;  // pairs
+  static constexpr std::size_t kFetched = FactoredPlan::kMaxBlock;       // so far ahead memory is asked for
+  /// Where pairs look up, some vectors in turn.
+  alignas(64) std::int32_t volume[kRing], line[kRing];  // first floats
+  alignas(64) float x[kRing], y[kRing], z[kRing], along[kRing];
+  alignas(64) float above[kRing];  // > 0: both above the horizon; not-a-number: no directions
 
-  HWY_INLINE Quad value(const VolumeRows& rows, std::size_t i) const {
-    return rows.product(static_cast<std::uint32_t>(volume[i]), static_cast<std::uint32_t>(line[i]), x[i],
-                        y[i], z[i], along[i]);
+  /// Lengths and what polar angles take beside them.
+  struct Lengths {
+    Lane sum, half, difference, azimuth, sum_z, sine, d_z, above;
+  };
+  /// tan(theta / 2) of the angles.
+  struct Tangents {
+    Lane half, difference, azimuth, above;
+  };
+
+  /// wi_x, wi_y, wi_z, wo_x, wo_y, wo_z in planes, or wi from w[0] and wo from w[3] on in rows.
+  template <bool kRows>
+  static HWY_INLINE Lengths lengths(const float* const (&w)[6], std::size_t i) {
+    Lanes wi, wo;
+    if constexpr (kRows) {
+      hn::LoadInterleaved3(D(), w[0] + 3 * i, wi.x.raw, wi.y.raw, wi.z.raw);
+      hn::LoadInterleaved3(D(), w[3] + 3 * i, wo.x.raw, wo.y.raw, wo.z.raw);
+    } else {
+      wi = {load(w[0] + i), load(w[1] + i), load(w[2] + i)};
+      wo = {load(w[3] + i), load(w[4] + i), load(w[5] + i)};
+      for (const float* plane : w) hwy::Prefetch(plane + i + kFetched);
+    }
+    const auto excess = hn::Max(excess_of(wi.x, wi.y, wi.z), excess_of(wo.x, wo.y, wo.z));
+    const Lane lit = if_positive(wi.z, wo.z), none(std::numeric_limits<double>::quiet_NaN());
+    const Lanes sum = wi + wo, apart = wi - wo;
+    const Lane across = mul_add(sum.x, sum.x, sum.y * sum.y), square = mul_add(sum.z, sum.z, across);
+    const Lane sine = abs(sum.y * apart.x - sum.x * apart.y), d_z = abs(apart.z);
+    return {.sum = sqrt(square),
+            .half = sqrt(across),
+            .difference = length(apart.x, apart.y, apart.z),
+            .azimuth = sqrt(mul_add(d_z * d_z, square, sine * sine)),
+            .sum_z = sum.z,
+            .sine = sine,
+            .d_z = d_z,
+            .above = Lane(hn::IfThenElse(hn::RebindMask(D(), no_directions(excess)), none.raw, lit.raw))};
   }
 
-  /// Of `count` pairs, whole vectors: wi_x, wi_y, wi_z, wo_x, wo_y, wo_z in planes, or wi from w[0] and wo from w[3] on
-  /// in rows. Whether all are directions.
-  template <bool kRows>
-  HWY_INLINE bool find(const FactoredPlan::VolumeAndLine& v, const float* const (&w)[6], std::size_t count) {
-    const Lane cells[] = {Lane(v.cells[0]), Lane(v.cells[1]), Lane(v.cells[2]), Lane(v.cells[3])};
-    const auto fraction = [&](std::size_t k, Lane t, Lane root, hn::Vec<DI>& first) HWY_ATTR {
-      const LaneCell cell = cell_of(within(cells[k] * (v.root[k] ? root : t), cells[k]));
-      first = first_floats(cell, hn::Set(DI(), v.floats[k]), hn::Set(DI(), v.start[k]));
-      return cell.fraction;
-    };
-    const bool any_root = v.root[0] || v.root[3];
-    auto worst = hn::Zero(DI());
-    for (std::size_t i = 0; i < count; i += kLanes) {
-      // directions, and which are none
-      Lanes wi, wo;
-      if constexpr (kRows) {
-        hn::LoadInterleaved3(D(), w[0] + 3 * i, wi.x.raw, wi.y.raw, wi.z.raw);
-        hn::LoadInterleaved3(D(), w[3] + 3 * i, wo.x.raw, wo.y.raw, wo.z.raw);
-      } else {
-        wi = {load(w[0] + i), load(w[1] + i), load(w[2] + i)};
-        wo = {load(w[3] + i), load(w[4] + i), load(w[5] + i)};
-        for (const float* plane : w) hwy::Prefetch(plane + i + kMost);  // for the next block
-      }
-      const auto excess = hn::Max(excess_of(wi.x, wi.y, wi.z), excess_of(wo.x, wo.y, wo.z));
-      worst = hn::Max(worst, excess);
-      const Lane lit = if_positive(wi.z, wo.z), none(std::numeric_limits<double>::quiet_NaN());
-      store(Lane(hn::IfThenElse(hn::RebindMask(D(), no_directions(excess)), none.raw, lit.raw)), above + i);
+  static HWY_INLINE Tangents tangents(const Lengths& l) {
+    return {.half = l.half / (l.sum + l.sum_z),
+            .difference = l.difference / (Lane(2.0) + l.sum),
+            .azimuth = l.sine / max(mul_add(l.d_z, l.sum, l.azimuth), least_positive(Lane())),
+            .above = l.above};
+  }
 
-      // what the lengths and the polar angles take
-      const Lanes sum = wi + wo, apart = wi - wo;
-      const Lane across = mul_add(sum.x, sum.x, sum.y * sum.y), square = mul_add(sum.z, sum.z, across);
-      const Lane sine = abs(sum.y * apart.x - sum.x * apart.y), d_z = abs(apart.z);
-      const Lane azimuth = sqrt(mul_add(d_z * d_z, square, sine * sine));
+  /// How far in its cell along axis k, and where that begins.
+  static HWY_INLINE Lane fraction(const FactoredPlan::VolumeAndLine& v, std::size_t k, Lane position,
+                                  hn::Vec<DI>& first) {
+    const Lane cells(v.cells[k]);
+    const LaneCell cell = cell_of(within(cells * position, cells));
+    first = first_floats(cell, hn::Set(DI(), v.floats[k]), hn::Set(DI(), v.start[k]));
+    return cell.fraction;
+  }
+  /// Where the pairs at `to` of the ring look up; `root`: of the tangent of theta_h.
+  template <bool kRoots>
+  HWY_INLINE void place(const FactoredPlan::VolumeAndLine& v, const Tangents& t, Lane root, std::size_t to) {
+    const Lane d = kRoots && v.root[0] ? sqrt(t.difference) : t.difference;
+    const Lane phi = kRoots && v.root[3] ? sqrt(t.azimuth) : t.azimuth;
+    hn::Vec<DI> along_x, along_y, along_z, along_line;
+    store(fraction(v, 2, v.root[2] ? root : t.half, along_x), x + to);
+    store(fraction(v, 0, d, along_y), y + to);
+    store(fraction(v, 3, phi, along_z), z + to);
+    store(fraction(v, 1, v.root[1] ? root : t.half, along_line), along + to);
+    hn::StoreU(hn::Add(along_x, hn::Add(along_y, along_z)), DI(), volume + to);
+    hn::StoreU(along_line, DI(), line + to);
+    store(t.above, above + to);
+  }
 
-      const LanePairOf<D> pair{sum, apart, sqrt(square)};
-      const Polar<Lane> h = polar_of(sum, pair.sum_length()), d = difference_angle(pair);
-      const Lane t_h = h.r / h.den, t_d = d.r / d.den;
-      const Lane t_phi = sine / max(mul_add(d_z, pair.sum_length(), azimuth), least_positive(Lane()));
-      // cells, and where the two lookups begin
-      const Lane root_h = sqrt(t_h), root_d = any_root ? sqrt(t_d) : t_d,
-                 root_phi = any_root ? sqrt(t_phi) : t_phi;
-      hn::Vec<DI> along_x, along_y, along_z, along_line;
-      store(fraction(2, t_h, root_h, along_x), x + i);
-      store(fraction(0, t_d, root_d, along_y), y + i);
-      store(fraction(3, t_phi, root_phi, along_z), z + i);
-      store(fraction(1, t_h, root_h, along_line), along + i);
-      hn::StoreU(hn::Add(along_x, hn::Add(along_y, along_z)), DI(), volume + i);
-      hn::StoreU(along_line, DI(), line + i);
+#if HWY_TARGET == HWY_AVX3
+  /// The numbers of pairs k and k + 4, eight times each.
+  template <std::int32_t k>
+  static HWY_INLINE Lane of_two(const float* from) {
+    alignas(64) static constexpr std::int32_t kWhich[] = {
+        k, k, k, k, k, k, k, k, k + 4, k + 4, k + 4, k + 4, k + 4, k + 4, k + 4, k + 4};
+    return Lane(hn::TableLookupLanes(load(from).raw, hn::SetTableIndices(D(), kWhich)));
+  }
+  /// Between the volume's rows, the two nodes of pairs i + k and i + k + 4.
+  template <std::int32_t k>
+  HWY_INLINE Lane between_rows(const VolumeRows& rows, std::size_t i) const {
+    const float *const node = rows.at(volume[i + k]), *const other = rows.at(volume[i + k + 4]);
+    const std::size_t above_it = rows.above + rows.layer;
+    const Lane across = of_two<k>(z + i);
+    const Lane low = mix(load_nodes(node, other), load_nodes(node + rows.layer, other + rows.layer), across),
+               high = mix(load_nodes(node + rows.above, other + rows.above),
+                          load_nodes(node + above_it, other + above_it), across);
+    return mix(low, high, of_two<k>(y + i));
+  }
+  /// The two nodes of the line.
+  HWY_INLINE Lane along_line(const VolumeRows& rows, std::size_t i) const {
+    return load_nodes(rows.at(line[i]), rows.at(line[i + 4]));
+  }
+  /// The quads of pairs i + k, + 4, + 8 and + 12: VolumeRows::product() with two pairs a vector, then four.
+  template <std::int32_t k>
+  HWY_INLINE Lane quads(const VolumeRows& rows, std::size_t i) const {
+    const Lane low = between_rows<k>(rows, i), high = between_rows<k + 8>(rows, i);
+    const Lane line_low = along_line(rows, i + k), line_high = along_line(rows, i + k + 8);
+    const Lane x_of(hn::Broadcast<k>(load(x + i).raw)), along_of(hn::Broadcast<k>(load(along + i).raw));
+    return mix(first_nodes(line_low, line_high), second_nodes(line_low, line_high), along_of) *
+           mix(first_nodes(low, high), second_nodes(low, high), x_of);
+  }
+#else
+  HWY_INLINE Quad quad(const VolumeRows& rows, std::size_t i) const {
+    return rows.product(volume[i], line[i], x[i], y[i], z[i], along[i]);
+  }
+#if HWY_MAX_BYTES >= 32
+  /// The quads of pairs i + k and i + k + 4.
+  template <std::size_t k>
+  HWY_INLINE Lane quads(const VolumeRows& rows, std::size_t i) const {
+    return Lane(hn::Combine(D(), quad(rows, i + k + 4).raw, quad(rows, i + k).raw));
+  }
+#elif HWY_TARGET != HWY_SCALAR
+  template <std::size_t k>
+  HWY_INLINE Lane quads(const VolumeRows& rows, std::size_t i) const {
+    return Lane(quad(rows, i + k).raw);
+  }
+#endif
+#endif
+
+  /// Calls put(i, values) for the vectors of `count` pairs, which are read in whole vectors.
+  template <bool kRows, bool kRoots, class Put>
+  HWY_INLINE void run(const FactoredPlan& plan, const float* const (&w)[6], std::size_t count,
+                      const Put& put) {
+    const FactoredPlan::VolumeAndLine& v = *plan.volume_and_line;
+    const VolumeRows rows(plan);
+    const std::size_t last = (count - 1) / kLanes * kLanes;
+    Tangents t = tangents(lengths<kRows>(w, 0));
+    Lengths l = lengths<kRows>(w, std::min(kLanes, last));
+    for (std::size_t i = 0; i < std::min(kAhead, count); i += kLanes) {
+      place<kRoots>(v, t, sqrt(t.half), i);
+      t = tangents(l);
+      l = lengths<kRows>(w, std::min(i + 2 * kLanes, last));
     }
-    return hn::AllFalse(DI(), no_directions(worst));
+    for (std::size_t i = 0; i < count; i += kLanes) {
+      const std::size_t at = i % kRing;
+      const Lane root = sqrt(t.half);
+      const Tangents next = tangents(l);
+      Lane value[3];
+#if HWY_TARGET == HWY_SCALAR
+      place<kRoots>(v, t, root, (i + kAhead) % kRing);
+      l = lengths<kRows>(w, std::min(i + kAhead + 2 * kLanes, last));
+      const Quad q = quad(rows, at);
+      for (int c = 0; c < 3; ++c) value[c] = load(q.c + c);
+#else
+      Lane part[4];
+      part[0] = quads<0>(rows, at);
+      place<kRoots>(v, t, root, (i + kAhead) % kRing);
+      part[1] = quads<1>(rows, at);
+      l = lengths<kRows>(w, std::min(i + kAhead + 2 * kLanes, last));
+      part[2] = quads<2>(rows, at);
+      part[3] = quads<3>(rows, at);
+      transpose(part, value);
+#endif
+      t = next;
+      // 0 below the horizon, not-a-number of no directions
+      const Lane lit = load(above + at);
+      const auto is_above = hn::Gt(lit.raw, hn::Zero(D()));
+      for (Lane& channel : value) channel = Lane(hn::IfThenElse(is_above, channel.raw, (lit - lit).raw));
+      put(i, value);
+    }
   }
 };
 
