@@ -24,8 +24,8 @@ struct ExportOptions {
 
 /// A factored BRDF as every target of `to`, each once; shaders but C++ bring their textures along. Throws
 /// Error as generate_shader does, for an environment that no target shows, and for glTF of other than 1 or 3
-/// channels. gltf and usda have the nearest OpenPBR or core material, which
-/// take seconds to find.
+/// channels. gltf has the nearest material of glTF, usda the nearest OpenPBR and core material, which take
+/// seconds to find.
 ExportedFiles export_model(const FactoredBrdf& brdf, const ExportOptions& options);
 
 }  // namespace burnish
