@@ -4,8 +4,7 @@
 
 #include <burnish/math/angles.h>
 #include <burnish/reflectance/analytic/film_response.h>
-#include <burnish/reflectance/analytic/fresnel.h>
-#include <burnish/reflectance/analytic/microfacet_distribution.h>
+#include <burnish/reflectance/analytic/microfacet.h>
 #include <burnish/reflectance/gltf_material.h>
 
 namespace burnish {
@@ -26,13 +25,6 @@ double reflectance_between(double ior, double other) noexcept {
 }
 double schlick(double f0, double cosine) noexcept {
   return fresnel_schlick(f0, cosine).r;
-}
-
-/// D G / (4 cos_i cos_o) of GGX facets.
-double facets(const GgxDistribution& ggx, const PairGeometry& g) noexcept {
-  const double visible =
-      ggx.projected_area(g.wi) * g.cos_o + ggx.projected_area(g.wo) * g.cos_i - g.cos_i * g.cos_o;
-  return ggx.density(g.h) / (4 * visible);
 }
 
 /// What an order of interference adds, of unit amplitude: X, Y and Z turned by the phases of the base's channels, as the
@@ -181,7 +173,8 @@ bool GltfMaterial::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     // and a coat over all
     if (clearcoat > 0) {
       const double coat = square(clearcoat_roughness);
-      value = mix(value, facets({coat, coat}, g), clearcoat * schlick(reflectance_between(1.5, 1), g.cos_o));
+      value = mix(value, facets(GgxDistribution{coat, coat}, g),
+                  clearcoat * schlick(reflectance_between(1.5, 1), g.cos_o));
     }
     return value;
   });

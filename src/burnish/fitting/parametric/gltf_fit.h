@@ -22,12 +22,12 @@ struct GltfFitOptions {
 };
 
 /// The material of glTF whose lit spheres have the least mean squared difference from those of `pairs`, as fit_openpbr
-/// does it: Levenberg-Marquardt steps within the ranges of GltfMaterial, of roughnesses from .03
-/// (of sheen and coats .1: a coat that is sharper shows as a dot under a point light, as a mirror under the sky), of
-/// indices to 3, of films to 1.5 micrometres. Smooth to rough metals and dielectrics first, then the best with coats,
-/// sheen and films, and random starts on few pixels. Extensions without which the squared error is less than a percent
-/// greater (of films 12 percent, half a decibel: programs have their own) are left out: their numbers are those
-/// of a GltfMaterial that nobody set. The same bits for every number of threads.
+/// does it: Levenberg-Marquardt steps within the ranges of GltfMaterial, of roughnesses from .03 (of sheen and coats .1:
+/// a coat that is sharper shows as a dot under a point light, as a mirror under the sky), of indices to 3, of films to
+/// 1.5 micrometres. Smooth to rough metals and dielectrics first, then the best with coats, sheen and films, and random
+/// starts on few pixels. Extensions without which the squared error is less than a percent greater (of films 12 percent,
+/// half a decibel: programs have their own) are left out: their numbers are those of a GltfMaterial that nobody set. The
+/// same bits for every number of threads.
 GltfFit fit_gltf(const PicturePairs& pairs, const GltfFitOptions& options = {});
 
 }  // namespace burnish

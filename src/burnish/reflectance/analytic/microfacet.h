@@ -6,6 +6,15 @@
 
 namespace burnish {
 
+/// D G / (4 cos_i cos_o), 1/sr, with Smith's height-correlated G. Source: [Walter 2007, eq. 20], G [Heitz 2014, eq. 99].
+template <MicrofacetDistribution Distribution>
+double facets(const Distribution& distribution, const PairGeometry& g) noexcept {
+  // cos_i cos_o / G = cos_i cos_o (1 + Lambda_i + Lambda_o), in projected areas cos (1 + Lambda).
+  const double area_i = distribution.projected_area(g.wi), area_o = distribution.projected_area(g.wo);
+  const double visible = area_i * g.cos_o + area_o * g.cos_i - g.cos_i * g.cos_o;
+  return distribution.density(g.h) / (4 * visible);
+}
+
 /// Specular microfacets with Smith's height-correlated masking and shadowing and Schlick's Fresnel factor,
 /// plus kd / pi: f = D F G / (4 cos_i cos_o). Reciprocal; conserving for kd = 0.
 /// Source: [Walter 2007, eq. 20], G [Heitz 2014, eq. 99].
@@ -19,10 +28,7 @@ struct Microfacet {
   bool isotropic() const noexcept { return distribution.isotropic(); }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     return eval_above_horizon(wi, wo, f, [&](const PairGeometry& g) {
-      // cos_i cos_o / G = cos_i cos_o (1 + Lambda_i + Lambda_o), in projected areas cos (1 + Lambda).
-      const double area_i = distribution.projected_area(wi), area_o = distribution.projected_area(wo);
-      const double visible = area_i * g.cos_o + area_o * g.cos_i - g.cos_i * g.cos_o;
-      return diffuse(kd) + distribution.density(g.h) / (4 * visible) * fresnel_schlick(f0, g.cos_d);
+      return diffuse(kd) + facets(distribution, g) * fresnel_schlick(f0, g.cos_d);
     });
   }
 };
