@@ -1,4 +1,4 @@
-// How close the OpenPBR fit comes to the best of many random starts.
+// How close the OpenPBR fit comes to the best of many random starts, and what a material of glTF keeps beside it.
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
@@ -6,7 +6,12 @@
 #include <limits>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
+#include <burnish/fitting/parametric/gltf_fit.h>
+#include <burnish/fitting/parametric/gltf_json.h>
+#include <burnish/fitting/parametric/metallic_roughness_fit.h>
 #include <burnish/fitting/parametric/openpbr_fit.h>
 #include <burnish/io/open_source.h>
 #include <burnish/metrics/error_figures.h>
@@ -20,6 +25,7 @@ namespace burnish::reports {
 namespace {
 
 constexpr int kStarts = 200, kQuickStarts = 10;
+constexpr std::size_t kPairs = 20'000;
 constexpr std::uint64_t kPeersSeed = 2;  // fit_openpbr draws its own starts from 1
 
 // Of the processor, all threads together.
@@ -37,9 +43,17 @@ struct Scored {
   double psnr, seconds, wall;
 };
 
+/// A material of glTF, and the metallic-roughness core that a viewer without extensions shows.
+struct GltfScored {
+  ErrorFigures figures, core;
+  double wall;
+  std::string extensions;
+};
+
 struct Row {
   std::string material;
   Scored ours, random;
+  GltfScored gltf;
 };
 
 template <class Find>
@@ -50,21 +64,41 @@ Scored scored(const Scorer& scorer, const Find& find) {
   return {found.parameters, scorer.picture_psnr(scorer.pictures(OpenPbr(found.parameters))), seconds, wall};
 }
 
+// "sheen, clearcoat", as the asset names them.
+std::string extensions_of(const GltfMaterial& material) {
+  const auto json = gltf_json(material);
+  std::vector<std::string> names;
+  if (json.contains("extensions"))
+    for (const auto& [name, inputs] : json["extensions"].items())
+      names.push_back(name.substr(name.rfind('_') + 1));
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+GltfScored gltf_scored(const Scorer& scorer, const PicturePairs& pairs, const GltfFitOptions& options) {
+  const double start = wall_seconds();
+  const GltfMaterial found = fit_gltf(pairs, options).material;
+  const double wall = wall_seconds() - start;
+  const MetallicRoughness core = fit_metallic_roughness(scorer.reference()).material;
+  return {scorer.score(found), scorer.score(core), wall, extensions_of(found)};
+}
+
 // As fit_material: of measurements the reciprocal part.
 Row row_of(const std::string& material, const std::string& place, int starts) {
   tell(fmt::format("openpbr: {}", material));
   const Source source = open_source(place, {});
   const SymmetrizedBrdf symmetrized(source.ref());
   const BrdfRef brdf = is_measurement(source) ? BrdfRef(symmetrized) : source.ref();
-  const Scorer scorer(brdf, {.count = 1000});  // the pictures alone are looked at
+  const Scorer scorer(brdf, {.count = kPairs});
   const PicturePairs pairs = picture_pairs(brdf, scorer.exposure());
   const OpenPbrFitOptions options{.grey = brdf.channels() == 1, .anisotropic = !brdf.isotropic()};
   Row row{.material = material,
           .ours = scored(scorer, [&] { return fit_openpbr(pairs, options); }),
-          .random = {}};
+          .random = {},
+          .gltf = gltf_scored(scorer, pairs, {.grey = options.grey, .anisotropic = options.anisotropic})};
   row.random = scored(scorer, [&] { return fit_openpbr_at_random(pairs, starts, kPeersSeed, options); });
-  tell(fmt::format("openpbr: {}: {:.2f} dB in {:.1f} s, at random {:.2f} dB in {:.0f} s", material,
-                   row.ours.psnr, row.ours.seconds, row.random.psnr, row.random.seconds));
+  tell(fmt::format("openpbr: {}: {:.2f} dB in {:.1f} s, at random {:.2f} dB in {:.0f} s, glTF {:.2f} dB",
+                   material, row.ours.psnr, row.ours.seconds, row.random.psnr, row.random.seconds,
+                   row.gltf.figures.psnr));
   return row;
 }
 
@@ -74,7 +108,7 @@ void show(Page& page, const std::string& group, const std::vector<Row>& rows) {
   Table full({"material", "psnr", "psnr_at_random", "behind", "seconds", "seconds_by_the_clock",
               "seconds_at_random", "spec", "spec_at_random"});
   double worst = -std::numeric_limits<double>::infinity(), slowest = 0, slowest_by_the_clock = 0;
-  for (const auto& [material, ours, random] : rows) {
+  for (const auto& [material, ours, random, gltf] : rows) {
     const double behind = random.psnr - ours.psnr;
     shown.add({material, fmt::format("{:.2f}", ours.psnr), fmt::format("{:.2f}", random.psnr),
                fmt::format("{:.2f}", behind), fmt::format("{:.1f}", ours.seconds),
@@ -95,6 +129,26 @@ void show(Page& page, const std::string& group, const std::vector<Row>& rows) {
   page.write_rows(group, full);
 }
 
+void show_gltf(Page& page, const std::string& group, const std::vector<Row>& rows) {
+  Table shown({"material", "OpenPBR, dB", "glTF, dB", "core, dB", "glTF, relative", "core, relative",
+               "by the clock, s", "extensions"});
+  double lost = 0, gained = 0, slowest = 0;
+  for (const Row& row : rows) {
+    const auto& [figures, core, wall, extensions] = row.gltf;
+    shown.add({row.material, fmt::format("{:.2f}", row.ours.psnr), fmt::format("{:.2f}", figures.psnr),
+               fmt::format("{:.2f}", core.psnr), fmt::format("{:.3f}", figures.relative),
+               fmt::format("{:.3f}", core.relative), fmt::format("{:.1f}", wall), extensions});
+    lost += (row.ours.psnr - figures.psnr) / static_cast<double>(rows.size());
+    gained += (figures.psnr - core.psnr) / static_cast<double>(rows.size());
+    slowest = std::max(slowest, wall);
+  }
+  page[group + "_gltf"] = shown.markdown();
+  page[group + "_gltf_lost"] = fmt::format("{:.1f}", lost);
+  page[group + "_gltf_gained"] = fmt::format("{:.1f}", gained);
+  page[group + "_gltf_slowest"] = fmt::format("{:.1f}", slowest);
+  page.write_rows("gltf-" + group, shown);
+}
+
 }  // namespace
 
 void report_openpbr(const ReportOptions& options) {
@@ -107,6 +161,7 @@ void report_openpbr(const ReportOptions& options) {
     std::vector<Row> rows;
     for (const fs::path& file : files) rows.push_back(row_of(file.stem().string(), file.string(), starts));
     show(page, "rgl", rows);
+    show_gltf(page, "rgl", rows);
   }
   if (options.data && options.wants("merl")) {
     std::vector<std::string> names = row_names(*options.data / "np/codes.csv");
@@ -118,6 +173,7 @@ void report_openpbr(const ReportOptions& options) {
       rows.push_back(
           row_of(names[i], fmt::format("np:{}#{}", (*options.data / "np").string(), names[i]), starts));
     show(page, "merl", rows);
+    show_gltf(page, "merl", rows);
   }
   page.write();
 }
