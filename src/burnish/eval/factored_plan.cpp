@@ -74,26 +74,19 @@ FactoredPlan::Spacing spacing_of(const FactoredPlan::Position& position) noexcep
   return Spacing::identity;
 }
 
-FactoredPlan::Angle angle_of(FactoredPlan::Source::Kind source, Projection::Kind kind) noexcept {
-  using Angle = FactoredPlan::Angle;
-  using Source = FactoredPlan::Source::Kind;
-  using Kind = Projection::Kind;
-  if (source == Source::wi) return Angle::wi;
-  if (source == Source::wo) return Angle::wo;
-  if (source == Source::half) return Angle::half;
-  switch (kind) {
-    case Kind::deviation:
-      return Angle::deviation;
-    case Kind::twist:
-      return Angle::twist;
-    case Kind::azimuth:
-      return Angle::azimuth;
-    case Kind::affine:  // its vector is none of the above: not asked for
-    case Kind::difference:
-      break;
-  }
-  return Angle::difference;
-}
+// The projections whose polar angles are found together.
+struct AngleOf {
+  Projection projection;
+  FactoredPlan::Angle angle;
+};
+constexpr std::array kTogetherFound{
+    AngleOf{kProjectWi, FactoredPlan::Angle::wi},
+    AngleOf{kProjectWo, FactoredPlan::Angle::wo},
+    AngleOf{kProjectHalf, FactoredPlan::Angle::half},
+    AngleOf{kProjectAzimuth, FactoredPlan::Angle::azimuth},
+    AngleOf{kProjectDifference, FactoredPlan::Angle::difference},
+    AngleOf{kProjectDeviation, FactoredPlan::Angle::deviation},
+};
 
 std::size_t up_to_multiple(std::size_t n, std::size_t of) noexcept {
   return (n + of - 1) / of * of;
@@ -259,19 +252,19 @@ std::uint32_t FactoredPlan::steps_along(const Projection& projection, Warp warp,
                                         std::size_t stride) {
   const Position position = position_in(warp, nodes, false, 0);
   const Spacing spacing = spacing_of(position);
-  const Source::Kind kind = kind_of(projection, false);
-  if (kind != Source::Kind::affine) {
-    const auto angle = static_cast<std::size_t>(angle_of(kind, projection.kind));
+  if (const auto found = std::ranges::find(kTogetherFound, projection, &AngleOf::projection);
+      found != kTogetherFound.end()) {
+    const auto angle = static_cast<std::size_t>(found->angle);
     has_angle[angle] = true;
     return lane_of(spacing, position, stride, angle, false);
   }
-  const auto known = static_cast<std::size_t>(std::ranges::find(affine, projection) - affine.begin());
+  const auto known = static_cast<std::size_t>(std::ranges::find(apart, projection) - apart.begin());
   if (known < Steps::kLanes) {
-    if (known == affine.size()) affine.push_back(projection);
+    if (known == apart.size()) apart.push_back(projection);
     return lane_of(spacing, position, stride, known, true);
   }
   const std::uint32_t lane = lane_of(Spacing::given, position, stride, 0, false);
-  given.push_back({kind, projection, position, spacing, lane, lane});
+  given.push_back({kind_of(projection, false), projection, position, spacing, lane, lane});
   return lane;
 }
 
@@ -288,13 +281,13 @@ std::array<std::uint32_t, 2> FactoredPlan::steps_across(const TableLayout& layou
 
 // A lane with this position along this angle; a new one if it is given.
 std::uint32_t FactoredPlan::lane_of(Spacing spacing, const Position& position, std::size_t stride,
-                                    std::size_t angle, bool is_affine) {
+                                    std::size_t angle, bool is_apart) {
   const auto floats = static_cast<std::int32_t>(stride * kRowStride),
-             number = static_cast<std::int32_t>(angle), mask = is_affine ? -1 : 0;
+             number = static_cast<std::int32_t>(angle), mask = is_apart ? -1 : 0;
   for (std::size_t i = 0; i < steps.size() && spacing != Spacing::given; ++i) {
     const Steps& s = steps[i];
     for (std::size_t k = 0; k < s.used; ++k)
-      if (std::tie(s.spacing[k], s.size[k], s.parameter[k], s.floats[k], s.angle[k], s.is_affine[k]) ==
+      if (std::tie(s.spacing[k], s.size[k], s.parameter[k], s.floats[k], s.angle[k], s.is_apart[k]) ==
           std::tie(spacing, position.size, position.parameter, floats, number, mask))
         return static_cast<std::uint32_t>(i * Steps::kLanes + k);
   }
@@ -309,8 +302,8 @@ std::uint32_t FactoredPlan::lane_of(Spacing spacing, const Position& position, s
   open.cells[lane] = position.cells;
   open.floats[lane] = floats;
   open.angle[lane] = number;
-  open.is_affine[lane] = mask;
-  open.has_affine |= is_affine;
+  open.is_apart[lane] = mask;
+  open.has_apart |= is_apart;
   return static_cast<std::uint32_t>((steps.size() - 1) * Steps::kLanes + lane);
 }
 

@@ -62,8 +62,8 @@ struct FactoredPlan {
   /// of them filled up. A lane's position becomes a fraction and a way through the rows.
   enum class Spacing { identity, rational, power, root, given };  // root: a power of 1/2; given: see below
   static constexpr std::size_t kSpacings = 5;
-  /// The polar angles that are found together.
-  enum class Angle { wi, wo, half, azimuth, difference, deviation, twist };
+  /// The polar angles that are found together; those of all other projections are found one by one.
+  enum class Angle { wi, wo, half, azimuth, difference, deviation };
   struct Steps {
     static constexpr std::size_t kLanes = 8;
 
@@ -73,11 +73,11 @@ struct FactoredPlan {
     alignas(32) std::array<std::array<std::int32_t, kLanes>, kSpacings> is{};  // -1 in lanes of a spacing
     alignas(32) std::array<float, kLanes> size{}, parameter{}, cells{};        // as in Position
     alignas(32) std::array<std::int32_t, kLanes> floats{};  // of the rows, from node to node
-    alignas(32) std::array<std::int32_t, kLanes> angle{};   // an Angle, or one of `affine`
-    bool has_affine = false;
-    alignas(32) std::array<std::int32_t, kLanes> is_affine{};  // -1 in lanes whose angle is
+    alignas(32) std::array<std::int32_t, kLanes> angle{};   // an Angle, or one of `apart`
+    bool has_apart = false;
+    alignas(32) std::array<std::int32_t, kLanes> is_apart{};  // -1 in lanes whose angle is
   };
-  /// Positions that are found one by one: of disks and of further affine combinations.
+  /// Positions that are found one by one: of disks and of projections that `apart` has no place for.
   struct GivenSteps {
     Source::Kind kind;
     Projection projection;
@@ -124,7 +124,7 @@ struct FactoredPlan {
   double rounding_bound = 0;
   std::vector<Source> sources;
   std::vector<Steps> steps;
-  std::vector<Projection> affine;  // whose polar angles are found one by one, at most Steps::kLanes
+  std::vector<Projection> apart;  // whose polar angles are found one by one, at most Steps::kLanes
   std::vector<GivenSteps> given;
   std::array<bool, Steps::kLanes> has_angle{};  // an Angle is asked for
   std::vector<Product> products;
@@ -139,7 +139,7 @@ struct FactoredPlan {
   std::size_t slot_of(const Projection& projection, Warp warp, int nodes, bool disk);
   std::array<std::uint32_t, 3> steps_of(const TableLayout& layout, const FactorUse& use);
   std::uint32_t lane_of(Spacing spacing, const Position& position, std::size_t stride, std::size_t angle,
-                        bool is_affine);
+                        bool is_apart);
   std::uint32_t steps_along(const Projection& projection, Warp warp, int nodes, std::size_t stride);
   std::array<std::uint32_t, 2> steps_across(const TableLayout& layout, const FactorUse& use);
   Source& source_of(const Projection& projection, bool azimuth);

@@ -129,11 +129,6 @@ struct PolarAngles {
     high = low;
     if (asked(Angle::difference)) high = difference_angle(one.pair);
     if (asked(Angle::deviation)) high = second_of(high, deviation_angle(one.pair));
-    if (asked(Angle::twist)) {
-      const Polar<Four> angle = twist_angle(one.pair);
-      high = {Four(hn::ConcatUpperLower(d4, angle.r.raw, high.r.raw)),
-              Four(hn::ConcatUpperLower(d4, angle.den.raw, high.den.raw))};
-    }
   }
 };
 
@@ -152,7 +147,15 @@ struct OneCells {
   }
 };
 
-/// The positions of disks and affine combinations, to their lanes of `given`.
+/// The polar angle of a projection that is not found together with others, in every lane.
+HWY_INLINE Polar<Four> angle_apart(const Projection& projection, const OnePair& one) {
+  if (projection.kind == Projection::Kind::affine)
+    return affine(projection, one.of_all<0>(), one.of_all<1>()).polar;
+  return with_angle(projection.kind,
+                    [&](const auto& angle) HWY_ATTR { return Polar<Four>(angle(one.pair)); });
+}
+
+/// The positions of disks and of angles that are too many, to their lanes of `given`.
 HWY_NOINLINE void find_given(const FactoredPlan& plan, const OnePair& one, float* given) {
   using Kind = FactoredPlan::Source::Kind;
   const LanesOf<D4> wi = one.of_all<0>(), wo = one.of_all<1>();
@@ -173,8 +176,10 @@ HWY_NOINLINE void find_given(const FactoredPlan& plan, const OnePair& one, float
         at = affine(steps.projection, wi, wo);
         break;
       case Kind::difference:
-      case Kind::angle:
         at = doubled_difference(one.pair);
+        break;
+      case Kind::angle:
+        at.polar = angle_apart(steps.projection, one);
     }
     // its position: both of a disk, that of a line
     const FactoredPlan::Position& p = steps.position;
@@ -230,13 +235,12 @@ class AngleTable {
 #endif
 };
 
-/// The polar angles of affine combinations; the lanes after them are filled up.
-HWY_NOINLINE AngleTable affine_angles(const FactoredPlan& plan, const OnePair& one) {
+/// The polar angles that are found one by one; the lanes after them are filled up.
+HWY_NOINLINE AngleTable angles_apart(const FactoredPlan& plan, const OnePair& one) {
   alignas(32) float r[FactoredPlan::Steps::kLanes], den[FactoredPlan::Steps::kLanes];
-  const LanesOf<D4> wi = one.of_all<0>(), wo = one.of_all<1>();
   for (std::size_t k = 0; k < FactoredPlan::Steps::kLanes; ++k) {
     Polar<Four> angle{Four(0.0), Four(1.0)};
-    if (k < plan.affine.size()) angle = affine(plan.affine[k], wi, wo).polar;
+    if (k < plan.apart.size()) angle = angle_apart(plan.apart[k], one);
     r[k] = hn::GetLane(angle.r.raw);
     den[k] = hn::GetLane(angle.den.raw);
   }
@@ -268,15 +272,15 @@ HWY_INLINE void find_cells(const FactoredPlan& plan, const OnePair& one, const A
   const D8 d8;
   alignas(64) float given[OneCells::kMost];
   if (!plan.given.empty()) find_given(plan, one, given);
-  AngleTable affine_table = angles;
-  if (!plan.affine.empty()) affine_table = affine_angles(plan, one);
+  AngleTable apart = angles;
+  if (!plan.apart.empty()) apart = angles_apart(plan, one);
   std::size_t to = 0;
   for (const FactoredPlan::Steps& s : plan.steps)
     for (std::size_t lane = 0; lane < FactoredPlan::Steps::kLanes; lane += kEight, to += kEight) {
       Polar<Eight> polar = angles.at(s.angle.data() + lane);
-      if (s.has_affine) {
-        const Polar<Eight> other = affine_table.at(s.angle.data() + lane);
-        const auto is = hn::BitCast(d8, hn::Load(DI8(), s.is_affine.data() + lane));
+      if (s.has_apart) {
+        const Polar<Eight> other = apart.at(s.angle.data() + lane);
+        const auto is = hn::BitCast(d8, hn::Load(DI8(), s.is_apart.data() + lane));
         polar = {Eight(hn::IfVecThenElse(is, other.r.raw, polar.r.raw)),
                  Eight(hn::IfVecThenElse(is, other.den.raw, polar.den.raw))};
       }

@@ -32,8 +32,6 @@ constexpr std::array kShapes{TableShape::line, TableShape::disk, TableShape::gri
 constexpr std::array kFormats{TableFormat::half, TableFormat::single, TableFormat::rgb9e5,
                               TableFormat::unorm8};
 constexpr std::array kWarps{WarpKind::identity, WarpKind::power, WarpKind::rational};
-constexpr std::array kProjections{kProjectWi,        kProjectWo,    kProjectHalf,   kProjectDifference,
-                                  kProjectDeviation, kProjectTwist, kProjectAzimuth};
 
 template <class List, class T>
 std::int64_t place_in(const List& list, const T& value) {
@@ -218,8 +216,8 @@ class CompactWriter {
 
   // By its number, or the coefficients of wi, wo, mirror and n up to the last that is not 0.
   void projection(const Projection& p) {
-    if (const auto known = std::ranges::find(kProjections, p); known != kProjections.end())
-      return cbor_.integer(known - kProjections.begin());
+    if (const auto known = std::ranges::find(kNumberedProjections, p); known != kNumberedProjections.end())
+      return cbor_.integer(known - kNumberedProjections.begin());
     if (p.kind != Projection::Kind::affine)
       throw Error("compact file: a projection that has no number in it");
     std::vector<double> terms{p.wi, p.wo, p.mirror, p.n};
@@ -397,7 +395,7 @@ class CompactReader {
   }
 
   Projection projection() {
-    if (!cbor_.list_is_next()) return one_of(kProjections, "a projection");
+    if (!cbor_.list_is_next()) return one_of(kNumberedProjections, "a projection");
     const auto at = cbor_.offset();
     std::vector<double> terms = numbers("the coefficients of a projection", 1, 4);
     terms.resize(4);

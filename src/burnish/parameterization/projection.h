@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -41,6 +42,11 @@ inline constexpr Projection kProjectDifference{.kind = Projection::Kind::differe
 inline constexpr Projection kProjectDeviation{.kind = Projection::Kind::deviation};
 inline constexpr Projection kProjectTwist{.kind = Projection::Kind::twist};
 inline constexpr Projection kProjectAzimuth{.kind = Projection::Kind::azimuth};
+
+/// Those that have a number in `.burnish` files: their places here. New ones go to the end.
+inline constexpr std::array kNumberedProjections{kProjectWi,         kProjectWo,        kProjectHalf,
+                                                 kProjectDifference, kProjectDeviation, kProjectTwist,
+                                                 kProjectAzimuth};
 
 /// Twist, unnormalized: S = wi + wo and A = wi - wo, tan(theta_t / 2) = r / den with
 /// den = 2 (S.x^2 + S.y^2 + |S|^2 kTwistCore), r = den / 2 + A.z (S.y A.x - S.x A.y) |S|^2 kTwistScale;

@@ -50,6 +50,11 @@ inline const ModelCase kModelCases[] = {
      {"a=8", "c=5x9,identity,power:0.5", "q=12"},
      3},
     {"Azimuth", "a(phi_d) g(theta_d,phi_d)", {"a=16,rational:0.3", "g=9x5"}, 3},
+    {"ManyAngles",
+     "a(wi+0.1wo) b(wi+0.2wo) c(wi+0.3wo) d(wi+0.4wo) e(wi+0.5wo) f(wi+0.6wo) g(wi+0.7wo) h(wi+0.8wo) "
+     "i(wi+0.9wo) j(theta_t) k(theta_m)",
+     {"a=4", "b=4", "c=4", "d=4", "e=4", "f=4", "g=4", "h=4", "i=4", "j=8", "k=8"},
+     3},
 };
 
 /// The case of that name.
