@@ -63,11 +63,11 @@ TEST(CommandLine, KeepsErrorsShort) {
     write(folder.path / "damaged", text);
     const Outcome outcome = burnish(fmt::format("info '{}'", (folder.path / "damaged").string()));
     EXPECT_EQ(outcome.status, 1);
-    EXPECT_LT(first_line(outcome).size(), 310u) << outcome.output;  // with the name of the program
+    EXPECT_LT(first_line(outcome).size(), 300u) << outcome.output;  // with the name of the program
     EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1);
   }
-  EXPECT_LT(first_line(burnish(fmt::format("info {}", digits))).size(), 310u);
-  EXPECT_LT(first_line(burnish(fmt::format("render lambert --tone {}", digits))).size(), 310u);
+  EXPECT_LT(first_line(burnish(fmt::format("info {}", digits))).size(), 300u);
+  EXPECT_LT(first_line(burnish(fmt::format("render lambert --tone {}", digits))).size(), 300u);
 }
 
 TEST(CommandLine, CutsErrorsBetweenCharacters) {

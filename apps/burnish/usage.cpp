@@ -13,7 +13,7 @@ namespace burnish::cli {
 
 namespace {
 
-constexpr std::size_t kLongestMessage = 299, kKeptEnd = 120;
+constexpr std::size_t kLongestMessage = 290, kKeptEnd = 120;
 
 std::vector<std::string> verbs_of(const CLI::App& app) {
   std::vector<std::string> names;

@@ -205,13 +205,13 @@ Content read_anisotropic(TextReader& reader, std::vector<std::string>& notes) {
   if (weight > 0) found += weight * integral(blocks[0][first + 1], content.holds_f);
   const auto [least, most] = std::minmax_element(reflectance.begin(), reflectance.end());
   if (!(*least >= 0 && found > 0)) reader.fail("a positive reflectance", fmt::format("{}", found));
-  const bool kept = trusted(*least, found) && trusted(*most, found);
+  const bool flat = *least == *most, kept = flat && trusted(*least, found);
   notes.push_back(fmt::format(
       "The values integrate to {:.4g} % at {} degrees, stated {:.4g} to {:.4g} %: {}.", 100 * found,
       measured_deg, 100 * *least, 100 * *most, kept ? "taken as they are" : "scaled"));
-  if (kept || *least == *most) {
+  if (flat) {
     reflectance = {kept ? found : *least};
-    content.lambda_nm.clear();
+    if (content.lambda_nm.size() > 1) content.lambda_nm.clear();  // grey; one alone is where it was measured
   }
   for (const double r : reflectance) {
     content.blocks.push_back(blocks);
@@ -247,7 +247,6 @@ Content read_brdf(TextReader& reader, std::vector<std::string>& notes) {
   if (!kept)
     for (std::size_t k = 0; k < bands; ++k)
       for (std::size_t i = 0; i < incidences; ++i) scale(content.blocks[k][0][i], factors[k][i], reader);
-  if (bands == 1) content.lambda_nm.clear();
   return content;
 }
 
@@ -406,7 +405,7 @@ SpeosFile parse_speos(const FileBytes& file, const OpenOptions& options) {
   }
   result.table = make_table(file, content, findings);
 
-  if (!content.lambda_nm.empty() && !options.keep_spectral) {
+  if (content.lambda_nm.size() > 1 && !options.keep_spectral) {
     convert_to_rec709(file.name, result.table, content.lambda_nm, options.illuminant);
     findings.illuminant = illuminant_name(options.illuminant);
   } else {

@@ -69,6 +69,34 @@ TEST(Speos, ScalesABrdfToItsReflectanceUnlessItHasIt) {
   EXPECT_EQ(parse_speos(memory_file(brdf_text(reflectance)), {}).table.channels(), 3);
 }
 
+TEST(Speos, KeepsDarkSpectraAndSpectraThatVaryLittle) {
+  // the seed's blocks integrate to what is found for them; 12 times as much, and 2 % more, at the other wavelength
+  for (const auto& [blue, red] : {std::pair("0.04", "0.48"), std::pair("50", "51")}) {
+    std::string text = seeds::kSpeos;
+    text.replace(text.find("450\t20"), 6, std::string("450\t") + blue);
+    text.replace(text.find("650\t40"), 6, std::string("650\t") + red);
+    const SpeosFile file = parse_speos(memory_file(text), {.keep_spectral = true});
+    ASSERT_EQ(file.findings.lambda_nm, (std::vector<double>{450, 650}));
+    const Vec3 wi = spherical_direction(radians(30), kPi);
+    EXPECT_NEAR(value(file.table, wi, {0, 0, 1}, 1) / value(file.table, wi, {0, 0, 1}, 0),
+                std::stod(red) / std::stod(blue), 1e-5 * std::stod(red) / std::stod(blue));
+  }
+}
+
+TEST(Speos, KeepsASingleWavelength) {
+  std::string anisotropic = seeds::kSpeos, brdf = brdf_text(0.5);
+  anisotropic.replace(anisotropic.find("2\n450\t20\n650\t40"), 15, "1\n905\t20");
+  constexpr std::string_view kTwo = "2\t2\n0\t60\n450\t650";
+  brdf.replace(brdf.find(kTwo), kTwo.size(), "2\t1\n0\t60\n905");
+  for (const bool spectral : {false, true})
+    for (const std::string& text : {anisotropic, brdf}) {
+      // a .brdf's two further blocks follow what is read
+      const SpeosFile file = parse_speos(memory_file(text), {.keep_spectral = spectral});
+      EXPECT_EQ(file.table.channels(), 1);
+      EXPECT_EQ(file.findings.lambda_nm, std::vector<double>{905});
+    }
+}
+
 TEST(Speos, SaysWhatIsWrong) {
   const auto error = [](std::string text, std::string_view from, std::string_view to) {
     const std::size_t at = text.find(from);
