@@ -67,6 +67,8 @@ TEST(CommandLine, KeepsErrorsShort) {
     EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1);
   }
   EXPECT_LT(first_line(burnish(fmt::format("info {}", digits))).size(), 300u);
+  EXPECT_THAT(first_line(burnish("info lambert --illuminant nonsense")),
+              HasSubstr("expected E, D50, D65, A or a file"));
   EXPECT_LT(first_line(burnish(fmt::format("render lambert --tone {}", digits))).size(), 300u);
 }
 

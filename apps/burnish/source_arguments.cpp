@@ -1,6 +1,23 @@
 #include "source_arguments.h"
 
+#include <burnish/error.h>
+#include <burnish/io/illuminant.h>
+
 namespace burnish::cli {
+
+namespace {
+
+// Also where no spectrum will need it.
+void check_illuminant(const std::string& spec) {
+  try {
+    open_illuminant(spec);
+  } catch (const Error& error) {
+    throw Error(std::string("--illuminant: expected E, D50, D65, A or a file of wavelengths and powers; ") +
+                error.what());
+  }
+}
+
+}  // namespace
 
 void add_source_arguments(CLI::App& verb, SourceArguments& arguments) {
   verb.add_option("BRDF", arguments.spec,
@@ -17,6 +34,7 @@ void add_open_options(CLI::App& verb, OpenOptions& options) {
                   "light under which spectra become RGB: E (equal energy), D50, D65, A, or a file of "
                   "wavelengths in nm "
                   "and powers")
+      ->each(check_illuminant)
       ->capture_default_str();
   verb.add_flag("--has-cosine", options.has_cosine, "CSV values are f_r cos(theta_i)");
   verb.add_flag("!--keep-negatives", options.clamp_negatives, "leave values below zero as they are");
