@@ -30,7 +30,7 @@ std::string with(std::string bytes, std::size_t at, T value) {
   return bytes;
 }
 
-std::string error_of(const std::string& bytes) {
+std::string parse_error(const std::string& bytes) {
   try {
     parse_tensor_file(memory_file(bytes));
   } catch (const Error& error) {
@@ -59,8 +59,8 @@ TEST(TensorFile, EveryTruncatedFileThrows) {
   auto tensors = example();
   tensors.pop_back();  // the empty field needs no bytes
   const std::string bytes = format_tensor_file(tensors);
-  for (std::size_t n = 0; n < bytes.size(); ++n) EXPECT_NE(error_of(bytes.substr(0, n)), "") << n;
-  EXPECT_EQ(error_of(bytes), "");
+  for (std::size_t n = 0; n < bytes.size(); ++n) EXPECT_NE(parse_error(bytes.substr(0, n)), "") << n;
+  EXPECT_EQ(parse_error(bytes), "");
 }
 
 TEST(TensorFile, LyingHeadersThrow) {
@@ -96,18 +96,18 @@ TEST(TensorFile, LyingHeadersThrow) {
       {with(with(bytes, kSecondField + 2 + 7 + 11, U64{1} << 32), kSecondField + 2 + 7 + 19, U64{1} << 30),
        "fits"}};
   for (const auto& [lie, what] : cases)
-    EXPECT_NE(error_of(lie).find(what), std::string::npos) << error_of(lie);
+    EXPECT_NE(parse_error(lie).find(what), std::string::npos) << parse_error(lie);
 }
 
 TEST(TensorFile, RepeatedNamesAndOverlappingDataThrow) {
   auto twice = example();
   twice[1].name = "text";
-  EXPECT_NE(error_of(format_tensor_file(twice)).find("two fields named text"), std::string::npos);
+  EXPECT_NE(parse_error(format_tensor_file(twice)).find("two fields named text"), std::string::npos);
 
   const FileBytes file = memory_file(format_tensor_file(example()));
   const std::string bytes(file.text());
   const auto second = parse_tensor_file(file)[1].offset;
-  EXPECT_NE(error_of(with(bytes, kOffset, second + 4)).find("another field"), std::string::npos);
+  EXPECT_NE(parse_error(with(bytes, kOffset, second + 4)).find("another field"), std::string::npos);
 }
 
 TEST(TensorFile, ChangingAnyHeaderByteNeverReadsOutside) {
