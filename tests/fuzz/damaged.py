@@ -19,7 +19,7 @@ import sys
 import tempfile
 import time
 
-MOST_BYTES, MOST_SECONDS, LONGEST_LINE = 1 << 30, 5, 299
+MOST_BYTES, MOST_SECONDS, LONGEST_ERROR, LONGEST_LINE = 1 << 30, 5, 299, 309
 LARGE = 100_000  # larger files, and networks of 800,000 weights, are taken once in SELDOM times: they take longer
 SELDOM = 200
 READS = ("info", "convert", "eval", "measure", "compare", "export")  # what does not more than read and write names the file
@@ -156,8 +156,8 @@ def fault_of(verb, outcome, path, written):
         return f"took {seconds:.1f} s"
     if most > MOST_BYTES:
         return f"took {most >> 20} MiB"
-    # what a conversion loses is told whole, in a line as long as it takes
-    if said.count("\n") > 1 or status == 1 and len(said.rstrip("\n")) > LONGEST_LINE:
+    longest = LONGEST_ERROR if status == 1 else LONGEST_LINE  # a conversion tells what is lost
+    if said.count("\n") > 1 or any(len(line) > longest for line in said.splitlines()):
         return "said more than a line"
     if status == 1 and not said.startswith("burnish: "):
         return "said nothing"

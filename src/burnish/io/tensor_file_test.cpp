@@ -31,12 +31,7 @@ std::string with(std::string bytes, std::size_t at, T value) {
 }
 
 std::string parse_error(const std::string& bytes) {
-  try {
-    parse_tensor_file(memory_file(bytes));
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
+  return error_of([&] { parse_tensor_file(memory_file(bytes)); });
 }
 
 TEST(TensorFile, RoundTripsFields) {
