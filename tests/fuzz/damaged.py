@@ -13,19 +13,22 @@ import pathlib
 import random
 import resource
 import shutil
+import signal
 import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 MOST_BYTES, MOST_SECONDS, LONGEST_ERROR, LONGEST_LINE = 1 << 30, 5, 299, 309
+HANGS = 120  # seconds of the clock after which a program that uses no processor is ended too
 LARGE = 100_000  # larger files, and networks of 800,000 weights, are taken once in SELDOM times: they take longer
 SELDOM = 200
 READS = ("info", "convert", "eval", "measure", "compare", "export")  # what does not more than read and write names the file
 NO_SOURCE = {".f32", ".fit", ".ktx2", ".js", ".html"}
 KINDS = {"directions": "eval", "capture": "capture", "np": "np", "mesh.obj": "mesh", "mesh.glb": "mesh",
-         "environment.exr": "light", "neural": "neural", "book": "book"}
+         "environment.exr": "light", "illuminant": "illuminant", "neural": "neural", "book": "book"}
 SPECS = {"neural": "nbrdf:{}#seed", "book": "book:{}#felt"}  # of one of several in a file
 MODELS = {"model", "compact", "made.exr", "made.burnish"}
 MADE = (["convert", "ggx:alpha_x=0.3", "made.binary", "--cells", "6"], ["convert", "ggx", "made.mbsdf", "--cells", "5"],
@@ -102,6 +105,8 @@ def command_for(kind, path, out, rng):
     if kind == "light":
         return ["render", "--renderer", "cpu", "--material", "lambert", "--vertices", "64", "--size", "4", "--draws", "1",
                 "--environment", path, "-o", out + ".png"], out + ".png"
+    if kind == "illuminant":
+        return ["info", "lambert", "--illuminant", path], None
     if kind == "np":
         return ["info", f"np:{path}#seed"], None
     if kind in SPECS and rng.random() < 0.5:
@@ -143,7 +148,10 @@ class Runner:
                                            (os.POSIX_SPAWN_OPEN, 1, self.out, flags, 0o600),
                                            (os.POSIX_SPAWN_OPEN, 2, self.err, flags, 0o600)])
         resource.prlimit(pid, resource.RLIMIT_CPU, (4 * MOST_SECONDS, 4 * MOST_SECONDS))
+        hang = threading.Timer(HANGS, os.kill, (pid, signal.SIGKILL))
+        hang.start()
         _, status, usage = os.wait4(pid, 0)
+        hang.cancel()
         said = pathlib.Path(self.err).read_bytes().decode(errors="replace")
         return os.waitstatus_to_exitcode(status), said, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024
 

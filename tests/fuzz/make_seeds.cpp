@@ -17,6 +17,11 @@ int main(int argc, char** argv) {
     write(name, name, bytes);
     write("source", name, bytes);
   }
+  for (const std::string folder : {"rgl", "source"})
+    write(folder, "rgl-spectral", burnish::seeds::spectral_rgl_seed());
+  for (const std::string folder : {"tensortree", "source"})
+    write(folder, "tensortree4", burnish::seeds::kTensorTree4);
+  write("illuminant", "illuminant", burnish::seeds::kIlluminant);
   write("surface", "surface", burnish::seeds::surface_seed());
   write("book", "book", burnish::format_book(burnish::random_book()));
   write("capture", "capture", burnish::seeds::kCapture);

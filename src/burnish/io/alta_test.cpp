@@ -68,6 +68,7 @@ TEST(Alta, FindsTheDirectionsOfEveryParameterization) {
       // to_cartesian of these exchanges what from_cartesian took
       EXPECT_NEAR(dot(wi, wo), dot(light, view), 1e-12) << name;
       EXPECT_NEAR(std::abs(wi.z - wo.z), std::abs(light.z - view.z), 1e-12) << name;
+      EXPECT_NEAR(wi.z + wo.z, light.z + view.z, 1e-12) << name;
     } else {
       EXPECT_NEAR(wi.z, light.z, 1e-12) << name;
       EXPECT_NEAR(wo.z, view.z, 1e-12) << name;
@@ -78,8 +79,13 @@ TEST(Alta, FindsTheDirectionsOfEveryParameterization) {
     EXPECT_NEAR(length(wi - light), 0, 1e-12) << name;
     EXPECT_NEAR(length(wo - view), 0, 1e-12) << name;
   }
-  EXPECT_NEAR(read_row("RUSIN_TH_PH_TD", {0.3, 0.2, 0.4}).samples.pairs[0].wi.z,
-              std::cos(0.3) * std::cos(0.4) + std::sin(0.3) * std::sin(0.4), 1e-12);
+  // its phi_d is 0
+  const DirectionPair flat = read_row("RUSIN_TH_PH_TD", {0.3, 0.2, 0.4}).samples.pairs[0];
+  const HalfDiff angles = to_half_diff(flat.wo, flat.wi);
+  EXPECT_NEAR(angles.theta_h, 0.3, 1e-12);
+  EXPECT_NEAR(angles.phi_h, 0.2, 1e-12);
+  EXPECT_NEAR(angles.theta_d, 0.4, 1e-12);
+  EXPECT_NEAR(std::sin(angles.phi_d), 0, 1e-12);
 }
 
 TEST(Alta, TakesKeysForWhatTheySay) {

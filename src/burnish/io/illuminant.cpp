@@ -9,12 +9,8 @@
 
 namespace burnish {
 
-Illuminant open_illuminant(const std::string& spec) {
-  constexpr std::array<std::string_view, 4> kStandard{"E", "D50", "D65", "A"};
-  if (std::find(kStandard.begin(), kStandard.end(), spec) != kStandard.end())
-    return standard_illuminant(spec);
-  const FileBytes file = read_file(spec, 1 << 24);
-  Illuminant light{.name = spec, .lambda_nm = {}, .power = {}};
+Illuminant parse_illuminant(const FileBytes& file) {
+  Illuminant light{.name = file.name, .lambda_nm = {}, .power = {}};
   TextReader reader(file);
   while (reader.next_content_line()) {
     const double lambda = reader.number("a wavelength"), power = reader.number("a power");
@@ -26,8 +22,16 @@ Illuminant open_illuminant(const std::string& spec) {
     light.power.push_back(power);
   }
   if (light.power.size() < 2)
-    throw Error::in_file(spec, "two rows of wavelength and power", fmt::format("{}", light.power.size()));
+    throw Error::in_file(file.name, "two rows of wavelength and power",
+                         fmt::format("{}", light.power.size()));
   return light;
+}
+
+Illuminant open_illuminant(const std::string& spec) {
+  constexpr std::array<std::string_view, 4> kStandard{"E", "D50", "D65", "A"};
+  if (std::find(kStandard.begin(), kStandard.end(), spec) != kStandard.end())
+    return standard_illuminant(spec);
+  return parse_illuminant(read_file(spec, 1 << 24));
 }
 
 std::vector<std::array<double, 3>> rec709_weights_of(const std::string& file,

@@ -5,12 +5,16 @@
 #include <string>
 #include <vector>
 
+#include <burnish/io/byte_reader.h>
 #include <burnish/math/spectrum.h>
 
 namespace burnish {
 
-/// A standard_illuminant by its name, or a text file of rows: wavelength in nm, increasing, and relative power, at
-/// least two. Throws Error for neither, or a power that is not finite or below zero.
+/// A text file of rows: wavelength in nm, increasing, and relative power, at least two; blank lines and those that start
+/// with '#' are passed over. Throws Error for anything else, or a power that is not finite or below zero.
+Illuminant parse_illuminant(const FileBytes& file);
+
+/// A standard_illuminant by its name, or parse_illuminant of a file. Throws Error for neither.
 Illuminant open_illuminant(const std::string& spec);
 
 /// rec709_weights of a file's wavelengths under open_illuminant(spec). Throws Error as they do, naming the file where

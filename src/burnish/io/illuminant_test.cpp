@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <burnish/io/illuminant.h>
+#include <burnish/testing/files.h>
+#include <burnish/testing/seed_files.h>
 #include <burnish/testing/tools.h>
 
 namespace burnish {
@@ -25,6 +27,7 @@ TEST_F(IlluminantFile, IsRowsOfWavelengthAndPower) {
   EXPECT_EQ(light.lambda_nm, (std::vector<double>{400, 700.5}));
   EXPECT_EQ(light.power, (std::vector<double>{0.5, 2000}));
   EXPECT_EQ(open_illuminant("D50").name, "D50");
+  EXPECT_EQ(parse_illuminant(memory_file(seeds::kIlluminant)).power, (std::vector<double>{0.5, 1, 2000}));
 }
 
 TEST_F(IlluminantFile, SaysWhatIsWrong) {

@@ -38,6 +38,13 @@ TEST(TensorTreeXml, ReadsBracesAndWritesThemBack) {
               HasSubstr("'Reflection Back', the only reflection there is"));
 }
 
+TEST(TensorTreeXml, ReadsRankFour) {
+  const TensorTreeFile file = parse_tensor_tree(memory_file(seeds::kTensorTree4), {});
+  EXPECT_EQ(file.table.rank, 4);
+  EXPECT_EQ(parse_tensor_tree(memory_file(format_tensor_tree(file.table, "again")), {}).table.values,
+            file.table.values);
+}
+
 TEST(TensorTreeXml, SaysWhatIsWrong) {
   const auto error = [](std::string_view from, std::string_view to) {
     std::string text = seeds::kTensorTree;

@@ -47,6 +47,16 @@ inline std::string rgl_seed() {
   return burnish::format_rgl(burnish::make_rgl_table(burnish::parse_analytic("ggx").ref(), options));
 }
 
+/// The same of three wavelengths.
+inline std::string spectral_rgl_seed() {
+  burnish::RglOptions options;
+  options.theta_i_count = 2;
+  options.ndf_theta = options.ndf_phi = options.resolution = 4;
+  options.lambda_nm = {450, 550, 650};
+  return burnish::format_rgl(
+      burnish::make_rgl_table(burnish::parse_analytic("ggx:f0=0.8/0.4/0.2").ref(), options));
+}
+
 /// A line and a disk.
 inline burnish::Model small_model() {
   using namespace burnish;
@@ -158,6 +168,19 @@ inline const std::string kTensorTree =
     "<ScatteringData>{ { 1 2 3 4 5 6 7 8 } {.5} {-1} {0} {{1}{2}{3}{4}{5}{6}{7}{8}} {0} {2e-1} {0} "
     "}</ScatteringData>"
     "</WavelengthDataBlock></WavelengthData></Layer></Optical></WindowElement>";
+
+/// One of rank 4: sixteen cells, the first divided again.
+inline const std::string kTensorTree4 =
+    "<WindowElement><Optical><Layer><DataDefinition><IncidentDataStructure>TensorTree4</"
+    "IncidentDataStructure>"
+    "</DataDefinition><WavelengthData><Wavelength>Visible</Wavelength><WavelengthDataBlock>"
+    "<WavelengthDataDirection>Reflection "
+    "Front</WavelengthDataDirection><AngleBasis>LBNL/Shirley-Chiu</AngleBasis>"
+    "<ScatteringData>{ { 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 } {.5} {-1} {0} {1} {2} {3} {4} {5} {6} {7} "
+    "{8} {9} {10} {2e-1} {0} }</ScatteringData>"
+    "</WavelengthDataBlock></WavelengthData></Layer></Optical></WindowElement>";
+
+inline const std::string kIlluminant = "# a lamp\n400 0.5\n550\t1\n\n700.5 2e3\n";
 
 /// The bytes of a number over and over are a UTIA table of it.
 inline const std::string kUtia{"\x9a\x99\x99\x99\x99\x99\xf1\x3f", 8};

@@ -111,8 +111,10 @@ std::optional<ModelSpec> spec_within(const std::string& set, std::size_t bytes, 
   return std::nullopt;
 }
 
-// A lobe about wi = wo: where it is looked for, what it is compared with, and how much higher it has to be.
-constexpr double kRetroNear = radians(1.5), kRetroRingLow = radians(4), kRetroRingHigh = radians(8);
+// A lobe about wi = wo is looked for up to the first theta_d of these where an incidence has enough samples, compared
+// with a ring between so many times that, and has to be so much higher.
+constexpr std::array kRetroNear{radians(1.5), radians(3), radians(5)};
+constexpr double kRetroRingLow = 8.0 / 3, kRetroRingHigh = 16.0 / 3;
 constexpr double kLeastTilt = radians(10);  // of the half vector: a highlight is there at the normal
 constexpr double kSameIncidence = radians(1);
 constexpr double kLeastRatio = 2;
@@ -359,12 +361,12 @@ std::size_t least_scattered_bytes(std::size_t channels, bool isotropic, TableFor
 
 bool backscatters(const SampleSource& source) {
   if (!source.isotropic) return false;
-  // values near wi = wo and around it, by incidence
+  // values near wi = wo and around it, by incidence and by what counts as near
   struct Sums {
     double near = 0, ring = 0;
     std::size_t near_count = 0, ring_count = 0;
   };
-  std::map<long, Sums> incidences;
+  std::map<long, std::array<Sums, kRetroNear.size()>> incidences;
   std::vector<DirectionPair> pairs(source.count);
   std::vector<double> weights(source.count);
   std::vector<double> values(source.count * source.channels);
@@ -372,23 +374,29 @@ bool backscatters(const SampleSource& source) {
   for (std::size_t i = 0; i < source.count; ++i) {
     const auto& [wi, wo] = pairs[i];
     if (!(weights[i] > 0) || wi.z <= 0 || wo.z <= 0 || theta_of(half_vector(wi, wo)) < kLeastTilt) continue;
-    const double theta_d = angle_between(wi, wo) / 2;
-    Sums& sums = incidences[std::lround(theta_of(wi) / kSameIncidence)];
-    const double f = std::max(values[i * source.channels], 0.0);
-    if (theta_d <= kRetroNear) {
-      sums.near += f;
-      ++sums.near_count;
-    } else if (theta_d >= kRetroRingLow && theta_d <= kRetroRingHigh) {
-      sums.ring += f;
-      ++sums.ring_count;
+    const double theta_d = angle_between(wi, wo) / 2, f = std::max(values[i * source.channels], 0.0);
+    auto& of_incidence = incidences[std::lround(theta_of(wi) / kSameIncidence)];
+    for (std::size_t k = 0; k < kRetroNear.size(); ++k) {
+      Sums& sums = of_incidence[k];
+      if (theta_d <= kRetroNear[k]) {
+        sums.near += f;
+        ++sums.near_count;
+      } else if (theta_d >= kRetroRingLow * kRetroNear[k] && theta_d <= kRetroRingHigh * kRetroNear[k]) {
+        sums.ring += f;
+        ++sums.ring_count;
+      }
     }
   }
+
+  // what most of the incidences say that know
   std::size_t higher = 0, known = 0;
-  for (const auto& [place, sums] : incidences) {
-    if (sums.near_count < kLeastNear || sums.ring_count < kLeastNear) continue;
+  for (const auto& [place, reaches] : incidences) {
+    const auto sums = std::ranges::find_if(
+        reaches, [](const Sums& s) { return s.near_count >= kLeastNear && s.ring_count >= kLeastNear; });
+    if (sums == reaches.end()) continue;
     ++known;
-    higher += sums.near / static_cast<double>(sums.near_count) >
-              kLeastRatio * sums.ring / static_cast<double>(sums.ring_count);
+    higher += sums->near / static_cast<double>(sums->near_count) >
+              kLeastRatio * sums->ring / static_cast<double>(sums->ring_count);
   }
   return 2 * higher > known;
 }

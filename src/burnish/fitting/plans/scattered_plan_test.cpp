@@ -107,11 +107,12 @@ TEST(ScatteredPlan, DoesNotDependOnTheNumberOfThreads) {
 /// A matt surface with a lobe about wi = wo, or about the mirror direction.
 struct PeakedBrdf {
   bool back = true;
+  double width = 0.03;  ///< of the lobe, radians
   std::size_t channels() const noexcept { return 1; }
   bool isotropic() const noexcept { return true; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     const double apart = angle_between(back ? wi : mirror(wi), wo);
-    f[0] = 0.1 + 20 * std::exp(-apart * apart / (2 * 0.03 * 0.03)) * wi.z;
+    f[0] = 0.1 + 20 * std::exp(-apart * apart / (2 * width * width)) * wi.z;
     return true;
   }
 };
@@ -145,6 +146,35 @@ TEST(ScatteredPlan, TellsALobeAboutTheLightFromAHighlight) {
   const Samples back = scanned({true}), forth = scanned({false});
   EXPECT_TRUE(backscatters(from_samples(back, false)));
   EXPECT_FALSE(backscatters(from_samples(forth, false)));
+}
+
+// All of the hemisphere at each incidence, every so many degrees.
+Samples gridded(BrdfRef brdf, int step_deg) {
+  Samples samples{1, true, {}, {}};
+  std::vector<double> f(brdf.channels());
+  for (const double theta_i_deg : kIncidences_deg)
+    for (int theta_deg = 0; theta_deg < 85; theta_deg += step_deg)
+      for (int phi_deg = 0; phi_deg < 360; phi_deg += step_deg) {
+        samples.pairs.push_back({spherical_direction(radians(theta_i_deg), 0),
+                                 spherical_direction(radians(theta_deg), radians(phi_deg))});
+        brdf.eval(samples.pairs.back().wi, samples.pairs.back().wo, f);
+        samples.values.push_back(f[0]);
+      }
+  return samples;
+}
+
+TEST(ScatteredPlan, TellsWideLobesFromCoarseScans) {
+  const AnalyticBrdf rough = parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3,f0=0.5,kd=0.05");
+  for (const int step_deg : {2, 4, 6}) {
+    const auto found = [&](BrdfRef brdf) {
+      const Samples samples = gridded(brdf, step_deg);
+      return backscatters(from_samples(samples, false));
+    };
+    const PeakedBrdf back{true, 0.1}, forth{false, 0.1};
+    EXPECT_TRUE(found(back)) << step_deg;
+    EXPECT_FALSE(found(forth)) << step_deg;
+    EXPECT_FALSE(found(rough.ref())) << step_deg;
+  }
 }
 
 TEST(ScatteredPlan, KeepsWithinFetches) {
