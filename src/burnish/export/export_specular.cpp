@@ -20,8 +20,8 @@ SpecularModel specular_of(const AnalyticBrdf& brdf, std::optional<PowerMethod> p
   std::optional<SpecularModel> model = specular_model(brdf, PowerMethod::exact);
   if (!model)
     throw Error(
-        fmt::format("export: expected a factored BRDF (see burnish fit), or phong, blinn_phong or their "
-                    "normalized forms, found {}",
+        fmt::format("export: expected a factored BRDF (see burnish fit), a surface, openpbr, or phong, "
+                    "blinn_phong or their normalized forms, found {}",
                     brdf.model().name));
   model->method =
       power ? *power : choose_power(kMaxPowerError, model->exponent, model->exponent).front().method;

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <burnish/error.h>
+#include <burnish/factors/compact_file.h>
 #include <burnish/factors/fetches.h>
 #include <burnish/fitting/baselines/baselines.h>
 #include <burnish/fitting/fit_file.h>
@@ -427,6 +428,19 @@ TEST(Fit, ChoosesBytesOfScatteredSamplesByCrossValidation) {
   const Fit made = fit(source, {.form = Budget{.bytes = {}, .scattered = {.reweightings = 0}}});
   EXPECT_EQ(made.report.budget_choice.value().stop, BudgetStop::cross_validation);
   EXPECT_EQ(made.report.budget_choice->bytes, made.bytes());
+}
+
+TEST(Fit, MakesFilesLittleLargerThanTheirTables) {
+  BURNISH_SKIP_WHERE_SANITIZED();
+  const auto expect_small = [](const AnalyticBrdf& brdf, int fetches) {
+    const Fit made = fit(source_of("ggx", brdf), {.form = Budget{.bytes = 1350, .fetches = fetches}});
+    std::size_t tables = 0;
+    for (const Table& table : made.model().tables())
+      tables += table.layout.node_count() * texel_bytes(table.format, table.channels);
+    EXPECT_LE(format_compact({.brdf = made.model()}).size(), 256 + tables * 105 / 100) << fetches;
+  };
+  for (const int fetches : {1, 2, 0}) expect_small(paint(), fetches);
+  expect_small(brushed(), 4);
 }
 
 TEST(Fit, WithoutFetchesTakesThemAtTheKnee) {

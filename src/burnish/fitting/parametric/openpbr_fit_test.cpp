@@ -3,6 +3,7 @@
 #include <burnish/fitting/parametric/openpbr_fit.h>
 #include <burnish/math/parallel.h>
 #include <burnish/metrics/error_figures.h>
+#include <burnish/reflectance/analytic.h>
 #include <burnish/testing/sanitized.h>
 
 namespace burnish {
@@ -88,6 +89,28 @@ TEST(OpenPbrFit, GoesDownAndStaysWithinBounds) {
           EXPECT_LE(std::max({value.r, value.g, value.b}), input.max) << input.name;
         },
         input.member);
+}
+
+// At and beyond what the inputs say: all light reflected, none of a colour, a very sharp and rough highlight, more light
+// than comes in.
+TEST(OpenPbrFit, KeepsEveryInputWithinItsBoundsWhateverTheSource) {
+  BURNISH_SKIP_WHERE_SANITIZED();
+  for (const char* spec : {"lambert:kd=1/1/0.001", "ggx:alpha_x=0.02,alpha_y=0.9,f0=1/1/0,kd=0.9",
+                           "oren_nayar:kd=1,sigma=1.5", "phong:exponent=1000,ks=5,kd=0"}) {
+    const AnalyticBrdf source = parse_analytic(spec);
+    const PicturePairs pairs = picture_pairs(source.ref(), 1);
+    const OpenPbrParameters found = fit_openpbr(pairs, {.anisotropic = true}).parameters;
+    for (const OpenPbrInput& input : kOpenPbrInputs)
+      std::visit(
+          [&](auto member) {
+            const Rgb value = found.*member;
+            for (const double x : {value.r, value.g, value.b}) {
+              EXPECT_GE(x, input.min) << spec << ' ' << input.name;
+              EXPECT_LE(x, input.max) << spec << ' ' << input.name;
+            }
+          },
+          input.member);
+  }
 }
 
 TEST(OpenPbrFit, IsTheSameForEveryNumberOfThreads) {
