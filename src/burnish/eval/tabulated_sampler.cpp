@@ -217,7 +217,7 @@ struct TabulatedSampler::Tables {
   VisibleHalfMap fit_map(BrdfRef brdf, const SamplerOptions& options, std::span<double> f) const {
     std::vector<ReflectedLight> views;
     const int azimuths = isotropic ? 1 : 3;
-    for (const double theta_deg : {10.0, 40.0, 60.0, 76.0})
+    for (const double theta_deg : {15.0, 40.0, 60.0, 76.0, 84.0})
       for (int k = 0; k < azimuths; ++k) {
         ReflectedLight light{
             .wo = spherical_direction(radians(theta_deg), kPi * k / azimuths), .rule = {}, .size = {}};
@@ -230,23 +230,28 @@ struct TabulatedSampler::Tables {
     return fit_visible_half_map(views, isotropic, options.rows, options.columns);
   }
 
-  // What is reflected in each cell, over rows and columns of the map at wo.
+  // What is reflected in each cell, over rows and columns of the map at wo: the root of its mean square g^2 over the
+  // cell. Weights g / mass have the second moment sum of mean(g^2) / mass, which of all masses that add up to the
+  // same is least then; where all in a cell is alike it is the mean.
   template <bool kIsotropic>
   void add_slice(BrdfRef brdf, Vec3 wo, std::span<double> f) {
-    constexpr int kAcross = 3;  // points a cell and axis
+    constexpr int kAcross = 4;  // points a cell and axis
     std::vector<double> rows, cells(static_cast<std::size_t>(view.columns));
     const double turn = (kIsotropic ? 2.0 : 4.0) / view.rows;
     for (int row = 0; row < view.rows; ++row) {
       double sum = 0;
       for (int column = 0; column < view.columns; ++column) {
-        double mass = 0;
+        double squares = 0;
         for (int i = 0; i < kAcross; ++i)
           for (int j = 0; j < kAcross; ++j) {
             const auto wi = scalar::place<kIsotropic>(view, wo.x, wo.y, wo.z, scalar::arrow(wo.x, wo.y),
                                                       turn * (row + (i + 0.5) / kAcross),
                                                       (column + (j + 0.5) / kAcross) / view.columns, 1.0);
-            if (wi.z > 0) mass += size_of(brdf, {wi.x, wi.y, wi.z}, wo, f) / wi.density;
+            if (!(wi.z > 0)) continue;
+            const double g = size_of(brdf, {wi.x, wi.y, wi.z}, wo, f) / wi.density;
+            squares += g * g;
           }
+        const double mass = std::sqrt(squares);
         cells[static_cast<std::size_t>(column)] = mass;
         sum += mass;
       }

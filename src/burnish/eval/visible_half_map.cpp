@@ -14,7 +14,7 @@ namespace {
 // A half vector of a view's rule, as maps see it.
 struct HalfPoint {
   double x, y, m, along, to_half;  // unit azimuth (isotropic: from wo), tan^2(theta_h / 2), wo.azimuth, wo.h
-  double light, squares;           // sums of the solid angle's size and size squared
+  double squares;                  // sum of the solid angle's size squared
 };
 
 struct PreparedView {
@@ -36,21 +36,21 @@ PreparedView prepare(const ReflectedLight& view, bool isotropic) {
       axis = {axis.x * plane.x + axis.y * plane.y, std::abs(axis.y * plane.x - axis.x * plane.y)};
     const double light = view.size[i] * weight;
     prepared.points.push_back({axis.x, axis.y, (sum.x * sum.x + sum.y * sum.y) / (up * up), along,
-                               0.5 * reach, light, light * view.size[i]});
+                               0.5 * reach, light * view.size[i]});
     prepared.total += light;
   }
   return prepared;
 }
 
-// Relative second moment of the weights for cells of one map, mean over the views: the density in a cell is
-// its light over its share of the rectangle.
-double second_moment(const std::vector<PreparedView>& views, const VisibleHalfMap& map, bool isotropic,
-                     int rows, int columns, std::vector<double>& light, std::vector<double>& squares) {
+// Logarithm of the relative second moment of the weights for cells of one map, mean over the views, so that none of
+// them rules: a cell's mass is the root of the mean square of what it reflects, of all masses that which makes this
+// moment least.
+double log_second_moment(const std::vector<PreparedView>& views, const VisibleHalfMap& map, bool isotropic,
+                         int rows, int columns, std::vector<double>& squares) {
   SamplerView view;
   static_cast<VisibleHalfMap&>(view) = map;
   double mean = 0;
   for (const PreparedView& v : views) {
-    std::fill(light.begin(), light.end(), 0.0);
     std::fill(squares.begin(), squares.end(), 0.0);
     for (const HalfPoint& p : v.points) {
       const double x = map.xx * p.x + map.xy * p.y, y = map.xy * p.x + map.yy * p.y;
@@ -61,15 +61,13 @@ double second_moment(const std::vector<PreparedView>& views, const VisibleHalfMa
       const int row = std::min(static_cast<int>(turned * rows), rows - 1);
       const int column = std::clamp(static_cast<int>(ray.to_unit(p.m) * columns), 0, columns - 1);
       const auto cell = static_cast<std::size_t>(row * columns + column);
-      light[cell] += p.light;
       squares[cell] += p.squares / ray.density(p.m, p.to_half, scalar::turning(w, narrowing));
     }
-    // over the cells: squares of the light over its share
+    // the square of the sum of the masses
     double sum = 0;
-    for (std::size_t cell = 0; cell < light.size(); ++cell)
-      if (light[cell] > 0) sum += squares[cell] / light[cell];
+    for (const double square : squares) sum += std::sqrt(square);
     const double range = 1.0 / (0.25 * rows * columns);  // of a cell, in turn and v, halves folded
-    mean += sum * range / v.total;
+    mean += std::log(sum * sum * range / (v.total * v.total));
   }
   return mean / static_cast<double>(views.size());
 }
@@ -91,7 +89,7 @@ VisibleHalfMap fit_visible_half_map(const std::vector<ReflectedLight>& views, bo
   VisibleHalfMap best;
   if (prepared.empty()) return best;
   const auto cells = static_cast<std::size_t>(rows * columns);
-  std::vector<double> light(cells), squares(cells);
+  std::vector<double> squares(cells);
   double least = std::numeric_limits<double>::infinity();
   std::array<double, 4> at{};  // log sharpness, share, log aspect, turn
 
@@ -100,7 +98,7 @@ VisibleHalfMap fit_visible_half_map(const std::vector<ReflectedLight>& views, bo
     p[0] = std::clamp(p[0], std::log(1e-7), std::log(1.0));
     p[1] = std::clamp(p[1], 0.0, 0.98);
     const VisibleHalfMap map = stretched(std::exp(p[0]), p[1], p[2], p[3]);
-    const double moment = second_moment(prepared, map, isotropic, rows, columns, light, squares);
+    const double moment = log_second_moment(prepared, map, isotropic, rows, columns, squares);
     if (!(moment < least)) return false;
     least = moment;
     best = map;
@@ -121,7 +119,7 @@ VisibleHalfMap fit_visible_half_map(const std::vector<ReflectedLight>& views, bo
 
   // then one parameter after another, as long as it helps, by ever smaller steps
   std::array<double, 4> step{0.6, 0.1, 0.25, kPi / 12};
-  for (int pass = 0; pass < 5; ++pass) {
+  for (int pass = 0; pass < 9; ++pass) {
     for (std::size_t k = 0; k < (isotropic ? 2 : 4); ++k)
       for (const double sign : {-1.0, 1.0})
         for (int moves = 0; moves < 3; ++moves) {

@@ -28,8 +28,9 @@ struct ReflectedLight {
   std::vector<double> size;  ///< reflected_size at the rule's directions
 };
 
-/// The map for which cells of `rows` by `columns` give weights f cos / pdf of the least mean relative second
-/// moment over the views, found by search: deterministic, the same on every machine to rounding.
+/// The map for which cells of `rows` by `columns`, with the masses that serve them best, give weights f cos / pdf of
+/// the least relative second moment, by the mean of its logarithms over the views; found by search: deterministic,
+/// the same on every machine to rounding.
 VisibleHalfMap fit_visible_half_map(const std::vector<ReflectedLight>& views, bool isotropic, int rows,
                                     int columns);
 
