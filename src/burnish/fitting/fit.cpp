@@ -55,8 +55,9 @@ constexpr int kHeldOutSphereSize = 128;  // of a baseline's the defaults of Figu
 constexpr ErrorTerms kVolumeShares{.pictures = 3, .dimmed = 0.3, .relative = 0.5, .log_cos = 0.6};
 constexpr int kSpareFetches = 4;
 constexpr double kSpareLogCos = 0.8, kSpareAbsolute = 0.1;
-constexpr std::size_t kSpareTexels = 1500;  // from here on, for absolute errors
+constexpr std::size_t kSpareTexels = 1500;  // from here on, for absolute errors and smoothness
 constexpr double kVolumeSmooth = 1e-9;
+constexpr double kFewTexelsSmooth = 1e-9;  // of lobes; few texels are smooth by themselves
 constexpr int kSmoothnessFetches = 2;  // of the models by which it is chosen
 constexpr double kFrontalShare = 0.1;  // of pixels, see with_frontal_pixels
 
@@ -280,6 +281,7 @@ class Fitter {
     const TrainingSet set = drawn_set(drawn);
     RefineOptions refine = refine_options(form.loss);
     if (smoothed_ && form.loss == FitLoss::image) refine.shares = kNodeShares;
+    if (!options_.smooth && bytes < kSpareTexels * texel) refine.smooth = kFewTexelsSmooth;
     LobesReport report{.loss = form.loss, .budget = bytes};
 
     // which lobes
@@ -301,7 +303,7 @@ class Fitter {
 
     // and their tables, as smooth as asked for or as needed
     if (options_.smooth)
-      return finish(fit_plan(set, plan, bytes, texel, refine), set, refine, std::move(report));
+      return finish(fit_plan(set, plan, bytes, texel, refine, kLobeStarts), set, refine, std::move(report));
     const LobesFit fit = fit_without_overfit(reference(), set, plan, bytes, texel, drawn, refine);
     report.smooth = refine.smooth;
     return finish(fit, set, refine, std::move(report));
@@ -377,7 +379,8 @@ class Fitter {
     if (takes_lobes(reference(), limit)) {
       const TrainingSet set = drawn_set(training_for(bytes, limit.texel_bytes, brdf_.isotropic()));
       const LobePlan plan = plan_within(reference(), limit);
-      return finish(fit_plan(set, plan, limit.bytes, limit.texel_bytes, refine), set, refine,
+      if (!options_.smooth && bytes < kSpareTexels * limit.texel_bytes) refine.smooth = kFewTexelsSmooth;
+      return finish(fit_plan(set, plan, limit.bytes, limit.texel_bytes, refine, kLobeStarts), set, refine,
                     std::move(report));
     }
     if (!brdf_.isotropic()) {

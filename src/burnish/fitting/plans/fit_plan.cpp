@@ -14,6 +14,8 @@ namespace {
 
 // Where successive lobes are split off, in tan(theta_d / 2).
 constexpr double kCentres[] = {0.25, 0.6, 0.4, 0.8, 0.15, 0.5, 0.7, 0.3};
+constexpr std::size_t kFirstCentres[] = {0, 1, 2, 4};  // of the first, second, ... start
+static_assert(std::size(kFirstCentres) == kLobeStarts);
 
 // The log-linear start is smooth: functions of the four angles nearly add up to nothing in many ways, and a
 // fit that uses them is ruined once its tables are kept within their formats.
@@ -48,11 +50,16 @@ void refine_in_rounds(LogModel& model, const TrainingSet& set, const RefineOptio
     refine_part(model, set, lookups, options, (steps + k) / kRounds, part(k), part(k + 1), summary);
 }
 
+/// Steps of the last refinement on part of the data, before those on all.
+int rough_steps(const TrainingSet& coarse, const TrainingSet& set, const RefineOptions& options) {
+  return coarse.size() < set.size() ? std::min(2 * kRoughSteps, options.max_iterations) : 0;
+}
+
 /// The last refinement: on part of the data, then on all.
 void refine_fully(LogModel& model, const TrainingSet& coarse, const TrainingSet& set,
                   const RefineOptions& options, double from, FitSummary& summary) {
   const double middle = from + 0.3 * (1 - from);
-  const int rough = coarse.size() < set.size() ? std::min(2 * kRoughSteps, options.max_iterations) : 0;
+  const int rough = rough_steps(coarse, set, options);
   if (rough > 0) refine_in_rounds(model, coarse, options, rough, from, middle, summary);
   refine_in_rounds(model, set, options, options.max_iterations - rough, middle, 1, summary);
 }
@@ -138,9 +145,11 @@ class LobesInTurn {
 };
 
 /// A model of the lobes so far with one more, split off the last.
-LogModel with_next_lobe(LogModel model, const LobesInTurn& lobes, std::size_t count) {
-  model = with_lobe_split(std::move(model), count - 2, kCentres[(count - 2) % std::size(kCentres)], "+",
-                          lobes.common());
+LogModel with_next_lobe(LogModel model, const LobesInTurn& lobes, std::size_t count, std::size_t start) {
+  model = with_lobe_split(
+      std::move(model), count - 2,
+      kCentres[(kFirstCentres[start % std::size(kFirstCentres)] + count - 2) % std::size(kCentres)], "+",
+      lobes.common());
   const ModelSpec spec = lobes.first(count);
   for (std::size_t t = 0; t < spec.tables.size(); ++t) model.spec.tables[t].name = spec.tables[t].name;
   return resampled(model, spec);
@@ -187,10 +196,49 @@ std::vector<float> values_of(const StartPart& part, const TrainingSet& set, cons
   return values;
 }
 
+/// Share of the work that is done with `lobes` of `count`, which grows with their square.
+double lobes_done(std::size_t count, std::size_t lobes) {
+  return 0.4 * static_cast<double>(lobes * lobes * lobes) / static_cast<double>(count * count * count);
+}
+
+/// From a model of one lobe to one of all, each lobe refined roughly but the last, on part of the data.
+void split_off(LobesFit& fit, const LobesInTurn& lobes, const TrainingSet& coarse, std::size_t start,
+               RefineOptions options) {
+  options.format = TableFormat::single;  // lobes that part are not yet held within their format
+  for (std::size_t j = 1; j < lobes.count(); ++j) {
+    refine_part(fit.model, coarse, lookups_of(fit.model.spec, coarse), options, kRoughSteps,
+                lobes_done(lobes.count(), j - 1), lobes_done(lobes.count(), j), fit.summary);
+    fit.model = with_next_lobe(std::move(fit.model), lobes, j + 1, start);
+  }
+}
+
+/// All starts from one model of one lobe, as far as part of the data takes them; the best is refined on all of it.
+LobesFit best_start(const LobesFit& first, const LobesInTurn& lobes, const TrainingSet& coarse,
+                    const TrainingSet& set, const RefineOptions& options, std::size_t starts) {
+  constexpr double kTried = 0.6;  // share of the work done by then
+  const int rough = rough_steps(coarse, set, options);
+  std::vector<LobesFit> fits(starts, first);
+  std::vector<double> found(starts);
+  for (std::size_t k = 0; k < starts; ++k) {
+    RefineOptions trial = options;
+    const double share = kTried / static_cast<double>(starts);
+    if (options.progress)
+      trial.progress = [&, k](double f) { options.progress(share * (static_cast<double>(k) + f)); };
+    split_off(fits[k], lobes, coarse, k, trial);
+    refine_in_rounds(fits[k].model, coarse, trial, rough, lobes_done(lobes.count(), lobes.count() - 1), 1,
+                     fits[k].summary);
+    found[k] = objective(fits[k].model, coarse, options.shares);
+  }
+  const auto best = static_cast<std::size_t>(std::ranges::min_element(found) - found.begin());
+  LobesFit fit = std::move(fits[best]);
+  refine_in_rounds(fit.model, set, options, options.max_iterations - rough, kTried, 1, fit.summary);
+  return fit;
+}
+
 }  // namespace
 
 LobesFit fit_plan(const TrainingSet& set, const LobePlan& plan, std::size_t bytes, std::size_t texel_bytes,
-                  const RefineOptions& options) {
+                  const RefineOptions& options, std::size_t starts) {
   const ModelSpec whole = plan_to_spec(plan, bytes, set.channels, texel_bytes);
   if (!plan.wide.empty()) return fit_lobes(set, whole, options);
 
@@ -199,33 +247,25 @@ LobesFit fit_plan(const TrainingSet& set, const LobePlan& plan, std::size_t byte
   const bool direct = coupled_unknowns(whole, set.channels) <= kMaxCholeskyUnknowns;
   const LobesInTurn lobes(plan, direct ? whole : without_grids(whole));
   const bool grids = lobes.first(lobes.count()).tables.size() < whole.tables.size();
-  RefineOptions thin_options = options;
-  if (grids && options.progress) thin_options.progress = [&](double f) { options.progress(kThinPart * f); };
-  // lobes that part are not yet held within their format
-  RefineOptions rough_options = thin_options;
-  rough_options.format = TableFormat::single;
-
-  // one lobe, then one more at a time; the work grows with the square of the lobes
   const TrainingSet coarse = coarse_part(set);
   LobesFit fit{.model = fit_one_lobe(lobes.first(1), coarse, coarse.values,
                                      {.smooth = std::max(kStartSmooth, options.smooth)})};
-  const auto done = [count = lobes.count()](std::size_t j) {
-    return 0.4 * static_cast<double>(j * j * j) / static_cast<double>(count * count * count);
-  };
-  for (std::size_t j = 1; j <= lobes.count(); ++j) {
-    if (j > 1) fit.model = with_next_lobe(std::move(fit.model), lobes, j);
-    if (j < lobes.count() || grids)
-      refine_part(fit.model, coarse, lookups_of(fit.model.spec, coarse),
-                  j < lobes.count() ? rough_options : thin_options, kRoughSteps, done(j - 1), done(j),
-                  fit.summary);
-    else
-      refine_fully(fit.model, coarse, set, thin_options, done(j - 1), fit.summary);
-  }
 
   if (grids) {
+    RefineOptions thin_options = options;
+    if (options.progress) thin_options.progress = [&](double f) { options.progress(kThinPart * f); };
+    split_off(fit, lobes, coarse, 0, thin_options);
+    refine_part(fit.model, coarse, lookups_of(fit.model.spec, coarse), thin_options, kRoughSteps,
+                lobes_done(lobes.count(), lobes.count() - 1), 1, fit.summary);
     fit.model = resampled(fit.model, whole);
     refine_in_rounds(fit.model, set, options, kGridSteps, kThinPart, 1, fit.summary);
+    return fit;
   }
+
+  if (lobes.count() == 1) starts = 1;  // nothing to split
+  if (starts > 1) return best_start(fit, lobes, coarse, set, options, starts);
+  split_off(fit, lobes, coarse, 0, options);
+  refine_fully(fit.model, coarse, set, options, lobes_done(lobes.count(), lobes.count() - 1), fit.summary);
   return fit;
 }
 

@@ -30,7 +30,7 @@ TrainingOptions training_for(std::size_t bytes, std::size_t texel_bytes, bool is
 
 LobesFit fit_without_overfit(BrdfRef source, const TrainingSet& set, const LobePlan& plan, std::size_t bytes,
                              std::size_t texel_bytes, const TrainingOptions& drawn, RefineOptions& options) {
-  LobesFit fit = fit_plan(set, plan, bytes, texel_bytes, options);
+  LobesFit fit = fit_plan(set, plan, bytes, texel_bytes, options, kLobeStarts);
   if (!has_few_pairs(fit.model, set)) return fit;
   TrainingOptions anew = drawn;
   anew.pictures = kHeldOutPictures;
@@ -43,7 +43,7 @@ LobesFit fit_without_overfit(BrdfRef source, const TrainingSet& set, const LobeP
   RefineOptions stiffer = options;
   while (stiffer.smooth < kMaxSmooth) {
     stiffer.smooth *= kStiffer;
-    LobesFit candidate = fit_plan(set, plan, bytes, texel_bytes, stiffer);
+    LobesFit candidate = fit_plan(set, plan, bytes, texel_bytes, stiffer, kLobeStarts);
     const double next = objective(candidate.model, held_out, options.shares);
     if (!(next < error)) break;
     fit = std::move(candidate);
