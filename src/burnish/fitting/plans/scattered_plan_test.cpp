@@ -187,10 +187,9 @@ TEST(ScatteredPlan, KeepsWithinFetches) {
         static_cast<std::size_t>(fetches));
 }
 
-// The model at wi = wo over the truth, at each incidence.
-std::vector<double> heights_of_peak(const PeakedBrdf& brdf, const Samples& samples,
-                                    std::optional<double> smooth, int reweightings,
-                                    std::size_t bytes = 16384) {
+// The model at wi = wo over the truth, at each incidence; wo comes from the azimuth around wi.
+std::vector<double> heights_of_peak(BrdfRef brdf, const Samples& samples, std::optional<double> smooth,
+                                    int reweightings, std::size_t bytes = 16384, double azimuth = 0) {
   const SampleSource source = from_samples(samples, false);
   HomomorphicOptions options;
   options.reweightings = reweightings;
@@ -200,10 +199,13 @@ std::vector<double> heights_of_peak(const PeakedBrdf& brdf, const Samples& sampl
   const FactoredBrdf model = fit_homomorphic(source, plan.spec, options).brdf;
   std::vector<double> heights;
   for (const double theta : kIncidences_deg) {
-    const Vec3 w = spherical_direction(radians(theta), 0);
+    const Vec3 w = spherical_direction(radians(theta), 0), across{0, 1, 0};
+    constexpr double kApart = 1e-9;
+    const Vec3 beside =
+        normalize(w + kApart * (std::cos(azimuth) * cross(across, w) + std::sin(azimuth) * across));
     double expected, found;
     brdf.eval(w, w, {&expected, 1});
-    model.eval(w, w, {&found, 1});
+    model.eval(w, beside, {&found, 1});
     heights.push_back(found / expected);
   }
   return heights;
@@ -212,6 +214,16 @@ std::vector<double> heights_of_peak(const PeakedBrdf& brdf, const Samples& sampl
 TEST(ScatteredPlan, HoldsThePeakAboutTheLight) {
   const PeakedBrdf brdf;
   EXPECT_THAT(heights_of_peak(brdf, scanned(brdf), 1e-7, 2), Each(DoubleNear(1, 0.05)));
+}
+
+// One sample at the peak of each incidence, none within five degrees: nothing but the sample itself tells from where
+// the peak is looked at.
+TEST(ScatteredPlan, HoldsThePeakOfACoarseScanFromEverySide) {
+  const PeakedBrdf brdf;
+  const Samples samples = gridded(brdf, 5);
+  for (const double azimuth : {0.0, kPi / 4, kPi / 2, kPi})
+    EXPECT_THAT(heights_of_peak(brdf, samples, 1e-6, 2, 16384, azimuth), Each(DoubleNear(1, 0.05)))
+        << azimuth;
 }
 
 TEST(ScatteredPlan, HoldsThePeakOfManySamplesToo) {
