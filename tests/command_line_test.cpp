@@ -68,6 +68,25 @@ TEST(CommandLine, SaysWhatAMisspeltWordMayHaveMeant) {
   }
 }
 
+TEST(CommandLine, TakesSpecsThatAreLongerThanAFilesNameMayBe) {
+  std::string spec = "openpbr:";
+  for (const char* name : {"base_weight", "base_metalness", "base_diffuse_roughness", "specular_weight",
+                           "specular_roughness", "coat_weight", "coat_roughness", "coat_darkening",
+                           "fuzz_weight", "fuzz_roughness", "thin_film_weight", "thin_film_thickness"})
+    spec += fmt::format("{}=0.123456789,", name);
+  spec.pop_back();
+  ASSERT_GT(spec.size(), 255u);
+  const TemporaryFolder folder("long_spec");
+  const std::string out = (folder.path / "out").string();
+  for (const std::string& arguments :
+       {fmt::format("info {}", spec), fmt::format("export {} --to glsl -o '{}'", spec, out),
+        fmt::format("convert {} '{}.csv' --count 5", spec, out),
+        fmt::format("render --renderer cpu --material {} --size 8 -o '{}.png'", spec, out)}) {
+    const Outcome outcome = burnish(arguments);
+    EXPECT_EQ(outcome.status, 0) << arguments << outcome.output;
+  }
+}
+
 TEST(CommandLine, KeepsErrorsShort) {
   const TemporaryFolder folder("short_errors");
   const std::string digits(9000, '1');
