@@ -45,12 +45,45 @@ TEST(CommandLine, SaysWhatAMisspeltWordMayHaveMeant) {
         std::pair{"help formts", "'formats'"}})
     EXPECT_THAT(first_line(burnish(arguments)), HasSubstr(fmt::format("; did you mean {}?", meant)))
         << arguments;
-  EXPECT_THAT(first_line(burnish("gibberish")), testing::Not(HasSubstr("did you mean")));
+  for (const auto& [arguments, meant] :
+       {std::pair{"specular code --method cubik2", "'cubic2'"},
+        std::pair{"specular code --to rustt", "'rust'"}, std::pair{"hw model --method exac", "'exact'"},
+        std::pair{"hw generate -o x --unit exact_9", "'exact_8'"}, std::pair{"help modles", "'models'"}})
+    EXPECT_THAT(first_line(burnish(arguments)), HasSubstr(fmt::format("; did you mean {}?", meant)))
+        << arguments;
+  const std::string gibberish = first_line(burnish("gibberish"));
+  EXPECT_THAT(gibberish, testing::Not(HasSubstr("did you mean")));
+  EXPECT_THAT(gibberish, HasSubstr("expected a verb (info, fit, "));
+  EXPECT_THAT(first_line(burnish("")), HasSubstr("expected a verb (info, fit, "));
+  EXPECT_THAT(first_line(burnish("hw")),
+              HasSubstr("hw: expected a verb (generate, model, error), found none"));
+  // options of a group are known
+  EXPECT_THAT(first_line(burnish("describe --bash --zsh")), testing::Not(HasSubstr("expected an option")));
+  EXPECT_THAT(first_line(burnish("describe nothing")), testing::Not(HasSubstr("expected a verb")));
   for (const char* model : {"ggxx", "beckman:alpha_x=0.1", "lambertt"}) {
     const Outcome outcome = burnish(fmt::format("info {}", model));
     EXPECT_EQ(outcome.status, 1);
     EXPECT_THAT(outcome.output,
                 HasSubstr("expected a file or an analytic model, found neither; did you mean"));
+  }
+}
+
+TEST(CommandLine, TakesSpecsThatAreLongerThanAFilesNameMayBe) {
+  std::string spec = "openpbr:";
+  for (const char* name : {"base_weight", "base_metalness", "base_diffuse_roughness", "specular_weight",
+                           "specular_roughness", "coat_weight", "coat_roughness", "coat_darkening",
+                           "fuzz_weight", "fuzz_roughness", "thin_film_weight", "thin_film_thickness"})
+    spec += fmt::format("{}=0.123456789,", name);
+  spec.pop_back();
+  ASSERT_GT(spec.size(), 255u);
+  const TemporaryFolder folder("long_spec");
+  const std::string out = (folder.path / "out").string();
+  for (const std::string& arguments :
+       {fmt::format("info {}", spec), fmt::format("export {} --to glsl -o '{}'", spec, out),
+        fmt::format("convert {} '{}.csv' --count 5", spec, out),
+        fmt::format("render --renderer cpu --material {} --size 8 -o '{}.png'", spec, out)}) {
+    const Outcome outcome = burnish(arguments);
+    EXPECT_EQ(outcome.status, 0) << arguments << outcome.output;
   }
 }
 
@@ -115,6 +148,7 @@ TEST(CommandLine, PrintsJsonForPrograms) {
   EXPECT_EQ(json("info lambert")["format"], "analytic");
   EXPECT_EQ(json(fmt::format("export phong:exponent=9 --to glsl -o '{}/e'", out))["output"], out + "/e");
   EXPECT_GT(json("help formats").size(), 15u);
+  EXPECT_GT(json("help models").size(), 10u);
   EXPECT_EQ(json("help specular code")["name"], "specular code");
   const std::string ball = "render --renderer cpu --material lambert --size 8x6 --vertices 64 --samples 1";
   EXPECT_EQ(json(fmt::format("{} -o '{}/ball.png'", ball, out))["height"], 6);
@@ -199,6 +233,11 @@ TEST(CommandLine, ExplainsItsFormatsAndItself) {
   for (const char* name : {"UTIA", "OpenMATERIAL", "tensor tree", "ALTA", "Speos"})
     EXPECT_THAT(formats.output, HasSubstr(name));
   EXPECT_THAT(burnish("help fit").output, HasSubstr("--budget"));
+  EXPECT_THAT(burnish("help specular code").output, HasSubstr("Usage: burnish specular code [OPTIONS]"));
+  const std::string verbs = burnish("help").output, models = burnish("help models").output;
+  for (const char* verb : {"convert", "fit-surface", "specular"}) EXPECT_THAT(verbs, HasSubstr(verb));
+  for (const char* said : {"lambert", "ggx", "alpha_x", "openpbr", "thin_film_thickness"})
+    EXPECT_THAT(models, HasSubstr(said));
   EXPECT_EQ(burnish("help nonsense").status, 2);
   const Outcome version = burnish("--version");
   EXPECT_EQ(version.status, 0);

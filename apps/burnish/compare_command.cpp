@@ -152,7 +152,7 @@ void add_compare_command(CLI::App& app) {
   verb->footer("Example: burnish compare paint.binary paint.exr other.exr -o report");
   auto arguments = std::make_shared<CompareArguments>();
   add_source_arguments(*verb, arguments->reference);
-  verb->add_option("models", arguments->models, "BRDFs to compare with it")->required();
+  verb->add_option("MODELS", arguments->models, "BRDFs to compare with it")->required();
   verb->add_option("-o,--output,--out", arguments->folder,
                    "folder for a report with pictures: index.html and its parts");
   verb->add_option("--count", arguments->figures.count, "direction pairs")

@@ -41,7 +41,7 @@ void add_eval_command(CLI::App& app) {
       "measured, and nan stands where it knows nothing");
   auto arguments = std::make_shared<Arguments>();
   add_source_arguments(*verb, arguments->source);
-  verb->add_option("directions", arguments->directions, "CSV file of direction pairs")->required();
+  verb->add_option("DIRECTIONS", arguments->directions, "CSV file of direction pairs")->required();
   verb->add_option("-o,--output,--out", arguments->out, "CSV file to write")->required();
   verb->add_flag("--json", arguments->json, "print how many values were written and known as JSON");
   verb->callback([arguments] {

@@ -80,7 +80,7 @@ ExportedFiles exported_surface(const ExportArguments& arguments, const FileBytes
 }
 
 ExportedFiles exported_files(const ExportArguments& arguments) {
-  if (std::filesystem::is_regular_file(arguments.model)) {
+  if (std::error_code none; std::filesystem::is_regular_file(arguments.model, none)) {
     const FileBytes file = read_file(arguments.model);
     if (looks_like_surface(file.bytes)) return exported_surface(arguments, file);
   }

@@ -107,7 +107,7 @@ void add_fit_surface_command(CLI::App& app, FitCrew* crew) {
       "          burnish fit-surface capture/ -o wall.burnish --book library.burnish");
   auto arguments = std::make_shared<FitSurfaceArguments>();
   SurfaceFitOptions& options = arguments->options;
-  verb->add_option("capture", arguments->capture, "a folder with capture.json and its pictures")->required();
+  verb->add_option("CAPTURE", arguments->capture, "a folder with capture.json and its pictures")->required();
   verb->add_option("-o,--output,--out", arguments->out, "the surface's .burnish file to write")->required();
   verb->add_option("--lobes", options.lobes, "how many lobes")
       ->check(CLI::Range(std::size_t{1}, kMaxSurfaceLobes))

@@ -7,6 +7,7 @@
 
 #include <burnish/fitting/numerics/linear_algebra.h>
 #include <burnish/math/build_info.h>
+#include <burnish/reflectance/analytic.h>
 
 #include "command_description.h"
 #include "commands.h"
@@ -68,17 +69,47 @@ void print_formats() {
                f.read && f.written ? "both" : (f.read ? "read" : "write"), f.holds);
 }
 
+nlohmann::ordered_json models_json() {
+  auto list = nlohmann::ordered_json::array();
+  for (const AnalyticModel& model : analytic_models()) {
+    auto parameters = nlohmann::ordered_json::array();
+    for (const AnalyticParameter& p : model.parameters)
+      parameters.push_back({{"name", p.name},
+                            {"min", p.min},
+                            {"max", p.max},
+                            {"default", p.default_value},
+                            {"color", p.color},
+                            {"description", p.description}});
+    list.push_back(
+        {{"name", model.name}, {"description", model.description}, {"parameters", std::move(parameters)}});
+  }
+  return list;
+}
+
+void print_models() {
+  fmt::print(
+      "An analytic BRDF is MODEL or MODEL:NAME=VALUE,NAME=VALUE; what is left out has its default. Colours "
+      "may be\n"
+      "three numbers, RED/GREEN/BLUE: openpbr:base_color=0.5/0.1/0.05,coat_weight=1\n");
+  for (const AnalyticModel& model : analytic_models()) {
+    fmt::print("\n{}: {}\n", model.name, model.description);
+    for (const AnalyticParameter& p : model.parameters)
+      fmt::print("  {:31} {:>5g} to {:<6g} default {:<6g} {}{}\n", p.name, p.min, p.max, p.default_value,
+                 p.description, p.color ? " (colour)" : "");
+  }
+}
+
 /// The verb of these names, each below the one before; throws a misuse where there is none.
 const CLI::App& verb_of_names(const CLI::App& app, const std::vector<std::string>& names) {
   const CLI::App* verb = &app;
   for (const std::string& name : names) {
     const auto found = verb->get_subcommands([&](const CLI::App* each) { return each->get_name() == name; });
     if (found.empty()) {
-      std::vector<std::string> known{"formats"};
+      std::vector<std::string> known{"formats", "models"};
       for (const CLI::App* each : verb->get_subcommands([](const CLI::App*) { return true; }))
         known.push_back(each->get_name());
-      throw CLI::ValidationError(
-          "help", fmt::format("expected formats or a verb, found '{}'{}", name, suggestion(name, known)));
+      throw CLI::ValidationError("help", fmt::format("expected formats, models or a verb, found '{}'{}", name,
+                                                     suggestion(name, known)));
     }
     verb = found.front();
   }
@@ -101,21 +132,26 @@ void add_help_command(CLI::App& app) {
     std::vector<std::string> topic;
     bool json = false;
   };
-  CLI::App* verb = app.add_subcommand("help", "Say what formats there are, or how a verb is used");
+  CLI::App* verb =
+      app.add_subcommand("help", "Say what formats and analytic models there are, or how a verb is used");
   verb->footer(
-      "Examples: burnish help formats\n          burnish help specular code\n"
+      "Examples: burnish help formats\n          burnish help models\n          burnish help specular code\n"
       "          burnish help fit --json");
   auto arguments = std::make_shared<Arguments>();
-  verb->add_option("TOPIC", arguments->topic, "formats, or a verb and verbs below it; without it all verbs");
+  verb->add_option("TOPIC", arguments->topic,
+                   "formats, models, or a verb and verbs below it; without it all verbs");
   verb->add_flag("--json", arguments->json, "the same as JSON: of a verb its options, defaults and examples");
   verb->callback([arguments, &app] {
     if (arguments->topic == std::vector<std::string>{"formats"})
       return arguments->json ? print_as_json(formats_json()) : print_formats();
+    if (arguments->topic == std::vector<std::string>{"models"})
+      return arguments->json ? print_as_json(models_json()) : print_models();
     const CLI::App& topic = verb_of_names(app, arguments->topic);
-    if (arguments->json)
-      print_as_json(description_json(topic));
-    else
-      fmt::print("{}", topic.help());
+    if (arguments->json) return print_as_json(description_json(topic));
+    // not app.help(): where a verb was chosen, as this one was, it says what that does
+    std::string path = "burnish";
+    for (const std::string& name : arguments->topic) path += " " + name;
+    fmt::print("{}", topic.get_formatter()->make_help(&topic, path, CLI::AppFormatMode::Normal));
   });
 }
 

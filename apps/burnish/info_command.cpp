@@ -121,7 +121,7 @@ void add_info_command(CLI::App& app) {
         print_book(arguments->spec, *book);
       return;
     }
-    if (std::filesystem::is_regular_file(arguments->spec)) {
+    if (std::error_code none; std::filesystem::is_regular_file(arguments->spec, none)) {
       const FileBytes file = read_file(arguments->spec);
       if (looks_like_surface(file.bytes)) {
         const SurfaceModel surface = parse_surface(file);

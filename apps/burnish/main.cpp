@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <burnish/error.h>
+#include <burnish/short_message.h>
 
 #include "commands.h"
 #include "usage.h"
@@ -35,13 +36,13 @@ int main(int argc, char** argv) {
     const auto meant =
         burnish::cli::misspelling(app, std::span(argv, static_cast<std::size_t>(argc)).subspan(1));
     fmt::print(stderr, "burnish: {}\nRun with --help for more information.\n",
-               burnish::cli::short_message(meant ? *meant : error.what()));
+               burnish::short_message(meant ? *meant : error.what()));
     return 2;
   } catch (const burnish::Error& error) {
-    fmt::print(stderr, "burnish: {}\n", burnish::cli::short_message(error.what()));
+    fmt::print(stderr, "burnish: {}\n", burnish::short_message(error.what()));
     return 1;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "burnish: {}\n", burnish::cli::short_message(error.what()));
+    fmt::print(stderr, "burnish: {}\n", burnish::short_message(error.what()));
     return 1;
   }
   return 0;

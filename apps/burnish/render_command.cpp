@@ -108,7 +108,7 @@ std::vector<MeshPart> parts_of(const RenderArguments& arguments) {
 
 // The surface that a material's file is, if it is one.
 std::optional<SpatialBrdf> surface_of(const std::string& material) {
-  if (!std::filesystem::is_regular_file(material)) return {};
+  if (std::error_code none; !std::filesystem::is_regular_file(material, none)) return {};
   const FileBytes file = read_file(material);
   if (!looks_like_surface(file.bytes)) return {};
   return parse_surface(file).brdf;
@@ -118,7 +118,7 @@ Image render_gl(const Scene& scene, const std::optional<Environment>& environmen
                 const RenderArguments& arguments, int width, int height) {
   std::vector<SurfaceShader> materials;
   for (const std::string& file : arguments.materials) {
-    if (!std::filesystem::is_regular_file(file))
+    if (std::error_code none; !std::filesystem::is_regular_file(file, none))
       throw Error::in_file(file, "the file of a factored BRDF (others are drawn by --renderer cpu)",
                            "no file");
     const ShaderFilter filter = arguments.exact ? ShaderFilter::exact : ShaderFilter::hardware;

@@ -13,12 +13,10 @@ namespace burnish::cli {
 
 namespace {
 
-constexpr std::size_t kLongestMessage = 290, kKeptEnd = 120;
-
 std::vector<std::string> verbs_of(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; }))
-    names.push_back(verb->get_name());
+    if (!verb->get_name().empty()) names.push_back(verb->get_name());  // the others are groups of options
   return names;
 }
 
@@ -26,7 +24,16 @@ std::vector<std::string> options_of(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options())
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  for (const CLI::App* group : app.get_subcommands([](const CLI::App* a) { return a->get_name().empty(); }))
+    for (std::string& name : options_of(*group)) names.push_back(std::move(name));
   return names;
+}
+
+// What is said of a word that is no verb: which it may have meant, or which there are.
+std::string expected_verb(const std::vector<std::string>& verbs, std::string_view word) {
+  const std::string meant = suggestion(word, verbs);
+  return meant.empty() ? fmt::format("expected a verb ({}), found '{}'", fmt::join(verbs, ", "), word)
+                       : fmt::format("expected a verb, found '{}'{}", word, meant);
 }
 
 }  // namespace
@@ -44,22 +51,6 @@ CLI::Validator one_of(std::vector<std::string> names) {
                        suggestion(value, names));
   };
   return {check, std::move(description)};
-}
-
-std::string short_message(std::string_view message) {
-  std::string line(message.substr(0, message.find_last_not_of("\r\n \t") + 1));
-  std::replace_if(
-      line.begin(), line.end(), [](unsigned char c) { return c < 0x20; }, ' ');
-  if (line.size() <= kLongestMessage) return line;
-  // whole characters of UTF-8: no cut before a byte that continues one
-  constexpr std::string_view kGap = " ... ";
-  const auto continues = [&](std::size_t at) {
-    return at < line.size() && (static_cast<unsigned char>(line[at]) & 0xc0) == 0x80;
-  };
-  std::size_t begin = kLongestMessage - kGap.size() - kKeptEnd, end = line.size() - kKeptEnd;
-  while (begin > 0 && continues(begin)) --begin;
-  while (continues(end)) ++end;
-  return line.substr(0, begin) + std::string(kGap) + line.substr(end);
 }
 
 std::optional<std::string> misspelling(const CLI::App& app, std::span<char* const> arguments) {
@@ -80,13 +71,14 @@ std::optional<std::string> misspelling(const CLI::App& app, std::span<char* cons
         continue;
       }
       const auto found = std::find(verbs.begin(), verbs.end(), word);
-      if (found == verbs.end())
-        return fmt::format("{}expected a verb, found '{}'{}", path, word, suggestion(word, verbs));
+      if (found == verbs.end()) return path + expected_verb(verbs, word);
       verb = verb->get_subcommand(*found);
       path += *found + ": ";
     }
   }
-  return std::nullopt;
+  const std::vector<std::string> verbs = verbs_of(*verb);
+  if (verbs.empty()) return std::nullopt;
+  return fmt::format("{}expected a verb ({}), found none", path, fmt::join(verbs, ", "));
 }
 
 }  // namespace burnish::cli

@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include <burnish/error.h>
+#include <burnish/short_message.h>
 
 namespace burnish::cli {
 
@@ -27,9 +28,6 @@ CLI::Validator one_of(std::vector<std::string> names);
 
 /// "; did you mean 'NAME'?" of the name that is closest to a misspelt word, or nothing.
 std::string suggestion(std::string_view word, const std::vector<std::string>& names);
-
-/// What is said of an error: one line of at most 299 characters, of longer ones the beginning and the end.
-std::string short_message(std::string_view message);
 
 /// What a command line's first unknown verb or option may have meant, "expected a verb, found 'ft'; did you mean
 /// 'fit'?"; nothing where all are known.

@@ -21,11 +21,11 @@ int run(int argc, char** argv) {
     if (error.get_exit_code() == 0) return crew.rank() == 0 ? app.exit(error) : 0;
     if (crew.rank() == 0)
       fmt::print(stderr, "burnish-mpi: {}\nRun with --help for more information.\n",
-                 burnish::cli::short_message(error.what()));
+                 burnish::short_message(error.what()));
     return 2;
   } catch (const std::exception& error) {
     // the other ranks would wait for this one
-    fmt::print(stderr, "burnish-mpi: {}\n", burnish::cli::short_message(error.what()));
+    fmt::print(stderr, "burnish-mpi: {}\n", burnish::short_message(error.what()));
     MPI_Abort(MPI_COMM_WORLD, 1);
   }
   return 0;

@@ -8,6 +8,8 @@
 #include <emscripten/em_js.h>
 #include <emscripten/emscripten.h>
 
+#include <burnish/short_message.h>
+
 #include "verbs.h"
 
 EM_JS(void, burnish_progress, (const char* stage, double fraction), {
@@ -46,7 +48,7 @@ EMSCRIPTEN_KEEPALIVE int burnish_call(const char* request) {
   } catch (const std::bad_alloc&) {
     reply.json = "expected enough memory, found none left";
   } catch (const std::exception& error) {
-    reply.json = error.what();
+    reply.json = burnish::short_message(error.what());
   }
   buffer = {};
   return 0;

@@ -62,12 +62,12 @@ nb::dict exported_model(const OpenedModel& model, const Names& to,
 
 nb::dict exported_analytic(const std::string& spec, const Names& to,
                            const std::optional<std::filesystem::path>& folder, const std::string& name,
-                           const std::optional<std::string>& power) {
+                           int cells, const std::optional<std::string>& power) {
   const Source source = open_source(spec, {});
   const auto* const brdf = std::get_if<AnalyticBrdf>(&source.brdf);
   if (!brdf)
     throw Error(spec + ": expected an analytic BRDF, found another; open_source or fit make a Model of it");
-  const ExportOptions options{.to = targets_of(to), .name = name};
+  const ExportOptions options{.to = targets_of(to), .name = name, .cells = cells};
   if (!power && brdf->model().name == "openpbr") return handed_out(export_openpbr(*brdf, options), folder);
   const std::optional<PowerMethod> method = power ? std::optional(power_method(*power)) : std::nullopt;
   return handed_out(export_specular(format_analytic(*brdf), method, options), folder);
@@ -98,11 +98,13 @@ void bind_exports(nb::module_& m) {
         "directions, "
         "whose light glsl,\nglsl_es and html show.");
   m.def("export", &exported_analytic, nb::arg("spec"), nb::arg("to"), nb::arg("folder") = nb::none(),
-        nb::kw_only(), nb::arg("name") = defaults.name, nb::arg("power") = nb::none(),
+        nb::kw_only(), nb::arg("name") = defaults.name, nb::arg("cells") = defaults.cells,
+        nb::arg("power") = nb::none(),
         nb::sig("def export(spec: str, to: str | list[str], folder: str | os.PathLike | None = None, *, "
-                "name: str = 'brdf', power: str | None = None) -> dict[str, bytes]"),
+                "name: str = 'brdf', cells: int = 90, power: str | None = None) -> dict[str, bytes]"),
         "OpenPBR, such as \"openpbr:coat_weight=1\" or a file of it, as shaders or \"three\", \"babylon\", "
-        "\"materialx\",\n\"usda\", \"mdl\", \"gltf\", \"rgl\" or \"html\";\n"
+        "\"materialx\",\n\"usda\", \"mdl\", \"gltf\", \"rgl\" or \"html\". cells: of \"mdl\", along each "
+        "polar angle.\n"
         "Phong's or Blinn's model, such as \"blinn_phong:exponent=60\", as shaders or \"html\". power: how "
         "it is\n"
         "computed, a member of the specular family; by default the cheapest that is never one of 255 levels "

@@ -59,6 +59,15 @@ def test_errors_are_exceptions_with_the_same_text(cli, tmp_path):
         with pytest.raises(burnish.Error) as raised:
             burnish.open_source(spec)
         assert f"burnish: {raised.value}" == str(told.value)
+    # cut in the same place, and one line
+    (tmp_path / "long.json").write_text('{"' + "x" * 7000)
+    for spec in (tmp_path / "long.json", "openpbr:base=1", "ggx:" + "x" * 7000 + "\n=1"):
+        with pytest.raises(RuntimeError) as told:
+            cli("info", spec)
+        with pytest.raises(burnish.Error) as raised:
+            burnish.open_source(spec)
+        assert f"burnish: {raised.value}" == str(told.value)
+        assert len(str(raised.value)) < 290 and "\n" not in str(raised.value)
     assert issubclass(burnish.Error, ValueError)
     with pytest.raises(burnish.Error, match="loss: expected image, relative or log_cos, found 'psnr'"):
         burnish.fit(burnish.open_source(GGX), loss="psnr")

@@ -1,15 +1,15 @@
 #include <fmt/format.h>
 
 #include <burnish/error.h>
+#include <burnish/short_message.h>
 
 namespace burnish {
 
-Error::Error(const std::string& message) : std::runtime_error(message) {}
+Error::Error(const std::string& message) : std::runtime_error(short_message(message)) {}
 
 Error::Error(const std::string& file, std::uint64_t offset, const std::string& expected,
              const std::string& found)
-    : std::runtime_error(fmt::format("{}: offset {}: expected {}, found {}", file, offset, expected, found)) {
-}
+    : Error(fmt::format("{}: offset {}: expected {}, found {}", file, offset, expected, found)) {}
 
 Error Error::in_line(const std::string& file, std::uint64_t line, const std::string& expected,
                      const std::string& found) {

@@ -8,7 +8,7 @@
 namespace burnish {
 
 /// Thrown for every kind of bad input: a file that is not what it claims to be, a parameter outside its
-/// domain. what() is one line: "file: offset N: expected E, found F", with the parts that are known.
+/// domain. what() is one short_message: "file: offset N: expected E, found F", with the parts that are known.
 class Error : public std::runtime_error {
  public:
   /// Bad input that is no file (a parameter, an expression).

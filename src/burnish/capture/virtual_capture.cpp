@@ -256,8 +256,9 @@ SurfaceScene parse_surface_scene(const FileBytes& file, const std::filesystem::p
   for (const JsonMember& item : root.at("materials").list(1, 64)) {
     const std::string name = item.text();
     const std::filesystem::path beside = folder / name;
+    std::error_code none;
     scene.materials.push_back(
-        open_source(std::filesystem::is_regular_file(beside) ? beside.string() : name, {}));
+        open_source(std::filesystem::is_regular_file(beside, none) ? beside.string() : name, {}));
   }
   scene.shares = parse_shares(root, scene, folder);
   if (root.has("heights")) scene.heights = parse_heights(root.at("heights"), scene, folder);

@@ -7,6 +7,7 @@
 #include <burnish/error.h>
 #include <burnish/export/exported_files.h>
 #include <burnish/file.h>
+#include <burnish/math/closest_name.h>
 
 namespace burnish {
 
@@ -30,8 +31,7 @@ std::string_view to_string(ExportTarget target) noexcept {
 
 ExportTarget export_target(std::string_view name) {
   const auto found = std::ranges::find(kNames, name);
-  if (found == kNames.end())
-    throw Error(fmt::format("export: expected {}, found '{}'", fmt::join(kNames, ", "), name));
+  if (found == kNames.end()) throw Error("export: " + expected_one_of(kNames, name));
   return static_cast<ExportTarget>(found - kNames.begin());
 }
 

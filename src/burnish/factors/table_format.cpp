@@ -11,6 +11,7 @@
 
 #include <burnish/error.h>
 #include <burnish/factors/table_format.h>
+#include <burnish/math/closest_name.h>
 
 namespace burnish {
 
@@ -103,7 +104,7 @@ std::optional<TableFormat> find_table_format(std::string_view name) noexcept {
 
 TableFormat parse_table_format(std::string_view name) {
   if (const auto format = find_table_format(name)) return *format;
-  throw Error(fmt::format("table format: expected half, float, rgb9e5 or unorm8, found '{}'", name));
+  throw Error("table format: " + expected_one_of(kNames, name));
 }
 
 bool holds_channels(TableFormat format, std::size_t channels) noexcept {

@@ -2,6 +2,7 @@
 
 #include <burnish/error.h>
 #include <burnish/formula/language.h>
+#include <burnish/math/closest_name.h>
 
 namespace burnish {
 
@@ -306,12 +307,12 @@ std::span<const Language> languages() {
 }
 
 const Language& language(std::string_view name) {
-  std::string known;
+  std::vector<std::string_view> known;
   for (const Language& l : languages()) {
     if (l.name == name) return l;
-    known += (known.empty() ? "" : ", ") + std::string(l.name);
+    known.push_back(l.name);
   }
-  throw Error(fmt::format("language: expected one of {}, found {}", known, name));
+  throw Error("language: " + expected_one_of(known, name));
 }
 
 std::string_view Language::type_name(ValueType type, bool half) const noexcept {

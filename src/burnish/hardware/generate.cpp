@@ -8,6 +8,7 @@
 #include <burnish/embedded_file.h>
 #include <burnish/error.h>
 #include <burnish/hardware/generate.h>
+#include <burnish/math/closest_name.h>
 #include <burnish/math/random.h>
 
 namespace burnish {
@@ -271,12 +272,12 @@ std::span<const ShippedUnit> shipped_units() {
 }
 
 const ShippedUnit& shipped_unit(std::string_view name) {
-  std::string known;
+  std::vector<std::string_view> known;
   for (const ShippedUnit& unit : kShipped) {
     if (unit.name == name) return unit;
-    known += (known.empty() ? "" : ", ") + std::string(unit.name);
+    known.push_back(unit.name);
   }
-  throw Error(fmt::format("shipped unit: expected one of {}, found {}", known, name));
+  throw Error("shipped unit: " + expected_one_of(known, name));
 }
 
 std::vector<UnitVector> golden_vectors(const SpecularUnit& unit, int count, std::uint64_t seed) {

@@ -19,6 +19,7 @@
 #include <burnish/io/tensor_tree_xml.h>
 #include <burnish/io/utia.h>
 #include <burnish/io/zemax.h>
+#include <burnish/math/closest_name.h>
 #include <burnish/reflectance/azimuth_mean.h>
 #include <burnish/reflectance/goniometer.h>
 #include <burnish/reflectance/rgl_builder.h>
@@ -121,8 +122,7 @@ class Converter {
     if (format == "model") return kept(format_model(to_model(source_)));
     if (format == "burnish") return compact();
     if (format == "astm" || format == "csv") return scattered(format == "astm");
-    throw Error(
-        fmt::format("convert: expected one of {}, found {}", fmt::join(kConvertFormats, ", "), format));
+    throw Error("convert: " + expected_one_of(kConvertFormats, format));
   }
 
  private:

@@ -74,7 +74,7 @@ NpFile parse_np(const FileBytes& codes, std::string_view name, std::shared_ptr<c
 NpFile open_np(std::string_view address) {
   const std::size_t mark = std::min(address.rfind('#'), address.size());
   std::filesystem::path place(address.substr(0, mark));
-  if (std::filesystem::is_directory(place)) place /= "codes.csv";
+  if (std::error_code none; std::filesystem::is_directory(place, none)) place /= "codes.csv";
   const FileBytes codes = read_file(place, kMostBytes);
   return parse_np(codes, address.substr(std::min(mark + 1, address.size())),
                   parse_np_decoder(read_file(place.parent_path() / "decoder.f32", kMostBytes)));

@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <vector>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <burnish/math/closest_name.h>
 
 namespace burnish {
@@ -39,6 +42,11 @@ std::string_view closest_name(std::string_view word, std::span<const std::string
 std::string did_you_mean(std::string_view word, std::span<const std::string_view> names) {
   const std::string_view meant = closest_name(word, names);
   return meant.empty() ? std::string() : "; did you mean '" + std::string(meant) + "'?";
+}
+
+std::string expected_one_of(std::span<const std::string_view> names, std::string_view word) {
+  return fmt::format("expected one of {}, found '{}'{}", fmt::join(names, ", "), word,
+                     did_you_mean(word, names));
 }
 
 }  // namespace burnish

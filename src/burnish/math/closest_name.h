@@ -18,4 +18,7 @@ std::string_view closest_name(std::string_view word, std::span<const std::string
 /// "; did you mean 'NAME'?" of that name, or nothing.
 std::string did_you_mean(std::string_view word, std::span<const std::string_view> names);
 
+/// "expected one of A, B, found 'WORD'; did you mean 'A'?", what an Error says of a word that is none of the names.
+std::string expected_one_of(std::span<const std::string_view> names, std::string_view word);
+
 }  // namespace burnish

@@ -24,6 +24,8 @@ TEST(ClosestName, FindsWhatWasMeantAndNothingElse) {
   EXPECT_EQ(closest_name(std::string(100, 'f'), verbs), "");
   EXPECT_EQ(did_you_mean("inof", verbs), "; did you mean 'info'?");
   EXPECT_EQ(did_you_mean("x-rays", verbs), "");
+  EXPECT_EQ(expected_one_of(verbs, "inof"),
+            "expected one of info, fit, compare, convert, found 'inof'; did you mean 'info'?");
 }
 
 }  // namespace

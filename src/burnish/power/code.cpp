@@ -7,6 +7,7 @@
 
 #include <burnish/error.h>
 #include <burnish/formula/writer.h>
+#include <burnish/math/closest_name.h>
 #include <burnish/power/code.h>
 #include <burnish/power/expression.h>
 
@@ -24,7 +25,7 @@ namespace {
 const Language& code_language(std::string_view name) {
   const std::vector<std::string_view> known = code_languages();
   if (std::ranges::find(known, name) != known.end()) return language(name);
-  throw Error(fmt::format("language: expected one of {}, found {}", fmt::join(known, ", "), name));
+  throw Error("language: " + expected_one_of(known, name));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <burnish/error.h>
+#include <burnish/math/closest_name.h>
 #include <burnish/power/fixed_point.h>
 #include <burnish/power/fixed_point_core.h>
 
@@ -56,12 +57,12 @@ const UnitInfo& unit_info(UnitMethod method) {
 }
 
 UnitMethod unit_method(std::string_view name) {
-  std::string known;
+  std::vector<std::string_view> known;
   for (const UnitInfo& info : kInfos) {
     if (info.name == name) return info.method;
-    known += (known.empty() ? "" : ", ") + std::string(info.name);
+    known.push_back(info.name);
   }
-  throw Error(fmt::format("hardware method: expected one of {}, found {}", known, name));
+  throw Error("hardware method: " + expected_one_of(known, name));
 }
 
 SpecularUnit::SpecularUnit(const UnitConfig& config) : config_(config) {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <burnish/error.h>
+#include <burnish/math/closest_name.h>
 #include <burnish/power/expression.h>
 #include <burnish/power/power.h>
 
@@ -146,12 +147,12 @@ const PowerInfo& power_info(PowerMethod method) {
 }
 
 PowerMethod power_method(std::string_view name) {
-  std::string known;
+  std::vector<std::string_view> known;
   for (const PowerInfo& info : power_methods()) {
     if (info.name == name) return info.method;
-    known += (known.empty() ? "" : ", ") + std::string(info.name);
+    known.push_back(info.name);
   }
-  throw Error(fmt::format("power method: expected one of {}, found {}", known, name));
+  throw Error("power method: " + expected_one_of(known, name));
 }
 
 double power_bound(PowerMethod method, double exponent) {

@@ -199,7 +199,7 @@ TEST(Power, UnknownMethodsAreNamedWithTheKnownOnes) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), HasSubstr("cubic2"));
-    EXPECT_THAT(error.what(), HasSubstr("found pow"));
+    EXPECT_THAT(error.what(), HasSubstr("found 'pow'"));
   }
   for (const PowerInfo& info : power_methods()) EXPECT_EQ(power_method(info.name), info.method);
 }

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <regex>
+#include <string>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -117,7 +119,10 @@ TEST(OpenPbrShader, CostsWhatItSaysItCosts) {
     EXPECT_EQ(cost.fetches, 0);
     expected += fmt::format("{} {} {} {}\n", cost.operations, cost.divisions, cost.roots, cost.powers);
   }
-  write(folder.path / "main.cpp", kCounting + functions + "int main() {\n" + calls + "}\n");
+  // numbers between numbers count too
+  const std::regex number(R"(\b[0-9]+\.?[0-9]*(e[-+]?[0-9]+)?f\b)");
+  const std::string counted = std::regex_replace(functions, number, "float($&)");
+  write(folder.path / "main.cpp", kCounting + counted + "int main() {\n" + calls + "}\n");
   const std::string binary = (folder.path / "main").string();
   ASSERT_TRUE(runs(fmt::format("c++ -std=c++17 {0}.cpp -o {0} && {0}", binary), folder.path / "log"));
   EXPECT_EQ(read(folder.path / "log"), expected);

@@ -11,11 +11,7 @@
 
 namespace burnish {
 
-/// Sharper highlights are narrower than what directions of single precision resolve: with roughnesses from 0, and half
-/// of the pairs in highlights, 0.2 % of the pairs differ from MaterialX by more than 1e-3.
-inline constexpr double kLeastOpenPbrRoughness = 0.02;
-
-/// Each lobe absent, whole or in between; numbers that floats hold.
+/// Anything in the ranges of kOpenPbrInputs, each lobe absent, whole or in between; numbers that floats hold.
 inline OpenPbrParameters draw_openpbr(Pcg32& random) {
   OpenPbrParameters p;
   const auto within = [&](double min, double max) {
@@ -23,12 +19,9 @@ inline OpenPbrParameters draw_openpbr(Pcg32& random) {
   };
   for (const OpenPbrInput& input : kOpenPbrInputs) {
     const bool share = input.name.ends_with("weight") || input.name == "base_metalness";
-    const bool width = input.name == "specular_roughness" || input.name == "coat_roughness";
-    const double min = width ? kLeastOpenPbrRoughness : input.min;
-    const double max = input.name.ends_with("ior") ? 3 : input.name == "thin_film_thickness" ? 1 : input.max;
     if (const auto* number = std::get_if<double OpenPbrParameters::*>(&input.member)) {
       const double dice = random.uniform();
-      p.*(*number) = share && dice < 0.4 ? (dice < 0.2 ? 0 : 1) : within(min, max);
+      p.*(*number) = share && dice < 0.4 ? (dice < 0.2 ? 0 : 1) : within(input.min, input.max);
     } else {
       p.*std::get<Rgb OpenPbrParameters::*>(input.member) = {within(0, 1), within(0, 1), within(0, 1)};
     }

@@ -7,6 +7,9 @@ namespace burnish {
 
 namespace {
 
+// Of differences between nodes of a pole, beside second derivatives: no sample outweighs them.
+constexpr double kPoleShare = 100;
+
 struct Term {
   int node;
   double coefficient;
@@ -22,7 +25,7 @@ void add_row(SmoothnessRows& rows, double scale, std::initializer_list<Term> ter
 
 }  // namespace
 
-SmoothnessRows smoothness_rows(const TableLayout& layout) {
+SmoothnessRows smoothness_rows(const TableLayout& layout, GridEdges edges) {
   SmoothnessRows rows;
   const int w = layout.width, h = layout.height, d = layout.depth, layer = w * h;
   const auto cells = [](int nodes) { return nodes > 1 ? nodes - 1.0 : 1.0; };
@@ -54,6 +57,14 @@ SmoothnessRows smoothness_rows(const TableLayout& layout) {
       }
   // A polar angle's function is even about the normal: its slope vanishes there.
   if (layout.shape == TableShape::line && w > 1) add_row(rows, xx, {{0, -1}, {1, 1}});
+  if (layout.shape != TableShape::grid) return rows;
+  if (edges.even_y && h > 1)
+    for (int x = 0; x < w; ++x) add_row(rows, yy, {{x, -1}, {x + w, 1}});
+  if (edges.pole_x && w > 1)
+    for (int y = 0; y < h; ++y) {
+      add_row(rows, xx, {{y * w, -1}, {y * w + 1, 1}});
+      if (y + 1 < h) add_row(rows, kPoleShare * xx, {{y * w, -1}, {y * w + w, 1}});
+    }
   return rows;
 }
 

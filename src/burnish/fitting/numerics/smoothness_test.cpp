@@ -51,6 +51,22 @@ TEST(Smoothness, CountsEveryAxisOfAVolume) {
   EXPECT_NEAR(sum, exact, 0.1 * exact);  // sums over nodes, not cells, along the other axes
 }
 
+TEST(Smoothness, KnowsWhereAGridsAnglesBegin) {
+  const TableLayout layout{.shape = TableShape::grid, .width = 9, .height = 7};
+  const auto rows = [&](GridEdges edges) { return smoothness_rows(layout, edges).size(); };
+  EXPECT_EQ(rows({.even_y = true}), rows({}) + 9);
+  EXPECT_EQ(rows({.pole_x = true}), rows({}) + 7 + 6);
+  // differences along a pole are as good as forbidden
+  const SmoothnessRows pole = smoothness_rows(layout, {.pole_x = true});
+  const auto roughness_of = [&](std::size_t node) {
+    double sum = 0;
+    for (std::size_t k = 0; k < pole.nodes.size(); ++k)
+      if (pole.nodes[k] == node) sum += pole.coefficients[k] * pole.coefficients[k];
+    return sum;
+  };
+  EXPECT_GT(roughness_of(3 * 9), 1000 * roughness_of(3 * 9 + 4));
+}
+
 TEST(Smoothness, IsTheSameAtEveryResolution) {
   const auto f = [](double x, double) { return std::cos(3 * x); };
   const double coarse = roughness({.width = 60}, f), fine = roughness({.width = 240}, f);

@@ -124,19 +124,21 @@ constexpr std::size_t kLeastNear = 3;
 // are at few incidences, all of which every fold has, and nothing tells how wild it is between them.
 constexpr double kRetroSmooth = 1e-7;
 
-// Nodes of the factors of a material that backscatters, at most; the grids' sides are equal.
+// Nodes of the factors of a material that backscatters, at most; the sides of k and of hemispheres are equal.
 constexpr int kRetroFetches = 6;
 struct RetroSizes {
   int p = 48, q = 64, k = 24, b_h = 16, b_d = 40, a_d = 32, a_phi = 6;
 };
+constexpr int kRetroDiskP = 16, kRetroDiskQ = 32;  // p and q of anisotropic ones
 
 // p(wo) p(wi) q(h) k(theta_m,theta_d) b(theta_h,theta_d) a(theta_d,phi_d), their nodes crowded at wi = wo, where b
-// follows the angle of both, and a what is not round about it.
-ModelSpec retro_spec(const RetroSizes& sizes) {
+// follows the angle of both, and a what is not round about it. p and q are hemispheres where it is anisotropic.
+ModelSpec retro_spec(const RetroSizes& sizes, bool isotropic) {
   const Warp crowded{WarpKind::power, 0.5};
-  const auto line = [](const char* name, int nodes) {
-    return ModelSpec::TableSpec{.name = name,
-                                .layout = {.shape = TableShape::line, .width = nodes, .height = 1}};
+  const auto polar = [&](const char* name, int nodes) {
+    const TableLayout line{.shape = TableShape::line, .width = nodes, .height = 1},
+        disk{.shape = TableShape::disk, .width = nodes, .height = nodes};
+    return ModelSpec::TableSpec{.name = name, .layout = isotropic ? line : disk};
   };
   const auto grid = [](const char* name, int width, int height, Warp warp, Warp warp_y) {
     return ModelSpec::TableSpec{
@@ -145,9 +147,11 @@ ModelSpec retro_spec(const RetroSizes& sizes) {
             .shape = TableShape::grid, .width = width, .height = height, .warp = warp, .warp_y = warp_y}};
   };
   ModelSpec spec;
-  spec.tables = {line("p", sizes.p), line("q", sizes.q), grid("k", sizes.k, sizes.k, crowded, crowded),
+  spec.tables = {polar("p", sizes.p), polar("q", sizes.q), grid("k", sizes.k, sizes.k, crowded, crowded),
                  grid("b", sizes.b_h, sizes.b_d, Warp{}, crowded),
                  grid("a", sizes.a_d, sizes.a_phi, crowded, Warp{})};
+  // about wi = wo, where scans coarser than the lobe have no sample
+  spec.tables[2].even_y = spec.tables[3].even_y = spec.tables[4].pole_x = true;
   spec.lobes = {{{.table = 0, .projection = kProjectWo, .projection_y = {}},
                  {.table = 0, .projection = kProjectWi, .projection_y = {}},
                  {.table = 1, .projection = kProjectHalf, .projection_y = {}},
@@ -158,13 +162,19 @@ ModelSpec retro_spec(const RetroSizes& sizes) {
 }
 
 // The largest of these that the bytes hold; none where the grids would be too coarse.
-std::optional<ModelSpec> retro_spec_within(std::size_t bytes, std::size_t channels, TableFormat format) {
+std::optional<ModelSpec> retro_spec_within(std::size_t bytes, const SampleSource& source,
+                                           TableFormat format) {
   for (const double share : {1.0, 0.7, 0.5, 0.35}) {
     const auto part = [share](int nodes) { return std::max(4, static_cast<int>(share * nodes)); };
-    const RetroSizes whole;
+    RetroSizes whole;
+    if (!source.isotropic) {
+      whole.p = kRetroDiskP;
+      whole.q = kRetroDiskQ;
+    }
     const ModelSpec spec = retro_spec({part(whole.p), part(whole.q), part(whole.k), part(whole.b_h),
-                                       part(whole.b_d), part(whole.a_d), part(whole.a_phi)});
-    if (model_bytes(spec, channels, format) <= bytes) return spec;
+                                       part(whole.b_d), part(whole.a_d), part(whole.a_phi)},
+                                      source.isotropic);
+    if (model_bytes(spec, source.channels, format) <= bytes) return spec;
   }
   return std::nullopt;
 }
@@ -294,7 +304,7 @@ class Trials {
 std::optional<ModelSpec> asked_retro_spec(const SampleSource& source, std::size_t bytes,
                                           const HomomorphicOptions& options, int fetches) {
   if (options.backscatter <= 0 || (fetches > 0 && fetches < kRetroFetches)) return std::nullopt;
-  return retro_spec_within(bytes, source.channels, options.format);
+  return retro_spec_within(bytes, source, options.format);
 }
 
 // Of many samples: as fine as the bytes hold, or the lobe about wi = wo where that predicts better.
@@ -360,7 +370,6 @@ std::size_t least_scattered_bytes(std::size_t channels, bool isotropic, TableFor
 }
 
 bool backscatters(const SampleSource& source) {
-  if (!source.isotropic) return false;
   // values near wi = wo and around it, by incidence and by what counts as near
   struct Sums {
     double near = 0, ring = 0;

@@ -24,7 +24,7 @@ struct ScatteredPlan {
   TableFormat format = TableFormat::half;  ///< of all tables
 };
 
-/// Whether the samples of an isotropic source show a lobe about wi = wo: at most incidences that were measured there
+/// Whether the samples of a source show a lobe about wi = wo: at most incidences that were measured there
 /// (three samples with theta_d up to 1.5 degrees, else up to 3 or 5, their half vectors at least 10 degrees off the
 /// normal) they are on the mean more than twice as high as around it (theta_d of 4 to 8 degrees, or that much wider).
 bool backscatters(const SampleSource& source);

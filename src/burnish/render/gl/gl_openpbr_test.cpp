@@ -107,11 +107,23 @@ void append_numbers(const OpenPbrParameters& p, std::vector<float>& numbers) {
   }
 }
 
+// The direction of floats that a shader gets. It is not normalized again in double: at a sharp highlight, where wi and
+// wo nearly cancel, what that changes is wider than the highlight, while their sum is exact in floats.
 Vec3 as_floats(Vec3 w, float (&v)[3]) {
   v[0] = static_cast<float>(w.x);
   v[1] = static_cast<float>(w.y);
   v[2] = static_cast<float>(w.z);
-  return normalize({v[0], v[1], v[2]});
+  return {v[0], v[1], v[2]};
+}
+
+// The second arguments as the OpenGL at hand normalizes them, which MaterialX's shader does with its viewer.
+std::vector<Vec3> normalized_by_gl(const std::vector<GlVectors>& calls) {
+  const std::vector<float> found =
+      GlFunction("vec3 normalized(vec3 a, vec3 b) { return normalize(b); }\n", "normalized").call(calls);
+  std::vector<Vec3> directions;
+  for (std::size_t i = 0; i < calls.size(); ++i)
+    directions.push_back({found[3 * i], found[3 * i + 1], found[3 * i + 2]});
+  return directions;
 }
 
 // The largest difference of the channels relative to ours.
@@ -172,6 +184,8 @@ TEST(GlOpenPbr, IsMaterialXsShader) {
     append_numbers(p, numbers);
   }
   ASSERT_EQ(numbers.size(), kNumbers * kCount);
+  const std::vector<Vec3> viewers = normalized_by_gl(calls);
+  for (std::size_t i = 0; i < kCount; ++i) pairs[i].wo = viewers[i];
   GlFunction function(as_function(read(shader)), "reflected");
   function.set_numbers(numbers);
   const std::vector<float> found = function.call(calls);

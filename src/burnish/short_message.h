@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace burnish {
+
+/// One line of at most 285 bytes, which leaves room below 300 for a program's name: without what is blank at the
+/// end, control characters as blanks, of longer ones the beginning and the end with " ... " between, no character of
+/// UTF-8 cut. The same again of what it gave.
+std::string short_message(std::string_view message);
+
+}  // namespace burnish
