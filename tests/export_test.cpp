@@ -78,6 +78,17 @@ TEST_F(Export, WritesEveryLanguageWithItsTexturesAndAManifest) {
   EXPECT_THAT(read(folder_ / "said"), HasSubstr("two_lobes.glsl: hardware filter, 4 fetches"));
 }
 
+TEST_F(Export, MultipliesInHalfPrecisionWhereAsked) {
+  ASSERT_EQ(exports("--to glsl_es --to wgsl --to cpp --half"), 0) << read(folder_ / "said");
+  EXPECT_THAT(read(folder_ / "said"),
+              HasSubstr("two_lobes.es.glsl: hardware filter, half products, 4 fetches"));
+  EXPECT_THAT(read(folder_ / "said"), HasSubstr("two_lobes.h: exact filter, 8 fetches"));
+  EXPECT_THAT(read(folder_ / "out/two_lobes.es.glsl"), HasSubstr("mediump vec3"));
+  EXPECT_THAT(read(folder_ / "out/two_lobes.wgsl"), HasSubstr("enable f16;"));
+  EXPECT_EQ(exports("--to glsl --half --exact"), 2);
+  EXPECT_EQ(exports("--to cpp --half"), 2);
+}
+
 TEST_F(Export, RefusesWhatIsNoModelAndNoTargetAndLeavesNothing) {
   EXPECT_EQ(exports("--to jpeg"), 2);
   EXPECT_EQ(exports("--to glsl --name a__b"), 1);
@@ -125,6 +136,7 @@ TEST_F(Export, WritesTheSpecularFamilyInEveryLanguage) {
   EXPECT_THAT(read(folder_ / "said"), HasSubstr("shine.hlsl: cubic2"));
   EXPECT_EQ(exports_model("ggx --to glsl"), 1);
   EXPECT_EQ(exports_model("phong --to ktx2"), 1);
+  EXPECT_EQ(exports_model("phong --to glsl --half"), 2);
   EXPECT_EQ(exports_model("phong --to glsl --power w9"), 2);
   EXPECT_EQ(exports("--to glsl --power w8"), 2);
 }

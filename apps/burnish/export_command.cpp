@@ -27,7 +27,7 @@ struct ExportArguments {
   std::string model, folder, name, power, environment;
   std::vector<std::string> to;
   int cells = ExportOptions{}.cells;
-  bool exact = false, plain = false, mips = false, json = false;
+  bool exact = false, half = false, plain = false, mips = false, json = false;
 };
 
 std::string name_of(const std::string& path) {
@@ -38,6 +38,7 @@ ExportOptions options_of(const ExportArguments& arguments) {
   ExportOptions options{.to = {},
                         .name = arguments.name,
                         .exact = arguments.exact,
+                        .half = arguments.half,
                         .mips = arguments.mips,
                         .compressed = !arguments.plain,
                         .cells = arguments.cells};
@@ -49,6 +50,8 @@ ExportedFiles exported_analytic(const ExportArguments& arguments, const Analytic
   const std::string_view model = brdf.model().name;
   if (!arguments.environment.empty())
     throw CLI::ValidationError("--environment: expected a factored BRDF with it, found " + arguments.model);
+  if (arguments.half)
+    throw CLI::ValidationError("--half: expected a factored BRDF with it, found " + arguments.model);
   ExportOptions options = options_of(arguments);
   if (options.name.empty())
     options.name = is_analytic_spec(arguments.model) ? std::string(model) : name_of(arguments.model);
@@ -65,6 +68,9 @@ ExportedFiles exported_model(const ExportArguments& arguments, const Source& sou
   ExportOptions options = options_of(arguments);
   if (!arguments.environment.empty() && std::ranges::none_of(options.to, shows_environment))
     throw CLI::ValidationError("--environment: expected --to glsl, glsl_es or html with it, found others");
+  if (options.half && std::ranges::none_of(options.to, has_half_products))
+    throw CLI::ValidationError(
+        "--half: expected --to glsl, glsl_es, hlsl, msl or wgsl with it, found others");
   if (options.name.empty()) options.name = name_of(arguments.model);
   const FactoredBrdf brdf = to_model(source).brdf;
   options.environment = environment_of(arguments.environment);
@@ -72,8 +78,8 @@ ExportedFiles exported_model(const ExportArguments& arguments, const Source& sou
 }
 
 ExportedFiles exported_surface(const ExportArguments& arguments, const FileBytes& file) {
-  if (!arguments.power.empty() || !arguments.environment.empty())
-    throw CLI::ValidationError("--power, --environment: expected a model with them, found a surface");
+  if (!arguments.power.empty() || !arguments.environment.empty() || arguments.half)
+    throw CLI::ValidationError("--power, --environment, --half: expected a model with them, found a surface");
   ExportOptions options = options_of(arguments);
   if (options.name.empty()) options.name = name_of(arguments.model);
   return export_surface(parse_surface(file).brdf, options);
@@ -120,6 +126,7 @@ void add_export_command(CLI::App& app) {
       "folder and what an evaluation costs. See docs/guide/shaders.md and docs/guide/export.md.\n"
       "Examples: burnish export paint.exr --to glsl --to html -o paint\n"
       "          burnish export paint.exr --to glsl_es --to html --environment studio -o paint\n"
+      "          burnish export paint.exr --to glsl_es --to wgsl --half -o paint\n"
       "          burnish export paint.exr --to materialx --to usda -o paint\n"
       "          burnish export wall.burnish --to glsl --to hlsl -o wall\n"
       "          burnish export openpbr:coat_weight=1 --to materialx --to three --to glsl -o coated\n"
@@ -143,7 +150,13 @@ void add_export_command(CLI::App& app) {
   verb->add_option("--cells", arguments->cells, "of mdl: cells along each polar angle of the measurement")
       ->check(CLI::Range(2, 1000))
       ->capture_default_str();
-  verb->add_flag("--exact", arguments->exact, "shaders that weigh texels themselves, in floats");
+  CLI::Option* const exact =
+      verb->add_flag("--exact", arguments->exact, "shaders that weigh texels themselves, in floats");
+  verb->add_flag(
+          "--half", arguments->half,
+          "shaders that multiply texels in half precision (mediump, min16float, half, f16): within 1 %; "
+          "cpp stays single")
+      ->excludes(exact);
   verb->add_flag("--mips", arguments->mips, "KTX2 with levels: averages over the directions of a texel");
   verb->add_flag("--plain", arguments->plain, "textures that are not compressed");
   verb->add_flag("--json", arguments->json, "print the files and what shaders cost as JSON");

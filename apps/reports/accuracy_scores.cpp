@@ -54,6 +54,7 @@ Score run_method(const Material& material, std::string_view method, std::size_t 
   score.cost = std::visit(
       [](const auto& brdf) -> std::optional<EvaluationCost> { return evaluation_cost(brdf); }, made.brdf);
   score.seconds = made.report.seconds;
+  if (const auto* lobes = std::get_if<LobesReport>(&made.report.how)) score.fetches = lobes->fetches;
   return score;
 }
 
@@ -134,10 +135,22 @@ std::vector<std::vector<Score>> run(const std::deque<Material>& materials) {
     std::vector<Score>& row = scores.emplace_back(jobs.size());
     for (std::size_t k = 0; k < jobs.size(); ++k) {
       jobs[k].score = &row[k];
-      if (jobs[k].method == "ours")
-        row[k] = run_method(material, jobs[k].method, jobs[k].budget);
-      else
+      if (jobs[k].method == "ours") row[k] = run_method(material, jobs[k].method, jobs[k].budget);
+    }
+    // a fit that chose so many fetches is the one that is given them
+    for (std::size_t k = 0; k < jobs.size(); ++k) {
+      if (jobs[k].method == "ours") continue;
+      const int fetches = fetches_of(jobs[k].method);
+      const auto same = std::ranges::find_if(row, [&](const Score& score) {
+        return fetches > 0 && score.fetches == fetches && score.budget == jobs[k].budget;
+      });
+      if (same == row.end()) {
         others.push_back(jobs[k]);
+        continue;
+      }
+      Score copy = *same;
+      copy.method = jobs[k].method;
+      row[k] = std::move(copy);
     }
   }
   // They take one thread each, most of the time.

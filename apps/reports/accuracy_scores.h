@@ -24,6 +24,7 @@ struct Score {
   std::size_t bytes = 0;
   std::optional<EvaluationCost> cost;
   double seconds = 0;  ///< of the fit; 0: not fitted here
+  int fetches = 0;     ///< that the fit was given or chose; 0: none of ours, or lobes in whatever number
   Image8 picture;      ///< a lit sphere, light at 30 degrees, under the reference's exposure; may be none
 };
 

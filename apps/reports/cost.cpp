@@ -105,7 +105,8 @@ class Contest {
   Contest(const Material& material, const PairSet& set, const Extent& extent)
       : material_(material), set_(set), extent_(extent) {}
 
-  void add_fit(std::size_t budget, int asked);
+  /// A fit for each number of fetches, which rise.
+  void add_fits(std::size_t budget, const std::vector<int>& fetches);
   void add_ggx();
   void add_network(const NeuralBrdf& network);
   void add_measurement();
@@ -120,9 +121,11 @@ class Contest {
     Row row;
     std::function<void()> one_by_one, batched;  // empty: there is none
     std::optional<FrameMaterial> frame;
+    std::optional<std::size_t> same_as = {};  // an entry that stands for this one, too
   };
 
   Row row_of(const std::string& method, std::size_t bytes, BrdfRef model) const;
+  Entry entry_of_fit(std::size_t budget, int asked) const;
   std::string said(const std::string& what) const { return fmt::format("{}, {}", material_.name, what); }
   void time_evaluations();
   void time_all_frames();
@@ -142,7 +145,7 @@ Row Contest::row_of(const std::string& method, std::size_t bytes, BrdfRef model)
   return row;
 }
 
-void Contest::add_fit(std::size_t budget, int asked) {
+Contest::Entry Contest::entry_of_fit(std::size_t budget, int asked) const {
   const std::string name = said(fmt::format("{} bytes, {} fetches", budget, asked));
   tell("cost: " + name);
   const Fit made = fit(material_.source, {.form = Budget{.bytes = budget, .fetches = asked}, .score = false});
@@ -160,9 +163,29 @@ void Contest::add_fit(std::size_t budget, int asked) {
   const auto run = [model, evaluator](const DirectionSpans& in, std::span<float> f) {
     evaluator->eval(in, f);
   };
-  entries_.push_back(
-      {row, one_by_one(set_, evaluator), batched(name, set_, run, *model, evaluator->rounding_bound()),
-       FrameMaterial{name, surface_shader(*model, ShaderFilter::hardware, TableFormat::rgb9e5), *model}});
+  return {.row = row,
+          .one_by_one = one_by_one(set_, evaluator),
+          .batched = batched(name, set_, run, *model, evaluator->rounding_bound()),
+          .frame = FrameMaterial{name, surface_shader(*model, ShaderFilter::hardware, TableFormat::rgb9e5),
+                                 *model}};
+}
+
+// From the most fetches to the least. Plans take tables in one order while there are fetches (fetch_plan.h): a fit that
+// takes no more than a smaller number is what that number gives, bit by bit, and neither fitted nor timed again.
+void Contest::add_fits(std::size_t budget, const std::vector<int>& fetches) {
+  const std::size_t first = entries_.size();
+  entries_.resize(first + fetches.size());
+  for (std::size_t k = fetches.size(); k-- > 0;) {
+    Entry& entry = entries_[first + k];
+    if (k + 1 < fetches.size() && entries_[first + k + 1].row.fetches <= fetches[k]) {
+      const Entry& larger = entries_[first + k + 1];
+      entry.row = larger.row;
+      entry.row.asked = fetches[k];
+      entry.same_as = larger.same_as.value_or(first + k + 1);
+    } else {
+      entry = entry_of_fit(budget, fetches[k]);
+    }
+  }
 }
 
 void Contest::add_ggx() {
@@ -282,7 +305,15 @@ std::vector<Row> Contest::rows(bool with_frames) {
   time_evaluations();
   if (with_frames) time_all_frames();
   std::vector<Row> rows;
-  for (const Entry& entry : entries_) rows.push_back(entry.row);
+  for (const Entry& entry : entries_) {
+    Row& row = rows.emplace_back(entry.row);
+    if (!entry.same_as) continue;
+    const Row& timed = entries_[*entry.same_as].row;
+    row.one_by_one = timed.one_by_one;
+    row.batched = timed.batched;
+    row.frame = timed.frame;
+    row.of_ggx = timed.of_ggx;
+  }
   return rows;
 }
 
@@ -299,8 +330,7 @@ std::optional<NeuralBrdf> published_network(const ReportOptions& options, const 
 std::vector<Row> rows_of(const ReportOptions& options, const Material& material, const Extent& extent,
                          const PairSet& set, bool with_frames) {
   Contest contest(material, set, extent);
-  for (const std::size_t budget : extent.budgets)
-    for (const int fetches : extent.fetches) contest.add_fit(budget, fetches);
+  for (const std::size_t budget : extent.budgets) contest.add_fits(budget, extent.fetches);
   contest.add_ggx();
   if (const auto network = published_network(options, material.name)) contest.add_network(*network);
   contest.add_measurement();
@@ -444,8 +474,10 @@ void report_cost(const ReportOptions& options) {
   const PairSet set(extent.pairs);
   std::vector<std::string> names;
   std::vector<std::vector<Row>> materials;
-  for (Source& source : cost_sources(options)) {
+  std::vector<Source> sources = cost_sources(options);
+  for (Source& source : sources) {
     names.push_back(source.name);
+    tell(fmt::format("cost: material {} of {}: {}", names.size(), sources.size(), source.name));
     const Material material(names.back(), std::move(source), extent.figures);
     materials.push_back(rows_of(options, material, extent, set, context != nullptr));
   }

@@ -7,8 +7,6 @@ namespace burnish::reports {
 
 namespace {
 
-constexpr std::size_t kEvery = 4;
-
 Source virtual_measurement(const std::string& name, const std::string& formula) {
   const Source source = open_source(formula, {});
   return {.name = name, .brdf = make_rgl_table(source.ref()), .findings = {}};
@@ -33,10 +31,8 @@ std::vector<Source> cost_sources(const ReportOptions& options) {
     }
     return sources;
   }
-  std::vector<Source> chosen;
-  for (std::size_t i = 0; i < sources.size(); i += kEvery) chosen.push_back(std::move(sources[i]));
-  if (options.quick) chosen.resize(1);
-  return chosen;
+  if (options.quick) sources.resize(1);
+  return sources;
 }
 
 }  // namespace burnish::reports

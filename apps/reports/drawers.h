@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include <burnish/eval/factored_eval.h>
 #include <burnish/eval/tabulated_sampler.h>
 #include <burnish/factors/factored_brdf.h>
 #include <burnish/math/angles.h>
@@ -76,7 +77,8 @@ class LobeChoice {
   explicit LobeChoice(const FactoredBrdf& model) {
     for (const Lobe& lobe : model.lobes()) {
       const FactoredBrdf alone(model.channels(), {model.tables().begin(), model.tables().end()}, {lobe});
-      lobes_.push_back({Albedo(alone), TabulatedSampler(alone)});
+      const FactoredEvaluator evaluator(alone);
+      lobes_.push_back({Albedo(evaluator), TabulatedSampler(evaluator)});
     }
   }
   std::size_t lobes() const noexcept { return lobes_.size(); }

@@ -2,10 +2,13 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <deque>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include <burnish/error.h>
+#include <burnish/eval/factored_eval.h>
 #include <burnish/file.h>
 #include <burnish/fitting/fit.h>
 #include <burnish/image/contact_sheet.h>
@@ -30,25 +33,64 @@ double cpu_seconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
+// What is fitted: the best of few bytes, and what a shader reads twice.
+struct Form {
+  const char *name, *command;  // of marks and files, and as it is written
+  Budget budget;
+};
+const std::array kForms{
+    Form{"models", "burnish fit --budget 2700", {.bytes = 2700}},
+    Form{"volumes", "burnish fit --budget 16384 --fetches 2", {.bytes = 16'384, .fetches = 2}}};
+
+// A BRDF with all that draws for it.
+struct Drawn {
+  BrdfRef brdf;
+  Drawers drawers;
+  Proportional proportional;
+
+  Drawn(BrdfRef of, const RglTable& table) : brdf(of), drawers(of, table), proportional(of) {}
+};
+
+// A model, evaluated as a renderer does.
+struct Model {
+  FactoredBrdf factors;
+  FactoredEvaluator evaluator;
+  Drawn drawn;
+
+  Model(FactoredBrdf fitted, const RglTable& table)
+      : factors(std::move(fitted)), evaluator(factors), drawn(evaluator, table) {}
+  Model(const Model&) = delete;
+  Model& operator=(const Model&) = delete;
+};
+
 struct Material {
   std::string name;
   RglTable table;
-  FactoredBrdf model;
-};
+  Measurement measurement;
+  Drawn measured;
+  std::deque<Model> models;  // of each form
 
-constexpr std::size_t kModelBytes = 2700;
+  Material(std::string called, RglTable of)
+      : name(std::move(called)), table(std::move(of)), measurement{&table}, measured(measurement, table) {}
+  Material(const Material&) = delete;
+  Material& operator=(const Material&) = delete;
+};
+using Materials = std::deque<Material>;
 
 constexpr const char* kPlotted = "chm_mint_rgb";
 
-std::vector<Material> load_materials(const fs::path& folder, bool quick) {
-  std::vector<Material> materials;
+Materials load_materials(const fs::path& folder, bool quick) {
+  Materials materials;
   for (const fs::path& file : files_in(folder)) {
     const std::string name = file.stem().string();
     if (quick && name != kPlotted) continue;
     tell("sampling: " + name);
     Source source = open_source(file.string(), {});
-    FactoredBrdf model = fit(source, {.form = Budget{.bytes = kModelBytes}, .score = false}).model();
-    materials.push_back({name, std::get<RglTable>(std::move(source.brdf)), std::move(model)});
+    std::vector<FactoredBrdf> fits;
+    for (const Form& form : kForms)
+      fits.push_back(fit(source, {.form = form.budget, .score = false}).model());
+    Material& material = materials.emplace_back(name, std::get<RglTable>(std::move(source.brdf)));
+    for (FactoredBrdf& model : fits) material.models.emplace_back(std::move(model), material.table);
   }
   return materials;
 }
@@ -84,17 +126,17 @@ Weights weights_of(BrdfRef brdf, SamplerRef sampler, Vec3 wo, int draws) {
   return {squares / (sum * sum), largest / sum, lost};
 }
 
-Table weights_table(const std::vector<Material>& materials, const Effort& effort) {
+Table weights_table(const Materials& materials, std::size_t form, const Effort& effort) {
   Table table(joined({"theta_o"}, kWayNames));
   const auto share = 1 / static_cast<double>(materials.size());
   std::array<double, kWays> largest{};
   for (const int theta_deg : {0, 20, 40, 60, 75, 85, 88, 89}) {
     std::array<Weights, kWays> mean;
     for (const Material& m : materials) {
-      const Drawers drawers(m.model, m.table);
+      const Drawn& drawn = m.models[form].drawn;
       for (std::size_t k = 0; k < kWays; ++k) {
-        const Weights w =
-            weights_of(m.model, drawers.all()[k], spherical_direction(radians(theta_deg), 1), effort.draws);
+        const Weights w = weights_of(drawn.brdf, drawn.drawers.all()[k],
+                                     spherical_direction(radians(theta_deg), 1), effort.draws);
         mean[k].second_moment += share * w.second_moment;
         mean[k].lost += share * w.lost;
         largest[k] = std::max(largest[k], w.largest);
@@ -118,7 +160,12 @@ double albedo_of(BrdfRef brdf, Vec3 wo) {
   return sum;
 }
 
-void report_horizon(Page& page, const std::vector<Material>& materials, const Effort& effort) {
+// Marks and files of a form; those of the first have no name.
+std::string mark_of(const std::string& what, std::size_t form, char between) {
+  return form == 0 ? what : fmt::format("{}{}{}", what, between, kForms[form].name);
+}
+
+void report_horizon(Page& page, const Materials& materials, std::size_t form, const Effort& effort) {
   const std::vector<std::string> head{"second moment", "largest weight", "albedo of the model",
                                       "albedo as measured"};
   Table rows(joined({"material", "theta_o"}, head)), means(joined({"theta_o"}, head));
@@ -127,17 +174,18 @@ void report_horizon(Page& page, const std::vector<Material>& materials, const Ef
     const std::string theta = fmt::format("{}°", theta_deg);
     std::array<double, 4> mean{};
     for (const Material& m : materials) {
-      const Weights w = weights_of(m.model, TabulatedSampler(m.model), wo, effort.draws);
-      const std::array figures{w.second_moment, w.largest, albedo_of(m.model, wo),
-                               albedo_of(Measurement{&m.table}, wo)};
+      const Drawn& drawn = m.models[form].drawn;
+      const Weights w = weights_of(drawn.brdf, drawn.drawers.tabulated, wo, effort.draws);
+      const std::array figures{w.second_moment, w.largest, albedo_of(drawn.brdf, wo),
+                               albedo_of(m.measurement, wo)};
       rows.add(joined({m.name, theta}, cells("{:.3g}", figures)));
       for (std::size_t k = 0; k < mean.size(); ++k)
         mean[k] += figures[k] / static_cast<double>(materials.size());
     }
     means.add(joined({theta}, cells("{:.3g}", mean)));
   }
-  page["horizon"] = means.markdown();
-  page.write_rows("horizon", rows);
+  page[mark_of("horizon", form, '_')] = means.markdown();
+  page.write_rows(mark_of("horizon", form, '-'), rows);
 }
 
 // ---- Variance under environments
@@ -228,8 +276,10 @@ struct Comparison {
   }
 };
 
-void report_variance(Page& page, const std::vector<Material>& materials, bool of_models,
+// Of the models of a form, or of the measurements.
+void report_variance(Page& page, const Materials& materials, std::optional<std::size_t> form,
                      const Effort& effort) {
+  const std::string what = form ? kForms[*form].name : "measurements";
   const auto head = [&](std::vector<std::string> first) {
     first = joined(std::move(first), kWayNames);
     first.emplace_back(kProportional);
@@ -239,47 +289,46 @@ void report_variance(Page& page, const std::vector<Material>& materials, bool of
   for (const Environment& environment : environments()) {
     Comparison comparison;
     for (const Material& m : materials) {
-      tell(
-          fmt::format("sampling: {}, {}, {}", environment.name, m.name, of_models ? "model" : "measurement"));
-      const Measurement measurement{&m.table};
-      const BrdfRef brdf = of_models ? BrdfRef(m.model) : BrdfRef(measurement);
-      const Drawers drawers(brdf, m.table);
-      const Proportional proportional(brdf);
+      tell(fmt::format("sampling: {}, {}, {}", environment.name, m.name, what));
+      const Drawn& drawn = form ? m.models[*form].drawn : m.measured;
       std::vector<SamplerRef> densities;
-      for (const SamplerRef s : drawers.all()) densities.push_back(s);
-      densities.push_back(proportional);
-      const Variance variance = variance_of(brdf, drawers.tabulated, densities, environment, effort);
+      for (const SamplerRef s : drawn.drawers.all()) densities.push_back(s);
+      densities.push_back(drawn.proportional);
+      const Variance variance =
+          variance_of(drawn.brdf, drawn.drawers.tabulated, densities, environment, effort);
       rows.add(joined({environment.name, m.name}, cells("{:.4g}", variance.of_picture)));
       std::array<double, kWays> microseconds;
-      for (std::size_t k = 0; k < kWays; ++k) microseconds[k] = time_of(brdf, drawers.all()[k], effort);
+      for (std::size_t k = 0; k < kWays; ++k)
+        microseconds[k] = time_of(drawn.brdf, drawn.drawers.all()[k], effort);
       comparison.add(variance, microseconds, 1 / static_cast<double>(materials.size()));
     }
     comparison.print(fmt::format("`{}`", environment.name), table);
   }
-  const std::string what = of_models ? "models" : "measurements";
   page["variance_" + what] = table.markdown();
   page.write_rows("variance-" + what, rows);
 }
 
 // ---- One table or one a lobe
 
-void report_lobe_choice(Page& page, const std::vector<Material>& materials, const Effort& effort) {
+void report_lobe_choice(Page& page, const Materials& materials, const Effort& effort) {
   std::vector<std::string> head;
   for (const Environment& e : environments()) head.push_back(fmt::format("variance, {}", e.name));
   head = joined(std::move(head), std::array{"µs, one", "µs, mixture", "bytes, one", "bytes, mixture"});
   Table rows(joined({"material", "lobes"}, head)), means(head);
   std::vector<double> mean(head.size());
   for (const Material& m : materials) {
-    const TabulatedSampler one(m.model);
-    const LobeChoice mixture(m.model);
+    tell(fmt::format("sampling: {}, lobes", m.name));
+    const auto& [factors, evaluator, drawn] = m.models.front();
+    const TabulatedSampler& one = drawn.drawers.tabulated;
+    const LobeChoice mixture(factors);
     std::vector<double> figures;
     for (const Environment& environment : environments()) {
       const Variance v =
-          variance_of(m.model, one, std::array<SamplerRef, 2>{one, mixture}, environment, effort);
+          variance_of(evaluator, one, std::array<SamplerRef, 2>{one, mixture}, environment, effort);
       figures.push_back(v.of_picture[0] / v.of_picture[1]);
     }
-    figures.push_back(time_of(m.model, one, effort));
-    figures.push_back(time_of(m.model, mixture, effort));
+    figures.push_back(time_of(evaluator, one, effort));
+    figures.push_back(time_of(evaluator, mixture, effort));
     figures.push_back(static_cast<double>(one.bytes()));
     figures.push_back(static_cast<double>(mixture.lobes() * one.bytes()));
     rows.add(joined({m.name, std::to_string(mixture.lobes())}, cells("{:.5g}", figures)));
@@ -311,9 +360,8 @@ ErrorRun error_of(BrdfRef brdf, SamplerRef sampler, const Environment& environme
 void report_errors(Page& page, const Material& m, const Effort& effort) {
   constexpr int kPixels = 64;
   constexpr const char* kStratified = "burnish, stratified";
-  const Measurement measurement{&m.table};
-  const BrdfRef brdf = measurement;
-  const Drawers drawers(brdf, m.table);
+  const BrdfRef brdf = m.measurement;
+  const Drawers& drawers = m.measured.drawers;
   const Environment& studio = environments()[1];
   const Image reference = moments_in_environment(brdf, drawers.tabulated, {}, studio,
                                                  {.size = kPixels, .samples = effort.reference_samples})
@@ -334,6 +382,7 @@ void report_errors(Page& page, const Material& m, const Effort& effort) {
   by_time.x_label = "CPU microseconds a pixel";
   Table table(joined(joined({"samples"}, kWayNames), std::array{kStratified}));
   for (int samples = 4; samples <= effort.max_samples; samples *= 4) {
+    tell(fmt::format("sampling: {}, {} samples a pixel", m.name, samples));
     std::vector<double> errors;
     for (std::size_t k = 0; k <= kWays; ++k) {
       const auto [error, seconds] =
@@ -354,18 +403,19 @@ void report_errors(Page& page, const Material& m, const Effort& effort) {
 }
 
 // Sixteen samples a pixel, all ways, beside the picture they approach.
-void draw_noise(const Page& page, const std::vector<Material>& materials) {
+void draw_noise(const Page& page, const Materials& materials) {
   ContactSheet sheet{.title = "16 samples a pixel, environment \"studio\"", .column_labels = {"reference"}};
   for (const char* way : kWayNames) sheet.column_labels.push_back(way);
   const Environment& studio = environments()[1];
   for (const char* name : {"acrylic_felt_green_rgb", "cc_ibiza_sunset_rgb", "chm_mint_rgb"}) {
     const auto m = std::ranges::find(materials, name, &Material::name);
     if (m == materials.end()) continue;
-    const Measurement measurement{&m->table};
-    const Drawers drawers(measurement, m->table);
+    tell(fmt::format("sampling: {}, a picture", m->name));
+    const Measurement& measurement = m->measurement;
+    const Drawers& drawers = m->measured.drawers;
     constexpr int kPixels = 128;
     const Image reference =
-        moments_in_environment(measurement, drawers.tabulated, {}, studio, {.size = kPixels, .samples = 576})
+        moments_in_environment(measurement, drawers.tabulated, {}, studio, {.size = kPixels, .samples = 144})
             .mean;
     std::vector<float> values;
     for (int i = 0; i < kPixels * kPixels; ++i)
@@ -389,18 +439,21 @@ void report_sampling(const ReportOptions& options) {
   if (!options.data) throw Error("BURNISH_DATA: expected the folder of measurements, found nothing");
   const Effort effort = options.quick ? kQuick : Effort{};
   Page page(options, "sampling-results");
-  const std::vector<Material> materials = load_materials(*options.data / "rgl", options.quick);
+  const Materials materials = load_materials(*options.data / "rgl", options.quick);
   if (materials.empty()) throw Error::in_file(*options.data / "rgl", "measurements", "none");
   page["materials"] = std::to_string(materials.size());
-  page["model_bytes"] = std::to_string(kModelBytes);
-  page["table_bytes"] = std::to_string(TabulatedSampler(materials.front().model).bytes());
+  page["table_bytes"] = std::to_string(materials.front().measured.drawers.tabulated.bytes());
   page["draws"] = std::to_string(effort.draws);
   page["turns"] = std::to_string(effort.turns);
   page["picture_size"] = std::to_string(kPictureSize);
-  page["weights"] = weights_table(materials, effort).markdown();
-  report_horizon(page, materials, effort);
-  report_variance(page, materials, false, effort);
-  report_variance(page, materials, true, effort);
+  for (std::size_t form = 0; form < kForms.size(); ++form) {
+    tell(fmt::format("sampling: weights, {}", kForms[form].command));
+    page[std::string("command_") + kForms[form].name] = kForms[form].command;
+    page[mark_of("weights", form, '_')] = weights_table(materials, form, effort).markdown();
+    report_horizon(page, materials, form, effort);
+  }
+  report_variance(page, materials, {}, effort);
+  for (std::size_t form = 0; form < kForms.size(); ++form) report_variance(page, materials, form, effort);
   report_lobe_choice(page, materials, effort);
   if (const auto m = std::ranges::find(materials, kPlotted, &Material::name); m != materials.end())
     report_errors(page, *m, effort);

@@ -570,6 +570,7 @@ Reply export_material(const Request& request) {
   }
   ExportOptions options{.to = {export_target(kind)}, .name = name, .compressed = false};
   read_if(a, "exact", options.exact);
+  read_if(a, "half", options.half);
   read_if(a, "mips", options.mips);
   return reply_of(export_model(model_of(a), options));
 }

@@ -44,13 +44,14 @@ nb::dict handed_out(const ExportedFiles& exported, const std::optional<std::file
 
 nb::dict exported_model(const OpenedModel& model, const Names& to,
                         const std::optional<std::filesystem::path>& folder, const std::string& name,
-                        bool exact, bool mips, bool compressed, int cells,
+                        bool exact, bool half, bool mips, bool compressed, int cells,
                         const std::optional<std::string>& environment) {
   const ExportedFiles exported = [&] {
     const nb::gil_scoped_release unlocked;
     ExportOptions options{.to = targets_of(to),
                           .name = name,
                           .exact = exact,
+                          .half = half,
                           .mips = mips,
                           .compressed = compressed,
                           .cells = cells};
@@ -77,26 +78,31 @@ nb::dict exported_analytic(const std::string& spec, const Names& to,
 
 void bind_exports(nb::module_& m) {
   const ExportOptions defaults;
-  m.def("export", &exported_model, nb::arg("model"), nb::arg("to"), nb::arg("folder") = nb::none(),
-        nb::kw_only(), nb::arg("name") = defaults.name, nb::arg("exact") = defaults.exact,
-        nb::arg("mips") = defaults.mips, nb::arg("compressed") = defaults.compressed,
-        nb::arg("cells") = defaults.cells, nb::arg("environment") = nb::none(),
-        nb::sig("def export(model: Model, to: str | list[str], folder: str | os.PathLike | None = None, *, "
-                "name: str = 'brdf', exact: bool = False, mips: bool = False, compressed: bool = True, "
-                "cells: int = 90, environment: str | None = None) -> dict[str, bytes]"),
-        "What `burnish export` writes, by the files' names, the last one the manifest NAME.json; into the "
-        "folder\n"
-        "too where one is given.\n\n"
-        "to: one or several of \"ktx2\", \"cube\", \"exr\", \"png\", \"gltf\", \"materialx\", \"usda\", "
-        "\"mdl\",\n\"three\", \"babylon\", \"rgl\", \"html\" and the shaders \"glsl\", \"glsl_es\", "
-        "\"hlsl\", \"msl\", \"wgsl\" and \"cpp\", which bring their textures "
-        "along. "
-        "name: of files\nand functions. exact: shaders weigh texels themselves, in floats. mips: KTX2 with "
-        "levels. "
-        "compressed: KTX2\nwith Zstandard. cells: of \"mdl\", along each polar angle. environment: \"sun\", "
-        "\"studio\" or an OpenEXR picture of all "
-        "directions, "
-        "whose light glsl,\nglsl_es and html show.");
+  m.def(
+      "export", &exported_model, nb::arg("model"), nb::arg("to"), nb::arg("folder") = nb::none(),
+      nb::kw_only(), nb::arg("name") = defaults.name, nb::arg("exact") = defaults.exact,
+      nb::arg("half") = defaults.half, nb::arg("mips") = defaults.mips,
+      nb::arg("compressed") = defaults.compressed, nb::arg("cells") = defaults.cells,
+      nb::arg("environment") = nb::none(),
+      nb::sig(
+          "def export(model: Model, to: str | list[str], folder: str | os.PathLike | None = None, *, "
+          "name: str = 'brdf', exact: bool = False, half: bool = False, mips: bool = False, "
+          "compressed: bool = True, cells: int = 90, environment: str | None = None) -> dict[str, bytes]"),
+      "What `burnish export` writes, by the files' names, the last one the manifest NAME.json; into the "
+      "folder\n"
+      "too where one is given.\n\n"
+      "to: one or several of \"ktx2\", \"cube\", \"exr\", \"png\", \"gltf\", \"materialx\", \"usda\", "
+      "\"mdl\",\n\"three\", \"babylon\", \"rgl\", \"html\" and the shaders \"glsl\", \"glsl_es\", "
+      "\"hlsl\", \"msl\", \"wgsl\" and \"cpp\", which bring their textures "
+      "along. "
+      "name: of files\nand functions. exact: shaders weigh texels themselves, in floats. half: they multiply "
+      "them in half precision\n(mediump, min16float, half, f16), within 1 %; \"cpp\" stays single. mips: "
+      "KTX2 "
+      "with levels. "
+      "compressed: KTX2\nwith Zstandard. cells: of \"mdl\", along each polar angle. environment: \"sun\", "
+      "\"studio\" or an OpenEXR picture of all "
+      "directions, "
+      "whose light glsl,\nglsl_es and html show.");
   m.def("export", &exported_analytic, nb::arg("spec"), nb::arg("to"), nb::arg("folder") = nb::none(),
         nb::kw_only(), nb::arg("name") = defaults.name, nb::arg("cells") = defaults.cells,
         nb::arg("power") = nb::none(),

@@ -30,10 +30,12 @@ ShaderLanguage language_of(const std::string& name) {
   throw Error(fmt::format("language: expected {}, found '{}'", fmt::join(known, ", "), name));
 }
 
-Shader shader_of(const OpenedModel& model, const std::string& language, bool exact, const std::string& name) {
+Shader shader_of(const OpenedModel& model, const std::string& language, bool exact, bool half,
+                 const std::string& name) {
   const ShaderLanguage wanted = language_of(language);
   const bool weighs = exact || wanted == ShaderLanguage::cpp;
-  return generate_shader(model.brdf(), {wanted, weighs ? ShaderFilter::exact : ShaderFilter::hardware, name});
+  return generate_shader(model.brdf(),
+                         {wanted, weighs ? ShaderFilter::exact : ShaderFilter::hardware, name, half});
 }
 
 void write_ktx2(const std::filesystem::path& path, const ShaderTexture& texture, bool compressed) {
@@ -87,11 +89,14 @@ void bind_shaders(nb::module_& m) {
           nb::sig("def cost(self) -> dict[str, int]"), "Of one evaluation; operations a component.");
   m.def(
       "generate_shader", &shader_of, nb::arg("model"), nb::arg("language") = "glsl", nb::kw_only(),
-      nb::arg("exact") = false, nb::arg("name") = "brdf", nb::call_guard<nb::gil_scoped_release>(),
+      nb::arg("exact") = false, nb::arg("half") = false, nb::arg("name") = "brdf",
+      nb::call_guard<nb::gil_scoped_release>(),
       "Two functions, as `burnish export --to` writes them: burnish_NAME(wi, wo), f_r in 1/sr of unit\n"
       "vectors of the local frame, and burnish_NAME_world(n, t, l, v).\n\n"
       "language: \"glsl\", \"glsl_es\", \"hlsl\", \"msl\", \"wgsl\" or \"cpp\", which has its tables inside. "
-      "exact: texels\nare weighed in floats, not by the texture unit; always so in cpp.");
+      "exact: texels\nare weighed in floats, not by the texture unit; always so in cpp. half: texels are "
+      "multiplied in half\nprecision (mediump, min16float, half, f16), within 1 %; neither exact nor in "
+      "cpp.");
   m.def("write_ktx2", &write_ktx2, nb::arg("path"), nb::arg("texture"), nb::kw_only(),
         nb::arg("compressed") = true, nb::call_guard<nb::gil_scoped_release>(),
         "Writes a shader's texture as a KTX2 file. compressed: with Zstandard.");

@@ -102,6 +102,19 @@ def test_shaders_and_textures_are_the_command_lines(language, extension, cli, mo
         assert (tmp_path / "texture.ktx2").read_bytes() == (tmp_path / "out" / entry["file"]).read_bytes()
 
 
+@pytest.mark.parametrize("language, ending", [("glsl_es", "es.glsl"), ("hlsl", "hlsl"), ("wgsl", "wgsl")])
+def test_half_products_are_the_command_lines(language, ending, cli, model, tmp_path):
+    burnish.write_model(tmp_path / "model.exr", model)
+    cli("export", tmp_path / "model.exr", "--to", language, "--half", "-o", tmp_path / "out")
+    expected = (tmp_path / "out" / f"model.{ending}").read_text()
+    assert burnish.generate_shader(model, language, half=True, name="model").text == expected
+    assert burnish.export(model, language, half=True, name="model")[f"model.{ending}"].decode() == expected
+    assert burnish.generate_shader(model, language, name="model").text != expected
+    for asked in ({"exact": True}, {"language": "cpp"}):
+        with pytest.raises(burnish.Error, match="expected the hardware filter with half products, found exact"):
+            burnish.generate_shader(model, **{"language": language, "half": True} | asked)
+
+
 def test_exports_are_the_command_lines(cli, model, tmp_path):
     burnish.write_model(tmp_path / "model.exr", model)
     options = [word for to in ("three", "babylon", "materialx", "glsl", "html") for word in ("--to", to)]

@@ -75,6 +75,8 @@ export interface ExportOptions {
   /** Of functions and files: letters, digits, single underscores. */
   name?: string;
   exact?: boolean;
+  /** Of languages but C++: texels are multiplied in half precision. */
+  half?: boolean;
   mips?: boolean;
   cells?: number;
   count?: number;

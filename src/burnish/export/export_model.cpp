@@ -83,17 +83,20 @@ class ModelExport {
 void ModelExport::add_shader(ShaderLanguage language) {
   const bool cpp = language == ShaderLanguage::cpp;
   const ShaderFilter filter = options_.exact || cpp ? ShaderFilter::exact : ShaderFilter::hardware;
-  const Shader shader = generate_shader(brdf_, {language, filter, options_.name});
+  const bool half = options_.half && !cpp;
+  const Shader shader = generate_shader(brdf_, {language, filter, options_.name, half});
   const char* filter_name = filter == ShaderFilter::exact ? "exact" : "hardware";
 
   json entry = manifest_entry(language, options_.name, shader);
   entry["filter"] = filter_name;
+  if (half) entry["products"] = "half";
   for (const ShaderTexture& texture : shader.textures)
     if (!cpp) entry["textures"].push_back(texture.name);
   manifest_["shaders"].push_back(std::move(entry));
 
   const std::string& file = add(shader_file(language, options_.name), shader.text);
-  result_.shaders.push_back({file, fmt::format("{} filter", filter_name), shader.cost});
+  result_.shaders.push_back(
+      {file, fmt::format("{} filter{}", filter_name, half ? ", half products" : ""), shader.cost});
 }
 
 // What generated shaders read.
@@ -284,6 +287,8 @@ ExportedFiles ModelExport::run() && {
 ExportedFiles export_model(const FactoredBrdf& brdf, const ExportOptions& options) {
   if (options.environment && std::ranges::none_of(options.to, shows_environment))
     throw Error("environment: expected glsl, glsl_es or html with it, found others");
+  if (options.half && std::ranges::none_of(options.to, has_half_products))
+    throw Error("export: expected glsl, glsl_es, hlsl, msl or wgsl with half products, found others");
   return ModelExport(brdf, options).run();
 }
 

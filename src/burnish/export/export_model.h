@@ -15,6 +15,7 @@ struct ExportOptions {
   std::string name =
       "brdf";              ///< of functions and files: letters, digits and single underscores, a letter first
   bool exact = false;      ///< shaders weigh texels themselves, in floats; always so in C++
+  bool half = false;       ///< shaders multiply texels in half precision; never in C++
   bool mips = false;       ///< KTX2 a table with levels too: averages over the directions of a texel
   bool compressed = true;  ///< KTX2 with Zstandard
   int cells = 90;          ///< of mdl: along each polar angle, in [2, 1000]; twice as many along the azimuth
@@ -23,9 +24,9 @@ struct ExportOptions {
 };
 
 /// A factored BRDF as every target of `to`, each once; shaders but C++ bring their textures along. Throws
-/// Error as generate_shader does, for an environment that no target shows, and for glTF of other than 1 or 3
-/// channels. gltf has the nearest material of glTF, usda the nearest OpenPBR and core material, which take
-/// seconds to find.
+/// Error as generate_shader does, for an environment that no target shows, half without a language that has
+/// it or with `exact`, and for glTF of other than 1 or 3 channels. gltf has the nearest material of glTF,
+/// usda the nearest OpenPBR and core material, which take seconds to find.
 ExportedFiles export_model(const FactoredBrdf& brdf, const ExportOptions& options);
 
 }  // namespace burnish

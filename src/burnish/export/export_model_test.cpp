@@ -90,6 +90,32 @@ TEST(ExportModel, RefusesAnEnvironmentThatNothingShows) {
       Error);
 }
 
+TEST(ExportModel, MultipliesInHalfPrecisionWhereAsked) {
+  const FactoredBrdf brdf = smooth_model(model_case("Volume"));
+  std::vector<ExportTarget> languages;
+  for (const ShaderLanguage language : kShaderLanguages)
+    languages.push_back(export_target(to_string(language)));
+  const ExportedFiles exported = export_model(brdf, {.to = languages, .name = "paint", .half = true}),
+                      single = export_model(brdf, {.to = languages, .name = "paint"});
+  const std::pair<const char*, const char*> types[] = {{"paint.glsl", "mediump vec3"},
+                                                       {"paint.es.glsl", "mediump vec3"},
+                                                       {"paint.hlsl", "min16float3"},
+                                                       {"paint.metal", "half3"},
+                                                       {"paint.wgsl", "vec3h"}};
+  for (const auto& [file, type] : types) {
+    EXPECT_THAT(file_of(exported, file), HasSubstr(type)) << file;
+    EXPECT_THAT(file_of(single, file), Not(HasSubstr(type))) << file;
+  }
+  EXPECT_EQ(file_of(exported, "paint.h"), file_of(single, "paint.h"));
+  for (const ExportedShader& shader : exported.shaders)
+    EXPECT_EQ(shader.how, shader.file == "paint.h" ? "exact filter" : "hardware filter, half products");
+  EXPECT_THAT(file_of(exported, "paint.json"), HasSubstr("\"products\": \"half\""));
+  EXPECT_THAT(file_of(single, "paint.json"), Not(HasSubstr("\"products\"")));
+
+  EXPECT_THROW(export_model(brdf, {.to = {ExportTarget::cpp, ExportTarget::ktx2}, .half = true}), Error);
+  EXPECT_THROW(export_model(brdf, {.to = {ExportTarget::glsl}, .exact = true, .half = true}), Error);
+}
+
 TEST(ExportSpecular, TakesTheCheapestPowerOrTheOneNamed) {
   const ExportOptions options{.to = {ExportTarget::wgsl}, .name = "shine"};
   const std::string spec = "blinn_phong:exponent=60";

@@ -203,6 +203,8 @@ bool takes_surfaces(ExportTarget target) noexcept {
 ExportedFiles export_surface(const SpatialBrdf& surface, const ExportOptions& options) {
   if (options.environment)
     throw Error("environment: expected a model that is the same everywhere, found a surface");
+  if (options.half)
+    throw Error("export: expected a model that is the same everywhere with half products, found a surface");
   for (const ExportTarget target : options.to)
     if (!takes_surfaces(target))
       throw Error(fmt::format(

@@ -12,7 +12,7 @@ bool takes_surfaces(ExportTarget target) noexcept;
 /// side with their levels; exr and png: each map and each table a picture, EXR with the maps' values, PNG of weights
 /// their bytes, of normals and tangents (x + 1) / 2; three and html with everything inside. The manifest's "maps" tell
 /// where each lobe's weights are and what they are multiplied with. Throws Error for other targets, for an environment,
-/// and as generate_shader.
+/// for half products, and as generate_shader.
 ExportedFiles export_surface(const SpatialBrdf& surface, const ExportOptions& options);
 
 }  // namespace burnish

@@ -54,6 +54,10 @@ std::string export_name(std::string_view text) {
   return name.empty() ? "brdf" : name;
 }
 
+bool has_half_products(ExportTarget target) noexcept {
+  return language_of(target) && target != ExportTarget::cpp;
+}
+
 bool shows_environment(ExportTarget target) noexcept {
   return target == ExportTarget::glsl || target == ExportTarget::glsl_es || target == ExportTarget::html;
 }

@@ -43,6 +43,8 @@ ExportTarget export_target(std::string_view name);
 
 /// The language of a shader; nothing for other targets.
 std::optional<ShaderLanguage> language_of(ExportTarget target) noexcept;
+/// Whether the target is a language that can multiply in half precision: all but C++.
+bool has_half_products(ExportTarget target) noexcept;
 /// Whether the target can show light from all around: glsl, glsl_es and html.
 bool shows_environment(ExportTarget target) noexcept;
 
@@ -56,7 +58,8 @@ struct ExportedFile {
 /// What an exported shader costs.
 struct ExportedShader {
   std::string file;
-  std::string how;  ///< "exact filter", "hardware filter", or the name of the power's method
+  /// "exact filter" or "hardware filter", this also with ", half products"; or the name of the power's method.
+  std::string how;
   ShaderCost cost;
 };
 

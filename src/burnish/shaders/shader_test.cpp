@@ -12,7 +12,9 @@
 
 #include <burnish/baselines/node_table.h>
 #include <burnish/error.h>
+#include <burnish/fitting/fit.h>
 #include <burnish/formula/graph.h>
+#include <burnish/reflectance/analytic.h>
 #include <burnish/shaders/shader.h>
 #include <burnish/shaders/shader_formula.h>
 #include <burnish/testing/compilers.h>
@@ -159,7 +161,12 @@ TEST(Shader, HasTwoTexturesAtMost) {
                                                                 texture.height * std::max(texture.depth, 1)));
       for (const PlacedTable& table : texture.tables) placed.push_back(table.table);
     }
-    EXPECT_LE(generate_shader(brdf, {}).textures.size(), 2u) << model.name;
+    for (const ShaderLanguage language : kShaderLanguages)
+      for (const ShaderFilter filter : {ShaderFilter::exact, ShaderFilter::hardware}) {
+        if (language == ShaderLanguage::cpp) continue;  // which has an array a table
+        EXPECT_LE(generate_shader(brdf, {language, filter}).textures.size(), 2u)
+            << model.name << " " << to_string(language);
+      }
     std::ranges::sort(placed);
     for (std::size_t i = 0; i < brdf.tables().size(); ++i) EXPECT_EQ(placed.at(i), i) << model.name;
   }
@@ -324,6 +331,24 @@ TEST(HalfProducts, HoldTablesThatMakeUpForEachOther) {
         EXPECT_EQ(texture.values, round_to_format(texture.format, texture.channels, texture.values))
             << "no bit lost";
     }
+}
+
+// Volumes and lines, lobes of lines, hemispheres.
+TEST(HalfProducts, HoldWhatFitsGive) {
+  BURNISH_SKIP_WHERE_SANITIZED();
+  const char* const paint = "ggx:alpha_x=0.1,alpha_y=0.1,f0=0.5/0.3/0.1,kd=0.2";
+  const struct {
+    const char* spec;
+    Budget budget;
+  } fits[] = {{paint, {.bytes = 2700}},
+              {paint, {.bytes = 16 << 10, .fetches = 2}},
+              {paint, {.bytes = 16 << 10, .fetches = 4}},
+              {"ggx:alpha_x=0.1,alpha_y=0.3,f0=0.8,kd=0.3", {.bytes = 1350, .fetches = 4}}};
+  for (const auto& [spec, budget] : fits) {
+    const FactoredBrdf model =
+        fit({spec, parse_analytic(spec), {}}, {.form = budget, .score = false}).model();
+    EXPECT_LE(half_error(model, 1e-3), 0.01) << spec << " " << model_expression(model);
+  }
 }
 
 TEST(HalfProducts, TakeTheHardwareFilter) {

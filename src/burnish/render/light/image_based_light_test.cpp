@@ -125,6 +125,19 @@ TEST(ImageBasedLight, HasNoSeamBetweenItsHemispheres) {
   }
 }
 
+// The maps of all lobes and the tables of all factors of the view.
+TEST(ImageBasedLight, ReadsTwoTexturesAtMost) {
+  const ModelCase volume{"m",
+                         "z(theta_h) p(wo) p(wi) r(theta_d) g(theta_h,theta_d,phi_d)",
+                         {"z=24,power:0.5", "p=8", "r=6", "g=9x5x4,power:0.5"},
+                         3};
+  for (const FactoredBrdf& brdf : {glossy(), smooth_model(volume)}) {
+    const ImageBasedLight light = prefilter(brdf, kLamps, kSmall);
+    EXPECT_LE(1 + generate_shader(light, ShaderLanguage::glsl, "m").tables.size(), 2u)
+        << model_expression(brdf);
+  }
+}
+
 TEST(ImageBasedLight, RefusesWhatItCannotTabulate) {
   const FactoredBrdf brushed = smooth_model(model_case("DiskPqp")), plain = smooth_model(model_case("Pqp"));
   EXPECT_THROW(prefilter(brushed, kEven), Error);
