@@ -41,10 +41,10 @@ function(burnish_embed target function)
   target_sources(${target} PRIVATE ${output})
 endfunction()
 
-# The files of a folder are read by the compiler together, at most BURNISH_UNITY of them at a time: most of its work on
-# each would be the same headers. Arguments: a target of this directory, then the files that stay alone. Files with
+# The files of a folder are read by the compiler together, at most so many at a time: most of its work on each would
+# be the same headers. Arguments: a target of this directory, how many, then the files that stay alone. Files with
 # options of their own do anyway.
-function(burnish_unity target)
+function(burnish_unity target most)
   if(NOT BURNISH_UNITY)
     return()
   endif()
@@ -58,7 +58,7 @@ function(burnish_unity target)
     if(options)
       continue()
     endif()
-    if(NOT DEFINED "count_${folder}" OR "${count_${folder}}" EQUAL BURNISH_UNITY)
+    if(NOT DEFINED "count_${folder}" OR "${count_${folder}}" EQUAL most)
       set("count_${folder}" 0)
       string(MAKE_C_IDENTIFIER "${source}" "group_${folder}")
     endif()
