@@ -12,6 +12,7 @@ wo to the viewer. Functions are named as in C++ and on the command line; angles 
 """
 
 from ._burnish import (
+    Baseline,
     Batch,
     Book,
     Error,

@@ -58,6 +58,8 @@ FitKeywords keywords_of(const nb::kwargs& given) {
       take(value, keywords.conserve_energy);
     else if (name == "book")
       take(value, keywords.book);
+    else if (name == "method")
+      take(value, keywords.method);
     else
       throw Error("batch: expected an option of fit, found '" + name + "'");
   }

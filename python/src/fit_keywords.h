@@ -27,6 +27,7 @@ struct FitKeywords {
   std::uint64_t seed = 1;
   bool symmetrize = true, conserve_energy = false;
   std::shared_ptr<const MaterialBook> book = nullptr;
+  std::string method = "";  ///< of baselines
 };
 
 /// What they ask for; throws Error on a word that is none.

@@ -1,3 +1,4 @@
+#include <fmt/ranges.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
@@ -6,6 +7,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <burnish/error.h>
+#include <burnish/fitting/baselines/baselines.h>
 #include <burnish/fitting/energy.h>
 #include <burnish/fitting/fit_file.h>
 #include <burnish/fitting/parametric/material_fit.h>
@@ -48,6 +50,17 @@ OpenedModel* fit(const OpenedBrdf& source, const std::string& model, const std::
   return new OpenedModel(source.source().name, to_model(burnish::fit(source.source(), options)));
 }
 
+OpenedBaseline* fit_baseline(const OpenedBrdf& source, const std::string& method, std::uint64_t budget,
+                             std::size_t samples, std::uint64_t seed, bool symmetrize,
+                             const nb::object& progress) {
+  FitOptions options = fit_options(
+      {.budget = budget, .samples = samples, .seed = seed, .symmetrize = symmetrize, .method = method},
+      source.source().ref().isotropic());
+  options.progress = progress_of(progress);
+  const nb::gil_scoped_release released;
+  return new OpenedBaseline(source.source().name, to_baseline(burnish::fit(source.source(), options)));
+}
+
 nb::object fit_to_material(const OpenedBrdf& source, const std::string& to,
                            const std::optional<std::filesystem::path>& path, bool beside,
                            const nb::object& progress) {
@@ -78,7 +91,13 @@ FitOptions fit_options(const FitKeywords& given, bool isotropic) {
   }
   if (given.format) options.format = parse_table_format(*given.format);
   const std::optional<std::uint64_t> bytes = bytes_of(given.budget);
-  if (given.book)
+  if (!given.method.empty()) {
+    if (!bytes) throw Error("budget: expected a number of bytes with a method, found 'auto'");
+    if (!given.model.empty() || !given.tables.empty() || given.book || given.fetches || given.lobes ||
+        given.search)
+      throw Error("method: expected neither a model, tables and a book nor fetches, lobes and a search");
+    options.form = BaselineMethod{.method = given.method, .bytes = *bytes};
+  } else if (given.book)
     options.form = FromBook{given.book};
   else if (bytes != std::uint64_t{0})
     options.form = Budget{.bytes = bytes,
@@ -93,6 +112,14 @@ FitOptions fit_options(const FitKeywords& given, bool isotropic) {
 }
 
 void bind_fitting(nb::module_& m) {
+  static const std::string kAboutMethods = fmt::format(
+      "With a method, what others would fit instead of positive factors, as `burnish fit --method` "
+      "does:\n{}.\n\n"
+      "budget: bytes; samples, seed, symmetrize and progress as for a Model.",
+      fmt::join(baseline_methods(), ", "));
+  m.def("fit", &fit_baseline, nb::arg("source"), nb::kw_only(), nb::arg("method"), nb::arg("budget") = 0,
+        nb::arg("samples") = 0, nb::arg("seed") = 1, nb::arg("symmetrize") = true,
+        nb::arg("progress") = nb::none(), nb::rv_policy::take_ownership, kAboutMethods.c_str());
   m.def(
       "fit", &fit, nb::arg("source"), nb::kw_only(), nb::arg("model") = "",
       nb::arg("tables") = std::vector<std::string>(), nb::arg("budget") = 0, nb::arg("fetches") = 0,

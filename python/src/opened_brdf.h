@@ -52,6 +52,18 @@ class OpenedModel : public OpenedBrdf {
   const FactoredBrdf& brdf() const noexcept { return *model(); }
 };
 
+/// burnish.Baseline: what others would fit.
+class OpenedBaseline : public OpenedBrdf {
+ public:
+  OpenedBaseline(const std::string& name, Baseline baseline)
+      : OpenedBrdf(to_source(name, baseline)), baseline_(std::move(baseline)) {}
+
+  const Baseline& baseline() const noexcept { return baseline_; }
+
+ private:
+  Baseline baseline_;
+};
+
 /// The same as a native model, for writing.
 inline Model to_model(const OpenedModel& opened) {
   return to_model(opened.source());

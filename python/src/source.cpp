@@ -186,12 +186,27 @@ void bind_model(nb::module_& m) {
           "(\"half\", \"float\", \"rgb9e5\", \"unorm8\").");
 }
 
+void bind_baseline(nb::module_& m) {
+  nb::class_<OpenedBaseline, OpenedBrdf>(m, "Baseline",
+                                         "What `fit(..., method=)` makes: no positive factors.")
+      .def_prop_ro(
+          "kind", [](const OpenedBaseline& b) { return b.baseline().kind; },
+          "\"svd\", \"nd\", \"nmf\", \"dgf\" or \"analytic\".")
+      .def_prop_ro(
+          "expression", [](const OpenedBaseline& b) { return baseline_expression(b.baseline().brdf); },
+          "What it is made of, one line.")
+      .def_prop_ro(
+          "notes", [](const OpenedBaseline& b) { return from_json(b.baseline().notes); },
+          nb::sig("def notes(self) -> dict"), "What the fit noted: source, options, errors.");
+}
+
 }  // namespace
 
 void bind_source(nb::module_& m) {
   bind_model_parts(m);
   bind_opened_brdf(m);
   bind_model(m);
+  bind_baseline(m);
   m.def(
       "open_source",
       [](const nb::object& spec, bool keep_spectral, const std::string& illuminant, bool has_cosine,

@@ -18,6 +18,10 @@ void write_model(const std::filesystem::path& path, const OpenedModel& model) {
   write_then_rename(path, format_model_as(path, to_model(model)));
 }
 
+void write_baseline(const std::filesystem::path& path, const OpenedBaseline& model) {
+  write_then_rename(path, format_baseline(model.baseline()));
+}
+
 std::vector<std::string> write_converted(const OpenedBrdf& source, const std::filesystem::path& path,
                                          const std::string& format, std::size_t count, std::uint64_t seed,
                                          bool entries, int cells, bool notes) {
@@ -35,6 +39,9 @@ void bind_writers(nb::module_& m) {
         nb::call_guard<nb::gil_scoped_release>(),
         "Writes the native file, which open_source reads back to the last bit: a multi-part OpenEXR\nimage, "
         "or where path ends in .burnish its compact twin, without notes.");
+  m.def("write_model", &write_baseline, nb::arg("path"), nb::arg("model"),
+        nb::call_guard<nb::gil_scoped_release>(),
+        "Writes a baseline's JSON, which open_source reads back to the last bit.");
   const ConvertOptions defaults;
   m.def(
       "convert", &write_converted, nb::arg("source"), nb::arg("path"), nb::arg("format"), nb::kw_only(),

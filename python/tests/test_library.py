@@ -24,6 +24,29 @@ def test_fit_is_the_command_lines_fit(cli, tmp_path):
     assert (tmp_path / "python.exr").read_bytes() == (tmp_path / "cli.exr").read_bytes()
 
 
+@pytest.mark.parametrize("method", ["svd", "analytic:ggx"])
+def test_baselines_are_the_command_lines(method, cli, ggx, tmp_path):
+    how = ["--method", method, "--budget", 1000, "--count", 20_000]
+    printed = cli("fit", GGX, "-o", tmp_path / "cli.json", *how, "--json")
+    baseline = burnish.fit(ggx, method=method, budget=1000, samples=20_000)
+    assert isinstance(baseline, burnish.Baseline) and not isinstance(baseline, burnish.Model)
+    assert baseline.kind == ("svd" if method == "svd" else "analytic")
+    assert baseline.bytes == printed["bytes"] <= 1000 and baseline.expression == printed["model"]
+    assert baseline.notes["psnr"] == printed["psnr"]
+    burnish.write_model(tmp_path / "python.json", baseline)
+    again = burnish.open_source(tmp_path / "python.json")
+    wi, wo = burnish.draw_pairs(50)
+    np.testing.assert_array_equal(again.eval(wi, wo), baseline.eval(wi, wo))
+    assert json.loads((tmp_path / "python.json").read_text()) == json.loads((tmp_path / "cli.json").read_text())
+
+
+def test_baselines_take_no_options_of_factored_models(ggx):
+    with pytest.raises(burnish.Error, match="'pca'"):
+        burnish.fit(ggx, method="pca")
+    with pytest.raises(TypeError):
+        burnish.fit(ggx, method="svd", model="pqp")
+
+
 def test_a_budget_is_kept_and_spent(ggx):
     model = burnish.fit(ggx, budget=1200, lobes=2)
     assert 900 < model.bytes <= 1200 and len(model.lobes) == 2

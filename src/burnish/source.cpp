@@ -72,6 +72,19 @@ Source to_source(const std::string& name, Model model) {
   return {name, std::move(model.brdf), std::move(findings)};
 }
 
+Source to_source(const std::string& name, Baseline baseline) {
+  Findings findings;
+  findings.format = fmt::format("{} baseline", baseline.kind);
+  findings.description = baseline_expression(baseline.brdf);
+  findings.conventions = {"notes of the fit: " + baseline.notes};
+  findings.theta_i_max = findings.theta_o_max = kHalfPi;
+  return std::visit(
+      [&](auto& brdf) -> Source {
+        return {name, std::move(brdf), std::move(findings)};
+      },
+      baseline.brdf);
+}
+
 Model to_model(const Source& source) {
   const auto* brdf = std::get_if<FactoredBrdf>(&source.brdf);
   if (!brdf)

@@ -5,6 +5,7 @@
 #include <string>
 #include <variant>
 
+#include <burnish/baselines/baseline_file.h>
 #include <burnish/baselines/dgf_brdf.h>
 #include <burnish/baselines/neural_brdf.h>
 #include <burnish/baselines/np_brdf.h>
@@ -51,8 +52,9 @@ bool is_measurement(const Source& source) noexcept;
 /// or a model, or has no node above the horizon.
 MeasuredNodes measured_nodes(const Source& source);
 
-/// A model as a source of that name.
+/// A model or a baseline as a source of that name.
 Source to_source(const std::string& name, Model model);
+Source to_source(const std::string& name, Baseline baseline);
 
 /// The model that a source is. Throws Error, naming it, where it is none.
 Model to_model(const Source& source);

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include <burnish/baselines/evaluation_cost.h>
+#include <burnish/error.h>
 #include <burnish/factors/fetches.h>
 #include <burnish/fitting/fit_file.h>
 #include <burnish/fitting/fit_report_json.h>
@@ -14,13 +15,18 @@ Model to_model(Fit fit) {
   return {.brdf = std::move(fit).model(), .lambda_nm = std::move(fit.lambda_nm), .notes = std::move(notes)};
 }
 
+Baseline to_baseline(Fit fit) {
+  auto* brdf = std::get_if<BaselineBrdf>(&fit.brdf);
+  if (!brdf) throw Error("expected a baseline, found a factored BRDF");
+  const bool analytic = std::holds_alternative<AnalyticBrdf>(*brdf);
+  return {.kind = analytic ? "analytic" : std::get<BaselineReport>(fit.report.how).method,
+          .brdf = std::move(*brdf),
+          .notes = to_json(fit.report)};
+}
+
 std::string format_fit(const Fit& fit, const std::filesystem::path& name) {
-  const auto* baseline = std::get_if<BaselineBrdf>(&fit.brdf);
-  if (!baseline) return format_model_as(name, to_model(fit));
-  const bool analytic = std::holds_alternative<AnalyticBrdf>(*baseline);
-  return format_baseline({.kind = analytic ? "analytic" : std::get<BaselineReport>(fit.report.how).method,
-                          .brdf = *baseline,
-                          .notes = to_json(fit.report)});
+  if (std::holds_alternative<BaselineBrdf>(fit.brdf)) return format_baseline(to_baseline(fit));
+  return format_model_as(name, to_model(fit));
 }
 
 std::string summary_json(const Fit& fit, const std::string& output, double seconds) {

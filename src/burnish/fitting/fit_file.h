@@ -11,6 +11,9 @@ namespace burnish {
 /// The model as its file keeps it, with the report as notes. Throws Error where a baseline was fitted.
 Model to_model(Fit fit);
 
+/// The baseline likewise. Throws Error where a factored BRDF was fitted.
+Baseline to_baseline(Fit fit);
+
 /// The bytes of the file of that name: format_model_as's, or format_baseline's where a baseline was fitted.
 std::string format_fit(const Fit& fit, const std::filesystem::path& name = {});
 

@@ -6,6 +6,7 @@
 #include <burnish/error.h>
 #include <burnish/fitting/fit_report.h>
 #include <burnish/fitting/fit_report_json.h>
+#include <burnish/metrics/figures_json.h>
 
 namespace burnish {
 
@@ -97,13 +98,6 @@ Json json_of(const EnergyReport& report) {
           {"relative_after", report.after.relative}};
 }
 
-Json json_of(const NodeFigures& figures) {
-  return {{"count", figures.count},
-          {"relative", figures.relative},
-          {"rms_log", figures.rms_log},
-          {"log_cos", figures.log_cos}};
-}
-
 Json json_of(const ErrorLevel& level) {
   Json json{{"relative", level.relative}};
   if (level.log_cos) json["log_cos"] = *level.log_cos;
@@ -166,14 +160,6 @@ std::optional<FitSummary> FitReport::summary() const {
           return std::nullopt;
       },
       how);
-}
-
-nlohmann::ordered_json json_of(const ErrorFigures& figures) {
-  return {{"psnr", figures.psnr},
-          {"ssim", figures.ssim},
-          {"relative", figures.relative},
-          {"rms_log", figures.rms_log},
-          {"log_cos", figures.log_cos}};
 }
 
 nlohmann::ordered_json json_of(const FitReport& report) {

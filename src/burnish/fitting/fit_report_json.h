@@ -13,8 +13,6 @@ namespace burnish {
 /// What to_json writes.
 nlohmann::ordered_json json_of(const FitReport& report);
 
-nlohmann::ordered_json json_of(const ErrorFigures& figures);
-
 /// Text of it; indent as nlohmann's dump. File names need not be UTF-8: what is not is replaced.
 std::string to_text(const nlohmann::ordered_json& json, int indent);
 

@@ -108,7 +108,13 @@ Language c_like(std::string_view name, std::string_view suffix) {
           .half_from_vector = {},
           .half_suffix = {},
           .half_header = {},
-          .texture_struct = {}};
+          .texture_struct = {},
+          .map_read = {},
+          .map_parameter = {},
+          .map_template = {},
+          .member = "  {0} {1};\n",
+          .structure = "struct {0} {{\n{1}}};\n",
+          .made = {}};
 }
 
 Language c() {
@@ -147,6 +153,10 @@ Language cpp() {
                                {Op::cos, {"::cosf({0})"}},
                                {Op::sin, {"::sinf({0})"}}});
   l.texel = "{0}_at({1}, {2})";
+  l.map_read = "  const auto {0} = maps.sample({2}, u, v, lod);\n";
+  l.map_parameter = "const Maps& maps";
+  l.map_template = "template <class Maps>\n";
+  l.made = "  return {{{1}}};\n";
   return l;
 }
 
@@ -172,6 +182,8 @@ Language glsl() {
   l.half_scalar = "mediump float";
   l.half_vector = "mediump vec3";
   l.half_constructor = "vec3";
+  l.map_read = "  vec4 {0} = textureLod({1}, vec2(u, v), lod);\n";
+  l.made = "  return {0}({1});\n";
   return l;
 }
 
@@ -210,6 +222,8 @@ Language hlsl() {
       "Texture2D<float4> {0} : register(t{1});\nSamplerState {0}_sampler : register(s{1});\n";
   l.filtered_texture_3d =
       "Texture3D<float4> {0} : register(t{1});\nSamplerState {0}_sampler : register(s{1});\n";
+  l.map_read = "  float4 {0} = {1}.SampleLevel({1}_sampler, float2(u, v), lod);\n";
+  l.made = "  {0} place = {{ {1} }};\n  return place;\n";
   return l;
 }
 
@@ -236,6 +250,9 @@ Language msl() {
   l.texture = l.filtered_texture = "  texture2d<float> {0};\n";
   l.texture_3d = l.filtered_texture_3d = "  texture3d<float> {0};\n";
   l.texture_struct = "struct {0} {{\n{1}}};\n";
+  l.map_read = "  const float4 {0} = maps.{1}.sample(map_sampler, float2(u, v), level(lod));\n";
+  l.map_parameter = "{0} maps";
+  l.made = "  return {{{1}}};\n";
   return l;
 }
 
@@ -285,6 +302,10 @@ Language wgsl() {
   l.filtered_texture_3d =
       "@group(0) @binding({2}) var {0}: texture_3d<f32>;\n@group(0) @binding({3}) var {0}_sampler: "
       "sampler;\n";
+  l.map_read = "  let {0} = textureSampleLevel({1}, {1}_sampler, vec2f(u, v), lod);\n";
+  l.member = "  {1}: {0},\n";
+  l.structure = "struct {0} {{\n{1}}}\n";
+  l.made = "  return {0}({1});\n";
   return l;
 }
 

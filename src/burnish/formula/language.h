@@ -41,6 +41,13 @@ struct Language {
       half_suffix, half_header;
   std::string_view texture_struct;  // what gathers declarations: {0} name, {1} declarations; empty: nothing
 
+  // of surfaces: a statement that reads a map at u, v and lod, {0} local, {1} texture, {2} its number; what the
+  // function around it takes besides, {0} name of texture_struct, and what stands before that function
+  std::string_view map_read, map_parameter, map_template;
+  // structs: {0} type, {1} name; {0} name, {1} members; the last statement of a function that returns one, {0} name,
+  // {1} values
+  std::string_view member, structure, made;
+
   /// `half`: of what is computed from texels in half precision.
   std::string_view type_name(ValueType type, bool half = false) const noexcept;
   /// A float: the shortest digits that restore it, of what is none nine digits.

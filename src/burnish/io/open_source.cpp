@@ -39,20 +39,6 @@ Source from_samples(const FileBytes& file, SampleFile parsed) {
   return {file.name, ScatteredBrdf(std::move(parsed.samples)), std::move(parsed.findings)};
 }
 
-Source from_baseline(const FileBytes& file) {
-  Baseline baseline = parse_baseline(file);
-  Findings findings;
-  findings.format = fmt::format("{} baseline", baseline.kind);
-  findings.description = baseline_expression(baseline.brdf);
-  findings.conventions = {"notes of the fit: " + baseline.notes};
-  findings.theta_i_max = findings.theta_o_max = kHalfPi;
-  return std::visit(
-      [&](auto& brdf) -> Source {
-        return {file.name, std::move(brdf), std::move(findings)};
-      },
-      baseline.brdf);
-}
-
 Source from_neural(const FileBytes& file, std::string_view name) {
   NeuralFile parsed = parse_neural(file, name);
   return {fmt::format("{}#{}", file.name, parsed.name), std::move(parsed.brdf), std::move(parsed.findings)};
@@ -110,7 +96,7 @@ Source parse_file(const FileBytes& file, const OpenOptions& options) {
   if (looks_like_merl(file.bytes)) return from_table(file, parse_merl(file));
   const std::string_view text = file.text();
   if (looks_like_openmaterial(text)) return from_samples(file, parse_openmaterial(file, options));
-  if (looks_like_baseline(text)) return from_baseline(file);
+  if (looks_like_baseline(text)) return to_source(file.name, parse_baseline(file));
   if (looks_like_tensor_tree(text)) return from_table(file, parse_tensor_tree(file, options));
   if (looks_like_klems(text)) return from_table(file, parse_klems(file, options));
   if (looks_like_zemax(text)) return from_table(file, parse_zemax(file));

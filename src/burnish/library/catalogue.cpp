@@ -81,23 +81,17 @@ Image8 sheet(const fs::path& folder, std::span<const MaterialRecord> records) {
 }
 
 Json row_of(const MaterialRecord& record, bool linked) {
-  const auto number = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
-  return {{"name", record.name},
-          {"path", record.argument},
-          {"file", record.files.front().path},
-          {"format", record.format},
-          {"model", record.model},
-          {"bytes", record.bytes},
-          {"fetches", record.fetches ? Json(*record.fetches) : Json()},
-          {"psnr", number(record.psnr)},
-          {"ssim", number(record.ssim)},
-          {"relative", number(record.relative)},
-          {"rms_log", number(record.rms_log)},
-          {"log_cos", number(record.log_cos)},
-          {"albedo", number(record.albedo)},
-          {"seconds", record.seconds},
-          {"warnings", record.warnings},
-          {"linked", linked}};
+  Json row{{"name", record.name},
+           {"path", record.argument},
+           {"file", record.files.front().path},
+           {"format", record.format},
+           {"model", record.model},
+           {"bytes", record.bytes},
+           {"fetches", record.fetches ? Json(*record.fetches) : Json()}};
+  for (const auto& [figure, value] : kRecordFigures)
+    row[figure] = record.*value ? Json(*(record.*value)) : Json();
+  row.update({{"seconds", record.seconds}, {"warnings", record.warnings}, {"linked", linked}});
+  return row;
 }
 
 }  // namespace

@@ -80,8 +80,8 @@ void bind(sqlite3_stmt* statement, const MaterialRecord& record) {
     row.integer(*record.fetches);
   else
     row.null();
-  row.real(record.psnr).real(record.ssim).real(record.relative).real(record.rms_log).real(record.log_cos);
-  row.real(record.albedo).text_or_null(fmt::format("{}", fmt::join(record.warnings, "; ")));
+  for (const auto& [figure, value] : kRecordFigures) row.real(record.*value);
+  row.text_or_null(fmt::format("{}", fmt::join(record.warnings, "; ")));
   row.text_or_null(record.reason).real(record.seconds).text(record.key);
 }
 

@@ -8,18 +8,7 @@
 namespace burnish {
 
 namespace {
-
 using Json = nlohmann::ordered_json;
-
-void set(Json& json, const char* name, const std::optional<double>& value) {
-  if (value && std::isfinite(*value)) json[name] = *value;
-}
-
-std::optional<double> number(const Json& json, const char* name) {
-  const auto found = json.find(name);
-  return found == json.end() ? std::nullopt : std::optional(found->get<double>());
-}
-
 }  // namespace
 
 std::string to_json(const MaterialRecord& record) {
@@ -34,12 +23,8 @@ std::string to_json(const MaterialRecord& record) {
     json["model"] = record.model;
     json["bytes"] = record.bytes;
     if (record.fetches) json["fetches"] = *record.fetches;
-    set(json, "psnr", record.psnr);
-    set(json, "ssim", record.ssim);
-    set(json, "relative", record.relative);
-    set(json, "rms_log", record.rms_log);
-    set(json, "log_cos", record.log_cos);
-    set(json, "albedo", record.albedo);
+    for (const auto& [figure, value] : kRecordFigures)
+      if (record.*value && std::isfinite(*(record.*value))) json[figure] = *(record.*value);
     json["warnings"] = record.warnings;
   }
   json["seconds"] = record.seconds;
@@ -60,12 +45,8 @@ MaterialRecord parse_material_record(const std::string& text) {
     record.bytes = json.at("bytes");
     if (const auto fetches = json.find("fetches"); fetches != json.end())
       record.fetches = fetches->get<std::size_t>();
-    record.psnr = number(json, "psnr");
-    record.ssim = number(json, "ssim");
-    record.relative = number(json, "relative");
-    record.rms_log = number(json, "rms_log");
-    record.log_cos = number(json, "log_cos");
-    record.albedo = number(json, "albedo");
+    for (const auto& [figure, value] : kRecordFigures)
+      if (const auto found = json.find(figure); found != json.end()) record.*value = found->get<double>();
     record.warnings = json.at("warnings").get<std::vector<std::string>>();
     return record;
   } catch (const nlohmann::json::exception& error) {

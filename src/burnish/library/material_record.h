@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -40,6 +41,18 @@ struct MaterialRecord {
   bool fitted() const noexcept { return reason.empty(); }
   friend bool operator==(const MaterialRecord&, const MaterialRecord&) = default;
 };
+
+/// The figures of a record, by name, in the order in which its JSON, the table of figures and the page have them.
+struct RecordFigure {
+  const char* name;
+  std::optional<double> MaterialRecord::*value;
+};
+inline constexpr std::array<RecordFigure, 6> kRecordFigures = {{{"psnr", &MaterialRecord::psnr},
+                                                                {"ssim", &MaterialRecord::ssim},
+                                                                {"relative", &MaterialRecord::relative},
+                                                                {"rms_log", &MaterialRecord::rms_log},
+                                                                {"log_cos", &MaterialRecord::log_cos},
+                                                                {"albedo", &MaterialRecord::albedo}}};
 
 /// A JSON object in one line: name, argument, key; reason where it failed; else files (path, staged, sha256), format,
 /// model, bytes, fetches, psnr, ssim, relative, rms_log, log_cos, albedo, warnings; and seconds. What is not known is

@@ -13,6 +13,7 @@
 #include <burnish/image/contact_sheet.h>
 #include <burnish/image/markup.h>
 #include <burnish/image/png.h>
+#include <burnish/metrics/figures_json.h>
 #include <burnish/parameterization/half_diff.h>
 #include <burnish/report/compare_report.h>
 
@@ -35,47 +36,27 @@ std::string psnr_text(double psnr) {
   return std::isinf(psnr) ? std::string("equal") : fmt::format("{:.2f} dB", psnr);
 }
 
-nlohmann::ordered_json json_of(const NodeFigures& f) {
-  return {{"count", f.count},
-          {"log_cos", f.log_cos},
-          {"relative", f.relative},
-          {"rms_log", f.rms_log},
-          {"rms", f.rms}};
+nlohmann::ordered_json node_json(const NodeFigures& figures) {
+  return json_of(figures, {"log_cos", "relative", "rms_log", "rms"});
 }
 
 nlohmann::ordered_json json_of(const MeasurementQuality& quality) {
-  const ErrorFigures& f = quality.figures;
-  nlohmann::ordered_json entry = {{"repeated", quality.repeated},
-                                  {"log_cos", f.log_cos},
-                                  {"relative", f.relative},
-                                  {"rms_log", f.rms_log},
-                                  {"rms", f.rms},
-                                  {"psnr", nullptr},
-                                  {"ssim", f.ssim},
-                                  {"negative_share", quality.negative_share},
-                                  {"negative_rms", quality.negative_rms}};
-  if (std::isfinite(f.psnr)) entry["psnr"] = f.psnr;
-  if (quality.held_out) entry["held_out"] = json_of(*quality.held_out);
+  nlohmann::ordered_json entry{{"repeated", quality.repeated}};
+  entry.update(json_of(quality.figures, {"log_cos", "relative", "rms_log", "rms", "psnr", "ssim"}));
+  entry["negative_share"] = quality.negative_share;
+  entry["negative_rms"] = quality.negative_rms;
+  if (quality.held_out) entry["held_out"] = node_json(*quality.held_out);
   return entry;
 }
 
 nlohmann::ordered_json json_of(std::span<const ComparedFigures> compared, const Measurement* measurement) {
   auto list = nlohmann::ordered_json::array();
   for (const ComparedFigures& c : compared) {
-    const ErrorFigures& f = c.figures;
-    nlohmann::ordered_json entry = {{"model", c.name},
-                                    {"bytes", nullptr},
-                                    {"log_cos", f.log_cos},
-                                    {"relative", f.relative},
-                                    {"rms_log", f.rms_log},
-                                    {"rms", f.rms},
-                                    {"mean_abs_log", f.mean_abs_log},
-                                    {"psnr", nullptr},
-                                    {"ssim", f.ssim},
-                                    {"unknown_fraction", f.unknown_fraction},
-                                    {"unknown_pixels", f.unknown_pixels}};
+    nlohmann::ordered_json entry{{"model", c.name}, {"bytes", nullptr}};
     if (c.bytes) entry["bytes"] = *c.bytes;
-    if (std::isfinite(f.psnr)) entry["psnr"] = f.psnr;
+    entry.update(json_of(c.figures, {"log_cos", "relative", "rms_log", "rms", "mean_abs_log", "psnr", "ssim",
+                                     "unknown_fraction"}));
+    entry["unknown_pixels"] = c.figures.unknown_pixels;
     for (const ComparedAlbedo& a : c.albedos)
       entry["albedo"].push_back({{"theta_i_deg", degrees(a.theta_i)},
                                  {"phi_i_deg", degrees(a.phi_i)},
@@ -83,8 +64,8 @@ nlohmann::ordered_json json_of(std::span<const ComparedFigures> compared, const 
                                  {"model", a.model.albedo},
                                  {"reference_unknown_fraction", a.reference.unknown_fraction}});
     if (!c.note.empty()) entry["note"] = c.note;
-    if (c.nodes) entry["nodes"] = json_of(*c.nodes);
-    if (c.nodes && measurement) entry["nodes"]["itself"] = json_of(measurement->itself);
+    if (c.nodes) entry["nodes"] = node_json(*c.nodes);
+    if (c.nodes && measurement) entry["nodes"]["itself"] = node_json(measurement->itself);
     if (measurement && measurement->quality) entry["measurement"] = json_of(*measurement->quality);
     list.push_back(std::move(entry));
   }
@@ -227,7 +208,7 @@ std::string nodes_json(const Measurement& measurement, std::span<const ComparedM
                        const NodeFigures& figures) {
     nlohmann::ordered_json entry = {{"model", name}, {"bytes", nullptr}};
     if (bytes) entry["bytes"] = *bytes;
-    entry.update(json_of(figures));
+    entry.update(node_json(figures));
     list.push_back(std::move(entry));
   };
   add("the reference itself", {}, measurement.itself);

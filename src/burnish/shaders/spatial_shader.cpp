@@ -14,43 +14,6 @@ namespace burnish {
 
 namespace {
 
-// How a language reads maps, and how it has structs.
-struct MapLanguage {
-  std::string_view declaration;  // of a texture: {0} name, {1} number, {2} twice it, {3} and one; empty: none
-  std::string_view gathered;     // declarations in a struct: {0} name, {1} declarations; empty: as they are
-  std::string_view read;         // a statement: {0} local, {1} texture, {2} its number
-  std::string_view argument;     // what `at` takes besides: {0} name of that struct; empty: nothing
-  std::string_view before;       // what stands before the function that takes it
-  std::string_view member;       // of a struct: {0} type, {1} name
-  std::string_view structure;    // {0} name, {1} members
-  std::string_view made;         // the last statement of a function: {0} struct, {1} values
-  std::string_view log2;
-};
-
-const MapLanguage& map_language(ShaderLanguage language) {
-  constexpr std::string_view kMember = "  {0} {1};\n", kStruct = "struct {0} {{\n{1}}};\n",
-                             kCall = "  return {0}({1});\n";
-  static const MapLanguage kAll[] = {
-      {"uniform sampler2D {0};\n", "", "  vec4 {0} = textureLod({1}, vec2(u, v), lod);\n", "", "", kMember,
-       kStruct, kCall, "log2"},
-      {"uniform sampler2D {0};\n", "", "  vec4 {0} = textureLod({1}, vec2(u, v), lod);\n", "", "", kMember,
-       kStruct, kCall, "log2"},
-      {"Texture2D<float4> {0} : register(t{1});\nSamplerState {0}_sampler : register(s{1});\n", "",
-       "  float4 {0} = {1}.SampleLevel({1}_sampler, float2(u, v), lod);\n", "", "", kMember, kStruct,
-       "  {0} place = {{ {1} }};\n  return place;\n", "log2"},
-      {"  texture2d<float> {0};\n", "struct {0} {{\n{1}}};\n",
-       "  const float4 {0} = maps.{1}.sample(map_sampler, float2(u, v), level(lod));\n", "{0} maps", "",
-       kMember, kStruct, "  return {{{1}}};\n", "log2"},
-      {"@group(0) @binding({2}) var {0}: texture_2d<f32>;\n@group(0) @binding({3}) var {0}_sampler: "
-       "sampler;\n",
-       "", "  let {0} = textureSampleLevel({1}, {1}_sampler, vec2f(u, v), lod);\n", "", "", "  {1}: {0},\n",
-       "struct {0} {{\n{1}}}\n", kCall, "log2"},
-      {"", "", "  const auto {0} = maps.sample({2}, u, v, lod);\n", "const Maps& maps",
-       "template <class Maps>\n", kMember, kStruct, "  return {{{1}}};\n", "::log2f"}};
-  static_assert(std::size(kAll) == kShaderLanguages.size());
-  return kAll[static_cast<std::size_t>(language)];
-}
-
 std::string local_of(std::size_t texture) {
   return fmt::format("m{}", texture);
 }
@@ -111,25 +74,25 @@ struct PlaceText {
   ShaderCost cost;
 };
 
-PlaceText place_text(const Language& l, const MapLanguage& ml, const std::string& name,
-                     const SpatialBrdf& surface, const PackedMaps& maps, std::size_t first_number) {
+PlaceText place_text(const Language& l, const std::string& name, const SpatialBrdf& surface,
+                     const PackedMaps& maps, std::size_t first_number) {
   const std::string structure = fmt::format("burnish_{}_place", name),
                     gathered = fmt::format("burnish_{}_maps", name);
   // textures
   std::string declarations;
-  for (std::size_t i = 0; i < maps.textures.size() && !ml.declaration.empty(); ++i)
-    declarations += fmt::format(fmt::runtime(ml.declaration), maps.textures[i].name, first_number + i,
+  for (std::size_t i = 0; i < maps.textures.size() && !l.filtered_texture.empty(); ++i)
+    declarations += fmt::format(fmt::runtime(l.filtered_texture), maps.textures[i].name, first_number + i,
                                 2 * (first_number + i), 2 * (first_number + i) + 1);
   PlaceText place;
-  place.text =
-      ml.gathered.empty() ? declarations : fmt::format(fmt::runtime(ml.gathered), gathered, declarations);
+  place.text = l.texture_struct.empty() ? declarations
+                                        : fmt::format(fmt::runtime(l.texture_struct), gathered, declarations);
 
   // the struct
   const std::vector<PlaceMember> members = place_members(surface, maps);
   std::string listed;
   for (const PlaceMember& member : members)
-    listed += fmt::format(fmt::runtime(ml.member), l.type_name(member.value.type()), member.name);
-  place.text += fmt::format(fmt::runtime(ml.structure), structure, listed);
+    listed += fmt::format(fmt::runtime(l.member), l.type_name(member.value.type()), member.name);
+  place.text += fmt::format(fmt::runtime(l.structure), structure, listed);
 
   // the function that reads
   Graph graph;
@@ -137,17 +100,17 @@ PlaceText place_text(const Language& l, const MapLanguage& ml, const std::string
   for (const PlaceMember& member : members) roots.push_back(graph.add(member.value));
   const Writer writer(l, graph, roots);
   std::string body, values;
-  if (!ml.gathered.empty())
+  if (!l.texture_struct.empty())
     body += "  constexpr sampler map_sampler(filter::linear, mip_filter::linear, address::repeat);\n";
   for (std::size_t i = 0; i < maps.textures.size(); ++i)
-    body += fmt::format(fmt::runtime(ml.read), local_of(i), maps.textures[i].name, i);
+    body += fmt::format(fmt::runtime(l.map_read), local_of(i), maps.textures[i].name, i);
   for (const std::size_t root : roots) values += (values.empty() ? "" : ", ") + writer.text(root);
-  body += writer.text() + fmt::format(fmt::runtime(ml.made), structure, values);
-  std::string parameters = fmt::format(fmt::runtime(ml.argument), gathered);
+  body += writer.text() + fmt::format(fmt::runtime(l.made), structure, values);
+  std::string parameters = fmt::format(fmt::runtime(l.map_parameter), gathered);
   for (const char* const p : {"u", "v", "lod"})
     parameters += (parameters.empty() ? "" : ", ") +
                   fmt::format(fmt::runtime(l.parameter), l.type_name(ValueType::real), p);
-  place.text += ml.before;
+  place.text += l.map_template;
   place.text += fmt::format(fmt::runtime(l.definition), structure, fmt::format("burnish_{}_at", name),
                             parameters, body);
 
@@ -162,8 +125,7 @@ PlaceText place_text(const Language& l, const MapLanguage& ml, const std::string
 }
 
 // log2 of the larger step of a pixel, in texels.
-std::string lod_function(const Language& l, const MapLanguage& ml, const std::string& name,
-                         const SpatialBrdf& surface) {
+std::string lod_function(const Language& l, const std::string& name, const SpatialBrdf& surface) {
   constexpr std::array<std::string_view, 4> kSteps{"ux", "vx", "uy", "vy"};
   const Expr width(surface.width()), height(surface.height());
   const auto square = [&](const char* u, const char* v) {
@@ -171,12 +133,11 @@ std::string lod_function(const Language& l, const MapLanguage& ml, const std::st
     return x * x + y * y;
   };
   Graph graph;
-  const std::size_t root = graph.add(max(max(square("ux", "vx"), square("uy", "vy")), 1.0));
+  const Expr largest = max(max(square("ux", "vx"), square("uy", "vy")), 1.0);
+  const std::size_t root = graph.add(0.5 * Expr(Op::log2, {largest}));
   const Writer writer(l, graph, {root});
-  return l.function(
-      ValueType::real, fmt::format("burnish_{}_lod", name), kSteps, "",
-      writer.text() + fmt::format(fmt::runtime(l.result),
-                                  fmt::format("{} * {}({})", l.literal(0.5), ml.log2, writer.text(root))));
+  return l.function(ValueType::real, fmt::format("burnish_{}_lod", name), kSteps, "",
+                    writer.text() + fmt::format(fmt::runtime(l.result), writer.text(root)));
 }
 
 // The lobes times the place's weights.
@@ -222,7 +183,6 @@ std::string map_name(const ShaderOptions& options) {
 
 SpatialShader generate_shader(const SpatialBrdf& surface, const ShaderOptions& options) {
   const Language& l = language(to_string(options.language));
-  const MapLanguage& ml = map_language(options.language);
   ShaderFormula formula = spatial_formula(surface, options);
   SpatialShader shader{.text = {},
                        .textures = std::move(formula.textures),
@@ -230,7 +190,7 @@ SpatialShader generate_shader(const SpatialBrdf& surface, const ShaderOptions& o
                        .place_cost = {},
                        .light_cost = {}};
   const FormulaSurroundings around = formula_surroundings(options, shader.textures);
-  const PlaceText place = place_text(l, ml, options.name, surface, shader.maps, shader.textures.size());
+  const PlaceText place = place_text(l, options.name, surface, shader.maps, shader.textures.size());
   const bool framed = shader.maps.normals || shader.maps.tangents;
   const MoreParameters more = with_place(l, around.more, options.name);
   const FormulaFunction lobes = formula_function(
@@ -248,7 +208,7 @@ SpatialShader generate_shader(const SpatialBrdf& surface, const ShaderOptions& o
       cpp ? language(to_string(options.language)).header : "");
   shader.text += cpp ? "namespace burnish_shader {\n" + around.declarations.substr(l.header.size())
                      : around.declarations;
-  shader.text += place.text + lod_function(l, ml, options.name, surface) + lobes.text;
+  shader.text += place.text + lod_function(l, options.name, surface) + lobes.text;
   if (framed) shader.text += turned_function(l, options.name, more);
   shader.text += world_function(l, options.name, more);
   if (cpp) shader.text += "}  // namespace burnish_shader\n";
@@ -257,17 +217,15 @@ SpatialShader generate_shader(const SpatialBrdf& surface, const ShaderOptions& o
 
 SplitSpatialShader split_shader(const SpatialBrdf& surface, const ShaderOptions& options) {
   const Language& l = language(to_string(options.language));
-  const MapLanguage& ml = map_language(options.language);
   SplitSpatialShader split{.declarations = {},
                            .place = {},
                            .framed = false,
                            .lobes = split_formula(spatial_formula(surface, options), options),
                            .maps = pack_maps(surface, map_name(options))};
   split.framed = split.maps.normals || split.maps.tangents;
-  split.declarations =
-      split.lobes.declarations +
-      place_text(l, ml, options.name, surface, split.maps, split.lobes.textures.size()).text +
-      lod_function(l, ml, options.name, surface);
+  split.declarations = split.lobes.declarations +
+                       place_text(l, options.name, surface, split.maps, split.lobes.textures.size()).text +
+                       lod_function(l, options.name, surface);
   split.place = fmt::format("  burnish_{0}_place place = burnish_{0}_at(u, v, lod);\n", options.name);
   return split;
 }

@@ -15,6 +15,7 @@
 #include <burnish/fitting/parametric/material_fit.h>
 #include <burnish/fitting/parametric/openpbr_fit.h>
 #include <burnish/math/closest_name.h>
+#include <burnish/metrics/figures_json.h>
 
 namespace burnish {
 

@@ -1,0 +1,41 @@
+#include <span>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <burnish/export/web.h>
+
+namespace burnish {
+namespace {
+
+std::string encoded(std::string_view text) {
+  return base64(std::as_bytes(std::span(text)));
+}
+
+// RFC 4648, section 10.
+TEST(Base64, IsThatOfTheStandard) {
+  EXPECT_EQ(encoded(""), "");
+  EXPECT_EQ(encoded("f"), "Zg==");
+  EXPECT_EQ(encoded("fo"), "Zm8=");
+  EXPECT_EQ(encoded("foo"), "Zm9v");
+  EXPECT_EQ(encoded("foob"), "Zm9vYg==");
+  EXPECT_EQ(encoded("fooba"), "Zm9vYmE=");
+  EXPECT_EQ(encoded("foobar"), "Zm9vYmFy");
+  EXPECT_EQ(encoded("\xfb\xff\xbe"), "+/++");
+}
+
+TEST(HalfTexels, HaveFourChannelsOfTwoBytes) {
+  for (const std::size_t channels : {std::size_t{1}, std::size_t{3}})
+    EXPECT_EQ(half_texels(std::vector<float>(6 * channels, 0.5f), channels).size(), 6u * 8 / 3 * 4);
+}
+
+TEST(WebScript, PutsTheModelInItsPlace) {
+  ASSERT_FALSE(web_files().empty());
+  const std::string script = web_script("three.js", "{\"here\": 1}");
+  EXPECT_NE(script.find("{\"here\": 1}"), std::string::npos);
+  EXPECT_EQ(script.find("MODEL"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace burnish
