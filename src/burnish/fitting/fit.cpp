@@ -58,8 +58,8 @@ constexpr double kSpareLogCos = 0.8, kSpareAbsolute = 0.1;
 constexpr std::size_t kSpareTexels = 1500;  // from here on, for absolute errors and smoothness
 constexpr double kVolumeSmooth = 1e-9;
 constexpr double kFewTexelsSmooth = 1e-9;  // of lobes; few texels are smooth by themselves
-constexpr int kSmoothnessFetches = 2;  // of the models by which it is chosen
-constexpr double kFrontalShare = 0.1;  // of pixels, see with_frontal_pixels
+constexpr int kSmoothnessFetches = 2;      // of the models by which it is chosen
+constexpr double kFrontalShare = 0.1;      // of pixels, see with_frontal_pixels
 
 // What was measured is judged where it was measured; pictures keep the rest from running away.
 constexpr ErrorTerms kNodeShares{.pictures = 0.5, .dimmed = 0.1, .relative = 1, .log_cos = 1};
