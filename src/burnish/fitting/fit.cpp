@@ -57,7 +57,7 @@ constexpr int kSpareFetches = 4;
 constexpr double kSpareLogCos = 0.8, kSpareAbsolute = 0.1;
 constexpr std::size_t kSpareTexels = 1500;  // from here on, for absolute errors and smoothness
 constexpr double kVolumeSmooth = 1e-9;
-constexpr double kFewTexelsSmooth = 1e-9;  // of lobes; few texels are smooth by themselves
+constexpr double kFewTexelsSmooth = 1e-9;  // of several lobes; few texels are smooth by themselves
 constexpr int kSmoothnessFetches = 2;      // of the models by which it is chosen
 constexpr double kFrontalShare = 0.1;      // of pixels, see with_frontal_pixels
 
@@ -281,13 +281,13 @@ class Fitter {
     const TrainingSet set = drawn_set(drawn);
     RefineOptions refine = refine_options(form.loss);
     if (smoothed_ && form.loss == FitLoss::image) refine.shares = kNodeShares;
-    if (!options_.smooth && bytes < kSpareTexels * texel) refine.smooth = kFewTexelsSmooth;
     LobesReport report{.loss = form.loss, .budget = bytes};
 
     // which lobes
     RefineOptions trials = refine;
     trials.progress = progress("choosing lobes");
     LobePlan plan = plan_for(reference(), set, bytes, form.lobes, texel, trials);
+    refine.smooth = smooth_of(plan, bytes, texel);
     if (form.search) {
       const SearchResult found = search_plan(set, plan,
                                              {.bytes = static_cast<std::size_t>(bytes),
@@ -307,6 +307,12 @@ class Fitter {
     const LobesFit fit = fit_without_overfit(reference(), set, plan, bytes, texel, drawn, refine);
     report.smooth = refine.smooth;
     return finish(fit, set, refine, std::move(report));
+  }
+
+  /// How smooth lobes are: as asked for, or as serves them.
+  double smooth_of(const LobePlan& plan, std::uint64_t bytes, std::size_t texel_bytes) const {
+    const bool few = plan.lobes > 1 && plan.wide.empty() && bytes < kSpareTexels * texel_bytes;
+    return options_.smooth.value_or(few ? kFewTexelsSmooth : RefineOptions().smooth);
   }
 
   /// Whether the bytes hold every table of the plan that they give.
@@ -379,7 +385,7 @@ class Fitter {
     if (takes_lobes(reference(), limit)) {
       const TrainingSet set = drawn_set(training_for(bytes, limit.texel_bytes, brdf_.isotropic()));
       const LobePlan plan = plan_within(reference(), limit);
-      if (!options_.smooth && bytes < kSpareTexels * limit.texel_bytes) refine.smooth = kFewTexelsSmooth;
+      refine.smooth = smooth_of(plan, bytes, limit.texel_bytes);
       return finish(fit_plan(set, plan, limit.bytes, limit.texel_bytes, refine, kLobeStarts), set, refine,
                     std::move(report));
     }
