@@ -38,9 +38,9 @@ TEST(MaterialRecord, RoundTrips) {
 TEST(MaterialRecord, LeavesOutWhatIsNoNumber) {
   MaterialRecord record = some_record();
   record.psnr = std::numeric_limits<double>::infinity();
-  const auto json = nlohmann::json::parse(to_json(record));
-  EXPECT_FALSE(json.contains("psnr"));
-  EXPECT_TRUE(json.contains("ssim"));
+  const auto parsed = nlohmann::json::parse(to_json(record));
+  EXPECT_FALSE(parsed.contains("psnr"));
+  EXPECT_TRUE(parsed.contains("ssim"));
 }
 
 TEST(MaterialRecord, RefusesEveryTruncation) {
