@@ -11,8 +11,8 @@
 namespace burnish {
 namespace {
 
-using testing::random_dgf;
-using testing::random_separable;
+using fixtures::random_dgf;
+using fixtures::random_separable;
 
 Model some_model() {
   return {.brdf = smooth_model(model_case("Pqp")), .lambda_nm = {}, .notes = R"({"source":"a"})"};

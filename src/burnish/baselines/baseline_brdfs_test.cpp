@@ -15,10 +15,10 @@
 namespace burnish {
 namespace {
 
-using testing::random_anisotropic;
-using testing::random_dgf;
-using testing::random_separable;
-using testing::random_table;
+using fixtures::random_anisotropic;
+using fixtures::random_dgf;
+using fixtures::random_separable;
+using fixtures::random_table;
 using enum PairCoordinate;
 
 std::vector<DirectionPair> pairs_and_corners() {

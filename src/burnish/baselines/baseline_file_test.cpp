@@ -13,10 +13,10 @@
 namespace burnish {
 namespace {
 
+using fixtures::random_anisotropic;
+using fixtures::random_dgf;
+using fixtures::random_separable;
 using ::testing::HasSubstr;
-using testing::random_anisotropic;
-using testing::random_dgf;
-using testing::random_separable;
 
 std::string error_in(const std::string& text) {
   return error_of([&] { parse_baseline(memory_file(text)); });

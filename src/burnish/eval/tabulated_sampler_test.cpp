@@ -307,7 +307,7 @@ TEST(TabulatedSampler, FollowsALobeThatRisesAtTheHorizon) {
 }
 
 TEST(TabulatedSampler, DrawsEvenlyWhereNothingIsReflected) {
-  const TabulatedSampler sampler(testing::Lambert{.albedo = {0, 0, 0}});
+  const TabulatedSampler sampler(fixtures::Lambert{.albedo = {0, 0, 0}});
   EXPECT_NEAR(test_draws(sampler, spherical_direction(0.7, 0.3), 1000, 1).integral, 1, 4e-3);
 }
 
@@ -377,11 +377,11 @@ TEST(TabulatedSampler, SurvivesAnythingInPlaceOfDirections) {
 }
 
 TEST(TabulatedSampler, RefusesSizesThatDoNotFit) {
-  const testing::Lambert lambert;
+  const fixtures::Lambert lambert;
   for (const SamplerOptions& bad : {SamplerOptions{1, 1, 16, 16}, SamplerOptions{16, 2, 16, 16},
                                     SamplerOptions{16, 1, 12, 16}, SamplerOptions{16, 1, 16, 4}})
     EXPECT_THROW(TabulatedSampler(lambert, bad), Error);
-  EXPECT_THROW(TabulatedSampler(testing::Glossy{.a = 1}, SamplerOptions{16, 1, 16, 16}), Error);
+  EXPECT_THROW(TabulatedSampler(fixtures::Glossy{.a = 1}, SamplerOptions{16, 1, 16, 16}), Error);
   EXPECT_EQ(TabulatedSampler(lambert).bytes(), 2 * (16 * 16 * 17 + 2u));
 }
 

@@ -91,8 +91,8 @@ std::vector<Source> every_source() {
   sources.push_back(source_of("isotropic analytic", isotropic));
   sources.push_back(source_of("anisotropic analytic", brushed()));
   sources.push_back(source_of("neural", neural()));
-  sources.push_back(source_of("separable", testing::random_separable(1, 0.2)));
-  sources.push_back(source_of("microfacet", testing::random_dgf()));
+  sources.push_back(source_of("separable", fixtures::random_separable(1, 0.2)));
+  sources.push_back(source_of("microfacet", fixtures::random_dgf()));
   sources.push_back(source_of("factored", factored()));
   return sources;
 }
@@ -295,7 +295,7 @@ TEST(FitLoss, RoundTripsThroughItsName) {
 TEST(Fit, ToNodesPredictsThoseHeldOut) {
   BURNISH_SKIP_WHERE_SANITIZED();
   constexpr double kNoise = 0.25;
-  const testing::Glossy truth{.a = 8, .b = 8};
+  const fixtures::Glossy truth{.a = 8, .b = 8};
   const Source source =
       source_of("measured", ScatteredBrdf(measure(truth, {.count = 3000, .noise = kNoise})));
   const Fit made =

@@ -80,7 +80,7 @@ TEST(Mbsdf, CountsAndKeepsNegatives) {
 
 TEST(Mbsdf, WritesWhatItReads) {
   for (const std::size_t channels : {1, 3}) {
-    AngleTable table = tabulate_angles(testing::Glossy{.count = channels}, mbsdf_layout(5, 7));
+    AngleTable table = tabulate_angles(fixtures::Glossy{.count = channels}, mbsdf_layout(5, 7));
     ASSERT_TRUE(fits_mbsdf(table));
     EXPECT_EQ(parse_mbsdf(memory_file(format_mbsdf(table))).table.values, table.values);
     std::fill_n(table.values.begin(), channels, std::numeric_limits<float>::quiet_NaN());

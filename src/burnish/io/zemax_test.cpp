@@ -100,7 +100,7 @@ AngleTable coarse_layout(bool isotropic) {
 TEST(Zemax, WritesWhatItReads) {
   for (const std::size_t channels : {1, 3})
     for (const bool isotropic : {true, false}) {
-      testing::Glossy glossy{.a = 20, .b = isotropic ? 20.0 : 5.0, .count = channels};
+      fixtures::Glossy glossy{.a = 20, .b = isotropic ? 20.0 : 5.0, .count = channels};
       const AngleTable table = tabulate_angles(glossy, coarse_layout(isotropic));
       ASSERT_TRUE(fits_zemax(table));
       const auto file = parse_zemax(memory_file(format_zemax(table, "some\nname")));
@@ -127,7 +127,7 @@ TEST(Zemax, WritesWhatItReads) {
 
 // Zero is no hole, saturated colours keep all channels, and the total is the albedo.
 TEST(Zemax, WritesZeroSaturationAndTotals) {
-  AngleTable table = tabulate_angles(testing::Lambert{}, zemax_layout(true));
+  AngleTable table = tabulate_angles(fixtures::Lambert{}, zemax_layout(true));
   const std::string white = format_zemax(table, "");
   const std::string tis = white.substr(white.find("TIS\t") + 4, 8);
   // X of the albedos 0.8, 0.5, 0.2

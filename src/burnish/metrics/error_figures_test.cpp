@@ -11,8 +11,8 @@
 namespace burnish {
 namespace {
 
-using testing::Glossy;
-using testing::Lambert;
+using fixtures::Glossy;
+using fixtures::Lambert;
 
 constexpr FigureOptions kQuick{.count = 3000, .image_size = 48};
 

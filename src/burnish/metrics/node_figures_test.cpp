@@ -19,7 +19,7 @@ MeasuredNodes nodes_of_source(BrdfRef source, std::size_t count, double noise = 
 }
 
 TEST(NodeFigures, AreZeroForTheSourceAndTheirDefinitionForOthers) {
-  const testing::Glossy source, twice{.scale = 2};
+  const fixtures::Glossy source, twice{.scale = 2};
   const MeasuredNodes nodes = nodes_of_source(source, 2000);
   const NodeFigures same = node_figures(nodes, source);
   EXPECT_EQ(same.relative, 0);
@@ -54,19 +54,19 @@ TEST(NodeFigures, CountNegativeValuesAsZeroAndNodesByTheirWeights) {
   samples.values = {-1, 1};
   MeasuredNodes nodes = measured_nodes(samples);
   nodes.weights = {3, 1};
-  const testing::Lambert black{.albedo = {0, 0, 0}, .count = 1};
+  const fixtures::Lambert black{.albedo = {0, 0, 0}, .count = 1};
   EXPECT_NEAR(node_figures(nodes, black).rms, 0.5, 1e-12);  // one of four parts is off by 1
 }
 
 TEST(NodeFigures, RefuseWhatCannotBeScored) {
-  const MeasuredNodes nodes = nodes_of_source(testing::Glossy{}, 100);
-  EXPECT_THROW(node_figures(nodes, testing::Lambert{.count = 2}), Error);
-  EXPECT_THROW(node_figures(nodes, testing::Glossy{}, {.least_cosine = 1}), Error);
+  const MeasuredNodes nodes = nodes_of_source(fixtures::Glossy{}, 100);
+  EXPECT_THROW(node_figures(nodes, fixtures::Lambert{.count = 2}), Error);
+  EXPECT_THROW(node_figures(nodes, fixtures::Glossy{}, {.least_cosine = 1}), Error);
 }
 
 TEST(NodeFigures, SmoothnessIsStifferWhereNodesAreNoisy) {
   BURNISH_SKIP_WHERE_SANITIZED();
-  const testing::Glossy source{.a = 8, .b = 8};
+  const fixtures::Glossy source{.a = 8, .b = 8};
   const MeasuredNodes clean = nodes_of_source(source, 1500), noisy = nodes_of_source(source, 1500, 0.25);
   const NodeSmoothness of_clean = choose_node_smoothness(clean), of_noisy = choose_node_smoothness(noisy);
   EXPECT_GT(of_noisy.shares[1] * of_noisy.shares[0], of_clean.shares[1] * of_clean.shares[0]);
@@ -77,7 +77,7 @@ TEST(NodeFigures, SmoothnessIsStifferWhereNodesAreNoisy) {
 }
 
 TEST(NodeFigures, IncidencesAreHeldOutWhereThereAreFew) {
-  const testing::Glossy source{.a = 8, .b = 8};
+  const fixtures::Glossy source{.a = 8, .b = 8};
   Samples samples{.channels = 3, .isotropic = true};
   std::vector<double> f(3);
   const auto add = [&](int incidences) {
@@ -135,7 +135,7 @@ TEST(MeasurementQuality, IsEstimatedFromExchangedDirections) {
 
 TEST(MeasurementQuality, IsWhatASecondScanScores) {
   BURNISH_SKIP_WHERE_SANITIZED();
-  const testing::Glossy first, second{.scale = 1.1};
+  const fixtures::Glossy first, second{.scale = 1.1};
   const Scorer scorer(first, {.count = 2000, .image_size = 32});
   MeasuredNodes nodes = nodes_of_source(first, 500);
   nodes.samples.values[0] = -0.5;

@@ -11,8 +11,8 @@
 namespace burnish {
 namespace {
 
-using testing::Glossy;
-using testing::Lambert;
+using fixtures::Glossy;
+using fixtures::Lambert;
 
 void expect_near(Vec3 a, Vec3 b, double tolerance) {
   EXPECT_NEAR(a.x, b.x, tolerance);

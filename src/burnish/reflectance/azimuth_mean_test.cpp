@@ -62,7 +62,7 @@ TEST(AzimuthMean, LeavesUnknownRotationsOut) {
 }
 
 TEST(AzimuthMean, LeavesIsotropicSourcesAsTheyAre) {
-  const testing::Glossy glossy;
+  const fixtures::Glossy glossy;
   const AzimuthMean mean(glossy);
   for (const auto& [wi, wo] : draw_pairs(50, 1, false)) {
     std::array<double, 3> f, expected;

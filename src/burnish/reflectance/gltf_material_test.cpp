@@ -8,11 +8,11 @@
 namespace burnish {
 namespace {
 
-const std::vector<DirectionPair> kPairs = {{testing::kA, testing::kB},
-                                           {testing::at(75, 0), testing::at(80, 160)},
-                                           {testing::at(0, 0), testing::at(89, 40)},
-                                           {testing::kA, testing::kA},
-                                           {testing::at(89.9, 3), testing::at(89.9, 200)}};
+const std::vector<DirectionPair> kPairs = {{fixtures::kA, fixtures::kB},
+                                           {fixtures::at(75, 0), fixtures::at(80, 160)},
+                                           {fixtures::at(0, 0), fixtures::at(89, 40)},
+                                           {fixtures::kA, fixtures::kA},
+                                           {fixtures::at(89.9, 3), fixtures::at(89.9, 200)}};
 
 Rgb value(const GltfMaterial& material, Vec3 wi, Vec3 wo) {
   std::array<double, 3> f;
@@ -50,14 +50,14 @@ TEST(GltfMaterial, IsTheCoreMaterialWithoutExtensions) {
 }
 
 TEST(GltfMaterial, IsTheExtensionsTexts) {
-  expect_close(value(kLayered, testing::kA, testing::kB),
+  expect_close(value(kLayered, fixtures::kA, fixtures::kB),
                {0.17092093067770567, 0.08998182595871447, 0.031868815801217226});
-  expect_close(value(kLayered, testing::at(75, 0), testing::at(80, 160)),
+  expect_close(value(kLayered, fixtures::at(75, 0), fixtures::at(80, 160)),
                {0.11883412755530404, 0.06902250050162985, 0.030762599396198128});
   GltfMaterial coated = kLayered;
   coated.clearcoat = 0.7;
   coated.clearcoat_roughness = 0.3;
-  expect_close(value(coated, testing::kA, testing::kB),
+  expect_close(value(coated, fixtures::kA, fixtures::kB),
                {0.1721982157163062, 0.09353592786624558, 0.037057636579068104});
 }
 
@@ -71,13 +71,15 @@ TEST(GltfMaterial, HasSheenOverWhatItsAlbedoLeaves) {
   // a metal without colour still shines at grazing: what sheen adds is the difference of two colours'
   GltfMaterial half = black;
   half.sheen_color = {1, 0.5, 0};
-  const Rgb white = value(black, testing::kA, testing::kB), tinted = value(half, testing::kA, testing::kB);
+  const Rgb white = value(black, fixtures::kA, fixtures::kB),
+            tinted = value(half, fixtures::kA, fixtures::kB);
   EXPECT_NEAR(white.r - tinted.b, 0.0009395737460611691, 1e-12);
   EXPECT_NEAR(white.r - tinted.g, 0.5 * 0.0009395737460611691, 1e-12);
-  const double left = 1 - 0.8 * std::max(sheen_albedo(testing::kA.z, 0.5), sheen_albedo(testing::kB.z, 0.5));
+  const double left =
+      1 - 0.8 * std::max(sheen_albedo(fixtures::kA.z, 0.5), sheen_albedo(fixtures::kB.z, 0.5));
   const double sheen = 0.0009395737460611691;
-  expect_close(value(cloth, testing::kA, testing::kB),
-               sheen * cloth.sheen_color + left * value(base, testing::kA, testing::kB));
+  expect_close(value(cloth, fixtures::kA, fixtures::kB),
+               sheen * cloth.sheen_color + left * value(base, fixtures::kA, fixtures::kB));
 }
 
 TEST(GltfMaterial, KnowsTheAlbedoOfSheen) {
@@ -108,7 +110,7 @@ TEST(GltfMaterial, ReflectsNoMoreThanItGetsAndNothingBelowZero) {
     material.specular_color = 1;
     // the text's film gains a little at grazing, its dielectric a part of what its facets keep
     for (const double theta : {0.0, 40.0, 75.0})
-      EXPECT_LE(albedo(material, testing::at(theta, 10)), 1.03) << theta;
+      EXPECT_LE(albedo(material, fixtures::at(theta, 10)), 1.03) << theta;
   }
 }
 

@@ -44,19 +44,19 @@ double worst_difference(const MeasuredNodes& nodes, BrdfRef table) {
 }
 
 TEST(MeasuredNodes, OfAnRglTableAreWhatItEvaluatesToThere) {
-  const testing::Glossy source{.a = 20, .b = 20};
+  const fixtures::Glossy source{.a = 20, .b = 20};
   const RglTable table = small_rgl(source);
   EXPECT_LT(worst_difference(measured_nodes(table), table), 2e-3);
 }
 
 TEST(MeasuredNodes, OfAnAnisotropicRglTableAreWhatItEvaluatesToThere) {
-  const testing::Glossy source{.a = 20, .b = 5};
+  const fixtures::Glossy source{.a = 20, .b = 5};
   const RglTable table = small_rgl(source);
   EXPECT_LT(worst_difference(measured_nodes(table), table), 2e-3);
 }
 
 TEST(MeasuredNodes, OfAnRglTableKeepNegativeValues) {
-  RglData data = small_rgl(testing::Lambert{}).data();
+  RglData data = small_rgl(fixtures::Lambert{}).data();
   for (float& value : data.spectra.values) value = -value;
   const MeasuredNodes nodes = measured_nodes(RglTable(data));
   ASSERT_GT(nodes.size(), 0u);
@@ -64,7 +64,7 @@ TEST(MeasuredNodes, OfAnRglTableKeepNegativeValues) {
 }
 
 TEST(MeasuredNodes, OfAnRglTableLeaveOutWhatWasFilledInUnlessThatIsNearlyAll) {
-  RglData data = small_rgl(testing::Lambert{}).data();
+  RglData data = small_rgl(fixtures::Lambert{}).data();
   data.valid.assign((data.theta_i.size() * 144 + 7) / 8, 0xff);
   const std::size_t all = measured_nodes(RglTable(data)).size();
   EXPECT_GT(all, 300u);
@@ -75,7 +75,7 @@ TEST(MeasuredNodes, OfAnRglTableLeaveOutWhatWasFilledInUnlessThatIsNearlyAll) {
 }
 
 TEST(MeasuredNodes, AHalfOfAnRglTableHasBothMirrorTwinsOrNone) {
-  const MeasuredNodes nodes = measured_nodes(small_rgl(testing::Glossy{}));
+  const MeasuredNodes nodes = measured_nodes(small_rgl(fixtures::Glossy{}));
   // twins by their directions
   std::map<std::tuple<long, long, long>, std::set<int>> halves;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -94,7 +94,7 @@ TEST(MeasuredNodes, AHalfOfAnRglTableHasBothMirrorTwinsOrNone) {
 }
 
 TEST(MeasuredNodes, OfATableOfHalfAnglesAreItsValidCells) {
-  HalfDiffTable table = tabulate_half_diff(testing::Lambert{}, 8, 6, 8, true);
+  HalfDiffTable table = tabulate_half_diff(fixtures::Lambert{}, 8, 6, 8, true);
   std::size_t valid = 0;
   for (std::size_t i = 0; i < table.entry_count(); ++i) valid += !std::isnan(table.values[3 * i]);
   const MeasuredNodes nodes = measured_nodes(table);
@@ -133,7 +133,7 @@ TEST(MeasuredNodes, OfPatchesWeighWhatTheyCoverOfBothHemispheres) {
 }
 
 TEST(MeasuredNodes, APartKeepsWhatTheNumbersMean) {
-  const MeasuredNodes nodes = measured_nodes(small_rgl(testing::Glossy{}));
+  const MeasuredNodes nodes = measured_nodes(small_rgl(fixtures::Glossy{}));
   const MeasuredNodes part = nodes_of(nodes, parse_node_part("theta_i=2"));
   ASSERT_GT(part.size(), 50u);
   for (std::size_t i = 0; i < part.size(); ++i) {

@@ -57,7 +57,7 @@ TEST(HalfVectorQuadrature, ResolvesNarrowLobes) {
 }
 
 TEST(ReflectedSize, IsTheRootMeanSquareOfTheChannels) {
-  const testing::Lambert lambert{.albedo = {3, 0, 4}};
+  const fixtures::Lambert lambert{.albedo = {3, 0, 4}};
   std::vector<double> f(3);
   EXPECT_NEAR(reflected_size(lambert, kViews[1], kViews[2], f), 5 / std::sqrt(3.0) / kPi * kViews[1].z,
               1e-12);

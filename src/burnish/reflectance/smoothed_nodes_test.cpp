@@ -31,13 +31,13 @@ double mean_log_error(BrdfRef truth, BrdfRef guess) {
 }
 
 TEST(SmoothedNodes, GoThroughSmoothSources) {
-  const testing::Glossy source{.a = 8, .b = 8};
+  const fixtures::Glossy source{.a = 8, .b = 8};
   const SmoothedNodes smooth(measured_nodes(measure(source, {.count = 4000, .noise = 0})));
   EXPECT_LT(mean_log_error(source, smooth), 0.01);
 }
 
 TEST(SmoothedNodes, TakeNoiseAway) {
-  const testing::Glossy source{.a = 8, .b = 8};
+  const fixtures::Glossy source{.a = 8, .b = 8};
   const SmoothedNodes smooth(measured_nodes(measure(source, {.count = 4000, .noise = 0.2})),
                              {{1e-6, 1e-5, 1e-4, 1e-6}}, kFewPlaces);
   EXPECT_LT(mean_log_error(source, smooth), 0.05);  // a quarter of the noise
@@ -59,7 +59,7 @@ Samples of_few_incidences(BrdfRef source, int skipped) {
 }
 
 TEST(SmoothedNodes, KnowWhatStandsBetweenIncidences) {
-  const testing::Glossy source{.a = 8, .b = 8};
+  const fixtures::Glossy source{.a = 8, .b = 8};
   const SmoothedNodes seven(measured_nodes(of_few_incidences(source, -1)), {}, kFewPlaces),
       six(measured_nodes(of_few_incidences(source, 3)), {}, kFewPlaces);
   EXPECT_LT(mean_log_error(source, six), 2 * mean_log_error(source, seven));
@@ -67,7 +67,7 @@ TEST(SmoothedNodes, KnowWhatStandsBetweenIncidences) {
 
 TEST(SmoothedNodes, AreReciprocalIsotropicAndTheirOwnMirrorImage) {
   const SmoothedNodes smooth(
-      measured_nodes(measure(testing::Glossy{.a = 8, .b = 8}, {.count = 1000, .noise = 0.1})), {},
+      measured_nodes(measure(fixtures::Glossy{.a = 8, .b = 8}, {.count = 1000, .noise = 0.1})), {},
       kFewPlaces);
   std::vector<double> f(3), g(3);
   for (const auto& [wi, wo] : draw_pairs(200, 3, false)) {
@@ -83,7 +83,7 @@ TEST(SmoothedNodes, AreReciprocalIsotropicAndTheirOwnMirrorImage) {
 }
 
 TEST(SmoothedNodes, ValuesLieBetweenZeroAndTwiceTheLargest) {
-  Samples samples = measure(testing::Lambert{}, {.count = 300, .noise = 0});
+  Samples samples = measure(fixtures::Lambert{}, {.count = 300, .noise = 0});
   for (double& value : samples.values) value = -value;
   const SmoothedNodes dark(measured_nodes(samples), {}, kFewPlaces);
   std::vector<double> f(3, 1);
@@ -95,7 +95,7 @@ TEST(SmoothedNodes, ValuesLieBetweenZeroAndTwiceTheLargest) {
 }
 
 TEST(SmoothedNodes, NeedIsotropicNodesAboveTheHorizon) {
-  Samples samples = measure(testing::Lambert{}, {.count = 10, .noise = 0});
+  Samples samples = measure(fixtures::Lambert{}, {.count = 10, .noise = 0});
   samples.isotropic = false;
   EXPECT_THROW(SmoothedNodes(measured_nodes(samples)), Error);
   samples.isotropic = true;

@@ -13,8 +13,8 @@
 namespace burnish {
 namespace {
 
-const testing::Lambert kMatte;
-const testing::Glossy kGlossy{.a = 90, .b = 12};
+const fixtures::Lambert kMatte;
+const fixtures::Glossy kGlossy{.a = 90, .b = 12};
 
 Scene lone_sphere() {
   Scene scene;
@@ -145,7 +145,7 @@ TEST(Scene, RefusesWhatDoesNotFit) {
   scene = lone_sphere();
   scene.camera.eye = scene.camera.target;
   EXPECT_THROW(render_cpu(scene, materials, {.width = 8, .height = 8}), Error);
-  const testing::Lambert two{.count = 2};
+  const fixtures::Lambert two{.count = 2};
   EXPECT_THROW(render_cpu(lone_sphere(), std::array{BrdfRef(two)}, {.width = 8, .height = 8}), Error);
 }
 

@@ -18,8 +18,8 @@ namespace burnish {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::Glossy;
-using testing::Lambert;
+using fixtures::Glossy;
+using fixtures::Lambert;
 
 constexpr FigureOptions kQuick{.count = 2000, .image_size = 32};
 

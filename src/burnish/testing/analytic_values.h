@@ -10,7 +10,7 @@
 #include <burnish/math/angles.h>
 #include <burnish/reflectance/brdf.h>
 
-namespace burnish::testing {
+namespace burnish::fixtures {
 
 inline constexpr Vec3 kNormal{0, 0, 1};
 
@@ -29,4 +29,4 @@ double grey(const T& brdf, Vec3 wi, Vec3 wo) {
   return f[0];
 }
 
-}  // namespace burnish::testing
+}  // namespace burnish::fixtures

@@ -8,7 +8,7 @@
 #include <burnish/baselines/separable_brdf.h>
 #include <burnish/math/random.h>
 
-namespace burnish::testing {
+namespace burnish::fixtures {
 
 /// Values in [low, 1), rounded to half floats.
 inline NodeTable random_table(std::vector<NodeAxis> axes, std::size_t channels, int terms, double low,
@@ -38,4 +38,4 @@ inline DgfBrdf random_dgf() {
                  random_table({{theta_d, 5}}, 1, 1, 0, 6), random_table({{theta_d, 4}}, 3, 1, 0, 7));
 }
 
-}  // namespace burnish::testing
+}  // namespace burnish::fixtures

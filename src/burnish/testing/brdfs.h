@@ -8,7 +8,7 @@
 #include <burnish/parameterization/projection.h>
 #include <burnish/reflectance/brdf.h>
 
-namespace burnish::testing {
+namespace burnish::fixtures {
 
 /// albedo / pi in every direction; one channel or three.
 struct Lambert {
@@ -75,4 +75,4 @@ struct TwistFactor {
 };
 using Twisted = GlossyTimes<TwistFactor>;
 
-}  // namespace burnish::testing
+}  // namespace burnish::fixtures

@@ -11,7 +11,7 @@
 #include <burnish/math/random.h>
 #include <burnish/reflectance/analytic.h>
 
-namespace burnish::testing {
+namespace burnish::fixtures {
 
 constexpr std::size_t kHalfRgb = 6;  ///< bytes of a texel
 
@@ -40,4 +40,4 @@ inline std::vector<double> evaluate(const LogModel& model, const TrainingSet& se
   return f;
 }
 
-}  // namespace burnish::testing
+}  // namespace burnish::fixtures

@@ -51,7 +51,7 @@ TEST(FitAnalytic, RecoversLafortunesFunction) {
 }
 
 TEST(FitAnalytic, KeepsParametersOfIsotropicSourcesEqual) {
-  const testing::Glossy source;
+  const fixtures::Glossy source;
   for (const std::string_view model : {"ggx", "ward", "ashikhmin_shirley"}) {
     const AnalyticFit found =
         fit_analytic(from_brdf(source, 1000, 1, false), model, {.most_samples = 300, .max_iterations = 5});
@@ -61,13 +61,13 @@ TEST(FitAnalytic, KeepsParametersOfIsotropicSourcesEqual) {
 }
 
 TEST(FitAnalytic, TakesGreySources) {
-  const testing::Glossy grey{.count = 1};
+  const fixtures::Glossy grey{.count = 1};
   const AnalyticFit found = fit_analytic(from_brdf(grey, 1000, 1, false), "ggx", {.most_samples = 300});
   for (const Rgb value : found.brdf.values()) EXPECT_TRUE(value.r == value.g && value.g == value.b);
 }
 
 TEST(FitAnalytic, SaysWhichModelsItTakes) {
-  const testing::Glossy source, five{.count = 5};
+  const fixtures::Glossy source, five{.count = 5};
   try {
     fit_analytic(from_brdf(source, 10, 1, false), "satin");
     ADD_FAILURE();

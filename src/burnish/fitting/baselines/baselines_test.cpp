@@ -11,7 +11,7 @@ namespace burnish {
 namespace {
 
 TEST(FitBaseline, TellsItsMethodAndKeepsToTheBudget) {
-  const testing::Glossy source;
+  const fixtures::Glossy source;
   const SampleSource samples = from_brdf(source, 2000, 1, false);
   const BaselineFit dgf = fit_baseline(source, samples, "dgf", {.budget = 600});
   EXPECT_EQ(dgf.method, "dgf");
@@ -24,7 +24,7 @@ TEST(FitBaseline, TellsItsMethodAndKeepsToTheBudget) {
 }
 
 TEST(FitBaseline, RefusesOtherMethods) {
-  const testing::Glossy source;
+  const fixtures::Glossy source;
   const SampleSource samples = from_brdf(source, 10, 1, false);
   for (const std::string_view method : {"", "pca", "analytic:", "analytic:satin", "svd "})
     EXPECT_THROW(fit_baseline(source, samples, method, {}), Error) << method;

@@ -42,7 +42,7 @@ TEST(FitDgf, RecoversAMicrofacetModelMadeOfTables) {
 }
 
 TEST(FitDgf, GetsBetterWithItsBudgetUpToThePapersTables) {
-  const testing::Glossy source{.a = 80, .b = 80};
+  const fixtures::Glossy source{.a = 80, .b = 80};
   const SampleSource samples = from_brdf(source, 6'000, 1, false);
   const DgfFit small = fit_dgf(samples, {.budget = 200, .rounds = 30}),
                large = fit_dgf(samples, {.budget = 1000, .rounds = 30}),
@@ -55,13 +55,13 @@ TEST(FitDgf, GetsBetterWithItsBudgetUpToThePapersTables) {
 }
 
 TEST(FitDgf, RefusesAnisotropicSourcesAndSmallBudgets) {
-  const testing::Glossy brushed{.a = 80, .b = 8}, glossy;
+  const fixtures::Glossy brushed{.a = 80, .b = 8}, glossy;
   EXPECT_THROW(fit_dgf(from_brdf(brushed, 100, 1, false), {}), Error);
   EXPECT_THROW(fit_dgf(from_brdf(glossy, 100, 1, false), {.budget = 100}), Error);
 }
 
 TEST(GatherSamples, TakesThoseWithWeightEvenly) {
-  const testing::Glossy source;
+  const fixtures::Glossy source;
   const SampleSource all = from_brdf(source, 5000, 1, false);
   const GatheredSamples every = gather_samples(all, 5000), some = gather_samples(all, 500);
   EXPECT_GT(every.size(), 1000u);
@@ -70,7 +70,7 @@ TEST(GatherSamples, TakesThoseWithWeightEvenly) {
     EXPECT_GT(every.weights[i], 0);
     EXPECT_GT(std::min(every.pairs[i].wi.z, every.pairs[i].wo.z), 0);
   }
-  const testing::Glossy knows_nothing{.blind_below = 2};
+  const fixtures::Glossy knows_nothing{.blind_below = 2};
   EXPECT_THROW(gather_samples(from_brdf(knows_nothing, 100, 1, false), 100), Error);
 }
 

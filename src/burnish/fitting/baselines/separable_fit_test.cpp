@@ -14,7 +14,7 @@
 namespace burnish {
 namespace {
 
-using testing::random_separable;
+using fixtures::random_separable;
 using enum PairCoordinate;
 
 /// A grid without holes whose matrices have a given rank in every channel, coupled or not.
@@ -93,7 +93,7 @@ TEST(Decompose, ErrorFallsWithEveryTerm) {
 }
 
 TEST(PairGrid, HoldsTheSourceAtItsNodes) {
-  const testing::Glossy source;
+  const fixtures::Glossy source;
   const std::vector<NodeAxis> rows{{theta_h, 6}}, columns{{theta_d, 5}, {phi_d, 3}};
   const PairGrid grid = sample_pair_grid(source, rows, columns);
   ASSERT_EQ(grid.rows, 6u);
@@ -143,18 +143,18 @@ TEST(PairGrid, PullsNodesBelowTheHorizonJustAboveIt) {
 }
 
 TEST(PairGrid, FillsHolesFromTheirNeighbours) {
-  const testing::Glossy blind{.blind_below = 0.9};
+  const fixtures::Glossy blind{.blind_below = 0.9};
   const PairGrid grid = sample_pair_grid(blind, std::vector<NodeAxis>{{theta_h, 6}},
                                          std::vector<NodeAxis>{{theta_d, 9}, {phi_d, 3}});
   for (const double value : grid.values) EXPECT_GT(value, 0);
-  const testing::Glossy knows_nothing{.blind_below = 2};
+  const fixtures::Glossy knows_nothing{.blind_below = 2};
   EXPECT_THROW(sample_pair_grid(knows_nothing, std::vector<NodeAxis>{{theta_h, 3}},
                                 std::vector<NodeAxis>{{theta_d, 3}, {phi_d, 2}}),
                Error);
 }
 
 TEST(FitSeparable, KeepsItsBudgetAndGetsBetterWithIt) {
-  const testing::Glossy source{.a = 60, .b = 60};
+  const fixtures::Glossy source{.a = 60, .b = 60};
   const Scorer scorer(source, {.count = 2000, .image_size = 32});
   for (const Decomposition method : {Decomposition::svd, Decomposition::nd, Decomposition::nmf}) {
     std::map<std::size_t, double> psnr;
@@ -173,12 +173,12 @@ TEST(FitSeparable, KeepsItsBudgetAndGetsBetterWithIt) {
 }
 
 TEST(FitSeparable, TakesAnisotropicAndGreySources) {
-  const testing::Glossy brushed{.a = 60, .b = 6};
+  const fixtures::Glossy brushed{.a = 60, .b = 6};
   const SeparableFit fit = fit_separable(brushed, Decomposition::svd, {.budget = 4000, .image_size = 16});
   EXPECT_LE(fit.brdf.bytes(), 4000u);
   EXPECT_FALSE(fit.brdf.isotropic());
   EXPECT_GT(error_figures(brushed, fit.brdf, {.count = 2000, .image_size = 32}).psnr, 25);
-  const testing::Glossy grey{.count = 1};
+  const fixtures::Glossy grey{.count = 1};
   const SeparableFit one = fit_separable(grey, Decomposition::nmf, {.budget = 600, .image_size = 16});
   EXPECT_EQ(one.brdf.channels(), 1);
   EXPECT_LE(one.brdf.bytes(), 600u);
@@ -191,8 +191,8 @@ TEST(FitSeparable, KeepsTheSideOfPhiDWhereTheSourceTellsIt) {
         if (axis.coordinate == half_turn_d) return true;
     return false;
   };
-  const testing::Glossy even{.count = 1};
-  const testing::Twisted twisted{.even = even, .slope = 2};
+  const fixtures::Glossy even{.count = 1};
+  const fixtures::Twisted twisted{.even = even, .slope = 2};
   const SeparableFit fit = fit_separable(twisted, Decomposition::svd, {.budget = 1500, .image_size = 16});
   EXPECT_LE(fit.brdf.bytes(), 1500u);
   EXPECT_TRUE(whole(fit.brdf) && fit.brdf.isotropic());
@@ -201,12 +201,12 @@ TEST(FitSeparable, KeepsTheSideOfPhiDWhereTheSourceTellsIt) {
 }
 
 TEST(FitSeparable, RefusesABudgetThatHoldsNothing) {
-  const testing::Glossy source;
+  const fixtures::Glossy source;
   EXPECT_THROW(fit_separable(source, Decomposition::svd, {.budget = 20, .image_size = 16}), Error);
 }
 
 TEST(NegativeLobes, AreFoundAndCostWhatTheyCost) {
-  const testing::Glossy source{.a = 60, .b = 60};
+  const fixtures::Glossy source{.a = 60, .b = 60};
   const Scorer scorer(source, {.count = 2000, .image_size = 32});
   // one term of both signs, negative in half of its places
   NodeTable u{{{theta_h, 2}}, 1, 1, {1, -1}}, v{{{theta_d, 2}}, 1, 1, {1, 1}};

@@ -22,7 +22,7 @@ struct RetroFactor {
     return 1 + slope * std::exp(-share * share);
   }
 };
-using Tape = testing::GlossyTimes<RetroFactor>;
+using Tape = fixtures::GlossyTimes<RetroFactor>;
 
 /// The largest relative error of a model at wi = wo and a degree from there, 15 to 60 degrees off the normal.
 double error_of_peak(const Tape& tape, const FactoredBrdf& model) {

@@ -44,7 +44,7 @@ TEST(NoiseScale, TakesWhatExchangedDirectionsAndHeldOutNodesTell) {
   layout.folded = true;
   layout.axes = {make_axis({0}, kTwoPi), make_axis(cell_centres(10, kHalfPi)),
                  make_axis(cell_centres(10, kHalfPi)), make_axis(cell_centres(12, kPi))};
-  AngleTable table = tabulate_angles(testing::Glossy{.a = 4, .b = 4}, layout);
+  AngleTable table = tabulate_angles(fixtures::Glossy{.a = 4, .b = 4}, layout);
   Pcg32 random(1);
   constexpr double kNoise = 0.2;
   // evenly spread, of variance 1

@@ -33,7 +33,7 @@ TEST(FetchPlan, KeepsBothLimitsAndUsesTheBytes) {
 }
 
 TEST(FetchPlan, GivesATableOfWiWhereTheOrderOfTheDirectionsMatters) {
-  const testing::Ordered source{{.a = 10, .b = 10}};
+  const fixtures::Ordered source{{.a = 10, .b = 10}};
   const CostLimit limit{.bytes = 6'000, .fetches = 2};
   const std::vector<ModelSpec> specs = volume_specs(source, limit),
                                even = volume_specs(SymmetrizedBrdf(source), limit);

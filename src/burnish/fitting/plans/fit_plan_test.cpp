@@ -10,7 +10,7 @@
 namespace burnish {
 namespace {
 
-using testing::kHalfRgb;
+using fixtures::kHalfRgb;
 
 TEST(FitPlan, MoreBytesMeanSmallerErrors) {
   const AnalyticBrdf ward = parse_analytic("ggx:alpha_x=0.15,alpha_y=0.15,kd=0.3,f0=0.5");

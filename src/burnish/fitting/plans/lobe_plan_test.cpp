@@ -13,7 +13,7 @@
 namespace burnish {
 namespace {
 
-using testing::kHalfRgb;
+using fixtures::kHalfRgb;
 
 FactoredBrdf zero_model(const ModelSpec& spec, std::size_t channels) {
   LogModel model{.spec = spec, .channels = channels, .log_values = {}};
@@ -98,7 +98,7 @@ TEST(LobePlan, RefusesWhatDoesNotFit) {
 }
 
 // A plain source, for twisted and ordered variants, and how well plans of these bytes fit them.
-constexpr testing::Glossy kEven{.a = 10, .b = 10};
+constexpr fixtures::Glossy kEven{.a = 10, .b = 10};
 constexpr std::size_t kBytes = 1500, kFewBytes = 180;
 
 LobePlan plain_plan() {
@@ -115,7 +115,7 @@ double relative_error(BrdfRef source, const FactoredBrdf& brdf) {
 }
 
 TEST(PlanFor, TellsMirrorImagesApartWhereTheSourceDoes) {
-  const testing::Twisted source{kEven};
+  const fixtures::Twisted source{kEven};
   EXPECT_EQ(plan_for(kEven, kBytes, 0, kHalfRgb), plain_plan());
   const AnalyticBrdf brushed = parse_analytic("ggx:alpha_x=0.2,alpha_y=0.5");
   EXPECT_EQ(plan_for(brushed, kBytes, 0, kHalfRgb), default_plan(kBytes, 0, false, kHalfRgb));
@@ -131,7 +131,7 @@ TEST(PlanFor, TellsMirrorImagesApartWhereTheSourceDoes) {
 }
 
 TEST(PlanFor, TellsTheDirectionsApartWhereTheirOrderMatters) {
-  const testing::Ordered source{kEven};
+  const fixtures::Ordered source{kEven};
   EXPECT_EQ(plan_for(SymmetrizedBrdf(source), kBytes, 0, kHalfRgb), plain_plan());
 
   const TrainingSet set = draw_training_set(source, {.pictures = 2000, .directions = 5000});

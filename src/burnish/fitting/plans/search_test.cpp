@@ -11,7 +11,7 @@
 namespace burnish {
 namespace {
 
-using testing::kHalfRgb;
+using fixtures::kHalfRgb;
 
 // Brushed metal along x under lacquer along y, which shows at grazing angles alone.
 struct Crossed {

@@ -54,7 +54,7 @@ TEST(AlbedoSet, SumsOfAModelAreItsAlbedo) {
 TEST(AlbedoTerm, HasTheSlopesOfItsResiduals) {
   const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.2,alpha_y=0.2,kd=0.1");
   const AlbedoSet set = albedo_set(ggx.ref());
-  const LogModel model = testing::random_model("p(wo) p(wi) q(h) + a(theta_d)", {"p=5", "q=6", "a=4"}, 3);
+  const LogModel model = fixtures::random_model("p(wo) p(wi) q(h) + a(theta_d)", {"p=5", "q=6", "a=4"}, 3);
   const Numbering numbering = number_nodes(model.spec, 1);
   std::vector<LobeLanes::NumberedTable> tables;
   for (std::size_t t = 0; t < model.spec.tables.size(); ++t)

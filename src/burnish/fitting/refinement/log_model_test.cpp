@@ -5,9 +5,9 @@
 namespace burnish {
 namespace {
 
-using testing::evaluate;
-using testing::random_model;
-using testing::small_set;
+using fixtures::evaluate;
+using fixtures::random_model;
+using fixtures::small_set;
 
 TEST(LogModel, SplittingALobeChangesNothing) {
   for (const char* expression : {"p(wo) p(wi) q(h) r(theta_d)", "p(wo) p(wi) q(h)"}) {

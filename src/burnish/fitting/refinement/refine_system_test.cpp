@@ -7,8 +7,8 @@
 namespace burnish {
 namespace {
 
-using testing::random_model;
-using testing::small_set;
+using fixtures::random_model;
+using fixtures::small_set;
 
 TEST(RefineSystem, MatrixAndFactorAreTheSameSystem) {
   const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.2,alpha_y=0.2");

@@ -11,9 +11,9 @@
 namespace burnish {
 namespace {
 
-using testing::evaluate;
-using testing::random_model;
-using testing::small_set;
+using fixtures::evaluate;
+using fixtures::random_model;
+using fixtures::small_set;
 
 TEST(Refine, RecoversASumOfTwoLobes) {
   const LogModel truth = random_model("p(wo) p(wi) q(h) + s(h) t(theta_d)", {"p=5", "q=9", "s=5", "t=7"}, 1);

@@ -10,8 +10,8 @@
 namespace burnish {
 namespace {
 
-using testing::random_model;
-using testing::small_set;
+using fixtures::random_model;
+using fixtures::small_set;
 
 TEST(ToRoundedBrdf, LosesLessThanRoundingEachValue) {
   const AnalyticBrdf paint = parse_analytic("ggx:alpha_x=0.2,alpha_y=0.2,kd=0.4/0.02/0.1,f0=0.05/0.5/0.9");

@@ -7,7 +7,7 @@
 namespace burnish {
 namespace {
 
-using testing::small_set;
+using fixtures::small_set;
 
 TEST(TrainingSet, IsPixelsAndPairsAboveTheHorizonAndTheSameForASeed) {
   const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.2,alpha_y=0.2");

@@ -11,11 +11,11 @@
 namespace burnish {
 namespace {
 
-using testing::at;
-using testing::grey;
-using testing::kA;
-using testing::kB;
-using testing::kNormal;
+using fixtures::at;
+using fixtures::grey;
+using fixtures::kA;
+using fixtures::kB;
+using fixtures::kNormal;
 
 TEST(ProjectedAreaTable, MatchesTheClosedFormOfGaussianSlopes) {
   Pcg32 random(9);

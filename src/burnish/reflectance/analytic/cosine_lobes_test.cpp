@@ -7,11 +7,11 @@
 namespace burnish {
 namespace {
 
-using testing::at;
-using testing::grey;
-using testing::kA;
-using testing::kB;
-using testing::kNormal;
+using fixtures::at;
+using fixtures::grey;
+using fixtures::kA;
+using fixtures::kB;
+using fixtures::kNormal;
 
 TEST(Phong, HasItsPowerAtKnownAngles) {
   // Towards the light from 30 degrees, cos(gamma) = 2 cos² - 1 = 1/2.

@@ -7,11 +7,11 @@
 namespace burnish {
 namespace {
 
-using testing::at;
-using testing::grey;
-using testing::kA;
-using testing::kB;
-using testing::kNormal;
+using fixtures::at;
+using fixtures::grey;
+using fixtures::kA;
+using fixtures::kB;
+using fixtures::kNormal;
 
 TEST(Lambert, IsConstant) {
   EXPECT_DOUBLE_EQ(grey(Lambert{0.7}, kA, kB), 0.7 / kPi);

@@ -7,10 +7,10 @@
 namespace burnish {
 namespace {
 
-using testing::at;
-using testing::kA;
-using testing::kB;
-using testing::kNormal;
+using fixtures::at;
+using fixtures::kA;
+using fixtures::kB;
+using fixtures::kNormal;
 
 template <MicrofacetDistribution T>
 void expect_normalized(const T& distribution, double tolerance) {

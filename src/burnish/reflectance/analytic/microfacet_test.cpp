@@ -9,11 +9,11 @@
 namespace burnish {
 namespace {
 
-using testing::at;
-using testing::grey;
-using testing::kA;
-using testing::kB;
-using testing::kNormal;
+using fixtures::at;
+using fixtures::grey;
+using fixtures::kA;
+using fixtures::kB;
+using fixtures::kNormal;
 
 TEST(Microfacet, HasItsClosedFormAtNormalIncidence) {
   EXPECT_NEAR(grey(Ggx{{0.2, 0.5}, 0.7, 0.1}, kNormal, kNormal), 0.7 / (4 * kPi * 0.1) + 0.1 / kPi, 1e-14);

@@ -11,11 +11,11 @@
 namespace burnish {
 namespace {
 
-using testing::at;
-using testing::grey;
-using testing::kA;
-using testing::kB;
-using testing::kNormal;
+using fixtures::at;
+using fixtures::grey;
+using fixtures::kA;
+using fixtures::kB;
+using fixtures::kNormal;
 
 TEST(PoulinFournier, HasItsClosedFormAtNormalIncidence) {
   // Half cylinders: the integral of cos² over the arc is pi/2, the floor between them spacing - 2.

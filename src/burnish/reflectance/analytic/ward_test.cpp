@@ -7,11 +7,11 @@
 namespace burnish {
 namespace {
 
-using testing::at;
-using testing::grey;
-using testing::kA;
-using testing::kB;
-using testing::kNormal;
+using fixtures::at;
+using fixtures::grey;
+using fixtures::kA;
+using fixtures::kB;
+using fixtures::kNormal;
 
 TEST(Ward, AgreesInAllNormalizationsAtNormalIncidence) {
   for (const auto n : {Ward::Normalization::ward, Ward::Normalization::duer, Ward::Normalization::bounded})

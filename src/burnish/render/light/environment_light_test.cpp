@@ -15,8 +15,8 @@
 namespace burnish {
 namespace {
 
-const testing::Lambert kGrey{.albedo = {0.5, 0.5, 0.5}};
-const testing::Glossy kGlossy{.a = 60, .b = 60};
+const fixtures::Lambert kGrey{.albedo = {0.5, 0.5, 0.5}};
+const fixtures::Glossy kGlossy{.a = 60, .b = 60};
 const GgxProxy kProxy{{0.25, 0.25}, 0.6};
 
 // A lamp large enough for every pixel to be hit often.
@@ -121,7 +121,7 @@ TEST(EnvironmentLight, RefusesOptionsOutOfRange) {
   for (const LightOptions& bad :
        {LightOptions{.size = 3}, LightOptions{.samples = 1}, LightOptions{.samples = 15, .stratified = true}})
     EXPECT_THROW(render_in_environment(kGrey, kProxy, environments()[0], bad), Error);
-  EXPECT_THROW(render_in_environment(testing::Lambert{.count = 2}, kProxy, environments()[0], {}), Error);
+  EXPECT_THROW(render_in_environment(fixtures::Lambert{.count = 2}, kProxy, environments()[0], {}), Error);
 }
 
 }  // namespace
