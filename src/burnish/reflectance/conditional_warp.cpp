@@ -83,10 +83,9 @@ ConditionalWarp2::ConditionalWarp2(int width, int height, std::span<const float>
     double rows_before = 0;
     for (std::size_t y = 0; y < h; ++y) {
       if (y > 0) rows_before += 0.5 * (total[y] + total[y - 1]);
-      rows_[slice * h + y] = {static_cast<float>(total[y] / sum), static_cast<float>(rows_before / sum)};
+      rows_[slice * h + y] = {total[y] / sum, rows_before / sum};
       for (std::size_t i = y * w; i < (y + 1) * w; ++i)
-        nodes_[slice * w * h + i] = {static_cast<float>(values[i] / sum),
-                                     static_cast<float>(before[i] / sum)};
+        nodes_[slice * w * h + i] = {values[i] / sum, before[i] / sum};
     }
   }
 }
@@ -101,15 +100,15 @@ ConditionalWarp2::Patch ConditionalWarp2::patch(int column, int row, const Slice
     const Row* r = &rows_[first_row];
     const Node* n0 = &nodes_[first_row * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column)];
     const Node* n1 = n0 + width_;
-    p.d00 += weight * static_cast<double>(n0[0].density);
-    p.d10 += weight * static_cast<double>(n0[1].density);
-    p.d01 += weight * static_cast<double>(n1[0].density);
-    p.d11 += weight * static_cast<double>(n1[1].density);
-    p.before0 += weight * static_cast<double>(n0[0].before);
-    p.before1 += weight * static_cast<double>(n1[0].before);
-    p.total0 += weight * static_cast<double>(r[0].total);
-    p.total1 += weight * static_cast<double>(r[1].total);
-    p.rows_before += weight * static_cast<double>(r[0].before);
+    p.d00 += weight * n0[0].density;
+    p.d10 += weight * n0[1].density;
+    p.d01 += weight * n1[0].density;
+    p.d11 += weight * n1[1].density;
+    p.before0 += weight * n0[0].before;
+    p.before1 += weight * n1[0].before;
+    p.total0 += weight * r[0].total;
+    p.total1 += weight * r[1].total;
+    p.rows_before += weight * r[0].before;
   }
   return p;
 }

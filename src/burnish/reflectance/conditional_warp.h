@@ -41,12 +41,12 @@ class ConditionalWarp2 {
 
  private:
   struct Node {
-    float density;  // integral 1 over cells of unit size
-    float before;   // integral of the row from its start to this node
+    double density;  // integral 1 over cells of unit size
+    double before;   // integral of the row from its start to this node
   };
   struct Row {
-    float total;   // integral of the whole row
-    float before;  // integral of the rows' totals from the first to this one
+    double total;   // integral of the whole row
+    double before;  // integral of the rows' totals from the first to this one
   };
   struct Patch;
   Patch patch(int column, int row, const SliceMix& mix) const noexcept;
