@@ -227,6 +227,28 @@ TEST(CommandLine, TellsWhatItCanOfSamplesNearGrazing) {
   EXPECT_THAT(outcome.output, HasSubstr("3 measured"));
 }
 
+TEST(CommandLine, DescribesWhatWasMeasuredAlone) {
+  EXPECT_THAT(first_line(burnish("info lambert --target nodes")), HasSubstr("lambert"));
+  EXPECT_EQ(burnish("info lambert --target nodes").status, 1);
+  EXPECT_EQ(burnish("info lambert --target edges").status, 2);
+
+  BURNISH_SKIP_WHERE_SANITIZED();
+  const TemporaryFolder folder("nodes");
+  const std::string file = (folder.path / "m.csv").string();
+  ASSERT_EQ(burnish(fmt::format("measure ggx:alpha_x=0.4,alpha_y=0.4 -o '{}' --count 600 --noise 0.1", file))
+                .status,
+            0);
+  const auto json =
+      nlohmann::json::parse(burnish(fmt::format("info '{}' --target nodes --json", file)).output);
+  EXPECT_EQ(json["count"], 600);
+  EXPECT_EQ(json["negative_share"], 0);
+  // noise of a tenth, and what lies between few samples
+  EXPECT_GT(json["held_out"]["relative"], 0.03);
+  EXPECT_LT(json["held_out"]["relative"], 0.3);
+  EXPECT_THAT(burnish(fmt::format("info '{}' --target nodes", file)).output,
+              testing::AllOf(HasSubstr("600, "), HasSubstr("unseen")));
+}
+
 TEST(CommandLine, ExplainsItsFormatsAndItself) {
   const Outcome formats = burnish("help formats");
   EXPECT_EQ(formats.status, 0);

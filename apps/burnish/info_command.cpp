@@ -19,8 +19,10 @@
 #include "commands.h"
 #include "info_json.h"
 #include "json_output.h"
+#include "nodes_info.h"
 #include "source_arguments.h"
 #include "surface_info.h"
+#include "usage.h"
 
 namespace burnish::cli {
 
@@ -111,7 +113,13 @@ void add_info_command(CLI::App& app) {
   verb->footer("Example: burnish info --json paint.bsdf");
   auto arguments = std::make_shared<SourceArguments>();
   auto as_json = std::make_shared<bool>(false);
+  auto target = std::make_shared<std::string>("function");
   add_source_arguments(*verb, *arguments);
+  verb->add_option(
+          "--target", *target,
+          "what to describe: the function that its owner makes of a measurement, or nodes: what was measured")
+      ->check(one_of({"function", "nodes"}))
+      ->capture_default_str();
   verb->add_flag("--json", *as_json, "for programs");
   verb->callback([=] {
     if (const auto book = book_of(arguments->spec)) {
@@ -133,6 +141,11 @@ void add_info_command(CLI::App& app) {
       }
     }
     const Source source = arguments->open();
+    if (*target == "nodes") {
+      const NodesInfo nodes = nodes_info(source);
+      fmt::print("{}", *as_json ? nodes_json(nodes) + "\n" : nodes_text(nodes));
+      return;
+    }
     const SourceReport report = report_on(source);
     if (*as_json)
       fmt::print("{}\n", info_json(report));

@@ -5,11 +5,8 @@
 
 namespace burnish {
 
-namespace {
-
-// What the nodes alone tell.
-MeasurementQuality quality_of(const MeasuredNodes& nodes) {
-  MeasurementQuality quality;
+NodesQuality nodes_quality(const MeasuredNodes& nodes) {
+  NodesQuality quality;
   double squares = 0;
   std::size_t negative = 0;
   for (const double f : nodes.samples.values)
@@ -21,14 +18,16 @@ MeasurementQuality quality_of(const MeasuredNodes& nodes) {
     quality.negative_share = static_cast<double>(negative) / static_cast<double>(nodes.samples.values.size());
     quality.negative_rms = std::sqrt(squares / static_cast<double>(negative));
   }
-  if (nodes.samples.isotropic) quality.held_out = held_out_figures(nodes, choose_node_smoothness(nodes));
+  if (nodes.samples.isotropic) {
+    const NodeSmoothness smoothness = choose_node_smoothness(nodes);
+    quality.held_out = held_out_figures(nodes, smoothness);
+    quality.held_out_incidences = held_out_incidences(nodes, smoothness);
+  }
   return quality;
 }
 
-}  // namespace
-
 MeasurementQuality quality_by_repeat(const Scorer& scorer, BrdfRef second, const MeasuredNodes& nodes) {
-  MeasurementQuality quality = quality_of(nodes);
+  MeasurementQuality quality{nodes_quality(nodes)};
   quality.repeated = true;
   quality.figures = scorer.score(second);
   quality.errors = scorer.pair_errors(second);
@@ -53,7 +52,7 @@ std::optional<MeasurementQuality> quality_by_exchange(const Scorer& scorer, Brdf
                                                       const MeasuredNodes& nodes) {
   const std::optional<ErrorFigures> figures = exchanged_figures(scorer, raw);
   if (!figures) return {};
-  MeasurementQuality quality = quality_of(nodes);
+  MeasurementQuality quality{nodes_quality(nodes)};
   quality.figures = *figures;
   quality.errors = scorer.pair_errors(raw);
   for (PairError& error : quality.errors) {

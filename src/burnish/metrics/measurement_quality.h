@@ -11,16 +11,24 @@
 
 namespace burnish {
 
+/// What measured nodes tell of one another, and of noise.
+struct NodesQuality {
+  /// Of a smooth function at nodes that it has not seen (held_out_figures), and at incidences (held_out_incidences);
+  /// none of anisotropic sources.
+  std::optional<NodeFigures> held_out, held_out_incidences;
+  double negative_share = 0;  ///< of the nodes' values
+  double negative_rms = 0;    ///< their root mean square, 1/sr: noise about nothing
+};
+
+/// The smooth function is as smooth as predicts best (choose_node_smoothness). Throws Error as that does.
+NodesQuality nodes_quality(const MeasuredNodes& nodes);
+
 /// How good a measurement is: what another one of the same surface scores against it. A model that scores better
 /// follows its noise.
-struct MeasurementQuality {
+struct MeasurementQuality : NodesQuality {
   bool repeated = false;          ///< by a second scan; else estimated from exchanged directions
   ErrorFigures figures;           ///< of the second scan, or estimated
   std::vector<PairError> errors;  ///< of the pairs that figures are means of
-  /// Of a smooth function at nodes that it has not seen (held_out_figures); none of anisotropic sources.
-  std::optional<NodeFigures> held_out;
-  double negative_share = 0;  ///< of the nodes' values
-  double negative_rms = 0;    ///< their root mean square, 1/sr: noise about nothing
 };
 
 /// Scores a second scan, symmetrized like the scorer's reference; of the first scan's nodes the rest.

@@ -46,6 +46,7 @@ nlohmann::ordered_json json_of(const MeasurementQuality& quality) {
   entry["negative_share"] = quality.negative_share;
   entry["negative_rms"] = quality.negative_rms;
   if (quality.held_out) entry["held_out"] = node_json(*quality.held_out);
+  if (quality.held_out_incidences) entry["held_out_incidences"] = node_json(*quality.held_out_incidences);
   return entry;
 }
 
@@ -133,6 +134,8 @@ std::string nodes_html(const Measurement& measurement, std::span<const ComparedF
   add_row("the reference, made reciprocal", measurement.itself);
   if (measurement.quality && measurement.quality->held_out)
     add_row("a smooth function that has not seen them", *measurement.quality->held_out);
+  if (measurement.quality && measurement.quality->held_out_incidences)
+    add_row("a smooth function that has not seen their theta_i", *measurement.quality->held_out_incidences);
   for (const ComparedFigures& c : compared)
     if (c.nodes) add_row(c.name, *c.nodes);
   std::string noise;
