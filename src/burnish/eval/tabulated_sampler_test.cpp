@@ -34,6 +34,7 @@ const ModelCase kModels[] = {
     {"Disks", "pqp", {"p=17x17", "q=33x33,rational:0.2"}, 3},
     {"DiskAndLine", "p(wo) q(h) p(wi) + s(wo) t(h) s(wi)", {"p=8", "q=33x33,power:0.5", "s=9x9", "t=32"}, 3},
     {"Twist", "p(wo) q(h) p(wi) w(theta_t,theta_h)", {"p=8", "q=48", "w=5x8"}, 3},
+    {"Side", "z(theta_h) g(theta_h,theta_d,phi_s)", {"g=28x5x7,power:0.5", "z=32"}, 3},
 };
 
 const ModelCase& named(std::string_view name) {

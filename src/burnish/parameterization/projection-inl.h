@@ -147,6 +147,18 @@ FORMULA_INLINE auto folded_azimuth(const Pair& pair) {
   return Polar<T>{named("r", min(sine, den)), den};  // squares of tiny numbers vanish
 }
 
+/// phi_s: r / den = (1 + s tan(phi / 2)) / 2 of the folded phi_d, s the sign of d_z (s_y d_x - s_x d_y), whose
+/// factors both change theirs when the directions are exchanged.
+template <class Pair>
+FORMULA_INLINE auto sided_azimuth(const Pair& pair) {
+  using T = decltype(pair.sum.x);
+  const auto &s = pair.sum, &d = pair.apart;
+  const auto folded = folded_azimuth(pair);
+  const T turn = named("turn", d.z * (s.y * d.x - s.x * d.y));
+  const T less = named("less", folded.den - folded.r), more = named("more", folded.den + folded.r);
+  return Polar<T>{named("r", if_less(turn, T(0.0), less, more)), named("den", folded.den + folded.den)};
+}
+
 /// Calls f(find), find(pair) the polar angle of the projection's kind: of the difference and of all that have
 /// no azimuth. Decides once, for loops that must not.
 template <class F>
@@ -159,6 +171,8 @@ FORMULA_INLINE auto with_angle(Projection::Kind kind, const F& f) {
       return f([](const auto& pair) FORMULA_ATTRIBUTE { return twist_angle(pair); });
     case Kind::azimuth:
       return f([](const auto& pair) FORMULA_ATTRIBUTE { return folded_azimuth(pair); });
+    case Kind::side:
+      return f([](const auto& pair) FORMULA_ATTRIBUTE { return sided_azimuth(pair); });
     case Kind::difference:
     case Kind::affine:
       break;

@@ -71,6 +71,7 @@ constexpr Name kNames[] = {
     {"theta_m", kProjectDeviation, true},
     {"theta_t", kProjectTwist, true},
     {"phi_d", kProjectAzimuth, true},
+    {"phi_s", kProjectSide, true},
 };
 
 }  // namespace
@@ -131,6 +132,8 @@ std::string_view to_string(Projection::Kind kind) noexcept {
       return "twist";
     case Kind::azimuth:
       return "azimuth";
+    case Kind::side:
+      return "side";
   }
   return "";
 }

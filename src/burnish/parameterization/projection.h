@@ -25,9 +25,12 @@ namespace burnish {
 /// - azimuth: a polar angle alone, phi_d folded into [0, pi/2]: |cos phi_d| = |cos theta_i - cos theta_o| /
 ///   (2 sin theta_h sin theta_d), 0 where the plane of the directions holds the normal, pi/2 where both are
 ///   equally steep; the same when the directions are exchanged and in the mirror. Where phi_d has no meaning,
-///   sin theta_h sin theta_d = 0, it is 0.
+///   sin theta_h sin theta_d = 0, it is 0;
+/// - side: a polar angle alone, phi_s, phi_d modulo pi: tan(phi_s / 2) = (1 + s tan(phi / 2)) / 2, phi the folded phi_d
+///   and s = 1 or -1 the sign of sin(2 phi_d), 1 where that is 0. It becomes 1 less itself in the mirror but where
+///   phi_d = pi/2: there a circle is cut, and 0 and 1 are one place. The same when the directions are exchanged.
 struct Projection {
-  enum class Kind { affine, difference, deviation, twist, azimuth };
+  enum class Kind { affine, difference, deviation, twist, azimuth, side };
 
   Kind kind = Kind::affine;
   double wi = 0, wo = 0, mirror = 0, n = 0;
@@ -42,11 +45,12 @@ inline constexpr Projection kProjectDifference{.kind = Projection::Kind::differe
 inline constexpr Projection kProjectDeviation{.kind = Projection::Kind::deviation};
 inline constexpr Projection kProjectTwist{.kind = Projection::Kind::twist};
 inline constexpr Projection kProjectAzimuth{.kind = Projection::Kind::azimuth};
+inline constexpr Projection kProjectSide{.kind = Projection::Kind::side};
 
 /// Those that have a number in `.burnish` files: their places here. New ones go to the end.
 inline constexpr std::array kNumberedProjections{kProjectWi,         kProjectWo,        kProjectHalf,
                                                  kProjectDifference, kProjectDeviation, kProjectTwist,
-                                                 kProjectAzimuth};
+                                                 kProjectAzimuth,    kProjectSide};
 
 /// Twist, unnormalized: S = wi + wo and A = wi - wo, tan(theta_t / 2) = r / den with
 /// den = 2 (S.x^2 + S.y^2 + |S|^2 kTwistCore), r = den / 2 + A.z (S.y A.x - S.x A.y) |S|^2 kTwistScale;
@@ -75,10 +79,10 @@ struct NamedProjection {
   bool angle_only = false;  ///< by the name of an angle, which stands for the same vector
 };
 
-/// Reads wi, wo, h, d, theta_h, theta_d, theta_m, theta_t, phi_d, theta_i, theta_o or a sum of terms such as
+/// Reads wi, wo, h, d, theta_h, theta_d, theta_m, theta_t, phi_d, phi_s, theta_i, theta_o or a sum of terms such as
 /// "wi+wo+0.5n", "m+0.8wo" (m is the mirrored light). Throws Error on anything else.
 NamedProjection parse_projection(std::string_view text);
-/// "affine", "difference", "deviation", "twist" or "azimuth".
+/// "affine", "difference", "deviation", "twist", "azimuth" or "side".
 std::string_view to_string(Projection::Kind kind) noexcept;
 /// A text parse_projection reads back to the same projection.
 std::string to_string(const Projection& projection);

@@ -23,7 +23,7 @@ std::vector<DirectionPair> pairs_and_corners() {
 
 TEST(Projection, GivesUnitVectorsAboveTheHorizon) {
   for (const char* text : {"wi", "wo", "h", "d", "wi+wo-0.7n", "m+wo", "0.5wi-wo+0.2n", "wi-wo", "theta_m",
-                           "theta_t", "phi_d"}) {
+                           "theta_t", "phi_d", "phi_s"}) {
     const Projection p = parse_projection(text).projection;
     for (const auto& [wi, wo] : pairs_and_corners()) {
       const Vec3 v = project(p, wi, wo);
@@ -44,7 +44,7 @@ TEST(Projection, HalfAndDifferenceHaveTheHalfDifferenceAngles) {
 }
 
 TEST(Projection, AngleAloneAgreesWithTheVector) {
-  for (const char* text : {"wi", "h", "d", "wi+wo+0.4n", "m+2wo", "theta_m", "theta_t", "phi_d"}) {
+  for (const char* text : {"wi", "h", "d", "wi+wo+0.4n", "m+2wo", "theta_m", "theta_t", "phi_d", "phi_s"}) {
     const Projection p = parse_projection(text).projection;
     for (const auto& [wi, wo] : pairs_and_corners())
       EXPECT_NEAR(project_tan_half(p, wi, wo), tan_half_theta(project(p, wi, wo)), 1e-12) << text;
@@ -53,7 +53,7 @@ TEST(Projection, AngleAloneAgreesWithTheVector) {
 
 TEST(Projection, SwappingIsExactToTheLastBit) {
   for (const char* text :
-       {"wi", "wo", "h", "wi+wo+0.4n", "0.3wi+0.9wo-0.2n", "d", "theta_m", "theta_t", "phi_d"}) {
+       {"wi", "wo", "h", "wi+wo+0.4n", "0.3wi+0.9wo-0.2n", "d", "theta_m", "theta_t", "phi_d", "phi_s"}) {
     const Projection p = parse_projection(text).projection;
     const std::optional<Projection> q = swapped(p, false);
     ASSERT_TRUE(q) << text;
@@ -72,7 +72,7 @@ TEST(Projection, ReadsWhatItPrints) {
   }
   EXPECT_EQ(parse_projection("theta_d").projection, kProjectDifference);
   EXPECT_TRUE(parse_projection("theta_d").angle_only);
-  for (const Projection& p : {kProjectDeviation, kProjectTwist, kProjectAzimuth}) {
+  for (const Projection& p : {kProjectDeviation, kProjectTwist, kProjectAzimuth, kProjectSide}) {
     EXPECT_EQ(parse_projection(to_string(p)).projection, p);
     EXPECT_TRUE(parse_projection(to_string(p)).angle_only);
   }
@@ -140,6 +140,32 @@ TEST(Projection, AzimuthReachesBothItsEndsAndIsZeroWhereItHasNoMeaning) {
   // products of what is tiny vanish, their ratio does not
   const double tiny = 1e-160;
   EXPECT_LE(project_tan_half(kProjectAzimuth, {tiny, 0, 1}, {0, tiny, 1}), 1);
+}
+
+TEST(Projection, SideIsPhiDModuloPi) {
+  double least = 1, most = 0;
+  for (const auto& [wi, wo] : draw_pairs(20'000, 13, false)) {
+    const HalfDiff angles = to_half_diff(wi, wo);
+    const double folded = project_tan_half(kProjectAzimuth, wi, wo),
+                 t = project_tan_half(kProjectSide, wi, wo);
+    EXPECT_NEAR(t, (1 + (std::sin(2 * angles.phi_d) < 0 ? -folded : folded)) / 2, 1e-12);
+    EXPECT_NEAR(project_tan_half(kProjectSide, {wi.x, -wi.y, wi.z}, {wo.x, -wo.y, wo.z}), 1 - t, 1e-12);
+    least = std::min(least, t);
+    most = std::max(most, t);
+  }
+  EXPECT_LT(least, 1e-3);
+  EXPECT_GT(most, 1 - 1e-3);
+}
+
+TEST(Projection, SideIsInTheMiddleWhereItHasNoMeaningAndAtItsEndWhereTheCircleIsCut) {
+  const Vec3 n{0, 0, 1};
+  for (const auto& [w, other] : draw_pairs(200, 15, false)) {
+    EXPECT_EQ(project_tan_half(kProjectSide, w, w), 0.5) << "theta_d = 0";
+    EXPECT_EQ(project_tan_half(kProjectSide, w, mirror(w)), 0.5) << "theta_h = 0";
+    EXPECT_NEAR(project_tan_half(kProjectSide, w, n), 0.5, 1e-9) << "the plane of both holds the normal";
+    EXPECT_EQ(project_tan_half(kProjectSide, w, {w.y, -w.x, w.z}), 1) << "equally steep";
+    EXPECT_EQ(project_tan_half(kProjectSide, w, {-w.y, w.x, w.z}), 1) << "and its mirror image";
+  }
 }
 
 TEST(Projection, RefusesWhatItDoesNotKnow) {

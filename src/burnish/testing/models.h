@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <string>
@@ -50,6 +51,10 @@ inline const ModelCase kModelCases[] = {
      {"a=8", "c=5x9,identity,power:0.5", "q=12"},
      3},
     {"Azimuth", "a(phi_d) g(theta_d,phi_d)", {"a=16,rational:0.3", "g=9x5"}, 3},
+    {"Side",
+     "b(theta_d,theta_h) g(theta_h,theta_d,phi_s) a(phi_s)",
+     {"b=5x9", "g=9x5x7,power:0.5", "a=8"},
+     3},
     {"ManyAngles",
      "a(wi+0.1wo) b(wi+0.2wo) c(wi+0.3wo) d(wi+0.4wo) e(wi+0.5wo) f(wi+0.6wo) g(wi+0.7wo) h(wi+0.8wo) "
      "i(wi+0.9wo) j(theta_t) k(theta_m)",
@@ -62,6 +67,27 @@ inline const ModelCase& model_case(std::string_view name) {
   const ModelCase* const found = std::ranges::find(kModelCases, name, &ModelCase::name);
   if (found == std::end(kModelCases)) throw Error("no model case " + std::string(name));
   return *found;
+}
+
+/// Gives both ends of what is looked up by phi_s one value: they are one place, and rounding decides between them.
+inline void close_circles(std::vector<Table>& tables, const std::vector<Lobe>& lobes) {
+  for (const Lobe& lobe : lobes)
+    for (const FactorUse& use : lobe.factors) {
+      Table& table = tables[use.table];
+      const auto [width, height, depth] =
+          std::array{table.layout.width, table.layout.height, table.layout.depth};
+      const auto value = [&](int x, int y, int z, std::size_t c) -> float& {
+        return table.values[static_cast<std::size_t>((z * height + y) * width + x) * table.channels + c];
+      };
+      for (int z = 0; z < depth; ++z)
+        for (int y = 0; y < height; ++y)
+          for (int x = 0; x < width; ++x)
+            for (std::size_t c = 0; c < table.channels; ++c) {
+              if (use.projection == kProjectSide && x == width - 1) value(x, y, z, c) = value(0, y, z, c);
+              if (use.projection_y == kProjectSide && y == height - 1) value(x, y, z, c) = value(x, 0, z, c);
+              if (use.projection_z == kProjectSide && z == depth - 1) value(x, y, z, c) = value(x, y, 0, c);
+            }
+    }
 }
 
 /// A model of the case's form: log_value(table, layout, x, row, channel) fills its tables, `random` its lobes' scales.
@@ -85,6 +111,7 @@ FactoredBrdf model_of(const ModelCase& model, TableFormat format, Pcg32& random,
     for (std::size_t c = 0; c < model.channels; ++c) lobe.scale.push_back(random.uniform());
     lobes.push_back(std::move(lobe));
   }
+  close_circles(tables, lobes);
   return from_log_tables(model.channels, std::move(tables), std::move(lobes), format);
 }
 
@@ -186,7 +213,8 @@ inline double shader_cancellation(const FactoredBrdf& brdf, Vec3 wi, Vec3 wo) {
   for (const Lobe& lobe : brdf.lobes())
     for (const FactorUse& use : lobe.factors)
       for (const Projection& p : {use.projection, use.projection_y, use.projection_z})
-        if (p == kProjectAzimuth) worst = std::max(worst, 1 + 0.05 / std::max(product, 1e-12));
+        if (p == kProjectAzimuth || p == kProjectSide)
+          worst = std::max(worst, 1 + 0.05 / std::max(product, 1e-12));
   return worst;
 }
 
