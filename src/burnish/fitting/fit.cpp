@@ -52,7 +52,7 @@ constexpr int kHeldOutSphereSize = 128;  // of a baseline's the defaults of Figu
 
 // Volumes follow all angles alike; what they lack shows in pictures first. With p(wo) p(wi) beside them, of four
 // fetches, there is some to spare, for absolute errors too: these lie near grazing, and p alone is as steep there.
-constexpr ErrorTerms kVolumeShares{.pictures = 3, .dimmed = 0.3, .relative = 0.5, .log_cos = 0.6};
+constexpr ErrorTerms kVolumeShares{.pictures = 3, .dimmed = 0.3, .relative = 2, .log_cos = 0.6};
 constexpr int kSpareFetches = 4;
 constexpr double kSpareLogCos = 0.8, kSpareAbsolute = 0.1;
 constexpr std::size_t kSpareTexels = 1500;  // from here on, for absolute errors and smoothness

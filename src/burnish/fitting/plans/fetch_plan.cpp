@@ -25,8 +25,12 @@ namespace {
 constexpr double kMinVolumeTexels = 1200;
 
 // Of the texels: lines along theta_h, which rings of films need, and along other angles, which are smooth.
-constexpr double kRingShare = 0.07, kLineShare = 0.016, kGridShare = 0.14, kTwistShare = 0.1;
-constexpr int kMinLineNodes = 6, kMaxRingNodes = 512, kMaxLineNodes = 64, kTwistNodes = 5;
+constexpr double kRingShare = 0.07, kLineShare = 0.016, kGridShare = 0.14;
+constexpr int kMinLineNodes = 6, kMaxRingNodes = 512, kMaxLineNodes = 64;
+// Of the texels and nodes along theta_d for one along theta_h, where a grid has what depends on these alone.
+constexpr double kHighlightShare = 0.2, kHighlightAspect = 1 / 1.5, kMaxHighlightTexels = 800;
+constexpr int kMinHighlightNodes = 6;
+constexpr std::size_t kMinGridTexels = 600;
 constexpr Warp kDeviationWarp{WarpKind::power, 0.5}, kSkewWarp{WarpKind::power, 0.7};
 // Of what the order of the directions changes: nodes along theta_i and a share.
 constexpr int kOrderNodes = 8;
@@ -37,6 +41,7 @@ struct VolumeForm {
   double half, difference, azimuth;
 };
 constexpr VolumeForm kForms[] = {{30, 20, 6}, {40, 15, 6}, {24, 24, 6}, {20, 30, 6}};
+constexpr double kBothSides = 2;  // times as many along the azimuth where it tells mirror images apart
 // Of theta_h. Shaders take a root where other powers take a logarithm.
 constexpr Warp kHalfWarp{WarpKind::power, 0.5};
 // Of theta_d where a lobe stands at 0.
@@ -124,14 +129,18 @@ SourceTraits traits_of(BrdfRef source) {
   return {mirror_asymmetry(source) > kMinAsymmetry, order_matters(source), backscatters(source)};
 }
 
+// What stands beside the volume first: a line along theta_h, for rings, or a grid over theta_h and theta_d.
+enum class Beside { line, grid };
+
 // The tables that a number of fetches has room for; the volume takes what the others leave.
-ModelSpec volume_spec(const VolumeForm& form, const CostLimit& limit, std::size_t channels,
+ModelSpec volume_spec(VolumeForm form, Beside beside, const CostLimit& limit, std::size_t channels,
                       const SourceTraits& traits) {
   const double texels = static_cast<double>(limit.bytes / limit.texel_bytes);
   const auto nodes = [&](double share, int most) {
     return std::clamp(static_cast<int>(share * texels), kMinLineNodes, most);
   };
   const int line = nodes(kLineShare, kMaxLineNodes);
+  const Warp difference_warp = traits.retro ? kRetroWarp : Warp{};
   SpecBuilder builder;
   int left = limit.fetches - 1;
   const auto takes = [&](int fetches) {
@@ -139,19 +148,27 @@ ModelSpec volume_spec(const VolumeForm& form, const CostLimit& limit, std::size_
     if (room) left -= fetches;
     return room;
   };
-  const auto add_by_half = [&](const char* name, int width, double share, const Projection& along_x) {
+  const auto add_by_half = [&](const char* name, int width, double share, const Projection& along_x,
+                               Warp warp = {}) {
     builder.add(name,
                 {.shape = TableShape::grid,
                  .width = width,
                  .height = nodes(share / width, kMaxRingNodes),
+                 .warp = warp,
                  .warp_y = kHalfWarp},
                 {{.projection = along_x, .projection_y = kProjectHalf}});
   };
   if (traits.ordered && takes(1)) add_by_half("c", kOrderNodes, kOrderShare, kProjectWi);
+  const bool grid = beside == Beside::grid && takes(1);
+  if (grid) {
+    const double share = std::min(kHighlightShare, kMaxHighlightTexels / texels);
+    const int width =
+        std::max(kMinHighlightNodes, static_cast<int>(std::sqrt(share * kHighlightAspect * texels)));
+    add_by_half("b", width, share, kProjectDifference, difference_warp);
+  }
   if (takes(1)) builder.add_line("z", nodes(kRingShare, kMaxRingNodes), {kProjectHalf}, kHalfWarp);
-  if (traits.twisted && takes(1)) add_by_half("w", kTwistNodes, kTwistShare, kProjectTwist);
   if (takes(2)) builder.add_line("p", line, {kProjectWo, kProjectWi});
-  if (takes(1)) builder.add_line("r", line, {kProjectDifference}, traits.retro ? kRetroWarp : Warp{});
+  if (!grid && takes(1)) builder.add_line("r", line, {kProjectDifference}, difference_warp);
   if (takes(1)) {
     const int side = std::max(4, static_cast<int>(std::sqrt(kGridShare * texels)));
     builder.add("k", {.shape = TableShape::grid, .width = side, .height = side, .warp = kDeviationWarp},
@@ -165,11 +182,13 @@ ModelSpec volume_spec(const VolumeForm& form, const CostLimit& limit, std::size_
       bytes_of(builder.spec(), limit.texel_bytes, builder.spec().lobes.empty() ? 0 : channels) +
       kNumberBytes * (1 + traits.retro + (builder.spec().lobes.empty() ? channels : 0));
   const std::size_t rest = limit.bytes > taken ? (limit.bytes - taken) / limit.texel_bytes : 0;
+  if (traits.twisted) form.azimuth *= kBothSides;
   const TableLayout volume = volume_of(form, static_cast<double>(rest), traits.retro);
   if (volume.width < 2) throw Error("fit: expected a budget that holds a table of three axes");
-  builder.add(
-      "g", volume,
-      {{.projection = kProjectHalf, .projection_y = kProjectDifference, .projection_z = kProjectAzimuth}});
+  builder.add("g", volume,
+              {{.projection = kProjectHalf,
+                .projection_y = kProjectDifference,
+                .projection_z = traits.twisted ? kProjectSide : kProjectAzimuth}});
   return builder.spec();
 }
 
@@ -263,7 +282,7 @@ bool holds_model(BrdfRef source, const CostLimit& limit) {
     return plan_fits(plan_within(source, limit), limit.bytes, source.channels(), limit.texel_bytes);
   try {
     if (source.isotropic())
-      volume_spec(kForms[0], limit, source.channels(),
+      volume_spec(kForms[0], Beside::line, limit, source.channels(),
                   {.twisted = true, .ordered = limit.fetches > 1 && order_matters(source), .retro = true});
     else
       hemisphere_spec(limit, source.channels());
@@ -297,8 +316,15 @@ std::vector<ModelSpec> volume_specs(BrdfRef source, const CostLimit& limit) {
   SourceTraits traits = traits_of(source);
   std::vector<ModelSpec> specs;
   const auto add = [&] {
-    for (const VolumeForm& form : kForms)
-      specs.push_back(volume_spec(form, limit, source.channels(), traits));
+    const auto add_form = [&](const VolumeForm& form, Beside beside) {
+      specs.push_back(volume_spec(form, beside, limit, source.channels(), traits));
+    };
+    // of many nodes the first is taken untried
+    const int spare =
+        limit.bytes / limit.texel_bytes < kMinGridTexels ? 0 : limit.fetches - 1 - traits.ordered;
+    if (traits.twisted && spare >= 1) add_form(kForms[0], Beside::grid);
+    for (const VolumeForm& form : kForms) add_form(form, Beside::line);
+    if (!traits.twisted && spare >= 2) add_form(kForms[0], Beside::grid);
   };
   // beside what matters more, the table may not be worth its bytes
   if (limit.fetches > 1 && traits.ordered) add();
@@ -328,7 +354,7 @@ std::vector<FetchTrial> try_fetches(BrdfRef source, const TrainingSet& set, Cost
     if (!holds_model(source, limit)) continue;
     Candidate next{.fetches = of_lobes, .spec = {}};
     if (!takes_lobes(source, limit)) {
-      next.spec = volume_spec(kForms[0], limit, source.channels(),
+      next.spec = volume_spec(kForms[0], Beside::line, limit, source.channels(),
                               {traits.twisted, traits.ordered && n > 1, traits.retro});
       next.fetches = static_cast<int>(fetch_count(*next.spec));
     }

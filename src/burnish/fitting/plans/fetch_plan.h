@@ -27,11 +27,11 @@ LobePlan plan_within(BrdfRef source, const CostLimit& limit);
 
 /// Isotropic models of one lobe within the limit: g(theta_h,theta_d,phi_d), with a line z(theta_h) from two
 /// fetches on, p(wo) p(wi) from four, r(theta_d) of three and from five on, a grid k(theta_m,theta_d) from
-/// six on, s(wi + wo/2) s(wi/2 + wo) from eight on; of a source that is not its own mirror image a grid
-/// w(theta_t,theta_h) comes third, and of one for which the order of the directions matters (order_tables.h)
-/// a grid c(theta_i,theta_h) second, in half of the models. They differ in how the volume's nodes are shared
-/// out among its axes; of a source that backscatters() their nodes crowd at theta_d = 0. Throws Error where the bytes
-/// hold no such tables.
+/// six on, s(wi + wo/2) s(wi/2 + wo) from eight on. They differ in how the volume's nodes are shared out among its axes,
+/// and one has a grid b(theta_d,theta_h) in place of r, from three fetches on. Of a source that is not its own mirror
+/// image the volume is g(theta_h,theta_d,phi_s), and the grid stands in the first of them, from two fetches on. Of one
+/// for which the order of the directions matters (order_tables.h) a grid c(theta_i,theta_h) comes second, in half of
+/// the models; of one that backscatters() nodes crowd at theta_d = 0. Throws Error where the bytes hold no such tables.
 std::vector<ModelSpec> volume_specs(BrdfRef source, const CostLimit& limit);
 
 /// An anisotropic model within the limit, of at least four fetches: hemispheres q(h) p(wo) p(wi) times a volume

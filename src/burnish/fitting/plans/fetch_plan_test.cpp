@@ -7,6 +7,7 @@
 #include <burnish/fitting/plans/fetch_plan.h>
 #include <burnish/metrics/error_figures.h>
 #include <burnish/reflectance/analytic.h>
+#include <burnish/reflectance/mirror_asymmetry.h>
 #include <burnish/testing/brdfs.h>
 
 namespace burnish {
@@ -56,6 +57,25 @@ TEST(FetchPlan, GivesATableOfWiWhereTheOrderOfTheDirectionsMatters) {
   const double least = error_figures(source, told, figures).relative;
   EXPECT_LT(least, 0.02);
   EXPECT_LT(least, 0.3 * error_figures(source, same, figures).relative);
+}
+
+TEST(FetchPlan, TellsMirrorImagesApartInTwoFetches) {
+  const fixtures::Twisted source{{.a = 10, .b = 10}};
+  const CostLimit limit{.bytes = 6'000, .fetches = 2};
+  const std::vector<ModelSpec> specs = volume_specs(source, limit);
+  for (const ModelSpec& spec : specs) {
+    EXPECT_LE(fetch_count(spec), 2u);
+    EXPECT_LE(bytes_of(spec), 6'000u);
+    EXPECT_GT(bytes_of(spec), 5'400u);
+  }
+  const TrainingSet set =
+      draw_training_set(source, {.pictures = 4'000, .directions = 8'000, .crowded = true});
+  const FigureOptions figures{.count = 5000, .image_size = 32};
+  const FactoredBrdf told = to_brdf(fit_volumes(set, specs, {.smooth = 1e-9}).model, TableFormat::half);
+  // no model that is its own mirror image has less
+  const double least = std::expm1(mirror_asymmetry(source));
+  EXPECT_GT(least, 0.05);
+  EXPECT_LT(error_figures(source, told, figures).relative, 0.3 * least);
 }
 
 TEST(FetchPlan, GivesHemispheresToAnisotropicSources) {

@@ -12,6 +12,8 @@ constexpr std::size_t kMaxUses = 12;
 constexpr std::size_t kMaxEntries = 2'000'000;
 // Nodes of tables of which all may meet all.
 constexpr std::size_t kMaxDense = 1000;
+// Of a volume's nodes, that a table's meet where they lie along its axes.
+constexpr double kFewMeetings = 0.25;
 
 constexpr std::size_t kProducts = 27;  // three along each axis
 
@@ -143,11 +145,21 @@ bool SparseGram::find_meetings() {
   return true;
 }
 
+bool SparseGram::meets_few(std::size_t table) const noexcept {
+  return std::ranges::any_of(meetings_, [&](const Meeting& meeting) {
+    if (meeting.b != table || tables_[meeting.a].corners != 8) return false;
+    const auto all =
+        static_cast<double>(tables_[meeting.a].nodes) * static_cast<double>(tables_[table].nodes);
+    return meeting.starts.back() < kFewMeetings * all;
+  });
+}
+
 void SparseGram::find_order() {
-  // lines looked up once, volumes, then what all meet
+  // lines looked up once and grids along a volume's axes, volumes, then what all meet
   const auto rank = [&](std::size_t t) {
     if (tables_[t].corners == 8) return 1;
-    return tables_[t].corners == 2 && std::ranges::count(uses_, t, &Use::table) == 1 ? 0 : 2;
+    if (std::ranges::count(uses_, t, &Use::table) != 1) return 2;
+    return tables_[t].corners == 2 || meets_few(t) ? 0 : 2;
   };
   std::uint32_t next = 0;
   std::size_t nodes = 0;

@@ -73,6 +73,8 @@ class SparseGram {
   bool find_uses();
   bool find_meetings();
   void find_order();
+  // whether each node of a table meets a small part of a volume's
+  bool meets_few(std::size_t table) const noexcept;
   // visit(meeting, node a, node b, the product of their weights) for what two uses add
   template <class Visit>
   static void for_each_product(const UsePair& pair, std::span<const Terms> row, Visit visit);
