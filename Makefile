@@ -103,7 +103,7 @@ bench: test-deps
 
 # Pages of docs/results, by what burnish_reports calls them.
 REPORTS := build/release/apps/reports/burnish_reports
-report: NAMES := results accuracy cost
+report: NAMES := results accuracy measured cost
 cost-report: NAMES := cost
 sampling-report: NAMES := sampling
 shader-report: NAMES := shaders

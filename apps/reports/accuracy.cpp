@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <optional>
 #include <string_view>
 
@@ -15,6 +16,7 @@
 #include <burnish/io/convert.h>
 #include <burnish/io/open_source.h>
 #include <burnish/math/parallel.h>
+#include <burnish/metrics/measurement_quality.h>
 #include <burnish/reflectance/analytic.h>
 #include <burnish/reflectance/scattered_brdf.h>
 
@@ -81,7 +83,7 @@ void add_pictures(const Material& material, const std::vector<Score>& scores, Co
   sheet.cells.push_back(std::move(differences));
 }
 
-// Each method's mean of one figure over its bytes.
+// Each method's mean of one figure over its bytes, and what the measurements themselves score, whatever the bytes.
 Plot plot_of(const std::vector<MeanScore>& means, const std::string& figure, bool log_y,
              double ErrorFigures::*value) {
   Plot plot{.title = "Mean " + figure + " over the eight RGL materials",
@@ -89,7 +91,11 @@ Plot plot_of(const std::vector<MeanScore>& means, const std::string& figure, boo
             .y_label = figure,
             .log_x = true,
             .log_y = log_y};
+  double least = std::numeric_limits<double>::infinity(), most = 0;
   for (const auto& [mean, materials] : means) {
+    if (mean.method == kMeasurement) continue;
+    least = std::min(least, static_cast<double>(mean.bytes));
+    most = std::max(most, static_cast<double>(mean.bytes));
     auto series =
         std::ranges::find_if(plot.series, [&](const PlotSeries& s) { return s.label == mean.method; });
     if (series == plot.series.end()) {
@@ -99,6 +105,12 @@ Plot plot_of(const std::vector<MeanScore>& means, const std::string& figure, boo
     series->x.push_back(static_cast<double>(mean.bytes));
     series->y.push_back(mean.errors.*value);
   }
+  for (const auto& [mean, materials] : means)
+    if (mean.method == kMeasurement)
+      plot.series.push_back({.label = mean.method,
+                             .x = {least, most},
+                             .y = {mean.errors.*value, mean.errors.*value},
+                             .style = PlotStyle::dashed});
   return plot;
 }
 
@@ -108,6 +120,12 @@ void plot_means(const Page& page, const std::vector<MeanScore>& means) {
   page.write_plot("accuracy-relative", plot_of(means, "relative", true, &ErrorFigures::relative));
   page.write_plot("accuracy-log_cos", plot_of(means, "log_cos", true, &ErrorFigures::log_cos));
   page.write_plot("accuracy-rms_log", plot_of(means, "rms_log", true, &ErrorFigures::rms_log));
+}
+
+// What the measurement would score itself, where its directions do not say alike.
+void add_measurement(const Material& material, std::vector<Score>& scores) {
+  if (const auto itself = exchanged_figures(material.scorer, material.source.ref()))
+    scores.push_back({.method = std::string(kMeasurement), .errors = *itself, .picture = {}});
 }
 
 void report_rgl(Page& page, const fs::path& data) {
@@ -135,6 +153,7 @@ void report_rgl(Page& page, const fs::path& data) {
     scores[i].insert(scores[i].begin(), {published("network", "nbrdf", data / "nbrdf/rgl.csv"),
                                          published("np", "np", data / "np")});
     add_pictures(material, scores[i], sheet);
+    add_measurement(material, scores[i]);
   }
 
   const std::vector<MeanScore> means = means_of(scores);
@@ -193,13 +212,14 @@ void report_others(Page& page) {
     material.attempts = attempts(budgets, material.reference.isotropic(), quick);
     material.shown_budget = kSheetBudget;
   }
-  const std::vector<std::vector<Score>> scores = run(materials);
+  std::vector<std::vector<Score>> scores = run(materials);
 
   ContactSheet sheet{.title = "Light at 30 degrees; at most 2,700 bytes"};
   for (std::size_t i = 0; i < materials.size(); ++i) {
     std::vector<Score> shown = scores[i];
     std::erase_if(shown, [](const Score& s) { return s.method == "dgf"; });  // a column for every material
     add_pictures(materials[i], shown, sheet);
+    add_measurement(materials[i], scores[i]);
   }
   page["others"] = table_of(means_of(scores)).markdown();
   page.write_rows("others", table_of(materials, scores));

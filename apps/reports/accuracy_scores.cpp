@@ -70,7 +70,7 @@ using Bold = std::array<bool, 6>;
 
 std::vector<std::string> with_figures(std::vector<std::string> cells, const Score& s, const Bold& bold = {}) {
   const ErrorFigures& e = s.errors;
-  cells.push_back(std::to_string(s.bytes));
+  cells.push_back(s.bytes > 0 ? std::to_string(s.bytes) : "");
   const std::array texts{fmt::format("{:.2f}", e.psnr),     fmt::format("{:.4f}", e.ssim),
                          fmt::format("{:.4f}", e.relative), fmt::format("{:.4f}", e.log_cos),
                          fmt::format("{:.3f}", e.rms_log),  fmt::format("{:.3g}", e.rms)};
@@ -98,7 +98,8 @@ std::vector<Bold> bold_figures(const std::vector<MeanScore>& means) {
   for (std::size_t i = 0; i < means.size(); ++i)
     for (std::size_t j = 0; j < means.size(); ++j) {
       const Score &other = means[i].score, &ours = means[j].score;
-      if (is_ours(other.method) || !is_ours(ours.method) || means[i].materials != means[j].materials ||
+      if (is_ours(other.method) || other.method == kMeasurement || !is_ours(ours.method) ||
+          means[i].materials != means[j].materials ||
           (other.budget > 0 ? other.budget : other.bytes) > ours.budget)
         continue;
       const Bold ahead = ahead_of(other, ours);

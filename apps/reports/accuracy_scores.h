@@ -16,9 +16,13 @@
 
 namespace burnish::reports {
 
+/// What a measurement would score itself (exchanged_figures) is called so: no model, which tables put in bold.
+inline constexpr std::string_view kMeasurement = "the measurement";
+
 /// One representation of one material.
 struct Score {
-  std::string method;  ///< "ours", one of baseline_methods(), or what a published model is called
+  std::string
+      method;  ///< "ours", one of baseline_methods(), what a published model is called, or kMeasurement
   std::size_t budget = 0;
   ErrorFigures errors;
   std::size_t bytes = 0;

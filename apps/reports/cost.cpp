@@ -489,7 +489,8 @@ void report_cost(const ReportOptions& options) {
   const std::vector<Row> means = means_of(materials);
   Table table(head_of_columns({"method", "budget", "within fetches"}));
   for (const Row& row : means) table.add(cells_of({}, row));
-  page["materials"] = fmt::format("{}{}", fmt::join(names, ", "), options.quick ? ", a quick trial" : "");
+  page["materials"] = fmt::format("{} material{}{}", names.size(), names.size() == 1 ? "" : "s",
+                                  options.quick ? ", a quick trial" : "");
   page["pairs"] = std::to_string(extent.pairs);
   page["fetches"] = fmt::format("{}", fmt::join(extent.fetches, ", "));
   page["turns"] = std::to_string(extent.turns);

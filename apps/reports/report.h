@@ -55,6 +55,7 @@ class Page {
 void report_accuracy(const ReportOptions& options);
 void report_cost(const ReportOptions& options);
 void report_frame_cost(const ReportOptions& options);
+void report_measured(const ReportOptions& options);
 void report_openpbr(const ReportOptions& options);
 void report_results(const ReportOptions& options);
 void report_sampling(const ReportOptions& options);

@@ -21,6 +21,7 @@
 #include <burnish/reflectance/rgl_builder.h>
 #include <burnish/testing/baselines.h>
 #include <burnish/testing/brdfs.h>
+#include <burnish/testing/noisy_table.h>
 #include <burnish/testing/sanitized.h>
 #include <burnish/testing/tools.h>
 
@@ -322,35 +323,9 @@ TEST(Fit, TakesNodesOfAnisotropicSourcesAsTheyAre) {
   EXPECT_LT(made.report.nodes->at_fitted.relative, 0.5);
 }
 
-// Of mean 0 and variance 1.
-double draw_even(Pcg32& random) {
-  return std::sqrt(12) * (random.uniform() - 0.5);
-}
-
-// A virtual measurement: GGX with noise in proportion, from which the light is taken off below which a third of the
-// values lies.
-AngleTable noisy_table() {
-  AngleTable layout;
-  layout.folded = true;
-  layout.axes = {make_axis({0}, kTwoPi), make_axis(cell_centres(30, kHalfPi)),
-                 make_axis(cell_centres(30, kHalfPi)), make_axis(cell_centres(36, kPi))};
-  AngleTable table = tabulate_angles(parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3,kd=0.2"), layout);
-  Pcg32 random(7);
-  std::vector<float> values;
-  for (float& value : table.values) {
-    if (std::isnan(value)) continue;
-    value *= static_cast<float>(1 + 0.3 * draw_even(random));
-    values.push_back(value);
-  }
-  const auto third = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 3);
-  std::ranges::nth_element(values, third);
-  for (float& value : table.values) value -= *third;
-  return table;
-}
-
 TEST(Fit, ReflectsWhatTheRawValuesOfANoisySourceDo) {
   BURNISH_SKIP_WHERE_SANITIZED();
-  const Source source = source_of("noisy", noisy_table());
+  const Source source = source_of("noisy", fixtures::noisy_table());
   const SymmetrizedBrdf raw(source.ref());
   for (const Budget budget : {Budget{.bytes = 2700}, Budget{.bytes = 16 << 10, .fetches = 2}}) {
     const Fit made = fit(source, {.form = budget, .score = false});
@@ -368,7 +343,8 @@ TEST(Fit, ReflectsWhatTheRawValuesOfANoisySourceDo) {
 Source noisy_source(double noise) {
   AngleTable table = tabulate_angles(paint(), angle_table());
   Pcg32 random(3);
-  for (float& value : table.values) value *= static_cast<float>(std::exp(noise * draw_even(random)));
+  for (float& value : table.values)
+    value *= static_cast<float>(std::exp(noise * fixtures::draw_even(random)));
   return source_of("noisy", std::move(table));
 }
 

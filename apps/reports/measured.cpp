@@ -1,0 +1,334 @@
+// What a model says of what was measured and it has not seen: nodes, incidences, another scan; light that noise adds.
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include <burnish/fitting/fit.h>
+#include <burnish/io/open_source.h>
+#include <burnish/math/angles.h>
+#include <burnish/metrics/albedo.h>
+#include <burnish/metrics/error_figures.h>
+#include <burnish/metrics/node_figures.h>
+#include <burnish/testing/noisy_table.h>
+
+#include "report.h"
+#include "scattered.h"
+
+namespace burnish::reports {
+
+namespace {
+
+constexpr std::size_t kBytes = 16'384, kFewBytes = 2700;
+
+std::vector<fs::path> rgl_files(const Page& page) {
+  std::vector<fs::path> files = files_in(*page.options().data / "rgl");
+  if (page.options().quick) files.resize(1);
+  return files;
+}
+
+Fit fit_nodes_without(const Source& source, const NodePart& held_out, int fetches) {
+  return fit(source, {.form = Budget{.bytes = kBytes, .fetches = fetches},
+                      .target = FitTarget::nodes,
+                      .hold_out = held_out,
+                      .score = false});
+}
+
+// Means over what was added.
+struct MeanNodes {
+  double relative = 0, log_cos = 0, log_relative = 0, log_log_cos = 0;
+  int count = 0;
+
+  void add(const NodeFigures& figures) {
+    relative += figures.relative;
+    log_cos += figures.log_cos;
+    ++count;
+  }
+  NodeFigures mean() const { return {.log_cos = log_cos / count, .relative = relative / count}; }
+};
+
+std::vector<std::string> figures_of(const NodeFigures& figures) {
+  return {fmt::format("{:.3f}", figures.relative), fmt::format("{:.4f}", figures.log_cos)};
+}
+
+// ---- One half of the nodes by the other
+
+struct Predictor {
+  const char* name;
+  MeanNodes all = {};  // over the materials
+};
+
+// Of every material and half what each predictor says of the nodes of that half: the file's own function and the
+// published models, which know or have learnt them, and ours of the other half.
+void report_halves(Page& page, const fs::path& data) {
+  std::vector<Predictor> predictors{{"the file's function, which knows them"},
+                                    {"network"},
+                                    {"np"},
+                                    {"ours, of the function"},
+                                    {"ours, of the other half"}};
+  Table rows({"material", "half", "predicted by", "relative", "log_cos"});
+  Table table({"material", "the file's function", "network", "np", "ours, of the function",
+               "ours, of the other half", "ln of the last over the first"});
+  double log_relative = 0, log_log_cos = 0;
+  const std::vector<fs::path> files = rgl_files(page);
+  for (const fs::path& file : files) {
+    const std::string name = file.stem().string();
+    tell("measured: " + name + ", halves");
+    const Source source = open_source(file.string(), {});
+    const SymmetrizedBrdf function(source.ref());
+    const Source network =
+                     open_source(fmt::format("nbrdf:{}#{}", (data / "nbrdf/rgl.csv").string(), name), {}),
+                 np = open_source(fmt::format("np:{}#{}", (data / "np").string(), name), {});
+    const SymmetrizedBrdf symmetrized_network(network.ref()), symmetrized_np(np.ref());
+    const Fit of_function = fit(source, {.form = Budget{.bytes = kBytes}, .score = false});
+    const MeasuredNodes nodes = measured_nodes(source);
+
+    std::vector<MeanNodes> means(predictors.size());
+    for (const std::uint32_t half : {0u, 1u}) {
+      const NodePart part{NodePart::Kind::half, half};
+      const MeasuredNodes unseen = nodes_of(nodes, part);
+      const Fit of_nodes = fit_nodes_without(source, part, 0);
+      const std::array<BrdfRef, 5> models{function, symmetrized_network, symmetrized_np, of_function.ref(),
+                                          of_nodes.ref()};
+      for (std::size_t k = 0; k < models.size(); ++k) {
+        const NodeFigures figures = node_figures(unseen, models[k]);
+        means[k].add(figures);
+        rows.add(joined({name, std::to_string(half), predictors[k].name}, figures_of(figures)));
+      }
+    }
+
+    std::vector<std::string> texts{name};
+    for (std::size_t k = 0; k < means.size(); ++k) {
+      const NodeFigures mean = means[k].mean();
+      predictors[k].all.add(mean);
+      texts.push_back(fmt::format("{:.3f} / {:.4f}", mean.relative, mean.log_cos));
+    }
+    const double relative = std::log(means.back().relative / means.front().relative),
+                 log_cos = std::log(means.back().log_cos / means.front().log_cos);
+    log_relative += relative;
+    log_log_cos += log_cos;
+    texts.push_back(fmt::format("{:+.3f} / {:+.3f}", relative, log_cos));
+    table.add(texts);
+  }
+  std::vector<std::string> texts{"**mean**"};
+  for (const Predictor& predictor : predictors) {
+    const NodeFigures mean = predictor.all.mean();
+    texts.push_back(fmt::format("{:.3f} / {:.4f}", mean.relative, mean.log_cos));
+  }
+  const auto count = static_cast<double>(files.size());
+  texts.push_back(fmt::format("**{:+.3f} / {:+.3f}**", log_relative / count, log_log_cos / count));
+  table.add(texts);
+  page["halves"] = table.markdown();
+  page.write_rows("halves", rows);
+}
+
+// ---- An incidence by the others
+
+// The table as its owner would have it, had the instrument not stood at one theta_i.
+RglTable without_incidence(RglData data, std::size_t left_out) {
+  const std::size_t incidences = data.theta_i.size();
+  for (RglGrid* grid : {&data.vndf, &data.luminance, &data.spectra}) {
+    const std::size_t slice = grid->values.size() / (data.phi_i.size() * incidences);
+    std::vector<float> kept;
+    for (std::size_t k = 0; k < data.phi_i.size() * incidences; ++k)
+      if (k % incidences != left_out)
+        kept.insert(kept.end(), grid->values.begin() + static_cast<std::ptrdiff_t>(k * slice),
+                    grid->values.begin() + static_cast<std::ptrdiff_t>((k + 1) * slice));
+    grid->values = std::move(kept);
+  }
+  data.theta_i.erase(data.theta_i.begin() + static_cast<std::ptrdiff_t>(left_out));
+  data.valid.clear();
+  return RglTable(std::move(data));
+}
+
+void report_incidences(Page& page) {
+  const std::array<const char*, 3> methods{"the file's function without it", "the same made reciprocal",
+                                           "ours"};
+  Table rows({"material", "theta_i", "predicted by", "relative", "log_cos"});
+  Table table({"material", methods[0], methods[1], methods[2]});
+  std::array<MeanNodes, 3> all;
+  const bool quick = page.options().quick;
+  for (const fs::path& file : rgl_files(page)) {
+    const std::string name = file.stem().string();
+    tell("measured: " + name + ", incidences");
+    const Source source = open_source(file.string(), {});
+    const RglData& data = std::get<RglTable>(source.brdf).data();
+    const MeasuredNodes nodes = measured_nodes(source);
+    std::array<MeanNodes, 3> means;
+    // the outermost have no neighbours on one side
+    for (std::size_t k = 1; k + 1 < data.theta_i.size() && (k == 1 || !quick); ++k) {
+      if (std::cos(double{data.theta_i[k]}) <= NodeScoring{}.least_cosine) continue;  // none is scored
+      const NodePart part{NodePart::Kind::incidence, static_cast<std::uint32_t>(k)};
+      const MeasuredNodes unseen = nodes_of(nodes, part);
+      const RglTable left(without_incidence(data, k));
+      const SymmetrizedBrdf symmetrized(left);
+      const Fit ours = fit_nodes_without(source, part, 2);
+      const std::array<BrdfRef, 3> models{left, symmetrized, ours.ref()};
+      for (std::size_t m = 0; m < models.size(); ++m) {
+        const NodeFigures figures = node_figures(unseen, models[m]);
+        means[m].add(figures);
+        rows.add(joined({name, fmt::format("{:.1f}", degrees(double{data.theta_i[k]})), methods[m]},
+                        figures_of(figures)));
+      }
+    }
+    std::vector<std::string> texts{name};
+    for (std::size_t m = 0; m < means.size(); ++m) {
+      all[m].add(means[m].mean());
+      texts.push_back(fmt::format("{:.3f} / {:.4f}", means[m].mean().relative, means[m].mean().log_cos));
+    }
+    table.add(texts);
+  }
+  std::vector<std::string> texts{"**mean**"};
+  for (const MeanNodes& mean : all)
+    texts.push_back(fmt::format("{:.3f} / {:.4f}", mean.mean().relative, mean.mean().log_cos));
+  table.add(texts);
+  page["incidences"] = table.markdown();
+  page.write_rows("incidences", rows);
+}
+
+// ---- Another scan
+
+std::vector<std::string> figures_of(const ErrorFigures& e) {
+  return {fmt::format("{:.2f}", e.psnr),     fmt::format("{:.4f}", e.ssim),
+          fmt::format("{:.4f}", e.relative), fmt::format("{:.4f}", e.log_cos),
+          fmt::format("{:.3f}", e.rms_log),  fmt::format("{:.2f}", e.rms)};
+}
+
+void report_repeat(Page& page, const fs::path& data) {
+  const std::string name = "irid_flake_paint1";
+  const fs::path coarse = data / "rgl" / (name + "_rgb.bsdf"),
+                 fine = data / "repeat" / (name + "_fine_rgb.bsdf");
+  if (!fs::exists(coarse) || !fs::exists(fine)) return;
+  const std::array<Source, 2> scans{open_source(fine.string(), {}), open_source(coarse.string(), {})};
+  const std::array<const char*, 2> names{"fine", "coarse"};
+  const std::array<SymmetrizedBrdf, 2> functions{SymmetrizedBrdf(scans[0].ref()),
+                                                 SymmetrizedBrdf(scans[1].ref())};
+  const FigureOptions options{.count = page.options().quick ? std::size_t{10'000} : std::size_t{1'000'000}};
+
+  Table table({"predicted", "by", "bytes", "psnr", "ssim", "relative", "log_cos", "rms_log", "rms"});
+  for (std::size_t to = 0; to < scans.size(); ++to) {
+    const std::size_t from = 1 - to;
+    tell(fmt::format("measured: the {} scan by the {} one", names[to], names[from]));
+    const Scorer scorer(functions[to], options);
+    const auto add = [&](const std::string& by, const std::string& bytes, BrdfRef model) {
+      table.add(joined({names[to], by, bytes}, figures_of(scorer.score(model))));
+    };
+    add(fmt::format("the {} scan itself", names[from]),
+        std::to_string(fs::file_size(from == 0 ? fine : coarse)), functions[from]);
+    const auto add_fit = [&](const std::string& how, const Budget& budget) {
+      const Fit made = fit(scans[from], {.form = budget, .score = false});
+      add(how, std::to_string(made.bytes()), made.ref());
+    };
+    add_fit("`--budget 2700`", {.bytes = kFewBytes});
+    add_fit("`--budget 16K`", {.bytes = kBytes});
+    add_fit("`--budget 16K --fetches 6 --smooth auto`",
+            {.bytes = kBytes, .fetches = 6, .scattered = {.cross_validate = true}});
+    if (!page.options().quick) add_fit("`--budget 64K`", {.bytes = 65'536});
+  }
+  page["repeat"] = table.markdown();
+}
+
+// ---- Light that noise adds
+
+void report_noise(Page& page, const std::optional<fs::path>& data) {
+  std::vector<std::pair<std::string, Source>> sources;
+  sources.emplace_back("virtual GGX", Source{.name = {}, .brdf = fixtures::noisy_table(), .findings = {}});
+  if (data)
+    sources.emplace_back("carpaint_blue", open_source((*data / "mbsdf/carpaint_blue.mbsdf").string(), {}));
+
+  Table table({"source", "theta_i", "albedo", "with negatives cut", "2,700 bytes", "16 KB, 2 fetches"});
+  for (const auto& [name, source] : sources) {
+    tell("measured: albedo of " + name);
+    const SymmetrizedBrdf function(source.ref());
+    const Fit few = fit(source, {.form = Budget{.bytes = kFewBytes}, .score = false}),
+              many = fit(source, {.form = Budget{.bytes = kBytes, .fetches = 2}, .score = false});
+    for (const double theta_i : {0, 15, 30, 45, 60}) {
+      const Vec3 wi = spherical_direction(radians(theta_i), 0);
+      const DirectionalAlbedo own = directional_albedo(function, wi, 2e-3);
+      // the channel that is farthest off, of those that reflect anything
+      const auto off = [&](const Fit& made) {
+        const std::vector<double> found = directional_albedo(made.ref(), wi, 2e-3).albedo;
+        double most = 0;
+        for (std::size_t c = 0; c < found.size(); ++c) {
+          if (own.albedo[c] <= 0) continue;
+          if (const double by = found[c] / own.albedo[c] - 1; std::abs(by) > std::abs(most)) most = by;
+        }
+        return fmt::format("{:+.2f} %", 100 * most);
+      };
+      const auto mean = [](const std::vector<double>& albedo) {
+        double sum = 0;
+        for (const double a : albedo) sum += a / static_cast<double>(albedo.size());
+        return fmt::format("{:.4f}", sum);
+      };
+      table.add(
+          {name, fmt::format("{:.0f}", theta_i), mean(own.albedo), mean(own.clamped), off(few), off(many)});
+    }
+  }
+  page["noise"] = table.markdown();
+}
+
+// ---- As it is
+
+void report_order(Page& page, const fs::path& data) {
+  const std::string name = "vch_silk_blue_rgb";
+  const fs::path file = data / "rgl" / (name + ".bsdf");
+  if (!fs::exists(file)) return;
+  tell("measured: " + name + ", not made reciprocal");
+  const Source source = open_source(file.string(), {});
+  const Scorer scorer(source.ref());
+  Table table({"fit", "bytes", "psnr", "ssim", "relative", "log_cos", "rms_log", "rms"});
+  for (const std::size_t bytes : {kFewBytes, kBytes})
+    for (const bool symmetrize : {true, false}) {
+      const Fit made =
+          fit(source, {.form = Budget{.bytes = bytes}, .symmetrize = symmetrize, .score = false});
+      table.add(joined({fmt::format("`--budget {}{}`", bytes == kBytes ? "16K" : "2700",
+                                    symmetrize ? "" : " --no-symmetrize"),
+                        std::to_string(made.bytes())},
+                       figures_of(scorer.score(made.ref()))));
+    }
+  page["order"] = table.markdown();
+}
+
+// ---- Scattered samples
+
+void report_scattered(Page& page, const fs::path& data) {
+  Table table({"paint", "budget", "bytes", "seconds", "relative, of five folds"});
+  for (const char* paint : kPaints) {
+    const Samples samples = read_paint(data, paint);
+    for (const std::size_t bytes : {std::size_t{1350}, kFewBytes}) {
+      tell(fmt::format("measured: {}, {} bytes", paint, bytes));
+      const FitOptions options{.form = Budget{.bytes = bytes}, .score = false};
+      const Fit whole = fit(source_of(samples), options);
+      FoldErrors errors;
+      for (std::size_t fold = 0; fold < kFolds; ++fold) {
+        const auto [training, test] = split_fold(samples.size(), fold);
+        const Fit part = fit(source_of(select(samples, training)), options);
+        std::array<double, 3> f;
+        for (const std::size_t i : test) {
+          part.ref().eval(samples.pairs[i].wi, samples.pairs[i].wo, f);
+          errors.add(samples.at(i), f);
+        }
+      }
+      table.add({paint, std::to_string(bytes), std::to_string(whole.bytes()),
+                 fmt::format("{:.1f}", whole.report.seconds), fmt::format("{:.3f}", errors.relative(0))});
+    }
+  }
+  page["scattered"] = table.markdown();
+}
+
+}  // namespace
+
+void report_measured(const ReportOptions& options) {
+  Page page(options, "measured");
+  if (options.data && options.wants("halves")) report_halves(page, *options.data);
+  if (options.data && options.wants("incidences")) report_incidences(page);
+  if (options.data && options.wants("repeat")) report_repeat(page, *options.data);
+  if (options.wants("noise")) report_noise(page, options.data);
+  if (options.data && options.wants("order")) report_order(page, *options.data);
+  if (options.data && !options.quick && options.wants("scattered")) report_scattered(page, *options.data);
+  page.write();
+}
+
+}  // namespace burnish::reports
