@@ -19,11 +19,11 @@ TEST(WebGl, AgreesWithTheDefinitionInEveryVariant) {
   const auto worst = run_webgl(kModelCases, 64, folder.path);
   ASSERT_EQ(worst.size(), std::size(kModelCases));
   // as in kShaderVariants; half floats may add 2e-3
-  constexpr VariantErrors kMost = {1e-5, 2e-3, 5e-3, 7e-3};
+  constexpr VariantErrors kMax = {1e-5, 2e-3, 5e-3, 7e-3};
   for (std::size_t i = 0; i < worst.size(); ++i)
-    for (std::size_t k = 0; k < kMost.size(); ++k) {
+    for (std::size_t k = 0; k < kMax.size(); ++k) {
       if (k == 2 && std::isnan(worst[i][k])) continue;  // floats need not be filtered in WebGL2
-      EXPECT_LE(worst[i][k], kMost[k]) << kModelCases[i].name << " variant " << k;
+      EXPECT_LE(worst[i][k], kMax[k]) << kModelCases[i].name << " variant " << k;
     }
 }
 

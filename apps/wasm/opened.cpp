@@ -17,12 +17,12 @@ namespace burnish::wasm {
 namespace {
 
 constexpr double kCoarsest = 64;  // level of detail: that of one texel
-constexpr std::size_t kMostEntries = 100'000;
+constexpr std::size_t kMaxEntries = 100'000;
 
 // The first words of a file's rows.
 std::vector<std::string> row_names(const FileBytes& file) {
   std::vector<std::string> names;
-  for (TextReader reader(file); names.size() < kMostEntries && reader.next_content_line();)
+  for (TextReader reader(file); names.size() < kMaxEntries && reader.next_content_line();)
     names.push_back(printable(trimmed(reader.line().substr(0, reader.line().find(','))), 80));
   return names;
 }
@@ -43,7 +43,7 @@ Opened open_book(const FileBytes& file, const std::string& entry) {
   const MaterialBook book = parse_book(file);
   std::vector<std::string> names;
   for (const MaterialBook::Material& m :
-       book.materials().first(std::min(book.materials().size(), kMostEntries)))
+       book.materials().first(std::min(book.materials().size(), kMaxEntries)))
     names.push_back(m.name);
   return open_entry(file.name, std::move(names), entry, [&](const std::string& name) {
     const auto found = book.find(name);

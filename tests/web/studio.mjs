@@ -12,12 +12,12 @@ import zlib from "node:zlib";
 import {chromium} from "playwright-core";
 
 const [site, burnish, folder, figures] = process.argv.slice(2);
-const kMostBytes = 3 << 20;       // of the page, compressed
+const kMaxBytes = 3 << 20;       // of the page, compressed
 const kSame = 1e-6;               // relative, between the page's figures and the command line's
-const kMostShift = 0.05;         // of Chromium's layout shift while files are opened and fitted
+const kMaxShift = 0.05;         // of Chromium's layout shift while files are opened and fitted
 const kExact = 60;               // dB, of what is drawn from a measurement's own tables
 const kComputed = 1e-5;          // of the brightest light, between what is computed and what is drawn of RGL's own tables
-const kMostMemory = 512 << 20;    // of the process with page and workers while a file of MERL's size is fitted, bytes
+const kMaxMemory = 512 << 20;    // of the process with page and workers while a file of MERL's size is fitted, bytes
 const kDrawn = 12;               // damaged files that are no longer refused, of which the picture is waited for
 const kPatience = 120_000;        // milliseconds; the renderer is software
 const kHostileStep = Number(process.env.HOSTILE_STEP ?? 11);
@@ -131,7 +131,7 @@ function writeScattered() {
 // Nothing moved since the last time that this was asked.
 async function steady(page, what) {
   const shifted = await page.evaluate(() => [window.shifted, (window.shifted = 0)][0]);
-  assert.ok(shifted <= kMostShift, `${what}: layout shifted by ${shifted}`);
+  assert.ok(shifted <= kMaxShift, `${what}: layout shifted by ${shifted}`);
 }
 async function accessible(page, what) {
   await page.evaluate(axe);
@@ -145,7 +145,7 @@ const compressed = (folder) => fs.readdirSync(folder, {withFileTypes: true}).red
   return sum + (each.isDirectory() ? compressed(name) : zlib.gzipSync(fs.readFileSync(name), {level: 9}).length);
 }, 0);
 const size = compressed(site);
-assert.ok(size <= kMostBytes, `expected at most ${kMostBytes} bytes compressed, found ${size}`);
+assert.ok(size <= kMaxBytes, `expected at most ${kMaxBytes} bytes compressed, found ${size}`);
 
 // What the page lets itself do: nothing but its own files, and nothing within its text.
 const policy = fs.readFileSync(path.join(site, "index.html"), "utf8").match(/http-equiv="Content-Security-Policy" content="([^"]+)"/)[1];
@@ -642,7 +642,7 @@ async function measured() {
   });
   clearInterval(look);
   await shown.context().close();
-  if (own.length) assert.ok(memory > 0 && memory <= kMostMemory, `${memory} bytes of a page that fits`);
+  if (own.length) assert.ok(memory > 0 && memory <= kMaxMemory, `${memory} bytes of a page that fits`);
   return {seconds, memory, frames: parseInt(frames)};
 }
 

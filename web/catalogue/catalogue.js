@@ -3,7 +3,7 @@
 "use strict";
 (() => {
   const kWidth = 188, kHeight = 218, kSphere = 96, kAround = 2;  // pixels of a card with its gap; rows beyond the edges
-  const kMostCompared = 8, kThousands = new Intl.NumberFormat("en");
+  const kMaxCompared = 8, kThousands = new Intl.NumberFormat("en");
   // What can be sorted and compared by: a heading, the text of a value, and which way is better.
   const kFigures = {
     name: {label: "name", text: (v) => v, better: 0},
@@ -162,7 +162,7 @@
   // --- compared materials
 
   function pick(material) {
-    if (!picked.includes(material)) picked = [...picked, material].slice(-kMostCompared);
+    if (!picked.includes(material)) picked = [...picked, material].slice(-kMaxCompared);
     else picked = picked.filter((each) => each !== material);
     for (const [place, card] of cards) {
       card.classList.toggle("picked", picked.includes(shown[place]));

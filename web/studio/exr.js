@@ -3,12 +3,12 @@
 // introduction, ImfPizCompressor, ImfHuf, ImfWav.
 
 const kMagic = 20000630, kTiles = 0x200, kDeep = 0x800, kParts = 0x1000;
-const kMostPixels = 1 << 26, kLargest = 60000;  // of what is drawn
+const kMaxPixels = 1 << 26, kMax = 60000;  // of what is drawn
 const kTypes = {half: 1, float: 2}, kBytes = [4, 2, 4];
 const kNames = ["none", "RLE", "ZIPS", "ZIP", "PIZ", "PXR24", "B44", "B44A", "DWAA", "DWAB"];
 const kRows = [1, 1, 1, 16, 32];  // of a block
 // bytes that one byte can stand for: a run of RLE, zlib's longest match [RFC 1951], PIZ's 256 words in 10 bits
-const kMostEach = [1, 64, 1032, 1032, 410];
+const kMaxEach = [1, 64, 1032, 1032, 410];
 const expected = (what, found) => new Error(`.exr: expected ${what}, found ${found}`);
 
 // Little-endian numbers and texts; past the end there are none.
@@ -84,14 +84,14 @@ export async function readExr(bytes, most = 8192) {
   const channels = readChannels(header.get("channels")), compression = header.get("compression").u8(), window = header.get("dataWindow");
   if (!(compression < kRows.length)) throw expected(`a compression of ${kNames.slice(0, kRows.length).join(", ")}`, kNames[compression] ?? compression);
   const [left, top, right, bottom] = [0, 1, 2, 3].map(() => window.i32()), width = right - left + 1, height = bottom - top + 1;
-  if (!(width > 0 && height > 0 && width * height <= kMostPixels)) throw expected("a window of pixels", `${width} x ${height}`);
+  if (!(width > 0 && height > 0 && width * height <= kMaxPixels)) throw expected("a window of pixels", `${width} x ${height}`);
   if (width > most || height > most) throw expected(`at most ${most} x ${most} pixels`, `${width} x ${height}`);
   const place = ["R", "G", "B"].map((name) => channels.findIndex((c) => c.name === name)), grey = channels.findIndex((c) => c.name === "Y");
   const wanted = place.includes(-1) ? [grey, grey, grey] : place;
   if (wanted[0] < 0) throw expected("channels R, G, B or Y", channels.map(({name}) => name).join(", "));
 
   const rows = kRows[compression], blocks = Math.ceil(height / rows), rowBytes = width * channels.reduce((sum, {type}) => sum + kBytes[type], 0);
-  if (height * rowBytes > kMostEach[compression] * bytes.length) throw expected(`the bytes of ${width} x ${height} pixels`, bytes.length);
+  if (height * rowBytes > kMaxEach[compression] * bytes.length) throw expected(`the bytes of ${width} x ${height} pixels`, bytes.length);
   const offsets = Array.from({length: blocks}, () => from.u64()), data = new Float32Array(3 * width * height);
   for (const offset of offsets) {
     if (!(offset < bytes.length)) throw expected("a block within the file", `one at ${offset}`);
@@ -118,7 +118,7 @@ function copyRows(view, {channels, wanted, width, count}, to) {
 }
 const number = (view, type, at) =>
   type === kTypes.half ? half(view.getUint16(at, true)) : type === kTypes.float ? view.getFloat32(at, true) : view.getUint32(at, true);
-const clean = (x) => (x > 0 ? Math.min(x, kLargest) : 0);
+const clean = (x) => (x > 0 ? Math.min(x, kMax) : 0);
 function half(bits) {
   const exponent = (bits >> 10) & 31, fraction = bits & 1023, sign = bits & 0x8000 ? -1 : 1;
   if (exponent === 31) return fraction ? NaN : sign * Infinity;

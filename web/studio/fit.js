@@ -11,7 +11,7 @@ const presets = {
   best: {budget: "64K", fetches: ""},
 };
 const kCurve = [700, 1400, 2800, 5600, 11200, 22400, 44800];
-const kMostFits = 4;  // at once, each with memory of its own
+const kMaxFits = 4;  // at once, each with memory of its own
 
 let stop = null, choose = () => {};
 
@@ -109,7 +109,7 @@ async function errorCurve() {
         drawCurve();
       }
     };
-    const workers = Math.min(Math.max((navigator.hardwareConcurrency ?? 2) - 1, 1), kMostFits);
+    const workers = Math.min(Math.max((navigator.hardwareConcurrency ?? 2) - 1, 1), kMaxFits);
     await Promise.all(Array.from({length: workers}, () => one().catch(failed)));
     if (wrong) throw wrong;
   });

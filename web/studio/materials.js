@@ -6,7 +6,7 @@ import {add, changed, entryOf, onChange, release, remove, show, showBeside, stat
 let stop = null;                // of what is being opened
 let opens = Promise.resolve();  // ends with the last that was asked for
 
-const kMostChoices = 5000;  // of a file of several materials
+const kMaxChoices = 5000;  // of a file of several materials
 
 // One task after another, in their order; what was dropped first is opened first.
 function queued(task) {
@@ -113,7 +113,7 @@ const listOf = (values) => make("select", {}, ...values.map((value) => make("opt
 
 // One of several materials of a file.
 const chooser = ({material: {entries}}, wanted) =>
-  choice("Material", "entry", listOf(entries.slice(0, kMostChoices)), wanted, String(entries.length));
+  choice("Material", "entry", listOf(entries.slice(0, kMaxChoices)), wanted, String(entries.length));
 
 // What a format leaves open: the light under which spectra became colours, the side, whether values have the cosine.
 function readings({info}, wanted) {

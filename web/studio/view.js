@@ -9,7 +9,7 @@ import {normalize} from "./vectors.js";
 
 const kEye = 4.6, kReach = 2.4;      // distances of the viewer and of the point lights from the middle
 const kEnough = 512, kLongFrame = 40;  // samples a pixel; milliseconds after which a frame takes less
-const kMostPixels = 1.1e6;
+const kMaxPixels = 1.1e6;
 const kPortraitPasses = 16, kPortraitSamples = 8;  // of a thumbnail
 const kExposurePixels = 4e4, kExposureSamples = 8;
 const makers = {sphere, knot, teapot, plane};
@@ -155,7 +155,7 @@ export class View {
   resize() {
     const {clientWidth, clientHeight} = this.canvas;
     let ratio = Math.min(window.devicePixelRatio, 2);
-    ratio = Math.min(ratio, Math.sqrt(kMostPixels / Math.max(clientWidth * clientHeight, 1)));
+    ratio = Math.min(ratio, Math.sqrt(kMaxPixels / Math.max(clientWidth * clientHeight, 1)));
     ratio *= this.resolution;
     const width = Math.max(Math.round(clientWidth * ratio), 1), height = Math.max(Math.round(clientHeight * ratio), 1);
     if (this.targets && this.canvas.width === width && this.canvas.height === height) return;

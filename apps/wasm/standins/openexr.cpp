@@ -9,7 +9,7 @@ namespace Imf {
 namespace {
 
 constexpr std::uint32_t kMagic = 20000630, kVersion = 2, kSeveralParts = 0x1000, kLongNames = 0x400;
-constexpr int kMostRows = 1 << 20;
+constexpr int kMaxRows = 1 << 20;
 
 std::size_t bytes_of(PixelType type) {
   return type == HALF ? 2 : 4;
@@ -199,7 +199,7 @@ MultiPartInputFile::MultiPartInputFile(IStream& stream, int) : stream_(stream) {
   while (read_header(several_) && several_) {
   }
   for (const Header& header : headers_) {
-    if (row_count(header) < 1 || row_count(header) > kMostRows) throw Iex::InputExc("a window too large");
+    if (row_count(header) < 1 || row_count(header) > kMaxRows) throw Iex::InputExc("a window too large");
     auto& rows = rows_.emplace_back(static_cast<std::size_t>(row_count(header)));
     for (std::uint64_t& row : rows) row = read<std::uint64_t>(stream_);
   }

@@ -73,12 +73,12 @@ TEST(NpDecoder, GivesTheSameBitsAloneAsAmongOthers) {
 }
 
 TEST(NpDecoder, IsFiniteForTheLargestWeightsAndInputs) {
-  constexpr float kMost = NpDecoder::kMaxWeight;
+  constexpr float kMax = NpDecoder::kMaxWeight;
   Inputs inputs;
-  inputs.fill(kMost);
+  inputs.fill(kMax);
   for (const float sign : {1.0f, -1.0f}) {
     Outputs outputs;
-    NpDecoder(std::vector<float>(NpDecoder::kWeights, sign * kMost)).decode({&inputs, 1}, {&outputs, 1});
+    NpDecoder(std::vector<float>(NpDecoder::kWeights, sign * kMax)).decode({&inputs, 1}, {&outputs, 1});
     for (const float value : outputs) EXPECT_TRUE(std::isfinite(value) && value >= 0) << value;
   }
 }

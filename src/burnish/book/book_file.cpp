@@ -17,7 +17,7 @@ constexpr std::uint64_t kSelfDescribed = 55799;  // [RFC8949, 3.4.6]
 constexpr std::string_view kBookName = "burnish book";
 constexpr int kBookVersion = 1;
 constexpr std::size_t kBookParts = 6, kAxisParts = 5, kLongestMaterial = 255;
-constexpr int kMostSide = 64;  // of a book's volume
+constexpr int kMaxBookSide = 64;  // of a book's volume
 
 std::span<const std::byte> bytes_of(const std::vector<std::int8_t>& values) {
   return std::as_bytes(std::span(values));
@@ -69,7 +69,7 @@ class BookReader {
     cbor_.list("the sides of a volume", 3, 3);
     std::array<int, 3> sides{};
     for (int& side : sides) {
-      side = static_cast<int>(cbor_.integer("nodes of an axis", 2, kMostSide));
+      side = static_cast<int>(cbor_.integer("nodes of an axis", 2, kMaxBookSide));
       nodes_ *= static_cast<std::size_t>(side);
     }
     cbor_.list("axes of colour", MaterialBook::kAxes, MaterialBook::kAxes);

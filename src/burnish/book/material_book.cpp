@@ -16,9 +16,9 @@ namespace {
 using std::numbers::sqrt2, std::numbers::inv_sqrt3;
 
 constexpr double kSqrt6 = sqrt2 / inv_sqrt3;
-constexpr double kLeast = 1e-6;    // 1/sr: what is at or below the floor stays positive
-constexpr double kMostOfLine = 7;  // logarithm of the volume's largest value
-constexpr double kMostLog = 80;    // of f at a node: single floats end soon after
+constexpr double kMinValue = 1e-6;   // 1/sr: what is at or below the floor stays positive
+constexpr double kMaxLogOfLine = 7;  // logarithm of the volume's largest value
+constexpr double kMaxLog = 80;       // of f at a node: single floats end soon after
 constexpr std::size_t kHalfBytes = 2, kNumbersAComponent = 3;
 
 bool positive(float value) {
@@ -114,7 +114,7 @@ FactoredBrdf brdf_of_logs(const TableLayout& coarse, std::span<const double> coa
   const std::vector<double> logs = refined(coarse, coarse_logs);
   std::vector<double> log_f;
   for (const double log : logs)
-    log_f.push_back(std::log(std::max(std::exp(std::min(log, kMostLog)) - MaterialBook::kFloor, kLeast)));
+    log_f.push_back(std::log(std::max(std::exp(std::min(log, kMaxLog)) - MaterialBook::kFloor, kMinValue)));
 
   // the line: the mean of what its theta_h holds away from grazing, as far as a table's range goes
   const auto width = static_cast<std::size_t>(layout.width), height = static_cast<std::size_t>(layout.height);
@@ -138,7 +138,7 @@ FactoredBrdf brdf_of_logs(const TableLayout& coarse, std::span<const double> coa
   Table volume{.name = "g", .layout = layout, .channels = kChannels, .values = {}, .format = format};
   for (std::size_t i = 0; i < log_f.size(); ++i)
     volume.values.push_back(
-        static_cast<float>(std::min(log_f[i] - mean[i / kChannels % width], kMostOfLine)));
+        static_cast<float>(std::min(log_f[i] - mean[i / kChannels % width], kMaxLogOfLine)));
   Lobe lobe{.scale = std::vector<double>(kChannels, 0.0),
             .factors = {{.table = 0, .projection = kProjectHalf, .projection_y = {}, .projection_z = {}},
                         book_use()}};

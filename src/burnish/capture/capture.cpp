@@ -17,10 +17,10 @@ namespace {
 
 constexpr int kCaptureVersion = 1, kMaxSide = 16'384;
 constexpr std::uint64_t kMaxJson = std::uint64_t{64} << 20;
-constexpr double kLeastHeight = 1e-3;    // z of a unit vector towards a light or view
+constexpr double kMinHeight = 1e-3;      // z of a unit vector towards a light or view
 constexpr double kUnitTolerance = 0.02;  // of a direction's length
 // Noise about zero may be negative by so much of the picture's white.
-constexpr float kLeastValue = -0.05f;
+constexpr float kMinValue = -0.05f;
 
 }  // namespace
 
@@ -38,17 +38,17 @@ Station parse_station(const JsonMember& member) {
   constexpr double kRounding = 1e-12;
   const Station station{.is_direction = true,
                         .at = std::abs(length(found) - 1) < kRounding ? found : normalize(found)};
-  if (!(station.at.z >= kLeastHeight)) direction.fail("a direction above the surface");
+  if (!(station.at.z >= kMinHeight)) direction.fail("a direction above the surface");
   return station;
 }
 
 namespace {
 
 Rgb parse_scale(const JsonMember& member) {
-  constexpr double kLeast = 1e-12, kMost = 1e12;
-  if (!member.is_list()) return member.number(kLeast, kMost);
+  constexpr double kMin = 1e-12, kMax = 1e12;
+  if (!member.is_list()) return member.number(kMin, kMax);
   const std::vector<JsonMember> rgb = member.list(3, 3);
-  return {rgb[0].number(kLeast, kMost), rgb[1].number(kLeast, kMost), rgb[2].number(kLeast, kMost)};
+  return {rgb[0].number(kMin, kMax), rgb[1].number(kMin, kMax), rgb[2].number(kMin, kMax)};
 }
 
 CapturePicture parse_picture(const JsonMember& member) {
@@ -83,10 +83,10 @@ CaptureForm parse_capture(const FileBytes& file) {
                    .normals = {},
                    .pictures = {}};
   if (root.has("size")) {
-    constexpr double kLeast = 1e-6, kMost = 1e6;
+    constexpr double kMin = 1e-6, kMax = 1e6;
     const std::vector<JsonMember> size = root.at("size").list(2, 2);
-    form.size_x = size[0].number(kLeast, kMost);
-    form.size_y = size[1].number(kLeast, kMost);
+    form.size_x = size[0].number(kMin, kMax);
+    form.size_y = size[1].number(kMin, kMax);
   }
   if (root.has("transfer")) {
     const JsonMember transfer = root.at("transfer");
@@ -160,9 +160,9 @@ void Capture::leave_out(const std::vector<LeftOut>& damaged) {
     fingerprint_ = hash_of(picture.file, fingerprint_);
   }
   const auto fitted = std::ranges::count(form_.pictures, false, &CapturePicture::held_out);
-  if (static_cast<std::size_t>(fitted) < kLeastPictures)
+  if (static_cast<std::size_t>(fitted) < kMinPictures)
     throw Error::in_file(
-        (folder_ / "capture.json").string(), fmt::format("at least {} pictures to fit", kLeastPictures),
+        (folder_ / "capture.json").string(), fmt::format("at least {} pictures to fit", kMinPictures),
         left_out_.empty() ? fmt::format("{}", fitted)
                           : fmt::format("{}; the first that is left out: {}", fitted, left_out_.front().why));
 }
@@ -213,7 +213,7 @@ Capture::Read Capture::read(int first, int count) const {
         const double fall = picture.light.is_direction ? 1 : dot(way, way);
         for (std::size_t c = 0; c < 3; ++c) {
           const float value = pixels.pixels[3 * i + c];
-          if (!(value >= kLeastValue) || !std::isfinite(value)) state = PixelState::missing;
+          if (!(value >= kMinValue) || !std::isfinite(value)) state = PixelState::missing;
           if (form_.clip && static_cast<double>(value) >= *form_.clip && is_there(state))
             state = clipped_in(state, c);
           to[c] = static_cast<float>(static_cast<double>(value) * scale[c] * fall);

@@ -120,10 +120,10 @@ constexpr std::uint64_t hash_of(std::string_view bytes,
 class Capture {
  public:
   /// Reads FOLDER/capture.json and looks at the head of every picture. Those that are missing, no EXR or PNG, or of
-  /// another size are left out. Throws Error where the JSON is wrong or fewer than `kLeastPictures` are left to fit.
+  /// another size are left out. Throws Error where the JSON is wrong or fewer than `kMinPictures` are left to fit.
   explicit Capture(std::filesystem::path folder);
 
-  static constexpr std::size_t kLeastPictures = 4;
+  static constexpr std::size_t kMinPictures = 4;
 
   /// The pictures that are there are all of the form's.
   const CaptureForm& form() const noexcept { return form_; }

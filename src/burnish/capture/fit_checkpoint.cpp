@@ -12,7 +12,7 @@ namespace {
 constexpr int kCheckpointVersion = 1;
 constexpr std::string_view kName = "burnish fit";
 constexpr std::size_t kParts = 13, kErrorItems = 4;
-constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t kMaxInteger = std::numeric_limits<std::int64_t>::max();
 constexpr std::size_t kLongestText = 4096;
 
 template <class T>
@@ -60,15 +60,15 @@ FitCheckpoint parse_checkpoint(const FileBytes& file, int width) {
   if (cbor.text("its name", kName.size()) != kName)
     cbor.fail(0, "a checkpoint of a surface's fit", "another file");
   cbor.integer("its version", kCheckpointVersion, kCheckpointVersion);
-  read.key = static_cast<std::uint64_t>(cbor.integer("its key", 0, kMost)) << 1;
+  read.key = static_cast<std::uint64_t>(cbor.integer("its key", 0, kMaxInteger)) << 1;
   for (std::size_t left = cbor.list("damaged pictures", 0, 2 * kMaxPictures) / 2; left > 0; --left) {
     std::string name = cbor.text("a picture", kLongestText);
     read.damaged.push_back({std::move(name), cbor.text("what is damaged", kLongestText)});
   }
-  read.missing_pixels = static_cast<std::uint64_t>(cbor.integer("missing pixels", 0, kMost));
-  read.clipped_pixels = static_cast<std::uint64_t>(cbor.integer("clipped pixels", 0, kMost));
+  read.missing_pixels = static_cast<std::uint64_t>(cbor.integer("missing pixels", 0, kMaxInteger));
+  read.clipped_pixels = static_cast<std::uint64_t>(cbor.integer("clipped pixels", 0, kMaxInteger));
   read.exposure = cbor.number("the exposure");
-  const auto size = static_cast<std::uint64_t>(cbor.integer("the size of the lobes", 0, kMost));
+  const auto size = static_cast<std::uint64_t>(cbor.integer("the size of the lobes", 0, kMaxInteger));
   const auto lobes = cbor.bytes("the lobes", size);
   read.lobes = parse_compact({file.name + ": its lobes", {lobes.begin(), lobes.end()}}).brdf;
   const std::size_t count = read.lobes.lobes().size();
@@ -89,7 +89,7 @@ FitCheckpoint parse_checkpoint(const FileBytes& file, int width) {
   read.errors.resize(cbor.list("errors", 0, kErrorItems * kMaxPictures) / kErrorItems);
   for (auto& error : read.errors)
     for (std::uint64_t* sum : {&error.seen, &error.all, &error.seen_count, &error.all_count})
-      *sum = static_cast<std::uint64_t>(cbor.integer("an error", 0, kMost));
+      *sum = static_cast<std::uint64_t>(cbor.integer("an error", 0, kMaxInteger));
   cbor.end();
   return read;
 }

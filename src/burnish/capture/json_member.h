@@ -69,9 +69,9 @@ class JsonMember {
     return name;
   }
   Vec3 vector() const {
-    constexpr double kMost = 1e9;
+    constexpr double kMax = 1e9;
     const std::vector<JsonMember> xyz = list(3, 3);
-    return {xyz[0].number(-kMost, kMost), xyz[1].number(-kMost, kMost), xyz[2].number(-kMost, kMost)};
+    return {xyz[0].number(-kMax, kMax), xyz[1].number(-kMax, kMax), xyz[2].number(-kMax, kMax)};
   }
   bool is_list() const { return json_->is_array(); }
 
@@ -85,10 +85,10 @@ class JsonMember {
 
 /// The text of a file as JSON at most 32 deep. Throws Error if it is none.
 inline Json parse_json(const FileBytes& file) {
-  constexpr int kDeepest = 32;
+  constexpr int kMaxDepth = 32;
   bool shallow = true;
   const auto measure = [&](int depth, Json::parse_event_t, Json&) {
-    return shallow = shallow && depth <= kDeepest;
+    return shallow = shallow && depth <= kMaxDepth;
   };
   Json json = Json::parse(file.text(), measure, false);
   if (json.is_discarded() || !shallow)

@@ -200,10 +200,10 @@ Image read_picture_rows(const std::filesystem::path& path, int first, int count,
 
 std::string encode_half_exr(const Image& image) {
   if (image.channels != 3) throw Error(fmt::format("picture: expected 3 channels, found {}", image.channels));
-  static constexpr float kLargest = 65504;
+  static constexpr float kMaxHalf = 65504;
   std::vector<Imath::half> halves(image.pixels.size());
   std::ranges::transform(image.pixels, halves.begin(),
-                         [](float v) { return Imath::half(std::clamp(v, -kLargest, kLargest)); });
+                         [](float v) { return Imath::half(std::clamp(v, -kMaxHalf, kMaxHalf)); });
   Imf::Header header(image.width, image.height);
   header.compression() = Imf::NO_COMPRESSION;
   Imf::FrameBuffer frame;

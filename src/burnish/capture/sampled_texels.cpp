@@ -21,7 +21,7 @@ namespace {
 constexpr double kWhitePercentile = 0.97;
 constexpr double kGlossWidths[] = {0.08, 0.2, 0.45};  // alpha of GGX
 constexpr int kGlossNodes = 48;
-constexpr std::size_t kGroupsPerLobe = 12, kMostGroups = 96, kLeastTexels = 24;
+constexpr std::size_t kGroupsPerLobe = 12, kMaxTexelGroups = 96, kMinTexels = 24;
 constexpr int kGroupingSteps = 10;
 
 /// x and y of the sampled texels, row by row.
@@ -261,7 +261,7 @@ double exposure_of(const TexelSamples& samples, const CaptureForm& form) {
 
 std::vector<float> diffuse_normals(const TexelSamples& samples, const CaptureForm& form) {
   constexpr int kPasses = 8;
-  constexpr double kRound = 0.02, kMostSlope = 0.866;  // the first of the mean value
+  constexpr double kRound = 0.02, kMaxSlope = 0.866;  // the first of the mean value
   std::vector<float> normals(2 * samples.size());
   for_each_chunk(samples.size(), 64, [&](std::size_t, std::size_t begin, std::size_t end) {
     struct Row {
@@ -298,7 +298,7 @@ std::vector<float> diffuse_normals(const TexelSamples& samples, const CaptureFor
         b = a.ldlt().solve(right);
       }
       Vec3 n = normalize({b.x(), b.y(), std::max(b.z(), 1e-6 * mean)});
-      const double slope = std::hypot(n.x, n.y), within = std::min(1.0, kMostSlope / std::max(slope, 1e-12));
+      const double slope = std::hypot(n.x, n.y), within = std::min(1.0, kMaxSlope / std::max(slope, 1e-12));
       normals[2 * t] = static_cast<float>(within * n.x);
       normals[2 * t + 1] = static_cast<float>(within * n.y);
     }
@@ -361,7 +361,7 @@ std::vector<std::vector<std::size_t>> pure_texels(const TexelSamples& samples, c
     for (double& value : points[i]) value /= sum + 1e-30;
   }
 
-  const std::size_t group_count = std::min({count * kGroupsPerLobe, kMostGroups, points.size});
+  const std::size_t group_count = std::min({count * kGroupsPerLobe, kMaxTexelGroups, points.size});
   const Groups groups = grouped(points, group_count);
   const std::size_t least = std::max<std::size_t>(3, points.size / (8 * group_count));
   std::vector<std::vector<std::size_t>> sets;
@@ -372,7 +372,7 @@ std::vector<std::vector<std::size_t>> pure_texels(const TexelSamples& samples, c
     std::vector<double> far(points.size);
     for (std::size_t i = 0; i < points.size; ++i) far[i] = distance(points[i], groups.centres[g]);
     const std::size_t size =
-        std::min(points.size, std::max({kLeastTexels, groups.sizes[g], points.size / (8 * count)}));
+        std::min(points.size, std::max({kMinTexels, groups.sizes[g], points.size / (8 * count)}));
     std::ranges::nth_element(
         order, order.begin() + static_cast<std::ptrdiff_t>(size - 1),
         [&](std::size_t a, std::size_t b) { return std::pair(far[a], a) < std::pair(far[b], b); });

@@ -13,9 +13,9 @@ namespace burnish {
 
 namespace {
 
-constexpr std::size_t kMostTexels = 4096;
+constexpr std::size_t kMaxTexels = 4096;
 constexpr int kRoughnesses = 16, kNodes = 64;
-constexpr double kLeastAlpha = 0.03, kMostAlpha = 0.8, kDielectric = 0.04;
+constexpr double kMinAlpha = 0.03, kMaxAlpha = 0.8, kDielectric = 0.04;
 constexpr double kGrey = 1 / 2.2, kLogFloor = 0.004;
 constexpr std::size_t kNeighbours = 3;
 
@@ -64,7 +64,7 @@ class Comparison {
  public:
   Comparison(Capture capture, const SurfaceFit& fit, const SurfaceFitOptions& options)
       : capture_(std::move(capture)), fit_(fit) {
-    const std::size_t values = kMostTexels * capture_.form().pictures.size() * kCaptureChannels;
+    const std::size_t values = kMaxTexels * capture_.form().pictures.size() * kCaptureChannels;
     samples_ = sample_texels(capture_, values, options.tile_bytes, options.seed + 1, nullptr).samples;
     const SurfaceMaps& maps = fit.surface.brdf.maps();
     for (const auto& [x, y] : samples_.texels) {
@@ -154,7 +154,7 @@ class Comparison {
   std::optional<double> ggx() const {
     std::vector<FactoredBrdf> models;
     for (int k = 0; k < kRoughnesses; ++k)
-      models.push_back(ggx_lobes(kLeastAlpha * std::pow(kMostAlpha / kLeastAlpha, k / (kRoughnesses - 1.0))));
+      models.push_back(ggx_lobes(kMinAlpha * std::pow(kMaxAlpha / kMinAlpha, k / (kRoughnesses - 1.0))));
     return best_of(models);
   }
 

@@ -29,10 +29,10 @@ namespace {
 constexpr std::size_t kSampleValues = 6'000'000;
 // Pixels that lobes are refined on: half of them count as pixels, half as pairs.
 constexpr std::size_t kTrainingPixels = 60'000, kStartPixels = 15'000;
-constexpr std::size_t kHalfBins = 32;  // even along the root of theta_h
-constexpr double kLeastCosine = 0.05;  // of what counts as a pair; pixels may be lower
-constexpr double kLeastPixelCosine = 0.02;
-constexpr float kLeastTrust = 0.05f;
+constexpr std::size_t kHalfBins = 32;    // even along the root of theta_h
+constexpr double kMinPairCosine = 0.05;  // of what counts as a pair; pixels may be lower
+constexpr double kMinPixelCosine = 0.02;
+constexpr float kMinTrust = 0.05f;
 constexpr float kEarlyError = 0.07f;  // of squared errors beside those of the last rounds
 constexpr float kHeld = 0.02f;        // weight of clipped pixels that the model already is above
 // As of models with volumes (fitting/fit.cpp).
@@ -100,9 +100,9 @@ class SurfaceFitter {
     const std::size_t lobes = options.book ? options.book->lobes().size() : options.lobes;
     if (lobes < 1 || lobes > kMaxSurfaceLobes)
       throw Error(fmt::format("surface fit: expected 1 to {} lobes, found {}", kMaxSurfaceLobes, lobes));
-    if (options.lobe_bytes < kLeastLobeBytes || options.lobe_bytes > kMostLobeBytes)
-      throw Error(fmt::format("surface fit: expected lobes of {} to {} bytes, found {}", kLeastLobeBytes,
-                              kMostLobeBytes, options.lobe_bytes));
+    if (options.lobe_bytes < kMinLobeBytes || options.lobe_bytes > kMaxLobeBytes)
+      throw Error(fmt::format("surface fit: expected lobes of {} to {} bytes, found {}", kMinLobeBytes,
+                              kMaxLobeBytes, options.lobe_bytes));
     if (options.book && options.book->channels() != kCaptureChannels)
       throw Error(fmt::format("surface fit: expected a book of {} channels, found {}", kCaptureChannels,
                               options.book->channels()));
@@ -238,7 +238,7 @@ class SurfaceFitter {
   bool is_coarse(int round) const noexcept { return round + kFullRounds < options_.rounds; }
   std::size_t bytes_in(int round) const noexcept {
     const auto few = static_cast<std::size_t>(kCoarseShare * static_cast<double>(options_.lobe_bytes));
-    return is_coarse(round) ? std::max(few, kLeastLobeBytes) : options_.lobe_bytes;
+    return is_coarse(round) ? std::max(few, kMinLobeBytes) : options_.lobe_bytes;
   }
 
   void refine_round(int round) {
@@ -327,7 +327,8 @@ class SurfaceFitter {
     }
     set.picture_count = set.size();
     for (std::size_t i = 1; i < chosen.size(); i += 2)
-      if (std::min(chosen[i]->pair.wi.z, chosen[i]->pair.wo.z) > kLeastCosine) add(set, *chosen[i], 1, model);
+      if (std::min(chosen[i]->pair.wi.z, chosen[i]->pair.wo.z) > kMinPairCosine)
+        add(set, *chosen[i], 1, model);
     return set;
   }
 
@@ -352,7 +353,7 @@ class SurfaceFitter {
     for (std::size_t d = 0; d < draws; ++d) {
       const auto t = texels[random.next() % texels.size()];
       const std::size_t p = fitted[random.next() % fitted.size()], pixel = p * samples_.size() + t;
-      if (!is_there(samples_.states[pixel]) || trusts(pixel) < kLeastTrust) continue;
+      if (!is_there(samples_.states[pixel]) || trusts(pixel) < kMinTrust) continue;
       const Vec3 point = form.point(samples_.texels[t][0], samples_.texels[t][1]);
       const ShadingFrame frame = frame_about(normal_of(fits_.normals, t), {1, 0, 0});
       Candidate c{.picture = static_cast<std::uint32_t>(p),
@@ -360,7 +361,7 @@ class SurfaceFitter {
                   .pair = {frame.local(form.pictures[p].light.seen_from(point)),
                            frame.local(form.pictures[p].view.seen_from(point))},
                   .bin = 0};
-      if (c.pair.wi.z < kLeastPixelCosine || c.pair.wo.z < kLeastPixelCosine) continue;
+      if (c.pair.wi.z < kMinPixelCosine || c.pair.wo.z < kMinPixelCosine) continue;
       const Vec3 h = half_vector(c.pair.wi, c.pair.wo);
       const double theta_h = std::acos(std::clamp(h.z, -1.0, 1.0));
       c.bin = std::min(kHalfBins - 1, static_cast<std::size_t>(std::sqrt(theta_h / 1.5707963) * kHalfBins));
@@ -523,8 +524,8 @@ class SurfaceFitter {
   int tile_rows() const {
     const int most = capture_.rows_within(options_.tile_bytes), ranks = crew_ranks();
     if (ranks == 1) return most;
-    constexpr int kLeastTurns = 4;  // of each rank, so that a lost one costs little
-    const int turns = std::max(kLeastTurns, (capture_.form().height + most * ranks - 1) / (most * ranks));
+    constexpr int kMinTurns = 4;  // of each rank, so that a lost one costs little
+    const int turns = std::max(kMinTurns, (capture_.form().height + most * ranks - 1) / (most * ranks));
     return std::max(1, (capture_.form().height + turns * ranks - 1) / (turns * ranks));
   }
 

@@ -20,7 +20,7 @@ enum class NormalsFrom { capture, flat, estimate };
 
 struct SurfaceFitOptions {
   std::size_t lobes = 6;              ///< 1 to kMaxSurfaceLobes
-  std::size_t lobe_bytes = 16 << 10;  ///< of each lobe's tables, [kLeastLobeBytes, kMostLobeBytes]
+  std::size_t lobe_bytes = 16 << 10;  ///< of each lobe's tables, [kMinLobeBytes, kMaxLobeBytes]
   /// Lobes that are known: weights alone are fitted. Each of the model's lobes has a weight.
   std::optional<FactoredBrdf> book = {};
   /// None: those of the capture, or estimated where it has none.
@@ -40,7 +40,7 @@ struct SurfaceFitOptions {
   std::function<void(std::string_view stage, double fraction)> progress = {};
 };
 
-inline constexpr std::size_t kLeastLobeBytes = 512, kMostLobeBytes = 1 << 20;
+inline constexpr std::size_t kMinLobeBytes = 512, kMaxLobeBytes = 1 << 20;
 
 /// PSNR of pictures as they are seen: min(1, exposure f cos)^(1/2.2), the mean over all of them; infinite where there
 /// is no error, nothing where there is no picture.

@@ -37,14 +37,14 @@ void equations_of(const TexelPictures& pictures, const TexelPass& pass, const Te
                   TexelRow* matrix, TexelRow* vector) {
   const D d;
   using V = hn::Vec<D>;
-  constexpr std::size_t kMost = kLobes > 0 ? kLobes : kMaxSurfaceLobes, kChannels = 3;
+  constexpr std::size_t kMax = kLobes > 0 ? kLobes : kMaxSurfaceLobes, kChannels = 3;
   const std::size_t lobes = kLobes > 0 ? kLobes : pictures.lobes, stride = pictures.channels * kTexelLanes;
   const auto one = hn::Set(d, 1.0f), zero = hn::Zero(d), exposure = hn::Set(d, pass.exposure),
              floor = hn::Set(d, pass.floor), half = hn::Set(d, 0.5f),
              scale = hn::Set(d, 0.25f * pass.exposure * pass.exposure),
              square_reach = hn::Set(d, pass.reach * pass.reach), brighter = hn::Set(d, pass.brighter);
   for (std::size_t i = 0; i < kTexelLanes; i += hn::Lanes(d)) {
-    V sums[kMost * (kMost + 1) / 2], right[kMost], weight[kMost];
+    V sums[kMax * (kMax + 1) / 2], right[kMax], weight[kMax];
     for (std::size_t j = 0; j < lobes; ++j) {
       right[j] = zero;
       weight[j] = hn::LoadU(d, weights[j].data() + i);
@@ -116,8 +116,8 @@ void all_equations(const TexelPictures& pictures, const TexelPass& pass, const T
 
 void seen_of(float exposure, const float* value, float* seen) {
   const D d;
-  constexpr float kGrey = 1 / 2.2f, kLeast = 1e-30f;
-  const auto one = hn::Set(d, 1.0f), least = hn::Set(d, kLeast), e = hn::Set(d, exposure);
+  constexpr float kGrey = 1 / 2.2f, kMin = 1e-30f;
+  const auto one = hn::Set(d, 1.0f), least = hn::Set(d, kMin), e = hn::Set(d, exposure);
   for (std::size_t i = 0; i < kTexelLanes; i += hn::Lanes(d)) {
     const auto x = hn::Min(hn::Mul(e, hn::LoadU(d, value + i)), one);
     const auto root = hn::Exp(d, hn::Mul(hn::Set(d, kGrey), hn::Log(d, hn::Max(x, least))));

@@ -17,15 +17,15 @@ constexpr double kRidge = 1e-6;  // of the mean diagonal
 // A pixel's error counts as that of x^(1/2), x = exposure f cos; below this x as if it were this.
 constexpr float kFloor = 0.004f;
 // Lobes may run away where nothing holds them: squares of their values stay finite.
-constexpr float kMostValue = 1e4f;
+constexpr float kMaxValue = 1e4f;
 // Errors of the root at which a pixel counts a quarter, pass by pass.
 constexpr std::array<float, 3> kTrustedError{1e6f, 0.2f, 0.08f};
 // Shadows are darker than a model: what is brighter is rather a highlight that lobes lack yet, trusted four times as
 // far.
 constexpr float kBrighter = 1.0f / 16;
 constexpr float kNormalDelta = 0.01f;  // of finite differences
-constexpr double kMostSlope = 0.95;    // length of a normal's x and y
-constexpr double kMostStep = 0.15;
+constexpr double kMaxSlope = 0.95;     // length of a normal's x and y
+constexpr double kMaxStep = 0.15;
 constexpr double kDamping = 1e-2, kEase = 0.4, kHarden = 8;
 
 Vec3 normal_of(const float* xy) noexcept {
@@ -55,7 +55,7 @@ class ActiveSet {
   }
 
  private:
-  static constexpr double kLeastSquare = 1e-300, kSmallestSlope = 1e-12;
+  static constexpr double kMinSquare = 1e-300, kMinSlope = 1e-12;
 
   /// The unknown at 0 that the sum falls by fastest; their number where there is none.
   std::size_t steepest() const noexcept {
@@ -65,8 +65,8 @@ class ActiveSet {
       if (free_[i]) continue;
       double slope = b_[i];
       for (std::size_t j = 0; j < n_; ++j) slope -= a_[i * n_ + j] * w_[j];
-      const double scaled = slope / std::sqrt(std::max(a_[i * n_ + i], kLeastSquare));
-      if (scaled > most && slope > kSmallestSlope * std::abs(b_[i])) {
+      const double scaled = slope / std::sqrt(std::max(a_[i * n_ + i], kMinSquare));
+      if (scaled > most && slope > kMinSlope * std::abs(b_[i])) {
         most = scaled;
         best = i;
       }
@@ -84,7 +84,7 @@ class ActiveSet {
       for (std::size_t j = 0; j <= i; ++j) {
         double sum = a_[member_[i] * n_ + member_[j]];
         for (std::size_t k = 0; k < j; ++k) sum -= factor_[i][k] * factor_[j][k];
-        factor_[i][j] = i == j ? std::sqrt(std::max(sum, kLeastSquare)) : sum * inverse_[j];
+        factor_[i][j] = i == j ? std::sqrt(std::max(sum, kMinSquare)) : sum * inverse_[j];
       }
       inverse_[i] = 1 / factor_[i][i];
       for (std::size_t k = 0; k < i; ++k) rest -= factor_[i][k] * solution_[member_[k]];
@@ -120,15 +120,15 @@ class ActiveSet {
     }
   }
 
-  static constexpr std::size_t kMost = kMaxSurfaceLobes;
+  static constexpr std::size_t kMax = kMaxSurfaceLobes;
   std::span<const double> a_, b_;
   std::span<double> w_;
   std::size_t n_, changes_ = 0;
-  std::array<bool, kMost> free_{};
-  std::array<double, kMost> solution_{};
-  std::array<std::array<double, kMost>, kMost> factor_;
-  std::array<double, kMost> inverse_;  // of the factor's diagonal
-  std::array<std::size_t, kMost> member_;
+  std::array<bool, kMax> free_{};
+  std::array<double, kMax> solution_{};
+  std::array<std::array<double, kMax>, kMax> factor_;
+  std::array<double, kMax> inverse_;  // of the factor's diagonal
+  std::array<std::size_t, kMax> member_;
 };
 
 }  // namespace
@@ -198,7 +198,7 @@ class TexelSolver::Block {
     std::vector<float> f(lobes_ * kCaptureChannels * kBlock);
     std::array<ShadingFrame, kBlock> frames;
     std::array<Vec3, kBlock> points;
-    const float most = kMostValue / exposure_;
+    const float most = kMaxValue / exposure_;
     for (std::size_t i = 0; i < kBlock; ++i) {
       const std::size_t t = first_ + std::min(i, count_ - 1);
       points[i] = solver_.form_.point(samples_.texels[t][0], samples_.texels[t][1]);
@@ -354,11 +354,11 @@ class TexelSolver::Block {
       const Eigen::Vector2d way =
           static_cast<double>(kNormalDelta) * a.ldlt().solve(Eigen::Vector2d(sums.x[i], sums.y[i]));
       if (!way.allFinite()) continue;
-      const double step = std::min(1.0, kMostStep / std::max(way.norm(), 1e-12));
+      const double step = std::min(1.0, kMaxStep / std::max(way.norm(), 1e-12));
       float* const n = normals + 2 * (first_ + i);
       const double x = static_cast<double>(n[0]) + step * way.x(),
                    y = static_cast<double>(n[1]) + step * way.y();
-      const double within = std::min(1.0, kMostSlope / std::max(std::hypot(x, y), 1e-12));
+      const double within = std::min(1.0, kMaxSlope / std::max(std::hypot(x, y), 1e-12));
       n[0] = static_cast<float>(within * x);
       n[1] = static_cast<float>(within * y);
     }
@@ -405,14 +405,14 @@ class TexelSolver::Block {
 
   /// What of a texel's matrix of the normal goes into weights that follow it: those that are not 0.
   Eigen::Matrix2d eliminated(std::size_t i, const NormalSums& sums) const {
-    constexpr int kMost = static_cast<int>(kMaxSurfaceLobes);
+    constexpr int kMax = static_cast<int>(kMaxSurfaceLobes);
     constexpr double kAlike = 1e-4;  // lobes may be alike
     std::array<std::size_t, kMaxSurfaceLobes> free;
     Eigen::Index count = 0;
     for (std::size_t j = 0; j < lobes_; ++j)
       if (weights_[j][i] > 0) free[static_cast<std::size_t>(count++)] = j;
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMost, kMost> own(count, count);
-    Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::ColMajor, kMost, 2> with(count, 2);
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMax, kMax> own(count, count);
+    Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::ColMajor, kMax, 2> with(count, 2);
     for (Eigen::Index r = 0; r < count; ++r) {
       const std::size_t j = free[static_cast<std::size_t>(r)];
       for (Eigen::Index q = 0; q <= r; ++q)

@@ -23,7 +23,7 @@ namespace burnish {
 
 namespace {
 
-constexpr int kSceneVersion = 1, kMostSide = 16'384, kMaxStations = 4096, kOctaves = 3;
+constexpr int kSceneVersion = 1, kMaxCaptureSide = 16'384, kMaxStations = 4096, kOctaves = 3;
 
 std::size_t place(int width, int x, int y) noexcept {
   return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
@@ -246,8 +246,8 @@ SurfaceScene parse_surface_scene(const FileBytes& file, const std::filesystem::p
   const JsonMember root(file, json, "");
   root.at("version").integer(kSceneVersion, kSceneVersion);
   SurfaceScene scene;
-  scene.width = root.at("width").integer(1, kMostSide);
-  scene.height = root.at("height").integer(1, kMostSide);
+  scene.width = root.at("width").integer(1, kMaxCaptureSide);
+  scene.height = root.at("height").integer(1, kMaxCaptureSide);
   if (root.has("size")) {
     const std::vector<JsonMember> size = root.at("size").list(2, 2);
     scene.size_x = size[0].number(1e-6, 1e6);
@@ -293,8 +293,8 @@ std::array<double, 3> scene_radiance(const SurfaceScene& scene, int x, int y, Ve
   if (light.z <= 0 || view.z <= 0) return sum;
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
     const double share = static_cast<double>(scene.shares[m][place(scene.width, x, y)]);
-    constexpr double kLeastShare = 1e-4;
-    if (share < kLeastShare) continue;
+    constexpr double kMinShare = 1e-4;
+    if (share < kMinShare) continue;
     const SymmetrizedBrdf brdf(scene.materials[m].ref());
     brdf.eval(light, view, std::span(f).first(brdf.channels()));
     if (brdf.channels() == 1) f.fill(f[0]);

@@ -30,7 +30,7 @@ namespace burnish {
 namespace {
 
 constexpr std::size_t kPairs = 1 << 17, kChecked = 1 << 13;
-constexpr double kMostError = 1e-5;  // mean relative error of an evaluator against the definition
+constexpr double kMaxError = 1e-5;  // mean relative error of an evaluator against the definition
 
 const std::vector<DirectionPair>& bench_pairs() {
   static const std::vector<DirectionPair> pairs = [] {
@@ -187,10 +187,10 @@ void add_model(const std::string& name, const char* expression, const std::vecto
   const FactoredEvaluator evaluator(model);
   add(name + "/reference", [=](benchmark::State& state) { one_by_one(state, BrdfRef(model), 0); });
   add(name + "/one_by_one",
-      [=](benchmark::State& state) { one_by_one(state, unknown(evaluator), model, kMostError); });
+      [=](benchmark::State& state) { one_by_one(state, unknown(evaluator), model, kMaxError); });
   add(name + "/batched", [=](benchmark::State& state) {
     const auto run = [&](const DirectionSpans& w, std::span<float> f) { evaluator.eval(w, f); };
-    batched(state, run, model, kMostError);
+    batched(state, run, model, kMaxError);
     state.counters["bytes"] = static_cast<double>(model.bytes());
     state.counters["multiplies"] = static_cast<double>(evaluation_cost(model).multiplies);
   });
@@ -229,13 +229,13 @@ void add_fit(const std::string& name, const FitForm& form) {
   };
   add(name + "/one_by_one", [=](benchmark::State& state) {
     const auto& [model, evaluator] = made();
-    one_by_one(state, unknown(evaluator), model, kMostError);
+    one_by_one(state, unknown(evaluator), model, kMaxError);
     finish(state, model);
   });
   add(name + "/batched", [=](benchmark::State& state) {
     const auto& [model, evaluator] = made();
     const auto run = [&](const DirectionSpans& w, std::span<float> f) { evaluator.eval(w, f); };
-    batched(state, run, model, kMostError);
+    batched(state, run, model, kMaxError);
     finish(state, model);
   });
 }

@@ -134,9 +134,9 @@ struct PolarAngles {
 
 /// Where lookups read: floats of the rows to step over and fractions, a lane of `steps` each.
 struct OneCells {
-  static constexpr std::size_t kMost = FactoredPlan::kMaxSteps * FactoredPlan::Steps::kLanes;
-  alignas(64) std::int32_t floats[kMost];
-  alignas(64) float fraction[kMost];
+  static constexpr std::size_t kMax = FactoredPlan::kMaxSteps * FactoredPlan::Steps::kLanes;
+  alignas(64) std::int32_t floats[kMax];
+  alignas(64) float fraction[kMax];
 
   HWY_INLINE void put(Eight position, const FactoredPlan::Steps& s, std::size_t lane, std::size_t to) {
     const Eight cells(hn::Load(D8(), s.cells.data() + lane));
@@ -270,7 +270,7 @@ HWY_INLINE Eight warped(const FactoredPlan::Steps& s, std::size_t lane, const Po
 HWY_INLINE void find_cells(const FactoredPlan& plan, const OnePair& one, const AngleTable& angles,
                            OneCells& cells) {
   const D8 d8;
-  alignas(64) float given[OneCells::kMost];
+  alignas(64) float given[OneCells::kMax];
   if (!plan.given.empty()) find_given(plan, one, given);
   AngleTable apart = angles;
   if (!plan.apart.empty()) apart = angles_apart(plan, one);
@@ -350,7 +350,7 @@ void eval_one_pair(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, flo
   // of wi and wo
   const auto excess = hn::LowerHalf(di2, excess_of(one.all.x, one.all.y, one.all.z));
   const auto up = hn::LowerHalf(d2, one.all.z.raw);
-  const bool directions = hn::AllFalse(di2, hn::Gt(excess, hn::BitCast(di2, hn::Set(d2, kMostExcess))));
+  const bool directions = hn::AllFalse(di2, hn::Gt(excess, hn::BitCast(di2, hn::Set(d2, kMaxExcess))));
   if (!directions || !hn::AllTrue(d2, hn::Gt(up, hn::Zero(d2)))) {
     std::fill(f, f + plan.channels, directions ? 0.0f : std::numeric_limits<float>::quiet_NaN());
     return;

@@ -83,8 +83,8 @@ struct Highlight<Form> {
   explicit Highlight(const ShadeArguments& a) {
     constexpr int kDegree = Form::kCoefficients;
     static_assert(kDegree == 1 || kDegree == 3);
-    constexpr double kLeast = 1e-30;  // instead of 0, which no leading coefficient could be scaled from
-    double root = std::max<double>(a.specular, kLeast);
+    constexpr double kMin = 1e-30;  // instead of 0, which no leading coefficient could be scaled from
+    double root = std::max<double>(a.specular, kMin);
     for (int i = 0; i < Form::kLog2Power; ++i) root = std::sqrt(root);
     top = Lane(root);
     const double leading = root * a.k[kDegree - 1];

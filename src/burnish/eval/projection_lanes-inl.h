@@ -84,10 +84,10 @@ HWY_INLINE hn::Vec<hn::RebindToSigned<Tag>> excess_of(LaneOf<Tag> x, LaneOf<Tag>
   return hn::BitCast(hn::RebindToSigned<Tag>(), hn::Abs(signed_excess.raw));
 }
 /// That and more is no direction: 1 %, as readers of directions ask for.
-constexpr float kMostExcess = 0.02f;
+constexpr float kMaxExcess = 0.02f;
 /// Lanes of what is no direction.
 HWY_INLINE hn::Mask<DI> no_directions(hn::Vec<DI> excess) {
-  return hn::Gt(excess, hn::BitCast(DI(), hn::Set(D(), kMostExcess)));
+  return hn::Gt(excess, hn::BitCast(DI(), hn::Set(D(), kMaxExcess)));
 }
 
 /// The doubled difference vector 2 d, whose z is |wi + wo|, and its polar angle.

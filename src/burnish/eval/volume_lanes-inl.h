@@ -91,7 +91,7 @@ HWY_INLINE void eval_one_of_volume(const FactoredPlan& plan, const Vec3& wi, con
   const Four xy(hn::Combine(d4, both(wi.y, wo.y), both(wi.x, wo.x))), zz(hn::Combine(d4, z, z));
   const Four y(hn::ConcatUpperUpper(d4, xy.raw, xy.raw));
   const auto excess = hn::LowerHalf(di2, excess_of(xy, y, zz));
-  const auto no_directions = hn::Gt(excess, hn::BitCast(di2, hn::Set(d2, kMostExcess)));
+  const auto no_directions = hn::Gt(excess, hn::BitCast(di2, hn::Set(d2, kMaxExcess)));
   const auto below = hn::Le(z, hn::Zero(d2));
   if (!hn::AllFalse(d2, hn::Or(hn::RebindMask(d2, no_directions), below))) {
     const auto none = hn::AllFalse(di2, no_directions) ? Real(0) : std::numeric_limits<Real>::quiet_NaN();

@@ -25,7 +25,7 @@ constexpr std::size_t kParts = 8, kExtendedParts = kParts + 2;
 constexpr std::size_t kMaxChannels = SymmetrizedBrdf::kMaxChannels;
 constexpr std::size_t kTableItems = 3;  // name, kind, texels
 constexpr std::size_t kLongestName = 255, kLongestNotes = 1 << 20;
-constexpr int kDeepestNotes = 32;
+constexpr int kMaxNotesDepth = 32;
 
 // The numbers that stand for them in files: places in these lists.
 constexpr std::array kShapes{TableShape::line, TableShape::disk, TableShape::grid, TableShape::volume};
@@ -94,7 +94,7 @@ bool is_name(const std::string& text) {
 std::optional<Json> parse_notes(const std::string& text) {
   bool shallow = true;
   const auto measure = [&](int depth, Json::parse_event_t, Json&) {
-    return shallow = shallow && depth <= kDeepestNotes;
+    return shallow = shallow && depth <= kMaxNotesDepth;
   };
   Json json = Json::parse(text, measure, false);
   if (!shallow || !json.is_object()) return std::nullopt;
@@ -308,7 +308,7 @@ class CompactReader {
 
   TableKind kind() {
     const auto at = cbor_.offset();
-    const std::size_t items = cbor_.list("a kind of tables", 4, 3 + kMostAxes);
+    const std::size_t items = cbor_.list("a kind of tables", 4, 3 + kMaxAxes);
     const TableShape shape = one_of(kShapes, "a shape");
     if (items != 3 + axes_in_file(shape))
       cbor_.fail(at, fmt::format("a kind of tables with {} axes", axes_in_file(shape)),
@@ -367,7 +367,7 @@ class CompactReader {
     Product product(cbor_.list("a product", 0, kMaxCompactItems - use_count_));
     use_count_ += product.size();
     for (std::vector<Projection>& projections : product)
-      read_list("the projections of a factor", 1, kMostAxes, [&] { projections.push_back(projection()); });
+      read_list("the projections of a factor", 1, kMaxAxes, [&] { projections.push_back(projection()); });
     return product;
   }
 
@@ -408,11 +408,11 @@ class CompactReader {
     const std::string text = cbor_.text("notes", kLongestNotes);
     const std::optional<Json> json = parse_notes(text);
     if (!json)
-      cbor_.fail(at, fmt::format("notes that are a JSON object at most {} deep", kDeepestNotes), "others");
+      cbor_.fail(at, fmt::format("notes that are a JSON object at most {} deep", kMaxNotesDepth), "others");
     return json->dump();
   }
 
-  static constexpr std::size_t kMostAxes = 3;
+  static constexpr std::size_t kMaxAxes = 3;
 
   CborReader cbor_;
   std::string name_;

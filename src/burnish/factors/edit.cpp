@@ -11,7 +11,7 @@ namespace burnish {
 
 namespace {
 
-constexpr double kLeastScale = 1e-30;  // for 0, which has no logarithm
+constexpr double kMinScale = 1e-30;  // for 0, which has no logarithm
 
 void require(const char* what, double value, double least, double most) {
   if (!(value >= least && value <= most))
@@ -114,7 +114,7 @@ FactoredBrdf edited(const FactoredBrdf& model, const Edit& edit) {
   for (Table& table : tables)
     std::ranges::transform(table.values, table.values.begin(), [](float v) { return std::log(v); });
   for (Lobe& lobe : lobes)
-    for (double& s : lobe.scale) s = std::log(std::max(s, kLeastScale));
+    for (double& s : lobe.scale) s = std::log(std::max(s, kMinScale));
   widen(model, tables, edit.roughness);
   return from_log_tables(model.channels(), std::move(tables), std::move(lobes));
 }

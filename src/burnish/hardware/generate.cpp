@@ -325,7 +325,7 @@ std::vector<BlinnVector> blinn_vectors(const SpecularUnit& unit, int count, std:
   };
 
   // corners: along, across, opposite, below, zero, the ends of the number format
-  constexpr std::int32_t kOne = 1 << kFixedVec3FractionBits, kLeast = -2 * kOne, kMost = 2 * kOne - 1;
+  constexpr std::int32_t kOne = 1 << kFixedVec3FractionBits, kMin = -2 * kOne, kMax = 2 * kOne - 1;
   const FixedVec3 z = {0, 0, kOne}, x = {kOne, 0, 0}, down = {0, 0, -kOne}, zero = {};
   for (const std::uint32_t exponent : {1U, 50U, 1023U}) {
     add(z, z, z, exponent);
@@ -334,8 +334,8 @@ std::vector<BlinnVector> blinn_vectors(const SpecularUnit& unit, int count, std:
     add(down, z, z, exponent);
     add(zero, z, z, exponent);
     add({1, 0, 0}, {1, 0, 0}, zero, exponent);
-    add({kMost, kMost, kMost}, {kMost, kMost, kMost}, {kMost, kMost, kMost}, exponent);
-    add({kLeast, kLeast, kLeast}, {kLeast, kLeast, kLeast}, {kLeast, kLeast, kLeast}, exponent);
+    add({kMax, kMax, kMax}, {kMax, kMax, kMax}, {kMax, kMax, kMax}, exponent);
+    add({kMin, kMin, kMin}, {kMin, kMin, kMin}, {kMin, kMin, kMin}, exponent);
   }
 
   // at random; half of the normals near h

@@ -11,7 +11,7 @@ namespace burnish {
 
 namespace {
 
-constexpr std::size_t kNamesShown = 5, kMostOfAName = 80;
+constexpr std::size_t kNamesShown = 5, kMaxNameLength = 80;
 
 std::string_view row_name(std::string_view line) noexcept {
   return trimmed(line.substr(0, line.find(',')));
@@ -42,7 +42,7 @@ NamedRow parse_named_row(const FileBytes& file, std::string_view name, const Nam
   std::vector<float> numbers;
   while (numbers.empty() && reader.next_content_line()) {
     const std::string_view found = row_name(reader.line());
-    names.push_back(printable(found, kMostOfAName));
+    names.push_back(printable(found, kMaxNameLength));
     if (found.empty() || found.find_first_of(" \t") != std::string_view::npos)
       reader.fail("a name without blanks", in_quotes(found));
     if (name.empty() ? names.size() == 1 : found == name) numbers = read_numbers(reader, kind);
@@ -50,7 +50,7 @@ NamedRow parse_named_row(const FileBytes& file, std::string_view name, const Nam
 
   // without a name it is the only one
   if (name.empty() && reader.next_content_line()) {
-    do names.push_back(printable(row_name(reader.line()), kMostOfAName));
+    do names.push_back(printable(row_name(reader.line()), kMaxNameLength));
     while (reader.next_content_line());
     throw Error::in_file(file.name, fmt::format("one {}, or a name: {}", kind.a_row, kind.address),
                          some_names(names));

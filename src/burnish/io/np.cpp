@@ -16,7 +16,7 @@ namespace burnish {
 namespace {
 
 constexpr NamedRowKind kCodes{NpBrdf::kCode, "number", "encoding", "np:FILE#NAME"};
-constexpr std::uint64_t kMostBytes = std::uint64_t{64} << 20;  // of either file
+constexpr std::uint64_t kMaxBytes = std::uint64_t{64} << 20;  // of either file
 
 }  // namespace
 
@@ -75,9 +75,9 @@ NpFile open_np(std::string_view address) {
   const std::size_t mark = std::min(address.rfind('#'), address.size());
   std::filesystem::path place(address.substr(0, mark));
   if (std::error_code none; std::filesystem::is_directory(place, none)) place /= "codes.csv";
-  const FileBytes codes = read_file(place, kMostBytes);
+  const FileBytes codes = read_file(place, kMaxBytes);
   return parse_np(codes, address.substr(std::min(mark + 1, address.size())),
-                  parse_np_decoder(read_file(place.parent_path() / "decoder.f32", kMostBytes)));
+                  parse_np_decoder(read_file(place.parent_path() / "decoder.f32", kMaxBytes)));
 }
 
 }  // namespace burnish

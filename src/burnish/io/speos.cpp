@@ -18,7 +18,7 @@ namespace {
 constexpr std::string_view kAnisotropic = "OPTIS - Anisotropic BSDF surface file",
                            kBrdf = "OPTIS - brdf surface file";
 constexpr std::size_t kMaxAngles = 4096, kMaxValues = std::size_t{1} << 26;
-constexpr double kMostValue = 1e30;
+constexpr double kMaxValue = 1e30;
 constexpr double kTrusted = 0.05;  // of a reflectance: quadrature and rounding
 constexpr double kHorizon = 1e-6;  // a cosine that stands for none
 constexpr double kSameDegree = 1e-6;
@@ -88,8 +88,8 @@ Block next_block(TextReader& reader) {
     block.theta_deg.push_back(theta);
     for (std::size_t p = 0; p < phis; ++p) {
       const double value = next_number(reader, "a value");
-      if (!(std::abs(value) < kMostValue))
-        reader.fail(fmt::format("a value below {:g}", kMostValue), fmt::format("{}", value));
+      if (!(std::abs(value) < kMaxValue))
+        reader.fail(fmt::format("a value below {:g}", kMaxValue), fmt::format("{}", value));
       block.values.push_back(value);
     }
   }
@@ -146,8 +146,8 @@ bool trusted(double reflectance, double found) noexcept {
 void scale(Block& block, double factor, const TextReader& reader) {
   for (double& value : block.values) {
     value *= factor;
-    if (!(std::abs(value) < kMostValue))
-      reader.fail(fmt::format("reflectances that values below {:g} have", kMostValue),
+    if (!(std::abs(value) < kMaxValue))
+      reader.fail(fmt::format("reflectances that values below {:g} have", kMaxValue),
                   fmt::format("{}", value));
   }
 }

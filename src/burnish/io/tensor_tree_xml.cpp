@@ -14,7 +14,7 @@ namespace burnish {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n,";
-constexpr int kDeepest = 24;
+constexpr int kMaxDepth = 24;
 
 /// Reads the braces of ScatteringData.
 class BraceReader {
@@ -47,7 +47,7 @@ class BraceReader {
   }
 
   std::uint32_t add_node(int depth) {
-    if (depth > kDeepest) xml_.fail(fmt::format("a tree of at most {} levels", kDeepest), "a deeper one");
+    if (depth > kMaxDepth) xml_.fail(fmt::format("a tree of at most {} levels", kMaxDepth), "a deeper one");
     const auto number = static_cast<std::uint32_t>(tree_.nodes.size());
     tree_.nodes.emplace_back();
     eat('{');

@@ -15,7 +15,7 @@ namespace burnish {
 namespace {
 
 constexpr std::uint32_t kManyGroups = 20'000;
-constexpr int kMostSteps = 2;
+constexpr int kMaxSteps = 2;
 constexpr int kFolds = 4;
 // Where a node is left out the gap has twice the area of that between nodes, and there are 3/4 as many nodes: what is
 // right there is too stiff between all nodes. Integrals of squared second derivatives grow with the fourth power of
@@ -25,7 +25,7 @@ constexpr double kGap = (2.0 * kFolds / (kFolds - 1)) * (2.0 * kFolds / (kFolds 
 // Fewer places than SmoothedNodes has: as many as tell what smoothness is right.
 constexpr NodeVolume kTrialVolume{24, 16, 6};
 // Incidences are left out where an instrument stood at few; two of a hand are this far apart.
-constexpr std::size_t kLeastIncidences = 5, kMostIncidences = 24, kIncidenceHands = 3;
+constexpr std::size_t kMinIncidences = 5, kMaxIncidences = 24, kIncidenceHands = 3;
 
 /// Weighted sums of errors, to be means.
 struct ErrorSums {
@@ -129,7 +129,7 @@ std::optional<NodeFigures> held_out_incidences(const MeasuredNodes& nodes, const
   std::vector<std::uint32_t> there(nodes.incidence);
   std::ranges::sort(there);
   there.erase(std::unique(there.begin(), there.end()), there.end());
-  if (there.size() < kLeastIncidences || there.size() > kMostIncidences) return {};
+  if (there.size() < kMinIncidences || there.size() > kMaxIncidences) return {};
   return held_out(nodes, smoothness, kIncidenceHands, [&](std::size_t i) {
     const auto place =
         static_cast<std::size_t>(std::ranges::lower_bound(there, nodes.incidence[i]) - there.begin());
@@ -168,7 +168,7 @@ NodeSmoothness choose_node_smoothness(const MeasuredNodes& nodes) {
   const auto walk = [&](auto changed) {
     for (const double factor : {10.0, 0.1}) {
       int steps = 0;
-      while (steps < kMostSteps && improves(changed(best, factor))) ++steps;
+      while (steps < kMaxSteps && improves(changed(best, factor))) ++steps;
       if (steps > 0) break;  // the other way would undo it
     }
   };

@@ -15,7 +15,7 @@ constexpr double kSlack = 1e-9;
 
 /// What of the weights has to be known. A direction meant to be at a node misses it by rounding, which must not make the
 /// hole there the value of the next node.
-constexpr double kLeastKnown = 1e-9;
+constexpr double kMinKnown = 1e-9;
 
 /// The mirror direction of the light, the direction from it to the normal, and the one that completes them.
 struct SpecularFrame {
@@ -116,7 +116,7 @@ bool AngleTable::eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept 
     total += weight;
     for (std::size_t c = 0; c < f.size(); ++c) f[c] += weight * static_cast<double>(entry[c]);
   }
-  if (total < kLeastKnown) {
+  if (total < kMinKnown) {
     std::fill(f.begin(), f.end(), 0.0);
     return false;
   }

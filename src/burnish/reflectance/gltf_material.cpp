@@ -42,7 +42,7 @@ std::array<double, 3> interference(double phase, const std::array<double, 3>& tu
 /// Reflectance of a film in air on what reflects f0 at normal incidence, at most 1: KHR_materials_iridescence,
 /// "Iridescence Fresnel".
 Rgb iridescent_fresnel(double film_ior, double nanometres, Rgb base_f0, double cosine) noexcept {
-  constexpr double kGuard = 1e-4, kLeastRatio = 1e-5, kMostRatio = 0.9999;  // the text's
+  constexpr double kGuard = 1e-4, kMinRatio = 1e-5, kMaxRatio = 0.9999;  // the text's
   const double cos_inside = std::sqrt(1 - (1 - square(cosine)) / square(film_ior));
   const double phase = kTwoPi * 1e-9 * 2 * film_ior * nanometres * cos_inside;
   const double upper = schlick(reflectance_between(film_ior, 1), cosine), through = 1 - upper;
@@ -51,9 +51,9 @@ Rgb iridescent_fresnel(double film_ior, double nanometres, Rgb base_f0, double c
   const std::array f0 = {base_f0.r, base_f0.g, base_f0.b};
   std::array<double, 3> turned, ratio, sum, amplitude;
   for (std::size_t c = 0; c < 3; ++c) {
-    const double root = std::sqrt(std::min(f0[c] + kGuard, kMostRatio)), ior = (1 + root) / (1 - root);
+    const double root = std::sqrt(std::min(f0[c] + kGuard, kMaxRatio)), ior = (1 + root) / (1 - root);
     const double lower = schlick(reflectance_between(ior, film_ior), cos_inside);
-    const double both = std::clamp(upper * lower, kLeastRatio, kMostRatio);
+    const double both = std::clamp(upper * lower, kMinRatio, kMaxRatio);
     const double returned = square(through) * lower / (1 - both);
     turned[c] =
         ior < film_ior ? kTwoPi : kPi;  // pi at the upper face from within, and at a lower of less index
@@ -100,17 +100,18 @@ double sheen(double cos_i, double cos_o, double cos_h, double roughness) noexcep
 class SheenAlbedos {
  public:
   static constexpr int kCosines = 32, kRoughnesses = 24;
-  static constexpr double kLeast = 0.07;
+  static constexpr double kMinRoughness = 0.07;
 
   SheenAlbedos() noexcept {
     for (int r = 0; r <= kRoughnesses; ++r)
       for (int c = 0; c <= kCosines; ++c)
         at(r, c) = integral(square(static_cast<double>(std::max(c, 1)) / kCosines),
-                            kLeast + (1 - kLeast) * r / kRoughnesses);
+                            kMinRoughness + (1 - kMinRoughness) * r / kRoughnesses);
   }
 
   double operator()(double cosine, double roughness) const noexcept {
-    const double x = std::sqrt(cosine) * kCosines, y = (roughness - kLeast) / (1 - kLeast) * kRoughnesses;
+    const double x = std::sqrt(cosine) * kCosines,
+                 y = (roughness - kMinRoughness) / (1 - kMinRoughness) * kRoughnesses;
     const int c = std::clamp(static_cast<int>(x), 0, kCosines - 1),
               r = std::clamp(static_cast<int>(y), 0, kRoughnesses - 1);
     const double u = x - c, v = y - r;

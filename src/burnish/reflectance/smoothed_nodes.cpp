@@ -13,7 +13,7 @@ namespace burnish {
 namespace {
 
 constexpr std::size_t kLine = 64;
-constexpr double kLeastCosine = 0.02, kFullCosine = 0.15;
+constexpr double kMinNodeCosine = 0.02, kFullCosine = 0.15;
 constexpr int kReweightings = 2;
 constexpr double kRound = 0.02;            // errors in ln f below this count as squares
 constexpr double kScale = 0.1;             // and those of this size weigh the same in both kinds of error
@@ -159,7 +159,7 @@ Problem problem_of(const MeasuredNodes& nodes, const Unknowns& unknowns) {
   double total = 0;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const DirectionPair& pair = nodes.samples.pairs[i];
-    if (!(least_cosine(pair) > kLeastCosine)) continue;
+    if (!(least_cosine(pair) > kMinNodeCosine)) continue;
     problem.rows.push_back(unknowns.row_of(pair.wi, pair.wo));
     problem.weights.push_back(nodes.weights[i] * std::min(1.0, least_cosine(pair) / kFullCosine));
     total += problem.weights.back();
@@ -249,7 +249,7 @@ MeasuredNodes with_gaps_filled(const MeasuredNodes& fitted, const MeasuredNodes&
   const Unknowns unknowns(kGuessed);
   std::vector<std::uint8_t> touched(unknowns.volume);
   for (const DirectionPair& pair : all.samples.pairs) {
-    if (!(least_cosine(pair) > kLeastCosine)) continue;
+    if (!(least_cosine(pair) > kMinNodeCosine)) continue;
     const Row row = unknowns.row_of(pair.wi, pair.wo);
     for (std::size_t corner = 0; corner < 8; ++corner) touched[row.index[corner]] = 1;
   }
@@ -260,7 +260,7 @@ MeasuredNodes with_gaps_filled(const MeasuredNodes& fitted, const MeasuredNodes&
   for (std::size_t i = 0; i < unknowns.volume; ++i) {
     if (touched[i]) continue;
     const DirectionPair pair = unknowns.directions(i);
-    if (!(least_cosine(pair) > kLeastCosine) || !function.eval(pair.wi, pair.wo, f)) continue;
+    if (!(least_cosine(pair) > kMinNodeCosine) || !function.eval(pair.wi, pair.wo, f)) continue;
     filled.samples.pairs.push_back(pair);
     filled.samples.values.insert(filled.samples.values.end(), f.begin(), f.end());
     filled.weights.push_back(kGuessWeight);

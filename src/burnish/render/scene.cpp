@@ -35,9 +35,9 @@ Camera camera_for_unit_sphere(double yaw, double pitch) noexcept {
 }
 
 void check_scene(const Scene& scene, int width, int height, std::size_t materials) {
-  constexpr int kLargest = 16384;
-  if (std::min(width, height) < 1 || std::max(width, height) > kLargest)
-    throw Error(fmt::format("scene: expected a picture of 1 to {} pixels a side, found {} x {}", kLargest,
+  constexpr int kMaxSide = 16384;
+  if (std::min(width, height) < 1 || std::max(width, height) > kMaxSide)
+    throw Error(fmt::format("scene: expected a picture of 1 to {} pixels a side, found {} x {}", kMaxSide,
                             width, height));
   const Camera& camera = scene.camera;
   if (!(length(camera.eye - camera.target) > 0))

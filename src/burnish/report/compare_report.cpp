@@ -86,8 +86,8 @@ double round_up(double v) {
 
 // The end of a model's colour scale: the 99.5th percentile of the worst of its pictures, rounded up.
 double heat_scale(const SpherePictures& reference, const SpherePictures& model) {
-  constexpr double kShare = 0.995, kSmallest = 0.02;
-  double scale = kSmallest;
+  constexpr double kShare = 0.995, kMin = 0.02;
+  double scale = kMin;
   for (std::size_t i = 0; i < model.shown.size(); ++i)
     scale = std::max(scale, percentile(mean_difference(reference.shown[i], model.shown[i]).pixels, kShare));
   return std::min(1.0, round_up(scale));

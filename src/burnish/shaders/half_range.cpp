@@ -14,10 +14,10 @@ namespace burnish {
 
 namespace {
 
-constexpr int kMostExponent = 15;
+constexpr int kMaxHalfExponent = 15;
 // Logarithms to base 2 that products are kept between; what is darker than 2^kDark may lose digits.
 constexpr double kBright = 14, kFaint = -13, kDark = -11;
-constexpr double kMostConstant = 12;
+constexpr double kMaxConstant = 12;
 
 double log_scale(const Lobe& lobe) noexcept {
   const double most = std::ranges::max(lobe.scale);
@@ -96,7 +96,7 @@ std::vector<int> table_exponents(const FactoredBrdf& brdf) {
       for (const FactorUse& use : lobe.factors)
         if (brdf.table_of(use).format != TableFormat::unorm8) {
           double& exponent = exponents[use.table];
-          exponent = std::clamp(exponent + rest / movable, 0.0, double{kMostExponent});
+          exponent = std::clamp(exponent + rest / movable, 0.0, double{kMaxHalfExponent});
         }
     }
   std::vector<int> whole;
@@ -111,7 +111,7 @@ HalfProduct half_product(const FactoredBrdf& brdf, std::size_t lobe, const std::
   // the scale as one constant that a half float holds, or several
   double rest = log_scale(brdf.lobes()[lobe]);
   for (const FactorUse& use : factors) rest -= exponents[use.table];
-  const int constants = std::max(static_cast<int>(std::ceil(std::abs(rest) / kMostConstant)), 1);
+  const int constants = std::max(static_cast<int>(std::ceil(std::abs(rest) / kMaxConstant)), 1);
   HalfProduct product{.order = {}, .exponent = static_cast<int>(std::lround(rest / constants))};
 
   // what there is to multiply, and what comes out

@@ -12,7 +12,7 @@ namespace burnish {
 
 namespace {
 
-constexpr float kLargestHalf = 65504;
+constexpr float kMaxHalf = 65504;
 constexpr float kCodes = 255;
 
 std::size_t texels(int width, int height) noexcept {
@@ -35,7 +35,7 @@ void SurfaceMap::check() const {
 
 void SurfaceMap::check_values(std::span<const float> values) const {
   const bool half = format_ == TableFormat::half;
-  const float least = half ? -kLargestHalf : 0, most = half ? kLargestHalf : scale_;
+  const float least = half ? -kMaxHalf : 0, most = half ? kMaxHalf : scale_;
   for (const float value : values)
     if (!(value >= least && value <= most))
       throw Error(fmt::format("surface map: expected values from {} to {}, found {}", least, most, value));

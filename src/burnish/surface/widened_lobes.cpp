@@ -13,10 +13,10 @@ namespace burnish {
 namespace {
 
 constexpr std::size_t kProfileNodes = 800;
-constexpr double kMostTheta = 1.4;    // of theta_h, radians; farther out a copy is its lobe times a constant
+constexpr double kMaxTheta = 1.4;     // of theta_h, radians; farther out a copy is its lobe times a constant
 constexpr double kPeakStep = 0.18;    // from one copy to the next
 constexpr double kWorthwhile = 0.75;  // how much the last copy has to lower the peak at least
-constexpr double kLeastVariance = 2e-5;
+constexpr double kMinVariance = 2e-5;
 constexpr int kRatioNodes = 128;
 constexpr TableFormat kRatioFormat = TableFormat::half;
 
@@ -40,7 +40,7 @@ class Profile {
  public:
   explicit Profile(const FactoredBrdf& lobe) {
     for (std::size_t i = 0; i < kProfileNodes; ++i) {
-      const double part = static_cast<double>(i) / (kProfileNodes - 1), theta = kMostTheta * part * part;
+      const double part = static_cast<double>(i) / (kProfileNodes - 1), theta = kMaxTheta * part * part;
       slopes_.push_back(std::tan(theta));
       values_.push_back(mean_at(lobe, theta, i == 0 ? 1 : values_.back()));
     }
@@ -103,7 +103,7 @@ struct Copy {
 
 std::vector<Copy> copies_of(std::size_t lobe, const Profile& profile, double most) {
   std::vector<Copy> copies;
-  double before = profile.at(0), least = kLeastVariance;
+  double before = profile.at(0), least = kMinVariance;
   for (;;) {
     const double last = profile.widened(0, most);
     if (last > kWorthwhile * before) return copies;
@@ -151,7 +151,7 @@ std::string free_name(std::span<const Table> tables) {
 SpatialBrdf with_widened_lobes(const SpatialBrdf& surface) {
   if (!surface.maps().normals || !surface.widened().empty()) return surface;
   const double most = variance_of(*surface.maps().normals);
-  if (!(most > kLeastVariance)) return surface;
+  if (!(most > kMinVariance)) return surface;
   const FactoredBrdf& brdf = surface.lobes();
 
   // which, and in the lobes' order
@@ -178,7 +178,7 @@ SpatialBrdf with_widened_lobes(const SpatialBrdf& surface) {
     std::vector<double> values;
     for (int x = 0; x < kRatioNodes; ++x) {
       const double theta =
-          std::min(std::acos(std::min(node_direction(ratio.layout, x, 0).z, 1.0)), kMostTheta);
+          std::min(std::acos(std::min(node_direction(ratio.layout, x, 0).z, 1.0)), kMaxTheta);
       values.push_back(profiles[copy.lobe].widened(theta, copy.variance) / profiles[copy.lobe].at(theta));
     }
     const double largest = *std::ranges::max_element(values);

@@ -17,7 +17,7 @@ namespace burnish {
 namespace {
 
 constexpr double kSmooth = 1e-3;  // of F and G
-constexpr int kMaxD = 180, kMaxFg = 90, kFewest = 4;
+constexpr int kMaxD = 180, kMaxFg = 90, kMinNodes = 4;
 
 /// Where a sample touches a table: node and node + 1, and the weight of the second.
 struct Touch {
@@ -189,9 +189,9 @@ DgfFit fit_dgf(const SampleSource& source, const DgfOptions& options) {
   const auto nodes =
       static_cast<int>((options.budget / channels - std::min<std::size_t>(options.budget / channels, 8)) / 2);
   const int size_d = std::min(kMaxD, nodes / 2), size_fg = std::min(kMaxFg, (nodes - size_d) / 2);
-  if (size_fg < kFewest || size_d < kFewest)
+  if (size_fg < kMinNodes || size_d < kMinNodes)
     throw Error(fmt::format("dgf: expected a budget of at least {} bytes, found {}",
-                            channels * (8 + 8 * kFewest), options.budget));
+                            channels * (8 + 8 * kMinNodes), options.budget));
 
   // where the samples fall in the tables
   const GatheredSamples samples = gather_samples(source, options.most_samples);

@@ -31,11 +31,11 @@ constexpr std::array kResiduals = {0.3, 3.0, 30.0, 300.0};
 constexpr std::array kNoises = {1e-4, 1e-3, 1e-2, 3e-2, 0.1, 0.3};
 
 // What is believed is the mean of all that is at least so likely beside the likeliest.
-constexpr double kLeastShare = 0.01;
+constexpr double kMinShare = 0.01;
 
 // Where one direction is near the horizon measurements are less certain: variances are 1 + (this / cosine)^2 times as
 // large, as those of scans of RGL materials about a smooth reciprocal volume are.
-constexpr double kGrazingCosine = 0.3, kLeastCosine = 1e-3;
+constexpr double kGrazingCosine = 0.3, kMinPairCosine = 1e-3;
 
 // How far what is not in the book reaches: along sqrt(theta_h / (pi/2)), theta_d / (pi/2) and
 // |cos theta_i - cos theta_o| / 2; a third each of it so many times as far.
@@ -126,7 +126,7 @@ PairData pair_data(const MaterialBook& book, const TrainingSet& set, std::span<c
   for (Eigen::Index i = 0; i < count; ++i) {
     const DirectionPair& pair = set.pairs[chosen[static_cast<std::size_t>(i)]];
     data.places.push_back(place_of(pair));
-    const double relative = kGrazingCosine / std::max(std::min(pair.wi.z, pair.wo.z), kLeastCosine);
+    const double relative = kGrazingCosine / std::max(std::min(pair.wi.z, pair.wo.z), kMinPairCosine);
     data.noises(i) = 1 + relative * relative;
   }
   for (Eigen::Index i = 0; i < count; ++i)
@@ -217,7 +217,7 @@ std::vector<Belief> beliefs_of(const PairData& data, AxisGroup group, double par
   double sum = 0;
   for (std::size_t k = 0; k < all.size(); ++k) {
     const double share = std::exp((evidence[k] - most) / part);
-    if (share < kLeastShare) continue;
+    if (share < kMinShare) continue;
     beliefs.push_back({all[k], share});
     sum += share;
   }
@@ -280,7 +280,7 @@ class LeftOut {
         for (const AxisGiven& axis : given)
           log_weight += 0.5 * (axis.left_out(i, m) * axis.left_out(i, m) * axis.certainty(i) -
                                std::log(axis.certainty(i)));
-        const double weight = std::exp(std::min(log_weight, kLargestLogWeight));
+        const double weight = std::exp(std::min(log_weight, kMaxLogWeight));
         weights_(i) += weight;
         for (std::size_t j = 0; j < given.size(); ++j) sums_[j](i) += weight * given[j].left_out(i, m);
       }
@@ -289,7 +289,7 @@ class LeftOut {
   VectorXd errors(std::size_t axis) const { return sums_[axis].cwiseQuotient(weights_); }
 
  private:
-  static constexpr double kLargestLogWeight = 600;
+  static constexpr double kMaxLogWeight = 600;
   std::vector<VectorXd> sums_;
   VectorXd weights_;
 };
@@ -390,7 +390,7 @@ void check_completed(const MaterialBook& book, const Samples& samples) {
 Completion complete(const MaterialBook& book, const Samples& samples, TableFormat format) {
   check_completed(book, samples);
   const TrainingSet set = in_three_channels(training_set_of(samples, false));
-  const std::vector<std::size_t> used = evenly(set.size(), kMostCompletionPairs);
+  const std::vector<std::size_t> used = evenly(set.size(), kMaxCompletionPairs);
 
   // what to believe, from a part of the pairs where they are many
   const PairData part = pair_data(book, set, evenly(set.size(), kEvidencePairs));

@@ -24,7 +24,7 @@ struct CompletionPrior {
 /// How a completion went.
 struct CompletionReport {
   std::size_t samples = 0;             ///< pairs above the horizon
-  std::size_t used = 0;                ///< of these, evenly: at most kMostCompletionPairs
+  std::size_t used = 0;                ///< of these, evenly: at most kMaxCompletionPairs
   std::size_t materials = 0;           ///< in the book
   CompletionPrior brightness, colour;  ///< the likeliest; what was likely beside these had its share
   std::string nearest;  ///< the likeliest of the library's materials in brightness, where it is near one
@@ -33,7 +33,7 @@ struct CompletionReport {
   double relative = 0, relative_left_out = 0;
 };
 
-inline constexpr std::size_t kMostCompletionPairs = 1000;
+inline constexpr std::size_t kMaxCompletionPairs = 1000;
 
 struct Completion {
   FactoredBrdf brdf;  ///< of brdf_of_logs: reciprocal and positive, two fetches

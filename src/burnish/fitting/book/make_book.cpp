@@ -32,9 +32,9 @@ constexpr std::size_t kPixels = 5000, kDirections = 6000;
 constexpr double kSmooth = 1e-6;
 constexpr double kRimCosine = 0.05;  // of directions nearer to the horizon, which weigh less
 constexpr float kRimWeight = 0.02f;
-constexpr double kLeastWeight = 1e-4;  // of a node, of the mean of all
-constexpr double kRoom = 1.5;          // of stored weights, beyond the library's largest
-constexpr double kRidge = 1e-9;        // of the least squares of weights, of the largest diagonal element
+constexpr double kMinWeight = 1e-4;  // of a node, of the mean of all
+constexpr double kRoom = 1.5;        // of stored weights, beyond the library's largest
+constexpr double kRidge = 1e-9;      // of the least squares of weights, of the largest diagonal element
 
 // Half of the numbers of a material say how bright it is.
 std::array<std::size_t, kAxes> components_of(std::size_t weights) {
@@ -142,7 +142,7 @@ VectorXd node_weights(const std::vector<BookMaterial>& materials, std::size_t no
   VectorXd sum = VectorXd::Zero(static_cast<Eigen::Index>(nodes));
   for (const BookMaterial& material : materials)
     sum += Eigen::Map<const VectorXd>(material.weights.data(), sum.size());
-  return sum.cwiseMax(kLeastWeight * sum.mean());
+  return sum.cwiseMax(kMinWeight * sum.mean());
 }
 
 std::array<int, 3> sides_of(const TableLayout& layout) {
@@ -272,9 +272,10 @@ BookMaterial book_material(const Source& source, const std::string& name, std::a
 
 MaterialBook make_book(std::array<int, 3> sides, const std::vector<BookMaterial>& materials,
                        const BookOptions& options) {
-  constexpr std::size_t kFewest = 3;
-  if (materials.size() < kFewest)
-    throw Error(fmt::format("book: expected at least {} materials, found {}", kFewest, materials.size()));
+  constexpr std::size_t kMinMaterials = 3;
+  if (materials.size() < kMinMaterials)
+    throw Error(
+        fmt::format("book: expected at least {} materials, found {}", kMinMaterials, materials.size()));
   const std::size_t nodes = book_layout(sides).node_count();
   check_materials(materials, nodes);
   const VectorXd heavy = node_weights(materials, nodes);

@@ -14,7 +14,7 @@ namespace {
 constexpr double kFirstShare = 1e-3;  // of the diagonal, where it must be larger
 constexpr double kMoreShare = 4;
 // Of the dense rows with what stands before them, tried in turn; then none.
-constexpr double kLessCoupling = 0.8, kLeastCoupling = 0.3;
+constexpr double kLessCoupling = 0.8, kMinCoupling = 0.3;
 
 }  // namespace
 
@@ -72,7 +72,7 @@ bool IncompleteCholesky::factorize(const SparseTriangle& matrix, int dense_rows)
   // and with less of it where that is not positive: a smaller coupling of the two leaves a larger complement
   const Eigen::MatrixXd products = products_of_rows(before), diagonal = complement;
   double coupling = 1;
-  for (;; coupling = coupling > kLeastCoupling ? kLessCoupling * coupling : 0) {
+  for (;; coupling = coupling > kMinCoupling ? kLessCoupling * coupling : 0) {
     complement.triangularView<Eigen::Lower>() = diagonal - coupling * products;
     const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> in_place(complement);
     if (in_place.info() == Eigen::Success) break;

@@ -19,7 +19,7 @@ constexpr double kDimmedShare = 0.05;
 constexpr double kRelativeShare = 1e-3;
 
 // A pixel in thirty of a highlight: what shows less, as an index that a coat hides, is not trusted to go far.
-constexpr double kLeastDiagonal = 1e-3;
+constexpr double kMinDiagonal = 1e-3;
 
 // Numbers are moved by this part of their range for slopes.
 constexpr double kStep = 1e-5;
@@ -154,7 +154,7 @@ LeastSquaresSolution fit_pictures(const PicturePairs& pairs, const FittedMateria
   return solve_least_squares(problem, std::move(start),
                              {.max_iterations = effort.max_iterations,
                               .tolerance = effort.tolerance,
-                              .least_diagonal = kLeastDiagonal});
+                              .least_diagonal = kMinDiagonal});
 }
 
 FitSummary summary_of(const PicturePairs& pairs, BrdfRef shown, double first_cost, int iterations,

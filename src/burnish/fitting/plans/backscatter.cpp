@@ -9,7 +9,7 @@ namespace burnish {
 
 namespace {
 
-constexpr double kLeastHeight = 1.5;
+constexpr double kMinHeight = 1.5;
 constexpr double kTilts_deg[] = {20, 30, 40, 50, 60};
 constexpr double kNear_deg[] = {0.25, 0.75}, kRing_deg[] = {10, 12, 14};
 constexpr int kAzimuths = 8;
@@ -38,7 +38,7 @@ bool backscatters(BrdfRef source) {
                ring = mean_at(source, radians(tilt_deg), kRing_deg);
     if (!near || !ring) continue;
     ++known;
-    higher += *near > kLeastHeight * *ring;
+    higher += *near > kMinHeight * *ring;
   }
   return 2 * higher > known;
 }

@@ -45,9 +45,9 @@ ErrorLevel NoiseScale::error_of(BrdfRef model) const {
 }
 
 double NoiseScale::excess(const ErrorLevel& error) const noexcept {
-  if (!noise_) return error.relative / kLeastRelative;
+  if (!noise_) return error.relative / kMinRelative;
   const double picture = error.psnr && noise_->psnr ? std::pow(10, (*noise_->psnr - *error.psnr) / 20) : 0;
-  return std::max({error.relative / std::max(noise_->relative, kLeastRelative),
+  return std::max({error.relative / std::max(noise_->relative, kMinRelative),
                    ratio(error.log_cos, noise_->log_cos), ratio(error.rms, noise_->rms), picture});
 }
 
@@ -57,7 +57,7 @@ std::optional<BudgetStop> stop_after(std::span<const BudgetTrial> trials, bool n
   if (trials.size() > 1) {
     const BudgetTrial& before = trials[trials.size() - 2];
     const double doublings = std::log2(static_cast<double>(last.bytes) / static_cast<double>(before.bytes));
-    const double enough = std::pow(1 - kLeastGain, doublings);
+    const double enough = std::pow(1 - kMinBudgetGain, doublings);
     if (last.excess > before.excess * enough && last.error.relative > before.error.relative * enough)
       return BudgetStop::gain;
   }

@@ -18,9 +18,9 @@ inline constexpr std::array<std::uint64_t, 8> kBudgetLadder{700,    1'350,  2'70
                                                             10'800, 16'384, 32'768, 65'536};
 
 /// Where relative errors are of no interest any more, whatever the source.
-inline constexpr double kLeastRelative = 0.005;
+inline constexpr double kMinRelative = 0.005;
 /// By what share twice the bytes must lower the error at least.
-inline constexpr double kLeastGain = 0.1;
+inline constexpr double kMinBudgetGain = 0.1;
 
 /// Scores models beside what the measurement itself would score.
 class NoiseScale {
@@ -36,7 +36,7 @@ class NoiseScale {
   const std::optional<ErrorLevel>& noise() const noexcept { return noise_; }
   ErrorLevel error_of(BrdfRef model) const;
   /// How many times an error is above the noise, the largest of those that are known of both, no relative
-  /// noise counting as less than kLeastRelative; without noise the relative error over kLeastRelative.
+  /// noise counting as less than kMinRelative; without noise the relative error over kMinRelative.
   double excess(const ErrorLevel& error) const noexcept;
 
  private:
@@ -47,7 +47,7 @@ class NoiseScale {
 
 /// Why no more bytes are tried after these trials, whose bytes rise; nothing: go on. Noise (or without it the
 /// floor) where the last one's excess is at most 1, gain where neither it nor the relative error is lower
-/// than that of the trial before by kLeastGain each time the bytes double, largest at the end of the ladder.
+/// than that of the trial before by kMinBudgetGain each time the bytes double, largest at the end of the ladder.
 /// Precondition: at least one trial.
 std::optional<BudgetStop> stop_after(std::span<const BudgetTrial> trials, bool noise_known);
 

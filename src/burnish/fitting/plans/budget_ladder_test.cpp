@@ -36,7 +36,7 @@ TEST(NoiseScale, KnowsNoNoiseOfAFormula) {
   const Source source{"ggx", parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3"), {}};
   const NoiseScale scale(source, source.ref(), true, {.count = 500, .image_size = 16});
   EXPECT_FALSE(scale.noise());
-  EXPECT_EQ(scale.excess({.relative = 0.01, .log_cos = {}, .rms = {}, .psnr = {}}), 0.01 / kLeastRelative);
+  EXPECT_EQ(scale.excess({.relative = 0.01, .log_cos = {}, .rms = {}, .psnr = {}}), 0.01 / kMinRelative);
 }
 
 TEST(NoiseScale, TakesWhatExchangedDirectionsAndHeldOutNodesTell) {

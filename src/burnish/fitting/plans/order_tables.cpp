@@ -6,13 +6,12 @@ namespace burnish {
 namespace {
 
 constexpr std::size_t kPairs = 4000;
-constexpr double kLeastError = 0.01;  // below what instruments repeat
+constexpr double kMinError = 0.01;  // below what instruments repeat
 
 }  // namespace
 
 bool order_matters(BrdfRef source) {
-  return source.isotropic() && !source.reciprocal() &&
-         reciprocity_error(source, kPairs, 1).mean > kLeastError;
+  return source.isotropic() && !source.reciprocal() && reciprocity_error(source, kPairs, 1).mean > kMinError;
 }
 
 }  // namespace burnish

@@ -28,7 +28,7 @@ constexpr std::size_t kTrialChannels = 3;
 // need more, and are then solved by iterations.
 constexpr std::array<std::size_t, 2> kLineSizes{140, 400}, kDiskSizes{160, 1200};
 constexpr int kLongestLine = 1024;  // nodes, finer than any measurement
-constexpr int kLargestDisk = 256;   // nodes along a side
+constexpr int kMaxDisk = 256;       // nodes along a side
 
 // Factor sets, the fullest first: the others serve budgets that hold few texels.
 const std::array<std::string, 5> kFactorSets{"pqmr", "pqm", "pqr", "pq", "q"};
@@ -43,7 +43,7 @@ int least_side(const PlannedFactor& factor) {
 
 // Nodes along a side of a factor's table of at most so many nodes.
 int side_of(const PlannedFactor& factor, double nodes) {
-  const int most = is_disk(factor) ? kLargestDisk : kLongestLine;
+  const int most = is_disk(factor) ? kMaxDisk : kLongestLine;
   return static_cast<int>(std::min<double>(most, is_disk(factor) ? std::sqrt(nodes) : nodes));
 }
 
@@ -115,10 +115,10 @@ std::optional<ModelSpec> spec_within(const std::string& set, std::size_t bytes, 
 // with a ring between so many times that, and has to be so much higher.
 constexpr std::array kRetroNear{radians(1.5), radians(3), radians(5)};
 constexpr double kRetroRingLow = 8.0 / 3, kRetroRingHigh = 16.0 / 3;
-constexpr double kLeastTilt = radians(10);  // of the half vector: a highlight is there at the normal
+constexpr double kMinTilt = radians(10);  // of the half vector: a highlight is there at the normal
 constexpr double kSameIncidence = radians(1);
-constexpr double kLeastRatio = 2;
-constexpr std::size_t kLeastNear = 3;
+constexpr double kMinRatio = 2;
+constexpr std::size_t kMinNearby = 3;
 
 // Of this lobe for many samples, as trials find it for a tape's 7,400. Trials on many would leave it rougher: they
 // are at few incidences, all of which every fold has, and nothing tells how wild it is between them.
@@ -382,7 +382,7 @@ bool backscatters(const SampleSource& source) {
   source.fill(0, pairs, values, weights);
   for (std::size_t i = 0; i < source.count; ++i) {
     const auto& [wi, wo] = pairs[i];
-    if (!(weights[i] > 0) || wi.z <= 0 || wo.z <= 0 || theta_of(half_vector(wi, wo)) < kLeastTilt) continue;
+    if (!(weights[i] > 0) || wi.z <= 0 || wo.z <= 0 || theta_of(half_vector(wi, wo)) < kMinTilt) continue;
     const double theta_d = angle_between(wi, wo) / 2, f = std::max(values[i * source.channels], 0.0);
     auto& of_incidence = incidences[std::lround(theta_of(wi) / kSameIncidence)];
     for (std::size_t k = 0; k < kRetroNear.size(); ++k) {
@@ -401,11 +401,11 @@ bool backscatters(const SampleSource& source) {
   std::size_t higher = 0, known = 0;
   for (const auto& [place, reaches] : incidences) {
     const auto sums = std::ranges::find_if(
-        reaches, [](const Sums& s) { return s.near_count >= kLeastNear && s.ring_count >= kLeastNear; });
+        reaches, [](const Sums& s) { return s.near_count >= kMinNearby && s.ring_count >= kMinNearby; });
     if (sums == reaches.end()) continue;
     ++known;
     higher += sums->near / static_cast<double>(sums->near_count) >
-              kLeastRatio * sums->ring / static_cast<double>(sums->ring_count);
+              kMinRatio * sums->ring / static_cast<double>(sums->ring_count);
   }
   return 2 * higher > known;
 }

@@ -14,16 +14,16 @@ namespace burnish {
 
 namespace {
 
-constexpr double kFirstSmooth = 1e-7, kLeastSmooth = 1e-9, kMostSmooth = 1e-4, kStep = 10;
+constexpr double kFirstSmooth = 1e-7, kMinSmooth = 1e-9, kMaxVolumeSmooth = 1e-4, kStep = 10;
 // Half of the nodes have twice the area each; integrals of squared second derivatives grow with its square.
 constexpr double kGap = 4;
 // What of a model's shares counts nodes, all of it here.
 constexpr ErrorTerms kShares{.pictures = 0, .dimmed = 0, .relative = 2, .log_cos = 2};
-constexpr std::size_t kMostNodes = 40'000;
+constexpr std::size_t kMaxNodes = 40'000;
 constexpr double kFullCosine = 0.15;  // from here on nodes count fully, as those of SmoothedNodes do
 
 MeasuredNodes part_of_many(const MeasuredNodes& nodes) {
-  const auto step = static_cast<std::uint32_t>(nodes.size() / kMostNodes + 1);
+  const auto step = static_cast<std::uint32_t>(nodes.size() / kMaxNodes + 1);
   std::vector<std::size_t> chosen;
   for (std::size_t i = 0; i < nodes.size(); ++i)
     if (nodes.groups[i] % step == 0) chosen.push_back(i);
@@ -70,7 +70,7 @@ double choose_volume_smoothness(const MeasuredNodes& nodes, const ModelSpec& spe
   double best = kFirstSmooth, smallest = error_of(best);
   for (const double factor : {kStep, 1 / kStep}) {
     const double from = best;
-    for (double smooth = best * factor; smooth > 0.5 * kLeastSmooth && smooth < 2 * kMostSmooth;
+    for (double smooth = best * factor; smooth > 0.5 * kMinSmooth && smooth < 2 * kMaxVolumeSmooth;
          smooth *= factor) {
       const double error = error_of(smooth);
       if (!(error < smallest)) break;

@@ -25,7 +25,7 @@ constexpr double kRimCosine = 0.005, kRimWeight = 0.1;     // of pairs nearer to
 constexpr double kCrowdedPixelCosine = 1e-3;
 constexpr double kExposedShare = 0.97;  // as in the error figures
 constexpr std::size_t kPairsATask = 4096;
-constexpr double kMaxAlbedoTheta = radians(70), kLeastAlbedo = 1e-4, kAlbedoPrecision = 2e-3;
+constexpr double kMaxAlbedoTheta = radians(70), kMinAlbedo = 1e-4, kAlbedoPrecision = 2e-3;
 constexpr double kRingTurn = 0.6180339887498949;  // the golden ratio's: rings near one another differ
 constexpr std::size_t kAlbedoThetas = 15, kAlbedoRings = 64, kAlbedoAzimuths = 32;
 
@@ -242,7 +242,7 @@ AlbedoSet albedo_set(BrdfRef source) {
         std::accumulate(albedo.begin(), albedo.end(), 0.0) / static_cast<double>(albedo.size());
     for (const double a : albedo) {
       set.targets.push_back(static_cast<float>(std::max(a, 0.0)));
-      set.scales.push_back(static_cast<float>(std::max({a, mean, kLeastAlbedo})));
+      set.scales.push_back(static_cast<float>(std::max({a, mean, kMinAlbedo})));
     }
   }
   return set;
