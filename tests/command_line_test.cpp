@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include <burnish/io/open_source.h>
+#include <burnish/testing/sanitized.h>
 #include <burnish/testing/seed_files.h>
 #include <burnish/testing/tools.h>
 

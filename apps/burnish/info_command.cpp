@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include <burnish/book/book_file.h>
+#include <burnish/error.h>
 #include <burnish/file.h>
 #include <burnish/io/source_report.h>
 #include <burnish/math/angles.h>
@@ -122,7 +123,13 @@ void add_info_command(CLI::App& app) {
       ->capture_default_str();
   verb->add_flag("--json", *as_json, "for programs");
   verb->callback([=] {
+    const auto refuse_nodes = [&](const char* kind) {
+      if (*target == "nodes")
+        throw Error(
+            fmt::format("{}: expected a measurement for --target nodes, found {}", arguments->spec, kind));
+    };
     if (const auto book = book_of(arguments->spec)) {
+      refuse_nodes("a book");
       if (*as_json)
         print_as_json(book_json(*book));
       else
@@ -132,6 +139,7 @@ void add_info_command(CLI::App& app) {
     if (std::error_code none; std::filesystem::is_regular_file(arguments->spec, none)) {
       const FileBytes file = read_file(arguments->spec);
       if (looks_like_surface(file.bytes)) {
+        refuse_nodes("a surface");
         const SurfaceModel surface = parse_surface(file);
         if (*as_json)
           fmt::print("{}\n", surface_info_json(surface, arguments->spec));

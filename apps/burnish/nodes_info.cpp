@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <burnish/error.h>
 #include <burnish/math/angles.h>
 #include <burnish/metrics/figures_json.h>
 
@@ -27,7 +28,11 @@ std::vector<double> incidences_deg(const MeasuredNodes& nodes) {
 NodesInfo nodes_info(const Source& source) {
   NodesInfo info{.source = source, .nodes = measured_nodes(source), .function = {}, .quality = {}};
   info.function = node_figures(info.nodes, SymmetrizedBrdf(source.ref()));
-  info.quality = nodes_quality(info.nodes);
+  try {
+    info.quality = nodes_quality(info.nodes);
+  } catch (const Error&) {  // too few, or all of them near grazing: nothing foretells another
+    info.quality = negatives_of(info.nodes);
+  }
   return info;
 }
 
@@ -46,7 +51,8 @@ std::string nodes_text(const NodesInfo& info) {
   line("format", source.findings.format);
   line("channels", fmt::format("{}", nodes.samples.channels));
   line("material", nodes.samples.isotropic ? "isotropic" : "anisotropic");
-  line("nodes", fmt::format("{}, {} of them with both cosines above 0.15", nodes.size(), function.count));
+  line("nodes", fmt::format("{}, {} of them with both cosines above {}", nodes.size(), function.count,
+                            NodeScoring{}.least_cosine));
   if (nodes.theta_i.size() <= kListedIncidences)
     line("theta_i", fmt::format("{:.1f} degrees", fmt::join(incidences_deg(nodes), " ")));
   else
@@ -57,9 +63,10 @@ std::string nodes_text(const NodesInfo& info) {
                                     : ""));
   // how well others know it
   line("function", "made reciprocal, it knows them: " + errors(function));
-  if (quality.held_out) line("unseen", "a smooth function of the others: " + errors(*quality.held_out));
+  if (quality.held_out)
+    line("unseen", "nodes, by a smooth function of the others: " + errors(*quality.held_out));
   if (quality.held_out_incidences)
-    line("unseen", "whole theta_i, of the others: " + errors(*quality.held_out_incidences));
+    line("unseen", "whole theta_i, by one of the others: " + errors(*quality.held_out_incidences));
   return text;
 }
 

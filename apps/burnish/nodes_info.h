@@ -16,7 +16,8 @@ struct NodesInfo {
   NodesQuality quality;
 };
 
-/// Throws Error where the source is a formula or model, or no node can be scored.
+/// Throws Error where the source is a formula or model, or no node can be scored; where there are too few to foretell one
+/// another, held_out is none.
 NodesInfo nodes_info(const Source& source);
 
 /// For people: `info --target nodes`.

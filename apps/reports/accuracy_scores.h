@@ -16,7 +16,7 @@
 
 namespace burnish::reports {
 
-/// What a measurement would score itself (exchanged_figures) is called so: no model, which tables put in bold.
+/// What a measurement would score itself (exchanged_figures) is called so. It is no model: tables never have it in bold.
 inline constexpr std::string_view kMeasurement = "the measurement";
 
 /// One representation of one material.

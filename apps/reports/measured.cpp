@@ -38,7 +38,7 @@ Fit fit_nodes_without(const Source& source, const NodePart& held_out, int fetche
 
 // Means over what was added.
 struct MeanNodes {
-  double relative = 0, log_cos = 0, log_relative = 0, log_log_cos = 0;
+  double relative = 0, log_cos = 0;
   int count = 0;
 
   void add(const NodeFigures& figures) {

@@ -3,7 +3,7 @@
 // introduction, ImfPizCompressor, ImfHuf, ImfWav.
 
 const kMagic = 20000630, kTiles = 0x200, kDeep = 0x800, kParts = 0x1000;
-const kMaxPixels = 1 << 26, kMax = 60000;  // of what is drawn
+const kMaxPixels = 1 << 26, kMaxValue = 60000;  // of what is drawn
 const kTypes = {half: 1, float: 2}, kBytes = [4, 2, 4];
 const kNames = ["none", "RLE", "ZIPS", "ZIP", "PIZ", "PXR24", "B44", "B44A", "DWAA", "DWAB"];
 const kRows = [1, 1, 1, 16, 32];  // of a block
@@ -118,7 +118,7 @@ function copyRows(view, {channels, wanted, width, count}, to) {
 }
 const number = (view, type, at) =>
   type === kTypes.half ? half(view.getUint16(at, true)) : type === kTypes.float ? view.getFloat32(at, true) : view.getUint32(at, true);
-const clean = (x) => (x > 0 ? Math.min(x, kMax) : 0);
+const clean = (x) => (x > 0 ? Math.min(x, kMaxValue) : 0);
 function half(bits) {
   const exponent = (bits >> 10) & 31, fraction = bits & 1023, sign = bits & 0x8000 ? -1 : 1;
   if (exponent === 31) return fraction ? NaN : sign * Infinity;

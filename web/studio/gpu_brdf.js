@@ -6,7 +6,7 @@ import {fromHalfDiff, fromRgl, kAngles} from "./gpu_exact.js";
 import {add, direction, normalize, scale, toRgb} from "./vectors.js";
 
 const kHalfPi = Math.PI / 2;
-const kMaxHalf = 32768;  // of what is stored; larger values are scaled down
+const kMaxStored = 32768;  // of what is stored; larger values are scaled down
 
 // Cells of the table: theta_h crowds at the normal, azimuths go round. A coarse one comes first.
 const kSizes = {
@@ -62,7 +62,7 @@ function storable(values) {
     if (!(values[i] > 0)) values[i] = 0;
     if (values[i] > largest) largest = values[i];
   }
-  const factor = largest > kMaxHalf ? largest / kMaxHalf : 1;
+  const factor = largest > kMaxStored ? largest / kMaxStored : 1;
   if (factor > 1) for (let i = 0; i < values.length; ++i) values[i] /= factor;
   return factor;
 }

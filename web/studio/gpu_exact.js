@@ -2,7 +2,7 @@
 import {texture} from "./gl.js";
 import {toRgb} from "./vectors.js";
 
-const kMaxHalf = 32768;  // of what is stored; larger values are scaled down
+const kMaxStored = 32768;  // of what is stored; larger values are scaled down
 
 // theta_h, phi_h, theta_d, phi_d of a pair.
 export const kAngles = `
@@ -32,7 +32,7 @@ export function fromHalfDiff(gl, {size: [thetaH, thetaD, phiD], fullCircle, chan
   const rgb = toRgb(data, channels), cells = new Float32Array((4 * rgb.length) / 3);
   let largest = 0;
   for (let i = 0; i < rgb.length; ++i) if (rgb[i] > largest) largest = rgb[i];
-  const factor = Math.max(largest / kMaxHalf, 1);
+  const factor = Math.max(largest / kMaxStored, 1);
   for (let i = 0; i < rgb.length / 3; ++i) {
     if (Number.isNaN(rgb[3 * i])) continue;
     for (let c = 0; c < 3; ++c) cells[4 * i + c] = rgb[3 * i + c] / factor;

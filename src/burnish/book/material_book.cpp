@@ -16,9 +16,9 @@ namespace {
 using std::numbers::sqrt2, std::numbers::inv_sqrt3;
 
 constexpr double kSqrt6 = sqrt2 / inv_sqrt3;
-constexpr double kMinValue = 1e-6;   // 1/sr: what is at or below the floor stays positive
-constexpr double kMaxLogOfLine = 7;  // logarithm of the volume's largest value
-constexpr double kMaxLog = 80;       // of f at a node: single floats end soon after
+constexpr double kMinValue = 1e-6;     // 1/sr: what is at or below the floor stays positive
+constexpr double kMaxLogOverLine = 7;  // logarithm of the volume's largest value
+constexpr double kMaxLog = 80;         // of f at a node: single floats end soon after
 constexpr std::size_t kHalfBytes = 2, kNumbersAComponent = 3;
 
 bool positive(float value) {
@@ -138,7 +138,7 @@ FactoredBrdf brdf_of_logs(const TableLayout& coarse, std::span<const double> coa
   Table volume{.name = "g", .layout = layout, .channels = kChannels, .values = {}, .format = format};
   for (std::size_t i = 0; i < log_f.size(); ++i)
     volume.values.push_back(
-        static_cast<float>(std::min(log_f[i] - mean[i / kChannels % width], kMaxLogOfLine)));
+        static_cast<float>(std::min(log_f[i] - mean[i / kChannels % width], kMaxLogOverLine)));
   Lobe lobe{.scale = std::vector<double>(kChannels, 0.0),
             .factors = {{.table = 0, .projection = kProjectHalf, .projection_y = {}, .projection_z = {}},
                         book_use()}};

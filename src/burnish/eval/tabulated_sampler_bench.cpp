@@ -62,6 +62,7 @@ Disagreement disagreement(const Sampler& sampler) {
     const DrawnDirection drawn = sampler.sample_wi(in.wo[i], in.u[i]);
     if (!(drawn.pdf > 0 && drawn.wi.z > 0)) continue;
     const double error = std::abs(sampler.pdf(drawn.wi, in.wo[i]) / drawn.pdf - 1);
+    if (!std::isfinite(error)) return {.mean = error, .at_borders = 1};  // no density at all
     if (error < kAtBorder) {
       found.mean += error;
       ++inside;

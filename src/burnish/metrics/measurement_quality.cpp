@@ -5,7 +5,7 @@
 
 namespace burnish {
 
-NodesQuality nodes_quality(const MeasuredNodes& nodes) {
+NodesQuality negatives_of(const MeasuredNodes& nodes) {
   NodesQuality quality;
   double squares = 0;
   std::size_t negative = 0;
@@ -18,6 +18,11 @@ NodesQuality nodes_quality(const MeasuredNodes& nodes) {
     quality.negative_share = static_cast<double>(negative) / static_cast<double>(nodes.samples.values.size());
     quality.negative_rms = std::sqrt(squares / static_cast<double>(negative));
   }
+  return quality;
+}
+
+NodesQuality nodes_quality(const MeasuredNodes& nodes) {
+  NodesQuality quality = negatives_of(nodes);
   if (nodes.samples.isotropic) {
     const NodeSmoothness smoothness = choose_node_smoothness(nodes);
     quality.held_out = held_out_figures(nodes, smoothness);

@@ -20,6 +20,8 @@ struct NodesQuality {
   double negative_rms = 0;    ///< their root mean square, 1/sr: noise about nothing
 };
 
+/// Of their negatives alone.
+NodesQuality negatives_of(const MeasuredNodes& nodes);
 /// The smooth function is as smooth as predicts best (choose_node_smoothness). Throws Error as that does.
 NodesQuality nodes_quality(const MeasuredNodes& nodes);
 

@@ -55,8 +55,8 @@ std::vector<ComparedFigures> compare_models(const Scorer& scorer, std::span<cons
 /// for equal pictures, where it is infinite), ssim, unknown_fraction, unknown_pixels, albedo (a list of
 /// theta_i_deg, phi_i_deg, reference and model, one number a channel, reference_unknown_fraction), and note
 /// if there is one. Of a measurement also nodes (count, log_cos, relative, rms_log, rms, and the same as
-/// itself) and measurement (repeated, log_cos, relative, rms_log, rms, psnr, ssim, held_out and held_out_incidences with the figures of
-/// nodes, negative_share, negative_rms).
+/// itself) and measurement (repeated, log_cos, relative, rms_log, rms, psnr, ssim, negative_share, negative_rms,
+/// held_out and held_out_incidences, each with the figures of nodes).
 std::string to_json(std::span<const ComparedFigures> figures, const Measurement* measurement = nullptr);
 
 /// Of the nodes alone, a JSON list of objects: model, bytes (null if unknown), count, log_cos, relative, rms_log, rms;

@@ -27,7 +27,8 @@ constexpr double kMinVolumeTexels = 1200;
 // Of the texels: lines along theta_h, which rings of films need, and along other angles, which are smooth.
 constexpr double kRingShare = 0.07, kLineShare = 0.016, kGridShare = 0.14;
 constexpr int kMinLineNodes = 6, kMaxRingNodes = 512, kMaxLineNodes = 64;
-// Of the texels and nodes along theta_d for one along theta_h, where a grid has what depends on these alone.
+// Of a grid b(theta_d,theta_h): its share of the texels, nodes along theta_d for each along theta_h, most texels, least
+// nodes along theta_d; the texels of a model from which on it is tried.
 constexpr double kHighlightShare = 0.2, kHighlightAspect = 1 / 1.5, kMaxHighlightTexels = 800;
 constexpr int kMinHighlightNodes = 6;
 constexpr std::size_t kMinGridTexels = 600;
@@ -113,7 +114,8 @@ TableLayout volume_of(const VolumeForm& form, double nodes, bool retro) {
   };
   TableLayout layout{.shape = TableShape::volume, .warp = kHalfWarp, .warp_y = retro ? kRetroWarp : Warp{}};
   layout.depth = side(form.azimuth * scale, kMinDepth);
-  layout.height = side(std::sqrt(nodes / layout.depth * form.difference / form.half), 2);
+  const int widest = std::max(2, static_cast<int>(nodes) / (2 * layout.depth));  // leaves a width of two
+  layout.height = std::min(side(std::sqrt(nodes / layout.depth * form.difference / form.half), 2), widest);
   layout.width = std::min(static_cast<int>(nodes) / (layout.depth * layout.height), kMaxVolumeSide);
   return layout;
 }

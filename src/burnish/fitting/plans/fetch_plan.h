@@ -27,11 +27,12 @@ LobePlan plan_within(BrdfRef source, const CostLimit& limit);
 
 /// Isotropic models of one lobe within the limit: g(theta_h,theta_d,phi_d), with a line z(theta_h) from two
 /// fetches on, p(wo) p(wi) from four, r(theta_d) of three and from five on, a grid k(theta_m,theta_d) from
-/// six on, s(wi + wo/2) s(wi/2 + wo) from eight on. They differ in how the volume's nodes are shared out among its axes,
-/// and one has a grid b(theta_d,theta_h) in place of r, from three fetches on. Of a source that is not its own mirror
-/// image the volume is g(theta_h,theta_d,phi_s), and the grid stands in the first of them, from two fetches on. Of one
-/// for which the order of the directions matters (order_tables.h) a grid c(theta_i,theta_h) comes second, in half of
-/// the models; of one that backscatters() nodes crowd at theta_d = 0. Throws Error where the bytes hold no such tables.
+/// six on, s(wi + wo/2) s(wi/2 + wo) from eight on. They differ in how the volume's nodes are shared out among its
+/// axes. From 600 texels and three fetches on one has a grid b(theta_d,theta_h) in place of r, and of four fetches k in
+/// place of p(wo) p(wi). Of a source that is not its own mirror image the volume is g(theta_h,theta_d,phi_s), and the
+/// model with the grid comes first, from two fetches on, of two in place of z. Of one for which the order of the
+/// directions matters (order_tables.h) the models that come first have a grid c(theta_i,theta_h) second; of one that
+/// backscatters() nodes crowd at theta_d = 0. Throws Error where the bytes hold no such tables.
 std::vector<ModelSpec> volume_specs(BrdfRef source, const CostLimit& limit);
 
 /// An anisotropic model within the limit, of at least four fetches: hemispheres q(h) p(wo) p(wi) times a volume
@@ -43,7 +44,7 @@ ModelSpec hemisphere_spec(const CostLimit& limit, std::size_t channels);
 inline constexpr double kKneeFactor = 1.02;
 
 /// Models of 2, 3, 4, 6, 8, 12 and 24 fetches that the bytes hold, and lobes of lines where takes_lobes has them for as
-/// many as they take: each fitted to part of the set, the mean of its channels, in few steps and judged on another. By
+/// many as they take, volumes with a line beside them: each fitted to part of the set, the mean of its channels, in few steps and judged on another. By
 /// rising fetches; the limit's own do not count. Deterministic.
 std::vector<FetchTrial> try_fetches(BrdfRef source, const TrainingSet& set, CostLimit limit,
                                     const RefineOptions& options);

@@ -27,8 +27,8 @@ constexpr std::size_t kTrialChannels = 3;
 // Texels of the models that are tried. Up to about 500 a fit is direct and takes milliseconds; hemispheres
 // need more, and are then solved by iterations.
 constexpr std::array<std::size_t, 2> kLineSizes{140, 400}, kDiskSizes{160, 1200};
-constexpr int kLongestLine = 1024;  // nodes, finer than any measurement
-constexpr int kMaxDisk = 256;       // nodes along a side
+constexpr int kMaxLine = 1024;  // nodes, finer than any measurement
+constexpr int kMaxDisk = 256;   // nodes along a side
 
 // Factor sets, the fullest first: the others serve budgets that hold few texels.
 const std::array<std::string, 5> kFactorSets{"pqmr", "pqm", "pqr", "pq", "q"};
@@ -43,7 +43,7 @@ int least_side(const PlannedFactor& factor) {
 
 // Nodes along a side of a factor's table of at most so many nodes.
 int side_of(const PlannedFactor& factor, double nodes) {
-  const int most = is_disk(factor) ? kMaxDisk : kLongestLine;
+  const int most = is_disk(factor) ? kMaxDisk : kMaxLine;
   return static_cast<int>(std::min<double>(most, is_disk(factor) ? std::sqrt(nodes) : nodes));
 }
 

@@ -12,7 +12,7 @@ constexpr std::size_t kMaxUses = 12;
 constexpr std::size_t kMaxEntries = 2'000'000;
 // Nodes of tables of which all may meet all.
 constexpr std::size_t kMaxDense = 1000;
-// Of a volume's nodes, that a table's meet where they lie along its axes.
+// A table whose nodes meet a smaller share of each volume's is not kept dense.
 constexpr double kFewMeetings = 0.25;
 
 constexpr std::size_t kProducts = 27;  // three along each axis
@@ -146,8 +146,8 @@ bool SparseGram::find_meetings() {
 }
 
 bool SparseGram::meets_few(std::size_t table) const noexcept {
-  return std::ranges::any_of(meetings_, [&](const Meeting& meeting) {
-    if (meeting.b != table || tables_[meeting.a].corners != 8) return false;
+  return std::ranges::all_of(meetings_, [&](const Meeting& meeting) {
+    if (meeting.b != table || tables_[meeting.a].corners != 8) return true;
     const auto all =
         static_cast<double>(tables_[meeting.a].nodes) * static_cast<double>(tables_[table].nodes);
     return meeting.starts.back() < kFewMeetings * all;
@@ -155,7 +155,7 @@ bool SparseGram::meets_few(std::size_t table) const noexcept {
 }
 
 void SparseGram::find_order() {
-  // lines looked up once and grids along a volume's axes, volumes, then what all meet
+  // lines and grids looked up once that meet few, volumes, then what all meet
   const auto rank = [&](std::size_t t) {
     if (tables_[t].corners == 8) return 1;
     if (std::ranges::count(uses_, t, &Use::table) != 1) return 2;

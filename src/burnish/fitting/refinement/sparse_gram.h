@@ -73,7 +73,7 @@ class SparseGram {
   bool find_uses();
   bool find_meetings();
   void find_order();
-  // whether each node of a table meets a small part of a volume's
+  // whether the nodes of a table meet a small part of each volume's
   bool meets_few(std::size_t table) const noexcept;
   // visit(meeting, node a, node b, the product of their weights) for what two uses add
   template <class Visit>
