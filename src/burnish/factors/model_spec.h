@@ -21,6 +21,7 @@ struct ModelSpec {
     /// Of grids: y is an angle about whose zero f is even, so that what no sample tells is level there; x is one, and y
     /// the azimuth about it, so that where x is 0 all y are one direction.
     bool even_y = false, pole_x = false;
+    bool circle_z = false;  ///< of volumes: the first layer and the last are one place
   };
   std::vector<TableSpec> tables;
   std::vector<std::vector<FactorUse>> lobes;

@@ -9,6 +9,8 @@ namespace {
 
 // Of differences between nodes of a pole, beside second derivatives: no sample outweighs them.
 constexpr double kPoleShare = 100;
+// Of differences between both ends of a circle: volumes are refined at a smoothness of 1e-9.
+constexpr double kCircleShare = 1e4;
 
 struct Term {
   int node;
@@ -25,7 +27,7 @@ void add_row(SmoothnessRows& rows, double scale, std::initializer_list<Term> ter
 
 }  // namespace
 
-SmoothnessRows smoothness_rows(const TableLayout& layout, GridEdges edges) {
+SmoothnessRows smoothness_rows(const TableLayout& layout, TableEdges edges) {
   SmoothnessRows rows;
   const int w = layout.width, h = layout.height, d = layout.depth, layer = w * h;
   const auto cells = [](int nodes) { return nodes > 1 ? nodes - 1.0 : 1.0; };
@@ -57,6 +59,8 @@ SmoothnessRows smoothness_rows(const TableLayout& layout, GridEdges edges) {
       }
   // A polar angle's function is even about the normal: its slope vanishes there.
   if (layout.shape == TableShape::line && w > 1) add_row(rows, xx, {{0, -1}, {1, 1}});
+  if (layout.shape == TableShape::volume && edges.circle_z)
+    for (int i = 0; i < layer; ++i) add_row(rows, kCircleShare * zz, {{i, -1}, {(d - 1) * layer + i, 1}});
   if (layout.shape != TableShape::grid) return rows;
   if (edges.even_y && h > 1)
     for (int x = 0; x < w; ++x) add_row(rows, yy, {{x, -1}, {x + w, 1}});

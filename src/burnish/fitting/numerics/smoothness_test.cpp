@@ -53,7 +53,7 @@ TEST(Smoothness, CountsEveryAxisOfAVolume) {
 
 TEST(Smoothness, KnowsWhereAGridsAnglesBegin) {
   const TableLayout layout{.shape = TableShape::grid, .width = 9, .height = 7};
-  const auto rows = [&](GridEdges edges) { return smoothness_rows(layout, edges).size(); };
+  const auto rows = [&](TableEdges edges) { return smoothness_rows(layout, edges).size(); };
   EXPECT_EQ(rows({.even_y = true}), rows({}) + 9);
   EXPECT_EQ(rows({.pole_x = true}), rows({}) + 7 + 6);
   // differences along a pole are as good as forbidden
@@ -65,6 +65,11 @@ TEST(Smoothness, KnowsWhereAGridsAnglesBegin) {
     return sum;
   };
   EXPECT_GT(roughness_of(3 * 9), 1000 * roughness_of(3 * 9 + 4));
+}
+
+TEST(Smoothness, TiesBothEndsOfACircle) {
+  const TableLayout layout{.shape = TableShape::volume, .width = 4, .height = 3, .depth = 6};
+  EXPECT_EQ(smoothness_rows(layout, {.circle_z = true}).size(), smoothness_rows(layout).size() + 4 * 3);
 }
 
 TEST(Smoothness, IsTheSameAtEveryResolution) {

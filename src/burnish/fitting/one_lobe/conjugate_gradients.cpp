@@ -38,7 +38,7 @@ class LogOperator {
         channels_(maker.source->channels),
         numbering_(number_nodes(spec_, step())) {
     for (const ModelSpec::TableSpec& table : spec_.tables) {
-      smoothness_.push_back(smoothness_rows(table.layout, {table.even_y, table.pole_x}));
+      smoothness_.push_back(smoothness_rows(table.layout, {table.even_y, table.pole_x, table.circle_z}));
       smooth_.push_back(options.smooth * table.smooth_share);
     }
     for (const FactorUse& use : uses_) {
@@ -231,8 +231,8 @@ class LogOperator {
     layout.width = level.coarse_width();
     layout.height = level.coarse_height();
     layout.depth = level.coarse_depth();
-    const SmoothnessRows smoothness =
-        smoothness_rows(layout, {spec_.tables[table].even_y, spec_.tables[table].pole_x});
+    const ModelSpec::TableSpec& spec = spec_.tables[table];
+    const SmoothnessRows smoothness = smoothness_rows(layout, {spec.even_y, spec.pole_x, spec.circle_z});
     for (double& v : d) v = v / total_weight_ + kIterativeRidge;
     for (std::size_t k = 0; k < smoothness.nodes.size(); ++k)
       for (std::size_t c = 0; c < step_of; ++c)

@@ -162,8 +162,8 @@ class Gatherer {
 // Adds smooth * (roughness of every table) to the matrix.
 void add_smoothness(const ModelSpec& spec, const Gatherer& gatherer, double smooth, Matrix& matrix) {
   for (std::size_t t = 0; t < spec.tables.size(); ++t) {
-    const SmoothnessRows rows =
-        smoothness_rows(spec.tables[t].layout, {spec.tables[t].even_y, spec.tables[t].pole_x});
+    const ModelSpec::TableSpec& table = spec.tables[t];
+    const SmoothnessRows rows = smoothness_rows(table.layout, {table.even_y, table.pole_x, table.circle_z});
     for (std::size_t copy = 0; copy < gatherer.copies(t); ++copy)
       for (std::size_t r = 0; r < rows.size(); ++r)
         for (std::size_t a = rows.starts[r]; a < rows.starts[r + 1]; ++a)

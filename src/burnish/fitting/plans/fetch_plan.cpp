@@ -191,7 +191,9 @@ ModelSpec volume_spec(VolumeForm form, Beside beside, const CostLimit& limit, st
               {{.projection = kProjectHalf,
                 .projection_y = kProjectDifference,
                 .projection_z = traits.twisted ? kProjectSide : kProjectAzimuth}});
-  return builder.spec();
+  ModelSpec spec = builder.spec();
+  spec.tables.back().circle_z = traits.twisted;
+  return spec;
 }
 
 // The spec with volumes of fewer nodes.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -72,6 +73,14 @@ TEST(FetchPlan, TellsMirrorImagesApartInTwoFetches) {
       draw_training_set(source, {.pictures = 4'000, .directions = 8'000, .crowded = true});
   const FigureOptions figures{.count = 5000, .image_size = 32};
   const FactoredBrdf told = to_brdf(fit_volumes(set, specs, {.smooth = 1e-9}).model, TableFormat::half);
+  // both ends of phi_s are one place
+  const Table& volume =
+      *std::ranges::find(told.tables(), TableShape::volume, [](const Table& t) { return t.layout.shape; });
+  const auto layer = static_cast<std::size_t>(volume.layout.width * volume.layout.height) * volume.channels;
+  double apart = 0;
+  for (std::size_t i = 0; i < layer; ++i)
+    apart += std::abs(std::log(volume.values[i] / volume.values[volume.values.size() - layer + i]));
+  EXPECT_LT(apart / static_cast<double>(layer), 0.02);
   // no model that is its own mirror image has less
   const double least = std::expm1(mirror_asymmetry(source));
   EXPECT_GT(least, 0.05);

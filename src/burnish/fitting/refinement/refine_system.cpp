@@ -78,7 +78,7 @@ void RefineSystem::add_tables(const LogModel& model, TableFormat format) {
                        .step = model.step(t),
                        .share = table.smooth_share,
                        .log_range = log_range(format_of(table, format)),
-                       .smoothness = smoothness_rows(layout)});
+                       .smoothness = smoothness_rows(layout, {.circle_z = table.circle_z})});
     size_ += tables_.back().nodes * number.copies;
 
     // texels of one exponent stay where it holds them
