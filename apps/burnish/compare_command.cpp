@@ -23,7 +23,7 @@ namespace {
 struct CompareArguments {
   SourceArguments reference;
   std::vector<std::string> models;
-  std::string folder, target = "function", repeat, only;
+  std::string folder, target, repeat, only;
   FigureOptions figures;
   bool no_symmetrize = false, json = false;
 };
@@ -79,12 +79,8 @@ void add_quality(Measurement& measurement, const Candidate& reference, const Sco
   measurement.quality = quality_by_repeat(scorer, second.ref(), measurement.nodes);
 }
 
-// Figures at the nodes alone: no picture is drawn.
-void compare_nodes(const Measurement& measurement, std::span<const ComparedModel> models, bool json) {
-  if (json) {
-    fmt::print("{}\n", nodes_json(measurement, models));
-    return;
-  }
+// Figures at the nodes.
+void print_nodes(const Measurement& measurement, std::span<const ComparedModel> models) {
   fmt::print("{:<32} {:>8} {:>9} {:>8} {:>8} {:>9}\n", "at the measured nodes", "bytes", "relative",
              "rms_log", "log_cos", "rms");
   const auto row = [](const std::string& name, std::optional<std::uint64_t> bytes, const NodeFigures& f) {
@@ -112,7 +108,11 @@ void compare(const CompareArguments& arguments) {
   std::optional<Measurement> measurement =
       measurement_of(reference, arguments.target == "nodes", arguments.only);
   if (arguments.target == "nodes" && arguments.folder.empty()) {
-    compare_nodes(*measurement, models, arguments.json);
+    // no picture is drawn
+    if (arguments.json)
+      fmt::print("{}\n", nodes_json(*measurement, models));
+    else
+      print_nodes(*measurement, models);
     return;
   }
   const Scorer scorer(reference.ref(), arguments.figures);
@@ -137,6 +137,7 @@ void compare(const CompareArguments& arguments) {
                f.figures.relative, f.figures.rms_log, f.figures.log_cos);
   if (measured && measured->quality) print_quality(*measured->quality);
   print_albedos(figures);
+  if (measured && arguments.target.empty()) print_nodes(*measured, models);
   const ErrorFigures& first = figures.front().figures;
   if (first.unknown_fraction > 0 || first.unknown_pixels > 0)
     fmt::print("left out: {:.1f} % of the direction pairs and {} pixels, where a side knows nothing\n",
@@ -162,9 +163,9 @@ void add_compare_command(CLI::App& app) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   verb->add_option("--target", arguments->target,
-                   "score the function between what was measured too, or nodes: only what was measured")
-      ->check(one_of({"function", "nodes"}))
-      ->capture_default_str();
+                   "score the function between what was measured too, or nodes: only what was measured "
+                   "(default: the function, and of measurements a second table at the nodes)")
+      ->check(one_of({"function", "nodes"}));
   verb->add_option("--only", arguments->only,
                    "score these nodes only: half=0, half=1 (of a checkerboard) or theta_i=K, counted from 0");
   verb->add_option("--repeat", arguments->repeat,

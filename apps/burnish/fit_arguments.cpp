@@ -107,7 +107,7 @@ FitOptions fit_options(const FitArguments& arguments, bool isotropic) {
   FitOptions options = arguments.options;
   options.form = fit_form(arguments, isotropic);
   options.symmetrize = !arguments.no_symmetrize;
-  if (arguments.target == "nodes") options.target = FitTarget::nodes;
+  if (!arguments.target.empty()) options.target = parse_fit_target(arguments.target);
   if (!arguments.hold_out.empty())
     options.hold_out = usage([&] { return parse_node_part(arguments.hold_out); });
   if (!arguments.format.empty()) options.format = parse_table_format(arguments.format);
@@ -137,14 +137,15 @@ void add_fit_arguments(CLI::App& verb, FitArguments& arguments) {
       "--smooth", arguments.smooth,
       "smoothness of the tables: a number >= 0, or auto (cross-validation: the default for scattered "
       "samples; of volumes what predicts measured nodes best, which takes noise away)");
-  verb.add_option("--target", arguments.target,
-                  "fit the function that the source's owner makes of it, or nodes: what was measured")
-      ->check(one_of({"function", "nodes"}))
-      ->capture_default_str();
+  verb.add_option(
+          "--target", arguments.target,
+          "fit the function that the source's owner makes of it, rings of its interpolation and all, or "
+          "nodes: what was measured (default: of isotropic RGL files nodes, unless one lobe, "
+          "--no-symmetrize or --method is asked for, else function)")
+      ->check(one_of({"function", "nodes"}));
   verb.add_option("--hold-out", arguments.hold_out,
-                  "of --target nodes: leave these out, half=0, half=1 (of a checkerboard) or theta_i=K, "
-                  "counted from 0")
-      ->needs("--target");
+                  "leave these nodes out of --target nodes, half=0, half=1 (of a checkerboard) or theta_i=K, "
+                  "counted from 0");
   verb.add_option("--floor", one_lobe.how.floor,
                   "added to every value before its logarithm is taken, 1/sr, at most 1")
       ->check(CLI::PositiveNumber)

@@ -14,7 +14,7 @@ struct FitArguments {
   FitOptions options;
   OneLobe one_lobe{.model = ""};
   Budget budget{.bytes = {}};
-  std::string bytes, method, target = "function", hold_out, loss = "image", smooth = "default", format;
+  std::string bytes, method, target, hold_out, loss = "image", smooth = "default", format;
   std::shared_ptr<const MaterialBook> book;
   bool no_symmetrize = false;
 };

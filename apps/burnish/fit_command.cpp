@@ -114,6 +114,8 @@ void print(const NodesReport& report) {
     fmt::print("{:<10} relative {:.4f}, rms_log {:.4f}, log_cos {:.4f} at {} nodes\n", name, f.relative,
                f.rms_log, f.log_cos, f.count);
   };
+  fmt::print(
+      "target     what was measured, its nodes, not what its owner puts between (--target function)\n");
   line("nodes", report.at_fitted);
   if (report.held_out) line("unseen", *report.held_out);
   if (report.at_held_out) line("held out", *report.at_held_out);

@@ -43,7 +43,7 @@ int fetches_of(std::string_view method) {
 
 // One of ours or of the baselines, at so many bytes; 0: whatever it takes.
 Score run_method(const Material& material, std::string_view method, std::size_t budget) {
-  FitOptions options{.score = false};
+  FitOptions options{.target = FitTarget::function, .score = false};
   if (is_ours(method))
     options.form = Budget{.bytes = budget, .fetches = fetches_of(method)};
   else

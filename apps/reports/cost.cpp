@@ -148,7 +148,9 @@ Row Contest::row_of(const std::string& method, std::size_t bytes, BrdfRef model)
 Contest::Entry Contest::entry_of_fit(std::size_t budget, int asked) const {
   const std::string name = said(fmt::format("{} bytes, {} fetches", budget, asked));
   tell("cost: " + name);
-  const Fit made = fit(material_.source, {.form = Budget{.bytes = budget, .fetches = asked}, .score = false});
+  const Fit made =
+      fit(material_.source,
+          {.form = Budget{.bytes = budget, .fetches = asked}, .target = FitTarget::function, .score = false});
   const auto model = std::make_shared<const FactoredBrdf>(made.model());
   const auto evaluator = std::make_shared<const FactoredEvaluator>(*model);
   Row row = row_of("ours", model->bytes(), *model);

@@ -32,7 +32,7 @@ const Report kReports[] = {
     {"measured",
      "what a model says of measured nodes, incidences and scans that it has not seen",
      report_measured,
-     {"halves", "incidences", "repeat", "noise", "order", "scattered"}},
+     {"halves", "incidences", "repeat", "formats", "noise", "order", "scattered"}},
     {"cost", "error beside nanoseconds, fetches and milliseconds a frame, of fits and of other methods",
      report_cost},
     {"sampling", "ways of drawing directions: weights, variance, time", report_sampling},

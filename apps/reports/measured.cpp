@@ -49,6 +49,10 @@ struct MeanNodes {
   NodeFigures mean() const { return {.log_cos = log_cos / count, .relative = relative / count}; }
 };
 
+std::string text_of(const NodeFigures& figures) {
+  return fmt::format("{:.3f} / {:.4f}", figures.relative, figures.log_cos);
+}
+
 std::vector<std::string> figures_of(const NodeFigures& figures) {
   return {fmt::format("{:.3f}", figures.relative), fmt::format("{:.4f}", figures.log_cos)};
 }
@@ -82,7 +86,8 @@ void report_halves(Page& page, const fs::path& data) {
                      open_source(fmt::format("nbrdf:{}#{}", (data / "nbrdf/rgl.csv").string(), name), {}),
                  np = open_source(fmt::format("np:{}#{}", (data / "np").string(), name), {});
     const SymmetrizedBrdf symmetrized_network(network.ref()), symmetrized_np(np.ref());
-    const Fit of_function = fit(source, {.form = Budget{.bytes = kBytes}, .score = false});
+    const Fit of_function =
+        fit(source, {.form = Budget{.bytes = kBytes}, .target = FitTarget::function, .score = false});
     const MeasuredNodes nodes = measured_nodes(source);
 
     std::vector<MeanNodes> means(predictors.size());
@@ -103,7 +108,7 @@ void report_halves(Page& page, const fs::path& data) {
     for (std::size_t k = 0; k < means.size(); ++k) {
       const NodeFigures mean = means[k].mean();
       predictors[k].all.add(mean);
-      texts.push_back(fmt::format("{:.3f} / {:.4f}", mean.relative, mean.log_cos));
+      texts.push_back(text_of(mean));
     }
     const double relative = std::log(means.back().relative / means.front().relative),
                  log_cos = std::log(means.back().log_cos / means.front().log_cos);
@@ -113,10 +118,7 @@ void report_halves(Page& page, const fs::path& data) {
     table.add(texts);
   }
   std::vector<std::string> texts{"**mean**"};
-  for (const Predictor& predictor : predictors) {
-    const NodeFigures mean = predictor.all.mean();
-    texts.push_back(fmt::format("{:.3f} / {:.4f}", mean.relative, mean.log_cos));
-  }
+  for (const Predictor& predictor : predictors) texts.push_back(text_of(predictor.all.mean()));
   const auto count = static_cast<double>(files.size());
   texts.push_back(fmt::format("**{:+.3f} / {:+.3f}**", log_relative / count, log_log_cos / count));
   table.add(texts);
@@ -164,7 +166,7 @@ void report_incidences(Page& page) {
       const MeasuredNodes unseen = nodes_of(nodes, part);
       const RglTable left(without_incidence(data, k));
       const SymmetrizedBrdf symmetrized(left);
-      const Fit ours = fit_nodes_without(source, part, 2);
+      const Fit ours = fit_nodes_without(source, part, 3);
       const std::array<BrdfRef, 3> models{left, symmetrized, ours.ref()};
       for (std::size_t m = 0; m < models.size(); ++m) {
         const NodeFigures figures = node_figures(unseen, models[m]);
@@ -176,13 +178,12 @@ void report_incidences(Page& page) {
     std::vector<std::string> texts{name};
     for (std::size_t m = 0; m < means.size(); ++m) {
       all[m].add(means[m].mean());
-      texts.push_back(fmt::format("{:.3f} / {:.4f}", means[m].mean().relative, means[m].mean().log_cos));
+      texts.push_back(text_of(means[m].mean()));
     }
     table.add(texts);
   }
   std::vector<std::string> texts{"**mean**"};
-  for (const MeanNodes& mean : all)
-    texts.push_back(fmt::format("{:.3f} / {:.4f}", mean.mean().relative, mean.mean().log_cos));
+  for (const MeanNodes& mean : all) texts.push_back(text_of(mean.mean()));
   table.add(texts);
   page["incidences"] = table.markdown();
   page.write_rows("incidences", rows);
@@ -218,7 +219,7 @@ void report_repeat(Page& page, const fs::path& data) {
     add(fmt::format("the {} scan itself", names[from]),
         std::to_string(fs::file_size(from == 0 ? fine : coarse)), functions[from]);
     const auto add_fit = [&](const std::string& how, const Budget& budget) {
-      const Fit made = fit(scans[from], {.form = budget, .score = false});
+      const Fit made = fit(scans[from], {.form = budget, .target = FitTarget::function, .score = false});
       add(how, std::to_string(made.bytes()), made.ref());
     };
     add_fit("`--budget 2700`", {.bytes = kFewBytes});
@@ -228,6 +229,62 @@ void report_repeat(Page& page, const fs::path& data) {
     if (!page.options().quick) add_fit("`--budget 64K`", {.bytes = 65'536});
   }
   page["repeat"] = table.markdown();
+
+  // and at the nodes alone
+  Table at_nodes({"nodes of", "nodes", "by its own function", "by the other's",
+                  "ours, of the other's function", "ours, of the other's nodes"});
+  for (std::size_t to = 0; to < scans.size(); ++to) {
+    const Source& other = scans[1 - to];
+    const MeasuredNodes nodes = measured_nodes(scans[to]);
+    const Fit of_function = fit(other, {.target = FitTarget::function, .score = false}),
+              of_nodes = fit(other, {.target = FitTarget::nodes, .score = false});
+    std::vector<std::string> texts{names[to], ""};
+    for (const BrdfRef model :
+         {BrdfRef(functions[to]), BrdfRef(functions[1 - to]), of_function.ref(), of_nodes.ref()}) {
+      const NodeFigures figures = node_figures(nodes, model);
+      texts[1] = std::to_string(figures.count);
+      texts.push_back(text_of(figures));
+    }
+    at_nodes.add(texts);
+  }
+  page["repeat_nodes"] = at_nodes.markdown();
+}
+
+// ---- Formats whose owners interpolate what was measured
+
+// Of one file each, at the nodes of both halves, what foretells them: the fit of the function, which knows them, or that
+// of the nodes of the other half.
+void report_formats(Page& page, const fs::path& data) {
+  const auto first_in = [&](const char* folder) {
+    const std::vector<fs::path> files = files_in(data / folder);
+    return files.empty() ? std::string() : files.front().string();
+  };
+  std::vector<std::string> sources{first_in("mbsdf"), first_in("zemax"), first_in("tensortree"),
+                                   first_in("speos")};
+  if (page.options().quick) sources.resize(1);
+  Table table(
+      {"file", "format", "nodes", "the file's function", "ours, of the function", "ours, of the other half"});
+  for (const std::string& file : sources) {
+    if (file.empty()) continue;
+    tell("measured: " + fs::path(file).filename().string());
+    const Source source = open_source(file, {});
+    const SymmetrizedBrdf function(source.ref());
+    const Fit of_function = fit(source, {.target = FitTarget::function, .score = false});
+    const MeasuredNodes nodes = measured_nodes(source);
+    std::array<MeanNodes, 3> means;
+    for (const std::uint32_t half : {0u, 1u}) {
+      const NodePart part{NodePart::Kind::half, half};
+      const MeasuredNodes unseen = nodes_of(nodes, part);
+      const Fit of_nodes = fit(source, {.target = FitTarget::nodes, .hold_out = part, .score = false});
+      const std::array<BrdfRef, 3> models{function, of_function.ref(), of_nodes.ref()};
+      for (std::size_t m = 0; m < models.size(); ++m) means[m].add(node_figures(unseen, models[m]));
+    }
+    std::vector<std::string> texts{fs::path(file).filename().string(), source.findings.format,
+                                   std::to_string(nodes.size())};
+    for (const MeanNodes& mean : means) texts.push_back(text_of(mean.mean()));
+    table.add(texts);
+  }
+  page["formats"] = table.markdown();
 }
 
 // ---- Light that noise adds
@@ -281,8 +338,10 @@ void report_order(Page& page, const fs::path& data) {
   Table table({"fit", "bytes", "psnr", "ssim", "relative", "log_cos", "rms_log", "rms"});
   for (const std::size_t bytes : {kFewBytes, kBytes})
     for (const bool symmetrize : {true, false}) {
-      const Fit made =
-          fit(source, {.form = Budget{.bytes = bytes}, .symmetrize = symmetrize, .score = false});
+      const Fit made = fit(source, {.form = Budget{.bytes = bytes},
+                                    .target = FitTarget::function,
+                                    .symmetrize = symmetrize,
+                                    .score = false});
       table.add(joined({fmt::format("`--budget {}{}`", bytes == kBytes ? "16K" : "2700",
                                     symmetrize ? "" : " --no-symmetrize"),
                         std::to_string(made.bytes())},
@@ -325,6 +384,7 @@ void report_measured(const ReportOptions& options) {
   if (options.data && options.wants("halves")) report_halves(page, *options.data);
   if (options.data && options.wants("incidences")) report_incidences(page);
   if (options.data && options.wants("repeat")) report_repeat(page, *options.data);
+  if (options.data && options.wants("formats")) report_formats(page, *options.data);
   if (options.wants("noise")) report_noise(page, options.data);
   if (options.data && options.wants("order")) report_order(page, *options.data);
   if (options.data && !options.quick && options.wants("scattered")) report_scattered(page, *options.data);

@@ -88,7 +88,8 @@ Materials load_materials(const fs::path& folder, bool quick) {
     Source source = open_source(file.string(), {});
     std::vector<FactoredBrdf> fits;
     for (const Form& form : kForms)
-      fits.push_back(fit(source, {.form = form.budget, .score = false}).model());
+      fits.push_back(
+          fit(source, {.form = form.budget, .target = FitTarget::function, .score = false}).model());
     Material& material = materials.emplace_back(name, std::get<RglTable>(std::move(source.brdf)));
     for (FactoredBrdf& model : fits) material.models.emplace_back(std::move(model), material.table);
   }

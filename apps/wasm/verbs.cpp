@@ -100,6 +100,7 @@ Json summary_of(const Opened& opened) {
   Json json{{"name", source.name},
             {"channels", ref.channels()},
             {"isotropic", ref.isotropic()},
+            {"target", default_target(source, {}) == FitTarget::nodes ? "nodes" : "function"},
             {"model", model != nullptr},
             {"measurement", is_measurement(source)}};
   if (const auto bytes = source.bytes()) json["bytes"] = *bytes;
@@ -325,10 +326,7 @@ FitForm fit_form(const Json& a, bool isotropic) {
 FitOptions fit_options(const Json& a, bool isotropic) {
   FitOptions options;
   options.form = fit_form(a, isotropic);
-  const std::string target = a.value("target", "function");
-  if (target != "function" && target != "nodes")
-    throw Error(fmt::format("target: expected function or nodes, found '{}'", target));
-  if (target == "nodes") options.target = FitTarget::nodes;
+  if (a.contains("target")) options.target = parse_fit_target(a.at("target").get<std::string>());
   if (a.contains("holdOut")) options.hold_out = parse_node_part(a.at("holdOut").get<std::string>());
   if (a.contains("format")) options.format = parse_table_format(a.at("format").get<std::string>());
   if (a.contains("smooth") && a.at("smooth").is_number()) options.smooth = a.at("smooth").get<double>();

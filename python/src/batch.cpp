@@ -60,6 +60,10 @@ FitKeywords keywords_of(const nb::kwargs& given) {
       take(value, keywords.book);
     else if (name == "method")
       take(value, keywords.method);
+    else if (name == "target")
+      take(value, keywords.target);
+    else if (name == "hold_out")
+      take(value, keywords.hold_out);
     else
       throw Error("batch: expected an option of fit, found '" + name + "'");
   }

@@ -27,7 +27,8 @@ struct FitKeywords {
   std::uint64_t seed = 1;
   bool symmetrize = true, conserve_energy = false;
   std::shared_ptr<const MaterialBook> book = nullptr;
-  std::string method = "";  ///< of baselines
+  std::string method = "";                 ///< of baselines
+  std::string target = "", hold_out = "";  ///< empty: default_target, none
 };
 
 /// What they ask for; throws Error on a word that is none.

@@ -41,10 +41,12 @@ OpenedModel* fit(const OpenedBrdf& source, const std::string& model, const std::
                  const std::string& loss, const std::variant<std::monostate, double, std::string>& smooth,
                  std::optional<int> reweightings, double floor, const std::optional<std::string>& format,
                  std::size_t samples, std::uint64_t seed, bool symmetrize, bool conserve_energy,
-                 const std::shared_ptr<const MaterialBook>& book, const nb::object& progress) {
-  FitOptions options = fit_options({model, tables, budget, fetches, lobes, search, loss, smooth, reweightings,
-                                    floor, format, samples, seed, symmetrize, conserve_energy, book},
-                                   source.source().ref().isotropic());
+                 const std::shared_ptr<const MaterialBook>& book, const std::optional<std::string>& target,
+                 const std::optional<std::string>& hold_out, const nb::object& progress) {
+  FitOptions options = fit_options(
+      {model, tables, budget, fetches, lobes, search, loss, smooth, reweightings, floor, format, samples,
+       seed, symmetrize, conserve_energy, book, "", target.value_or(""), hold_out.value_or("")},
+      source.source().ref().isotropic());
   options.progress = progress_of(progress);
   const nb::gil_scoped_release released;
   return new OpenedModel(source.source().name, to_model(burnish::fit(source.source(), options)));
@@ -90,6 +92,8 @@ FitOptions fit_options(const FitKeywords& given, bool isotropic) {
     how.cross_validate = true;
   }
   if (given.format) options.format = parse_table_format(*given.format);
+  if (!given.target.empty()) options.target = parse_fit_target(given.target);
+  if (!given.hold_out.empty()) options.hold_out = parse_node_part(given.hold_out);
   const std::optional<std::uint64_t> bytes = bytes_of(given.budget);
   if (!given.method.empty()) {
     if (!bytes) throw Error("budget: expected a number of bytes with a method, found 'auto'");
@@ -127,7 +131,8 @@ void bind_fitting(nb::module_& m) {
       nb::arg("smooth") = nb::none(), nb::arg("reweightings") = nb::none(),
       nb::arg("floor") = LogLinear{}.floor, nb::arg("format") = nb::none(), nb::arg("samples") = 0,
       nb::arg("seed") = 1, nb::arg("symmetrize") = true, nb::arg("conserve_energy") = false,
-      nb::arg("book") = nb::none(), nb::arg("progress") = nb::none(), nb::rv_policy::take_ownership,
+      nb::arg("book") = nb::none(), nb::arg("target") = nb::none(), nb::arg("hold_out") = nb::none(),
+      nb::arg("progress") = nb::none(), nb::rv_policy::take_ownership,
       "Fits a factored BRDF as `burnish fit` does: by default the model of some kilobytes and few fetches\n"
       "that serves most uses.\n\n"
       "model: product of tables over projections, \"pqp\", \"pqpr\" or such as\n"
@@ -145,7 +150,11 @@ void bind_fitting(nb::module_& m) {
       "part.\n"
       "conserve_energy: damp the model where it reflects more than it receives. book: a Book, by which a "
       "few\n"
-      "measured pairs are completed instead.\n\n"
+      "measured pairs are completed instead. target: \"function\", what the owner of a measurement makes of "
+      "it,\n"
+      "or \"nodes\", what was measured; None: nodes of isotropic RGL files with a budget, else the "
+      "function.\n"
+      "hold_out: nodes to leave out, \"half=0\", \"half=1\" or \"theta_i=K\".\n\n"
       "progress(stage, fraction) is called from this thread; what it raises ends the fit, and so does "
       "Ctrl-C.\n"
       "Model.notes says what was done and how far off the model is.");

@@ -42,7 +42,7 @@ export function memory(): number;
 export interface FitOptions {
   /** Of the model; by default the material's, "fitted". */
   name?: string;
-  /** Bytes, or "auto"; without a budget or model 16384 within two fetches (anisotropic: six). */
+  /** Bytes, or "auto"; without a budget or model 16384 within two fetches (of nodes three, anisotropic: six). */
   budget?: number | "auto";
   fetches?: number;
   lobes?: number;
@@ -51,6 +51,7 @@ export interface FitOptions {
   /** A product of tables, as the command line's --model. */
   model?: string;
   tables?: string[];
+  /** What the owner of a measurement makes of it, or what was measured; by default the material's `target`. */
   target?: "function" | "nodes";
   holdOut?: string;
   smooth?: number | "auto";
@@ -127,6 +128,8 @@ export class Material {
   readonly channels: number;
   readonly isotropic: boolean;
   readonly measurement: boolean;
+  /** What a fit of it follows unless told: see FitOptions. */
+  readonly target: "function" | "nodes";
   /** Names of what a file of several materials holds; empty of others. */
   readonly entries: string[];
   /** The JSON of `burnish info --json`. */

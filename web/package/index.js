@@ -192,6 +192,7 @@ export class Material {
     this.channels = summary.channels;
     this.isotropic = summary.isotropic;
     this.measurement = summary.measurement;
+    this.target = summary.target;
     this.entries = summary.entries ?? [];
   }
 

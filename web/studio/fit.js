@@ -13,7 +13,7 @@ const presets = {
 const kCurve = [700, 1400, 2800, 5600, 11200, 22400, 44800];
 const kMaxFits = 4;  // at once, each with memory of its own
 
-let stop = null, choose = () => {};
+let stop = null, choose = () => {}, offered = null;
 
 // "16K" as bytes; "auto" as itself. Throws Error.
 function readBudget(text) {
@@ -28,6 +28,9 @@ function readFetches(text) {
   if (!(Number.isInteger(fetches) && fetches >= 1 && fetches <= 256)) throw new Error(`Fetches: expected 1 to 256 or nothing, found '${text}'`);
   return fetches;
 }
+
+// What a fit follows: as chosen where there is a choice.
+const targetOf = (reference) => reference.material.measurement ? find("#target").value : undefined;
 
 function progress(fraction, stage) {
   if (stage) find("#fit-stage").textContent = stage;
@@ -75,7 +78,7 @@ async function fit(event) {
   const reference = referenceOf(state.shown);
   if (!reference || isSurface(reference) || stop) return;
   await busy(async (signal) => {
-    const options = {budget: readBudget(find("#budget").value), fetches: readFetches(find("#fetches").value)};
+    const options = {budget: readBudget(find("#budget").value), fetches: readFetches(find("#fetches").value), target: targetOf(reference)};
     const found = await fitOne(reference, options, signal);
     if (!state.entries.includes(reference)) {
       found.material.close?.();
@@ -102,7 +105,7 @@ async function errorCurve() {
     };
     const one = async () => {
       for (let budget; (budget = left.shift()) !== undefined;) {
-        const {material, info, figures} = await fitOne(reference, {budget, fetches}, signal);
+        const {material, info, figures} = await fitOne(reference, {budget, fetches, target: targetOf(reference)}, signal);
         material.close?.();
         reference.curve.push({bytes: info.bytes, psnr: figures.psnr});
         reference.curve.sort((a, b) => a.bytes - b.bytes);
@@ -161,6 +164,12 @@ export function start() {
     budget.value = presets[name].budget;
     fetches.value = presets[name].fetches;
   });
+  // by default an anisotropic source takes six fetches, nodes three
+  const setFetches = () => {
+    presets.default.fetches = referenceOf(state.shown)?.material.isotropic === false ? "6" : find("#target").value === "nodes" ? "3" : "2";
+    if (find("#presets [data-value=default]").getAttribute("aria-checked") === "true") fetches.value = presets.default.fetches;
+  };
+  find("#target").addEventListener("change", setFetches);
   const other = () => choose(Object.keys(presets).find((name) => presets[name].budget === budget.value.trim() && presets[name].fetches === fetches.value.trim()));
   budget.addEventListener("input", other);
   fetches.addEventListener("input", other);
@@ -172,9 +181,11 @@ export function start() {
     drawFigures();
     if (what === "shown") {
       drawCurve();
-      // an anisotropic source takes six fetches by default
-      presets.default.fetches = referenceOf(state.shown)?.material.isotropic === false ? "6" : "2";
-      if (find("#presets [data-value=default]").getAttribute("aria-checked") === "true") fetches.value = presets.default.fetches;
+      const reference = referenceOf(state.shown)?.material;
+      find("#target-row").hidden = !reference?.measurement;
+      if (reference && reference !== offered) find("#target").value = reference.target;
+      offered = reference;
+      setFetches();
     }
   });
 }

@@ -215,7 +215,8 @@ void add_fit(const std::string& name, const FitForm& form) {
   const auto fitted = std::make_shared<std::optional<Fitted>>();
   const auto made = [=]() -> const Fitted& {
     if (!*fitted) {
-      FactoredBrdf model = fit(measured(), {.form = form, .score = false}).model();
+      FactoredBrdf model =
+          fit(measured(), {.form = form, .target = FitTarget::function, .score = false}).model();
       const FactoredEvaluator evaluator(model);
       fitted->emplace(std::move(model), evaluator);
     }

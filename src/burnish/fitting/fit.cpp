@@ -58,8 +58,10 @@ constexpr double kSpareLogCos = 0.8, kSpareAbsolute = 0.1;
 constexpr std::size_t kSpareTexels = 1500;  // from here on, for absolute errors and smoothness
 constexpr double kVolumeSmooth = 1e-9;
 constexpr double kFewTexelsSmooth = 1e-9;  // of several lobes; few texels are smooth by themselves
-constexpr int kSmoothnessFetches = 2;      // of the models by which it is chosen
-constexpr double kFrontalShare = 0.1;      // of pixels, see with_frontal_pixels
+constexpr int kNodeFetches =
+    1;  // more than of the function: dark films' colours ask for a grid beside the line
+constexpr int kSmoothnessFetches = 2;  // of the models by which it is chosen
+constexpr double kFrontalShare = 0.1;  // of pixels, see with_frontal_pixels
 
 // What was measured is judged where it was measured; pictures keep the rest from running away.
 constexpr ErrorTerms kNodeShares{.pictures = 0.5, .dimmed = 0.1, .relative = 1, .log_cos = 1};
@@ -86,7 +88,7 @@ class Fitter {
   Fitter(const Source& source, const FitOptions& options)
       : source_(source), options_(options), brdf_(source.ref()) {
     if (options.symmetrize) symmetrized_.emplace(brdf_);
-    if (options.target == FitTarget::nodes)
+    if (options.target.value_or(default_target(source, options)) == FitTarget::nodes)
       take_nodes();
     else if (options.hold_out)
       throw Error("fit: expected the nodes as the target, since some are to be held out");
@@ -126,7 +128,11 @@ class Fitter {
       throw Error(fmt::format("fit: expected a budget of 1 to {} bytes, found {}", kMaxBudget, *form.bytes));
     if (form.fetches < 0 || (form.fetches > 0 && (form.lobes > 0 || form.search)))
       throw Error("fit: expected fetches >= 0, and with them neither a number of lobes nor a search");
-    return form.bytes ? fit_to_bytes(form, *form.bytes) : fit_to_noise(form);
+    Budget budget = form;
+    if (!form.bytes && form.fetches == 0 && form.lobes == 0 && !form.search) budget.default_fetches = true;
+    if (budget.default_fetches)
+      budget.fetches = default_budget(brdf_.isotropic()).fetches + (smoothed_ ? kNodeFetches : 0);
+    return form.bytes ? fit_to_bytes(budget, *form.bytes) : fit_to_noise(budget);
   }
 
   FactoredBrdf fit_to_bytes(const Budget& form, std::uint64_t bytes) {
@@ -153,7 +159,7 @@ class Fitter {
   }
 
   Fitted fit(const FromBook& form) {
-    if (options_.smooth || options_.target == FitTarget::nodes)
+    if (options_.smooth || nodes_)
       throw Error("fit: expected neither a smoothness nor nodes as the target with a book");
     const TableFormat format = this->format();
     Completion completion =
@@ -335,15 +341,11 @@ class Fitter {
   }
 
   /// More and more bytes, until the model errs no more than the measurement itself or they hardly help.
-  FactoredBrdf fit_to_noise(Budget form) {
+  FactoredBrdf fit_to_noise(const Budget& form) {
     if (scattered() && samples()->size() <= kManySamples) {
       FactoredBrdf brdf = fit_scattered(form, kBudgetLadder.back());
       report_.budget_choice = {.bytes = brdf.bytes(), .stop = BudgetStop::cross_validation};
       return brdf;
-    }
-    if (form.fetches == 0 && form.lobes == 0 && !form.search) {
-      form.fetches = default_budget(brdf_.isotropic()).fetches;
-      form.default_fetches = true;
     }
     const NoiseScale scale = noise_scale();
     BudgetChoice choice{.noise = scale.noise()};
@@ -592,6 +594,20 @@ class Fitter {
 };
 
 }  // namespace
+
+FitTarget parse_fit_target(std::string_view text) {
+  if (text == "function") return FitTarget::function;
+  if (text == "nodes") return FitTarget::nodes;
+  throw Error(fmt::format("target: expected function or nodes, found '{}'", text));
+}
+
+FitTarget default_target(const Source& source, const FitOptions& options) {
+  if (options.hold_out) return FitTarget::nodes;
+  const auto* table = std::get_if<RglTable>(&source.brdf);
+  const bool lobes = !options.form || std::holds_alternative<Budget>(*options.form) ||
+                     std::holds_alternative<GivenLobes>(*options.form);
+  return table && table->isotropic() && options.symmetrize && lobes ? FitTarget::nodes : FitTarget::function;
+}
 
 Budget default_budget(bool isotropic) {
   return {.bytes = 16 << 10, .fetches = isotropic ? 2 : 6, .default_fetches = true};

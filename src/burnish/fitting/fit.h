@@ -48,7 +48,7 @@ struct Budget {
   /// error is within two percent of the least, of another as many as its lobes take. The one lobe of scattered samples
   /// has at most so many, where somebody chose them.
   int fetches = 0;
-  bool default_fetches = false;  ///< nobody did: they are default_budget's
+  bool default_fetches = false;  ///< nobody did: they are default_budget's, of nodes as the target one more
   int lobes = 0;                 ///< lobes of lines or hemispheres, without fetches; 0: a choice
   bool search = false;           ///< search_plan first; without fetches
   FitLoss loss = FitLoss::image;
@@ -91,9 +91,21 @@ FitForm form_of(const std::string& model, const std::vector<std::string>& tables
 /// an anisotropic one are fitted as they are.
 enum class FitTarget { function, nodes };
 
+/// "function" or "nodes". Throws Error on anything else.
+FitTarget parse_fit_target(std::string_view text);
+
+struct FitOptions;
+
+/// What is fitted where nobody says: what foretells nodes that it has not seen better. Of isotropic RGL files these are
+/// the nodes, for several lobes and budgets: their owners multiply what stands between nodes by a distribution of
+/// normals, speckle and all. Owners of other tables interpolate what was measured, and know it as well. Likewise the
+/// function is what is not made reciprocal, baselines and books follow, and what one lobe, which has few nodes to be
+/// bent by, does better with. Nodes, too, where some are held out.
+FitTarget default_target(const Source& source, const FitOptions& options);
+
 struct FitOptions {
-  std::optional<FitForm> form = {};  ///< none: default_budget
-  FitTarget target = FitTarget::function;
+  std::optional<FitForm> form = {};      ///< none: default_budget
+  std::optional<FitTarget> target = {};  ///< none: default_target
   std::optional<NodePart> hold_out =
       {};  ///< nodes that are not fitted and choose nothing; with FitTarget::nodes
 

@@ -314,6 +314,30 @@ TEST(Fit, ToNodesPredictsThoseHeldOut) {
   EXPECT_NE(to_json(made.report).find("node_test"), std::string::npos);
 }
 
+TEST(Fit, OfIsotropicRglFilesIsOfTheirNodesUnlessAskedOtherwise) {
+  const AnalyticBrdf brushed_metal = brushed();
+  RglOptions rgl;
+  rgl.theta_i_count = 4;
+  rgl.ndf_theta = rgl.ndf_phi = rgl.resolution = 8;
+  const Source isotropic = source_of("isotropic", make_rgl_table(paint(), rgl)),
+               anisotropic = source_of("anisotropic", make_rgl_table(brushed_metal, rgl)),
+               merl = source_of("cells", tabulate_half_diff(paint(), 12, 8, 10, false));
+  EXPECT_EQ(default_target(isotropic, {}), FitTarget::nodes);
+  EXPECT_EQ(default_target(isotropic, {.form = Budget{}}), FitTarget::nodes);
+  EXPECT_EQ(default_target(isotropic, {.form = OneLobe{}}), FitTarget::function);
+  EXPECT_EQ(default_target(isotropic, {.form = BaselineMethod{.method = "svd"}}), FitTarget::function);
+  EXPECT_EQ(default_target(isotropic, {.symmetrize = false}), FitTarget::function);
+  EXPECT_EQ(default_target(anisotropic, {}), FitTarget::function);
+  EXPECT_EQ(default_target(merl, {}), FitTarget::function);
+  EXPECT_EQ(default_target(merl, {.hold_out = NodePart{}}), FitTarget::nodes);
+
+  const FitOptions small{.form = Budget{.bytes = 1000}, .score = false};
+  FitOptions of_function = small;
+  of_function.target = FitTarget::function;
+  EXPECT_TRUE(fit(isotropic, small).report.nodes);
+  EXPECT_FALSE(fit(isotropic, of_function).report.nodes);
+}
+
 TEST(Fit, TakesNodesOfAnisotropicSourcesAsTheyAre) {
   const Source source = source_of("patches", patch_table());
   const Fit made = fit(source, {.form = GivenLobes{.model = "p(wo) q(h) p(wi)", .tables = {"p=6x6", "q=8x8"}},
@@ -479,7 +503,8 @@ TEST(Fit, RefusesWhatDoesNotGoTogether) {
   EXPECT_NE(told(even, {.form = GivenLobes{.model = ""}}), "");
   // nodes of what was not measured, or held out of a function
   EXPECT_THAT(told(even, {.target = FitTarget::nodes}), HasSubstr("expected a measurement"));
-  EXPECT_THAT(told(even, {.hold_out = NodePart{}}), HasSubstr("expected the nodes"));
+  EXPECT_THAT(told(even, {.target = FitTarget::function, .hold_out = NodePart{}}),
+              HasSubstr("expected the nodes"));
   // budgets that hold nothing
   EXPECT_THAT(told(even, {.form = Budget{.bytes = 0}}), HasSubstr("budget"));
   EXPECT_THAT(told(even, {.form = Budget{.bytes = 20}}), HasSubstr("budget"));

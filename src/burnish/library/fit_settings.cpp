@@ -52,7 +52,8 @@ std::string text_of(const Json& json) {
 }  // namespace
 
 std::string settings_text(const FitOptions& options) {
-  Json json{{"form", nullptr}, {"target", options.target == FitTarget::nodes ? "nodes" : "function"}};
+  Json json{{"form", nullptr}, {"target", nullptr}};
+  if (options.target) json["target"] = *options.target == FitTarget::nodes ? "nodes" : "function";
   if (options.form) json["form"] = std::visit([](const auto& form) { return json_of(form); }, *options.form);
   if (options.hold_out)
     json["hold_out"] = {static_cast<int>(options.hold_out->kind), options.hold_out->number};

@@ -109,7 +109,8 @@ MaterialFit fit_material(const Source& source, std::string_view target, const Ma
   fit.figures = scorer.score(fit.ref());
   fit.beyond = unexplained(brdf, fit.ref());
   if (options.beside) {
-    const Fit factored = burnish::fit(source, {.score = false, .progress = options.progress});
+    const Fit factored =
+        burnish::fit(source, {.target = FitTarget::function, .score = false, .progress = options.progress});
     fit.factored = {.bytes = factored.bytes(), .figures = scorer.score(factored.ref())};
   }
   return fit;
