@@ -58,7 +58,9 @@ def main():
 
     burnish.mitsuba.register()
     source = burnish.open_source(arguments.measurement)
-    model = burnish.fit(source, budget=arguments.budget, symmetrize=not arguments.no_symmetrize)
+    model = burnish.fit(
+        source, budget=arguments.budget, symmetrize=not arguments.no_symmetrize, target="function"
+    )
     images = []
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "model.exr")

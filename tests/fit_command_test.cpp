@@ -33,6 +33,8 @@ class FitCommand : public testing::Test {
     return path.string();
   }
 
+  const std::filesystem::path& folder() const { return folder_.path; }
+
   void expect_same(const std::string& source, const std::string& arguments, const FitOptions& options) {
     const Outcome outcome = run_fit(source, arguments);
     ASSERT_EQ(outcome.status, 0) << outcome.output;
@@ -113,6 +115,26 @@ TEST_F(FitCommand, IsTheLibrarysFit) {
   const std::string samples = scattered();
   expect_same(samples, "", {});
   expect_same(samples, "--budget 300", {.form = Budget{.bytes = 300}});
+}
+
+TEST_F(FitCommand, FollowsNodesOrTheFunctionAndComparePrintsBoth) {
+  BURNISH_SKIP_WHERE_SANITIZED();
+  const std::string file = (folder() / "paint.bsdf").string();
+  ASSERT_EQ(run(fmt::format("{} convert {} {}", BURNISH_CLI, kPaint, file)).status, 0);
+  const FitForm form = Budget{.bytes = 700};
+  expect_same(file, "--budget 700 --target function", {.form = form, .target = FitTarget::function});
+  expect_same(file, "--budget 700", {.form = form});
+  expect_same(file, "--budget 700 --target nodes", {.form = form, .target = FitTarget::nodes});
+  expect_same(file, "--budget 700 --hold-out half=1", {.form = form, .hold_out = parse_node_part("half=1")});
+
+  const std::string compare = fmt::format("{} compare {} {} --count 1000", BURNISH_CLI, file, out());
+  const std::string nodes = "at the measured nodes", model = "psnr";
+  const std::string both = run(compare).output;
+  EXPECT_THAT(both, testing::AllOf(testing::HasSubstr(nodes), testing::HasSubstr(model)));
+  const std::string function = run(compare + " --target function").output;
+  EXPECT_THAT(function, testing::AllOf(testing::Not(testing::HasSubstr(nodes)), testing::HasSubstr(model)));
+  const std::string at_nodes = run(compare + " --target nodes").output;
+  EXPECT_THAT(at_nodes, testing::AllOf(testing::HasSubstr(nodes), testing::Not(testing::HasSubstr(model))));
 }
 
 TEST_F(FitCommand, TellsMisuseFromErrors) {

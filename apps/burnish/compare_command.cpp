@@ -79,8 +79,21 @@ void add_quality(Measurement& measurement, const Candidate& reference, const Sco
   measurement.quality = quality_by_repeat(scorer, second.ref(), measurement.nodes);
 }
 
-// Figures at the nodes.
-void print_nodes(const Measurement& measurement, std::span<const ComparedModel> models) {
+// Nothing else is found out.
+std::vector<ComparedFigures> at_nodes(const Measurement& measurement, std::span<const ComparedModel> models) {
+  std::vector<ComparedFigures> figures;
+  for (const ComparedModel& model : models)
+    figures.push_back({.name = model.name,
+                       .bytes = model.bytes,
+                       .note = {},
+                       .figures = {},
+                       .albedos = {},
+                       .nodes = node_figures(measurement.nodes, model.brdf)});
+  return figures;
+}
+
+// Figures at the nodes; models have some.
+void print_nodes(const Measurement& measurement, std::span<const ComparedFigures> models) {
   fmt::print("{:<32} {:>8} {:>9} {:>8} {:>8} {:>9}\n", "at the measured nodes", "bytes", "relative",
              "rms_log", "log_cos", "rms");
   const auto row = [](const std::string& name, std::optional<std::uint64_t> bytes, const NodeFigures& f) {
@@ -88,8 +101,7 @@ void print_nodes(const Measurement& measurement, std::span<const ComparedModel> 
                bytes ? fmt::format("{}", *bytes) : "-", f.relative, f.rms_log, f.log_cos, f.rms);
   };
   row("the reference itself", {}, measurement.itself);
-  for (const ComparedModel& model : models)
-    row(model.name, model.bytes, node_figures(measurement.nodes, model.brdf));
+  for (const ComparedFigures& model : models) row(model.name, model.bytes, model.nodes.value());
   fmt::print("{} nodes with both cosines above 0.15\n", measurement.itself.count);
 }
 
@@ -112,7 +124,7 @@ void compare(const CompareArguments& arguments) {
     if (arguments.json)
       fmt::print("{}\n", nodes_json(*measurement, models));
     else
-      print_nodes(*measurement, models);
+      print_nodes(*measurement, at_nodes(*measurement, models));
     return;
   }
   const Scorer scorer(reference.ref(), arguments.figures);
@@ -137,11 +149,11 @@ void compare(const CompareArguments& arguments) {
                f.figures.relative, f.figures.rms_log, f.figures.log_cos);
   if (measured && measured->quality) print_quality(*measured->quality);
   print_albedos(figures);
-  if (measured && arguments.target.empty()) print_nodes(*measured, models);
   const ErrorFigures& first = figures.front().figures;
   if (first.unknown_fraction > 0 || first.unknown_pixels > 0)
     fmt::print("left out: {:.1f} % of the direction pairs and {} pixels, where a side knows nothing\n",
                100 * first.unknown_fraction, first.unknown_pixels);
+  if (measured && arguments.target != "function") print_nodes(*measured, figures);
   if (!arguments.folder.empty()) fmt::print("report: {}/index.html\n", arguments.folder);
 }
 

@@ -79,10 +79,11 @@ void add_lobes_arguments(CLI::App& verb, FitArguments& arguments) {
           "bytes: fits the best model that this many hold; K and M count as 1024s; auto: until more would "
           "store the measurement's noise or hardly help")
       ->transform(bytes_or_auto());
-  verb.add_option("--fetches", budget.fetches,
-                  "of --budget: at most this many filtered reads of tables an evaluation (default: the "
-                  "fewest of those "
-                  "tried within two percent of the least error; with auto 2, of anisotropic sources 6)")
+  verb.add_option(
+          "--fetches", budget.fetches,
+          "of --budget: at most this many filtered reads of tables an evaluation (default: the "
+          "fewest of those "
+          "tried within two percent of the least error; with auto 2, of nodes 3, of anisotropic sources 6)")
       ->check(CLI::Range(1, 256))
       ->needs("--budget")
       ->excludes("--method");
@@ -124,11 +125,10 @@ void add_fit_arguments(CLI::App& verb, FitArguments& arguments) {
                               "{}): {}",
                               BaselineOptions{}.budget, fmt::join(baseline_methods(), ", ")));
   add_lobes_arguments(verb, arguments);
-  verb.add_option(
-      "--model", one_lobe.model,
-      "product of tables over projections: pqp (the paper's), pqpr, or such as "
-      "\"p(wo) q(h) s(wi+wo+0.5n) p(wi)\" (default: --budget 16K --fetches 2, of anisotropic sources "
-      "--budget 16K --fetches 6)");
+  verb.add_option("--model", one_lobe.model,
+                  "product of tables over projections: pqp (the paper's), pqpr, or such as "
+                  "\"p(wo) q(h) s(wi+wo+0.5n) p(wi)\" (default: --budget 16K --fetches 2, of nodes 3, "
+                  "of anisotropic sources 6)");
   verb.add_option("--table", one_lobe.tables,
                   "size and spacing of a table: NAME=SIZE[,warp...][,shared][,format], SIZE N (1-D), NxN "
                   "(hemisphere), NxM or NxMxK; warp identity, power:P or rational:K; format as --format")
@@ -141,10 +141,10 @@ void add_fit_arguments(CLI::App& verb, FitArguments& arguments) {
           "--target", arguments.target,
           "fit the function that the source's owner makes of it, rings of its interpolation and all, or "
           "nodes: what was measured (default: of isotropic RGL files nodes, unless one lobe, "
-          "--no-symmetrize or --method is asked for, else function)")
+          "--smooth auto, --no-symmetrize, --method or --book is asked for, else function)")
       ->check(one_of({"function", "nodes"}));
   verb.add_option("--hold-out", arguments.hold_out,
-                  "leave these nodes out of --target nodes, half=0, half=1 (of a checkerboard) or theta_i=K, "
+                  "fit nodes and leave these out: half=0, half=1 (of a checkerboard) or theta_i=K, "
                   "counted from 0");
   verb.add_option("--floor", one_lobe.how.floor,
                   "added to every value before its logarithm is taken, 1/sr, at most 1")
@@ -173,8 +173,8 @@ void add_fit_arguments(CLI::App& verb, FitArguments& arguments) {
         arguments.book = std::make_shared<const MaterialBook>(parse_book(read_file(file)));
       },
       "complete a few measured pairs by what the materials of this book have in common (see `burnish book`)");
-  for (const char* other : {"--budget", "--method", "--model", "--table", "--smooth", "--target", "--floor",
-                            "--reweightings", "--no-symmetrize"})
+  for (const char* other : {"--budget", "--method", "--model", "--table", "--smooth", "--target",
+                            "--hold-out", "--floor", "--reweightings", "--no-symmetrize"})
     book->excludes(other);
   verb.add_flag("--conserve-energy", options.conserve_energy,
                 "damp the model where it reflects more than it receives, and say what that cost");

@@ -114,8 +114,7 @@ void print(const NodesReport& report) {
     fmt::print("{:<10} relative {:.4f}, rms_log {:.4f}, log_cos {:.4f} at {} nodes\n", name, f.relative,
                f.rms_log, f.log_cos, f.count);
   };
-  fmt::print(
-      "target     what was measured, its nodes, not what its owner puts between (--target function)\n");
+  fmt::print("target     the measured nodes (--target function fits what their owner makes of them)\n");
   line("nodes", report.at_fitted);
   if (report.held_out) line("unseen", *report.held_out);
   if (report.at_held_out) line("held out", *report.at_held_out);
@@ -161,6 +160,7 @@ void print_baseline(const BaselineBrdf& brdf, const FitReport& fit) {
     fmt::print("  tables clamped instead: {}\n", figures(lobes->tables_clamped));
     fmt::print("  lifted by {:.3g} instead: {}\n", lobes->bias, figures(lobes->biased));
   }
+  if (fit.nodes) print(*fit.nodes);
 }
 
 void print_figures(std::string_view name, const ErrorFigures& e, const std::string& size) {

@@ -47,8 +47,8 @@ struct Fitted {
 };
 
 Fitted fit_by_command(const Source& source, std::uint64_t bytes, int fetches) {
-  std::string command = "fit";
-  FitOptions options{.score = false};
+  std::string command = "fit --target function";
+  FitOptions options{.target = FitTarget::function, .score = false};
   if (bytes > 0) {
     command += fmt::format(" --budget {}", bytes);
     if (fetches > 0) command += fmt::format(" --fetches {}", fetches);

@@ -22,6 +22,7 @@ namespace burnish::reports {
 namespace {
 
 constexpr std::size_t kBytes = 16'384, kFewBytes = 2700;
+constexpr int kNodeFetches = 3;  // fit's own of nodes
 
 std::vector<fs::path> rgl_files(const Page& page) {
   std::vector<fs::path> files = files_in(*page.options().data / "rgl");
@@ -166,7 +167,7 @@ void report_incidences(Page& page) {
       const MeasuredNodes unseen = nodes_of(nodes, part);
       const RglTable left(without_incidence(data, k));
       const SymmetrizedBrdf symmetrized(left);
-      const Fit ours = fit_nodes_without(source, part, 3);
+      const Fit ours = fit_nodes_without(source, part, kNodeFetches);
       const std::array<BrdfRef, 3> models{left, symmetrized, ours.ref()};
       for (std::size_t m = 0; m < models.size(); ++m) {
         const NodeFigures figures = node_figures(unseen, models[m]);
@@ -236,8 +237,9 @@ void report_repeat(Page& page, const fs::path& data) {
   for (std::size_t to = 0; to < scans.size(); ++to) {
     const Source& other = scans[1 - to];
     const MeasuredNodes nodes = measured_nodes(scans[to]);
-    const Fit of_function = fit(other, {.target = FitTarget::function, .score = false}),
-              of_nodes = fit(other, {.target = FitTarget::nodes, .score = false});
+    const Budget budget{.bytes = kBytes, .fetches = kNodeFetches};
+    const Fit of_function = fit(other, {.form = budget, .target = FitTarget::function, .score = false}),
+              of_nodes = fit(other, {.form = budget, .target = FitTarget::nodes, .score = false});
     std::vector<std::string> texts{names[to], ""};
     for (const BrdfRef model :
          {BrdfRef(functions[to]), BrdfRef(functions[1 - to]), of_function.ref(), of_nodes.ref()}) {
@@ -269,13 +271,14 @@ void report_formats(Page& page, const fs::path& data) {
     tell("measured: " + fs::path(file).filename().string());
     const Source source = open_source(file, {});
     const SymmetrizedBrdf function(source.ref());
-    const Fit of_function = fit(source, {.target = FitTarget::function, .score = false});
+    const Budget budget{.bytes = kBytes, .fetches = kNodeFetches};
+    const Fit of_function = fit(source, {.form = budget, .target = FitTarget::function, .score = false});
     const MeasuredNodes nodes = measured_nodes(source);
     std::array<MeanNodes, 3> means;
     for (const std::uint32_t half : {0u, 1u}) {
       const NodePart part{NodePart::Kind::half, half};
       const MeasuredNodes unseen = nodes_of(nodes, part);
-      const Fit of_nodes = fit(source, {.target = FitTarget::nodes, .hold_out = part, .score = false});
+      const Fit of_nodes = fit_nodes_without(source, part, kNodeFetches);
       const std::array<BrdfRef, 3> models{function, of_function.ref(), of_nodes.ref()};
       for (std::size_t m = 0; m < models.size(); ++m) means[m].add(node_figures(unseen, models[m]));
     }

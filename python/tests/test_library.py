@@ -309,6 +309,25 @@ def test_a_real_measurement_is_read_and_fitted(rgl_file, cli):
     assert source.info() == told
 
 
+def test_what_a_fit_follows_is_the_command_lines(cli, tmp_path):
+    file, path = str(tmp_path / "paint.bsdf"), str(tmp_path / "model.exr")
+    cli("convert", GGX, file)
+    source = burnish.open_source(file)
+    for keywords, options in (
+        ({}, []),
+        ({"target": "nodes"}, ["--target", "nodes"]),
+        ({"target": "function"}, ["--target", "function"]),
+        ({"hold_out": "half=1"}, ["--hold-out", "half=1"]),
+    ):
+        cli("fit", file, "-o", path, "--budget", 700, *options)
+        model, stored = burnish.fit(source, budget=700, **keywords), burnish.open_source(path)
+        assert model.notes == stored.notes
+        for table, other in zip(model.tables, stored.tables):
+            assert (np.asarray(table.values) == np.asarray(other.values)).all()
+    with pytest.raises(burnish.Error, match="expected function or nodes, found 'cells'"):
+        burnish.fit(source, budget=700, target="cells")
+
+
 def test_a_material_is_the_command_lines(cli, tmp_path):
     printed = cli("fit", GGX, "--to", "gltf", "--alone", "-o", tmp_path / "cli.json", "--json")
     summary = burnish.fit_material(burnish.open_source(GGX), "gltf", tmp_path / "python.json", beside=False)

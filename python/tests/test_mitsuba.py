@@ -279,7 +279,7 @@ def test_a_model_as_measured_looks_like_mitsubas_measured(budget, least, cli, rg
     psnr = {}
     for name, options in (("made reciprocal", []), ("as measured", ["--no-symmetrize"])):
         path = str(tmp_path / "model.exr")
-        cli("fit", file, "--budget", budget, "-o", path, *options)
+        cli("fit", file, "--target", "function", "--budget", budget, "-o", path, *options)
         size = burnish.open_source(path).bytes
         assert size <= budget
         image = lit_spheres({"type": "burnish", "filename": path})

@@ -118,6 +118,10 @@ for (const [format, file] of Object.entries(sources))
         assert.ok(ours.nodes[i] === theirs.nodes[i] || Math.abs(Math.log2(ours.nodes[i] / theirs.nodes[i])) < 1, `${ours.nodes}, ${theirs.nodes}`);
     });
 
+    test("follows nodes where RGL files are isotropic", () => {
+      assert.equal(material.target, format.endsWith("RGL") ? "nodes" : "function");
+    });
+
     test("is evaluated as `eval` does", async () => {
       const count = 200, wi = directions(count, 1), wo = directions(count, 2);
       const rows = Array.from({length: count}, (_, i) => [...wi.slice(3 * i, 3 * i + 3), ...wo.slice(3 * i, 3 * i + 3)].join(","));

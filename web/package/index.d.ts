@@ -51,7 +51,8 @@ export interface FitOptions {
   /** A product of tables, as the command line's --model. */
   model?: string;
   tables?: string[];
-  /** What the owner of a measurement makes of it, or what was measured; by default the material's `target`. */
+  /** What the owner of a measurement makes of it, or what was measured; by default the material's `target`, but
+   * of one lobe and without `symmetrize` the function. */
   target?: "function" | "nodes";
   holdOut?: string;
   smooth?: number | "auto";
@@ -128,7 +129,7 @@ export class Material {
   readonly channels: number;
   readonly isotropic: boolean;
   readonly measurement: boolean;
-  /** What a fit of it follows unless told: see FitOptions. */
+  /** What a fit of it by default follows: see FitOptions. */
   readonly target: "function" | "nodes";
   /** Names of what a file of several materials holds; empty of others. */
   readonly entries: string[];

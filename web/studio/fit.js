@@ -13,7 +13,7 @@ const presets = {
 const kCurve = [700, 1400, 2800, 5600, 11200, 22400, 44800];
 const kMaxFits = 4;  // at once, each with memory of its own
 
-let stop = null, choose = () => {}, offered = null;
+let stop = null, choose = () => {}, followed = null;
 
 // "16K" as bytes; "auto" as itself. Throws Error.
 function readBudget(text) {
@@ -97,7 +97,7 @@ async function errorCurve() {
   if (!reference || stop) return;
   reference.curve = [];
   await busy(async (signal, abort) => {
-    const fetches = readFetches(find("#fetches").value), left = [...kCurve];
+    const fetches = readFetches(find("#fetches").value), target = targetOf(reference), left = [...kCurve];
     let wrong;
     const failed = (error) => {
       wrong ??= error;
@@ -105,7 +105,7 @@ async function errorCurve() {
     };
     const one = async () => {
       for (let budget; (budget = left.shift()) !== undefined;) {
-        const {material, info, figures} = await fitOne(reference, {budget, fetches, target: targetOf(reference)}, signal);
+        const {material, info, figures} = await fitOne(reference, {budget, fetches, target}, signal);
         material.close?.();
         reference.curve.push({bytes: info.bytes, psnr: figures.psnr});
         reference.curve.sort((a, b) => a.bytes - b.bytes);
@@ -181,10 +181,10 @@ export function start() {
     drawFigures();
     if (what === "shown") {
       drawCurve();
-      const reference = referenceOf(state.shown)?.material;
-      find("#target-row").hidden = !reference?.measurement;
-      if (reference && reference !== offered) find("#target").value = reference.target;
-      offered = reference;
+      const material = referenceOf(state.shown)?.material;
+      find("#target-row").hidden = !material?.measurement;
+      if (material && material !== followed) find("#target").value = material.target;
+      followed = material;
       setFetches();
     }
   });

@@ -58,10 +58,9 @@ constexpr double kSpareLogCos = 0.8, kSpareAbsolute = 0.1;
 constexpr std::size_t kSpareTexels = 1500;  // from here on, for absolute errors and smoothness
 constexpr double kVolumeSmooth = 1e-9;
 constexpr double kFewTexelsSmooth = 1e-9;  // of several lobes; few texels are smooth by themselves
-constexpr int kNodeFetches =
-    1;  // more than of the function: dark films' colours ask for a grid beside the line
-constexpr int kSmoothnessFetches = 2;  // of the models by which it is chosen
-constexpr double kFrontalShare = 0.1;  // of pixels, see with_frontal_pixels
+constexpr int kMoreFetchesOfNodes = 1;     // dark films' colours ask for a grid beside the line
+constexpr int kSmoothnessFetches = 2;      // of the models by which it is chosen
+constexpr double kFrontalShare = 0.1;      // of pixels, see with_frontal_pixels
 
 // What was measured is judged where it was measured; pictures keep the rest from running away.
 constexpr ErrorTerms kNodeShares{.pictures = 0.5, .dimmed = 0.1, .relative = 1, .log_cos = 1};
@@ -131,7 +130,7 @@ class Fitter {
     Budget budget = form;
     if (!form.bytes && form.fetches == 0 && form.lobes == 0 && !form.search) budget.default_fetches = true;
     if (budget.default_fetches)
-      budget.fetches = default_budget(brdf_.isotropic()).fetches + (smoothed_ ? kNodeFetches : 0);
+      budget.fetches = default_budget(brdf_.isotropic()).fetches + (smoothed_ ? kMoreFetchesOfNodes : 0);
     return form.bytes ? fit_to_bytes(budget, *form.bytes) : fit_to_noise(budget);
   }
 
@@ -604,8 +603,9 @@ FitTarget parse_fit_target(std::string_view text) {
 FitTarget default_target(const Source& source, const FitOptions& options) {
   if (options.hold_out) return FitTarget::nodes;
   const auto* table = std::get_if<RglTable>(&source.brdf);
-  const bool lobes = !options.form || std::holds_alternative<Budget>(*options.form) ||
-                     std::holds_alternative<GivenLobes>(*options.form);
+  const auto* budget = options.form ? std::get_if<Budget>(&*options.form) : nullptr;
+  const bool lobes = !options.form || std::holds_alternative<GivenLobes>(*options.form) ||
+                     (budget && !budget->scattered.cross_validate);
   return table && table->isotropic() && options.symmetrize && lobes ? FitTarget::nodes : FitTarget::function;
 }
 

@@ -48,9 +48,11 @@ struct Budget {
   /// error is within two percent of the least, of another as many as its lobes take. The one lobe of scattered samples
   /// has at most so many, where somebody chose them.
   int fetches = 0;
-  bool default_fetches = false;  ///< nobody did: they are default_budget's, of nodes as the target one more
-  int lobes = 0;                 ///< lobes of lines or hemispheres, without fetches; 0: a choice
-  bool search = false;           ///< search_plan first; without fetches
+  /// Nobody did: whatever `fetches` says, they are default_budget's, one more where the nodes of an isotropic source are
+  /// fitted.
+  bool default_fetches = false;
+  int lobes = 0;        ///< lobes of lines or hemispheres, without fetches; 0: a choice
+  bool search = false;  ///< search_plan first; without fetches
   FitLoss loss = FitLoss::image;
   LogLinear scattered = {};  ///< scattered samples are too few for several lobes: they get one
 };
@@ -96,11 +98,11 @@ FitTarget parse_fit_target(std::string_view text);
 
 struct FitOptions;
 
-/// What is fitted where nobody says: what foretells nodes that it has not seen better. Of isotropic RGL files these are
-/// the nodes, for several lobes and budgets: their owners multiply what stands between nodes by a distribution of
-/// normals, speckle and all. Owners of other tables interpolate what was measured, and know it as well. Likewise the
-/// function is what is not made reciprocal, baselines and books follow, and what one lobe, which has few nodes to be
-/// bent by, does better with. Nodes, too, where some are held out.
+/// What is fitted where nobody says. The nodes of isotropic RGL files, whose owners multiply what stands between nodes by
+/// a distribution of normals, speckle and all: nodes that were left out are foretold better by the others than by that
+/// function, which knows them (docs/results/measured.md). The function of any other source, whose owner interpolates what
+/// was measured; of every source without symmetrize, for one lobe, baselines and books, and where a budget's smoothness
+/// is cross-validated. Nodes wherever some are held out.
 FitTarget default_target(const Source& source, const FitOptions& options);
 
 struct FitOptions {

@@ -324,6 +324,10 @@ TEST(Fit, OfIsotropicRglFilesIsOfTheirNodesUnlessAskedOtherwise) {
                merl = source_of("cells", tabulate_half_diff(paint(), 12, 8, 10, false));
   EXPECT_EQ(default_target(isotropic, {}), FitTarget::nodes);
   EXPECT_EQ(default_target(isotropic, {.form = Budget{}}), FitTarget::nodes);
+  EXPECT_EQ(default_target(isotropic, {.form = GivenLobes{.model = "q(h) + s(h)"}}), FitTarget::nodes);
+  EXPECT_EQ(default_target(isotropic, {.form = Budget{.scattered = {.cross_validate = true}}}),
+            FitTarget::function);
+  EXPECT_EQ(default_target(isotropic, {.form = FromBook{}}), FitTarget::function);
   EXPECT_EQ(default_target(isotropic, {.form = OneLobe{}}), FitTarget::function);
   EXPECT_EQ(default_target(isotropic, {.form = BaselineMethod{.method = "svd"}}), FitTarget::function);
   EXPECT_EQ(default_target(isotropic, {.symmetrize = false}), FitTarget::function);
@@ -335,6 +339,11 @@ TEST(Fit, OfIsotropicRglFilesIsOfTheirNodesUnlessAskedOtherwise) {
   FitOptions of_function = small;
   of_function.target = FitTarget::function;
   EXPECT_TRUE(fit(isotropic, small).report.nodes);
+  // by default within one fetch more
+  EXPECT_LE(fetch_count(fit(isotropic, {.score = false}).model()), 3u);
+  EXPECT_LE(
+      fetch_count(fit(isotropic, {.form = Budget{.bytes = 16384, .fetches = 2}, .score = false}).model()),
+      2u);
   EXPECT_FALSE(fit(isotropic, of_function).report.nodes);
 }
 

@@ -44,8 +44,9 @@ struct MaterialFit {
   int starts = 0;      ///< minimizations run
   ErrorFigures figures;
   Unexplained beyond;
-  std::optional<FactoredBeside> factored;  ///< the default fit of the source, scored alike
-  double seconds = 0;                      ///< of the material's fit alone, by the wall clock
+  std::optional<FactoredBeside>
+      factored;        ///< the fit of the source's function by default_budget, scored alike
+  double seconds = 0;  ///< of the material's fit alone, by the wall clock
 
   /// Refers to this object, which must outlive it and stay where it is.
   BrdfRef ref() const noexcept;
