@@ -62,8 +62,8 @@ def lobes():
     """Two lobes over every kind of projection and table."""
     return burnish.fit(
         burnish.open_source(BRUSHED),
-        model="p(wo) q(h) p(wi) + a(wi+wo+0.5n) r(theta_d) g(theta_h,theta_d) b(theta_m) t(theta_t) e(phi_d)",
-        tables=["q=24x24,power:0.5", "p=12x12", "a=12,rational:0.3", "r=8", "g=8x6", "b=10", "t=5", "e=6"],
+        model="p(wo) q(h) p(wi) + a(wi+wo+0.5n) r(theta_d) g(theta_h,theta_d) b(theta_m) t(theta_t) e(phi_d) u(phi_s)",
+        tables=["q=24x24,power:0.5", "p=12x12", "a=12,rational:0.3", "r=8", "g=8x6", "b=10", "t=5", "e=6", "u=7"],
         samples=20_000,
     )
 
