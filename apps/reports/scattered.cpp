@@ -43,15 +43,11 @@ Source source_of(Samples samples) {
   return {.name = {}, .brdf = ScatteredBrdf(std::move(samples)), .findings = {}};
 }
 
-OneLobe scattered_lobe(const std::string& expression) {
-  std::vector<std::string> tables{"p=64", "q=96,rational:0.2"};
-  if (expression != "pqp") tables.push_back("r=48");
-  if (expression.find('m') != expression.npos) tables.push_back("m=64,power:0.5");
-  return {.model = expression, .tables = tables};
-}
-
 FactoredBrdf fit_scattered(const Source& source, const std::string& expression) {
-  return fit(source, {.form = scattered_lobe(expression), .score = false}).model();
+  std::vector<std::string> tables{"p=48", "q=64,rational:0.2"};
+  if (expression != "pqp") tables.push_back("r=32");
+  if (expression.find('m') != expression.npos) tables.push_back("m=48,power:0.5");
+  return fit(source, {.form = OneLobe{.model = expression, .tables = tables}, .score = false}).model();
 }
 
 void FoldErrors::add(std::span<const double> f, std::span<const double> model) {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include <burnish/factors/factored_brdf.h>
-#include <burnish/fitting/fit.h>
 #include <burnish/reflectance/samples.h>
 #include <burnish/source.h>
 
@@ -36,10 +35,7 @@ inline constexpr const char* kScatteredModel = "p(wo) q(h) m(theta_m) r(theta_d)
 /// Samples as `burnish fit` opens them.
 Source source_of(Samples samples);
 
-/// One lobe as fine as serves rows left out of a lattice; smoothness by cross-validation among the samples of the
-/// source.
-OneLobe scattered_lobe(const std::string& expression);
-/// Fits it.
+/// Fits one lobe; smoothness by cross-validation among the samples of the source.
 FactoredBrdf fit_scattered(const Source& source, const std::string& expression);
 
 /// Errors of the tested rows of all folds, at the floors 1e-3 and 1e-5.
