@@ -38,9 +38,10 @@ struct Form {
   const char *name, *command;  // of marks and files, and as it is written
   Budget budget;
 };
-const std::array kForms{
-    Form{"models", "burnish fit --budget 2700", {.bytes = 2700}},
-    Form{"volumes", "burnish fit --budget 16384 --fetches 2", {.bytes = 16'384, .fetches = 2}}};
+const std::array kForms{Form{"models", "burnish fit --target function --budget 2700", {.bytes = 2700}},
+                        Form{"volumes",
+                             "burnish fit --target function --budget 16384 --fetches 2",
+                             {.bytes = 16'384, .fetches = 2}}};
 
 // A BRDF with all that draws for it.
 struct Drawn {

@@ -97,12 +97,9 @@ Json summary_of(const Opened& opened) {
   const Source& source = opened.source;
   const BrdfRef ref = source.ref();
   const auto* model = std::get_if<FactoredBrdf>(&source.brdf);
-  Json json{{"name", source.name},
-            {"channels", ref.channels()},
-            {"isotropic", ref.isotropic()},
-            {"target", default_target(source, {}) == FitTarget::nodes ? "nodes" : "function"},
-            {"model", model != nullptr},
-            {"measurement", is_measurement(source)}};
+  Json json{{"name", source.name},          {"channels", ref.channels()},
+            {"isotropic", ref.isotropic()}, {"target", to_string(default_target(source, {}))},
+            {"model", model != nullptr},    {"measurement", is_measurement(source)}};
   if (const auto bytes = source.bytes()) json["bytes"] = *bytes;
   if (model) {
     json["expression"] = model_expression(*model);

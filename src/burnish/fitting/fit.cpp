@@ -600,6 +600,10 @@ FitTarget parse_fit_target(std::string_view text) {
   throw Error(fmt::format("target: expected function or nodes, found '{}'", text));
 }
 
+std::string_view to_string(FitTarget target) noexcept {
+  return target == FitTarget::nodes ? "nodes" : "function";
+}
+
 FitTarget default_target(const Source& source, const FitOptions& options) {
   if (options.hold_out) return FitTarget::nodes;
   const auto* table = std::get_if<RglTable>(&source.brdf);

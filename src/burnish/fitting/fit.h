@@ -95,6 +95,8 @@ enum class FitTarget { function, nodes };
 
 /// "function" or "nodes". Throws Error on anything else.
 FitTarget parse_fit_target(std::string_view text);
+/// What parse_fit_target reads.
+std::string_view to_string(FitTarget target) noexcept;
 
 struct FitOptions;
 

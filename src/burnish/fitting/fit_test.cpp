@@ -322,6 +322,8 @@ TEST(Fit, OfIsotropicRglFilesIsOfTheirNodesUnlessAskedOtherwise) {
   const Source isotropic = source_of("isotropic", make_rgl_table(paint(), rgl)),
                anisotropic = source_of("anisotropic", make_rgl_table(brushed_metal, rgl)),
                merl = source_of("cells", tabulate_half_diff(paint(), 12, 8, 10, false));
+  for (const FitTarget target : {FitTarget::function, FitTarget::nodes})
+    EXPECT_EQ(parse_fit_target(to_string(target)), target);
   EXPECT_EQ(default_target(isotropic, {}), FitTarget::nodes);
   EXPECT_EQ(default_target(isotropic, {.form = Budget{}}), FitTarget::nodes);
   EXPECT_EQ(default_target(isotropic, {.form = GivenLobes{.model = "q(h) + s(h)"}}), FitTarget::nodes);

@@ -53,7 +53,7 @@ std::string text_of(const Json& json) {
 
 std::string settings_text(const FitOptions& options) {
   Json json{{"form", nullptr}, {"target", nullptr}};
-  if (options.target) json["target"] = *options.target == FitTarget::nodes ? "nodes" : "function";
+  if (options.target) json["target"] = to_string(*options.target);
   if (options.form) json["form"] = std::visit([](const auto& form) { return json_of(form); }, *options.form);
   if (options.hold_out)
     json["hold_out"] = {static_cast<int>(options.hold_out->kind), options.hold_out->number};

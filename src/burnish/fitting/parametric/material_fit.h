@@ -44,8 +44,8 @@ struct MaterialFit {
   int starts = 0;      ///< minimizations run
   ErrorFigures figures;
   Unexplained beyond;
-  std::optional<FactoredBeside>
-      factored;        ///< the fit of the source's function by default_budget, scored alike
+  /// The fit of the source's function by default_budget, scored alike.
+  std::optional<FactoredBeside> factored;
   double seconds = 0;  ///< of the material's fit alone, by the wall clock
 
   /// Refers to this object, which must outlive it and stay where it is.
