@@ -373,8 +373,8 @@ void report_scattered(Page& page, const fs::path& data) {
   const std::array<std::pair<const char*, FitForm>, 3> forms{
       {{"`--budget 1350`", Budget{.bytes = 1350}},
        {"`--budget 2700`", Budget{.bytes = kFewBytes}},
-       {"the finer lobe", OneLobe{.model = kScatteredModel,
-                                  .tables = {"p=64", "q=96,rational:0.2", "r=48", "m=64,power:0.5"}}}}};
+       {"a coarse p", OneLobe{.model = kScatteredModel,
+                              .tables = {"p=8", "q=96,rational:0.2", "r=12", "m=24,power:0.5"}}}}};
   Table table({"paint", "fit", "bytes", "seconds", "fifths of the rows", "whole theta_i"});
   for (const char* paint : kPaints) {
     const Samples samples = read_paint(data, paint);

@@ -30,6 +30,11 @@ constexpr std::array<std::size_t, 2> kLineSizes{140, 400}, kDiskSizes{160, 1200}
 constexpr int kMaxLine = 1024;  // nodes, finer than any measurement
 constexpr int kMaxDisk = 256;   // nodes along a side
 
+// Nodes of a line p that is fine enough to tell the angles of a lattice apart, 1.4 degrees each, and the part of the
+// texels that it may take: what it takes from a small q it does not give back.
+constexpr int kFineP = 64;
+constexpr double kMostFineP = 0.25;
+
 // Factor sets, the fullest first: the others serve budgets that hold few texels.
 const std::array<std::string, 5> kFactorSets{"pqmr", "pqm", "pqr", "pq", "q"};
 
@@ -62,9 +67,10 @@ std::vector<PlannedFactor> factors_of(const std::string& set, std::size_t texels
   return chosen;
 }
 
-// The lobe whose tables have at most `texels` texels together: each its share, but as many as it needs, and q
-// what is left. None where they do not suffice.
-std::optional<ModelSpec> spec_of(const std::string& set, std::size_t texels, bool isotropic) {
+// The lobe whose tables have at most `texels` texels together: each its share, but as many as it needs, p at least
+// `least_p`, and q what is left. None where they do not suffice.
+std::optional<ModelSpec> spec_of(const std::string& set, std::size_t texels, bool isotropic,
+                                 int least_p = 0) {
   const std::vector<PlannedFactor> factors = factors_of(set, texels, isotropic);
   // sides by share, q's by what is left
   double shares = 0;
@@ -74,7 +80,8 @@ std::optional<ModelSpec> spec_of(const std::string& set, std::size_t texels, boo
   const auto q = std::ranges::find(factors, "q", &PlannedFactor::name);
   for (const PlannedFactor& factor : factors) {
     const double nodes = factor.share / shares * static_cast<double>(texels);
-    sides.push_back(std::max(least_side(factor), side_of(factor, nodes)));
+    const int least = factor.name == "p" ? std::max(least_p, least_side(factor)) : least_side(factor);
+    sides.push_back(std::max(least, side_of(factor, nodes)));
     if (factor.name == q->name) continue;
     const std::size_t taken = nodes_of(factor, sides.back());
     if (taken > left) return std::nullopt;
@@ -102,10 +109,10 @@ std::optional<ModelSpec> spec_of(const std::string& set, std::size_t texels, boo
 
 // The same within so many bytes, at most `most` texels.
 std::optional<ModelSpec> spec_within(const std::string& set, std::size_t bytes, std::size_t most,
-                                     const SampleSource& source, TableFormat format) {
+                                     const SampleSource& source, TableFormat format, int least_p = 0) {
   const std::size_t texel = texel_bytes(format, source.channels);
   for (std::size_t texels = std::min(most, bytes / texel); texels > 0; --texels) {
-    std::optional<ModelSpec> spec = spec_of(set, texels, source.isotropic);
+    std::optional<ModelSpec> spec = spec_of(set, texels, source.isotropic, least_p);
     if (!spec || model_bytes(*spec, source.channels, format) <= bytes) return spec;
   }
   return std::nullopt;
@@ -192,13 +199,13 @@ std::vector<std::string> sets_within(int fetches, bool isotropic) {
   return sets;
 }
 
-// What is compared: the fullest set from coarse to fine; where that is no choice, because the bytes hold few
-// texels, or where fetches forbid a fuller one, the other sets too.
+// What is compared: the fullest set from coarse to fine, its p at last so fine that it tells incidences apart; where
+// that is no choice, because the bytes hold few texels, or where fetches forbid a fuller one, the other sets too.
 std::vector<ModelSpec> candidates(const SampleSource& source, std::size_t bytes, TableFormat format,
                                   const std::vector<std::string>& sets) {
   std::vector<ModelSpec> specs;
-  const auto add = [&](const std::string& set, std::size_t most) {
-    std::optional<ModelSpec> spec = spec_within(set, bytes, most, source, format);
+  const auto add = [&](const std::string& set, std::size_t most, int least_p = 0) {
+    std::optional<ModelSpec> spec = spec_within(set, bytes, most, source, format, least_p);
     if (!spec) return;
     const auto same = [&](const ModelSpec& other) {
       return other.tables.size() == spec->tables.size() &&
@@ -208,6 +215,9 @@ std::vector<ModelSpec> candidates(const SampleSource& source, std::size_t bytes,
     if (std::ranges::none_of(specs, same)) specs.push_back(std::move(*spec));
   };
   for (const std::size_t size : source.isotropic ? kLineSizes : kDiskSizes) add(sets.front(), size);
+  const std::size_t texels = bytes / texel_bytes(format, source.channels);
+  if (source.isotropic && kFineP <= kMostFineP * static_cast<double>(texels))
+    add(sets.front(), kLineSizes.back(), kFineP);
   if (specs.size() <= 1 || sets.size() < kFactorSets.size())
     for (const std::string& set : sets) add(set, kLineSizes.front());
   return specs;

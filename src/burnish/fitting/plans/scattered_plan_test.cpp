@@ -177,6 +177,32 @@ TEST(ScatteredPlan, TellsWideLobesFromCoarseScans) {
   }
 }
 
+/// Rows of a lattice, as a goniometer takes them: lights every 10 degrees, viewers between them, every other
+/// one of which reads too high and the rest too low.
+Samples lattice(double misread) {
+  const AnalyticBrdf gloss = parse_analytic("ggx:alpha_x=0.4,alpha_y=0.4,f0=0.5,kd=0.3");
+  Samples samples{1, true, {}, {}};
+  std::vector<double> f(gloss.channels());
+  for (int light = 1; light < 8; ++light)
+    for (int viewer = 0; viewer < 8; ++viewer)
+      for (int side = 0; side < 12; ++side) {
+        samples.pairs.push_back({spherical_direction(radians(10.0 * light), 0),
+                                 spherical_direction(radians(10.0 * viewer + 5), kPi * side / 11)});
+        gloss.eval(samples.pairs.back().wi, samples.pairs.back().wo, f);
+        samples.values.push_back(f[0] * (1 + misread * (viewer % 2 ? 1 : -1)));
+      }
+  return samples;
+}
+
+TEST(ScatteredPlan, TellsTheAnglesOfALatticeApartWhereBytesHoldIt) {
+  const auto width_of_p = [](double misread, std::size_t bytes) {
+    const Samples samples = lattice(misread);
+    return plan_scattered(from_samples(samples, false), bytes, {}, {}, {}).spec.tables.front().layout.width;
+  };
+  EXPECT_GE(width_of_p(0.3, 2700), 64);
+  EXPECT_LT(width_of_p(0.3, 400), 64);
+}
+
 TEST(ScatteredPlan, KeepsWithinFetches) {
   const Samples samples = scanned(PeakedBrdf{true});
   HomomorphicOptions options;
