@@ -292,11 +292,12 @@ std::string to_string(const ShaderCost& cost) {
                      cost.divisions, cost.roots, cost.powers);
 }
 
-ShaderFormula shader_formula(const FactoredBrdf& brdf, const ShaderOptions& options) {
+ShaderFormula shader_formula(const FactoredBrdf& brdf, const ShaderOptions& options,
+                             const LayersBefore* before) {
   check(brdf, options);
   ShaderFormula formula;
   formula.textures = options.language == ShaderLanguage::cpp ? tables_apart(brdf, options.name)
-                                                             : pack_tables(brdf, options.name);
+                                                             : pack_tables(brdf, options.name, before);
   for (ShaderTexture& texture : formula.textures)
     if (options.lines_are_1d && texture.height == 1 && texture.depth == 0) texture.height = 0;
   formula.lobes = lobe_values(brdf, formula.textures, options);
@@ -304,8 +305,9 @@ ShaderFormula shader_formula(const FactoredBrdf& brdf, const ShaderOptions& opti
   return formula;
 }
 
-LobeFunctions lobe_functions(const FactoredBrdf& brdf, const ShaderOptions& options) {
-  ShaderFormula formula = shader_formula(brdf, options);
+LobeFunctions lobe_functions(const FactoredBrdf& brdf, const ShaderOptions& options,
+                             const LayersBefore* before) {
+  ShaderFormula formula = shader_formula(brdf, options, before);
   const Language l = language_of(options);
   LobeFunctions functions{.text = std::string(header_of(l, options)), .names = {}, .textures = {}};
   functions.textures = std::move(formula.textures);

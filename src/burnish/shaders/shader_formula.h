@@ -6,17 +6,19 @@
 #include <burnish/formula/expression.h>
 #include <burnish/shaders/frame_function.h>
 #include <burnish/shaders/shader.h>
+#include <burnish/shaders/texture_packing.h>
 
 namespace burnish {
 
 /// What generate_shader writes, as an expression over the vectors wi and wo, above the horizon, and texels of
-/// the textures: a number or a vector. Throws Error as it does.
+/// the textures: a number or a vector. Volumes stand behind what is `before` them. Throws Error as it does.
 struct ShaderFormula {
   Expr value;
   std::vector<Expr> lobes;  ///< whose sum it is
   std::vector<ShaderTexture> textures;
 };
-ShaderFormula shader_formula(const FactoredBrdf& brdf, const ShaderOptions& options);
+ShaderFormula shader_formula(const FactoredBrdf& brdf, const ShaderOptions& options,
+                             const LayersBefore* before = nullptr);
 
 /// Every lobe of a model apart: functions `vec3 NAME(vec3 wi, vec3 wo)` as generate_shader writes them, over
 /// textures that they share.
@@ -25,7 +27,8 @@ struct LobeFunctions {
   std::vector<std::string> names;
   std::vector<ShaderTexture> textures;
 };
-LobeFunctions lobe_functions(const FactoredBrdf& brdf, const ShaderOptions& options);
+LobeFunctions lobe_functions(const FactoredBrdf& brdf, const ShaderOptions& options,
+                             const LayersBefore* before = nullptr);
 
 /// What a formula's function stands between: a language's header with the declarations of textures, and what functions
 /// take besides the directions to read them.

@@ -85,17 +85,19 @@ PackingPlan plan_2d(std::span<const Table> tables, TableNumbers order) {
   return best;
 }
 
-// Volumes behind each other.
-PackingPlan plan_3d(std::span<const Table> tables, const TableNumbers& order) {
+// Volumes behind each other, and behind what is before them.
+PackingPlan plan_3d(std::span<const Table> tables, const TableNumbers& order, const LayersBefore* before) {
   PackingPlan plan;
+  if (before) plan.size = {before->width, before->height, before->depth};
   for (const std::size_t i : order) {
     const TableLayout& layout = tables[i].layout;
     plan.size[0] = std::max(plan.size[0], layout.width);
     plan.size[1] = std::max(plan.size[1], layout.height);
     SpotAxis z{.first = 0, .nodes = layout.depth, .low = 0, .high = 0};
-    if (!plan.spots.empty()) {
+    if (before || !plan.spots.empty()) {
       z.first = plan.size[2] + 2;
-      z.low = plan.spots.back().axes[2].high = z.first - 1;
+      z.low = z.first - 1;
+      if (!plan.spots.empty()) plan.spots.back().axes[2].high = z.low;
     }
     plan.size[2] = z.high = z.first + layout.depth;
     plan.spots.push_back({i, {SpotAxis{0, layout.width, 0, 0}, SpotAxis{0, layout.height, 0, 0}, z}});
@@ -137,12 +139,13 @@ void fill(ShaderTexture& texture, const Spot& spot, const Table& table, int expo
 }
 
 ShaderTexture packed(std::span<const Table> tables, const TableNumbers& numbers, const PackingPlan& plan,
-                     const std::vector<int>& exponents, std::string name, bool deep) {
+                     const std::vector<int>& exponents, std::string name, bool deep,
+                     std::size_t channels = 1) {
   ShaderTexture texture{.name = std::move(name),
                         .width = plan.size[0],
                         .height = plan.size[1],
                         .depth = deep ? plan.size[2] : 0,
-                        .channels = 1,
+                        .channels = channels,
                         .format = common_format(tables, numbers),
                         .values = {},
                         .tables = {}};
@@ -163,7 +166,8 @@ ShaderTexture packed(std::span<const Table> tables, const TableNumbers& numbers,
 
 }  // namespace
 
-std::vector<ShaderTexture> pack_tables(const FactoredBrdf& brdf, const std::string& name) {
+std::vector<ShaderTexture> pack_tables(const FactoredBrdf& brdf, const std::string& name,
+                                       const LayersBefore* before) {
   TableNumbers flat, deep;
   for (std::size_t i = 0; i < brdf.tables().size(); ++i)
     (brdf.tables()[i].layout.shape == TableShape::volume ? deep : flat).push_back(i);
@@ -173,8 +177,9 @@ std::vector<ShaderTexture> pack_tables(const FactoredBrdf& brdf, const std::stri
     textures.push_back(packed(brdf.tables(), flat, plan_2d(brdf.tables(), flat), exponents,
                               fmt::format("burnish_{}_tables", name), false));
   if (!deep.empty())
-    textures.push_back(packed(brdf.tables(), deep, plan_3d(brdf.tables(), deep), exponents,
-                              fmt::format("burnish_{}_volumes", name), true));
+    textures.push_back(packed(brdf.tables(), deep, plan_3d(brdf.tables(), deep, before), exponents,
+                              before ? before->name : fmt::format("burnish_{}_volumes", name), true,
+                              before ? before->channels : 1));
   return textures;
 }
 

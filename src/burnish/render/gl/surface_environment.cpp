@@ -37,10 +37,9 @@ LightShader shader_of(const ImageBasedLight& light, ShaderLanguage language, con
 LightShader shader_of(const std::pair<TappedBrdf, BlurredEnvironment>& light, ShaderLanguage language,
                       const std::string& name) {
   const auto& [brdf, blurred] = light;
-  const TappedShader generated = generate_shader(brdf, blurred.options, language, name);
+  const TappedShader generated = generate_shader(brdf, blurred, language, name);
   LightShader shader{fmt::format("burnish_{}_light", name), {"n", "t", "s", "v"}, generated.text, {}};
-  add_maps(shader, generated.environment, blurred.options.side, blurred.options.levels, blurred.maps);
-  add_tables(shader, generated.tables);
+  add_tables(shader, generated.textures);
   return shader;
 }
 

@@ -43,14 +43,14 @@ TappedBrdf tap(const FactoredBrdf& brdf, int taps = 96);
 
 /// Shader text of a TappedBrdf.
 struct TappedShader {
-  std::string text;         ///< no #version line
-  std::string environment;  ///< 3-D sampler: width 2 side, height side, depth levels; linear, clamped
-  std::vector<ShaderTexture> tables;  ///< one 2-D and one 3-D at most
+  std::string text;  ///< no #version line
+  /// A 3-D one with the blurred environment, linear and clamped, with volumes behind it; and at most one 2-D one.
+  std::vector<ShaderTexture> textures;
 };
 
 /// `vec3 burnish_NAME_light(vec3 n, vec3 t, vec3 s, vec3 v)`: TappedBrdf::radiance in GLSL 4.50 or ES 3.00.
 /// Throws Error for other languages and as generate_shader does.
-TappedShader generate_shader(const TappedBrdf& brdf, const BlurOptions& blur, ShaderLanguage language,
-                             const std::string& name);
+TappedShader generate_shader(const TappedBrdf& brdf, const BlurredEnvironment& environment,
+                             ShaderLanguage language, const std::string& name);
 
 }  // namespace burnish

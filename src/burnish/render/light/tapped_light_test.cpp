@@ -29,6 +29,21 @@ FactoredBrdf brushed() {
                   });
 }
 
+// The same with a volume and a line, which grows with theta_h.
+FactoredBrdf brushed_volume() {
+  const ModelCase form{
+      "m", "q(h) z(theta_h) g(theta_d,theta_h,phi_d)", {"q=64x64,rational:0.2", "z=8", "g=24x18x6"}, 3};
+  Pcg32 random(5);
+  return model_of(form, TableFormat::half, random,
+                  [&](std::size_t table, const TableLayout& l, int x, int y, int c) {
+                    if (table == 1) return 0.5 * x / l.width;
+                    if (table == 2) return 0.3 * std::sin(0.4 * x + 0.7 * y + c);
+                    const Vec3 h = node_direction(l, x, y);
+                    const double u = h.x / std::max(h.z, 0.1) / 0.15, v = h.y / std::max(h.z, 0.1) / 0.45;
+                    return -2 * std::log1p(u * u + v * v) - 0.1 * c;
+                  });
+}
+
 TEST(BlurredEnvironment, KeepsAnEvenSkyAndTheLightOfADisc) {
   const BlurredEnvironment even = blur(kEven, kSmallBlur);
   const Environment lamp{"lamp", 0, 0, 0, {{{0, 1, 0}, 0.1, 5}}};
@@ -86,26 +101,19 @@ TEST(TappedLight, IsCloseToMonteCarloOnBrushedMetalAndCloserWithMoreTaps) {
   EXPECT_GE(last, 36);
 }
 
-TEST(TappedLight, TheShaderAgreesWithTheDefinition) {
+void expect_agreement(const FactoredBrdf& brdf, const BlurOptions& options, std::size_t textures) {
   const TestContext gl;
   if (!gl.context) GTEST_SKIP() << gl.reason;
-  const TappedBrdf tapped = tap(brushed(), 24);
-  const BlurredEnvironment blurred = blur(kLamps, kSmallBlur);
-  const TappedShader shader = generate_shader(tapped, blurred.options, ShaderLanguage::glsl, "m");
+  const TappedBrdf tapped = tap(brdf, 24);
+  const BlurredEnvironment blurred = blur(kLamps, options);
+  const TappedShader shader = generate_shader(tapped, blurred, ShaderLanguage::glsl, "m");
   GlFunction function(shader.text +
                           "vec3 on_sphere(vec3 n, vec3 v) {\n"
                           "  vec3 t = normalize(cross(vec3(0, 1, 0), n));\n"
                           "  return burnish_m_light(n, t, cross(n, t), v);\n}\n",
                       "on_sphere");
-  function.set_texture({.name = shader.environment,
-                        .width = 2 * blurred.options.side,
-                        .height = blurred.options.side,
-                        .depth = blurred.options.levels,
-                        .channels = 3,
-                        .filtered = true,
-                        .values = blurred.maps});
-  EXPECT_EQ(shader.tables.size(), 1u) << "of all lobes";
-  set_textures(function, shader.tables, TableFormat::single, true);
+  EXPECT_EQ(shader.textures.size(), textures) << "of the environment and all lobes";
+  set_textures(function, shader.textures, TableFormat::single, true);
   Pcg32 random(3);
   std::vector<GlVectors> calls;
   std::vector<Rgb> expected;
@@ -124,7 +132,17 @@ TEST(TappedLight, TheShaderAgreesWithTheDefinition) {
     EXPECT_NEAR(found[3 * i], std::max(expected[i].r, 0.0), 1e-3 * expected[i].r + 1e-3) << i;
     EXPECT_NEAR(found[3 * i + 2], std::max(expected[i].b, 0.0), 1e-3 * expected[i].b + 1e-3) << i;
   }
-  EXPECT_THROW(generate_shader(tapped, blurred.options, ShaderLanguage::wgsl, "m"), Error);
+  EXPECT_THROW(generate_shader(tapped, blurred, ShaderLanguage::wgsl, "m"), Error);
+}
+
+TEST(TappedLight, TheShaderAgreesWithTheDefinition) {
+  expect_agreement(brushed(), kSmallBlur, 2);
+}
+
+// With a volume that is smaller than the environment's maps and one that is larger.
+TEST(TappedLight, VolumesStandBehindTheEnvironment) {
+  for (const BlurOptions& options : {kSmallBlur, BlurOptions{.side = 8, .levels = 3}})
+    expect_agreement(brushed_volume(), options, 2);
 }
 
 TEST(TappedLight, RefusesWhatItCannotTabulate) {

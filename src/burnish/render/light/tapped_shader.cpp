@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -12,22 +13,61 @@
 #include <burnish/render/light/map_expression.h>
 #include <burnish/render/light/tapped_light.h>
 #include <burnish/shaders/shader_formula.h>
+#include <burnish/shaders/texture_packing.h>
 
 namespace burnish {
 
 namespace {
 
+// The texture of the environment: its levels, with volumes behind them where the tables have any.
+ShaderTexture environment_texture(const BlurredEnvironment& blurred, LayersBefore levels,
+                                  std::vector<ShaderTexture>& tables) {
+  const auto shared = std::ranges::find(tables, levels.name, &ShaderTexture::name);
+  if (shared == tables.end())
+    return {.name = std::move(levels.name),
+            .width = levels.width,
+            .height = levels.height,
+            .depth = levels.depth,
+            .channels = levels.channels,
+            .format = TableFormat::single,
+            .values = blurred.maps,
+            .tables = {}};
+  // texels beyond the maps repeat their edges
+  ShaderTexture texture = std::move(*shared);
+  tables.erase(shared);
+  texture.format = TableFormat::single;
+  const std::size_t channels = levels.channels;
+  for (int z = 0; z <= levels.depth; ++z)
+    for (int y = 0; y < texture.height; ++y)
+      for (int x = 0; x < texture.width; ++x) {
+        const int layer = std::min(z, levels.depth - 1), row = std::min(y, levels.height - 1);
+        const auto from = static_cast<std::size_t>((layer * levels.height + row) * levels.width +
+                                                   std::min(x, levels.width - 1)) *
+                          channels,
+                   to = static_cast<std::size_t>((z * texture.height + y) * texture.width + x) * channels;
+        std::copy_n(&blurred.maps[from], channels, &texture.values[to]);
+      }
+  return texture;
+}
+
 // The environment at a direction of the world, blurred as wide as the level tells.
-std::string blurred_function(const Language& l, const std::string& environment, const BlurOptions& blur) {
+std::string blurred_function(const Language& l, const ShaderTexture& texture, const BlurOptions& blur) {
   const ExprVector w(Expr::input("w", ValueType::vector));
   const auto [x, y] = map_coordinates(w, blur.side);
+  // of the part of the texture that the maps take
+  const auto within = [](const Expr& at, int maps, int texels) {
+    return maps == texels ? at : at * (static_cast<double>(maps) / texels);
+  };
   const Expr level = min(max(Expr::input("level"), 0.0), blur.levels - 1.0);
   Graph graph;
   const std::size_t root =
-      graph.add(Expr::sample(environment, {x, y, (level + 0.5) * (1.0 / blur.levels)}, ValueType::vector));
+      graph.add(Expr::sample(texture.name,
+                             {within(x, 2 * blur.side, texture.width), within(y, blur.side, texture.height),
+                              (level + 0.5) * (1.0 / texture.depth)},
+                             ValueType::vector));
   const Writer writer(l, graph, {root});
   constexpr std::array<std::string_view, 1> kParameters{"w"};
-  return l.function(ValueType::vector, environment + "_at", kParameters,
+  return l.function(ValueType::vector, texture.name + "_at", kParameters,
                     fmt::format(fmt::runtime(l.parameter), l.scalar, "level"),
                     writer.text() + fmt::format(fmt::runtime(l.result), writer.text(root)));
 }
@@ -94,19 +134,28 @@ std::string gathered_function(const Language& l, const TappedLobe& lobe, const s
 
 }  // namespace
 
-TappedShader generate_shader(const TappedBrdf& brdf, const BlurOptions& blur, ShaderLanguage language,
-                             const std::string& name) {
+TappedShader generate_shader(const TappedBrdf& brdf, const BlurredEnvironment& environment,
+                             ShaderLanguage language, const std::string& name) {
   const Language& l = burnish::language(to_string(language));
   if (language != ShaderLanguage::glsl && language != ShaderLanguage::glsl_es)
     throw Error(fmt::format("image-based light: expected glsl or glsl_es, found {}", l.name));
-  TappedShader shader{.environment = fmt::format("burnish_{}_environment", name)};
+  // the lobes' functions, their volumes behind the environment's levels
+  const BlurOptions& blur = environment.options;
+  const LayersBefore levels{fmt::format("burnish_{}_environment", name), 2 * blur.side, blur.side,
+                            blur.levels, 3};
+  TappedShader shader;
   std::vector<FactoredBrdf> parts;  // outside and inside of each lobe
   for (const TappedLobe& lobe : brdf.lobes) parts.insert(parts.end(), {lobe.outside, lobe.inside});
   LobeFunctions factors = lobe_functions(
-      joined(parts), {.language = language, .filter = ShaderFilter::hardware, .name = name + "_factors"});
-  shader.tables = std::move(factors.textures);
-  shader.text = factors.text + fmt::format(fmt::runtime(l.filtered_texture_3d), shader.environment) +
-                blurred_function(l, shader.environment, blur);
+      joined(parts), {.language = language, .filter = ShaderFilter::hardware, .name = name + "_factors"},
+      &levels);
+  shader.textures = std::move(factors.textures);
+  ShaderTexture around = environment_texture(environment, levels, shader.textures);
+  const bool declared_with_volumes = !around.tables.empty();
+  shader.textures.insert(shader.textures.begin(), std::move(around));
+  shader.text = factors.text;
+  if (!declared_with_volumes) shader.text += fmt::format(fmt::runtime(l.filtered_texture_3d), levels.name);
+  shader.text += blurred_function(l, shader.textures.front(), blur);
 
   // the view as all lobes have it, then each lobe's factors of the view times what its taps gather
   const ExprVector v(Expr::input("v", ValueType::vector));
@@ -118,7 +167,7 @@ TappedShader generate_shader(const TappedBrdf& brdf, const BlurOptions& blur, Sh
   for (std::size_t j = 0; j < brdf.lobes.size(); ++j) {
     const std::string name_of_lobe = fmt::format("burnish_{}_lobe{}", name, j);
     shader.text +=
-        gathered_function(l, brdf.lobes[j], name_of_lobe, factors.names[2 * j + 1], shader.environment, blur);
+        gathered_function(l, brdf.lobes[j], name_of_lobe, factors.names[2 * j + 1], levels.name, blur);
     std::vector<Expr> arguments{wo};
     for (const char* axis : {"n", "t", "s"}) arguments.push_back(Expr::input(axis, ValueType::vector));
     sum = sum + Expr::call(factors.names[2 * j], {wo, wo}, ValueType::vector) *
