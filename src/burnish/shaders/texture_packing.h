@@ -12,7 +12,7 @@ namespace burnish {
 struct LayersBefore {
   std::string name;  ///< of the texture
   int width = 0, height = 0, depth = 0;
-  std::size_t channels = 3;
+  std::size_t channels = 3;  ///< the least that the texture has
 };
 
 /// The tables of a model in two textures at most: `NAME_tables`, 2-D, with every line a row and disks and

@@ -35,8 +35,9 @@ inline constexpr double kBackscatterReach = 0.03;
 /// The lobe of at most `bytes`, see model_bytes, that predicts held-out samples best: p(wo) p(wi) q(h) m(theta_m)
 /// r(theta_d), p and q hemispheres where the source is anisotropic, or fewer of these factors where the bytes are few;
 /// with options.backscatter also p(wo) p(wi) q(h) k(theta_m,theta_d) b(theta_h,theta_d) a(theta_d,phi_d). Smoothness is
-/// chosen by choose_smoothness for a coarse model, unless `smooth` says it; finer ones, and one whose p tells incidences
-/// 1.4 degrees apart, with a smoothness nearby, are taken where they predict better. More than three channels are represented by three of them in these trials, and all
+/// chosen by choose_smoothness for a coarse model, unless `smooth` says it; finer ones with a smoothness nearby, of
+/// isotropic sources also one whose p tells incidences 1.4 degrees apart, where a quarter of the texels hold that, are
+/// taken where they predict better. More than three channels are represented by three of them in these trials, and all
 /// decide in the end. Sources of more than kManySamples samples get the finest that the bytes hold, or with
 /// options.backscatter the last of these lobes, smooth 1e-7, where that predicts better. The samples of `source` stand
 /// for their swapped pairs too: the models are reciprocal. Tables are in `format`; without one they are half, or rgb9e5
