@@ -99,8 +99,13 @@ std::vector<FrameMaterial> materials_of(const Models& models) {
   for (const auto& [command, model] : models.fits)
     add(command, model, ShaderFilter::hardware, TableFormat::rgb9e5);
   const auto& [command, model] = models.fits.front();
-  materials.push_back({fmt::format("`{}`, half textures, exact filter", command),
-                       surface_shader(model, ShaderFilter::exact, TableFormat::half), model});
+  const auto add_with = [&](const char* textures, ShaderFilter filter, TableFormat format) {
+    materials.push_back(
+        {fmt::format("`{}`, {}", command, textures), surface_shader(model, filter, format), model});
+  };
+  add_with("textures of half", ShaderFilter::hardware, TableFormat::half);
+  add_with("textures of float, as `burnish render` has it", ShaderFilter::hardware, TableFormat::single);
+  add_with("textures of half, exact filter", ShaderFilter::exact, TableFormat::half);
   add(models.anisotropic.command + " " + kAnisotropic, models.anisotropic.model, ShaderFilter::hardware,
       TableFormat::rgb9e5);
   materials.push_back({"Blinn-Phong, pow", shader_of(models.phong, false), models.phong});

@@ -22,7 +22,7 @@ namespace burnish::reports {
 namespace {
 
 constexpr std::size_t kBytes = 16'384, kFewBytes = 2700;
-constexpr int kNodeFetches = 3;  // fit's own of nodes
+constexpr int kNodeFetches = 3;  // of nodes, where the page says so
 
 std::vector<fs::path> rgl_files(const Page& page) {
   std::vector<fs::path> files = files_in(*page.options().data / "rgl");
@@ -30,11 +30,9 @@ std::vector<fs::path> rgl_files(const Page& page) {
   return files;
 }
 
-Fit fit_nodes_without(const Source& source, const NodePart& held_out, int fetches) {
-  return fit(source, {.form = Budget{.bytes = kBytes, .fetches = fetches},
-                      .target = FitTarget::nodes,
-                      .hold_out = held_out,
-                      .score = false});
+Fit fit_nodes_without(const Source& source, const NodePart& held_out, std::optional<FitForm> form = {}) {
+  return fit(source,
+             {.form = std::move(form), .target = FitTarget::nodes, .hold_out = held_out, .score = false});
 }
 
 // Means over what was added.
@@ -95,7 +93,7 @@ void report_halves(Page& page, const fs::path& data) {
     for (const std::uint32_t half : {0u, 1u}) {
       const NodePart part{NodePart::Kind::half, half};
       const MeasuredNodes unseen = nodes_of(nodes, part);
-      const Fit of_nodes = fit_nodes_without(source, part, 0);
+      const Fit of_nodes = fit_nodes_without(source, part, Budget{.bytes = kBytes});
       const std::array<BrdfRef, 5> models{function, symmetrized_network, symmetrized_np, of_function.ref(),
                                           of_nodes.ref()};
       for (std::size_t k = 0; k < models.size(); ++k) {
@@ -167,7 +165,7 @@ void report_incidences(Page& page) {
       const MeasuredNodes unseen = nodes_of(nodes, part);
       const RglTable left(without_incidence(data, k));
       const SymmetrizedBrdf symmetrized(left);
-      const Fit ours = fit_nodes_without(source, part, kNodeFetches);
+      const Fit ours = fit_nodes_without(source, part);
       const std::array<BrdfRef, 3> models{left, symmetrized, ours.ref()};
       for (std::size_t m = 0; m < models.size(); ++m) {
         const NodeFigures figures = node_figures(unseen, models[m]);
@@ -278,7 +276,7 @@ void report_formats(Page& page, const fs::path& data) {
     for (const std::uint32_t half : {0u, 1u}) {
       const NodePart part{NodePart::Kind::half, half};
       const MeasuredNodes unseen = nodes_of(nodes, part);
-      const Fit of_nodes = fit_nodes_without(source, part, kNodeFetches);
+      const Fit of_nodes = fit_nodes_without(source, part, budget);
       const std::array<BrdfRef, 3> models{function, of_function.ref(), of_nodes.ref()};
       for (std::size_t m = 0; m < models.size(); ++m) means[m].add(node_figures(unseen, models[m]));
     }

@@ -29,6 +29,9 @@ function readFetches(text) {
   return fetches;
 }
 
+// The library's own default, which is free to take a fetch more than the preset shows.
+const isDefault = () => find("#presets [data-value=default]").getAttribute("aria-checked") === "true";
+
 // What a fit follows: as chosen where there is a choice.
 const targetOf = (reference) => reference.material.measurement ? find("#target").value : undefined;
 
@@ -78,7 +81,8 @@ async function fit(event) {
   const reference = referenceOf(state.shown);
   if (!reference || isSurface(reference) || stop) return;
   await busy(async (signal) => {
-    const options = {budget: readBudget(find("#budget").value), fetches: readFetches(find("#fetches").value), target: targetOf(reference)};
+    const options = {target: targetOf(reference)};
+    if (!isDefault()) Object.assign(options, {budget: readBudget(find("#budget").value), fetches: readFetches(find("#fetches").value)});
     const found = await fitOne(reference, options, signal);
     if (!state.entries.includes(reference)) {
       found.material.close?.();
@@ -164,12 +168,11 @@ export function start() {
     budget.value = presets[name].budget;
     fetches.value = presets[name].fetches;
   });
-  // by default an anisotropic source takes six fetches, nodes three
+  // by default an anisotropic source takes six fetches
   const setFetches = () => {
-    presets.default.fetches = referenceOf(state.shown)?.material.isotropic === false ? "6" : find("#target").value === "nodes" ? "3" : "2";
-    if (find("#presets [data-value=default]").getAttribute("aria-checked") === "true") fetches.value = presets.default.fetches;
+    presets.default.fetches = referenceOf(state.shown)?.material.isotropic === false ? "6" : "2";
+    if (isDefault()) fetches.value = presets.default.fetches;
   };
-  find("#target").addEventListener("change", setFetches);
   const other = () => choose(Object.keys(presets).find((name) => presets[name].budget === budget.value.trim() && presets[name].fetches === fetches.value.trim()));
   budget.addEventListener("input", other);
   fetches.addEventListener("input", other);

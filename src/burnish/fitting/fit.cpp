@@ -129,8 +129,7 @@ class Fitter {
       throw Error("fit: expected fetches >= 0, and with them neither a number of lobes nor a search");
     Budget budget = form;
     if (!form.bytes && form.fetches == 0 && form.lobes == 0 && !form.search) budget.default_fetches = true;
-    if (budget.default_fetches)
-      budget.fetches = default_budget(brdf_.isotropic()).fetches + (smoothed_ ? kMoreFetchesOfNodes : 0);
+    if (budget.default_fetches) budget.fetches = default_budget(brdf_.isotropic()).fetches;
     return form.bytes ? fit_to_bytes(budget, *form.bytes) : fit_to_noise(budget);
   }
 
@@ -256,7 +255,9 @@ class Fitter {
     std::vector<FetchTrial> trials = fetch_trials(form, bytes);
     if (!trials.empty())
       if (const FetchTrial& chosen = trial_at_knee(trials); !chosen.lobes) form.fetches = chosen.fetches;
-    FactoredBrdf brdf = form.fetches > 0 ? fit_within(form, bytes) : fit_lobes_to(form, bytes);
+    FactoredBrdf brdf = form.fetches == 0                   ? fit_lobes_to(form, bytes)
+                        : smoothed_ && form.default_fetches ? fit_nodes_within(form, bytes)
+                                                            : fit_within(form, bytes);
     std::get<LobesReport>(report_.how).fetch_trials = std::move(trials);
     return brdf;
   }
@@ -411,6 +412,16 @@ class Fitter {
     const TrainingSet set =
         with_frontal_pixels(reference(), drawn_set(training_for_volumes(limit)), kFrontalShare);
     return finish(fit_volumes(set, volume_specs(reference(), limit), refine), set, refine, std::move(report));
+  }
+
+  /// Nodes that are given no number of fetches: one more where fewer leave a model farther from them than what is
+  /// measured foretells nodes that it has not seen.
+  FactoredBrdf fit_nodes_within(Budget form, std::uint64_t bytes) {
+    FactoredBrdf brdf = fit_within(form, bytes);
+    const NodeFigures fitted = node_figures(*nodes_, brdf), &unseen = *report_.nodes->held_out;
+    if (fitted.relative <= unseen.relative && fitted.log_cos <= unseen.log_cos) return brdf;
+    form.fetches += kMoreFetchesOfNodes;
+    return fit_within(form, bytes);
   }
 
   /// That which predicts nodes best, judged by a model of few fetches.
