@@ -3,6 +3,7 @@
 #include <new>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <emscripten/em_js.h>
@@ -41,8 +42,9 @@ EMSCRIPTEN_KEEPALIVE int burnish_call(const char* request) {
     reply = {};
     reply = burnish::wasm::run(
         {.arguments = burnish::wasm::Json::parse(request), .bytes = std::exchange(buffer, {})},
-        [](std::string_view stage, double fraction) {
-          burnish_progress(std::string(stage).c_str(), fraction);
+        [caller = std::this_thread::get_id()](std::string_view stage, double fraction) {
+          // other threads know no JavaScript to tell
+          if (std::this_thread::get_id() == caller) burnish_progress(std::string(stage).c_str(), fraction);
         });
     return 1;
   } catch (const std::bad_alloc&) {

@@ -13,7 +13,7 @@ package=build/studio/package
 command -v node > /dev/null || skip "${1:-}" "no node"
 
 limit=$((2 << 20))
-size=$(cat "$package/burnish.wasm" "$package/burnish.js" "$package/index.js" "$package/worker.js" | gzip -9 | wc -c)
+size=$(cat "$package"/*.wasm "$package"/*.js | gzip -9 | wc -c)
 echo "studio: the package is $size bytes compressed, of at most $limit"
 [ "$size" -le "$limit" ] || exit 1
 

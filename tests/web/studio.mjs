@@ -28,13 +28,16 @@ fs.mkdirSync(folder, {recursive: true});
 
 // Server of the site, and what was asked of it.
 const kTypes = {".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml", ".wasm": "application/wasm"};
-const server = http.createServer((request, response) => {
+// From the second a page may share memory between workers.
+const kIsolated = {"cross-origin-opener-policy": "same-origin", "cross-origin-embedder-policy": "require-corp"};
+const answer = (headers) => (request, response) => {
   const asked = path.join(site, path.normalize(new URL(request.url, "http://x").pathname)), found = asked.endsWith("/") ? `${asked}index.html` : asked;
   if (!fs.existsSync(found)) return response.writeHead(404).end();
-  response.writeHead(200, {"content-type": kTypes[path.extname(found)] ?? "application/octet-stream"}).end(fs.readFileSync(found));
-});
-await new Promise((done) => server.listen(0, done));
-const address = `http://localhost:${server.address().port}/`;
+  response.writeHead(200, {"content-type": kTypes[path.extname(found)] ?? "application/octet-stream", ...headers}).end(fs.readFileSync(found));
+};
+const servers = [http.createServer(answer({})), http.createServer(answer(kIsolated))];
+const [address, isolatedAddress] = await Promise.all(servers.map((each) => new Promise((done) =>
+  each.listen(0, () => done(`http://localhost:${each.address().port}/`)))));
 
 const browser = await chromium.launch({executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox", "--disable-quic", "--no-first-run",
   "--disable-background-networking", "--disable-component-update", "--disable-sync", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]});
@@ -552,13 +555,19 @@ await phone.evaluate(() => scrollTo(0, 0));
 await settled(phone);
 await accessible(phone, "phone");
 const pace = await measured();
+const pages = await Promise.all([address, isolatedAddress].map((at) => visit(at)));
+const [alone, shared] = [await threaded(pages[0]), await threaded(pages[1])];
+assert.deepEqual([alone.isolated, shared.isolated], [false, true]);
+assert.deepEqual(shared.models, alone.models, "the bits that threads find");
+for (const page of pages) await page.context().close();
 assert.deepEqual(complaints, [], "console");
 
 if (figures) await pictures();
 await browser.close();
-server.close();
+for (const each of servers) each.close();
 console.log(`studio: MERL's size parsed in ${times.map(([ms]) => ms.toFixed(0))} ms, seen ${times.map(([, ms]) => ms.toFixed(0))} ms later; ${hostile.refused} damaged files refused`);
 console.log(`studio: MERL's size fitted to 16 KB and two fetches in ${pace.seconds.toFixed(1)} s, ${(pace.memory / 1048576).toFixed(0)} MB of the page's process at most; ${pace.frames} frames a second of SwiftShader`);
+console.log(`studio: three fits in ${alone.seconds.toFixed(1)} s by one thread, ${shared.seconds.toFixed(1)} s by threads of a page that shares memory`);
 console.log(`studio: ${formats.length + kMoreFormats.length} formats, fit, export and link in Chromium; ${(size / 1048576).toFixed(2)} MB compressed`);
 
 // In the page: opens files cut short and bent, noise and lying sizes; keeps those that are refused for dropDamaged.
@@ -644,6 +653,31 @@ async function measured() {
   await shown.context().close();
   if (own.length) assert.ok(memory > 0 && memory <= kMaxMemory, `${memory} bytes of a page that fits`);
   return {seconds, memory, frames: parseInt(frames)};
+}
+
+// Fits of one measurement, seconds, the end of one that is stopped, and what a file of noise says, in a page that asks for
+// no other file meanwhile.
+async function threaded(shown) {
+  requests.length = 0;
+  const found = await shown.evaluate(async (data) => {
+    const {open} = await import("./package/index.js"), began = performance.now(), models = [];
+    const material = await open(Uint8Array.from(atob(data), (c) => c.charCodeAt(0)), {name: "a.bsdf"});
+    for (const options of [{budget: 2700}, {budget: 8192, fetches: 6, target: "function"}, {budget: 1500, search: true}]) {
+      const model = await material.fit(options);
+      models.push((await model.export("burnish")).join());
+      model.close();
+    }
+    const seconds = (performance.now() - began) / 1000, stop = new AbortController(), stopped = material.fit({budget: 65536}, {signal: stop.signal});
+    setTimeout(() => stop.abort(), 200);
+    return {isolated: globalThis.crossOriginIsolated, models, seconds, stopped: await stopped.catch(({name}) => name),
+            refused: await open(new Uint8Array(20), {name: "noise"}).catch(({message}) => message),
+            again: (await material.fit({budget: 700})).bytes};
+  }, fs.readFileSync(file("a.bsdf")).toString("base64"));
+  assert.equal(found.stopped, "AbortError");
+  assert.match(found.refused, /^noise: offset 0: expected/);
+  assert.ok(found.again <= 700);
+  assert.deepEqual(requests.filter((url) => !url.startsWith("blob:")), []);
+  return found;
 }
 
 // In the page: what is wrong with pictures of .hdr: flat rows, rows by planes, and the older repeats; lies.

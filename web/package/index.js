@@ -2,36 +2,46 @@
 
 const inNode = typeof process === "object" && Boolean(process.versions?.node);
 
-let compiled;
-// The library's code, once for all workers.
-function libraryModule() {
-  compiled ??= (async () => {
-    const url = new URL("./burnish.wasm", import.meta.url);
-    if (inNode) return WebAssembly.compile(await (await import("node:fs/promises")).readFile(url));
-    const response = await fetch(url);
-    if (!response.ok) throw new Error(`burnish.wasm: expected the library's code, found status ${response.status}`);
-    return WebAssembly.compile(await response.arrayBuffer());
-  })();
-  compiled.catch(() => { compiled = undefined; });
-  return compiled;
+// Threads where pages may share memory between workers, one in each worker otherwise; of many processors no more.
+const kMaxThreads = 8;
+const threads = !inNode && globalThis.crossOriginIsolated ? Math.min(navigator.hardwareConcurrency ?? 1, kMaxThreads) - 1 : 0;
+const code = threads > 0 ? "burnish-threads" : "burnish";
+
+async function read(name) {
+  const response = await fetch(new URL(`./${name}`, import.meta.url));
+  if (!response.ok) throw new Error(`${name}: expected the library's code, found status ${response.status}`);
+  return response;
 }
 
-// In browsers: the worker's code with the library's glue inside, so that no later worker asks for a file.
-let workerUrl;
-function workerCode() {
-  workerUrl ??= (async () => {
-    const [glue, worker] = await Promise.all(["./burnish.js", "./worker.js"].map(async (name) => {
-      const response = await fetch(new URL(name, import.meta.url));
-      if (!response.ok) throw new Error(`${name}: expected the library's code, found status ${response.status}`);
-      return response.text();
-    }));
-    const parts = [glue.replace(/export default burnish_wasm;\s*$/, ""),
-                   worker.replace(/^import createLibrary .*$/m, "const createLibrary = burnish_wasm;")];
-    return URL.createObjectURL(new Blob(parts, {type: "text/javascript"}));
-  })();
-  workerUrl.catch(() => { workerUrl = undefined; });
-  return workerUrl;
+// What `make` gives: once, and again where it failed.
+function once(make) {
+  let made;
+  return () => {
+    made ??= make();
+    made.catch(() => { made = undefined; });
+    return made;
+  };
 }
+
+// The library's code for all workers.
+const libraryModule = once(async () => {
+  const name = `${code}.wasm`;
+  if (inNode) return WebAssembly.compile(await (await import("node:fs/promises")).readFile(new URL(`./${name}`, import.meta.url)));
+  return WebAssembly.compile(await (await read(name)).arrayBuffer());
+});
+
+// In browsers: what a worker runs, and what its threads run, with the library's glue inside, so that none of them asks
+// for a file later. `replaced`: a pattern that has to be there, and what takes its place.
+async function withGlue(name, replaced, by) {
+  const [glue, text] = await Promise.all([`${code}.js`, name].map(async (file) => (await read(file)).text()));
+  if (!replaced.test(text)) throw new Error(`${name}: expected the code that loads the library, found none`);
+  const parts = [glue.replace(/export default burnish_wasm;\s*$/, ""), text.replace(replaced, by)];
+  return URL.createObjectURL(new Blob(parts, {type: "text/javascript"}));
+}
+const workerCode = once(() => withGlue("worker.js", /^import createLibrary .*$/m, "const createLibrary = burnish_wasm;"));
+const threadCode = once(async () => threads > 0
+  ? withGlue(`${code}.worker.js`, /\(e\.data\.urlOrBlob\?import\(.*?\):import\(.*?\)\)/, "Promise.resolve({default: burnish_wasm})")
+  : undefined);
 
 async function newWorker(receive, fail) {
   const module = await libraryModule();
@@ -45,7 +55,7 @@ async function newWorker(receive, fail) {
     worker.onmessage = (event) => receive(event.data);
     worker.onerror = (event) => fail(new Error(event.message ?? "the worker could not be started"));
   }
-  worker.postMessage({module});
+  worker.postMessage({module, threads, threadCode: await threadCode()});
   return worker;
 }
 
@@ -365,7 +375,7 @@ export async function open(data, {name, report, decoder, onProgress, signal, ...
 
 /// Loads and compiles the library before it is needed.
 export async function preload() {
-  await Promise.all([libraryModule(), inNode ? undefined : workerCode()]);
+  await Promise.all([libraryModule(), ...(inNode ? [] : [workerCode(), threadCode()])]);
 }
 
 /// Bytes that the open materials' worker holds, used or free; 0 where none is open.

@@ -5,10 +5,15 @@ const inNode = typeof process === "object" && Boolean(process.versions?.node);
 const port = inNode ? (await import("node:worker_threads")).parentPort : self;
 if (inNode) globalThis.self ??= {location: {href: import.meta.url}};
 
-let library, current;
+let library, memory, current;
 
-async function start(module) {
+// `threads`: beside this one, of memory that they share; `threadCode`: what each of them runs.
+async function start({module, threads = 0, threadCode}) {
+  if (threads > 0) memory = new WebAssembly.Memory({initial: 512, maximum: 32768, shared: true});
   library = await createLibrary({
+    threads,
+    wasmMemory: memory,
+    locateFile: () => threadCode,
     instantiateWasm: (imports, done) => {
       WebAssembly.instantiate(module, imports).then((instance) => done(instance, module));
       return {};
@@ -17,13 +22,17 @@ async function start(module) {
     printErr: () => {},
     progress: (stage, fraction) => port.postMessage({call: current, progress: {stage, fraction}}),
   });
+  if (threads > 0) library._burnish_start_threads(threads);
 }
+
+// As large as it is now: another thread may have made it larger.
+const heap = () => memory ? new Uint8Array(memory.buffer) : library.HEAPU8;
 
 function withText(text, use) {
   const bytes = new TextEncoder().encode(text + "\0"), place = library._malloc(bytes.length);
   if (!place) throw new Error("expected enough memory, found none left");
   try {
-    library.HEAPU8.set(bytes, place);
+    heap().set(bytes, place);
     return use(place);
   } finally {
     library._free(place);
@@ -31,15 +40,15 @@ function withText(text, use) {
 }
 
 function textAt(place) {
-  const end = library.HEAPU8.indexOf(0, place);
-  return new TextDecoder().decode(library.HEAPU8.subarray(place, end));
+  const bytes = heap(), end = bytes.indexOf(0, place);
+  return new TextDecoder().decode(bytes.slice(place, end));
 }
 
 function answer({request, bytes}) {
   if (bytes?.byteLength > 0) {
     const place = library._burnish_buffer(bytes.byteLength);
     if (!place) throw new Error("expected enough memory, found none left");
-    library.HEAPU8.set(new Uint8Array(bytes), place);
+    heap().set(new Uint8Array(bytes), place);
   }
   const done = withText(JSON.stringify(request), (text) => library._burnish_call(text));
   const text = textAt(library._burnish_text());
@@ -47,15 +56,15 @@ function answer({request, bytes}) {
   const blobs = [];
   for (let i = 0; i < library._burnish_blobs(); ++i) {
     const at = library._burnish_blob(i);
-    blobs.push(library.HEAPU8.slice(at, at + library._burnish_blob_size(i)).buffer);
+    blobs.push(heap().slice(at, at + library._burnish_blob_size(i)).buffer);
   }
   library._burnish_clear();
-  return {json: JSON.parse(text), blobs, memory: library.HEAPU8.length};
+  return {json: JSON.parse(text), blobs, memory: heap().length};
 }
 
 const receive = async (message) => {
   if (message.module) {
-    await start(message.module);
+    await start(message);
     return;
   }
   current = message.call;

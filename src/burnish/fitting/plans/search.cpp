@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <burnish/error.h>
 #include <burnish/fitting/plans/search.h>
 #include <burnish/fitting/plans/trial_sets.h>
 #include <burnish/math/parallel.h>
@@ -144,8 +143,6 @@ class PlanSearch {
 
   SearchResult run(const LobePlan& start) {
     Candidate best = fit(start, nullptr);
-    if (!(best.objective < INFINITY))
-      plan_to_spec(start, options_.bytes, set_.channels, options_.texel_bytes);
     best = fit(start, &best);  // as many steps as every change gets
     result_.trials = {{"start", best.objective, true}};
     for (int round = 0; round < kMaxRounds; ++round)
@@ -158,23 +155,24 @@ class PlanSearch {
   }
 
  private:
-  /// Where the lobes stay, a plan starts from the functions that are known.
+  bool fits(const LobePlan& plan) const {
+    return plan_fits(plan, options_.bytes, set_.channels, options_.texel_bytes);
+  }
+
+  /// Where the lobes stay, a plan starts from the functions that are known. Throws Error where the bytes do not hold it.
   Candidate fit(const LobePlan& plan, const Candidate* from) const {
     Candidate result{.plan = plan, .model = {}};
     RefineOptions steps = refinement_;
-    try {
-      if (from && from->plan.lobes == plan.lobes) {
-        steps.max_iterations = kTrialSteps;
-        result.model =
-            resampled(from->model, plan_to_spec(plan, options_.bytes, set_.channels, options_.texel_bytes));
-        refine(result.model, fitted_, steps);
-      } else {
-        steps.max_iterations = 2 * kTrialSteps;
-        result.model = fit_plan(fitted_, plan, options_.bytes, options_.texel_bytes, steps).model;
-      }
-      result.objective = objective(result.model, judged_, options_.refine.shares);
-    } catch (const Error&) {  // a table too small for the bytes: no candidate
+    if (from && from->plan.lobes == plan.lobes) {
+      steps.max_iterations = kTrialSteps;
+      result.model =
+          resampled(from->model, plan_to_spec(plan, options_.bytes, set_.channels, options_.texel_bytes));
+      refine(result.model, fitted_, steps);
+    } else {
+      steps.max_iterations = 2 * kTrialSteps;
+      result.model = fit_plan(fitted_, plan, options_.bytes, options_.texel_bytes, steps).model;
     }
+    result.objective = objective(result.model, judged_, options_.refine.shares);
     return result;
   }
 
@@ -191,7 +189,7 @@ class PlanSearch {
     std::vector<bool> kept(changes.size());
     for (const std::size_t k : order) {
       const auto changed = changes[k].apply(best.plan);
-      if (!changed) continue;
+      if (!changed || !fits(*changed)) continue;
       Candidate next = fit(*changed, &best);
       kept[k] = next.objective < best.objective - kMinGain;
       if (kept[k]) best = std::move(next);
@@ -201,12 +199,17 @@ class PlanSearch {
     return std::ranges::any_of(kept, [](bool b) { return b; });
   }
 
-  /// The objective of each change, infinite where it does not apply.
+  /// The objective of each change, infinite where it does not apply or the bytes do not hold it.
   std::vector<double> try_alone(const std::vector<Change>& changes, const Candidate& best, int round) {
+    std::vector<std::optional<LobePlan>> changed;
+    for (const Change& change : changes) {
+      changed.push_back(change.apply(best.plan));
+      if (changed.back() && !fits(*changed.back())) changed.back().reset();
+    }
     std::vector<double> values(changes.size(), INFINITY);
     std::atomic<std::size_t> finished = 0;
     for_each_chunk(changes.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
-      if (const auto changed = changes[k].apply(best.plan)) values[k] = fit(*changed, &best).objective;
+      if (changed[k]) values[k] = fit(*changed[k], &best).objective;
       const std::size_t now = ++finished;
       if (std::this_thread::get_id() != caller_) return;
       share_done_ =
@@ -226,13 +229,13 @@ class PlanSearch {
       plans.push_back(result_.plan);
       plans.back().factors[k].grey = true;
     }
+    std::vector<char> held(plans.size());  // by the bytes
+    for (std::size_t k = 0; k < plans.size(); ++k) held[k] = fits(plans[k]);
     std::vector<double> values(plans.size(), INFINITY);
     for_each_chunk(plans.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
-      try {
-        const LobesFit fit = fit_plan(fitted, plans[k], options_.bytes, options_.texel_bytes, steps);
-        values[k] = objective(fit.model, judged, options_.refine.shares);
-      } catch (const Error&) {  // as above
-      }
+      if (!held[k]) return;
+      const LobesFit fit = fit_plan(fitted, plans[k], options_.bytes, options_.texel_bytes, steps);
+      values[k] = objective(fit.model, judged, options_.refine.shares);
     });
     const auto best = static_cast<std::size_t>(std::ranges::min_element(values) - values.begin());
     const bool gained = values[best] < values.front() - kMinGain;
