@@ -50,6 +50,8 @@ test: test-deps format-check docs-check include-check
 	  ctest --preset $$preset -j $(JOBS) || exit 1; \
 	  sed -n '/: Skipped$$/{n;p}' build/$$preset/Testing/Temporary/LastTest.log | sort | uniq -c | sed 's/^/skipped/'; \
 	done
+	@if command -v em++ > /dev/null && command -v node > /dev/null && command -v chromium > /dev/null; then \
+	  $(MAKE) -s studio; fi
 	@tests/web/check.sh --skip-offline > build/web.log 2>&1 & web=$$!; \
 	python/check.sh --skip-offline; python=$$?; \
 	wait $$web; web=$$?; cat build/web.log; exit $$((python || web))
