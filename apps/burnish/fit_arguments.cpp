@@ -79,11 +79,11 @@ void add_lobes_arguments(CLI::App& verb, FitArguments& arguments) {
           "bytes: fits the best model that this many hold; K and M count as 1024s; auto: until more would "
           "store the measurement's noise or hardly help")
       ->transform(bytes_or_auto());
-  verb.add_option(
-          "--fetches", budget.fetches,
-          "of --budget: at most this many filtered reads of tables an evaluation (default: the "
-          "fewest of those "
-          "tried within two percent of the least error; with auto 2, of nodes 3, of anisotropic sources 6)")
+  verb.add_option("--fetches", budget.fetches,
+                  "of --budget: at most this many filtered reads of tables an evaluation (default: the "
+                  "fewest of those "
+                  "tried within two percent of the least error; with auto 2, of some nodes 3, of anisotropic "
+                  "sources 6)")
       ->check(CLI::Range(1, 256))
       ->needs("--budget")
       ->excludes("--method");
@@ -127,7 +127,7 @@ void add_fit_arguments(CLI::App& verb, FitArguments& arguments) {
   add_lobes_arguments(verb, arguments);
   verb.add_option("--model", one_lobe.model,
                   "product of tables over projections: pqp (the paper's), pqpr, or such as "
-                  "\"p(wo) q(h) s(wi+wo+0.5n) p(wi)\" (default: --budget 16K --fetches 2, of nodes 3, "
+                  "\"p(wo) q(h) s(wi+wo+0.5n) p(wi)\" (default: --budget 16K --fetches 2, of some nodes 3, "
                   "of anisotropic sources 6)");
   verb.add_option("--table", one_lobe.tables,
                   "size and spacing of a table: NAME=SIZE[,warp...][,shared][,format], SIZE N (1-D), NxN "

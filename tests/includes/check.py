@@ -14,8 +14,9 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2] / "src/burnish"
 # Folders and files, each of which may include those before it.
-FOUNDATIONS = ["short_message", "error", "file", "embedded_file", "math", "formula", "power", "parameterization",
-               "image", "reflectance", "factors", "book", "baselines", "source", "metrics", "surface"]
+FOUNDATIONS = ["short_message", "error", "json_integer", "file", "embedded_file", "math", "formula", "power",
+               "parameterization", "image", "reflectance", "factors", "book", "baselines", "source", "metrics",
+               "surface"]
 # Workers, and the workers each may include.
 ALLOWED = {
     "io": [],

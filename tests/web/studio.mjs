@@ -555,11 +555,10 @@ await phone.evaluate(() => scrollTo(0, 0));
 await settled(phone);
 await accessible(phone, "phone");
 const pace = await measured();
-const pages = await Promise.all([address, isolatedAddress].map((at) => visit(at)));
-const [alone, shared] = [await threaded(pages[0]), await threaded(pages[1])];
+const [alone, shared] = [await threaded(await visit()), await threaded(await visit(isolatedAddress))];
 assert.deepEqual([alone.isolated, shared.isolated], [false, true]);
 assert.deepEqual(shared.models, alone.models, "the bits that threads find");
-for (const page of pages) await page.context().close();
+await withoutThreads();
 assert.deepEqual(complaints, [], "console");
 
 if (figures) await pictures();
@@ -677,7 +676,24 @@ async function threaded(shown) {
   assert.match(found.refused, /^noise: offset 0: expected/);
   assert.ok(found.again <= 700);
   assert.deepEqual(requests.filter((url) => !url.startsWith("blob:")), []);
+  await shown.context().close();
   return found;
+}
+
+// Where the threads' code cannot be had, or no memory that they share, a page works with the other.
+async function withoutThreads() {
+  const context = await browser.newContext(), [some, none] = [await context.newPage(), await context.newPage()];
+  await none.route("**/burnish-threads.worker.js", (route) => route.fulfill({status: 404}));
+  await some.route("**/burnish-threads.js", async (route) => {
+    const response = await route.fetch(), text = await response.text();
+    return route.fulfill({response, body: `WebAssembly.Memory = class { constructor() { throw new RangeError("none"); } };${text}`});
+  });
+  for (const shown of [some, none]) {
+    await shown.goto(isolatedAddress, {waitUntil: "networkidle"});
+    const {name} = await shown.evaluate(async () => (await import("./package/index.js")).open("lambert").then(({name}) => ({name})));
+    assert.equal(name, "lambert");
+  }
+  await context.close();
 }
 
 // In the page: what is wrong with pictures of .hdr: flat rows, rows by planes, and the older repeats; lies.

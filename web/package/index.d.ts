@@ -42,7 +42,7 @@ export function memory(): number;
 export interface FitOptions {
   /** Of the model; by default the material's, "fitted". */
   name?: string;
-  /** Bytes, or "auto"; without a budget or model 16384 within two fetches (of nodes three, anisotropic: six). */
+  /** Bytes, or "auto"; without a budget or model 16384 within two fetches (of some nodes three, anisotropic: six). */
   budget?: number | "auto";
   fetches?: number;
   lobes?: number;

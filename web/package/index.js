@@ -2,11 +2,6 @@
 
 const inNode = typeof process === "object" && Boolean(process.versions?.node);
 
-// Threads where pages may share memory between workers, one in each worker otherwise; of many processors no more.
-const kMaxThreads = 8;
-const threads = !inNode && globalThis.crossOriginIsolated ? Math.min(navigator.hardwareConcurrency ?? 1, kMaxThreads) - 1 : 0;
-const code = threads > 0 ? "burnish-threads" : "burnish";
-
 async function read(name) {
   const response = await fetch(new URL(`./${name}`, import.meta.url));
   if (!response.ok) throw new Error(`${name}: expected the library's code, found status ${response.status}`);
@@ -23,40 +18,73 @@ function once(make) {
   };
 }
 
-// The library's code for all workers.
-const libraryModule = once(async () => {
-  const name = `${code}.wasm`;
-  if (inNode) return WebAssembly.compile(await (await import("node:fs/promises")).readFile(new URL(`./${name}`, import.meta.url)));
-  return WebAssembly.compile(await (await read(name)).arrayBuffer());
-});
-
-// In browsers: what a worker runs, and what its threads run, with the library's glue inside, so that none of them asks
-// for a file later. `replaced`: a pattern that has to be there, and what takes its place.
-async function withGlue(name, replaced, by) {
-  const [glue, text] = await Promise.all([`${code}.js`, name].map(async (file) => (await read(file)).text()));
-  if (!replaced.test(text)) throw new Error(`${name}: expected the code that loads the library, found none`);
-  const parts = [glue.replace(/export default burnish_wasm;\s*$/, ""), text.replace(replaced, by)];
-  return URL.createObjectURL(new Blob(parts, {type: "text/javascript"}));
+// The library's code, once for all workers, for `threads` beside each worker's own.
+function codeFor(threads) {
+  const name = threads > 0 ? "burnish-threads" : "burnish";
+  // In browsers: what a worker runs, and what its threads run, with the library's glue inside, so that none of them
+  // asks for a file later. `replaced`: a pattern that has to be there, and what takes its place.
+  const withGlue = async (file, replaced, by) => {
+    const [glue, text] = await Promise.all([`${name}.js`, file].map(async (each) => (await read(each)).text()));
+    if (!replaced.test(text)) throw new Error(`${file}: expected the code that loads the library, found none`);
+    const parts = [glue.replace(/export default burnish_wasm;\s*$/, ""), text.replace(replaced, by)];
+    return URL.createObjectURL(new Blob(parts, {type: "text/javascript"}));
+  };
+  const imported = /\(e\.data\.urlOrBlob\?import\(.*?\):import\(.*?\)\)/;
+  return {
+    threads,
+    module: once(async () => {
+      const file = `${name}.wasm`;
+      if (!inNode) return WebAssembly.compile(await (await read(file)).arrayBuffer());
+      return WebAssembly.compile(await (await import("node:fs/promises")).readFile(new URL(file, import.meta.url)));
+    }),
+    worker: once(async () => inNode
+      ? new URL("./worker.js", import.meta.url)
+      : withGlue("worker.js", /^import createLibrary .*$/m, "const createLibrary = burnish_wasm;")),
+    thread: once(async () => threads > 0
+      ? withGlue(`${name}.worker.js`, imported, "Promise.resolve({default: burnish_wasm})")
+      : undefined),
+  };
 }
-const workerCode = once(() => withGlue("worker.js", /^import createLibrary .*$/m, "const createLibrary = burnish_wasm;"));
-const threadCode = once(async () => threads > 0
-  ? withGlue(`${code}.worker.js`, /\(e\.data\.urlOrBlob\?import\(.*?\):import\(.*?\)\)/, "Promise.resolve({default: burnish_wasm})")
-  : undefined);
 
-async function newWorker(receive, fail) {
-  const module = await libraryModule();
-  let worker;
-  if (inNode) {
-    worker = new (await import("node:worker_threads")).Worker(new URL("./worker.js", import.meta.url));
-    worker.on("message", receive);
-    worker.on("error", fail);
-  } else {
-    worker = new Worker(await workerCode(), {type: "module"});
-    worker.onmessage = (event) => receive(event.data);
-    worker.onerror = (event) => fail(new Error(event.message ?? "the worker could not be started"));
+// Threads where pages may share memory between workers; of many processors no more.
+const kMaxThreads = 8;
+const sharesMemory = !inNode && globalThis.crossOriginIsolated;
+let code = codeFor(sharesMemory ? Math.min(navigator.hardwareConcurrency ?? 1, kMaxThreads) - 1 : 0);
+
+// What `use` makes of the code; where threads cannot be had after all, of that without.
+async function withCode(use) {
+  const tried = code;
+  try {
+    return await use(tried);
+  } catch (error) {
+    if (tried.threads === 0) throw error;
+    if (code === tried) code = codeFor(0);
+    return use(code);
   }
-  worker.postMessage({module, threads, threadCode: await threadCode()});
-  return worker;
+}
+
+const loaded = (of) => Promise.all([of.module(), of.worker(), of.thread()]);
+
+function newWorker(receive, fail) {
+  return withCode(async (of) => {
+    const [module, url, threadCode] = await loaded(of);
+    const worker = inNode ? new (await import("node:worker_threads")).Worker(url) : new Worker(url, {type: "module"});
+    try {
+      await new Promise((started, failed) => {
+        const first = ({error}) => error === undefined ? started() : failed(new Error(error));
+        const broken = (error) => failed(error instanceof Error ? error : new Error(error.message ?? "the worker could not be started"));
+        if (inNode) worker.once("message", first).once("error", broken);
+        else Object.assign(worker, {onmessage: (event) => first(event.data), onerror: broken});
+        worker.postMessage({module, threads: of.threads, threadCode});
+      });
+    } catch (error) {
+      worker.terminate();
+      throw error;
+    }
+    if (inNode) worker.on("message", receive).on("error", fail);
+    else Object.assign(worker, {onmessage: (event) => receive(event.data), onerror: (event) => fail(new Error(event.message ?? "the worker stopped"))});
+    return worker;
+  });
 }
 
 const aborted = (signal) => signal.reason ?? new DOMException("The operation was aborted.", "AbortError");
@@ -375,7 +403,7 @@ export async function open(data, {name, report, decoder, onProgress, signal, ...
 
 /// Loads and compiles the library before it is needed.
 export async function preload() {
-  await Promise.all([libraryModule(), ...(inNode ? [] : [workerCode(), threadCode()])]);
+  await withCode(loaded);
 }
 
 /// Bytes that the open materials' worker holds, used or free; 0 where none is open.

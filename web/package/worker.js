@@ -64,7 +64,12 @@ function answer({request, bytes}) {
 
 const receive = async (message) => {
   if (message.module) {
-    await start(message);
+    try {
+      await start(message);
+      port.postMessage({});
+    } catch (error) {
+      port.postMessage({error: `the library could not be started: ${error?.message ?? error}`});
+    }
     return;
   }
   current = message.call;
@@ -73,9 +78,9 @@ const receive = async (message) => {
     port.postMessage({call: message.call, reply}, reply.blobs);
   } catch (error) {
     // what is no error of the library leaves it in an unknown state
-    const fatal = error instanceof WebAssembly.RuntimeError || error instanceof RangeError ||
-                  error instanceof WebAssembly.Exception;
-    port.postMessage({call: message.call, error: fatal ? `the library stopped: ${error.message}` : error.message, fatal});
+    const fatal = !(error instanceof Error) || error instanceof WebAssembly.RuntimeError || error instanceof RangeError;
+    const text = error?.message ?? String(error);
+    port.postMessage({call: message.call, error: fatal ? `the library stopped: ${text}` : text, fatal});
   }
 };
 

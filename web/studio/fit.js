@@ -174,7 +174,8 @@ export function start() {
     presets.default.fetches = referenceOf(state.shown)?.material.isotropic === false ? "6" : "2";
     if (isDefault()) fetches.value = presets.default.fetches;
   };
-  const other = () => choose(Object.keys(presets).find((name) => presets[name].budget === budget.value.trim() && presets[name].fetches === fetches.value.trim()));
+  // what is typed is taken as it stands: the default is chosen by its button alone
+  const other = () => choose(Object.keys(presets).find((name) => name !== "default" && presets[name].budget === budget.value.trim() && presets[name].fetches === fetches.value.trim()));
   budget.addEventListener("input", other);
   fetches.addEventListener("input", other);
   find("#fit").addEventListener("submit", fit);

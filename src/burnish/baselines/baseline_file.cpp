@@ -6,6 +6,7 @@
 
 #include <burnish/baselines/baseline_file.h>
 #include <burnish/error.h>
+#include <burnish/json_integer.h>
 
 namespace burnish {
 
@@ -86,14 +87,14 @@ NodeTable read_table(const Json& tables, std::size_t index, std::string_view nam
   if (const auto found = json.at("name").get<std::string>(); found != name)
     throw Error(fmt::format("table {}: expected the name '{}', found '{}'", index + 1, name, found));
   NodeTable table{.axes = {},
-                  .channels = json.at("channels").get<std::size_t>(),
-                  .terms = json.at("terms").get<int>(),
+                  .channels = static_cast<std::size_t>(integer_at(json, "channels")),
+                  .terms = integer_at(json, "terms"),
                   .values = json.at("values").get<std::vector<float>>()};
   for (const Json& axis : json.at("axes")) {
     const auto text = axis.at("coordinate").get<std::string>();
     const auto coordinate = parse_pair_coordinate(text);
     if (!coordinate) throw Error(fmt::format("table '{}': expected a coordinate, found '{}'", name, text));
-    table.axes.push_back({*coordinate, axis.at("count").get<int>()});
+    table.axes.push_back({*coordinate, integer_at(axis, "count")});
   }
   return table;
 }

@@ -1,5 +1,6 @@
 #include <string>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -68,6 +69,9 @@ TEST(BaselineFile, SaysWhatItExpected) {
   EXPECT_THAT(error_in(replaced(good, R"("count":7)", R"("count":2000000000)")),
               HasSubstr("nodes along theta_h"));
   EXPECT_THAT(error_in(replaced(good, R"("terms":2)", R"("terms":0)")), HasSubstr("term"));
+  for (const char* terms : {"-1", "2.5", "1e23", "122222222222222222222222"})
+    EXPECT_THAT(error_in(replaced(good, R"("terms":2)", fmt::format(R"("terms":{})", terms))),
+                HasSubstr("expected terms of 0 to 2147483647"));
   EXPECT_THAT(error_in(replaced(good, R"("values":[)", R"("values":[1e300,)")), HasSubstr("table 'u'"));
   EXPECT_THAT(error_in(replaced(good, R"("notes":{})", R"("notes":[])")), HasSubstr("notes"));
   EXPECT_THAT(error_in(replaced(good, R"("name":"u")", R"("name":"w")")), HasSubstr("'u', found 'w'"));

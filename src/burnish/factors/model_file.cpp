@@ -19,6 +19,7 @@
 #include <burnish/error.h>
 #include <burnish/factors/compact_file.h>
 #include <burnish/factors/model_file.h>
+#include <burnish/json_integer.h>
 
 namespace burnish {
 
@@ -253,11 +254,8 @@ Projection read_projection(const Json& factor, const char* key) {
   return parse_projection(factor.at(key).get<std::string>()).projection;
 }
 
-// A count, of which there are not less than 0.
 std::size_t count_at(const Json& json, const char* key) {
-  const auto count = json.at(key).get<std::int64_t>();
-  if (count < 0) throw Error(fmt::format("expected {} of at least 0, found {}", key, count));
-  return static_cast<std::size_t>(count);
+  return static_cast<std::size_t>(integer_at(json, key));
 }
 
 // Everything but the pixels, from the JSON; `old` files have one format for all.
@@ -267,8 +265,8 @@ std::vector<Table> read_tables(const Json& json, bool old, std::uint64_t file_si
   for (const Json& t : json.at("tables")) {
     Table table{.name = t.at("name").get<std::string>(),
                 .layout = {.shape = parse_table_shape(t.at("shape").get<std::string>()),
-                           .width = t.at("width").get<int>(),
-                           .height = t.at("height").get<int>(),
+                           .width = integer_at(t, "width"),
+                           .height = integer_at(t, "height"),
                            .warp = parse_warp(t.at("warp").get<std::string>())},
                 .channels = count_at(t, "channels"),
                 .values = {},
@@ -276,7 +274,7 @@ std::vector<Table> read_tables(const Json& json, bool old, std::uint64_t file_si
     const int axes = projection_count(table.layout.shape);
     if (axes > 1) table.layout.warp_y = parse_warp(t.at("warp_y").get<std::string>());
     if (axes > 2) {
-      table.layout.depth = t.at("depth").get<int>();
+      table.layout.depth = integer_at(t, "depth");
       table.layout.warp_z = parse_warp(t.at("warp_z").get<std::string>());
     }
     check_layout(table.layout, table.name);
@@ -329,7 +327,7 @@ Model read_model(const FileBytes& file) {
   const auto* attribute = input.header(0).findTypedAttribute<Imf::StringAttribute>(kAttribute);
   if (!attribute) throw Error("expected a string attribute 'burnish', found an OpenEXR file without it");
   const Json json = Json::parse(attribute->value());
-  const int version = json.at("version").get<int>();
+  const int version = integer_at(json, "version");
   if (version != kVersion && version != kOldVersion)
     throw Error(fmt::format("expected version {} or {}, found {}", kOldVersion, kVersion, version));
 

@@ -415,13 +415,22 @@ class Fitter {
   }
 
   /// Nodes that are given no number of fetches: one more where fewer leave a model farther from them than what is
-  /// measured foretells nodes that it has not seen.
+  /// measured foretells nodes that it has not seen, and where it helps.
   FactoredBrdf fit_nodes_within(Budget form, std::uint64_t bytes) {
-    FactoredBrdf brdf = fit_within(form, bytes);
-    const NodeFigures fitted = node_figures(*nodes_, brdf), &unseen = *report_.nodes->held_out;
-    if (fitted.relative <= unseen.relative && fitted.log_cos <= unseen.log_cos) return brdf;
+    FactoredBrdf fewer = fit_within(form, bytes);
+    const NodeFigures near = node_figures(*nodes_, fewer), &unseen = *report_.nodes->held_out;
+    if (near.relative <= unseen.relative && near.log_cos <= unseen.log_cos) return fewer;
     form.fetches += kMoreFetchesOfNodes;
-    return fit_within(form, bytes);
+    if (!holds_model(reference(), limit_of(bytes, form.fetches))) return fewer;
+    auto how = report_.how;
+    const std::string at_bytes =
+        std::exchange(at_bytes_, at_bytes_ + fmt::format(", {} fetches", form.fetches));
+    FactoredBrdf more = fit_within(form, bytes);
+    at_bytes_ = at_bytes;
+    const NodeFigures nearer = node_figures(*nodes_, more);
+    if (nearer.relative * nearer.log_cos < near.relative * near.log_cos) return more;
+    report_.how = std::move(how);
+    return fewer;
   }
 
   /// That which predicts nodes best, judged by a model of few fetches.

@@ -48,8 +48,8 @@ struct Budget {
   /// error is within two percent of the least, of another as many as its lobes take. The one lobe of scattered samples
   /// has at most so many, where somebody chose them.
   int fetches = 0;
-  /// Nobody did: whatever `fetches` says, they are default_budget's, one more where the nodes of an isotropic source are
-  /// fitted.
+  /// Nobody did: whatever `fetches` says, they are default_budget's. Nodes of an isotropic source get one more where
+  /// those leave a model farther from them than nodes that are left out are from what the others foretell.
   bool default_fetches = false;
   int lobes = 0;        ///< lobes of lines or hemispheres, without fetches; 0: a choice
   bool search = false;  ///< search_plan first; without fetches

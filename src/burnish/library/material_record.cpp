@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include <burnish/error.h>
+#include <burnish/json_integer.h>
 #include <burnish/library/material_record.h>
 
 namespace burnish {
@@ -42,9 +43,9 @@ MaterialRecord parse_material_record(const std::string& text) {
       record.files.push_back({file.at("path"), file.at("staged"), file.at("sha256")});
     record.format = json.at("format");
     record.model = json.at("model");
-    record.bytes = json.at("bytes");
+    record.bytes = static_cast<std::size_t>(integer_at(json, "bytes"));
     if (const auto fetches = json.find("fetches"); fetches != json.end())
-      record.fetches = fetches->get<std::size_t>();
+      record.fetches = static_cast<std::size_t>(integer_at(json, "fetches"));
     for (const auto& [figure, value] : kRecordFigures)
       if (const auto found = json.find(figure); found != json.end()) record.*value = found->get<double>();
     record.warnings = json.at("warnings").get<std::vector<std::string>>();

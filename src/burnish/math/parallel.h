@@ -8,7 +8,7 @@ namespace burnish {
 /// Runs body(chunk, begin, end) over [0, count) cut into chunks of `chunk_size` (the last may be shorter), on
 /// all threads. The cut depends on count and chunk_size alone: a caller that keeps one result a chunk and
 /// joins them in order gets the same bits for every number of threads. Exceptions of a body are rethrown
-/// here.
+/// here. A body catches nothing by type: in browsers two threads at once could not (apps/wasm/standins/unwind.cpp).
 void for_each_chunk(std::size_t count, std::size_t chunk_size,
                     const std::function<void(std::size_t chunk, std::size_t begin, std::size_t end)>& body);
 

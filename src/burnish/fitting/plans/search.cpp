@@ -1,12 +1,15 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <exception>
+#include <mutex>
 #include <optional>
 #include <thread>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include <burnish/error.h>
 #include <burnish/fitting/plans/search.h>
 #include <burnish/fitting/plans/trial_sets.h>
 #include <burnish/math/parallel.h>
@@ -159,7 +162,8 @@ class PlanSearch {
     return plan_fits(plan, options_.bytes, set_.channels, options_.texel_bytes);
   }
 
-  /// Where the lobes stay, a plan starts from the functions that are known. Throws Error where the bytes do not hold it.
+  /// Where the lobes stay, a plan starts from the functions that are known. Throws Error where the bytes do not
+  /// hold it.
   Candidate fit(const LobePlan& plan, const Candidate* from) const {
     Candidate result{.plan = plan, .model = {}};
     RefineOptions steps = refinement_;
@@ -190,7 +194,9 @@ class PlanSearch {
     for (const std::size_t k : order) {
       const auto changed = changes[k].apply(best.plan);
       if (!changed || !fits(*changed)) continue;
-      Candidate next = fit(*changed, &best);
+      Candidate next;
+      attempt([&] { next = fit(*changed, &best); });
+      drop_failures();
       kept[k] = next.objective < best.objective - kMinGain;
       if (kept[k]) best = std::move(next);
     }
@@ -209,13 +215,14 @@ class PlanSearch {
     std::vector<double> values(changes.size(), INFINITY);
     std::atomic<std::size_t> finished = 0;
     for_each_chunk(changes.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
-      if (changed[k]) values[k] = fit(*changed[k], &best).objective;
+      if (changed[k]) attempt([&] { values[k] = fit(*changed[k], &best).objective; });
       const std::size_t now = ++finished;
       if (std::this_thread::get_id() != caller_) return;
       share_done_ =
           (round + 0.8 * static_cast<double>(now) / static_cast<double>(changes.size())) / kMaxRounds;
       report();
     });
+    drop_failures();
     return values;
   }
 
@@ -234,9 +241,12 @@ class PlanSearch {
     std::vector<double> values(plans.size(), INFINITY);
     for_each_chunk(plans.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
       if (!held[k]) return;
-      const LobesFit fit = fit_plan(fitted, plans[k], options_.bytes, options_.texel_bytes, steps);
-      values[k] = objective(fit.model, judged, options_.refine.shares);
+      attempt([&] {
+        const LobesFit fit = fit_plan(fitted, plans[k], options_.bytes, options_.texel_bytes, steps);
+        values[k] = objective(fit.model, judged, options_.refine.shares);
+      });
     });
+    drop_failures();
     const auto best = static_cast<std::size_t>(std::ranges::min_element(values) - values.begin());
     const bool gained = values[best] < values.front() - kMinGain;
     for (std::size_t k = 1; k < plans.size(); ++k)
@@ -245,8 +255,35 @@ class PlanSearch {
     if (gained) result_.plan = plans[best];
   }
 
-  void report() const {
-    if (options_.progress) options_.progress(share_done_);
+  /// Keeps what a trial throws for drop_failures(), unless it is what ends the search.
+  template <class Trial>
+  void attempt(const Trial& trial) {
+    try {
+      trial();
+    } catch (...) {
+      if (ended_) throw;
+      const std::lock_guard lock(mutex_);
+      failures_.push_back(std::current_exception());
+    }
+  }
+  /// Trials that have no solution are none; rethrows what is no Error.
+  void drop_failures() {
+    for (const std::exception_ptr& failure : std::exchange(failures_, {})) {
+      try {
+        std::rethrow_exception(failure);
+      } catch (const Error&) {
+      }
+    }
+  }
+
+  void report() {
+    if (!options_.progress) return;
+    try {
+      options_.progress(share_done_);
+    } catch (...) {
+      ended_ = true;
+      throw;
+    }
   }
 
   const TrainingSet& set_;
@@ -256,6 +293,9 @@ class PlanSearch {
   SearchResult result_;
   std::thread::id caller_ = std::this_thread::get_id();
   double share_done_ = 0;
+  std::atomic<bool> ended_ = false;  ///< by the callback
+  std::mutex mutex_;
+  std::vector<std::exception_ptr> failures_;  ///< guarded by it
 };
 
 }  // namespace
