@@ -103,7 +103,10 @@ TEST(CommandLine, KeepsErrorsShort) {
   EXPECT_LT(first_line(burnish(fmt::format("info {}", digits))).size(), 300u);
   EXPECT_THAT(first_line(burnish("info lambert --illuminant nonsense")),
               HasSubstr("expected E, D50, D65, A or a file"));
-  EXPECT_LT(first_line(burnish(fmt::format("render lambert --tone {}", digits))).size(), 300u);
+  EXPECT_LT(burnish(fmt::format("render lambert --tone {}", digits)).output.size(), 300u);
+  EXPECT_LT(burnish(fmt::format("specular code --method {}", digits)).output.size(), 300u);
+  EXPECT_THAT(first_line(burnish("help formats extra")),
+              HasSubstr("expected nothing after formats, found 'extra'"));
 }
 
 TEST(CommandLine, CutsErrorsBetweenCharacters) {

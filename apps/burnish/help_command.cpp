@@ -102,6 +102,9 @@ void print_models() {
 /// The verb of these names, each below the one before; throws a misuse where there is none.
 const CLI::App& verb_of_names(const CLI::App& app, const std::vector<std::string>& names) {
   const CLI::App* verb = &app;
+  if (names.size() > 1 && (names.front() == "formats" || names.front() == "models"))
+    throw CLI::ValidationError("help",
+                               fmt::format("expected nothing after {}, found '{}'", names.front(), names[1]));
   for (const std::string& name : names) {
     const auto found = verb->get_subcommands([&](const CLI::App* each) { return each->get_name() == name; });
     if (found.empty()) {

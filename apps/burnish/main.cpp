@@ -35,8 +35,9 @@ int main(int argc, char** argv) {
     if (error.get_exit_code() == 0) return app.exit(error);
     const auto meant =
         burnish::cli::misspelling(app, std::span(argv, static_cast<std::size_t>(argc)).subspan(1));
+    constexpr std::size_t kBesideHint = 245;  // so that both lines have less than 300 bytes
     fmt::print(stderr, "burnish: {}\nRun with --help for more information.\n",
-               burnish::short_message(meant ? *meant : error.what()));
+               burnish::short_message(meant ? *meant : error.what(), kBesideHint));
     return 2;
   } catch (const burnish::Error& error) {
     fmt::print(stderr, "burnish: {}\n", burnish::short_message(error.what()));

@@ -460,23 +460,30 @@ assert.match(fs.readFileSync(await save(page, "[data-export=curve]", "curve.svg"
 for (const [kind, name] of [["ktx2", "fitted.ktx2"], ["three", "fitted.three.js"], ["merl", "out.binary"], ["csv", "out.csv"], ["png", "view.png"], ["slice", "slice.svg"],
                             ["half-diff", "half-diff.png"]])
   assert.ok(fs.statSync(await save(page, `[data-export=${kind}]`, name)).size > 100, kind);
+// what was measured, and the fit of it
+for (const entry of await page.evaluate(() => window.studio.entries.slice(0, 2).map(({id}) => id)))
+  assert.ok(fs.statSync(await save(page, `[data-of="${entry}"] [data-export=merl]`, `${entry}.binary`)).size > 1000);
 for (const language of ["glsl", "glsl_es", "hlsl", "wgsl", "msl", "cpp"]) {
   await page.selectOption("#take select", language);
   assert.match(fs.readFileSync(await save(page, "[data-export=shader]", `fitted.${language}`), "utf8"), /burnish_/);
 }
 
-// Edits are undone and redone.
+// Edits are undone and redone, and the figures beside them are those of what is shown.
 const edited = "#edit input[data-edit=scale]";
-if (await page.locator(edited).count()) {
-  await page.focus(edited);
-  await page.keyboard.press("ArrowRight");
-  assert.notEqual(await page.inputValue(edited), "0");
-  await page.click("#undo");
-  await page.waitForFunction((selector) => document.querySelector(selector).value === "0", edited);
-  await page.click("#redo");
-  await page.waitForFunction((selector) => document.querySelector(selector).value !== "0", edited);
-  await page.click("#undo");
-}
+const psnr = () => page.textContent("#figures tbody tr[data-shown=true] td:nth-child(2)");
+const fittedPsnr = await psnr();
+await page.focus(edited);
+for (let k = 0; k < 20; ++k) await page.keyboard.press("ArrowRight");
+assert.notEqual(await page.inputValue(edited), "0");
+await page.waitForFunction(() => window.studio.entries[1].figures?.psnr < 40);
+assert.equal(Number(await psnr()), Number((await opened(page))[1].figures.psnr.toPrecision(4)));
+same((await opened(page))[1].figures, JSON.parse(run("compare", "--json", file("a.binary"), await save(page, "[data-export=burnish]", "edited.burnish")))[0], "compare");
+await page.click("#undo");
+await page.waitForFunction((selector) => document.querySelector(selector).value === "0", edited);
+await page.waitForFunction((text) => document.querySelector("#figures tbody tr[data-shown=true] td:nth-child(2)").textContent === text, fittedPsnr);
+await page.click("#redo");
+await page.waitForFunction((selector) => document.querySelector(selector).value !== "0", edited);
+await page.click("#undo");
 
 // A link carries the model, and what is no model is said to be none.
 await page.click("#link");

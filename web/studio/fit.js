@@ -136,14 +136,14 @@ function drawCurve() {
 }
 
 function drawFigures() {
-  const reference = referenceOf(state.shown), place = find("#figures"), models = reference ? modelsOf(reference).filter((m) => m.figures) : [];
+  const reference = referenceOf(state.shown), place = find("#figures"), models = reference ? modelsOf(reference).filter((m) => m.figures !== undefined) : [];
   if (!models.length) {
     place.replaceChildren(make("p", {class: "hint"}, "The figures of each fit, as ", make("code", {}, "compare"), " prints them, and the cost of its shader."));
     return;
   }
   const heads = ["Model", "PSNR", "SSIM", "relative", "rms log", "log cos"];
   const rows = models.map((model) => {
-    const f = model.figures;
+    const f = model.figures ?? {};  // none yet of what was just edited
     return make("tr", {"data-shown": model === state.beside},
       make("td", {}, make("button", {type: "button", title: model.name, onclick: () => show(model)}, bytesText(model.info.bytes))),
       ...[f.psnr, f.ssim, f.relative, f.rms_log, f.log_cos].map((x, k) => make("td", {}, number(x, k === 0 ? 4 : 3))));

@@ -147,8 +147,9 @@ function draw() {
     model ? shaderGroup(model) : make("p", {class: "hint"}, "Fit first: a model has a shader, textures and a link."),
     model ? make("div", {}, make("h3", {}, surface ? "Surface" : "Model"), make("div", {class: "buttons"}, ...Object.entries(files).map(([kind, title]) => saveButton(model, kind, title)))) : "",
     model ? linkGroup(model) : "",
-    isSurface(reference) ? "" : make("div", {}, make("h3", {}, `${reference.name} as`),
-      make("div", {class: "buttons"}, ...Object.entries(anyFiles).map(([kind, title]) => saveButton(reference, kind, title)))),
+    ...[reference, ...(model && model !== reference && !surface ? [model] : [])].filter((each) => !isSurface(each)).map((each) =>
+      make("div", {"data-of": each.id}, make("h3", {}, `${each.name} as`),
+        make("div", {class: "buttons"}, ...Object.entries(anyFiles).map(([kind, title]) => saveButton(each, kind, title))))),
     pictureGroup());
 }
 

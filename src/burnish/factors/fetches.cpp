@@ -35,4 +35,10 @@ std::size_t fetch_count(const ModelSpec& spec) {
   return reads.size();
 }
 
+std::size_t texture_count(const FactoredBrdf& brdf) noexcept {
+  const auto volumes = std::ranges::count_if(
+      brdf.tables(), [](const Table& table) { return table.layout.shape == TableShape::volume; });
+  return static_cast<std::size_t>(volumes > 0) + (static_cast<std::size_t>(volumes) < brdf.tables().size());
+}
+
 }  // namespace burnish

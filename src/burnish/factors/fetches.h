@@ -14,4 +14,7 @@ std::size_t fetch_count(const FactoredBrdf& brdf);
 /// The same of a model without its numbers.
 std::size_t fetch_count(const ModelSpec& spec);
 
+/// Textures that hold its tables in a shader: one of lines, grids and disks, one of volumes.
+std::size_t texture_count(const FactoredBrdf& brdf) noexcept;
+
 }  // namespace burnish

@@ -36,7 +36,7 @@ std::string summary_json(const Fit& fit, const std::string& output, double secon
     json["model"] = model_expression(*model);
     json["bytes"] = model->bytes();
     json["table_bytes"] = model->table_bytes();
-    json["textures"] = model->tables().size();
+    json["textures"] = texture_count(*model);
     json["fetches"] = fetch_count(*model);
     json["smallest_factor"] = model->smallest_factor();
     json["reciprocal"] = model->reciprocal();

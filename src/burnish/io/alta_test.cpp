@@ -96,6 +96,8 @@ TEST(Alta, TakesKeysForWhatTheySay) {
   const SampleFile weighted =
       read_row("SPHERICAL_TL_PL_TV_PV", {0.5, 0, 1.1, 2}, "#PARAM_OUT INV_STERADIAN_COSINE_FACTOR\n");
   EXPECT_NEAR(weighted.samples.values[0], 0.25 / std::cos(1.1), 1e-15);
+  // pi/2 of six digits is below the horizon
+  EXPECT_EQ(read_row("SPHERICAL_TL_PL_TV_PV", {1.5708, 0, 1.1, 2}).samples.pairs.at(0).wi.z, 0);
 }
 
 TEST(Alta, SaysWhatIsWrong) {

@@ -200,8 +200,10 @@ TEST(Convert, KeepsSpectraWhereTheFormatHasThem) {
 }
 
 TEST(Convert, SaysWhatReadingLost) {
-  const Source source = parse_source(memory_file(kSpectra), {});
+  Source source = parse_source(memory_file(kSpectra), {});
   EXPECT_THAT(convert(source, "csv").losses, Contains(HasSubstr("linear Rec. 709 (equal energy)")));
+  source.findings.conventions.push_back("Licence: MPL-2.0.");
+  EXPECT_THAT(convert(source, "csv").losses, Contains(HasSubstr("licence")));
 }
 
 TEST(Convert, KeepsValuesBelowZero) {

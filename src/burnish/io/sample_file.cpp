@@ -56,8 +56,9 @@ void finish_samples(const std::string& file, const OpenOptions& options, SampleF
       samples.values = to_rec709(samples, rec709_weights_of(file, lambda, options.illuminant));
       samples.channels = 3;
       findings.illuminant = illuminant_name(options.illuminant);
-      findings.conventions.push_back(fmt::format("{} wavelengths, {} to {} nm, became linear Rec. 709.",
-                                                 lambda.size(), lambda.front(), lambda.back()));
+      findings.conventions.push_back(fmt::format("{} wavelengths, {} to {} nm, became linear Rec. 709 ({}).",
+                                                 lambda.size(), lambda.front(), lambda.back(),
+                                                 findings.illuminant));
       if (const auto outside = std::ranges::count_if(samples.values, [](double v) { return v < 0; }))
         findings.conventions.push_back(
             fmt::format("{} values are below zero: colours outside the gamut, or noise.", outside));

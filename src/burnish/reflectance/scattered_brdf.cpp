@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include <burnish/error.h>
 #include <burnish/math/angles.h>
@@ -50,10 +51,15 @@ void visit_ball(std::span<const std::array<double, 4>> points, std::span<const s
   }
 }
 
-/// Orders the indices [begin, end) as a balanced k-d tree: the middle one splits along the longest axis.
+/// Orders the indices [begin, end) as a balanced k-d tree: the middle one splits along the longest axis. The order is
+/// the same for every standard library: what is alike stays in the samples' order.
 void sort_into_tree(std::span<const std::array<double, 4>> points, std::span<std::size_t> order,
                     std::span<std::uint8_t> axes, std::size_t begin, std::size_t end) {
-  if (end - begin <= kLeaf) return;
+  const auto at = [&](std::size_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); };
+  if (end - begin <= kLeaf) {
+    std::sort(at(begin), at(end));
+    return;
+  }
   // the longest axis of the range's box
   std::array<double, 4> low = points[order[begin]], high = low;
   for (std::size_t i = begin; i < end; ++i)
@@ -67,9 +73,9 @@ void sort_into_tree(std::span<const std::array<double, 4>> points, std::span<std
 
   // the pivot in the middle, what is below it in front
   const std::size_t middle = begin + (end - begin) / 2;
-  const auto at = [&](std::size_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); };
-  std::nth_element(at(begin), at(middle), at(end),
-                   [&](std::size_t a, std::size_t b) { return points[a][axis] < points[b][axis]; });
+  std::nth_element(at(begin), at(middle), at(end), [&](std::size_t a, std::size_t b) {
+    return std::pair(points[a][axis], a) < std::pair(points[b][axis], b);
+  });
   axes[middle] = static_cast<std::uint8_t>(axis);
   sort_into_tree(points, order, axes, begin, middle);
   sort_into_tree(points, order, axes, middle + 1, end);
