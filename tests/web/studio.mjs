@@ -470,17 +470,15 @@ for (const language of ["glsl", "glsl_es", "hlsl", "wgsl", "msl", "cpp"]) {
 
 // Edits are undone and redone, and the figures beside them are those of what is shown.
 const edited = "#edit input[data-edit=scale]";
-const psnr = () => page.textContent("#figures tbody tr[data-shown=true] td:nth-child(2)");
+const psnr = () => page.textContent("#figures tbody tr[data-shown] td:nth-child(2)");
 const fittedPsnr = await psnr();
-await page.focus(edited);
-for (let k = 0; k < 20; ++k) await page.keyboard.press("ArrowRight");
-assert.notEqual(await page.inputValue(edited), "0");
+await page.locator(edited).fill("0.6");
 await page.waitForFunction(() => window.studio.entries[1].figures?.psnr < 40);
 assert.equal(Number(await psnr()), Number((await opened(page))[1].figures.psnr.toPrecision(4)));
 same((await opened(page))[1].figures, JSON.parse(run("compare", "--json", file("a.binary"), await save(page, "[data-export=burnish]", "edited.burnish")))[0], "compare");
 await page.click("#undo");
 await page.waitForFunction((selector) => document.querySelector(selector).value === "0", edited);
-await page.waitForFunction((text) => document.querySelector("#figures tbody tr[data-shown=true] td:nth-child(2)").textContent === text, fittedPsnr);
+await page.waitForFunction((text) => document.querySelector("#figures tbody tr[data-shown] td:nth-child(2)").textContent === text, fittedPsnr);
 await page.click("#redo");
 await page.waitForFunction((selector) => document.querySelector(selector).value !== "0", edited);
 await page.click("#undo");
