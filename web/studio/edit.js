@@ -1,7 +1,7 @@
 // Changes to a model by sliders, each one undone and redone.
 import {find, latest, lineOf, make, say} from "./dom.js";
 import {infoOf} from "./library.js";
-import {changed, isSurface, modelShown, onChange, state} from "./state.js";
+import {changed, entryOf, isSurface, modelShown, onChange, state} from "./state.js";
 import {radians} from "./vectors.js";
 
 const fields = [
@@ -34,7 +34,7 @@ let past = [], future = [], shownFor, lobe = "";
 const kRest = 300;  // milliseconds
 function measure(entry) {
   clearTimeout(entry.resting);
-  const reference = state.entries.find(({id}) => id === entry.parent);
+  const reference = entryOf(entry.parent);
   if (entry.figures !== null || !reference) return;
   entry.resting = setTimeout(async () => {
     const {material} = entry;
