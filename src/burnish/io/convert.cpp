@@ -33,8 +33,6 @@ constexpr std::size_t kComparedPairs = 2000;
 constexpr double kFloor = 1e-3;       // as in error_figures.h
 constexpr double kReciprocal = 1e-6;  // asymmetry that is rounding
 constexpr std::size_t kMirrorPairs = 500;
-// What conventions that tell of a file's origin begin with.
-constexpr std::array<std::string_view, 4> kOrigin{"Licence: ", "Copyright: ", "Authors: ", "Origin: "};
 constexpr double kTreeTolerance = 1e-3;  // of cubes that become one
 // Where a format of spectra has grey, and the dominant wavelengths of the primaries of Rec. 709.
 constexpr double kGrey_nm = 555;
@@ -111,7 +109,8 @@ class Converter {
     const Findings& found = source.findings;
     if (!found.illuminant.empty()) lose("spectra became linear Rec. 709 ({})", found.illuminant);
     const auto of_origin = [](const std::string& told) {
-      return std::ranges::any_of(kOrigin, [&](std::string_view word) { return told.starts_with(word); });
+      return std::ranges::any_of(
+          kOriginWords, [&](const auto& word) { return told.starts_with(fmt::format("{}: ", word.second)); });
     };
     if (std::ranges::any_of(found.conventions, of_origin))
       lose("what the file says of its licence, its authors and its origin");

@@ -153,8 +153,7 @@ void describe(const Json& document, Findings& findings) {
   const auto metadata = document.find("metadata");
   if (metadata == document.end() || !metadata->is_object()) return;
   findings.description = text_of(*metadata, "name");
-  for (const auto& [key, word] : {std::pair{"license", "Licence"}, std::pair{"copyrights", "Copyright"},
-                                  std::pair{"authors", "Authors"}, std::pair{"sources", "Origin"}})
+  for (const auto& [key, word] : kOriginWords)
     if (const std::string text = text_of(*metadata, key); !text.empty())
       findings.conventions.push_back(fmt::format("{}: {}.", word, text));
 }

@@ -1,14 +1,20 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <burnish/io/byte_reader.h>
 #include <burnish/io/sample_file.h>
 
 namespace burnish {
+
+/// What metadata tells of a file's origin: its keys, and the words that conventions begin with for them, before ": ".
+inline constexpr std::array<std::pair<const char*, const char*>, 4> kOriginWords{
+    {{"license", "Licence"}, {"copyrights", "Copyright"}, {"authors", "Authors"}, {"sources", "Origin"}}};
 
 /// True if the text is a JSON object that names a lookupTable within its first 64 KiB.
 bool looks_like_openmaterial(std::string_view text) noexcept;
