@@ -422,6 +422,15 @@ const [, model] = await opened(page);
 const saved = await save(page, "[data-export=burnish]", "fitted.burnish");
 const [expected] = JSON.parse(run("compare", "--json", file("a.binary"), saved));
 same(model.figures, expected, "compare");
+const kChance = 0.05;  // relative, of what nodes of the same file predict of themselves: see `same`
+const mean = (values) => values.reduce((sum, x) => sum + x, 0) / values.length, of = ({relative, rms_log, log_cos, rms}) => [relative, rms_log, log_cos, rms];
+await page.click("#figures summary");
+const [albedoRows, nodeRows] = await page.evaluate(() => [...document.querySelectorAll("#figures details table")].map((table) =>
+  [...table.tBodies[0].rows].map((row) => [...row.querySelectorAll("[title]")].map(({title}) => Number(title)))));
+same(albedoRows, expected.albedo.map(({reference, model}) => [mean(reference), mean(model)]), "albedo in the panel");
+same(nodeRows[1], of(expected.nodes), "nodes in the panel");
+same(nodeRows[0], of(expected.nodes.itself), "the reference's own nodes in the panel", kChance);
+assert.match(await page.textContent("#figures details"), new RegExp(`At ${model.figures.nodes.count.toLocaleString("en")} measured nodes`));
 run("fit", file("a.binary"), "--budget", "2700", "--fetches", "2", "-o", file("native.burnish"));
 const [native] = JSON.parse(run("compare", "--json", file("a.binary"), file("native.burnish")));
 assert.ok(Math.abs(native.psnr - expected.psnr) < 0.05, `fitted natively ${native.psnr} dB, in the page ${expected.psnr} dB`);

@@ -17,6 +17,10 @@ export const make = (tag, attributes = {}, ...children) => fill(document.createE
 export const svg = (tag, attributes = {}, ...children) =>
   fill(document.createElementNS("http://www.w3.org/2000/svg", tag), attributes, children);
 
+export const row = (cells, attributes = {}) => make("tr", attributes, ...cells.map((cell) => make("td", {}, cell)));
+export const table = (caption, heads, rows) => make("table", {}, caption ? make("caption", {}, caption) : "",
+  make("thead", {}, make("tr", {}, ...heads.map((name) => make("th", {scope: "col"}, name)))), make("tbody", {}, ...rows));
+
 export const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
 // 2700 -> "2.6 KB"; figures with a few digits.

@@ -1,6 +1,7 @@
 // Fits with progress and stop, their figures beside the reference's, and error against bytes.
 import {plot} from "./chart.js";
-import {bytesText, css, find, lineOf, make, number, say} from "./dom.js";
+import {bytesText, css, find, lineOf, make, number, row, say, table} from "./dom.js";
+import {incidence} from "./info.js";
 import {infoOf} from "./library.js";
 import {segments} from "./segments.js";
 import {add, changed, isSurface, modelsOf, onChange, referenceOf, show, state} from "./state.js";
@@ -13,7 +14,7 @@ const presets = {
 const kCurve = [700, 1400, 2800, 5600, 11200, 22400, 44800];
 const kMaxFits = 4;  // at once, each with memory of its own
 
-let stop = null, choose = () => {}, followed = null;
+let stop = null, choose = () => {}, followed = null, moreShown = false;
 
 // "16K" as bytes; "auto" as itself. Throws Error.
 function readBudget(text) {
@@ -135,6 +136,22 @@ function drawCurve() {
   }));
 }
 
+// A figure with few digits; with all of them where it is pointed at.
+const figure = (x, digits) => make("span", {title: x}, number(x, digits));
+
+// What compare prints of a model below its first line: albedos, means over the channels, and figures where was measured.
+function moreFigures({albedo, nodes, unknown_fraction: unknown, unknown_pixels: pixels}) {
+  const mean = (values) => values.reduce((sum, x) => sum + x, 0) / values.length;
+  const albedos = albedo.map((at) => row([incidence(at), figure(mean(at.reference), 4), figure(mean(at.model), 4)]));
+  const scores = ({relative, rms_log, log_cos, rms}) => [relative, rms_log, log_cos, rms].map((x) => figure(x, 3));
+  return make("details", {open: moreShown, ontoggle: (event) => (moreShown = event.target.open)},
+    make("summary", {}, nodes ? "Albedo, and where it was measured" : "Albedo"),
+    unknown > 0 || pixels > 0 ? make("p", {class: "hint"}, `Left out, where a side knows nothing: ${number(100 * unknown, 3)} % of the directions and ${pixels} pixels.`) : "",
+    table("Albedo, mean of the channels", ["at", "reference", "model"], albedos),
+    nodes ? table(`At ${nodes.count.toLocaleString("en")} measured nodes`, ["of", "relative", "rms log", "log cos", "rms"],
+                  [row(["reference", ...scores(nodes.itself)]), row(["model", ...scores(nodes)])]) : "");
+}
+
 function drawFigures() {
   const reference = referenceOf(state.shown), place = find("#figures"), models = reference ? modelsOf(reference).filter((m) => m.figures !== undefined) : [];
   if (!models.length) {
@@ -144,18 +161,15 @@ function drawFigures() {
   const heads = ["Model", "PSNR", "SSIM", "relative", "rms log", "log cos"];
   const rows = models.map((model) => {
     const f = model.figures ?? {};  // none yet of what was just edited
-    return make("tr", {"data-shown": model === state.beside},
-      make("td", {}, make("button", {type: "button", title: model.name, onclick: () => show(model)}, bytesText(model.info.bytes))),
-      ...[f.psnr, f.ssim, f.relative, f.rms_log, f.log_cos].map((x, k) => make("td", {}, number(x, k === 0 ? 4 : 3))));
+    return row([make("button", {type: "button", title: model.name, onclick: () => show(model)}, bytesText(model.info.bytes)),
+                ...[f.psnr, f.ssim, f.relative, f.rms_log, f.log_cos].map((x, k) => figure(x, k === 0 ? 4 : 3))], {"data-shown": model === state.beside});
   });
   const model = models.includes(state.beside) ? state.beside : models.at(-1), cost = model.info.shader;
   const costText = cost && `${model.name}: ${cost.fetches} fetches of ${cost.textures} texture${cost.textures === 1 ? "" : "s"}, ${cost.operations} operations, ` +
     `${cost.divisions} divisions, ${cost.roots} roots, ${cost.powers} powers a light. Fitted in ${number(model.seconds, 2)} s.`;
   place.replaceChildren(
-    make("div", {class: "scroll", tabindex: 0, role: "region", "aria-label": "Figures of the models"},
-      make("table", {}, make("thead", {}, make("tr", {}, ...heads.map((name) => make("th", {scope: "col"}, name)))),
-        make("tbody", {}, ...rows))),
-    cost ? make("p", {class: "cost"}, costText) : "");
+    make("div", {class: "scroll", tabindex: 0, role: "region", "aria-label": "Figures of the models"}, table("", heads, rows)),
+    cost ? make("p", {class: "cost"}, costText) : "", model.figures ? moreFigures(model.figures) : "");
 }
 
 function enable() {

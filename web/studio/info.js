@@ -1,5 +1,5 @@
 // What `info --json` says, as a panel.
-import {bytesText, find, make, number} from "./dom.js";
+import {bytesText, find, make, number, row, table} from "./dom.js";
 import {state} from "./state.js";
 
 const span = ([low, high]) => `${number(low, 3)}° to ${number(high, 3)}°`;
@@ -44,14 +44,12 @@ function facts(info, {drawn, computed}) {
   return rows;
 }
 
+export const incidence = ({theta_i_deg, phi_i_deg}) => `${number(theta_i_deg, 3)}°${phi_i_deg > 0 ? `, ${number(phi_i_deg, 3)}°` : ""}`;
+
 function albedos({albedo}) {
   if (!albedo?.length) return null;
-  const place = (row) => `${number(row.theta_i_deg, 3)}°${row.phi_i_deg > 0 ? `, ${number(row.phi_i_deg, 3)}°` : ""}`;
-  const cells = (values) => values.slice(0, 3).map((x) => make("td", {}, number(x, 3)));
   const names = {1: ["grey"], 3: ["red", "green", "blue"]}[albedo[0].albedo.length] ?? ["1", "2", "3"];
-  return make("table", {}, make("caption", {}, "Albedo"),
-    make("thead", {}, make("tr", {}, make("th", {scope: "col"}, "at"), ...names.map((name) => make("th", {scope: "col"}, name)))),
-    make("tbody", {}, ...albedo.map((row) => make("tr", {}, make("td", {}, place(row)), ...cells(row.albedo)))));
+  return table("Albedo", ["at", ...names], albedo.map((at) => row([incidence(at), ...at.albedo.slice(0, 3).map((x) => number(x, 3))])));
 }
 
 // Where a format leaves open how it is read; the same controls stay, and keep the focus.
