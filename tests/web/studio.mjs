@@ -75,13 +75,18 @@ async function visit(link = address, options = {}) {
       .observe({type: "layout-shift", buffered: true});
   });
   await page.goto(link, {waitUntil: "networkidle"});
-  await page.evaluate(async () => (window.studio = (await import("./state.js")).state));
+  await page.evaluate(async () => {
+    const [{state, referenceOf}, {judgedOf}] = await Promise.all([import("./state.js"), import("./figures.js")]);
+    window.studio = state;
+    // beside what it is of, or else what is shown
+    window.figuresOf = (entry) => judgedOf(entry.parent === null ? state.shown : referenceOf(entry), entry)?.figures;
+  });
   return page;
 }
 
 const compared = (source) => JSON.parse(run("compare", "--json", "--count", "2000", source, file("a.burnish")))[0];
 // What the page has open, and messages.
-const opened = (page) => page.evaluate(() => window.studio.entries.map(({name, info, figures, parent}) => ({name, info, figures, parent})));
+const opened = (page) => page.evaluate(() => window.studio.entries.map((entry) => ({name: entry.name, info: entry.info, parent: entry.parent, figures: window.figuresOf(entry)})));
 const until = (page, count) => page.waitForFunction((n) => window.studio.entries.length === n && window.studio.entries.every((entry) => entry.info), count);
 const message = (page) => page.evaluate(() => (document.querySelector("#message").hidden ? "" : document.querySelector("#message-text").textContent));
 async function drop(page, names) {
@@ -410,6 +415,25 @@ await page.selectOption("#around", "studio");
 
 await steady(page, "books, surfaces and pictures");
 
+// A model and a measurement stand side by side, whichever was dropped first, with the figures of the command line.
+const [beside] = JSON.parse(run("compare", "--json", file("a.binary"), file("a.burnish")));
+for (const names of [["a.binary", "a.burnish"], ["a.burnish", "a.binary"]]) {
+  for (const [k, name] of names.entries()) {
+    await drop(page, [name]);
+    await until(page, k + 1);
+  }
+  assert.deepEqual(await page.evaluate(() => [window.studio.shown, window.studio.beside].map(({name}) => name)), ["a.binary", "a.burnish"]);
+  assert.equal(await page.getAttribute("#shown [data-value=split]", "aria-checked"), "true");
+  await page.waitForFunction(() => window.figuresOf(window.studio.beside));
+  same(await page.evaluate(() => window.figuresOf(window.studio.beside)), beside, `compare ${names}`);
+  assert.equal(Number(await page.getAttribute("#figures tbody tr[data-shown] td:nth-child(2) span", "title")), (await page.evaluate(() => window.figuresOf(window.studio.beside))).psnr);
+  // either is there without the other
+  await page.click(`#list .close[aria-label="Close ${names[0]}"]`);
+  assert.deepEqual((await opened(page)).map(({name}) => name), [names[1]]);
+  await page.click("#list .close");
+  await until(page, 0);
+}
+
 // Fit: figures equal those of the command line for the saved model.
 await drop(page, ["a.binary"]);
 await until(page, 1);
@@ -482,7 +506,7 @@ const edited = "#edit input[data-edit=scale]";
 const psnr = () => page.textContent("#figures tbody tr[data-shown] td:nth-child(2)");
 const fittedPsnr = await psnr();
 await page.locator(edited).fill("0.6");
-await page.waitForFunction(() => window.studio.entries[1].figures?.psnr < 40);
+await page.waitForFunction(() => window.figuresOf(window.studio.entries[1])?.psnr < 40);
 assert.equal(Number(await psnr()), Number((await opened(page))[1].figures.psnr.toPrecision(4)));
 same((await opened(page))[1].figures, JSON.parse(run("compare", "--json", file("a.binary"), await save(page, "[data-export=burnish]", "edited.burnish")))[0], "compare");
 await page.click("#undo");

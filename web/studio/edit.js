@@ -1,7 +1,7 @@
 // Changes to a model by sliders, each one undone and redone.
 import {find, latest, lineOf, make, say} from "./dom.js";
 import {infoOf} from "./library.js";
-import {changed, entryOf, isSurface, modelShown, onChange, state} from "./state.js";
+import {changed, isSurface, modelShown, onChange, state} from "./state.js";
 import {radians} from "./vectors.js";
 
 const fields = [
@@ -30,29 +30,10 @@ function optionsOf(places, lobes) {
 // States to go back and forth to: {entry, places}.
 let past = [], future = [], shownFor, lobe = "";
 
-// Figures of what was edited, measured anew once it rests; meanwhile they are null.
-const kRest = 300;  // milliseconds
-function measure(entry) {
-  clearTimeout(entry.resting);
-  const reference = entryOf(entry.parent);
-  if (entry.figures !== null || !reference) return;
-  entry.resting = setTimeout(async () => {
-    const {material} = entry;
-    try {
-      const [figures] = await reference.material.compare(material);
-      if (entry.material !== material || !state.entries.includes(entry)) return;
-      entry.figures = figures;
-      changed();
-    } catch (error) {
-      if (entry.material === material && state.entries.includes(entry)) say(lineOf(error), "error");
-    }
-  }, kRest);
-}
-
 const apply = latest(async (entry) => {
   if (!state.entries.includes(entry)) return;
   try {
-    if (!entry.original) Object.assign(entry, {original: entry.material, fitted: entry.figures, lobes: entry.info.lobes});
+    if (!entry.original) Object.assign(entry, {original: entry.material, lobes: entry.info.lobes});
     const {original} = entry, options = optionsOf(entry.places, entry.lobes), same = Object.keys(options).length === 0;
     const material = same ? original : await original.edit(options), info = same ? await original.info() : await infoOf(material);
     // closed or another one meanwhile
@@ -61,9 +42,8 @@ const apply = latest(async (entry) => {
       return;
     }
     if (entry.material !== original && entry.material !== material) entry.material.close();
-    Object.assign(entry, {material, info, figures: same ? entry.fitted : entry.fitted && null});
+    Object.assign(entry, {material, info});
     changed({renewed: entry});
-    measure(entry);
   } catch (error) {
     say(lineOf(error), "error");
   }

@@ -1,10 +1,11 @@
 // Fits with progress and stop, their figures beside the reference's, and error against bytes.
 import {plot} from "./chart.js";
 import {bytesText, css, find, lineOf, make, number, row, say, table} from "./dom.js";
+import {judgedOf, remember} from "./figures.js";
 import {incidence} from "./info.js";
 import {infoOf} from "./library.js";
 import {segments} from "./segments.js";
-import {add, changed, isSurface, modelsOf, onChange, referenceOf, show, state} from "./state.js";
+import {add, changed, isSurface, onChange, referenceOf, show, showBeside, state} from "./state.js";
 
 const presets = {
   small: {budget: "2700", fetches: ""},
@@ -61,20 +62,22 @@ async function busy(task) {
 }
 
 async function fitOne(reference, options, signal) {
-  const began = performance.now();
-  const material = await reference.material.fit(options, {onProgress: progress, signal});
+  const began = performance.now(), source = reference.material;
+  const material = await source.fit(options, {onProgress: progress, signal});
   const seconds = (performance.now() - began) / 1000;
   find("#fit-stage").textContent = "measuring the error";
   find("#fit-bar").removeAttribute("value");
   const info = await infoOf(material, {signal});
   let figures;
   try {
-    [figures] = await reference.material.compare(material, {}, {signal});
+    [figures] = await source.compare(material, {}, {signal});
+    remember(source, material, {figures});
   } catch (error) {
     material.close();
     throw error;
   }
-  return {name: `${reference.name.replace(/\.[^.]*$/, "")} ${bytesText(info.bytes)}`, material, info, figures, parent: reference.id, seconds};
+  const name = `${reference.name.replace(/\.[^.]*$/, "")} ${bytesText(info.bytes)}`;
+  return {figures, entry: {name, material, info, parent: reference.id, seconds}};
 }
 
 async function fit(event) {
@@ -84,12 +87,12 @@ async function fit(event) {
   await busy(async (signal) => {
     const options = {target: targetOf(reference)};
     if (!isDefault()) Object.assign(options, {budget: readBudget(find("#budget").value), fetches: readFetches(find("#fetches").value)});
-    const found = await fitOne(reference, options, signal);
+    const {entry} = await fitOne(reference, options, signal);
     if (!state.entries.includes(reference)) {
-      found.material.close?.();
+      entry.material.close?.();
       return;
     }
-    const entry = add(found);
+    add(entry);
     changed();
     show(entry);
   });
@@ -110,9 +113,9 @@ async function errorCurve() {
     };
     const one = async () => {
       for (let budget; (budget = left.shift()) !== undefined;) {
-        const {material, info, figures} = await fitOne(reference, {budget, fetches, target}, signal);
-        material.close?.();
-        reference.curve.push({bytes: info.bytes, psnr: figures.psnr});
+        const {entry, figures} = await fitOne(reference, {budget, fetches, target}, signal);
+        entry.material.close?.();
+        reference.curve.push({bytes: entry.info.bytes, psnr: figures.psnr});
         reference.curve.sort((a, b) => a.bytes - b.bytes);
         drawCurve();
       }
@@ -152,24 +155,29 @@ function moreFigures({albedo, nodes, unknown_fraction: unknown, unknown_pixels: 
                   [row(["reference", ...scores(nodes.itself)]), row(["model", ...scores(nodes)])]) : "");
 }
 
+// Its fits, what stands beside it and what has stood there.
+const comparedWith = (reference) => state.entries.filter((entry) => reference && entry !== reference && entry.info && !isSurface(entry) && !isSurface(reference) &&
+  (entry.parent === reference.id || entry === state.beside || judgedOf(reference, entry)));
+
 function drawFigures() {
-  const reference = referenceOf(state.shown), place = find("#figures"), models = reference ? modelsOf(reference).filter((m) => m.figures !== undefined) : [];
+  const reference = referenceOf(state.shown), place = find("#figures"), models = comparedWith(reference);
   if (!models.length) {
     place.replaceChildren(make("p", {class: "hint"}, "The figures of each fit, as ", make("code", {}, "compare"), " prints them, and the cost of its shader."));
     return;
   }
   const heads = ["Model", "PSNR", "SSIM", "relative", "rms log", "log cos"];
   const rows = models.map((model) => {
-    const f = model.figures ?? {};  // none yet of what was just edited
-    return row([make("button", {type: "button", title: model.name, onclick: () => show(model)}, bytesText(model.info.bytes)),
-                ...[f.psnr, f.ssim, f.relative, f.rms_log, f.log_cos].map((x, k) => figure(x, k === 0 ? 4 : 3))], {"data-shown": model === state.beside});
+    const f = judgedOf(reference, model)?.figures ?? {};  // none yet of what was just edited
+    return row([make("button", {type: "button", title: model.name, onclick: () => showBeside(model)}, model.model ? bytesText(model.info.bytes) : model.name),
+                ...[f.psnr === null ? Infinity : f.psnr, f.ssim, f.relative, f.rms_log, f.log_cos].map((x, k) => figure(x, k === 0 ? 4 : 3))], {"data-shown": model === state.beside});
   });
-  const model = models.includes(state.beside) ? state.beside : models.at(-1), cost = model.info.shader;
+  const model = models.includes(state.beside) ? state.beside : models.at(-1), {figures, wrong} = judgedOf(reference, model) ?? {}, cost = model.info.shader;
   const costText = cost && `${model.name}: ${cost.fetches} fetches of ${cost.textures} texture${cost.textures === 1 ? "" : "s"}, ${cost.operations} operations, ` +
-    `${cost.divisions} divisions, ${cost.roots} roots, ${cost.powers} powers a light. Fitted in ${number(model.seconds, 2)} s.`;
+    `${cost.divisions} divisions, ${cost.roots} roots, ${cost.powers} powers a light.${model.seconds ? ` Fitted in ${number(model.seconds, 2)} s.` : ""}`;
   place.replaceChildren(
     make("div", {class: "scroll", tabindex: 0, role: "region", "aria-label": "Figures of the models"}, table("", heads, rows)),
-    cost ? make("p", {class: "cost"}, costText) : "", model.figures ? moreFigures(model.figures) : "");
+    wrong ? make("p", {class: "hint"}, `${model.name} has no figures: ${wrong}`) : "",
+    cost ? make("p", {class: "cost"}, costText) : "", figures ? moreFigures(figures) : "");
 }
 
 function enable() {

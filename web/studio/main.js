@@ -1,6 +1,7 @@
 import * as analytic from "./analytic.js";
 import {find, say} from "./dom.js";
 import * as edit from "./edit.js";
+import * as figures from "./figures.js";
 import * as fit from "./fit.js";
 import * as info from "./info.js";
 import {preload} from "./library.js";
@@ -28,6 +29,7 @@ materials.start(stage.openPicture);
 analytic.start();
 plots.start();
 fit.start();
+figures.start();
 edit.start();
 takeaway.start();
 onChange(info.draw);

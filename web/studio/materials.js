@@ -1,7 +1,7 @@
 // Opening and listing: files dropped, chosen or pasted, analytic models, the sample, links.
 import {bytesText, find, latest, lineOf, make, say} from "./dom.js";
 import {infoOf, open} from "./library.js";
-import {add, changed, entryOf, onChange, release, remove, show, showBeside, state} from "./state.js";
+import {add, changed, entryOf, onChange, release, remove, show, showBeside, showOpened, state} from "./state.js";
 
 let stop = null;                // of what is being opened
 let opens = Promise.resolve();  // ends with the last that was asked for
@@ -30,7 +30,7 @@ async function opening(data, name, more, options) {
     wanted = reader(entry, data, name, options);
     if (material.entries.length) entry.sliders = [chooser(entry, wanted)];
     changed();
-    show(entry);
+    showOpened(entry);
   } finally {
     stop = null;
     find("#opening").hidden = true;

@@ -1,5 +1,5 @@
-// What is open and what is shown: entries {id, name, material, model, parent, info, figures, drawn, computed, seen}, `shown`
-// at the left and, where it is not null, `beside` it at the right. `computed`: how much of the picture the library did.
+// What is open and what is shown: entries {id, name, material, model, parent, info, drawn, computed, seen}, `shown` at the
+// left and, where it is not null, `beside` it at the right. `computed`: how much of the picture the library did.
 
 const listeners = [];
 let counter = 0;
@@ -31,6 +31,14 @@ export function add(entry) {
 export function show(entry) {
   if (entry && entry.parent !== null && entryOf(entry.parent)) [state.shown, state.beside] = [entryOf(entry.parent), entry];
   else [state.shown, state.beside] = [entry, entry ? modelsOf(entry).at(-1) ?? null : null];
+  changed("shown");
+}
+// What was opened just now: a model and a measurement side by side where the other one is shown.
+export function showOpened(entry) {
+  const {shown} = state, isModel = (of) => of.model && !isSurface(of);
+  if (shown?.material.measurement && isModel(entry)) [state.shown, state.beside] = [shown, entry];
+  else if (shown && entry.material.measurement && isModel(shown)) [state.shown, state.beside] = [entry, shown];
+  else return show(entry);
   changed("shown");
 }
 export function showBeside(entry) {

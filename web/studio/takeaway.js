@@ -137,17 +137,17 @@ function pictureGroup() {
 }
 
 function draw() {
-  const place = find("#take"), model = modelShown(), entry = state.beside ?? state.shown;
-  if (!entry) {
+  const place = find("#take"), model = modelShown();
+  if (!state.shown) {
     place.replaceChildren(make("p", {class: "hint"}, "Shaders, textures and files of what is open; pictures; a link that carries a model."));
     return;
   }
-  const reference = referenceOf(entry), surface = isSurface(model), files = surface ? surfaceFiles : modelFiles;
+  const surface = isSurface(model), files = surface ? surfaceFiles : modelFiles, apart = [state.shown, state.beside].filter((entry) => entry && !isSurface(entry));
   place.replaceChildren(
     model ? shaderGroup(model) : make("p", {class: "hint"}, "Fit first: a model has a shader, textures and a link."),
     model ? make("div", {}, make("h3", {}, surface ? "Surface" : "Model"), make("div", {class: "buttons"}, ...Object.entries(files).map(([kind, title]) => saveButton(model, kind, title)))) : "",
     model ? linkGroup(model) : "",
-    ...[reference, ...(model && model !== reference && !surface ? [model] : [])].filter((each) => !isSurface(each)).map((each) =>
+    ...apart.map((each) =>
       make("div", {"data-of": each.id}, make("h3", {}, `${each.name} as`),
         make("div", {class: "buttons"}, ...Object.entries(anyFiles).map(([kind, title]) => saveButton(each, kind, title))))),
     pictureGroup());
