@@ -192,6 +192,29 @@ test("An answer that is aborted does not close other materials", async () => {
   other.close();
 });
 
+test("Whatever takes a signal is stopped by it, and what is open stays open", async () => {
+  const material = await open(bytesOf(sources.MERL)), model = await open(bytesOf(at("a.burnish"))), up = [0, 0, 1];
+  const many = Float32Array.from({length: 3_000_000}, (_, i) => up[i % 3]);
+  for (const [name, ask] of Object.entries({
+    info: (call) => material.info(call), evaluate: (call) => material.evaluate(many, many, call),
+    albedo: (call) => material.albedo(Array(500).fill(0.5), call), compare: (call) => material.compare(model, {}, call),
+    images: (call) => material.images(model, {size: 512}, call), export: (call) => material.export("merl", {}, call),
+    shader: (call) => model.shader("glsl", {}, call), edit: (call) => model.edit({roughness: 2}, call), table: (call) => material.table(call),
+  })) {
+    const control = new AbortController(), asked = ask({signal: control.signal});
+    control.abort();
+    await assert.rejects(asked, {name: "AbortError"}, name);
+    assert.equal((await material.evaluate(up, up)).length, 3, name);
+  }
+  const control = new AbortController(), asked = material.compare(model, {count: 2_000_000}, {signal: control.signal}), begin = performance.now();
+  setTimeout(() => control.abort(), 100);
+  await assert.rejects(asked, {name: "AbortError"});
+  assert.ok(performance.now() - begin < 1000);
+  assert.equal((await model.evaluate(up, up)).length, 3);
+  material.close();
+  model.close();
+});
+
 test("What was asked of a material before it is closed is answered, and the worker ends", async () => {
   const material = await open(kSpec), up = [0, 0, 1];
   const asked = [material.volume({thetaH: 20, thetaD: 20, phiD: 20}), material.evaluate(up, up), material.albedo([0.5])];

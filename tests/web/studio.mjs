@@ -516,6 +516,42 @@ await page.click("#redo");
 await page.waitForFunction((selector) => document.querySelector(selector).value !== "0", edited);
 await page.click("#undo");
 
+// What takes long shows so, and is stopped: an export, an edit, whose slider goes back, and what a file is.
+const stopped = async (button, click = () => page.click(button)) => {
+  await click();
+  await page.waitForFunction(() => document.querySelector("#message-text").textContent.startsWith("Stopped"));
+  await page.waitForSelector(button, {state: "hidden"});
+  await page.click("#message-close");
+};
+const slow = (method) => page.evaluate((name) => {
+  const {original, material} = window.studio.entries[1], of = original ?? material, quick = of[name];
+  of[name] = (how, ...rest) => {
+    const {signal} = rest.at(-1);
+    of[name] = quick;
+    return new Promise((_, reject) => signal.addEventListener("abort", () => reject(signal.reason)));
+  };
+}, method);
+await page.waitForFunction(() => window.studio.entries[1].material === window.studio.entries[1].original);
+const exported = await page.evaluate(() => `[data-of="${window.studio.entries[1].id}"] [data-export=merl]`);
+await slow("export");
+await page.click(exported);
+await stopped("#take-panel .busy button");
+assert.ok(fs.statSync(await save(page, exported, "after.binary")).size > 1000);
+const canUndo = await page.isEnabled("#undo"), figured = await page.textContent("#figures tbody");
+await slow("edit");
+await page.locator(edited).fill("0.6");
+await stopped("#edit-panel .busy button");
+assert.equal(await page.inputValue(edited), "0");
+assert.equal(await page.isEnabled("#undo"), canUndo);
+assert.equal(await page.textContent("#figures tbody"), figured);
+await drop(page, ["whole.binary"]);
+await stopped("#opening-stop", () => page.evaluate(async (button) => {
+  while (window.studio.entries.length < 3) await new Promise((next) => setTimeout(next, 1));
+  if (window.studio.entries[2].info) throw new Error("what it is is there before it is asked");
+  document.querySelector(button).click();
+}, "#opening-stop"));
+assert.equal((await opened(page)).length, 2);
+
 // A link carries the model, and what is no model is said to be none.
 await page.click("#link");
 await page.waitForFunction(() => document.querySelector("#link").dataset.link);

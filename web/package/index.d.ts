@@ -6,10 +6,14 @@ export type Progress = (fraction: number, stage: string) => void;
 export interface Call {
   /** Stops the work: the promise rejects with the signal's reason (an AbortError), other materials stay open. */
   signal?: AbortSignal;
+}
+
+/** Of what tells how far it is. */
+export interface LongCall extends Call {
   onProgress?: Progress;
 }
 
-export interface OpenOptions extends Call {
+export interface OpenOptions extends LongCall {
   /** What errors and reports call it; by default the File's own. */
   name?: string;
   /** One channel a wavelength. */
@@ -140,11 +144,11 @@ export class Material {
   /** Share reflected of light from theta_i (radians, below pi/2), n x channels. */
   albedo(thetas: ArrayLike<number>, options?: Call & {phi?: number}): Promise<Float32Array>;
   /** The material resampled for a 3-D texture; of an anisotropic one at one phi_h. */
-  volume(cells?: {thetaH?: number; thetaD?: number; phiD?: number; phiH?: number}, call?: Call): Promise<Volume>;
+  volume(cells?: {thetaH?: number; thetaD?: number; phiD?: number; phiH?: number}, call?: LongCall): Promise<Volume>;
   /** Null where the material is no such table. */
   table(call?: Call): Promise<Table | null>;
   /** In a worker of its own, which ends afterwards; several may run at once. The options are the verb's. */
-  fit(options?: FitOptions, call?: Call): Promise<Model>;
+  fit(options?: FitOptions, call?: LongCall): Promise<Model>;
   /** The JSON of `burnish compare --json`: a list, an object a model. */
   compare(models: Material | Material[], options?: CompareOptions, call?: Call): Promise<Record<string, any>[]>;
   images(model: Material, options?: {size?: number; symmetrize?: boolean}, call?: Call): Promise<Images>;

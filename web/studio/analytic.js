@@ -70,15 +70,22 @@ function field([name, kind, value, least, most], told) {
 
 // An entry that its sliders change in place: its material is another one each time.
 async function openModel(name) {
-  const values = models[name].map(([, , value]) => value);
+  let values = models[name].map(([, , value]) => value), asked, last = values;
   const entry = await openOne(spec(name, values), name, {spec: name});
   if (!entry) return;
-  const renew = renewer(entry, () => open(spec(name, values)));
-  entry.sliders = models[name].map((parameter, k) => field(parameter, (value) => {
-    values[k] = value;
-    renew();
-  }));
-  changed("shown");
+  const renew = renewer(entry, (signal) => open(spec(name, asked = values), {signal}), {
+    done: () => (last = asked),
+    undo: () => drawFields(last),
+  });
+  const drawFields = (from) => {
+    values = from;
+    entry.sliders = models[name].map(([parameter, kind, , ...ends], k) => field([parameter, kind, values[k], ...ends], (value) => {
+      values = values.with(k, value);
+      renew();
+    }));
+    changed("shown");
+  };
+  drawFields(values);
 }
 
 // Small numbers of a seed, even in [0, 1).

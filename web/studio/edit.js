@@ -1,5 +1,6 @@
 // Changes to a model by sliders, each one undone and redone.
-import {find, latest, lineOf, make, say} from "./dom.js";
+import {isStopped, sayError, stoppable} from "./busy.js";
+import {find, latest, make} from "./dom.js";
 import {infoOf} from "./library.js";
 import {changed, isSurface, modelShown, onChange, state} from "./state.js";
 import {radians} from "./vectors.js";
@@ -34,20 +35,32 @@ const apply = latest(async (entry) => {
   if (!state.entries.includes(entry)) return;
   try {
     if (!entry.original) Object.assign(entry, {original: entry.material, lobes: entry.info.lobes});
-    const {original} = entry, options = optionsOf(entry.places, entry.lobes), same = Object.keys(options).length === 0;
-    const material = same ? original : await original.edit(options), info = same ? await original.info() : await infoOf(material);
+    const {original, places} = entry, options = optionsOf(places, entry.lobes), same = Object.keys(options).length === 0;
+    const {material, info} = await stoppable(find("#edit"), "the edit", async (signal) => {
+      const made = same ? original : await original.edit(options, {signal});
+      return {material: made, info: await (same ? made.info({signal}) : infoOf(made, {signal}))};
+    });
     // closed or another one meanwhile
     if (!state.entries.includes(entry) || entry.original !== original) {
       if (!same) material.close();
       return;
     }
     if (entry.material !== original && entry.material !== material) entry.material.close();
-    Object.assign(entry, {material, info});
+    Object.assign(entry, {material, info, applied: places});
     changed({renewed: entry});
   } catch (error) {
-    say(lineOf(error), "error");
+    if (isStopped(error)) takeBack(entry);
+    sayError(error);
   }
 });
+
+// Sliders go back to what is shown, and no step of undoing leads there.
+function takeBack(entry) {
+  entry.places = entry.applied ?? {};
+  for (const steps of [past, future])
+    if (steps.at(-1)?.entry === entry && JSON.stringify(steps.at(-1).places) === JSON.stringify(entry.places)) steps.pop();
+  draw(true);
+}
 
 function set(entry, places, remember) {
   if (remember) {

@@ -1,4 +1,5 @@
 // Opening and listing: files dropped, chosen or pasted, analytic models, the sample, links.
+import {isStopped, sayError, stoppable} from "./busy.js";
 import {bytesText, find, latest, lineOf, make, say} from "./dom.js";
 import {infoOf, open} from "./library.js";
 import {add, changed, entryOf, onChange, release, remove, show, showBeside, showOpened, state} from "./state.js";
@@ -22,26 +23,26 @@ async function opening(data, name, more, options) {
   bar.removeAttribute("value");
   find("#opening-text").textContent = name;
   find("#opening").hidden = false;
-  let entry, wanted;
+  let entry;
   try {
     const onProgress = (fraction) => (bar.value = fraction);
     const material = await open(data, {...options, name, signal: mine.signal, onProgress});
     entry = add({name, material, info: null, ...more});
-    wanted = reader(entry, data, name, options);
+    const wanted = reader(entry, data, name, options);
     if (material.entries.length) entry.sliders = [chooser(entry, wanted)];
     changed();
     showOpened(entry);
-  } finally {
-    stop = null;
-    find("#opening").hidden = true;
-  }
-  // what it is in full takes longer than showing it
-  try {
-    entry.info = await entry.material.info();
+    // what it is in full takes longer than showing it
+    bar.removeAttribute("value");
+    find("#opening-text").textContent = `${name}: what it is`;
+    entry.info = await material.info({signal: mine.signal});
     entry.readings = readings(entry, wanted);
   } catch (error) {
     if (state.entries.includes(entry)) remove(entry);
     throw error;
+  } finally {
+    stop = null;
+    find("#opening").hidden = true;
   }
   changed();
   return entry;
@@ -49,32 +50,39 @@ async function opening(data, name, more, options) {
 
 const wrong = (error, name) => (lineOf(error).includes(name) ? lineOf(error) : `${name}: ${lineOf(error)}`);
 
-// The same; nothing where it was stopped or is no BRDF, and then says why.
+// The same; nothing where it was stopped or is no BRDF, and then says so.
 export async function openOne(data, name, more = {}, options = {}) {
   try {
     return await queued(() => opening(data, name, more, options));
   } catch (error) {
-    if (error?.name !== "AbortError") say(wrong(error, name), "error");
+    if (isStopped(error)) say("Stopped");
+    else say(wrong(error, name), "error");
     return null;
   }
 }
 
-// Gives an entry another material, the latest that made() opened.
-export function renewer(entry, made, name = () => entry.name) {
+// Gives an entry another material, the latest that made(signal) opened; then done() is told, or undo() where it could not be
+// made or was stopped.
+export function renewer(entry, made, {done, undo, name = () => entry.name}) {
   return latest(async () => {
     if (!state.entries.includes(entry)) return;
     try {
-      const called = name(), material = await made();
-      const info = await infoOf(material);
+      const called = name();
+      const {material, info} = await stoppable(find("#list"), "reading", async (signal) => {
+        const opened = await made(signal);
+        return {material: opened, info: await infoOf(opened, {signal})};
+      });
       if (!state.entries.includes(entry)) {
         material.close();
         return;
       }
       release(entry);
       Object.assign(entry, {name: called, material, info, original: undefined, places: undefined});
+      done();
       changed({renewed: entry});
     } catch (error) {
-      say(lineOf(error), "error");
+      undo();
+      sayError(error);
     }
   });
 }
@@ -83,17 +91,15 @@ export function renewer(entry, made, name = () => entry.name) {
 // which functions in `undone` are told.
 function reader(entry, data, file, options) {
   const how = {...options}, last = {...options}, undone = [];
-  const renew = renewer(entry, async () => {
-    try {
-      const asked = {...how}, material = await open(data, {...asked, name: file});
-      Object.assign(last, asked);
-      return material;
-    } catch (error) {
+  let asked;
+  const renew = renewer(entry, (signal) => open(data, {...(asked = {...how}), name: file, signal}), {
+    done: () => Object.assign(last, asked),
+    undo: () => {
       Object.assign(how, last);
       undone.forEach((tell) => tell());
-      throw error;
-    }
-  }, () => (how.entry ? `${file}#${how.entry}` : file));
+    },
+    name: () => (how.entry ? `${file}#${how.entry}` : file),
+  });
   return {how, last, renew, undone};
 }
 
@@ -124,7 +130,7 @@ function readings({info}, wanted) {
   return choices;
 }
 
-// One message for all that are none; stopping one leaves out what was given with it, and says so. A decoder of Neural
+// One message for all that are none; stopping one leaves out what was given after it, and says so. A decoder of Neural
 // Processes belongs to the codes beside it.
 const openFiles = (files, onPicture) => queued(() => openEach(files, onPicture));
 async function openEach(files, onPicture) {
@@ -135,8 +141,8 @@ async function openEach(files, onPicture) {
       if (/\.(hdr|exr)$/i.test(file.name) && (await onPicture(file))) continue;
       await opening(file, file.name, {}, file === codes ? {decoder} : {});
     } catch (error) {
-      if (error?.name === "AbortError") {
-        if (!said.length && k + 1 < wanted.length) say(`Stopped: ${wanted.length - k} of ${wanted.length} files were not opened`);
+      if (isStopped(error)) {
+        if (!said.length) say(k + 1 < wanted.length ? `Stopped: ${wanted.length - k} of ${wanted.length} files were not opened` : "Stopped");
         break;
       }
       said.push(wrong(error, file.name));

@@ -1,5 +1,6 @@
 // Everything that can be taken away: shaders, files, pictures, a link.
-import {bytesText, css, find, lineOf, make, saveFile, say} from "./dom.js";
+import {sayError, stoppable} from "./busy.js";
+import {bytesText, css, find, make, saveFile, say} from "./dom.js";
 import {linkOf} from "./link.js";
 import {isSurface, modelShown, onChange, referenceOf, state} from "./state.js";
 import {picture} from "./stage.js";
@@ -18,26 +19,27 @@ let language = "glsl_es", textOpen = false;
 const stem = (entry) => entry.name.replace(/\.[^.]*$/, "").replace(/[^\w.-]+/g, "_").slice(0, 60) || "material";
 
 // Exports are bytes, or files {name, bytes}.
-async function filesOf(entry, kind) {
-  const made = await entry.material.export(kind, {name: stem(entry)});
+async function filesOf(entry, kind, signal) {
+  const made = await entry.material.export(kind, {name: stem(entry)}, {signal});
   return Array.isArray(made) ? made : [{name: `${stem(entry)}.${kExtensions[kind] ?? kind}`, bytes: made}];
 }
 
+// What a button does, with a signal that ends it.
 const guarded = (task) => async (event) => {
   const button = event.currentTarget;
   button.disabled = true;
   try {
-    await task(button);
+    await stoppable(find("#take"), "what is taken away", task);
   } catch (error) {
-    say(lineOf(error), "error");
+    sayError(error);
   } finally {
     button.disabled = false;
   }
 };
 
 const saveButton = (entry, kind, title) =>
-  make("button", {type: "button", "data-export": kind, onclick: guarded(async () => {
-    for (const {name, bytes} of await filesOf(entry, kind)) saveFile(name, bytes);
+  make("button", {type: "button", "data-export": kind, onclick: guarded(async (signal) => {
+    for (const {name, bytes} of await filesOf(entry, kind, signal)) saveFile(name, bytes);
   })}, title);
 
 // Whether it was; pages that are not served securely have no clipboard.
@@ -57,10 +59,9 @@ function shaderGroup(entry) {
   const fill = async () => {
     if (textOpen) text.textContent = (await entry.material.shader(language)).code;
   };
-  const told = (error) => say(lineOf(error), "error");
   const select = make("select", {"aria-label": "Language", onchange: () => {
     language = select.value;
-    fill().catch(told);
+    fill().catch(sayError);
   }}, ...Object.entries(languages).map(([value, title]) => make("option", {value}, title)));
   select.value = language;
   const toggle = make("button", {type: "button", "aria-expanded": String(textOpen), onclick: () => {
@@ -68,15 +69,15 @@ function shaderGroup(entry) {
     text.hidden = !textOpen;
     toggle.setAttribute("aria-expanded", String(textOpen));
     toggle.textContent = textOpen ? "Hide" : "Show";
-    fill().catch(told);
+    fill().catch(sayError);
   }}, textOpen ? "Hide" : "Show");
   const extension = {glsl: "glsl", glsl_es: "es.glsl", hlsl: "hlsl", wgsl: "wgsl", msl: "metal", cpp: "h"};
-  fill().catch(told);
+  fill().catch(sayError);
   return make("div", {}, make("h3", {}, `Shader of ${entry.name}`),
     make("div", {class: "buttons"}, select, toggle,
-      make("button", {type: "button", onclick: guarded(async () => copy((await entry.material.shader(language)).code, "Shader"))}, "Copy"),
-      make("button", {type: "button", "data-export": "shader", onclick: guarded(async () => {
-        saveFile(`${stem(entry)}.${extension[language]}`, (await entry.material.shader(language)).code, "text/plain");
+      make("button", {type: "button", onclick: guarded(async (signal) => copy((await entry.material.shader(language, {}, {signal})).code, "Shader"))}, "Copy"),
+      make("button", {type: "button", "data-export": "shader", onclick: guarded(async (signal) => {
+        saveFile(`${stem(entry)}.${extension[language]}`, (await entry.material.shader(language, {}, {signal})).code, "text/plain");
       })}, "Save")), text);
 }
 
@@ -84,8 +85,8 @@ function linkGroup(entry) {
   const said = make("p", {class: "hint"}, "The whole material in the address: nothing is uploaded.");
   const shown = make("input", {type: "text", id: "link-text", readonly: true, hidden: true, "aria-label": "Link", onfocus: () => shown.select()});
   return make("div", {}, make("h3", {}, "Link"), make("div", {class: "buttons"},
-    make("button", {type: "button", id: "link", onclick: guarded(async () => {
-      const [{bytes}] = await filesOf(entry, "burnish");
+    make("button", {type: "button", id: "link", onclick: guarded(async (signal) => {
+      const [{bytes}] = await filesOf(entry, "burnish", signal);
       const link = linkOf(stem(entry), bytes);
       find("#link").dataset.link = link;
       said.textContent = `${bytesText(bytes.length)} as ${link.length.toLocaleString("en")} characters${bytes.length > kLongLink ? "; some programs cut links this long" : ""}.`;
