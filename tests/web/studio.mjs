@@ -493,6 +493,21 @@ assert.match(fs.readFileSync(await save(page, "[data-export=curve]", "curve.svg"
 for (const [kind, name] of [["ktx2", "fitted.ktx2"], ["three", "fitted.three.js"], ["merl", "out.binary"], ["csv", "out.csv"], ["png", "view.png"], ["slice", "slice.svg"],
                             ["half-diff", "half-diff.png"]])
   assert.ok(fs.statSync(await save(page, `[data-export=${kind}]`, name)).size > 100, kind);
+// the lobe's pixels, on the panel's ground
+const lobeApart = await page.evaluate(async (text) => {
+  const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0)), saved = await createImageBitmap(new Blob([bytes])), lobe = document.querySelector("#lobe canvas");
+  const pixelsOf = (from, ground) => {
+    const canvas = new OffscreenCanvas(lobe.width, lobe.height), pen = canvas.getContext("2d");
+    pen.fillStyle = ground;
+    pen.fillRect(0, 0, lobe.width, lobe.height);
+    pen.drawImage(from, 0, 0);
+    return pen.getImageData(0, 0, lobe.width, lobe.height).data;
+  };
+  const ground = getComputedStyle(document.querySelector("#take-panel")).backgroundColor, [one, other] = [pixelsOf(saved, "red"), pixelsOf(lobe, ground)];
+  const differ = one.reduce((most, x, i) => Math.max(most, Math.abs(x - other[i])), 0), plain = pixelsOf(new OffscreenCanvas(1, 1), ground);
+  return {size: [saved.width - lobe.width, saved.height - lobe.height], differ, drawn: one.some((x, i) => x !== plain[i])};
+}, fs.readFileSync(await save(page, "[data-export=lobe]", "lobe.png")).toString("base64"));
+assert.deepEqual(lobeApart, {size: [0, 0], differ: 0, drawn: true});
 // what was measured, and the fit of it
 for (const entry of await page.evaluate(() => window.studio.entries.slice(0, 2).map(({id}) => id)))
   assert.ok(fs.statSync(await save(page, `[data-of="${entry}"] [data-export=merl]`, `${entry}.binary`)).size > 1000);

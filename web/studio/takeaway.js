@@ -109,31 +109,52 @@ function svgText(figure) {
   return new XMLSerializer().serializeToString(copied);
 }
 
+// What draw(pen) draws on the panel's ground.
+function pngOf(width, height, draw) {
+  const canvas = make("canvas", {width, height}), pen = canvas.getContext("2d");
+  pen.fillStyle = css("--panel");
+  pen.fillRect(0, 0, width, height);
+  draw(pen);
+  return new Promise((done) => canvas.toBlob(done, "image/png"));
+}
+
 // What stands over theta_h and theta_d, side by side, each cell a square of pixels.
 function halfDiffPng() {
-  const shown = [...document.querySelectorAll("#half-diff canvas")], kCell = 4, kGap = 16, kText = 24;
-  if (!shown.length) throw new Error("The picture over the angles is not drawn yet");
-  const side = kCell * shown[0].width, canvas = make("canvas", {width: shown.length * (side + kGap) - kGap, height: side + kText}), pen = canvas.getContext("2d");
-  pen.fillStyle = css("--panel");
-  pen.fillRect(0, 0, canvas.width, canvas.height);
-  [pen.imageSmoothingEnabled, pen.fillStyle, pen.font] = [false, css("--soft"), "13px system-ui, sans-serif"];
-  shown.forEach((from, k) => {
-    pen.drawImage(from, k * (side + kGap), 0, side, side);
-    pen.fillText(from.nextElementSibling.textContent, k * (side + kGap), side + 17, side);
+  const shown = canvasesOf("#half-diff"), kCell = 4, kGap = 16, kText = 24, side = kCell * shown[0].width;
+  return pngOf(shown.length * (side + kGap) - kGap, side + kText, (pen) => {
+    [pen.imageSmoothingEnabled, pen.fillStyle, pen.font] = [false, css("--soft"), "13px system-ui, sans-serif"];
+    shown.forEach((from, k) => {
+      pen.drawImage(from, k * (side + kGap), 0, side, side);
+      pen.fillText(from.nextElementSibling.textContent, k * (side + kGap), side + 17, side);
+    });
   });
-  return new Promise((done) => canvas.toBlob(done, "image/png"));
+}
+
+// The lobe as it is turned.
+function lobePng() {
+  const [shown] = canvasesOf("#lobe");
+  return pngOf(shown.width, shown.height, (pen) => pen.drawImage(shown, 0, 0));
+}
+
+function canvasesOf(selector) {
+  const found = [...document.querySelectorAll(`${selector} canvas`)];
+  if (!found.length) throw new Error("The picture is not drawn yet");
+  return found;
 }
 
 function pictureGroup() {
   const chart = (title, selector, name) => make("button", {type: "button", "data-export": name, onclick: guarded(async () => {
     saveFile(`${stem(state.shown)}-${name}.svg`, svgText(find(`${selector} svg`)), "image/svg+xml");
   })}, title);
+  const drawn = (title, png, name, entry) => make("button", {type: "button", "data-export": name, onclick: guarded(async () => {
+    saveFile(`${stem(entry)}-${name}.png`, await png());
+  })}, title);
   return make("div", {}, make("h3", {}, "Pictures"), make("div", {class: "buttons"},
     make("button", {type: "button", "data-export": "png", onclick: guarded(async () => {
       const blob = await picture();
       if (blob) saveFile(`${stem(state.shown)}.png`, blob);
     })}, "View as PNG"), chart("Slice as SVG", "#slices", "slice"), chart("Albedo as SVG", "#albedo", "albedo"),
-    make("button", {type: "button", "data-export": "half-diff", onclick: guarded(async () => saveFile(`${stem(state.shown)}-half-diff.png`, await halfDiffPng()))}, "θh, θd as PNG"),
+    drawn("θh, θd as PNG", halfDiffPng, "half-diff", state.shown), drawn("Lobe as PNG", lobePng, "lobe", state.beside ?? state.shown),
     referenceOf(state.shown).curve?.length ? chart("Bytes curve as SVG", "#bytes-curve", "curve") : ""));
 }
 
