@@ -14,7 +14,7 @@ import {chromium} from "playwright-core";
 const [site, burnish, folder, figures] = process.argv.slice(2);
 const kMaxBytes = 3 << 20;       // of the page, compressed
 const kSame = 1e-6;               // relative, between the page's figures and the command line's
-const kMaxShift = 0.05;         // of Chromium's layout shift while files are opened and fitted
+const kMaxShift = 0.002;        // of Chromium's layout shift while files are opened and fitted
 const kExact = 60;               // dB, of what is drawn from a measurement's own tables
 const kComputed = 1e-5;          // of the brightest light, between what is computed and what is drawn of RGL's own tables
 const kMaxMemory = 512 << 20;    // of the process with page and workers while a file of MERL's size is fitted, bytes
@@ -187,6 +187,7 @@ fs.writeFileSync(file("empty.csv"), "");
 
 const page = await visit();
 requests.length = 0;
+await steady(page, "empty page");
 await accessible(page, "empty page");
 assert.equal(await page.evaluate(() => {
   const text = document.createElement("script");
@@ -268,13 +269,17 @@ await page.waitForFunction((most) => window.textures.size <= most, before);
 await page.click("#list .close");
 await until(page, 0);
 await ended();
-await page.evaluate(() => (window.shifted = 0));
+await steady(page, "what is chosen and closed");
 
 // Every format at once: what the panel says is what `info --json` says.
 await drop(page, formats);
 await until(page, formats.length);
 for (const {name, info} of await opened(page)) same(info, JSON.parse(run("info", "--json", file(name))), name);
 assert.match(await page.textContent("#info"), /isotropic/);
+assert.ok(await page.evaluate(() => {
+  const list = document.querySelector("#list"), row = [...list.querySelectorAll("[data-shown]")].at(-1).getBoundingClientRect(), {top, bottom} = list.getBoundingClientRect();
+  return list.scrollTop > 0 && row.top >= top - 1 && row.bottom <= bottom + 1;
+}), "what is shown is in sight in the list");
 
 // Figures are those of `compare --json`, for a source of every format.
 const figuresOf = await page.evaluate(async () => {
@@ -449,13 +454,12 @@ const [expected] = JSON.parse(run("compare", "--json", file("a.binary"), saved))
 same(model.figures, expected, "compare");
 const kChance = 0.05;  // relative, of what nodes of the same file predict of themselves: see `same`
 const mean = (values) => values.reduce((sum, x) => sum + x, 0) / values.length, of = ({relative, rms_log, log_cos, rms}) => [relative, rms_log, log_cos, rms];
-await page.click("#figures summary");
-const [albedoRows, nodeRows] = await page.evaluate(() => [...document.querySelectorAll("#figures details table")].map((table) =>
+const [albedoRows, nodeRows] = await page.evaluate(() => [...document.querySelectorAll("#compared table")].map((table) =>
   [...table.tBodies[0].rows].map((row) => [...row.querySelectorAll("[title]")].map(({title}) => Number(title)))));
 same(albedoRows, expected.albedo.map(({reference, model}) => [mean(reference), mean(model)]), "albedo in the panel");
 same(nodeRows[1], of(expected.nodes), "nodes in the panel");
 same(nodeRows[0], of(expected.nodes.itself), "the reference's own nodes in the panel", kChance);
-assert.match(await page.textContent("#figures details"), new RegExp(`At ${model.figures.nodes.count.toLocaleString("en")} measured nodes`));
+assert.match(await page.textContent("#compared"), new RegExp(`At ${model.figures.nodes.count.toLocaleString("en")} measured nodes`));
 run("fit", file("a.binary"), "--budget", "2700", "--fetches", "2", "-o", file("native.burnish"));
 const [native] = JSON.parse(run("compare", "--json", file("a.binary"), file("native.burnish")));
 assert.ok(Math.abs(native.psnr - expected.psnr) < 0.05, `fitted natively ${native.psnr} dB, in the page ${expected.psnr} dB`);

@@ -115,11 +115,10 @@ function draw(force) {
   }), make("button", {type: "button", class: "quiet", disabled: !able, onclick: () => set(entry, {}, true)}, "As fitted"));
 }
 
-// All lobes or one of several; nothing where there is one.
+// All lobes or one of several.
 function lobeChoice(lobes) {
-  if (!(lobes > 1)) return "";
   const numbers = Array.from({length: lobes}, (_, k) => make("option", {value: k}, `lobe ${k + 1}`));
-  const select = make("select", {"data-edit": "lobe", onchange: () => {
+  const select = make("select", {"data-edit": "lobe", disabled: !(lobes > 1), onchange: () => {
     lobe = select.value;
     draw(true);
   }}, make("option", {value: ""}, "all lobes"), ...numbers);

@@ -14,8 +14,9 @@ const presets = {
 };
 const kCurve = [700, 1400, 2800, 5600, 11200, 22400, 44800];
 const kMaxFits = 4;  // at once, each with memory of its own
+const kNothing = 1e-9;  // figures below it are roundings
 
-let stop = null, choose = () => {}, followed = null, moreShown = false;
+let stop = null, choose = () => {}, followed = null;
 
 // "16K" as bytes; "auto" as itself. Throws Error.
 function readBudget(text) {
@@ -104,6 +105,7 @@ async function errorCurve() {
   const reference = referenceOf(state.shown);
   if (!reference || stop) return;
   reference.curve = [];
+  drawCurve();
   await busy(async (signal, abort) => {
     const fetches = readFetches(find("#fetches").value), target = targetOf(reference), left = [...kCurve];
     let wrong;
@@ -129,10 +131,10 @@ async function errorCurve() {
 }
 
 function drawCurve() {
-  const curve = referenceOf(state.shown)?.curve ?? [], place = find("#bytes-curve");
-  place.hidden = curve.length === 0;
-  if (place.hidden) return;
-  const psnr = curve.map((p) => p.psnr), [low, high] = [Math.floor(Math.min(...psnr) - 1), Math.ceil(Math.max(...psnr) + 1)];
+  const curve = referenceOf(state.shown)?.curve, place = find("#bytes-curve");
+  place.hidden = !curve;
+  if (!curve) return;
+  const psnr = curve.map((p) => p.psnr), [low, high] = curve.length ? [Math.floor(Math.min(...psnr) - 1), Math.ceil(Math.max(...psnr) + 1)] : [20, 60];
   place.replaceChildren(plot({
     label: "Picture error in decibels against bytes", x: [500, 65536], logX: true, xTicks: [1024, 4096, 16384, 65536], xTick: bytesText, y: [low, high],
     xName: "bytes", yName: "PSNR, dB", lines: [{x: curve.map((p) => p.bytes), values: psnr, color: css("--accent"), dots: true}],
@@ -140,19 +142,19 @@ function drawCurve() {
 }
 
 // A figure with few digits; with all of them where it is pointed at.
-const figure = (x, digits) => make("span", {title: x}, number(x, digits));
+const figure = (x, digits) => make("span", {title: x}, number(Math.abs(x) < kNothing ? 0 : x, digits));
 
-// What compare prints of a model below its first line: albedos, means over the channels, and figures where was measured.
-function moreFigures({albedo, nodes, unknown_fraction: unknown, unknown_pixels: pixels}) {
+// What compare prints of a model below its first line: albedos, and figures where something was measured.
+function moreFigures(reference, model, {albedo, nodes, unknown_fraction: unknown, unknown_pixels: pixels}) {
   const mean = (values) => values.reduce((sum, x) => sum + x, 0) / values.length;
   const albedos = albedo.map((at) => row([incidence(at), figure(mean(at.reference), 4), figure(mean(at.model), 4)]));
   const scores = ({relative, rms_log, log_cos, rms}) => [relative, rms_log, log_cos, rms].map((x) => figure(x, 3));
-  return make("details", {open: moreShown, ontoggle: (event) => (moreShown = event.target.open)},
-    make("summary", {}, nodes ? "Albedo, and where it was measured" : "Albedo"),
-    unknown > 0 || pixels > 0 ? make("p", {class: "hint"}, `Left out, where a side knows nothing: ${number(100 * unknown, 3)} % of the directions and ${pixels} pixels.`) : "",
-    table("Albedo, mean of the channels", ["at", "reference", "model"], albedos),
+  return [
+    table("Mean of the channels", ["at", reference.name, model.name], albedos),
     nodes ? table(`At ${nodes.count.toLocaleString("en")} measured nodes`, ["of", "relative", "rms log", "log cos", "rms"],
-                  [row(["reference", ...scores(nodes.itself)]), row(["model", ...scores(nodes)])]) : "");
+                  [row([reference.name, ...scores(nodes.itself)]), row([model.name, ...scores(nodes)])]) : "",
+    unknown > 0 || pixels > 0 ? make("p", {class: "hint"}, `Left out, where a side knows nothing: ${number(100 * unknown, 3)} % of the directions and ${pixels} pixels.`) : "",
+  ];
 }
 
 // Its fits, what stands beside it and what has stood there.
@@ -163,6 +165,7 @@ function drawFigures() {
   const reference = referenceOf(state.shown), place = find("#figures"), models = comparedWith(reference);
   if (!models.length) {
     place.replaceChildren(make("p", {class: "hint"}, "The figures of each fit, as ", make("code", {}, "compare"), " prints them, and the cost of its shader."));
+    find("#compared").replaceChildren(make("p", {class: "hint"}, "Of what stands beside something else, as ", make("code", {}, "compare"), " prints them."));
     return;
   }
   const heads = ["Model", "PSNR", "SSIM", "relative", "rms log", "log cos"];
@@ -177,7 +180,8 @@ function drawFigures() {
   place.replaceChildren(
     make("div", {class: "scroll", tabindex: 0, role: "region", "aria-label": "Figures of the models"}, table("", heads, rows)),
     wrong ? make("p", {class: "hint"}, `${model.name} has no figures: ${wrong}`) : "",
-    cost ? make("p", {class: "cost"}, costText) : "", figures ? moreFigures(figures) : "");
+    cost ? make("p", {class: "cost"}, costText) : "");
+  find("#compared").replaceChildren(...(figures ? moreFigures(reference, model, figures) : []));
 }
 
 function enable() {
@@ -203,13 +207,14 @@ export function start() {
   find("#fit").addEventListener("submit", fit);
   find("#fit-stop").addEventListener("click", () => stop?.abort());
   find("#curve-start").addEventListener("click", errorCurve);
+  drawFigures();
   onChange((what) => {
     enable();
     drawFigures();
     if (what === "shown") {
       drawCurve();
       const material = referenceOf(state.shown)?.material;
-      find("#target-row").hidden = !material?.measurement;
+      find("#target").disabled = !material?.measurement;
       if (material && material !== followed) find("#target").value = material.target;
       followed = material;
       setFetches();

@@ -1,6 +1,6 @@
 // What `info --json` says, as a panel.
 import {bytesText, find, make, number, row, table} from "./dom.js";
-import {state} from "./state.js";
+import {onChange, state} from "./state.js";
 
 const span = ([low, high]) => `${number(low, 3)}° to ${number(high, 3)}°`;
 
@@ -59,8 +59,10 @@ function drawReadings(controls = []) {
   if (controls.length !== place.children.length || controls.some((control, k) => control !== place.children[k])) place.replaceChildren(...controls);
 }
 
-export function draw() {
-  const place = find("#info"), entry = state.shown;
+function draw() {
+  // another one each time: it stands below what another material may have more of
+  const place = make("div", {id: "info"}), entry = state.shown;
+  find("#info").replaceWith(place);
   drawReadings(entry?.readings);
   if (!entry) {
     place.replaceChildren(make("p", {class: "hint"}, "Format, conventions, holes, albedo and reciprocity of what is open."));
@@ -75,4 +77,9 @@ export function draw() {
   place.replaceChildren(
     make("dl", {}, ...facts(info, entry).flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)])),
     albedos(info) ?? "", notes.length ? make("ul", {"aria-label": "Conventions"}, ...notes.map((text) => make("li", {}, text))) : "");
+}
+
+export function start() {
+  draw();
+  onChange(draw);
 }

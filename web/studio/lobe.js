@@ -53,7 +53,7 @@ function paint(canvas, points, theta) {
   const c = Math.cos(turned.yaw), s = Math.sin(turned.yaw), e = Math.sin(turned.pitch), d = Math.cos(turned.pitch);
   const see = ([x, y, z]) => {
     const u = c * x - s * y, v = s * x + c * y;
-    return [width / 2 + size * u, height * 0.76 - size * (z * d + v * e), v * d - z * e];
+    return [width / 2 + size * u, height * 0.69 - size * (z * d + v * e), v * d - z * e];
   };
   pen.clearRect(0, 0, width, height);
   pen.lineWidth = 1.5;

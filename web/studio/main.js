@@ -32,7 +32,7 @@ fit.start();
 figures.start();
 edit.start();
 takeaway.start();
-onChange(info.draw);
+info.start();
 onChange(analytic.drawSliders);
 light.addEventListener("change", () => setTheme(light.matches ? "light" : "dark"));
 find("#theme").addEventListener("click", switchTheme);

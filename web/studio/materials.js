@@ -168,7 +168,10 @@ function row(entry) {
 }
 
 function draw() {
-  find("#list").replaceChildren(...state.entries.map(row));
+  find("#list").replaceChildren(...(state.entries.length ? state.entries.map(row) : [make("li", {class: "hint"}, "Nothing is open.")]));
+  // the rows that are shown are in sight
+  const list = find("#list"), rows = [...list.querySelectorAll("[data-shown]")], [first, last] = [rows[0], rows.at(-1)];
+  if (first) list.scrollTop = Math.min(first.offsetTop, Math.max(list.scrollTop, last.offsetTop + last.offsetHeight - list.clientHeight));
   const beside = find("#beside");
   beside.replaceChildren(make("option", {value: ""}, "nothing beside"),
     ...state.entries.filter((e) => e !== state.shown).map((e) => make("option", {value: e.id}, e.name)));
@@ -208,5 +211,6 @@ export function start(onPicture) {
   window.addEventListener("paste", (event) => {
     if (event.clipboardData.files.length) openFiles([...event.clipboardData.files], onPicture);
   });
+  draw();
   onChange((what) => what !== "judged" && draw());
 }
