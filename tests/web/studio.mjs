@@ -521,6 +521,17 @@ for (const language of ["glsl", "glsl_es", "hlsl", "wgsl", "msl", "cpp"]) {
   assert.match(fs.readFileSync(await save(page, "[data-export=shader]", `fitted.${language}`), "utf8"), /burnish_/);
 }
 
+// Whatever a file is called, names of what is taken away are those of functions.
+fs.copyFileSync(file("a.burnish"), file("2-odd__näme.4 KB.burnish"));
+await drop(page, ["2-odd__näme.4 KB.burnish"]);
+await until(page, 3);
+for (const kind of ["three", "ktx2", "burnish"]) {
+  const [download] = await Promise.all([page.waitForEvent("download"), page.click(`[data-export=${kind}]`)]);
+  assert.match(download.suggestedFilename(), /^brdf_2_odd_n_me_4_KB[._]/);
+}
+await page.click("#list .close >> nth=2");
+await page.click("#list .pick >> nth=1");
+
 // Edits are undone and redone, and the figures beside them are those of what is shown.
 const edited = "#edit input[data-edit=scale]";
 const psnr = () => page.textContent("#figures tbody tr[data-shown] td:nth-child(2)");

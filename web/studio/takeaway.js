@@ -16,7 +16,11 @@ const kLongLink = 32 << 10;
 
 let language = "glsl_es", textOpen = false;
 
-const stem = (entry) => entry.name.replace(/\.[^.]*$/, "").replace(/[^\w.-]+/g, "_").slice(0, 60) || "material";
+// Of files and functions: letters, digits and single underscores, a letter first. No ending is what is no word, as in 2.4 KB.
+function stem(entry) {
+  const words = entry.name.replace(/\.[a-z]\w*$/i, "").split(/[^a-z0-9]+/i).filter(Boolean).join("_").slice(0, 60).replace(/_$/, "");
+  return /^[a-z]/i.test(words) ? words : ["brdf", words].filter(Boolean).join("_");
+}
 
 // Exports are bytes, or files {name, bytes}.
 async function filesOf(entry, kind, signal) {
