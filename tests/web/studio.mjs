@@ -333,7 +333,7 @@ for (let k = 0; k < Math.min(hostile.accepted, kDrawn); ++k) {
 
 // Memory of a file of MERL's size is given back; how long until it is seen.
 if (!fs.existsSync(file("whole.binary"))) run("convert", spec, file("whole.binary"), "--to", "merl");
-await drop(page, ["a.burnish"]);
+await drop(page, ["a.mbsdf"]);
 await until(page, 1);
 const times = [], held = [];
 for (let k = 0; k < 3; ++k) {
