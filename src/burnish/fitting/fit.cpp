@@ -17,6 +17,7 @@
 #include <burnish/fitting/plans/budget_ladder.h>
 #include <burnish/fitting/plans/fetch_plan.h>
 #include <burnish/fitting/plans/fit_plan.h>
+#include <burnish/fitting/plans/hemisphere_plan.h>
 #include <burnish/fitting/plans/order_tables.h>
 #include <burnish/fitting/plans/overfit.h>
 #include <burnish/fitting/plans/scattered_plan.h>
@@ -57,10 +58,11 @@ constexpr int kSpareFetches = 4;
 constexpr double kSpareLogCos = 0.8, kSpareAbsolute = 0.1;
 constexpr std::size_t kSpareTexels = 1500;  // from here on, for absolute errors and smoothness
 constexpr double kVolumeSmooth = 1e-9;
-constexpr double kFewTexelsSmooth = 1e-9;  // of several lobes; few texels are smooth by themselves
-constexpr int kMoreFetchesOfNodes = 1;     // dark films' colours ask for a grid beside the line
-constexpr int kSmoothnessFetches = 2;      // of the models by which it is chosen
-constexpr double kFrontalShare = 0.1;      // of pixels, see with_frontal_pixels
+constexpr double kFewTexelsSmooth = 1e-9;   // of several lobes; few texels are smooth by themselves
+constexpr double kHemisphereSmooth = 1e-6;  // whose many texels few pixels reach
+constexpr int kMoreFetchesOfNodes = 1;      // dark films' colours ask for a grid beside the line
+constexpr int kSmoothnessFetches = 2;       // of the models by which it is chosen
+constexpr double kFrontalShare = 0.1;       // of pixels, see with_frontal_pixels
 
 // What was measured is judged where it was measured; pictures keep the rest from running away.
 constexpr ErrorTerms kNodeShares{.pictures = 0.5, .dimmed = 0.1, .relative = 1, .log_cos = 1};
@@ -268,8 +270,7 @@ class Fitter {
     if (form.fetches > 0 || form.lobes > 0 || form.search || !brdf_.isotropic() || order_matters(reference()))
       return {};
     const CostLimit limit = limit_of(bytes, 0);
-    const TrainingSet set =
-        with_frontal_pixels(reference(), drawn_set(training_for_volumes(limit)), kFrontalShare);
+    const TrainingSet set = drawn_set(training_for_volumes(limit));
     return try_fetches(reference(), set, limit, refine_options(form.loss));
   }
 
@@ -392,9 +393,10 @@ class Fitter {
                     std::move(report));
     }
     if (!brdf_.isotropic()) {
-      const ModelSpec spec = hemisphere_spec(limit, channels());
-      const TrainingSet set = drawn_set(training_for(bytes, limit.texel_bytes, false));
-      return finish(fit_lobes(set, spec, refine), set, refine, std::move(report));
+      if (!options_.smooth) refine.smooth = kHemisphereSmooth;
+      const TrainingSet set = drawn_set(training_for_hemispheres());
+      return finish(fit_hemispheres(set, hemisphere_specs(limit, channels()), refine), set, refine,
+                    std::move(report));
     }
     if (form.loss == FitLoss::image) {
       refine.shares = kVolumeShares;
@@ -409,8 +411,7 @@ class Fitter {
       if (form.scattered.cross_validate && !nodes_ && is_measurement(source_))
         report.smooth = refine.smooth = volume_smoothness(limit);
     }
-    const TrainingSet set =
-        with_frontal_pixels(reference(), drawn_set(training_for_volumes(limit)), kFrontalShare);
+    const TrainingSet set = drawn_set(training_for_volumes(limit));
     return finish(fit_volumes(set, volume_specs(reference(), limit), refine), set, refine, std::move(report));
   }
 
@@ -443,8 +444,8 @@ class Fitter {
   /// Pairs drawn from what is fitted, or the scattered samples themselves; with the nodes that are the target.
   TrainingSet drawn_set(TrainingOptions drawn) const {
     drawn.seed = options_.seed;
-    TrainingSet set =
-        samples() ? training_set_of(*samples(), options_.symmetrize) : draw_training_set(reference(), drawn);
+    if (samples()) return training_set_of(*samples(), options_.symmetrize);
+    TrainingSet set = with_frontal_pixels(reference(), draw_training_set(reference(), drawn), kFrontalShare);
     if (smoothed_) add_nodes(set);
     return set;
   }
@@ -552,7 +553,7 @@ class Fitter {
     TrainingOptions drawn = training_for(0, 1, brdf_.isotropic());
     drawn.seed = options_.seed;
     drawn.spread_phi_h = spread_phi_h;
-    return draw_training_set(reference(), drawn);
+    return with_frontal_pixels(reference(), draw_training_set(reference(), drawn), kFrontalShare);
   }
 
   // ---- What became of it

@@ -10,8 +10,10 @@
 #include <burnish/fitting/numerics/node_numbers.h>
 #include <burnish/fitting/plans/backscatter.h>
 #include <burnish/fitting/plans/fetch_plan.h>
+#include <burnish/fitting/plans/hemisphere_plan.h>
 #include <burnish/fitting/plans/lobe_plan.h>
 #include <burnish/fitting/plans/order_tables.h>
+#include <burnish/fitting/plans/spec_layout.h>
 #include <burnish/fitting/plans/trial_sets.h>
 #include <burnish/math/angles.h>
 #include <burnish/math/parallel.h>
@@ -37,22 +39,11 @@ constexpr Warp kDeviationWarp{WarpKind::power, 0.5}, kSkewWarp{WarpKind::power, 
 constexpr int kOrderNodes = 8;
 constexpr double kOrderShare = 0.25;
 
-// How a volume's nodes are shared out, relative to each other: the best differ among materials.
-struct VolumeForm {
-  double half, difference, azimuth;
-};
+// How a volume's nodes are shared out: the best differ among materials.
 constexpr VolumeForm kForms[] = {{30, 20, 6}, {40, 15, 6}, {24, 24, 6}, {20, 30, 6}};
 constexpr double kBothSides = 2;  // times as many along the azimuth where it tells mirror images apart
-// Of theta_h. Shaders take a root where other powers take a logarithm.
-constexpr Warp kHalfWarp{WarpKind::power, 0.5};
 // Of theta_d where a lobe stands at 0.
 constexpr Warp kRetroWarp{WarpKind::power, 0.5};
-constexpr int kMinDepth = 3;
-// Of the texels of hemispheres' models; what is left is q's.
-constexpr VolumeForm kBesideHemispheres{14, 12, 6};
-constexpr double kBorderShare = 0.065, kVolumeShare = 0.065;
-constexpr std::size_t kWideNodes = 12;
-constexpr Warp kDiskWarp{WarpKind::rational, 0.25};
 
 // The way to the last refinement is made on about this many pairs, in few steps, at this share of the nodes.
 constexpr std::size_t kCoarsePairs = 24'000, kCoarseNodes = 5000;
@@ -92,34 +83,6 @@ class SpecBuilder {
   ModelSpec spec_;
 };
 
-std::size_t bytes_of(const ModelSpec& spec, std::size_t texel_bytes, std::size_t channels) {
-  std::size_t numbers = spec.lobes.size() * channels, texels = 0;
-  for (const ModelSpec::TableSpec& table : spec.tables) {
-    texels += table.layout.node_count();
-    for (const Warp& warp : {table.layout.warp, table.layout.warp_y, table.layout.warp_z})
-      numbers += warp.kind != WarpKind::identity;
-  }
-  for (const std::vector<FactorUse>& lobe : spec.lobes)
-    for (const FactorUse& use : lobe)
-      for (const Projection& p : {use.projection, use.projection_y, use.projection_z})
-        numbers += coefficient_count(p);
-  return texels * texel_bytes + numbers * kNumberBytes;
-}
-
-// The largest volume of about a form within `nodes`.
-TableLayout volume_of(const VolumeForm& form, double nodes, bool retro) {
-  const double scale = std::cbrt(nodes / (form.half * form.difference * form.azimuth));
-  const auto side = [](double n, int least) {
-    return std::clamp(static_cast<int>(std::lround(n)), least, kMaxVolumeSide);
-  };
-  TableLayout layout{.shape = TableShape::volume, .warp = kHalfWarp, .warp_y = retro ? kRetroWarp : Warp{}};
-  layout.depth = side(form.azimuth * scale, kMinDepth);
-  const int widest = std::max(2, static_cast<int>(nodes) / (2 * layout.depth));  // leaves a width of two
-  layout.height = std::min(side(std::sqrt(nodes / layout.depth * form.difference / form.half), 2), widest);
-  layout.width = std::min(static_cast<int>(nodes) / (layout.depth * layout.height), kMaxVolumeSide);
-  return layout;
-}
-
 /// What a source asks of its tables.
 struct SourceTraits {
   bool twisted;  ///< not its own mirror image
@@ -157,7 +120,7 @@ ModelSpec volume_spec(VolumeForm form, Beside beside, const CostLimit& limit, st
                  .width = width,
                  .height = nodes(share / width, kMaxRingNodes),
                  .warp = warp,
-                 .warp_y = kHalfWarp},
+                 .warp_y = kHalfRootWarp},
                 {{.projection = along_x, .projection_y = kProjectHalf}});
   };
   if (traits.ordered && takes(1)) add_by_half("c", kOrderNodes, kOrderShare, kProjectWi);
@@ -168,7 +131,7 @@ ModelSpec volume_spec(VolumeForm form, Beside beside, const CostLimit& limit, st
         std::max(kMinHighlightNodes, static_cast<int>(std::sqrt(share * kHighlightAspect * texels)));
     add_by_half("b", width, share, kProjectDifference, difference_warp);
   }
-  if (takes(1)) builder.add_line("z", nodes(kRingShare, kMaxRingNodes), {kProjectHalf}, kHalfWarp);
+  if (takes(1)) builder.add_line("z", nodes(kRingShare, kMaxRingNodes), {kProjectHalf}, kHalfRootWarp);
   if (takes(2)) builder.add_line("p", line, {kProjectWo, kProjectWi});
   if (!grid && takes(1)) builder.add_line("r", line, {kProjectDifference}, difference_warp);
   if (takes(1)) {
@@ -185,7 +148,8 @@ ModelSpec volume_spec(VolumeForm form, Beside beside, const CostLimit& limit, st
       kNumberBytes * (1 + traits.retro + (builder.spec().lobes.empty() ? channels : 0));
   const std::size_t rest = limit.bytes > taken ? (limit.bytes - taken) / limit.texel_bytes : 0;
   if (traits.twisted) form.azimuth *= kBothSides;
-  const TableLayout volume = volume_of(form, static_cast<double>(rest), traits.retro);
+  TableLayout volume = volume_of(form, static_cast<double>(rest));
+  volume.warp_y = difference_warp;
   if (volume.width < 2) throw Error("fit: expected a budget that holds a table of three axes");
   builder.add("g", volume,
               {{.projection = kProjectHalf,
@@ -193,16 +157,6 @@ ModelSpec volume_spec(VolumeForm form, Beside beside, const CostLimit& limit, st
                 .projection_z = traits.twisted ? kProjectSide : kProjectAzimuth}});
   ModelSpec spec = builder.spec();
   spec.tables.back().circle_z = traits.twisted;
-  return spec;
-}
-
-// The spec with volumes of fewer nodes.
-ModelSpec at_fewer_nodes(ModelSpec spec, double share) {
-  for (ModelSpec::TableSpec& table : spec.tables) {
-    if (table.layout.shape != TableShape::volume) continue;
-    for (int* side : {&table.layout.width, &table.layout.height, &table.layout.depth})
-      *side = std::max(kMinDepth, static_cast<int>(std::lround(*side * std::cbrt(share))));
-  }
   return spec;
 }
 
@@ -273,8 +227,7 @@ BestSpec best_of(const std::vector<ModelSpec>& specs, const TrainingSet& set, co
 
 bool takes_lobes(BrdfRef source, const CostLimit& limit) {
   const bool few_bytes = static_cast<double>(limit.bytes / limit.texel_bytes) < kMinVolumeTexels;
-  if (!source.isotropic()) return few_bytes || limit.fetches < 4;
-  if (!few_bytes) return false;
+  if (!few_bytes || !source.isotropic()) return few_bytes;
   const LobePlan plan = plan_for(source, limit.bytes, 0, limit.texel_bytes);
   return plan_fits(plan, limit.bytes, source.channels(), limit.texel_bytes) &&
          fetch_count(plan_to_spec(plan, limit.bytes, source.channels(), limit.texel_bytes)) <=
@@ -289,7 +242,7 @@ bool holds_model(BrdfRef source, const CostLimit& limit) {
       volume_spec(kForms[0], Beside::line, limit, source.channels(),
                   {.twisted = true, .ordered = limit.fetches > 1 && order_matters(source), .retro = true});
     else
-      hemisphere_spec(limit, source.channels());
+      hemisphere_specs(limit, source.channels());
     return true;
   } catch (const Error&) {
     return false;
@@ -384,33 +337,6 @@ const FetchTrial& trial_at_knee(std::span<const FetchTrial> trials) {
   const double least = std::ranges::min(trials, {}, &FetchTrial::error).error;
   return *std::ranges::find_if(trials,
                                [&](const FetchTrial& trial) { return trial.error <= kKneeFactor * least; });
-}
-
-ModelSpec hemisphere_spec(const CostLimit& limit, std::size_t channels) {
-  const double texels = static_cast<double>(limit.bytes / limit.texel_bytes);
-  SpecBuilder builder;
-  const int p = std::max(5, static_cast<int>(std::sqrt(kBorderShare * texels)));
-  builder.add("p", {.shape = TableShape::disk, .width = p, .height = p},
-              {{.projection = kProjectWo}, {.projection = kProjectWi}});
-  const TableLayout volume = volume_of(kBesideHemispheres, kVolumeShare * texels, false);
-  builder.add(
-      "v", volume,
-      {{.projection = kProjectHalf, .projection_y = kProjectDifference, .projection_z = kProjectAzimuth}});
-  const bool wide = limit.fetches > 4;
-  const std::size_t taken = bytes_of(builder.spec(), limit.texel_bytes, channels) + kNumberBytes +
-                            (wide ? kWideNodes * limit.texel_bytes + channels * kNumberBytes : 0);
-  const std::size_t rest = limit.bytes > taken ? (limit.bytes - taken) / limit.texel_bytes : 0;
-  const int q = static_cast<int>(std::sqrt(static_cast<double>(rest)));
-  if (volume.width < 2 || q < 5)
-    throw Error("fit: expected a budget that holds hemispheres and a table of three axes");
-  builder.add("q", {.shape = TableShape::disk, .width = q, .height = q, .warp = kDiskWarp},
-              {{.projection = kProjectHalf}});
-  ModelSpec spec = builder.spec();
-  if (wide) {
-    spec.lobes.push_back({{.table = spec.tables.size(), .projection = kProjectDifference}});
-    spec.tables.push_back({.name = "c", .layout = {.width = static_cast<int>(kWideNodes)}});
-  }
-  return spec;
 }
 
 TrainingOptions training_for_volumes(const CostLimit& limit) {

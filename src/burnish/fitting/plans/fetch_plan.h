@@ -5,20 +5,15 @@
 #include <vector>
 
 #include <burnish/fitting/fit_report.h>
+#include <burnish/fitting/plans/cost_limit.h>
 #include <burnish/fitting/plans/fit_plan.h>
 #include <burnish/fitting/plans/lobe_plan.h>
 #include <burnish/reflectance/brdf.h>
 
 namespace burnish {
 
-/// What a model may cost: bytes as FactoredBrdf::bytes counts them, reads as fetch_count does.
-struct CostLimit {
-  std::size_t bytes = 16'384, texel_bytes = 4;
-  int fetches = 2;  ///< >= 1
-};
-
-/// Whether lobes of lines or hemispheres serve better than a model with a volume: of an isotropic source where few
-/// bytes are left and default_plan is within the limit, of another where few bytes or fewer than four fetches are.
+/// Whether few bytes leave lobes of lines or hemispheres alone to serve: of an isotropic source where default_plan is
+/// within the limit, of another always.
 bool takes_lobes(BrdfRef source, const CostLimit& limit);
 /// Whether the limit holds the tables of a model.
 bool holds_model(BrdfRef source, const CostLimit& limit);
@@ -34,11 +29,6 @@ LobePlan plan_within(BrdfRef source, const CostLimit& limit);
 /// directions matters (order_tables.h) the models that come first have a grid c(theta_i,theta_h) second; of one that
 /// backscatters() nodes crowd at theta_d = 0. Throws Error where the bytes hold no such tables.
 std::vector<ModelSpec> volume_specs(BrdfRef source, const CostLimit& limit);
-
-/// An anisotropic model within the limit, of at least four fetches: hemispheres q(h) p(wo) p(wi) times a volume
-/// v(theta_h,theta_d,phi_d), which follows how they depend on each other, and from five fetches on c(theta_d) beside
-/// them for what is spread wide. Throws Error where the bytes hold no such tables.
-ModelSpec hemisphere_spec(const CostLimit& limit, std::size_t channels);
 
 /// The error of the models of an isotropic source that try_fetches looks at may be this many times the least.
 inline constexpr double kKneeFactor = 1.02;

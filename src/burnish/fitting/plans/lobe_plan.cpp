@@ -8,6 +8,7 @@
 #include <burnish/error.h>
 #include <burnish/fitting/plans/lobe_plan.h>
 #include <burnish/fitting/plans/order_tables.h>
+#include <burnish/fitting/plans/spec_layout.h>
 #include <burnish/reflectance/mirror_asymmetry.h>
 
 namespace burnish {
@@ -20,7 +21,6 @@ constexpr Warp kHalfWarp{WarpKind::power, 0.8}, kDeviationWarp{WarpKind::power, 
 constexpr Warp kSkewWarp{WarpKind::power, 0.7};
 // A direction between one of the two and the half vector; both together are reciprocal.
 constexpr Projection kProjectSkew{.wi = 1, .wo = 0.5}, kProjectSkewSwapped{.wi = 0.5, .wo = 1};
-constexpr Warp kDiskWarp{WarpKind::rational, 0.25};
 
 // Of an isotropic model: from how many texels on it has grids, and how many its 1-D tables take at most.
 constexpr double kGridTexels = 1500, kThreeGridTexels = 6000, kMaxLineTexels = 2000;
@@ -159,7 +159,7 @@ LobePlan default_plan(std::size_t bytes, int lobes, bool isotropic, std::size_t 
   const double texels = static_cast<double>(bytes) / static_cast<double>(texel_bytes) / plan.lobes;
   const double ring = kRing / std::max(texels, 4 * kRing);
   plan.factors = {{"p", TableShape::disk, {kProjectWo, kProjectWi}, 0.04, {}, {}, {}},
-                  {"q", TableShape::disk, {kProjectHalf}, 0.96 - 2 * ring, kDiskWarp, {}, {}},
+                  {"q", TableShape::disk, {kProjectHalf}, 0.96 - 2 * ring, kHalfDiskWarp, {}, {}},
                   line("m", {kProjectDeviation}, ring, kDeviationWarp),
                   line("r", {kProjectDifference}, ring)};
   plan.wide = {line("a", {kProjectWo, kProjectWi}, 1), line("b", {kProjectHalf}, 1),

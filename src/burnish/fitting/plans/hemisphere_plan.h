@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <burnish/fitting/plans/cost_limit.h>
+#include <burnish/fitting/plans/fit_plan.h>
+
+namespace burnish {
+
+/// Anisotropic models of up to two fetches below the limit: one lobe or two of hemispheres q(h), and as the fetches
+/// allow p(wo) p(wi) and tables of the difference, which tell directions about one half vector apart; where there is
+/// room a line c(theta_d) for what is spread wide. Tables of the difference are volumes over theta_h, theta_d and
+/// phi_d, which are their own mirror images, or over phi_s, which are not, or grids over theta_d and phi_s. What other
+/// tables leave is q's. Forms whose tables the bytes do not hold are left out; throws Error if that leaves none.
+std::vector<ModelSpec> hemisphere_specs(const CostLimit& limit, std::size_t channels);
+
+/// Fits the spec that serves best: each is fitted to part of the pairs, the mean of their channels, at fewer nodes in
+/// few steps, and judged on another part. The best is fitted anew, at some thousands of nodes, then at all. Throws Error as
+/// fit_lobes does. Deterministic.
+LobesFit fit_hemispheres(const TrainingSet& set, const std::vector<ModelSpec>& specs,
+                         const RefineOptions& options);
+
+/// How many pairs to draw for them, and where.
+TrainingOptions training_for_hemispheres();
+
+}  // namespace burnish
