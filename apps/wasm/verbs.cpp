@@ -347,33 +347,24 @@ Reply fit_material(const Request& request, const Progress& progress) {
           .blobs = {format_compact(to_model(std::move(found)), CompactContent::model_and_notes)}};
 }
 
+// A number or a list of them.
+std::vector<double> numbers(const Json& value) {
+  return value.is_array() ? value.get<std::vector<double>>() : std::vector{value.get<double>()};
+}
+
 // A number for all channels or one a channel, times the scale.
 void multiply(std::vector<double>& scale, const Json& by) {
-  const auto factors = by.is_array() ? by.get<std::vector<double>>() : std::vector<double>{by.get<double>()};
-  if (factors.size() > 1 && scale.size() == 1) scale.resize(factors.size(), scale.front());
+  const std::vector<double> factors = numbers(by);
   if (factors.size() != 1 && factors.size() != scale.size())
     throw Error(fmt::format("edit: expected 1 or {} factors, found {}", scale.size(), factors.size()));
   for (std::size_t c = 0; c < scale.size(); ++c) scale[c] *= factors[factors.size() == 1 ? 0 : c];
 }
 
-// The lobes' colours turned: all by one angle, or each by its own.
-FactoredBrdf hued(const FactoredBrdf& model, const Json& how) {
-  const auto hue = how.find("hue");
-  if (hue == how.end() || !hue->is_array())
-    return edited(model, {.hue = how.value("hue", 0.0), .roughness = 1});
-  std::vector<Lobe> lobes(model.lobes().begin(), model.lobes().end());
-  if (hue->size() != lobes.size())
-    throw Error(fmt::format("edit: expected hues of {} lobes, found {}", lobes.size(), hue->size()));
-  for (std::size_t l = 0; l < lobes.size(); ++l)
-    lobes[l].scale = edited(model, {.hue = (*hue)[l].get<double>(), .roughness = 1}).lobes()[l].scale;
-  return {model.channels(), {model.tables().begin(), model.tables().end()}, std::move(lobes)};
-}
-
 // A model with other colours, widths and scales and a Lambertian part; its file comes back, as a fit's does.
 Reply edit(const Request& request) {
   const Json& how = request.arguments.at("edit");
-  const FactoredBrdf model =
-      edited(hued(model_of(request.arguments), how), {.hue = 0, .roughness = how.value("roughness", 1.0)});
+  const FactoredBrdf model = edited(model_of(request.arguments), {.hue = numbers(how.value("hue", Json(0))),
+                                                                  .roughness = how.value("roughness", 1.0)});
   std::vector<Lobe> lobes(model.lobes().begin(), model.lobes().end());
   if (const auto scale = how.find("scale"); scale != how.end()) {
     // a list of lists is one a lobe

@@ -195,7 +195,7 @@ export interface Shader {
 
 /** What `edit` does, in this order. */
 export interface Edit {
-  /** Radians by which the lobes' colours turn about grey, of all or of each; three channels only. */
+  /** Radians by which the colours that lobes reflect turn about grey, of all or of each; three channels only. */
   hue?: number | number[];
   /** Factor of tan(theta_h / 2) in tables over theta_h, 0.1 to 10: how much wider highlights become. */
   roughness?: number;

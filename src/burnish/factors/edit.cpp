@@ -1,17 +1,22 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <span>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include <burnish/error.h>
 #include <burnish/factors/edit.h>
+#include <burnish/math/angles.h>
+#include <burnish/reflectance/half_vector_quadrature.h>
 
 namespace burnish {
 
 namespace {
 
-constexpr double kMinScale = 1e-30;  // for 0, which has no logarithm
+constexpr int kViews = 32;
+constexpr double kGoldenAngle = 2.399963229728653;  // pi (3 - sqrt(5))
 
 void require(const char* what, double value, double least, double most) {
   if (!(value >= least && value <= most))
@@ -76,14 +81,44 @@ std::vector<float> widened_disk(const Table& table, double factor) {
   return result;
 }
 
-// Turned about the grey axis.
-std::vector<double> turned(const std::vector<double>& rgb, double angle) {
-  const double mean = (rgb[0] + rgb[1] + rgb[2]) / 3, cosine = std::cos(angle),
-               sine = std::sin(angle) / std::sqrt(3.0);
+// A lobe's mean albedo, were its scale 1: views equally spaced in cos^2 up to 60 degrees, turned by the golden angle.
+std::vector<double> albedo_of(const FactoredBrdf& model, std::vector<FactorUse> factors) {
+  const auto channels = model.channels();
+  const FactoredBrdf lobe(channels, {model.tables().begin(), model.tables().end()},
+                          {{.scale = std::vector<double>(channels, 1), .factors = std::move(factors)}});
+  std::vector<double> sum(channels), f(channels);
+  for (int view = 0; view < kViews; ++view) {
+    const double theta_o = std::acos(std::sqrt(1 - 0.75 * (view + 0.5) / kViews));
+    const Vec3 wo = spherical_direction(theta_o, kGoldenAngle * view);
+    for (const auto& [wi, weight] : half_vector_quadrature(wo, 24, 96)) {
+      lobe.eval(wi, wo, f);
+      for (std::size_t c = 0; c < channels; ++c) sum[c] += f[c] * wi.z * weight / kViews;
+    }
+  }
+  return sum;
+}
+
+// Turned about the grey axis, with less chroma where a channel would leave [0, 1], or [0, its largest].
+std::vector<double> turned(std::span<const double> rgb, double angle) {
+  const double mean = (rgb[0] + rgb[1] + rgb[2]) / 3, most = std::max(1.0, std::ranges::max(rgb));
+  const double cosine = std::cos(angle), sine = std::sin(angle) / std::sqrt(3.0);
   std::vector<double> result(3);
-  for (std::size_t c = 0; c < 3; ++c)
-    result[c] = std::max(mean + cosine * (rgb[c] - mean) + sine * (rgb[(c + 2) % 3] - rgb[(c + 1) % 3]), 0.0);
+  double part = 1;
+  for (std::size_t c = 0; c < 3; ++c) {
+    result[c] = cosine * (rgb[c] - mean) + sine * (rgb[(c + 2) % 3] - rgb[(c + 1) % 3]);
+    if (result[c] < 0) part = std::min(part, -mean / result[c]);
+    if (result[c] > 0) part = std::min(part, (most - mean) / result[c]);
+  }
+  for (double& r : result) r = std::max(mean + part * r, 0.0);
   return result;
+}
+
+void turn(const FactoredBrdf& model, Lobe& lobe, double angle) {
+  const std::vector<double> unit = albedo_of(model, lobe.factors);
+  std::vector<double> colour = unit;
+  for (std::size_t c = 0; c < colour.size(); ++c) colour[c] *= lobe.scale[c];
+  colour = turned(colour, angle);
+  for (std::size_t c = 0; c < colour.size(); ++c) lobe.scale[c] = colour[c] / unit[c];
 }
 
 void widen(const FactoredBrdf& model, std::vector<Table>& log_tables, double factor) {
@@ -101,20 +136,25 @@ void widen(const FactoredBrdf& model, std::vector<Table>& log_tables, double fac
 
 FactoredBrdf edited(const FactoredBrdf& model, const Edit& edit) {
   require("a roughness", edit.roughness, 0.1, 10);
-  require("a hue", edit.hue, -100, 100);
-  if (edit.hue != 0 && model.channels() != 3)
-    throw Error(fmt::format("edit: expected three channels where a hue turns, found {}", model.channels()));
+  for (const double hue : edit.hue) require("a hue", hue, -100, 100);
   std::vector<Table> tables(model.tables().begin(), model.tables().end());
   std::vector<Lobe> lobes(model.lobes().begin(), model.lobes().end());
-  if (edit.hue != 0)
-    for (Lobe& lobe : lobes) lobe.scale = turned(lobe.scale, edit.hue);
+  if (edit.hue.size() > 1 && edit.hue.size() != lobes.size())
+    throw Error(fmt::format("edit: expected hues of {} lobes, found {}", lobes.size(), edit.hue.size()));
+  for (std::size_t l = 0; !edit.hue.empty() && l < lobes.size(); ++l) {
+    const double hue = edit.hue[edit.hue.size() == 1 ? 0 : l];
+    if (hue == 0) continue;
+    if (model.channels() != 3)
+      throw Error(fmt::format("edit: expected three channels where a hue turns, found {}", model.channels()));
+    turn(model, lobes[l], hue);
+  }
   if (edit.roughness == 1) return {model.channels(), std::move(tables), std::move(lobes)};
 
   // everything as logarithms, which tables are stored from
   for (Table& table : tables)
     std::ranges::transform(table.values, table.values.begin(), [](float v) { return std::log(v); });
   for (Lobe& lobe : lobes)
-    for (double& s : lobe.scale) s = std::log(std::max(s, kMinScale));
+    for (double& s : lobe.scale) s = std::log(s);  // of 0 it is -inf, and 0 again in the end
   widen(model, tables, edit.roughness);
   return from_log_tables(model.channels(), std::move(tables), std::move(lobes));
 }
