@@ -29,8 +29,9 @@ MerlFile parse_merl(const FileBytes& file);
 /// has 360 entries.
 bool fits_merl(const HalfDiffTable& table) noexcept;
 
-/// The file that holds the table: reading it back gives the same values to 1e-7. Holes are -1, grey fills all
-/// three planes. Throws Error unless fits_merl.
+/// The file that holds the table: reading it back gives the same values. A file that was read is written with every
+/// number to 2^-24 of it, since tables hold floats. Holes are -1, grey fills all three planes. Throws Error unless
+/// fits_merl.
 std::string format_merl(const HalfDiffTable& table);
 
 /// Writes a 90 x 90 x 180 table of an isotropic source's reciprocal part (see SymmetrizedBrdf: the format

@@ -19,6 +19,7 @@ constexpr double kThetaStep = radians(15), kPhiStep = radians(7.5);
 
 // dj_brdf.h, utia::eval and utia::normalize: the scale, and sRGB's transfer function with its own knee.
 constexpr double kStoredWhite = 140, kScale = 100, kKnee = 0.0375, kSlope = 12.92;
+constexpr double kAboveKnee = kKnee * (1 + 1e-14);  // however it is rounded
 
 double f_of_stored(double stored) noexcept {
   const double v = stored / kStoredWhite;
@@ -27,8 +28,10 @@ double f_of_stored(double stored) noexcept {
 
 double stored_of_f(double f) noexcept {
   const double linear = f / kScale;
-  static const double knee = std::pow((kKnee + 0.055) / 1.055, 2.4);
-  return kStoredWhite * (linear > knee ? 1.055 * std::pow(linear, 1 / 2.4) - 0.055 : linear * kSlope);
+  // the curve jumps at its knee, and what lies between becomes the nearer side
+  static const double upper = std::pow((kKnee + 0.055) / 1.055, 2.4), middle = (upper + kKnee / kSlope) / 2;
+  return kStoredWhite * (linear > middle ? std::max(1.055 * std::pow(linear, 1 / 2.4) - 0.055, kAboveKnee)
+                                         : std::min(linear * kSlope, kKnee));
 }
 
 double stored_at(std::span<const std::byte> bytes, std::size_t index) noexcept {

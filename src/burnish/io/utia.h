@@ -32,8 +32,9 @@ UtiaFile parse_utia(const FileBytes& file);
 /// True if a UTIA file can hold the table as it is: RGB and the nodes of utia_layout.
 bool fits_utia(const AngleTable& table) noexcept;
 
-/// The file that holds the table: reading it back gives the same values to 1e-6. Holes become 0. Throws Error unless
-/// fits_utia.
+/// The file that holds the table: reading it back gives the same values, but for those between 0.29024 and 0.29036,
+/// which no stored value stands for and which move to the nearer end. A file that was read is written with every number
+/// to 1.1 * 2^-24 of it, since tables hold floats. Holes become 0. Throws Error unless fits_utia.
 std::string format_utia(const AngleTable& table);
 
 }  // namespace burnish

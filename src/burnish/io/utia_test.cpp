@@ -68,13 +68,29 @@ TEST(Utia, IsConstantFromTheLastAngleToTheHorizon) {
 }
 
 TEST(Utia, IsWrittenAsItWasRead) {
-  const std::vector<double> stored = random_numbers();
-  const std::string again = format_utia(parse_utia(memory_file(bytes_of(stored))).table);
+  std::vector<double> stored = random_numbers();
+  stored[0] = 5.25;  // both sides of the curve's knee
+  stored[1] = std::nextafter(5.25, 6);
+  stored[2] = 5.25 * (1 + 1e-9);
+  const AngleTable read = parse_utia(memory_file(bytes_of(stored))).table;
+  const std::string again = format_utia(read);
   ASSERT_EQ(again.size(), bytes_of(stored).size());
   for (std::size_t i = 0; i < stored.size(); ++i) {
     double v;
     std::memcpy(&v, again.data() + i * sizeof(double), sizeof(double));
-    EXPECT_NEAR(v, stored[i], 1e-6 * (1 + std::abs(stored[i])));
+    EXPECT_NEAR(v, stored[i], 1.1 * 0x1p-24 * std::abs(stored[i]));
+  }
+  EXPECT_EQ(parse_utia(memory_file(again)).table.values, read.values);
+}
+
+TEST(Utia, MovesWhatNoStoredValueStandsFor) {
+  AngleTable table = utia_layout();
+  for (std::size_t i = 0; i < 3 * kPlane; ++i)
+    table.values.push_back(0.2902F + 0.0002F * static_cast<float>(i) / (3 * kPlane));
+  const AngleTable back = parse_utia(memory_file(format_utia(table))).table;
+  for (std::size_t i = 0; i < table.values.size(); ++i) {
+    const bool between = table.values[i] > 0.29024 && table.values[i] < 0.29036;
+    EXPECT_NEAR(back.values[i], table.values[i], between ? 6e-5 : 0);
   }
 }
 
