@@ -108,15 +108,11 @@ class Converter {
       throw Error(fmt::format("expected 2 to 1000 cells, found {}", options.cells));
     const Findings& found = source.findings;
     if (!found.illuminant.empty()) lose("spectra became linear Rec. 709 ({})", found.illuminant);
-    const auto of_origin = [](const std::string& told) {
-      return std::ranges::any_of(
-          kOriginWords, [&](const auto& word) { return told.starts_with(fmt::format("{}: ", word.second)); });
-    };
-    if (std::ranges::any_of(found.conventions, of_origin))
-      lose("what the file says of its licence, its authors and its origin");
   }
 
   Converted run(std::string_view format) {
+    if (format != "openmaterial" && source_.findings.origin != Origin{})
+      lose("what the file says of its licence, its authors and its origin");
     if (format == "merl") return merl();
     if (format == "rgl") return rgl();
     if (format == "mbsdf") return mbsdf();
@@ -331,7 +327,8 @@ class Converter {
       lose("red, green and blue stand at {}, {} and {} nm", kPrimaries_nm[0], kPrimaries_nm[1],
            kPrimaries_nm[2]);
     }
-    OpenMaterialText made_text = format_openmaterial(*samples, lambda_nm, sample_name());
+    OpenMaterialText made_text =
+        format_openmaterial(*samples, lambda_nm, sample_name(), source_.findings.origin);
     if (made_text.averaged > 0)
       lose("{} samples averaged with others of the same angles", made_text.averaged);
     return kept(std::move(made_text.text));

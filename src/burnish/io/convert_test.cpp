@@ -202,7 +202,7 @@ TEST(Convert, KeepsSpectraWhereTheFormatHasThem) {
 TEST(Convert, SaysWhatReadingLost) {
   Source source = parse_source(memory_file(kSpectra), {});
   EXPECT_THAT(convert(source, "csv").losses, Contains(HasSubstr("linear Rec. 709 (equal energy)")));
-  source.findings.conventions.push_back("Licence: MPL-2.0.");
+  source.findings.origin.licence = "MPL-2.0";
   EXPECT_THAT(convert(source, "csv").losses, Contains(HasSubstr("licence")));
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <burnish/io/openmaterial.h>
@@ -131,16 +132,20 @@ SpectrumTable collect(const FileBytes& file, const Json& rows, std::span<const d
   return table;
 }
 
-std::string text_of(const Json& metadata, const char* key) {
+/// A string, or those of an array.
+std::vector<std::string> strings_of(const Json& metadata, const char* key) {
   const auto found = metadata.find(key);
   if (found == metadata.end()) return {};
-  if (found->is_string()) return printable(found->get<std::string>(), kMaxRemark);
-  if (!found->is_array()) return {};
-  std::string joined;
-  for (const Json& item : *found)
-    if (item.is_string() && joined.size() < kMaxRemark)
-      joined += (joined.empty() ? "" : ", ") + printable(item.get<std::string>(), kMaxRemark);
-  return printable(joined, kMaxRemark);
+  if (found->is_string()) return {found->get<std::string>()};
+  std::vector<std::string> strings;
+  if (found->is_array())
+    for (const Json& item : *found)
+      if (item.is_string()) strings.push_back(item.get<std::string>());
+  return strings;
+}
+
+std::string text_of(const Json& metadata, const char* key) {
+  return fmt::format("{}", fmt::join(strings_of(metadata, key), ", "));
 }
 
 void describe(const Json& document, Findings& findings) {
@@ -152,9 +157,14 @@ void describe(const Json& document, Findings& findings) {
       "Isotropic, as the schema has no incident azimuth."};
   const auto metadata = document.find("metadata");
   if (metadata == document.end() || !metadata->is_object()) return;
-  findings.description = text_of(*metadata, "name");
-  for (const auto& [key, word] : kOriginWords)
-    if (const std::string text = text_of(*metadata, key); !text.empty())
+  findings.description = printable(text_of(*metadata, "name"), kMaxRemark);
+  findings.origin = {.licence = text_of(*metadata, "license"),
+                     .sources = text_of(*metadata, "sources"),
+                     .copyrights = strings_of(*metadata, "copyrights"),
+                     .authors = strings_of(*metadata, "authors")};
+  for (const auto& [key, word] : {std::pair("license", "Licence"), std::pair("copyrights", "Copyright"),
+                                  std::pair("authors", "Authors"), std::pair("sources", "Origin")})
+    if (const std::string text = printable(text_of(*metadata, key), kMaxRemark); !text.empty())
       findings.conventions.push_back(fmt::format("{}: {}.", word, text));
 }
 
@@ -208,7 +218,7 @@ SampleFile parse_openmaterial(const FileBytes& file, const OpenOptions& options)
 }
 
 OpenMaterialText format_openmaterial(const Samples& samples, std::span<const double> lambda_nm,
-                                     std::string_view name) {
+                                     std::string_view name, const Origin& origin) {
   const std::size_t channels = samples.channels;
   if (!samples.isotropic) throw Error("OpenMATERIAL: expected isotropic samples, found anisotropic ones");
   if (lambda_nm.size() != channels)
@@ -239,16 +249,22 @@ OpenMaterialText format_openmaterial(const Samples& samples, std::span<const dou
   std::string wavelengths;
   for (const double lambda : lambda_nm)
     wavelengths += fmt::format("{}{}", wavelengths.empty() ? "" : ",", lambda * 1e-9);
-  const std::string quoted = Json(name).dump(-1, ' ', true, Json::error_handler_t::replace);
+  const auto quoted = [](const Json& value) {
+    return value.dump(-1, ' ', true, Json::error_handler_t::replace);
+  };
+  const auto said = [&](const auto& value, const Json& otherwise) {
+    return quoted(value.empty() ? otherwise : Json(value));
+  };
+  const Json unknown = "unknown", nobody = {"unknown"};
   std::string text = fmt::format(
       "{{\"$schema\":\"https://raw.githubusercontent.com/asam-ev/OpenMATERIAL-3D/refs/tags/v1.0.0/schemas/"
       "material_brdf_schema.json\",\n\"metadata\":{{\"name\":{},\"uuid\":\"{}\",\"materialVersion\":\"1.0."
       "0\","
-      "\"openMaterial3dVersion\":\"1.0.0\",\"copyrights\":[\"unknown\"],\"license\":\"unknown\",\"authors\":"
-      "[\"unknown\"],\"sources\":\"converted by "
-      "burnish\"}},\n\"brdf\":{{\"wavelengths\":[{}],\n\"lookupTable\":[{}\n]"
-      "}}}}\n",
-      quoted, identifier(rows), wavelengths, rows);
+      "\"openMaterial3dVersion\":\"1.0.0\",\"copyrights\":{},\"license\":{},\"authors\":{},\"sources\":{}}},"
+      "\n"
+      "\"brdf\":{{\"wavelengths\":[{}],\n\"lookupTable\":[{}\n]}}}}\n",
+      quoted(name), identifier(rows), said(origin.copyrights, nobody), said(origin.licence, unknown),
+      said(origin.authors, nobody), said(origin.sources, "converted by burnish"), wavelengths, rows);
   return {.text = std::move(text), .averaged = samples.size() - sums.size()};
 }
 

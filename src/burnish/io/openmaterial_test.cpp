@@ -82,6 +82,28 @@ TEST(OpenMaterial, IsWrittenAndReadToTheLastBit) {
   }
 }
 
+TEST(OpenMaterial, KeepsLicenceAuthorsAndOrigin) {
+  nlohmann::json document = nlohmann::json::parse(seeds::kOpenMaterial);
+  document["metadata"] = {{"name", "asphalt"},
+                          {"license", std::string(300, 'L') + " \"1\""},
+                          {"copyrights", {"(C) A, B", "(C) \u00e9"}},
+                          {"authors", {"A", "B"}},
+                          {"sources", "measurement"}};
+  const Source source = parse_source(memory_file(document.dump()), {.keep_spectral = true});
+  const Converted converted = convert(source, "openmaterial", {});
+  EXPECT_THAT(converted.losses, testing::IsEmpty());
+  const auto written = nlohmann::json::parse(converted.bytes)["metadata"];
+  for (const auto& [key, value] : document["metadata"].items()) EXPECT_EQ(written[key], value) << key;
+  EXPECT_EQ(parse_source(memory_file(converted.bytes), {}).findings.origin, source.findings.origin);
+  // what nobody said is unknown, as the schema asks for these members
+  document["metadata"] = {{"name", "x"}};
+  const Source silent = parse_source(memory_file(document.dump()), {.keep_spectral = true});
+  const auto other = nlohmann::json::parse(convert(silent, "openmaterial", {}).bytes)["metadata"];
+  EXPECT_EQ(other["license"], "unknown");
+  EXPECT_EQ(other["authors"], nlohmann::json::array({"unknown"}));
+  EXPECT_EQ(other["sources"], "converted by burnish");
+}
+
 TEST(OpenMaterial, AveragesSamplesOfTheSameAngles) {
   // a repeated row, a turned one, and two beyond the schema's pi/2
   const Vec3 low = spherical_direction(0.5, 0), high = spherical_direction(0.7, kPi);

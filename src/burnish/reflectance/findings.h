@@ -6,6 +6,14 @@
 
 namespace burnish {
 
+/// Who made what a file holds and how it may be used, in the file's words; empty where it says nothing.
+struct Origin {
+  std::string licence, sources;
+  std::vector<std::string> copyrights, authors;
+
+  friend bool operator==(const Origin&, const Origin&) = default;
+};
+
 /// What a reader found in a source, as `burnish info` prints it.
 struct Findings {
   std::string format;       ///< "MERL binary", "Cornell scattered spectra", "analytic", ...
@@ -18,6 +26,7 @@ struct Findings {
   double most_negative = 0;          ///< the smallest of them, 1/sr
   std::vector<double> lambda_nm;     ///< wavelengths of the channels kept, or empty for grey and RGB
   std::string illuminant;            ///< how spectra became RGB: "equal energy", "D65"; empty if they did not
+  Origin origin;                     ///< among the conventions too, shortened
   std::string notes;  ///< what a model says about its making, a JSON object; empty for anything else
   double theta_i_min = 0, theta_i_max = 0;  ///< polar angles covered by data, radians
   double theta_o_min = 0, theta_o_max = 0;
