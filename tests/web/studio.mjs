@@ -271,6 +271,31 @@ await until(page, 0);
 await ended();
 await steady(page, "what is chosen and closed");
 
+// Rings of the polar plot are named in short, over no spoke and no other name, however large the values.
+fs.writeFileSync(file("huge.csv"), ["theta_i,phi_i,theta_o,phi_o,value", ...[10, 30, 50, 70].flatMap((i) => [5, 25, 45, 65, 85].flatMap((o) =>
+  [0, 180].map((phi) => `${i},0,${o},${phi},${10 ** (8 - o / 20)}`)))].join("\n"));
+await drop(page, ["huge.csv"]);
+await until(page, 1);
+for (const log of [true, false]) {
+  await page.setChecked("#log", log);
+  await page.waitForFunction((count) => {
+    const rings = [...document.querySelectorAll("#slices [data-ring]")];
+    return rings.length >= 2 && (count ? rings : []).every((ring) => /^10/.test(ring.textContent)) && rings.at(-1).dataset.ring > 1e6;
+  }, log);
+  const {names, clear} = await page.evaluate(() => {
+    const rings = [...document.querySelectorAll("#slices [data-ring]")], boxes = rings.map((ring) => ring.getBBox());
+    const spokes = [...document.querySelectorAll("#slices path")].filter((path) => /^M[^A-Za]*L[^L]*$/.test(path.getAttribute("d")));
+    const inside = ({x, y}, box) => x > box.x && x < box.x + box.width && y > box.y && y < box.y + box.height;
+    const crossed = (box) => spokes.some((spoke) => Array.from({length: 400}, (_, k) => spoke.getPointAtLength(k / 399 * spoke.getTotalLength())).some((at) => inside(at, box)));
+    const apart = (a, b) => a.y + a.height <= b.y || b.y + b.height <= a.y;
+    return {names: rings.map((ring) => ring.textContent), clear: spokes.length >= 7 && boxes.every((box, k) => !crossed(box) && boxes.every((other, l) => k === l || apart(box, other)))};
+  });
+  assert.ok(clear && names.every((name) => name.length <= 7), `${names}`);
+}
+await page.click("#log");
+await page.click("#list .close");
+await until(page, 0);
+
 // Every format at once: what the panel says is what `info --json` says.
 await drop(page, formats);
 await until(page, formats.length);

@@ -1,5 +1,5 @@
 // Line charts as SVG, with every colour an attribute of its own, so that a saved chart looks the same anywhere.
-import {css, number, svg} from "./dom.js";
+import {css, number, svg, tickText} from "./dom.js";
 
 const kWidth = 380, kHeight = 212, kLeft = 46, kRight = 12, kTop = 8, kBottom = 34;
 
@@ -18,7 +18,7 @@ export function plot(given) {
   const figure = svg("svg", {viewBox: `0 0 ${kWidth} ${kHeight}`, role: "img", "aria-label": given.label});
   for (const value of given.log ? decades(given.y) : niceTicks(given.y))
     figure.append(svg("path", {d: `M${kLeft},${toY(value)}H${right}`, stroke: grid}),
-                  svg("text", {x: kLeft - 6, y: toY(value) + 4, "text-anchor": "end", fill: soft}, number(value, 3)));
+                  svg("text", {x: kLeft - 6, y: toY(value) + 4, "text-anchor": "end", fill: soft}, tickText(value, 3)));
   for (const value of given.xTicks ?? niceTicks(given.x))
     figure.append(svg("path", {d: `M${toX(value)},${kTop}V${bottom}`, stroke: grid}),
                   svg("text", {x: toX(value), y: bottom + 15, "text-anchor": "middle", fill: soft}, given.xTick?.(value) ?? number(value, 3)));

@@ -36,6 +36,14 @@ export function number(x, digits = 4) {
   return text.replace("-", "−");
 }
 
+// Short enough for a tick: 2e8 -> "2·10⁸", 0.01 -> "0.01".
+export function tickText(x, digits) {
+  const [mantissa, exponent] = x.toExponential(digits - 1).split("e").map(Number);
+  if (x === 0 || (exponent >= -2 && exponent <= 3)) return number(x, digits);
+  const power = `10${String(exponent).replace("-", "⁻").replace(/\d/g, (digit) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[digit])}`;
+  return mantissa === 1 ? power : `${String(mantissa).replace("-", "−")}·${power}`;
+}
+
 // told(dx, dy) in pixels while a pointer drags the element; by its places, since not every browser says how far a finger moved.
 export function onDrag(element, told) {
   let last = null;

@@ -1,6 +1,6 @@
 // Slices, the (theta_h, theta_d) picture, albedo and lobe of what is shown: the left material solid, the right one dashed.
 import {linePath, plot, shareOfAxis} from "./chart.js";
-import {css, find, latest, lineOf, make, number, say, svg} from "./dom.js";
+import {css, find, latest, lineOf, make, number, say, svg, tickText} from "./dom.js";
 import {drawLobe} from "./lobe.js";
 import {segments} from "./segments.js";
 import {onChange, state} from "./state.js";
@@ -69,17 +69,18 @@ function drawPolar({angles, lines}) {
   const grid = css("--grid"), soft = css("--soft");
   const figure = svg("svg", {viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": `Polar slice at theta_i ${number(degrees(settings.theta), 3)} degrees`});
   const rings = settings.log ? Array.from({length: Math.round(Math.log10(high / low))}, (_, k) => low * 10 ** (k + 1)) : [high / 2, high / 1.05];
-  for (const value of rings) {
-    const share = grow(value), r = radius * share;
-    figure.append(svg("path", {d: `M${place(at(-90, share))}A${r},${r} 0 0 1 ${place(at(90, share))}`, fill: "none", stroke: grid}),
-                  svg("text", {x: middle[0] + 3, y: middle[1] - r - 3, fill: soft}, number(value, 2)));
-  }
+  for (const r of rings.map((value) => radius * grow(value)))
+    figure.append(svg("path", {d: `M${middle[0] - r},${middle[1]}a${r},${r} 0 0 1 ${2 * r},0`, fill: "none", stroke: grid}));
   for (const degree of [-90, -60, -30, 0, 30, 60, 90]) {
     const [x, y] = at(degree, 1.06);
     figure.append(svg("path", {d: `M${place(middle)}L${place(at(degree, 1))}`, stroke: grid}),
                   degree === 0 ? "" : svg("text", {x, y: y + 3, fill: soft, "text-anchor": degree < 0 ? "end" : "start"}, `${Math.abs(degree)}°`));
   }
   for (const line of lines) figure.append(linePath(line.values.map((v, k) => at(angles[k], grow(v))), line));
+  // above lines and cut out of them
+  for (const value of rings)
+    figure.append(svg("text", {x: middle[0] + 3, y: middle[1] - radius * grow(value) - 3, fill: soft, stroke: css("--panel"), "stroke-width": 4,
+                               "stroke-linejoin": "round", "paint-order": "stroke", "data-ring": value}, tickText(value, 2)));
   const tip = at(-degrees(settings.theta), 1), accent = css("--accent");
   figure.append(svg("path", {d: `M${place(tip)}L${place(middle)}`, stroke: accent, "stroke-width": 1.6}),
                 svg("circle", {cx: tip[0], cy: tip[1], r: 6, fill: accent, cursor: "ew-resize"}));
