@@ -572,6 +572,17 @@ await page.click("#redo");
 await page.waitForFunction((selector) => document.querySelector(selector).value !== "0", edited);
 await page.click("#undo");
 
+// A burst of keys is one step, the next burst another.
+const places = async (...steps) => {
+  for (const [act, value] of steps) {
+    await act();
+    await page.waitForFunction(([selector, expected]) => document.querySelector(selector).value === expected, [edited, value]);
+  }
+};
+const press = (count) => page.focus(edited).then(() => Promise.all(Array.from({length: count}, () => page.keyboard.press("ArrowRight"))));
+const undo = () => page.click("#undo"), redo = () => page.click("#redo");
+await places([() => press(3), "0.09"], [() => page.waitForTimeout(1500), "0.09"], [() => press(2), "0.15"], [undo, "0.09"], [undo, "0"], [redo, "0.09"], [undo, "0"]);
+
 // What takes long shows so, and is stopped: an export, an edit, whose slider goes back, and what a file is.
 const stopped = async (button, click = () => page.click(button)) => {
   await click();

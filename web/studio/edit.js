@@ -11,6 +11,7 @@ const fields = [
   ["roughness", "Roughness", -1, 1, 0, (x) => 2 ** x, (x) => `×${(2 ** x).toFixed(2)}`],
   ["diffuse", "Diffuse", 0, 0.5, 0, (x) => x, (x) => `+${x.toFixed(2)}`],
 ];
+const kBurst = 1000;  // milliseconds without a key that end a burst of them
 const ofLobes = ["scale", "hue"];  // what each lobe has too
 
 // Places of sliders: "hue" of all lobes, "hue:1" of one; what was not moved has none.
@@ -90,8 +91,8 @@ function draw(force) {
   if (!force && shownFor === key) return;
   if (shownFor !== key) lobe = "";
   shownFor = key;
-  // one step back is one drag: where it began is remembered, not each place between
-  let before = null;
+  // one step back is one drag, or one burst of keys: where it began is remembered, not each place between
+  let before = null, keyed = false, burst = null, ending;
   const shown = fields.filter(([name]) => lobe === "" || ofLobes.includes(name));
   find("#edit").replaceChildren(lobeChoice(lobes), ...shown.map((field) => {
     const [name, title, least, most, , , text] = field, place = placeOf(entry?.places, field, lobe), gray = name === "hue" && entry?.material.channels !== 3;
@@ -103,9 +104,14 @@ function draw(force) {
         output.textContent = text(Number(input.value));
         apply(entry);
       },
+      onkeydown: () => (keyed = true),
       onchange: () => {
         if (!before) return;
-        past.push({entry, places: before});
+        if (!keyed || burst !== name) past.push({entry, places: before});
+        burst = keyed ? name : null;
+        keyed = false;
+        clearTimeout(ending);
+        ending = setTimeout(() => (burst = null), kBurst);
         future = [];
         before = null;
         find("#undo").disabled = false;
