@@ -52,8 +52,7 @@ constexpr int kCoarseSteps = 10, kCoarseStepsAfterTrial = 4, kFullSteps = 6, kHe
               kManyFullSteps = 4, kManyHeldSteps = 3;
 // The log-linear start counts values about zero as the relative error does, and is smooth and rough at once.
 const HomomorphicOptions kStart{.smooth = 1e-5, .floor = PictureLoss::kFloor, .tolerance = 0.03};
-// Trials: every so many pairs, in so few steps, for gains that another draw of pairs would not give.
-constexpr std::size_t kTrialPart = 8;
+// Trials go so few steps, for gains that another draw of pairs would not give.
 constexpr int kTrialSteps = 4, kLobesTrialSteps = 30;
 constexpr int kFetches[] = {2, 3, 4, 6, 8, 12, 24};
 
@@ -164,12 +163,9 @@ TrainingSet about(const TrainingSet& set, std::size_t pairs) {
   return thinned(set, std::max<std::size_t>(1, set.size() / pairs));
 }
 
-/// Parts of the pairs to fit trials to and to judge them on.
-struct TrialSets {
-  explicit TrialSets(const TrainingSet& set) {
-    fitted = part_of(set, 0, kTrialPart);
-    judged = part_of(set, kTrialPart / 2, kTrialPart);
-  }
+/// Trials of models of an isotropic source.
+struct IsotropicTrials : TrialSets {
+  using TrialSets::TrialSets;
 
   struct Trial {
     LogModel model;
@@ -192,16 +188,6 @@ struct TrialSets {
         fit_plan(fitted, plan, limit.bytes, limit.texel_bytes, in_few_steps(options, kLobesTrialSteps));
     return objective(fit.model, judged, options.shares);
   }
-
-  TrainingSet fitted, judged;
-
- private:
-  static RefineOptions in_few_steps(RefineOptions options, int steps) {
-    options.format = TableFormat::single;
-    options.max_iterations = steps;
-    options.progress = nullptr;
-    return options;
-  }
 };
 
 struct BestSpec {
@@ -213,13 +199,13 @@ struct BestSpec {
 /// however they are shared out, the first.
 BestSpec best_of(const std::vector<ModelSpec>& specs, const TrainingSet& set, const RefineOptions& options) {
   if (specs.size() == 1 || coupled_unknowns(specs.front(), 1) > kCoarseNodes) return {specs.front(), {}};
-  const TrialSets sets(set);
-  std::vector<TrialSets::Trial> trials(specs.size());
+  const IsotropicTrials sets(set);
+  std::vector<IsotropicTrials::Trial> trials(specs.size());
   for_each_chunk(specs.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
     trials[k] = sets.try_volume(specs[k], options);
   });
   const auto best = static_cast<std::size_t>(
-      std::ranges::min_element(trials, {}, &TrialSets::Trial::objective) - trials.begin());
+      std::ranges::min_element(trials, {}, &IsotropicTrials::Trial::objective) - trials.begin());
   return {specs[best], std::move(trials[best].model)};
 }
 
@@ -320,7 +306,7 @@ std::vector<FetchTrial> try_fetches(BrdfRef source, const TrainingSet& set, Cost
   }
 
   // side by side
-  const TrialSets sets(mean_of_channels(set));
+  const IsotropicTrials sets(mean_of_channels(set));
   const ErrorTerms& of = options.shares;
   const double shares = of.pictures + of.dimmed + of.relative + of.log_cos + of.absolute;
   std::vector<FetchTrial> trials(candidates.size());

@@ -34,8 +34,8 @@ std::vector<ModelSpec> volume_specs(BrdfRef source, const CostLimit& limit);
 inline constexpr double kKneeFactor = 1.02;
 
 /// Models of 2, 3, 4, 6, 8, 12 and 24 fetches that the bytes hold, and lobes of lines where takes_lobes has them for as
-/// many as they take, volumes with a line beside them: each fitted to part of the set, the mean of its channels, in few steps and judged on another. By
-/// rising fetches; the limit's own do not count. Deterministic.
+/// many as they take, volumes with a line beside them: each fitted to part of the set, the mean of its channels, in few
+/// steps and judged on another. By rising fetches; the limit's own do not count. Deterministic.
 std::vector<FetchTrial> try_fetches(BrdfRef source, const TrainingSet& set, CostLimit limit,
                                     const RefineOptions& options);
 /// That of the fewest fetches whose error is within kKneeFactor of the least. Precondition: at least one trial.

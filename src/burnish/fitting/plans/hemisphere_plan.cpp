@@ -2,7 +2,6 @@
 #include <cmath>
 #include <functional>
 #include <optional>
-#include <string>
 #include <utility>
 
 #include <burnish/error.h>
@@ -50,8 +49,8 @@ constexpr VolumeForm kFolded{14, 12, 6}, kSigned{8, 10, 10};
 constexpr double kSidesOfDifference = 1.5;
 constexpr int kWideNodes = 12, kMinDiskSide = 5;
 
-// Trials: every so many pairs, about so many of them a node, in so few steps.
-constexpr std::size_t kTrialPart = 8, kPairsOfNode = 6;
+// Trials: about so many pairs a node, in so few steps.
+constexpr std::size_t kPairsOfNode = 6;
 constexpr std::size_t kFewerFetches = 2;  // of what is tried, at most below the limit
 constexpr int kTrialSteps = 20;
 // The way to all nodes is made at about so many, in so many steps, and then in so many more.
@@ -70,44 +69,37 @@ TableLayout grid_of_difference(double nodes) {
           .height = std::max(3, static_cast<int>(kSidesOfDifference * side))};
 }
 
-bool is_of_half_vector(const ModelSpec& spec, std::size_t table) {
-  return std::ranges::any_of(spec.lobes, [&](const auto& lobe) {
-    return std::ranges::any_of(lobe, [&](const FactorUse& use) {
-      return use.table == table && use.projection == kProjectHalf &&
-             spec.tables[table].layout.shape == TableShape::disk;
-    });
-  });
-}
-
-bool tells_mirror_images_apart(const ModelSpec& spec, std::size_t table) {
-  return std::ranges::any_of(spec.lobes, [&](const auto& lobe) {
-    return std::ranges::any_of(
-        lobe, [&](const FactorUse& use) { return use.table == table && use.projection_z == kProjectSide; });
-  });
+/// A use of the table, all of which are of one kind.
+const FactorUse& use_of(const ModelSpec& spec, std::size_t table) {
+  for (const std::vector<FactorUse>& lobe : spec.lobes)
+    for (const FactorUse& use : lobe)
+      if (use.table == table) return use;
+  throw Error("fit: expected a use of every table");
 }
 
 /// The form's tables laid out within the bytes; none where they are too few.
 std::optional<ModelSpec> laid_out(const Form& form, const CostLimit& limit, std::size_t channels) {
   const double texels = static_cast<double>(limit.bytes / limit.texel_bytes);
   ModelSpec spec = parse_model_spec(form.model, {}, false);
-  std::vector<std::size_t> of_half_vector;
+  std::vector<TableLayout*> of_half_vectors;
   const auto of_difference = static_cast<double>(std::ranges::count_if(spec.tables, [](const auto& table) {
     return table.layout.shape == TableShape::grid || table.layout.shape == TableShape::volume;
   }));
   for (std::size_t t = 0; t < spec.tables.size(); ++t) {
     TableLayout& layout = spec.tables[t].layout;
+    const FactorUse& use = use_of(spec, t);
     const double nodes = form.difference / of_difference * texels;
     if (layout.shape == TableShape::line) {
       layout.width = kWideNodes;
     } else if (layout.shape == TableShape::grid) {
       layout = grid_of_difference(nodes);
     } else if (layout.shape == TableShape::volume) {
-      spec.tables[t].circle_z = tells_mirror_images_apart(spec, t);
+      spec.tables[t].circle_z = use.projection_z == kProjectSide;
       layout = volume_of(spec.tables[t].circle_z ? kSigned : kFolded, nodes);
       if (layout.width < 2) return {};
-    } else if (is_of_half_vector(spec, t)) {
+    } else if (use.projection == kProjectHalf) {
       layout = {.shape = TableShape::disk, .width = 0, .height = 0, .warp = kHalfDiskWarp};
-      of_half_vector.push_back(t);
+      of_half_vectors.push_back(&layout);
     } else {
       layout = disk_of(form.border * texels);
     }
@@ -117,26 +109,24 @@ std::optional<ModelSpec> laid_out(const Form& form, const CostLimit& limit, std:
   const std::size_t taken = bytes_of(spec, limit.texel_bytes, channels);
   const double rest =
       taken < limit.bytes ? static_cast<double>((limit.bytes - taken) / limit.texel_bytes) : 0;
-  for (const std::size_t t : of_half_vector)
-    spec.tables[t].layout = disk_of(rest / static_cast<double>(of_half_vector.size()), kHalfDiskWarp);
+  for (TableLayout* layout : of_half_vectors)
+    *layout = disk_of(rest / static_cast<double>(of_half_vectors.size()), kHalfDiskWarp);
   if (bytes_of(spec, limit.texel_bytes, channels) > limit.bytes) return {};
   return spec;
 }
 
 /// Of models, each fitted to a part of the set and judged on another.
-std::size_t best_of(const std::vector<ModelSpec>& specs, const TrainingSet& set, RefineOptions options) {
+std::size_t best_of(const std::vector<ModelSpec>& specs, const TrainingSet& set,
+                    const RefineOptions& options) {
   if (specs.size() == 1) return 0;
-  const TrainingSet grey = mean_of_channels(set);
-  const TrainingSet fitted = part_of(grey, 0, kTrialPart), judged = part_of(grey, kTrialPart / 2, kTrialPart);
-  options.format = TableFormat::single;
-  options.max_iterations = kTrialSteps;
-  options.progress = nullptr;
+  const TrialSets sets(mean_of_channels(set));
+  const RefineOptions few = in_few_steps(options, kTrialSteps);
   std::vector<double> errors(specs.size());
   for_each_chunk(specs.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
     const double nodes = static_cast<double>(kPairsOfNode * coupled_unknowns(specs[k], 1));
     const ModelSpec trial =
-        at_fewer_nodes(specs[k], std::min(1.0, static_cast<double>(fitted.size()) / nodes));
-    errors[k] = objective(fit_lobes(fitted, trial, options).model, judged, options.shares);
+        at_fewer_nodes(specs[k], std::min(1.0, static_cast<double>(sets.fitted.size()) / nodes));
+    errors[k] = objective(fit_lobes(sets.fitted, trial, few).model, sets.judged, few.shares);
   });
   return static_cast<std::size_t>(std::ranges::min_element(errors) - errors.begin());
 }

@@ -16,7 +16,7 @@ namespace burnish {
 std::vector<ModelSpec> hemisphere_specs(const CostLimit& limit, std::size_t channels);
 
 /// Fits the spec that serves best: each is fitted to part of the pairs, the mean of their channels, at fewer nodes in
-/// few steps, and judged on another part. The best is fitted anew, at some thousands of nodes, then at all. Throws Error as
+/// few steps, and judged on another part. The best is fitted at two thousand nodes, then at all. Throws Error as
 /// fit_lobes does. Deterministic.
 LobesFit fit_hemispheres(const TrainingSet& set, const std::vector<ModelSpec>& specs,
                          const RefineOptions& options);

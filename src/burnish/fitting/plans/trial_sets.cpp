@@ -2,6 +2,12 @@
 
 namespace burnish {
 
+namespace {
+
+constexpr std::size_t kTrialPart = 8;
+
+}  // namespace
+
 TrainingSet part_of(const TrainingSet& set, std::size_t first, std::size_t step) {
   TrainingSet shifted = set;
   // drop the first pairs of both kinds, so that thinning begins elsewhere
@@ -32,6 +38,16 @@ TrainingSet mean_of_channels(const TrainingSet& set) {
     grey.values[i] = static_cast<float>(sum / static_cast<double>(channels));
   }
   return grey;
+}
+
+TrialSets::TrialSets(const TrainingSet& set)
+    : fitted(part_of(set, 0, kTrialPart)), judged(part_of(set, kTrialPart / 2, kTrialPart)) {}
+
+RefineOptions in_few_steps(RefineOptions options, int steps) {
+  options.format = TableFormat::single;
+  options.max_iterations = steps;
+  options.progress = nullptr;
+  return options;
 }
 
 }  // namespace burnish

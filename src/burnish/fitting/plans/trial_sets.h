@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include <burnish/fitting/refinement/refine.h>
 #include <burnish/fitting/refinement/training_set.h>
 
 namespace burnish {
@@ -11,5 +12,15 @@ TrainingSet part_of(const TrainingSet& set, std::size_t first, std::size_t step)
 
 /// The set with one channel, the mean of its channels.
 TrainingSet mean_of_channels(const TrainingSet& set);
+
+/// An eighth of the pairs to fit trials to, and another to judge them on.
+struct TrialSets {
+  explicit TrialSets(const TrainingSet& set);
+
+  TrainingSet fitted, judged;
+};
+
+/// The options of a trial: tables of floats and so many steps, without progress.
+RefineOptions in_few_steps(RefineOptions options, int steps);
 
 }  // namespace burnish
