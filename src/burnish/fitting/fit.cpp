@@ -51,7 +51,7 @@ constexpr std::size_t kBookSamples = 1000;
 constexpr std::size_t kHeldOutPairs = 20'000;
 constexpr int kHeldOutSphereSize = 128;  // of a baseline's the defaults of FigureOptions
 
-// Volumes follow all angles alike; what they lack shows in pictures first. With p(wo) p(wi) beside them, of four
+// Volumes and hemispheres follow all angles alike; what they lack shows in pictures first. With p(wo) p(wi) beside them, of four
 // fetches, there is some to spare, for absolute errors too: these lie near grazing, and p alone is as steep there.
 constexpr ErrorTerms kVolumeShares{.pictures = 3, .dimmed = 0.3, .relative = 2, .log_cos = 0.6};
 constexpr int kSpareFetches = 4;
@@ -394,6 +394,7 @@ class Fitter {
     }
     if (!brdf_.isotropic()) {
       if (!options_.smooth) refine.smooth = kHemisphereSmooth;
+      if (form.loss == FitLoss::image) refine.shares = kVolumeShares;
       const TrainingSet set = drawn_set(training_for_hemispheres());
       return finish(fit_hemispheres(set, hemisphere_specs(limit, channels()), refine), set, refine,
                     std::move(report));

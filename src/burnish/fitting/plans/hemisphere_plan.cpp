@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include <burnish/error.h>
@@ -53,6 +55,11 @@ constexpr int kWideNodes = 12, kMinDiskSide = 5;
 constexpr std::size_t kPairsOfNode = 6;
 constexpr std::size_t kFewerFetches = 2;  // of what is tried, at most below the limit
 constexpr int kTrialSteps = 20;
+constexpr std::size_t kFinalists = 3, kFinalPart = 4;
+// Above 50 dB what is left of pictures is not seen; relative errors are. A fetch has to lower the errors by 3 %.
+constexpr ErrorTerms kFinalShares{.pictures = 1, .relative = 2, .log_cos = 2};
+constexpr double kWorthOfFetch = 0.15;
+constexpr double kTrialTime = 0.15, kFinalTime = 0.4;  // when they end, of the whole
 // The way to all nodes is made at about so many, in so many steps, and then in so many more.
 constexpr double kCoarseUnknowns = 2000;
 constexpr int kCoarseSteps = 30, kFineSteps = 12;
@@ -115,20 +122,80 @@ std::optional<ModelSpec> laid_out(const Form& form, const CostLimit& limit, std:
   return spec;
 }
 
-/// Of models, each fitted to a part of the set and judged on another.
-std::size_t best_of(const std::vector<ModelSpec>& specs, const TrainingSet& set,
-                    const RefineOptions& options) {
-  if (specs.size() == 1) return 0;
-  const TrialSets sets(mean_of_channels(set));
+/// A part of the options' progress.
+std::function<void(double)> part_of_progress(const RefineOptions& options, double from, double to) {
+  if (!options.progress) return nullptr;
+  return [&options, from, to](double f) { options.progress(from + f * (to - from)); };
+}
+
+/// Calls work(k) of count trials, and as they end the options' progress, from `from` to `to`, on the calling thread.
+void for_each_trial(std::size_t count, const RefineOptions& options, double from, double to,
+                    const std::function<void(std::size_t)>& work) {
+  const std::function<void(double)> progress = part_of_progress(options, from, to);
+  const std::thread::id caller = std::this_thread::get_id();
+  std::atomic<std::size_t> done = 0;
+  for_each_chunk(count, 1, [&](std::size_t k, std::size_t, std::size_t) {
+    work(k);
+    const std::size_t ended = ++done;
+    if (progress && std::this_thread::get_id() == caller)
+      progress(static_cast<double>(ended) / static_cast<double>(count));
+  });
+}
+
+/// Fits one model: few nodes come near the least error in as many steps as all of them would take to leave the start.
+LobesFit fit_one(const TrainingSet& set, const ModelSpec& spec, const RefineOptions& options) {
+  const auto nodes = static_cast<double>(coupled_unknowns(spec, 1));
+  if (nodes <= kCoarseUnknowns) return fit_lobes(set, spec, options);
+  RefineOptions coarse = options;
+  coarse.format = TableFormat::single;
+  coarse.max_iterations = std::min(kCoarseSteps, options.max_iterations);
+  coarse.progress = part_of_progress(options, 0, 0.6);
+  LobesFit fit = fit_lobes(set, at_fewer_nodes(spec, kCoarseUnknowns / nodes), coarse);
+  fit.model = resampled(fit.model, spec);
+  RefineOptions fine = options;
+  fine.max_iterations = std::min(kFineSteps, options.max_iterations);
+  fine.progress = part_of_progress(options, 0.6, 1);
+  const int before = fit.summary.iterations;
+  fit.summary = refine(fit.model, set, fine);
+  fit.summary.iterations += before;
+  return fit;
+}
+
+/// Of the models those that come out best, at most so many, of trials in few steps.
+std::vector<ModelSpec> finalists(const std::vector<ModelSpec>& specs, const TrainingSet& mean,
+                                 const RefineOptions& options) {
+  const TrialSets sets(mean);
   const RefineOptions few = in_few_steps(options, kTrialSteps);
-  std::vector<double> errors(specs.size());
-  for_each_chunk(specs.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
+  std::vector<std::pair<double, std::size_t>> errors(specs.size());
+  for_each_trial(specs.size(), options, 0, kTrialTime, [&](std::size_t k) {
     const double nodes = static_cast<double>(kPairsOfNode * coupled_unknowns(specs[k], 1));
     const ModelSpec trial =
         at_fewer_nodes(specs[k], std::min(1.0, static_cast<double>(sets.fitted.size()) / nodes));
-    errors[k] = objective(fit_lobes(sets.fitted, trial, few).model, sets.judged, few.shares);
+    errors[k] = {objective(fit_lobes(sets.fitted, trial, few).model, sets.judged, few.shares), k};
   });
-  return static_cast<std::size_t>(std::ranges::min_element(errors) - errors.begin());
+  std::ranges::sort(errors);
+  std::vector<ModelSpec> best;
+  for (std::size_t i = 0; i < std::min(kFinalists, errors.size()); ++i)
+    best.push_back(specs[errors[i].second]);
+  return best;
+}
+
+/// The best model. Few steps leave some behind that end ahead, so the finalists are fitted as the winner is, to a
+/// quarter of the pairs.
+ModelSpec best_of(std::vector<ModelSpec> specs, const TrainingSet& set, const RefineOptions& options) {
+  if (specs.size() == 1) return specs.front();
+  const TrainingSet mean = mean_of_channels(set);
+  specs = finalists(specs, mean, options);
+  const TrainingSet fitted = part_of(mean, 0, kFinalPart), judged = part_of(mean, kFinalPart / 2, kFinalPart);
+  RefineOptions quiet = options;
+  quiet.progress = nullptr;
+  const ErrorTerms& shares = options.shares.pictures > 0 ? kFinalShares : options.shares;
+  std::vector<double> errors(specs.size());
+  for_each_trial(specs.size(), options, kTrialTime, kFinalTime, [&](std::size_t k) {
+    errors[k] = objective(fit_one(fitted, specs[k], quiet).model, judged, shares) +
+                kWorthOfFetch * static_cast<double>(fetch_count(specs[k]));
+  });
+  return specs[static_cast<std::size_t>(std::ranges::min_element(errors) - errors.begin())];
 }
 
 }  // namespace
@@ -148,28 +215,10 @@ std::vector<ModelSpec> hemisphere_specs(const CostLimit& limit, std::size_t chan
 
 LobesFit fit_hemispheres(const TrainingSet& set, const std::vector<ModelSpec>& specs,
                          const RefineOptions& options) {
-  const ModelSpec& spec = specs[best_of(specs, set, options)];
-  const auto nodes = static_cast<double>(coupled_unknowns(spec, 1));
-  if (nodes <= kCoarseUnknowns) return fit_lobes(set, spec, options);
-
-  // few nodes come near the least error in as many steps as all of them would take to leave the start
-  const auto progress = [&](double from, double to) -> std::function<void(double)> {
-    if (!options.progress) return nullptr;
-    return [&options, from, to](double f) { options.progress(from + f * (to - from)); };
-  };
-  RefineOptions coarse = options;
-  coarse.format = TableFormat::single;
-  coarse.max_iterations = std::min(kCoarseSteps, options.max_iterations);
-  coarse.progress = progress(0, 0.6);
-  LobesFit fit = fit_lobes(set, at_fewer_nodes(spec, kCoarseUnknowns / nodes), coarse);
-  fit.model = resampled(fit.model, spec);
-  RefineOptions fine = options;
-  fine.max_iterations = std::min(kFineSteps, options.max_iterations);
-  fine.progress = progress(0.6, 1);
-  const int before = fit.summary.iterations;
-  fit.summary = refine(fit.model, set, fine);
-  fit.summary.iterations += before;
-  return fit;
+  const ModelSpec spec = best_of(specs, set, options);
+  RefineOptions rest = options;
+  if (specs.size() > 1) rest.progress = part_of_progress(options, kFinalTime, 1);
+  return fit_one(set, spec, rest);
 }
 
 TrainingOptions training_for_hemispheres() {

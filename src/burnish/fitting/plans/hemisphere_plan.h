@@ -16,8 +16,8 @@ namespace burnish {
 std::vector<ModelSpec> hemisphere_specs(const CostLimit& limit, std::size_t channels);
 
 /// Fits the spec that serves best: each is fitted to part of the pairs, the mean of their channels, at fewer nodes in
-/// few steps, and judged on another part. The best is fitted at two thousand nodes, then at all. Throws Error as
-/// fit_lobes does. Deterministic.
+/// few steps, and judged on another part. Three finalists are fitted to a larger part as the winner will be: at two
+/// thousand nodes, then at all. A fetch more has to lower the errors. Throws Error as fit_lobes does. Deterministic.
 LobesFit fit_hemispheres(const TrainingSet& set, const std::vector<ModelSpec>& specs,
                          const RefineOptions& options);
 
