@@ -150,6 +150,9 @@ TEST(CommandLine, PrintsJsonForPrograms) {
   EXPECT_EQ(json(fmt::format("measure ggx -o '{}/m.csv' --count 7", out))["samples"], 7);
   EXPECT_EQ(json(fmt::format("eval ggx '{0}/d.csv' -o '{0}/v.csv'", out))["pairs"], 2);
   EXPECT_EQ(json("info lambert")["format"], "analytic");
+  const auto made = json(fmt::format("fit ggx -o '{}/f.exr' --budget 300 --samples 2000", out))["shader"];
+  EXPECT_GT(made["operations"], 10);
+  EXPECT_EQ(made, json(fmt::format("info '{}/f.exr'", out))["shader"]);
   EXPECT_EQ(json(fmt::format("export phong:exponent=9 --to glsl -o '{}/e'", out))["output"], out + "/e");
   EXPECT_GT(json("help formats").size(), 15u);
   EXPECT_GT(json("help models").size(), 10u);

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <burnish/baselines/evaluation_cost.h>
 #include <burnish/factors/fetches.h>
@@ -13,7 +14,7 @@
 #include <burnish/fitting/parametric/material_fit.h>
 #include <burnish/fitting/plans/fetch_plan.h>
 #include <burnish/math/parallel.h>
-#include <burnish/shaders/shader.h>
+#include <burnish/shaders/cost_json.h>
 
 #include "commands.h"
 #include "fit_arguments.h"
@@ -123,8 +124,7 @@ void print(const NodesReport& report) {
 void print_model(const FactoredBrdf& model, const FitReport& report) {
   fmt::print("model      {}, {} bytes ({} of them tables), {} fetches\n", model_expression(model),
              model.bytes(), model.table_bytes(), fetch_count(model));
-  if (model.channels() == 1 || model.channels() == 3)
-    fmt::print("shader     {}\n", to_string(generate_shader(model, {.filter = ShaderFilter::hardware}).cost));
+  if (const auto cost = shader_cost(model)) fmt::print("shader     {}\n", to_string(*cost));
   const auto* one_lobe = std::get_if<OneLobeReport>(&report.how);
   const auto* completion = std::get_if<CompletionReport>(&report.how);
   if (one_lobe)
@@ -264,7 +264,9 @@ void fit(const FitCommand& arguments) {
                              ? std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()
                              : fit.report.seconds;
   if (arguments.json) {
-    fmt::print("{}\n", summary_json(fit, arguments.out, seconds));
+    auto summary = nlohmann::ordered_json::parse(summary_json(fit, arguments.out, seconds));
+    if (const auto cost = model ? shader_cost(*model) : std::nullopt) summary["shader"] = cost_json(*cost);
+    fmt::print("{}\n", summary.dump(2));
     return;
   }
   fmt::print("{}: {}\n", fit.report.source, fit.report.source_format);

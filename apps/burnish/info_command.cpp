@@ -15,6 +15,7 @@
 #include <burnish/file.h>
 #include <burnish/io/source_report.h>
 #include <burnish/math/angles.h>
+#include <burnish/shaders/cost_json.h>
 
 #include "book_text.h"
 #include "commands.h"

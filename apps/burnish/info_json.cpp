@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include <burnish/error.h>
+#include <burnish/shaders/cost_json.h>
 
 namespace burnish::cli {
 
@@ -27,11 +28,6 @@ std::optional<NodesKnown> nodes_of(const Source& source) {
   return known;
 }
 
-std::optional<ShaderCost> shader_cost(const FactoredBrdf& model) {
-  if (model.channels() != 1 && model.channels() != 3) return std::nullopt;
-  return generate_shader(model, {.filter = ShaderFilter::hardware}).cost;
-}
-
 std::string info_json(const SourceReport& report) {
   auto json = nlohmann::ordered_json::parse(to_json(report));
   if (const auto nodes = nodes_of(report.source)) {
@@ -42,9 +38,7 @@ std::string info_json(const SourceReport& report) {
                                     {"log_cos", nodes->predicted->log_cos}};
   }
   if (const auto cost = report.model ? shader_cost(*report.model) : std::nullopt)
-    json["shader"] = {{"fetches", cost->fetches},       {"textures", cost->textures},
-                      {"operations", cost->operations}, {"divisions", cost->divisions},
-                      {"roots", cost->roots},           {"powers", cost->powers}};
+    json["shader"] = cost_json(*cost);
   return json.dump(2);
 }
 

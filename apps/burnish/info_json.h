@@ -6,7 +6,6 @@
 
 #include <burnish/io/source_report.h>
 #include <burnish/metrics/node_figures.h>
-#include <burnish/shaders/shader.h>
 
 namespace burnish::cli {
 
@@ -20,9 +19,6 @@ struct NodesKnown {
 
 /// Nothing of a formula or model.
 std::optional<NodesKnown> nodes_of(const Source& source);
-
-/// Of the languages with textures, which have one or three channels: nothing of others.
-std::optional<ShaderCost> shader_cost(const FactoredBrdf& model);
 
 /// What `info --json` prints: the report, with the nodes of a measurement, and of a model with what its shader costs.
 std::string info_json(const SourceReport& report);

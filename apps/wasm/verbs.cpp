@@ -30,6 +30,7 @@
 #include <burnish/metrics/albedo.h>
 #include <burnish/parameterization/half_diff.h>
 #include <burnish/report/compare_report.h>
+#include <burnish/shaders/cost_json.h>
 #include <burnish/shaders/shader.h>
 #include <burnish/shaders/spatial_shader.h>
 #include <burnish/surface/surface_file.h>
@@ -426,11 +427,6 @@ ShaderLanguage language_named(const std::string& name) {
   throw Error(fmt::format("shader: expected glsl, glsl_es, hlsl, msl, wgsl or cpp, found '{}'", name));
 }
 
-Json to_json(const ShaderCost& cost) {
-  return {{"fetches", cost.fetches},     {"textures", cost.textures}, {"operations", cost.operations},
-          {"divisions", cost.divisions}, {"roots", cost.roots},       {"powers", cost.powers}};
-}
-
 void add_textures(std::span<const ShaderTexture> textures, Json& list, Reply& reply) {
   for (const ShaderTexture& t : textures) {
     list.push_back({{"name", t.name},
@@ -463,8 +459,8 @@ Reply surface_shader_of(const Request& request, const ShaderOptions& options) {
                     {"function", fmt::format("burnish_{}", options.name)},
                     {"functionWorld", fmt::format("burnish_{}_world", options.name)},
                     {"framed", made.maps.normals.has_value() || made.maps.tangents.has_value()},
-                    {"cost", to_json(made.light_cost)},
-                    {"placeCost", to_json(made.place_cost)},
+                    {"cost", cost_json(made.light_cost)},
+                    {"placeCost", cost_json(made.place_cost)},
                     {"costText", burnish::to_string(made.light_cost)},
                     {"textures", std::move(textures)},
                     {"maps", std::move(maps)}}
@@ -503,7 +499,7 @@ Reply shader(const Request& request) {
                     {"filter", exact ? "exact" : "hardware"},
                     {"function", fmt::format("burnish_{}", options.name)},
                     {"functionWorld", fmt::format("burnish_{}_world", options.name)},
-                    {"cost", to_json(made.cost)},
+                    {"cost", cost_json(made.cost)},
                     {"costText", burnish::to_string(made.cost)},
                     {"textures", std::move(textures)}}
                    .dump();

@@ -10,6 +10,7 @@
 #include <burnish/export/manifest.h>
 #include <burnish/export/web_module.h>
 #include <burnish/image/png.h>
+#include <burnish/shaders/cost_json.h>
 #include <burnish/shaders/spatial_shader.h>
 #include <burnish/textures/image_files.h>
 #include <burnish/textures/ktx2.h>
@@ -19,11 +20,6 @@ namespace burnish {
 namespace {
 
 using nlohmann::json;
-
-json entry_of(const ShaderCost& cost) {
-  return {{"fetches", cost.fetches},     {"textures", cost.textures}, {"operations", cost.operations},
-          {"divisions", cost.divisions}, {"roots", cost.roots},       {"powers", cost.powers}};
-}
 
 json entry_of(std::span<const MapComponent> places) {
   json list = json::array();
@@ -110,8 +106,8 @@ class SurfaceExport {
          {"functions", {function + "_at", function + "_lod", function, function + "_world"}},
          {"filter", filter_name},
          {"textures", std::move(textures)},
-         {"place_cost", entry_of(shader.place_cost)},
-         {"cost", entry_of(shader.light_cost)}});
+         {"place_cost", cost_json(shader.place_cost)},
+         {"cost", cost_json(shader.light_cost)}});
     result_.files.push_back({file, shader.text});
     result_.shaders.push_back({file, filter_name + " filter, once a pixel", shader.place_cost});
     result_.shaders.push_back({file, filter_name + " filter, once a light", shader.light_cost});

@@ -5,6 +5,7 @@
 
 #include <burnish/export/manifest.h>
 #include <burnish/fitting/parametric/gltf_json.h>
+#include <burnish/shaders/cost_json.h>
 
 namespace burnish {
 
@@ -32,17 +33,10 @@ std::string shader_file(ShaderLanguage language, const std::string& name) {
 }
 
 json manifest_entry(ShaderLanguage language, const std::string& name, const Shader& shader) {
-  const ShaderCost& cost = shader.cost;
   return {{"language", to_string(language)},
           {"file", shader_file(language, name)},
           {"functions", {"burnish_" + name, "burnish_" + name + "_world"}},
-          {"cost",
-           {{"fetches", cost.fetches},
-            {"textures", cost.textures},
-            {"operations", cost.operations},
-            {"divisions", cost.divisions},
-            {"roots", cost.roots},
-            {"powers", cost.powers}}}};
+          {"cost", cost_json(shader.cost)}};
 }
 
 json manifest_entry(const std::string& file, const Texture& texture) {

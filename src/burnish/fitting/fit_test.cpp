@@ -495,8 +495,8 @@ TEST(Fit, MakesFilesLittleLargerThanTheirTables) {
 TEST(Fit, HoldsAnAnisotropicHighlightAndWhatIsDiffuse) {
   BURNISH_SKIP_WHERE_SANITIZED();
   const Source source = source_of("ggx", parse_analytic("ggx:alpha_x=0.1,alpha_y=0.3,f0=0.8,kd=0.3"));
-  const Fit made = fit(source, {.form = Budget{.bytes = 8 << 10, .fetches = 6}, .score = false});
-  EXPECT_LE(made.bytes(), 8u << 10);
+  const Fit made = fit(source, {.form = Budget{.bytes = 6 << 10, .fetches = 5}, .score = false});
+  EXPECT_LE(made.bytes(), 6u << 10);
   EXPECT_LE(fetch_count(made.model()), 6u);
   const ErrorFigures figures = error_figures(source.ref(), made.ref());
   EXPECT_LE(figures.relative, 0.02);
