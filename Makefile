@@ -53,9 +53,8 @@ test: test-deps format-check docs-check include-check
 	@if command -v em++ > /dev/null && command -v node > /dev/null && command -v chromium > /dev/null; then \
 	  $(MAKE) -s studio; fi
 	@tests/web/check.sh --skip-offline > build/web.log 2>&1 & web=$$!; \
-	python/check.sh --skip-offline; python=$$?; \
-	wait $$web; web=$$?; cat build/web.log; exit $$((python || web))
-	@tests/web/package.sh --if-built
+	python/check.sh --skip-offline && tests/web/package.sh --if-built; others=$$?; \
+	wait $$web; web=$$?; cat build/web.log; exit $$((others || web))
 	@tests/cluster/run.py $(BURNISH) --if-there
 
 python: test-deps build

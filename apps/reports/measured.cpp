@@ -22,6 +22,11 @@ namespace burnish::reports {
 namespace {
 
 constexpr std::size_t kBytes = 16'384, kFewBytes = 2700;
+
+// Of a quick trial few, which are fitted in a tenth of the time.
+std::size_t most_bytes(const Page& page) {
+  return page.options().quick ? kFewBytes : kBytes;
+}
 constexpr int kNodeFetches = 3;  // of nodes, where the page says so
 
 std::vector<fs::path> rgl_files(const Page& page) {
@@ -85,15 +90,15 @@ void report_halves(Page& page, const fs::path& data) {
                      open_source(fmt::format("nbrdf:{}#{}", (data / "nbrdf/rgl.csv").string(), name), {}),
                  np = open_source(fmt::format("np:{}#{}", (data / "np").string(), name), {});
     const SymmetrizedBrdf symmetrized_network(network.ref()), symmetrized_np(np.ref());
-    const Fit of_function =
-        fit(source, {.form = Budget{.bytes = kBytes}, .target = FitTarget::function, .score = false});
+    const Fit of_function = fit(
+        source, {.form = Budget{.bytes = most_bytes(page)}, .target = FitTarget::function, .score = false});
     const MeasuredNodes nodes = measured_nodes(source);
 
     std::vector<MeanNodes> means(predictors.size());
     for (const std::uint32_t half : {0u, 1u}) {
       const NodePart part{NodePart::Kind::half, half};
       const MeasuredNodes unseen = nodes_of(nodes, part);
-      const Fit of_nodes = fit_nodes_without(source, part, Budget{.bytes = kBytes});
+      const Fit of_nodes = fit_nodes_without(source, part, Budget{.bytes = most_bytes(page)});
       const std::array<BrdfRef, 5> models{function, symmetrized_network, symmetrized_np, of_function.ref(),
                                           of_nodes.ref()};
       for (std::size_t k = 0; k < models.size(); ++k) {
@@ -222,10 +227,11 @@ void report_repeat(Page& page, const fs::path& data) {
       add(how, std::to_string(made.bytes()), made.ref());
     };
     add_fit("`--budget 2700`", {.bytes = kFewBytes});
+    if (page.options().quick) continue;
     add_fit("`--budget 16K`", {.bytes = kBytes});
     add_fit("`--budget 16K --fetches 6 --smooth auto`",
             {.bytes = kBytes, .fetches = 6, .scattered = {.cross_validate = true}});
-    if (!page.options().quick) add_fit("`--budget 64K`", {.bytes = 65'536});
+    add_fit("`--budget 64K`", {.bytes = 65'536});
   }
   page["repeat"] = table.markdown();
 
@@ -235,7 +241,7 @@ void report_repeat(Page& page, const fs::path& data) {
   for (std::size_t to = 0; to < scans.size(); ++to) {
     const Source& other = scans[1 - to];
     const MeasuredNodes nodes = measured_nodes(scans[to]);
-    const Budget budget{.bytes = kBytes, .fetches = kNodeFetches};
+    const Budget budget{.bytes = most_bytes(page), .fetches = kNodeFetches};
     const Fit of_function = fit(other, {.form = budget, .target = FitTarget::function, .score = false}),
               of_nodes = fit(other, {.form = budget, .target = FitTarget::nodes, .score = false});
     std::vector<std::string> texts{names[to], ""};
@@ -269,7 +275,7 @@ void report_formats(Page& page, const fs::path& data) {
     tell("measured: " + fs::path(file).filename().string());
     const Source source = open_source(file, {});
     const SymmetrizedBrdf function(source.ref());
-    const Budget budget{.bytes = kBytes, .fetches = kNodeFetches};
+    const Budget budget{.bytes = most_bytes(page), .fetches = kNodeFetches};
     const Fit of_function = fit(source, {.form = budget, .target = FitTarget::function, .score = false});
     const MeasuredNodes nodes = measured_nodes(source);
     std::array<MeanNodes, 3> means;
@@ -293,7 +299,7 @@ void report_formats(Page& page, const fs::path& data) {
 void report_noise(Page& page, const std::optional<fs::path>& data) {
   std::vector<std::pair<std::string, Source>> sources;
   sources.emplace_back("virtual GGX", Source{.name = {}, .brdf = fixtures::noisy_table(), .findings = {}});
-  if (data)
+  if (data && !page.options().quick)
     sources.emplace_back("carpaint_blue", open_source((*data / "mbsdf/carpaint_blue.mbsdf").string(), {}));
 
   Table table({"source", "theta_i", "albedo", "with negatives cut", "2,700 bytes", "16 KB, 2 fetches"});
@@ -337,7 +343,9 @@ void report_order(Page& page, const fs::path& data) {
   const Source source = open_source(file.string(), {});
   const Scorer scorer(source.ref());
   Table table({"fit", "bytes", "psnr", "ssim", "relative", "log_cos", "rms_log", "rms"});
-  for (const std::size_t bytes : {kFewBytes, kBytes})
+  std::vector<std::size_t> budgets{kFewBytes};
+  if (!page.options().quick) budgets.push_back(kBytes);
+  for (const std::size_t bytes : budgets)
     for (const bool symmetrize : {true, false}) {
       const Fit made = fit(source, {.form = Budget{.bytes = bytes},
                                     .target = FitTarget::function,
