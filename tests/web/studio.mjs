@@ -817,7 +817,7 @@ async function threaded(shown) {
   const found = await shown.evaluate(async (data) => {
     const {open} = await import("./package/index.js"), began = performance.now(), models = [];
     const material = await open(Uint8Array.from(atob(data), (c) => c.charCodeAt(0)), {name: "a.bsdf"});
-    for (const options of [{budget: 2700}, {budget: 8192, fetches: 6, target: "function"}, {budget: 1500, search: true}]) {
+    for (const options of [{budget: 1000}, {budget: 4096, fetches: 6, target: "function"}, {budget: 600, search: true}]) {
       const model = await material.fit(options);
       models.push((await model.export("burnish")).join());
       model.close();
