@@ -12,8 +12,7 @@ const {memory, Model, open} = await import(pathToFileURL(path.resolve(process.en
 
 const kSpec = "ggx:alpha_x=0.25,alpha_y=0.25,f0=0.8/0.5/0.3,kd=0.05/0.1/0.15";
 const kTolerance = 1e-6;  // relative, of every figure
-// A last bit decides between steps of a fit, as another seed does, which moves these by 0.5 to 0.9 dB.
-const kFitTolerance = 0.3;  // dB
+const kFitTolerance = 0.05;  // dB
 const kExact = 80;  // dB, above which nothing but rounding is left to differ
 
 const run = async (...args) => (await promisify(execFile)(cli, args, {maxBuffer: 1 << 28})).stdout;

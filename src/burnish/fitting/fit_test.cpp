@@ -490,8 +490,8 @@ TEST(Fit, MakesFilesLittleLargerThanTheirTables) {
   expect_small(paint(), 16 << 10, 4);
 }
 
-// Hemispheres times a volume, whose file is little larger than its tables too. Eight times the bytes take five times
-// as long and are better still.
+// Hemispheres times a volume, whose file is little larger than its tables too. More bytes take longer and are
+// better still.
 TEST(Fit, HoldsAnAnisotropicHighlightAndWhatIsDiffuse) {
   BURNISH_SKIP_WHERE_SANITIZED();
   const Source source = source_of("ggx", parse_analytic("ggx:alpha_x=0.1,alpha_y=0.3,f0=0.8,kd=0.3"));
