@@ -22,12 +22,12 @@ namespace burnish::reports {
 namespace {
 
 constexpr std::size_t kBytes = 16'384, kFewBytes = 2700;
+constexpr int kNodeFetches = 3;  // of nodes, where the page says so
 
 // Of a quick trial few, which are fitted in a tenth of the time.
 std::size_t most_bytes(const Page& page) {
   return page.options().quick ? kFewBytes : kBytes;
 }
-constexpr int kNodeFetches = 3;  // of nodes, where the page says so
 
 std::vector<fs::path> rgl_files(const Page& page) {
   std::vector<fs::path> files = files_in(*page.options().data / "rgl");

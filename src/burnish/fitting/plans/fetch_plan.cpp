@@ -307,8 +307,7 @@ std::vector<FetchTrial> try_fetches(BrdfRef source, const TrainingSet& set, Cost
 
   // side by side
   const IsotropicTrials sets(mean_of_channels(set));
-  const ErrorTerms& of = options.shares;
-  const double shares = of.pictures + of.dimmed + of.relative + of.log_cos + of.absolute;
+  const double shares = options.shares.sum();
   std::vector<FetchTrial> trials(candidates.size());
   for_each_chunk(candidates.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
     const Candidate& candidate = candidates[k];
@@ -392,8 +391,7 @@ LobesFit fit_volumes(const TrainingSet& set, const std::vector<ModelSpec>& specs
     RefineOptions these = options;
     these.format = format;
     these.max_iterations = std::min(steps, options.max_iterations);
-    if (options.progress)
-      these.progress = [&, from, to](double f) { options.progress(from + f * (to - from)); };
+    these.progress = part_of_progress(options.progress, from, to);
     const FitSummary done = refine(fit.model, part, these);
     const int before = fit.summary.iterations;
     fit.summary = done;

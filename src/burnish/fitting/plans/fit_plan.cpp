@@ -33,8 +33,7 @@ constexpr double kThinPart = 0.3;  // share of the work done by then
 void refine_part(LogModel& model, const TrainingSet& set, const Lookups& lookups, RefineOptions options,
                  int steps, double from, double to, FitSummary& summary) {
   options.max_iterations = std::min(steps, options.max_iterations);
-  if (options.progress)
-    options.progress = [whole = options.progress, from, to](double f) { whole(from + f * (to - from)); };
+  options.progress = part_of_progress(options.progress, from, to);
   const FitSummary done = refine(model, set, lookups, options);
   summary.iterations += done.iterations;
   summary.error_before = done.error_before;

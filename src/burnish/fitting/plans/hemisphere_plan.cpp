@@ -58,7 +58,7 @@ constexpr int kTrialSteps = 20;
 constexpr std::size_t kFinalists = 3, kFinalPart = 4;
 // Above 50 dB what is left of pictures is not seen; relative errors are. A fetch has to lower the errors by 3 %.
 constexpr ErrorTerms kFinalShares{.pictures = 1, .relative = 2, .log_cos = 2};
-constexpr double kWorthOfFetch = 0.15;
+constexpr double kWorthOfFetch = 0.03;
 constexpr double kTrialTime = 0.15, kFinalTime = 0.4;  // when they end, of the whole
 // The way to all nodes is made at about so many, in so many steps, and then in so many more.
 constexpr double kCoarseUnknowns = 2000;
@@ -122,16 +122,10 @@ std::optional<ModelSpec> laid_out(const Form& form, const CostLimit& limit, std:
   return spec;
 }
 
-/// A part of the options' progress.
-std::function<void(double)> part_of_progress(const RefineOptions& options, double from, double to) {
-  if (!options.progress) return nullptr;
-  return [&options, from, to](double f) { options.progress(from + f * (to - from)); };
-}
-
 /// Calls work(k) of count trials, and as they end the options' progress, from `from` to `to`, on the calling thread.
 void for_each_trial(std::size_t count, const RefineOptions& options, double from, double to,
                     const std::function<void(std::size_t)>& work) {
-  const std::function<void(double)> progress = part_of_progress(options, from, to);
+  const std::function<void(double)> progress = part_of_progress(options.progress, from, to);
   const std::thread::id caller = std::this_thread::get_id();
   std::atomic<std::size_t> done = 0;
   for_each_chunk(count, 1, [&](std::size_t k, std::size_t, std::size_t) {
@@ -149,12 +143,12 @@ LobesFit fit_one(const TrainingSet& set, const ModelSpec& spec, const RefineOpti
   RefineOptions coarse = options;
   coarse.format = TableFormat::single;
   coarse.max_iterations = std::min(kCoarseSteps, options.max_iterations);
-  coarse.progress = part_of_progress(options, 0, 0.6);
+  coarse.progress = part_of_progress(options.progress, 0, 0.6);
   LobesFit fit = fit_lobes(set, at_fewer_nodes(spec, kCoarseUnknowns / nodes), coarse);
   fit.model = resampled(fit.model, spec);
   RefineOptions fine = options;
   fine.max_iterations = std::min(kFineSteps, options.max_iterations);
-  fine.progress = part_of_progress(options, 0.6, 1);
+  fine.progress = part_of_progress(options.progress, 0.6, 1);
   const int before = fit.summary.iterations;
   fit.summary = refine(fit.model, set, fine);
   fit.summary.iterations += before;
@@ -193,7 +187,7 @@ ModelSpec best_of(std::vector<ModelSpec> specs, const TrainingSet& set, const Re
   std::vector<double> errors(specs.size());
   for_each_trial(specs.size(), options, kTrialTime, kFinalTime, [&](std::size_t k) {
     errors[k] = objective(fit_one(fitted, specs[k], quiet).model, judged, shares) +
-                kWorthOfFetch * static_cast<double>(fetch_count(specs[k]));
+                kWorthOfFetch * shares.sum() * static_cast<double>(fetch_count(specs[k]));
   });
   return specs[static_cast<std::size_t>(std::ranges::min_element(errors) - errors.begin())];
 }
@@ -217,7 +211,7 @@ LobesFit fit_hemispheres(const TrainingSet& set, const std::vector<ModelSpec>& s
                          const RefineOptions& options) {
   const ModelSpec spec = best_of(specs, set, options);
   RefineOptions rest = options;
-  if (specs.size() > 1) rest.progress = part_of_progress(options, kFinalTime, 1);
+  if (specs.size() > 1) rest.progress = part_of_progress(options.progress, kFinalTime, 1);
   return fit_one(set, spec, rest);
 }
 

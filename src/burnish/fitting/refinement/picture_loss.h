@@ -26,6 +26,9 @@ struct ErrorTerms {
     albedo += other.albedo;
     return *this;
   }
+
+  /// The sum of all but that of albedos.
+  double sum() const noexcept { return pictures + dimmed + relative + log_cos + absolute; }
 };
 
 /// What refinement minimizes: the sum of share ln(mean) over the terms, so that a percent of one error is worth

@@ -2,6 +2,7 @@
 #include <atomic>
 #include <cmath>
 #include <thread>
+#include <utility>
 
 #include <burnish/error.h>
 #include <burnish/fitting/refinement/refine.h>
@@ -93,6 +94,11 @@ class Descent {
 };
 
 }  // namespace
+
+std::function<void(double)> part_of_progress(std::function<void(double)> whole, double from, double to) {
+  if (!whole) return nullptr;
+  return [whole = std::move(whole), from, to](double f) { whole(from + f * (to - from)); };
+}
 
 FitSummary refine(LogModel& model, const TrainingSet& set, const RefineOptions& options) {
   return refine(model, set, lookups_of(model.spec, set), options);

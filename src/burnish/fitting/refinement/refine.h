@@ -29,6 +29,10 @@ struct RefineOptions {
   std::function<void(double fraction)> progress;
 };
 
+/// The progress of a part of the work, which runs from `from` to `to` of the whole; nothing of nothing.
+std::function<void(double fraction)> part_of_progress(std::function<void(double fraction)> whole, double from,
+                                                      double to);
+
 /// Lowers the error that PictureLoss states, by damped Gauss-Newton steps (Levenberg-Marquardt) on the
 /// logarithms of the tables [Marquardt1963]; lambda stays positive. Every accepted step lowers the
 /// objective. Channels are refined side by side, or as one system where a table is shared. Steps are solved
