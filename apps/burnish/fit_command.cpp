@@ -5,7 +5,6 @@
 #include <memory>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <burnish/baselines/evaluation_cost.h>
 #include <burnish/factors/fetches.h>
@@ -264,9 +263,7 @@ void fit(const FitCommand& arguments) {
                              ? std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()
                              : fit.report.seconds;
   if (arguments.json) {
-    auto summary = nlohmann::ordered_json::parse(summary_json(fit, arguments.out, seconds));
-    if (const auto cost = model ? shader_cost(*model) : std::nullopt) summary["shader"] = cost_json(*cost);
-    fmt::print("{}\n", summary.dump(2));
+    fmt::print("{}\n", summary_json(fit, arguments.out, seconds));
     return;
   }
   fmt::print("{}: {}\n", fit.report.source, fit.report.source_format);

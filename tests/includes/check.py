@@ -20,7 +20,7 @@ FOUNDATIONS = ["short_message", "error", "json_integer", "file", "embedded_file"
 # Workers, and the workers each may include.
 ALLOWED = {
     "io": [],
-    "fitting": [],
+    "fitting": ["shaders"],
     "eval": [],
     "textures": [],
     "shaders": [],

@@ -7,6 +7,7 @@
 #include <burnish/factors/fetches.h>
 #include <burnish/fitting/fit_file.h>
 #include <burnish/fitting/fit_report_json.h>
+#include <burnish/shaders/cost_json.h>
 
 namespace burnish {
 
@@ -40,6 +41,7 @@ std::string summary_json(const Fit& fit, const std::string& output, double secon
     json["fetches"] = fetch_count(*model);
     json["smallest_factor"] = model->smallest_factor();
     json["reciprocal"] = model->reciprocal();
+    if (const auto cost = shader_cost(*model)) json["shader"] = cost_json(*cost);
   } else {
     const auto& baseline = std::get<BaselineBrdf>(fit.brdf);
     json["model"] = baseline_expression(baseline);

@@ -18,7 +18,8 @@ Baseline to_baseline(Fit fit);
 std::string format_fit(const Fit& fit, const std::filesystem::path& name = {});
 
 /// The JSON that `burnish fit --json` prints, indented by two: the report's, then output, model, bytes; of a
-/// model table_bytes, smallest_factor and reciprocal, of a baseline table_reads and multiplies; and seconds.
+/// model table_bytes, textures, fetches, smallest_factor, reciprocal and its shader's cost, where shaders can show it;
+/// of a baseline table_reads and multiplies; and seconds.
 std::string summary_json(const Fit& fit, const std::string& output, double seconds);
 
 }  // namespace burnish

@@ -262,6 +262,7 @@ TEST(Fit, KeepsItsReportInItsFile) {
     EXPECT_EQ(notes.at("source"), "paint");
     EXPECT_EQ(notes.at("relative"), made.report.held_out->relative) << name;
     const auto summary = nlohmann::json::parse(summary_json(made, "out", 1.5));
+    EXPECT_EQ(summary.contains("shader"), std::holds_alternative<FactoredBrdf>(made.brdf)) << name;
     EXPECT_EQ(summary.at("bytes"), made.bytes()) << name;
     EXPECT_EQ(summary.at("seconds"), 1.5);
   }
