@@ -2,12 +2,13 @@
 """damaged.py BURNISH FOLDER...: damaged files through the command line.
 
 Takes the files of the folders (seeds that build/fuzz/tests/fuzz/make_seeds writes, real measurements) and some that
-the program makes, damages one after another in one of several ways and gives it to a verb that reads such files. The program has to end with 0 or 1,
+the program makes, damages them one by one in one of several ways and gives each to a verb that reads such files. The program has to end with 0 or 1,
 with 1 to say one line (which names the file, unless a fit failed) and to leave nothing behind, with 0 to have written what it was to write, all
 below 1 GB and within 5 s of the processor. Whatever does not is told, kept in --keep, and the end is 1.
 """
 import argparse
 import collections
+import multiprocessing
 import os
 import pathlib
 import random
@@ -21,7 +22,8 @@ import tempfile
 import threading
 import time
 
-MOST_BYTES, MOST_SECONDS, LONGEST_ERROR, LONGEST_LINE = 1 << 30, 5, 299, 309
+MOST_BYTES, MOST_SECONDS, LONGEST_ERROR = 1 << 30, 5, 299
+LONGEST_LINE = 399  # of a conversion, which tells all that is lost
 HANGS = 120  # seconds of the clock after which a program that uses no processor is ended too
 LARGE = 100_000  # larger files, and networks of 800,000 weights, are taken once in SELDOM times: they take longer
 SELDOM = 200
@@ -164,7 +166,7 @@ def fault_of(verb, outcome, path, written):
         return f"took {seconds:.1f} s"
     if most > MOST_BYTES:
         return f"took {most >> 20} MiB"
-    longest = LONGEST_ERROR if status == 1 else LONGEST_LINE  # a conversion tells what is lost
+    longest = LONGEST_ERROR if status == 1 else LONGEST_LINE
     if said.count("\n") > 1 or any(len(line) > longest for line in said.splitlines()):
         return "said more than a line"
     if status == 1 and not said.startswith("burnish: "):
@@ -189,52 +191,71 @@ def sources(folders):
     return small, large
 
 
+class Trial:
+    """Damages and runs by number, in a folder of the process's own."""
+
+    def __init__(self, arguments, made):
+        small, large = sources([made, *arguments.folders])
+        self.arguments, self.small, self.large, self.runner = arguments, small, large, None
+        self.decoder = next((str(p.resolve()) for f in arguments.folders for p in pathlib.Path(f).rglob("decoder.f32")), None)
+
+    def __call__(self, number):
+        """The verb, the file's name, (status, said, seconds, bytes), and what was wrong, if anything."""
+        if self.runner is None:
+            self.runner = Runner(os.path.abspath(self.arguments.burnish), tempfile.mkdtemp(dir=self.arguments.work))
+        rng = random.Random(f"{self.arguments.seed} {number}")
+        kind, name, data = rng.choice(self.large if self.large and number % SELDOM == 0 else self.small)
+        damage = rng.choice(DAMAGES)
+        damaged = damage(data, rng.choice(self.small)[2], rng)
+        with tempfile.TemporaryDirectory(dir=self.runner.folder) as folder:
+            if self.decoder and kind == "np":
+                os.symlink(self.decoder, folder + "/decoder.f32")
+            path = folder + "/" + ("codes.csv" if kind == "np" else "capture.json" if kind == "capture" else name)
+            pathlib.Path(path).write_bytes(damaged)
+            command, written = command_for(kind, folder if kind in ("np", "capture") else path, folder + "/out", rng)
+            outcome = self.runner.run(command)
+            fault = fault_of(command[0], outcome, path, written)
+        if fault:
+            os.makedirs(self.arguments.keep, exist_ok=True)
+            kept = os.path.join(self.arguments.keep, f"{self.arguments.seed}-{number}-{os.path.basename(path)}")
+            pathlib.Path(kept).write_bytes(damaged)
+            fault = f"{kept}: {damage.__name__}: {fault}: {' '.join(command)}: {outcome[1][:400].strip()}"
+        return command[0], name, outcome, fault
+
+
+def try_one(number):
+    return trial(number)
+
+
 def main():
+    global trial
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("burnish")
     parser.add_argument("folders", nargs="+")
     parser.add_argument("--files", type=int, default=100_000)
-    parser.add_argument("--first", type=int, default=0, help="number of the first: several processes share the work")
-    parser.add_argument("--seconds", type=float, default=float("inf"), help="ends after so many")
+    parser.add_argument("--first", type=int, default=0, help="number of the first")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="processes; what is tried does not depend on it")
     parser.add_argument("--seed", type=int, default=1, help="of the damage; the same seed damages alike")
     parser.add_argument("--keep", default="build/damaged/kept", help="folder for what fails")
     arguments = parser.parse_args()
-    work = tempfile.mkdtemp(prefix="burnish_damaged_")
-    os.makedirs(work + "/made")
-    make_files(arguments.burnish, work + "/made")
-    small, large = sources([work + "/made", *arguments.folders])
-    decoder = next((str(p.resolve()) for f in arguments.folders for p in pathlib.Path(f).rglob("decoder.f32")), None)
-    runner = Runner(os.path.abspath(arguments.burnish), work)
-    counts, faults, slowest, largest, began = collections.Counter(), 0, (0, ""), (0, ""), time.time()
-    for number in range(arguments.first, arguments.first + arguments.files):
-        if time.time() - began > arguments.seconds:
-            break
-        rng = random.Random(f"{arguments.seed} {number}")
-        kind, name, data = rng.choice(large if large and number % SELDOM == 0 else small)
-        damage = rng.choice(DAMAGES)
-        damaged = damage(data, rng.choice(small)[2], rng)
-        folder = work + "/f"
-        os.makedirs(folder)
-        if decoder and kind == "np":
-            os.symlink(decoder, folder + "/decoder.f32")
-        path = folder + "/" + ("codes.csv" if kind == "np" else "capture.json" if kind == "capture" else name)
-        pathlib.Path(path).write_bytes(damaged)
-        command, written = command_for(kind, folder if kind in ("np", "capture") else path, folder + "/out", rng)
-        outcome = runner.run(command)
-        fault = fault_of(command[0], outcome, path, written)
-        counts[f"{command[0]} {outcome[0]}"] += 1
-        slowest, largest = max(slowest, (outcome[2], name)), max(largest, (outcome[3], name))
-        if fault:
-            faults += 1
-            os.makedirs(arguments.keep, exist_ok=True)
-            kept = os.path.join(arguments.keep, f"{arguments.seed}-{number}-{os.path.basename(path)}")
-            pathlib.Path(kept).write_bytes(damaged)
-            print(f"{kept}: {damage.__name__}: {fault}: {' '.join(command)}: {outcome[1][:400].strip()}", flush=True)
-        shutil.rmtree(folder)
-        if number % 1000 == 999:
-            print(f"{counts.total()} files, {faults} faults, {time.time() - began:.0f} s", file=sys.stderr, flush=True)
-    shutil.rmtree(work)
-    print(f"{counts.total()} damaged files of {len(small) + len(large)}: {faults} faults; at most {slowest[0]:.2f} s "
+    began, done, faults, slowest, largest = time.time(), 0, 0, (0, ""), (0, "")
+    counts = collections.Counter()
+    with tempfile.TemporaryDirectory(prefix="burnish_damaged_") as arguments.work:
+        os.makedirs(arguments.work + "/made")
+        make_files(arguments.burnish, arguments.work + "/made")
+        trial = Trial(arguments, arguments.work + "/made")  # which processes inherit
+        numbers = range(arguments.first, arguments.first + arguments.files)
+        with multiprocessing.get_context("fork").Pool(arguments.jobs) as pool:
+            for verb, name, outcome, fault in pool.imap_unordered(try_one, numbers, chunksize=20):
+                done += 1
+                counts[f"{verb} {outcome[0]}"] += 1
+                slowest, largest = max(slowest, (outcome[2], name)), max(largest, (outcome[3], name))
+                if fault:
+                    faults += 1
+                    print(fault, flush=True)
+                if done % 1000 == 0:
+                    print(f"{done} files, {faults} faults, {time.time() - began:.0f} s", file=sys.stderr, flush=True)
+    print(f"{done} damaged files of {len(trial.small) + len(trial.large)}: {faults} faults; at most {slowest[0]:.2f} s "
           f"({slowest[1]}) and {largest[0] / 2**20:.0f} MiB ({largest[1]}); verbs and how they ended: "
           + ", ".join(f"{what}: {count}" for what, count in sorted(counts.items())))
     sys.exit(1 if faults else 0)

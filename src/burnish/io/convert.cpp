@@ -112,7 +112,7 @@ class Converter {
 
   Converted run(std::string_view format) {
     if (format != "openmaterial" && source_.findings.origin != Origin{})
-      lose("what the file says of its licence, its authors and its origin");
+      lose("licence, authors and origin");
     if (format == "merl") return merl();
     if (format == "rgl") return rgl();
     if (format == "mbsdf") return mbsdf();
