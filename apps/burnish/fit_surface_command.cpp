@@ -23,6 +23,7 @@ namespace {
 struct FitSurfaceArguments {
   std::string capture, out, book, picture, normals = "auto";
   SurfaceFitOptions options;
+  std::size_t pictures = Capture::kBtfPictures;
   int threads = 0;
   bool resume = false, compare = false, json = false;
 };
@@ -37,7 +38,7 @@ std::string text_of(const PictureScore& score) {
 
 // Of the first picture that was held out, or the first.
 void write_comparison(const FitSurfaceArguments& arguments, const SurfaceFit& fit) {
-  Capture capture(arguments.capture);
+  Capture capture(arguments.capture, arguments.pictures);
   const auto& pictures = capture.form().pictures;
   const auto held_out = std::ranges::find(pictures, true, &CapturePicture::held_out);
   const auto number = held_out == pictures.end() ? 0 : static_cast<std::size_t>(held_out - pictures.begin());
@@ -57,20 +58,21 @@ void fit_surface(FitSurfaceArguments& arguments, FitCrew* crew) {
   if (arguments.normals == "estimate") options.normals = NormalsFrom::estimate;
   options.crew = crew;
   if (crew && crew->rank() != 0) {
-    help_fit_surface(Capture(arguments.capture), options);
+    help_fit_surface(Capture(arguments.capture, arguments.pictures), options);
     return;
   }
   options.progress = progress_bars();
   options.checkpoint = arguments.out + ".part";
   if (!arguments.resume) std::filesystem::remove(options.checkpoint);
-  const SurfaceFit fit = burnish::fit_surface(Capture(arguments.capture), options);
+  const SurfaceFit fit = burnish::fit_surface(Capture(arguments.capture, arguments.pictures), options);
   write_then_rename(arguments.out, format_surface(fit.surface));
   std::filesystem::remove(options.checkpoint);
 
   const SurfaceReport& report = fit.report;
   if (!arguments.picture.empty()) write_comparison(arguments, fit);
   std::vector<BaselineScore> others;
-  if (arguments.compare) others = score_surface_baselines(Capture(arguments.capture), fit, options);
+  if (arguments.compare)
+    others = score_surface_baselines(Capture(arguments.capture, arguments.pictures), fit, options);
   if (arguments.json) {
     auto json = nlohmann::ordered_json::parse(report_json(report));
     json["output"] = arguments.out;
@@ -103,11 +105,14 @@ void add_fit_surface_command(CLI::App& app, FitCrew* crew) {
   verb->footer(
       "Examples: burnish fit-surface capture/ -o wall.burnish\n"
       "          burnish fit-surface capture/ -o wall.burnish --lobes 4 --normals estimate\n"
+      "          burnish fit-surface fabric01.btf -o fabric.burnish --normals flat\n"
       "          burnish fit-surface capture/ -o wall.burnish --lobes 4 --compare\n"
       "          burnish fit-surface capture/ -o wall.burnish --book library.burnish");
   auto arguments = std::make_shared<FitSurfaceArguments>();
   SurfaceFitOptions& options = arguments->options;
-  verb->add_option("CAPTURE", arguments->capture, "a folder with capture.json and its pictures")->required();
+  verb->add_option("CAPTURE", arguments->capture,
+                   "a folder with capture.json and its pictures, or a BTF of UBO2014")
+      ->required();
   verb->add_option("-o,--output,--out", arguments->out, "the surface's .burnish file to write")->required();
   verb->add_option("--lobes", options.lobes, "how many lobes")
       ->check(CLI::Range(std::size_t{1}, kMaxSurfaceLobes))
@@ -123,6 +128,9 @@ void add_fit_surface_command(CLI::App& app, FitCrew* crew) {
           "--normals", arguments->normals,
           "those of the capture, none (flat) or estimated; auto: the capture's, estimated where it has none")
       ->check(one_of({"auto", "capture", "flat", "estimate"}))
+      ->capture_default_str();
+  verb->add_option("--pictures", arguments->pictures,
+                   "of a BTF, how many of its pictures are taken, spread evenly; 0: all")
       ->capture_default_str();
   verb->add_option("--rounds", options.rounds, "of lobes and weights in turn")
       ->check(CLI::Range(1, 100))

@@ -116,7 +116,7 @@ NormalsFrom normals_from(const std::string& name) {
 nb::tuple fit_surface(const std::filesystem::path& capture, std::size_t lobes, std::size_t lobe_bytes,
                       const OpenedModel* book, const std::optional<std::string>& normals, int rounds,
                       bool widened, std::uint64_t seed,
-                      const std::optional<std::filesystem::path>& checkpoint) {
+                      const std::optional<std::filesystem::path>& checkpoint, std::size_t pictures) {
   SurfaceFitOptions options;
   options.lobes = lobes;
   options.lobe_bytes = lobe_bytes;
@@ -128,7 +128,7 @@ nb::tuple fit_surface(const std::filesystem::path& capture, std::size_t lobes, s
   if (checkpoint) options.checkpoint = *checkpoint;
   SurfaceFit fit = [&] {
     const nb::gil_scoped_release released;
-    return burnish::fit_surface(Capture(capture), options);
+    return burnish::fit_surface(Capture(capture, pictures), options);
   }();
   nb::object report = from_json(report_json(fit.report));
   return nb::make_tuple(nb::cast(new OpenedSurface(std::move(fit.surface)), nb::rv_policy::take_ownership),
@@ -199,8 +199,9 @@ void bind_surfaces(nb::module_& m) {
   m.def("fit_surface", &fit_surface, nb::arg("capture"), nb::kw_only(), nb::arg("lobes") = 6,
         nb::arg("lobe_bytes") = 16 << 10, nb::arg("book").none() = nb::none(),
         nb::arg("normals") = nb::none(), nb::arg("rounds") = 9, nb::arg("widened") = false,
-        nb::arg("seed") = 1, nb::arg("checkpoint") = nb::none(),
-        "(Surface, report) of a capture's folder, as `burnish fit-surface`.");
+        nb::arg("seed") = 1, nb::arg("checkpoint") = nb::none(), nb::arg("pictures") = Capture::kBtfPictures,
+        "(Surface, report) of a capture's folder or of a BTF, of which so many pictures are taken, as\n"
+        "`burnish fit-surface`.");
 }
 
 }  // namespace burnish::python

@@ -29,7 +29,7 @@ LARGE = 100_000  # larger files, and networks of 800,000 weights, are taken once
 SELDOM = 200
 READS = ("info", "convert", "eval", "measure", "compare", "export")  # what does not more than read and write names the file
 NO_SOURCE = {".f32", ".fit", ".ktx2", ".js", ".html"}
-KINDS = {"directions": "eval", "capture": "capture", "np": "np", "mesh.obj": "mesh", "mesh.glb": "mesh",
+KINDS = {"directions": "eval", "capture": "capture", "btf": "capture", "np": "np", "mesh.obj": "mesh", "mesh.glb": "mesh",
          "environment.exr": "light", "illuminant": "illuminant", "neural": "neural", "book": "book"}
 SPECS = {"neural": "nbrdf:{}#seed", "book": "book:{}#felt"}  # of one of several in a file
 MODELS = {"model", "compact", "made.exr", "made.burnish"}
@@ -210,9 +210,9 @@ class Trial:
         with tempfile.TemporaryDirectory(dir=self.runner.folder) as folder:
             if self.decoder and kind == "np":
                 os.symlink(self.decoder, folder + "/decoder.f32")
-            path = folder + "/" + ("codes.csv" if kind == "np" else "capture.json" if kind == "capture" else name)
+            path = folder + "/" + ("codes.csv" if kind == "np" else "capture.json" if name == "capture" else name)
             pathlib.Path(path).write_bytes(damaged)
-            command, written = command_for(kind, folder if kind in ("np", "capture") else path, folder + "/out", rng)
+            command, written = command_for(kind, folder if kind == "np" or name == "capture" else path, folder + "/out", rng)
             outcome = self.runner.run(command)
             fault = fault_of(command[0], outcome, path, written)
         if fault:

@@ -5,6 +5,7 @@
 #include <burnish/book/book_file.h>
 #include <burnish/file.h>
 #include <burnish/testing/books.h>
+#include <burnish/testing/btf.h>
 #include <burnish/testing/seed_files.h>
 
 int main(int argc, char** argv) {
@@ -25,6 +26,7 @@ int main(int argc, char** argv) {
   write("surface", "surface", burnish::seeds::surface_seed());
   write("book", "book", burnish::format_book(burnish::random_book()));
   write("capture", "capture", burnish::seeds::kCapture);
+  write("btf", "btf", burnish::btf_bytes(burnish::btf_content()));
   write("utia", "utia", burnish::seeds::kUtia);
   write("np", "np", burnish::seeds::kNpCode);
   write("directions", "directions", burnish::seeds::kDirections);

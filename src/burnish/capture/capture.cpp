@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <burnish/capture/btf_file.h>
 #include <burnish/capture/capture.h>
 #include <burnish/capture/json_member.h>
 #include <burnish/capture/picture_rows.h>
@@ -21,6 +22,7 @@ constexpr double kMinHeight = 1e-3;      // z of a unit vector towards a light o
 constexpr double kUnitTolerance = 0.02;  // of a direction's length
 // Noise about zero may be negative by so much of the picture's white.
 constexpr float kMinValue = -0.05f;
+constexpr std::size_t kHeldOut = 12;  // one of so many pictures of a BTF
 
 }  // namespace
 
@@ -126,8 +128,19 @@ std::string format_capture(const CaptureForm& form) {
   return json.dump(1) + "\n";
 }
 
-Capture::Capture(std::filesystem::path folder) : folder_(std::move(folder)) {
-  const FileBytes file = read_file(folder_ / "capture.json", kMaxJson);
+Capture::Capture(std::filesystem::path path, std::size_t btf_pictures) : path_(std::move(path)) {
+  if (BtfFile::recognizes(path_))
+    open_btf(btf_pictures);
+  else
+    open_folder();
+}
+
+std::filesystem::path Capture::form_file() const {
+  return btf_ ? path_ : path_ / "capture.json";
+}
+
+void Capture::open_folder() {
+  const FileBytes file = read_file(form_file(), kMaxJson);
   form_ = parse_capture(file);
 
   // what is there and has the right size
@@ -136,9 +149,9 @@ Capture::Capture(std::filesystem::path folder) : folder_(std::move(folder)) {
     try {
       for (const std::string& name : {form_.pictures[p].file, form_.pictures[p].mask}) {
         if (name.empty()) continue;
-        const PictureSize size = picture_size(folder_ / name);
+        const PictureSize size = picture_size(path_ / name);
         if (size.width != form_.width || size.height != form_.height)
-          throw Error::in_file((folder_ / name).string(),
+          throw Error::in_file((path_ / name).string(),
                                fmt::format("{} x {} pixels", form_.width, form_.height),
                                fmt::format("{} x {}", size.width, size.height));
       }
@@ -153,6 +166,31 @@ Capture::Capture(std::filesystem::path folder) : folder_(std::move(folder)) {
   leave_out(damaged);
 }
 
+void Capture::open_btf(std::size_t pictures) {
+  btf_ = std::make_shared<const BtfFile>(path_);
+  form_.width = btf_->width();
+  form_.height = btf_->height();
+  if (btf_->pixels_per_mm() > 0) {
+    form_.size_x = form_.width / btf_->pixels_per_mm();
+    form_.size_y = form_.height / btf_->pixels_per_mm();
+  }
+  const std::size_t all = btf_->pictures(), lights = btf_->lights().size();
+  const std::size_t taken = pictures == 0 ? all : std::min(all, pictures);
+  for (std::size_t k = 0; k < taken; ++k) {
+    const std::size_t number = k * all / taken;
+    const Vec3 light = btf_->lights()[number % lights], view = btf_->views()[number / lights];
+    btf_numbers_.push_back(number);
+    form_.pictures.push_back({.file = fmt::format("light {} view {}", number % lights, number / lights),
+                              .light = {.is_direction = true, .at = light},
+                              .view = {.is_direction = true, .at = view},
+                              .scale = btf_->with_cosine() ? 1 : light.z,
+                              .mask = {},
+                              .held_out = k % kHeldOut == kHeldOut - 1});
+  }
+  fingerprint_ = hash_of(fmt::format("{}", taken), btf_->fingerprint());
+  leave_out({});
+}
+
 void Capture::leave_out(const std::vector<LeftOut>& damaged) {
   for (const LeftOut& picture : damaged) {
     std::erase_if(form_.pictures, [&](const CapturePicture& p) { return p.file == picture.file; });
@@ -162,14 +200,15 @@ void Capture::leave_out(const std::vector<LeftOut>& damaged) {
   const auto fitted = std::ranges::count(form_.pictures, false, &CapturePicture::held_out);
   if (static_cast<std::size_t>(fitted) < kMinPictures)
     throw Error::in_file(
-        (folder_ / "capture.json").string(), fmt::format("at least {} pictures to fit", kMinPictures),
+        form_file().string(), fmt::format("at least {} pictures to fit", kMinPictures),
         left_out_.empty() ? fmt::format("{}", fitted)
                           : fmt::format("{}; the first that is left out: {}", fitted, left_out_.front().why));
 }
 
 int Capture::rows_within(std::size_t bytes) const noexcept {
   const std::size_t row = static_cast<std::size_t>(form_.width) * form_.pictures.size() *
-                          (3 * sizeof(float) + sizeof(PixelState));
+                              (3 * sizeof(float) + sizeof(PixelState)) +
+                          (btf_ ? btf_->row_bytes() : 0);
   return static_cast<int>(std::clamp<std::size_t>(bytes / std::max<std::size_t>(row, 1), 1,
                                                   static_cast<std::size_t>(form_.height)));
 }
@@ -187,17 +226,19 @@ Capture::Read Capture::read(int first, int count) const {
   const std::size_t texels = rows.texels();
   rows.values.resize(rows.pictures * texels * 3);
   rows.states.resize(rows.pictures * texels, PixelState::missing);
+  const auto factors = btf_ ? std::optional(btf_->rows(first, count)) : std::nullopt;
   std::vector<std::string> why(rows.pictures);
   for_each_chunk(rows.pictures, 1, [&](std::size_t p, std::size_t, std::size_t) {
     const CapturePicture& picture = form_.pictures[p];
     const std::array<double, 3> scale{picture.scale.r, picture.scale.g, picture.scale.b};
     try {
-      const Image pixels = read_picture_rows(folder_ / picture.file, first, count, srgb);
+      const Image pixels = factors ? factors->picture(btf_numbers_[p])
+                                   : read_picture_rows(path_ / picture.file, first, count, srgb);
       if (pixels.width != form_.width)
         throw Error::in_file(picture.file, fmt::format("{} pixels a row", form_.width),
                              fmt::format("{}", pixels.width));
       Image mask;
-      if (!picture.mask.empty()) mask = read_picture_rows(folder_ / picture.mask, first, count, false);
+      if (!picture.mask.empty()) mask = read_picture_rows(path_ / picture.mask, first, count, false);
       if (!mask.pixels.empty() && mask.width != form_.width)
         throw Error::in_file(picture.mask, fmt::format("{} pixels a row", form_.width),
                              fmt::format("{}", mask.width));
@@ -233,7 +274,7 @@ Capture::Read Capture::read(int first, int count) const {
 
 std::vector<float> Capture::normals() const {
   if (form_.normals.empty()) return {};
-  const std::filesystem::path path = folder_ / form_.normals;
+  const std::filesystem::path path = path_ / form_.normals;
   const Image picture = read_picture_rows(path, 0, form_.height, false);
   if (picture.width != form_.width)
     throw Error::in_file(path.string(), fmt::format("{} pixels a row", form_.width),

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -116,24 +117,33 @@ constexpr std::uint64_t hash_of(std::string_view bytes,
   return before;
 }
 
-/// A folder of pictures, read a few rows at a time: memory does not grow with the number of pictures or texels.
+class BtfFile;
+
+/// A folder of pictures, or a BTF of UBO2014 (btf_file.h), read a few rows at a time: memory does not grow with the
+/// number of pictures or texels.
 class Capture {
  public:
+  static constexpr std::size_t kMinPictures = 4;
+  static constexpr std::size_t kBtfPictures = 500;
+
   /// Reads FOLDER/capture.json and looks at the head of every picture. Those that are missing, no EXR or PNG, or of
   /// another size are left out. Throws Error where the JSON is wrong or fewer than `kMinPictures` are left to fit.
-  explicit Capture(std::filesystem::path folder);
-
-  static constexpr std::size_t kMinPictures = 4;
+  /// Of a BTF, which has tens of thousands, so many pictures are taken, spread evenly over its lights and views (0:
+  /// all), every twelfth of them held out; its unit of length is the millimetre. Throws Error as BtfFile does.
+  explicit Capture(std::filesystem::path path, std::size_t btf_pictures = kBtfPictures);
 
   /// The pictures that are there are all of the form's.
   const CaptureForm& form() const noexcept { return form_; }
-  const std::filesystem::path& folder() const noexcept { return folder_; }
+  /// What says so: capture.json, or the BTF.
+  std::filesystem::path form_file() const;
+  /// Where a picture or the normals are.
+  std::filesystem::path file(const std::string& name) const { return path_ / name; }
 
   struct LeftOut {
     std::string file, why;
   };
   const std::vector<LeftOut>& left_out() const noexcept { return left_out_; }
-  /// The same bytes of capture.json and the same pictures have the same number.
+  /// The same bytes of capture.json (of a BTF, but its texels) and the same pictures have the same number.
   std::uint64_t fingerprint() const noexcept { return fingerprint_; }
 
   /// Rows that keep a tile of all pictures within so many bytes, at least one.
@@ -154,10 +164,13 @@ class Capture {
   std::vector<float> normals() const;
 
  private:
-  void require_pictures() const;
+  void open_folder();
+  void open_btf(std::size_t pictures);
 
-  std::filesystem::path folder_;
+  std::filesystem::path path_;
   CaptureForm form_;
+  std::shared_ptr<const BtfFile> btf_;    ///< null: a folder
+  std::vector<std::size_t> btf_numbers_;  ///< of the form's pictures
   std::vector<LeftOut> left_out_;
   std::uint64_t fingerprint_ = 0;
 };

@@ -109,7 +109,7 @@ class SurfaceFitter {
     normals_from_ = options.normals.value_or(capture_.form().normals.empty() ? NormalsFrom::estimate
                                                                              : NormalsFrom::capture);
     if (normals_from_ == NormalsFrom::capture && capture_.form().normals.empty())
-      throw Error::in_file((capture_.folder() / "capture.json").string(), "normals", "none");
+      throw Error::in_file(capture_.form_file().string(), "normals", "none");
   }
 
   SurfaceFit run() {
@@ -532,7 +532,7 @@ class SurfaceFitter {
   FitCheckpoint fitted_tile(const TexelSolver& solver, int row, int rows, FitCheckpoint tile) {
     Capture::Read read = capture_.read(row, rows);
     if (!read.damaged.empty())
-      throw Error::in_file((capture_.folder() / read.damaged.front().file).string(),
+      throw Error::in_file(capture_.file(read.damaged.front().file).string(),
                            "a picture that stays as it was when it was read first", read.damaged.front().why);
     const TexelSamples samples = samples_of(std::move(read.rows));
     const auto start = std::chrono::steady_clock::now();

@@ -111,8 +111,7 @@ class Converter {
   }
 
   Converted run(std::string_view format) {
-    if (format != "openmaterial" && source_.findings.origin != Origin{})
-      lose("licence, authors and origin");
+    if (format != "openmaterial" && source_.findings.origin != Origin{}) lose("licence, authors and origin");
     if (format == "merl") return merl();
     if (format == "rgl") return rgl();
     if (format == "mbsdf") return mbsdf();
