@@ -134,14 +134,16 @@ constexpr double kRetroSmooth = 1e-7;
 // Nodes of the factors of a material that backscatters, at most; the sides of k and of hemispheres are equal.
 constexpr int kRetroFetches = 6;
 struct RetroSizes {
-  int p = 48, q = 64, k = 24, b_h = 16, b_d = 40, a_d = 32, a_phi = 6;
+  int p = 48, q = 64, k = 24, b_h = 16, b_d = 40, a_d = 32, a_phi = 10;
 };
 constexpr int kRetroDiskP = 16, kRetroDiskQ = 32;  // p and q of anisotropic ones
 
 // p(wo) p(wi) q(h) k(theta_m,theta_d) b(theta_h,theta_d) a(theta_d,phi_d), their nodes crowded at wi = wo, where b
 // follows the angle of both, and a what is not round about it. p and q are hemispheres where it is anisotropic.
+// Near wi = wo nodes of b and a are evenly spread in theta_d, as what is smooth over them has to be: over its root, a
+// lobe of a flat top is so steep at the samples about it that the smoothest lobe is up to twice as high between them.
 ModelSpec retro_spec(const RetroSizes& sizes, bool isotropic) {
-  const Warp crowded{WarpKind::power, 0.5};
+  const Warp crowded{WarpKind::power, 0.5}, even_at_zero{WarpKind::rational, 0.06};
   const auto polar = [&](const char* name, int nodes) {
     const TableLayout line{.shape = TableShape::line, .width = nodes, .height = 1},
         disk{.shape = TableShape::disk, .width = nodes, .height = nodes};
@@ -155,8 +157,8 @@ ModelSpec retro_spec(const RetroSizes& sizes, bool isotropic) {
   };
   ModelSpec spec;
   spec.tables = {polar("p", sizes.p), polar("q", sizes.q), grid("k", sizes.k, sizes.k, crowded, crowded),
-                 grid("b", sizes.b_h, sizes.b_d, Warp{}, crowded),
-                 grid("a", sizes.a_d, sizes.a_phi, crowded, Warp{})};
+                 grid("b", sizes.b_h, sizes.b_d, Warp{}, even_at_zero),
+                 grid("a", sizes.a_d, sizes.a_phi, even_at_zero, Warp{})};
   // about wi = wo, where scans coarser than the lobe have no sample
   spec.tables[2].even_y = spec.tables[3].even_y = spec.tables[4].pole_x = true;
   spec.lobes = {{{.table = 0, .projection = kProjectWo, .projection_y = {}},
@@ -268,13 +270,17 @@ class Trials {
     return {.spec = std::move(spec), .smooth = best.smooth, .error = best.error, .format = options_.format};
   }
 
-  /// Another model, from the smoothness of one that is known, by decades either way as long as that helps.
-  ScatteredPlan near(ModelSpec spec, const ScatteredPlan& known) {
-    for (ModelSpec::TableSpec& table : spec.tables)
+  /// Another model, from the smoothness of one that is known, or from this one if that is better, by decades either
+  /// way as long as that helps.
+  ScatteredPlan near(const ModelSpec& spec, const ScatteredPlan& known, std::optional<double> smooth = {}) {
+    ModelSpec alike = spec;
+    for (ModelSpec::TableSpec& table : alike.tables)
       for (const ModelSpec::TableSpec& other : known.spec.tables)
         if (table.name == other.name) table.smooth_share = other.smooth_share;
-    ScatteredPlan best = attempt(std::move(spec), known.smooth);
+    ScatteredPlan best = attempt(std::move(alike), known.smooth);
     if (fixed_smooth_) return best;
+    if (smooth)
+      if (ScatteredPlan other = attempt(spec, *smooth); *other.error < *best.error) best = std::move(other);
     climb(best, [](ScatteredPlan& plan, double factor) { plan.smooth *= factor; });
     for (std::size_t t = 0; t < best.spec.tables.size(); ++t)
       climb(best, [t](ScatteredPlan& plan, double factor) { plan.spec.tables[t].smooth_share *= factor; });
@@ -444,11 +450,15 @@ ScatteredPlan plan_scattered(const SampleSource& source, std::size_t bytes, std:
   Trials trials(part, smooth.has_value(), chosen);
   const std::vector<std::string> sets = sets_within(fetches, source.isotropic);
   std::vector<ModelSpec> specs = candidates(source, bytes, formats.front(), sets);
-  if (auto spec = asked_retro_spec(source, bytes, chosen, fetches)) specs.push_back(std::move(*spec));
   std::vector<ScatteredPlan> found{trials.start(specs.front(), smooth, options.progress)};
   const auto best = [&] { return std::ranges::min_element(found, {}, &ScatteredPlan::error); };
   for (auto spec = specs.begin() + 1; spec != specs.end(); ++spec)
     found.push_back(trials.near(*spec, *best()));
+  // what holds no lobe about wi = wo may be best as a constant, whose smoothness says nothing of one that does
+  if (const auto spec = asked_retro_spec(source, bytes, chosen, fetches)) {
+    found.push_back(trials.near(*spec, *best(), kRetroSmooth));
+    specs.push_back(*spec);
+  }
   // the smaller format where it resolves more
   for (auto other = formats.begin() + 1; other != formats.end(); ++other) {
     trials.store_as(*other);

@@ -295,7 +295,26 @@ TEST(ScatteredPlan, HoldsThePeakOfManySamplesToo) {
   const PeakedBrdf brdf;
   const Samples samples = scanned(brdf, 5);
   ASSERT_GT(samples.size(), kManySamples);
-  EXPECT_THAT(heights_of_peak(planned(samples, {}, 0, 4096), brdf), Each(DoubleNear(1, 0.03)));
+  EXPECT_THAT(heights_of_peak(planned(samples, {}, 0, 4096), brdf), Each(DoubleNear(1, 0.04)));
+}
+
+// Of rings a degree apart, where without the lobe about wi = wo a constant predicts best, and between them.
+TEST(ScatteredPlan, FindsALobeAsNarrowAsTheRings) {
+  BURNISH_SKIP_WHERE_SANITIZED();
+  const PeakedBrdf brdf{true, radians(1)};
+  const FactoredBrdf model = planned(scanned(brdf), {}, 2);
+  EXPECT_THAT(heights_of_peak(model, brdf), Each(DoubleNear(1, 0.05)));
+  for (const double theta_deg : kIncidences_deg)
+    for (const double beside_deg : {0.2, 0.4, 0.6, 0.8}) {
+      const Vec3 wi = spherical_direction(radians(theta_deg), 0),
+                 wo = spherical_direction(radians(theta_deg + beside_deg), 0);
+      double highest, expected, found;
+      brdf.eval(wi, wi, {&highest, 1});
+      brdf.eval(wi, wo, {&expected, 1});
+      model.eval(wi, wo, {&found, 1});
+      EXPECT_NEAR(found, expected, 0.2 * highest) << theta_deg << ' ' << beside_deg;
+      EXPECT_LT(found, 1.05 * highest) << theta_deg << ' ' << beside_deg;
+    }
 }
 
 }  // namespace
