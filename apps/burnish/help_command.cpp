@@ -31,7 +31,7 @@ constexpr std::array kFormats = {
     FormatHelp{"MBSDF", "mbsdf", ".mbsdf", "even angles, grey or RGB, isotropic", true, true},
     FormatHelp{"Zemax", "zemax", ".bsdf", "angles around the mirror direction, grey or XYZ", true, true},
     FormatHelp{"tensor tree", "tensortree", ".xml",
-               "cubes of Shirley-Chiu squares, grey (rank 3: read alone)", true, true},
+               "cubes of Shirley-Chiu squares, grey (rank 3: of rank 3 alone)", true, true},
     FormatHelp{"Klems", "", ".xml", "patches of both hemispheres, grey", true, false},
     FormatHelp{"Speos", "", ".anisotropicbsdf, .brdf", "theta and phi of each incidence, grey or spectra",
                true, false},

@@ -180,6 +180,8 @@ Baseline parse_baseline(const FileBytes& file) {
   // whatever goes wrong inside, the message names the file
   try {
     const Json json = Json::parse(file.text());
+    if (!json.contains("kind"))
+      throw Error("expected the JSON of a baseline, with its 'kind', found another one");
     Baseline baseline{
         .kind = json.at("kind").get<std::string>(),
         .brdf = read_brdf(json.at("kind").get<std::string>(), json.at("parameters"), json.at("tables")),
@@ -191,8 +193,10 @@ Baseline parse_baseline(const FileBytes& file) {
   } catch (const Json::parse_error& error) {  // whose message repeats what it read
     throw Error(
         fmt::format("{}: expected a baseline in JSON, found: an error at byte {}", file.name, error.byte));
-  } catch (const std::exception& error) {  // the JSON library's own
-    throw Error(fmt::format("{}: expected a baseline in JSON, found: {:.120}", file.name, error.what()));
+  } catch (const std::exception& error) {  // the JSON library's own, which begins with its name in brackets
+    std::string_view why = error.what();
+    if (const std::size_t end = why.find("] "); end != why.npos) why.remove_prefix(end + 2);
+    throw Error(fmt::format("{}: expected a baseline in JSON, found: {:.120}", file.name, why));
   }
 }
 

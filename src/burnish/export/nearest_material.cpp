@@ -14,17 +14,16 @@ constexpr std::size_t kPairs = 20'000;
 
 NearestOpenPbr nearest_openpbr(BrdfRef brdf) {
   const Scorer scorer(brdf, {.count = kPairs, .image_size = kSize});
+  const PicturePairs pairs = picture_pairs(brdf, scorer.exposure());
   const OpenPbrParameters parameters =
-      fit_openpbr(picture_pairs(brdf, scorer.exposure()),
-                  {.grey = brdf.channels() == 1, .anisotropic = !brdf.isotropic()})
-          .parameters;
+      fit_openpbr(pairs, {.grey = pairs.grey(), .anisotropic = !brdf.isotropic()}).parameters;
   return {parameters, scorer.picture_psnr(scorer.pictures(OpenPbr(parameters)))};
 }
 
 NearestGltf nearest_gltf(BrdfRef brdf) {
   const Scorer scorer(brdf, {.count = kPairs, .image_size = kSize});
-  const GltfFit fit = fit_gltf(picture_pairs(brdf, scorer.exposure()),
-                               {.grey = brdf.channels() == 1, .anisotropic = !brdf.isotropic()});
+  const PicturePairs pairs = picture_pairs(brdf, scorer.exposure());
+  const GltfFit fit = fit_gltf(pairs, {.grey = pairs.grey(), .anisotropic = !brdf.isotropic()});
   const ErrorFigures figures = scorer.score(fit.material);
   return {fit.material, figures.psnr, figures.relative};
 }

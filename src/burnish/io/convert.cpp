@@ -340,6 +340,15 @@ class Converter {
     return kept(format_compact(model));
   }
 
+  // Which samples have both directions so far above the horizon that a reader sees them there.
+  static std::vector<std::size_t> above_horizon(const Samples& samples) {
+    constexpr double kLeast = 1e-9;
+    std::vector<std::size_t> above;
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      if (std::min(samples.pairs[i].wi.z, samples.pairs[i].wo.z) > kLeast) above.push_back(i);
+    return above;
+  }
+
   Converted scattered(bool astm) {
     // samples as they are, a table's entries, or draws
     std::optional<Samples> made;
@@ -352,6 +361,11 @@ class Converter {
       lose("{} samples drawn at random directions", made->size());
     }
     if (made) samples = &*made;
+    if (const auto above = above_horizon(*samples); above.size() < samples->size()) {
+      lose("{} samples on the horizon", samples->size() - above.size());
+      made = select(*samples, above);
+      samples = &*made;
+    }
     if (astm && !samples->isotropic && same_incident_azimuth(*samples))
       lose("one phi_i: a reader takes the samples for isotropic");
     const auto& lambda = source_.findings.lambda_nm;

@@ -206,6 +206,20 @@ TEST(Convert, SaysWhatReadingLost) {
   EXPECT_THAT(convert(source, "csv").losses, Contains(HasSubstr("licence")));
 }
 
+// Readers of scattered files take no samples on the horizon, which ALTA's may hold.
+TEST(Convert, LeavesOutSamplesOnTheHorizon) {
+  const Vec3 up{0, 0, 1}, level{1, 0, 0}, nearly{1, 0, 1e-17}, slanted = spherical_direction(1.5, 0);
+  const Source scattered{
+      "scattered",
+      ScatteredBrdf({1, true, {{up, level}, {slanted, up}, {up, nearly}, {up, slanted}}, {1, 2, 3, 4}}),
+      {}};
+  for (const char* format : {"csv", "astm"}) {
+    const Converted converted = convert(scattered, format);
+    EXPECT_THAT(converted.losses, Contains("2 samples on the horizon")) << format;
+    EXPECT_EQ(parse_source(memory_file(converted.bytes), {}).samples()->size(), 2u) << format;
+  }
+}
+
 TEST(Convert, KeepsValuesBelowZero) {
   const Source negative =
       parse_source(memory_file("theta_i,phi_i,theta_o,phi_o,value\n1,0,2,0,-1\n1,0,3,0,1\n"), {});

@@ -159,6 +159,7 @@ void append_layers(const GltfMaterial& found, const Layers& always, std::vector<
 
 /// Films, whose errors have a minimum a fringe: thin to thick ones tasted, the best two handed on.
 void append_films(Search& search, const Trial& found, const Layers& always, std::vector<Start>& starts) {
+  if (always[kFilm]) return;
   constexpr double kStep = 100;  // nanometres
   constexpr int kSteps = 12;
   std::vector<Start> tastes;
@@ -242,6 +243,7 @@ GltfFit fit_gltf(const PicturePairs& pairs, const GltfFitOptions& options) {
   };
   Layers always;
   always[kGrain] = !options.anisotropic;
+  always[kFilm] = options.grey;
   const Layers core = always | only({kFilm, kSheen, kCoat});
 
   // metals and dielectrics

@@ -16,7 +16,7 @@ struct GltfFit {
 };
 
 struct GltfFitOptions {
-  bool grey = false;         ///< colours are grey
+  bool grey = false;         ///< colours are grey, and there is no film, which has some
   bool anisotropic = false;  ///< stretches are looked for
   std::function<void(double fraction)> progress = {};
 };

@@ -27,7 +27,7 @@ constexpr std::array<std::string_view, 2> kTargets = {"openpbr", "gltf"};
 
 void fit_material_of(BrdfRef source, double exposure, const MaterialFitOptions& options, MaterialFit& fit) {
   const PicturePairs pairs = picture_pairs(source, exposure);
-  const bool grey = source.channels() == 1, anisotropic = !source.isotropic();
+  const bool grey = pairs.grey(), anisotropic = !source.isotropic();
   std::function<void(double)> progress;
   if (options.progress)
     progress = [&](double fraction) { options.progress("fitting " + fit.target, fraction); };

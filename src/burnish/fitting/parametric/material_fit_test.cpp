@@ -125,5 +125,25 @@ TEST(MaterialFit, RefusesWhatItDoesNotKnow) {
               HasSubstr("expected openpbr or gltf, found 'opnpbr'; did you mean 'openpbr'?"));
 }
 
+// Three channels alike, as one: no colour, and no film, which would have some.
+TEST(MaterialFit, KeepsGreySourcesGrey) {
+  BURNISH_SKIP_WHERE_SANITIZED();
+  for (const char* spec : {"ggx:alpha_x=0.3,alpha_y=0.3,f0=0.04/0.04/0.04,kd=0.5/0.5/0.5",
+                           "lafortune:kd=0.1,cx=1.2,cy=1.2,cz=0.3,exponent=8,ks=1"})
+    for (const char* to : {"openpbr", "gltf"}) {
+      const MaterialFit found = fit_material(open_source(spec, {}), to, kAlone);
+      std::vector<double> f(3);
+      for (const double theta : {0.1, 0.6, 1.2}) {
+        std::visit(
+            [&](const auto& material) {
+              BrdfRef(material).eval(spherical_direction(theta, 0), spherical_direction(0.4, 2), f);
+            },
+            found.material);
+        EXPECT_NEAR(f[0], f[1], 1e-6 * f[0]) << spec << ' ' << to;
+        EXPECT_NEAR(f[0], f[2], 1e-6 * f[0]) << spec << ' ' << to;
+      }
+    }
+}
+
 }  // namespace
 }  // namespace burnish

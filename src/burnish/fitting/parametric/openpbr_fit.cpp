@@ -42,6 +42,7 @@ Inputs always_held(const OpenPbrFitOptions& options) {
   Inputs held = inputs_named("base_weight");
   if (!options.anisotropic)
     held |= inputs_named("specular_roughness_anisotropy") | inputs_named("coat_roughness_anisotropy");
+  if (options.grey) held |= kFilm;
   return held;
 }
 
@@ -190,6 +191,7 @@ void append_coats(const Trial& trial, const Inputs& always, std::vector<Search::
 /// on, and the better one on the colours as they are.
 void append_films(Search& search, const Trial& trial, const Inputs& always,
                   std::vector<Search::Start>& starts) {
+  if ((always & kFilm) == kFilm) return;
   constexpr double kStep = 0.1;
   constexpr int kSteps = 12;
   const Inputs tasted = inputs_named("base_color") | inputs_named("specular_roughness") | kFilm;

@@ -84,6 +84,12 @@ void PicturePairs::show(BrdfRef brdf, std::vector<double>& out) const {
   }
 }
 
+bool PicturePairs::grey() const noexcept {
+  for (std::size_t i = 0; i < values.size(); i += 3)
+    if (values[i] != values[i + 1] || values[i] != values[i + 2]) return false;
+  return true;
+}
+
 double PicturePairs::mean_squared_error(std::span<const double> other, double dim) const noexcept {
   double sum = 0;
   for (std::size_t i = 0; i < shown.size(); ++i) {

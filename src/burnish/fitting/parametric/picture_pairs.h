@@ -16,6 +16,9 @@ struct PicturePairs {
   std::vector<double> shown;         ///< (exposure f cos theta_i)^(1/2.2), not clamped; three a pair
   double exposure = 1;
 
+  /// Whether all channels are alike.
+  bool grey() const noexcept;
+
   /// (exposure f cos theta_i)^(1/2.2) of another BRDF of three channels; resized.
   void show(BrdfRef brdf, std::vector<double>& out) const;
 
