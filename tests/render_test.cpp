@@ -115,11 +115,12 @@ TEST_F(Render, RefusesWhatItCannotDrawAndLeavesNothing) {
   EXPECT_EQ(renders(good + "-o x.jpg"), 2);
   EXPECT_EQ(renders(good + "-o x.png --lights 1,2"), 2);
   EXPECT_THAT(said(), HasSubstr("--lights"));
-  EXPECT_EQ(renders(good + "-o x.png --shadows"), 2);
+  EXPECT_EQ(renders(good + "-o x.png --renderer gl --shadows"), 2);
   EXPECT_EQ(renders(good + "-o x.png --size 0"), 2);
   EXPECT_EQ(renders(good + "-o x.png --background 1,-1,1"), 2);
   EXPECT_EQ(renders("-o x.png"), 2);
-  EXPECT_EQ(renders("--material ggx -o x.png"), 1);
+  EXPECT_EQ(renders("--size 16 --material ggx -o drawn.png"), 0) << said();  // by the renderer that can
+  EXPECT_EQ(renders("--material ggx --renderer gl -o x.png"), 1);
   EXPECT_THAT(said(), HasSubstr("--renderer cpu"));
   EXPECT_EQ(renders(good + "--mesh none.obj -o x.png"), 1);
   write(folder_ / "bad.obj", "v 0 0 0\nf 1 2 3\n");

@@ -11,6 +11,8 @@
 
 #include <burnish/error.h>
 #include <burnish/eval/factored_eval.h>
+#include <burnish/factors/compact_file.h>
+#include <burnish/factors/model_file.h>
 #include <burnish/file.h>
 #include <burnish/image/png.h>
 #include <burnish/math/angles.h>
@@ -35,7 +37,7 @@ namespace burnish::cli {
 namespace {
 
 struct RenderArguments {
-  std::string mesh = "sphere", out, renderer = "gl", tone = "srgb", size = "512", exposure = "auto",
+  std::string mesh = "sphere", out, renderer = "auto", tone = "srgb", size = "512", exposure = "auto",
               background = "0,0,0";
   std::vector<std::string> materials, lights;
   std::vector<double> view{0, 0};
@@ -106,19 +108,34 @@ std::vector<MeshPart> parts_of(const RenderArguments& arguments) {
   return parts;
 }
 
+bool is_file(const std::string& material) {
+  std::error_code none;
+  return std::filesystem::is_regular_file(material, none);
+}
+
 // The surface that a material's file is, if it is one.
 std::optional<SpatialBrdf> surface_of(const std::string& material) {
-  if (std::error_code none; !std::filesystem::is_regular_file(material, none)) return {};
+  if (!is_file(material)) return {};
   const FileBytes file = read_file(material);
   if (!looks_like_surface(file.bytes)) return {};
   return parse_surface(file).brdf;
+}
+
+// What OpenGL draws, tables as textures, and needs nothing of the reference.
+bool is_drawn_by_gl(const RenderArguments& arguments) {
+  return !arguments.shadows && std::ranges::all_of(arguments.materials, [&](const std::string& material) {
+    if (!is_file(material)) return false;
+    const FileBytes file = read_file(material);
+    if (looks_like_surface(file.bytes)) return arguments.environment.empty();
+    return looks_like_model(file.bytes) || looks_like_compact(file.bytes);
+  });
 }
 
 Image render_gl(const Scene& scene, const std::optional<Environment>& environment,
                 const RenderArguments& arguments, int width, int height) {
   std::vector<SurfaceShader> materials;
   for (const std::string& file : arguments.materials) {
-    if (std::error_code none; !std::filesystem::is_regular_file(file, none))
+    if (!is_file(file))
       throw Error::in_file(file, "the file of a factored BRDF (others are drawn by --renderer cpu)",
                            "no file");
     const ShaderFilter filter = arguments.exact ? ShaderFilter::exact : ShaderFilter::hardware;
@@ -169,7 +186,8 @@ Image render_by_cpu(const Scene& scene, const std::optional<Environment>& enviro
 void render(const RenderArguments& arguments) {
   if (arguments.materials.empty()) throw CLI::RequiredError("--material");
   if (arguments.out.empty()) throw CLI::RequiredError("--output");
-  const bool cpu = arguments.renderer == "cpu";
+  const bool cpu =
+      arguments.renderer == "cpu" || (arguments.renderer == "auto" && !is_drawn_by_gl(arguments));
   const std::string extension = std::filesystem::path(arguments.out).extension().string();
   if (extension != ".png" && extension != ".exr")
     throw CLI::ValidationError(
@@ -205,7 +223,7 @@ void render(const RenderArguments& arguments) {
   nlohmann::ordered_json json{{"output", arguments.out},
                               {"width", width},
                               {"height", height},
-                              {"renderer", arguments.renderer},
+                              {"renderer", cpu ? "cpu" : "gl"},
                               {"triangles", triangles}};
   if (extension == ".png") json["exposure"] = exposure;
   print_as_json(json);
@@ -214,7 +232,7 @@ void render(const RenderArguments& arguments) {
 }  // namespace
 
 void add_render_command(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand("render", "Draw a mesh with factored BRDFs under point lights");
+  CLI::App* verb = app.add_subcommand("render", "Draw a mesh with BRDFs or surfaces under point lights");
   verb->footer(
       "The scene is moved and scaled into the unit sphere; x points to the right, y up, z to the viewer.\n"
       "Examples: burnish render --mesh teapot --material paint.exr --lights 2,3,4:20 --lights -3,1,2:4,5,9 "
@@ -249,8 +267,11 @@ void add_render_command(CLI::App& app) {
       ->check(CLI::Range(1, 1 << 20))
       ->capture_default_str();
   verb->add_option("-o,--output,--out", arguments->out, "picture to write: PNG, or EXR of linear values");
-  verb->add_option("--renderer", arguments->renderer, "OpenGL, or the reference on the CPU")
-      ->check(one_of({"gl", "cpu"}))
+  verb->add_option(
+          "--renderer", arguments->renderer,
+          "OpenGL, which draws factored BRDFs and surfaces, or the reference on the CPU; auto: OpenGL "
+          "where it can")
+      ->check(one_of({"auto", "gl", "cpu"}))
       ->capture_default_str();
   verb->add_option("--view", arguments->view, "degrees to the right and upwards that the mesh is seen from")
       ->expected(2)
