@@ -14,8 +14,10 @@ namespace {
 
 constexpr double kCornellCount = 1439;
 constexpr double kCornellRadius2 = 0.001;  // [Pharr 2010]
+constexpr double kLeastRadius2 = 1e-9;     // samples that are this near are at one place
 constexpr double kSharpness = 100;         // [Pharr 2010]
 constexpr std::size_t kEnough = 3;         // [Pharr 2010]
+constexpr std::size_t kMost = 64;          // that are averaged, where a scan is denser than elsewhere
 constexpr std::size_t kLeaf = 8;           // ranges this short are searched one by one
 
 double distance2(const std::array<double, 4>& a, const std::array<double, 4>& b) noexcept {
@@ -149,10 +151,8 @@ bool ScatteredBrdf::eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexce
   std::fill(f.begin(), f.end(), 0.0);
   if (wi.z <= 0 || wo.z <= 0) return true;
 
-  // larger balls until one holds enough samples
   const Point centre = place(wi, wo);
-  const std::size_t enough = std::min(kEnough, points_.size());
-  for (double radius2 = initial_radius2_; radius2 <= kMaxRadius2; radius2 *= 2) {
+  const auto add_ball = [&](double radius2) noexcept {
     std::size_t found = 0;
     double total = 0;
     std::fill(f.begin(), f.end(), 0.0);
@@ -163,8 +163,19 @@ bool ScatteredBrdf::eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexce
       total += weight;
       ++found;
     });
+    for (double& value : f) value /= found > 0 ? total : 1;
+    return found;
+  };
+  // larger balls until one holds enough samples; smaller ones as long as they hold more than serves
+  const std::size_t enough = std::min(kEnough, points_.size());
+  for (double radius2 = initial_radius2_; radius2 <= kMaxRadius2; radius2 *= 2) {
+    std::size_t found = add_ball(radius2);
     if (found < enough) continue;
-    for (double& value : f) value /= total;
+    while (found > kMost && radius2 > kLeastRadius2) {
+      radius2 /= 2;
+      found = add_ball(radius2);
+      if (found == 0) add_ball(2 * radius2);
+    }
     return true;
   }
   std::fill(f.begin(), f.end(), 0.0);

@@ -167,5 +167,28 @@ TEST(ScatteredBrdf, RefusesAnEmptyOrInconsistentSet) {
   EXPECT_THROW(ScatteredBrdf(Samples{1, false, {{}}, {1}}, SampleSpace::angles), Error);
 }
 
+// An even scan of a matt surface, and one a hundred times as dense about a narrow lobe.
+TEST(ScatteredBrdf, IsSharperWhereAScanIsDenser) {
+  const Vec3 wi = spherical_direction(0.5, 0);
+  const auto truth = [&](Vec3 wo) { return 0.1 + 50 * std::exp(-std::pow(angle_between(wi, wo) / 0.02, 2)); };
+  Samples samples{1, true, {}, {}};
+  const auto add = [&](Vec3 wo) {
+    samples.pairs.push_back({wi, wo});
+    samples.values.push_back(truth(wo));
+  };
+  for (int theta = 0; theta < 16; ++theta)
+    for (int phi = 0; phi < 90; ++phi) add(spherical_direction(0.1 * theta, radians(4 * phi)));
+  constexpr int kReach = 30;
+  for (int x = -kReach; x <= kReach; ++x)
+    for (int y = -kReach; y <= kReach; ++y) add(normalize(wi + 0.002 * Vec3{x * wi.z, 1.0 * y, -x * wi.x}));
+  const ScatteredBrdf brdf(samples);
+  double f;
+  ASSERT_TRUE(brdf.eval(wi, wi, {&f, 1}));
+  EXPECT_NEAR(f / truth(wi), 1, 0.1);
+  const Vec3 beside = spherical_direction(0.52, 0);
+  ASSERT_TRUE(brdf.eval(wi, beside, {&f, 1}));
+  EXPECT_NEAR(f / truth(beside), 1, 0.2);
+}
+
 }  // namespace
 }  // namespace burnish
