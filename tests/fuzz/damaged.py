@@ -101,7 +101,7 @@ def command_for(kind, path, out, rng):
     if kind == "eval":
         return ["eval", "lambert", path, "-o", out], out
     if kind == "capture":
-        return ["fit-surface", path, "-o", out], out
+        return ["fit-surface", path, "-o", out, "--lobes", "1", "--lobe-bytes", "512", "--rounds", "1"], out
     if kind == "mesh":
         return ["render", "--renderer", "cpu", "--material", "lambert", "--size", "8", "--mesh", path, "-o", out + ".png"], out + ".png"
     if kind == "light":
