@@ -23,7 +23,7 @@ import threading
 import time
 
 MOST_BYTES, MOST_SECONDS, LONGEST_ERROR = 1 << 30, 5, 299
-LONGEST_LINE = 399  # of a conversion, which tells all that is lost
+LONGEST_LINE = 309  # of a conversion, which tells all that is lost
 HANGS = 120  # seconds of the clock after which a program that uses no processor is ended too
 LARGE = 100_000  # larger files, and networks of 800,000 weights, are taken once in SELDOM times: they take longer
 SELDOM = 200

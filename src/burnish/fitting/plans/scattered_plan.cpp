@@ -143,7 +143,7 @@ constexpr int kRetroDiskP = 16, kRetroDiskQ = 32;  // p and q of anisotropic one
 // Near wi = wo nodes of b and a are evenly spread in theta_d, as what is smooth over them has to be: over its root, a
 // lobe of a flat top is so steep at the samples about it that the smoothest lobe is up to twice as high between them.
 ModelSpec retro_spec(const RetroSizes& sizes, bool isotropic) {
-  const Warp crowded{WarpKind::power, 0.5}, even_at_zero{WarpKind::rational, 0.06};
+  const Warp crowded{WarpKind::power, 0.5}, even_at_zero{WarpKind::rational, 0.08};
   const auto polar = [&](const char* name, int nodes) {
     const TableLayout line{.shape = TableShape::line, .width = nodes, .height = 1},
         disk{.shape = TableShape::disk, .width = nodes, .height = nodes};
