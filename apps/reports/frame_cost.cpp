@@ -14,6 +14,7 @@
 #include "cost_sources.h"
 #include "frames.h"
 #include "peer_shaders.h"
+#include "rates.h"
 #include "report.h"
 
 namespace burnish::reports {
@@ -120,8 +121,8 @@ std::vector<FrameMaterial> materials_of(const Models& models) {
 void report_frame_cost(const ReportOptions& options) {
   const int repetitions = options.quick ? 1 : 11;
   const std::vector<int> lights = options.quick ? std::vector{1} : std::vector{1, 4, 16};
-  Page page(options, "frame-cost");
   const GlContext context(GlDevice::gpu_first);
+  Page page(options, context.in_software() ? "frame-cost" : "frame-cost-gpu", "frame-cost");
   ReportOptions of_one = options;
   of_one.quick = true;
   const Source source = std::move(cost_sources(of_one).front());
@@ -134,6 +135,8 @@ void report_frame_cost(const ReportOptions& options) {
   page["repetitions"] = std::to_string(repetitions);
   page["renderer"] = drawn_by(context);
   page["times"] = frame_times("frame-cost", "GGX", materials, lights, repetitions).markdown();
+  tell("frame-cost: evaluations");
+  page["rates"] = evaluation_rates("GGX", materials, repetitions).markdown();
   page.write();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,9 @@ struct FrameMaterial {
   BrdfRef truth;  ///< refers to what its owner keeps
 };
 
+/// Seconds of one round of each task, all tasks in turn, as many rounds at once as take 10 ms or more.
+std::vector<Times> time_rounds(const std::vector<std::function<void(int)>>& tasks, int repetitions);
+
 /// The psnr in dB of a small picture by the shader, against the CPU renderer's of the truth. Needs a GlContext.
 double picture_psnr(const FrameMaterial& material);
 
@@ -29,7 +33,7 @@ inline constexpr double kMinPicturePsnr = 40;
 /// Throws Error, naming the material, where picture_psnr is below kMinPicturePsnr.
 void check_picture(const FrameMaterial& material);
 
-/// Milliseconds a frame of each material under so many lights, all in turn. Needs a GlContext.
+/// Milliseconds a frame of each material under so many lights, by time_rounds. Needs a GlContext.
 std::vector<Times> time_frames(const std::vector<FrameMaterial>& materials, int lights, int repetitions);
 
 /// The least milliseconds a frame of each material, the median in brackets, under each number of lights, and how many
@@ -38,7 +42,7 @@ Table frame_times(const std::string& report, const std::string& first,
                   const std::vector<FrameMaterial>& materials, const std::vector<int>& lights,
                   int repetitions);
 
-/// What draws, in words: "a GPU: NAME", or "software, no GPU: llvmpipe (...) on PROCESSOR".
+/// What draws, in words: "a GPU: NAME, OpenGL VERSION", or "software, no GPU: llvmpipe (...) on PROCESSOR".
 std::string drawn_by(const GlContext& context);
 
 }  // namespace burnish::reports

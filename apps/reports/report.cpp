@@ -28,7 +28,10 @@ void write(const fs::path& path, std::string_view bytes) {
 
 }  // namespace
 
-Page::Page(ReportOptions options, std::string name) : options_(std::move(options)), name_(std::move(name)) {
+Page::Page(ReportOptions options, std::string name, std::string text)
+    : options_(std::move(options)),
+      name_(std::move(name)),
+      template_((text.empty() ? name_ : std::move(text)) + ".md.in") {
   values_["machine"] = processor();
 }
 
@@ -48,7 +51,7 @@ void Page::write() {
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start_;
   values_["seconds"] = fmt::format("{:.0f}", taken.count());
   reports::write(options_.folder / (name_ + ".md"),
-                 fill_template(text_of(report_templates(), name_ + ".md.in"), values_));
+                 fill_template(text_of(report_templates(), template_), values_));
 }
 
 std::vector<Times> time_in_turns(std::span<const std::function<void()>> tasks, int repetitions) {

@@ -30,7 +30,8 @@ struct ReportOptions {
 /// temporary name and renamed, and told on standard output.
 class Page {
  public:
-  Page(ReportOptions options, std::string name);
+  /// Of the template NAME.md.in, or of another one's.
+  Page(ReportOptions options, std::string name, std::string text = {});
 
   const ReportOptions& options() const noexcept { return options_; }
 
@@ -46,7 +47,7 @@ class Page {
 
  private:
   ReportOptions options_;
-  std::string name_;
+  std::string name_, template_;
   std::map<std::string, std::string> values_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };

@@ -64,18 +64,28 @@ std::vector<EGLDeviceEXT> gpus() {
 
 }  // namespace
 
-GlContext::GlContext(GlDevice device) {
-  if (device == GlDevice::gpu_first)
-    for (const EGLDeviceEXT gpu : gpus()) try {
-        display_ = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, gpu, nullptr);
-        context_ = open_display(display_);
-        return;
-      } catch (const Error&) {  // another may serve
-      }
-  if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"))
-    throw Error("OpenGL: expected EGL with EGL_MESA_platform_surfaceless, found none");
+// Whether one of EGL's GPUs serves.
+bool GlContext::open_gpu() {
+  for (const EGLDeviceEXT gpu : gpus()) try {
+      display_ = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, gpu, nullptr);
+      context_ = open_display(display_);
+      return true;
+    } catch (const Error&) {  // another may serve
+    }
+  return false;
+}
+
+// Whether Mesa is there. Throws Error if it is, without OpenGL 4.5.
+bool GlContext::open_mesa() {
+  if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless")) return false;
   display_ = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
   context_ = open_display(display_);
+  return true;
+}
+
+GlContext::GlContext(GlDevice device) {
+  if (device == GlDevice::gpu_first ? open_gpu() || open_mesa() : open_mesa() || open_gpu()) return;
+  throw Error("OpenGL: expected EGL with EGL_MESA_platform_surfaceless or a GPU, found neither");
 }
 
 GlContext::~GlContext() {
@@ -85,6 +95,10 @@ GlContext::~GlContext() {
 
 std::string GlContext::renderer() const {
   return reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+}
+
+std::string GlContext::version() const {
+  return reinterpret_cast<const char*>(glGetString(GL_VERSION));
 }
 
 bool GlContext::in_software() const {

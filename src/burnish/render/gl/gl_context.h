@@ -6,8 +6,8 @@ namespace burnish {
 
 /// What may draw.
 enum class GlDevice {
-  any,  ///< what EGL takes without a surface: Mesa's, which may be llvmpipe beside a GPU of another driver
-  gpu_first,  ///< a GPU that EGL lists, where one has OpenGL 4.5; else any
+  any,  ///< what Mesa takes without a surface, which may be llvmpipe beside a GPU of another driver; else a GPU
+  gpu_first,  ///< a GPU that EGL lists, where one has OpenGL 4.5; else what Mesa takes
 };
 
 /// A headless OpenGL 4.5 core context (EGL without a surface; Mesa's llvmpipe serves where there is no GPU),
@@ -22,10 +22,15 @@ class GlContext {
 
   /// What draws: "llvmpipe (LLVM 15.0.6, 256 bits)".
   std::string renderer() const;
+  /// Its OpenGL and driver: "4.5 (Core Profile) Mesa 22.3.6".
+  std::string version() const;
   /// Whether that is one of Mesa's renderers that run on the processor.
   bool in_software() const;
 
  private:
+  bool open_gpu();
+  bool open_mesa();
+
   void* display_ = nullptr;
   void* context_ = nullptr;
 };

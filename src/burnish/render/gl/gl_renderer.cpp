@@ -206,7 +206,12 @@ GlRenderer::GlRenderer(const Scene& scene, std::span<const std::vector<Rgb>> ver
 
 GlRenderer::~GlRenderer() = default;
 
-void GlRenderer::draw() const {
+void GlRenderer::draw(int frames) const {
+  for (int i = 0; i < frames; ++i) draw_frame();
+  glFinish();
+}
+
+void GlRenderer::draw_frame() const {
   const State& s = *state_;
   glBindFramebuffer(GL_FRAMEBUFFER, s.frame);
   glViewport(0, 0, s.width, s.height);
@@ -243,7 +248,6 @@ void GlRenderer::draw() const {
     }
     first += count;
   } while (first < s.lights.size());
-  glFinish();
 }
 
 Image GlRenderer::read() const {

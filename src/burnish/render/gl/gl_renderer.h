@@ -23,8 +23,8 @@ class GlRenderer {
   GlRenderer(const GlRenderer&) = delete;
   GlRenderer& operator=(const GlRenderer&) = delete;
 
-  /// Draws one frame and waits until it is done.
-  void draw() const;
+  /// Draws so many frames one after the other and waits until they are done.
+  void draw(int frames = 1) const;
   /// The frame drawn last: three channels, linear.
   Image read() const;
 
@@ -32,6 +32,7 @@ class GlRenderer {
 
  private:
   struct State;
+  void draw_frame() const;
   GlRenderer(const Scene& scene, std::span<const SurfaceShader> materials,
              std::span<const std::vector<Rgb>> vertex_values, int width, int height);
   std::unique_ptr<State> state_;

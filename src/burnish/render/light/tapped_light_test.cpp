@@ -128,9 +128,11 @@ void expect_agreement(const FactoredBrdf& brdf, const BlurOptions& options, std:
     expected.push_back(tapped.radiance(blurred, sphere_frame(n), v));
   }
   const std::vector<float> found = function.call(calls);
+  // a GPU's texture unit has 8 bits for where between two texels it reads, and lamps are steep
+  const double share = gl.context->in_software() ? 1e-3 : 1e-2;
   for (std::size_t i = 0; i < calls.size(); ++i) {
-    EXPECT_NEAR(found[3 * i], std::max(expected[i].r, 0.0), 1e-3 * expected[i].r + 1e-3) << i;
-    EXPECT_NEAR(found[3 * i + 2], std::max(expected[i].b, 0.0), 1e-3 * expected[i].b + 1e-3) << i;
+    EXPECT_NEAR(found[3 * i], std::max(expected[i].r, 0.0), share * expected[i].r + 1e-3) << i;
+    EXPECT_NEAR(found[3 * i + 2], std::max(expected[i].b, 0.0), share * expected[i].b + 1e-3) << i;
   }
   EXPECT_THROW(generate_shader(tapped, blurred, ShaderLanguage::wgsl, "m"), Error);
 }
