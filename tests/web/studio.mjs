@@ -102,6 +102,13 @@ async function save(page, selector, name) {
   await download.saveAs(file(name));
   return file(name);
 }
+// Files of an archive, which Python opens, as bytes by their names.
+function unpacked(archive) {
+  const at = file("unpacked");
+  fs.rmSync(at, {recursive: true, force: true});
+  execFileSync("python3", ["-m", "zipfile", "-e", archive, at]);
+  return Object.fromEntries(fs.readdirSync(at).sort().map((name) => [name, fs.readFileSync(path.join(at, name))]));
+}
 const settled = (page) => page.waitForFunction(() => document.documentElement.dataset.view === "settled");
 
 // Numbers alike to kSame, at the same places; a path in a name is no difference. A node whose cosine is the threshold counts
@@ -410,7 +417,7 @@ assert.equal(await page.getAttribute("#shape [data-value=plane]", "aria-checked"
 const apart = await page.evaluate(surfaceApart);
 assert.ok(apart < 5e-3, `a surface is drawn ${apart} from what it is`);
 run("export", file("flat.burnish"), "--to", "three", "-o", file("surface"));
-assert.equal(fs.readFileSync(await save(page, "[data-export=three]", "flat.three.js"), "utf8"), fs.readFileSync(file("surface/flat.three.js"), "utf8"));
+assert.equal(unpacked(await save(page, "[data-export=three]", "flat.three.zip"))["flat.three.js"].toString(), fs.readFileSync(file("surface/flat.three.js"), "utf8"));
 await accessible(page, "surface");
 await page.click("#list .close >> nth=0");
 await until(page, 0);
@@ -515,14 +522,21 @@ const calls = await page.evaluate(async () => {
 assert.deepEqual(calls, {count: 3, left: 0, points: 0});
 assert.equal(await message(page), "no fit of 1400 bytes");
 await page.evaluate(() => window.fitsAgain());
+await page.click("#results [data-value=curve]");
 await page.click("#curve-start");
 await page.waitForFunction(() => window.studio.entries[0].curve.length === 7 && document.querySelector("[data-export=curve]"));
 assert.match(fs.readFileSync(await save(page, "[data-export=curve]", "curve.svg"), "utf8"), /<svg[^]*PSNR/);
+await page.click("#results [data-value=figures]");
 
 // What is taken away is there; shaders say what they are.
 for (const [kind, name] of [["ktx2", "fitted.ktx2"], ["three", "fitted.three.js"], ["merl", "out.binary"], ["csv", "out.csv"], ["png", "view.png"], ["slice", "slice.svg"],
                             ["half-diff", "half-diff.png"]])
   assert.ok(fs.statSync(await save(page, `[data-export=${kind}]`, name)).size > 100, kind);
+// several files are an archive: textures of the formats and sizes that the command line writes, which compresses them too
+run("export", saved, "--to", "ktx2", "-o", file("ktx2"), "--name", "fitted");
+const heads = (files) => files.map((bytes) => bytes.subarray(0, 44).toString("hex"));
+assert.deepEqual(heads(Object.entries(unpacked(file("fitted.ktx2"))).filter(([name]) => name.endsWith(".ktx2")).map(([, bytes]) => bytes)),
+                 heads([0, 1].map((k) => fs.readFileSync(file(`ktx2/fitted_${k}.ktx2`)))));
 // the lobe's pixels, on the panel's ground
 const lobeApart = await page.evaluate(async (text) => {
   const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0)), saved = await createImageBitmap(new Blob([bytes])), lobe = document.querySelector("#lobe canvas");

@@ -16,7 +16,7 @@ const kCurve = [700, 1400, 2800, 5600, 11200, 22400, 44800];
 const kMaxFits = 4;  // at once, each with memory of its own
 const kNothing = 1e-9;  // figures below it are roundings
 
-let stop = null, choose = () => {}, followed = null;
+let stop = null, choose = () => {}, showResults = () => {}, followed = null;
 
 // "16K" as bytes; "auto" as itself. Throws Error.
 function readBudget(text) {
@@ -96,6 +96,7 @@ async function fit(event) {
     add(entry);
     changed();
     show(entry);
+    showResults("figures");
   });
 }
 
@@ -131,12 +132,10 @@ async function errorCurve() {
 }
 
 function drawCurve() {
-  const curve = referenceOf(state.shown)?.curve, place = find("#bytes-curve");
-  place.hidden = !curve;
-  if (!curve) return;
+  const curve = referenceOf(state.shown)?.curve ?? [];
   const psnr = curve.map((p) => p.psnr), [low, high] = curve.length ? [Math.floor(Math.min(...psnr) - 1), Math.ceil(Math.max(...psnr) + 1)] : [20, 60];
-  place.replaceChildren(plot({
-    label: "Picture error in decibels against bytes", x: [500, 65536], logX: true, xTicks: [1024, 4096, 16384, 65536], xTick: bytesText, y: [low, high],
+  find("#bytes-curve").replaceChildren(plot({
+    label: "Picture error in decibels against bytes", x: [500, 80_000], logX: true, xTicks: [1024, 4096, 16384, 65536], xTick: bytesText, y: [low, high],
     xName: "bytes", yName: "PSNR, dB", lines: [{x: curve.map((p) => p.bytes), values: psnr, color: css("--accent"), dots: true}],
   }));
 }
@@ -195,6 +194,12 @@ export function start() {
     budget.value = presets[name].budget;
     fetches.value = presets[name].fetches;
   });
+  const shown = (name) => [find("#figures").hidden, find("#curve-place").hidden] = [name !== "figures", name !== "curve"];
+  const chosen = segments(find("#results"), shown);
+  showResults = (name) => {
+    chosen(name);
+    shown(name);
+  };
   // by default an anisotropic source takes six fetches
   const setFetches = () => {
     presets.default.fetches = referenceOf(state.shown)?.material.isotropic === false ? "6" : "2";
@@ -207,7 +212,7 @@ export function start() {
   find("#fit").addEventListener("submit", fit);
   find("#fit-stop").addEventListener("click", () => stop?.abort());
   find("#curve-start").addEventListener("click", errorCurve);
-  drawFigures();
+  redraw();
   onChange((what) => {
     enable();
     drawFigures();

@@ -4,6 +4,7 @@ import {bytesText, css, find, make, saveFile, say} from "./dom.js";
 import {linkOf} from "./link.js";
 import {isSurface, modelShown, onChange, referenceOf, state} from "./state.js";
 import {picture} from "./stage.js";
+import {zip} from "./zip.js";
 
 const languages = {glsl: "GLSL 4.50", glsl_es: "GLSL ES 3.00", hlsl: "HLSL", wgsl: "WGSL", msl: "Metal", cpp: "C++"};
 const modelFiles = {burnish: ".burnish", model: "OpenEXR", ktx2: "KTX2 textures", three: "three.js", html: "Page"};
@@ -43,7 +44,9 @@ const guarded = (task) => async (event) => {
 
 const saveButton = (entry, kind, title) =>
   make("button", {type: "button", "data-export": kind, onclick: guarded(async (signal) => {
-    for (const {name, bytes} of await filesOf(entry, kind, signal)) saveFile(name, bytes);
+    const files = await filesOf(entry, kind, signal), [{name, bytes}] = files;
+    if (files.length === 1) saveFile(name, bytes);
+    else saveFile(`${stem(entry)}.${kind}.zip`, await zip(files));
   })}, title);
 
 // Whether it was; pages that are not served securely have no clipboard.
@@ -86,7 +89,7 @@ function shaderGroup(entry) {
 }
 
 function linkGroup(entry) {
-  const said = make("p", {class: "hint"}, "The whole material in the address: nothing is uploaded.");
+  const said = make("p", {class: "hint two-lines"}, "The whole material in the address: nothing is uploaded.");
   const shown = make("input", {type: "text", id: "link-text", readonly: true, hidden: true, "aria-label": "Link", onfocus: () => shown.select()});
   return make("div", {}, make("h3", {}, "Link"), make("div", {class: "buttons"},
     make("button", {type: "button", id: "link", onclick: guarded(async (signal) => {
