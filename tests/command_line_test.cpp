@@ -52,9 +52,14 @@ TEST(CommandLine, SaysWhatAMisspeltWordMayHaveMeant) {
         std::pair{"hw generate -o x --unit exact_9", "'exact_8'"}, std::pair{"help modles", "'models'"}})
     EXPECT_THAT(first_line(burnish(arguments)), HasSubstr(fmt::format("; did you mean {}?", meant)))
         << arguments;
+  // whatever the case; topics of help
+  EXPECT_THAT(first_line(burnish("info GGX:alpha_x=0.1")), HasSubstr("; did you mean 'ggx'?"));
+  EXPECT_THAT(first_line(burnish("info lambert --illuminant d65")), HasSubstr("; did you mean 'D65'?"));
+  EXPECT_THAT(first_line(burnish("formats")), HasSubstr("; did you mean 'help formats'?"));
   const std::string gibberish = first_line(burnish("gibberish"));
   EXPECT_THAT(gibberish, testing::Not(HasSubstr("did you mean")));
   EXPECT_THAT(gibberish, HasSubstr("expected a verb (info, fit, "));
+  EXPECT_THAT(gibberish, testing::Not(HasSubstr("describe"))) << "which is not for people";
   EXPECT_THAT(first_line(burnish("")), HasSubstr("expected a verb (info, fit, "));
   EXPECT_THAT(first_line(burnish("hw")),
               HasSubstr("hw: expected a verb (generate, model, error), found none"));
@@ -66,6 +71,19 @@ TEST(CommandLine, SaysWhatAMisspeltWordMayHaveMeant) {
     EXPECT_EQ(outcome.status, 1);
     EXPECT_THAT(outcome.output,
                 HasSubstr("expected a file or an analytic model, found neither; did you mean"));
+  }
+}
+
+TEST(CommandLine, SaysWhatAnOptionTakes) {
+  for (const auto& [arguments, said] :
+       {std::pair{"measure lambert --noise -1", "--noise: expected a number from 0 to 10, found '-1'"},
+        std::pair{"fit lambert --fetches 0", "--fetches: expected a number from 1 to 256, found '0'"},
+        std::pair{"fit lambert --to openpbr -o x.exr", "--output: expected a name such as paint.json"},
+        std::pair{"fit lambert --seed a", "--seed: expected a number of at least 0, found 'a'"},
+        std::pair{"fit lambert --floor 0", "--floor: expected a number above 0, found '0'"}}) {
+    const Outcome outcome = burnish(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments;
+    EXPECT_THAT(first_line(outcome), HasSubstr(said));
   }
 }
 

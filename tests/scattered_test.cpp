@@ -62,6 +62,10 @@ TEST(Scattered, TheDefaultFitHoldsATapesPeak) {
     made.ref().eval(samples.pairs[best].wi, samples.pairs[best].wo, f);
     EXPECT_NEAR(f[0] / samples.at(best)[0], 1, 0.05) << theta_deg;
   }
+
+  // two fetches hold it too
+  const Fit few = fit(source, {.form = Budget{.bytes = 4096, .fetches = 2}});
+  EXPECT_LE(std::get<OneLobeReport>(few.report.how).relative_cross_validated.value(), 0.12);
 }
 
 }  // namespace

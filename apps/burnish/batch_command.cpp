@@ -158,10 +158,10 @@ void add_folder_arguments(CLI::App& verb, BatchArguments& arguments) {
           "bytes to take at most, as 4G: fewer materials are fitted at once (default: four fifths of what is "
           "free, and of the limits of its control groups and Slurm job)")
       ->transform(CLI::AsSizeValue(false));
-  verb.add_option("--threads", options.threads, "at most this many; 0: all")->check(CLI::Range(0, 1024));
+  verb.add_option("--threads", options.threads, "at most this many; 0: all")->check(in_range(0, 1024));
   verb.add_option("--patience", arguments.patience,
                   "seconds after which a process on another machine that says nothing is taken over")
-      ->check(CLI::Range(0.1, 86400.0))
+      ->check(in_range(0.1, 86400.0))
       ->capture_default_str();
   verb.add_option("--studio", options.studio, "where the studio lies, as from the page")
       ->capture_default_str();

@@ -86,16 +86,16 @@ void add_book_command(CLI::App& app) {
                            ->capture_default_str();
   CLI::Option* each = verb->add_option("--bytes-a-material", arguments->options.bytes_a_material,
                                        "of the weights of each, at most: a byte a weight")
-                          ->check(CLI::Range(std::size_t{4}, MaterialBook::kMaxComponents))
+                          ->check(in_range(std::size_t{4}, MaterialBook::kMaxComponents))
                           ->capture_default_str();
   verb->add_option("--shared", arguments->shared, "a book whose shared part serves: only weights are found")
       ->excludes(bytes)
       ->excludes(each);
   verb->add_option("--seed", arguments->options.seed, "of the pairs that are drawn of each material")
-      ->check(CLI::NonNegativeNumber)
+      ->check(at_least_zero())
       ->capture_default_str();
   add_open_options(*verb, arguments->open);
-  verb->add_option("--threads", arguments->threads, "at most this many; 0: all")->check(CLI::Range(0, 1024));
+  verb->add_option("--threads", arguments->threads, "at most this many; 0: all")->check(in_range(0, 1024));
   verb->add_flag("--json", arguments->json, "print the summary as JSON");
   verb->callback([arguments] { make(*arguments); });
 }

@@ -169,10 +169,10 @@ void add_compare_command(CLI::App& app) {
   verb->add_option("-o,--output,--out", arguments->folder,
                    "folder for a report with pictures: index.html and its parts");
   verb->add_option("--count", arguments->figures.count, "direction pairs")
-      ->check(CLI::Range(1, 100'000'000))
+      ->check(in_range(1, 100'000'000))
       ->capture_default_str();
   verb->add_option("--seed", arguments->figures.seed, "of the direction pairs")
-      ->check(CLI::NonNegativeNumber)
+      ->check(at_least_zero())
       ->capture_default_str();
   verb->add_option("--target", arguments->target,
                    "score the function between what was measured too, or nodes: only what was measured "

@@ -65,11 +65,11 @@ void add_convert_command(CLI::App& app) {
       ->check(one_of({kConvertFormats.begin(), kConvertFormats.end()}));
   verb->add_option("--cells", arguments->options.cells,
                    "along each polar angle of MERL, MBSDF and EXR, twice as many along the azimuth")
-      ->check(CLI::Range(2, 1000))
+      ->check(in_range(2, 1000))
       ->capture_default_str();
   auto* count = verb->add_option("--count", arguments->options.count,
                                  "samples in an ASTM or CSV file, unless the source is scattered")
-                    ->check(CLI::Range(1, 10000000))
+                    ->check(in_range(1, 10000000))
                     ->capture_default_str();
   verb->add_flag("--entries", arguments->options.entries, "a table's entries in an ASTM or CSV file")
       ->excludes(count);

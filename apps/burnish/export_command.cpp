@@ -148,7 +148,7 @@ void add_export_command(CLI::App& app) {
       "cheapest that is never one of 255 levels off");
   add_environment_argument(*verb, arguments->environment);
   verb->add_option("--cells", arguments->cells, "of mdl: cells along each polar angle of the measurement")
-      ->check(CLI::Range(2, 1000))
+      ->check(in_range(2, 1000))
       ->capture_default_str();
   CLI::Option* const exact =
       verb->add_flag("--exact", arguments->exact, "shaders that weigh texels themselves, in floats");

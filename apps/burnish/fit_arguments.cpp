@@ -84,11 +84,11 @@ void add_lobes_arguments(CLI::App& verb, FitArguments& arguments) {
                   "fewest of those "
                   "tried within two percent of the least error; with auto 2, of some nodes 3, of anisotropic "
                   "sources 6)")
-      ->check(CLI::Range(1, 256))
+      ->check(in_range(1, 256))
       ->needs("--budget")
       ->excludes("--method");
   verb.add_option("--lobes", budget.lobes, "of --budget: lobes of lines or hemispheres, this many")
-      ->check(CLI::Range(1, 64))
+      ->check(in_range(1, 64))
       ->needs("--budget")
       ->excludes("--fetches");
   verb.add_option(
@@ -148,15 +148,15 @@ void add_fit_arguments(CLI::App& verb, FitArguments& arguments) {
                   "counted from 0");
   verb.add_option("--floor", one_lobe.how.floor,
                   "added to every value before its logarithm is taken, 1/sr, at most 1")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->capture_default_str();
   verb.add_option("--reweightings", one_lobe.how.reweightings,
                   "passes towards the mean absolute error (default: 4 for scattered samples, else 0)")
-      ->check(CLI::Range(0, 100));
+      ->check(in_range(0, 100));
   verb.add_option("--count,--samples", options.samples, "pairs drawn from a source that is a function")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}));
+      ->check(in_range(std::size_t{1}, std::size_t{100'000'000}));
   verb.add_option("--seed", options.seed, "of the drawn pairs")
-      ->check(CLI::NonNegativeNumber)
+      ->check(at_least_zero())
       ->capture_default_str();
   verb.add_option(
           "--format", arguments.format,

@@ -1,6 +1,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <memory>
 
@@ -223,7 +224,16 @@ void print(const Unexplained& beyond) {
     fmt::print("beyond     colour shift: the highlight's chromaticity differs by up to {:.3f}\n", shift);
 }
 
+// That what is written as JSON is not named as a model's file.
+void check_name_of_json(const FitCommand& arguments) {
+  const std::string ending = std::filesystem::path(arguments.out).extension().string();
+  if (ending == ".exr" || ending == ".burnish")
+    throw CLI::ValidationError(fmt::format(
+        "--output: expected a name such as paint.json, for JSON is written, found '{}'", arguments.out));
+}
+
 void fit_to_material(const FitCommand& arguments) {
+  check_name_of_json(arguments);
   const ThreadLimit limit(arguments.threads);
   const Source source = arguments.source.open();
   const MaterialFit fit =
@@ -249,6 +259,7 @@ void fit(const FitCommand& arguments) {
     return;
   }
   if (arguments.out.empty()) throw CLI::RequiredError("--output");
+  if (!arguments.how.method.empty()) check_name_of_json(arguments);
   const auto start = std::chrono::steady_clock::now();
   const ThreadLimit limit(arguments.threads);
   const Source source = arguments.source.open();
@@ -309,7 +320,7 @@ void add_fit_command(CLI::App& app) {
       "-o,--output,--out", arguments->out,
       "model file to write (compact where it ends in .burnish, else OpenEXR; JSON with --method and --to)");
   add_fit_arguments(*verb, arguments->how);
-  verb->add_option("--threads", arguments->threads, "at most this many; 0: all")->check(CLI::Range(0, 1024));
+  verb->add_option("--threads", arguments->threads, "at most this many; 0: all")->check(in_range(0, 1024));
   verb->add_flag("--json", arguments->json, "print the summary as JSON");
   add_material_arguments(*verb, *arguments);
   verb->callback([arguments] { fit(*arguments); });

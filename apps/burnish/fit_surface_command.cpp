@@ -115,7 +115,7 @@ void add_fit_surface_command(CLI::App& app, FitCrew* crew) {
       ->required();
   verb->add_option("-o,--output,--out", arguments->out, "the surface's .burnish file to write")->required();
   verb->add_option("--lobes", options.lobes, "how many lobes")
-      ->check(CLI::Range(std::size_t{1}, kMaxSurfaceLobes))
+      ->check(in_range(std::size_t{1}, kMaxSurfaceLobes))
       ->capture_default_str();
   verb->add_option("--lobe-bytes", options.lobe_bytes, "of each lobe's tables; K counts as 1024")
       ->transform(CLI::AsSizeValue(false))
@@ -133,18 +133,18 @@ void add_fit_surface_command(CLI::App& app, FitCrew* crew) {
                    "of a BTF, how many of its pictures are taken, spread evenly; 0: all")
       ->capture_default_str();
   verb->add_option("--rounds", options.rounds, "of lobes and weights in turn")
-      ->check(CLI::Range(1, 100))
+      ->check(in_range(1, 100))
       ->capture_default_str();
   verb->add_option("--memory", options.tile_bytes,
                    "bytes of pictures in memory at a time; M counts as 1024^2")
       ->transform(CLI::AsSizeValue(false));
   verb->add_option("--seed", options.seed, "of the texels and pixels that lobes are fitted to")
-      ->check(CLI::NonNegativeNumber)
+      ->check(at_least_zero())
       ->capture_default_str();
   verb->add_flag("--widen", options.widened,
                  "add copies of the lobes for the bumps that mip levels lose: better from afar, one fetch "
                  "a light more for each");
-  verb->add_option("--threads", arguments->threads, "at most this many; 0: all")->check(CLI::Range(0, 1024));
+  verb->add_option("--threads", arguments->threads, "at most this many; 0: all")->check(in_range(0, 1024));
   verb->add_option(
       "--picture", arguments->picture,
       "a PNG to write: a picture that was held out, the surface in its place, and the lobes' weights");

@@ -77,7 +77,7 @@ void add_generate(CLI::App& verb) {
   auto arguments = std::make_shared<Arguments>();
   sub->add_option("--name", arguments->name, "of the module; by default the unit's or method's");
   sub->add_option("--vectors", arguments->vectors, "golden vectors")
-      ->check(CLI::Range(1, 1'000'000))
+      ->check(in_range(1, 1'000'000))
       ->capture_default_str();
   sub->add_flag("--all", arguments->all, "every configuration of hw/, and a module `bench` around them");
   sub->add_flag("--blinn", arguments->blinn,
@@ -169,16 +169,16 @@ void add_error(CLI::App& verb) {
   auto unit_arguments = add_unit_options(*sub);
   auto arguments = std::make_shared<Arguments>();
   sub->add_option("--first", arguments->first, "least exponent")
-      ->check(CLI::Range(1, kUnitMaxExponent))
+      ->check(in_range(1, kUnitMaxExponent))
       ->capture_default_str();
   sub->add_option("--last", arguments->last, "largest exponent")
-      ->check(CLI::Range(1, kUnitMaxExponent))
+      ->check(in_range(1, kUnitMaxExponent))
       ->capture_default_str();
   sub->add_option("--exponent-step", arguments->exponent_step, "only every so manyth")
-      ->check(CLI::Range(1, 1000))
+      ->check(in_range(1, 1000))
       ->capture_default_str();
   sub->add_option("--input-step", arguments->input_step, "only every so manyth")
-      ->check(CLI::Range(1, 1 << 20))
+      ->check(in_range(1, 1 << 20))
       ->capture_default_str();
   sub->add_flag("--json", arguments->json, "for programs");
   sub->add_flag("--rounded-input", arguments->rounded_input,

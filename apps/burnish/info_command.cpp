@@ -64,16 +64,23 @@ void print_text(const SourceReport& report) {
   if (findings.negative_count > 0)
     line("negatives", fmt::format("{} values below zero, down to {:.3g} 1/sr", findings.negative_count,
                                   findings.most_negative));
-  const auto added_light = [](const DirectionalAlbedo& albedo) -> std::string {
+  // four digits, or two where those would hide it
+  const auto shown = [](const std::vector<double>& values) {
+    std::vector<std::string> texts;
+    for (const double x : values)
+      texts.push_back(x == 0 || std::abs(x) >= 1e-3 ? fmt::format("{:.4f}", x) : fmt::format("{:.1e}", x));
+    return texts;
+  };
+  const auto added_light = [&](const DirectionalAlbedo& albedo) -> std::string {
     if (albedo.clamped == albedo.albedo) return "";
     std::vector<double> added;
     for (std::size_t c = 0; c < albedo.albedo.size(); ++c)
       added.push_back(albedo.clamped[c] - albedo.albedo[c]);
-    return fmt::format(", {:.4f} more with values below zero cut", fmt::join(added, " "));
+    return fmt::format(", {} more with values below zero cut", fmt::join(shown(added), " "));
   };
   for (const auto& [theta_i, phi_i, albedo] : albedos)
     line("albedo",
-         fmt::format("{:.4f} at theta_i = {:.0f}{} degrees{}{}", fmt::join(albedo.albedo, " "),
+         fmt::format("{} at theta_i = {:.0f}{} degrees{}{}", fmt::join(shown(albedo.albedo), " "),
                      degrees(theta_i), phi_i > 0 ? fmt::format(", phi_i = {:.0f}", degrees(phi_i)) : "",
                      albedo.unknown_fraction > 0
                          ? fmt::format(", {:.1f} % of the hemisphere unknown", 100 * albedo.unknown_fraction)

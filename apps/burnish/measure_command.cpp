@@ -13,6 +13,7 @@
 #include "json_output.h"
 #include "progress.h"
 #include "source_arguments.h"
+#include "usage.h"
 
 namespace burnish::cli {
 
@@ -57,13 +58,13 @@ void add_measure_command(CLI::App& app) {
       ->required();
   // Ten million samples are a gigabyte of text.
   verb->add_option("--count", arguments->measurement.count, "how many samples")
-      ->check(CLI::Range(1, 10000000))
+      ->check(in_range(1, 10000000))
       ->capture_default_str();
   verb->add_option("--noise", arguments->measurement.noise, "sigma of log-normal noise on every value")
-      ->check(CLI::Range(0.0, 10.0))
+      ->check(in_range(0.0, 10.0))
       ->capture_default_str();
   verb->add_option("--seed", arguments->measurement.seed, "of directions and noise")
-      ->check(CLI::NonNegativeNumber)
+      ->check(at_least_zero())
       ->capture_default_str();
   verb->add_flag("--json", arguments->json, "print what was written as JSON");
   verb->callback([arguments] {

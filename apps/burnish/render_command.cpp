@@ -247,7 +247,7 @@ void add_render_command(CLI::App& app) {
   verb->add_option("--mesh", arguments->mesh, "sphere, teapot, torus-knot, plane, or an OBJ or glTF file")
       ->capture_default_str();
   verb->add_option("--vertices", arguments->vertices, "of a built-in mesh, about")
-      ->check(CLI::Range(64, 1 << 22))
+      ->check(in_range(64, 1 << 22))
       ->capture_default_str();
   verb->add_option("--material", arguments->materials,
                    "factored BRDF as `burnish fit` writes it, or a surface as fit-surface does, over the "
@@ -264,7 +264,7 @@ void add_render_command(CLI::App& app) {
   verb->add_option(
           "--draws", arguments->draws,
           "of --renderer cpu: directions a ray draws of the environment, and of each of its lamps; a square")
-      ->check(CLI::Range(1, 1 << 20))
+      ->check(in_range(1, 1 << 20))
       ->capture_default_str();
   verb->add_option("-o,--output,--out", arguments->out, "picture to write: PNG, or EXR of linear values");
   verb->add_option(
@@ -278,7 +278,7 @@ void add_render_command(CLI::App& app) {
       ->delimiter(',');
   verb->add_option("--size", arguments->size, "pixels: N or WxH")->capture_default_str();
   verb->add_option("--pixel-samples,--samples", arguments->samples, "a pixel along each axis")
-      ->check(CLI::Range(1, 8))
+      ->check(in_range(1, 8))
       ->capture_default_str();
   verb->add_option("--tone", arguments->tone, "of a PNG: clamped, or with a filmic curve")
       ->check(one_of({"srgb", "aces"}))

@@ -16,6 +16,7 @@
 #include <burnish/render/vertex_figure.h>
 
 #include "json_output.h"
+#include "usage.h"
 
 namespace burnish::cli {
 
@@ -65,11 +66,11 @@ void add_figure_arguments(CLI::App& verb, FigureArguments& arguments, bool& figu
   verb.add_option("--tessellations", arguments.tessellations, "of --figure1: numbers of vertices")
       ->needs(figure)
       ->delimiter(',')
-      ->check(CLI::Range(64, 1 << 22))
+      ->check(in_range(64, 1 << 22))
       ->capture_default_str();
   verb.add_option("--figure-size", arguments.size, "of --figure1: pixels a picture")
       ->needs(figure)
-      ->check(CLI::Range(16, 4096))
+      ->check(in_range(16, 4096))
       ->capture_default_str();
 }
 

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "usage.h"
+
 namespace burnish::cli {
 
 namespace fs = std::filesystem;
@@ -33,7 +35,7 @@ void add_slurm_arguments(CLI::App& verb, SlurmArguments& arguments) {
   CLI::Option* slurm = verb.add_flag("--slurm", arguments.wanted,
                                      "write OUT/batch.slurm, a job array of this command, and fit nothing");
   verb.add_option("--tasks", arguments.tasks, "of --slurm: tasks of the array; each takes the next material")
-      ->check(CLI::Range(1, 100'000))
+      ->check(in_range(1, 100'000))
       ->needs(slurm)
       ->capture_default_str();
   verb.add_option("--sbatch", arguments.sbatch, "of --slurm: an option of sbatch, such as --partition=long")

@@ -12,8 +12,7 @@ void check_illuminant(const std::string& spec) {
   try {
     open_illuminant(spec);
   } catch (const Error& error) {
-    throw Error(std::string("--illuminant: expected E, D50, D65, A or a file of wavelengths and powers; ") +
-                error.what());
+    throw Error(std::string("--illuminant: ") + error.what());
   }
 }
 

@@ -162,7 +162,7 @@ void add_specular_report(CLI::App& verb) {
   sub->footer("Example: burnish specular report --exponent 20 -o out/specular");
   auto arguments = std::make_shared<Arguments>();
   sub->add_option("--exponent", arguments->exponent, "for errors, energies and spheres")
-      ->check(CLI::Range(4.0, kMaxExponent))
+      ->check(in_range(4.0, kMaxExponent))
       ->capture_default_str();
   sub->add_flag("--json", arguments->json, "for programs");
   sub->add_option("-o,--output,--out", arguments->out,

@@ -1,6 +1,7 @@
 #include "usage.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -13,10 +14,11 @@ namespace burnish::cli {
 
 namespace {
 
-std::vector<std::string> verbs_of(const CLI::App& app) {
+std::vector<std::string> verbs_of(const CLI::App& app, bool hidden_too) {
   std::vector<std::string> names;
   for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; }))
-    if (!verb->get_name().empty()) names.push_back(verb->get_name());  // the others are groups of options
+    if (!verb->get_name().empty() && (hidden_too || !verb->get_group().empty()))
+      names.push_back(verb->get_name());  // the others are groups of options
   return names;
 }
 
@@ -31,7 +33,9 @@ std::vector<std::string> options_of(const CLI::App& app) {
 
 // What is said of a word that is no verb: which it may have meant, or which there are.
 std::string expected_verb(const std::vector<std::string>& verbs, std::string_view word) {
-  const std::string meant = suggestion(word, verbs);
+  const bool is_topic = word == "formats" || word == "models";
+  const std::string meant =
+      is_topic ? fmt::format("; did you mean 'help {}'?", word) : suggestion(word, verbs);
   return meant.empty() ? fmt::format("expected a verb ({}), found '{}'", fmt::join(verbs, ", "), word)
                        : fmt::format("expected a verb, found '{}'{}", word, meant);
 }
@@ -41,6 +45,27 @@ std::string expected_verb(const std::vector<std::string>& verbs, std::string_vie
 std::string suggestion(std::string_view word, const std::vector<std::string>& names) {
   const std::vector<std::string_view> views(names.begin(), names.end());
   return did_you_mean(word, views);
+}
+
+namespace {
+
+CLI::Validator number_that(const char* expected, const char* description, bool (*is)(double)) {
+  const auto check = [=](std::string& value) {
+    double number = 0;
+    return CLI::detail::lexical_cast(value, number) && std::isfinite(number) && is(number)
+               ? std::string()
+               : fmt::format("expected {}, found '{}'", expected, value);
+  };
+  return {check, description};
+}
+
+}  // namespace
+
+CLI::Validator at_least_zero() {
+  return number_that("a number of at least 0", "NONNEGATIVE", [](double x) { return x >= 0; });
+}
+CLI::Validator above_zero() {
+  return number_that("a number above 0", "POSITIVE", [](double x) { return x > 0; });
 }
 
 CLI::Validator one_of(std::vector<std::string> names) {
@@ -65,18 +90,18 @@ std::optional<std::string> misspelling(const CLI::App& app, std::span<char* cons
       if (std::find(names.begin(), names.end(), name) == names.end())
         return fmt::format("{}expected an option, found '{}'{}", path, name, suggestion(name, names));
     } else if (!within && !word.starts_with('-')) {
-      const std::vector<std::string> verbs = verbs_of(*verb);
+      const std::vector<std::string> verbs = verbs_of(*verb, true);
       if (verbs.empty()) {
         within = true;
         continue;
       }
       const auto found = std::find(verbs.begin(), verbs.end(), word);
-      if (found == verbs.end()) return path + expected_verb(verbs, word);
+      if (found == verbs.end()) return path + expected_verb(verbs_of(*verb, false), word);
       verb = verb->get_subcommand(*found);
       path += *found + ": ";
     }
   }
-  const std::vector<std::string> verbs = verbs_of(*verb);
+  const std::vector<std::string> verbs = verbs_of(*verb, false);
   if (verbs.empty()) return std::nullopt;
   return fmt::format("{}expected a verb ({}), found none", path, fmt::join(verbs, ", "));
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include <burnish/error.h>
 #include <burnish/short_message.h>
@@ -25,6 +26,20 @@ auto usage(F f) -> decltype(f()) {
 
 /// That an option's value is one of these; of another it says which it may have meant.
 CLI::Validator one_of(std::vector<std::string> names);
+
+/// That an option's value is a number from low to high.
+template <class T>
+CLI::Validator in_range(T low, T high) {
+  const auto check = [=](std::string& value) {
+    T number{};
+    const bool is = CLI::detail::lexical_cast(value, number) && number >= low && number <= high;
+    return is ? std::string() : fmt::format("expected a number from {} to {}, found '{}'", low, high, value);
+  };
+  return {check, fmt::format("{} in [{} - {}]", CLI::detail::type_name<T>(), low, high)};
+}
+/// That it is a finite number of at least 0, or of more.
+CLI::Validator at_least_zero();
+CLI::Validator above_zero();
 
 /// "; did you mean 'NAME'?" of the name that is closest to a misspelt word, or nothing.
 std::string suggestion(std::string_view word, const std::vector<std::string>& names);

@@ -6,6 +6,7 @@
 #include <burnish/error.h>
 #include <burnish/io/illuminant.h>
 #include <burnish/io/text_reader.h>
+#include <burnish/math/closest_name.h>
 
 namespace burnish {
 
@@ -31,6 +32,10 @@ Illuminant open_illuminant(const std::string& spec) {
   constexpr std::array<std::string_view, 4> kStandard{"E", "D50", "D65", "A"};
   if (std::find(kStandard.begin(), kStandard.end(), spec) != kStandard.end())
     return standard_illuminant(spec);
+  if (std::error_code none; !std::filesystem::exists(spec, none))
+    throw Error(fmt::format(
+        "expected E, D50, D65, A or a file of wavelengths and powers, found '{}', which is none{}", spec,
+        did_you_mean(spec, kStandard)));
   return parse_illuminant(read_file(spec, 1 << 24));
 }
 

@@ -25,14 +25,26 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
+namespace {
+
+std::string in_lower_case(std::string_view word) {
+  std::string lower(word);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return lower;
+}
+
+}  // namespace
+
 std::string_view closest_name(std::string_view word, std::span<const std::string_view> names) {
   // no name is so long that a longer word could be one of it
   constexpr std::size_t kLongest = 64;
   if (word.size() > kLongest) return {};
+  const std::string lower = in_lower_case(word);
   std::string_view closest;
   std::size_t least = std::max<std::size_t>(word.size() / 3, 1) + 1;
   for (const std::string_view name : names)
-    if (const std::size_t distance = edit_distance(word, name); distance < least) {
+    if (const std::size_t distance = edit_distance(lower, in_lower_case(name)); distance < least) {
       least = distance;
       closest = name;
     }

@@ -19,6 +19,7 @@ TEST(ClosestName, FindsWhatWasMeantAndNothingElse) {
   constexpr std::array<std::string_view, 4> verbs{"info", "fit", "compare", "convert"};
   EXPECT_EQ(closest_name("fti", verbs), "fit");
   EXPECT_EQ(closest_name("compair", verbs), "compare");
+  EXPECT_EQ(closest_name("FIT", verbs), "fit") << "whatever the case";
   EXPECT_EQ(closest_name("nonsense", verbs), "");
   EXPECT_EQ(closest_name("", verbs), "");
   EXPECT_EQ(closest_name(std::string(100, 'f'), verbs), "");
