@@ -6,34 +6,49 @@
 
 #include <burnish/fitting/numerics/dense.h>
 #include <burnish/fitting/numerics/incomplete_cholesky.h>
+#include <burnish/math/parallel.h>
 
 namespace burnish {
 
 namespace {
+
+using Lanes = Eigen::Array<double, IncompleteCholesky::kLanes, 1>;
 
 constexpr double kFirstShare = 1e-3;  // of the diagonal, where it must be larger
 constexpr double kMoreShare = 4;
 // Of the dense rows with what stands before them, tried in turn; then none.
 constexpr double kLessCoupling = 0.8, kMinCoupling = 0.3;
 
+// A thread's share of a solution, of some hundred thousand products.
+constexpr int kBlocksAtOnce = 4;
+constexpr std::size_t kColumnsAtOnce = 512;
+
 }  // namespace
 
 IncompleteCholesky::IncompleteCholesky(const SparseTriangle& matrix, double last_share, int dense_rows)
-    : factor_(matrix), share_(last_share > kFirstShare ? last_share / kMoreShare : 0) {
-  while (!factorize(matrix, dense_rows)) share_ = share_ > 0 ? kMoreShare * share_ : kFirstShare;
+    : factor_(matrix),
+      dense_rows_(dense_rows),
+      share_(last_share > kFirstShare ? last_share / kMoreShare : 0) {
+  const auto blocks = static_cast<std::size_t>((dense_rows + kLanes - 1) / kLanes);
+  before_.resize(blocks * kLanes * static_cast<std::size_t>(first_dense()));
+  while (!factorize(matrix)) share_ = share_ > 0 ? kMoreShare * share_ : kFirstShare;
 }
 
-double IncompleteCholesky::eliminate(const SparseTriangle& matrix, int i, int columns,
-                                     std::vector<double>& row) {
+double* IncompleteCholesky::block_of(int i) noexcept {
+  const int block = (i - first_dense()) / kLanes;
+  return before_.data() + static_cast<std::size_t>(block) * kLanes * static_cast<std::size_t>(first_dense());
+}
+
+double IncompleteCholesky::eliminate(const SparseTriangle& matrix, int i, std::vector<double>& row) {
   const int *starts = factor_.outerIndexPtr(), *column = factor_.innerIndexPtr();
   double* values = factor_.valuePtr();
   const int diagonal = starts[i + 1] - 1;
-  const int end = static_cast<int>(std::lower_bound(column + starts[i], column + diagonal, columns) - column);
-  for (int at = starts[i]; at < end; ++at) row[static_cast<std::size_t>(column[at])] = matrix.valuePtr()[at];
+  for (int at = starts[i]; at < diagonal; ++at)
+    row[static_cast<std::size_t>(column[at])] = matrix.valuePtr()[at];
   double pivot = (1 + share_) * matrix.valuePtr()[diagonal];
 
   // l_ij = (a_ij - sum over k < j of l_ik l_jk) / l_jj
-  for (int at = starts[i]; at < end; ++at) {
+  for (int at = starts[i]; at < diagonal; ++at) {
     const int j = column[at], last = starts[j + 1] - 1;
     double sum = row[static_cast<std::size_t>(j)];
     for (int of_j = starts[j]; of_j < last; ++of_j)
@@ -41,33 +56,59 @@ double IncompleteCholesky::eliminate(const SparseTriangle& matrix, int i, int co
     values[at] = row[static_cast<std::size_t>(j)] = sum * values[last];
     pivot -= values[at] * values[at];
   }
-  for (int at = starts[i]; at < end; ++at) row[static_cast<std::size_t>(column[at])] = 0;
+  for (int at = starts[i]; at < diagonal; ++at) row[static_cast<std::size_t>(column[at])] = 0;
   return pivot;
 }
 
-bool IncompleteCholesky::factorize(const SparseTriangle& matrix, int dense_rows) {
+// As eliminate, of kLanes rows at once: each has the sums that it would have alone, in their order.
+void IncompleteCholesky::eliminate_block(const SparseTriangle& matrix, int first, double* block) const {
+  const int *starts = factor_.outerIndexPtr(), *column = factor_.innerIndexPtr();
+  const double* values = factor_.valuePtr();
+  const int columns = first_dense(), lanes = std::min(kLanes, static_cast<int>(factor_.rows()) - first);
+
+  // the matrix's entries, and which there are
+  std::fill_n(block, static_cast<std::ptrdiff_t>(columns) * kLanes, 0.0);
+  std::vector<Lanes> there(static_cast<std::size_t>(columns), Lanes::Zero());  // 1 or 0
+  for (int lane = 0; lane < lanes; ++lane)
+    for (int at = starts[first + lane]; at < dense_start(first + lane); ++at) {
+      block[column[at] * kLanes + lane] = matrix.valuePtr()[at];
+      there[static_cast<std::size_t>(column[at])][lane] = 1;
+    }
+
+  for (int j = 0; j < columns; ++j) {
+    const int last = starts[j + 1] - 1;
+    Lanes sum = Lanes::Map(block + j * kLanes);
+    for (int of_j = starts[j]; of_j < last; ++of_j)
+      sum -= Lanes::Map(block + column[of_j] * kLanes) * values[of_j];
+    Lanes::Map(block + j * kLanes) = there[static_cast<std::size_t>(j)] * sum * values[last];
+  }
+}
+
+bool IncompleteCholesky::factorize(const SparseTriangle& matrix) {
   const int *starts = factor_.outerIndexPtr(), *column = factor_.innerIndexPtr();
   double* values = factor_.valuePtr();
-  const int size = static_cast<int>(matrix.rows()), first_dense = size - dense_rows;
-  std::vector<double> row(static_cast<std::size_t>(size));
-  for (int i = 0; i < first_dense; ++i) {
-    const double pivot = eliminate(matrix, i, i, row);
+  const int size = static_cast<int>(matrix.rows()), first = first_dense();
+  std::vector<double> row(static_cast<std::size_t>(first));
+  for (int i = 0; i < first; ++i) {
+    const double pivot = eliminate(matrix, i, row);
     if (!(pivot > 0)) return false;
     values[starts[i + 1] - 1] = 1 / std::sqrt(pivot);
   }
-  if (dense_rows == 0) return true;
+  if (dense_rows_ == 0) return true;
 
   // of the dense rows first what stands before them, then the complement that this leaves
-  RowMajorMatrix before = RowMajorMatrix::Zero(dense_rows, first_dense);
-  Eigen::MatrixXd complement(dense_rows, dense_rows);
-  for (int i = first_dense; i < size; ++i) {
-    eliminate(matrix, i, first_dense, row);
-    for (int at = starts[i]; at < starts[i + 1]; ++at)
-      if (column[at] < first_dense)
-        before(i - first_dense, column[at]) = values[at];
-      else
-        complement(i - first_dense, column[at] - first_dense) =
-            (column[at] == i ? 1 + share_ : 1) * matrix.valuePtr()[at];
+  for_each_chunk(static_cast<std::size_t>(dense_rows_), kLanes,
+                 [&](std::size_t, std::size_t begin, std::size_t) {
+                   const int i = first + static_cast<int>(begin);
+                   eliminate_block(matrix, i, block_of(i));
+                 });
+  RowMajorMatrix before(dense_rows_, first);
+  Eigen::MatrixXd complement(dense_rows_, dense_rows_);
+  for (int i = first; i < size; ++i) {
+    const double* const block = block_of(i) + (i - first) % kLanes;
+    for (int j = 0; j < first; ++j) before(i - first, j) = block[j * kLanes];
+    for (int at = dense_start(i); at < starts[i + 1]; ++at)
+      complement(i - first, column[at] - first) = (column[at] == i ? 1 + share_ : 1) * matrix.valuePtr()[at];
   }
   // and with less of it where that is not positive: a smaller coupling of the two leaves a larger complement
   const Eigen::MatrixXd products = products_of_rows(before), diagonal = complement;
@@ -78,12 +119,10 @@ bool IncompleteCholesky::factorize(const SparseTriangle& matrix, int dense_rows)
     if (in_place.info() == Eigen::Success) break;
     if (coupling == 0) return false;
   }
-  for (int i = first_dense; i < size; ++i)
-    for (int at = starts[i]; at < starts[i + 1] - (i - first_dense) - 1; ++at)
-      values[at] *= std::sqrt(coupling);
-  for (int i = first_dense; i < size; ++i)
-    for (int at = starts[i + 1] - (i - first_dense) - 1; at < starts[i + 1]; ++at) {
-      const double value = complement(i - first_dense, column[at] - first_dense);
+  for (double& value : before_) value *= std::sqrt(coupling);
+  for (int i = first; i < size; ++i)
+    for (int at = dense_start(i); at < starts[i + 1]; ++at) {
+      const double value = complement(i - first, column[at] - first);
       values[at] = column[at] == i ? 1 / value : value;
     }
   return true;
@@ -92,17 +131,53 @@ bool IncompleteCholesky::factorize(const SparseTriangle& matrix, int dense_rows)
 Eigen::VectorXd IncompleteCholesky::solve(Eigen::VectorXd b) const {
   const int *starts = factor_.outerIndexPtr(), *columns = factor_.innerIndexPtr();
   const double* values = factor_.valuePtr();
-  for (int i = 0; i < factor_.rows(); ++i) {
+  const int size = static_cast<int>(factor_.rows()), first = first_dense();
+  const std::ptrdiff_t block_size = std::ptrdiff_t{first} * kLanes;
+
+  // L
+  const auto forward = [&](int i, int begin) {
     const int diagonal = starts[i + 1] - 1;
     double sum = b[i];
-    for (int at = starts[i]; at < diagonal; ++at) sum -= values[at] * b[columns[at]];
+    for (int at = begin; at < diagonal; ++at) sum -= values[at] * b[columns[at]];
     b[i] = sum * values[diagonal];
-  }
-  for (int i = static_cast<int>(factor_.rows()) - 1; i >= 0; --i) {
+  };
+  for (int i = 0; i < first; ++i) forward(i, starts[i]);
+  // blocks and, below, columns are worked on apart: a number's sum is in the order of one thread
+  for_each_chunk(static_cast<std::size_t>(dense_rows_), kBlocksAtOnce * kLanes,
+                 [&](std::size_t, std::size_t begin, std::size_t end) {
+                   for (auto row = static_cast<int>(begin); row < static_cast<int>(end); row += kLanes) {
+                     const double* const block = before_.data() + row / kLanes * block_size;
+                     const int i = first + row, lanes = std::min(kLanes, size - i);
+                     Lanes sum = Lanes::Zero();
+                     sum.head(lanes) = b.segment(i, lanes).array();
+                     for (int k = 0; k < first; ++k) sum -= Lanes::Map(block + k * kLanes) * b[k];
+                     b.segment(i, lanes) = sum.head(lanes);
+                   }
+                 });
+  for (int i = first; i < size; ++i) forward(i, dense_start(i));
+
+  // L^T, from the last row to the first
+  const auto backward = [&](int i, int begin) {
     const int diagonal = starts[i + 1] - 1;
     const double x = b[i] *= values[diagonal];
-    for (int at = starts[i]; at < diagonal; ++at) b[columns[at]] -= values[at] * x;
-  }
+    for (int at = begin; at < diagonal; ++at) b[columns[at]] -= values[at] * x;
+  };
+  for (int i = size - 1; i >= first; --i) backward(i, dense_start(i));
+  if (dense_rows_ > 0)
+    for_each_chunk(static_cast<std::size_t>(first), kColumnsAtOnce,
+                   [&](std::size_t, std::size_t begin, std::size_t end) {
+                     for (int row = (dense_rows_ - 1) / kLanes * kLanes; row >= 0; row -= kLanes) {
+                       const double* const block = before_.data() + row / kLanes * block_size;
+                       const int i = first + row, lanes = std::min(kLanes, size - i);
+                       for (auto k = static_cast<int>(begin); k < static_cast<int>(end); ++k) {
+                         double sum = b[k];
+                         for (int lane = lanes - 1; lane >= 0; --lane)
+                           sum -= block[k * kLanes + lane] * b[i + lane];
+                         b[k] = sum;
+                       }
+                     }
+                   });
+  for (int i = first - 1; i >= 0; --i) backward(i, starts[i]);
   return b;
 }
 

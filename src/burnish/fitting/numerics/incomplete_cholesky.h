@@ -13,6 +13,8 @@ using SparseTriangle = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 /// [Meijerink 1977]. A preconditioner.
 class IncompleteCholesky {
  public:
+  static constexpr int kLanes = 8;  ///< dense rows that are worked on at once
+
   /// Every row of `matrix` has a diagonal entry. Where what is left out makes a pivot negative, a share of the
   /// diagonal is added to it, larger until all are positive. `last_share` is the one that a matrix much like this
   /// one took: the search starts below it. The last `dense_rows` rows have an entry for each two of them: they make a
@@ -24,11 +26,20 @@ class IncompleteCholesky {
   Eigen::VectorXd solve(Eigen::VectorXd b) const;
 
  private:
-  bool factorize(const SparseTriangle& matrix, int dense_rows);
-  // Row i's entries in the first `columns` columns and what they leave of the pivot; `row` is room, all zero.
-  double eliminate(const SparseTriangle& matrix, int i, int columns, std::vector<double>& row);
+  bool factorize(const SparseTriangle& matrix);
+  // Row i's entries and what they leave of the pivot; `row` is room, all zero.
+  double eliminate(const SparseTriangle& matrix, int i, std::vector<double>& row);
+  // What stands before the dense rows from `first` on, into their block.
+  void eliminate_block(const SparseTriangle& matrix, int first, double* block) const;
+  int first_dense() const noexcept { return static_cast<int>(factor_.rows()) - dense_rows_; }
+  // Where row i's entries among the dense ones begin.
+  int dense_start(int i) const noexcept { return factor_.outerIndexPtr()[i + 1] - (i - first_dense()) - 1; }
+  double* block_of(int i) noexcept;
 
   SparseTriangle factor_;  ///< the diagonal's reciprocals in its place
+  int dense_rows_;
+  /// What stands before the dense rows, of kLanes of them column by column: not in factor_.
+  std::vector<double> before_;
   double share_;
 };
 
