@@ -104,12 +104,14 @@ void run(const ExportArguments& arguments) {
     auto shaders = nlohmann::ordered_json::array();
     for (const auto& [file, how, cost] : exported.shaders)
       shaders.push_back({{"file", file}, {"how", how}, {"cost", to_string(cost)}});
-    print_as_json({{"output", arguments.folder}, {"files", files}, {"shaders", shaders}});
+    print_as_json(
+        {{"output", arguments.folder}, {"files", files}, {"shaders", shaders}, {"lost", exported.losses}});
     return;
   }
   for (const ExportedFile& file : exported.files) fmt::print("{}\n", file.name);
   for (const auto& [file, how, cost] : exported.shaders)
     fmt::print("{}: {}, {}\n", file, how, to_string(cost));
+  for (const std::string& loss : exported.losses) fmt::print(stderr, "burnish: lost: {}\n", loss);
 }
 
 }  // namespace

@@ -17,9 +17,8 @@
 #include <burnish/export/web_module.h>
 #include <burnish/fitting/parametric/gltf_json.h>
 #include <burnish/fitting/parametric/metallic_roughness_fit.h>
-#include <burnish/io/rgl.h>
+#include <burnish/io/convert.h>
 #include <burnish/reflectance/analytic.h>
-#include <burnish/reflectance/rgl_builder.h>
 #include <burnish/render/gl/surface_environment.h>
 #include <burnish/shaders/shader.h>
 #include <burnish/textures/image_files.h>
@@ -69,6 +68,7 @@ class ModelExport {
   void add_gltf();
   void add_materialx();
   void add_mdl();
+  void add_rgl();
   void add_light(const SurfaceLight& light);
 
   const FactoredBrdf& brdf_;
@@ -207,7 +207,14 @@ void ModelExport::add_mdl() {
   MdlModule module = mdl_module(to_source(options_.name, {brdf_, {}, {}}), options_.cells, options_.name);
   for (ExportedFile& file : module.files)
     manifest_["mdl"]["files"].push_back(add(std::move(file.name), std::move(file.bytes)));
+  result_.lose(options_.name + ".mbsdf", module.losses);
   manifest_["mdl"]["losses"] = std::move(module.losses);
+}
+
+void ModelExport::add_rgl() {
+  Converted table = convert({.name = options_.name, .brdf = brdf_, .findings = {}}, "rgl", {});
+  manifest_["rgl"] = add(options_.name + ".bsdf", std::move(table.bytes));
+  result_.lose(options_.name + ".bsdf", table.losses);
 }
 
 // Shaders of the light that comes from all around, as far as their languages are asked for, and its textures.
@@ -266,8 +273,7 @@ ExportedFiles ModelExport::run() && {
   if (wants(ExportTarget::three)) manifest_["three"] = add(name + ".three.js", three_module(brdf_, name));
   if (wants(ExportTarget::babylon))
     manifest_["babylon"] = add(name + ".babylon.js", babylon_module(brdf_, name));
-  if (wants(ExportTarget::rgl))
-    manifest_["rgl"] = add(name + ".bsdf", format_rgl(make_rgl_table(brdf_, {.description = name})));
+  if (wants(ExportTarget::rgl)) add_rgl();
 
   // light from all around, for the page too
   std::optional<SurfaceLight> light;

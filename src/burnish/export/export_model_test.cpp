@@ -75,6 +75,7 @@ TEST(ExportModel, PutsTheModelIntoTheFilesOfTheWeb) {
 TEST(ExportModel, BringsTheMeasurementThatItsMdlModuleNames) {
   const ExportedFiles exported =
       export_model(small_model(), {.to = {ExportTarget::mdl}, .name = "paint", .cells = 8});
+  EXPECT_THAT(exported.losses, ::testing::Contains(::testing::StartsWith("paint.mbsdf: sampled at")));
   EXPECT_THAT(file_of(exported, "paint.mdl"), HasSubstr("bsdf_measurement(\"./paint.mbsdf\")"));
   const AngleTable table = parse_mbsdf(memory_file(file_of(exported, "paint.mbsdf"))).table;  // of its values
   const auto [wi, wo] = node_directions(table, {0, 3, 2, 5});
@@ -139,6 +140,9 @@ TEST(ExportOpenPbr, WritesParametersAndTables) {
     EXPECT_TRUE(name == "paint.json" ||
                 exported.files.back().bytes.find('"' + name + '"') != std::string::npos)
         << name;
+  using ::testing::StartsWith;
+  EXPECT_THAT(exported.losses, ::testing::ElementsAre(StartsWith("paint.mbsdf: sampled at"),
+                                                      StartsWith("paint.bsdf: sampled at")));
   EXPECT_THROW(export_openpbr(parse_analytic("ggx"), options), Error);
   EXPECT_THROW(export_openpbr(parse_analytic("openpbr"), {.to = {ExportTarget::ktx2}}), Error);
 }

@@ -16,9 +16,8 @@
 #include <burnish/export/web_module.h>
 #include <burnish/fitting/parametric/gltf_json.h>
 #include <burnish/fitting/parametric/metallic_roughness_fit.h>
-#include <burnish/io/rgl.h>
+#include <burnish/io/convert.h>
 #include <burnish/reflectance/analytic.h>
-#include <burnish/reflectance/rgl_builder.h>
 #include <burnish/shaders/openpbr_shader.h>
 
 namespace burnish {
@@ -40,7 +39,7 @@ std::vector<ExportedFile> gltf_file(const NearestGltf& nearest, const std::strin
 
 // The files of one target that is no shader, without the manifest.
 std::vector<ExportedFile> files_of(const AnalyticBrdf& brdf, ExportTarget target,
-                                   const ExportOptions& options, json& manifest) {
+                                   const ExportOptions& options, json& manifest, ExportedFiles& result) {
   const OpenPbr& material = material_of(brdf);
   const OpenPbrParameters& parameters = material.parameters();
   const std::string& name = options.name;
@@ -53,11 +52,15 @@ std::vector<ExportedFile> files_of(const AnalyticBrdf& brdf, ExportTarget target
       return gltf_file(nearest_gltf(brdf), name, manifest);
     case ExportTarget::mdl: {
       MdlModule module = mdl_module({.name = name, .brdf = brdf, .findings = {}}, options.cells, name);
+      result.lose(name + ".mbsdf", module.losses);
       manifest["losses"] = std::move(module.losses);
       return std::move(module.files);
     }
-    case ExportTarget::rgl:
-      return {{name + ".bsdf", format_rgl(make_rgl_table(brdf, {.description = name}))}};
+    case ExportTarget::rgl: {
+      Converted table = convert({.name = name, .brdf = brdf, .findings = {}}, "rgl", {});
+      result.lose(name + ".bsdf", table.losses);
+      return {{name + ".bsdf", std::move(table.bytes)}};
+    }
     case ExportTarget::three:
       return {{name + ".three.js", three_module(material, name)}};
     case ExportTarget::babylon:
@@ -88,7 +91,7 @@ ExportedFiles export_openpbr(const AnalyticBrdf& brdf, const ExportOptions& opti
       continue;
     }
     json& entry = manifest[std::string(to_string(target))];
-    for (ExportedFile& file : files_of(brdf, target, options, entry)) {
+    for (ExportedFile& file : files_of(brdf, target, options, entry, result)) {
       entry["files"].push_back(file.name);
       result.files.push_back(std::move(file));
     }

@@ -68,6 +68,12 @@ struct ExportedShader {
 struct ExportedFiles {
   std::vector<ExportedFile> files;
   std::vector<ExportedShader> shaders;
+  /// What tables that stand for the model say less than it does, as convert says it, each after its file's name.
+  std::vector<std::string> losses;
+
+  void lose(const std::string& file, std::span<const std::string> of_file) {
+    for (const std::string& loss : of_file) losses.push_back(file + ": " + loss);
+  }
 };
 
 /// Writes each file by write_then_rename into the folder, made where it is missing. Throws Error where that
