@@ -43,16 +43,16 @@ void bind_writers(nb::module_& m) {
         nb::call_guard<nb::gil_scoped_release>(),
         "Writes a baseline's JSON, which open_source reads back to the last bit.");
   const ConvertOptions defaults;
-  m.def(
-      "convert", &write_converted, nb::arg("source"), nb::arg("path"), nb::arg("format"), nb::kw_only(),
-      nb::arg("count") = defaults.count, nb::arg("seed") = defaults.seed,
-      nb::arg("entries") = defaults.entries, nb::arg("cells") = defaults.cells,
-      nb::arg("notes") = defaults.notes, nb::call_guard<nb::gil_scoped_release>(),
-      "Writes a source in another format and says what that lost, a phrase each.\n\n"
-      "format: \"merl\", \"rgl\" (for Mitsuba's `measured` and pbrt-v4), \"mbsdf\", \"zemax\", \"astm\", "
-      "\"csv\",\n\"exr\" (slices), or of a model its files \"model\" (OpenEXR) or \"burnish\". count, seed: "
-      "samples drawn\nfor astm and csv; entries: a table's entries instead; cells: along each polar angle of "
-      "merl, mbsdf and\nexr; notes: those of the fit are kept in burnish.");
+  m.def("convert", &write_converted, nb::arg("source"), nb::arg("path"), nb::arg("format"), nb::kw_only(),
+        nb::arg("count") = defaults.count, nb::arg("seed") = defaults.seed,
+        nb::arg("entries") = defaults.entries, nb::arg("cells") = defaults.cells,
+        nb::arg("notes") = defaults.notes, nb::call_guard<nb::gil_scoped_release>(),
+        "Writes a source in another format and says what that lost, a phrase each.\n\n"
+        "format: \"merl\", \"utia\", \"rgl\" (for Mitsuba's `measured` and pbrt-v4), \"mbsdf\", "
+        "\"zemax\", \"tensortree\",\n\"openmaterial\", \"astm\", \"csv\", \"exr\" (slices), or of a "
+        "model its files \"model\" (OpenEXR) or\n\"burnish\". count, seed: samples drawn for astm, csv and "
+        "openmaterial; entries: a table's entries instead;\ncells: along each polar angle of merl, mbsdf and "
+        "exr; notes: those of the fit are kept in burnish.");
 }
 
 }  // namespace burnish::python

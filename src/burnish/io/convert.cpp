@@ -99,6 +99,22 @@ std::optional<double> relative_difference(BrdfRef a, BrdfRef b, std::size_t coun
   return std::expm1(sum / static_cast<double>(terms));
 }
 
+/// Whether the channels differ in a pair.
+bool has_colour(BrdfRef brdf) {
+  const auto channels = brdf.channels();
+  if (channels == 1) return false;
+  const std::vector<DirectionPair> pairs = draw_pairs(kComparedPairs, 1, brdf.isotropic());
+  std::vector<double> f(pairs.size() * channels);
+  std::vector<std::uint8_t> known(pairs.size());
+  brdf.eval(pairs, f, known);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (!known[i]) continue;
+    const auto [least, most] = std::ranges::minmax(std::span(f).subspan(i * channels, channels));
+    if (most - least > 1e-6 * std::abs(most)) return true;
+  }
+  return false;
+}
+
 /// One conversion.
 class Converter {
  public:
@@ -283,7 +299,7 @@ class Converter {
     if (const auto* tree = std::get_if<TensorTree>(&source_.brdf))
       return kept(format_tensor_tree(*tree, sample_name()));
     const Luminance grey{brdf_};
-    if (brdf_.channels() == 3) lose("colour: its luminance is kept");
+    if (has_colour(brdf_)) lose("colour: its luminance is kept");
     // half the cells along a polar angle, a power of two
     int depth = 1;
     while (depth < 5 && 4 << depth <= options_.cells) ++depth;

@@ -272,5 +272,13 @@ TEST(Convert, RealTablesKeepTheirEntries) {
   }
 }
 
+TEST(Convert, OfATensorTreeColourIsLostWhereThereIsSome) {
+  const auto losses = [](const char* spec) {
+    return convert(open_source(spec, {}), "tensortree", {.cells = 8}).losses;
+  };
+  EXPECT_THAT(losses("lambert"), Not(Contains(HasSubstr("colour"))));
+  EXPECT_THAT(losses("lambert:kd=0.3/0.2/0.2"), Contains(HasSubstr("colour")));
+}
+
 }  // namespace
 }  // namespace burnish
