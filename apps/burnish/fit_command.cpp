@@ -222,6 +222,10 @@ void print(const Unexplained& beyond) {
                rings);
   if (const double shift = beyond.colour_shift.value_or(0); shift > kSeenShift)
     fmt::print("beyond     colour shift: the highlight's chromaticity differs by up to {:.3f}\n", shift);
+  if (const double grain = beyond.grain.value_or(1); grain > kSeenFactor || grain < 1 / kSeenFactor)
+    fmt::print("beyond     grain: {:.3g} times the material's across the tangent, by what is along it{}\n",
+               grain,
+               grain > 1 ? "; OpenPBR's highlights are longer along it: turn the tangent by 90 degrees" : "");
 }
 
 // That what is written as JSON is not named as a model's file.

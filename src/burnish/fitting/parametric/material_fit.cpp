@@ -70,7 +70,8 @@ Json report_of(const MaterialFit& fit) {
   const auto or_null = [](std::optional<double> figure) { return figure ? Json(*figure) : Json(); };
   json["beyond"] = {{"backscatter", or_null(fit.beyond.backscatter)},
                     {"rings", or_null(fit.beyond.rings)},
-                    {"colour_shift", or_null(fit.beyond.colour_shift)}};
+                    {"colour_shift", or_null(fit.beyond.colour_shift)},
+                    {"grain", or_null(fit.beyond.grain)}};
   if (fit.factored) {
     json["factored"] = json_of(fit.factored->figures);
     json["factored"]["bytes"] = fit.factored->bytes;

@@ -15,7 +15,7 @@
 
 namespace burnish {
 
-/// What a BRDF does that a material does not: 1, 1 and 0 of one that is the same. Nothing where the BRDF is not known
+/// What a BRDF does that a material does not: 1, 1, 0 and 1 of one that is the same. Nothing where the BRDF is not known
 /// at any of the directions; those that it does not know are left out.
 struct Unexplained {
   /// Light that returns to where it came from (wi = wo, 20 to 60 degrees), of the source over that of the material.
@@ -25,9 +25,12 @@ struct Unexplained {
   std::optional<double> rings;
   /// Greatest distance of the highlight's chromaticities (r, g, b over their sum; theta_h 0, theta_d to 75 degrees).
   std::optional<double> colour_shift;
+  /// How much more there is where half vectors lean across the tangent than where they lean along it (theta_h 10 to 40
+  /// degrees, theta_d 15), of the source over that of the material.
+  std::optional<double> grain;
 };
 
-/// Compares the luminances, means over four azimuths unless both are isotropic.
+/// Compares the luminances, of all but grain means over four azimuths unless both are isotropic.
 Unexplained unexplained(BrdfRef source, BrdfRef material);
 
 /// What is to be known about a factored model beside a material.

@@ -28,6 +28,13 @@ TEST(Unexplained, IsNothingOfTheSameAndSomethingOfWhatReturnsLight) {
   EXPECT_EQ(same.backscatter, 1);
   EXPECT_EQ(same.rings, 1);
   EXPECT_EQ(same.colour_shift, 0);
+  EXPECT_EQ(same.grain, 1);
+  const AnalyticBrdf along = parse_analytic("ggx:alpha_x=0.3,alpha_y=0.1"),
+                     across = parse_analytic("ggx:alpha_x=0.1,alpha_y=0.3");
+  EXPECT_GT(unexplained(across.ref(), along.ref()).grain.value(), 4);
+  EXPECT_NEAR(unexplained(along.ref(), across.ref()).grain.value() *
+                  unexplained(across.ref(), along.ref()).grain.value(),
+              1, 1e-9);
   EXPECT_GT(unexplained(back.ref(), matt.ref()).backscatter.value(), 1.2);
   EXPECT_GT(unexplained(red.ref(), matt.ref()).colour_shift.value(), 0.2);
 }

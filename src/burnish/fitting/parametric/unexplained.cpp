@@ -77,6 +77,14 @@ class Rise {
   double least_ = INFINITY, greatest_ = 1;
 };
 
+/// A pair about a half vector, with the difference vector across the plane of that and the normal: both directions at
+/// one height.
+DirectionPair level_pair(double theta_h, double phi_h, double theta_d) {
+  const Vec3 along = std::cos(theta_d) * spherical_direction(theta_h, phi_h),
+             aside = std::sin(theta_d) * Vec3{-std::sin(phi_h), std::cos(phi_h), 0};
+  return {along + aside, along - aside};
+}
+
 /// Of the rises as theta_h grows, source over material.
 std::optional<double> rings(BrdfRef source, BrdfRef material) {
   Rise of_source, of_material;
@@ -86,11 +94,8 @@ std::optional<double> rings(BrdfRef source, BrdfRef material) {
     of_material.begin_again();
     int count = 0;
     for (int theta_h_deg = 0; theta_h_deg <= 60; theta_h_deg += 2) {
-      // the difference vector across the plane of h and the normal: both directions at one height
-      const Vec3 h = spherical_direction(radians(theta_h_deg), 0);
-      const Vec3 aside = std::sin(radians(theta_d_deg)) * Vec3{0, 1, 0},
-                 along = std::cos(radians(theta_d_deg)) * h;
-      const auto seen = mean_seen(source, material, along + aside, along - aside);
+      const auto [wi, wo] = level_pair(radians(theta_h_deg), 0, radians(theta_d_deg));
+      const auto seen = mean_seen(source, material, wi, wo);
       if (!seen) continue;
       of_source.add(luminance(seen->source));
       of_material.add(luminance(seen->material));
@@ -115,12 +120,29 @@ std::optional<double> colour_shift(BrdfRef source, BrdfRef material) {
   return greatest;
 }
 
+std::optional<double> grain(BrdfRef source, BrdfRef material) {
+  double of_source[2] = {kFloor, kFloor}, of_material[2] = {kFloor, kFloor};  // along, across
+  bool known = false;
+  for (int theta_h_deg = 10; theta_h_deg <= 40; theta_h_deg += 5)
+    for (int quarter = 0; quarter < 4; ++quarter) {
+      const auto [wi, wo] = level_pair(radians(theta_h_deg), kHalfPi * quarter, radians(15));
+      const auto at_source = value_of(source, wi, wo), at_material = value_of(material, wi, wo);
+      if (!at_source || !at_material) continue;
+      of_source[quarter % 2] += luminance(*at_source);
+      of_material[quarter % 2] += luminance(*at_material);
+      known = true;
+    }
+  if (!known) return {};
+  return of_source[1] / of_source[0] / (of_material[1] / of_material[0]);
+}
+
 }  // namespace
 
 Unexplained unexplained(BrdfRef source, BrdfRef material) {
   return {.backscatter = backscatter(source, material),
           .rings = rings(source, material),
-          .colour_shift = colour_shift(source, material)};
+          .colour_shift = colour_shift(source, material),
+          .grain = grain(source, material)};
 }
 
 }  // namespace burnish
