@@ -182,6 +182,9 @@ Reply evaluate(const Request& request) {
 }
 
 // Of light from theta_i (radians) at azimuth phi.
+// A hemisphere of which more is unknown has no albedo.
+constexpr double kAllUnknown = 0.999;
+
 Reply albedo(const Request& request) {
   const Source& source = material(request.arguments);
   const double phi = request.arguments.value("phi", 0.0);
@@ -190,8 +193,10 @@ Reply albedo(const Request& request) {
     if (!(theta >= 0 && theta < kHalfPi))
       throw Error(fmt::format("albedo: expected theta_i in [0, pi/2) radians, found {}", theta));
     const Vec3 wi{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
-    for (const double value : directional_albedo(source.ref(), wi).albedo)
-      result.push_back(static_cast<float>(value));
+    const DirectionalAlbedo found = directional_albedo(source.ref(), wi);
+    for (const double value : found.albedo)
+      result.push_back(found.unknown_fraction > kAllUnknown ? std::numeric_limits<float>::quiet_NaN()
+                                                            : static_cast<float>(value));
   }
   return {.json = Json{{"channels", source.ref().channels()}}.dump(), .blobs = {bytes_of(result)}};
 }
@@ -435,7 +440,10 @@ void add_textures(std::span<const ShaderTexture> textures, Json& list, Reply& re
                     {"depth", t.depth},
                     {"channels", t.channels},
                     {"format", to_string(t.format)}});
-    reply.blobs.push_back(bytes_of(t.values));
+    // browsers pack floats as rgb9e5 each in its own way, some wrongly: packed here
+    reply.blobs.push_back(bytes_of(t.format == TableFormat::rgb9e5
+                                       ? pack(t.format, t.channels, t.values)
+                                       : pack(TableFormat::single, t.channels, t.values)));
   }
 }
 
@@ -480,7 +488,7 @@ Reply place(const Request& request) {
               CompactContent::model_and_notes)}};
 }
 
-// Textures follow as blobs of floats, [z][y][x][channel].
+// Textures follow as blobs of floats, [z][y][x][channel], or of rgb9e5's words.
 Reply shader(const Request& request) {
   const Json& a = request.arguments;
   const ShaderLanguage language = language_named(a.at("language").get<std::string>());
@@ -520,7 +528,7 @@ Reply reply_of(std::span<const std::pair<std::string, std::string>> files, Json 
 Reply reply_of(ExportedFiles exported) {
   std::vector<std::pair<std::string, std::string>> files;
   for (ExportedFile& file : exported.files) files.emplace_back(std::move(file.name), std::move(file.bytes));
-  return reply_of(files, Json::array());
+  return reply_of(files, exported.losses);
 }
 
 Reply export_surface_of(const SurfaceModel& surface, const std::string& kind, const std::string& name) {

@@ -283,7 +283,7 @@ test("Shaders, exports and volumes have what they say", async () => {
   for (const language of ["glsl", "glsl_es", "hlsl", "msl", "wgsl", "cpp"]) {
     const {code, textures, cost, function: called} = await model.shader(language);
     assert.ok(code.includes(called) && cost.fetches > 0);
-    for (const t of textures) assert.equal(t.data.length, t.width * Math.max(t.height, 1) * Math.max(t.depth, 1) * t.channels);
+    for (const t of textures) assert.equal(t.data.length, t.width * Math.max(t.height, 1) * Math.max(t.depth, 1) * (t.format === "rgb9e5" ? 1 : t.channels));
   }
   await run("export", at("a.burnish"), "--to", "glsl_es", "--name", "brdf", "-o", at("shaders"));
   const native = fs.readdirSync(at("shaders")).find((name) => name.endsWith(".glsl") || name.includes("glsl_es") || name.endsWith(".frag"));

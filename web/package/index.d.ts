@@ -8,6 +8,11 @@ export interface Call {
   signal?: AbortSignal;
 }
 
+export interface ExportCall extends Call {
+  /** What the format says less than the material, a phrase each; not called where that is nothing. */
+  onLosses?: (losses: string[]) => void;
+}
+
 /** Of what tells how far it is. */
 export interface LongCall extends Call {
   onProgress?: Progress;
@@ -141,7 +146,7 @@ export class Material {
   info(call?: Call): Promise<Record<string, any>>;
   /** n x 3 unit vectors each, to n x channels values; NaN where the material knows none. */
   evaluate(wi: ArrayLike<number>, wo: ArrayLike<number>, call?: Call): Promise<Float32Array>;
-  /** Share reflected of light from theta_i (radians, below pi/2), n x channels. */
+  /** Share reflected of light from theta_i (radians, below pi/2), n x channels; NaN where nothing is known. */
   albedo(thetas: ArrayLike<number>, options?: Call & {phi?: number}): Promise<Float32Array>;
   /** The material resampled for a 3-D texture; of an anisotropic one at one phi_h. */
   volume(cells?: {thetaH?: number; thetaD?: number; phiD?: number; phiH?: number}, call?: LongCall): Promise<Volume>;
@@ -152,8 +157,8 @@ export class Material {
   /** The JSON of `burnish compare --json`: a list, an object a model. */
   compare(models: Material | Material[], options?: CompareOptions, call?: Call): Promise<Record<string, any>[]>;
   images(model: Material, options?: {size?: number; symmetrize?: boolean}, call?: Call): Promise<Images>;
-  export(kind: FileKind, options?: ExportOptions, call?: Call): Promise<Uint8Array>;
-  export(kind: FilesKind, options?: ExportOptions, call?: Call): Promise<NamedFile[]>;
+  export(kind: FileKind, options?: ExportOptions, call?: ExportCall): Promise<Uint8Array>;
+  export(kind: FilesKind, options?: ExportOptions, call?: ExportCall): Promise<NamedFile[]>;
   /** Gives its memory back; whatever is asked of it afterwards rejects. */
   close(): void;
 }
@@ -175,8 +180,8 @@ export interface ShaderTexture {
   depth: number;
   channels: number;
   format: "half" | "float" | "rgb9e5" | "unorm8";
-  /** [z][y][x][channel], ready for texImage2D or texImage3D with `gl`. */
-  data: Float32Array | Uint8Array;
+  /** [z][y][x][channel], of rgb9e5 a word a texel, ready for texImage2D or texImage3D with `gl`. */
+  data: Float32Array | Uint8Array | Uint32Array;
   /** Names of WebGL2's constants. */
   gl: {internalFormat: string; format: string; type: string};
 }

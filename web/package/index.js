@@ -300,8 +300,9 @@ export class Material {
   }
 
   /// One file as bytes, or a list of files where there are several.
-  async export(kind, options = {}, {signal} = {}) {
+  async export(kind, options = {}, {signal, onLosses} = {}) {
     const {json, blobs} = await this.#ask("export", {...options, kind}, {signal});
+    if (json.losses?.length) onLosses?.(json.losses);
     if (kConverted.has(kind)) return new Uint8Array(blobs[0]);
     return json.names.map((name, i) => ({name, bytes: new Uint8Array(blobs[i])}));
   }
@@ -319,7 +320,7 @@ const kConverted = new Set(["merl", "utia", "rgl", "mbsdf", "zemax", "tensortree
 const kTexels = {
   half: {1: ["R16F", "RED", "FLOAT"], 3: ["RGB16F", "RGB", "FLOAT"]},
   float: {1: ["R32F", "RED", "FLOAT"], 3: ["RGB32F", "RGB", "FLOAT"]},
-  rgb9e5: {3: ["RGB9_E5", "RGB", "FLOAT"]},
+  rgb9e5: {3: ["RGB9_E5", "RGB", "UNSIGNED_INT_5_9_9_9_REV"]},
   unorm8: {1: ["R8", "RED", "UNSIGNED_BYTE"], 3: ["RGB8", "RGB", "UNSIGNED_BYTE"]},
 };
 
@@ -344,8 +345,9 @@ export class Model extends Material {
       request: {...options, language, verb: "shader", id: this.id}, materials: [this.recipe], signal,
     });
     const textures = json.textures.map((texture, i) => {
-      const values = floats(blobs[i]), [internalFormat, format, type] = kTexels[texture.format][texture.channels];
-      const data = texture.format === "unorm8" ? Uint8Array.from(values, (v) => Math.round(255 * v)) : values;
+      const [internalFormat, format, type] = kTexels[texture.format][texture.channels];
+      const data = texture.format === "rgb9e5" ? new Uint32Array(blobs[i]) :
+        texture.format === "unorm8" ? Uint8Array.from(floats(blobs[i]), (v) => Math.round(255 * v)) : floats(blobs[i]);
       return {...texture, data, gl: {internalFormat, format, type}};
     });
     return {...json, textures, ...(json.maps && {maps: mapsOf(json.maps, blobs.slice(textures.length))})};

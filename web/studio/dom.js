@@ -31,8 +31,9 @@ export function bytesText(bytes) {
 export function number(x, digits = 4) {
   if (x === null || x === undefined || Number.isNaN(x)) return "–";
   if (!Number.isFinite(x)) return x > 0 ? "∞" : "−∞";
-  const size = Math.abs(x);
-  const text = size !== 0 && (size < 1e-3 || size >= 1e5) ? x.toExponential(2) : String(Number(x.toPrecision(digits)));
+  const size = Math.abs(x) < 1e-12 ? 0 : Math.abs(x);
+  if (size === 0) return "0";
+  const text = (size < 1e-3 || size >= 1e5) ? x.toExponential(2) : String(Number(x.toPrecision(digits)));
   return text.replace("-", "−");
 }
 

@@ -143,15 +143,19 @@ function drawCurve() {
 // A figure with few digits; with all of them where it is pointed at.
 const figure = (x, digits) => make("span", {title: x}, number(Math.abs(x) < kNothing ? 0 : x, digits));
 
+// A long name without its middle: its end tells fits of one file apart.
+const shortened = (name) => make("span", {class: "name", title: name}, name.length > 17 ? `${name.slice(0, 8)}…${name.slice(-8)}` : name);
+
 // What compare prints of a model below its first line: albedos, and figures where something was measured.
 function moreFigures(reference, model, {albedo, nodes, unknown_fraction: unknown, unknown_pixels: pixels}) {
   const mean = (values) => values.reduce((sum, x) => sum + x, 0) / values.length;
+  const names = [shortened(reference.name), shortened(model.name)];
   const albedos = albedo.map((at) => row([incidence(at), figure(mean(at.reference), 4), figure(mean(at.model), 4)]));
   const scores = ({relative, rms_log, log_cos, rms}) => [relative, rms_log, log_cos, rms].map((x) => figure(x, 3));
   return [
-    table("Mean of the channels", ["at", reference.name, model.name], albedos),
+    table("Mean of the channels", ["at", ...names], albedos),
     nodes ? table(`At ${nodes.count.toLocaleString("en")} measured nodes`, ["of", "relative", "rms log", "log cos", "rms"],
-                  [row([reference.name, ...scores(nodes.itself)]), row([model.name, ...scores(nodes)])]) : "",
+                  [row([names[0], ...scores(nodes.itself)]), row([names[1], ...scores(nodes)])]) : "",
     unknown > 0 || pixels > 0 ? make("p", {class: "hint"}, `Left out, where a side knows nothing: ${number(100 * unknown, 3)} % of the directions and ${pixels} pixels.`) : "",
   ];
 }

@@ -46,10 +46,15 @@ function facts(info, {drawn, computed}) {
 
 export const incidence = ({theta_i_deg, phi_i_deg}) => `${number(theta_i_deg, 3)}°${phi_i_deg > 0 ? `, ${number(phi_i_deg, 3)}°` : ""}`;
 
+const kSomeUnknown = 1e-3, kAllUnknown = 0.999;  // of the hemisphere
 function albedos({albedo}) {
   if (!albedo?.length) return null;
   const names = {1: ["grey"], 3: ["red", "green", "blue"]}[albedo[0].albedo.length] ?? ["1", "2", "3"];
-  return table("Albedo", ["at", ...names], albedo.map((at) => row([incidence(at), ...at.albedo.slice(0, 3).map((x) => number(x, 3))])));
+  const unknown = albedo.some((at) => at.unknown_fraction > kSomeUnknown);
+  return table("Albedo", ["at", ...names, ...(unknown ? ["unknown"] : [])], albedo.map((at) => {
+    const known = at.albedo.slice(0, 3).map((x) => (at.unknown_fraction > kAllUnknown ? "–" : number(x, 3)));
+    return row([incidence(at), ...known, ...(unknown ? [`${number(100 * at.unknown_fraction, 3)} %`] : [])]);
+  }));
 }
 
 // Where a format leaves open how it is read; the same controls stay, and keep the focus.

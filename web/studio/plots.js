@@ -83,7 +83,8 @@ function drawPolar({angles, lines}) {
                                "stroke-linejoin": "round", "paint-order": "stroke", "data-ring": value}, tickText(value, 2)));
   const tip = at(-degrees(settings.theta), 1), accent = css("--accent");
   figure.append(svg("path", {d: `M${place(tip)}L${place(middle)}`, stroke: accent, "stroke-width": 1.6}),
-                svg("circle", {cx: tip[0], cy: tip[1], r: 6, fill: accent, cursor: "ew-resize"}));
+                svg("circle", {cx: tip[0], cy: tip[1], r: 6, fill: accent}),
+                svg("circle", {cx: tip[0], cy: tip[1], r: 22, fill: "transparent", cursor: "move", class: "handle"}));  // for a finger
   onDrag(figure, ([x, y, w, h]) => {
     const dx = (x / w) * width - middle[0], dy = middle[1] - (y / h) * height;
     setTheta(degrees(Math.abs(Math.atan2(dx, Math.max(dy, 1e-3)))));
@@ -97,6 +98,8 @@ function onDrag(figure, told) {
     dragging = told;
     move(event);
   });
+  // a finger on the handle moves that and not the page
+  figure.addEventListener("touchstart", (event) => event.target.classList.contains("handle") && event.preventDefault(), {passive: false});
 }
 let dragging = null;
 function move(event) {

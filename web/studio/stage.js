@@ -10,6 +10,7 @@ import {View} from "./view.js";
 
 let touched = 0;  // the light that was moved last
 let view = null, exposedFor = null, exposes = true;  // until the slider is moved
+const isReady = (entry) => entry?.seen;
 
 // Where a light's handle stands: its direction seen from the front, at this share of the half frame.
 const kRing = 0.94;
@@ -137,6 +138,10 @@ function show() {
     view?.set({shape: "plane"});
   }
   view?.show(state.shown, state.beside);
+  if (isReady(state.shown) && exposedFor !== state.shown.id) {
+    exposedFor = state.shown.id;
+    expose();
+  }
 }
 function choose(name) {
   setShown(name);

@@ -25,7 +25,8 @@ function stem(entry) {
 
 // Exports are bytes, or files {name, bytes}.
 async function filesOf(entry, kind, signal) {
-  const made = await entry.material.export(kind, {name: stem(entry)}, {signal});
+  const onLosses = (losses) => say(`${entry.name} as ${kind}: lost: ${losses.join("; ")}`);
+  const made = await entry.material.export(kind, {name: stem(entry)}, {signal, onLosses});
   return Array.isArray(made) ? made : [{name: `${stem(entry)}.${kExtensions[kind] ?? kind}`, bytes: made}];
 }
 
@@ -178,7 +179,7 @@ function draw() {
     model ? linkGroup(model) : "",
     ...apart.map((each) =>
       make("div", {"data-of": each.id}, make("h3", {}, `${each.name} as`),
-        make("div", {class: "buttons"}, ...Object.entries(anyFiles).map(([kind, title]) => saveButton(each, kind, title))))),
+        make("div", {class: "buttons"}, ...Object.entries(anyFiles).filter(([kind]) => kind !== "exr" || !each.model).map(([kind, title]) => saveButton(each, kind, title))))),
     pictureGroup());
 }
 

@@ -109,8 +109,9 @@ bool has_colour(BrdfRef brdf) {
   brdf.eval(pairs, f, known);
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     if (!known[i]) continue;
-    const auto [least, most] = std::ranges::minmax(std::span(f).subspan(i * channels, channels));
-    if (most - least > 1e-6 * std::abs(most)) return true;
+    const auto values = std::span(f).subspan(i * channels, channels);
+    const auto [least, most] = std::minmax_element(values.begin(), values.end());
+    if (*most - *least > 1e-6 * std::abs(*most)) return true;
   }
   return false;
 }
