@@ -149,13 +149,13 @@ const shortened = (name) => make("span", {class: "name", title: name}, name.leng
 // What compare prints of a model below its first line: albedos, and figures where something was measured.
 function moreFigures(reference, model, {albedo, nodes, unknown_fraction: unknown, unknown_pixels: pixels}) {
   const mean = (values) => values.reduce((sum, x) => sum + x, 0) / values.length;
-  const names = [shortened(reference.name), shortened(model.name)];
+  const names = () => [shortened(reference.name), shortened(model.name)], [ofReference, ofModel] = names();
   const albedos = albedo.map((at) => row([incidence(at), figure(mean(at.reference), 4), figure(mean(at.model), 4)]));
   const scores = ({relative, rms_log, log_cos, rms}) => [relative, rms_log, log_cos, rms].map((x) => figure(x, 3));
   return [
-    table("Mean of the channels", ["at", ...names], albedos),
+    table("Mean of the channels", ["at", ...names()], albedos),
     nodes ? table(`At ${nodes.count.toLocaleString("en")} measured nodes`, ["of", "relative", "rms log", "log cos", "rms"],
-                  [row([names[0], ...scores(nodes.itself)]), row([names[1], ...scores(nodes)])]) : "",
+                  [row([ofReference, ...scores(nodes.itself)]), row([ofModel, ...scores(nodes)])]) : "",
     unknown > 0 || pixels > 0 ? make("p", {class: "hint"}, `Left out, where a side knows nothing: ${number(100 * unknown, 3)} % of the directions and ${pixels} pixels.`) : "",
   ];
 }
