@@ -10,7 +10,6 @@ import {View} from "./view.js";
 
 let touched = 0;  // the light that was moved last
 let view = null, exposedFor = null, exposes = true;  // until the slider is moved
-const isReady = (entry) => entry?.seen;
 
 // Where a light's handle stands: its direction seen from the front, at this share of the half frame.
 const kRing = 0.94;
@@ -138,7 +137,7 @@ function show() {
     view?.set({shape: "plane"});
   }
   view?.show(state.shown, state.beside);
-  if (isReady(state.shown) && exposedFor !== state.shown.id) {
+  if (state.shown?.seen && exposedFor !== state.shown.id) {
     exposedFor = state.shown.id;
     expose();
   }
