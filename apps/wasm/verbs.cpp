@@ -38,6 +38,7 @@
 #include "comparison.h"
 #include "info_json.h"
 #include "opened.h"
+#include "options.h"
 #include "surface_info.h"
 
 namespace burnish::wasm {
@@ -70,16 +71,6 @@ const FactoredBrdf& model_of(const Json& arguments) {
   const auto* model = std::get_if<FactoredBrdf>(&source.brdf);
   if (!model) throw Error(fmt::format("{}: expected a factored BRDF, found another", source.name));
   return *model;
-}
-
-template <class T>
-void read_if(const Json& from, const char* key, T& to) {
-  if (const auto found = from.find(key); found != from.end() && !found->is_null()) to = found->get<T>();
-}
-
-template <class T>
-void read_if(const Json& from, const char* key, std::optional<T>& to) {
-  if (const auto found = from.find(key); found != from.end() && !found->is_null()) to = found->get<T>();
 }
 
 template <class T>
@@ -116,12 +107,15 @@ Json summary_of(const Opened& opened) {
 
 Reply open(Request request) {
   const Json& a = request.arguments;
+  const Options given("open", a, {"spectral", "illuminant", "hasCosine", "clampNegatives", "back", "entry"},
+                      {"verb", "id", "spec", "name", "decoderAt"});
   OpenOptions options;
-  read_if(a, "spectral", options.keep_spectral);
-  read_if(a, "illuminant", options.illuminant);
-  read_if(a, "hasCosine", options.has_cosine);
-  read_if(a, "clampNegatives", options.clamp_negatives);
-  read_if(a, "back", options.back_side);
+  given.read("spectral", options.keep_spectral);
+  given.read("illuminant", options.illuminant);
+  given.read("hasCosine", options.has_cosine);
+  given.read("clampNegatives", options.clamp_negatives);
+  given.read("back", options.back_side);
+  given.text("entry");
   // no file of a light is at hand here
   constexpr std::array<std::string_view, 4> kLights{"E", "D50", "D65", "A"};
   if (std::ranges::find(kLights, options.illuminant) == kLights.end())
@@ -187,7 +181,8 @@ constexpr double kAllUnknown = 0.999;
 
 Reply albedo(const Request& request) {
   const Source& source = material(request.arguments);
-  const double phi = request.arguments.value("phi", 0.0);
+  double phi = 0;
+  Options("albedo", request.arguments, {"phi"}, {"verb", "id"}).read("phi", phi);
   std::vector<float> result;
   for (const float theta : floats_of(request.bytes)) {
     if (!(theta >= 0 && theta < kHalfPi))
@@ -238,14 +233,14 @@ std::vector<DirectionPair> layer_pairs(std::size_t thetas_h, std::size_t thetas_
 // phi_d = (z + 1/2) / phiD 2 pi.
 Reply volume(const Request& request, const Progress& progress) {
   const BrdfRef brdf = material(request.arguments).ref();
+  const Options given("volume", request.arguments, {"thetaH", "thetaD", "phiD", "phiH"}, {"verb", "id"});
+  constexpr std::uint64_t kFewestCells = 2, kMostCells = 512;  // a side
   std::array<std::size_t, 3> size{90, 90, 180};
-  read_if(request.arguments, "thetaH", size[0]);
-  read_if(request.arguments, "thetaD", size[1]);
-  read_if(request.arguments, "phiD", size[2]);
-  const double phi_h = request.arguments.value("phiH", 0.0);
-  for (const std::size_t side : size)
-    if (side < 2 || side > 512)
-      throw Error(fmt::format("volume: expected 2 to 512 cells a side, found {}", side));
+  given.read("thetaH", size[0], kFewestCells, kMostCells);
+  given.read("thetaD", size[1], kFewestCells, kMostCells);
+  given.read("phiD", size[2], kFewestCells, kMostCells);
+  double phi_h = 0;
+  given.read("phiH", phi_h);
   const auto channels = brdf.channels();
   const auto [nh, nd, np] = size;
   std::vector<float> data;
@@ -304,39 +299,58 @@ Reply table(const Request& request) {
 }
 
 // As the verb fit reads its options.
-FitForm fit_form(const Json& a, bool isotropic) {
+FitForm fit_form(const Options& given, bool isotropic) {
   LogLinear how;
-  how.cross_validate = a.contains("smooth") && a.at("smooth") == "auto";
-  read_if(a, "reweightings", how.reweightings);
-  read_if(a, "floor", how.floor);
-  const FitLoss loss = parse_fit_loss(a.value("loss", "image"));
-  if (a.contains("budget") && !a.at("budget").is_null()) {
-    Budget budget{.bytes = {}, .loss = loss, .scattered = how};
-    if (a.at("budget") != "auto") {
-      if (!a.at("budget").is_number_unsigned() || a.at("budget") == 0)
-        throw Error(fmt::format("budget: expected auto or a number of bytes above 0, found {}",
-                                a.at("budget").dump().substr(0, 40)));
-      budget.bytes = a.at("budget").get<std::uint64_t>();
-    }
-    read_if(a, "fetches", budget.fetches);
-    read_if(a, "lobes", budget.lobes);
-    read_if(a, "search", budget.search);
-    return budget;
+  std::string model;
+  std::vector<std::string> tables;
+  given.read("reweightings", how.reweightings, std::uint64_t{0}, std::uint64_t{100});
+  given.read("floor", how.floor);
+  if (!(how.floor > 0)) throw given.expected("floor above 0", how.floor);
+  given.read("model", model);
+  given.read("tables", tables);
+  const FitLoss loss = parse_fit_loss(given.text("loss", "image"));
+  const Json* smooth = given.found("smooth");
+  if (smooth && !smooth->is_number() && *smooth != "auto")
+    throw given.expected("smooth as auto or a number of at least 0", *smooth);
+  how.cross_validate = smooth && *smooth == "auto";
+  const Json* bytes = given.found("budget");
+  if (!bytes) {
+    for (const char* of_budget : {"fetches", "lobes", "search"})
+      if (const Json* value = given.found(of_budget))
+        throw given.expected(fmt::format("{} beside a budget", of_budget), *value);
+    return form_of(model, tables, isotropic, how, loss);
   }
-  return form_of(a.value("model", ""), a.value("tables", std::vector<std::string>()), isotropic, how, loss);
+  for (const char* of_form : {"model", "tables"})
+    if (const Json* value = given.found(of_form))
+      throw given.expected(fmt::format("either a budget or {}", of_form), *value);
+  Budget budget{.bytes = {}, .loss = loss, .scattered = how};
+  if (*bytes != "auto") {
+    if (!bytes->is_number_unsigned() || *bytes == 0)
+      throw given.expected("budget as auto or a number of bytes above 0", *bytes);
+    budget.bytes = bytes->get<std::uint64_t>();
+  }
+  given.read("fetches", budget.fetches, 1, 256);
+  given.read("lobes", budget.lobes, 1, 64);
+  given.read("search", budget.search);
+  return budget;
 }
 
 FitOptions fit_options(const Json& a, bool isotropic) {
+  const Options given(
+      "fit", a,
+      {"budget", "fetches", "lobes", "search", "loss", "model", "tables", "target", "holdOut", "smooth",
+       "format", "reweightings", "floor", "samples", "seed", "symmetrize", "conserveEnergy"});
   FitOptions options;
-  options.form = fit_form(a, isotropic);
-  if (a.contains("target")) options.target = parse_fit_target(a.at("target").get<std::string>());
-  if (a.contains("holdOut")) options.hold_out = parse_node_part(a.at("holdOut").get<std::string>());
-  if (a.contains("format")) options.format = parse_table_format(a.at("format").get<std::string>());
-  if (a.contains("smooth") && a.at("smooth").is_number()) options.smooth = a.at("smooth").get<double>();
-  read_if(a, "samples", options.samples);
-  read_if(a, "seed", options.seed);
-  read_if(a, "symmetrize", options.symmetrize);
-  read_if(a, "conserveEnergy", options.conserve_energy);
+  options.form = fit_form(given, isotropic);
+  if (given.found("target")) options.target = parse_fit_target(given.text("target"));
+  if (given.found("holdOut")) options.hold_out = parse_node_part(given.text("holdOut"));
+  if (given.found("format")) options.format = parse_table_format(given.text("format"));
+  if (const Json* smooth = given.found("smooth"); smooth && smooth->is_number())
+    given.read("smooth", options.smooth, 0.0);
+  given.read("samples", options.samples, 1, 100'000'000);
+  given.read("seed", options.seed);
+  given.read("symmetrize", options.symmetrize);
+  given.read("conserveEnergy", options.conserve_energy);
   return options;
 }
 
@@ -355,7 +369,14 @@ Reply fit_material(const Request& request, const Progress& progress) {
 
 // A number or a list of them.
 std::vector<double> numbers(const Json& value) {
-  return value.is_array() ? value.get<std::vector<double>>() : std::vector{value.get<double>()};
+  const std::vector<Json> list = value.is_array() ? value.get<std::vector<Json>>() : std::vector{value};
+  std::vector<double> result;
+  for (const Json& number : list) {
+    if (!number.is_number())
+      throw Error(fmt::format("edit: expected a number, found {}", number.dump().substr(0, 40)));
+    result.push_back(number.get<double>());
+  }
+  return result;
 }
 
 // A number for all channels or one a channel, times the scale.
@@ -369,8 +390,11 @@ void multiply(std::vector<double>& scale, const Json& by) {
 // A model with other colours, widths and scales and a Lambertian part; its file comes back, as a fit's does.
 Reply edit(const Request& request) {
   const Json& how = request.arguments.at("edit");
-  const FactoredBrdf model = edited(model_of(request.arguments), {.hue = numbers(how.value("hue", Json(0))),
-                                                                  .roughness = how.value("roughness", 1.0)});
+  const Options given("edit", how, {"scale", "hue", "roughness", "diffuse"});
+  double roughness = 1;
+  given.read("roughness", roughness);
+  const FactoredBrdf model = edited(model_of(request.arguments),
+                                    {.hue = numbers(how.value("hue", Json(0))), .roughness = roughness});
   std::vector<Lobe> lobes(model.lobes().begin(), model.lobes().end());
   if (const auto scale = how.find("scale"); scale != how.end()) {
     // a list of lists is one a lobe
@@ -394,10 +418,14 @@ Reply edit(const Request& request) {
 
 Reply compare(const Request& request) {
   const Json& a = request.arguments;
-  const bool symmetrize = a.value("symmetrize", true), nodes_only = a.value("target", "function") == "nodes";
+  const Options given("compare", a, {"target", "only", "symmetrize", "count", "seed"},
+                      {"verb", "id", "models"});
+  bool symmetrize = true;
+  given.read("symmetrize", symmetrize);
+  const bool nodes_only = parse_fit_target(given.text("target", "function")) == FitTarget::nodes;
   FigureOptions figures;
-  read_if(a, "count", figures.count);
-  read_if(a, "seed", figures.seed);
+  given.read("count", figures.count, 1, 100'000'000);
+  given.read("seed", figures.seed);
   const cli::Candidate reference(material(a), symmetrize);
   std::list<cli::Candidate> candidates;
   std::vector<ComparedModel> models;
@@ -405,7 +433,7 @@ Reply compare(const Request& request) {
     const Source& source = material(Json{{"id", id}});
     models.push_back(candidates.emplace_back(source, symmetrize).compared(source.name));
   }
-  const auto measurement = cli::measurement_of(reference, nodes_only, a.value("only", ""));
+  const auto measurement = cli::measurement_of(reference, nodes_only, given.text("only"));
   if (nodes_only) return {.json = nodes_json(*measurement, models), .blobs = {}};
   const Measurement* const measured = measurement ? &*measurement : nullptr;
   const Scorer scorer(reference.ref(), figures);
@@ -415,9 +443,12 @@ Reply compare(const Request& request) {
 // The scored pictures, RGB bytes: those of the reference, then those of the model under its exposure.
 Reply images(const Request& request) {
   const Json& a = request.arguments;
-  const bool symmetrize = a.value("symmetrize", true);
+  const Options given("images", a, {"symmetrize", "size"}, {"verb", "id", "model"});
+  bool symmetrize = true;
+  int size = kSphereSize;
+  given.read("symmetrize", symmetrize);
+  given.read("size", size, 16, 8192);
   const cli::Candidate reference(material(a), symmetrize), model(material(a, "model"), symmetrize);
-  const int size = a.value("size", kSphereSize);
   const Scorer scorer(reference.ref(), {.count = 1, .image_size = size});
   Reply reply{.json = Json{{"size", size}, {"exposure", scorer.exposure()}}.dump(), .blobs = {}};
   const SpherePictures of_model = scorer.pictures(model.ref());
@@ -479,24 +510,30 @@ Reply surface_shader_of(const Request& request, const ShaderOptions& options) {
 // The uniform model of a surface's place; its file comes back.
 Reply place(const Request& request) {
   const Json& a = request.arguments;
+  const Options given("place", a, {"lod"}, {"verb", "id", "u", "v"});
+  double u = std::numeric_limits<double>::quiet_NaN(), v = u, lod = 0;
+  given.read("u", u);
+  given.read("v", v);
+  given.read("lod", lod);
+  if (!std::isfinite(u + v + lod)) throw Error("place: expected numbers u, v and lod");
   const SpatialBrdf& surface = surface_of(a).brdf;
   return {.json = "{}",
-          .blobs = {format_compact(
-              {.brdf = surface.at(a.at("u").get<double>(), a.at("v").get<double>(), a.value("lod", 0.0)),
-               .lambda_nm = {},
-               .notes = "{}"},
-              CompactContent::model_and_notes)}};
+          .blobs = {format_compact({.brdf = surface.at(u, v, lod), .lambda_nm = {}, .notes = "{}"},
+                                   CompactContent::model_and_notes)}};
 }
 
 // Textures follow as blobs of floats, [z][y][x][channel], or of rgb9e5's words.
 Reply shader(const Request& request) {
   const Json& a = request.arguments;
-  const ShaderLanguage language = language_named(a.at("language").get<std::string>());
-  ShaderOptions options{.language = language, .name = a.value("name", "brdf")};
-  const bool exact = a.value("exact", language == ShaderLanguage::cpp);
+  const Options given("shader", a, {"name", "exact", "halfProducts", "linesAre1d"},
+                      {"verb", "id", "language"});
+  const ShaderLanguage language = language_named(given.text("language"));
+  ShaderOptions options{.language = language, .name = given.text("name", "brdf")};
+  bool exact = language == ShaderLanguage::cpp;
+  given.read("exact", exact);
   options.filter = exact ? ShaderFilter::exact : ShaderFilter::hardware;
-  read_if(a, "halfProducts", options.half_products);
-  read_if(a, "linesAre1d", options.lines_are_1d);
+  given.read("halfProducts", options.half_products);
+  given.read("linesAre1d", options.lines_are_1d);
   if (opened(a).surface) return surface_shader_of(request, options);
   const Shader made = generate_shader(model_of(a), options);
   Reply reply;
@@ -543,25 +580,32 @@ Reply export_surface_of(const SurfaceModel& surface, const std::string& kind, co
 // A format of the verb convert, or a target of the verb export.
 Reply export_material(const Request& request) {
   const Json& a = request.arguments;
-  const std::string kind = a.at("kind").get<std::string>(), name = a.value("name", "brdf");
+  const Options given("export", a,
+                      {"name", "exact", "half", "mips", "cells", "count", "seed", "entries", "notes"},
+                      {"verb", "id", "kind"});
+  const std::string kind = given.text("kind"), name = given.text("name", "brdf");
   if (const auto& surface = opened(a).surface) return export_surface_of(*surface, kind, name);
   const Source& source = material(a);
   const bool is_model = std::holds_alternative<FactoredBrdf>(source.brdf);
+  std::vector<std::string_view> kinds(kConvertFormats.begin(), kConvertFormats.end());
+  kinds.insert(kinds.end(), export_target_names().begin(), export_target_names().end());
+  if (std::ranges::find(kinds, kind) == kinds.end())
+    throw Error(fmt::format("export: {}", expected_one_of(kinds, kind)));
   if (std::ranges::find(kConvertFormats, kind) != kConvertFormats.end()) {
     ConvertOptions options;
-    read_if(a, "count", options.count);
-    read_if(a, "seed", options.seed);
-    read_if(a, "entries", options.entries);
-    read_if(a, "cells", options.cells);
-    read_if(a, "notes", options.notes);
+    given.read("count", options.count, 1, 100'000'000);
+    given.read("seed", options.seed);
+    given.read("entries", options.entries);
+    given.read("cells", options.cells, 1);
+    given.read("notes", options.notes);
     Converted converted = convert(source, is_model && kind == "exr" ? "model" : kind, options);
     const std::pair<std::string, std::string> file{name, std::move(converted.bytes)};
     return reply_of(std::span(&file, 1), converted.losses);
   }
   ExportOptions options{.to = {export_target(kind)}, .name = name, .compressed = false};
-  read_if(a, "exact", options.exact);
-  read_if(a, "half", options.half);
-  read_if(a, "mips", options.mips);
+  given.read("exact", options.exact);
+  given.read("half", options.half);
+  given.read("mips", options.mips);
   return reply_of(export_model(model_of(a), options));
 }
 

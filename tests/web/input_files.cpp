@@ -1,5 +1,5 @@
 // Files that a page is given: a small valid one of every format, and pictures of light in every compression of OpenEXR
-// that the studio reads. For tests/web/studio.mjs.
+// that the studio reads, each beside what OpenEXR makes of it. For tests/web/studio.mjs.
 
 #include <cmath>
 #include <filesystem>
@@ -12,7 +12,9 @@
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfTiledOutputFile.h>
 #include <fmt/format.h>
 
 #include <burnish/book/book_file.h>
@@ -31,29 +33,91 @@ void write(const fs::path& file, std::string_view bytes) {
   std::ofstream(file, std::ios::binary) << bytes;
 }
 
-// Light that differs at every pixel, halves in red and floats in blue; sides that no block divides.
-void write_picture(const fs::path& file, Imf::Compression compression) {
-  constexpr int kWidth = 801, kHeight = 45;
-  Imf::Header header(kWidth, kHeight);
+// A picture of three channels, halves in red and green and floats in blue.
+struct Picture {
+  static constexpr int kWidth = 801, kHeight = 45;  // sides that no block divides
+
+  std::vector<half> red, green;
+  std::vector<float> blue;
+
+  Picture() : red(kWidth * kHeight), green(kWidth * kHeight), blue(kWidth * kHeight) {}
+
+  Imf::FrameBuffer frame() {
+    Imf::FrameBuffer slices;
+    slices.insert("R", Imf::Slice(Imf::HALF, reinterpret_cast<char*>(red.data()), 2, 2 * kWidth));
+    slices.insert("G", Imf::Slice(Imf::HALF, reinterpret_cast<char*>(green.data()), 2, 2 * kWidth));
+    slices.insert("B", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(blue.data()), 4, 4 * kWidth));
+    return slices;
+  }
+};
+
+Imf::Header header_of(Imf::Compression compression) {
+  Imf::Header header(Picture::kWidth, Picture::kHeight);
   header.compression() = compression;
   for (const auto& [name, type] :
        {std::pair("R", Imf::HALF), std::pair("G", Imf::HALF), std::pair("B", Imf::FLOAT)})
     header.channels().insert(name, Imf::Channel(type));
-  std::vector<half> red, green;
-  std::vector<float> blue;
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x) {
-      red.emplace_back(0.25f * static_cast<float>(x % 75));
-      green.emplace_back(static_cast<float>(std::exp(0.1 * y)));
-      blue.push_back(static_cast<float>(1 + std::sin(0.3 * x * y)));
+  return header;
+}
+
+// Light that differs at every pixel.
+Picture light() {
+  Picture picture;
+  for (int y = 0, i = 0; y < Picture::kHeight; ++y)
+    for (int x = 0; x < Picture::kWidth; ++x, ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      picture.red[at] = half(0.25f * static_cast<float>(x % 75));
+      picture.green[at] = half(static_cast<float>(std::exp(0.1 * y)));
+      picture.blue[at] = static_cast<float>(1 + std::sin(0.3 * x * y));
     }
-  Imf::FrameBuffer frame;
-  frame.insert("R", Imf::Slice(Imf::HALF, reinterpret_cast<char*>(red.data()), 2, 2 * kWidth));
-  frame.insert("G", Imf::Slice(Imf::HALF, reinterpret_cast<char*>(green.data()), 2, 2 * kWidth));
-  frame.insert("B", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(blue.data()), 4, 4 * kWidth));
-  Imf::OutputFile output(file.c_str(), header);
-  output.setFrameBuffer(frame);
-  output.writePixels(kHeight);
+  return picture;
+}
+
+void write_lines(const fs::path& file, Picture picture, Imf::Compression compression) {
+  Imf::OutputFile output(file.c_str(), header_of(compression));
+  output.setFrameBuffer(picture.frame());
+  output.writePixels(Picture::kHeight);
+}
+
+void write_tiles(const fs::path& file, Picture picture, Imf::Compression compression, Imf::LevelMode levels) {
+  Imf::Header header = header_of(compression);
+  header.setTileDescription(Imf::TileDescription(64, 32, levels));
+  Imf::TiledOutputFile output(file.c_str(), header);
+  output.setFrameBuffer(picture.frame());
+  // smaller levels hold the picture's corner: what is drawn is the largest
+  for (int y = 0; y < output.numYLevels(); ++y)
+    for (int x = 0; x < output.numXLevels(); ++x)
+      if (levels == Imf::RIPMAP_LEVELS || x == y)
+        output.writeTiles(0, output.numXTiles(x) - 1, 0, output.numYTiles(y) - 1, x, y);
+}
+
+// What OpenEXR reads, without a compression.
+void write_read(const fs::path& from, const fs::path& to) {
+  Picture picture;
+  Imf::InputFile input(from.c_str());
+  input.setFrameBuffer(picture.frame());
+  input.readPixels(0, Picture::kHeight - 1);
+  write_lines(to, std::move(picture), Imf::NO_COMPRESSION);
+}
+
+void write_pictures(const fs::path& folder) {
+  using Pair = std::pair<const char*, Imf::Compression>;
+  std::vector<std::string> names;
+  const auto at = [&](std::string_view name) {
+    return folder / fmt::format("light-{}.exr", names.emplace_back(name));
+  };
+  for (const auto& [name, compression] :
+       {Pair("none", Imf::NO_COMPRESSION), Pair("rle", Imf::RLE_COMPRESSION),
+        Pair("zips", Imf::ZIPS_COMPRESSION), Pair("zip", Imf::ZIP_COMPRESSION),
+        Pair("piz", Imf::PIZ_COMPRESSION), Pair("pxr24", Imf::PXR24_COMPRESSION),
+        Pair("b44", Imf::B44_COMPRESSION), Pair("b44a", Imf::B44A_COMPRESSION)})
+    write_lines(at(name), light(), compression);
+  write_tiles(at("tiles"), light(), Imf::PIZ_COMPRESSION, Imf::ONE_LEVEL);
+  write_tiles(at("mips"), light(), Imf::ZIP_COMPRESSION, Imf::MIPMAP_LEVELS);
+  write_tiles(at("rips"), light(), Imf::B44_COMPRESSION, Imf::RIPMAP_LEVELS);
+  for (const std::string& name : names)
+    write_read(folder / fmt::format("light-{}.exr", name), folder / fmt::format("read-{}.exr", name));
+  write_lines(folder / "light-dwaa.exr", light(), Imf::DWAA_COMPRESSION);  // is not read
 }
 
 // A surface without frames, and what it reflects straight back at the place and level of a pixel: of one seen and lit
@@ -83,12 +147,7 @@ void write_all(const fs::path& folder) {
   write(folder / "seed.surface", seeds::surface_seed());
   write(folder / "wall.burnish", format_surface({.brdf = random_surface(32, 16), .notes = "{}"}));
   write_flat(folder);
-  using Pair = std::pair<const char*, Imf::Compression>;
-  for (const auto& [name, compression] :
-       {Pair("none", Imf::NO_COMPRESSION), Pair("rle", Imf::RLE_COMPRESSION),
-        Pair("zips", Imf::ZIPS_COMPRESSION), Pair("zip", Imf::ZIP_COMPRESSION),
-        Pair("piz", Imf::PIZ_COMPRESSION), Pair("b44", Imf::B44_COMPRESSION)})
-    write_picture(folder / fmt::format("light-{}.exr", name), compression);
+  write_pictures(folder);
 }
 
 }  // namespace

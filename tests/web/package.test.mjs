@@ -248,6 +248,33 @@ test("Lights, the back side and values with the cosine are read as the command l
   front.close();
 });
 
+test("Options that there are not, and values of another kind, are said", async () => {
+  const material = await open(kSpec), model = await material.fit({budget: 700});
+  const refused = async (task, said) => assert.rejects(task, (error) => {
+    assert.ok(error.message.includes(said) && error.message.length < 300 && !/json|undefined \(/.test(error.message), error.message);
+    return true;
+  });
+  for (const [data, found] of [[null, "null"], [undefined, "undefined"], [5, "Number"], [[1, 2], "Array"], [{}, "Object"]]) await refused(open(data), `found ${found}`);
+  await refused(open("lambert", {iluminant: "E"}), "did you mean 'illuminant'");
+  await refused(open(new Uint8Array(4), {decoder: 5}), "expected a decoder as bytes");
+  for (const [options, said] of [[{nosuch: 1}, "found 'nosuch'"], [{fetches: 4}, "fetches beside a budget"], [{budget: 3000, fetches: 0}, "fetches from 1 to 256"], [{budget: 3000, fetches: "two"}, 'found "two"'],
+                                 [{budget: "much"}, "auto or a number of bytes"], [{budget: 3000, model: "z(h)"}, "either a budget or model"], [{samples: -4}, "samples from 1"], [{seed: 1.5}, "found 1.5"],
+                                 [{smooth: "yes"}, "smooth as auto or a number"], [{floor: -1}, "floor above 0"], [{symmetrize: 3}, "true or false"], [{tables: "q=3"}, "a list of texts"], [{name: 5}, "a name as a text"], [7, "expected"]])
+    await refused(material.fit(options), said);
+  await refused(material.evaluate([[0, 0, 1]], [[0, 0, 1]]), "three numbers each in one list");
+  await refused(material.albedo(0.5), "a list of angles");
+  await refused(material.compare(null), "expected a material, found null");
+  await refused(material.compare(model, {count: -2}), "count from 1");
+  await refused(material.images(5), "expected a material, found Number");
+  await refused(material.volume({thetaH: 1}), "thetaH from 2 to 512");
+  await refused(material.export("brnish"), "found 'brnish'; did you mean 'burnish'?");
+  for (const edit of [5, null, {nosuch: 1}, {hue: "x"}, {roughness: "x"}, {diffuse: -1}]) await refused(model.edit(edit), "expected");
+  await refused(model.shader(), "expected glsl");
+  await refused(model.shader("glsl", {exact: "yes"}), "true or false");
+  material.close();
+  model.close();
+});
+
 test("Garbage is one clear line, and the next file opens", async () => {
   const clear = (error) => {
     assert.ok(error instanceof Error && !error.message.includes("\n") && error.message.includes("expected"), error.message);

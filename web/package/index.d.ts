@@ -1,6 +1,6 @@
 /** Linear Rec. 709 or grey, 1/sr, without the cosine; directions are unit vectors, z the normal, x the tangent. */
 
-/** Told a rising share in [0, 1] and what is done. */
+/** Told what is done, one stage after the other, and a rising share of it in [0, 1]. */
 export type Progress = (fraction: number, stage: string) => void;
 
 export interface Call {
@@ -38,7 +38,8 @@ export interface OpenOptions extends LongCall {
 }
 
 /** A file's bytes, whatever its format, or an analytic BRDF such as "ggx:alpha_x=0.2,alpha_y=0.2,f0=0.8". A model is a
- * Model, a surface a Surface. Rejects with an Error of one line. The bytes are kept (a Blob need not be in memory): a worker that was stopped
+ * Model, a surface a Surface. Rejects with an Error of one line, as do all others: of options that there are not
+ * and of values of another kind too. The bytes are kept (a Blob need not be in memory): a worker that was stopped
  * reads them again. */
 export function open(data: Uint8Array | ArrayBuffer | Blob | string, options?: OpenOptions): Promise<Material | Model | Surface>;
 

@@ -218,6 +218,17 @@ let ids = 0;
 
 const floats = (buffer) => new Float32Array(buffer);
 
+// What a wrong argument is.
+const kindOf = (value) => value === null || value === undefined ? String(value) : value.constructor?.name ?? typeof value;
+const isList = (value) => typeof value === "object" && Number.isInteger(value?.length) && (value.length === 0 || typeof value[0] === "number");
+function expectMaterial(verb, value) {
+  if (!(value instanceof Material)) throw new Error(`${verb}: expected a material, found ${kindOf(value)}`);
+}
+function expectBytes(value, what) {
+  if (value instanceof Blob || value instanceof ArrayBuffer || ArrayBuffer.isView(value)) return;
+  throw new Error(`open: expected ${what}, found ${kindOf(value)}`);
+}
+
 export class Material {
   #recipe;
   #closed = false;
@@ -253,8 +264,8 @@ export class Material {
   }
 
   async evaluate(wi, wo, {signal} = {}) {
-    if (wi.length !== wo.length || wi.length % 3 !== 0)
-      throw new Error("evaluate: expected as many wi as wo, three numbers each");
+    if (!isList(wi) || !isList(wo) || wi.length !== wo.length || wi.length % 3 !== 0)
+      throw new Error("evaluate: expected as many wi as wo, three numbers each in one list");
     const both = new Float32Array(2 * wi.length);
     both.set(wi);
     both.set(wo, wi.length);
@@ -262,6 +273,7 @@ export class Material {
   }
 
   async albedo(thetas, {phi = 0, signal} = {}) {
+    if (!isList(thetas)) throw new Error(`albedo: expected a list of angles, found ${kindOf(thetas)}`);
     return floats((await this.#ask("albedo", {phi}, {bytes: Float32Array.from(thetas).buffer, signal})).blobs[0]);
   }
 
@@ -281,18 +293,22 @@ export class Material {
 
   async compare(models, options = {}, {signal} = {}) {
     const several = Array.isArray(models) ? models : [models];
+    several.forEach((model) => expectMaterial("compare", model));
     const {json} = await this.#ask("compare", {...options, models: several.map((m) => m.id)}, {others: several, signal});
     return json;
   }
 
   async images(model, options = {}, {signal} = {}) {
+    expectMaterial("images", model);
     const {json, blobs} = await this.#ask("images", {...options, model: model.id}, {others: [model], signal});
     const pictures = blobs.map((blob) => new Uint8Array(blob));
     return {...json, reference: pictures.slice(0, pictures.length / 2), model: pictures.slice(pictures.length / 2)};
   }
 
   async fit(options = {}, {onProgress, signal} = {}) {
+    if (typeof options !== "object" || options === null) throw new Error(`fit: expected options, found ${kindOf(options)}`);
     const {name = `${this.name} fitted`, ...how} = options;
+    if (typeof name !== "string") throw new Error(`fit: expected a name as a text, found ${kindOf(name)}`);
     const engine = new Engine(), request = {verb: "fit", id: this.id, name, options: how};
     // the worker's memory, which never shrinks, goes back
     const {json, blobs} = await engine.run({request, materials: [this.recipe], onProgress, signal}).finally(() => engine.stop());
@@ -387,6 +403,8 @@ export async function open(data, {name, report, decoder, onProgress, signal, ...
   if (typeof data === "string") {
     request.spec = data;
   } else {
+    expectBytes(data, "bytes, a Blob or the text of an analytic BRDF");
+    if (decoder) expectBytes(decoder, "a decoder as bytes or a Blob");
     // a Blob need not be in memory
     const blob = data instanceof Blob ? data : new Blob([data]);
     request.name = name ?? data.name ?? "file";

@@ -29,13 +29,16 @@ function optionsOf(places, lobes) {
   return options;
 }
 
+// Whether a slider stands elsewhere than where it began.
+const moved = ({places, lobes}) => Object.keys(optionsOf(places, lobes ?? 0)).length > 0;
+
 // States to go back and forth to: {entry, places}.
 let past = [], future = [], shownFor, lobe = "";
 
 const apply = latest(async (entry) => {
   if (!state.entries.includes(entry)) return;
   try {
-    if (!entry.original) Object.assign(entry, {original: entry.material, lobes: entry.info.lobes});
+    if (!entry.original) Object.assign(entry, {original: entry.material, lobes: entry.info.lobes, fitted: entry.name});
     const {original, places} = entry, options = optionsOf(places, entry.lobes), same = Object.keys(options).length === 0;
     const {material, info} = await stoppable(find("#edit"), "the edit", async (signal) => {
       const made = same ? original : await original.edit(options, {signal});
@@ -47,7 +50,7 @@ const apply = latest(async (entry) => {
       return;
     }
     if (entry.material !== original && entry.material !== material) entry.material.close();
-    Object.assign(entry, {material, info, applied: places});
+    Object.assign(entry, {material, info, applied: places, edited: !same, name: same ? entry.fitted : `${entry.fitted}, edited`});
     changed({renewed: entry});
   } catch (error) {
     if (isStopped(error)) takeBack(entry);
@@ -87,6 +90,7 @@ function draw(force) {
   const entry = modelShown(), able = entry?.info && !isSurface(entry), lobes = able ? (entry.lobes ?? entry.info.lobes) : 0;
   find("#undo").disabled = past.length === 0;
   find("#redo").disabled = future.length === 0;
+  for (const button of document.querySelectorAll("#as-fitted")) button.disabled = !able || !moved(entry);
   const key = entry && `${entry.id} ${lobes}`;
   if (!force && shownFor === key) return;
   if (shownFor !== key) lobe = "";
@@ -114,11 +118,11 @@ function draw(force) {
         ending = setTimeout(() => (burst = null), kBurst);
         future = [];
         before = null;
-        find("#undo").disabled = false;
+        find("#undo").disabled = find("#as-fitted").disabled = false;
         find("#redo").disabled = true;
       }});
     return make("label", {}, make("span", {}, title), input, output);
-  }), make("button", {type: "button", class: "quiet", disabled: !able, onclick: () => set(entry, {}, true)}, "As fitted"));
+  }), make("button", {type: "button", class: "quiet", id: "as-fitted", disabled: !able || !moved(entry), onclick: () => set(entry, {}, true)}, "As fitted"));
 }
 
 // All lobes or one of several.

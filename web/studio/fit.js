@@ -179,7 +179,7 @@ function drawFigures() {
   });
   const model = models.includes(state.beside) ? state.beside : models.at(-1), {figures, wrong} = judgedOf(reference, model) ?? {}, cost = model.info.shader;
   const costText = cost && `${model.name}: ${cost.fetches} fetches of ${cost.textures} texture${cost.textures === 1 ? "" : "s"}, ${cost.operations} operations, ` +
-    `${cost.divisions} divisions, ${cost.roots} roots, ${cost.powers} powers a light.${model.seconds ? ` Fitted in ${number(model.seconds, 2)} s.` : ""}`;
+    `${cost.divisions} divisions, ${cost.roots} roots, ${cost.powers} powers a light.${model.seconds && !model.edited ? ` Fitted in ${number(model.seconds, 2)} s.` : ""}`;
   place.replaceChildren(
     make("div", {class: "scroll", tabindex: 0, role: "region", "aria-label": "Figures of the models"}, table("", heads, rows)),
     wrong ? make("p", {class: "hint"}, `${model.name} has no figures: ${wrong}`) : "",

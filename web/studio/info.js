@@ -84,7 +84,16 @@ function draw() {
     albedos(info) ?? "", notes.length ? make("ul", {"aria-label": "Conventions"}, ...notes.map((text) => make("li", {}, text))) : "");
 }
 
+// On phones the panel has a height and is scrolled, by keys too.
+function scroll({matches}) {
+  if (matches) find("#info-panel").tabIndex = 0;
+  else find("#info-panel").removeAttribute("tabindex");
+}
+
 export function start() {
+  const narrow = window.matchMedia("(max-width: 760px)");
+  narrow.addEventListener("change", scroll);
+  scroll(narrow);
   draw();
   onChange(draw);
 }

@@ -7,6 +7,7 @@ import {add, changed, entryOf, onChange, release, remove, show, showBeside, show
 let stop = null;                // of what is being opened
 let opens = Promise.resolve();  // ends with the last that was asked for
 
+const kNamed = 4;  // of files that could not be opened, beside the first
 const kMaxChoices = 5000;  // of a file of several materials
 
 // One task after another, in their order; what was dropped first is opened first.
@@ -145,10 +146,12 @@ async function openEach(files, onPicture) {
         if (!said.length) say(k + 1 < wanted.length ? `Stopped: ${wanted.length - k} of ${wanted.length} files were not opened` : "Stopped");
         break;
       }
-      said.push(wrong(error, file.name));
+      said.push({name: file.name, text: wrong(error, file.name)});
     }
   }
-  if (said.length) say(said.length > 1 ? `${said[0]} (and ${said.length - 1} more of ${files.length} files could not be opened)` : said[0], "error");
+  if (!said.length) return;
+  const [first, ...others] = said, names = others.slice(0, kNamed).map(({name}) => name).join(", ") + (others.length > kNamed ? " …" : "");
+  say(others.length ? `${first.text} (and ${others.length} more of ${files.length} files could not be opened: ${names})` : first.text, "error");
 }
 
 function subtitle({info, parent}) {

@@ -24,7 +24,7 @@ export const sphere = () =>
   });
 
 export const plane = () =>
-  appendGrid(empty(), 1, 1, (u, v) => [[1.7 * u - 0.85, 1.7 * v - 0.85, 0], [0, 0, 1], [1, 0, 0]]);
+  appendGrid(empty(), 16, 16, (u, v) => [[1.7 * u - 0.85, 1.7 * v - 0.85, 0], [0, 0, 1], [1, 0, 0]]);
 
 export function knot() {
   const curve = (u) => {

@@ -124,11 +124,15 @@ function drawThumbnail(entry) {
 const kShown = {left: 0, right: 1, split: 2, error: 3};
 let setShown = () => {}, setShape = () => {};
 
+function drawNames() {
+  find("#left-name").textContent = state.shown?.name ?? "";
+  find("#right-name").textContent = state.beside?.name ?? "";
+}
+
 function show() {
   const both = state.beside !== null;
   find("#welcome").hidden = state.shown !== null;
-  find("#left-name").textContent = state.shown?.name ?? "";
-  find("#right-name").textContent = state.beside?.name ?? "";
+  drawNames();
   for (const button of find("#shown").children) button.disabled = !both && button.dataset.value !== "left";
   if (!both) choose("left");
   else if (view?.settings.shown === 0) choose("split");
@@ -146,6 +150,7 @@ function choose(name) {
   setShown(name);
   const shown = kShown[name];
   find("#divider").hidden = name !== "split";
+  find("#error-scale").hidden = name !== "error";
   find("#left-name").hidden = name === "right";
   find("#right-name").hidden = name === "left";
   view?.set({shown});
@@ -177,7 +182,7 @@ export function themeChanged() {
   view.ask();
 }
 
-export const picture = () => view?.png();
+export const picture = (signal) => view?.png(signal);
 
 function connect() {
   setShape = segments(find("#shape"), (shape) => {
@@ -248,6 +253,9 @@ export function start() {
   onChange((what) => {
     if (what === "shown") show();
     if (what.closed) view.forget(what.closed);
-    if (what.renewed) view.refresh(what.renewed);
+    if (what.renewed) {
+      view.refresh(what.renewed);
+      drawNames();
+    }
   });
 }

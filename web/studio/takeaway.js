@@ -158,8 +158,8 @@ function pictureGroup() {
     saveFile(`${stem(entry)}-${name}.png`, await png());
   })}, title);
   return make("div", {}, make("h3", {}, "Pictures"), make("div", {class: "buttons"},
-    make("button", {type: "button", "data-export": "png", onclick: guarded(async () => {
-      const blob = await picture();
+    make("button", {type: "button", "data-export": "png", onclick: guarded(async (signal) => {
+      const blob = await picture(signal);
       if (blob) saveFile(`${stem(state.shown)}.png`, blob);
     })}, "View as PNG"), chart("Slice as SVG", "#slices", "slice"), chart("Albedo as SVG", "#albedo", "albedo"),
     drawn("θh, θd as PNG", halfDiffPng, "half-diff", state.shown), drawn("Lobe as PNG", lobePng, "lobe", state.beside ?? state.shown),

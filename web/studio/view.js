@@ -12,6 +12,8 @@ const kEnough = 512, kLongFrame = 40;  // samples a pixel; milliseconds after wh
 const kMaxPixels = 1.1e6;
 const kPortraitPasses = 16, kPortraitSamples = 8;  // of a thumbnail
 const kExposurePixels = 4e4, kExposureSamples = 8;
+const kInks = [[0.03, 0.1, 0.16], [0.35, 0.85, 1]];  // of tangents, the wide and the narrow stroke
+const kStrokes = {sphere: 60, knot: 79, teapot: 24, plane: 7};  // of so many vertices one has one: about the golden ratio of a row further on
 const makers = {sphere, knot, teapot, plane};
 
 export class View {
@@ -35,6 +37,7 @@ export class View {
     this.small = null;        // a small picture that is not on the screen yet
     this.samplesAFrame = 4;
     this.resolution = 1;  // 0.5 where drawing is slow
+    this.whole = false;   // while it must not be lowered
     const gl = this.gl;
     this.sum = program(gl, screenVertex, sumFragment);
     this.picture = program(gl, screenVertex, pictureFragment);
@@ -146,7 +149,7 @@ export class View {
   }
   get wanted() {
     if (this.settings.around === "none") return 16;
-    return this.resolution < 1 ? kEnough / 4 : kEnough;
+    return this.resolution < 1 || this.whole ? kEnough / 4 : kEnough;
   }
   get settled() {
     return this.taken >= this.wanted;
@@ -213,7 +216,7 @@ export class View {
   measure(took) {
     this.pace = this.pace ? 0.8 * this.pace + 0.2 * took : took;
     if (took > kLongFrame && this.samplesAFrame > 2) this.samplesAFrame /= 2;
-    else if (took > 4 * kLongFrame && this.resolution > 0.5) this.resolution = 0.5;
+    else if (took > 4 * kLongFrame && this.resolution > 0.5 && !this.whole) this.resolution = 0.5;
     else if (took < kLongFrame / 2) this.samplesAFrame = Math.min(this.samplesAFrame * 2, 32);
   }
 
@@ -388,31 +391,27 @@ export class View {
     if (tangents) this.drawTangents();
   }
 
-  // At every so many vertices a short line along the tangent, hidden by the object's depth.
+  // At every so many vertices a stroke along the tangent on a darker one, hidden by the object's depth.
   drawTangents() {
     const gl = this.gl, {shape} = this.settings, name = `${shape} tangents`;
     if (!this.meshes.has(name)) {
-      const {vertices} = makers[shape](), lines = [], indices = [], every = {sphere: 131, knot: 167, teapot: 41, plane: 1}[shape];
-      for (let k = 0; k < vertices.length / 9; k += every) {
-        const p = vertices.slice(9 * k, 9 * k + 9), t = p.slice(6);
-        for (const s of [-0.025, 0.025]) lines.push(p[0] + s * t[0], p[1] + s * t[1], p[2] + s * t[2], ...p.slice(3));
-        indices.push(indices.length, indices.length + 1);
-      }
-      this.meshes.set(name, mesh(gl, {vertices: lines, indices}));
+      this.meshes.set(name, mesh(gl, strokes(makers[shape]().vertices, kStrokes[shape])));
     }
     gl.enable(gl.DEPTH_TEST);
     gl.clear(gl.DEPTH_BUFFER_BIT);
     gl.useProgram(this.lines.handle);
     this.place(this.lines, this.canvas, [0, 0]);
-    gl.uniform3fv(this.lines.at("ink"), [0.2, 0.75, 0.95]);
     gl.uniform1f(this.lines.at("lift"), 0);
     gl.colorMask(false, false, false, false);
     this.drawMesh(shape);
     gl.colorMask(true, true, true, true);
-    gl.uniform1f(this.lines.at("lift"), 0.006);
-    const {array, count} = this.meshes.get(name);
-    gl.bindVertexArray(array);
-    gl.drawElements(gl.LINES, count, gl.UNSIGNED_INT, 0);
+    kInks.forEach((ink, k) => {
+      gl.uniform3fv(this.lines.at("ink"), ink);
+      gl.uniform1f(this.lines.at("lift"), 0.006 + 0.003 * k);
+      const {array, count} = this.meshes.get(name);
+      gl.bindVertexArray(array);
+      gl.drawElements(gl.TRIANGLES, count / 2, gl.UNSIGNED_INT, 4 * k * (count / 2));
+    });
   }
 
   // The exposure, in stops, that takes all but the brightest 3 % of the left object to white, by a small picture of it. That
@@ -463,10 +462,45 @@ export class View {
     told(image);
   }
 
-  png() {
+  // What is seen, of all pixels of the screen: where drawing is slow they are drawn for it.
+  async png(signal) {
+    const {resolution} = this;
+    if (resolution < 1) await this.drawWhole(signal);
     this.compose();
-    return new Promise((done) => this.canvas.toBlob(done, "image/png"));
+    const made = new Promise((done) => this.canvas.toBlob(done, "image/png"));
+    if (resolution < 1) [this.whole, this.resolution] = [false, resolution];
+    return made;
   }
+  async drawWhole(signal) {
+    const before = this.resolution, computed = this.computed;
+    [this.whole, this.resolution] = [true, 1];
+    this.restart();
+    while (!this.settled || this.stale || (computed && !this.computed)) {
+      await new Promise((next) => setTimeout(next, 20));
+      if (!signal?.aborted) continue;
+      [this.whole, this.resolution] = [false, before];
+      this.restart();
+      throw signal.reason;
+    }
+  }
+  // Whether the library computed what is drawn through tables.
+  get computed() {
+    return this.sides.every((entry, side) => !this.isSeen(side) || this.formOf(entry)?.how !== "table" || this.off[side]?.passes === kPasses);
+  }
+}
+
+// Strokes along the tangents of every so many vertices: first the wide ones, then as many narrow ones.
+function strokes(vertices, every) {
+  const made = [], indices = [];
+  for (const [length, width] of [[0.041, 0.011], [0.035, 0.005]])
+    for (let k = 0; k < vertices.length / 9; k += every) {
+      const p = vertices.slice(9 * k, 9 * k + 3), n = vertices.slice(9 * k + 3, 9 * k + 6), t = vertices.slice(9 * k + 6, 9 * k + 9);
+      const across = [n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2], n[0] * t[1] - n[1] * t[0]], first = made.length / 9;
+      for (const [a, b] of [[-1, -1], [1, -1], [1, 1], [-1, 1]])
+        made.push(...p.map((x, i) => x + a * length * t[i] + b * width * across[i]), ...n, ...t);
+      indices.push(first, first + 1, first + 2, first, first + 2, first + 3);
+    }
+  return {vertices: made, indices};
 }
 
 const fract = (x) => x - Math.floor(x);

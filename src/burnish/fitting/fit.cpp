@@ -60,6 +60,7 @@ constexpr std::size_t kSpareTexels = 1500;  // from here on, for absolute errors
 constexpr double kVolumeSmooth = 1e-9;
 constexpr double kFewTexelsSmooth = 1e-9;   // of several lobes; few texels are smooth by themselves
 constexpr double kHemisphereSmooth = 1e-6;  // whose many texels few pixels reach
+constexpr double kSmoothnessTime = 0.8;     // of making a function of nodes, as progress tells
 constexpr int kMoreFetchesOfNodes = 1;      // dark films' colours ask for a grid beside the line
 constexpr int kSmoothnessFetches = 2;       // of the models by which it is chosen
 constexpr double kFrontalShare = 0.1;       // of pixels, see with_frontal_pixels
@@ -446,6 +447,7 @@ class Fitter {
   TrainingSet drawn_set(TrainingOptions drawn) const {
     drawn.seed = options_.seed;
     if (samples()) return training_set_of(*samples(), options_.symmetrize);
+    if (const auto sampling = progress("sampling")) sampling(0);
     TrainingSet set = with_frontal_pixels(reference(), draw_training_set(reference(), drawn), kFrontalShare);
     if (smoothed_) add_nodes(set);
     return set;
@@ -534,10 +536,12 @@ class Fitter {
     if (options_.hold_out) nodes_ = nodes_without(*nodes_, *options_.hold_out);
     NodesReport& report = report_.nodes.emplace(NodesReport{.fitted = nodes_->size()});
     if (!nodes_->samples.isotropic) return;
-    report.smoothness = choose_node_smoothness(*nodes_);
+    const auto smoothing = progress("smoothing the nodes");
+    report.smoothness = choose_node_smoothness(*nodes_, part_of_progress(smoothing, 0, kSmoothnessTime));
     report.held_out = held_out_figures(*nodes_, *report.smoothness);
     const BrdfRef function = symmetrized_ ? BrdfRef(*symmetrized_) : brdf_;
     smoothed_.emplace(with_gaps_filled(*nodes_, measured_nodes(source_), function), *report.smoothness);
+    if (smoothing) smoothing(1);
   }
 
   /// The source's own samples where it has some, a table's entries where one is given, else pairs drawn.

@@ -137,7 +137,8 @@ std::optional<NodeFigures> held_out_incidences(const MeasuredNodes& nodes, const
   });
 }
 
-NodeSmoothness choose_node_smoothness(const MeasuredNodes& nodes) {
+NodeSmoothness choose_node_smoothness(const MeasuredNodes& nodes,
+                                      const std::function<void(double)>& progress) {
   // enough of the groups
   std::optional<MeasuredNodes> part;
   if (const std::uint32_t step = nodes.group_count() / kManyGroups + 1; step > 1) {
@@ -148,7 +149,11 @@ NodeSmoothness choose_node_smoothness(const MeasuredNodes& nodes) {
   }
 
   NodeSmoothness best = scaled(NodeSmoothness{}, kGap);
+  // of each walk a step either way
+  const double expected = 1 + 2 * (1 + static_cast<double>(best.shares.size()));
+  double trials = 0;
   const auto error_of = [&](const NodeSmoothness& trial) {
+    if (progress) progress(std::min(trials++ / expected, 1.0));
     const MeasuredNodes& all = part ? *part : nodes;
     const auto error = [](const NodeFigures& figures) {
       return std::log(figures.relative) + std::log(figures.log_cos);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -43,8 +44,9 @@ std::optional<NodeFigures> held_out_incidences(const MeasuredNodes& nodes, const
 /// The smoothness that predicts best: the least mean of the logarithms of relative and log_cos, of
 /// held_out_figures and, where there is such, of held_out_incidences; found by steps of ten from the default:
 /// all shares together, then one after the other, and then softened by what the gaps of nodes left out are
-/// wider than those between nodes. Of many nodes a part is taken. Deterministic. Throws Error as
-/// held_out_figures.
-NodeSmoothness choose_node_smoothness(const MeasuredNodes& nodes);
+/// wider than those between nodes. Of many nodes a part is taken. Deterministic. `progress` is told rising shares of
+/// the trials that are expected. Throws Error as held_out_figures.
+NodeSmoothness choose_node_smoothness(const MeasuredNodes& nodes,
+                                      const std::function<void(double fraction)>& progress = {});
 
 }  // namespace burnish

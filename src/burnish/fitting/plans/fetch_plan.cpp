@@ -54,6 +54,8 @@ constexpr int kCoarseSteps = 10, kCoarseStepsAfterTrial = 4, kFullSteps = 6, kHe
 const HomomorphicOptions kStart{.smooth = 1e-5, .floor = PictureLoss::kFloor, .tolerance = 0.03};
 // Trials go so few steps, for gains that another draw of pairs would not give.
 constexpr int kTrialSteps = 4, kLobesTrialSteps = 30;
+// Of progress, where trials, steps with few pairs and steps with all of them end.
+constexpr double kTrialTime = 0.1, kCoarseTime = 0.3, kFullTime = 0.8;
 constexpr int kFetches[] = {2, 3, 4, 6, 8, 12, 24};
 
 constexpr double kGoldenStep = 0.6180339887498949;  // of azimuths
@@ -201,9 +203,8 @@ BestSpec best_of(const std::vector<ModelSpec>& specs, const TrainingSet& set, co
   if (specs.size() == 1 || coupled_unknowns(specs.front(), 1) > kCoarseNodes) return {specs.front(), {}};
   const IsotropicTrials sets(set);
   std::vector<IsotropicTrials::Trial> trials(specs.size());
-  for_each_chunk(specs.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
-    trials[k] = sets.try_volume(specs[k], options);
-  });
+  for_each_trial(specs.size(), options, 0, kTrialTime,
+                 [&](std::size_t k) { trials[k] = sets.try_volume(specs[k], options); });
   const auto best = static_cast<std::size_t>(
       std::ranges::min_element(trials, {}, &IsotropicTrials::Trial::objective) - trials.begin());
   return {specs[best], std::move(trials[best].model)};
@@ -397,12 +398,13 @@ LobesFit fit_volumes(const TrainingSet& set, const std::vector<ModelSpec>& specs
     fit.summary = done;
     fit.summary.iterations += before;
   };
-  refine_part(coarse, TableFormat::single, trial ? kCoarseStepsAfterTrial : kCoarseSteps, 0.1, 0.3);
+  refine_part(coarse, TableFormat::single, trial ? kCoarseStepsAfterTrial : kCoarseSteps, kTrialTime,
+              kCoarseTime);
 
   // all of them; what shares an exponent is held in its reach only once it stands
   if (many) fit.model = resampled(fit.model, spec);
-  refine_part(set, TableFormat::single, many ? kManyFullSteps : kFullSteps, 0.3, 0.8);
-  refine_part(set, options.format, many ? kManyHeldSteps : kHeldSteps, 0.8, 1);
+  refine_part(set, TableFormat::single, many ? kManyFullSteps : kFullSteps, kCoarseTime, kFullTime);
+  refine_part(set, options.format, many ? kManyHeldSteps : kHeldSteps, kFullTime, 1);
   return fit;
 }
 

@@ -1,9 +1,6 @@
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <functional>
 #include <optional>
-#include <thread>
 #include <utility>
 
 #include <burnish/error.h>
@@ -12,7 +9,6 @@
 #include <burnish/fitting/plans/hemisphere_plan.h>
 #include <burnish/fitting/plans/spec_layout.h>
 #include <burnish/fitting/plans/trial_sets.h>
-#include <burnish/math/parallel.h>
 
 namespace burnish {
 
@@ -120,20 +116,6 @@ std::optional<ModelSpec> laid_out(const Form& form, const CostLimit& limit, std:
     *layout = disk_of(rest / static_cast<double>(of_half_vectors.size()), kHalfDiskWarp);
   if (bytes_of(spec, limit.texel_bytes, channels) > limit.bytes) return {};
   return spec;
-}
-
-/// Calls work(k) of count trials, and as they end the options' progress, from `from` to `to`, on the calling thread.
-void for_each_trial(std::size_t count, const RefineOptions& options, double from, double to,
-                    const std::function<void(std::size_t)>& work) {
-  const std::function<void(double)> progress = part_of_progress(options.progress, from, to);
-  const std::thread::id caller = std::this_thread::get_id();
-  std::atomic<std::size_t> done = 0;
-  for_each_chunk(count, 1, [&](std::size_t k, std::size_t, std::size_t) {
-    work(k);
-    const std::size_t ended = ++done;
-    if (progress && std::this_thread::get_id() == caller)
-      progress(static_cast<double>(ended) / static_cast<double>(count));
-  });
 }
 
 /// Fits one model: few nodes come near the least error in as many steps as all of them would take to leave the start.

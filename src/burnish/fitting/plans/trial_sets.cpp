@@ -1,4 +1,8 @@
+#include <atomic>
+#include <thread>
+
 #include <burnish/fitting/plans/trial_sets.h>
+#include <burnish/math/parallel.h>
 
 namespace burnish {
 
@@ -48,6 +52,19 @@ RefineOptions in_few_steps(RefineOptions options, int steps) {
   options.max_iterations = steps;
   options.progress = nullptr;
   return options;
+}
+
+void for_each_trial(std::size_t count, const RefineOptions& options, double from, double to,
+                    const std::function<void(std::size_t)>& work) {
+  const std::function<void(double)> progress = part_of_progress(options.progress, from, to);
+  const std::thread::id caller = std::this_thread::get_id();
+  std::atomic<std::size_t> done = 0;
+  for_each_chunk(count, 1, [&](std::size_t k, std::size_t, std::size_t) {
+    work(k);
+    const std::size_t ended = ++done;
+    if (progress && std::this_thread::get_id() == caller)
+      progress(static_cast<double>(ended) / static_cast<double>(count));
+  });
 }
 
 }  // namespace burnish

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 
 #include <burnish/fitting/refinement/refine.h>
 #include <burnish/fitting/refinement/training_set.h>
@@ -22,5 +23,10 @@ struct TrialSets {
 
 /// The options of a trial: tables of floats and so many steps, without progress.
 RefineOptions in_few_steps(RefineOptions options, int steps);
+
+/// Calls work(k) of count trials, on all threads, and as they end the options' progress, from `from` to `to`, on the
+/// calling thread.
+void for_each_trial(std::size_t count, const RefineOptions& options, double from, double to,
+                    const std::function<void(std::size_t)>& work);
 
 }  // namespace burnish
