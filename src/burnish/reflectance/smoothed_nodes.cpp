@@ -4,7 +4,7 @@
 
 #include <burnish/error.h>
 #include <burnish/math/angles.h>
-#include <burnish/math/envelope_matrix.h>
+#include <burnish/math/bordered_band.h>
 #include <burnish/parameterization/half_diff.h>
 #include <burnish/reflectance/smoothed_nodes.h>
 
@@ -93,7 +93,7 @@ struct Unknowns {
 };
 
 // Adds share times the integral of the squared second derivative along unknowns first, first + stride, ...
-void add_stiffness(EnvelopeMatrix& matrix, std::size_t first, std::size_t stride, std::size_t count,
+void add_stiffness(BorderedBand& matrix, std::size_t first, std::size_t stride, std::size_t count,
                    double share) {
   const double step = static_cast<double>(count - 1);
   const double weight = share * step * step * step * step / static_cast<double>(count - 2);
@@ -106,18 +106,16 @@ void add_stiffness(EnvelopeMatrix& matrix, std::size_t first, std::size_t stride
 }
 
 // Adds share times the squared slope between an unknown and the one a stride before it, of `count` a line.
-void add_slope(EnvelopeMatrix& matrix, std::size_t unknown, std::size_t stride, std::size_t count,
-               double lines, double share) {
+void add_slope(BorderedBand& matrix, std::size_t unknown, std::size_t stride, std::size_t count, double lines,
+               double share) {
   const double weight = share * static_cast<double>(count - 1) / lines;
   matrix.at(unknown, unknown) += weight;
   matrix.at(unknown - stride, unknown - stride) += weight;
   matrix.at(unknown, unknown - stride) -= weight;
 }
 
-EnvelopeMatrix stiffness(const Unknowns& unknowns, const NodeSmoothness& smoothness) {
-  std::vector<std::size_t> first(unknowns.size(), 0);  // the line's rows are full
-  for (std::size_t i = unknowns.band(); i < unknowns.volume; ++i) first[i] = i - unknowns.band();
-  EnvelopeMatrix matrix(std::move(first));
+BorderedBand stiffness(const Unknowns& unknowns, const NodeSmoothness& smoothness) {
+  BorderedBand matrix(unknowns.volume, unknowns.band(), kLine);
   std::array<double, 3> lines{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::size_t stride = unknowns.strides[axis], count = unknowns.counts[axis];
@@ -176,7 +174,7 @@ Problem problem_of(const MeasuredNodes& nodes, const Unknowns& unknowns) {
 }
 
 /// Weighted least squares; the unknowns as [unknown][channel].
-std::vector<double> solve(const Problem& problem, const std::vector<double>& weights, EnvelopeMatrix matrix) {
+std::vector<double> solve(const Problem& problem, const std::vector<double>& weights, BorderedBand matrix) {
   const std::size_t channels = problem.largest.size(), unknowns = matrix.size();
   std::vector<std::vector<double>> right(channels, std::vector<double>(unknowns));
   for (std::size_t i = 0; i < problem.rows.size(); ++i) {
@@ -218,7 +216,7 @@ SmoothedNodes::SmoothedNodes(const MeasuredNodes& nodes, const NodeSmoothness& s
   const auto channels = channels_;
   const Unknowns unknowns(volume);
   const Problem problem = problem_of(nodes, unknowns);
-  const EnvelopeMatrix stiff = stiffness(unknowns, smoothness);
+  const BorderedBand stiff = stiffness(unknowns, smoothness);
   std::vector<double> weights = problem.weights;
   values_ = solve(problem, weights, stiff);
   // towards the absolute error, the mean over the channels
