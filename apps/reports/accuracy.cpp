@@ -164,10 +164,11 @@ void report_rgl(Page& page, const fs::path& data) {
   plot_means(page, means);
 }
 
-// A table of the MERL size, decoded from a published code of the material.
-Source merl_stand_in(const fs::path& codes, const std::string& name) {
+// A table of so many cells along theta_h, 90 of the MERL size, decoded from a published code of the material.
+Source merl_stand_in(const fs::path& codes, const std::string& name, int cells) {
   tell(fmt::format("accuracy: {}, decoded", name));
-  const Converted table = convert(open_source(fmt::format("np:{}#{}", codes.string(), name), {}), "merl");
+  const Converted table =
+      convert(open_source(fmt::format("np:{}#{}", codes.string(), name), {}), "merl", {.cells = cells});
   const auto* bytes = reinterpret_cast<const std::byte*>(table.bytes.data());
   return parse_source({name, {bytes, bytes + table.bytes.size()}}, {});
 }
@@ -177,11 +178,12 @@ void report_merl(Page& page, const fs::path& data) {
   std::vector<std::string> names = row_names(data / "np/codes.csv");
   std::erase_if(names,
                 [](const std::string& name) { return name.ends_with("_rgb"); });  // of the RGL database
-  const std::size_t every = quick ? 50 : 8;  // a table takes some 20 s to decode
+  const std::size_t every = quick ? 50 : 8;  // a table of MERL's size takes some 20 s to decode
+  const int cells = quick ? 45 : 90;
   std::deque<Material> materials;
   for (std::size_t i = 0; i < names.size(); i += every) {
     materials
-        .emplace_back(names[i], merl_stand_in(data / "np", names[i]),
+        .emplace_back(names[i], merl_stand_in(data / "np", names[i], cells),
                       FigureOptions{.count = 50'000, .image_size = 128})
         .attempts = attempts({kSheetBudget}, true, quick);
     if (!quick) materials.back().attempts.push_back({"ours, 2 fetches", {kMiddleBudget}});

@@ -167,7 +167,7 @@ def test_the_specular_family_is_exported(cli, tmp_path):
 def test_progress_rises_and_its_exceptions_end_the_fit(ggx):
     seen = []
     burnish.fit(ggx, budget=800, lobes=2, progress=lambda stage, fraction: seen.append((stage, fraction)))
-    assert seen and {stage for stage, _ in seen} == {"fitting", "matching albedos"}
+    assert seen and {stage for stage, _ in seen} == {"sampling", "fitting", "matching albedos"}
     assert all(0 <= fraction <= 1 for _, fraction in seen)
 
     def stop(stage, fraction):
