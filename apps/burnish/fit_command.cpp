@@ -173,7 +173,7 @@ void print_figures(std::string_view name, const ErrorFigures& e, const std::stri
 // Inputs that are not at their defaults, those of a layer in a line.
 void print(const OpenPbr& material) {
   const OpenPbrParameters p = material.parameters(), defaults;
-  for (const std::string_view layer : {"base", "specular", "coat", "fuzz", "thin_film"}) {
+  for (const std::string_view layer : {"base", "specular", "coat", "fuzz", "thin_film", "geometry"}) {
     std::string text;
     for (const OpenPbrInput& input : kOpenPbrInputs) {
       if (!input.name.starts_with(layer)) continue;
@@ -223,9 +223,8 @@ void print(const Unexplained& beyond) {
   if (const double shift = beyond.colour_shift.value_or(0); shift > kSeenShift)
     fmt::print("beyond     colour shift: the highlight's chromaticity differs by up to {:.3f}\n", shift);
   if (const double grain = beyond.grain.value_or(1); grain > kSeenFactor || grain < 1 / kSeenFactor)
-    fmt::print("beyond     grain: {:.3g} times the material's across the tangent, by what is along it{}\n",
-               grain,
-               grain > 1 ? "; OpenPBR's highlights are longer along it: turn the tangent by 90 degrees" : "");
+    fmt::print("beyond     grain: {:.3g} times the material's across the tangent, by what is along it\n",
+               grain);
 }
 
 // That what is written as JSON is not named as a model's file.

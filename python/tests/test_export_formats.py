@@ -9,27 +9,28 @@ import pytest
 import burnish
 
 OPENPBR = "openpbr:base_color=0.5/0.1/0.05,coat_weight=0.7,fuzz_weight=0.2,thin_film_weight=0.1"
+TURNED = "openpbr:base_metalness=1,specular_roughness=0.5,specular_roughness_anisotropy=0.8,geometry_tangent=30"
 
 
 @pytest.fixture(scope="session")
 def folders(tmp_path_factory, model, lobes, volume):
     """Exports of models of every kind of texture, and of OpenPBR."""
     at = tmp_path_factory.mktemp("exports")
-    for name, one in {"model": model, "lobes": lobes, "volume": volume, "openpbr": OPENPBR}.items():
-        usda = ["usda"] if name in ("model", "openpbr") else []  # which looks for OpenPBR for seconds
+    for name, one in {"model": model, "lobes": lobes, "volume": volume, "openpbr": OPENPBR, "turned": TURNED}.items():
+        usda = ["usda"] if name in ("model", "openpbr", "turned") else []  # which looks for OpenPBR for seconds
         burnish.export(one, ["materialx", *usda], at / name, name="m")
     return at
 
 
-@pytest.mark.parametrize("name", ["model", "lobes", "volume", "openpbr"])
+@pytest.mark.parametrize("name", ["model", "lobes", "volume", "openpbr", "turned"])
 def test_materialx_finds_its_document_valid_and_makes_glsl_of_it(name, folders, tmp_path):
     pytest.importorskip("MaterialX")
     from export_pictures import generated_glsl
 
     vertex, pixel, textures = generated_glsl(folders / name / "m.mtlx")
-    assert ("burnish_m_world" in pixel) == (name != "openpbr")
+    assert ("burnish_m_world" in pixel) == (name not in ("openpbr", "turned"))
     assert all(path.exists() for path in textures.values())
-    assert len(textures) == {"model": 1, "lobes": 1, "volume": 2, "openpbr": 0}[name]
+    assert len(textures) == {"model": 1, "lobes": 1, "volume": 2, "openpbr": 0, "turned": 0}[name]
     if not shutil.which("glslangValidator"):
         pytest.skip("no glslangValidator")
     for stage, text in (("vert", vertex), ("frag", pixel)):
@@ -38,7 +39,7 @@ def test_materialx_finds_its_document_valid_and_makes_glsl_of_it(name, folders, 
         assert done.returncode == 0, done.stdout
 
 
-@pytest.mark.parametrize("name", ["model", "volume", "openpbr"])
+@pytest.mark.parametrize("name", ["model", "volume", "openpbr", "turned"])
 def test_materialx_glsl_looks_as_in_our_renderer(name, folders, cli, llvm, request, tmp_path):
     moderngl = pytest.importorskip("moderngl")
     from export_pictures import exposure_of, in_burnish, in_materialx, psnr
@@ -47,8 +48,8 @@ def test_materialx_glsl_looks_as_in_our_renderer(name, folders, cli, llvm, reque
         moderngl.create_standalone_context(backend="egl").release()
     except Exception as error:
         pytest.skip(f"no OpenGL: {error}")
-    material, size = OPENPBR, 64
-    if name != "openpbr":
+    material, size = {"openpbr": OPENPBR, "turned": TURNED}.get(name), 64
+    if material is None:
         material = tmp_path / "m.exr"
         burnish.write_model(material, request.getfixturevalue(name))
     expected = in_burnish(cli.program, material, size, tmp_path)
@@ -58,7 +59,7 @@ def test_materialx_glsl_looks_as_in_our_renderer(name, folders, cli, llvm, reque
     assert distance >= 40
 
 
-@pytest.mark.parametrize("name", ["model", "openpbr"])
+@pytest.mark.parametrize("name", ["model", "openpbr", "turned"])
 def test_usd_finds_a_preview_and_a_materialx_surface(name, folders):
     pytest.importorskip("pxr")
     from pxr import Usd, UsdShade, UsdValidation

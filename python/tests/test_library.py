@@ -173,7 +173,7 @@ def test_progress_rises_and_its_exceptions_end_the_fit(ggx):
     def stop(stage, fraction):
         raise LookupError(stage)
 
-    with pytest.raises(LookupError, match="fitting"):
+    with pytest.raises(LookupError, match="sampling"):
         burnish.fit(ggx, budget=800, progress=stop)
 
 

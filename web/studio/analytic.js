@@ -24,7 +24,7 @@ const openpbr = [
   index("specular_ior", 1.5), share("coat_weight", 1), color("coat_color", [1, 1, 1]), share("coat_roughness", 0.1),
   share("coat_roughness_anisotropy", 0), index("coat_ior", 1.6), share("coat_darkening", 1), share("fuzz_weight", 0),
   color("fuzz_color", [1, 1, 1]), share("fuzz_roughness", 0.5), share("thin_film_weight", 0), line("thin_film_thickness", 0.5, 0, 5),
-  index("thin_film_ior", 1.4),
+  index("thin_film_ior", 1.4), line("geometry_tangent", 0, 0, 180),
 ];
 const models = {
   openpbr,

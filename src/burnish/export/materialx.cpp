@@ -1,10 +1,12 @@
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 #include <variant>
 
 #include <fmt/format.h>
 
 #include <burnish/export/materialx.h>
+#include <burnish/math/angles.h>
 #include <burnish/math/rgb.h>
 #include <burnish/shaders/frame_function.h>
 #include <burnish/shaders/shader.h>
@@ -96,6 +98,25 @@ std::string core_nodes(const MetallicRoughness& core, const std::string& name) {
               connection("top", "BSDF", name + "_facets") + connection("base", "BSDF", name + "_diffuse"));
 }
 
+// The nodes of a tangent turned by so many degrees; the last one is NAME_tangent.
+std::string turned_tangent(double degrees, const std::string& name) {
+  const std::string world = input("space", "string", "world");
+  const auto times = [&](std::string_view part, std::string_view vector, double factor) {
+    return node("multiply", fmt::format("{}_{}", name, part), "vector3",
+                connection("in1", "vector3", fmt::format("{}_{}", name, vector)) +
+                    input("in2", "float", fmt::format("{}", factor)));
+  };
+  const auto of_two = [&](std::string_view kind, std::string_view made, std::string_view a,
+                          std::string_view b) {
+    return node(kind, fmt::format("{}_{}", name, made), "vector3",
+                connection("in1", "vector3", fmt::format("{}_{}", name, a)) +
+                    connection("in2", "vector3", fmt::format("{}_{}", name, b)));
+  };
+  return node("normal", name + "_n", "vector3", world) + node("tangent", name + "_t", "vector3", world) +
+         of_two("crossproduct", "b", "n", "t") + times("along", "t", std::cos(radians(degrees))) +
+         times("across", "b", std::sin(radians(degrees))) + of_two("add", "tangent", "along", "across");
+}
+
 std::string factored_document(const std::vector<ShaderTexture>& textures, const MetallicRoughness& core,
                               const std::string& name) {
   std::string defined, given;
@@ -138,14 +159,21 @@ ExportedFile materialx_file(const OpenPbrParameters& parameters, const std::stri
   check_shader_name(name);
   std::string inputs;
   for (const OpenPbrInput& known : kOpenPbrInputs) {
+    if (known.name == "geometry_tangent") continue;
     const auto* number = std::get_if<double OpenPbrParameters::*>(&known.member);
     inputs += number ? input(known.name, "float", fmt::format("{}", parameters.**number))
                      : input(known.name, "color3",
                              value_of(parameters.*std::get<Rgb OpenPbrParameters::*>(known.member)));
   }
-  return {name + ".mtlx",
-          fmt::format("{}{}{}", kHead, node("open_pbr_surface", name + "_surface", "surfaceshader", inputs),
-                      material(name, name + "_surface"))};
+  std::string tangent;
+  if (parameters.geometry_tangent != 0) {
+    tangent = turned_tangent(parameters.geometry_tangent, name);
+    for (const char* of : {"geometry_tangent", "geometry_coat_tangent"})
+      inputs += connection(of, "vector3", name + "_tangent");
+  }
+  return {name + ".mtlx", fmt::format("{}{}{}{}", kHead, tangent,
+                                      node("open_pbr_surface", name + "_surface", "surfaceshader", inputs),
+                                      material(name, name + "_surface"))};
 }
 
 }  // namespace burnish

@@ -86,13 +86,32 @@ TEST(MaterialX, HoldsEveryInputOfOpenPbr) {
   const pugi::xml_document document = document_of(materialx_file(parameters, "paint"));
   const pugi::xml_node surface = document.child("materialx").child("open_pbr_surface");
   for (const OpenPbrInput& input : kOpenPbrInputs)
-    EXPECT_TRUE(surface.find_child_by_attribute("input", "name", std::string(input.name).c_str()))
+    EXPECT_EQ(!surface.find_child_by_attribute("input", "name", std::string(input.name).c_str()).empty(),
+              input.name != "geometry_tangent")
         << input.name;
   const auto value = [&](const char* name) {
     return surface.find_child_by_attribute("input", "name", name).attribute("value").value();
   };
   EXPECT_STREQ(value("base_color"), "0.25, 0.5, 0.125");
   EXPECT_STREQ(value("coat_weight"), "0.75");
+}
+
+// A vector there, made of the surface's own.
+TEST(MaterialX, TurnsTheTangentsOfOpenPbrByNodes) {
+  const pugi::xml_document document =
+      document_of(materialx_file({.specular_roughness_anisotropy = 0.5, .geometry_tangent = 30}, "metal"));
+  const pugi::xml_node root = document.child("materialx"), surface = root.child("open_pbr_surface");
+  for (const char* name : {"geometry_tangent", "geometry_coat_tangent"})
+    EXPECT_STREQ(surface.find_child_by_attribute("input", "name", name).attribute("nodename").value(),
+                 "metal_tangent");
+  const auto factor = [&](const char* node) {
+    return root.find_child_by_attribute("multiply", "name", node)
+        .find_child_by_attribute("input", "name", "in2")
+        .attribute("value")
+        .as_double();
+  };
+  EXPECT_NEAR(factor("metal_along"), std::sqrt(0.75), 1e-9);
+  EXPECT_NEAR(factor("metal_across"), 0.5, 1e-9);
 }
 
 TEST(MaterialX, RefusesNamesThatAreNoIdentifiers) {

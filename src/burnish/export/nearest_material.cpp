@@ -1,5 +1,6 @@
 #include <burnish/export/nearest_material.h>
 #include <burnish/fitting/parametric/gltf_fit.h>
+#include <burnish/fitting/parametric/grain.h>
 #include <burnish/fitting/parametric/openpbr_fit.h>
 #include <burnish/metrics/error_figures.h>
 
@@ -16,7 +17,9 @@ NearestOpenPbr nearest_openpbr(BrdfRef brdf) {
   const Scorer scorer(brdf, {.count = kPairs, .image_size = kSize});
   const PicturePairs pairs = picture_pairs(brdf, scorer.exposure());
   const OpenPbrParameters parameters =
-      fit_openpbr(pairs, {.grey = pairs.grey(), .anisotropic = !brdf.isotropic()}).parameters;
+      fit_openpbr(pairs,
+                  {.grey = pairs.grey(), .anisotropic = !brdf.isotropic(), .tangent = grain_direction(brdf)})
+          .parameters;
   return {parameters, scorer.picture_psnr(scorer.pictures(OpenPbr(parameters)))};
 }
 

@@ -1,9 +1,11 @@
+#include <cmath>
 #include <string_view>
 #include <variant>
 
 #include <fmt/format.h>
 
 #include <burnish/export/usda.h>
+#include <burnish/math/angles.h>
 #include <burnish/shaders/frame_function.h>
 
 namespace burnish {
@@ -14,7 +16,7 @@ std::string color_text(const Rgb& c) {
   return fmt::format("({}, {}, {})", c.r, c.g, c.b);
 }
 
-// {0} name, {1} to {3} colour, metallic and roughness of the preview, {4} the node's inputs
+// {0} name, {1} to {3} colour, metallic and roughness of the preview, {4} the node's inputs, {5} other nodes
 constexpr std::string_view kLayer = R"(#usda 1.0
 (
     defaultPrim = "{0}"
@@ -56,8 +58,57 @@ def Xform "{0}" (
             uniform token info:id = "ND_open_pbr_surface_surfaceshader"
 {4}            token outputs:out
         }}
-    }}
+{5}    }}
 }}
+)";
+
+// {0} name, {1} and {2} cosine and sine
+constexpr std::string_view kTurnedTangent = R"(
+        def Shader "n"
+        {{
+            uniform token info:id = "ND_normal_vector3"
+            string inputs:space = "world"
+            float3 outputs:out
+        }}
+
+        def Shader "t"
+        {{
+            uniform token info:id = "ND_tangent_vector3"
+            string inputs:space = "world"
+            float3 outputs:out
+        }}
+
+        def Shader "b"
+        {{
+            uniform token info:id = "ND_crossproduct_vector3"
+            float3 inputs:in1.connect = </{0}/material/n.outputs:out>
+            float3 inputs:in2.connect = </{0}/material/t.outputs:out>
+            float3 outputs:out
+        }}
+
+        def Shader "along"
+        {{
+            uniform token info:id = "ND_multiply_vector3FA"
+            float3 inputs:in1.connect = </{0}/material/t.outputs:out>
+            float inputs:in2 = {1}
+            float3 outputs:out
+        }}
+
+        def Shader "across"
+        {{
+            uniform token info:id = "ND_multiply_vector3FA"
+            float3 inputs:in1.connect = </{0}/material/b.outputs:out>
+            float inputs:in2 = {2}
+            float3 outputs:out
+        }}
+
+        def Shader "tangent"
+        {{
+            uniform token info:id = "ND_add_vector3"
+            float3 inputs:in1.connect = </{0}/material/along.outputs:out>
+            float3 inputs:in2.connect = </{0}/material/across.outputs:out>
+            float3 outputs:out
+        }}
 )";
 
 }  // namespace
@@ -67,13 +118,21 @@ std::string usda_layer(const OpenPbrParameters& parameters, const MetallicRoughn
   check_shader_name(name);
   std::string inputs;
   for (const OpenPbrInput& input : kOpenPbrInputs) {
+    if (input.name == "geometry_tangent") continue;
     const auto* number = std::get_if<double OpenPbrParameters::*>(&input.member);
     inputs += number ? fmt::format("            float inputs:{} = {}\n", input.name, parameters.**number)
                      : fmt::format("            color3f inputs:{} = {}\n", input.name,
                                    color_text(parameters.*std::get<Rgb OpenPbrParameters::*>(input.member)));
   }
+  std::string tangent;
+  if (const double angle = radians(parameters.geometry_tangent); angle != 0) {
+    for (const char* of : {"geometry_tangent", "geometry_coat_tangent"})
+      inputs += fmt::format("            float3 inputs:{}.connect = </{}/material/tangent.outputs:out>\n", of,
+                            name);
+    tangent = fmt::format(kTurnedTangent, name, std::cos(angle), std::sin(angle));
+  }
   return fmt::format(kLayer, name, color_text(preview.base_color), preview.metallic, preview.roughness,
-                     inputs);
+                     inputs, tangent);
 }
 
 }  // namespace burnish

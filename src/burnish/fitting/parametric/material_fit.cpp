@@ -12,6 +12,7 @@
 #include <burnish/fitting/fit_report_json.h>
 #include <burnish/fitting/parametric/gltf_fit.h>
 #include <burnish/fitting/parametric/gltf_json.h>
+#include <burnish/fitting/parametric/grain.h>
 #include <burnish/fitting/parametric/material_fit.h>
 #include <burnish/fitting/parametric/openpbr_fit.h>
 #include <burnish/math/closest_name.h>
@@ -40,8 +41,9 @@ void fit_material_of(BrdfRef source, double exposure, const MaterialFitOptions& 
     fit.material = found.material;
     take(found);
   } else {
-    const OpenPbrFit found =
-        fit_openpbr(pairs, {.grey = grey, .anisotropic = anisotropic, .progress = progress});
+    const OpenPbrFit found = fit_openpbr(
+        pairs,
+        {.grey = grey, .anisotropic = anisotropic, .tangent = grain_direction(source), .progress = progress});
     fit.material = OpenPbr(found.parameters);
     take(found);
   }

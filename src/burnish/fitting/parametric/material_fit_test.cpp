@@ -2,11 +2,13 @@
 #include <functional>
 #include <span>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include <burnish/error.h>
+#include <burnish/fitting/parametric/grain.h>
 #include <burnish/fitting/parametric/material_fit.h>
 #include <burnish/io/open_source.h>
 #include <burnish/math/angles.h>
@@ -39,13 +41,6 @@ TEST(Unexplained, IsNothingOfTheSameAndSomethingOfWhatReturnsLight) {
   EXPECT_GT(unexplained(red.ref(), matt.ref()).colour_shift.value(), 0.2);
 }
 
-TEST(Unexplained, SeesARing) {
-  // brighter away from theta_h = 0
-  const AnalyticBrdf ring = parse_analytic("lafortune:kd=0.1,cx=1.2,cy=1.2,cz=0.3,exponent=8,ks=1"),
-                     matt = parse_analytic("lambert:kd=0.1");
-  EXPECT_GT(unexplained(ring.ref(), matt.ref()).rings.value(), 1.5);
-}
-
 /// A surface that is not known in places.
 struct Gaps {
   BrdfRef whole;
@@ -58,6 +53,44 @@ struct Gaps {
     return !unknown(wi, wo) && whole.eval(wi, wo, f);
   }
 };
+
+TEST(GrainDirection, IsAlongTheLongestHighlights) {
+  const auto of = [](const char* spec) { return grain_direction(parse_analytic(spec).ref()); };
+  EXPECT_EQ(of("ggx:alpha_x=0.3,alpha_y=0.1"), 0);
+  EXPECT_EQ(of("ggx:alpha_x=0.1,alpha_y=0.3"), 90);
+  EXPECT_EQ(of("ggx:alpha_x=0.2,alpha_y=0.2"), 0);
+  EXPECT_EQ(of("ggx:alpha_x=0.2,alpha_y=0.201"), 0);  // hardly
+  for (const double angle : {20.0, 60.5, 115.0, 170.0})
+    EXPECT_NEAR(
+        of(fmt::format("openpbr:base_metalness=1,specular_roughness_anisotropy=0.8,geometry_tangent={}",
+                       angle)
+               .c_str()),
+        angle, 0.5);
+  // where azimuths are not known, from the others
+  const AnalyticBrdf across = parse_analytic("ggx:alpha_x=0.1,alpha_y=0.3");
+  const Gaps few{across.ref(), [](Vec3 wi, Vec3) { return wi.x * wi.y > 0.02; }};
+  EXPECT_NEAR(grain_direction(few), 90, 1e-9);
+  EXPECT_EQ(grain_direction(Gaps{across.ref(), [](Vec3, Vec3) { return true; }}), 0);
+}
+
+TEST(FitMaterial, TurnsTheTangentToTheGrain) {
+  BURNISH_SKIP_WHERE_SANITIZED();
+  const auto psnr = [](const char* spec, double tangent) {
+    const MaterialFit fit = fit_material(open_source(spec, {}), "openpbr", kAlone);
+    EXPECT_EQ(std::get<OpenPbr>(fit.material).parameters().geometry_tangent, tangent) << spec;
+    EXPECT_NEAR(fit.beyond.grain.value(), 1, 0.1) << spec;
+    return fit.figures.psnr;
+  };
+  EXPECT_GT(psnr("ggx:alpha_x=0.4,alpha_y=0.15,f0=0.8", 0), 40);
+  EXPECT_GT(psnr("ggx:alpha_x=0.15,alpha_y=0.4,f0=0.8", 90), 40);
+}
+
+TEST(Unexplained, SeesARing) {
+  // brighter away from theta_h = 0
+  const AnalyticBrdf ring = parse_analytic("lafortune:kd=0.1,cx=1.2,cy=1.2,cz=0.3,exponent=8,ks=1"),
+                     matt = parse_analytic("lambert:kd=0.1");
+  EXPECT_GT(unexplained(ring.ref(), matt.ref()).rings.value(), 1.5);
+}
 
 void expect_nothing_unexplained(const Unexplained& found) {
   EXPECT_NEAR(found.backscatter.value(), 1, 1e-12);

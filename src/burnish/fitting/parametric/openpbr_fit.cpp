@@ -39,7 +39,7 @@ const Inputs kCoat = inputs_named("coat"), kFuzz = inputs_named("fuzz"), kFilm =
 
 /// What a fit never varies.
 Inputs always_held(const OpenPbrFitOptions& options) {
-  Inputs held = inputs_named("base_weight");
+  Inputs held = inputs_named("base_weight") | inputs_named("geometry_tangent");
   if (!options.anisotropic)
     held |= inputs_named("specular_roughness_anisotropy") | inputs_named("coat_roughness_anisotropy");
   if (options.grey) held |= kFilm;
@@ -157,6 +157,7 @@ OpenPbrParameters tidied(OpenPbrParameters p) {
   reset("coat", p.coat_weight);
   reset("fuzz", p.fuzz_weight);
   reset("thin_film", p.thin_film_weight);
+  if (OpenPbr(p).isotropic()) p.geometry_tangent = 0;
   // under a whole coat an index shows as does the coat's square over it: the one that is more like glass
   const double twin = p.coat_ior * p.coat_ior / p.specular_ior;
   const auto unlike = [&](double ior) { return std::abs(ior - defaults.specular_ior); };
@@ -221,7 +222,7 @@ constexpr std::size_t kCoarse = 3, kCoarser = 12;
 
 /// All inputs anywhere in their ranges.
 Search::Start random_start(Pcg32& random, const Inputs& always, const OpenPbrFitOptions& options) {
-  Search::Start start{{}, always};
+  Search::Start start{{.geometry_tangent = options.tangent}, always};
   for (const Unknown& unknown : unknowns_of(always, options))
     set(start.material, unknown,
         unknown.range.min + (unknown.range.max - unknown.range.min) * random.uniform());
@@ -252,9 +253,11 @@ std::vector<Search::Start> search_layers(Search& search, Search& sift, const Pic
   std::vector<Search::Start> starts;
   for (const double metalness : {0.0, 1.0})
     for (const double roughness : {0.15, 0.35, 0.65})
-      starts.push_back(
-          {{.base_color = mean_color(pairs), .base_metalness = metalness, .specular_roughness = roughness},
-           always | kCoat | kFuzz | kFilm});
+      starts.push_back({{.base_color = mean_color(pairs),
+                         .base_metalness = metalness,
+                         .specular_roughness = roughness,
+                         .geometry_tangent = options.tangent},
+                        always | kCoat | kFuzz | kFilm});
   std::vector<Trial> coated = search.run(starts, kFirst);
   progress(0.2);
   std::vector<Search::Start> coats, films;

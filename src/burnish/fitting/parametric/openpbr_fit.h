@@ -21,6 +21,7 @@ struct OpenPbrFit {
 struct OpenPbrFitOptions {
   bool grey = false;         ///< colours are grey, and there is no film, which has some
   bool anisotropic = false;  ///< stretches are looked for
+  double tangent = 0;        ///< geometry_tangent, which stays: grain_direction of the source
   std::function<void(double fraction)> progress = {};
 };
 

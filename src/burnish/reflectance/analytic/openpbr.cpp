@@ -249,9 +249,9 @@ struct OpenPbr::Geometry {
   Vector<T> wi, wo, h;
   T cos_i, cos_o, cos_d, cos_between;
 
-  Geometry(const Vector<T>& to_light, const Vector<T>& to_viewer)
-      : wi(to_light),
-        wo(to_viewer),
+  Geometry(const Vector<T>& to_light, const Vector<T>& to_viewer, const OpenPbr& material)
+      : wi(material.in_tangent_frame(to_light)),
+        wo(material.in_tangent_frame(to_viewer)),
         h(half_vector(wi, wo)),
         cos_i(named("cos_i", clamp(wi.z, kEpsilon, 1.0))),
         cos_o(named("cos_o", clamp(wo.z, kEpsilon, 1.0))),
@@ -296,7 +296,11 @@ OpenPbr::Roughness OpenPbr::roughness(double roughness, double anisotropy) noexc
   return {x, y, std::sqrt(x * y)};
 }
 
-OpenPbr::OpenPbr(const OpenPbrParameters& p) noexcept : p_(p), metal_f0_(p.base_weight * p.base_color) {
+OpenPbr::OpenPbr(const OpenPbrParameters& p) noexcept
+    : p_(p),
+      tangent_cos_(p.geometry_tangent == 90 ? 0 : std::cos(radians(p.geometry_tangent))),
+      tangent_sin_(std::sin(radians(p.geometry_tangent))),
+      metal_f0_(p.base_weight * p.base_color) {
   // a rough coat blurs what is seen through it
   const double rough4 = square(square(p.specular_roughness)), coat4 = square(square(p.coat_roughness));
   const double blurred = std::sqrt(std::sqrt(std::min(1.0, rough4 + 2 * coat4)));
@@ -318,6 +322,12 @@ OpenPbr::OpenPbr(const OpenPbrParameters& p) noexcept : p_(p), metal_f0_(p.base_
 
 bool OpenPbr::isotropic() const noexcept {
   return base_alpha_.x == base_alpha_.y && (p_.coat_weight == 0 || coat_alpha_.x == coat_alpha_.y);
+}
+
+template <class V>
+V OpenPbr::in_tangent_frame(const V& w) const {
+  if (p_.geometry_tangent == 0 || isotropic()) return w;
+  return V{tangent_cos_ * w.x + tangent_sin_ * w.y, tangent_cos_ * w.y - tangent_sin_ * w.x, w.z};
 }
 
 template <class T>
@@ -512,7 +522,7 @@ bool OpenPbr::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     f[0] = f[1] = f[2] = 0;
     return true;
   }
-  const Geometry<double> g(wi, wo);
+  const Geometry<double> g(wi, wo, *this);
   Parts<double> parts;
   compute(needed(), g, parts);
   put(join(parts), f);
@@ -521,7 +531,7 @@ bool OpenPbr::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
 
 Expr openpbr_expression(const OpenPbr& material) {
   const ExprVector wi(Expr::input("wi", ValueType::vector)), wo(Expr::input("wo", ValueType::vector));
-  const OpenPbr::Geometry<Expr> g(wi, wo);
+  const OpenPbr::Geometry<Expr> g(wi, wo, material);
   OpenPbr::Parts<Expr> parts;
   material.compute(material.needed(), g, parts);
   const ExprColor value = material.join(parts);
@@ -538,7 +548,7 @@ void OpenPbrVariants::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept
     std::ranges::fill(f, 0.0);
     return;
   }
-  const OpenPbr::Geometry<double> g(wi, wo);
+  const OpenPbr::Geometry<double> g(wi, wo, material_);
   OpenPbr::Parts<double> parts;
   material_.compute(material_.needed(), g, parts);
   put(material_.join(parts), f.first(3));

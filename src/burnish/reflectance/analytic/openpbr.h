@@ -43,6 +43,8 @@ struct OpenPbrParameters {
   double thin_film_thickness = 0.5;  ///< micrometres
   double thin_film_ior = 1.4;
 
+  double geometry_tangent = 0;  ///< degrees from the x axis, counterclockwise
+
   friend bool operator==(const OpenPbrParameters&, const OpenPbrParameters&) = default;
 };
 
@@ -54,8 +56,9 @@ struct OpenPbrInput {
 };
 
 /// All inputs, in the order of OpenPbrParameters. Indices of refraction end at 5 and the film at 5 micrometres, where
-/// the specification has no bound; specular_weight ends at 1, above which it has no meaning for metals.
-inline constexpr std::array<OpenPbrInput, 21> kOpenPbrInputs = {{
+/// the specification has no bound; specular_weight ends at 1, above which it has no meaning for metals. The tangents of base
+/// and coat, vectors in the specification, are one angle.
+inline constexpr std::array<OpenPbrInput, 22> kOpenPbrInputs = {{
     {"base_weight", "multiplier of base_color", 0, 1, &OpenPbrParameters::base_weight},
     {"base_color", "colour of the diffuse or metallic base", 0, 1, &OpenPbrParameters::base_color},
     {"base_metalness", "share of metal in the base", 0, 1, &OpenPbrParameters::base_metalness},
@@ -86,6 +89,8 @@ inline constexpr std::array<OpenPbrInput, 21> kOpenPbrInputs = {{
     {"thin_film_thickness", "thickness of the film, micrometres", 0, 5,
      &OpenPbrParameters::thin_film_thickness},
     {"thin_film_ior", "index of refraction of the film", 1, 5, &OpenPbrParameters::thin_film_ior},
+    {"geometry_tangent", "degrees by which the tangent is turned about the normal", 0, 180,
+     &OpenPbrParameters::geometry_tangent},
 }};
 
 /// OpenPBR Surface 1.1 as MaterialX 1.39 makes shaders of it, without transmission, subsurface and emission: fuzz over
@@ -132,6 +137,9 @@ class OpenPbr {
   };
   static Roughness roughness(double roughness, double anisotropy) noexcept;
 
+  /// The direction as seen with the tangent as x axis.
+  template <class Vector>
+  Vector in_tangent_frame(const Vector& w) const;
   template <class T>
   Highlight<T> highlight(const Roughness& alpha, const Geometry<T>& g) const;
   template <class T>
@@ -160,6 +168,7 @@ class OpenPbr {
 
   OpenPbrParameters p_;
   Roughness base_alpha_, coat_alpha_;
+  double tangent_cos_, tangent_sin_;
   double base_ior_;  ///< of the dielectric base against what lies on it, scaled by specular_weight
   Rgb metal_f0_;
   Rgb under_coat_;  ///< what the coat's colour and the reflections inside it leave of the base
@@ -168,7 +177,7 @@ class OpenPbr {
 static_assert(Brdf<OpenPbr>);
 
 /// A material and others that differ from it in an input or a few, evaluated side by side: of those only what differs
-/// is computed. The same bits as each one's OpenPbr::eval.
+/// is computed. All have the same tangent. The same bits as each one's OpenPbr::eval.
 class OpenPbrVariants {
  public:
   OpenPbrVariants(const OpenPbr& material, std::vector<OpenPbr> others);

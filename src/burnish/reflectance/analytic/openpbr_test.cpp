@@ -160,11 +160,32 @@ TEST(OpenPbr, ACoatDarkensAndAFilmColours) {
   EXPECT_GT(std::abs(filmed.r - filmed.b), 0.01 * filmed.g);
 }
 
+TEST(OpenPbr, ATurnedTangentTurnsWhatIsAnisotropic) {
+  OpenPbrParameters p{.specular_roughness = 0.5, .coat_weight = 0.5, .coat_roughness = 0.4};
+  OpenPbrParameters turned = p;
+  turned.geometry_tangent = 30;
+  const Vec3 viewer = normalize({0.3, -0.4, 1});
+  const auto turn = [](Vec3 w) {
+    const double c = std::sqrt(0.75), s = 0.5;
+    return Vec3{c * w.x - s * w.y, s * w.x + c * w.y, w.z};
+  };
+  EXPECT_EQ(eval(turned, kLight, viewer).r, eval(p, kLight, viewer).r);  // isotropic: the same bits
+  EXPECT_TRUE(OpenPbr(turned).isotropic());
+  for (double OpenPbrParameters::*anisotropy :
+       {&OpenPbrParameters::specular_roughness_anisotropy, &OpenPbrParameters::coat_roughness_anisotropy}) {
+    p.*anisotropy = turned.*anisotropy = 0.8;
+    const double straight = eval(p, kLight, viewer).r;
+    EXPECT_NEAR(eval(turned, turn(kLight), turn(viewer)).r, straight, 1e-12 * straight);
+    EXPECT_GT(std::abs(eval(turned, kLight, viewer).r / straight - 1), 1e-3);
+  }
+}
+
 TEST(OpenPbr, KeepsItsParametersAsAnAnalyticBrdf) {
   OpenPbrParameters p;
   p.base_color = {0.1, 0.2, 0.3};
   p.coat_ior = 1.7;
   p.thin_film_thickness = 0.25;
+  p.geometry_tangent = 12.5;
   const AnalyticBrdf brdf = parse_analytic(format_analytic(analytic_openpbr(p)));
   EXPECT_EQ(std::get<OpenPbr>(brdf.variant()).parameters(), p);
   EXPECT_FALSE(brdf.model().reciprocal);

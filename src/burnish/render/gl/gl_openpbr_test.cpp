@@ -51,7 +51,7 @@ for old, new in [(r'#version [^\n]*\n', '#define fwidth(x) vec3(1.0)\n' + missin
 open(sys.argv[1], 'w').write(text)
 )";
 
-constexpr std::size_t kNumbers = 29;  // of the 21 inputs, colours having three
+constexpr std::size_t kNumbers = 31;  // of the inputs, colours having three and the tangent two
 
 // The interpreter that has MaterialX; empty if there is none.
 std::string python() {
@@ -73,6 +73,7 @@ std::string as_function(std::string text) {
       kNumbers);
   std::size_t k = 0;
   for (const OpenPbrInput& input : kOpenPbrInputs) {
+    if (input.name == "geometry_tangent") continue;
     const bool color = std::holds_alternative<Rgb OpenPbrParameters::*>(input.member);
     text += fmt::format("  s_{} = ", input.name);
     text += color ? fmt::format("vec3(numbers[at + {}u], numbers[at + {}u], numbers[at + {}u]);\n", k, k + 1,
@@ -80,9 +81,9 @@ std::string as_function(std::string text) {
                   : fmt::format("numbers[at + {}u];\n", k);
     k += color ? 3 : 1;
   }
+  text += fmt::format("  vd.tangentWorld = vec3(numbers[at + {}u], numbers[at + {}u], 0.0);\n", k, k + 1);
   return text + R"(
   vd.normalWorld = vec3(0.0, 0.0, 1.0);
-  vd.tangentWorld = vec3(1.0, 0.0, 0.0);
   vd.positionWorld = vec3(0.0);
   u_viewPosition = wo;
   u_numActiveLightSources = 1;
@@ -98,6 +99,7 @@ std::string as_function(std::string text) {
 
 void append_numbers(const OpenPbrParameters& p, std::vector<float>& numbers) {
   for (const OpenPbrInput& input : kOpenPbrInputs) {
+    if (input.name == "geometry_tangent") continue;
     if (const auto* number = std::get_if<double OpenPbrParameters::*>(&input.member)) {
       numbers.push_back(static_cast<float>(p.*(*number)));
     } else {
@@ -105,6 +107,9 @@ void append_numbers(const OpenPbrParameters& p, std::vector<float>& numbers) {
       for (const double value : {color.r, color.g, color.b}) numbers.push_back(static_cast<float>(value));
     }
   }
+  const double tangent = radians(p.geometry_tangent);
+  for (const double value : {std::cos(tangent), std::sin(tangent)})
+    numbers.push_back(static_cast<float>(value));
 }
 
 // The direction of floats that a shader gets. It is not normalized again in double: at a sharp highlight, where wi and
