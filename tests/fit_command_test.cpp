@@ -91,6 +91,14 @@ TEST_F(FitCommand, ToAMaterialNeedsNoFileAndSaysWhatIsBeyondIt) {
   EXPECT_EQ(run(std::string(BURNISH_CLI) + " fit ggx").status, 2);  // factors do
 }
 
+TEST_F(FitCommand, IsOfAModelOrWithinABudget) {
+  for (const char* form : {" --model pqp", " --table q=24"}) {
+    const Outcome outcome = run(std::string(BURNISH_CLI) + " fit ggx --budget 2700 -o " + out() + form);
+    EXPECT_EQ(outcome.status, 2) << form;
+    EXPECT_THAT(outcome.output, testing::HasSubstr("excludes"));
+  }
+}
+
 TEST_F(FitCommand, IsTheLibrarysFit) {
   BURNISH_SKIP_WHERE_SANITIZED();
   expect_same(

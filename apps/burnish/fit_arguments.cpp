@@ -128,11 +128,13 @@ void add_fit_arguments(CLI::App& verb, FitArguments& arguments) {
   verb.add_option("--model", one_lobe.model,
                   "product of tables over projections: pqp (the paper's), pqpr, or such as "
                   "\"p(wo) q(h) s(wi+wo+0.5n) p(wi)\" (default: --budget 16K --fetches 2, of some nodes 3, "
-                  "of anisotropic sources 6)");
+                  "of anisotropic sources 6)")
+      ->excludes("--budget");
   verb.add_option("--table", one_lobe.tables,
                   "size and spacing of a table: NAME=SIZE[,warp...][,shared][,format], SIZE N (1-D), NxN "
                   "(hemisphere), NxM or NxMxK; warp identity, power:P or rational:K; format as --format")
-      ->allow_extra_args(false);
+      ->allow_extra_args(false)
+      ->excludes("--budget");
   verb.add_option(
       "--smooth", arguments.smooth,
       "smoothness of the tables: a number >= 0, or auto (cross-validation: the default for scattered "
