@@ -78,6 +78,8 @@ Opened open_bytes(FileBytes file, const Json& a, const OpenOptions& options) {
   if (file.bytes.empty()) throw Error::in_file(file.name, "at least one byte", "an empty file");
   const std::string entry = a.value("entry", "");
   if (a.contains("decoderAt")) return open_np(file, a.at("decoderAt").get<std::size_t>(), entry);
+  if (looks_like_np(file.text()))
+    throw Error::in_file(file.name, "the decoder of these codes (.f32) given with them", "the codes alone");
   if (looks_like_surface(file.bytes)) return open_surface(file);
   if (looks_like_book(file.bytes)) return open_book(file, entry);
   if (!entry.empty() || (!looks_like_model(file.bytes) && looks_like_neural(file.text())))

@@ -125,9 +125,9 @@ Reply open(Request request) {
     if (a.contains("spec")) {
       const std::string spec = a.at("spec").get<std::string>();
       if (!is_analytic_spec(spec))
-        throw Error(
-            fmt::format("expected a file's bytes or an analytic BRDF such as ggx:alpha=0.2, found '{}'",
-                        spec.substr(0, 80)));
+        throw Error(fmt::format(
+            "expected a file's bytes or an analytic BRDF such as ggx:alpha_x=0.2,alpha_y=0.2, found '{}'",
+            spec.substr(0, 80)));
       return {open_source(spec, options), {}, {}};
     }
     return open_bytes({a.value("name", "file"), std::move(request.bytes)}, a, options);
@@ -588,7 +588,8 @@ Reply export_material(const Request& request) {
   const Source& source = material(a);
   const bool is_model = std::holds_alternative<FactoredBrdf>(source.brdf);
   std::vector<std::string_view> kinds(kConvertFormats.begin(), kConvertFormats.end());
-  kinds.insert(kinds.end(), export_target_names().begin(), export_target_names().end());
+  for (const std::string_view target : export_target_names())
+    if (std::ranges::find(kinds, target) == kinds.end()) kinds.push_back(target);
   if (std::ranges::find(kinds, kind) == kinds.end())
     throw Error(fmt::format("export: {}", expected_one_of(kinds, kind)));
   if (std::ranges::find(kConvertFormats, kind) != kConvertFormats.end()) {

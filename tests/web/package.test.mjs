@@ -268,7 +268,11 @@ test("Options that there are not, and values of another kind, are said", async (
   await refused(material.images(5), "expected a material, found Number");
   await refused(material.volume({thetaH: 1}), "thetaH from 2 to 512");
   await refused(material.export("brnish"), "found 'brnish'; did you mean 'burnish'?");
-  for (const edit of [5, null, {nosuch: 1}, {hue: "x"}, {roughness: "x"}, {diffuse: -1}]) await refused(model.edit(edit), "expected");
+  await refused(material.fit({budget: 700}, {onProgress: 3}), "onProgress as a function");
+  await refused(material.info({signal: 3}), "signal as an AbortSignal");
+  await refused(model.export("merl", {}, {onLosses: 3}), "onLosses as a function");
+  await refused(open("nosuch"), "ggx:alpha_x=0.2,alpha_y=0.2");
+  for (const edit of [5, null, undefined, {nosuch: 1}, {hue: "x"}, {roughness: "x"}, {diffuse: -1}]) await refused(model.edit(edit), "expected");
   await refused(model.shader(), "expected glsl");
   await refused(model.shader("glsl", {exact: "yes"}), "true or false");
   material.close();

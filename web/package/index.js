@@ -103,7 +103,9 @@ class Engine {
 
   /// {request, bytes?, materials?, onProgress?, signal?} to {json, blobs, memory}
   run(job) {
-    const {signal} = job;
+    const {signal, onProgress} = job;
+    if (onProgress !== undefined && typeof onProgress !== "function") return Promise.reject(new Error(`expected onProgress as a function, found ${kindOf(onProgress)}`));
+    if (signal !== undefined && !(signal instanceof AbortSignal)) return Promise.reject(new Error(`expected signal as an AbortSignal, found ${kindOf(signal)}`));
     if (signal?.aborted) return Promise.reject(aborted(signal));
     return new Promise((resolve, reject) => {
       const entry = {job, resolve, reject};
@@ -317,6 +319,7 @@ export class Material {
 
   /// One file as bytes, or a list of files where there are several.
   async export(kind, options = {}, {signal, onLosses} = {}) {
+    if (onLosses !== undefined && typeof onLosses !== "function") throw new Error(`export: expected onLosses as a function, found ${kindOf(onLosses)}`);
     const {json, blobs} = await this.#ask("export", {...options, kind}, {signal});
     if (json.losses?.length) onLosses?.(json.losses);
     if (kConverted.has(kind)) return new Uint8Array(blobs[0]);
@@ -350,6 +353,7 @@ export class Model extends Material {
   }
 
   async edit(edit, {signal} = {}) {
+    if (typeof edit !== "object" || edit === null) throw new Error(`edit: expected options, found ${kindOf(edit)}`);
     const {blobs} = await answers.run({
       request: {verb: "edit", id: this.id, edit}, materials: [this.recipe], signal,
     });
@@ -396,7 +400,7 @@ export class Surface extends Model {
   }
 }
 
-/// Opens a file's bytes, whatever its format, or an analytic BRDF such as "ggx:alpha=0.2".
+/// Opens a file's bytes, whatever its format, or an analytic BRDF such as "ggx:alpha_x=0.2,alpha_y=0.2".
 export async function open(data, {name, report, decoder, onProgress, signal, ...options} = {}) {
   const id = ++ids, request = {...options, verb: "open", id};
   const recipe = {id, request, bytes: async () => undefined};

@@ -147,5 +147,8 @@ export function start() {
     else step(past, future);
   });
   draw();
-  onChange((what) => draw(what === "shown"));
+  onChange((what) => {
+    if (what.closed) [past, future] = [past, future].map((steps) => steps.filter(({entry}) => entry !== what.closed));
+    draw(what === "shown");
+  });
 }

@@ -178,8 +178,9 @@ function drawFigures() {
                 ...[f.psnr === null ? Infinity : f.psnr, f.ssim, f.relative, f.rms_log, f.log_cos].map((x, k) => figure(x, k === 0 ? 4 : 3))], {"data-shown": model === state.beside});
   });
   const model = models.includes(state.beside) ? state.beside : models.at(-1), {figures, wrong} = judgedOf(reference, model) ?? {}, cost = model.info.shader;
-  const costText = cost && `${model.name}: ${cost.fetches} fetches of ${cost.textures} texture${cost.textures === 1 ? "" : "s"}, ${cost.operations} operations, ` +
-    `${cost.divisions} divisions, ${cost.roots} roots, ${cost.powers} powers a light.${model.seconds && !model.edited ? ` Fitted in ${number(model.seconds, 2)} s.` : ""}`;
+  const many = (count, what) => `${count} ${what}${count === 1 ? "" : what.endsWith("ch") ? "es" : "s"}`;
+  const costText = cost && `${model.name}: ${many(cost.fetches, "fetch")} of ${many(cost.textures, "texture")}, ${many(cost.operations, "operation")}, ` +
+    `${many(cost.divisions, "division")}, ${many(cost.roots, "root")}, ${many(cost.powers, "power")} a light.${model.seconds && !model.edited ? ` Fitted in ${number(model.seconds, 2)} s.` : ""}`;
   place.replaceChildren(
     make("div", {class: "scroll", tabindex: 0, role: "region", "aria-label": "Figures of the models"}, table("", heads, rows)),
     wrong ? make("p", {class: "hint"}, `${model.name} has no figures: ${wrong}`) : "",

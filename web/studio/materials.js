@@ -137,6 +137,7 @@ const openFiles = (files, onPicture) => queued(() => openEach(files, onPicture))
 async function openEach(files, onPicture) {
   const decoder = files.find(({name}) => /\.f32$/i.test(name)), codes = decoder && files.find(({name}) => /\.csv$/i.test(name)), said = [];
   const wanted = files.filter((f) => !codes || f !== decoder);
+  if (find("#message").dataset.kind === "error") say("");  // of what was tried before
   for (const [k, file] of wanted.entries()) {
     try {
       if (/\.(hdr|exr)$/i.test(file.name) && (await onPicture(file))) continue;
