@@ -326,7 +326,7 @@ bool OpenPbr::isotropic() const noexcept {
 
 template <class V>
 V OpenPbr::in_tangent_frame(const V& w) const {
-  if (p_.geometry_tangent == 0 || isotropic()) return w;
+  if (p_.geometry_tangent == 0) return w;
   return V{tangent_cos_ * w.x + tangent_sin_ * w.y, tangent_cos_ * w.y - tangent_sin_ * w.x, w.z};
 }
 
