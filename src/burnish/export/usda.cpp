@@ -1,6 +1,7 @@
 #include <cmath>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -62,54 +63,27 @@ def Xform "{0}" (
 }}
 )";
 
-// {0} name, {1} and {2} cosine and sine
-constexpr std::string_view kTurnedTangent = R"(
-        def Shader "n"
-        {{
-            uniform token info:id = "ND_normal_vector3"
-            string inputs:space = "world"
-            float3 outputs:out
-        }}
+// A node of vectors with its inputs, a line each.
+std::string vector_node(std::string_view name, std::string_view id, const std::vector<std::string>& inputs) {
+  std::string text = fmt::format(
+      "\n        def Shader \"{}\"\n        {{\n            uniform token info:id = \"ND_{}\"\n", name, id);
+  for (const std::string& input : inputs) text += fmt::format("            {}\n", input);
+  return text + "            float3 outputs:out\n        }\n";
+}
 
-        def Shader "t"
-        {{
-            uniform token info:id = "ND_tangent_vector3"
-            string inputs:space = "world"
-            float3 outputs:out
-        }}
-
-        def Shader "b"
-        {{
-            uniform token info:id = "ND_crossproduct_vector3"
-            float3 inputs:in1.connect = </{0}/material/n.outputs:out>
-            float3 inputs:in2.connect = </{0}/material/t.outputs:out>
-            float3 outputs:out
-        }}
-
-        def Shader "along"
-        {{
-            uniform token info:id = "ND_multiply_vector3FA"
-            float3 inputs:in1.connect = </{0}/material/t.outputs:out>
-            float inputs:in2 = {1}
-            float3 outputs:out
-        }}
-
-        def Shader "across"
-        {{
-            uniform token info:id = "ND_multiply_vector3FA"
-            float3 inputs:in1.connect = </{0}/material/b.outputs:out>
-            float inputs:in2 = {2}
-            float3 outputs:out
-        }}
-
-        def Shader "tangent"
-        {{
-            uniform token info:id = "ND_add_vector3"
-            float3 inputs:in1.connect = </{0}/material/along.outputs:out>
-            float3 inputs:in2.connect = </{0}/material/across.outputs:out>
-            float3 outputs:out
-        }}
-)";
+// The nodes of a tangent turned by an angle; the last one is "tangent".
+std::string tangent_nodes(double angle, const std::string& name) {
+  const auto connected = [&](const char* input, const char* node) {
+    return fmt::format("float3 inputs:{}.connect = </{}/material/{}.outputs:out>", input, name, node);
+  };
+  const auto number = [](double value) { return fmt::format("float inputs:in2 = {}", value); };
+  const std::string world = "string inputs:space = \"world\"";
+  return vector_node("n", "normal_vector3", {world}) + vector_node("t", "tangent_vector3", {world}) +
+         vector_node("b", "crossproduct_vector3", {connected("in1", "n"), connected("in2", "t")}) +
+         vector_node("along", "multiply_vector3FA", {connected("in1", "t"), number(std::cos(angle))}) +
+         vector_node("across", "multiply_vector3FA", {connected("in1", "b"), number(std::sin(angle))}) +
+         vector_node("tangent", "add_vector3", {connected("in1", "along"), connected("in2", "across")});
+}
 
 }  // namespace
 
@@ -129,7 +103,7 @@ std::string usda_layer(const OpenPbrParameters& parameters, const MetallicRoughn
     for (const char* of : {"geometry_tangent", "geometry_coat_tangent"})
       inputs += fmt::format("            float3 inputs:{}.connect = </{}/material/tangent.outputs:out>\n", of,
                             name);
-    tangent = fmt::format(kTurnedTangent, name, std::cos(angle), std::sin(angle));
+    tangent = tangent_nodes(angle, name);
   }
   return fmt::format(kLayer, name, color_text(preview.base_color), preview.metallic, preview.roughness,
                      inputs, tangent);
