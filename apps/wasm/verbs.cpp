@@ -115,7 +115,7 @@ Reply open(Request request) {
   given.read("hasCosine", options.has_cosine);
   given.read("clampNegatives", options.clamp_negatives);
   given.read("back", options.back_side);
-  given.text("entry");
+  given.text("entry");  // read by open_bytes: a text here
   // no file of a light is at hand here
   constexpr std::array<std::string_view, 4> kLights{"E", "D50", "D65", "A"};
   if (std::ranges::find(kLights, options.illuminant) == kLights.end())
