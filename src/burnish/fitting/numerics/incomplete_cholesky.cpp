@@ -23,10 +23,48 @@ constexpr double kLessCoupling = 0.8, kMinCoupling = 0.3;
 constexpr int kBlocksAtOnce = 4;
 constexpr std::size_t kColumnsAtOnce = 512;
 
+double dot(const double* a, const double* b, int count) {
+  return Eigen::VectorXd::Map(a, count).dot(Eigen::VectorXd::Map(b, count));
+}
+
+/// to -= scale * from.
+void subtract(double* to, double scale, const double* from, int count) {
+  Eigen::VectorXd::Map(to, count) -= scale * Eigen::VectorXd::Map(from, count);
+}
+
 }  // namespace
+
+TriangleRuns::TriangleRuns(const SparseTriangle& matrix) {
+  const int *starts = matrix.outerIndexPtr(), *columns = matrix.innerIndexPtr();
+  starts_.assign(1, 0);
+  for (int i = 0; i < matrix.rows(); ++i) {
+    for (int at = starts[i]; at < starts[i + 1]; ++at)
+      if (at > starts[i] && columns[at] == columns[at - 1] + 1)
+        ++runs_.back().length;
+      else
+        runs_.push_back({columns[at], at, 1});
+    starts_.push_back(runs_.size());
+  }
+}
+
+Eigen::VectorXd symmetric_times(const SparseTriangle& matrix, const TriangleRuns& runs,
+                                const Eigen::VectorXd& v) {
+  const double* values = matrix.valuePtr();
+  Eigen::VectorXd product = Eigen::VectorXd::Zero(v.size());
+  for (int i = 0; i < matrix.rows(); ++i) {
+    double sum = 0;
+    for (const TriangleRuns::Run& run : runs.row(i)) {
+      sum += dot(values + run.at, v.data() + run.column, run.length);
+      subtract(product.data() + run.column, -v[i], values + run.at, run.length);
+    }
+    product[i] += sum - values[matrix.outerIndexPtr()[i + 1] - 1] * v[i];  // the diagonal stands there once
+  }
+  return product;
+}
 
 IncompleteCholesky::IncompleteCholesky(const SparseTriangle& matrix, double last_share, int dense_rows)
     : factor_(matrix),
+      runs_(matrix),
       dense_rows_(dense_rows),
       share_(last_share > kFirstShare ? last_share / kMoreShare : 0) {
   const auto blocks = static_cast<std::size_t>((dense_rows + kLanes - 1) / kLanes);
@@ -51,8 +89,10 @@ double IncompleteCholesky::eliminate(const SparseTriangle& matrix, int i, std::v
   for (int at = starts[i]; at < diagonal; ++at) {
     const int j = column[at], last = starts[j + 1] - 1;
     double sum = row[static_cast<std::size_t>(j)];
-    for (int of_j = starts[j]; of_j < last; ++of_j)
-      sum -= row[static_cast<std::size_t>(column[of_j])] * values[of_j];
+    for (const TriangleRuns::Run& run : runs_.row(j)) {
+      const int length = std::min(run.length, last - run.at);  // less the diagonal
+      sum -= dot(row.data() + run.column, values + run.at, length);
+    }
     values[at] = row[static_cast<std::size_t>(j)] = sum * values[last];
     pivot -= values[at] * values[at];
   }
@@ -78,8 +118,11 @@ void IncompleteCholesky::eliminate_block(const SparseTriangle& matrix, int first
   for (int j = 0; j < columns; ++j) {
     const int last = starts[j + 1] - 1;
     Lanes sum = Lanes::Map(block + j * kLanes);
-    for (int of_j = starts[j]; of_j < last; ++of_j)
-      sum -= Lanes::Map(block + column[of_j] * kLanes) * values[of_j];
+    for (const TriangleRuns::Run& run : runs_.row(j)) {
+      const double* const before = block + run.column * kLanes;
+      for (int k = 0; k < std::min(run.length, last - run.at); ++k)
+        sum -= Lanes::Map(before + k * kLanes) * values[run.at + k];
+    }
     Lanes::Map(block + j * kLanes) = there[static_cast<std::size_t>(j)] * sum * values[last];
   }
 }
@@ -129,19 +172,19 @@ bool IncompleteCholesky::factorize(const SparseTriangle& matrix) {
 }
 
 Eigen::VectorXd IncompleteCholesky::solve(Eigen::VectorXd b) const {
-  const int *starts = factor_.outerIndexPtr(), *columns = factor_.innerIndexPtr();
+  const int* starts = factor_.outerIndexPtr();
   const double* values = factor_.valuePtr();
   const int size = static_cast<int>(factor_.rows()), first = first_dense();
   const std::ptrdiff_t block_size = std::ptrdiff_t{first} * kLanes;
 
   // L
-  const auto forward = [&](int i, int begin) {
+  for (int i = 0; i < first; ++i) {
     const int diagonal = starts[i + 1] - 1;
     double sum = b[i];
-    for (int at = begin; at < diagonal; ++at) sum -= values[at] * b[columns[at]];
+    for (const TriangleRuns::Run& run : runs_.row(i))
+      sum -= dot(values + run.at, b.data() + run.column, std::min(run.length, diagonal - run.at));
     b[i] = sum * values[diagonal];
-  };
-  for (int i = 0; i < first; ++i) forward(i, starts[i]);
+  }
   // blocks and, below, columns are worked on apart: a number's sum is in the order of one thread
   for_each_chunk(static_cast<std::size_t>(dense_rows_), kBlocksAtOnce * kLanes,
                  [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -154,15 +197,17 @@ Eigen::VectorXd IncompleteCholesky::solve(Eigen::VectorXd b) const {
                      b.segment(i, lanes) = sum.head(lanes);
                    }
                  });
-  for (int i = first; i < size; ++i) forward(i, dense_start(i));
+  for (int i = first; i < size; ++i) {
+    const double* const row = values + dense_start(i);
+    b[i] = (b[i] - dot(row, b.data() + first, i - first)) * row[i - first];
+  }
 
   // L^T, from the last row to the first
-  const auto backward = [&](int i, int begin) {
-    const int diagonal = starts[i + 1] - 1;
-    const double x = b[i] *= values[diagonal];
-    for (int at = begin; at < diagonal; ++at) b[columns[at]] -= values[at] * x;
-  };
-  for (int i = size - 1; i >= first; --i) backward(i, dense_start(i));
+  for (int i = size - 1; i >= first; --i) {
+    const double* const row = values + dense_start(i);
+    b[i] *= row[i - first];
+    subtract(b.data() + first, b[i], row, i - first);
+  }
   if (dense_rows_ > 0)
     for_each_chunk(static_cast<std::size_t>(first), kColumnsAtOnce,
                    [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -177,7 +222,12 @@ Eigen::VectorXd IncompleteCholesky::solve(Eigen::VectorXd b) const {
                        }
                      }
                    });
-  for (int i = first - 1; i >= 0; --i) backward(i, starts[i]);
+  for (int i = first - 1; i >= 0; --i) {
+    const int diagonal = starts[i + 1] - 1;
+    b[i] *= values[diagonal];
+    for (const TriangleRuns::Run& run : runs_.row(i))
+      subtract(b.data() + run.column, b[i], values + run.at, std::min(run.length, diagonal - run.at));
+  }
   return b;
 }
 

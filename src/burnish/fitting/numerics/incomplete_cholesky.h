@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include <Eigen/SparseCore>
@@ -8,6 +9,29 @@ namespace burnish {
 
 /// The lower triangle of a symmetric matrix, row by row.
 using SparseTriangle = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+/// Where such a matrix's entries stand side by side: what is done with them is done with many at once.
+class TriangleRuns {
+ public:
+  struct Run {
+    int column, at, length;  ///< the first entry's column and place among all
+  };
+
+  TriangleRuns() = default;
+  explicit TriangleRuns(const SparseTriangle& matrix);
+  std::span<const Run> row(int i) const noexcept {
+    const auto k = static_cast<std::size_t>(i);
+    return {runs_.data() + starts_[k], runs_.data() + starts_[k + 1]};
+  }
+
+ private:
+  std::vector<Run> runs_;
+  std::vector<std::size_t> starts_;
+};
+
+/// The symmetric matrix times v.
+Eigen::VectorXd symmetric_times(const SparseTriangle& matrix, const TriangleRuns& runs,
+                                const Eigen::VectorXd& v);
 
 /// About the Cholesky factor of a symmetric positive definite matrix: it has entries only where the matrix has
 /// [Meijerink 1977]. A preconditioner.
@@ -37,6 +61,7 @@ class IncompleteCholesky {
   double* block_of(int i) noexcept;
 
   SparseTriangle factor_;  ///< the diagonal's reciprocals in its place
+  TriangleRuns runs_;
   int dense_rows_;
   /// What stands before the dense rows, of kLanes of them column by column: not in factor_.
   std::vector<double> before_;

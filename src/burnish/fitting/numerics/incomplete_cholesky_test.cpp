@@ -1,3 +1,4 @@
+#include <cmath>
 #include <random>
 #include <vector>
 
@@ -30,6 +31,23 @@ TEST(IncompleteCholesky, IsExactWhereNothingIsLeftOut) {
   const Eigen::VectorXd v = Eigen::VectorXd::LinSpaced(60, -1, 1);
   const Eigen::VectorXd b = matrix.selfadjointView<Eigen::Lower>() * v;
   EXPECT_LT((IncompleteCholesky(matrix).solve(b) - v).norm(), 1e-10 * v.norm());
+}
+
+TEST(TriangleRuns, MultiplyTheWholeMatrix) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int i = 0; i < 50; ++i)
+    for (int j = 0; j <= i; ++j)
+      if (i == j || (i * 7 + j * 5) % 11 < 6) entries.emplace_back(i, j, std::sin(i + 3 * j));
+  SparseTriangle matrix(50, 50);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::VectorXd v = Eigen::VectorXd::LinSpaced(50, -1, 2),
+                        expected = matrix.selfadjointView<Eigen::Lower>() * v;
+  const TriangleRuns runs(matrix);
+  int count = 0;
+  for (int i = 0; i < 50; ++i)
+    for (const TriangleRuns::Run& run : runs.row(i)) count += run.length;
+  EXPECT_EQ(count, matrix.nonZeros());
+  EXPECT_LT((symmetric_times(matrix, runs, v) - expected).norm(), 1e-13 * expected.norm());
 }
 
 TEST(IncompleteCholesky, IsTheSameWithDenseRows) {

@@ -102,7 +102,11 @@ class FactorModel final : public QuadraticModel {
 class SparseModel final : public QuadraticModel {
  public:
   SparseModel(const RefineSystem& system, double smooth, SparseGram gram)
-      : system_(system), smooth_(smooth), gram_(std::move(gram)), order_(gram_.place().size()) {
+      : system_(system),
+        smooth_(smooth),
+        gram_(std::move(gram)),
+        runs_(gram_.matrix()),
+        order_(gram_.place().size()) {
     std::ranges::copy(gram_.place(), order_.indices().data());
   }
 
@@ -130,13 +134,13 @@ class SparseModel final : public QuadraticModel {
 
  private:
   Vector ordered_times(const Vector& v) const {
-    return gram_.matrix().selfadjointView<Eigen::Lower>() * v +
-           albedo_roots_ * (albedo_roots_.transpose() * v);
+    return symmetric_times(gram_.matrix(), runs_, v) + albedo_roots_ * (albedo_roots_.transpose() * v);
   }
 
   const RefineSystem& system_;
   double smooth_;
   SparseGram gram_;
+  TriangleRuns runs_;                               ///< of the gram's matrix
   double share_ = 0;                                ///< of the last incomplete factor
   Eigen::PermutationMatrix<Eigen::Dynamic> order_;  ///< from the unknowns' to the matrix's
   Eigen::MatrixXd albedo_roots_;                    ///< in the matrix's order
