@@ -1,5 +1,6 @@
 #include <chrono>
 #include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -28,9 +29,10 @@ struct FitSurfaceArguments {
   bool resume = false, compare = false, json = false;
 };
 
-std::string text_of(const PictureScore& score) {
-  if (!score.psnr) return fmt::format("{} pictures", score.pictures);
-  return fmt::format("psnr {:.2f} dB of {} pictures{}", *score.psnr, score.pictures,
+std::string text_of(const PictureScore& score, const SurfaceReport& report) {
+  const char* const of = report.of_samples ? "samples a texel" : "pictures";
+  if (!score.psnr) return fmt::format("{} {}", score.pictures, of);
+  return fmt::format("psnr {:.2f} dB of {} {}{}", *score.psnr, score.pictures, of,
                      score.psnr_of_all && *score.psnr_of_all != *score.psnr
                          ? fmt::format(", {:.2f} dB with what masks leave out", *score.psnr_of_all)
                          : "");
@@ -64,7 +66,10 @@ void fit_surface(FitSurfaceArguments& arguments, FitCrew* crew) {
   options.progress = progress_bars();
   options.checkpoint = arguments.out + ".part";
   if (!arguments.resume) std::filesystem::remove(options.checkpoint);
-  const SurfaceFit fit = burnish::fit_surface(Capture(arguments.capture, arguments.pictures), options);
+  Capture capture(arguments.capture, arguments.pictures);
+  if (!arguments.picture.empty() && capture.form().own_directions)
+    throw Error::in_file(arguments.capture, "pictures, for --picture", "samples of texels");
+  const SurfaceFit fit = burnish::fit_surface(std::move(capture), options);
   write_then_rename(arguments.out, format_surface(fit.surface));
   std::filesystem::remove(options.checkpoint);
 
@@ -87,12 +92,16 @@ void fit_surface(FitSurfaceArguments& arguments, FitCrew* crew) {
     return;
   }
   for (const auto& [file, why] : report.left_out) fmt::print("left out   {}: {}\n", file, why);
-  fmt::print("capture    {} x {} texels, {} pictures; {} pixels clipped, {} missing\n", report.width,
-             report.height, report.pictures, report.clipped_pixels, report.missing_pixels);
+  if (report.of_samples)
+    fmt::print("capture    {} x {} texels of at most {} samples\n", report.width, report.height,
+               report.pictures);
+  else
+    fmt::print("capture    {} x {} texels, {} pictures; {} pixels clipped, {} missing\n", report.width,
+               report.height, report.pictures, report.clipped_pixels, report.missing_pixels);
   fmt::print("surface    {} lobes of {} bytes together, {} + {} bytes a texel (weights, normals)\n",
              report.lobes, report.lobe_bytes, report.weight_bytes, report.frame_bytes);
-  fmt::print("fitted     {}\n", text_of(report.fitted));
-  if (report.held_out.pictures > 0) fmt::print("held out   {}\n", text_of(report.held_out));
+  fmt::print("fitted     {}\n", text_of(report.fitted, report));
+  if (report.held_out.pictures > 0) fmt::print("held out   {}\n", text_of(report.held_out, report));
   fmt::print("written    {} in {:.2f} s, of these {:.2f} s weights of all texels\n", arguments.out,
              report.seconds, report.weight_seconds);
 }
@@ -106,12 +115,14 @@ void add_fit_surface_command(CLI::App& app, FitCrew* crew) {
       "Examples: burnish fit-surface capture/ -o wall.burnish\n"
       "          burnish fit-surface capture/ -o wall.burnish --lobes 4 --normals estimate\n"
       "          burnish fit-surface fabric01.btf -o fabric.burnish --normals flat\n"
+      "          burnish fit-surface samples.csv -o spots.burnish --lobes 3\n"
       "          burnish fit-surface capture/ -o wall.burnish --lobes 4 --compare\n"
       "          burnish fit-surface capture/ -o wall.burnish --book library.burnish");
   auto arguments = std::make_shared<FitSurfaceArguments>();
   SurfaceFitOptions& options = arguments->options;
-  verb->add_option("CAPTURE", arguments->capture,
-                   "a folder with capture.json and its pictures, or a BTF of UBO2014")
+  verb->add_option(
+          "CAPTURE", arguments->capture,
+          "a folder with capture.json and its pictures, a BTF of UBO2014, or a CSV of samples of texels")
       ->required();
   verb->add_option("-o,--output,--out", arguments->out, "the surface's .burnish file to write")->required();
   verb->add_option("--lobes", options.lobes, "how many lobes")
@@ -124,9 +135,10 @@ void add_fit_surface_command(CLI::App& app, FitCrew* crew) {
                    "a model whose lobes are taken as they are: weights alone are fitted")
       ->excludes("--lobes")
       ->excludes("--lobe-bytes");
-  verb->add_option(
-          "--normals", arguments->normals,
-          "those of the capture, none (flat) or estimated; auto: the capture's, estimated where it has none")
+  verb->add_option("--normals", arguments->normals,
+                   "those of the capture, none (flat) or estimated; auto: the capture's, estimated where it "
+                   "has none, flat "
+                   "of samples")
       ->check(one_of({"auto", "capture", "flat", "estimate"}))
       ->capture_default_str();
   verb->add_option("--pictures", arguments->pictures,

@@ -26,6 +26,7 @@ int main(int argc, char** argv) {
   write("surface", "surface", burnish::seeds::surface_seed());
   write("book", "book", burnish::format_book(burnish::random_book()));
   write("capture", "capture", burnish::seeds::kCapture);
+  write("csv", "texels", burnish::seeds::kTexelCsv);
   write("btf", "btf", burnish::btf_bytes(burnish::btf_content()));
   write("utia", "utia", burnish::seeds::kUtia);
   write("np", "np", burnish::seeds::kNpCode);

@@ -9,6 +9,7 @@
 #include <burnish/capture/capture.h>
 #include <burnish/capture/json_member.h>
 #include <burnish/capture/picture_rows.h>
+#include <burnish/capture/texel_table.h>
 #include <burnish/error.h>
 #include <burnish/math/parallel.h>
 
@@ -71,7 +72,7 @@ Json to_json(const Station& station) {
 }  // namespace
 
 bool CaptureForm::directional() const noexcept {
-  return std::ranges::all_of(pictures, [](const CapturePicture& picture) {
+  return !own_directions && std::ranges::all_of(pictures, [](const CapturePicture& picture) {
     return picture.light.is_direction && picture.view.is_direction;
   });
 }
@@ -131,12 +132,14 @@ std::string format_capture(const CaptureForm& form) {
 Capture::Capture(std::filesystem::path path, std::size_t btf_pictures) : path_(std::move(path)) {
   if (BtfFile::recognizes(path_))
     open_btf(btf_pictures);
+  else if (TexelTable::recognizes(path_))
+    open_samples();
   else
     open_folder();
 }
 
 std::filesystem::path Capture::form_file() const {
-  return btf_ ? path_ : path_ / "capture.json";
+  return btf_ || table_ ? path_ : path_ / "capture.json";
 }
 
 void Capture::open_folder() {
@@ -191,6 +194,21 @@ void Capture::open_btf(std::size_t pictures) {
   leave_out({});
 }
 
+void Capture::open_samples() {
+  table_ = std::make_shared<const TexelTable>(path_, kMaxSide, kMaxPictures);
+  form_.width = table_->width();
+  form_.height = table_->height();
+  form_.own_directions = true;
+  for (std::size_t p = 0; p < table_->pictures(); ++p)
+    form_.pictures.push_back({.file = fmt::format("sample {}", p),
+                              .light = {},
+                              .view = {},
+                              .mask = {},
+                              .held_out = p >= table_->fitted_pictures()});
+  fingerprint_ = table_->fingerprint();
+  leave_out({});
+}
+
 void Capture::leave_out(const std::vector<LeftOut>& damaged) {
   for (const LeftOut& picture : damaged) {
     std::erase_if(form_.pictures, [&](const CapturePicture& p) { return p.file == picture.file; });
@@ -207,13 +225,14 @@ void Capture::leave_out(const std::vector<LeftOut>& damaged) {
 
 int Capture::rows_within(std::size_t bytes) const noexcept {
   const std::size_t row = static_cast<std::size_t>(form_.width) * form_.pictures.size() *
-                              (3 * sizeof(float) + sizeof(PixelState)) +
+                              (((table_ ? 9 : 3) * sizeof(float)) + sizeof(PixelState)) +
                           (btf_ ? btf_->row_bytes() : 0);
   return static_cast<int>(std::clamp<std::size_t>(bytes / std::max<std::size_t>(row, 1), 1,
                                                   static_cast<std::size_t>(form_.height)));
 }
 
 Capture::Read Capture::read(int first, int count) const {
+  if (table_) return {.rows = table_->rows(first, count), .damaged = {}};
   const bool srgb = form_.transfer == Transfer::srgb;
   Read read;
   CaptureRows& rows = read.rows;
@@ -222,7 +241,8 @@ Capture::Read Capture::read(int first, int count) const {
           .width = form_.width,
           .pictures = form_.pictures.size(),
           .values = {},
-          .states = {}};
+          .states = {},
+          .directions = {}};
   const std::size_t texels = rows.texels();
   rows.values.resize(rows.pictures * texels * 3);
   rows.states.resize(rows.pictures * texels, PixelState::missing);

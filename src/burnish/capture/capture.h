@@ -55,6 +55,8 @@ struct CaptureForm {
   std::optional<double> clip = {};  ///< linear pixel values from here on are clipped
   std::string normals;              ///< a picture of normals, empty: unknown
   std::vector<CapturePicture> pictures;
+  /// Texels see lights from directions of their own, which CaptureRows has; stations say nothing.
+  bool own_directions = false;
 
   /// The middle of texel (x, y).
   Vec3 point(int x, int y) const noexcept {
@@ -104,6 +106,8 @@ struct CaptureRows {
   std::size_t pictures = 0;
   std::vector<float> values;       ///< [picture][row][x][channel], three channels
   std::vector<PixelState> states;  ///< [picture][row][x]
+  /// Unit vectors towards light and view, [picture][row][x][6]; empty: as the form's stations say.
+  std::vector<float> directions;
 
   std::size_t texels() const noexcept {
     return static_cast<std::size_t>(rows) * static_cast<std::size_t>(width);
@@ -118,9 +122,11 @@ constexpr std::uint64_t hash_of(std::string_view bytes,
 }
 
 class BtfFile;
+class TexelTable;
 
 /// A folder of pictures, or a BTF of UBO2014 (btf_file.h), read a few rows at a time: memory does not grow with the
-/// number of pictures or texels.
+/// number of pictures or texels. Or samples of each texel, a CSV (parse_texel_csv), which is in memory: a texel's k-th
+/// sample belongs to picture k, and where it has fewer they are missing.
 class Capture {
  public:
   static constexpr std::size_t kMinPictures = 4;
@@ -130,11 +136,14 @@ class Capture {
   /// another size are left out. Throws Error where the JSON is wrong or fewer than `kMinPictures` are left to fit.
   /// Of a BTF, which has tens of thousands, so many pictures are taken, spread evenly over its lights and views (0:
   /// all), every twelfth of them held out; its unit of length is the millimetre. Throws Error as BtfFile does.
+  /// Of samples every twelfth of a texel is held out where the file does not say which; its width and height are what
+  /// the largest texel says, each texel has a sample on the mean. Throws Error where they have not, and as
+  /// parse_texel_csv does.
   explicit Capture(std::filesystem::path path, std::size_t btf_pictures = kBtfPictures);
 
   /// The pictures that are there are all of the form's.
   const CaptureForm& form() const noexcept { return form_; }
-  /// What says so: capture.json, or the BTF.
+  /// What says so: capture.json, the BTF, or the samples.
   std::filesystem::path form_file() const;
   /// Where a picture or the normals are.
   std::filesystem::path file(const std::string& name) const { return path_ / name; }
@@ -166,11 +175,13 @@ class Capture {
  private:
   void open_folder();
   void open_btf(std::size_t pictures);
+  void open_samples();
 
   std::filesystem::path path_;
   CaptureForm form_;
-  std::shared_ptr<const BtfFile> btf_;    ///< null: a folder
-  std::vector<std::size_t> btf_numbers_;  ///< of the form's pictures
+  std::shared_ptr<const BtfFile> btf_;       ///< null: a folder
+  std::vector<std::size_t> btf_numbers_;     ///< of the form's pictures
+  std::shared_ptr<const TexelTable> table_;  ///< of samples, else null
   std::vector<LeftOut> left_out_;
   std::uint64_t fingerprint_ = 0;
 };

@@ -142,6 +142,7 @@ SampledTexels empty_sample(const CaptureForm& form, std::size_t most_values, std
   all.pictures = pictures;
   all.values.resize(pictures * all.size() * 3);
   all.states.resize(pictures * all.size());
+  if (form.own_directions) all.directions.resize(6 * pictures * all.size());
   return found;
 }
 
@@ -165,8 +166,11 @@ void keep_rows(const CaptureRows& rows, const CaptureForm& form, SampledTexels& 
           static_cast<std::size_t>(all.texels[t][0]);
       std::copy_n(&rows.values[3 * from], 3, &all.values[3 * (p * all.size() + t)]);
       all.states[p * all.size() + t] = rows.states[from];
+      if (!all.directions.empty())
+        std::copy_n(&rows.directions[6 * from], 6, &all.directions[6 * (p * all.size() + t)]);
     }
-    if (form.pictures[p].held_out) continue;
+    if (form.pictures[p].held_out || form.own_directions)
+      continue;  // texels have as many samples as they have
     const auto states = std::span(rows.states).subspan(p * texels, texels);
     found.missing += static_cast<std::size_t>(std::ranges::count(states, PixelState::missing));
     found.clipped += static_cast<std::size_t>(
@@ -202,6 +206,8 @@ std::optional<SampledTexels> sample_by_crew(Capture& capture, std::size_t most_v
       const std::size_t first = p * all.size() + begin;
       append_values<float>(bytes, std::span(all.values).subspan(3 * first, 3 * count));
       append_values<PixelState>(bytes, std::span(all.states).subspan(first, count));
+      if (!all.directions.empty())
+        append_values<float>(bytes, std::span(all.directions).subspan(6 * first, 6 * count));
     }
     return bytes;
   });
@@ -217,6 +223,7 @@ std::optional<SampledTexels> sample_by_crew(Capture& capture, std::size_t most_v
       const std::size_t first = p * all.size() + begin;
       take_values(rest, std::span(all.values.data() + 3 * first, 3 * count));
       take_values(rest, std::span(all.states.data() + first, count));
+      if (!all.directions.empty()) take_values(rest, std::span(all.directions.data() + 6 * first, 6 * count));
     }
   }
   return found;
@@ -277,8 +284,8 @@ std::vector<float> diffuse_normals(const TexelSamples& samples, const CaptureFor
         const std::size_t pixel = p * samples.size() + t;
         if (form.pictures[p].held_out || samples.states[pixel] != PixelState::there) continue;
         const float* const rgb = &samples.values[3 * pixel];
-        rows.push_back(
-            {form.pictures[p].light.seen_from(point), static_cast<double>(rgb[0] + rgb[1] + rgb[2]) / 3});
+        rows.push_back({samples.seen(form.pictures[p], p, t, point).wi,
+                        static_cast<double>(rgb[0] + rgb[1] + rgb[2]) / 3});
         mean += rows.back().value;
       }
       if (rows.size() < 4) continue;

@@ -19,6 +19,9 @@ TexelSamples part_of(const TexelSamples& all, std::size_t begin, std::size_t end
     const auto states = std::span(all.states).subspan(first, count);
     part.values.insert(part.values.end(), values.begin(), values.end());
     part.states.insert(part.states.end(), states.begin(), states.end());
+    if (all.directions.empty()) continue;
+    const auto directions = std::span(all.directions).subspan(6 * first, 6 * count);
+    part.directions.insert(part.directions.end(), directions.begin(), directions.end());
   }
   return part;
 }

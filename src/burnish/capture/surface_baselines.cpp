@@ -119,6 +119,9 @@ class Comparison {
         part.values.insert(part.values.end(), &samples_.values[kCaptureChannels * pixel],
                            &samples_.values[kCaptureChannels * pixel] + kCaptureChannels);
         part.states.push_back(samples_.states[pixel]);
+        if (samples_.directions.empty()) continue;
+        part.directions.insert(part.directions.end(), &samples_.directions[6 * pixel],
+                               &samples_.directions[6 * pixel] + 6);
       }
     return part;
   }
@@ -171,7 +174,9 @@ class Comparison {
     return std::log(std::max(x, 0.0) + kLogFloor);
   }
 
+  /// None where texels have no pictures in common.
   std::optional<double> pca(std::size_t components) const {
+    if (capture_.form().own_directions) return std::nullopt;
     const auto& pictures = capture_.form().pictures;
     std::vector<std::size_t> fitted;
     for (std::size_t p = 0; p < pictures.size(); ++p)

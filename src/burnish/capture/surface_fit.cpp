@@ -106,8 +106,10 @@ class SurfaceFitter {
     if (options.book && options.book->channels() != kCaptureChannels)
       throw Error(fmt::format("surface fit: expected a book of {} channels, found {}", kCaptureChannels,
                               options.book->channels()));
-    normals_from_ = options.normals.value_or(capture_.form().normals.empty() ? NormalsFrom::estimate
-                                                                             : NormalsFrom::capture);
+    const CaptureForm& form = capture_.form();
+    normals_from_ = options.normals.value_or(!form.normals.empty() ? NormalsFrom::capture
+                                             : form.own_directions ? NormalsFrom::flat
+                                                                   : NormalsFrom::estimate);
     if (normals_from_ == NormalsFrom::capture && capture_.form().normals.empty())
       throw Error::in_file(capture_.form_file().string(), "normals", "none");
   }
@@ -356,10 +358,10 @@ class SurfaceFitter {
       if (!is_there(samples_.states[pixel]) || trusts(pixel) < kMinTrust) continue;
       const Vec3 point = form.point(samples_.texels[t][0], samples_.texels[t][1]);
       const ShadingFrame frame = frame_about(normal_of(fits_.normals, t), {1, 0, 0});
+      const auto [light, view] = samples_.seen(form.pictures[p], p, t, point);
       Candidate c{.picture = static_cast<std::uint32_t>(p),
                   .texel = t,
-                  .pair = {frame.local(form.pictures[p].light.seen_from(point)),
-                           frame.local(form.pictures[p].view.seen_from(point))},
+                  .pair = {frame.local(light), frame.local(view)},
                   .bin = 0};
       if (c.pair.wi.z < kMinPixelCosine || c.pair.wo.z < kMinPixelCosine) continue;
       const Vec3 h = half_vector(c.pair.wi, c.pair.wo);
@@ -633,6 +635,7 @@ class SurfaceFitter {
     report_.width = static_cast<std::size_t>(form.width);
     report_.height = static_cast<std::size_t>(form.height);
     report_.pictures = form.pictures.size();
+    report_.of_samples = form.own_directions;
     report_.lobes = scales_.size();
     report_.left_out = capture_.left_out();
     report_.normals = normals_from_;
@@ -688,6 +691,7 @@ std::string report_json(const SurfaceReport& report) {
   return Object{{"width", report.width},
                 {"height", report.height},
                 {"pictures", report.pictures},
+                {"of_samples", report.of_samples},
                 {"left_out", std::move(left_out)},
                 {"missing_pixels", report.missing_pixels},
                 {"clipped_pixels", report.clipped_pixels},

@@ -23,7 +23,7 @@ struct SurfaceFitOptions {
   std::size_t lobe_bytes = 16 << 10;  ///< of each lobe's tables, [kMinLobeBytes, kMaxLobeBytes]
   /// Lobes that are known: weights alone are fitted. Each of the model's lobes has a weight.
   std::optional<FactoredBrdf> book = {};
-  /// None: those of the capture, or estimated where it has none.
+  /// None: those of the capture, or estimated where it has none; flat of samples, whose directions are about them.
   std::optional<NormalsFrom> normals = {};
   int rounds = 9;  ///< of lobes and weights in turn
   /// Copies of the lobes, widened by the bumps that mip levels lose; each costs a light one fetch more.
@@ -52,6 +52,7 @@ struct PictureScore {
 
 struct SurfaceReport {
   std::size_t width = 0, height = 0, pictures = 0, lobes = 0;
+  bool of_samples = false;  ///< texels have samples of their own, at most as many as there are pictures
   std::vector<Capture::LeftOut> left_out;
   std::size_t missing_pixels = 0, clipped_pixels = 0;  ///< of the pictures that are fitted
   NormalsFrom normals = NormalsFrom::flat;

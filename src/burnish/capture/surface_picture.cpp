@@ -48,6 +48,8 @@ Image8 weights_of(const SurfaceMap& map) {
 Image8 surface_picture(const Capture& capture, const SpatialBrdf& surface, std::size_t picture,
                        double exposure) {
   const CaptureForm& form = capture.form();
+  if (form.own_directions)
+    throw Error::in_file(capture.form_file().string(), "pictures to show beside the surface", "samples");
   if (picture >= form.pictures.size())
     throw Error(
         fmt::format("surface picture: expected a number below {}, found {}", form.pictures.size(), picture));

@@ -148,7 +148,8 @@ TexelSamples samples_of(CaptureRows rows) {
   TexelSamples samples{.texels = {},
                        .pictures = rows.pictures,
                        .values = std::move(rows.values),
-                       .states = std::move(rows.states)};
+                       .states = std::move(rows.states),
+                       .directions = std::move(rows.directions)};
   for (int y = 0; y < rows.rows; ++y)
     for (int x = 0; x < rows.width; ++x) samples.texels.push_back({x, rows.first_row + y});
   return samples;
@@ -209,8 +210,9 @@ class TexelSolver::Block {
     for (std::size_t k = 0; k < pictures_.size(); ++k) {
       const CapturePicture& picture = solver_.form_.pictures[pictures_[k]];
       for (std::size_t i = 0; i < kBlock; ++i) {
-        const Vec3 light = frames[i].local(picture.light.seen_from(points[i])),
-                   view = frames[i].local(picture.view.seen_from(points[i]));
+        const std::size_t t = first_ + std::min(i, count_ - 1);
+        const auto [towards_light, towards_view] = samples_.seen(picture, pictures_[k], t, points[i]);
+        const Vec3 light = frames[i].local(towards_light), view = frames[i].local(towards_view);
         w[0][i] = static_cast<float>(light.x);
         w[1][i] = static_cast<float>(light.y);
         w[2][i] = static_cast<float>(light.z);

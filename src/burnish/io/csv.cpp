@@ -13,6 +13,7 @@ namespace burnish {
 namespace {
 
 constexpr std::array<std::string_view, 6> kVectorNames = {"wi_x", "wi_y", "wi_z", "wo_x", "wo_y", "wo_z"};
+constexpr std::array<std::string_view, 3> kTexelNames = {"texel_x", "texel_y", "held_out"};
 constexpr std::array<std::string_view, 4> kAngleNames = {"theta_i", "phi_i", "theta_o", "phi_o"};
 
 std::vector<std::string> split_header(std::string_view line) {
@@ -33,6 +34,7 @@ struct CsvColumns {
   std::array<double, 4> to_radians{};      // factor of each angle
   std::vector<std::size_t> values;         // column of each channel
   std::vector<double> lambda_nm;           // wavelength of each channel, or empty
+  std::vector<std::size_t> others;  // column of each that a caller names, `count` where it is not there
 };
 
 std::size_t position(const std::vector<std::string>& names, std::string_view name) {
@@ -84,11 +86,16 @@ void find_values(const TextReader& reader, const std::vector<std::string>& names
                 fmt::format("{}", columns.values.size()));
 }
 
-CsvColumns read_header(TextReader& reader, bool with_values) {
+/// Of `others` those that are there are known too.
+CsvColumns read_header(TextReader& reader, bool with_values, std::span<const std::string_view> others = {}) {
   const std::vector<std::string> names = split_header(reader.line());
   CsvColumns columns = find_directions(reader, names);
   if (with_values) find_values(reader, names, columns);
-  const std::size_t used = (columns.vectors ? 6 : 4) + columns.values.size();
+  std::size_t used = (columns.vectors ? 6 : 4) + columns.values.size();
+  for (const std::string_view other : others) {
+    columns.others.push_back(position(names, other));
+    used += columns.others.back() < names.size();
+  }
   if (used != names.size())
     reader.fail(fmt::format("{} columns", used),
                 fmt::format("{}: a column is unknown or twice there", names.size()));
@@ -149,6 +156,8 @@ SampleFile parse_csv(const FileBytes& file, const OpenOptions& options) {
   TaggedLines lines{TextReader(file)};
   TextReader& reader = lines.reader;
   if (!lines.next()) reader.fail("a header line", "the end of the file");
+  if (looks_like_texel_csv(reader.line()))
+    reader.fail("samples of one material", "those of texels, which fit-surface reads");
   const CsvColumns columns = read_header(reader, true);
 
   SampleFile result;
@@ -182,6 +191,46 @@ SampleFile parse_csv(const FileBytes& file, const OpenOptions& options) {
                                             : "Taken as anisotropic: the file does not say.")
                        : (samples.isotropic ? "Isotropic, the file says." : "Anisotropic, the file says."));
   finish_samples(file.name, options, result);
+  return result;
+}
+
+bool looks_like_texel_csv(std::string_view text) noexcept {
+  return looks_like_csv(text) && first_content_line(text).find(kTexelNames[0]) != std::string_view::npos;
+}
+
+TexelCsv parse_texel_csv(const FileBytes& file, int most) {
+  TextReader reader(file);
+  if (!reader.next_content_line()) reader.fail("a header line", "the end of the file");
+  const CsvColumns columns = read_header(reader, true, kTexelNames);
+  for (const std::size_t k : {0u, 1u})
+    if (columns.others[k] == columns.count)
+      reader.fail(fmt::format("a column {}", kTexelNames[k]), in_quotes(reader.line()));
+  if (!columns.lambda_nm.empty()) reader.fail("columns r, g, b or value", in_quotes(reader.line()));
+  const bool says_held_out = columns.others[2] < columns.count;
+
+  TexelCsv result;
+  std::vector<double> row(columns.count);
+  const auto whole = [&](std::size_t other, int largest) {
+    const double value = row[columns.others[other]];
+    if (!(value >= 0 && value <= largest && value == std::floor(value)))
+      reader.fail(fmt::format("{} as a whole number of at most {}", kTexelNames[other], largest),
+                  fmt::format("{}", value));
+    return static_cast<int>(value);
+  };
+  while (reader.next_content_line()) {
+    read_row(reader, row);
+    const DirectionPair pair = read_pair(reader, columns, row);
+    if (!(pair.wi.z > 0 && pair.wo.z > 0))
+      reader.fail("directions above the horizon", in_quotes(reader.line()));
+    result.texels.push_back({whole(0, most), whole(1, most)});
+    if (says_held_out) result.held_out.push_back(static_cast<std::uint8_t>(whole(2, 1)));
+    result.pairs.push_back(pair);
+    std::array<float, 3>& f = result.f.emplace_back();
+    for (std::size_t c = 0; c < 3; ++c) {
+      f[c] = static_cast<float>(row[columns.values[columns.values.size() == 1 ? 0 : c]]);
+      if (!std::isfinite(f[c])) reader.fail("a value that a float holds", in_quotes(reader.line()));
+    }
+  }
   return result;
 }
 

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <burnish/io/byte_reader.h>
 #include <burnish/io/sample_file.h>
@@ -20,6 +24,21 @@ bool looks_like_csv(std::string_view text) noexcept;
 /// is anisotropic unless every sample has the same phi_i. Throws Error on anything else, a direction below the
 /// horizon and vectors whose length is off 1 by over 1 % included.
 SampleFile parse_csv(const FileBytes& file, const OpenOptions& options);
+
+/// Samples of the texels of a surface.
+struct TexelCsv {
+  std::vector<std::array<int, 2>> texels;  ///< one a sample: column and row, from 0
+  std::vector<std::uint8_t> held_out;      ///< one a sample, 0 or 1; empty: the file does not say
+  std::vector<DirectionPair> pairs;        ///< about the surface's normal
+  std::vector<std::array<float, 3>> f;     ///< f_r in 1/sr; of a column `value` the same three times
+};
+
+/// True if the first line that is no comment also names a column texel_x.
+bool looks_like_texel_csv(std::string_view text) noexcept;
+
+/// As parse_csv, with columns texel_x and texel_y, whole numbers from 0 to `most`, and perhaps held_out, 0 or 1;
+/// values are r, g, b or value. Throws Error as parse_csv does.
+TexelCsv parse_texel_csv(const FileBytes& file, int most);
 
 /// The text that parse_csv reads back to the same samples. `lambda_nm` names the columns where there are
 /// neither 1 nor 3 channels, or spectra of 1 or 3. Throws Error if the channels have no names.

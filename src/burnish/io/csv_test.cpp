@@ -8,6 +8,7 @@
 #include <burnish/math/angles.h>
 #include <burnish/reflectance/goniometer.h>
 #include <burnish/testing/files.h>
+#include <burnish/testing/seed_files.h>
 
 namespace burnish {
 namespace {
@@ -98,6 +99,36 @@ TEST(Csv, RoundTripsSamplesToTheLastBit) {
     EXPECT_EQ(back.findings.lambda_nm, lambda);
   }
   EXPECT_THROW(samples_csv(Samples{2, true, {{}}, {1, 2}}), Error);
+}
+
+TEST(TexelCsv, HasWhatTheColumnsSay) {
+  const TexelCsv read = parse_texel_csv(memory_file(seeds::kTexelCsv), 10);
+  EXPECT_EQ(read.texels, (std::vector<std::array<int, 2>>{{0, 0}, {1, 0}, {1, 0}}));
+  EXPECT_EQ(read.held_out, (std::vector<std::uint8_t>{0, 1, 0}));
+  EXPECT_EQ(read.pairs[1], (DirectionPair{{0, 0.6, 0.8}, {0, 0, 1}}));
+  EXPECT_EQ(read.f[2], (std::array<float, 3>{4, 5, 6}));
+  // degrees, one channel, any order of columns
+  const TexelCsv grey =
+      parse_texel_csv(memory_file("value,theta_i,phi_i,theta_o,phi_o,texel_y,texel_x\n2,60,0,0,0,7,3\n"), 7);
+  EXPECT_EQ(grey.texels, (std::vector<std::array<int, 2>>{{3, 7}}));
+  EXPECT_TRUE(grey.held_out.empty());
+  EXPECT_NEAR(grey.pairs[0].wi.z, 0.5, 1e-12);
+  EXPECT_EQ(grey.f[0], (std::array<float, 3>{2, 2, 2}));
+}
+
+TEST(TexelCsv, RefusesWhatCannotBe) {
+  const std::string head = "texel_x,texel_y,wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,value\n";
+  EXPECT_NO_THROW(parse_texel_csv(memory_file(head + "5,0,0,0,1,0,0,1,1\n"), 5));
+  for (const char* row :
+       {"6,0,0,0,1,0,0,1,1", "0,-1,0,0,1,0,0,1,1", "0.5,0,0,0,1,0,0,1,1", "0,0,0,0,-1,0,0,1,1",
+        "0,0,0,0,1,0,0,2,1", "0,0,0,0,1,0,0,1,nan", "0,0,0,0,1,0,0,1,1e300", "0,0,0,0,1,0,0,1"})
+    EXPECT_THROW(parse_texel_csv(memory_file(head + row + "\n"), 5), Error) << row;
+  for (const char* columns :
+       {"texel_x,wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,value", "texel_x,texel_y,wi_x,wi_y,wi_z,value",
+        "texel_x,texel_y,wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,value_400",
+        "texel_x,texel_y,texel_z,wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,value"})
+    EXPECT_THROW(parse_texel_csv(memory_file(std::string(columns) + "\n"), 5), Error) << columns;
+  EXPECT_THROW(parse_csv(memory_file(seeds::kTexelCsv), {}), Error);
 }
 
 TEST(Directions, AreReadInEitherHalfSpace) {

@@ -125,6 +125,9 @@ inline const std::string kAstm =
     "theta_i,phi_i,theta_s,phi_s,R,G,B\n.1,.2,.3,.4,1,2,3\n.1,.5,.3,.4,4,5,6\n";
 inline const std::string kCsv =
     "# isotropic\ntheta_i,phi_i,theta_o,phi_o,r,g,b\n30,0,60,180,1,2,3\n10,5,20,30,0.1,-0.2,0.3\n";
+inline const std::string kTexelCsv =
+    "texel_x,texel_y,wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,held_out,r,g,b\n0,0,0,0,1,0.6,0,0.8,0,1,2,3\n"
+    "1,0,0,0.6,0.8,0,0,1,1,.1,.2,.3\n1,0,0,0,1,0,0,1,0,4,5,6\n";
 inline const std::string kDirections = "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0,0,1,0.6,0,0.8\n0,0.6,-0.8,1,0,0\n";
 inline const std::string kZemax =
     "# Sample: "
