@@ -187,7 +187,8 @@ void bind_surfaces(nb::module_& m) {
           "The Model of a place, in its own frame.")
       .def("albedo", &albedo_of, "The largest share of light that a texel reflects, and where.")
       .def("export", &exported, nb::arg("to"), nb::arg("folder") = nb::none(), nb::arg("name") = "brdf",
-           nb::arg("exact") = false, "Files by name, as `burnish export`: shaders, ktx2, exr, png.")
+           nb::arg("exact") = false,
+           "Files by name, as `burnish export`: shaders, ktx2, exr, png, gltf, three, html.")
       .def(
           "write",
           [](const OpenedSurface& s, const std::filesystem::path& path) {

@@ -60,9 +60,10 @@ def test_is_the_weighted_sum_of_its_lobes(fitted):
 
 def test_exports_shaders_and_maps(fitted):
     _, surface, _ = fitted
-    files = surface.export(["glsl", "png"], name="wall")
+    files = surface.export(["glsl", "png", "gltf"], name="wall")
     assert b"burnish_wall_at(" in files["wall.glsl"] and "wall_map0.ktx2" in files
     assert files["wall_weight0.png"][:4] == b"\x89PNG"
+    assert files["wall.glb"][:4] == b"glTF"
     with pytest.raises(burnish.Error, match="surface"):
         surface.export(["materialx"])
 

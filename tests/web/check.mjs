@@ -83,6 +83,17 @@ assert.equal(mesh.material.anisotropy ?? 0, shown.extensions?.KHR_materials_anis
 assert.ok(mesh.geometry.attributes.tangent.count > 1000);
 assert.ok(mesh.material.userData.gltfExtensions.BURNISH_materials_factored.lobes.length >= 1);
 
+// A surface: its textures are pictures of its size.
+{
+  const wall = new Uint8Array(fs.readFileSync(path.join(folder, "flat.glb")));
+  const said = await validator.validateBytes(wall);
+  assert.equal(said.issues.numErrors + said.issues.numWarnings, 0, JSON.stringify(said.issues.messages));
+  const {width, height} = JSON.parse(fs.readFileSync(path.join(folder, "flat.json"))).surface;
+  const pictures = said.info.resources.filter(({mimeType}) => mimeType === "image/png");
+  assert.ok(pictures.length >= 2);
+  for (const {image} of pictures) assert.deepEqual([image.width, image.height], [width, height]);
+}
+
 // OpenPBR as glTF: the validator knows its extensions, and three.js makes a physical material of them.
 {
   const coated = new Uint8Array(fs.readFileSync(path.join(folder, "openpbr.glb")));

@@ -19,6 +19,7 @@
 #include <burnish/capture/picture_rows.h>
 #include <burnish/error.h>
 #include <burnish/factors/model_file.h>
+#include <burnish/math/srgb.h>
 
 namespace burnish {
 
@@ -129,10 +130,6 @@ Image read_exr_rows(const std::filesystem::path& path, int first, int count) {
   });
 }
 
-float linear_of_srgb(float value) noexcept {  // [IEC61966]
-  return value <= 0.04045f ? value / 12.92f : std::pow((value + 0.055f) / 1.055f, 2.4f);
-}
-
 /// A PNG being read.
 struct PngFile {
   png_image image{};
@@ -172,7 +169,7 @@ Image read_png_rows(const std::filesystem::path& path, int first, int count, boo
   for (std::size_t i = 0; i < rows.pixels.size(); ++i) {
     const float value = wide ? static_cast<float>(words[begin + i]) / 65535.0f
                              : static_cast<float>(bytes[begin + i]) / 255.0f;
-    rows.pixels[i] = srgb ? linear_of_srgb(value) : value;
+    rows.pixels[i] = srgb ? srgb_decoded(value) : value;
   }
   return rows;
 }

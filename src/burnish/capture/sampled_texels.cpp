@@ -10,6 +10,7 @@
 #include <burnish/capture/sampled_texels.h>
 #include <burnish/capture/shared_work.h>
 #include <burnish/math/angles.h>
+#include <burnish/math/k_means.h>
 #include <burnish/math/parallel.h>
 #include <burnish/math/random.h>
 #include <burnish/metrics/sphere_images.h>
@@ -22,7 +23,6 @@ constexpr double kWhitePercentile = 0.97;
 constexpr double kGlossWidths[] = {0.08, 0.2, 0.45};  // alpha of GGX
 constexpr int kGlossNodes = 48;
 constexpr std::size_t kGroupsPerLobe = 12, kMaxTexelGroups = 96, kMinTexels = 24;
-constexpr int kGroupingSteps = 10;
 
 /// x and y of the sampled texels, row by row.
 std::vector<std::array<int, 2>> spread_texels(int width, int height, std::size_t count, std::uint64_t seed) {
@@ -41,65 +41,6 @@ std::vector<std::array<int, 2>> spread_texels(int width, int height, std::size_t
   return texels;
 }
 
-double distance(std::span<const double> a, std::span<const double> b) noexcept {
-  double sum = 0;
-  for (std::size_t d = 0; d < a.size(); ++d) sum += (a[d] - b[d]) * (a[d] - b[d]);
-  return sum;
-}
-
-/// Points of so many coordinates, one after the other.
-struct Points {
-  std::size_t size = 0, coordinates = 0;
-  std::vector<double> values;
-
-  std::span<const double> operator[](std::size_t i) const noexcept {
-    return std::span(values).subspan(i * coordinates, coordinates);
-  }
-  std::span<double> operator[](std::size_t i) noexcept {
-    return std::span(values).subspan(i * coordinates, coordinates);
-  }
-};
-
-struct Groups {
-  Points centres;
-  std::vector<std::size_t> of;  ///< of each point its group
-  std::vector<std::size_t> sizes;
-};
-
-/// k-means [Lloyd1982] from centres far from each other.
-Groups grouped(const Points& points, std::size_t count) {
-  Groups groups{.centres = {count, points.coordinates, std::vector<double>(count * points.coordinates)},
-                .of = std::vector<std::size_t>(points.size),
-                .sizes = {}};
-  std::vector<double> nearest(points.size, INFINITY);
-  for (std::size_t g = 0, next = 0; g < count; ++g) {
-    std::ranges::copy(points[next], groups.centres[g].begin());
-    for (std::size_t i = 0; i < points.size; ++i)
-      nearest[i] = std::min(nearest[i], distance(points[i], groups.centres[g]));
-    next = static_cast<std::size_t>(std::ranges::max_element(nearest) - nearest.begin());
-  }
-  for (int step = 0; step < kGroupingSteps; ++step) {
-    for (std::size_t i = 0; i < points.size; ++i) {
-      double best = INFINITY;
-      for (std::size_t g = 0; g < count; ++g)
-        if (const double d = distance(points[i], groups.centres[g]); d < best) {
-          best = d;
-          groups.of[i] = g;
-        }
-    }
-    Points sums{count, points.coordinates, std::vector<double>(groups.centres.values.size())};
-    groups.sizes.assign(count, 0);
-    for (std::size_t i = 0; i < points.size; ++i) {
-      ++groups.sizes[groups.of[i]];
-      for (std::size_t d = 0; d < points.coordinates; ++d) sums[groups.of[i]][d] += points[i][d];
-    }
-    for (std::size_t g = 0; g < count; ++g)
-      for (std::size_t d = 0; groups.sizes[g] > 0 && d < points.coordinates; ++d)
-        groups.centres[g][d] = sums[g][d] / static_cast<double>(groups.sizes[g]);
-  }
-  return groups;
-}
-
 /// The groups that stand out: the farthest from 0, and each next the farthest from the span of those before
 /// (successive projections [Araujo2001]). Small groups are of odd texels.
 std::vector<std::size_t> corners(const Groups& groups, std::size_t count, std::size_t least_size) {
@@ -110,7 +51,7 @@ std::vector<std::size_t> corners(const Groups& groups, std::size_t count, std::s
     double farthest = -1;
     for (std::size_t g = 0; g < rest.size; ++g) {
       const std::vector<double> zero(rest.coordinates);
-      const double far = distance(rest[g], zero);
+      const double far = squared_distance(rest[g], zero);
       const bool taken = std::ranges::find(found, g) != found.end();
       if (!taken && groups.sizes[g] >= least_size && far > farthest) {
         farthest = far;
@@ -377,7 +318,7 @@ std::vector<std::vector<std::size_t>> pure_texels(const TexelSamples& samples, c
     std::vector<std::size_t> order(points.size);
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::vector<double> far(points.size);
-    for (std::size_t i = 0; i < points.size; ++i) far[i] = distance(points[i], groups.centres[g]);
+    for (std::size_t i = 0; i < points.size; ++i) far[i] = squared_distance(points[i], groups.centres[g]);
     const std::size_t size =
         std::min(points.size, std::max({kMinTexels, groups.sizes[g], points.size / (8 * count)}));
     std::ranges::nth_element(

@@ -6,9 +6,11 @@
 
 #include <burnish/error.h>
 #include <burnish/export/export_surface.h>
+#include <burnish/export/gltf_binary.h>
 #include <burnish/export/html_page.h>
 #include <burnish/export/manifest.h>
 #include <burnish/export/web_module.h>
+#include <burnish/fitting/parametric/texel_materials.h>
 #include <burnish/image/png.h>
 #include <burnish/shaders/cost_json.h>
 #include <burnish/shaders/spatial_shader.h>
@@ -73,6 +75,7 @@ class SurfaceExport {
       if (wants(target)) add_pictures(target);
     describe_maps();
     if (wants(ExportTarget::three)) add_page("three", ".three.js", three_module(surface_, options_.name));
+    if (wants(ExportTarget::gltf)) add_gltf();
     if (wants(ExportTarget::html)) add_page("page", ".html", html_page(surface_, options_.name));
     add_manifest(manifest_, options_.name, result_.files);
     return std::move(result_);
@@ -87,6 +90,13 @@ class SurfaceExport {
   void add_page(const char* kind, const char* ending, std::string text) {
     manifest_[kind] = options_.name + ending;
     result_.files.push_back({options_.name + ending, std::move(text)});
+  }
+
+  void add_gltf() {
+    const TexelMaterials materials = nearest_materials(surface_);
+    manifest_["gltf"] = options_.name + ".glb";
+    manifest_["gltf_material"] = {{"psnr", materials.psnr}};
+    result_.files.push_back({options_.name + ".glb", gltf_binary(surface_, materials, options_.name)});
   }
 
   void add_shader(ShaderLanguage language) {
@@ -193,7 +203,7 @@ class SurfaceExport {
 bool takes_surfaces(ExportTarget target) noexcept {
   using enum ExportTarget;
   return language_of(target) || target == ktx2 || target == exr || target == png || target == three ||
-         target == html;
+         target == html || target == gltf;
 }
 
 ExportedFiles export_surface(const SpatialBrdf& surface, const ExportOptions& options) {
@@ -204,7 +214,7 @@ ExportedFiles export_surface(const SpatialBrdf& surface, const ExportOptions& op
   for (const ExportTarget target : options.to)
     if (!takes_surfaces(target))
       throw Error(fmt::format(
-          "export: expected ktx2, exr, png, three, html or a shader language of a surface, found {}",
+          "export: expected ktx2, exr, png, gltf, three, html or a shader language of a surface, found {}",
           to_string(target)));
   return SurfaceExport(surface, options).run();
 }

@@ -5,12 +5,13 @@
 
 namespace burnish {
 
-/// Whether a surface can be written as it: shaders, ktx2, exr, png, three and html.
+/// Whether a surface can be written as it: shaders, ktx2, exr, png, gltf, three and html.
 bool takes_surfaces(ExportTarget target) noexcept;
 
 /// A surface: shaders (shaders/spatial_shader.h) with the lobes' textures and NAME_map0.ktx2, ...: the maps side by
 /// side with their levels; exr and png: each map and each table a picture, EXR with the maps' values, PNG of weights
-/// their bytes, of normals and tangents (x + 1) / 2; three and html with everything inside. The manifest's "maps" tell
+/// their bytes, of normals and tangents (x + 1) / 2; three and html with everything inside; glTF, a square with textures
+/// of each texel's nearest metal or dielectric (nearest_materials). The manifest's "maps" tell
 /// where each lobe's weights are and what they are multiplied with. Throws Error for other targets, for an environment,
 /// for half products, and as generate_shader.
 ExportedFiles export_surface(const SpatialBrdf& surface, const ExportOptions& options);

@@ -79,5 +79,14 @@ TEST(ExportSurface, RefusesWhatHasNoSurfaces) {
   EXPECT_THROW(export_surface(surface, {.to = {ExportTarget::glsl}, .name = "a b"}), Error);
 }
 
+TEST(ExportSurface, HasTheNearestMaterialsForGltf) {
+  const ExportedFiles exported =
+      export_surface(random_surface(8, 4), {.to = {ExportTarget::gltf}, .name = "wall"});
+  EXPECT_EQ(bytes_of(exported, "wall.glb").substr(0, 4), "glTF");
+  const auto manifest = nlohmann::json::parse(bytes_of(exported, "wall.json"));
+  EXPECT_EQ(manifest["gltf"], "wall.glb");
+  EXPECT_TRUE(manifest["gltf_material"]["psnr"].is_number());
+}
+
 }  // namespace
 }  // namespace burnish

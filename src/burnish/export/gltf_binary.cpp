@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -7,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <burnish/export/gltf_binary.h>
+#include <burnish/image/png.h>
 #include <burnish/render/mesh/shapes.h>
 
 namespace burnish {
@@ -16,6 +19,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int kFloat = 5126, kUnsigned = 5125;               // component types of glTF
+constexpr int kLinear = 9729, kLinearMipmapLinear = 9987;    // filters
 constexpr int kArrayBuffer = 34962, kElementBuffer = 34963;  // targets of buffer views
 
 // The binary chunk and what points into it.
@@ -44,19 +48,32 @@ class Binary {
     return accessors_.size() - 1;
   }
 
+  /// The texture of a picture, which repeats.
+  std::size_t add_texture(const Image8& picture) {
+    const std::string png = encode_png(picture);
+    views_.push_back({{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", png.size()}});
+    bytes_ += png;
+    bytes_.append((4 - bytes_.size() % 4) % 4, '\0');  // what follows may be numbers
+    images_.push_back({{"bufferView", views_.size() - 1}, {"mimeType", "image/png"}});
+    textures_.push_back({{"sampler", 0}, {"source", images_.size() - 1}});
+    return textures_.size() - 1;
+  }
+
   const std::string& bytes() const { return bytes_; }
+  const json& images() const { return images_; }
+  const json& textures() const { return textures_; }
   const json& views() const { return views_; }
   const json& accessors() const { return accessors_; }
 
  private:
   std::string bytes_;
-  json views_ = json::array(), accessors_ = json::array();
+  json views_ = json::array(), accessors_ = json::array(), images_ = json::array(), textures_ = json::array();
 };
 
-json add_sphere(Binary& binary) {
-  const Mesh mesh = make_sphere(64, 32);
-  std::vector<float> positions, normals, tangents;
+json add_mesh(Binary& binary, const Mesh& mesh, bool with_uv) {
+  std::vector<float> positions, normals, tangents, uv;
   for (const Vertex& v : mesh.vertices) {
+    uv.insert(uv.end(), {v.uv[0], 1 - v.uv[1]});  // there v runs downwards
     positions.insert(positions.end(), v.position.begin(), v.position.end());
     normals.insert(normals.end(), v.normal.begin(), v.normal.end());
     tangents.insert(tangents.end(), v.tangent.begin(), v.tangent.end());
@@ -64,12 +81,18 @@ json add_sphere(Binary& binary) {
   }
   std::vector<std::uint32_t> corners;
   for (const auto& triangle : mesh.triangles) corners.insert(corners.end(), triangle.begin(), triangle.end());
-  return {{"attributes",
-           {{"POSITION", binary.add(positions, "VEC3", 3, kArrayBuffer)},
-            {"NORMAL", binary.add(normals, "VEC3", 3, kArrayBuffer)},
-            {"TANGENT", binary.add(tangents, "VEC4", 4, kArrayBuffer)}}},
-          {"indices", binary.add(corners, "SCALAR", 1, kElementBuffer)},
-          {"material", 0}};
+  json primitive{{"attributes",
+                  {{"POSITION", binary.add(positions, "VEC3", 3, kArrayBuffer)},
+                   {"NORMAL", binary.add(normals, "VEC3", 3, kArrayBuffer)},
+                   {"TANGENT", binary.add(tangents, "VEC4", 4, kArrayBuffer)}}},
+                 {"indices", binary.add(corners, "SCALAR", 1, kElementBuffer)},
+                 {"material", 0}};
+  if (with_uv) primitive["attributes"]["TEXCOORD_0"] = binary.add(uv, "VEC2", 2, kArrayBuffer);
+  return primitive;
+}
+
+json add_sphere(Binary& binary) {
+  return add_mesh(binary, make_sphere(64, 32), false);
 }
 
 json factored_extension(const FactoredBrdf& brdf, Binary& binary) {
@@ -124,6 +147,11 @@ std::string scene_of(const json& primitive, json material, const std::string& na
                 {"bufferViews", binary.views()},
                 {"accessors", binary.accessors()}};
   if (!used.empty()) document["extensionsUsed"] = used;
+  if (!binary.textures().empty()) {
+    document["samplers"] = {{{"magFilter", kLinear}, {"minFilter", kLinearMipmapLinear}}};
+    document["images"] = binary.images();
+    document["textures"] = binary.textures();
+  }
 
   // header, then the document and what it points into
   std::string chunks;
@@ -146,6 +174,43 @@ std::string gltf_binary(const FactoredBrdf& brdf, json material, const std::stri
 std::string gltf_binary(json material, const std::string& name) {
   Binary binary;
   const json primitive = add_sphere(binary);
+  return scene_of(primitive, std::move(material), name, binary);
+}
+
+std::string gltf_binary(const SpatialBrdf& surface, const TexelMaterials& materials,
+                        const std::string& name) {
+  // colours, then metal in blue and roughness in green, then normals
+  Image8 colors(materials.width, materials.height, 3), rest(materials.width, materials.height, 3);
+  colors.pixels = materials.base_color;
+  for (std::size_t t = 0; t < materials.metallic.size(); ++t) {
+    rest.pixels[3 * t] = 255;  // no occlusion, where a program looks for it
+    rest.pixels[3 * t + 1] = materials.roughness[t];
+    rest.pixels[3 * t + 2] = materials.metallic[t];
+  }
+  Binary binary;
+  json material{{"pbrMetallicRoughness",
+                 {{"baseColorTexture", {{"index", binary.add_texture(colors)}}},
+                  {"metallicRoughnessTexture", {{"index", binary.add_texture(rest)}}}}},
+                {"extensions", json::object()}};
+  if (surface.maps().normals) {
+    Image8 normals(materials.width, materials.height, 3);
+    for (int y = 0; y < normals.height; ++y)
+      for (int x = 0; x < normals.width; ++x) {
+        const auto [nx, ny, none] = surface.maps().normals->texel(x, y);
+        const std::array<float, 3> n{nx, ny, std::sqrt(std::max(0.0f, 1 - nx * nx - ny * ny))};
+        std::ranges::transform(n, normals.at(x, y).begin(), [](float c) {
+          return static_cast<std::uint8_t>(std::lround(255 * std::clamp((c + 1) / 2, 0.0f, 1.0f)));
+        });
+      }
+    material["normalTexture"] = {{"index", binary.add_texture(normals)}};
+  }
+  Mesh square = make_plane(1);
+  const auto longest = static_cast<float>(std::max(materials.width, materials.height));
+  for (Vertex& vertex : square.vertices) {
+    vertex.position[0] *= static_cast<float>(materials.width) / longest;
+    vertex.position[1] *= static_cast<float>(materials.height) / longest;
+  }
+  const json primitive = add_mesh(binary, square, true);
   return scene_of(primitive, std::move(material), name, binary);
 }
 

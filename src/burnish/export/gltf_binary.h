@@ -5,6 +5,8 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <burnish/factors/factored_brdf.h>
+#include <burnish/fitting/parametric/texel_materials.h>
+#include <burnish/surface/spatial_brdf.h>
 
 namespace burnish {
 
@@ -14,5 +16,8 @@ std::string gltf_binary(const FactoredBrdf& brdf, nlohmann::json material, const
 
 /// The same without factors.
 std::string gltf_binary(nlohmann::json material, const std::string& name);
+
+/// A square, its sides as the surface's width and height, with the textures of its texels' materials and normals.
+std::string gltf_binary(const SpatialBrdf& surface, const TexelMaterials& materials, const std::string& name);
 
 }  // namespace burnish

@@ -7,6 +7,7 @@
 #include <burnish/error.h>
 #include <burnish/image/contact_sheet.h>
 #include <burnish/image/svg_plot.h>
+#include <burnish/math/srgb.h>
 
 namespace burnish {
 namespace {
@@ -26,9 +27,7 @@ Color to_srgb(Oklab color) noexcept {
   const double m = cube(color.lightness - 0.1055613458 * color.a - 0.0638541728 * color.b);
   const double s = cube(color.lightness - 0.0894841775 * color.a - 1.2914855480 * color.b);
   const auto byte = [](double v) {
-    v = std::clamp(v, 0.0, 1.0);
-    const double encoded = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
-    return static_cast<std::uint8_t>(std::lround(255 * encoded));
+    return static_cast<std::uint8_t>(std::lround(255 * srgb_encoded(std::clamp(v, 0.0, 1.0))));
   };
   return {byte(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s),
           byte(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <burnish/error.h>
+#include <burnish/math/srgb.h>
 #include <burnish/metrics/sphere_images.h>
 #include <burnish/render/picture.h>
 
@@ -23,10 +24,6 @@ void require_rgb(const Image& image) {
 
 double filmic(double x) noexcept {  // [Narkowicz 2016]
   return x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
-}
-
-double srgb_encoded(double x) noexcept {  // [IEC61966]
-  return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
 }
 
 }  // namespace
