@@ -111,14 +111,13 @@ function unpacked(archive) {
 }
 const settled = (page) => page.waitForFunction(() => document.documentElement.dataset.view === "settled");
 
-// Numbers alike to kSame, at the same places; a path in a name is no difference. A node whose cosine is the threshold counts
-// or not by the last bit of another library's arc cosine, and what predicts such nodes from others hangs on them.
-const kNames = ["name", "model", "note", "predicted", "itself"], kCounts = {count: 1e-3};
+// Numbers alike to kSame, at the same places; a path in a name is no difference.
+const kNames = ["name", "model", "note"];
 function same(found, expected, at, within = kSame) {
   if (typeof expected === "number") {
     assert.ok(Math.abs(found - expected) <= within * Math.max(Math.abs(expected), 1e-9), `${at}: expected ${expected}, found ${found}`);
   } else if (expected !== null && typeof expected === "object") {
-    for (const key of Object.keys(expected).filter((name) => !kNames.includes(name))) same(found?.[key], expected[key], `${at}.${key}`, kCounts[key] ?? within);
+    for (const key of Object.keys(expected).filter((name) => !kNames.includes(name))) same(found?.[key], expected[key], `${at}.${key}`, within);
   } else {
     assert.equal(found, expected, at);
   }
@@ -495,13 +494,12 @@ const [, model] = await opened(page);
 const saved = await save(page, "[data-export=burnish]", "fitted.burnish");
 const [expected] = JSON.parse(run("compare", "--json", file("a.binary"), saved));
 same(model.figures, expected, "compare");
-const kChance = 0.05;  // relative, of what nodes of the same file predict of themselves: see `same`
 const mean = (values) => values.reduce((sum, x) => sum + x, 0) / values.length, of = ({relative, rms_log, log_cos, rms}) => [relative, rms_log, log_cos, rms];
 const [albedoRows, nodeRows] = await page.evaluate(() => [...document.querySelectorAll("#compared table")].map((table) =>
   [...table.tBodies[0].rows].map((row) => [...row.querySelectorAll("[title]:not(.name)")].map(({title}) => Number(title)))));
 same(albedoRows, expected.albedo.map(({reference, model}) => [mean(reference), mean(model)]), "albedo in the panel");
 same(nodeRows[1], of(expected.nodes), "nodes in the panel");
-same(nodeRows[0], of(expected.nodes.itself), "the reference's own nodes in the panel", kChance);
+same(nodeRows[0], of(expected.nodes.itself), "the reference's own nodes in the panel");
 assert.match(await page.textContent("#compared"), new RegExp(`At ${model.figures.nodes.count.toLocaleString("en")} measured nodes`));
 run("fit", file("a.binary"), "--budget", "2700", "--fetches", "2", "-o", file("native.burnish"));
 const [native] = JSON.parse(run("compare", "--json", file("a.binary"), file("native.burnish")));

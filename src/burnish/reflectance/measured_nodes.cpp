@@ -22,6 +22,8 @@ namespace {
 // Directions that differ by less are the same: far above rounding, far below an instrument's step.
 constexpr double kSameDirection = 1e-6;
 constexpr double kSameIncidence = 1e-4;  // radians
+// What lies on the horizon is not above it, whatever a last bit says.
+constexpr double kAboveHorizon = 1e-9;
 
 using Key = std::array<std::int64_t, 4>;
 
@@ -104,7 +106,7 @@ MeasuredNodes finished(MeasuredNodes nodes) {
 // Adds a node whose directions lie above the horizon; others are left out.
 template <class Values>
 bool add(Samples& samples, const DirectionPair& pair, const Values& values) {
-  if (!(pair.wi.z > 0 && pair.wo.z > 0)) return false;
+  if (!(pair.wi.z > kAboveHorizon && pair.wo.z > kAboveHorizon)) return false;
   samples.pairs.push_back(pair);
   samples.values.insert(samples.values.end(), values.begin(), values.end());
   return true;
