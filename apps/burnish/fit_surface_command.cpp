@@ -137,8 +137,7 @@ void add_fit_surface_command(CLI::App& app, FitCrew* crew) {
       ->excludes("--lobe-bytes");
   verb->add_option("--normals", arguments->normals,
                    "those of the capture, none (flat) or estimated; auto: the capture's, estimated where it "
-                   "has none, flat "
-                   "of samples")
+                   "has none, flat of samples")
       ->check(one_of({"auto", "capture", "flat", "estimate"}))
       ->capture_default_str();
   verb->add_option("--pictures", arguments->pictures,

@@ -201,9 +201,8 @@ void bind_surfaces(nb::module_& m) {
         nb::arg("lobe_bytes") = 16 << 10, nb::arg("book").none() = nb::none(),
         nb::arg("normals") = nb::none(), nb::arg("rounds") = 9, nb::arg("widened") = false,
         nb::arg("seed") = 1, nb::arg("checkpoint") = nb::none(), nb::arg("pictures") = Capture::kBtfPictures,
-        "(Surface, report) of a capture's folder, of a BTF, of which so many pictures are taken, or of a CSV "
-        "of\n"
-        "samples of texels, as `burnish fit-surface`.");
+        "(Surface, report) of a capture's folder, of a BTF, of which so many pictures are taken, or of a\n"
+        "CSV of samples of texels, as `burnish fit-surface`.");
 }
 
 }  // namespace burnish::python

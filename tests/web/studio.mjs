@@ -113,11 +113,11 @@ const settled = (page) => page.waitForFunction(() => document.documentElement.da
 
 // Numbers alike to kSame, at the same places; a path in a name is no difference.
 const kNames = ["name", "model", "note"];
-function same(found, expected, at, within = kSame) {
+function same(found, expected, at) {
   if (typeof expected === "number") {
-    assert.ok(Math.abs(found - expected) <= within * Math.max(Math.abs(expected), 1e-9), `${at}: expected ${expected}, found ${found}`);
+    assert.ok(Math.abs(found - expected) <= kSame * Math.max(Math.abs(expected), 1e-9), `${at}: expected ${expected}, found ${found}`);
   } else if (expected !== null && typeof expected === "object") {
-    for (const key of Object.keys(expected).filter((name) => !kNames.includes(name))) same(found?.[key], expected[key], `${at}.${key}`, within);
+    for (const key of Object.keys(expected).filter((name) => !kNames.includes(name))) same(found?.[key], expected[key], `${at}.${key}`);
   } else {
     assert.equal(found, expected, at);
   }

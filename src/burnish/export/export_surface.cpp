@@ -9,6 +9,7 @@
 #include <burnish/export/gltf_binary.h>
 #include <burnish/export/html_page.h>
 #include <burnish/export/manifest.h>
+#include <burnish/export/map_pictures.h>
 #include <burnish/export/web_module.h>
 #include <burnish/fitting/parametric/texel_materials.h>
 #include <burnish/image/png.h>
@@ -146,26 +147,19 @@ class SurfaceExport {
   // A map a picture; three channels of two: z of a normal, 0 of a tangent.
   void add_picture(ExportTarget target, const std::string& name, const SurfaceMap& map, bool vectors,
                    bool normals) {
-    Image image(map.width(), map.height(), 3);
-    for (int y = 0; y < map.height(); ++y)
-      for (int x = 0; x < map.width(); ++x) {
-        SurfaceMap::Value value = map.texel(x, y);
-        if (map.channels() == 1) value.fill(value[0]);
-        if (normals) value[2] = std::sqrt(std::max(0.0f, 1 - value[0] * value[0] - value[1] * value[1]));
-        std::ranges::copy(value, image.at(x, y).begin());
-      }
+    const Image image = map_picture(map, normals);
     std::string bytes;
     if (target == ExportTarget::exr) {
       bytes = encode_exr(image, TableFormat::single);
+    } else if (vectors) {
+      bytes = encode_png(vector_bytes(image));
     } else {
       float most = map.scale();
-      if (map.format() == TableFormat::half && !vectors)
-        most = std::max(*std::ranges::max_element(image.pixels), 1e-30f);
+      if (map.format() == TableFormat::half) most = std::max(*std::ranges::max_element(image.pixels), 1e-30f);
       Image8 shown(map.width(), map.height(), 3);
-      for (std::size_t i = 0; i < shown.pixels.size(); ++i) {
-        const float part = vectors ? 0.5f * (image.pixels[i] + 1) : image.pixels[i] / most;
-        shown.pixels[i] = static_cast<std::uint8_t>(std::lround(255 * std::clamp(part, 0.0f, 1.0f)));
-      }
+      for (std::size_t i = 0; i < shown.pixels.size(); ++i)
+        shown.pixels[i] =
+            static_cast<std::uint8_t>(std::lround(255 * std::clamp(image.pixels[i] / most, 0.0f, 1.0f)));
       bytes = encode_png(shown);
     }
     const std::string file = fmt::format("{}_{}.{}", options_.name, name, to_string(target));

@@ -1,7 +1,5 @@
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -9,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <burnish/export/gltf_binary.h>
+#include <burnish/export/map_pictures.h>
 #include <burnish/image/png.h>
 #include <burnish/render/mesh/shapes.h>
 
@@ -192,18 +191,9 @@ std::string gltf_binary(const SpatialBrdf& surface, const TexelMaterials& materi
                  {{"baseColorTexture", {{"index", binary.add_texture(colors)}}},
                   {"metallicRoughnessTexture", {{"index", binary.add_texture(rest)}}}}},
                 {"extensions", json::object()}};
-  if (surface.maps().normals) {
-    Image8 normals(materials.width, materials.height, 3);
-    for (int y = 0; y < normals.height; ++y)
-      for (int x = 0; x < normals.width; ++x) {
-        const auto [nx, ny, none] = surface.maps().normals->texel(x, y);
-        const std::array<float, 3> n{nx, ny, std::sqrt(std::max(0.0f, 1 - nx * nx - ny * ny))};
-        std::ranges::transform(n, normals.at(x, y).begin(), [](float c) {
-          return static_cast<std::uint8_t>(std::lround(255 * std::clamp((c + 1) / 2, 0.0f, 1.0f)));
-        });
-      }
-    material["normalTexture"] = {{"index", binary.add_texture(normals)}};
-  }
+  if (surface.maps().normals)
+    material["normalTexture"] = {
+        {"index", binary.add_texture(vector_bytes(map_picture(*surface.maps().normals, true)))}};
   Mesh square = make_plane(1);
   const auto longest = static_cast<float>(std::max(materials.width, materials.height));
   for (Vertex& vertex : square.vertices) {

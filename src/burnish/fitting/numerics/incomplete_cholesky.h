@@ -29,7 +29,7 @@ class TriangleRuns {
   std::vector<std::size_t> starts_;
 };
 
-/// The symmetric matrix times v.
+/// The symmetric matrix times v. Precondition: every row has a diagonal entry.
 Eigen::VectorXd symmetric_times(const SparseTriangle& matrix, const TriangleRuns& runs,
                                 const Eigen::VectorXd& v);
 
