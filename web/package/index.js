@@ -223,6 +223,10 @@ const floats = (buffer) => new Float32Array(buffer);
 // What a wrong argument is.
 const kindOf = (value) => value === null || value === undefined ? String(value) : value.constructor?.name ?? typeof value;
 const isList = (value) => typeof value === "object" && Number.isInteger(value?.length) && (value.length === 0 || typeof value[0] === "number");
+function expectOptions(verb, ...all) {
+  for (const value of all)
+    if (typeof value !== "object" || value === null) throw new Error(`${verb}: expected options, found ${kindOf(value)}`);
+}
 function expectMaterial(verb, value) {
   if (!(value instanceof Material)) throw new Error(`${verb}: expected a material, found ${kindOf(value)}`);
 }
@@ -253,39 +257,46 @@ export class Material {
     return this.#recipe;
   }
 
-  #ask(verb, rest = {}, {bytes, others = [], onProgress, signal} = {}) {
+  // What the caller gave, `options` and `call`, and what comes with it.
+  async #ask(verb, options, call, {bytes, others = [], more} = {}) {
+    expectOptions(verb, options, call);
+    const {onProgress, signal} = call;
     return answers.run({
-      request: {...rest, verb, id: this.id},
+      request: {...options, ...more, verb, id: this.id},
       materials: [this.recipe, ...others.map((other) => other.recipe)],
       bytes, onProgress, signal,
     });
   }
 
-  async info({signal} = {}) {
-    return (await this.#ask("info", {}, {signal})).json;
+  async info(call = {}) {
+    return (await this.#ask("info", {}, call)).json;
   }
 
-  async evaluate(wi, wo, {signal} = {}) {
+  async evaluate(wi, wo, call = {}) {
     if (!isList(wi) || !isList(wo) || wi.length !== wo.length || wi.length % 3 !== 0)
       throw new Error("evaluate: expected as many wi as wo, three numbers each in one list");
     const both = new Float32Array(2 * wi.length);
     both.set(wi);
     both.set(wo, wi.length);
-    return floats((await this.#ask("evaluate", {}, {bytes: both.buffer, signal})).blobs[0]);
+    return floats((await this.#ask("evaluate", {}, call, {bytes: both.buffer})).blobs[0]);
   }
 
-  async albedo(thetas, {phi = 0, signal} = {}) {
+  async albedo(thetas, options = {}) {
+    expectOptions("albedo", options);
+    const {phi = 0, signal} = options;
     if (!isList(thetas)) throw new Error(`albedo: expected a list of angles, found ${kindOf(thetas)}`);
-    return floats((await this.#ask("albedo", {phi}, {bytes: Float32Array.from(thetas).buffer, signal})).blobs[0]);
+    return floats((await this.#ask("albedo", {phi}, {signal}, {bytes: Float32Array.from(thetas).buffer})).blobs[0]);
   }
 
-  async volume({thetaH = 90, thetaD = 90, phiD = 180, phiH = 0} = {}, {onProgress, signal} = {}) {
-    const {json, blobs} = await this.#ask("volume", {thetaH, thetaD, phiD, phiH}, {onProgress, signal});
+  async volume(cells = {}, call = {}) {
+    expectOptions("volume", cells);
+    const {thetaH = 90, thetaD = 90, phiD = 180, phiH = 0} = cells;
+    const {json, blobs} = await this.#ask("volume", {thetaH, thetaD, phiD, phiH}, call);
     return {...json, data: floats(blobs[0])};
   }
 
-  async table({signal} = {}) {
-    const {json, blobs} = await this.#ask("table", {}, {signal});
+  async table(call = {}) {
+    const {json, blobs} = await this.#ask("table", {}, call);
     if (!json) return null;
     const values = blobs.map(floats);
     if (json.kind === "half_diff") return {...json, data: values[0]};
@@ -293,23 +304,23 @@ export class Material {
     return {...json, phi, theta, data: {ndf, sigma, vndf, spectra}};
   }
 
-  async compare(models, options = {}, {signal} = {}) {
+  async compare(models, options = {}, call = {}) {
     const several = Array.isArray(models) ? models : [models];
     several.forEach((model) => expectMaterial("compare", model));
-    const {json} = await this.#ask("compare", {...options, models: several.map((m) => m.id)}, {others: several, signal});
+    const {json} = await this.#ask("compare", options, call, {others: several, more: {models: several.map((m) => m.id)}});
     return json;
   }
 
-  async images(model, options = {}, {signal} = {}) {
+  async images(model, options = {}, call = {}) {
     expectMaterial("images", model);
-    const {json, blobs} = await this.#ask("images", {...options, model: model.id}, {others: [model], signal});
+    const {json, blobs} = await this.#ask("images", options, call, {others: [model], more: {model: model.id}});
     const pictures = blobs.map((blob) => new Uint8Array(blob));
     return {...json, reference: pictures.slice(0, pictures.length / 2), model: pictures.slice(pictures.length / 2)};
   }
 
-  async fit(options = {}, {onProgress, signal} = {}) {
-    if (typeof options !== "object" || options === null) throw new Error(`fit: expected options, found ${kindOf(options)}`);
-    const {name = `${this.name} fitted`, ...how} = options;
+  async fit(options = {}, call = {}) {
+    expectOptions("fit", options, call);
+    const {name = `${this.name} fitted`, ...how} = options, {onProgress, signal} = call;
     if (typeof name !== "string") throw new Error(`fit: expected a name as a text, found ${kindOf(name)}`);
     const engine = new Engine(), request = {verb: "fit", id: this.id, name, options: how};
     // the worker's memory, which never shrinks, goes back
@@ -318,9 +329,11 @@ export class Material {
   }
 
   /// One file as bytes, or a list of files where there are several.
-  async export(kind, options = {}, {signal, onLosses} = {}) {
+  async export(kind, options = {}, call = {}) {
+    expectOptions("export", options, call);
+    const {onLosses} = call;
     if (onLosses !== undefined && typeof onLosses !== "function") throw new Error(`export: expected onLosses as a function, found ${kindOf(onLosses)}`);
-    const {json, blobs} = await this.#ask("export", {...options, kind}, {signal});
+    const {json, blobs} = await this.#ask("export", options, call, {more: {kind}});
     if (json.losses?.length) onLosses?.(json.losses);
     if (kConverted.has(kind)) return new Uint8Array(blobs[0]);
     return json.names.map((name, i) => ({name, bytes: new Uint8Array(blobs[i])}));
@@ -352,15 +365,18 @@ export class Model extends Material {
     this.report = report;
   }
 
-  async edit(edit, {signal} = {}) {
-    if (typeof edit !== "object" || edit === null) throw new Error(`edit: expected options, found ${kindOf(edit)}`);
+  async edit(edit, call = {}) {
+    expectOptions("edit", edit, call);
+    const {signal} = call;
     const {blobs} = await answers.run({
       request: {verb: "edit", id: this.id, edit}, materials: [this.recipe], signal,
     });
     return open(new Blob([blobs[0]]), {name: `${this.name} edited`, signal});
   }
 
-  async shader(language, options = {}, {signal} = {}) {
+  async shader(language, options = {}, call = {}) {
+    expectOptions("shader", options, call);
+    const {signal} = call;
     const {json, blobs} = await answers.run({
       request: {...options, language, verb: "shader", id: this.id}, materials: [this.recipe], signal,
     });
@@ -392,7 +408,9 @@ export class Surface extends Model {
     this.height = summary.surface.height;
   }
 
-  async place(u, v, {lod = 0, signal} = {}) {
+  async place(u, v, options = {}) {
+    expectOptions("place", options);
+    const {lod = 0, signal} = options;
     const {blobs} = await answers.run({
       request: {verb: "place", id: this.id, u, v, lod}, materials: [this.recipe], signal,
     });
@@ -401,7 +419,9 @@ export class Surface extends Model {
 }
 
 /// Opens a file's bytes, whatever its format, or an analytic BRDF such as "ggx:alpha_x=0.2,alpha_y=0.2".
-export async function open(data, {name, report, decoder, onProgress, signal, ...options} = {}) {
+export async function open(data, how = {}) {
+  expectOptions("open", how);
+  const {name, report, decoder, onProgress, signal, ...options} = how;
   const id = ++ids, request = {...options, verb: "open", id};
   const recipe = {id, request, bytes: async () => undefined};
   if (typeof data === "string") {

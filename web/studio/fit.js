@@ -14,6 +14,9 @@ const presets = {
 };
 const kCurve = [700, 1400, 2800, 5600, 11200, 22400, 44800];
 const kMaxFits = 4;  // at once, each with memory of its own
+// What the bytes and fetches are, and what it costs to leave fetches open.
+const kHint = "2700, 16K, 1M or auto. Fetches: filtered reads a light";
+const kOpen = "; left empty, as many as the bytes are worth, which may be 20 and more.";
 const kNothing = 1e-9;  // figures below it are roundings
 
 let stop = null, choose = () => {}, showResults = () => {}, followed = null;
@@ -195,9 +198,11 @@ function enable() {
 
 export function start() {
   const budget = find("#budget"), fetches = find("#fetches");
+  const hint = () => (find("#fit-hint").textContent = kHint + (fetches.value.trim() === "" ? kOpen : "."));
   choose = segments(find("#presets"), (name) => {
     budget.value = presets[name].budget;
     fetches.value = presets[name].fetches;
+    hint();
   });
   const shown = (name) => [find("#figures").hidden, find("#curve-place").hidden] = [name !== "figures", name !== "curve"];
   const chosen = segments(find("#results"), shown);
@@ -209,9 +214,13 @@ export function start() {
   const setFetches = () => {
     presets.default.fetches = referenceOf(state.shown)?.material.isotropic === false ? "6" : "2";
     if (isDefault()) fetches.value = presets.default.fetches;
+    hint();
   };
   // what is typed is taken as it stands: the default is chosen by its button alone
-  const other = () => choose(Object.keys(presets).find((name) => name !== "default" && presets[name].budget === budget.value.trim() && presets[name].fetches === fetches.value.trim()));
+  const other = () => {
+    choose(Object.keys(presets).find((name) => name !== "default" && presets[name].budget === budget.value.trim() && presets[name].fetches === fetches.value.trim()));
+    hint();
+  };
   budget.addEventListener("input", other);
   fetches.addEventListener("input", other);
   find("#fit").addEventListener("submit", fit);

@@ -230,7 +230,10 @@ export function start() {
   find("#slices").addEventListener("pointermove", move);
   for (const end of ["pointerup", "pointercancel"]) find("#slices").addEventListener(end, () => (dragging = null));
   onChange((what) => {
-    if (what === "shown" || what.renewed) redraw();
+    if (what !== "shown" && !what.renewed) return;
+    // of grey there is one
+    find("#channel").disabled = sides().length > 0 && sides().every(({material}) => material.channels === 1);
+    redraw();
   });
   redraw();
 }

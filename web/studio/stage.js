@@ -129,6 +129,13 @@ function drawNames() {
   find("#right-name").textContent = state.beside?.name ?? "";
 }
 
+// No direction along the surface stands out of an isotropic material.
+function showTangents() {
+  const box = find("#tangents");
+  box.disabled = [state.shown, state.beside].every((entry) => !entry || (entry.material.isotropic && !isSurface(entry)));
+  view?.set({tangents: box.checked && !box.disabled});
+}
+
 function show() {
   const both = state.beside !== null;
   find("#welcome").hidden = state.shown !== null;
@@ -140,6 +147,7 @@ function show() {
     setShape("plane");
     view?.set({shape: "plane"});
   }
+  showTangents();
   view?.show(state.shown, state.beside);
   if (state.shown?.seen && exposedFor !== state.shown.id) {
     exposedFor = state.shown.id;
@@ -204,7 +212,7 @@ function connect() {
     expose();
   });
   find("#curve").addEventListener("change", (event) => view.set({curve: Number(event.target.value)}));
-  find("#tangents").addEventListener("change", (event) => view.set({tangents: event.target.checked}));
+  find("#tangents").addEventListener("change", showTangents);
   find("#add-light").addEventListener("click", () => {
     const {lights} = view.settings;
     view.set({lights: [...lights, {place: [[0.6, 0.3, 0.74], [-0.6, -0.4, 0.69], [0.1, -0.7, 0.71], [-0.5, 0.55, 0.67]][lights.length % 4], color: [10, 10, 10]}]});
@@ -255,6 +263,7 @@ export function start() {
     if (what.closed) view.forget(what.closed);
     if (what.renewed) {
       view.refresh(what.renewed);
+      showTangents();
       drawNames();
     }
   });

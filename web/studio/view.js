@@ -440,6 +440,7 @@ export class View {
   *portrait(entry, size, told) {
     const gl = this.gl, form = this.formOf(entry), studio = {shape: "sphere", around: "studio", yaw: 0, pitch: 0, lights: []};
     const sums = new Float32Array(4 * size * size), pixels = new Float32Array(4 * size * size);
+    // seen at once, and again each time that twice as much of it is there
     for (let pass = 0; pass < kPortraitPasses; ++pass) {
       if (this.formOf(entry) !== form) return;
       const {settings, sides} = this, goal = target(gl, size, size, true);
@@ -449,17 +450,10 @@ export class View {
       [this.settings, this.sides] = [settings, sides];
       gl.readPixels(0, 0, size, size, gl.RGBA, gl.FLOAT, pixels);
       goal.free();
-      for (let k = 0; k < sums.length; ++k) sums[k] += pixels[k] / kPortraitPasses;
+      for (let k = 0; k < sums.length; ++k) sums[k] += (pixels[k] - sums[k]) / (pass + 1);
+      if ((pass & (pass + 1)) === 0) told(thumbnailOf(sums, size));
       yield;
     }
-    const factor = 2 ** exposureOf(sums), image = new ImageData(size, size);
-    for (let y = 0; y < size; ++y)
-      for (let x = 0; x < size; ++x) {
-        const from = 4 * ((size - 1 - y) * size + x), to = 4 * (y * size + x), cover = sums[from + 3];
-        for (let c = 0; c < 3; ++c) image.data[to + c] = 255 * Math.min(factor * sums[from + c] / Math.max(cover, 1e-6), 1) ** (1 / 2.2);
-        image.data[to + 3] = 255 * cover;
-      }
-    told(image);
   }
 
   // What is seen, of all pixels of the screen: where drawing is slow they are drawn for it.
@@ -505,6 +499,18 @@ function strokes(vertices, every) {
 
 const fract = (x) => x - Math.floor(x);
 const jitterOf = (k) => [fract(k * 0.7548776662 + 0.5) - 0.5, fract(k * 0.569840291 + 0.5) - 0.5];
+
+// A square picture, its rows from below, as one for a canvas; its exposure is its own.
+function thumbnailOf(sums, size) {
+  const factor = 2 ** exposureOf(sums), image = new ImageData(size, size);
+  for (let y = 0; y < size; ++y)
+    for (let x = 0; x < size; ++x) {
+      const from = 4 * ((size - 1 - y) * size + x), to = 4 * (y * size + x), cover = sums[from + 3];
+      for (let c = 0; c < 3; ++c) image.data[to + c] = 255 * Math.min(factor * sums[from + c] / Math.max(cover, 1e-6), 1) ** (1 / 2.2);
+      image.data[to + 3] = 255 * cover;
+    }
+  return image;
+}
 
 function exposureOf(pixels) {
   const values = [];

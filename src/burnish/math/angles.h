@@ -30,8 +30,15 @@ inline double theta_of(Vec3 w) noexcept {
   return std::atan2(std::hypot(w.x, w.y), w.z);
 }
 
+/// Whether w is a pole, or off it by no more than rounding makes: its azimuth means nothing.
+inline bool is_pole(Vec3 w) noexcept {
+  constexpr double kRounding = 1e-13;
+  return std::abs(w.x) < kRounding && std::abs(w.y) < kRounding;
+}
+
 /// Azimuth of direction w in [0, 2 pi); 0 at the poles.
 inline double phi_of(Vec3 w) noexcept {
+  if (is_pole(w)) return 0;
   const double phi = std::atan2(w.y, w.x);
   return phi < 0 ? std::min(phi + kTwoPi, std::nextafter(kTwoPi, 0.0)) : phi;
 }

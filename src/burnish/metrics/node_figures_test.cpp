@@ -5,6 +5,7 @@
 
 #include <burnish/error.h>
 #include <burnish/math/angles.h>
+#include <burnish/math/random.h>
 #include <burnish/metrics/measurement_quality.h>
 #include <burnish/metrics/node_figures.h>
 #include <burnish/reflectance/goniometer.h>
@@ -74,6 +75,33 @@ TEST(NodeFigures, SmoothnessIsStifferWhereNodesAreNoisy) {
   const double held_out = std::log1p(held_out_figures(noisy, of_noisy).relative);
   EXPECT_GT(held_out, 0.18);
   EXPECT_LT(held_out, 0.26);
+}
+
+TEST(NodeFigures, HeldOutFeelNeitherRoundingNorTheOrder) {
+  // a grid of angles: some look back, some at the mirror direction
+  const fixtures::Glossy source{.a = 8, .b = 8};
+  Samples samples{.channels = 3, .isotropic = true}, others = samples;
+  std::vector<double> f(3);
+  for (int i = 0; i < 5; ++i)
+    for (int o = 0; o < 60; ++o) {
+      samples.pairs.push_back({spherical_direction(radians(15 * i), 0),
+                               spherical_direction(radians(15 * (o / 12)), kTwoPi * (o % 12) / 12)});
+      source.eval(samples.pairs.back().wi, samples.pairs.back().wo, f);
+      samples.values.insert(samples.values.end(), f.begin(), f.end());
+    }
+  Pcg32 random(5);
+  for (std::size_t i = samples.size(); i-- > 0;) {
+    DirectionPair pair = samples.pairs[i];
+    for (double* x : {&pair.wi.x, &pair.wi.y, &pair.wo.x, &pair.wo.y}) *x += 3e-16 * (random.uniform() - 0.5);
+    others.pairs.push_back(pair);
+    others.values.insert(others.values.end(), samples.at(i).begin(), samples.at(i).end());
+  }
+  const NodeFigures a = held_out_figures(measured_nodes(samples), {}),
+                    b = held_out_figures(measured_nodes(others), {});
+  EXPECT_GT(a.relative, 1e-3);
+  EXPECT_EQ(a.count, b.count);
+  EXPECT_NEAR(b.relative / a.relative, 1, 1e-7);
+  EXPECT_NEAR(b.log_cos / a.log_cos, 1, 1e-7);
 }
 
 TEST(NodeFigures, IncidencesAreHeldOutWhereThereAreFew) {

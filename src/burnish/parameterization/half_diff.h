@@ -18,8 +18,8 @@ struct HalfDiffDirections {
   Vec3 wi, wo;
 };
 
-/// Half/difference angles of two unit vectors. Where an azimuth is undefined (h is the normal, or wi == wo)
-/// it is 0; opposite directions have the normal as their half vector. Source: [Rusinkiewicz 1998].
+/// Half/difference angles of two unit vectors. Where an azimuth is undefined (h is the normal, or wi is wo, to within
+/// 1e-13) it is 0; opposite directions have the normal as their half vector. Source: [Rusinkiewicz 1998].
 HalfDiff to_half_diff(Vec3 wi, Vec3 wo) noexcept;
 
 /// The unit vectors with these angles, any real numbers; inverse of to_half_diff to 1e-12 in each component

@@ -87,6 +87,17 @@ TEST(HalfDiff, CornersHaveTheirPlainAngles) {
   EXPECT_EQ(angles.phi_d, 0);
 }
 
+TEST(HalfDiff, RoundingHasNoAzimuth) {
+  Pcg32 random(4);
+  for (int i = 0; i < 1000; ++i) {
+    const auto rounded = [&](Vec3 w) { return w + 2e-16 * random_direction(random); };
+    const Vec3 w = spherical_direction(1.5 * random.uniform(), kTwoPi * random.uniform());
+    EXPECT_EQ(to_half_diff(rounded(w), rounded(w)).phi_d, 0);
+    EXPECT_EQ(to_half_diff(rounded(w), rounded(mirror(w))).phi_h, 0);
+    EXPECT_EQ(phi_of(rounded({0, 0, 1})), 0);
+  }
+}
+
 TEST(HalfDiff, KeepsSmallDifferenceAngles) {
   const double tiny = 1e-9;
   const HalfDiffDirections directions = from_half_diff({0.3, 0.4, tiny, 1.2});

@@ -90,7 +90,8 @@ bool AngleTable::eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept 
     angles[3] = phi_of(wo) - phi_i;
   } else {
     const auto [specular, up, across] = specular_frame(theta_i, phi_i);
-    angles[2] = std::atan2(dot(wo, across), dot(wo, up));
+    const Vec3 about{dot(wo, up), dot(wo, across), 0};
+    angles[2] = is_pole(about) ? 0 : std::atan2(about.y, about.x);
     angles[3] = angle_between(specular, wo);
   }
   if (folded) angles[azimuth] = std::abs(std::remainder(angles[azimuth], kTwoPi));

@@ -89,14 +89,23 @@ bool mask_holds(const RglData& data, std::size_t nodes) noexcept {
   return 2 * valid >= nodes;
 }
 
+// How groups are numbered: as they come, or where the order is a file's, or a last bit's, as their directions are.
+enum class Numbering { as_they_come, by_geometry };
+
 // Groups by geometry, halves by coin, incidences; weights of 1 where there are none.
-MeasuredNodes finished(MeasuredNodes nodes) {
+MeasuredNodes finished(MeasuredNodes nodes, Numbering numbering = Numbering::as_they_come) {
   std::map<Key, std::uint32_t> groups;
+  std::vector<Key> keys;
   for (const DirectionPair& pair : nodes.samples.pairs) {
-    const auto [group, fresh] =
-        groups.emplace(key_of(pair, nodes.samples.isotropic), static_cast<std::uint32_t>(groups.size()));
-    nodes.groups.push_back(group->second);
-    nodes.half.push_back(coin(group->second));
+    keys.push_back(key_of(pair, nodes.samples.isotropic));
+    groups.emplace(keys.back(), static_cast<std::uint32_t>(groups.size()));
+  }
+  if (numbering == Numbering::by_geometry)
+    for (std::uint32_t number = 0; auto& [key, group] : groups) group = number++;
+  for (const Key& key : keys) {
+    const std::uint32_t group = groups.at(key);
+    nodes.groups.push_back(group);
+    nodes.half.push_back(coin(group));
   }
   number_incidences(nodes);
   if (nodes.weights.empty()) nodes.weights.assign(nodes.size(), 1);
@@ -217,7 +226,7 @@ MeasuredNodes measured_nodes(const TensorTree& table) {
 MeasuredNodes measured_nodes(const Samples& samples) {
   MeasuredNodes nodes{.samples = {.channels = samples.channels, .isotropic = samples.isotropic}};
   for (std::size_t i = 0; i < samples.size(); ++i) add(nodes.samples, samples.pairs[i], samples.at(i));
-  return finished(std::move(nodes));
+  return finished(std::move(nodes), Numbering::by_geometry);
 }
 
 MeasuredNodes select(const MeasuredNodes& nodes, std::span<const std::size_t> subset) {

@@ -50,7 +50,7 @@ MeasuredNodes measured_nodes(const AngleTable& table);
 MeasuredNodes measured_nodes(const PatchTable& table);
 /// The cubes at their centres, weighted by the products of projected solid angles, the mean weight 1.
 MeasuredNodes measured_nodes(const TensorTree& table);
-/// The samples themselves that lie above the horizon.
+/// The samples themselves that lie above the horizon; the numbers of groups do not depend on their order.
 MeasuredNodes measured_nodes(const Samples& samples);
 
 /// The chosen nodes in the order given; groups, incidences and theta_i keep their meaning.

@@ -59,9 +59,9 @@ double polar_angle(Vec3 w) noexcept {
   return std::atan2(std::sqrt(w.x * w.x + w.y * w.y), w.z);
 }
 
-/// In [-pi, pi]; 0 of the normal, whatever the signs of its zeros.
+/// In [-pi, pi]; 0 of the normal.
 double azimuth(Vec3 w) noexcept {
-  return w.x == 0 && w.y == 0 ? 0 : std::atan2(w.y, w.x);
+  return is_pole(w) ? 0 : std::atan2(w.y, w.x);
 }
 
 /// Solid angle of half vectors over area of the unit square, dm / (du dv), with theta = pi/2 u^2 and
@@ -235,11 +235,11 @@ RglTable::TablePlaces RglTable::places_of(Vec3 wi, Vec3 wo) const noexcept {
   double phi_h = 0;
   if (isotropic()) {
     // phi_h from wi, by their cross and dot product in the plane
-    const double x = wi.x == 0 && wi.y == 0 ? 1 : wi.x;  // as azimuth()
-    phi_h = std::atan2(x * h.y - wi.y * h.x, x * h.x + wi.y * h.y);
+    const Vec3 from = is_pole(wi) ? Vec3{1, 0, 0} : wi;
+    phi_h = is_pole(h) ? 0 : std::atan2(from.x * h.y - from.y * h.x, from.x * h.x + from.y * h.y);
   } else {
     places.phi_i = azimuth(wi);
-    phi_h = std::atan2(h.y, h.x);
+    phi_h = azimuth(h);
   }
 
   // spherical -> unit square of half vectors

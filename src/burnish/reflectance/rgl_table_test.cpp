@@ -82,6 +82,22 @@ TEST(RglTable, IsotropicTablesDoNotFeelRotation) {
   }
 }
 
+TEST(RglTable, MirrorDirectionsDoNotFeelRounding) {
+  Pcg32 random(3);
+  for (const auto& phi_i : {std::vector<float>{0}, std::vector<float>{pi_times(-1), 0, pi_times(1)}}) {
+    const RglTable table(random_data(phi_i, 2));
+    for (int i = 0; i < 200; ++i) {
+      // the half vector is the normal, where rows of all azimuths end
+      const Vec3 wi = spherical_direction(1.4 * random.uniform(), kTwoPi * random.uniform()), wo = mirror(wi);
+      const auto rounded = [&](Vec3 w) {
+        for (double* x : {&w.x, &w.y}) *x += 3e-16 * (random.uniform() - 0.5);
+        return w;
+      };
+      EXPECT_NEAR(value_of(table, rounded(wi), rounded(wo)) / value_of(table, wi, wo), 1, 1e-6);
+    }
+  }
+}
+
 TEST(RglTable, AnisotropicTablesInterpolateInPhi) {
   // Nodes at -pi, -pi/2, 0, pi/2, pi with the values 1, 2, 3, 2, 1.
   const auto value = [](int p, int) { return static_cast<float>(3 - std::abs(p - 2)); };

@@ -21,6 +21,7 @@ constexpr double kLevel = 1e-7;            // share of squared slopes
 constexpr double kSame = 1;                // of slopes that cannot be
 constexpr double kGuessWeight = 0.1;       // of what stands where nothing was measured
 constexpr NodeVolume kGuessed{48, 12, 6};  // nodes leave gaps where they touch none of its places
+constexpr double kUpright = 1e-12;         // theta_h of rounding
 constexpr double kRidge = 1e-10;           // of unknowns that nothing else holds
 
 /// The unknowns that a pair's ln(f + floor) is the weighted sum of.
@@ -55,9 +56,10 @@ struct Unknowns {
 
   Row row_of(Vec3 wi, Vec3 wo) const noexcept {
     const HalfDiff a = to_half_diff(wi, wo);
-    // phi_d folded by exchange and reflection
+    // phi_d folded by exchange and reflection; where h is the normal no direction stands out
+    const double phi_d = a.theta_h < kUpright ? 0 : std::abs(std::remainder(a.phi_d, kPi));
     const std::array<double, 3> x{std::sqrt(std::tan(a.theta_h / 2)), std::tan(a.theta_d / 2),
-                                  std::tan(std::abs(std::remainder(a.phi_d, kPi)) / 2)};
+                                  std::tan(phi_d / 2)};
     const std::array<Place, 3> place{Place(x[0], counts[0]), Place(x[1], counts[1]), Place(x[2], counts[2])};
     Row row{};
     for (std::size_t corner = 0; corner < 8; ++corner) {

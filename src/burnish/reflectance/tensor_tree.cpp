@@ -13,12 +13,14 @@ namespace {
 
 constexpr double kBelowOne = 0x1.fffffffffffffp-1;
 constexpr double kQuarterPi = kPi / 4;
+constexpr double kEdge = 1e-12;  // of the square's width
 
 using Coordinates = std::array<double, 4>;
 
-/// Within [0, 1), so that the last cell holds its end.
+/// Within [0, 1), so that the last cell holds its end. What is short of a cell's edge by rounding lies on it, in the
+/// upper cell.
 double inside(double x) noexcept {
-  return std::clamp(x, 0.0, kBelowOne);
+  return std::clamp(x + kEdge, 0.0, kBelowOne);
 }
 
 Coordinates coordinates_of(int rank, Vec3 wi, Vec3 wo) noexcept {
@@ -48,7 +50,7 @@ float look_up(const TensorTree& tree, Coordinates x) noexcept {
   const double count = std::ldexp(1.0, node.log2);
   std::size_t index = 0;
   for (std::size_t i = 0; i < rank; ++i)
-    index = (index << node.log2) + static_cast<std::size_t>(count * inside(x[i]));
+    index = (index << node.log2) + static_cast<std::size_t>(count * x[i]);
   return tree.values[node.first + index];
 }
 

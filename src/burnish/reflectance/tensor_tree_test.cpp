@@ -75,6 +75,32 @@ TEST(TensorTree, LooksUpTheLeafThatHoldsAPair) {
   }
 }
 
+TEST(TensorTree, EdgesOfCubesDoNotFeelRounding) {
+  Pcg32 random(2);
+  // cubes of the tree's second and third level, no two values alike
+  TensorTree tree{.rank = 4, .nodes = {{-1, 0}}, .links = {}, .values = {}};
+  for (std::uint32_t child = 0; child < 16; ++child) {
+    tree.links.push_back(child + 1);
+    tree.nodes.push_back({child % 2 ? 2 : 1, static_cast<std::uint32_t>(tree.values.size())});
+    for (int k = 0; k < (child % 2 ? 256 : 16); ++k)
+      tree.values.push_back(static_cast<float>(tree.values.size() + 1));
+  }
+  for (int i = 0; i < 1000; ++i) {
+    // a corner of cubes
+    std::array<double, 4> at;
+    for (double& x : at) x = std::floor(1 + 7 * random.uniform()) / 8;
+    const auto [wi, wo] = leaf_directions(tree, {.centre = at, .size = 0.125, .value = 0});
+    const auto rounded = [&](Vec3 w) {
+      for (double* x : {&w.x, &w.y}) *x += 3e-16 * (random.uniform() - 0.5);
+      return w;
+    };
+    double f, g;
+    tree.eval(wi, wo, {&f, 1});
+    tree.eval(rounded(wi), rounded(wo), {&g, 1});
+    EXPECT_EQ(f, g) << at[0] << ' ' << at[1] << ' ' << at[2] << ' ' << at[3];
+  }
+}
+
 TEST(TensorTree, IsMadeOfASourceAtItsCentres) {
   const AnalyticBrdf ggx = parse_analytic("ggx:alpha_x=0.4,alpha_y=0.6,f0=0.5");
   struct Green {
