@@ -23,13 +23,18 @@ function codeFor(threads) {
   const name = threads > 0 ? "burnish-threads" : "burnish";
   // In browsers: what a worker runs, and what its threads run, with the library's glue inside, so that none of them
   // asks for a file later. `replaced`: a pattern that has to be there, and what takes its place.
+  const glue = once(async () => (await read(`${name}.js`)).text());
+  const script = (...parts) => URL.createObjectURL(new Blob(parts, {type: "text/javascript"}));
   const withGlue = async (file, replaced, by) => {
-    const [glue, text] = await Promise.all([`${name}.js`, file].map(async (each) => (await read(each)).text()));
+    const [before, text] = await Promise.all([glue(), read(file).then((response) => response.text())]);
     if (!replaced.test(text)) throw new Error(`${file}: expected the code that loads the library, found none`);
-    const parts = [glue.replace(/export default burnish_wasm;\s*$/, ""), text.replace(replaced, by)];
-    return URL.createObjectURL(new Blob(parts, {type: "text/javascript"}));
+    return script(before.replace(/export default burnish_wasm;/, ""), text.replace(replaced, by));
   };
   const imported = /\(e\.data\.urlOrBlob\?import\(.*?\):import\(.*?\)\)/;
+  // of Emscripten from 3.1.58 on the glue is what threads run too
+  const threadCode = async () => (await glue()).includes("em-pthread")
+    ? script(await glue())
+    : withGlue(`${name}.worker.js`, imported, "Promise.resolve({default: burnish_wasm})");
   return {
     threads,
     module: once(async () => {
@@ -40,9 +45,7 @@ function codeFor(threads) {
     worker: once(async () => inNode
       ? new URL("./worker.js", import.meta.url)
       : withGlue("worker.js", /^import createLibrary .*$/m, "const createLibrary = burnish_wasm;")),
-    thread: once(async () => threads > 0
-      ? withGlue(`${name}.worker.js`, imported, "Promise.resolve({default: burnish_wasm})")
-      : undefined),
+    thread: once(async () => (threads > 0 ? threadCode() : undefined)),
   };
 }
 

@@ -14,6 +14,7 @@ async function start({module, threads = 0, threadCode}) {
     threads,
     wasmMemory: memory,
     locateFile: () => threadCode,
+    mainScriptUrlOrBlob: threadCode,
     instantiateWasm: (imports, done) => {
       WebAssembly.instantiate(module, imports).then((instance) => done(instance, module));
       return {};

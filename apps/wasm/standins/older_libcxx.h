@@ -1,23 +1,40 @@
 #pragma once
 
 // What the library takes from C++20 that libc++ 13, which Debian 12 has with Emscripten, lacks: algorithms of
-// std::ranges, bit_cast, and numbers as text. Included before everything (CMakeLists.txt); empty with a newer libc++.
+// std::ranges, bit_cast, and numbers as text, which as far as reading goes libc++ 19 of Debian 13 lacks too. Included
+// before everything (CMakeLists.txt); empty with a newer libc++.
 #include <version>
+
+#if defined(_LIBCPP_VERSION) && _LIBCPP_VERSION < 200000
+
+#include <charconv>
+#include <type_traits>
+
+#include <fast_float/fast_float.h>
+
+namespace std {
+
+template <class T>
+requires is_floating_point_v<T> from_chars_result from_chars(const char* begin, const char* end, T& value)
+noexcept {
+  const auto [stop, error] = fast_float::from_chars(begin, end, value);
+  return {stop, error};
+}
+
+}  // namespace std
+
+#endif
 
 #if defined(_LIBCPP_VERSION) && _LIBCPP_VERSION < 15000
 
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <functional>
 #include <initializer_list>
 #include <iterator>
-#include <type_traits>
 #include <utility>
-
-#include <fast_float/fast_float.h>
 
 namespace std {
 
@@ -31,13 +48,6 @@ noexcept {
 
 inline bool operator==(const from_chars_result& a, const from_chars_result& b) noexcept {
   return a.ptr == b.ptr && a.ec == b.ec;
-}
-
-template <class T>
-requires is_floating_point_v<T> from_chars_result from_chars(const char* begin, const char* end, T& value)
-noexcept {
-  const auto [stop, error] = fast_float::from_chars(begin, end, value);
-  return {stop, error};
 }
 
 /// The fewest digits that read back as the value.

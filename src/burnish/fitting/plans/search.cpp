@@ -99,9 +99,9 @@ std::vector<Change> list_changes(const LobePlan& plan) {
   }
   for (const auto& [name, uses] : further_projections())
     changes.push_back({fmt::format("with {}({})", name, to_string(uses.front())),
-                       [name = name, uses = uses](LobePlan p) -> std::optional<LobePlan> {
-                         if (find(p, name)) return {};
-                         p.factors.push_back({name, TableShape::line, uses, 0.4 * mean_share(p), {}});
+                       [added = name, along = uses](LobePlan p) -> std::optional<LobePlan> {
+                         if (find(p, added)) return {};
+                         p.factors.push_back({added, TableShape::line, along, 0.4 * mean_share(p), {}});
                          return p;
                        }});
   // the coefficients of skewed directions
