@@ -684,6 +684,44 @@ await until(other, 2);
 // Chromium itself asks for an icon again where the address changes
 assert.deepEqual(requests.slice(loaded).filter((url) => !url.startsWith("blob:") && url !== `${address}icon.svg`), [], "requests after loading a link");
 
+// The keyboard keeps its place: what stands for a thing that was replaced has the focus, or what is next to one that is gone.
+const keyed = await visit();
+const pressed = async (selector, key) => {
+  await keyed.locator(selector).first().focus();
+  await keyed.keyboard.press(key);
+};
+const focused = (selector) => keyed.waitForFunction((wanted) => document.activeElement.matches(wanted), selector);
+run("convert", file("a.binary"), file("slices.exr"), "--to", "exr");
+await drop(keyed, ["a.csv", "a.binary"]);
+await until(keyed, 2);
+await pressed("#list li:first-child .pick", "Enter");
+await focused("#list li:first-child .pick[aria-pressed=true]");
+await Promise.all([keyed.waitForEvent("download"), pressed("#take [data-export=csv]", "Enter")]);
+await focused("#take [data-export=csv]");
+await pressed("#handles button", "Delete");
+await focused("#add-light");
+await pressed("#list li:first-child .close", "Enter");
+await until(keyed, 1);
+await focused("#list li:first-child .close");
+
+// What is closed while it is fitted is fitted no longer; slices are no light, and a picture that is wrong is said as other files are.
+await keyed.fill("#fetches", "");
+await keyed.click("#fit-start");
+await keyed.waitForFunction(() => !document.querySelector("#fitting").hidden);
+await pressed("#list .close", "Enter");
+await keyed.waitForFunction(() => document.querySelector("#fitting").hidden);
+await focused("#choose");
+await drop(keyed, ["slices.exr"]);
+await keyed.waitForFunction(() => /^slices.exr: .*expected a string attribute 'burnish'/.test(document.querySelector("#message-text").textContent));
+assert.equal(await keyed.inputValue("#around"), "studio");
+await drop(keyed, ["lie.hdr", "garbage.bin"]);
+await keyed.waitForFunction(() => /^lie.hdr: .*\(and 1 more of 2 files could not be opened: garbage.bin\)$/.test(document.querySelector("#message-text").textContent));
+await keyed.keyboard.press("Escape");
+assert.equal(await message(keyed), "");
+await keyed.setViewportSize({width: 320, height: 700});
+assert.ok(await keyed.evaluate(() => document.documentElement.scrollWidth <= 320));
+await keyed.context().close();
+
 // Phone: nothing is wider than the page.
 const phone = await visit(address, {viewport: {width: 390, height: 844}, deviceScaleFactor: 2, hasTouch: true, isMobile: true, colorScheme: "light"});
 await phone.selectOption("#start", "sample");

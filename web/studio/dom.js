@@ -45,6 +45,20 @@ export function tickText(x, digits) {
   return mantissa === 1 ? power : `${String(mantissa).replace("-", "−")}·${power}`;
 }
 
+// What an element is, for one that takes its place: what it does, and of which entry.
+const roleOf = (element) => [element.tagName, element.dataset.export ?? element.dataset.edit ?? element.getAttribute("aria-label") ?? (element.className || element.textContent),
+                             element.closest("[data-of]")?.dataset.of].join();
+
+// Other children; the one that stands for what had the focus has it again. Whether there is one, or none was needed.
+export function replaceKeepingFocus(place, ...children) {
+  const held = place.contains(document.activeElement) ? roleOf(document.activeElement) : null;
+  place.replaceChildren(...children);
+  if (held === null) return true;
+  const same = [...place.querySelectorAll("button, input, select")].find((element) => !element.disabled && roleOf(element) === held);
+  same?.focus();
+  return same !== undefined;
+}
+
 // told(dx, dy) in pixels while a pointer drags the element; by its places, since not every browser says how far a finger moved.
 export function onDrag(element, told) {
   let last = null;

@@ -1,6 +1,6 @@
 // Changes to a model by sliders, each one undone and redone.
 import {isStopped, sayError, stoppable} from "./busy.js";
-import {find, latest, make} from "./dom.js";
+import {find, latest, make, replaceKeepingFocus} from "./dom.js";
 import {infoOf} from "./library.js";
 import {changed, isSurface, modelShown, onChange, state} from "./state.js";
 import {radians} from "./vectors.js";
@@ -98,7 +98,7 @@ function draw(force) {
   // one step back is one drag, or one burst of keys: where it began is remembered, not each place between
   let before = null, keyed = false, burst = null, ending;
   const shown = fields.filter(([name]) => lobe === "" || ofLobes.includes(name));
-  find("#edit").replaceChildren(lobeChoice(lobes), ...shown.map((field) => {
+  replaceKeepingFocus(find("#edit"), lobeChoice(lobes), ...shown.map((field) => {
     const [name, title, least, most, , , text] = field, place = placeOf(entry?.places, field, lobe), gray = name === "hue" && entry?.material.channels !== 3;
     const output = make("output", {}, text(place));
     const input = make("input", {type: "range", min: least, max: most, step: (most - least) / 200, value: place, "data-edit": name, disabled: !able || gray,

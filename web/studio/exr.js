@@ -37,15 +37,15 @@ function readChannels(from) {
   return channels;
 }
 
-// Whether the bytes are a picture rather than a model of burnish, whose channels are tables; what only pictures are (tiles,
-// deep pixels) counts as one.
+// Whether the bytes are a picture rather than a model of burnish, whose channels are tables, or slices of a measurement; what
+// only pictures are (tiles, deep pixels) counts as one.
 export function isPicture(bytes) {
   if (!isExr(bytes)) return false;
   const flags = new Reader(bytes, 4).u32();
   if (flags & (kTiles | kDeep)) return true;
   try {
     const header = readHeader(new Reader(bytes)), names = readChannels(header.get("channels")).map(({name}) => name);
-    return !header.has("burnish") && ["R", "G", "B"].every((name) => names.includes(name) || names.includes("Y"));
+    return !header.has("burnish") && !header.has("phiDRange") && ["R", "G", "B"].every((name) => names.includes(name) || names.includes("Y"));
   } catch {
     return false;
   }

@@ -19,7 +19,7 @@ const kHint = "2700, 16K, 1M or auto. Fetches: filtered reads a light";
 const kOpen = "; left empty, as many as the bytes are worth, which may be 20 and more.";
 const kNothing = 1e-9;  // figures below it are roundings
 
-let stop = null, choose = () => {}, showResults = () => {}, followed = null;
+let stop = null, fitted = null, choose = () => {}, showResults = () => {}, followed = null;
 
 // "16K" as bytes; "auto" as itself. Throws Error.
 function readBudget(text) {
@@ -46,9 +46,11 @@ function progress(fraction, stage) {
   if (Number.isFinite(fraction)) find("#fit-bar").value = fraction;
 }
 
-// Runs the task with a signal that the button of stopping aborts, as the task itself may; what it throws is said, unless it was stopped.
-async function busy(task) {
+// Runs the task with a signal that the button of stopping aborts, as the task itself may and the end of what is fitted does; what
+// it throws is said, unless it was stopped.
+async function busy(reference, task) {
   const mine = (stop = new AbortController());
+  fitted = reference;
   find("#fit-bar").removeAttribute("value");
   find("#fit-stage").textContent = "starting";
   find("#fitting").hidden = false;
@@ -59,7 +61,7 @@ async function busy(task) {
     if (error?.name === "AbortError") say("Stopped");
     else say(lineOf(error), "error");
   } finally {
-    stop = null;
+    stop = fitted = null;
     find("#fitting").hidden = true;
     enable();
   }
@@ -80,7 +82,7 @@ async function fitOne(reference, options, signal) {
     material.close();
     throw error;
   }
-  const name = `${reference.name.replace(/\.[^.]*$/, "")} ${bytesText(info.bytes)}`;
+  const name = `${reference.name.replace(/\.[a-z]\w*(?=,|$)/i, "")} ${bytesText(info.bytes)}`;
   return {figures, entry: {name, material, info, parent: reference.id, seconds}};
 }
 
@@ -88,7 +90,7 @@ async function fit(event) {
   event.preventDefault();
   const reference = referenceOf(state.shown);
   if (!reference || isSurface(reference) || stop) return;
-  await busy(async (signal) => {
+  await busy(reference, async (signal) => {
     const options = {target: targetOf(reference)};
     if (!isDefault()) Object.assign(options, {budget: readBudget(find("#budget").value), fetches: readFetches(find("#fetches").value)});
     const {entry} = await fitOne(reference, options, signal);
@@ -110,7 +112,7 @@ async function errorCurve() {
   if (!reference || stop) return;
   reference.curve = [];
   drawCurve();
-  await busy(async (signal, abort) => {
+  await busy(reference, async (signal, abort) => {
     const fetches = readFetches(find("#fetches").value), target = targetOf(reference), left = [...kCurve];
     let wrong;
     const failed = (error) => {
@@ -230,6 +232,8 @@ export function start() {
   onChange((what) => {
     enable();
     drawFigures();
+    if (what.closed && what.closed === fitted) stop?.abort();
+    if (what.renewed) setFetches();
     if (what === "shown") {
       drawCurve();
       const material = referenceOf(state.shown)?.material;

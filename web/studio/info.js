@@ -6,9 +6,9 @@ const span = ([low, high]) => `${number(low, 3)}° to ${number(high, 3)}°`;
 
 const kDrawn = {
   shader: () => "by the shader that is given away",
-  whole: (db) => `from its own tables, ${number(db, 3)} dB from what is measured`,
-  table: (db, computed) => {
-    const table = `through a table, ${number(db, 3)} dB from what is measured`;
+  whole: (db, what) => `from its own tables, ${number(db, 3)} dB from ${what}`,
+  table: (db, what, computed) => {
+    const table = `through a table, ${number(db, 3)} dB from ${what}`;
     if (!computed) return table;
     return `computed by the library${computed < 1 ? `, ${Math.round(100 * computed)} % of it` : ""}; while it moves, ${table}`;
   },
@@ -23,7 +23,7 @@ function surfaceFacts(info) {
           ["Albedo", `${number(info.albedo.mean, 3)} on average, at most ${number(info.albedo.largest, 3)}`], ["Size", bytesText(info.bytes)]];
 }
 
-function facts(info, {drawn, computed}) {
+function facts(info, {drawn, computed, material}) {
   if (info.width) return surfaceFacts(info);
   const rows = [["Format", info.format]];
   if (info.description) rows.push(["Description", info.description]);
@@ -39,7 +39,7 @@ function facts(info, {drawn, computed}) {
   const angles = info.nodes?.incident_angles ? `, ${info.nodes.incident_angles} angles of incidence` : "";
   if (info.nodes) rows.push(["Measured at", `${info.nodes.count.toLocaleString("en")} nodes${angles}`]);
   if (info.bytes) rows.push(["Size", bytesText(info.bytes)]);
-  if (drawn) rows.push(["Drawn", kDrawn[drawn.how](drawn.decibels, computed)]);
+  if (drawn) rows.push(["Drawn", kDrawn[drawn.how](drawn.decibels, material.measurement ? "what is measured" : "the function", computed)]);
   if (info.shader) rows.push(["Shader", `${info.shader.fetches} fetches, ${info.shader.operations} operations`]);
   return rows;
 }

@@ -37,6 +37,7 @@ onChange(analytic.drawSliders);
 light.addEventListener("change", () => setTheme(light.matches ? "light" : "dark"));
 find("#theme").addEventListener("click", switchTheme);
 find("#message-close").addEventListener("click", () => say(""));
+window.addEventListener("keydown", (event) => event.key === "Escape" && say(""));
 window.addEventListener("hashchange", openLink);
 try {
   await preload();

@@ -1,6 +1,6 @@
 // Opening and listing: files dropped, chosen or pasted, analytic models, the sample, links.
 import {isStopped, sayError, stoppable} from "./busy.js";
-import {bytesText, find, latest, lineOf, make, say} from "./dom.js";
+import {bytesText, find, latest, lineOf, make, replaceKeepingFocus, say} from "./dom.js";
 import {infoOf, open} from "./library.js";
 import {add, changed, entryOf, onChange, release, remove, show, showBeside, showOpened, state} from "./state.js";
 
@@ -165,16 +165,19 @@ function subtitle({info, parent}) {
 function row(entry) {
   const picture = (entry.picture ??= make("canvas", {width: 80, height: 80, "aria-hidden": "true"}));
   const shown = entry === state.shown || entry === state.beside;
-  return make("li", {class: entry.parent !== null ? "model" : "", "data-shown": shown},
+  return make("li", {class: entry.parent !== null ? "model" : "", "data-shown": shown, "data-of": entry.id},
     make("button", {class: "pick", type: "button", title: entry.name, "aria-pressed": String(shown), onclick: () => show(entry)},
          picture, make("span", {}, make("b", {}, entry.name), make("small", {}, subtitle(entry)))),
     make("button", {class: "close", type: "button", "aria-label": `Close ${entry.name}`, title: "Close", onclick: () => remove(entry)}, "×"));
 }
 
 function draw() {
-  find("#list").replaceChildren(...(state.entries.length ? state.entries.map(row) : [make("li", {class: "hint"}, "Nothing is open.")]));
+  const list = find("#list"), at = [...list.children].findIndex((before) => before.contains(document.activeElement));
+  // of a row that is gone the next one's button is at hand, or at last the one that opens files
+  if (!replaceKeepingFocus(list, ...(state.entries.length ? state.entries.map(row) : [make("li", {class: "hint"}, "Nothing is open.")])))
+    ((list.children[at] ?? list.lastElementChild).querySelector(".close") ?? find("#choose")).focus();
   // the rows that are shown are in sight
-  const list = find("#list"), rows = [...list.querySelectorAll("[data-shown]")], [first, last] = [rows[0], rows.at(-1)];
+  const rows = [...list.querySelectorAll("[data-shown]")], [first, last] = [rows[0], rows.at(-1)];
   if (first) list.scrollTop = Math.min(first.offsetTop, Math.max(list.scrollTop, last.offsetTop + last.offsetHeight - list.clientHeight));
   const beside = find("#beside");
   beside.replaceChildren(make("option", {value: ""}, "nothing beside"),

@@ -40,9 +40,11 @@ function moveLight(k, x, y) {
 }
 
 function removeLight(k) {
+  const handles = find("#handles"), focused = handles.contains(document.activeElement);
   view.set({lights: view.settings.lights.filter((_, other) => other !== k)});
   touched = view.settings.lights.length - 1;
   drawHandles();
+  if (focused) (handles.children[Math.min(k, touched)] ?? find("#add-light")).focus();
 }
 
 function handle(k) {
@@ -164,23 +166,19 @@ function choose(name) {
   view?.set({shown});
 }
 
-// Light from all around out of a dropped picture; false where it is none that is read here.
+// Light from all around out of a dropped picture; false where it is none that is read here. Throws what is wrong with it.
 export async function openPicture(file) {
   const bytes = new Uint8Array(await file.arrayBuffer()), hdr = /\.hdr$/i.test(file.name);
   if (!hdr && !isPicture(bytes)) return false;
-  try {
-    const {width, height, data} = hdr ? readHdr(bytes, view?.largestPicture) : await readExr(bytes, view?.largestPicture);
-    view?.setPicture(width, height, data);
-    const around = find("#around");
-    const choice = around.querySelector("[value=picture]");
-    [choice.disabled, choice.textContent] = [false, file.name];
-    around.value = "picture";
-    view?.set({around: "picture"});
-    if (view) expose();
-    say(`${file.name} lights the object`);
-  } catch (error) {
-    say(`${file.name}: ${lineOf(error)}`, "error");
-  }
+  const {width, height, data} = hdr ? readHdr(bytes, view?.largestPicture) : await readExr(bytes, view?.largestPicture);
+  view?.setPicture(width, height, data);
+  const around = find("#around");
+  const choice = around.querySelector("[value=picture]");
+  [choice.disabled, choice.textContent] = [false, file.name];
+  around.value = "picture";
+  view?.set({around: "picture"});
+  if (view) expose();
+  say(`${file.name} lights the object`);
   return true;
 }
 

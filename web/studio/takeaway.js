@@ -1,6 +1,6 @@
 // Everything that can be taken away: shaders, files, pictures, a link.
 import {sayError, stoppable} from "./busy.js";
-import {bytesText, css, find, make, saveFile, say} from "./dom.js";
+import {bytesText, css, find, make, replaceKeepingFocus, saveFile, say} from "./dom.js";
 import {linkOf} from "./link.js";
 import {isSurface, modelShown, onChange, referenceOf, state} from "./state.js";
 import {picture} from "./stage.js";
@@ -32,7 +32,7 @@ async function filesOf(entry, kind, signal) {
 
 // What a button does, with a signal that ends it.
 const guarded = (task) => async (event) => {
-  const button = event.currentTarget;
+  const button = event.currentTarget, focused = document.activeElement === button;
   button.disabled = true;
   try {
     await stoppable(find("#take"), "what is taken away", task);
@@ -40,6 +40,7 @@ const guarded = (task) => async (event) => {
     sayError(error);
   } finally {
     button.disabled = false;
+    if (focused && document.activeElement === document.body) button.focus();
   }
 };
 
@@ -173,7 +174,7 @@ function draw() {
     return;
   }
   const surface = isSurface(model), files = surface ? surfaceFiles : modelFiles, apart = [state.shown, state.beside].filter((entry) => entry && !isSurface(entry));
-  place.replaceChildren(
+  replaceKeepingFocus(place,
     model ? shaderGroup(model) : make("p", {class: "hint"}, "Fit first: a model has a shader, textures and a link."),
     model ? make("div", {}, make("h3", {}, surface ? "Surface" : "Model"), make("div", {class: "buttons"}, ...Object.entries(files).map(([kind, title]) => saveButton(model, kind, title)))) : "",
     model ? linkGroup(model) : "",
