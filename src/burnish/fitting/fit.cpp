@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -255,24 +256,49 @@ class Fitter {
 
   FactoredBrdf fit_to_budget(Budget form, std::uint64_t bytes) {
     if (form.fetches == 0) check_budget(form, bytes);
-    std::vector<FetchTrial> trials = fetch_trials(form, bytes);
+    if (takes_knee(form))
+      return brdf_.isotropic() ? fit_at_knee(form, bytes) : fit_hemispheres_at_knee(form, bytes);
+    return form.fetches == 0                   ? fit_lobes_to(form, bytes)
+           : smoothed_ && form.default_fetches ? fit_nodes_within(form, bytes)
+                                               : fit_within(form, bytes);
+  }
+
+  /// Whether the number of fetches is left to choose. Where the order of the directions matters lobes share a table of
+  /// wi and hold it better than the models of any trial.
+  bool takes_knee(const Budget& form) const {
+    return form.fetches == 0 && form.lobes == 0 && !form.search && !order_matters(reference());
+  }
+
+  /// By what models of an isotropic source do with few fetches and with many.
+  FactoredBrdf fit_at_knee(Budget form, std::uint64_t bytes) {
+    const CostLimit limit = limit_of(bytes, 0);
+    const TrainingSet set = drawn_set(training_for_volumes(limit));
+    std::vector<FetchTrial> trials = try_fetches(reference(), set, limit, refine_options(form.loss));
     if (!trials.empty())
       if (const FetchTrial& chosen = trial_at_knee(trials); !chosen.lobes) form.fetches = chosen.fetches;
-    FactoredBrdf brdf = form.fetches == 0                   ? fit_lobes_to(form, bytes)
-                        : smoothed_ && form.default_fetches ? fit_nodes_within(form, bytes)
-                                                            : fit_within(form, bytes);
+    FactoredBrdf brdf = form.fetches == 0 ? fit_lobes_to(form, bytes) : fit_within(form, bytes);
     std::get<LobesReport>(report_.how).fetch_trials = std::move(trials);
     return brdf;
   }
 
-  /// How models of an isotropic source do with few fetches and with many, where a choice is left. Where the order
-  /// of the directions matters lobes share a table of wi and hold it better than the volumes of any trial.
-  std::vector<FetchTrial> fetch_trials(const Budget& form, std::uint64_t bytes) const {
-    if (form.fetches > 0 || form.lobes > 0 || form.search || !brdf_.isotropic() || order_matters(reference()))
-      return {};
-    const CostLimit limit = limit_of(bytes, 0);
-    const TrainingSet set = drawn_set(training_for_volumes(limit));
-    return try_fetches(reference(), set, limit, refine_options(form.loss));
+  /// The same of an anisotropic one.
+  FactoredBrdf fit_hemispheres_at_knee(const Budget& form, std::uint64_t bytes) {
+    const CostLimit limit = limit_of(bytes, std::numeric_limits<int>::max());
+    if (takes_lobes(reference(), limit)) return fit_lobes_to(form, bytes);
+    const TrainingSet set = drawn_set(training_for_hemispheres());
+    LobesWay lobes = way_of_lobes(form, bytes);
+    RefineOptions trials = hemisphere_options(form.loss);
+    trials.progress = progress("choosing fetches");
+    HemisphereTrials tried = try_hemispheres(set, limit, trials, lobes.plan, lobes.refine);
+    FactoredBrdf brdf = [&] {
+      if (tried.trials.empty()) return fit_lobes_to(form, bytes, std::move(lobes));
+      const FetchTrial& chosen = trial_at_knee(tried.trials);
+      if (chosen.lobes) return fit_lobes_to(form, bytes, std::move(lobes));
+      const auto k = static_cast<std::size_t>(&chosen - tried.trials.data());
+      return fit_hemispheres_to(form, bytes, set, {tried.specs[k]});
+    }();
+    std::get<LobesReport>(report_.how).fetch_trials = std::move(tried.trials);
+    return brdf;
   }
 
   CostLimit limit_of(std::uint64_t bytes, int fetches) const {
@@ -281,21 +307,36 @@ class Fitter {
             .fetches = fetches};
   }
 
-  /// Lobes of lines or hemispheres.
-  FactoredBrdf fit_lobes_to(const Budget& form, std::uint64_t bytes) {
+  /// Which lobes of lines or hemispheres, and the pairs that they are fitted to.
+  struct LobesWay {
+    TrainingOptions drawn;
+    TrainingSet set;
+    RefineOptions refine;
+    LobePlan plan;
+  };
+  LobesWay way_of_lobes(const Budget& form, std::uint64_t bytes) const {
     const std::size_t texel = texel_bytes(format(), channels());
-    TrainingOptions drawn = training_for(bytes, texel, brdf_.isotropic());
-    drawn.seed = options_.seed;
-    const TrainingSet set = drawn_set(drawn);
-    RefineOptions refine = refine_options(form.loss);
-    if (smoothed_ && form.loss == FitLoss::image) refine.shares = kNodeShares;
-    LobesReport report{.loss = form.loss, .budget = bytes};
-
-    // which lobes
-    RefineOptions trials = refine;
+    LobesWay way{.drawn = training_for(bytes, texel, brdf_.isotropic()),
+                 .set = {},
+                 .refine = refine_options(form.loss),
+                 .plan = {}};
+    way.drawn.seed = options_.seed;
+    way.set = drawn_set(way.drawn);
+    if (smoothed_ && form.loss == FitLoss::image) way.refine.shares = kNodeShares;
+    RefineOptions trials = way.refine;
     trials.progress = progress("choosing lobes");
-    LobePlan plan = plan_for(reference(), set, bytes, form.lobes, texel, trials);
-    refine.smooth = smooth_of(plan, bytes, texel);
+    way.plan = plan_for(reference(), way.set, bytes, form.lobes, texel, trials);
+    way.refine.smooth = smooth_of(way.plan, bytes, texel);
+    return way;
+  }
+
+  FactoredBrdf fit_lobes_to(const Budget& form, std::uint64_t bytes) {
+    return fit_lobes_to(form, bytes, way_of_lobes(form, bytes));
+  }
+  FactoredBrdf fit_lobes_to(const Budget& form, std::uint64_t bytes, LobesWay way) {
+    const std::size_t texel = texel_bytes(format(), channels());
+    auto& [drawn, set, refine, plan] = way;
+    LobesReport report{.loss = form.loss, .budget = bytes};
     if (form.search) {
       const SearchResult found = search_plan(set, plan,
                                              {.bytes = static_cast<std::size_t>(bytes),
@@ -393,13 +434,9 @@ class Fitter {
       return finish(fit_plan(set, plan, limit.bytes, limit.texel_bytes, refine, kLobeStarts), set, refine,
                     std::move(report));
     }
-    if (!brdf_.isotropic()) {
-      if (!options_.smooth) refine.smooth = kHemisphereSmooth;
-      if (form.loss == FitLoss::image) refine.shares = kVolumeShares;
-      const TrainingSet set = drawn_set(training_for_hemispheres());
-      return finish(fit_hemispheres(set, hemisphere_specs(limit, channels()), refine), set, refine,
-                    std::move(report));
-    }
+    if (!brdf_.isotropic())
+      return fit_hemispheres_to(form, bytes, drawn_set(training_for_hemispheres()),
+                                hemisphere_specs(limit, channels()));
     if (form.loss == FitLoss::image) {
       refine.shares = kVolumeShares;
       if (form.fetches >= kSpareFetches) {
@@ -415,6 +452,20 @@ class Fitter {
     }
     const TrainingSet set = drawn_set(training_for_volumes(limit));
     return finish(fit_volumes(set, volume_specs(reference(), limit), refine), set, refine, std::move(report));
+  }
+
+  RefineOptions hemisphere_options(FitLoss loss) const {
+    RefineOptions refine = refine_options(loss);
+    if (!options_.smooth) refine.smooth = kHemisphereSmooth;
+    if (loss == FitLoss::image) refine.shares = kVolumeShares;
+    return refine;
+  }
+
+  FactoredBrdf fit_hemispheres_to(const Budget& form, std::uint64_t bytes, const TrainingSet& set,
+                                  const std::vector<ModelSpec>& specs) {
+    const RefineOptions refine = hemisphere_options(form.loss);
+    return finish(fit_hemispheres(set, specs, refine), set, refine,
+                  {.loss = form.loss, .budget = bytes, .fetches = form.fetches});
   }
 
   /// Nodes that are given no number of fetches: one more where fewer leave a model farther from them than what is

@@ -46,10 +46,10 @@ struct SearchReport {
   std::vector<std::pair<std::string, double>> kept;
 };
 
-/// A number of fetches that was tried on part of the pairs, the mean of their channels, in few steps.
+/// A number of fetches that was tried on part of the pairs, the mean of their channels.
 struct FetchTrial {
   int fetches = 0;
-  bool lobes = false;  ///< several lobes of lines; else one with a volume
+  bool lobes = false;  ///< several lobes of lines or hemispheres; else what volume_specs or hemisphere_specs have
   /// exp of the objective over the sum of its shares: a geometric mean of errors, on pairs that were not fitted.
   double error = 0;
 };

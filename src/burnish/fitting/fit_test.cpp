@@ -516,6 +516,26 @@ TEST(Fit, WithoutFetchesTakesThemAtTheKnee) {
   EXPECT_LE(made.bytes(), 6000u);
 }
 
+TEST(Fit, TakesTheKneeOfAnAnisotropicSourceToo) {
+  BURNISH_SKIP_WHERE_SANITIZED();
+  Table q{.name = "q",
+          .layout = {.shape = TableShape::disk, .width = 24, .height = 24},
+          .channels = 1,
+          .values = {}};
+  for (int y = 0; y < q.layout.height; ++y)
+    for (int x = 0; x < q.layout.width; ++x) {
+      const Vec3 h = node_direction(q.layout, x, y);
+      q.values.push_back(static_cast<float>(0.02 + std::exp(-8 * h.x * h.x - 40 * h.y * h.y)));
+    }
+  const FactoredBrdf streak(1, {q}, {{{1}, {{.table = 0, .projection = kProjectHalf}}}});
+  const Fit made = fit(source_of("streak", streak), {.form = Budget{.bytes = 2500}, .score = false});
+  const auto& report = std::get<LobesReport>(made.report.how);
+  ASSERT_GT(report.fetch_trials.size(), 1u);
+  EXPECT_EQ(fetch_count(made.model()), static_cast<std::size_t>(trial_at_knee(report.fetch_trials).fetches));
+  EXPECT_LE(fetch_count(made.model()), 3u);  // of the half vector alone
+  EXPECT_LE(made.bytes(), 2500u);
+}
+
 TEST(Fit, RefusesWhatDoesNotGoTogether) {
   const Source even = source_of("even", paint()), uneven = source_of("uneven", brushed()),
                grey = source_of("grey", patch_table());

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -156,32 +158,51 @@ std::vector<ModelSpec> finalists(const std::vector<ModelSpec>& specs, const Trai
   return best;
 }
 
-/// The best model. Few steps leave some behind that end ahead, so the finalists are fitted as the winner is, to a
-/// quarter of the pairs.
+/// Finalists are fitted as the winner is, to a quarter of the pairs: few steps leave some behind that end ahead.
+struct Finals {
+  TrainingSet fitted, judged;
+  RefineOptions options;
+  ErrorTerms shares;
+
+  Finals(const TrainingSet& mean, const RefineOptions& how)
+      : fitted(part_of(mean, 0, kFinalPart)),
+        judged(part_of(mean, kFinalPart / 2, kFinalPart)),
+        options(how),
+        shares(how.shares.pictures > 0 ? kFinalShares : how.shares) {
+    options.progress = nullptr;
+  }
+  double error_of(const LobesFit& fit) const { return objective(fit.model, judged, shares); }
+  double error_of(const ModelSpec& spec) const { return error_of(fit_one(fitted, spec, options)); }
+};
+
+/// The best model, each of whose fetches has to be worth it.
 ModelSpec best_of(std::vector<ModelSpec> specs, const TrainingSet& set, const RefineOptions& options) {
   if (specs.size() == 1) return specs.front();
   const TrainingSet mean = mean_of_channels(set);
   specs = finalists(specs, mean, options);
-  const TrainingSet fitted = part_of(mean, 0, kFinalPart), judged = part_of(mean, kFinalPart / 2, kFinalPart);
-  RefineOptions quiet = options;
-  quiet.progress = nullptr;
-  const ErrorTerms& shares = options.shares.pictures > 0 ? kFinalShares : options.shares;
+  const Finals finals(mean, options);
   std::vector<double> errors(specs.size());
   for_each_trial(specs.size(), options, kTrialTime, kFinalTime, [&](std::size_t k) {
-    errors[k] = objective(fit_one(fitted, specs[k], quiet).model, judged, shares) +
-                kWorthOfFetch * shares.sum() * static_cast<double>(fetch_count(specs[k]));
+    errors[k] = finals.error_of(specs[k]) +
+                kWorthOfFetch * finals.shares.sum() * static_cast<double>(fetch_count(specs[k]));
   });
   return specs[static_cast<std::size_t>(std::ranges::min_element(errors) - errors.begin())];
 }
 
-}  // namespace
-
-std::vector<ModelSpec> hemisphere_specs(const CostLimit& limit, std::size_t channels) {
+/// All forms within the limit; none where its bytes do not hold any.
+std::vector<ModelSpec> specs_within(const CostLimit& limit, std::size_t channels) {
   std::vector<ModelSpec> specs;
   for (const Form& form : kForms)
     if (std::optional<ModelSpec> spec = laid_out(form, limit, channels);
         spec && fetch_count(*spec) <= static_cast<std::size_t>(limit.fetches))
       specs.push_back(std::move(*spec));
+  return specs;
+}
+
+}  // namespace
+
+std::vector<ModelSpec> hemisphere_specs(const CostLimit& limit, std::size_t channels) {
+  std::vector<ModelSpec> specs = specs_within(limit, channels);
   if (specs.empty()) throw Error("fit: expected a budget that holds hemispheres");
   std::size_t most = 0;
   for (const ModelSpec& spec : specs) most = std::max(most, fetch_count(spec));
@@ -195,6 +216,44 @@ LobesFit fit_hemispheres(const TrainingSet& set, const std::vector<ModelSpec>& s
   RefineOptions rest = options;
   if (specs.size() > 1) rest.progress = part_of_progress(options.progress, kFinalTime, 1);
   return fit_one(set, spec, rest);
+}
+
+HemisphereTrials try_hemispheres(const TrainingSet& set, CostLimit limit, const RefineOptions& options,
+                                 const LobePlan& lobes, const RefineOptions& of_lobes) {
+  limit.fetches = std::numeric_limits<int>::max();
+  std::vector<ModelSpec> specs = specs_within(limit, set.channels);
+  if (specs.empty()) return {};
+
+  // the finalists and, last, the lobes
+  const TrainingSet mean = mean_of_channels(set);
+  specs = finalists(specs, mean, options);
+  const Finals finals(mean, options);
+  RefineOptions quiet = of_lobes;
+  quiet.progress = nullptr;
+  std::vector<FetchTrial> trials(specs.size() + 1);
+  for_each_trial(trials.size(), options, kTrialTime, 1, [&](std::size_t k) {
+    const bool is_lobes = k == specs.size();
+    const ModelSpec spec =
+        is_lobes ? plan_to_spec(lobes, limit.bytes, set.channels, limit.texel_bytes) : specs[k];
+    const double error =
+        is_lobes ? finals.error_of(fit_plan(finals.fitted, lobes, limit.bytes, limit.texel_bytes, quiet))
+                 : finals.error_of(spec);
+    trials[k] = {.fetches = static_cast<int>(fetch_count(spec)),
+                 .lobes = is_lobes,
+                 .error = std::exp(error / finals.shares.sum())};
+  });
+
+  // the best of each number of fetches
+  std::vector<std::size_t> order(trials.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t k) { return std::pair(trials[k].fetches, trials[k].error); });
+  HemisphereTrials best;
+  for (const std::size_t k : order) {
+    if (!best.trials.empty() && best.trials.back().fetches == trials[k].fetches) continue;
+    best.trials.push_back(trials[k]);
+    best.specs.push_back(trials[k].lobes ? ModelSpec{} : specs[k]);
+  }
+  return best;
 }
 
 TrainingOptions training_for_hemispheres() {

@@ -3,8 +3,10 @@
 #include <cstddef>
 #include <vector>
 
+#include <burnish/fitting/fit_report.h>
 #include <burnish/fitting/plans/cost_limit.h>
 #include <burnish/fitting/plans/fit_plan.h>
+#include <burnish/fitting/plans/lobe_plan.h>
 
 namespace burnish {
 
@@ -20,6 +22,18 @@ std::vector<ModelSpec> hemisphere_specs(const CostLimit& limit, std::size_t chan
 /// thousand nodes, then at all. A fetch more has to lower the errors. Throws Error as fit_lobes does. Deterministic.
 LobesFit fit_hemispheres(const TrainingSet& set, const std::vector<ModelSpec>& specs,
                          const RefineOptions& options);
+
+/// What models of an anisotropic source do by how much they cost, where a number of fetches is to be chosen.
+struct HemisphereTrials {
+  std::vector<FetchTrial> trials;  ///< by rising fetches
+  std::vector<ModelSpec> specs;    ///< theirs; of lobes none
+};
+/// The three finalists of fit_hemispheres among models of any number of fetches, and these lobes, refined with
+/// `of_lobes`: each fitted to a quarter of the pairs, the mean of their channels, and judged on another; of two that
+/// take as many fetches the better one. Empty where the limit's bytes hold no hemispheres; its fetches do not count.
+/// Deterministic.
+HemisphereTrials try_hemispheres(const TrainingSet& set, CostLimit limit, const RefineOptions& options,
+                                 const LobePlan& lobes, const RefineOptions& of_lobes);
 
 /// How many pairs to draw for them, and where.
 TrainingOptions training_for_hemispheres();

@@ -81,6 +81,26 @@ TEST(HemispherePlan, TriesFormsAndSaysHowFarItIs) {
   EXPECT_LT(objective(fit.model, brushed_metal(300, 5), {.relative = 1}), std::log(0.2));
 }
 
+TEST(HemispherePlan, TriesFewFetchesBesideLobes) {
+  const TrainingSet set = brushed_metal(800, 1);
+  const CostLimit limit{.bytes = 900, .texel_bytes = 2, .fetches = 1};
+  const LobePlan lobes = default_plan(limit.bytes, 0, false, limit.texel_bytes);
+  const RefineOptions options{.smooth = 1e-6, .max_iterations = 8};
+  const HemisphereTrials tried = try_hemispheres(set, limit, options, lobes, options);
+  ASSERT_GT(tried.trials.size(), 1u);
+  ASSERT_EQ(tried.specs.size(), tried.trials.size());
+  const ModelSpec of_lobes = plan_to_spec(lobes, limit.bytes, 1, limit.texel_bytes);
+  for (std::size_t k = 0; k < tried.trials.size(); ++k) {
+    const FetchTrial& trial = tried.trials[k];
+    EXPECT_GT(trial.error, 0);
+    EXPECT_TRUE(k == 0 || trial.fetches > tried.trials[k - 1].fetches);
+    EXPECT_EQ(static_cast<std::size_t>(trial.fetches), fetch_count(trial.lobes ? of_lobes : tried.specs[k]));
+    EXPECT_TRUE(trial.lobes || bytes_of(tried.specs[k], limit.texel_bytes, 1) <= limit.bytes);
+  }
+  EXPECT_EQ(std::ranges::count(tried.trials, true, &FetchTrial::lobes), 1);
+  EXPECT_TRUE(try_hemispheres(set, {.bytes = 40, .texel_bytes = 2}, options, lobes, options).trials.empty());
+}
+
 TEST(HemispherePlan, FitsBrushedMetalBetterTheMoreItMayCost) {
   BURNISH_SKIP_WHERE_SANITIZED();
   const TrainingSet set = brushed_metal(12'000, 1), unseen = brushed_metal(3'000, 5);
