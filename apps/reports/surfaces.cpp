@@ -89,26 +89,34 @@ Image lit_level(const SpatialBrdf& surface, std::size_t level, Vec3 light, Vec3 
   return image;
 }
 
-// The psnr of a level's pictures against averages of full ones, all lights together.
-double level_psnr(const SpatialBrdf& surface, const SurfaceScene& scene, std::size_t level) {
+// The psnr of a level's pictures against averages of full ones, all lights together; or of means of 4^finer samples
+// of a level that is so much finer.
+double level_psnr(const SpatialBrdf& surface, const SurfaceScene& scene, std::size_t level,
+                  std::size_t finer = 0) {
   double sum = 0;
   for (const Station& light : scene.lights) {
     const Vec3 view = scene.views.front().at;
     const Image full = lit_level(surface, 0, light.at, view), truth = averaged(full, 1 << level);
     const double exposure = 1 / percentile(full.pixels, 0.97);
-    sum += mean_squared_error(tone_map(lit_level(surface, level, light.at, view), exposure),
-                              tone_map(truth, exposure));
+    const Image shown = averaged(lit_level(surface, level - finer, light.at, view), 1 << finer);
+    sum += mean_squared_error(tone_map(shown, exposure), tone_map(truth, exposure));
   }
   return psnr(sum / static_cast<double>(scene.lights.size()));
 }
 
 Table levels_table(const Surfaces& surfaces, const SurfaceScene& scene) {
-  Table table({"level", "texels", "weights alone, dB", "with normals, dB", "lobes widened, dB"});
-  for (std::size_t level = 1; level <= 5; ++level)
-    table.add({fmt::format("{}", level), fmt::format("{0} x {0}", scene.width >> level),
-               fmt::format("{:.1f}", level_psnr(surfaces.flat, scene, level)),
-               fmt::format("{:.1f}", level_psnr(surfaces.bumpy, scene, level)),
-               fmt::format("{:.1f}", level_psnr(surfaces.widened, scene, level))});
+  Table table({"level", "texels", "weights alone, dB", "with normals, dB", "lobes widened, dB",
+               "4 samples, dB", "16 samples, dB", "64 samples, dB"});
+  for (std::size_t level = 1; level <= 5; ++level) {
+    std::vector<std::string> row{fmt::format("{}", level), fmt::format("{0} x {0}", scene.width >> level)};
+    for (const SpatialBrdf* surface : {&surfaces.flat, &surfaces.bumpy, &surfaces.widened})
+      row.push_back(fmt::format("{:.1f}", level_psnr(*surface, scene, level)));
+    for (std::size_t finer = 1; finer <= 3; ++finer)
+      row.push_back(finer < level ? fmt::format("{:.1f}", level_psnr(surfaces.widened, scene, level, finer))
+                    : finer == level ? "exact"
+                                     : "");
+    table.add(row);
+  }
   return table;
 }
 
