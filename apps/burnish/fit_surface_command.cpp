@@ -143,9 +143,9 @@ void add_fit_surface_command(CLI::App& app, FitCrew* crew) {
   verb->add_option("--pictures", arguments->pictures,
                    "of a BTF, how many of its pictures are taken, spread evenly; 0: all")
       ->capture_default_str();
-  verb->add_option("--rounds", options.rounds, "of lobes and weights in turn")
-      ->check(in_range(1, 100))
-      ->capture_default_str();
+  verb->add_option("--rounds", options.rounds,
+                   "of lobes and weights in turn; else 9, where normals are estimated 24")
+      ->check(in_range(1, 100));
   verb->add_option("--memory", options.tile_bytes,
                    "bytes of pictures in memory at a time; M counts as 1024^2")
       ->transform(CLI::AsSizeValue(false));

@@ -114,8 +114,8 @@ NormalsFrom normals_from(const std::string& name) {
 }
 
 nb::tuple fit_surface(const std::filesystem::path& capture, std::size_t lobes, std::size_t lobe_bytes,
-                      const OpenedModel* book, const std::optional<std::string>& normals, int rounds,
-                      bool widened, std::uint64_t seed,
+                      const OpenedModel* book, const std::optional<std::string>& normals,
+                      std::optional<int> rounds, bool widened, std::uint64_t seed,
                       const std::optional<std::filesystem::path>& checkpoint, std::size_t pictures) {
   SurfaceFitOptions options;
   options.lobes = lobes;
@@ -198,8 +198,8 @@ void bind_surfaces(nb::module_& m) {
   m.def("open_surface", &open_surface, nb::arg("path"), nb::rv_policy::take_ownership,
         "Reads the .burnish file of a surface.");
   m.def("fit_surface", &fit_surface, nb::arg("capture"), nb::kw_only(), nb::arg("lobes") = 6,
-        nb::arg("lobe_bytes") = 16 << 10, nb::arg("book").none() = nb::none(),
-        nb::arg("normals") = nb::none(), nb::arg("rounds") = 9, nb::arg("widened") = false,
+        nb::arg("lobe_bytes") = 24 << 10, nb::arg("book").none() = nb::none(),
+        nb::arg("normals") = nb::none(), nb::arg("rounds").none() = nb::none(), nb::arg("widened") = false,
         nb::arg("seed") = 1, nb::arg("checkpoint") = nb::none(), nb::arg("pictures") = Capture::kBtfPictures,
         "(Surface, report) of a capture's folder, of a BTF, of which so many pictures are taken, or of a\n"
         "CSV of samples of texels, as `burnish fit-surface`.");

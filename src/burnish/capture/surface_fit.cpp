@@ -28,7 +28,7 @@ namespace {
 // What of a capture is kept to fit lobes to.
 constexpr std::size_t kSampleValues = 6'000'000;
 // Pixels that lobes are refined on: half of them count as pixels, half as pairs.
-constexpr std::size_t kTrainingPixels = 60'000, kStartPixels = 15'000;
+constexpr std::size_t kTrainingPixels = 150'000, kStartPixels = 15'000;
 constexpr std::size_t kHalfBins = 32;    // even along the root of theta_h
 constexpr double kMinPairCosine = 0.05;  // of what counts as a pair; pixels may be lower
 constexpr double kMinPixelCosine = 0.02;
@@ -37,11 +37,15 @@ constexpr float kEarlyError = 0.07f;  // of squared errors beside those of the l
 constexpr float kHeld = 0.02f;        // weight of clipped pixels that the model already is above
 // As of models with volumes (fitting/fit.cpp).
 constexpr ErrorTerms kShares{.pictures = 3, .dimmed = 0.3, .relative = 0.4, .log_cos = 0.4};
-constexpr double kSmooth = 1e-9;
-// The way there is made at few nodes and on few pixels.
-constexpr double kCoarseShare = 0.25;
+// Volumes are smooth, for the directions that no picture has; lines hold what is narrow.
+constexpr double kSmooth = 1e-6, kLineSmoothShare = 1e-3;
+// The way there is made at few nodes, on few texels and pixels.
+constexpr double kCoarseShare = 1.0 / 6;
 constexpr std::size_t kCoarsePixels = 24'000;
-constexpr int kCoarseSteps = 4, kFullSteps = 4, kLastSteps = 6, kFullRounds = 3;
+constexpr std::size_t kCoarseTexels = 1500;
+constexpr int kCoarseSteps = 2, kFullSteps = 4, kLastSteps = 6, kFullRounds = 3;
+// Normals and what is narrow in lobes sharpen each other, a little a round.
+constexpr int kRounds = 9, kRoundsOfNormals = 24;
 const HomomorphicOptions kStart{
     .smooth = 1e-5, .floor = PictureLoss::kFloor, .tolerance = 0.03, .progress = {}};
 // Nodes of a lobe's tables, relative to each other: theta_h, theta_d, phi_d.
@@ -76,7 +80,10 @@ ModelSpec spec_of_lobes(std::size_t lobes, std::size_t bytes) {
     tables.push_back(fmt::format("z{}={},power:0.5", suffix, line));
     tables.push_back(fmt::format("g{}={}x{}x{},power:0.5", suffix, x, y, z));
   }
-  return parse_model_spec(model, tables, true);
+  ModelSpec spec = parse_model_spec(model, tables, true);
+  for (ModelSpec::TableSpec& table : spec.tables)
+    if (table.layout.shape == TableShape::line) table.smooth_share = kLineSmoothShare;
+  return spec;
 }
 
 Vec3 normal_of(const std::vector<float>& normals, std::size_t t) noexcept {
@@ -112,6 +119,7 @@ class SurfaceFitter {
                                                                    : NormalsFrom::estimate);
     if (normals_from_ == NormalsFrom::capture && capture_.form().normals.empty())
       throw Error::in_file(capture_.form_file().string(), "normals", "none");
+    rounds_ = options.rounds.value_or(normals_from_ == NormalsFrom::estimate ? kRoundsOfNormals : kRounds);
   }
 
   SurfaceFit run() {
@@ -169,10 +177,32 @@ class SurfaceFitter {
     } else {
       start_normals();
       start_lobes();
-      for (int round = 0; round < options_.rounds; ++round) refine_round(round);
+      refine_rounds();
     }
     find_scales();
     samples_ = {};
+  }
+
+  /// The first rounds, which the lobes' few nodes make coarse, on a part of the texels.
+  void refine_rounds() {
+    int round = 0;
+    if (const std::size_t step = samples_.size() / kCoarseTexels; step > 1 && is_coarse(round)) {
+      TexelSamples all = std::exchange(samples_, every(samples_, step));
+      std::vector<float> normals = std::exchange(fits_.normals, every_normal(fits_.normals, step));
+      fit_samples(false);
+      while (is_coarse(round)) refine_round(round++);
+      samples_ = std::move(all);
+      fits_.normals = std::move(normals);
+      fit_samples(true);
+    }
+    while (round < rounds_) refine_round(round++);
+  }
+
+  /// Those of every().
+  static std::vector<float> every_normal(const std::vector<float>& all, std::size_t step) {
+    std::vector<float> some;
+    for (std::size_t i = 0; i < all.size(); i += 2 * step) some.insert(some.end(), {all[i], all[i + 1]});
+    return some;
   }
 
   std::vector<float> sampled_normals() const {
@@ -237,27 +267,26 @@ class SurfaceFitter {
     fits_ = std::move(fits);
   }
 
-  bool is_coarse(int round) const noexcept { return round + kFullRounds < options_.rounds; }
+  bool is_coarse(int round) const noexcept { return round + kFullRounds < rounds_; }
   std::size_t bytes_in(int round) const noexcept {
     const auto few = static_cast<std::size_t>(kCoarseShare * static_cast<double>(options_.lobe_bytes));
     return is_coarse(round) ? std::max(few, kMinLobeBytes) : options_.lobe_bytes;
   }
 
   void refine_round(int round) {
-    const bool last = round + 1 == options_.rounds, coarse = is_coarse(round);
+    const bool last = round + 1 == rounds_, coarse = is_coarse(round);
     if (round > 0 && bytes_in(round) != bytes_in(round - 1))
       model_ = resampled(model_, spec_of_lobes(options_.lobes, bytes_in(round)));
     const TrainingSet set =
         training_set(coarse ? kCoarsePixels : kTrainingPixels, 100 + static_cast<std::size_t>(round),
                      [](std::size_t) { return true; });
-    RefineOptions options{
-        .shares = kShares,
-        .smooth = kSmooth,
-        .format = last ? TableFormat::rgb9e5 : TableFormat::single,
-        .max_iterations = last     ? kLastSteps
-                          : coarse ? kCoarseSteps
-                                   : kFullSteps,
-        .progress = [&](double f) { progress("fitting lobes", (round + f) / options_.rounds); }};
+    RefineOptions options{.shares = kShares,
+                          .smooth = kSmooth,
+                          .format = last ? TableFormat::rgb9e5 : TableFormat::single,
+                          .max_iterations = last     ? kLastSteps
+                                            : coarse ? kCoarseSteps
+                                                     : kFullSteps,
+                          .progress = [&](double f) { progress("fitting lobes", (round + f) / rounds_); }};
     refine_channels(set, options);
     lobes_ = last ? to_rounded_brdf(model_, set, options) : to_brdf(model_, TableFormat::single);
     rounds_done_ = round + 1;
@@ -441,7 +470,7 @@ class SurfaceFitter {
   std::uint64_t key() const {
     const std::string text = fmt::format(
         "{} {} {} {} {} {} {}", capture_.fingerprint(), options_.book ? 0 : options_.lobes,
-        options_.lobe_bytes, name_of(normals_from_), options_.rounds, options_.seed,
+        options_.lobe_bytes, name_of(normals_from_), rounds_, options_.seed,
         options_.book ? format_compact({.brdf = *options_.book, .lambda_nm = {}}) : std::string());
     return hash_of(text) & ~std::uint64_t{1};
   }
@@ -652,6 +681,7 @@ class SurfaceFitter {
   Capture capture_;
   const SurfaceFitOptions& options_;
   NormalsFrom normals_from_ = NormalsFrom::flat;
+  int rounds_ = 0;
   std::vector<float> all_normals_;
   TexelSamples samples_;
   TexelFits fits_;

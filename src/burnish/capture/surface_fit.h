@@ -20,12 +20,13 @@ enum class NormalsFrom { capture, flat, estimate };
 
 struct SurfaceFitOptions {
   std::size_t lobes = 6;              ///< 1 to kMaxSurfaceLobes
-  std::size_t lobe_bytes = 16 << 10;  ///< of each lobe's tables, [kMinLobeBytes, kMaxLobeBytes]
+  std::size_t lobe_bytes = 24 << 10;  ///< of each lobe's tables, [kMinLobeBytes, kMaxLobeBytes]
   /// Lobes that are known: weights alone are fitted. Each of the model's lobes has a weight.
   std::optional<FactoredBrdf> book = {};
   /// None: those of the capture, or estimated where it has none; flat of samples, whose directions are about them.
   std::optional<NormalsFrom> normals = {};
-  int rounds = 9;  ///< of lobes and weights in turn
+  /// Of lobes and weights in turn; none: 9, where normals are estimated 24.
+  std::optional<int> rounds = {};
   /// Copies of the lobes, widened by the bumps that mip levels lose; each costs a light one fetch more.
   bool widened = false;
   std::size_t tile_bytes = 256 << 20;  ///< of pictures in memory at a time

@@ -40,6 +40,8 @@ struct TexelSamples {
 
 /// The same of all texels of some rows.
 TexelSamples samples_of(CaptureRows rows);
+/// Every step-th texel from the first on.
+TexelSamples every(const TexelSamples& all, std::size_t step);
 
 /// What is known of texels, or found.
 struct TexelFits {

@@ -346,6 +346,7 @@ const bool registered = [] {
   add_model("pqp_64x64", "pqp", {"p=64x64", "q=64x64,rational:0.2"});
   for (const int fetches : {2, 4, 6, 24})
     add_fit(fmt::format("fit_{}_fetches", fetches), Budget{.bytes = 16 * 1024, .fetches = fetches});
+  add_fit("fit_64k", Budget{.bytes = 64 * 1024, .fetches = 2});
   add_fit("fit_2k7", Budget{.bytes = 2700});
   add_peers();
   add_limits();
