@@ -49,8 +49,7 @@ struct SearchReport {
 /// A number of fetches that was tried on part of the pairs, the mean of their channels.
 struct FetchTrial {
   int fetches = 0;
-  bool lobes =
-      false;  ///< several lobes of lines or hemispheres; else a form of volume_specs or hemisphere_specs
+  bool lobes = false;  ///< several, of lines or hemispheres; else a form of volume_specs or hemisphere_specs
   /// exp of the objective over the sum of its shares: a geometric mean of errors, on pairs that were not fitted.
   double error = 0;
 };
