@@ -53,9 +53,11 @@ TEST_F(SurfaceCommand, FitsWhatWasMeasured) {
   EXPECT_FALSE(fs::exists(file("wall.burnish.part")));
   // the same file again, by one thread and few bytes at a time
   const std::string bytes = read(file("wall.burnish"));
-  const Outcome again = burnish(std::string(kFit) + " --threads 1 --memory 20K");
+  const Outcome again = burnish(std::string(kFit) + " --compare --threads 1 --memory 20K");
   EXPECT_EQ(again.status, 0);
   EXPECT_THAT(again.output, HasSubstr("held out"));
+  for (const char* method : {"\nlobes ", "\nggx ", "\nnearest ", "\npca "})
+    EXPECT_THAT(again.output, HasSubstr(method));
   EXPECT_EQ(read(file("wall.burnish")), bytes);
 }
 

@@ -102,6 +102,11 @@ void fit_surface(FitSurfaceArguments& arguments, FitCrew* crew) {
              report.lobes, report.lobe_bytes, report.weight_bytes, report.frame_bytes);
   fmt::print("fitted     {}\n", text_of(report.fitted, report));
   if (report.held_out.pictures > 0) fmt::print("held out   {}\n", text_of(report.held_out, report));
+  for (const BaselineScore& other : others)
+    fmt::print("{:<10} {}, {:.3g} bytes a texel\n", other.method,
+               other.held_out ? fmt::format("psnr {:.2f} dB of what was held out", *other.held_out)
+                              : "nothing was held out",
+               other.bytes_a_texel);
   fmt::print("written    {} in {:.2f} s, of these {:.2f} s weights of all texels\n", arguments.out,
              report.seconds, report.weight_seconds);
 }
