@@ -44,9 +44,8 @@ struct Budget {
   /// BudgetChoice; within the fetches of default_budget unless they, lobes or a search are asked for. At most
   /// kMaxBudget.
   std::optional<std::uint64_t> bytes = 2700;
-  /// Filtered reads of one evaluation, see fetch_count; 0: of an isotropic source the fewest of those tried whose
-  /// error is within two percent of the least, of another as many as its lobes take. The one lobe of scattered samples
-  /// has at most so many, where somebody chose them.
+  /// Filtered reads of one evaluation, see fetch_count; 0: the fewest of those tried whose error is within two percent
+  /// of the least. The one lobe of scattered samples has at most so many, where somebody chose them.
   int fetches = 0;
   /// Nobody did: whatever `fetches` says, they are default_budget's. Nodes of an isotropic source get one more where
   /// those leave a model farther from them than nodes that are left out are from what the others foretell.

@@ -30,7 +30,7 @@ LobePlan plan_within(BrdfRef source, const CostLimit& limit);
 /// backscatters() nodes crowd at theta_d = 0. Throws Error where the bytes hold no such tables.
 std::vector<ModelSpec> volume_specs(BrdfRef source, const CostLimit& limit);
 
-/// The error of the models of an isotropic source that try_fetches looks at may be this many times the least.
+/// The error of the models that try_fetches or try_hemispheres looks at may be this many times the least.
 inline constexpr double kKneeFactor = 1.02;
 
 /// Models of 2, 3, 4, 6, 8, 12 and 24 fetches that the bytes hold, and lobes of lines where takes_lobes has them for as
