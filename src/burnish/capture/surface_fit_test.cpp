@@ -87,6 +87,19 @@ TEST(SurfaceFit, GivesTheSameBytesForAnyThreadsAndTiles) {
   EXPECT_EQ(format_surface(capture.fit(options).surface), all);
 }
 
+// Of many sampled texels the first rounds see a part.
+TEST(SurfaceFit, GivesTheSameBytesForAnyThreadsOfManyTexels) {
+  BURNISH_SKIP_WHERE_SANITIZED();
+  const TemporaryFolder folder("surface_fit_many");
+  small_capture(folder.path, 56, 6, R"("noise":0.01,"held_out":6)");
+  SurfaceFitOptions options = small_options();
+  options.rounds = 4;
+  const SurfaceFit all = fit_surface(Capture(folder.path), options);
+  EXPECT_GT(all.report.held_out.psnr.value(), 30);
+  const ThreadLimit one(1);
+  EXPECT_EQ(format_surface(fit_surface(Capture(folder.path), options).surface), format_surface(all.surface));
+}
+
 // Stopped anywhere, the fit goes on from its checkpoint and ends in the same bytes.
 TEST(SurfaceFit, GoesOnFromACheckpoint) {
   BURNISH_SKIP_WHERE_SANITIZED();

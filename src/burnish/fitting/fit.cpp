@@ -285,17 +285,20 @@ class Fitter {
   FactoredBrdf fit_hemispheres_at_knee(const Budget& form, std::uint64_t bytes) {
     const CostLimit limit = limit_of(bytes, std::numeric_limits<int>::max());
     if (takes_lobes(reference(), limit)) return fit_lobes_to(form, bytes);
-    const TrainingSet set = drawn_set(training_for_hemispheres());
     LobesWay lobes = way_of_lobes(form, bytes);
+    lobes.set = {};  // drawn again where lobes are chosen: one set in memory at a time
+    TrainingSet set = drawn_set(training_for_hemispheres());
     RefineOptions trials = hemisphere_options(form.loss);
     trials.progress = progress("choosing fetches");
     HemisphereTrials tried = try_hemispheres(set, limit, trials, lobes.plan, lobes.refine);
     FactoredBrdf brdf = [&] {
-      if (tried.trials.empty()) return fit_lobes_to(form, bytes, std::move(lobes));
-      const FetchTrial& chosen = trial_at_knee(tried.trials);
-      if (chosen.lobes) return fit_lobes_to(form, bytes, std::move(lobes));
-      const auto k = static_cast<std::size_t>(&chosen - tried.trials.data());
-      return fit_hemispheres_to(form, bytes, set, {tried.specs[k]});
+      const FetchTrial* const chosen = tried.trials.empty() ? nullptr : &trial_at_knee(tried.trials);
+      if (chosen && !chosen->lobes)
+        return fit_hemispheres_to(form, bytes, set,
+                                  {tried.specs[static_cast<std::size_t>(chosen - tried.trials.data())]});
+      set = {};
+      lobes.set = drawn_set(lobes.drawn);
+      return fit_lobes_to(form, bytes, std::move(lobes));
     }();
     std::get<LobesReport>(report_.how).fetch_trials = std::move(tried.trials);
     return brdf;
