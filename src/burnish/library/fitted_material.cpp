@@ -154,12 +154,13 @@ FittedMaterial fit_material(const LibraryEntry& entry, const std::string& key, c
 }
 
 std::uint64_t fit_memory(const FitOptions& options, bool isotropic) {
-  constexpr std::uint64_t kMinMemory = std::uint64_t{48} << 20, kUsual = 16384, kMaxAutoBytes = 65536;
-  const std::uint64_t for_each_byte = isotropic ? 6600 : 17000;
+  constexpr std::uint64_t kMinMemory = std::uint64_t{48} << 20, kAnisotropicPairs = std::uint64_t{208} << 20,
+                          kForEachByte = 6600, kUsual = 16384, kMaxAutoBytes = 65536;
   const FitForm form = options.form.value_or(default_budget(isotropic));
   if (std::holds_alternative<OneLobe>(form) || std::holds_alternative<FromBook>(form)) return kMinMemory;
   const auto* budget = std::get_if<Budget>(&form);
-  return kMinMemory + for_each_byte * (budget ? budget->bytes.value_or(kMaxAutoBytes) : kUsual);
+  return kMinMemory + (isotropic ? 0 : kAnisotropicPairs) +
+         kForEachByte * (budget ? budget->bytes.value_or(kMaxAutoBytes) : kUsual);
 }
 
 InputDigests::InputDigests(const BatchOptions& options) : options_(options) {
