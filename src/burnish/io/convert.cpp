@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 
 #include <fmt/format.h>
@@ -20,6 +21,7 @@
 #include <burnish/io/utia.h>
 #include <burnish/io/zemax.h>
 #include <burnish/math/closest_name.h>
+#include <burnish/math/spectrum.h>
 #include <burnish/reflectance/azimuth_mean.h>
 #include <burnish/reflectance/goniometer.h>
 #include <burnish/reflectance/rgl_builder.h>
@@ -34,9 +36,7 @@ constexpr double kFloor = 1e-3;       // as in error_figures.h
 constexpr double kReciprocal = 1e-6;  // asymmetry that is rounding
 constexpr std::size_t kMirrorPairs = 500;
 constexpr double kTreeTolerance = 1e-3;  // of cubes that become one
-// Where a format of spectra has grey, and the dominant wavelengths of the primaries of Rec. 709.
-constexpr double kGrey_nm = 555;
-constexpr std::array kPrimaries_nm{611.4, 549.1, 464.2};
+constexpr double kGrey_nm = 555;         // where a format of spectra has grey
 
 /// A source with the plane of incidence as its mirror: the other side's values.
 struct OtherSide {
@@ -326,23 +326,24 @@ class Converter {
       lose("{} samples drawn at random directions", made->size());
     }
     if (made) samples = &*made;
-    if (const auto below = std::ranges::count_if(samples->values, [](double v) { return v < 0; }); below > 0)
-      lose("{} values below zero became zero", below);
     std::vector<double> lambda_nm = source_.findings.lambda_nm;
     if (lambda_nm.empty() && samples->channels == 1) {
       lambda_nm = {kGrey_nm};
       lose("grey stands at {} nm", kGrey_nm);
     } else if (lambda_nm.empty()) {
-      // wavelengths increase
-      lambda_nm = {kPrimaries_nm[2], kPrimaries_nm[1], kPrimaries_nm[0]};
-      Samples turned = *samples;
-      for (std::size_t i = 0; i < turned.size(); ++i)
-        std::swap(turned.values[3 * i], turned.values[3 * i + 2]);
-      made = std::move(turned);
+      lambda_nm.assign(kColourNodes_nm.begin(), kColourNodes_nm.end());
+      Samples spectra{
+          .channels = kColourNodes_nm.size(), .isotropic = true, .pairs = samples->pairs, .values = {}};
+      spectra.values.reserve(samples->size() * spectra.channels);
+      for (std::size_t i = 0; i < samples->size(); ++i)
+        std::ranges::copy(spectrum_of_colour(samples->at(i).first<3>()), std::back_inserter(spectra.values));
+      made = std::move(spectra);
       samples = &*made;
-      lose("red, green and blue stand at {}, {} and {} nm", kPrimaries_nm[0], kPrimaries_nm[1],
-           kPrimaries_nm[2]);
+      lose("colours became spectra at {:g} nm, the same under equal energy",
+           fmt::join(kColourNodes_nm, ", "));
     }
+    if (const auto below = std::ranges::count_if(samples->values, [](double v) { return v < 0; }); below > 0)
+      lose("{} values below zero became zero", below);
     OpenMaterialText made_text =
         format_openmaterial(*samples, lambda_nm, sample_name(), source_.findings.origin);
     if (made_text.averaged > 0)

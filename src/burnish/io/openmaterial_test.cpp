@@ -66,8 +66,9 @@ TEST(OpenMaterial, SaysWhatIsWrong) {
 TEST(OpenMaterial, IsWrittenAndReadToTheLastBit) {
   const Source source = open_source("ggx:alpha_x=0.3,alpha_y=0.3", {});
   const Converted converted = convert(source, "openmaterial", {.count = 50});
-  EXPECT_THAT(converted.losses, Contains(HasSubstr("red, green and blue stand at 611.4")));
-  const SampleFile file = parse_openmaterial(memory_file(converted.bytes), kSpectral);
+  EXPECT_THAT(converted.losses, Contains(HasSubstr("spectra at 475, 510, 580, 605 nm")));
+  const SampleFile file = parse_openmaterial(memory_file(converted.bytes), kSpectral),
+                   colours = parse_openmaterial(memory_file(converted.bytes), {});
   ASSERT_EQ(file.samples.size(), 50u);
   const std::string again =
       format_openmaterial(file.samples, file.findings.lambda_nm, file.findings.description).text;
@@ -78,8 +79,28 @@ TEST(OpenMaterial, IsWrittenAndReadToTheLastBit) {
     const auto [wi, wo] = file.samples.pairs[i];
     source.ref().eval(wi, wo, f);
     for (std::size_t c = 0; c < 3; ++c)
-      EXPECT_NEAR(file.samples.at(i)[2 - c], f[c], 1e-5 * f[c]);  // angles have the schema's ends
+      EXPECT_NEAR(colours.samples.at(i)[c], f[c], 1e-5 * f[c]);  // angles have the schema's ends
   }
+}
+
+TEST(OpenMaterial, KeepsColoursToTheirLastDigits) {
+  // saturated ones too, each of which has a spectrum without values below zero
+  Samples samples{.channels = 3, .isotropic = true, .pairs = {}, .values = {}};
+  const double colours[][3] = {{1, 0, 0},        {0, 1, 0},    {0, 0, 1}, {0, 0.7, 0.7},
+                               {0.9, 0.01, 0.3}, {40, 41, 39}, {0, 0, 0}};
+  for (const auto& colour : colours) {
+    const double theta = 0.1 + 0.1 * static_cast<double>(samples.size());
+    samples.pairs.push_back({spherical_direction(theta, 0), spherical_direction(0.5, 0)});
+    samples.values.insert(samples.values.end(), colour, colour + 3);
+  }
+  const Source source{"colours", ScatteredBrdf(samples), {}};
+  const Converted converted = convert(source, "openmaterial", {});
+  EXPECT_THAT(converted.losses, Not(Contains(HasSubstr("below zero"))));
+  const Samples read = parse_openmaterial(memory_file(converted.bytes), {}).samples;
+  ASSERT_EQ(read.size(), samples.size());
+  for (std::size_t i = 0; i < read.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_NEAR(read.at(i)[c], samples.at(i)[c], 1e-13 * std::ranges::max(samples.at(i)));
 }
 
 TEST(OpenMaterial, KeepsLicenceAuthorsAndOrigin) {

@@ -242,4 +242,14 @@ std::vector<std::array<double, 3>> rec709_weights(std::span<const double> lambda
   return weights;
 }
 
+std::array<double, 4> spectrum_of_colour(std::span<const double, 3> rgb) {
+  static const Matrix3 inverse = [] {
+    const auto weights = rec709_weights(kColourNodes_nm, "E");
+    const auto column = [&](std::size_t k) { return Vec3{weights[k][0], weights[k][1], weights[k][2]}; };
+    return inverse_of_columns(column(3), column(1) + column(2), column(0));
+  }();
+  const Vec3 blocks = inverse * Vec3{rgb[0], rgb[1], rgb[2]};  // of long, middle and short waves
+  return {blocks.z, blocks.y, blocks.y, blocks.x};
+}
+
 }  // namespace burnish

@@ -154,5 +154,24 @@ TEST(Spectrum, HasTheStandardIlluminantsInTheirPlaces) {
   }
 }
 
+TEST(Spectrum, EveryColourHasASpectrumWithoutValuesBelowZero) {
+  const auto weights = rec709_weights(kColourNodes_nm, "E");
+  for (int red = 0; red <= 4; ++red)
+    for (int green = 0; green <= 4; ++green)
+      for (int blue = 0; blue <= 4; ++blue) {
+        const Rgb colour{0.25 * red, 0.25 * green, 0.25 * blue};
+        const std::array<double, 4> spectrum = spectrum_of_colour(colour);
+        for (std::size_t c = 0; c < 3; ++c) {
+          double sum = 0;
+          for (std::size_t k = 0; k < 4; ++k) {
+            EXPECT_GE(spectrum[k], 0);
+            sum += weights[k][c] * spectrum[k];
+          }
+          EXPECT_NEAR(sum, colour[c], 1e-14);
+        }
+      }
+  for (const double value : spectrum_of_colour(Rgb{1, 1, 1})) EXPECT_NEAR(value, 1, 1e-14);
+}
+
 }  // namespace
 }  // namespace burnish
