@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include <burnish/io/open_source.h>
+#include <burnish/math/build_info.h>
 #include <burnish/testing/sanitized.h>
 #include <burnish/testing/seed_files.h>
 #include <burnish/testing/tools.h>
@@ -291,6 +292,10 @@ TEST(CommandLine, ExplainsItsFormatsAndItself) {
   for (const char* said :
        {"burnish ", "instruction sets", "threads", "CLI11 2", "OpenEXR 3", "zstd 1", "libepoxy 1", "LAPACK"})
     EXPECT_THAT(version.output, HasSubstr(said));
+  const auto json = nlohmann::json::parse(burnish("--json --version").output);
+  EXPECT_THAT(version.output, HasSubstr("burnish " + json["burnish"].get<std::string>()));
+  EXPECT_EQ(json["compiled_with"].size(), 1 + build_info().libraries.size());
+  EXPECT_EQ(burnish("--json help formats").status, 2);  // of a verb it stands behind it
 }
 
 TEST(CommandLine, TakesTheLightOfSpectraFromAName) {

@@ -28,6 +28,6 @@ void add_render_command(CLI::App& app);
 void add_specular_command(CLI::App& app);
 
 /// What --version prints: versions, instruction sets, threads.
-std::string version_text();
+std::string version_text(bool as_json);
 
 }  // namespace burnish::cli

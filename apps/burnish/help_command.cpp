@@ -121,13 +121,23 @@ const CLI::App& verb_of_names(const CLI::App& app, const std::vector<std::string
 
 }  // namespace
 
-std::string version_text() {
+std::string version_text(bool as_json) {
   const BuildInfo info = build_info();
-  std::string text = fmt::format("burnish {}\ninstruction sets  {}\nthreads           {}\ncompiled with     ",
-                                 BURNISH_VERSION, fmt::join(info.instruction_sets, ", "), info.threads);
-  text += fmt::format("CLI11 {}", CLI11_VERSION);
-  for (const auto& [name, version] : info.libraries) text += fmt::format(", {} {}", name, version);
-  return text + "\nlinear algebra    " + linear_algebra();
+  auto libraries = nlohmann::ordered_json{{"CLI11", CLI11_VERSION}};
+  for (const auto& [name, version] : info.libraries) libraries[name] = version;
+  if (as_json)
+    return nlohmann::ordered_json{{"burnish", BURNISH_VERSION},
+                                  {"instruction_sets", info.instruction_sets},
+                                  {"threads", info.threads},
+                                  {"compiled_with", libraries},
+                                  {"linear_algebra", linear_algebra()}}
+        .dump(2);
+  std::string compiled;
+  for (const auto& [name, version] : libraries.items())
+    compiled += fmt::format("{}{} {}", compiled.empty() ? "" : ", ", name, version.get<std::string>());
+  return fmt::format(
+      "burnish {}\ninstruction sets  {}\nthreads           {}\ncompiled with     {}\nlinear algebra    {}",
+      BURNISH_VERSION, fmt::join(info.instruction_sets, ", "), info.threads, compiled, linear_algebra());
 }
 
 void add_help_command(CLI::App& app) {

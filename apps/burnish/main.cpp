@@ -12,7 +12,9 @@
 int main(int argc, char** argv) {
   CLI::App app{"burnish: measured, scattered or analytic reflectance into a few small positive textures"};
   app.require_subcommand(1);
-  app.set_version_flag("--version", burnish::cli::version_text);
+  bool as_json = false;  // found before the version is printed, since it is added before
+  CLI::Option* const json = app.add_flag("--json", as_json, "--version as JSON");
+  json->needs(app.set_version_flag("--version", [&as_json] { return burnish::cli::version_text(as_json); }));
   burnish::cli::add_info_command(app);
   burnish::cli::add_fit_command(app);
   burnish::cli::add_batch_command(app);
