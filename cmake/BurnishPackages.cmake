@@ -1,5 +1,9 @@
 # What packages hold besides programs, headers and libraries, and the Debian package itself (`make deb`).
 
+# The package's own version, and its changelog.
+set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+configure_file(cmake/debian-changelog.in debian-changelog @ONLY)
+
 # What the command line says of itself, in the forms that a system looks for; compressed as Debian's policy asks.
 set(describe "\"$<TARGET_FILE:burnish_cli>\" describe")
 install(CODE "
@@ -13,12 +17,15 @@ install(CODE "
     OUTPUT_FILE \"\${share}/zsh/vendor-completions/_burnish\")
   configure_file(\"${PROJECT_SOURCE_DIR}/cmake/debian-copyright\" \"\${share}/doc/burnish/copyright\" COPYONLY)
   configure_file(\"${PROJECT_SOURCE_DIR}/CHANGELOG.md\" \"\${share}/doc/burnish/changelog\" COPYONLY)
+  configure_file(\"${PROJECT_BINARY_DIR}/debian-changelog\" \"\${share}/doc/burnish/changelog.Debian\" COPYONLY)
   file(GLOB pages \"\${share}/man/man1/burnish*.1\")
-  execute_process(COMMAND gzip -9nf \${pages} \"\${share}/doc/burnish/changelog\" COMMAND_ERROR_IS_FATAL ANY)")
+  execute_process(COMMAND gzip -9nf \${pages} \"\${share}/doc/burnish/changelog\"
+    \"\${share}/doc/burnish/changelog.Debian\" COMMAND_ERROR_IS_FATAL ANY)")
 
 find_package(embree REQUIRED)  # for its version
 configure_file(cmake/burnish.pc.in burnish.pc @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/burnish.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+# of an architecture where the system keeps several
+install(FILES ${PROJECT_BINARY_DIR}/burnish.pc DESTINATION lib/${CMAKE_LIBRARY_ARCHITECTURE}/pkgconfig)
 
 # One package: programs, manual pages, completions, headers, the static library, what finds it.
 set(CPACK_GENERATOR DEB)
