@@ -13,6 +13,7 @@
 #include <burnish/fitting/fit_file.h>
 #include <burnish/fitting/parametric/material_fit.h>
 #include <burnish/fitting/plans/fetch_plan.h>
+#include <burnish/math/angles.h>
 #include <burnish/math/parallel.h>
 #include <burnish/shaders/cost_json.h>
 
@@ -202,7 +203,7 @@ void print(const GltfMaterial& m) {
   if (m.specular != neutral.specular || m.specular_color != neutral.specular_color)
     fmt::print("specular   {:.4g}, colour {}\n", m.specular, color(m.specular_color));
   if (m.anisotropy > 0)
-    fmt::print("anisotropy {:.4g} along the {}\n", m.anisotropy, m.across ? "bitangent" : "tangent");
+    fmt::print("anisotropy {:.4g}, {:.4g} degrees from the tangent\n", m.anisotropy, degrees(m.rotation));
   if (m.iridescence > 0)
     fmt::print("film       {:.4g}, index {:.4g}, {:.4g} nm\n", m.iridescence, m.iridescence_ior,
                m.iridescence_thickness);

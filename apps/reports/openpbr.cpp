@@ -11,6 +11,7 @@
 
 #include <burnish/fitting/parametric/gltf_fit.h>
 #include <burnish/fitting/parametric/gltf_json.h>
+#include <burnish/fitting/parametric/grain.h>
 #include <burnish/fitting/parametric/metallic_roughness_fit.h>
 #include <burnish/fitting/parametric/openpbr_fit.h>
 #include <burnish/io/open_source.h>
@@ -90,11 +91,14 @@ Row row_of(const std::string& material, const std::string& place, int starts) {
   const BrdfRef brdf = is_measurement(source) ? BrdfRef(symmetrized) : source.ref();
   const Scorer scorer(brdf, {.count = kPairs});
   const PicturePairs pairs = picture_pairs(brdf, scorer.exposure());
-  const OpenPbrFitOptions options{.grey = brdf.channels() == 1, .anisotropic = !brdf.isotropic()};
+  const OpenPbrFitOptions options{
+      .grey = brdf.channels() == 1, .anisotropic = !brdf.isotropic(), .tangent = grain_direction(brdf)};
   Row row{.material = material,
           .ours = scored(scorer, [&] { return fit_openpbr(pairs, options); }),
           .random = {},
-          .gltf = gltf_scored(scorer, pairs, {.grey = options.grey, .anisotropic = options.anisotropic})};
+          .gltf = gltf_scored(
+              scorer, pairs,
+              {.grey = options.grey, .anisotropic = options.anisotropic, .tangent = options.tangent})};
   row.random = scored(scorer, [&] { return fit_openpbr_at_random(pairs, starts, kPeersSeed, options); });
   tell(fmt::format("openpbr: {}: {:.2f} dB in {:.1f} s, at random {:.2f} dB in {:.0f} s, glTF {:.2f} dB",
                    material, row.ours.psnr, row.ours.seconds, row.random.psnr, row.random.seconds,

@@ -26,7 +26,8 @@ NearestOpenPbr nearest_openpbr(BrdfRef brdf) {
 NearestGltf nearest_gltf(BrdfRef brdf) {
   const Scorer scorer(brdf, {.count = kPairs, .image_size = kSize});
   const PicturePairs pairs = picture_pairs(brdf, scorer.exposure());
-  const GltfFit fit = fit_gltf(pairs, {.grey = pairs.grey(), .anisotropic = !brdf.isotropic()});
+  const GltfFit fit = fit_gltf(
+      pairs, {.grey = pairs.grey(), .anisotropic = !brdf.isotropic(), .tangent = grain_direction(brdf)});
   const ErrorFigures figures = scorer.score(fit.material);
   return {fit.material, figures.psnr, figures.relative};
 }

@@ -144,11 +144,15 @@ class SheenAlbedos {
 }  // namespace
 
 bool GltfMaterial::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+  if (rotation != 0) {
+    const double c = std::cos(rotation), s = std::sin(rotation);
+    wi = {c * wi.x + s * wi.y, c * wi.y - s * wi.x, wi.z};
+    wo = {c * wo.x + s * wo.y, c * wo.y - s * wo.x, wo.z};
+  }
   return eval_above_horizon(wi, wo, f, [&](const PairGeometry& g) {
     // highlights of the base
     const double alpha = square(roughness), stretched = alpha + (1 - alpha) * square(anisotropy);
-    const double base =
-        facets(across ? GgxDistribution{alpha, stretched} : GgxDistribution{stretched, alpha}, g);
+    const double base = facets(GgxDistribution{stretched, alpha}, g);
     const auto under_film = [&](Rgb fresnel, Rgb f0) {
       return iridescence > 0
                  ? mix(fresnel, iridescent_fresnel(iridescence_ior, iridescence_thickness, f0, g.cos_d),

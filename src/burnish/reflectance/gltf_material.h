@@ -23,7 +23,7 @@ struct GltfMaterial {
   double specular = 1;     ///< of the dielectric, in [0, 1]
   Rgb specular_color = 1;  ///< multiplies its reflectance at normal incidence, in [0, 1]
   double anisotropy = 0;   ///< strength in [0, 1]
-  bool across = false;     ///< anisotropyRotation is pi/2: alphas are larger along the bitangent
+  double rotation = 0;  ///< of where alphas are larger, radians from the tangent to the bitangent, in [0, pi)
 
   double iridescence = 0;              ///< share of a film, in [0, 1]
   double iridescence_ior = 1.3;        ///< in [1, 5]

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <burnish/math/angles.h>
 #include <burnish/reflectance/gltf_material.h>
 #include <burnish/reflectance/metallic_roughness.h>
 #include <burnish/testing/albedo.h>
@@ -114,12 +115,17 @@ TEST(GltfMaterial, ReflectsNoMoreThanItGetsAndNothingBelowZero) {
   }
 }
 
-TEST(GltfMaterial, StretchesAcrossAsAlongTurned) {
-  GltfMaterial along = kLayered, across = kLayered;
-  across.across = true;
-  const auto turned = [](Vec3 w) { return Vec3{-w.y, w.x, w.z}; };
-  for (const auto& [wi, wo] : kPairs)
-    expect_close(value(across, turned(wi), turned(wo)), value(along, wi, wo));
+TEST(GltfMaterial, TurnsWithItsRotation) {
+  for (const double rotation : {0.3, kHalfPi, 2.5}) {
+    GltfMaterial material = kLayered;
+    material.rotation = rotation;
+    const auto turned = [&](Vec3 w) {
+      const double c = std::cos(rotation), s = std::sin(rotation);
+      return Vec3{c * w.x - s * w.y, s * w.x + c * w.y, w.z};
+    };
+    for (const auto& [wi, wo] : kPairs)
+      expect_close(value(material, turned(wi), turned(wo)), value(kLayered, wi, wo));
+  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include <burnish/fitting/parametric/gltf_fit.h>
 #include <burnish/fitting/parametric/picture_fit.h>
+#include <burnish/math/angles.h>
 #include <burnish/math/random.h>
 
 namespace burnish {
@@ -26,13 +27,12 @@ Layers only(std::initializer_list<Layer> layers) {
   return set;
 }
 
-/// Strength squared, which alphas are linear in, below 0 across.
+/// Strength squared, which alphas are linear in.
 double grain_of(const GltfMaterial& m) {
-  return (m.across ? -1 : 1) * m.anisotropy * m.anisotropy;
+  return m.anisotropy * m.anisotropy;
 }
 void set_grain(GltfMaterial& m, double grain) {
-  m.anisotropy = std::sqrt(std::abs(grain));
-  m.across = grain < 0;
+  m.anisotropy = std::sqrt(grain);
 }
 
 /// A number or a colour of the material; the grain has no member.
@@ -48,7 +48,7 @@ constexpr std::array<Input, 14> kInputs = {{
     {kIor, 1, 3, &GltfMaterial::ior},
     {kSpecular, 0, 1, &GltfMaterial::specular},
     {kSpecular, 0, 1, &GltfMaterial::specular_color},
-    {kGrain, -1, 1, {}},
+    {kGrain, 0, 1, {}},
     {kFilm, 0, 1, &GltfMaterial::iridescence},
     {kFilm, 1.2, 3, &GltfMaterial::iridescence_ior},
     {kFilm, 0, 1500, &GltfMaterial::iridescence_thickness},
@@ -174,9 +174,9 @@ void append_films(Search& search, const Trial& found, const Layers& always, std:
 }
 
 /// Anywhere in the ranges.
-Start random_start(Pcg32& random, const Layers& always, bool grey) {
-  Start start{{}, always};
-  for (const Unknown& unknown : unknowns_of(always, grey)) {
+Start random_start(Pcg32& random, const Layers& always, const GltfFitOptions& options) {
+  Start start{{.rotation = radians(options.tangent)}, always};
+  for (const Unknown& unknown : unknowns_of(always, options.grey)) {
     const auto& [layer, min, max, member] = *unknown.input;
     set(start.material, unknown, min + (max - min) * random.uniform());
   }
@@ -207,10 +207,12 @@ Trial simplified(Search& search, Trial best, const std::vector<Trial>& others) {
 
 GltfMaterial rounded(GltfMaterial m) {
   for (const Input& input : kInputs)
-    if (std::holds_alternative<std::monostate>(input.member))
+    if (std::holds_alternative<std::monostate>(input.member)) {
       m.anisotropy = round6(m.anisotropy);
-    else
+      m.rotation = m.anisotropy > 0 ? round6(m.rotation) : 0;
+    } else {
       for (const int channel : {0, 1, 2}) set(m, {&input, channel}, round6(get(m, {&input, channel})));
+    }
   return m;
 }
 
@@ -250,8 +252,11 @@ GltfFit fit_gltf(const PicturePairs& pairs, const GltfFitOptions& options) {
   std::vector<Start> starts;
   for (const double metallic : {0.0, 1.0})
     for (const double roughness : {0.15, 0.35, 0.65})
-      starts.push_back(
-          {{.base_color = mean_color(pairs), .metallic = metallic, .roughness = roughness}, core});
+      starts.push_back({{.base_color = mean_color(pairs),
+                         .metallic = metallic,
+                         .roughness = roughness,
+                         .rotation = radians(options.tangent)},
+                        core});
   std::vector<Trial> found = sift.run(starts, kFirst);
   progress(0.2);
 
@@ -261,7 +266,7 @@ GltfFit fit_gltf(const PicturePairs& pairs, const GltfFitOptions& options) {
   append_films(sift, found.front(), always, starts);
   Pcg32 random(1);
   std::vector<Start> drawn;
-  for (int i = 0; i < kRandom; ++i) drawn.push_back(random_start(random, always, options.grey));
+  for (int i = 0; i < kRandom; ++i) drawn.push_back(random_start(random, always, options));
   for (const Start& start : best_of(taste.run(drawn, kSift), kTasted)) starts.push_back(start);
   for (Trial& trial : sift.run(starts, kFirst)) found.push_back(std::move(trial));
   std::ranges::stable_sort(found, {}, &Trial::cost);

@@ -18,6 +18,7 @@ struct GltfFit {
 struct GltfFitOptions {
   bool grey = false;         ///< colours are grey, and there is no film, which has some
   bool anisotropic = false;  ///< stretches are looked for
+  double tangent = 0;  ///< of these, degrees from the tangent, which stay: grain_direction of the source
   std::function<void(double fraction)> progress = {};
 };
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <burnish/fitting/parametric/gltf_fit.h>
+#include <burnish/fitting/parametric/grain.h>
 #include <burnish/math/parallel.h>
 #include <burnish/metrics/error_figures.h>
 #include <burnish/reflectance/analytic.h>
@@ -14,7 +15,8 @@ PicturePairs pairs_of(BrdfRef brdf) {
 }
 
 GltfMaterial recovered(const GltfMaterial& truth) {
-  return fit_gltf(pairs_of(truth), {.anisotropic = !truth.isotropic()}).material;
+  return fit_gltf(pairs_of(truth), {.anisotropic = !truth.isotropic(), .tangent = grain_direction(truth)})
+      .material;
 }
 
 void expect_near(Rgb found, Rgb truth) {
@@ -41,13 +43,13 @@ TEST(GltfFit, RecoversACoatedGrain) {
                              .metallic = 1,
                              .roughness = 0.5,
                              .anisotropy = 0.5,
-                             .across = true,
+                             .rotation = 0.5,
                              .clearcoat = 0.8,
                              .clearcoat_roughness = 0.15};
   const GltfMaterial found = recovered(brushed);
   expect_near(found.base_color, brushed.base_color);
   expect_near(found.roughness, brushed.roughness);
-  EXPECT_TRUE(found.across);
+  EXPECT_NEAR(found.rotation, brushed.rotation, 0.01);
   expect_near(found.anisotropy, brushed.anisotropy);
   expect_near(found.clearcoat, brushed.clearcoat);
   expect_near(found.clearcoat_roughness, brushed.clearcoat_roughness);

@@ -1,7 +1,6 @@
 #include <nlohmann/json.hpp>
 
 #include <burnish/fitting/parametric/gltf_json.h>
-#include <burnish/math/angles.h>
 
 namespace burnish {
 
@@ -20,7 +19,7 @@ nlohmann::ordered_json gltf_json(const GltfMaterial& m) {
   add("specular", m.specular != neutral.specular || m.specular_color != neutral.specular_color,
       {{"specularFactor", m.specular}, {"specularColorFactor", color(m.specular_color)}});
   add("anisotropy", m.anisotropy > 0,
-      {{"anisotropyStrength", m.anisotropy}, {"anisotropyRotation", m.across ? kHalfPi : 0}});
+      {{"anisotropyStrength", m.anisotropy}, {"anisotropyRotation", m.rotation}});
   add("iridescence", m.iridescence > 0,
       {{"iridescenceFactor", m.iridescence},
        {"iridescenceIor", m.iridescence_ior},

@@ -19,7 +19,7 @@ TEST(GltfJson, HasAnExtensionForEachLayer) {
   const Json found = gltf_json({.ior = 2,
                                 .specular = 0.5,
                                 .anisotropy = 0.25,
-                                .across = true,
+                                .rotation = 1.5,
                                 .iridescence = 1,
                                 .iridescence_thickness = 500,
                                 .sheen_color = {0.5, 0.25, 0},
@@ -29,7 +29,7 @@ TEST(GltfJson, HasAnExtensionForEachLayer) {
   EXPECT_EQ(found["extensions"], Json::parse(R"({
     "KHR_materials_ior": {"ior": 2.0},
     "KHR_materials_specular": {"specularFactor": 0.5, "specularColorFactor": [1.0, 1.0, 1.0]},
-    "KHR_materials_anisotropy": {"anisotropyStrength": 0.25, "anisotropyRotation": 1.5707963267948966},
+    "KHR_materials_anisotropy": {"anisotropyStrength": 0.25, "anisotropyRotation": 1.5},
     "KHR_materials_iridescence": {"iridescenceFactor": 1.0, "iridescenceIor": 1.3, "iridescenceThicknessMaximum": 500.0},
     "KHR_materials_sheen": {"sheenColorFactor": [0.5, 0.25, 0.0], "sheenRoughnessFactor": 0.75},
     "KHR_materials_clearcoat": {"clearcoatFactor": 1.0, "clearcoatRoughnessFactor": 0.125}

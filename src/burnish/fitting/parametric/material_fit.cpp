@@ -29,6 +29,7 @@ constexpr std::array<std::string_view, 2> kTargets = {"openpbr", "gltf"};
 void fit_material_of(BrdfRef source, double exposure, const MaterialFitOptions& options, MaterialFit& fit) {
   const PicturePairs pairs = picture_pairs(source, exposure);
   const bool grey = pairs.grey(), anisotropic = !source.isotropic();
+  const double tangent = grain_direction(source);
   std::function<void(double)> progress;
   if (options.progress)
     progress = [&](double fraction) { options.progress("fitting " + fit.target, fraction); };
@@ -37,13 +38,13 @@ void fit_material_of(BrdfRef source, double exposure, const MaterialFitOptions& 
     fit.starts = found.starts;
   };
   if (fit.target == "gltf") {
-    const GltfFit found = fit_gltf(pairs, {.grey = grey, .anisotropic = anisotropic, .progress = progress});
+    const GltfFit found =
+        fit_gltf(pairs, {.grey = grey, .anisotropic = anisotropic, .tangent = tangent, .progress = progress});
     fit.material = found.material;
     take(found);
   } else {
     const OpenPbrFit found = fit_openpbr(
-        pairs,
-        {.grey = grey, .anisotropic = anisotropic, .tangent = grain_direction(source), .progress = progress});
+        pairs, {.grey = grey, .anisotropic = anisotropic, .tangent = tangent, .progress = progress});
     fit.material = OpenPbr(found.parameters);
     take(found);
   }
