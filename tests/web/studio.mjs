@@ -417,6 +417,9 @@ const apart = await page.evaluate(drawnApart, true);
 assert.ok(apart < 5e-3, `a surface is drawn ${apart} from what it is`);
 run("export", file("flat.burnish"), "--to", "three", "-o", file("surface"));
 assert.equal(unpacked(await save(page, "[data-export=three]", "flat.three.zip"))["flat.three.js"].toString(), fs.readFileSync(file("surface/flat.three.js"), "utf8"));
+run("export", file("flat.burnish"), "--to", "gltf", "-o", file("surface"));
+const taken = JSON.parse(unpacked(await save(page, "[data-export=gltf]", "flat.gltf.zip"))["flat.json"]), written = JSON.parse(fs.readFileSync(file("surface/flat.json")));
+assert.ok(Math.abs(taken.gltf_material.psnr - written.gltf_material.psnr) < 0.01, "a surface's nearest materials");
 await accessible(page, "surface");
 await page.click("#list .close >> nth=0");
 await until(page, 0);
@@ -538,7 +541,8 @@ assert.match(fs.readFileSync(await save(page, "[data-export=curve]", "curve.svg"
 await page.click("#results [data-value=figures]");
 
 // What is taken away is there; shaders say what they are.
-for (const [kind, name] of [["ktx2", "fitted.ktx2"], ["three", "fitted.three.js"], ["merl", "out.binary"], ["csv", "out.csv"], ["png", "view.png"], ["slice", "slice.svg"],
+for (const [kind, name] of [["ktx2", "fitted.ktx2"], ["three", "fitted.three.js"], ["gltf", "fitted.gltf.zip"], ["materialx", "fitted.materialx.zip"],
+                            ["usda", "fitted.usda.zip"], ["babylon", "fitted.babylon.zip"], ["mdl", "fitted.mdl.zip"], ["merl", "out.binary"], ["csv", "out.csv"], ["png", "view.png"], ["slice", "slice.svg"],
                             ["half-diff", "half-diff.png"]])
   assert.ok(fs.statSync(await save(page, `[data-export=${kind}]`, name)).size > 100, kind);
 // several files are an archive: textures of the formats and sizes that the command line writes, which compresses them too

@@ -101,7 +101,7 @@ export interface ExportOptions {
 /** One file: those of the verb `convert`. "exr" is a model's own file, of others an image of slices. */
 export type FileKind = "burnish" | "model" | "exr" | "merl" | "utia" | "rgl" | "mbsdf" | "zemax" | "tensortree" | "openmaterial" |
   "astm" | "csv";
-/** Several files, of models: those of the verb `export`; of surfaces ktx2, png, three, html and languages. */
+/** Several files, of models: those of the verb `export`; of surfaces ktx2, png, gltf, three, html and languages. */
 export type FilesKind = "ktx2" | "cube" | "png" | "gltf" | "materialx" | "usda" | "mdl" | "three" | "babylon" | "html" | Language;
 export interface NamedFile { name: string; bytes: Uint8Array; }
 

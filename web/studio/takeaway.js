@@ -7,8 +7,9 @@ import {picture} from "./stage.js";
 import {zip} from "./zip.js";
 
 const languages = {glsl: "GLSL 4.50", glsl_es: "GLSL ES 3.00", hlsl: "HLSL", wgsl: "WGSL", msl: "Metal", cpp: "C++"};
-const modelFiles = {burnish: ".burnish", model: "OpenEXR", ktx2: "KTX2 textures", three: "three.js", html: "Page"};
-const surfaceFiles = {burnish: ".burnish", ktx2: "KTX2 textures", png: "PNG maps", three: "three.js", html: "Page"};
+const modelFiles = {burnish: ".burnish", model: "OpenEXR", ktx2: "KTX2 textures", three: "three.js", babylon: "Babylon.js", html: "Page", gltf: "glTF",
+                    materialx: "MaterialX", usda: "USD", mdl: "MDL"};
+const surfaceFiles = {burnish: ".burnish", ktx2: "KTX2 textures", png: "PNG maps", three: "three.js", html: "Page", gltf: "glTF"};
 // what anything can be written as, and the endings of names
 const anyFiles = {merl: "MERL", utia: "UTIA", rgl: "RGL", mbsdf: "MBSDF", zemax: "Zemax", tensortree: "Tensor tree", openmaterial: "OpenMATERIAL",
                   astm: "ASTM", csv: "CSV", exr: "EXR slices"};
