@@ -15,6 +15,7 @@
 #include <burnish/eval/lobe_evaluator.h>
 #include <burnish/factors/compact_file.h>
 #include <burnish/fitting/refinement/log_model.h>
+#include <burnish/fitting/refinement/lookups.h>
 #include <burnish/fitting/refinement/refine.h>
 #include <burnish/fitting/refinement/rounding.h>
 #include <burnish/math/parallel.h>
@@ -277,9 +278,10 @@ class SurfaceFitter {
     const bool last = round + 1 == rounds_, coarse = is_coarse(round);
     if (round > 0 && bytes_in(round) != bytes_in(round - 1))
       model_ = resampled(model_, spec_of_lobes(options_.lobes, bytes_in(round)));
-    const TrainingSet set =
+    const TrainingSet set = ordered_by_cells(
         training_set(coarse ? kCoarsePixels : kTrainingPixels, 100 + static_cast<std::size_t>(round),
-                     [](std::size_t) { return true; });
+                     [](std::size_t) { return true; }),
+        model_.spec);
     RefineOptions options{.shares = kShares,
                           .smooth = kSmooth,
                           .format = last ? TableFormat::rgb9e5 : TableFormat::single,

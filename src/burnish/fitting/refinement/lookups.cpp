@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <functional>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -62,6 +64,39 @@ Lookups lookups_of(const ModelSpec& spec, const TrainingSet& set) {
   while (found.lobe_weights.size() < blocks * Lookups::kBlock * lobes)
     found.lobe_weights.push_back(found.lobe_weights[found.lobe_weights.size() - lobes]);
   return found;
+}
+
+TrainingSet ordered_by_cells(const TrainingSet& set, const ModelSpec& spec) {
+  const Lookups found = lookups_of(spec, set);
+
+  // the places of the two largest tables
+  std::vector<std::size_t> nodes(found.place_count);
+  for (std::size_t k = 0; k < found.lookups.size(); ++k)
+    nodes[found.place_of[k]] = spec.tables[found.lookups[k].table].layout.node_count();
+  std::vector<std::size_t> places(found.place_count);
+  std::iota(places.begin(), places.end(), std::size_t{0});
+  std::ranges::stable_sort(places, std::greater{}, [&](std::size_t p) { return nodes[p]; });
+
+  struct Placed {
+    std::uint64_t cells;
+    std::size_t pair;
+  };
+  std::vector<Placed> placed(set.size());
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    const auto node = [&](std::size_t k) -> std::uint64_t {
+      constexpr std::size_t kBlock = Lookups::kBlock;
+      const std::size_t block = i / kBlock * found.place_count;
+      return k < places.size() ? found.places[(block + places[k]) * kBlock + i % kBlock].node : 0;
+    };
+    placed[i] = {node(0) << 32 | node(1), i};
+  }
+  const auto others = placed.begin() + static_cast<std::ptrdiff_t>(set.picture_count);
+  std::stable_sort(placed.begin(), others,
+                   [](const Placed& a, const Placed& b) { return a.cells < b.cells; });
+  std::stable_sort(others, placed.end(), [](const Placed& a, const Placed& b) { return a.cells < b.cells; });
+  std::vector<std::size_t> order;
+  for (const Placed& each : placed) order.push_back(each.pair);
+  return taken(set, order);
 }
 
 }  // namespace burnish

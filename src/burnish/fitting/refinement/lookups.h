@@ -35,4 +35,8 @@ struct Lookups {
 
 Lookups lookups_of(const ModelSpec& spec, const TrainingSet& set);
 
+/// The set, pixels and other pairs each in the order of the cells of the model's largest tables that they fall on:
+/// neighbours read and add to the same nodes.
+TrainingSet ordered_by_cells(const TrainingSet& set, const ModelSpec& spec);
+
 }  // namespace burnish

@@ -150,6 +150,7 @@ std::size_t NodeBand::band_width(std::span<const LobeLanes::NumberedTable> table
 }
 
 void NodeBand::set_zero() {
+  nodes_.clear();
   band_.set_zero();
   rest_.setZero();
 }
@@ -169,28 +170,30 @@ void NodeBand::add(std::uint32_t a, std::uint32_t b, double value) {
 }
 
 void NodeBand::add_row(std::span<const Term> row, double weight) {
-  if (std::ranges::all_of(row, [&](const Term& term) { return is_banded(term.unknown); })) {
-    // most rows: places alone
-    places_.clear();
-    for (const Term& term : row) places_.push_back(place_[term.unknown]);
-    for (std::size_t a = 0; a < row.size(); ++a) {
-      const double scale = weight * row[a].slope;
-      const std::uint32_t at = places_[a];
-      band_(at, at) += scale * row[a].slope;
-      for (std::size_t b = 0; b < a; ++b) {
-        const double product = scale * row[b].slope;
-        band_(std::max(at, places_[b]), std::min(at, places_[b])) += at == places_[b] ? 2 * product : product;
-      }
-    }
-    return;
+  // rows of the same nodes are summed before they go to their places
+  if (!std::ranges::equal(row, nodes_, {}, &Term::unknown)) {
+    add_sums();
+    nodes_.clear();
+    for (const Term& term : row) nodes_.push_back(term.unknown);
+    sums_.assign(row.size() * row.size(), 0);
   }
-  for (std::size_t a = 0; a < row.size(); ++a) {
-    const double scale = weight * row[a].slope;
-    add(row[a].unknown, row[a].unknown, scale * row[a].slope);
+  slopes_.clear();
+  for (const Term& term : row) slopes_.push_back(term.slope);
+  double* sums = sums_.data();
+  for (std::size_t a = 0; a < row.size(); ++a, sums += row.size()) {
+    const double scale = weight * slopes_[a];
+    for (std::size_t b = 0; b <= a; ++b) sums[b] += scale * slopes_[b];
+  }
+}
+
+void NodeBand::add_sums() {
+  const double* sums = sums_.data();
+  for (std::size_t a = 0; a < nodes_.size(); ++a, sums += nodes_.size()) {
+    add(nodes_[a], nodes_[a], sums[a]);
     // two terms of one node stand on the diagonal, once for either order
-    for (std::size_t b = 0; b < a; ++b)
-      add(row[a].unknown, row[b].unknown, (row[a].unknown == row[b].unknown ? 2 : 1) * scale * row[b].slope);
+    for (std::size_t b = 0; b < a; ++b) add(nodes_[a], nodes_[b], (nodes_[a] == nodes_[b] ? 2 : 1) * sums[b]);
   }
+  nodes_.clear();
 }
 
 void NodeBand::add_wide_row(std::span<const Term> row, double weight) {
@@ -214,6 +217,7 @@ void NodeBand::add_wide_row(std::span<const Term> row, double weight) {
 }
 
 bool NodeBand::factorize(const Eigen::VectorXd& extra) {
+  add_sums();
   for (std::uint32_t u = 0; u < place_.size(); ++u) add(u, u, extra[static_cast<Eigen::Index>(u)]);
   if (rest_.cols() == rest_.rows() && rest_count_ > 0) {
     const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> in_place(rest_);

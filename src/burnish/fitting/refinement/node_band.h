@@ -29,7 +29,7 @@ class NodeBand {
     std::uint32_t unknown;
     double slope;
   };
-  /// Adds weight times the products of a row's terms.
+  /// Adds weight times the products of a row's terms; fastest where rows of the same nodes follow each other.
   void add_row(std::span<const Term> row, double weight);
   /// The same of a row whose products may lie outside: each of these is put on the diagonal, which keeps the
   /// matrix positive.
@@ -48,6 +48,7 @@ class NodeBand {
   static constexpr std::uint32_t kInRest = 1u << 31;  // of a place
 
   void add(std::uint32_t a, std::uint32_t b, double value);
+  void add_sums();
   // Puts what has an axis of the key projection in its order, all else into the rest.
   void order(std::span<const LobeLanes::NumberedTable> tables, const Lookups& lookups,
              const std::optional<Projection>& key);
@@ -57,7 +58,9 @@ class NodeBand {
   std::vector<std::uint32_t> place_;  ///< of an unknown, in the band or in the rest
   std::vector<std::uint32_t> banded_;
   std::size_t rest_count_ = 0;
-  std::vector<std::uint32_t> places_;  ///< room of add_row
+  // rows of the same nodes: these, and the sums of their products
+  std::vector<std::uint32_t> nodes_;
+  std::vector<double> slopes_, sums_;
   BandMatrix band_;
   Eigen::MatrixXd rest_;  ///< its lower triangle; one column, the diagonal, where it is large
 };

@@ -11,9 +11,9 @@ using fixtures::random_model;
 using fixtures::small_set;
 
 TEST(NodeBand, SolvesWhatTheMatrixSolves) {
-  const TrainingSet set = small_set(parse_analytic("ggx:alpha_x=0.2,alpha_y=0.2"), 500);
-  // all tables along theta_h, or another beside them
-  for (const bool other : {false, true}) {
+  const TrainingSet drawn = small_set(parse_analytic("ggx:alpha_x=0.2,alpha_y=0.2"), 500);
+  // all tables along theta_h, or another beside them; pairs as drawn, or those of a cell together
+  for (const auto& [other, ordered] : {std::pair(false, false), {true, false}, {false, true}, {true, true}}) {
     std::string model = "z(h) v(theta_h,theta_d,phi_d) + y(h) w(theta_d,theta_h,phi_d)";
     std::vector<std::string> tables{"z=9", "v=5x4x3", "y=7,power:0.5", "w=4x6x3,identity,power:0.5"};
     if (other) {
@@ -21,6 +21,7 @@ TEST(NodeBand, SolvesWhatTheMatrixSolves) {
       tables.emplace_back("p=5");
     }
     const LogModel log_model = random_model(model.c_str(), tables, 1);
+    const TrainingSet set = ordered ? ordered_by_cells(drawn, log_model.spec) : drawn;
     const Lookups lookups = lookups_of(log_model.spec, set);
     const RefineSystem system(log_model, set, lookups, {.exposure = 0.1}, TableFormat::half, 0, 1);
     ASSERT_TRUE(system.has_volume());

@@ -118,11 +118,17 @@ bool SparseGram::find_meetings() {
 
   // the ranges; starts hold their ends until all are known
   constexpr std::size_t kBlock = LobeLanes::kBlock;
-  std::vector<Terms> row(uses_.size());
+  std::vector<Terms> row(uses_.size());  // counts are 0 before the first pair
   for (std::size_t block = 0; block < lanes_->blocks(); ++block)
     for (std::size_t i = 0; i < kBlock; ++i) {
-      for (std::size_t u = 0; u < uses_.size(); ++u)
-        row[u] = terms(uses_[u], place_of(uses_[u], block, i), 1);
+      // pairs in the order of cells often touch the nodes of the one before
+      bool as_before = true;
+      for (std::size_t u = 0; u < uses_.size(); ++u) {
+        const Lookups::Place& place = place_of(uses_[u], block, i);
+        as_before = as_before && row[u].count > 0 && row[u].node[0] == place.node;
+        row[u] = terms(uses_[u], place, 1);
+      }
+      if (as_before) continue;
       for (const UsePair& pair : pairs_) {
         Meeting& meeting = meetings_[pair.meeting];
         for_each_product(pair, row, [&](std::uint32_t a, std::uint32_t b, float) {

@@ -262,21 +262,25 @@ TrainingSet training_set_of(const Samples& samples, bool symmetrize) {
   return set;
 }
 
-TrainingSet thinned(const TrainingSet& set, std::size_t step) {
+TrainingSet taken(const TrainingSet& set, std::span<const std::size_t> order) {
   TrainingSet part{
       .channels = set.channels, .isotropic = set.isotropic, .exposure = set.exposure, .albedo = set.albedo};
-  const auto channels = set.channels;
-  const auto take = [&](std::size_t i) {
+  const std::size_t channels = set.channels, lobes = set.lobe_weights.size() / set.size();
+  for (const std::size_t i : order) {
+    part.picture_count += i < set.picture_count;
     part.pairs.push_back(set.pairs[i]);
     part.weights.push_back(set.weights[i]);
     for (std::size_t c = 0; c < channels; ++c) part.values.push_back(set.values[i * channels + c]);
-    const std::size_t lobes = set.lobe_weights.size() / set.size();
     for (std::size_t j = 0; j < lobes; ++j) part.lobe_weights.push_back(set.lobe_weights[i * lobes + j]);
-  };
-  for (std::size_t i = 0; i < set.picture_count; i += step) take(i);
-  part.picture_count = part.size();
-  for (std::size_t i = set.picture_count; i < set.size(); i += step) take(i);
+  }
   return part;
+}
+
+TrainingSet thinned(const TrainingSet& set, std::size_t step) {
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < set.picture_count; i += step) kept.push_back(i);
+  for (std::size_t i = set.picture_count; i < set.size(); i += step) kept.push_back(i);
+  return taken(set, kept);
 }
 
 SampleSource as_source(const TrainingSet& set, const std::vector<float>& values) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <burnish/reflectance/brdf.h>
@@ -69,6 +70,9 @@ AlbedoSet albedo_set(BrdfRef source);
 /// Scattered measurements above the horizon, weight 1, no pictures, no albedos; with `symmetrize` each also stands for
 /// its swapped pair. Throws Error if nothing is left.
 TrainingSet training_set_of(const Samples& samples, bool symmetrize);
+
+/// Pairs of the set in an order, pixels before others.
+TrainingSet taken(const TrainingSet& set, std::span<const std::size_t> order);
 
 /// Every `step`-th pixel and every `step`-th pair; step >= 1.
 TrainingSet thinned(const TrainingSet& set, std::size_t step);

@@ -1,12 +1,16 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include <burnish/fitting/refinement/lookups.h>
 #include <burnish/testing/log_models.h>
 
 namespace burnish {
 namespace {
 
+using fixtures::random_model;
 using fixtures::small_set;
 
 TEST(TrainingSet, IsPixelsAndPairsAboveTheHorizonAndTheSameForASeed) {
@@ -60,6 +64,40 @@ TEST(TrainingSet, CrowdsPixelsAtTheHighlightAndWeighsThemAsIfTheyWereEven) {
     EXPECT_LE(crowded.weights[i], 2);
   }
   EXPECT_GT(crowded.exposure, even.exposure);  // pixels in the dark count
+}
+
+TEST(TrainingSet, InTheOrderOfCellsHasTheSamePairs) {
+  const TrainingSet set = draw_training_set(parse_analytic("ggx:alpha_x=0.2,alpha_y=0.2").ref(), {});
+  const LogModel model = random_model("z(h) v(theta_h,theta_d,phi_d)", {"z=9", "v=5x4x3"}, 3);
+  const TrainingSet ordered = ordered_by_cells(set, model.spec);
+  ASSERT_EQ(ordered.size(), set.size());
+  EXPECT_EQ(ordered.picture_count, set.picture_count);
+  EXPECT_EQ(ordered.exposure, set.exposure);
+  // whatever is summed over them stays
+  const auto of = [](const TrainingSet& of_set, std::size_t begin, std::size_t end) {
+    std::vector<std::array<double, 5>> rows;
+    for (std::size_t i = begin; i < end; ++i)
+      rows.push_back({of_set.pairs[i].wi.x, of_set.pairs[i].wi.y, of_set.pairs[i].wo.x,
+                      static_cast<double>(of_set.values[i * of_set.channels]),
+                      static_cast<double>(of_set.weights[i])});
+    std::ranges::sort(rows);
+    return rows;
+  };
+  EXPECT_EQ(of(ordered, 0, set.picture_count), of(set, 0, set.picture_count));
+  EXPECT_EQ(of(ordered, set.picture_count, set.size()), of(set, set.picture_count, set.size()));
+  // and neighbours share their cell
+  const Lookups lookups = lookups_of(model.spec, ordered);
+  std::size_t changes = 0;
+  for (std::size_t i = 1; i < set.size(); ++i) {
+    const auto node = [&](std::size_t pair) {
+      return lookups
+          .places[(pair / Lookups::kBlock * lookups.place_count + lookups.place_of[1]) * Lookups::kBlock +
+                  pair % Lookups::kBlock]
+          .node;
+    };
+    changes += node(i) != node(i - 1);
+  }
+  EXPECT_LE(changes, 2 * 5u * 4 * 3);
 }
 
 }  // namespace
