@@ -8,6 +8,7 @@
 #include <burnish/capture/surface_baselines.h>
 #include <burnish/capture/surface_fit.h>
 #include <burnish/capture/surface_picture.h>
+#include <burnish/capture/surface_report_json.h>
 #include <burnish/factors/model_file.h>
 #include <burnish/file.h>
 #include <burnish/image/png.h>
@@ -79,7 +80,7 @@ void fit_surface(FitSurfaceArguments& arguments, FitCrew* crew) {
   if (arguments.compare)
     others = score_surface_baselines(Capture(arguments.capture, arguments.pictures), fit, options);
   if (arguments.json) {
-    auto json = nlohmann::ordered_json::parse(report_json(report));
+    nlohmann::ordered_json json = json_of(report);
     json["output"] = arguments.out;
     json["seconds"] = report.seconds;
     json["weight_seconds"] = report.weight_seconds;

@@ -234,11 +234,11 @@ std::vector<DirectionPair> layer_pairs(std::size_t thetas_h, std::size_t thetas_
 Reply volume(const Request& request, const Progress& progress) {
   const BrdfRef brdf = material(request.arguments).ref();
   const Options given("volume", request.arguments, {"thetaH", "thetaD", "phiD", "phiH"}, {"verb", "id"});
-  constexpr std::uint64_t kFewestCells = 2, kMostCells = 512;  // a side
+  constexpr std::uint64_t kMinCells = 2, kMaxCells = 512;  // a side
   std::array<std::size_t, 3> size{90, 90, 180};
-  given.read("thetaH", size[0], kFewestCells, kMostCells);
-  given.read("thetaD", size[1], kFewestCells, kMostCells);
-  given.read("phiD", size[2], kFewestCells, kMostCells);
+  given.read("thetaH", size[0], kMinCells, kMaxCells);
+  given.read("thetaD", size[1], kMinCells, kMaxCells);
+  given.read("phiD", size[2], kMinCells, kMaxCells);
   double phi_h = 0;
   given.read("phiH", phi_h);
   const auto channels = brdf.channels();

@@ -11,9 +11,11 @@
 #include <burnish/capture/sampled_texels.h>
 #include <burnish/capture/shared_work.h>
 #include <burnish/capture/surface_fit.h>
+#include <burnish/capture/surface_report_json.h>
 #include <burnish/error.h>
 #include <burnish/eval/lobe_evaluator.h>
 #include <burnish/factors/compact_file.h>
+#include <burnish/fitting/fit_report_json.h>
 #include <burnish/fitting/refinement/log_model.h>
 #include <burnish/fitting/refinement/lookups.h>
 #include <burnish/fitting/refinement/refine.h>
@@ -58,10 +60,6 @@ constexpr double kNearlyAll = 0.999;
 
 // What rank 0 tells the others first.
 constexpr const char *kResumed = "resumed", *kFromTheStart = "from the start";
-
-const char* name_of(NormalsFrom normals) noexcept {
-  return normals == NormalsFrom::capture ? "capture" : normals == NormalsFrom::flat ? "flat" : "estimated";
-}
 
 /// K lobes z(theta_h) g(theta_h,theta_d,phi_d) of so many bytes each.
 ModelSpec spec_of_lobes(std::size_t lobes, std::size_t bytes) {
@@ -133,8 +131,7 @@ class SurfaceFitter {
     find_weights();
     SurfaceFit fit{.surface = surface(), .report = std::move(report_)};
     fit.report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    fit.surface.notes =
-        nlohmann::json::parse(report_json(fit.report)).dump();  // as a file's reader orders it
+    fit.surface.notes = to_text(nlohmann::json(json_of(fit.report)), -1);  // as a file's reader orders it
     return fit;
   }
 
@@ -700,43 +697,16 @@ class SurfaceFitter {
 
 }  // namespace
 
+const char* name_of(NormalsFrom normals) noexcept {
+  return normals == NormalsFrom::capture ? "capture" : normals == NormalsFrom::flat ? "flat" : "estimated";
+}
+
 SurfaceFit fit_surface(Capture capture, const SurfaceFitOptions& options) {
   return SurfaceFitter(std::move(capture), options).run();
 }
 
 void help_fit_surface(Capture capture, const SurfaceFitOptions& options) {
   SurfaceFitter(std::move(capture), options).help();
-}
-
-std::string report_json(const SurfaceReport& report) {
-  using Object = nlohmann::ordered_json;
-  const auto number = [](const std::optional<double>& value) -> Object {
-    if (!value || !std::isfinite(*value)) return nullptr;
-    return *value;
-  };
-  const auto score = [&](const PictureScore& of) {
-    return Object{
-        {"pictures", of.pictures}, {"psnr", number(of.psnr)}, {"psnr_of_all", number(of.psnr_of_all)}};
-  };
-  Object left_out = Object::array();
-  for (const auto& [file, why] : report.left_out) left_out.push_back({{"file", file}, {"why", why}});
-  return Object{{"width", report.width},
-                {"height", report.height},
-                {"pictures", report.pictures},
-                {"of_samples", report.of_samples},
-                {"left_out", std::move(left_out)},
-                {"missing_pixels", report.missing_pixels},
-                {"clipped_pixels", report.clipped_pixels},
-                {"normals", name_of(report.normals)},
-                {"lobes", report.lobes},
-                {"exposure", report.exposure},
-                {"fitted", score(report.fitted)},
-                {"held_out", score(report.held_out)},
-                {"weight_bytes", report.weight_bytes},
-                {"frame_bytes", report.frame_bytes},
-                {"lobe_bytes", report.lobe_bytes},
-                {"bytes_a_texel", report.bytes_a_texel}}
-      .dump(-1, ' ', false, Object::error_handler_t::replace);
 }
 
 }  // namespace burnish

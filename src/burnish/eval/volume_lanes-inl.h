@@ -19,9 +19,8 @@
 
 BURNISH_BEGIN_TARGET;
 
-// With s = wi + wo and d = wi - wo, whose sign does not matter, the formulas of projection-inl.h. Polar angles of many
-// are instances of them; the rest is in an order of its own, lanes across angles, and held to the definition by
-// factored_eval_test.cpp:
+// With s = wi + wo and d = wi - wo, whose sign does not matter, the formulas of projection-inl.h in an order of their
+// own, lanes across angles or roots before quotients, and held to the definition by factored_eval_test.cpp:
 //   theta_h   r = |s_xy|                den = |s| + s_z
 //   theta_d   r = |d|                   den = |s| + 2
 //   phi_d     r = |s_y d_x - s_x d_y|   den = |(d_z |s|, r)| + |d_z| |s|

@@ -360,10 +360,10 @@ class Converter {
 
   // Which samples have both directions so far above the horizon that a reader sees them there.
   static std::vector<std::size_t> above_horizon(const Samples& samples) {
-    constexpr double kLeast = 1e-9;
+    constexpr double kMinCosine = 1e-9;
     std::vector<std::size_t> above;
     for (std::size_t i = 0; i < samples.size(); ++i)
-      if (std::min(samples.pairs[i].wi.z, samples.pairs[i].wo.z) > kLeast) above.push_back(i);
+      if (std::min(samples.pairs[i].wi.z, samples.pairs[i].wo.z) > kMinCosine) above.push_back(i);
     return above;
   }
 

@@ -14,7 +14,7 @@
 namespace burnish {
 namespace {
 
-constexpr std::size_t kRowsTogether = 4, kMostEntries = 16;
+constexpr std::size_t kRowsTogether = 4, kMaxEntries = 16;
 
 // A matrix's rows from one entry on, each so many numbers after the one before.
 struct Rows {
@@ -36,7 +36,7 @@ BURNISH_BEGIN_TARGET;
 // product after another.
 void subtract_products(const Rows& to, std::size_t count, const ConstRows& left, const ConstRows& right,
                        std::size_t terms) {
-  const hn::CappedTag<double, kMostEntries / 2> d;
+  const hn::CappedTag<double, kMaxEntries / 2> d;
   const std::size_t lanes = hn::Lanes(d);
   for (std::size_t j = 0; j < count; j += 2 * lanes) {
     double* const tile = to.first + j;
@@ -116,7 +116,7 @@ BorderedBand::BorderedBand(std::size_t count, std::size_t band, std::size_t bord
       band_values_(rounded_up(count, kRows) * stride_ + kBack),
       border_values_(rounded_up(count, kRows) * border_stride_),
       corner_(border_stride_ * border_stride_) {
-  static_assert(kRows == kRowsTogether && kTile == kMostEntries);
+  static_assert(kRows == kRowsTogether && kTile == kMaxEntries);
 }
 
 void BorderedBand::factor() {

@@ -14,10 +14,10 @@ namespace {
 
 constexpr double kCornellCount = 1439;
 constexpr double kCornellRadius2 = 0.001;  // [Pharr 2010]
-constexpr double kLeastRadius2 = 1e-9;     // samples that are this near are at one place
+constexpr double kMinRadius2 = 1e-9;       // samples that are this near are at one place
 constexpr double kSharpness = 100;         // [Pharr 2010]
 constexpr std::size_t kEnough = 3;         // [Pharr 2010]
-constexpr std::size_t kMost = 64;          // that are averaged, where a scan is denser than elsewhere
+constexpr std::size_t kMaxAveraged = 64;   // that are averaged, where a scan is denser than elsewhere
 constexpr std::size_t kLeaf = 8;           // ranges this short are searched one by one
 
 double distance2(const std::array<double, 4>& a, const std::array<double, 4>& b) noexcept {
@@ -171,7 +171,7 @@ bool ScatteredBrdf::eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexce
   for (double radius2 = initial_radius2_; radius2 <= kMaxRadius2; radius2 *= 2) {
     std::size_t found = add_ball(radius2);
     if (found < enough) continue;
-    while (found > kMost && radius2 > kLeastRadius2) {
+    while (found > kMaxAveraged && radius2 > kMinRadius2) {
       radius2 /= 2;
       found = add_ball(radius2);
       if (found == 0) add_ball(2 * radius2);

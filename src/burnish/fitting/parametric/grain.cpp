@@ -11,9 +11,9 @@ namespace burnish {
 
 namespace {
 
-constexpr int kAzimuthStep = 5;       // degrees
-constexpr double kLeastGrain = 0.02;  // of what is reflected, that goes about with the direction
-constexpr double kAxisReach = 3;      // degrees
+constexpr int kAzimuthStep = 5;     // degrees
+constexpr double kMinGrain = 0.02;  // of what is reflected, that goes about with the direction
+constexpr double kAxisReach = 3;    // degrees
 
 /// What half vectors reflect that lean to both sides at an azimuth; nothing where none of them is known.
 std::optional<double> reflected(BrdfRef source, double phi) {
@@ -58,7 +58,7 @@ double grain_direction(BrdfRef source) {
     a = c_right / count;  // one pair of azimuths
     b = s_right / count;
   }
-  if (!(std::hypot(a, b) * count > kLeastGrain * all)) return 0;
+  if (!(std::hypot(a, b) * count > kMinGrain * all)) return 0;
   const double found = std::fmod(degrees(std::atan2(b, a) / 2) + 180, 180);
   for (const double axis : {0.0, 90.0, 180.0})
     if (std::abs(found - axis) <= kAxisReach) return std::fmod(axis, 180);

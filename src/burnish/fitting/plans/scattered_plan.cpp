@@ -33,7 +33,7 @@ constexpr int kMaxDisk = 256;   // nodes along a side
 // Nodes of a line p that is fine enough to tell the angles of a lattice apart, 1.4 degrees each, and the part of the
 // texels that it may take: what it takes from a small q it does not give back.
 constexpr int kFineP = 64;
-constexpr double kMostFineP = 0.25;
+constexpr double kMaxFineP = 0.25;
 
 // Factor sets, the fullest first: the others serve budgets that hold few texels.
 const std::array<std::string, 5> kFactorSets{"pqmr", "pqm", "pqr", "pq", "q"};
@@ -239,7 +239,7 @@ std::vector<ModelSpec> candidates(const SampleSource& source, std::size_t bytes,
   };
   for (const std::size_t size : source.isotropic ? kLineSizes : kDiskSizes) add(sets.front(), size);
   const std::size_t texels = bytes / texel_bytes(format, source.channels);
-  if (source.isotropic && kFineP <= kMostFineP * static_cast<double>(texels))
+  if (source.isotropic && kFineP <= kMaxFineP * static_cast<double>(texels))
     add(sets.front(), kLineSizes.back(), kFineP);
   if (specs.size() <= 1 || sets.size() < kFactorSets.size())
     for (const std::string& set : sets) add(set, kLineSizes.front());

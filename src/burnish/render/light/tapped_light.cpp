@@ -151,9 +151,9 @@ void sharpen(std::vector<LightTap>& taps, const std::vector<LobeCell>& cells) {
 
 TappedBrdf tap(const FactoredBrdf& brdf, int taps) {
   if (taps < 1 || taps > 256)
-    throw Error(fmt::format("image-based light: expected taps in [1, 256], found {}", taps));
+    throw Error(fmt::format("tapped light: expected taps in [1, 256], found {}", taps));
   if (brdf.channels() != 1 && brdf.channels() != 3)
-    throw Error(fmt::format("image-based light: expected 1 or 3 channels, found {}", brdf.channels()));
+    throw Error(fmt::format("tapped light: expected 1 or 3 channels, found {}", brdf.channels()));
   TappedBrdf result;
   for (const Lobe& lobe : brdf.lobes()) {
     auto [outside, inside] = parts_of(brdf, lobe);

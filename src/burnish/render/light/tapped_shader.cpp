@@ -138,7 +138,7 @@ TappedShader generate_shader(const TappedBrdf& brdf, const BlurredEnvironment& e
                              ShaderLanguage language, const std::string& name) {
   const Language& l = burnish::language(to_string(language));
   if (language != ShaderLanguage::glsl && language != ShaderLanguage::glsl_es)
-    throw Error(fmt::format("image-based light: expected glsl or glsl_es, found {}", l.name));
+    throw Error(fmt::format("tapped light: expected glsl or glsl_es, found {}", l.name));
   // the lobes' functions, their volumes behind the environment's levels
   const BlurOptions& blur = environment.options;
   const LayersBefore levels{fmt::format("burnish_{}_environment", name), 2 * blur.side, blur.side,

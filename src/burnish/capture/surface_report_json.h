@@ -1,0 +1,14 @@
+#pragma once
+
+// For the library and its programs: JSON before it is text.
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <burnish/capture/surface_fit.h>
+
+namespace burnish {
+
+/// What report_json writes.
+nlohmann::ordered_json json_of(const SurfaceReport& report);
+
+}  // namespace burnish
