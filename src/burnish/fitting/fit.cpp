@@ -15,6 +15,7 @@
 #include <burnish/fitting/numerics/node_numbers.h>
 #include <burnish/fitting/one_lobe/cross_validation.h>
 #include <burnish/fitting/one_lobe/log_error.h>
+#include <burnish/fitting/plans/between_incidences.h>
 #include <burnish/fitting/plans/budget_ladder.h>
 #include <burnish/fitting/plans/fetch_plan.h>
 #include <burnish/fitting/plans/fit_plan.h>
@@ -39,6 +40,8 @@ namespace {
 constexpr int kScatteredReweightings = 4;
 // Of samples that weigh differently, whose conjugate gradients take longer.
 constexpr double kBackscatterTolerance = 2e-4;
+constexpr double kExpectedWeight = 0.01;  // of a sample of between_incidences
+constexpr std::size_t kExpectedFolds = 5;
 // Steps that look at albedos, and their share in the loss.
 constexpr int kAlbedoSteps = 20, kLongAlbedoSteps = 6;
 constexpr double kAlbedoShare = 0.3;
@@ -203,7 +206,7 @@ class Fitter {
         spec.tables[t].smooth_share = trials.front().shares[t];
       if (source.distinct <= kManySamples) report.relative_cross_validated = std::expm1(trials.front().error);
     }
-    return finish_one(source, spec, options, std::move(report));
+    return finish_one(source, source, spec, options, std::move(report));
   }
 
   /// The lobe for scattered samples that predicts best within the budget.
@@ -222,7 +225,19 @@ class Fitter {
     options.format = plan.format;
     OneLobeReport report;
     if (plan.error && !options_.smooth) report.relative_cross_validated = std::expm1(*plan.error);
-    return finish_one(source, plan.spec, options, std::move(report));
+    const Samples expected = expected_of(source, plan.spec, options);
+    if (expected.size() == 0) return finish_one(source, source, plan.spec, options, std::move(report));
+    const SampleSource both = with_expected(source, expected, kExpectedWeight);
+    if (report.relative_cross_validated)  // of so little weight others count for nothing in it
+      report.relative_cross_validated = std::expm1(held_out_error(both, plan.spec, options, kExpectedFolds));
+    return finish_one(source, both, plan.spec, options, std::move(report));
+  }
+
+  /// What a first fit leads to expect between incidences; nothing of sources that do not backscatter.
+  Samples expected_of(const SampleSource& source, const ModelSpec& spec, HomomorphicOptions options) const {
+    if (options.backscatter <= 0 || !source.isotropic) return {};
+    options.progress = nullptr;
+    return between_incidences(source, fit_homomorphic(source, spec, options).brdf);
   }
 
   HomomorphicOptions log_linear_options(const LogLinear& how) const {
@@ -233,11 +248,12 @@ class Fitter {
     return options;
   }
 
-  FactoredBrdf finish_one(const SampleSource& source, const ModelSpec& spec,
+  /// Fits a lobe to `fitted`, which begins with the samples of `source`.
+  FactoredBrdf finish_one(const SampleSource& source, const SampleSource& fitted, const ModelSpec& spec,
                           const HomomorphicOptions& options, OneLobeReport report) {
-    HomomorphicFit result = fit_homomorphic(source, spec, options);
+    HomomorphicFit result = fit_homomorphic(fitted, spec, options);
     report.summary = result.summary;
-    report.samples = result.samples;
+    report.samples = result.samples - (fitted.count - source.count);
     report.smooth = options.smooth;
     report.floor = options.floor;
     report.reweightings = result.reweightings;
