@@ -156,6 +156,37 @@ TEST(CommandLine, WritesWhereItIsToldTo) {
   EXPECT_EQ(burnish(fmt::format("convert lambert '{0}/b.csv' -o '{0}/c.csv'", out)).status, 2);
 }
 
+TEST(CommandLine, SaysBeforeItsWorkThatItCannotWrite) {
+  const TemporaryFolder folder("not_writable");
+  const std::string out = folder.path.string();
+  write(folder.path / "file", "text");
+  // sources that are none: what is said first is of the output
+  for (const auto& [arguments, name] :
+       {std::pair{"fit none.exr -o", "x.exr"}, std::pair{"fit none.exr --method svd -o", "x.json"},
+        std::pair{"fit none.exr --to gltf -o", "x.json"}, std::pair{"fit-surface none -o", "x.burnish"},
+        std::pair{"fit-surface none -o x --picture", "x.png"}, std::pair{"book none -o", "x.burnish"},
+        std::pair{"measure none.exr -o", "x.csv"}, std::pair{"convert none.exr -o", "x.csv"},
+        std::pair{"eval none.exr none.csv -o", "x.csv"},
+        std::pair{"render --renderer cpu --material none.exr -o", "x.png"},
+        std::pair{"render --figure1 --truth none.exr -o", "x.png"}})
+    for (const char* below : {"none", "file"}) {
+      const std::string in = fmt::format("{}/{}", out, below);
+      const Outcome outcome = burnish(fmt::format("{} '{}/{}'", arguments, in, name));
+      EXPECT_EQ(outcome.status, 1) << arguments;
+      EXPECT_EQ(
+          outcome.output,
+          fmt::format("burnish: {}/{}: expected a path in a folder that is there, found no folder '{}'\n", in,
+                      name, in))
+          << arguments;
+    }
+  for (const char* arguments : {"export none.exr --to glsl", "compare none.exr none.exr"})
+    for (const char* below : {"file", "file/below"})
+      EXPECT_THAT(burnish(fmt::format("{} -o '{}/{}'", arguments, out, below)).output,
+                  HasSubstr(fmt::format("{0}/{1}: expected a folder, found '{0}/file'", out, below)))
+          << arguments;
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path), {}), 1);
+}
+
 TEST(CommandLine, PrintsJsonForPrograms) {
   const TemporaryFolder folder("json");
   const std::string out = folder.path.string();

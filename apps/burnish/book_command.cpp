@@ -44,6 +44,7 @@ void print_made(const BookArguments& arguments, const BookOfLibrary& made) {
 }
 
 void make(const BookArguments& arguments) {
+  check_writable(arguments.out);
   const ThreadLimit limit(arguments.threads);
   MaterialBook shared;
   if (!arguments.shared.empty()) shared = parse_book(read_file(arguments.shared));

@@ -106,6 +106,7 @@ void print_nodes(const Measurement& measurement, std::span<const ComparedFigures
 }
 
 void compare(const CompareArguments& arguments) {
+  if (!arguments.folder.empty()) check_folder(arguments.folder);
   const Source opened = arguments.reference.open();
   const Candidate reference(opened, !arguments.no_symmetrize);
   // lists: models refer to their candidates, these to their sources

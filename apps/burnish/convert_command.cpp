@@ -78,6 +78,7 @@ void add_convert_command(CLI::App& app) {
   verb->callback([arguments] {
     if (arguments->out.empty()) throw CLI::RequiredError("OUT or -o");
     std::string format = target_format(*arguments);
+    check_writable(arguments->out);
     const Source source = arguments->source.open();
     // slices of a model are asked for by name
     const bool is_model = std::holds_alternative<FactoredBrdf>(source.brdf);

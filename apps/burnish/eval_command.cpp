@@ -45,6 +45,7 @@ void add_eval_command(CLI::App& app) {
   verb->add_option("-o,--output,--out", arguments->out, "CSV file to write")->required();
   verb->add_flag("--json", arguments->json, "print how many values were written and known as JSON");
   verb->callback([arguments] {
+    check_writable(arguments->out);
     const Source source = arguments->source.open();
     const std::vector<DirectionPair> pairs = parse_directions(read_file(arguments->directions));
     const BrdfRef brdf = source.ref();

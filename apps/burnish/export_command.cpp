@@ -96,6 +96,7 @@ ExportedFiles exported_files(const ExportArguments& arguments) {
 }
 
 void run(const ExportArguments& arguments) {
+  check_folder(arguments.folder);
   const ExportedFiles exported = exported_files(arguments);
   write_files(arguments.folder, exported.files);
   if (arguments.json) {

@@ -238,6 +238,7 @@ void check_name_of_json(const FitCommand& arguments) {
 
 void fit_to_material(const FitCommand& arguments) {
   check_name_of_json(arguments);
+  if (!arguments.out.empty()) check_writable(arguments.out);
   const ThreadLimit limit(arguments.threads);
   const Source source = arguments.source.open();
   const MaterialFit fit =
@@ -264,6 +265,7 @@ void fit(const FitCommand& arguments) {
   }
   if (arguments.out.empty()) throw CLI::RequiredError("--output");
   if (!arguments.how.method.empty()) check_name_of_json(arguments);
+  check_writable(arguments.out);
   const auto start = std::chrono::steady_clock::now();
   const ThreadLimit limit(arguments.threads);
   const Source source = arguments.source.open();

@@ -64,6 +64,8 @@ void fit_surface(FitSurfaceArguments& arguments, FitCrew* crew) {
     help_fit_surface(Capture(arguments.capture, arguments.pictures), options);
     return;
   }
+  check_writable(arguments.out);
+  if (!arguments.picture.empty()) check_writable(arguments.picture);
   options.progress = progress_bars();
   options.checkpoint = arguments.out + ".part";
   if (!arguments.resume) std::filesystem::remove(options.checkpoint);

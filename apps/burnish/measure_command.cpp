@@ -71,6 +71,7 @@ void add_measure_command(CLI::App& app) {
     if (!arguments->surface.empty())
       return measure_surface(arguments->surface, arguments->out, arguments->json);
     if (arguments->source.spec.empty()) throw CLI::RequiredError("BRDF or --surface");
+    check_writable(arguments->out);
     const Source source = arguments->source.open();
     const Samples samples = [&] {
       try {

@@ -205,6 +205,7 @@ void render(const RenderArguments& arguments) {
   const auto [width, height] = picture_size(arguments.size);
   const bool automatic = arguments.exposure == "auto";
   const double given = automatic ? 1 : exposure_of(arguments.exposure);
+  check_writable(arguments.out);
   scene.parts = parts_of(arguments);
 
   // drawn finer, exposed, averaged

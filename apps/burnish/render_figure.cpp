@@ -77,6 +77,7 @@ void add_figure_arguments(CLI::App& verb, FigureArguments& arguments, bool& figu
 void draw_figure(const FigureArguments& arguments, const std::string& mesh, const std::string& out,
                  bool json) {
   if (out.empty()) throw CLI::RequiredError("--output");
+  check_writable(out);
   scene_of(mesh, 64);  // a name that is none is told before anything is fitted
   const Source truth = open_source(arguments.truth, {});
   const FactoredBrdf model = model_of(arguments, truth);

@@ -1,12 +1,15 @@
 #include "usage.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <burnish/math/closest_name.h>
 
@@ -76,6 +79,17 @@ CLI::Validator one_of(std::vector<std::string> names) {
                        suggestion(value, names));
   };
   return {check, std::move(description)};
+}
+
+void check_folder(const std::filesystem::path& folder) {
+  std::error_code none;
+  std::filesystem::path there = std::filesystem::absolute(folder, none);
+  while (!std::filesystem::exists(there, none) && there.has_relative_path()) there = there.parent_path();
+  if (!std::filesystem::is_directory(there, none))
+    throw Error::in_file(folder.string(), "a folder", fmt::format("'{}', which is none", there.string()));
+  if (::access(there.c_str(), W_OK | X_OK) != 0)
+    throw Error::in_file(folder.string(), "a folder that can be written",
+                         std::generic_category().message(errno));
 }
 
 std::optional<std::string> misspelling(const CLI::App& app, std::span<char* const> arguments) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -43,6 +44,9 @@ CLI::Validator above_zero();
 
 /// "; did you mean 'NAME'?" of the name that is closest to a misspelt word, or nothing.
 std::string suggestion(std::string_view word, const std::vector<std::string>& names);
+
+/// Before long work: throws Error where a folder can neither be written to nor made. Makes nothing.
+void check_folder(const std::filesystem::path& folder);
 
 /// What a command line's first unknown verb or option may have meant, "expected a verb, found 'ft'; did you mean
 /// 'fit'?"; nothing where all are known.

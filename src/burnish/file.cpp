@@ -1,3 +1,4 @@
+#include <cerrno>
 #include <fstream>
 #include <system_error>
 
@@ -30,14 +31,33 @@ FileBytes read_file(const fs::path& path, std::uint64_t limit) {
   return file;
 }
 
-void write_then_rename(const fs::path& given, std::string_view bytes) {
-  std::error_code ignored_state;
-  // A link's target is what is replaced; devices, pipes and folders are not.
-  const fs::path path =
-      fs::is_symlink(given, ignored_state) ? fs::weakly_canonical(given, ignored_state) : given;
-  const fs::file_status status = fs::status(path, ignored_state);
+namespace {
+
+// What is replaced, in a folder that takes files: a link's target; no devices, pipes and folders.
+fs::path replaced_file(const fs::path& given) {
+  std::error_code ignored;
+  const fs::path path = fs::is_symlink(given, ignored) ? fs::weakly_canonical(given, ignored) : given;
+  const fs::file_status status = fs::status(path, ignored);
   if (fs::exists(status) && !fs::is_regular_file(status))
     throw Error::in_file(given.string(), "a path to write a file to", "something else than a file");
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, ignored))
+    throw Error::in_file(given.string(), "a path in a folder that is there",
+                         fmt::format("no folder '{}'", folder.string()));
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    throw Error::in_file(given.string(), "a path in a folder that can be written",
+                         std::generic_category().message(errno));
+  return path;
+}
+
+}  // namespace
+
+void check_writable(const fs::path& path) {
+  replaced_file(path);
+}
+
+void write_then_rename(const fs::path& given, std::string_view bytes) {
+  const fs::path path = replaced_file(given);
   const fs::path temporary = path.string() + fmt::format(".{}.partial", ::getpid());
   {
     std::ofstream out(temporary, std::ios::binary);

@@ -23,6 +23,10 @@ struct FileBytes {
 /// larger.
 FileBytes read_file(const std::filesystem::path& path, std::uint64_t limit = std::uint64_t{4} << 30);
 
+/// Before long work: throws Error where write_then_rename would not write to `path`, whose folder there has to be.
+/// Touches nothing.
+void check_writable(const std::filesystem::path& path);
+
 /// Writes `bytes` under a temporary name and renames it to `path`, so that no failure leaves a partial file
 /// behind. Follows links. Throws Error if the folder cannot be written or the path is
 /// a folder, device or pipe.

@@ -57,8 +57,24 @@ TEST(File, RefusesToWriteOverAFolderOrIntoNone) {
   const TemporaryFolder folder("file");
   EXPECT_THAT(error_of([&] { write_then_rename(folder.path, "x"); }),
               HasSubstr("something else than a file"));
-  EXPECT_THAT(error_of([&] { write_then_rename(folder.path / "none/a", "x"); }), HasSubstr("a write error"));
+  EXPECT_THAT(error_of([&] { write_then_rename(folder.path / "none/a", "x"); }),
+              HasSubstr("expected a path in a folder that is there, found no folder"));
   EXPECT_EQ(entries_in(folder.path), 0u);
+}
+
+TEST(File, TellsBeforeItWritesWhetherItCan) {
+  const TemporaryFolder folder("file");
+  write(folder.path / "a", "old");
+  for (const char* refused : {"", "none/b", "a/b"}) {
+    const fs::path path = folder.path / refused;
+    const std::string said = error_of([&] { check_writable(path); });
+    EXPECT_THAT(said, HasSubstr(path.string())) << refused;
+    EXPECT_EQ(error_of([&] { write_then_rename(path, "x"); }), said) << refused;
+  }
+  EXPECT_NO_THROW(check_writable(folder.path / "a"));
+  EXPECT_NO_THROW(check_writable(folder.path / "b"));
+  EXPECT_EQ(read(folder.path / "a"), "old");
+  EXPECT_EQ(entries_in(folder.path), 1u);
 }
 
 }  // namespace
