@@ -81,6 +81,8 @@ TEST(CommandLine, SaysWhatAnOptionTakes) {
         std::pair{"fit lambert --fetches 0", "--fetches: expected a number from 1 to 256, found '0'"},
         std::pair{"fit lambert --to openpbr -o x.exr", "--output: expected a name such as paint.json"},
         std::pair{"fit lambert --seed a", "--seed: expected a number of at least 0, found 'a'"},
+        std::pair{"hw error --first 10 --last 5",
+                  "--last: expected an exponent of at least --first, 10, found 5"},
         std::pair{"fit lambert --floor 0", "--floor: expected a number above 0, found '0'"}}) {
     const Outcome outcome = burnish(arguments);
     EXPECT_EQ(outcome.status, 2) << arguments;

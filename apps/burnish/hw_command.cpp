@@ -194,6 +194,9 @@ void add_error(CLI::App& verb) {
                    unit.config().output_bits, arguments->last);
       return;
     }
+    if (arguments->last < arguments->first)
+      throw CLI::ValidationError(fmt::format("--last: expected an exponent of at least --first, {}, found {}",
+                                             arguments->first, arguments->last));
     const UnitError e = measure_unit_error(unit, arguments->first, arguments->last, arguments->input_step,
                                            arguments->exponent_step);
     if (arguments->json) {
