@@ -50,9 +50,13 @@ TEST(CommandLine, SaysWhatAMisspeltWordMayHaveMeant) {
   for (const auto& [arguments, meant] :
        {std::pair{"specular code --method cubik2", "'cubic2'"},
         std::pair{"specular code --to rustt", "'rust'"}, std::pair{"hw model --method exac", "'exact'"},
-        std::pair{"hw generate -o x --unit exact_9", "'exact_8'"}, std::pair{"help modles", "'models'"}})
-    EXPECT_THAT(first_line(burnish(arguments)), HasSubstr(fmt::format("; did you mean {}?", meant)))
-        << arguments;
+        std::pair{"hw generate -o x --method exct", "'exact'"},
+        std::pair{"hw generate -o x --unit exact_9", "'exact_8'"}, std::pair{"help modles", "'models'"}}) {
+    const Outcome outcome = burnish(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments;
+    EXPECT_THAT(first_line(outcome), HasSubstr(fmt::format("; did you mean {}?", meant))) << arguments;
+  }
+  EXPECT_EQ(burnish("hw error --depth 99").status, 2);
   // whatever the case; topics of help
   EXPECT_THAT(first_line(burnish("info GGX:alpha_x=0.1")), HasSubstr("; did you mean 'ggx'?"));
   EXPECT_THAT(first_line(burnish("info lambert --illuminant d65")), HasSubstr("; did you mean 'D65'?"));

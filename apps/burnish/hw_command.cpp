@@ -46,11 +46,13 @@ std::shared_ptr<UnitArguments> add_unit_options(CLI::App& sub) {
 }
 
 SpecularUnit make_unit(const UnitArguments& arguments) {
-  if (!arguments.shipped.empty()) return SpecularUnit(shipped_unit(arguments.shipped).config);
-  UnitConfig config = arguments.config;
-  config.method = unit_method(arguments.method);
-  config.input = arguments.input == "versine" ? UnitInput::versine : UnitInput::cosine;
-  return SpecularUnit(config);
+  return usage([&] {
+    if (!arguments.shipped.empty()) return SpecularUnit(shipped_unit(arguments.shipped).config);
+    UnitConfig config = arguments.config;
+    config.method = unit_method(arguments.method);
+    config.input = arguments.input == "versine" ? UnitInput::versine : UnitInput::cosine;
+    return SpecularUnit(config);
+  });
 }
 
 /// Writes the files and appends their names.
