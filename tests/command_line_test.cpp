@@ -193,6 +193,16 @@ TEST(CommandLine, SaysBeforeItsWorkThatItCannotWrite) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path), {}), 1);
 }
 
+TEST(CommandLine, MakesNoFolderForWhatItRefuses) {
+  const TemporaryFolder folder("refused");
+  for (const char* arguments :
+       {"hw generate --name 1a", "hw generate --blinn", "hw generate --method exct"}) {
+    const Outcome outcome = burnish(fmt::format("{} -o '{}/out'", arguments, folder.path.string()));
+    EXPECT_EQ(outcome.status, 2) << arguments;
+    EXPECT_FALSE(std::filesystem::exists(folder.path / "out")) << arguments;
+  }
+}
+
 TEST(CommandLine, PrintsJsonForPrograms) {
   const TemporaryFolder folder("json");
   const std::string out = folder.path.string();

@@ -9,6 +9,7 @@
 #include <burnish/error.h>
 #include <burnish/file.h>
 #include <burnish/hardware/generate.h>
+#include <burnish/library/folder_file.h>
 
 #include "commands.h"
 #include "json_output.h"
@@ -55,13 +56,14 @@ SpecularUnit make_unit(const UnitArguments& arguments) {
   });
 }
 
-/// Writes the files and appends their names.
-void write_files(const std::string& folder, const std::vector<GeneratedFile>& files,
-                 std::vector<std::string>& names) {
-  for (const GeneratedFile& file : files) {
-    write_then_rename(std::filesystem::path(folder) / file.name, file.text);
-    names.push_back(file.name);
-  }
+std::vector<GeneratedFile> generate(const std::vector<SpecularUnit>& units,
+                                    const std::vector<std::string>& names, int vectors, bool blinn) {
+  if (blinn) return generate_blinn(units[0], names[0], vectors);
+  std::vector<GeneratedFile> files;
+  for (std::size_t i = 0; i < units.size(); ++i)
+    for (GeneratedFile& file : generate_unit(units[i], names[i], vectors)) files.push_back(std::move(file));
+  files.push_back(generate_bench(names, units));
+  return files;
 }
 
 void add_generate(CLI::App& verb) {
@@ -100,15 +102,11 @@ void add_generate(CLI::App& verb) {
       names.push_back(arguments->name.empty() ? kind : arguments->name);
       units.push_back(make_unit(*unit_arguments));
     }
-    std::error_code failed;
-    std::filesystem::create_directories(arguments->out, failed);
-    if (failed) throw Error::in_file(arguments->out, "a folder", failed.message());
-    if (arguments->blinn) {
-      write_files(arguments->out, generate_blinn(units[0], names[0], arguments->vectors), written);
-    } else {
-      for (std::size_t i = 0; i < units.size(); ++i)
-        write_files(arguments->out, generate_unit(units[i], names[i], arguments->vectors), written);
-      write_files(arguments->out, {generate_bench(names, units)}, written);
+    const auto files = usage([&] { return generate(units, names, arguments->vectors, arguments->blinn); });
+    make_folder(arguments->out);
+    for (const GeneratedFile& file : files) {
+      write_then_rename(std::filesystem::path(arguments->out) / file.name, file.text);
+      written.push_back(file.name);
     }
     if (arguments->json) print_as_json({{"output", arguments->out}, {"modules", names}, {"files", written}});
   });
