@@ -190,6 +190,14 @@ TEST(CommandLine, SaysBeforeItsWorkThatItCannotWrite) {
       EXPECT_THAT(burnish(fmt::format("{} -o '{}/{}'", arguments, out, below)).output,
                   HasSubstr(fmt::format("{0}/{1}: expected a folder, found '{0}/file'", out, below)))
           << arguments;
+  for (const char* arguments : {"specular report", "describe", "hw generate"}) {
+    const Outcome outcome = burnish(fmt::format("{} -o '{}/file'", arguments, out));
+    EXPECT_EQ(outcome.status, 1) << arguments;
+    EXPECT_EQ(
+        outcome.output,
+        fmt::format("burnish: {}/file: expected a folder that can be made, found Not a directory\n", out))
+        << arguments;
+  }
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path), {}), 1);
 }
 

@@ -12,6 +12,7 @@
 #include <burnish/library/batch.h>
 #include <burnish/library/catalogue.h>
 #include <burnish/library/figures_table.h>
+#include <burnish/library/folder_file.h>
 
 #include "commands.h"
 #include "fit_arguments.h"
@@ -114,7 +115,7 @@ void write_script(const BatchArguments& arguments, const CLI::App& verb) {
   std::vector<std::string> words = command_words(verb);
   if (!arguments.batch.resume) words.insert(words.begin() + 2, "--resume");
   const std::filesystem::path folder(arguments.out);
-  std::filesystem::create_directories(folder);
+  make_folder(folder);
   const std::string path = (folder / "batch.slurm").string();
   write_then_rename(
       path, slurm_script(arguments.slurm, folder, words, arguments.batch.threads, arguments.batch.memory));

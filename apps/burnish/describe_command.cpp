@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include <burnish/file.h>
+#include <burnish/library/folder_file.h>
 
 #include "command_description.h"
 #include "commands.h"
@@ -36,7 +37,7 @@ void add_describe_command(CLI::App& app) {
     if (options->zsh) fmt::print("{}", zsh_completion(app));
     if (options->json) print_as_json(description_json(app));
     if (options->man.empty()) return;
-    std::filesystem::create_directories(options->man);
+    make_folder(options->man);
     for (const ManualPage& page : manual_pages(app, BURNISH_VERSION))
       write_then_rename(std::filesystem::path(options->man) / page.name, page.text);
   });

@@ -6,6 +6,7 @@
 
 #include <burnish/file.h>
 #include <burnish/image/png.h>
+#include <burnish/library/folder_file.h>
 #include <burnish/power/bounds.h>
 #include <burnish/report/specular_figures.h>
 
@@ -168,10 +169,10 @@ void add_specular_report(CLI::App& verb) {
   sub->add_option("-o,--output,--out", arguments->out,
                   "folder for the figures as SVG and PNG; none without it");
   sub->callback([arguments] {
+    if (!arguments->out.empty()) make_folder(arguments->out);
     print_report(arguments->exponent, arguments->json);
     if (arguments->out.empty()) return;
     const fs::path folder = arguments->out;
-    fs::create_directories(folder);
     using M = PowerMethod;
     const std::vector<M> paper{M::quadratic}, good{M::quadratic, M::two_piece, M::w8, M::cubic2};
     const std::vector<double> ten{10}, asked{arguments->exponent};
