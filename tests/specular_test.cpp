@@ -52,6 +52,7 @@ TEST(SpecularVerb, ExitsWithOneForBadInputAndTwoForMisuse) {
         "table --count 0", "plot --figure 9 -o a.svg", "plot --figure 2a -o a.txt",
         "plot --method nothing -o a.svg", "plot --figure sphere --exponent 0.5 -o a.png"})
     EXPECT_EQ(run_specular(misuse).status, 2) << misuse;
+  EXPECT_EQ(run_specular("choose --lang cobol").output.find("// exponents"), std::string::npos);
   EXPECT_EQ(run_specular("choose --help").status, 0);
 }
 

@@ -97,7 +97,10 @@ void add_specular_choose(CLI::App& verb) {
   sub->add_option("--max-error", arguments->max_error, "largest absolute error, a number or a fraction")
       ->capture_default_str();
   sub->add_option("--exponents", arguments->exponents, "FIRST:LAST, or one exponent")->capture_default_str();
-  sub->add_option("--to,--lang", arguments->language, "language of the code")->capture_default_str();
+  const auto languages = code_languages();
+  sub->add_option("--to,--lang", arguments->language, "language of the code")
+      ->check(one_of({languages.begin(), languages.end()}))
+      ->capture_default_str();
   sub->add_flag("--json", arguments->json, "for programs");
   sub->callback([arguments] {
     // FIRST:LAST, or one exponent, for which the code has constants
