@@ -68,6 +68,14 @@ TEST(CommandLine, SaysWhatAMisspeltWordMayHaveMeant) {
   EXPECT_THAT(first_line(burnish("")), HasSubstr("expected a verb (info, fit, "));
   EXPECT_THAT(first_line(burnish("hw")),
               HasSubstr("hw: expected a verb (generate, model, error), found none"));
+  for (const char* arguments : {"info -o x lambert", "info lambert -ox"})
+    EXPECT_EQ(first_line(burnish(arguments)), "burnish: info: expected an option, found '-o'");
+  EXPECT_THAT(first_line(burnish("measure lambert --noise -1 -o x")),
+              HasSubstr("--noise: expected a number"));
+  EXPECT_THAT(first_line(burnish("help fit fit")),
+              HasSubstr("help: expected nothing after fit, which has no verbs below it, found 'fit'"));
+  EXPECT_THAT(first_line(burnish("help hw fit")),
+              HasSubstr("help: expected one of generate, model, error, found 'fit'"));
   // options of a group are known
   EXPECT_THAT(first_line(burnish("describe --bash --zsh")), testing::Not(HasSubstr("expected an option")));
   EXPECT_THAT(first_line(burnish("describe nothing")), testing::Not(HasSubstr("expected a verb")));

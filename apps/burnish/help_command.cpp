@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <memory>
 
@@ -106,15 +107,24 @@ const CLI::App& verb_of_names(const CLI::App& app, const std::vector<std::string
     throw CLI::ValidationError("help",
                                fmt::format("expected nothing after {}, found '{}'", names.front(), names[1]));
   for (const std::string& name : names) {
-    const auto found = verb->get_subcommands([&](const CLI::App* each) { return each->get_name() == name; });
-    if (found.empty()) {
-      std::vector<std::string> known{"formats", "models"};
-      for (const CLI::App* each : verb->get_subcommands([](const CLI::App*) { return true; }))
-        known.push_back(each->get_name());
-      throw CLI::ValidationError("help", fmt::format("expected formats, models or a verb, found '{}'{}", name,
-                                                     suggestion(name, known)));
+    std::vector<std::string> known;
+    for (const CLI::App* each : verb->get_subcommands([](const CLI::App*) { return true; }))
+      if (!each->get_name().empty()) known.push_back(each->get_name());  // the others are groups of options
+    if (known.empty())
+      throw CLI::ValidationError("help",
+                                 fmt::format("expected nothing after {}, which has no verbs below it, "
+                                             "found '{}'",
+                                             verb->get_name(), name));
+    if (std::ranges::find(known, name) == known.end()) {
+      std::string expected = fmt::format("one of {}", fmt::join(known, ", "));
+      if (verb == &app) {
+        expected = "formats, models or a verb";
+        known.insert(known.end(), {"formats", "models"});
+      }
+      throw CLI::ValidationError(
+          "help", fmt::format("expected {}, found '{}'{}", expected, name, suggestion(name, known)));
     }
-    verb = found.front();
+    verb = verb->get_subcommand(name);
   }
   return *verb;
 }

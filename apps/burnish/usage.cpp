@@ -1,6 +1,7 @@
 #include "usage.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <system_error>
@@ -27,11 +28,21 @@ std::vector<std::string> verbs_of(const CLI::App& app, bool hidden_too) {
 
 std::vector<std::string> options_of(const CLI::App& app) {
   std::vector<std::string> names;
-  for (const CLI::Option* option : app.get_options())
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_snames()) names.push_back("-" + name);
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
   for (const CLI::App* group : app.get_subcommands([](const CLI::App* a) { return a->get_name().empty(); }))
     for (std::string& name : options_of(*group)) names.push_back(std::move(name));
   return names;
+}
+
+// The option that a word is of, --name=value or -nvalue; numbers are none.
+std::string option_of(std::string_view word) {
+  if (word.starts_with("--")) return std::string(word.substr(0, word.find('=')));
+  const bool is_short =
+      word.size() > 1 && word[0] == '-' && std::isalpha(static_cast<unsigned char>(word[1])) != 0;
+  return std::string(is_short ? word.substr(0, 2) : "");
 }
 
 // What is said of a word that is no verb: which it may have meant, or which there are.
@@ -98,11 +109,11 @@ std::optional<std::string> misspelling(const CLI::App& app, std::span<char* cons
   bool within = false;  // past the last verb
   for (const std::string_view word : arguments) {
     if (word == "--") return std::nullopt;
-    if (word.starts_with("--")) {
-      const std::string name(word.substr(0, word.find('=')));
+    if (const std::string name = option_of(word); !name.empty()) {
       const std::vector<std::string> names = options_of(*verb);
       if (std::find(names.begin(), names.end(), name) == names.end())
-        return fmt::format("{}expected an option, found '{}'{}", path, name, suggestion(name, names));
+        return fmt::format("{}expected an option, found '{}'{}", path, name,
+                           name.starts_with("--") ? suggestion(name, names) : "");  // letters are all near
     } else if (!within && !word.starts_with('-')) {
       const std::vector<std::string> verbs = verbs_of(*verb, true);
       if (verbs.empty()) {
