@@ -102,6 +102,18 @@ TEST(CommandLine, SaysWhatAnOptionTakes) {
   }
 }
 
+TEST(CommandLine, RefusesEmptyNames) {
+  for (const auto& [arguments, before] :
+       {std::pair{"info ''", "info"}, std::pair{"export lambert -o '' --to glsl", "-o"},
+        std::pair{"fit lambert -o x.exr --method ''", "--method"}, std::pair{"compare ggx '' -o x", "ggx"},
+        std::pair{"export phong --to glsl -o x --name ''", "--name"}}) {
+    const Outcome outcome = burnish(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments;
+    EXPECT_EQ(first_line(outcome),
+              fmt::format("burnish: expected a name or a value after '{}', found an empty one", before));
+  }
+}
+
 TEST(CommandLine, TakesSpecsThatAreLongerThanAFilesNameMayBe) {
   std::string spec = "openpbr:";
   for (const char* name : {"base_weight", "base_metalness", "base_diffuse_roughness", "specular_weight",

@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
   burnish::cli::add_describe_command(app);
   burnish::cli::add_help_command(app);
   try {
+    burnish::cli::check_no_empty_word(std::span(argv, static_cast<std::size_t>(argc)));
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     // CLI11 returns its own codes; ours is 2 for every misuse, 0 for --help.

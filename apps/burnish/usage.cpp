@@ -103,6 +103,13 @@ void check_folder(const std::filesystem::path& folder) {
                          std::generic_category().message(errno));
 }
 
+void check_no_empty_word(std::span<char* const> arguments) {
+  for (std::size_t i = 1; i < arguments.size(); ++i)
+    if (*arguments[i] == '\0')
+      throw CLI::ValidationError(
+          fmt::format("expected a name or a value after '{}', found an empty one", arguments[i - 1]));
+}
+
 std::optional<std::string> misspelling(const CLI::App& app, std::span<char* const> arguments) {
   const CLI::App* verb = &app;
   std::string path;

@@ -48,6 +48,9 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& na
 /// Before long work: throws Error where a folder can neither be written to nor made. Makes nothing.
 void check_folder(const std::filesystem::path& folder);
 
+/// Refuses a command line with an empty word, which no option takes and no file has for its name.
+void check_no_empty_word(std::span<char* const> arguments);
+
 /// What a command line's first unknown verb or option may have meant, "expected a verb, found 'ft'; did you mean
 /// 'fit'?"; nothing where all are known.
 std::optional<std::string> misspelling(const CLI::App& app, std::span<char* const> arguments);
