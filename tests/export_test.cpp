@@ -91,6 +91,7 @@ TEST_F(Export, MultipliesInHalfPrecisionWhereAsked) {
 
 TEST_F(Export, RefusesWhatIsNoModelAndNoTargetAndLeavesNothing) {
   EXPECT_EQ(exports("--to jpeg"), 2);
+  EXPECT_EQ(exports("--to usda --cells 20"), 2);
   EXPECT_EQ(exports("--to glsl --name a__b"), 1);
   write(folder_ / "two lobes.exr", "v/1\x01 no model");
   EXPECT_EQ(exports("--to glsl"), 1);

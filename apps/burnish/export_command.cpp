@@ -150,9 +150,10 @@ void add_export_command(CLI::App& app) {
       "of phong and blinn_phong: how the power is computed, see `burnish specular list`; by default the "
       "cheapest that is never one of 255 levels off");
   add_environment_argument(*verb, arguments->environment);
-  verb->add_option("--cells", arguments->cells, "of mdl: cells along each polar angle of the measurement")
-      ->check(in_range(2, 1000))
-      ->capture_default_str();
+  CLI::Option* const cells =
+      verb->add_option("--cells", arguments->cells, "of mdl: cells along each polar angle of the measurement")
+          ->check(in_range(2, 1000))
+          ->capture_default_str();
   CLI::Option* const exact =
       verb->add_flag("--exact", arguments->exact, "shaders that weigh texels themselves, in floats");
   verb->add_flag(
@@ -163,7 +164,11 @@ void add_export_command(CLI::App& app) {
   verb->add_flag("--mips", arguments->mips, "KTX2 with levels: averages over the directions of a texel");
   verb->add_flag("--plain", arguments->plain, "textures that are not compressed");
   verb->add_flag("--json", arguments->json, "print the files and what shaders cost as JSON");
-  verb->callback([arguments] { run(*arguments); });
+  verb->callback([arguments, cells] {
+    if (cells->count() > 0 && std::ranges::find(arguments->to, "mdl") == arguments->to.end())
+      throw CLI::ValidationError("--cells: expected --to mdl with it, found others");
+    run(*arguments);
+  });
 }
 
 }  // namespace burnish::cli
