@@ -228,12 +228,14 @@ void print(const Unexplained& beyond) {
                grain);
 }
 
-// That what is written as JSON is not named as a model's file.
+// That what is written as JSON is not named as another file.
 void check_name_of_json(const FitCommand& arguments) {
   const std::string ending = std::filesystem::path(arguments.out).extension().string();
-  if (ending == ".exr" || ending == ".burnish")
-    throw CLI::ValidationError(fmt::format(
-        "--output: expected a name such as paint.json, for JSON is written, found '{}'", arguments.out));
+  if (ending.empty() || ending == ".json") return;
+  const bool gltf = ending == ".glb" || ending == ".gltf";
+  throw CLI::ValidationError(
+      fmt::format("--output: expected a name such as paint.json, for JSON is written{}, found '{}'",
+                  gltf ? " (`burnish export --to gltf` writes a GLB)" : "", arguments.out));
 }
 
 void fit_to_material(const FitCommand& arguments) {
