@@ -68,6 +68,12 @@ TEST_F(FitCommand, ToAMaterialIsTheLibrarysFit) {
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   const MaterialFit made = fit_material(open_source(kPaint, {}), "gltf", {.beside = false});
   EXPECT_EQ(read(out()), format_material(made));
+  const Outcome taken = run(fmt::format("{} info {} 2>&1", BURNISH_CLI, out()));
+  EXPECT_EQ(taken.status, 1);
+  EXPECT_EQ(taken.output,
+            fmt::format("burnish: {}: expected a measurement, baseline or model, found a material "
+                        "of glTF, which only programs that read glTF take\n",
+                        out()));
   auto expected = nlohmann::json::parse(summary_json(made, out())),
        found = nlohmann::json::parse(outcome.output);
   expected.erase("seconds");

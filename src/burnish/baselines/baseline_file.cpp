@@ -180,6 +180,11 @@ Baseline parse_baseline(const FileBytes& file) {
   // whatever goes wrong inside, the message names the file
   try {
     const Json json = Json::parse(file.text());
+    if (json.contains("asset") && json.contains("materials"))
+      throw Error(
+          "expected a measurement, baseline or model, found a material of glTF, which only programs that "
+          "read "
+          "glTF take");
     if (!json.contains("kind"))
       throw Error("expected the JSON of a baseline, with its 'kind', found another one");
     Baseline baseline{
