@@ -111,6 +111,10 @@ TEST_F(SurfaceCommand, SaysWhatIsWrongInOneLine) {
   }
   EXPECT_FALSE(fs::exists(file("wall.burnish")));
   EXPECT_FALSE(fs::exists(file("other")));
+  const Outcome other = burnish("fit-surface '{0}/scene.json' -o '{0}/w.burnish'");
+  EXPECT_EQ(other.status, 1);
+  EXPECT_THAT(other.output,
+              HasSubstr("scene.json: expected a folder with capture.json, a BTF of UBO2014, or a CSV"));
   EXPECT_EQ(burnish("measure -o '{0}/x.csv'").status, 2);
   EXPECT_EQ(burnish("fit-surface '{0}/capture' -o '{0}/w.burnish' --lobes 99").status, 2);
 }

@@ -134,6 +134,11 @@ Capture::Capture(std::filesystem::path path, std::size_t btf_pictures) : path_(s
     open_btf(btf_pictures);
   else if (TexelTable::recognizes(path_))
     open_samples();
+  else if (std::error_code none; std::filesystem::is_regular_file(path_, none))
+    throw Error::in_file(
+        path_.string(),
+        "a folder with capture.json, a BTF of UBO2014, or a CSV of samples with columns texel_x and texel_y",
+        "another file");
   else
     open_folder();
 }
