@@ -278,10 +278,36 @@ std::vector<Search::Start> search_layers(Search& search, Search& sift, const Pic
   return best;
 }
 
+/// A base under a coat and nothing else: colours of both and darkening say the same of the base's colour, each a little
+/// otherwise, so that none of them alone goes back to its default once another has what is its.
+Trial plainly_coated(Search& search, Search& sift, const PicturePairs& pairs,
+                     const OpenPbrFitOptions& options) {
+  Inputs varied;
+  for (const std::string_view name :
+       {"base_color", "specular_roughness", "specular_ior", "coat_weight", "coat_roughness", "coat_ior"})
+    varied |= inputs_named(name);
+  const Inputs held = ~varied | always_held(options);
+  std::vector<Search::Start> starts;
+  for (const double metalness : {0.0, 1.0})
+    for (const double roughness : {0.2, 0.5})
+      for (const double coat : {0.0, 0.03, 0.2})  // a mirror that no light is seen in stays one
+        starts.push_back({{.base_color = mean_color(pairs),
+                           .base_metalness = metalness,
+                           .specular_roughness = roughness,
+                           .coat_weight = 0.8,
+                           .coat_roughness = coat,
+                           .geometry_tangent = options.tangent},
+                          coat > 0 ? held : held | inputs_named("coat_roughness")});
+  return search.run(best_of(sift.run(starts, kFirst), kKept), kEnd).front();
+}
+
 /// The same with what shows too little at its default: layers first, then what others say as well.
-Trial simplified(Search& search, Trial best) {
+Trial simplified(Search& search, Search& sift, const PicturePairs& pairs, const OpenPbrFitOptions& options,
+                 Trial best) {
   constexpr double kAsGood = 1.01, kExact = 2e-11;
   const double most = kAsGood * best.cost + kExact;
+  if ((best.held & kCoat) != kCoat)
+    if (const Trial plain = plainly_coated(search, sift, pairs, options); plain.cost <= most) best = plain;
   const OpenPbrParameters defaults;
   for (const std::string_view name :
        {"thin_film", "fuzz", "coat", "specular_color", "coat_color", "coat_darkening", "specular_weight",
@@ -348,7 +374,8 @@ OpenPbrFit fit_openpbr(const PicturePairs& pairs, const OpenPbrFitOptions& optio
   // end
   const std::vector<Trial> ends = search.run(best_of(kept, kEnds), kEnd);
   const auto difference = [&](const Trial& trial) { return to_fit(pairs, trial, 0).summary.error_after; };
-  const Trial simple = simplified(search, *std::ranges::min_element(ends, {}, difference));
+  const Trial simple =
+      simplified(search, sift, pairs, options, *std::ranges::min_element(ends, {}, difference));
   progress(0.9);
   const Trial best = search.run({{simple.material, simple.held}}, kLast).front();
   progress(1);

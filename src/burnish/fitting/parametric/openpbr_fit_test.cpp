@@ -51,6 +51,21 @@ TEST(OpenPbrFit, RecoversACoatedPlastic) {
   expect_close(recovered(plastic).parameters, plastic);
 }
 
+// Colours of base and coat, darkening and a film could say nearly the same of these together.
+TEST(OpenPbrFit, RecoversWhatIsPlainlyCoated) {
+  BURNISH_SKIP_WHERE_SANITIZED();
+  for (const OpenPbrParameters& coated :
+       {OpenPbrParameters{.base_color = {0.8, 0.1, 0.1}, .coat_weight = 1},  // the coat is a mirror
+        OpenPbrParameters{.base_color = {0.2, 0.2, 0.2},
+        .specular_roughness = 0.4,
+        .coat_weight = 1,
+        .coat_roughness = 0.1},
+        OpenPbrParameters{.base_color = {0.3, 0.5, 0.1}, .coat_weight = 0.7, .coat_roughness = 0.2},
+        OpenPbrParameters{
+            .base_color = {0.9, 0.6, 0.3}, .base_metalness = 1, .coat_weight = 1, .coat_roughness = 0.1}})
+    expect_close(recovered(coated).parameters, coated);
+}
+
 TEST(OpenPbrFit, RecoversASatin) {
   BURNISH_SKIP_WHERE_SANITIZED();
   const OpenPbrParameters satin{.base_color = {0.3, 0.05, 0.4},
