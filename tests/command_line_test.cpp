@@ -386,6 +386,14 @@ TEST(CommandLine, TakesTheLightOfSpectraFromAName) {
               0);
     return read(folder.path / "c.csv");
   };
+  const auto drawn = [&](const std::string& light) {
+    const std::string material =
+        fmt::format("--mesh sphere --material '{}/c.brdf' --illuminant {}", out, light);
+    EXPECT_EQ(burnish(fmt::format("render --renderer cpu --size 8 {} -o '{}/c.exr'", material, out)).status,
+              0);
+    return read(folder.path / "c.exr");
+  };
+  EXPECT_NE(drawn("A"), drawn("D65"));
   EXPECT_NE(converted("D50"), converted("D65"));
   EXPECT_NE(converted("A"), converted("E"));
   // equal energy from a file; its rows are other breaks of the same sum

@@ -40,6 +40,7 @@ struct RenderArguments {
   std::string mesh = "sphere", out, renderer = "auto", tone = "srgb", size = "512", exposure = "auto",
               background = "0,0,0";
   std::vector<std::string> materials, lights;
+  OpenOptions open;
   std::vector<double> view{0, 0};
   std::string environment;
   int vertices = 40000, samples = 2, draws = 64;
@@ -171,7 +172,7 @@ Image render_by_cpu(const Scene& scene, const std::optional<Environment>& enviro
       materials.emplace_back(&surfaces.emplace_back(std::move(*surface)));
       continue;
     }
-    const Source& source = sources.emplace_back(open_source(spec, {}));
+    const Source& source = sources.emplace_back(open_source(spec, arguments.open));
     const auto* const model = std::get_if<FactoredBrdf>(&source.brdf);
     materials.emplace_back(model ? BrdfRef(evaluators.emplace_back(*model)) : source.ref());
   }
@@ -287,6 +288,7 @@ void add_render_command(CLI::App& app) {
   verb->add_option("--exposure", arguments->exposure,
                    "of a PNG: a factor, or auto: 3 % of the object are white")
       ->capture_default_str();
+  add_illuminant(*verb, arguments->open);
   verb->add_option("--background", arguments->background, "grey or r,g,b, linear")->capture_default_str();
   verb->add_flag("--exact", arguments->exact, "weigh texels in the shader, not by the texture unit");
   verb->add_flag("--shadows", arguments->shadows, "of --renderer cpu: lights are blocked by triangles");

@@ -27,14 +27,17 @@ void add_source_arguments(CLI::App& verb, SourceArguments& arguments) {
   add_open_options(verb, arguments.options);
 }
 
-void add_open_options(CLI::App& verb, OpenOptions& options) {
-  verb.add_flag("--spectral", options.keep_spectral, "keep one channel a wavelength");
+void add_illuminant(CLI::App& verb, OpenOptions& options) {
   verb.add_option("--illuminant", options.illuminant,
                   "light under which spectra become RGB: E (equal energy), D50, D65, A, or a file of "
-                  "wavelengths in nm "
-                  "and powers")
+                  "wavelengths in nm and powers")
       ->each(check_illuminant)
       ->capture_default_str();
+}
+
+void add_open_options(CLI::App& verb, OpenOptions& options) {
+  verb.add_flag("--spectral", options.keep_spectral, "keep one channel a wavelength");
+  add_illuminant(verb, options);
   verb.add_flag("--has-cosine", options.has_cosine, "CSV values are f_r cos(theta_i)");
   verb.add_flag("!--keep-negatives", options.clamp_negatives, "leave values below zero as they are");
   verb.add_flag("--back", options.back_side, "Klems and tensor trees: the back side's reflection");

@@ -22,4 +22,7 @@ void add_source_arguments(CLI::App& verb, SourceArguments& arguments);
 /// The same without the positional argument.
 void add_open_options(CLI::App& verb, OpenOptions& options);
 
+/// Of these the light of spectra alone.
+void add_illuminant(CLI::App& verb, OpenOptions& options);
+
 }  // namespace burnish::cli

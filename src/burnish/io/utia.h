@@ -22,11 +22,13 @@ AngleTable utia_layout();
 
 /// A UTIA `.bin` file: 3 planes of red, green and blue, each f64 [theta_i][phi_i][theta_o][phi_o], 6 x 48 x 6 x 48. A
 /// stored value v is f_r = 100 g(v / 140), g the transfer function of sRGB: the scale of dj_brdf, which has it of the
-/// database's author; ALTA and UTIA-brdf take v as it is. Negatives are counted and kept. Interpolated linearly in the
-/// four angles, the azimuth of wo relative to that of wi, and constant from 75 degrees to the horizon, where nothing
-/// was measured: dj_brdf, ALTA and UTIA-brdf continue the last step's slope there, which leads below zero. Throws Error
-/// on another length or a value that is no float. Checked against the indices of dj_brdf.h, ALTA's data_utia and
-/// UTIA-brdf; no file of the database. Source: [Filip 2014].
+/// database's author; ALTA and UTIA-brdf take v as it is. Negatives are counted and kept. f_r is interpolated linearly
+/// in the four angles, the azimuth of wo relative to that of wi, so that a highlight turns with the light; dj_brdf
+/// interpolates v, and in the azimuth of wo itself: between nodes of a GGX of alpha 0.3 the two differ by .3 % on
+/// average and by 13 % at most. Constant from 75 degrees to the horizon, where nothing was measured: dj_brdf, ALTA and
+/// UTIA-brdf continue the last step's slope there, which leads below zero. Throws Error on another length or a value
+/// that is no float. Checked against the indices of dj_brdf.h, ALTA's data_utia and UTIA-brdf; no file of the database.
+/// Source: [Filip 2014].
 UtiaFile parse_utia(const FileBytes& file);
 
 /// True if a UTIA file can hold the table as it is: RGB and the nodes of utia_layout.
