@@ -91,7 +91,8 @@ void add_convert_command(CLI::App& app) {
                      {"bytes", converted.bytes.size()},
                      {"lost", converted.losses}});
     else if (!converted.losses.empty())
-      fmt::print(stderr, "burnish: {}: lost: {}\n", arguments->out, fmt::join(converted.losses, "; "));
+      fmt::print(stderr, "burnish: {}: lost: {}\n", std::filesystem::path(arguments->out).filename().string(),
+                 fmt::join(converted.losses, "; "));
   });
 }
 

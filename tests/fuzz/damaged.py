@@ -125,7 +125,7 @@ def command_for(kind, path, out, rng):
         return ["convert", path, out, "--to", to] + (["--count", "20"] if to in ("csv", "astm") else ["--cells", "4"] if to == "mbsdf" else []), out
     if verb < 95:
         return ["measure", path, "-o", out, "--count", "20"], out
-    return ["fit", path, "-o", out + ".exr", "--method", rng.choice(("analytic:ggx", "nmf", "svd"))], out + ".exr"
+    return ["fit", path, "-o", out + ".json", "--method", rng.choice(("analytic:ggx", "nmf", "svd"))], out + ".json"
 
 
 def make_files(program, folder):
