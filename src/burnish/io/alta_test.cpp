@@ -66,9 +66,9 @@ TEST(Alta, FindsTheDirectionsOfEveryParameterization) {
     const std::string_view called = name;
     if (called == "NEUMANN_3D" || called == "STARK_3D") {
       // to_cartesian of these exchanges what from_cartesian took
+      EXPECT_NEAR(wi.z, view.z, 1e-12) << name;
+      EXPECT_NEAR(wo.z, light.z, 1e-12) << name;
       EXPECT_NEAR(dot(wi, wo), dot(light, view), 1e-12) << name;
-      EXPECT_NEAR(std::abs(wi.z - wo.z), std::abs(light.z - view.z), 1e-12) << name;
-      EXPECT_NEAR(wi.z + wo.z, light.z + view.z, 1e-12) << name;
     } else {
       EXPECT_NEAR(wi.z, light.z, 1e-12) << name;
       EXPECT_NEAR(wo.z, view.z, 1e-12) << name;
