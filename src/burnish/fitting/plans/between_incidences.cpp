@@ -12,10 +12,10 @@ namespace burnish {
 namespace {
 
 constexpr double kSameIncidence_deg = 1, kNear = radians(5);  // of wo to wi
-constexpr std::size_t kMinNearby = 3;
-constexpr double kStep_deg = 2.5;  // of what is expected,
-constexpr double kApart_deg = 4,
-                 kApart = 0.25;  // and how far from incidences it is at least: of a gap a fifth
+constexpr std::size_t kMinOfIncidence = 3;
+constexpr double kStep_deg = 2.5;  // of what is expected
+// How far from incidences that is, at least: degrees, and of a gap.
+constexpr double kApart_deg = 4, kApart = 0.25;
 constexpr std::array kDistances_deg{0.0, 1.0, 2.0, 3.0, 4.5, 6.0, 8.0, 10.0};
 constexpr int kSides = 5;  // of wo about wi, over half a circle
 
@@ -38,7 +38,7 @@ std::vector<double> incidences_of(const SampleSource& source) {
   }
   std::vector<double> found;
   for (const auto& [place, sum] : sums)
-    if (sum.count >= kMinNearby) found.push_back(sum.theta / static_cast<double>(sum.count));
+    if (sum.count >= kMinOfIncidence) found.push_back(sum.theta / static_cast<double>(sum.count));
   return found;
 }
 
