@@ -96,13 +96,15 @@ def make_bsdf_class(formula_type, sampler_type):
             viewer = frame.to_local(si.wi)
             active &= viewer.z > 0
             drawn = dr.zeros(mi.BSDFSample3f)
-            light, drawn.pdf = self.sampler.sample_wi(dr.detach(viewer), sample2)
+            light, density = self.sampler.sample_wi(dr.detach(viewer), sample2)
             drawn.wo = frame.to_world(light)
             drawn.eta = 1
             drawn.sampled_type = mi.UInt32(int(self.m_flags))
             drawn.sampled_component = mi.UInt32(0)
-            active &= (drawn.pdf > 0) & (drawn.wo.z > 0)
-            value = self.eval(ctx, si, drawn.wo, active)
+            active &= (density > 0) & (drawn.wo.z > 0)
+            # at the edge of a cell the frames' rounding decides of which it is: as others will ask for it
+            value, drawn.pdf = self.eval_pdf(ctx, si, drawn.wo, active)
+            active &= drawn.pdf > 0
             return drawn, dr.select(active, value / drawn.pdf, 0)
 
         def _enabled(self, ctx, active):
