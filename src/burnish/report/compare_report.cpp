@@ -184,6 +184,15 @@ std::string index_html(const std::string& reference_name, std::span<const Compar
       charts, measurement ? nodes_html(*measurement, compared) : std::string());
 }
 
+// Errors name the model.
+ErrorFigures score_of(const Scorer& scorer, const ComparedModel& model) {
+  try {
+    return scorer.score(model.brdf);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", model.name, error.what()));
+  }
+}
+
 }  // namespace
 
 std::vector<ComparedFigures> compare_models(const Scorer& scorer, std::span<const ComparedModel> models,
@@ -192,7 +201,7 @@ std::vector<ComparedFigures> compare_models(const Scorer& scorer, std::span<cons
   std::vector<ComparedFigures> result;
   for (const ComparedModel& model : models) {
     ComparedFigures& c = result.emplace_back(
-        ComparedFigures{model.name, model.bytes, model.note, scorer.score(model.brdf), {}});
+        ComparedFigures{model.name, model.bytes, model.note, score_of(scorer, model), {}});
     for (const AlbedoAt& at : reference)
       c.albedos.push_back({at.theta_i, at.phi_i, at.albedo,
                            directional_albedo(model.brdf, spherical_direction(at.theta_i, at.phi_i))});

@@ -13,6 +13,7 @@
 #include <burnish/report/compare_report.h>
 #include <burnish/testing/brdfs.h>
 #include <burnish/testing/sanitized.h>
+#include <burnish/testing/tools.h>
 
 namespace burnish {
 namespace {
@@ -37,6 +38,19 @@ class CompareReport : public ::testing::Test {
       {"same <&>", reference_, {}, ""}, {"twice", scaled_, 1344, "two lobes"}, {"lambert", lambert_, 12, ""}};
   fs::path folder_;
 };
+
+struct NowhereKnown {
+  static std::size_t channels() noexcept { return 1; }
+  static bool isotropic() noexcept { return true; }
+  static bool eval(Vec3, Vec3, std::span<double>) noexcept { return false; }
+};
+
+TEST_F(CompareReport, NamesTheModelThatCannotBeScored) {
+  const NowhereKnown nothing;
+  models_.push_back({"nothing", nothing, {}, ""});
+  EXPECT_EQ(error_of([&] { compare_models(Scorer(reference_, kQuick), models_); }),
+            "nothing: reference and model share no known direction pair");
+}
 
 TEST_F(CompareReport, JsonHasTheFiguresUnderTheirNames) {
   const auto compared = compare_models(Scorer(reference_, kQuick), models_);
