@@ -265,7 +265,8 @@ TrainingSet training_set_of(const Samples& samples, bool symmetrize) {
 TrainingSet taken(const TrainingSet& set, std::span<const std::size_t> order) {
   TrainingSet part{
       .channels = set.channels, .isotropic = set.isotropic, .exposure = set.exposure, .albedo = set.albedo};
-  const std::size_t channels = set.channels, lobes = set.lobe_weights.size() / set.size();
+  const std::size_t channels = set.channels,
+                    lobes = set.lobe_weights.size() / std::max<std::size_t>(set.size(), 1);
   for (const std::size_t i : order) {
     part.picture_count += i < set.picture_count;
     part.pairs.push_back(set.pairs[i]);

@@ -66,6 +66,13 @@ TEST(TrainingSet, CrowdsPixelsAtTheHighlightAndWeighsThemAsIfTheyWereEven) {
   EXPECT_GT(crowded.exposure, even.exposure);  // pixels in the dark count
 }
 
+TEST(TrainingSet, OfNothingStaysOfNothing) {
+  const TrainingSet nothing{.channels = 3, .isotropic = true};
+  const ModelSpec spec = random_model("z(h) v(theta_h,theta_d,phi_d)", {"z=9", "v=5x4x3"}, 3).spec;
+  EXPECT_EQ(thinned(nothing, 2).size(), 0u);
+  EXPECT_EQ(ordered_by_cells(nothing, spec).size(), 0u);
+}
+
 TEST(TrainingSet, InTheOrderOfCellsHasTheSamePairs) {
   const TrainingSet set = draw_training_set(parse_analytic("ggx:alpha_x=0.2,alpha_y=0.2").ref(), {});
   const LogModel model = random_model("z(h) v(theta_h,theta_d,phi_d)", {"z=9", "v=5x4x3"}, 3);
