@@ -27,7 +27,7 @@ void add_measure_command(CLI::App& app);
 void add_render_command(CLI::App& app);
 void add_specular_command(CLI::App& app);
 
-/// What --version prints: versions, instruction sets, threads.
+/// What --version prints, as lines or as JSON: versions, instruction sets, threads.
 std::string version_text(bool as_json);
 
 }  // namespace burnish::cli

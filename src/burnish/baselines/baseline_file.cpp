@@ -182,9 +182,8 @@ Baseline parse_baseline(const FileBytes& file) {
     const Json json = Json::parse(file.text());
     if (json.contains("asset") && json.contains("materials"))
       throw Error(
-          "expected a measurement, baseline or model, found a material of glTF, which only programs that "
-          "read "
-          "glTF take");
+          "expected a measurement, baseline or model, found a material of glTF, "
+          "which only programs that read glTF take");
     if (!json.contains("kind"))
       throw Error("expected the JSON of a baseline, with its 'kind', found another one");
     Baseline baseline{

@@ -697,10 +697,6 @@ class SurfaceFitter {
 
 }  // namespace
 
-const char* name_of(NormalsFrom normals) noexcept {
-  return normals == NormalsFrom::capture ? "capture" : normals == NormalsFrom::flat ? "flat" : "estimated";
-}
-
 SurfaceFit fit_surface(Capture capture, const SurfaceFitOptions& options) {
   return SurfaceFitter(std::move(capture), options).run();
 }

@@ -17,8 +17,6 @@ namespace burnish {
 
 /// What normals a fit takes.
 enum class NormalsFrom { capture, flat, estimate };
-/// "capture", "flat" or "estimated".
-const char* name_of(NormalsFrom normals) noexcept;
 
 struct SurfaceFitOptions {
   std::size_t lobes = 6;              ///< 1 to kMaxSurfaceLobes

@@ -8,6 +8,10 @@
 
 namespace burnish {
 
+const char* name_of(NormalsFrom normals) noexcept {
+  return normals == NormalsFrom::capture ? "capture" : normals == NormalsFrom::flat ? "flat" : "estimated";
+}
+
 nlohmann::ordered_json json_of(const SurfaceReport& report) {
   using Object = nlohmann::ordered_json;
   const auto number = [](const std::optional<double>& value) -> Object {

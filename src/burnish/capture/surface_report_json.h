@@ -8,6 +8,9 @@
 
 namespace burnish {
 
+/// "capture", "flat" or "estimated".
+const char* name_of(NormalsFrom normals) noexcept;
+
 /// What report_json writes.
 nlohmann::ordered_json json_of(const SurfaceReport& report);
 

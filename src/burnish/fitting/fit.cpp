@@ -234,9 +234,9 @@ class Fitter {
   }
 
   /// What a first fit leads to expect between incidences; nothing of sources that do not backscatter.
-  Samples expected_of(const SampleSource& source, const ModelSpec& spec, HomomorphicOptions options) const {
+  Samples expected_of(const SampleSource& source, const ModelSpec& spec,
+                      const HomomorphicOptions& options) const {
     if (options.backscatter <= 0 || !source.isotropic) return {};
-    options.progress = nullptr;
     return between_incidences(source, fit_homomorphic(source, spec, options).brdf);
   }
 

@@ -45,7 +45,7 @@ std::vector<std::array<double, 3>> rec709_weights(std::span<const double> lambda
 
 /// Where a spectrum that shows a colour has its values: linear Rec. 709's blue up to the first, green between the
 /// second and the third, red from the last on. At these places no colour takes a value below zero.
-constexpr std::array<double, 4> kColourNodes_nm{475, 510, 580, 605};
+inline constexpr std::array<double, 4> kColourNodes_nm{475, 510, 580, 605};
 /// A spectrum at kColourNodes_nm whose colour under equal energy is `rgb` within 1e-14 of the largest channel, not
 /// negative where none of the channels is; (1, 1, 1) is flat.
 std::array<double, 4> spectrum_of_colour(std::span<const double, 3> rgb);

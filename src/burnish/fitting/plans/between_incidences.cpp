@@ -5,15 +5,15 @@
 #include <vector>
 
 #include <burnish/fitting/plans/between_incidences.h>
+#include <burnish/fitting/plans/scattered_plan.h>
 #include <burnish/math/angles.h>
 
 namespace burnish {
 
 namespace {
 
-constexpr double kSameIncidence_deg = 1, kNear = radians(5);  // of wo to wi
-constexpr std::size_t kMinOfIncidence = 3;
-constexpr double kStep_deg = 2.5;  // of what is expected
+constexpr double kNear = radians(5);  // of wo to wi
+constexpr double kStep_deg = 2.5;     // of what is expected
 // How far from incidences that is, at least: degrees, and of a gap.
 constexpr double kApart_deg = 4, kApart = 0.25;
 constexpr std::array kDistances_deg{0.0, 1.0, 2.0, 3.0, 4.5, 6.0, 8.0, 10.0};
@@ -32,13 +32,13 @@ std::vector<double> incidences_of(const SampleSource& source) {
   for (std::size_t i = 0; i < source.count; ++i) {
     const auto& [wi, wo] = pairs[i];
     if (!(weights[i] > 0) || wi.z <= 0 || wo.z <= 0 || angle_between(wi, wo) > kNear) continue;
-    Sum& sum = sums[std::lround(degrees(theta_of(wi)) / kSameIncidence_deg)];
+    Sum& sum = sums[std::lround(theta_of(wi) / kSameIncidence)];
     sum.theta += degrees(theta_of(wi));
     ++sum.count;
   }
   std::vector<double> found;
   for (const auto& [place, sum] : sums)
-    if (sum.count >= kMinOfIncidence) found.push_back(sum.theta / static_cast<double>(sum.count));
+    if (sum.count >= kMinNearby) found.push_back(sum.theta / static_cast<double>(sum.count));
   return found;
 }
 

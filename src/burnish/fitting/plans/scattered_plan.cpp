@@ -123,9 +123,7 @@ std::optional<ModelSpec> spec_within(const std::string& set, std::size_t bytes, 
 constexpr std::array kRetroNear{radians(1.5), radians(3), radians(5)};
 constexpr double kRetroRingLow = 8.0 / 3, kRetroRingHigh = 16.0 / 3;
 constexpr double kMinTilt = radians(10);  // of the half vector: a highlight is there at the normal
-constexpr double kSameIncidence = radians(1);
 constexpr double kMinRatio = 2;
-constexpr std::size_t kMinNearby = 3;
 
 // Of this lobe for many samples, as trials find it for a tape's 7,400. Trials on many would leave it rougher: they
 // are at few incidences, all of which every fold has, and nothing tells how wild it is between them.

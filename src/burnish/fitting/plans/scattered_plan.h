@@ -5,6 +5,7 @@
 
 #include <burnish/factors/model_spec.h>
 #include <burnish/fitting/one_lobe/homomorphic.h>
+#include <burnish/math/angles.h>
 #include <burnish/reflectance/sample_source.h>
 
 namespace burnish {
@@ -23,6 +24,10 @@ struct ScatteredPlan {
   std::optional<double> error;
   TableFormat format = TableFormat::half;  ///< of all tables
 };
+
+/// What makes an incidence: polar angles of wi as close as this, radians, and so many samples near wi = wo.
+inline constexpr double kSameIncidence = kPi / 180;
+inline constexpr std::size_t kMinNearby = 3;
 
 /// Whether the samples of a source show a lobe about wi = wo: at most incidences that were measured there
 /// (three samples with theta_d up to 1.5 degrees, else up to 3 or 5, their half vectors at least 10 degrees off the
