@@ -4,10 +4,10 @@
 # make build  the command line at build/release/apps/burnish/burnish
 # make deb, make wheel, make npm: packages in build/packages; make release-check installs each in an empty system and runs it
 # make studio the library as WebAssembly, its npm package and the page in build/studio; make studio-test tests them
-# make bench, make fuzz, make damaged, make report, make cost-report, make sampling-report, make shader-report, make openpbr-report, make frame-cost, make surface-report, make hw-report, make hw-exhaustive, make format:
+# make bench, make compile-cost, make fuzz, make damaged, make report, make cost-report, make sampling-report, make shader-report, make openpbr-report, make frame-cost, make surface-report, make hw-report, make hw-exhaustive, make format:
 # see CONTRIBUTING.md
 # make cluster-test  a batch on a real Slurm of two nodes on this machine, killed now and then
-.PHONY: cluster-test demo test build reports python deb wheel npm packaging-deps release-check studio studio-test deps test-deps studio-deps bench fuzz damaged report cost-report sampling-report shader-report openpbr-report frame-cost surface-report hw-report hw-exhaustive format format-check docs-check include-check api
+.PHONY: cluster-test compile-cost demo test build reports python deb wheel npm packaging-deps release-check studio studio-test deps test-deps studio-deps bench fuzz damaged report cost-report sampling-report shader-report openpbr-report frame-cost surface-report hw-report hw-exhaustive format format-check docs-check include-check api
 JOBS ?= $(shell nproc)
 BURNISH := build/release/apps/burnish/burnish
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
@@ -39,6 +39,12 @@ build: deps
 
 reports: test-deps build
 	@cmake --build --preset programs -j $(JOBS) --target all
+
+# What compiling the command line takes where there is no compiler cache.
+compile-cost: deps
+	@rm -rf build/compile-cost && CCACHE_DISABLE=1 cmake --preset programs -B build/compile-cost > /dev/null
+	@bash -c 'TIMEFORMAT="%U s + %S s of the system, %R s by the clock"; \
+	  time cmake --build build/compile-cost -j $(JOBS) --target burnish_cli > /dev/null'
 
 demo: build
 	@examples/demo.sh "$(BURNISH)" "$(OUT)" "$(INPUT)"
@@ -102,7 +108,9 @@ bench: test-deps
 	@cmake --build --preset bench -j $(JOBS)
 	@build/bench/src/burnish/burnish_bench
 
-# Pages of docs/results, by what burnish_reports calls them.
+# Pages of docs/results, by what burnish_reports calls them. They name the last commit that changed what is measured.
+MEASURED := src apps hw cmake
+COMMIT = $(shell git log -1 --format=%h -- $(MEASURED))$(shell git diff --quiet HEAD -- $(MEASURED) || echo " and changes")
 REPORTS := build/release/apps/reports/burnish_reports
 report: NAMES := results accuracy measured cost
 cost-report: NAMES := cost
@@ -112,7 +120,7 @@ openpbr-report: NAMES := openpbr
 frame-cost: NAMES := frame-cost
 surface-report: NAMES := surfaces
 report cost-report sampling-report shader-report openpbr-report frame-cost surface-report: reports
-	@for name in $(NAMES); do $(REPORTS) $$name docs/results || exit 1; done
+	@export BURNISH_COMMIT="$(COMMIT)"; for name in $(NAMES); do $(REPORTS) $$name docs/results || exit 1; done
 
 HW := build/hw-report
 LIBRARY := $(CURDIR)/build/release/src/burnish/libburnish.a
@@ -121,7 +129,7 @@ hw-report: test-deps reports
 	@rm -rf $(HW) && mkdir -p $(HW) docs/figures docs/results
 	@hw/verify.sh sphere $(CURDIR)/$(BURNISH) $(LIBRARY) $(HW)/sphere $(CURDIR)/$(REPORTS) $(CURDIR)/docs/figures > $(HW)/sphere.txt
 	@hw/synthesize.sh $(CURDIR)/$(BURNISH) $(HW)/synthesis > $(HW)/synthesis.txt
-	@hw/report.py $(BURNISH) $(HW)/synthesis.txt $(HW)/sphere.txt > $(HW)/hardware.md
+	@BURNISH_COMMIT="$(COMMIT)" hw/report.py $(BURNISH) $(HW)/synthesis.txt $(HW)/sphere.txt > $(HW)/hardware.md
 	@mv $(HW)/hardware.md docs/results/hardware.md
 
 hw-exhaustive: test-deps build

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Writes docs/results/hardware.md: hw/report.py BURNISH SYNTHESIS SPHERE, the latter two the output of hw/synthesize.sh and of
-`hw/verify.sh sphere`. The text is hw/hardware.md.in; what stands in it as @name@ is measured here."""
+`hw/verify.sh sphere`. The text is hw/hardware.md.in; what stands in it as @name@ is measured here, at the commit that
+BURNISH_COMMIT says."""
 import json
+import os
 import pathlib
 import subprocess
 import sys
@@ -67,6 +69,7 @@ differences = table(["unit", "largest difference, levels"],
                     [line.split() for line in pathlib.Path(sphere).read_text().splitlines() if line])
 
 text = pathlib.Path(__file__).with_name("hardware.md.in").read_text()
-for name, value in {"blocks": blocks, "blinn": blinn, "widths": widths, "inputs": inputs, "differences": differences}.items():
+for name, value in {"blocks": blocks, "blinn": blinn, "widths": widths, "inputs": inputs, "differences": differences,
+                    "commit": os.environ.get("BURNISH_COMMIT", "unknown")}.items():
     text = text.replace(f"@{name}@", value)
 sys.stdout.write(text)

@@ -199,7 +199,8 @@ void report_merl(Page& page, const fs::path& data) {
 }
 
 void report_others(Page& page) {
-  const auto& [folder, data, quick, section] = page.options();
+  const std::optional<fs::path>& data = page.options().data;
+  const bool quick = page.options().quick;
   const std::vector<std::size_t> budgets =
       quick ? std::vector<std::size_t>{2700} : std::vector<std::size_t>{2700, 16'384, 65'536};
   std::vector<std::pair<std::string, std::string>> sources{

@@ -57,6 +57,7 @@ void add_report(CLI::App& app, const Report& report) {
         ->check(CLI::IsMember(report.sections));
   verb->callback([options, run = report.run] {
     if (const char* data = std::getenv("BURNISH_DATA")) options->data = data;
+    if (const char* commit = std::getenv("BURNISH_COMMIT")) options->commit = commit;
     if (!options->data) tell("BURNISH_DATA is not set: no real materials");
     run(*options);
   });
@@ -85,7 +86,8 @@ int main(int argc, char** argv) {
   CLI::App app{"Measures what the pages of docs/results state and writes them"};
   app.footer(
       "Real materials need the folder of measurements in the environment variable BURNISH_DATA and are "
-      "left out without it.\nExample: burnish_reports accuracy --quick /tmp/results");
+      "left out without it. Pages name the commit that BURNISH_COMMIT says.\nExample: burnish_reports "
+      "accuracy --quick /tmp/results");
   app.require_subcommand(1);
   for (const burnish::reports::Report& report : burnish::reports::kReports)
     burnish::reports::add_report(app, report);

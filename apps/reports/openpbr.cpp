@@ -1,17 +1,17 @@
 // How close the OpenPBR fit comes to the best of many random starts, and what a material of glTF keeps beside it.
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <ctime>
 #include <limits>
+#include <variant>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include <burnish/fitting/parametric/gltf_fit.h>
 #include <burnish/fitting/parametric/gltf_json.h>
 #include <burnish/fitting/parametric/grain.h>
+#include <burnish/fitting/parametric/material_fit.h>
 #include <burnish/fitting/parametric/metallic_roughness_fit.h>
 #include <burnish/fitting/parametric/openpbr_fit.h>
 #include <burnish/io/open_source.h>
@@ -34,14 +34,10 @@ double processor_seconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-double wall_seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-/// A fit's score and times.
+/// A material that looks like a BRDF, its score and times.
 struct Scored {
   OpenPbrParameters parameters;
-  double psnr, seconds, wall;
+  double psnr, seconds, wall = 0;
 };
 
 /// A material of glTF, and the metallic-roughness core that a viewer without extensions shows.
@@ -57,12 +53,23 @@ struct Row {
   GltfScored gltf;
 };
 
-template <class Find>
-Scored scored(const Scorer& scorer, const Find& find) {
-  const double start = processor_seconds(), wall_start = wall_seconds();
-  const OpenPbrFit found = find();
-  const double seconds = processor_seconds() - start, wall = wall_seconds() - wall_start;
-  return {found.parameters, scorer.picture_psnr(scorer.pictures(OpenPbr(found.parameters))), seconds, wall};
+const MaterialFitOptions kAlone{.beside = false, .figures = {.count = kPairs}};
+
+// `burnish fit --to openpbr`, its scores among the seconds of the processor.
+Scored fitted(const Source& source) {
+  const double start = processor_seconds();
+  const MaterialFit fit = fit_material(source, "openpbr", kAlone);
+  return {std::get<OpenPbr>(fit.material).parameters(), fit.figures.psnr, processor_seconds() - start,
+          fit.seconds};
+}
+
+// The best of random starts, of the same loss.
+Scored fitted_at_random(const Scorer& scorer, const PicturePairs& pairs, int starts,
+                        const OpenPbrFitOptions& options) {
+  const double start = processor_seconds();
+  const OpenPbrFit found = fit_openpbr_at_random(pairs, starts, kPeersSeed, options);
+  return {found.parameters, scorer.picture_psnr(scorer.pictures(OpenPbr(found.parameters))),
+          processor_seconds() - start};
 }
 
 // "sheen, clearcoat", as the asset names them.
@@ -75,31 +82,26 @@ std::string extensions_of(const GltfMaterial& material) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-GltfScored gltf_scored(const Scorer& scorer, const PicturePairs& pairs, const GltfFitOptions& options) {
-  const double start = wall_seconds();
-  const GltfMaterial found = fit_gltf(pairs, options).material;
-  const double wall = wall_seconds() - start;
+// `burnish fit --to gltf`.
+GltfScored gltf_fitted(const Source& source, const Scorer& scorer) {
+  const MaterialFit fit = fit_material(source, "gltf", kAlone);
   const MetallicRoughness core = fit_metallic_roughness(scorer.reference()).material;
-  return {scorer.score(found), scorer.score(core), wall, extensions_of(found)};
+  return {fit.figures, scorer.score(core), fit.seconds, extensions_of(std::get<GltfMaterial>(fit.material))};
 }
 
-// As fit_material: of measurements the reciprocal part.
 Row row_of(const std::string& material, const std::string& place, int starts) {
   tell(fmt::format("openpbr: {}", material));
   const Source source = open_source(place, {});
+  // what fit_material fits: of measurements the reciprocal part
   const SymmetrizedBrdf symmetrized(source.ref());
   const BrdfRef brdf = is_measurement(source) ? BrdfRef(symmetrized) : source.ref();
   const Scorer scorer(brdf, {.count = kPairs});
-  const PicturePairs pairs = picture_pairs(brdf, scorer.exposure());
   const OpenPbrFitOptions options{
       .grey = brdf.channels() == 1, .anisotropic = !brdf.isotropic(), .tangent = grain_direction(brdf)};
-  Row row{.material = material,
-          .ours = scored(scorer, [&] { return fit_openpbr(pairs, options); }),
-          .random = {},
-          .gltf = gltf_scored(
-              scorer, pairs,
-              {.grey = options.grey, .anisotropic = options.anisotropic, .tangent = options.tangent})};
-  row.random = scored(scorer, [&] { return fit_openpbr_at_random(pairs, starts, kPeersSeed, options); });
+  const Row row{.material = material,
+                .ours = fitted(source),
+                .random = fitted_at_random(scorer, picture_pairs(brdf, scorer.exposure()), starts, options),
+                .gltf = gltf_fitted(source, scorer)};
   tell(fmt::format("openpbr: {}: {:.2f} dB in {:.1f} s, at random {:.2f} dB in {:.0f} s, glTF {:.2f} dB",
                    material, row.ours.psnr, row.ours.seconds, row.random.psnr, row.random.seconds,
                    row.gltf.figures.psnr));

@@ -33,6 +33,7 @@ Page::Page(ReportOptions options, std::string name, std::string text)
       name_(std::move(name)),
       template_((text.empty() ? name_ : std::move(text)) + ".md.in") {
   values_["machine"] = processor();
+  values_["commit"] = options_.commit;
 }
 
 void Page::write_rows(const std::string& group, const Table& rows) const {

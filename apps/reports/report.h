@@ -18,8 +18,9 @@ namespace burnish::reports {
 namespace fs = std::filesystem;
 
 struct ReportOptions {
-  fs::path folder;               ///< pages and rows go here, figures to the folder `figures` beside it
-  std::optional<fs::path> data;  ///< the folder of measurements
+  fs::path folder;                 ///< pages and rows go here, figures to the folder `figures` beside it
+  std::optional<fs::path> data;    ///< the folder of measurements
+  std::string commit = "unknown";  ///< of the sources, for the heads of pages
   bool quick = false;   ///< a few materials, samples and repetitions: whether it runs, not what it gives
   std::string section;  ///< alone; empty: all
 
@@ -35,7 +36,7 @@ class Page {
 
   const ReportOptions& options() const noexcept { return options_; }
 
-  /// The value of @mark@. `machine` has one.
+  /// The value of @mark@. `machine` and `commit` have one.
   std::string& operator[](const std::string& mark) { return values_[mark]; }
   /// PAGE-GROUP.csv.
   void write_rows(const std::string& group, const Table& rows) const;
