@@ -292,28 +292,55 @@ class SurfaceFitter {
     fit_samples(last);
   }
 
-  /// Each channel on its own, by a rank of its own.
+  /// Channels do not depend on each other: a rank each. Two ranks have one and half the steps of the third each.
   void refine_channels(const TrainingSet& set, const RefineOptions& options) {
     if (crew_ranks() == 1) {
       refine(model_, set, options);
       return;
     }
-    const auto refined = made_together(options_.crew, kCaptureChannels, [&](std::size_t c) {
-      LogModel model = model_;
+    const Lookups lookups = lookups_of(model_.spec, set);
+    std::array<std::optional<ChannelRefinement>, kCaptureChannels> begun;
+    const auto of_channel = [&](std::size_t c) -> ChannelRefinement& {
       RefineOptions own = options;
       own.channel = c;
-      refine(model, set, own);
+      return begun[c] ? *begun[c] : begun[c].emplace(model_, set, lookups, own);
+    };
+    std::vector<std::vector<std::size_t>> channels{{0}, {1}, {2}};  // of each part
+    if (crew_ranks() == 2) {
+      // rank 0 begins the third channel, rank 1 its own; then rank 1 ends both, rank 0 does its own
+      const auto halfway = made_together(options_.crew, 2, [&](std::size_t rank) {
+        ChannelRefinement& channel = of_channel(2 - rank);
+        channel.run(options.max_iterations / 2);
+        std::string bytes;
+        append_values<double>(bytes, channel.state());
+        return bytes;
+      });
+      channels = {{0}, {2, 1}};
+      if (crew_rank() == 1) {
+        std::vector<double> state(halfway[0].size() / sizeof(double));
+        std::string_view bytes = halfway[0];
+        take_values<double>(bytes, state);
+        of_channel(2).go_on_from(state);
+      }
+    }
+    const auto refined = made_together(options_.crew, channels.size(), [&](std::size_t part) {
       std::string bytes;
-      for (const std::vector<double>& table : model.log_values) append_values<double>(bytes, table);
+      for (const std::size_t c : channels[part]) {
+        of_channel(c).run(options.max_iterations);
+        LogModel own = model_;
+        of_channel(c).finish(own);
+        for (const std::vector<double>& table : own.log_values) append_values<double>(bytes, table);
+      }
       return bytes;
     });
-    for (std::size_t c = 0; c < kCaptureChannels; ++c) {
-      std::string_view rest = refined[c];
-      for (std::vector<double>& table : model_.log_values) {
-        std::vector<double> all(table.size());
-        take_values<double>(rest, all);
-        for (std::size_t i = c; i < table.size(); i += kCaptureChannels) table[i] = all[i];
-      }
+    for (std::size_t part = 0; part < channels.size(); ++part) {
+      std::string_view rest = refined[part];
+      for (const std::size_t c : channels[part])
+        for (std::vector<double>& table : model_.log_values) {
+          std::vector<double> all(table.size());
+          take_values<double>(rest, all);
+          for (std::size_t i = c; i < table.size(); i += kCaptureChannels) table[i] = all[i];
+        }
     }
   }
 

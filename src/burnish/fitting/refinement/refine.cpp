@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <cassert>
 #include <cmath>
 #include <thread>
 #include <utility>
@@ -20,6 +22,9 @@ namespace {
 constexpr double kFirstDamping = 1e-2, kFirstIterativeDamping = 0.1, kMinDamping = 1e-6;
 constexpr double kEase = 0.3, kHarden = 4, kGoodGain = 0.75, kPoorGain = 0.25;
 constexpr int kMaxTrials = 6, kMaxSlowSteps = 3;
+
+}  // namespace
+
 /// Levenberg-Marquardt steps of one channel, or of coupled channels.
 class Descent {
  public:
@@ -30,45 +35,50 @@ class Descent {
         system_(model, set, lookups, loss, options.format, first_channel, last_channel),
         x_(system_.read(model)) {}
 
+  /// At most `most` steps more.
   template <class BeforeStep>
-  void run(BeforeStep before_step) {
-    StepSolver solver(system_, options_.smooth);
-    system_.clamp(x_);
-    // Large tables stay in a box: if their floor rose with their largest node, no step might lead down.
-    const bool boxed = system_.has_volume();
-    const RefineSystem::Box box = boxed ? system_.box(x_) : RefineSystem::Box{};
-    ErrorTerms means = system_.errors(x_);
-    before_ = after_ = objective(means, x_);
-    double damping = solver.is_direct() ? kFirstDamping : kFirstIterativeDamping;
-    for (int slow = 0; iterations_ < options_.max_iterations && slow < kMaxSlowSteps; ++iterations_) {
-      before_step();
-      solver.linearize(x_, means);
-      if (boxed) solver.stay_within(box, x_);
-      // harder and harder damped, until a step leads down
-      bool accepted = false;
-      for (int trial = 0; trial < kMaxTrials && !accepted; ++trial) {
-        Eigen::VectorXd next = x_ + solver.step(damping);
-        if (boxed)
-          next = next.cwiseMax(box.least).cwiseMin(box.most);
-        else
-          system_.clamp(next);
-        const ErrorTerms next_means = system_.errors(next);
-        const double value = objective(next_means, next);
-        accepted = value < after_;
-        if (accepted) {
-          const double gain = (value - after_) / solver.predicted_change(next - x_);
-          slow = after_ - value < options_.least_progress ? slow + 1 : 0;
-          after_ = value;
-          x_ = std::move(next);
-          means = next_means;
-          if (gain > kGoodGain && trial == 0) damping = std::max(kMinDamping, kEase * damping);
-          if (gain < kPoorGain) damping *= kHarden / 2;
-        } else {
-          damping *= kHarden;
-        }
-      }
-      if (!accepted) break;
+  void run(int most, BeforeStep before_step) {
+    if (!solver_) {
+      prepare();
+      means_ = system_.errors(x_);
+      before_ = after_ = objective(means_, x_);
+      damping_ = solver_->is_direct() ? kFirstDamping : kFirstIterativeDamping;
     }
+    for (int n = 0; n < most && goes_on(); ++n) {
+      before_step();
+      step();
+    }
+  }
+
+  /// Where it stands, in numbers: x behind the rest.
+  std::vector<double> state() const {
+    std::vector<double> numbers{static_cast<double>(iterations_),
+                                static_cast<double>(slow_),
+                                stuck_ ? 1.0 : 0.0,
+                                damping_,
+                                before_,
+                                after_,
+                                solver_->last_share()};
+    for (const double ErrorTerms::*const term : kTerms) numbers.push_back(means_.*term);
+    numbers.insert(numbers.end(), x_.begin(), x_.end());
+    return numbers;
+  }
+  /// Instead of the first run.
+  void go_on_from(std::span<const double> state) {
+    prepare();
+    iterations_ = static_cast<int>(state[0]);
+    slow_ = static_cast<int>(state[1]);
+    stuck_ = state[2] != 0;
+    damping_ = state[3];
+    before_ = state[4];
+    after_ = state[5];
+    solver_->set_last_share(state[6]);
+    state = state.subspan(7);
+    for (double ErrorTerms::*const term : kTerms) {
+      means_.*term = state.front();
+      state = state.subspan(1);
+    }
+    std::ranges::copy(state, x_.begin());
   }
 
   /// Puts the tables into the model and adds to the summary.
@@ -81,17 +91,82 @@ class Descent {
   }
 
  private:
+  static constexpr std::array kTerms{&ErrorTerms::pictures, &ErrorTerms::dimmed,   &ErrorTerms::relative,
+                                     &ErrorTerms::log_cos,  &ErrorTerms::absolute, &ErrorTerms::albedo};
+  static_assert(sizeof(ErrorTerms) == kTerms.size() * sizeof(double));
+
+  void prepare() {
+    solver_.emplace(system_, options_.smooth);
+    system_.clamp(x_);
+    // Large tables stay in a box: if their floor rose with their largest node, no step might lead down.
+    if (system_.has_volume()) box_ = system_.box(x_);
+  }
+
+  bool goes_on() const noexcept {
+    return iterations_ < options_.max_iterations && slow_ < kMaxSlowSteps && !stuck_;
+  }
+
+  /// Harder and harder damped, until it leads down.
+  void step() {
+    solver_->linearize(x_, means_);
+    if (box_) solver_->stay_within(*box_, x_);
+    bool accepted = false;
+    for (int trial = 0; trial < kMaxTrials && !accepted; ++trial) {
+      Eigen::VectorXd next = x_ + solver_->step(damping_);
+      if (box_)
+        next = next.cwiseMax(box_->least).cwiseMin(box_->most);
+      else
+        system_.clamp(next);
+      const ErrorTerms next_means = system_.errors(next);
+      const double value = objective(next_means, next);
+      accepted = value < after_;
+      if (accepted) {
+        const double gain = (value - after_) / solver_->predicted_change(next - x_);
+        slow_ = after_ - value < options_.least_progress ? slow_ + 1 : 0;
+        after_ = value;
+        x_ = std::move(next);
+        means_ = next_means;
+        if (gain > kGoodGain && trial == 0) damping_ = std::max(kMinDamping, kEase * damping_);
+        if (gain < kPoorGain) damping_ *= kHarden / 2;
+      } else {
+        damping_ *= kHarden;
+      }
+    }
+    if (accepted)
+      ++iterations_;
+    else
+      stuck_ = true;
+  }
+
   double objective(const ErrorTerms& means, const Eigen::VectorXd& x) const {
     return loss_.objective(means) + options_.smooth * system_.roughness(x);
   }
 
-  const RefineOptions& options_;
-  const PictureLoss& loss_;
+  RefineOptions options_;
+  PictureLoss loss_;
   RefineSystem system_;
   Eigen::VectorXd x_;
-  double before_ = 0, after_ = 0;
-  int iterations_ = 0;
+  std::optional<StepSolver>
+      solver_;  ///< refers to system_: from the first run on this object stays where it is
+  std::optional<RefineSystem::Box> box_;
+  ErrorTerms means_;
+  double before_ = 0, after_ = 0, damping_ = 0;
+  int iterations_ = 0, slow_ = 0;
+  bool stuck_ = false;  ///< no step led down
 };
+
+namespace {
+
+void check(const LogModel& model, const TrainingSet& set, const RefineOptions& options) {
+  if (!(options.smooth >= 0) || !std::isfinite(options.smooth) || !(options.max_iterations >= 0))
+    throw Error("fit: expected smooth >= 0 and a number of iterations >= 0");
+  if (model.channels != set.channels)
+    throw Error("fit: expected as many channels in the model as in the data");
+}
+
+PictureLoss loss_of(const TrainingSet& set, const ErrorTerms& shares) {
+  return {.shares = shares, .exposure = set.exposure};
+}
 
 }  // namespace
 
@@ -106,11 +181,8 @@ FitSummary refine(LogModel& model, const TrainingSet& set, const RefineOptions& 
 
 FitSummary refine(LogModel& model, const TrainingSet& set, const Lookups& lookups,
                   const RefineOptions& options) {
-  if (!(options.smooth >= 0) || !std::isfinite(options.smooth) || !(options.max_iterations >= 0))
-    throw Error("fit: expected smooth >= 0 and a number of iterations >= 0");
-  if (model.channels != set.channels)
-    throw Error("fit: expected as many channels in the model as in the data");
-  const PictureLoss loss{.shares = options.shares, .exposure = set.exposure};
+  check(model, set, options);
+  const PictureLoss loss = loss_of(set, options.shares);
   const auto channels = model.channels;
   const std::size_t together = model.any_shared() ? channels : 1;
   std::vector<Descent> descents;
@@ -123,7 +195,7 @@ FitSummary refine(LogModel& model, const TrainingSet& set, const Lookups& lookup
   const std::thread::id caller = std::this_thread::get_id();
   const double all_steps = static_cast<double>(descents.size()) * std::max(options.max_iterations, 1);
   for_each_chunk(descents.size(), 1, [&](std::size_t s, std::size_t, std::size_t) {
-    descents[s].run([&] {
+    descents[s].run(options.max_iterations, [&] {
       const int done = steps++;
       if (options.progress && std::this_thread::get_id() == caller) options.progress(done / all_steps);
     });
@@ -137,13 +209,38 @@ FitSummary refine(LogModel& model, const TrainingSet& set, const Lookups& lookup
   return summary;
 }
 
+ChannelRefinement::ChannelRefinement(const LogModel& model, const TrainingSet& set, const Lookups& lookups,
+                                     const RefineOptions& options) {
+  check(model, set, options);
+  assert(options.channel && !model.any_shared());
+  descent_ = std::make_unique<Descent>(model, set, lookups, loss_of(set, options.shares), options,
+                                       *options.channel, *options.channel + 1);
+}
+ChannelRefinement::ChannelRefinement(ChannelRefinement&&) noexcept = default;
+ChannelRefinement& ChannelRefinement::operator=(ChannelRefinement&&) noexcept = default;
+ChannelRefinement::~ChannelRefinement() = default;
+
+void ChannelRefinement::run(int steps) {
+  descent_->run(steps, [] {});
+}
+std::vector<double> ChannelRefinement::state() const {
+  return descent_->state();
+}
+void ChannelRefinement::go_on_from(std::span<const double> state) {
+  descent_->go_on_from(state);
+}
+void ChannelRefinement::finish(LogModel& model) const {
+  FitSummary summary;
+  descent_->finish(model, summary);
+}
+
 double objective(const LogModel& model, const TrainingSet& set, const ErrorTerms& shares) {
   return objective(model, set, lookups_of(model.spec, set), shares);
 }
 
 double objective(const LogModel& model, const TrainingSet& set, const Lookups& lookups,
                  const ErrorTerms& shares) {
-  const PictureLoss loss{.shares = shares, .exposure = set.exposure};
+  const PictureLoss loss = loss_of(set, shares);
   const auto channels = model.channels;
   double sum = 0;
   for (std::size_t c = 0; c < channels; ++c) {

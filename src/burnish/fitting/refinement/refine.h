@@ -1,7 +1,10 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include <burnish/fitting/fit_summary.h>
 #include <burnish/fitting/refinement/log_model.h>
@@ -43,6 +46,32 @@ FitSummary refine(LogModel& model, const TrainingSet& set, const RefineOptions& 
 /// The same with the set's lookups of models like this one at hand.
 FitSummary refine(LogModel& model, const TrainingSet& set, const Lookups& lookups,
                   const RefineOptions& options);
+
+class Descent;
+
+/// refine() of one channel in parts. What one process began another goes on with, to the same bits.
+class ChannelRefinement {
+ public:
+  /// Of options.channel, of a model without tables that channels share; says no progress. The set and its lookups must
+  /// outlive it. Throws Error as refine().
+  ChannelRefinement(const LogModel& model, const TrainingSet& set, const Lookups& lookups,
+                    const RefineOptions& options);
+  ChannelRefinement(ChannelRefinement&&) noexcept;
+  ChannelRefinement& operator=(ChannelRefinement&&) noexcept;
+  ~ChannelRefinement();
+
+  /// At most so many steps more, and options.max_iterations in all.
+  void run(int steps);
+  /// After a run: all that another object of the same model, set and options takes to go on.
+  std::vector<double> state() const;
+  /// Instead of the first run.
+  void go_on_from(std::span<const double> state);
+  /// Puts the channel's tables into the model.
+  void finish(LogModel& model) const;
+
+ private:
+  std::unique_ptr<Descent> descent_;
+};
 
 /// The objective that refine lowers, without the smoothness term; mean over the channels.
 double objective(const LogModel& model, const TrainingSet& set, const ErrorTerms& shares);

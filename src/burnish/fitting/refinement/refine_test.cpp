@@ -1,4 +1,7 @@
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -60,6 +63,29 @@ TEST(Refine, DoesNotDependOnTheNumberOfThreads) {
     return model.log_values;
   };
   EXPECT_EQ(of_volume(1), of_volume(2));
+}
+
+// of a dense matrix, a sparse one and one of products with the data
+TEST(ChannelRefinement, GoesOnWhereAnotherStopped) {
+  const TrainingSet set = small_set(parse_analytic("ggx:alpha_x=0.3,alpha_y=0.5,kd=0.1"), 2000);
+  for (const auto& [spec, tables] : std::vector<std::pair<const char*, std::vector<std::string>>>{
+           {"pqp", {"p=5x5", "q=9x9"}},
+           {"z(theta_h) g(theta_h,theta_d,phi_d)", {"z=40", "g=16x12x8"}},
+           {"pqp", {"p=5x5", "q=45x45"}}}) {
+    const LogModel start = random_model(spec, tables, 3);
+    LogModel whole = start, parts = start;
+    refine(whole, set, {.max_iterations = 5});
+    const Lookups lookups = lookups_of(start.spec, set);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const RefineOptions options{.max_iterations = 5, .channel = c};
+      ChannelRefinement first(start, set, lookups, options), second(start, set, lookups, options);
+      first.run(2);
+      second.go_on_from(first.state());
+      second.run(5);
+      second.finish(parts);
+    }
+    EXPECT_EQ(parts.log_values, whole.log_values) << tables.back();
+  }
 }
 
 TEST(Refine, IteratesWhereTheMatrixWouldBeTooLarge) {

@@ -131,6 +131,8 @@ class SparseModel final : public QuadraticModel {
                [&](const Vector& v) -> Vector { return ordered_times(v) + ordered.cwiseProduct(v); },
                [&](const Vector& r) -> Vector { return factor.solve(r); });
   }
+  double last_share() const override { return share_; }
+  void set_last_share(double share) override { share_ = share; }
 
  private:
   Vector ordered_times(const Vector& v) const {

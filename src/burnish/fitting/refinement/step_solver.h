@@ -19,6 +19,9 @@ class QuadraticModel {
   virtual Eigen::VectorXd times(const Eigen::VectorXd& v) const = 0;
   /// About -(matrix + extra)^-1 gradient, `extra` being added to the diagonal.
   virtual Eigen::VectorXd step(const Eigen::VectorXd& extra) = 0;
+  /// What later steps take from earlier ones: IncompleteCholesky::share, 0 where there is none.
+  virtual double last_share() const { return 0; }
+  virtual void set_last_share(double) {}
 
  protected:
   Eigen::VectorXd gradient_;
@@ -40,6 +43,8 @@ class StepSolver {
   /// Steps from now on leave an unknown alone whose gradient leads out of the box at whose side it is.
   void stay_within(const RefineSystem::Box& box, const Eigen::VectorXd& x);
   Eigen::VectorXd step(double damping);
+  double last_share() const { return model_->last_share(); }
+  void set_last_share(double share) { model_->set_last_share(share); }
 
  private:
   bool direct_;
