@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Fits a small surface with 1, 2 and 4 ranks: tests/mpi/run.py BURNISH BURNISH_MPI [--kills N] [--side N] [--time].
+"""Fits a small surface with 1, 2 and 4 ranks: tests/mpi/run.py BURNISH BURNISH_MPI [--kills N] [--side N] [--time [CAPTURE]].
 
 The file has to be that of `burnish fit-surface` to the byte, also where a rank is killed at a random moment and the
-job is started again with --resume. --time prints the processor-bound seconds of one rank and of two with a thread
-each, weights alone (--book). Exits with 1 where something differs."""
+job is started again with --resume. --time prints the seconds of one rank and of two with a thread each, the least of
+three: all of a fit, and weights alone (--book); of four lobes to another capture where it names one. Exits with 1 where
+something differs."""
 import argparse
 import json
 import os
@@ -51,7 +52,7 @@ def main():
     parser.add_argument("burnish_mpi")
     parser.add_argument("--kills", type=int, default=2)
     parser.add_argument("--side", type=int, default=64)
-    parser.add_argument("--time", action="store_true")
+    parser.add_argument("--time", nargs="?", const="", metavar="CAPTURE")
     given = parser.parse_args()
     random.seed(21)
     with tempfile.TemporaryDirectory() as folder:
@@ -78,14 +79,21 @@ def main():
             sys.exit("killed and started again: other bytes")
         print(f"a rank killed {given.kills} times, {lost} of them before the end: the same bytes")
 
-        if given.time:
-            took = {}
-            for ranks in (1, 2, 1, 2, 1, 2):
-                start = time.monotonic()
-                run(mpirun(ranks) + [given.burnish_mpi, "fit-surface", capture, "-o", folder / "timed.burnish",
-                                     "--book", alone, "--threads", "1"])
-                took[ranks] = min(took.get(ranks, 1e9), time.monotonic() - start)
-            print(f"weights alone: {took[1]:.2f} s with one rank, {took[2]:.2f} s with two: {took[1] / took[2]:.2f}")
+        if given.time is not None:
+            of_lobes = ["--lobes", "4", "--threads", "1"] if given.time else OPTIONS
+            print_times([given.burnish_mpi, "fit-surface", given.time or capture], of_lobes, folder)
+
+
+def print_times(fit, of_lobes, folder):
+    made = folder / "timed.burnish"
+    for what, more in ("all of it", [*of_lobes, "-o", made]), (
+            "weights alone", ["--book", made, "--threads", "1", "-o", folder / "weights.burnish"]):
+        took = {}
+        for ranks in (1, 2, 1, 2, 1, 2):
+            start = time.monotonic()
+            run(mpirun(ranks) + fit + more)
+            took[ranks] = min(took.get(ranks, 1e9), time.monotonic() - start)
+        print(f"{what}: {took[1]:.2f} s with one rank, {took[2]:.2f} s with two: {took[1] / took[2]:.2f}")
 
 
 if __name__ == "__main__":

@@ -1,10 +1,14 @@
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstring>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
+#include <hwy/cache_control.h>
 #include <nlohmann/json.hpp>
 
 #include <burnish/capture/fit_checkpoint.h>
@@ -394,36 +398,50 @@ class SurfaceFitter {
     std::vector<std::size_t> in_bin;  // how many of each theta_h
   };
 
-  /// Pixels at random of the texels that `takes` has, those that are there and can be trusted.
+  /// A pixel, where it is there, can be trusted and does not graze.
+  std::optional<Candidate> candidate(std::uint32_t t, std::uint32_t p) const {
+    const std::size_t pixel = p * samples_.size() + t;
+    if (!is_there(samples_.states[pixel]) || trusts(pixel) < kMinTrust) return std::nullopt;
+    const Vec3 point = capture_.form().point(samples_.texels[t][0], samples_.texels[t][1]);
+    const ShadingFrame frame = frame_about(normal_of(fits_.normals, t), {1, 0, 0});
+    const auto [light, view] = samples_.seen(capture_.form().pictures[p], p, t, point);
+    Candidate c{.picture = p, .texel = t, .pair = {frame.local(light), frame.local(view)}, .bin = 0};
+    if (c.pair.wi.z < kMinPixelCosine || c.pair.wo.z < kMinPixelCosine) return std::nullopt;
+    const Vec3 h = half_vector(c.pair.wi, c.pair.wo);
+    const double theta_h = std::acos(std::clamp(h.z, -1.0, 1.0));
+    c.bin = std::min(kHalfBins - 1, static_cast<std::size_t>(std::sqrt(theta_h / 1.5707963) * kHalfBins));
+    return c;
+  }
+
+  /// Pixels at random of the texels that `takes` has.
   template <class Takes>
   Candidates candidates(std::size_t draws, std::size_t stream, const Takes& takes) const {
     const CaptureForm& form = capture_.form();
-    std::vector<std::size_t> fitted;
+    std::vector<std::uint32_t> fitted;
     for (std::size_t p = 0; p < form.pictures.size(); ++p)
-      if (!form.pictures[p].held_out) fitted.push_back(p);
+      if (!form.pictures[p].held_out) fitted.push_back(static_cast<std::uint32_t>(p));
     std::vector<std::uint32_t> texels;
     for (std::size_t t = 0; t < samples_.size(); ++t)
       if (takes(t)) texels.push_back(static_cast<std::uint32_t>(t));
 
     Candidates found{.pixels = {}, .in_bin = std::vector<std::size_t>(kHalfBins)};
     Pcg32 random(options_.seed, 1000 + stream);
-    for (std::size_t d = 0; d < draws; ++d) {
-      const auto t = texels[random.next() % texels.size()];
-      const std::size_t p = fitted[random.next() % fitted.size()], pixel = p * samples_.size() + t;
-      if (!is_there(samples_.states[pixel]) || trusts(pixel) < kMinTrust) continue;
-      const Vec3 point = form.point(samples_.texels[t][0], samples_.texels[t][1]);
-      const ShadingFrame frame = frame_about(normal_of(fits_.normals, t), {1, 0, 0});
-      const auto [light, view] = samples_.seen(form.pictures[p], p, t, point);
-      Candidate c{.picture = static_cast<std::uint32_t>(p),
-                  .texel = t,
-                  .pair = {frame.local(light), frame.local(view)},
-                  .bin = 0};
-      if (c.pair.wi.z < kMinPixelCosine || c.pair.wo.z < kMinPixelCosine) continue;
-      const Vec3 h = half_vector(c.pair.wi, c.pair.wo);
-      const double theta_h = std::acos(std::clamp(h.z, -1.0, 1.0));
-      c.bin = std::min(kHalfBins - 1, static_cast<std::size_t>(std::sqrt(theta_h / 1.5707963) * kHalfBins));
-      ++found.in_bin[c.bin];
-      found.pixels.push_back(c);
+    constexpr std::size_t kAtOnce = 256;  // pixels that memory is asked for before the first is looked at
+    std::array<std::pair<std::uint32_t, std::uint32_t>, kAtOnce> drawn;
+    for (std::size_t begin = 0; begin < draws; begin += kAtOnce) {
+      const auto some = std::span(drawn).first(std::min(kAtOnce, draws - begin));
+      for (auto& [t, p] : some) {
+        t = texels[random.next() % texels.size()];
+        p = fitted[random.next() % fitted.size()];
+        const std::size_t pixel = p * samples_.size() + t;
+        hwy::Prefetch(&samples_.states[pixel]);
+        if (!fits_.trust.empty()) hwy::Prefetch(&fits_.trust[pixel]);
+      }
+      for (const auto& [t, p] : some)
+        if (const std::optional<Candidate> c = candidate(t, p)) {
+          ++found.in_bin[c->bin];
+          found.pixels.push_back(*c);
+        }
     }
     if (found.pixels.empty()) throw Error("surface fit: expected pixels that can be fitted, found none");
     return found;
