@@ -80,8 +80,8 @@ struct FactorUse {
 /// The nodes that a lookup touches: first node and fractions; the others are first + 1, + width, + width + 1
 /// and of a volume the same four after width * height.
 struct Lookup {
-  int node = 0;                   ///< (z * height + y) * width + x of the lower corner
-  double fx = 0, fy = 0, fz = 0;  ///< in [0, 1]; fy = 0 for a line, fz = 0 but for a volume
+  int node;           ///< (z * height + y) * width + x of the lower corner
+  double fx, fy, fz;  ///< in [0, 1]; fy = 0 for a line, fz = 0 but for a volume
 };
 
 /// Whether two lookups find the same nodes for all directions: then they are located once.
