@@ -1,4 +1,3 @@
-#include <barrier>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -10,6 +9,7 @@
 #include <burnish/error.h>
 #include <burnish/math/parallel.h>
 #include <burnish/testing/captures.h>
+#include <burnish/testing/crews.h>
 #include <burnish/testing/sanitized.h>
 
 namespace burnish {
@@ -127,42 +127,6 @@ TEST(SurfaceFit, GoesOnFromACheckpoint) {
   options.seed = 1;
   EXPECT_THROW(capture.fit(options), Error);
 }
-
-// Ranks that are threads.
-class ThreadCrew {
- public:
-  explicit ThreadCrew(int ranks) : barrier_(ranks), sent_(static_cast<std::size_t>(ranks)) {}
-
-  class Member : public FitCrew {
-   public:
-    Member(ThreadCrew& crew, int rank) : crew_(crew), rank_(rank) {}
-    int ranks() const noexcept override { return static_cast<int>(crew_.sent_.size()); }
-    int rank() const noexcept override { return rank_; }
-    std::vector<std::string> gather(const std::string& bytes) override {
-      crew_.sent_[static_cast<std::size_t>(rank_)] = bytes;
-      crew_.barrier_.arrive_and_wait();
-      std::vector<std::string> all;
-      if (rank_ == 0) all = crew_.sent_;
-      crew_.barrier_.arrive_and_wait();
-      return all;
-    }
-    std::string broadcast(const std::string& bytes) override {
-      if (rank_ == 0) crew_.sent_[0] = bytes;
-      crew_.barrier_.arrive_and_wait();
-      std::string first = crew_.sent_[0];
-      crew_.barrier_.arrive_and_wait();
-      return first;
-    }
-
-   private:
-    ThreadCrew& crew_;
-    int rank_;
-  };
-
- private:
-  std::barrier<> barrier_;
-  std::vector<std::string> sent_;
-};
 
 TEST(SurfaceFit, IsTheSameForAnyNumberOfRanks) {
   const SmallCapture folder("ranks");

@@ -268,15 +268,6 @@ TEST(Fit, KeepsItsReportInItsFile) {
   }
 }
 
-TEST(FitReport, WritesNamesThatAreNoUtf8AndFiguresThatAreNotFinite) {
-  FitReport report;
-  report.source = "a\xff";
-  report.held_out.emplace().psnr = INFINITY;
-  const auto json = nlohmann::json::parse(to_json(report));
-  EXPECT_EQ(json.at("source"), "a\xEF\xBF\xBD");
-  EXPECT_TRUE(json.at("psnr").is_null());
-}
-
 TEST(FitForm, IsOneLobeOrSeveral) {
   EXPECT_TRUE(std::holds_alternative<OneLobe>(form_of("p(wo) q(wi+wo+0.5n) p(wi)", {}, true, {}, {})));
   const FitForm form = form_of("p(wo) q(h) p(wi) + s(h)", {"s=6"}, true, {}, FitLoss::log_cos);

@@ -6,7 +6,6 @@
 #include <burnish/error.h>
 #include <burnish/math/angles.h>
 #include <burnish/math/random.h>
-#include <burnish/metrics/measurement_quality.h>
 #include <burnish/metrics/node_figures.h>
 #include <burnish/reflectance/goniometer.h>
 #include <burnish/testing/brdfs.h>
@@ -131,47 +130,6 @@ TEST(NodeFigures, IncidencesAreHeldOutWhereThereAreFew) {
   samples = {.channels = 3, .isotropic = true};
   add(4);
   EXPECT_FALSE(held_out_incidences(measured_nodes(samples), {}));
-}
-
-/// Lambert times 1 + slope (cos theta_i - cos theta_o): not reciprocal.
-struct Leaning {
-  double slope = 0.2;
-
-  std::size_t channels() const noexcept { return 1; }
-  bool isotropic() const noexcept { return true; }
-  bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
-    f[0] = wi.z > 0 && wo.z > 0 ? 0.3 * (1 + slope * (wi.z - wo.z)) : 0;
-    return true;
-  }
-};
-
-TEST(MeasurementQuality, IsEstimatedFromExchangedDirections) {
-  BURNISH_SKIP_WHERE_SANITIZED();
-  const Leaning raw;
-  const SymmetrizedBrdf reference(raw);
-  const Scorer scorer(reference, {.count = 5000, .image_size = 32});
-  const MeasuredNodes nodes = nodes_of_source(raw, 500);
-  const auto quality = quality_by_exchange(scorer, raw, nodes);
-  ASSERT_TRUE(quality);
-  const ErrorFigures half = scorer.score(raw);
-  EXPECT_NEAR(quality->figures.rms, std::sqrt(2) * half.rms, 1e-12);
-  EXPECT_NEAR(quality->figures.psnr, half.psnr - 3.0103, 1e-3);
-  EXPECT_EQ(quality->errors.size(), scorer.pair_errors(raw).size());
-  EXPECT_FALSE(quality->repeated);
-  EXPECT_FALSE(quality_by_exchange(scorer, reference, nodes));  // nothing tells
-}
-
-TEST(MeasurementQuality, IsWhatASecondScanScores) {
-  BURNISH_SKIP_WHERE_SANITIZED();
-  const fixtures::Glossy first, second{.scale = 1.1};
-  const Scorer scorer(first, {.count = 2000, .image_size = 32});
-  MeasuredNodes nodes = nodes_of_source(first, 500);
-  nodes.samples.values[0] = -0.5;
-  const MeasurementQuality quality = quality_by_repeat(scorer, second, nodes);
-  EXPECT_TRUE(quality.repeated);
-  EXPECT_EQ(quality.figures.relative, scorer.score(second).relative);
-  EXPECT_NEAR(quality.negative_share, 1.0 / 1500, 1e-12);
-  EXPECT_EQ(quality.negative_rms, 0.5);  // one value
 }
 
 }  // namespace

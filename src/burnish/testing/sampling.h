@@ -12,6 +12,10 @@
 
 namespace burnish {
 
+/// Views from the normal to near the horizon.
+inline const Vec3 kViews[] = {
+    {0, 0, 1}, spherical_direction(0.6, 1), spherical_direction(1.2, 4), spherical_direction(1.54, 2)};
+
 /// Probability that a chi-square variable of `degrees` degrees of freedom exceeds x: the regularized upper
 /// incomplete gamma function Q(degrees / 2, x / 2), by its series or its continued fraction.
 inline double chi_square_tail(double x, int degrees) noexcept {

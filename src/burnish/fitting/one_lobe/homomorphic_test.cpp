@@ -5,7 +5,6 @@
 
 #include <burnish/error.h>
 #include <burnish/fitting/one_lobe/conjugate_gradients.h>
-#include <burnish/fitting/one_lobe/cross_validation.h>
 #include <burnish/fitting/one_lobe/homomorphic.h>
 #include <burnish/fitting/one_lobe/log_error.h>
 #include <burnish/fitting/one_lobe/normal_equations.h>
@@ -175,20 +174,6 @@ TEST(HomomorphicFitting, ReweightingWithstandsOutliers) {
   const HomomorphicFit robust = fit_homomorphic(source, spec, {.reweightings = 8});
   EXPECT_GT(robust.reweightings, 0);
   EXPECT_LT(mean_error(truth, robust.brdf), 0.25 * mean_error(truth, plain));
-}
-
-TEST(HomomorphicFitting, NoisyDataGetSmootherTables) {
-  const ModelSpec spec = parse_model_spec("pqp", std::vector<std::string>{"p=16", "q=32"}, true);
-  const AnalyticBrdf brdf = parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3");
-  const auto chosen = [&](double noise) {
-    const Samples samples = measure(brdf, {.count = 1000, .noise = noise, .seed = 1});
-    const std::vector<SmoothTrial> trials = choose_smoothness(from_samples(samples, true), spec, {});
-    for (const SmoothTrial& trial : trials) EXPECT_GE(trial.error, trials.front().error);
-    return trials.front();
-  };
-  const SmoothTrial clean = chosen(0), noisy = chosen(0.5);
-  EXPECT_LT(clean.smooth, noisy.smooth);
-  EXPECT_LT(clean.error, noisy.error);
 }
 
 TEST(HomomorphicFitting, RefusesWhatItCannotFit) {

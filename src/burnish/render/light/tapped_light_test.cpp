@@ -44,25 +44,6 @@ FactoredBrdf brushed_volume() {
                   });
 }
 
-TEST(BlurredEnvironment, KeepsAnEvenSkyAndTheLightOfADisc) {
-  const BlurredEnvironment even = blur(kEven, kSmallBlur);
-  const Environment lamp{"lamp", 0, 0, 0, {{{0, 1, 0}, 0.1, 5}}};
-  const BlurredEnvironment one = blur(lamp, kSmallBlur);
-  const double light = 5 * kTwoPi * (1 - std::cos(0.1));
-  for (const double width : {0.04, 0.2, 0.5}) {
-    for (const Vec3 w : {Vec3{0, 1, 0}, Vec3{0, -1, 0}, Vec3{1, 0, 0}, normalize({1, -2, 3})})
-      EXPECT_NEAR(even.radiance(w, width).g, 2, 1e-3);
-    double sum = 0;  // over the sphere it is still all there
-    const SkyImage grid(Image(256, 128, 3));
-    for (int y = 0; y < 128; ++y)
-      for (int x = 0; x < 256; ++x) sum += grid.solid_angle(y) * one.radiance(grid.direction(x, y), width).r;
-    EXPECT_NEAR(sum, light, (width < 0.1 ? 0.1 : 0.05) * light) << width;  // narrower than 1.3 texels
-  }
-  EXPECT_THROW(blur(kEven, {.side = 7}), Error);
-  EXPECT_THROW(blur(kEven, {.levels = 1}), Error);
-  EXPECT_THROW(blur(kEven, {.step = 1}), Error);
-}
-
 TEST(TappedLight, AnEvenSkyOnAMattSurfaceGivesPiTimesItsValue) {
   const FactoredBrdf matt(1, {}, {Lobe{.scale = {0.25}, .factors = {}}});
   const TappedBrdf tapped = tap(matt, 48);

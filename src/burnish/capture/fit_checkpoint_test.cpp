@@ -1,0 +1,100 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <burnish/capture/fit_checkpoint.h>
+#include <burnish/testing/models.h>
+#include <burnish/testing/tools.h>
+
+namespace burnish {
+namespace {
+
+constexpr int kCheckpointWidth = 3, kCheckpointRows = 2;
+
+/// Numbers that are all different; codes of two lobes, with or without normals.
+FitCheckpoint some_checkpoint(bool normals) {
+  FitCheckpoint checkpoint{
+      .key = 0xfedcba9876543210,
+      .damaged = {{"a.exr", "cut short"}, {"b/ü.png", ""}},
+      .missing_pixels = 7,
+      .clipped_pixels = 1'000'000'000'000,
+      .exposure = 1.0 / 3,
+      .lobes = random_model("p(wo) p(wi) + q(h)", {"p=5", "q=4x4"}, 3, TableFormat::half),
+      .scales = {0.3f, 17},
+      .rows = kCheckpointRows,
+      .codes = {},
+      .normals = {},
+      .errors = {{1, 2, 3, 4}, {0, std::uint64_t{1} << 62, 5, 6}}};
+  constexpr int kTexels = kCheckpointWidth * kCheckpointRows;
+  for (const int first : {0, 100}) {
+    checkpoint.codes.emplace_back();
+    for (int i = 0; i < kTexels; ++i) checkpoint.codes.back().push_back(static_cast<std::byte>(first + i));
+  }
+  for (int i = 0; normals && i < 2 * kTexels; ++i)
+    checkpoint.normals.push_back(0.1f * static_cast<float>(i) - 0.5f);
+  return checkpoint;
+}
+
+FitCheckpoint parse_as(const std::string& bytes, int width = kCheckpointWidth) {
+  return parse_checkpoint(memory_file(bytes), width);
+}
+
+TEST(FitCheckpoint, RestoresAllThatItKeeps) {
+  for (const bool normals : {false, true}) {
+    const FitCheckpoint kept = some_checkpoint(normals);
+    const std::string bytes = format_checkpoint(kept);
+    const FitCheckpoint read = parse_as(bytes);
+    EXPECT_EQ(read.key, kept.key);
+    ASSERT_EQ(read.damaged.size(), kept.damaged.size());
+    for (std::size_t i = 0; i < kept.damaged.size(); ++i) {
+      EXPECT_EQ(read.damaged[i].file, kept.damaged[i].file);
+      EXPECT_EQ(read.damaged[i].why, kept.damaged[i].why);
+    }
+    EXPECT_EQ(read.missing_pixels, kept.missing_pixels);
+    EXPECT_EQ(read.clipped_pixels, kept.clipped_pixels);
+    EXPECT_EQ(read.exposure, kept.exposure);
+    EXPECT_EQ(read.lobes, kept.lobes);
+    EXPECT_EQ(read.scales, kept.scales);
+    EXPECT_EQ(read.rows, kept.rows);
+    EXPECT_EQ(read.codes, kept.codes);
+    EXPECT_EQ(read.normals, kept.normals);
+    ASSERT_EQ(read.errors.size(), kept.errors.size());
+    for (std::size_t i = 0; i < kept.errors.size(); ++i) {
+      EXPECT_EQ(read.errors[i].seen, kept.errors[i].seen);
+      EXPECT_EQ(read.errors[i].all, kept.errors[i].all);
+      EXPECT_EQ(read.errors[i].seen_count, kept.errors[i].seen_count);
+      EXPECT_EQ(read.errors[i].all_count, kept.errors[i].all_count);
+    }
+    EXPECT_EQ(format_checkpoint(read), bytes);
+  }
+}
+
+TEST(FitCheckpoint, EveryTruncatedFileThrows) {
+  const std::string bytes = format_checkpoint(some_checkpoint(true));
+  for (std::size_t length = 0; length < bytes.size(); ++length)
+    EXPECT_THROW(parse_as(bytes.substr(0, length)), Error) << length;
+  EXPECT_THROW(parse_as(bytes + '\0'), Error);
+}
+
+TEST(FitCheckpoint, OfTexelsThatContradictTheWidthThrows) {
+  for (const bool normals : {false, true}) {
+    const std::string bytes = format_checkpoint(some_checkpoint(normals));
+    for (const int width : {1, kCheckpointWidth - 1, kCheckpointWidth + 1, kMaxMapSide})
+      EXPECT_THROW(parse_as(bytes, width), Error) << width;
+    EXPECT_NO_THROW(parse_as(bytes));
+  }
+  FitCheckpoint wrong = some_checkpoint(true);
+  wrong.normals.pop_back();
+  EXPECT_THROW(parse_as(format_checkpoint(wrong)), Error);
+  wrong = some_checkpoint(false);
+  wrong.scales.pop_back();
+  EXPECT_THROW(parse_as(format_checkpoint(wrong)), Error);
+}
+
+TEST(FitCheckpoint, IsKnownByItsName) {
+  std::string bytes = format_checkpoint(some_checkpoint(false));
+  bytes[bytes.find("burnish fit")] = 'B';
+  EXPECT_THAT(error_of([&] { parse_as(bytes); }), testing::HasSubstr("expected a checkpoint"));
+}
+
+}  // namespace
+}  // namespace burnish

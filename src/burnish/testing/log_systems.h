@@ -1,0 +1,105 @@
+#pragma once
+
+// What tests of the solvers of one lobe share: log-linear problems, and how far a solution is from the least.
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <burnish/fitting/numerics/node_numbers.h>
+#include <burnish/fitting/numerics/smoothness.h>
+#include <burnish/fitting/one_lobe/log_rows.h>
+#include <burnish/math/random.h>
+#include <burnish/reflectance/goniometer.h>
+
+namespace burnish::fixtures {
+
+/// Values and weights at random, some samples without weight.
+inline SampleSource random_log_source(std::size_t count, std::size_t channels) {
+  SampleSource source{.count = count, .distinct = count, .channels = channels, .isotropic = true, .fill = {}};
+  source.fill = [all = draw_pairs(count, 3, false), channels](
+                    std::size_t begin, std::span<DirectionPair> pairs, std::span<double> values,
+                    std::span<double> weights) {
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      Pcg32 random(begin + i);
+      pairs[i] = all[begin + i];
+      for (std::size_t c = 0; c < channels; ++c)
+        values[i * channels + c] = std::exp(2 * random.uniform() - static_cast<double>(c));
+      weights[i] = random.next() % 5 == 0 ? 0 : 0.2 + random.uniform();
+    }
+  };
+  return source;
+}
+
+/// Of the objective that HomomorphicOptions::smooth states: its slopes by the unknowns, at x and at 0, and the weighted
+/// rms of the rows' errors at x. Rows of one weight for all channels.
+struct LogObjective {
+  std::vector<double> slope, slope_at_zero;
+  double rms = 0;
+};
+inline LogObjective log_objective(const RowMaker& maker, const LogSolution& solution, double smooth) {
+  const ModelSpec& spec = *maker.spec;
+  const std::size_t channels = maker.source->channels;
+  const LogRows rows = maker.make(0, maker.source->count);
+  const Numbering numbering = number_nodes(spec, channels);
+  LogObjective found{std::vector<double>(numbering.count), std::vector<double>(numbering.count), 0};
+  double total = 0;
+  for (std::size_t i = 0; i < rows.size; ++i) total += static_cast<double>(rows.weight[i]);
+  const std::vector<FactorUse>& uses = spec.lobes.front();
+  for (std::size_t i = 0; i < rows.size; ++i)
+    for (std::size_t c = 0; c < channels; ++c) {
+      // lines and disks: one or four nodes a lookup, some of weight 0
+      std::vector<std::pair<std::size_t, double>> row;
+      for (std::size_t k = 0; k < uses.size(); ++k) {
+        const TableLayout& layout = spec.tables[uses[k].table].layout;
+        const std::size_t at = i * uses.size() + k;
+        const double fx = static_cast<double>(rows.fx[at]), fy = static_cast<double>(rows.fy[at]);
+        for (int corner = 0; corner < (layout.height > 1 ? 4 : 2); ++corner)
+          row.emplace_back(
+              numbering.tables[uses[k].table](
+                  rows.node[at] + static_cast<std::size_t>(corner % 2 + corner / 2 * layout.width), c),
+              (corner % 2 ? fx : 1 - fx) * (corner / 2 ? fy : 1 - fy));
+      }
+      const double weight = static_cast<double>(rows.weight[i]) / total,
+                   target = static_cast<double>(rows.target[i * channels + c]) - solution.channel_offset[c];
+      double error = -target;
+      for (const auto& [node, share] : row) error += share * solution.log_values[node];
+      for (const auto& [node, share] : row) {
+        found.slope[node] += weight * share * error;
+        found.slope_at_zero[node] -= weight * share * target;
+      }
+      found.rms += weight * error * error / static_cast<double>(channels);
+    }
+  found.rms = std::sqrt(found.rms);
+  for (std::size_t t = 0; t < spec.tables.size(); ++t) {
+    const SmoothnessRows rough = smoothness_rows(spec.tables[t].layout);
+    for (std::size_t r = 0; r < rough.size(); ++r)
+      for (std::size_t c = 0; c < numbering.tables[t].copies; ++c) {
+        double bend = 0;
+        for (std::size_t k = rough.starts[r]; k < rough.starts[r + 1]; ++k)
+          bend += rough.coefficients[k] * solution.log_values[numbering.tables[t](rough.nodes[k], c)];
+        for (std::size_t k = rough.starts[r]; k < rough.starts[r + 1]; ++k)
+          found.slope[numbering.tables[t](rough.nodes[k], c)] +=
+              smooth * spec.tables[t].smooth_share * rough.coefficients[k] * bend;
+      }
+  }
+  return found;
+}
+
+inline double largest(const std::vector<double>& values) {
+  double most = 0;
+  for (const double v : values) most = std::max(most, std::abs(v));
+  return most;
+}
+
+struct LogCase {
+  const char* expression;
+  std::vector<std::string> tables;
+  std::size_t channels;
+};
+inline const LogCase kLogCases[] = {{"p(wo) q(h) p(wi)", {"p=6", "q=9"}, 1},
+                                    {"p(wo) q(h) p(wi)", {"p=6,shared", "q=9"}, 3},
+                                    {"p(wo) q(h) p(wi) r(theta_d)", {"p=5x5", "q=9", "r=4,shared"}, 5}};
+
+}  // namespace burnish::fixtures
