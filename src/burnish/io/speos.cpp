@@ -352,6 +352,22 @@ CountedTable make_table(const FileBytes& file, const Content& content) {
   return result;
 }
 
+void check_wavelengths(const std::string& file, const std::vector<double>& lambda_nm) {
+  if (!lambda_nm.empty() &&
+      (lambda_nm.front() <= 0 || lambda_nm.back() >= 1e6 ||
+       std::adjacent_find(lambda_nm.begin(), lambda_nm.end(), std::greater_equal<>{}) != lambda_nm.end()))
+    throw Error::in_file(file, "positive, increasing wavelengths",
+                         fmt::format("{} ... {} nm out of order", lambda_nm.front(), lambda_nm.back()));
+}
+
+/// Whether no rotation changes anything.
+bool rotations_alike(const Content& content) {
+  return std::all_of(content.blocks.begin(), content.blocks.end(), [](const auto& of_channel) {
+    return std::all_of(of_channel.begin(), of_channel.end(),
+                       [&](const auto& r) { return r == of_channel.front(); });
+  });
+}
+
 /// One channel a wavelength becomes three.
 AngleTable in_rec709(const std::string& file, AngleTable table, const std::vector<double>& lambda_nm,
                      const std::string& illuminant) {
@@ -381,12 +397,7 @@ SpeosFile parse_speos(const FileBytes& file, const OpenOptions& options) {
   Findings& findings = result.findings;
   const bool anisotropic = file.text().starts_with(kAnisotropic);
   Content content = anisotropic ? read_anisotropic(reader) : read_brdf(reader);
-  const auto& lambda = content.lambda_nm;
-  if (!lambda.empty() &&
-      (lambda.front() <= 0 || lambda.back() >= 1e6 ||
-       std::adjacent_find(lambda.begin(), lambda.end(), std::greater_equal<>{}) != lambda.end()))
-    throw Error::in_file(file.name, "positive, increasing wavelengths",
-                         fmt::format("{} ... {} nm out of order", lambda.front(), lambda.back()));
+  check_wavelengths(file.name, content.lambda_nm);
   findings.format = anisotropic ? "Speos anisotropic BSDF" : "Speos BRDF";
   findings.description = content.comment;
   findings.conventions = {
@@ -395,11 +406,7 @@ SpeosFile parse_speos(const FileBytes& file, const OpenOptions& options) {
       content.scaling};
 
   // rotations that change nothing
-  const auto alike = [](const auto& of_channel) {
-    return std::all_of(of_channel.begin(), of_channel.end(),
-                       [&](const auto& r) { return r == of_channel.front(); });
-  };
-  if (content.rotations_deg.size() > 1 && std::all_of(content.blocks.begin(), content.blocks.end(), alike)) {
+  if (content.rotations_deg.size() > 1 && rotations_alike(content)) {
     findings.conventions.push_back(
         fmt::format("Taken as isotropic: {} rotations of the sample have the same values.",
                     content.rotations_deg.size()));
