@@ -137,6 +137,19 @@ Search search_on(const PicturePairs& pairs, bool grey) {
   });
 }
 
+/// Metals and dielectrics, from smooth to rough.
+std::vector<Start> core_starts(const PicturePairs& pairs, double rotation, const Layers& held) {
+  std::vector<Start> starts;
+  for (const double metallic : {0.0, 1.0})
+    for (const double roughness : {0.15, 0.35, 0.65})
+      starts.push_back({{.base_color = mean_color(pairs),
+                         .metallic = metallic,
+                         .roughness = roughness,
+                         .rotation = rotation},
+                        held});
+  return starts;
+}
+
 /// Coats, sharp and rough, above what was found or as its highlight, and sheen.
 std::vector<Start> with_layers(const GltfMaterial& found, const Layers& always) {
   std::vector<Start> starts;
@@ -251,21 +264,11 @@ GltfFit fit_gltf(const PicturePairs& pairs, const GltfFitOptions& options) {
   always[kGrain] = !options.anisotropic;
   always[kFilm] = options.grey;
   const Layers core = always | only({kFilm, kSheen, kCoat});
-
-  // metals and dielectrics
-  std::vector<Start> starts;
-  for (const double metallic : {0.0, 1.0})
-    for (const double roughness : {0.15, 0.35, 0.65})
-      starts.push_back({{.base_color = mean_color(pairs),
-                         .metallic = metallic,
-                         .roughness = roughness,
-                         .rotation = radians(options.tangent)},
-                        core});
-  std::vector<Trial> found = sift.run(starts, kFirst);
+  std::vector<Trial> found = sift.run(core_starts(pairs, radians(options.tangent), core), kFirst);
   progress(0.2);
 
   // these under layers, and random ones
-  starts.clear();
+  std::vector<Start> starts;
   for (std::size_t i = 0; i < kCores; ++i) add_starts(starts, with_layers(found[i].material, always));
   add_starts(starts, with_films(sift, found.front(), always));
   Pcg32 random(1);
