@@ -105,6 +105,21 @@ void print_nodes(const Measurement& measurement, std::span<const ComparedFigures
   fmt::print("{} nodes with both cosines above 0.15\n", measurement.itself.count);
 }
 
+void print_compared(std::span<const ComparedFigures> figures, const Measurement* measured) {
+  fmt::print("{:<32} {:>8} {:>8} {:>7} {:>9} {:>8} {:>8}\n", "model", "bytes", "psnr", "ssim", "relative",
+             "rms_log", "log_cos");
+  for (const ComparedFigures& f : figures)
+    fmt::print("{:<32} {:>8} {:>8.2f} {:>7.4f} {:>9.4f} {:>8.4f} {:>8.4f}\n", f.name,
+               f.bytes ? fmt::format("{}", *f.bytes) : "-", f.figures.psnr, f.figures.ssim,
+               f.figures.relative, f.figures.rms_log, f.figures.log_cos);
+  if (measured && measured->quality) print_quality(*measured->quality);
+  print_albedos(figures);
+  const ErrorFigures& first = figures.front().figures;
+  if (first.unknown_fraction > 0 || first.unknown_pixels > 0)
+    fmt::print("left out: {:.1f} % of the direction pairs and {} pixels, where a side knows nothing\n",
+               100 * first.unknown_fraction, first.unknown_pixels);
+}
+
 void compare(const CompareArguments& arguments) {
   if (!arguments.folder.empty()) check_folder(arguments.folder);
   const Source opened = arguments.reference.open();
@@ -142,18 +157,7 @@ void compare(const CompareArguments& arguments) {
     return;
   }
 
-  fmt::print("{:<32} {:>8} {:>8} {:>7} {:>9} {:>8} {:>8}\n", "model", "bytes", "psnr", "ssim", "relative",
-             "rms_log", "log_cos");
-  for (const ComparedFigures& f : figures)
-    fmt::print("{:<32} {:>8} {:>8.2f} {:>7.4f} {:>9.4f} {:>8.4f} {:>8.4f}\n", f.name,
-               f.bytes ? fmt::format("{}", *f.bytes) : "-", f.figures.psnr, f.figures.ssim,
-               f.figures.relative, f.figures.rms_log, f.figures.log_cos);
-  if (measured && measured->quality) print_quality(*measured->quality);
-  print_albedos(figures);
-  const ErrorFigures& first = figures.front().figures;
-  if (first.unknown_fraction > 0 || first.unknown_pixels > 0)
-    fmt::print("left out: {:.1f} % of the direction pairs and {} pixels, where a side knows nothing\n",
-               100 * first.unknown_fraction, first.unknown_pixels);
+  print_compared(figures, measured);
   if (measured && arguments.target != "function") print_nodes(*measured, figures);
   if (!arguments.folder.empty()) fmt::print("report: {}/index.html\n", arguments.folder);
 }

@@ -1,5 +1,6 @@
 #include <chrono>
 #include <memory>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -48,52 +49,29 @@ void write_comparison(const FitSurfaceArguments& arguments, const SurfaceFit& fi
   write_png(arguments.picture, surface_picture(capture, fit.surface.brdf, number, fit.report.exposure));
 }
 
-void fit_surface(FitSurfaceArguments& arguments, FitCrew* crew) {
-  const ThreadLimit limit(arguments.threads);
-  SurfaceFitOptions& options = arguments.options;
-  if (!arguments.book.empty()) {
-    const FileBytes book = read_file(arguments.book);
-    options.book =
-        looks_like_surface(book.bytes) ? parse_surface(book).brdf.own_model() : parse_model(book).brdf;
-  }
-  if (arguments.normals == "flat") options.normals = NormalsFrom::flat;
-  if (arguments.normals == "capture") options.normals = NormalsFrom::capture;
-  if (arguments.normals == "estimate") options.normals = NormalsFrom::estimate;
-  options.crew = crew;
-  if (crew && crew->rank() != 0) {
-    help_fit_surface(Capture(arguments.capture, arguments.pictures), options);
-    return;
-  }
-  check_writable(arguments.out);
-  if (!arguments.picture.empty()) check_writable(arguments.picture);
-  options.progress = progress_bars();
-  options.checkpoint = arguments.out + ".part";
-  if (!arguments.resume) std::filesystem::remove(options.checkpoint);
-  Capture capture(arguments.capture, arguments.pictures);
-  if (!arguments.picture.empty() && capture.form().own_directions)
-    throw Error::in_file(arguments.capture, "pictures, for --picture", "samples of texels");
-  const SurfaceFit fit = burnish::fit_surface(std::move(capture), options);
-  write_then_rename(arguments.out, format_surface(fit.surface));
-  std::filesystem::remove(options.checkpoint);
+// What others reach, if asked for.
+std::vector<BaselineScore> scores_of_others(const FitSurfaceArguments& arguments, const SurfaceFit& fit,
+                                            const SurfaceFitOptions& options) {
+  if (!arguments.compare) return {};
+  return score_surface_baselines(Capture(arguments.capture, arguments.pictures), fit, options);
+}
 
-  const SurfaceReport& report = fit.report;
-  if (!arguments.picture.empty()) write_comparison(arguments, fit);
-  std::vector<BaselineScore> others;
-  if (arguments.compare)
-    others = score_surface_baselines(Capture(arguments.capture, arguments.pictures), fit, options);
-  if (arguments.json) {
-    nlohmann::ordered_json json = json_of(report);
-    json["output"] = arguments.out;
-    json["seconds"] = report.seconds;
-    json["weight_seconds"] = report.weight_seconds;
-    for (const BaselineScore& other : others)
-      json["methods"].push_back(
-          {{"method", other.method},
-           {"bytes_a_texel", other.bytes_a_texel},
-           {"held_out_psnr", other.held_out ? nlohmann::ordered_json(*other.held_out) : nullptr}});
-    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
-    return;
-  }
+void print_surface_json(const FitSurfaceArguments& arguments, const SurfaceReport& report,
+                        std::span<const BaselineScore> others) {
+  nlohmann::ordered_json json = json_of(report);
+  json["output"] = arguments.out;
+  json["seconds"] = report.seconds;
+  json["weight_seconds"] = report.weight_seconds;
+  for (const BaselineScore& other : others)
+    json["methods"].push_back(
+        {{"method", other.method},
+         {"bytes_a_texel", other.bytes_a_texel},
+         {"held_out_psnr", other.held_out ? nlohmann::ordered_json(*other.held_out) : nullptr}});
+  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+void print_surface_report(const FitSurfaceArguments& arguments, const SurfaceReport& report,
+                          std::span<const BaselineScore> others) {
   for (const auto& [file, why] : report.left_out) fmt::print("left out   {}: {}\n", file, why);
   if (report.of_samples)
     fmt::print("capture    {} x {} texels of at most {} samples\n", report.width, report.height,
@@ -112,6 +90,47 @@ void fit_surface(FitSurfaceArguments& arguments, FitCrew* crew) {
                other.bytes_a_texel);
   fmt::print("written    {} in {:.2f} s, of these {:.2f} s weights of all texels\n", arguments.out,
              report.seconds, report.weight_seconds);
+}
+
+SurfaceFitOptions surface_options(const FitSurfaceArguments& arguments) {
+  SurfaceFitOptions options = arguments.options;
+  if (!arguments.book.empty()) {
+    const FileBytes book = read_file(arguments.book);
+    options.book =
+        looks_like_surface(book.bytes) ? parse_surface(book).brdf.own_model() : parse_model(book).brdf;
+  }
+  if (arguments.normals == "flat") options.normals = NormalsFrom::flat;
+  if (arguments.normals == "capture") options.normals = NormalsFrom::capture;
+  if (arguments.normals == "estimate") options.normals = NormalsFrom::estimate;
+  return options;
+}
+
+void fit_surface(const FitSurfaceArguments& arguments, FitCrew* crew) {
+  const ThreadLimit limit(arguments.threads);
+  SurfaceFitOptions options = surface_options(arguments);
+  options.crew = crew;
+  if (crew && crew->rank() != 0) {
+    help_fit_surface(Capture(arguments.capture, arguments.pictures), options);
+    return;
+  }
+  check_writable(arguments.out);
+  if (!arguments.picture.empty()) check_writable(arguments.picture);
+  options.progress = progress_bars();
+  options.checkpoint = arguments.out + ".part";
+  if (!arguments.resume) std::filesystem::remove(options.checkpoint);
+  Capture capture(arguments.capture, arguments.pictures);
+  if (!arguments.picture.empty() && capture.form().own_directions)
+    throw Error::in_file(arguments.capture, "pictures, for --picture", "samples of texels");
+  const SurfaceFit fit = burnish::fit_surface(std::move(capture), options);
+  write_then_rename(arguments.out, format_surface(fit.surface));
+  std::filesystem::remove(options.checkpoint);
+
+  if (!arguments.picture.empty()) write_comparison(arguments, fit);
+  const std::vector<BaselineScore> others = scores_of_others(arguments, fit, options);
+  if (arguments.json)
+    print_surface_json(arguments, fit.report, others);
+  else
+    print_surface_report(arguments, fit.report, others);
 }
 
 }  // namespace

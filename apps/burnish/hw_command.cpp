@@ -157,17 +157,54 @@ void add_model(CLI::App& verb) {
   });
 }
 
+struct ErrorArguments {
+  int first = 1, last = 1000, exponent_step = 1;
+  std::uint32_t input_step = 1;
+  bool json = false, rounded_input = false;
+};
+
+void print_rounded_input_error(const SpecularUnit& unit, const ErrorArguments& arguments) {
+  const double error = measure_rounded_input_error(unit, arguments.last);
+  if (arguments.json)
+    fmt::print("{}\n", nlohmann::json{{"max_error_lsb", error}}.dump(2));
+  else
+    fmt::print("at most {:.4f} of the last place of {} bits at exponent {}\n", error,
+               unit.config().output_bits, arguments.last);
+}
+
+void print_error(const SpecularUnit& unit, const ErrorArguments& arguments) {
+  if (arguments.last < arguments.first)
+    throw CLI::ValidationError(fmt::format("--last: expected an exponent of at least --first, {}, found {}",
+                                           arguments.first, arguments.last));
+  const UnitError e = measure_unit_error(unit, arguments.first, arguments.last, arguments.input_step,
+                                         arguments.exponent_step);
+  if (arguments.json) {
+    nlohmann::json tables = nlohmann::json::array();
+    for (const UnitTable& t : unit.tables())
+      tables.push_back({{"name", t.name}, {"words", t.words.size()}, {"width", t.width}});
+    fmt::print("{}\n", nlohmann::json{{"vectors", e.vectors},
+                                      {"max_error_lsb", e.max_error},
+                                      {"worst_exponent", e.worst_exponent},
+                                      {"worst_input", e.worst_input},
+                                      {"correctly_rounded", e.correct},
+                                      {"falls", e.falls},
+                                      {"tables", tables}}
+                           .dump(2));
+    return;
+  }
+  fmt::print(
+      "{} vectors: at most {:.4f} of the last place of {} bits (exponent {}, input {}), {:.3f} % correctly "
+      "rounded, {} falls\n",
+      e.vectors, e.max_error, unit.config().output_bits, e.worst_exponent, e.worst_input, 100 * e.correct,
+      e.falls);
+}
+
 void add_error(CLI::App& verb) {
   CLI::App* sub =
       verb.add_subcommand("error", "Largest error against cos^exponent over every exponent and input");
   sub->footer("Example: burnish hw error --method exact --out-bits 10");
-  struct Arguments {
-    int first = 1, last = 1000, exponent_step = 1;
-    std::uint32_t input_step = 1;
-    bool json = false, rounded_input = false;
-  };
   auto unit_arguments = add_unit_options(*sub);
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ErrorArguments>();
   sub->add_option("--first", arguments->first, "least exponent")
       ->check(in_range(1, kUnitMaxExponent))
       ->capture_default_str();
@@ -185,39 +222,10 @@ void add_error(CLI::App& verb) {
                 "instead: at --last alone, of 2^20 cosines in the highlight, rounded to the input's format");
   sub->callback([unit_arguments, arguments] {
     const SpecularUnit unit = make_unit(*unit_arguments);
-    if (arguments->rounded_input) {
-      const double error = measure_rounded_input_error(unit, arguments->last);
-      if (arguments->json)
-        fmt::print("{}\n", nlohmann::json{{"max_error_lsb", error}}.dump(2));
-      else
-        fmt::print("at most {:.4f} of the last place of {} bits at exponent {}\n", error,
-                   unit.config().output_bits, arguments->last);
-      return;
-    }
-    if (arguments->last < arguments->first)
-      throw CLI::ValidationError(fmt::format("--last: expected an exponent of at least --first, {}, found {}",
-                                             arguments->first, arguments->last));
-    const UnitError e = measure_unit_error(unit, arguments->first, arguments->last, arguments->input_step,
-                                           arguments->exponent_step);
-    if (arguments->json) {
-      nlohmann::json tables = nlohmann::json::array();
-      for (const UnitTable& t : unit.tables())
-        tables.push_back({{"name", t.name}, {"words", t.words.size()}, {"width", t.width}});
-      fmt::print("{}\n", nlohmann::json{{"vectors", e.vectors},
-                                        {"max_error_lsb", e.max_error},
-                                        {"worst_exponent", e.worst_exponent},
-                                        {"worst_input", e.worst_input},
-                                        {"correctly_rounded", e.correct},
-                                        {"falls", e.falls},
-                                        {"tables", tables}}
-                             .dump(2));
-      return;
-    }
-    fmt::print(
-        "{} vectors: at most {:.4f} of the last place of {} bits (exponent {}, input {}), {:.3f} % correctly "
-        "rounded, {} falls\n",
-        e.vectors, e.max_error, unit.config().output_bits, e.worst_exponent, e.worst_input, 100 * e.correct,
-        e.falls);
+    if (arguments->rounded_input)
+      print_rounded_input_error(unit, *arguments);
+    else
+      print_error(unit, *arguments);
   });
 }
 

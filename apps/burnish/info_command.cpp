@@ -39,70 +39,81 @@ std::string to_string(const NodesKnown& nodes) {
   return text;
 }
 
+void print_line(std::string_view name, const std::string& text) {
+  fmt::print("{:<13}{}\n", name, text);
+}
+
+void print_findings(const Source& source) {
+  const Findings& findings = source.findings;
+  print_line("name", source.name);
+  print_line("format", findings.format);
+  if (!findings.description.empty()) print_line("description", findings.description);
+  print_line("channels",
+             fmt::format("{}{}", source.ref().channels(),
+                         findings.lambda_nm.empty() ? ""
+                                                    : fmt::format(", {} to {} nm", findings.lambda_nm.front(),
+                                                                  findings.lambda_nm.back())));
+  print_line("material", source.ref().isotropic() ? "isotropic" : "anisotropic");
+  for (const std::string& convention : findings.conventions) print_line("convention", convention);
+  if (findings.sample_count > 0)
+    print_line("samples", fmt::format("{}, {} of them holes", findings.sample_count, findings.hole_count));
+  print_line("coverage", fmt::format("theta_i {:.1f} to {:.1f}, theta_o {:.1f} to {:.1f} degrees",
+                                     degrees(findings.theta_i_min), degrees(findings.theta_i_max),
+                                     degrees(findings.theta_o_min), degrees(findings.theta_o_max)));
+  if (const auto nodes = nodes_of(source)) print_line("nodes", to_string(*nodes));
+  if (findings.negative_count > 0)
+    print_line("negatives", fmt::format("{} values below zero, down to {:.3g} 1/sr", findings.negative_count,
+                                        findings.most_negative));
+}
+
+// Four digits, or two where those would hide it.
+std::vector<std::string> shown(const std::vector<double>& values) {
+  std::vector<std::string> texts;
+  for (const double x : values)
+    texts.push_back(x == 0 || std::abs(x) >= 1e-3 ? fmt::format("{:.4f}", x) : fmt::format("{:.1e}", x));
+  return texts;
+}
+
+std::string added_light(const DirectionalAlbedo& albedo) {
+  if (albedo.clamped == albedo.albedo) return "";
+  std::vector<double> added;
+  for (std::size_t c = 0; c < albedo.albedo.size(); ++c)
+    added.push_back(albedo.clamped[c] - albedo.albedo[c]);
+  return fmt::format(", {} more with values below zero cut", fmt::join(shown(added), " "));
+}
+
+void print_factors(const FactoredBrdf& model) {
+  if (const auto cost = shader_cost(model)) print_line("shader", to_string(*cost));
+  for (const Lobe& lobe : model.lobes())
+    print_line("lobe", fmt::format("scale {:.4g}", fmt::join(lobe.scale, " ")));
+  for (const Table& table : model.tables())
+    print_line("table", fmt::format("{}: {} x {}{}, {} channels, warp {}, {}, {} bytes", table.name,
+                                    table.layout.width, table.layout.height,
+                                    table.layout.depth > 1 ? fmt::format(" x {}", table.layout.depth) : "",
+                                    table.channels, to_string(table.layout.warp), to_string(table.format),
+                                    table.byte_count()));
+}
+
 void print_text(const SourceReport& report) {
   const auto& [source, albedos, reciprocity, model, mirror_asymmetry] = report;
-  const Findings& findings = source.findings;
-  const auto line = [](std::string_view name, const std::string& text) {
-    fmt::print("{:<13}{}\n", name, text);
-  };
-  line("name", source.name);
-  line("format", findings.format);
-  if (!findings.description.empty()) line("description", findings.description);
-  line("channels",
-       fmt::format("{}{}", source.ref().channels(),
-                   findings.lambda_nm.empty() ? ""
-                                              : fmt::format(", {} to {} nm", findings.lambda_nm.front(),
-                                                            findings.lambda_nm.back())));
-  line("material", source.ref().isotropic() ? "isotropic" : "anisotropic");
-  for (const std::string& convention : findings.conventions) line("convention", convention);
-  if (findings.sample_count > 0)
-    line("samples", fmt::format("{}, {} of them holes", findings.sample_count, findings.hole_count));
-  line("coverage", fmt::format("theta_i {:.1f} to {:.1f}, theta_o {:.1f} to {:.1f} degrees",
-                               degrees(findings.theta_i_min), degrees(findings.theta_i_max),
-                               degrees(findings.theta_o_min), degrees(findings.theta_o_max)));
-  if (const auto nodes = nodes_of(source)) line("nodes", to_string(*nodes));
-  if (findings.negative_count > 0)
-    line("negatives", fmt::format("{} values below zero, down to {:.3g} 1/sr", findings.negative_count,
-                                  findings.most_negative));
-  // four digits, or two where those would hide it
-  const auto shown = [](const std::vector<double>& values) {
-    std::vector<std::string> texts;
-    for (const double x : values)
-      texts.push_back(x == 0 || std::abs(x) >= 1e-3 ? fmt::format("{:.4f}", x) : fmt::format("{:.1e}", x));
-    return texts;
-  };
-  const auto added_light = [&](const DirectionalAlbedo& albedo) -> std::string {
-    if (albedo.clamped == albedo.albedo) return "";
-    std::vector<double> added;
-    for (std::size_t c = 0; c < albedo.albedo.size(); ++c)
-      added.push_back(albedo.clamped[c] - albedo.albedo[c]);
-    return fmt::format(", {} more with values below zero cut", fmt::join(shown(added), " "));
-  };
+  print_findings(source);
   for (const auto& [theta_i, phi_i, albedo] : albedos)
-    line("albedo",
-         fmt::format("{} at theta_i = {:.0f}{} degrees{}{}", fmt::join(shown(albedo.albedo), " "),
-                     degrees(theta_i), phi_i > 0 ? fmt::format(", phi_i = {:.0f}", degrees(phi_i)) : "",
-                     albedo.unknown_fraction > 0
-                         ? fmt::format(", {:.1f} % of the hemisphere unknown", 100 * albedo.unknown_fraction)
-                         : "",
-                     added_light(albedo)));
-  line("reciprocity",
-       fmt::format("mean relative asymmetry {:.4g} over {} pairs{}", reciprocity.mean, reciprocity.pairs,
-                   model && !model->reciprocal() ? ": the model tells the directions apart" : ""));
+    print_line("albedo",
+               fmt::format("{} at theta_i = {:.0f}{} degrees{}{}", fmt::join(shown(albedo.albedo), " "),
+                           degrees(theta_i), phi_i > 0 ? fmt::format(", phi_i = {:.0f}", degrees(phi_i)) : "",
+                           albedo.unknown_fraction > 0 ? fmt::format(", {:.1f} % of the hemisphere unknown",
+                                                                     100 * albedo.unknown_fraction)
+                                                       : "",
+                           added_light(albedo)));
+  print_line(
+      "reciprocity",
+      fmt::format("mean relative asymmetry {:.4g} over {} pairs{}", reciprocity.mean, reciprocity.pairs,
+                  model && !model->reciprocal() ? ": the model tells the directions apart" : ""));
   if (mirror_asymmetry)
-    line("mirror", fmt::format("{:.2f} % from its mirror image in the plane of incidence, on average",
-                               100 * std::expm1(*mirror_asymmetry)));
-  if (const auto bytes = source.bytes()) line("bytes", fmt::format("{}", *bytes));
-  if (!model) return;
-  if (const auto cost = shader_cost(*model)) line("shader", to_string(*cost));
-  for (const Lobe& lobe : model->lobes())
-    line("lobe", fmt::format("scale {:.4g}", fmt::join(lobe.scale, " ")));
-  for (const Table& table : model->tables())
-    line("table",
-         fmt::format("{}: {} x {}{}, {} channels, warp {}, {}, {} bytes", table.name, table.layout.width,
-                     table.layout.height,
-                     table.layout.depth > 1 ? fmt::format(" x {}", table.layout.depth) : "", table.channels,
-                     to_string(table.layout.warp), to_string(table.format), table.byte_count()));
+    print_line("mirror", fmt::format("{:.2f} % from its mirror image in the plane of incidence, on average",
+                                     100 * std::expm1(*mirror_asymmetry)));
+  if (const auto bytes = source.bytes()) print_line("bytes", fmt::format("{}", *bytes));
+  if (model) print_factors(*model);
 }
 
 // The book that a file is.

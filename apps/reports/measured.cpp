@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -68,6 +69,36 @@ struct Predictor {
   MeanNodes all = {};  // over the materials
 };
 
+// The mean figures of each predictor over both halves of a material's nodes; `rows` gets those of each.
+std::vector<NodeFigures> score_halves(const Source& source, const std::string& name, std::uint64_t bytes,
+                                      const fs::path& data, std::span<const Predictor> predictors,
+                                      Table& rows) {
+  const SymmetrizedBrdf function(source.ref());
+  const Source network = open_source(fmt::format("nbrdf:{}#{}", (data / "nbrdf/rgl.csv").string(), name), {}),
+               np = open_source(fmt::format("np:{}#{}", (data / "np").string(), name), {});
+  const SymmetrizedBrdf symmetrized_network(network.ref()), symmetrized_np(np.ref());
+  const Fit of_function =
+      fit(source, {.form = Budget{.bytes = bytes}, .target = FitTarget::function, .score = false});
+  const MeasuredNodes nodes = measured_nodes(source);
+
+  std::vector<MeanNodes> means(predictors.size());
+  for (const std::uint32_t half : {0u, 1u}) {
+    const NodePart part{NodePart::Kind::half, half};
+    const MeasuredNodes unseen = nodes_of(nodes, part);
+    const Fit of_nodes = fit_nodes_without(source, part, Budget{.bytes = bytes});
+    const std::array<BrdfRef, 5> models{function, symmetrized_network, symmetrized_np, of_function.ref(),
+                                        of_nodes.ref()};
+    for (std::size_t k = 0; k < models.size(); ++k) {
+      const NodeFigures figures = node_figures(unseen, models[k]);
+      means[k].add(figures);
+      rows.add(joined({name, std::to_string(half), predictors[k].name}, figures_of(figures)));
+    }
+  }
+  std::vector<NodeFigures> figures;
+  for (const MeanNodes& mean : means) figures.push_back(mean.mean());
+  return figures;
+}
+
 // Of every material and half what each predictor says of the nodes of that half: the file's own function and the
 // published models, which know or have learnt them, and ours of the other half.
 void report_halves(Page& page, const fs::path& data) {
@@ -84,35 +115,12 @@ void report_halves(Page& page, const fs::path& data) {
   for (const fs::path& file : files) {
     const std::string name = file.stem().string();
     tell("measured: " + name + ", halves");
-    const Source source = open_source(file.string(), {});
-    const SymmetrizedBrdf function(source.ref());
-    const Source network =
-                     open_source(fmt::format("nbrdf:{}#{}", (data / "nbrdf/rgl.csv").string(), name), {}),
-                 np = open_source(fmt::format("np:{}#{}", (data / "np").string(), name), {});
-    const SymmetrizedBrdf symmetrized_network(network.ref()), symmetrized_np(np.ref());
-    const Fit of_function = fit(
-        source, {.form = Budget{.bytes = most_bytes(page)}, .target = FitTarget::function, .score = false});
-    const MeasuredNodes nodes = measured_nodes(source);
-
-    std::vector<MeanNodes> means(predictors.size());
-    for (const std::uint32_t half : {0u, 1u}) {
-      const NodePart part{NodePart::Kind::half, half};
-      const MeasuredNodes unseen = nodes_of(nodes, part);
-      const Fit of_nodes = fit_nodes_without(source, part, Budget{.bytes = most_bytes(page)});
-      const std::array<BrdfRef, 5> models{function, symmetrized_network, symmetrized_np, of_function.ref(),
-                                          of_nodes.ref()};
-      for (std::size_t k = 0; k < models.size(); ++k) {
-        const NodeFigures figures = node_figures(unseen, models[k]);
-        means[k].add(figures);
-        rows.add(joined({name, std::to_string(half), predictors[k].name}, figures_of(figures)));
-      }
-    }
-
+    const std::vector<NodeFigures> means =
+        score_halves(open_source(file.string(), {}), name, most_bytes(page), data, predictors, rows);
     std::vector<std::string> texts{name};
     for (std::size_t k = 0; k < means.size(); ++k) {
-      const NodeFigures mean = means[k].mean();
-      predictors[k].all.add(mean);
-      texts.push_back(text_of(mean));
+      predictors[k].all.add(means[k]);
+      texts.push_back(text_of(means[k]));
     }
     const double relative = std::log(means.back().relative / means.front().relative),
                  log_cos = std::log(means.back().log_cos / means.front().log_cos);
@@ -201,59 +209,73 @@ std::vector<std::string> figures_of(const ErrorFigures& e) {
           fmt::format("{:.3f}", e.rms_log),  fmt::format("{:.2f}", e.rms)};
 }
 
-void report_repeat(Page& page, const fs::path& data) {
-  const std::string name = "irid_flake_paint1";
-  const fs::path coarse = data / "rgl" / (name + "_rgb.bsdf"),
-                 fine = data / "repeat" / (name + "_fine_rgb.bsdf");
-  if (!fs::exists(coarse) || !fs::exists(fine)) return;
-  const std::array<Source, 2> scans{open_source(fine.string(), {}), open_source(coarse.string(), {})};
-  const std::array<const char*, 2> names{"fine", "coarse"};
-  const std::array<SymmetrizedBrdf, 2> functions{SymmetrizedBrdf(scans[0].ref()),
-                                                 SymmetrizedBrdf(scans[1].ref())};
-  const FigureOptions options{.count = page.options().quick ? std::size_t{10'000} : std::size_t{1'000'000}};
+// Two scans of one sample, a fine one and a coarse one.
+struct Scans {
+  std::array<fs::path, 2> files;
+  std::array<Source, 2> sources{open_source(files[0].string(), {}), open_source(files[1].string(), {})};
+  std::array<SymmetrizedBrdf, 2> functions{SymmetrizedBrdf(sources[0].ref()),
+                                           SymmetrizedBrdf(sources[1].ref())};
+  std::array<const char*, 2> names{"fine", "coarse"};
+};
 
+// What each scan and its fits say of the other as a function.
+Table repeat_table(const Scans& scans, bool quick) {
+  const FigureOptions options{.count = quick ? std::size_t{10'000} : std::size_t{1'000'000}};
   Table table({"predicted", "by", "bytes", "psnr", "ssim", "relative", "log_cos", "rms_log", "rms"});
-  for (std::size_t to = 0; to < scans.size(); ++to) {
+  for (std::size_t to = 0; to < scans.sources.size(); ++to) {
     const std::size_t from = 1 - to;
-    tell(fmt::format("measured: the {} scan by the {} one", names[to], names[from]));
-    const Scorer scorer(functions[to], options);
+    tell(fmt::format("measured: the {} scan by the {} one", scans.names[to], scans.names[from]));
+    const Scorer scorer(scans.functions[to], options);
     const auto add = [&](const std::string& by, const std::string& bytes, BrdfRef model) {
-      table.add(joined({names[to], by, bytes}, figures_of(scorer.score(model))));
+      table.add(joined({scans.names[to], by, bytes}, figures_of(scorer.score(model))));
     };
-    add(fmt::format("the {} scan itself", names[from]),
-        std::to_string(fs::file_size(from == 0 ? fine : coarse)), functions[from]);
+    add(fmt::format("the {} scan itself", scans.names[from]),
+        std::to_string(fs::file_size(scans.files[from])), scans.functions[from]);
     const auto add_fit = [&](const std::string& how, const Budget& budget) {
-      const Fit made = fit(scans[from], {.form = budget, .target = FitTarget::function, .score = false});
+      const Fit made =
+          fit(scans.sources[from], {.form = budget, .target = FitTarget::function, .score = false});
       add(how, std::to_string(made.bytes()), made.ref());
     };
     add_fit("`--budget 2700`", {.bytes = kFewBytes});
-    if (page.options().quick) continue;
+    if (quick) continue;
     add_fit("`--budget 16K`", {.bytes = kBytes});
     add_fit("`--budget 16K --fetches 6 --smooth auto`",
             {.bytes = kBytes, .fetches = 6, .scattered = {.cross_validate = true}});
     add_fit("`--budget 64K`", {.bytes = 65'536});
   }
-  page["repeat"] = table.markdown();
+  return table;
+}
 
-  // and at the nodes alone
-  Table at_nodes({"nodes of", "nodes", "by its own function", "by the other's",
-                  "ours, of the other's function", "ours, of the other's nodes"});
-  for (std::size_t to = 0; to < scans.size(); ++to) {
-    const Source& other = scans[1 - to];
-    const MeasuredNodes nodes = measured_nodes(scans[to]);
-    const Budget budget{.bytes = most_bytes(page), .fetches = kNodeFetches};
+// And at the nodes alone.
+Table repeat_nodes_table(const Scans& scans, std::uint64_t bytes) {
+  Table table({"nodes of", "nodes", "by its own function", "by the other's", "ours, of the other's function",
+               "ours, of the other's nodes"});
+  for (std::size_t to = 0; to < scans.sources.size(); ++to) {
+    const Source& other = scans.sources[1 - to];
+    const MeasuredNodes nodes = measured_nodes(scans.sources[to]);
+    const Budget budget{.bytes = bytes, .fetches = kNodeFetches};
     const Fit of_function = fit(other, {.form = budget, .target = FitTarget::function, .score = false}),
               of_nodes = fit(other, {.form = budget, .target = FitTarget::nodes, .score = false});
-    std::vector<std::string> texts{names[to], ""};
-    for (const BrdfRef model :
-         {BrdfRef(functions[to]), BrdfRef(functions[1 - to]), of_function.ref(), of_nodes.ref()}) {
+    std::vector<std::string> texts{scans.names[to], ""};
+    for (const BrdfRef model : {BrdfRef(scans.functions[to]), BrdfRef(scans.functions[1 - to]),
+                                of_function.ref(), of_nodes.ref()}) {
       const NodeFigures figures = node_figures(nodes, model);
       texts[1] = std::to_string(figures.count);
       texts.push_back(text_of(figures));
     }
-    at_nodes.add(texts);
+    table.add(texts);
   }
-  page["repeat_nodes"] = at_nodes.markdown();
+  return table;
+}
+
+void report_repeat(Page& page, const fs::path& data) {
+  const std::string name = "irid_flake_paint1";
+  const fs::path coarse = data / "rgl" / (name + "_rgb.bsdf"),
+                 fine = data / "repeat" / (name + "_fine_rgb.bsdf");
+  if (!fs::exists(coarse) || !fs::exists(fine)) return;
+  const Scans scans{.files = {fine, coarse}};
+  page["repeat"] = repeat_table(scans, page.options().quick).markdown();
+  page["repeat_nodes"] = repeat_nodes_table(scans, most_bytes(page)).markdown();
 }
 
 // ---- Formats whose owners interpolate what was measured

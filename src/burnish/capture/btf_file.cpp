@@ -42,6 +42,13 @@ float number_at(const char* bytes, int size) noexcept {
   return static_cast<float>(value);
 }
 
+std::vector<float> numbers_of(std::string_view bytes, int size) {
+  std::vector<float> numbers(bytes.size() / static_cast<std::size_t>(size));
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    numbers[i] = number_at(bytes.data() + i * static_cast<std::size_t>(size), size);
+  return numbers;
+}
+
 /// exp(value) - offset, the inverse of what reduced the range.
 float expanded(float value) noexcept {
   return std::exp(value) - kLogOffset;
@@ -127,7 +134,16 @@ BtfFile::BtfFile(std::filesystem::path path) : path_(std::move(path)) {
     throw Error(path_.string(), 0, fmt::format("'{}', a BTF of UBO2014", kSignature),
                 fmt::format("'{}'", found));
 
-  // what was measured
+  read_description(head);
+  read_directions(head);
+  read_size(head);
+  read_colours(head);
+  for (Channel& channel : channels_) channel = read_channel(head);
+  fingerprint_ = hash_of(fmt::format("{}", head.size()), head.hash());
+}
+
+/// What was measured.
+void BtfFile::read_description(Head& head) {
   const std::uint64_t begin = head.offset();
   const auto bytes = head.number<std::uint32_t>("size of the description");
   const std::uint32_t version = head.count("version", 1, kMaxVersion);
@@ -144,8 +160,9 @@ BtfFile::BtfFile(std::filesystem::path path) : path_(std::move(path)) {
   }
   if (head.offset() != begin + bytes)
     head.fail(fmt::format("a description of {} bytes", bytes), fmt::format("{}", head.offset() - begin));
+}
 
-  // directions, and the surface's sides
+void BtfFile::read_directions(Head& head) {
   const std::uint32_t views = head.count("views", 1, kMaxDirections);
   for (std::uint32_t v = 0; v < views; ++v) {
     views_.push_back(head.direction("view"));
@@ -158,12 +175,16 @@ BtfFile::BtfFile(std::filesystem::path path) : path_(std::move(path)) {
     if (std::size_t{views} * lights_.size() > kMaxPictures)
       head.fail(fmt::format("at most {} pictures", kMaxPictures), fmt::format("{} x {}", views, lights));
   }
+}
+
+void BtfFile::read_size(Head& head) {
   width_ = static_cast<int>(head.count("width", 1, kMaxWidth));
   height_ = static_cast<int>(head.count("height", 1, kMaxWidth));
   if (const auto rotations = head.number<std::uint32_t>("rotations"); rotations != 0)
     head.fail("no rotated frames", fmt::format("{}", rotations));
+}
 
-  // colours
+void BtfFile::read_colours(Head& head) {
   head.count("components", 0, std::numeric_limits<std::uint32_t>::max());
   const auto model = head.number<std::int32_t>("colour model");
   constexpr std::array kModels{ColourModel::rgb,          ColourModel::yuv,      ColourModel::principal,
@@ -174,35 +195,33 @@ BtfFile::BtfFile(std::filesystem::path path) : path_(std::move(path)) {
   colours_ = static_cast<ColourModel>(model);
   for (float& value : mean_) value = head.number<float>("mean colour");
   for (float& value : transform_) value = head.number<float>("transform of colours");
+}
 
-  // matrices: singular values, which the second holds already, then one of pictures and one of texels in either order
+/// A channel's matrices: singular values, which the second holds already, then one of pictures and one of texels in
+/// either order.
+BtfFile::Channel BtfFile::read_channel(Head& head) const {
   const std::uint64_t texels = static_cast<std::uint64_t>(width_) * static_cast<std::uint64_t>(height_);
-  for (Channel& channel : channels_) {
-    channel.scalar_bytes = head.number<std::uint8_t>("bytes a number");
-    if (channel.scalar_bytes != 2 && channel.scalar_bytes != 4 && channel.scalar_bytes != 8)
-      head.fail("numbers of 2, 4 or 8 bytes", fmt::format("{}", channel.scalar_bytes));
-    channel.components = head.count("components", 1, kMaxComponents);
-    const auto rows = head.number<std::uint32_t>("rows"), columns = head.number<std::uint32_t>("columns");
-    const bool pictures_first = rows == pictures() && columns == texels;
-    if (!pictures_first && !(rows == texels && columns == pictures()))
-      head.fail(fmt::format("matrices of {} and {} rows", pictures(), texels),
-                fmt::format("{} and {}", rows, columns));
-    const std::uint64_t row = channel.components * static_cast<std::uint64_t>(channel.scalar_bytes);
-    head.skip(row, "singular values");
-    for (const bool of_pictures : {pictures_first, !pictures_first}) {
-      if (!of_pictures) {
-        channel.texels_at = head.offset();
-        head.skip(texels * row, "texels");
-        continue;
-      }
-      const std::string numbers = head.take(pictures() * row, "pictures");
-      channel.pictures.resize(pictures() * channel.components);
-      for (std::size_t i = 0; i < channel.pictures.size(); ++i)
-        channel.pictures[i] = number_at(numbers.data() + i * static_cast<std::size_t>(channel.scalar_bytes),
-                                        channel.scalar_bytes);
+  Channel channel;
+  channel.scalar_bytes = head.number<std::uint8_t>("bytes a number");
+  if (channel.scalar_bytes != 2 && channel.scalar_bytes != 4 && channel.scalar_bytes != 8)
+    head.fail("numbers of 2, 4 or 8 bytes", fmt::format("{}", channel.scalar_bytes));
+  channel.components = head.count("components", 1, kMaxComponents);
+  const auto rows = head.number<std::uint32_t>("rows"), columns = head.number<std::uint32_t>("columns");
+  const bool pictures_first = rows == pictures() && columns == texels;
+  if (!pictures_first && !(rows == texels && columns == pictures()))
+    head.fail(fmt::format("matrices of {} and {} rows", pictures(), texels),
+              fmt::format("{} and {}", rows, columns));
+  const std::uint64_t row = channel.components * static_cast<std::uint64_t>(channel.scalar_bytes);
+  head.skip(row, "singular values");
+  for (const bool of_pictures : {pictures_first, !pictures_first}) {
+    if (of_pictures) {
+      channel.pictures = numbers_of(head.take(pictures() * row, "pictures"), channel.scalar_bytes);
+    } else {
+      channel.texels_at = head.offset();
+      head.skip(texels * row, "texels");
     }
   }
-  fingerprint_ = hash_of(fmt::format("{}", head.size()), head.hash());
+  return channel;
 }
 
 std::size_t BtfFile::row_bytes() const noexcept {

@@ -77,6 +77,11 @@ class BtfFile {
   };
   class Head;
 
+  void read_description(Head& head);
+  void read_directions(Head& head);
+  void read_size(Head& head);
+  void read_colours(Head& head);
+  Channel read_channel(Head& head) const;
   std::array<float, 3> colour_of(std::array<float, 3> channels) const noexcept;
 
   std::filesystem::path path_;

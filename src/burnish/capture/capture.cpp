@@ -236,6 +236,46 @@ int Capture::rows_within(std::size_t bytes) const noexcept {
                                                   static_cast<std::size_t>(form_.height)));
 }
 
+namespace {
+
+/// Rows of a picture or mask of `folder`, as wide as the form says.
+Image rows_of(const std::filesystem::path& folder, const std::string& file, const CaptureRows& rows,
+              bool srgb) {
+  Image found = read_picture_rows(folder / file, rows.first_row, rows.rows, srgb);
+  if (found.width != rows.width)
+    throw Error::in_file(file, fmt::format("{} pixels a row", rows.width), fmt::format("{}", found.width));
+  return found;
+}
+
+/// Values and states of picture `p`, of `pixels` under a mask, which may be empty.
+void fill_picture(CaptureRows& rows, std::size_t p, const CaptureForm& form, const Image& pixels,
+                  const Image& mask) {
+  const CapturePicture& picture = form.pictures[p];
+  const std::array<double, 3> scale{picture.scale.r, picture.scale.g, picture.scale.b};
+  const std::size_t texels = rows.texels();
+  for (std::size_t i = 0; i < texels; ++i) {
+    PixelState state = mask.pixels.empty() || mask.pixels[3 * i] > 0 ? PixelState::there : PixelState::masked;
+    float* const to = &rows.values[(p * texels + i) * 3];
+    // at a point, a light's irradiance falls with its distance
+    const int x = static_cast<int>(i % static_cast<std::size_t>(form.width));
+    const Vec3 point =
+        form.point(x, rows.first_row + static_cast<int>(i / static_cast<std::size_t>(form.width)));
+    const Vec3 way = picture.light.at - point;
+    const double fall = picture.light.is_direction ? 1 : dot(way, way);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float value = pixels.pixels[3 * i + c];
+      if (!(value >= kMinValue) || !std::isfinite(value)) state = PixelState::missing;
+      if (form.clip && static_cast<double>(value) >= *form.clip && is_there(state))
+        state = clipped_in(state, c);
+      to[c] = static_cast<float>(static_cast<double>(value) * scale[c] * fall);
+    }
+    if (state == PixelState::missing) std::fill_n(to, 3, 0.0f);
+    rows.states[p * texels + i] = state;
+  }
+}
+
+}  // namespace
+
 Capture::Read Capture::read(int first, int count) const {
   if (table_) return {.rows = table_->rows(first, count), .damaged = {}};
   const bool srgb = form_.transfer == Transfer::srgb;
@@ -255,38 +295,12 @@ Capture::Read Capture::read(int first, int count) const {
   std::vector<std::string> why(rows.pictures);
   for_each_chunk(rows.pictures, 1, [&](std::size_t p, std::size_t, std::size_t) {
     const CapturePicture& picture = form_.pictures[p];
-    const std::array<double, 3> scale{picture.scale.r, picture.scale.g, picture.scale.b};
     try {
-      const Image pixels = factors ? factors->picture(btf_numbers_[p])
-                                   : read_picture_rows(path_ / picture.file, first, count, srgb);
-      if (pixels.width != form_.width)
-        throw Error::in_file(picture.file, fmt::format("{} pixels a row", form_.width),
-                             fmt::format("{}", pixels.width));
+      const Image pixels =
+          factors ? factors->picture(btf_numbers_[p]) : rows_of(path_, picture.file, rows, srgb);
       Image mask;
-      if (!picture.mask.empty()) mask = read_picture_rows(path_ / picture.mask, first, count, false);
-      if (!mask.pixels.empty() && mask.width != form_.width)
-        throw Error::in_file(picture.mask, fmt::format("{} pixels a row", form_.width),
-                             fmt::format("{}", mask.width));
-      for (std::size_t i = 0; i < texels; ++i) {
-        PixelState state =
-            mask.pixels.empty() || mask.pixels[3 * i] > 0 ? PixelState::there : PixelState::masked;
-        float* const to = &rows.values[(p * texels + i) * 3];
-        // at a point, a light's irradiance falls with its distance
-        const int x = static_cast<int>(i % static_cast<std::size_t>(form_.width));
-        const Vec3 point =
-            form_.point(x, first + static_cast<int>(i / static_cast<std::size_t>(form_.width)));
-        const Vec3 way = picture.light.at - point;
-        const double fall = picture.light.is_direction ? 1 : dot(way, way);
-        for (std::size_t c = 0; c < 3; ++c) {
-          const float value = pixels.pixels[3 * i + c];
-          if (!(value >= kMinValue) || !std::isfinite(value)) state = PixelState::missing;
-          if (form_.clip && static_cast<double>(value) >= *form_.clip && is_there(state))
-            state = clipped_in(state, c);
-          to[c] = static_cast<float>(static_cast<double>(value) * scale[c] * fall);
-        }
-        if (state == PixelState::missing) std::fill_n(to, 3, 0.0f);
-        rows.states[p * texels + i] = state;
-      }
+      if (!picture.mask.empty()) mask = rows_of(path_, picture.mask, rows, false);
+      fill_picture(rows, p, form_, pixels, mask);
     } catch (const Error& error) {
       why[p] = error.what();
       std::fill_n(rows.states.begin() + static_cast<std::ptrdiff_t>(p * texels), texels, PixelState::missing);

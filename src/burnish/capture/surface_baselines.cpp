@@ -181,7 +181,17 @@ class Comparison {
     std::vector<std::size_t> fitted;
     for (std::size_t p = 0; p < pictures.size(); ++p)
       if (!pictures[p].held_out) fitted.push_back(p);
-    // texels as columns of logarithms
+    const Eigen::MatrixXd modelled = principal_logs(fitted, components);
+    std::vector<double> means;
+    for (std::size_t p = 0; p < pictures.size(); ++p) {
+      if (!pictures[p].held_out) continue;
+      if (const auto mean = mean_square(p, nearest_pictures(p, fitted), modelled)) means.push_back(*mean);
+    }
+    return psnr(means);
+  }
+
+  /// Logarithms of the fitted pictures, a column a texel, as so many components and the mean have them.
+  Eigen::MatrixXd principal_logs(const std::vector<std::size_t>& fitted, std::size_t components) const {
     const auto rows = static_cast<Eigen::Index>(kCaptureChannels * fitted.size()),
                columns = static_cast<Eigen::Index>(samples_.size());
     Eigen::MatrixXd logs(rows, columns);
@@ -196,45 +206,59 @@ class Comparison {
         logs * logs.transpose(), std::min<Eigen::Index>(rows, static_cast<Eigen::Index>(components)));
     Eigen::MatrixXd modelled = basis * (basis.transpose() * logs);
     modelled.colwise() += mean;
+    return modelled;
+  }
 
-    std::vector<double> means;
-    const auto seen_as = [](double x) { return std::pow(std::clamp(x, 0.0, 1.0), kGrey); };
-    for (std::size_t p = 0; p < pictures.size(); ++p) {
-      if (!pictures[p].held_out) continue;
-      // the pictures whose light and view are nearest
-      std::vector<std::pair<double, std::size_t>> near;
-      const Vec3 origin;
-      for (std::size_t k = 0; k < fitted.size(); ++k) {
-        const CapturePicture& other = pictures[fitted[k]];
-        const Vec3 light = other.light.seen_from(origin) - pictures[p].light.seen_from(origin),
-                   view = other.view.seen_from(origin) - pictures[p].view.seen_from(origin);
-        near.emplace_back(dot(light, light) + dot(view, view), k);
-      }
-      const std::size_t count = std::min(kNeighbours, near.size());
-      std::ranges::partial_sort(near, near.begin() + static_cast<std::ptrdiff_t>(count));
-      double sum = 0;
-      std::size_t values = 0;
-      for (std::size_t t = 0; t < samples_.size(); ++t) {
-        const std::size_t pixel = p * samples_.size() + t;
-        if (samples_.states[pixel] == PixelState::missing || samples_.states[pixel] == PixelState::masked)
-          continue;
-        for (std::size_t c = 0; c < kCaptureChannels; ++c, ++values) {
-          double log = 0, all = 0;
-          for (std::size_t n = 0; n < count; ++n) {
-            const double share = 1 / (near[n].first + 1e-6);
-            log += share * modelled(static_cast<Eigen::Index>(kCaptureChannels * near[n].second + c),
-                                    static_cast<Eigen::Index>(t));
-            all += share;
-          }
-          const double value = std::exp(log_value(pixel, c)), found = std::exp(log / all),
-                       shown = is_clipped(samples_.states[pixel], c) ? std::min(found, value) : found;
-          const double off = seen_as(shown - kLogFloor) - seen_as(value - kLogFloor);
-          sum += off * off;
-        }
-      }
-      if (values > 0) means.push_back(sum / static_cast<double>(values));
+  /// A fitted picture, by its place among these, and how much it counts.
+  struct Neighbour {
+    std::size_t place;
+    double share;
+  };
+
+  /// The fitted pictures whose light and view are nearest to those of picture `p`.
+  std::vector<Neighbour> nearest_pictures(std::size_t p, const std::vector<std::size_t>& fitted) const {
+    const auto& pictures = capture_.form().pictures;
+    std::vector<std::pair<double, std::size_t>> near;
+    const Vec3 origin;
+    for (std::size_t k = 0; k < fitted.size(); ++k) {
+      const CapturePicture& other = pictures[fitted[k]];
+      const Vec3 light = other.light.seen_from(origin) - pictures[p].light.seen_from(origin),
+                 view = other.view.seen_from(origin) - pictures[p].view.seen_from(origin);
+      near.emplace_back(dot(light, light) + dot(view, view), k);
     }
-    return psnr(means);
+    const std::size_t count = std::min(kNeighbours, near.size());
+    std::ranges::partial_sort(near, near.begin() + static_cast<std::ptrdiff_t>(count));
+    near.resize(count);
+    std::vector<Neighbour> nearest;
+    for (const auto& [distance, k] : near) nearest.push_back({k, 1 / (distance + 1e-6)});
+    return nearest;
+  }
+
+  /// Mean square of what picture `p` shows less the mean of its neighbours' logarithms; none where it is missing.
+  std::optional<double> mean_square(std::size_t p, const std::vector<Neighbour>& neighbours,
+                                    const Eigen::MatrixXd& modelled) const {
+    const auto seen_as = [](double x) { return std::pow(std::clamp(x, 0.0, 1.0), kGrey); };
+    double sum = 0;
+    std::size_t values = 0;
+    for (std::size_t t = 0; t < samples_.size(); ++t) {
+      const std::size_t pixel = p * samples_.size() + t;
+      if (samples_.states[pixel] == PixelState::missing || samples_.states[pixel] == PixelState::masked)
+        continue;
+      for (std::size_t c = 0; c < kCaptureChannels; ++c, ++values) {
+        double log = 0, all = 0;
+        for (const auto& [place, share] : neighbours) {
+          log += share * modelled(static_cast<Eigen::Index>(kCaptureChannels * place + c),
+                                  static_cast<Eigen::Index>(t));
+          all += share;
+        }
+        const double value = std::exp(log_value(pixel, c)), found = std::exp(log / all),
+                     shown = is_clipped(samples_.states[pixel], c) ? std::min(found, value) : found;
+        const double off = seen_as(shown - kLogFloor) - seen_as(value - kLogFloor);
+        sum += off * off;
+      }
+    }
+    if (values == 0) return std::nullopt;
+    return sum / static_cast<double>(values);
   }
 
   Capture capture_;

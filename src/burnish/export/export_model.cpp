@@ -284,7 +284,7 @@ ExportedFiles ModelExport::run() && {
   if (wants(ExportTarget::html))
     manifest_["page"] = add(name + ".html", html_page(brdf_, name, light ? &*light : nullptr));
 
-  add_manifest(manifest_, name, result_.files);
+  result_.files.push_back(manifest_file(manifest_, name));
   return std::move(result_);
 }
 

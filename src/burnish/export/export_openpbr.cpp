@@ -32,41 +32,50 @@ const OpenPbr& material_of(const AnalyticBrdf& brdf) {
   return *model;
 }
 
-std::vector<ExportedFile> gltf_file(const NearestGltf& nearest, const std::string& name, json& manifest) {
-  manifest["material"] = gltf_entry(nearest);
-  return {{name + ".glb", gltf_binary(gltf_json(nearest.material), name)}};
+// The files of one target that is no shader, and what the manifest says of it besides their names.
+struct TargetFiles {
+  std::vector<ExportedFile> files;
+  json entry = json::object();
+  std::string lossy = {};  // the file that says less
+  std::vector<std::string> losses = {};
+};
+
+TargetFiles gltf_file(const NearestGltf& nearest, const std::string& name) {
+  return {.files = {{name + ".glb", gltf_binary(gltf_json(nearest.material), name)}},
+          .entry = {{"material", gltf_entry(nearest)}}};
 }
 
-// The files of one target that is no shader, without the manifest.
-std::vector<ExportedFile> files_of(const AnalyticBrdf& brdf, ExportTarget target,
-                                   const ExportOptions& options, json& manifest, ExportedFiles& result) {
+TargetFiles files_of(const AnalyticBrdf& brdf, ExportTarget target, const ExportOptions& options) {
   const OpenPbr& material = material_of(brdf);
   const OpenPbrParameters& parameters = material.parameters();
   const std::string& name = options.name;
   switch (target) {
     case ExportTarget::materialx:
-      return {materialx_file(parameters, name)};
+      return {.files = {materialx_file(parameters, name)}};
     case ExportTarget::usda:
-      return {{name + ".usda", usda_layer(parameters, fit_metallic_roughness(brdf).material, name)}};
+      return {
+          .files = {{name + ".usda", usda_layer(parameters, fit_metallic_roughness(brdf).material, name)}}};
     case ExportTarget::gltf:
-      return gltf_file(nearest_gltf(brdf), name, manifest);
+      return gltf_file(nearest_gltf(brdf), name);
     case ExportTarget::mdl: {
       MdlModule module = mdl_module({.name = name, .brdf = brdf, .findings = {}}, options.cells, name);
-      result.lose(name + ".mbsdf", module.losses);
-      manifest["losses"] = std::move(module.losses);
-      return std::move(module.files);
+      return {.files = std::move(module.files),
+              .entry = {{"losses", module.losses}},
+              .lossy = name + ".mbsdf",
+              .losses = module.losses};
     }
     case ExportTarget::rgl: {
       Converted table = convert({.name = name, .brdf = brdf, .findings = {}}, "rgl", {});
-      result.lose(name + ".bsdf", table.losses);
-      return {{name + ".bsdf", std::move(table.bytes)}};
+      return {.files = {{name + ".bsdf", std::move(table.bytes)}},
+              .lossy = name + ".bsdf",
+              .losses = std::move(table.losses)};
     }
     case ExportTarget::three:
-      return {{name + ".three.js", three_module(material, name)}};
+      return {.files = {{name + ".three.js", three_module(material, name)}}};
     case ExportTarget::babylon:
-      return {{name + ".babylon.js", babylon_module(material, name)}};
+      return {.files = {{name + ".babylon.js", babylon_module(material, name)}}};
     case ExportTarget::html:
-      return {{name + ".html", html_page(material, name)}};
+      return {.files = {{name + ".html", html_page(material, name)}}};
     default:
       throw Error(fmt::format(
           "export: expected a target other than ktx2, cube, exr and png for openpbr, which has no "
@@ -90,13 +99,16 @@ ExportedFiles export_openpbr(const AnalyticBrdf& brdf, const ExportOptions& opti
       manifest["shaders"].push_back(manifest_entry(*language, options.name, shader));
       continue;
     }
+    TargetFiles made = files_of(brdf, target, options);
+    result.lose(made.lossy, made.losses);
     json& entry = manifest[std::string(to_string(target))];
-    for (ExportedFile& file : files_of(brdf, target, options, entry, result)) {
+    entry.update(made.entry);
+    for (ExportedFile& file : made.files) {
       entry["files"].push_back(file.name);
       result.files.push_back(std::move(file));
     }
   }
-  add_manifest(manifest, options.name, result.files);
+  result.files.push_back(manifest_file(manifest, options.name));
   return result;
 }
 

@@ -62,7 +62,7 @@ ExportedFiles export_specular(const std::string& spec, std::optional<PowerMethod
     result.shaders.push_back({file, std::string(method.name), shader.cost});
     manifest["shaders"].push_back(manifest_entry(*language, options.name, shader));
   }
-  add_manifest(manifest, options.name, result.files);
+  result.files.push_back(manifest_file(manifest, options.name));
   return result;
 }
 

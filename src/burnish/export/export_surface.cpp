@@ -78,7 +78,7 @@ class SurfaceExport {
     if (wants(ExportTarget::three)) add_page("three", ".three.js", three_module(surface_, options_.name));
     if (wants(ExportTarget::gltf)) add_gltf();
     if (wants(ExportTarget::html)) add_page("page", ".html", html_page(surface_, options_.name));
-    add_manifest(manifest_, options_.name, result_.files);
+    result_.files.push_back(manifest_file(manifest_, options_.name));
     return std::move(result_);
   }
 

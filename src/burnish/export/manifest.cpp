@@ -76,8 +76,8 @@ json core_entry(const MetallicRoughness& material) {
           {"roughnessFactor", material.roughness}};
 }
 
-void add_manifest(const json& manifest, const std::string& name, std::vector<ExportedFile>& files) {
-  files.push_back({name + ".json", manifest.dump(2, ' ', true, json::error_handler_t::replace) + "\n"});
+ExportedFile manifest_file(const json& manifest, const std::string& name) {
+  return {name + ".json", manifest.dump(2, ' ', true, json::error_handler_t::replace) + "\n"};
 }
 
 }  // namespace burnish

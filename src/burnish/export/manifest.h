@@ -30,7 +30,7 @@ nlohmann::json gltf_entry(const NearestGltf& nearest);
 /// A core material as glTF has it.
 nlohmann::json core_entry(const MetallicRoughness& material);
 
-/// Appends NAME.json.
-void add_manifest(const nlohmann::json& manifest, const std::string& name, std::vector<ExportedFile>& files);
+/// NAME.json.
+ExportedFile manifest_file(const nlohmann::json& manifest, const std::string& name);
 
 }  // namespace burnish

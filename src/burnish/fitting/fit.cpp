@@ -372,8 +372,8 @@ class Fitter {
     // and their tables, as smooth as asked for or as needed
     if (options_.smooth)
       return finish(fit_plan(set, plan, bytes, texel, refine, kLobeStarts), set, refine, std::move(report));
-    const LobesFit fit = fit_without_overfit(reference(), set, plan, bytes, texel, drawn, refine);
-    report.smooth = refine.smooth;
+    const auto [fit, smooth] = fit_without_overfit(reference(), set, plan, bytes, texel, drawn, refine);
+    report.smooth = refine.smooth = smooth;
     return finish(fit, set, refine, std::move(report));
   }
 

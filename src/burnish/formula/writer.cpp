@@ -27,8 +27,7 @@ Writer::Writer(const Language& language, const Graph& graph, const std::vector<s
   for (std::size_t i = 0; i < graph.nodes().size(); ++i) {
     if (!is_local(i)) continue;
     const Graph::Node& node = graph.nodes()[i];
-    int precedence;
-    const std::string value = formula(i, precedence);
+    const std::string value = formula(i).text;
     names_[i] = new_name(node.called);
     statements_.push_back({language.declaration(node.type, names_[i], value, half_[i]), i, count_of_text(i)});
   }
@@ -89,32 +88,60 @@ std::string Writer::operand(std::size_t i, int least_precedence) const {
   const Graph::Node& node = graph_.nodes()[i];
   if (!names_[i].empty()) return names_[i];
   if (node.op == Op::input) return node.name;
-  int precedence;
-  const std::string text = formula(i, precedence);
+  const auto [text, precedence] = formula(i);
   return precedence < least_precedence ? "(" + text + ")" : text;
 }
 
-std::string Writer::formula(std::size_t i, int& precedence) const {
+/// In half precision where what it is a factor of is.
+std::string Writer::argument(std::size_t i, std::size_t number, int least_precedence) const {
   const Graph::Node& node = graph_.nodes()[i];
-  const bool half = half_[i], read = node.op == Op::texel || node.op == Op::sample;
-  const auto of = [&](std::size_t k, int least) {
-    const Graph::Node& argument = graph_.nodes()[node.arguments[k]];
-    const bool factor = half && !read && argument.op == Op::constant && argument.type == ValueType::real;
-    return factor ? language_.literal(argument.constant, true) : operand(node.arguments[k], least);
-  };
+  const bool read = node.op == Op::texel || node.op == Op::sample;
+  const Graph::Node& argument = graph_.nodes()[node.arguments[number]];
+  const bool factor = half_[i] && !read && argument.op == Op::constant && argument.type == ValueType::real;
+  return factor ? language_.literal(argument.constant, true)
+                : operand(node.arguments[number], least_precedence);
+}
+
+std::vector<std::string> Writer::arguments(std::size_t i) const {
+  std::vector<std::string> all;
+  for (std::size_t k = 0; k < graph_.nodes()[i].arguments.size(); ++k) all.push_back(argument(i, k, 0));
+  return all;
+}
+
+/// Of a texture.
+std::string Writer::read(std::size_t i) const {
+  const Graph::Node& node = graph_.nodes()[i];
+  const std::string texel = node.op == Op::texel ? language_.fetch(node.name, arguments(i), node.type)
+                                                 : language_.filtered(node.name, arguments(i), node.type);
+  const std::string_view convert =
+      node.type == ValueType::vector ? language_.half_from_vector : language_.half_from_scalar;
+  return half_[i] && !convert.empty() ? fmt::format("{}({})", convert, texel) : texel;
+}
+
+/// By the language's pattern.
+Writer::Formula Writer::call(std::size_t i) const {
+  const Graph::Node& node = graph_.nodes()[i];
+  const Language::Call& call = language_.calls.at(node.op);
+  std::string a[4];
+  for (std::size_t k = 0; k < node.arguments.size(); ++k)
+    a[k] = argument(i, k, call.precedence == kCall ? 0 : call.precedence + 1);
+  return {fmt::format(fmt::runtime(call.pattern), a[0], a[1], a[2], a[3]), call.precedence};
+}
+
+Writer::Formula Writer::formula(std::size_t i) const {
+  const Graph::Node& node = graph_.nodes()[i];
+  const auto of = [&](std::size_t k, int least) { return argument(i, k, least); };
   // a op b; what stands to the right of an operator keeps its parentheses
-  const auto binary = [&](const char* sign, int own) {
-    precedence = own;
-    return fmt::format("{} {} {}", of(0, own), sign, of(1, own + 1));
+  const auto binary = [&](const char* sign, int own) -> Formula {
+    return {fmt::format("{} {} {}", of(0, own), sign, of(1, own + 1)), own};
   };
-  precedence = kCall;
   switch (node.op) {
     case Op::constant:
-      if (node.constant < 0) precedence = kChoice;
-      return node.type == ValueType::integer ? fmt::format("{}", node.constant)
-                                             : language_.literal(node.constant);
+      return {node.type == ValueType::integer ? fmt::format("{}", node.constant)
+                                              : language_.literal(node.constant),
+              node.constant < 0 ? kChoice : kCall};
     case Op::input:
-      return node.name;
+      return {node.name, kCall};
     case Op::add:
       return binary("+", kSum);
     case Op::subtract:
@@ -124,41 +151,26 @@ std::string Writer::formula(std::size_t i, int& precedence) const {
     case Op::divide:
       return binary("/", kProduct);
     case Op::mul_add:
-      precedence = kSum;
-      return fmt::format("{} * {} + {}", of(0, kProduct), of(1, kCall), of(2, kProduct));
+      return {fmt::format("{} * {} + {}", of(0, kProduct), of(1, kCall), of(2, kProduct)), kSum};
     case Op::neg_mul_add:
-      precedence = kSum;
-      return fmt::format("{} - {} * {}", of(2, kSum), of(0, kProduct), of(1, kCall));
+      return {fmt::format("{} - {} * {}", of(2, kSum), of(0, kProduct), of(1, kCall)), kSum};
     case Op::negate:
-      precedence = kChoice;
-      return "-" + of(0, kCall);
+      return {"-" + of(0, kCall), kChoice};
     case Op::vector:
-      return fmt::format("{}({}, {}, {})", half ? language_.half_constructor : language_.vector, of(0, 0),
-                         of(1, 0), of(2, 0));
+      return {fmt::format("{}({}, {}, {})", half_[i] ? language_.half_constructor : language_.vector,
+                          of(0, 0), of(1, 0), of(2, 0)),
+              kCall};
     case Op::component:
-      return fmt::format("{}.{}", of(0, kCall), "xyz"[static_cast<std::size_t>(node.constant)]);
+      return {fmt::format("{}.{}", of(0, kCall), "xyz"[static_cast<std::size_t>(node.constant)]), kCall};
     case Op::element:
-      return fmt::format("{}[{}]", node.name, of(0, 0));
+      return {fmt::format("{}[{}]", node.name, of(0, 0)), kCall};
     case Op::texel:
     case Op::sample:
-    case Op::call: {
-      std::vector<std::string> all;
-      for (std::size_t k = 0; k < node.arguments.size(); ++k) all.push_back(of(k, 0));
-      if (node.op == Op::call) return fmt::format("{}({})", node.name, fmt::join(all, ", "));
-      const std::string texel = node.op == Op::texel ? language_.fetch(node.name, all, node.type)
-                                                     : language_.filtered(node.name, all, node.type);
-      const std::string_view convert =
-          node.type == ValueType::vector ? language_.half_from_vector : language_.half_from_scalar;
-      return half && !convert.empty() ? fmt::format("{}({})", convert, texel) : texel;
-    }
-    default: {
-      const Language::Call& call = language_.calls.at(node.op);
-      precedence = call.precedence;
-      std::string a[4];
-      for (std::size_t k = 0; k < node.arguments.size(); ++k)
-        a[k] = of(k, precedence == kCall ? 0 : precedence + 1);
-      return fmt::format(fmt::runtime(call.pattern), a[0], a[1], a[2], a[3]);
-    }
+      return {read(i), kCall};
+    case Op::call:
+      return {fmt::format("{}({})", node.name, fmt::join(arguments(i), ", ")), kCall};
+    default:
+      return call(i);
   }
 }
 

@@ -42,7 +42,16 @@ class Writer {
   bool is_half(const Graph::Node& node) const;
   bool is_local(std::size_t node) const;
   std::string operand(std::size_t node, int least_precedence) const;
-  std::string formula(std::size_t node, int& precedence) const;
+  /// Text, and how tightly its outermost operator binds.
+  struct Formula {
+    std::string text;
+    int precedence;
+  };
+  Formula formula(std::size_t node) const;
+  Formula call(std::size_t node) const;
+  std::string read(std::size_t node) const;
+  std::string argument(std::size_t node, std::size_t number, int least_precedence) const;
+  std::vector<std::string> arguments(std::size_t node) const;
   OperationCount count_of_text(std::size_t node) const;
   std::string new_name(std::string_view called);
 

@@ -47,21 +47,10 @@ BlockHeader read_block_header(ByteReader& reader) {
   return header;
 }
 
-}  // namespace
-
-bool looks_like_mbsdf(std::span<const std::byte> bytes) noexcept {
-  return bytes.size() >= kMagic.size() && std::memcmp(bytes.data(), kMagic.data(), kMagic.size() - 1) == 0;
-}
-
-MbsdfFile parse_mbsdf(const FileBytes& file) {
-  ByteReader reader(file);
-  if (!looks_like_mbsdf(file.bytes))
-    reader.fail("NVIDIA ARC MBSDF V1", in_quotes(file.text().substr(0, kMagic.size())));
-  MbsdfFile result;
-  Findings& findings = result.findings;
+/// What stands before the reflection block; a transmission block is passed over.
+Findings read_mbsdf_header(const FileBytes& file, ByteReader& reader) {
+  Findings findings;
   findings.format = "NVIDIA MBSDF";
-
-  // the header, up to the reflection block
   read_line(file, reader);
   std::string_view line = read_line(file, reader);
   for (; !line.starts_with(kReflection); line = read_line(file, reader)) {
@@ -76,28 +65,46 @@ MbsdfFile parse_mbsdf(const FileBytes& file) {
         findings.description += (findings.description.empty() ? "" : ", ") + printable(line, 80);
     }
   }
+  return findings;
+}
 
-  // the block's bytes; nothing but a transmission block may follow
-  const BlockHeader header = read_block_header(reader);
+/// A block's values, all of which must be numbers; nothing but a transmission block may follow.
+std::vector<float> read_block_values(const FileBytes& file, ByteReader& reader, std::uint64_t count) {
   const std::uint64_t start = reader.offset();
-  const auto bytes = reader.take(header.value_count() * sizeof(float), "values");
+  const auto bytes = reader.take(count * sizeof(float), "values");
   if (const std::string_view rest = trimmed(file.text().substr(reader.offset()));
       !rest.empty() && rest != "\n" && !rest.substr(rest[0] == '\n').starts_with(kTransmission))
     reader.fail("the end of the file or a transmission block",
                 fmt::format("{} more bytes", reader.remaining()));
+  std::vector<float> values(count);
+  std::memcpy(values.data(), bytes.data(), bytes.size());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!std::isfinite(values[i])) {
+      reader.seek(start + i * sizeof(float));
+      reader.fail("a finite value", fmt::format("{}", values[i]));
+    }
+  return values;
+}
 
-  // its values, all of which must be numbers
+}  // namespace
+
+bool looks_like_mbsdf(std::span<const std::byte> bytes) noexcept {
+  return bytes.size() >= kMagic.size() && std::memcmp(bytes.data(), kMagic.data(), kMagic.size() - 1) == 0;
+}
+
+MbsdfFile parse_mbsdf(const FileBytes& file) {
+  ByteReader reader(file);
+  if (!looks_like_mbsdf(file.bytes))
+    reader.fail("NVIDIA ARC MBSDF V1", in_quotes(file.text().substr(0, kMagic.size())));
+  MbsdfFile result;
+  Findings& findings = result.findings;
+  findings = read_mbsdf_header(file, reader);
+  const BlockHeader header = read_block_header(reader);
   AngleTable& table = result.table;
   table = mbsdf_layout(header.theta_count, header.phi_count);
   table.channel_count = header.channels;
-  table.values.resize(header.value_count());
-  std::memcpy(table.values.data(), bytes.data(), bytes.size());
-  for (std::size_t i = 0; i < table.values.size(); ++i) {
-    const float value = table.values[i];
-    if (!std::isfinite(value)) {
-      reader.seek(start + i * sizeof(float));
-      reader.fail("a finite value", fmt::format("{}", value));
-    }
+  table.values = read_block_values(file, reader, header.value_count());
+  for (const float value : table.values) {
     if (value >= 0) continue;
     ++findings.negative_count;
     findings.most_negative = std::min(findings.most_negative, static_cast<double>(value));

@@ -82,6 +82,30 @@ SliceCount read_slice(const std::byte* planes, int h, std::span<const double> ab
   return count;
 }
 
+Findings findings_of(const HalfDiffTable& table, const std::vector<SliceCount>& counts) {
+  Findings findings;
+  std::uint64_t below_horizon = 0;
+  for (const SliceCount& count : counts) {
+    findings.hole_count += count.holes;
+    below_horizon += count.below_horizon;
+    findings.negative_count += count.negatives;
+    findings.most_negative = std::min(findings.most_negative, count.most_negative);
+  }
+  findings.format = "MERL binary";
+  findings.description = fmt::format("{} x {} x {} half/difference table", table.theta_h_count,
+                                     table.theta_d_count, table.phi_d_count);
+  findings.conventions = {"Values times 1/1500, 1.15/1500, 1.66/1500 are f_r in linear Rec. 709.",
+                          "Entries stand for the centres of their cells; trilinear between them in (sqrt "
+                          "theta_h, theta_d, phi_d).",
+                          table.full_circle
+                              ? "phi_d covers the full circle: 360 entries."
+                              : "phi_d covers half the circle; the other half follows from reciprocity.",
+                          fmt::format("{} of the holes lie below the horizon.", below_horizon)};
+  findings.sample_count = table.entry_count();
+  findings.theta_i_max = findings.theta_o_max = kHalfPi;
+  return findings;
+}
+
 }  // namespace
 
 bool looks_like_merl(std::span<const std::byte> bytes) noexcept {
@@ -116,30 +140,13 @@ MerlFile parse_merl(const FileBytes& file) {
     counts[h] = read_slice(planes, static_cast<int>(h), abs_cos_phi, table);
   });
 
-  Findings& findings = merl.findings;
-  std::uint64_t below_horizon = 0;
-  for (const SliceCount& count : counts) {
+  for (const SliceCount& count : counts)
     if (!count.finite) {
       reader.seek(kHeaderBytes + count.bad_entry * sizeof(double));
       reader.fail("a finite value above the horizon",
                   fmt::format("{}", read_double(planes + count.bad_entry * sizeof(double))));
     }
-    findings.hole_count += count.holes;
-    below_horizon += count.below_horizon;
-    findings.negative_count += count.negatives;
-    findings.most_negative = std::min(findings.most_negative, count.most_negative);
-  }
-  findings.format = "MERL binary";
-  findings.description = fmt::format("{} x {} x {} half/difference table", sizes[0], sizes[1], sizes[2]);
-  findings.conventions = {"Values times 1/1500, 1.15/1500, 1.66/1500 are f_r in linear Rec. 709.",
-                          "Entries stand for the centres of their cells; trilinear between them in (sqrt "
-                          "theta_h, theta_d, phi_d).",
-                          table.full_circle
-                              ? "phi_d covers the full circle: 360 entries."
-                              : "phi_d covers half the circle; the other half follows from reciprocity.",
-                          fmt::format("{} of the holes lie below the horizon.", below_horizon)};
-  findings.sample_count = entries;
-  findings.theta_i_max = findings.theta_o_max = kHalfPi;
+  merl.findings = findings_of(table, counts);
   return merl;
 }
 

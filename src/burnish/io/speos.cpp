@@ -36,6 +36,7 @@ struct Content {
   std::vector<double> rotations_deg, incidences_deg, lambda_nm;
   std::vector<std::vector<std::vector<Block>>> blocks;
   std::string comment;
+  std::string scaling;  // what was made of the stated reflectances
 };
 
 /// The next number, on a later line where this one has none left.
@@ -175,7 +176,7 @@ double value_at(const Block& block, double theta_deg, double phi_deg) noexcept {
 }
 
 /// One block for each rotation and incidence, and the spectrum they are scaled to.
-Content read_anisotropic(TextReader& reader, std::vector<std::string>& notes) {
+Content read_anisotropic(TextReader& reader) {
   Content content = read_preamble(reader, true);
   const std::size_t rotations = next_count(reader, "the number of anisotropy angles", kMaxAngles);
   content.rotations_deg = next_angles(reader, "anisotropy angles", rotations, 360);
@@ -206,9 +207,9 @@ Content read_anisotropic(TextReader& reader, std::vector<std::string>& notes) {
   const auto [least, most] = std::minmax_element(reflectance.begin(), reflectance.end());
   if (!(*least >= 0 && found > 0)) reader.fail("a positive reflectance", fmt::format("{}", found));
   const bool flat = *least == *most, kept = flat && trusted(*least, found);
-  notes.push_back(fmt::format(
+  content.scaling = fmt::format(
       "The values integrate to {:.4g} % at {} degrees, stated {:.4g} to {:.4g} %: {}.", 100 * found,
-      measured_deg, 100 * *least, 100 * *most, kept ? "taken as they are" : "scaled"));
+      measured_deg, 100 * *least, 100 * *most, kept ? "taken as they are" : "scaled");
   if (flat) {
     reflectance = {kept ? found : *least};
     if (content.lambda_nm.size() > 1) content.lambda_nm.clear();  // grey; one alone is where it was measured
@@ -222,7 +223,7 @@ Content read_anisotropic(TextReader& reader, std::vector<std::string>& notes) {
 }
 
 /// One block for each incidence and wavelength, each with its reflectance.
-Content read_brdf(TextReader& reader, std::vector<std::string>& notes) {
+Content read_brdf(TextReader& reader) {
   Content content = read_preamble(reader, false);
   const std::size_t incidences = next_count(reader, "the number of incidences", kMaxAngles);
   const std::size_t bands = next_count(reader, "the number of wavelengths", kMaxFileChannels);
@@ -242,8 +243,8 @@ Content read_brdf(TextReader& reader, std::vector<std::string>& notes) {
       kept = kept && trusted(reflectance, found);
       factors[k].push_back(found > 0 ? reflectance / found : 0);
     }
-  notes.push_back(kept ? "The values integrate to the stated reflectances: taken as they are."
-                       : "The values are scaled to the stated reflectances.");
+  content.scaling = kept ? "The values integrate to the stated reflectances: taken as they are."
+                         : "The values are scaled to the stated reflectances.";
   if (!kept)
     for (std::size_t k = 0; k < bands; ++k)
       for (std::size_t i = 0; i < incidences; ++i) scale(content.blocks[k][0][i], factors[k][i], reader);
@@ -283,43 +284,52 @@ std::vector<AzimuthNode> azimuth_nodes(const std::vector<double>& phis_deg, bool
   return nodes;
 }
 
-std::vector<double> in_radians(const std::vector<AzimuthNode>& nodes) {
-  std::vector<double> angles;
-  for (const AzimuthNode& node : nodes) angles.push_back(radians(node.node_deg));
-  return angles;
+/// Rotations of the sample; wi stands opposite to where the light travels, from which anisotropy angles count.
+std::vector<AzimuthNode> rotation_nodes(const std::vector<double>& rotations_deg) {
+  std::vector<AzimuthNode> nodes;
+  for (const double angle : rotations_deg) nodes.push_back({std::fmod(540 - angle, 360), angle});
+  if (nodes.size() > 1 && nodes.back().phi_deg - nodes.front().phi_deg >= 360 - kSameDegree) nodes.pop_back();
+  std::sort(nodes.begin(), nodes.end(), [](const auto& a, const auto& b) { return a.node_deg < b.node_deg; });
+  return nodes;
 }
 
-/// The table of all blocks; wi stands opposite to where the light travels, from which anisotropy angles count.
-AngleTable make_table(const FileBytes& file, const Content& content, Findings& findings) {
+AngleAxis azimuth_axis(const std::vector<AzimuthNode>& nodes, double period) {
+  std::vector<double> angles;
+  for (const AzimuthNode& node : nodes) angles.push_back(radians(node.node_deg));
+  return make_axis(angles, period);
+}
+
+AngleAxis polar_axis(const std::vector<double>& thetas_deg) {
+  std::vector<double> angles;
+  for (const double angle : thetas_deg) angles.push_back(std::min(radians(angle), kHalfPi));
+  return make_axis(angles);
+}
+
+/// A table, and what its values were.
+struct CountedTable {
+  AngleTable table;
+  std::size_t entries = 0, holes = 0, negatives = 0;
+  double most_negative = 0;
+};
+
+/// Every entry from its block, a hole where a cosine cannot be divided out.
+CountedTable make_table(const FileBytes& file, const Content& content) {
   const std::vector<double> thetas = all_angles(content, &Block::theta_deg);
   const std::vector<double> phis = all_angles(content, &Block::phi_deg);
-  AngleTable table;
+  CountedTable result;
+  AngleTable& table = result.table;
   table.folded = phis.back() <= 180 + kSameDegree;
-  const std::vector<AzimuthNode> azimuths = azimuth_nodes(phis, table.folded);
-  std::vector<AzimuthNode> rotations;
-  for (const double angle : content.rotations_deg) rotations.push_back({std::fmod(540 - angle, 360), angle});
-  if (rotations.size() > 1 && rotations.back().phi_deg - rotations.front().phi_deg >= 360 - kSameDegree)
-    rotations.pop_back();
-  std::sort(rotations.begin(), rotations.end(),
-            [](const auto& a, const auto& b) { return a.node_deg < b.node_deg; });
-
+  const std::vector<AzimuthNode> azimuths = azimuth_nodes(phis, table.folded),
+                                 rotations = rotation_nodes(content.rotations_deg);
   table.channel_count = content.blocks.size();
   const std::size_t channels = content.blocks.size(), incidences = content.incidences_deg.size();
-  const std::size_t entries = rotations.size() * incidences * thetas.size() * azimuths.size();
-  if (entries > kMaxValues / channels)
+  result.entries = rotations.size() * incidences * thetas.size() * azimuths.size();
+  if (result.entries > kMaxValues / channels)
     throw Error::in_file(file.name, fmt::format("at most {} values at the angles of all blocks", kMaxValues),
                          "more");
-  const auto polar = [](const std::vector<double>& degrees_) {
-    std::vector<double> angles;
-    for (const double angle : degrees_) angles.push_back(std::min(radians(angle), kHalfPi));
-    return make_axis(angles);
-  };
-  table.axes = {make_axis(in_radians(rotations), kTwoPi), polar(content.incidences_deg), polar(thetas),
-                make_axis(in_radians(azimuths), table.folded ? 0 : kTwoPi)};
-  table.values.resize(entries * channels);
-
-  // every entry from its block, a hole where a cosine cannot be divided out
-  std::size_t at = 0;
+  table.axes = {azimuth_axis(rotations, kTwoPi), polar_axis(content.incidences_deg), polar_axis(thetas),
+                azimuth_axis(azimuths, table.folded ? 0 : kTwoPi)};
+  table.values.reserve(result.entries * channels);
   for (const AzimuthNode& rotation : rotations) {
     const auto r = static_cast<std::size_t>(
         std::find(content.rotations_deg.begin(), content.rotations_deg.end(), rotation.phi_deg) -
@@ -329,27 +339,38 @@ AngleTable make_table(const FileBytes& file, const Content& content, Findings& f
         for (const AzimuthNode& azimuth : azimuths) {
           const double cosine = content.holds_f ? 1 : std::cos(radians(theta));
           const bool hole = cosine < kHorizon;
-          findings.hole_count += hole;
+          result.holes += hole;
           for (std::size_t c = 0; c < channels; ++c) {
             const double f = value_at(content.blocks[c][r][i], theta, azimuth.phi_deg) / cosine;
-            table.values[at++] = hole ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(f);
+            table.values.push_back(hole ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(f));
             if (hole || f >= 0) continue;
-            ++findings.negative_count;
-            findings.most_negative = std::min(findings.most_negative, f);
+            ++result.negatives;
+            result.most_negative = std::min(result.most_negative, f);
           }
         }
   }
-  findings.sample_count = entries;
-  findings.theta_i_min = table.axes[1].nodes.front();
-  findings.theta_i_max = table.axes[1].nodes.back();
-  findings.theta_o_min = table.axes[2].nodes.front();
-  findings.theta_o_max = table.axes[2].nodes.back();
-  return table;
+  return result;
+}
+
+void check_wavelengths(const std::string& file, const std::vector<double>& lambda_nm) {
+  if (!lambda_nm.empty() &&
+      (lambda_nm.front() <= 0 || lambda_nm.back() >= 1e6 ||
+       std::adjacent_find(lambda_nm.begin(), lambda_nm.end(), std::greater_equal<>{}) != lambda_nm.end()))
+    throw Error::in_file(file, "positive, increasing wavelengths",
+                         fmt::format("{} ... {} nm out of order", lambda_nm.front(), lambda_nm.back()));
+}
+
+/// Whether no rotation changes anything.
+bool rotations_alike(const Content& content) {
+  return std::all_of(content.blocks.begin(), content.blocks.end(), [](const auto& of_channel) {
+    return std::all_of(of_channel.begin(), of_channel.end(),
+                       [&](const auto& r) { return r == of_channel.front(); });
+  });
 }
 
 /// One channel a wavelength becomes three.
-void convert_to_rec709(const std::string& file, AngleTable& table, const std::vector<double>& lambda_nm,
-                       const std::string& illuminant) {
+AngleTable in_rec709(const std::string& file, AngleTable table, const std::vector<double>& lambda_nm,
+                     const std::string& illuminant) {
   const auto weights = rec709_weights_of(file, lambda_nm, illuminant);
   std::vector<float> rgb(entry_count(table) * 3);
   for (std::size_t entry = 0; entry < rgb.size() / 3; ++entry)
@@ -361,6 +382,7 @@ void convert_to_rec709(const std::string& file, AngleTable& table, const std::ve
     }
   table.values = std::move(rgb);
   table.channel_count = 3;
+  return table;
 }
 
 }  // namespace
@@ -374,27 +396,17 @@ SpeosFile parse_speos(const FileBytes& file, const OpenOptions& options) {
   SpeosFile result;
   Findings& findings = result.findings;
   const bool anisotropic = file.text().starts_with(kAnisotropic);
-  std::vector<std::string> notes;
-  Content content = anisotropic ? read_anisotropic(reader, notes) : read_brdf(reader, notes);
-  const auto& lambda = content.lambda_nm;
-  if (!lambda.empty() &&
-      (lambda.front() <= 0 || lambda.back() >= 1e6 ||
-       std::adjacent_find(lambda.begin(), lambda.end(), std::greater_equal<>{}) != lambda.end()))
-    throw Error::in_file(file.name, "positive, increasing wavelengths",
-                         fmt::format("{} ... {} nm out of order", lambda.front(), lambda.back()));
+  Content content = anisotropic ? read_anisotropic(reader) : read_brdf(reader);
+  check_wavelengths(file.name, content.lambda_nm);
   findings.format = anisotropic ? "Speos anisotropic BSDF" : "Speos BRDF";
   findings.description = content.comment;
   findings.conventions = {
       "Angles in degrees; the mirror direction has phi = 0, retroreflection 180.",
-      content.holds_f ? "Values are f_r." : "Values contain cos(theta_o): it is divided out."};
-  for (std::string& note : notes) findings.conventions.push_back(std::move(note));
+      content.holds_f ? "Values are f_r." : "Values contain cos(theta_o): it is divided out.",
+      content.scaling};
 
   // rotations that change nothing
-  const auto alike = [](const auto& of_channel) {
-    return std::all_of(of_channel.begin(), of_channel.end(),
-                       [&](const auto& r) { return r == of_channel.front(); });
-  };
-  if (content.rotations_deg.size() > 1 && std::all_of(content.blocks.begin(), content.blocks.end(), alike)) {
+  if (content.rotations_deg.size() > 1 && rotations_alike(content)) {
     findings.conventions.push_back(
         fmt::format("Taken as isotropic: {} rotations of the sample have the same values.",
                     content.rotations_deg.size()));
@@ -403,10 +415,20 @@ SpeosFile parse_speos(const FileBytes& file, const OpenOptions& options) {
     findings.conventions.push_back(
         "Anisotropy angles are those from where the light travels to to the tangent.");
   }
-  result.table = make_table(file, content, findings);
+  AngleTable& table = result.table;
+  CountedTable made = make_table(file, content);
+  table = std::move(made.table);
+  findings.sample_count = made.entries;
+  findings.hole_count = made.holes;
+  findings.negative_count = made.negatives;
+  findings.most_negative = made.most_negative;
+  findings.theta_i_min = table.axes[1].nodes.front();
+  findings.theta_i_max = table.axes[1].nodes.back();
+  findings.theta_o_min = table.axes[2].nodes.front();
+  findings.theta_o_max = table.axes[2].nodes.back();
 
   if (content.lambda_nm.size() > 1 && !options.keep_spectral) {
-    convert_to_rec709(file.name, result.table, content.lambda_nm, options.illuminant);
+    table = in_rec709(file.name, std::move(table), content.lambda_nm, options.illuminant);
     findings.illuminant = illuminant_name(options.illuminant);
   } else {
     findings.lambda_nm = content.lambda_nm;

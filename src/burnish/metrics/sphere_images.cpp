@@ -302,20 +302,17 @@ double metered_exposure(BrdfRef brdf) {
   return sphere_exposure(spheres);
 }
 
-}  // namespace
+// A lit sphere, linear, and how much of each pixel it covers.
+struct SmoothSphere {
+  Image shown, coverage;
+};
 
-Image8 lit_sphere(BrdfRef brdf, const LitSphereOptions& options) {
-  check_size(options.size);
+// Light is averaged after clamping, so that the edge of a highlight is smooth too.
+SmoothSphere smooth_sphere(BrdfRef brdf, double exposure, const LitSphereOptions& options) {
   const int samples = options.supersampling;
-  if (samples < 1 || samples > 16)
-    throw Error(fmt::format("expected a supersampling of 1 to 16, found {}", samples));
-
-  const double exposure = options.exposure ? *options.exposure : metered_exposure(brdf);
-
-  // light is averaged after clamping, so that the edge of a highlight is smooth too
   const Vec3 light = light_direction(options.light_angle);
-  Image linear(options.size, options.size, brdf.channels());
-  Image coverage(options.size, options.size, 1);
+  SmoothSphere sphere{Image(options.size, options.size, brdf.channels()),
+                      Image(options.size, options.size, 1)};
   for_each_chunk(as_size(options.size), 8, [&](std::size_t, std::size_t begin, std::size_t end) {
     Shading shading(brdf, light);
     std::vector<int> hits(as_size(options.size));  // of each pixel of a row
@@ -341,19 +338,31 @@ Image8 lit_sphere(BrdfRef brdf, const LitSphereOptions& options) {
         for (int k = 0; k < count; ++k, ++next)
           for (std::size_t c = 0; c < sum.size(); ++c)
             sum[c] += std::clamp(exposure * shading.value(next)[c], 0.0, 1.0);
-        for (std::size_t c = 0; c < sum.size(); ++c) linear.at(x, y)[c] = static_cast<float>(sum[c] / count);
-        coverage.at(x, y)[0] = static_cast<float>(count) / static_cast<float>(samples * samples);
+        for (std::size_t c = 0; c < sum.size(); ++c)
+          sphere.shown.at(x, y)[c] = static_cast<float>(sum[c] / count);
+        sphere.coverage.at(x, y)[0] = static_cast<float>(count) / static_cast<float>(samples * samples);
       }
     }
   });
+  return sphere;
+}
+
+}  // namespace
+
+Image8 lit_sphere(BrdfRef brdf, const LitSphereOptions& options) {
+  check_size(options.size);
+  if (options.supersampling < 1 || options.supersampling > 16)
+    throw Error(fmt::format("expected a supersampling of 1 to 16, found {}", options.supersampling));
+  const double exposure = options.exposure ? *options.exposure : metered_exposure(brdf);
+  SmoothSphere sphere = smooth_sphere(brdf, exposure, options);
 
   // tone mapped, with the coverage as alpha
-  const Image8 opaque = to_image8(tone_map(std::move(linear), 1));
+  const Image8 opaque = to_image8(tone_map(std::move(sphere.shown), 1));
   Image8 picture(options.size, options.size, 4);
   for (int y = 0; y < options.size; ++y)
     for (int x = 0; x < options.size; ++x) {
       std::ranges::copy(opaque.at(x, y), picture.at(x, y).begin());
-      picture.at(x, y)[3] = static_cast<std::uint8_t>(std::lround(255 * coverage.at(x, y)[0]));
+      picture.at(x, y)[3] = static_cast<std::uint8_t>(std::lround(255 * sphere.coverage.at(x, y)[0]));
     }
   return picture;
 }

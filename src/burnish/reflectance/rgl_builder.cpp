@@ -55,19 +55,16 @@ struct Microfacets {
   RglGrid ndf, sigma;
 };
 
-Microfacets find_microfacets(BrdfRef source, const RglOptions& options) {
-  const bool isotropic = source.isotropic();
-  const int columns = options.ndf_theta, rows = isotropic ? 1 : options.ndf_phi;
-  const auto retro = retro_reflection(source, rows, columns);
+/// A node of a quadrature over half vectors.
+struct HalfNode {
+  Vec3 m;
+  double weight;
+  std::size_t value;  ///< of the normal distribution
+};
 
-  // Nodes of the quadrature over half vectors: trapezoids in (u, v).
-  struct Node {
-    Vec3 m;
-    double weight;
-    std::size_t value;
-  };
-  const int around = isotropic ? 65 : rows;
-  std::vector<Node> nodes;
+/// Trapezoids in (u, v), so many around and along theta.
+std::vector<HalfNode> half_nodes(int around, int columns, bool isotropic) {
+  std::vector<HalfNode> nodes;
   for (int j = 0; j < around; ++j)
     for (int i = 0; i < columns; ++i) {
       const double u = node(i, columns), theta = rgl_theta(u);
@@ -77,40 +74,67 @@ Microfacets find_microfacets(BrdfRef source, const RglOptions& options) {
       nodes.push_back({spherical_direction(theta, rgl_phi(node(j, around))), border * area,
                        index((isotropic ? 0 : j) * columns + i)});
     }
+  return nodes;
+}
+
+/// D from retro-reflection f cos = D / (4 sigma), scaled to a projected area of 1.
+std::vector<double> distribution_of(const std::vector<double>& retro, int rows, int columns,
+                                    const RglGrid& sigma, const std::vector<HalfNode>& nodes) {
+  std::vector<double> ndf(retro.size());
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < columns; ++i) {
+      const auto at = index(j * columns + i);
+      ndf[at] = retro[at] * rgl_lookup(sigma, {node(i, columns), rows > 1 ? node(j, rows) : 0.5});
+    }
+  const double least = kFloor * *std::max_element(ndf.begin(), ndf.end());
+  for (double& d : ndf) d = std::max(d, least);
+  double projected = 0;
+  for (const HalfNode& n : nodes) projected += n.weight * ndf[n.value] * n.m.z;
+  for (double& d : ndf) d /= projected;
+  return ndf;
+}
+
+/// sigma(w) = integral of D(m) max(0, m.w), in so many rows.
+std::vector<float> projected_areas(const std::vector<double>& ndf, int rows,
+                                   const std::vector<HalfNode>& nodes) {
+  std::vector<float> sigma(index(rows * kSigmaTheta));
+  for_each_chunk(sigma.size(), 16, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const int i = static_cast<int>(k) % kSigmaTheta, j = static_cast<int>(k) / kSigmaTheta;
+      const Vec3 w =
+          spherical_direction(rgl_theta(node(i, kSigmaTheta)), rgl_phi(rows > 1 ? node(j, rows) : 0.5));
+      double sum = 0;
+      for (const HalfNode& n : nodes) sum += n.weight * ndf[n.value] * std::max(0.0, dot(n.m, w));
+      sigma[k] = static_cast<float>(sum);
+    }
+  });
+  return sigma;
+}
+
+/// What has one row, as the two that grids have at least.
+template <class T>
+void repeat_row(std::vector<T>& values) {
+  const std::vector<T> row = values;
+  values.insert(values.end(), row.begin(), row.end());
+}
+
+Microfacets find_microfacets(BrdfRef source, const RglOptions& options) {
+  const bool isotropic = source.isotropic();
+  const int columns = options.ndf_theta, rows = isotropic ? 1 : options.ndf_phi,
+            sigma_rows = isotropic ? 1 : kSigmaPhi;
+  const auto retro = retro_reflection(source, rows, columns);
+  const std::vector<HalfNode> nodes = half_nodes(isotropic ? 65 : rows, columns, isotropic);
 
   Microfacets result{{columns, isotropic ? 2 : rows, {}}, {kSigmaTheta, isotropic ? 2 : kSigmaPhi, {}}};
-  const int sigma_rows = isotropic ? 1 : kSigmaPhi;
-  auto& sigma = result.sigma.values;
-  sigma.assign(index(result.sigma.height * kSigmaTheta), 1);
+  result.sigma.values.assign(index(result.sigma.height * kSigmaTheta), 1);
   std::vector<double> ndf(retro.size());
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
-    // D from retro-reflection f cos = D / (4 sigma), scaled to a projected area of 1
-    for (int j = 0; j < rows; ++j)
-      for (int i = 0; i < columns; ++i) {
-        const auto at = index(j * columns + i);
-        ndf[at] = retro[at] * rgl_lookup(result.sigma, {node(i, columns), rows > 1 ? node(j, rows) : 0.5});
-      }
-    const double least = kFloor * *std::max_element(ndf.begin(), ndf.end());
-    for (double& d : ndf) d = std::max(d, least);
-    double projected = 0;
-    for (const Node& n : nodes) projected += n.weight * ndf[n.value] * n.m.z;
-    for (double& d : ndf) d /= projected;
-
-    // sigma(w) = integral of D(m) max(0, m.w)
-    for_each_chunk(index(sigma_rows * kSigmaTheta), 16, [&](std::size_t, std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) {
-        const int i = static_cast<int>(k) % kSigmaTheta, j = static_cast<int>(k) / kSigmaTheta;
-        const Vec3 w = spherical_direction(rgl_theta(node(i, kSigmaTheta)),
-                                           rgl_phi(sigma_rows > 1 ? node(j, sigma_rows) : 0.5));
-        double sum = 0;
-        for (const Node& n : nodes) sum += n.weight * ndf[n.value] * std::max(0.0, dot(n.m, w));
-        sigma[k] = static_cast<float>(sum);
-      }
-    });
-    if (isotropic) std::copy_n(sigma.begin(), kSigmaTheta, sigma.begin() + kSigmaTheta);
+    ndf = distribution_of(retro, rows, columns, result.sigma, nodes);
+    result.sigma.values = projected_areas(ndf, sigma_rows, nodes);
+    if (isotropic) repeat_row(result.sigma.values);
   }
   result.ndf.values.assign(ndf.begin(), ndf.end());
-  if (isotropic) result.ndf.values.insert(result.ndf.values.end(), ndf.begin(), ndf.end());
+  if (isotropic) repeat_row(result.ndf.values);
   return result;
 }
 

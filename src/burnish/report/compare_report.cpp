@@ -2,12 +2,15 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <burnish/embedded_file.h>
 #include <burnish/error.h>
 #include <burnish/file.h>
 #include <burnish/image/contact_sheet.h>
@@ -18,6 +21,10 @@
 #include <burnish/report/compare_report.h>
 
 namespace burnish {
+
+// The files of web/comparison.
+std::span<const EmbeddedFile> comparison_files();
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -111,77 +118,71 @@ void write_plot(const fs::path& stem, const Plot& plot) {
   write_png(stem.string() + ".png", to_image(plot));
 }
 
-constexpr std::string_view kStyle = R"(<style>
-:root { color-scheme: dark }
-body { margin: 2.5rem auto; max-width: 76rem; padding: 0 1.5rem; background: #181a1e; color: #e4e6ea;
-       font: 16px/1.5 system-ui, sans-serif }
-h1 { font-size: 1.5rem } h2 { margin-top: 2.5rem; font-size: 1.15rem }
-table { border-collapse: collapse; font-variant-numeric: tabular-nums }
-th, td { padding: .35rem .9rem; border-bottom: 1px solid #33363d; text-align: right; white-space: nowrap }
-th:first-child, td:first-child, td.note { text-align: left; white-space: normal }
-img { max-width: 100%; height: auto; border-radius: 4px } .plots { display: grid; gap: 1rem;
-      grid-template-columns: repeat(auto-fit, minmax(24rem, 1fr)) }
-p, td.note { color: #9ea3ac }
-</style>)";
+// A file of web/comparison with what stands for its marks.
+std::string filled(std::string_view file, const std::map<std::string_view, std::string>& marks) {
+  return with_marks(text_of(comparison_files(), file), marks);
+}
+
+std::string nodes_row(std::string_view name, const NodeFigures& figures) {
+  return filled("nodes_row.html", {{"NAME", escape_markup(name)},
+                                   {"LOGCOS", fmt::format("{:.5f}", figures.log_cos)},
+                                   {"RELATIVE", fmt::format("{:.4f}", figures.relative)},
+                                   {"RMSLOG", fmt::format("{:.4f}", figures.rms_log)},
+                                   {"RMS", fmt::format("{:.4g}", figures.rms)}});
+}
 
 // What the models score where something was measured.
 std::string nodes_html(const Measurement& measurement, std::span<const ComparedFigures> compared) {
-  std::string rows;
-  const auto add_row = [&](std::string_view name, const NodeFigures& figures) {
-    rows += fmt::format("<tr><td>{}</td><td>{:.5f}</td><td>{:.4f}</td><td>{:.4f}</td><td>{:.4g}</td></tr>\n",
-                        escape_markup(name), figures.log_cos, figures.relative, figures.rms_log, figures.rms);
-  };
-  add_row("the reference, made reciprocal", measurement.itself);
-  if (measurement.quality && measurement.quality->held_out)
-    add_row("a smooth function that has not seen them", *measurement.quality->held_out);
-  if (measurement.quality && measurement.quality->held_out_incidences)
-    add_row("a smooth function that has not seen their theta_i", *measurement.quality->held_out_incidences);
+  const auto& quality = measurement.quality;
+  std::string rows = nodes_row("the reference, made reciprocal", measurement.itself);
+  if (quality && quality->held_out)
+    rows += nodes_row("a smooth function that has not seen them", *quality->held_out);
+  if (quality && quality->held_out_incidences)
+    rows += nodes_row("a smooth function that has not seen their theta_i", *quality->held_out_incidences);
   for (const ComparedFigures& c : compared)
-    if (c.nodes) add_row(c.name, *c.nodes);
+    if (c.nodes) rows += nodes_row(c.name, *c.nodes);
   std::string noise;
-  if (measurement.quality && measurement.quality->negative_share > 0)
+  if (quality && quality->negative_share > 0)
     noise = fmt::format(
         " {:.1f} % of the measured values are negative, with a root mean square of {:.2g} per sr.",
-        100 * measurement.quality->negative_share, measurement.quality->negative_rms);
-  return fmt::format(
-      "<h2>At the measured "
-      "nodes</h2>\n<table><tr><th>model</th><th>log_cos</th><th>relative</th><th>rms_log</th>"
-      "<th>rms</th></tr>\n{}</table>\n<p>{} nodes with both cosines above 0.15.{}</p>\n",
-      rows, measurement.itself.count, noise);
+        100 * quality->negative_share, quality->negative_rms);
+  return filled("nodes.html", {{"ROWS", std::move(rows)},
+                               {"COUNT", fmt::format("{}", measurement.itself.count)},
+                               {"NOISE", std::move(noise)}});
+}
+
+std::string figures_row(std::string_view name, std::optional<std::uint64_t> bytes,
+                        const ErrorFigures& figures, std::string_view note) {
+  return filled("row.html", {{"NAME", escape_markup(name)},
+                             {"BYTES", bytes ? fmt::format("{}", *bytes) : "–"},
+                             {"LOGCOS", fmt::format("{:.5f}", figures.log_cos)},
+                             {"RELATIVE", fmt::format("{:.4f}", figures.relative)},
+                             {"RMSLOG", fmt::format("{:.4f}", figures.rms_log)},
+                             {"PSNR", psnr_text(figures.psnr)},
+                             {"SSIM", fmt::format("{:.4f}", figures.ssim)},
+                             {"NOTE", escape_markup(note)}});
 }
 
 std::string index_html(const std::string& reference_name, std::span<const ComparedFigures> compared,
                        const FigureOptions& options, std::span<const std::string> plots,
                        const Measurement* measurement) {
-  std::string rows;
-  const auto add_row = [&](std::string_view name, std::optional<std::uint64_t> bytes,
-                           const ErrorFigures& figures, std::string_view note) {
-    rows += fmt::format(
-        "<tr><td>{}</td><td>{}</td><td>{:.5f}</td><td>{:.4f}</td><td>{:.4f}</td><td>{}</td><td>{:.4f}</td>"
-        "<td class=\"note\">{}</td></tr>\n",
-        escape_markup(name), bytes ? fmt::format("{}", *bytes) : "–", figures.log_cos, figures.relative,
-        figures.rms_log, psnr_text(figures.psnr), figures.ssim, escape_markup(note));
-  };
+  std::string rows, sheets, charts;
   if (measurement && measurement->quality)
-    add_row(name_of(*measurement->quality), {}, measurement->quality->figures,
-            "a model that scores better follows noise");
-  for (const ComparedFigures& c : compared) add_row(c.name, c.bytes, c.figures, c.note);
-  std::string sheets, charts;
+    rows += figures_row(name_of(*measurement->quality), {}, measurement->quality->figures,
+                        "a model that scores better follows noise");
+  for (const ComparedFigures& c : compared) rows += figures_row(c.name, c.bytes, c.figures, c.note);
   for (std::size_t i = 0; i < compared.size(); ++i)
-    sheets += fmt::format("<h2>{0}</h2>\n<img src=\"model_{1}.png\" alt=\"Lit spheres of {0}\">\n",
-                          escape_markup(compared[i].name), i + 1);
-  for (const std::string& plot : plots) charts += fmt::format("<img src=\"{0}.svg\" alt=\"{0}\">\n", plot);
-  return fmt::format(
-      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}: comparison</title>\n{1}"
-      "</head><body>\n<h1>{0}</h1>\n"
-      "<table><tr><th>model</th><th>bytes</th><th>log_cos</th><th>relative</th><th>rms_log</th><th>psnr</th>"
-      "<th>ssim</th><th></th></tr>\n{2}</table>\n"
-      "<p>{3} direction pairs, seed {4}; spheres of {5} × {5} pixels under lights 0°, 30° and 60° from the "
-      "view, all at the reference's exposure. The dome is shown, not scored.</p>\n{8}"
-      "<h2>Overview</h2>\n<img src=\"overview.png\" alt=\"Reference and models\">\n{6}"
-      "<h2>Slices and errors</h2>\n<div class=\"plots\">\n{7}</div>\n</body></html>\n",
-      escape_markup(reference_name), kStyle, rows, options.count, options.seed, options.image_size, sheets,
-      charts, measurement ? nodes_html(*measurement, compared) : std::string());
+    sheets += filled("sheet.html", {{"NAME", escape_markup(compared[i].name)},
+                                    {"FILE", fmt::format("model_{}.png", i + 1)}});
+  for (const std::string& plot : plots) charts += filled("plot.html", {{"NAME", plot}});
+  return filled("index.html", {{"NAME", escape_markup(reference_name)},
+                               {"ROWS", std::move(rows)},
+                               {"PAIRS", fmt::format("{}", options.count)},
+                               {"SEED", fmt::format("{}", options.seed)},
+                               {"SIZE", fmt::format("{}", options.image_size)},
+                               {"NODES", measurement ? nodes_html(*measurement, compared) : std::string()},
+                               {"SHEETS", std::move(sheets)},
+                               {"PLOTS", std::move(charts)}});
 }
 
 // Errors name the model.

@@ -175,6 +175,20 @@ class ChannelFit {
   Line d, g, f;
 };
 
+/// Where the samples fall in tables of so many nodes.
+Places places_in(const GatheredSamples& samples, int size_d, int size_fg) {
+  Places places;
+  for (const auto& [wi, wo] : samples.pairs) {
+    const PairPlace place(wi, wo);
+    places.d.push_back(touch(size_d, place[PairCoordinate::theta_h]));
+    places.f.push_back(touch(size_fg, place[PairCoordinate::theta_d]));
+    places.gi.push_back(touch(size_fg, masking_place(wi)[PairCoordinate::theta_d]));
+    places.go.push_back(touch(size_fg, masking_place(wo)[PairCoordinate::theta_d]));
+    places.divisor.push_back(microfacet_divisor(wi, wo));
+  }
+  return places;
+}
+
 NodeTable make_table(PairCoordinate coordinate, std::size_t count, std::size_t channels) {
   NodeTable table{{{coordinate, static_cast<int>(count)}}, channels, 1, {}};
   table.values.resize(count * channels);
@@ -193,17 +207,8 @@ DgfFit fit_dgf(const SampleSource& source, const DgfOptions& options) {
     throw Error(fmt::format("dgf: expected a budget of at least {} bytes, found {}",
                             channels * (8 + 8 * kMinNodes), options.budget));
 
-  // where the samples fall in the tables
   const GatheredSamples samples = gather_samples(source, options.most_samples);
-  Places places;
-  for (const auto& [wi, wo] : samples.pairs) {
-    const PairPlace place(wi, wo);
-    places.d.push_back(touch(size_d, place[PairCoordinate::theta_h]));
-    places.f.push_back(touch(size_fg, place[PairCoordinate::theta_d]));
-    places.gi.push_back(touch(size_fg, masking_place(wi)[PairCoordinate::theta_d]));
-    places.go.push_back(touch(size_fg, masking_place(wo)[PairCoordinate::theta_d]));
-    places.divisor.push_back(microfacet_divisor(wi, wo));
-  }
+  const Places places = places_in(samples, size_d, size_fg);
 
   // a channel at a time, stored as half floats over the largest D
   NodeTable d = make_table(PairCoordinate::theta_h, static_cast<std::size_t>(size_d), channels),

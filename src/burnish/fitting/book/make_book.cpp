@@ -191,11 +191,17 @@ void add_smoothness(const TableLayout& layout, MatrixXd& normal) {
   }
 }
 
-// ln(f + floor) at the nodes, [node][channel], by least squares of the set's logarithms, pixels together as heavy as all
-// other pairs. Nodes that no pair is near end with the values that were seen. What each node weighs is added to `heavy`.
-MatrixXd fitted_logs(const TableLayout& layout, const TrainingSet& set, std::vector<double>& heavy) {
+struct FittedLogs {
+  MatrixXd logs;                // ln(f + floor), [node][channel]
+  std::vector<double> weights;  // of the nodes
+};
+
+// By least squares of the set's logarithms, pixels together as heavy as all other pairs. Nodes that no pair is near end
+// with the values that were seen.
+FittedLogs fitted_logs(const TableLayout& layout, const TrainingSet& set) {
   const auto nodes = static_cast<Eigen::Index>(layout.node_count());
   MatrixXd normal = MatrixXd::Zero(nodes, nodes), right = MatrixXd::Zero(nodes, kChannels);
+  std::vector<double> weights(layout.node_count());
   double pixels = 0, others = 0;
   for (std::size_t i = 0; i < set.size(); ++i)
     (i < set.picture_count ? pixels : others) += static_cast<double>(set.weights[i]);
@@ -203,7 +209,7 @@ MatrixXd fitted_logs(const TableLayout& layout, const TrainingSet& set, std::vec
     const double share = static_cast<double>(set.weights[i]) / (i < set.picture_count ? pixels : others);
     const auto corners = book_nodes(layout, set.pairs[i]);
     for (const auto& [node, weight] : corners) {
-      heavy[node] += share * weight;
+      weights[node] += share * weight;
       for (const auto& [other, other_weight] : corners)
         normal(static_cast<Eigen::Index>(node), static_cast<Eigen::Index>(other)) +=
             share * weight * other_weight;
@@ -219,10 +225,11 @@ MatrixXd fitted_logs(const TableLayout& layout, const TrainingSet& set, std::vec
   float most = 0;
   for (std::size_t i = 0; i < set.values.size(); ++i)
     if (!at_rim(set.pairs[i / kChannels])) most = std::max(most, set.values[i]);
-  return Eigen::LLT<MatrixXd>(std::move(normal))
-      .solve(right)
-      .cwiseMax(std::log(MaterialBook::kFloor))
-      .cwiseMin(std::log(2 * static_cast<double>(most) + MaterialBook::kFloor));
+  return {Eigen::LLT<MatrixXd>(std::move(normal))
+              .solve(right)
+              .cwiseMax(std::log(MaterialBook::kFloor))
+              .cwiseMin(std::log(2 * static_cast<double>(most) + MaterialBook::kFloor)),
+          std::move(weights)};
 }
 
 void check_materials(const std::vector<BookMaterial>& materials, std::size_t nodes) {
@@ -259,9 +266,9 @@ BookMaterial book_material(const Source& source, const std::string& name, std::a
     set.weights[i] = at_rim(set.pairs[i]) ? kRimWeight : 1;
   const TableLayout layout = book_layout(sides);
   const std::size_t nodes = layout.node_count();
+  auto [logs, weights] = fitted_logs(layout, set);
   BookMaterial material{
-      .name = name, .logs = std::vector<double>(kAxes * nodes), .weights = std::vector<double>(nodes)};
-  const MatrixXd logs = fitted_logs(layout, set, material.weights);
+      .name = name, .logs = std::vector<double>(kAxes * nodes), .weights = std::move(weights)};
   for (std::size_t u = 0; u < kAxes; ++u)
     for (std::size_t n = 0; n < nodes; ++n)
       for (std::size_t c = 0; c < kChannels; ++c)

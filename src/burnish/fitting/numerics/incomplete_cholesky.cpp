@@ -171,13 +171,12 @@ bool IncompleteCholesky::factorize(const SparseTriangle& matrix) {
   return true;
 }
 
-Eigen::VectorXd IncompleteCholesky::solve(Eigen::VectorXd b) const {
+Eigen::VectorXd IncompleteCholesky::solve_lower(Eigen::VectorXd b) const {
   const int* starts = factor_.outerIndexPtr();
   const double* values = factor_.valuePtr();
   const int size = static_cast<int>(factor_.rows()), first = first_dense();
   const std::ptrdiff_t block_size = std::ptrdiff_t{first} * kLanes;
 
-  // L
   for (int i = 0; i < first; ++i) {
     const int diagonal = starts[i + 1] - 1;
     double sum = b[i];
@@ -185,7 +184,7 @@ Eigen::VectorXd IncompleteCholesky::solve(Eigen::VectorXd b) const {
       sum -= dot(values + run.at, b.data() + run.column, std::min(run.length, diagonal - run.at));
     b[i] = sum * values[diagonal];
   }
-  // blocks and, below, columns are worked on apart: a number's sum is in the order of one thread
+  // blocks are worked on apart: a number's sum is in the order of one thread
   for_each_chunk(static_cast<std::size_t>(dense_rows_), kBlocksAtOnce * kLanes,
                  [&](std::size_t, std::size_t begin, std::size_t end) {
                    for (auto row = static_cast<int>(begin); row < static_cast<int>(end); row += kLanes) {
@@ -201,13 +200,22 @@ Eigen::VectorXd IncompleteCholesky::solve(Eigen::VectorXd b) const {
     const double* const row = values + dense_start(i);
     b[i] = (b[i] - dot(row, b.data() + first, i - first)) * row[i - first];
   }
+  return b;
+}
 
-  // L^T, from the last row to the first
+Eigen::VectorXd IncompleteCholesky::solve_upper(Eigen::VectorXd b) const {
+  const int* starts = factor_.outerIndexPtr();
+  const double* values = factor_.valuePtr();
+  const int size = static_cast<int>(factor_.rows()), first = first_dense();
+  const std::ptrdiff_t block_size = std::ptrdiff_t{first} * kLanes;
+
+  // from the last row to the first
   for (int i = size - 1; i >= first; --i) {
     const double* const row = values + dense_start(i);
     b[i] *= row[i - first];
     subtract(b.data() + first, b[i], row, i - first);
   }
+  // columns apart, as blocks before
   if (dense_rows_ > 0)
     for_each_chunk(static_cast<std::size_t>(first), kColumnsAtOnce,
                    [&](std::size_t, std::size_t begin, std::size_t end) {

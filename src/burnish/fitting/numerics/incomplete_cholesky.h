@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <Eigen/SparseCore>
@@ -47,9 +48,11 @@ class IncompleteCholesky {
   double share() const noexcept { return share_; }
 
   /// (L L^T)^-1 b.
-  Eigen::VectorXd solve(Eigen::VectorXd b) const;
+  Eigen::VectorXd solve(Eigen::VectorXd b) const { return solve_upper(solve_lower(std::move(b))); }
 
  private:
+  Eigen::VectorXd solve_lower(Eigen::VectorXd b) const;  // L^-1 b
+  Eigen::VectorXd solve_upper(Eigen::VectorXd b) const;  // L^-T b
   bool factorize(const SparseTriangle& matrix);
   // Row i's entries and what they leave of the pivot; `row` is room, all zero.
   double eliminate(const SparseTriangle& matrix, int i, std::vector<double>& row);

@@ -137,8 +137,22 @@ Search search_on(const PicturePairs& pairs, bool grey) {
   });
 }
 
+/// Metals and dielectrics, from smooth to rough.
+std::vector<Start> core_starts(const PicturePairs& pairs, double rotation, const Layers& held) {
+  std::vector<Start> starts;
+  for (const double metallic : {0.0, 1.0})
+    for (const double roughness : {0.15, 0.35, 0.65})
+      starts.push_back({{.base_color = mean_color(pairs),
+                         .metallic = metallic,
+                         .roughness = roughness,
+                         .rotation = rotation},
+                        held});
+  return starts;
+}
+
 /// Coats, sharp and rough, above what was found or as its highlight, and sheen.
-void append_layers(const GltfMaterial& found, const Layers& always, std::vector<Start>& starts) {
+std::vector<Start> with_layers(const GltfMaterial& found, const Layers& always) {
+  std::vector<Start> starts;
   GltfMaterial m = found;
   m.clearcoat = 0.5;
   for (const double roughness : {0.1, 0.35}) {
@@ -155,11 +169,12 @@ void append_layers(const GltfMaterial& found, const Layers& always, std::vector<
     m.sheen_roughness = roughness;
     starts.push_back({m, always});
   }
+  return starts;
 }
 
 /// Films, whose errors have a minimum a fringe: thin to thick ones tasted, the best two handed on.
-void append_films(Search& search, const Trial& found, const Layers& always, std::vector<Start>& starts) {
-  if (always[kFilm]) return;
+std::vector<Start> with_films(Search& search, const Trial& found, const Layers& always) {
+  if (always[kFilm]) return {};
   constexpr double kStep = 100;  // nanometres
   constexpr int kSteps = 12;
   std::vector<Start> tastes;
@@ -169,8 +184,10 @@ void append_films(Search& search, const Trial& found, const Layers& always, std:
     m.iridescence_thickness = kStep * i;
     tastes.push_back({m, ~only({kCore, kFilm})});
   }
+  std::vector<Start> starts;
   for (const Start& start : best_of(search.run(tastes, kTaste), 2))
     starts.push_back({start.material, always});
+  return starts;
 }
 
 /// Anywhere in the ranges.
@@ -247,27 +264,17 @@ GltfFit fit_gltf(const PicturePairs& pairs, const GltfFitOptions& options) {
   always[kGrain] = !options.anisotropic;
   always[kFilm] = options.grey;
   const Layers core = always | only({kFilm, kSheen, kCoat});
-
-  // metals and dielectrics
-  std::vector<Start> starts;
-  for (const double metallic : {0.0, 1.0})
-    for (const double roughness : {0.15, 0.35, 0.65})
-      starts.push_back({{.base_color = mean_color(pairs),
-                         .metallic = metallic,
-                         .roughness = roughness,
-                         .rotation = radians(options.tangent)},
-                        core});
-  std::vector<Trial> found = sift.run(starts, kFirst);
+  std::vector<Trial> found = sift.run(core_starts(pairs, radians(options.tangent), core), kFirst);
   progress(0.2);
 
   // these under layers, and random ones
-  starts.clear();
-  for (std::size_t i = 0; i < kCores; ++i) append_layers(found[i].material, always, starts);
-  append_films(sift, found.front(), always, starts);
+  std::vector<Start> starts;
+  for (std::size_t i = 0; i < kCores; ++i) add_starts(starts, with_layers(found[i].material, always));
+  add_starts(starts, with_films(sift, found.front(), always));
   Pcg32 random(1);
   std::vector<Start> drawn;
   for (int i = 0; i < kRandom; ++i) drawn.push_back(random_start(random, always, options));
-  for (const Start& start : best_of(taste.run(drawn, kSift), kTasted)) starts.push_back(start);
+  add_starts(starts, best_of(taste.run(drawn, kSift), kTasted));
   for (Trial& trial : sift.run(starts, kFirst)) found.push_back(std::move(trial));
   std::ranges::stable_sort(found, {}, &Trial::cost);
   progress(0.6);

@@ -173,7 +173,8 @@ OpenPbrFit to_fit(const PicturePairs& pairs, const Trial& trial, double first_co
 
 /// All layers at once on what was found without them: coats as sharp or rough highlights above the base's, or as its
 /// highlight with a rough base below.
-void append_coats(const Trial& trial, const Inputs& always, std::vector<Search::Start>& starts) {
+std::vector<Search::Start> with_coats(const Trial& trial, const Inputs& always) {
+  std::vector<Search::Start> starts;
   OpenPbrParameters p = trial.material;
   p.fuzz_weight = 0.2;
   p.coat_weight = 0.5;
@@ -186,13 +187,13 @@ void append_coats(const Trial& trial, const Inputs& always, std::vector<Search::
   p.coat_roughness_anisotropy = p.specular_roughness_anisotropy;
   p.specular_roughness = std::max(p.specular_roughness, 0.5);
   starts.push_back({p, always});
+  return starts;
 }
 
 /// Films: errors have a minimum a fringe, so that thin to thick ones are tasted on a grey base and the best two handed
 /// on, and the better one on the colours as they are.
-void append_films(Search& search, const Trial& trial, const Inputs& always,
-                  std::vector<Search::Start>& starts) {
-  if ((always & kFilm) == kFilm) return;
+std::vector<Search::Start> with_films(Search& search, const Trial& trial, const Inputs& always) {
+  if ((always & kFilm) == kFilm) return {};
   constexpr double kStep = 0.1;
   constexpr int kSteps = 12;
   const Inputs tasted = inputs_named("base_color") | inputs_named("specular_roughness") | kFilm;
@@ -209,6 +210,7 @@ void append_films(Search& search, const Trial& trial, const Inputs& always,
   p = trial.material;
   p.thin_film_weight = 0.5;
   p.thin_film_thickness = best[0].material.thin_film_thickness;
+  std::vector<Search::Start> starts;
   for (OpenPbrParameters filmed : {best[0].material, best[1].material, p}) {
     starts.push_back({filmed, (trial.held & ~kFilm) | always});
     filmed.coat_weight = 0.3;
@@ -216,6 +218,7 @@ void append_films(Search& search, const Trial& trial, const Inputs& always,
     filmed.fuzz_weight = 0.2;
     starts.push_back({filmed, always});
   }
+  return starts;
 }
 
 constexpr std::size_t kCoarse = 3, kCoarser = 12;
@@ -260,9 +263,9 @@ std::vector<Search::Start> search_layers(Search& search, Search& sift, const Pic
                         always | kCoat | kFuzz | kFilm});
   std::vector<Trial> coated = search.run(starts, kFirst);
   progress(0.2);
-  std::vector<Search::Start> coats, films;
-  for (std::size_t i = 0; i < kKept; ++i) append_coats(coated[i], always, coats);
-  append_films(search, coated.front(), always, films);
+  std::vector<Search::Start> coats;
+  for (std::size_t i = 0; i < kKept; ++i) add_starts(coats, with_coats(coated[i], always));
+  const std::vector<Search::Start> films = with_films(search, coated.front(), always);
   for (const Trial& trial : search.run(coats, kFirst)) coated.push_back(trial);
   std::ranges::stable_sort(coated, {}, &Trial::cost);
 
@@ -363,8 +366,7 @@ OpenPbrFit fit_openpbr(const PicturePairs& pairs, const OpenPbrFitOptions& optio
 
   // these on all pixels, and films on the best of them
   std::vector<Trial> kept = search.run(found, kSiftAgain);
-  std::vector<Search::Start> films;
-  append_films(sift, kept.front(), always_held(options), films);
+  const std::vector<Search::Start> films = with_films(sift, kept.front(), always_held(options));
   for (const Trial& trial : search.run(best_of(sift.run(films, kFirst), kKept), kSiftAgain))
     kept.push_back(trial);
   std::ranges::stable_sort(kept, {}, &Trial::cost);

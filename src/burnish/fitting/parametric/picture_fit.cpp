@@ -159,10 +159,8 @@ LeastSquaresSolution fit_pictures(const PicturePairs& pairs, const FittedMateria
 
 FitSummary summary_of(const PicturePairs& pairs, BrdfRef shown, double first_cost, int iterations,
                       bool converged) {
-  std::vector<double> pixels;
-  pairs.show(shown, pixels);
   return {.error_before = std::sqrt(2 * first_cost),
-          .error_after = std::sqrt(pairs.mean_squared_error(pixels)),
+          .error_after = std::sqrt(pairs.mean_squared_error(pairs.shown_of(shown))),
           .iterations = iterations,
           .stop_reason = converged ? StopReason::converged : StopReason::iteration_limit};
 }

@@ -108,6 +108,12 @@ std::vector<FitStart<Material, Inputs>> best_of(const std::vector<FitTrial<Mater
   return starts;
 }
 
+template <class Material, class Inputs>
+void add_starts(std::vector<FitStart<Material, Inputs>>& starts,
+                const std::vector<FitStart<Material, Inputs>>& further) {
+  starts.insert(starts.end(), further.begin(), further.end());
+}
+
 /// What a fit says of a trial whose material is `shown`: the beginning's cost as an error, and the pictures'.
 FitSummary summary_of(const PicturePairs& pairs, BrdfRef shown, double first_cost, int iterations,
                       bool converged);

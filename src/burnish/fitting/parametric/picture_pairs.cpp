@@ -22,7 +22,7 @@ constexpr Rings kHighlight{20, 8}, kSphere{24, 16};  // half of each sphere
 constexpr Rings kWholeHighlight{16, 16}, kWholeSphere{20, 24};
 constexpr int kRingsAlone = 160;  // lit along the view, all around the same
 
-double shown_of(double exposure, double f, double cosine) noexcept {
+double shown_value(double exposure, double f, double cosine) noexcept {
   return std::pow(std::max(exposure * f * cosine, 0.0), PictureLoss::kInverseGamma);
 }
 
@@ -75,13 +75,14 @@ void append_sphere(double light_angle, bool whole, PicturePairs& out) {
 
 }  // namespace
 
-void PicturePairs::show(BrdfRef brdf, std::vector<double>& out) const {
-  out.resize(3 * pairs.size());
+std::vector<double> PicturePairs::shown_of(BrdfRef brdf) const {
+  std::vector<double> all(3 * pairs.size());
   std::array<double, 3> f;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     brdf.eval(pairs[i].wi, pairs[i].wo, f);
-    for (std::size_t c = 0; c < 3; ++c) out[3 * i + c] = shown_of(exposure, f[c], pairs[i].wi.z);
+    for (std::size_t c = 0; c < 3; ++c) all[3 * i + c] = shown_value(exposure, f[c], pairs[i].wi.z);
   }
+  return all;
 }
 
 bool PicturePairs::grey() const noexcept {
@@ -118,7 +119,7 @@ PicturePairs picture_pairs(BrdfRef source, double exposure) {
     result.weights.push_back(all.weights[i]);
     for (std::size_t c = 0; c < 3; ++c) {
       result.values.push_back(f[channels == 1 ? 0 : c]);
-      result.shown.push_back(shown_of(exposure, result.values.back(), pair.wi.z));
+      result.shown.push_back(shown_value(exposure, result.values.back(), pair.wi.z));
     }
   }
   return result;

@@ -19,8 +19,8 @@ struct PicturePairs {
   /// Whether all channels are alike.
   bool grey() const noexcept;
 
-  /// (exposure f cos theta_i)^(1/2.2) of another BRDF of three channels; resized.
-  void show(BrdfRef brdf, std::vector<double>& out) const;
+  /// (exposure f cos theta_i)^(1/2.2) of another BRDF of three channels.
+  std::vector<double> shown_of(BrdfRef brdf) const;
 
   /// Mean squared difference of min(1, dim * shown) from what another BRDF shows.
   double mean_squared_error(std::span<const double> other, double dim = 1) const noexcept;

@@ -24,9 +24,7 @@ TEST(PicturePairs, ScoreAsThePicturesDo) {
     const AnalyticBrdf brdf = parse_analytic(source), model = parse_analytic(other);
     const Scorer scorer(brdf.ref(), {.count = 100});
     const PicturePairs pairs = picture_pairs(brdf.ref(), scorer.exposure());
-    std::vector<double> shown;
-    pairs.show(model.ref(), shown);
-    const double psnr = -10 * std::log10(pairs.mean_squared_error(shown));
+    const double psnr = -10 * std::log10(pairs.mean_squared_error(pairs.shown_of(model.ref())));
     EXPECT_NEAR(psnr, scorer.picture_psnr(scorer.pictures(model.ref())), 0.3) << source;
   }
 }

@@ -138,9 +138,7 @@ class Fitter {
   double shown_error(const TexelWeights& weights, const GltfMaterial& material) const {
     const FactoredBrdf brdf = material_of(surface_, weights);
     const PicturePairs own = picture_pairs(brdf, pairs_.exposure);
-    std::vector<double> other;
-    own.show(material, other);
-    return own.mean_squared_error(other);
+    return own.mean_squared_error(own.shown_of(material));
   }
 
  private:

@@ -89,6 +89,8 @@ struct SourceTraits {
   bool twisted;  ///< not its own mirror image
   bool ordered;  ///< the order of the directions matters
   bool retro;    ///< has a lobe about wi = wo
+
+  Warp difference_warp() const noexcept { return retro ? kRetroWarp : Warp{}; }
 };
 
 SourceTraits traits_of(BrdfRef source) {
@@ -98,50 +100,69 @@ SourceTraits traits_of(BrdfRef source) {
 // What stands beside the volume first: a line along theta_h, for rings, or a grid over theta_h and theta_d.
 enum class Beside { line, grid };
 
+/// The tables beside a volume, in the order in which fetches are spent on them.
+class TablesBeside {
+ public:
+  TablesBeside(const CostLimit& limit, const SourceTraits& traits)
+      : texels_(static_cast<double>(limit.bytes / limit.texel_bytes)),
+        traits_(traits),
+        left_(limit.fetches - 1) {}
+
+  SpecBuilder build(Beside beside) && {
+    const int line = nodes(kLineShare, kMaxLineNodes);
+    if (traits_.ordered && takes(1)) add_by_half("c", kOrderNodes, kOrderShare, kProjectWi);
+    const bool grid = beside == Beside::grid && takes(1);
+    if (grid) add_highlight();
+    if (takes(1)) builder_.add_line("z", nodes(kRingShare, kMaxRingNodes), {kProjectHalf}, kHalfRootWarp);
+    if (takes(2)) builder_.add_line("p", line, {kProjectWo, kProjectWi});
+    if (!grid && takes(1)) builder_.add_line("r", line, {kProjectDifference}, traits_.difference_warp());
+    if (takes(1)) add_deviation();
+    if (takes(2))
+      builder_.add_line("s", line, {Projection{.wi = 1, .wo = 0.5}, Projection{.wi = 0.5, .wo = 1}},
+                        kSkewWarp);
+    return std::move(builder_);
+  }
+
+ private:
+  int nodes(double share, int most) const {
+    return std::clamp(static_cast<int>(share * texels_), kMinLineNodes, most);
+  }
+  bool takes(int fetches) {
+    const bool room = left_ >= fetches;
+    if (room) left_ -= fetches;
+    return room;
+  }
+  void add_by_half(const char* name, int width, double share, const Projection& along_x, Warp warp = {}) {
+    builder_.add(name,
+                 {.shape = TableShape::grid,
+                  .width = width,
+                  .height = nodes(share / width, kMaxRingNodes),
+                  .warp = warp,
+                  .warp_y = kHalfRootWarp},
+                 {{.projection = along_x, .projection_y = kProjectHalf}});
+  }
+  void add_highlight() {
+    const double share = std::min(kHighlightShare, kMaxHighlightTexels / texels_);
+    const int width =
+        std::max(kMinHighlightNodes, static_cast<int>(std::sqrt(share * kHighlightAspect * texels_)));
+    add_by_half("b", width, share, kProjectDifference, traits_.difference_warp());
+  }
+  void add_deviation() {
+    const int side = std::max(4, static_cast<int>(std::sqrt(kGridShare * texels_)));
+    builder_.add("k", {.shape = TableShape::grid, .width = side, .height = side, .warp = kDeviationWarp},
+                 {{.projection = kProjectDeviation, .projection_y = kProjectDifference}});
+  }
+
+  double texels_;
+  const SourceTraits& traits_;
+  int left_;  ///< fetches
+  SpecBuilder builder_;
+};
+
 // The tables that a number of fetches has room for; the volume takes what the others leave.
 ModelSpec volume_spec(VolumeForm form, Beside beside, const CostLimit& limit, std::size_t channels,
                       const SourceTraits& traits) {
-  const double texels = static_cast<double>(limit.bytes / limit.texel_bytes);
-  const auto nodes = [&](double share, int most) {
-    return std::clamp(static_cast<int>(share * texels), kMinLineNodes, most);
-  };
-  const int line = nodes(kLineShare, kMaxLineNodes);
-  const Warp difference_warp = traits.retro ? kRetroWarp : Warp{};
-  SpecBuilder builder;
-  int left = limit.fetches - 1;
-  const auto takes = [&](int fetches) {
-    const bool room = left >= fetches;
-    if (room) left -= fetches;
-    return room;
-  };
-  const auto add_by_half = [&](const char* name, int width, double share, const Projection& along_x,
-                               Warp warp = {}) {
-    builder.add(name,
-                {.shape = TableShape::grid,
-                 .width = width,
-                 .height = nodes(share / width, kMaxRingNodes),
-                 .warp = warp,
-                 .warp_y = kHalfRootWarp},
-                {{.projection = along_x, .projection_y = kProjectHalf}});
-  };
-  if (traits.ordered && takes(1)) add_by_half("c", kOrderNodes, kOrderShare, kProjectWi);
-  const bool grid = beside == Beside::grid && takes(1);
-  if (grid) {
-    const double share = std::min(kHighlightShare, kMaxHighlightTexels / texels);
-    const int width =
-        std::max(kMinHighlightNodes, static_cast<int>(std::sqrt(share * kHighlightAspect * texels)));
-    add_by_half("b", width, share, kProjectDifference, difference_warp);
-  }
-  if (takes(1)) builder.add_line("z", nodes(kRingShare, kMaxRingNodes), {kProjectHalf}, kHalfRootWarp);
-  if (takes(2)) builder.add_line("p", line, {kProjectWo, kProjectWi});
-  if (!grid && takes(1)) builder.add_line("r", line, {kProjectDifference}, difference_warp);
-  if (takes(1)) {
-    const int side = std::max(4, static_cast<int>(std::sqrt(kGridShare * texels)));
-    builder.add("k", {.shape = TableShape::grid, .width = side, .height = side, .warp = kDeviationWarp},
-                {{.projection = kProjectDeviation, .projection_y = kProjectDifference}});
-  }
-  if (takes(2))
-    builder.add_line("s", line, {Projection{.wi = 1, .wo = 0.5}, Projection{.wi = 0.5, .wo = 1}}, kSkewWarp);
+  SpecBuilder builder = TablesBeside(limit, traits).build(beside);
 
   // the volume, whose numbers are a warp's
   const std::size_t taken =
@@ -150,7 +171,7 @@ ModelSpec volume_spec(VolumeForm form, Beside beside, const CostLimit& limit, st
   const std::size_t rest = limit.bytes > taken ? (limit.bytes - taken) / limit.texel_bytes : 0;
   if (traits.twisted) form.azimuth *= kBothSides;
   TableLayout volume = volume_of(form, static_cast<double>(rest));
-  volume.warp_y = difference_warp;
+  volume.warp_y = traits.difference_warp();
   if (volume.width < 2) throw Error("fit: expected a budget that holds a table of three axes");
   builder.add("g", volume,
               {{.projection = kProjectHalf,

@@ -29,24 +29,22 @@ constexpr int kGridSteps = 16;
 constexpr int kRounds = 2;
 constexpr double kThinPart = 0.3;  // share of the work done by then
 
-/// Adds one refinement to the summary; its progress runs from `from` to `to`.
-void refine_part(LogModel& model, const TrainingSet& set, const Lookups& lookups, RefineOptions options,
-                 int steps, double from, double to, FitSummary& summary) {
+/// Refines a fit once more; its progress runs from `from` to `to`.
+void refine_part(LobesFit& fit, const TrainingSet& set, const Lookups& lookups, RefineOptions options,
+                 int steps, double from, double to) {
   options.max_iterations = std::min(steps, options.max_iterations);
   options.progress = part_of_progress(options.progress, from, to);
-  const FitSummary done = refine(model, set, lookups, options);
-  summary.iterations += done.iterations;
-  summary.error_before = done.error_before;
-  summary.error_after = done.error_after;
-  summary.stop_reason = done.stop_reason;
+  FitSummary done = refine(fit.model, set, lookups, options);
+  done.iterations += fit.summary.iterations;
+  fit.summary = done;
 }
 
-void refine_in_rounds(LogModel& model, const TrainingSet& set, const RefineOptions& options, int steps,
-                      double from, double to, FitSummary& summary) {
+void refine_in_rounds(LobesFit& fit, const TrainingSet& set, const RefineOptions& options, int steps,
+                      double from, double to) {
   const auto part = [&](int round) { return from + (to - from) * round / kRounds; };
-  const Lookups lookups = lookups_of(model.spec, set);
+  const Lookups lookups = lookups_of(fit.model.spec, set);
   for (int k = 0; k < kRounds; ++k)
-    refine_part(model, set, lookups, options, (steps + k) / kRounds, part(k), part(k + 1), summary);
+    refine_part(fit, set, lookups, options, (steps + k) / kRounds, part(k), part(k + 1));
 }
 
 /// Steps of the last refinement on part of the data, before those on all.
@@ -55,12 +53,12 @@ int rough_steps(const TrainingSet& coarse, const TrainingSet& set, const RefineO
 }
 
 /// The last refinement: on part of the data, then on all.
-void refine_fully(LogModel& model, const TrainingSet& coarse, const TrainingSet& set,
-                  const RefineOptions& options, double from, FitSummary& summary) {
+void refine_fully(LobesFit& fit, const TrainingSet& coarse, const TrainingSet& set,
+                  const RefineOptions& options, double from) {
   const double middle = from + 0.3 * (1 - from);
   const int rough = rough_steps(coarse, set, options);
-  if (rough > 0) refine_in_rounds(model, coarse, options, rough, from, middle, summary);
-  refine_in_rounds(model, set, options, options.max_iterations - rough, middle, 1, summary);
+  if (rough > 0) refine_in_rounds(fit, coarse, options, rough, from, middle);
+  refine_in_rounds(fit, set, options, options.max_iterations - rough, middle, 1);
 }
 
 TrainingSet coarse_part(const TrainingSet& set) {
@@ -205,8 +203,8 @@ void split_off(LobesFit& fit, const LobesInTurn& lobes, const TrainingSet& coars
                RefineOptions options) {
   options.format = TableFormat::single;  // lobes that part are not yet held within their format
   for (std::size_t j = 1; j < lobes.count(); ++j) {
-    refine_part(fit.model, coarse, lookups_of(fit.model.spec, coarse), options, kRoughSteps,
-                lobes_done(lobes.count(), j - 1), lobes_done(lobes.count(), j), fit.summary);
+    refine_part(fit, coarse, lookups_of(fit.model.spec, coarse), options, kRoughSteps,
+                lobes_done(lobes.count(), j - 1), lobes_done(lobes.count(), j));
     fit.model = with_next_lobe(std::move(fit.model), lobes, j + 1, start);
   }
 }
@@ -224,13 +222,12 @@ LobesFit best_start(const LobesFit& first, const LobesInTurn& lobes, const Train
     if (options.progress)
       trial.progress = [&, k](double f) { options.progress(share * (static_cast<double>(k) + f)); };
     split_off(fits[k], lobes, coarse, k, trial);
-    refine_in_rounds(fits[k].model, coarse, trial, rough, lobes_done(lobes.count(), lobes.count() - 1), 1,
-                     fits[k].summary);
+    refine_in_rounds(fits[k], coarse, trial, rough, lobes_done(lobes.count(), lobes.count() - 1), 1);
     found[k] = objective(fits[k].model, coarse, options.shares);
   }
   const auto best = static_cast<std::size_t>(std::ranges::min_element(found) - found.begin());
   LobesFit fit = std::move(fits[best]);
-  refine_in_rounds(fit.model, set, options, options.max_iterations - rough, kTried, 1, fit.summary);
+  refine_in_rounds(fit, set, options, options.max_iterations - rough, kTried, 1);
   return fit;
 }
 
@@ -254,17 +251,17 @@ LobesFit fit_plan(const TrainingSet& set, const LobePlan& plan, std::size_t byte
     RefineOptions thin_options = options;
     if (options.progress) thin_options.progress = [&](double f) { options.progress(kThinPart * f); };
     split_off(fit, lobes, coarse, 0, thin_options);
-    refine_part(fit.model, coarse, lookups_of(fit.model.spec, coarse), thin_options, kRoughSteps,
-                lobes_done(lobes.count(), lobes.count() - 1), 1, fit.summary);
+    refine_part(fit, coarse, lookups_of(fit.model.spec, coarse), thin_options, kRoughSteps,
+                lobes_done(lobes.count(), lobes.count() - 1), 1);
     fit.model = resampled(fit.model, whole);
-    refine_in_rounds(fit.model, set, options, kGridSteps, kThinPart, 1, fit.summary);
+    refine_in_rounds(fit, set, options, kGridSteps, kThinPart, 1);
     return fit;
   }
 
   if (lobes.count() == 1) starts = 1;  // nothing to split
   if (starts > 1) return best_start(fit, lobes, coarse, set, options, starts);
   split_off(fit, lobes, coarse, 0, options);
-  refine_fully(fit.model, coarse, set, options, lobes_done(lobes.count(), lobes.count() - 1), fit.summary);
+  refine_fully(fit, coarse, set, options, lobes_done(lobes.count(), lobes.count() - 1));
   return fit;
 }
 
@@ -293,7 +290,7 @@ LobesFit fit_lobes(const TrainingSet& set, const ModelSpec& spec, const RefineOp
     for (std::size_t k = 0; k < alone.tables.size(); ++k)
       fit.model.log_values[alone.tables[k]] = start.log_values[k];
   }
-  refine_fully(fit.model, coarse_part(set), set, options, 0.1, fit.summary);
+  refine_fully(fit, coarse_part(set), set, options, 0.1);
   return fit;
 }
 

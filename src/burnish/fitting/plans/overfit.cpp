@@ -28,29 +28,30 @@ TrainingOptions training_for(std::size_t bytes, std::size_t texel_bytes, bool is
   return {.pictures = times * 40'000, .directions = times * 50'000, .crowded = true};
 }
 
-LobesFit fit_without_overfit(BrdfRef source, const TrainingSet& set, const LobePlan& plan, std::size_t bytes,
-                             std::size_t texel_bytes, const TrainingOptions& drawn, RefineOptions& options) {
-  LobesFit fit = fit_plan(set, plan, bytes, texel_bytes, options, kLobeStarts);
-  if (!has_few_pairs(fit.model, set)) return fit;
+SmoothFit fit_without_overfit(BrdfRef source, const TrainingSet& set, const LobePlan& plan, std::size_t bytes,
+                              std::size_t texel_bytes, const TrainingOptions& drawn,
+                              const RefineOptions& options) {
+  SmoothFit result{.fit = fit_plan(set, plan, bytes, texel_bytes, options, kLobeStarts),
+                   .smooth = options.smooth};
+  if (!has_few_pairs(result.fit.model, set)) return result;
   TrainingOptions anew = drawn;
   anew.pictures = kHeldOutPictures;
   anew.directions = kHeldOutDirections;
   anew.seed += 2;  // the error that is noted in the end is of seed + 1
   TrainingSet held_out = draw_training_set(source, anew);
   held_out.exposure = set.exposure;
-  double error = objective(fit.model, held_out, options.shares);
-  if (error < objective(fit.model, set, options.shares) + kMaxGap) return fit;
+  double error = objective(result.fit.model, held_out, options.shares);
+  if (error < objective(result.fit.model, set, options.shares) + kMaxGap) return result;
   RefineOptions stiffer = options;
   while (stiffer.smooth < kMaxSmooth) {
     stiffer.smooth *= kStiffer;
     LobesFit candidate = fit_plan(set, plan, bytes, texel_bytes, stiffer, kLobeStarts);
     const double next = objective(candidate.model, held_out, options.shares);
     if (!(next < error)) break;
-    fit = std::move(candidate);
+    result = {std::move(candidate), stiffer.smooth};
     error = next;
-    options.smooth = stiffer.smooth;
   }
-  return fit;
+  return result;
 }
 
 }  // namespace burnish

@@ -13,18 +13,16 @@ TEST(FitWithoutOverfit, IsSmootherWhereThatPredictsBetterAndNowhereElse) {
   const RefineOptions given{.max_iterations = 4};
   const TrainingSet other = draw_training_set(ggx, {.pictures = 500, .directions = 1500, .seed = 9});
   const TrainingSet few = draw_training_set(ggx, {.pictures = 80, .directions = 300});
-  RefineOptions options = given;
-  const LobesFit smoother = fit_without_overfit(ggx, few, plan, kManyBytes, kHalf, {}, options);
-  EXPECT_GT(options.smooth, given.smooth);
-  EXPECT_LT(objective(smoother.model, other, given.shares),
+  const SmoothFit smoother = fit_without_overfit(ggx, few, plan, kManyBytes, kHalf, {}, given);
+  EXPECT_GT(smoother.smooth, given.smooth);
+  EXPECT_LT(objective(smoother.fit.model, other, given.shares),
             objective(fit_plan(few, plan, kManyBytes, kHalf, given).model, other, given.shares));
 
   const TrainingSet many = draw_training_set(ggx, {.pictures = 1000, .directions = 4000});
   const LobePlan small = default_plan(kScantBytes, 1, true, kHalf);
-  options = given;
-  const LobesFit same = fit_without_overfit(ggx, many, small, kScantBytes, kHalf, {}, options);
-  EXPECT_EQ(options.smooth, given.smooth);
-  EXPECT_EQ(same.model.log_values, fit_plan(many, small, kScantBytes, kHalf, given).model.log_values);
+  const SmoothFit same = fit_without_overfit(ggx, many, small, kScantBytes, kHalf, {}, given);
+  EXPECT_EQ(same.smooth, given.smooth);
+  EXPECT_EQ(same.fit.model.log_values, fit_plan(many, small, kScantBytes, kHalf, given).model.log_values);
 }
 
 }  // namespace

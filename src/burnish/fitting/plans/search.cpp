@@ -2,6 +2,7 @@
 #include <atomic>
 #include <cmath>
 #include <exception>
+#include <iterator>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -56,7 +57,7 @@ std::vector<std::pair<std::string, std::vector<Projection>>> further_projections
   return list;
 }
 
-std::vector<Change> list_changes(const LobePlan& plan) {
+std::vector<Change> changes_of_lobes() {
   std::vector<Change> changes;
   for (const int step : {1, -1})
     changes.push_back(
@@ -65,38 +66,45 @@ std::vector<Change> list_changes(const LobePlan& plan) {
            if (p.lobes < 1) return {};
            return p;
          }});
-  for (const PlannedFactor& factor : plan.factors) {
-    const std::string name = factor.name;
-    for (const double scale : {1.5, 0.67})
-      changes.push_back(
-          {fmt::format("share of {} x {}", name, scale), [=](LobePlan p) -> std::optional<LobePlan> {
-             PlannedFactor* f = find(p, name);
-             if (!f || p.factors.size() < 2) return {};
-             f->share *= scale;
-             return p;
-           }});
-    for (const Warp warp : {Warp{}, Warp{WarpKind::power, 0.5}, Warp{WarpKind::power, 0.7},
-                            Warp{WarpKind::rational, 0.1}, Warp{WarpKind::rational, -1.3}})
-      changes.push_back(
-          {fmt::format("{} spaced {}", name, to_string(warp)), [=](LobePlan p) -> std::optional<LobePlan> {
-             PlannedFactor* f = find(p, name);
-             if (!f || f->warp == warp) return {};
-             f->warp = warp;
-             return p;
-           }});
-    changes.push_back({fmt::format("one {} for all lobes", name), [=](LobePlan p) -> std::optional<LobePlan> {
-                         PlannedFactor* f = find(p, name);
-                         const auto own = std::ranges::count(p.factors, false, &PlannedFactor::every_lobe);
-                         if (!f || f->every_lobe || p.lobes < 2 || own < 2) return {};
-                         f->every_lobe = true;
-                         return p;
-                       }});
-    changes.push_back({fmt::format("without {}", name), [=](LobePlan p) -> std::optional<LobePlan> {
-                         if (p.factors.size() < 3 || !find(p, name)) return {};
-                         std::erase_if(p.factors, [&](const PlannedFactor& f) { return f.name == name; });
-                         return p;
-                       }});
-  }
+  return changes;
+}
+
+std::vector<Change> changes_of_factor(const std::string& name) {
+  std::vector<Change> changes;
+  for (const double scale : {1.5, 0.67})
+    changes.push_back(
+        {fmt::format("share of {} x {}", name, scale), [=](LobePlan p) -> std::optional<LobePlan> {
+           PlannedFactor* f = find(p, name);
+           if (!f || p.factors.size() < 2) return {};
+           f->share *= scale;
+           return p;
+         }});
+  for (const Warp warp : {Warp{}, Warp{WarpKind::power, 0.5}, Warp{WarpKind::power, 0.7},
+                          Warp{WarpKind::rational, 0.1}, Warp{WarpKind::rational, -1.3}})
+    changes.push_back(
+        {fmt::format("{} spaced {}", name, to_string(warp)), [=](LobePlan p) -> std::optional<LobePlan> {
+           PlannedFactor* f = find(p, name);
+           if (!f || f->warp == warp) return {};
+           f->warp = warp;
+           return p;
+         }});
+  changes.push_back({fmt::format("one {} for all lobes", name), [=](LobePlan p) -> std::optional<LobePlan> {
+                       PlannedFactor* f = find(p, name);
+                       const auto own = std::ranges::count(p.factors, false, &PlannedFactor::every_lobe);
+                       if (!f || f->every_lobe || p.lobes < 2 || own < 2) return {};
+                       f->every_lobe = true;
+                       return p;
+                     }});
+  changes.push_back({fmt::format("without {}", name), [=](LobePlan p) -> std::optional<LobePlan> {
+                       if (p.factors.size() < 3 || !find(p, name)) return {};
+                       std::erase_if(p.factors, [&](const PlannedFactor& f) { return f.name == name; });
+                       return p;
+                     }});
+  return changes;
+}
+
+std::vector<Change> changes_by_projections() {
+  std::vector<Change> changes;
   for (const auto& [name, uses] : further_projections())
     changes.push_back({fmt::format("with {}({})", name, to_string(uses.front())),
                        [added = name, along = uses](LobePlan p) -> std::optional<LobePlan> {
@@ -104,7 +112,11 @@ std::vector<Change> list_changes(const LobePlan& plan) {
                          p.factors.push_back({added, TableShape::line, along, 0.4 * mean_share(p), {}});
                          return p;
                        }});
-  // the coefficients of skewed directions
+  return changes;
+}
+
+std::vector<Change> changes_of_coefficients() {  // of skewed directions
+  std::vector<Change> changes;
   for (const char* name : {"s", "t"})
     for (const double scale : {1.4, 0.7})
       changes.push_back(
@@ -119,6 +131,17 @@ std::vector<Change> list_changes(const LobePlan& plan) {
              }
              return p;
            }});
+  return changes;
+}
+
+std::vector<Change> list_changes(const LobePlan& plan) {
+  std::vector<Change> changes = changes_of_lobes();
+  const auto add = [&](std::vector<Change> further) {
+    std::ranges::move(further, std::back_inserter(changes));
+  };
+  for (const PlannedFactor& factor : plan.factors) add(changes_of_factor(factor.name));
+  add(changes_by_projections());
+  add(changes_of_coefficients());
   return changes;
 }
 

@@ -10,6 +10,45 @@
 
 namespace burnish {
 
+namespace {
+
+const TableLayout& layout_of(const ModelSpec& spec, const FactorUse& use) {
+  return spec.tables[use.table].layout;
+}
+
+/// Block by block; the last is filled up with the last pair.
+std::vector<Lookups::Place> places_of(const ModelSpec& spec, const std::vector<FactorUse>& distinct,
+                                      const TrainingSet& set) {
+  const std::size_t blocks = chunk_count(set.size(), Lookups::kBlock);
+  std::vector<Lookups::Place> places(blocks * Lookups::kBlock * distinct.size());
+  for_each_chunk(blocks, Lookups::kBlocksATask, [&](std::size_t, std::size_t begin, std::size_t end) {
+    auto place = places.begin() + static_cast<std::ptrdiff_t>(begin * Lookups::kBlock * distinct.size());
+    for (std::size_t block = begin; block < end; ++block)
+      for (const FactorUse& use : distinct)
+        for (std::size_t i = block * Lookups::kBlock; i < (block + 1) * Lookups::kBlock; ++i) {
+          const auto& [wi, wo] = set.pairs[std::min(i, set.size() - 1)];
+          const Lookup at = locate(layout_of(spec, use), use, wi, wo);
+          *place++ = {static_cast<std::uint32_t>(at.node), static_cast<float>(at.fx),
+                      static_cast<float>(at.fy), static_cast<float>(at.fz)};
+        }
+  });
+  return places;
+}
+
+/// The set's, of whole blocks: what fills the last one up weighs as the last pair does.
+std::vector<float> lobe_weights_of(const TrainingSet& set, std::size_t lobes) {
+  if (set.lobe_weights.empty()) return {};
+  if (set.lobe_weights.size() != lobes * set.size())
+    throw Error(fmt::format("fit: expected {} weights of lobes, found {}", lobes * set.size(),
+                            set.lobe_weights.size()));
+  std::vector<float> weights = set.lobe_weights;
+  while (weights.size() < chunk_count(set.size(), Lookups::kBlock) * Lookups::kBlock * lobes)
+    weights.push_back(weights[weights.size() - lobes]);
+  return weights;
+}
+
+}  // namespace
+
 Lookups lookups_of(const ModelSpec& spec, const TrainingSet& set) {
   Lookups found;
 
@@ -24,45 +63,19 @@ Lookups lookups_of(const ModelSpec& spec, const TrainingSet& set) {
   }
 
   // of these, what falls on the same place
-  const auto layout_of = [&](const FactorUse& use) -> const TableLayout& {
-    return spec.tables[use.table].layout;
-  };
   std::vector<FactorUse> distinct;
   for (const FactorUse& use : found.lookups) {
     const auto known = std::ranges::find_if(distinct, [&](const FactorUse& other) {
-      return located_alike(layout_of(use), use, layout_of(other), other);
+      return located_alike(layout_of(spec, use), use, layout_of(spec, other), other);
     });
     found.place_of.push_back(static_cast<std::size_t>(known - distinct.begin()));
     if (known == distinct.end()) distinct.push_back(use);
   }
   found.place_count = distinct.size();
 
-  // the places, block by block; the last is filled up with the last pair
   found.pairs = set.size();
-  const std::size_t blocks = chunk_count(set.size(), Lookups::kBlock);
-  found.places.resize(blocks * Lookups::kBlock * distinct.size());
-  for_each_chunk(blocks, Lookups::kBlocksATask, [&](std::size_t, std::size_t begin, std::size_t end) {
-    auto place =
-        found.places.begin() + static_cast<std::ptrdiff_t>(begin * Lookups::kBlock * distinct.size());
-    for (std::size_t block = begin; block < end; ++block)
-      for (const FactorUse& use : distinct)
-        for (std::size_t i = block * Lookups::kBlock; i < (block + 1) * Lookups::kBlock; ++i) {
-          const auto& [wi, wo] = set.pairs[std::min(i, set.size() - 1)];
-          const Lookup at = locate(layout_of(use), use, wi, wo);
-          *place++ = {static_cast<std::uint32_t>(at.node), static_cast<float>(at.fx),
-                      static_cast<float>(at.fy), static_cast<float>(at.fz)};
-        }
-  });
-
-  // what fills the last block up weighs as the last pair does
-  if (set.lobe_weights.empty()) return found;
-  const std::size_t lobes = spec.lobes.size();
-  if (set.lobe_weights.size() != lobes * set.size())
-    throw Error(fmt::format("fit: expected {} weights of lobes, found {}", lobes * set.size(),
-                            set.lobe_weights.size()));
-  found.lobe_weights = set.lobe_weights;
-  while (found.lobe_weights.size() < blocks * Lookups::kBlock * lobes)
-    found.lobe_weights.push_back(found.lobe_weights[found.lobe_weights.size() - lobes]);
+  found.places = places_of(spec, distinct, set);
+  found.lobe_weights = lobe_weights_of(set, spec.lobes.size());
   return found;
 }
 

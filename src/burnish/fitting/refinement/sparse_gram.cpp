@@ -95,8 +95,7 @@ void SparseGram::for_each_product(const UsePair& pair, std::span<const Terms> ro
       visit(a.node[i], b.node[j], a.weight[i] * b.weight[j]);
 }
 
-bool SparseGram::find_meetings() {
-  // which tables' uses meet
+void SparseGram::find_pairs() {
   for (std::size_t u = 0; u < uses_.size(); ++u)
     for (std::size_t v = 0; v <= u; ++v) {
       std::size_t first = u, second = v;
@@ -115,8 +114,12 @@ bool SparseGram::find_meetings() {
       }
       pairs_.push_back({meeting, first, second});
     }
+}
 
-  // the ranges; starts hold their ends until all are known
+bool SparseGram::find_meetings() {
+  find_pairs();
+
+  // starts hold the ranges' ends until all are known
   constexpr std::size_t kBlock = LobeLanes::kBlock;
   std::vector<Terms> row(uses_.size());  // counts are 0 before the first pair
   for (std::size_t block = 0; block < lanes_->blocks(); ++block)

@@ -71,6 +71,9 @@ class SparseGram {
 
   explicit SparseGram(const LobeLanes& lanes) : lanes_(&lanes) {}
   bool find_uses();
+  // which tables' uses meet
+  void find_pairs();
+  // the ranges of their nodes that do; false where they have too many entries
   bool find_meetings();
   void find_order();
   // whether the nodes of a table meet a small part of each volume's

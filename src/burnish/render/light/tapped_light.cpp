@@ -58,12 +58,13 @@ struct LobePart {
 // Standard deviations of a part that its tap's blur has: less, and the sum of blurs has ripples.
 constexpr double kOverlap = 1.5;
 
-std::vector<LightTap> clusters(const std::vector<LobeCell>& cells, std::size_t count) {
-  constexpr int kRounds = 30;
-  Pcg32 random(1);
-  const auto square = [](Vec3 a, Vec3 b) { return dot(a - b, a - b); };
+double square_distance(Vec3 a, Vec3 b) {
+  return dot(a - b, a - b);
+}
 
-  // seeds far apart: each drawn by its mass times the squared distance from those before it [Arthur 2007]
+// Far apart: each drawn by its mass times the squared distance from those before it [Arthur 2007].
+std::vector<Vec3> seeds_of(const std::vector<LobeCell>& cells, std::size_t count) {
+  Pcg32 random(1);
   std::vector<Vec3> middles;
   std::vector<double> nearest(cells.size(), 4);
   while (middles.size() < count) {
@@ -74,32 +75,42 @@ std::vector<LightTap> clusters(const std::vector<LobeCell>& cells, std::size_t c
     while (chosen + 1 < cells.size() && (left -= cells[chosen].mass * nearest[chosen]) > 0) ++chosen;
     middles.push_back(cells[chosen].direction);
     for (std::size_t i = 0; i < cells.size(); ++i)
-      nearest[i] = std::min(nearest[i], square(cells[i].direction, middles.back()));
+      nearest[i] = std::min(nearest[i], square_distance(cells[i].direction, middles.back()));
   }
+  return middles;
+}
 
-  // rounds: every cell to its nearest middle, every middle to its part's mean. A tap stands for its part's
-  // light with the value in its middle.
+// Every cell to its nearest middle.
+std::vector<LobePart> parts_around(const std::vector<Vec3>& middles, const std::vector<LobeCell>& cells) {
+  std::vector<LobePart> parts(middles.size());
+  for (const LobeCell& cell : cells) {
+    std::size_t best = 0;
+    double distance = 8;
+    for (std::size_t k = 0; k < middles.size(); ++k)
+      if (const double d = square_distance(cell.direction, middles[k]); d < distance) {
+        distance = d;
+        best = k;
+      }
+    LobePart& part = parts[best];
+    const double light = cell.value * cell.area;
+    part.sum = part.sum + cell.mass * cell.direction;
+    part.light += light;
+    part.spread += light * distance;
+    if (distance < part.closest) {
+      part.closest = distance;
+      part.value = cell.value;
+    }
+  }
+  return parts;
+}
+
+// Rounds in which every middle goes to its part's mean. A tap stands for its part's light with the value in its middle.
+std::vector<LightTap> clusters(const std::vector<LobeCell>& cells, std::size_t count) {
+  constexpr int kRounds = 30;
+  std::vector<Vec3> middles = seeds_of(cells, count);
   std::vector<LightTap> taps(count);
   for (int round = 0; round < kRounds; ++round) {
-    std::vector<LobePart> parts(count);
-    for (const LobeCell& cell : cells) {
-      std::size_t best = 0;
-      double distance = 8;
-      for (std::size_t k = 0; k < middles.size(); ++k)
-        if (const double d = square(cell.direction, middles[k]); d < distance) {
-          distance = d;
-          best = k;
-        }
-      LobePart& part = parts[best];
-      const double light = cell.value * cell.area;
-      part.sum = part.sum + cell.mass * cell.direction;
-      part.light += light;
-      part.spread += light * distance;
-      if (distance < part.closest) {
-        part.closest = distance;
-        part.value = cell.value;
-      }
-    }
+    const std::vector<LobePart> parts = parts_around(middles, cells);
     for (std::size_t k = 0; k < count; ++k) {
       const LobePart& part = parts[k];
       if (!(part.light > 0) || !(part.value > 0)) continue;
