@@ -9,7 +9,7 @@ namespace burnish {
 
 namespace {
 
-constexpr int kCheckpointVersion = 1;
+constexpr int kCheckpointVersion = 2;
 constexpr std::string_view kName = "burnish fit";
 constexpr std::size_t kParts = 13, kErrorItems = 4;
 constexpr std::int64_t kMaxInteger = std::numeric_limits<std::int64_t>::max();
@@ -20,6 +20,20 @@ std::span<const std::byte> bytes_of(const std::vector<T>& values) {
   return std::as_bytes(std::span(values));
 }
 
+// Names of files, and messages with names in them, are whatever bytes the system allows.
+void put_name(CborWriter& cbor, std::string_view name) {
+  const std::string_view kept = name.substr(0, kLongestText);
+  cbor.integer(static_cast<std::int64_t>(kept.size()));
+  cbor.bytes(std::as_bytes(std::span(kept)));
+}
+std::string name_from(CborReader& cbor, const char* what) {
+  const std::int64_t size = cbor.integer(what, 0, kLongestText);
+  const auto bytes = cbor.bytes(what, static_cast<std::uint64_t>(size));
+  std::string name(bytes.size(), '\0');
+  std::memcpy(name.data(), bytes.data(), bytes.size());
+  return name;
+}
+
 }  // namespace
 
 std::string format_checkpoint(const FitCheckpoint& checkpoint) {
@@ -28,10 +42,10 @@ std::string format_checkpoint(const FitCheckpoint& checkpoint) {
   cbor.text(kName);
   cbor.integer(kCheckpointVersion);
   cbor.integer(static_cast<std::int64_t>(checkpoint.key >> 1));
-  cbor.list(2 * checkpoint.damaged.size());
+  cbor.list(4 * checkpoint.damaged.size());
   for (const auto& [file, why] : checkpoint.damaged) {
-    cbor.text(file);
-    cbor.text(std::string_view(why).substr(0, kLongestText));
+    put_name(cbor, file);
+    put_name(cbor, why);
   }
   cbor.integer(static_cast<std::int64_t>(checkpoint.missing_pixels));
   cbor.integer(static_cast<std::int64_t>(checkpoint.clipped_pixels));
@@ -61,9 +75,9 @@ FitCheckpoint parse_checkpoint(const FileBytes& file, int width) {
     cbor.fail(0, "a checkpoint of a surface's fit", "another file");
   cbor.integer("its version", kCheckpointVersion, kCheckpointVersion);
   read.key = static_cast<std::uint64_t>(cbor.integer("its key", 0, kMaxInteger)) << 1;
-  for (std::size_t left = cbor.list("damaged pictures", 0, 2 * kMaxPictures) / 2; left > 0; --left) {
-    std::string name = cbor.text("a picture", kLongestText);
-    read.damaged.push_back({std::move(name), cbor.text("what is damaged", kLongestText)});
+  for (std::size_t left = cbor.list("damaged pictures", 0, 4 * kMaxPictures) / 4; left > 0; --left) {
+    std::string name = name_from(cbor, "a picture");
+    read.damaged.push_back({std::move(name), name_from(cbor, "what is damaged")});
   }
   read.missing_pixels = static_cast<std::uint64_t>(cbor.integer("missing pixels", 0, kMaxInteger));
   read.clipped_pixels = static_cast<std::uint64_t>(cbor.integer("clipped pixels", 0, kMaxInteger));

@@ -14,7 +14,7 @@ constexpr int kCheckpointWidth = 3, kCheckpointRows = 2;
 FitCheckpoint some_checkpoint(bool normals) {
   FitCheckpoint checkpoint{
       .key = 0xfedcba9876543210,
-      .damaged = {{"a.exr", "cut short"}, {"b/ü.png", ""}},
+      .damaged = {{"a.exr", "cut short"}, {"b/ü.png", ""}, {"no UTF-8\xff", std::string(4095, 'a') + "\xc3"}},
       .missing_pixels = 7,
       .clipped_pixels = 1'000'000'000'000,
       .exposure = 1.0 / 3,
