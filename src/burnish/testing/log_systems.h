@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <gtest/gtest.h>
+
 #include <burnish/fitting/numerics/node_numbers.h>
 #include <burnish/fitting/numerics/smoothness.h>
 #include <burnish/fitting/one_lobe/log_rows.h>
@@ -101,5 +103,28 @@ struct LogCase {
 inline const LogCase kLogCases[] = {{"p(wo) q(h) p(wi)", {"p=6", "q=9"}, 1},
                                     {"p(wo) q(h) p(wi)", {"p=6,shared", "q=9"}, 3},
                                     {"p(wo) q(h) p(wi) r(theta_d)", {"p=5x5", "q=9", "r=4,shared"}, 5}};
+
+/// How far from the least of the objective a solver may end: share of the slope at 0, and of the rms.
+struct LogTolerance {
+  double slope, rms;
+};
+
+/// solve(rows) ends where the objective of every case of kLogCases is least, and says so.
+template <class Solve>
+void expect_least(std::size_t samples, const Solve& solve, double smooth, LogTolerance tolerance,
+                  StopReason reason) {
+  for (const auto& [expression, tables, channels] : kLogCases) {
+    const ModelSpec spec = parse_model_spec(expression, tables, true);
+    const SampleSource source = random_log_source(samples, channels);
+    const RowMaker rows(source, spec, 1e-3, 1e-3);
+    const LogSolution found = solve(rows);
+    EXPECT_EQ(found.samples, rows.make(0, source.count).size);
+    EXPECT_EQ(found.summary.stop_reason, reason) << expression;
+    const LogObjective at = log_objective(rows, found, smooth);
+    EXPECT_LT(largest(at.slope), tolerance.slope * largest(at.slope_at_zero)) << expression;
+    EXPECT_NEAR(found.summary.error_after, at.rms, tolerance.rms * at.rms) << expression;
+    EXPECT_LT(found.summary.error_after, found.summary.error_before) << expression;
+  }
+}
 
 }  // namespace burnish::fixtures
