@@ -10,8 +10,9 @@ namespace burnish {
 namespace {
 
 constexpr int kCheckpointVersion = 2;
-constexpr std::string_view kName = "burnish fit";
+constexpr std::string_view kName = "burnish fit", kNameOfLobes = "burnish lobes";
 constexpr std::size_t kParts = 13, kErrorItems = 4;
+constexpr std::size_t kMaxTables = 1024;
 constexpr std::int64_t kMaxInteger = std::numeric_limits<std::int64_t>::max();
 constexpr std::size_t kLongestText = 4096;
 
@@ -34,7 +35,54 @@ std::string name_from(CborReader& cbor, const char* what) {
   return name;
 }
 
+// Numbers as they lie in memory, behind their count.
+template <class T>
+void put_values(CborWriter& cbor, const std::vector<T>& values) {
+  cbor.integer(static_cast<std::int64_t>(values.size()));
+  cbor.bytes(bytes_of(values));
+}
+template <class T>
+std::vector<T> values_from(CborReader& cbor, const FileBytes& file, const char* what) {
+  const auto most = static_cast<std::int64_t>(file.bytes.size() / sizeof(T));
+  const std::int64_t count = cbor.integer(what, 0, most);
+  const auto bytes = cbor.bytes(what, static_cast<std::uint64_t>(count) * sizeof(T));
+  std::vector<T> values(static_cast<std::size_t>(count));
+  if (count > 0) std::memcpy(values.data(), bytes.data(), bytes.size());
+  return values;
+}
+
 }  // namespace
+
+std::string format_checkpoint(const LobesCheckpoint& checkpoint) {
+  CborWriter cbor;
+  cbor.list(kParts);
+  cbor.text(kNameOfLobes);
+  cbor.integer(kCheckpointVersion);
+  cbor.integer(static_cast<std::int64_t>(checkpoint.key >> 1));
+  cbor.integer(checkpoint.rounds);
+  cbor.list(2 * checkpoint.log_values.size());
+  for (const std::vector<double>& table : checkpoint.log_values) put_values(cbor, table);
+  for (const auto* values : {&checkpoint.fits.weights, &checkpoint.fits.normals, &checkpoint.fits.trust,
+                             &checkpoint.normals_of_all})
+    put_values(cbor, *values);
+  return cbor.written();
+}
+
+std::optional<LobesCheckpoint> parse_lobes_checkpoint(const FileBytes& file) {
+  CborReader cbor(file);
+  if (cbor.list("a checkpoint", kParts, kParts); cbor.text("its name", kNameOfLobes.size()) != kNameOfLobes)
+    return std::nullopt;
+  cbor.integer("its version", kCheckpointVersion, kCheckpointVersion);
+  LobesCheckpoint read;
+  read.key = static_cast<std::uint64_t>(cbor.integer("its key", 0, kMaxInteger)) << 1;
+  read.rounds = static_cast<int>(cbor.integer("rounds", 1, std::numeric_limits<int>::max()));
+  for (std::size_t left = cbor.list("tables", 2, 2 * kMaxTables) / 2; left > 0; --left)
+    read.log_values.push_back(values_from<double>(cbor, file, "a table"));
+  for (auto* values : {&read.fits.weights, &read.fits.normals, &read.fits.trust, &read.normals_of_all})
+    *values = values_from<float>(cbor, file, "what texels were found to be");
+  cbor.end();
+  return read;
+}
 
 std::string format_checkpoint(const FitCheckpoint& checkpoint) {
   CborWriter cbor;

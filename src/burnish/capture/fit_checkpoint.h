@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,10 +26,22 @@ struct FitCheckpoint {
   std::vector<TexelSolver::PictureError> errors;
 };
 
+/// The same before the lobes are found: after a round of them, all that the next round goes on from.
+struct LobesCheckpoint {
+  std::uint64_t key = 0;
+  int rounds = 0;                               ///< that are done
+  std::vector<std::vector<double>> log_values;  ///< of LogModel
+  TexelFits fits;                               ///< of the texels that the round was fitted to, without costs
+  std::vector<float> normals_of_all;  ///< where that was a part of the texels: what all begin with, or none
+};
+
 /// One CBOR item; it is read by the program that wrote it.
 std::string format_checkpoint(const FitCheckpoint& checkpoint);
+std::string format_checkpoint(const LobesCheckpoint& checkpoint);
 /// Throws Error, naming the offset, for other bytes, and where a number of rows of `width` texels contradicts what
 /// is there.
 FitCheckpoint parse_checkpoint(const FileBytes& file, int width);
+/// Nothing where the file is no checkpoint of lobes. Throws Error, naming the offset, where one is damaged.
+std::optional<LobesCheckpoint> parse_lobes_checkpoint(const FileBytes& file);
 
 }  // namespace burnish

@@ -96,5 +96,27 @@ TEST(FitCheckpoint, IsKnownByItsName) {
   EXPECT_THAT(error_of([&] { parse_as(bytes); }), testing::HasSubstr("expected a checkpoint"));
 }
 
+TEST(LobesCheckpoint, RestoresAllThatItKeepsAndNoPartOfIt) {
+  const LobesCheckpoint kept{
+      .key = 0xfedcba9876543210,
+      .rounds = 3,
+      .log_values = {{0.1, -2}, {1.0 / 3}},
+      .fits = {.weights = {0.5f, 2}, .normals = {}, .trust = {1, 0, 0.25f}, .costs = {}},
+      .normals_of_all = {0.5f, -0.5f}};
+  const std::string bytes = format_checkpoint(kept);
+  const LobesCheckpoint read = parse_lobes_checkpoint(memory_file(bytes)).value();
+  EXPECT_EQ(read.key, kept.key);
+  EXPECT_EQ(read.rounds, kept.rounds);
+  EXPECT_EQ(read.log_values, kept.log_values);
+  EXPECT_EQ(read.fits.weights, kept.fits.weights);
+  EXPECT_EQ(read.fits.normals, kept.fits.normals);
+  EXPECT_EQ(read.fits.trust, kept.fits.trust);
+  EXPECT_EQ(read.normals_of_all, kept.normals_of_all);
+  for (std::size_t size = 0; size < bytes.size(); ++size)
+    EXPECT_THROW(parse_lobes_checkpoint(memory_file(bytes.substr(0, size))), Error) << size;
+  EXPECT_FALSE(parse_lobes_checkpoint(memory_file(format_checkpoint(some_checkpoint(true)))).has_value());
+  EXPECT_THROW(parse_as(bytes), Error);
+}
+
 }  // namespace
 }  // namespace burnish

@@ -63,7 +63,8 @@ constexpr double kCodeRoom = 1.25;      // of weights' scale over what nearly al
 constexpr double kNearlyAll = 0.999;
 
 // What rank 0 tells the others first.
-constexpr const char *kResumed = "resumed", *kFromTheStart = "from the start";
+// What rank 0 tells the others to begin with; behind the second a checkpoint of lobes, if there is one.
+constexpr std::string_view kOfWeights = "weights", kOfLobes = "lobes";
 
 /// K lobes z(theta_h) g(theta_h,theta_d,phi_d) of so many bytes each.
 ModelSpec spec_of_lobes(std::size_t lobes, std::size_t bytes) {
@@ -129,7 +130,9 @@ class SurfaceFitter {
     const auto start = std::chrono::steady_clock::now();
     if (normals_from_ == NormalsFrom::capture) all_normals_ = capture_.normals();
     const bool resumed = resume();
-    if (crew_ranks() > 1) options_.crew->broadcast(resumed ? kResumed : kFromTheStart);
+    if (crew_ranks() > 1)
+      options_.crew->broadcast(resumed ? std::string(kOfWeights)
+                                       : std::string(kOfLobes) + (begun_ ? format_checkpoint(*begun_) : ""));
     if (!resumed) find_lobes();
     if (crew_ranks() > 1) options_.crew->broadcast(format_checkpoint(noted()));
     find_weights();
@@ -142,7 +145,11 @@ class SurfaceFitter {
   /// The share of a rank that does not lead.
   void help() {
     if (normals_from_ == NormalsFrom::capture) all_normals_ = capture_.normals();
-    if (options_.crew->broadcast({}) == kFromTheStart) find_lobes();
+    if (const std::string told = options_.crew->broadcast({}); told != kOfWeights) {
+      if (const std::string begun = told.substr(kOfLobes.size()); !begun.empty())
+        begun_ = parse_lobes_checkpoint({"what rank 0 sent", bytes_of_text(begun)});
+      find_lobes();
+    }
     adopt(parse_checkpoint({"what rank 0 sent", bytes_of_text(options_.crew->broadcast({}))},
                            capture_.form().width));
     find_weights();
@@ -178,7 +185,10 @@ class SurfaceFitter {
       fit_samples(true);
     } else {
       start_normals();
-      start_lobes();
+      if (begun_)
+        take_up_lobes();
+      else
+        start_lobes();
       refine_rounds();
     }
     find_scales();
@@ -187,17 +197,50 @@ class SurfaceFitter {
 
   /// The first rounds, which the lobes' few nodes make coarse, on a part of the texels.
   void refine_rounds() {
-    int round = 0;
-    if (const std::size_t step = samples_.size() / kCoarseTexels; step > 1 && is_coarse(round)) {
+    int round = rounds_done_;
+    const bool of_all = round > 0 && !is_coarse(round - 1);  // of a checkpoint
+    if (const std::size_t step = samples_.size() / kCoarseTexels; step > 1 && is_coarse(0) && !of_all) {
       TexelSamples all = std::exchange(samples_, every(samples_, step));
-      std::vector<float> normals = std::exchange(fits_.normals, every_normal(fits_.normals, step));
-      fit_samples(false);
+      normals_of_all_ = std::exchange(fits_.normals, every_normal(fits_.normals, step));
+      take_up_or_fit_samples();
       while (is_coarse(round)) refine_round(round++);
       samples_ = std::move(all);
-      fits_.normals = std::move(normals);
+      fits_.normals = std::exchange(normals_of_all_, {});
       fit_samples(true);
+    } else if (begun_) {
+      take_up_or_fit_samples();
     }
     while (round < rounds_) refine_round(round++);
+  }
+
+  /// Lobes as a checkpoint has them.
+  void take_up_lobes() {
+    rounds_done_ = report_.resumed_rounds = begun_->rounds;
+    const ModelSpec spec = spec_of_lobes(options_.lobes, bytes_in(rounds_done_ - 1));
+    const bool alike = rounds_done_ < rounds_ &&
+                       std::ranges::equal(begun_->log_values, spec.tables, {}, &std::vector<double>::size,
+                                          [](const ModelSpec::TableSpec& table) {
+                                            return table.layout.node_count() * kCaptureChannels;
+                                          });
+    if (!alike) refuse_checkpoint();
+    model_ =
+        LogModel{.spec = spec, .channels = kCaptureChannels, .log_values = std::move(begun_->log_values)};
+    lobes_ = to_brdf(model_, TableFormat::single);
+  }
+  /// And the texels that they were fitted to.
+  void take_up_or_fit_samples() {
+    if (!begun_) return fit_samples(false);
+    TexelFits& fits = begun_->fits;
+    if (fits.weights.size() != samples_.size() * lobes_->lobes().size() ||
+        fits.normals.size() != fits_.normals.size() || fits.trust.size() != samples_.states.size() ||
+        begun_->normals_of_all.size() != normals_of_all_.size())
+      refuse_checkpoint();
+    fits_ = std::move(fits);
+    normals_of_all_ = std::move(begun_->normals_of_all);
+    begun_.reset();
+  }
+  [[noreturn]] void refuse_checkpoint() const {
+    throw Error::in_file(options_.checkpoint.string(), "lobes and texels of this capture", "others");
   }
 
   /// Those of every().
@@ -294,6 +337,7 @@ class SurfaceFitter {
     lobes_ = last ? to_rounded_brdf(model_, set, options) : to_brdf(model_, TableFormat::single);
     rounds_done_ = round + 1;
     fit_samples(last);
+    if (!last) save_lobes();
   }
 
   /// Channels do not depend on each other: a rank each. Two ranks have one and half the steps of the third each.
@@ -519,13 +563,23 @@ class SurfaceFitter {
     return hash_of(text) & ~std::uint64_t{1};
   }
 
+  /// True where lobes are found; those that are begun are in begun_.
   bool resume() {
     key_ = key();
     if (options_.checkpoint.empty() || !std::filesystem::exists(options_.checkpoint)) return false;
-    FitCheckpoint found = parse_checkpoint(read_file(options_.checkpoint), capture_.form().width);
-    if (found.key != key_)
-      throw Error::in_file(options_.checkpoint.string(), "a checkpoint of this capture and these options",
-                           "one of others");
+    const FileBytes file = read_file(options_.checkpoint);
+    const auto check = [&](std::uint64_t key) {
+      if (key != key_)
+        throw Error::in_file(options_.checkpoint.string(), "a checkpoint of this capture and these options",
+                             "one of others");
+    };
+    begun_ = parse_lobes_checkpoint(file);
+    if (begun_) {
+      check(begun_->key);
+      return false;
+    }
+    FitCheckpoint found = parse_checkpoint(file, capture_.form().width);
+    check(found.key);
     adopt(std::move(found));
     report_.resumed_rows = done_.rows;
     return true;
@@ -554,6 +608,15 @@ class SurfaceFitter {
     return done_;
   }
 
+  void save_lobes() const {
+    if (options_.checkpoint.empty() || crew_rank() != 0) return;
+    write_then_rename(options_.checkpoint,
+                      format_checkpoint(LobesCheckpoint{.key = key_,
+                                                        .rounds = rounds_done_,
+                                                        .log_values = model_.log_values,
+                                                        .fits = fits_,
+                                                        .normals_of_all = normals_of_all_}));
+  }
   void save() {
     if (options_.checkpoint.empty() || crew_rank() != 0) return;
     noted();
@@ -726,6 +789,8 @@ class SurfaceFitter {
   const SurfaceFitOptions& options_;
   NormalsFrom normals_from_ = NormalsFrom::flat;
   int rounds_ = 0;
+  std::vector<float> normals_of_all_;     ///< while rounds see a part of the texels: of the others too
+  std::optional<LobesCheckpoint> begun_;  ///< what a checkpoint has, until it is taken up
   std::vector<float> all_normals_;
   TexelSamples samples_;
   TexelFits fits_;

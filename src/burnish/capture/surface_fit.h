@@ -31,7 +31,7 @@ struct SurfaceFitOptions {
   bool widened = false;
   std::size_t tile_bytes = 256 << 20;  ///< of pictures in memory at a time
   std::uint64_t seed = 1;              ///< of the texels and pixels that lobes are fitted to
-  /// A file that says how far the work is, written after each part and removed at the end; empty: none. One that is
+  /// A file that says how far the work is, written after each round and part and removed at the end; empty: none. One that is
   /// there and of the same capture and options is gone on from.
   std::filesystem::path checkpoint = {};
   /// Ranks that share the work; null: this process alone. Rank 0 calls fit_surface, the others
@@ -63,7 +63,7 @@ struct SurfaceReport {
   double bytes_a_texel = 0;                                       ///< weights and lobes, normals apart
   double seconds = 0;
   double weight_seconds = 0;  ///< of these in weights and normals of all texels, without reading
-  int resumed_rows = 0;       ///< that a checkpoint already had
+  int resumed_rounds = 0, resumed_rows = 0;  ///< of lobes and of weights, that a checkpoint already had
 };
 
 struct SurfaceFit {

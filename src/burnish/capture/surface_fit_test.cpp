@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <burnish/capture/fit_checkpoint.h>
 #include <burnish/capture/surface_baselines.h>
 #include <burnish/capture/surface_fit.h>
 #include <burnish/capture/surface_picture.h>
@@ -126,6 +127,31 @@ TEST(SurfaceFit, GoesOnFromACheckpoint) {
   write(options.checkpoint, read(options.checkpoint).substr(0, 1000));
   options.seed = 1;
   EXPECT_THROW(capture.fit(options), Error);
+}
+
+// Rounds of lobes too: the first, of a part of the texels, and later ones.
+TEST(SurfaceFit, GoesOnFromARoundOfLobes) {
+  BURNISH_SKIP_WHERE_SANITIZED();
+  const TemporaryFolder folder("surface_fit_rounds");
+  small_capture(folder.path, 56, 6, R"("noise":0.01,"held_out":6)");
+  SurfaceFitOptions options = small_options();
+  options.rounds = 4;
+  options.normals = NormalsFrom::estimate;
+  const auto fit = [&](const SurfaceFitOptions& own) { return fit_surface(Capture(folder.path), own); };
+  const std::string whole = format_surface(fit(options).surface);
+  options.checkpoint = folder.path / "fit.part";
+  for (const int rounds : {1, 3}) {
+    fs::remove(options.checkpoint);
+    SurfaceFitOptions stopped = options;
+    stopped.progress = [&](std::string_view stage, double fraction) {
+      if (stage == "fitting lobes" && fraction * 4 > rounds) throw Error("stopped");
+    };
+    EXPECT_THROW(fit(stopped), Error);
+    ASSERT_TRUE(parse_lobes_checkpoint(read_file(options.checkpoint)).has_value());
+    const SurfaceFit resumed = fit(options);
+    EXPECT_EQ(resumed.report.resumed_rounds, rounds);
+    EXPECT_TRUE(format_surface(resumed.surface) == whole) << rounds;
+  }
 }
 
 TEST(SurfaceFit, IsTheSameForAnyNumberOfRanks) {
