@@ -49,6 +49,19 @@ TEST_F(BatchCommand, SaysAtTheEndWhatFailedAndHasTheRest) {
   EXPECT_EQ(json["failures"][0]["name"], "missing");
 }
 
+TEST_F(BatchCommand, DoesNotTakeItsOwnResultsForMaterials) {
+  std::filesystem::create_directory(folder_.path / "meas");
+  write(folder_.path / "meas/felt.csv",
+        "theta_i,phi_i,theta_o,phi_o,value\n5,0,12,0,0.3\n22,0,11,60,0.2\n40,0,17,60,0.25\n");
+  ASSERT_EQ(batch(std::string("meas -o meas/library") + kQuick).status, 0);
+  for (const char* const out : {"meas/library --resume", "other"}) {
+    const Outcome again = batch(std::string("meas --json -o ") + out + kQuick);
+    ASSERT_EQ(again.status, 0) << again.output;
+    EXPECT_EQ(nlohmann::json::parse(again.output)["materials"], 1) << out;
+  }
+  EXPECT_THAT(batch("meas -o meas").output, HasSubstr("meas: expected a folder with measurements"));
+}
+
 TEST_F(BatchCommand, TakesTheOptionsOfAFitAndRefusesWhatContradictsItself) {
   EXPECT_EQ(batch("'a list' -o out --method svd --budget auto").status, 2);
   EXPECT_EQ(batch("'a list' -o out --method svd --to glsl").status, 2);

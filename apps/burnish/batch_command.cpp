@@ -111,7 +111,7 @@ void print_text(const BatchArguments& arguments, const BatchSummary& summary,
 }
 
 void write_script(const BatchArguments& arguments, const CLI::App& verb) {
-  library_entries(arguments.place);  // what is wrong with it is said now
+  library_entries(arguments.place, arguments.out);  // what is wrong with it is said now
   std::vector<std::string> words = command_words(verb);
   if (!arguments.batch.resume) words.insert(words.begin() + 2, "--resume");
   const std::filesystem::path folder(arguments.out);
@@ -127,7 +127,7 @@ void run(const BatchArguments& arguments, const CLI::App& verb) {
   for (const bool isotropic : {false, true})
     options.fit(isotropic);  // contradictions are misuses, before all else
   if (arguments.slurm.wanted) return write_script(arguments, verb);
-  Batch batch(library_entries(arguments.place), options);
+  Batch batch(library_entries(arguments.place, arguments.out), options);
   std::vector<MaterialRecord> failed;
   Redrawn progress(batch);
   while (const auto record = batch.next([&progress] { progress.draw_if_due(); })) {

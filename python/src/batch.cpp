@@ -87,7 +87,8 @@ Batch* batch(const Materials& materials, const std::filesystem::path& folder,
   for (const std::string& target : to) options.exports.to.push_back(export_target(target));
   const auto* arguments = std::get_if<std::vector<std::string>>(&materials);
   std::vector<LibraryEntry> entries =
-      arguments ? named_entries(*arguments) : library_entries(std::get<std::filesystem::path>(materials));
+      arguments ? named_entries(*arguments)
+                : library_entries(std::get<std::filesystem::path>(materials), folder);
   const nb::gil_scoped_release released;
   return new Batch(std::move(entries), std::move(options));
 }
