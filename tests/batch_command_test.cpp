@@ -91,5 +91,24 @@ TEST_F(BatchCommand, WritesAJobArrayThatRunsTheSameCommand) {
   EXPECT_EQ(read(folder_.path / "an out" / model), read(folder_.path / "out" / model));
 }
 
+TEST_F(BatchCommand, WritesNoLinesIntoTheJobArrayThatNobodyAskedFor) {
+  const Outcome option = batch("'a list' -o out --slurm --sbatch='--x\nrm -rf /'");
+  EXPECT_EQ(option.status, 2);
+  EXPECT_THAT(option.output,
+              HasSubstr("expected an option without control characters, found '--x rm -rf /'"));
+  const Outcome folder = batch("'a list' -o 'out\nput' --slurm");
+  EXPECT_EQ(folder.status, 1);
+  EXPECT_THAT(folder.output, HasSubstr("expected words and paths without control characters"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.path / "out"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.path / "out\nput"));
+}
+
+TEST_F(BatchCommand, SaysAsJsonWhereTheJobArrayIs) {
+  const auto json = nlohmann::json::parse(batch("'a list' -o out --slurm --tasks 3 --json").output);
+  EXPECT_EQ(json["script"], "out/batch.slurm");
+  EXPECT_EQ(json["materials"], 3);
+  EXPECT_EQ(json["tasks"], 3);
+}
+
 }  // namespace
 }  // namespace burnish
