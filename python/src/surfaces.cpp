@@ -22,6 +22,7 @@
 #include <burnish/surface/surface_file.h>
 
 #include "opened_brdf.h"
+#include "progress.h"
 
 namespace burnish::python {
 
@@ -41,7 +42,7 @@ template <std::size_t columns>
 using RowsOf =
     nb::ndarray<const float, nb::shape<-1, static_cast<nb::ssize_t>(columns)>, nb::c_contig, nb::device::cpu>;
 
-OpenedSurface* open_surface(const std::string& path) {
+OpenedSurface* open_surface(const std::filesystem::path& path) {
   return new OpenedSurface(parse_surface(read_file(path)));
 }
 
@@ -116,13 +117,16 @@ NormalsFrom normals_from(const std::string& name) {
 nb::tuple fit_surface(const std::filesystem::path& capture, std::size_t lobes, std::size_t lobe_bytes,
                       const OpenedModel* book, const std::optional<std::string>& normals,
                       std::optional<int> rounds, bool widened, std::uint64_t seed,
-                      const std::optional<std::filesystem::path>& checkpoint, std::size_t pictures) {
+                      const std::optional<std::filesystem::path>& checkpoint, std::size_t pictures,
+                      std::size_t memory, const nb::object& progress) {
   SurfaceFitOptions options;
   options.lobes = lobes;
   options.lobe_bytes = lobe_bytes;
   options.rounds = rounds;
   options.widened = widened;
   options.seed = seed;
+  options.tile_bytes = memory;
+  options.progress = progress_of(progress);
   if (book) options.book = book->brdf();
   if (normals) options.normals = normals_from(*normals);
   if (checkpoint) options.checkpoint = *checkpoint;
@@ -201,8 +205,12 @@ void bind_surfaces(nb::module_& m) {
         nb::arg("lobe_bytes") = 24 << 10, nb::arg("book").none() = nb::none(),
         nb::arg("normals") = nb::none(), nb::arg("rounds").none() = nb::none(), nb::arg("widened") = false,
         nb::arg("seed") = 1, nb::arg("checkpoint") = nb::none(), nb::arg("pictures") = Capture::kBtfPictures,
+        nb::arg("memory") = SurfaceFitOptions().tile_bytes, nb::arg("progress") = nb::none(),
         "(Surface, report) of a capture's folder, of a BTF, of which so many pictures are taken, or of a\n"
-        "CSV of samples of texels, as `burnish fit-surface`.");
+        "CSV of samples of texels, as `burnish fit-surface`. memory: bytes of pictures at a time.\n\n"
+        "progress(stage, fraction) is called from this thread; what it raises ends the fit, and so does "
+        "Ctrl-C;\n"
+        "of that, checkpoint, a file's name, is what the next call goes on from.");
 }
 
 }  // namespace burnish::python

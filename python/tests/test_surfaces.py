@@ -1,4 +1,7 @@
 import json
+import os
+import signal
+import threading
 
 import numpy
 import pytest
@@ -38,10 +41,41 @@ def test_fits_and_reads_its_file(fitted):
     assert report["held_out"]["psnr"] > 30
     assert (surface.width, surface.height, surface.channels, len(surface.weights)) == (24, 24, 3, 2)
     surface.write(folder / "wall.burnish")
-    again = burnish.open_surface(str(folder / "wall.burnish"))
+    again = burnish.open_surface(folder / "wall.burnish")
     assert all(numpy.array_equal(a, b) for a, b in zip(surface.weights, again.weights))
     assert again.notes == surface.notes
     assert 0 < again.albedo()["mean"] < 1
+
+
+def test_progress_rises_and_its_exceptions_end_the_fit(fitted):
+    folder, surface, _ = fitted
+    how = {"lobes": 2, "lobe_bytes": 1024, "rounds": 2}
+    seen = []
+    again, _ = burnish.fit_surface(
+        folder / "capture", **how, memory=1 << 14, progress=lambda stage, fraction: seen.append((stage, fraction))
+    )
+    assert all(numpy.array_equal(a, b) for a, b in zip(surface.weights, again.weights))
+    assert {"fitting lobes", "fitting weights"} <= {stage for stage, _ in seen}
+    weights = [fraction for stage, fraction in seen if stage == "fitting weights"]
+    assert len(weights) > 2 and weights == sorted(weights)  # a tile at a time
+
+    def stop(stage, fraction):
+        raise LookupError(stage)
+
+    with pytest.raises(LookupError, match="reading pictures"):
+        burnish.fit_surface(folder / "capture", **how, progress=stop)
+
+
+def test_ctrl_c_ends_a_fit(fitted):
+    folder, _, _ = fitted
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored where a shell runs this in the background
+    timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    seen = []
+    with pytest.raises(KeyboardInterrupt):
+        burnish.fit_surface(folder / "capture", lobes=6, rounds=100, progress=lambda *step: seen.append(step))
+    timer.join()
+    assert all(stage != "fitting weights" for stage, _ in seen)
 
 
 def test_is_the_weighted_sum_of_its_lobes(fitted):
