@@ -49,6 +49,19 @@ TEST_F(BatchCommand, SaysAtTheEndWhatFailedAndHasTheRest) {
   EXPECT_EQ(json["failures"][0]["name"], "missing");
 }
 
+TEST_F(BatchCommand, DoesNotTakeItsOwnResultsForMaterials) {
+  std::filesystem::create_directory(folder_.path / "meas");
+  write(folder_.path / "meas/felt.csv",
+        "theta_i,phi_i,theta_o,phi_o,value\n5,0,12,0,0.3\n22,0,11,60,0.2\n40,0,17,60,0.25\n");
+  ASSERT_EQ(batch(std::string("meas -o meas/library") + kQuick).status, 0);
+  for (const char* const out : {"meas/library --resume", "other"}) {
+    const Outcome again = batch(std::string("meas --json -o ") + out + kQuick);
+    ASSERT_EQ(again.status, 0) << again.output;
+    EXPECT_EQ(nlohmann::json::parse(again.output)["materials"], 1) << out;
+  }
+  EXPECT_THAT(batch("meas -o meas").output, HasSubstr("meas: expected a folder with measurements"));
+}
+
 TEST_F(BatchCommand, TakesTheOptionsOfAFitAndRefusesWhatContradictsItself) {
   EXPECT_EQ(batch("'a list' -o out --method svd --budget auto").status, 2);
   EXPECT_EQ(batch("'a list' -o out --method svd --to glsl").status, 2);
@@ -76,6 +89,25 @@ TEST_F(BatchCommand, WritesAJobArrayThatRunsTheSameCommand) {
   ASSERT_EQ(batch(std::string("'a list' -o out --keep-negatives") + kQuick).status, 1);
   const std::string model = "models/ward_alpha_x_0.2_alpha_y_0.2.burnish";
   EXPECT_EQ(read(folder_.path / "an out" / model), read(folder_.path / "out" / model));
+}
+
+TEST_F(BatchCommand, WritesNoLinesIntoTheJobArrayThatNobodyAskedFor) {
+  const Outcome option = batch("'a list' -o out --slurm --sbatch='--x\nrm -rf /'");
+  EXPECT_EQ(option.status, 2);
+  EXPECT_THAT(option.output,
+              HasSubstr("expected an option without control characters, found '--x rm -rf /'"));
+  const Outcome folder = batch("'a list' -o 'out\nput' --slurm");
+  EXPECT_EQ(folder.status, 1);
+  EXPECT_THAT(folder.output, HasSubstr("expected words and paths without control characters"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.path / "out"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.path / "out\nput"));
+}
+
+TEST_F(BatchCommand, SaysAsJsonWhereTheJobArrayIs) {
+  const auto json = nlohmann::json::parse(batch("'a list' -o out --slurm --tasks 3 --json").output);
+  EXPECT_EQ(json["script"], "out/batch.slurm");
+  EXPECT_EQ(json["materials"], 3);
+  EXPECT_EQ(json["tasks"], 3);
 }
 
 }  // namespace

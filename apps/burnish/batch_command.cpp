@@ -16,6 +16,7 @@
 
 #include "commands.h"
 #include "fit_arguments.h"
+#include "json_output.h"
 #include "slurm_script.h"
 #include "source_arguments.h"
 #include "usage.h"
@@ -96,7 +97,7 @@ void print_json(const BatchArguments& arguments, const BatchSummary& summary,
                                     {"page", (folder / kCataloguePage).string()},
                                     {"seconds", summary.seconds},
                                     {"failures", failures}};
-  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  print_as_json(json);
 }
 
 void print_text(const BatchArguments& arguments, const BatchSummary& summary,
@@ -111,14 +112,21 @@ void print_text(const BatchArguments& arguments, const BatchSummary& summary,
 }
 
 void write_script(const BatchArguments& arguments, const CLI::App& verb) {
-  library_entries(arguments.place);  // what is wrong with it is said now
+  // what is wrong with it is said now
+  const std::size_t materials = library_entries(arguments.place, arguments.out).size();
   std::vector<std::string> words = command_words(verb);
   if (!arguments.batch.resume) words.insert(words.begin() + 2, "--resume");
   const std::filesystem::path folder(arguments.out);
+  const std::string script =
+      slurm_script(arguments.slurm, folder, words, arguments.batch.threads, arguments.batch.memory);
   make_folder(folder);
   const std::string path = (folder / "batch.slurm").string();
-  write_then_rename(
-      path, slurm_script(arguments.slurm, folder, words, arguments.batch.threads, arguments.batch.memory));
+  write_then_rename(path, script);
+  if (arguments.json)
+    return print_as_json({{"output", arguments.out},
+                          {"materials", materials},
+                          {"script", path},
+                          {"tasks", arguments.slurm.tasks}});
   fmt::print("written    {}: start it with sbatch {}\n", path, path);
 }
 
@@ -127,7 +135,7 @@ void run(const BatchArguments& arguments, const CLI::App& verb) {
   for (const bool isotropic : {false, true})
     options.fit(isotropic);  // contradictions are misuses, before all else
   if (arguments.slurm.wanted) return write_script(arguments, verb);
-  Batch batch(library_entries(arguments.place), options);
+  Batch batch(library_entries(arguments.place, arguments.out), options);
   std::vector<MaterialRecord> failed;
   Redrawn progress(batch);
   while (const auto record = batch.next([&progress] { progress.draw_if_due(); })) {

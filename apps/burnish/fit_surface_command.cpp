@@ -62,6 +62,7 @@ void print_surface_json(const FitSurfaceArguments& arguments, const SurfaceRepor
   json["output"] = arguments.out;
   json["seconds"] = report.seconds;
   json["weight_seconds"] = report.weight_seconds;
+  json["resumed_rows"] = report.resumed_rows;
   for (const BaselineScore& other : others)
     json["methods"].push_back(
         {{"method", other.method},

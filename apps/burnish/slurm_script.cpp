@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <burnish/error.h>
+
 #include "usage.h"
 
 namespace burnish::cli {
@@ -17,8 +19,15 @@ constexpr std::array<std::string_view, 3> kOwn = {"--slurm", "--tasks", "--sbatc
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 constexpr std::uint64_t kBeside = 256 * kMiB;  // of a task's memory: what the system keeps of files
 
-// A word as a shell takes it, whatever is in it.
+// What ends a line for sbatch or a shell, or is not seen.
+bool has_control_character(const std::string& text) {
+  return std::ranges::any_of(text, [](unsigned char c) { return c < ' ' || c == 0x7f; });
+}
+
+// A word as a shell takes it, whatever is in it but control characters.
 std::string quoted(const std::string& word) {
+  if (has_control_character(word))
+    throw Error("--slurm: expected words and paths without control characters, found '" + word + "'");
   const bool plain = !word.empty() && std::ranges::all_of(word, [](unsigned char c) {
     return std::isalnum(c) ||
            std::string_view("-_=./:,%+@").find(static_cast<char>(c)) != std::string_view::npos;
@@ -40,6 +49,11 @@ void add_slurm_arguments(CLI::App& verb, SlurmArguments& arguments) {
       ->capture_default_str();
   verb.add_option("--sbatch", arguments.sbatch, "of --slurm: an option of sbatch, such as --partition=long")
       ->allow_extra_args(false)
+      ->check([](const std::string& line) {
+        return has_control_character(line)
+                   ? "expected an option without control characters, found '" + line + "'"
+                   : std::string();
+      })
       ->needs(slurm);
 }
 

@@ -23,7 +23,8 @@ void add_slurm_arguments(CLI::App& verb, SlurmArguments& arguments);
 std::vector<std::string> command_words(const CLI::App& verb);
 
 /// A script for sbatch: an array of tasks that each run `words` in the working directory of now, may be requeued, and
-/// write their logs into `folder`. `threads` and `memory` (bytes) are those of a task; 0: Slurm's own.
+/// write their logs into `folder`. `threads` and `memory` (bytes) are those of a task; 0: Slurm's own. Throws Error for
+/// a word or a path with control characters.
 std::string slurm_script(const SlurmArguments& arguments, const std::filesystem::path& folder,
                          const std::vector<std::string>& words, int threads, std::uint64_t memory);
 

@@ -39,8 +39,9 @@ def make_bsdf_class(formula_type, sampler_type):
             graph, textures = lobes._lobe_graph()
             self.lobes = formula_type(graph)
             tables = lobes.tables
+            # copies: Mitsuba keeps an array until the process ends, and a view its model
             self.values = {
-                name: (tables[i].values.shape[-2], mi.Float(np.ravel(tables[i].values))) for name, i in textures.items()
+                name: (tables[i].values.shape[-2], mi.Float(tables[i].values.flatten())) for name, i in textures.items()
             }
 
         def _take_maps(self):

@@ -9,6 +9,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <burnish/error.h>
+#include <burnish/io/illuminant.h>
 #include <burnish/library/batch.h>
 
 #include "fit_keywords.h"
@@ -74,8 +75,13 @@ using Materials = std::variant<std::vector<std::string>, std::filesystem::path>;
 
 // Starts a batch; iterating gives a dictionary a material.
 Batch* batch(const Materials& materials, const std::filesystem::path& folder,
-             const std::vector<std::string>& to, bool compact, bool resume, int threads, std::uint64_t memory,
-             const std::string& studio, const nb::kwargs& how) {
+             const std::vector<std::string>& to, bool exact, bool mips, bool compressed, bool compact,
+             bool resume, int threads, std::uint64_t memory, const std::string& studio, bool keep_spectral,
+             const std::string& illuminant, bool has_cosine, bool clamp_negatives, bool back_side,
+             const nb::kwargs& how) {
+  if (to.empty() && (exact || mips || !compressed))
+    throw Error("batch: expected exports, to=, with exact, mips and compressed=False, found none");
+  open_illuminant(illuminant);  // also where no spectrum will need it
   BatchOptions options;
   options.folder = folder;
   options.compact = compact;
@@ -83,11 +89,16 @@ Batch* batch(const Materials& materials, const std::filesystem::path& folder,
   options.memory = memory;
   options.resume = resume;
   options.studio = studio;
+  options.open = {keep_spectral, illuminant, has_cosine, clamp_negatives, back_side};
+  options.exports.exact = exact;
+  options.exports.mips = mips;
+  options.exports.compressed = compressed;
   options.fit = [keywords = keywords_of(how)](bool isotropic) { return fit_options(keywords, isotropic); };
   for (const std::string& target : to) options.exports.to.push_back(export_target(target));
   const auto* arguments = std::get_if<std::vector<std::string>>(&materials);
   std::vector<LibraryEntry> entries =
-      arguments ? named_entries(*arguments) : library_entries(std::get<std::filesystem::path>(materials));
+      arguments ? named_entries(*arguments)
+                : library_entries(std::get<std::filesystem::path>(materials), folder);
   const nb::gil_scoped_release released;
   return new Batch(std::move(entries), std::move(options));
 }
@@ -116,16 +127,21 @@ void bind_batch(nb::module_& m) {
       .def("__next__", &next_of);
   m.def(
       "batch", &batch, nb::arg("materials"), nb::arg("folder"), nb::kw_only(),
-      nb::arg("to") = std::vector<std::string>(), nb::arg("compact") = true, nb::arg("resume") = false,
+      nb::arg("to") = std::vector<std::string>(), nb::arg("exact") = false, nb::arg("mips") = false,
+      nb::arg("compressed") = true, nb::arg("compact") = true, nb::arg("resume") = false,
       nb::arg("threads") = 0, nb::arg("memory") = 0, nb::arg("studio") = BatchOptions().studio,
-      nb::arg("how"), nb::rv_policy::take_ownership,
+      nb::arg("keep_spectral") = false, nb::arg("illuminant") = "E", nb::arg("has_cosine") = false,
+      nb::arg("clamp_negatives") = true, nb::arg("back_side") = false, nb::arg("how"),
+      nb::rv_policy::take_ownership,
       "Fits a library as `burnish batch` does, and yields a dictionary a material as they are done: name,\n"
       "argument, files, bytes, fetches, psnr, ..., or reason where it failed; earlier says that it was done\n"
       "before. Table and page are made after the last one; a batch that is left goes on with resume=True.\n\n"
-      "materials: a folder, a list's name, or arguments of open_source. to: exports, as export takes them.\n"
-      "compact: .burnish, else OpenEXR with notes. memory: bytes to take at most. All other options are "
-      "those\n"
-      "of fit.");
+      "materials: a folder, a list's name, or arguments of open_source, which takes keep_spectral, "
+      "illuminant,\n"
+      "has_cosine, clamp_negatives and back_side. to: exports, as export takes them, with exact, mips and\n"
+      "compressed. compact: .burnish, else OpenEXR with notes. memory: bytes to take at most. All other "
+      "options\n"
+      "are those of fit.");
 }
 
 }  // namespace burnish::python

@@ -52,23 +52,12 @@ void eval_model(const FactoredEvaluator& evaluator, const Job<float>& job, std::
   }
 }
 
-template <class T>
-Vec3 vector_at(const Rows<const T>& rows, std::size_t i) noexcept {
-  return {static_cast<double>(*rows.at(i, 0)), static_cast<double>(*rows.at(i, 1)),
-          static_cast<double>(*rows.at(i, 2))};
-}
-
 // One pair by the fast evaluator.
 void eval_one(const FactoredEvaluator& evaluator, const Job<float>& job) {
   std::array<float, SymmetrizedBrdf::kMaxChannels> values;
   const auto f = std::span(values).first(job.channels);
   evaluator.eval(vector_at(job.wi, 0), vector_at(job.wo, 0), f);
   for (std::size_t c = 0; c < job.channels; ++c) *job.f.at(0, c) = f[c];
-}
-
-// To 1 %, as readers of directions ask for; false for what is no number.
-bool is_direction(Vec3 w) noexcept {
-  return std::abs(dot(w, w) - 1) < 0.02;
 }
 
 // The definition, in double precision.

@@ -14,19 +14,11 @@
 
 #include "fit_keywords.h"
 #include "opened_brdf.h"
+#include "progress.h"
 
 namespace burnish::python {
 
 namespace {
-
-// Lets Ctrl-C end a fit: what is thrown here leaves it. `callback` is kept alive by the caller.
-std::function<void(std::string_view, double)> progress_of(nb::handle callback) {
-  return [callback](std::string_view stage, double fraction) {
-    const nb::gil_scoped_acquire acquired;
-    if (PyErr_CheckSignals() != 0) throw nb::python_error();
-    if (!callback.is_none()) callback(nb::str(stage.data(), stage.size()), fraction);
-  };
-}
 
 // Nothing for "auto".
 std::optional<std::uint64_t> bytes_of(const std::variant<std::uint64_t, std::string>& budget) {

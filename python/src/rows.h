@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -11,6 +12,7 @@
 
 #include <burnish/error.h>
 #include <burnish/eval/interleaved.h>
+#include <burnish/math/vec3.h>
 
 #include "module.h"
 
@@ -58,6 +60,34 @@ std::size_t match(Rows<A>& a, Rows<B>& b, const char* names) {
   if (a.count != count) a.row = 0;
   if (b.count != count) b.row = 0;
   return count;
+}
+
+/// The same of three.
+template <class A, class B, class C>
+std::size_t match(Rows<A>& a, Rows<B>& b, Rows<C>& c, const char* names) {
+  std::size_t count = 1;
+  for (const std::size_t rows : {a.count, b.count, c.count}) {
+    if (rows == 1) continue;
+    if (count != 1 && rows != count)
+      throw Error(
+          fmt::format("{}: expected equal counts, found {}, {} and {}", names, a.count, b.count, c.count));
+    count = rows;
+  }
+  if (a.count != count) a.row = 0;
+  if (b.count != count) b.row = 0;
+  if (c.count != count) c.row = 0;
+  return count;
+}
+
+template <class T>
+Vec3 vector_at(const Rows<const T>& rows, std::size_t i) noexcept {
+  return {static_cast<double>(*rows.at(i, 0)), static_cast<double>(*rows.at(i, 1)),
+          static_cast<double>(*rows.at(i, 2))};
+}
+
+/// To 1 %, as readers of directions ask for; false for what is no number.
+inline bool is_direction(Vec3 w) noexcept {
+  return std::abs(dot(w, w) - 1) < 0.02;
 }
 
 /// A result: `array` is what Python gets.

@@ -1,7 +1,13 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -22,6 +28,8 @@
 #include <burnish/surface/surface_file.h>
 
 #include "opened_brdf.h"
+#include "progress.h"
+#include "rows.h"
 
 namespace burnish::python {
 
@@ -37,39 +45,81 @@ struct OpenedSurface {
   const SpatialBrdf& brdf() const noexcept { return evaluator.surface(); }
 };
 
-template <std::size_t columns>
-using RowsOf =
-    nb::ndarray<const float, nb::shape<-1, static_cast<nb::ssize_t>(columns)>, nb::c_contig, nb::device::cpu>;
-
-OpenedSurface* open_surface(const std::string& path) {
+OpenedSurface* open_surface(const std::filesystem::path& path) {
   return new OpenedSurface(parse_surface(read_file(path)));
 }
 
-nb::object eval(const OpenedSurface& surface, const RowsOf<2>& uv, const RowsOf<3>& wi, const RowsOf<3>& wo,
-                double lod) {
-  const std::size_t count = wi.shape(0), channels = surface.brdf().channels();
-  if (wo.shape(0) != count || (uv.shape(0) != count && uv.shape(0) != 1))
-    throw Error(fmt::format("eval: expected as many rows in uv (or one), wi and wo, found {}, {} and {}",
-                            uv.shape(0), count, wo.shape(0)));
-  std::vector<float> values(count * channels);
+// Pairs a task.
+constexpr std::size_t kSurfaceChunk = 4096;
+
+// What evaluates a place: in floats, or the definition. Directions are of the surface's frame.
+struct FastPlace {
+  const SpatialEvaluator& evaluator;
+  SpatialEvaluator::Place place;
+
+  FastPlace(const OpenedSurface& surface, double u, double v, double lod)
+      : evaluator(surface.evaluator), place(evaluator.place(u, v, lod)) {}
+  void eval(Vec3 wi, Vec3 wo, std::span<float> f) const noexcept { evaluator.eval(place, wi, wo, f); }
+};
+struct DefinedPlace {
+  const SpatialBrdf& brdf;
+  SpatialBrdf::Place place;
+
+  DefinedPlace(const OpenedSurface& surface, double u, double v, double lod)
+      : brdf(surface.brdf()), place(brdf.place(u, v, lod)) {}
+  void eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+    brdf.eval(place, place.frame.local(wi), place.frame.local(wo), f);
+  }
+};
+
+template <class T>
+nb::object eval(const OpenedSurface& surface, const Array<const T>& uv_array, const Array<const T>& wi_array,
+                const Array<const T>& wo_array, double lod, const nb::object& out) {
+  using Place = std::conditional_t<std::is_same_v<T, float>, FastPlace, DefinedPlace>;
+  Rows<const T> uv = rows_of<T>(uv_array, "uv", 2), wi = rows_of<T>(wi_array, "wi", 3),
+                wo = rows_of<T>(wo_array, "wo", 3);
+  const bool one = uv.one && wi.one && wo.one, one_place = uv.count == 1;
+  const std::size_t count = match(uv, wi, wo, "uv, wi and wo"), channels = surface.brdf().channels();
+  const bool planes = wi.planes() && wo.planes() && count > 1;
+  const Result<T> result = make_result<T>(out, count, channels, planes);
+  const auto is_place = [&](std::size_t i) {
+    return std::isfinite(*uv.at(i, 0)) && std::isfinite(*uv.at(i, 1));
+  };
+  const auto place_of = [&](std::size_t i) {
+    return Place(surface, static_cast<double>(*uv.at(i, 0)), static_cast<double>(*uv.at(i, 1)), lod);
+  };
   {
     const nb::gil_scoped_release released;
-    constexpr std::size_t kChunk = 4096;
-    for_each_chunk(count, kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
-      const auto vector = [](const float* w) {
-        return Vec3{static_cast<double>(w[0]), static_cast<double>(w[1]), static_cast<double>(w[2])};
-      };
+    std::optional<Place> only;
+    if (one_place && is_place(0)) only.emplace(place_of(0));
+    for_each_chunk(count, kSurfaceChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+      std::array<T, kMaxMapChannels> values;
+      const auto f = std::span(values).first(channels);
       for (std::size_t i = begin; i < end; ++i) {
-        const float* const at = uv.data() + (uv.shape(0) == 1 ? 0 : 2 * i);
-        const SpatialEvaluator::Place place =
-            surface.evaluator.place(static_cast<double>(at[0]), static_cast<double>(at[1]), lod);
-        surface.evaluator.eval(place, vector(wi.data() + 3 * i), vector(wo.data() + 3 * i),
-                               std::span(values).subspan(i * channels, channels));
+        const Vec3 to_light = vector_at(wi, i), to_viewer = vector_at(wo, i);
+        if (!is_place(i) || !is_direction(to_light) || !is_direction(to_viewer))
+          std::ranges::fill(f, std::numeric_limits<T>::quiet_NaN());
+        else if (only)
+          only->eval(to_light, to_viewer, f);
+        else
+          place_of(i).eval(to_light, to_viewer, f);
+        for (std::size_t c = 0; c < channels; ++c) *result.rows.at(i, c) = f[c];
       }
     });
   }
-  return to_numpy(std::move(values), {count, channels});
+  return one && out.is_none() ? nb::object(result.array[0]) : result.array;
 }
+
+constexpr const char* kSurfaceEvalDoc =
+    "f_r in 1/sr, without the cosine, at places uv, (N, 2) or (2,), v downwards; lod: the mip level, which "
+    "may\n"
+    "lie between two.\n\n"
+    "wi, wo: unit vectors of the surface's frame, (N, 3) or (3,); all three float32 or all float64, any "
+    "strides,\n"
+    "read where they lie. A single row stands for every row of the others; a single place is found once.\n"
+    "Returns (N, channels) of the same type, or fills and returns `out`. float64 is the definition, float32 "
+    "the\n"
+    "fast evaluator. nan stands where uv is not finite and where wi or wo is no unit vector to 1 %.";
 
 nb::object values_of(const SurfaceMap& map) {
   std::vector<float> values;
@@ -116,13 +166,16 @@ NormalsFrom normals_from(const std::string& name) {
 nb::tuple fit_surface(const std::filesystem::path& capture, std::size_t lobes, std::size_t lobe_bytes,
                       const OpenedModel* book, const std::optional<std::string>& normals,
                       std::optional<int> rounds, bool widened, std::uint64_t seed,
-                      const std::optional<std::filesystem::path>& checkpoint, std::size_t pictures) {
+                      const std::optional<std::filesystem::path>& checkpoint, std::size_t pictures,
+                      std::size_t memory, const nb::object& progress) {
   SurfaceFitOptions options;
   options.lobes = lobes;
   options.lobe_bytes = lobe_bytes;
   options.rounds = rounds;
   options.widened = widened;
   options.seed = seed;
+  options.tile_bytes = memory;
+  options.progress = progress_of(progress);
   if (book) options.book = book->brdf();
   if (normals) options.normals = normals_from(*normals);
   if (checkpoint) options.checkpoint = *checkpoint;
@@ -174,13 +227,22 @@ void bind_surfaces(nb::module_& m) {
           "x and y of a vector in the plane, or None: (1, 0).")
       .def_prop_ro(
           "notes", [](const OpenedSurface& s) { return from_json(s.notes); }, "What the fit wrote down.")
-      .def(
-          "eval", &eval, nb::arg("uv"), nb::arg("wi"), nb::arg("wo"), nb::arg("lod") = 0.0,
-          "f_r in 1/sr, float32 (N, channels), at places uv, (N, 2) or (1, 2), v downwards, of unit vectors\n"
-          "(N, 3) of the surface's frame; lod: the mip level, which may lie between two.")
+      .def("eval", &eval<float>, nb::arg("uv").noconvert(), nb::arg("wi").noconvert(),
+           nb::arg("wo").noconvert(), nb::arg("lod") = 0.0, nb::arg("out") = nb::none(),
+           nb::sig("def eval(self, uv: NDArray[numpy.float32], wi: NDArray[numpy.float32], wo: "
+                   "NDArray[numpy.float32], lod: float = 0.0, out: NDArray[numpy.float32] | None = None) -> "
+                   "NDArray[numpy.float32]"),
+           kSurfaceEvalDoc)
+      .def("eval", &eval<double>, nb::arg("uv").noconvert(), nb::arg("wi").noconvert(),
+           nb::arg("wo").noconvert(), nb::arg("lod") = 0.0, nb::arg("out") = nb::none(),
+           nb::sig("def eval(self, uv: NDArray[numpy.float64], wi: NDArray[numpy.float64], wo: "
+                   "NDArray[numpy.float64], lod: float = 0.0, out: NDArray[numpy.float64] | None = None) -> "
+                   "NDArray[numpy.float64]"))
       .def(
           "at",
           [](const OpenedSurface& s, double u, double v, double lod) {
+            if (!std::isfinite(u) || !std::isfinite(v))
+              throw Error(fmt::format("at: expected finite u and v, found {} and {}", u, v));
             return new OpenedModel("place", {s.brdf().at(u, v, lod), {}, "{}"});
           },
           nb::arg("u"), nb::arg("v"), nb::arg("lod") = 0.0, nb::rv_policy::take_ownership,
@@ -201,8 +263,12 @@ void bind_surfaces(nb::module_& m) {
         nb::arg("lobe_bytes") = 24 << 10, nb::arg("book").none() = nb::none(),
         nb::arg("normals") = nb::none(), nb::arg("rounds").none() = nb::none(), nb::arg("widened") = false,
         nb::arg("seed") = 1, nb::arg("checkpoint") = nb::none(), nb::arg("pictures") = Capture::kBtfPictures,
+        nb::arg("memory") = SurfaceFitOptions().tile_bytes, nb::arg("progress") = nb::none(),
         "(Surface, report) of a capture's folder, of a BTF, of which so many pictures are taken, or of a\n"
-        "CSV of samples of texels, as `burnish fit-surface`.");
+        "CSV of samples of texels, as `burnish fit-surface`. memory: bytes of pictures at a time.\n\n"
+        "progress(stage, fraction) is called from this thread; what it raises ends the fit, and so does "
+        "Ctrl-C;\n"
+        "of that, checkpoint, a file's name, is what the next call goes on from.");
 }
 
 }  // namespace burnish::python

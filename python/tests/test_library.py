@@ -294,6 +294,30 @@ def test_a_batch_yields_its_materials_as_they_are_done(tmp_path, cli):
         burnish.batch(specs, tmp_path / "other", bugdet=2700)
 
 
+def test_a_batch_opens_and_exports_as_the_command_line_does(tmp_path, cli):
+    wi, wo = burnish.draw_pairs(300, seed=2)
+    theta_i, theta_o = np.degrees(np.arccos(wi[:, 2])), np.degrees(np.arccos(wo[:, 2]))
+    phi = np.degrees(np.arctan2(wo[:, 1], wo[:, 0]) - np.arctan2(wi[:, 1], wi[:, 0])) % 360
+    rows = np.stack([theta_i, 0 * phi, theta_o, phi, 0.2 * wi[:, 2]], axis=1)
+    felt = tmp_path / "felt.csv"
+    np.savetxt(felt, rows, delimiter=",", header="theta_i,phi_i,theta_o,phi_o,value", comments="")
+    how = {"model": "pqp", "to": ["glsl"], "has_cosine": True, "exact": True, "mips": True, "compressed": False}
+    (row,) = burnish.batch([str(felt)], tmp_path / "python", **how)
+    assert "reason" not in row
+    cli("batch", tmp_path, "-o", tmp_path / "cli", "--model", "pqp", "--to", "glsl", "--has-cosine", "--exact", "--mips",
+        "--plain")
+    for made in [row["files"][0]["path"], "exports/felt/felt.glsl"]:
+        assert (tmp_path / "python" / made).read_bytes() == (tmp_path / "cli" / made).read_bytes()
+    (other,) = burnish.batch([str(felt)], tmp_path / "other", model="pqp", to=["glsl"])
+    for made in [other["files"][0]["path"], "exports/felt/felt.glsl"]:
+        assert (tmp_path / "python" / made).read_bytes() != (tmp_path / "other" / made).read_bytes()
+    with pytest.raises(burnish.Error, match="expected exports, to=, with exact, mips and compressed=False"):
+        burnish.batch([str(felt)], tmp_path / "wrong", exact=True)
+    with pytest.raises(burnish.Error, match="D66"):
+        burnish.batch([str(felt)], tmp_path / "wrong", illuminant="D66")
+    assert not (tmp_path / "wrong").exists()
+
+
 def test_every_public_name_says_what_it_is():
     for name in burnish.__all__:
         assert getattr(burnish, name).__doc__, name

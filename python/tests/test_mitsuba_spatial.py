@@ -1,6 +1,8 @@
 """The plugin `burnish_spatial` against the library."""
 
 import json
+import subprocess
+import sys
 
 import numpy
 import pytest
@@ -36,7 +38,8 @@ def wall(cli, tmp_path_factory):
     from burnish import mitsuba as plugin
 
     plugin.register()
-    return surface, mi.load_dict({"type": "burnish_spatial", "filename": str(folder / "wall.burnish")})
+    path = str(folder / "wall.burnish")
+    return surface, mi.load_dict({"type": "burnish_spatial", "filename": path}), path
 
 
 def directions(count, seed):
@@ -53,7 +56,7 @@ def interaction(uv, wi):
 
 
 def test_evaluates_as_the_library(wall):
-    surface, bsdf = wall
+    surface, bsdf, _ = wall
     light, viewer = directions(400, 2), directions(400, 3)
     for x, y in ((8, 4), (0, 15), (13, 9)):
         texel = numpy.array([[(x + 0.5) / 16, (y + 0.5) / 16]], numpy.float32)
@@ -66,7 +69,7 @@ def test_evaluates_as_the_library(wall):
 
 
 def test_draws_what_its_density_says(wall):
-    _, bsdf = wall
+    _, bsdf, _ = wall
     count = 20000
     uv = numpy.full((count, 2), 0.4, numpy.float32)
     si = interaction(uv, numpy.repeat(directions(1, 4), count, axis=0))
@@ -80,3 +83,18 @@ def test_draws_what_its_density_says(wall):
     even = numpy.stack([numpy.sqrt(1 - z**2) * numpy.cos(phi), numpy.sqrt(1 - z**2) * numpy.sin(phi), z])
     flat = 2 * numpy.pi * numpy.array(bsdf.eval(mi.BSDFContext(), si, mi.Vector3f(*even))).mean(axis=1)
     assert numpy.allclose(numpy.array(weight).mean(axis=1), flat, rtol=0.1)
+
+
+def test_nothing_leaks_when_the_process_ends(wall):
+    program = f"""
+import mitsuba as mi
+mi.set_variant("llvm_ad_rgb")
+import burnish.mitsuba
+burnish.mitsuba.register()
+bsdf = mi.load_dict({{"type": "burnish_spatial", "filename": {wall[2]!r}}})
+si = mi.SurfaceInteraction3f()
+si.uv, si.wi = mi.Point2f(0.5, 0.5), mi.Vector3f(0, 0, 1)
+print(bsdf.eval(mi.BSDFContext(), si, mi.Vector3f(0, 0.6, 0.8)))
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert done.returncode == 0 and "leak" not in done.stderr, done.stderr

@@ -12,6 +12,8 @@ runs on it and nobody sees its processes. Then the job array that `burnish batch
   twice;
 - on both, while one node is killed: the job ends complete, with the same bits.
 
+Where all came to an end before anything was killed it is tried again, a few times.
+
 And with --mpi a job of `burnish-mpi fit-surface`, a rank on each node: the bytes of `burnish fit-surface`, also where
 a rank is killed at a random moment and the job is started again. Without it burnish-mpi is looked for beside BURNISH's
 folder, where -DBURNISH_MPI=ON builds it.
@@ -39,6 +41,7 @@ from surface import OPTIONS, SCENE  # noqa: E402
 PROGRAMS = ["munged", "slurmctld", "slurmd", "sbatch", "squeue", "scontrol", "sinfo"]
 HOW = ["--model", "pqp", "--samples", "100000", "--threads", "1", "--patience", "2"]
 PATIENCE = 60  # seconds of any wait
+TRIES = 3  # of a kill that may come after the work's end
 # mpirun starts a daemon on each node by srun. Both are this machine, and its ranks speak by TCP as on two.
 MPI_SCRIPT = """\
 #!/bin/bash
@@ -228,6 +231,23 @@ def seconds_of(library, cluster, folder, tasks, models):
     return (ends[-1] - start) * len(models) / sum(end > start for end in ends)
 
 
+def killed(running, draw):
+    """Ends one of these processes, if there is one, and says whether it did."""
+    try:
+        os.kill(draw.choice(running), signal.SIGKILL)
+    except (IndexError, ProcessLookupError):  # none, or one that came to its end
+        return False
+    return True
+
+
+def in_a_few_tries(disturb, folder, what):
+    """disturb(folder), in a new folder each time, until something was killed while the work went on."""
+    for number in range(TRIES):
+        if disturb(folder.with_name(f"{folder.name}-{number + 1}")):
+            return
+    check(False, f"expected {what} killed while the work goes on, found the work's end {TRIES} times")
+
+
 def kill_some(library, cluster, folder, models, draw):
     job = cluster.submit(library.script(folder, 2))
     until(lambda: (folder / "models").exists(), "the first task")
@@ -235,9 +255,8 @@ def kill_some(library, cluster, folder, models, draw):
     while cluster.waits_for(job) and kills + requeues < 4:
         time.sleep(draw.uniform(0.2, 0.8))
         running = burnish_processes(folder)
-        if running and kills <= requeues:
-            os.kill(draw.choice(running), signal.SIGKILL)
-            kills += 1
+        if kills <= requeues:
+            kills += killed(running, draw)
         elif running:
             cluster.ask("scontrol", "requeue", f"{job}_{draw.choice([1, 2])}")
             requeues += 1
@@ -248,18 +267,23 @@ def kill_some(library, cluster, folder, models, draw):
     cut = library.check_complete(folder, models)
     print(f"{kills} processes killed, {requeues} tasks requeued, {cut} fits cut short: "
           "the same bits, nothing done twice")
+    return kills > 0
 
 
 def kill_node(library, cluster, folder, models, draw):
     job = cluster.submit(library.script(folder, 2))
-    until(lambda: len(burnish_processes(folder)) == 2, "both nodes at work")
+    until(lambda: len(burnish_processes(folder)) == 2 or not cluster.waits_for(job), "both nodes at work")
     time.sleep(draw.uniform(0.2, 1.0))
+    if not burnish_processes(folder, "node2"):
+        until(lambda: not cluster.waits_for(job), "the job")
+        return False
     cluster.end("node2")
     until(lambda: len(list((folder / "models").glob("*"))) == len(models) and not burnish_processes(folder),
           "the node that is left")
     cut = library.check_complete(folder, models)
     cluster.ask("scancel", job)
     print(f"a node killed in the middle, {cut} fits cut short: complete, the same bits, nothing done twice")
+    return True
 
 
 def fit_by_ranks(burnish, burnish_mpi, cluster, scratch, draw):
@@ -276,27 +300,34 @@ def fit_by_ranks(burnish, burnish_mpi, cluster, scratch, draw):
     def ranks(node=None):
         return burnish_processes(scratch, node, b"fit-surface")
 
-    def run_job(kill):
-        """Submits the job, kills a rank if asked, and says whether one was there to be killed."""
+    def run_job(longest_wait=None):
+        """Submits the job, kills a rank after at most so many seconds if asked; whether the job ended by it."""
         job = cluster.submit(script)
         until(lambda: ranks("node1") and ranks("node2") or not cluster.waits_for(job), "a rank on each node")
-        if kill:
-            time.sleep(draw.uniform(0, seconds / 2))
-        running = ranks() if kill else []
-        if running:
-            os.kill(draw.choice(running), signal.SIGKILL)
+        by_kill = False
+        if longest_wait is not None:
+            time.sleep(draw.uniform(0, longest_wait))
+            by_kill = killed(ranks(), draw)
         until(lambda: not cluster.waits_for(job), "the surface's job")
-        return bool(running)
+        return by_kill and not out.exists()
 
-    # undisturbed; then killed, and started again
-    for kill in (False, True):
-        killed = kill and run_job(kill=True)
-        run_job(kill=False)
+    def check_surface(how):
         check(out.exists() and out.read_bytes() == alone.read_bytes(),
               f"expected the bytes of burnish fit-surface, found {'others' if out.exists() else 'none'}; it said: "
               f"{log.read_text()[-800:]}")
         out.unlink()
-        print(f"a surface by a rank on each node, {int(killed)} killed: the bytes of burnish fit-surface")
+        print(f"a surface by a rank on each node, {how}: the bytes of burnish fit-surface")
+
+    run_job()
+    check_surface("undisturbed")
+    for number in range(TRIES):  # earlier each time
+        if run_job(seconds / 2 / (number + 1)):
+            break
+        out.unlink(missing_ok=True)
+    else:
+        check(False, f"expected a rank killed while it fits, found the fit's end {TRIES} times")
+    run_job()
+    check_surface("1 killed and the job started again")
 
 
 def main():
@@ -330,14 +361,16 @@ def main():
             print(f"one node {one:.1f} s, two nodes {both:.1f} s, {one / both:.2f} times as fast: the same bits")
             check(one / both >= arguments.least,
                   f"expected two nodes {arguments.least} times as fast as one, found {one / both:.2f}")
-            kill_some(library, cluster, scratch / "killed", models, draw)
+            in_a_few_tries(lambda folder: kill_some(library, cluster, folder, models, draw), scratch / "killed",
+                           "a process")
             burnish_mpi = arguments.mpi or pathlib.Path(library.burnish).parent.parent / "mpi/burnish-mpi"
             if not os.path.exists(burnish_mpi) or not shutil.which("mpirun"):
                 print("no burnish-mpi (-DBURNISH_MPI=ON) or no mpirun: no surface by ranks")
             else:
                 (scratch / "surface").mkdir()
                 fit_by_ranks(library.burnish, os.path.abspath(burnish_mpi), cluster, scratch / "surface", draw)
-            kill_node(library, cluster, scratch / "node", models, draw)
+            in_a_few_tries(lambda folder: kill_node(library, cluster, folder, models, draw), scratch / "node",
+                           "a node")
 
 
 if __name__ == "__main__":

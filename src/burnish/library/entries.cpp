@@ -59,14 +59,33 @@ std::vector<LibraryEntry> told_apart(std::vector<LibraryEntry> entries) {
   return entries;
 }
 
-std::vector<LibraryEntry> entries_of_folder(const fs::path& folder) {
+// Whether a batch worked in the folder: it has models, and lines about them.
+bool is_library(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::is_directory(folder / "models", error)) return false;
+  for (auto file = fs::directory_iterator(folder / "journal", error);
+       !error && file != fs::directory_iterator(); file.increment(error))
+    if (file->path().extension() == ".jsonl") return true;
+  return false;
+}
+
+bool is_same(const fs::path& a, const fs::path& b) {
+  std::error_code error;  // of what is not there
+  return !b.empty() && fs::equivalent(a, b, error);
+}
+
+std::vector<LibraryEntry> entries_of_folder(const fs::path& folder, const fs::path& output) {
+  if (is_same(folder, output) || is_library(folder))
+    throw Error::in_file(folder.string(), "a folder with measurements", "the folder of a batch's results");
   std::vector<fs::path> files;
   try {
     for (auto at = fs::recursive_directory_iterator(folder, fs::directory_options::follow_directory_symlink);
          at != fs::recursive_directory_iterator(); ++at) {
-      const bool hidden = at->path().filename().string().starts_with('.');
-      if (hidden && at->is_directory()) at.disable_recursion_pending();
-      if (!hidden && at->is_regular_file()) files.push_back(at->path());
+      const fs::path& path = at->path();
+      const bool skipped = path.filename().string().starts_with('.') || is_same(path, output) ||
+                           (at->is_directory() && is_library(path));
+      if (skipped && at->is_directory()) at.disable_recursion_pending();
+      if (!skipped && at->is_regular_file()) files.push_back(path);
     }
   } catch (const fs::filesystem_error& error) {
     throw Error::in_file(folder.string(), "a folder that can be read", error.code().message());
@@ -101,9 +120,9 @@ std::vector<LibraryEntry> named_entries(const std::vector<std::string>& argument
   return told_apart(std::move(entries));
 }
 
-std::vector<LibraryEntry> library_entries(const fs::path& list_or_folder) {
+std::vector<LibraryEntry> library_entries(const fs::path& list_or_folder, const fs::path& output) {
   std::error_code error;
-  if (fs::is_directory(list_or_folder, error)) return entries_of_folder(list_or_folder);
+  if (fs::is_directory(list_or_folder, error)) return entries_of_folder(list_or_folder, output);
   const FileBytes list = read_file(list_or_folder, kLongestList);
   if (const std::size_t zero = list.text().find('\0'); zero != std::string_view::npos)
     throw Error(list.name, zero, "a folder, or a list with an argument a line", "a byte 0");

@@ -37,6 +37,26 @@ TEST(LibraryEntries, AreTheFilesBelowAFolderByName) {
                           LibraryEntry{"c", (folder.path / "c.csv").string()}));
 }
 
+TEST(LibraryEntries, AreNotTheResultsOfThisBatchOrOfEarlierOnes) {
+  const TemporaryFolder folder("entries_results");
+  const std::filesystem::path meas = folder.path / "meas";
+  for (const char* below : {"earlier/models", "earlier/journal", "output/models", "models"})
+    std::filesystem::create_directories(meas / below);
+  for (const char* name : {"c.csv", "models/d.csv", "earlier/models/c.burnish", "earlier/index.html",
+                           "earlier/journal/host-1.jsonl", "output/models/c.burnish", "all.burnish"})
+    write(meas / name, "1");
+  const auto names = [&](const std::filesystem::path& output) {
+    std::vector<std::string> found;
+    for (const LibraryEntry& entry : library_entries(meas, output)) found.push_back(entry.name);
+    return found;
+  };
+  EXPECT_THAT(names(meas / "output"), ElementsAre("all", "c", "models_d"));
+  EXPECT_THAT(names(meas / "all.burnish"), ElementsAre("c", "models_d", "output_models_c"));
+  EXPECT_THAT(names(folder.path / "elsewhere"), ElementsAre("all", "c", "models_d", "output_models_c"));
+  for (const auto& [place, output] : {std::pair{meas, meas}, {meas / "earlier", folder.path / "elsewhere"}})
+    EXPECT_THAT(error_of([&] { library_entries(place, output); }), HasSubstr("a folder with measurements"));
+}
+
 TEST(LibraryEntries, SayWhatIsWrongWithTheirPlace) {
   const TemporaryFolder folder("entries_wrong");
   const auto said = [&](const std::string& name) {
