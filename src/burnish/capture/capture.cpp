@@ -7,6 +7,7 @@
 
 #include <burnish/capture/btf_file.h>
 #include <burnish/capture/capture.h>
+#include <burnish/capture/file_stamp.h>
 #include <burnish/capture/json_member.h>
 #include <burnish/capture/picture_rows.h>
 #include <burnish/capture/texel_table.h>
@@ -171,6 +172,14 @@ void Capture::open_folder() {
   for (std::size_t p = 0; p < why.size(); ++p)
     if (!why[p].empty()) damaged.push_back({form_.pictures[p].file, why[p]});
   fingerprint_ = hash_of(file.text());
+  const auto hash_stamp = [&](const std::string& name) {
+    if (!name.empty()) fingerprint_ = hash_of(file_stamp(path_ / name) + '\n', fingerprint_);
+  };
+  hash_stamp(form_.normals);
+  for (const CapturePicture& picture : form_.pictures) {
+    hash_stamp(picture.file);
+    hash_stamp(picture.mask);
+  }
   leave_out(damaged);
 }
 

@@ -1,3 +1,4 @@
+#include <chrono>
 #include <cmath>
 #include <fstream>
 
@@ -197,6 +198,37 @@ TEST(Capture, CountsPixelsThatAreNoNumbersAsMissing) {
   EXPECT_EQ(rows.states[3], PixelState::missing);
   EXPECT_EQ(rows.states[4], PixelState::there);
   for (const float value : rows.values) EXPECT_TRUE(std::isfinite(value));
+}
+
+// Whatever of it is replaced, written again, or taken away.
+TEST(Capture, IsAnotherOnceAFileOfItWasReplaced) {
+  Folder folder("fingerprint", 6);
+  folder.form.pictures[1].mask = "mask.png";
+  folder.form.normals = "n.exr";
+  Image8 mask(kWidth, kHeight, 3);
+  write_png(folder.file("mask.png"), mask);
+  write(folder.file("n.exr"), read(folder.file("0.exr")));
+  folder.save();
+  const auto fingerprint = [&] { return Capture(folder.folder.path).fingerprint(); };
+  std::uint64_t before = fingerprint();
+  EXPECT_EQ(fingerprint(), before);
+  const auto is_another = [&] {
+    const std::uint64_t now = fingerprint();
+    const bool changed = now != before;
+    before = now;
+    return changed;
+  };
+  for (const char* name : {"2.exr", "mask.png", "n.exr"}) {
+    const auto time = fs::last_write_time(folder.file(name));
+    fs::last_write_time(folder.file(name), time + std::chrono::seconds(2));
+    EXPECT_TRUE(is_another()) << name << " written again";
+    write(folder.file(name), read(folder.file(name)) + "more");
+    fs::last_write_time(folder.file(name), time + std::chrono::seconds(2));
+    EXPECT_TRUE(is_another()) << name << " of another size";
+    fs::remove(folder.file(name));
+    EXPECT_TRUE(is_another()) << name << " missing";
+  }
+  EXPECT_FALSE(is_another());
 }
 
 TEST(Capture, SaysOneLineWithoutAFolderOrJson) {

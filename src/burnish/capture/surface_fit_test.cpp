@@ -120,11 +120,14 @@ TEST(SurfaceFit, GoesOnFromACheckpoint) {
     EXPECT_GT(resumed.report.resumed_rows, 0);
     EXPECT_EQ(format_surface(resumed.surface), whole) << where;
   }
-  // of other options it is refused, and so is a damaged one
+  // of other options or pictures it is refused, and so is a damaged one
   options.seed = 2;
   EXPECT_THROW(capture.fit(options), Error);
-  write(options.checkpoint, read(options.checkpoint).substr(0, 1000));
   options.seed = 1;
+  EXPECT_NO_THROW(capture.fit(options));
+  write(capture.folder.path / "00003.exr", read(capture.folder.path / "00004.exr"));
+  EXPECT_THAT(error_of([&] { capture.fit(options); }), testing::HasSubstr("a checkpoint of this capture"));
+  write(options.checkpoint, read(options.checkpoint).substr(0, 1000));
   EXPECT_THROW(capture.fit(options), Error);
 }
 
