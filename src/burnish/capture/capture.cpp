@@ -29,6 +29,7 @@ constexpr std::size_t kHeldOut = 12;  // one of so many pictures of a BTF
 }  // namespace
 
 Station parse_station(const JsonMember& member) {
+  member.has_only({"direction", "position"});
   if (member.has("position")) {
     const JsonMember position = member.at("position");
     const Station station{.is_direction = false, .at = position.vector()};
@@ -56,6 +57,7 @@ Rgb parse_scale(const JsonMember& member) {
 }
 
 CapturePicture parse_picture(const JsonMember& member) {
+  member.has_only({"file", "light", "view", "scale", "mask", "held_out"});
   CapturePicture picture{.file = member.at("file").file(),
                          .light = parse_station(member.at("light")),
                          .view = parse_station(member.at("view")),
@@ -82,6 +84,7 @@ CaptureForm parse_capture(const FileBytes& file) {
   const Json json = parse_json(file);
   const JsonMember root(file, json, "");
   root.at("version").integer(kCaptureVersion, kCaptureVersion);
+  root.has_only({"version", "width", "height", "size", "transfer", "clip", "normals", "pictures"});
   CaptureForm form{.width = root.at("width").integer(1, kMaxSide),
                    .height = root.at("height").integer(1, kMaxSide),
                    .normals = {},

@@ -101,6 +101,26 @@ TEST(CaptureForm, RefusesWhatCannotBe) {
         << to;
 }
 
+TEST(CaptureForm, NamesMembersThatItDoesNotKnow) {
+  const auto said = [](const std::string& from, const std::string& to) {
+    std::string text = seeds::kCapture;
+    text.replace(text.find(from), from.size(), to);
+    return error_of([&] { parse_capture(memory_file(text)); });
+  };
+  EXPECT_EQ(
+      said("\"height\":3", "\"heigth\":3"),
+      "test.file: expected one of version, width, height, size, transfer, clip, normals, pictures, found "
+      "'heigth'; did you mean 'height'?");
+  EXPECT_EQ(
+      said("held_out", "held_uot"),
+      "test.file: pictures[1]: expected one of file, light, view, scale, mask, held_out, found 'held_uot'; "
+      "did you mean 'held_out'?");
+  EXPECT_EQ(said("\"position\":[0,0,2.5]", "\"position\":[0,0,2.5],\"x\":1"),
+            "test.file: pictures[0].view: expected one of direction, position, found 'x'");
+  EXPECT_EQ(said("{\"version\":1,", "{\"_camera\":{\"by\":\"me\"},\"version\":1,"), "");
+  EXPECT_EQ(said("\"scale\":0.5", "\"scale\":0.5,\"_\":\"dim\""), "");
+}
+
 TEST(CaptureForm, TruncatedTextThrows) {
   for (std::size_t length = 0; length < seeds::kCapture.size(); ++length)
     EXPECT_THROW(parse_capture(memory_file(seeds::kCapture.substr(0, length))), Error) << length;

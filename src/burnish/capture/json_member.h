@@ -1,8 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <initializer_list>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -11,6 +15,7 @@
 #include <burnish/capture/capture.h>
 #include <burnish/error.h>
 #include <burnish/file.h>
+#include <burnish/math/closest_name.h>
 
 namespace burnish {
 
@@ -33,6 +38,14 @@ class JsonMember {
     if (!json_->is_object()) fail("an object");
     if (!json_->contains(key)) throw Error::in_file(file_->name, child(key), "none");
     return {*file_, (*json_)[key], child(key)};
+  }
+  /// Throws Error for a member that is none of `known`; those that begin with _ are notes.
+  void has_only(std::initializer_list<std::string_view> known) const {
+    if (!json_->is_object()) fail("an object");
+    for (const auto& [key, value] : json_->items())
+      if (!key.starts_with('_') && std::ranges::find(known, key) == known.end())
+        throw Error(fmt::format("{}: {}{}", file_->name, name_.empty() ? "" : name_ + ": ",
+                                expected_one_of(std::span(known.begin(), known.size()), key)));
   }
   std::vector<JsonMember> list(std::size_t least, std::size_t most) const {
     if (!json_->is_array() || json_->size() < least || json_->size() > most)
