@@ -172,7 +172,7 @@ void add_fit_surface_command(CLI::App& app, FitCrew* crew) {
       ->capture_default_str();
   verb->add_option("--rounds", options.rounds,
                    "of lobes and weights in turn; else 9, where normals are estimated 24")
-      ->check(in_range(1, 100));
+      ->check(in_range(1, kMaxSurfaceRounds));
   verb->add_option("--memory", options.tile_bytes,
                    "bytes of pictures in memory at a time; M counts as 1024^2")
       ->transform(CLI::AsSizeValue(false));

@@ -2,6 +2,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <variant>
 #include <vector>
 
@@ -130,6 +131,7 @@ nb::tuple fit_surface(const std::filesystem::path& capture, std::size_t lobes, s
     const nb::gil_scoped_release released;
     return burnish::fit_surface(Capture(capture, pictures), options);
   }();
+  if (std::error_code ignored; checkpoint) std::filesystem::remove(*checkpoint, ignored);
   nb::object report = from_json(report_json(fit.report));
   return nb::make_tuple(nb::cast(new OpenedSurface(std::move(fit.surface)), nb::rv_policy::take_ownership),
                         report);
@@ -202,7 +204,8 @@ void bind_surfaces(nb::module_& m) {
         nb::arg("normals") = nb::none(), nb::arg("rounds").none() = nb::none(), nb::arg("widened") = false,
         nb::arg("seed") = 1, nb::arg("checkpoint") = nb::none(), nb::arg("pictures") = Capture::kBtfPictures,
         "(Surface, report) of a capture's folder, of a BTF, of which so many pictures are taken, or of a\n"
-        "CSV of samples of texels, as `burnish fit-surface`.");
+        "CSV of samples of texels, as `burnish fit-surface`. checkpoint: a file that a fit which is stopped\n"
+        "leaves, and that is gone on from if it is there; removed at the end.");
 }
 
 }  // namespace burnish::python

@@ -113,6 +113,9 @@ class SurfaceFitter {
     if (options.lobe_bytes < kMinLobeBytes || options.lobe_bytes > kMaxLobeBytes)
       throw Error(fmt::format("surface fit: expected lobes of {} to {} bytes, found {}", kMinLobeBytes,
                               kMaxLobeBytes, options.lobe_bytes));
+    if (options.rounds && (*options.rounds < 1 || *options.rounds > kMaxSurfaceRounds))
+      throw Error(
+          fmt::format("surface fit: expected 1 to {} rounds, found {}", kMaxSurfaceRounds, *options.rounds));
     if (options.book && options.book->channels() != kCaptureChannels)
       throw Error(fmt::format("surface fit: expected a book of {} channels, found {}", kCaptureChannels,
                               options.book->channels()));

@@ -1,5 +1,6 @@
 #include <thread>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -212,6 +213,9 @@ TEST(SurfaceFit, RefusesOptionsOutOfRange) {
   EXPECT_THROW(with([](SurfaceFitOptions& o) { o.lobes = 0; })(), Error);
   EXPECT_THROW(with([](SurfaceFitOptions& o) { o.lobes = 17; })(), Error);
   EXPECT_THROW(with([](SurfaceFitOptions& o) { o.lobe_bytes = 10; })(), Error);
+  for (const int rounds : {-5, 0, kMaxSurfaceRounds + 1})
+    EXPECT_EQ(error_of(with([=](SurfaceFitOptions& o) { o.rounds = rounds; })),
+              fmt::format("surface fit: expected 1 to 100 rounds, found {}", rounds));
 }
 
 }  // namespace
