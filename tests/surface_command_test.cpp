@@ -119,5 +119,42 @@ TEST_F(SurfaceCommand, SaysWhatIsWrongInOneLine) {
   EXPECT_EQ(burnish("fit-surface '{0}/capture' -o '{0}/w.burnish' --lobes 99").status, 2);
 }
 
+TEST_F(SurfaceCommand, WritesOverNothingThatItReads) {
+  const auto refused = [&](int status, const std::string& arguments, const std::string& why) {
+    const Outcome outcome = burnish("fit-surface '{0}/" + arguments);
+    EXPECT_EQ(outcome.status, status) << arguments;
+    const std::string line = outcome.output.substr(0, outcome.output.find('\n') + 1);
+    EXPECT_EQ(outcome.output, status == 1 ? line : line + "Run with --help for more information.\n");
+    EXPECT_THAT(line, HasSubstr(why)) << arguments;
+  };
+  // by names, before the capture is looked for
+  for (const char* name : {"capture/00001.exr", "w.png", "capture/capture.json"})
+    refused(2, fmt::format("none' -o '{{0}}/{}'", name),
+            "--output: expected a name such as wall.burnish, found");
+  for (const char* name : {"w.burnish", "capture/00001.exr"})
+    refused(2, fmt::format("none' -o '{{0}}/w.burnish' --picture '{{0}}/{}'", name),
+            "--picture: expected a name such as wall.png, found");
+  refused(2, "none' -o '{0}/w' --picture '{0}/capture/../w'",
+          "--picture: expected another file than --output");
+
+  // by what they are, whatever their names
+  const std::string form = read(file("capture/capture.json")), picture = read(file("capture/00001.exr"));
+  fs::create_symlink("capture/00001.exr", file("linked"));
+  fs::create_hard_link(file("capture/capture.json"), file("form.png"));
+  refused(1, "capture' -o '{0}/linked'", "linked: expected a file to write that is not read, found one of");
+  refused(1, "capture' -o '{0}/w' --picture '{0}/form.png'",
+          "form.png: expected a file to write that is not");
+  fs::create_hard_link(file("capture/00002.exr"), file("v.part"));  // what a fit that begins anew removes
+  refused(1, "capture' -o '{0}/v'", "v.part: expected a file to write that is not read, found one of");
+  EXPECT_TRUE(fs::exists(file("v.part")));
+  EXPECT_EQ(read(file("capture/00001.exr")), picture);
+  EXPECT_EQ(read(file("capture/capture.json")), form);
+  ASSERT_EQ(burnish(kFit).status, 0);
+  const std::string surface = read(file("wall.burnish"));
+  refused(1, "capture' -o '{0}/wall.burnish' --book '{0}/wall.burnish'", "is not read, found the book");
+  EXPECT_EQ(read(file("wall.burnish")), surface);
+  EXPECT_FALSE(fs::exists(file("w")));
+}
+
 }  // namespace
 }  // namespace burnish

@@ -1,7 +1,11 @@
+#include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <span>
+#include <system_error>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -23,6 +27,8 @@ namespace burnish::cli {
 
 namespace {
 
+namespace fs = std::filesystem;
+
 struct FitSurfaceArguments {
   std::string capture, out, book, picture, normals = "auto";
   SurfaceFitOptions options;
@@ -30,6 +36,10 @@ struct FitSurfaceArguments {
   int threads = 0;
   bool resume = false, compare = false, json = false;
 };
+
+std::string checkpoint_of(const FitSurfaceArguments& arguments) {
+  return arguments.out + ".part";
+}
 
 std::string text_of(const PictureScore& score, const SurfaceReport& report) {
   const char* const of = report.of_samples ? "samples a texel" : "pictures";
@@ -105,7 +115,46 @@ SurfaceFitOptions surface_options(const FitSurfaceArguments& arguments) {
   return options;
 }
 
+// That no name says that another file is written.
+void check_names(const FitSurfaceArguments& arguments) {
+  const auto check = [](const char* option, const fs::path& path, const char* ending, const char* such) {
+    if (const fs::path found = path.extension(); !found.empty() && found != ending)
+      throw CLI::ValidationError(
+          fmt::format("{}: expected a name such as {}, found '{}'", option, such, path.string()));
+  };
+  check("--output", arguments.out, ".burnish", "wall.burnish");
+  check("--picture", arguments.picture, ".png", "wall.png");
+  const auto whole = [](const std::string& path) {
+    std::error_code none;
+    return fs::weakly_canonical(fs::absolute(path, none), none);
+  };
+  if (!arguments.picture.empty() && whole(arguments.picture) == whole(arguments.out))
+    throw CLI::ValidationError(
+        fmt::format("--picture: expected another file than --output, found '{}'", arguments.picture));
+}
+
+// That nothing is written over what is read.
+void check_inputs_stay(const FitSurfaceArguments& arguments, const Capture& capture) {
+  std::vector<fs::path> read{capture.form_file()};
+  if (fs::is_directory(arguments.capture)) {
+    const CaptureForm& form = capture.form();
+    read.push_back(capture.file(form.normals));
+    for (const CapturePicture& picture : form.pictures)
+      for (const std::string& name : {picture.file, picture.mask}) read.push_back(capture.file(name));
+    for (const Capture::LeftOut& picture : capture.left_out()) read.push_back(capture.file(picture.file));
+  }
+  for (const std::string& out : {arguments.out, checkpoint_of(arguments), arguments.picture}) {
+    std::error_code none;
+    const auto is_out = [&](const fs::path& path) { return fs::equivalent(path, out, none); };
+    if (!fs::is_regular_file(out, none)) continue;
+    if (std::ranges::any_of(read, is_out))
+      throw Error::in_file(out, "a file to write that is not read", "one of the capture");
+    if (is_out(arguments.book)) throw Error::in_file(out, "a file to write that is not read", "the book");
+  }
+}
+
 void fit_surface(const FitSurfaceArguments& arguments, FitCrew* crew) {
+  check_names(arguments);
   const ThreadLimit limit(arguments.threads);
   SurfaceFitOptions options = surface_options(arguments);
   options.crew = crew;
@@ -116,14 +165,15 @@ void fit_surface(const FitSurfaceArguments& arguments, FitCrew* crew) {
   check_writable(arguments.out);
   if (!arguments.picture.empty()) check_writable(arguments.picture);
   options.progress = progress_bars();
-  options.checkpoint = arguments.out + ".part";
-  if (!arguments.resume) std::filesystem::remove(options.checkpoint);
+  options.checkpoint = checkpoint_of(arguments);
   Capture capture(arguments.capture, arguments.pictures);
+  check_inputs_stay(arguments, capture);
+  if (!arguments.resume) fs::remove(options.checkpoint);
   if (!arguments.picture.empty() && capture.form().own_directions)
     throw Error::in_file(arguments.capture, "pictures, for --picture", "samples of texels");
   const SurfaceFit fit = burnish::fit_surface(std::move(capture), options);
   write_then_rename(arguments.out, format_surface(fit.surface));
-  std::filesystem::remove(options.checkpoint);
+  fs::remove(options.checkpoint);
 
   if (!arguments.picture.empty()) write_comparison(arguments, fit);
   const std::vector<BaselineScore> others = scores_of_others(arguments, fit, options);
