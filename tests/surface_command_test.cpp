@@ -61,6 +61,20 @@ TEST_F(SurfaceCommand, FitsWhatWasMeasured) {
   EXPECT_EQ(read(file("wall.burnish")), bytes);
 }
 
+TEST_F(SurfaceCommand, CountsOneAsOne) {
+  std::string scene = read(file("scene.json"));
+  scene.replace(scene.find("\"held_out\":6"), 12, "\"held_out\":18");
+  write(file("scene.json"), scene);
+  ASSERT_EQ(burnish("measure --surface '{0}/scene.json' -o '{0}/capture'").status, 0);
+  const Outcome fit =
+      burnish("fit-surface '{0}/capture' -o '{0}/w' --lobes 1 --lobe-bytes 1K --rounds 1 --normals flat");
+  EXPECT_THAT(fit.output, HasSubstr("surface    1 lobe of "));
+  EXPECT_THAT(fit.output, HasSubstr(" of 17 pictures\n"));
+  EXPECT_THAT(fit.output, HasSubstr("\nheld out   psnr "));
+  EXPECT_THAT(fit.output,
+              testing::AllOf(HasSubstr("dB of 1 picture"), testing::Not(HasSubstr("1 pictures"))));
+}
+
 TEST_F(SurfaceCommand, SurfacesAreDescribedAndDrawn) {
   ASSERT_EQ(burnish(std::string(kFit) + " --widen").status, 0);
   const Outcome text = burnish("info '{0}/wall.burnish'"), json = burnish("info '{0}/wall.burnish' --json");

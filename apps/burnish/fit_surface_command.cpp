@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <burnish/book/book_file.h>
 #include <burnish/capture/surface_baselines.h>
 #include <burnish/capture/surface_fit.h>
 #include <burnish/capture/surface_picture.h>
@@ -20,6 +21,7 @@
 #include <burnish/math/parallel.h>
 
 #include "commands.h"
+#include "counted.h"
 #include "progress.h"
 #include "usage.h"
 
@@ -42,9 +44,10 @@ std::string checkpoint_of(const FitSurfaceArguments& arguments) {
 }
 
 std::string text_of(const PictureScore& score, const SurfaceReport& report) {
-  const char* const of = report.of_samples ? "samples a texel" : "pictures";
-  if (!score.psnr) return fmt::format("{} {}", score.pictures, of);
-  return fmt::format("psnr {:.2f} dB of {} {}{}", *score.psnr, score.pictures, of,
+  const std::string of =
+      report.of_samples ? counted(score.pictures, "sample") + " a texel" : counted(score.pictures, "picture");
+  if (!score.psnr) return of;
+  return fmt::format("psnr {:.2f} dB of {}{}", *score.psnr, of,
                      score.psnr_of_all && *score.psnr_of_all != *score.psnr
                          ? fmt::format(", {:.2f} dB with what masks leave out", *score.psnr_of_all)
                          : "");
@@ -84,13 +87,14 @@ void print_surface_report(const FitSurfaceArguments& arguments, const SurfaceRep
                           std::span<const BaselineScore> others) {
   for (const auto& [file, why] : report.left_out) fmt::print("left out   {}: {}\n", file, why);
   if (report.of_samples)
-    fmt::print("capture    {} x {} texels of at most {} samples\n", report.width, report.height,
-               report.pictures);
+    fmt::print("capture    {} x {} texels of at most {}\n", report.width, report.height,
+               counted(report.pictures, "sample"));
   else
-    fmt::print("capture    {} x {} texels, {} pictures; {} pixels clipped, {} missing\n", report.width,
-               report.height, report.pictures, report.clipped_pixels, report.missing_pixels);
-  fmt::print("surface    {} lobes of {} bytes together, {} + {} bytes a texel (weights, normals)\n",
-             report.lobes, report.lobe_bytes, report.weight_bytes, report.frame_bytes);
+    fmt::print("capture    {} x {} texels, {}; {} clipped, {} missing\n", report.width, report.height,
+               counted(report.pictures, "picture"), counted(report.clipped_pixels, "pixel"),
+               report.missing_pixels);
+  fmt::print("surface    {} of {} bytes together, {} + {} bytes a texel (weights, normals)\n",
+             counted(report.lobes, "lobe"), report.lobe_bytes, report.weight_bytes, report.frame_bytes);
   fmt::print("fitted     {}\n", text_of(report.fitted, report));
   if (report.held_out.pictures > 0) fmt::print("held out   {}\n", text_of(report.held_out, report));
   for (const BaselineScore& other : others)
@@ -106,6 +110,8 @@ SurfaceFitOptions surface_options(const FitSurfaceArguments& arguments) {
   SurfaceFitOptions options = arguments.options;
   if (!arguments.book.empty()) {
     const FileBytes book = read_file(arguments.book);
+    if (looks_like_book(book.bytes))
+      throw Error::in_file(arguments.book, "a model or a surface for --book", "a book of materials");
     options.book =
         looks_like_surface(book.bytes) ? parse_surface(book).brdf.own_model() : parse_model(book).brdf;
   }

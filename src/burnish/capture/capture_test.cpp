@@ -101,6 +101,17 @@ TEST(CaptureForm, RefusesWhatCannotBe) {
         << to;
 }
 
+TEST(CaptureForm, SaysOneNumberWhereThereIsOne) {
+  const auto said = [](const char* text) { return error_of([&] { parse_capture(memory_file(text)); }); };
+  EXPECT_EQ(said("[]"), "test.file: expected an object, found []");
+  EXPECT_EQ(said(R"({"version":2})"), "test.file: expected version: 1, found 2");
+  EXPECT_EQ(said(R"({"version":1.0})"), "test.file: expected version: 1, found 1.0");
+  EXPECT_EQ(said(R"({"version":1,"width":1,"height":1,"size":[1]})"),
+            "test.file: expected size: a list of 2, found [1]");
+  EXPECT_EQ(said(R"({"version":1,"width":0})"),
+            "test.file: expected width: a number from 1 to 16384, found 0");
+}
+
 TEST(CaptureForm, NamesMembersThatItDoesNotKnow) {
   const auto said = [](const std::string& from, const std::string& to) {
     std::string text = seeds::kCapture;
