@@ -1,5 +1,6 @@
 // burnish measure --surface and fit-surface, as people call them.
 
+#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -7,6 +8,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <burnish/capture/capture.h>
+#include <burnish/image/png.h>
 #include <burnish/surface/surface_file.h>
 #include <burnish/testing/tools.h>
 
@@ -73,6 +76,26 @@ TEST_F(SurfaceCommand, CountsOneAsOne) {
   EXPECT_THAT(fit.output, HasSubstr("\nheld out   psnr "));
   EXPECT_THAT(fit.output,
               testing::AllOf(HasSubstr("dB of 1 picture"), testing::Not(HasSubstr("1 pictures"))));
+}
+
+// Of a black surface, a texel of which is masked.
+TEST_F(SurfaceCommand, SaysWhatIsExactAndWithoutData) {
+  write(file("black.json"), R"({"version":1,"width":8,"height":8,"materials":["lambert:kd=0"],)"
+                            R"("lights":{"count":8},"views":{"count":1},"held_out":4})");
+  ASSERT_EQ(burnish("measure --surface '{0}/black.json' -o '{0}/black'").status, 0);
+  CaptureForm form = parse_capture(read_file(file("black/capture.json")));
+  Image8 mask(8, 8, 3);
+  std::ranges::fill(mask.pixels, std::uint8_t{255});
+  std::ranges::fill(mask.at(5, 2), std::uint8_t{0});
+  write_png(file("black/mask.png"), mask);
+  for (CapturePicture& picture : form.pictures)
+    if (!picture.held_out) picture.mask = "mask.png";
+  write(file("black/capture.json"), format_capture(form));
+  const Outcome fit =
+      burnish("fit-surface '{0}/black' -o '{0}/w' --lobes 1 --lobe-bytes 1K --rounds 1 --compare");
+  EXPECT_THAT(fit.output, HasSubstr("0 missing; 1 texel without data\n"));
+  EXPECT_THAT(fit.output, HasSubstr("\nfitted     exact of 6 pictures\n"));
+  EXPECT_THAT(fit.output, HasSubstr("\nlobes      exact of what was held out"));
 }
 
 TEST_F(SurfaceCommand, SurfacesAreDescribedAndDrawn) {

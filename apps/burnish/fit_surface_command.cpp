@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -43,13 +44,20 @@ std::string checkpoint_of(const FitSurfaceArguments& arguments) {
   return arguments.out + ".part";
 }
 
+std::string decibels(double psnr) {
+  return std::isinf(psnr) ? "exact" : fmt::format("{:.2f} dB", psnr);
+}
+std::string psnr_text(double psnr) {
+  return (std::isinf(psnr) ? "" : "psnr ") + decibels(psnr);
+}
+
 std::string text_of(const PictureScore& score, const SurfaceReport& report) {
   const std::string of =
       report.of_samples ? counted(score.pictures, "sample") + " a texel" : counted(score.pictures, "picture");
   if (!score.psnr) return of;
-  return fmt::format("psnr {:.2f} dB of {}{}", *score.psnr, of,
+  return fmt::format("{} of {}{}", psnr_text(*score.psnr), of,
                      score.psnr_of_all && *score.psnr_of_all != *score.psnr
-                         ? fmt::format(", {:.2f} dB with what masks leave out", *score.psnr_of_all)
+                         ? fmt::format(", {} with what masks leave out", decibels(*score.psnr_of_all))
                          : "");
 }
 
@@ -86,21 +94,24 @@ void print_surface_json(const FitSurfaceArguments& arguments, const SurfaceRepor
 void print_surface_report(const FitSurfaceArguments& arguments, const SurfaceReport& report,
                           std::span<const BaselineScore> others) {
   for (const auto& [file, why] : report.left_out) fmt::print("left out   {}: {}\n", file, why);
+  const std::string without_data =
+      report.texels_without_data == 0
+          ? ""
+          : fmt::format("; {} without data", counted(report.texels_without_data, "texel"));
   if (report.of_samples)
-    fmt::print("capture    {} x {} texels of at most {}\n", report.width, report.height,
-               counted(report.pictures, "sample"));
+    fmt::print("capture    {} x {} texels of at most {}{}\n", report.width, report.height,
+               counted(report.pictures, "sample"), without_data);
   else
-    fmt::print("capture    {} x {} texels, {}; {} clipped, {} missing\n", report.width, report.height,
+    fmt::print("capture    {} x {} texels, {}; {} clipped, {} missing{}\n", report.width, report.height,
                counted(report.pictures, "picture"), counted(report.clipped_pixels, "pixel"),
-               report.missing_pixels);
+               report.missing_pixels, without_data);
   fmt::print("surface    {} of {} bytes together, {} + {} bytes a texel (weights, normals)\n",
              counted(report.lobes, "lobe"), report.lobe_bytes, report.weight_bytes, report.frame_bytes);
   fmt::print("fitted     {}\n", text_of(report.fitted, report));
   if (report.held_out.pictures > 0) fmt::print("held out   {}\n", text_of(report.held_out, report));
   for (const BaselineScore& other : others)
     fmt::print("{:<10} {}, {:.3g} bytes a texel\n", other.method,
-               other.held_out ? fmt::format("psnr {:.2f} dB of what was held out", *other.held_out)
-                              : "nothing was held out",
+               other.held_out ? psnr_text(*other.held_out) + " of what was held out" : "nothing was held out",
                other.bytes_a_texel);
   fmt::print("written    {} in {:.2f} s, of these {:.2f} s weights of all texels\n", arguments.out,
              report.seconds, report.weight_seconds);

@@ -58,6 +58,7 @@ struct SurfaceReport {
   bool of_samples = false;  ///< texels have samples of their own, at most as many as there are pictures
   std::vector<Capture::LeftOut> left_out;
   std::size_t missing_pixels = 0, clipped_pixels = 0;  ///< of the pictures that are fitted
+  std::size_t texels_without_data = 0;                 ///< that none of these shows
   NormalsFrom normals = NormalsFrom::flat;
   double exposure = 1;  ///< what makes the 97th percentile of the fitted pixels white
   PictureScore fitted, held_out;

@@ -8,6 +8,7 @@
 #include <burnish/capture/surface_fit.h>
 #include <burnish/capture/surface_picture.h>
 #include <burnish/error.h>
+#include <burnish/image/png.h>
 #include <burnish/math/parallel.h>
 #include <burnish/testing/captures.h>
 #include <burnish/testing/crews.h>
@@ -168,6 +169,32 @@ TEST(SurfaceFit, SaysWhichPicturesItLeftOut) {
   ASSERT_EQ(fit.report.left_out.size(), 1u);
   EXPECT_EQ(fit.report.left_out.front().file, "00001.exr");
   EXPECT_EQ(fit.report.pictures, 23u);
+}
+
+// Masked in all pictures that are fitted; also where the fit was stopped between.
+TEST(SurfaceFit, CountsTexelsWithoutData) {
+  const TemporaryFolder folder("surface_fit_without_data");
+  CaptureForm form = small_capture(folder.path, 16, 6, R"("held_out":6)");
+  Image8 mask(16, 16, 3);
+  std::ranges::fill(mask.pixels, std::uint8_t{255});
+  for (const auto& [x, y] : {std::pair{3, 0}, {4, 0}, {7, 15}})
+    for (std::size_t c = 0; c < 3; ++c) mask.at(x, y)[c] = 0;
+  write_png(folder.path / "mask.png", mask);
+  for (CapturePicture& picture : form.pictures)
+    if (!picture.held_out) picture.mask = "mask.png";
+  write(folder.path / "capture.json", format_capture(form));
+  SurfaceFitOptions options = small_options();
+  options.tile_bytes = 1;
+  options.checkpoint = folder.path / "fit.part";
+  SurfaceFitOptions stopped = options;
+  stopped.progress = [](std::string_view stage, double fraction) {
+    if (stage == "fitting weights" && fraction > 0.5) throw Error("stopped");
+  };
+  EXPECT_THROW(fit_surface(Capture(folder.path), stopped), Error);
+  const SurfaceReport report = fit_surface(Capture(folder.path), options).report;
+  EXPECT_GT(report.resumed_rows, 0);
+  EXPECT_EQ(report.texels_without_data, 3u);
+  EXPECT_THAT(report_json(report), testing::HasSubstr(R"("texels_without_data":3)"));
 }
 
 // The picture that was taken and the model's are alike where they stand side by side.
