@@ -47,6 +47,9 @@ TEST_F(BookCommand, CompletesPairsAndOpensItsMaterials) {
   EXPECT_THAT(completed.output, HasSubstr("left out in turn"));
   EXPECT_EQ(burnish("export m.burnish --to glsl -o out").status, 0);
   EXPECT_EQ(burnish("batch one -o batch --book a.book").status, 0);
+  EXPECT_THAT(burnish("book one -o one.book --shared a.book").output, HasSubstr("book       1 material of"));
+  EXPECT_THAT(burnish("fit-surface none --book a.book -o wall.burnish").output,
+              HasSubstr("a.book: expected a model or a surface for --book, found a book of materials\n"));
 }
 
 TEST_F(BookCommand, SaysWhatIsWrong) {

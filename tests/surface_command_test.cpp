@@ -1,5 +1,6 @@
 // burnish measure --surface and fit-surface, as people call them.
 
+#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -7,6 +8,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <burnish/capture/capture.h>
+#include <burnish/image/png.h>
 #include <burnish/surface/surface_file.h>
 #include <burnish/testing/tools.h>
 
@@ -59,6 +62,40 @@ TEST_F(SurfaceCommand, FitsWhatWasMeasured) {
   for (const char* method : {"\nlobes ", "\nggx ", "\nnearest ", "\npca "})
     EXPECT_THAT(again.output, HasSubstr(method));
   EXPECT_EQ(read(file("wall.burnish")), bytes);
+}
+
+TEST_F(SurfaceCommand, CountsOneAsOne) {
+  std::string scene = read(file("scene.json"));
+  scene.replace(scene.find("\"held_out\":6"), 12, "\"held_out\":18");
+  write(file("scene.json"), scene);
+  ASSERT_EQ(burnish("measure --surface '{0}/scene.json' -o '{0}/capture'").status, 0);
+  const Outcome fit =
+      burnish("fit-surface '{0}/capture' -o '{0}/w' --lobes 1 --lobe-bytes 1K --rounds 1 --normals flat");
+  EXPECT_THAT(fit.output, HasSubstr("surface    1 lobe of "));
+  EXPECT_THAT(fit.output, HasSubstr(" of 17 pictures\n"));
+  EXPECT_THAT(fit.output, HasSubstr("\nheld out   psnr "));
+  EXPECT_THAT(fit.output,
+              testing::AllOf(HasSubstr("dB of 1 picture"), testing::Not(HasSubstr("1 pictures"))));
+}
+
+// Of a black surface, a texel of which is masked.
+TEST_F(SurfaceCommand, SaysWhatIsExactAndWithoutData) {
+  write(file("black.json"), R"({"version":1,"width":8,"height":8,"materials":["lambert:kd=0"],)"
+                            R"("lights":{"count":8},"views":{"count":1},"held_out":4})");
+  ASSERT_EQ(burnish("measure --surface '{0}/black.json' -o '{0}/black'").status, 0);
+  CaptureForm form = parse_capture(read_file(file("black/capture.json")));
+  Image8 mask(8, 8, 3);
+  std::ranges::fill(mask.pixels, std::uint8_t{255});
+  std::ranges::fill(mask.at(5, 2), std::uint8_t{0});
+  write_png(file("black/mask.png"), mask);
+  for (CapturePicture& picture : form.pictures)
+    if (!picture.held_out) picture.mask = "mask.png";
+  write(file("black/capture.json"), format_capture(form));
+  const Outcome fit =
+      burnish("fit-surface '{0}/black' -o '{0}/w' --lobes 1 --lobe-bytes 1K --rounds 1 --compare");
+  EXPECT_THAT(fit.output, HasSubstr("0 missing; 1 texel without data\n"));
+  EXPECT_THAT(fit.output, HasSubstr("\nfitted     exact of 6 pictures\n"));
+  EXPECT_THAT(fit.output, HasSubstr("\nlobes      exact of what was held out"));
 }
 
 TEST_F(SurfaceCommand, SurfacesAreDescribedAndDrawn) {
@@ -117,6 +154,43 @@ TEST_F(SurfaceCommand, SaysWhatIsWrongInOneLine) {
               HasSubstr("scene.json: expected a folder with capture.json, a BTF of UBO2014, or a CSV"));
   EXPECT_EQ(burnish("measure -o '{0}/x.csv'").status, 2);
   EXPECT_EQ(burnish("fit-surface '{0}/capture' -o '{0}/w.burnish' --lobes 99").status, 2);
+}
+
+TEST_F(SurfaceCommand, WritesOverNothingThatItReads) {
+  const auto refused = [&](int status, const std::string& arguments, const std::string& why) {
+    const Outcome outcome = burnish("fit-surface '{0}/" + arguments);
+    EXPECT_EQ(outcome.status, status) << arguments;
+    const std::string line = outcome.output.substr(0, outcome.output.find('\n') + 1);
+    EXPECT_EQ(outcome.output, status == 1 ? line : line + "Run with --help for more information.\n");
+    EXPECT_THAT(line, HasSubstr(why)) << arguments;
+  };
+  // by names, before the capture is looked for
+  for (const char* name : {"capture/00001.exr", "w.png", "capture/capture.json"})
+    refused(2, fmt::format("none' -o '{{0}}/{}'", name),
+            "--output: expected a name such as wall.burnish, found");
+  for (const char* name : {"w.burnish", "capture/00001.exr"})
+    refused(2, fmt::format("none' -o '{{0}}/w.burnish' --picture '{{0}}/{}'", name),
+            "--picture: expected a name such as wall.png, found");
+  refused(2, "none' -o '{0}/w' --picture '{0}/capture/../w'",
+          "--picture: expected another file than --output");
+
+  // by what they are, whatever their names
+  const std::string form = read(file("capture/capture.json")), picture = read(file("capture/00001.exr"));
+  fs::create_symlink("capture/00001.exr", file("linked"));
+  fs::create_hard_link(file("capture/capture.json"), file("form.png"));
+  refused(1, "capture' -o '{0}/linked'", "linked: expected a file to write that is not read, found one of");
+  refused(1, "capture' -o '{0}/w' --picture '{0}/form.png'",
+          "form.png: expected a file to write that is not");
+  fs::create_hard_link(file("capture/00002.exr"), file("v.part"));  // what a fit that begins anew removes
+  refused(1, "capture' -o '{0}/v'", "v.part: expected a file to write that is not read, found one of");
+  EXPECT_TRUE(fs::exists(file("v.part")));
+  EXPECT_EQ(read(file("capture/00001.exr")), picture);
+  EXPECT_EQ(read(file("capture/capture.json")), form);
+  ASSERT_EQ(burnish(kFit).status, 0);
+  const std::string surface = read(file("wall.burnish"));
+  refused(1, "capture' -o '{0}/wall.burnish' --book '{0}/wall.burnish'", "is not read, found the book");
+  EXPECT_EQ(read(file("wall.burnish")), surface);
+  EXPECT_FALSE(fs::exists(file("w")));
 }
 
 }  // namespace

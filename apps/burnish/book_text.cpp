@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "counted.h"
+
 namespace burnish::cli {
 
 namespace {
@@ -22,7 +24,7 @@ std::vector<float> residuals(const MaterialBook& book) {
 }  // namespace
 
 std::string book_line(const MaterialBook& book) {
-  return fmt::format("{} materials of {} bytes each, {} bytes shared", book.materials().size(),
+  return fmt::format("{} of {} bytes each, {} bytes shared", counted(book.materials().size(), "material"),
                      book.bytes_a_material(), book.shared_bytes());
 }
 

@@ -18,6 +18,7 @@
 #include <burnish/shaders/cost_json.h>
 
 #include "commands.h"
+#include "counted.h"
 #include "fit_arguments.h"
 #include "progress.h"
 #include "source_arguments.h"
@@ -72,7 +73,8 @@ void print(const CompletionReport& report) {
     return fmt::format("{} of the book's spread, {} of what it leaves, noise {:.0f} %", p.spread, p.residual,
                        100 * std::sqrt(p.noise));
   };
-  fmt::print("completed  {} pairs by a book of {} materials{}\n", report.used, report.materials,
+  fmt::print("completed  {} by a book of {}{}\n", counted(report.used, "pair"),
+             counted(report.materials, "material"),
              report.nearest.empty() ? "" : fmt::format(", near {}", report.nearest));
   fmt::print("believed   brightness {}; colour {}\n", prior(report.brightness), prior(report.colour));
   fmt::print("relative   {:.4f} at the pairs, {:.4f} left out in turn\n", report.relative,

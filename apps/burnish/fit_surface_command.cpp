@@ -1,11 +1,17 @@
+#include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <filesystem>
 #include <memory>
 #include <span>
+#include <system_error>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <burnish/book/book_file.h>
 #include <burnish/capture/surface_baselines.h>
 #include <burnish/capture/surface_fit.h>
 #include <burnish/capture/surface_picture.h>
@@ -16,12 +22,15 @@
 #include <burnish/math/parallel.h>
 
 #include "commands.h"
+#include "counted.h"
 #include "progress.h"
 #include "usage.h"
 
 namespace burnish::cli {
 
 namespace {
+
+namespace fs = std::filesystem;
 
 struct FitSurfaceArguments {
   std::string capture, out, book, picture, normals = "auto";
@@ -31,12 +40,24 @@ struct FitSurfaceArguments {
   bool resume = false, compare = false, json = false;
 };
 
+std::string checkpoint_of(const FitSurfaceArguments& arguments) {
+  return arguments.out + ".part";
+}
+
+std::string decibels(double psnr) {
+  return std::isinf(psnr) ? "exact" : fmt::format("{:.2f} dB", psnr);
+}
+std::string psnr_text(double psnr) {
+  return (std::isinf(psnr) ? "" : "psnr ") + decibels(psnr);
+}
+
 std::string text_of(const PictureScore& score, const SurfaceReport& report) {
-  const char* const of = report.of_samples ? "samples a texel" : "pictures";
-  if (!score.psnr) return fmt::format("{} {}", score.pictures, of);
-  return fmt::format("psnr {:.2f} dB of {} {}{}", *score.psnr, score.pictures, of,
+  const std::string of =
+      report.of_samples ? counted(score.pictures, "sample") + " a texel" : counted(score.pictures, "picture");
+  if (!score.psnr) return of;
+  return fmt::format("{} of {}{}", psnr_text(*score.psnr), of,
                      score.psnr_of_all && *score.psnr_of_all != *score.psnr
-                         ? fmt::format(", {:.2f} dB with what masks leave out", *score.psnr_of_all)
+                         ? fmt::format(", {} with what masks leave out", decibels(*score.psnr_of_all))
                          : "");
 }
 
@@ -74,20 +95,24 @@ void print_surface_json(const FitSurfaceArguments& arguments, const SurfaceRepor
 void print_surface_report(const FitSurfaceArguments& arguments, const SurfaceReport& report,
                           std::span<const BaselineScore> others) {
   for (const auto& [file, why] : report.left_out) fmt::print("left out   {}: {}\n", file, why);
+  const std::string without_data =
+      report.texels_without_data == 0
+          ? ""
+          : fmt::format("; {} without data", counted(report.texels_without_data, "texel"));
   if (report.of_samples)
-    fmt::print("capture    {} x {} texels of at most {} samples\n", report.width, report.height,
-               report.pictures);
+    fmt::print("capture    {} x {} texels of at most {}{}\n", report.width, report.height,
+               counted(report.pictures, "sample"), without_data);
   else
-    fmt::print("capture    {} x {} texels, {} pictures; {} pixels clipped, {} missing\n", report.width,
-               report.height, report.pictures, report.clipped_pixels, report.missing_pixels);
-  fmt::print("surface    {} lobes of {} bytes together, {} + {} bytes a texel (weights, normals)\n",
-             report.lobes, report.lobe_bytes, report.weight_bytes, report.frame_bytes);
+    fmt::print("capture    {} x {} texels, {}; {} clipped, {} missing{}\n", report.width, report.height,
+               counted(report.pictures, "picture"), counted(report.clipped_pixels, "pixel"),
+               report.missing_pixels, without_data);
+  fmt::print("surface    {} of {} bytes together, {} + {} bytes a texel (weights, normals)\n",
+             counted(report.lobes, "lobe"), report.lobe_bytes, report.weight_bytes, report.frame_bytes);
   fmt::print("fitted     {}\n", text_of(report.fitted, report));
   if (report.held_out.pictures > 0) fmt::print("held out   {}\n", text_of(report.held_out, report));
   for (const BaselineScore& other : others)
     fmt::print("{:<10} {}, {:.3g} bytes a texel\n", other.method,
-               other.held_out ? fmt::format("psnr {:.2f} dB of what was held out", *other.held_out)
-                              : "nothing was held out",
+               other.held_out ? psnr_text(*other.held_out) + " of what was held out" : "nothing was held out",
                other.bytes_a_texel);
   fmt::print("written    {} in {:.2f} s, of these {:.2f} s weights of all texels\n", arguments.out,
              report.seconds, report.weight_seconds);
@@ -97,6 +122,8 @@ SurfaceFitOptions surface_options(const FitSurfaceArguments& arguments) {
   SurfaceFitOptions options = arguments.options;
   if (!arguments.book.empty()) {
     const FileBytes book = read_file(arguments.book);
+    if (looks_like_book(book.bytes))
+      throw Error::in_file(arguments.book, "a model or a surface for --book", "a book of materials");
     options.book =
         looks_like_surface(book.bytes) ? parse_surface(book).brdf.own_model() : parse_model(book).brdf;
   }
@@ -106,7 +133,46 @@ SurfaceFitOptions surface_options(const FitSurfaceArguments& arguments) {
   return options;
 }
 
+// That no name says that another file is written.
+void check_names(const FitSurfaceArguments& arguments) {
+  const auto check = [](const char* option, const fs::path& path, const char* ending, const char* such) {
+    if (const fs::path found = path.extension(); !found.empty() && found != ending)
+      throw CLI::ValidationError(
+          fmt::format("{}: expected a name such as {}, found '{}'", option, such, path.string()));
+  };
+  check("--output", arguments.out, ".burnish", "wall.burnish");
+  check("--picture", arguments.picture, ".png", "wall.png");
+  const auto whole = [](const std::string& path) {
+    std::error_code none;
+    return fs::weakly_canonical(fs::absolute(path, none), none);
+  };
+  if (!arguments.picture.empty() && whole(arguments.picture) == whole(arguments.out))
+    throw CLI::ValidationError(
+        fmt::format("--picture: expected another file than --output, found '{}'", arguments.picture));
+}
+
+// That nothing is written over what is read.
+void check_inputs_stay(const FitSurfaceArguments& arguments, const Capture& capture) {
+  std::vector<fs::path> read{capture.form_file()};
+  if (fs::is_directory(arguments.capture)) {
+    const CaptureForm& form = capture.form();
+    read.push_back(capture.file(form.normals));
+    for (const CapturePicture& picture : form.pictures)
+      for (const std::string& name : {picture.file, picture.mask}) read.push_back(capture.file(name));
+    for (const Capture::LeftOut& picture : capture.left_out()) read.push_back(capture.file(picture.file));
+  }
+  for (const std::string& out : {arguments.out, checkpoint_of(arguments), arguments.picture}) {
+    std::error_code none;
+    const auto is_out = [&](const fs::path& path) { return fs::equivalent(path, out, none); };
+    if (!fs::is_regular_file(out, none)) continue;
+    if (std::ranges::any_of(read, is_out))
+      throw Error::in_file(out, "a file to write that is not read", "one of the capture");
+    if (is_out(arguments.book)) throw Error::in_file(out, "a file to write that is not read", "the book");
+  }
+}
+
 void fit_surface(const FitSurfaceArguments& arguments, FitCrew* crew) {
+  check_names(arguments);
   const ThreadLimit limit(arguments.threads);
   SurfaceFitOptions options = surface_options(arguments);
   options.crew = crew;
@@ -117,14 +183,15 @@ void fit_surface(const FitSurfaceArguments& arguments, FitCrew* crew) {
   check_writable(arguments.out);
   if (!arguments.picture.empty()) check_writable(arguments.picture);
   options.progress = progress_bars();
-  options.checkpoint = arguments.out + ".part";
-  if (!arguments.resume) std::filesystem::remove(options.checkpoint);
+  options.checkpoint = checkpoint_of(arguments);
   Capture capture(arguments.capture, arguments.pictures);
+  check_inputs_stay(arguments, capture);
+  if (!arguments.resume) fs::remove(options.checkpoint);
   if (!arguments.picture.empty() && capture.form().own_directions)
     throw Error::in_file(arguments.capture, "pictures, for --picture", "samples of texels");
   const SurfaceFit fit = burnish::fit_surface(std::move(capture), options);
   write_then_rename(arguments.out, format_surface(fit.surface));
-  std::filesystem::remove(options.checkpoint);
+  fs::remove(options.checkpoint);
 
   if (!arguments.picture.empty()) write_comparison(arguments, fit);
   const std::vector<BaselineScore> others = scores_of_others(arguments, fit, options);
@@ -173,7 +240,7 @@ void add_fit_surface_command(CLI::App& app, FitCrew* crew) {
       ->capture_default_str();
   verb->add_option("--rounds", options.rounds,
                    "of lobes and weights in turn; else 9, where normals are estimated 24")
-      ->check(in_range(1, 100));
+      ->check(in_range(1, kMaxSurfaceRounds));
   verb->add_option("--memory", options.tile_bytes,
                    "bytes of pictures in memory at a time; M counts as 1024^2")
       ->transform(CLI::AsSizeValue(false));

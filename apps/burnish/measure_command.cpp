@@ -10,6 +10,7 @@
 #include <burnish/reflectance/goniometer.h>
 
 #include "commands.h"
+#include "counted.h"
 #include "json_output.h"
 #include "progress.h"
 #include "source_arguments.h"
@@ -29,7 +30,8 @@ void measure_surface(const std::string& scene, const std::string& out, bool json
                    {"height", form.height},
                    {"pictures", form.pictures.size()}});
   else
-    fmt::print("{} pictures of {} x {} texels to {}\n", form.pictures.size(), form.width, form.height, out);
+    fmt::print("{} of {} x {} texels to {}\n", counted(form.pictures.size(), "picture"), form.width,
+               form.height, out);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <system_error>
 #include <type_traits>
 #include <variant>
 #include <vector>
@@ -183,6 +184,7 @@ nb::tuple fit_surface(const std::filesystem::path& capture, std::size_t lobes, s
     const nb::gil_scoped_release released;
     return burnish::fit_surface(Capture(capture, pictures), options);
   }();
+  if (std::error_code ignored; checkpoint) std::filesystem::remove(*checkpoint, ignored);
   nb::object report = from_json(report_json(fit.report));
   return nb::make_tuple(nb::cast(new OpenedSurface(std::move(fit.surface)), nb::rv_policy::take_ownership),
                         report);
@@ -267,8 +269,9 @@ void bind_surfaces(nb::module_& m) {
         "(Surface, report) of a capture's folder, of a BTF, of which so many pictures are taken, or of a\n"
         "CSV of samples of texels, as `burnish fit-surface`. memory: bytes of pictures at a time.\n\n"
         "progress(stage, fraction) is called from this thread; what it raises ends the fit, and so does "
-        "Ctrl-C;\n"
-        "of that, checkpoint, a file's name, is what the next call goes on from.");
+        "Ctrl-C.\n"
+        "checkpoint: a file that a fit which is stopped leaves, and that is gone on from if it is there;\n"
+        "removed at the end.");
 }
 
 }  // namespace burnish::python

@@ -36,6 +36,18 @@ def directions(count, seed):
     return (w / numpy.linalg.norm(w, axis=1, keepdims=True)).astype(numpy.float32)
 
 
+def test_fits_to_the_end_or_not_at_all(fitted, tmp_path):
+    folder, surface, _ = fitted
+    again, _ = burnish.fit_surface(
+        folder / "capture", lobes=2, lobe_bytes=1024, rounds=2, checkpoint=tmp_path / "wall.part"
+    )
+    assert again.notes == surface.notes
+    assert not (tmp_path / "wall.part").exists()
+    for rounds in 0, -5:
+        with pytest.raises(burnish.Error, match=f"1 to 100 rounds, found {rounds}"):
+            burnish.fit_surface(folder / "capture", rounds=rounds)
+
+
 def test_fits_and_reads_its_file(fitted):
     folder, surface, report = fitted
     assert report["held_out"]["psnr"] > 30

@@ -60,13 +60,18 @@ void write_then_rename(const fs::path& given, std::string_view bytes) {
   const fs::path path = replaced_file(given);
   const fs::path temporary = path.string() + fmt::format(".{}.partial", ::getpid());
   {
+    errno = 0;
     std::ofstream out(temporary, std::ios::binary);
     out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    out.close();
+    if (out) out.close();  // writes what is left
     if (!out) {
+      const int reason = errno;
+      out.close();
       std::error_code ignored;
       fs::remove(temporary, ignored);
-      throw Error::in_file(given.string(), "a writable path", "a write error");
+      throw Error::in_file(
+          given.string(), "a writable path",
+          reason == 0 ? "a write error" : "a write error: " + std::generic_category().message(reason));
     }
   }
   std::error_code error;

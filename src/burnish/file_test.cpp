@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <filesystem>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <burnish/file.h>
 #include <burnish/testing/tools.h>
@@ -75,6 +77,21 @@ TEST(File, TellsBeforeItWritesWhetherItCan) {
   EXPECT_NO_THROW(check_writable(folder.path / "b"));
   EXPECT_EQ(read(folder.path / "a"), "old");
   EXPECT_EQ(entries_in(folder.path), 1u);
+}
+
+// The device stands for a full disk, under the temporary name.
+TEST(File, SaysWhyItCouldNotWrite) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+  const TemporaryFolder folder("file");
+  write(folder.path / "a", "old");
+  for (const std::size_t size : {std::size_t{1}, std::size_t{1} << 20}) {  // when it is closed, and before
+    fs::create_symlink("/dev/full", folder.path / fmt::format("a.{}.partial", ::getpid()));
+    EXPECT_EQ(error_of([&] { write_then_rename(folder.path / "a", std::string(size, 'x')); }),
+              fmt::format("{}: expected a writable path, found a write error: No space left on device",
+                          (folder.path / "a").string()));
+    EXPECT_EQ(read(folder.path / "a"), "old");
+    EXPECT_EQ(entries_in(folder.path), 1u);
+  }
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include <burnish/capture/btf_file.h>
 #include <burnish/capture/capture.h>
+#include <burnish/capture/file_stamp.h>
 #include <burnish/error.h>
 #include <burnish/math/angles.h>
 
@@ -139,7 +140,7 @@ BtfFile::BtfFile(std::filesystem::path path) : path_(std::move(path)) {
   read_size(head);
   read_colours(head);
   for (Channel& channel : channels_) channel = read_channel(head);
-  fingerprint_ = hash_of(fmt::format("{}", head.size()), head.hash());
+  fingerprint_ = hash_of(file_stamp(path_), head.hash());
 }
 
 /// What was measured.

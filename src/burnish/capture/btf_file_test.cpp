@@ -1,3 +1,4 @@
+#include <chrono>
 #include <cmath>
 #include <functional>
 
@@ -124,6 +125,10 @@ TEST(BtfFile, IsACapture) {
     EXPECT_EQ(fewer.form().pictures[1], form.pictures[2]);
     EXPECT_NE(fewer.fingerprint(), capture.fingerprint());
     EXPECT_THROW(Capture(written.path, 3), Error);
+    // another one once it was written again
+    std::filesystem::last_write_time(
+        written.path, std::filesystem::last_write_time(written.path) + std::chrono::seconds(2));
+    EXPECT_NE(Capture(written.path).fingerprint(), capture.fingerprint());
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include <burnish/capture/btf_file.h>
 #include <burnish/capture/capture.h>
+#include <burnish/capture/file_stamp.h>
 #include <burnish/capture/json_member.h>
 #include <burnish/capture/picture_rows.h>
 #include <burnish/capture/texel_table.h>
@@ -28,6 +29,7 @@ constexpr std::size_t kHeldOut = 12;  // one of so many pictures of a BTF
 }  // namespace
 
 Station parse_station(const JsonMember& member) {
+  member.has_only({"direction", "position"});
   if (member.has("position")) {
     const JsonMember position = member.at("position");
     const Station station{.is_direction = false, .at = position.vector()};
@@ -55,6 +57,7 @@ Rgb parse_scale(const JsonMember& member) {
 }
 
 CapturePicture parse_picture(const JsonMember& member) {
+  member.has_only({"file", "light", "view", "scale", "mask", "held_out"});
   CapturePicture picture{.file = member.at("file").file(),
                          .light = parse_station(member.at("light")),
                          .view = parse_station(member.at("view")),
@@ -81,6 +84,7 @@ CaptureForm parse_capture(const FileBytes& file) {
   const Json json = parse_json(file);
   const JsonMember root(file, json, "");
   root.at("version").integer(kCaptureVersion, kCaptureVersion);
+  root.has_only({"version", "width", "height", "size", "transfer", "clip", "normals", "pictures"});
   CaptureForm form{.width = root.at("width").integer(1, kMaxSide),
                    .height = root.at("height").integer(1, kMaxSide),
                    .normals = {},
@@ -171,6 +175,14 @@ void Capture::open_folder() {
   for (std::size_t p = 0; p < why.size(); ++p)
     if (!why[p].empty()) damaged.push_back({form_.pictures[p].file, why[p]});
   fingerprint_ = hash_of(file.text());
+  const auto hash_stamp = [&](const std::string& name) {
+    if (!name.empty()) fingerprint_ = hash_of(file_stamp(path_ / name) + '\n', fingerprint_);
+  };
+  hash_stamp(form_.normals);
+  for (const CapturePicture& picture : form_.pictures) {
+    hash_stamp(picture.file);
+    hash_stamp(picture.mask);
+  }
   leave_out(damaged);
 }
 

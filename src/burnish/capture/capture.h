@@ -152,7 +152,8 @@ class Capture {
     std::string file, why;
   };
   const std::vector<LeftOut>& left_out() const noexcept { return left_out_; }
-  /// The same bytes of capture.json (of a BTF, but its texels) and the same pictures have the same number.
+  /// The same number for the same capture: the bytes of capture.json, size and last write time of every picture, mask
+  /// and the normals, and what is left out; of a BTF its head, size and last write time; of samples all bytes.
   std::uint64_t fingerprint() const noexcept { return fingerprint_; }
 
   /// Rows that keep a tile of all pictures within so many bytes, at least one.

@@ -1,3 +1,4 @@
+#include <chrono>
 #include <cmath>
 #include <fstream>
 
@@ -100,6 +101,37 @@ TEST(CaptureForm, RefusesWhatCannotBe) {
         << to;
 }
 
+TEST(CaptureForm, SaysOneNumberWhereThereIsOne) {
+  const auto said = [](const char* text) { return error_of([&] { parse_capture(memory_file(text)); }); };
+  EXPECT_EQ(said("[]"), "test.file: expected an object, found []");
+  EXPECT_EQ(said(R"({"version":2})"), "test.file: expected version: 1, found 2");
+  EXPECT_EQ(said(R"({"version":1.0})"), "test.file: expected version: 1, found 1.0");
+  EXPECT_EQ(said(R"({"version":1,"width":1,"height":1,"size":[1]})"),
+            "test.file: expected size: a list of 2, found [1]");
+  EXPECT_EQ(said(R"({"version":1,"width":0})"),
+            "test.file: expected width: a number from 1 to 16384, found 0");
+}
+
+TEST(CaptureForm, NamesMembersThatItDoesNotKnow) {
+  const auto said = [](const std::string& from, const std::string& to) {
+    std::string text = seeds::kCapture;
+    text.replace(text.find(from), from.size(), to);
+    return error_of([&] { parse_capture(memory_file(text)); });
+  };
+  EXPECT_EQ(
+      said("\"height\":3", "\"heigth\":3"),
+      "test.file: expected one of version, width, height, size, transfer, clip, normals, pictures, found "
+      "'heigth'; did you mean 'height'?");
+  EXPECT_EQ(
+      said("held_out", "held_uot"),
+      "test.file: pictures[1]: expected one of file, light, view, scale, mask, held_out, found 'held_uot'; "
+      "did you mean 'held_out'?");
+  EXPECT_EQ(said("\"position\":[0,0,2.5]", "\"position\":[0,0,2.5],\"x\":1"),
+            "test.file: pictures[0].view: expected one of direction, position, found 'x'");
+  EXPECT_EQ(said("{\"version\":1,", "{\"_camera\":{\"by\":\"me\"},\"version\":1,"), "");
+  EXPECT_EQ(said("\"scale\":0.5", "\"scale\":0.5,\"_\":\"dim\""), "");
+}
+
 TEST(CaptureForm, TruncatedTextThrows) {
   for (std::size_t length = 0; length < seeds::kCapture.size(); ++length)
     EXPECT_THROW(parse_capture(memory_file(seeds::kCapture.substr(0, length))), Error) << length;
@@ -197,6 +229,37 @@ TEST(Capture, CountsPixelsThatAreNoNumbersAsMissing) {
   EXPECT_EQ(rows.states[3], PixelState::missing);
   EXPECT_EQ(rows.states[4], PixelState::there);
   for (const float value : rows.values) EXPECT_TRUE(std::isfinite(value));
+}
+
+// Whatever of it is replaced, written again, or taken away.
+TEST(Capture, IsAnotherOnceAFileOfItWasReplaced) {
+  Folder folder("fingerprint", 6);
+  folder.form.pictures[1].mask = "mask.png";
+  folder.form.normals = "n.exr";
+  Image8 mask(kWidth, kHeight, 3);
+  write_png(folder.file("mask.png"), mask);
+  write(folder.file("n.exr"), read(folder.file("0.exr")));
+  folder.save();
+  const auto fingerprint = [&] { return Capture(folder.folder.path).fingerprint(); };
+  std::uint64_t before = fingerprint();
+  EXPECT_EQ(fingerprint(), before);
+  const auto is_another = [&] {
+    const std::uint64_t now = fingerprint();
+    const bool changed = now != before;
+    before = now;
+    return changed;
+  };
+  for (const char* name : {"2.exr", "mask.png", "n.exr"}) {
+    const auto time = fs::last_write_time(folder.file(name));
+    fs::last_write_time(folder.file(name), time + std::chrono::seconds(2));
+    EXPECT_TRUE(is_another()) << name << " written again";
+    write(folder.file(name), read(folder.file(name)) + "more");
+    fs::last_write_time(folder.file(name), time + std::chrono::seconds(2));
+    EXPECT_TRUE(is_another()) << name << " of another size";
+    fs::remove(folder.file(name));
+    EXPECT_TRUE(is_another()) << name << " missing";
+  }
+  EXPECT_FALSE(is_another());
 }
 
 TEST(Capture, SaysOneLineWithoutAFolderOrJson) {

@@ -9,9 +9,9 @@ namespace burnish {
 
 namespace {
 
-constexpr int kCheckpointVersion = 2;
+constexpr int kCheckpointVersion = 3;
 constexpr std::string_view kName = "burnish fit", kNameOfLobes = "burnish lobes";
-constexpr std::size_t kParts = 13, kErrorItems = 4;
+constexpr std::size_t kParts = 14, kPartsOfLobes = 13, kErrorItems = 4;
 constexpr std::size_t kMaxTables = 1024;
 constexpr std::int64_t kMaxInteger = std::numeric_limits<std::int64_t>::max();
 constexpr std::size_t kLongestText = 4096;
@@ -55,7 +55,7 @@ std::vector<T> values_from(CborReader& cbor, const FileBytes& file, const char* 
 
 std::string format_checkpoint(const LobesCheckpoint& checkpoint) {
   CborWriter cbor;
-  cbor.list(kParts);
+  cbor.list(kPartsOfLobes);
   cbor.text(kNameOfLobes);
   cbor.integer(kCheckpointVersion);
   cbor.integer(static_cast<std::int64_t>(checkpoint.key >> 1));
@@ -70,8 +70,9 @@ std::string format_checkpoint(const LobesCheckpoint& checkpoint) {
 
 std::optional<LobesCheckpoint> parse_lobes_checkpoint(const FileBytes& file) {
   CborReader cbor(file);
-  if (cbor.list("a checkpoint", kParts, kParts); cbor.text("its name", kNameOfLobes.size()) != kNameOfLobes)
-    return std::nullopt;
+  if (cbor.list("a checkpoint", kPartsOfLobes, kParts) != kPartsOfLobes) return std::nullopt;
+  if (cbor.text("its name", kNameOfLobes.size()) != kNameOfLobes)
+    cbor.fail(0, "a checkpoint of a surface's lobes", "another file");
   cbor.integer("its version", kCheckpointVersion, kCheckpointVersion);
   LobesCheckpoint read;
   read.key = static_cast<std::uint64_t>(cbor.integer("its key", 0, kMaxInteger)) << 1;
@@ -108,6 +109,7 @@ std::string format_checkpoint(const FitCheckpoint& checkpoint) {
   cbor.list(checkpoint.codes.size() + !checkpoint.normals.empty());
   for (const auto& codes : checkpoint.codes) cbor.bytes(codes);
   if (!checkpoint.normals.empty()) cbor.bytes(bytes_of(checkpoint.normals));
+  cbor.integer(static_cast<std::int64_t>(checkpoint.texels_without_data));
   cbor.list(kErrorItems * checkpoint.errors.size());
   for (const auto& error : checkpoint.errors)
     for (const std::uint64_t sum : {error.seen, error.all, error.seen_count, error.all_count})
@@ -148,6 +150,8 @@ FitCheckpoint parse_checkpoint(const FileBytes& file, int width) {
     read.normals.resize(texels * 2);
     std::memcpy(read.normals.data(), normals.data(), normals.size());
   }
+  read.texels_without_data =
+      static_cast<std::uint64_t>(cbor.integer("texels without data", 0, static_cast<std::int64_t>(texels)));
   read.errors.resize(cbor.list("errors", 0, kErrorItems * kMaxPictures) / kErrorItems);
   for (auto& error : read.errors)
     for (std::uint64_t* sum : {&error.seen, &error.all, &error.seen_count, &error.all_count})

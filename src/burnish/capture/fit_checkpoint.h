@@ -23,6 +23,7 @@ struct FitCheckpoint {
   int rows = 0;                               ///< that are done, from the first on
   std::vector<std::vector<std::byte>> codes;  ///< [lobe][row][x] of these
   std::vector<float> normals;                 ///< [row][x][2] of these, or none
+  std::uint64_t texels_without_data = 0;      ///< of these
   std::vector<TexelSolver::PictureError> errors;
 };
 

@@ -23,6 +23,7 @@ FitCheckpoint some_checkpoint(bool normals) {
       .rows = kCheckpointRows,
       .codes = {},
       .normals = {},
+      .texels_without_data = 5,
       .errors = {{1, 2, 3, 4}, {0, std::uint64_t{1} << 62, 5, 6}}};
   constexpr int kTexels = kCheckpointWidth * kCheckpointRows;
   for (const int first : {0, 100}) {
@@ -57,6 +58,7 @@ TEST(FitCheckpoint, RestoresAllThatItKeeps) {
     EXPECT_EQ(read.rows, kept.rows);
     EXPECT_EQ(read.codes, kept.codes);
     EXPECT_EQ(read.normals, kept.normals);
+    EXPECT_EQ(read.texels_without_data, kept.texels_without_data);
     ASSERT_EQ(read.errors.size(), kept.errors.size());
     for (std::size_t i = 0; i < kept.errors.size(); ++i) {
       EXPECT_EQ(read.errors[i].seen, kept.errors[i].seen);
@@ -84,6 +86,9 @@ TEST(FitCheckpoint, OfTexelsThatContradictTheWidthThrows) {
   }
   FitCheckpoint wrong = some_checkpoint(true);
   wrong.normals.pop_back();
+  EXPECT_THROW(parse_as(format_checkpoint(wrong)), Error);
+  wrong = some_checkpoint(true);
+  wrong.texels_without_data = kCheckpointWidth * kCheckpointRows + 1;
   EXPECT_THROW(parse_as(format_checkpoint(wrong)), Error);
   wrong = some_checkpoint(false);
   wrong.scales.pop_back();

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <initializer_list>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -11,6 +15,7 @@
 #include <burnish/capture/capture.h>
 #include <burnish/error.h>
 #include <burnish/file.h>
+#include <burnish/math/closest_name.h>
 
 namespace burnish {
 
@@ -26,7 +31,7 @@ class JsonMember {
   [[noreturn]] void fail(const std::string& expected) const {
     std::string found = json_->dump(-1, ' ', false, Json::error_handler_t::replace);
     if (found.size() > 40) found = found.substr(0, 40) + "...";
-    throw Error::in_file(file_->name, name_ + ": " + expected, found);
+    throw Error::in_file(file_->name, name_.empty() ? expected : name_ + ": " + expected, found);
   }
   bool has(const char* key) const { return json_->is_object() && json_->contains(key); }
   JsonMember at(const char* key) const {
@@ -34,9 +39,17 @@ class JsonMember {
     if (!json_->contains(key)) throw Error::in_file(file_->name, child(key), "none");
     return {*file_, (*json_)[key], child(key)};
   }
+  /// Throws Error for a member that is none of `known`; those that begin with _ are notes.
+  void has_only(std::initializer_list<std::string_view> known) const {
+    if (!json_->is_object()) fail("an object");
+    for (const auto& [key, value] : json_->items())
+      if (!key.starts_with('_') && std::ranges::find(known, key) == known.end())
+        throw Error(fmt::format("{}: {}{}", file_->name, name_.empty() ? "" : name_ + ": ",
+                                expected_one_of(std::span(known.begin(), known.size()), key)));
+  }
   std::vector<JsonMember> list(std::size_t least, std::size_t most) const {
     if (!json_->is_array() || json_->size() < least || json_->size() > most)
-      fail(fmt::format("a list of {} to {}", least, most));
+      fail(range("a list of ", "a list of ", least, most));
     std::vector<JsonMember> items;
     for (std::size_t i = 0; i < json_->size(); ++i)
       items.emplace_back(*file_, (*json_)[i], fmt::format("{}[{}]", name_, i));
@@ -44,11 +57,11 @@ class JsonMember {
   }
   double number(double least, double most) const {
     const double value = json_->is_number() ? json_->get<double>() : NAN;
-    if (!(value >= least && value <= most)) fail(fmt::format("a number from {} to {}", least, most));
+    if (!(value >= least && value <= most)) fail(range("", "a number from ", least, most));
     return value;
   }
   int integer(int least, int most) const {
-    if (!json_->is_number_integer()) fail(fmt::format("a whole number from {} to {}", least, most));
+    if (!json_->is_number_integer()) fail(range("", "a whole number from ", least, most));
     return static_cast<int>(number(least, most));
   }
   bool truth() const {
@@ -76,6 +89,12 @@ class JsonMember {
   bool is_list() const { return json_->is_array(); }
 
  private:
+  // What is expected where there is one number, or several.
+  template <class T>
+  static std::string range(const char* of_one, const char* of_several, T least, T most) {
+    return least == most ? fmt::format("{}{}", of_one, least)
+                         : fmt::format("{}{} to {}", of_several, least, most);
+  }
   std::string child(const char* key) const { return name_.empty() ? key : name_ + "." + key; }
 
   const FileBytes* file_;

@@ -114,6 +114,9 @@ class SurfaceFitter {
     if (options.lobe_bytes < kMinLobeBytes || options.lobe_bytes > kMaxLobeBytes)
       throw Error(fmt::format("surface fit: expected lobes of {} to {} bytes, found {}", kMinLobeBytes,
                               kMaxLobeBytes, options.lobe_bytes));
+    if (options.rounds && (*options.rounds < 1 || *options.rounds > kMaxSurfaceRounds))
+      throw Error(
+          fmt::format("surface fit: expected 1 to {} rounds, found {}", kMaxSurfaceRounds, *options.rounds));
     if (options.book && options.book->channels() != kCaptureChannels)
       throw Error(fmt::format("surface fit: expected a book of {} channels, found {}", kCaptureChannels,
                               options.book->channels()));
@@ -654,6 +657,7 @@ class SurfaceFitter {
       }
       progress("fitting weights", static_cast<double>(done_.rows) / form.height);
     }
+    report_.texels_without_data = done_.texels_without_data;
     report_.fitted = score(done_.errors, false);
     report_.held_out = score(done_.errors, true);
   }
@@ -678,11 +682,24 @@ class SurfaceFitter {
     store(fits, capture_.form().width, tile);
     report_.weight_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     tile.errors = solver.errors(samples, fits);
+    tile.texels_without_data = without_data(samples);
     tile.rows = rows;
     return tile;
   }
 
+  /// Texels that no picture shows which is fitted.
+  std::size_t without_data(const TexelSamples& samples) const {
+    std::vector<char> shown(samples.size());
+    for (std::size_t p = 0; p < samples.pictures; ++p) {
+      if (capture_.form().pictures[p].held_out) continue;
+      const PixelState* const states = &samples.states[p * samples.size()];
+      for (std::size_t t = 0; t < samples.size(); ++t) shown[t] |= static_cast<char>(is_there(states[t]));
+    }
+    return static_cast<std::size_t>(std::ranges::count(shown, 0));
+  }
+
   void append(const FitCheckpoint& tile) {
+    done_.texels_without_data += tile.texels_without_data;
     for (std::size_t j = 0; j < done_.codes.size(); ++j)
       done_.codes[j].insert(done_.codes[j].end(), tile.codes[j].begin(), tile.codes[j].end());
     done_.normals.insert(done_.normals.end(), tile.normals.begin(), tile.normals.end());

@@ -15,6 +15,8 @@
 
 namespace burnish {
 
+inline constexpr int kMaxSurfaceRounds = 100;
+
 /// What normals a fit takes.
 enum class NormalsFrom { capture, flat, estimate };
 
@@ -25,14 +27,14 @@ struct SurfaceFitOptions {
   std::optional<FactoredBrdf> book = {};
   /// None: those of the capture, or estimated where it has none; flat of samples, whose directions are about them.
   std::optional<NormalsFrom> normals = {};
-  /// Of lobes and weights in turn; none: 9, where normals are estimated 24.
+  /// Of lobes and weights in turn, 1 to kMaxSurfaceRounds; none: 9, where normals are estimated 24.
   std::optional<int> rounds = {};
   /// Copies of the lobes, widened by the bumps that mip levels lose; each costs a light one fetch more.
   bool widened = false;
   std::size_t tile_bytes = 256 << 20;  ///< of pictures in memory at a time
   std::uint64_t seed = 1;              ///< of the texels and pixels that lobes are fitted to
-  /// A file that says how far the work is, written after each round and part and removed at the end; empty: none. One that is
-  /// there and of the same capture and options is gone on from.
+  /// A file that says how far the work is, written after each round and part; empty: none. One that is there and of the
+  /// same capture and options is gone on from. It stays: the caller removes it, once the result is kept.
   std::filesystem::path checkpoint = {};
   /// Ranks that share the work; null: this process alone. Rank 0 calls fit_surface, the others
   /// help_fit_surface, with the same capture and options.
@@ -56,6 +58,7 @@ struct SurfaceReport {
   bool of_samples = false;  ///< texels have samples of their own, at most as many as there are pictures
   std::vector<Capture::LeftOut> left_out;
   std::size_t missing_pixels = 0, clipped_pixels = 0;  ///< of the pictures that are fitted
+  std::size_t texels_without_data = 0;                 ///< that none of these shows
   NormalsFrom normals = NormalsFrom::flat;
   double exposure = 1;  ///< what makes the 97th percentile of the fitted pixels white
   PictureScore fitted, held_out;

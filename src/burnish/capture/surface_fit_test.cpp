@@ -1,5 +1,6 @@
 #include <thread>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +9,7 @@
 #include <burnish/capture/surface_fit.h>
 #include <burnish/capture/surface_picture.h>
 #include <burnish/error.h>
+#include <burnish/image/png.h>
 #include <burnish/math/parallel.h>
 #include <burnish/testing/captures.h>
 #include <burnish/testing/crews.h>
@@ -121,11 +123,14 @@ TEST(SurfaceFit, GoesOnFromACheckpoint) {
     EXPECT_GT(resumed.report.resumed_rows, 0);
     EXPECT_EQ(format_surface(resumed.surface), whole) << where;
   }
-  // of other options it is refused, and so is a damaged one
+  // of other options or pictures it is refused, and so is a damaged one
   options.seed = 2;
   EXPECT_THROW(capture.fit(options), Error);
-  write(options.checkpoint, read(options.checkpoint).substr(0, 1000));
   options.seed = 1;
+  EXPECT_NO_THROW(capture.fit(options));
+  write(capture.folder.path / "00003.exr", read(capture.folder.path / "00004.exr"));
+  EXPECT_THAT(error_of([&] { capture.fit(options); }), testing::HasSubstr("a checkpoint of this capture"));
+  write(options.checkpoint, read(options.checkpoint).substr(0, 1000));
   EXPECT_THROW(capture.fit(options), Error);
 }
 
@@ -192,6 +197,32 @@ TEST(SurfaceFit, SaysWhichPicturesItLeftOut) {
   EXPECT_EQ(fit.report.pictures, 23u);
 }
 
+// Masked in all pictures that are fitted; also where the fit was stopped between.
+TEST(SurfaceFit, CountsTexelsWithoutData) {
+  const TemporaryFolder folder("surface_fit_without_data");
+  CaptureForm form = small_capture(folder.path, 16, 6, R"("held_out":6)");
+  Image8 mask(16, 16, 3);
+  std::ranges::fill(mask.pixels, std::uint8_t{255});
+  for (const auto& [x, y] : {std::pair{3, 0}, {4, 0}, {7, 15}})
+    for (std::size_t c = 0; c < 3; ++c) mask.at(x, y)[c] = 0;
+  write_png(folder.path / "mask.png", mask);
+  for (CapturePicture& picture : form.pictures)
+    if (!picture.held_out) picture.mask = "mask.png";
+  write(folder.path / "capture.json", format_capture(form));
+  SurfaceFitOptions options = small_options();
+  options.tile_bytes = 1;
+  options.checkpoint = folder.path / "fit.part";
+  SurfaceFitOptions stopped = options;
+  stopped.progress = [](std::string_view stage, double fraction) {
+    if (stage == "fitting weights" && fraction > 0.5) throw Error("stopped");
+  };
+  EXPECT_THROW(fit_surface(Capture(folder.path), stopped), Error);
+  const SurfaceReport report = fit_surface(Capture(folder.path), options).report;
+  EXPECT_GT(report.resumed_rows, 0);
+  EXPECT_EQ(report.texels_without_data, 3u);
+  EXPECT_THAT(report_json(report), testing::HasSubstr(R"("texels_without_data":3)"));
+}
+
 // The picture that was taken and the model's are alike where they stand side by side.
 TEST(SurfacePicture, ShowsWhatWasTakenBesideTheModel) {
   BURNISH_SKIP_WHERE_SANITIZED();
@@ -235,6 +266,9 @@ TEST(SurfaceFit, RefusesOptionsOutOfRange) {
   EXPECT_THROW(with([](SurfaceFitOptions& o) { o.lobes = 0; })(), Error);
   EXPECT_THROW(with([](SurfaceFitOptions& o) { o.lobes = 17; })(), Error);
   EXPECT_THROW(with([](SurfaceFitOptions& o) { o.lobe_bytes = 10; })(), Error);
+  for (const int rounds : {-5, 0, kMaxSurfaceRounds + 1})
+    EXPECT_EQ(error_of(with([=](SurfaceFitOptions& o) { o.rounds = rounds; })),
+              fmt::format("surface fit: expected 1 to 100 rounds, found {}", rounds));
 }
 
 }  // namespace

@@ -31,6 +31,7 @@ nlohmann::ordered_json json_of(const SurfaceReport& report) {
                 {"left_out", std::move(left_out)},
                 {"missing_pixels", report.missing_pixels},
                 {"clipped_pixels", report.clipped_pixels},
+                {"texels_without_data", report.texels_without_data},
                 {"normals", name_of(report.normals)},
                 {"lobes", report.lobes},
                 {"exposure", report.exposure},

@@ -87,6 +87,7 @@ std::vector<Station> parse_stations(const JsonMember& member) {
     for (const JsonMember& item : member.list(1, kMaxStations)) stations.push_back(parse_station(item));
     return stations;
   }
+  member.has_only({"count", "angle_deg"});
   const int count = member.at("count").integer(1, kMaxStations);
   const double angle = radians(member.has("angle_deg") ? member.at("angle_deg").number(0, 85) : 70);
   for (int i = 0; i < count; ++i) {
@@ -112,6 +113,7 @@ std::vector<std::vector<float>> parse_shares(const JsonMember& root, const Surfa
     for (const JsonMember& item : member.list(count, count))
       shares.push_back(picture_values(folder / item.file(), scene.width, scene.height));
   } else {
+    member.has_only({"cells", "seed", "sharpness"});
     NoiseMap noise = parse_noise(member);
     const double sharpness = member.has("sharpness") ? member.at("sharpness").number(0, 100) : 8;
     for (std::size_t m = 0; m < count; ++m, noise.seed += 1000) {
@@ -134,6 +136,7 @@ std::vector<std::vector<float>> parse_shares(const JsonMember& root, const Surfa
 
 std::vector<float> parse_heights(const JsonMember& member, const SurfaceScene& scene,
                                  const std::filesystem::path& folder) {
+  member.has_only({"file", "cells", "seed", "amplitude"});
   const double amplitude = member.at("amplitude").number(0, 1e6);
   std::vector<float> heights =
       member.has("file") ? picture_values(folder / member.at("file").file(), scene.width, scene.height)
@@ -245,6 +248,8 @@ SurfaceScene parse_surface_scene(const FileBytes& file, const std::filesystem::p
   const Json json = parse_json(file);
   const JsonMember root(file, json, "");
   root.at("version").integer(kSceneVersion, kSceneVersion);
+  root.has_only({"version", "width", "height", "size", "materials", "shares", "heights", "lights", "views",
+                 "noise", "clip", "shadows", "misregistered", "held_out", "normals", "seed"});
   SurfaceScene scene;
   scene.width = root.at("width").integer(1, kMaxCaptureSide);
   scene.height = root.at("height").integer(1, kMaxCaptureSide);

@@ -108,5 +108,15 @@ TEST(SurfaceScene, RefusesWhatCannotBe) {
     EXPECT_THROW(small_scene(4, 1, more), Error) << more;
 }
 
+TEST(SurfaceScene, NamesMembersThatItDoesNotKnow) {
+  const auto said = [](const char* more) { return error_of([&] { small_scene(4, 1, more); }); };
+  EXPECT_THAT(said(R"("noize":0.1)"), testing::HasSubstr("found 'noize'; did you mean 'noise'?"));
+  EXPECT_THAT(said(R"("heights":{"cells":2,"amplitude":1,"sede":2})"),
+              testing::HasSubstr("heights: expected one of file, cells, seed, amplitude, found 'sede'"));
+  EXPECT_THAT(said(R"("shares":{"cells":2,"sharp":2})"), testing::HasSubstr("shares: expected one of"));
+  EXPECT_THAT(said(R"("lights":{"count":2,"angle":2})"), testing::HasSubstr("lights: expected one of"));
+  EXPECT_NO_THROW(small_scene(4, 1, R"("_why":"a note")"));
+}
+
 }  // namespace
 }  // namespace burnish
