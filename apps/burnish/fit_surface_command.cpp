@@ -23,6 +23,7 @@
 
 #include "commands.h"
 #include "counted.h"
+#include "json_output.h"
 #include "progress.h"
 #include "usage.h"
 
@@ -89,7 +90,7 @@ void print_surface_json(const FitSurfaceArguments& arguments, const SurfaceRepor
         {{"method", other.method},
          {"bytes_a_texel", other.bytes_a_texel},
          {"held_out_psnr", other.held_out ? nlohmann::ordered_json(*other.held_out) : nullptr}});
-  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  print_as_json(json);
 }
 
 void print_surface_report(const FitSurfaceArguments& arguments, const SurfaceReport& report,

@@ -21,76 +21,74 @@ std::span<const std::byte> bytes_of(const std::vector<T>& values) {
   return std::as_bytes(std::span(values));
 }
 
-// Names of files, and messages with names in them, are whatever bytes the system allows.
-void put_name(CborWriter& cbor, std::string_view name) {
-  const std::string_view kept = name.substr(0, kLongestText);
-  cbor.integer(static_cast<std::int64_t>(kept.size()));
-  cbor.bytes(std::as_bytes(std::span(kept)));
+// What both kinds begin with.
+void put_head(CborWriter& cbor, std::size_t parts, std::string_view name, std::uint64_t key) {
+  cbor.list(parts);
+  cbor.text(name);
+  cbor.integer(kCheckpointVersion);
+  cbor.integer(static_cast<std::int64_t>(key >> 1));
 }
-std::string name_from(CborReader& cbor, const char* what) {
-  const std::int64_t size = cbor.integer(what, 0, kLongestText);
-  const auto bytes = cbor.bytes(what, static_cast<std::uint64_t>(size));
-  std::string name(bytes.size(), '\0');
-  std::memcpy(name.data(), bytes.data(), bytes.size());
-  return name;
+// The key, behind the list's count.
+std::uint64_t key_from(CborReader& cbor, std::string_view name, const char* expected) {
+  if (cbor.text("its name", name.size()) != name) cbor.fail(0, expected, "another file");
+  cbor.integer("its version", kCheckpointVersion, kCheckpointVersion);
+  return static_cast<std::uint64_t>(cbor.integer("its key", 0, kMaxInteger)) << 1;
 }
 
-// Numbers as they lie in memory, behind their count.
+// Numbers and letters as they lie in memory, behind their count. Names of files, and messages with names in them, are
+// whatever bytes the system allows.
 template <class T>
-void put_values(CborWriter& cbor, const std::vector<T>& values) {
+void put_values(CborWriter& cbor, std::span<const T> values) {
   cbor.integer(static_cast<std::int64_t>(values.size()));
-  cbor.bytes(bytes_of(values));
+  cbor.bytes(std::as_bytes(values));
 }
 template <class T>
-std::vector<T> values_from(CborReader& cbor, const FileBytes& file, const char* what) {
-  const auto most = static_cast<std::int64_t>(file.bytes.size() / sizeof(T));
-  const std::int64_t count = cbor.integer(what, 0, most);
-  const auto bytes = cbor.bytes(what, static_cast<std::uint64_t>(count) * sizeof(T));
-  std::vector<T> values(static_cast<std::size_t>(count));
+std::vector<T> values_from(CborReader& cbor, std::size_t most, const char* what) {
+  const auto count = static_cast<std::size_t>(cbor.integer(what, 0, static_cast<std::int64_t>(most)));
+  const auto bytes = cbor.bytes(what, std::uint64_t{count} * sizeof(T));
+  std::vector<T> values(count);
   if (count > 0) std::memcpy(values.data(), bytes.data(), bytes.size());
   return values;
+}
+void put_name(CborWriter& cbor, std::string_view name) {
+  put_values<char>(cbor, name.substr(0, kLongestText));
+}
+std::string name_from(CborReader& cbor, const char* what) {
+  const std::vector<char> name = values_from<char>(cbor, kLongestText, what);
+  return {name.begin(), name.end()};
 }
 
 }  // namespace
 
 std::string format_checkpoint(const LobesCheckpoint& checkpoint) {
   CborWriter cbor;
-  cbor.list(kPartsOfLobes);
-  cbor.text(kNameOfLobes);
-  cbor.integer(kCheckpointVersion);
-  cbor.integer(static_cast<std::int64_t>(checkpoint.key >> 1));
+  put_head(cbor, kPartsOfLobes, kNameOfLobes, checkpoint.key);
   cbor.integer(checkpoint.rounds);
   cbor.list(2 * checkpoint.log_values.size());
-  for (const std::vector<double>& table : checkpoint.log_values) put_values(cbor, table);
+  for (const std::vector<double>& table : checkpoint.log_values) put_values<double>(cbor, table);
   for (const auto* values : {&checkpoint.fits.weights, &checkpoint.fits.normals, &checkpoint.fits.trust,
                              &checkpoint.normals_of_all})
-    put_values(cbor, *values);
+    put_values<float>(cbor, *values);
   return cbor.written();
 }
 
 std::optional<LobesCheckpoint> parse_lobes_checkpoint(const FileBytes& file) {
   CborReader cbor(file);
   if (cbor.list("a checkpoint", kPartsOfLobes, kParts) != kPartsOfLobes) return std::nullopt;
-  if (cbor.text("its name", kNameOfLobes.size()) != kNameOfLobes)
-    cbor.fail(0, "a checkpoint of a surface's lobes", "another file");
-  cbor.integer("its version", kCheckpointVersion, kCheckpointVersion);
   LobesCheckpoint read;
-  read.key = static_cast<std::uint64_t>(cbor.integer("its key", 0, kMaxInteger)) << 1;
+  read.key = key_from(cbor, kNameOfLobes, "a checkpoint of a surface's lobes");
   read.rounds = static_cast<int>(cbor.integer("rounds", 1, std::numeric_limits<int>::max()));
   for (std::size_t left = cbor.list("tables", 2, 2 * kMaxTables) / 2; left > 0; --left)
-    read.log_values.push_back(values_from<double>(cbor, file, "a table"));
+    read.log_values.push_back(values_from<double>(cbor, file.bytes.size() / sizeof(double), "a table"));
   for (auto* values : {&read.fits.weights, &read.fits.normals, &read.fits.trust, &read.normals_of_all})
-    *values = values_from<float>(cbor, file, "what texels were found to be");
+    *values = values_from<float>(cbor, file.bytes.size() / sizeof(float), "what texels were found to be");
   cbor.end();
   return read;
 }
 
 std::string format_checkpoint(const FitCheckpoint& checkpoint) {
   CborWriter cbor;
-  cbor.list(kParts);
-  cbor.text(kName);
-  cbor.integer(kCheckpointVersion);
-  cbor.integer(static_cast<std::int64_t>(checkpoint.key >> 1));
+  put_head(cbor, kParts, kName, checkpoint.key);
   cbor.list(4 * checkpoint.damaged.size());
   for (const auto& [file, why] : checkpoint.damaged) {
     put_name(cbor, file);
@@ -121,10 +119,7 @@ FitCheckpoint parse_checkpoint(const FileBytes& file, int width) {
   CborReader cbor(file);
   FitCheckpoint read;
   cbor.list("a checkpoint", kParts, kParts);
-  if (cbor.text("its name", kName.size()) != kName)
-    cbor.fail(0, "a checkpoint of a surface's fit", "another file");
-  cbor.integer("its version", kCheckpointVersion, kCheckpointVersion);
-  read.key = static_cast<std::uint64_t>(cbor.integer("its key", 0, kMaxInteger)) << 1;
+  read.key = key_from(cbor, kName, "a checkpoint of a surface's fit");
   for (std::size_t left = cbor.list("damaged pictures", 0, 4 * kMaxPictures) / 4; left > 0; --left) {
     std::string name = name_from(cbor, "a picture");
     read.damaged.push_back({std::move(name), name_from(cbor, "what is damaged")});
