@@ -50,8 +50,10 @@ demo: build
 	@examples/demo.sh "$(BURNISH)" "$(OUT)" "$(INPUT)"
 
 test: test-deps format-check docs-check include-check
-	@for preset in dev release; do \
-	  cmake --preset $$preset > /dev/null && \
+	@mpi=$$(command -v mpicxx > /dev/null && echo ON || echo OFF); \
+	for preset in dev release; do \
+	  case $$preset in release) options=-DBURNISH_MPI=$$mpi ;; *) options= ;; esac; \
+	  cmake --preset $$preset $$options > /dev/null && \
 	  cmake --build --preset $$preset -j $(JOBS) && \
 	  ctest --preset $$preset -j $(JOBS) || exit 1; \
 	  sed -n '/: Skipped$$/{n;p}' build/$$preset/Testing/Temporary/LastTest.log | sort | uniq -c | sed 's/^/skipped/'; \
