@@ -98,6 +98,27 @@ TEST_F(SurfaceCommand, SaysWhatIsExactAndWithoutData) {
   EXPECT_THAT(fit.output, HasSubstr("\nlobes      exact of what was held out"));
 }
 
+TEST_F(SurfaceCommand, SurfacesBecomeTheirOtherFileAndTheirTexelsModels) {
+  ASSERT_EQ(burnish(std::string(kFit)).status, 0);
+  const Outcome exr = burnish("convert '{0}/wall.burnish' '{0}/wall.exr'");
+  ASSERT_EQ(exr.status, 0) << exr.output;
+  ASSERT_EQ(burnish("convert '{0}/wall.exr' '{0}/again.burnish' --json").status, 0);
+  EXPECT_EQ(read(file("again.burnish")), read(file("wall.burnish")));
+  EXPECT_EQ(burnish("info '{0}/wall.exr'").status, 0);
+  EXPECT_THAT(burnish("convert '{0}/wall.exr' '{0}/wall.binary'").output,
+              HasSubstr("surface:FILE#COLUMN,ROW"));
+  // one texel
+  for (const char* verb : {"eval 'surface:{0}/wall.exr#3,4' '{0}/directions.csv' -o '{0}/values.csv'",
+                           "convert 'surface:{0}/wall.burnish#3,4' '{0}/texel.burnish'",
+                           "compare '{0}/texel.burnish' 'surface:{0}/wall.exr#3,4'"}) {
+    write(file("directions.csv"), "theta_i,phi_i,theta_o,phi_o\n10,0,20,180\n");
+    const Outcome done = burnish(verb);
+    EXPECT_EQ(done.status, 0) << verb << done.output;
+  }
+  EXPECT_THAT(burnish("eval '{0}/wall.exr' '{0}/directions.csv' -o '{0}/v.csv'").output,
+              HasSubstr("surface:FILE#COLUMN,ROW"));
+}
+
 TEST_F(SurfaceCommand, SurfacesAreDescribedAndDrawn) {
   ASSERT_EQ(burnish(std::string(kFit) + " --widen").status, 0);
   const Outcome text = burnish("info '{0}/wall.burnish'"), json = burnish("info '{0}/wall.burnish' --json");
@@ -165,7 +186,7 @@ TEST_F(SurfaceCommand, WritesOverNothingThatItReads) {
     EXPECT_THAT(line, HasSubstr(why)) << arguments;
   };
   // by names, before the capture is looked for
-  for (const char* name : {"capture/00001.exr", "w.png", "capture/capture.json"})
+  for (const char* name : {"w.png", "capture/capture.json"})
     refused(2, fmt::format("none' -o '{{0}}/{}'", name),
             "--output: expected a name such as wall.burnish, found");
   for (const char* name : {"w.burnish", "capture/00001.exr"})
@@ -178,6 +199,8 @@ TEST_F(SurfaceCommand, WritesOverNothingThatItReads) {
   const std::string form = read(file("capture/capture.json")), picture = read(file("capture/00001.exr"));
   fs::create_symlink("capture/00001.exr", file("linked"));
   fs::create_hard_link(file("capture/capture.json"), file("form.png"));
+  refused(1, "capture' -o '{0}/capture/00001.exr'",
+          "expected a file to write that is not read, found one of");
   refused(1, "capture' -o '{0}/linked'", "linked: expected a file to write that is not read, found one of");
   refused(1, "capture' -o '{0}/w' --picture '{0}/form.png'",
           "form.png: expected a file to write that is not");

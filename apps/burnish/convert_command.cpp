@@ -7,6 +7,8 @@
 
 #include <burnish/file.h>
 #include <burnish/io/convert.h>
+#include <burnish/reflectance/analytic.h>
+#include <burnish/surface/surface_file.h>
 
 #include "commands.h"
 #include "json_output.h"
@@ -41,18 +43,41 @@ std::string target_format(const ConvertArguments& arguments) {
                              "--to");
 }
 
+/// A surface's other file. False where the input is none.
+bool converts_surface(const ConvertArguments& arguments, const std::string& format) {
+  const std::string& spec = arguments.source.spec;
+  if (std::error_code none; is_analytic_spec(spec) || !std::filesystem::is_regular_file(spec, none))
+    return false;
+  const FileBytes file = read_file(spec);
+  if (!looks_like_surface(file.bytes)) return false;
+  if (format != "exr" && format != "model" && format != "burnish")
+    throw Error::in_file(
+        spec, "a surface to become .exr or .burnish, or surface:FILE#COLUMN,ROW for one of its texels",
+        format);
+  const SurfaceModel surface = parse_surface(file);
+  const std::string bytes = format == "burnish" ? format_surface(surface) : format_surface_exr(surface);
+  write_then_rename(arguments.out, bytes);
+  if (arguments.json)
+    print_as_json({{"output", arguments.out},
+                   {"format", format},
+                   {"bytes", bytes.size()},
+                   {"lost", nlohmann::ordered_json::array()}});
+  return true;
+}
+
 }  // namespace
 
 void add_convert_command(CLI::App& app) {
   CLI::App* verb =
       app.add_subcommand("convert",
-                         "Convert a BRDF to another format, see `burnish help formats`; a model to its "
-                         "other file");
+                         "Convert a BRDF to another format, see `burnish help formats`; a model or a "
+                         "surface to its other file");
   verb->footer(
       "ASTM and CSV have the samples of a scattered source, of any other samples drawn as `measure` does, or "
       "with --entries a table's entries. What is lost is said on the standard error output.\n"
       "Examples: burnish convert paint.bsdf paint.binary\n"
-      "          burnish convert model.exr model.burnish");
+      "          burnish convert model.exr model.burnish\n"
+      "          burnish convert surface:wall.burnish#3,4 texel.exr");
   auto arguments = std::make_shared<ConvertArguments>();
   add_source_arguments(*verb, arguments->source);
   auto* out = verb->add_option("OUT", arguments->out, "file to write");
@@ -60,8 +85,8 @@ void add_convert_command(CLI::App& app) {
   verb->add_option(
           "--to", arguments->to,
           "format; by default what OUT ends in: .binary (merl), .bin (utia), .bsdf (rgl), .mbsdf, .xml "
-          "(tensortree), .xompt (openmaterial), .astm, .csv, .exr (of a model: model, its OpenEXR file; "
-          "else slices), .burnish")
+          "(tensortree), .xompt (openmaterial), .astm, .csv, .exr (of a model or surface: model, its "
+          "OpenEXR file; else slices), .burnish")
       ->check(one_of({kConvertFormats.begin(), kConvertFormats.end()}));
   verb->add_option("--cells", arguments->options.cells,
                    "along each polar angle of MERL, MBSDF and EXR, twice as many along the azimuth")
@@ -79,6 +104,7 @@ void add_convert_command(CLI::App& app) {
     if (arguments->out.empty()) throw CLI::RequiredError("OUT or -o");
     std::string format = target_format(*arguments);
     check_writable(arguments->out);
+    if (converts_surface(*arguments, format)) return;
     const Source source = arguments->source.open();
     // slices of a model are asked for by name
     const bool is_model = std::holds_alternative<FactoredBrdf>(source.brdf);

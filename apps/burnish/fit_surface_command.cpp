@@ -136,13 +136,15 @@ SurfaceFitOptions surface_options(const FitSurfaceArguments& arguments) {
 
 // That no name says that another file is written.
 void check_names(const FitSurfaceArguments& arguments) {
-  const auto check = [](const char* option, const fs::path& path, const char* ending, const char* such) {
-    if (const fs::path found = path.extension(); !found.empty() && found != ending)
+  const auto check = [](const char* option, const fs::path& path, std::initializer_list<const char*> endings,
+                        const char* such) {
+    const fs::path found = path.extension();
+    if (!found.empty() && std::ranges::find(endings, found) == endings.end())
       throw CLI::ValidationError(
           fmt::format("{}: expected a name such as {}, found '{}'", option, such, path.string()));
   };
-  check("--output", arguments.out, ".burnish", "wall.burnish");
-  check("--picture", arguments.picture, ".png", "wall.png");
+  check("--output", arguments.out, {".burnish", ".exr"}, "wall.burnish");
+  check("--picture", arguments.picture, {".png"}, "wall.png");
   const auto whole = [](const std::string& path) {
     std::error_code none;
     return fs::weakly_canonical(fs::absolute(path, none), none);
@@ -191,7 +193,7 @@ void fit_surface(const FitSurfaceArguments& arguments, FitCrew* crew) {
   if (!arguments.picture.empty() && capture.form().own_directions)
     throw Error::in_file(arguments.capture, "pictures, for --picture", "samples of texels");
   const SurfaceFit fit = burnish::fit_surface(std::move(capture), options);
-  write_then_rename(arguments.out, format_surface(fit.surface));
+  write_then_rename(arguments.out, format_surface_as(arguments.out, fit.surface));
   fs::remove(options.checkpoint);
 
   if (!arguments.picture.empty()) write_comparison(arguments, fit);
@@ -220,7 +222,8 @@ void add_fit_surface_command(CLI::App& app, FitCrew* crew) {
           "CAPTURE", arguments->capture,
           "a folder with capture.json and its pictures, a BTF of UBO2014, or a CSV of samples of texels")
       ->required();
-  verb->add_option("-o,--output,--out", arguments->out, "the surface's .burnish file to write")->required();
+  verb->add_option("-o,--output,--out", arguments->out, "the surface's file to write, .burnish or .exr")
+      ->required();
   verb->add_option("--lobes", options.lobes, "how many lobes")
       ->check(in_range(std::size_t{1}, kMaxSurfaceLobes))
       ->capture_default_str();

@@ -44,6 +44,8 @@ constexpr std::array kFormats = {
     FormatHelp{"EXR slices", "exr", ".exr", "half/difference cells to look at", false, true},
     FormatHelp{"model, OpenEXR", "model", ".exr", "what fit writes", true, true},
     FormatHelp{"model, compact", "burnish", ".burnish", "what fit writes", true, true},
+    FormatHelp{"surface", "", ".burnish, .exr", "surface:FILE#COLUMN,ROW, what fit-surface writes", true,
+               true},
     FormatHelp{"book of a library", "", ".burnish", "book:FILE#NAME, what book writes", true, false},
     FormatHelp{"baseline", "", ".json", "what fit --method writes", true, false},
     FormatHelp{"network weights", "", ".csv", "nbrdf:FILE#NAME", true, false},

@@ -1,14 +1,21 @@
 // What a surface costs beside a uniform model, and what its mip levels are worth.
+#include <array>
 #include <cmath>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include <burnish/capture/virtual_capture.h>
+#include <burnish/eval/factored_eval.h>
+#include <burnish/eval/spatial_eval.h>
 #include <burnish/file.h>
 #include <burnish/fitting/fit.h>
+#include <burnish/math/random.h>
 #include <burnish/metrics/sphere_images.h>
+#include <burnish/reflectance/goniometer.h>
 #include <burnish/render/scene.h>
 #include <burnish/surface/widened_lobes.h>
 
@@ -134,6 +141,66 @@ Table frames_table(const Surfaces& surfaces, int repetitions) {
   return frame_times("surfaces", "the uniform model", materials, {1, 4}, repetitions);
 }
 
+// What a pair of directions at a place costs beside the uniform model of that place, and what finding a place does; on
+// one thread, one by one.
+Table evaluations_table(const Surfaces& surfaces, int turns) {
+  constexpr std::size_t kPairs = 1 << 16;
+  const std::vector<DirectionPair> pairs = draw_pairs(kPairs, 1, false);
+  Pcg32 random(1);
+  std::vector<std::array<double, 3>> places(kPairs);  // u, v, level of detail
+  for (auto& place : places) place = {random.uniform(), random.uniform(), 3 * random.uniform()};
+  std::vector<std::string> names;
+  std::vector<std::function<void()>> tasks;
+  const auto add = [&](std::string name, std::function<void()> task) {
+    names.push_back(std::move(name));
+    tasks.push_back(std::move(task));
+  };
+
+  const FactoredEvaluator uniform(surfaces.flat.at(0.5, 0.5));
+  add("a pair, uniform model", [&] {
+    std::array<float, 3> f{};
+    for (const auto& [wi, wo] : pairs) {
+      uniform.eval(wi, wo, std::span<float>(f));
+      [[maybe_unused]] volatile float used = f[0] + f[1] + f[2];
+    }
+  });
+  const SpatialEvaluator flat(surfaces.flat), bumpy(surfaces.bumpy);
+  for (const auto& [surface, kind] : {std::pair(&flat, "weights alone"), std::pair(&bumpy, "with normals")}) {
+    add(fmt::format("a pair at a place, {}", kind), [&pairs, surface = surface] {
+      const SpatialEvaluator::Place place = surface->place(0.5, 0.5);
+      std::array<float, 3> f{};
+      for (const auto& [wi, wo] : pairs) {
+        surface->eval(place, wi, wo, f);
+        [[maybe_unused]] volatile float used = f[0] + f[1] + f[2];
+      }
+    });
+    add(fmt::format("a place that is a texel, {}", kind), [&places, surface = surface] {
+      const int width = surface->surface().width(), height = surface->surface().height();
+      for (const auto& [u, v, lod] : places) {
+        const SpatialEvaluator::Place place =
+            surface->texel(static_cast<int>(u * width), static_cast<int>(v * height));
+        [[maybe_unused]] volatile float used = place.weights[0] + static_cast<float>(place.frame.tangent.x);
+      }
+    });
+    add(fmt::format("a place between two levels, {}", kind), [&places, surface = surface] {
+      for (const auto& [u, v, lod] : places) {
+        const SpatialEvaluator::Place place = surface->place(u, v, lod);
+        [[maybe_unused]] volatile float used = place.weights[0] + static_cast<float>(place.frame.tangent.x);
+      }
+    });
+  }
+  const std::vector<Times> times = time_in_turns(tasks, turns);
+  Table table({"what", "ns", "more than a pair of the uniform model"});
+  const auto nanoseconds = [&](double seconds) { return 1e9 * seconds / static_cast<double>(kPairs); };
+  for (std::size_t i = 0; i < tasks.size(); ++i)
+    table.add({names[i],
+               fmt::format("{:.1f} ({:.1f})", nanoseconds(times[i].least), nanoseconds(times[i].median)),
+               i > 0 && names[i].starts_with("a pair")
+                   ? fmt::format("{:.1f}", nanoseconds(times[i].least - times[0].least))
+                   : ""});
+  return table;
+}
+
 }  // namespace
 
 void report_surfaces(const ReportOptions& options) {
@@ -143,6 +210,7 @@ void report_surfaces(const ReportOptions& options) {
   const int repetitions = options.quick ? 1 : 5;
   page["lobes"] = fmt::format("{}", surfaces.flat.lobes().lobes().size());
   page["levels"] = levels_table(surfaces, scene).markdown();
+  page["evaluations"] = evaluations_table(surfaces, options.quick ? 1 : 15).markdown();
   const GlContext context(GlDevice::gpu_first);
   page["vertices"] = std::to_string(kFrameVertices);
   page["size"] = std::to_string(kFrameSize);

@@ -256,11 +256,11 @@ void bind_surfaces(nb::module_& m) {
       .def(
           "write",
           [](const OpenedSurface& s, const std::filesystem::path& path) {
-            write_then_rename(path, format_surface({s.brdf(), s.notes}));
+            write_then_rename(path, format_surface_as(path, {s.brdf(), s.notes}));
           },
-          nb::arg("path"), "The .burnish file.");
+          nb::arg("path"), "Its file: OpenEXR where the name ends in .exr, else .burnish.");
   m.def("open_surface", &open_surface, nb::arg("path"), nb::rv_policy::take_ownership,
-        "Reads the .burnish file of a surface.");
+        "Reads the .burnish or OpenEXR file of a surface.");
   m.def("fit_surface", &fit_surface, nb::arg("capture"), nb::kw_only(), nb::arg("lobes") = 6,
         nb::arg("lobe_bytes") = 24 << 10, nb::arg("book").none() = nb::none(),
         nb::arg("normals") = nb::none(), nb::arg("rounds").none() = nb::none(), nb::arg("widened") = false,

@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
     write(folder, "tensortree4", burnish::seeds::kTensorTree4);
   write("illuminant", "illuminant", burnish::seeds::kIlluminant);
   write("surface", "surface", burnish::seeds::surface_seed());
+  write("surface", "surface-exr", burnish::seeds::surface_exr_seed());
   write("book", "book", burnish::format_book(burnish::random_book()));
   write("capture", "capture", burnish::seeds::kCapture);
   write("csv", "texels", burnish::seeds::kTexelCsv);

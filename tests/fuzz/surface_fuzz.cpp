@@ -7,8 +7,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const burnish::SurfaceModel surface = burnish::parse_surface(file);
     burnish::check_values(surface.brdf.at(0.3, 0.7, 0.5));
     // what is read can be written, and is then the same
-    const std::string again = burnish::format_surface(surface);
-    const auto* bytes = reinterpret_cast<const std::byte*>(again.data());
-    if (burnish::parse_surface({"written file", {bytes, bytes + again.size()}}) != surface) __builtin_trap();
+    for (const std::string& again :
+         {burnish::format_surface(surface), burnish::format_surface_exr(surface)}) {
+      const auto* bytes = reinterpret_cast<const std::byte*>(again.data());
+      if (burnish::parse_surface({"written file", {bytes, bytes + again.size()}}) != surface)
+        __builtin_trap();
+    }
   });
 }

@@ -9,6 +9,53 @@ BURNISH_BEGIN_TARGET;
 
 using D = hn::CappedTag<float, kTexelLanes>;
 
+void turn_all(const TexelFrames& frames, const std::array<TexelRow, 3>& towards, bool any_length,
+              float* local, std::size_t plane) {
+  const D d;
+  for (std::size_t i = 0; i < kTexelLanes; i += hn::Lanes(d)) {
+    auto x = hn::LoadU(d, towards[0].data() + i), y = hn::LoadU(d, towards[1].data() + i),
+         z = hn::LoadU(d, towards[2].data() + i);
+    if (any_length) {
+      const auto square = hn::MulAdd(z, z, hn::MulAdd(y, y, hn::Mul(x, x)));
+      const auto inverse = hn::Div(hn::Set(d, 1.0f), hn::Sqrt(square));
+      x = hn::Mul(x, inverse);
+      y = hn::Mul(y, inverse);
+      z = hn::Mul(z, inverse);
+    }
+    for (std::size_t r = 0; r < 3; ++r) {
+      const TexelRow* const axis = &frames[3 * r];
+      const auto along = hn::MulAdd(
+          z, hn::LoadU(d, axis[2].data() + i),
+          hn::MulAdd(y, hn::LoadU(d, axis[1].data() + i), hn::Mul(x, hn::LoadU(d, axis[0].data() + i))));
+      hn::StoreU(along, d, local + r * plane + i);
+    }
+  }
+}
+
+void multiply_rows(std::size_t rows, const float* f, std::size_t plane, const float* cosine, float most,
+                   float* product) {
+  const D d;
+  const auto limit = hn::Set(d, most);
+  for (std::size_t i = 0; i < kTexelLanes; i += hn::Lanes(d)) {
+    const auto factor = hn::LoadU(d, cosine + i);
+    for (std::size_t r = 0; r < rows; ++r) {
+      const auto value = hn::Mul(hn::LoadU(d, f + r * plane + i), factor);
+      hn::StoreU(hn::IfThenElse(hn::Gt(value, limit), limit, value), d, product + r * kTexelLanes + i);
+    }
+  }
+}
+
+void values_apart(const float* values, TexelRow* rows) {
+  const D d;
+  for (std::size_t i = 0; i < kTexelLanes; i += hn::Lanes(d)) {
+    hn::Vec<D> a, b, c;
+    hn::LoadInterleaved3(d, values + 3 * i, a, b, c);
+    hn::StoreU(a, d, rows[0].data() + i);
+    hn::StoreU(b, d, rows[1].data() + i);
+    hn::StoreU(c, d, rows[2].data() + i);
+  }
+}
+
 void sum_all(const TexelPixels& pixels, const TexelRow* weights, float* total) {
   const D d;
   for (std::size_t i = 0; i < kTexelLanes; i += hn::Lanes(d)) {
@@ -114,6 +161,103 @@ void all_equations(const TexelPictures& pictures, const TexelPass& pass, const T
   find(pictures, pass, weights, trust, matrix, vector);
 }
 
+// Of texels side by side, in double: the unknowns of one texel stand in a lane.
+struct TexelUnknowns {
+  using D64 = hn::CappedTag<double, kTexelLanes>;
+  using V = hn::Vec<D64>;
+  using M = hn::Mask<D64>;
+  static constexpr std::size_t kMax = kMaxSurfaceLobes;
+  static constexpr double kMinSquare = 1e-300, kMinSlope = 1e-12;
+
+  std::size_t n;
+  V a[kMax][kMax], b[kMax];  // a: the lower triangle
+  M free[kMax];
+  V solution[kMax];
+
+  HWY_INLINE V matrix(std::size_t r, std::size_t c) const { return r < c ? a[c][r] : a[r][c]; }
+
+  /// The least for the free unknowns, by Cholesky; 0 of the others.
+  HWY_INLINE void solve_free() {
+    const D64 d;
+    const V one = hn::Set(d, 1.0), least = hn::Set(d, kMinSquare);
+    V factor[kMax][kMax], inverse[kMax];
+    for (std::size_t r = 0; r < n; ++r) {
+      V rest = hn::IfThenElseZero(free[r], b[r]);
+      for (std::size_t c = 0; c < r; ++c) {
+        V sum = hn::IfThenElseZero(hn::And(free[r], free[c]), a[r][c]);
+        for (std::size_t k = 0; k < c; ++k) sum = hn::NegMulAdd(factor[r][k], factor[c][k], sum);
+        factor[r][c] = hn::Mul(sum, inverse[c]);
+        rest = hn::NegMulAdd(factor[r][c], solution[c], rest);
+      }
+      V square = hn::IfThenElse(free[r], a[r][r], one);
+      for (std::size_t k = 0; k < r; ++k) square = hn::NegMulAdd(factor[r][k], factor[r][k], square);
+      inverse[r] = hn::Div(one, hn::Sqrt(hn::Max(square, least)));
+      solution[r] = hn::Mul(rest, inverse[r]);
+    }
+    for (std::size_t r = n; r-- > 0;) {
+      V rest = solution[r];
+      for (std::size_t k = r + 1; k < n; ++k) rest = hn::NegMulAdd(factor[k][r], solution[k], rest);
+      solution[r] = hn::Mul(rest, inverse[r]);
+    }
+    for (std::size_t r = 0; r < n; ++r) solution[r] = hn::IfThenElseZero(free[r], solution[r]);
+  }
+
+  /// Whether the solution is the least of all w >= 0; sets free what should be.
+  HWY_INLINE M exchange() {
+    const D64 d;
+    const V zero = hn::Zero(d);
+    M good = hn::Eq(zero, zero);
+    for (std::size_t r = 0; r < n; ++r) {
+      V slope = b[r];
+      for (std::size_t c = 0; c < n; ++c) slope = hn::NegMulAdd(matrix(r, c), solution[c], slope);
+      const M level = hn::Le(slope, hn::Mul(hn::Set(d, kMinSlope), hn::Abs(b[r])));
+      const M stays = hn::Or(hn::And(free[r], hn::Gt(solution[r], zero)), hn::AndNot(free[r], level));
+      free[r] = hn::Xor(free[r], hn::Not(stays));
+      good = hn::And(good, stays);
+    }
+    return good;
+  }
+};
+
+std::uint32_t weights_of(std::size_t lobes, const TexelRow* matrix, const TexelRow* vector, double ridge,
+                         bool near, TexelRow* weights) {
+  constexpr int kTurns = 8;  // few texels take more than four
+  const TexelUnknowns::D64 d;
+  const hn::Rebind<float, TexelUnknowns::D64> d32;
+  using V = TexelUnknowns::V;
+  std::uint32_t found = 0;
+  TexelUnknowns unknowns{.n = lobes};
+  for (std::size_t i = 0; i < kTexelLanes; i += hn::Lanes(d)) {
+    // the equations
+    V trace = hn::Zero(d), weight[TexelUnknowns::kMax];
+    for (std::size_t r = 0, at = 0; r < lobes; ++r) {
+      for (std::size_t c = 0; c <= r; ++c, ++at)
+        unknowns.a[r][c] = hn::PromoteTo(d, hn::LoadU(d32, matrix[at].data() + i));
+      unknowns.b[r] = hn::PromoteTo(d, hn::LoadU(d32, vector[r].data() + i));
+      weight[r] = hn::PromoteTo(d, hn::LoadU(d32, weights[r].data() + i));
+      trace = hn::Add(trace, unknowns.a[r][r]);
+      unknowns.free[r] = near ? hn::Gt(weight[r], hn::Zero(d)) : hn::Eq(trace, trace);
+    }
+    const V added = hn::MulAdd(hn::Set(d, ridge / static_cast<double>(lobes)), trace, hn::Set(d, 1e-30));
+    for (std::size_t r = 0; r < lobes; ++r) unknowns.a[r][r] = hn::Add(unknowns.a[r][r], added);
+    // turns, until all texels are done
+    auto done = hn::Lt(trace, hn::Zero(d));
+    for (int turn = 0; turn < kTurns && !hn::AllTrue(d, done); ++turn) {
+      unknowns.solve_free();
+      const auto good = unknowns.exchange();
+      for (std::size_t r = 0; r < lobes; ++r)
+        weight[r] = hn::IfThenElse(hn::AndNot(done, good), unknowns.solution[r], weight[r]);
+      done = hn::Or(done, good);
+    }
+    for (std::size_t r = 0; r < lobes; ++r)
+      hn::StoreU(hn::DemoteTo(d32, weight[r]), d32, weights[r].data() + i);
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, done, bits);
+    found |= static_cast<std::uint32_t>(bits[0]) << i;
+  }
+  return found;
+}
+
 void seen_of(float exposure, const float* value, float* seen) {
   const D d;
   constexpr float kGrey = 1 / 2.2f, kMin = 1e-30f;
@@ -130,10 +274,28 @@ BURNISH_END_TARGET;
 #if HWY_ONCE
 namespace burnish {
 
+HWY_EXPORT(turn_all);
+HWY_EXPORT(multiply_rows);
+HWY_EXPORT(values_apart);
 HWY_EXPORT(sum_all);
 HWY_EXPORT(omega_of);
 HWY_EXPORT(all_equations);
+HWY_EXPORT(weights_of);
 HWY_EXPORT(seen_of);
+
+void turn_into(const TexelFrames& frames, const std::array<TexelRow, 3>& towards, bool any_length,
+               float* local, std::size_t plane) noexcept {
+  HWY_DYNAMIC_DISPATCH(turn_all)(frames, towards, any_length, local, plane);
+}
+
+void find_products(std::size_t rows, const float* f, std::size_t plane, const float* cosine, float most,
+                   float* product) noexcept {
+  HWY_DYNAMIC_DISPATCH(multiply_rows)(rows, f, plane, cosine, most, product);
+}
+
+void take_apart(const float* values, TexelRow* rows) noexcept {
+  HWY_DYNAMIC_DISPATCH(values_apart)(values, rows);
+}
 
 void sum_lobes(const TexelPixels& pixels, const TexelRow* weights, float* total) noexcept {
   HWY_DYNAMIC_DISPATCH(sum_all)(pixels, weights, total);
@@ -146,6 +308,11 @@ void find_omega(float exposure, float floor, const float* at, const float* share
 void find_normal_equations(const TexelPictures& pictures, const TexelPass& pass, const TexelRow* weights,
                            float* trust, TexelRow* matrix, TexelRow* vector) noexcept {
   HWY_DYNAMIC_DISPATCH(all_equations)(pictures, pass, weights, trust, matrix, vector);
+}
+
+std::uint32_t find_weights(std::size_t lobes, const TexelRow* matrix, const TexelRow* vector, double ridge,
+                           bool near, TexelRow* weights) noexcept {
+  return HWY_DYNAMIC_DISPATCH(weights_of)(lobes, matrix, vector, ridge, near, weights);
 }
 
 void find_seen(float exposure, const float* value, float* seen) noexcept {

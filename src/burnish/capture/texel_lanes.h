@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 namespace burnish {
 
@@ -16,6 +17,22 @@ struct TexelPixels {
   std::size_t stride;
   const float* value;
 };
+
+/// Axes of texels' frames, rows of the x, y and z of tangent, bitangent and normal.
+using TexelFrames = std::array<TexelRow, 9>;
+
+/// Vectors as the frames see them, of length 1: `towards` are rows of x, y and z, unit vectors but where `any_length`;
+/// row r of the result begins at local + r * plane.
+void turn_into(const TexelFrames& frames, const std::array<TexelRow, 3>& towards, bool any_length,
+               float* local, std::size_t plane) noexcept;
+
+/// f times the cosine, at most `most`, of the texels in so many rows: row r of f begins at f + r * plane, rows of the
+/// result stand together. Not-a-number stays.
+void find_products(std::size_t rows, const float* f, std::size_t plane, const float* cosine, float most,
+                   float* product) noexcept;
+
+/// Pixels' values, [texel][channel] of three channels, as rows [channel].
+void take_apart(const float* values, TexelRow* rows) noexcept;
 
 /// The sum of the lobes times weights, rows [lobe].
 void sum_lobes(const TexelPixels& pixels, const TexelRow* weights, float* total) noexcept;
@@ -48,6 +65,13 @@ struct TexelPass {
 /// it is not read.
 void find_normal_equations(const TexelPictures& pictures, const TexelPass& pass, const TexelRow* weights,
                            float* trust, TexelRow* matrix, TexelRow* vector) noexcept;
+
+/// The weights w >= 0 with the least w^T A w / 2 - b^T w, A as find_normal_equations gives it with `ridge` times its mean
+/// diagonal added, by block principal pivoting [PortugalJudiceVicente1994]: what is below 0 is fixed at 0, what would
+/// rise from there is set free, all at once. Begins with those free that are > 0, or unless `near` with all. Returns
+/// bits of the texels that it ended for; the weights of others are as they were.
+std::uint32_t find_weights(std::size_t lobes, const TexelRow* matrix, const TexelRow* vector, double ridge,
+                           bool near, TexelRow* weights) noexcept;
 
 /// clamp(exposure value, 0, 1)^(1/2.2), off by at most 1e-6.
 void find_seen(float exposure, const float* value, float* seen) noexcept;

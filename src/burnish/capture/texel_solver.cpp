@@ -187,6 +187,7 @@ class TexelSolver::Block {
     for (std::size_t p = 0; p < pictures.size(); ++p)
       if (pictures[p].held_out == held_out) pictures_.push_back(p);
     model_.resize(pictures_.size() * lobes_ * kCaptureChannels * kBlock);
+    lobe_values_.resize(kPicturesTogether * lobes_ * kCaptureChannels * kBlock);
     trust_.resize(pictures_.size() * kBlock, 1);
     weights_.resize(lobes_);
     values_.resize(pictures_.size() * kCaptureChannels);
@@ -211,37 +212,18 @@ class TexelSolver::Block {
   }
 
   /// f cos(theta_i) of the lobes under normals moved by (dx, dy), [picture][lobe][channel][texel].
-  void evaluate(const float* normals, float dx, float dy, std::vector<float>& to) const {
-    std::array<std::array<float, kBlock>, 6> w;
-    std::vector<float> f(lobes_ * kCaptureChannels * kBlock);
-    std::array<ShadingFrame, kBlock> frames;
-    std::array<Vec3, kBlock> points;
-    const float most = kMaxValue / exposure_;
-    for (std::size_t i = 0; i < kBlock; ++i) {
-      const std::size_t t = first_ + std::min(i, count_ - 1);
-      points[i] = solver_.form_.point(samples_.texels[t][0], samples_.texels[t][1]);
-      if (!normals) continue;
-      const std::array<float, 2> xy{normals[2 * t] + dx, normals[2 * t + 1] + dy};
-      frames[i] = frame_about(normalize(normal_of(xy.data())), {1, 0, 0});
-    }
-    for (std::size_t k = 0; k < pictures_.size(); ++k) {
-      const CapturePicture& picture = solver_.form_.pictures[pictures_[k]];
-      for (std::size_t i = 0; i < kBlock; ++i) {
-        const std::size_t t = first_ + std::min(i, count_ - 1);
-        const auto [towards_light, towards_view] = samples_.seen(picture, pictures_[k], t, points[i]);
-        const Vec3 light = frames[i].local(towards_light), view = frames[i].local(towards_view);
-        w[0][i] = static_cast<float>(light.x);
-        w[1][i] = static_cast<float>(light.y);
-        w[2][i] = static_cast<float>(light.z);
-        w[3][i] = static_cast<float>(view.x);
-        w[4][i] = static_cast<float>(view.y);
-        w[5][i] = static_cast<float>(view.z);
-      }
-      solver_.evaluator_.eval(DirectionSpans{w[0], w[1], w[2], w[3], w[4], w[5]}, f);
-      float* const out = &to[k * lobes_ * kCaptureChannels * kBlock];
-      for (std::size_t r = 0; r < lobes_ * kCaptureChannels; ++r)
-        for (std::size_t i = 0; i < kBlock; ++i)
-          out[r * kBlock + i] = std::min(f[r * kBlock + i] * w[2][i], most);
+  void evaluate(const float* normals, float dx, float dy, std::vector<float>& to) {
+    find_frames(normals, dx, dy);
+    const std::size_t rows = lobes_ * kCaptureChannels;
+    for (std::size_t first = 0; first < pictures_.size(); first += kPicturesTogether) {
+      const std::size_t count = std::min(kPicturesTogether, pictures_.size() - first), pairs = count * kBlock;
+      for (std::size_t k = 0; k < count; ++k) look(first + k, k * kBlock);
+      const auto plane = [&](std::size_t r) { return std::span<const float>(local_[r]).first(pairs); };
+      const std::span<float> f = std::span(lobe_values_).first(rows * pairs);
+      solver_.evaluator_.eval(DirectionSpans{plane(0), plane(1), plane(2), plane(3), plane(4), plane(5)}, f);
+      for (std::size_t k = 0; k < count; ++k)
+        find_products(rows, &f[k * kBlock], pairs, &local_[2][k * kBlock], kMaxValue / exposure_,
+                      &to[(first + k) * rows * kBlock]);
     }
   }
 
@@ -249,9 +231,13 @@ class TexelSolver::Block {
   void fit_weights(int passes, int first_pass) {
     for (int pass = 0; pass < passes; ++pass) {
       gram(pass + first_pass);
+      const bool near = pass + first_pass > 0;
+      const std::uint32_t found =
+          find_weights(lobes_, matrix_.data(), vector_.data(), kRidge, near, weights_.data());
       std::array<double, kMaxSurfaceLobes * kMaxSurfaceLobes> a;
       std::array<double, kMaxSurfaceLobes> b, w;
       for (std::size_t i = 0; i < count_; ++i) {
+        if ((found >> i & 1U) != 0) continue;
         double trace = 0;
         for (std::size_t k = 0, at = 0; k < lobes_; ++k) {
           for (std::size_t l = 0; l <= k; ++l, ++at)
@@ -264,7 +250,7 @@ class TexelSolver::Block {
           w[k] = static_cast<double>(weights_[k][i]);
         }
         solve_nonnegative(std::span(a).first(lobes_ * lobes_), std::span(b).first(lobes_),
-                          std::span(w).first(lobes_), pass + first_pass > 0);
+                          std::span(w).first(lobes_), near);
         for (std::size_t k = 0; k < lobes_; ++k) weights_[k][i] = static_cast<float>(w[k]);
       }
     }
@@ -332,14 +318,64 @@ class TexelSolver::Block {
   const TexelRow& measured(std::size_t k, std::size_t c) const noexcept {
     return values_[k * kCaptureChannels + c];
   }
+  std::size_t texel(std::size_t i) const noexcept { return first_ + std::min(i, count_ - 1); }
   std::size_t pixel(std::size_t k, std::size_t i) const noexcept {
-    return pictures_[k] * samples_.size() + first_ + std::min(i, count_ - 1);
+    return pictures_[k] * samples_.size() + texel(i);
   }
 
   /// Trust in pixels by the errors that are left.
   void find_trust(int pass) { gram(pass); }
 
  private:
+  void find_frames(const float* normals, float dx, float dy) {
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      const std::size_t t = texel(i);
+      const Vec3 point = solver_.form_.point(samples_.texels[t][0], samples_.texels[t][1]);
+      points_[0][i] = static_cast<float>(point.x);
+      points_[1][i] = static_cast<float>(point.y);
+      points_[2][i] = static_cast<float>(point.z);
+      ShadingFrame frame;
+      if (normals) {
+        const std::array<float, 2> xy{normals[2 * t] + dx, normals[2 * t + 1] + dy};
+        frame = frame_about(normalize(normal_of(xy.data())), {1, 0, 0});
+      }
+      std::size_t row = 0;
+      for (const Vec3& axis : {frame.tangent, frame.bitangent, frame.normal})
+        for (const double component : {axis.x, axis.y, axis.z})
+          frames_[row++][i] = static_cast<float>(component);
+    }
+  }
+
+  /// Light and view of picture k as the texels see them, from `first` on in the rows of local_.
+  void look(std::size_t k, std::size_t first) {
+    const CapturePicture& picture = solver_.form_.pictures[pictures_[k]];
+    for (const std::size_t which : {0, 1}) {
+      const Station& station = which == 0 ? picture.light : picture.view;
+      const bool known = !samples_.directions.empty(), any_length = !known && !station.is_direction;
+      float* const to = &local_[3 * which][first];
+      if (known)
+        for (std::size_t i = 0; i < kBlock; ++i)
+          for (std::size_t r = 0; r < 3; ++r)
+            towards_[r][i] = samples_.directions[6 * pixel(k, i) + 3 * which + r];
+      else
+        find_towards(station);
+      turn_into(frames_, towards_, any_length, to, kPicturesTogether * kBlock);
+    }
+  }
+
+  /// Vectors towards a station, not of length 1 where it is a point: squares of the largest component stay finite.
+  void find_towards(const Station& station) {
+    const std::array<double, 3> at{station.at.x, station.at.y, station.at.z};
+    const CaptureForm& form = solver_.form_;
+    const double unit =
+        station.is_direction ? 1 : 1 / std::max({length(station.at), form.size_x, form.size_y});
+    const float share = station.is_direction ? 0 : static_cast<float>(unit);
+    for (std::size_t r = 0; r < 3; ++r) {
+      const auto from = static_cast<float>(unit * at[r]);
+      for (std::size_t i = 0; i < kBlock; ++i) towards_[r][i] = from - share * points_[r][i];
+    }
+  }
+
   struct Terms {
     TexelRow value, model, omega;  // of one picture and channel
   };
@@ -447,18 +483,31 @@ class TexelSolver::Block {
   /// What was measured, as rows.
   void load() {
     any_clipped_ = false;
-    for (std::size_t k = 0; k < pictures_.size(); ++k)
-      for (std::size_t i = 0; i < kBlock; ++i) {
-        const std::size_t from = pixel(k, i);
-        states_[k][i] = samples_.states[from];
-        there_[k][i] = is_there(states_[k][i]) ? 1.0f : 0.0f;
-        for (std::size_t c = 0; c < kCaptureChannels; ++c) {
-          const bool clipped = is_clipped(states_[k][i], c);
-          values_[k * kCaptureChannels + c][i] = samples_.values[from * kCaptureChannels + c];
-          clipped_[k * kCaptureChannels + c][i] = clipped ? 1.0f : 0.0f;
-          any_clipped_ = any_clipped_ || clipped;
-        }
+    for (std::size_t k = 0; k < pictures_.size(); ++k) {
+      const PixelState* const states = &samples_.states[pixel(k, 0)];
+      TexelRow *const values = &values_[k * kCaptureChannels], *const clipped =
+                                                                   &clipped_[k * kCaptureChannels];
+      for (std::size_t c = 0; c < kCaptureChannels; ++c) clipped[c].fill(0);
+      if (count_ == kBlock) {
+        take_apart(&samples_.values[pixel(k, 0) * kCaptureChannels], values);
+      } else {
+        for (std::size_t i = 0; i < kBlock; ++i)
+          for (std::size_t c = 0; c < kCaptureChannels; ++c)
+            values[c][i] = samples_.values[pixel(k, i) * kCaptureChannels + c];
       }
+      if (std::all_of(states, states + count_, [](PixelState state) { return state == PixelState::there; })) {
+        states_[k].fill(PixelState::there);
+        there_[k].fill(1);
+        continue;
+      }
+      for (std::size_t i = 0; i < kBlock; ++i) {
+        const PixelState state = samples_.states[pixel(k, i)];
+        states_[k][i] = state;
+        there_[k][i] = is_there(state) ? 1.0f : 0.0f;
+        any_clipped_ = any_clipped_ || is_clipped(state);
+        for (std::size_t c = 0; c < kCaptureChannels; ++c) clipped[c][i] = is_clipped(state, c) ? 1.0f : 0.0f;
+      }
+    }
   }
 
   TexelPixels pixels(std::size_t k, std::size_t c) const noexcept {
@@ -490,6 +539,8 @@ class TexelSolver::Block {
                           weights_.data(), trust_.data(), matrix_.data(), vector_.data());
   }
 
+  static constexpr std::size_t kPicturesTogether = 4;  // that lobes are evaluated for
+
   const TexelSolver& solver_;
   const TexelSamples& samples_;
   std::size_t lobes_, first_ = 0, count_ = 0;
@@ -501,6 +552,11 @@ class TexelSolver::Block {
   bool any_clipped_ = false;
   std::vector<std::array<PixelState, kBlock>> states_;
   std::array<std::vector<float>, 2> slopes_;
+  // of evaluate()
+  TexelFrames frames_;
+  std::array<TexelRow, 3> points_, towards_;
+  std::array<std::array<float, kPicturesTogether * kBlock>, 6> local_;
+  std::vector<float> lobe_values_;
   std::array<TexelRow, kMaxSurfaceLobes*(kMaxSurfaceLobes + 1) / 2> matrix_;
   std::array<TexelRow, kMaxSurfaceLobes> vector_;
 };

@@ -36,8 +36,11 @@ class SpatialEvaluator {
   void eval(const Place& place, Vec3 wi, Vec3 wo, std::span<float> f) const noexcept;
 
  private:
+  Place place(const SurfaceMap::Place& at) const noexcept;
+
   std::shared_ptr<const SpatialBrdf> surface_;
   LobeEvaluator lobes_;
+  bool framed_;
 };
 
 }  // namespace burnish

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <iterator>
 #include <sstream>
 
 #include <OpenEXR/ImfChannelList.h>
@@ -18,6 +19,7 @@
 
 #include <burnish/error.h>
 #include <burnish/factors/compact_file.h>
+#include <burnish/factors/model_extension.h>
 #include <burnish/factors/model_file.h>
 #include <burnish/json_integer.h>
 
@@ -29,6 +31,7 @@ using Json = nlohmann::json;
 
 constexpr int kVersion = 2, kOldVersion = 1;  // version 1 had one format for all tables
 constexpr const char* kAttribute = "burnish";
+constexpr const char* kExtension = "burnish_surface";
 constexpr std::array<unsigned char, 4> kExrMagic{0x76, 0x2f, 0x31, 0x01};
 
 /// OpenEXR's input from memory.
@@ -79,7 +82,22 @@ class MemoryOutput : public Imf::OStream {
 /// have, and the attributes be those of a model.
 class HeaderCheck {
  public:
-  explicit HeaderCheck(const FileBytes& file) : bytes_(file.bytes), at_(kExrMagic.size()) {}
+  HeaderCheck(std::span<const std::byte> bytes, int longest)
+      : bytes_(bytes), at_(kExrMagic.size()), longest_(longest) {}
+
+  /// Whether the first header has the attribute; the rest is not looked at.
+  bool first_has(std::string_view attribute) {
+    number<std::uint32_t>();  // version
+    for (;;) {
+      const std::string found = name();
+      if (found.empty()) return false;
+      if (found == attribute) return true;
+      name();
+      const auto size = number<std::int32_t>();
+      if (size < 0) return false;
+      skip(static_cast<std::size_t>(size));
+    }
+  }
 
   void run() {
     constexpr std::uint32_t kMultiPart = 0x1000, kVersionBits = 0xff;
@@ -148,8 +166,8 @@ class HeaderCheck {
   }
 
   void check_side(const std::string& attribute) {
-    if (const auto value = number<std::int32_t>(); value < 0 || value > kMaxSide)
-      fail(fmt::format("'{}' within 0 to {}, found {}", attribute, kMaxSide, value));
+    if (const auto value = number<std::int32_t>(); value < 0 || value > longest_)
+      fail(fmt::format("'{}' within 0 to {}, found {}", attribute, longest_, value));
   }
 
   // One header; false where the list of headers ends.
@@ -169,6 +187,7 @@ class HeaderCheck {
 
   std::span<const std::byte> bytes_;
   std::size_t at_;
+  int longest_;
 };
 
 // EXR keeps channels by name; viewers show Y as grey and R, G, B as colour.
@@ -221,22 +240,32 @@ Imf::PixelType pixel_type(TableFormat format) {
   return format == TableFormat::half || format == TableFormat::rgb9e5 ? Imf::HALF : Imf::FLOAT;
 }
 
-std::vector<Imf::Header> headers(const Model& model) {
+// A table as a part of its name.
+ExrPart part_of(const Table& t) {
+  return {.name = t.name,
+          .width = t.layout.width,
+          .height = t.layout.rows(),
+          .channels = t.channels,
+          .half = pixel_type(t.format) == Imf::HALF,
+          .values = {}};
+}
+
+// Of the parts, without attributes of ours.
+std::vector<Imf::Header> headers(std::span<const ExrPart> parts) {
   std::vector<Imf::Header> result;
-  // OpenEXR asks for one display window for all parts: the smallest that holds every table.
+  // OpenEXR asks for one display window for all parts: the smallest that holds every part.
   Imath::Box2i display(Imath::V2i(0, 0));
-  for (const Table& t : model.brdf.tables())
-    display.extendBy(Imath::V2i(t.layout.width - 1, t.layout.rows() - 1));
-  for (const Table& t : model.brdf.tables()) {
-    Imf::Header header(display, Imath::Box2i({0, 0}, {t.layout.width - 1, t.layout.rows() - 1}));
-    header.setName(t.name);
+  for (const ExrPart& part : parts) display.extendBy(Imath::V2i(part.width - 1, part.height - 1));
+  for (const ExrPart& part : parts) {
+    Imf::Header header(display, Imath::Box2i({0, 0}, {part.width - 1, part.height - 1}));
+    header.setName(part.name);
     header.setType(Imf::SCANLINEIMAGE);
     header.compression() = Imf::NO_COMPRESSION;
-    for (std::size_t c = 0; c < t.channels; ++c)
-      header.channels().insert(channel_name(t.channels, c), Imf::Channel(pixel_type(t.format)));
+    for (std::size_t c = 0; c < part.channels; ++c)
+      header.channels().insert(channel_name(part.channels, c),
+                               Imf::Channel(part.half ? Imf::HALF : Imf::FLOAT));
     result.push_back(std::move(header));
   }
-  result.front().insert(kAttribute, Imf::StringAttribute(to_json(model).dump()));
   return result;
 }
 
@@ -291,53 +320,63 @@ std::vector<Table> read_tables(const Json& json, bool old, std::uint64_t file_si
   return tables;
 }
 
-// The values of a table from the part that holds it, which must have the table's name, size and channels.
-void read_pixels(Imf::MultiPartInputFile& input, int part, Table& table) {
-  const Imf::Header& header = input.header(part);
+// The values of a part, which must have this name, size and channels.
+void read_pixels(Imf::MultiPartInputFile& input, int number, ExrPart& part) {
+  const Imf::Header& header = input.header(number);
   const Imath::Box2i window = header.dataWindow();
-  if (header.name() != table.name)
-    throw Error(fmt::format("part {}: expected name '{}', found '{}'", part, table.name, header.name()));
-  if (window.min != Imath::V2i(0, 0) ||
-      window.max != Imath::V2i(table.layout.width - 1, table.layout.rows() - 1))
-    throw Error(fmt::format("part '{}': expected a window of {} x {} at the origin, found another",
-                            table.name, table.layout.width, table.layout.rows()));
+  if (header.name() != part.name)
+    throw Error(fmt::format("part {}: expected name '{}', found '{}'", number, part.name, header.name()));
+  if (window.min != Imath::V2i(0, 0) || window.max != Imath::V2i(part.width - 1, part.height - 1))
+    throw Error(fmt::format("part '{}': expected a window of {} x {} at the origin, found another", part.name,
+                            part.width, part.height));
   if (header.compression() != Imf::NO_COMPRESSION)
-    throw Error(fmt::format("part '{}': expected no compression, found compression {}", table.name,
+    throw Error(fmt::format("part '{}': expected no compression, found compression {}", part.name,
                             static_cast<int>(header.compression())));
   std::size_t found = 0;
   for (auto c = header.channels().begin(); c != header.channels().end(); ++c, ++found)
     if (c.channel().xSampling != 1 || c.channel().ySampling != 1 || c.channel().type == Imf::UINT)
-      throw Error(fmt::format("part '{}': expected half or float channels without subsampling", table.name));
-  for (std::size_t c = 0; c < table.channels; ++c)
-    if (!header.channels().findChannel(channel_name(table.channels, c)) || found != table.channels)
-      throw Error(fmt::format("part '{}': expected channels {}…, found others", table.name,
-                              channel_name(table.channels, c)));
+      throw Error(fmt::format("part '{}': expected half or float channels without subsampling", part.name));
+  for (std::size_t c = 0; c < part.channels; ++c)
+    if (!header.channels().findChannel(channel_name(part.channels, c)) || found != part.channels)
+      throw Error(fmt::format("part '{}': expected channels {}…, found others", part.name,
+                              channel_name(part.channels, c)));
 
-  table.values.resize(table.layout.node_count() * table.channels);
-  Imf::InputPart pixels(input, part);
-  pixels.setFrameBuffer(frame_buffer(table.values.data(), table.layout.width, table.channels));
-  pixels.readPixels(0, table.layout.rows() - 1);
+  part.values.resize(static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.height) *
+                     part.channels);
+  Imf::InputPart pixels(input, number);
+  pixels.setFrameBuffer(frame_buffer(part.values.data(), part.width, part.channels));
+  pixels.readPixels(0, part.height - 1);
 }
 
-Model read_model(const FileBytes& file) {
-  // OpenEXR sees only what has been checked; the form of the model is JSON in the first part's header
-  HeaderCheck(file).run();
-  MemoryInput stream(file);
-  Imf::MultiPartInputFile input(stream, 0);
-  const auto* attribute = input.header(0).findTypedAttribute<Imf::StringAttribute>(kAttribute);
-  if (!attribute) throw Error("expected a string attribute 'burnish', found an OpenEXR file without it");
-  const Json json = Json::parse(attribute->value());
+// The text of an attribute of the first part; none: nullptr.
+const std::string* text_of(Imf::MultiPartInputFile& input, const char* attribute) {
+  const auto* found = input.header(0).findTypedAttribute<Imf::StringAttribute>(attribute);
+  return found ? &found->value() : nullptr;
+}
+
+// `extension`, without parts' values: of a file that is more than a model.
+Model read_model(Imf::MultiPartInputFile& input, std::uint64_t file_size, ModelExtension& extension) {
+  // the form of the model is JSON in the first part's header
+  const std::string* const text = text_of(input, kAttribute);
+  if (!text) throw Error("expected a string attribute 'burnish', found an OpenEXR file without it");
+  const Json json = Json::parse(*text);
   const int version = integer_at(json, "version");
   if (version != kVersion && version != kOldVersion)
     throw Error(fmt::format("expected version {} or {}, found {}", kOldVersion, kVersion, version));
 
   const std::size_t channels = count_at(json, "channels");
   // a part a table
-  std::vector<Table> tables = read_tables(json, version == kOldVersion, file.bytes.size(), channels);
-  if (static_cast<std::size_t>(input.parts()) != tables.size())
-    throw Error(fmt::format("expected {} parts, found {}", tables.size(), input.parts()));
-  for (int part = 0; part < input.parts(); ++part)
-    read_pixels(input, part, tables[static_cast<std::size_t>(part)]);
+  std::vector<Table> tables = read_tables(json, version == kOldVersion, file_size, channels);
+  if (const std::size_t parts = tables.size() + extension.parts.size();
+      static_cast<std::size_t>(input.parts()) != parts)
+    throw Error(fmt::format("expected {} parts, found {}", parts, input.parts()));
+  int number = 0;
+  for (Table& table : tables) {
+    ExrPart part = part_of(table);
+    read_pixels(input, number++, part);
+    table.values = std::move(part.values);
+  }
+  for (ExrPart& part : extension.parts) read_pixels(input, number++, part);
 
   // lobes name their tables
   std::vector<Lobe> lobes;
@@ -371,6 +410,62 @@ Model read_model(const FileBytes& file) {
   return model;
 }
 
+// Calls read(input) with the opened file; OpenEXR sees only what has been checked.
+template <class Read>
+auto with_checked_file(const FileBytes& file, int longest, const Read& read) {
+  if (!looks_like_exr(file.bytes))
+    throw Error(file.name, 0, "a model, an OpenEXR or .burnish file", "other bytes");
+  try {
+    HeaderCheck(file.bytes, longest).run();
+    MemoryInput stream(file);
+    Imf::MultiPartInputFile input(stream, 0);
+    return read(input);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", file.name, error.what()));
+  } catch (const std::exception& error) {  // OpenEXR's and JSON's own
+    throw Error(fmt::format("{}: expected a burnish model, found: {}", file.name, error.what()));
+  }
+}
+
+void write_pixels(Imf::MultiPartOutputFile& output, int number, ExrPart& part) {
+  Imf::OutputPart pixels(output, number);
+  if (!part.half) {
+    pixels.setFrameBuffer(frame_buffer(part.values.data(), part.width, part.channels));
+    pixels.writePixels(part.height);
+    return;
+  }
+
+  // what halves hold is written as halves
+  std::vector<Imath::half> halves(part.values.begin(), part.values.end());
+  Imf::FrameBuffer buffer;
+  const std::size_t step = sizeof(Imath::half) * part.channels;
+  for (std::size_t c = 0; c < part.channels; ++c)
+    buffer.insert(channel_name(part.channels, c),
+                  Imf::Slice(Imf::HALF, reinterpret_cast<char*>(halves.data() + c), step,
+                             step * static_cast<std::size_t>(part.width)));
+  pixels.setFrameBuffer(buffer);
+  pixels.writePixels(part.height);
+}
+
+std::string written(const Model& model, ModelExtension extension) {
+  if (model.brdf.tables().empty()) throw Error("model: expected at least one table to write, found none");
+  std::vector<ExrPart> parts;
+  for (const Table& table : model.brdf.tables()) {
+    parts.push_back(part_of(table));
+    parts.back().values = table.values;  // OpenEXR wants them mutable
+  }
+  std::ranges::move(extension.parts, std::back_inserter(parts));
+  std::vector<Imf::Header> form = headers(parts);
+  form.front().insert(kAttribute, Imf::StringAttribute(to_json(model).dump()));
+  if (!extension.json.empty()) form.front().insert(kExtension, Imf::StringAttribute(extension.json));
+  MemoryOutput stream;
+  {
+    Imf::MultiPartOutputFile output(stream, form.data(), static_cast<int>(form.size()), false, 0);
+    for (std::size_t i = 0; i < parts.size(); ++i) write_pixels(output, static_cast<int>(i), parts[i]);
+  }
+  return std::move(stream.bytes);
+}
+
 }  // namespace
 
 bool looks_like_exr(std::span<const std::byte> head) noexcept {
@@ -386,46 +481,50 @@ std::string format_model_as(const std::filesystem::path& name, const Model& mode
 }
 
 std::string format_model(const Model& model) {
-  if (model.brdf.tables().empty()) throw Error("model: expected at least one table to write, found none");
-  MemoryOutput stream;
-  {
-    const std::vector<Imf::Header> parts = headers(model);
-    Imf::MultiPartOutputFile output(stream, parts.data(), static_cast<int>(parts.size()), false, 0);
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      const Table& table = model.brdf.tables()[i];
-      std::vector<float> values = table.values;  // OpenEXR wants them mutable
-      Imf::OutputPart part(output, static_cast<int>(i));
-      if (pixel_type(table.format) == Imf::FLOAT) {
-        part.setFrameBuffer(frame_buffer(values.data(), table.layout.width, table.channels));
-        part.writePixels(table.layout.rows());
-        continue;
-      }
+  return written(model, {});
+}
 
-      // what halves hold is written as halves
-      std::vector<Imath::half> halves(values.begin(), values.end());
-      Imf::FrameBuffer buffer;
-      const std::size_t step = sizeof(Imath::half) * table.channels;
-      for (std::size_t c = 0; c < table.channels; ++c)
-        buffer.insert(channel_name(table.channels, c),
-                      Imf::Slice(Imf::HALF, reinterpret_cast<char*>(halves.data() + c), step,
-                                 step * static_cast<std::size_t>(table.layout.width)));
-      part.setFrameBuffer(buffer);
-      part.writePixels(table.layout.rows());
-    }
-  }
-  return std::move(stream.bytes);
+std::string format_extended_model(const Model& model, ModelExtension extension) {
+  return written(model, std::move(extension));
 }
 
 Model parse_model(const FileBytes& file) {
   if (looks_like_compact(file.bytes)) return parse_compact(file);
-  if (!looks_like_exr(file.bytes))
-    throw Error(file.name, 0, "a model, an OpenEXR or .burnish file", "other bytes");
+  return with_checked_file(file, kMaxSide, [&](Imf::MultiPartInputFile& input) {
+    if (text_of(input, kExtension)) throw Error("expected a model, found a surface");
+    ModelExtension none;
+    return read_model(input, file.bytes.size(), none);
+  });
+}
+
+ExtendedModel parse_extended_model(
+    const FileBytes& file, const std::function<std::vector<ExrPart>(const std::string& json)>& parts_of) {
+  return with_checked_file(file, kMaxPartSide, [&](Imf::MultiPartInputFile& input) {
+    const std::string* const text = text_of(input, kExtension);
+    if (!text) throw Error("expected a surface, found a model");
+    ModelExtension extension{.json = *text, .parts = parts_of(*text)};
+    std::uint64_t least = 0;  // bytes of the parts
+    for (const ExrPart& part : extension.parts) {
+      if (part.width < 1 || part.height < 1 || part.width > kMaxPartSide || part.height > kMaxPartSide)
+        throw Error(fmt::format("part '{}': expected sides of 1 to {}, found {} x {}", part.name,
+                                kMaxPartSide, part.width, part.height));
+      least += 2 * static_cast<std::uint64_t>(part.width) * static_cast<std::uint64_t>(part.height) *
+               part.channels;
+    }
+    if (least > file.bytes.size())
+      throw Error(fmt::format("expected parts that fit the file's {} bytes, found {} or more",
+                              file.bytes.size(), least));
+    Model model = read_model(input, file.bytes.size(), extension);
+    return ExtendedModel{std::move(model), std::move(extension)};
+  });
+}
+
+bool looks_like_extended_model(std::span<const std::byte> head) noexcept {
+  if (!looks_like_exr(head)) return false;
   try {
-    return read_model(file);
-  } catch (const Error& error) {
-    throw Error(fmt::format("{}: {}", file.name, error.what()));
-  } catch (const std::exception& error) {  // OpenEXR's and JSON's own
-    throw Error(fmt::format("{}: expected a burnish model, found: {}", file.name, error.what()));
+    return HeaderCheck(head, kMaxPartSide).first_has(kExtension);
+  } catch (const Error&) {  // no header of an OpenEXR file
+    return false;
   }
 }
 

@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <filesystem>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -24,6 +27,7 @@
 #include <burnish/io/zemax.h>
 #include <burnish/math/angles.h>
 #include <burnish/math/closest_name.h>
+#include <burnish/surface/surface_file.h>
 
 namespace burnish {
 
@@ -64,6 +68,31 @@ Source from_book(const std::string& file, std::string_view name) {
   return source;
 }
 
+/// Two whole numbers of a text such as "3,4"; nothing where it is no such text or one is negative.
+std::optional<std::array<int, 2>> texel_of(std::string_view text) {
+  std::array<int, 2> texel{};
+  const char* const end = text.data() + text.size();
+  const auto [comma, bad_x] = std::from_chars(text.data(), end, texel[0]);
+  if (bad_x != std::errc() || comma == end || *comma != ',') return std::nullopt;
+  const auto [last, bad_y] = std::from_chars(comma + 1, end, texel[1]);
+  if (bad_y != std::errc() || last != end || texel[0] < 0 || texel[1] < 0) return std::nullopt;
+  return texel;
+}
+
+Source from_surface(const std::string& file, std::string_view name) {
+  const SpatialBrdf surface = parse_surface(read_file(file)).brdf;
+  const auto texel = texel_of(name);
+  if (!texel || (*texel)[0] >= surface.width() || (*texel)[1] >= surface.height())
+    throw Error::in_file(
+        file, fmt::format("the column and row of one of {} x {} texels", surface.width(), surface.height()),
+        in_quotes(name));
+  const double u = ((*texel)[0] + 0.5) / surface.width(), v = ((*texel)[1] + 0.5) / surface.height();
+  Source source =
+      to_source(fmt::format("surface:{}#{}", file, name), {.brdf = surface.at(u, v), .lambda_nm = {}});
+  source.findings.format = "texel of a surface";
+  return source;
+}
+
 Source from_spec(const std::string& spec) {
   AnalyticBrdf brdf = parse_analytic(spec);
   Findings findings;
@@ -89,6 +118,10 @@ Source parse_file(const FileBytes& file, const OpenOptions& options) {
     throw Error::in_file(file.name,
                          "book:FILE#NAME for one material of a book (`burnish info FILE` names them)",
                          "the book alone");
+  if (looks_like_surface(file.bytes))
+    throw Error::in_file(
+        file.name, "surface:FILE#COLUMN,ROW for one texel of a surface (`burnish info FILE` says how many)",
+        "the surface alone");
   if (looks_like_model(file.bytes)) return to_source(file.name, parse_model(file));
   if (looks_like_rgl(file.bytes)) return from_table(file, parse_rgl(file, options));
   if (looks_like_mbsdf(file.bytes)) return from_table(file, parse_mbsdf(file));
@@ -124,7 +157,7 @@ Source parse_source(const FileBytes& file, const OpenOptions& options) {
 
 Source open_source(const std::string& spec, const OpenOptions& options) {
   if (is_analytic_spec(spec)) return from_spec(spec);
-  constexpr std::string_view kNeural = "nbrdf:", kNp = "np:", kBook = "book:";
+  constexpr std::string_view kNeural = "nbrdf:", kNp = "np:", kBook = "book:", kSurface = "surface:";
   if (spec.starts_with(kNp)) return from_np(std::string_view(spec).substr(kNp.size()));
   if (spec.starts_with(kNeural)) {
     const std::string rest = spec.substr(kNeural.size());
@@ -135,6 +168,10 @@ Source open_source(const std::string& spec, const OpenOptions& options) {
   if (spec.starts_with(kBook) && spec.find('#') != std::string::npos) {
     const std::string rest = spec.substr(kBook.size());
     return from_book(rest.substr(0, rest.rfind('#')), std::string_view(rest).substr(rest.rfind('#') + 1));
+  }
+  if (spec.starts_with(kSurface) && spec.find('#') != std::string::npos) {
+    const std::string rest = spec.substr(kSurface.size());
+    return from_surface(rest.substr(0, rest.rfind('#')), std::string_view(rest).substr(rest.rfind('#') + 1));
   }
   check_spelling(spec);
   return parse_source(read_file(spec), options);

@@ -9,8 +9,9 @@
 namespace burnish {
 
 /// Opens an analytic BRDF such as "ggx:alpha_x=0.1" (see parse_analytic), a neural encoding "nbrdf:FILE#NAME" (see
-/// parse_neural) or "np:PLACE#NAME" (see open_np), a material of a book "book:FILE#NAME" (book/book_file.h), or a
-/// file, whose kind is found by content, never by its name. Throws Error if it cannot be read or is of no known
+/// parse_neural) or "np:PLACE#NAME" (see open_np), a material of a book "book:FILE#NAME" (book/book_file.h), a texel
+/// of a surface in its own frame "surface:FILE#COLUMN,ROW" (surface/surface_file.h), or a file, whose kind is found by
+/// content, never by its name. Throws Error if it cannot be read or is of no known
 /// kind, and whatever its reader throws.
 Source open_source(const std::string& spec, const OpenOptions& options);
 

@@ -9,6 +9,7 @@
 #include <burnish/math/angles.h>
 #include <burnish/metrics/albedo.h>
 #include <burnish/testing/files.h>
+#include <burnish/testing/surfaces.h>
 
 namespace burnish {
 namespace {
@@ -53,6 +54,23 @@ TEST(Source, OpensModels) {
   EXPECT_EQ(source.findings.format, "burnish model");
   EXPECT_EQ(source.findings.sample_count, 4u);
   EXPECT_EQ(std::get<FactoredBrdf>(source.brdf), brdf);
+}
+
+TEST(Source, OpensTexelsOfSurfaces) {
+  const TemporaryFolder folder("texels");
+  const SpatialBrdf surface = random_surface(3, 2);
+  for (const char* name : {"a#b.burnish", "wall.exr"}) {
+    const std::string file = (folder.path / name).string();
+    write_then_rename(file, format_surface_as(name, {.brdf = surface, .notes = "{}"}));
+    const Source source = open_source("surface:" + file + "#2,1", {});
+    EXPECT_EQ(source.findings.format, "texel of a surface");
+    EXPECT_EQ(std::get<FactoredBrdf>(source.brdf), surface.at(2.5 / 3, 1.5 / 2));
+    for (const char* texel : {"3,1", "2,2", "-1,0", "1", "1,", "1,1,1", "a,b", ""})
+      EXPECT_THAT(error_of([&] { open_source("surface:" + file + "#" + texel, {}); }),
+                  HasSubstr("3 x 2 texels"))
+          << texel;
+    EXPECT_THAT(error_of([&] { open_source(file, {}); }), HasSubstr("surface:FILE#COLUMN,ROW"));
+  }
 }
 
 TEST(Source, RefersToScatteredSamplesOnlyWhereThereAreSome) {

@@ -127,29 +127,39 @@ SpatialBrdf::SpatialBrdf(FactoredBrdf lobes, SurfaceMaps maps, std::vector<Widen
 }
 
 SpatialBrdf::Weight SpatialBrdf::weight(std::size_t lobe, double u, double v, double lod) const noexcept {
+  return weight(lobe, map_place(u, v, lod));
+}
+
+SpatialBrdf::Weight SpatialBrdf::weight(std::size_t lobe, const SurfaceMap::Place& at) const noexcept {
   const SurfaceMap& map = maps_.weights[lobe];
-  Weight weight = map.sample(u, v, lod);
+  Weight weight = map.sample(at);
   if (map.channels() == 1) weight.fill(weight[0]);
   return weight;
 }
 
 ShadingFrame SpatialBrdf::frame(double u, double v, double lod) const noexcept {
+  return frame(map_place(u, v, lod));
+}
+
+ShadingFrame SpatialBrdf::frame(const SurfaceMap::Place& at) const noexcept {
+  if (!maps_.normals && !maps_.tangents) return {};
   Vec3 normal{0, 0, 1}, tangent{1, 0, 0};
   if (maps_.normals) {
-    const SurfaceMap::Value n = maps_.normals->sample(u, v, lod);
+    const SurfaceMap::Value n = maps_.normals->sample(at);
     const double x = static_cast<double>(n[0]), y = static_cast<double>(n[1]);
     normal = normalize({x, y, std::sqrt(std::max(0.0, 1 - x * x - y * y))});
   }
   if (maps_.tangents) {
-    const SurfaceMap::Value t = maps_.tangents->sample(u, v, lod);
+    const SurfaceMap::Value t = maps_.tangents->sample(at);
     tangent = normalize({static_cast<double>(t[0]), static_cast<double>(t[1]), 0});
   }
   return frame_about(normal, tangent);
 }
 
 SpatialBrdf::Place SpatialBrdf::place(double u, double v, double lod) const noexcept {
-  Place place{.frame = frame(u, v, lod), .weights = {}};
-  for (std::size_t j = 0; j < apart_.size(); ++j) place.weights[j] = weight(j, u, v, lod);
+  const SurfaceMap::Place at = map_place(u, v, lod);
+  Place place{.frame = frame(at), .weights = {}};
+  for (std::size_t j = 0; j < apart_.size(); ++j) place.weights[j] = weight(j, at);
   return place;
 }
 

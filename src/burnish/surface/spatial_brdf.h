@@ -75,6 +75,13 @@ class SpatialBrdf {
   using Weight = SurfaceMap::Value;
   Weight weight(std::size_t lobe, double u, double v, double lod = 0) const noexcept;
   ShadingFrame frame(double u, double v, double lod = 0) const noexcept;
+  /// The same at a place of the maps.
+  Weight weight(std::size_t lobe, const SurfaceMap::Place& at) const noexcept;
+  ShadingFrame frame(const SurfaceMap::Place& at) const noexcept;
+  /// Of (u, v) and a level of detail in any of the maps.
+  SurfaceMap::Place map_place(double u, double v, double lod = 0) const noexcept {
+    return maps_.weights.front().place(u, v, lod);
+  }
 
   /// What of a place is the same for all directions.
   struct Place {

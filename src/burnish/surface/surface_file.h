@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <span>
 #include <string>
 
@@ -23,11 +24,19 @@ struct SurfaceModel {
 /// lobes version 1 is written. parse_surface restores all to the last bit. Throws Error as format_compact does.
 std::string format_surface(const SurfaceModel& surface);
 
-/// Throws Error, naming file and offset, if the bytes are no such file or contradict themselves in any way. Memory
-/// taken is at most a fixed multiple of the file's size.
+/// The OpenEXR file of a surface: that of its lobes (factors/model_file.h) with a part more a map, map_weight0, ...,
+/// map_normals, map_tangents, as any viewer shows them: unorm8 as floats, halves as halves. parse_surface restores all
+/// to the last bit.
+std::string format_surface_exr(const SurfaceModel& surface);
+
+/// The bytes of a surface's file by the ending of its name: format_surface_exr's for .exr, else format_surface's.
+std::string format_surface_as(const std::filesystem::path& name, const SurfaceModel& surface);
+
+/// Reads either file, known by its content. Throws Error, naming file and offset, if the bytes are no such file or
+/// contradict themselves in any way. Memory taken is at most a fixed multiple of the file's size.
 SurfaceModel parse_surface(const FileBytes& file);
 
-/// True if the bytes start as a surface's `.burnish` does.
+/// True if the bytes start as a surface's file does; of OpenEXR they have to hold the first header.
 bool looks_like_surface(std::span<const std::byte> head) noexcept;
 
 }  // namespace burnish

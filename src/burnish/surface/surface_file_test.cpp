@@ -1,3 +1,5 @@
+#include <cstring>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,6 +17,10 @@ using testing::ThrowsMessage;
 
 std::string seed() {
   return format_surface({.brdf = random_surface(3, 2), .notes = R"({"from":"a test"})"});
+}
+
+std::string exr_seed() {
+  return format_surface_exr({.brdf = random_surface(3, 2), .notes = R"({"from":"a test"})"});
 }
 
 TEST(SurfaceFile, RestoresASurfaceToTheLastBit) {
@@ -38,15 +44,61 @@ TEST(SurfaceFile, IsKnownFromAModelThatIsTheSameEverywhere) {
               ThrowsMessage<Error>(HasSubstr("expected a surface")));
 }
 
-TEST(SurfaceFile, EveryTruncatedFileThrows) {
-  const std::string bytes = seed();
-  for (std::size_t length = 0; length < bytes.size(); ++length)
-    EXPECT_THROW(parse_surface(memory_file(bytes.substr(0, length))), Error) << length;
-  EXPECT_THROW(parse_surface(memory_file(bytes + '\0')), Error);
+TEST(SurfaceFile, RestoresASurfaceFromOpenExr) {
+  for (const auto& [width, height] : {std::pair(1, 1), std::pair(6, 5), std::pair(64, 33)}) {
+    const SurfaceModel surface{.brdf = random_surface(width, height), .notes = R"({"a":[1,2]})"};
+    const std::string bytes = format_surface_exr(surface);
+    EXPECT_TRUE(looks_like_surface(memory_file(bytes).bytes));
+    const SurfaceModel read = parse_surface(memory_file(bytes));
+    EXPECT_EQ(read, surface);
+    EXPECT_EQ(format_surface_exr(read), bytes);
+    EXPECT_EQ(format_surface_as("a/wall.exr", surface), bytes);
+    EXPECT_EQ(format_surface_as("wall.burnish", surface), format_surface(surface));
+  }
 }
 
-TEST(SurfaceFile, DamagedBytesThrowOrGiveASoundSurface) {
-  const std::string bytes = seed();
+TEST(SurfaceFile, OpenExrIsKnownFromThatOfAModel) {
+  const std::string surface = format_surface_exr({.brdf = random_surface(3, 2), .notes = "{}"}),
+                    model = format_model({.brdf = random_surface(1, 1).lobes(), .lambda_nm = {}});
+  EXPECT_FALSE(looks_like_surface(memory_file(model).bytes));
+  EXPECT_THAT([&] { parse_model(memory_file(surface)); }, ThrowsMessage<Error>(HasSubstr("found a surface")));
+  EXPECT_THAT([&] { parse_surface(memory_file(model)); }, ThrowsMessage<Error>(HasSubstr("found a model")));
+}
+
+TEST(SurfaceFile, OpenExrWithOtherValuesOrFormsThrows) {
+  const SurfaceModel surface{.brdf = random_surface(3, 2), .notes = "{}"};
+  const std::string bytes = format_surface_exr(surface);
+  for (const auto& [from, to] :
+       {std::pair(R"("width":3)", R"("width":2)"), std::pair(R"("height":2)", R"("height":9)"),
+        std::pair("\"unorm8\"", "\"half\"  "), std::pair("map_weight0", "map_weight7")}) {
+    std::string other = bytes;
+    const auto at = other.find(from, other.find("burnish_surface"));
+    ASSERT_NE(at, other.npos) << from;
+    other.replace(at, std::string_view(from).size(), to);
+    EXPECT_THROW(parse_surface(memory_file(other)), Error) << to;
+  }
+  // no code of unorm8
+  const SurfaceMap& map = surface.brdf.maps().weights.front();
+  const float value = map.texel(0, 0)[0], near = value + map.scale() / 700;
+  std::string other = bytes;
+  const std::string_view code(reinterpret_cast<const char*>(&value), sizeof value);
+  const auto at = other.rfind(code);
+  ASSERT_NE(at, other.npos);
+  std::memcpy(&other[at], &near, sizeof near);
+  EXPECT_THAT([&] { parse_surface(memory_file(other)); }, ThrowsMessage<Error>(HasSubstr("found others")));
+}
+
+TEST(SurfaceFile, EveryTruncatedFileThrows) {
+  for (const std::string& bytes : {seed(), exr_seed()})
+    for (std::size_t length = 0; length < bytes.size(); ++length)
+      EXPECT_THROW(parse_surface(memory_file(bytes.substr(0, length))), Error) << length;
+  EXPECT_THROW(parse_surface(memory_file(seed() + '\0')), Error);
+}
+
+class DamagedSurface : public testing::TestWithParam<bool> {};
+
+TEST_P(DamagedSurface, ThrowsOrIsSound) {
+  const std::string bytes = GetParam() ? exr_seed() : seed();
   std::array<double, 3> f;
   std::size_t thrown = 0;
   for (std::size_t at = 0; at < bytes.size(); ++at)
@@ -65,6 +117,7 @@ TEST(SurfaceFile, DamagedBytesThrowOrGiveASoundSurface) {
     }
   EXPECT_GT(thrown, bytes.size() / 4);
 }
+INSTANTIATE_TEST_SUITE_P(SurfaceFile, DamagedSurface, testing::Bool());
 
 }  // namespace
 }  // namespace burnish

@@ -21,6 +21,18 @@ std::size_t texels(int width, int height) noexcept {
 
 }  // namespace
 
+template <class Use>
+auto SurfaceMap::with_reader(const Level& from, const Use& use) const noexcept {
+  const std::byte* const bytes = from.bytes.data();
+  if (format_ == TableFormat::half)
+    return use([bytes](std::size_t i) {
+      std::uint16_t bits;
+      std::memcpy(&bits, bytes + 2 * i, sizeof(bits));
+      return static_cast<float>(Imath::half(Imath::half::FromBits, bits));
+    });
+  return use([bytes, unit = scale_ / kCodes](std::size_t i) { return static_cast<float>(bytes[i]) * unit; });
+}
+
 void SurfaceMap::check() const {
   if (width_ < 1 || height_ < 1 || width_ > kMaxMapSide || height_ > kMaxMapSide)
     throw Error(fmt::format("surface map: expected sides of 1 to {} texels, found {} x {}", kMaxMapSide,
@@ -134,19 +146,11 @@ SurfaceMap SurfaceMap::with_coarse_levels(std::span<const std::vector<float>> va
 SurfaceMap::Value SurfaceMap::texel(int x, int y, std::size_t level) const noexcept {
   const Level& from = levels_[level];
   const std::size_t first = (texels(from.width, y) + static_cast<std::size_t>(x)) * channels_;
-  Value value{};
-  for (std::size_t c = 0; c < channels_; ++c) {
-    if (format_ == TableFormat::half) {
-      Imath::half half;
-      std::uint16_t bits;
-      std::memcpy(&bits, &from.bytes[2 * (first + c)], sizeof(bits));
-      half.setBits(bits);
-      value[c] = half;
-    } else {
-      value[c] = static_cast<float>(from.bytes[first + c]) * (scale_ / kCodes);
-    }
-  }
-  return value;
+  return with_reader(from, [&](const auto& read) {
+    Value value{};
+    for (std::size_t c = 0; c < channels_; ++c) value[c] = read(first + c);
+    return value;
+  });
 }
 
 CoveredTexels covered_texels(int i, int count, int from_count) noexcept {
@@ -154,36 +158,66 @@ CoveredTexels covered_texels(int i, int count, int from_count) noexcept {
   return {first, i + 1 == count ? from_count : std::min(2 * i + 2, from_count)};
 }
 
-SurfaceMap::Value SurfaceMap::bilinear(double u, double v, std::size_t level) const noexcept {
-  const auto place = [](double coordinate, int side) {
-    const double at = (coordinate - std::floor(coordinate)) * side - 0.5, first = std::floor(at);
-    const int low = static_cast<int>(first);
-    struct Place {
-      int low, high;
-      float fraction;
-    };
-    return Place{(low + side) % side, (low + 1) % side, static_cast<float>(at - first)};
+SurfaceMap::Place SurfaceMap::place(double u, double v, double lod) const noexcept {
+  struct Along {
+    std::size_t low, high;
+    float fraction;
   };
-  const auto x = place(u, levels_[level].width), y = place(v, levels_[level].height);
-  const Value a = texel(x.low, y.low, level), b = texel(x.high, y.low, level);
-  const Value c = texel(x.low, y.high, level), d = texel(x.high, y.high, level);
-  Value value{};
-  for (std::size_t k = 0; k < channels_; ++k) {
-    const float low = a[k] + x.fraction * (b[k] - a[k]), high = c[k] + x.fraction * (d[k] - c[k]);
-    value[k] = low + y.fraction * (high - low);
-  }
+  const double column = u - std::floor(u), row = v - std::floor(v);
+  const auto along = [](double coordinate, int side) {
+    const double at = coordinate * side - 0.5, first = std::floor(at);
+    const int low = static_cast<int>(first), high = low + 1 == side ? 0 : low + 1;
+    return Along{static_cast<std::size_t>(low < 0 ? side - 1 : low), static_cast<std::size_t>(high % side),
+                 static_cast<float>(at - first)};
+  };
+  const auto of_level = [&](std::size_t number) {
+    const Level& level = levels_[number];
+    const Along x = along(column, level.width), y = along(row, level.height);
+    const std::size_t upper = texels(level.width, 1) * y.low, lower = texels(level.width, 1) * y.high;
+    return Place::OfLevel{.level = number,
+                          .texels = {upper + x.low, upper + x.high, lower + x.low, lower + x.high},
+                          .x = x.fraction,
+                          .y = y.fraction};
+  };
+  const double most = static_cast<double>(levels() - 1), at = lod > 0 ? std::min(lod, most) : 0;
+  const auto level = static_cast<std::size_t>(at);
+  Place place{.levels = {of_level(level)}, .fraction = static_cast<float>(at - static_cast<double>(level))};
+  if (place.fraction != 0) place.levels[1] = of_level(level + 1);
+  return place;
+}
+
+SurfaceMap::Place SurfaceMap::place_of_texel(int x, int y) const noexcept {
+  const std::size_t texel = texels(width_, y) + static_cast<std::size_t>(x);
+  return {.levels = {Place::OfLevel{.level = 0, .texels = {texel, texel, texel, texel}, .x = 0, .y = 0}},
+          .fraction = 0};
+}
+
+SurfaceMap::Value SurfaceMap::bilinear(const Place::OfLevel& place) const noexcept {
+  return with_reader(levels_[place.level], [&](const auto& read) {
+    Value value{};
+    const bool one_texel = place.x == 0 && place.y == 0;
+    for (std::size_t c = 0; c < channels_; ++c) {
+      const auto at = [&](std::size_t k) { return read(place.texels[k] * channels_ + c); };
+      const float a = at(0);
+      value[c] = a;
+      if (one_texel) continue;
+      const float low = a + place.x * (at(1) - a), next = at(2), high = next + place.x * (at(3) - next);
+      value[c] = low + place.y * (high - low);
+    }
+    return value;
+  });
+}
+
+SurfaceMap::Value SurfaceMap::sample(const Place& place) const noexcept {
+  Value value = bilinear(place.levels[0]);
+  if (place.fraction == 0) return value;
+  const Value next = bilinear(place.levels[1]);
+  for (std::size_t c = 0; c < channels_; ++c) value[c] += place.fraction * (next[c] - value[c]);
   return value;
 }
 
 SurfaceMap::Value SurfaceMap::sample(double u, double v, double lod) const noexcept {
-  const double most = static_cast<double>(levels() - 1), at = lod > 0 ? std::min(lod, most) : 0;
-  const auto level = static_cast<std::size_t>(at);
-  const auto fraction = static_cast<float>(at - static_cast<double>(level));
-  Value value = bilinear(u, v, level);
-  if (fraction == 0) return value;
-  const Value next = bilinear(u, v, level + 1);
-  for (std::size_t c = 0; c < channels_; ++c) value[c] += fraction * (next[c] - value[c]);
-  return value;
+  return sample(place(u, v, lod));
 }
 
 }  // namespace burnish

@@ -55,6 +55,23 @@ class SurfaceMap {
   using Value = std::array<float, kMaxMapChannels>;  ///< channels that the map has not are 0
   /// Of one texel. Precondition: within the level.
   Value texel(int x, int y, std::size_t level = 0) const noexcept;
+
+  /// Which texels a place lies between, and where: the same of all maps of one size.
+  struct Place {
+    struct OfLevel {
+      std::size_t level;
+      std::array<std::size_t, 4> texels;  ///< row by row, those of two rows
+      float x, y;                         ///< how far from the first to the others
+    };
+    std::array<OfLevel, 2> levels;
+    float fraction;  ///< from the first level to the second; 0: the second is not read
+  };
+  /// Of finite u and v, as sample() has them.
+  Place place(double u, double v, double lod = 0) const noexcept;
+  /// Of one texel of level 0, unfiltered. Precondition: within the map.
+  Place place_of_texel(int x, int y) const noexcept;
+  /// sample() at a place of this map or another of its size.
+  Value sample(const Place& place) const noexcept;
   /// At (u, v), texel centres at (x + 1/2) / width: bilinear within a level, linear between levels `lod` lies
   /// between, as a texture unit filters. lod is clamped to the levels. Weights of texels are rounded to floats.
   Value sample(double u, double v, double lod = 0) const noexcept;
@@ -71,7 +88,10 @@ class SurfaceMap {
   void check_values(std::span<const float> values) const;
   void make_levels();
   Level stored(int width, int height, std::span<const float> values) const;
-  Value bilinear(double u, double v, std::size_t level) const noexcept;
+  /// use(read), read(i) the i-th number of a level.
+  template <class Use>
+  auto with_reader(const Level& from, const Use& use) const noexcept;
+  Value bilinear(const Place::OfLevel& place) const noexcept;
 
   int width_ = 0, height_ = 0;
   std::size_t channels_ = 0;

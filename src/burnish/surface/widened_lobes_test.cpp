@@ -129,6 +129,7 @@ TEST(WidenedLobes, AreRestoredByTheirFile) {
   const SurfaceModel surface{.brdf = with_widened_lobes(bumpy()), .notes = "{}"};
   const std::string bytes = format_surface(surface);
   EXPECT_EQ(parse_surface(memory_file(bytes)), surface);
+  EXPECT_EQ(parse_surface(memory_file(format_surface_exr(surface))), surface);
   for (std::size_t length = 0; length < bytes.size(); length += 97)
     EXPECT_THROW(parse_surface(memory_file(bytes.substr(0, length))), Error) << length;
 }

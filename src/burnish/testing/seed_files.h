@@ -189,14 +189,20 @@ inline const std::string kIlluminant = "# a lamp\n400 0.5\n550\t1\n\n700.5 2e3\n
 inline const std::string kUtia{"\x9a\x99\x99\x99\x99\x99\xf1\x3f", 8};
 
 /// A surface of the small model, with normals.
-inline std::string surface_seed() {
+inline burnish::SurfaceModel small_surface() {
   using namespace burnish;
   const std::vector<float> weights{0, 1, 0.5f, 0.25f, 1, 0},
       normals{0, 0, 0.1f, 0, 0, 0.5f, -0.5f, 0, 0.1f, 0.2f, 0, 0};
   SurfaceMaps maps{.weights = {SurfaceMap(3, 2, 1, TableFormat::unorm8, 1, weights)},
                    .normals = SurfaceMap(3, 2, 2, TableFormat::half, 1, normals),
                    .tangents = {}};
-  return format_surface({.brdf = SpatialBrdf(small_model().brdf, std::move(maps)), .notes = "{}"});
+  return {.brdf = SpatialBrdf(small_model().brdf, std::move(maps)), .notes = "{}"};
+}
+inline std::string surface_seed() {
+  return burnish::format_surface(small_surface());
+}
+inline std::string surface_exr_seed() {
+  return burnish::format_surface_exr(small_surface());
 }
 
 inline const std::string kCapture =
