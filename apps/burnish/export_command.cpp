@@ -27,7 +27,7 @@ struct ExportArguments {
   std::string model, folder, name, power, environment;
   std::vector<std::string> to;
   int cells = ExportOptions{}.cells;
-  bool exact = false, half = false, plain = false, mips = false, json = false;
+  bool exact = false, half = false, plain = false, blocks = false, mips = false, json = false;
 };
 
 std::string name_of(const std::string& path) {
@@ -41,6 +41,7 @@ ExportOptions options_of(const ExportArguments& arguments) {
                         .half = arguments.half,
                         .mips = arguments.mips,
                         .compressed = !arguments.plain,
+                        .blocks = arguments.blocks,
                         .cells = arguments.cells};
   for (const std::string& to : arguments.to) options.to.push_back(export_target(to));
   return options;
@@ -81,6 +82,8 @@ ExportedFiles exported_surface(const ExportArguments& arguments, const FileBytes
   if (!arguments.power.empty() || !arguments.environment.empty() || arguments.half)
     throw CLI::ValidationError("--power, --environment, --half: expected a model with them, found a surface");
   ExportOptions options = options_of(arguments);
+  if (arguments.blocks && std::ranges::none_of(options.to, has_map_textures))
+    throw CLI::ValidationError("--blocks: expected --to ktx2 or a shader language with it, found others");
   if (options.name.empty()) options.name = name_of(arguments.model);
   return export_surface(parse_surface(file).brdf, options);
 }
@@ -90,6 +93,8 @@ ExportedFiles exported_files(const ExportArguments& arguments) {
     const FileBytes file = read_file(arguments.model);
     if (looks_like_surface(file.bytes)) return exported_surface(arguments, file);
   }
+  if (arguments.blocks)
+    throw CLI::ValidationError("--blocks: expected a surface with it, found " + arguments.model);
   const Source source = open_source(arguments.model, {});
   const auto* const analytic = std::get_if<AnalyticBrdf>(&source.brdf);
   return analytic ? exported_analytic(arguments, *analytic) : exported_model(arguments, source);
@@ -162,7 +167,10 @@ void add_export_command(CLI::App& app) {
           "cpp stays single")
       ->excludes(exact);
   verb->add_flag("--mips", arguments->mips, "KTX2 with levels: averages over the directions of a texel");
-  verb->add_flag("--plain", arguments->plain, "textures that are not compressed");
+  verb->add_flag("--plain", arguments->plain, "KTX2 without Zstandard");
+  verb->add_flag(
+      "--blocks", arguments->blocks,
+      "of a surface: maps as pairs in BC5, which stay compressed where they are read, and shaders for them");
   verb->add_flag("--json", arguments->json, "print the files and what shaders cost as JSON");
   verb->callback([arguments, cells] {
     if (cells->count() > 0 && std::ranges::find(arguments->to, "mdl") == arguments->to.end())

@@ -191,8 +191,9 @@ nb::tuple fit_surface(const std::filesystem::path& capture, std::size_t lobes, s
 }
 
 nb::dict exported(const OpenedSurface& surface, const std::vector<std::string>& to,
-                  const std::optional<std::filesystem::path>& folder, const std::string& name, bool exact) {
-  ExportOptions options{.to = {}, .name = name, .exact = exact};
+                  const std::optional<std::filesystem::path>& folder, const std::string& name, bool exact,
+                  bool blocks) {
+  ExportOptions options{.to = {}, .name = name, .exact = exact, .blocks = blocks};
   for (const std::string& target : to) options.to.push_back(export_target(target));
   const ExportedFiles files = [&] {
     const nb::gil_scoped_release released;
@@ -251,8 +252,9 @@ void bind_surfaces(nb::module_& m) {
           "The Model of a place, in its own frame.")
       .def("albedo", &albedo_of, "The largest share of light that a texel reflects, and where.")
       .def("export", &exported, nb::arg("to"), nb::arg("folder") = nb::none(), nb::arg("name") = "brdf",
-           nb::arg("exact") = false,
-           "Files by name, as `burnish export`: shaders, ktx2, exr, png, gltf, three, html.")
+           nb::arg("exact") = false, nb::arg("blocks") = false,
+           "Files by name, as `burnish export`: shaders, ktx2, exr, png, gltf, three, html. blocks: maps as\n"
+           "pairs in BC5.")
       .def(
           "write",
           [](const OpenedSurface& s, const std::filesystem::path& path) {

@@ -18,6 +18,7 @@ struct ExportOptions {
   bool half = false;       ///< shaders multiply texels in half precision; never in C++
   bool mips = false;       ///< KTX2 a table with levels too: averages over the directions of a texel
   bool compressed = true;  ///< KTX2 with Zstandard
+  bool blocks = false;     ///< KTX2 of a surface's maps as pairs in blocks, and shaders that read these
   int cells = 90;          ///< of mdl: along each polar angle, in [2, 1000]; twice as many along the azimuth
   /// Light from all around, for the targets of shows_environment.
   std::optional<Environment> environment = {};

@@ -59,7 +59,7 @@ class SurfaceExport {
   SurfaceExport(const SpatialBrdf& surface, const ExportOptions& options)
       : surface_(surface),
         options_(options),
-        maps_(pack_maps(surface, fmt::format("burnish_{}_map", options.name))) {
+        maps_(pack_maps(surface, fmt::format("burnish_{}_map", options.name), options.blocks)) {
     LobeFiles lobes = lobe_files(surface, options);
     result_.files = std::move(lobes.files);
     manifest_ = std::move(lobes.manifest);
@@ -103,7 +103,9 @@ class SurfaceExport {
   void add_shader(ShaderLanguage language) {
     const bool cpp = language == ShaderLanguage::cpp;
     const ShaderFilter filter = options_.exact || cpp ? ShaderFilter::exact : ShaderFilter::hardware;
-    const SpatialShader shader = generate_shader(surface_, {language, filter, options_.name});
+    const SpatialShader shader = generate_shader(
+        surface_,
+        {.language = language, .filter = filter, .name = options_.name, .maps_in_blocks = options_.blocks});
     const std::string file = shader_file(language, options_.name),
                       filter_name = filter == ShaderFilter::exact ? "exact" : "hardware";
     json textures = json::array();
@@ -128,19 +130,25 @@ class SurfaceExport {
   void add_textures() {
     for (std::size_t i = 0; i < maps_.textures.size(); ++i) {
       const MapTexture& texture = maps_.textures[i];
+      const bool in_blocks = texture.blocks != TexelBlocks::none;
       const std::string file = fmt::format("{}_map{}.ktx2", options_.name, i);
-      result_.files.push_back(
-          {file, encode_ktx2(StoredTexels{texture.format, texture.width, texture.height, texture.levels},
-                             options_.compressed)});
-      manifest_["maps"]["textures"].push_back({{"sampler", texture.name},
-                                               {"file", file},
-                                               {"width", texture.width},
-                                               {"height", texture.height},
-                                               {"levels", texture.levels.size()},
-                                               {"channels", 4},
-                                               {"format", to_string(texture.format)},
-                                               {"wrap", "repeat"},
-                                               {"filter", "linear, linear between levels"}});
+      result_.files.push_back({file, encode_ktx2(StoredTexels{.format = texture.format,
+                                                              .blocks = texture.blocks,
+                                                              .width = texture.width,
+                                                              .height = texture.height,
+                                                              .levels = texture.levels},
+                                                 options_.compressed)});
+      manifest_["maps"]["textures"].push_back(
+          {{"sampler", texture.name},
+           {"file", file},
+           {"width", texture.width},
+           {"height", texture.height},
+           {"levels", texture.levels.size()},
+           {"channels", in_blocks ? 2 : 4},
+           {"format", in_blocks ? to_string(texture.blocks) : to_string(texture.format)},
+           {"wrap", "repeat"},
+           {"filter", "linear, linear between levels"}});
+      if (in_blocks) manifest_["maps"]["textures"].back()["block_rms"] = texture.block_rms;
     }
   }
 
@@ -194,6 +202,10 @@ class SurfaceExport {
 
 }  // namespace
 
+bool has_map_textures(ExportTarget target) noexcept {
+  return language_of(target) || target == ExportTarget::ktx2;
+}
+
 bool takes_surfaces(ExportTarget target) noexcept {
   using enum ExportTarget;
   return language_of(target) || target == ktx2 || target == exr || target == png || target == three ||
@@ -205,6 +217,8 @@ ExportedFiles export_surface(const SpatialBrdf& surface, const ExportOptions& op
     throw Error("environment: expected a model that is the same everywhere, found a surface");
   if (options.half)
     throw Error("export: expected a model that is the same everywhere with half products, found a surface");
+  if (options.blocks && std::ranges::none_of(options.to, has_map_textures))
+    throw Error("blocks: expected ktx2 or a shader language to export, found others");
   for (const ExportTarget target : options.to)
     if (!takes_surfaces(target))
       throw Error(fmt::format(

@@ -8,12 +8,15 @@ namespace burnish {
 /// Whether a surface can be written as it: shaders, ktx2, exr, png, gltf, three and html.
 bool takes_surfaces(ExportTarget target) noexcept;
 
+/// Whether a surface has its maps as textures beside it: shaders and ktx2.
+bool has_map_textures(ExportTarget target) noexcept;
+
 /// A surface: shaders (shaders/spatial_shader.h) with the lobes' textures and NAME_map0.ktx2, ...: the maps side by
 /// side with their levels; exr and png: each map and each table a picture, EXR with the maps' values, PNG of weights
 /// their bytes, of normals and tangents (x + 1) / 2; three and html with everything inside; glTF, a square with textures
 /// of each texel's nearest metal or dielectric (nearest_materials). The manifest's "maps" tell
 /// where each lobe's weights are and what they are multiplied with. Throws Error for other targets, for an environment,
-/// for half products, and as generate_shader.
+/// for half products, for blocks without has_map_textures, and as generate_shader and pack_maps.
 ExportedFiles export_surface(const SpatialBrdf& surface, const ExportOptions& options);
 
 }  // namespace burnish

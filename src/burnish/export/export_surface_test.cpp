@@ -73,6 +73,30 @@ TEST(ExportSurface, BringsEverythingIntoModuleAndPage) {
   EXPECT_EQ(web_model(surface, "wall")["framed"], true);
 }
 
+TEST(ExportSurface, HasMapsInBlocks) {
+  const SpatialBrdf surface = smooth_surface(16);
+  ExportOptions options{.to = {ExportTarget::glsl}, .name = "wall", .compressed = false, .blocks = true};
+  const ExportedFiles exported = export_surface(surface, options);
+  const auto manifest = nlohmann::json::parse(bytes_of(exported, "wall.json"));
+  const auto& textures = manifest["maps"]["textures"];
+  ASSERT_EQ(textures.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(textures[i]["format"], i == 0 ? "bc5_unorm" : "bc5_snorm");
+    EXPECT_EQ(textures[i]["channels"], 2);
+    EXPECT_GT(textures[i]["block_rms"], 0.0);
+    EXPECT_LT(textures[i]["block_rms"], 0.1);
+    const std::string& bytes = bytes_of(exported, textures[i]["file"]);
+    EXPECT_EQ(bytes[12], static_cast<char>(i == 0 ? 141 : 142));  // VkFormat
+    // level 0 comes last, a byte a texel and channel
+    EXPECT_EQ(
+        bytes.substr(bytes.size() - 256),
+        (std::string(
+            reinterpret_cast<const char*>(pack_maps(surface, "m", true).textures[i].levels[0].data()), 256)));
+  }
+  options.to = {ExportTarget::html};
+  EXPECT_THROW(export_surface(surface, options), Error);
+}
+
 TEST(ExportSurface, RefusesWhatHasNoSurfaces) {
   const SpatialBrdf surface = random_surface(4, 4);
   EXPECT_THROW(export_surface(surface, {.to = {ExportTarget::usda}, .name = "wall"}), Error);

@@ -1,7 +1,10 @@
 #include <algorithm>
+#include <cmath>
+#include <span>
 
 #include <fmt/format.h>
 
+#include <burnish/error.h>
 #include <burnish/shaders/map_packing.h>
 
 namespace burnish {
@@ -50,9 +53,93 @@ class MapPacker {
   std::size_t used_ = 0;
 };
 
+/// Puts channels of maps into textures, two into each, in blocks.
+class PairPacker {
+ public:
+  explicit PairPacker(std::string name) : name_(std::move(name)) {}
+
+  MapComponent add(const SurfaceMap& map, std::size_t channel) {
+    waiting_.push_back({&map, channel});
+    const MapComponent place{textures_.size(), waiting_.size() - 1};
+    if (waiting_.size() == 2) flush();
+    return place;
+  }
+
+  /// Ends the texture at hand: what comes next is of another one.
+  void flush() {
+    if (waiting_.empty()) return;
+    const SurfaceMap& first = *waiting_.front().map;
+    const bool has_sign = first.format() == TableFormat::half;
+    MapTexture texture{.name = fmt::format("{}{}", name_, textures_.size()),
+                       .width = first.width(),
+                       .height = first.height(),
+                       .format = first.format(),
+                       .blocks = has_sign ? TexelBlocks::bc5_snorm : TexelBlocks::bc5_unorm,
+                       .levels = {}};
+    for (std::size_t l = 0; l < first.levels(); ++l) {
+      const int width = first.level_width(l), height = first.level_height(l);
+      std::vector<float> pairs;
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+          for (std::size_t c = 0; c < 2; ++c)
+            pairs.push_back(c < waiting_.size() ? waiting_[c].value(x, y, l) : 0.0f);
+      texture.levels.push_back(encode_bc5(width, height, pairs, has_sign));
+      if (l == 0) texture.block_rms = rms(pairs, decode_bc5(width, height, texture.levels[0], has_sign));
+    }
+    textures_.push_back(std::move(texture));
+    waiting_.clear();
+  }
+
+  std::vector<MapTexture> take() && { return std::move(textures_); }
+
+ private:
+  static double rms(std::span<const float> a, std::span<const float> b) noexcept {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const double off = static_cast<double>(a[i]) - static_cast<double>(b[i]);
+      sum += off * off;
+    }
+    return std::sqrt(sum / static_cast<double>(a.size()));
+  }
+
+  struct Channel {
+    const SurfaceMap* map;
+    std::size_t channel;
+
+    float value(int x, int y, std::size_t level) const noexcept {
+      return map->texel(x, y, level)[channel] / map->scale();
+    }
+  };
+
+  std::string name_;
+  std::vector<MapTexture> textures_;
+  std::vector<Channel> waiting_;  // of the texture at hand
+};
+
+PackedMaps pack_pairs(const SpatialBrdf& surface, const std::string& name) {
+  const SurfaceMaps& maps = surface.maps();
+  PackedMaps packed;
+  PairPacker packer(name);
+  for (const SurfaceMap& map : maps.weights) {
+    if (map.format() != TableFormat::unorm8) throw Error("blocks: expected weights of bytes, found halves");
+    auto& places = packed.weights.emplace_back();
+    for (std::size_t c = 0; c < map.channels(); ++c) places[c] = packer.add(map, c);
+  }
+  packer.flush();
+  for (const auto& [map, places] :
+       {std::pair(&maps.normals, &packed.normals), {&maps.tangents, &packed.tangents}}) {
+    if (!*map) continue;
+    const MapComponent x = packer.add(**map, 0);
+    *places = {x, packer.add(**map, 1)};
+  }
+  packed.textures = std::move(packer).take();
+  return packed;
+}
+
 }  // namespace
 
-PackedMaps pack_maps(const SpatialBrdf& surface, const std::string& name) {
+PackedMaps pack_maps(const SpatialBrdf& surface, const std::string& name, bool in_blocks) {
+  if (in_blocks) return pack_pairs(surface, name);
   const SurfaceMaps& maps = surface.maps();
   PackedMaps packed;
   packed.weights.resize(maps.weights.size());

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <burnish/image/block_compression.h>
 #include <burnish/surface/spatial_brdf.h>
 
 namespace burnish {
@@ -16,8 +17,10 @@ struct MapTexture {
   std::string name;  ///< of the sampler
   int width = 0, height = 0;
   TableFormat format = TableFormat::unorm8;  ///< or half
-  std::vector<std::vector<std::byte>>
-      levels;  ///< [y][x][4], bytes or little-endian halves; what no map has is 0
+  TexelBlocks blocks = TexelBlocks::none;
+  double block_rms = 0;  ///< what blocks lose: the root of the mean square of level 0, of numbers up to 1
+  /// [y][x][4], bytes or little-endian halves; or blocks of pairs. What no map has is 0.
+  std::vector<std::vector<std::byte>> levels;
 };
 
 /// Where a map's channel is: a texture and one of its four components.
@@ -33,7 +36,8 @@ struct PackedMaps {
   std::optional<std::array<MapComponent, 2>> normals, tangents;    ///< x and y
 };
 
-/// Textures NAME0, NAME1, ...
-PackedMaps pack_maps(const SpatialBrdf& surface, const std::string& name);
+/// Textures NAME0, NAME1, ... Where `in_blocks` two channels a texture, in blocks of BC5 (image/block_compression.h): a
+/// byte for two weights, a byte for a normal. Throws Error where weights of halves should be in blocks.
+PackedMaps pack_maps(const SpatialBrdf& surface, const std::string& name, bool in_blocks = false);
 
 }  // namespace burnish

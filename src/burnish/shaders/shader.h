@@ -39,6 +39,8 @@ struct ShaderOptions {
   /// Of glsl: no uniforms are declared; the functions take the textures as their last arguments, all of them
   /// sampler2D, the 3-D one as a picture of its layers, the first at v = 0 and the others behind it.
   bool textures_are_arguments = false;
+  /// Of a surface: its maps are pairs in blocks, see pack_maps.
+  bool maps_in_blocks = false;
 };
 
 /// What one evaluation in the local frame costs, above the horizon. Floating-point operations are counted a

@@ -186,7 +186,7 @@ SpatialShader generate_shader(const SpatialBrdf& surface, const ShaderOptions& o
   ShaderFormula formula = spatial_formula(surface, options);
   SpatialShader shader{.text = {},
                        .textures = std::move(formula.textures),
-                       .maps = pack_maps(surface, map_name(options)),
+                       .maps = pack_maps(surface, map_name(options), options.maps_in_blocks),
                        .place_cost = {},
                        .light_cost = {}};
   const FormulaSurroundings around = formula_surroundings(options, shader.textures);
@@ -221,7 +221,7 @@ SplitSpatialShader split_shader(const SpatialBrdf& surface, const ShaderOptions&
                            .place = {},
                            .framed = false,
                            .lobes = split_formula(spatial_formula(surface, options), options),
-                           .maps = pack_maps(surface, map_name(options))};
+                           .maps = pack_maps(surface, map_name(options), options.maps_in_blocks)};
   split.framed = split.maps.normals || split.maps.tangents;
   split.declarations = split.lobes.declarations +
                        place_text(l, options.name, surface, split.maps, split.lobes.textures.size()).text +

@@ -69,6 +69,37 @@ TEST(MapPacking, KeepsEveryTexelOfEveryLevel) {
   expect_map(*surface.maps().tangents, *packed.tangents);
 }
 
+TEST(MapPacking, KeepsPairsInBlocks) {
+  const SpatialBrdf surface = smooth_surface(64);
+  const PackedMaps packed = pack_maps(surface, "m", true);
+  ASSERT_EQ(packed.textures.size(), 2u);
+  EXPECT_EQ(packed.textures[0].blocks, TexelBlocks::bc5_unorm);
+  EXPECT_EQ(packed.textures[1].blocks, TexelBlocks::bc5_snorm);
+  const auto expect_near = [&](const SurfaceMap& map, std::span<const MapComponent> places, double most) {
+    for (std::size_t c = 0; c < map.channels(); ++c) {
+      const MapTexture& texture = packed.textures[places[c].texture];
+      ASSERT_EQ(texture.levels.size(), map.levels());
+      for (std::size_t l = 0; l < 3; ++l) {
+        const int width = map.level_width(l), height = map.level_height(l);
+        const std::vector<float> pairs =
+            decode_bc5(width, height, texture.levels[l], texture.blocks == TexelBlocks::bc5_snorm);
+        double square = 0;
+        for (int i = 0; i < width * height; ++i) {
+          const auto value = static_cast<double>(map.texel(i % width, i / width, l)[c] / map.scale());
+          const double off =
+              value - static_cast<double>(pairs[2 * static_cast<std::size_t>(i) + places[c].component]);
+          square += off * off / (width * height);
+        }
+        EXPECT_LT(std::sqrt(square), most * (1 << 2 * l)) << l;
+      }
+    }
+  };
+  for (std::size_t j = 0; j < packed.weights.size(); ++j)
+    expect_near(surface.maps().weights[j], packed.weights[j], 0.02);
+  expect_near(*surface.maps().normals, *packed.normals, 0.004);
+  EXPECT_THROW(pack_maps(random_surface(4, 4), "m", true), Error);  // has weights of halves
+}
+
 // C++ has no textures: the program samples the maps of the test's places beforehand.
 TEST(SpatialShader, CppAgreesWithTheDefinition) {
   if (!has_tool("c++")) GTEST_SKIP() << "no C++ compiler";

@@ -18,7 +18,9 @@ constexpr std::uint32_t kZstandard = 2;
 constexpr std::size_t kHeaderSize = 80, kLevelSize = 24;
 
 /// Channel types of a data format descriptor's samples.
-constexpr std::uint32_t kAlpha = 15, kExponent = 0x20, kSignedFloat = 0xC0;
+constexpr std::uint32_t kAlpha = 15, kExponent = 0x20, kSigned = 0x40, kSignedFloat = 0xC0;
+/// Its colour models.
+constexpr std::uint32_t kRgbsda = 1, kBc5 = 132;
 
 struct ChannelSample {
   std::uint32_t bit_offset, bits, channel_type, lower, upper;
@@ -26,9 +28,19 @@ struct ChannelSample {
 
 struct Texels {
   std::uint32_t vk_format, type_size;
-  std::size_t bytes;  // of a texel
+  std::size_t bytes;  // of a texel, or of a block
   std::vector<ChannelSample> samples;
+  std::uint32_t model = kRgbsda, side = 1;  // of a block
 };
+
+// Pairs in blocks of 4 x 4.
+Texels blocks_of(bool has_sign) {
+  const std::uint32_t qualifiers = has_sign ? kSigned : 0, lower = has_sign ? 0x80000000 : 0,
+                      upper = has_sign ? 0x7FFFFFFF : 0xFFFFFFFF;
+  Texels texels{has_sign ? 142U : 141U, 1, 16, {}, kBc5, 4};
+  for (std::uint32_t c = 0; c < 2; ++c) texels.samples.push_back({64 * c, 64, c | qualifiers, lower, upper});
+  return texels;
+}
 
 Texels texels_of(TableFormat format, std::size_t channels) {
   if (format == TableFormat::rgb9e5) {
@@ -74,8 +86,8 @@ std::string descriptor(const Texels& texels, bool compressed) {
   put(text, 0, 4);  // Khronos, basic
   put(text, 2, 2);  // version 1.3
   put(text, block, 2);
-  put(text, 0x00010101, 4);  // RGBSDA, BT.709, linear, no flags
-  put(text, 0, 4);           // blocks of one texel
+  put(text, 0x00010100 | texels.model, 4);  // BT.709, linear, no flags
+  put(text, (texels.side - 1) * 0x101, 4);
   put(text, compressed ? 0 : texels.bytes, 8);
   for (const ChannelSample& s : texels.samples) {
     put(text, s.bit_offset, 2);
@@ -182,7 +194,9 @@ std::string encode_ktx2(const StoredTexels& texels, bool compressed) {
   std::vector<std::string> levels;
   for (const std::vector<std::byte>& level : texels.levels)
     levels.emplace_back(reinterpret_cast<const char*>(level.data()), level.size());
-  return encoded(texels_of(texels.format, 4), {texels.width, texels.height, 0, 1}, levels, compressed);
+  const Texels form = texels.blocks == TexelBlocks::none ? texels_of(texels.format, 4)
+                                                         : blocks_of(texels.blocks == TexelBlocks::bc5_snorm);
+  return encoded(form, {texels.width, texels.height, 0, 1}, levels, compressed);
 }
 
 std::string encode_ktx2(const Table& table, bool compressed) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <burnish/image/block_compression.h>
 #include <burnish/textures/texture.h>
 
 namespace burnish {
@@ -17,9 +18,11 @@ namespace burnish {
 std::string encode_ktx2(const Texture& texture, bool compressed);
 
 /// A texture whose texels are stored already: four channels of bytes (R8G8B8A8_UNORM) or halves
-/// (R16G16B16A16_SFLOAT), level after level, each [y][x][4]. Throws Error for other formats.
+/// (R16G16B16A16_SFLOAT), level after level, each [y][x][4]; or blocks of pairs, BC5_UNORM_BLOCK or BC5_SNORM_BLOCK,
+/// whatever the format. Throws Error for other formats.
 struct StoredTexels {
   TableFormat format = TableFormat::unorm8;
+  TexelBlocks blocks = TexelBlocks::none;
   int width = 0, height = 0;
   std::span<const std::vector<std::byte>> levels;
 };

@@ -133,6 +133,44 @@ TEST(Ktx2File, OpensInKtxParse) {
           path.string(), c.vk_format, 35 * c.texel, compressed ? 2 : 0);
       EXPECT_EQ(std::system(fmt::format("node -e \"{}\"", script).c_str()), 0) << c.vk_format;
     }
+  const std::vector<std::vector<std::byte>> levels{std::vector<std::byte>(6 * 16)};
+  std::ofstream(path, std::ios::binary) << encode_ktx2(
+      StoredTexels{.blocks = TexelBlocks::bc5_snorm, .width = 9, .height = 7, .levels = levels}, true);
+  const std::string script = fmt::format(
+      "const k = require('ktx-parse').read(new Uint8Array(require('fs').readFileSync('{}')));"
+      "const d = k.dataFormatDescriptor[0];"
+      "process.exit(k.vkFormat === 142 && k.levels[0].uncompressedByteLength === 96 && d.colorModel === 132 "
+      "&& "
+      "d.samples.length === 2 && d.samples[1].bitOffset === 64 && d.samples[1].bitLength === 63 ? 0 : 1)",
+      path.string());
+  EXPECT_EQ(std::system(fmt::format("node -e \"{}\"", script).c_str()), 0);
+}
+
+TEST(Ktx2File, SaysWhatBlocksOfPairsAre) {
+  const std::vector<std::vector<std::byte>> levels{std::vector<std::byte>(6 * 16),
+                                                   std::vector<std::byte>(16)};
+  for (const TexelBlocks blocks : {TexelBlocks::bc5_unorm, TexelBlocks::bc5_snorm}) {
+    const bool has_sign = blocks == TexelBlocks::bc5_snorm;
+    const std::string file =
+        encode_ktx2(StoredTexels{.blocks = blocks, .width = 9, .height = 7, .levels = levels}, false);
+    const auto word = [&](std::size_t at) {
+      std::uint32_t value;
+      std::memcpy(&value, &file[at], sizeof value);
+      return value;
+    };
+    EXPECT_EQ(word(12), has_sign ? 142u : 141u);
+    EXPECT_EQ(word(16), 1u);  // size of a type
+    // the descriptor [DataFormat]: model 132, blocks of 4 x 4, 16 bytes, two samples of 64 bits
+    const std::size_t descriptor = word(48) + 4;
+    EXPECT_EQ(file[descriptor + 8], static_cast<char>(132));
+    EXPECT_EQ(word(descriptor + 12), 0x0303u);
+    EXPECT_EQ(word(descriptor + 16), 16u);
+    const std::uint32_t qualifiers = has_sign ? 0x40000000 : 0;
+    EXPECT_EQ(word(descriptor + 24), 0x003F0000u | qualifiers);
+    EXPECT_EQ(word(descriptor + 40), 0x013F0040u | qualifiers);
+    EXPECT_EQ(word(descriptor + 32), has_sign ? 0x80000000u : 0u);
+    EXPECT_EQ(word(descriptor + 36), has_sign ? 0x7FFFFFFFu : 0xFFFFFFFFu);
+  }
 }
 
 TEST(Ktx2File, HasOneOrThreeChannels) {

@@ -70,19 +70,29 @@ unsigned upload_texture(const GlTexture& texture) {
 }
 
 unsigned upload_texture(const MapTexture& texture, bool single) {
-  const bool half = texture.format == TableFormat::half;
+  const bool half = texture.format == TableFormat::half, in_blocks = texture.blocks != TexelBlocks::none;
+  const GLenum blocks = texture.blocks == TexelBlocks::bc5_snorm ? GL_COMPRESSED_SIGNED_RG_RGTC2
+                                                                 : GL_COMPRESSED_RG_RGTC2,
+               stored = in_blocks ? blocks
+                        : single  ? GL_RGBA32F
+                        : half    ? GL_RGBA16F
+                                  : GL_RGBA8;
   GLuint name = 0;
   glCreateTextures(GL_TEXTURE_2D, 1, &name);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTextureStorage2D(name, static_cast<GLsizei>(texture.levels.size()),
-                     single ? GL_RGBA32F
-                     : half ? GL_RGBA16F
-                            : GL_RGBA8,
-                     texture.width, texture.height);
-  for (std::size_t l = 0; l < texture.levels.size(); ++l)
-    glTextureSubImage2D(name, static_cast<GLint>(l), 0, 0, std::max(texture.width >> l, 1),
-                        std::max(texture.height >> l, 1), GL_RGBA, half ? GL_HALF_FLOAT : GL_UNSIGNED_BYTE,
-                        texture.levels[l].data());
+  glTextureStorage2D(name, static_cast<GLsizei>(texture.levels.size()), stored, texture.width,
+                     texture.height);
+  for (std::size_t l = 0; l < texture.levels.size(); ++l) {
+    const auto level = static_cast<GLint>(l);
+    const GLsizei width = std::max(texture.width >> l, 1), height = std::max(texture.height >> l, 1);
+    const std::vector<std::byte>& bytes = texture.levels[l];
+    if (in_blocks)
+      glCompressedTextureSubImage2D(name, level, 0, 0, width, height, blocks,
+                                    static_cast<GLsizei>(bytes.size()), bytes.data());
+    else
+      glTextureSubImage2D(name, level, 0, 0, width, height, GL_RGBA, half ? GL_HALF_FLOAT : GL_UNSIGNED_BYTE,
+                          bytes.data());
+  }
   glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
   glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   for (const GLenum edges : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})

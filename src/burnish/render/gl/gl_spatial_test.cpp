@@ -53,8 +53,9 @@ std::vector<Question> questions(const SpatialBrdf& surface, std::size_t count) {
 
 // The shader's answers, with maps of floats or as they are exported.
 std::vector<float> answers(const SpatialBrdf& surface, const std::vector<Question>& questions,
-                           ShaderFilter filter, bool single_maps) {
-  const SpatialShader shader = generate_shader(surface, {.filter = filter, .name = "wall"});
+                           ShaderFilter filter, bool single_maps, bool in_blocks = false) {
+  const SpatialShader shader =
+      generate_shader(surface, {.filter = filter, .name = "wall", .maps_in_blocks = in_blocks});
   GlFunction function(
       shader.text +
           "layout(std430, binding = 2) readonly buffer Places { float places[]; };\n"
@@ -98,6 +99,25 @@ TEST_F(GlSpatial, ShaderAgreesWithTheEvaluator) {
     EXPECT_LT(off[off.size() / 2], most / 10);
     EXPECT_LT(off[off.size() * 99 / 100], most);
   }
+}
+
+// What blocks keep of smooth maps: of 8 bits of weights half a step or two, of normals a step of 127.
+TEST_F(GlSpatial, ReadsMapsInBlocks) {
+  const SpatialBrdf surface = smooth_surface(64);
+  const SpatialEvaluator evaluator(surface);
+  const std::vector<Question> asked = questions(surface, 3000);
+  const std::vector<float> found = answers(surface, asked, ShaderFilter::hardware, false, true);
+  std::vector<double> off;
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    const Question& q = asked[i];
+    std::array<float, 3> truth{};
+    evaluator.eval(evaluator.place(q.u, q.v, q.lod), q.wi, q.wo, truth);
+    for (std::size_t c = 0; c < 3; ++c)
+      off.push_back(static_cast<double>(std::abs(found[3 * i + c] - truth[c]) / std::ranges::max(truth)));
+  }
+  std::ranges::sort(off);
+  EXPECT_LT(off[off.size() / 2], 0.01);
+  EXPECT_LT(off[off.size() * 99 / 100], 0.1);
 }
 
 constexpr int kSpatialSize = 160;

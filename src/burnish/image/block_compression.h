@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace burnish {
+
+/// How a texture's bytes stand for its texels: each by itself, or pairs of numbers in blocks (see encode_bc5), in
+/// [0, 1] or in [-1, 1].
+enum class TexelBlocks { none, bc5_unorm, bc5_snorm };
+
+/// "none", "bc5_unorm" or "bc5_snorm".
+std::string_view to_string(TexelBlocks blocks) noexcept;
+
+/// Pairs of numbers as texture units read them at a byte a texel: BC5 (RGTC2), blocks of 4 x 4 texels, row by row, each
+/// channel two values of 8 bits and for every texel which of them it is, or a mixture. Of numbers in [0, 1], or in
+/// [-1, 1] where `has_sign`; what is outside is clamped. `pairs` are [y][x][2]; blocks at the right and lower edge repeat
+/// their last texels. The values are searched for the least squared error: of noise in [0, 1] it is 0.03 rms, of what
+/// is smooth within a block 0.002. Same bits for any number of threads. Throws Error for another count of numbers.
+/// Source: [DataFormat, BC5].
+std::vector<std::byte> encode_bc5(int width, int height, std::span<const float> pairs, bool has_sign);
+
+/// What a texture unit makes of it, [y][x][2]. Throws Error for another count of bytes.
+std::vector<float> decode_bc5(int width, int height, std::span<const std::byte> blocks, bool has_sign);
+
+}  // namespace burnish
