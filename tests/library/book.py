@@ -79,9 +79,14 @@ class Bench:
               file=sys.stderr)
 
     def print_ratios(self, before):
-        """Of each kind and count: means by draw and of all, and by how much pairs' errors differ from before."""
-        for group in dict.fromkeys(tuple(key.split(", ")[:2]) for key in self.errors):
-            keys = [key for key in self.errors if tuple(key.split(", ")[:2]) == group]
+        """Of each kind and count, and of both kinds: means by draw and of all, and by how much pairs' errors differ
+        from before."""
+        kinds, counts = (dict.fromkeys(key.split(", ")[at] for key in self.errors) for at in (0, 1))
+        together = {"both": list(kinds)} if len(kinds) > 1 else {}
+        for kind, count in ((kind, count) for count in counts for kind in [*kinds, *together]):
+            group = (kind, count)
+            keys = [key for key in self.errors
+                    if key.split(", ")[0] in together.get(kind, [kind]) and key.split(", ")[1] == count]
             ratios = []
             for draw in range(self.draws):
                 book, fit = zip(*(self.errors[key] for key in keys if f", draw {draw}, " in key))
