@@ -32,8 +32,8 @@ std::string format_surface_exr(const SurfaceModel& surface);
 /// The bytes of a surface's file by the ending of its name: format_surface_exr's for .exr, else format_surface's.
 std::string format_surface_as(const std::filesystem::path& name, const SurfaceModel& surface);
 
-/// Reads either file, known by its content. Throws Error, naming the file, and of .burnish the offset, if the bytes are no such file or
-/// contradict themselves in any way. Memory taken is at most a fixed multiple of the file's size.
+/// Reads either file, known by its content. Throws Error, naming the file, and of .burnish the offset, if the bytes are
+/// no such file or contradict themselves in any way. Memory taken is at most a fixed multiple of the file's size.
 SurfaceModel parse_surface(const FileBytes& file);
 
 /// True if the bytes start as a surface's file does; of OpenEXR they have to hold the first header.
