@@ -49,6 +49,7 @@ TEST_F(SurfaceCommand, FitsWhatWasMeasured) {
   ASSERT_EQ(fit.status, 0) << fit.output;
   const auto report = nlohmann::json::parse(fit.output);
   EXPECT_EQ(report["held_out"]["pictures"], 3);
+  EXPECT_EQ(report["lights_and_views"], 15);
   EXPECT_GT(report["fitted"]["psnr"].get<double>(), 25);
   EXPECT_EQ(report["methods"].size(), 4u);
   EXPECT_EQ(parse_surface(read_file(file("wall.burnish"))).brdf.width(), 20);
@@ -90,9 +91,11 @@ TEST_F(SurfaceCommand, SaysWhatIsExactAndWithoutData) {
   write_png(file("black/mask.png"), mask);
   for (CapturePicture& picture : form.pictures)
     if (!picture.held_out) picture.mask = "mask.png";
+  for (CapturePicture& picture : form.pictures) picture.light = {.is_direction = true, .at = {0, 0, 1}};
   write(file("black/capture.json"), format_capture(form));
   const Outcome fit =
       burnish("fit-surface '{0}/black' -o '{0}/w' --lobes 1 --lobe-bytes 1K --rounds 1 --compare");
+  EXPECT_THAT(fit.output, HasSubstr("8 pictures (1 pair of light and view fitted);"));
   EXPECT_THAT(fit.output, HasSubstr("0 missing; 1 texel without data\n"));
   EXPECT_THAT(fit.output, HasSubstr("\nfitted     exact of 6 pictures\n"));
   EXPECT_THAT(fit.output, HasSubstr("\nlobes      exact of what was held out"));

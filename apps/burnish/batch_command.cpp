@@ -113,7 +113,7 @@ void print_text(const BatchArguments& arguments, const BatchSummary& summary,
 
 void write_script(const BatchArguments& arguments, const CLI::App& verb) {
   // what is wrong with it is said now
-  const std::size_t materials = library_entries(arguments.place, arguments.out).size();
+  const std::size_t materials = library_entries(arguments.place, {arguments.out}).size();
   std::vector<std::string> words = command_words(verb);
   if (!arguments.batch.resume) words.insert(words.begin() + 2, "--resume");
   const std::filesystem::path folder(arguments.out);
@@ -135,7 +135,7 @@ void run(const BatchArguments& arguments, const CLI::App& verb) {
   for (const bool isotropic : {false, true})
     options.fit(isotropic);  // contradictions are misuses, before all else
   if (arguments.slurm.wanted) return write_script(arguments, verb);
-  Batch batch(library_entries(arguments.place, arguments.out), options);
+  Batch batch(library_entries(arguments.place, {arguments.out}), options);
   std::vector<MaterialRecord> failed;
   Redrawn progress(batch);
   while (const auto record = batch.next([&progress] { progress.draw_if_due(); })) {

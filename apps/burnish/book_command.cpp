@@ -48,7 +48,8 @@ void make(const BookArguments& arguments) {
   const ThreadLimit limit(arguments.threads);
   MaterialBook shared;
   if (!arguments.shared.empty()) shared = parse_book(read_file(arguments.shared));
-  const std::vector<LibraryEntry> entries = library_entries(arguments.place, arguments.out);
+  const std::vector<LibraryEntry> entries =
+      library_entries(arguments.place, {arguments.out, arguments.shared});
   const BookOfLibrary made =
       book_of_library(entries, arguments.open, arguments.options,
                       arguments.shared.empty() ? nullptr : &shared, progress_bar("reading"));

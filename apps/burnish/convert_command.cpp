@@ -50,16 +50,17 @@ bool converts_surface(const ConvertArguments& arguments, const std::string& form
     return false;
   const FileBytes file = read_file(spec);
   if (!looks_like_surface(file.bytes)) return false;
-  if (format != "exr" && format != "model" && format != "burnish")
+  const bool slices = format == "exr" && !arguments.to.empty();
+  if (slices || (format != "exr" && format != "model" && format != "burnish"))
     throw Error::in_file(
         spec, "a surface to become .exr or .burnish, or surface:FILE#COLUMN,ROW for one of its texels",
-        format);
+        slices ? "slices" : format);
   const SurfaceModel surface = parse_surface(file);
   const std::string bytes = format == "burnish" ? format_surface(surface) : format_surface_exr(surface);
   write_then_rename(arguments.out, bytes);
   if (arguments.json)
     print_as_json({{"output", arguments.out},
-                   {"format", format},
+                   {"format", format == "burnish" ? "burnish" : "model"},
                    {"bytes", bytes.size()},
                    {"lost", nlohmann::ordered_json::array()}});
   return true;

@@ -104,8 +104,9 @@ void print_surface_report(const FitSurfaceArguments& arguments, const SurfaceRep
     fmt::print("capture    {} x {} texels of at most {}{}\n", report.width, report.height,
                counted(report.pictures, "sample"), without_data);
   else
-    fmt::print("capture    {} x {} texels, {}; {} clipped, {} missing{}\n", report.width, report.height,
-               counted(report.pictures, "picture"), counted(report.clipped_pixels, "pixel"),
+    fmt::print("capture    {} x {} texels, {} ({} of light and view fitted); {} clipped, {} missing{}\n",
+               report.width, report.height, counted(report.pictures, "picture"),
+               counted(report.lights_and_views, "pair"), counted(report.clipped_pixels, "pixel"),
                report.missing_pixels, without_data);
   fmt::print("surface    {} of {} bytes together, {} + {} bytes a texel (weights, normals)\n",
              counted(report.lobes, "lobe"), report.lobe_bytes, report.weight_bytes, report.frame_bytes);
@@ -215,7 +216,7 @@ void add_fit_surface_command(CLI::App& app, FitCrew* crew) {
       "          burnish fit-surface fabric01.btf -o fabric.burnish --normals flat\n"
       "          burnish fit-surface samples.csv -o spots.burnish --lobes 3\n"
       "          burnish fit-surface capture/ -o wall.burnish --lobes 4 --compare\n"
-      "          burnish fit-surface capture/ -o wall.burnish --book library.burnish");
+      "          burnish fit-surface capture/ -o wall.burnish --book lobes.burnish");
   auto arguments = std::make_shared<FitSurfaceArguments>();
   SurfaceFitOptions& options = arguments->options;
   verb->add_option(

@@ -98,7 +98,7 @@ Batch* batch(const Materials& materials, const std::filesystem::path& folder,
   const auto* arguments = std::get_if<std::vector<std::string>>(&materials);
   std::vector<LibraryEntry> entries =
       arguments ? named_entries(*arguments)
-                : library_entries(std::get<std::filesystem::path>(materials), folder);
+                : library_entries(std::get<std::filesystem::path>(materials), {folder});
   const nb::gil_scoped_release released;
   return new Batch(std::move(entries), std::move(options));
 }

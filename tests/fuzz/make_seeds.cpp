@@ -6,6 +6,7 @@
 #include <burnish/file.h>
 #include <burnish/testing/books.h>
 #include <burnish/testing/btf.h>
+#include <burnish/testing/checkpoints.h>
 #include <burnish/testing/seed_files.h>
 
 int main(int argc, char** argv) {
@@ -25,6 +26,14 @@ int main(int argc, char** argv) {
   write("illuminant", "illuminant", burnish::seeds::kIlluminant);
   write("surface", "surface", burnish::seeds::surface_seed());
   write("surface", "surface-exr", burnish::seeds::surface_exr_seed());
+  write("checkpoint", "weights", burnish::format_checkpoint(burnish::some_checkpoint(true)));
+  write("checkpoint", "lobes",
+        burnish::format_checkpoint(
+            burnish::LobesCheckpoint{.key = 7,
+                                     .rounds = 2,
+                                     .log_values = {{0.5, -1}, {2}},
+                                     .fits = {.weights = {1, 0}, .normals = {}, .trust = {0.5f}},
+                                     .normals_of_all = {0.1f, 0}}));
   write("book", "book", burnish::format_book(burnish::random_book()));
   write("capture", "capture", burnish::seeds::kCapture);
   write("csv", "texels", burnish::seeds::kTexelCsv);

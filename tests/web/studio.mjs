@@ -182,7 +182,7 @@ const seeds = fs.readdirSync(folder).filter((name) => name.startsWith("seed.") &
 const kFormats = {"MERL": "a.binary", "UTIA": "a.bin", "RGL": "a.bsdf", "MBSDF": "a.mbsdf", "Zemax": "z.bsdf", "tensor tree": "tree.xml", "Klems": "seed.klems",
                   "Speos": "seed.speos", "OpenMATERIAL 3D": "a.xompt", "ALTA": "a.alta", "ASTM E1392": "a.astm", "CSV": "a.csv", "Cornell": "a.cornell",
                   "model, OpenEXR": "a.exr", "model, compact": "a.burnish", "baseline": "seed.baseline", "network weights": "seed.neural"};
-const kMoreFormats = ["book of a library", "Neural Processes codes"];  // tried apart
+const kMoreFormats = ["book of a library", "surface", "Neural Processes codes"];  // tried apart
 const listed = run("help", "formats").split("\n").filter((line) => / (both|read) /.test(line)).map((line) => line.split(/ {2,}/)[0]);
 assert.deepEqual([...Object.keys(kFormats), ...kMoreFormats].sort(), listed.sort());
 const formats = [...Object.values(kFormats), "dgf.json"];

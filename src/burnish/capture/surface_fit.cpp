@@ -32,6 +32,16 @@ namespace burnish {
 
 namespace {
 
+std::size_t lights_and_views(const CaptureForm& form) {
+  std::vector<std::array<double, 8>> pairs;
+  for (const auto& [file, light, view, scale, mask, held_out] : form.pictures)
+    if (!held_out)
+      pairs.push_back({light.is_direction ? 1.0 : 0.0, light.at.x, light.at.y, light.at.z,
+                       view.is_direction ? 1.0 : 0.0, view.at.x, view.at.y, view.at.z});
+  std::ranges::sort(pairs);
+  return static_cast<std::size_t>(std::ranges::unique(pairs).begin() - pairs.begin());
+}
+
 // What of a capture is kept to fit lobes to.
 constexpr std::size_t kSampleValues = 6'000'000;
 // Pixels that lobes are refined on: half of them count as pixels, half as pairs.
@@ -789,6 +799,7 @@ class SurfaceFitter {
     report_.height = static_cast<std::size_t>(form.height);
     report_.pictures = form.pictures.size();
     report_.of_samples = form.own_directions;
+    report_.lights_and_views = form.own_directions ? 0 : lights_and_views(form);
     report_.lobes = scales_.size();
     report_.left_out = capture_.left_out();
     report_.normals = normals_from_;

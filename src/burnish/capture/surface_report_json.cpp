@@ -27,6 +27,7 @@ nlohmann::ordered_json json_of(const SurfaceReport& report) {
   return Object{{"width", report.width},
                 {"height", report.height},
                 {"pictures", report.pictures},
+                {"lights_and_views", report.lights_and_views},
                 {"of_samples", report.of_samples},
                 {"left_out", std::move(left_out)},
                 {"missing_pixels", report.missing_pixels},

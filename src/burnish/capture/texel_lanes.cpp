@@ -9,6 +9,8 @@ BURNISH_BEGIN_TARGET;
 
 using D = hn::CappedTag<float, kTexelLanes>;
 
+constexpr float kLeastSquare = 1e-30f;  // of vectors that have a direction
+
 void turn_all(const TexelFrames& frames, const std::array<TexelRow, 3>& towards, bool any_length,
               float* local, std::size_t plane) {
   const D d;
@@ -18,9 +20,10 @@ void turn_all(const TexelFrames& frames, const std::array<TexelRow, 3>& towards,
     if (any_length) {
       const auto square = hn::MulAdd(z, z, hn::MulAdd(y, y, hn::Mul(x, x)));
       const auto inverse = hn::Div(hn::Set(d, 1.0f), hn::Sqrt(square));
-      x = hn::Mul(x, inverse);
-      y = hn::Mul(y, inverse);
-      z = hn::Mul(z, inverse);
+      const auto far = hn::Ge(square, hn::Set(d, kLeastSquare));
+      x = hn::IfThenElseZero(far, hn::Mul(x, inverse));
+      y = hn::IfThenElseZero(far, hn::Mul(y, inverse));
+      z = hn::IfThenElse(far, hn::Mul(z, inverse), hn::Set(d, 1.0f));
     }
     for (std::size_t r = 0; r < 3; ++r) {
       const TexelRow* const axis = &frames[3 * r];
@@ -202,8 +205,8 @@ struct TexelUnknowns {
     for (std::size_t r = 0; r < n; ++r) solution[r] = hn::IfThenElseZero(free[r], solution[r]);
   }
 
-  /// Whether the solution is the least of all w >= 0; sets free what should be.
-  HWY_INLINE M exchange() {
+  /// Whether the solution is the least of all w >= 0, and below `most`; sets free what should be.
+  HWY_INLINE M exchange(double most) {
     const D64 d;
     const V zero = hn::Zero(d);
     M good = hn::Eq(zero, zero);
@@ -213,7 +216,7 @@ struct TexelUnknowns {
       const M level = hn::Le(slope, hn::Mul(hn::Set(d, kMinSlope), hn::Abs(b[r])));
       const M stays = hn::Or(hn::And(free[r], hn::Gt(solution[r], zero)), hn::AndNot(free[r], level));
       free[r] = hn::Xor(free[r], hn::Not(stays));
-      good = hn::And(good, stays);
+      good = hn::And(good, hn::And(stays, hn::Lt(solution[r], hn::Set(d, most))));
     }
     return good;
   }
@@ -221,7 +224,8 @@ struct TexelUnknowns {
 
 std::uint32_t weights_of(std::size_t lobes, const TexelRow* matrix, const TexelRow* vector, double ridge,
                          bool near, TexelRow* weights) {
-  constexpr int kTurns = 8;  // few texels take more than four
+  constexpr int kTurns = 8;             // few texels take more than four
+  constexpr double kMostWeight = 1e30;  // beyond it the other solver answers
   const TexelUnknowns::D64 d;
   const hn::Rebind<float, TexelUnknowns::D64> d32;
   using V = TexelUnknowns::V;
@@ -236,15 +240,19 @@ std::uint32_t weights_of(std::size_t lobes, const TexelRow* matrix, const TexelR
       unknowns.b[r] = hn::PromoteTo(d, hn::LoadU(d32, vector[r].data() + i));
       weight[r] = hn::PromoteTo(d, hn::LoadU(d32, weights[r].data() + i));
       trace = hn::Add(trace, unknowns.a[r][r]);
-      unknowns.free[r] = near ? hn::Gt(weight[r], hn::Zero(d)) : hn::Eq(trace, trace);
+      unknowns.free[r] = near ? hn::Gt(weight[r], hn::Zero(d)) : hn::Eq(hn::Zero(d), hn::Zero(d));
     }
     const V added = hn::MulAdd(hn::Set(d, ridge / static_cast<double>(lobes)), trace, hn::Set(d, 1e-30));
     for (std::size_t r = 0; r < lobes; ++r) unknowns.a[r][r] = hn::Add(unknowns.a[r][r], added);
+    // what is not finite in one number is not in this
+    V together = trace;
+    for (std::size_t r = 0; r < lobes; ++r) together = hn::MulAdd(hn::Zero(d), unknowns.b[r], together);
+    const auto sound = hn::IsFinite(together);
     // turns, until all texels are done
-    auto done = hn::Lt(trace, hn::Zero(d));
+    auto done = hn::Not(sound);
     for (int turn = 0; turn < kTurns && !hn::AllTrue(d, done); ++turn) {
       unknowns.solve_free();
-      const auto good = unknowns.exchange();
+      const auto good = unknowns.exchange(kMostWeight);
       for (std::size_t r = 0; r < lobes; ++r)
         weight[r] = hn::IfThenElse(hn::AndNot(done, good), unknowns.solution[r], weight[r]);
       done = hn::Or(done, good);
@@ -252,7 +260,7 @@ std::uint32_t weights_of(std::size_t lobes, const TexelRow* matrix, const TexelR
     for (std::size_t r = 0; r < lobes; ++r)
       hn::StoreU(hn::DemoteTo(d32, weight[r]), d32, weights[r].data() + i);
     std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, done, bits);
+    hn::StoreMaskBits(d, hn::And(done, sound), bits);
     found |= static_cast<std::uint32_t>(bits[0]) << i;
   }
   return found;

@@ -22,7 +22,7 @@ struct TexelPixels {
 using TexelFrames = std::array<TexelRow, 9>;
 
 /// Vectors as the frames see them, of length 1: `towards` are rows of x, y and z, unit vectors but where `any_length`;
-/// row r of the result begins at local + r * plane.
+/// row r of the result begins at local + r * plane. What is shorter than 1e-15 is taken for (0, 0, 1).
 void turn_into(const TexelFrames& frames, const std::array<TexelRow, 3>& towards, bool any_length,
                float* local, std::size_t plane) noexcept;
 
@@ -67,9 +67,10 @@ void find_normal_equations(const TexelPictures& pictures, const TexelPass& pass,
                            float* trust, TexelRow* matrix, TexelRow* vector) noexcept;
 
 /// The weights w >= 0 with the least w^T A w / 2 - b^T w, A as find_normal_equations gives it with `ridge` times its mean
-/// diagonal added, by block principal pivoting [PortugalJudiceVicente1994]: what is below 0 is fixed at 0, what would
+/// diagonal and 1e-30 added, by block principal pivoting [PortugalJudiceVicente1994]: what is below 0 is fixed at 0, what would
 /// rise from there is set free, all at once. Begins with those free that are > 0, or unless `near` with all. Returns
-/// bits of the texels that it ended for; the weights of others are as they were.
+/// bits of the texels that it ended for, with weights below 1e30; those of others, and of equations that are not
+/// finite, are as they were.
 std::uint32_t find_weights(std::size_t lobes, const TexelRow* matrix, const TexelRow* vector, double ridge,
                            bool near, TexelRow* weights) noexcept;
 

@@ -363,7 +363,7 @@ class TexelSolver::Block {
     }
   }
 
-  /// Vectors towards a station, not of length 1 where it is a point: squares of the largest component stay finite.
+  /// Vectors towards a station, not of length 1 where it is a point: in units in which no square overflows.
   void find_towards(const Station& station) {
     const std::array<double, 3> at{station.at.x, station.at.y, station.at.z};
     const CaptureForm& form = solver_.form_;
@@ -496,7 +496,7 @@ class TexelSolver::Block {
             values[c][i] = samples_.values[pixel(k, i) * kCaptureChannels + c];
       }
       if (std::all_of(states, states + count_, [](PixelState state) { return state == PixelState::there; })) {
-        states_[k].fill(PixelState::there);
+        states_[k].fill(PixelState::there);  // and none is clipped, as was filled in above
         there_[k].fill(1);
         continue;
       }

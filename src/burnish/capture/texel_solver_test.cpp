@@ -55,6 +55,115 @@ TEST(SolveNonnegative, GivesZerosForWhatIsNotFinite) {
   EXPECT_EQ(w[0], 0);
 }
 
+// Equations side by side, as find_normal_equations gives them, and where each lane is not finite.
+struct SomeEquations {
+  std::vector<TexelRow> matrix, vector, weights;
+};
+SomeEquations some_equations(std::size_t n, Pcg32& random) {
+  SomeEquations some{.matrix = std::vector<TexelRow>(n * (n + 1) / 2),
+                     .vector = std::vector<TexelRow>(n),
+                     .weights = std::vector<TexelRow>(n)};
+  for (std::size_t lane = 0; lane < kTexelLanes; ++lane) {
+    std::vector<double> m((n + 3) * n);
+    for (double& value : m) value = random.uniform();
+    for (std::size_t i = 0, at = 0; i < n; ++i) {
+      some.vector[i][lane] = static_cast<float>(2 * random.uniform() - 0.7);
+      some.weights[i][lane] = random.next() % 3 == 0 ? 0 : static_cast<float>(random.uniform());
+      for (std::size_t j = 0; j <= i; ++j, ++at) {
+        double sum = i == j ? 1e-3 : 0;
+        for (std::size_t r = 0; r < n + 3; ++r) sum += m[r * n + i] * m[r * n + j];
+        some.matrix[at][lane] = static_cast<float>(sum);
+      }
+    }
+  }
+  return some;
+}
+
+TEST(TexelLanes, WeightsAreTheOtherSolvers) {
+  constexpr double kSomeRidge = 1e-6;
+  Pcg32 random(9);
+  std::size_t found_of_all = 0, all = 0, at_bound = 0;
+  for (std::size_t n = 1; n <= kMaxSurfaceLobes; ++n)
+    for (const bool near : {false, true}) {
+      SomeEquations some = some_equations(n, random);
+      const std::vector<TexelRow> before = some.weights;
+      const std::uint32_t found =
+          find_weights(n, some.matrix.data(), some.vector.data(), kSomeRidge, near, some.weights.data());
+      for (std::size_t lane = 0; lane < kTexelLanes; ++lane) {
+        std::vector<double> a(n * n), b(n), w(n);
+        double trace = 0;
+        for (std::size_t i = 0, at = 0; i < n; ++i) {
+          b[i] = static_cast<double>(some.vector[i][lane]);
+          for (std::size_t j = 0; j <= i; ++j, ++at)
+            a[i * n + j] = a[j * n + i] = static_cast<double>(some.matrix[at][lane]);
+          trace += a[i * n + i];
+        }
+        for (std::size_t i = 0; i < n; ++i)
+          a[i * n + i] += kSomeRidge * trace / static_cast<double>(n) + 1e-30;
+        solve_nonnegative(a, b, w);
+        const bool is_found = (found >> lane & 1U) != 0;
+        for (std::size_t i = 0; i < n; ++i) {
+          if (is_found)
+            EXPECT_NEAR(static_cast<double>(some.weights[i][lane]), w[i], 1e-5 * (1 + w[i]))
+                << n << ' ' << lane;
+          else
+            EXPECT_EQ(some.weights[i][lane], before[i][lane]);
+          at_bound += is_found && w[i] == 0;
+        }
+        found_of_all += is_found;
+        ++all;
+      }
+    }
+  EXPECT_GT(found_of_all, all * 9 / 10);
+  EXPECT_GT(at_bound, all);
+}
+
+TEST(TexelLanes, WeightsOfWhatIsNotFiniteAreLeftToTheOtherSolver) {
+  Pcg32 random(2);
+  for (const bool near : {false, true})
+    for (const float value : {NAN, INFINITY, -INFINITY})
+      for (const bool in_matrix : {false, true}) {
+        SomeEquations some = some_equations(3, random);
+        (in_matrix ? some.matrix[2] : some.vector[1])[7] = value;
+        const std::vector<TexelRow> before = some.weights;
+        const std::uint32_t found =
+            find_weights(3, some.matrix.data(), some.vector.data(), 1e-6, near, some.weights.data());
+        EXPECT_EQ(found >> 7 & 1U, 0u);
+        EXPECT_NE(found, 0u);
+        for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(some.weights[i][7], before[i][7]);
+      }
+}
+
+TEST(TexelLanes, VectorsTurnIntoFrames) {
+  Pcg32 random(4);
+  TexelFrames frames;
+  std::array<ShadingFrame, kTexelLanes> exact;
+  std::array<TexelRow, 3> towards;
+  std::array<Vec3, kTexelLanes> vectors;
+  for (std::size_t i = 0; i < kTexelLanes; ++i) {
+    exact[i] = frame_about(normalize({random.uniform() - 0.5, random.uniform() - 0.5, 1}), {1, 0, 0});
+    std::size_t row = 0;
+    for (const Vec3& axis : {exact[i].tangent, exact[i].bitangent, exact[i].normal})
+      for (const double x : {axis.x, axis.y, axis.z}) frames[row++][i] = static_cast<float>(x);
+    vectors[i] =
+        3 * random.uniform() * Vec3{random.uniform() - 0.5, random.uniform() - 0.5, random.uniform()};
+  }
+  vectors[5] = {0, 0, 1e-25};  // no direction: (0, 0, 1)
+  for (std::size_t i = 0; i < kTexelLanes; ++i) {
+    towards[0][i] = static_cast<float>(vectors[i].x);
+    towards[1][i] = static_cast<float>(vectors[i].y);
+    towards[2][i] = static_cast<float>(vectors[i].z);
+  }
+  std::array<float, 3 * kTexelLanes> local;
+  turn_into(frames, towards, true, local.data(), kTexelLanes);
+  for (std::size_t i = 0; i < kTexelLanes; ++i) {
+    const Vec3 expected = exact[i].local(i == 5 ? Vec3{0, 0, 1} : normalize(vectors[i]));
+    EXPECT_NEAR(static_cast<double>(local[i]), expected.x, 1e-6) << i;
+    EXPECT_NEAR(static_cast<double>(local[kTexelLanes + i]), expected.y, 1e-6) << i;
+    EXPECT_NEAR(static_cast<double>(local[2 * kTexelLanes + i]), expected.z, 1e-6) << i;
+  }
+}
+
 TEST(TexelLanes, SeenValuesAreRoots) {
   TexelRow value, seen;
   for (std::size_t i = 0; i < kTexelLanes; ++i)
@@ -75,7 +184,8 @@ struct Scene {
   TexelSamples samples;
   TexelFits truth;
 
-  Scene(std::size_t texels, std::size_t pictures, bool bumps, double noise, double span = 2)
+  Scene(std::size_t texels, std::size_t pictures, bool bumps, double noise, double span = 2,
+        bool points = false)
       : lobes(random_model("q(theta_h) r(theta_d) + s(theta_h) + t(theta_d)",
                            {"q=16,power:0.5", "r=5", "s=8", "t=4"}, 3, TableFormat::single, span)) {
     form = {.width = static_cast<int>(texels), .height = 1, .normals = {}, .pictures = {}};
@@ -83,8 +193,10 @@ struct Scene {
     for (std::size_t p = 0; p < pictures; ++p)
       form.pictures.push_back(
           {.file = {},
-           .light = {.at = spherical_direction(1.1 * random.uniform(), 6.28 * random.uniform())},
-           .view = {.at = spherical_direction(0.5 * random.uniform(), 6.28 * random.uniform())},
+           .light = {.is_direction = !points,
+                     .at = spherical_direction(1.1 * random.uniform(), 6.28 * random.uniform())},
+           .view = {.is_direction = !points,
+                    .at = spherical_direction(0.5 * random.uniform(), 6.28 * random.uniform())},
            .mask = {}});
     for (std::size_t t = 0; t < texels; ++t) {
       samples.texels.push_back({static_cast<int>(t), 0});
@@ -102,7 +214,9 @@ struct Scene {
         if (bumps) n = {truth.normals[2 * t], truth.normals[2 * t + 1], 0};
         n.z = std::sqrt(1 - n.x * n.x - n.y * n.y);
         const ShadingFrame frame = frame_about(n, {1, 0, 0});
-        const Vec3 wi = frame.local(form.pictures[p].light.at), wo = frame.local(form.pictures[p].view.at);
+        const Vec3 point = form.point(static_cast<int>(t), 0);
+        const Vec3 wi = frame.local(form.pictures[p].light.seen_from(point)),
+                   wo = frame.local(form.pictures[p].view.seen_from(point));
         std::array<double, 3> sum{}, f;
         for (std::size_t j = 0; j < 3; ++j) {
           alone[j].eval(wi, wo, f);
@@ -122,8 +236,8 @@ struct Scene {
 };
 
 TEST(TexelSolver, RecoversWeightsOfKnownLobes) {
-  for (const bool bumps : {false, true}) {
-    const Scene scene(70, 25, bumps, 0);
+  for (const auto& [bumps, points] : {std::pair(false, false), {true, false}, {true, true}, {false, true}}) {
+    const Scene scene(70, 25, bumps, 0, 2, points);
     const TexelSolver solver(scene.lobes, scene.form, 1);
     const TexelFits fits = solver.solve(scene.samples, scene.truth.normals, {});
     EXPECT_LT(scene.worst_weight(fits), 2e-3);

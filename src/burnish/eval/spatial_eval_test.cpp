@@ -96,5 +96,25 @@ TEST(SpatialEvaluator, AgreesWithTheDefinition) {
   }
 }
 
+TEST(SpatialEvaluator, OfATexelIsTheModelOfThatTexel) {
+  const SpatialBrdf surface = random_surface(11, 7);
+  const SpatialEvaluator fast(surface);
+  std::array<float, 3> found;
+  std::array<double, 3> expected;
+  for (int y = 0; y < 7; ++y)
+    for (int x = 0; x < 11; ++x) {
+      const SpatialEvaluator::Place place = fast.texel(x, y);
+      const Vec3 wi = place.frame.tangent * 0.6 + place.frame.normal * 0.8,
+                 wo = place.frame.bitangent * -0.6 + place.frame.normal * 0.8;
+      fast.eval(place, wi, wo, found);
+      surface.texel(x, y).eval({0.6, 0, 0.8}, {0, -0.6, 0.8}, expected);
+      for (std::size_t c = 0; c < 3; ++c)
+        EXPECT_NEAR(static_cast<double>(found[c]), expected[c],
+                    (fast.rounding_bound() + 16 * 0x1p-24) * expected[c]);
+    }
+  EXPECT_THROW(surface.texel(11, 0), Error);
+  EXPECT_THROW(surface.texel(0, -1), Error);
+}
+
 }  // namespace
 }  // namespace burnish

@@ -72,6 +72,10 @@ class SurfaceExport {
     for (const ShaderLanguage language : kShaderLanguages)
       if (std::ranges::find(options_.to, language, language_of) != options_.to.end()) add_shader(language);
     if (manifest_.contains("textures")) add_textures();
+    if (options_.blocks && (surface_.width() % 4 != 0 || surface_.height() % 4 != 0))
+      result_.losses.push_back(fmt::format(
+          "blocks: sides of {} x {} are no multiples of 4, which WebGPU, WebGL and Direct3D ask for",
+          surface_.width(), surface_.height()));
     for (const ExportTarget target : {ExportTarget::exr, ExportTarget::png})
       if (wants(target)) add_pictures(target);
     describe_maps();
@@ -203,7 +207,8 @@ class SurfaceExport {
 }  // namespace
 
 bool has_map_textures(ExportTarget target) noexcept {
-  return language_of(target) || target == ExportTarget::ktx2;
+  return target == ExportTarget::ktx2 ||
+         language_of(target).value_or(ShaderLanguage::cpp) != ShaderLanguage::cpp;
 }
 
 bool takes_surfaces(ExportTarget target) noexcept {

@@ -8,7 +8,7 @@ namespace burnish {
 /// Whether a surface can be written as it: shaders, ktx2, exr, png, gltf, three and html.
 bool takes_surfaces(ExportTarget target) noexcept;
 
-/// Whether a surface has its maps as textures beside it: shaders and ktx2.
+/// Whether a surface has its maps as textures beside it: shaders but C++, and ktx2.
 bool has_map_textures(ExportTarget target) noexcept;
 
 /// A surface: shaders (shaders/spatial_shader.h) with the lobes' textures and NAME_map0.ktx2, ...: the maps side by

@@ -93,6 +93,11 @@ TEST(ExportSurface, HasMapsInBlocks) {
         (std::string(
             reinterpret_cast<const char*>(pack_maps(surface, "m", true).textures[i].levels[0].data()), 256)));
   }
+  EXPECT_THAT(exported.losses, testing::IsEmpty());
+  EXPECT_THAT(export_surface(smooth_surface(6), options).losses,
+              testing::ElementsAre(testing::HasSubstr("no multiples of 4")));
+  options.to = {ExportTarget::cpp};
+  EXPECT_THROW(export_surface(surface, options), Error);
   options.to = {ExportTarget::html};
   EXPECT_THROW(export_surface(surface, options), Error);
 }

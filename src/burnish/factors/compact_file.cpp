@@ -10,6 +10,7 @@
 #include <burnish/factors/cbor.h>
 #include <burnish/factors/compact_extension.h>
 #include <burnish/factors/compact_file.h>
+#include <burnish/factors/shallow_json.h>
 
 namespace burnish {
 
@@ -92,13 +93,13 @@ bool is_name(const std::string& text) {
 
 // A JSON object of bounded depth; nothing on anything else.
 std::optional<Json> parse_notes(const std::string& text) {
-  bool shallow = true;
-  const auto measure = [&](int depth, Json::parse_event_t, Json&) {
-    return shallow = shallow && depth <= kMaxNotesDepth;
-  };
-  Json json = Json::parse(text, measure, false);
-  if (!shallow || !json.is_object()) return std::nullopt;
-  return json;
+  try {
+    Json json = parse_shallow(text, kMaxNotesDepth);
+    if (json.is_object()) return json;
+  } catch (const Error&) {
+  } catch (const Json::exception&) {
+  }
+  return std::nullopt;
 }
 
 /// What tables of one form, such as those of several lobes, have in common.

@@ -29,7 +29,7 @@ struct ModelExtension {
 };
 
 /// A model's OpenEXR file (model_file.h) with parts more behind the tables, and JSON that describes them in another
-/// attribute of the first part, "burnish_surface". Throws as format_model does.
+/// attribute of the first part, "burnish_surface". Throws as format_model does, and where a table has a part's name.
 std::string format_extended_model(const Model& model, ModelExtension extension);
 
 struct ExtendedModel {

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <iterator>
 #include <sstream>
 
 #include <OpenEXR/ImfChannelList.h>
@@ -21,6 +20,7 @@
 #include <burnish/factors/compact_file.h>
 #include <burnish/factors/model_extension.h>
 #include <burnish/factors/model_file.h>
+#include <burnish/factors/shallow_json.h>
 #include <burnish/json_integer.h>
 
 namespace burnish {
@@ -32,6 +32,7 @@ using Json = nlohmann::json;
 constexpr int kVersion = 2, kOldVersion = 1;  // version 1 had one format for all tables
 constexpr const char* kAttribute = "burnish";
 constexpr const char* kExtension = "burnish_surface";
+constexpr int kMaxDepth = 40;  // of a model's JSON, notes in it
 constexpr std::array<unsigned char, 4> kExrMagic{0x76, 0x2f, 0x31, 0x01};
 
 /// OpenEXR's input from memory.
@@ -78,8 +79,8 @@ class MemoryOutput : public Imf::OStream {
 };
 
 /// Walks the headers before OpenEXR sees them. OpenEXR allocates what an attribute's size or a window says
-/// before it reads: here sizes must lie within the file, windows and chunk counts within what a table can
-/// have, and the attributes be those of a model.
+/// before it reads: here sizes must lie within the file, windows and chunk counts within `longest`, the
+/// longest side of a table or of any part, and the attributes be those of a model.
 class HeaderCheck {
  public:
   HeaderCheck(std::span<const std::byte> bytes, int longest)
@@ -359,7 +360,7 @@ Model read_model(Imf::MultiPartInputFile& input, std::uint64_t file_size, ModelE
   // the form of the model is JSON in the first part's header
   const std::string* const text = text_of(input, kAttribute);
   if (!text) throw Error("expected a string attribute 'burnish', found an OpenEXR file without it");
-  const Json json = Json::parse(*text);
+  const Json json = parse_shallow(*text, kMaxDepth);
   const int version = integer_at(json, "version");
   if (version != kVersion && version != kOldVersion)
     throw Error(fmt::format("expected version {} or {}, found {}", kOldVersion, kVersion, version));
@@ -454,7 +455,11 @@ std::string written(const Model& model, ModelExtension extension) {
     parts.push_back(part_of(table));
     parts.back().values = table.values;  // OpenEXR wants them mutable
   }
-  std::ranges::move(extension.parts, std::back_inserter(parts));
+  for (ExrPart& part : extension.parts) {
+    if (std::ranges::find(parts, part.name, &ExrPart::name) != parts.end())
+      throw Error(fmt::format("model: expected tables of other names than parts, found '{}'", part.name));
+    parts.push_back(std::move(part));
+  }
   std::vector<Imf::Header> form = headers(parts);
   form.front().insert(kAttribute, Imf::StringAttribute(to_json(model).dump()));
   if (!extension.json.empty()) form.front().insert(kExtension, Imf::StringAttribute(extension.json));
@@ -490,8 +495,8 @@ std::string format_extended_model(const Model& model, ModelExtension extension) 
 
 Model parse_model(const FileBytes& file) {
   if (looks_like_compact(file.bytes)) return parse_compact(file);
+  if (looks_like_extended_model(file.bytes)) throw Error::in_file(file.name, "a model", "a surface");
   return with_checked_file(file, kMaxSide, [&](Imf::MultiPartInputFile& input) {
-    if (text_of(input, kExtension)) throw Error("expected a model, found a surface");
     ModelExtension none;
     return read_model(input, file.bytes.size(), none);
   });

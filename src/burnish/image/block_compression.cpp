@@ -167,7 +167,7 @@ Values decode_channel(std::span<const std::byte> bytes, bool has_sign) noexcept 
   for (std::size_t i = 0; i < kChannelBytes; ++i) bits |= std::to_integer<std::uint64_t>(bytes[i]) << (8 * i);
   const auto end = [&](unsigned shift) {
     const auto raw = static_cast<std::uint8_t>(bits >> shift);
-    return has_sign ? std::max<int>(static_cast<std::int8_t>(raw), -127) : int{raw};
+    return has_sign ? std::max<int>(static_cast<std::int8_t>(raw), -127) : int{raw};  // -128 stands for -127
   };
   const Palette palette(end(0), end(8), has_sign);
   Values values;
@@ -200,6 +200,8 @@ std::string_view to_string(TexelBlocks blocks) noexcept {
 }
 
 std::vector<std::byte> encode_bc5(int width, int height, std::span<const float> pairs, bool has_sign) {
+  if (width < 0 || height < 0)
+    throw Error(fmt::format("BC5: expected sides of at least 0, found {} x {}", width, height));
   if (pairs.size() != 2 * texels_of(width, height))
     throw Error(
         fmt::format("BC5: expected {} numbers, found {}", 2 * texels_of(width, height), pairs.size()));
@@ -211,9 +213,10 @@ std::vector<std::byte> encode_bc5(int width, int height, std::span<const float> 
       for (std::size_t column = 0; column < across; ++column)
         for (std::size_t c = 0; c < 2; ++c) {
           Values values;
-          for (std::size_t i = 0; i < kTexels; ++i)
-            values[i] =
-                std::clamp(steps * pairs[2 * texel_at(column, row, i, width, height) + c], least, steps);
+          for (std::size_t i = 0; i < kTexels; ++i) {
+            const float value = steps * pairs[2 * texel_at(column, row, i, width, height) + c];
+            values[i] = std::isnan(value) ? 0 : std::clamp(value, least, steps);
+          }
           const auto coded = encode_channel(values, has_sign);
           std::ranges::copy(coded, &bytes[(row * across + column) * kBlockBytes + c * kChannelBytes]);
         }
@@ -222,6 +225,8 @@ std::vector<std::byte> encode_bc5(int width, int height, std::span<const float> 
 }
 
 std::vector<float> decode_bc5(int width, int height, std::span<const std::byte> blocks, bool has_sign) {
+  if (width < 0 || height < 0)
+    throw Error(fmt::format("BC5: expected sides of at least 0, found {} x {}", width, height));
   const std::size_t across = blocks_along(width), count = across * blocks_along(height);
   if (blocks.size() != count * kBlockBytes)
     throw Error(fmt::format("BC5: expected {} bytes, found {}", count * kBlockBytes, blocks.size()));

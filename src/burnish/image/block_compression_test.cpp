@@ -84,6 +84,10 @@ TEST(BlockCompression, IsAsNearAsItSays) {
       }
   EXPECT_LT(rms_of(kWidth, kHeight, noise, false), 0.03);
   EXPECT_LT(rms_of(kWidth, kHeight, smooth, false), 0.002);
+  std::vector<float> ramp;  // 0.3 in a block
+  for (int i = 0; i < kWidth * kHeight; ++i)
+    for (int c = 0; c < 2; ++c) ramp.push_back(static_cast<float>(std::fmod(0.1 * (i % kWidth), 0.9)));
+  EXPECT_LT(rms_of(kWidth, kHeight, ramp, false), 0.04);
   for (float& value : noise) value = 2 * value - 1;
   EXPECT_LT(rms_of(kWidth, kHeight, noise, true), 0.06);
   EXPECT_EQ(decode_bc5(1, 1, encode_bc5(1, 1, std::vector{2.0f, -3.0f}, true), true),
@@ -93,6 +97,9 @@ TEST(BlockCompression, IsAsNearAsItSays) {
 TEST(BlockCompression, RefusesOtherSizes) {
   EXPECT_THROW(encode_bc5(4, 4, std::vector<float>(31), false), Error);
   EXPECT_THROW(decode_bc5(5, 4, std::vector<std::byte>(16), false), Error);
+  EXPECT_THROW(encode_bc5(-4, -4, std::vector<float>(32), false), Error);
+  EXPECT_EQ(decode_bc5(1, 1, encode_bc5(1, 1, std::vector{NAN, 1.0f}, false), false),
+            (std::vector{0.0f, 1.0f}));
 }
 
 }  // namespace

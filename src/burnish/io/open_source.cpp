@@ -86,9 +86,8 @@ Source from_surface(const std::string& file, std::string_view name) {
     throw Error::in_file(
         file, fmt::format("the column and row of one of {} x {} texels", surface.width(), surface.height()),
         in_quotes(name));
-  const double u = ((*texel)[0] + 0.5) / surface.width(), v = ((*texel)[1] + 0.5) / surface.height();
-  Source source =
-      to_source(fmt::format("surface:{}#{}", file, name), {.brdf = surface.at(u, v), .lambda_nm = {}});
+  Source source = to_source(fmt::format("surface:{}#{}", file, name),
+                            {.brdf = surface.texel((*texel)[0], (*texel)[1]), .lambda_nm = {}});
   source.findings.format = "texel of a surface";
   return source;
 }

@@ -64,7 +64,7 @@ TEST(Source, OpensTexelsOfSurfaces) {
     write_then_rename(file, format_surface_as(name, {.brdf = surface, .notes = "{}"}));
     const Source source = open_source("surface:" + file + "#2,1", {});
     EXPECT_EQ(source.findings.format, "texel of a surface");
-    EXPECT_EQ(std::get<FactoredBrdf>(source.brdf), surface.at(2.5 / 3, 1.5 / 2));
+    EXPECT_EQ(std::get<FactoredBrdf>(source.brdf), surface.texel(2, 1));
     for (const char* texel : {"3,1", "2,2", "-1,0", "1", "1,", "1,1,1", "a,b", ""})
       EXPECT_THAT(error_of([&] { open_source("surface:" + file + "#" + texel, {}); }),
                   HasSubstr("3 x 2 texels"))

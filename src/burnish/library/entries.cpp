@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::uint64_t kLongestList = std::uint64_t{64} << 20;  // bytes
 constexpr std::size_t kLongestName = 80;
-constexpr std::array<std::string_view, 3> kAddresses = {"np:", "nbrdf:", "book:"};
+constexpr std::array<std::string_view, 4> kAddresses = {"np:", "nbrdf:", "book:", "surface:"};
 
 bool is_letter_or_digit(char c) noexcept {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
@@ -69,20 +69,22 @@ bool is_library(const fs::path& folder) {
   return false;
 }
 
-bool is_same(const fs::path& a, const fs::path& b) {
-  std::error_code error;  // of what is not there
-  return !b.empty() && fs::equivalent(a, b, error);
+bool is_one_of(const fs::path& path, const std::vector<fs::path>& others) {
+  return std::ranges::any_of(others, [&](const fs::path& other) {
+    std::error_code error;  // of what is not there
+    return !other.empty() && fs::equivalent(path, other, error);
+  });
 }
 
-std::vector<LibraryEntry> entries_of_folder(const fs::path& folder, const fs::path& output) {
-  if (is_same(folder, output) || is_library(folder))
+std::vector<LibraryEntry> entries_of_folder(const fs::path& folder, const std::vector<fs::path>& others) {
+  if (is_one_of(folder, others) || is_library(folder))
     throw Error::in_file(folder.string(), "a folder with measurements", "the folder of a batch's results");
   std::vector<fs::path> files;
   try {
     for (auto at = fs::recursive_directory_iterator(folder, fs::directory_options::follow_directory_symlink);
          at != fs::recursive_directory_iterator(); ++at) {
       const fs::path& path = at->path();
-      const bool skipped = path.filename().string().starts_with('.') || is_same(path, output) ||
+      const bool skipped = path.filename().string().starts_with('.') || is_one_of(path, others) ||
                            (at->is_directory() && is_library(path));
       if (skipped && at->is_directory()) at.disable_recursion_pending();
       if (!skipped && at->is_regular_file()) files.push_back(path);
@@ -120,9 +122,10 @@ std::vector<LibraryEntry> named_entries(const std::vector<std::string>& argument
   return told_apart(std::move(entries));
 }
 
-std::vector<LibraryEntry> library_entries(const fs::path& list_or_folder, const fs::path& output) {
+std::vector<LibraryEntry> library_entries(const fs::path& list_or_folder,
+                                          const std::vector<fs::path>& others) {
   std::error_code error;
-  if (fs::is_directory(list_or_folder, error)) return entries_of_folder(list_or_folder, output);
+  if (fs::is_directory(list_or_folder, error)) return entries_of_folder(list_or_folder, others);
   const FileBytes list = read_file(list_or_folder, kLongestList);
   if (const std::size_t zero = list.text().find('\0'); zero != std::string_view::npos)
     throw Error(list.name, zero, "a folder, or a list with an argument a line", "a byte 0");

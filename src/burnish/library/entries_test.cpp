@@ -12,10 +12,11 @@ using testing::HasSubstr;
 TEST(LibraryEntries, NameWhatALineNames) {
   EXPECT_THAT(
       named_entries({"a/gold paint.binary", "np:codes#alum-bronze", "nbrdf:f.csv#red_felt",
-                     "ggx:alpha_x=0.1,alpha_y=0.1", "../..", "b/gold paint.csv"}),
+                     "surface:wall.burnish#3,4", "ggx:alpha_x=0.1,alpha_y=0.1", "../..", "b/gold paint.csv"}),
       ElementsAre(LibraryEntry{"gold_paint", "a/gold paint.binary"},
                   LibraryEntry{"alum-bronze", "np:codes#alum-bronze"},
                   LibraryEntry{"red_felt", "nbrdf:f.csv#red_felt"},
+                  LibraryEntry{"3_4", "surface:wall.burnish#3,4"},
                   LibraryEntry{"ggx_alpha_x_0.1_alpha_y_0.1", "ggx:alpha_x=0.1,alpha_y=0.1"},
                   LibraryEntry{"material", "../.."}, LibraryEntry{"gold_paint-2", "b/gold paint.csv"}));
 }
@@ -45,16 +46,17 @@ TEST(LibraryEntries, AreNotTheResultsOfThisBatchOrOfEarlierOnes) {
   for (const char* name : {"c.csv", "models/d.csv", "earlier/models/c.burnish", "earlier/index.html",
                            "earlier/journal/host-1.jsonl", "output/models/c.burnish", "all.burnish"})
     write(meas / name, "1");
-  const auto names = [&](const std::filesystem::path& output) {
+  const auto names = [&](const std::vector<std::filesystem::path>& others) {
     std::vector<std::string> found;
-    for (const LibraryEntry& entry : library_entries(meas, output)) found.push_back(entry.name);
+    for (const LibraryEntry& entry : library_entries(meas, others)) found.push_back(entry.name);
     return found;
   };
-  EXPECT_THAT(names(meas / "output"), ElementsAre("all", "c", "models_d"));
-  EXPECT_THAT(names(meas / "all.burnish"), ElementsAre("c", "models_d", "output_models_c"));
-  EXPECT_THAT(names(folder.path / "elsewhere"), ElementsAre("all", "c", "models_d", "output_models_c"));
+  EXPECT_THAT(names({meas / "output"}), ElementsAre("all", "c", "models_d"));
+  EXPECT_THAT(names({meas / "all.burnish"}), ElementsAre("c", "models_d", "output_models_c"));
+  EXPECT_THAT(names({folder.path / "elsewhere"}), ElementsAre("all", "c", "models_d", "output_models_c"));
+  EXPECT_THAT(names({meas / "output", meas / "all.burnish"}), ElementsAre("c", "models_d"));
   for (const auto& [place, output] : {std::pair{meas, meas}, {meas / "earlier", folder.path / "elsewhere"}})
-    EXPECT_THAT(error_of([&] { library_entries(place, output); }), HasSubstr("a folder with measurements"));
+    EXPECT_THAT(error_of([&] { library_entries(place, {output}); }), HasSubstr("a folder with measurements"));
 }
 
 TEST(LibraryEntries, SayWhatIsWrongWithTheirPlace) {

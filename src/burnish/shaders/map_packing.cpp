@@ -84,7 +84,9 @@ class PairPacker {
           for (std::size_t c = 0; c < 2; ++c)
             pairs.push_back(c < waiting_.size() ? waiting_[c].value(x, y, l) : 0.0f);
       texture.levels.push_back(encode_bc5(width, height, pairs, has_sign));
-      if (l == 0) texture.block_rms = rms(pairs, decode_bc5(width, height, texture.levels[0], has_sign));
+      if (l == 0)
+        texture.block_rms =
+            rms(pairs, decode_bc5(width, height, texture.levels[0], has_sign), waiting_.size());
     }
     textures_.push_back(std::move(texture));
     waiting_.clear();
@@ -93,13 +95,15 @@ class PairPacker {
   std::vector<MapTexture> take() && { return std::move(textures_); }
 
  private:
-  static double rms(std::span<const float> a, std::span<const float> b) noexcept {
+  /// Over the first channels of pairs.
+  static double rms(std::span<const float> a, std::span<const float> b, std::size_t channels) noexcept {
     double sum = 0;
     for (std::size_t i = 0; i < a.size(); ++i) {
+      if (i % 2 >= channels) continue;
       const double off = static_cast<double>(a[i]) - static_cast<double>(b[i]);
       sum += off * off;
     }
-    return std::sqrt(sum / static_cast<double>(a.size()));
+    return std::sqrt(2 * sum / static_cast<double>(channels * a.size()));
   }
 
   struct Channel {

@@ -187,6 +187,19 @@ FactoredBrdf SpatialBrdf::at(double u, double v, double lod) const {
   return FactoredBrdf(channels(), {lobes_.tables().begin(), lobes_.tables().end()}, std::move(scaled));
 }
 
+FactoredBrdf SpatialBrdf::texel(int x, int y) const {
+  if (x < 0 || y < 0 || x >= width() || y >= height())
+    throw Error(fmt::format("texel: expected one of {} x {}, found ({}, {})", width(), height(), x, y));
+  const SurfaceMap::Place at = maps_.weights.front().place_of_texel(x, y);
+  std::vector<Lobe> scaled(lobes_.lobes().begin(), lobes_.lobes().end());
+  scaled.resize(own_lobes());
+  for (std::size_t j = 0; j < scaled.size(); ++j) {
+    const Weight scale = weight(j, at);
+    for (std::size_t c = 0; c < channels(); ++c) scaled[j].scale[c] *= static_cast<double>(scale[c]);
+  }
+  return lobes_alone(lobes_, scaled);
+}
+
 std::size_t SpatialBrdf::weight_bytes() const noexcept {
   std::size_t bytes = 0;
   for (const SurfaceMap& map : std::span(maps_.weights).first(own_lobes())) bytes += map.texel_bytes();

@@ -98,6 +98,8 @@ class SpatialBrdf {
 
   /// The uniform model of that place, in its own frame: the lobes' scales times their weights.
   FactoredBrdf at(double u, double v, double lod = 0) const;
+  /// That of one texel, unfiltered, of the own lobes. Throws Error for what is no texel.
+  FactoredBrdf texel(int x, int y) const;
 
   /// Bytes of the weights, and of normals and tangents, a texel of level 0, as a file has them.
   std::size_t weight_bytes() const noexcept;

@@ -7,6 +7,7 @@
 #include <burnish/error.h>
 #include <burnish/factors/compact_extension.h>
 #include <burnish/factors/model_extension.h>
+#include <burnish/factors/shallow_json.h>
 #include <burnish/json_integer.h>
 #include <burnish/surface/surface_file.h>
 
@@ -19,6 +20,7 @@ using Json = nlohmann::json;
 constexpr int kVersion = 1, kWidenedVersion = 2;
 constexpr std::size_t kHeadItems = 4, kMapItems = 4;
 constexpr int kHasNormals = 1, kHasTangents = 2;
+constexpr int kMaxDepth = 4;  // of the JSON of an OpenEXR file
 // The numbers that stand for them in files: places in this list.
 constexpr std::array kFormats{TableFormat::unorm8, TableFormat::half};
 
@@ -184,10 +186,11 @@ SurfaceMap stored_map(const NamedMap& named, std::span<const float> values) {
 
 Json to_json(const SpatialBrdf& brdf) {
   const SurfaceMaps& maps = brdf.maps();
+  const std::vector<const SurfaceMap*> all = all_maps(brdf);
   Json list = Json::array(), widened = Json::array();
   for (const std::string& name :
        map_names(brdf.own_lobes(), maps.normals.has_value(), maps.tangents.has_value())) {
-    const SurfaceMap& map = *all_maps(brdf)[list.size()];
+    const SurfaceMap& map = *all[list.size()];
     list.push_back({{"name", name},
                     {"channels", map.channels()},
                     {"format", to_string(map.format())},
@@ -206,7 +209,7 @@ Json to_json(const SpatialBrdf& brdf) {
 
 SurfaceModel read_exr(const FileBytes& file) {
   const ExtendedModel read = parse_extended_model(file, [](const std::string& text) {
-    const Json json = Json::parse(text);
+    const Json json = parse_shallow(text, kMaxDepth);
     if (const int version = integer_at(json, "version"); version != kVersion)
       throw Error(fmt::format("surface: expected version {}, found {}", kVersion, version));
     std::vector<ExrPart> parts;
@@ -229,8 +232,8 @@ SurfaceModel read_exr(const FileBytes& file) {
     sorted.weights = std::move(maps);
     std::vector<WidenedLobe> widened;
     for (const Json& copy : json.at("widened")) {
-      const int lobe = integer_at(copy, "lobe");
-      widened.push_back({static_cast<std::size_t>(std::max(lobe, 0)), copy.at("variance").get<double>()});
+      const auto lobe = static_cast<std::size_t>(integer_at(copy, "lobe"));
+      widened.push_back({lobe, copy.at("variance").get<double>()});
     }
     return {.brdf = SpatialBrdf(read.model.brdf, std::move(sorted), std::move(widened)),
             .notes = read.model.notes};
@@ -247,8 +250,9 @@ std::string format_surface_exr(const SurfaceModel& surface) {
   const SpatialBrdf& brdf = surface.brdf;
   const Json json = to_json(brdf);
   ModelExtension extension{.json = json.dump(), .parts = {}};
+  const std::vector<const SurfaceMap*> maps = all_maps(brdf);
   for (NamedMap& named : named_maps(json)) {
-    named.part.values = values_of(*all_maps(brdf)[extension.parts.size()]);
+    named.part.values = values_of(*maps[extension.parts.size()]);
     extension.parts.push_back(std::move(named.part));
   }
   return format_extended_model({.brdf = brdf.lobes(), .lambda_nm = {}, .notes = surface.notes},

@@ -26,14 +26,14 @@ std::string format_surface(const SurfaceModel& surface);
 
 /// The OpenEXR file of a surface: that of its lobes (factors/model_file.h) with a part more a map, map_weight0, ...,
 /// map_normals, map_tangents, as any viewer shows them: unorm8 as floats, halves as halves. parse_surface restores all
-/// to the last bit.
+/// to the last bit. Throws Error where a table has a map's name.
 std::string format_surface_exr(const SurfaceModel& surface);
 
 /// The bytes of a surface's file by the ending of its name: format_surface_exr's for .exr, else format_surface's.
 std::string format_surface_as(const std::filesystem::path& name, const SurfaceModel& surface);
 
-/// Reads either file, known by its content. Throws Error, naming file and offset, if the bytes are no such file or
-/// contradict themselves in any way. Memory taken is at most a fixed multiple of the file's size.
+/// Reads either file, known by its content. Throws Error, naming the file, and of .burnish the offset, if the bytes are
+/// no such file or contradict themselves in any way. Memory taken is at most a fixed multiple of the file's size.
 SurfaceModel parse_surface(const FileBytes& file);
 
 /// True if the bytes start as a surface's file does; of OpenEXR they have to hold the first header.

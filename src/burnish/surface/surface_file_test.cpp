@@ -88,6 +88,22 @@ TEST(SurfaceFile, OpenExrWithOtherValuesOrFormsThrows) {
   EXPECT_THAT([&] { parse_surface(memory_file(other)); }, ThrowsMessage<Error>(HasSubstr("found others")));
 }
 
+TEST(SurfaceFile, OpenExrWithNamesThatMeetOrTooDeepJsonThrows) {
+  SpatialBrdf surface = random_surface(3, 2);
+  std::vector<Table> tables(surface.lobes().tables().begin(), surface.lobes().tables().end());
+  tables[1].name = "map_weight1";
+  const FactoredBrdf lobes(3, std::move(tables),
+                           {surface.lobes().lobes().begin(), surface.lobes().lobes().end()});
+  EXPECT_THAT([&] { format_surface_exr({.brdf = SpatialBrdf(lobes, surface.maps()), .notes = "{}"}); },
+              ThrowsMessage<Error>(HasSubstr("map_weight1")));
+  // what would be written again by a call for each level
+  const std::string deep = R"({"a":)" + std::string(200'000, '[') + std::string(200'000, ']') + "}",
+                    notes = R"({"a":")" + std::string(deep.size() - 8, 'x') + R"("})";
+  std::string bytes = format_surface_exr({.brdf = surface, .notes = notes});
+  bytes.replace(bytes.find(notes), notes.size(), deep);
+  EXPECT_THAT([&] { parse_surface(memory_file(bytes)); }, ThrowsMessage<Error>(HasSubstr("deep")));
+}
+
 TEST(SurfaceFile, EveryTruncatedFileThrows) {
   for (const std::string& bytes : {seed(), exr_seed()})
     for (std::size_t length = 0; length < bytes.size(); ++length)

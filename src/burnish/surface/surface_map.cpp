@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include <Imath/half.h>
 #include <fmt/format.h>
@@ -41,8 +42,9 @@ void SurfaceMap::check() const {
     throw Error(fmt::format("surface map: expected 1 to {} channels, found {}", kMaxMapChannels, channels_));
   if (format_ != TableFormat::unorm8 && format_ != TableFormat::half)
     throw Error(fmt::format("surface map: expected format unorm8 or half, found {}", to_string(format_)));
-  if (!(scale_ > 0) || !std::isfinite(scale_))
-    throw Error(fmt::format("surface map: expected a finite scale > 0, found {}", scale_));
+  if (!(scale_ > 0) || !std::isnormal(scale_))  // a code's share of less would not be told from the next's
+    throw Error(fmt::format("surface map: expected a finite scale of at least {}, found {}",
+                            std::numeric_limits<float>::min(), scale_));
 }
 
 void SurfaceMap::check_values(std::span<const float> values) const {
@@ -167,7 +169,7 @@ SurfaceMap::Place SurfaceMap::place(double u, double v, double lod) const noexce
   const auto along = [](double coordinate, int side) {
     const double at = coordinate * side - 0.5, first = std::floor(at);
     const int low = static_cast<int>(first), high = low + 1 == side ? 0 : low + 1;
-    return Along{static_cast<std::size_t>(low < 0 ? side - 1 : low), static_cast<std::size_t>(high % side),
+    return Along{static_cast<std::size_t>(low < 0 ? side - 1 : low), static_cast<std::size_t>(high),
                  static_cast<float>(at - first)};
   };
   const auto of_level = [&](std::size_t number) {

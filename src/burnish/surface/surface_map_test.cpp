@@ -34,6 +34,17 @@ TEST(SurfaceMap, FiltersBetweenTexelsAndRepeats) {
   EXPECT_FLOAT_EQ(map.sample(0.25, 0.5, 9)[0], 2);
 }
 
+// Eleven texels: (7 + 1/2) / 11 rounds to what lies in the texel before.
+TEST(SurfaceMap, PlacesOfTexelsAreTheTexels) {
+  const SurfaceMap map = random_map(11, 7, 3, TableFormat::half, 1, 3);
+  for (int y = 0; y < 7; ++y)
+    for (int x = 0; x < 11; ++x) {
+      EXPECT_EQ(map.sample(map.place_of_texel(x, y)), map.texel(x, y));
+      const SurfaceMap::Value near = map.sample(map.place((x + 0.5) / 11, (y + 0.5) / 7));
+      for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(near[c], map.texel(x, y)[c], 1e-5);
+    }
+}
+
 // Every level has the mean of what it covers: to half a code a level.
 TEST(SurfaceMap, LevelsKeepTheMean) {
   for (const TableFormat format : {TableFormat::unorm8, TableFormat::half}) {

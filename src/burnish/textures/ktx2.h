@@ -19,7 +19,7 @@ std::string encode_ktx2(const Texture& texture, bool compressed);
 
 /// A texture whose texels are stored already: four channels of bytes (R8G8B8A8_UNORM) or halves
 /// (R16G16B16A16_SFLOAT), level after level, each [y][x][4]; or blocks of pairs, BC5_UNORM_BLOCK or BC5_SNORM_BLOCK,
-/// whatever the format. Throws Error for other formats.
+/// of maps of either format. Throws Error for other formats.
 struct StoredTexels {
   TableFormat format = TableFormat::unorm8;
   TexelBlocks blocks = TexelBlocks::none;
