@@ -32,6 +32,13 @@ namespace burnish {
 
 namespace {
 
+template <class Task>
+double seconds_of(const Task& task) {
+  const auto start = std::chrono::steady_clock::now();
+  task();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 std::size_t lights_and_views(const CaptureForm& form) {
   std::vector<std::array<double, 8>> pairs;
   for (const auto& [file, light, view, scale, mask, held_out] : form.pictures)
@@ -644,8 +651,14 @@ class SurfaceFitter {
     done_.errors.resize(form.pictures.size());
     const TexelSolver solver(*lobes_, form, exposure_);
     const int ranks = crew_ranks(), step = tile_rows();
+    // A checkpoint holds all rows that are done. It is written after a turn that took so many times as long as the
+    // last writing, and after so many parts of the surface.
+    constexpr double kWorthOfASave = 20;
+    constexpr int kSavedParts = 16;
+    using Clock = std::chrono::steady_clock;
+    double save_seconds = done_.rows == 0 ? seconds_of([&] { save(); }) : 0;
     int saved = done_.rows;
-    if (saved == 0) save();
+    Clock::time_point saved_at = Clock::now();
     while (done_.rows < form.height) {
       // a tile a rank, which rank 0 puts together in their order
       const int begin = done_.rows, end = std::min(begin + ranks * step, form.height),
@@ -660,10 +673,12 @@ class SurfaceFitter {
           append(parse_checkpoint({"what a rank sent", bytes_of_text(sent)}, form.width));
       }
       done_.rows = end;
-      // a checkpoint holds all rows that are done: not too often
-      if (constexpr int kSavedParts = 16; done_.rows - saved >= std::max(form.height / kSavedParts, 1)) {
-        save();
+      const double since = std::chrono::duration<double>(Clock::now() - saved_at).count();
+      if (since >= kWorthOfASave * save_seconds ||
+          done_.rows - saved >= std::max(form.height / kSavedParts, 1)) {
+        save_seconds = seconds_of([&] { save(); });
         saved = done_.rows;
+        saved_at = Clock::now();
       }
       progress("fitting weights", static_cast<double>(done_.rows) / form.height);
     }
