@@ -1,0 +1,15 @@
+#pragma once
+
+#include <vector>
+
+#include <burnish/surface/surface_file.h>
+
+namespace burnish {
+
+/// What parse_surface does with an OpenEXR file.
+SurfaceModel read_surface_exr(const FileBytes& file);
+
+/// Weights of the own lobes, then normals and tangents: the maps of a file.
+std::vector<const SurfaceMap*> all_maps(const SpatialBrdf& brdf);
+
+}  // namespace burnish
