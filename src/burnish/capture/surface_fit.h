@@ -55,8 +55,8 @@ struct PictureScore {
 
 struct SurfaceReport {
   std::size_t width = 0, height = 0, pictures = 0, lobes = 0;
-  /// Pairs of a light and a view, counted once each, of the pictures that are fitted; of samples 0. Few pairs say little
-  /// about lobes, however many pictures there are.
+  /// Pairs of a light and a view, counted once each, of the pictures that are fitted; of samples 0. Few pairs say
+  /// little about lobes, however many pictures there are.
   std::size_t lights_and_views = 0;
   bool of_samples = false;  ///< texels have samples of their own, at most as many as there are pictures
   std::vector<Capture::LeftOut> left_out;

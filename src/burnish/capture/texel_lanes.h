@@ -66,11 +66,11 @@ struct TexelPass {
 void find_normal_equations(const TexelPictures& pictures, const TexelPass& pass, const TexelRow* weights,
                            float* trust, TexelRow* matrix, TexelRow* vector) noexcept;
 
-/// The weights w >= 0 with the least w^T A w / 2 - b^T w, A as find_normal_equations gives it with `ridge` times its mean
-/// diagonal and 1e-30 added, by block principal pivoting [PortugalJudiceVicente1994]: what is below 0 is fixed at 0, what would
-/// rise from there is set free, all at once. Begins with those free that are > 0, or unless `near` with all. Returns
-/// bits of the texels that it ended for, with weights below 1e30; those of others, and of equations that are not
-/// finite, are as they were.
+/// The weights w >= 0 with the least w^T A w / 2 - b^T w, A as find_normal_equations gives it with `ridge` times its
+/// mean diagonal and 1e-30 added, by block principal pivoting [PortugalJudiceVicente1994]: what is below 0 is fixed at
+/// 0, what would rise from there is set free, all at once. Begins with those free that are > 0, or unless `near` with
+/// all. Returns bits of the texels that it ended for, with weights below 1e30; those of others, and of equations that
+/// are not finite, are as they were: solve_nonnegative (texel_solver.h) finds them.
 std::uint32_t find_weights(std::size_t lobes, const TexelRow* matrix, const TexelRow* vector, double ridge,
                            bool near, TexelRow* weights) noexcept;
 

@@ -28,8 +28,8 @@ struct MapComponent {
   std::size_t texture = 0, component = 0;
 };
 
-/// All maps of a surface: weights lobe by lobe, of coloured ones the channels one after the other, those of bytes first;
-/// then normals and tangents. One texture holds four grey lobes.
+/// All maps of a surface: weights lobe by lobe, of coloured ones the channels one after the other, those of bytes
+/// first; then normals and tangents. One texture holds four grey lobes.
 struct PackedMaps {
   std::vector<MapTexture> textures;
   std::vector<std::array<MapComponent, kMaxMapChannels>> weights;  ///< [lobe][channel]; times the map's scale

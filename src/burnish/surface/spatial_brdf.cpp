@@ -178,26 +178,25 @@ void SpatialBrdf::eval(double u, double v, double lod, Vec3 wi, Vec3 wo, std::sp
   eval(at, at.frame.local(wi), at.frame.local(wo), f);
 }
 
-FactoredBrdf SpatialBrdf::at(double u, double v, double lod) const {
-  std::vector<Lobe> scaled(lobes_.lobes().begin(), lobes_.lobes().end());
+std::vector<Lobe> SpatialBrdf::scaled_lobes(std::size_t count, const SurfaceMap::Place& at) const {
+  const std::span<const Lobe> some = lobes_.lobes().first(count);
+  std::vector<Lobe> scaled(some.begin(), some.end());
   for (std::size_t j = 0; j < scaled.size(); ++j) {
-    const Weight scale = weight(j, u, v, lod);
+    const Weight scale = weight(j, at);
     for (std::size_t c = 0; c < channels(); ++c) scaled[j].scale[c] *= static_cast<double>(scale[c]);
   }
-  return FactoredBrdf(channels(), {lobes_.tables().begin(), lobes_.tables().end()}, std::move(scaled));
+  return scaled;
+}
+
+FactoredBrdf SpatialBrdf::at(double u, double v, double lod) const {
+  return FactoredBrdf(channels(), {lobes_.tables().begin(), lobes_.tables().end()},
+                      scaled_lobes(lobes_.lobes().size(), map_place(u, v, lod)));
 }
 
 FactoredBrdf SpatialBrdf::texel(int x, int y) const {
   if (x < 0 || y < 0 || x >= width() || y >= height())
     throw Error(fmt::format("texel: expected one of {} x {}, found ({}, {})", width(), height(), x, y));
-  const SurfaceMap::Place at = maps_.weights.front().place_of_texel(x, y);
-  std::vector<Lobe> scaled(lobes_.lobes().begin(), lobes_.lobes().end());
-  scaled.resize(own_lobes());
-  for (std::size_t j = 0; j < scaled.size(); ++j) {
-    const Weight scale = weight(j, at);
-    for (std::size_t c = 0; c < channels(); ++c) scaled[j].scale[c] *= static_cast<double>(scale[c]);
-  }
-  return lobes_alone(lobes_, scaled);
+  return lobes_alone(lobes_, scaled_lobes(own_lobes(), maps_.weights.front().place_of_texel(x, y)));
 }
 
 std::size_t SpatialBrdf::weight_bytes() const noexcept {

@@ -112,6 +112,9 @@ class SpatialBrdf {
   }
 
  private:
+  /// The first lobes, their scales times their weights at a place.
+  std::vector<Lobe> scaled_lobes(std::size_t count, const SurfaceMap::Place& at) const;
+
   FactoredBrdf lobes_;
   SurfaceMaps maps_;
   std::vector<WidenedLobe> widened_;
