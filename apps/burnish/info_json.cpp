@@ -16,12 +16,12 @@ constexpr std::size_t kManyNodes = 20'000;  // more take their time to be predic
 
 std::optional<NodesKnown> nodes_of(const Source& source) {
   if (!is_measurement(source)) return {};
-  const MeasuredNodes nodes = measured_nodes(source);
-  NodesKnown known{.count = nodes.size(), .incidences = {}, .predicted = {}};
-  if (nodes.theta_i.size() <= kFewIncidences) known.incidences = nodes.theta_i.size();
-  if (nodes.samples.isotropic && nodes.size() <= kManyNodes) {
+  const auto [count, incidences] = count_nodes(source);
+  NodesKnown known{.count = count, .incidences = {}, .predicted = {}};
+  if (incidences <= kFewIncidences) known.incidences = incidences;
+  if (source.ref().isotropic() && count <= kManyNodes) {
     try {
-      known.predicted = held_out_figures(nodes, {});
+      known.predicted = held_out_figures(measured_nodes(source), {});
     } catch (const Error&) {  // too few, or all of them near grazing: nothing to predict
     }
   }

@@ -10,6 +10,30 @@
 
 namespace burnish {
 
+namespace {
+
+// What `use` makes of the table or samples that a measurement is.
+template <class Found, class Use>
+Found of_measurement(const Source& source, const Use& use) {
+  return std::visit(
+      [&](const auto& any) -> Found {
+        if constexpr (std::same_as<std::decay_t<decltype(any)>, ScatteredBrdf>)
+          return use(any.samples());
+        else if constexpr (requires { measured_nodes(any); })
+          return use(any);
+        else
+          throw Error(fmt::format("{}: expected a measurement, whose nodes are known, found {}", source.name,
+                                  source.findings.format));
+      },
+      source.brdf);
+}
+
+void expect_nodes(const Source& source, std::size_t found) {
+  if (found == 0) throw Error(fmt::format("{}: expected nodes above the horizon, found none", source.name));
+}
+
+}  // namespace
+
 BrdfRef Source::ref() const noexcept {
   // An analytic BRDF's own reference skips the choice of its model.
   if (const auto* analytic = std::get_if<AnalyticBrdf>(&brdf)) return analytic->ref();
@@ -44,20 +68,16 @@ bool is_measurement(const Source& source) noexcept {
 }
 
 MeasuredNodes measured_nodes(const Source& source) {
-  MeasuredNodes nodes = std::visit(
-      [&](const auto& any) -> MeasuredNodes {
-        if constexpr (std::same_as<std::decay_t<decltype(any)>, ScatteredBrdf>)
-          return measured_nodes(any.samples());
-        else if constexpr (requires { measured_nodes(any); })
-          return measured_nodes(any);
-        else
-          throw Error(fmt::format("{}: expected a measurement, whose nodes are known, found {}", source.name,
-                                  source.findings.format));
-      },
-      source.brdf);
-  if (nodes.size() == 0)
-    throw Error(fmt::format("{}: expected nodes above the horizon, found none", source.name));
+  MeasuredNodes nodes =
+      of_measurement<MeasuredNodes>(source, [](const auto& any) { return measured_nodes(any); });
+  expect_nodes(source, nodes.size());
   return nodes;
+}
+
+NodeCount count_nodes(const Source& source) {
+  const NodeCount count = of_measurement<NodeCount>(source, [](const auto& any) { return count_nodes(any); });
+  expect_nodes(source, count.nodes);
+  return count;
 }
 
 Source to_source(const std::string& name, Model model) {

@@ -52,6 +52,9 @@ bool is_measurement(const Source& source) noexcept;
 /// or a model, or has no node above the horizon.
 MeasuredNodes measured_nodes(const Source& source);
 
+/// How many nodes that are, at how many incident angles, in little memory. Throws as measured_nodes does.
+NodeCount count_nodes(const Source& source);
+
 /// A model or a baseline as a source of that name.
 Source to_source(const std::string& name, Model model);
 Source to_source(const std::string& name, Baseline baseline);

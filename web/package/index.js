@@ -190,7 +190,8 @@ class Engine {
     const call = ++this.#calls;
     return new Promise((resolve, reject) => {
       this.#waiting = {call, resolve, reject, onProgress};
-      this.#worker.postMessage({call, request, bytes});
+      // moved there, not copied: whoever asks made them for this call
+      this.#worker.postMessage({call, request, bytes}, bytes ? [bytes] : []);
     });
   }
 

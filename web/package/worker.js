@@ -50,6 +50,7 @@ function answer({request, bytes}) {
     const place = library._burnish_buffer(bytes.byteLength);
     if (!place) throw new Error("expected enough memory, found none left");
     heap().set(new Uint8Array(bytes), place);
+    bytes.transfer?.(0);  // the library has them: where browsers can, theirs is free while it works
   }
   const done = withText(JSON.stringify(request), (text) => library._burnish_call(text));
   const text = textAt(library._burnish_text());

@@ -2,6 +2,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <optional>
 #include <utility>
@@ -47,18 +48,22 @@ std::uint8_t coin(std::uint32_t group) {
   return Pcg32(group).uniform() < 0.5;
 }
 
+// Distinct angles, in the order of their size.
+using Incidences = std::map<std::int64_t, std::uint32_t>;
+
+std::int64_t incidence_of(const DirectionPair& pair) noexcept {
+  return static_cast<std::int64_t>(std::llround(theta_of(pair.wi) / kSameIncidence));
+}
+
 void number_incidences(MeasuredNodes& nodes) {
-  // distinct angles, in the order of their size
-  std::map<std::int64_t, std::uint32_t> places;
-  const auto place = [](const DirectionPair& pair) {
-    return static_cast<std::int64_t>(std::llround(theta_of(pair.wi) / kSameIncidence));
-  };
-  for (const DirectionPair& pair : nodes.samples.pairs) places.emplace(place(pair), 0);
+  Incidences places;
+  for (const DirectionPair& pair : nodes.samples.pairs) places.emplace(incidence_of(pair), 0);
   for (std::uint32_t number = 0; auto& [angle, index] : places) {
     index = number++;
     nodes.theta_i.push_back(static_cast<double>(angle) * kSameIncidence);
   }
-  for (const DirectionPair& pair : nodes.samples.pairs) nodes.incidence.push_back(places[place(pair)]);
+  nodes.incidence.reserve(nodes.size());
+  for (const DirectionPair& pair : nodes.samples.pairs) nodes.incidence.push_back(places[incidence_of(pair)]);
 }
 
 // Groups numbered from 0 on in the order in which they come.
@@ -92,33 +97,161 @@ bool mask_holds(const RglData& data, std::size_t nodes) noexcept {
 // How groups are numbered: as they come, or where the order is a file's, or a last bit's, as their directions are.
 enum class Numbering { as_they_come, by_geometry };
 
-// Groups by geometry, halves by coin, incidences; weights of 1 where there are none.
+// Groups by geometry, halves by coin, incidences.
 MeasuredNodes finished(MeasuredNodes nodes, Numbering numbering = Numbering::as_they_come) {
-  std::map<Key, std::uint32_t> groups;
-  std::vector<Key> keys;
-  for (const DirectionPair& pair : nodes.samples.pairs) {
-    keys.push_back(key_of(pair, nodes.samples.isotropic));
-    groups.emplace(keys.back(), static_cast<std::uint32_t>(groups.size()));
+  // pairs that lead to one another lie side by side, the first that came first
+  std::vector<std::pair<Key, std::uint32_t>> keyed;
+  keyed.reserve(nodes.size());
+  for (std::uint32_t i = 0; i < nodes.size(); ++i)
+    keyed.emplace_back(key_of(nodes.samples.pairs[i], nodes.samples.isotropic), i);
+  std::ranges::sort(keyed);
+
+  const bool by_geometry = numbering == Numbering::by_geometry;
+  nodes.groups.resize(nodes.size());
+  std::uint32_t next = 0;
+  for (std::size_t i = 0, first = 0; i < keyed.size(); ++i) {
+    const bool begins = i == 0 || keyed[i].first != keyed[i - 1].first;
+    if (begins) first = i;
+    if (begins && by_geometry) ++next;
+    nodes.groups[keyed[i].second] = by_geometry ? next - 1 : keyed[first].second;
   }
-  if (numbering == Numbering::by_geometry)
-    for (std::uint32_t number = 0; auto& [key, group] : groups) group = number++;
-  for (const Key& key : keys) {
-    const std::uint32_t group = groups.at(key);
-    nodes.groups.push_back(group);
-    nodes.half.push_back(coin(group));
-  }
+  keyed = {};
+  // the place of a group's first node becomes its number
+  for (std::uint32_t i = 0; i < nodes.size() && !by_geometry; ++i)
+    nodes.groups[i] = nodes.groups[i] == i ? next++ : nodes.groups[nodes.groups[i]];
+
+  nodes.half.reserve(nodes.size());
+  for (const std::uint32_t group : nodes.groups) nodes.half.push_back(coin(group));
   number_incidences(nodes);
-  if (nodes.weights.empty()) nodes.weights.assign(nodes.size(), 1);
   return nodes;
 }
 
-// Adds a node whose directions lie above the horizon; others are left out.
-template <class Values>
-bool add(Samples& samples, const DirectionPair& pair, const Values& values) {
-  if (!(pair.wi.z > kAboveHorizon && pair.wo.z > kAboveHorizon)) return false;
-  samples.pairs.push_back(pair);
-  samples.values.insert(samples.values.end(), values.begin(), values.end());
-  return true;
+bool lies_above(const DirectionPair& pair) noexcept {
+  return pair.wi.z > kAboveHorizon && pair.wo.z > kAboveHorizon;
+}
+
+// A node above the horizon; of the table of RGL also its group and half.
+struct Node {
+  DirectionPair pair;
+  std::span<const double> f;  // holds until the next one
+  double weight = 1;
+  std::uint32_t group = 0;
+  std::uint8_t half = 0;
+};
+using Visit = std::function<void(const Node&)>;
+
+// Each of these visits the nodes in the order of measured_nodes.
+void each_node(const RglTable& table, const Visit& visit) {
+  const RglData& data = table.data();
+  const auto width = static_cast<std::uint32_t>(data.spectra.width),
+             height = static_cast<std::uint32_t>(data.spectra.height);
+  const auto channels = data.channels;
+  const auto thetas = static_cast<std::uint32_t>(data.theta_i.size());
+  const std::uint32_t slices =
+      thetas * (table.isotropic() ? 1 : static_cast<std::uint32_t>(data.phi_i.size()));
+  std::vector<double> f(channels);
+  const bool masked = mask_holds(data, std::size_t{slices} * width * height);
+
+  for (std::uint32_t node = 0; node < slices * width * height; ++node) {
+    const std::uint32_t slice = node / (width * height), row = node / width % height, column = node % width;
+    if (masked && !is_valid(data, node)) continue;
+    const DirectionPair pair =
+        table.node_directions(static_cast<int>(slice / thetas), static_cast<int>(slice % thetas),
+                              static_cast<int>(row), static_cast<int>(column));
+    if (!lies_above(pair)) continue;
+
+    // what stands there, as a BRDF
+    const double scale = rgl_node_scale(data, pair);
+    for (std::size_t c = 0; c < channels; ++c)
+      f[c] = scale * static_cast<double>(data.spectra.values[node * channels + c]);
+
+    // mirror twins are one; rows that meet at the normal were measured one by one
+    const std::uint32_t mirrored = table.isotropic() ? std::min(row, height - 1 - row) : row;
+    visit({.pair = pair,
+           .f = f,
+           .group = (slice * height + mirrored) * width + column,
+           .half = static_cast<std::uint8_t>((mirrored + column) % 2)});
+  }
+}
+
+void each_node(const HalfDiffTable& table, const Visit& visit) {
+  std::vector<double> f(table.channel_count);
+  for (int h = 0; h < table.theta_h_count; ++h)
+    for (int d = 0; d < table.theta_d_count; ++d)
+      for (int p = 0; p < table.phi_d_count; ++p) {
+        std::ranges::copy(std::span(table.values).subspan(table.offset(h, d, p), f.size()), f.begin());
+        if (std::isnan(f[0])) continue;
+        const auto [wi, wo] = from_half_diff(table.centre(h, d, p));
+        if (const DirectionPair pair{wi, wo}; lies_above(pair)) visit({.pair = pair, .f = f});
+      }
+}
+
+void each_node(const AngleTable& table, const Visit& visit) {
+  std::vector<double> f(table.channel_count);
+  for (std::size_t entry = 0; entry < entry_count(table); ++entry) {
+    std::ranges::copy(std::span(table.values).subspan(entry * f.size(), f.size()), f.begin());
+    if (std::isnan(f[0])) continue;
+    if (const DirectionPair pair = node_directions(table, node_of_entry(table, entry)); lies_above(pair))
+      visit({.pair = pair, .f = f});
+  }
+}
+
+void each_node(const PatchTable& table, const Visit& visit) {
+  for (std::size_t o = 0; o < table.outgoing.size(); ++o)
+    for (std::size_t i = 0; i < table.incident.size(); ++i) {
+      const DirectionPair pair{table.incident.centre(i), table.outgoing.centre(o)};
+      const double f = static_cast<double>(table.values[o * table.incident.size() + i]);
+      const double weight = table.incident.projected_solid_angle(i) * table.outgoing.projected_solid_angle(o);
+      if (lies_above(pair)) visit({.pair = pair, .f = {&f, 1}, .weight = weight});
+    }
+}
+
+void each_node(const TensorTree& table, const Visit& visit) {
+  for (const TreeLeaf& leaf : leaves(table)) {
+    const double f = static_cast<double>(leaf.value);
+    if (const DirectionPair pair = leaf_directions(table, leaf); lies_above(pair))
+      visit({.pair = pair, .f = {&f, 1}, .weight = leaf_weight(table, leaf)});
+  }
+}
+
+void each_node(const Samples& samples, const Visit& visit) {
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    if (lies_above(samples.pairs[i])) visit({.pair = samples.pairs[i], .f = samples.at(i)});
+}
+
+NodeCount counted(const auto& source) {
+  NodeCount count;
+  Incidences incidences;
+  each_node(source, [&](const Node& node) {
+    ++count.nodes;
+    incidences.emplace(incidence_of(node.pair), 0);
+  });
+  count.incidences = incidences.size();
+  return count;
+}
+
+// Nodes and their weights, in no more memory than they take; to `more` each of them goes too.
+MeasuredNodes collected(const auto& source, std::size_t channels, bool isotropic, const Visit& more = {}) {
+  const std::size_t count = count_nodes(source).nodes;
+  MeasuredNodes nodes{.samples = {.channels = channels, .isotropic = isotropic}};
+  nodes.samples.pairs.reserve(count);
+  nodes.samples.values.reserve(count * channels);
+  nodes.weights.reserve(count);
+  each_node(source, [&](const Node& node) {
+    nodes.samples.pairs.push_back(node.pair);
+    nodes.samples.values.insert(nodes.samples.values.end(), node.f.begin(), node.f.end());
+    nodes.weights.push_back(node.weight);
+    if (more) more(node);
+  });
+  return nodes;
+}
+
+// The same, the mean weight 1.
+MeasuredNodes with_mean_weight(MeasuredNodes nodes) {
+  double total = 0;
+  for (const double weight : nodes.weights) total += weight;
+  for (double& weight : nodes.weights) weight *= static_cast<double>(nodes.size()) / total;
+  return nodes;
 }
 
 MeasuredNodes chosen(const MeasuredNodes& nodes, const NodePart& part, bool inside) {
@@ -138,95 +271,61 @@ std::uint32_t MeasuredNodes::group_count() const noexcept {
 }
 
 MeasuredNodes measured_nodes(const RglTable& table) {
-  const RglData& data = table.data();
-  const auto width = static_cast<std::uint32_t>(data.spectra.width),
-             height = static_cast<std::uint32_t>(data.spectra.height);
-  const auto channels = data.channels;
-  const auto thetas = static_cast<std::uint32_t>(data.theta_i.size());
-  const std::uint32_t slices =
-      thetas * (table.isotropic() ? 1 : static_cast<std::uint32_t>(data.phi_i.size()));
-  MeasuredNodes nodes{.samples = {.channels = data.channels, .isotropic = table.isotropic()}};
-  std::vector<double> f(channels);
-  const bool masked = mask_holds(data, std::size_t{slices} * width * height);
-
-  for (std::uint32_t node = 0; node < slices * width * height; ++node) {
-    const std::uint32_t slice = node / (width * height), row = node / width % height, column = node % width;
-    if (masked && !is_valid(data, node)) continue;
-
-    // what stands there, as a BRDF
-    const DirectionPair pair =
-        table.node_directions(static_cast<int>(slice / thetas), static_cast<int>(slice % thetas),
-                              static_cast<int>(row), static_cast<int>(column));
-    const double scale = rgl_node_scale(data, pair);
-    for (std::size_t c = 0; c < channels; ++c)
-      f[c] = scale * static_cast<double>(data.spectra.values[node * channels + c]);
-    if (!add(nodes.samples, pair, f)) continue;
-
-    // mirror twins are one; rows that meet at the normal were measured one by one
-    const std::uint32_t mirrored = table.isotropic() ? std::min(row, height - 1 - row) : row;
-    nodes.groups.push_back((slice * height + mirrored) * width + column);
-    nodes.half.push_back(static_cast<std::uint8_t>((mirrored + column) % 2));
-  }
-  nodes.weights.assign(nodes.size(), 1);
+  std::vector<std::uint32_t> groups;
+  std::vector<std::uint8_t> half;
+  MeasuredNodes nodes = collected(table, table.channels(), table.isotropic(), [&](const Node& node) {
+    groups.push_back(node.group);
+    half.push_back(node.half);
+  });
+  nodes.groups = std::move(groups);
+  nodes.half = std::move(half);
   number_groups(nodes);
   number_incidences(nodes);
   return nodes;
 }
 
 MeasuredNodes measured_nodes(const HalfDiffTable& table) {
-  MeasuredNodes nodes{.samples = {.channels = table.channel_count, .isotropic = true}};
-  for (int h = 0; h < table.theta_h_count; ++h)
-    for (int d = 0; d < table.theta_d_count; ++d)
-      for (int p = 0; p < table.phi_d_count; ++p) {
-        const auto f = std::span(table.values).subspan(table.offset(h, d, p), table.channel_count);
-        if (std::isnan(f[0])) continue;
-        const auto [wi, wo] = from_half_diff(table.centre(h, d, p));
-        add(nodes.samples, {wi, wo}, f);
-      }
-  return finished(std::move(nodes));
+  return finished(collected(table, table.channel_count, true));
 }
 
 MeasuredNodes measured_nodes(const AngleTable& table) {
-  MeasuredNodes nodes{.samples = {.channels = table.channel_count, .isotropic = table.isotropic()}};
-  const auto channels = table.channel_count;
-  for (std::size_t entry = 0; entry < entry_count(table); ++entry) {
-    const auto f = std::span(table.values).subspan(entry * channels, channels);
-    if (!std::isnan(f[0])) add(nodes.samples, node_directions(table, node_of_entry(table, entry)), f);
-  }
-  return finished(std::move(nodes));
+  return finished(collected(table, table.channel_count, table.isotropic()));
 }
 
 MeasuredNodes measured_nodes(const PatchTable& table) {
-  MeasuredNodes nodes{.samples = {.channels = 1, .isotropic = false}};
-  double total = 0;
-  for (std::size_t o = 0; o < table.outgoing.size(); ++o)
-    for (std::size_t i = 0; i < table.incident.size(); ++i) {
-      const auto f = std::span(table.values).subspan(o * table.incident.size() + i, 1);
-      if (!add(nodes.samples, {table.incident.centre(i), table.outgoing.centre(o)}, f)) continue;
-      nodes.weights.push_back(table.incident.projected_solid_angle(i) *
-                              table.outgoing.projected_solid_angle(o));
-      total += nodes.weights.back();
-    }
-  for (double& weight : nodes.weights) weight *= static_cast<double>(nodes.size()) / total;
-  return finished(std::move(nodes));
+  return finished(with_mean_weight(collected(table, 1, false)));
 }
 
 MeasuredNodes measured_nodes(const TensorTree& table) {
-  MeasuredNodes nodes{.samples = {.channels = 1, .isotropic = table.isotropic()}};
-  double total = 0;
-  for (const TreeLeaf& leaf : leaves(table)) {
-    if (!add(nodes.samples, leaf_directions(table, leaf), std::span(&leaf.value, 1))) continue;
-    nodes.weights.push_back(leaf_weight(table, leaf));
-    total += nodes.weights.back();
-  }
-  for (double& weight : nodes.weights) weight *= static_cast<double>(nodes.size()) / total;
-  return finished(std::move(nodes));
+  return finished(with_mean_weight(collected(table, 1, table.isotropic())));
 }
 
 MeasuredNodes measured_nodes(const Samples& samples) {
-  MeasuredNodes nodes{.samples = {.channels = samples.channels, .isotropic = samples.isotropic}};
-  for (std::size_t i = 0; i < samples.size(); ++i) add(nodes.samples, samples.pairs[i], samples.at(i));
-  return finished(std::move(nodes), Numbering::by_geometry);
+  return finished(collected(samples, samples.channels, samples.isotropic), Numbering::by_geometry);
+}
+
+NodeCount count_nodes(const RglTable& table) {
+  return counted(table);
+}
+
+NodeCount count_nodes(const HalfDiffTable& table) {
+  return counted(table);
+}
+
+NodeCount count_nodes(const AngleTable& table) {
+  return counted(table);
+}
+
+NodeCount count_nodes(const PatchTable& table) {
+  return counted(table);
+}
+
+NodeCount count_nodes(const TensorTree& table) {
+  return counted(table);
+}
+
+NodeCount count_nodes(const Samples& samples) {
+  return counted(samples);
 }
 
 MeasuredNodes select(const MeasuredNodes& nodes, std::span<const std::size_t> subset) {

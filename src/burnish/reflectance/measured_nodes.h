@@ -53,6 +53,20 @@ MeasuredNodes measured_nodes(const TensorTree& table);
 /// The samples themselves that lie above the horizon; the numbers of groups do not depend on their order.
 MeasuredNodes measured_nodes(const Samples& samples);
 
+/// How many nodes measured_nodes gives, and at how many distinct theta_i.
+struct NodeCount {
+  std::size_t nodes = 0;
+  std::size_t incidences = 0;
+};
+
+/// The same as measured_nodes would say, in the memory of the angles alone: tables have millions of nodes.
+NodeCount count_nodes(const RglTable& table);
+NodeCount count_nodes(const HalfDiffTable& table);
+NodeCount count_nodes(const AngleTable& table);
+NodeCount count_nodes(const PatchTable& table);
+NodeCount count_nodes(const TensorTree& table);
+NodeCount count_nodes(const Samples& samples);
+
 /// The chosen nodes in the order given; groups, incidences and theta_i keep their meaning.
 /// Precondition: indices below nodes.size().
 MeasuredNodes select(const MeasuredNodes& nodes, std::span<const std::size_t> subset);

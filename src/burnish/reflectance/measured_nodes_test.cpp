@@ -10,6 +10,7 @@
 #include <burnish/error.h>
 #include <burnish/math/angles.h>
 #include <burnish/parameterization/half_diff.h>
+#include <burnish/reflectance/goniometer.h>
 #include <burnish/reflectance/measured_nodes.h>
 #include <burnish/reflectance/rgl_builder.h>
 #include <burnish/testing/brdfs.h>
@@ -141,6 +142,34 @@ TEST(MeasuredNodes, OfPatchesWeighWhatTheyCoverOfBothHemispheres) {
   // both at the normal, both of the outermost ring
   const double ratio = basis.projected_solid_angle(0) / basis.projected_solid_angle(144);
   EXPECT_NEAR(nodes.weights.front() / nodes.weights.back(), ratio * ratio, 1e-9);
+}
+
+TEST(MeasuredNodes, AreAsManyAsAreCounted) {
+  const auto expect_counted = [](const auto& source) {
+    const NodeCount count = count_nodes(source);
+    const MeasuredNodes nodes = measured_nodes(source);
+    ASSERT_GT(nodes.size(), 0u);
+    EXPECT_EQ(count.nodes, nodes.size());
+    EXPECT_EQ(count.incidences, nodes.theta_i.size());
+    EXPECT_EQ(nodes.weights.size(), nodes.size());
+    EXPECT_EQ(nodes.groups.size(), nodes.size());
+    EXPECT_EQ(nodes.half.size(), nodes.size());
+    EXPECT_EQ(nodes.incidence.size(), nodes.size());
+  };
+  const fixtures::Glossy source{.a = 20, .b = 5};
+  expect_counted(small_rgl(source));
+  expect_counted(tabulate_half_diff(fixtures::Lambert{}, 6, 5, 8, true));
+  const PatchBasis basis = klems_full_basis();
+  expect_counted(PatchTable{basis, basis, std::vector<float>(145 * 145, 0.5f)});
+  expect_counted(tabulate_tree(source, 3, 0.1));
+  AngleTable angles;  // on the horizon too
+  angles.axes = {make_axis({0}), make_axis({0.2, 0.9, kHalfPi}), make_axis({0.1, 0.7, kHalfPi}),
+                 make_axis(cell_centres(8, kTwoPi), kTwoPi)};
+  expect_counted(tabulate_angles(source, angles));
+  Samples samples = measure(source, {.count = 50});
+  samples.pairs[3].wo.z = 0;
+  samples.pairs[7].wi.z = -0.5;
+  expect_counted(samples);
 }
 
 TEST(MeasuredNodes, APartKeepsWhatTheNumbersMean) {
