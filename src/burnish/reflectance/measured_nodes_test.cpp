@@ -161,7 +161,7 @@ TEST(MeasuredNodes, AreAsManyAsAreCounted) {
   expect_counted(tabulate_half_diff(fixtures::Lambert{}, 6, 5, 8, true));
   const PatchBasis basis = klems_full_basis();
   expect_counted(PatchTable{basis, basis, std::vector<float>(145 * 145, 0.5f)});
-  expect_counted(tabulate_tree(source, 3, 0.1));
+  expect_counted(tabulate_tree(fixtures::Glossy{.count = 1}, 3, 0.1));
   AngleTable angles;  // on the horizon too
   angles.axes = {make_axis({0}), make_axis({0.2, 0.9, kHalfPi}), make_axis({0.1, 0.7, kHalfPi}),
                  make_axis(cell_centres(8, kTwoPi), kTwoPi)};
