@@ -107,7 +107,6 @@ MeasuredNodes finished(MeasuredNodes nodes, Numbering numbering = Numbering::as_
   std::ranges::sort(keyed);
 
   const bool by_geometry = numbering == Numbering::by_geometry;
-  nodes.groups.resize(nodes.size());
   std::uint32_t next = 0;
   for (std::size_t i = 0, first = 0; i < keyed.size(); ++i) {
     const bool begins = i == 0 || keyed[i].first != keyed[i - 1].first;
@@ -120,8 +119,7 @@ MeasuredNodes finished(MeasuredNodes nodes, Numbering numbering = Numbering::as_
   for (std::uint32_t i = 0; i < nodes.size() && !by_geometry; ++i)
     nodes.groups[i] = nodes.groups[i] == i ? next++ : nodes.groups[nodes.groups[i]];
 
-  nodes.half.reserve(nodes.size());
-  for (const std::uint32_t group : nodes.groups) nodes.half.push_back(coin(group));
+  std::ranges::transform(nodes.groups, nodes.half.begin(), coin);
   number_incidences(nodes);
   return nodes;
 }
@@ -230,18 +228,21 @@ NodeCount counted(const auto& source) {
   return count;
 }
 
-// Nodes and their weights, in no more memory than they take; to `more` each of them goes too.
-MeasuredNodes collected(const auto& source, std::size_t channels, bool isotropic, const Visit& more = {}) {
+// Nodes without their incidences, in no more memory than they take.
+MeasuredNodes collected(const auto& source, std::size_t channels, bool isotropic) {
   const std::size_t count = count_nodes(source).nodes;
   MeasuredNodes nodes{.samples = {.channels = channels, .isotropic = isotropic}};
   nodes.samples.pairs.reserve(count);
   nodes.samples.values.reserve(count * channels);
   nodes.weights.reserve(count);
+  nodes.groups.reserve(count);
+  nodes.half.reserve(count);
   each_node(source, [&](const Node& node) {
     nodes.samples.pairs.push_back(node.pair);
     nodes.samples.values.insert(nodes.samples.values.end(), node.f.begin(), node.f.end());
     nodes.weights.push_back(node.weight);
-    if (more) more(node);
+    nodes.groups.push_back(node.group);
+    nodes.half.push_back(node.half);
   });
   return nodes;
 }
@@ -271,14 +272,7 @@ std::uint32_t MeasuredNodes::group_count() const noexcept {
 }
 
 MeasuredNodes measured_nodes(const RglTable& table) {
-  std::vector<std::uint32_t> groups;
-  std::vector<std::uint8_t> half;
-  MeasuredNodes nodes = collected(table, table.channels(), table.isotropic(), [&](const Node& node) {
-    groups.push_back(node.group);
-    half.push_back(node.half);
-  });
-  nodes.groups = std::move(groups);
-  nodes.half = std::move(half);
+  MeasuredNodes nodes = collected(table, table.channels(), table.isotropic());
   number_groups(nodes);
   number_incidences(nodes);
   return nodes;
