@@ -1,10 +1,8 @@
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <span>
-#include <vector>
 
+#include <burnish/math/kd_tree.h>
 #include <burnish/reflectance/samples.h>
 
 namespace burnish {
@@ -51,15 +49,11 @@ class ScatteredBrdf {
   double initial_radius2() const noexcept { return initial_radius2_; }
 
  private:
-  using Point = std::array<double, 4>;
-
-  Point place(Vec3 wi, Vec3 wo) const noexcept;
+  TreePoint place(Vec3 wi, Vec3 wo) const noexcept;
 
   SampleSpace space_;
   Samples samples_;  // in the order of the tree
-  std::vector<Point> points_;
-  // Split axis of the node whose pivot is point i; a k-d tree without pointers: a range's pivot is its middle.
-  std::vector<std::uint8_t> axes_;
+  KdTree tree_;
   double initial_radius2_ = 0;
 };
 
