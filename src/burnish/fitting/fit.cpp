@@ -29,8 +29,8 @@
 #include <burnish/metrics/error_figures.h>
 #include <burnish/metrics/node_figures.h>
 #include <burnish/reflectance/goniometer.h>
+#include <burnish/reflectance/kriged_nodes.h>
 #include <burnish/reflectance/sample_source.h>
-#include <burnish/reflectance/smoothed_nodes.h>
 
 namespace burnish {
 
@@ -64,7 +64,6 @@ constexpr std::size_t kSpareTexels = 1500;  // from here on, for absolute errors
 constexpr double kVolumeSmooth = 1e-9;
 constexpr double kFewTexelsSmooth = 1e-9;   // of several lobes; few texels are smooth by themselves
 constexpr double kHemisphereSmooth = 1e-6;  // whose many texels few pixels reach
-constexpr double kSmoothnessTime = 0.8;     // of making a function of nodes, as progress tells
 constexpr int kMoreFetchesOfNodes = 1;      // dark films' colours ask for a grid beside the line
 constexpr int kSmoothnessFetches = 2;       // of the models by which it is chosen
 constexpr double kFrontalShare = 0.1;       // of pixels, see with_frontal_pixels
@@ -607,10 +606,13 @@ class Fitter {
     NodesReport& report = report_.nodes.emplace(NodesReport{.fitted = nodes_->size()});
     if (!nodes_->samples.isotropic) return;
     const auto smoothing = progress("smoothing the nodes");
-    report.smoothness = choose_node_smoothness(*nodes_, part_of_progress(smoothing, 0, kSmoothnessTime));
-    report.held_out = held_out_figures(*nodes_, *report.smoothness);
+    report.covariance = choose_covariance(*nodes_, smoothing);
+    report.held_out = held_out_figures(*nodes_, *report.covariance);
     const BrdfRef function = symmetrized_ ? BrdfRef(*symmetrized_) : brdf_;
-    smoothed_.emplace(with_gaps_filled(*nodes_, measured_nodes(source_), function), *report.smoothness);
+    if (source_.samples())
+      smoothed_.emplace(*nodes_, *report.covariance);
+    else
+      smoothed_.emplace(with_gaps_filled(*nodes_, measured_nodes(source_), function), *report.covariance);
     if (smoothing) smoothing(1);
   }
 
@@ -683,7 +685,7 @@ class Fitter {
   BrdfRef brdf_;
   std::optional<SymmetrizedBrdf> symmetrized_;
   std::optional<MeasuredNodes> nodes_;
-  std::optional<SmoothedNodes> smoothed_;
+  std::optional<KrigedNodes> smoothed_;
   FitReport report_;
   std::string at_bytes_;  ///< of a stage of progress, where several numbers of bytes are tried
 };
@@ -704,6 +706,8 @@ FitTarget default_target(const Source& source, const FitOptions& options) {
   if (options.hold_out) return FitTarget::nodes;
   const auto* table = std::get_if<RglTable>(&source.brdf);
   const auto* budget = options.form ? std::get_if<Budget>(&*options.form) : nullptr;
+  if (const Samples* samples = source.samples(); samples && samples->isotropic && (!options.form || budget))
+    return options.symmetrize ? FitTarget::nodes : FitTarget::function;
   const bool lobes = !options.form || std::holds_alternative<GivenLobes>(*options.form) ||
                      (budget && !budget->scattered.cross_validate);
   return table && table->isotropic() && options.symmetrize && lobes ? FitTarget::nodes : FitTarget::function;

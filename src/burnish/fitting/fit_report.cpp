@@ -117,9 +117,20 @@ Json json_of(const BudgetChoice& choice) {
   return json;
 }
 
+Json json_of(const LogCovariance& covariance) {
+  Json json{{"level", covariance.level}, {"spreads", covariance.spread}, {"noise", covariance.noise}};
+  for (const TreePoint& inverse : covariance.inverse_length) {
+    Json lengths = Json::array();
+    for (const double by : inverse)
+      if (by > 0) lengths.push_back(1 / by);
+    json["lengths"].push_back(std::move(lengths));
+  }
+  return json;
+}
+
 Json json_of(const NodesReport& report) {
   Json json{{"target", "nodes"}, {"nodes", report.fitted}};
-  if (report.smoothness) json["node_smoothness"] = report.smoothness->shares;
+  if (report.covariance) json["node_covariance"] = json_of(*report.covariance);
   if (report.held_out) json["node_held_out"] = json_of(*report.held_out);
   json["node_fit"] = json_of(report.at_fitted);
   if (report.at_held_out) json["node_test"] = json_of(*report.at_held_out);

@@ -116,7 +116,7 @@ struct EnergyReport {
 struct NodesReport {
   std::size_t fitted = 0;  ///< nodes, without those that were held out
   /// Of the function between them, of an isotropic source: as found, and what it scores at nodes that it had not seen.
-  std::optional<NodeSmoothness> smoothness = {};
+  std::optional<LogCovariance> covariance = {};
   std::optional<NodeFigures> held_out = {};
   /// Of the model as stored, at the nodes that were fitted and at those that were held out.
   NodeFigures at_fitted = {};
@@ -146,7 +146,7 @@ struct FitReport {
 /// smooth, samples, lobes, loss, iterations, stop_reason, objective; of baselines method, budget,
 /// layouts_tried, error_before, error_after, starts, iterations, stop_reason; of completions samples, used,
 /// book_materials, nearest, brightness, colour, relative_at_samples, relative_left_out; of a chosen number of bytes
-/// budget_choice; of nodes target, nodes, node_smoothness, node_held_out, node_fit, node_test; then
+/// budget_choice; of nodes target, nodes, node_covariance, node_held_out, node_fit, node_test; then
 /// conserve_energy, psnr, ssim, relative, rms_log, log_cos and negative_lobes. What there is none of is left
 /// out; what is not finite is null.
 std::string to_json(const FitReport& report);

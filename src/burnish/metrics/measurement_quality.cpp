@@ -24,9 +24,9 @@ NodesQuality negatives_of(const MeasuredNodes& nodes) {
 NodesQuality nodes_quality(const MeasuredNodes& nodes) {
   NodesQuality quality = negatives_of(nodes);
   if (nodes.samples.isotropic) {
-    const NodeSmoothness smoothness = choose_node_smoothness(nodes);
-    quality.held_out = held_out_figures(nodes, smoothness);
-    quality.held_out_incidences = held_out_incidences(nodes, smoothness);
+    const LogCovariance covariance = choose_covariance(nodes);
+    quality.held_out = held_out_figures(nodes, covariance);
+    quality.held_out_incidences = held_out_incidences(nodes, covariance);
   }
   return quality;
 }

@@ -13,7 +13,7 @@ namespace burnish {
 
 /// What measured nodes tell of one another, and of noise.
 struct NodesQuality {
-  /// Of a smooth function at nodes that it has not seen (held_out_figures), and at incidences (held_out_incidences);
+  /// Of the function between nodes at nodes that it has not seen (held_out_figures), and at incidences (held_out_incidences);
   /// none of anisotropic sources.
   std::optional<NodeFigures> held_out, held_out_incidences;
   double negative_share = 0;  ///< of the nodes' values
@@ -22,7 +22,7 @@ struct NodesQuality {
 
 /// Of their negatives alone.
 NodesQuality negatives_of(const MeasuredNodes& nodes);
-/// The smooth function is as smooth as predicts best (choose_node_smoothness). Throws Error as that does.
+/// Of the function whose covariance predicts best (choose_covariance). Throws Error as that does.
 NodesQuality nodes_quality(const MeasuredNodes& nodes);
 
 /// How good a measurement is: what another one of the same surface scores against it. A model that scores better

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -14,16 +15,9 @@ namespace burnish {
 
 namespace {
 
-constexpr std::uint32_t kManyGroups = 20'000;
-constexpr int kMaxSteps = 2;
-constexpr int kFolds = 4;
-// Where a node is left out the gap has twice the area of that between nodes, and there are 3/4 as many nodes: what is
-// right there is too stiff between all nodes. Integrals of squared second derivatives grow with the fourth power of
-// the length, the square of the area.
-constexpr double kGap = (2.0 * kFolds / (kFolds - 1)) * (2.0 * kFolds / (kFolds - 1));
+constexpr std::size_t kMostJudged = 2000;    // nodes
+constexpr std::size_t kJudgedTogether = 64;  // of them a thread at a time
 
-// Fewer places than SmoothedNodes has: as many as tell what smoothness is right.
-constexpr NodeVolume kTrialVolume{24, 16, 6};
 // Incidences are left out where an instrument stood at few; two of a hand are this far apart.
 constexpr std::size_t kMinIncidences = 5, kMaxIncidences = 24, kIncidenceHands = 3;
 
@@ -85,26 +79,36 @@ std::size_t hand_of(std::uint32_t group, std::size_t hands) {
   return static_cast<std::size_t>(Pcg32(group).uniform() * static_cast<double>(hands));
 }
 
-// Figures at the nodes of each hand as predicted from those of the others; what is in no hand is always seen.
+// Figures at nodes as predicted from those of the other hands; what is in no hand is always seen.
 template <class Hand>
-NodeFigures held_out(const MeasuredNodes& nodes, const NodeSmoothness& smoothness, std::size_t hands,
+NodeFigures held_out(const MeasuredNodes& nodes, const LogCovariance& covariance, std::size_t hands,
                      Hand hand) {
-  std::vector<ErrorSums> sums(hands);
-  for_each_chunk(hands, 1, [&](std::size_t fold, std::size_t, std::size_t) {
-    std::vector<std::size_t> seen, unseen;
-    for (std::size_t i = 0; i < nodes.size(); ++i) (hand(i) == fold ? unseen : seen).push_back(i);
-    if (unseen.empty() || seen.empty()) return;
-    sums[fold] =
-        sums_of(select(nodes, unseen), SmoothedNodes(select(nodes, seen), smoothness, kTrialVolume), {});
+  // every so many of the nodes that are in a hand and may be scored
+  std::vector<std::size_t> judged;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const DirectionPair& pair = nodes.samples.pairs[i];
+    if (hand(i) < hands && std::min(pair.wi.z, pair.wo.z) > NodeScoring{}.least_cosine) judged.push_back(i);
+  }
+  const std::size_t step = judged.size() / kMostJudged + 1;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < judged.size(); i += step) judged[kept++] = judged[i];
+  judged.resize(kept);
+
+  const KrigedNodes function(nodes, covariance);
+  std::vector<ErrorSums> sums(chunk_count(judged.size(), kJudgedTogether));
+  for_each_chunk(judged.size(), kJudgedTogether, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    std::vector<double> f(nodes.samples.channels);
+    for (std::size_t j = begin; j < end; ++j) {
+      const std::size_t i = judged[j];
+      const DirectionPair& pair = nodes.samples.pairs[i];
+      function.eval_from(
+          pair.wi, pair.wo, [&, own = hand(i)](std::size_t other) { return hand(other) != own; }, f);
+      sums[chunk].add(pair_error(pair, nodes.samples.at(i), f, NodeScoring{}.floor), nodes.weights[i]);
+    }
   });
   ErrorSums total;
   for (const ErrorSums& sum : sums) total.add(sum);
   return total.means({});
-}
-
-NodeSmoothness scaled(NodeSmoothness smoothness, double factor) {
-  for (double& share : smoothness.shares) share *= factor;
-  return smoothness;
 }
 
 }  // namespace
@@ -120,70 +124,43 @@ NodeFigures node_figures(const MeasuredNodes& nodes, BrdfRef model, const NodeSc
   return sums_of(nodes, model, scoring).means(scoring);
 }
 
-NodeFigures held_out_figures(const MeasuredNodes& nodes, const NodeSmoothness& smoothness, int folds) {
+NodeFigures held_out_figures(const MeasuredNodes& nodes, const LogCovariance& covariance, int folds) {
   const auto hands = static_cast<std::size_t>(folds);
-  return held_out(nodes, smoothness, hands, [&](std::size_t i) { return hand_of(nodes.groups[i], hands); });
+  return held_out(nodes, covariance, hands, [&](std::size_t i) { return hand_of(nodes.groups[i], hands); });
 }
 
-std::optional<NodeFigures> held_out_incidences(const MeasuredNodes& nodes, const NodeSmoothness& smoothness) {
+std::optional<NodeFigures> held_out_incidences(const MeasuredNodes& nodes, const LogCovariance& covariance) {
   std::vector<std::uint32_t> there(nodes.incidence);
   std::ranges::sort(there);
   there.erase(std::unique(there.begin(), there.end()), there.end());
   if (there.size() < kMinIncidences || there.size() > kMaxIncidences) return {};
-  return held_out(nodes, smoothness, kIncidenceHands, [&](std::size_t i) {
-    const auto place =
-        static_cast<std::size_t>(std::ranges::lower_bound(there, nodes.incidence[i]) - there.begin());
-    return place == 0 || place + 1 == there.size() ? kIncidenceHands : place % kIncidenceHands;
-  });
+  std::vector<std::size_t> hand_of_incidence(there.back() + 1, kIncidenceHands);
+  for (std::size_t place = 1; place + 1 < there.size(); ++place)
+    hand_of_incidence[there[place]] = place % kIncidenceHands;
+  return held_out(nodes, covariance, kIncidenceHands,
+                  [&](std::size_t i) { return hand_of_incidence[nodes.incidence[i]]; });
 }
 
-NodeSmoothness choose_node_smoothness(const MeasuredNodes& nodes,
-                                      const std::function<void(double)>& progress) {
-  // enough of the groups
-  std::optional<MeasuredNodes> part;
-  if (const std::uint32_t step = nodes.group_count() / kManyGroups + 1; step > 1) {
-    std::vector<std::size_t> chosen;
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-      if (nodes.groups[i] % step == 0) chosen.push_back(i);
-    part = select(nodes, chosen);
-  }
-
-  NodeSmoothness best = scaled(NodeSmoothness{}, kGap);
-  // of each walk a step either way
-  const double expected = 1 + 2 * (1 + static_cast<double>(best.shares.size()));
-  double trials = 0;
-  const auto error_of = [&](const NodeSmoothness& trial) {
-    if (progress) progress(std::min(trials++ / expected, 1.0));
-    const MeasuredNodes& all = part ? *part : nodes;
+LogCovariance choose_covariance(const MeasuredNodes& nodes, const std::function<void(double)>& progress) {
+  std::vector<LogCovariance> likely = likely_covariances(nodes);
+  likely.push_back(default_log_covariance(nodes.samples.isotropic));
+  const auto error_of = [&](const LogCovariance& covariance) {
     const auto error = [](const NodeFigures& figures) {
       return std::log(figures.relative) + std::log(figures.log_cos);
     };
-    const auto between = held_out_incidences(all, trial);
-    return error(held_out_figures(all, trial, kFolds)) + (between ? error(*between) : 0.0);
+    const auto between = held_out_incidences(nodes, covariance);
+    return error(held_out_figures(nodes, covariance)) + (between ? error(*between) : 0.0);
   };
-  double smallest = error_of(best);
-  const auto improves = [&](const NodeSmoothness& trial) {
-    const double error = error_of(trial);
-    if (!(error < smallest)) return false;
+  std::size_t best = 0;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < likely.size(); ++i) {
+    if (progress) progress(static_cast<double>(i + 1) / static_cast<double>(likely.size() + 1));
+    const double error = error_of(likely[i]);
+    if (!(error < smallest)) continue;
     smallest = error;
-    best = trial;
-    return true;
-  };
-  // all shares, or one, up or down as long as that helps
-  const auto walk = [&](auto changed) {
-    for (const double factor : {10.0, 0.1}) {
-      int steps = 0;
-      while (steps < kMaxSteps && improves(changed(best, factor))) ++steps;
-      if (steps > 0) break;  // the other way would undo it
-    }
-  };
-  walk(scaled);
-  for (std::size_t k = 0; k < best.shares.size(); ++k)
-    walk([k](NodeSmoothness trial, double factor) {
-      trial.shares[k] *= factor;
-      return trial;
-    });
-  return scaled(best, 1 / kGap);
+    best = i;
+  }
+  return likely[best];
 }
 
 }  // namespace burnish

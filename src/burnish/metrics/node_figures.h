@@ -7,8 +7,9 @@
 
 #include <burnish/metrics/error_figures.h>
 #include <burnish/reflectance/brdf.h>
+#include <burnish/reflectance/kriged_nodes.h>
+#include <burnish/reflectance/log_covariance.h>
 #include <burnish/reflectance/measured_nodes.h>
-#include <burnish/reflectance/smoothed_nodes.h>
 
 namespace burnish {
 
@@ -33,20 +34,19 @@ std::vector<PairError> node_errors(const MeasuredNodes& nodes, BrdfRef model,
 /// Throws Error as node_errors, or where no node is left to score.
 NodeFigures node_figures(const MeasuredNodes& nodes, BrdfRef model, const NodeScoring& scoring = {});
 
-/// Figures of SmoothedNodes, of fewer places, at nodes that it was not made from: groups are dealt to `folds`
-/// hands, and each hand is predicted from the others. folds >= 2. Throws Error as SmoothedNodes and node_figures.
-NodeFigures held_out_figures(const MeasuredNodes& nodes, const NodeSmoothness& smoothness, int folds = 4);
+/// Figures of KrigedNodes at nodes that it was not made from: groups are dealt to `folds` hands, and each hand is
+/// predicted from the others. Of many nodes a part is judged, the same whatever the covariance. folds >= 2.
+/// Throws Error as KrigedNodes and node_figures.
+NodeFigures held_out_figures(const MeasuredNodes& nodes, const LogCovariance& covariance, int folds = 4);
 
 /// The same with incidences left out, all nodes of one together, two or more apart; the first and the last never are.
 /// Nothing where there are fewer than five incidences, or so many that each is only a few nodes.
-std::optional<NodeFigures> held_out_incidences(const MeasuredNodes& nodes, const NodeSmoothness& smoothness);
+std::optional<NodeFigures> held_out_incidences(const MeasuredNodes& nodes, const LogCovariance& covariance);
 
-/// The smoothness that predicts best: the least mean of the logarithms of relative and log_cos, of
-/// held_out_figures and, where there is such, of held_out_incidences; found by steps of ten from the default:
-/// all shares together, then one after the other, and then softened by what the gaps of nodes left out are
-/// wider than those between nodes. Of many nodes a part is taken. Deterministic. `progress` is told rising shares of
-/// the trials that are expected. Throws Error as held_out_figures.
-NodeSmoothness choose_node_smoothness(const MeasuredNodes& nodes,
-                                      const std::function<void(double fraction)>& progress = {});
+/// Of the default and the likely covariances the one that predicts best: the least sum of the logarithms of relative
+/// and log_cos, of held_out_figures and, where there is such, of held_out_incidences. Deterministic. `progress` is told
+/// rising shares. Throws Error as held_out_figures.
+LogCovariance choose_covariance(const MeasuredNodes& nodes,
+                                const std::function<void(double fraction)>& progress = {});
 
 }  // namespace burnish

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include <burnish/math/kd_tree.h>
+#include <burnish/reflectance/brdf.h>
+#include <burnish/reflectance/log_covariance.h>
+#include <burnish/reflectance/measured_nodes.h>
+
+namespace burnish {
+
+/// The function behind measured points: ln(f + 1e-3) at a pair of directions is the best linear prediction from the
+/// kNeighbours nearest nodes under a covariance (kriging). It is as rough as the points say, goes to their mean where
+/// there are none, and knows how uncertain it is. Nodes nearer to the horizon are taken as noisier; a node's weight
+/// divides the variance of its noise. Values lie between 0 and twice the largest node's. A pair costs a matrix of
+/// kNeighbours rows. Exchanged directions and, of an isotropic source, mirror images give the same to rounding.
+/// Source: [Rasmussen 2006, eq. 2.25 and 2.26].
+class KrigedNodes {
+ public:
+  static constexpr double kFloor = 1e-3;  ///< 1/sr, as in the figure `relative`
+  static constexpr std::size_t kNeighbours = 48;
+
+  /// Throws Error where none of the nodes has both cosines above 0.02.
+  KrigedNodes(const MeasuredNodes& nodes, const LogCovariance& covariance);
+
+  std::size_t channels() const noexcept { return measured_.channels; }
+  bool isotropic() const noexcept { return isotropic_; }
+  bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
+
+  /// The same from the nodes whose numbers in the constructor's order `takes` accepts.
+  void eval_from(Vec3 wi, Vec3 wo, const std::function<bool(std::size_t node)>& takes,
+                 std::span<double> f) const noexcept;
+
+  /// The standard deviation of ln(f + 1e-3) at a pair of directions, 0 or more: how far the prediction may be off.
+  double uncertainty(Vec3 wi, Vec3 wo) const noexcept;
+
+ private:
+  struct Prediction;
+  template <class Takes>
+  Prediction predict(const TreePoint& place, const Takes& takes) const noexcept;
+  template <class Takes>
+  void eval_of(Vec3 wi, Vec3 wo, const Takes& takes, std::span<double> f) const noexcept;
+  TreePoint scaled(TreePoint place) const noexcept;
+
+  bool isotropic_ = true;
+  LogCovariance covariance_;
+  KdTree tree_;                      // places scaled by the lengths of the term that sees all
+  LogMeasurements measured_;         // in the tree's order
+  std::vector<std::uint32_t> node_;  // what number each had
+  std::vector<double> mean_;         // of the logarithms, [channel]
+  std::vector<double> largest_;      // f, [channel]
+};
+
+static_assert(Brdf<KrigedNodes>);
+
+/// A pair of directions among the coordinates of LogCovariance. Precondition: both above the horizon.
+TreePoint place_of(Vec3 wi, Vec3 wo, bool isotropic) noexcept;
+
+/// Covariances that are likely: of groups of near nodes, which tell how rough the source is, and of nodes from
+/// everywhere, which tell how it changes from place to place. At least one.
+/// Throws Error where no node has both cosines above 0.02.
+std::vector<LogCovariance> likely_covariances(const MeasuredNodes& nodes);
+
+/// `fitted` and, where no node of `all` lies near, what `function` says there, at a tenth of a node's weight:
+/// instruments leave whole regions out (wide half angles, the neighbourhood of the normal), and what stands
+/// there is a guess anyway. Both are isotropic and have the function's channels.
+MeasuredNodes with_gaps_filled(const MeasuredNodes& fitted, const MeasuredNodes& all, BrdfRef function);
+
+}  // namespace burnish
