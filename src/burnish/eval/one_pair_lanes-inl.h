@@ -15,6 +15,7 @@
 #include <burnish/eval/lookup_lanes-inl.h>
 #include <burnish/eval/projection_lanes-inl.h>
 
+HWY_BEFORE_NAMESPACE();
 BURNISH_BEGIN_TARGET;
 
 constexpr std::size_t kTogether = FactoredPlan::kTogether;
@@ -369,5 +370,6 @@ void eval_one_pair(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, flo
 #endif  // HWY_TARGET != HWY_SCALAR
 
 BURNISH_END_TARGET;
+HWY_AFTER_NAMESPACE();
 
 #endif

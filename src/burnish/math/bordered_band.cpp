@@ -30,6 +30,7 @@ struct ConstRows {
 }  // namespace burnish
 #endif
 
+HWY_BEFORE_NAMESPACE();
 BURNISH_BEGIN_TARGET;
 
 // Of four rows, at least `count` entries each: entry (r, j) minus the sum over k < terms of left(k, r) right(k, j), one
@@ -69,6 +70,7 @@ void subtract_products(const Rows& to, std::size_t count, const ConstRows& left,
 }
 
 BURNISH_END_TARGET;
+HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace burnish {
