@@ -12,6 +12,8 @@ JOBS ?= $(shell nproc)
 BURNISH := build/release/apps/burnish/burnish
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
 SOURCES = $(shell find src apps tests examples python -name '*.h' -o -name '*.cpp')
+# Warnings are errors in the preset dev and where this is ON, as in CI: compilers of other systems warn of other things.
+WERROR ?= OFF
 INPUT ?=
 OUT ?= out/demo
 FUZZ_SECONDS ?= 60
@@ -34,7 +36,7 @@ deps test-deps studio-deps:
 	fi
 
 build: deps
-	@cmake --preset programs > /dev/null
+	@cmake --preset programs -DBURNISH_WERROR=$(WERROR) > /dev/null
 	@cmake --build --preset programs -j $(JOBS)
 
 reports: test-deps build
@@ -52,7 +54,7 @@ demo: build
 test: test-deps format-check docs-check include-check
 	@mpi=$$(command -v mpicxx > /dev/null && echo ON || echo OFF); \
 	for preset in dev release; do \
-	  case $$preset in release) options=-DBURNISH_MPI=$$mpi ;; *) options= ;; esac; \
+	  case $$preset in release) options="-DBURNISH_MPI=$$mpi -DBURNISH_WERROR=$(WERROR)" ;; *) options= ;; esac; \
 	  cmake --preset $$preset $$options > /dev/null && \
 	  cmake --build --preset $$preset -j $(JOBS) && \
 	  ctest --preset $$preset -j $(JOBS) || exit 1; \
@@ -61,12 +63,12 @@ test: test-deps format-check docs-check include-check
 	@if command -v em++ > /dev/null && command -v node > /dev/null && command -v chromium > /dev/null; then \
 	  $(MAKE) -s studio; fi
 	@tests/web/check.sh --skip-offline > build/web.log 2>&1 & web=$$!; \
-	python/check.sh --skip-offline && tests/web/package.sh --if-built; others=$$?; \
+	BURNISH_WERROR=$(WERROR) python/check.sh --skip-offline && tests/web/package.sh --if-built; others=$$?; \
 	wait $$web; web=$$?; cat build/web.log; exit $$((others || web))
 	@tests/cluster/run.py $(BURNISH) --if-there
 
 python: test-deps build
-	@python/check.sh
+	@BURNISH_WERROR=$(WERROR) python/check.sh
 
 # Packages for people without a compiler.
 RELEASE := build/packages
@@ -89,7 +91,7 @@ release-check: deb wheel npm
 	@$(SUDO) tests/release/check.sh $(RELEASE)
 
 studio: studio-deps
-	@cmake --preset wasm > /dev/null
+	@cmake --preset wasm -DBURNISH_WERROR=$(WERROR) > /dev/null
 	@cmake --build --preset wasm -j $(JOBS)
 	@rm -rf build/studio && mkdir -p build/studio && cp -r web/studio/* build/wasm/package build/studio
 
