@@ -7,7 +7,7 @@
 # make bench, make compile-cost, make fuzz, make damaged, make report, make cost-report, make sampling-report, make shader-report, make openpbr-report, make frame-cost, make surface-report, make hw-report, make hw-exhaustive, make format:
 # see CONTRIBUTING.md
 # make cluster-test  a batch on a real Slurm of two nodes on this machine, killed now and then
-.PHONY: cluster-test compile-cost demo test build reports python deb wheel npm packaging-deps release-check studio studio-test deps test-deps studio-deps bench fuzz damaged report cost-report sampling-report shader-report openpbr-report frame-cost surface-report hw-report hw-exhaustive format format-check docs-check include-check api
+.PHONY: test-announcement cluster-test compile-cost demo test build reports python deb wheel npm packaging-deps release-check studio studio-test deps test-deps studio-deps bench fuzz damaged report cost-report sampling-report shader-report openpbr-report frame-cost surface-report hw-report hw-exhaustive format format-check docs-check include-check api
 JOBS ?= $(shell nproc)
 BURNISH := build/release/apps/burnish/burnish
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
@@ -24,16 +24,7 @@ deps: PACKAGES := cmake/debian-packages.txt
 test-deps: PACKAGES := cmake/debian-packages.txt cmake/debian-test-packages.txt
 studio-deps: PACKAGES := cmake/debian-packages.txt cmake/debian-studio-packages.txt
 deps test-deps studio-deps:
-	@missing=$$(for p in $$(grep -hv '^#' $(PACKAGES)); do \
-	  dpkg-query -W -f '$${Status}' $$p 2>/dev/null | grep -q 'ok installed' || echo $$p; done); \
-	if [ -n "$$missing" ]; then \
-	  echo "Installing: $$missing"; \
-	  export DEBIAN_FRONTEND=noninteractive; \
-	  $(SUDO) apt-get update -qq && $(SUDO) apt-get install -y -qq --no-install-recommends $$missing > /dev/null || \
-	  for p in $$missing; do \
-	    $(SUDO) apt-get install -y -qq --no-install-recommends $$p > /dev/null || echo "Not available here: $$p"; \
-	  done; \
-	fi
+	@cmake/install_packages.sh $(PACKAGES)
 
 build: deps
 	@cmake --preset programs -DBURNISH_WERROR=$(WERROR) > /dev/null
@@ -51,7 +42,11 @@ compile-cost: deps
 demo: build
 	@examples/demo.sh "$(BURNISH)" "$(OUT)" "$(INPUT)"
 
-test: test-deps format-check docs-check include-check
+test-announcement:
+	@echo "Debian's packages are installed where they are missing (cmake/debian-packages.txt, cmake/debian-test-packages.txt),"
+	@echo "others from PyPI and npm into build/ (python/requirements.txt, tests/web/package.json, clang-format)."
+
+test: test-announcement test-deps format-check docs-check include-check
 	@mpi=$$(command -v mpicxx > /dev/null && echo ON || echo OFF); \
 	for preset in dev release; do \
 	  case $$preset in release) options="-DBURNISH_MPI=$$mpi -DBURNISH_WERROR=$(WERROR)" ;; *) options= ;; esac; \
