@@ -142,11 +142,11 @@ damaged: test-deps
 	@build/release/tests/fuzz/make_seeds build/damaged/seeds
 	@tests/fuzz/damaged.py $(BURNISH) build/damaged/seeds $(BURNISH_DATA)
 
-format: test-deps
-	@clang-format -i $(SOURCES)
+format:
+	@tests/format/clang_format.sh -i $(SOURCES)
 
 format-check: test-deps
-	@clang-format --dry-run -Werror $(SOURCES)
+	@tests/format/clang_format.sh --check $(SOURCES)
 
 docs-check:
 	@tests/docs/check.py
