@@ -96,6 +96,8 @@ HWY_INLINE Quad mix(Quad low, Quad high, float fraction) {
 }
 #else
 using D4 = hn::CappedTag<float, 4>;
+using D2 = hn::Half<D4>;
+using Four = LaneOf<D4>;
 struct Quad {
   hn::Vec<D4> raw;
 };

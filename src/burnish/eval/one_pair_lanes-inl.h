@@ -22,8 +22,6 @@ constexpr std::size_t kTogether = FactoredPlan::kTogether;
 
 #if HWY_TARGET != HWY_SCALAR
 
-using D2 = hn::Half<D4>;
-using Four = LaneOf<D4>;
 using D8 = hn::CappedTag<float, FactoredPlan::Steps::kLanes>;
 using Eight = LaneOf<D8>;
 using DI8 = hn::RebindToSigned<D8>;

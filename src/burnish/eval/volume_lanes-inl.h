@@ -73,8 +73,6 @@ HWY_INLINE void store_three(hn::Vec<D4> value, double* f) {
 template <class Real>
 HWY_INLINE void eval_one_of_volume(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, Real* f) {
   const FactoredPlan::VolumeAndLine& v = *plan.volume_and_line;
-  using Four = LaneOf<D4>;
-  using D2 = hn::Half<D4>;
   const D4 d4;
   const D2 d2;
   const hn::RebindToSigned<D4> di4;
