@@ -2,7 +2,8 @@
 # make test   installs tools, builds with sanitizers and optimized, runs every test
 # make python the Python package in build/venv, tested
 # make build  the command line at build/release/apps/burnish/burnish
-# make deb, make wheel, make npm: packages in build/packages; make release-check installs each in an empty system and runs it
+# make deb, make wheel, make npm: packages in build/packages; make release-check installs each in an empty
+# system and runs it, and builds and tests on bare systems
 # make studio the library as WebAssembly, its npm package and the page in build/studio; make studio-test tests them
 # make bench, make compile-cost, make fuzz, make damaged, make report, make cost-report, make sampling-report, make shader-report, make openpbr-report, make frame-cost, make surface-report, make hw-report, make hw-exhaustive, make format:
 # see CONTRIBUTING.md
@@ -82,8 +83,10 @@ npm: studio
 	@mkdir -p $(RELEASE) && rm -f $(RELEASE)/*.tgz
 	@npm pack --silent --pack-destination $(RELEASE) ./build/studio/package > /dev/null && ls $(RELEASE)/*.tgz
 
+SYSTEMS ?= bookworm trixie
 release-check: deb wheel npm
 	@$(SUDO) tests/release/check.sh $(RELEASE)
+	@for suite in $(SYSTEMS); do $(SUDO) tests/systems/check.sh $$suite || exit 1; done
 
 studio: studio-deps
 	@cmake --preset wasm -DBURNISH_WERROR=$(WERROR) > /dev/null
