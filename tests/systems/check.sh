@@ -30,7 +30,7 @@ work=$(mktemp -d /var/tmp/burnish-system.XXXXXX)  # gigabytes, which /tmp may no
 kept=${BURNISH_SYSTEMS:-$work}
 root=$work/root
 leave() {
-  umount "$root/dev/shm" "$root/proc" 2> /dev/null || true
+  umount "$root/dev/shm" "$root/dev/pts" "$root/proc" 2> /dev/null || true
   if mountpoint -q "$root/proc"; then  # never delete what is mounted
     echo "check.sh: $root/proc is in use, so $work is left there" >&2
   else
@@ -50,7 +50,9 @@ if [ ! -e "$base.made" ]; then
 fi
 cp -a "$base" "$root"
 mount -t proc proc "$root/proc"
-mkdir -p "$root/dev/shm" && mount -t tmpfs tmpfs "$root/dev/shm"
+mkdir -p "$root/dev/shm" "$root/dev/pts"
+mount -t tmpfs tmpfs "$root/dev/shm"
+mount -t devpts -o newinstance,ptmxmode=0666 devpts "$root/dev/pts"
 
 inside() {
   chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
