@@ -2,16 +2,19 @@
 # make test   installs tools, builds with sanitizers and optimized, runs every test
 # make python the Python package in build/venv, tested
 # make build  the command line at build/release/apps/burnish/burnish
-# make deb, make wheel, make npm: packages in build/packages; make release-check installs each in an empty system and runs it
+# make deb, make wheel, make npm: packages in build/packages; make release-check installs each in an empty
+# system and runs it, and builds and tests on bare systems
 # make studio the library as WebAssembly, its npm package and the page in build/studio; make studio-test tests them
 # make bench, make compile-cost, make fuzz, make damaged, make report, make cost-report, make sampling-report, make shader-report, make openpbr-report, make frame-cost, make surface-report, make hw-report, make hw-exhaustive, make format:
 # see CONTRIBUTING.md
 # make cluster-test  a batch on a real Slurm of two nodes on this machine, killed now and then
-.PHONY: cluster-test compile-cost demo test build reports python deb wheel npm packaging-deps release-check studio studio-test deps test-deps studio-deps bench fuzz damaged report cost-report sampling-report shader-report openpbr-report frame-cost surface-report hw-report hw-exhaustive format format-check docs-check include-check api
+.PHONY: test-announcement cluster-test compile-cost demo test build reports python deb wheel npm packaging-deps release-check studio studio-test deps test-deps studio-deps bench fuzz damaged report cost-report sampling-report shader-report openpbr-report frame-cost surface-report hw-report hw-exhaustive format format-check docs-check include-check api
 JOBS ?= $(shell nproc)
 BURNISH := build/release/apps/burnish/burnish
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
 SOURCES = $(shell find src apps tests examples python -name '*.h' -o -name '*.cpp')
+# Warnings are errors in the preset dev and where this is ON, as in CI: compilers of other systems warn of other things.
+WERROR ?= OFF
 INPUT ?=
 OUT ?= out/demo
 FUZZ_SECONDS ?= 60
@@ -22,19 +25,10 @@ deps: PACKAGES := cmake/debian-packages.txt
 test-deps: PACKAGES := cmake/debian-packages.txt cmake/debian-test-packages.txt
 studio-deps: PACKAGES := cmake/debian-packages.txt cmake/debian-studio-packages.txt
 deps test-deps studio-deps:
-	@missing=$$(for p in $$(grep -hv '^#' $(PACKAGES)); do \
-	  dpkg-query -W -f '$${Status}' $$p 2>/dev/null | grep -q 'ok installed' || echo $$p; done); \
-	if [ -n "$$missing" ]; then \
-	  echo "Installing: $$missing"; \
-	  export DEBIAN_FRONTEND=noninteractive; \
-	  $(SUDO) apt-get update -qq && $(SUDO) apt-get install -y -qq --no-install-recommends $$missing > /dev/null || \
-	  for p in $$missing; do \
-	    $(SUDO) apt-get install -y -qq --no-install-recommends $$p > /dev/null || echo "Not available here: $$p"; \
-	  done; \
-	fi
+	@cmake/install_packages.sh $(PACKAGES)
 
 build: deps
-	@cmake --preset programs > /dev/null
+	@cmake --preset programs -DBURNISH_WERROR=$(WERROR) > /dev/null
 	@cmake --build --preset programs -j $(JOBS)
 
 reports: test-deps build
@@ -49,10 +43,14 @@ compile-cost: deps
 demo: build
 	@examples/demo.sh "$(BURNISH)" "$(OUT)" "$(INPUT)"
 
-test: test-deps format-check docs-check include-check
+test-announcement:
+	@echo "Debian's packages are installed where they are missing (cmake/debian-packages.txt, cmake/debian-test-packages.txt),"
+	@echo "others from PyPI and npm into build/ (python/requirements.txt, tests/web/package.json, clang-format)."
+
+test: test-announcement test-deps format-check docs-check include-check
 	@mpi=$$(command -v mpicxx > /dev/null && echo ON || echo OFF); \
 	for preset in dev release; do \
-	  case $$preset in release) options=-DBURNISH_MPI=$$mpi ;; *) options= ;; esac; \
+	  case $$preset in release) options="-DBURNISH_MPI=$$mpi -DBURNISH_WERROR=$(WERROR)" ;; *) options= ;; esac; \
 	  cmake --preset $$preset $$options > /dev/null && \
 	  cmake --build --preset $$preset -j $(JOBS) && \
 	  ctest --preset $$preset -j $(JOBS) || exit 1; \
@@ -61,12 +59,12 @@ test: test-deps format-check docs-check include-check
 	@if command -v em++ > /dev/null && command -v node > /dev/null && command -v chromium > /dev/null; then \
 	  $(MAKE) -s studio; fi
 	@tests/web/check.sh --skip-offline > build/web.log 2>&1 & web=$$!; \
-	python/check.sh --skip-offline && tests/web/package.sh --if-built; others=$$?; \
+	BURNISH_WERROR=$(WERROR) python/check.sh --skip-offline && tests/web/package.sh --if-built; others=$$?; \
 	wait $$web; web=$$?; cat build/web.log; exit $$((others || web))
 	@tests/cluster/run.py $(BURNISH) --if-there
 
 python: test-deps build
-	@python/check.sh
+	@BURNISH_WERROR=$(WERROR) python/check.sh
 
 # Packages for people without a compiler.
 RELEASE := build/packages
@@ -85,11 +83,13 @@ npm: studio
 	@mkdir -p $(RELEASE) && rm -f $(RELEASE)/*.tgz
 	@npm pack --silent --pack-destination $(RELEASE) ./build/studio/package > /dev/null && ls $(RELEASE)/*.tgz
 
+SYSTEMS ?= bookworm trixie
 release-check: deb wheel npm
 	@$(SUDO) tests/release/check.sh $(RELEASE)
+	@for suite in $(SYSTEMS); do $(SUDO) tests/systems/check.sh $$suite || exit 1; done
 
 studio: studio-deps
-	@cmake --preset wasm > /dev/null
+	@cmake --preset wasm -DBURNISH_WERROR=$(WERROR) > /dev/null
 	@cmake --build --preset wasm -j $(JOBS)
 	@rm -rf build/studio && mkdir -p build/studio && cp -r web/studio/* build/wasm/package build/studio
 
@@ -145,11 +145,11 @@ damaged: test-deps
 	@build/release/tests/fuzz/make_seeds build/damaged/seeds
 	@tests/fuzz/damaged.py $(BURNISH) build/damaged/seeds $(BURNISH_DATA)
 
-format: test-deps
-	@clang-format -i $(SOURCES)
+format:
+	@tests/format/clang_format.sh -i $(SOURCES)
 
 format-check: test-deps
-	@clang-format --dry-run -Werror $(SOURCES)
+	@tests/format/clang_format.sh --check $(SOURCES)
 
 docs-check:
 	@tests/docs/check.py

@@ -108,7 +108,8 @@ AnalyticBrdf read_analytic(const Json& parameters) {
   const auto name = parameters.at("model").get<std::string>();
   if (!is_analytic_spec(name) || name.find(':') != std::string::npos)
     throw Error(fmt::format("model: expected the name of an analytic model, found '{}'", name));
-  const AnalyticModel& model = parse_analytic(name).model();  // by its name alone: the defaults
+  const AnalyticBrdf defaults = parse_analytic(name);
+  const AnalyticModel& model = defaults.model();
   std::vector<Rgb> values;
   for (const AnalyticParameter& parameter : model.parameters) {
     const Json& value = parameters.at(std::string(parameter.name));

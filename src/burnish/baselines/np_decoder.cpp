@@ -23,6 +23,7 @@ static_assert(kWidest % kTogether == 0);
 }  // namespace burnish
 #endif
 
+HWY_BEFORE_NAMESPACE();
 BURNISH_BEGIN_TARGET;
 
 using D = hn::ScalableTag<float>;
@@ -79,6 +80,7 @@ void decode(const float* packed, std::span<const NpDecoder::Inputs> inputs,
 }
 
 BURNISH_END_TARGET;
+HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace burnish {

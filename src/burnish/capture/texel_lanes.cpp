@@ -5,6 +5,7 @@
 #include <burnish/math/highway-inl.h>
 #include <hwy/contrib/math/math-inl.h>
 
+HWY_BEFORE_NAMESPACE();
 BURNISH_BEGIN_TARGET;
 
 using D = hn::CappedTag<float, kTexelLanes>;
@@ -278,6 +279,7 @@ void seen_of(float exposure, const float* value, float* seen) {
 }
 
 BURNISH_END_TARGET;
+HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace burnish {

@@ -13,6 +13,7 @@
 
 #include <burnish/eval/lookup_lanes-inl.h>
 
+HWY_BEFORE_NAMESPACE();
 BURNISH_BEGIN_TARGET;
 
 struct Vector {
@@ -186,6 +187,7 @@ std::size_t fuse_all(std::size_t steps, float factor, float* last) {
 }
 
 BURNISH_END_TARGET;
+HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace burnish {

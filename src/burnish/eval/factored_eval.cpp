@@ -46,6 +46,7 @@ constexpr std::size_t kCacheLine = 16;  // floats
 }  // namespace burnish
 #endif
 
+HWY_BEFORE_NAMESPACE();
 BURNISH_BEGIN_TARGET;
 
 constexpr std::size_t kMaxBlock = FactoredPlan::kMaxBlock;
@@ -646,6 +647,7 @@ void eval_one_weighted(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo,
 }
 
 BURNISH_END_TARGET;
+HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace burnish {

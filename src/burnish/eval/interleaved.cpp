@@ -3,6 +3,7 @@
 #define HWY_TARGET_INCLUDE "burnish/eval/interleaved.cpp"
 #include <burnish/math/highway-inl.h>
 
+HWY_BEFORE_NAMESPACE();
 BURNISH_BEGIN_TARGET;
 
 using D = hn::ScalableTag<float>;
@@ -25,6 +26,7 @@ void run_to_planes(const float* rows, std::size_t count, float* x, float* y, flo
 }
 
 BURNISH_END_TARGET;
+HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace burnish {

@@ -8,6 +8,7 @@
 
 #include <burnish/math/highway-inl.h>
 
+HWY_BEFORE_NAMESPACE();
 BURNISH_BEGIN_TARGET;
 
 using D = hn::ScalableTag<float>;
@@ -71,5 +72,6 @@ HWY_INLINE T named(const char*, const T& x) {
 }
 
 BURNISH_END_TARGET;
+HWY_AFTER_NAMESPACE();
 
 #endif

@@ -12,6 +12,7 @@
 
 #include <burnish/eval/lanes-inl.h>
 
+HWY_BEFORE_NAMESPACE();
 BURNISH_BEGIN_TARGET;
 
 constexpr std::size_t kLanes = hn::MaxLanes(D());
@@ -41,7 +42,7 @@ HWY_INLINE hn::Vec<hn::RebindToSigned<Tag>> node_of(const LaneCellOf<Tag>& cell)
 #undef FORMULA_INLINE
 
 #undef BURNISH_PLANES_IN_REGISTERS
-#if HWY_TARGET == HWY_AVX3
+#if BURNISH_TARGET_IS_AVX3
 #define BURNISH_PLANES_IN_REGISTERS 1
 
 /// A line of up to 16 kVectors nodes held in registers: no memory is read a lookup.
@@ -95,6 +96,8 @@ HWY_INLINE Quad mix(Quad low, Quad high, float fraction) {
 }
 #else
 using D4 = hn::CappedTag<float, 4>;
+using D2 = hn::Half<D4>;
+using Four = LaneOf<D4>;
 struct Quad {
   hn::Vec<D4> raw;
 };
@@ -147,7 +150,7 @@ HWY_INLINE Quad interpolate(const float* node, const float* above, std::size_t l
 #endif
 }
 
-#if HWY_TARGET == HWY_AVX3
+#if BURNISH_TARGET_IS_AVX3
 /// Two nodes from each of two places.
 HWY_INLINE Lane load_nodes(const float* node, const float* other) {
   const hn::Half<D> d8;
@@ -189,5 +192,6 @@ HWY_INLINE void transpose(const float* buffer, Lane (&channel)[3]) {
 }
 
 BURNISH_END_TARGET;
+HWY_AFTER_NAMESPACE();
 
 #endif

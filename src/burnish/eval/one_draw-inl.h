@@ -13,6 +13,7 @@
 
 #include <burnish/eval/sampler_lanes-inl.h>
 
+HWY_BEFORE_NAMESPACE();
 BURNISH_BEGIN_TARGET;
 
 struct Real {
@@ -120,5 +121,6 @@ HWY_INLINE Int search(const std::uint16_t* table, const Int (&start)[kSlices], c
 }
 
 BURNISH_END_TARGET;
+HWY_AFTER_NAMESPACE();
 
 #endif

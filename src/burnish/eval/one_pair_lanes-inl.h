@@ -15,14 +15,13 @@
 #include <burnish/eval/lookup_lanes-inl.h>
 #include <burnish/eval/projection_lanes-inl.h>
 
+HWY_BEFORE_NAMESPACE();
 BURNISH_BEGIN_TARGET;
 
 constexpr std::size_t kTogether = FactoredPlan::kTogether;
 
 #if HWY_TARGET != HWY_SCALAR
 
-using D2 = hn::Half<D4>;
-using Four = LaneOf<D4>;
 using D8 = hn::CappedTag<float, FactoredPlan::Steps::kLanes>;
 using Eight = LaneOf<D8>;
 using DI8 = hn::RebindToSigned<D8>;
@@ -369,5 +368,6 @@ void eval_one_pair(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, flo
 #endif  // HWY_TARGET != HWY_SCALAR
 
 BURNISH_END_TARGET;
+HWY_AFTER_NAMESPACE();
 
 #endif

@@ -10,6 +10,7 @@
 
 #include <burnish/eval/lanes-inl.h>
 
+HWY_BEFORE_NAMESPACE();
 BURNISH_BEGIN_TARGET;
 
 // The exact power by Highway's own functions.
@@ -85,5 +86,6 @@ HWY_INLINE Lane squared_angle(const Cosine<Lane>& p) {
 }
 
 BURNISH_END_TARGET;
+HWY_AFTER_NAMESPACE();
 
 #endif

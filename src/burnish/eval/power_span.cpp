@@ -24,6 +24,7 @@ struct ShadeArguments {
 }  // namespace burnish
 #endif
 
+HWY_BEFORE_NAMESPACE();
 BURNISH_BEGIN_TARGET;
 
 using ConstantKernel = void (*)(const float* cosines, std::size_t count, const double* k, float* out);
@@ -132,6 +133,7 @@ void run_shade(int method, const ShadeArguments& arguments, float* out) {
 }
 
 BURNISH_END_TARGET;
+HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace burnish {

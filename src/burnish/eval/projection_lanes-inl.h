@@ -14,6 +14,7 @@
 #include <burnish/eval/lanes-inl.h>
 #include <burnish/parameterization/projection.h>
 
+HWY_BEFORE_NAMESPACE();
 BURNISH_BEGIN_TARGET;
 
 /// Three vectors of floats: the components of directions.
@@ -105,5 +106,6 @@ HWY_INLINE LaneOf<Tag> within(LaneOf<Tag> position, LaneOf<Tag> cells) {
 }
 
 BURNISH_END_TARGET;
+HWY_AFTER_NAMESPACE();
 
 #endif

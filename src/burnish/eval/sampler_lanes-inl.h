@@ -10,6 +10,7 @@
 
 #include <burnish/eval/lanes-inl.h>
 
+HWY_BEFORE_NAMESPACE();
 BURNISH_BEGIN_TARGET;
 
 using Reals = Lane;
@@ -96,5 +97,6 @@ HWY_INLINE Ints search(const std::uint16_t* table, const Ints (&start)[kSlices],
 #undef SAMPLER_INLINE
 
 BURNISH_END_TARGET;
+HWY_AFTER_NAMESPACE();
 
 #endif

@@ -42,6 +42,7 @@ struct OneDraw {
 }  // namespace burnish
 #endif
 
+HWY_BEFORE_NAMESPACE();
 BURNISH_BEGIN_TARGET;
 
 // Runs body(in, out) on whole vectors, then on the rest through buffers filled up with 0. Unlike the loop of
@@ -118,6 +119,7 @@ void choose_draw(bool isotropic, OneDraw& one) {
 }
 
 BURNISH_END_TARGET;
+HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace burnish {

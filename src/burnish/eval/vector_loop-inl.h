@@ -12,6 +12,7 @@
 
 #include <burnish/eval/lanes-inl.h>
 
+HWY_BEFORE_NAMESPACE();
 BURNISH_BEGIN_TARGET;
 
 // The last values, through buffers of one vector filled up with the first of them. Not inlined: vectors
@@ -58,5 +59,6 @@ HWY_INLINE void for_each_vector(const float* const (&from)[kInputs], std::size_t
 }
 
 BURNISH_END_TARGET;
+HWY_AFTER_NAMESPACE();
 
 #endif

@@ -17,6 +17,7 @@
 #include <burnish/eval/lookup_lanes-inl.h>
 #include <burnish/eval/projection_lanes-inl.h>
 
+HWY_BEFORE_NAMESPACE();
 BURNISH_BEGIN_TARGET;
 
 // With s = wi + wo and d = wi - wo, whose sign does not matter, the formulas of projection-inl.h in an order of their
@@ -72,8 +73,6 @@ HWY_INLINE void store_three(hn::Vec<D4> value, double* f) {
 template <class Real>
 HWY_INLINE void eval_one_of_volume(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, Real* f) {
   const FactoredPlan::VolumeAndLine& v = *plan.volume_and_line;
-  using Four = LaneOf<D4>;
-  using D2 = hn::Half<D4>;
   const D4 d4;
   const D2 d2;
   const hn::RebindToSigned<D4> di4;
@@ -213,7 +212,7 @@ struct VolumePipeline {
     store(t.above, above + to);
   }
 
-#if HWY_TARGET == HWY_AVX3
+#if BURNISH_TARGET_IS_AVX3
   /// The numbers of pairs k and k + 4, eight times each.
   template <std::int32_t k>
   static HWY_INLINE Lane of_two(const float* from) {
@@ -308,5 +307,6 @@ struct VolumePipeline {
 };
 
 BURNISH_END_TARGET;
+HWY_AFTER_NAMESPACE();
 
 #endif

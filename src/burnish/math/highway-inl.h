@@ -2,14 +2,19 @@
 // compiler comes by, it is for another set. A file of kernels starts with
 //   #define HWY_TARGET_INCLUDE "burnish/FOLDER/FILE.cpp"
 //   #include <burnish/math/highway-inl.h>
-// before any other header of Highway, and has what is compiled anew between BURNISH_BEGIN_TARGET and
-// BURNISH_END_TARGET; so have headers for such files, between guards that Highway's toggle opens again.
+// before any other header of Highway, and has what is compiled anew between
+//   HWY_BEFORE_NAMESPACE();
+//   BURNISH_BEGIN_TARGET;
+// and
+//   BURNISH_END_TARGET;
+//   HWY_AFTER_NAMESPACE();
+// So have headers for such files, between guards that Highway's toggle opens again. The pragmas of HWY_BEFORE_NAMESPACE
+// are no part of the second macro: g++ 14 puts them elsewhere in it, and loses what follows.
 
 #include <burnish/math/highway_targets.h>
 
 // clang-format off
 #define BURNISH_BEGIN_TARGET \
-  HWY_BEFORE_NAMESPACE();    \
   namespace burnish {        \
   namespace HWY_NAMESPACE {  \
   namespace {                \
@@ -18,7 +23,7 @@
   }                        \
   }                        \
   }                        \
-  HWY_AFTER_NAMESPACE()
+  static_assert(true)
 // clang-format on
 
 #include <hwy/cache_control.h>

@@ -222,12 +222,12 @@ Image render_cpu(const Scene& scene, std::span<const SceneMaterial> materials, c
 std::vector<std::vector<Rgb>> shade_vertices(const Scene& scene, std::span<const BrdfRef> materials) {
   check(scene, materials, 1, 1);
   std::vector<std::vector<Rgb>> values;
-  for (const auto& [mesh, material] : scene.parts) {
-    const BrdfRef brdf = materials[static_cast<std::size_t>(material)];
-    std::vector<Rgb>& part = values.emplace_back(mesh.vertices.size());
-    for_each_chunk(part.size(), 256, [&, &mesh = mesh](std::size_t, std::size_t begin, std::size_t end) {
+  for (const auto& shown : scene.parts) {
+    const BrdfRef brdf = materials[static_cast<std::size_t>(shown.material)];
+    std::vector<Rgb>& part = values.emplace_back(shown.mesh.vertices.size());
+    for_each_chunk(part.size(), 256, [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        const Vertex& vertex = mesh.vertices[i];
+        const Vertex& vertex = shown.mesh.vertices[i];
         part[i] = shade(scene, brdf, point_of(vertex, vertex, vertex, 0, 0), nullptr);
       }
     });

@@ -341,7 +341,8 @@ AnalyticFit fit_analytic(const SampleSource& source, std::string_view name,
         fmt::format("analytic fit: expected one of {}, found '{}'", fmt::join(kFittable, ", "), name));
   if (source.channels != 1 && source.channels != 3)
     throw Error(fmt::format("analytic fit: expected 1 or 3 channels, found {}", source.channels));
-  const AnalyticModel& model = parse_analytic(name).model();
+  const AnalyticBrdf defaults = parse_analytic(name);
+  const AnalyticModel& model = defaults.model();
   const GatheredSamples samples = gather_samples(source, options.most_samples);
   const Parameters parameters(model, source.isotropic, source.channels);
   Fit fit(samples, parameters, options);

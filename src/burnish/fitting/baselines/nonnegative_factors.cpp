@@ -40,6 +40,7 @@ struct Row {
 }  // namespace burnish
 #endif
 
+HWY_BEFORE_NAMESPACE();
 BURNISH_BEGIN_TARGET;
 
 using Tag = hn::ScalableTag<float>;
@@ -116,6 +117,7 @@ void visit(const Row& row) {
 }
 
 BURNISH_END_TARGET;
+HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace burnish {

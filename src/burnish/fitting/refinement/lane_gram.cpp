@@ -24,6 +24,7 @@ struct PieceRows {
 }  // namespace burnish
 #endif
 
+HWY_BEFORE_NAMESPACE();
 BURNISH_BEGIN_TARGET;
 
 // Adds `scale` times the products of two pieces of all rows to a matrix, a's nodes and lanes being the
@@ -64,6 +65,7 @@ void add_products(const PieceRows& a, const PieceRows& b, std::size_t rows, doub
 }
 
 BURNISH_END_TARGET;
+HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace burnish {

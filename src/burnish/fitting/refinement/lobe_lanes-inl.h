@@ -14,6 +14,7 @@
 
 #include <burnish/fitting/refinement/lobe_lanes.h>
 
+HWY_BEFORE_NAMESPACE();
 BURNISH_BEGIN_TARGET;
 
 constexpr std::size_t kLanes = LobeLanes::kLanes;
@@ -240,5 +241,6 @@ void multiply(Slots slots, const Lookups::Place* places, const float* values, co
 }
 
 BURNISH_END_TARGET;
+HWY_AFTER_NAMESPACE();
 
 #endif

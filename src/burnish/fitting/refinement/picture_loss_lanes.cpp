@@ -4,6 +4,7 @@
 #include <burnish/math/highway-inl.h>
 #include <hwy/contrib/math/math-inl.h>
 
+HWY_BEFORE_NAMESPACE();
 BURNISH_BEGIN_TARGET;
 
 using D = hn::CappedTag<float, 8>;
@@ -94,6 +95,7 @@ void add(const PictureLoss& loss, const LossInputs& in, std::size_t count, const
 }
 
 BURNISH_END_TARGET;
+HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace burnish {

@@ -3,14 +3,22 @@
 #include <string_view>
 #include <vector>
 
-#include <epoxy/egl.h>
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
 #include <burnish/error.h>
 #include <burnish/render/gl/gl_context.h>
 
+#if __has_include(<epoxy/egl.h>)
+#include <epoxy/egl.h>
+#define BURNISH_HAS_EGL 1
+#else
+#define BURNISH_HAS_EGL 0
+#endif
+
 namespace burnish {
+
+#if BURNISH_HAS_EGL
 
 namespace {
 
@@ -83,14 +91,28 @@ bool GlContext::open_mesa() {
   return true;
 }
 
-GlContext::GlContext(GlDevice device) {
-  if (device == GlDevice::gpu_first ? open_gpu() || open_mesa() : open_mesa() || open_gpu()) return;
-  throw Error("OpenGL: expected EGL with EGL_MESA_platform_surfaceless or a GPU, found neither");
-}
-
 GlContext::~GlContext() {
   eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
   eglDestroyContext(display_, context_);  // the display is the process's, and may have other contexts
+}
+
+#else  // a libepoxy without EGL, as of macOS: nothing draws
+
+bool GlContext::open_gpu() {
+  return false;
+}
+
+bool GlContext::open_mesa() {
+  return false;
+}
+
+GlContext::~GlContext() = default;
+
+#endif
+
+GlContext::GlContext(GlDevice device) {
+  if (device == GlDevice::gpu_first ? open_gpu() || open_mesa() : open_mesa() || open_gpu()) return;
+  throw Error("OpenGL: expected EGL with EGL_MESA_platform_surfaceless or a GPU, found neither");
 }
 
 std::string GlContext::renderer() const {

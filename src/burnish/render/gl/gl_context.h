@@ -31,8 +31,8 @@ class GlContext {
   bool open_gpu();
   bool open_mesa();
 
-  void* display_ = nullptr;
-  void* context_ = nullptr;
+  [[maybe_unused]] void* display_ = nullptr;  // where there is EGL
+  [[maybe_unused]] void* context_ = nullptr;
 };
 
 }  // namespace burnish
