@@ -29,7 +29,7 @@ read the same table. A wrong value or combination gives the same message everywh
 line; only the spelling of the options differs. [From a measurement to a model](fitting.md) explains the choices.
 
 """
-HEAD = ["option", "takes", "where it is left out", "does"]
+HEAD = ["option", "takes", "default", "does"]
 TAKES = {"flag": "nothing", "text": "a text", "texts": "a text; several times", "whole number": "a whole number",
          "number": "a number", "bytes": "auto or a number of bytes", "number or auto": "auto or a number",
          "node part": "half=0, half=1, theta_i=K", "file": "a file"}

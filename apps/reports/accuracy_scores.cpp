@@ -143,9 +143,9 @@ std::vector<std::vector<Score>> run(const std::deque<Material>& materials) {
     // a fit that chose so many fetches is the one that is given them
     for (std::size_t k = 0; k < jobs.size(); ++k) {
       if (jobs[k].method == "ours") continue;
-      const int fetches = fetches_of(jobs[k].method);
+      const std::optional<int> fetches = fetches_of(jobs[k].method);
       const auto same = std::ranges::find_if(row, [&](const Score& score) {
-        return fetches > 0 && score.fetches == fetches && score.budget == jobs[k].budget;
+        return fetches == score.fetches && score.budget == jobs[k].budget;
       });
       if (same == row.end()) {
         others.push_back(jobs[k]);

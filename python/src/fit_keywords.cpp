@@ -108,7 +108,7 @@ std::string fit_keyword_help(bool with_method) {
   for (const FitOption& option : fit_option_table()) {
     if (!taken(option, with_method)) continue;
     text += fmt::format("{}: {}", option.name, option.help);
-    if (!option.left_out.empty()) text += fmt::format(" Left out: {}.", option.left_out);
+    if (!option.left_out.empty()) text += fmt::format(" Default: {}.", option.left_out);
     text += '\n';
   }
   return text;
