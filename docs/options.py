@@ -12,7 +12,7 @@ PAGE = pathlib.Path(__file__).resolve().parent / "guide/fit-options.md"
 INTRODUCTION = """\
 # Options of a fit
 
-<!-- Made by docs/options.py from `burnish describe --json`: edit src/burnish/fitting/fit_request.cpp, then run it. -->
+<!-- Made by docs/options.py: edit src/burnish/fitting/fit_request.cpp, then `make options`. -->
 
     burnish fit paint.binary -o paint.exr --budget 16K --fetches 2 --hold-out half=1
 
@@ -90,7 +90,7 @@ def main():
         return 0
     if PAGE.exists() and PAGE.read_text(encoding="utf-8") == text:
         return 0
-    print(f"{PAGE}: is not what `burnish describe --json` says; run docs/options.py BURNISH")
+    print(f"{PAGE}: is not what `burnish describe --json` says; run `make options`")
     return 1
 
 

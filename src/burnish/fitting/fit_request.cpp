@@ -395,7 +395,7 @@ std::string spelled(const FitOption& option, FitFront front) {
   if (front == FitFront::page) return camel_case(option.name);
   if (!option.word.empty()) return std::string(option.word);
   std::string word = fmt::format("--{}", option.name);
-  std::ranges::replace(word, '_', '-');
+  std::replace(word.begin(), word.end(), '_', '-');
   return word;
 }
 
