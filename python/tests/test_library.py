@@ -193,7 +193,7 @@ def test_errors_are_exceptions_with_the_same_text(cli, tmp_path):
         assert f"burnish: {raised.value}" == str(told.value)
         assert len(str(raised.value)) < 290 and "\n" not in str(raised.value)
     assert issubclass(burnish.Error, ValueError)
-    with pytest.raises(burnish.Error, match="loss: expected image, relative or log_cos, found 'psnr'"):
+    with pytest.raises(burnish.Error, match="loss: expected one of image, relative, log_cos, found 'psnr'"):
         burnish.fit(burnish.open_source(GGX), loss="psnr")
 
 
