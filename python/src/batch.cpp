@@ -1,5 +1,4 @@
 #include <filesystem>
-#include <type_traits>
 
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
