@@ -8,7 +8,7 @@
 # make bench, make compile-cost, make fuzz, make damaged, make report, make cost-report, make sampling-report, make shader-report, make openpbr-report, make frame-cost, make surface-report, make hw-report, make hw-exhaustive, make format:
 # see CONTRIBUTING.md
 # make cluster-test  a batch on a real Slurm of two nodes on this machine, killed now and then
-.PHONY: test-announcement cluster-test compile-cost demo test build reports python deb wheel npm packaging-deps release-check studio studio-test deps test-deps studio-deps bench fuzz damaged report cost-report sampling-report shader-report openpbr-report frame-cost surface-report hw-report hw-exhaustive format format-check docs-check include-check api
+.PHONY: test-announcement cluster-test compile-cost demo test build reports python deb wheel npm packaging-deps release-check studio studio-test deps test-deps studio-deps bench fuzz damaged report cost-report sampling-report shader-report openpbr-report frame-cost surface-report hw-report hw-exhaustive format format-check docs-check include-check api options
 JOBS ?= $(shell nproc)
 BURNISH := build/release/apps/burnish/burnish
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
@@ -161,3 +161,6 @@ include-check:
 
 api:
 	@docs/api.py
+
+options: build
+	@docs/options.py $(BURNISH)

@@ -90,15 +90,15 @@ TEST(CommandLine, SaysWhatAMisspeltWordMayHaveMeant) {
 TEST(CommandLine, SaysWhatAnOptionTakes) {
   for (const auto& [arguments, said] :
        {std::pair{"measure lambert --noise -1", "--noise: expected a number from 0 to 10, found '-1'"},
-        std::pair{"fit lambert --fetches 0", "--fetches: expected a number from 1 to 256, found '0'"},
+        std::pair{"fit lambert --fetches 0", "--fetches: expected a whole number from 1 to 256, found '0'"},
         std::pair{"fit lambert --to openpbr -o x.exr", "--output: expected a name such as paint.json"},
         std::pair{"fit lambert --to openpbr -o x.csv", "--output: expected a name such as paint.json"},
         std::pair{"fit lambert --method svd -o x.gltf", "`burnish export --to gltf` writes a GLB"},
         std::pair{"fit lambert --to gltf -o x.glb", "`burnish export --to gltf` writes a GLB"},
-        std::pair{"fit lambert --seed a", "--seed: expected a number of at least 0, found 'a'"},
+        std::pair{"fit lambert --seed a", "--seed: expected a whole number of at least 0, found 'a'"},
         std::pair{"hw error --first 10 --last 5",
                   "--last: expected an exponent of at least --first, 10, found 5"},
-        std::pair{"fit lambert --floor 0", "--floor: expected a number above 0, found '0'"}}) {
+        std::pair{"fit lambert --floor 0", "--floor: expected a number above 0 and at most 1, found '0'"}}) {
     const Outcome outcome = burnish(arguments);
     EXPECT_EQ(outcome.status, 2) << arguments;
     EXPECT_THAT(first_line(outcome), HasSubstr(said));

@@ -1,10 +1,13 @@
 // `burnish describe`: manual pages and completions, used as man and the shells use them.
+#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
+#include <burnish/fitting/fit_request.h>
 #include <burnish/testing/tools.h>
 
 namespace burnish {
@@ -53,6 +56,22 @@ TEST(Describe, CompletesInBash) {
 TEST(Describe, CompletesInZsh) {
   if (!has_tool("zsh")) GTEST_SKIP() << "no zsh";
   EXPECT_EQ(run(kDescribe + "--zsh | zsh -n /dev/stdin").status, 0);
+}
+
+TEST(Describe, HasTheTableOfFitOptions) {
+  const auto told = nlohmann::json::parse(run(kDescribe + "--json").output);
+  const auto& rows = told.at("fit_options");
+  const auto& verbs = told.at("verbs");
+  for (const char* name : {"fit", "batch"}) {
+    const auto verb = std::ranges::find_if(verbs, [&](const auto& each) { return each.at("name") == name; });
+    ASSERT_NE(verb, verbs.end());
+    std::vector<std::string> words;
+    for (const auto& argument : verb->at("arguments"))
+      for (const auto& word : argument.at("names")) words.push_back(word.get<std::string>());
+    for (const auto& row : rows)
+      EXPECT_THAT(words, testing::Contains(row.at("command_line").get<std::string>())) << name;
+  }
+  EXPECT_EQ(rows.size(), fit_option_table().size());
 }
 
 TEST(Describe, SaysOneThingAtATime) {

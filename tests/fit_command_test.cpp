@@ -89,8 +89,11 @@ TEST_F(FitCommand, ToAMaterialNeedsNoFileAndSaysWhatIsBeyondIt) {
   EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(outcome.output, testing::HasSubstr("base colour"));
   EXPECT_THAT(outcome.output, testing::HasSubstr("beyond     backscatter"));
-  for (const char* with : {" --budget 100", " --model pqp", " --conserve-energy"})
-    EXPECT_EQ(run(command + with).status, 2) << with;
+  for (const std::string with : {"--budget 100", "--model pqp", "--conserve-energy", "--no-symmetrize"}) {
+    const Outcome refused = run(command + " " + with);
+    EXPECT_EQ(refused.status, 2) << with;
+    EXPECT_THAT(refused.output, testing::HasSubstr("--to excludes " + with.substr(0, with.find(' '))));
+  }
   const Outcome misspelt = run(std::string(BURNISH_CLI) + " fit ggx --to opnpbr");
   EXPECT_EQ(misspelt.status, 2);
   EXPECT_THAT(misspelt.output, testing::HasSubstr("openpbr"));
@@ -155,14 +158,16 @@ TEST_F(FitCommand, TellsMisuseFromErrors) {
   EXPECT_EQ(run_fit(kPaint, "--model 'p(up)'").status, 2);
   EXPECT_EQ(run_fit(kPaint, "--smooth much").status, 2);
   EXPECT_EQ(run_fit(kPaint, "--lobes 2").status, 2);
-  for (const char* bytes : {"much", "-5", "0", "16Q"}) {
+  EXPECT_EQ(run_fit(kPaint, "--method svd --format half").status, 2);
+  EXPECT_EQ(run_fit(kPaint, "--method svd --model pqp").status, 2);
+  EXPECT_EQ(run_fit(kPaint, "--target function --hold-out half=1").status, 2);
+  for (const char* bytes : {"much", "-5", "0", "16Q", "4G"}) {
     const Outcome outcome = run_fit(kPaint, fmt::format("--budget {}", bytes));
     EXPECT_EQ(outcome.status, 2) << bytes;
     EXPECT_NE(outcome.output.find(fmt::format("found '{}'", bytes)), std::string::npos) << outcome.output;
   }
-  EXPECT_EQ(run_fit(kPaint, "--budget 4G").status, 1);
   EXPECT_EQ(run_fit(kPaint, "--method pca").status, 1);
-  EXPECT_EQ(run_fit(kPaint, "--method svd --format half").status, 1);
+  EXPECT_EQ(run_fit(kPaint, "--book '" + scattered() + "'").status, 1);
   EXPECT_EQ(run_fit(kPaint, "--budget 20").status, 1);
 }
 

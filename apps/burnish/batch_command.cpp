@@ -38,7 +38,9 @@ struct BatchArguments {
 BatchOptions batch_options(const BatchArguments& arguments) {
   BatchOptions options = arguments.batch;
   options.folder = arguments.out;
-  options.fit = [&fit = arguments.fit](bool isotropic) { return fit_options(fit, isotropic); };
+  options.fit = [request = request_of(arguments.fit)](bool isotropic) {
+    return usage([&] { return fit_options(request, isotropic); });
+  };
   options.compact = !arguments.exr;
   options.exports.compressed = !arguments.plain;
   for (const std::string& to : arguments.to) options.exports.to.push_back(export_target(to));

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include <burnish/file.h>
+#include <burnish/fitting/fit_request.h>
 #include <burnish/library/folder_file.h>
 
 #include "command_description.h"
@@ -31,11 +32,16 @@ void add_describe_command(CLI::App& app) {
   what->add_option("-o,--output,--out,--man", options->man, "write manual pages into this folder");
   what->add_flag("--bash", options->bash, "print the completion for bash");
   what->add_flag("--zsh", options->zsh, "print the completion for zsh");
-  what->add_flag("--json", options->json, "print all verbs, their options and examples as JSON");
+  what->add_flag("--json", options->json,
+                 "print all verbs, their options and examples as JSON, and the table of fit options");
   verb->callback([&app, options] {
     if (options->bash) fmt::print("{}", bash_completion(app));
     if (options->zsh) fmt::print("{}", zsh_completion(app));
-    if (options->json) print_as_json(description_json(app));
+    if (options->json) {
+      nlohmann::ordered_json description = description_json(app);
+      description["fit_options"] = fit_options_json();
+      print_as_json(description);
+    }
     if (options->man.empty()) return;
     make_folder(options->man);
     for (const ManualPage& page : manual_pages(app, BURNISH_VERSION))

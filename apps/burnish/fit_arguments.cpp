@@ -13,173 +13,79 @@ namespace burnish::cli {
 
 namespace {
 
-constexpr std::string_view kAuto = "auto";
-
-std::string no_budget(const std::string& text) {
-  return fmt::format("expected auto or a number of bytes above 0, as 2700, 16K or 1M, found '{}'", text);
+std::string word_of(const FitOption& option) {
+  return spelled(option, FitFront::command_line);
 }
 
-// A number as AsSizeValue leaves it; nothing for auto or where nothing is given.
-std::optional<std::uint64_t> parse_bytes(const std::string& text) {
-  std::uint64_t bytes = 0;
-  if (text.empty() || text == kAuto) return {};
-  if (!CLI::detail::lexical_cast(text, bytes) || bytes == 0)
-    throw CLI::ValidationError("--budget", no_budget(text));
-  return bytes;
+// The row's sentence, and what else there is to know, in parentheses.
+std::string description(const FitOption& option) {
+  std::string text(option.help);
+  if (option.name == "method") text += fmt::format(" Methods: {}.", fmt::join(baseline_methods(), ", "));
+  std::vector<std::string> more;
+  if (!option.needs.empty()) more.push_back("needs " + word_of(fit_option(option.needs)));
+  std::vector<std::string> others;
+  for (const FitOption& other : fit_option_table())
+    if (excludes(option, other)) others.push_back(word_of(other));
+  if (!others.empty()) more.push_back(fmt::format("excludes {}", fmt::join(others, " ")));
+  if (!option.left_out.empty()) more.push_back(fmt::format("default: {}", option.left_out));
+  return more.empty() ? text : fmt::format("{} ({})", text, fmt::join(more, "; "));
 }
 
-// Reads "16K" as 16384 and leaves auto.
-CLI::Validator bytes_or_auto() {
-  const CLI::AsSizeValue size(false);
-  const auto read = [size](std::string& text) {
-    if (text == kAuto) return std::string();
-    const std::string given = text;
-    try {
-      if (!text.starts_with('-') && size(text).empty()) return std::string();
-    } catch (const CLI::ValidationError&) {  // of an unknown unit, naming all that there are
-    }
-    return no_budget(given);
-  };
-  return {read, "SIZE [b, kb(=1024b), ...] or auto", "bytes_or_auto"};
-}
-
-double parse_smooth(const std::string& text) {
-  double smooth = -1;
-  if (!CLI::detail::lexical_cast(text, smooth) || !(smooth >= 0))
-    throw CLI::ValidationError(fmt::format("--smooth: expected auto or a number >= 0, found '{}'", text));
-  return smooth;
-}
-
-FitForm fit_form(const FitArguments& arguments, bool isotropic) {
-  if (arguments.book) return FromBook{arguments.book};
-  const std::optional<std::uint64_t> bytes = parse_bytes(arguments.bytes);
-  if (!arguments.method.empty()) {
-    if (arguments.bytes == kAuto)
-      throw CLI::ValidationError("--budget: expected a number of bytes with --method, found 'auto'");
-    return BaselineMethod{.method = arguments.method, .bytes = bytes.value_or(0)};
+// As CLI11 names types, which completions and manual pages read: "TEXT:{image,relative}", "NUMBER:from 1 to 64".
+std::string type_name(const FitOption& option) {
+  switch (option.takes) {
+    case FitValue::choice:
+      return fmt::format("TEXT:{{{}}}", fmt::join(option.choices, ","));
+    case FitValue::whole:
+    case FitValue::number:
+      return "NUMBER:" + range_text(option);
+    case FitValue::bytes:
+      return "BYTES:as 2700, 16K or auto";
+    case FitValue::smoothness:
+      return "NUMBER:or auto";
+    case FitValue::file:
+      return "FILE";
+    default:
+      return "TEXT";
   }
-  LogLinear how = arguments.one_lobe.how;
-  how.cross_validate = arguments.smooth == "auto";
-  const FitLoss loss = parse_fit_loss(arguments.loss);
-  if (!arguments.bytes.empty()) {
-    Budget budget = arguments.budget;
-    budget.bytes = bytes;
-    budget.loss = loss;
-    budget.scattered = how;
-    return budget;
-  }
-  return usage(
-      [&] { return form_of(arguments.one_lobe.model, arguments.one_lobe.tables, isotropic, how, loss); });
-}
-
-void add_lobes_arguments(CLI::App& verb, FitArguments& arguments) {
-  Budget& budget = arguments.budget;
-  verb.add_option(
-          "--budget", arguments.bytes,
-          "bytes: fits the best model that this many hold; K and M count as 1024s; auto: until more would "
-          "store the measurement's noise or hardly help")
-      ->transform(bytes_or_auto());
-  verb.add_option("--fetches", budget.fetches,
-                  "of --budget: at most this many filtered reads of tables an evaluation (default: the "
-                  "fewest of those "
-                  "tried within two percent of the least error; with auto 2, of some nodes 3, of anisotropic "
-                  "sources 6)")
-      ->check(in_range(1, 256))
-      ->needs("--budget")
-      ->excludes("--method");
-  verb.add_option("--lobes", budget.lobes, "of --budget: lobes of lines or hemispheres, this many")
-      ->check(in_range(1, 64))
-      ->needs("--budget")
-      ->excludes("--fetches");
-  verb.add_option(
-          "--loss", arguments.loss,
-          "what several lobes are refined for: pictures at every exposure beside both means, or one mean")
-      ->check(one_of({"image", "relative", "log_cos"}))
-      ->capture_default_str();
-  verb.add_flag("--search", budget.search,
-                "of --budget: search factors, projections, warps and sizes first (up to a minute)")
-      ->needs("--budget")
-      ->excludes("--fetches");
 }
 
 }  // namespace
 
-FitOptions fit_options(const FitArguments& arguments, bool isotropic) {
-  FitOptions options = arguments.options;
-  options.form = fit_form(arguments, isotropic);
-  options.symmetrize = !arguments.no_symmetrize;
-  if (!arguments.target.empty()) options.target = parse_fit_target(arguments.target);
-  if (!arguments.hold_out.empty())
-    options.hold_out = usage([&] { return parse_node_part(arguments.hold_out); });
-  if (!arguments.format.empty()) options.format = parse_table_format(arguments.format);
-  if (arguments.smooth != "auto" && arguments.smooth != "default")
-    options.smooth = parse_smooth(arguments.smooth);
-  return options;
+bool FitArguments::given(const std::string& name) const {
+  const auto texts = words.find(name);
+  const auto flag = flags.find(name);
+  return (texts != words.end() && !texts->second.empty()) || (flag != flags.end() && flag->second);
 }
 
 void add_fit_arguments(CLI::App& verb, FitArguments& arguments) {
-  FitOptions& options = arguments.options;
-  OneLobe& one_lobe = arguments.one_lobe;
-  verb.add_option("--method", arguments.method,
-                  fmt::format("fit what others would instead of positive factors, at --budget bytes (default "
-                              "{}): {}",
-                              BaselineOptions{}.budget, fmt::join(baseline_methods(), ", ")));
-  add_lobes_arguments(verb, arguments);
-  verb.add_option("--model", one_lobe.model,
-                  "product of tables over projections: pqp (the paper's), pqpr, or such as "
-                  "\"p(wo) q(h) s(wi+wo+0.5n) p(wi)\" (default: --budget 16K --fetches 2, of some nodes 3, "
-                  "of anisotropic sources 6)")
-      ->excludes("--budget");
-  verb.add_option("--table", one_lobe.tables,
-                  "size and spacing of a table: NAME=SIZE[,warp...][,shared][,format], SIZE N (1-D), NxN "
-                  "(hemisphere), NxM or NxMxK; warp identity, power:P or rational:K; format as --format")
-      ->allow_extra_args(false)
-      ->excludes("--budget");
-  verb.add_option(
-      "--smooth", arguments.smooth,
-      "smoothness of the tables: a number >= 0, or auto (cross-validation: the default for scattered "
-      "samples; of volumes what predicts measured nodes best, which takes noise away)");
-  verb.add_option(
-          "--target", arguments.target,
-          "fit the function that the source's owner makes of it, rings of its interpolation and all, or "
-          "nodes: what was measured (default: of isotropic RGL files nodes, unless one lobe, "
-          "--smooth auto, --no-symmetrize, --method or --book is asked for, else function)")
-      ->check(one_of({"function", "nodes"}));
-  verb.add_option("--hold-out", arguments.hold_out,
-                  "fit nodes and leave these out: half=0, half=1 (of a checkerboard) or theta_i=K, "
-                  "counted from 0");
-  verb.add_option("--floor", one_lobe.how.floor,
-                  "added to every value before its logarithm is taken, 1/sr, at most 1")
-      ->check(above_zero())
-      ->capture_default_str();
-  verb.add_option("--reweightings", one_lobe.how.reweightings,
-                  "passes towards the mean absolute error (default: 4 for scattered samples, else 0)")
-      ->check(in_range(0, 100));
-  verb.add_option("--count,--samples", options.samples, "pairs drawn from a source that is a function")
-      ->check(in_range(std::size_t{1}, std::size_t{100'000'000}));
-  verb.add_option("--seed", options.seed, "of the drawn pairs")
-      ->check(at_least_zero())
-      ->capture_default_str();
-  verb.add_option(
-          "--format", arguments.format,
-          "of the stored tables (default: half; with --budget and three channels rgb9e5, which leaves shared "
-          "tables half)")
-      ->check(one_of({"half", "float", "rgb9e5", "unorm8"}));
-  verb.add_flag(
-      "--no-symmetrize", arguments.no_symmetrize,
-      "fit f(wi, wo) as it is, not its reciprocal part; with --budget an isotropic model gets tables\n"
-      "that wi alone looks up where the source is not reciprocal");
-  CLI::Option* book = verb.add_option_function<std::string>(
-      "--book",
-      [&arguments](const std::string& file) {
-        arguments.book = std::make_shared<const MaterialBook>(parse_book(read_file(file)));
-      },
-      "complete a few measured pairs by what the materials of this book have in common (see `burnish book`)");
-  for (const char* other : {"--budget", "--method", "--model", "--table", "--smooth", "--target",
-                            "--hold-out", "--floor", "--reweightings", "--no-symmetrize"})
-    book->excludes(other);
-  verb.add_flag("--conserve-energy", options.conserve_energy,
-                "damp the model where it reflects more than it receives, and say what that cost");
+  for (const FitOption& option : fit_option_table()) {
+    const std::string name(option.name);
+    if (option.takes == FitValue::flag) {
+      verb.add_flag(word_of(option), arguments.flags[name], description(option));
+      continue;
+    }
+    const std::string also = option.other_word.empty() ? "" : fmt::format(",{}", option.other_word);
+    CLI::Option* added = verb.add_option(word_of(option) + also, arguments.words[name], description(option));
+    added->type_name(type_name(option))->default_str(std::string(option.standard));
+    if (option.takes == FitValue::texts)
+      added->allow_extra_args(false);
+    else
+      added->expected(1);
+  }
+}
+
+FitRequest request_of(const FitArguments& arguments) {
+  std::vector<std::pair<std::string, std::string>> words;
+  for (const auto& [name, texts] : arguments.words)
+    for (const std::string& text : texts) words.emplace_back(name, text);
+  for (const auto& [name, turned] : arguments.flags)
+    if (turned) words.emplace_back(name, "");
+  FitRequest request = usage([&] { return request_of_words(words); });
+  if (arguments.given("book"))
+    request.book =
+        std::make_shared<const MaterialBook>(parse_book(read_file(arguments.words.at("book").front())));
+  return request;
 }
 
 }  // namespace burnish::cli

@@ -1,29 +1,30 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
-#include <burnish/fitting/fit.h>
+#include <burnish/fitting/fit_request.h>
 
 namespace burnish::cli {
 
-/// The options that say how something is fitted, as they are typed.
+/// The options that say how something is fitted, as they are typed: words and flags by the options' names.
 struct FitArguments {
-  FitOptions options;
-  OneLobe one_lobe{.model = ""};
-  Budget budget{.bytes = {}};
-  std::string bytes, method, target, hold_out, loss = "image", smooth = "default", format;
-  std::shared_ptr<const MaterialBook> book;
-  bool no_symmetrize = false;
+  std::map<std::string, std::vector<std::string>> words;
+  std::map<std::string, bool> flags;
+
+  /// Whether the option of that name was typed.
+  bool given(const std::string& name) const;
 };
 
-/// Adds them to a verb. `arguments` must outlive the parse.
+/// Adds an option for each row of fit_option_table. `arguments` must outlive the parse, and stay where it is.
 void add_fit_arguments(CLI::App& verb, FitArguments& arguments);
 
-/// What they say of a source that is isotropic or not, without progress. Throws CLI::ValidationError where they
-/// contradict each other.
-FitOptions fit_options(const FitArguments& arguments, bool isotropic);
+/// What they ask for; opens the book. Throws CLI::ValidationError for what the options refuse, and Error for a book
+/// that is none.
+FitRequest request_of(const FitArguments& arguments);
 
 }  // namespace burnish::cli

@@ -241,6 +241,9 @@ void check_name_of_json(const FitCommand& arguments) {
 }
 
 void fit_to_material(const FitCommand& arguments) {
+  for (const FitOption& of_factors : fit_option_table())
+    if (arguments.how.given(std::string(of_factors.name)))
+      throw CLI::ExcludesError("--to", spelled(of_factors, FitFront::command_line));
   check_name_of_json(arguments);
   if (!arguments.out.empty()) check_writable(arguments.out);
   const ThreadLimit limit(arguments.threads);
@@ -267,13 +270,14 @@ void fit(const FitCommand& arguments) {
     fit_to_material(arguments);
     return;
   }
+  const FitRequest request = request_of(arguments.how);
   if (arguments.out.empty()) throw CLI::RequiredError("--output");
-  if (!arguments.how.method.empty()) check_name_of_json(arguments);
+  if (arguments.how.given("method")) check_name_of_json(arguments);
   check_writable(arguments.out);
   const auto start = std::chrono::steady_clock::now();
   const ThreadLimit limit(arguments.threads);
   const Source source = arguments.source.open();
-  FitOptions options = fit_options(arguments.how, source.ref().isotropic());
+  FitOptions options = usage([&] { return fit_options(request, source.ref().isotropic()); });
   options.progress = progress_bars();
   const Fit fit = burnish::fit(source, options);
   write_then_rename(arguments.out, format_fit(fit, arguments.out));
@@ -295,19 +299,15 @@ void fit(const FitCommand& arguments) {
   fmt::print("written    {} in {:.2f} s\n", arguments.out, seconds);
 }
 
-// A renderer's material instead of factors, for which options of factors say nothing.
+// A renderer's material instead of factors.
 void add_material_arguments(CLI::App& verb, FitCommand& arguments) {
   const auto targets = material_targets();
-  CLI::Option* const to =
-      verb.add_option("--to", arguments.to,
-                      fmt::format("fit a renderer's material instead, its parameters written as JSON: {}",
-                                  fmt::join(targets, ", ")));
+  CLI::Option* const to = verb.add_option(
+      "--to", arguments.to,
+      fmt::format("fit a renderer's material instead, its parameters written as JSON: {} (excludes the "
+                  "options of factored models)",
+                  fmt::join(targets, ", ")));
   to->check(one_of({targets.begin(), targets.end()}));
-  for (const char* of_factors :
-       {"--budget", "--fetches", "--lobes", "--search", "--loss", "--method", "--model", "--table",
-        "--smooth", "--target", "--hold-out", "--floor", "--reweightings", "--samples", "--seed", "--format",
-        "--no-symmetrize", "--conserve-energy", "--book"})
-    to->excludes(of_factors);
   verb.add_flag("--alone", arguments.alone, "of --to: fit no factored model beside it")->needs(to);
 }
 

@@ -34,10 +34,11 @@ std::array<double*, 6> figures(ErrorFigures& e) {
 bool is_ours(std::string_view method) {
   return method.starts_with("ours");
 }
-int fetches_of(std::string_view method) {
+std::optional<int> fetches_of(std::string_view method) {
+  const auto comma = method.find(", ");
+  if (comma == method.npos) return {};
   int fetches = 0;
-  if (const auto comma = method.find(", "); comma != method.npos)
-    std::from_chars(method.data() + comma + 2, method.data() + method.size(), fetches);
+  std::from_chars(method.data() + comma + 2, method.data() + method.size(), fetches);
   return fetches;
 }
 
@@ -47,7 +48,8 @@ Score run_method(const Material& material, std::string_view method, std::size_t 
   if (is_ours(method))
     options.form = Budget{.bytes = budget, .fetches = fetches_of(method)};
   else
-    options.form = BaselineMethod{.method = std::string(method), .bytes = budget};
+    options.form = BaselineMethod{.method = std::string(method),
+                                  .bytes = budget > 0 ? std::optional<std::uint64_t>(budget) : std::nullopt};
   const Fit made = fit(material.source, options);
   Score score = score_of(material, method, budget, made.ref());
   score.bytes = made.bytes();
@@ -141,9 +143,9 @@ std::vector<std::vector<Score>> run(const std::deque<Material>& materials) {
     // a fit that chose so many fetches is the one that is given them
     for (std::size_t k = 0; k < jobs.size(); ++k) {
       if (jobs[k].method == "ours") continue;
-      const int fetches = fetches_of(jobs[k].method);
+      const std::optional<int> fetches = fetches_of(jobs[k].method);
       const auto same = std::ranges::find_if(row, [&](const Score& score) {
-        return fetches > 0 && score.fetches == fetches && score.budget == jobs[k].budget;
+        return fetches == score.fetches && score.budget == jobs[k].budget;
       });
       if (same == row.end()) {
         others.push_back(jobs[k]);

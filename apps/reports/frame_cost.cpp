@@ -47,14 +47,14 @@ struct Fitted {
   FactoredBrdf model;
 };
 
-Fitted fit_by_command(const Source& source, std::uint64_t bytes, int fetches,
+Fitted fit_by_command(const Source& source, std::optional<std::uint64_t> bytes, std::optional<int> fetches,
                       std::optional<FitTarget> target = FitTarget::function) {
   std::string command = "fit";
   if (target) command += fmt::format(" --target {}", to_string(*target));
   FitOptions options{.target = target, .score = false};
-  if (bytes > 0) {
-    command += fmt::format(" --budget {}", bytes);
-    if (fetches > 0) command += fmt::format(" --fetches {}", fetches);
+  if (bytes) {
+    command += fmt::format(" --budget {}", *bytes);
+    if (fetches) command += fmt::format(" --fetches {}", *fetches);
     options.form = Budget{.bytes = bytes, .fetches = fetches};
   }
   tell(fmt::format("frame-cost: {}, {}", source.name, command));
@@ -76,15 +76,15 @@ struct Models {
 
 Models models_of(const Source& source, bool quick) {
   struct Form {
-    std::uint64_t bytes;
-    int fetches;
+    std::optional<std::uint64_t> bytes = {};
+    std::optional<int> fetches = {};
   };
-  const std::vector<Form> forms = quick ? std::vector<Form>{{0, 0}, {2700, 2}}
-                                        : std::vector<Form>{{0, 0},      {2700, 2}, {65'536, 2}, {16'384, 4},
-                                                            {16'384, 6}, {2700, 0}, {65'536, 24}};
-  std::deque<Fitted> fits{fit_by_command(source, 0, 0, std::nullopt)};
+  const std::vector<Form> forms =
+      quick ? std::vector<Form>{{}, {2700, 2}}
+            : std::vector<Form>{{}, {2700, 2}, {65'536, 2}, {16'384, 4}, {16'384, 6}, {2700}, {65'536, 24}};
+  std::deque<Fitted> fits{fit_by_command(source, {}, {}, std::nullopt)};
   for (const auto& [bytes, fetches] : forms) fits.push_back(fit_by_command(source, bytes, fetches));
-  return {.fits = std::move(fits), .anisotropic = fit_by_command(open_source(kAnisotropic, {}), 0, 0)};
+  return {.fits = std::move(fits), .anisotropic = fit_by_command(open_source(kAnisotropic, {}), {}, {})};
 }
 
 // The first is what the others are related to.

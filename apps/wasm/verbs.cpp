@@ -23,6 +23,7 @@
 #include <burnish/factors/fetches.h>
 #include <burnish/fitting/fit.h>
 #include <burnish/fitting/fit_file.h>
+#include <burnish/fitting/fit_request.h>
 #include <burnish/io/convert.h>
 #include <burnish/io/open_source.h>
 #include <burnish/io/text_reader.h>
@@ -298,66 +299,11 @@ Reply table(const Request& request) {
   return {};
 }
 
-// As the verb fit reads its options.
-FitForm fit_form(const Options& given, bool isotropic) {
-  LogLinear how;
-  std::string model;
-  std::vector<std::string> tables;
-  given.read("reweightings", how.reweightings, std::uint64_t{0}, std::uint64_t{100});
-  given.read("floor", how.floor);
-  if (!(how.floor > 0)) throw given.expected("floor above 0", how.floor);
-  given.read("model", model);
-  given.read("tables", tables);
-  const FitLoss loss = parse_fit_loss(given.text("loss", "image"));
-  const Json* smooth = given.found("smooth");
-  if (smooth && !smooth->is_number() && *smooth != "auto")
-    throw given.expected("smooth as auto or a number of at least 0", *smooth);
-  how.cross_validate = smooth && *smooth == "auto";
-  const Json* bytes = given.found("budget");
-  if (!bytes) {
-    for (const char* of_budget : {"fetches", "lobes", "search"})
-      if (const Json* value = given.found(of_budget))
-        throw given.expected(fmt::format("{} beside a budget", of_budget), *value);
-    return form_of(model, tables, isotropic, how, loss);
-  }
-  for (const char* of_form : {"model", "tables"})
-    if (const Json* value = given.found(of_form))
-      throw given.expected(fmt::format("either a budget or {}", of_form), *value);
-  Budget budget{.bytes = {}, .loss = loss, .scattered = how};
-  if (*bytes != "auto") {
-    if (!bytes->is_number_unsigned() || *bytes == 0)
-      throw given.expected("budget as auto or a number of bytes above 0", *bytes);
-    budget.bytes = bytes->get<std::uint64_t>();
-  }
-  given.read("fetches", budget.fetches, 1, 256);
-  given.read("lobes", budget.lobes, 1, 64);
-  given.read("search", budget.search);
-  return budget;
-}
-
-FitOptions fit_options(const Json& a, bool isotropic) {
-  const Options given(
-      "fit", a,
-      {"budget", "fetches", "lobes", "search", "loss", "model", "tables", "target", "holdOut", "smooth",
-       "format", "reweightings", "floor", "samples", "seed", "symmetrize", "conserveEnergy"});
-  FitOptions options;
-  options.form = fit_form(given, isotropic);
-  if (given.found("target")) options.target = parse_fit_target(given.text("target"));
-  if (given.found("holdOut")) options.hold_out = parse_node_part(given.text("holdOut"));
-  if (given.found("format")) options.format = parse_table_format(given.text("format"));
-  if (const Json* smooth = given.found("smooth"); smooth && smooth->is_number())
-    given.read("smooth", options.smooth, 0.0);
-  given.read("samples", options.samples, 1, 100'000'000);
-  given.read("seed", options.seed);
-  given.read("symmetrize", options.symmetrize);
-  given.read("conserveEnergy", options.conserve_energy);
-  return options;
-}
-
 // The model's file comes back: whoever asked opens it.
 Reply fit_material(const Request& request, const Progress& progress) {
   const Source& source = material(request.arguments);
-  FitOptions options = fit_options(request.arguments.at("options"), source.ref().isotropic());
+  FitOptions options =
+      fit_options(request_of_json(request.arguments.at("options"), FitFront::page), source.ref().isotropic());
   options.progress = progress;
   const auto start = std::chrono::steady_clock::now();
   Fit found = fit(source, options);

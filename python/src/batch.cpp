@@ -1,5 +1,4 @@
 #include <filesystem>
-#include <type_traits>
 
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
@@ -18,58 +17,6 @@
 namespace burnish::python {
 
 namespace {
-
-// The keywords of `fit` but progress. Throws nb::type_error (through the cast) and Error naming one that is none.
-FitKeywords keywords_of(const nb::kwargs& given) {
-  FitKeywords keywords;
-  const auto take = [](nb::handle value, auto& into) {
-    into = nb::cast<std::decay_t<decltype(into)>>(value);
-  };
-  for (const auto& [key, value] : given) {
-    const auto name = nb::cast<std::string>(key);
-    if (name == "model")
-      take(value, keywords.model);
-    else if (name == "tables")
-      take(value, keywords.tables);
-    else if (name == "budget")
-      take(value, keywords.budget);
-    else if (name == "fetches")
-      take(value, keywords.fetches);
-    else if (name == "lobes")
-      take(value, keywords.lobes);
-    else if (name == "search")
-      take(value, keywords.search);
-    else if (name == "loss")
-      take(value, keywords.loss);
-    else if (name == "smooth")
-      take(value, keywords.smooth);
-    else if (name == "reweightings")
-      take(value, keywords.reweightings);
-    else if (name == "floor")
-      take(value, keywords.floor);
-    else if (name == "format")
-      take(value, keywords.format);
-    else if (name == "samples")
-      take(value, keywords.samples);
-    else if (name == "seed")
-      take(value, keywords.seed);
-    else if (name == "symmetrize")
-      take(value, keywords.symmetrize);
-    else if (name == "conserve_energy")
-      take(value, keywords.conserve_energy);
-    else if (name == "book")
-      take(value, keywords.book);
-    else if (name == "method")
-      take(value, keywords.method);
-    else if (name == "target")
-      take(value, keywords.target);
-    else if (name == "hold_out")
-      take(value, keywords.hold_out);
-    else
-      throw Error("batch: expected an option of fit, found '" + name + "'");
-  }
-  return keywords;
-}
 
 using Materials = std::variant<std::vector<std::string>, std::filesystem::path>;
 
@@ -93,7 +40,7 @@ Batch* batch(const Materials& materials, const std::filesystem::path& folder,
   options.exports.exact = exact;
   options.exports.mips = mips;
   options.exports.compressed = compressed;
-  options.fit = [keywords = keywords_of(how)](bool isotropic) { return fit_options(keywords, isotropic); };
+  options.fit = [request = request_of(how)](bool isotropic) { return fit_options(request, isotropic); };
   for (const std::string& target : to) options.exports.to.push_back(export_target(target));
   const auto* arguments = std::get_if<std::vector<std::string>>(&materials);
   std::vector<LibraryEntry> entries =

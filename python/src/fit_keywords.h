@@ -1,37 +1,22 @@
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <optional>
 #include <string>
-#include <variant>
-#include <vector>
 
-#include <burnish/fitting/fit.h>
+#include <burnish/fitting/fit_request.h>
+
+#include "module.h"
 
 namespace burnish::python {
 
-/// What `fit` and `batch` take of a fit.
-struct FitKeywords {
-  std::string model = "";
-  std::vector<std::string> tables = {};
-  std::variant<std::uint64_t, std::string> budget = std::uint64_t{0};
-  int fetches = 0, lobes = 0;
-  bool search = false;
-  std::string loss = "image";
-  std::variant<std::monostate, double, std::string> smooth = {};
-  std::optional<int> reweightings = {};
-  double floor = LogLinear{}.floor;
-  std::optional<std::string> format = {};
-  std::size_t samples = 0;
-  std::uint64_t seed = 1;
-  bool symmetrize = true, conserve_energy = false;
-  std::shared_ptr<const MaterialBook> book = nullptr;
-  std::string method = "";                 ///< of baselines
-  std::string target = "", hold_out = "";  ///< empty: default_target, none
-};
+/// What keywords of `fit` and `batch` ask for, without source and progress. Throws Error for what the options refuse,
+/// and nb::type_error for an object that no option takes.
+FitRequest request_of(const nb::kwargs& keywords);
 
-/// What they ask for; throws Error on a word that is none.
-FitOptions fit_options(const FitKeywords& given, bool isotropic);
+/// "def fit(source: Source, *, NAME: TYPE = DEFAULT, ...) -> Model", with every option of fit_option_table that a fit
+/// of that kind takes: one with a method, which gives a Baseline, or one without.
+std::string fit_signature(bool with_method);
+
+/// A line for each of these options: its name, its sentence, what stands where it is left out.
+std::string fit_keyword_help(bool with_method);
 
 }  // namespace burnish::python

@@ -1,6 +1,7 @@
 import gc
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -43,8 +44,108 @@ def test_baselines_are_the_command_lines(method, cli, ggx, tmp_path):
 def test_baselines_take_no_options_of_factored_models(ggx):
     with pytest.raises(burnish.Error, match="'pca'"):
         burnish.fit(ggx, method="pca")
-    with pytest.raises(TypeError):
+    with pytest.raises(burnish.Error, match="^method excludes model$"):
         burnish.fit(ggx, method="svd", model="pqp")
+
+
+# What Python, the page's package and the command line are asked, and what each says, options spelled as they are there.
+WRONG = [
+    ({"model": "pqp", "budget": 2700}, ["--model", "pqp", "--budget", 2700], "budget excludes model"),
+    ({"fetches": 2}, ["--fetches", 2], "fetches requires budget"),
+    ({"lobes": 3, "search": True}, ["--lobes", 3, "--search"], "lobes requires budget"),
+    ({"search": True}, ["--search"], "search requires budget"),
+    ({"tables": ["q=96"], "budget": 2700}, ["--table", "q=96", "--budget", 2700], "budget excludes tables"),
+    (
+        {"budget": 2700, "fetches": 2, "lobes": 3},
+        ["--budget", 2700, "--fetches", 2, "--lobes", 3],
+        "fetches excludes lobes",
+    ),
+    (
+        {"budget": "16K", "fetches": 2, "search": True},
+        ["--budget", "16K", "--fetches", 2, "--search"],
+        "fetches excludes search",
+    ),
+    ({"method": "svd", "model": "pqp"}, ["--method", "svd", "--model", "pqp"], "method excludes model"),
+    ({"method": "svd", "format": "half"}, ["--method", "svd", "--format", "half"], "method excludes format"),
+    ({"method": "svd", "loss": "relative"}, ["--method", "svd", "--loss", "relative"], "method excludes loss"),
+    ({"method": "nd", "smooth": "auto"}, ["--method", "nd", "--smooth", "auto"], "method excludes smooth"),
+    (
+        {"method": "nd", "conserve_energy": True},
+        ["--method", "nd", "--conserve-energy"],
+        "method excludes conserve_energy",
+    ),
+    (
+        {"method": "svd", "budget": "auto"},
+        ["--method", "svd", "--budget", "auto"],
+        "budget: expected a number of bytes with method, found 'auto'",
+    ),
+    (
+        {"target": "function", "hold_out": "half=1"},
+        ["--target", "function", "--hold-out", "half=1"],
+        "target: expected nodes with hold_out, found 'function'",
+    ),
+    (
+        {"budget": 0},
+        ["--budget", 0],
+        "budget: expected auto or a number of bytes from 1 to 67108864, as 2700, 16K or 1M, found '0'",
+    ),
+    (
+        {"budget": "much"},
+        ["--budget", "much"],
+        "budget: expected auto or a number of bytes from 1 to 67108864, as 2700, 16K or 1M, found 'much'",
+    ),
+    (
+        {"budget": 2700, "fetches": 0},
+        ["--budget", 2700, "--fetches", 0],
+        "fetches: expected a whole number from 1 to 256, found '0'",
+    ),
+    (
+        {"budget": 2700, "lobes": 1.5},
+        ["--budget", 2700, "--lobes", 1.5],
+        "lobes: expected a whole number from 1 to 64, found '1.5'",
+    ),
+    (
+        {"loss": "realtive"},
+        ["--loss", "realtive"],
+        "loss: expected one of image, relative, log_cos, found 'realtive'; did you mean 'relative'?",
+    ),
+    ({"target": "cells"}, ["--target", "cells"], "target: expected one of function, nodes, found 'cells'"),
+    (
+        {"hold_out": "half=2"},
+        ["--hold-out", "half=2"],
+        "hold_out: expected half=0, half=1 or theta_i=K, found 'half=2'",
+    ),
+    ({"smooth": "much"}, ["--smooth", "much"], "smooth: expected auto or a number of at least 0, found 'much'"),
+    ({"floor": 2}, ["--floor", 2], "floor: expected a number above 0 and at most 1, found '2'"),
+    ({"seed": -1}, ["--seed", -1], "seed: expected a whole number of at least 0, found '-1'"),
+]
+
+
+@pytest.mark.parametrize("keywords, words, said", WRONG)
+def test_wrong_options_are_told_alike(keywords, words, said, cli, ggx, tmp_path):
+    with pytest.raises(burnish.Error) as told:
+        burnish.fit(ggx, **keywords)
+    assert str(told.value) == said
+    with pytest.raises(burnish.Error) as told:
+        burnish.batch([GGX], tmp_path / "out", **keywords)
+    assert str(told.value) == said and not (tmp_path / "out").exists()
+
+    command = [cli.program, "fit", GGX, "-o", str(tmp_path / "model.json"), *map(str, words)]
+    run = subprocess.run(command, capture_output=True, text=True)
+    first = run.stderr.splitlines()[0].replace("--table", "tables")
+    first = re.sub("--([a-z-]+)", lambda word: word[1].replace("-", "_"), first)
+    assert (run.returncode, first) == (2, "burnish: " + said)
+
+
+def test_numbers_of_numpy_and_texts_serve_as_options(ggx):
+    how = {"seed": np.int64(3), "smooth": np.float32(0.25), "tables": ("q=9",)}
+    model = burnish.fit(ggx, model="pqp", samples=np.uint16(2000), floor=np.float64(1e-4), **how)
+    assert model.notes["floor"] == 1e-4 and model.notes["smooth"] == 0.25
+    assert burnish.fit(ggx, budget="0.5K", lobes=1).notes["budget"] == 512
+    with pytest.raises(TypeError, match="model: expected a value that an option takes"):
+        burnish.fit(ggx, model=object())
+    with pytest.raises(burnish.Error, match="found 'bugdet'; did you mean 'budget'"):
+        burnish.fit(ggx, bugdet=2700)
 
 
 def test_a_budget_is_kept_and_spent(ggx):
@@ -92,7 +193,7 @@ def test_errors_are_exceptions_with_the_same_text(cli, tmp_path):
         assert f"burnish: {raised.value}" == str(told.value)
         assert len(str(raised.value)) < 290 and "\n" not in str(raised.value)
     assert issubclass(burnish.Error, ValueError)
-    with pytest.raises(burnish.Error, match="loss: expected image, relative or log_cos, found 'psnr'"):
+    with pytest.raises(burnish.Error, match="loss: expected one of image, relative, log_cos, found 'psnr'"):
         burnish.fit(burnish.open_source(GGX), loss="psnr")
 
 
@@ -290,7 +391,7 @@ def test_a_batch_yields_its_materials_as_they_are_done(tmp_path, cli):
     told = cli("batch", tmp_path / "list", "-o", tmp_path / "out", "--resume", "--model", "pqp", "--samples", "2000",
                "--json")
     assert told["earlier"] == told["fitted"] == 2
-    with pytest.raises(burnish.Error, match="expected an option of fit"):
+    with pytest.raises(burnish.Error, match="found 'bugdet'; did you mean 'budget'"):
         burnish.batch(specs, tmp_path / "other", bugdet=2700)
 
 
@@ -348,7 +449,7 @@ def test_what_a_fit_follows_is_the_command_lines(cli, tmp_path):
         assert model.notes == stored.notes
         for table, other in zip(model.tables, stored.tables):
             assert (np.asarray(table.values) == np.asarray(other.values)).all()
-    with pytest.raises(burnish.Error, match="expected function or nodes, found 'cells'"):
+    with pytest.raises(burnish.Error, match="expected one of function, nodes, found 'cells'"):
         burnish.fit(source, budget=700, target="cells")
 
 
@@ -387,3 +488,15 @@ def test_a_book_completes_a_few_pairs(tmp_path):
     assert burnish.error_figures(unseen, model, count=1000).relative < 0.2
     with pytest.raises(burnish.Error, match="anisotropic"):
         burnish.book([*specs, "ggx:alpha_x=0.1,alpha_y=0.3"])
+
+    # and takes no options of other fits
+    for keywords, said in (
+        ({"budget": 2700}, "budget excludes book"),
+        ({"model": "pqp"}, "model excludes book"),
+        ({"fetches": 2}, "fetches requires budget"),
+        ({"symmetrize": False}, "symmetrize=false excludes book"),
+    ):
+        with pytest.raises(burnish.Error, match=f"^{said}$"):
+            burnish.fit(unseen, book=again, **keywords)
+    with pytest.raises(TypeError, match="book: expected a Book, found 'metals.burnish'"):
+        burnish.fit(unseen, book="metals.burnish")

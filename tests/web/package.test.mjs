@@ -243,9 +243,9 @@ test("Options that there are not, and values of another kind, are said", async (
   for (const [data, found] of [[null, "null"], [undefined, "undefined"], [5, "Number"], [[1, 2], "Array"], [{}, "Object"]]) await refused(open(data), `found ${found}`);
   await refused(open("lambert", {iluminant: "E"}), "did you mean 'illuminant'");
   await refused(open(new Uint8Array(4), {decoder: 5}), "expected a decoder as bytes");
-  for (const [options, said] of [[{nosuch: 1}, "found 'nosuch'"], [{fetches: 4}, "fetches beside a budget"], [{budget: 3000, fetches: 0}, "fetches from 1 to 256"], [{budget: 3000, fetches: "two"}, 'found "two"'],
-                                 [{budget: "much"}, "auto or a number of bytes"], [{budget: 3000, model: "z(h)"}, "either a budget or model"], [{samples: -4}, "samples from 1"], [{seed: 1.5}, "found 1.5"],
-                                 [{smooth: "yes"}, "smooth as auto or a number"], [{floor: -1}, "floor above 0"], [{symmetrize: 3}, "true or false"], [{tables: "q=3"}, "a list of texts"], [{name: 5}, "a name as a text"], [7, "expected"]])
+  for (const [options, said] of [[{nosuch: 1}, "found 'nosuch'"], [{fetches: 4}, "fetches requires budget"], [{budget: 3000, fetches: 0}, "fetches: expected a whole number from 1 to 256, found '0'"], [{budget: 3000, fetches: "two"}, "found 'two'"], [{lobes: 3, search: true}, "lobes requires budget"], [{budget: 3000, fetches: 2, search: true}, "fetches excludes search"],
+                                 [{budget: "much"}, "auto or a number of bytes"], [{budget: 3000, model: "z(h)"}, "budget excludes model"], [{samples: -4}, "samples: expected a whole number from 1"], [{seed: 1.5}, "found '1.5'"], [{holdOut: "half=1", target: "function"}, "target: expected nodes with holdOut, found 'function'"],
+                                 [{smooth: "yes"}, "smooth: expected auto or a number"], [{floor: -1}, "floor: expected a number above 0"], [{symmetrize: 3}, "true or false"], [{tables: "q=3"}, "a list of texts"], [{name: 5}, "a name as a text"], [7, "expected"]])
     await refused(material.fit(options), said);
   await refused(material.evaluate([[0, 0, 1]], [[0, 0, 1]]), "three numbers each in one list");
   await refused(material.albedo(0.5), "a list of angles");

@@ -52,8 +52,9 @@ export function memory(): number;
 export interface FitOptions {
   /** Of the model; by default the material's, "fitted". */
   name?: string;
-  /** Bytes, or "auto"; without a budget or model 16384 within two fetches (of some nodes three, anisotropic: six). */
-  budget?: number | "auto";
+  /** Bytes, also as a text such as "16K", or "auto"; without a budget or model 16384 within two fetches (of some nodes
+   * three, anisotropic: six). */
+  budget?: number | string;
   fetches?: number;
   lobes?: number;
   search?: boolean;

@@ -21,18 +21,12 @@ const kNothing = 1e-9;  // figures below it are roundings
 
 let stop = null, fitted = null, choose = () => {}, showResults = () => {}, followed = null;
 
-// "16K" as bytes; "auto" as itself. Throws Error.
-function readBudget(text) {
-  if (/^auto$/i.test(text.trim())) return "auto";
-  const found = text.trim().match(/^(\d+(?:\.\d+)?)\s*([kKmM]?)[bB]?$/), bytes = found ? found[1] * {"": 1, k: 1024, m: 1048576}[found[2].toLowerCase()] : 0;
-  if (!(bytes >= 1)) throw new Error(`Bytes: expected a number such as 2700, 16K or 1M, or auto, found '${text}'`);
-  return Math.round(bytes);
-}
-function readFetches(text) {
-  if (text.trim() === "" || /^auto$/i.test(text.trim())) return undefined;
-  const fetches = Number(text);
-  if (!(Number.isInteger(fetches) && fetches >= 1 && fetches <= 256)) throw new Error(`Fetches: expected 1 to 256 or nothing, found '${text}'`);
-  return fetches;
+// What is typed, for the library to read or to refuse. Fetches are left to it where nothing or "auto" is typed.
+const typedBudget = () => find("#budget").value.trim().toLowerCase();
+function typedFetches() {
+  const text = find("#fetches").value.trim();
+  if (text === "" || /^auto$/i.test(text)) return undefined;
+  return Number.isFinite(Number(text)) ? Number(text) : text;
 }
 
 // The library's own default, which is free to take a fetch more than the preset shows.
@@ -92,7 +86,7 @@ async function fit(event) {
   if (!reference || isSurface(reference) || stop) return;
   await busy(reference, async (signal) => {
     const options = {target: targetOf(reference)};
-    if (!isDefault()) Object.assign(options, {budget: readBudget(find("#budget").value), fetches: readFetches(find("#fetches").value)});
+    if (!isDefault()) Object.assign(options, {budget: typedBudget(), fetches: typedFetches()});
     const {entry} = await fitOne(reference, options, signal);
     if (!state.entries.includes(reference)) {
       entry.material.close?.();
@@ -113,7 +107,7 @@ async function errorCurve() {
   reference.curve = [];
   drawCurve();
   await busy(reference, async (signal, abort) => {
-    const fetches = readFetches(find("#fetches").value), target = targetOf(reference), left = [...kCurve];
+    const fetches = typedFetches(), target = targetOf(reference), left = [...kCurve];
     let wrong;
     const failed = (error) => {
       wrong ??= error;

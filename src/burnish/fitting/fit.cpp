@@ -51,6 +51,9 @@ constexpr std::size_t kIsotropicSamples = 200'000, kAnisotropicSamples = 500'000
 constexpr std::size_t kBaselineSamples = 200'000;
 constexpr std::size_t kBookSamples = 1000;
 
+// Of DefaultBudget.
+constexpr int kIsotropicFetches = 2, kAnisotropicFetches = 6;
+
 // Pairs that the fit did not see, for the error that is reported.
 constexpr std::size_t kHeldOutPairs = 20'000;
 constexpr int kHeldOutSphereSize = 128;  // of a baseline's the defaults of FigureOptions
@@ -92,6 +95,7 @@ class Fitter {
  public:
   Fitter(const Source& source, const FitOptions& options)
       : source_(source), options_(options), brdf_(source.ref()) {
+    if (options.samples == std::size_t{0}) throw Error("fit: expected at least one sample, found 0");
     if (options.symmetrize) symmetrized_.emplace(brdf_);
     if (options.target.value_or(default_target(source, options)) == FitTarget::nodes)
       take_nodes();
@@ -102,8 +106,8 @@ class Fitter {
 
   Fit run() {
     const auto start = std::chrono::steady_clock::now();
-    auto brdf = std::visit([&](const auto& form) { return fit(form); },
-                           options_.form.value_or(default_budget(brdf_.isotropic())));
+    auto brdf =
+        std::visit([&](const auto& form) { return fit(form); }, options_.form.value_or(DefaultBudget{}));
     report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report_.source = source_.name;
     report_.source_format = source_.findings.format;
@@ -131,12 +135,21 @@ class Fitter {
   Fitted fit(const Budget& form) {
     if (form.bytes && (*form.bytes == 0 || *form.bytes > kMaxBudget))
       throw Error(fmt::format("fit: expected a budget of 1 to {} bytes, found {}", kMaxBudget, *form.bytes));
-    if (form.fetches < 0 || (form.fetches > 0 && (form.lobes > 0 || form.search)))
-      throw Error("fit: expected fetches >= 0, and with them neither a number of lobes nor a search");
+    if (form.fetches.value_or(1) < 1)
+      throw Error(fmt::format("fit: expected at least one fetch, found {}", *form.fetches));
+    if (form.lobes.value_or(1) < 1)
+      throw Error(fmt::format("fit: expected at least one lobe, found {}", *form.lobes));
+    if (form.fetches && (form.lobes || form.search))
+      throw Error("fit: expected with fetches neither a number of lobes nor a search");
     Budget budget = form;
-    if (!form.bytes && form.fetches == 0 && form.lobes == 0 && !form.search) budget.default_fetches = true;
-    if (budget.default_fetches) budget.fetches = default_budget(brdf_.isotropic()).fetches;
+    if (!form.bytes && !form.fetches && !form.lobes && !form.search) default_fetches_ = true;
+    if (default_fetches_) budget.fetches = brdf_.isotropic() ? kIsotropicFetches : kAnisotropicFetches;
     return form.bytes ? fit_to_bytes(budget, *form.bytes) : fit_to_noise(budget);
+  }
+
+  Fitted fit(const DefaultBudget& form) {
+    default_fetches_ = true;
+    return fit(Budget{.bytes = kDefaultBudget, .loss = form.loss, .scattered = form.scattered});
   }
 
   FactoredBrdf fit_to_bytes(const Budget& form, std::uint64_t bytes) {
@@ -149,9 +162,10 @@ class Fitter {
       throw Error(fmt::format(
           "fit: expected neither a format nor a smoothness nor energy conservation with method {}",
           form.method));
+    if (form.bytes == std::uint64_t{0}) throw Error("fit: expected at least one byte for a method, found 0");
     const SampleSource samples = sample_source(kBaselineSamples, false);
     BaselineOptions options{.seed = options_.seed, .progress = progress(form.method)};
-    if (form.bytes > 0) options.budget = form.bytes;
+    if (form.bytes) options.budget = *form.bytes;
     BaselineFit fit = fit_baseline(reference(), samples, form.method, options);
     report_.how = BaselineReport{.method = std::move(fit.method),
                                  .budget = options.budget,
@@ -167,12 +181,11 @@ class Fitter {
       throw Error("fit: expected neither a smoothness nor nodes as the target with a book");
     const TableFormat format = this->format();
     Completion completion =
-        samples()
-            ? complete(*form.book, *samples(), format)
-            : complete(*form.book,
-                       measure(reference(), {.count = options_.samples > 0 ? options_.samples : kBookSamples,
-                                             .seed = options_.seed}),
-                       format);
+        samples() ? complete(*form.book, *samples(), format)
+                  : complete(*form.book,
+                             measure(reference(), {.count = options_.samples.value_or(kBookSamples),
+                                                   .seed = options_.seed}),
+                             format);
     report_.how = std::move(completion.report);
     return std::move(completion.brdf);
   }
@@ -219,7 +232,7 @@ class Fitter {
       options.tolerance = kBackscatterTolerance;
     }
     const ScatteredPlan plan = plan_scattered(source, bytes, options_.smooth, options_.format, options,
-                                              form.default_fetches ? 0 : form.fetches);
+                                              default_fetches_ ? 0 : form.fetches.value_or(0));
     options.smooth = plan.smooth;
     options.format = plan.format;
     OneLobeReport report;
@@ -270,18 +283,18 @@ class Fitter {
   }
 
   FactoredBrdf fit_to_budget(Budget form, std::uint64_t bytes) {
-    if (form.fetches == 0) check_budget(form, bytes);
+    if (!form.fetches) check_budget(form, bytes);
     if (takes_knee(form))
       return brdf_.isotropic() ? fit_at_knee(form, bytes) : fit_hemispheres_at_knee(form, bytes);
-    return form.fetches == 0                   ? fit_lobes_to(form, bytes)
-           : smoothed_ && form.default_fetches ? fit_nodes_within(form, bytes)
-                                               : fit_within(form, bytes);
+    return !form.fetches                   ? fit_lobes_to(form, bytes)
+           : smoothed_ && default_fetches_ ? fit_nodes_within(form, bytes)
+                                           : fit_within(form, bytes);
   }
 
   /// Whether the number of fetches is left to choose. Where the order of the directions matters lobes share a table of
   /// wi and hold it better than the models of any trial.
   bool takes_knee(const Budget& form) const {
-    return form.fetches == 0 && form.lobes == 0 && !form.search && !order_matters(reference());
+    return !form.fetches && !form.lobes && !form.search && !order_matters(reference());
   }
 
   /// By what models of an isotropic source do with few fetches and with many.
@@ -291,7 +304,7 @@ class Fitter {
     std::vector<FetchTrial> trials = try_fetches(reference(), set, limit, refine_options(form.loss));
     if (!trials.empty())
       if (const FetchTrial& chosen = trial_at_knee(trials); !chosen.lobes) form.fetches = chosen.fetches;
-    FactoredBrdf brdf = form.fetches == 0 ? fit_lobes_to(form, bytes) : fit_within(form, bytes);
+    FactoredBrdf brdf = form.fetches ? fit_within(form, bytes) : fit_lobes_to(form, bytes);
     std::get<LobesReport>(report_.how).fetch_trials = std::move(trials);
     return brdf;
   }
@@ -343,7 +356,7 @@ class Fitter {
     if (smoothed_ && form.loss == FitLoss::image) way.refine.shares = kNodeShares;
     RefineOptions trials = way.refine;
     trials.progress = progress("choosing lobes");
-    way.plan = plan_for(reference(), way.set, bytes, form.lobes, texel, trials);
+    way.plan = plan_for(reference(), way.set, bytes, form.lobes.value_or(0), texel, trials);
     way.refine.smooth = smooth_of(way.plan, bytes, texel);
     return way;
   }
@@ -385,8 +398,9 @@ class Fitter {
   /// Whether the bytes hold every table of the plan that they give.
   bool fits(const Budget& form, std::size_t bytes) const {
     const std::size_t texel = texel_bytes(format(), channels());
-    if (form.fetches > 0) return holds_model(reference(), limit_of(bytes, form.fetches));
-    return plan_fits(default_plan(bytes, form.lobes, brdf_.isotropic(), texel), bytes, channels(), texel);
+    if (form.fetches) return holds_model(reference(), limit_of(bytes, *form.fetches));
+    return plan_fits(default_plan(bytes, form.lobes.value_or(0), brdf_.isotropic(), texel), bytes, channels(),
+                     texel);
   }
 
   /// Throws Error unless they do.
@@ -442,8 +456,8 @@ class Fitter {
 
   /// Within a number of fetches: lobes of lines or hemispheres, or one lobe with a volume.
   FactoredBrdf fit_within(const Budget& form, std::uint64_t bytes) {
-    const CostLimit limit = limit_of(bytes, form.fetches);
-    LobesReport report{.loss = form.loss, .budget = bytes, .fetches = form.fetches};
+    const CostLimit limit = limit_of(bytes, *form.fetches);
+    LobesReport report{.loss = form.loss, .budget = bytes, .fetches = *form.fetches};
     RefineOptions refine = refine_options(form.loss);
     if (takes_lobes(reference(), limit)) {
       const TrainingSet set = drawn_set(training_for(bytes, limit.texel_bytes, brdf_.isotropic()));
@@ -457,7 +471,7 @@ class Fitter {
                                 hemisphere_specs(limit, channels()));
     if (form.loss == FitLoss::image) {
       refine.shares = kVolumeShares;
-      if (form.fetches >= kSpareFetches) {
+      if (*form.fetches >= kSpareFetches) {
         refine.shares.log_cos = kSpareLogCos;
         if (bytes >= kSpareTexels * limit.texel_bytes) refine.shares.absolute = kSpareAbsolute;
       }
@@ -483,7 +497,7 @@ class Fitter {
                                   const std::vector<ModelSpec>& specs) {
     const RefineOptions refine = hemisphere_options(form.loss);
     return finish(fit_hemispheres(set, specs, refine), set, refine,
-                  {.loss = form.loss, .budget = bytes, .fetches = form.fetches});
+                  {.loss = form.loss, .budget = bytes, .fetches = form.fetches.value_or(0)});
   }
 
   /// Nodes that are given no number of fetches: one more where fewer leave a model farther from them than what is
@@ -492,11 +506,11 @@ class Fitter {
     FactoredBrdf fewer = fit_within(form, bytes);
     const NodeFigures near = node_figures(*nodes_, fewer), &unseen = *report_.nodes->held_out;
     if (near.relative <= unseen.relative && near.log_cos <= unseen.log_cos) return fewer;
-    form.fetches += kMoreFetchesOfNodes;
-    if (!holds_model(reference(), limit_of(bytes, form.fetches))) return fewer;
+    *form.fetches += kMoreFetchesOfNodes;
+    if (!holds_model(reference(), limit_of(bytes, *form.fetches))) return fewer;
     auto how = report_.how;
     const std::string at_bytes =
-        std::exchange(at_bytes_, at_bytes_ + fmt::format(", {} fetches", form.fetches));
+        std::exchange(at_bytes_, at_bytes_ + fmt::format(", {} fetches", *form.fetches));
     FactoredBrdf more = fit_within(form, bytes);
     at_bytes_ = at_bytes;
     const NodeFigures nearer = node_figures(*nodes_, more);
@@ -621,8 +635,7 @@ class Fitter {
                              const HalfDiffTable* table = nullptr) const {
     if (samples()) return from_samples(*samples(), options_.symmetrize);
     if (table) return from_table(*table, options_.symmetrize, spread_phi_h);
-    return from_brdf(reference(), options_.samples > 0 ? options_.samples : drawn, options_.seed,
-                     spread_phi_h);
+    return from_brdf(reference(), options_.samples.value_or(drawn), options_.seed, spread_phi_h);
   }
 
   TrainingSet training_set(bool spread_phi_h) const {
@@ -687,7 +700,8 @@ class Fitter {
   std::optional<MeasuredNodes> nodes_;
   std::optional<KrigedNodes> smoothed_;
   FitReport report_;
-  std::string at_bytes_;  ///< of a stage of progress, where several numbers of bytes are tried
+  bool default_fetches_ = false;  ///< nobody gave a number of fetches: they are those of DefaultBudget
+  std::string at_bytes_;          ///< of a stage of progress, where several numbers of bytes are tried
 };
 
 }  // namespace
@@ -706,25 +720,22 @@ FitTarget default_target(const Source& source, const FitOptions& options) {
   if (options.hold_out) return FitTarget::nodes;
   const auto* table = std::get_if<RglTable>(&source.brdf);
   const auto* budget = options.form ? std::get_if<Budget>(&*options.form) : nullptr;
-  if (const Samples* samples = source.samples(); samples && samples->isotropic && (!options.form || budget))
-    return options.symmetrize ? FitTarget::nodes : FitTarget::function;
-  const bool lobes = !options.form || std::holds_alternative<GivenLobes>(*options.form) ||
-                     (budget && !budget->scattered.cross_validate);
-  return table && table->isotropic() && options.symmetrize && lobes ? FitTarget::nodes : FitTarget::function;
-}
-
-Budget default_budget(bool isotropic) {
-  return {.bytes = 16 << 10, .fetches = isotropic ? 2 : 6, .default_fetches = true};
+  const auto* usual = options.form ? std::get_if<DefaultBudget>(&*options.form) : nullptr;
+  const bool given = options.form && std::holds_alternative<GivenLobes>(*options.form);
+  const bool chosen = !options.form || (budget && !budget->scattered.cross_validate) ||
+                      (usual && !usual->scattered.cross_validate);
+  // A function of scattered samples knows less than what is estimated from the samples themselves.
+  const Samples* samples = source.samples();
+  const bool measured = table ? table->isotropic() && (given || chosen)
+                              : samples && samples->isotropic && chosen;
+  return measured && options.symmetrize ? FitTarget::nodes : FitTarget::function;
 }
 
 FitForm form_of(const std::string& model, const std::vector<std::string>& tables, bool isotropic,
                 const LogLinear& of_one_lobe, FitLoss of_several) {
   if (model.empty()) {
     if (!tables.empty()) return form_of(OneLobe{}.model, tables, isotropic, of_one_lobe, of_several);
-    Budget budget = default_budget(isotropic);
-    budget.loss = of_several;
-    budget.scattered = of_one_lobe;
-    return budget;
+    return DefaultBudget{.loss = of_several, .scattered = of_one_lobe};
   }
   if (parse_model_spec(model, tables, isotropic).lobes.size() == 1)
     return OneLobe{.model = model, .tables = tables, .how = of_one_lobe};

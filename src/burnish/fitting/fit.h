@@ -37,23 +37,33 @@ struct OneLobe {
 /// The most bytes that a model may be asked to take.
 inline constexpr std::uint64_t kMaxBudget = std::uint64_t{64} << 20;
 
-/// The model that serves a number of bytes best, at most so many as FactoredBrdf::bytes counts them, of several
-/// lobes of lines and grids, or within a number of fetches of whatever serves best within both.
+/// The best model within a number of bytes, which FactoredBrdf::bytes counts. Without a number of fetches it may have
+/// several lobes of lines and grids. With one it may have any form that is within both limits.
 struct Budget {
-  /// None: the least of some numbers of bytes beyond which more would store noise or hardly help, see
-  /// BudgetChoice; within the fetches of default_budget unless they, lobes or a search are asked for. At most
-  /// kMaxBudget.
+  /// At most this many bytes, from 1 to kMaxBudget. None: the library tries more and more bytes, until more would store
+  /// noise or hardly help, see BudgetChoice. Each trial then takes the fetches of DefaultBudget, unless fetches, lobes
+  /// or a search are given.
   std::optional<std::uint64_t> bytes = 2700;
-  /// Filtered reads of one evaluation, see fetch_count; 0: the fewest of those tried whose error is within two percent
-  /// of the least. The one lobe of scattered samples has at most so many, where somebody chose them.
-  int fetches = 0;
-  /// Nobody did: whatever `fetches` says, they are default_budget's. Nodes of an isotropic source get one more where
-  /// those leave a model farther from them than nodes that are left out are from what the others foretell.
-  bool default_fetches = false;
-  int lobes = 0;        ///< lobes of lines or hemispheres, without fetches; 0: a choice
-  bool search = false;  ///< search_plan first; without fetches
+  /// At most this many filtered reads of tables in one evaluation, at least 1, see fetch_count. None: the library tries
+  /// several numbers on part of the pairs. It takes the fewest whose error is within two percent of the least.
+  /// The one lobe of scattered samples keeps to a given number too. Excludes lobes and search.
+  std::optional<int> fetches = {};
+  /// This many lobes of lines or hemispheres, at least 1. None: the library chooses.
+  std::optional<int> lobes = {};
+  bool search = false;  ///< search factors, projections, warps and sizes first, see search_plan
   FitLoss loss = FitLoss::image;
   LogLinear scattered = {};  ///< scattered samples are too few for several lobes: they get one
+};
+
+/// The bytes of DefaultBudget.
+inline constexpr std::uint64_t kDefaultBudget = 16 << 10;
+
+/// What serves most uses: 16 KB, and two fetches for an isotropic source, six for another. Nodes of an isotropic source
+/// get one fetch more if the model's error at the nodes is larger than their cross-validation error. The one lobe of
+/// scattered samples has as many fetches as predict best.
+struct DefaultBudget {
+  FitLoss loss = FitLoss::image;
+  LogLinear scattered = {};  ///< as Budget has it
 };
 
 /// Lobes as given, refined together.
@@ -65,25 +75,23 @@ struct GivenLobes {
 
 /// What others would do instead of positive factors.
 struct BaselineMethod {
-  std::string method;       ///< one of baseline_methods()
-  std::uint64_t bytes = 0;  ///< at most so many; 0: the default of BaselineOptions
+  std::string method;  ///< one of baseline_methods()
+  /// At most this many bytes, at least 1. None: the default of BaselineOptions.
+  std::optional<std::uint64_t> bytes = {};
 };
 
 /// A line and a volume, completed by what the materials of a book have in common: see complete (fitting/book/complete.h).
-/// Scattered samples are what is known; of any other source it is as many pairs as FitOptions::samples says, by default
-/// 1,000. The model is reciprocal whatever FitOptions::symmetrize says.
+/// Scattered samples are what is known; of any other source it is as many pairs as FitOptions::samples says. The
+/// model is reciprocal whatever FitOptions::symmetrize says.
 struct FromBook {
   std::shared_ptr<const MaterialBook> book;  ///< not null
 };
 
 /// What a fit makes.
-using FitForm = std::variant<OneLobe, Budget, GivenLobes, BaselineMethod, FromBook>;
-
-/// Bytes and fetches that serve most uses: 16 KB, and two fetches for an isotropic source, six for another.
-Budget default_budget(bool isotropic);
+using FitForm = std::variant<OneLobe, Budget, DefaultBudget, GivenLobes, BaselineMethod, FromBook>;
 
 /// The form for a model as parse_model_spec reads it: OneLobe or, where it has several, GivenLobes. Without a
-/// model default_budget, or where there are tables OneLobe's model. Throws Error as parse_model_spec does.
+/// model DefaultBudget, or where there are tables OneLobe's model. Throws Error as parse_model_spec does.
 FitForm form_of(const std::string& model, const std::vector<std::string>& tables, bool isotropic,
                 const LogLinear& of_one_lobe, FitLoss of_several);
 
@@ -107,7 +115,7 @@ struct FitOptions;
 FitTarget default_target(const Source& source, const FitOptions& options);
 
 struct FitOptions {
-  std::optional<FitForm> form = {};      ///< none: default_budget
+  std::optional<FitForm> form = {};      ///< none: DefaultBudget
   std::optional<FitTarget> target = {};  ///< none: default_target
   std::optional<NodePart> hold_out =
       {};  ///< nodes that are not fitted and choose nothing; with FitTarget::nodes
@@ -116,9 +124,9 @@ struct FitOptions {
   /// Of tables without one of their own. None: half; with a budget or several lobes and three channels
   /// rgb9e5; with a budget and scattered samples of three channels the one of both that predicts better.
   std::optional<TableFormat> format = {};
-  /// Pairs drawn for one lobe or a baseline from a source that is a function; 0: 200,000, or 500,000 for one
-  /// lobe of an anisotropic source.
-  std::size_t samples = 0;
+  /// Pairs drawn from a source that is a function, at least 1: for one lobe, a baseline or a book. None: 200,000, for
+  /// one lobe of an anisotropic source 500,000, for a book 1,000.
+  std::optional<std::size_t> samples = {};
   std::uint64_t seed = 1;        ///< of the drawn pairs
   bool symmetrize = true;        ///< fit the reciprocal part, see SymmetrizedBrdf
   bool conserve_energy = false;  ///< see burnish::conserve_energy

@@ -214,7 +214,7 @@ TEST(Fit, MakesByDefaultWhatTheDefaultBudgetSays) {
   BURNISH_SKIP_WHERE_SANITIZED();
   const Source source = source_of("paint", paint());
   const Fit made = fit(source, {.seed = 3, .score = false});
-  const Fit named = fit(source, {.form = default_budget(true), .seed = 3, .score = false});
+  const Fit named = fit(source, {.form = DefaultBudget{}, .seed = 3, .score = false});
   EXPECT_EQ(made.model(), named.model());
   EXPECT_LE(made.bytes(), 16u << 10);
   EXPECT_LE(fetch_count(made.model()), 2u);
@@ -275,9 +275,8 @@ TEST(FitForm, IsOneLobeOrSeveral) {
   EXPECT_EQ(std::get<GivenLobes>(form).loss, FitLoss::log_cos);
   EXPECT_THROW(form_of("p(wo) +", {}, true, {}, {}), Error);
   const FitForm none = form_of("", {}, false, {.floor = 1e-4}, FitLoss::relative);
-  EXPECT_EQ(std::get<Budget>(none).bytes, default_budget(false).bytes);
-  EXPECT_EQ(std::get<Budget>(none).loss, FitLoss::relative);
-  EXPECT_EQ(std::get<Budget>(none).scattered.floor, 1e-4);
+  EXPECT_EQ(std::get<DefaultBudget>(none).loss, FitLoss::relative);
+  EXPECT_EQ(std::get<DefaultBudget>(none).scattered.floor, 1e-4);
   EXPECT_EQ(std::get<OneLobe>(form_of("", {"q=8"}, true, {}, {})).model, OneLobe{}.model);
 }
 
@@ -320,6 +319,9 @@ TEST(Fit, OfIsotropicRglFilesIsOfTheirNodesUnlessAskedOtherwise) {
     EXPECT_EQ(parse_fit_target(to_string(target)), target);
   EXPECT_EQ(default_target(isotropic, {}), FitTarget::nodes);
   EXPECT_EQ(default_target(isotropic, {.form = Budget{}}), FitTarget::nodes);
+  EXPECT_EQ(default_target(isotropic, {.form = DefaultBudget{}}), FitTarget::nodes);
+  EXPECT_EQ(default_target(isotropic, {.form = DefaultBudget{.scattered = {.cross_validate = true}}}),
+            FitTarget::function);
   EXPECT_EQ(default_target(isotropic, {.form = GivenLobes{.model = "q(h) + s(h)"}}), FitTarget::nodes);
   EXPECT_EQ(default_target(isotropic, {.form = Budget{.scattered = {.cross_validate = true}}}),
             FitTarget::function);
@@ -469,12 +471,13 @@ void expect_small_twins(const Fit& made, const std::string& what) {
 
 TEST(Fit, MakesFilesLittleLargerThanTheirTables) {
   BURNISH_SKIP_WHERE_SANITIZED();
-  const auto expect_small = [](const AnalyticBrdf& brdf, std::uint64_t bytes, int fetches) {
+  const auto expect_small = [](const AnalyticBrdf& brdf, std::uint64_t bytes, std::optional<int> fetches) {
     expect_small_twins(
         fit(source_of("ggx", brdf), {.form = Budget{.bytes = bytes, .fetches = fetches}, .score = false}),
-        fmt::format("{} bytes, {} fetches", bytes, fetches));
+        fmt::format("{} bytes, {} fetches", bytes, fetches.value_or(0)));
   };
-  for (const int fetches : {1, 2, 0}) expect_small(paint(), 1350, fetches);
+  for (const std::optional<int> fetches : {std::optional(1), std::optional(2), std::optional<int>()})
+    expect_small(paint(), 1350, fetches);
   expect_small(brushed(), 1350, 4);
   // with volumes
   expect_small(paint(), 16 << 10, 2);
@@ -548,6 +551,12 @@ TEST(Fit, RefusesWhatDoesNotGoTogether) {
   EXPECT_THAT(told(even, {.form = Budget{.bytes = 0}}), HasSubstr("budget"));
   EXPECT_THAT(told(even, {.form = Budget{.bytes = 20}}), HasSubstr("budget"));
   EXPECT_THAT(told(uneven, {.form = Budget{.lobes = 1}}), HasSubstr("two lobes"));
+  EXPECT_THAT(told(even, {.form = Budget{.fetches = 0}}), HasSubstr("at least one fetch, found 0"));
+  EXPECT_THAT(told(even, {.form = Budget{.lobes = 0}}), HasSubstr("at least one lobe, found 0"));
+  EXPECT_THAT(told(even, {.form = Budget{.fetches = 2, .lobes = 2}}), HasSubstr("neither a number of lobes"));
+  EXPECT_THAT(told(even, {.form = Budget{.fetches = 2, .search = true}}), HasSubstr("nor a search"));
+  EXPECT_THAT(told(even, {.form = BaselineMethod{"svd", 0}}), HasSubstr("at least one byte"));
+  EXPECT_THAT(told(even, {.samples = 0}), HasSubstr("at least one sample"));
   // formats that do not hold the channels
   EXPECT_THAT(told(grey, {.form = Budget{}, .format = TableFormat::rgb9e5}), HasSubstr("3 channels"));
   EXPECT_NE(told(grey, {.form = OneLobe{.tables = {"p=6x6", "q=8x8"}}, .format = TableFormat::rgb9e5}), "");

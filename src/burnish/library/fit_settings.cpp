@@ -27,10 +27,18 @@ Json json_of(const OneLobe& form) {
   return {{"model", form.model}, {"tables", form.tables}, {"how", json_of(form.how)}};
 }
 
+// Digests of earlier batches hold this text: a number that is left to the library is 0 in it, and the fetches of a
+// DefaultBudget are null.
 Json json_of(const Budget& form) {
-  return {{"bytes", json_of(form.bytes)}, {"fetches", form.default_fetches ? Json() : Json(form.fetches)},
-          {"lobes", form.lobes},          {"search", form.search},
-          {"loss", to_string(form.loss)}, {"scattered", json_of(form.scattered)}};
+  return {{"bytes", json_of(form.bytes)},    {"fetches", form.fetches.value_or(0)},
+          {"lobes", form.lobes.value_or(0)}, {"search", form.search},
+          {"loss", to_string(form.loss)},    {"scattered", json_of(form.scattered)}};
+}
+
+Json json_of(const DefaultBudget& form) {
+  Json json = json_of(Budget{.bytes = kDefaultBudget, .loss = form.loss, .scattered = form.scattered});
+  json["fetches"] = nullptr;
+  return json;
 }
 
 Json json_of(const GivenLobes& form) {
@@ -38,7 +46,7 @@ Json json_of(const GivenLobes& form) {
 }
 
 Json json_of(const BaselineMethod& form) {
-  return {{"method", form.method}, {"bytes", form.bytes}};
+  return {{"method", form.method}, {"bytes", form.bytes.value_or(0)}};
 }
 
 Json json_of(const FromBook& form) {
@@ -59,7 +67,7 @@ std::string settings_text(const FitOptions& options) {
     json["hold_out"] = {static_cast<int>(options.hold_out->kind), options.hold_out->number};
   json["smooth"] = json_of(options.smooth);
   if (options.format) json["format"] = to_string(*options.format);
-  json["samples"] = options.samples;
+  json["samples"] = options.samples.value_or(0);
   json["seed"] = options.seed;
   json["symmetrize"] = options.symmetrize;
   json["conserve_energy"] = options.conserve_energy;

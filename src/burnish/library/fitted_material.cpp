@@ -156,7 +156,7 @@ FittedMaterial fit_material(const LibraryEntry& entry, const std::string& key, c
 std::uint64_t fit_memory(const FitOptions& options, bool isotropic) {
   constexpr std::uint64_t kMinMemory = std::uint64_t{48} << 20, kAnisotropicPairs = std::uint64_t{208} << 20,
                           kForEachByte = 6600, kUsual = 16384, kMaxAutoBytes = 65536;
-  const FitForm form = options.form.value_or(default_budget(isotropic));
+  const FitForm form = options.form.value_or(DefaultBudget{});
   if (std::holds_alternative<OneLobe>(form) || std::holds_alternative<FromBook>(form)) return kMinMemory;
   const auto* budget = std::get_if<Budget>(&form);
   return kMinMemory + (isotropic ? 0 : kAnisotropicPairs) +

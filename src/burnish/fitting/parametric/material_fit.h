@@ -47,7 +47,7 @@ struct MaterialFit {
   int starts = 0;      ///< minimizations run
   ErrorFigures figures;
   Unexplained beyond;
-  /// The fit of the source's function by default_budget, scored alike.
+  /// The fit of the source's function by DefaultBudget, scored alike.
   std::optional<FactoredBeside> factored;
   double seconds = 0;  ///< of the material's fit alone, by the wall clock
 
