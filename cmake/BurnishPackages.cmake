@@ -34,7 +34,7 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "measured reflectance as a few small posit
 set(CPACK_PACKAGE_DESCRIPTION
 "Turns any BRDF, measured, scattered or analytic, into a few small positive
 textures and a short shader, with a known error. Reads MERL, RGL, Cornell,
-MBSDF, Zemax, Klems, ASTM E1392, OpenMATERIAL, ALTA, Speos, UTIA, tensor trees
+MBSDF, Zemax, Klems, ASTM E1392, OpenMATERIAL, ALTA, Speos, FRED, UTIA, tensor trees
 and CSV files as they are. Also evaluates glossy highlights without pow, from
 SIMD code to a hardware block.
 .

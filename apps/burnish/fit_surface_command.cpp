@@ -190,6 +190,8 @@ void fit_surface(const FitSurfaceArguments& arguments, FitCrew* crew) {
   options.checkpoint = checkpoint_of(arguments);
   Capture capture(arguments.capture, arguments.pictures);
   check_inputs_stay(arguments, capture);
+  if (!capture.disagreement().empty())
+    fmt::print(stderr, "burnish: {}: {}\n", arguments.capture, capture.disagreement());
   if (!arguments.resume) fs::remove(options.checkpoint);
   if (!arguments.picture.empty() && capture.form().own_directions)
     throw Error::in_file(arguments.capture, "pictures, for --picture", "samples of texels");

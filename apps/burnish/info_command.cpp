@@ -14,6 +14,7 @@
 #include <burnish/error.h>
 #include <burnish/file.h>
 #include <burnish/io/source_report.h>
+#include <burnish/io/text_reader.h>
 #include <burnish/math/angles.h>
 #include <burnish/shaders/cost_json.h>
 
@@ -43,7 +44,7 @@ void print_line(std::string_view name, const std::string& text) {
   fmt::print("{:<13}{}\n", name, text);
 }
 
-void print_findings(const Source& source) {
+void print_findings(const Source& source, const std::vector<std::string>& warnings) {
   const Findings& findings = source.findings;
   print_line("name", source.name);
   print_line("format", findings.format);
@@ -55,6 +56,10 @@ void print_findings(const Source& source) {
                                                                   findings.lambda_nm.back())));
   print_line("material", source.ref().isotropic() ? "isotropic" : "anisotropic");
   for (const std::string& convention : findings.conventions) print_line("convention", convention);
+  for (const std::string& warning : warnings) print_line("warning", warning);
+  if (!findings.left_out.empty())
+    print_line("left out", fmt::format("{}", fmt::join(findings.left_out, ", ")));
+  for (const std::string& comment : findings.comments) print_line("comment", std::string(trimmed(comment)));
   if (findings.sample_count > 0)
     print_line("samples", fmt::format("{}, {} of them holes", findings.sample_count, findings.hole_count));
   print_line("coverage", fmt::format("theta_i {:.1f} to {:.1f}, theta_o {:.1f} to {:.1f} degrees",
@@ -95,8 +100,8 @@ void print_factors(const FactoredBrdf& model) {
 }
 
 void print_text(const SourceReport& report) {
-  const auto& [source, albedos, reciprocity, model, mirror_asymmetry] = report;
-  print_findings(source);
+  const auto& [source, albedos, reciprocity, model, mirror_asymmetry, warnings] = report;
+  print_findings(source, warnings);
   for (const auto& [theta_i, phi_i, albedo] : albedos)
     print_line("albedo",
                fmt::format("{} at theta_i = {:.0f}{} degrees{}{}", fmt::join(shown(albedo.albedo), " "),
@@ -167,7 +172,7 @@ void add_info_command(CLI::App& app) {
         return;
       }
     }
-    const Source source = arguments->open();
+    const Source source = open_source(arguments->spec, arguments->options);  // warnings stand in the report
     if (*target == "nodes") {
       const NodesInfo nodes = nodes_info(source);
       fmt::print("{}", *as_json ? nodes_json(nodes) + "\n" : nodes_text(nodes));

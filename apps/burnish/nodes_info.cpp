@@ -9,6 +9,7 @@
 
 #include <burnish/error.h>
 #include <burnish/math/angles.h>
+#include <burnish/math/written_degrees.h>
 #include <burnish/metrics/figures_json.h>
 
 namespace burnish::cli {
@@ -19,7 +20,7 @@ constexpr std::size_t kListedIncidences = 24;
 
 std::vector<double> incidences_deg(const MeasuredNodes& nodes) {
   std::vector<double> list;
-  for (const double theta_i : nodes.theta_i) list.push_back(degrees(theta_i));
+  for (const double theta_i : nodes.theta_i) list.push_back(written_degrees(theta_i));
   return list;
 }
 

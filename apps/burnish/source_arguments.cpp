@@ -1,5 +1,9 @@
 #include "source_arguments.h"
 
+#include <cstdio>
+
+#include <fmt/format.h>
+
 #include <burnish/error.h>
 #include <burnish/io/illuminant.h>
 
@@ -17,6 +21,13 @@ void check_illuminant(const std::string& spec) {
 }
 
 }  // namespace
+
+Source SourceArguments::open() const {
+  Source source = open_source(spec, options);
+  for (const std::string& warning : source.findings.warnings)
+    fmt::print(stderr, "burnish: {}: warning: {}\n", spec, warning);
+  return source;
+}
 
 void add_source_arguments(CLI::App& verb, SourceArguments& arguments) {
   verb.add_option("BRDF", arguments.spec,
@@ -38,7 +49,14 @@ void add_illuminant(CLI::App& verb, OpenOptions& options) {
 void add_open_options(CLI::App& verb, OpenOptions& options) {
   verb.add_flag("--spectral", options.keep_spectral, "keep one channel a wavelength");
   add_illuminant(verb, options);
-  verb.add_flag("--has-cosine", options.has_cosine, "CSV values are f_r cos(theta_i)");
+  auto* cosine =
+      verb.add_flag("--has-cosine", options.has_cosine, "CSV and ASTM values are f_r cos(theta_i)");
+  auto* cosine_o =
+      verb.add_flag("--has-cosine-o", options.has_cosine_o, "CSV and ASTM values are f_r cos(theta_o)");
+  verb.add_flag("--brf", options.brf, "CSV and ASTM values are reflectance factors: divide by pi")
+      ->excludes(cosine)
+      ->excludes(cosine_o);
+  cosine_o->excludes(cosine);
   verb.add_flag("!--keep-negatives", options.clamp_negatives, "leave values below zero as they are");
   verb.add_flag("--back", options.back_side, "Klems and tensor trees: the back side's reflection");
 }

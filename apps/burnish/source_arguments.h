@@ -13,7 +13,8 @@ struct SourceArguments {
   std::string spec;
   OpenOptions options;
 
-  Source open() const { return open_source(spec, options); }
+  /// Says on the standard error output what the reader warns of.
+  Source open() const;
 };
 
 /// Adds the positional BRDF and the options of OpenOptions to a verb. `arguments` must outlive the parse.

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <burnish/math/angles.h>
+#include <burnish/math/written_degrees.h>
 
 namespace burnish::cli {
 
@@ -72,7 +73,7 @@ std::string surface_info_json(const SurfaceModel& surface, const std::string& na
                  {{"mean", albedo.mean},
                   {"largest", albedo.largest},
                   {"texel", {albedo.x, albedo.y}},
-                  {"theta_i_deg", degrees(albedo.theta_i)},
+                  {"theta_i_deg", written_degrees(albedo.theta_i)},
                   {"texels_above_one", albedo.above_one}}},
                 {"notes", Object::parse(surface.notes)}}
       .dump(2, ' ', false, kReplace);

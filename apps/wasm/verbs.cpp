@@ -108,12 +108,16 @@ Json summary_of(const Opened& opened) {
 
 Reply open(Request request) {
   const Json& a = request.arguments;
-  const Options given("open", a, {"spectral", "illuminant", "hasCosine", "clampNegatives", "back", "entry"},
-                      {"verb", "id", "spec", "name", "decoderAt"});
+  const Options given(
+      "open", a,
+      {"spectral", "illuminant", "hasCosine", "hasCosineO", "brf", "clampNegatives", "back", "entry"},
+      {"verb", "id", "spec", "name", "decoderAt"});
   OpenOptions options;
   given.read("spectral", options.keep_spectral);
   given.read("illuminant", options.illuminant);
   given.read("hasCosine", options.has_cosine);
+  given.read("hasCosineO", options.has_cosine_o);
+  given.read("brf", options.brf);
   given.read("clampNegatives", options.clamp_negatives);
   given.read("back", options.back_side);
   given.text("entry");  // read by open_bytes: a text here

@@ -25,7 +25,7 @@ Batch* batch(const Materials& materials, const std::filesystem::path& folder,
              const std::vector<std::string>& to, bool exact, bool mips, bool compressed, bool compact,
              bool resume, int threads, std::uint64_t memory, const std::string& studio, bool keep_spectral,
              const std::string& illuminant, bool has_cosine, bool clamp_negatives, bool back_side,
-             const nb::kwargs& how) {
+             bool has_cosine_o, bool brf, const nb::kwargs& how) {
   if (to.empty() && (exact || mips || !compressed))
     throw Error("batch: expected exports, to=, with exact, mips and compressed=False, found none");
   open_illuminant(illuminant);  // also where no spectrum will need it
@@ -36,7 +36,7 @@ Batch* batch(const Materials& materials, const std::filesystem::path& folder,
   options.memory = memory;
   options.resume = resume;
   options.studio = studio;
-  options.open = {keep_spectral, illuminant, has_cosine, clamp_negatives, back_side};
+  options.open = {keep_spectral, illuminant, has_cosine, clamp_negatives, back_side, has_cosine_o, brf};
   options.exports.exact = exact;
   options.exports.mips = mips;
   options.exports.compressed = compressed;
@@ -78,14 +78,15 @@ void bind_batch(nb::module_& m) {
       nb::arg("compressed") = true, nb::arg("compact") = true, nb::arg("resume") = false,
       nb::arg("threads") = 0, nb::arg("memory") = 0, nb::arg("studio") = BatchOptions().studio,
       nb::arg("keep_spectral") = false, nb::arg("illuminant") = "E", nb::arg("has_cosine") = false,
-      nb::arg("clamp_negatives") = true, nb::arg("back_side") = false, nb::arg("how"),
-      nb::rv_policy::take_ownership,
+      nb::arg("clamp_negatives") = true, nb::arg("back_side") = false, nb::arg("has_cosine_o") = false,
+      nb::arg("brf") = false, nb::arg("how"), nb::rv_policy::take_ownership,
       "Fits a library as `burnish batch` does, and yields a dictionary a material as they are done: name,\n"
       "argument, files, bytes, fetches, psnr, ..., or reason where it failed; earlier says that it was done\n"
       "before. Table and page are made after the last one; a batch that is left goes on with resume=True.\n\n"
       "materials: a folder, a list's name, or arguments of open_source, which takes keep_spectral, "
       "illuminant,\n"
-      "has_cosine, clamp_negatives and back_side. to: exports, as export takes them, with exact, mips and\n"
+      "has_cosine, clamp_negatives, back_side, has_cosine_o and brf. to: exports, as export takes them, with "
+      "exact, mips and\n"
       "compressed. compact: .burnish, else OpenEXR with notes. memory: bytes to take at most. All other "
       "options\n"
       "are those of fit.");

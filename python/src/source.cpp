@@ -210,23 +210,26 @@ void bind_source(nb::module_& m) {
   m.def(
       "open_source",
       [](const nb::object& spec, bool keep_spectral, const std::string& illuminant, bool has_cosine,
-         bool clamp_negatives, bool back_side) {
+         bool clamp_negatives, bool back_side, bool has_cosine_o, bool brf) {
         const auto path = nb::cast<std::string>(nb::module_::import_("os").attr("fspath")(spec));
         const nb::gil_scoped_release released;
-        return open(path, {keep_spectral, illuminant, has_cosine, clamp_negatives, back_side});
+        return open(path,
+                    {keep_spectral, illuminant, has_cosine, clamp_negatives, back_side, has_cosine_o, brf});
       },
       nb::arg("spec"), nb::kw_only(), nb::arg("keep_spectral") = false, nb::arg("illuminant") = "E",
       nb::arg("has_cosine") = false, nb::arg("clamp_negatives") = true, nb::arg("back_side") = false,
-      nb::rv_policy::take_ownership,
+      nb::arg("has_cosine_o") = false, nb::arg("brf") = false, nb::rv_policy::take_ownership,
       nb::sig(
           "def open_source(spec: str | os.PathLike, *, keep_spectral: bool = False, illuminant: str = 'E', "
-          "has_cosine: bool = False, clamp_negatives: bool = True, back_side: bool = False) -> Source"),
+          "has_cosine: bool = False, clamp_negatives: bool = True, back_side: bool = False, "
+          "has_cosine_o: bool = False, brf: bool = False) -> Source"),
       "Opens a file of any known format (found by content), a neural encoding \"nbrdf:FILE#NAME\" or\n"
       "\"np:FOLDER#NAME\", or an analytic BRDF such as \"ggx:alpha_x=0.1,alpha_y=0.3\".\n\n"
       "keep_spectral: one channel a wavelength instead of linear Rec. 709; illuminant: \"E\", \"D50\", "
       "\"D65\", \"A\" or a file, "
       "the\n"
-      "light under which spectra become RGB; has_cosine: CSV values are f_r cos(theta_i); clamp_negatives: "
+      "light under which spectra become RGB; has_cosine: CSV values are f_r cos(theta_i), has_cosine_o: f_r\n"
+      "cos(theta_o), brf: pi f_r; clamp_negatives: "
       "set\n"
       "interpolated values below zero to zero; back_side: Klems, the back's reflection. A burnish model is\n"
       "returned as a Model.");

@@ -3,7 +3,7 @@
 
 Takes the files of the folders (seeds that build/fuzz/tests/fuzz/make_seeds writes, real measurements) and some that
 the program makes, damages them one by one in one of several ways and gives each to a verb that reads such files. The program has to end with 0 or 1,
-with 1 to say one line (which names the file, unless a fit failed) and to leave nothing behind, with 0 to have written what it was to write, all
+with 1 to say one line besides warnings (which names the file, unless a fit failed) and to leave nothing behind, with 0 to have written what it was to write, all
 below 1 GB and within 5 s of the processor. Whatever does not is told, kept in --keep, and the end is 1.
 """
 import argparse
@@ -167,6 +167,11 @@ def fault_of(verb, outcome, path, written):
     if most > MOST_BYTES:
         return f"took {most >> 20} MiB"
     longest = LONGEST_ERROR if status == 1 else LONGEST_LINE
+    # warnings of a reader come before, a line each
+    lines = said.splitlines(keepends=True)
+    if any(": warning: " in line and len(line) > LONGEST_LINE + len(path) for line in lines):
+        return "warned at length"
+    said = "".join(line for line in lines if ": warning: " not in line)
     if said.count("\n") > 1 or any(len(line) > longest for line in said.splitlines()):
         return "said more than a line"
     if status == 1 and not said.startswith("burnish: "):

@@ -47,6 +47,8 @@ int fuzz(const std::uint8_t* data, std::size_t size, const Parse& parse) {
   OpenOptions options;
   options.keep_spectral = size % 2 == 0;
   options.has_cosine = size % 5 == 0;
+  options.has_cosine_o = size % 5 == 1;
+  options.brf = size % 5 == 2;
   options.back_side = size % 7 == 0;
   options.illuminant = size % 11 == 0 ? "D65" : "E";
   try {

@@ -37,6 +37,7 @@ int main(int argc, char** argv) {
   write("book", "book", burnish::format_book(burnish::random_book()));
   write("capture", "capture", burnish::seeds::kCapture);
   write("csv", "texels", burnish::seeds::kTexelCsv);
+  write("csv", "gonio", burnish::seeds::kGonioCsv);
   write("btf", "btf", burnish::btf_bytes(burnish::btf_content()));
   write("utia", "utia", burnish::seeds::kUtia);
   write("np", "np", burnish::seeds::kNpCode);

@@ -131,14 +131,19 @@ async function sameAs(source, at) {
 }
 // Scattered samples in the formats that are read alone, their cosines above the threshold of figures.
 function writeScattered() {
-  const alta = ["#SAMPLE \"a\"", "#DIM 3 1", "#VS 1", "#PARAM_IN ISOTROPIC_TL_TV_PROJ_DPHI", "#PARAM_OUT INV_STERADIAN"], cornell = ["# a", "# a", "3", "450 550 650"];
-  for (const thetaI of [0.2, 0.5, 0.9])
+  const alta = ["#SAMPLE \"a\"", "#DIM 3 1", "#VS 1", "#PARAM_IN ISOTROPIC_TL_TV_PROJ_DPHI", "#PARAM_OUT INV_STERADIAN"], cornell = ["# a", "# a", "3", "450 550 650"],
+    fred = ["type bsdf_data", "format angles=rad bsdf=value scale=1"];
+  for (const thetaI of [0.2, 0.5, 0.9]) {
+    fred.push(`${thetaI} 0`);
     for (const thetaO of [0.1, 0.4, 0.7, 1])
       for (const phi of [0.3, 1.2, 2.1, 3]) {
         const cosine = Math.cos(thetaI) * Math.cos(thetaO) - Math.sin(thetaI) * Math.sin(thetaO) * Math.cos(phi), f = 0.05 + 0.4 * Math.max(cosine, 0) ** 9;
         alta.push([thetaI, thetaO * Math.cos(phi), thetaO * Math.sin(phi), f, 0.01].join(" "));
         cornell.push([thetaI, 0, thetaO, phi, f, 0.8 * f, 0.5 * f].join(" "));
+        fred.push([thetaO, phi + Math.PI, f].join(" "));
       }
+  }
+  fs.writeFileSync(file("a.fred"), `${fred.join("\n")}\n`);
   fs.writeFileSync(file("a.alta"), `${alta.join("\n")}\n`);
   fs.writeFileSync(file("a.cornell"), `${cornell.join("\n")}\n`);
 }
@@ -180,7 +185,7 @@ run("fit", spec, "--method", "dgf", "--samples", "5000", "-o", file("dgf.json"))
 writeScattered();
 const seeds = fs.readdirSync(folder).filter((name) => name.startsWith("seed.") && !["seed.book", "seed.surface"].includes(name));
 const kFormats = {"MERL": "a.binary", "UTIA": "a.bin", "RGL": "a.bsdf", "MBSDF": "a.mbsdf", "Zemax": "z.bsdf", "tensor tree": "tree.xml", "Klems": "seed.klems",
-                  "Speos": "seed.speos", "OpenMATERIAL 3D": "a.xompt", "ALTA": "a.alta", "ASTM E1392": "a.astm", "CSV": "a.csv", "Cornell": "a.cornell",
+                  "Speos": "seed.speos", "OpenMATERIAL 3D": "a.xompt", "ALTA": "a.alta", "ASTM E1392": "a.astm", "CSV": "a.csv", "FRED": "a.fred", "Cornell": "a.cornell",
                   "model, OpenEXR": "a.exr", "model, compact": "a.burnish", "baseline": "seed.baseline", "network weights": "seed.neural"};
 const kMoreFormats = ["book of a library", "surface", "Neural Processes codes"];  // tried apart
 const listed = run("help", "formats").split("\n").filter((line) => / (both|read) /.test(line)).map((line) => line.split(/ {2,}/)[0]);

@@ -27,6 +27,8 @@ export interface OpenOptions extends LongCall {
   illuminant?: "E" | "D50" | "D65" | "A";
   /** CSV values are f_r cos(theta_i), which is divided out. */
   hasCosine?: boolean;
+  hasCosineO?: boolean;
+  brf?: boolean;
   /** By default true: interpolated values below zero become zero. */
   clampNegatives?: boolean;
   /** Klems and tensor trees: the back side. */

@@ -79,6 +79,8 @@ function draw() {
     return;
   }
   const notes = info.conventions?.filter((text) => !text.startsWith("notes of the fit")) ?? [];
+  notes.push(...(info.warnings ?? []).map((text) => `Warning: ${text}`));
+  if (info.left_out?.length) notes.push(`Left out: ${info.left_out.join(", ")}.`);
   place.replaceChildren(
     make("dl", {}, ...facts(info, entry).flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)])),
     albedos(info) ?? "", notes.length ? make("ul", {"aria-label": "Conventions"}, ...notes.map((text) => make("li", {}, text))) : "");

@@ -185,6 +185,10 @@ Baseline parse_baseline(const FileBytes& file) {
       throw Error(
           "expected a measurement, baseline or model, found a material of glTF, "
           "which only programs that read glTF take");
+    if (json.contains("metadata") && !json.contains("kind"))
+      throw Error(
+          "expected a measurement, baseline or model, found an OpenMATERIAL file without the lookupTable of "
+          "a BRDF");
     if (!json.contains("kind"))
       throw Error("expected the JSON of a baseline, with its 'kind', found another one");
     Baseline baseline{

@@ -115,5 +115,13 @@ TEST(EvaluationCost, OfAFactoredBrdfGrowsByEveryUse) {
   EXPECT_EQ(evaluation_cost(volume), (EvaluationCost{8 * 3, 8 * 3 + 3}));
 }
 
+TEST(BaselineFile, KnowsAnOpenMaterialFileThatHasNoTable) {
+  EXPECT_THAT(
+      error_of([] {
+        parse_baseline(memory_file(R"({"metadata":{"name":"glass","objectType":"material"},"optical":{}})"));
+      }),
+      testing::HasSubstr("an OpenMATERIAL file without the lookupTable of a BRDF"));
+}
+
 }  // namespace
 }  // namespace burnish

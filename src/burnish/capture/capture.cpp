@@ -157,6 +157,9 @@ void Capture::open_folder() {
 
   // what is there and has the right size
   std::vector<std::string> why(form_.pictures.size());
+  std::vector<std::uint8_t> disagrees(why.size());
+  const StatedTransfer meant =
+      form_.transfer == Transfer::srgb ? StatedTransfer::srgb : StatedTransfer::linear;
   for_each_chunk(why.size(), 1, [&](std::size_t p, std::size_t, std::size_t) {
     try {
       for (const std::string& name : {form_.pictures[p].file, form_.pictures[p].mask}) {
@@ -167,10 +170,18 @@ void Capture::open_folder() {
                                fmt::format("{} x {} pixels", form_.width, form_.height),
                                fmt::format("{} x {}", size.width, size.height));
       }
+      const StatedTransfer stated = stated_transfer(path_ / form_.pictures[p].file);
+      disagrees[p] = stated != StatedTransfer::none && stated != meant;
     } catch (const Error& error) {
       why[p] = error.what();
     }
   });
+  if (const auto first = std::ranges::find(disagrees, 1); first != disagrees.end())
+    disagreement_ = fmt::format(
+        "a chunk of {} of {} pictures ({} first) says that numbers are not {}: taken as \"transfer\" says",
+        std::ranges::count(disagrees, 1), disagrees.size(),
+        form_.pictures[static_cast<std::size_t>(first - disagrees.begin())].file,
+        meant == StatedTransfer::srgb ? "sRGB" : "linear");
   std::vector<LeftOut> damaged;
   for (std::size_t p = 0; p < why.size(); ++p)
     if (!why[p].empty()) damaged.push_back({form_.pictures[p].file, why[p]});

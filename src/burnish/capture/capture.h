@@ -152,6 +152,8 @@ class Capture {
     std::string file, why;
   };
   const std::vector<LeftOut>& left_out() const noexcept { return left_out_; }
+  /// One sentence where chunks of pictures say otherwise than `transfer` how numbers are meant; empty elsewhere.
+  const std::string& disagreement() const noexcept { return disagreement_; }
   /// The same number for the same capture: the bytes of capture.json, size and last write time of every picture, mask
   /// and the normals, and what is left out; of a BTF its head, size and last write time; of samples all bytes.
   std::uint64_t fingerprint() const noexcept { return fingerprint_; }
@@ -184,6 +186,7 @@ class Capture {
   std::vector<std::size_t> btf_numbers_;     ///< of the form's pictures
   std::shared_ptr<const TexelTable> table_;  ///< of samples, else null
   std::vector<LeftOut> left_out_;
+  std::string disagreement_;
   std::uint64_t fingerprint_ = 0;
 };
 

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <png.h>
 
 #include <burnish/capture/capture.h>
 #include <burnish/capture/picture_rows.h>
@@ -187,6 +188,65 @@ TEST(Capture, ReadsPngOfEightBits) {
     const CaptureRows rows = Capture(folder.folder.path).read(1, 1).rows;
     EXPECT_NEAR(rows.values[0], transfer == Transfer::linear ? 188 / 255.0 : 0.5029, 1e-4);
   }
+}
+
+std::string big_endian(std::uint32_t value) {
+  std::string bytes;
+  for (const int shift : {24, 16, 8, 0}) bytes += static_cast<char>(value >> shift & 0xff);
+  return bytes;
+}
+
+std::string png_chunk(const std::string& type, const std::string& content) {
+  std::uint32_t sum = 0xffffffff;
+  for (const char c : type + content) {
+    sum ^= static_cast<unsigned char>(c);
+    for (int bit = 0; bit < 8; ++bit) sum = sum >> 1 ^ (sum & 1 ? 0xedb88320 : 0);
+  }
+  return big_endian(static_cast<std::uint32_t>(content.size())) + type + content + big_endian(~sum);
+}
+
+/// One grey of all pixels in 8 or 16 bits, with these chunks.
+std::string grey_png(double grey, bool wide, const std::string& chunks) {
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = kWidth;
+  image.height = kHeight;
+  image.format = wide ? PNG_FORMAT_LINEAR_RGB : PNG_FORMAT_RGB;
+  constexpr std::size_t kCount = 3 * kWidth * kHeight;
+  const std::vector<std::uint16_t> words(kCount, static_cast<std::uint16_t>(std::lround(65535 * grey)));
+  const std::vector<std::uint8_t> bytes(kCount, static_cast<std::uint8_t>(std::lround(255 * grey)));
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
+  std::string png(size, '\0');
+  EXPECT_TRUE(png_image_write_to_memory(&image, png.data(), &size, 0,
+                                        wide ? static_cast<const void*>(words.data()) : bytes.data(), 0,
+                                        nullptr));
+  png.resize(size);
+  // the header, these chunks, then the data, without chunks of the writer's
+  constexpr std::size_t kHeader = 8 + 25;
+  return png.substr(0, kHeader) + chunks + png.substr(png.find("IDAT") - 4);
+}
+
+// "transfer" alone says how numbers are meant; what a chunk says besides is told.
+TEST(Capture, TakesNumbersOfPngAsTransferSaysWhateverTheirChunksSay) {
+  const std::string none,
+      linear = png_chunk("gAMA", big_endian(100'000)), srgb = png_chunk("sRGB", std::string(1, '\0')),
+      gamma = png_chunk("gAMA", big_endian(45'455)), other = png_chunk("gAMA", big_endian(55'556));
+  for (const bool wide : {false, true})
+    for (const Transfer transfer : {Transfer::linear, Transfer::srgb})
+      for (const std::string& chunks : {none, linear, srgb, gamma, other, srgb + gamma}) {
+        Folder folder("chunks");
+        write(folder.file("0.exr"), grey_png(0.6, wide, chunks));
+        folder.form.transfer = transfer;
+        folder.save();
+        const Capture capture(folder.folder.path);
+        EXPECT_TRUE(capture.left_out().empty());
+        EXPECT_NEAR(capture.read(1, 1).rows.values[0], transfer == Transfer::linear ? 0.6 : 0.3185, 1e-4);
+        const bool agrees = chunks == none || (chunks == linear) == (transfer == Transfer::linear);
+        if (chunks == other || !agrees)
+          EXPECT_THAT(capture.disagreement(), HasSubstr("a chunk of 1 of 5 pictures (0.exr first)"));
+        else
+          EXPECT_EQ(capture.disagreement(), "");
+      }
 }
 
 // Missing, of another size, no picture, cut in its header: left out and said so.

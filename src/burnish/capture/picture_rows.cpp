@@ -19,6 +19,7 @@
 #include <burnish/capture/picture_rows.h>
 #include <burnish/error.h>
 #include <burnish/factors/model_file.h>
+#include <burnish/file.h>
 #include <burnish/math/srgb.h>
 
 namespace burnish {
@@ -130,13 +131,53 @@ Image read_exr_rows(const std::filesystem::path& path, int first, int count) {
   });
 }
 
+constexpr std::size_t kPngHead = 8, kChunkFrame = 12;  // the signature; a chunk's length, type and sum
+
+std::uint32_t big_endian(std::string_view four) noexcept {
+  std::uint32_t value = 0;
+  for (std::size_t k = 0; k < 4; ++k) value = value << 8 | static_cast<unsigned char>(four[k]);
+  return value;
+}
+
+/// Calls visit(type, content, whole chunk) for each chunk that is all there, up to the first of the picture's data;
+/// returns where that begins, or what is no whole chunk.
+template <class Visit>
+std::size_t visit_head_chunks(std::string_view bytes, const Visit& visit) {
+  std::size_t at = std::min(kPngHead, bytes.size());
+  while (bytes.size() - at >= kChunkFrame) {
+    const std::size_t length = big_endian(bytes.substr(at, 4));
+    const std::string_view type = bytes.substr(at + 4, 4);
+    if (type == "IDAT" || type == "IEND" || length > bytes.size() - at - kChunkFrame) break;
+    visit(type, bytes.substr(at + 8, length), bytes.substr(at, length + kChunkFrame));
+    at += length + kChunkFrame;
+  }
+  return at;
+}
+
+/// The file without chunks by which libpng would change its numbers.
+std::string without_colour_chunks(std::string_view bytes) {
+  std::string kept(bytes.substr(0, std::min(kPngHead, bytes.size())));
+  const std::size_t data =
+      visit_head_chunks(bytes, [&](std::string_view type, std::string_view, std::string_view chunk) {
+        for (const std::string_view colour : {"gAMA", "sRGB", "cHRM", "iCCP", "cICP"})
+          if (type == colour) return;
+        kept += chunk;
+      });
+  kept += bytes.substr(data);
+  return kept;
+}
+
 /// A PNG being read.
 struct PngFile {
   png_image image{};
+  std::string bytes;  // which libpng reads from
 
-  explicit PngFile(const std::filesystem::path& path) {
+  /// To read its pixels, or its head alone.
+  PngFile(const std::filesystem::path& path, bool pixels) {
     image.version = PNG_IMAGE_VERSION;
-    if (!png_image_begin_read_from_file(&image, path.string().c_str()))
+    if (pixels) bytes = without_colour_chunks(read_file(path).text());
+    if (pixels ? !png_image_begin_read_from_memory(&image, bytes.data(), bytes.size())
+               : !png_image_begin_read_from_file(&image, path.string().c_str()))
       fail(path, "a PNG picture", image.message);
     if (image.width > static_cast<unsigned>(kMaxPictureSide) ||
         image.height > static_cast<unsigned>(kMaxPictureSide)) {
@@ -151,7 +192,7 @@ struct PngFile {
 };
 
 Image read_png_rows(const std::filesystem::path& path, int first, int count, bool srgb) {
-  PngFile png(path);
+  PngFile png(path, true);
   const int width = static_cast<int>(png.image.width), height = static_cast<int>(png.image.height);
   if (first < 0 || count < 1 || first + count > height)
     fail(path, fmt::format("rows {} to {}", first, first + count), fmt::format("{} rows", height));
@@ -180,7 +221,7 @@ PictureSize picture_size(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path)) fail(path, "a regular file", "none");
   const std::vector<std::byte> head = head_of(path, 16);
   if (is_png(head)) {
-    const PngFile png(path);
+    const PngFile png(path, false);
     return {static_cast<int>(png.image.width), static_cast<int>(png.image.height)};
   }
   if (!looks_like_exr(head)) fail(path, "an OpenEXR or PNG picture", "other bytes");
@@ -188,6 +229,24 @@ PictureSize picture_size(const std::filesystem::path& path) {
     const Imath::Box2i window = file.header().dataWindow();
     return PictureSize{window.max.x - window.min.x + 1, window.max.y - window.min.y + 1};
   });
+}
+
+StatedTransfer stated_transfer(const std::filesystem::path& path) {
+  const std::vector<std::byte> head = head_of(path, kMaxHead);
+  if (!is_png(head)) return StatedTransfer::none;
+  StatedTransfer stated = StatedTransfer::none;
+  const std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());
+  visit_head_chunks(text, [&](std::string_view type, std::string_view content, std::string_view) {
+    if (type == "sRGB") stated = StatedTransfer::srgb;
+    if (type != "gAMA" || content.size() != 4 || stated == StatedTransfer::srgb) return;
+    // in 1/100000: 1 is linear, 1 / 2.2 what sRGB is written as
+    const std::uint32_t gamma = big_endian(content);
+    const auto near = [&](std::uint32_t value) { return gamma + 1000 > value && gamma < value + 1000; };
+    stated = near(100'000)  ? StatedTransfer::linear
+             : near(45'455) ? StatedTransfer::srgb
+                            : StatedTransfer::other;
+  });
+  return stated;
 }
 
 Image read_picture_rows(const std::filesystem::path& path, int first, int count, bool srgb) {

@@ -726,8 +726,8 @@ FitTarget default_target(const Source& source, const FitOptions& options) {
                       (usual && !usual->scattered.cross_validate);
   // A function of scattered samples knows less than what is estimated from the samples themselves.
   const Samples* samples = source.samples();
-  const bool measured = table ? table->isotropic() && (given || chosen)
-                              : samples && samples->isotropic && chosen;
+  const bool measured =
+      table ? table->isotropic() && (given || chosen) : samples && samples->isotropic && chosen;
   return measured && options.symmetrize ? FitTarget::nodes : FitTarget::function;
 }
 

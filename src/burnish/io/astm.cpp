@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include <burnish/io/astm.h>
+#include <burnish/io/sample_checks.h>
 #include <burnish/io/text_reader.h>
+#include <burnish/io/value_kind.h>
 #include <burnish/math/angles.h>
 
 namespace burnish {
@@ -42,7 +44,16 @@ struct AstmColumns {
   std::array<std::size_t, 4> angle{};  // of kAngles
   std::vector<std::size_t> values;
   std::vector<double> lambda_nm;  // of the values, or empty
+  std::optional<ValueKind> kind;  // what the first name says
 };
+
+/// What a name such as "CCBRDF" or "Red BRDF" says of the values.
+std::optional<ValueKind> kind_of_column(std::string_view name) {
+  const std::string lower = lower_case(name);
+  if (const auto kind = kind_of_name(lower)) return kind;
+  const std::size_t blank = lower.find_last_of(" _");
+  return blank == std::string::npos ? std::nullopt : kind_of_name(lower.substr(blank + 1));
+}
 
 /// Sorts the columns into the four angles and the values.
 AstmColumns sort_columns(const TextReader& reader, const std::vector<std::string>& names,
@@ -57,6 +68,7 @@ AstmColumns sort_columns(const TextReader& reader, const std::vector<std::string
   for (std::size_t at = 0; at < names.size(); ++at)
     if (std::find(kAngles.begin(), kAngles.end(), names[at]) == kAngles.end()) {
       columns.values.push_back(at);
+      if (!columns.kind) columns.kind = kind_of_column(names[at]);
       if (const auto lambda = parse_number(names[at])) columns.lambda_nm.push_back(*lambda);
     }
   const std::size_t channels = columns.values.size();
@@ -72,7 +84,7 @@ AstmColumns sort_columns(const TextReader& reader, const std::vector<std::string
 bool looks_like_astm(std::string_view text) noexcept {
   text = text.substr(0, 65536);
   while (!text.empty()) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
     if (is_vars_line(text.substr(0, end))) return true;
     text.remove_prefix(std::min(end + 1, text.size()));
   }
@@ -105,9 +117,15 @@ SampleFile parse_astm(const FileBytes& file, const OpenOptions& options) {
 
   const AstmColumns columns = sort_columns(reader, names, vars_line);
   findings.lambda_nm = columns.lambda_nm;
+  const auto asked = asked_kind(options);
+  const ValueKind kind = asked ? *asked : columns.kind.value_or(ValueKind::f);
+  findings.conventions.push_back(kind_sentence(
+      kind,
+      asked ? "as asked" : fmt::format("as the name {} says", in_quotes(names[columns.values.front()]))));
 
   Samples& samples = result.samples;
   samples.channels = columns.values.size();
+  std::size_t grazing = 0;
   std::vector<double> row(names.size());
   for (; rows; rows = reader.next_content_line()) {
     for (std::size_t at = 0; at < row.size(); ++at) row[at] = reader.number(names[at]);
@@ -115,15 +133,27 @@ SampleFile parse_astm(const FileBytes& file, const OpenOptions& options) {
     const auto angle = [&](std::size_t k) { return row[columns.angle[k]]; };
     for (const std::size_t k : {0, 2})
       if (!(std::abs(angle(k)) < kHalfPi))
-        reader.fail(fmt::format("{} within (-pi/2, pi/2)", kAngles[k]), fmt::format("{}", angle(k)));
-    samples.pairs.push_back(
-        {spherical_direction(angle(0), angle(1)), spherical_direction(angle(2), angle(3))});
-    for (const std::size_t at : columns.values) samples.values.push_back(row[at]);
+        reader.fail(fmt::format("{} within (-pi/2, pi/2)", kAngles[k]),
+                    fmt::format("{}{}", angle(k), std::abs(angle(k)) > kTwoPi ? ": degrees?" : ""));
+    const DirectionPair pair{spherical_direction(angle(0), angle(1)),
+                             spherical_direction(angle(2), angle(3))};
+    const std::size_t before = samples.values.size();
+    for (const std::size_t at : columns.values) samples.values.push_back(f_of_value(kind, row[at], pair));
+    if (std::isnan(samples.values[before])) {
+      samples.values.resize(before);
+      ++grazing;
+    } else {
+      samples.pairs.push_back(pair);
+    }
   }
+  if (grazing > 0)
+    findings.warnings.push_back(
+        fmt::format("{} rows on the horizon were left out: their cosine cannot be divided out.", grazing));
   samples.isotropic = same_incident_azimuth(samples);
   findings.conventions.push_back(samples.isotropic ? "Taken as isotropic: every sample has the same phi_i."
                                                    : "Taken as anisotropic: phi_i varies.");
   finish_samples(file.name, options, result);
+  check_azimuths(samples, findings);
   return result;
 }
 

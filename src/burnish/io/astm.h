@@ -14,7 +14,7 @@ bool looks_like_astm(std::string_view text) noexcept;
 /// Scattered samples in the text format of ASTM E1392: a header of keys and values up to the line
 /// "VARS theta_i,phi_i,theta_s,phi_s,NAME...", then one row a measurement, angles in radians. One NAME is
 /// grey, three are red, green and blue, numbers are wavelengths in nm. A VARS line that forgets phi_s is
-/// accepted where the rows have the column. The material is anisotropic unless every sample has the same
+/// accepted where the rows have the column. A name may say that values are no f_r (value_kind.h), as CCBRDF does. The material is anisotropic unless every sample has the same
 /// phi_i. Throws Error on anything else. Source: [ASTM 1996].
 SampleFile parse_astm(const FileBytes& file, const OpenOptions& options);
 

@@ -1,3 +1,6 @@
+#include <cmath>
+
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -35,6 +38,22 @@ TEST(Astm, AcceptsAForgottenPhiSWhereTheRowsSettleIt) {
       HasSubstr("phi_s in the VARS line"));
 }
 
+TEST(Astm, TakesTheCosineOutOfCcbrdfAndPiOutOfFactors) {
+  const auto f = [](std::string_view name, const OpenOptions& options = {}) {
+    const std::string text = fmt::format("VARS theta_i,phi_i,theta_s,phi_s,{}\n0.1,0,1,2,0.3\n", name);
+    return parse_astm(memory_file(text), options).samples.values[0];
+  };
+  EXPECT_EQ(f("BRDF"), 0.3);
+  EXPECT_EQ(f("anything"), 0.3);
+  EXPECT_NEAR(f("CCBRDF"), 0.3 / std::cos(1.0), 1e-15);
+  EXPECT_NEAR(f("BRF"), 0.3 / kPi, 1e-15);
+  EXPECT_NEAR(f("BRDF", {.has_cosine_o = true}), 0.3 / std::cos(1.0), 1e-15);
+  EXPECT_NEAR(f("BRDF", {.has_cosine = true}), 0.3 / std::cos(0.1), 1e-15);
+  const auto file = parse_astm(memory_file("VARS theta_i,phi_i,theta_s,phi_s,CCBRDF\n0.1,0,1,2,0.3\n"), {});
+  EXPECT_THAT(file.findings.conventions,
+              Contains(HasSubstr("theta_o was divided out, as the name 'CCBRDF' says")));
+}
+
 TEST(Astm, SaysWhatIsWrong) {
   const auto error = [](std::string_view text) {
     return error_of([&] { parse_astm(memory_file(text), {}); });
@@ -44,6 +63,7 @@ TEST(Astm, SaysWhatIsWrong) {
   EXPECT_THAT(error("VARS theta_i,phi_i,theta_s,phi_s,a,b\n.1 .1 .1 .1 1 1\n"),
               HasSubstr("one, three or one a wavelength"));
   EXPECT_THAT(error("VARS theta_i,phi_i,theta_s,phi_s,a\n.1 .1 2 .1 1\n"), HasSubstr("theta_s within"));
+  EXPECT_THAT(error("VARS theta_i,phi_i,theta_s,phi_s,a\n.1 .1 20 .1 1\n"), HasSubstr("found 20: degrees?"));
   EXPECT_THAT(error("VARS theta_i,phi_i,theta_s,phi_s,a\n.1 .1 .1 .1\n"), HasSubstr("finite number for a"));
   EXPECT_THAT(error("VARS theta_i,phi_i,theta_s,phi_s,a\n"), HasSubstr("at least one measurement"));
 }

@@ -124,6 +124,7 @@ class Converter {
     if (options.cells < 2 || options.cells > 1000)
       throw Error(fmt::format("expected 2 to 1000 cells, found {}", options.cells));
     const Findings& found = source.findings;
+    if (!found.left_out.empty()) lose("{}", fmt::join(found.left_out, ", "));
     if (!found.illuminant.empty()) lose("spectra became linear Rec. 709 ({})", found.illuminant);
   }
 
@@ -273,7 +274,7 @@ class Converter {
     require_grey_or_rgb("Zemax");
     const std::string sample = sample_name();
     const auto* table = std::get_if<AngleTable>(&source_.brdf);
-    if (table && fits_zemax(*table)) return kept(format_zemax(*table, sample));
+    if (table && fits_zemax(*table)) return kept(format_zemax(*table, sample, source_.findings.comments));
     const BrdfRef brdf = brdf_;
     if (brdf.isotropic()) lose_sides(brdf);
     const AngleTable made = tabulate_angles(brdf, zemax_layout(brdf.isotropic()));
@@ -298,14 +299,19 @@ class Converter {
   Converted tensor_tree() {
     require_grey_or_rgb("a tensor tree");
     if (const auto* tree = std::get_if<TensorTree>(&source_.brdf))
-      return kept(format_tensor_tree(*tree, sample_name()));
+      return kept(source_.findings.side.empty()
+                      ? format_tensor_tree(*tree, sample_name())
+                      : format_tensor_tree(*tree, sample_name(), source_.findings.side));
     const Luminance grey{brdf_};
     if (has_colour(brdf_)) lose("colour: its luminance is kept");
     // half the cells along a polar angle, a power of two
     int depth = 1;
     while (depth < 5 && 4 << depth <= options_.cells) ++depth;
     const int along = 1 << depth;
-    const std::string text = format_tensor_tree(tabulate_tree(grey, depth, kTreeTolerance), sample_name());
+    const TensorTree made = tabulate_tree(grey, depth, kTreeTolerance);
+    const std::string& side = source_.findings.side;
+    const std::string text = side.empty() ? format_tensor_tree(made, sample_name())
+                                          : format_tensor_tree(made, sample_name(), side);
     return sampled(fmt::format("{0} x {0} x {0} x {0} cells of Shirley-Chiu squares", along), text, grey);
   }
 

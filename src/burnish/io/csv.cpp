@@ -5,7 +5,10 @@
 #include <fmt/format.h>
 
 #include <burnish/io/csv.h>
+#include <burnish/io/csv_columns.h>
+#include <burnish/io/sample_checks.h>
 #include <burnish/io/text_reader.h>
+#include <burnish/io/value_kind.h>
 #include <burnish/math/angles.h>
 
 namespace burnish {
@@ -14,99 +17,131 @@ namespace {
 
 constexpr std::array<std::string_view, 6> kVectorNames = {"wi_x", "wi_y", "wi_z", "wo_x", "wo_y", "wo_z"};
 constexpr std::array<std::string_view, 3> kTexelNames = {"texel_x", "texel_y", "held_out"};
-constexpr std::array<std::string_view, 4> kAngleNames = {"theta_i", "phi_i", "theta_o", "phi_o"};
+constexpr std::size_t kMaxPreamble = 1 << 16;  // bytes before a header
+constexpr double kLargestOfRadians = 3.2;      // degrees: a hemisphere's angles in radians stay below
 
-std::vector<std::string> split_header(std::string_view line) {
-  std::vector<std::string> names;
-  for (;;) {
-    const std::size_t comma = line.find(',');
-    names.push_back(lower_case(trimmed(line.substr(0, comma))));
-    if (comma == std::string_view::npos) return names;
-    line.remove_prefix(comma + 1);
-  }
+/// What a comment says about the material.
+enum class Tag { none, isotropic, anisotropic };
+
+bool is_comment(std::string_view line) noexcept {
+  return line.starts_with('#') || line.starts_with('%');
 }
 
-/// Where each thing stands in a row.
-struct CsvColumns {
-  std::size_t count = 0;
-  bool vectors = false;
-  std::array<std::size_t, 6> direction{};  // columns of kVectorNames, or of kAngleNames
-  std::array<double, 4> to_radians{};      // factor of each angle
-  std::vector<std::size_t> values;         // column of each channel
-  std::vector<double> lambda_nm;           // wavelength of each channel, or empty
-  std::vector<std::size_t> others;  // column of each that a caller names, `count` where it is not there
+void read_tag(std::string_view comment, Tag& tag) {
+  const std::string remark = lower_case(trimmed(comment.substr(1)));
+  if (remark == "isotropic") tag = Tag::isotropic;
+  if (remark == "anisotropic") tag = Tag::anisotropic;
+}
+
+/// A line that starts with a number can be no header, and ends the search for one.
+bool starts_with_number(std::string_view line) {
+  const std::string_view word = line.substr(0, line.find_first_of(" \t,;"));
+  return parse_number(word).has_value();
+}
+
+/// Whether a row has a cell for each name: a comment may speak of columns that are none.
+bool fits(const CsvHeader& header, std::string_view row) {
+  std::vector<std::string_view> names, cells;
+  split_cells(header.line, header.separator, names);
+  for (const char separator : {';', '\t', ',', ' '}) {
+    split_cells(row, separator, cells);
+    if (cells.size() == names.size()) return true;
+  }
+  return false;
+}
+
+/// What stands before a table's rows.
+struct Preamble {
+  std::optional<CsvHeader> header;
+  std::string remarks;    // lines before it that are no comments, joined
+  bool says_brf = false;  // they speak of reflectance factors
+  Tag tag = Tag::none;
 };
 
-std::size_t position(const std::vector<std::string>& names, std::string_view name) {
-  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-}
-
-/// Columns with those of the directions; the rest is empty.
-CsvColumns find_directions(const TextReader& reader, const std::vector<std::string>& names) {
-  CsvColumns columns;
-  columns.count = names.size();
-  columns.vectors = position(names, kVectorNames[0]) < names.size();
-  const auto need = [&](std::string_view name) {
-    const std::size_t at = position(names, name);
-    if (at == names.size()) reader.fail(fmt::format("a column {}", name), in_quotes(reader.line()));
-    return at;
-  };
-  if (columns.vectors) {
-    for (std::size_t k = 0; k < 6; ++k) columns.direction[k] = need(kVectorNames[k]);
-    return columns;
+/// Moves the reader to the header, or to the line before the rows where a comment is it. A header that is none
+/// wins over a comment that looks like one.
+Preamble read_preamble(TextReader& reader) {
+  Preamble found;
+  const std::size_t size = reader.remaining();
+  TextReader at_comment = reader;
+  while (size - reader.remaining() < kMaxPreamble && reader.next_line()) {
+    const std::string_view line = trimmed(reader.line());
+    if (line.empty()) continue;
+    if (const auto header = header_of(line)) {
+      if (!header->commented) {
+        found.header = header;
+        return found;
+      }
+      found.header = header;
+      at_comment = reader;
+      continue;
+    }
+    if (is_comment(line)) {
+      read_tag(line, found.tag);
+      continue;
+    }
+    if (found.header && starts_with_number(line)) {
+      if (fits(*found.header, line)) break;
+      found.header.reset();
+    }
+    const std::string words = " " + lower_case(line) + " ";
+    found.says_brf = found.says_brf || words.find(" brf") != std::string::npos ||
+                     words.find("reflectance factor") != std::string::npos;
+    if (found.remarks.size() < 200)
+      found.remarks += (found.remarks.empty() ? "" : ", ") + printable(line, 80);
   }
-  for (std::size_t k = 0; k < 4; ++k) {
-    const std::size_t in_radians = position(names, std::string(kAngleNames[k]) + "_rad");
-    const bool is_rad = in_radians < names.size();
-    columns.direction[k] = is_rad ? in_radians : need(kAngleNames[k]);
-    columns.to_radians[k] = is_rad ? 1 : radians(1);
+  if (found.header) reader = at_comment;
+  return found;
+}
+
+/// Reads a table's rows, cell by cell.
+class Rows {
+ public:
+  Rows(TextReader& reader, const CsvColumns& columns, const CsvHeader& header)
+      : reader_(reader), columns_(columns), separator_(header.separator) {
+    split_cells(header.line, header.separator, names_);
   }
-  return columns;
-}
 
-/// Adds those of the values.
-void find_values(const TextReader& reader, const std::vector<std::string>& names, CsvColumns& columns) {
-  // one of: value; r, g and b; value_<nm> for every wavelength
-  const std::size_t size = names.size();
-  if (const std::size_t at = position(names, "value"); at < size) columns.values = {at};
-  const std::array<std::size_t, 3> rgb = {position(names, "r"), position(names, "g"), position(names, "b")};
-  if (columns.values.empty() &&
-      std::all_of(rgb.begin(), rgb.end(), [&](std::size_t at) { return at < size; }))
-    columns.values.assign(rgb.begin(), rgb.end());
-  if (columns.values.empty())
-    for (std::size_t at = 0; at < size; ++at)
-      if (names[at].starts_with("value_"))
-        if (const auto lambda = parse_number(std::string_view(names[at]).substr(6))) {
-          columns.values.push_back(at);
-          columns.lambda_nm.push_back(*lambda);
-        }
-  if (columns.values.empty()) reader.fail("columns r, g, b or value or value_<nm>", in_quotes(reader.line()));
-  if (columns.values.size() > kMaxFileChannels)
-    reader.fail(fmt::format("at most {} wavelengths", kMaxFileChannels),
-                fmt::format("{}", columns.values.size()));
-}
-
-/// Of `others` those that are there are known too.
-CsvColumns read_header(TextReader& reader, bool with_values, std::span<const std::string_view> others = {}) {
-  const std::vector<std::string> names = split_header(reader.line());
-  CsvColumns columns = find_directions(reader, names);
-  if (with_values) find_values(reader, names, columns);
-  std::size_t used = (columns.vectors ? 6 : 4) + columns.values.size();
-  for (const std::string_view other : others) {
-    columns.others.push_back(position(names, other));
-    used += columns.others.back() < names.size();
+  /// Splits the current line. Throws Error unless it has a cell for each column.
+  void read() {
+    const std::string_view line = trimmed(reader_.line());
+    split(line, separator_);
+    if (first_ && cells_.size() != columns_.count)
+      // a row may be separated otherwise than the names
+      for (const char other : {';', '\t', ',', ' '}) {
+        split(line, other);
+        if (cells_.size() != columns_.count) continue;
+        separator_ = other;
+        break;
+      }
+    first_ = false;
+    if (cells_.size() != columns_.count) split(line, separator_);
+    if (cells_.size() != columns_.count)
+      reader_.fail(fmt::format("{} columns", columns_.count),
+                   fmt::format("{} in {}", cells_.size(), in_quotes(line)));
   }
-  if (used != names.size())
-    reader.fail(fmt::format("{} columns", used),
-                fmt::format("{}: a column is unknown or twice there", names.size()));
-  return columns;
-}
 
-/// One row of numbers, as many as there are columns.
-void read_row(TextReader& reader, std::span<double> row) {
-  for (double& value : row) value = reader.number("every column");
-  reader.end_of_line();
-}
+  double number(std::size_t column) {
+    return numbers_.number(reader_, cells_[column],
+                           column < names_.size() ? in_quotes(names_[column]) : "a column");
+  }
+
+  bool missing(std::size_t column) const { return is_missing(cells_[column]); }
+
+ private:
+  void split(std::string_view line, char separator) {
+    split_cells(line, separator, cells_);
+    if (separator != ' ' && cells_.size() + 1 == columns_.count && line.ends_with(separator))
+      cells_.emplace_back();
+  }
+
+  TextReader& reader_;
+  const CsvColumns& columns_;
+  char separator_;
+  bool first_ = true;
+  std::vector<std::string_view> names_, cells_;
+  CellNumbers numbers_;
+};
 
 Vec3 unit_vector(const TextReader& reader, Vec3 w) {
   const double l = length(w);
@@ -114,112 +149,168 @@ Vec3 unit_vector(const TextReader& reader, Vec3 w) {
   return std::abs(l - 1) < 1e-12 ? w : (1 / l) * w;
 }
 
-DirectionPair read_pair(const TextReader& reader, const CsvColumns& columns, std::span<const double> row) {
-  const auto at = [&](std::size_t k) { return row[columns.direction[k]]; };
+DirectionPair read_pair(const TextReader& reader, const CsvColumns& columns, Rows& rows) {
+  std::array<double, 6> at{};
+  for (std::size_t k = 0; k < 6; ++k)
+    if (columns.direction[k]) at[k] = rows.number(*columns.direction[k]);
   if (columns.vectors)
-    return {unit_vector(reader, {at(0), at(1), at(2)}), unit_vector(reader, {at(3), at(4), at(5)})};
-  std::array<double, 4> angles;
-  for (std::size_t k = 0; k < 4; ++k) angles[k] = at(k) * columns.to_radians[k];
-  return {spherical_direction(angles[0], angles[1]), spherical_direction(angles[2], angles[3])};
+    return {unit_vector(reader, {at[0], at[1], at[2]}), unit_vector(reader, {at[3], at[4], at[5]})};
+  for (std::size_t k = 0; k < 4; ++k) at[k] *= columns.to_radians[k];
+  if (columns.relative_azimuth) at[3] += at[1];
+  if (!std::isfinite(at[3])) reader.fail("a finite azimuth", in_quotes(reader.line()));
+  return {spherical_direction(at[0], at[1]), spherical_direction(at[2], at[3])};
 }
 
-/// What a comment says about the material.
-enum class Tag { none, isotropic, anisotropic };
-
-/// The lines with content of a file, and the last tag in front of the one it stands at.
-struct TaggedLines {
-  TextReader reader;
-  Tag tag = Tag::none;
-
-  /// Moves to the next line with content; false at the end of the file.
-  bool next() {
-    while (reader.next_line()) {
-      const std::string_view line = trimmed(reader.line());
-      if (line.empty()) continue;
-      if (line[0] != '#') return true;
-      const std::string remark = lower_case(trimmed(line.substr(1)));
-      if (remark == "isotropic") tag = Tag::isotropic;
-      if (remark == "anisotropic") tag = Tag::anisotropic;
-    }
-    return false;
+/// Moves to the next line with content; false at the end of the file. Comments may have a tag.
+bool next_row(TextReader& reader, Tag& tag) {
+  while (reader.next_line()) {
+    const std::string_view line = trimmed(reader.line());
+    if (line.empty()) continue;
+    if (!is_comment(line)) return true;
+    read_tag(line, tag);
   }
-};
+  return false;
+}
+
+bool is_texel_header(const CsvHeader& header) {
+  return lower_case(header.line).find(kTexelNames[0]) != std::string::npos;
+}
+
+void refuse_unknown(const TextReader& reader, const CsvColumns& columns) {
+  if (!columns.unknown.empty())
+    reader.fail("known columns", fmt::format("{}, unknown", in_quotes(columns.unknown.front())));
+}
+
+/// Names in quotes, at most four.
+std::string some_of(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 4;
+  std::string text;
+  for (std::size_t k = 0; k < std::min(names.size(), kMost); ++k)
+    text += (k > 0 ? ", " : "") + in_quotes(names[k]);
+  return names.size() > kMost ? fmt::format("{} and {} more", text, names.size() - kMost) : text;
+}
 
 }  // namespace
 
 bool looks_like_csv(std::string_view text) noexcept {
-  const std::string_view line = first_content_line(text);
-  return line.find("wi_x") != std::string_view::npos || line.find("theta_o") != std::string_view::npos;
+  const std::string name;
+  TextReader reader(name, text.substr(0, kMaxPreamble));
+  return read_preamble(reader).header.has_value();
 }
 
 SampleFile parse_csv(const FileBytes& file, const OpenOptions& options) {
-  TaggedLines lines{TextReader(file)};
-  TextReader& reader = lines.reader;
-  if (!lines.next()) reader.fail("a header line", "the end of the file");
-  if (looks_like_texel_csv(reader.line()))
+  TextReader reader(file);
+  const Preamble preamble = read_preamble(reader);
+  if (!preamble.header) reader.fail("a header line", "none");
+  if (is_texel_header(*preamble.header))
     reader.fail("samples of one material", "those of texels, which fit-surface reads");
-  const CsvColumns columns = read_header(reader, true);
+  const CsvColumns columns = read_columns(reader, *preamble.header, true);
+  const auto asked = asked_kind(options);
+  const ValueKind kind = asked               ? *asked
+                         : columns.kind      ? *columns.kind
+                         : preamble.says_brf ? ValueKind::brf
+                                             : ValueKind::f;
 
   SampleFile result;
   Samples& samples = result.samples;
   samples.channels = columns.values.size();
-  std::vector<double> row(columns.count);
-  while (lines.next()) {
-    read_row(reader, row);
-    const DirectionPair pair = read_pair(reader, columns, row);
+  Rows rows(reader, columns, *preamble.header);
+  Tag tag = preamble.tag;
+  std::size_t missing = 0, grazing = 0;
+  double largest_angle = 0;
+  while (next_row(reader, tag)) {
+    rows.read();
+    if (std::any_of(columns.values.begin(), columns.values.end(),
+                    [&](std::size_t at) { return rows.missing(at); })) {
+      ++missing;
+      continue;
+    }
+    const DirectionPair pair = read_pair(reader, columns, rows);
     if (!(pair.wi.z > 0 && pair.wo.z > 0))
       reader.fail("directions above the horizon", in_quotes(reader.line()));
-    samples.pairs.push_back(pair);
+    const std::size_t before = samples.values.size();
     for (const std::size_t at : columns.values) {
-      const double value = options.has_cosine ? row[at] / pair.wi.z : row[at];
-      // a cosine near zero may push a finite number over the edge
-      if (!std::isfinite(value)) reader.fail("a finite value over cos(theta_i)", in_quotes(reader.line()));
+      const double value = f_of_value(kind, rows.number(at), pair);
+      if (std::isinf(value)) reader.fail("a finite value over its cosine", in_quotes(reader.line()));
       samples.values.push_back(value);
     }
+    if (std::isnan(samples.values[before])) {
+      samples.values.resize(before);
+      ++grazing;
+      continue;
+    }
+    samples.pairs.push_back(pair);
+    if (!columns.vectors)
+      for (const auto& at : columns.direction)
+        if (at) largest_angle = std::max(largest_angle, std::abs(rows.number(*at)));
   }
 
   Findings& findings = result.findings;
   findings.format = "CSV of scattered samples";
+  findings.description = preamble.remarks;
   findings.lambda_nm = columns.lambda_nm;
   findings.conventions = {columns.vectors ? "Directions as unit vectors." : "Directions as angles.",
-                          options.has_cosine ? "The cosine of theta_i was divided out, as asked."
-                                             : "Values are f_r without the cosine."};
-  const Tag tag = lines.tag;
-  samples.isotropic = tag == Tag::isotropic || (tag == Tag::none && same_incident_azimuth(samples));
+                          kind_sentence(kind, asked          ? "as asked"
+                                              : columns.kind ? "as the column's name says"
+                                                             : "as the file's first lines say")};
+  const bool one_azimuth = !columns.vectors && !columns.direction[1];
+  samples.isotropic =
+      tag == Tag::isotropic || (tag == Tag::none && (one_azimuth || same_incident_azimuth(samples)));
+  if (columns.in_plane)
+    findings.conventions.push_back(settle_plane(samples));
+  else if (one_azimuth)
+    findings.conventions.push_back("phi_i is 0 everywhere: the file has none.");
   findings.conventions.push_back(
-      tag == Tag::none ? (samples.isotropic ? "Taken as isotropic: every sample has the same phi_i."
-                                            : "Taken as anisotropic: the file does not say.")
+      tag == Tag::none ? (one_azimuth         ? "Taken as isotropic: the file has no phi_i."
+                          : samples.isotropic ? "Taken as isotropic: every sample has the same phi_i."
+                                              : "Taken as anisotropic: the file does not say.")
                        : (samples.isotropic ? "Isotropic, the file says." : "Anisotropic, the file says."));
+  if (!columns.unknown.empty())
+    findings.warnings.push_back(fmt::format("Columns passed over: {}.", some_of(columns.unknown)));
+  if (missing > 0)
+    findings.warnings.push_back(fmt::format("{} rows without a value were left out.", missing));
+  if (grazing > 0)
+    findings.warnings.push_back(
+        fmt::format("{} rows on the horizon were left out: their cosine cannot be divided out.", grazing));
+  if (!columns.vectors && !columns.units_named && largest_angle > 0 && largest_angle < kLargestOfRadians)
+    findings.warnings.push_back(
+        "All angles are below 3.2 and were taken as degrees: radians have names such as theta_i_rad.");
   finish_samples(file.name, options, result);
+  if (!columns.in_plane) check_azimuths(samples, findings);
   return result;
 }
 
 bool looks_like_texel_csv(std::string_view text) noexcept {
-  return looks_like_csv(text) && first_content_line(text).find(kTexelNames[0]) != std::string_view::npos;
+  const std::string name;
+  TextReader reader(name, text.substr(0, kMaxPreamble));
+  const Preamble preamble = read_preamble(reader);
+  return preamble.header && is_texel_header(*preamble.header);
 }
 
 TexelCsv parse_texel_csv(const FileBytes& file, int most) {
   TextReader reader(file);
-  if (!reader.next_content_line()) reader.fail("a header line", "the end of the file");
-  const CsvColumns columns = read_header(reader, true, kTexelNames);
+  const Preamble preamble = read_preamble(reader);
+  if (!preamble.header) reader.fail("a header line", "none");
+  const CsvColumns columns = read_columns(reader, *preamble.header, true, kTexelNames);
+  refuse_unknown(reader, columns);
   for (const std::size_t k : {0u, 1u})
-    if (columns.others[k] == columns.count)
-      reader.fail(fmt::format("a column {}", kTexelNames[k]), in_quotes(reader.line()));
+    if (!columns.others[k]) reader.fail(fmt::format("a column {}", kTexelNames[k]), in_quotes(reader.line()));
   if (!columns.lambda_nm.empty()) reader.fail("columns r, g, b or value", in_quotes(reader.line()));
-  const bool says_held_out = columns.others[2] < columns.count;
+  const bool says_held_out = columns.others[2].has_value();
 
   TexelCsv result;
-  std::vector<double> row(columns.count);
+  Rows rows(reader, columns, *preamble.header);
+  Tag tag = preamble.tag;
   const auto whole = [&](std::size_t other, int largest) {
-    const double value = row[columns.others[other]];
+    const double value = rows.number(*columns.others[other]);
     if (!(value >= 0 && value <= largest && value == std::floor(value)))
       reader.fail(fmt::format("{} as a whole number of at most {}", kTexelNames[other], largest),
                   fmt::format("{}", value));
     return static_cast<int>(value);
   };
-  while (reader.next_content_line()) {
-    read_row(reader, row);
-    const DirectionPair pair = read_pair(reader, columns, row);
+  while (next_row(reader, tag)) {
+    rows.read();
+    const DirectionPair pair = read_pair(reader, columns, rows);
     if (!(pair.wi.z > 0 && pair.wo.z > 0))
       reader.fail("directions above the horizon", in_quotes(reader.line()));
     result.texels.push_back({whole(0, most), whole(1, most)});
@@ -227,7 +318,8 @@ TexelCsv parse_texel_csv(const FileBytes& file, int most) {
     result.pairs.push_back(pair);
     std::array<float, 3>& f = result.f.emplace_back();
     for (std::size_t c = 0; c < 3; ++c) {
-      f[c] = static_cast<float>(row[columns.values[columns.values.size() == 1 ? 0 : c]]);
+      const double value = rows.number(columns.values[columns.values.size() == 1 ? 0 : c]);
+      f[c] = static_cast<float>(f_of_value(columns.kind.value_or(ValueKind::f), value, pair));
       if (!std::isfinite(f[c])) reader.fail("a value that a float holds", in_quotes(reader.line()));
     }
   }
@@ -257,13 +349,16 @@ std::string samples_csv(const Samples& samples, std::span<const double> lambda_n
 
 std::vector<DirectionPair> parse_directions(const FileBytes& file) {
   TextReader reader(file);
-  if (!reader.next_content_line()) reader.fail("a header line", "the end of the file");
-  const CsvColumns columns = read_header(reader, false);
+  const Preamble preamble = read_preamble(reader);
+  if (!preamble.header) reader.fail("a header line that names wi_x, wi_y, wi_z, wo_x, wo_y and wo_z", "none");
+  const CsvColumns columns = read_columns(reader, *preamble.header, false);
+  refuse_unknown(reader, columns);
   std::vector<DirectionPair> pairs;
-  std::vector<double> row(columns.count);
-  while (reader.next_content_line()) {
-    read_row(reader, row);
-    pairs.push_back(read_pair(reader, columns, row));
+  Rows rows(reader, columns, *preamble.header);
+  Tag tag = preamble.tag;
+  while (next_row(reader, tag)) {
+    rows.read();
+    pairs.push_back(read_pair(reader, columns, rows));
   }
   return pairs;
 }

@@ -13,16 +13,23 @@
 
 namespace burnish {
 
-/// True if the first line that is no comment names direction columns.
+/// True if one of the first lines names columns of directions (csv_columns.h).
 bool looks_like_csv(std::string_view text) noexcept;
 
-/// Scattered samples as comma-separated values: '#' comments, a header naming the columns in any order, then
-/// one row a sample. Directions are theta_i, phi_i, theta_o, phi_o in degrees (in radians where the name ends
-/// in _rad), or wi_x, wi_y, wi_z, wo_x, wo_y, wo_z; values are r, g, b (linear Rec. 709), or value, or
-/// value_400 and so on, one column a wavelength in nm. Values are f_r in 1/sr, or f_r cos(theta_i) if
-/// options.has_cosine. A comment "# isotropic" or "# anisotropic" says what the material is; without it, it
-/// is anisotropic unless every sample has the same phi_i. Throws Error on anything else, a direction below the
-/// horizon and vectors whose length is off 1 by over 1 % included.
+/// Scattered samples as a table of text: perhaps lines of remarks, a header naming the columns in any order, then
+/// one row a sample. Cells stand between commas, semicolons, tabs or blanks, in quotes or not; decimals have a
+/// point, or a comma where it separates nothing; lines end as on any system.
+///
+/// Directions are theta_i, phi_i, theta_o, phi_o in degrees (in radians where the name says so), or wi_x, wi_y,
+/// wi_z, wo_x, wo_y, wo_z; other names for them are in csv_columns.cpp. Without phi_i the material is isotropic;
+/// without any azimuth the samples are in the plane of incidence and polar angles have signs. Values are r, g, b
+/// (linear Rec. 709), or value, or value_400, 400nm and so on, one column a wavelength. They are f_r in 1/sr, or
+/// what options or their names say (ValueKind). Rows without a value are left out, columns that mean nothing are
+/// passed over; Findings::warnings says so, and what looks wrong (sample_checks.h).
+///
+/// A comment "# isotropic" or "# anisotropic" says what the material is; without it, it is anisotropic unless every
+/// sample has the same phi_i. Throws Error on anything else, a direction below the horizon and vectors whose length
+/// is off 1 by over 1 % included.
 SampleFile parse_csv(const FileBytes& file, const OpenOptions& options);
 
 /// Samples of the texels of a surface.
@@ -33,7 +40,7 @@ struct TexelCsv {
   std::vector<std::array<float, 3>> f;     ///< f_r in 1/sr; of a column `value` the same three times
 };
 
-/// True if the first line that is no comment also names a column texel_x.
+/// True if that line also names a column texel_x.
 bool looks_like_texel_csv(std::string_view text) noexcept;
 
 /// As parse_csv, with columns texel_x and texel_y, whole numbers from 0 to `most`, and perhaps held_out, 0 or 1;

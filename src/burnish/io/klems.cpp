@@ -37,23 +37,34 @@ PatchBasis stated_basis(const WindowXml& xml, pugi::xml_node node) {
   return basis;
 }
 
-/// The basis of a name, as the file states it.
-PatchBasis find_basis(const WindowXml& xml, std::string_view name) {
+constexpr std::string_view kBetweenValues = " \t\r\n,";
+
+std::size_t count_values(std::string_view text) noexcept {
+  std::size_t count = 0;
+  for (std::size_t at = text.find_first_not_of(kBetweenValues); at != std::string_view::npos; ++count)
+    at =
+        text.find_first_not_of(kBetweenValues, std::min(text.find_first_of(kBetweenValues, at), text.size()));
+  return count;
+}
+
+/// The basis of a name, as the file states it, or what the name stands for.
+PatchBasis find_basis(const WindowXml& xml, std::string_view name, bool older_half) {
   for (const pugi::xml_node node : xml.layer().child("DataDefinition").children("AngleBasis"))
-    if (trimmed(node.child_value("AngleBasisName")) == name) return stated_basis(xml, node);
-  if (name == "LBNL/Klems Full") return klems_full_basis();
+    if (same_name(trimmed(node.child_value("AngleBasisName")), name)) return stated_basis(xml, node);
+  if (same_name(name, "LBNL/Klems Full")) return klems_full_basis();
+  if (same_name(name, "LBNL/Klems Half")) return older_half ? klems_older_half_basis() : klems_half_basis();
+  if (same_name(name, "LBNL/Klems Quarter")) return klems_quarter_basis();
   xml.fail("an AngleBasis named in DataDefinition", in_quotes(name));
 }
 
 std::vector<float> read_values(const WindowXml& reader, std::string_view text, std::size_t count) {
-  constexpr std::string_view separators = " \t\r\n,";
   std::vector<float> values;
   // a value takes a digit and a separator
   values.reserve(std::min(count, text.size() / 2 + 1));
   for (;;) {
-    text.remove_prefix(std::min(text.find_first_not_of(separators), text.size()));
+    text.remove_prefix(std::min(text.find_first_not_of(kBetweenValues), text.size()));
     if (text.empty()) break;
-    const std::string_view word = text.substr(0, text.find_first_of(separators));
+    const std::string_view word = text.substr(0, text.find_first_of(kBetweenValues));
     const auto value = parse_number(word);
     if (!value || std::abs(*value) > std::numeric_limits<float>::max())
       reader.fail("finite numbers in ScatteringData", in_quotes(word));
@@ -69,29 +80,38 @@ std::vector<float> read_values(const WindowXml& reader, std::string_view text, s
 }  // namespace
 
 bool looks_like_klems(std::string_view text) noexcept {
-  const std::string_view start = text.substr(0, 4096);
-  const std::size_t first = start.find_first_not_of(" \t\r\n\xef\xbb\xbf");
-  return first != std::string_view::npos && start[first] == '<' &&
-         start.find("<WindowElement") != std::string_view::npos;
+  return looks_like_window_xml(text);
 }
 
 KlemsFile parse_klems(const FileBytes& file, const OpenOptions& options) {
   const WindowXml reader(file);
   const std::string_view structure = reader.structure();
-  if (structure != "Columns") reader.fail("IncidentDataStructure Columns", in_quotes(structure));
-  const std::string_view direction = options.back_side ? "Reflection Back" : "Reflection Front";
-  const pugi::xml_node block = reader.block(direction);
+  const bool rows = same_name(structure, "Rows");  // each row an incident patch
+  if (!rows && !same_name(structure, "Columns"))
+    reader.fail("IncidentDataStructure Columns or Rows", in_quotes(structure));
+  ReflectionBlock reflection = reader.reflection(options.back_side);
+  const pugi::xml_node block = reflection.node;
 
   // the bases and the matrix between them
   KlemsFile result;
   PatchTable& table = result.table;
   Findings& findings = result.findings;
-  table.incident = find_basis(reader, trimmed(block.child_value("ColumnAngleBasis")));
+  const char *const column = "ColumnAngleBasis", *const row = "RowAngleBasis";
+  const char* const text = block.child_value("ScatteringData");
+  const std::size_t count = count_values(text);
+  for (const bool older_half : {false, true}) {  // by the number of values
+    table.incident = find_basis(reader, trimmed(block.child_value(rows ? row : column)), older_half);
+    table.outgoing = find_basis(reader, trimmed(block.child_value(rows ? column : row)), older_half);
+    if (table.incident.size() * table.outgoing.size() == count) break;
+  }
   // the file counts incident patches by where the light goes to, wi by where it comes from.
   table.incident.first_azimuth = kPi;
-  table.outgoing = find_basis(reader, trimmed(block.child_value("RowAngleBasis")));
-  table.values =
-      read_values(reader, block.child_value("ScatteringData"), table.incident.size() * table.outgoing.size());
+  const std::size_t in = table.incident.size(), out = table.outgoing.size();
+  table.values = read_values(reader, text, in * out);
+  if (rows) {
+    const std::vector<float> read = table.values;
+    for (std::size_t k = 0; k < read.size(); ++k) table.values[k % out * in + k / out] = read[k];
+  }
   for (const float value : table.values)
     if (value < 0) {
       ++findings.negative_count;
@@ -100,9 +120,12 @@ KlemsFile parse_klems(const FileBytes& file, const OpenOptions& options) {
   findings.format = "Klems XML";
   findings.description = reader.material();
   findings.conventions = {
-      fmt::format("'{}', columns incident; values are f_r without the cosine.", direction),
+      fmt::format("{}; {} incident; values are f_r without the cosine.", reflection.sentence,
+                  rows ? "rows" : "columns"),
       "Incident azimuths are those the light travels to: the mirror direction has the same patch.",
-      "Patch averages stand for the patch centres; linear between them, periodic in azimuth."};
+      "Constant over each pair of patches, as Radiance evaluates it."};
+  findings.side = std::move(reflection.side);
+  findings.left_out = std::move(reflection.left_out);
   findings.sample_count = table.values.size();
   findings.theta_i_max = findings.theta_o_max = kHalfPi;
   return result;

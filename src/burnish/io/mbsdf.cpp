@@ -12,7 +12,8 @@ namespace burnish {
 namespace {
 
 constexpr std::string_view kMagic = "NVIDIA ARC MBSDF V1\n";
-constexpr std::string_view kReflection = "MBSDF_DATA_REFLECTION=";
+// older files have one block, of reflection
+constexpr std::string_view kReflection = "MBSDF_DATA_REFLECTION=", kOnly = "MBSDF_DATA=";
 constexpr std::string_view kTransmission = "MBSDF_DATA_TRANSMISSION=";
 constexpr std::size_t kLongestLine = 4096;
 constexpr std::uint32_t kMaxResolution = 2048;
@@ -47,18 +48,22 @@ BlockHeader read_block_header(ByteReader& reader) {
   return header;
 }
 
+bool starts_reflection(std::string_view line) noexcept {
+  return line.starts_with(kReflection) || line.starts_with(kOnly);
+}
+
 /// What stands before the reflection block; a transmission block is passed over.
 Findings read_mbsdf_header(const FileBytes& file, ByteReader& reader) {
   Findings findings;
   findings.format = "NVIDIA MBSDF";
   read_line(file, reader);
   std::string_view line = read_line(file, reader);
-  for (; !line.starts_with(kReflection); line = read_line(file, reader)) {
+  for (; !starts_reflection(line); line = read_line(file, reader)) {
     if (line.starts_with(kTransmission)) {
       const BlockHeader skipped = read_block_header(reader);
       reader.seek(reader.offset() + skipped.value_count() * sizeof(float));
       if (reader.remaining() == 0) reader.fail("a reflection block", "transmission only");
-      findings.conventions.push_back("A transmission block was left out.");
+      findings.left_out.push_back("transmission");
     } else if (!line.empty()) {
       if (line.find('=') == std::string_view::npos) reader.fail("a line KEY=VALUE", in_quotes(line));
       if (findings.description.size() < 200)
@@ -68,14 +73,18 @@ Findings read_mbsdf_header(const FileBytes& file, ByteReader& reader) {
   return findings;
 }
 
-/// A block's values, all of which must be numbers; nothing but a transmission block may follow.
-std::vector<float> read_block_values(const FileBytes& file, ByteReader& reader, std::uint64_t count) {
+/// A block's values, all of which must be numbers; nothing but another block may follow, which is left out.
+std::vector<float> read_block_values(const FileBytes& file, ByteReader& reader, std::uint64_t count,
+                                     Findings& findings) {
   const std::uint64_t start = reader.offset();
   const auto bytes = reader.take(count * sizeof(float), "values");
-  if (const std::string_view rest = trimmed(file.text().substr(reader.offset()));
-      !rest.empty() && rest != "\n" && !rest.substr(rest[0] == '\n').starts_with(kTransmission))
-    reader.fail("the end of the file or a transmission block",
-                fmt::format("{} more bytes", reader.remaining()));
+  if (std::string_view rest = trimmed(file.text().substr(reader.offset())); !rest.empty() && rest != "\n") {
+    rest.remove_prefix(rest[0] == '\n');
+    if (!rest.starts_with(kTransmission) && !starts_reflection(rest))
+      reader.fail("the end of the file or another block", fmt::format("{} more bytes", reader.remaining()));
+    findings.left_out.push_back(rest.starts_with(kTransmission) ? "transmission"
+                                                                : "a second block of reflection");
+  }
   std::vector<float> values(count);
   std::memcpy(values.data(), bytes.data(), bytes.size());
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -103,7 +112,7 @@ MbsdfFile parse_mbsdf(const FileBytes& file) {
   AngleTable& table = result.table;
   table = mbsdf_layout(header.theta_count, header.phi_count);
   table.channel_count = header.channels;
-  table.values = read_block_values(file, reader, header.value_count());
+  table.values = read_block_values(file, reader, header.value_count(), findings);
   for (const float value : table.values) {
     if (value >= 0) continue;
     ++findings.negative_count;

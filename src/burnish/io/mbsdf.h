@@ -17,7 +17,7 @@ struct MbsdfFile {
 
 bool looks_like_mbsdf(std::span<const std::byte> bytes) noexcept;
 
-/// The reflection of an NVIDIA MBSDF file, isotropic, grey or RGB: values over theta_in, theta_out in [0,
+/// The reflection of an NVIDIA MBSDF file, its block MBSDF_DATA_REFLECTION or MBSDF_DATA, isotropic, grey or RGB: values over theta_in, theta_out in [0,
 /// pi/2) and the azimuth between the directions in [0, pi], each the value at its cell's centre; the mirror
 /// direction is at pi. Linear between cell centres. Negatives are counted and kept. Throws Error if the file
 /// has no reflection, its sizes and its length differ, or a value is not finite. Source: [NVIDIA 2021].

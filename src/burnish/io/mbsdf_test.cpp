@@ -56,6 +56,27 @@ TEST(Mbsdf, PutsEntriesAtCellCentres) {
   EXPECT_TRUE(file.table.eval({0, 0, 1}, spherical_direction(1.57, 0), {&f, 1}));
 }
 
+TEST(Mbsdf, TakesTheKeyOfOlderFilesForReflection) {
+  const MbsdfFile file = parse_mbsdf(memory_file(kStart + block("MBSDF_DATA=\n", 0, 1, 1, {3})));
+  EXPECT_EQ(file.table.values, std::vector<float>{3});
+  EXPECT_TRUE(file.findings.left_out.empty());
+}
+
+TEST(Mbsdf, SaysThatASecondBlockIsLeftOut) {
+  const std::string reflection = block(kReflection, 0, 1, 1, {3}),
+                    transmission = block(kTransmission, 0, 1, 1, {9});
+  const auto left_out = [](const std::string& text) {
+    const MbsdfFile file = parse_mbsdf(memory_file(kStart + text));
+    EXPECT_EQ(file.table.values, std::vector<float>{3});
+    return file.findings.left_out;
+  };
+  EXPECT_EQ(left_out(transmission + reflection), std::vector<std::string>{"transmission"});
+  EXPECT_EQ(left_out(reflection + transmission), std::vector<std::string>{"transmission"});
+  EXPECT_EQ(left_out(reflection + "\n" + transmission), std::vector<std::string>{"transmission"});
+  EXPECT_EQ(left_out(reflection + block("MBSDF_DATA=\n", 0, 1, 1, {4})),
+            std::vector<std::string>{"a second block of reflection"});
+}
+
 TEST(Mbsdf, SkipsMetadataAndTransmission) {
   const std::string transmission = block(kTransmission, 0, 1, 1, {9});
   const std::string reflection = block(kReflection, 1, 1, 1, {1, 2, 3});

@@ -12,6 +12,7 @@
 #include <burnish/io/astm.h>
 #include <burnish/io/cornell.h>
 #include <burnish/io/csv.h>
+#include <burnish/io/fred.h>
 #include <burnish/io/klems.h>
 #include <burnish/io/mbsdf.h>
 #include <burnish/io/merl.h>
@@ -135,8 +136,9 @@ Source parse_file(const FileBytes& file, const OpenOptions& options) {
   if (looks_like_speos(text)) return from_table(file, parse_speos(file, options));
   if (looks_like_alta(text)) return from_samples(file, parse_alta(file, options));
   if (looks_like_neural(text)) return from_neural(file, {});
-  if (looks_like_csv(text)) return from_samples(file, parse_csv(file, options));
+  if (looks_like_fred(text)) return from_samples(file, parse_fred(file, options));
   if (looks_like_astm(text)) return from_samples(file, parse_astm(file, options));
+  if (looks_like_csv(text)) return from_samples(file, parse_csv(file, options));
   if (looks_like_cornell(text)) return from_samples(file, parse_cornell(file, options));
   if (looks_like_np(text))
     throw Error::in_file(file.name, "np:FILE#NAME for one of its codes, a decoder.f32 beside it",

@@ -182,7 +182,7 @@ std::string identifier(std::string_view text) {
 bool looks_like_openmaterial(std::string_view text) noexcept {
   const std::size_t first = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
   if (first == std::string_view::npos || text[first] != '{') return false;
-  return text.substr(0, 65536).find("\"lookupTable\"") != std::string_view::npos;
+  return text.substr(0, 1 << 20).find("\"lookupTable\"") != std::string_view::npos;
 }
 
 SampleFile parse_openmaterial(const FileBytes& file, const OpenOptions& options) {

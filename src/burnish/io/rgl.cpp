@@ -165,6 +165,20 @@ RglData read_data(const Fields& fields) {
   return data;
 }
 
+/// Turns a mask whose bits stand the other way round: nearly all of a measurement would be holes. There is such a
+/// file; what it calls valid is where other files have their holes. True if it was turned.
+bool turn_mask(std::vector<std::uint8_t>& valid, std::uint64_t samples) noexcept {
+  constexpr std::uint64_t kQuarter = 4;
+  std::uint64_t measured = 0;
+  for (std::uint8_t byte : valid) measured += static_cast<std::uint64_t>(std::popcount(byte));
+  if (measured == 0 || measured >= samples / kQuarter) return false;
+  for (std::uint8_t& byte : valid) byte = static_cast<std::uint8_t>(~byte);
+  // bits behind the last node are none
+  if (const auto rest = samples % 8; rest > 0 && !valid.empty())
+    valid.back() = static_cast<std::uint8_t>(valid.back() & (0xff << (8 - rest)));
+  return true;
+}
+
 /// Zero bits of a mask of `samples` bits; none where there is no mask.
 std::uint64_t count_holes(const std::vector<std::uint8_t>& valid, std::uint64_t samples) noexcept {
   if (valid.empty()) return 0;
@@ -191,6 +205,7 @@ RglFile parse_rgl(const FileBytes& file, const OpenOptions& options) {
                                 spectral ? fmt::format("{} wavelengths", data.channels) : "RGB");
   findings.description = data.description;
   findings.sample_count = samples;
+  const bool turned = turn_mask(data.valid, samples);
   findings.hole_count = count_holes(data.valid, samples);
   findings.theta_i_min = static_cast<double>(data.theta_i.front());
   findings.theta_i_max = std::min(static_cast<double>(data.theta_i.back()), kHalfPi);
@@ -198,6 +213,9 @@ RglFile parse_rgl(const FileBytes& file, const OpenOptions& options) {
   findings.conventions = {"the file's first direction, theta_i and phi_i, is wi",
                           "stored values contain cos(theta_o): it is divided out"};
   if (!data.jacobian) findings.conventions.push_back("stored values are not scaled by 4 sigma / ndf");
+  if (turned)
+    findings.conventions.push_back(
+        "the bits of valid nodes stand the other way round than in other files: turned");
   if (findings.hole_count > 0)
     findings.conventions.push_back("nodes that were not measured keep the values the file fills in");
 

@@ -120,6 +120,17 @@ TEST(Rgl, RoundTripsIsotropicAndAnisotropicRgb) {
   }
 }
 
+TEST(Rgl, TurnsAMaskThatStandsTheOtherWayRound) {
+  const RglTable table = small_table(3, false);
+  RglData data = table.data();
+  for (std::uint8_t& byte : data.valid) byte = static_cast<std::uint8_t>(~byte);
+  const RglFile right = parsed(format_rgl(table)), turned = parsed(format_rgl(RglTable(std::move(data))));
+  ASSERT_LT(4 * right.findings.hole_count, right.findings.sample_count);
+  EXPECT_EQ(turned.findings.hole_count, right.findings.hole_count);
+  EXPECT_EQ(turned.table.data().valid, right.table.data().valid);
+  EXPECT_EQ(turned.findings.conventions.size(), right.findings.conventions.size() + 1);
+}
+
 TEST(Rgl, RoundTripsSpectra) {
   for (bool brushed : {false, true}) {
     const RglTable table = small_table(4, brushed);

@@ -1,9 +1,12 @@
+#include <algorithm>
 #include <array>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <burnish/io/source_report.h>
 #include <burnish/math/angles.h>
+#include <burnish/math/written_degrees.h>
 #include <burnish/reflectance/mirror_asymmetry.h>
 
 namespace burnish {
@@ -12,42 +15,79 @@ namespace {
 
 constexpr std::size_t kReciprocityPairs = 20000;
 constexpr std::array kAlbedoAngles{0.0, radians(30), radians(60)};
+constexpr double kMostFilled = 0.05;  // of the hemisphere: what is unknown there is taken to be like the rest
+constexpr double kMostReflected = 1.02;  // of what is received: more is no noise
+
+/// One sentence where a measurement reflects more than it receives.
+std::optional<std::string> energy_warning(const Source& source, const std::vector<AlbedoAt>& albedos) {
+  if (!is_measurement(source)) return std::nullopt;
+  double most = 0, theta = 0;
+  for (const AlbedoAt& at : albedos)
+    if (const double albedo = std::ranges::max(at.albedo.albedo); albedo > most)
+      most = albedo, theta = at.theta_i;
+  if (most <= kMostReflected) return std::nullopt;
+  return fmt::format("More is reflected than received: {:.0f} % at theta_i = {:.0f} degrees.{}", 100 * most,
+                     degrees(theta),
+                     source.samples() ? " Reflectance factors? --brf divides them by pi." : "");
+}
+
+/// What a source reflects. Patches have a sum of their own; a rim of the hemisphere that is unknown reflects as the rest
+/// does.
+std::vector<AlbedoAt> reported_albedos(const Source& source) {
+  std::vector<AlbedoAt> albedos = albedo_curve(source.ref(), kAlbedoAngles);
+  for (AlbedoAt& at : albedos) {
+    DirectionalAlbedo& albedo = at.albedo;
+    if (const auto* patches = std::get_if<PatchTable>(&source.brdf);
+        patches && albedo.clamped == albedo.albedo)
+      albedo.albedo[0] = albedo.clamped[0] = patches->albedo(spherical_direction(at.theta_i, at.phi_i));
+    if (albedo.unknown_fraction > kMostFilled) continue;
+    for (std::vector<double>* values : {&albedo.albedo, &albedo.clamped})
+      for (double& value : *values) value /= 1 - albedo.unknown_fraction;
+  }
+  return albedos;
+}
 
 }  // namespace
 
 SourceReport report_on(const Source& source) {
   SourceReport report{source,
-                      albedo_curve(source.ref(), kAlbedoAngles),
+                      reported_albedos(source),
                       reciprocity_error(source.ref(), kReciprocityPairs, 1),
                       std::get_if<FactoredBrdf>(&source.brdf),
-                      {}};
+                      {},
+                      source.findings.warnings};
+  if (auto warning = energy_warning(source, report.albedos)) report.warnings.push_back(*std::move(warning));
   if (source.ref().isotropic()) report.mirror_asymmetry = mirror_asymmetry(source.ref());
   return report;
 }
 
 std::string to_json(const SourceReport& report) {
-  const auto& [source, albedos, reciprocity, model, mirror_asymmetry] = report;
+  const auto& [source, albedos, reciprocity, model, mirror_asymmetry, warnings] = report;
   const Findings& findings = source.findings;
-  nlohmann::ordered_json json{{"name", source.name},
-                              {"format", findings.format},
-                              {"description", findings.description},
-                              {"channels", source.ref().channels()},
-                              {"isotropic", source.ref().isotropic()},
-                              {"lambda_nm", findings.lambda_nm},
-                              {"illuminant", findings.illuminant},
-                              {"conventions", findings.conventions},
-                              {"samples", findings.sample_count},
-                              {"holes", findings.hole_count},
-                              {"negatives", findings.negative_count},
-                              {"most_negative", findings.most_negative},
-                              {"theta_i_deg", {degrees(findings.theta_i_min), degrees(findings.theta_i_max)}},
-                              {"theta_o_deg", {degrees(findings.theta_o_min), degrees(findings.theta_o_max)}},
-                              {"reciprocity_error", reciprocity.mean},
-                              {"reciprocity_pairs", reciprocity.pairs}};
+  nlohmann::ordered_json json{
+      {"name", source.name},
+      {"format", findings.format},
+      {"description", findings.description},
+      {"channels", source.ref().channels()},
+      {"isotropic", source.ref().isotropic()},
+      {"lambda_nm", findings.lambda_nm},
+      {"illuminant", findings.illuminant},
+      {"conventions", findings.conventions},
+      {"warnings", warnings},
+      {"left_out", findings.left_out},
+      {"comments", findings.comments},
+      {"samples", findings.sample_count},
+      {"holes", findings.hole_count},
+      {"negatives", findings.negative_count},
+      {"most_negative", findings.most_negative},
+      {"theta_i_deg", {written_degrees(findings.theta_i_min), written_degrees(findings.theta_i_max)}},
+      {"theta_o_deg", {written_degrees(findings.theta_o_min), written_degrees(findings.theta_o_max)}},
+      {"reciprocity_error", reciprocity.mean},
+      {"reciprocity_pairs", reciprocity.pairs}};
   if (mirror_asymmetry) json["mirror_asymmetry"] = *mirror_asymmetry;
   for (const auto& [theta_i, phi_i, albedo] : albedos)
-    json["albedo"].push_back({{"theta_i_deg", degrees(theta_i)},
-                              {"phi_i_deg", degrees(phi_i)},
+    json["albedo"].push_back({{"theta_i_deg", written_degrees(theta_i)},
+                              {"phi_i_deg", written_degrees(phi_i)},
                               {"albedo", albedo.albedo},
                               {"clamped_albedo", albedo.clamped},
                               {"unknown_fraction", albedo.unknown_fraction}});

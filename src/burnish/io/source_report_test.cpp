@@ -1,10 +1,14 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <burnish/io/open_source.h>
 #include <burnish/io/source_report.h>
 #include <burnish/math/angles.h>
 #include <burnish/testing/books.h>
 #include <burnish/testing/models.h>
+#include <burnish/testing/tools.h>
 
 namespace burnish {
 namespace {
@@ -32,6 +36,43 @@ TEST(SourceReport, SaysWhatAFormulaReflects) {
   }
   EXPECT_FALSE(json.contains("tables"));
   EXPECT_FALSE(report_of(analytic_source("ggx:alpha_x=0.2,alpha_y=0.4")).contains("mirror_asymmetry"));
+}
+
+/// A white surface's goniometer table, theta up to 60 degrees.
+Source white_table(double value, const OpenOptions& options) {
+  std::string text = "theta_i,phi_i,theta_o,phi_o,value\n";
+  for (const int theta_i : {0, 30, 60})
+    for (const int theta_o : {0, 20, 40, 60})
+      for (const int phi_o : {0, 90, 180})
+        text += fmt::format("{},0,{},{},{}\n", theta_i, theta_o, phi_o, value);
+  return parse_source(memory_file(text), options);
+}
+
+TEST(SourceReport, WarnsOfMoreReflectedThanReceived) {
+  const auto warnings = [](double value, const OpenOptions& options) {
+    return report_of(white_table(value, options))["warnings"].get<std::vector<std::string>>();
+  };
+  EXPECT_THAT(warnings(0.9, {}),
+              testing::Contains(testing::HasSubstr("More is reflected than received: 283 %")));
+  EXPECT_THAT(warnings(0.9, {.brf = true}), testing::IsEmpty());
+  EXPECT_THAT(warnings(0.9 / kPi, {}), testing::IsEmpty());
+}
+
+TEST(SourceReport, TakesAnUnknownRimForTheRest) {
+  const nlohmann::json albedo = report_of(white_table(0.5, {.brf = true}))["albedo"][0];
+  EXPECT_GT(albedo["unknown_fraction"].get<double>(), 0);
+  EXPECT_NEAR(albedo["albedo"][0].get<double>(), 0.5, 0.001);
+}
+
+// A tenth of the light goes into one patch, whose borders no quadrature knows.
+TEST(SourceReport, SumsPatchesExactly) {
+  const PatchBasis basis = klems_full_basis();
+  PatchTable mirror{basis, basis, std::vector<float>(basis.size() * basis.size(), 0.0f)};
+  mirror.incident.first_azimuth = kPi;
+  for (std::size_t k = 0; k < basis.size(); ++k)
+    mirror.values[k * basis.size() + k] = static_cast<float>(0.1 / basis.projected_solid_angle(k));
+  const nlohmann::json json = report_of({.name = "mirror", .brdf = mirror, .findings = {}});
+  for (const auto& at : json["albedo"]) EXPECT_NEAR(at["albedo"][0].get<double>(), 0.1, 1e-7);
 }
 
 TEST(SourceReport, SaysWhatAModelIsMadeOf) {

@@ -36,7 +36,8 @@ struct Content {
   std::vector<double> rotations_deg, incidences_deg, lambda_nm;
   std::vector<std::vector<std::vector<Block>>> blocks;
   std::string comment;
-  std::string scaling;  // what was made of the stated reflectances
+  std::string scaling;        // what was made of the stated reflectances
+  bool transmission = false;  // the file has it too
 };
 
 /// The next number, on a later line where this one has none left.
@@ -118,25 +119,42 @@ Content read_preamble(TextReader& reader, bool anisotropic) {
     for (int k = 0; k < 3; ++k) next_number(reader, "the anisotropy vector");
   const double reflection = next_number(reader, "whether there is reflection");
   const double transmission = next_number(reader, "whether there is transmission");
-  if (reflection != 1 || transmission != 0)
-    reader.fail("reflection alone, 1 0", fmt::format("{} {}", reflection, transmission));
+  if (reflection != 1 || (transmission != 0 && transmission != 1))
+    reader.fail("reflection, 1 0 or 1 1", fmt::format("{} {}", reflection, transmission));
+  content.transmission = transmission == 1;
   content.holds_f = next_number(reader, "the type of the values") != 0;
   return content;
+}
+
+/// Integrals over theta in [a, b] of sin(theta) times a line that is 1 at a and 0 at b, and of the other line; with
+/// `cosine` of sin(theta) cos(theta). Exact: a coarse table of constant values integrates to what it should.
+std::pair<double, double> line_integrals(double a, double b, bool cosine) noexcept {
+  // sin(theta) cos(theta) is sin(2 theta) / 2: with u = w theta, the integrals of sin(u) and of u sin(u)
+  const double w = cosine ? 2 : 1, ua = w * a, ub = w * b;
+  const double whole = std::cos(ua) - std::cos(ub);
+  const double first = (std::sin(ub) - ub * std::cos(ub)) - (std::sin(ua) - ua * std::cos(ua));
+  const double scale = (cosine ? 0.5 : 1) / w, rising = (first - ua * whole) / (ub - ua);
+  return {scale * (whole - rising), scale * rising};
 }
 
 /// The integral over the hemisphere of a block's values times their cosine, or without where they contain it; linear
 /// between angles.
 double integral(const Block& block, bool holds_f) noexcept {
-  const auto at = [&](std::size_t t, std::size_t p) {
-    const double theta = radians(block.theta_deg[t]);
-    return block.values[t * block.phi_deg.size() + p] * std::sin(theta) * (holds_f ? std::cos(theta) : 1);
+  const std::size_t phis = block.phi_deg.size();
+  // what of the circle each azimuth stands for
+  const auto around = [&](std::size_t t) {
+    double sum = 0;
+    for (std::size_t p = 1; p < phis; ++p)
+      sum += radians(block.phi_deg[p] - block.phi_deg[p - 1]) *
+             (block.values[t * phis + p - 1] + block.values[t * phis + p]) / 2;
+    return sum;
   };
   double sum = 0;
-  for (std::size_t t = 1; t < block.theta_deg.size(); ++t)
-    for (std::size_t p = 1; p < block.phi_deg.size(); ++p)
-      sum += radians(block.theta_deg[t] - block.theta_deg[t - 1]) *
-             radians(block.phi_deg[p] - block.phi_deg[p - 1]) *
-             (at(t - 1, p - 1) + at(t, p - 1) + at(t - 1, p) + at(t, p)) / 4;
+  for (std::size_t t = 1; t < block.theta_deg.size(); ++t) {
+    const auto [low, high] =
+        line_integrals(radians(block.theta_deg[t - 1]), radians(block.theta_deg[t]), holds_f);
+    sum += low * around(t - 1) + high * around(t);
+  }
   return block.phi_deg.back() > 180 + kSameDegree ? sum : 2 * sum;
 }
 
@@ -178,6 +196,7 @@ double value_at(const Block& block, double theta_deg, double phi_deg) noexcept {
 /// One block for each rotation and incidence, and the spectrum they are scaled to.
 Content read_anisotropic(TextReader& reader) {
   Content content = read_preamble(reader, true);
+  if (content.transmission) reader.fail("reflection alone, 1 0, in an anisotropic file", "1 1");
   const std::size_t rotations = next_count(reader, "the number of anisotropy angles", kMaxAngles);
   content.rotations_deg = next_angles(reader, "anisotropy angles", rotations, 360);
   for (std::size_t r = 0; r < rotations; ++r) {
@@ -242,6 +261,12 @@ Content read_brdf(TextReader& reader) {
         reader.fail("a positive reflectance", fmt::format("{}", found));
       kept = kept && trusted(reflectance, found);
       factors[k].push_back(found > 0 ? reflectance / found : 0);
+    }
+  // the same sections of transmission, which have to be whole too
+  if (content.transmission)
+    for (std::size_t section = 0; section < incidences * bands; ++section) {
+      next_number(reader, "a transmittance");
+      next_block(reader);
     }
   content.scaling = kept ? "The values integrate to the stated reflectances: taken as they are."
                          : "The values are scaled to the stated reflectances.";
@@ -400,6 +425,7 @@ SpeosFile parse_speos(const FileBytes& file, const OpenOptions& options) {
   check_wavelengths(file.name, content.lambda_nm);
   findings.format = anisotropic ? "Speos anisotropic BSDF" : "Speos BRDF";
   findings.description = content.comment;
+  if (content.transmission) findings.left_out.push_back("transmission");
   findings.conventions = {
       "Angles in degrees; the mirror direction has phi = 0, retroreflection 180.",
       content.holds_f ? "Values are f_r." : "Values contain cos(theta_o): it is divided out.",

@@ -3,6 +3,7 @@
 #include <iterator>
 #include <sstream>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,6 +16,7 @@ namespace burnish {
 namespace {
 
 using testing::Contains;
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 double value(const AngleTable& table, Vec3 wi, Vec3 wo, std::size_t channel = 0) {
@@ -69,6 +71,30 @@ TEST(Speos, ScalesABrdfToItsReflectanceUnlessItHasIt) {
   EXPECT_EQ(parse_speos(memory_file(brdf_text(reflectance)), {}).table.channels(), 3);
 }
 
+// Four polar angles of a constant: a sum of trapezoids has 18.2 %, which is no reason to scale.
+TEST(Speos, KeepsCoarseTablesThatAgreeWithTheirReflectance) {
+  const auto text = [](const char* modes, const char* type, const char* rows) {
+    std::string made = fmt::format(
+        "OPTIS - brdf surface file v8.0\n0\ncomment\n5\n-----\n{}\n{}\n2\t1\n0 60\n550\n", modes, type);
+    for (const char* reflectance : {"20", "20"})
+      made += fmt::format("{}\n4\t4\n\t0\t120\t240\t360\n{}", reflectance, rows);
+    return made;
+  };
+  const char* const f =
+      "0\t0.063662\t0.063662\t0.063662\t0.063662\n30\t0.063662\t0.063662\t0.063662\t0.063662\n"
+      "60\t0.063662\t0.063662\t0.063662\t0.063662\n90\t0.063662\t0.063662\t0.063662\t0.063662\n";
+  const SpeosFile file = parse_speos(memory_file(text("1\t0", "1", f)), {});
+  EXPECT_THAT(file.findings.conventions, Contains(HasSubstr("taken as they are")));
+  EXPECT_NEAR(value(file.table, spherical_direction(0.3, 0), spherical_direction(0.5, 1)), 0.063662, 1e-7);
+  // with transmission behind it the same, which is said
+  const std::string both =
+      text("1\t1", "1", f) + text("", "", f).substr(text("", "", "").find("\n550\n") + 5);
+  const SpeosFile reflection = parse_speos(memory_file(both), {});
+  EXPECT_EQ(reflection.table.values, file.table.values);
+  EXPECT_THAT(reflection.findings.left_out, ElementsAre("transmission"));
+  EXPECT_TRUE(file.findings.left_out.empty());
+}
+
 TEST(Speos, KeepsDarkSpectraAndSpectraThatVaryLittle) {
   // the seed's blocks integrate to what is found for them; 12 times as much, and 2 % more, at the other wavelength
   for (const auto& [blue, red] : {std::pair("0.04", "0.48"), std::pair("50", "51")}) {
@@ -106,6 +132,8 @@ TEST(Speos, SaysWhatIsWrong) {
   };
   EXPECT_THAT(error(seeds::kSpeos, "v8.0\n0", "v8.0\n1"), HasSubstr("text mode, 0"));
   EXPECT_THAT(error(seeds::kSpeos, "1\t0\n0\n", "1\t1\n0\n"), HasSubstr("reflection alone"));
+  EXPECT_THAT(error(brdf_text(0.5), "1\t0\n1\n", "0\t1\n1\n"), HasSubstr("reflection, 1 0 or 1 1"));
+  EXPECT_THAT(error(brdf_text(0.5), "1\t0\n1\n", "1\t1\n1\n"), HasSubstr("a number for a transmittance"));
   EXPECT_THAT(error(seeds::kSpeos, "0 90\n", "90 0\n"), HasSubstr("increasing anisotropy angles"));
   EXPECT_THAT(error(seeds::kSpeos, "30\n1\n30\n", "30\n1\n31\n"), HasSubstr("the same incidences"));
   EXPECT_THAT(error(seeds::kSpeos, "2 3\n", "4000 4000\n"), HasSubstr("4000 x 4000 values"));

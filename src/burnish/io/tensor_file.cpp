@@ -85,7 +85,8 @@ std::vector<Tensor> parse_tensor_file(const FileBytes& file) {
     throw Error(file.name, 0, "a tensor file's signature", "other bytes");
   const auto major = reader.number<std::uint8_t>("a version"),
              minor = reader.number<std::uint8_t>("a version");
-  if (major != 1 || minor != 0) reader.fail("version 1.0", fmt::format("{}.{}", major, minor));
+  // as Mitsuba has it: one of the two is enough
+  if (major != 1 && minor != 0) reader.fail("version 1.0", fmt::format("{}.{}", major, minor));
   const auto count = reader.number<std::uint32_t>("a number of fields");
   if (count > reader.remaining() / kMinField)
     reader.fail("fields within the file", fmt::format("{} fields", count));

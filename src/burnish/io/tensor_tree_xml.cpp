@@ -120,30 +120,26 @@ std::string escaped(std::string_view name) {
 }  // namespace
 
 bool looks_like_tensor_tree(std::string_view text) noexcept {
-  const std::string_view start = text.substr(0, 65536);
-  const std::size_t first = start.find_first_not_of(" \t\r\n\xef\xbb\xbf");
-  return first != std::string_view::npos && start[first] == '<' &&
-         start.find("<WindowElement") != std::string_view::npos &&
-         start.find("TensorTree") != std::string_view::npos;
+  return looks_like_window_xml(text) &&
+         lower_case(text.substr(0, 65536)).find("tensortree") != std::string::npos;
 }
 
 TensorTreeFile parse_tensor_tree(const FileBytes& file, const OpenOptions& options) {
   const WindowXml xml(file);
   const std::string_view structure = xml.structure();
-  if (structure != "TensorTree3" && structure != "TensorTree4")
+  const bool rank_3 = same_name(structure, "TensorTree3");
+  if (!rank_3 && !same_name(structure, "TensorTree4"))
     xml.fail("IncidentDataStructure TensorTree3 or TensorTree4", in_quotes(structure));
 
   // one side's block, the other's where there is no other
-  const std::string_view front = "Reflection Front", back = "Reflection Back";
-  std::string_view direction = options.back_side ? back : front;
-  if (!xml.find_block(direction) && xml.find_block(options.back_side ? front : back))
-    direction = options.back_side ? front : back;
-  const pugi::xml_node block = xml.block(direction);
-  if (const std::string_view basis = trimmed(block.child_value("AngleBasis")); basis != "LBNL/Shirley-Chiu")
+  ReflectionBlock reflection = xml.reflection(options.back_side);
+  const pugi::xml_node block = reflection.node;
+  if (const std::string_view basis = trimmed(block.child_value("AngleBasis"));
+      !same_name(basis, "LBNL/Shirley-Chiu"))
     xml.fail("AngleBasis LBNL/Shirley-Chiu", in_quotes(basis));
 
   TensorTreeFile result;
-  const int rank = structure == "TensorTree3" ? 3 : 4;
+  const int rank = rank_3 ? 3 : 4;
   result.table = BraceReader(xml, block.child_value("ScatteringData"), rank).read();
   Findings& findings = result.findings;
   for (const TreeLeaf& leaf : leaves(result.table)) {
@@ -154,16 +150,17 @@ TensorTreeFile parse_tensor_tree(const FileBytes& file, const OpenOptions& optio
   findings.format = fmt::format("tensor tree XML of rank {}", rank);
   findings.description = xml.material();
   findings.conventions = {
-      fmt::format("'{}'{}; values are f_r without the cosine.", direction,
-                  options.back_side == (direction == back) ? "" : ", the only reflection there is"),
+      fmt::format("{}; values are f_r without the cosine.", reflection.sentence),
       "Incident directions are those the light travels to: the mirror direction has the same place.",
       "Constant over each cube, as Radiance evaluates it."};
   if (rank == 3) findings.conventions.push_back("Isotropic.");
   findings.theta_i_max = findings.theta_o_max = kHalfPi;
+  findings.side = std::move(reflection.side);
+  findings.left_out = std::move(reflection.left_out);
   return result;
 }
 
-std::string format_tensor_tree(const TensorTree& tree, std::string_view material) {
+std::string format_tensor_tree(const TensorTree& tree, std::string_view material, std::string_view side) {
   std::string braces;
   add_braces(tree, 0, braces);
   return fmt::format(
@@ -176,12 +173,12 @@ std::string format_tensor_tree(const TensorTree& tree, std::string_view material
       "</Material>\n<DataDefinition>\n<IncidentDataStructure>TensorTree{}</IncidentDataStructure>\n"
       "</DataDefinition>\n<WavelengthData>\n<LayerNumber>System</LayerNumber>\n"
       "<Wavelength unit=\"Integral\">Visible</Wavelength>\n<WavelengthDataBlock>\n"
-      "<WavelengthDataDirection>Reflection Back</WavelengthDataDirection>\n"
+      "<WavelengthDataDirection>{}</WavelengthDataDirection>\n"
       "<AngleBasis>LBNL/Shirley-Chiu</AngleBasis>\n<ScatteringDataType>BTDF</ScatteringDataType>\n"
       "<ScatteringData>\n{}</ScatteringData>\n</WavelengthDataBlock>\n</WavelengthData>\n</Layer>\n</"
       "Optical>\n"
       "</WindowElement>\n",
-      escaped(material), tree.rank, braces);
+      escaped(material), tree.rank, side, braces);
 }
 
 }  // namespace burnish

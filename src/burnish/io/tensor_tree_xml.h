@@ -27,8 +27,9 @@ bool looks_like_tensor_tree(std::string_view text) noexcept;
 /// wrote. Source: [Ward 2012].
 TensorTreeFile parse_tensor_tree(const FileBytes& file, const OpenOptions& options);
 
-/// The file that holds the tree, as "Reflection Back", Radiance's front: reading it gives the same tree, every value
-/// to its last bit.
-std::string format_tensor_tree(const TensorTree& tree, std::string_view material);
+/// The file that holds the tree as one reflection, "Reflection Back" (Radiance's front) unless the tree came from the
+/// other: reading it gives the same tree, every value to its last bit.
+std::string format_tensor_tree(const TensorTree& tree, std::string_view material,
+                               std::string_view side = "Reflection Back");
 
 }  // namespace burnish

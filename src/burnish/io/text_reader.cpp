@@ -12,9 +12,17 @@ namespace {
 
 constexpr std::string_view kSeparators = " \t,";
 
+/// What ends the lines of a text: old systems have \r alone.
+char line_end_of(std::string_view text) noexcept {
+  const std::size_t first = text.find_first_of("\r\n");
+  return first != std::string_view::npos && text[first] == '\r' && !text.substr(first + 1).starts_with('\n')
+             ? '\r'
+             : '\n';
+}
+
 /// Cuts the first line off the text.
-std::string_view take_line(std::string_view& text) noexcept {
-  const std::size_t end = std::min(text.find('\n'), text.size());
+std::string_view take_line(std::string_view& text, char line_end) noexcept {
+  const std::size_t end = std::min(text.find(line_end), text.size());
   std::string_view line = text.substr(0, end);
   text.remove_prefix(std::min(end + 1, text.size()));
   if (line.ends_with('\r')) line.remove_suffix(1);
@@ -33,12 +41,14 @@ std::string_view without_mark(std::string_view text) noexcept {
 
 }  // namespace
 
-TextReader::TextReader(const FileBytes& file) noexcept
-    : name_(&file.name), rest_(without_mark(file.text())) {}
+TextReader::TextReader(const FileBytes& file) noexcept : TextReader(file.name, file.text()) {}
+
+TextReader::TextReader(const std::string& name, std::string_view text) noexcept
+    : name_(&name), rest_(without_mark(text)), line_end_(line_end_of(rest_)) {}
 
 bool TextReader::next_line() noexcept {
   if (rest_.empty()) return false;
-  line_ = unread_ = take_line(rest_);
+  line_ = unread_ = take_line(rest_, line_end_);
   ++line_number_;
   return true;
 }
@@ -115,8 +125,9 @@ std::string in_quotes(std::string_view text) {
 
 std::string_view first_content_line(std::string_view text) noexcept {
   text = without_mark(text.substr(0, 65536));
+  const char line_end = line_end_of(text);
   while (!text.empty())
-    if (const std::string_view line = take_line(text); is_content(line)) return line;
+    if (const std::string_view line = take_line(text, line_end); is_content(line)) return line;
   return {};
 }
 

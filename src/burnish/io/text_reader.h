@@ -10,10 +10,13 @@
 namespace burnish {
 
 /// Reads a text file line by line and its lines word by word; errors name the line. Blanks, tabs and commas
-/// separate words; a line ends at \n or \r\n. A UTF-8 byte order mark at the front is skipped.
+/// separate words; a line ends at \n or \r\n, or at \r where the first one does. A UTF-8 byte order mark at the front
+/// is skipped.
 class TextReader {
  public:
   explicit TextReader(const FileBytes& file) noexcept;
+  /// The same of a text, which has to stay as long as its `name`.
+  TextReader(const std::string& name, std::string_view text) noexcept;
 
   /// Moves to the next line; false at the end of the file.
   bool next_line() noexcept;
@@ -39,6 +42,7 @@ class TextReader {
  private:
   const std::string* name_;
   std::string_view rest_, line_, unread_;
+  char line_end_;
   std::uint64_t line_number_ = 0;
 };
 

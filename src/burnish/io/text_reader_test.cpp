@@ -20,6 +20,15 @@ TEST(TextReader, SplitsLinesAndWords) {
   EXPECT_FALSE(reader.next_line());
 }
 
+TEST(TextReader, EndsLinesWhereOldSystemsDo) {
+  const FileBytes file = memory_file("a\rb c\r\rd");
+  TextReader reader(file);
+  std::vector<std::string> lines;
+  while (reader.next_line()) lines.emplace_back(reader.line());
+  EXPECT_EQ(lines, (std::vector<std::string>{"a", "b c", "", "d"}));
+  EXPECT_EQ(first_content_line("# x\rb\rc"), "b");
+}
+
 TEST(TextReader, NamesTheLineInItsErrors) {
   const FileBytes file = memory_file("1\n2 x\n");
   TextReader reader(file);

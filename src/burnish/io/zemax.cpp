@@ -8,6 +8,8 @@
 #include <burnish/io/text_reader.h>
 #include <burnish/io/zemax.h>
 #include <burnish/math/angles.h>
+#include <burnish/math/written_degrees.h>
+#include <burnish/metrics/albedo.h>
 
 namespace burnish {
 
@@ -130,7 +132,7 @@ constexpr double kWrittenZero = 1e-30;
 void append_angles(std::string& text, std::string_view keyword, const AngleAxis& axis,
                    double offset_deg = 0) {
   std::vector<double> angles;
-  for (const double node : axis.nodes) angles.push_back(degrees(node) - offset_deg);
+  for (const double node : axis.nodes) angles.push_back(written_degrees(node, offset_deg));
   text += fmt::format("{}\t{}\n{}\n", keyword, angles.size(), fmt::join(angles, "\t"));
 }
 
@@ -174,16 +176,18 @@ struct TableSizes {
   std::size_t entries() const noexcept { return blocks() * azimuths * radials; }
 };
 
-/// The data of one channel: for every block the integral TIS, which is passed over, then rows of azimuths.
-/// `entries` has one value an entry, `stride` apart.
-void read_channel(TextReader& reader, const TableSizes& sizes, double* entries, std::size_t stride) {
+/// The data of one channel: for every block the integral TIS, then rows of azimuths. `entries` has one value an entry,
+/// `stride` apart.
+std::vector<double> read_channel(TextReader& reader, const TableSizes& sizes, double* entries,
+                                 std::size_t stride) {
+  std::vector<double> totals;
   // the line that names the channel, then the data
   if (!reader.next_content_line()) reader.fail("a channel's name", "the end of the file");
   expect_keyword(reader, "databegin");
   std::size_t entry = 0;
   for (std::size_t block = 0; block < sizes.blocks(); ++block) {
     expect_keyword(reader, "tis");
-    reader.number("TIS");
+    totals.push_back(reader.number("TIS"));
     for (std::size_t row = 0; row < sizes.azimuths; ++row) {
       if (!reader.next_content_line()) reader.fail("a row of values", "the end of the file");
       for (std::size_t column = 0; column < sizes.radials; ++column) {
@@ -196,6 +200,35 @@ void read_channel(TextReader& reader, const TableSizes& sizes, double* entries, 
     }
   }
   expect_keyword(reader, "dataend");
+  return totals;
+}
+
+/// Compares the values' integrals at a few incidences of the first rotation with what TIS states of them, of the
+/// channel that is luminance.
+void check_totals(const AngleTable& table, const std::vector<double>& stated, Findings& findings) {
+  constexpr std::size_t kMostIncidences = 4;
+  constexpr double kTrusted = 0.05, kAccuracy = 0.02, kMostTheta = radians(85);
+  const std::vector<double>& incidences = table.axes[1].nodes;
+  const std::size_t step = (incidences.size() + kMostIncidences - 1) / kMostIncidences;
+  double worst = 0, worst_found = 0;
+  std::size_t worst_at = 0, compared = 0;
+  for (std::size_t i = 0; i < incidences.size(); i += step) {
+    if (!(stated[i] > 0) || incidences[i] > kMostTheta) continue;
+    const Vec3 wi = spherical_direction(incidences[i], table.axes[0].nodes.front());
+    const std::vector<double> albedo = directional_albedo(table, wi, kAccuracy).albedo;
+    const double found = albedo.size() == 1
+                             ? albedo[0]
+                             : 0.2126 * albedo[0] + 0.7152 * albedo[1] + 0.0722 * albedo[2];  // [ITU 2015]
+    ++compared;
+    const double off = std::abs(found - stated[i]) / std::max(stated[i], kTrusted);
+    if (off > worst) worst = off, worst_found = found, worst_at = i;
+  }
+  if (worst > kTrusted)
+    findings.warnings.push_back(fmt::format(
+        "The values integrate to {:.3g} % at theta_i = {:.3g} degrees, TIS says {:.3g} %: taken as they are.",
+        100 * worst_found, degrees(incidences[worst_at]), 100 * stated[worst_at]));
+  else if (compared > 0)
+    findings.conventions.push_back("The values integrate to the stated TIS.");
 }
 
 /// Makes the table's values of what was read, grey or XYZ, and notes holes, negatives and angles.
@@ -232,7 +265,7 @@ void fill_values(const std::vector<double>& read, const Header& header, const Ta
     const Vec3 wo =
         around_specular(radians(incidences[incidence]), 0, radians(azimuths[row]), radians(radials[column]));
     findings.theta_o_min = std::min(findings.theta_o_min, theta_of(wo));
-    findings.theta_o_max = std::max(findings.theta_o_max, theta_of(wo));
+    findings.theta_o_max = std::max(findings.theta_o_max, std::min(theta_of(wo), kHalfPi));
   }
 }
 
@@ -253,6 +286,20 @@ std::vector<Row> block_integrals(const AngleTable& table) {
       totals[entry / block][k] += weight * static_cast<double>(value[k]);
   }
   return totals;
+}
+
+/// The comments of a file without their marks, as they are but for what no line can have.
+std::vector<std::string> comments_of(const FileBytes& file) {
+  constexpr std::size_t kMost = 200, kLongest = 400;
+  std::vector<std::string> comments;
+  TextReader reader(file);
+  while (comments.size() < kMost && reader.next_line())
+    if (reader.line().starts_with('#')) {
+      std::string& comment = comments.emplace_back(reader.line().substr(1, kLongest));
+      std::replace_if(
+          comment.begin(), comment.end(), [](char c) { return c >= 0 && c < ' ' && c != '\t'; }, '?');
+    }
+  return comments;
 }
 
 /// The remark "# Sample: ..." in front of the header.
@@ -302,7 +349,11 @@ ZemaxFile parse_zemax(const FileBytes& file) {
 
   // the file has one channel after another, the table all of an entry together
   std::vector<double> read(values);
-  for (std::size_t c = 0; c < sizes.channels; ++c) read_channel(reader, sizes, &read[c], sizes.channels);
+  std::vector<double> totals;
+  for (std::size_t c = 0; c < sizes.channels; ++c) {
+    std::vector<double> of_channel = read_channel(reader, sizes, &read[c], sizes.channels);
+    if (c == sizes.channels / 2) totals = std::move(of_channel);  // Y of XYZ
+  }
 
   Findings& findings = result.findings;
   findings.theta_i_min = radians(incidences.front());
@@ -321,6 +372,8 @@ ZemaxFile parse_zemax(const FileBytes& file) {
                         : "Sample rotation r puts the light at phi_i = r + 90 degrees.",
       monochrome ? "Monochrome." : "XYZ became linear Rec. 709 for a D65 white."};
   if (table.folded) findings.conventions.push_back("Symmetric about the plane of incidence.");
+  findings.comments = comments_of(file);
+  check_totals(table, totals, findings);
   return result;
 }
 
@@ -351,19 +404,21 @@ bool fits_zemax(const AngleTable& table) noexcept {
   return table.frame == AngleTable::Frame::specular && (table.channel_count == 1 || table.channel_count == 3);
 }
 
-std::string format_zemax(const AngleTable& table, std::string_view sample) {
+std::string format_zemax(const AngleTable& table, std::string_view sample,
+                         std::span<const std::string> comments) {
   if (!fits_zemax(table))
     throw Error("Zemax table: expected values around the mirror direction, grey or RGB");
   const auto& axes = table.axes;
   const auto channels = table.channel_count;
   const bool monochrome = channels == 1;
-  std::string text =
-      fmt::format("# Sample: {}\nSource\tMeasured\nSymmetry\t{}\nSpectralContent\t{}\nScatterType\tBRDF\n",
-                  printable(sample, 200),
-                  table.folded        ? "PlaneSymmetrical"
-                  : table.isotropic() ? "Asymmetrical"
-                                      : "Asymmetrical4D",
-                  monochrome ? "Monochrome" : "XYZ");
+  std::string text;
+  for (const std::string& comment : comments) text += fmt::format("#{}\n", comment);
+  if (comments.empty()) text = fmt::format("# Sample: {}\n", printable(sample, 200));
+  text += fmt::format("Source\tMeasured\nSymmetry\t{}\nSpectralContent\t{}\nScatterType\tBRDF\n",
+                      table.folded        ? "PlaneSymmetrical"
+                      : table.isotropic() ? "Asymmetrical"
+                                          : "Asymmetrical4D",
+                      monochrome ? "Monochrome" : "XYZ");
   append_angles(text, "SampleRotation", axes[0], 90);
   append_angles(text, "AngleOfIncidence", axes[1]);
   append_angles(text, "ScatterAzimuth", axes[2]);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -22,8 +23,8 @@ bool looks_like_zemax(std::string_view text) noexcept;
 /// around and angle from the mirror direction (azimuth 0 to the normal, counter-clockwise). Rotation r means
 /// a light at phi_i = r + 90 degrees: the normal of the plane of incidence is then r from +x. Linear between
 /// the angles. Entries of exactly zero are holes; negatives are counted and kept. Monochrome is grey; XYZ
-/// becomes linear Rec. 709 for a D65 white. Throws Error on anything else, transmission included. Source:
-/// [Rykowski 2008].
+/// becomes linear Rec. 709 for a D65 white. Values stay as they are where they do not integrate to the stated TIS;
+/// Findings says so. Comments are kept. Throws Error on anything else, transmission included. Source: [Rykowski 2008].
 ZemaxFile parse_zemax(const FileBytes& file);
 
 /// Frame and axes of the files that burnish makes, without values: isotropic ones folded, incidences
@@ -36,8 +37,9 @@ bool fits_zemax(const AngleTable& table) noexcept;
 
 /// The file that holds the table, values and angles with all their digits; RGB as XYZ. Holes are 0, so what
 /// is 0 is written as 1e-30. The total of each incidence, TIS, is the sum of its entries times cos(theta_o)
-/// and the solid angles of their cells. `sample` names it in a remark, line breaks left out. Throws Error
-/// unless fits_zemax.
-std::string format_zemax(const AngleTable& table, std::string_view sample);
+/// and the solid angles of their cells. `comments` are written as they are; without any a remark names the `sample`,
+/// line breaks left out. Throws Error unless fits_zemax.
+std::string format_zemax(const AngleTable& table, std::string_view sample,
+                         std::span<const std::string> comments = {});
 
 }  // namespace burnish

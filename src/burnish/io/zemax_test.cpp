@@ -13,7 +13,11 @@
 namespace burnish {
 namespace {
 
+using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::StartsWith;
 
 const std::string kHeader =
     "# Sample: "
@@ -29,6 +33,43 @@ std::string replaced(std::string text, std::string_view what, std::string_view w
 
 std::string zemax_error(const std::string& text) {
   return error_of([&] { parse_zemax(memory_file(text)); });
+}
+
+// f_r = 0.1 / pi to 90 degrees and beyond; TIS says more.
+std::string lambertian(std::string_view tis) {
+  std::string text =
+      "# Sample: white\n#  kept,\tas it is "
+      "\nSource\tMeasured\nSymmetry\tPlaneSymmetrical\nSpectralContent\tMonochrome\n"
+      "ScatterType\tBRDF\nSampleRotation\t1\n0\nAngleOfIncidence\t2\n0\t30\nScatterAzimuth\t3\n0\t90\t180\nSc"
+      "atterRadial\t3\n"
+      "0\t75\t150\n\nMonochrome\nDataBegin\n";
+  for (int block = 0; block < 2; ++block) {
+    text += fmt::format("TIS {}\n", tis);
+    for (int row = 0; row < 3; ++row) text += "0.0318310\t0.0318310\t0.0318310\n";
+  }
+  return text + "DataEnd\n";
+}
+
+TEST(Zemax, SaysWhereValuesDoNotIntegrateToTis) {
+  const auto off = parse_zemax(memory_file(lambertian("0.3")));
+  EXPECT_THAT(off.findings.warnings,
+              ElementsAre(testing::AllOf(HasSubstr("The values integrate to 10 % at theta_i = "),
+                                         HasSubstr("TIS says 30 %"))));
+  const auto right = parse_zemax(memory_file(lambertian("0.1")));
+  EXPECT_THAT(right.findings.warnings, IsEmpty());
+  EXPECT_THAT(right.findings.conventions, Contains("The values integrate to the stated TIS."));
+  EXPECT_EQ(right.table.values, off.table.values);
+  EXPECT_THAT(parse_zemax(memory_file(lambertian("0"))).findings.warnings, IsEmpty()) << "not stated";
+}
+
+TEST(Zemax, KeepsCommentsAndAnglesAsTheyAreWritten) {
+  const auto file = parse_zemax(memory_file(lambertian("0.1")));
+  EXPECT_DOUBLE_EQ(file.findings.theta_o_max, kHalfPi) << "what lies below the horizon is no coverage";
+  const std::string again = format_zemax(file.table, "white", file.findings.comments);
+  EXPECT_THAT(again, StartsWith("# Sample: white\n#  kept,\tas it is \nSource"));
+  EXPECT_THAT(again, HasSubstr("AngleOfIncidence\t2\n0\t30\n"));
+  EXPECT_THAT(again, HasSubstr("\n0\t75\t150\n"));
+  EXPECT_EQ(parse_zemax(memory_file(again)).table.axes[1].nodes, file.table.axes[1].nodes);
 }
 
 TEST(Zemax, ReadsValuesAroundTheMirrorDirection) {

@@ -80,7 +80,9 @@ std::string settings_text(const OpenOptions& options) {
                       {"illuminant", options.illuminant},
                       {"has_cosine", options.has_cosine},
                       {"clamp_negatives", options.clamp_negatives},
-                      {"back", options.back_side}});
+                      {"back", options.back_side},
+                      {"has_cosine_o", options.has_cosine_o},
+                      {"brf", options.brf}});
 }
 
 std::string settings_text(const ExportOptions& options) {

@@ -57,8 +57,8 @@ double largest_albedo(BrdfRef brdf) {
 }
 
 std::vector<std::string> warnings(const Source& source, double albedo) {
-  std::vector<std::string> said;
   const Findings& found = source.findings;
+  std::vector<std::string> said = found.warnings;
   const auto values = static_cast<double>(found.sample_count * source.ref().channels());
   if (values > 0 && static_cast<double>(found.negative_count) > kManyNegative * values)
     said.push_back(fmt::format("{:.0f} % of the measured values are below zero",

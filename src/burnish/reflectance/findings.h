@@ -30,6 +30,11 @@ struct Findings {
   std::string notes;  ///< what a model says about its making, a JSON object; empty for anything else
   double theta_i_min = 0, theta_i_max = 0;  ///< polar angles covered by data, radians
   double theta_o_min = 0, theta_o_max = 0;
+  std::vector<std::string>
+      warnings;  ///< what may be wrong with the file or how it was read, one sentence each
+  std::vector<std::string> left_out;  ///< what else the file holds: "Transmission Front (Visible)"
+  std::string side;                   ///< of a window system the reflection that was read; empty elsewhere
+  std::vector<std::string> comments;  ///< remarks of a format that keeps them, without their marks
 };
 
 }  // namespace burnish

@@ -4,11 +4,11 @@
 #include <numeric>
 #include <utility>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include <burnish/error.h>
 #include <burnish/math/angles.h>
+#include <burnish/math/parallel.h>
 #include <burnish/math/random.h>
 #include <burnish/parameterization/half_diff.h>
 #include <burnish/reflectance/kriged_nodes.h>
@@ -22,6 +22,8 @@ constexpr double kUpright = 1e-12;    // theta_h of rounding
 constexpr double kGuessWeight = 0.1;  // of what stands where nothing was measured
 
 constexpr std::size_t kNeighbours = KrigedNodes::kNeighbours;
+constexpr std::size_t kCellsTogether = 64;  // a thread at a time
+constexpr double kLeastPivot = 1e-9;        // of the variance
 
 // Blocks of nodes whose likelihood is looked at.
 constexpr std::size_t kNearBlocks = 24, kNearNodes = 64;
@@ -144,6 +146,7 @@ KrigedNodes::KrigedNodes(const MeasuredNodes& nodes, const LogCovariance& covari
     measured_.variances.push_back(all.measured.variances[i] * covariance.noise * covariance.noise);
     for (std::size_t c = 0; c < channels; ++c) measured_.logs.push_back(all.measured.logs[i * channels + c]);
   }
+  solve_cells();
 }
 
 TreePoint KrigedNodes::scaled(TreePoint place) const noexcept {
@@ -151,102 +154,188 @@ TreePoint KrigedNodes::scaled(TreePoint place) const noexcept {
   return place;
 }
 
-/// The neighbours of a place, what each weighs, and the variance of what they predict together.
-struct KrigedNodes::Prediction {
+namespace {
+
+using Floats = Eigen::Array<float, static_cast<int>(kNeighbours), 1>;
+using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor,
+                             static_cast<int>(kNeighbours), static_cast<int>(kNeighbours)>;
+using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, static_cast<int>(kNeighbours), 1>;
+
+/// Places by axis.
+using Places = std::array<Floats, LogCovariance::kAxes>;
+
+/// Covariances of a place with the first n of some places.
+Floats covariances(const LogCovariance& covariance, const Places& at, const std::array<float, 4>& place,
+                   Eigen::Index n) noexcept {
+  Floats sum;
+  sum.head(n).setConstant(static_cast<float>(covariance.level * covariance.level));
+  for (std::size_t t = 0; t < LogCovariance::kTerms; ++t) {
+    Floats r;
+    r.head(n).setZero();
+    for (std::size_t k = 0; k < LogCovariance::kAxes; ++k)
+      if (covariance.inverse_length[t][k] > 0)
+        r.head(n) +=
+            ((at[k].head(n) - place[k]) * static_cast<float>(covariance.inverse_length[t][k])).square();
+    r.head(n) = static_cast<float>(LogCovariance::kRoot3) * r.head(n).sqrt();
+    const auto spread2 = static_cast<float>(covariance.spread[t] * covariance.spread[t]);
+    sum.head(n) += spread2 * (1 + r.head(n)) * (-r.head(n)).exp();
+  }
+  return sum;
+}
+
+std::array<float, 4> floats_of(const TreePoint& place) noexcept {
+  return {static_cast<float>(place[0]), static_cast<float>(place[1]), static_cast<float>(place[2]),
+          static_cast<float>(place[3])};
+}
+
+}  // namespace
+
+/// The nodes nearest to a place, in the tree's order, and the factor of their covariances K.
+struct KrigedNodes::Neighbourhood {
   std::size_t count = 0;
-  std::array<std::size_t, kNeighbours> places;
-  std::array<double, kNeighbours> weights;
-  double variance = 0;
+  std::array<std::uint32_t, kNeighbours> nodes;
+  Places at;
+  Square factor;
+
+  /// K^-1 x, in place.
+  void solve(Column& x) const noexcept {
+    factor.template triangularView<Eigen::Lower>().solveInPlace(x);
+    factor.template triangularView<Eigen::Lower>().adjoint().solveInPlace(x);
+  }
 };
 
 template <class Takes>
-KrigedNodes::Prediction KrigedNodes::predict(const TreePoint& place, const Takes& takes) const noexcept {
+KrigedNodes::Neighbourhood KrigedNodes::neighbourhood(const TreePoint& scaled_place,
+                                                      const Takes& takes) const noexcept {
   // The nearest nodes, in one order whatever the tree's walk.
   std::array<KdTree::Neighbour, kNeighbours> found;
-  Prediction result;
-  result.count = tree_.nearest(scaled(place), found, takes);
-  const std::size_t n = result.count;
-  for (std::size_t i = 0; i < n; ++i) result.places[i] = found[i].place;
-  std::sort(result.places.begin(), result.places.begin() + static_cast<std::ptrdiff_t>(n));
-
-  // Coordinates by axis, the place itself last: row i of the covariances is of node i with those up to it.
-  using Floats = Eigen::Array<float, kNeighbours + 1, 1>;
-  std::array<Floats, LogCovariance::kAxes> at;
-  for (std::size_t k = 0; k < LogCovariance::kAxes; ++k) {
-    for (std::size_t i = 0; i < n; ++i)
-      at[k][static_cast<Eigen::Index>(i)] = static_cast<float>(measured_.places[result.places[i]][k]);
-    at[k][static_cast<Eigen::Index>(n)] = static_cast<float>(place[k]);
-  }
-  using Square =
-      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kNeighbours, kNeighbours>;
-  using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kNeighbours, 1>;
-  const auto size = static_cast<Eigen::Index>(n);
-  Square matrix(size, size);
-  Column towards(size);
-  for (Eigen::Index i = 0; i <= size; ++i) {
-    const Eigen::Index m = i == size ? size : i + 1;
-    Floats row;
-    row.head(m).setConstant(static_cast<float>(covariance_.level * covariance_.level));
-    for (std::size_t t = 0; t < LogCovariance::kTerms; ++t) {
-      Floats r2;
-      r2.head(m).setZero();
-      for (std::size_t k = 0; k < LogCovariance::kAxes; ++k)
-        if (covariance_.inverse_length[t][k] > 0)
-          r2.head(m) +=
-              ((at[k].head(m) - at[k][i]) * static_cast<float>(covariance_.inverse_length[t][k])).square();
-      Floats r;
-      r.head(m) = static_cast<float>(LogCovariance::kRoot3) * r2.head(m).sqrt();
-      const auto spread2 = static_cast<float>(covariance_.spread[t] * covariance_.spread[t]);
-      row.head(m) += spread2 * (1 + r.head(m)) * (-r.head(m)).exp();
-    }
-    if (i == size) {
-      towards = row.head(m).cast<double>().matrix();
-      continue;
-    }
-    matrix.row(i).head(m) = row.head(m).cast<double>().matrix().transpose();
-    matrix(i, i) = covariance_.variance() + measured_.variances[result.places[static_cast<std::size_t>(i)]];
+  Neighbourhood near;
+  near.count = tree_.nearest(scaled_place, found, takes);
+  for (std::size_t i = 0; i < near.count; ++i) near.nodes[i] = static_cast<std::uint32_t>(found[i].place);
+  std::sort(near.nodes.begin(), near.nodes.begin() + static_cast<std::ptrdiff_t>(near.count));
+  for (std::size_t i = 0; i < near.count; ++i) {
+    const std::array<float, 4> place = floats_of(measured_.places[near.nodes[i]]);
+    for (std::size_t k = 0; k < place.size(); ++k) near.at[k][static_cast<Eigen::Index>(i)] = place[k];
   }
 
-  // The weights of the best linear prediction, K^-1 k, and its variance, k(x, x) - k^T K^-1 k.
-  const Eigen::LLT<Eigen::Ref<Square>, Eigen::Lower> factor(matrix);
-  Column weights = towards;
-  if (factor.info() == Eigen::Success)
-    factor.solveInPlace(weights);
-  else
-    weights.setConstant(n > 0 ? 1 / static_cast<double>(n) : 0);
-  for (std::size_t i = 0; i < n; ++i) result.weights[i] = weights[static_cast<Eigen::Index>(i)];
-  result.variance = std::max(0.0, covariance_.variance() - weights.dot(towards));
-  return result;
+  // The lower triangle of K: covariances of each node with those up to it, and its noise on the diagonal.
+  const auto n = static_cast<Eigen::Index>(near.count);
+  near.factor.resize(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const std::uint32_t node = near.nodes[static_cast<std::size_t>(i)];
+    const Floats row = covariances(covariance_, near.at, floats_of(measured_.places[node]), i);
+    near.factor.row(i).head(i) = row.head(i).cast<double>().matrix().transpose();
+    near.factor(i, i) = covariance_.variance() + measured_.variances[node];
+  }
+
+  // Its Cholesky factor in place, a column at a time; the noise keeps pivots above rounding.
+  const double least = kLeastPivot * covariance_.variance();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const double pivot = std::sqrt(std::max(near.factor(j, j), least));
+    near.factor(j, j) = pivot;
+    const Eigen::Index below = n - j - 1;
+    if (below == 0) continue;
+    near.factor.col(j).tail(below) /= pivot;
+    for (Eigen::Index k = j + 1; k < n; ++k)
+      near.factor.col(k).tail(n - k) -= near.factor(k, j) * near.factor.col(j).tail(n - k);
+  }
+  return near;
 }
 
-template <class Takes>
-void KrigedNodes::eval_of(Vec3 wi, Vec3 wo, const Takes& takes, std::span<double> f) const noexcept {
-  std::ranges::fill(f, 0.0);
-  if (!(wi.z > 0 && wo.z > 0)) return;
-  const Prediction prediction = predict(place_of(wi, wo, isotropic_), takes);
-  for (std::size_t c = 0; c < f.size(); ++c) {
-    double log = mean_[c];
-    for (std::size_t i = 0; i < prediction.count; ++i)
-      log += prediction.weights[i] * measured_.logs[prediction.places[i] * f.size() + c];
-    f[c] = std::clamp(std::exp(log) - kFloor, 0.0, 2 * largest_[c]);
-  }
+// What all pairs of each cell are predicted with.
+void KrigedNodes::solve_cells() {
+  // Every place lies in the box from -1 to 1; of an isotropic source all coordinates are positive.
+  TreePoint low, high;
+  low.fill(isotropic_ ? 0 : -1);
+  high.fill(1);
+  struct Cell {
+    std::size_t begin;
+    TreePoint middle;
+  };
+  std::vector<Cell> cells;
+  tree_.for_each_cell(scaled(low), scaled(high),
+                      [&](std::size_t begin, const TreePoint& from, const TreePoint& to) {
+                        Cell& cell = cells.emplace_back(Cell{begin, {}});
+                        for (std::size_t k = 0; k < from.size(); ++k)
+                          cell.middle[k] = 0.5 * (from[k] + to[k]);
+                      });
+
+  const std::size_t channels = measured_.channels, count = std::min(kNeighbours, measured_.size());
+  cell_.assign(measured_.size() + 1, 0);
+  near_.resize(cells.size() * count);
+  solved_.resize(cells.size() * count * channels);
+  for_each_chunk(cells.size(), kCellsTogether, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      const Neighbourhood near = neighbourhood(cells[c].middle, [](std::size_t) { return true; });
+      cell_[cells[c].begin] = static_cast<std::uint32_t>(c);
+      std::copy_n(near.nodes.begin(), count, near_.begin() + static_cast<std::ptrdiff_t>(c * count));
+      for (std::size_t channel = 0; channel < channels; ++channel) {
+        Column solved(static_cast<Eigen::Index>(count));
+        for (std::size_t i = 0; i < count; ++i)
+          solved[static_cast<Eigen::Index>(i)] = measured_.logs[near.nodes[i] * channels + channel];
+        near.solve(solved);
+        for (std::size_t i = 0; i < count; ++i)
+          solved_[(c * count + i) * channels + channel] =
+              static_cast<float>(solved[static_cast<Eigen::Index>(i)]);
+      }
+    }
+  });
 }
 
 bool KrigedNodes::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
-  eval_of(
-      wi, wo, [](std::size_t) { return true; }, f);
+  std::ranges::fill(f, 0.0);
+  if (!(wi.z > 0 && wo.z > 0)) return true;
+  const TreePoint place = place_of(wi, wo, isotropic_);
+  const std::size_t cell = cell_[tree_.cell_of(scaled(place))];
+  const std::size_t count = std::min(kNeighbours, measured_.size());
+  Places at;
+  for (std::size_t i = 0; i < count; ++i) {
+    const TreePoint& node = measured_.places[near_[cell * count + i]];
+    for (std::size_t k = 0; k < node.size(); ++k)
+      at[k][static_cast<Eigen::Index>(i)] = static_cast<float>(node[k]);
+  }
+  const Floats towards = covariances(covariance_, at, floats_of(place), static_cast<Eigen::Index>(count));
+  for (std::size_t c = 0; c < f.size(); ++c) {
+    double log = mean_[c];
+    for (std::size_t i = 0; i < count; ++i)
+      log += static_cast<double>(towards[static_cast<Eigen::Index>(i)]) *
+             static_cast<double>(solved_[(cell * count + i) * f.size() + c]);
+    f[c] = std::clamp(std::exp(log) - kFloor, 0.0, 2 * largest_[c]);
+  }
   return true;
 }
 
 void KrigedNodes::eval_from(Vec3 wi, Vec3 wo, const std::function<bool(std::size_t node)>& takes,
                             std::span<double> f) const noexcept {
-  eval_of(
-      wi, wo, [&](std::size_t place) { return takes(node_[place]); }, f);
+  std::ranges::fill(f, 0.0);
+  if (!(wi.z > 0 && wo.z > 0)) return;
+  const TreePoint place = place_of(wi, wo, isotropic_);
+  const Neighbourhood near = neighbourhood(scaled(place), [&](std::size_t at) { return takes(node_[at]); });
+  Column weights = covariances(covariance_, near.at, floats_of(place), static_cast<Eigen::Index>(near.count))
+                       .head(static_cast<Eigen::Index>(near.count))
+                       .cast<double>()
+                       .matrix();
+  near.solve(weights);
+  for (std::size_t c = 0; c < f.size(); ++c) {
+    double log = mean_[c];
+    for (std::size_t i = 0; i < near.count; ++i)
+      log += weights[static_cast<Eigen::Index>(i)] * measured_.logs[near.nodes[i] * f.size() + c];
+    f[c] = std::clamp(std::exp(log) - kFloor, 0.0, 2 * largest_[c]);
+  }
 }
 
 double KrigedNodes::uncertainty(Vec3 wi, Vec3 wo) const noexcept {
   if (!(wi.z > 0 && wo.z > 0)) return 0;
-  return std::sqrt(predict(place_of(wi, wo, isotropic_), [](std::size_t) { return true; }).variance);
+  const TreePoint place = place_of(wi, wo, isotropic_);
+  const Neighbourhood near = neighbourhood(scaled(place), [](std::size_t) { return true; });
+  const Column towards =
+      covariances(covariance_, near.at, floats_of(place), static_cast<Eigen::Index>(near.count))
+          .head(static_cast<Eigen::Index>(near.count))
+          .cast<double>()
+          .matrix();
+  Column weights = towards;
+  near.solve(weights);
+  return std::sqrt(std::max(0.0, covariance_.variance() - weights.dot(towards)));
 }
 
 std::vector<LogCovariance> likely_covariances(const MeasuredNodes& nodes) {

@@ -13,16 +13,17 @@
 
 namespace burnish {
 
-/// The function behind measured points: ln(f + 1e-3) at a pair of directions is the best linear prediction from the
-/// kNeighbours nearest nodes under a covariance (kriging). It is as rough as the points say, goes to their mean where
-/// there are none, and knows how uncertain it is. Nodes nearer to the horizon are taken as noisier; a node's weight
-/// divides the variance of its noise. Values lie between 0 and twice the largest node's. A pair costs a matrix of
-/// kNeighbours rows. Exchanged directions and, of an isotropic source, mirror images give the same to rounding.
+/// The function behind measured points: ln(f + 1e-3) at a pair of directions is the best linear prediction from
+/// kNeighbours nodes near it under a covariance (kriging). It is as rough as the points say, goes to their mean where
+/// there are none, and knows how uncertain it is. Space is cut into cells of few nodes, and all pairs of a cell share
+/// the nodes nearest to its middle, so a pair costs kNeighbours covariances. Nodes nearer to the horizon are taken as
+/// noisier; a node's weight divides the variance of its noise. Values lie between 0 and twice the largest node's.
+/// Exchanged directions and, of an isotropic source, mirror images give the same to the rounding of floats.
 /// Source: [Rasmussen 2006, eq. 2.25 and 2.26].
 class KrigedNodes {
  public:
   static constexpr double kFloor = 1e-3;  ///< 1/sr, as in the figure `relative`
-  static constexpr std::size_t kNeighbours = 48;
+  static constexpr std::size_t kNeighbours = 64;
 
   /// Throws Error where none of the nodes has both cosines above 0.02.
   KrigedNodes(const MeasuredNodes& nodes, const LogCovariance& covariance);
@@ -39,11 +40,10 @@ class KrigedNodes {
   double uncertainty(Vec3 wi, Vec3 wo) const noexcept;
 
  private:
-  struct Prediction;
+  struct Neighbourhood;
   template <class Takes>
-  Prediction predict(const TreePoint& place, const Takes& takes) const noexcept;
-  template <class Takes>
-  void eval_of(Vec3 wi, Vec3 wo, const Takes& takes, std::span<double> f) const noexcept;
+  Neighbourhood neighbourhood(const TreePoint& scaled_place, const Takes& takes) const noexcept;
+  void solve_cells();
   TreePoint scaled(TreePoint place) const noexcept;
 
   bool isotropic_ = true;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 #include <burnish/math/angles.h>
 #include <burnish/reflectance/patch_table.h>
@@ -18,32 +19,27 @@ const PatchRing& ring_of(const PatchBasis& basis, std::size_t patch) noexcept {
   return basis.rings[r];
 }
 
+/// Rings between polar angles, degrees, and the patches of each.
+PatchBasis basis_of(std::initializer_list<double> bounds_deg, std::initializer_list<std::size_t> counts) {
+  PatchBasis basis;
+  const double* low_deg = bounds_deg.begin();
+  for (const std::size_t count : counts) {
+    basis.rings.push_back({radians(low_deg[0]), radians(low_deg[1]), count, basis.size()});
+    ++low_deg;
+  }
+  return basis;
+}
+
 }  // namespace
 
-PatchNeighbours PatchBasis::neighbours(Vec3 w) const noexcept {
-  const double theta = theta_of(w), turn = phi_of(w) / kTwoPi - first_azimuth / kTwoPi + 1;
-
-  // the two rings whose centres are next to theta
-  std::size_t high = 0;
-  while (high < rings.size() && centre_theta(rings[high]) <= theta) ++high;
-  const std::size_t inner = high > 0 ? high - 1 : 0, outer = std::min(high, rings.size() - 1);
-  const double low_theta = centre_theta(rings[inner]), high_theta = centre_theta(rings[outer]);
-  const double outwards =
-      inner == outer ? 0 : std::clamp((theta - low_theta) / (high_theta - low_theta), 0.0, 1.0);
-
-  // in each of them the two patches next to phi
-  PatchNeighbours near;
-  for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
-    const PatchRing& ring = rings[side ? outer : inner];
-    const double position = turn * static_cast<double>(ring.count), below = std::floor(position);
-    const std::size_t k = static_cast<std::size_t>(below) % ring.count;
-    const double weight = side ? outwards : 1 - outwards;
-    near.index[2 * side] = ring.first + k;
-    near.index[2 * side + 1] = ring.first + (k + 1) % ring.count;
-    near.weight[2 * side] = weight * (1 - (position - below));
-    near.weight[2 * side + 1] = weight * (position - below);
-  }
-  return near;
+std::size_t PatchBasis::patch_of(Vec3 w) const noexcept {
+  const double theta = theta_of(w);
+  std::size_t r = 0;
+  while (r + 1 < rings.size() && theta >= rings[r].theta_high) ++r;
+  const PatchRing& ring = rings[r];
+  const double turn = phi_of(w) / kTwoPi - first_azimuth / kTwoPi + 1;
+  return ring.first +
+         static_cast<std::size_t>(std::floor(turn * static_cast<double>(ring.count) + 0.5)) % ring.count;
 }
 
 Vec3 PatchBasis::centre(std::size_t patch) const noexcept {
@@ -67,21 +63,32 @@ bool PatchTable::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
 bool PatchTable::eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   f[0] = 0;
   if (wi.z <= 0 || wo.z <= 0) return true;
-  const PatchNeighbours in = incident.neighbours(wi), out = outgoing.neighbours(wo);
-  for (std::size_t o = 0; o < 4; ++o)
-    for (std::size_t i = 0; i < 4; ++i)
-      f[0] += out.weight[o] * in.weight[i] *
-              static_cast<double>(values[out.index[o] * incident.size() + in.index[i]]);
+  f[0] = static_cast<double>(values[outgoing.patch_of(wo) * incident.size() + incident.patch_of(wi)]);
   return true;
 }
 
+double PatchTable::albedo(Vec3 wi) const noexcept {
+  double sum = 0;
+  const std::size_t column = incident.patch_of(wi);
+  for (std::size_t o = 0; o < outgoing.size(); ++o)
+    sum += static_cast<double>(values[o * incident.size() + column]) * outgoing.projected_solid_angle(o);
+  return sum;
+}
+
 PatchBasis klems_full_basis() {
-  constexpr std::array bounds_deg = {0, 5, 15, 25, 35, 45, 55, 65, 75, 90};
-  constexpr std::array<std::size_t, 9> counts = {1, 8, 16, 20, 24, 24, 24, 16, 12};
-  PatchBasis basis;
-  for (std::size_t r = 0; r < counts.size(); ++r)
-    basis.rings.push_back({radians(bounds_deg[r]), radians(bounds_deg[r + 1]), counts[r], basis.size()});
-  return basis;
+  return basis_of({0, 5, 15, 25, 35, 45, 55, 65, 75, 90}, {1, 8, 16, 20, 24, 24, 24, 16, 12});
+}
+
+PatchBasis klems_half_basis() {
+  return basis_of({0, 6.5, 19.5, 32.5, 45.5, 58.5, 71.5, 90}, {1, 8, 12, 16, 20, 12, 8});
+}
+
+PatchBasis klems_older_half_basis() {
+  return basis_of({0, 6.5, 19.5, 32.5, 46.5, 61.5, 76.5, 90}, {1, 8, 12, 16, 20, 12, 4});
+}
+
+PatchBasis klems_quarter_basis() {
+  return basis_of({0, 9, 27, 45, 63, 90}, {1, 8, 12, 12, 8});
 }
 
 }  // namespace burnish

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -16,21 +15,15 @@ struct PatchRing {
   std::size_t first = 0;  ///< index of its patch 0 in the basis
 };
 
-/// Four patch centres around a direction and their weights, which sum to 1.
-struct PatchNeighbours {
-  std::array<std::size_t, 4> index{};
-  std::array<double, 4> weight{};
-};
-
 /// A hemisphere cut into rings of patches, counted from the normal outwards.
 struct PatchBasis {
   std::vector<PatchRing> rings;
   double first_azimuth = 0;  ///< of patch 0 of every ring, radians in [0, 2 pi)
 
   std::size_t size() const noexcept { return rings.empty() ? 0 : rings.back().first + rings.back().count; }
-  /// Linear in theta between ring centres and in azimuth around each; constant beyond the outermost centre.
+  /// The patch that a direction lies in; the outermost ring has what lies beyond.
+  std::size_t patch_of(Vec3 w) const noexcept;
   /// The centre of a single patch at the normal is the normal.
-  PatchNeighbours neighbours(Vec3 w) const noexcept;
   Vec3 centre(std::size_t patch) const noexcept;
   /// Integral of the cosine over a patch, sr; their sum is pi for a full hemisphere.
   double projected_solid_angle(std::size_t patch) const noexcept;
@@ -43,15 +36,23 @@ struct PatchTable {
 
   std::size_t channels() const noexcept { return 1; }
   bool isotropic() const noexcept { return false; }
-  /// Linear between patch centres in both directions, see PatchBasis::neighbours: continuous, unlike the
-  /// patches.
+  /// Constant over pairs of patches, as Radiance evaluates it: what a patch receives is reflected, no more and no
+  /// less. Between patch centres a peak as narrow as a patch would have another energy.
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
   bool eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
+  /// What is reflected of the light from wi, exact: a sum over patches.
+  double albedo(Vec3 wi) const noexcept;
 };
 
 static_assert(HasRawValues<PatchTable>);
 
 /// The 145 patches of the full Klems basis. Source: [Klems 1994].
 PatchBasis klems_full_basis();
+
+/// The 77 and 41 patches of the coarser bases, borders and counts as Radiance 6 answers with them.
+PatchBasis klems_half_basis();
+PatchBasis klems_quarter_basis();
+/// The 73 patches that programs before it have for the half basis.
+PatchBasis klems_older_half_basis();
 
 }  // namespace burnish

@@ -16,6 +16,7 @@
 #include <burnish/image/contact_sheet.h>
 #include <burnish/image/markup.h>
 #include <burnish/image/png.h>
+#include <burnish/math/written_degrees.h>
 #include <burnish/metrics/figures_json.h>
 #include <burnish/parameterization/half_diff.h>
 #include <burnish/report/compare_report.h>
@@ -66,8 +67,8 @@ nlohmann::ordered_json json_of(std::span<const ComparedFigures> compared, const 
                                      "unknown_fraction"}));
     entry["unknown_pixels"] = c.figures.unknown_pixels;
     for (const ComparedAlbedo& a : c.albedos)
-      entry["albedo"].push_back({{"theta_i_deg", degrees(a.theta_i)},
-                                 {"phi_i_deg", degrees(a.phi_i)},
+      entry["albedo"].push_back({{"theta_i_deg", written_degrees(a.theta_i)},
+                                 {"phi_i_deg", written_degrees(a.phi_i)},
                                  {"reference", a.reference.albedo},
                                  {"model", a.model.albedo},
                                  {"reference_unknown_fraction", a.reference.unknown_fraction}});

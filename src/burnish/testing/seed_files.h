@@ -125,6 +125,14 @@ inline const std::string kAstm =
     "theta_i,phi_i,theta_s,phi_s,R,G,B\n.1,.2,.3,.4,1,2,3\n.1,.5,.3,.4,4,5,6\n";
 inline const std::string kCsv =
     "# isotropic\ntheta_i,phi_i,theta_o,phi_o,r,g,b\n30,0,60,180,1,2,3\n10,5,20,30,0.1,-0.2,0.3\n";
+/// A table as spreadsheets write it, with remarks and columns that mean nothing.
+inline const std::string kGonioCsv =
+    "BRF Values\n\"Theta_i "
+    "[deg]\";\"Phi_i\";theta_r;phi_r;450nm;550nm;remark\n30;0;60,5;180;0,1;0,2;\"a;b\"\n"
+    "30;0;-60,5;180;nan;0,2;\n30;0;0;0;0,3;0,2;c\n";
+inline const std::string kFred =
+    "type bsdf_data\nformat angles=deg bsdf=value "
+    "scale=2\n30\t0\n30\t0\t0.5\n60\t90\t0.1\n45\t0\n0\t0\t-0.2\n";
 inline const std::string kTexelCsv =
     "texel_x,texel_y,wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,held_out,r,g,b\n0,0,0,0,1,0.6,0,0.8,0,1,2,3\n"
     "1,0,0,0.6,0.8,0,0,1,1,.1,.2,.3\n1,0,0,0,1,0,0,1,0,4,5,6\n";
@@ -220,6 +228,8 @@ inline std::vector<std::pair<std::string, std::string>> all_seeds() {
           {"cornell", kCornell},
           {"astm", kAstm},
           {"csv", kCsv},
+          {"gonio", kGonioCsv},
+          {"fred", kFred},
           {"zemax", kZemax},
           {"klems", kKlems},
           {"openmaterial", kOpenMaterial},
