@@ -51,6 +51,9 @@ class KrigedNodes {
   KdTree tree_;                      // places scaled by the lengths of the term that sees all
   LogMeasurements measured_;         // in the tree's order
   std::vector<std::uint32_t> node_;  // what number each had
+  std::vector<std::uint32_t> cell_;  // of the node that is the first of one
+  std::vector<std::uint32_t> near_;  // nodes that the pairs of a cell are predicted from, [cell][neighbour]
+  std::vector<float> solved_;        // K^-1 y of these, [cell][neighbour][channel]
   std::vector<double> mean_;         // of the logarithms, [channel]
   std::vector<double> largest_;      // f, [channel]
 };
