@@ -353,7 +353,7 @@ class Fitter {
                  .plan = {}};
     way.drawn.seed = options_.seed;
     way.set = drawn_set(way.drawn);
-    if (smoothed_ && form.loss == FitLoss::image) way.refine.shares = kNodeShares;
+    if (judged_at_nodes() && form.loss == FitLoss::image) way.refine.shares = kNodeShares;
     RefineOptions trials = way.refine;
     trials.progress = progress("choosing lobes");
     way.plan = plan_for(reference(), way.set, bytes, form.lobes.value_or(0), texel, trials);
@@ -475,7 +475,7 @@ class Fitter {
         refine.shares.log_cos = kSpareLogCos;
         if (bytes >= kSpareTexels * limit.texel_bytes) refine.shares.absolute = kSpareAbsolute;
       }
-      if (smoothed_) refine.shares = kNodeShares;
+      if (judged_at_nodes()) refine.shares = kNodeShares;
     }
     if (!options_.smooth) {
       refine.smooth = kVolumeSmooth;
@@ -532,7 +532,7 @@ class Fitter {
     if (samples()) return training_set_of(*samples(), options_.symmetrize);
     if (const auto sampling = progress("sampling")) sampling(0);
     TrainingSet set = with_frontal_pixels(reference(), draw_training_set(reference(), drawn), kFrontalShare);
-    if (smoothed_) add_nodes(set);
+    if (judged_at_nodes()) add_nodes(set);
     return set;
   }
 
@@ -607,6 +607,9 @@ class Fitter {
   }
   /// Whether those are scattered samples of the source.
   bool scattered() const { return samples() && !nodes_; }
+  /// Whether a fit follows the function between nodes most where these are: a table's crowd where highlights are.
+  /// Scattered samples stand anywhere, and their function is fitted as any other.
+  bool judged_at_nodes() const { return smoothed_ && !source_.samples(); }
   const HalfDiffTable* table() const { return nodes_ ? nullptr : std::get_if<HalfDiffTable>(&source_.brdf); }
   BrdfRef reference() const {
     if (smoothed_) return *smoothed_;

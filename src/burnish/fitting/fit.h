@@ -52,7 +52,7 @@ struct Budget {
   std::optional<int> lobes = {};
   bool search = false;  ///< search factors, projections, warps and sizes first, see search_plan
   FitLoss loss = FitLoss::image;
-  LogLinear scattered = {};  ///< scattered samples are too few for several lobes: they get one
+  LogLinear scattered = {};  ///< of the one lobe that scattered samples get as a function
 };
 
 /// The bytes of DefaultBudget.
@@ -95,9 +95,9 @@ using FitForm = std::variant<OneLobe, Budget, DefaultBudget, GivenLobes, Baselin
 FitForm form_of(const std::string& model, const std::vector<std::string>& tables, bool isotropic,
                 const LogLinear& of_one_lobe, FitLoss of_several);
 
-/// What is fitted: the function that the owner of a measurement makes of it, or what was measured itself. Between
-/// nodes of an isotropic source a SmoothedNodes stands, as smooth as predicts nodes best that it has not seen; nodes of
-/// an anisotropic one are fitted as they are.
+/// What is fitted: the function that the owner of a measurement makes of it, or what was measured itself. Between the
+/// nodes of an isotropic source stands a KrigedNodes, under the covariance that predicts left-out nodes best. Nodes of
+/// an anisotropic source are fitted as they are.
 enum class FitTarget { function, nodes };
 
 /// "function" or "nodes". Throws Error on anything else.
@@ -107,11 +107,11 @@ std::string_view to_string(FitTarget target) noexcept;
 
 struct FitOptions;
 
-/// What is fitted where nobody says. The nodes of isotropic RGL files, whose owners multiply what stands between nodes by
-/// a distribution of normals, speckle and all: nodes that were left out are foretold better by the others than by that
-/// function, which knows them (docs/results/measured.md). The function of any other source, whose owner interpolates what
-/// was measured; of every source without symmetrize, for one lobe, baselines and books, and where a budget's smoothness
-/// is cross-validated. Nodes wherever some are held out.
+/// What is fitted where nobody says. Nodes: scattered samples of isotropic sources, unless they crowd about wi = wo, and
+/// isotropic RGL files, whose owners multiply what stands between nodes by a distribution of normals, speckle and all
+/// (docs/results/measured.md). The function: any other source, and every source without symmetrize, for one lobe, for
+/// baselines and books, and where a budget's smoothness is cross-validated. Nodes wherever some are held out.
+/// Scattered samples with lobes as given are fitted as they are.
 FitTarget default_target(const Source& source, const FitOptions& options);
 
 struct FitOptions {

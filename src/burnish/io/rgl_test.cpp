@@ -24,7 +24,7 @@ namespace {
 const std::vector<double> kBands{420, 500, 580, 700};
 
 /// A smooth lobe, wider across than along, whose channels differ.
-struct Lobe {
+struct RglLobe {
   std::size_t count;
   bool brushed;
 
@@ -38,7 +38,7 @@ struct Lobe {
     return true;
   }
 };
-static_assert(Brdf<Lobe>);
+static_assert(Brdf<RglLobe>);
 
 RglTable small_table(std::size_t channels, bool brushed) {
   RglOptions options;
@@ -48,7 +48,7 @@ RglTable small_table(std::size_t channels, bool brushed) {
   options.resolution = 8;
   options.description = "a lobe";
   if (channels == 4) options.lambda_nm = kBands;
-  return make_rgl_table(Lobe{channels, brushed}, options);
+  return make_rgl_table(RglLobe{channels, brushed}, options);
 }
 
 RglFile parsed(std::string_view bytes, const OpenOptions& options = {}) {

@@ -45,26 +45,6 @@ class KdTree {
   std::span<const TreePoint> points() const noexcept { return points_; }
   std::span<const std::size_t> order() const noexcept { return order_; }
 
-  /// The ranges of at most kLeaf points that are searched one by one cut space into cells. Calls visit(begin, low, high)
-  /// for each, with the place of its first point and its box, a part of the box from `low` to `high`.
-  template <class Visit>
-  void for_each_cell(const TreePoint& low, const TreePoint& high, const Visit& visit) const {
-    visit_cells(0, points_.size(), low, high, visit);
-  }
-
-  /// The place of the first point of the cell that a point lies in.
-  std::size_t cell_of(const TreePoint& point) const noexcept {
-    std::size_t begin = 0, end = points_.size();
-    while (end - begin > kLeaf) {
-      const std::size_t middle = begin + (end - begin) / 2;
-      if (point[axes_[middle]] < points_[middle][axes_[middle]])
-        end = middle;
-      else
-        begin = middle + 1;
-    }
-    return begin;
-  }
-
   /// Calls visit(place, distance2) for every point within the square of the radius.
   template <class Visit>
   void visit_ball(const TreePoint& centre, double radius2, const Visit& visit) const noexcept {
@@ -124,20 +104,6 @@ class KdTree {
       const double d2 = distance2(points_[i], centre);
       if (d2 <= radius2) visit(i, d2);
     }
-  }
-
-  template <class Visit>
-  void visit_cells(std::size_t begin, std::size_t end, TreePoint low, TreePoint high,
-                   const Visit& visit) const {
-    if (end - begin <= kLeaf) {
-      visit(begin, low, high);
-      return;
-    }
-    const std::size_t middle = begin + (end - begin) / 2, axis = axes_[middle];
-    TreePoint below = high, above = low;
-    below[axis] = above[axis] = points_[middle][axis];
-    visit_cells(begin, middle, low, below, visit);
-    visit_cells(middle + 1, end, above, high, visit);
   }
 
   template <class Takes>

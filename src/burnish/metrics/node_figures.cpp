@@ -10,6 +10,7 @@
 #include <burnish/math/parallel.h>
 #include <burnish/math/random.h>
 #include <burnish/metrics/node_figures.h>
+#include <burnish/reflectance/kriged_nodes.h>
 
 namespace burnish {
 

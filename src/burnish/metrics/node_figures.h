@@ -7,7 +7,6 @@
 
 #include <burnish/metrics/error_figures.h>
 #include <burnish/reflectance/brdf.h>
-#include <burnish/reflectance/kriged_nodes.h>
 #include <burnish/reflectance/log_covariance.h>
 #include <burnish/reflectance/measured_nodes.h>
 

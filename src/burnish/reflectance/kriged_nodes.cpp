@@ -22,8 +22,8 @@ constexpr double kUpright = 1e-12;    // theta_h of rounding
 constexpr double kGuessWeight = 0.1;  // of what stands where nothing was measured
 
 constexpr std::size_t kNeighbours = KrigedNodes::kNeighbours;
-constexpr std::size_t kCellsTogether = 64;  // a thread at a time
-constexpr double kLeastPivot = 1e-9;        // of the variance
+constexpr std::size_t kCentresTogether = 64;  // a thread at a time
+constexpr double kLeastPivot = 1e-9;          // of the variance
 
 // Blocks of nodes whose likelihood is looked at.
 constexpr std::size_t kNearBlocks = 24, kNearNodes = 64;
@@ -146,7 +146,7 @@ KrigedNodes::KrigedNodes(const MeasuredNodes& nodes, const LogCovariance& covari
     measured_.variances.push_back(all.measured.variances[i] * covariance.noise * covariance.noise);
     for (std::size_t c = 0; c < channels; ++c) measured_.logs.push_back(all.measured.logs[i * channels + c]);
   }
-  solve_cells();
+  solve_centres();
 }
 
 TreePoint KrigedNodes::scaled(TreePoint place) const noexcept {
@@ -242,32 +242,20 @@ KrigedNodes::Neighbourhood KrigedNodes::neighbourhood(const TreePoint& scaled_pl
   return near;
 }
 
-// What all pairs of each cell are predicted with.
-void KrigedNodes::solve_cells() {
-  // Every place lies in the box from -1 to 1; of an isotropic source all coordinates are positive.
-  TreePoint low, high;
-  low.fill(isotropic_ ? 0 : -1);
-  high.fill(1);
-  struct Cell {
-    std::size_t begin;
-    TreePoint middle;
-  };
-  std::vector<Cell> cells;
-  tree_.for_each_cell(scaled(low), scaled(high),
-                      [&](std::size_t begin, const TreePoint& from, const TreePoint& to) {
-                        Cell& cell = cells.emplace_back(Cell{begin, {}});
-                        for (std::size_t k = 0; k < from.size(); ++k)
-                          cell.middle[k] = 0.5 * (from[k] + to[k]);
-                      });
+// What all pairs near each centre are predicted with.
+void KrigedNodes::solve_centres() {
+  // Every so many nodes in the tree's order, which spreads them as the nodes are spread.
+  const std::size_t step = (measured_.size() - 1) / kCentres + 1;
+  std::vector<TreePoint> places;
+  for (std::size_t i = 0; i < measured_.size(); i += step) places.push_back(tree_.points()[i]);
+  centres_ = KdTree(places);
 
   const std::size_t channels = measured_.channels, count = std::min(kNeighbours, measured_.size());
-  cell_.assign(measured_.size() + 1, 0);
-  near_.resize(cells.size() * count);
-  solved_.resize(cells.size() * count * channels);
-  for_each_chunk(cells.size(), kCellsTogether, [&](std::size_t, std::size_t begin, std::size_t end) {
+  near_.resize(centres_.size() * count);
+  solved_.resize(centres_.size() * count * channels);
+  for_each_chunk(centres_.size(), kCentresTogether, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
-      const Neighbourhood near = neighbourhood(cells[c].middle, [](std::size_t) { return true; });
-      cell_[cells[c].begin] = static_cast<std::uint32_t>(c);
+      const Neighbourhood near = neighbourhood(centres_.points()[c], [](std::size_t) { return true; });
       std::copy_n(near.nodes.begin(), count, near_.begin() + static_cast<std::ptrdiff_t>(c * count));
       for (std::size_t channel = 0; channel < channels; ++channel) {
         Column solved(static_cast<Eigen::Index>(count));
@@ -286,11 +274,13 @@ bool KrigedNodes::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   std::ranges::fill(f, 0.0);
   if (!(wi.z > 0 && wo.z > 0)) return true;
   const TreePoint place = place_of(wi, wo, isotropic_);
-  const std::size_t cell = cell_[tree_.cell_of(scaled(place))];
+  std::array<KdTree::Neighbour, 1> nearest;
+  centres_.nearest(scaled(place), nearest, [](std::size_t) { return true; });
+  const std::size_t centre = nearest[0].place;
   const std::size_t count = std::min(kNeighbours, measured_.size());
   Places at;
   for (std::size_t i = 0; i < count; ++i) {
-    const TreePoint& node = measured_.places[near_[cell * count + i]];
+    const TreePoint& node = measured_.places[near_[centre * count + i]];
     for (std::size_t k = 0; k < node.size(); ++k)
       at[k][static_cast<Eigen::Index>(i)] = static_cast<float>(node[k]);
   }
@@ -299,7 +289,7 @@ bool KrigedNodes::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     double log = mean_[c];
     for (std::size_t i = 0; i < count; ++i)
       log += static_cast<double>(towards[static_cast<Eigen::Index>(i)]) *
-             static_cast<double>(solved_[(cell * count + i) * f.size() + c]);
+             static_cast<double>(solved_[(centre * count + i) * f.size() + c]);
     f[c] = std::clamp(std::exp(log) - kFloor, 0.0, 2 * largest_[c]);
   }
   return true;

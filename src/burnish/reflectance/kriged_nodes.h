@@ -15,15 +15,15 @@ namespace burnish {
 
 /// The function behind measured points: ln(f + 1e-3) at a pair of directions is the best linear prediction from
 /// kNeighbours nodes near it under a covariance (kriging). It is as rough as the points say, goes to their mean where
-/// there are none, and knows how uncertain it is. Space is cut into cells of few nodes, and all pairs of a cell share
-/// the nodes nearest to its middle, so a pair costs kNeighbours covariances. Nodes nearer to the horizon are taken as
-/// noisier; a node's weight divides the variance of its noise. Values lie between 0 and twice the largest node's.
+/// there are none, and knows how uncertain it is. Pairs share the neighbours of the node that is nearest to them, one of
+/// at most kCentres, so a pair costs kNeighbours covariances. Nodes nearer to the horizon are taken as noisier; a node's
+/// weight divides the variance of its noise. Values lie between 0 and twice the largest node's.
 /// Exchanged directions and, of an isotropic source, mirror images give the same to the rounding of floats.
 /// Source: [Rasmussen 2006, eq. 2.25 and 2.26].
 class KrigedNodes {
  public:
   static constexpr double kFloor = 1e-3;  ///< 1/sr, as in the figure `relative`
-  static constexpr std::size_t kNeighbours = 64;
+  static constexpr std::size_t kNeighbours = 64, kCentres = 1 << 15;
 
   /// Throws Error where none of the nodes has both cosines above 0.02.
   KrigedNodes(const MeasuredNodes& nodes, const LogCovariance& covariance);
@@ -43,7 +43,7 @@ class KrigedNodes {
   struct Neighbourhood;
   template <class Takes>
   Neighbourhood neighbourhood(const TreePoint& scaled_place, const Takes& takes) const noexcept;
-  void solve_cells();
+  void solve_centres();
   TreePoint scaled(TreePoint place) const noexcept;
 
   bool isotropic_ = true;
@@ -51,9 +51,9 @@ class KrigedNodes {
   KdTree tree_;                      // places scaled by the lengths of the term that sees all
   LogMeasurements measured_;         // in the tree's order
   std::vector<std::uint32_t> node_;  // what number each had
-  std::vector<std::uint32_t> cell_;  // of the node that is the first of one
-  std::vector<std::uint32_t> near_;  // nodes that the pairs of a cell are predicted from, [cell][neighbour]
-  std::vector<float> solved_;        // K^-1 y of these, [cell][neighbour][channel]
+  KdTree centres_;                   // nodes whose neighbours others share
+  std::vector<std::uint32_t> near_;  // these neighbours, [centre][neighbour]
+  std::vector<float> solved_;        // K^-1 y of these, [centre][neighbour][channel]
   std::vector<double> mean_;         // of the logarithms, [channel]
   std::vector<double> largest_;      // f, [channel]
 };

@@ -1,0 +1,167 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <burnish/error.h>
+#include <burnish/math/angles.h>
+#include <burnish/metrics/node_figures.h>
+#include <burnish/parameterization/half_diff.h>
+#include <burnish/reflectance/goniometer.h>
+#include <burnish/reflectance/kriged_nodes.h>
+#include <burnish/testing/brdfs.h>
+
+namespace burnish {
+namespace {
+
+KrigedNodes kriged(const Samples& samples) {
+  const MeasuredNodes nodes = measured_nodes(samples);
+  return {nodes, choose_covariance(nodes)};
+}
+
+/// Mean |ln(f / f^)| over other pairs with both cosines above 0.15, of the first channel.
+double mean_log_error(BrdfRef truth, BrdfRef guess) {
+  std::vector<double> f(3), g(3);
+  double sum = 0;
+  int count = 0;
+  for (const auto& [wi, wo] : draw_pairs(2000, 77, true)) {
+    if (std::min(wi.z, wo.z) < 0.15) continue;
+    truth.eval(wi, wo, f);
+    guess.eval(wi, wo, g);
+    sum += std::abs(std::log(f[0] / g[0]));
+    ++count;
+  }
+  return sum / count;
+}
+
+TEST(KrigedNodes, GoThroughSmoothSources) {
+  const fixtures::Glossy source{.a = 8, .b = 8};
+  EXPECT_LT(mean_log_error(source, kriged(measure(source, {.count = 2000, .noise = 0}))), 0.01);
+}
+
+TEST(KrigedNodes, TakeNoiseAway) {
+  const fixtures::Glossy source{.a = 8, .b = 8};
+  // the mean error of a measurement itself is 0.2 sqrt(2 / pi) = 0.16
+  EXPECT_LT(mean_log_error(source, kriged(measure(source, {.count = 2000, .noise = 0.2}))), 0.05);
+}
+
+TEST(KrigedNodes, PredictAnisotropicSources) {
+  const fixtures::Glossy source{.a = 4, .b = 16};
+  const Samples samples = measure(source, {.count = 2000, .noise = 0});
+  ASSERT_FALSE(samples.isotropic);
+  EXPECT_LT(mean_log_error(source, kriged(samples)), 0.03);
+}
+
+/// A goniometer that stands at a few incidences, one of which may be left out.
+Samples of_few_incidences(BrdfRef source, int skipped) {
+  Samples samples{.channels = 3, .isotropic = true};
+  std::vector<double> f(3);
+  for (int i = 0; i < 7; ++i)
+    for (int o = 0; i != skipped && o < 400; ++o) {
+      const DirectionPair pair{spherical_direction(radians(12 * i), 0),
+                               spherical_direction(radians(4 * (o / 20) + 1), kTwoPi * (o % 20) / 20)};
+      source.eval(pair.wi, pair.wo, f);
+      samples.pairs.push_back(pair);
+      samples.values.insert(samples.values.end(), f.begin(), f.end());
+    }
+  return samples;
+}
+
+TEST(KrigedNodes, KnowWhatStandsBetweenIncidences) {
+  const fixtures::Glossy source{.a = 8, .b = 8};
+  const double seven = mean_log_error(source, kriged(of_few_incidences(source, -1))),
+               six = mean_log_error(source, kriged(of_few_incidences(source, 3)));
+  EXPECT_LT(seven, 0.05);
+  EXPECT_LT(six, 2.5 * seven);
+}
+
+TEST(KrigedNodes, AreReciprocalIsotropicAndTheirOwnMirrorImage) {
+  const KrigedNodes function =
+      kriged(measure(fixtures::Glossy{.a = 8, .b = 8}, {.count = 500, .noise = 0.1}));
+  std::vector<double> f(3), g(3);
+  for (const auto& [wi, wo] : draw_pairs(200, 3, false)) {
+    const HalfDiff a = to_half_diff(wi, wo);
+    const auto mirrored =
+        from_half_diff({.theta_h = a.theta_h, .phi_h = a.phi_h + 1, .theta_d = a.theta_d, .phi_d = -a.phi_d});
+    function.eval(wi, wo, f);
+    for (const auto& [a1, b1] : {std::pair(wo, wi), std::pair(mirrored.wi, mirrored.wo)}) {
+      function.eval(a1, b1, g);
+      for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(g[c] / f[c], 1, 1e-3);
+    }
+  }
+}
+
+TEST(KrigedNodes, OfTheNearestNodeAgreeWithThoseOfThePairItself) {
+  // Pairs share neighbours; a pair's own neighbours predict nearly the same.
+  const Samples samples = measure(fixtures::Glossy{.a = 8, .b = 8}, {.count = 3000, .noise = 0.05});
+  const KrigedNodes function = kriged(samples);
+  std::vector<double> f(3), g(3);
+  double sum = 0;
+  const auto pairs = draw_pairs(500, 5, true);
+  for (const auto& [wi, wo] : pairs) {
+    function.eval(wi, wo, f);
+    function.eval_from(
+        wi, wo, [](std::size_t) { return true; }, g);
+    sum += std::abs(std::log((f[0] + 1e-3) / (g[0] + 1e-3)));
+  }
+  EXPECT_LT(sum / static_cast<double>(pairs.size()), 0.02);
+}
+
+TEST(KrigedNodes, AreUncertainWhereNothingWasMeasured) {
+  // all nodes under light from near the normal
+  const fixtures::Glossy source{.a = 8, .b = 8};
+  Samples samples{.channels = 3, .isotropic = true};
+  std::vector<double> f(3);
+  for (int i = 0; i < 4; ++i)
+    for (int o = 0; o < 200; ++o) {
+      const DirectionPair pair{spherical_direction(radians(5 * i), 0),
+                               spherical_direction(radians(4 * (o / 10)), kTwoPi * (o % 10) / 10)};
+      source.eval(pair.wi, pair.wo, f);
+      samples.pairs.push_back(pair);
+      samples.values.insert(samples.values.end(), f.begin(), f.end());
+    }
+  const KrigedNodes function = kriged(samples);
+  const double seen = function.uncertainty(spherical_direction(radians(7), 0), spherical_direction(0.5, 2)),
+               unseen = function.uncertainty(spherical_direction(radians(75), 0),
+                                             spherical_direction(radians(80), 3));
+  EXPECT_GT(unseen, 3 * seen);
+  EXPECT_EQ(function.uncertainty({0, 0, -1}, {0, 0, 1}), 0);
+}
+
+TEST(KrigedNodes, ValuesLieBetweenZeroAndTwiceTheLargest) {
+  Samples samples = measure(fixtures::Lambert{}, {.count = 300, .noise = 0});
+  for (double& value : samples.values) value = -value;
+  const KrigedNodes dark = kriged(samples);
+  std::vector<double> f(3, 1);
+  for (const auto& [wi, wo] : draw_pairs(100, 3, true)) {
+    EXPECT_TRUE(dark.eval(wi, wo, f));
+    for (const double value : f) EXPECT_LT(value, 1e-9);
+  }
+  EXPECT_TRUE(dark.eval({0, 0, -1}, {0, 0, 1}, f));
+}
+
+TEST(KrigedNodes, TakeFewNodesAndNodesOfOnePlace) {
+  Samples samples = measure(fixtures::Lambert{}, {.count = 1, .noise = 0});
+  std::vector<double> f(3);
+  kriged(samples).eval({0, 0, 1}, {0, 0, 1}, f);
+  EXPECT_NEAR(f[0] / samples.values[0], 1, 0.01);
+  for (int i = 0; i < 200; ++i) {
+    samples.pairs.push_back(samples.pairs[0]);
+    for (std::size_t c = 0; c < 3; ++c) samples.values.push_back(samples.values[c]);
+  }
+  kriged(samples).eval(samples.pairs[0].wi, samples.pairs[0].wo, f);
+  EXPECT_NEAR(f[0] / samples.values[0], 1, 0.01);
+}
+
+TEST(KrigedNodes, NeedNodesAboveTheHorizon) {
+  Samples samples = measure(fixtures::Lambert{}, {.count = 10, .noise = 0});
+  samples.pairs.assign(10, {spherical_direction(radians(89.9), 0), {0, 0, 1}});
+  const MeasuredNodes nodes = measured_nodes(samples);
+  EXPECT_THROW(KrigedNodes(nodes, default_log_covariance(true)), Error);
+  EXPECT_THROW(choose_covariance(nodes), Error);
+}
+
+}  // namespace
+}  // namespace burnish
