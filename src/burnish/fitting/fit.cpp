@@ -724,13 +724,18 @@ FitTarget default_target(const Source& source, const FitOptions& options) {
   const auto* table = std::get_if<RglTable>(&source.brdf);
   const auto* budget = options.form ? std::get_if<Budget>(&*options.form) : nullptr;
   const auto* usual = options.form ? std::get_if<DefaultBudget>(&*options.form) : nullptr;
+  const LogLinear one_lobe = budget ? budget->scattered : usual ? usual->scattered : LogLinear{};
   const bool given = options.form && std::holds_alternative<GivenLobes>(*options.form);
-  const bool chosen = !options.form || (budget && !budget->scattered.cross_validate) ||
-                      (usual && !usual->scattered.cross_validate);
-  // A function of scattered samples knows less than what is estimated from the samples themselves.
+  const bool chosen = (!options.form || budget || usual) && !one_lobe.cross_validate;
+
+  // Scattered samples say more than a function made of them, but for peaks about wi = wo, which a lobe of their own
+  // holds. Options of one lobe ask for one.
+  const auto takes_samples = [&](const Samples& samples) {
+    return samples.isotropic && chosen && !one_lobe.reweightings && one_lobe.floor == LogLinear{}.floor &&
+           !backscatters(from_samples(samples, false));
+  };
   const Samples* samples = source.samples();
-  const bool measured =
-      table ? table->isotropic() && (given || chosen) : samples && samples->isotropic && chosen;
+  const bool measured = table ? table->isotropic() && (given || chosen) : samples && takes_samples(*samples);
   return measured && options.symmetrize ? FitTarget::nodes : FitTarget::function;
 }
 

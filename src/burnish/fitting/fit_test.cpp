@@ -160,6 +160,36 @@ TEST(Fit, MakesEveryForm) {
   }
 }
 
+TEST(Fit, OfScatteredSamplesFollowsThemFartherThanOneLobe) {
+  BURNISH_SKIP_WHERE_SANITIZED();
+  const AnalyticBrdf isotropic = paint();
+  const Source source =
+      source_of("scattered", ScatteredBrdf(measure(isotropic, {.count = 1500, .noise = 0.05})));
+  const Fit nodes = fit(source, {}), lobe = fit(source, {.target = FitTarget::function});
+  EXPECT_EQ(default_target(source, {}), FitTarget::nodes);
+  ASSERT_TRUE(nodes.report.nodes);
+  ASSERT_TRUE(nodes.report.nodes->covariance);
+  EXPECT_NEAR(nodes.report.nodes->covariance->noise, 0.05, 0.015);
+  EXPECT_FALSE(lobe.report.nodes);
+  EXPECT_LE(fetch_count(nodes.model()), 3u);
+  EXPECT_LT(mean_error(isotropic, nodes.ref()), 0.8 * mean_error(isotropic, lobe.ref()));
+}
+
+TEST(Fit, OfScatteredSamplesIsOneLobeWhereItsOptionsAreGiven) {
+  const AnalyticBrdf isotropic = paint(), brushed_metal = brushed();
+  const Source source = source_of("scattered", ScatteredBrdf(measure(isotropic, {.count = 200}))),
+               anisotropic = source_of("brushed", ScatteredBrdf(measure(brushed_metal, {.count = 200})));
+  EXPECT_EQ(default_target(source, {.form = Budget{}}), FitTarget::nodes);
+  EXPECT_EQ(default_target(source, {.form = DefaultBudget{.scattered = {.floor = 1e-4}}}),
+            FitTarget::function);
+  EXPECT_EQ(default_target(source, {.form = Budget{.scattered = {.reweightings = 0}}}), FitTarget::function);
+  EXPECT_EQ(default_target(source, {.form = Budget{.scattered = {.cross_validate = true}}}),
+            FitTarget::function);
+  EXPECT_EQ(default_target(source, {.form = GivenLobes{.model = "q(h) + s(h)"}}), FitTarget::function);
+  EXPECT_EQ(default_target(source, {.symmetrize = false}), FitTarget::function);
+  EXPECT_EQ(default_target(anisotropic, {}), FitTarget::function);
+}
+
 TEST(Fit, GivesScatteredSamplesOneLobeOfTheBudget) {
   const AnalyticBrdf isotropic = paint();
   const Source source = source_of("scattered", ScatteredBrdf(measure(isotropic, {.count = 400})));
@@ -364,7 +394,7 @@ TEST(Fit, TakesNodesOfAnisotropicSourcesAsTheyAre) {
   const Fit made = fit(source, {.form = GivenLobes{.model = "p(wo) q(h) p(wi)", .tables = {"p=6x6", "q=8x8"}},
                                 .target = FitTarget::nodes});
   ASSERT_TRUE(made.report.nodes);
-  EXPECT_FALSE(made.report.nodes->smoothness);
+  EXPECT_FALSE(made.report.nodes->covariance);
   EXPECT_LT(made.report.nodes->at_fitted.relative, 0.5);
 }
 

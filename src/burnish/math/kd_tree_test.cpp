@@ -29,7 +29,7 @@ TEST(KdTree, FindsTheNearestPointsThatASearchFinds) {
     const std::size_t count =
         tree.nearest(centres[c], found, [&](std::size_t place) { return tree.order()[place] % 3 != 0; });
     ASSERT_EQ(count, 12u);
-    std::ranges::sort(found);
+    std::sort(found.begin(), found.end());
     for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(tree.order()[found[i].place], expected[i].second);
   }
 }
