@@ -67,6 +67,7 @@ constexpr std::size_t kSpareTexels = 1500;  // from here on, for absolute errors
 constexpr double kVolumeSmooth = 1e-9;
 constexpr double kFewTexelsSmooth = 1e-9;   // of several lobes; few texels are smooth by themselves
 constexpr double kHemisphereSmooth = 1e-6;  // whose many texels few pixels reach
+constexpr double kFarther = 1.1;            // from nodes than nodes are foretold: a fetch more is tried
 constexpr int kMoreFetchesOfNodes = 1;      // dark films' colours ask for a grid beside the line
 constexpr int kSmoothnessFetches = 2;       // of the models by which it is chosen
 constexpr double kFrontalShare = 0.1;       // of pixels, see with_frontal_pixels
@@ -286,9 +287,9 @@ class Fitter {
     if (!form.fetches) check_budget(form, bytes);
     if (takes_knee(form))
       return brdf_.isotropic() ? fit_at_knee(form, bytes) : fit_hemispheres_at_knee(form, bytes);
-    return !form.fetches                   ? fit_lobes_to(form, bytes)
-           : smoothed_ && default_fetches_ ? fit_nodes_within(form, bytes)
-                                           : fit_within(form, bytes);
+    return !form.fetches                           ? fit_lobes_to(form, bytes)
+           : judged_at_nodes() && default_fetches_ ? fit_nodes_within(form, bytes)
+                                                   : fit_within(form, bytes);
   }
 
   /// Whether the number of fetches is left to choose. Where the order of the directions matters lobes share a table of
@@ -505,7 +506,8 @@ class Fitter {
   FactoredBrdf fit_nodes_within(Budget form, std::uint64_t bytes) {
     FactoredBrdf fewer = fit_within(form, bytes);
     const NodeFigures near = node_figures(*nodes_, fewer), &unseen = *report_.nodes->held_out;
-    if (near.relative <= unseen.relative && near.log_cos <= unseen.log_cos) return fewer;
+    if (near.relative <= kFarther * unseen.relative && near.log_cos <= kFarther * unseen.log_cos)
+      return fewer;
     *form.fetches += kMoreFetchesOfNodes;
     if (!holds_model(reference(), limit_of(bytes, *form.fetches))) return fewer;
     auto how = report_.how;

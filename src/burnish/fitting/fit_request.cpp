@@ -229,14 +229,18 @@ std::optional<std::uint64_t> bytes_of_text(std::string_view text) {
   text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
   std::string unit(text);
   std::ranges::transform(unit, unit.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c; });
-  if (!number || *number > static_cast<double>(kMaxBudget)) return {};
-  const bool whole = *number == std::floor(*number);
-  if (unit.empty() || unit == "b") return whole ? std::optional<std::uint64_t>(*number) : std::nullopt;
-  const double power = unit[0] == 'k' ? 1024 : unit[0] == 'm' ? 1024 * 1024 : 0;
+  const double power = unit.empty() || unit == "b" ? 1
+                       : unit[0] == 'k'            ? 1024
+                       : unit[0] == 'm'            ? 1024 * 1024
+                                                   : 0;
   const bool known =
-      unit.size() == 1 || unit.substr(1) == "b" || unit.substr(1) == "i" || unit.substr(1) == "ib";
-  if (power == 0 || !known) return {};
-  return static_cast<std::uint64_t>(std::llround(*number * power));
+      unit.size() <= 1 || unit.substr(1) == "b" || unit.substr(1) == "i" || unit.substr(1) == "ib";
+  const double bytes = number.value_or(-1) * power;
+  const bool whole = power != 1 || bytes == std::floor(bytes);
+  std::optional<std::uint64_t> result;
+  if (power > 0 && known && whole && bytes >= 0 && *number <= static_cast<double>(kMaxBudget))
+    result = static_cast<std::uint64_t>(std::llround(bytes));
+  return result;
 }
 
 // The value in the form in which a request keeps it; none where the option does not take it.

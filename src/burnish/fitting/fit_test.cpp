@@ -171,7 +171,7 @@ TEST(Fit, OfScatteredSamplesFollowsThemFartherThanOneLobe) {
   ASSERT_TRUE(nodes.report.nodes->covariance);
   EXPECT_NEAR(nodes.report.nodes->covariance->noise, 0.05, 0.015);
   EXPECT_FALSE(lobe.report.nodes);
-  EXPECT_LE(fetch_count(nodes.model()), 3u);
+  EXPECT_LE(fetch_count(nodes.model()), 2u);
   EXPECT_LT(mean_error(isotropic, nodes.ref()), 0.8 * mean_error(isotropic, lobe.ref()));
 }
 
@@ -381,8 +381,8 @@ TEST(Fit, TakesAThirdFetchWhereTwoLeaveNodesFartherThanWhatIsForetold) {
     const Source source = open_source((data_folder() / "rgl" / name).string() + ".bsdf", {});
     const Fit two = fit(source, {.form = Budget{.bytes = 16'384, .fetches = 2}}), made = fit(source, {});
     const NodesReport& nodes = two.report.nodes.value();
-    EXPECT_EQ(nodes.at_fitted.relative <= nodes.held_out->relative &&
-                  nodes.at_fitted.log_cos <= nodes.held_out->log_cos,
+    EXPECT_EQ(nodes.at_fitted.relative <= 1.1 * nodes.held_out->relative &&
+                  nodes.at_fitted.log_cos <= 1.1 * nodes.held_out->log_cos,
               enough);
     EXPECT_EQ(fetch_count(made.model()), enough ? 2u : 3u);
     EXPECT_EQ(made.report.nodes->at_fitted.relative < nodes.at_fitted.relative, !enough);

@@ -16,7 +16,7 @@ namespace burnish {
 
 namespace {
 
-constexpr std::size_t kMostJudged = 2000;    // nodes
+constexpr std::size_t kMostJudged = 1000;    // nodes
 constexpr std::size_t kJudgedTogether = 64;  // of them a thread at a time
 
 // Incidences are left out where an instrument stood at few; two of a hand are this far apart.

@@ -26,8 +26,8 @@ constexpr std::size_t kCentresTogether = 64;  // a thread at a time
 constexpr double kLeastPivot = 1e-9;          // of the variance
 
 // Blocks of nodes whose likelihood is looked at.
-constexpr std::size_t kNearBlocks = 24, kNearNodes = 64;
-constexpr std::size_t kFewNearBlocks = 6, kSpreadNodes = 192;
+constexpr std::size_t kNearBlocks = 16, kNearNodes = 64;
+constexpr std::size_t kFewNearBlocks = 6, kSpreadNodes = 160;
 constexpr TreePoint kNear{3, 1, 0.5, 0}, kNearAnisotropic{1.5, 1.5, 1, 1};
 
 // Cells along theta_h, theta_d and phi_d; nodes leave a gap where they touch none of a cell's corners.

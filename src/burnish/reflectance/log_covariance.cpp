@@ -28,7 +28,7 @@ constexpr std::array<TreePoint, kTerms> kAnisotropicLengths{
 constexpr double kSpread = 1.5;
 
 // The search for the likeliest parameters, which are logarithms.
-constexpr int kSteps = 60;
+constexpr int kSteps = 40;
 constexpr double kPrior = 1;  // what the square of a parameter's distance from its start counts
 constexpr double kReach = 4;  // the largest such distance
 constexpr double kFirstStep = 0.1, kLargestStep = 0.5, kSmallestStep = 1e-3;
