@@ -90,7 +90,7 @@ NodeFigures held_out(const MeasuredNodes& nodes, const LogCovariance& covariance
     const DirectionPair& pair = nodes.samples.pairs[i];
     if (hand(i) < hands && std::min(pair.wi.z, pair.wo.z) > NodeScoring{}.least_cosine) judged.push_back(i);
   }
-  const std::size_t step = judged.size() / kMostJudged + 1;
+  const std::size_t step = judged.size() > kMostJudged ? (judged.size() + kMostJudged - 1) / kMostJudged : 1;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < judged.size(); i += step) judged[kept++] = judged[i];
   judged.resize(kept);
