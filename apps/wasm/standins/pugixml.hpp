@@ -26,6 +26,7 @@ class xml_node {
   explicit xml_node(const xml_element* element) : element_(element) {}
   explicit operator bool() const { return element_ != nullptr; }
   bool operator!() const { return !element_; }
+  bool operator==(const xml_node& other) const { return element_ == other.element_; }
 
   /// The first child of that name; none of none.
   xml_node child(std::string_view name) const {

@@ -22,7 +22,7 @@ constexpr std::array<std::string_view, 4> kNamesOfCorrected = {"ccbrdf", "ccbsdf
                                                                "cosine_corrected_bsdf"};
 
 template <std::size_t n>
-bool among(const std::array<std::string_view, n>& names, std::string_view name) noexcept {
+bool is_one_of(const std::array<std::string_view, n>& names, std::string_view name) noexcept {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
@@ -41,18 +41,18 @@ std::optional<ValueKind> asked_kind(const OpenOptions& options) {
 }
 
 std::optional<ValueKind> kind_of_name(std::string_view name) {
-  if (among(kNamesOfF, name)) return ValueKind::f;
-  if (among(kNamesOfBrf, name)) return ValueKind::brf;
-  if (among(kNamesOfCorrected, name)) return ValueKind::f_cos_o;
+  if (is_one_of(kNamesOfF, name)) return ValueKind::f;
+  if (is_one_of(kNamesOfBrf, name)) return ValueKind::brf;
+  if (is_one_of(kNamesOfCorrected, name)) return ValueKind::f_cos_o;
   // f_r times the cosine of a named angle
   const std::size_t cosine = name.find("_cos");
-  if (cosine == std::string_view::npos || !among(kNamesOfF, name.substr(0, cosine))) return std::nullopt;
+  if (cosine == std::string_view::npos || !is_one_of(kNamesOfF, name.substr(0, cosine))) return std::nullopt;
   std::string angle(name.substr(cosine + 4));
   angle.erase(std::remove(angle.begin(), angle.end(), '_'), angle.end());
   if (angle.starts_with("theta")) angle.erase(0, 5);
   if (angle == "i" || angle == "in") return ValueKind::f_cos_i;
   constexpr std::array<std::string_view, 5> kOutgoing = {"o", "r", "s", "v", "out"};
-  if (among(kOutgoing, angle)) return ValueKind::f_cos_o;
+  if (is_one_of(kOutgoing, angle)) return ValueKind::f_cos_o;
   return std::nullopt;
 }
 
