@@ -363,6 +363,7 @@ TEST(Fit, OfIsotropicRglFilesIsOfTheirNodesUnlessAskedOtherwise) {
   EXPECT_EQ(default_target(merl, {}), FitTarget::function);
   EXPECT_EQ(default_target(merl, {.hold_out = NodePart{}}), FitTarget::nodes);
 
+  BURNISH_SKIP_WHERE_SANITIZED();  // of what follows
   const FitOptions small{.form = Budget{.bytes = 1000}, .score = false};
   FitOptions of_function = small;
   of_function.target = FitTarget::function;
