@@ -95,7 +95,7 @@ NodeFigures held_out(const MeasuredNodes& nodes, const LogCovariance& covariance
   for (std::size_t i = 0; i < judged.size(); i += step) judged[kept++] = judged[i];
   judged.resize(kept);
 
-  const KrigedNodes function(nodes, covariance);
+  const KrigedNodes function(nodes, covariance, true);
   std::vector<ErrorSums> sums(chunk_count(judged.size(), kJudgedTogether));
   for_each_chunk(judged.size(), kJudgedTogether, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
     std::vector<double> f(nodes.samples.channels);

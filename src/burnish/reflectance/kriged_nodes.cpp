@@ -127,7 +127,7 @@ TreePoint place_of(Vec3 wi, Vec3 wo, bool isotropic) noexcept {
           difference * std::sin(turn)};
 }
 
-KrigedNodes::KrigedNodes(const MeasuredNodes& nodes, const LogCovariance& covariance)
+KrigedNodes::KrigedNodes(const MeasuredNodes& nodes, const LogCovariance& covariance, bool few_pairs)
     : isotropic_(nodes.samples.isotropic), covariance_(covariance) {
   Logarithms all = logarithms_of(nodes);
   mean_ = std::move(all.mean);
@@ -146,7 +146,7 @@ KrigedNodes::KrigedNodes(const MeasuredNodes& nodes, const LogCovariance& covari
     measured_.variances.push_back(all.measured.variances[i] * covariance.noise * covariance.noise);
     for (std::size_t c = 0; c < channels; ++c) measured_.logs.push_back(all.measured.logs[i * channels + c]);
   }
-  solve_centres();
+  if (!few_pairs) solve_centres();
 }
 
 TreePoint KrigedNodes::scaled(TreePoint place) const noexcept {
@@ -273,6 +273,11 @@ void KrigedNodes::solve_centres() {
 bool KrigedNodes::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   std::ranges::fill(f, 0.0);
   if (!(wi.z > 0 && wo.z > 0)) return true;
+  if (centres_.size() == 0) {
+    eval_from(
+        wi, wo, [](std::size_t) { return true; }, f);
+    return true;
+  }
   const TreePoint place = place_of(wi, wo, isotropic_);
   std::array<KdTree::Neighbour, 1> nearest;
   centres_.nearest(scaled(place), nearest, [](std::size_t) { return true; });

@@ -26,7 +26,8 @@ class KrigedNodes {
   static constexpr std::size_t kNeighbours = 64, kCentres = 1 << 15;
 
   /// Throws Error where none of the nodes has both cosines above 0.02.
-  KrigedNodes(const MeasuredNodes& nodes, const LogCovariance& covariance);
+  /// With `few_pairs` nothing is prepared for sharing, and eval takes each pair's own neighbours.
+  KrigedNodes(const MeasuredNodes& nodes, const LogCovariance& covariance, bool few_pairs = false);
 
   std::size_t channels() const noexcept { return measured_.channels; }
   bool isotropic() const noexcept { return isotropic_; }
