@@ -23,6 +23,7 @@ constexpr double kGuessWeight = 0.1;  // of what stands where nothing was measur
 
 constexpr std::size_t kNeighbours = KrigedNodes::kNeighbours;
 constexpr std::size_t kCentresTogether = 64;  // a thread at a time
+constexpr double kLeastNoise = 1e-5;          // of the variance
 constexpr double kLeastPivot = 1e-9;          // of the variance
 
 // Blocks of nodes whose likelihood is looked at.
@@ -143,7 +144,9 @@ KrigedNodes::KrigedNodes(const MeasuredNodes& nodes, const LogCovariance& covari
   for (const std::size_t i : tree_.order()) {
     node_.push_back(all.node[i]);
     measured_.places.push_back(all.measured.places[i]);
-    measured_.variances.push_back(all.measured.variances[i] * covariance.noise * covariance.noise);
+    // Covariances are floats: less noise than their rounding would leave no matrix positive.
+    measured_.variances.push_back(std::max(all.measured.variances[i] * covariance.noise * covariance.noise,
+                                           kLeastNoise * covariance.variance()));
     for (std::size_t c = 0; c < channels; ++c) measured_.logs.push_back(all.measured.logs[i * channels + c]);
   }
   if (!few_pairs) solve_centres();
