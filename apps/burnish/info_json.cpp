@@ -21,7 +21,7 @@ std::optional<NodesKnown> nodes_of(const Source& source) {
   if (incidences <= kFewIncidences) known.incidences = incidences;
   if (source.ref().isotropic() && count <= kManyNodes) {
     try {
-      known.predicted = held_out_figures(measured_nodes(source), {});
+      known.predicted = held_out_figures(measured_nodes(source), LogCovariance(true));
     } catch (const Error&) {  // too few, or all of them near grazing: nothing to predict
     }
   }

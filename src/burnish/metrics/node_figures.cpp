@@ -144,7 +144,7 @@ std::optional<NodeFigures> held_out_incidences(const MeasuredNodes& nodes, const
 
 LogCovariance choose_covariance(const MeasuredNodes& nodes, const std::function<void(double)>& progress) {
   std::vector<LogCovariance> likely = likely_covariances(nodes);
-  likely.push_back(default_log_covariance(nodes.samples.isotropic));
+  likely.push_back(LogCovariance(nodes.samples.isotropic));
   const auto error_of = [&](const LogCovariance& covariance) {
     const auto error = [](const NodeFigures& figures) {
       return std::log(figures.relative) + std::log(figures.log_cos);

@@ -14,7 +14,7 @@
 namespace burnish {
 namespace {
 
-const LogCovariance kDefault = default_log_covariance(true);
+const LogCovariance kDefault = LogCovariance(true);
 
 MeasuredNodes nodes_of_source(BrdfRef source, std::size_t count, double noise = 0) {
   return measured_nodes(measure(source, {.count = count, .noise = noise}));

@@ -20,8 +20,7 @@ namespace {
 /// With sanitizers the covariance is not looked for, which takes them minutes.
 KrigedNodes kriged(const Samples& samples) {
   const MeasuredNodes nodes = measured_nodes(samples);
-  return {nodes,
-          BURNISH_SANITIZED ? default_log_covariance(nodes.samples.isotropic) : choose_covariance(nodes)};
+  return {nodes, BURNISH_SANITIZED ? LogCovariance(nodes.samples.isotropic) : choose_covariance(nodes)};
 }
 
 /// Mean |ln(f / f^)| over other pairs with both cosines above 0.15, of the first channel.
@@ -166,7 +165,7 @@ TEST(KrigedNodes, NeedNodesAboveTheHorizon) {
   Samples samples = measure(fixtures::Lambert{}, {.count = 10, .noise = 0});
   samples.pairs.assign(10, {spherical_direction(radians(89.9), 0), {0, 0, 1}});
   const MeasuredNodes nodes = measured_nodes(samples);
-  EXPECT_THROW(KrigedNodes(nodes, default_log_covariance(true)), Error);
+  EXPECT_THROW(KrigedNodes(nodes, LogCovariance(true)), Error);
   EXPECT_THROW(likely_covariances(nodes), Error);
 }
 

@@ -25,7 +25,7 @@ constexpr std::array<TreePoint, kTerms> kIsotropicLengths{
     {{0.4, 0, 0, 0}, {0.7, 0.7, 0, 0}, {0.4, 0.9, 1.5, 0}}};
 constexpr std::array<TreePoint, kTerms> kAnisotropicLengths{
     {{0.4, 0.4, 0, 0}, {0, 0, 0.7, 0.7}, {0.5, 0.5, 0.9, 0.9}}};
-constexpr double kSpread = 1.5;
+constexpr double kLevel = 2, kSpread = 1.5, kNoise = 0.06;
 
 // The search for the likeliest parameters, which are logarithms.
 constexpr int kSteps = 40;
@@ -40,11 +40,13 @@ using Parameters = std::array<double, kMaxParameters>;
 
 /// Numbers of the parameters.
 struct ParameterNumbers {
+  bool isotropic;
   Sees sees;
   std::array<std::array<std::size_t, kAxes>, kTerms> length{};
   std::size_t noise = 0, count = 0;
 
-  explicit ParameterNumbers(bool isotropic) noexcept : sees(isotropic ? kIsotropic : kAnisotropic) {
+  explicit ParameterNumbers(bool of_isotropic) noexcept
+      : isotropic(of_isotropic), sees(of_isotropic ? kIsotropic : kAnisotropic) {
     std::size_t next = 1 + kTerms;
     for (std::size_t t = 0; t < kTerms; ++t)
       for (std::size_t k = 0; k < kAxes; ++k)
@@ -66,7 +68,7 @@ struct ParameterNumbers {
   }
 
   LogCovariance covariance_of(const Parameters& logs) const noexcept {
-    LogCovariance covariance;
+    LogCovariance covariance(isotropic);
     covariance.level = std::exp(logs[0]);
     for (std::size_t t = 0; t < kTerms; ++t) {
       covariance.spread[t] = std::exp(logs[1 + t]);
@@ -159,26 +161,24 @@ Likelihood likelihood_of(const LogMeasurements& measured, std::span<const std::s
 
 }  // namespace
 
+LogCovariance::LogCovariance(bool isotropic) noexcept : level(kLevel), noise(kNoise) {
+  spread.fill(kSpread);
+  const auto& lengths = isotropic ? kIsotropicLengths : kAnisotropicLengths;
+  for (std::size_t t = 0; t < kTerms; ++t)
+    for (std::size_t k = 0; k < kAxes; ++k)
+      if (lengths[t][k] > 0) inverse_length[t][k] = 1 / lengths[t][k];
+}
+
 double LogCovariance::variance() const noexcept {
   double sum = level * level;
   for (const double of_term : spread) sum += of_term * of_term;
   return sum;
 }
 
-LogCovariance default_log_covariance(bool isotropic) {
-  LogCovariance covariance;
-  covariance.spread.fill(kSpread);
-  const auto& lengths = isotropic ? kIsotropicLengths : kAnisotropicLengths;
-  for (std::size_t t = 0; t < kTerms; ++t)
-    for (std::size_t k = 0; k < kAxes; ++k)
-      if (lengths[t][k] > 0) covariance.inverse_length[t][k] = 1 / lengths[t][k];
-  return covariance;
-}
-
 LogCovariance likeliest_covariance(const LogMeasurements& measured,
                                    std::span<const std::vector<std::size_t>> blocks, bool isotropic) {
   const ParameterNumbers numbering(isotropic);
-  const Parameters start = numbering.logs_of(default_log_covariance(isotropic));
+  const Parameters start = numbering.logs_of(LogCovariance(isotropic));
   Parameters at = start, before{}, steps, best = start;
   steps.fill(kFirstStep);
   double smallest = std::numeric_limits<double>::infinity();

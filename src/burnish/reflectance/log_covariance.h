@@ -22,19 +22,20 @@ struct LogCovariance {
   static constexpr std::size_t kTerms = 3, kAxes = 4;
   static constexpr double kRoot3 = 1.7320508075688772;
 
-  double level = 2;                                ///< standard deviation of the mean of ln f
-  std::array<double, kTerms> spread{};             ///< standard deviations of the terms
+  /// Lengths, spreads and noise of a smooth BRDF that was measured well: for few measurements, and what likelihood
+  /// starts from.
+  explicit LogCovariance(bool isotropic) noexcept;
+
+  double level;                                    ///< standard deviation of the mean of ln f, > 0
+  std::array<double, kTerms> spread;               ///< standard deviations of the terms, > 0
   std::array<TreePoint, kTerms> inverse_length{};  ///< 0 where a term does not see a coordinate
-  double noise = 0.06;                             ///< standard deviation of a measured ln f, weight 1
+  double noise;                                    ///< standard deviation of a measured ln f of weight 1, > 0
 
   /// The variance of ln f where nothing is measured.
   double variance() const noexcept;
 
   friend bool operator==(const LogCovariance&, const LogCovariance&) = default;
 };
-
-/// Lengths of a smooth BRDF, for few measurements, and what likelihood starts from.
-LogCovariance default_log_covariance(bool isotropic);
 
 /// Measured logarithms at places among the coordinates of LogCovariance.
 struct LogMeasurements {

@@ -54,7 +54,7 @@ TEST(LogCovariance, IsRougherWhereValuesAre) {
 }
 
 TEST(LogCovariance, DefaultSeesCoordinatesAsItsTermsSay) {
-  const LogCovariance isotropic = default_log_covariance(true), anisotropic = default_log_covariance(false);
+  const LogCovariance isotropic = LogCovariance(true), anisotropic = LogCovariance(false);
   EXPECT_EQ(isotropic.inverse_length[0][1], 0);
   EXPECT_GT(isotropic.inverse_length[2][2], 0);
   EXPECT_EQ(isotropic.inverse_length[2][3], 0);

@@ -30,7 +30,7 @@ NoiseScale::NoiseScale(const Source& source, BrdfRef fitted, bool symmetrized, c
   if (!symmetrized || !is_measurement(source)) return;
   if (const auto exchanged = exchanged_figures(*scorer_, source.ref())) noise_ = level_of(*exchanged);
   if (!fitted.isotropic()) return;
-  const double unseen = held_out_figures(measured_nodes(source), default_log_covariance(true)).relative;
+  const double unseen = held_out_figures(measured_nodes(source), LogCovariance(true)).relative;
   if (!noise_) noise_.emplace(ErrorLevel{.relative = unseen, .log_cos = {}, .rms = {}, .psnr = {}});
   noise_->relative = std::min(noise_->relative, unseen);
 }
