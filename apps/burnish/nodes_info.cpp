@@ -65,7 +65,7 @@ std::string nodes_text(const NodesInfo& info) {
   // how well others know it
   line("function", "made reciprocal, it knows them: " + errors(function));
   if (quality.held_out)
-    line("unseen", "nodes, by a smooth function of the others: " + errors(*quality.held_out));
+    line("unseen", "nodes, by the function between the others: " + errors(*quality.held_out));
   if (quality.held_out_incidences)
     line("unseen", "whole theta_i, by one of the others: " + errors(*quality.held_out_incidences));
   return text;

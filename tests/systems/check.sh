@@ -44,7 +44,7 @@ log=$kept/$suite${CXX:+-$CXX}
 base=$kept/$suite-base
 if [ ! -e "$base.made" ]; then
   rm -rf "$base"
-  debootstrap --variant=minbase "$suite" "$base" "${DEBIAN_MIRROR:-http://deb.debian.org/debian}" > "$log.log" ||
+  debootstrap --variant=minbase "$suite" "$base" ${DEBIAN_MIRROR:+"$DEBIAN_MIRROR"} > "$log.log" ||
     { tail -20 "$log.log"; exit 1; }
   touch "$base.made"
 fi

@@ -550,7 +550,7 @@ class Fitter {
     std::vector<double> f(set.channels);
     for (const std::size_t i : near) {
       const DirectionPair& pair = nodes_->samples.pairs[i];
-      smoothed_->eval(pair.wi, pair.wo, f);
+      between_->eval(pair.wi, pair.wo, f);
       set.pairs.push_back(pair);
       set.weights.push_back(static_cast<float>(others / static_cast<double>(near.size())));
       for (const double value : f) set.values.push_back(static_cast<float>(value));
@@ -604,17 +604,17 @@ class Fitter {
   std::size_t channels() const { return brdf_.channels(); }
   /// Samples that are fitted as they are.
   const Samples* samples() const {
-    if (smoothed_) return nullptr;
+    if (between_) return nullptr;
     return nodes_ ? &nodes_->samples : source_.samples();
   }
   /// Whether those are scattered samples of the source.
   bool scattered() const { return samples() && !nodes_; }
   /// Whether a fit follows the function between nodes most where these are: a table's crowd where highlights are.
   /// Scattered samples stand anywhere, and their function is fitted as any other.
-  bool judged_at_nodes() const { return smoothed_ && !source_.samples(); }
+  bool judged_at_nodes() const { return between_ && !source_.samples(); }
   const HalfDiffTable* table() const { return nodes_ ? nullptr : std::get_if<HalfDiffTable>(&source_.brdf); }
   BrdfRef reference() const {
-    if (smoothed_) return *smoothed_;
+    if (between_) return *between_;
     return symmetrized_ ? BrdfRef(*symmetrized_) : brdf_;
   }
 
@@ -624,15 +624,15 @@ class Fitter {
     if (options_.hold_out) nodes_ = nodes_without(*nodes_, *options_.hold_out);
     NodesReport& report = report_.nodes.emplace(NodesReport{.fitted = nodes_->size()});
     if (!nodes_->samples.isotropic) return;
-    const auto smoothing = progress("smoothing the nodes");
-    report.covariance = choose_covariance(*nodes_, smoothing);
+    const auto told = progress("kriging the nodes");
+    report.covariance = choose_covariance(*nodes_, told);
     report.held_out = held_out_figures(*nodes_, *report.covariance);
     const BrdfRef function = symmetrized_ ? BrdfRef(*symmetrized_) : brdf_;
     if (source_.samples())
-      smoothed_.emplace(*nodes_, *report.covariance);
+      between_.emplace(*nodes_, *report.covariance);
     else
-      smoothed_.emplace(with_gaps_filled(*nodes_, measured_nodes(source_), function), *report.covariance);
-    if (smoothing) smoothing(1);
+      between_.emplace(with_gaps_filled(*nodes_, measured_nodes(source_), function), *report.covariance);
+    if (told) told(1);
   }
 
   /// The source's own samples where it has some, a table's entries where one is given, else pairs drawn.
@@ -703,7 +703,7 @@ class Fitter {
   BrdfRef brdf_;
   std::optional<SymmetrizedBrdf> symmetrized_;
   std::optional<MeasuredNodes> nodes_;
-  std::optional<KrigedNodes> smoothed_;
+  std::optional<KrigedNodes> between_;  ///< the function between nodes of an isotropic source
   FitReport report_;
   bool default_fetches_ = false;  ///< nobody gave a number of fetches: they are those of DefaultBudget
   std::string at_bytes_;          ///< of a stage of progress, where several numbers of bytes are tried

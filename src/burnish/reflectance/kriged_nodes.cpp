@@ -200,6 +200,11 @@ struct KrigedNodes::Neighbourhood {
   Places at;
   Square factor;
 
+  /// Covariances of a place with these nodes.
+  Column towards(const LogCovariance& covariance, const TreePoint& place) const noexcept {
+    const auto n = static_cast<Eigen::Index>(count);
+    return covariances(covariance, at, floats_of(place), n).head(n).cast<double>().matrix();
+  }
   /// K^-1 x, in place.
   void solve(Column& x) const noexcept {
     factor.template triangularView<Eigen::Lower>().solveInPlace(x);
@@ -273,6 +278,10 @@ void KrigedNodes::solve_centres() {
   });
 }
 
+double KrigedNodes::value_of(double log, std::size_t channel) const noexcept {
+  return std::clamp(std::exp(mean_[channel] + log) - kFloor, 0.0, 2 * largest_[channel]);
+}
+
 bool KrigedNodes::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   std::ranges::fill(f, 0.0);
   if (!(wi.z > 0 && wo.z > 0)) return true;
@@ -294,11 +303,11 @@ bool KrigedNodes::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   }
   const Floats towards = covariances(covariance_, at, floats_of(place), static_cast<Eigen::Index>(count));
   for (std::size_t c = 0; c < f.size(); ++c) {
-    double log = mean_[c];
+    double log = 0;
     for (std::size_t i = 0; i < count; ++i)
       log += static_cast<double>(towards[static_cast<Eigen::Index>(i)]) *
              static_cast<double>(solved_[(centre * count + i) * f.size() + c]);
-    f[c] = std::clamp(std::exp(log) - kFloor, 0.0, 2 * largest_[c]);
+    f[c] = value_of(log, c);
   }
   return true;
 }
@@ -309,16 +318,13 @@ void KrigedNodes::eval_from(Vec3 wi, Vec3 wo, const std::function<bool(std::size
   if (!(wi.z > 0 && wo.z > 0)) return;
   const TreePoint place = place_of(wi, wo, isotropic_);
   const Neighbourhood near = neighbourhood(scaled(place), [&](std::size_t at) { return takes(node_[at]); });
-  Column weights = covariances(covariance_, near.at, floats_of(place), static_cast<Eigen::Index>(near.count))
-                       .head(static_cast<Eigen::Index>(near.count))
-                       .cast<double>()
-                       .matrix();
+  Column weights = near.towards(covariance_, place);
   near.solve(weights);
   for (std::size_t c = 0; c < f.size(); ++c) {
-    double log = mean_[c];
+    double log = 0;
     for (std::size_t i = 0; i < near.count; ++i)
       log += weights[static_cast<Eigen::Index>(i)] * measured_.logs[near.nodes[i] * f.size() + c];
-    f[c] = std::clamp(std::exp(log) - kFloor, 0.0, 2 * largest_[c]);
+    f[c] = value_of(log, c);
   }
 }
 
@@ -326,11 +332,7 @@ double KrigedNodes::uncertainty(Vec3 wi, Vec3 wo) const noexcept {
   if (!(wi.z > 0 && wo.z > 0)) return 0;
   const TreePoint place = place_of(wi, wo, isotropic_);
   const Neighbourhood near = neighbourhood(scaled(place), [](std::size_t) { return true; });
-  const Column towards =
-      covariances(covariance_, near.at, floats_of(place), static_cast<Eigen::Index>(near.count))
-          .head(static_cast<Eigen::Index>(near.count))
-          .cast<double>()
-          .matrix();
+  const Column towards = near.towards(covariance_, place);
   Column weights = towards;
   near.solve(weights);
   return std::sqrt(std::max(0.0, covariance_.variance() - weights.dot(towards)));

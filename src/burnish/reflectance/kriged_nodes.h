@@ -8,7 +8,7 @@
 
 #include <burnish/math/kd_tree.h>
 #include <burnish/reflectance/brdf.h>
-#include <burnish/reflectance/log_covariance.h>
+#include <burnish/reflectance/likeliest_covariance.h>
 #include <burnish/reflectance/measured_nodes.h>
 
 namespace burnish {
@@ -45,6 +45,7 @@ class KrigedNodes {
   template <class Takes>
   Neighbourhood neighbourhood(const TreePoint& scaled_place, const Takes& takes) const noexcept;
   void solve_centres();
+  double value_of(double log, std::size_t channel) const noexcept;
   TreePoint scaled(TreePoint place) const noexcept;
 
   bool isotropic_ = true;

@@ -2,10 +2,6 @@
 
 #include <array>
 #include <cstddef>
-#include <span>
-#include <vector>
-
-#include <burnish/math/kd_tree.h>
 
 namespace burnish {
 
@@ -17,7 +13,7 @@ namespace burnish {
 /// its terms see the first, the first two, and all three. Coordinates of an anisotropic one, even in the exchange:
 ///   the half vector at radius sqrt(tan(theta_h/2)), the difference vector at radius tan(theta_d/2) and twice its
 ///   azimuth; its terms see the half vector, the difference vector, and both.
-/// Source: [Rasmussen 2006, eq. 4.17 and 5.8].
+/// Source: [Rasmussen 2006, eq. 4.17].
 struct LogCovariance {
   static constexpr std::size_t kTerms = 3, kAxes = 4;
   static constexpr double kRoot3 = 1.7320508075688772;
@@ -26,32 +22,16 @@ struct LogCovariance {
   /// starts from.
   explicit LogCovariance(bool isotropic) noexcept;
 
-  double level;                                    ///< standard deviation of the mean of ln f, > 0
-  std::array<double, kTerms> spread;               ///< standard deviations of the terms, > 0
-  std::array<TreePoint, kTerms> inverse_length{};  ///< 0 where a term does not see a coordinate
-  double noise;                                    ///< standard deviation of a measured ln f of weight 1, > 0
+  double level;                       ///< standard deviation of the mean of ln f, > 0
+  std::array<double, kTerms> spread;  ///< standard deviations of the terms, > 0
+  /// Of each term and coordinate; 0 where the term does not see it.
+  std::array<std::array<double, kAxes>, kTerms> inverse_length{};
+  double noise;  ///< standard deviation of a measured ln f of weight 1, > 0
 
   /// The variance of ln f where nothing is measured.
   double variance() const noexcept;
 
   friend bool operator==(const LogCovariance&, const LogCovariance&) = default;
 };
-
-/// Measured logarithms at places among the coordinates of LogCovariance.
-struct LogMeasurements {
-  std::size_t channels = 0;
-  std::vector<TreePoint> places;
-  std::vector<double> logs;       ///< less the mean of each channel, [place][channel]
-  std::vector<double> variances;  ///< of the noise, in units of noise^2
-
-  std::size_t size() const noexcept { return places.size(); }
-};
-
-/// The covariance under which the measurements of each block are likeliest, blocks taken as independent, beside a prior
-/// that keeps parameters within a factor of e^4 of the default. Found by steps whose sizes follow the signs of the
-/// gradient [Riedmiller 1993]. The cost is that of a few dense matrices of the size of each block a step.
-/// Deterministic, whatever the number of threads.
-LogCovariance likeliest_covariance(const LogMeasurements& measured,
-                                   std::span<const std::vector<std::size_t>> blocks, bool isotropic);
 
 }  // namespace burnish

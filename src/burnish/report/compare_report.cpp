@@ -137,9 +137,10 @@ std::string nodes_html(const Measurement& measurement, std::span<const ComparedF
   const auto& quality = measurement.quality;
   std::string rows = nodes_row("the reference, made reciprocal", measurement.itself);
   if (quality && quality->held_out)
-    rows += nodes_row("a smooth function that has not seen them", *quality->held_out);
+    rows += nodes_row("the function between nodes that has not seen them", *quality->held_out);
   if (quality && quality->held_out_incidences)
-    rows += nodes_row("a smooth function that has not seen their theta_i", *quality->held_out_incidences);
+    rows += nodes_row("the function between nodes that has not seen their theta_i",
+                      *quality->held_out_incidences);
   for (const ComparedFigures& c : compared)
     if (c.nodes) rows += nodes_row(c.name, *c.nodes);
   std::string noise;

@@ -26,7 +26,7 @@ inline constexpr double kMinBudgetGain = 0.1;
 class NoiseScale {
  public:
   /// Errors of the function that is fitted; `source` is what it was made of. Of a measurement that is made reciprocal
-  /// the noise is what exchanged directions tell (exchanged_figures), its relative error at most what a smooth function
+  /// the noise is what exchanged directions tell (exchanged_figures), its relative error at most what KrigedNodes
   /// misses held-out nodes by where the source is isotropic (held_out_figures). Of any other source there is none.
   /// Both must outlive the scale. Throws Error as Scorer and measured_nodes do.
   NoiseScale(const Source& source, BrdfRef fitted, bool symmetrized, const FigureOptions& figures);

@@ -20,7 +20,7 @@ constexpr double kGap = 4;
 // What of a model's shares counts nodes, all of it here.
 constexpr ErrorTerms kShares{.pictures = 0, .dimmed = 0, .relative = 2, .log_cos = 2};
 constexpr std::size_t kMaxNodes = 40'000;
-constexpr double kFullCosine = 0.15;  // from here on nodes count fully, as those of SmoothedNodes do
+constexpr double kFullCosine = 0.15;  // from here on nodes count fully, as those of KrigedNodes do
 
 MeasuredNodes part_of_many(const MeasuredNodes& nodes) {
   const auto step = static_cast<std::uint32_t>(nodes.size() / kMaxNodes + 1);

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <burnish/math/random.h>
-#include <burnish/reflectance/log_covariance.h>
+#include <burnish/reflectance/likeliest_covariance.h>
 
 namespace burnish {
 namespace {
