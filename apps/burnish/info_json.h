@@ -5,7 +5,7 @@
 #include <string>
 
 #include <burnish/io/source_report.h>
-#include <burnish/metrics/node_figures.h>
+#include <burnish/reflectance/node_figures.h>
 
 namespace burnish::cli {
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include <burnish/metrics/measurement_quality.h>
-#include <burnish/metrics/node_figures.h>
+#include <burnish/reflectance/node_figures.h>
 #include <burnish/source.h>
 
 namespace burnish::cli {

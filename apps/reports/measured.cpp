@@ -12,7 +12,7 @@
 #include <burnish/math/angles.h>
 #include <burnish/metrics/albedo.h>
 #include <burnish/metrics/error_figures.h>
-#include <burnish/metrics/node_figures.h>
+#include <burnish/reflectance/node_figures.h>
 #include <burnish/testing/noisy_table.h>
 
 #include "report.h"

@@ -27,9 +27,9 @@
 #include <burnish/fitting/plans/volume_smoothness.h>
 #include <burnish/fitting/refinement/rounding.h>
 #include <burnish/metrics/error_figures.h>
-#include <burnish/metrics/node_figures.h>
 #include <burnish/reflectance/goniometer.h>
 #include <burnish/reflectance/kriged_nodes.h>
+#include <burnish/reflectance/node_figures.h>
 #include <burnish/reflectance/sample_source.h>
 
 namespace burnish {

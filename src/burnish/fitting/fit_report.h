@@ -13,7 +13,7 @@
 #include <burnish/fitting/book/complete.h>
 #include <burnish/fitting/fit_summary.h>
 #include <burnish/metrics/error_figures.h>
-#include <burnish/metrics/node_figures.h>
+#include <burnish/reflectance/node_figures.h>
 
 namespace burnish {
 

@@ -8,6 +8,7 @@
 
 #include <burnish/metrics/sphere_images.h>
 #include <burnish/reflectance/brdf.h>
+#include <burnish/reflectance/pair_error.h>
 
 namespace burnish {
 
@@ -32,21 +33,6 @@ struct FigureOptions {
   double floor = 1e-3;  ///< 1/sr, in `relative` and `rms_log`
   int image_size = kSphereSize;
 };
-
-/// Error of one direction pair, means over the channels.
-struct PairError {
-  DirectionPair pair;
-  double log_cos = 0;         ///< as in ErrorFigures
-  double log_ratio = 0;       ///< |ln((f + floor) / (f^ + floor))|
-  double log_ratio_sq = 0;    ///< its square's mean
-  double difference_sq = 0;   ///< mean (f - f^)^2, 1/sr^2
-  double abs_log = 0;         ///< |ln(f / f^)| over the channels where both are above 0
-  int positive_channels = 0;  ///< how many those are
-};
-
-/// Error of a model's values at one pair, floor >= 0. One channel stands for every channel of the other side.
-PairError pair_error(const DirectionPair& pair, std::span<const double> reference,
-                     std::span<const double> model, double floor) noexcept;
 
 /// The three lit spheres of one BRDF and what is shown of them.
 struct SpherePictures {

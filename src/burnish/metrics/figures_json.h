@@ -8,7 +8,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <burnish/metrics/error_figures.h>
-#include <burnish/metrics/node_figures.h>
+#include <burnish/reflectance/node_figures.h>
 
 namespace burnish {
 

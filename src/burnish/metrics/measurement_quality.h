@@ -5,9 +5,9 @@
 #include <vector>
 
 #include <burnish/metrics/error_figures.h>
-#include <burnish/metrics/node_figures.h>
 #include <burnish/reflectance/brdf.h>
 #include <burnish/reflectance/measured_nodes.h>
+#include <burnish/reflectance/node_figures.h>
 
 namespace burnish {
 

@@ -7,10 +7,10 @@
 
 #include <burnish/error.h>
 #include <burnish/math/angles.h>
-#include <burnish/metrics/node_figures.h>
 #include <burnish/parameterization/half_diff.h>
 #include <burnish/reflectance/goniometer.h>
 #include <burnish/reflectance/kriged_nodes.h>
+#include <burnish/reflectance/node_figures.h>
 #include <burnish/testing/brdfs.h>
 #include <burnish/testing/sanitized.h>
 

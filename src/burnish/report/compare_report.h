@@ -11,8 +11,8 @@
 #include <burnish/metrics/albedo.h>
 #include <burnish/metrics/error_figures.h>
 #include <burnish/metrics/measurement_quality.h>
-#include <burnish/metrics/node_figures.h>
 #include <burnish/reflectance/brdf.h>
+#include <burnish/reflectance/node_figures.h>
 
 namespace burnish {
 

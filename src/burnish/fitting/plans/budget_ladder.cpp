@@ -5,7 +5,7 @@
 
 #include <burnish/fitting/plans/budget_ladder.h>
 #include <burnish/metrics/measurement_quality.h>
-#include <burnish/metrics/node_figures.h>
+#include <burnish/reflectance/node_figures.h>
 
 namespace burnish {
 

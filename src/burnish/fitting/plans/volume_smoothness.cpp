@@ -8,7 +8,7 @@
 #include <burnish/fitting/plans/fetch_plan.h>
 #include <burnish/fitting/plans/volume_smoothness.h>
 #include <burnish/math/parallel.h>
-#include <burnish/metrics/node_figures.h>
+#include <burnish/reflectance/node_figures.h>
 
 namespace burnish {
 

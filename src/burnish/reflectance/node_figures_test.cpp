@@ -6,8 +6,8 @@
 #include <burnish/error.h>
 #include <burnish/math/angles.h>
 #include <burnish/math/random.h>
-#include <burnish/metrics/node_figures.h>
 #include <burnish/reflectance/goniometer.h>
+#include <burnish/reflectance/node_figures.h>
 #include <burnish/testing/brdfs.h>
 #include <burnish/testing/sanitized.h>
 

@@ -9,8 +9,8 @@
 #include <burnish/error.h>
 #include <burnish/math/parallel.h>
 #include <burnish/math/random.h>
-#include <burnish/metrics/node_figures.h>
 #include <burnish/reflectance/kriged_nodes.h>
+#include <burnish/reflectance/node_figures.h>
 
 namespace burnish {
 

@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include <burnish/metrics/error_figures.h>
 #include <burnish/reflectance/brdf.h>
 #include <burnish/reflectance/log_covariance.h>
 #include <burnish/reflectance/measured_nodes.h>
+#include <burnish/reflectance/pair_error.h>
 
 namespace burnish {
 
