@@ -193,7 +193,8 @@ std::array<FoldErrors, kPaintModels.size()> paint_errors(const Samples& samples)
   std::array<FoldErrors, kPaintModels.size()> errors;
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
     const auto [training, test] = split_fold(samples.size(), fold);
-    const ScatteredBrdf pbrt(samples, training, SampleSpace::angles), half_diff(samples, training);
+    const ScatteredBrdf pbrt(samples, training, SampleRule::mean_in_angles),
+        half_diff(samples, training, SampleRule::mean_in_half_difference);
     const Source part = source_of(select(samples, training));
     std::array<std::optional<FactoredBrdf>, kPaintModels.size()> models;
     for_each_chunk(models.size(), 1, [&](std::size_t m, std::size_t, std::size_t) {

@@ -113,6 +113,11 @@ void for_each_chunk(std::size_t count, std::size_t chunk_size, const Body& body)
   loop.rethrow();
 }
 
+// A thread that waits for its own loop takes up no other.
+void run_isolated(const std::function<void()>& body) {
+  body();
+}
+
 ThreadLimit::ThreadLimit(int) {}
 
 ThreadLimit::~ThreadLimit() {}

@@ -61,7 +61,7 @@ SampleFile parse_cornell(const FileBytes& file, const OpenOptions& options) {
   result.findings.conventions = {
       "Angles in radians; theta_i, phi_i to the light, theta_s, phi_s to the viewer; the "
       "mirror direction is at phi_s = phi_i + 180 degrees.",
-      "Taken as isotropic."};
+      "Taken as isotropic.", "Between samples: the mean of the nearest ones, as pbrt-v2 reads such files."};
   for (std::size_t k = 0; k < bands; ++k)
     result.findings.lambda_nm.push_back(wrapped_number(reader, "a wavelength"));
   reader.end_of_line();

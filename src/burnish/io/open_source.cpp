@@ -40,8 +40,8 @@ Source from_table(const FileBytes& file, File parsed) {
   return {file.name, std::move(parsed.table), std::move(parsed.findings)};
 }
 
-Source from_samples(const FileBytes& file, SampleFile parsed) {
-  return {file.name, ScatteredBrdf(std::move(parsed.samples)), std::move(parsed.findings)};
+Source from_samples(const FileBytes& file, SampleFile parsed, SampleRule rule = SampleRule::kriged) {
+  return {file.name, ScatteredBrdf(std::move(parsed.samples), rule), std::move(parsed.findings)};
 }
 
 Source from_neural(const FileBytes& file, std::string_view name) {
@@ -139,7 +139,8 @@ Source parse_file(const FileBytes& file, const OpenOptions& options) {
   if (looks_like_fred(text)) return from_samples(file, parse_fred(file, options));
   if (looks_like_astm(text)) return from_samples(file, parse_astm(file, options));
   if (looks_like_csv(text)) return from_samples(file, parse_csv(file, options));
-  if (looks_like_cornell(text)) return from_samples(file, parse_cornell(file, options));
+  if (looks_like_cornell(text))
+    return from_samples(file, parse_cornell(file, options), SampleRule::mean_in_half_difference);
   if (looks_like_np(text))
     throw Error::in_file(file.name, "np:FILE#NAME for one of its codes, a decoder.f32 beside it",
                          "the file alone");

@@ -2,6 +2,7 @@
 
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <burnish/math/parallel.h>
 
@@ -16,6 +17,10 @@ void for_each_chunk(std::size_t count, std::size_t chunk_size,
       std::size_t{0}, chunk_count(count, chunk_size),
       [&](std::size_t chunk) { body(chunk, chunk * chunk_size, std::min(count, (chunk + 1) * chunk_size)); },
       context);
+}
+
+void run_isolated(const std::function<void()>& body) {
+  tbb::this_task_arena::isolate([&] { body(); });
 }
 
 ThreadLimit::ThreadLimit(int threads) {

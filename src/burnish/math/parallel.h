@@ -12,6 +12,10 @@ namespace burnish {
 void for_each_chunk(std::size_t count, std::size_t chunk_size,
                     const std::function<void(std::size_t chunk, std::size_t begin, std::size_t end)>& body);
 
+/// Runs body(), whose loops' threads take up no work from outside it while they wait: for what others wait for behind a
+/// lock.
+void run_isolated(const std::function<void()>& body);
+
 /// Number of chunks for_each_chunk makes.
 constexpr std::size_t chunk_count(std::size_t count, std::size_t chunk_size) noexcept {
   return (count + chunk_size - 1) / chunk_size;

@@ -17,14 +17,17 @@ namespace burnish {
 
 namespace {
 
-constexpr double kMinNodeCosine = 0.02, kFullCosine = 0.15;
+constexpr double kFullCosine = 0.15;  // of nodes that are not noisier than others
 constexpr double kUpright = 1e-12;    // theta_h of rounding
 constexpr double kGuessWeight = 0.1;  // of what stands where nothing was measured
 
 constexpr std::size_t kNeighbours = KrigedNodes::kNeighbours;
-constexpr std::size_t kCentresTogether = 64;  // a thread at a time
-constexpr double kLeastNoise = 1e-5;          // of the variance
-constexpr double kLeastPivot = 1e-9;          // of the variance
+constexpr std::size_t kCentresTogether = 64;     // a thread at a time
+constexpr std::size_t kSolvedNumbers = 1 << 24;  // at most, of all centres: spectra have many channels
+constexpr double kCalibrationPrior = 2;          // nodes as surprising as expected
+constexpr double kMostSurprise = 16;             // of one node
+constexpr double kLeastNoise = 1e-5;             // of the variance
+constexpr double kLeastPivot = 1e-9;             // of the variance
 
 // Blocks of nodes whose likelihood is looked at.
 constexpr std::size_t kNearBlocks = 16, kNearNodes = 64;
@@ -36,6 +39,16 @@ constexpr std::array<std::size_t, 3> kCells{48, 12, 6};
 
 double least_cosine(const DirectionPair& pair) noexcept {
   return std::min(pair.wi.z, pair.wo.z);
+}
+
+/// Nodes near the horizon are noisier than others.
+double weight_of(const DirectionPair& pair) noexcept {
+  return std::min(1.0, least_cosine(pair) / kFullCosine);
+}
+
+/// Covariances are floats: less noise than their rounding would leave no matrix positive.
+double noise_variance(const LogCovariance& covariance, double units) noexcept {
+  return std::max(units * covariance.noise * covariance.noise, kLeastNoise * covariance.variance());
 }
 
 struct Logarithms {
@@ -52,11 +65,10 @@ Logarithms logarithms_of(const MeasuredNodes& nodes) {
   result.largest.assign(channels, 0);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const DirectionPair& pair = nodes.samples.pairs[i];
-    if (!(least_cosine(pair) > kMinNodeCosine)) continue;
+    if (!(least_cosine(pair) > KrigedNodes::kLeastCosine)) continue;
     result.node.push_back(static_cast<std::uint32_t>(i));
     result.measured.places.push_back(place_of(pair.wi, pair.wo, nodes.samples.isotropic));
-    result.measured.variances.push_back(1 /
-                                        (nodes.weights[i] * std::min(1.0, least_cosine(pair) / kFullCosine)));
+    result.measured.variances.push_back(1 / (nodes.weights[i] * weight_of(pair)));
     for (std::size_t c = 0; c < channels; ++c) {
       const double f = std::max(0.0, nodes.samples.at(i)[c]);
       result.largest[c] = std::max(result.largest[c], f);
@@ -144,9 +156,7 @@ KrigedNodes::KrigedNodes(const MeasuredNodes& nodes, const LogCovariance& covari
   for (const std::size_t i : tree_.order()) {
     node_.push_back(all.node[i]);
     measured_.places.push_back(all.measured.places[i]);
-    // Covariances are floats: less noise than their rounding would leave no matrix positive.
-    measured_.variances.push_back(std::max(all.measured.variances[i] * covariance.noise * covariance.noise,
-                                           kLeastNoise * covariance.variance()));
+    measured_.variances.push_back(noise_variance(covariance, all.measured.variances[i]));
     for (std::size_t c = 0; c < channels; ++c) measured_.logs.push_back(all.measured.logs[i * channels + c]);
   }
   if (!few_pairs) solve_centres();
@@ -168,8 +178,8 @@ using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, static_
 using Places = std::array<Floats, LogCovariance::kAxes>;
 
 /// Covariances of a place with the first n of some places.
-Floats covariances(const LogCovariance& covariance, const Places& at, const std::array<float, 4>& place,
-                   Eigen::Index n) noexcept {
+Floats prior_covariances(const LogCovariance& covariance, const Places& at, const std::array<float, 4>& place,
+                         Eigen::Index n) noexcept {
   Floats sum;
   sum.head(n).setConstant(static_cast<float>(covariance.level * covariance.level));
   for (std::size_t t = 0; t < LogCovariance::kTerms; ++t) {
@@ -203,7 +213,7 @@ struct KrigedNodes::Neighbourhood {
   /// Covariances of a place with these nodes.
   Column towards(const LogCovariance& covariance, const TreePoint& place) const noexcept {
     const auto n = static_cast<Eigen::Index>(count);
-    return covariances(covariance, at, floats_of(place), n).head(n).cast<double>().matrix();
+    return prior_covariances(covariance, at, floats_of(place), n).head(n).cast<double>().matrix();
   }
   /// K^-1 x, in place.
   void solve(Column& x) const noexcept {
@@ -231,7 +241,7 @@ KrigedNodes::Neighbourhood KrigedNodes::neighbourhood(const TreePoint& scaled_pl
   near.factor.resize(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const std::uint32_t node = near.nodes[static_cast<std::size_t>(i)];
-    const Floats row = covariances(covariance_, near.at, floats_of(measured_.places[node]), i);
+    const Floats row = prior_covariances(covariance_, near.at, floats_of(measured_.places[node]), i);
     near.factor.row(i).head(i) = row.head(i).cast<double>().matrix().transpose();
     near.factor(i, i) = covariance_.variance() + measured_.variances[node];
   }
@@ -253,12 +263,14 @@ KrigedNodes::Neighbourhood KrigedNodes::neighbourhood(const TreePoint& scaled_pl
 // What all pairs near each centre are predicted with.
 void KrigedNodes::solve_centres() {
   // Every so many nodes in the tree's order, which spreads them as the nodes are spread.
-  const std::size_t step = (measured_.size() - 1) / kCentres + 1;
+  const std::size_t most = std::min(kCentres, kSolvedNumbers / (kNeighbours * measured_.channels) + 1);
+  const std::size_t step = (measured_.size() - 1) / most + 1;
   std::vector<TreePoint> places;
   for (std::size_t i = 0; i < measured_.size(); i += step) places.push_back(tree_.points()[i]);
   centres_ = KdTree(places);
 
   const std::size_t channels = measured_.channels, count = std::min(kNeighbours, measured_.size());
+  std::vector<double> surprises(centres_.size());
   near_.resize(centres_.size() * count);
   solved_.resize(centres_.size() * count * channels);
   for_each_chunk(centres_.size(), kCentresTogether, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -274,6 +286,48 @@ void KrigedNodes::solve_centres() {
           solved_[(c * count + i) * channels + channel] =
               static_cast<float>(solved[static_cast<Eigen::Index>(i)]);
       }
+      const auto own = static_cast<std::uint32_t>(centres_.order()[c] * step);
+      surprises[c] =
+          surprise_of(near, own, std::span(solved_).subspan(c * count * channels, count * channels));
+    }
+  });
+  calibrate(surprises);
+}
+
+/// The square by which a node differs from what its neighbours without it foretell, in units of the variance that they
+/// give it, the mean over the channels: ((K^-1 y)_i)^2 / (K^-1)_ii [Rasmussen 2006, eq. 5.12]. 1 where the node is not
+/// among the neighbours.
+double KrigedNodes::surprise_of(const Neighbourhood& near, std::uint32_t node,
+                                std::span<const float> solved) {
+  const auto found = std::lower_bound(near.nodes.begin(),
+                                      near.nodes.begin() + static_cast<std::ptrdiff_t>(near.count), node);
+  const auto own = static_cast<std::size_t>(found - near.nodes.begin());
+  if (own == near.count || *found != node) return 1;
+  Column unit = Column::Zero(static_cast<Eigen::Index>(near.count));
+  unit[static_cast<Eigen::Index>(own)] = 1;
+  near.factor.template triangularView<Eigen::Lower>().solveInPlace(unit);
+  const std::size_t channels = solved.size() / near.count;
+  double squares = 0;
+  for (std::size_t c = 0; c < channels; ++c) {
+    const auto value = static_cast<double>(solved[own * channels + c]);
+    squares += value * value;
+  }
+  return squares / (static_cast<double>(channels) * unit.squaredNorm());
+}
+
+/// What variances are multiplied by near each centre: the mean surprise of the nearest ones, outliers bounded, beside a
+/// prior of 1.
+void KrigedNodes::calibrate(std::span<const double> surprises) {
+  calibration_.resize(centres_.size());
+  for_each_chunk(centres_.size(), kCentresTogether, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      std::array<KdTree::Neighbour, kCalibrating> found;
+      const std::size_t count =
+          centres_.nearest(centres_.points()[c], found, [](std::size_t) { return true; });
+      std::sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));
+      double sum = kCalibrationPrior;
+      for (std::size_t i = 0; i < count; ++i) sum += std::min(surprises[found[i].place], kMostSurprise);
+      calibration_[c] = static_cast<float>(sum / (kCalibrationPrior + static_cast<double>(count)));
     }
   });
 }
@@ -301,7 +355,8 @@ bool KrigedNodes::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
     for (std::size_t k = 0; k < node.size(); ++k)
       at[k][static_cast<Eigen::Index>(i)] = static_cast<float>(node[k]);
   }
-  const Floats towards = covariances(covariance_, at, floats_of(place), static_cast<Eigen::Index>(count));
+  const Floats towards =
+      prior_covariances(covariance_, at, floats_of(place), static_cast<Eigen::Index>(count));
   for (std::size_t c = 0; c < f.size(); ++c) {
     double log = 0;
     for (std::size_t i = 0; i < count; ++i)
@@ -328,14 +383,40 @@ void KrigedNodes::eval_from(Vec3 wi, Vec3 wo, const std::function<bool(std::size
   }
 }
 
-double KrigedNodes::uncertainty(Vec3 wi, Vec3 wo) const noexcept {
-  if (!(wi.z > 0 && wo.z > 0)) return 0;
+LogUncertainty KrigedNodes::uncertainty(Vec3 wi, Vec3 wo) const noexcept {
+  if (!(wi.z > 0 && wo.z > 0)) return {};
   const TreePoint place = place_of(wi, wo, isotropic_);
   const Neighbourhood near = neighbourhood(scaled(place), [](std::size_t) { return true; });
   const Column towards = near.towards(covariance_, place);
   Column weights = towards;
   near.solve(weights);
-  return std::sqrt(std::max(0.0, covariance_.variance() - weights.dot(towards)));
+  const double variance = std::max(0.0, covariance_.variance() - weights.dot(towards));
+  const double noise = noise_variance(covariance_, 1 / weight_of({wi, wo}));
+  const double by = calibration({wi, wo});
+  return {std::sqrt(by * variance), std::sqrt(by * (variance + noise))};
+}
+
+void KrigedNodes::covariances_with(const DirectionPair& one, std::span<const DirectionPair> others,
+                                   std::span<double> covariances) const noexcept {
+  // Prior covariance less what the nodes tell of both [Rasmussen 2006, eq. 2.24].
+  const TreePoint place = place_of(one.wi, one.wo, isotropic_);
+  const Neighbourhood near = neighbourhood(scaled(place), [](std::size_t) { return true; });
+  Column weights = near.towards(covariance_, place);
+  near.solve(weights);
+  Places at_one;
+  for (std::size_t k = 0; k < place.size(); ++k) at_one[k].setConstant(static_cast<float>(place[k]));
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    const TreePoint other = place_of(others[i].wi, others[i].wo, isotropic_);
+    const auto prior = static_cast<double>(prior_covariances(covariance_, at_one, floats_of(other), 1)[0]);
+    covariances[i] = prior - weights.dot(near.towards(covariance_, other));
+  }
+}
+
+double KrigedNodes::calibration(const DirectionPair& pair) const noexcept {
+  if (centres_.size() == 0) return 1;
+  std::array<KdTree::Neighbour, 1> nearest;
+  centres_.nearest(scaled(place_of(pair.wi, pair.wo, isotropic_)), nearest, [](std::size_t) { return true; });
+  return static_cast<double>(calibration_[nearest[0].place]);
 }
 
 std::vector<LogCovariance> likely_covariances(const MeasuredNodes& nodes) {
@@ -366,7 +447,7 @@ std::vector<LogCovariance> likely_covariances(const MeasuredNodes& nodes) {
 MeasuredNodes with_gaps_filled(const MeasuredNodes& fitted, const MeasuredNodes& all, BrdfRef function) {
   std::vector<std::uint8_t> touched(kCells[0] * kCells[1] * kCells[2]);
   for (const DirectionPair& pair : all.samples.pairs)
-    if (least_cosine(pair) > kMinNodeCosine)
+    if (least_cosine(pair) > KrigedNodes::kLeastCosine)
       for (const std::size_t corner : corners_of(pair.wi, pair.wo)) touched[corner] = 1;
 
   MeasuredNodes filled = fitted;
@@ -375,7 +456,7 @@ MeasuredNodes with_gaps_filled(const MeasuredNodes& fitted, const MeasuredNodes&
   for (std::size_t i = 0; i < touched.size(); ++i) {
     if (touched[i]) continue;
     const DirectionPair pair = directions_of(i);
-    if (!(least_cosine(pair) > kMinNodeCosine) || !function.eval(pair.wi, pair.wo, f)) continue;
+    if (!(least_cosine(pair) > KrigedNodes::kLeastCosine) || !function.eval(pair.wi, pair.wo, f)) continue;
     filled.samples.pairs.push_back(pair);
     filled.samples.values.insert(filled.samples.values.end(), f.begin(), f.end());
     filled.weights.push_back(kGuessWeight);

@@ -7,6 +7,7 @@
 
 #include <burnish/error.h>
 #include <burnish/math/angles.h>
+#include <burnish/math/random.h>
 #include <burnish/parameterization/half_diff.h>
 #include <burnish/reflectance/goniometer.h>
 #include <burnish/reflectance/kriged_nodes.h>
@@ -129,11 +130,59 @@ TEST(KrigedNodes, AreUncertainWhereNothingWasMeasured) {
       samples.values.insert(samples.values.end(), f.begin(), f.end());
     }
   const KrigedNodes function = kriged(samples);
-  const double seen = function.uncertainty(spherical_direction(radians(7), 0), spherical_direction(0.5, 2)),
-               unseen = function.uncertainty(spherical_direction(radians(75), 0),
-                                             spherical_direction(radians(80), 3));
-  EXPECT_GT(unseen, 3 * seen);
-  EXPECT_EQ(function.uncertainty({0, 0, -1}, {0, 0, 1}), 0);
+  const LogUncertainty seen = function.uncertainty(spherical_direction(radians(7), 0),
+                                                   spherical_direction(0.5, 2)),
+                       unseen = function.uncertainty(spherical_direction(radians(75), 0),
+                                                     spherical_direction(radians(80), 3)),
+                       below = function.uncertainty({0, 0, -1}, {0, 0, 1});
+  EXPECT_GT(unseen.function, 3 * seen.function);
+  EXPECT_GT(seen.reading, seen.function);
+  EXPECT_EQ(below.function, 0);
+  EXPECT_EQ(below.reading, 0);
+}
+
+/// The share of other readings of the source that lie within the middle 90 % of a normal distribution.
+double share_within_90(BrdfRef source, std::size_t count, double noise) {
+  const KrigedNodes function = kriged(measure(source, {.count = count, .noise = noise}));
+  const Samples others = measure(source, {.count = 2000, .noise = noise, .seed = 99});
+  std::vector<double> f(others.channels);
+  std::size_t within = 0, all = 0;
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    const auto [wi, wo] = others.pairs[i];
+    if (std::min(wi.z, wo.z) < 0.15) continue;
+    function.eval(wi, wo, f);
+    const double reach = 1.645 * function.uncertainty(wi, wo).reading;
+    for (std::size_t c = 0; c < f.size(); ++c, ++all)
+      within +=
+          std::abs(std::log((others.at(i)[c] + KrigedNodes::kFloor) / (f[c] + KrigedNodes::kFloor))) < reach;
+  }
+  return static_cast<double>(within) / static_cast<double>(all);
+}
+
+TEST(KrigedNodes, KnowHowFarOffReadingsAre) {
+  BURNISH_SKIP_WHERE_SANITIZED();
+  for (const double noise : {0.05, 0.2})
+    for (const std::size_t count : {300, 3000})
+      for (const double a : {8.0, 200.0}) {
+        const double share = share_within_90(fixtures::Glossy{.a = a, .b = a}, count, noise);
+        EXPECT_GT(share, 0.85) << noise << " " << count << " " << a;
+        EXPECT_LT(share, 0.95) << noise << " " << count << " " << a;
+      }
+}
+
+// A source that is rough in one corner: its nodes say so there alone.
+TEST(KrigedNodes, AreUncertainWhereNodesAreRough) {
+  BURNISH_SKIP_WHERE_SANITIZED();
+  Samples samples = measure(fixtures::Lambert{}, {.count = 3000, .noise = 0.02});
+  Pcg32 random(4);
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    if (angle_between(samples.pairs[i].wi, samples.pairs[i].wo) > 2)
+      for (double& value : samples.at(i)) value *= std::exp(0.6 * (2 * random.uniform() - 1));
+  const KrigedNodes function = kriged(samples);
+  const auto reading = [&](double theta) {
+    return function.uncertainty(spherical_direction(theta, 0), spherical_direction(theta, kPi)).reading;
+  };
+  EXPECT_GT(reading(1.25), 3 * reading(0.3));
 }
 
 TEST(KrigedNodes, ValuesLieBetweenZeroAndTwiceTheLargest) {

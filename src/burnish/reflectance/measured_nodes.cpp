@@ -32,13 +32,19 @@ std::int64_t rounded(double x) noexcept {
   return static_cast<std::int64_t>(std::llround(x / kSameDirection));
 }
 
+// What rotation, reflection and exchange leave of a pair of an isotropic source.
+std::array<double, 3> isotropic_numbers(const DirectionPair& pair) noexcept {
+  const auto [wi, wo] = pair;
+  const double i = std::hypot(wi.x, wi.y), o = std::hypot(wo.x, wo.y);
+  return {std::min(i, o), std::max(i, o), std::hypot(wi.x + wo.x, wi.y + wo.y)};
+}
+
 // The same for all pairs that rotation, reflection (both of isotropic sources) and exchange make of one.
 Key key_of(const DirectionPair& pair, bool isotropic) noexcept {
   const auto [wi, wo] = pair;
   if (isotropic) {
-    const double i = std::hypot(wi.x, wi.y), o = std::hypot(wo.x, wo.y);
-    return {rounded(std::min(i, o)), rounded(std::max(i, o)), rounded(std::hypot(wi.x + wo.x, wi.y + wo.y)),
-            0};
+    const auto [less, more, sum] = isotropic_numbers(pair);
+    return {rounded(less), rounded(more), rounded(sum), 0};
   }
   const std::array<std::int64_t, 2> a{rounded(wi.x), rounded(wi.y)}, b{rounded(wo.x), rounded(wo.y)};
   return a < b ? Key{a[0], a[1], b[0], b[1]} : Key{b[0], b[1], a[0], a[1]};
@@ -296,6 +302,14 @@ MeasuredNodes measured_nodes(const TensorTree& table) {
 
 MeasuredNodes measured_nodes(const Samples& samples) {
   return finished(collected(samples, samples.channels, samples.isotropic), Numbering::by_geometry);
+}
+
+bool are_one_measurement(const DirectionPair& a, const DirectionPair& b, bool isotropic) noexcept {
+  const auto same = [](double x, double y) { return std::abs(x - y) < kSameDirection; };
+  if (isotropic) return std::ranges::equal(isotropic_numbers(a), isotropic_numbers(b), same);
+  const auto same_direction = [&](Vec3 v, Vec3 w) { return same(v.x, w.x) && same(v.y, w.y); };
+  return (same_direction(a.wi, b.wi) && same_direction(a.wo, b.wo)) ||
+         (same_direction(a.wi, b.wo) && same_direction(a.wo, b.wi));
 }
 
 NodeCount count_nodes(const RglTable& table) {

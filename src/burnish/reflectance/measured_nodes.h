@@ -53,6 +53,10 @@ MeasuredNodes measured_nodes(const TensorTree& table);
 /// The samples themselves that lie above the horizon; the numbers of groups do not depend on their order.
 MeasuredNodes measured_nodes(const Samples& samples);
 
+/// Whether rotation about the normal, reflection (both of isotropic sources) and exchange of the directions lead from
+/// one pair to the other, to within 1e-6 of the directions' components.
+bool are_one_measurement(const DirectionPair& a, const DirectionPair& b, bool isotropic) noexcept;
+
 /// How many nodes measured_nodes gives, and at how many distinct theta_i.
 struct NodeCount {
   std::size_t nodes = 0;

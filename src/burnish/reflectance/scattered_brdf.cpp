@@ -1,10 +1,15 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <mutex>
+#include <optional>
 #include <utility>
 
 #include <burnish/error.h>
 #include <burnish/math/angles.h>
+#include <burnish/math/parallel.h>
 #include <burnish/parameterization/half_diff.h>
+#include <burnish/reflectance/node_figures.h>
 #include <burnish/reflectance/scattered_brdf.h>
 
 namespace burnish {
@@ -17,6 +22,8 @@ constexpr double kMinRadius2 = 1e-9;       // samples that are this near are at 
 constexpr double kSharpness = 100;         // [Pharr 2010]
 constexpr std::size_t kEnough = 3;         // [Pharr 2010]
 constexpr std::size_t kMaxAveraged = 64;   // that are averaged, where a scan is denser than elsewhere
+constexpr double kSamePlace2 =
+    2e-6;  // at most, between places of one measurement: sqrt(theta_h) is steep at 0
 
 }  // namespace
 
@@ -32,16 +39,21 @@ Samples select(const Samples& samples, std::span<const std::size_t> subset) {
   return part;
 }
 
-ScatteredBrdf::ScatteredBrdf(const Samples& samples, std::span<const std::size_t> subset, SampleSpace space)
-    : ScatteredBrdf(select(samples, subset), space) {}
+/// The kriged function, made once by whoever asks first.
+struct ScatteredBrdf::Kriging {
+  std::once_flag made;
+  std::optional<KrigedNodes> function;
+};
 
-ScatteredBrdf::ScatteredBrdf(Samples samples, SampleSpace space)
-    : space_(space), samples_(std::move(samples)) {
+ScatteredBrdf::ScatteredBrdf(const Samples& samples, std::span<const std::size_t> subset, SampleRule rule)
+    : ScatteredBrdf(select(samples, subset), rule) {}
+
+ScatteredBrdf::ScatteredBrdf(Samples samples, SampleRule rule) : rule_(rule), samples_(std::move(samples)) {
   const std::size_t count = samples_.size();
   if (count == 0) throw Error("scattered samples: expected at least one, found none");
   if (samples_.channels < 1 || samples_.values.size() != count * samples_.channels)
     throw Error("scattered samples: expected as many values as pairs times channels");
-  if (space_ == SampleSpace::angles && !samples_.isotropic)
+  if (rule_ == SampleRule::mean_in_angles && !samples_.isotropic)
     throw Error("scattered samples: the space of angles is for isotropic ones");
   const double dimensions = samples_.isotropic ? 3 : 4;
   initial_radius2_ =
@@ -52,10 +64,11 @@ ScatteredBrdf::ScatteredBrdf(Samples samples, SampleSpace space)
   for (std::size_t i = 0; i < count; ++i) points[i] = place(samples_.pairs[i].wi, samples_.pairs[i].wo);
   tree_ = KdTree(points);
   samples_ = select(samples_, tree_.order());
+  if (rule_ == SampleRule::kriged) kriging_ = std::make_shared<Kriging>();
 }
 
 TreePoint ScatteredBrdf::place(Vec3 wi, Vec3 wo) const noexcept {
-  if (space_ == SampleSpace::angles) {
+  if (rule_ == SampleRule::mean_in_angles) {
     const double turn = std::abs(std::remainder(phi_of(wi) - phi_of(wo), kTwoPi));
     return {std::hypot(wi.x, wi.y) * std::hypot(wo.x, wo.y), turn / kPi, wi.z * wo.z, 0};
   }
@@ -77,11 +90,68 @@ bool ScatteredBrdf::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   return known;
 }
 
+const KrigedNodes* ScatteredBrdf::kriged() const noexcept {
+  if (!kriging_) return nullptr;
+  std::call_once(kriging_->made, [&] {
+    // A thread that waits within would take up outer work, which may ask for this very function.
+    run_isolated([&] {
+      const bool any = std::ranges::any_of(samples_.pairs, [](const DirectionPair& pair) {
+        return std::min(pair.wi.z, pair.wo.z) > KrigedNodes::kLeastCosine;
+      });
+      if (!any) return;
+      const MeasuredNodes nodes = measured_nodes(samples_);
+      kriging_->function.emplace(nodes, choose_covariance(nodes));
+    });
+  });
+  return kriging_->function ? &*kriging_->function : nullptr;
+}
+
 bool ScatteredBrdf::eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   std::fill(f.begin(), f.end(), 0.0);
   if (wi.z <= 0 || wo.z <= 0) return true;
+  if (rule_ != SampleRule::kriged) return mean_of_neighbours(place(wi, wo), f);
+  if (mean_at(wi, wo, f)) return true;
+  if (!covers(wi, wo)) return false;
+  const KrigedNodes* const function = kriged();
+  return function && function->eval(wi, wo, f);
+}
 
+/// The mean of the samples that were measured at these directions, exchanged or not. False, and f is 0, where there are
+/// none.
+bool ScatteredBrdf::mean_at(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
+  std::size_t found = 0;
+  const auto add_about = [&](const TreePoint& centre, const auto& takes) {
+    tree_.visit_ball(centre, kSamePlace2, [&](std::size_t i, double) noexcept {
+      if (!takes(i) || !are_one_measurement({wi, wo}, samples_.pairs[i], samples_.isotropic)) return;
+      const auto values = samples_.at(i);
+      for (std::size_t c = 0; c < f.size(); ++c) f[c] += values[c];
+      ++found;
+    });
+  };
   const TreePoint centre = place(wi, wo);
+  add_about(centre, [](std::size_t) { return true; });
+  // Exchanged directions have a place of their own where the source is anisotropic.
+  if (!samples_.isotropic)
+    add_about(place(wo, wi),
+              [&](std::size_t i) { return distance2(tree_.points()[i], centre) > kSamePlace2; });
+  for (double& value : f) value /= found > 0 ? static_cast<double>(found) : 1;
+  return found > 0;
+}
+
+/// Whether three samples lie near the pair or, of an anisotropic source, near the exchanged one.
+bool ScatteredBrdf::covers(Vec3 wi, Vec3 wo) const noexcept {
+  const auto has_near = [&](const TreePoint& centre) {
+    std::array<KdTree::Neighbour, kEnough> nearest;
+    const std::size_t enough = std::min(kEnough, tree_.size());
+    const std::size_t found =
+        tree_.nearest(centre, std::span(nearest).first(enough), [](std::size_t) { return true; });
+    return std::all_of(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(found),
+                       [](const KdTree::Neighbour& near) { return near.distance2 <= kMaxRadius2; });
+  };
+  return has_near(place(wi, wo)) || (!samples_.isotropic && has_near(place(wo, wi)));
+}
+
+bool ScatteredBrdf::mean_of_neighbours(const TreePoint& centre, std::span<double> f) const noexcept {
   const auto add_ball = [&](double radius2) noexcept {
     std::size_t found = 0;
     double total = 0;

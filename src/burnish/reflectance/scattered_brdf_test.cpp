@@ -4,6 +4,7 @@
 
 #include <burnish/error.h>
 #include <burnish/math/angles.h>
+#include <burnish/math/parallel.h>
 #include <burnish/math/random.h>
 #include <burnish/parameterization/half_diff.h>
 #include <burnish/reflectance/goniometer.h>
@@ -30,9 +31,9 @@ double one(Vec3, Vec3) {
   return 1;
 }
 
-Vec3 place(SampleSpace space, Vec3 wi, Vec3 wo) {
+Vec3 place(SampleRule rule, Vec3 wi, Vec3 wo) {
   const HalfDiff angles = to_half_diff(wi, wo);
-  if (space == SampleSpace::half_difference)
+  if (rule == SampleRule::mean_in_half_difference)
     return {std::sqrt(angles.theta_h / kHalfPi), angles.theta_d / kHalfPi,
             std::sin(angles.theta_h) * std::sin(angles.theta_d) * std::abs(std::cos(angles.phi_d))};
   const double turn = std::abs(std::remainder(phi_of(wi) - phi_of(wo), kTwoPi));
@@ -40,9 +41,9 @@ Vec3 place(SampleSpace space, Vec3 wi, Vec3 wo) {
 }
 
 /// The definition, over all samples: doubled radius until three are in reach.
-double by_exhaustion(SampleSpace space, const Samples& samples, double radius2, Vec3 wi, Vec3 wo) {
+double by_exhaustion(SampleRule rule, const Samples& samples, double radius2, Vec3 wi, Vec3 wo) {
   const auto distance2 = [&](const DirectionPair& pair) {
-    const Vec3 apart = place(space, pair.wi, pair.wo) - place(space, wi, wo);
+    const Vec3 apart = place(rule, pair.wi, pair.wo) - place(rule, wi, wo);
     return dot(apart, apart);
   };
   for (;; radius2 *= 2) {
@@ -60,13 +61,13 @@ double by_exhaustion(SampleSpace space, const Samples& samples, double radius2, 
 
 TEST(ScatteredBrdf, EqualsTheWeightedMeanOverAllSamples) {
   const Samples samples = sample(1000, true, smooth);
-  for (const SampleSpace space : {SampleSpace::half_difference, SampleSpace::angles}) {
-    const ScatteredBrdf brdf(samples, space);
+  for (const SampleRule rule : {SampleRule::mean_in_half_difference, SampleRule::mean_in_angles}) {
+    const ScatteredBrdf brdf(samples, rule);
     EXPECT_EQ(brdf.initial_radius2(), 0.001);
     for (const auto& [wi, wo] : draw_pairs(200, 2, false)) {
       double f;
       ASSERT_TRUE(brdf.eval(wi, wo, {&f, 1}));
-      EXPECT_NEAR(f, by_exhaustion(space, samples, 0.001, wi, wo), 1e-9);
+      EXPECT_NEAR(f, by_exhaustion(rule, samples, 0.001, wi, wo), 1e-9);
     }
   }
 }
@@ -74,7 +75,8 @@ TEST(ScatteredBrdf, EqualsTheWeightedMeanOverAllSamples) {
 TEST(ScatteredBrdf, KeepsHighlightsBetterThanTheSpaceOfAngles) {
   const auto glossy = [](Vec3 wi, Vec3 wo) { return 0.1 + 20 * std::pow(half_vector(wi, wo).z, 300); };
   const Samples samples = sample(3000, true, glossy);
-  const ScatteredBrdf half_difference(samples), angles(samples, SampleSpace::angles);
+  const ScatteredBrdf half_difference(samples, SampleRule::mean_in_half_difference),
+      angles(samples, SampleRule::mean_in_angles);
   double error = 0, error_of_angles = 0, f;
   for (const auto& [wi, wo] : draw_pairs(2000, 12, false)) {
     half_difference.eval(wi, wo, {&f, 1});
@@ -87,7 +89,7 @@ TEST(ScatteredBrdf, KeepsHighlightsBetterThanTheSpaceOfAngles) {
 
 TEST(ScatteredBrdf, ReproducesAConstant) {
   double f;
-  const ScatteredBrdf constant(sample(500, true, one));
+  const ScatteredBrdf constant(sample(500, true, one), SampleRule::mean_in_half_difference);
   for (const auto& [wi, wo] : draw_pairs(500, 3, false)) {
     ASSERT_TRUE(constant.eval(wi, wo, {&f, 1}));
     EXPECT_NEAR(f, 1, 1e-14);
@@ -95,7 +97,7 @@ TEST(ScatteredBrdf, ReproducesAConstant) {
 }
 
 TEST(ScatteredBrdf, ApproximatesASmoothIsotropicFunction) {
-  const ScatteredBrdf brdf(sample(20000, true, smooth));
+  const ScatteredBrdf brdf(sample(20000, true, smooth), SampleRule::mean_in_half_difference);
   double error = 0, f;
   const auto pairs = draw_pairs(2000, 4, false);
   for (const auto& [wi, wo] : pairs) {
@@ -106,7 +108,7 @@ TEST(ScatteredBrdf, ApproximatesASmoothIsotropicFunction) {
 }
 
 TEST(ScatteredBrdf, ApproximatesASmoothAnisotropicFunction) {
-  const ScatteredBrdf brdf(sample(20000, false, brushed));
+  const ScatteredBrdf brdf(sample(20000, false, brushed), SampleRule::mean_in_half_difference);
   double error = 0, f;
   int known = 0;
   for (const auto& [wi, wo] : draw_pairs(2000, 5, false))
@@ -119,7 +121,7 @@ TEST(ScatteredBrdf, ApproximatesASmoothAnisotropicFunction) {
 }
 
 TEST(ScatteredBrdf, IsReciprocalAndTurnsFreelyWhereIsotropic) {
-  const ScatteredBrdf brdf(sample(3000, true, smooth));
+  const ScatteredBrdf brdf(sample(3000, true, smooth), SampleRule::mean_in_half_difference);
   Pcg32 random(6);
   for (const auto& [wi, wo] : draw_pairs(500, 6, false)) {
     const double turn = kTwoPi * random.uniform();
@@ -140,7 +142,7 @@ TEST(ScatteredBrdf, KnowsNothingFarFromItsSamples) {
     samples.pairs.push_back({spherical_direction(0.1 + 0.01 * i, 0), spherical_direction(0.1, kPi)});
     samples.values.push_back(1);
   }
-  const ScatteredBrdf brdf(samples);
+  const ScatteredBrdf brdf(samples, SampleRule::mean_in_half_difference);
   double f;
   EXPECT_TRUE(brdf.eval(spherical_direction(0.12, 1), spherical_direction(0.1, 1 + kPi), {&f, 1}));
   EXPECT_NEAR(f, 1, 1e-14);
@@ -164,7 +166,7 @@ TEST(ScatteredBrdf, TakesASubsetOfTheSamples) {
 TEST(ScatteredBrdf, RefusesAnEmptyOrInconsistentSet) {
   EXPECT_THROW(ScatteredBrdf(Samples{1, true, {}, {}}), Error);
   EXPECT_THROW(ScatteredBrdf(Samples{3, true, {{}}, {1}}), Error);
-  EXPECT_THROW(ScatteredBrdf(Samples{1, false, {{}}, {1}}, SampleSpace::angles), Error);
+  EXPECT_THROW(ScatteredBrdf(Samples{1, false, {{}}, {1}}, SampleRule::mean_in_angles), Error);
 }
 
 // An even scan of a matt surface, and one a hundred times as dense about a narrow lobe.
@@ -181,13 +183,114 @@ TEST(ScatteredBrdf, IsSharperWhereAScanIsDenser) {
   constexpr int kReach = 30;
   for (int x = -kReach; x <= kReach; ++x)
     for (int y = -kReach; y <= kReach; ++y) add(normalize(wi + 0.002 * Vec3{x * wi.z, 1.0 * y, -x * wi.x}));
-  const ScatteredBrdf brdf(samples);
+  const ScatteredBrdf brdf(samples, SampleRule::mean_in_half_difference);
   double f;
   ASSERT_TRUE(brdf.eval(wi, wi, {&f, 1}));
   EXPECT_NEAR(f / truth(wi), 1, 0.1);
   const Vec3 beside = spherical_direction(0.52, 0);
   ASSERT_TRUE(brdf.eval(wi, beside, {&f, 1}));
   EXPECT_NEAR(f / truth(beside), 1, 0.2);
+}
+
+// ---- Kriged samples
+
+double mean_error(const ScatteredBrdf& brdf, double (*truth)(Vec3, Vec3), std::uint64_t seed) {
+  double error = 0, f;
+  std::size_t known = 0;
+  for (const auto& [wi, wo] : draw_pairs(1000, seed, false))
+    if (std::min(wi.z, wo.z) > 0.15 && brdf.eval(wi, wo, {&f, 1})) {
+      error += std::abs(std::log(f / truth(wi, wo)));
+      ++known;
+    }
+  return error / static_cast<double>(known);
+}
+
+double glossy(Vec3 wi, Vec3 wo) {
+  return 0.1 + 20 * std::pow(half_vector(wi, wo).z, 300);
+}
+
+double ridged(Vec3 wi, Vec3 wo) {
+  return 0.5 + std::exp(-4 * (wi.x + wo.x) * (wi.x + wo.x)) - 0.1 * (wi.y + wo.y);
+}
+
+TEST(KrigedScatteredBrdf, IsTheSampleAtASample) {
+  for (const bool isotropic : {true, false}) {
+    Samples samples = sample(400, isotropic, isotropic ? glossy : brushed);
+    samples.values[3] = -0.25;  // noise stays, until results are cut
+    const ScatteredBrdf brdf(samples);
+    double f;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const auto [wi, wo] = samples.pairs[i];
+      ASSERT_TRUE(brdf.eval_raw(wi, wo, {&f, 1}));
+      EXPECT_DOUBLE_EQ(f, samples.values[i]);
+      brdf.eval_raw(wo, wi, {&f, 1});
+      EXPECT_DOUBLE_EQ(f, samples.values[i]);
+    }
+    brdf.eval(samples.pairs[3].wi, samples.pairs[3].wo, {&f, 1});
+    EXPECT_EQ(f, 0);
+  }
+}
+
+TEST(KrigedScatteredBrdf, IsTheMeanOfRepeatsAndOfExchangedOnes) {
+  Samples samples = sample(50, true, smooth);
+  const auto [wi, wo] = samples.pairs[7];
+  samples.pairs.push_back({wo, wi});
+  samples.values.push_back(samples.values[7] + 0.3);
+  double f;
+  ScatteredBrdf(samples).eval(wi, wo, {&f, 1});
+  EXPECT_NEAR(f, samples.values[7] + 0.15, 1e-12);
+}
+
+TEST(KrigedScatteredBrdf, IsFarNearerToTheTruthThanMeans) {
+  const Samples isotropic = sample(2000, true, glossy), anisotropic = sample(2000, false, ridged);
+  EXPECT_LT(mean_error(ScatteredBrdf(isotropic), glossy, 12),
+            0.2 * mean_error(ScatteredBrdf(isotropic, SampleRule::mean_in_half_difference), glossy, 12));
+  EXPECT_LT(mean_error(ScatteredBrdf(anisotropic), ridged, 13),
+            0.2 * mean_error(ScatteredBrdf(anisotropic, SampleRule::mean_in_half_difference), ridged, 13));
+}
+
+TEST(KrigedScatteredBrdf, KnowsNothingFarFromItsSamples) {
+  Samples samples{1, true, {}, {}};
+  for (int i = 0; i < 5; ++i) {
+    samples.pairs.push_back({spherical_direction(0.1 + 0.01 * i, 0), spherical_direction(0.1, kPi)});
+    samples.values.push_back(1);
+  }
+  const ScatteredBrdf brdf(samples);
+  double f;
+  EXPECT_TRUE(brdf.eval(spherical_direction(0.125, 0.1), spherical_direction(0.1, kPi), {&f, 1}));
+  EXPECT_NEAR(f, 1, 1e-3);
+  EXPECT_FALSE(brdf.eval(spherical_direction(1.4, 0), spherical_direction(1.4, 0), {&f, 1}));
+  EXPECT_EQ(f, 0);
+}
+
+TEST(KrigedScatteredBrdf, KnowsSamplesAlongTheHorizonAlone) {
+  Samples samples{1, true, {}, {}};
+  for (int i = 0; i < 4; ++i) {
+    samples.pairs.push_back({spherical_direction(1.56, 0), spherical_direction(0.1 * i, 1)});
+    samples.values.push_back(2);
+  }
+  const ScatteredBrdf brdf(samples);
+  double f;
+  EXPECT_TRUE(brdf.eval(samples.pairs[2].wi, samples.pairs[2].wo, {&f, 1}));
+  EXPECT_EQ(f, 2);
+  EXPECT_FALSE(brdf.eval(samples.pairs[2].wi, spherical_direction(0.25, 1), {&f, 1}));
+  EXPECT_EQ(brdf.kriged(), nullptr);
+}
+
+// Whoever asks first makes the function, within a loop of others who ask.
+TEST(KrigedScatteredBrdf, IsTheSameForCopiesAndThreads) {
+  const ScatteredBrdf brdf(sample(600, true, glossy)), copy = brdf, other(brdf.samples());
+  const std::vector<DirectionPair> pairs = draw_pairs(512, 3, false);
+  std::vector<double> values(pairs.size());
+  for_each_chunk(pairs.size(), 4, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) brdf.eval(pairs[i].wi, pairs[i].wo, {&values[i], 1});
+  });
+  EXPECT_EQ(copy.kriged(), brdf.kriged());
+  double f;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    other.eval(pairs[i].wi, pairs[i].wo, {&f, 1});
+    EXPECT_EQ(f, values[i]);
+  }
 }
 
 }  // namespace
