@@ -1,4 +1,7 @@
 #include <memory>
+#include <span>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -7,7 +10,11 @@
 #include <burnish/error.h>
 #include <burnish/file.h>
 #include <burnish/io/csv.h>
+#include <burnish/math/angles.h>
+#include <burnish/math/written_degrees.h>
 #include <burnish/reflectance/goniometer.h>
+#include <burnish/reflectance/next_measurements.h>
+#include <burnish/reflectance/node_figures.h>
 
 #include "commands.h"
 #include "counted.h"
@@ -34,6 +41,37 @@ void measure_surface(const std::string& scene, const std::string& out, bool json
                form.height, out);
 }
 
+/// The next directions as an instrument is told them, in degrees.
+std::string next_csv(std::span<const NextMeasurement> next) {
+  std::string text = "theta_i,phi_i,theta_o,phi_o,error\n";
+  for (const auto& [pair, error] : next)
+    text +=
+        fmt::format("{:.3f},{:.3f},{:.3f},{:.3f},{:.4g}\n", degrees(theta_of(pair.wi)),
+                    degrees(phi_of(pair.wi)), degrees(theta_of(pair.wo)), degrees(phi_of(pair.wo)), error);
+  return text;
+}
+
+nlohmann::ordered_json next_json(std::span<const NextMeasurement> next) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const auto& [pair, error] : next)
+    list.push_back({{"theta_i_deg", written_degrees(theta_of(pair.wi))},
+                    {"phi_i_deg", written_degrees(phi_of(pair.wi))},
+                    {"theta_o_deg", written_degrees(theta_of(pair.wo))},
+                    {"phi_o_deg", written_degrees(phi_of(pair.wo))},
+                    {"error", error}});
+  return list;
+}
+
+/// Lists what to measure next, to a file where one is given.
+void say_next(const Source& source, std::size_t count, const std::string& out, bool json) {
+  const MeasuredNodes nodes = measured_nodes(source);
+  const std::vector<NextMeasurement> next = next_measurements(nodes, choose_covariance(nodes), count);
+  if (!out.empty()) write_then_rename(out, next_csv(next));
+  if (json) return print_as_json({{"next", next_json(next)}});
+  if (!out.empty()) return fmt::print("{} to {}\n", counted(next.size(), "direction"), out);
+  fmt::print("{}", next_csv(next));
+}
+
 }  // namespace
 
 void add_measure_command(CLI::App& app) {
@@ -41,6 +79,7 @@ void add_measure_command(CLI::App& app) {
     SourceArguments source;
     MeasureOptions measurement;
     std::string out, surface;
+    std::size_t next = 0;
     bool json = false;
   };
   CLI::App* verb = app.add_subcommand("measure",
@@ -48,7 +87,8 @@ void add_measure_command(CLI::App& app) {
                                       "or a surface with a virtual camera");
   verb->footer(
       "Examples: burnish measure ggx:alpha_x=0.2 -o samples.csv --count 5000 --noise 0.05\n"
-      "          burnish measure --surface scene.json -o capture/");
+      "          burnish measure --surface scene.json -o capture/\n"
+      "          burnish measure --next 20 samples.csv");
   auto arguments = std::make_shared<Arguments>();
   add_source_arguments(*verb, arguments->source);
   CLI::Option* const positional = verb->get_option("BRDF")->required(false);
@@ -56,25 +96,36 @@ void add_measure_command(CLI::App& app) {
           "--surface", arguments->surface,
           "a scene of materials, heights, lights and views (docs/guide/surfaces.md): writes a capture")
       ->excludes(positional);
-  verb->add_option("-o,--output,--out", arguments->out, "CSV file to write; with --surface a folder")
-      ->required();
+  CLI::Option* const next =
+      verb->add_option("--next", arguments->next,
+                       "list so many directions, in degrees, that are worth measuring next: those that lower "
+                       "the expected "
+                       "error of a measurement's samples most, each with how far its value may be off today")
+          ->check(in_range(std::size_t{1}, kMostNext));
+  verb->add_option("-o,--output,--out", arguments->out,
+                   "CSV file to write; with --surface a folder; needed without --next");
   // Ten million samples are a gigabyte of text.
   verb->add_option("--count", arguments->measurement.count, "how many samples")
+      ->excludes(next)
       ->check(in_range(1, 10000000))
       ->capture_default_str();
   verb->add_option("--noise", arguments->measurement.noise, "sigma of log-normal noise on every value")
+      ->excludes(next)
       ->check(in_range(0.0, 10.0))
       ->capture_default_str();
   verb->add_option("--seed", arguments->measurement.seed, "of directions and noise")
       ->check(at_least_zero())
       ->capture_default_str();
   verb->add_flag("--json", arguments->json, "print what was written as JSON");
+  verb->get_option("--surface")->excludes(next);
   verb->callback([arguments] {
+    if (arguments->next == 0 && arguments->out.empty()) throw CLI::RequiredError("--output");
     if (!arguments->surface.empty())
       return measure_surface(arguments->surface, arguments->out, arguments->json);
     if (arguments->source.spec.empty()) throw CLI::RequiredError("BRDF or --surface");
-    check_writable(arguments->out);
+    if (!arguments->out.empty()) check_writable(arguments->out);
     const Source source = arguments->source.open();
+    if (arguments->next > 0) return say_next(source, arguments->next, arguments->out, arguments->json);
     const Samples samples = [&] {
       try {
         return measure(source.ref(), arguments->measurement);
