@@ -7,10 +7,14 @@
 #include <burnish/io/illuminant.h>
 #include <burnish/io/sample_file.h>
 #include <burnish/math/angles.h>
+#include <burnish/math/written_degrees.h>
 
 namespace burnish {
 
 namespace {
+
+constexpr std::size_t kFewestCovering = 10;  // fewer samples are no survey of a surface
+constexpr double kOneAngle = 1e-4;           // radians; angles that differ by less are one
 
 std::vector<double> to_rec709(const Samples& samples, std::span<const std::array<double, 3>> weights) {
   std::vector<double> rgb(samples.size() * 3, 0.0);
@@ -76,6 +80,35 @@ void finish_samples(const std::string& file, const OpenOptions& options, SampleF
     findings.theta_o_min = std::min(findings.theta_o_min, theta_o);
     findings.theta_o_max = std::max(findings.theta_o_max, theta_o);
   }
+  for (std::string& gap : coverage_gaps(samples)) findings.warnings.push_back(std::move(gap));
+}
+
+std::vector<std::string> coverage_gaps(const Samples& samples) {
+  if (samples.size() < kFewestCovering) return {};
+  const auto is_one = [&](Vec3 DirectionPair::*direction) {
+    const double first = theta_of(samples.pairs.front().*direction);
+    return std::ranges::all_of(samples.pairs, [&](const DirectionPair& pair) {
+      return std::abs(theta_of(pair.*direction) - first) < kOneAngle;
+    });
+  };
+  const bool in_plane = std::ranges::all_of(samples.pairs, [](const DirectionPair& pair) {
+    return std::abs(pair.wi.x * pair.wo.y - pair.wi.y * pair.wo.x) < kOneAngle;
+  });
+  const auto theta = [&](Vec3 DirectionPair::*direction) {
+    return written_degrees(theta_of(samples.pairs.front().*direction));
+  };
+  std::vector<std::string> gaps;
+  if (is_one(&DirectionPair::wo))
+    gaps.push_back(
+        fmt::format("One angle of view only, theta_o = {} degrees: what stands elsewhere is extrapolated.",
+                    theta(&DirectionPair::wo)));
+  if (is_one(&DirectionPair::wi))
+    gaps.push_back(fmt::format(
+        "One angle of incidence only, theta_i = {} degrees: what stands elsewhere is extrapolated.",
+        theta(&DirectionPair::wi)));
+  if (in_plane && gaps.empty())
+    gaps.push_back("In the plane of incidence only: what stands beside it is extrapolated.");
+  return gaps;
 }
 
 }  // namespace burnish

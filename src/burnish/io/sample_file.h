@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include <burnish/io/open_options.h>
 #include <burnish/reflectance/findings.h>
 #include <burnish/reflectance/samples.h>
@@ -20,6 +23,10 @@ inline constexpr std::size_t kMaxFileChannels = 1024;
 /// and the angles covered. Throws Error, naming `file`, if there are no samples or wavelengths do not
 /// increase.
 void finish_samples(const std::string& file, const OpenOptions& options, SampleFile& result);
+
+/// What a set of ten samples or more leaves out altogether, one sentence each: it has one angle of view, one angle of
+/// incidence, or stays in the plane of incidence.
+std::vector<std::string> coverage_gaps(const Samples& samples);
 
 /// True if all incident directions have the same azimuth: measurements in one setting of the sample.
 bool same_incident_azimuth(const Samples& samples) noexcept;

@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -76,6 +77,37 @@ TEST(SameIncidentAzimuth, LooksAtAzimuthsAndNotAtTheNormal) {
   EXPECT_TRUE(same_incident_azimuth(samples));
   add(0.3, kPi);
   EXPECT_FALSE(same_incident_azimuth(samples));
+}
+
+TEST(CoverageGaps, NameWhatASurveyLeavesOut) {
+  const auto survey = [](auto pair_of) {
+    Samples samples{.channels = 1, .isotropic = true, .pairs = {}, .values = {}};
+    for (int i = 0; i < 12; ++i) {
+      const auto [theta_i, theta_o, phi_o] = pair_of(0.1 * i);
+      samples.pairs.push_back({spherical_direction(theta_i, 1), spherical_direction(theta_o, 1 + phi_o)});
+      samples.values.push_back(1);
+    }
+    return samples;
+  };
+  using Angles = std::array<double, 3>;
+  using testing::ElementsAre;
+  using testing::HasSubstr;
+  EXPECT_THAT(coverage_gaps(survey([](double t) {
+                return Angles{t, 0, 0};
+              })),
+              ElementsAre(HasSubstr("One angle of view only, theta_o = 0 degrees")));
+  EXPECT_THAT(coverage_gaps(survey([](double t) {
+                return Angles{kHalfPi / 2, t, 5 * t};
+              })),
+              ElementsAre(HasSubstr("One angle of incidence only, theta_i = 45 degrees")));
+  EXPECT_THAT(coverage_gaps(survey([](double t) {
+                return Angles{t, 1.2 - t, kPi};
+              })),
+              ElementsAre(HasSubstr("In the plane of incidence only")));
+  EXPECT_THAT(coverage_gaps(survey([](double t) { return Angles{t, 1.2 - t, 3 * t}; })), testing::IsEmpty());
+  Samples few = survey([](double t) { return Angles{t, 0, 0}; });
+  few.pairs.resize(9);
+  EXPECT_THAT(coverage_gaps(few), testing::IsEmpty());
 }
 
 }  // namespace
