@@ -50,6 +50,8 @@ constexpr double kAlbedoShare = 0.3;
 constexpr std::size_t kIsotropicSamples = 200'000, kAnisotropicSamples = 500'000;
 constexpr std::size_t kBaselineSamples = 200'000;
 constexpr std::size_t kBookSamples = 1000;
+// Anisotropic scattered samples: fewer make one lobe, more tell several lobes' tables hardly more.
+constexpr std::size_t kFewAnisotropic = 1000, kMostScattered = 150'000;
 
 // Of DefaultBudget.
 constexpr int kIsotropicFetches = 2, kAnisotropicFetches = 6;
@@ -78,6 +80,15 @@ constexpr ErrorTerms kNodeShares{.pictures = 0.5, .dimmed = 0.1, .relative = 1, 
 bool has_disk(const ModelSpec& spec) {
   return std::ranges::any_of(spec.tables,
                              [](const auto& table) { return table.layout.shape == TableShape::disk; });
+}
+
+/// Every so many of the samples, so that they are about `most`.
+Samples at_most(std::size_t most, const Samples& samples) {
+  const std::size_t step = (samples.size() + most - 1) / most;
+  if (step <= 1) return samples;
+  std::vector<std::size_t> subset;
+  for (std::size_t i = 0; i < samples.size(); i += step) subset.push_back(i);
+  return select(samples, subset);
 }
 
 Error no_model() {
@@ -531,7 +542,7 @@ class Fitter {
   /// Pairs drawn from what is fitted, or the scattered samples themselves; with the nodes that are the target.
   TrainingSet drawn_set(TrainingOptions drawn) const {
     drawn.seed = options_.seed;
-    if (samples()) return training_set_of(*samples(), options_.symmetrize);
+    if (samples()) return training_set_of(at_most(kMostScattered, *samples()), options_.symmetrize);
     if (const auto sampling = progress("sampling")) sampling(0);
     TrainingSet set = with_frontal_pixels(reference(), draw_training_set(reference(), drawn), kFrontalShare);
     if (judged_at_nodes()) add_nodes(set);
@@ -731,10 +742,11 @@ FitTarget default_target(const Source& source, const FitOptions& options) {
   const bool chosen = (!options.form || budget || usual) && !one_lobe.cross_validate;
 
   // Scattered samples say more than a function made of them, but for peaks about wi = wo, which a lobe of their own
-  // holds. Options of one lobe ask for one.
+  // holds, and for few anisotropic ones, which leave the tables of several lobes undetermined. Options of one lobe ask
+  // for one.
   const auto takes_samples = [&](const Samples& samples) {
-    return samples.isotropic && chosen && !one_lobe.reweightings && one_lobe.floor == LogLinear{}.floor &&
-           !backscatters(from_samples(samples, false));
+    return (samples.isotropic || samples.size() >= kFewAnisotropic) && chosen && !one_lobe.reweightings &&
+           one_lobe.floor == LogLinear{}.floor && !backscatters(from_samples(samples, false));
   };
   const Samples* samples = source.samples();
   const bool measured = table ? table->isotropic() && (given || chosen) : samples && takes_samples(*samples);

@@ -85,8 +85,8 @@ const std::vector<FitOption>& option_rows() {
        .help = "Fits the function that the source's owner makes of it, or nodes: what was measured.",
        .example = "nodes",
        .choices = {"function", "nodes"},
-       .left_out = "nodes of isotropic RGL files and scattered samples, unless one lobe, a smoothness of auto, no "
-                   "symmetry, a method or a book is asked for; else function",
+       .left_out = "nodes of isotropic RGL files and of scattered samples (1,000 or more where anisotropic), unless one "
+                   "lobe, a smoothness of auto, no symmetry, a method or a book is asked for; else function",
        .excludes = {"book"}},
       {.name = "hold_out", .takes = FitValue::node_part,
        .help = "Fits nodes and leaves these out: half of a checkerboard, or the incidence theta_i=K, counted from 0.",

@@ -187,7 +187,20 @@ TEST(Fit, OfScatteredSamplesIsOneLobeWhereItsOptionsAreGiven) {
             FitTarget::function);
   EXPECT_EQ(default_target(source, {.form = GivenLobes{.model = "q(h) + s(h)"}}), FitTarget::function);
   EXPECT_EQ(default_target(source, {.symmetrize = false}), FitTarget::function);
-  EXPECT_EQ(default_target(anisotropic, {}), FitTarget::function);
+  EXPECT_EQ(default_target(anisotropic, {}), FitTarget::function);  // too few
+}
+
+TEST(Fit, OfManyAnisotropicSamplesFollowsThemFartherThanOneLobe) {
+  BURNISH_SKIP_WHERE_SANITIZED();
+  const AnalyticBrdf brushed_metal = brushed();
+  const Source source =
+      source_of("scattered", ScatteredBrdf(measure(brushed_metal, {.count = 1200, .noise = 0.05})));
+  ASSERT_EQ(default_target(source, {}), FitTarget::nodes);
+  const Budget small{.bytes = 4000, .fetches = 4};
+  const Fit nodes = fit(source, {.form = small}),
+            lobe = fit(source, {.form = small, .target = FitTarget::function});
+  EXPECT_TRUE(nodes.report.nodes);
+  EXPECT_LT(mean_error(brushed_metal, nodes.ref()), 0.8 * mean_error(brushed_metal, lobe.ref()));
 }
 
 TEST(Fit, GivesScatteredSamplesOneLobeOfTheBudget) {
