@@ -122,6 +122,18 @@ void print(const NodesReport& report) {
   line("nodes", report.at_fitted);
   if (report.held_out) line("unseen", *report.held_out);
   if (report.at_held_out) line("held out", *report.at_held_out);
+  if (!report.expected) return;
+  fmt::print("expected   relative {:.4f}, measured or not", report.expected->relative);
+  double theta_i = 0;
+  std::string bands, values;
+  for (const auto& band : report.expected->by_theta_i) {
+    if (band) {
+      values += fmt::format("{}{:.3f}", values.empty() ? "" : " ", *band);
+      bands += fmt::format("{}{:.0f}", bands.empty() ? "" : " ", theta_i);
+    }
+    theta_i += ExpectedError::kBandDegrees;
+  }
+  fmt::print("; {} from theta_i = {} degrees on\n", values, bands);
 }
 
 void print_model(const FactoredBrdf& model, const FitReport& report) {

@@ -691,6 +691,8 @@ class Fitter {
       if (options_.hold_out)
         report_.nodes->at_held_out =
             node_figures(nodes_of(measured_nodes(source_), *options_.hold_out), brdf);
+      if (between_ && brdf.channels() == between_->channels())
+        report_.nodes->expected = expected_error(*between_, brdf);
     }
     if (const auto* baseline = std::get_if<BaselineBrdf>(&fitted)) {
       const Scorer scorer(reference(), held_out());

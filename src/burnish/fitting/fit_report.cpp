@@ -128,12 +128,23 @@ Json json_of(const LogCovariance& covariance) {
   return json;
 }
 
+Json json_of(const ExpectedError& expected) {
+  Json json{{"relative", expected.relative}};
+  double theta_i = 0;
+  for (const auto& band : expected.by_theta_i) {
+    if (band) json["from_theta_i_deg"][fmt::format("{:.0f}", theta_i)] = *band;
+    theta_i += ExpectedError::kBandDegrees;
+  }
+  return json;
+}
+
 Json json_of(const NodesReport& report) {
   Json json{{"target", "nodes"}, {"nodes", report.fitted}};
   if (report.covariance) json["node_covariance"] = json_of(*report.covariance);
   if (report.held_out) json["node_held_out"] = json_of(*report.held_out);
   json["node_fit"] = json_of(report.at_fitted);
   if (report.at_held_out) json["node_test"] = json_of(*report.at_held_out);
+  if (report.expected) json["node_expected"] = json_of(*report.expected);
   return json;
 }
 

@@ -13,6 +13,7 @@
 #include <burnish/fitting/book/complete.h>
 #include <burnish/fitting/fit_summary.h>
 #include <burnish/metrics/error_figures.h>
+#include <burnish/reflectance/expected_error.h>
 #include <burnish/reflectance/node_figures.h>
 
 namespace burnish {
@@ -121,6 +122,8 @@ struct NodesReport {
   /// Of the model as stored, at the nodes that were fitted and at those that were held out.
   NodeFigures at_fitted = {};
   std::optional<NodeFigures> at_held_out = {};
+  /// Of the model as stored, where nothing was measured too: of what has a function between its nodes.
+  std::optional<ExpectedError> expected = {};
 };
 
 /// How a fit went.
@@ -146,7 +149,7 @@ struct FitReport {
 /// smooth, samples, lobes, loss, iterations, stop_reason, objective; of baselines method, budget,
 /// layouts_tried, error_before, error_after, starts, iterations, stop_reason; of completions samples, used,
 /// book_materials, nearest, brightness, colour, relative_at_samples, relative_left_out; of a chosen number of bytes
-/// budget_choice; of nodes target, nodes, node_covariance, node_held_out, node_fit, node_test; then
+/// budget_choice; of nodes target, nodes, node_covariance, node_held_out, node_fit, node_test, node_expected; then
 /// conserve_energy, psnr, ssim, relative, rms_log, log_cos and negative_lobes. What there is none of is left
 /// out; what is not finite is null.
 std::string to_json(const FitReport& report);
