@@ -290,14 +290,21 @@ def main():
         write_page(given.page, len(given.files), means, shares, rounds)
 
 
+def processor():
+    with open("/proc/cpuinfo", encoding="utf-8") as file:
+        names = [line.split(":")[1].strip() for line in file if line.startswith("model name")]
+    return f"{names[0] if names else platform.machine()} ({platform.machine()})"
+
+
 def write_page(page, count, means, shares, rounds):
-    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True).stdout.strip()
+    commit = subprocess.run(["git", "-C", pathlib.Path(__file__).parent, "rev-parse", "--short=8", "HEAD"],
+                            capture_output=True, text=True).stdout.strip()
     pathlib.Path(page).write_text(f"""# Scattered samples: how near to the truth
 
     tests/scattered/score.py build/release/apps/burnish/burnish DATA/rgl/*.bsdf --page docs/results/scattered.md
 
-made this page at commit {commit}, on {platform.processor() or platform.machine()} with {os.cpu_count()} cores. The
-script says how samples are drawn, what is scored and what the others are. Means over {count} materials.
+made this page at commit {commit}, on {os.cpu_count()} cores of {processor()}.
+The script says how samples are drawn, what is scored and what the others are. Means over {count} materials.
 
 {means}
 `s` is processor time: of `fit` reading, fitting and writing; of the others making and evaluating all that is scored.

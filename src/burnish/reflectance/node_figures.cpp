@@ -80,10 +80,10 @@ std::size_t hand_of(std::uint32_t group, std::size_t hands) {
   return static_cast<std::size_t>(Pcg32(group).uniform() * static_cast<double>(hands));
 }
 
-// Figures at nodes as predicted from those of the other hands; what is in no hand is always seen.
+// Errors at nodes as predicted from those of the other hands; what is in no hand is always seen.
 template <class Hand>
-NodeFigures held_out(const MeasuredNodes& nodes, const LogCovariance& covariance, std::size_t hands,
-                     Hand hand) {
+ErrorSums held_out(const MeasuredNodes& nodes, const LogCovariance& covariance, std::size_t hands,
+                   Hand hand) {
   // every so many of the nodes that are in a hand and may be scored
   std::vector<std::size_t> judged;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -109,7 +109,13 @@ NodeFigures held_out(const MeasuredNodes& nodes, const LogCovariance& covariance
   });
   ErrorSums total;
   for (const ErrorSums& sum : sums) total.add(sum);
-  return total.means({});
+  return total;
+}
+
+bool any_is_scored(const MeasuredNodes& nodes) {
+  return std::ranges::any_of(nodes.samples.pairs, [](const DirectionPair& pair) {
+    return std::min(pair.wi.z, pair.wo.z) > NodeScoring{}.least_cosine;
+  });
 }
 
 }  // namespace
@@ -127,7 +133,8 @@ NodeFigures node_figures(const MeasuredNodes& nodes, BrdfRef model, const NodeSc
 
 NodeFigures held_out_figures(const MeasuredNodes& nodes, const LogCovariance& covariance, int folds) {
   const auto hands = static_cast<std::size_t>(folds);
-  return held_out(nodes, covariance, hands, [&](std::size_t i) { return hand_of(nodes.groups[i], hands); });
+  return held_out(nodes, covariance, hands, [&](std::size_t i) { return hand_of(nodes.groups[i], hands); })
+      .means({});
 }
 
 std::optional<NodeFigures> held_out_incidences(const MeasuredNodes& nodes, const LogCovariance& covariance) {
@@ -138,11 +145,14 @@ std::optional<NodeFigures> held_out_incidences(const MeasuredNodes& nodes, const
   std::vector<std::size_t> hand_of_incidence(there.back() + 1, kIncidenceHands);
   for (std::size_t place = 1; place + 1 < there.size(); ++place)
     hand_of_incidence[there[place]] = place % kIncidenceHands;
-  return held_out(nodes, covariance, kIncidenceHands,
-                  [&](std::size_t i) { return hand_of_incidence[nodes.incidence[i]]; });
+  const ErrorSums sums = held_out(nodes, covariance, kIncidenceHands,
+                                  [&](std::size_t i) { return hand_of_incidence[nodes.incidence[i]]; });
+  if (sums.count == 0) return {};  // those between are all along the horizon
+  return sums.means({});
 }
 
 LogCovariance choose_covariance(const MeasuredNodes& nodes, const std::function<void(double)>& progress) {
+  if (!any_is_scored(nodes)) return LogCovariance(nodes.samples.isotropic);
   std::vector<LogCovariance> likely = likely_covariances(nodes);
   likely.push_back(LogCovariance(nodes.samples.isotropic));
   const auto error_of = [&](const LogCovariance& covariance) {

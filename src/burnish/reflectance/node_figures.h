@@ -39,12 +39,12 @@ NodeFigures node_figures(const MeasuredNodes& nodes, BrdfRef model, const NodeSc
 NodeFigures held_out_figures(const MeasuredNodes& nodes, const LogCovariance& covariance, int folds = 4);
 
 /// The same with incidences left out, all nodes of one together, two or more apart; the first and the last never are.
-/// Nothing where there are fewer than five incidences, or so many that each is only a few nodes.
+/// Nothing where there are fewer than five incidences, or so many that each is only a few nodes, or no node can be scored.
 std::optional<NodeFigures> held_out_incidences(const MeasuredNodes& nodes, const LogCovariance& covariance);
 
 /// Of the default and the likely covariances the one that predicts best: the least sum of the logarithms of relative
 /// and log_cos, of held_out_figures and, where there is such, of held_out_incidences. Deterministic. `progress` is told
-/// rising shares. Throws Error as held_out_figures.
+/// rising shares. The default where no node can be scored.
 LogCovariance choose_covariance(const MeasuredNodes& nodes,
                                 const std::function<void(double fraction)>& progress = {});
 

@@ -277,6 +277,36 @@ TEST(KrigedScatteredBrdf, KnowsSamplesAlongTheHorizonAlone) {
   EXPECT_EQ(brdf.kriged(), nullptr);
 }
 
+TEST(KrigedScatteredBrdf, IsMadeOfFewSamplesAndOfSuchAsCannotBeScored) {
+  double f;
+  for (const bool isotropic : {true, false})
+    for (const std::size_t count : {1, 2, 3, 4, 7}) {
+      const ScatteredBrdf few(sample(count, isotropic, one));
+      const auto [wi, wo] = few.samples().pairs[0];
+      ASSERT_TRUE(few.eval(wi, normalize(wo + Vec3{0.01, 0, 0}), {&f, 1})) << count;
+      EXPECT_NEAR(f, 1, 1e-3);
+    }
+  // along the horizon but for the first and the last of seven incidences
+  Samples samples{1, true, {}, {}};
+  for (int i = 0; i < 7; ++i)
+    for (int o = 0; o < 8; ++o) {
+      samples.pairs.push_back({spherical_direction(i == 0   ? 0.3
+                                                   : i == 6 ? 0.4
+                                                            : 1.45 + 0.01 * i,
+                                                   0),
+                               spherical_direction(0.1 * o, 0.3 * o)});
+      samples.values.push_back(1);
+    }
+  EXPECT_TRUE(
+      ScatteredBrdf(samples).eval(spherical_direction(0.35, 0), spherical_direction(0.15, 0.4), {&f, 1}));
+  EXPECT_NEAR(f, 1, 1e-2);
+  std::erase_if(samples.pairs, [](const DirectionPair& pair) { return pair.wi.z > 0.5; });
+  samples.values.resize(samples.pairs.size());
+  EXPECT_TRUE(
+      ScatteredBrdf(samples).eval(spherical_direction(1.475, 0), spherical_direction(0.15, 0.4), {&f, 1}));
+  EXPECT_NEAR(f, 1, 1e-2);
+}
+
 // Whoever asks first makes the function, within a loop of others who ask.
 TEST(KrigedScatteredBrdf, IsTheSameForCopiesAndThreads) {
   const ScatteredBrdf brdf(sample(600, true, glossy)), copy = brdf, other(brdf.samples());
