@@ -107,11 +107,11 @@ std::string_view to_string(FitTarget target) noexcept;
 
 struct FitOptions;
 
-/// What is fitted where nobody says. Nodes: scattered samples, unless they crowd about wi = wo or are fewer than 1,000 of
-/// an anisotropic source, and isotropic RGL files, whose owners multiply what stands between nodes by a distribution of normals, speckle and all
-/// (docs/results/measured.md). The function: any other source, and every source without symmetrize, for one lobe, for
-/// baselines and books, and where a budget's smoothness is cross-validated. Nodes wherever some are held out.
-/// Scattered samples with lobes as given are fitted as they are.
+/// What is fitted where nobody says. Nodes: scattered samples, unless they crowd about wi = wo or are fewer than 1,000
+/// of an anisotropic source, and isotropic RGL files, whose owners multiply what stands between nodes by a distribution
+/// of normals, speckle and all (docs/results/measured.md). The function: any other source, and every source without
+/// symmetrize, for one lobe, for baselines and books, and where a budget's smoothness is cross-validated. Nodes wherever
+/// some are held out. Scattered samples with lobes as given are fitted as they are.
 FitTarget default_target(const Source& source, const FitOptions& options);
 
 struct FitOptions {
