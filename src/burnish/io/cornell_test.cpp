@@ -76,7 +76,7 @@ TEST(Cornell, ReadsThreePaintsWithAPeakOppositeTheLight) {
     EXPECT_LT(degrees(angle_between(mirror(wi), wo)), 6) << name;
     EXPECT_GT(degrees(theta_of(wi)), 60) << name;
     // Interpolated, the same peak stands at 50 degrees.
-    const ScatteredBrdf brdf(file.samples);
+    const ScatteredBrdf brdf(file.samples, SampleRule::mean_in_half_difference);
     const Vec3 light = spherical_direction(radians(50), 0);
     std::array<double, 3> at_mirror, aside;
     ASSERT_TRUE(brdf.eval(light, mirror(light), at_mirror));
@@ -94,7 +94,7 @@ TEST(Cornell, PaintsPredictTheirHeldOutSamples) {
     const Samples samples = parse_cornell(read_file(data_folder() / "cornell" / name), {}).samples;
     std::vector<std::size_t> kept, held_out;
     for (std::size_t i = 0; i < samples.size(); ++i) (i % 10 == 0 ? held_out : kept).push_back(i);
-    const ScatteredBrdf brdf(samples, kept);
+    const ScatteredBrdf brdf(samples, kept, SampleRule::mean_in_half_difference);
     double sum = 0;
     for (const std::size_t i : held_out) {
       std::array<double, 3> f;

@@ -9,12 +9,12 @@ using Lengths = std::array<std::array<double, LogCovariance::kAxes>, LogCovarian
 // What a smooth BRDF has, measured well.
 constexpr Lengths kIsotropicLengths{{{0.4, 0, 0, 0}, {0.7, 0.7, 0, 0}, {0.4, 0.9, 1.5, 0}}};
 constexpr Lengths kAnisotropicLengths{{{0.4, 0.4, 0, 0}, {0, 0, 0.7, 0.7}, {0.5, 0.5, 0.9, 0.9}}};
-constexpr double kLevel = 2, kSpread = 1.5, kNoise = 0.06;
+constexpr double kUsualLevel = 2, kUsualSpread = 1.5, kUsualNoise = 0.06;
 
 }  // namespace
 
-LogCovariance::LogCovariance(bool isotropic) noexcept : level(kLevel), noise(kNoise) {
-  spread.fill(kSpread);
+LogCovariance::LogCovariance(bool isotropic) noexcept : level(kUsualLevel), noise(kUsualNoise) {
+  spread.fill(kUsualSpread);
   const auto& lengths = isotropic ? kIsotropicLengths : kAnisotropicLengths;
   for (std::size_t t = 0; t < kTerms; ++t)
     for (std::size_t k = 0; k < kAxes; ++k)

@@ -279,11 +279,15 @@ TEST(KrigedScatteredBrdf, KnowsSamplesAlongTheHorizonAlone) {
 
 TEST(KrigedScatteredBrdf, IsMadeOfFewSamplesAndOfSuchAsCannotBeScored) {
   double f;
+  const Vec3 wi = spherical_direction(0.5, 0), wo = spherical_direction(0.6, 2);
   for (const bool isotropic : {true, false})
-    for (const std::size_t count : {1, 2, 3, 4, 7}) {
-      const ScatteredBrdf few(sample(count, isotropic, one));
-      const auto [wi, wo] = few.samples().pairs[0];
-      ASSERT_TRUE(few.eval(wi, normalize(wo + Vec3{0.01, 0, 0}), {&f, 1})) << count;
+    for (const int count : {1, 2, 3, 7}) {
+      Samples few{1, isotropic, {}, {}};
+      for (int i = 0; i < count; ++i) {
+        few.pairs.push_back({wi, spherical_direction(0.6 + 0.01 * i, 2)});
+        few.values.push_back(1);
+      }
+      ASSERT_TRUE(ScatteredBrdf(few).eval(wi, normalize(wo + Vec3{0.01, 0, 0}), {&f, 1})) << count;
       EXPECT_NEAR(f, 1, 1e-3);
     }
   // along the horizon but for the first and the last of seven incidences
