@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <burnish/error.h>
 #include <burnish/file.h>
 #include <burnish/io/csv.h>
 #include <burnish/math/parallel.h>
@@ -41,8 +42,12 @@ Uncertain uncertain_of(const Source& source) {
   const auto* scattered = std::get_if<ScatteredBrdf>(&source.brdf);
   if (const KrigedNodes* function = scattered ? scattered->kriged() : nullptr) return {function, nullptr};
   const MeasuredNodes nodes = measured_nodes(source);
-  auto own = std::make_unique<const KrigedNodes>(nodes, choose_covariance(nodes));
-  return {own.get(), std::move(own)};
+  try {
+    auto own = std::make_unique<const KrigedNodes>(nodes, choose_covariance(nodes));
+    return {own.get(), std::move(own)};
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", source.name, error.what()));
+  }
 }
 
 }  // namespace

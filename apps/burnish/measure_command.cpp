@@ -65,7 +65,13 @@ nlohmann::ordered_json next_json(std::span<const NextMeasurement> next) {
 /// Lists what to measure next, to a file where one is given.
 void say_next(const Source& source, std::size_t count, const std::string& out, bool json) {
   const MeasuredNodes nodes = measured_nodes(source);
-  const std::vector<NextMeasurement> next = next_measurements(nodes, choose_covariance(nodes), count);
+  const std::vector<NextMeasurement> next = [&] {
+    try {
+      return next_measurements(nodes, choose_covariance(nodes, progress_bar("kriging")), count);
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}: {}", source.name, error.what()));
+    }
+  }();
   if (!out.empty()) write_then_rename(out, next_csv(next));
   if (json) return print_as_json({{"next", next_json(next)}});
   if (!out.empty()) return fmt::print("{} to {}\n", counted(next.size(), "direction"), out);
