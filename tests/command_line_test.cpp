@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <burnish/file.h>
 #include <burnish/io/open_source.h>
 #include <burnish/math/build_info.h>
 #include <burnish/testing/sanitized.h>
@@ -351,6 +352,29 @@ TEST(CommandLine, DescribesWhatWasMeasuredAlone) {
   EXPECT_LT(json["held_out"]["relative"], 0.3);
   EXPECT_THAT(burnish(fmt::format("info '{}' --target nodes", file)).output,
               testing::AllOf(HasSubstr("600, "), HasSubstr("unseen")));
+}
+
+TEST(CommandLine, SaysHowFarOffMeasurementsAreAndWhereToMeasureNext) {
+  EXPECT_THAT(first_line(burnish("measure lambert --next 2")), HasSubstr("lambert: expected a measurement"));
+  EXPECT_EQ(burnish("measure lambert --next 2 --count 5").status, 2);
+  EXPECT_EQ(burnish("measure lambert --next 0").status, 2);
+
+  BURNISH_SKIP_WHERE_SANITIZED();
+  const TemporaryFolder folder("next");
+  const std::string file = (folder.path / "m.csv").string(), values = (folder.path / "v.csv").string(),
+                    directions = (folder.path / "d.csv").string();
+  ASSERT_EQ(burnish(fmt::format("measure ggx:alpha_x=0.4,alpha_y=0.4 -o '{}' --count 100 --noise 0.05", file))
+                .status,
+            0);
+  const auto json = nlohmann::json::parse(burnish(fmt::format("measure '{}' --next 3 --json", file)).output);
+  ASSERT_EQ(json["next"].size(), 3u);
+  for (const auto& next : json["next"]) {
+    EXPECT_EQ(next["phi_i_deg"], 0);
+    EXPECT_GT(next["error"], 0);
+  }
+  write_then_rename(directions, "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0,0,1,0,0,1\n");
+  ASSERT_EQ(burnish(fmt::format("eval '{}' '{}' -o '{}' --error", file, directions, values)).status, 0);
+  EXPECT_THAT(std::string(read_file(values).text()), testing::StartsWith("r,g,b,error\n"));
 }
 
 TEST(CommandLine, ExplainsItsFormatsAndItself) {
