@@ -102,12 +102,11 @@ void add_measure_command(CLI::App& app) {
           "--surface", arguments->surface,
           "a scene of materials, heights, lights and views (docs/guide/surfaces.md): writes a capture")
       ->excludes(positional);
-  CLI::Option* const next =
-      verb->add_option("--next", arguments->next,
-                       "list so many directions, in degrees, that are worth measuring next: those that lower "
-                       "the expected "
-                       "error of a measurement's samples most, each with how far its value may be off today")
-          ->check(in_range(std::size_t{1}, kMostNext));
+  CLI::Option* const next = verb->add_option("--next", arguments->next,
+                                             "list so many directions, in degrees, that lower the expected "
+                                             "error of a measurement most; each with "
+                                             "how far its value may be off once those before it are measured")
+                                ->check(in_range(std::size_t{1}, kMostNext));
   verb->add_option("-o,--output,--out", arguments->out,
                    "CSV file to write; with --surface a folder; needed without --next");
   // Ten million samples are a gigabyte of text.

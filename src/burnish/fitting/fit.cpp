@@ -50,7 +50,7 @@ constexpr double kAlbedoShare = 0.3;
 constexpr std::size_t kIsotropicSamples = 200'000, kAnisotropicSamples = 500'000;
 constexpr std::size_t kBaselineSamples = 200'000;
 constexpr std::size_t kBookSamples = 1000;
-// Anisotropic scattered samples: fewer make one lobe, more tell several lobes' tables hardly more.
+// Anisotropic scattered samples: fewer make one lobe; of more a part is fitted, since time grows with them.
 constexpr std::size_t kFewAnisotropic = 1000, kMostScattered = 150'000;
 
 // Of DefaultBudget.

@@ -9,9 +9,9 @@
 
 namespace burnish {
 
-/// How far a model of measured points is expected to be from what was measured, as the figure `relative`, whose
-/// mean |ln| is that of a normal variable: about the logarithm of model over function, as wide as the function is
-/// uncertain. Over 2,000 pairs of draw_pairs with both cosines above 0.15.
+/// The figure `relative` that a model is expected to have against the truth behind measured points. At a pair, ln of
+/// truth over model is taken as normal: its mean is ln(function / model), its deviation KrigedNodes::uncertainty.
+/// The figure is exp(mean |ln|) - 1, over those of 2,000 pairs of draw_pairs that have both cosines above 0.15.
 struct ExpectedError {
   static constexpr double kBandDegrees = 15;
 

@@ -17,7 +17,7 @@ struct NextMeasurement {
   double error = 0;    ///< the standard deviation of ln(f + 1e-3) there, once those before it are measured
 };
 
-/// Directions to measure next: one after the other, of kMostNext pairs drawn as draw_pairs does, the one that lowers the
+/// Directions to measure next: of kMostNext pairs drawn as draw_pairs does, one after the other that which lowers the
 /// expected error most, the mean standard deviation of ln f over 400 other such pairs. Expected errors depend on where is
 /// measured, not on what is found there, so all can be measured in one go. Pairs have both cosines above 0.15, as those
 /// that node_figures judges. Fewer where `count` is more than are tried. Throws Error as KrigedNodes. Deterministic.

@@ -11,8 +11,8 @@ namespace burnish {
 
 /// How scattered samples become a function.
 /// - kriged: the best linear prediction of ln(f + 1e-3) from the 64 nearest samples (KrigedNodes), under the covariance
-///   that predicts unseen samples best (choose_covariance). At the directions of a sample it is the sample. It is made
-///   when a value is first asked for, in about the time that 10,000 samples take to be fitted by a lobe.
+///   that predicts unseen samples best (choose_covariance). At the directions of a sample it is the sample. The first
+///   evaluation makes it: that one takes longer, and allocates.
 /// - mean_in_half_difference: the mean of the samples near a direction pair, with weights exp(-100 distance^2), among
 ///   the coordinates of ScatteredBrdf. The search radius starts at a square of 0.001 (less for sets denser than 1439
 ///   samples, see initial_radius2), and its square doubles until it holds three samples. Where a scan is much denser
