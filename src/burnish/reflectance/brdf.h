@@ -21,8 +21,8 @@ struct DirectionPair {
 /// - isotropic(): true where rotating both directions about the normal changes nothing;
 /// - eval(wi, wo, f): writes f_r in 1/sr without the cosine into f (size channels()). Returns false, and
 ///   writes zeros, where the source knows nothing: a hole in a measurement, a direction outside its coverage.
-///   Below the horizon (wi.z <= 0 or wo.z <= 0) it writes zeros and returns true. Never allocates, never
-///   throws; values are finite and, except for sources kept raw on request, >= 0.
+///   Below the horizon (wi.z <= 0 or wo.z <= 0) it writes zeros and returns true. Never throws, nor allocates but in
+///   the first call of a ScatteredBrdf; values are finite and, except for sources kept raw on request, >= 0.
 /// What holds negative values, the noise of a measurement about small ones, has besides
 /// - eval_raw(wi, wo, f): the same with negative results as they are. eval sets these to zero, and what is
 ///   interpolated or averaged is not cut before.
