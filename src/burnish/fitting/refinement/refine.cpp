@@ -81,9 +81,9 @@ class Descent {
     std::ranges::copy(state, x_.begin());
   }
 
-  /// Puts the tables into the model and adds to the summary.
-  void finish(LogModel& model, FitSummary& summary) const {
-    system_.write(x_, model);
+  /// Puts the tables into the model.
+  void write(LogModel& model) const { system_.write(x_, model); }
+  void add_to(FitSummary& summary) const {
     if (iterations_ == options_.max_iterations) summary.stop_reason = StopReason::iteration_limit;
     summary.iterations += iterations_;
     summary.error_before += before_;
@@ -168,6 +168,31 @@ PictureLoss loss_of(const TrainingSet& set, const ErrorTerms& shares) {
   return {.shares = shares, .exposure = set.exposure};
 }
 
+/// Whether two channels of values that lie channel by channel are the same.
+template <class T>
+bool are_equal(const std::vector<T>& values, std::size_t channels, std::size_t a, std::size_t b) {
+  for (std::size_t i = 0; i < values.size(); i += channels)
+    if (values[i + a] != values[i + b]) return false;
+  return true;
+}
+
+/// The first channel with the same data and the same start: grey materials have one for all.
+std::size_t first_like(std::size_t channel, const LogModel& model, const TrainingSet& set) {
+  const std::size_t channels = set.channels;
+  for (std::size_t c = 0; c < channel; ++c)
+    if (are_equal(set.values, channels, c, channel) && are_equal(set.albedo.targets, channels, c, channel) &&
+        are_equal(set.albedo.scales, channels, c, channel) &&
+        std::ranges::all_of(model.log_values,
+                            [&](const auto& logs) { return are_equal(logs, channels, c, channel); }))
+      return c;
+  return channel;
+}
+
+void copy_channel(std::size_t from, std::size_t to, LogModel& model) {
+  for (std::vector<double>& logs : model.log_values)
+    for (std::size_t i = 0; i < logs.size(); i += model.channels) logs[i + to] = logs[i + from];
+}
+
 }  // namespace
 
 std::function<void(double)> part_of_progress(std::function<void(double)> whole, double from, double to) {
@@ -186,9 +211,21 @@ FitSummary refine(LogModel& model, const TrainingSet& set, const Lookups& lookup
   const auto channels = model.channels;
   const std::size_t together = model.any_shared() ? channels : 1;
   std::vector<Descent> descents;
-  for (std::size_t c = 0; c < channels; c += together)
-    if (together > 1 || options.channel.value_or(c) == c)
-      descents.emplace_back(model, set, lookups, loss, options, c, c + together);
+  struct Part {
+    std::size_t channel, like, descent;  ///< `like` is refined in place of `channel`
+  };
+  std::vector<Part> parts;
+  for (std::size_t c = 0; c < channels; c += together) {
+    if (together == 1 && options.channel.value_or(c) != c) continue;
+    const std::size_t like = together > 1 || options.channel ? c : first_like(c, model, set);
+    const auto known = std::ranges::find(parts, like, &Part::channel);
+    if (known != parts.end()) {
+      parts.push_back({c, like, known->descent});
+      continue;
+    }
+    parts.push_back({c, c, descents.size()});
+    descents.emplace_back(model, set, lookups, loss, options, c, c + together);
+  }
 
   // Side by side, as much of a step is too small to share out.
   std::atomic<int> steps = 0;
@@ -202,9 +239,13 @@ FitSummary refine(LogModel& model, const TrainingSet& set, const Lookups& lookup
   });
 
   FitSummary summary{.stop_reason = StopReason::no_more_progress};
-  for (const Descent& descent : descents) descent.finish(model, summary);
-  summary.error_before /= static_cast<double>(descents.size());
-  summary.error_after /= static_cast<double>(descents.size());
+  for (const Descent& descent : descents) descent.write(model);
+  for (const Part& part : parts) {
+    if (part.like != part.channel) copy_channel(part.like, part.channel, model);
+    descents[part.descent].add_to(summary);
+  }
+  summary.error_before /= static_cast<double>(parts.size());
+  summary.error_after /= static_cast<double>(parts.size());
   if (options.progress) options.progress(1);
   return summary;
 }
@@ -230,8 +271,7 @@ void ChannelRefinement::go_on_from(std::span<const double> state) {
   descent_->go_on_from(state);
 }
 void ChannelRefinement::finish(LogModel& model) const {
-  FitSummary summary;
-  descent_->finish(model, summary);
+  descent_->write(model);
 }
 
 double objective(const LogModel& model, const TrainingSet& set, const ErrorTerms& shares) {

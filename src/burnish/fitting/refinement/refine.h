@@ -38,8 +38,8 @@ std::function<void(double fraction)> part_of_progress(std::function<void(double 
 
 /// Lowers the error that PictureLoss states, by damped Gauss-Newton steps (Levenberg-Marquardt) on the
 /// logarithms of the tables [Marquardt1963]; lambda stays positive. Every accepted step lowers the
-/// objective. Channels are refined side by side, or as one system where a table is shared. Steps are solved
-/// directly for up to kMaxCholeskyUnknowns, by preconditioned conjugate gradients for more. The
+/// objective. Channels are refined side by side, or as one system where a table is shared; channels of the same data
+/// and start are refined once. Steps are solved directly for up to kMaxCholeskyUnknowns, by preconditioned conjugate gradients for more. The
 /// result does not depend on the number of threads. The summary's errors are the objective with the
 /// smoothness term, means over the channels; its iterations are of all channels.
 FitSummary refine(LogModel& model, const TrainingSet& set, const RefineOptions& options);

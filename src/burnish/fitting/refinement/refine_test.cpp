@@ -48,6 +48,36 @@ TEST(Refine, RecoversALineTimesAVolume) {
   EXPECT_LT(sum / static_cast<double>(f.size()), 0.01);
 }
 
+TEST(Refine, ChannelsOfTheSameDataAreOneChannel) {
+  // of three channels the last is the first again
+  const std::vector<std::string> sizes{"z=7", "s=5"};
+  const ModelSpec spec = parse_model_spec("z(theta_h) + s(theta_d)", sizes, true);
+  TrainingSet grey = small_set(parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3,kd=0.2"), 2000);
+  const std::size_t pairs = grey.size(), before = grey.channels;
+  TrainingSet set = grey;
+  set.channels = 3;
+  set.values.clear();
+  grey.channels = 1;
+  std::vector<float> values;
+  for (std::size_t i = 0; i < pairs; ++i) {
+    const float v = grey.values[i * before];
+    values.push_back(v);
+    for (const float f : {v, 2 * v + 0.1f, v}) set.values.push_back(f);
+  }
+  grey.values = std::move(values);
+  const RefineOptions options{.max_iterations = 5};
+  const LobesFit fit = fit_lobes(set, spec, options), alone = fit_lobes(grey, spec, options);
+  bool differs = false;
+  for (std::size_t t = 0; t < spec.tables.size(); ++t)
+    for (std::size_t n = 0; n < alone.model.log_values[t].size(); ++n) {
+      const double* const logs = fit.model.log_values[t].data() + 3 * n;
+      EXPECT_EQ(logs[0], alone.model.log_values[t][n]);
+      EXPECT_EQ(logs[2], logs[0]);
+      differs = differs || logs[1] != logs[0];
+    }
+  EXPECT_TRUE(differs);
+}
+
 TEST(Refine, DoesNotDependOnTheNumberOfThreads) {
   const TrainingSet set = small_set(parse_analytic("ggx:alpha_x=0.3,alpha_y=0.3,kd=0.2"), 2000);
   const LobePlan plan = default_plan(600, 2, true, 6);
