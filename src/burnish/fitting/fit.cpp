@@ -334,8 +334,8 @@ class Fitter {
     FactoredBrdf brdf = [&] {
       const FetchTrial* const chosen = tried.trials.empty() ? nullptr : &trial_at_knee(tried.trials);
       if (chosen && !chosen->lobes)
-        return fit_hemispheres_to(form, bytes, set,
-                                  {tried.specs[static_cast<std::size_t>(chosen - tried.trials.data())]});
+        return fit_hemispheres_to(form, bytes, std::move(set),
+                                  tried.candidates[static_cast<std::size_t>(chosen - tried.trials.data())]);
       set = {};
       lobes.set = drawn_set(lobes.drawn);
       return fit_lobes_to(form, bytes, std::move(lobes));
@@ -505,11 +505,14 @@ class Fitter {
     return refine;
   }
 
-  FactoredBrdf fit_hemispheres_to(const Budget& form, std::uint64_t bytes, const TrainingSet& set,
-                                  const std::vector<ModelSpec>& specs) {
-    const RefineOptions refine = hemisphere_options(form.loss);
-    return finish(fit_hemispheres(set, specs, refine), set, refine,
-                  {.loss = form.loss, .budget = bytes, .fetches = form.fetches.value_or(0)});
+  /// `from`: the specs to choose from, or the candidate that was chosen. The steps at all pairs look at albedos too.
+  FactoredBrdf fit_hemispheres_to(const Budget& form, std::uint64_t bytes, TrainingSet set,
+                                  const auto& from) {
+    RefineOptions refine = hemisphere_options(form.loss);
+    if (counts_albedos(form.loss)) add_albedos(set, refine);
+    const LobesFit fit = fit_hemispheres(set, from, refine);
+    return rounded(fit, set, refine,
+                   {.loss = form.loss, .budget = bytes, .fetches = form.fetches.value_or(0)});
   }
 
   /// Nodes that are given no number of fetches: one more where fewer leave a model farther from them than what is
@@ -568,10 +571,16 @@ class Fitter {
     }
   }
 
-  /// Last steps that look at albedos too. Before, they would lead lobes that are not found yet astray.
-  void reflect_as_much(LogModel& model, TrainingSet& set, RefineOptions& refine) const {
+  bool counts_albedos(FitLoss loss) const { return !samples() && loss == FitLoss::image; }
+
+  void add_albedos(TrainingSet& set, RefineOptions& refine) const {
     set.albedo = albedo_set(reference());
     refine.shares.albedo = kAlbedoShare;
+  }
+
+  /// Last steps that look at albedos too. Before, they would lead lobes that are not found yet astray.
+  void reflect_as_much(LogModel& model, TrainingSet& set, RefineOptions& refine) const {
+    add_albedos(set, refine);
     RefineOptions steps = refine;
     const bool direct = coupled_unknowns(model.spec, channels()) <= kMaxCholeskyUnknowns;
     steps.max_iterations = direct ? kAlbedoSteps : kLongAlbedoSteps;
@@ -580,7 +589,12 @@ class Fitter {
   }
 
   FactoredBrdf finish(LobesFit fit, TrainingSet set, RefineOptions refine, LobesReport report) {
-    if (!samples() && report.loss == FitLoss::image) reflect_as_much(fit.model, set, refine);
+    if (counts_albedos(report.loss)) reflect_as_much(fit.model, set, refine);
+    return rounded(fit, set, refine, std::move(report));
+  }
+
+  FactoredBrdf rounded(const LobesFit& fit, const TrainingSet& set, const RefineOptions& refine,
+                       LobesReport report) {
     report.summary = fit.summary;
     report.samples = set.size();
     report.lobes = fit.model.spec.lobes.size();

@@ -49,8 +49,8 @@ constexpr VolumeForm kFolded{14, 12, 6}, kSigned{8, 10, 10};
 constexpr double kSidesOfDifference = 1.5;
 constexpr int kWideNodes = 12, kMinDiskSide = 5;
 
-// Trials: about so many pairs a node, in so few steps.
-constexpr std::size_t kPairsOfNode = 6;
+// Trials: at about so many nodes, whose steps are solved directly, of so many pairs each, in so few steps.
+constexpr double kTrialUnknowns = 900, kPairsOfNode = 6;
 constexpr std::size_t kFewerFetches = 2;  // of what is tried, at most below the limit
 constexpr int kTrialSteps = 20;
 constexpr std::size_t kFinalists = 3, kFinalPart = 4;
@@ -58,9 +58,8 @@ constexpr std::size_t kFinalists = 3, kFinalPart = 4;
 constexpr ErrorTerms kFinalShares{.pictures = 1, .relative = 2, .log_cos = 2};
 constexpr double kWorthOfFetch = 0.03;
 constexpr double kTrialTime = 0.15, kFinalTime = 0.4;  // when they end, of the whole
-// The way to all nodes is made at about so many, in so many steps, and then in so many more.
-constexpr double kCoarseUnknowns = 2000;
-constexpr int kCoarseSteps = 30, kFineSteps = 12;
+// Then at all nodes: on part of the pairs, and of the best one on all of them.
+constexpr int kFinalSteps = 8, kLastSteps = 6;
 
 TableLayout disk_of(double nodes, Warp warp = {}) {
   const int side = std::max(kMinDiskSide, static_cast<int>(std::sqrt(nodes)));
@@ -120,45 +119,35 @@ std::optional<ModelSpec> laid_out(const Form& form, const CostLimit& limit, std:
   return spec;
 }
 
-/// Fits one model: few nodes come near the least error in as many steps as all of them would take to leave the start.
-LobesFit fit_one(const TrainingSet& set, const ModelSpec& spec, const RefineOptions& options) {
-  const auto nodes = static_cast<double>(coupled_unknowns(spec, 1));
-  if (nodes <= kCoarseUnknowns) return fit_lobes(set, spec, options);
-  RefineOptions coarse = options;
-  coarse.format = TableFormat::single;
-  coarse.max_iterations = std::min(kCoarseSteps, options.max_iterations);
-  coarse.progress = part_of_progress(options.progress, 0, 0.6);
-  LobesFit fit = fit_lobes(set, at_fewer_nodes(spec, kCoarseUnknowns / nodes), coarse);
-  fit.model = resampled(fit.model, spec);
-  RefineOptions fine = options;
-  fine.max_iterations = std::min(kFineSteps, options.max_iterations);
-  fine.progress = part_of_progress(options.progress, 0.6, 1);
-  const int before = fit.summary.iterations;
-  fit.summary = refine(fit.model, set, fine);
-  fit.summary.iterations += before;
-  return fit;
+using Candidate = HemisphereCandidate;
+
+/// The fit at all nodes of the spec, after some more steps.
+FitSummary refine_at_all(LogModel& fit, const ModelSpec& spec, const TrainingSet& set, RefineOptions options,
+                         int steps) {
+  fit = resampled(fit, spec);
+  options.max_iterations = std::min(steps, options.max_iterations);
+  return refine(fit, set, options);
 }
 
-/// Of the models those that come out best, at most so many, of trials in few steps.
-std::vector<ModelSpec> finalists(const std::vector<ModelSpec>& specs, const TrainingSet& mean,
-                                 const RefineOptions& options) {
+/// The models in few steps at few nodes, which come near the least error soonest; the best ones come first.
+std::vector<Candidate> tried(const std::vector<ModelSpec>& specs, const TrainingSet& mean,
+                             const RefineOptions& options) {
   const TrialSets sets(mean);
   const RefineOptions few = in_few_steps(options, kTrialSteps);
-  std::vector<std::pair<double, std::size_t>> errors(specs.size());
+  const double most = std::min(kTrialUnknowns, static_cast<double>(sets.fitted.size()) / kPairsOfNode);
+  std::vector<Candidate> candidates(specs.size());
   for_each_trial(specs.size(), options, 0, kTrialTime, [&](std::size_t k) {
-    const double nodes = static_cast<double>(kPairsOfNode * coupled_unknowns(specs[k], 1));
-    const ModelSpec trial =
-        at_fewer_nodes(specs[k], std::min(1.0, static_cast<double>(sets.fitted.size()) / nodes));
-    errors[k] = {objective(fit_lobes(sets.fitted, trial, few).model, sets.judged, few.shares), k};
+    const double nodes = static_cast<double>(coupled_unknowns(specs[k], 1));
+    const ModelSpec trial = at_fewer_nodes(specs[k], std::min(1.0, most / nodes));
+    candidates[k] = {.spec = specs[k], .fit = fit_lobes(sets.fitted, trial, few).model, .error = 0};
+    candidates[k].error = objective(candidates[k].fit, sets.judged, few.shares);
   });
-  std::ranges::sort(errors);
-  std::vector<ModelSpec> best;
-  for (std::size_t i = 0; i < std::min(kFinalists, errors.size()); ++i)
-    best.push_back(specs[errors[i].second]);
-  return best;
+  std::ranges::stable_sort(candidates, {}, &Candidate::error);
+  return candidates;
 }
 
-/// Finalists are fitted as the winner is, to a quarter of the pairs: few steps leave some behind that end ahead.
+/// Finalists come near their least error at all nodes, of a quarter of the pairs: few steps leave some behind that
+/// end ahead.
 struct Finals {
   TrainingSet fitted, judged;
   RefineOptions options;
@@ -169,24 +158,38 @@ struct Finals {
         judged(part_of(mean, kFinalPart / 2, kFinalPart)),
         options(how),
         shares(how.shares.pictures > 0 ? kFinalShares : how.shares) {
+    options.format = TableFormat::single;
     options.progress = nullptr;
   }
-  double error_of(const LobesFit& fit) const { return objective(fit.model, judged, shares); }
-  double error_of(const ModelSpec& spec) const { return error_of(fit_one(fitted, spec, options)); }
+  double error_of(const LogModel& fit) const { return objective(fit, judged, shares); }
+  void play(Candidate& candidate) const {
+    refine_at_all(candidate.fit, candidate.spec, fitted, options, kFinalSteps);
+    candidate.error = error_of(candidate.fit);
+  }
 };
 
-/// The best model, each of whose fetches has to be worth it.
-ModelSpec best_of(std::vector<ModelSpec> specs, const TrainingSet& set, const RefineOptions& options) {
-  if (specs.size() == 1) return specs.front();
-  const TrainingSet mean = mean_of_channels(set);
-  specs = finalists(specs, mean, options);
-  const Finals finals(mean, options);
-  std::vector<double> errors(specs.size());
-  for_each_trial(specs.size(), options, kTrialTime, kFinalTime, [&](std::size_t k) {
-    errors[k] = finals.error_of(specs[k]) +
-                kWorthOfFetch * finals.shares.sum() * static_cast<double>(fetch_count(specs[k]));
-  });
-  return specs[static_cast<std::size_t>(std::ranges::min_element(errors) - errors.begin())];
+/// The mean's model for every channel of the set, each of which reflects as much of what is drawn as it does.
+LogModel in_colour(const LogModel& grey, const TrainingSet& set) {
+  LogModel model{.spec = grey.spec, .channels = set.channels, .log_values = {}};
+  std::vector<double> sums(set.channels);
+  for (std::size_t i = 0; i < set.values.size(); ++i)
+    sums[i % set.channels] += static_cast<double>(set.weights[i / set.channels]) * set.values[i];
+  const double mean = std::accumulate(sums.begin(), sums.end(), 0.0) / static_cast<double>(sums.size());
+  for (const std::vector<double>& logs : grey.log_values) {
+    auto& all = model.log_values.emplace_back();
+    for (const double v : logs) all.insert(all.end(), set.channels, v);
+  }
+  if (!(mean > 0)) return model;
+  for (const std::vector<FactorUse>& lobe : grey.spec.lobes) {
+    const auto once = std::ranges::find_if(lobe, [&](const FactorUse& use) {
+      return std::ranges::count(lobe, use.table, &FactorUse::table) == 1;
+    });
+    if (once == lobe.end()) continue;
+    std::vector<double>& logs = model.log_values[once->table];
+    for (std::size_t i = 0; i < logs.size(); ++i)
+      logs[i] += std::log(std::max(sums[i % set.channels], 1e-6 * mean) / mean);
+  }
+  return model;
 }
 
 /// All forms within the limit; none where its bytes do not hold any.
@@ -212,35 +215,56 @@ std::vector<ModelSpec> hemisphere_specs(const CostLimit& limit, std::size_t chan
 
 LobesFit fit_hemispheres(const TrainingSet& set, const std::vector<ModelSpec>& specs,
                          const RefineOptions& options) {
-  const ModelSpec spec = best_of(specs, set, options);
+  const TrainingSet mean = mean_of_channels(set);
+  std::vector<Candidate> candidates = tried(specs, mean, options);
+  candidates.resize(std::min(kFinalists, candidates.size()));
+
+  // each fetch has to be worth it
+  const Finals finals(mean, options);
+  for_each_trial(candidates.size(), options, kTrialTime, kFinalTime, [&](std::size_t k) {
+    finals.play(candidates[k]);
+    candidates[k].error +=
+        kWorthOfFetch * finals.shares.sum() * static_cast<double>(fetch_count(candidates[k].spec));
+  });
   RefineOptions rest = options;
-  if (specs.size() > 1) rest.progress = part_of_progress(options.progress, kFinalTime, 1);
-  return fit_one(set, spec, rest);
+  rest.progress = part_of_progress(options.progress, kFinalTime, 1);
+  return fit_hemispheres(set, *std::ranges::min_element(candidates, {}, &Candidate::error), rest);
+}
+
+LobesFit fit_hemispheres(const TrainingSet& set, const HemisphereCandidate& start,
+                         const RefineOptions& options) {
+  LobesFit fit{.model = in_colour(start.fit, set), .summary = {}};
+  fit.summary = refine_at_all(fit.model, start.spec, set, options, kLastSteps);
+  return fit;
 }
 
 HemisphereTrials try_hemispheres(const TrainingSet& set, CostLimit limit, const RefineOptions& options,
                                  const LobePlan& lobes, const RefineOptions& of_lobes) {
   limit.fetches = std::numeric_limits<int>::max();
-  std::vector<ModelSpec> specs = specs_within(limit, set.channels);
+  const std::vector<ModelSpec> specs = specs_within(limit, set.channels);
   if (specs.empty()) return {};
 
   // the finalists and, last, the lobes
   const TrainingSet mean = mean_of_channels(set);
-  specs = finalists(specs, mean, options);
+  std::vector<Candidate> candidates = tried(specs, mean, options);
+  candidates.resize(std::min(kFinalists, candidates.size()));
+  candidates.push_back(
+      {.spec = plan_to_spec(lobes, limit.bytes, set.channels, limit.texel_bytes), .fit = {}, .error = 0});
   const Finals finals(mean, options);
   RefineOptions quiet = of_lobes;
   quiet.progress = nullptr;
-  std::vector<FetchTrial> trials(specs.size() + 1);
-  for_each_trial(trials.size(), options, kTrialTime, 1, [&](std::size_t k) {
-    const bool is_lobes = k == specs.size();
-    const ModelSpec spec =
-        is_lobes ? plan_to_spec(lobes, limit.bytes, set.channels, limit.texel_bytes) : specs[k];
-    const double error =
-        is_lobes ? finals.error_of(fit_plan(finals.fitted, lobes, limit.bytes, limit.texel_bytes, quiet))
-                 : finals.error_of(spec);
-    trials[k] = {.fetches = static_cast<int>(fetch_count(spec)),
+  std::vector<FetchTrial> trials(candidates.size());
+  for_each_trial(candidates.size(), options, kTrialTime, 1, [&](std::size_t k) {
+    Candidate& candidate = candidates[k];
+    const bool is_lobes = k + 1 == candidates.size();
+    if (is_lobes)
+      candidate.error =
+          finals.error_of(fit_plan(finals.fitted, lobes, limit.bytes, limit.texel_bytes, quiet).model);
+    else
+      finals.play(candidate);
+    trials[k] = {.fetches = static_cast<int>(fetch_count(candidate.spec)),
                  .lobes = is_lobes,
-                 .error = std::exp(error / finals.shares.sum())};
+                 .error = std::exp(candidate.error / finals.shares.sum())};
   });
 
   // the best of each number of fetches
@@ -251,7 +275,7 @@ HemisphereTrials try_hemispheres(const TrainingSet& set, CostLimit limit, const 
   for (const std::size_t k : order) {
     if (!best.trials.empty() && best.trials.back().fetches == trials[k].fetches) continue;
     best.trials.push_back(trials[k]);
-    best.specs.push_back(trials[k].lobes ? ModelSpec{} : specs[k]);
+    best.candidates.push_back(std::move(candidates[k]));
   }
   return best;
 }

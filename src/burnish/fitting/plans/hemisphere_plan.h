@@ -17,16 +17,27 @@ namespace burnish {
 /// tables leave is q's. Forms whose tables the bytes do not hold are left out; throws Error if that leaves none.
 std::vector<ModelSpec> hemisphere_specs(const CostLimit& limit, std::size_t channels);
 
-/// Fits the spec that serves best: each is fitted to part of the pairs, the mean of their channels, at fewer nodes in
-/// few steps, and judged on another part. Three finalists are fitted to a larger part as the winner will be: at two
-/// thousand nodes, then at all. A fetch more has to lower the errors. Throws Error as fit_lobes does. Deterministic.
+/// Fits the spec that serves best. Each is fitted to part of the pairs, the mean of their channels, at about 900 nodes
+/// in few steps, and judged on another part. Three finalists go on from there at all of their nodes, on a larger part; a
+/// fetch more has to lower the errors. The winner goes on from there, channel by channel, on all pairs. A set with
+/// albedos counts them in these last steps alone. Throws Error as fit_lobes does. Deterministic.
 LobesFit fit_hemispheres(const TrainingSet& set, const std::vector<ModelSpec>& specs,
+                         const RefineOptions& options);
+
+/// A model of the mean of the channels, on its way to all nodes of its spec.
+struct HemisphereCandidate {
+  ModelSpec spec;
+  LogModel fit;      ///< one channel, at as many nodes as it has come to
+  double error = 0;  ///< of pairs that it was not fitted to
+};
+/// The last steps of fit_hemispheres: the candidate's spec, channel by channel, from where the candidate stands.
+LobesFit fit_hemispheres(const TrainingSet& set, const HemisphereCandidate& start,
                          const RefineOptions& options);
 
 /// What models of an anisotropic source do by how much they cost, where a number of fetches is to be chosen.
 struct HemisphereTrials {
-  std::vector<FetchTrial> trials;  ///< by rising fetches
-  std::vector<ModelSpec> specs;    ///< theirs; of lobes none
+  std::vector<FetchTrial> trials;               ///< by rising fetches
+  std::vector<HemisphereCandidate> candidates;  ///< theirs; of lobes without a fit
 };
 /// The three finalists of fit_hemispheres among models of any number of fetches, and these lobes, refined with
 /// `of_lobes`: each fitted to a quarter of the pairs, the mean of their channels, and judged on another; of two that

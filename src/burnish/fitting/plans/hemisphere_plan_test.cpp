@@ -13,6 +13,7 @@
 #include <burnish/fitting/plans/trial_sets.h>
 #include <burnish/metrics/error_figures.h>
 #include <burnish/reflectance/analytic.h>
+#include <burnish/testing/log_models.h>
 #include <burnish/testing/sanitized.h>
 
 namespace burnish {
@@ -88,17 +89,39 @@ TEST(HemispherePlan, TriesFewFetchesBesideLobes) {
   const RefineOptions options{.smooth = 1e-6, .max_iterations = 8};
   const HemisphereTrials tried = try_hemispheres(set, limit, options, lobes, options);
   ASSERT_GT(tried.trials.size(), 1u);
-  ASSERT_EQ(tried.specs.size(), tried.trials.size());
+  ASSERT_EQ(tried.candidates.size(), tried.trials.size());
   const ModelSpec of_lobes = plan_to_spec(lobes, limit.bytes, 1, limit.texel_bytes);
   for (std::size_t k = 0; k < tried.trials.size(); ++k) {
     const FetchTrial& trial = tried.trials[k];
     EXPECT_GT(trial.error, 0);
     EXPECT_TRUE(k == 0 || trial.fetches > tried.trials[k - 1].fetches);
-    EXPECT_EQ(static_cast<std::size_t>(trial.fetches), fetch_count(trial.lobes ? of_lobes : tried.specs[k]));
-    EXPECT_TRUE(trial.lobes || bytes_of(tried.specs[k], limit.texel_bytes, 1) <= limit.bytes);
+    const HemisphereCandidate& candidate = tried.candidates[k];
+    EXPECT_EQ(static_cast<std::size_t>(trial.fetches), fetch_count(trial.lobes ? of_lobes : candidate.spec));
+    EXPECT_TRUE(trial.lobes || bytes_of(candidate.spec, limit.texel_bytes, 1) <= limit.bytes);
   }
   EXPECT_EQ(std::ranges::count(tried.trials, true, &FetchTrial::lobes), 1);
   EXPECT_TRUE(try_hemispheres(set, {.bytes = 40, .texel_bytes = 2}, options, lobes, options).trials.empty());
+}
+
+TEST(HemispherePlan, GoesOnFromTheMeanOfTheChannels) {
+  // green is the mean of the channels, blue reflects a quarter of it, and nothing is red
+  const TrainingSet grey = brushed_metal(600, 1);
+  TrainingSet set = grey;
+  set.channels = 3;
+  set.values.clear();
+  for (const float v : grey.values) set.values.insert(set.values.end(), {0, v, v / 4});
+  const std::vector<ModelSpec> specs = hemisphere_specs({.bytes = 700, .texel_bytes = 6, .fetches = 3}, 3);
+  const LobesFit fit = fit_hemispheres(set, specs, {.smooth = 1e-6, .max_iterations = 12});
+  const TrainingSet unseen = brushed_metal(300, 5);
+  const std::vector<double> f = fixtures::evaluate(fit.model, unseen);
+  double apart = 0, red = 0, sum = 0;
+  for (std::size_t i = 0; i < unseen.size(); ++i) {
+    apart += std::abs(std::log(4 * f[3 * i + 2] / f[3 * i + 1]));
+    red += f[3 * i];
+    sum += f[3 * i + 1];
+  }
+  EXPECT_LT(apart / static_cast<double>(unseen.size()), 0.05);
+  EXPECT_LT(red, 1e-3 * sum);
 }
 
 TEST(HemispherePlan, FitsBrushedMetalBetterTheMoreItMayCost) {
