@@ -62,6 +62,24 @@ TEST_F(BatchCommand, DoesNotTakeItsOwnResultsForMaterials) {
   EXPECT_THAT(batch("meas -o meas").output, HasSubstr("meas: expected a folder with measurements"));
 }
 
+TEST_F(BatchCommand, SkipsWhatIsNoMeasurementInADownloadedFolder) {
+  std::filesystem::create_directory(folder_.path / "downloaded");
+  write(folder_.path / "downloaded/README.txt", "Paints, measured in May.\n");
+  write(folder_.path / "downloaded/felt.csv",
+        "theta_i,phi_i,theta_o,phi_o,value\n5,0,12,0,0.3\n22,0,11,60,0.2\n40,0,17,60,0.25\n");
+  const Outcome outcome = batch(std::string("downloaded -o out") + kQuick);
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr("fitted     1 of 1 materials"));
+  EXPECT_THAT(outcome.output, HasSubstr("skipped    1 file that is no measurement: README.txt\n"));
+  const Outcome json = batch(std::string("downloaded -o other --json") + kQuick);
+  EXPECT_EQ(nlohmann::json::parse(json.output)["skipped"].size(), 1u);
+  // what is named is wanted, and so is a measurement that is broken
+  write(folder_.path / "named", "downloaded/README.txt\n");
+  EXPECT_EQ(batch(std::string("named -o third") + kQuick).status, 1);
+  write(folder_.path / "downloaded/cut.binary", "abc");
+  EXPECT_EQ(batch(std::string("downloaded -o fourth") + kQuick).status, 1);
+}
+
 TEST_F(BatchCommand, TakesTheOptionsOfAFitAndRefusesWhatContradictsItself) {
   EXPECT_EQ(batch("'a list' -o out --method svd --budget auto").status, 2);
   EXPECT_EQ(batch("'a list' -o out --method svd --to glsl").status, 2);

@@ -66,7 +66,11 @@ TEST(CommandLine, SaysWhatAMisspeltWordMayHaveMeant) {
   EXPECT_THAT(gibberish, testing::Not(HasSubstr("did you mean")));
   EXPECT_THAT(gibberish, HasSubstr("expected a verb (info, fit, "));
   EXPECT_THAT(gibberish, testing::Not(HasSubstr("describe"))) << "which is not for people";
-  EXPECT_THAT(first_line(burnish("")), HasSubstr("expected a verb (info, fit, "));
+  const Outcome bare = burnish("");
+  EXPECT_EQ(bare.status, 2);
+  EXPECT_EQ(first_line(bare), "burnish: expected a verb, found none; there are");
+  for (const char* line : {"\n  info         Say what", "\n  fit-surface  ", "\n  convert      ", "`burnish VERB --help`"})
+    EXPECT_THAT(bare.output, HasSubstr(line));
   EXPECT_THAT(first_line(burnish("hw")),
               HasSubstr("hw: expected a verb (generate, model, error), found none"));
   for (const char* arguments : {"info -o x lambert", "info lambert -ox"})

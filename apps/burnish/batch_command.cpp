@@ -1,5 +1,5 @@
+#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -15,6 +15,8 @@
 #include <burnish/library/folder_file.h>
 
 #include "commands.h"
+#include "counted.h"
+#include "duration_text.h"
 #include "fit_arguments.h"
 #include "json_output.h"
 #include "slurm_script.h"
@@ -48,13 +50,6 @@ BatchOptions batch_options(const BatchArguments& arguments) {
   return options;
 }
 
-std::string duration(double seconds) {
-  const auto s = static_cast<long>(std::ceil(seconds));
-  if (s < 100) return fmt::format("{} s", s);
-  if (s < 100 * 60) return fmt::format("{} min", (s + 59) / 60);
-  return fmt::format("{} h {} min", s / 3600, s % 3600 / 60);
-}
-
 // One line on standard error, redrawn in place; nothing where that is no terminal.
 class Redrawn {
  public:
@@ -67,8 +62,8 @@ class Redrawn {
     const std::size_t done = summary.fitted + summary.failed;
     fmt::print(stderr, "\r{} of {} done", done, summary.total);
     if (summary.failed > 0) fmt::print(stderr, ", {} failed", summary.failed);
-    fmt::print(stderr, ", {}", duration(summary.seconds));
-    if (summary.seconds_left) fmt::print(stderr, ", {} left", duration(*summary.seconds_left));
+    fmt::print(stderr, ", {}", duration_text(summary.seconds));
+    if (summary.seconds_left) fmt::print(stderr, ", {} left", duration_text(*summary.seconds_left));
     fmt::print(stderr, "\033[K");
     if (done == summary.total) fmt::print(stderr, "\r\033[K");
     std::fflush(stderr);
@@ -85,7 +80,7 @@ class Redrawn {
 };
 
 void print_json(const BatchArguments& arguments, const BatchSummary& summary,
-                const std::vector<MaterialRecord>& failed) {
+                const std::vector<MaterialRecord>& failed, const std::vector<std::string>& skipped) {
   auto failures = nlohmann::ordered_json::array();
   for (const MaterialRecord& record : failed)
     failures.push_back({{"name", record.name}, {"path", record.argument}, {"reason", record.reason}});
@@ -95,6 +90,7 @@ void print_json(const BatchArguments& arguments, const BatchSummary& summary,
                                     {"fitted", summary.fitted},
                                     {"failed", summary.failed},
                                     {"earlier", summary.earlier},
+                                    {"skipped", skipped},
                                     {"table", (folder / kFiguresTable).string()},
                                     {"page", (folder / kCataloguePage).string()},
                                     {"seconds", summary.seconds},
@@ -102,12 +98,24 @@ void print_json(const BatchArguments& arguments, const BatchSummary& summary,
   print_as_json(json);
 }
 
+// "README.txt, list.pdf and 3 more", as they are called in the folder.
+std::string few_of(const std::vector<std::string>& paths) {
+  constexpr std::size_t kMost = 4;
+  std::string text;
+  for (std::size_t k = 0; k < std::min(paths.size(), kMost); ++k)
+    text += (k > 0 ? ", " : "") + std::filesystem::path(paths[k]).filename().string();
+  return paths.size() > kMost ? fmt::format("{} and {} more", text, paths.size() - kMost) : text;
+}
+
 void print_text(const BatchArguments& arguments, const BatchSummary& summary,
-                const std::vector<MaterialRecord>& failed) {
+                const std::vector<MaterialRecord>& failed, const std::vector<std::string>& skipped) {
   const std::filesystem::path folder(arguments.out);
   fmt::print("fitted     {} of {} materials{} in {}\n", summary.fitted, summary.total,
              summary.earlier > 0 ? fmt::format(" ({} done before or elsewhere)", summary.earlier) : "",
-             duration(summary.seconds));
+             duration_text(summary.seconds));
+  if (!skipped.empty())
+    fmt::print("skipped    {} that {} no measurement{}: {}\n", counted(skipped.size(), "file"),
+               skipped.size() == 1 ? "is" : "are", skipped.size() == 1 ? "" : "s", few_of(skipped));
   for (const MaterialRecord& record : failed)
     fmt::print("failed     {}: {}\n", record.name, short_message(record.reason));
   fmt::print("written    {} and {}\n", (folder / kFiguresTable).string(), (folder / kCataloguePage).string());
@@ -133,11 +141,13 @@ void write_script(const BatchArguments& arguments, const CLI::App& verb) {
 }
 
 void run(const BatchArguments& arguments, const CLI::App& verb) {
+  check_folder_name(arguments.out);
   const BatchOptions options = batch_options(arguments);
   for (const bool isotropic : {false, true})
     options.fit(isotropic);  // contradictions are misuses, before all else
   if (arguments.slurm.wanted) return write_script(arguments, verb);
-  Batch batch(library_entries(arguments.place, {arguments.out}), options);
+  std::vector<std::string> skipped;
+  Batch batch(library_entries(arguments.place, {arguments.out}, &skipped), options);
   std::vector<MaterialRecord> failed;
   Redrawn progress(batch);
   while (const auto record = batch.next([&progress] { progress.draw_if_due(); })) {
@@ -146,9 +156,9 @@ void run(const BatchArguments& arguments, const CLI::App& verb) {
   }
   const BatchSummary summary = batch.summary();
   if (arguments.json)
-    print_json(arguments, summary, failed);
+    print_json(arguments, summary, failed, skipped);
   else
-    print_text(arguments, summary, failed);
+    print_text(arguments, summary, failed, skipped);
   std::fflush(stdout);
   if (!failed.empty())
     throw Error(fmt::format("{} of {} materials were not fitted; the others are all there", failed.size(),
@@ -183,7 +193,9 @@ void add_export_arguments(CLI::App& verb, BatchArguments& arguments) {
   const auto names = export_target_names();
   ExportOptions& exports = arguments.batch.exports;
   CLI::Option* to =
-      verb.add_option("--to", arguments.to, "also export each as this; may be given several times")
+      verb.add_option("--to", arguments.to,
+                      "also export each as these, separated by commas; may be given several times")
+          ->delimiter(',')
           ->check(one_of({names.begin(), names.end()}))
           ->allow_extra_args(false)
           ->excludes("--method");

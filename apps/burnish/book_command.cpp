@@ -11,6 +11,7 @@
 
 #include "book_text.h"
 #include "commands.h"
+#include "counted.h"
 #include "json_output.h"
 #include "progress.h"
 #include "source_arguments.h"
@@ -28,33 +29,39 @@ struct BookArguments {
   bool json = false;
 };
 
-void print_made(const BookArguments& arguments, const BookOfLibrary& made) {
+void print_made(const BookArguments& arguments, const BookOfLibrary& made, std::size_t skipped) {
   if (arguments.json) {
     auto json = book_json(made.book);
     json["output"] = arguments.out;
     json["left_out"] = nlohmann::ordered_json::array();
     for (const auto& [entry, reason] : made.left_out)
       json["left_out"].push_back({{"name", entry.name}, {"path", entry.argument}, {"reason", reason}});
+    json["skipped"] = skipped;
     return print_as_json(json);
   }
   fmt::print("book       {}\n", book_line(made.book));
   for (const auto& [entry, reason] : made.left_out)
     fmt::print("left out   {}: {}\n", entry.name, short_message(reason));
+  if (skipped > 0) fmt::print("skipped    {}, no measurements\n", counted(skipped, "file"));
   fmt::print("written    {}\n", arguments.out);
 }
 
 void make(const BookArguments& arguments) {
+  check_ending(arguments.out, {".burnish"});
   check_writable(arguments.out);
   const ThreadLimit limit(arguments.threads);
   MaterialBook shared;
   if (!arguments.shared.empty()) shared = parse_book(read_file(arguments.shared));
+  std::vector<std::string> skipped;
   const std::vector<LibraryEntry> entries =
-      library_entries(arguments.place, {arguments.out, arguments.shared});
-  const BookOfLibrary made =
-      book_of_library(entries, arguments.open, arguments.options,
-                      arguments.shared.empty() ? nullptr : &shared, progress_bar("reading"));
+      library_entries(arguments.place, {arguments.out, arguments.shared}, &skipped);
+  const BookOfLibrary made = [&] {
+    Progress progress("reading");
+    return book_of_library(entries, arguments.open, arguments.options,
+                           arguments.shared.empty() ? nullptr : &shared, progress.bar());
+  }();
   write_then_rename(arguments.out, format_book(made.book));
-  print_made(arguments, made);
+  print_made(arguments, made, skipped.size());
   std::fflush(stdout);
   if (!made.left_out.empty())
     throw Error(fmt::format("{} of {} materials are not in the book; the others all are",

@@ -13,6 +13,7 @@
 
 #include "commands.h"
 #include "comparison.h"
+#include "progress.h"
 #include "source_arguments.h"
 #include "usage.h"
 
@@ -121,7 +122,10 @@ void print_compared(std::span<const ComparedFigures> figures, const Measurement*
 }
 
 void compare(const CompareArguments& arguments) {
-  if (!arguments.folder.empty()) check_folder(arguments.folder);
+  if (!arguments.folder.empty()) {
+    check_folder_name(arguments.folder);
+    check_folder(arguments.folder);
+  }
   const Source opened = arguments.reference.open();
   const Candidate reference(opened, !arguments.no_symmetrize);
   // lists: models refer to their candidates, these to their sources
@@ -147,10 +151,12 @@ void compare(const CompareArguments& arguments) {
   if (measurement && (!arguments.folder.empty() || !arguments.repeat.empty()))
     add_quality(*measurement, reference, scorer, arguments);
   const Measurement* const measured = measurement ? &*measurement : nullptr;
+  std::optional<Progress> progress(std::in_place, "comparing");
   const std::vector<ComparedFigures> figures =
       arguments.folder.empty()
           ? compare_models(scorer, models, measured)
           : write_report(arguments.folder, reference.source().name, scorer, models, measured);
+  progress.reset();
   if (!arguments.folder.empty()) write_factors(arguments.folder, candidates);
   if (arguments.json) {
     fmt::print("{}\n", to_json(figures, measured));

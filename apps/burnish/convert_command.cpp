@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <filesystem>
+#include <initializer_list>
 #include <memory>
 
 #include <fmt/format.h>
@@ -11,7 +13,9 @@
 #include <burnish/surface/surface_file.h>
 
 #include "commands.h"
+#include "counted.h"
 #include "json_output.h"
+#include "progress.h"
 #include "source_arguments.h"
 #include "usage.h"
 
@@ -43,6 +47,64 @@ std::string target_format(const ConvertArguments& arguments) {
                              "--to");
 }
 
+/// A format's endings where it has any; other kinds' are refused.
+std::vector<std::string> endings_of(const std::string& format) {
+  if (format == "merl") return {".binary"};
+  if (format == "rgl" || format == "zemax") return {".bsdf", ".txt"};
+  if (format == "utia") return {".bin"};
+  if (format == "tensortree") return {".xml"};
+  if (format == "openmaterial") return {".xompt", ".json"};
+  if (format == "csv" || format == "astm") return {"." + format, ".txt"};
+  return {"." + (format == "model" ? "exr" : format)};
+}
+
+bool is_one_of(const std::string& format, std::initializer_list<const char*> formats) {
+  return std::ranges::find(formats, format) != formats.end();
+}
+
+/// Which options were given, since each speaks of some formats alone.
+struct GivenOptions {
+  bool cells = false, count = false, entries = false, notes = false;
+};
+
+GivenOptions given_options(const CLI::App& verb) {
+  const auto given = [&](const char* name) { return verb.get_option(name)->count() > 0; };
+  return {given("--cells"), given("--count"), given("--entries"), given("--notes")};
+}
+
+/// Refuses options that say nothing of the format.
+void check_options(const GivenOptions& given, const std::string& format) {
+  const auto refuse = [&](bool wanted, const char* option, const char* formats) {
+    if (wanted)
+      throw CLI::ValidationError(
+          fmt::format("{}: expected {} to be written with it, found {}", option, formats, format));
+  };
+  const bool cells = is_one_of(format, {"merl", "mbsdf", "tensortree", "exr"}),
+             scattered = is_one_of(format, {"astm", "csv", "openmaterial"});
+  refuse(given.cells && !cells, "--cells", "merl, mbsdf, tensortree or slices");
+  refuse(given.count && !scattered, "--count", "astm, csv or openmaterial");
+  refuse(given.entries && !scattered, "--entries", "astm, csv or openmaterial");
+  refuse(given.notes && format != "burnish", "--notes", "a .burnish file");
+}
+
+/// The same of options that say nothing of the source.
+void check_source(const GivenOptions& given, const Source& source) {
+  if (given.count && source.samples())
+    throw CLI::ValidationError(
+        fmt::format("--count: expected a source to draw from, found {}, which are all written",
+                    counted(source.samples()->size(), "sample")));
+}
+
+/// What the new file says less than the old one, what it says otherwise, and what speaks against it, a line each.
+void print_said(const std::string& out, const Converted& converted) {
+  const std::string name = std::filesystem::path(out).filename().string();
+  if (!converted.losses.empty())
+    fmt::print(stderr, "burnish: {}: lost: {}\n", name, fmt::join(converted.losses, "; "));
+  for (const std::string& note : converted.notes) fmt::print(stderr, "burnish: {}: {}\n", name, note);
+  for (const std::string& warning : converted.warnings)
+    fmt::print(stderr, "burnish: {}: warning: {}\n", name, warning);
+}
+
 /// A surface's other file. False where the input is none.
 bool converts_surface(const ConvertArguments& arguments, const std::string& format) {
   const std::string& spec = arguments.source.spec;
@@ -66,6 +128,39 @@ bool converts_surface(const ConvertArguments& arguments, const std::string& form
   return true;
 }
 
+void run_convert(const ConvertArguments& given_arguments, const GivenOptions& given) {
+  ConvertArguments arguments = given_arguments;
+  if (arguments.out.empty()) throw CLI::RequiredError("OUT or -o");
+  std::string format = target_format(arguments);
+  check_ending(arguments.out, endings_of(format));
+  check_options(given, format);
+  check_writable(arguments.out);
+  if (converts_surface(arguments, format)) return;
+  const Source source = arguments.source.open();
+  check_source(given, source);
+  // slices of a model are asked for by name
+  const bool is_model = std::holds_alternative<FactoredBrdf>(source.brdf);
+  if (is_model && format == "exr" && arguments.to.empty()) format = "model";
+  check_options(given, format);
+  // what was measured, unless draws are asked for
+  if (!given.count && is_one_of(format, {"astm", "csv"}) && has_entries(source)) arguments.options.entries = true;
+  const Converted converted = [&] {
+    const Progress progress("converting");
+    return convert(source, format, arguments.options);
+  }();
+  if (given.cells && !converted.resampled)
+    throw CLI::ValidationError(fmt::format(
+        "--cells: expected a source that is sampled anew, found entries that {} keeps as they are", format));
+  write_then_rename(arguments.out, converted.bytes);
+  if (!arguments.json) return print_said(arguments.out, converted);
+  print_as_json({{"output", arguments.out},
+                 {"format", format},
+                 {"bytes", converted.bytes.size()},
+                 {"lost", converted.losses},
+                 {"notes", converted.notes},
+                 {"warnings", converted.warnings}});
+}
+
 }  // namespace
 
 void add_convert_command(CLI::App& app) {
@@ -74,53 +169,33 @@ void add_convert_command(CLI::App& app) {
                          "Convert a BRDF to another format, see `burnish help formats`; a model or a "
                          "surface to its other file");
   verb->footer(
-      "ASTM and CSV have the samples of a scattered source, of any other samples drawn as `measure` does, or "
-      "with --entries a table's entries. What is lost is said on the standard error output.\n"
+      "ASTM and CSV have the samples of a scattered source, the entries of a table, and drawn samples of the others. "
+      "What is lost is said on the standard error output.\n"
       "Examples: burnish convert paint.bsdf paint.binary\n"
+      "          burnish convert paint.binary paint.csv\n"
       "          burnish convert model.exr model.burnish\n"
       "          burnish convert surface:wall.burnish#3,4 texel.exr");
   auto arguments = std::make_shared<ConvertArguments>();
   add_source_arguments(*verb, arguments->source);
   auto* out = verb->add_option("OUT", arguments->out, "file to write");
   verb->add_option("-o,--output,--out", arguments->out, "the same")->excludes(out);
-  verb->add_option(
-          "--to", arguments->to,
-          "format; by default what OUT ends in: .binary (merl), .bin (utia), .bsdf (rgl), .mbsdf, .xml "
-          "(tensortree), .xompt (openmaterial), .astm, .csv, .exr (of a model or surface: model, its "
-          "OpenEXR file; else slices), .burnish")
+  verb->add_option("--to", arguments->to,
+                   "write this format, not the one that OUT's ending names; exr of a model writes slices")
       ->check(one_of({kConvertFormats.begin(), kConvertFormats.end()}));
   verb->add_option("--cells", arguments->options.cells,
-                   "along each polar angle of MERL, MBSDF and EXR, twice as many along the azimuth")
+                   "cells along each polar angle of merl, mbsdf, tensortree and slices, twice as many along the azimuth")
       ->check(in_range(2, 1000))
       ->capture_default_str();
   auto* count = verb->add_option("--count", arguments->options.count,
-                                 "samples in an ASTM or CSV file, unless the source is scattered")
+                                 "draw so many samples for astm, csv or openmaterial, not a table's entries")
                     ->check(in_range(1, 10000000))
                     ->capture_default_str();
-  verb->add_flag("--entries", arguments->options.entries, "a table's entries in an ASTM or CSV file")
+  verb->add_flag("--entries", arguments->options.entries,
+                 "write a table's entries to openmaterial too; astm and csv have them without it")
       ->excludes(count);
   verb->add_flag("--notes", arguments->options.notes, "keep a model's notes of its fit in a .burnish file");
   verb->add_flag("--json", arguments->json, "print what was written and lost as JSON");
-  verb->callback([arguments] {
-    if (arguments->out.empty()) throw CLI::RequiredError("OUT or -o");
-    std::string format = target_format(*arguments);
-    check_writable(arguments->out);
-    if (converts_surface(*arguments, format)) return;
-    const Source source = arguments->source.open();
-    // slices of a model are asked for by name
-    const bool is_model = std::holds_alternative<FactoredBrdf>(source.brdf);
-    if (is_model && format == "exr" && arguments->to.empty()) format = "model";
-    const Converted converted = convert(source, format, arguments->options);
-    write_then_rename(arguments->out, converted.bytes);
-    if (arguments->json)
-      print_as_json({{"output", arguments->out},
-                     {"format", format},
-                     {"bytes", converted.bytes.size()},
-                     {"lost", converted.losses}});
-    else if (!converted.losses.empty())
-      fmt::print(stderr, "burnish: {}: lost: {}\n", std::filesystem::path(arguments->out).filename().string(),
-                 fmt::join(converted.losses, "; "));
-  });
+  verb->callback([arguments, verb] { run_convert(*arguments, given_options(*verb)); });
 }
 
 }  // namespace burnish::cli

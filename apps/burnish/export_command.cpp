@@ -17,6 +17,7 @@
 #include "commands.h"
 #include "environment_argument.h"
 #include "json_output.h"
+#include "progress.h"
 #include "usage.h"
 
 namespace burnish::cli {
@@ -101,8 +102,12 @@ ExportedFiles exported_files(const ExportArguments& arguments) {
 }
 
 void run(const ExportArguments& arguments) {
+  check_folder_name(arguments.folder);
   check_folder(arguments.folder);
-  const ExportedFiles exported = exported_files(arguments);
+  const ExportedFiles exported = [&] {
+    const Progress progress("exporting");
+    return exported_files(arguments);
+  }();
   write_files(arguments.folder, exported.files);
   if (arguments.json) {
     auto files = nlohmann::ordered_json::array();
@@ -132,7 +137,7 @@ void add_export_command(CLI::App& app) {
   verb->footer(
       "Every shader comes with its textures but C++, which has them inside; NAME.json says what is in the "
       "folder and what an evaluation costs. See docs/guide/shaders.md and docs/guide/export.md.\n"
-      "Examples: burnish export paint.exr --to glsl --to html -o paint\n"
+      "Examples: burnish export paint.exr --to glsl,html -o paint\n"
       "          burnish export paint.exr --to glsl_es --to html --environment studio -o paint\n"
       "          burnish export paint.exr --to glsl_es --to wgsl --half -o paint\n"
       "          burnish export paint.exr --to materialx --to usda -o paint\n"
@@ -145,8 +150,9 @@ void add_export_command(CLI::App& app) {
                    "blinn_phong:exponent=60 or openpbr:coat_weight=1")
       ->required();
   const auto names = export_target_names();
-  verb->add_option("--to", arguments->to, "what to write; may be given several times")
+  verb->add_option("--to", arguments->to, "write these, separated by commas; may be given several times")
       ->required()
+      ->delimiter(',')
       ->check(one_of({names.begin(), names.end()}));
   verb->add_option("-o,--output,--out", arguments->folder, "folder, made where it is missing")->required();
   verb->add_option("--name", arguments->name, "of functions and files; by default from MODEL's name");

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <burnish/baselines/evaluation_cost.h>
 #include <burnish/factors/fetches.h>
@@ -20,6 +21,8 @@
 #include "commands.h"
 #include "counted.h"
 #include "fit_arguments.h"
+#include "json_output.h"
+#include "notes_text.h"
 #include "progress.h"
 #include "source_arguments.h"
 #include "usage.h"
@@ -41,9 +44,13 @@ std::string figures(const ErrorFigures& e) {
                      e.ssim, e.relative, e.rms_log, e.log_cos);
 }
 
+std::string ending_of(const FitSummary& summary) {
+  return ending_text(std::string(to_string(summary.stop_reason)));
+}
+
 void print(const OneLobeReport& report) {
   fmt::print("fitted     {} samples, {} iterations ({}), smooth {:.3g}\n", report.samples,
-             report.summary.iterations, to_string(report.summary.stop_reason), report.smooth);
+             report.summary.iterations, ending_of(report.summary), report.smooth);
   fmt::print("rms log f  {:.4f} before, {:.4f} after\n", report.summary.error_before,
              report.summary.error_after);
 }
@@ -54,7 +61,7 @@ void print(const LobesReport& report) {
                trial_at_knee(trials).fetches, trials.front().fetches, trials.back().fetches,
                100 * (kKneeFactor - 1));
   fmt::print("fitted     {} samples, {} lobes, {} steps ({}){}\n", report.samples, report.lobes,
-             report.summary.iterations, to_string(report.summary.stop_reason),
+             report.summary.iterations, ending_of(report.summary),
              report.smooth ? fmt::format(", smooth {:.3g}", *report.smooth) : "");
   if (report.search)
     fmt::print("searched   {} changes, {} kept\n", report.search->trials, report.search->kept.size());
@@ -260,8 +267,10 @@ void fit_to_material(const FitCommand& arguments) {
   if (!arguments.out.empty()) check_writable(arguments.out);
   const ThreadLimit limit(arguments.threads);
   const Source source = arguments.source.open();
-  const MaterialFit fit =
-      fit_material(source, arguments.to, {.beside = !arguments.alone, .progress = progress_bars()});
+  const MaterialFit fit = [&] {
+    Progress progress("fitting");
+    return fit_material(source, arguments.to, {.beside = !arguments.alone, .progress = progress.stages()});
+  }();
   if (!arguments.out.empty()) write_then_rename(arguments.out, format_material(fit));
   if (arguments.json) {
     fmt::print("{}\n", summary_json(fit, arguments.out));
@@ -284,15 +293,22 @@ void fit(const FitCommand& arguments) {
   }
   const FitRequest request = request_of(arguments.how);
   if (arguments.out.empty()) throw CLI::RequiredError("--output");
-  if (arguments.how.given("method")) check_name_of_json(arguments);
+  if (arguments.how.given("method"))
+    check_name_of_json(arguments);
+  else
+    check_ending(arguments.out, {".exr", ".burnish"});
   check_writable(arguments.out);
   const auto start = std::chrono::steady_clock::now();
   const ThreadLimit limit(arguments.threads);
   const Source source = arguments.source.open();
   FitOptions options = usage([&] { return fit_options(request, source.ref().isotropic()); });
-  options.progress = progress_bars();
-  const Fit fit = burnish::fit(source, options);
-  write_then_rename(arguments.out, format_fit(fit, arguments.out));
+  const Fit fit = [&] {
+    Progress progress("fitting");
+    options.progress = progress.stages();
+    return burnish::fit(source, options);
+  }();
+  const std::string bytes = format_fit(fit, arguments.out);
+  write_then_rename(arguments.out, bytes);
 
   const auto* model = std::get_if<FactoredBrdf>(&fit.brdf);
   // baselines are compared by what their fits alone take
@@ -300,15 +316,16 @@ void fit(const FitCommand& arguments) {
                              ? std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()
                              : fit.report.seconds;
   if (arguments.json) {
-    fmt::print("{}\n", summary_json(fit, arguments.out, seconds));
-    return;
+    auto json = nlohmann::ordered_json::parse(summary_json(fit, arguments.out, seconds));
+    json["file_bytes"] = bytes.size();
+    return print_as_json(json);
   }
   fmt::print("{}: {}\n", fit.report.source, fit.report.source_format);
   if (model)
     print_model(*model, fit.report);
   else
     print_baseline(std::get<BaselineBrdf>(fit.brdf), fit.report);
-  fmt::print("written    {} in {:.2f} s\n", arguments.out, seconds);
+  fmt::print("written    {}, a file of {} bytes, in {:.2f} s\n", arguments.out, bytes.size(), seconds);
 }
 
 // A renderer's material instead of factors.

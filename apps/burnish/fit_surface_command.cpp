@@ -186,7 +186,6 @@ void fit_surface(const FitSurfaceArguments& arguments, FitCrew* crew) {
   }
   check_writable(arguments.out);
   if (!arguments.picture.empty()) check_writable(arguments.picture);
-  options.progress = progress_bars();
   options.checkpoint = checkpoint_of(arguments);
   Capture capture(arguments.capture, arguments.pictures);
   check_inputs_stay(arguments, capture);
@@ -195,7 +194,12 @@ void fit_surface(const FitSurfaceArguments& arguments, FitCrew* crew) {
   if (!arguments.resume) fs::remove(options.checkpoint);
   if (!arguments.picture.empty() && capture.form().own_directions)
     throw Error::in_file(arguments.capture, "pictures, for --picture", "samples of texels");
-  const SurfaceFit fit = burnish::fit_surface(std::move(capture), options);
+  const SurfaceFit fit = [&] {
+    Progress progress("fitting");
+    options.progress = progress.stages();
+    return burnish::fit_surface(std::move(capture), options);
+  }();
+  options.progress = nullptr;
   write_then_rename(arguments.out, format_surface_as(arguments.out, fit.surface));
   fs::remove(options.checkpoint);
 

@@ -23,6 +23,8 @@
 #include "info_json.h"
 #include "json_output.h"
 #include "nodes_info.h"
+#include "notes_text.h"
+#include "progress.h"
 #include "source_arguments.h"
 #include "surface_info.h"
 #include "usage.h"
@@ -44,7 +46,8 @@ void print_line(std::string_view name, const std::string& text) {
   fmt::print("{:<13}{}\n", name, text);
 }
 
-void print_findings(const Source& source, const std::vector<std::string>& warnings) {
+void print_findings(const Source& source, const std::vector<std::string>& warnings,
+                    const std::optional<NodesKnown>& nodes) {
   const Findings& findings = source.findings;
   print_line("name", source.name);
   print_line("format", findings.format);
@@ -65,7 +68,7 @@ void print_findings(const Source& source, const std::vector<std::string>& warnin
   print_line("coverage", fmt::format("theta_i {:.1f} to {:.1f}, theta_o {:.1f} to {:.1f} degrees",
                                      degrees(findings.theta_i_min), degrees(findings.theta_i_max),
                                      degrees(findings.theta_o_min), degrees(findings.theta_o_max)));
-  if (const auto nodes = nodes_of(source)) print_line("nodes", to_string(*nodes));
+  if (nodes) print_line("nodes", to_string(*nodes));
   if (findings.negative_count > 0)
     print_line("negatives", fmt::format("{} values below zero, down to {:.3g} 1/sr", findings.negative_count,
                                         findings.most_negative));
@@ -99,9 +102,9 @@ void print_factors(const FactoredBrdf& model) {
                                     table.byte_count()));
 }
 
-void print_text(const SourceReport& report) {
+void print_text(const SourceReport& report, const std::optional<NodesKnown>& nodes) {
   const auto& [source, albedos, reciprocity, model, mirror_asymmetry, warnings] = report;
-  print_findings(source, warnings);
+  print_findings(source, warnings, nodes);
   for (const auto& [theta_i, phi_i, albedo] : albedos)
     print_line("albedo",
                fmt::format("{} at theta_i = {:.0f}{} degrees{}{}", fmt::join(shown(albedo.albedo), " "),
@@ -117,8 +120,14 @@ void print_text(const SourceReport& report) {
   if (mirror_asymmetry)
     print_line("mirror", fmt::format("{:.2f} % from its mirror image in the plane of incidence, on average",
                                      100 * std::expm1(*mirror_asymmetry)));
-  if (const auto bytes = source.bytes()) print_line("bytes", fmt::format("{}", *bytes));
+  if (const auto bytes = source.bytes()) {
+    std::error_code none;
+    const std::uintmax_t file = std::filesystem::file_size(source.name, none);
+    print_line("bytes", fmt::format("{}{}", *bytes, none ? "" : fmt::format(", its file {}", file)));
+  }
   if (model) print_factors(*model);
+  if (!source.findings.notes.empty())
+    for (const auto& [word, says] : notes_lines(source.findings.notes)) print_line(word, says);
 }
 
 // The book that a file is.
@@ -172,17 +181,23 @@ void add_info_command(CLI::App& app) {
         return;
       }
     }
-    const Source source = open_source(arguments->spec, arguments->options);  // warnings stand in the report
+    const Source source = [&] {
+      const Progress progress("reading " + arguments->spec);
+      return open_source(arguments->spec, arguments->options);  // warnings stand in the report
+    }();
     if (*target == "nodes") {
       const NodesInfo nodes = nodes_info(source);
       fmt::print("{}", *as_json ? nodes_json(nodes) + "\n" : nodes_text(nodes));
       return;
     }
+    std::optional<Progress> progress(std::in_place, "describing");
     const SourceReport report = report_on(source);
+    const auto nodes = nodes_of(source);
+    progress.reset();
     if (*as_json)
-      fmt::print("{}\n", info_json(report));
+      fmt::print("{}\n", info_json(report, nodes));
     else
-      print_text(report);
+      print_text(report, nodes);
   });
 }
 

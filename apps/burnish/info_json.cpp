@@ -28,9 +28,9 @@ std::optional<NodesKnown> nodes_of(const Source& source) {
   return known;
 }
 
-std::string info_json(const SourceReport& report) {
+std::string info_json(const SourceReport& report, const std::optional<NodesKnown>& nodes) {
   auto json = nlohmann::ordered_json::parse(to_json(report));
-  if (const auto nodes = nodes_of(report.source)) {
+  if (nodes) {
     json["nodes"]["count"] = nodes->count;
     if (nodes->incidences) json["nodes"]["incident_angles"] = *nodes->incidences;
     if (nodes->predicted)

@@ -21,6 +21,6 @@ struct NodesKnown {
 std::optional<NodesKnown> nodes_of(const Source& source);
 
 /// What `info --json` prints: the report, with the nodes of a measurement, and of a model with what its shader costs.
-std::string info_json(const SourceReport& report);
+std::string info_json(const SourceReport& report, const std::optional<NodesKnown>& nodes);
 
 }  // namespace burnish::cli

@@ -36,6 +36,10 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     // CLI11 returns its own codes; ours is 2 for every misuse, 0 for --help.
     if (error.get_exit_code() == 0) return app.exit(error);
+    if (argc == 1) {
+      fmt::print(stderr, "burnish: expected a verb, found none; there are\n\n{}", burnish::cli::list_of_verbs(app));
+      return 2;
+    }
     const auto meant =
         burnish::cli::misspelling(app, std::span(argv, static_cast<std::size_t>(argc)).subspan(1));
     constexpr std::size_t kBesideHint = 245;  // so that both lines have less than 300 bytes

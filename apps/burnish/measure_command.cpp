@@ -29,8 +29,10 @@ namespace {
 
 void measure_surface(const std::string& scene, const std::string& out, bool json) {
   const std::filesystem::path path(scene);
-  const CaptureForm form = write_virtual_capture(parse_surface_scene(read_file(path), path.parent_path()),
-                                                 out, progress_bar("pictures"));
+  const CaptureForm form = [&] {
+    Progress progress("pictures");
+    return write_virtual_capture(parse_surface_scene(read_file(path), path.parent_path()), out, progress.bar());
+  }();
   if (json)
     print_as_json({{"output", out},
                    {"width", form.width},
@@ -66,8 +68,9 @@ nlohmann::ordered_json next_json(std::span<const NextMeasurement> next) {
 void say_next(const Source& source, std::size_t count, const std::string& out, bool json) {
   const MeasuredNodes nodes = measured_nodes(source);
   const std::vector<NextMeasurement> next = [&] {
+    Progress progress("kriging");
     try {
-      return next_measurements(nodes, choose_covariance(nodes, progress_bar("kriging")), count);
+      return next_measurements(nodes, choose_covariance(nodes, progress.bar()), count);
     } catch (const Error& error) {
       throw Error(fmt::format("{}: {}", source.name, error.what()));
     }
@@ -125,6 +128,8 @@ void add_measure_command(CLI::App& app) {
   verb->get_option("--surface")->excludes(next);
   verb->callback([arguments] {
     if (arguments->next == 0 && arguments->out.empty()) throw CLI::RequiredError("--output");
+    if (!arguments->surface.empty()) check_folder_name(arguments->out);
+    if (arguments->surface.empty() && !arguments->out.empty()) check_ending(arguments->out, {".csv", ".txt"});
     if (!arguments->surface.empty())
       return measure_surface(arguments->surface, arguments->out, arguments->json);
     if (arguments->source.spec.empty()) throw CLI::RequiredError("BRDF or --surface");
@@ -132,6 +137,7 @@ void add_measure_command(CLI::App& app) {
     const Source source = arguments->source.open();
     if (arguments->next > 0) return say_next(source, arguments->next, arguments->out, arguments->json);
     const Samples samples = [&] {
+      const Progress progress("measuring");
       try {
         return measure(source.ref(), arguments->measurement);
       } catch (const Error& error) {

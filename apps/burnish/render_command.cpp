@@ -28,6 +28,7 @@
 #include "commands.h"
 #include "environment_argument.h"
 #include "json_output.h"
+#include "progress.h"
 #include "render_figure.h"
 #include "source_arguments.h"
 #include "usage.h"
@@ -211,8 +212,11 @@ void render(const RenderArguments& arguments) {
 
   // drawn finer, exposed, averaged
   const int n = arguments.samples;
-  const Image fine = cpu ? render_by_cpu(scene, environment, arguments, n * width, n * height)
-                         : render_gl(scene, environment, arguments, n * width, n * height);
+  const Image fine = [&] {
+    const Progress progress("rendering");
+    return cpu ? render_by_cpu(scene, environment, arguments, n * width, n * height)
+               : render_gl(scene, environment, arguments, n * width, n * height);
+  }();
   const double exposure = automatic ? automatic_exposure(fine, scene.background) : given;
   const Image image = averaged(fine, n);
   if (extension == ".exr")
@@ -295,6 +299,7 @@ void add_render_command(CLI::App& app) {
   add_figure_arguments(*verb, arguments->figure, arguments->figure1);
   verb->add_flag("--json", arguments->json, "print what was drawn as JSON, of --figure1 the table");
   verb->callback([arguments] {
+    if (arguments->figure1) check_ending(arguments->out, {".png"});
     if (arguments->figure1)
       draw_figure(arguments->figure, arguments->mesh, arguments->out, arguments->json);
     else

@@ -7,6 +7,8 @@
 #include <burnish/error.h>
 #include <burnish/io/illuminant.h>
 
+#include "progress.h"
+
 namespace burnish::cli {
 
 namespace {
@@ -23,7 +25,10 @@ void check_illuminant(const std::string& spec) {
 }  // namespace
 
 Source SourceArguments::open() const {
-  Source source = open_source(spec, options);
+  Source source = [&] {
+    const Progress progress("reading " + spec);
+    return open_source(spec, options);
+  }();
   for (const std::string& warning : source.findings.warnings)
     fmt::print(stderr, "burnish: {}: warning: {}\n", spec, warning);
   return source;

@@ -48,8 +48,18 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& na
 /// Before long work: throws Error where a folder can neither be written to nor made. Makes nothing.
 void check_folder(const std::filesystem::path& folder);
 
+/// Before long work: refuses, as a misuse, an output whose name ends as files of another kind do, such as paint.png for
+/// a model. `endings` are those that serve, ".exr"; other names, "paint" and "paint.v2", serve too.
+void check_ending(const std::string& path, const std::vector<std::string>& endings);
+
+/// The same for a folder that is not there yet: paint.glsl is no name of one.
+void check_folder_name(const std::string& path);
+
 /// Refuses a command line with an empty word, which no option takes and no file has for its name.
 void check_no_empty_word(std::span<char* const> arguments);
+
+/// The verbs that people use, a line each with what they do, and where to read on.
+std::string list_of_verbs(const CLI::App& app);
 
 /// What a command line's first unknown verb or option may have meant, "expected a verb, found 'ft'; did you mean
 /// 'fit'?"; nothing where all are known.

@@ -85,7 +85,6 @@ Source to_source(const std::string& name, Model model) {
   findings.format = "burnish model";
   findings.description = model_expression(model.brdf);
   findings.lambda_nm = std::move(model.lambda_nm);
-  findings.conventions = {"notes of the fit: " + model.notes};
   findings.notes = std::move(model.notes);
   for (const Table& table : model.brdf.tables()) findings.sample_count += table.layout.node_count();
   findings.theta_i_max = findings.theta_o_max = kHalfPi;
@@ -96,7 +95,7 @@ Source to_source(const std::string& name, Baseline baseline) {
   Findings findings;
   findings.format = fmt::format("{} baseline", baseline.kind);
   findings.description = baseline_expression(baseline.brdf);
-  findings.conventions = {"notes of the fit: " + baseline.notes};
+  findings.notes = std::move(baseline.notes);
   findings.theta_i_max = findings.theta_o_max = kHalfPi;
   return std::visit(
       [&](auto& brdf) -> Source {

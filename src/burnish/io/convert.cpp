@@ -18,6 +18,7 @@
 #include <burnish/io/rgl.h>
 #include <burnish/io/slice_image.h>
 #include <burnish/io/tensor_tree_xml.h>
+#include <burnish/io/text_reader.h>
 #include <burnish/io/utia.h>
 #include <burnish/io/zemax.h>
 #include <burnish/math/closest_name.h>
@@ -116,6 +117,15 @@ bool has_colour(BrdfRef brdf) {
   return false;
 }
 
+/// Comments that are left behind, in quotes and shortened.
+std::string named_comments(const std::vector<std::string>& comments) {
+  constexpr std::size_t kMost = 12, kLongest = 60;
+  std::string text = comments.size() == 1 ? "the comment" : fmt::format("{} comments:", comments.size());
+  for (std::size_t k = 0; k < std::min(comments.size(), kMost); ++k)
+    text += fmt::format("{} '{}'", k > 0 ? "," : "", printable(trimmed(comments[k]), kLongest));
+  return comments.size() > kMost ? text + fmt::format(" and {} more", comments.size() - kMost) : text;
+}
+
 /// One conversion.
 class Converter {
  public:
@@ -130,6 +140,8 @@ class Converter {
 
   Converted run(std::string_view format) {
     if (format != "openmaterial" && source_.findings.origin != Origin{}) lose("licence, authors and origin");
+    if (const auto& comments = source_.findings.comments; format != "zemax" && !comments.empty())
+      lose("{}", named_comments(comments));
     if (format == "merl") return merl();
     if (format == "rgl") return rgl();
     if (format == "mbsdf") return mbsdf();
@@ -148,6 +160,11 @@ class Converter {
   template <class... T>
   void lose(fmt::format_string<T...> phrase, T&&... values) {
     losses_.push_back(fmt::format(phrase, std::forward<T>(values)...));
+  }
+
+  template <class... T>
+  void note(fmt::format_string<T...> phrase, T&&... values) {
+    notes_.push_back(fmt::format(phrase, std::forward<T>(values)...));
   }
 
   void require_grey_or_rgb(const char* format) const {
@@ -206,6 +223,10 @@ class Converter {
     const auto difference = relative_difference(brdf, back.ref(), kComparedPairs);
     lose("sampled at {}{}", where,
          difference ? fmt::format(", {:.3g} % from the source on average", 100 * *difference) : "");
+    if (difference && *difference > kFarFromSource)
+      warnings_.push_back(
+          fmt::format("The values are {:.3g} % from the source on average.", 100 * *difference));
+    resampled_ = true;
     return kept(std::move(bytes));
   }
 
@@ -219,7 +240,13 @@ class Converter {
                                                 : source_.findings.description;
   }
 
-  Converted kept(std::string bytes) { return {std::move(bytes), std::move(losses_)}; }
+  Converted kept(std::string bytes) {
+    return {.bytes = std::move(bytes),
+            .losses = std::move(losses_),
+            .notes = std::move(notes_),
+            .warnings = std::move(warnings_),
+            .resampled = resampled_};
+  }
 
   /// Half/difference cells of the source, one value for directions exchanged unless they cover the circle.
   HalfDiffTable half_diff_cells() {
@@ -245,6 +272,7 @@ class Converter {
       return kept(format_slice_image(*table));
     const HalfDiffTable table = half_diff_cells();
     lose("sampled at {}", cells("half/difference"));
+    resampled_ = true;
     return kept(format_slice_image(table));
   }
 
@@ -274,7 +302,11 @@ class Converter {
     require_grey_or_rgb("Zemax");
     const std::string sample = sample_name();
     const auto* table = std::get_if<AngleTable>(&source_.brdf);
-    if (table && fits_zemax(*table)) return kept(format_zemax(*table, sample, source_.findings.comments));
+    if (table && fits_zemax(*table)) {
+      // nothing else has a table of this frame
+      note("TIS says what the values integrate to, whatever the source said");
+      return kept(format_zemax(*table, sample, source_.findings.comments));
+    }
     const BrdfRef brdf = brdf_;
     if (brdf.isotropic()) lose_sides(brdf);
     const AngleTable made = tabulate_angles(brdf, zemax_layout(brdf.isotropic()));
@@ -329,13 +361,13 @@ class Converter {
       lose("the table's grid: {} entries became scattered samples", made->size());
     } else if (!samples) {
       made = measure(isotropic(), {options_.count, 0, options_.seed});
-      lose("{} samples drawn at random directions", made->size());
+      lose("what lies between {} samples drawn at random directions", made->size());
     }
     if (made) samples = &*made;
     std::vector<double> lambda_nm = source_.findings.lambda_nm;
     if (lambda_nm.empty() && samples->channels == 1) {
       lambda_nm = {kGrey_nm};
-      lose("grey stands at {} nm", kGrey_nm);
+      note("grey stands at {} nm", kGrey_nm);
     } else if (lambda_nm.empty()) {
       lambda_nm.assign(kColourNodes_nm.begin(), kColourNodes_nm.end());
       Samples spectra{
@@ -345,7 +377,7 @@ class Converter {
         std::ranges::copy(spectrum_of_colour(samples->at(i).first<3>()), std::back_inserter(spectra.values));
       made = std::move(spectra);
       samples = &*made;
-      lose("colours became spectra at {:g} nm, the same under equal energy",
+      note("colours became spectra at {:g} nm, the same under equal energy",
            fmt::join(kColourNodes_nm, ", "));
     }
     if (const auto below = std::ranges::count_if(samples->values, [](double v) { return v < 0; }); below > 0)
@@ -382,7 +414,7 @@ class Converter {
       lose("the table's grid: {} entries became scattered samples", made->size());
     } else if (!samples) {
       made = measure(brdf_, {options_.count, 0, options_.seed});
-      lose("{} samples drawn at random directions", made->size());
+      lose("what lies between {} samples drawn at random directions", made->size());
     }
     if (made) samples = &*made;
     if (const auto above = above_horizon(*samples); above.size() < samples->size()) {
@@ -400,7 +432,8 @@ class Converter {
   const ConvertOptions& options_;
   const BrdfRef brdf_;  // values below zero stay
   const AzimuthMean mean_;
-  std::vector<std::string> losses_;
+  std::vector<std::string> losses_, notes_, warnings_;
+  bool resampled_ = false;
 };
 
 /// Collects what is known above the horizon.
@@ -461,6 +494,11 @@ void add_entries(const PatchTable& table, EntryList& list) {
 }
 
 }  // namespace
+
+bool has_entries(const Source& source) noexcept {
+  return std::visit(
+      [](const auto& brdf) { return requires(EntryList& list) { add_entries(brdf, list); }; }, source.brdf);
+}
 
 Samples table_entries(const Source& source) {
   EntryList list(source.ref().unclamped());

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -8,6 +10,7 @@
 #include <burnish/io/csv_columns.h>
 #include <burnish/io/sample_checks.h>
 #include <burnish/io/text_reader.h>
+#include <burnish/io/utf16.h>
 #include <burnish/io/value_kind.h>
 #include <burnish/math/angles.h>
 
@@ -41,8 +44,8 @@ bool starts_with_number(std::string_view line) {
 
 /// Whether a row has a cell for each name: a comment may speak of columns that are none.
 bool fits(const CsvHeader& header, std::string_view row) {
-  std::vector<std::string_view> names, cells;
-  split_cells(header.line, header.separator, names);
+  const std::vector<std::string_view> names = split_names(header.line, header.separator);
+  std::vector<std::string_view> cells;
   for (const char separator : {';', '\t', ',', ' '}) {
     split_cells(row, separator, cells);
     if (cells.size() == names.size()) return true;
@@ -98,9 +101,10 @@ Preamble read_preamble(TextReader& reader) {
 class Rows {
  public:
   Rows(TextReader& reader, const CsvColumns& columns, const CsvHeader& header)
-      : reader_(reader), columns_(columns), separator_(header.separator) {
-    split_cells(header.line, header.separator, names_);
-  }
+      : reader_(reader),
+        columns_(columns),
+        separator_(header.separator),
+        names_(split_names(header.line, header.separator)) {}
 
   /// Splits the current line. Throws Error unless it has a cell for each column.
   void read() {
@@ -128,6 +132,10 @@ class Rows {
 
   bool missing(std::size_t column) const { return is_missing(cells_[column]); }
 
+  std::string name(std::size_t column) const {
+    return column < names_.size() ? printable(names_[column], 80) : "";
+  }
+
  private:
   void split(std::string_view line, char separator) {
     split_cells(line, separator, cells_);
@@ -139,7 +147,8 @@ class Rows {
   const CsvColumns& columns_;
   char separator_;
   bool first_ = true;
-  std::vector<std::string_view> names_, cells_;
+  std::vector<std::string_view> names_;
+  std::vector<std::string_view> cells_;
   CellNumbers numbers_;
 };
 
@@ -171,6 +180,56 @@ bool next_row(TextReader& reader, Tag& tag) {
   }
   return false;
 }
+
+/// Spectra of rows that are of one wavelength each, by their directions, in the order in which these come.
+class SpectraOfRows {
+ public:
+  void add(const TextReader& reader, const DirectionPair& pair, double lambda, double value) {
+    if (!(lambda > 0)) reader.fail("a wavelength above 0", in_quotes(reader.line()));
+    const auto [place, is_new] =
+        places_.emplace(std::array{pair.wi.x, pair.wi.y, pair.wi.z, pair.wo.x, pair.wo.y, pair.wo.z},
+                        spectra_.size());
+    if (is_new) {
+      spectra_.emplace_back();
+      pairs_.push_back(pair);
+    }
+    if (!spectra_[place->second].emplace(lambda, value).second)
+      reader.fail("one value for each direction and wavelength", in_quotes(reader.line()));
+    ++bands_[lambda];
+    if (bands_.size() > kMaxFileChannels)
+      reader.fail(fmt::format("at most {} wavelengths", kMaxFileChannels), in_quotes(reader.line()));
+  }
+
+  /// Whole spectra as samples. Wavelengths of a column whose name has no unit are micrometres where all are small.
+  void finish(std::optional<double> to_nm, Samples& samples, Findings& findings) const {
+    constexpr double kLargestMicrometre = 50;
+    const bool small = !bands_.empty() && bands_.rbegin()->first < kLargestMicrometre;
+    if (!to_nm && small) findings.conventions.push_back("Wavelengths were taken as micrometres: all are small.");
+    const double factor = to_nm.value_or(small ? 1e3 : 1);
+    // to the digits of a metre's decimal fraction
+    for (const auto& [lambda, rows] : bands_)
+      findings.lambda_nm.push_back(std::round(lambda * factor * 1e6) / 1e6);
+    samples.channels = bands_.size();
+    std::size_t partial = 0;
+    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+      if (spectra_[i].size() < bands_.size()) {
+        ++partial;
+        continue;
+      }
+      samples.pairs.push_back(pairs_[i]);
+      for (const auto& [lambda, value] : spectra_[i]) samples.values.push_back(value);
+    }
+    if (partial > 0)
+      findings.warnings.push_back(
+          fmt::format("{} directions without a value at every wavelength were left out.", partial));
+  }
+
+ private:
+  std::map<std::array<double, 6>, std::size_t> places_;
+  std::vector<DirectionPair> pairs_;
+  std::vector<std::map<double, double>> spectra_;
+  std::map<double, std::size_t> bands_;
+};
 
 bool is_texel_header(const CsvHeader& header) {
   return lower_case(header.line).find(kTexelNames[0]) != std::string::npos;
@@ -218,6 +277,7 @@ SampleFile parse_csv(const FileBytes& file, const OpenOptions& options) {
   Tag tag = preamble.tag;
   std::size_t missing = 0, grazing = 0;
   double largest_angle = 0;
+  SpectraOfRows spectra;
   while (next_row(reader, tag)) {
     rows.read();
     if (std::any_of(columns.values.begin(), columns.values.end(),
@@ -239,7 +299,12 @@ SampleFile parse_csv(const FileBytes& file, const OpenOptions& options) {
       ++grazing;
       continue;
     }
-    samples.pairs.push_back(pair);
+    if (columns.wavelength) {
+      spectra.add(reader, pair, rows.number(*columns.wavelength), samples.values.back());
+      samples.values.pop_back();
+    } else {
+      samples.pairs.push_back(pair);
+    }
     if (!columns.vectors)
       for (const auto& at : columns.direction)
         if (at) largest_angle = std::max(largest_angle, std::abs(rows.number(*at)));
@@ -253,6 +318,7 @@ SampleFile parse_csv(const FileBytes& file, const OpenOptions& options) {
                           kind_sentence(kind, asked          ? "as asked"
                                               : columns.kind ? "as the column's name says"
                                                              : "as the file's first lines say")};
+  if (columns.wavelength) spectra.finish(columns.to_nm, samples, findings);
   const bool one_azimuth = !columns.vectors && !columns.direction[1];
   samples.isotropic =
       tag == Tag::isotropic || (tag == Tag::none && (one_azimuth || same_incident_azimuth(samples)));
@@ -295,7 +361,8 @@ TexelCsv parse_texel_csv(const FileBytes& file, int most) {
   refuse_unknown(reader, columns);
   for (const std::size_t k : {0u, 1u})
     if (!columns.others[k]) reader.fail(fmt::format("a column {}", kTexelNames[k]), in_quotes(reader.line()));
-  if (!columns.lambda_nm.empty()) reader.fail("columns r, g, b or value", in_quotes(reader.line()));
+  if (!columns.lambda_nm.empty() || columns.wavelength)
+    reader.fail("columns r, g, b or value", in_quotes(reader.line()));
   const bool says_held_out = columns.others[2].has_value();
 
   TexelCsv result;
@@ -347,20 +414,28 @@ std::string samples_csv(const Samples& samples, std::span<const double> lambda_n
   return text;
 }
 
-std::vector<DirectionPair> parse_directions(const FileBytes& file) {
+DirectionTable parse_directions(const FileBytes& given) {
+  const std::optional<FileBytes> converted = from_utf16(given);
+  const FileBytes& file = converted ? *converted : given;
   TextReader reader(file);
   const Preamble preamble = read_preamble(reader);
   if (!preamble.header) reader.fail("a header line that names wi_x, wi_y, wi_z, wo_x, wo_y and wo_z", "none");
   const CsvColumns columns = read_columns(reader, *preamble.header, false);
   refuse_unknown(reader, columns);
-  std::vector<DirectionPair> pairs;
+  DirectionTable table;
+  std::vector<std::size_t> places;
+  for (const auto& at : columns.direction)
+    if (at) places.push_back(*at);
+  std::ranges::sort(places);
   Rows rows(reader, columns, *preamble.header);
+  for (const std::size_t at : places) table.names.push_back(rows.name(at));
   Tag tag = preamble.tag;
   while (next_row(reader, tag)) {
     rows.read();
-    pairs.push_back(read_pair(reader, columns, rows));
+    table.pairs.push_back(read_pair(reader, columns, rows));
+    for (const std::size_t at : places) table.numbers.push_back(rows.number(at));
   }
-  return pairs;
+  return table;
 }
 
 }  // namespace burnish

@@ -23,8 +23,8 @@ bool looks_like_csv(std::string_view text) noexcept;
 /// Directions are theta_i, phi_i, theta_o, phi_o in degrees (in radians where the name says so), or wi_x, wi_y,
 /// wi_z, wo_x, wo_y, wo_z; other names for them are in csv_columns.cpp. Without phi_i the material is isotropic;
 /// without any azimuth the samples are in the plane of incidence and polar angles have signs. Values are r, g, b
-/// (linear Rec. 709), or value, or value_400, 400nm and so on, one column a wavelength. They are f_r in 1/sr, or
-/// what options or their names say (ValueKind). Rows without a value are left out, columns that mean nothing are
+/// (linear Rec. 709), or value, or value_400, 400nm and so on, one column a wavelength, or value beside a column
+/// wavelength (nanometres, or the unit of its name), one row a wavelength. They are f_r in 1/sr, or what options or their names say (ValueKind). Rows without a value are left out, columns that mean nothing are
 /// passed over; Findings::warnings says so, and what looks wrong (sample_checks.h).
 ///
 /// A comment "# isotropic" or "# anisotropic" says what the material is; without it, it is anisotropic unless every
@@ -51,8 +51,15 @@ TexelCsv parse_texel_csv(const FileBytes& file, int most);
 /// neither 1 nor 3 channels, or spectra of 1 or 3. Throws Error if the channels have no names.
 std::string samples_csv(const Samples& samples, std::span<const double> lambda_nm = {});
 
-/// Direction pairs with the header wi_x,wi_y,wi_z,wo_x,wo_y,wo_z (columns in any order); any half-space.
+/// Direction pairs, and their columns as the file has them.
+struct DirectionTable {
+  std::vector<DirectionPair> pairs;
+  std::vector<std::string> names;  ///< of the columns of directions, in the file's order
+  std::vector<double> numbers;     ///< rows of as many, in the file's units
+};
+
+/// Direction pairs with the header wi_x,wi_y,wi_z,wo_x,wo_y,wo_z or angles (columns in any order); any half-space.
 /// Throws Error as parse_csv does.
-std::vector<DirectionPair> parse_directions(const FileBytes& file);
+DirectionTable parse_directions(const FileBytes& file);
 
 }  // namespace burnish

@@ -173,6 +173,30 @@ std::optional<ValueName> wavelength_name(std::string_view name) {
   return found;
 }
 
+/// The factor to nanometres of a column of wavelengths, or nothing in `to_nm` where its name has no unit.
+struct WavelengthColumn {
+  std::optional<double> to_nm;
+};
+
+std::optional<WavelengthColumn> wavelength_column(const ColumnName& column) {
+  constexpr std::array<std::string_view, 5> kWords = {"wavelength", "wavelengths", "lambda", "wl", "wave_length"};
+  const auto factor = [](std::string_view unit) -> std::optional<double> {
+    if (unit == "nm" || unit == "nanometer" || unit == "nanometers" || unit == "nanometre") return 1;
+    if (unit == "um" || unit == "micron" || unit == "microns" || unit == "micrometer") return 1e3;
+    if (unit == "m") return 1e9;
+    return std::nullopt;
+  };
+  if (among(kWords, column.name))
+    return column.unit.empty() || factor(column.unit)
+               ? std::optional(WavelengthColumn{factor(column.unit)})
+               : std::nullopt;
+  const std::size_t bar = column.name.rfind('_');
+  if (bar == std::string::npos || !among(kWords, std::string_view(column.name).substr(0, bar)))
+    return std::nullopt;
+  const auto to_nm = factor(std::string_view(column.name).substr(bar + 1));
+  return to_nm ? std::optional(WavelengthColumn{to_nm}) : std::nullopt;
+}
+
 std::optional<ValueName> value_name(std::string_view name) {
   if (name == "value" || name == "values" || name == "val") return ValueName{};
   if (const auto kind = kind_of_name(name)) return ValueName{.kind = kind, .colour = {}, .lambda_nm = {}};
@@ -195,27 +219,11 @@ std::optional<ValueName> value_name(std::string_view name) {
   return std::nullopt;
 }
 
-std::vector<std::string_view> names_of(std::string_view line, char separator) {
-  std::vector<std::string_view> cells;
-  split_cells(line, separator, cells);
-  if (separator != ' ') return cells;
-  // a unit in brackets belongs to the word before it
-  std::vector<std::string_view> names;
-  for (const std::string_view cell : cells) {
-    if (!names.empty() && (cell.starts_with('[') || cell.starts_with('(')))
-      names.back() = {names.back().data(),
-                      static_cast<std::size_t>(cell.data() + cell.size() - names.back().data())};
-    else
-      names.push_back(cell);
-  }
-  return names;
-}
-
 /// A line's names, sorted by what they are.
 class Sorter {
  public:
   Sorter(const TextReader& reader, const CsvHeader& header)
-      : reader_(reader), cells_(names_of(header.line, header.separator)) {
+      : reader_(reader), cells_(split_names(header.line, header.separator)) {
     for (const std::string_view cell : cells_) names_.push_back(plain_name(cell));
     columns_.separator = header.separator;
     columns_.count = cells_.size();
@@ -329,8 +337,10 @@ class Sorter {
       if (!value) {
         if (name.find("_cos") != std::string::npos || name == "fcos" || name == "brdfcos")
           reader_.fail("the cosine of theta_i or of theta_o in the name of a column", in_quotes(cells_[k]));
-        if (name == "wavelength" || name == "lambda" || name == "wavelength_nm" || name == "lambda_nm")
-          reader_.fail("a column for each wavelength, such as value_450", in_quotes(cells_[k]));
+        if (const auto wavelength = wavelength_column(names_[k])) {
+          take(columns_.wavelength, k);
+          columns_.to_nm = wavelength->to_nm;
+        }
         continue;
       }
       Group& group = groups[value->kind ? 1 + static_cast<int>(*value->kind) : 0];
@@ -365,6 +375,9 @@ class Sorter {
       for (const auto& at : group.colours) leave(at);
       for (const auto& [lambda, at] : group.spectrum) leave(at);
     }
+    if (columns_.wavelength && (columns_.values.size() > 1 || !columns_.lambda_nm.empty()))
+      reader_.fail(fmt::format("one column of values beside {}", in_quotes(cells_[*columns_.wavelength])),
+                   fmt::format("{}", columns_.values.size()));
     if (columns_.values.empty())
       reader_.fail("columns r, g, b or value or value_<nm>", in_quotes(reader_.line()));
     if (columns_.values.size() > kMaxFileChannels)
@@ -414,6 +427,22 @@ void split_cells(std::string_view line, char separator, std::vector<std::string_
   }
 }
 
+std::vector<std::string_view> split_names(std::string_view line, char separator) {
+  std::vector<std::string_view> cells;
+  split_cells(line, separator, cells);
+  if (separator != ' ') return cells;
+  // a unit in brackets belongs to the word before it
+  std::vector<std::string_view> names;
+  for (const std::string_view cell : cells) {
+    if (!names.empty() && (cell.starts_with('[') || cell.starts_with('(')))
+      names.back() = {names.back().data(),
+                      static_cast<std::size_t>(cell.data() + cell.size() - names.back().data())};
+    else
+      names.push_back(cell);
+  }
+  return names;
+}
+
 std::optional<CsvHeader> header_of(std::string_view line) {
   CsvHeader header{.line = trimmed(line), .commented = false, .separator = ','};
   if (header.line.size() > kMaxHeader) return std::nullopt;
@@ -424,7 +453,7 @@ std::optional<CsvHeader> header_of(std::string_view line) {
   for (const char separator : {';', '\t', ',', ' '}) {
     if (header.line.find(separator) == std::string_view::npos) continue;
     std::size_t directions = 0, polar = 0;
-    for (const std::string_view cell : names_of(header.line, separator)) {
+    for (const std::string_view cell : split_names(header.line, separator)) {
       const Role role = role_of(plain_name(cell).name);
       directions += role != Role::none;
       polar +=

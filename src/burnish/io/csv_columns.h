@@ -26,6 +26,8 @@ struct CsvColumns {
   bool relative_azimuth = false;                   ///< phi_o is counted from phi_i
   std::vector<std::size_t> values;                 ///< of each channel
   std::vector<double> lambda_nm;                   ///< of each channel, or empty
+  std::optional<std::size_t> wavelength;           ///< a row is of one wavelength, which stands there
+  std::optional<double> to_nm;                     ///< its factor, where its name has a unit
   std::optional<ValueKind> kind;                   ///< what the values' names say
   std::vector<std::optional<std::size_t>> others;  ///< of each name that the caller knows besides
   std::vector<std::string> unknown;                ///< names, as the file has them, that mean nothing here
@@ -50,6 +52,9 @@ CsvColumns read_columns(const TextReader& reader, const CsvHeader& header, bool 
 /// The cells of a line without quotes and blanks around them, into `cells`. An empty one after the last separator
 /// is none.
 void split_cells(std::string_view line, char separator, std::vector<std::string_view>& cells);
+
+/// The cells of a header's line; between blanks a unit in brackets belongs to the name before it.
+std::vector<std::string_view> split_names(std::string_view line, char separator);
 
 /// The numbers of rows; a decimal comma is taken where commas do not separate, and then everywhere.
 class CellNumbers {

@@ -382,12 +382,21 @@ TEST(TexelCsv, RefusesWhatCannotBe) {
 
 TEST(Directions, AreReadInEitherHalfSpace) {
   const auto pairs =
-      parse_directions(memory_file("wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0,0,-1,1,0,0\n0,0.6,0.8,0,0,1\n"));
+      parse_directions(memory_file("wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0,0,-1,1,0,0\n0,0.6,0.8,0,0,1\n")).pairs;
   ASSERT_EQ(pairs.size(), 2u);
   EXPECT_EQ(pairs[0], (DirectionPair{{0, 0, -1}, {1, 0, 0}}));
   EXPECT_EQ(pairs[1].wi, (Vec3{0, 0.6, 0.8}));
   EXPECT_THROW(parse_directions(memory_file("wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,r\n0,0,1,0,0,1,1\n")), Error);
   EXPECT_THROW(parse_directions(memory_file("wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0,0,0,0,0,1\n")), Error);
+}
+
+TEST(Directions, KeepTheirColumnsAsTheFileHasThem) {
+  const DirectionTable table =
+      parse_directions(memory_file("Theta_r [deg];phi_r;theta_i;phi_i\n30,5;180;10;270\n0;0;1e1;-90\n"));
+  EXPECT_EQ(table.names, (std::vector<std::string>{"Theta_r [deg]", "phi_r", "theta_i", "phi_i"}));
+  EXPECT_EQ(table.numbers, (std::vector<double>{30.5, 180, 10, 270, 0, 0, 10, -90}));
+  EXPECT_NEAR(table.pairs[0].wo.x, -std::sin(radians(30.5)), 1e-15);
+  EXPECT_NEAR(table.pairs[1].wi.y, -std::sin(radians(10)), 1e-15);
 }
 
 }  // namespace

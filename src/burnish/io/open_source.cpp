@@ -24,6 +24,7 @@
 #include <burnish/io/speos.h>
 #include <burnish/io/tensor_tree_xml.h>
 #include <burnish/io/text_reader.h>
+#include <burnish/io/utf16.h>
 #include <burnish/io/utia.h>
 #include <burnish/io/zemax.h>
 #include <burnish/math/angles.h>
@@ -112,21 +113,7 @@ void check_spelling(const std::string& spec) {
     throw Error(fmt::format("{}: expected a file or an analytic model, found neither{}", spec, meant));
 }
 
-Source parse_file(const FileBytes& file, const OpenOptions& options) {
-  // Binary formats first: their first bytes are unmistakable.
-  if (looks_like_book(file.bytes))
-    throw Error::in_file(file.name,
-                         "book:FILE#NAME for one material of a book (`burnish info FILE` names them)",
-                         "the book alone");
-  if (looks_like_surface(file.bytes))
-    throw Error::in_file(
-        file.name, "surface:FILE#COLUMN,ROW for one texel of a surface (`burnish info FILE` says how many)",
-        "the surface alone");
-  if (looks_like_model(file.bytes)) return to_source(file.name, parse_model(file));
-  if (looks_like_rgl(file.bytes)) return from_table(file, parse_rgl(file, options));
-  if (looks_like_mbsdf(file.bytes)) return from_table(file, parse_mbsdf(file));
-  if (looks_like_utia(file.bytes)) return from_table(file, parse_utia(file));
-  if (looks_like_merl(file.bytes)) return from_table(file, parse_merl(file));
+Source parse_text(const FileBytes& file, const OpenOptions& options) {
   const std::string_view text = file.text();
   if (looks_like_openmaterial(text)) return from_samples(file, parse_openmaterial(file, options));
   if (looks_like_baseline(text)) return to_source(file.name, parse_baseline(file));
@@ -149,12 +136,50 @@ Source parse_file(const FileBytes& file, const OpenOptions& options) {
               fmt::format("something that starts with {}", in_quotes(text.substr(0, 16))));
 }
 
+Source parse_file(const FileBytes& file, const OpenOptions& options) {
+  // Binary formats first: their first bytes are unmistakable.
+  if (looks_like_book(file.bytes))
+    throw Error::in_file(file.name,
+                         "book:FILE#NAME for one material of a book (`burnish info FILE` names them)",
+                         "the book alone");
+  if (looks_like_surface(file.bytes))
+    throw Error::in_file(
+        file.name, "surface:FILE#COLUMN,ROW for one texel of a surface (`burnish info FILE` says how many)",
+        "the surface alone");
+  if (looks_like_model(file.bytes)) return to_source(file.name, parse_model(file));
+  if (looks_like_rgl(file.bytes)) return from_table(file, parse_rgl(file, options));
+  if (looks_like_mbsdf(file.bytes)) return from_table(file, parse_mbsdf(file));
+  if (looks_like_utia(file.bytes)) return from_table(file, parse_utia(file));
+  if (looks_like_merl(file.bytes)) return from_table(file, parse_merl(file));
+  if (const auto converted = from_utf16(file)) return parse_text(*converted, options);
+  return parse_text(file, options);
+}
+
 }  // namespace
 
 Source parse_source(const FileBytes& file, const OpenOptions& options) {
   Source source = parse_file(file, options);
   source.clamp_negatives = options.clamp_negatives;
   return source;
+}
+
+bool looks_like_source(const FileBytes& file) {
+  constexpr std::size_t kHead = 1 << 16;
+  const std::span<const std::byte> bytes = file.bytes;
+  // pictures are OpenEXR files too, and lists JSON
+  const bool is_exr = file.text().starts_with("\x76\x2f\x31\x01");
+  if (is_exr && file.text().substr(0, kHead).find("burnish") == std::string_view::npos)
+    return false;
+  if (looks_like_book(bytes) || looks_like_surface(bytes) || looks_like_model(bytes) || looks_like_rgl(bytes) ||
+      looks_like_mbsdf(bytes) || looks_like_utia(bytes) || looks_like_merl(bytes))
+    return true;
+  const std::optional<FileBytes> converted = from_utf16(file);
+  const std::string_view text = converted ? converted->text() : file.text();
+  return looks_like_openmaterial(text) ||
+         (looks_like_baseline(text) && text.find("\"kind\"") != std::string_view::npos) || looks_like_tensor_tree(text) ||
+         looks_like_klems(text) || looks_like_zemax(text) || looks_like_speos(text) || looks_like_alta(text) ||
+         looks_like_neural(text) || looks_like_fred(text) || looks_like_astm(text) || looks_like_csv(text) ||
+         looks_like_cornell(text) || looks_like_np(text);
 }
 
 Source open_source(const std::string& spec, const OpenOptions& options) {

@@ -18,4 +18,8 @@ Source open_source(const std::string& spec, const OpenOptions& options);
 /// The same for bytes in memory.
 Source parse_source(const FileBytes& file, const OpenOptions& options);
 
+/// Whether the bytes are of a kind that parse_source knows, by their content: false of a text that is no measurement,
+/// a picture, a list. What is of a known kind and broken is true.
+bool looks_like_source(const FileBytes& file);
+
 }  // namespace burnish

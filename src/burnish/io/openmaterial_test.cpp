@@ -66,7 +66,7 @@ TEST(OpenMaterial, SaysWhatIsWrong) {
 TEST(OpenMaterial, IsWrittenAndReadToTheLastBit) {
   const Source source = open_source("ggx:alpha_x=0.3,alpha_y=0.3", {});
   const Converted converted = convert(source, "openmaterial", {.count = 50});
-  EXPECT_THAT(converted.losses, Contains(HasSubstr("spectra at 475, 510, 580, 605 nm")));
+  EXPECT_THAT(converted.notes, Contains(HasSubstr("spectra at 475, 510, 580, 605 nm")));
   const SampleFile file = parse_openmaterial(memory_file(converted.bytes), kSpectral),
                    colours = parse_openmaterial(memory_file(converted.bytes), {});
   ASSERT_EQ(file.samples.size(), 50u);

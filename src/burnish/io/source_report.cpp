@@ -91,6 +91,10 @@ std::string to_json(const SourceReport& report) {
                               {"albedo", albedo.albedo},
                               {"clamped_albedo", albedo.clamped},
                               {"unknown_fraction", albedo.unknown_fraction}});
+  if (!findings.notes.empty()) {
+    auto notes = nlohmann::ordered_json::parse(findings.notes, nullptr, false);
+    if (notes.is_object()) json["notes"] = std::move(notes);
+  }
   if (const auto bytes = source.bytes()) json["bytes"] = *bytes;
   if (model) {
     json["table_bytes"] = model->table_bytes();

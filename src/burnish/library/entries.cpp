@@ -7,6 +7,8 @@
 
 #include <burnish/error.h>
 #include <burnish/file.h>
+#include <burnish/io/open_source.h>
+#include <burnish/io/text_reader.h>
 #include <burnish/library/entries.h>
 #include <burnish/reflectance/analytic.h>
 
@@ -76,7 +78,20 @@ bool is_one_of(const fs::path& path, const std::vector<fs::path>& others) {
   });
 }
 
-std::vector<LibraryEntry> entries_of_folder(const fs::path& folder, const std::vector<fs::path>& others) {
+// Whether a file of a folder is meant as a material: by a name that nothing else has, or by what it holds.
+bool is_material(const fs::path& path) {
+  constexpr std::array<std::string_view, 8> kEndings = {".binary", ".bsdf",  ".brdf",  ".mbsdf",
+                                                        ".astm",   ".xompt", ".anisotropicbsdf", ".burnish"};
+  constexpr std::uintmax_t kLargest = std::uintmax_t{1} << 28;  // bytes that are read to be known
+  if (std::ranges::find(kEndings, lower_case(path.extension().string())) != kEndings.end()) return true;
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (error || size > kLargest) return true;  // the reader says what is wrong
+  return size > 0 && looks_like_source(read_file(path));
+}
+
+std::vector<LibraryEntry> entries_of_folder(const fs::path& folder, const std::vector<fs::path>& others,
+                                            std::vector<std::string>* skipped_files) {
   if (is_one_of(folder, others) || is_library(folder))
     throw Error::in_file(folder.string(), "a folder with measurements", "the folder of a batch's results");
   std::vector<fs::path> files;
@@ -94,6 +109,16 @@ std::vector<LibraryEntry> entries_of_folder(const fs::path& folder, const std::v
   }
   if (files.empty()) throw Error::in_file(folder.string(), "a folder with files", "none");
   std::ranges::sort(files);
+  std::vector<std::string> skipped;
+  std::erase_if(files, [&](const fs::path& file) {
+    if (is_material(file)) return false;
+    skipped.push_back(file.string());
+    return true;
+  });
+  if (files.empty())
+    throw Error::in_file(folder.string(), "a folder with measurements",
+                         fmt::format("{} other files", skipped.size()));
+  if (skipped_files) *skipped_files = std::move(skipped);
   std::vector<LibraryEntry> entries;
   for (const fs::path& file : files)
     entries.push_back(
@@ -123,9 +148,10 @@ std::vector<LibraryEntry> named_entries(const std::vector<std::string>& argument
 }
 
 std::vector<LibraryEntry> library_entries(const fs::path& list_or_folder,
-                                          const std::vector<fs::path>& others) {
+                                          const std::vector<fs::path>& others,
+                                          std::vector<std::string>* skipped) {
   std::error_code error;
-  if (fs::is_directory(list_or_folder, error)) return entries_of_folder(list_or_folder, others);
+  if (fs::is_directory(list_or_folder, error)) return entries_of_folder(list_or_folder, others, skipped);
   const FileBytes list = read_file(list_or_folder, kLongestList);
   if (const std::size_t zero = list.text().find('\0'); zero != std::string_view::npos)
     throw Error(list.name, zero, "a folder, or a list with an argument a line", "a byte 0");

@@ -32,7 +32,8 @@ TEST(LibraryEntries, AreTheLinesOfAListWithoutRemarks) {
 TEST(LibraryEntries, AreTheFilesBelowAFolderByName) {
   const TemporaryFolder folder("entries_folder");
   std::filesystem::create_directories(folder.path / "b/.cache");
-  for (const char* name : {"c.csv", "b/x.csv", "b/.cache/y.csv", ".hidden"}) write(folder.path / name, "1");
+  for (const char* name : {"c.csv", "b/x.csv", "b/.cache/y.csv", ".hidden"})
+    write(folder.path / name, "theta_i,theta_o,value\n");
   EXPECT_THAT(library_entries(folder.path),
               ElementsAre(LibraryEntry{"b_x", (folder.path / "b/x.csv").string()},
                           LibraryEntry{"c", (folder.path / "c.csv").string()}));
@@ -45,7 +46,7 @@ TEST(LibraryEntries, AreNotTheResultsOfThisBatchOrOfEarlierOnes) {
     std::filesystem::create_directories(meas / below);
   for (const char* name : {"c.csv", "models/d.csv", "earlier/models/c.burnish", "earlier/index.html",
                            "earlier/journal/host-1.jsonl", "output/models/c.burnish", "all.burnish"})
-    write(meas / name, "1");
+    write(meas / name, "theta_i,theta_o,value\n");
   const auto names = [&](const std::vector<std::filesystem::path>& others) {
     std::vector<std::string> found;
     for (const LibraryEntry& entry : library_entries(meas, others)) found.push_back(entry.name);
@@ -57,6 +58,25 @@ TEST(LibraryEntries, AreNotTheResultsOfThisBatchOrOfEarlierOnes) {
   EXPECT_THAT(names({meas / "output", meas / "all.burnish"}), ElementsAre("c", "models_d"));
   for (const auto& [place, output] : {std::pair{meas, meas}, {meas / "earlier", folder.path / "elsewhere"}})
     EXPECT_THAT(error_of([&] { library_entries(place, {output}); }), HasSubstr("a folder with measurements"));
+}
+
+TEST(LibraryEntries, AreNotTheOtherFilesOfAFolder) {
+  const TemporaryFolder folder("entries_others");
+  write(folder.path / "a.csv", "theta_i;theta_o;value\n");
+  write(folder.path / "broken.binary", "");
+  write(folder.path / "README.txt", "Measured in May.\n");
+  write(folder.path / "files.csv", "file,licence\na.csv,CC0\n");
+  write(folder.path / "about.json", "{\"title\": \"paints\"}");
+  write(folder.path / "empty.txt", "");
+  write(folder.path / "photo.exr", std::string("\x76\x2f\x31\x01\0\0\0\0", 8));
+  std::vector<std::string> skipped, names;
+  for (const LibraryEntry& entry : library_entries(folder.path, {}, &skipped)) names.push_back(entry.name);
+  EXPECT_THAT(names, ElementsAre("a", "broken"));
+  EXPECT_THAT(skipped, ElementsAre(HasSubstr("README.txt"), HasSubstr("about.json"), HasSubstr("empty.txt"),
+                                   HasSubstr("files.csv"), HasSubstr("photo.exr")));
+  for (const char* name : {"a.csv", "broken.binary"}) std::filesystem::remove(folder.path / name);
+  EXPECT_THAT(error_of([&] { library_entries(folder.path); }),
+              HasSubstr("expected a folder with measurements, found 5 other files"));
 }
 
 TEST(LibraryEntries, SayWhatIsWrongWithTheirPlace) {
