@@ -64,9 +64,9 @@ void print_albedos(std::span<const ComparedFigures> figures) {
 // What another measurement of the same surface scores.
 void print_quality(const MeasurementQuality& quality) {
   const ErrorFigures& f = quality.figures;
-  fmt::print("{:<32} {:>8} {:>8.2f} {:>7.4f} {:>9.4f} {:>8.4f} {:>8.4f}\n",
+  fmt::print("{:<32} {:>8} {:>8.2f} {:>8.2f} {:>7.4f} {:>9.4f} {:>8.4f} {:>8.4f}\n",
              quality.repeated ? "the measurement, repeated" : "the measurement, estimated", "-", f.psnr,
-             f.ssim, f.relative, f.rms_log, f.log_cos);
+             psnr_of_disc(f.psnr), f.ssim, f.relative, f.rms_log, f.log_cos);
 }
 
 void add_quality(Measurement& measurement, const Candidate& reference, const Scorer& scorer,
@@ -96,7 +96,7 @@ std::vector<ComparedFigures> at_nodes(const Measurement& measurement, std::span<
 // Figures at the nodes; models have some.
 void print_nodes(const Measurement& measurement, std::span<const ComparedFigures> models) {
   fmt::print("{:<32} {:>8} {:>9} {:>8} {:>8} {:>9}\n", "at the measured nodes", "bytes", "relative",
-             "rms_log", "log_cos", "rms");
+             "rms_log", "log_cos", "rms 1/sr");
   const auto row = [](const std::string& name, std::optional<std::uint64_t> bytes, const NodeFigures& f) {
     fmt::print("{:<32} {:>8} {:>9.4f} {:>8.4f} {:>8.4f} {:>9.4g}\n", name,
                bytes ? fmt::format("{}", *bytes) : "-", f.relative, f.rms_log, f.log_cos, f.rms);
@@ -106,14 +106,19 @@ void print_nodes(const Measurement& measurement, std::span<const ComparedFigures
   fmt::print("{} nodes with both cosines above 0.15\n", measurement.itself.count);
 }
 
-void print_compared(std::span<const ComparedFigures> figures, const Measurement* measured) {
-  fmt::print("{:<32} {:>8} {:>8} {:>7} {:>9} {:>8} {:>8}\n", "model", "bytes", "psnr", "ssim", "relative",
-             "rms_log", "log_cos");
+void print_compared(std::span<const ComparedFigures> figures, const Measurement* measured,
+                    bool asked_quality) {
+  fmt::print("{:<32} {:>8} {:>8} {:>8} {:>7} {:>9} {:>8} {:>8}\n", "model", "bytes", "psnr dB", "disc dB",
+             "ssim", "relative", "rms_log", "log_cos");
   for (const ComparedFigures& f : figures)
-    fmt::print("{:<32} {:>8} {:>8.2f} {:>7.4f} {:>9.4f} {:>8.4f} {:>8.4f}\n", f.name,
-               f.bytes ? fmt::format("{}", *f.bytes) : "-", f.figures.psnr, f.figures.ssim,
+    fmt::print("{:<32} {:>8} {:>8.2f} {:>8.2f} {:>7.4f} {:>9.4f} {:>8.4f} {:>8.4f}\n", f.name,
+               f.bytes ? fmt::format("{}", *f.bytes) : "-", f.figures.psnr, psnr_of_disc(f.figures.psnr),
+               f.figures.ssim,
                f.figures.relative, f.figures.rms_log, f.figures.log_cos);
-  if (measured && measured->quality) print_quality(*measured->quality);
+  if (measured && measured->quality)
+    print_quality(*measured->quality);
+  else if (measured && asked_quality)
+    fmt::print("{:<32} {}\n", "the measurement itself", kCannotBeTold);
   print_albedos(figures);
   const ErrorFigures& first = figures.front().figures;
   if (first.unknown_fraction > 0 || first.unknown_pixels > 0)
@@ -148,7 +153,8 @@ void compare(const CompareArguments& arguments) {
     return;
   }
   const Scorer scorer(reference.ref(), arguments.figures);
-  if (measurement && (!arguments.folder.empty() || !arguments.repeat.empty()))
+  const bool asked_quality = !arguments.folder.empty() || !arguments.repeat.empty();
+  if (measurement && asked_quality)
     add_quality(*measurement, reference, scorer, arguments);
   const Measurement* const measured = measurement ? &*measurement : nullptr;
   std::optional<Progress> progress(std::in_place, "comparing");
@@ -163,7 +169,7 @@ void compare(const CompareArguments& arguments) {
     return;
   }
 
-  print_compared(figures, measured);
+  print_compared(figures, measured, asked_quality);
   if (measured && arguments.target != "function") print_nodes(*measured, figures);
   if (!arguments.folder.empty()) fmt::print("report: {}/index.html\n", arguments.folder);
 }

@@ -40,8 +40,9 @@ MeasurementQuality quality_by_repeat(const Scorer& scorer, BrdfRef second, const
 }
 
 std::optional<ErrorFigures> exchanged_figures(const Scorer& scorer, BrdfRef raw) {
+  constexpr double kRounding = 1e-6;  // of tables that are reciprocal by form
   const ErrorFigures half = scorer.score(raw);
-  if (half.rms == 0) return {};
+  if (half.relative < kRounding) return {};
   ErrorFigures figures = half;
   figures.log_cos *= std::sqrt(2);
   figures.relative = std::expm1(std::sqrt(2) * std::log1p(half.relative));

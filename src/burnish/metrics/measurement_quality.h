@@ -43,8 +43,8 @@ std::optional<MeasurementQuality> quality_by_exchange(const Scorer& scorer, Brdf
 /// What a second scan would score. Physics has f(wi, wo) = f(wo, wi), so where noise of the two is independent and
 /// of size s, f differs from the mean of both, the scorer's reference, by s / sqrt(2), and the mean of a second scan
 /// from it by s: what `raw` scores against the reference, times sqrt(2) (squares 2). What errs alike both ways is not
-/// seen, so this is the least that the measurement is off by. Nothing where the reference is `raw` itself: a source
-/// kept raw, or one reciprocal by construction.
+/// seen, so this is the least that the measurement is off by. Nothing where the reference is `raw` itself to rounding: a
+/// source kept raw, or one that is reciprocal by form, such as a table of half/difference cells of half a circle.
 std::optional<ErrorFigures> exchanged_figures(const Scorer& scorer, BrdfRef raw);
 
 }  // namespace burnish

@@ -65,6 +65,8 @@ nlohmann::ordered_json json_of(std::span<const ComparedFigures> compared, const 
     if (c.bytes) entry["bytes"] = *c.bytes;
     entry.update(json_of(c.figures, {"log_cos", "relative", "rms_log", "rms", "mean_abs_log", "psnr", "ssim",
                                      "unknown_fraction"}));
+    const double disc = psnr_of_disc(c.figures.psnr);
+    entry["psnr_of_disc"] = std::isfinite(disc) ? nlohmann::ordered_json(disc) : nullptr;
     entry["unknown_pixels"] = c.figures.unknown_pixels;
     for (const ComparedAlbedo& a : c.albedos)
       entry["albedo"].push_back({{"theta_i_deg", written_degrees(a.theta_i)},
@@ -161,6 +163,7 @@ std::string figures_row(std::string_view name, std::optional<std::uint64_t> byte
                              {"RELATIVE", fmt::format("{:.4f}", figures.relative)},
                              {"RMSLOG", fmt::format("{:.4f}", figures.rms_log)},
                              {"PSNR", psnr_text(figures.psnr)},
+                             {"DISC", psnr_text(psnr_of_disc(figures.psnr))},
                              {"SSIM", fmt::format("{:.4f}", figures.ssim)},
                              {"NOTE", escape_markup(note)}});
 }
@@ -172,6 +175,8 @@ std::string index_html(const std::string& reference_name, std::span<const Compar
   if (measurement && measurement->quality)
     rows += figures_row(name_of(*measurement->quality), {}, measurement->quality->figures,
                         "a model that scores better follows noise");
+  else if (measurement)
+    rows += filled("untold.html", {{"NAME", "the measurement itself"}, {"SAYS", std::string(kCannotBeTold)}});
   for (const ComparedFigures& c : compared) rows += figures_row(c.name, c.bytes, c.figures, c.note);
   for (std::size_t i = 0; i < compared.size(); ++i)
     sheets += filled("sheet.html", {{"NAME", escape_markup(compared[i].name)},
@@ -211,6 +216,10 @@ std::vector<ComparedFigures> compare_models(const Scorer& scorer, std::span<cons
     if (measurement) c.nodes = node_figures(measurement->nodes, model.brdf);
   }
   return result;
+}
+
+double psnr_of_disc(double psnr) noexcept {
+  return psnr + 10 * std::log10(kPi / 4);
 }
 
 std::string to_json(std::span<const ComparedFigures> figures, const Measurement* measurement) {

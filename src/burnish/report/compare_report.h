@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <burnish/image/svg_plot.h>
@@ -40,6 +41,13 @@ struct ComparedFigures {
   std::optional<NodeFigures> nodes = {};  ///< where the reference is a measurement
 };
 
+/// The psnr of lit spheres, in dB, of their discs alone: the black background, equal in every picture, is left out. A
+/// disc has pi / 4 of its frame.
+double psnr_of_disc(double psnr) noexcept;
+
+/// Of what the measurement itself would score, where nothing tells (exchanged_figures).
+inline constexpr std::string_view kCannotBeTold = "cannot be told from this file";
+
 /// What is known of a reference that is a measurement.
 struct Measurement {
   MeasuredNodes nodes;                        ///< those that are scored
@@ -52,7 +60,7 @@ std::vector<ComparedFigures> compare_models(const Scorer& scorer, std::span<cons
                                             const Measurement* measurement = nullptr);
 
 /// JSON list of objects: model, bytes (null if unknown), log_cos, relative, rms_log, mean_abs_log, psnr (null
-/// for equal pictures, where it is infinite), ssim, unknown_fraction, unknown_pixels, albedo (a list of
+/// for equal pictures, where it is infinite), ssim, psnr_of_disc (likewise), unknown_fraction, unknown_pixels, albedo (a list of
 /// theta_i_deg, phi_i_deg, reference and model, one number a channel, reference_unknown_fraction), and note
 /// if there is one. Of a measurement also nodes (count, log_cos, relative, rms_log, rms, and the same as
 /// itself) and measurement (repeated, log_cos, relative, rms_log, rms, psnr, ssim, negative_share, negative_rms,
