@@ -12,6 +12,7 @@
 
 #include <burnish/file.h>
 #include <burnish/io/open_source.h>
+#include <burnish/math/angles.h>
 #include <burnish/math/build_info.h>
 #include <burnish/testing/sanitized.h>
 #include <burnish/testing/seed_files.h>
@@ -69,7 +70,8 @@ TEST(CommandLine, SaysWhatAMisspeltWordMayHaveMeant) {
   const Outcome bare = burnish("");
   EXPECT_EQ(bare.status, 2);
   EXPECT_EQ(first_line(bare), "burnish: expected a verb, found none; there are");
-  for (const char* line : {"\n  info         Say what", "\n  fit-surface  ", "\n  convert      ", "`burnish VERB --help`"})
+  for (const char* line :
+       {"\n  info         Say what", "\n  fit-surface  ", "\n  convert      ", "`burnish VERB --help`"})
     EXPECT_THAT(bare.output, HasSubstr(line));
   EXPECT_THAT(first_line(burnish("hw")),
               HasSubstr("hw: expected a verb (generate, model, error), found none"));
@@ -108,6 +110,127 @@ TEST(CommandLine, SaysWhatAnOptionTakes) {
     EXPECT_EQ(outcome.status, 2) << arguments;
     EXPECT_THAT(first_line(outcome), HasSubstr(said));
   }
+}
+
+TEST(CommandLine, RefusesNamesOfAnotherKindBeforeTheWork) {
+  for (const auto& [arguments, said] :
+       {std::pair{"fit none.csv -o paint.png",
+                  "expected a name that ends in .exr or .burnish, found 'paint.png'"},
+        std::pair{"fit none.csv -o paint.GLSL", "expected a name that ends in .exr or .burnish"},
+        std::pair{"book none -o book.json", "expected a name that ends in .burnish"},
+        std::pair{"measure none -o samples.png", "expected a name that ends in .csv or .txt"},
+        std::pair{"eval none none -o values.exr", "expected a name that ends in .csv or .txt"},
+        std::pair{"convert none -o a.csv --to merl", "expected a name that ends in .binary"},
+        std::pair{"export none --to glsl -o paint.glsl", "expected the name of a folder, found 'paint.glsl'"},
+        std::pair{"batch none -o library.html", "expected the name of a folder"},
+        std::pair{"compare none none -o report.html", "expected the name of a folder"}}) {
+    const Outcome outcome = burnish(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments;
+    EXPECT_THAT(first_line(outcome), HasSubstr(said)) << arguments;
+  }
+  // other endings are part of a name
+  EXPECT_THAT(first_line(burnish("fit none.csv -o paint.v2")), HasSubstr("no such file"));
+}
+
+TEST(CommandLine, EvaluatesToTheTerminalAndFromTheStandardInput) {
+  const std::string eval = fmt::format("'{}' eval lambert:kd=0.5 ", BURNISH_CLI),
+                    f = fmt::format("{}", 0.5 / kPi);
+  const std::string row = fmt::format("30,-30,{0},{0},{0}\n", f);
+  const Outcome values = run("printf 'theta_i;theta_o\n30;-30\n' | " + eval + "-");
+  EXPECT_EQ(values.status, 0);
+  EXPECT_EQ(values.output, "theta_i,theta_o,r,g,b\n" + row);
+
+  const TemporaryFolder folder("eval");
+  const std::string out = (folder.path / "v.csv").string(), in = (folder.path / "d.csv").string();
+  write(in, "\"theta_i\",\"theta_o\"\n30,-30\n");
+  EXPECT_EQ(run(eval + in + " -o " + out).output, "");
+  EXPECT_EQ(read(out), values.output);
+  // values beside directions are a table of samples
+  EXPECT_EQ(open_source(out, {}).samples()->size(), 1u);
+  const auto json = nlohmann::json::parse(run(eval + in + " --json").output);
+  EXPECT_EQ(json["columns"][4], "b");
+  EXPECT_EQ(json["rows"][0][1], -30);
+  EXPECT_EQ(run(eval + "- < /dev/null").output,
+            "burnish: standard input: offset 0: expected data, found nothing\n");
+}
+
+TEST(CommandLine, ConvertsWhatWasMeasuredAndSaysWhatAnOptionIsOf) {
+  const TemporaryFolder folder("convert_options");
+  const std::string out = folder.path.string();
+  ASSERT_EQ(burnish(fmt::format("convert lambert '{}/l.mbsdf' --cells 4", out)).status, 0);
+  const auto samples = [&](const std::string& options) {
+    EXPECT_EQ(burnish(fmt::format("convert '{0}/l.mbsdf' '{0}/l.csv' {1}", out, options)).status, 0);
+    return open_source(out + "/l.csv", {}).samples()->size();
+  };
+  EXPECT_EQ(samples(""), 4u * 4 * 8);
+  EXPECT_EQ(samples("--entries"), 4u * 4 * 8);
+  EXPECT_EQ(samples("--count 9"), 9u);
+  for (const auto& [arguments, said] :
+       {std::pair{"l.mbsdf a.bsdf --cells 9", "--cells: expected merl, mbsdf, tensortree or slices"},
+        std::pair{"l.mbsdf a.mbsdf --cells 9", "entries that mbsdf keeps as they are"},
+        std::pair{"l.mbsdf a.binary --count 9", "--count: expected astm, csv or openmaterial"},
+        std::pair{"l.mbsdf a.binary --entries", "--entries: expected"},
+        std::pair{"l.mbsdf a.csv --notes", "--notes: expected a .burnish file"},
+        std::pair{"l.csv a.csv --count 9", "--count: expected a source to draw from, found 9 samples"}}) {
+    const Outcome outcome = run(fmt::format("cd '{}' && '{}' convert {}", out, BURNISH_CLI, arguments));
+    EXPECT_EQ(outcome.status, 2) << arguments;
+    EXPECT_THAT(first_line(outcome), HasSubstr(said)) << arguments;
+  }
+  const std::string narrow = fmt::format("convert ggx:alpha_x=0.05,alpha_y=0.05 '{}/g.mbsdf' --cells 6", out);
+  EXPECT_THAT(burnish(narrow).output, HasSubstr("burnish: g.mbsdf: warning: The values are "));
+  EXPECT_EQ(nlohmann::json::parse(burnish(narrow + " --json").output)["warnings"].size(), 1u);
+}
+
+TEST(CommandLine, PrintsNotesOfAFitAsLines) {
+  const TemporaryFolder folder("notes");
+  const std::string model = (folder.path / "m.exr").string();
+  const Outcome fitted = burnish(
+      fmt::format("fit lambert -o '{}' --model pqp --table p=4x4 --table q=4x4 --samples 500", model));
+  ASSERT_EQ(fitted.status, 0) << fitted.output;
+  EXPECT_THAT(fitted.output, HasSubstr(fmt::format("a file of {} bytes", std::filesystem::file_size(model))));
+  EXPECT_THAT(fitted.output, testing::Not(HasSubstr("iteration limit")));
+  const std::string said = burnish(fmt::format("info '{}'", model)).output;
+  EXPECT_THAT(said, testing::AllOf(HasSubstr("\nfitted to    lambert (analytic)\n"), HasSubstr(", its file "),
+                                   testing::Not(HasSubstr("{")), testing::Not(HasSubstr("stop_reason"))));
+  const auto json = nlohmann::json::parse(burnish(fmt::format("info '{}' --json", model)).output);
+  EXPECT_EQ(json["notes"]["source"], "lambert");
+  // targets of an export in a list
+  const std::string out = (folder.path / "out").string();
+  ASSERT_EQ(burnish(fmt::format("export '{}' --to glsl,hlsl --to wgsl -o '{}'", model, out)).status, 0);
+  for (const char* ending : {"glsl", "hlsl", "wgsl"})
+    EXPECT_TRUE(std::filesystem::exists(fmt::format("{}/m.{}", out, ending)));
+  EXPECT_EQ(burnish(fmt::format("export '{}' --to glsl,hlls -o '{}'", model, out)).status, 2);
+}
+
+TEST(CommandLine, PrintsNotesOfAFitToSamplesAsLines) {
+  BURNISH_SKIP_WHERE_SANITIZED();
+  const TemporaryFolder folder("notes_of_samples");
+  const std::string samples = (folder.path / "s.csv").string(), model = (folder.path / "s.exr").string();
+  ASSERT_EQ(burnish(fmt::format("measure ggx:alpha_x=0.4,alpha_y=0.4 -o '{}' --count 60", samples)).status,
+            0);
+  ASSERT_EQ(burnish(fmt::format("fit '{}' -o '{}' --budget 700", samples, model)).status, 0);
+  const std::string said = burnish(fmt::format("info '{}'", model)).output;
+  for (const char* line : {"\ntarget       60 measured nodes\n", "\nexpected     relative ",
+                           " from theta_i = 0 15 ", "\nunseen       each node by the others: "})
+    EXPECT_THAT(said, HasSubstr(line));
+  EXPECT_THAT(said, testing::Not(HasSubstr("node_")));
+}
+
+TEST(CommandLine, SaysOnATerminalHowFarItIs) {
+  BURNISH_SKIP_WHERE_SANITIZED();
+  if (!has_tool("script")) GTEST_SKIP() << "no script, which makes a terminal";
+  const TemporaryFolder folder("progress");
+  const std::string fit = fmt::format("'{}' fit ggx:alpha_x=0.2,alpha_y=0.5 -o '{}/m.exr' --budget 2700",
+                                      BURNISH_CLI, folder.path.string());
+  const Outcome seen = run(fmt::format("script -qec \"{}\" /dev/null", fit));
+  EXPECT_EQ(seen.status, 0);
+  EXPECT_THAT(seen.output, testing::AllOf(HasSubstr(" %, "), HasSubstr(" s left"), HasSubstr("\r\033[K")));
+  EXPECT_THAT(
+      burnish(fmt::format("fit ggx:alpha_x=0.2,alpha_y=0.2 -o '{}/i.exr'", folder.path.string())).output,
+      testing::Not(HasSubstr("\r")));
+  // what is quick says nothing
+  EXPECT_THAT(run(fmt::format("script -qec \"'{}' info lambert --json\" /dev/null", BURNISH_CLI)).output,
+              testing::Not(HasSubstr("\033[K")));
 }
 
 TEST(CommandLine, RefusesEmptyNames) {
@@ -304,8 +427,16 @@ TEST(CommandLine, HasJsonHelpAndExamplesInEveryVerb) {
       }
     EXPECT_THAT(examples, HasSubstr("burnish " + name)) << name;
     EXPECT_THAT(burnish(name + " --help").output, HasSubstr(examples.substr(0, examples.find('\n')))) << name;
-    for (const nlohmann::json& argument : verb["arguments"])
-      EXPECT_FALSE(argument["description"].get<std::string>().empty()) << name << argument["names"];
+    for (const nlohmann::json& argument : verb["arguments"]) {
+      // one plain sentence
+      const std::string said = argument["description"];
+      SCOPED_TRACE(fmt::format("{} {}: {}", name, argument["names"].dump(), said));
+      ASSERT_FALSE(said.empty());
+      EXPECT_TRUE(said.front() >= 'A' && said.front() <= 'Z' && said.back() == '.');
+      EXPECT_THAT(said, testing::Not(HasSubstr(". ")));
+      EXPECT_LE(std::ranges::count(said, ' '), 24);
+    }
+    EXPECT_LE(std::ranges::count(verb["description"].get<std::string>(), ' '), 24) << name;
   }
 }
 
@@ -378,7 +509,8 @@ TEST(CommandLine, SaysHowFarOffMeasurementsAreAndWhereToMeasureNext) {
   }
   write_then_rename(directions, "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0,0,1,0,0,1\n");
   ASSERT_EQ(burnish(fmt::format("eval '{}' '{}' -o '{}' --error", file, directions, values)).status, 0);
-  EXPECT_THAT(std::string(read_file(values).text()), testing::StartsWith("r,g,b,error\n"));
+  EXPECT_THAT(std::string(read_file(values).text()),
+              testing::StartsWith("wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,r,g,b,error\n"));
 }
 
 TEST(CommandLine, ExplainsItsFormatsAndItself) {

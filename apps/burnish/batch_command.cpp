@@ -167,42 +167,43 @@ void run(const BatchArguments& arguments, const CLI::App& verb) {
 
 void add_folder_arguments(CLI::App& verb, BatchArguments& arguments) {
   BatchOptions& options = arguments.batch;
-  verb.add_option("LIST", arguments.place,
-                  "a folder with measurements, or a text with an argument of `burnish fit` a line: files, "
-                  "ggx:alpha_x=0.1,alpha_y=0.1, np:FOLDER#NAME")
-      ->required();
-  verb.add_option("-o,--output,--out", arguments.out, "folder, made where it is missing")->required();
-  verb.add_flag("--resume", options.resume,
-                "go on in a folder with a batch: what is done and whole is not done again");
   verb.add_option(
-          "--memory", options.memory,
-          "bytes to take at most, as 4G: fewer materials are fitted at once (default: four fifths of what is "
-          "free, and of the limits of its control groups and Slurm job)")
+          "LIST", arguments.place,
+          "Names a folder with measurements, or a text with an argument of `burnish fit` on each line.")
+      ->required();
+  verb.add_option("-o,--output,--out", arguments.out,
+                  "Names the folder to write to, which is made where it is missing.")
+      ->required();
+  verb.add_flag("--resume", options.resume,
+                "Goes on in the folder of an earlier batch, and does again only what is missing or broken.");
+  verb.add_option("--memory", options.memory,
+                  "Takes at most so many bytes, as 4G, by fitting fewer materials at once (default: four "
+                  "fifths of what is free).")
       ->transform(CLI::AsSizeValue(false));
-  verb.add_option("--threads", options.threads, "at most this many; 0: all")->check(in_range(0, 1024));
+  verb.add_option("--threads", options.threads, "Uses at most so many threads; 0 uses all.")
+      ->check(in_range(0, 1024));
   verb.add_option("--patience", arguments.patience,
-                  "seconds after which a process on another machine that says nothing is taken over")
+                  "Takes over the work of another machine that said nothing for so many seconds.")
       ->check(in_range(0.1, 86400.0))
       ->capture_default_str();
-  verb.add_option("--studio", options.studio, "where the studio lies, as from the page")
+  verb.add_option("--studio", options.studio, "Says where the studio lies, as seen from the page.")
       ->capture_default_str();
-  verb.add_flag("--exr", arguments.exr, "models as OpenEXR with notes of the fit, not as .burnish");
+  verb.add_flag("--exr", arguments.exr, "Writes models as OpenEXR with notes of the fit, not as .burnish.");
 }
 
 void add_export_arguments(CLI::App& verb, BatchArguments& arguments) {
   const auto names = export_target_names();
   ExportOptions& exports = arguments.batch.exports;
   CLI::Option* to =
-      verb.add_option("--to", arguments.to,
-                      "also export each as these, separated by commas; may be given several times")
+      verb.add_option("--to", arguments.to, "Also exports each model as these, separated by commas.")
           ->delimiter(',')
           ->check(one_of({names.begin(), names.end()}))
           ->allow_extra_args(false)
           ->excludes("--method");
-  verb.add_flag("--exact", exports.exact, "of --to: shaders that weigh texels themselves, in floats")
+  verb.add_flag("--exact", exports.exact, "Writes shaders of --to that weigh texels themselves, in floats.")
       ->needs(to);
-  verb.add_flag("--mips", exports.mips, "of --to: KTX2 with levels")->needs(to);
-  verb.add_flag("--plain", arguments.plain, "of --to: textures that are not compressed")->needs(to);
+  verb.add_flag("--mips", exports.mips, "Writes KTX2 of --to with mip levels.")->needs(to);
+  verb.add_flag("--plain", arguments.plain, "Writes textures of --to without compression.")->needs(to);
 }
 
 }  // namespace
@@ -224,7 +225,7 @@ void add_batch_command(CLI::App& app) {
   add_fit_arguments(*verb, arguments->fit);
   add_export_arguments(*verb, *arguments);
   add_slurm_arguments(*verb, arguments->slurm);
-  verb->add_flag("--json", arguments->json, "print the summary as JSON");
+  verb->add_flag("--json", arguments->json, "Prints the summary as JSON.");
   verb->callback([arguments, verb] { run(*arguments, *verb); });
 }
 

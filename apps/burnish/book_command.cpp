@@ -83,29 +83,32 @@ void add_book_command(CLI::App& app) {
       "          burnish book new.txt -o new.burnish --shared library.burnish\n"
       "          burnish fit pairs.csv --book library.burnish -o paint.burnish");
   auto arguments = std::make_shared<BookArguments>();
-  verb->add_option(
-          "LIST", arguments->place,
-          "a folder with measurements, or a text with an argument of `burnish fit` a line; isotropic, of one "
-          "channel or three")
+  verb->add_option("LIST", arguments->place,
+                   "Names a folder of isotropic measurements of one channel or three, or a text with an "
+                   "argument of `burnish fit` on each line.")
       ->required();
-  verb->add_option("-o,--output,--out", arguments->out, "file to write")->required();
-  CLI::Option* bytes = verb->add_option("--budget,--bytes", arguments->options.bytes,
-                                        "of what the materials share, at most; K counts as 1024")
-                           ->transform(CLI::AsSizeValue(false))
-                           ->capture_default_str();
-  CLI::Option* each = verb->add_option("--bytes-a-material", arguments->options.bytes_a_material,
-                                       "of the weights of each, at most: a byte a weight")
-                          ->check(in_range(std::size_t{4}, MaterialBook::kMaxComponents))
-                          ->capture_default_str();
-  verb->add_option("--shared", arguments->shared, "a book whose shared part serves: only weights are found")
+  verb->add_option("-o,--output,--out", arguments->out, "Names the file to write.")->required();
+  CLI::Option* bytes =
+      verb->add_option("--budget,--bytes", arguments->options.bytes,
+                       "Spends at most so many bytes on what the materials share; K counts as 1024.")
+          ->transform(CLI::AsSizeValue(false))
+          ->capture_default_str();
+  CLI::Option* each =
+      verb->add_option("--bytes-a-material", arguments->options.bytes_a_material,
+                       "Spends at most so many bytes on each material's weights, one a weight.")
+          ->check(in_range(std::size_t{4}, MaterialBook::kMaxComponents))
+          ->capture_default_str();
+  verb->add_option("--shared", arguments->shared,
+                   "Takes the shared part of this book, and finds weights alone.")
       ->excludes(bytes)
       ->excludes(each);
-  verb->add_option("--seed", arguments->options.seed, "of the pairs that are drawn of each material")
+  verb->add_option("--seed", arguments->options.seed, "Chooses the pairs that are drawn of each material.")
       ->check(at_least_zero())
       ->capture_default_str();
   add_open_options(*verb, arguments->open);
-  verb->add_option("--threads", arguments->threads, "at most this many; 0: all")->check(in_range(0, 1024));
-  verb->add_flag("--json", arguments->json, "print the summary as JSON");
+  verb->add_option("--threads", arguments->threads, "Uses at most so many threads; 0 uses all.")
+      ->check(in_range(0, 1024));
+  verb->add_flag("--json", arguments->json, "Prints the summary as JSON.");
   verb->callback([arguments] { make(*arguments); });
 }
 

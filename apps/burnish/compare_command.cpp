@@ -113,8 +113,7 @@ void print_compared(std::span<const ComparedFigures> figures, const Measurement*
   for (const ComparedFigures& f : figures)
     fmt::print("{:<32} {:>8} {:>8.2f} {:>8.2f} {:>7.4f} {:>9.4f} {:>8.4f} {:>8.4f}\n", f.name,
                f.bytes ? fmt::format("{}", *f.bytes) : "-", f.figures.psnr, psnr_of_disc(f.figures.psnr),
-               f.figures.ssim,
-               f.figures.relative, f.figures.rms_log, f.figures.log_cos);
+               f.figures.ssim, f.figures.relative, f.figures.rms_log, f.figures.log_cos);
   if (measured && measured->quality)
     print_quality(*measured->quality);
   else if (measured && asked_quality)
@@ -154,8 +153,7 @@ void compare(const CompareArguments& arguments) {
   }
   const Scorer scorer(reference.ref(), arguments.figures);
   const bool asked_quality = !arguments.folder.empty() || !arguments.repeat.empty();
-  if (measurement && asked_quality)
-    add_quality(*measurement, reference, scorer, arguments);
+  if (measurement && asked_quality) add_quality(*measurement, reference, scorer, arguments);
   const Measurement* const measured = measurement ? &*measurement : nullptr;
   std::optional<Progress> progress(std::in_place, "comparing");
   const std::vector<ComparedFigures> figures =
@@ -182,26 +180,27 @@ void add_compare_command(CLI::App& app) {
   verb->footer("Example: burnish compare paint.binary paint.exr other.exr -o report");
   auto arguments = std::make_shared<CompareArguments>();
   add_source_arguments(*verb, arguments->reference);
-  verb->add_option("MODELS", arguments->models, "BRDFs to compare with it")->required();
+  verb->add_option("MODELS", arguments->models, "Names the BRDFs to compare with it.")->required();
   verb->add_option("-o,--output,--out", arguments->folder,
-                   "folder for a report with pictures: index.html and its parts");
-  verb->add_option("--count", arguments->figures.count, "direction pairs")
+                   "Writes a report with pictures into this folder: index.html and its parts.");
+  verb->add_option("--count", arguments->figures.count, "Compares at so many direction pairs.")
       ->check(in_range(1, 100'000'000))
       ->capture_default_str();
-  verb->add_option("--seed", arguments->figures.seed, "of the direction pairs")
+  verb->add_option("--seed", arguments->figures.seed, "Chooses the direction pairs.")
       ->check(at_least_zero())
       ->capture_default_str();
   verb->add_option("--target", arguments->target,
-                   "score the function between what was measured too, or nodes: only what was measured "
-                   "(default: the function, and of measurements a second table at the nodes)")
+                   "Scores the function between what was measured too, or the measured nodes alone (default: "
+                   "the function, and of measurements both).")
       ->check(one_of({"function", "nodes"}));
-  verb->add_option("--only", arguments->only,
-                   "score these nodes only: half=0, half=1 (of a checkerboard) or theta_i=K, counted from 0");
+  verb->add_option(
+      "--only", arguments->only,
+      "Scores these nodes alone: half=0, half=1 (of a checkerboard) or theta_i=K, counted from 0.");
   verb->add_option("--repeat", arguments->repeat,
-                   "a second measurement of the same surface: what it scores is the line to reach");
+                   "Scores a second measurement of the same surface too, as the line to reach.");
   verb->add_flag("--no-symmetrize", arguments->no_symmetrize,
-                 "compare f(wi, wo) as it is, not the mean with f(wo, wi)");
-  verb->add_flag("--json", arguments->json, "print the figures as JSON");
+                 "Compares f(wi, wo) as it is, not its mean with f(wo, wi).");
+  verb->add_flag("--json", arguments->json, "Prints the figures as JSON.");
   verb->callback([arguments] { compare(*arguments); });
 }
 

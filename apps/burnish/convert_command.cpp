@@ -143,7 +143,8 @@ void run_convert(const ConvertArguments& given_arguments, const GivenOptions& gi
   if (is_model && format == "exr" && arguments.to.empty()) format = "model";
   check_options(given, format);
   // what was measured, unless draws are asked for
-  if (!given.count && is_one_of(format, {"astm", "csv"}) && has_entries(source)) arguments.options.entries = true;
+  if (!given.count && is_one_of(format, {"astm", "csv"}) && has_entries(source))
+    arguments.options.entries = true;
   const Converted converted = [&] {
     const Progress progress("converting");
     return convert(source, format, arguments.options);
@@ -169,7 +170,8 @@ void add_convert_command(CLI::App& app) {
                          "Convert a BRDF to another format, see `burnish help formats`; a model or a "
                          "surface to its other file");
   verb->footer(
-      "ASTM and CSV have the samples of a scattered source, the entries of a table, and drawn samples of the others. "
+      "ASTM and CSV have the samples of a scattered source, the entries of a table, and drawn samples of the "
+      "others. "
       "What is lost is said on the standard error output.\n"
       "Examples: burnish convert paint.bsdf paint.binary\n"
       "          burnish convert paint.binary paint.csv\n"
@@ -177,24 +179,27 @@ void add_convert_command(CLI::App& app) {
       "          burnish convert surface:wall.burnish#3,4 texel.exr");
   auto arguments = std::make_shared<ConvertArguments>();
   add_source_arguments(*verb, arguments->source);
-  auto* out = verb->add_option("OUT", arguments->out, "file to write");
-  verb->add_option("-o,--output,--out", arguments->out, "the same")->excludes(out);
+  auto* out = verb->add_option("OUT", arguments->out, "Names the file to write.");
+  verb->add_option("-o,--output,--out", arguments->out, "Names the file to write, as OUT does.")
+      ->excludes(out);
   verb->add_option("--to", arguments->to,
-                   "write this format, not the one that OUT's ending names; exr of a model writes slices")
+                   "Writes this format, not the one that OUT's ending names; exr of a model writes slices.")
       ->check(one_of({kConvertFormats.begin(), kConvertFormats.end()}));
   verb->add_option("--cells", arguments->options.cells,
-                   "cells along each polar angle of merl, mbsdf, tensortree and slices, twice as many along the azimuth")
+                   "Makes so many cells along each polar angle of merl, mbsdf, tensortree and slices, twice "
+                   "as many along the azimuth.")
       ->check(in_range(2, 1000))
       ->capture_default_str();
-  auto* count = verb->add_option("--count", arguments->options.count,
-                                 "draw so many samples for astm, csv or openmaterial, not a table's entries")
-                    ->check(in_range(1, 10000000))
-                    ->capture_default_str();
+  auto* count =
+      verb->add_option("--count", arguments->options.count,
+                       "Draws so many samples for astm, csv or openmaterial, instead of a table's entries.")
+          ->check(in_range(1, 10000000))
+          ->capture_default_str();
   verb->add_flag("--entries", arguments->options.entries,
-                 "write a table's entries to openmaterial too; astm and csv have them without it")
+                 "Writes a table's entries to openmaterial too; astm and csv have them without it.")
       ->excludes(count);
-  verb->add_flag("--notes", arguments->options.notes, "keep a model's notes of its fit in a .burnish file");
-  verb->add_flag("--json", arguments->json, "print what was written and lost as JSON");
+  verb->add_flag("--notes", arguments->options.notes, "Keeps a model's notes of its fit in a .burnish file.");
+  verb->add_flag("--json", arguments->json, "Prints what was written and lost as JSON.");
   verb->callback([arguments, verb] { run_convert(*arguments, given_options(*verb)); });
 }
 

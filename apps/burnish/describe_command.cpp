@@ -29,11 +29,11 @@ void add_describe_command(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::Option_group* what = verb->add_option_group("what");
   what->require_option(1);
-  what->add_option("-o,--output,--out,--man", options->man, "write manual pages into this folder");
-  what->add_flag("--bash", options->bash, "print the completion for bash");
-  what->add_flag("--zsh", options->zsh, "print the completion for zsh");
+  what->add_option("-o,--output,--out,--man", options->man, "Writes manual pages into this folder.");
+  what->add_flag("--bash", options->bash, "Prints the completion for bash.");
+  what->add_flag("--zsh", options->zsh, "Prints the completion for zsh.");
   what->add_flag("--json", options->json,
-                 "print all verbs, their options and examples as JSON, and the table of fit options");
+                 "Prints all verbs, their options and examples as JSON, and the table of fit options.");
   verb->callback([&app, options] {
     if (options->bash) fmt::print("{}", bash_completion(app));
     if (options->zsh) fmt::print("{}", zsh_completion(app));

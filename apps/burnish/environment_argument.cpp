@@ -3,10 +3,9 @@
 namespace burnish::cli {
 
 void add_environment_argument(CLI::App& verb, std::string& text) {
-  verb.add_option(
-      "--environment", text,
-      "light from all around: sun, studio, or an OpenEXR picture of all directions, twice as wide as "
-      "high, y up, x in its middle");
+  verb.add_option("--environment", text,
+                  "Adds light from all around: sun, studio, or an OpenEXR picture, twice as wide as high, y "
+                  "up, x in its middle.");
 }
 
 std::optional<Environment> environment_of(const std::string& text) {

@@ -73,9 +73,9 @@ FileBytes read_directions(const std::string& name) {
 /// Values at pairs; what the BRDF does not know is not known.
 struct Values {
   std::size_t channels = 0;
-  std::vector<double> f;             // [pair][channel]
-  std::vector<std::uint8_t> known;   // [pair]
-  std::vector<double> errors;        // [pair], or nothing
+  std::vector<double> f;            // [pair][channel]
+  std::vector<std::uint8_t> known;  // [pair]
+  std::vector<double> errors;       // [pair], or nothing
 };
 
 Values values_at(const Source& source, std::span<const DirectionPair> pairs, bool with_errors) {
@@ -98,7 +98,8 @@ Values values_at(const Source& source, std::span<const DirectionPair> pairs, boo
   return values;
 }
 
-std::vector<std::string> columns_of(const Source& source, const DirectionTable& directions, bool with_errors) {
+std::vector<std::string> columns_of(const Source& source, const DirectionTable& directions,
+                                    bool with_errors) {
   std::vector<std::string> names = directions.names;
   const auto values = value_names(source.ref().channels(), source.findings.lambda_nm);
   names.insert(names.end(), values.begin(), values.end());
@@ -190,14 +191,14 @@ void add_eval_command(CLI::App& app) {
   auto arguments = std::make_shared<EvalArguments>();
   add_source_arguments(*verb, arguments->source);
   verb->add_option("DIRECTIONS", arguments->directions,
-                   "a CSV file of direction pairs, or - for the standard input")
+                   "Names a CSV file of direction pairs, or - for the standard input.")
       ->required();
-  verb->add_option("-o,--output,--out", arguments->out, "write this CSV file, not the terminal");
+  verb->add_option("-o,--output,--out", arguments->out, "Writes this CSV file, not to the terminal.");
   verb->add_flag("--error", arguments->error,
-                 "add a column that says how far a measurement's value may be off: the standard deviation of "
-                 "ln(f + 0.001)");
+                 "Adds a column that says how far a measurement's value may be off: the standard deviation "
+                 "of ln(f + 0.001).");
   verb->add_flag("--json", arguments->json,
-                 "print how many values there are as JSON, and without -o the values too");
+                 "Prints how many values there are as JSON, and without -o the values too.");
   verb->callback([arguments] { evaluate(*arguments); });
 }
 

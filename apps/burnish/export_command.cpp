@@ -128,13 +128,14 @@ void run(const ExportArguments& arguments) {
 }  // namespace
 
 void add_export_command(CLI::App& app) {
-  CLI::App* verb = app.add_subcommand(
-      "export",
-      "Write a factored BRDF as shaders, textures, MaterialX, USD, MDL, glTF, a module of "
-      "three.js or Babylon.js, an RGL table, or a page that shows it; a surface as shaders and textures, "
-      "for three.js or as a page; "
-      "OpenPBR as all of these but textures; or Phong's and Blinn's models as shaders");
+  CLI::App* verb = app.add_subcommand("export",
+                                      "Write a model or a surface as shaders, textures, MaterialX, USD, MDL, "
+                                      "glTF, for three.js or Babylon.js, or as a "
+                                      "page");
   verb->footer(
+      "Surfaces become shaders, textures, modules of three.js and pages; OpenPBR all but textures; Phong's "
+      "and Blinn's "
+      "models shaders. "
       "Every shader comes with its textures but C++, which has them inside; NAME.json says what is in the "
       "folder and what an evaluation costs. See docs/guide/shaders.md and docs/guide/export.md.\n"
       "Examples: burnish export paint.exr --to glsl,html -o paint\n"
@@ -146,38 +147,39 @@ void add_export_command(CLI::App& app) {
       "          burnish export blinn_phong:exponent=60,ks=0.8 --to wgsl --power cubic2 -o highlight");
   auto arguments = std::make_shared<ExportArguments>();
   verb->add_option("MODEL", arguments->model,
-                   "factored BRDF, surface or OpenPBR, as `burnish fit` writes them, or one such as "
-                   "blinn_phong:exponent=60 or openpbr:coat_weight=1")
+                   "Names a factored BRDF, surface or OpenPBR as `burnish fit` writes them, or an analytic "
+                   "one such as blinn_phong:exponent=60.")
       ->required();
   const auto names = export_target_names();
-  verb->add_option("--to", arguments->to, "write these, separated by commas; may be given several times")
+  verb->add_option("--to", arguments->to, "Writes these, separated by commas.")
       ->required()
       ->delimiter(',')
       ->check(one_of({names.begin(), names.end()}));
-  verb->add_option("-o,--output,--out", arguments->folder, "folder, made where it is missing")->required();
-  verb->add_option("--name", arguments->name, "of functions and files; by default from MODEL's name");
-  verb->add_option(
-      "--power", arguments->power,
-      "of phong and blinn_phong: how the power is computed, see `burnish specular list`; by default the "
-      "cheapest that is never one of 255 levels off");
+  verb->add_option("-o,--output,--out", arguments->folder,
+                   "Names the folder to write to, which is made where it is missing.")
+      ->required();
+  verb->add_option("--name", arguments->name, "Names functions and files (default: as MODEL is named).");
+  verb->add_option("--power", arguments->power,
+                   "Computes the power of phong and blinn_phong so, see `burnish specular list` (default: "
+                   "the cheapest within one of 255 levels).");
   add_environment_argument(*verb, arguments->environment);
   CLI::Option* const cells =
-      verb->add_option("--cells", arguments->cells, "of mdl: cells along each polar angle of the measurement")
+      verb->add_option("--cells", arguments->cells,
+                       "Makes so many cells along each polar angle of an mdl measurement.")
           ->check(in_range(2, 1000))
           ->capture_default_str();
   CLI::Option* const exact =
-      verb->add_flag("--exact", arguments->exact, "shaders that weigh texels themselves, in floats");
-  verb->add_flag(
-          "--half", arguments->half,
-          "shaders that multiply texels in half precision (mediump, min16float, half, f16): within 1 %; "
-          "cpp stays single")
+      verb->add_flag("--exact", arguments->exact, "Writes shaders that weigh texels themselves, in floats.");
+  verb->add_flag("--half", arguments->half,
+                 "Writes shaders that multiply texels in half precision, within 1 %; cpp stays single.")
       ->excludes(exact);
-  verb->add_flag("--mips", arguments->mips, "KTX2 with levels: averages over the directions of a texel");
-  verb->add_flag("--plain", arguments->plain, "KTX2 without Zstandard");
-  verb->add_flag(
-      "--blocks", arguments->blocks,
-      "of a surface: maps as pairs in BC5, which stay compressed where they are read, and shaders for them");
-  verb->add_flag("--json", arguments->json, "print the files and what shaders cost as JSON");
+  verb->add_flag("--mips", arguments->mips,
+                 "Writes KTX2 with mip levels, which average over the directions of a texel.");
+  verb->add_flag("--plain", arguments->plain, "Writes KTX2 without Zstandard.");
+  verb->add_flag("--blocks", arguments->blocks,
+                 "Writes a surface's maps as pairs in BC5, which stay compressed where they are read, and "
+                 "shaders for them.");
+  verb->add_flag("--json", arguments->json, "Prints the files and what shaders cost as JSON.");
   verb->callback([arguments, cells] {
     if (cells->count() > 0 && std::ranges::find(arguments->to, "mdl") == arguments->to.end())
       throw CLI::ValidationError("--cells: expected --to mdl with it, found others");

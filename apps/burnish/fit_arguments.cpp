@@ -1,5 +1,8 @@
 #include "fit_arguments.h"
 
+#include <algorithm>
+#include <cstddef>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -17,22 +20,25 @@ std::string word_of(const FitOption& option) {
   return spelled(option, FitFront::command_line);
 }
 
-// The row's sentence, and what else there is to know, in parentheses.
+// The row's sentence, and in parentheses what it needs and its default where these are short: the guide's page
+// (docs/guide/fit-options.md) has them all, and what excludes what.
 std::string description(const FitOption& option) {
-  std::string text(option.help);
-  if (option.name == "method") text += fmt::format(" Methods: {}.", fmt::join(baseline_methods(), ", "));
-  std::vector<std::string> more;
-  if (!option.needs.empty()) more.push_back("needs " + word_of(fit_option(option.needs)));
-  std::vector<std::string> others;
-  for (const FitOption& other : fit_option_table())
-    if (excludes(option, other)) others.push_back(word_of(other));
-  if (!others.empty()) more.push_back(fmt::format("excludes {}", fmt::join(others, " ")));
-  if (!option.left_out.empty()) more.push_back(fmt::format("default: {}", option.left_out));
-  return more.empty() ? text : fmt::format("{} ({})", text, fmt::join(more, "; "));
+  constexpr std::ptrdiff_t kMostWords = 25;
+  std::string text(option.help), more;
+  const auto add = [&](const std::string& what) {
+    const std::string longer = more.empty() ? what : more + "; " + what;
+    if (std::ranges::count(text + ' ' + longer, ' ') < kMostWords) more = longer;
+  };
+  if (!option.needs.empty()) add("needs " + word_of(fit_option(option.needs)));
+  if (!option.left_out.empty()) add(fmt::format("default: {}", option.left_out));
+  if (more.empty()) return text;
+  if (text.ends_with('.')) text.pop_back();
+  return fmt::format("{} ({}).", text, more);
 }
 
 // As CLI11 names types, which completions and manual pages read: "TEXT:{image,relative}", "NUMBER:from 1 to 64".
 std::string type_name(const FitOption& option) {
+  if (option.name == "method") return fmt::format("TEXT:{{{}}}", fmt::join(baseline_methods(), ","));
   switch (option.takes) {
     case FitValue::choice:
       return fmt::format("TEXT:{{{}}}", fmt::join(option.choices, ","));

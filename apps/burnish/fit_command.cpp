@@ -6,7 +6,6 @@
 #include <memory>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <burnish/baselines/evaluation_cost.h>
 #include <burnish/factors/fetches.h>
@@ -21,7 +20,6 @@
 #include "commands.h"
 #include "counted.h"
 #include "fit_arguments.h"
-#include "json_output.h"
 #include "notes_text.h"
 #include "progress.h"
 #include "source_arguments.h"
@@ -316,9 +314,8 @@ void fit(const FitCommand& arguments) {
                              ? std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()
                              : fit.report.seconds;
   if (arguments.json) {
-    auto json = nlohmann::ordered_json::parse(summary_json(fit, arguments.out, seconds));
-    json["file_bytes"] = bytes.size();
-    return print_as_json(json);
+    fmt::print("{}\n", summary_json(fit, arguments.out, seconds));
+    return;
   }
   fmt::print("{}: {}\n", fit.report.source, fit.report.source_format);
   if (model)
@@ -332,12 +329,9 @@ void fit(const FitCommand& arguments) {
 void add_material_arguments(CLI::App& verb, FitCommand& arguments) {
   const auto targets = material_targets();
   CLI::Option* const to = verb.add_option(
-      "--to", arguments.to,
-      fmt::format("fit a renderer's material instead, its parameters written as JSON: {} (excludes the "
-                  "options of factored models)",
-                  fmt::join(targets, ", ")));
+      "--to", arguments.to, "Fits a renderer's material instead, and writes its parameters as JSON.");
   to->check(one_of({targets.begin(), targets.end()}));
-  verb.add_flag("--alone", arguments.alone, "of --to: fit no factored model beside it")->needs(to);
+  verb.add_flag("--alone", arguments.alone, "Fits no factored model beside the material of --to.")->needs(to);
 }
 
 }  // namespace
@@ -355,12 +349,13 @@ void add_fit_command(CLI::App& app) {
       "          burnish fit paint.binary --to openpbr -o paint.json");
   auto arguments = std::make_shared<FitCommand>();
   add_source_arguments(*verb, arguments->source);
-  verb->add_option(
-      "-o,--output,--out", arguments->out,
-      "model file to write (compact where it ends in .burnish, else OpenEXR; JSON with --method and --to)");
+  verb->add_option("-o,--output,--out", arguments->out,
+                   "Names the model's file: compact where it ends in .burnish, else OpenEXR, and JSON with "
+                   "--method or --to.");
   add_fit_arguments(*verb, arguments->how);
-  verb->add_option("--threads", arguments->threads, "at most this many; 0: all")->check(in_range(0, 1024));
-  verb->add_flag("--json", arguments->json, "print the summary as JSON");
+  verb->add_option("--threads", arguments->threads, "Uses at most so many threads; 0 uses all.")
+      ->check(in_range(0, 1024));
+  verb->add_flag("--json", arguments->json, "Prints the summary as JSON.");
   add_material_arguments(*verb, *arguments);
   verb->callback([arguments] { fit(*arguments); });
 }

@@ -225,53 +225,53 @@ void add_fit_surface_command(CLI::App& app, FitCrew* crew) {
       "          burnish fit-surface capture/ -o wall.burnish --book lobes.burnish");
   auto arguments = std::make_shared<FitSurfaceArguments>();
   SurfaceFitOptions& options = arguments->options;
-  verb->add_option(
-          "CAPTURE", arguments->capture,
-          "a folder with capture.json and its pictures, a BTF of UBO2014, or a CSV of samples of texels")
+  verb->add_option("CAPTURE", arguments->capture,
+                   "Names a folder with capture.json and its pictures, a BTF of UBO2014, or a CSV of samples "
+                   "of texels.")
       ->required();
-  verb->add_option("-o,--output,--out", arguments->out, "the surface's file to write, .burnish or .exr")
+  verb->add_option("-o,--output,--out", arguments->out, "Names the surface's file, .burnish or .exr.")
       ->required();
-  verb->add_option("--lobes", options.lobes, "how many lobes")
+  verb->add_option("--lobes", options.lobes, "Fits so many lobes.")
       ->check(in_range(std::size_t{1}, kMaxSurfaceLobes))
       ->capture_default_str();
-  verb->add_option("--lobe-bytes", options.lobe_bytes, "of each lobe's tables; K counts as 1024")
+  verb->add_option("--lobe-bytes", options.lobe_bytes,
+                   "Spends so many bytes on each lobe's tables; K counts as 1024.")
       ->transform(CLI::AsSizeValue(false))
       ->capture_default_str();
   verb->add_option("--book", arguments->book,
-                   "a model whose lobes are taken as they are: weights alone are fitted")
+                   "Takes the lobes of this model as they are, and fits weights alone.")
       ->excludes("--lobes")
       ->excludes("--lobe-bytes");
   verb->add_option("--normals", arguments->normals,
-                   "those of the capture, none (flat) or estimated; auto: the capture's, estimated where it "
-                   "has none, flat of samples")
+                   "Takes normals of the capture, none (flat) or estimated ones; auto estimates them where "
+                   "the capture has none.")
       ->check(one_of({"auto", "capture", "flat", "estimate"}))
       ->capture_default_str();
   verb->add_option("--pictures", arguments->pictures,
-                   "of a BTF, how many of its pictures are taken, spread evenly; 0: all")
+                   "Takes so many of a BTF's pictures, spread evenly; 0 takes all.")
       ->capture_default_str();
-  verb->add_option("--rounds", options.rounds,
-                   "of lobes and weights in turn; else 9, where normals are estimated 24")
+  verb->add_option(
+          "--rounds", options.rounds,
+          "Fits lobes and weights in turn for so many rounds (default: 9, where normals are estimated 24).")
       ->check(in_range(1, kMaxSurfaceRounds));
   verb->add_option("--memory", options.tile_bytes,
-                   "bytes of pictures in memory at a time; M counts as 1024^2")
+                   "Holds at most so many bytes of pictures in memory; M counts as 1024^2.")
       ->transform(CLI::AsSizeValue(false));
-  verb->add_option("--seed", options.seed, "of the texels and pixels that lobes are fitted to")
+  verb->add_option("--seed", options.seed, "Chooses the texels and pixels that lobes are fitted to.")
       ->check(at_least_zero())
       ->capture_default_str();
   verb->add_flag("--widen", options.widened,
-                 "add copies of the lobes for the bumps that mip levels lose: better from afar, one fetch "
-                 "a light more for each");
-  verb->add_option("--threads", arguments->threads, "at most this many; 0: all")->check(in_range(0, 1024));
-  verb->add_option(
-      "--picture", arguments->picture,
-      "a PNG to write: a picture that was held out, the surface in its place, and the lobes' weights");
+                 "Adds copies of the lobes for bumps that mip levels lose, each for one fetch more a light.");
+  verb->add_option("--threads", arguments->threads, "Uses at most so many threads; 0 uses all.")
+      ->check(in_range(0, 1024));
+  verb->add_option("--picture", arguments->picture,
+                   "Writes a PNG with a held-out picture, the surface in its place, and the lobes' weights.");
   verb->add_flag(
       "--compare", arguments->compare,
-      "also score what others would do: GGX in each texel, the nearest lobe alone, principal components");
-  verb->add_flag(
-      "--resume", arguments->resume,
-      "go on from OUTPUT.part, which a fit of the same capture and options left when it was stopped");
-  verb->add_flag("--json", arguments->json, "print the report as JSON");
+      "Also scores other methods: GGX in each texel, the nearest lobe alone, and principal components.");
+  verb->add_flag("--resume", arguments->resume,
+                 "Goes on from OUTPUT.part, which a stopped fit of the same capture and options left.");
+  verb->add_flag("--json", arguments->json, "Prints the report as JSON.");
   verb->callback([arguments, crew] { fit_surface(*arguments, crew); });
 }
 

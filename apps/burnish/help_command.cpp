@@ -165,8 +165,9 @@ void add_help_command(CLI::App& app) {
       "          burnish help fit --json");
   auto arguments = std::make_shared<Arguments>();
   verb->add_option("TOPIC", arguments->topic,
-                   "formats, models, or a verb and verbs below it; without it all verbs");
-  verb->add_flag("--json", arguments->json, "the same as JSON: of a verb its options, defaults and examples");
+                   "Explains formats, models, or a verb and verbs below it; without it all verbs.");
+  verb->add_flag("--json", arguments->json,
+                 "Prints the same as JSON, of a verb its options, defaults and examples.");
   verb->callback([arguments, &app] {
     if (arguments->topic == std::vector<std::string>{"formats"})
       return arguments->json ? print_as_json(formats_json()) : print_formats();

@@ -27,22 +27,25 @@ std::shared_ptr<UnitArguments> add_unit_options(CLI::App& sub) {
   auto arguments = std::make_shared<UnitArguments>();
   std::string methods, units;
   for (const UnitInfo& info : unit_methods())
-    methods += fmt::format("{}{} ({} to {} clocks)", methods.empty() ? "" : ", ", info.name, info.min_depth,
+    methods += fmt::format("{}{} ({}-{} clocks)", methods.empty() ? "" : ", ", info.name, info.min_depth,
                            info.max_depth);
   for (const ShippedUnit& unit : shipped_units())
     units += (units.empty() ? "" : ", ") + std::string(unit.name);
-  sub.add_option("--method", arguments->method, methods)->capture_default_str();
-  sub.add_option("--cos-bits", arguments->config.cosine_bits, "fraction bits of the input")
+  sub.add_option("--method", arguments->method, "Computes the power so: " + methods + ".")
+      ->capture_default_str();
+  sub.add_option("--cos-bits", arguments->config.cosine_bits, "Gives the input so many fraction bits.")
       ->capture_default_str();
   sub.add_option("--coef-bits", arguments->config.coefficient_bits,
-                 "width of a coefficient; 0: the method's own");
-  sub.add_option("--out-bits", arguments->config.output_bits, "width of the output")->capture_default_str();
-  sub.add_option("--depth", arguments->config.depth, "clocks from input to output; 0: the fewest");
-  sub.add_option("--input", arguments->input, "cosine: c; versine: v = 1 - c")
+                 "Gives coefficients so many bits; 0 takes the method's own.");
+  sub.add_option("--out-bits", arguments->config.output_bits, "Gives the output so many bits.")
+      ->capture_default_str();
+  sub.add_option("--depth", arguments->config.depth,
+                 "Takes so many clocks from input to output; 0 takes the fewest.");
+  sub.add_option("--input", arguments->input, "Takes a cosine c, or a versine v = 1 - c.")
       ->check(one_of({"cosine", "versine"}))
       ->capture_default_str();
   sub.add_option("--unit", arguments->shipped,
-                 "a configuration of hw/ instead of the options above: " + units);
+                 "Takes a configuration of hw/ instead of the options above: " + units + ".");
   return arguments;
 }
 
@@ -79,15 +82,18 @@ void add_generate(CLI::App& verb) {
   };
   auto unit_arguments = add_unit_options(*sub);
   auto arguments = std::make_shared<Arguments>();
-  sub->add_option("--name", arguments->name, "of the module; by default the unit's or method's");
-  sub->add_option("--vectors", arguments->vectors, "golden vectors")
+  sub->add_option("--name", arguments->name, "Names the module (default: as the unit or method is named).");
+  sub->add_option("--vectors", arguments->vectors, "Writes so many golden vectors.")
       ->check(in_range(1, 1'000'000))
       ->capture_default_str();
-  sub->add_flag("--all", arguments->all, "every configuration of hw/, and a module `bench` around them");
+  sub->add_flag("--all", arguments->all,
+                "Writes every configuration of hw/, and a module `bench` around them.");
   sub->add_flag("--blinn", arguments->blinn,
-                "with Blinn's front end: vectors in; for --method exact --input versine");
-  sub->add_option("-o,--output,--out", arguments->out, "folder, made where it is missing")->required();
-  sub->add_flag("--json", arguments->json, "print the files as JSON");
+                "Adds Blinn's front end, which takes vectors, to --method exact --input versine.");
+  sub->add_option("-o,--output,--out", arguments->out,
+                  "Names the folder to write to, which is made where it is missing.")
+      ->required();
+  sub->add_flag("--json", arguments->json, "Prints the files as JSON.");
   sub->callback([unit_arguments, arguments] {
     std::vector<std::string> names, written;
     std::vector<SpecularUnit> units;
@@ -118,10 +124,9 @@ void add_model(CLI::App& verb) {
   sub->footer("Example: printf '50 32700\\n50 32768\\n' | burnish hw model --method exact");
   auto unit_arguments = add_unit_options(*sub);
   auto real = std::make_shared<bool>(false), json = std::make_shared<bool>(false);
-  sub->add_flag(
-      "--real", *real,
-      "the input is a cosine in [0, 1], rounded to the input's format; the answer a value in [0, 1]");
-  sub->add_flag("--json", *json, "print questions and answers as JSON");
+  sub->add_flag("--real", *real,
+                "Takes cosines in [0, 1], rounded to the input's format, and answers values in [0, 1].");
+  sub->add_flag("--json", *json, "Prints questions and answers as JSON.");
   sub->callback([unit_arguments, real, json] {
     auto answers = nlohmann::ordered_json::array();
     const SpecularUnit unit = make_unit(*unit_arguments);
@@ -205,21 +210,21 @@ void add_error(CLI::App& verb) {
   sub->footer("Example: burnish hw error --method exact --out-bits 10");
   auto unit_arguments = add_unit_options(*sub);
   auto arguments = std::make_shared<ErrorArguments>();
-  sub->add_option("--first", arguments->first, "least exponent")
+  sub->add_option("--first", arguments->first, "Begins at this exponent.")
       ->check(in_range(1, kUnitMaxExponent))
       ->capture_default_str();
-  sub->add_option("--last", arguments->last, "largest exponent")
+  sub->add_option("--last", arguments->last, "Ends at this exponent.")
       ->check(in_range(1, kUnitMaxExponent))
       ->capture_default_str();
-  sub->add_option("--exponent-step", arguments->exponent_step, "only every so manyth")
+  sub->add_option("--exponent-step", arguments->exponent_step, "Takes every so manyth exponent alone.")
       ->check(in_range(1, 1000))
       ->capture_default_str();
-  sub->add_option("--input-step", arguments->input_step, "only every so manyth")
+  sub->add_option("--input-step", arguments->input_step, "Takes every so manyth input alone.")
       ->check(in_range(1, 1 << 20))
       ->capture_default_str();
-  sub->add_flag("--json", arguments->json, "for programs");
+  sub->add_flag("--json", arguments->json, "Prints the same as JSON.");
   sub->add_flag("--rounded-input", arguments->rounded_input,
-                "instead: at --last alone, of 2^20 cosines in the highlight, rounded to the input's format");
+                "Measures at --last alone, of 2^20 cosines in the highlight, rounded to the input's format.");
   sub->callback([unit_arguments, arguments] {
     const SpecularUnit unit = make_unit(*unit_arguments);
     if (arguments->rounded_input)

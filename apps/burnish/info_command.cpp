@@ -151,10 +151,10 @@ void add_info_command(CLI::App& app) {
   add_source_arguments(*verb, *arguments);
   verb->add_option(
           "--target", *target,
-          "what to describe: the function that its owner makes of a measurement, or nodes: what was measured")
+          "Describes the function that its owner makes of a measurement, or the nodes that were measured.")
       ->check(one_of({"function", "nodes"}))
       ->capture_default_str();
-  verb->add_flag("--json", *as_json, "for programs");
+  verb->add_flag("--json", *as_json, "Prints the same as JSON.");
   verb->callback([=] {
     const auto refuse_nodes = [&](const char* kind) {
       if (*target == "nodes")

@@ -12,9 +12,12 @@
 int main(int argc, char** argv) {
   CLI::App app{"burnish: measured, scattered or analytic reflectance into a few small positive textures"};
   app.require_subcommand(1);
+  app.set_help_flag("-h,--help", "Prints this help.");
   bool as_json = false;  // found before the version is printed, since it is added before
-  CLI::Option* const json = app.add_flag("--json", as_json, "--version as JSON");
-  json->needs(app.set_version_flag("--version", [&as_json] { return burnish::cli::version_text(as_json); }));
+  CLI::Option* const json = app.add_flag("--json", as_json, "Prints --version as JSON.");
+  json->needs(app.set_version_flag(
+      "--version", [&as_json] { return burnish::cli::version_text(as_json); },
+      "Prints versions, instruction sets and threads."));
   burnish::cli::add_info_command(app);
   burnish::cli::add_fit_command(app);
   burnish::cli::add_batch_command(app);
@@ -37,7 +40,8 @@ int main(int argc, char** argv) {
     // CLI11 returns its own codes; ours is 2 for every misuse, 0 for --help.
     if (error.get_exit_code() == 0) return app.exit(error);
     if (argc == 1) {
-      fmt::print(stderr, "burnish: expected a verb, found none; there are\n\n{}", burnish::cli::list_of_verbs(app));
+      fmt::print(stderr, "burnish: expected a verb, found none; there are\n\n{}",
+                 burnish::cli::list_of_verbs(app));
       return 2;
     }
     const auto meant =

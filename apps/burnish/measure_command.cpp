@@ -31,7 +31,8 @@ void measure_surface(const std::string& scene, const std::string& out, bool json
   const std::filesystem::path path(scene);
   const CaptureForm form = [&] {
     Progress progress("pictures");
-    return write_virtual_capture(parse_surface_scene(read_file(path), path.parent_path()), out, progress.bar());
+    return write_virtual_capture(parse_surface_scene(read_file(path), path.parent_path()), out,
+                                 progress.bar());
   }();
   if (json)
     print_as_json({{"output", out},
@@ -103,28 +104,29 @@ void add_measure_command(CLI::App& app) {
   CLI::Option* const positional = verb->get_option("BRDF")->required(false);
   verb->add_option(
           "--surface", arguments->surface,
-          "a scene of materials, heights, lights and views (docs/guide/surfaces.md): writes a capture")
+          "Writes a capture of this scene of materials, heights, lights and views (docs/guide/surfaces.md).")
       ->excludes(positional);
-  CLI::Option* const next = verb->add_option("--next", arguments->next,
-                                             "list so many directions, in degrees, that lower the expected "
-                                             "error of a measurement most; each with "
-                                             "how far its value may be off once those before it are measured")
-                                ->check(in_range(std::size_t{1}, kMostNext));
+  CLI::Option* const next =
+      verb->add_option("--next", arguments->next,
+                       "Lists so many directions, in degrees, that lower a measurement's expected error "
+                       "most, each with the error once those before are read.")
+          ->check(in_range(std::size_t{1}, kMostNext));
   verb->add_option("-o,--output,--out", arguments->out,
-                   "CSV file to write; with --surface a folder; needed without --next");
+                   "Names the CSV file to write, with --surface the folder; only --next does without.");
   // Ten million samples are a gigabyte of text.
-  verb->add_option("--count", arguments->measurement.count, "how many samples")
+  verb->add_option("--count", arguments->measurement.count, "Draws so many samples.")
       ->excludes(next)
       ->check(in_range(1, 10000000))
       ->capture_default_str();
-  verb->add_option("--noise", arguments->measurement.noise, "sigma of log-normal noise on every value")
+  verb->add_option("--noise", arguments->measurement.noise,
+                   "Adds log-normal noise of this sigma to every value.")
       ->excludes(next)
       ->check(in_range(0.0, 10.0))
       ->capture_default_str();
-  verb->add_option("--seed", arguments->measurement.seed, "of directions and noise")
+  verb->add_option("--seed", arguments->measurement.seed, "Chooses directions and noise.")
       ->check(at_least_zero())
       ->capture_default_str();
-  verb->add_flag("--json", arguments->json, "print what was written as JSON");
+  verb->add_flag("--json", arguments->json, "Prints what was written as JSON.");
   verb->get_option("--surface")->excludes(next);
   verb->callback([arguments] {
     if (arguments->next == 0 && arguments->out.empty()) throw CLI::RequiredError("--output");

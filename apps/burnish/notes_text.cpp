@@ -1,7 +1,8 @@
 #include "notes_text.h"
 
 #include <algorithm>
-#include <cctype>
+#include <cmath>
+#include <initializer_list>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -17,7 +18,7 @@ using Json = nlohmann::ordered_json;
 using Lines = std::vector<std::pair<std::string, std::string>>;
 
 std::string number_text(double x) {
-  return x == 0 || std::abs(x) >= 1e-3 ? fmt::format("{:.5g}", x) : fmt::format("{:.2e}", x);
+  return x == 0 || std::abs(x) >= 1e-3 ? fmt::format("{:.4g}", x) : fmt::format("{:.1e}", x);
 }
 
 // A name of the JSON in words: "node_expected" is "node expected".
@@ -86,7 +87,8 @@ class Notes {
       if (!text.empty()) how += (how.empty() ? "" : ", ") + text;
     };
     if (const std::string samples = take("samples"); !samples.empty()) more(samples + " samples");
-    if (const std::string lobes = take("lobes"); !lobes.empty()) more(lobes + (lobes == "1" ? " lobe" : " lobes"));
+    if (const std::string lobes = take("lobes"); !lobes.empty())
+      more(lobes + (lobes == "1" ? " lobe" : " lobes"));
     const std::string steps = take("iterations"), reason = take("stop_reason");
     if (!steps.empty())
       more(steps + " steps" + (reason.empty() ? "" : fmt::format(" ({})", ending_text(reason))));
@@ -100,14 +102,15 @@ class Notes {
   void bytes() {
     const std::string budget = take("budget"), fetches = take("fetches");
     if (!budget.empty() || !fetches.empty())
-      add("within", (budget.empty() ? "" : budget + " bytes") +
-                        (fetches.empty() ? ""
-                                         : fmt::format("{}{} fetches", budget.empty() ? "" : ", ", fetches)));
+      add("within",
+          (budget.empty() ? "" : budget + " bytes") +
+              (fetches.empty() ? "" : fmt::format("{}{} fetches", budget.empty() ? "" : ", ", fetches)));
     trials("fetch_trials", "fetches", "tried");
     const auto choice = json_.find("budget_choice");
     if (choice == json_.end() || !choice->is_object()) return;
     const auto stop = choice->find("stop");
-    if (stop != choice->end()) add("bytes by", "--budget auto, which stopped at " + stop_text(plain_text(*stop)));
+    if (stop != choice->end())
+      add("bytes by", "--budget auto, which stopped at " + stop_text(plain_text(*stop)));
     if (const auto noise = choice->find("noise"); noise != choice->end())
       add("itself", "the measurement scores " + plain_text(*noise));
     if (const auto tried = choice->find("trials"); tried != choice->end() && tried->is_array())
@@ -137,7 +140,8 @@ class Notes {
   }
 
   void errors() {
-    add("held out", take_all({{"psnr", " dB"}, {"ssim", ""}, {"relative", ""}, {"rms_log", ""}, {"log_cos", ""}}));
+    add("held out",
+        take_all({{"psnr", " dB"}, {"ssim", ""}, {"relative", ""}, {"rms_log", ""}, {"log_cos", ""}}));
   }
 
   void nodes() {
@@ -151,10 +155,15 @@ class Notes {
     figures("node_held_out", "unseen", "each node by the others");
     if (const auto found = json_.find("node_expected"); found != json_.end() && found->is_object()) {
       std::string text = found->contains("relative") ? "relative " + plain_text((*found)["relative"]) : "";
+      text += ", measured or not";
+      std::string from, values;
       if (const auto bands = found->find("from_theta_i_deg"); bands != found->end() && bands->is_object())
-        for (const auto& [from, relative] : bands->items())
-          text += fmt::format(", {} from theta_i = {}", plain_text(relative), from);
-      add("expected", text + " degrees on, measured or not");
+        for (const auto& [theta_i, relative] : bands->items()) {
+          from += ' ' + theta_i;
+          values += ' ' + plain_text(relative);
+        }
+      if (!from.empty()) text += fmt::format(";{} from theta_i ={} degrees on", values, from);
+      add("expected", text);
       json_.erase("node_expected");
     }
     if (const auto found = json_.find("node_covariance"); found != json_.end()) {
@@ -168,7 +177,8 @@ class Notes {
     if (found == json_.end() || !found->is_object()) return;
     std::string text;
     for (const auto& [figure, value] : found->items())
-      if (figure != "count") text += fmt::format("{}{} {}", text.empty() ? "" : ", ", figure, plain_text(value));
+      if (figure != "count")
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", figure, plain_text(value));
     if (found->contains("count")) text += fmt::format(" at {} nodes", plain_text((*found)["count"]));
     add(word, fmt::format("{}: {}", of, text));
     json_.erase(found);

@@ -31,8 +31,7 @@ double seconds_since(Clock::time_point start) {
 /// The line, and the thread that draws it.
 class Progress::Line {
  public:
-  explicit Line(std::string label)
-      : stage_(std::move(label)), thread_([this] { draw_until_done(); }) {}
+  explicit Line(std::string label) : stage_(std::move(label)), thread_([this] { draw_until_done(); }) {}
   ~Line() {
     {
       const std::lock_guard lock(mutex_);
@@ -64,8 +63,7 @@ class Progress::Line {
     constexpr std::chrono::milliseconds kStep(200), kFirst(2000);
     std::unique_lock lock(mutex_);
     if (changed_.wait_for(lock, kFirst, [&] { return done_; })) return;
-    do
-      draw();
+    do draw();
     while (!changed_.wait_for(lock, kStep, [&] { return done_; }));
   }
 
@@ -73,11 +71,12 @@ class Progress::Line {
     constexpr int kWidth = 30;
     const int percent = static_cast<int>(100 * fraction_), filled = kWidth * percent / 100;
     std::string text = stage_;
-    if (percent > 0) text += fmt::format(" [{:=<{}}{: <{}}] {:3d} %", "", filled, "", kWidth - filled, percent);
+    if (percent > 0)
+      text += fmt::format(" [{:=<{}}{: <{}}] {:3d} %", "", filled, "", kWidth - filled, percent);
     text += ", " + duration_text(seconds_since(start_));
     if (fraction_ >= kLeastFraction && fraction_ < 1)
-      text += fmt::format(", {} left",
-                          duration_text(seconds_since(stage_start_) * (1 - fraction_) / fraction_));
+      text +=
+          fmt::format(", {} left", duration_text(seconds_since(stage_start_) * (1 - fraction_) / fraction_));
     fmt::print(stderr, "\r{}\033[K", text);
     std::fflush(stderr);
     drawn_ = true;

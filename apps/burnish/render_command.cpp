@@ -250,54 +250,53 @@ void add_render_command(CLI::App& app) {
       "          burnish render --figure1 -o figure1.png\n"
       "See docs/guide/rendering.md.");
   auto arguments = std::make_shared<RenderArguments>();
-  verb->add_option("--mesh", arguments->mesh, "sphere, teapot, torus-knot, plane, or an OBJ or glTF file")
+  verb->add_option("--mesh", arguments->mesh,
+                   "Draws a sphere, teapot, torus-knot or plane, or an OBJ or glTF file.")
       ->capture_default_str();
-  verb->add_option("--vertices", arguments->vertices, "of a built-in mesh, about")
+  verb->add_option("--vertices", arguments->vertices, "Gives a built-in mesh about so many vertices.")
       ->check(in_range(64, 1 << 22))
       ->capture_default_str();
   verb->add_option("--material", arguments->materials,
-                   "factored BRDF as `burnish fit` writes it, or a surface as fit-surface does, over the "
-                   "mesh's texture "
-                   "coordinates (with --renderer cpu any BRDF); several times: for the file's materials in "
-                   "their order")
+                   "Sets a factored BRDF or surface, with --renderer cpu any BRDF; several are the file's "
+                   "materials in their order.")
       ->allow_extra_args(false);
-  verb->add_option(
-          "--lights", arguments->lights,
-          "x,y,z[:intensity] or x,y,z:r,g,b of a point light; may be given several times; 2,3,4:20 where no "
-          "light is given")
+  verb->add_option("--lights", arguments->lights,
+                   "Adds a point light x,y,z[:intensity] or x,y,z:r,g,b (default: 2,3,4:20).")
       ->allow_extra_args(false);
   add_environment_argument(*verb, arguments->environment);
-  verb->add_option(
-          "--draws", arguments->draws,
-          "of --renderer cpu: directions a ray draws of the environment, and of each of its lamps; a square")
+  verb->add_option("--draws", arguments->draws,
+                   "Draws so many directions a ray of the environment and of each lamp with --renderer cpu, "
+                   "a square number.")
       ->check(in_range(1, 1 << 20))
       ->capture_default_str();
-  verb->add_option("-o,--output,--out", arguments->out, "picture to write: PNG, or EXR of linear values");
-  verb->add_option(
-          "--renderer", arguments->renderer,
-          "OpenGL, which draws factored BRDFs and surfaces, or the reference on the CPU; auto: OpenGL "
-          "where it can")
+  verb->add_option("-o,--output,--out", arguments->out,
+                   "Names the picture to write: PNG, or EXR of linear values.");
+  verb->add_option("--renderer", arguments->renderer,
+                   "Draws by OpenGL, which takes factored BRDFs and surfaces, or by the reference on the "
+                   "CPU; auto takes OpenGL where it can.")
       ->check(one_of({"auto", "gl", "cpu"}))
       ->capture_default_str();
-  verb->add_option("--view", arguments->view, "degrees to the right and upwards that the mesh is seen from")
+  verb->add_option("--view", arguments->view, "Turns the view so many degrees to the right and upwards.")
       ->expected(2)
       ->delimiter(',');
-  verb->add_option("--size", arguments->size, "pixels: N or WxH")->capture_default_str();
-  verb->add_option("--pixel-samples,--samples", arguments->samples, "a pixel along each axis")
+  verb->add_option("--size", arguments->size, "Sets the picture's pixels, N or WxH.")->capture_default_str();
+  verb->add_option("--pixel-samples,--samples", arguments->samples,
+                   "Takes so many samples a pixel along each axis.")
       ->check(in_range(1, 8))
       ->capture_default_str();
-  verb->add_option("--tone", arguments->tone, "of a PNG: clamped, or with a filmic curve")
+  verb->add_option("--tone", arguments->tone, "Maps a PNG's tones: clamped, or with a filmic curve.")
       ->check(one_of({"srgb", "aces"}))
       ->capture_default_str();
   verb->add_option("--exposure", arguments->exposure,
-                   "of a PNG: a factor, or auto: 3 % of the object are white")
+                   "Exposes a PNG by a factor, or by auto, which makes 3 % of the object white.")
       ->capture_default_str();
   add_illuminant(*verb, arguments->open);
-  verb->add_option("--background", arguments->background, "grey or r,g,b, linear")->capture_default_str();
-  verb->add_flag("--exact", arguments->exact, "weigh texels in the shader, not by the texture unit");
-  verb->add_flag("--shadows", arguments->shadows, "of --renderer cpu: lights are blocked by triangles");
+  verb->add_option("--background", arguments->background, "Sets the background, grey or r,g,b, linear.")
+      ->capture_default_str();
+  verb->add_flag("--exact", arguments->exact, "Weighs texels in the shader, not by the texture unit.");
+  verb->add_flag("--shadows", arguments->shadows, "Lets triangles block lights with --renderer cpu.");
   add_figure_arguments(*verb, arguments->figure, arguments->figure1);
-  verb->add_flag("--json", arguments->json, "print what was drawn as JSON, of --figure1 the table");
+  verb->add_flag("--json", arguments->json, "Prints what was drawn as JSON, of --figure1 the table.");
   verb->callback([arguments] {
     if (arguments->figure1) check_ending(arguments->out, {".png"});
     if (arguments->figure1)

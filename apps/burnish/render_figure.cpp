@@ -58,17 +58,19 @@ std::vector<Image8> row_of(const VertexFigure& f) {
 void add_figure_arguments(CLI::App& verb, FigureArguments& arguments, bool& figure1) {
   CLI::Option* figure = verb.add_flag(
       "--figure1", figure1,
-      "draw the truth at vertices and interpolated, the factored BRDF at pixels, and the truth at pixels");
-  verb.add_option("--truth", arguments.truth, "of --figure1: any BRDF")->needs(figure)->capture_default_str();
+      "Draws the truth at vertices and interpolated, the factored BRDF at pixels, and the truth at pixels.");
+  verb.add_option("--truth", arguments.truth, "Sets the BRDF that --figure1 takes for the truth.")
+      ->needs(figure)
+      ->capture_default_str();
   verb.add_option("--model", arguments.model,
-                  "of --figure1: factored BRDF (default: fitted to 16 KB, some 20 s)")
+                  "Sets the factored BRDF of --figure1 (default: fitted to 16 KB, some 20 s).")
       ->needs(figure);
-  verb.add_option("--tessellations", arguments.tessellations, "of --figure1: numbers of vertices")
+  verb.add_option("--tessellations", arguments.tessellations, "Sets the numbers of vertices of --figure1.")
       ->needs(figure)
       ->delimiter(',')
       ->check(in_range(64, 1 << 22))
       ->capture_default_str();
-  verb.add_option("--figure-size", arguments.size, "of --figure1: pixels a picture")
+  verb.add_option("--figure-size", arguments.size, "Sets the pixels of a picture of --figure1.")
       ->needs(figure)
       ->check(in_range(16, 4096))
       ->capture_default_str();

@@ -41,13 +41,15 @@ std::string quoted(const std::string& word) {
 }  // namespace
 
 void add_slurm_arguments(CLI::App& verb, SlurmArguments& arguments) {
-  CLI::Option* slurm = verb.add_flag("--slurm", arguments.wanted,
-                                     "write OUT/batch.slurm, a job array of this command, and fit nothing");
-  verb.add_option("--tasks", arguments.tasks, "of --slurm: tasks of the array; each takes the next material")
+  CLI::Option* slurm = verb.add_flag(
+      "--slurm", arguments.wanted, "Writes OUT/batch.slurm, a job array of this command, and fits nothing.");
+  verb.add_option("--tasks", arguments.tasks,
+                  "Sets how many tasks the array of --slurm has; each takes the next material.")
       ->check(in_range(1, 100'000))
       ->needs(slurm)
       ->capture_default_str();
-  verb.add_option("--sbatch", arguments.sbatch, "of --slurm: an option of sbatch, such as --partition=long")
+  verb.add_option("--sbatch", arguments.sbatch,
+                  "Adds an option of sbatch to the script of --slurm, such as --partition=long.")
       ->allow_extra_args(false)
       ->check([](const std::string& line) {
         return has_control_character(line)

@@ -36,34 +36,35 @@ Source SourceArguments::open() const {
 
 void add_source_arguments(CLI::App& verb, SourceArguments& arguments) {
   verb.add_option("BRDF", arguments.spec,
-                  "a measurement, a model, a neural encoding nbrdf:FILE#NAME or np:FOLDER#NAME, or an "
-                  "analytic BRDF such as "
-                  "ggx:alpha_x=0.1,alpha_y=0.1")
+                  "Names a measurement, a model, an encoding nbrdf:FILE#NAME or np:FOLDER#NAME, or an "
+                  "analytic BRDF such as ggx:alpha_x=0.1,alpha_y=0.1.")
       ->required();
   add_open_options(verb, arguments.options);
 }
 
 void add_illuminant(CLI::App& verb, OpenOptions& options) {
   verb.add_option("--illuminant", options.illuminant,
-                  "light under which spectra become RGB: E (equal energy), D50, D65, A, or a file of "
-                  "wavelengths in nm and powers")
+                  "Sets the light under which spectra become RGB: E (equal energy), D50, D65, A, or a file "
+                  "of wavelengths in nm and powers.")
       ->each(check_illuminant)
       ->capture_default_str();
 }
 
 void add_open_options(CLI::App& verb, OpenOptions& options) {
-  verb.add_flag("--spectral", options.keep_spectral, "keep one channel a wavelength");
+  verb.add_flag("--spectral", options.keep_spectral, "Keeps one channel for each wavelength.");
   add_illuminant(verb, options);
   auto* cosine =
-      verb.add_flag("--has-cosine", options.has_cosine, "CSV and ASTM values are f_r cos(theta_i)");
-  auto* cosine_o =
-      verb.add_flag("--has-cosine-o", options.has_cosine_o, "CSV and ASTM values are f_r cos(theta_o)");
-  verb.add_flag("--brf", options.brf, "CSV and ASTM values are reflectance factors: divide by pi")
+      verb.add_flag("--has-cosine", options.has_cosine, "Takes values of CSV and ASTM as f_r cos(theta_i).");
+  auto* cosine_o = verb.add_flag("--has-cosine-o", options.has_cosine_o,
+                                 "Takes values of CSV and ASTM as f_r cos(theta_o).");
+  verb.add_flag("--brf", options.brf,
+                "Takes values of CSV and ASTM as reflectance factors, and divides by pi.")
       ->excludes(cosine)
       ->excludes(cosine_o);
   cosine_o->excludes(cosine);
-  verb.add_flag("!--keep-negatives", options.clamp_negatives, "leave values below zero as they are");
-  verb.add_flag("--back", options.back_side, "Klems and tensor trees: the back side's reflection");
+  verb.add_flag("!--keep-negatives", options.clamp_negatives, "Leaves values below zero as they are.");
+  verb.add_flag("--back", options.back_side,
+                "Reads the back side's reflection of Klems files and tensor trees.");
 }
 
 }  // namespace burnish::cli

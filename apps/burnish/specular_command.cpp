@@ -18,8 +18,8 @@ std::vector<PowerMethod> parse_methods(const std::vector<std::string>& names) {
 }
 
 void add_text_output(CLI::App& verb, TextOutput& to) {
-  verb.add_option("-o,--output,--out", to.output, "file to write instead of standard output");
-  verb.add_flag("--json", to.json, "print what was made as JSON");
+  verb.add_option("-o,--output,--out", to.output, "Writes this file instead of the standard output.");
+  verb.add_flag("--json", to.json, "Prints what was made as JSON.");
 }
 
 void write_text(const TextOutput& to, const std::string& what, const std::string& text,

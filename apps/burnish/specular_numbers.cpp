@@ -53,7 +53,7 @@ void add_specular_list(CLI::App& verb) {
   CLI::App* sub = verb.add_subcommand("list", "List the approximations: cost, proved bounds, formula");
   sub->footer("Example: burnish specular list --json");
   auto json = std::make_shared<bool>(false);
-  sub->add_flag("--json", *json, "for programs");
+  sub->add_flag("--json", *json, "Prints the same as JSON.");
   sub->callback([json] {
     if (*json) {
       nlohmann::json list = nlohmann::json::array();
@@ -94,14 +94,15 @@ void add_specular_choose(CLI::App& verb) {
   CLI::App* sub = verb.add_subcommand("choose", "Which member to use for which exponents, and its code");
   sub->footer("Example: burnish specular choose --max-error 1/255 --exponents 1:1000");
   auto arguments = std::make_shared<Arguments>();
-  sub->add_option("--max-error", arguments->max_error, "largest absolute error, a number or a fraction")
+  sub->add_option("--max-error", arguments->max_error, "Allows this absolute error, a number or a fraction.")
       ->capture_default_str();
-  sub->add_option("--exponents", arguments->exponents, "FIRST:LAST, or one exponent")->capture_default_str();
+  sub->add_option("--exponents", arguments->exponents, "Chooses for these exponents, FIRST:LAST or one.")
+      ->capture_default_str();
   const auto languages = code_languages();
-  sub->add_option("--to,--lang", arguments->language, "language of the code")
+  sub->add_option("--to,--lang", arguments->language, "Writes the code in this language.")
       ->check(one_of({languages.begin(), languages.end()}))
       ->capture_default_str();
-  sub->add_flag("--json", arguments->json, "for programs");
+  sub->add_flag("--json", arguments->json, "Prints the same as JSON.");
   sub->callback([arguments] {
     // FIRST:LAST, or one exponent, for which the code has constants
     const std::string& range = arguments->exponents;
@@ -154,10 +155,13 @@ void add_specular_code(CLI::App& verb) {
   auto arguments = std::make_shared<Arguments>();
   std::string languages;
   for (const auto name : code_languages()) languages += (languages.empty() ? "" : ", ") + std::string(name);
-  sub->add_option("--method", arguments->method, "see `specular list`")->capture_default_str();
-  sub->add_option("--to,--lang", arguments->language, "language: " + languages)->capture_default_str();
-  sub->add_option("--exponent", arguments->exponent, "constants for this exponent; without it an argument");
-  sub->add_flag("--normalize", arguments->normalize, "keep the energy of the power; needs --exponent");
+  sub->add_option("--method", arguments->method, "Takes this method of `specular list`.")
+      ->capture_default_str();
+  sub->add_option("--to,--lang", arguments->language, "Writes the code in this language: " + languages + ".")
+      ->capture_default_str();
+  sub->add_option("--exponent", arguments->exponent,
+                  "Writes constants for this exponent, which else is an argument.");
+  sub->add_flag("--normalize", arguments->normalize, "Keeps the energy of the power; needs --exponent.");
   add_text_output(*sub, arguments->to);
   sub->callback([arguments] {
     const std::string code = usage([&] {
@@ -181,10 +185,10 @@ void add_specular_eval(CLI::App& verb) {
   CLI::App* sub = verb.add_subcommand("eval", "Values for cosines from standard input, one a line");
   sub->footer("Example: printf '1\\n0.9\\n' | burnish specular eval --method cubic2 --exponent 50");
   auto arguments = std::make_shared<Arguments>();
-  sub->add_option("--method", arguments->method, "see `specular list`")->required();
-  sub->add_option("--exponent", arguments->exponent, "the exponent")->required();
-  sub->add_flag("--normalize", arguments->normalize, "keep the energy of the power");
-  sub->add_flag("--json", arguments->json, "print cosines and values as JSON");
+  sub->add_option("--method", arguments->method, "Takes this method of `specular list`.")->required();
+  sub->add_option("--exponent", arguments->exponent, "Raises to this exponent.")->required();
+  sub->add_flag("--normalize", arguments->normalize, "Keeps the energy of the power.");
+  sub->add_flag("--json", arguments->json, "Prints cosines and values as JSON.");
   sub->callback([arguments] {
     auto list = nlohmann::ordered_json::array();
     const PowerCoefficients k =
@@ -219,11 +223,13 @@ void add_specular_table(CLI::App& verb) {
   CLI::App* sub = verb.add_subcommand("table", "The paper's coefficient a(e) for e = 1, 2, …");
   sub->footer("Example: burnish specular table --to mem --fraction-bits 8 -o quadratic_a.mem");
   auto arguments = std::make_shared<Arguments>();
-  sub->add_option("--to,--format", arguments->format, "csv; c: a C header; mem: a PROM image for $readmemh")
+  sub->add_option("--to,--format", arguments->format,
+                  "Writes csv, a C header (c), or a PROM image for $readmemh (mem).")
       ->check(one_of({"csv", "c", "mem"}))
       ->capture_default_str();
-  sub->add_option("--last,--count", arguments->count, "largest exponent")->capture_default_str();
-  sub->add_option("--fraction-bits", arguments->fraction_bits, "of the PROM's fixed point words")
+  sub->add_option("--last,--count", arguments->count, "Ends at this exponent.")->capture_default_str();
+  sub->add_option("--fraction-bits", arguments->fraction_bits,
+                  "Gives the PROM's fixed point words so many fraction bits.")
       ->capture_default_str();
   add_text_output(*sub, arguments->to);
   sub->callback([arguments] {

@@ -124,13 +124,14 @@ void add_specular_plot(CLI::App& verb) {
       "Example: burnish specular plot --figure 2a --method quadratic --method cubic2 --exponent 10 -o "
       "lobe.svg");
   auto arguments = std::make_shared<Arguments>();
-  sub->add_option("--figure", arguments->figure, "what to draw")
+  sub->add_option("--figure", arguments->figure, "Draws this figure.")
       ->check(one_of({"2a", "2b", "3", "coefficient", "front", "sphere"}))
       ->capture_default_str();
-  sub->add_option("--method", arguments->methods, "members, see `specular list`")->capture_default_str();
-  sub->add_option("--exponent", arguments->exponents, "exponents")->capture_default_str();
-  sub->add_option("-o,--output,--out", arguments->out, "file to write")->required();
-  sub->add_flag("--json", arguments->json, "print what was drawn as JSON");
+  sub->add_option("--method", arguments->methods, "Draws these methods of `specular list`.")
+      ->capture_default_str();
+  sub->add_option("--exponent", arguments->exponents, "Draws these exponents.")->capture_default_str();
+  sub->add_option("-o,--output,--out", arguments->out, "Names the file to write.")->required();
+  sub->add_flag("--json", arguments->json, "Prints what was drawn as JSON.");
   sub->callback([arguments] {
     nlohmann::ordered_json about{{"output", arguments->out}, {"figure", arguments->figure}};
     const std::vector<PowerMethod> methods = parse_methods(arguments->methods);
@@ -162,12 +163,11 @@ void add_specular_report(CLI::App& verb) {
       verb.add_subcommand("report", "The paper's figures measured, every bound proved, all pictures");
   sub->footer("Example: burnish specular report --exponent 20 -o out/specular");
   auto arguments = std::make_shared<Arguments>();
-  sub->add_option("--exponent", arguments->exponent, "for errors, energies and spheres")
+  sub->add_option("--exponent", arguments->exponent, "Reports errors, energies and spheres of this exponent.")
       ->check(in_range(4.0, kMaxExponent))
       ->capture_default_str();
-  sub->add_flag("--json", arguments->json, "for programs");
-  sub->add_option("-o,--output,--out", arguments->out,
-                  "folder for the figures as SVG and PNG; none without it");
+  sub->add_flag("--json", arguments->json, "Prints the same as JSON.");
+  sub->add_option("-o,--output,--out", arguments->out, "Writes figures as SVG and PNG into this folder.");
   sub->callback([arguments] {
     if (!arguments->out.empty()) make_folder(arguments->out);
     print_report(arguments->exponent, arguments->json);

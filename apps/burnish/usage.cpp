@@ -107,13 +107,65 @@ void check_folder(const std::filesystem::path& folder) {
 namespace {
 
 // Endings that say what a file is: no other kind of file is to have them.
-constexpr auto kKnownEndings = std::to_array<std::string_view>(
-    {".anisotropicbsdf", ".astm", ".bin",  ".binary", ".bmp",  ".brdf", ".bsdf",   ".burnish", ".c",    ".cpp",
-     ".csv",             ".cube", ".dds",  ".exr",    ".gif",  ".glb",  ".glsl",   ".gltf",    ".h",    ".hdr",
-     ".hlsl",            ".html", ".jpeg", ".jpg",    ".js",   ".json", ".jsonl",  ".ktx2",    ".mbsdf", ".md",
-     ".mdl",             ".metal", ".mjs", ".msl",    ".mtlx", ".obj",  ".pdf",    ".pfm",     ".png",  ".py",
-     ".rs",              ".spv",  ".sqlite", ".sv",   ".svg",  ".tif",  ".tiff",   ".tsv",     ".txt",  ".usd",
-     ".usda",            ".usdz", ".v",    ".vert",   ".frag", ".wgsl", ".xml",    ".xompt",   ".zip"});
+constexpr auto kKnownEndings = std::to_array<std::string_view>({".anisotropicbsdf",
+                                                                ".astm",
+                                                                ".bin",
+                                                                ".binary",
+                                                                ".bmp",
+                                                                ".brdf",
+                                                                ".bsdf",
+                                                                ".burnish",
+                                                                ".c",
+                                                                ".cpp",
+                                                                ".csv",
+                                                                ".cube",
+                                                                ".dds",
+                                                                ".exr",
+                                                                ".gif",
+                                                                ".glb",
+                                                                ".glsl",
+                                                                ".gltf",
+                                                                ".h",
+                                                                ".hdr",
+                                                                ".hlsl",
+                                                                ".html",
+                                                                ".jpeg",
+                                                                ".jpg",
+                                                                ".js",
+                                                                ".json",
+                                                                ".jsonl",
+                                                                ".ktx2",
+                                                                ".mbsdf",
+                                                                ".md",
+                                                                ".mdl",
+                                                                ".metal",
+                                                                ".mjs",
+                                                                ".msl",
+                                                                ".mtlx",
+                                                                ".obj",
+                                                                ".pdf",
+                                                                ".pfm",
+                                                                ".png",
+                                                                ".py",
+                                                                ".rs",
+                                                                ".spv",
+                                                                ".sqlite",
+                                                                ".sv",
+                                                                ".svg",
+                                                                ".tif",
+                                                                ".tiff",
+                                                                ".tsv",
+                                                                ".txt",
+                                                                ".usd",
+                                                                ".usda",
+                                                                ".usdz",
+                                                                ".v",
+                                                                ".vert",
+                                                                ".frag",
+                                                                ".wgsl",
+                                                                ".xml",
+                                                                ".xompt",
+                                                                ".zip"});
 
 std::string ending_of(const std::string& path) {
   std::string ending = std::filesystem::path(path).extension().string();
@@ -131,8 +183,8 @@ bool is_known_ending(const std::string& ending) {
 void check_ending(const std::string& path, const std::vector<std::string>& endings) {
   const std::string ending = ending_of(path);
   if (!is_known_ending(ending) || std::ranges::find(endings, ending) != endings.end()) return;
-  throw CLI::ValidationError(fmt::format("--output: expected a name that ends in {}, found '{}'",
-                                         fmt::join(endings, " or "), path));
+  throw CLI::ValidationError(
+      fmt::format("--output: expected a name that ends in {}, found '{}'", fmt::join(endings, " or "), path));
 }
 
 void check_folder_name(const std::string& path) {
@@ -151,7 +203,9 @@ std::string list_of_verbs(const CLI::App& app) {
   std::string text;
   for (const std::string& name : verbs_of(app, false))
     text += fmt::format("  {:<13}{}\n", name, app.get_subcommand(name)->get_description());
-  return text + "\n`burnish VERB --help` has its options and an example; `burnish help formats` says what is read.\n";
+  return text +
+         "\n`burnish VERB --help` has its options and an example; `burnish help formats` says what is "
+         "read.\n";
 }
 
 std::optional<std::string> misspelling(const CLI::App& app, std::span<char* const> arguments) {

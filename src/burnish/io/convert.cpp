@@ -497,7 +497,12 @@ void add_entries(const PatchTable& table, EntryList& list) {
 
 bool has_entries(const Source& source) noexcept {
   return std::visit(
-      [](const auto& brdf) { return requires(EntryList& list) { add_entries(brdf, list); }; }, source.brdf);
+      [](const auto& brdf) {
+        return requires(EntryList & list) {
+          add_entries(brdf, list);
+        };
+      },
+      source.brdf);
 }
 
 Samples table_entries(const Source& source) {

@@ -28,7 +28,8 @@ struct ConvertOptions {
 struct Converted {
   std::string bytes;
   std::vector<std::string> losses;  ///< what the bytes say less than the source's file, a phrase each
-  std::vector<std::string> notes;   ///< what they say otherwise, without a loss: "TIS is that of the values now"
+  std::vector<std::string>
+      notes;  ///< what they say otherwise, without a loss: "TIS is that of the values now"
   std::vector<std::string> warnings;  ///< why the result may be of little use, a sentence each
   bool resampled = false;             ///< values were sampled anew, at cells or nodes
 };

@@ -127,6 +127,32 @@ TEST(Convert, EntriesSurviveInScatteredFormats) {
   }
 }
 
+TEST(Convert, WarnsWhereItIsFarFromTheSource) {
+  const Converted far = convert(open_source("ggx:alpha_x=0.05,alpha_y=0.05", {}), "mbsdf", {.cells = 6});
+  EXPECT_THAT(far.warnings, testing::ElementsAre(HasSubstr("% from the source on average")));
+  EXPECT_TRUE(far.resampled);
+  const Converted near = convert(open_source("lambert", {}), "mbsdf", {.cells = 6});
+  EXPECT_THAT(near.warnings, IsEmpty());
+  EXPECT_FALSE(convert(reread(near), "mbsdf", {.cells = 6}).resampled);
+}
+
+TEST(Convert, NamesCommentsThatStayBehindAndCallsNotesNoLoss) {
+  Source zemax = reread(convert(open_source("lambert", {}), "zemax"));
+  zemax.findings.comments = {" Sample: panel 7", " lit from the left"};
+  EXPECT_THAT(convert(zemax, "mbsdf", kSmall).losses,
+              Contains("2 comments: 'Sample: panel 7', 'lit from the left'"));
+  const Converted kept = convert(zemax, "zemax");
+  EXPECT_THAT(kept.losses, IsEmpty());
+  EXPECT_THAT(kept.notes, testing::ElementsAre(HasSubstr("TIS")));
+  EXPECT_THAT(kept.bytes, HasSubstr("# lit from the left\n"));
+}
+
+TEST(Convert, KnowsWhichSourcesHaveEntries) {
+  for (const auto& [format, table] : tables()) EXPECT_TRUE(has_entries(table)) << format;
+  EXPECT_FALSE(has_entries(open_source("lambert", {})));
+  EXPECT_FALSE(has_entries(reread(convert(open_source("lambert", {}), "csv", kSmall))));
+}
+
 TEST(Convert, ScatteredSamplesStayBetweenCsvAndAstm) {
   for (const bool isotropic : {true, false}) {
     const Converted csv = convert(open_source(isotropic ? kGlossy : kBrushed, {}), "csv", kSmall);

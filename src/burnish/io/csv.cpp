@@ -186,9 +186,8 @@ class SpectraOfRows {
  public:
   void add(const TextReader& reader, const DirectionPair& pair, double lambda, double value) {
     if (!(lambda > 0)) reader.fail("a wavelength above 0", in_quotes(reader.line()));
-    const auto [place, is_new] =
-        places_.emplace(std::array{pair.wi.x, pair.wi.y, pair.wi.z, pair.wo.x, pair.wo.y, pair.wo.z},
-                        spectra_.size());
+    const auto [place, is_new] = places_.emplace(
+        std::array{pair.wi.x, pair.wi.y, pair.wi.z, pair.wo.x, pair.wo.y, pair.wo.z}, spectra_.size());
     if (is_new) {
       spectra_.emplace_back();
       pairs_.push_back(pair);
@@ -204,7 +203,8 @@ class SpectraOfRows {
   void finish(std::optional<double> to_nm, Samples& samples, Findings& findings) const {
     constexpr double kLargestMicrometre = 50;
     const bool small = !bands_.empty() && bands_.rbegin()->first < kLargestMicrometre;
-    if (!to_nm && small) findings.conventions.push_back("Wavelengths were taken as micrometres: all are small.");
+    if (!to_nm && small)
+      findings.conventions.push_back("Wavelengths were taken as micrometres: all are small.");
     const double factor = to_nm.value_or(small ? 1e3 : 1);
     // to the digits of a metre's decimal fraction
     for (const auto& [lambda, rows] : bands_)
@@ -220,8 +220,9 @@ class SpectraOfRows {
       for (const auto& [lambda, value] : spectra_[i]) samples.values.push_back(value);
     }
     if (partial > 0)
-      findings.warnings.push_back(
-          fmt::format("{} directions without a value at every wavelength were left out.", partial));
+      findings.warnings.push_back(fmt::format("{} {} without a value at every wavelength {} left out.",
+                                              partial, partial == 1 ? "direction" : "directions",
+                                              partial == 1 ? "was" : "were"));
   }
 
  private:

@@ -179,7 +179,8 @@ struct WavelengthColumn {
 };
 
 std::optional<WavelengthColumn> wavelength_column(const ColumnName& column) {
-  constexpr std::array<std::string_view, 5> kWords = {"wavelength", "wavelengths", "lambda", "wl", "wave_length"};
+  constexpr std::array<std::string_view, 5> kWords = {"wavelength", "wavelengths", "lambda", "wl",
+                                                      "wave_length"};
   const auto factor = [](std::string_view unit) -> std::optional<double> {
     if (unit == "nm" || unit == "nanometer" || unit == "nanometers" || unit == "nanometre") return 1;
     if (unit == "um" || unit == "micron" || unit == "microns" || unit == "micrometer") return 1e3;
@@ -187,9 +188,8 @@ std::optional<WavelengthColumn> wavelength_column(const ColumnName& column) {
     return std::nullopt;
   };
   if (among(kWords, column.name))
-    return column.unit.empty() || factor(column.unit)
-               ? std::optional(WavelengthColumn{factor(column.unit)})
-               : std::nullopt;
+    return column.unit.empty() || factor(column.unit) ? std::optional(WavelengthColumn{factor(column.unit)})
+                                                      : std::nullopt;
   const std::size_t bar = column.name.rfind('_');
   if (bar == std::string::npos || !among(kWords, std::string_view(column.name).substr(0, bar)))
     return std::nullopt;

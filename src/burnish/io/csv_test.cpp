@@ -89,7 +89,6 @@ TEST(Csv, SaysWhatIsWrong) {
   EXPECT_THAT(csv_error("theta_i;phi_i;theta_o;phi_o;value\n1,5;2;3.5;4;5\n"),
               HasSubstr("one decimal mark, for the column 'theta_o'"));
   EXPECT_THAT(csv_error("theta_i (grad),phi_i,theta_o,phi_o,value\n"), HasSubstr("degrees or radians"));
-  EXPECT_THAT(csv_error("theta_i,phi_i,theta_o,phi_o,wavelength,value\n"), HasSubstr("'wavelength'"));
   EXPECT_THAT(csv_error("theta_i,phi_i,theta_o,phi_o,brdf_cos\n"), HasSubstr("the cosine of theta_i or of"));
   EXPECT_THAT(csv_error(header + "1,2,3,4,inf\n"), HasSubstr("finite"));
   EXPECT_THAT(csv_error(header + "1,2,3,4,1e999\n"), HasSubstr("finite"));
@@ -108,6 +107,8 @@ struct Dialect {
   std::array<std::string, 4> angles = {"theta_i", "phi_i", "theta_o", "phi_o"};
   std::string value = "value_{}";
   bool extra = false;
+  std::string wavelength;  ///< a column of that name: a row is of one
+  double of_nm = 1;        ///< its unit
 };
 
 std::string in_dialect(const Dialect& d, const Samples& samples, std::span<const double> lambda_nm) {
@@ -121,7 +122,10 @@ std::string in_dialect(const Dialect& d, const Samples& samples, std::span<const
   };
   std::vector<std::string> names;
   for (const std::string& angle : d.angles) names.push_back(angle + d.unit);
-  for (const double lambda : lambda_nm) names.push_back(fmt::format(fmt::runtime(d.value), lambda));
+  if (d.wavelength.empty())
+    for (const double lambda : lambda_nm) names.push_back(fmt::format(fmt::runtime(d.value), lambda));
+  else
+    names.insert(names.end(), {d.wavelength, d.value});
   if (d.extra) names.push_back("operator");
   for (std::string& name : names) {
     if (d.upper)
@@ -135,7 +139,17 @@ std::string in_dialect(const Dialect& d, const Samples& samples, std::span<const
     std::vector<std::string> cells;
     for (const double angle : {theta_of(wi), phi_of(wi), theta_of(wo), phi_of(wo)})
       cells.push_back(cell(fmt::format("{}", degrees(angle)), true));
-    for (const double value : samples.at(i)) cells.push_back(cell(fmt::format("{}", value), true));
+    const auto values = samples.at(i);
+    if (!d.wavelength.empty()) {
+      for (std::size_t c = 0; c < values.size(); ++c) {
+        std::vector<std::string> band = cells;
+        for (const double number : {lambda_nm[c] * d.of_nm, values[c]})
+          band.push_back(cell(fmt::format("{}", number), true));
+        text += row(band);
+      }
+      continue;
+    }
+    for (const double value : values) cells.push_back(cell(fmt::format("{}", value), true));
     if (d.extra) cells.push_back(cell("Jane", false));
     text += row(cells);
   }
@@ -176,6 +190,12 @@ std::vector<Dialect> dialects() {
   all.push_back(
       {.separator = '\t', .preamble = "Sample panel 7\nmeasured on Monday, 12.5 degrees outside\n\n"});
   all.push_back({.extra = true});
+  for (const auto& [name, of_nm] :
+       {std::pair{"wavelength", 1.0}, std::pair{"Wavelength (nm)", 1.0}, std::pair{"lambda_nm", 1.0},
+        std::pair{"\xce\xbb [\xc2\xb5m]", 1e-3}, std::pair{"wl", 1e-3}, std::pair{"wavelength_um", 1e-3}})
+    all.push_back(
+        {.separator = ';', .decimal_comma = true, .value = "BRDF", .wavelength = name, .of_nm = of_nm});
+  all.push_back({.reversed = true, .value = "value", .wavelength = "lambda"});
   return all;
 }
 
@@ -193,7 +213,7 @@ TEST(Csv, ReadsTheSameOfEveryDialect) {
     ASSERT_NO_THROW(file = parse_csv(memory_file(text), {.keep_spectral = true}));
     ASSERT_EQ(file.samples.size(), samples.size());
     EXPECT_EQ(file.samples.values, samples.values);
-    EXPECT_EQ(file.findings.lambda_nm, std::vector<double>(lambda.begin(), lambda.end()));
+    EXPECT_THAT(file.findings.lambda_nm, Pointwise(testing::DoubleNear(1e-9), lambda));
     for (std::size_t i = 0; i < samples.size(); ++i) {
       EXPECT_NEAR(length(file.samples.pairs[i].wi - samples.pairs[i].wi), 0, 1e-12);
       EXPECT_NEAR(length(file.samples.pairs[i].wo - samples.pairs[i].wo), 0, 1e-12);
@@ -207,6 +227,24 @@ TEST(Csv, TakesNoCommentForAHeaderThatItsRowsDoNotFit) {
   EXPECT_FALSE(
       looks_like_csv("# theta i, phi i, theta s, phi_s, spectrum\n2\n400 500\n0.5 0 0.25 3.14 0.1 0.2\n"));
   EXPECT_TRUE(looks_like_csv("# theta_i theta_o value\n30 40 0.1\n"));
+}
+
+TEST(Csv, MakesSpectraOfRowsOfOneWavelength) {
+  const std::string header = "theta_i,phi_i,theta_o,phi_o,wavelength,value\n";
+  // in any order; a direction that lacks one is left out
+  const SampleFile file = parse_csv(
+      memory_file(header +
+                  "10,0,20,0,650,3\n10,0,20,0,450,1\n30,0,20,0,450,5\n10,0,40,0,450,7\n10,0,40,0,650,8\n"),
+      {.keep_spectral = true});
+  EXPECT_EQ(file.samples.values, (std::vector<double>{1, 3, 7, 8}));
+  EXPECT_EQ(file.findings.lambda_nm, (std::vector<double>{450, 650}));
+  EXPECT_THAT(file.findings.warnings,
+              ElementsAre("1 direction without a value at every wavelength was left out."));
+  EXPECT_THAT(csv_error(header + "10,0,20,0,450,1\n10,0,20,0,450,2\n"),
+              HasSubstr("line 3: expected one value for each direction and wavelength"));
+  EXPECT_THAT(csv_error(header + "10,0,20,0,0,1\n"), HasSubstr("a wavelength above 0"));
+  EXPECT_THAT(csv_error("theta_i,phi_i,theta_o,phi_o,wavelength,r,g,b\n10,0,20,0,450,1,2,3\n"),
+              HasSubstr("expected one column of values beside 'wavelength', found 3"));
 }
 
 TEST(Csv, TellsWhatValuesAreByNameOrOption) {

@@ -168,18 +168,18 @@ bool looks_like_source(const FileBytes& file) {
   const std::span<const std::byte> bytes = file.bytes;
   // pictures are OpenEXR files too, and lists JSON
   const bool is_exr = file.text().starts_with("\x76\x2f\x31\x01");
-  if (is_exr && file.text().substr(0, kHead).find("burnish") == std::string_view::npos)
-    return false;
-  if (looks_like_book(bytes) || looks_like_surface(bytes) || looks_like_model(bytes) || looks_like_rgl(bytes) ||
-      looks_like_mbsdf(bytes) || looks_like_utia(bytes) || looks_like_merl(bytes))
+  if (is_exr && file.text().substr(0, kHead).find("burnish") == std::string_view::npos) return false;
+  if (looks_like_book(bytes) || looks_like_surface(bytes) || looks_like_model(bytes) ||
+      looks_like_rgl(bytes) || looks_like_mbsdf(bytes) || looks_like_utia(bytes) || looks_like_merl(bytes))
     return true;
   const std::optional<FileBytes> converted = from_utf16(file);
   const std::string_view text = converted ? converted->text() : file.text();
   return looks_like_openmaterial(text) ||
-         (looks_like_baseline(text) && text.find("\"kind\"") != std::string_view::npos) || looks_like_tensor_tree(text) ||
-         looks_like_klems(text) || looks_like_zemax(text) || looks_like_speos(text) || looks_like_alta(text) ||
-         looks_like_neural(text) || looks_like_fred(text) || looks_like_astm(text) || looks_like_csv(text) ||
-         looks_like_cornell(text) || looks_like_np(text);
+         (looks_like_baseline(text) && text.find("\"kind\"") != std::string_view::npos) ||
+         looks_like_tensor_tree(text) || looks_like_klems(text) || looks_like_zemax(text) ||
+         looks_like_speos(text) || looks_like_alta(text) || looks_like_neural(text) ||
+         looks_like_fred(text) || looks_like_astm(text) || looks_like_csv(text) || looks_like_cornell(text) ||
+         looks_like_np(text);
 }
 
 Source open_source(const std::string& spec, const OpenOptions& options) {

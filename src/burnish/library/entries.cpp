@@ -80,8 +80,8 @@ bool is_one_of(const fs::path& path, const std::vector<fs::path>& others) {
 
 // Whether a file of a folder is meant as a material: by a name that nothing else has, or by what it holds.
 bool is_material(const fs::path& path) {
-  constexpr std::array<std::string_view, 8> kEndings = {".binary", ".bsdf",  ".brdf",  ".mbsdf",
-                                                        ".astm",   ".xompt", ".anisotropicbsdf", ".burnish"};
+  constexpr std::array<std::string_view, 8> kEndings = {
+      ".binary", ".bsdf", ".brdf", ".mbsdf", ".astm", ".xompt", ".anisotropicbsdf", ".burnish"};
   constexpr std::uintmax_t kLargest = std::uintmax_t{1} << 28;  // bytes that are read to be known
   if (std::ranges::find(kEndings, lower_case(path.extension().string())) != kEndings.end()) return true;
   std::error_code error;
@@ -147,8 +147,7 @@ std::vector<LibraryEntry> named_entries(const std::vector<std::string>& argument
   return told_apart(std::move(entries));
 }
 
-std::vector<LibraryEntry> library_entries(const fs::path& list_or_folder,
-                                          const std::vector<fs::path>& others,
+std::vector<LibraryEntry> library_entries(const fs::path& list_or_folder, const std::vector<fs::path>& others,
                                           std::vector<std::string>* skipped) {
   std::error_code error;
   if (fs::is_directory(list_or_folder, error)) return entries_of_folder(list_or_folder, others, skipped);
