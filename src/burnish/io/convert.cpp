@@ -117,6 +117,18 @@ bool has_colour(BrdfRef brdf) {
   return false;
 }
 
+/// Formats that keep what a source calls itself (sample_name).
+bool has_place_for_name(std::string_view format) noexcept {
+  return format == "rgl" || format == "zemax" || format == "tensortree" || format == "openmaterial";
+}
+
+/// Whether the description is the file's own words: of MERL and UTIA, which have none, it is ours.
+bool has_own_remark(const Source& source) {
+  const auto* angles = std::get_if<AngleTable>(&source.brdf);
+  return is_measurement(source) && !std::holds_alternative<HalfDiffTable>(source.brdf) &&
+         !(angles && fits_utia(*angles));
+}
+
 /// Comments that are left behind, in quotes and shortened.
 std::string named_comments(const std::vector<std::string>& comments) {
   constexpr std::size_t kMost = 12, kLongest = 60;
@@ -142,6 +154,9 @@ class Converter {
     if (format != "openmaterial" && source_.findings.origin != Origin{}) lose("licence, authors and origin");
     if (const auto& comments = source_.findings.comments; format != "zemax" && !comments.empty())
       lose("{}", named_comments(comments));
+    else if (const std::string& remark = source_.findings.description;
+             has_own_remark(source_) && !remark.empty() && !has_place_for_name(format))
+      lose("the remark '{}'", printable(remark, 120));
     if (format == "merl") return merl();
     if (format == "rgl") return rgl();
     if (format == "mbsdf") return mbsdf();

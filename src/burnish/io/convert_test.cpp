@@ -141,6 +141,11 @@ TEST(Convert, NamesCommentsThatStayBehindAndCallsNotesNoLoss) {
   zemax.findings.comments = {" Sample: panel 7", " lit from the left"};
   EXPECT_THAT(convert(zemax, "mbsdf", kSmall).losses,
               Contains("2 comments: 'Sample: panel 7', 'lit from the left'"));
+  // an MBSDF's own lines
+  Source mbsdf = reread(convert(open_source("lambert", {}), "mbsdf", kSmall));
+  mbsdf.findings.description = "MAKER=me";
+  EXPECT_THAT(convert(mbsdf, "mbsdf").losses, testing::ElementsAre("the remark 'MAKER=me'"));
+  EXPECT_THAT(convert(mbsdf, "zemax").losses, testing::Not(Contains(HasSubstr("remark"))));
   const Converted kept = convert(zemax, "zemax");
   EXPECT_THAT(kept.losses, IsEmpty());
   EXPECT_THAT(kept.notes, testing::ElementsAre(HasSubstr("TIS")));
