@@ -181,6 +181,21 @@ TEST(CommandLine, ConvertsWhatWasMeasuredAndSaysWhatAnOptionIsOf) {
   EXPECT_EQ(nlohmann::json::parse(burnish(narrow + " --json").output)["warnings"].size(), 1u);
 }
 
+TEST(CommandLine, SaysThatAReciprocalFormatDoesNotTellItsOwnError) {
+  const TemporaryFolder folder("reciprocal");
+  const std::string out = folder.path.string();
+  ASSERT_EQ(burnish(fmt::format("convert ggx:alpha_x=0.4,alpha_y=0.4 '{}/g.binary' --cells 8", out)).status,
+            0);
+  const Outcome compared =
+      burnish(fmt::format("compare '{0}/g.binary' lambert -o '{0}/report' --count 500", out));
+  EXPECT_EQ(compared.status, 0);
+  EXPECT_THAT(compared.output, HasSubstr("the measurement itself           cannot be told from this file\n"));
+  EXPECT_THAT(compared.output,
+              testing::AllOf(HasSubstr("psnr dB  disc dB    ssim  relative  rms_log  log_cos"),
+                             testing::Not(HasSubstr("inf"))));
+  EXPECT_THAT(read(folder.path / "report/index.html"), HasSubstr(">cannot be told from this file<"));
+}
+
 TEST(CommandLine, PrintsNotesOfAFitAsLines) {
   const TemporaryFolder folder("notes");
   const std::string model = (folder.path / "m.exr").string();

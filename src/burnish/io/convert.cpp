@@ -319,7 +319,11 @@ class Converter {
     const auto* table = std::get_if<AngleTable>(&source_.brdf);
     if (table && fits_zemax(*table)) {
       // nothing else has a table of this frame
-      note("TIS says what the values integrate to, whatever the source said");
+      const bool told_apart = std::ranges::any_of(source_.findings.warnings, [](const std::string& warning) {
+        return warning.find("TIS says") != std::string::npos;
+      });
+      note("{}", told_apart ? "TIS changed: it says what the values integrate to"
+                            : "TIS was computed anew from the values");
       return kept(format_zemax(*table, sample, source_.findings.comments));
     }
     const BrdfRef brdf = brdf_;

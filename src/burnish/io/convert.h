@@ -45,8 +45,8 @@ inline constexpr double kFarFromSource = 0.2;
 /// mean of both. Scattered formats keep scattered samples; of other sources they get the table's entries, if
 /// asked for, or samples drawn by `measure`. Where values were sampled anew, a loss states how far they are (a
 /// warning too above kFarFromSource): the figure `relative` of metrics/error_figures.h over 2,000 drawn pairs.
-/// Throws Error, naming the source, for an unknown format, cells outside [2, 1000], "model" and "burnish" of a source that is no model,
-/// channels that the format has not, or entries of a source without any.
+/// Throws Error, naming the source, for an unknown format, cells outside [2, 1000], "model" and "burnish" of a
+/// source that is no model, channels that the format has not, or entries of a source without any.
 Converted convert(const Source& source, std::string_view format, const ConvertOptions& options = {});
 
 /// Whether table_entries has an answer.

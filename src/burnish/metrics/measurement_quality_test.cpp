@@ -38,6 +38,15 @@ TEST(MeasurementQuality, IsEstimatedFromExchangedDirections) {
   EXPECT_FALSE(quality_by_exchange(scorer, reference, nodes));  // nothing tells
 }
 
+// A table that is reciprocal by form differs from its mean with exchanged directions by roundings.
+TEST(MeasurementQuality, CannotBeToldOfRoundings) {
+  const Leaning raw{.slope = 1e-13}, noisy{.slope = 1e-4};
+  const SymmetrizedBrdf reference(raw), other(noisy);
+  EXPECT_GT(Scorer(reference, {.count = 5000, .image_size = 32}).score(raw).rms, 0);
+  EXPECT_FALSE(exchanged_figures(Scorer(reference, {.count = 5000, .image_size = 32}), raw));
+  EXPECT_TRUE(exchanged_figures(Scorer(other, {.count = 5000, .image_size = 32}), noisy));
+}
+
 TEST(MeasurementQuality, IsWhatASecondScanScores) {
   BURNISH_SKIP_WHERE_SANITIZED();
   const fixtures::Glossy first, second{.scale = 1.1};
