@@ -121,6 +121,11 @@ std::optional<ModelSpec> laid_out(const Form& form, const CostLimit& limit, std:
 
 using Candidate = HemisphereCandidate;
 
+/// What the model's fetches have to lower the objective by.
+double cost(const ModelSpec& spec, const ErrorTerms& shares) {
+  return kWorthOfFetch * shares.sum() * static_cast<double>(fetch_count(spec));
+}
+
 /// The fit at all nodes of the spec, after some more steps.
 FitSummary refine_at_all(LogModel& fit, const ModelSpec& spec, const TrainingSet& set, RefineOptions options,
                          int steps) {
@@ -140,7 +145,7 @@ std::vector<Candidate> tried(const std::vector<ModelSpec>& specs, const Training
     const double nodes = static_cast<double>(coupled_unknowns(specs[k], 1));
     const ModelSpec trial = at_fewer_nodes(specs[k], std::min(1.0, most / nodes));
     candidates[k] = {.spec = specs[k], .fit = fit_lobes(sets.fitted, trial, few).model, .error = 0};
-    candidates[k].error = objective(candidates[k].fit, sets.judged, few.shares);
+    candidates[k].error = objective(candidates[k].fit, sets.judged, few.shares) + cost(specs[k], few.shares);
   });
   std::ranges::stable_sort(candidates, {}, &Candidate::error);
   return candidates;
@@ -223,8 +228,7 @@ LobesFit fit_hemispheres(const TrainingSet& set, const std::vector<ModelSpec>& s
   const Finals finals(mean, options);
   for_each_trial(candidates.size(), options, kTrialTime, kFinalTime, [&](std::size_t k) {
     finals.play(candidates[k]);
-    candidates[k].error +=
-        kWorthOfFetch * finals.shares.sum() * static_cast<double>(fetch_count(candidates[k].spec));
+    candidates[k].error += cost(candidates[k].spec, finals.shares);
   });
   RefineOptions rest = options;
   rest.progress = part_of_progress(options.progress, kFinalTime, 1);
