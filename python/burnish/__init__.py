@@ -7,6 +7,9 @@
     print(burnish.error_figures(paint, model).psnr)
     burnish.write_model("paint.exr", model)
 
+    burnish.Source.from_samples(wi, wo, values)    # what was measured, as arrays or lists
+    burnish.Source.from_function(f)                # f(wi, wo) on arrays
+
 Directions are in the local frame of the surface: normal (0, 0, 1), tangent (1, 0, 0); wi points to the light,
 wo to the viewer. Functions are named as in C++ and on the command line; angles are radians.
 """
@@ -41,6 +44,7 @@ from ._burnish import (
     fit_surface,
     generate_shader,
     measure,
+    next_measurements,
     open_book,
     open_source,
     open_surface,

@@ -18,6 +18,12 @@ namespace burnish::python {
 
 namespace {
 
+// What a batch takes beside the options of a fit.
+constexpr std::string_view kOtherKeywords[] = {
+    "to",           "exact",  "mips",          "compressed", "compact",    "resume",          "threads",
+    "memory",       "studio", "keep_spectral", "illuminant", "has_cosine", "clamp_negatives", "back_side",
+    "has_cosine_o", "brf"};
+
 using Materials = std::variant<std::vector<std::string>, std::filesystem::path>;
 
 // Starts a batch; iterating gives a dictionary a material.
@@ -40,7 +46,9 @@ Batch* batch(const Materials& materials, const std::filesystem::path& folder,
   options.exports.exact = exact;
   options.exports.mips = mips;
   options.exports.compressed = compressed;
-  options.fit = [request = request_of(how)](bool isotropic) { return fit_options(request, isotropic); };
+  options.fit = [request = request_of("batch", how, kOtherKeywords)](bool isotropic) {
+    return fit_options(request, isotropic);
+  };
   for (const std::string& target : to) options.exports.to.push_back(export_target(target));
   const auto* arguments = std::get_if<std::vector<std::string>>(&materials);
   std::vector<LibraryEntry> entries =

@@ -1,6 +1,7 @@
 #include <filesystem>
 #include <memory>
 
+#include <fmt/format.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
@@ -13,6 +14,7 @@
 #include <burnish/library/book_of_library.h>
 
 #include "opened_brdf.h"
+#include "texts.h"
 
 namespace burnish::python {
 
@@ -54,6 +56,12 @@ void bind_book(nb::module_& m) {
                    })
       .def_prop_ro("shared_bytes", &MaterialBook::shared_bytes)
       .def_prop_ro("bytes_a_material", &MaterialBook::bytes_a_material)
+      .def("__repr__",
+           [](const MaterialBook& book) {
+             return fmt::format("<burnish book: {}, {} shared, at most {} a material>",
+                                counted(book.materials().size(), "material"),
+                                counted(book.shared_bytes(), "byte"), book.bytes_a_material());
+           })
       .def("__len__", [](const MaterialBook& book) { return book.materials().size(); })
       .def("__getitem__", &model_of, nb::arg("name"), nb::rv_policy::take_ownership, "A material as a model.")
       .def(

@@ -7,6 +7,7 @@
 
 #include <burnish/math/parallel.h>
 
+#include "array_like.h"
 #include "opened_brdf.h"
 #include "rows.h"
 
@@ -92,19 +93,28 @@ nb::object eval(const OpenedBrdf& brdf, const Array<const T>& wi, const Array<co
   const bool planes = job.wi.planes() && job.wo.planes() && job.count > 1;
   const Result<T> result = make_result<T>(out, job.count, job.channels, planes);
   job.f = result.rows;
+  const FunctionWatch watch({&brdf});
   if (std::is_same_v<T, float> && job.count == 1 && brdf.model()) {
     if constexpr (std::is_same_v<T, float>) eval_one(brdf.evaluator(), job);
   } else if (job.count == 1) {
     eval_source(brdf.ref(), job, 0, 1);
+    watch.rethrow();
   } else {
-    const nb::gil_scoped_release released;
-    for_each_chunk(job.count, kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
-      if constexpr (std::is_same_v<T, float>)
-        if (brdf.model()) return eval_model(brdf.evaluator(), job, begin, end);
-      eval_source(brdf.ref(), job, begin, end);
+    without_gil(watch, [&] {
+      for_each_chunk(job.count, kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+        if constexpr (std::is_same_v<T, float>)
+          if (brdf.model()) return eval_model(brdf.evaluator(), job, begin, end);
+        eval_source(brdf.ref(), job, begin, end);
+      });
     });
   }
   return one && out.is_none() ? nb::object(result.array[0]) : result.array;
+}
+
+nb::object eval_any(const OpenedBrdf& brdf, nb::handle wi, nb::handle wo, const nb::object& out) {
+  return is_single({wi, wo}, out)
+             ? eval<float>(brdf, array_of<float>(wi, "wi"), array_of<float>(wo, "wo"), out)
+             : eval<double>(brdf, array_of<double>(wi, "wi"), array_of<double>(wo, "wo"), out);
 }
 
 // Seconds of one call of FactoredEvaluator::eval in one thread, the best of `repeats`, on arrays that are all
@@ -127,9 +137,11 @@ double time_eval(const OpenedModel& model, const Array<const float>& wi, const A
 constexpr const char* kEvalDoc =
     "f_r in 1/sr, without the cosine, zero below the horizon.\n\n"
     "wi, wo: unit vectors to the light and the viewer, (N, 3) or (3,), both float32 or both float64, any\n"
-    "strides, read where they lie; normal (0, 0, 1). Returns (N, channels) of the same type, or fills and\n"
-    "returns `out`. float64 is the definition; float32 of a model is the fast evaluator. nan stands where a\n"
-    "measurement knows nothing and where wi or wo is no unit vector to 1 %.\n"
+    "strides, read where they lie; normal (0, 0, 1). Lists and integers are taken too, as the other "
+    "argument's\n"
+    "type or as float64. Returns (N, channels) of the same type, or fills and returns `out`. float64 is the\n"
+    "definition; float32 of a model is the fast evaluator. nan stands where a measurement knows nothing and\n"
+    "where wi or wo is no unit vector to 1 %.\n"
     "Rows (order='C') and planes of components (order='F') cost the same; of planes the result is planes.\n"
     "Uses all threads; other Python threads go on meanwhile.";
 
@@ -146,7 +158,10 @@ void bind_eval(nb::module_& m) {
       .def("eval", &eval<double>, nb::arg("wi").noconvert(), nb::arg("wo").noconvert(),
            nb::arg("out") = nb::none(),
            nb::sig("def eval(self, wi: NDArray[numpy.float64], wo: NDArray[numpy.float64], "
-                   "out: NDArray[numpy.float64] | None = None) -> NDArray[numpy.float64]"));
+                   "out: NDArray[numpy.float64] | None = None) -> NDArray[numpy.float64]"))
+      .def("eval", &eval_any, nb::arg("wi").none(), nb::arg("wo").none(), nb::arg("out") = nb::none(),
+           nb::sig("def eval(self, wi: numpy.typing.ArrayLike, wo: numpy.typing.ArrayLike, "
+                   "out: NDArray | None = None) -> NDArray"));
   m.def("_time_eval", &time_eval, nb::arg("model"), nb::arg("wi").noconvert(), nb::arg("wo").noconvert(),
         nb::arg("out"), nb::arg("repeats"));
 }

@@ -33,6 +33,16 @@ std::vector<ExportTarget> targets_of(const Names& names) {
   return targets;
 }
 
+// What files and functions are called where no name is given, after the source: a file's stem, what follows '#' in the
+// name of a material in a file, an analytic model.
+std::string name_of(const std::string& source) {
+  if (is_analytic_spec(source)) return export_name(source.substr(0, source.find(':')));
+  for (const std::string_view prefix : {"book:", "nbrdf:", "np:", "surface:"})
+    if (source.starts_with(prefix) && source.find('#') != std::string::npos)
+      return export_name(std::string_view(source).substr(source.rfind('#') + 1));
+  return export_name(std::filesystem::path(source).stem().string());
+}
+
 // Writes the files where a folder is given, and hands them out by name.
 nb::dict handed_out(const ExportedFiles& exported, const std::optional<std::filesystem::path>& folder) {
   if (folder) write_files(*folder, exported.files);
@@ -43,13 +53,13 @@ nb::dict handed_out(const ExportedFiles& exported, const std::optional<std::file
 }
 
 nb::dict exported_model(const OpenedModel& model, const Names& to,
-                        const std::optional<std::filesystem::path>& folder, const std::string& name,
-                        bool exact, bool half, bool mips, bool compressed, int cells,
-                        const std::optional<std::string>& environment) {
+                        const std::optional<std::filesystem::path>& folder,
+                        const std::optional<std::string>& name, bool exact, bool half, bool mips,
+                        bool compressed, int cells, const std::optional<std::string>& environment) {
   const ExportedFiles exported = [&] {
     const nb::gil_scoped_release unlocked;
     ExportOptions options{.to = targets_of(to),
-                          .name = name,
+                          .name = name ? *name : name_of(model.source().name),
                           .exact = exact,
                           .half = half,
                           .mips = mips,
@@ -62,13 +72,14 @@ nb::dict exported_model(const OpenedModel& model, const Names& to,
 }
 
 nb::dict exported_analytic(const std::string& spec, const Names& to,
-                           const std::optional<std::filesystem::path>& folder, const std::string& name,
-                           int cells, const std::optional<std::string>& power) {
+                           const std::optional<std::filesystem::path>& folder,
+                           const std::optional<std::string>& name, int cells,
+                           const std::optional<std::string>& power) {
   const Source source = open_source(spec, {});
   const auto* const brdf = std::get_if<AnalyticBrdf>(&source.brdf);
   if (!brdf)
     throw Error(spec + ": expected an analytic BRDF, found another; open_source or fit make a Model of it");
-  const ExportOptions options{.to = targets_of(to), .name = name, .cells = cells};
+  const ExportOptions options{.to = targets_of(to), .name = name ? *name : name_of(spec), .cells = cells};
   if (!power && brdf->model().name == "openpbr") return handed_out(export_openpbr(*brdf, options), folder);
   const std::optional<PowerMethod> method = power ? std::optional(power_method(*power)) : std::nullopt;
   return handed_out(export_specular(format_analytic(*brdf), method, options), folder);
@@ -78,36 +89,36 @@ nb::dict exported_analytic(const std::string& spec, const Names& to,
 
 void bind_exports(nb::module_& m) {
   const ExportOptions defaults;
-  m.def(
-      "export", &exported_model, nb::arg("model"), nb::arg("to"), nb::arg("folder") = nb::none(),
-      nb::kw_only(), nb::arg("name") = defaults.name, nb::arg("exact") = defaults.exact,
-      nb::arg("half") = defaults.half, nb::arg("mips") = defaults.mips,
-      nb::arg("compressed") = defaults.compressed, nb::arg("cells") = defaults.cells,
-      nb::arg("environment") = nb::none(),
-      nb::sig(
-          "def export(model: Model, to: str | list[str], folder: str | os.PathLike | None = None, *, "
-          "name: str = 'brdf', exact: bool = False, half: bool = False, mips: bool = False, "
-          "compressed: bool = True, cells: int = 90, environment: str | None = None) -> dict[str, bytes]"),
-      "What `burnish export` writes, by the files' names, the last one the manifest NAME.json; into the "
-      "folder\n"
-      "too where one is given.\n\n"
-      "to: one or several of \"ktx2\", \"cube\", \"exr\", \"png\", \"gltf\", \"materialx\", \"usda\", "
-      "\"mdl\",\n\"three\", \"babylon\", \"rgl\", \"html\" and the shaders \"glsl\", \"glsl_es\", "
-      "\"hlsl\", \"msl\", \"wgsl\" and \"cpp\", which bring their textures "
-      "along. "
-      "name: of files\nand functions. exact: shaders weigh texels themselves, in floats. half: they multiply "
-      "them in half precision\n(mediump, min16float, half, f16), within 1 %; \"cpp\" stays single. mips: "
-      "KTX2 "
-      "with levels. "
-      "compressed: KTX2\nwith Zstandard. cells: of \"mdl\", along each polar angle. environment: \"sun\", "
-      "\"studio\" or an OpenEXR picture of all "
-      "directions, "
-      "whose light glsl,\nglsl_es and html show.");
+  m.def("export", &exported_model, nb::arg("model"), nb::arg("to"), nb::arg("folder") = nb::none(),
+        nb::kw_only(), nb::arg("name") = nb::none(), nb::arg("exact") = defaults.exact,
+        nb::arg("half") = defaults.half, nb::arg("mips") = defaults.mips,
+        nb::arg("compressed") = defaults.compressed, nb::arg("cells") = defaults.cells,
+        nb::arg("environment") = nb::none(),
+        nb::sig(
+            "def export(model: Model, to: str | list[str], folder: str | os.PathLike | None = None, *, "
+            "name: str | None = None, exact: bool = False, half: bool = False, mips: bool = False, "
+            "compressed: bool = True, cells: int = 90, environment: str | None = None) -> dict[str, bytes]"),
+        "What `burnish export` writes, by the files' names, the last one the manifest NAME.json; into the "
+        "folder\n"
+        "too where one is given.\n\n"
+        "to: one or several of \"ktx2\", \"cube\", \"exr\", \"png\", \"gltf\", \"materialx\", \"usda\", "
+        "\"mdl\",\n\"three\", \"babylon\", \"rgl\", \"html\" and the shaders \"glsl\", \"glsl_es\", "
+        "\"hlsl\", \"msl\", \"wgsl\" and \"cpp\", which bring their textures "
+        "along. "
+        "name: of files,\nfunctions and MaterialX's nodes; by default the source's, \"paint\" for "
+        "\"paint.binary\". exact: shaders weigh texels themselves, in floats. half: they multiply "
+        "them in half precision\n(mediump, min16float, half, f16), within 1 %; \"cpp\" stays single. mips: "
+        "KTX2 "
+        "with levels. "
+        "compressed: KTX2\nwith Zstandard. cells: of \"mdl\", along each polar angle. environment: \"sun\", "
+        "\"studio\" or an OpenEXR picture of all "
+        "directions, "
+        "whose light glsl,\nglsl_es and html show.");
   m.def("export", &exported_analytic, nb::arg("spec"), nb::arg("to"), nb::arg("folder") = nb::none(),
-        nb::kw_only(), nb::arg("name") = defaults.name, nb::arg("cells") = defaults.cells,
+        nb::kw_only(), nb::arg("name") = nb::none(), nb::arg("cells") = defaults.cells,
         nb::arg("power") = nb::none(),
         nb::sig("def export(spec: str, to: str | list[str], folder: str | os.PathLike | None = None, *, "
-                "name: str = 'brdf', cells: int = 90, power: str | None = None) -> dict[str, bytes]"),
+                "name: str | None = None, cells: int = 90, power: str | None = None) -> dict[str, bytes]"),
         "OpenPBR, such as \"openpbr:coat_weight=1\" or a file of it, as shaders or \"three\", \"babylon\", "
         "\"materialx\",\n\"usda\", \"mdl\", \"gltf\", \"rgl\" or \"html\". cells: of \"mdl\", along each "
         "polar angle.\n"

@@ -1,11 +1,16 @@
 #include "fit_keywords.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
+
+#include <burnish/error.h>
+#include <burnish/math/closest_name.h>
 
 namespace burnish::python {
 
@@ -46,6 +51,16 @@ bool taken(const FitOption& option, bool with_method) {
   return with_method ? !excludes(option, method) : option.name != method.name;
 }
 
+void check_names(std::string_view caller, const nb::kwargs& keywords,
+                 std::span<const std::string_view> others) {
+  std::vector<std::string_view> names;
+  for (const FitOption& option : fit_option_table()) names.push_back(option.name);
+  names.insert(names.end(), others.begin(), others.end());
+  for (const auto& [key, value] : keywords)
+    if (const auto name = nb::cast<std::string>(key); std::ranges::find(names, name) == names.end())
+      throw Error(fmt::format("{}: {}", caller, expected_one_of(names, name)));
+}
+
 std::string type_of(const FitOption& option) {
   switch (option.takes) {
     case FitValue::flag:
@@ -79,7 +94,9 @@ std::string parameter(const FitOption& option, bool with_method) {
 
 }  // namespace
 
-FitRequest request_of(const nb::kwargs& keywords) {
+FitRequest request_of(std::string_view caller, const nb::kwargs& keywords,
+                      std::span<const std::string_view> others) {
+  check_names(caller, keywords, others);
   Json object = Json::object();
   std::shared_ptr<const MaterialBook> book;
   for (const auto& [key, value] : keywords) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 
 #include <burnish/fitting/fit_request.h>
 
@@ -8,9 +10,11 @@
 
 namespace burnish::python {
 
-/// What keywords of `fit` and `batch` ask for, without source and progress. Throws Error for what the options refuse,
-/// and nb::type_error for an object that no option takes.
-FitRequest request_of(const nb::kwargs& keywords);
+/// What keywords of `fit` and `batch`, the caller, ask for. `others` are what the caller takes besides, which stand among
+/// the names of the error. Throws Error for what is no name or what the options refuse, and nb::type_error for an object
+/// that no option takes.
+FitRequest request_of(std::string_view caller, const nb::kwargs& keywords,
+                      std::span<const std::string_view> others);
 
 /// "def fit(source: Source, *, NAME: TYPE = DEFAULT, ...) -> Model", with every option of fit_option_table that a fit
 /// of that kind takes: one with a method, which gives a Baseline, or one without.

@@ -20,38 +20,43 @@ namespace burnish::python {
 
 namespace {
 
+constexpr std::string_view kOtherKeywords[] = {"progress"};
+
 FitOptions options_for(const OpenedBrdf& source, const FitRequest& request, const nb::object& progress) {
   FitOptions options = fit_options(request, source.ref().isotropic());
-  options.progress = progress_of(progress);
+  options.progress = [watch = FunctionWatch({&source}), progress = progress_of(progress)](
+                         std::string_view stage, double fraction) {
+    watch.rethrow();
+    progress(stage, fraction);
+  };
   return options;
 }
 
 OpenedModel* fit(const OpenedBrdf& source, const nb::object& progress, const nb::kwargs& how) {
-  const FitOptions options = options_for(source, request_of(how), progress);
-  const nb::gil_scoped_release released;
-  return new OpenedModel(source.source().name, to_model(burnish::fit(source.source(), options)));
+  const FitOptions options = options_for(source, request_of("fit", how, kOtherKeywords), progress);
+  return new OpenedModel(source.source().name, without_gil(FunctionWatch({&source}), [&] {
+                           return to_model(burnish::fit(source.source(), options));
+                         }));
 }
 
 OpenedBaseline* fit_baseline(const OpenedBrdf& source, const std::string& method, const nb::object& progress,
                              nb::kwargs how) {
   how["method"] = method;
-  const FitOptions options = options_for(source, request_of(how), progress);
-  const nb::gil_scoped_release released;
-  return new OpenedBaseline(source.source().name, to_baseline(burnish::fit(source.source(), options)));
+  const FitOptions options = options_for(source, request_of("fit", how, kOtherKeywords), progress);
+  return new OpenedBaseline(source.source().name, without_gil(FunctionWatch({&source}), [&] {
+                              return to_baseline(burnish::fit(source.source(), options));
+                            }));
 }
 
 nb::object fit_to_material(const OpenedBrdf& source, const std::string& to,
                            const std::optional<std::filesystem::path>& path, bool beside,
                            const nb::object& progress) {
-  std::string summary;
-  {
-    const nb::gil_scoped_release released;
+  return from_json(without_gil(FunctionWatch({&source}), [&] {
     const MaterialFit fit =
         fit_material(source.source(), to, {.beside = beside, .progress = progress_of(progress)});
     if (path) write_then_rename(*path, format_material(fit));
-    summary = summary_json(fit, path ? path->string() : std::string());
-  }
-  return from_json(summary);
+    return summary_json(fit, path ? path->string() : std::string());
+  }));
 }
 
 }  // namespace

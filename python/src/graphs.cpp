@@ -55,8 +55,7 @@ nb::tuple lobe_graph(const OpenedModel& model) {
 }
 
 SamplerTables tables_of(const OpenedBrdf& brdf) {
-  const nb::gil_scoped_release released;
-  return brdf.sampler().tables();
+  return without_gil(FunctionWatch({&brdf}), [&] { return brdf.sampler().tables(); });
 }
 
 nb::dict sampler_graphs(const OpenedBrdf& brdf) {

@@ -1,5 +1,10 @@
 #include <list>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
@@ -9,6 +14,7 @@
 #include <burnish/reflectance/goniometer.h>
 #include <burnish/report/compare_report.h>
 
+#include "array_like.h"
 #include "opened_brdf.h"
 #include "rows.h"
 
@@ -18,41 +24,95 @@ namespace {
 
 ErrorFigures error_figures(const OpenedBrdf& reference, const OpenedBrdf& model, std::size_t count,
                            std::uint64_t seed, double floor, int image_size, bool symmetrize) {
-  const nb::gil_scoped_release released;
-  const Reciprocal a(reference, symmetrize), b(model, symmetrize);
-  return burnish::error_figures(a.ref(), b.ref(),
-                                {.count = count, .seed = seed, .floor = floor, .image_size = image_size});
+  return without_gil(FunctionWatch({&reference, &model}), [&] {
+    const Reciprocal a(reference, symmetrize), b(model, symmetrize);
+    return burnish::error_figures(a.ref(), b.ref(),
+                                  {.count = count, .seed = seed, .floor = floor, .image_size = image_size});
+  });
 }
 
-nb::object compare_models(const OpenedBrdf& reference, const std::vector<const OpenedBrdf*>& models,
-                          std::size_t count, std::uint64_t seed, bool symmetrize,
-                          const std::optional<std::string>& report) {
-  std::string json;
-  {
-    const nb::gil_scoped_release released;
+std::string text_of(const ErrorFigures& figures) {
+  return fmt::format(
+      "ErrorFigures(psnr={:.2f}, ssim={:.4f}, relative={:.4g}, rms_log={:.4g}, log_cos={:.4g}, "
+      "mean_abs_log={:.4g}, "
+      "unknown_fraction={:.3g})",
+      figures.psnr, figures.ssim, figures.relative, figures.rms_log, figures.log_cos, figures.mean_abs_log,
+      figures.unknown_fraction);
+}
+
+using Named = std::vector<std::pair<std::string, const OpenedBrdf*>>;
+
+// What a row is called: the model's name, or where that is the reference's or another's, what it is made of.
+Named with_names(const OpenedBrdf& reference, const std::vector<const OpenedBrdf*>& models) {
+  std::map<std::string, int> taken{{reference.source().name, 1}};
+  for (const OpenedBrdf* model : models) ++taken[model->source().name];
+  Named named;
+  std::map<std::string, int> given;
+  for (const OpenedBrdf* model : models) {
+    const Source& source = model->source();
+    std::string name = source.name;
+    if (taken[name] > 1 && source.bytes() && !source.findings.description.empty())
+      name = fmt::format("{}, {} bytes", source.findings.description, *source.bytes());
+    if (const int before = given[name]++; before > 0) name += fmt::format(" ({})", before + 1);
+    named.emplace_back(std::move(name), model);
+  }
+  return named;
+}
+
+// Of a dictionary its keys are the names.
+Named named_models(const OpenedBrdf& reference, const nb::object& models) {
+  const auto opened = [](nb::handle model) {
+    const OpenedBrdf* found = nullptr;
+    if (!nb::try_cast(model, found, false) || !found)
+      throw nb::type_error(fmt::format("models: expected a Source, a list or a dictionary of them, found {}",
+                                       nb::repr(model).c_str())
+                               .c_str());
+    return found;
+  };
+  if (nb::isinstance<nb::dict>(models)) {
+    Named named;
+    for (const auto& [name, model] : nb::cast<nb::dict>(models))
+      named.emplace_back(nb::str(name).c_str(), opened(model));
+    return named;
+  }
+  std::vector<const OpenedBrdf*> list;
+  if (!nb::isinstance<nb::list>(models) && !nb::isinstance<nb::tuple>(models))
+    list.push_back(opened(models));
+  else
+    for (const nb::handle model : models) list.push_back(opened(model));
+  return with_names(reference, list);
+}
+
+nb::object compare_models(const OpenedBrdf& reference, const nb::object& models, std::size_t count,
+                          std::uint64_t seed, bool symmetrize,
+                          const std::optional<std::filesystem::path>& report) {
+  const Named named = named_models(reference, models);
+  FunctionWatch watch({&reference});
+  for (const auto& [name, model] : named) watch.add(*model);
+  const std::string json = without_gil(watch, [&] {
     const Reciprocal made_reciprocal(reference, symmetrize);
     std::list<Reciprocal> candidates;
     std::vector<ComparedModel> compared;
-    for (const OpenedBrdf* model : models) {
+    for (const auto& [name, model] : named) {
       const Source& source = model->source();
-      compared.push_back({.name = source.name,
+      compared.push_back({.name = name,
                           .brdf = candidates.emplace_back(*model, symmetrize).ref(),
                           .bytes = source.bytes(),
                           .note = source.findings.description});
     }
     const Scorer scorer(made_reciprocal.ref(), {.count = count, .seed = seed});
-    json = to_json(report ? write_report(*report, reference.source().name, scorer, compared)
+    return to_json(report ? write_report(*report, reference.source().name, scorer, compared)
                           : burnish::compare_models(scorer, compared));
-  }
+  });
   return from_json(json);
 }
 
-nb::object directional_albedo(const OpenedBrdf& source, const Array<const double>& wi) {
+nb::object directional_albedo(const OpenedBrdf& source, nb::handle directions) {
+  const auto wi = array_of<double>(directions, "wi");
   const Rows<const double> rows = rows_of<double>(wi, "wi", 3);
   const std::size_t channels = source.ref().channels();
   std::vector<double> albedo;
-  {
-    const nb::gil_scoped_release released;
+  without_gil(FunctionWatch({&source}), [&] {
     for (std::size_t i = 0; i < rows.count; ++i) {
       const Vec3 w{*rows.at(i, 0), *rows.at(i, 1), *rows.at(i, 2)};
       if (!(w.z > 0 && std::abs(dot(w, w) - 1) < 0.02))
@@ -61,7 +121,7 @@ nb::object directional_albedo(const OpenedBrdf& source, const Array<const double
       const DirectionalAlbedo at = burnish::directional_albedo(source.ref(), w);
       albedo.insert(albedo.end(), at.albedo.begin(), at.albedo.end());
     }
-  }
+  });
   const nb::object array = to_numpy(std::move(albedo), {rows.count, channels});
   return rows.one ? nb::object(array[0]) : array;
 }
@@ -91,7 +151,8 @@ void bind_error_figures(nb::module_& m) {
       .def_ro("psnr", &ErrorFigures::psnr, "dB, of the lit spheres; infinite if equal")
       .def_ro("ssim", &ErrorFigures::ssim, "mean of the lit spheres")
       .def_ro("unknown_fraction", &ErrorFigures::unknown_fraction, "share of the pairs left out")
-      .def_ro("unknown_pixels", &ErrorFigures::unknown_pixels);
+      .def_ro("unknown_pixels", &ErrorFigures::unknown_pixels)
+      .def("__repr__", &text_of);
   m.def("error_figures", &error_figures, nb::arg("reference"), nb::arg("model"), nb::kw_only(),
         nb::arg("count") = FigureOptions{}.count, nb::arg("seed") = FigureOptions{}.seed,
         nb::arg("floor") = FigureOptions{}.floor, nb::arg("image_size") = FigureOptions{}.image_size,
@@ -102,10 +163,15 @@ void bind_error_figures(nb::module_& m) {
   m.def("compare_models", &compare_models, nb::arg("reference"), nb::arg("models"), nb::kw_only(),
         nb::arg("count") = FigureOptions{}.count, nb::arg("seed") = FigureOptions{}.seed,
         nb::arg("symmetrize") = true, nb::arg("report") = nb::none(),
-        nb::sig("def compare_models(reference: Source, models: Sequence[Source], *, count: int = 200000, "
-                "seed: int = 1, symmetrize: bool = True, report: str | None = None) -> list[dict]"),
+        nb::sig("def compare_models(reference: Source, models: Sequence[Source] | Mapping[str, Source], *, "
+                "count: int = 200000, seed: int = 1, symmetrize: bool = True, report: str | os.PathLike | "
+                "None = None) "
+                "-> list[dict]"),
         "What `burnish compare --json` prints: one dictionary a model. report: a folder for pictures and "
-        "plots.");
+        "plots.\n\n"
+        "models: named by the keys of a dictionary, {\"small\": model}. In a list a model has its source's "
+        "name; "
+        "where\nthat is the reference's or another's, its expression and bytes.");
 }
 
 }  // namespace
@@ -113,17 +179,15 @@ void bind_error_figures(nb::module_& m) {
 void bind_metrics(nb::module_& m) {
   bind_error_figures(m);
   m.def(
-      "directional_albedo", &directional_albedo, nb::arg("source"), nb::arg("wi").noconvert(),
-      nb::sig("def directional_albedo(source: Source, wi: NDArray[numpy.float64]) -> NDArray[numpy.float64]"),
+      "directional_albedo", &directional_albedo, nb::arg("source"), nb::arg("wi"),
+      nb::sig("def directional_albedo(source: Source, wi: numpy.typing.ArrayLike) -> NDArray[numpy.float64]"),
       "The share of light from wi that is reflected, one a channel, to 0.5 %.\n\n"
-      "wi: unit vectors above the horizon, float64 (N, 3) or (3,). Returns (N, channels) or (channels,).");
+      "wi: unit vectors above the horizon, (N, 3) or (3,). Returns (N, channels) or (channels,).");
   m.def(
       "render_sphere",
       [](const OpenedBrdf& source, double light_angle, int size) {
-        Image image = [&] {
-          const nb::gil_scoped_release released;
-          return render_sphere(source.ref(), light_angle, size).image;
-        }();
+        Image image = without_gil(FunctionWatch({&source}),
+                                  [&] { return render_sphere(source.ref(), light_angle, size).image; });
         return to_numpy_image(std::move(image));
       },
       nb::arg("source"), nb::arg("light_angle"), nb::arg("size") = kSphereSize,
@@ -144,10 +208,9 @@ void bind_metrics(nb::module_& m) {
   m.def(
       "measure",
       [](const OpenedBrdf& source, std::size_t count, double noise, std::uint64_t seed) {
-        Samples samples = [&] {
-          const nb::gil_scoped_release released;
+        Samples samples = without_gil(FunctionWatch({&source}), [&] {
           return measure(source.ref(), {count, noise, seed});
-        }();
+        });
         const nb::tuple pairs = pair_arrays(samples.pairs);
         return nb::make_tuple(pairs[0], pairs[1],
                               to_numpy(std::move(samples.values), {samples.size(), samples.channels}));

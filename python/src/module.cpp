@@ -7,6 +7,8 @@
 #include <burnish/error.h>
 #include <burnish/math/parallel.h>
 
+#include "mistakes.h"
+
 namespace burnish::python {
 
 namespace {
@@ -55,6 +57,9 @@ NB_MODULE(_burnish, m) {
   bind_exports(m);
   bind_writers(m);
   bind_surfaces(m);
+  bind_own_sources(m);
+  bind_uncertainty(m);
+  explain_mistakes(m);
 }
 
 }  // namespace burnish::python

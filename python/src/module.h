@@ -22,9 +22,11 @@ void bind_exports(nb::module_& m);
 void bind_fitting(nb::module_& m);
 void bind_graphs(nb::module_& m);
 void bind_metrics(nb::module_& m);
+void bind_own_sources(nb::module_& m);
 void bind_sampling(nb::module_& m);
 void bind_shaders(nb::module_& m);
 void bind_surfaces(nb::module_& m);
+void bind_uncertainty(nb::module_& m);
 void bind_writers(nb::module_& m);
 
 /// A JSON text as Python objects.

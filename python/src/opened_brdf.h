@@ -1,12 +1,19 @@
 #pragma once
 
+#include <cstddef>
+#include <initializer_list>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
+#include <burnish/error.h>
 #include <burnish/eval/factored_eval.h>
 #include <burnish/eval/tabulated_sampler.h>
+#include <burnish/reflectance/kriged_nodes.h>
 #include <burnish/source.h>
 
 #include "module.h"
@@ -26,10 +33,14 @@ class OpenedBrdf {
   /// The model, or nullptr where it is none.
   const FactoredBrdf* model() const noexcept { return std::get_if<FactoredBrdf>(&source_.brdf); }
 
-  const TabulatedSampler& sampler() const {
-    std::call_once(sampler_made_, [&] { sampler_.emplace(ref()); });
-    return *sampler_;
-  }
+  /// The function of one's own, or nullptr where it is none.
+  const FunctionBrdf* function() const noexcept { return std::get_if<FunctionBrdf>(&source_.brdf); }
+
+  /// Throws what a function of one's own raises.
+  const TabulatedSampler& sampler() const;
+  /// What knows how far a measurement may be off, made when it is first asked for. Throws Error, naming the source,
+  /// where it is no measurement, or has no node far enough above the horizon.
+  const KrigedNodes& uncertain() const;
   /// Of models only.
   const FactoredEvaluator& evaluator() const {
     std::call_once(evaluator_made_, [&] { evaluator_.emplace(*model()); });
@@ -38,10 +49,52 @@ class OpenedBrdf {
 
  private:
   Source source_;
-  mutable std::once_flag sampler_made_, evaluator_made_;
+  mutable std::once_flag sampler_made_, evaluator_made_, uncertain_made_;
   mutable std::optional<TabulatedSampler> sampler_;
   mutable std::optional<FactoredEvaluator> evaluator_;
+  mutable std::unique_ptr<const KrigedNodes> uncertain_;
 };
+
+/// Evaluation never throws: what functions of one's own raise from now on waits until it is asked for.
+class FunctionWatch {
+ public:
+  explicit FunctionWatch(std::initializer_list<const OpenedBrdf*> sources) {
+    for (const OpenedBrdf* source : sources) add(*source);
+  }
+  void add(const OpenedBrdf& source) {
+    if (const FunctionBrdf* function = source.function())
+      watched_.push_back({function, function->failures()});
+  }
+  void rethrow() const {
+    for (const auto& [function, failures] : watched_) function->rethrow_since(failures);
+  }
+
+ private:
+  std::vector<std::pair<const FunctionBrdf*, std::size_t>> watched_;
+};
+
+/// What `body` returns, run without the GIL. What was raised meanwhile in functions of one's own is raised instead, in
+/// place of an Error that came of it too.
+template <class Body>
+auto without_gil(const FunctionWatch& watch, const Body& body) {
+  const nb::gil_scoped_release released;
+  const auto run = [&] {
+    try {
+      return body();
+    } catch (const Error&) {
+      watch.rethrow();
+      throw;
+    }
+  };
+  if constexpr (std::is_void_v<decltype(body())>) {
+    run();
+    watch.rethrow();
+  } else {
+    auto result = run();
+    watch.rethrow();
+    return result;
+  }
+}
 
 /// burnish.Model: one whose BRDF is factored.
 class OpenedModel : public OpenedBrdf {

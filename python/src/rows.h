@@ -45,8 +45,8 @@ template <class T>
 Rows<const T> rows_of(const Array<const T>& array, const char* name, std::size_t width) {
   const std::size_t n = array.ndim();
   if ((n != 1 && n != 2) || array.shape(n - 1) != width)
-    throw Error(fmt::format("{}: expected shape (N, {}) or ({},), found ({})", name, width, width,
-                            fmt::join(std::span(array.shape_ptr(), n), ", ")));
+    throw Error(fmt::format("{}: expected shape (N, {}) or ({},), found ({}{})", name, width, width,
+                            fmt::join(std::span(array.shape_ptr(), n), ", "), n == 1 ? "," : ""));
   if (n == 1) return {array.data(), 0, array.stride(0), 1, true};
   return {array.data(), array.stride(0), array.stride(1), array.shape(0), false};
 }

@@ -2,6 +2,7 @@
 
 #include <burnish/math/parallel.h>
 
+#include "array_like.h"
 #include "opened_brdf.h"
 #include "rows.h"
 
@@ -18,8 +19,7 @@ nb::object pdf(const OpenedBrdf& brdf, const Array<const T>& wi_array, const Arr
   const bool one = wi.one && wo.one;
   const std::size_t n = match(wi, wo, "wi and wo");
   const Result<T> result = make_result<T>(out, n, 0, false);
-  {
-    const nb::gil_scoped_release released;
+  without_gil(FunctionWatch({&brdf}), [&] {
     const TabulatedSampler& sampler = brdf.sampler();
     for_each_chunk(n, kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
       alignas(64) Buffer buffers[6], values;
@@ -36,7 +36,7 @@ nb::object pdf(const OpenedBrdf& brdf, const Array<const T>& wi_array, const Arr
         }
       }
     });
-  }
+  });
   return one && out.is_none() ? nb::object(result.array[0]) : result.array;
 }
 
@@ -47,8 +47,7 @@ nb::tuple sample_wi(const OpenedBrdf& brdf, const Array<const T>& wo_array, cons
   const std::size_t n = match(wo, u, "wo and u");
   const Result<T> wi = make_result<T>(nb::none(), n, 3, wo.planes() && n > 1),
                   pdf = make_result<T>(nb::none(), n, 0, false);
-  {
-    const nb::gil_scoped_release released;
+  without_gil(FunctionWatch({&brdf}), [&] {
     const TabulatedSampler& sampler = brdf.sampler();
     for_each_chunk(n, kChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
       alignas(64) Buffer buffers[5], drawn[4];
@@ -80,20 +79,33 @@ nb::tuple sample_wi(const OpenedBrdf& brdf, const Array<const T>& wo_array, cons
         }
       }
     });
-  }
+  });
   if (one) return nb::make_tuple(wi.array[0], pdf.array[0]);
   return nb::make_tuple(wi.array, pdf.array);
+}
+
+nb::object pdf_of_any(const OpenedBrdf& brdf, nb::handle wi, nb::handle wo, const nb::object& out) {
+  return is_single({wi, wo}, out)
+             ? pdf<float>(brdf, array_of<float>(wi, "wi"), array_of<float>(wo, "wo"), out)
+             : pdf<double>(brdf, array_of<double>(wi, "wi"), array_of<double>(wo, "wo"), out);
+}
+
+nb::tuple sample_any(const OpenedBrdf& brdf, nb::handle wo, nb::handle u) {
+  return is_single({wo, u}) ? sample_wi<float>(brdf, array_of<float>(wo, "wo"), array_of<float>(u, "u"))
+                            : sample_wi<double>(brdf, array_of<double>(wo, "wo"), array_of<double>(u, "u"));
 }
 
 constexpr const char* kSampleDoc =
     "Draws directions to the light nearly in proportion to f_r cos(theta_i).\n\n"
     "wo: unit vectors to the viewer, (N, 3) or (3,); u: uniform numbers in [0, 1), (N, 2) or (2,), of the\n"
-    "same type, float32 or float64. Returns wi (N, 3) and their densities (N,) per solid angle, 1/sr; "
+    "same type, float32 or float64; lists as eval takes them. Returns wi (N, 3) and their densities (N,) per "
+    "solid angle, 1/sr; "
     "density\n"
     "0: rounding put wi onto the horizon, and the draw carries no light. Tables are made at the first call.";
 constexpr const char* kPdfDoc =
     "The density with which sample_wi draws wi for wo, per solid angle, 1/sr; zero below the horizon.\n\n"
-    "wi, wo: unit vectors, (N, 3) or (3,), both float32 or both float64. Returns (N,), or fills `out`.";
+    "wi, wo: unit vectors, (N, 3) or (3,), both float32 or both float64; lists as eval takes them. Returns\n"
+    "(N,), or fills `out`.";
 
 }  // namespace
 
@@ -107,6 +119,9 @@ void bind_sampling(nb::module_& m) {
       .def("sample_wi", &sample_wi<double>, nb::arg("wo").noconvert(), nb::arg("u").noconvert(),
            nb::sig("def sample_wi(self, wo: NDArray[numpy.float64], u: NDArray[numpy.float64]) -> "
                    "tuple[NDArray[numpy.float64], NDArray[numpy.float64]]"))
+      .def("sample_wi", &sample_any, nb::arg("wo"), nb::arg("u"),
+           nb::sig("def sample_wi(self, wo: numpy.typing.ArrayLike, u: numpy.typing.ArrayLike) -> "
+                   "tuple[NDArray, NDArray]"))
       .def("pdf", &pdf<float>, nb::arg("wi").noconvert(), nb::arg("wo").noconvert(),
            nb::arg("out") = nb::none(),
            nb::sig("def pdf(self, wi: NDArray[numpy.float32], wo: NDArray[numpy.float32], "
@@ -115,7 +130,10 @@ void bind_sampling(nb::module_& m) {
       .def("pdf", &pdf<double>, nb::arg("wi").noconvert(), nb::arg("wo").noconvert(),
            nb::arg("out") = nb::none(),
            nb::sig("def pdf(self, wi: NDArray[numpy.float64], wo: NDArray[numpy.float64], "
-                   "out: NDArray[numpy.float64] | None = None) -> NDArray[numpy.float64]"));
+                   "out: NDArray[numpy.float64] | None = None) -> NDArray[numpy.float64]"))
+      .def("pdf", &pdf_of_any, nb::arg("wi").none(), nb::arg("wo").none(), nb::arg("out") = nb::none(),
+           nb::sig("def pdf(self, wi: numpy.typing.ArrayLike, wo: numpy.typing.ArrayLike, "
+                   "out: NDArray | None = None) -> NDArray"));
 }
 
 }  // namespace burnish::python

@@ -16,6 +16,7 @@
 #include <burnish/textures/ktx2.h>
 
 #include "opened_brdf.h"
+#include "texts.h"
 
 namespace burnish::python {
 
@@ -54,7 +55,11 @@ void bind_shaders(nb::module_& m) {
   nb::class_<PlacedTable>(m, "PlacedTable", "Where a table stands in a texture.")
       .def_ro("table", &PlacedTable::table, "Number of the model's table.")
       .def_ro("first", &PlacedTable::first, "x, y and z of the texel that is its first node.")
-      .def_ro("exponent", &PlacedTable::exponent, "The table's values are there times 2^exponent.");
+      .def_ro("exponent", &PlacedTable::exponent, "The table's values are there times 2^exponent.")
+      .def("__repr__", [](const PlacedTable& t) {
+        return fmt::format("<burnish placed table {}: first texel ({}), times 2^{}>", t.table,
+                           fmt::join(t.first, ", "), t.exponent);
+      });
   nb::class_<ShaderTexture>(m, "ShaderTexture",
                             "What a shader reads: tables beside, above or behind each other.")
       .def_ro("name", &ShaderTexture::name, "Of the sampler.")
@@ -70,7 +75,12 @@ void bind_shaders(nb::module_& m) {
             return to_numpy(t.values, shape);
           },
           nb::sig("def values(self) -> numpy.ndarray"),
-          "Texels, (height, width, channels) float32, with the depth before them where there is one.");
+          "Texels, (height, width, channels) float32, with the depth before them where there is one.")
+      .def("__repr__", [](const ShaderTexture& t) {
+        return fmt::format("<burnish texture '{}': {} x {}{}, {}, {}, tables {}>", t.name, t.width, t.height,
+                           t.depth > 0 ? fmt::format(" x {}", t.depth) : "", counted(t.channels, "channel"),
+                           to_string(t.format), t.tables.size());
+      });
   nb::class_<Shader>(m, "Shader", "Source text that evaluates a model, and what it reads.")
       .def_ro("text", &Shader::text, "Without a #version line.")
       .def_ro("textures", &Shader::textures)
@@ -86,7 +96,11 @@ void bind_shaders(nb::module_& m) {
             cost["powers"] = s.cost.powers;
             return cost;
           },
-          nb::sig("def cost(self) -> dict[str, int]"), "Of one evaluation; operations a component.");
+          nb::sig("def cost(self) -> dict[str, int]"), "Of one evaluation; operations a component.")
+      .def("__repr__", [](const Shader& s) {
+        return fmt::format("<burnish shader: {}, {}, {}>", counted(s.text.size(), "byte"),
+                           counted(s.textures.size(), "texture"), to_string(s.cost));
+      });
   m.def(
       "generate_shader", &shader_of, nb::arg("model"), nb::arg("language") = "glsl", nb::kw_only(),
       nb::arg("exact") = false, nb::arg("half") = false, nb::arg("name") = "brdf",

@@ -3,6 +3,7 @@
 #include <span>
 #include <utility>
 
+#include <fmt/format.h>
 #include <nanobind/stl/function.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -15,6 +16,7 @@
 #include <burnish/io/source_report.h>
 
 #include "opened_brdf.h"
+#include "texts.h"
 
 namespace burnish::python {
 
@@ -100,7 +102,8 @@ void bind_model_parts(nb::module_& m) {
           nb::sig("def warp_y(self) -> tuple[str, float]"), "Of grids and volumes, along y.")
       .def_prop_ro(
           "warp_z", [](const Table& t) { return warp_terms(t.layout.warp_z); },
-          nb::sig("def warp_z(self) -> tuple[str, float]"), "Of volumes, along z.");
+          nb::sig("def warp_z(self) -> tuple[str, float]"), "Of volumes, along z.")
+      .def("__repr__", &text_of_table);
   nb::class_<FactorUse>(m, "FactorUse", "One use of a table in a product.")
       .def_ro("table", &FactorUse::table, "Index into Model.tables.")
       .def_prop_ro(
@@ -115,10 +118,12 @@ void bind_model_parts(nb::module_& m) {
           "Of grids and volumes.")
       .def_prop_ro(
           "projection_z", [](const FactorUse& u) { return projection_terms(u.projection_z); },
-          nb::sig("def projection_z(self) -> tuple[float, float, float, float] | str"), "Of volumes only.");
+          nb::sig("def projection_z(self) -> tuple[float, float, float, float] | str"), "Of volumes only.")
+      .def("__repr__", &text_of_use);
   nb::class_<Lobe>(m, "Lobe", "One product of factors.")
       .def_ro("scale", &Lobe::scale, "One entry a channel.")
-      .def_ro("factors", &Lobe::factors);
+      .def_ro("factors", &Lobe::factors)
+      .def("__repr__", &text_of_lobe);
 }
 
 void bind_opened_brdf(nb::module_& m) {
@@ -139,18 +144,12 @@ void bind_opened_brdf(nb::module_& m) {
       .def(
           "info",
           [](const OpenedBrdf& b) {
-            std::string text;
-            {
-              const nb::gil_scoped_release released;
-              text = to_json(report_on(b.source()));
-            }
-            return from_json(text);
+            return from_json(
+                without_gil(FunctionWatch({&b}), [&] { return to_json(report_on(b.source())); }));
           },
           nb::sig("def info(self) -> dict"),
           "What `burnish info --json` prints, but what a shader costs: see generate_shader.")
-      .def("__repr__", [](const OpenedBrdf& b) {
-        return "<burnish " + b.source().findings.format + " '" + b.source().name + "'>";
-      });
+      .def("__repr__", &text_of_source);
 }
 
 void bind_model(nb::module_& m) {
@@ -176,7 +175,11 @@ void bind_model(nb::module_& m) {
           "Such as \"p(wo) q(h) p(wi)\".")
       .def_prop_ro(
           "notes", [](const OpenedModel& b) { return from_json(b.source().findings.notes); },
-          nb::sig("def notes(self) -> dict"), "What the fit noted: source, options, errors.")
+          nb::sig("def notes(self) -> dict"),
+          "What the fit noted: source, options, errors. Of a measurement \"node_expected\" is the error "
+          "\"relative\"\n"
+          "that is expected over all directions, measured or not, and \"from_theta_i_deg\" in bands of 15 degrees.")
+      .def("__repr__", &text_of_model)
       .def(
           "with_log_tables", &with_log_tables, nb::arg("log_tables"), nb::arg("format") = nb::none(),
           "The model with other tables, given by their natural logarithms.\n\n"
@@ -197,7 +200,8 @@ void bind_baseline(nb::module_& m) {
           "What it is made of, one line.")
       .def_prop_ro(
           "notes", [](const OpenedBaseline& b) { return from_json(b.baseline().notes); },
-          nb::sig("def notes(self) -> dict"), "What the fit noted: source, options, errors.");
+          nb::sig("def notes(self) -> dict"), "What the fit noted: source, options, errors.")
+      .def("__repr__", &text_of_baseline);
 }
 
 }  // namespace
@@ -211,6 +215,9 @@ void bind_source(nb::module_& m) {
       "open_source",
       [](const nb::object& spec, bool keep_spectral, const std::string& illuminant, bool has_cosine,
          bool clamp_negatives, bool back_side, bool has_cosine_o, bool brf) {
+        if (!nb::isinstance<nb::str>(spec) && !nb::hasattr(spec, "__fspath__"))
+          throw nb::type_error(
+              fmt::format("spec: expected a path or a spec, found {}", nb::repr(spec).c_str()).c_str());
         const auto path = nb::cast<std::string>(nb::module_::import_("os").attr("fspath")(spec));
         const nb::gil_scoped_release released;
         return open(path,

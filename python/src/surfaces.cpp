@@ -28,9 +28,11 @@
 #include <burnish/math/parallel.h>
 #include <burnish/surface/surface_file.h>
 
+#include "array_like.h"
 #include "opened_brdf.h"
 #include "progress.h"
 #include "rows.h"
+#include "texts.h"
 
 namespace burnish::python {
 
@@ -39,15 +41,21 @@ namespace {
 /// burnish.Surface: a surface and what evaluates it.
 struct OpenedSurface {
   SpatialEvaluator evaluator;
-  std::string notes;
+  std::string notes, name;
 
-  explicit OpenedSurface(SurfaceModel model)
-      : evaluator(std::move(model.brdf)), notes(std::move(model.notes)) {}
+  OpenedSurface(const std::string& called, SurfaceModel model)
+      : evaluator(std::move(model.brdf)), notes(std::move(model.notes)), name(called) {}
   const SpatialBrdf& brdf() const noexcept { return evaluator.surface(); }
 };
 
+// A capture's own name: its file's without the ending, its folder's.
+std::string called(const std::filesystem::path& capture) {
+  const std::filesystem::path path = capture.has_filename() ? capture : capture.parent_path();
+  return std::filesystem::is_directory(path) ? path.filename().string() : path.stem().string();
+}
+
 OpenedSurface* open_surface(const std::filesystem::path& path) {
-  return new OpenedSurface(parse_surface(read_file(path)));
+  return new OpenedSurface(path.stem().string(), parse_surface(read_file(path)));
 }
 
 // Pairs a task.
@@ -111,13 +119,23 @@ nb::object eval(const OpenedSurface& surface, const Array<const T>& uv_array, co
   return one && out.is_none() ? nb::object(result.array[0]) : result.array;
 }
 
+nb::object eval_any(const OpenedSurface& surface, nb::handle uv, nb::handle wi, nb::handle wo, double lod,
+                    const nb::object& out) {
+  return is_single({uv, wi, wo}, out)
+             ? eval<float>(surface, array_of<float>(uv, "uv"), array_of<float>(wi, "wi"),
+                           array_of<float>(wo, "wo"), lod, out)
+             : eval<double>(surface, array_of<double>(uv, "uv"), array_of<double>(wi, "wi"),
+                            array_of<double>(wo, "wo"), lod, out);
+}
+
 constexpr const char* kSurfaceEvalDoc =
     "f_r in 1/sr, without the cosine, at places uv, (N, 2) or (2,), v downwards; lod: the mip level, which "
     "may\n"
     "lie between two.\n\n"
     "wi, wo: unit vectors of the surface's frame, (N, 3) or (3,); all three float32 or all float64, any "
     "strides,\n"
-    "read where they lie. A single row stands for every row of the others; a single place is found once.\n"
+    "read where they lie; lists as Source.eval takes them. A single row stands for every row of the others; "
+    "a single place is found once.\n"
     "Returns (N, channels) of the same type, or fills and returns `out`. float64 is the definition, float32 "
     "the\n"
     "fast evaluator. nan stands where uv is not finite and where wi or wo is no unit vector to 1 %.";
@@ -186,14 +204,16 @@ nb::tuple fit_surface(const std::filesystem::path& capture, std::size_t lobes, s
   }();
   if (std::error_code ignored; checkpoint) std::filesystem::remove(*checkpoint, ignored);
   nb::object report = from_json(report_json(fit.report));
-  return nb::make_tuple(nb::cast(new OpenedSurface(std::move(fit.surface)), nb::rv_policy::take_ownership),
-                        report);
+  return nb::make_tuple(
+      nb::cast(new OpenedSurface(called(capture), std::move(fit.surface)), nb::rv_policy::take_ownership),
+      report);
 }
 
 nb::dict exported(const OpenedSurface& surface, const std::vector<std::string>& to,
-                  const std::optional<std::filesystem::path>& folder, const std::string& name, bool exact,
-                  bool blocks) {
-  ExportOptions options{.to = {}, .name = name, .exact = exact, .blocks = blocks};
+                  const std::optional<std::filesystem::path>& folder, const std::optional<std::string>& name,
+                  bool exact, bool blocks) {
+  ExportOptions options{
+      .to = {}, .name = name ? *name : export_name(surface.name), .exact = exact, .blocks = blocks};
   for (const std::string& target : to) options.to.push_back(export_target(target));
   const ExportedFiles files = [&] {
     const nb::gil_scoped_release released;
@@ -230,6 +250,13 @@ void bind_surfaces(nb::module_& m) {
           "x and y of a vector in the plane, or None: (1, 0).")
       .def_prop_ro(
           "notes", [](const OpenedSurface& s) { return from_json(s.notes); }, "What the fit wrote down.")
+      .def("__repr__",
+           [](const OpenedSurface& s) {
+             const SpatialBrdf& brdf = s.brdf();
+             return fmt::format("<burnish surface '{}': {} x {} texels, {}, {}, {}>", s.name, brdf.width(),
+                                brdf.height(), counted(brdf.lobes().lobes().size(), "lobe"),
+                                counted(brdf.channels(), "channel"), counted(brdf.bytes(), "byte"));
+           })
       .def("eval", &eval<float>, nb::arg("uv").noconvert(), nb::arg("wi").noconvert(),
            nb::arg("wo").noconvert(), nb::arg("lod") = 0.0, nb::arg("out") = nb::none(),
            nb::sig("def eval(self, uv: NDArray[numpy.float32], wi: NDArray[numpy.float32], wo: "
@@ -241,6 +268,10 @@ void bind_surfaces(nb::module_& m) {
            nb::sig("def eval(self, uv: NDArray[numpy.float64], wi: NDArray[numpy.float64], wo: "
                    "NDArray[numpy.float64], lod: float = 0.0, out: NDArray[numpy.float64] | None = None) -> "
                    "NDArray[numpy.float64]"))
+      .def("eval", &eval_any, nb::arg("uv").none(), nb::arg("wi").none(), nb::arg("wo").none(), nb::arg("lod") = 0.0,
+           nb::arg("out") = nb::none(),
+           nb::sig("def eval(self, uv: numpy.typing.ArrayLike, wi: numpy.typing.ArrayLike, "
+                   "wo: numpy.typing.ArrayLike, lod: float = 0.0, out: NDArray | None = None) -> NDArray"))
       .def(
           "at",
           [](const OpenedSurface& s, double u, double v, double lod) {
@@ -251,10 +282,10 @@ void bind_surfaces(nb::module_& m) {
           nb::arg("u"), nb::arg("v"), nb::arg("lod") = 0.0, nb::rv_policy::take_ownership,
           "The Model of a place, in its own frame.")
       .def("albedo", &albedo_of, "The largest share of light that a texel reflects, and where.")
-      .def("export", &exported, nb::arg("to"), nb::arg("folder") = nb::none(), nb::arg("name") = "brdf",
+      .def("export", &exported, nb::arg("to"), nb::arg("folder") = nb::none(), nb::arg("name") = nb::none(),
            nb::arg("exact") = false, nb::arg("blocks") = false,
-           "Files by name, as `burnish export`: shaders, ktx2, exr, png, gltf, three, html. blocks: maps as\n"
-           "pairs in BC5.")
+           "Files by name, as `burnish export`: shaders, ktx2, exr, png, gltf, three, html. name: of files\n"
+           "and functions, by default the surface's. blocks: maps as pairs in BC5.")
       .def(
           "write",
           [](const OpenedSurface& s, const std::filesystem::path& path) {

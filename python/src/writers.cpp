@@ -25,9 +25,10 @@ void write_baseline(const std::filesystem::path& path, const OpenedBaseline& mod
 std::vector<std::string> write_converted(const OpenedBrdf& source, const std::filesystem::path& path,
                                          const std::string& format, std::size_t count, std::uint64_t seed,
                                          bool entries, int cells, bool notes) {
-  Converted converted =
-      convert(source.source(), format,
-              {.count = count, .seed = seed, .entries = entries, .cells = cells, .notes = notes});
+  Converted converted = without_gil(FunctionWatch({&source}), [&] {
+    return convert(source.source(), format,
+                   {.count = count, .seed = seed, .entries = entries, .cells = cells, .notes = notes});
+  });
   write_then_rename(path, converted.bytes);
   return std::move(converted.losses);
 }
@@ -46,7 +47,7 @@ void bind_writers(nb::module_& m) {
   m.def("convert", &write_converted, nb::arg("source"), nb::arg("path"), nb::arg("format"), nb::kw_only(),
         nb::arg("count") = defaults.count, nb::arg("seed") = defaults.seed,
         nb::arg("entries") = defaults.entries, nb::arg("cells") = defaults.cells,
-        nb::arg("notes") = defaults.notes, nb::call_guard<nb::gil_scoped_release>(),
+        nb::arg("notes") = defaults.notes,
         "Writes a source in another format and says what that lost, a phrase each.\n\n"
         "format: \"merl\", \"utia\", \"rgl\" (for Mitsuba's `measured` and pbrt-v4), \"mbsdf\", "
         "\"zemax\", \"tensortree\",\n\"openmaterial\", \"astm\", \"csv\", \"exr\" (slices), or of a "

@@ -1,4 +1,7 @@
+#include <algorithm>
+#include <cmath>
 #include <concepts>
+#include <functional>
 #include <type_traits>
 #include <utility>
 
@@ -78,6 +81,23 @@ NodeCount count_nodes(const Source& source) {
   const NodeCount count = of_measurement<NodeCount>(source, [](const auto& any) { return count_nodes(any); });
   expect_nodes(source, count.nodes);
   return count;
+}
+
+Source to_source(const std::string& name, FunctionBrdf brdf, std::vector<double> lambda_nm) {
+  const std::size_t channels = brdf.channels();
+  if (lambda_nm.empty() ? channels != 1 && channels != 3 : lambda_nm.size() != channels)
+    throw Error::in_file(name, lambda_nm.empty() ? "wavelengths, or grey or RGB" : "a wavelength a channel",
+                         fmt::format("{} channels and {} wavelengths", channels, lambda_nm.size()));
+  if (!lambda_nm.empty() &&
+      (!(lambda_nm.front() > 0) || !std::isfinite(lambda_nm.back()) ||
+       std::ranges::adjacent_find(lambda_nm, std::not_fn(std::less<>{})) != lambda_nm.end()))
+    throw Error::in_file(name, "positive, increasing wavelengths",
+                         fmt::format("{} ... {} nm out of order", lambda_nm.front(), lambda_nm.back()));
+  Findings findings;
+  findings.format = "function";
+  findings.lambda_nm = std::move(lambda_nm);
+  findings.theta_i_max = findings.theta_o_max = kHalfPi;
+  return {name, std::move(brdf), std::move(findings)};
 }
 
 Source to_source(const std::string& name, Model model) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include <burnish/baselines/baseline_file.h>
 #include <burnish/baselines/dgf_brdf.h>
@@ -16,6 +17,7 @@
 #include <burnish/reflectance/angle_table.h>
 #include <burnish/reflectance/brdf.h>
 #include <burnish/reflectance/findings.h>
+#include <burnish/reflectance/function_brdf.h>
 #include <burnish/reflectance/half_diff_table.h>
 #include <burnish/reflectance/measured_nodes.h>
 #include <burnish/reflectance/patch_table.h>
@@ -25,9 +27,11 @@
 
 namespace burnish {
 
-/// Everything a BRDF argument can be. Files become one by open_source (io/open_source.h).
-using AnyBrdf = std::variant<HalfDiffTable, RglTable, ScatteredBrdf, AngleTable, PatchTable, TensorTree,
-                             AnalyticBrdf, NeuralBrdf, NpBrdf, SeparableBrdf, DgfBrdf, FactoredBrdf>;
+/// Everything a BRDF argument can be. Files become one by open_source (io/open_source.h), functions of one's own by
+/// to_source.
+using AnyBrdf =
+    std::variant<HalfDiffTable, RglTable, ScatteredBrdf, AngleTable, PatchTable, TensorTree, AnalyticBrdf,
+                 FunctionBrdf, NeuralBrdf, NpBrdf, SeparableBrdf, DgfBrdf, FactoredBrdf>;
 
 /// An opened BRDF and what was found in it.
 struct Source {
@@ -54,6 +58,10 @@ MeasuredNodes measured_nodes(const Source& source);
 
 /// How many nodes that are, at how many incident angles, in little memory. Throws as measured_nodes does.
 NodeCount count_nodes(const Source& source);
+
+/// A function of one's own as a source of that name. lambda_nm: wavelengths of its channels in nm, as many as they are,
+/// positive and increasing, or none for grey and RGB. Throws Error for others.
+Source to_source(const std::string& name, FunctionBrdf brdf, std::vector<double> lambda_nm = {});
 
 /// A model or a baseline as a source of that name.
 Source to_source(const std::string& name, Model model);
