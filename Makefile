@@ -8,7 +8,7 @@
 # make bench, make compile-cost, make fuzz, make damaged, make report, make cost-report, make sampling-report, make shader-report, make openpbr-report, make frame-cost, make surface-report, make hw-report, make hw-exhaustive, make format:
 # see CONTRIBUTING.md
 # make cluster-test  a batch on a real Slurm of two nodes on this machine, killed now and then
-.PHONY: test-announcement cluster-test compile-cost demo test build reports python deb wheel npm packaging-deps release-check studio studio-test deps test-deps studio-deps bench fuzz damaged report cost-report sampling-report shader-report openpbr-report frame-cost surface-report hw-report hw-exhaustive format format-check docs-check include-check api options
+.PHONY: test-announcement cluster-test compile-cost demo test build reports python deb wheel npm packaging-deps release-check studio studio-test build-deps deps test-deps studio-deps bench fuzz damaged report cost-report sampling-report shader-report openpbr-report frame-cost surface-report hw-report hw-exhaustive format format-check docs-check include-check api options
 JOBS ?= $(shell nproc)
 BURNISH := build/release/apps/burnish/burnish
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
@@ -19,15 +19,16 @@ INPUT ?=
 OUT ?= out/demo
 FUZZ_SECONDS ?= 60
 
-# deps: what the command line is built with; test-deps: what everything else takes besides; studio-deps: what the
-# library as WebAssembly does.
-deps: PACKAGES := cmake/debian-packages.txt
-test-deps: PACKAGES := cmake/debian-packages.txt cmake/debian-test-packages.txt
+# build-deps: what the command line is built with; deps: and the Python package; test-deps: what everything else takes
+# besides; studio-deps: what the library as WebAssembly does.
+build-deps: PACKAGES := cmake/debian-packages.txt
+deps: PACKAGES := cmake/debian-packages.txt cmake/debian-python-packages.txt
+test-deps: PACKAGES := cmake/debian-packages.txt cmake/debian-python-packages.txt cmake/debian-test-packages.txt
 studio-deps: PACKAGES := cmake/debian-packages.txt cmake/debian-studio-packages.txt
-deps test-deps studio-deps:
+build-deps deps test-deps studio-deps:
 	@cmake/install_packages.sh $(PACKAGES)
-
-build: deps
+	@[ $@ != deps ] || echo "Debian's packages for 'make build' and 'pip install .' are looked after; use pip in a venv."
+build: build-deps
 	@cmake --preset programs -DBURNISH_WERROR=$(WERROR) > /dev/null
 	@cmake --build --preset programs -j $(JOBS)
 
@@ -35,7 +36,7 @@ reports: test-deps build
 	@cmake --build --preset programs -j $(JOBS) --target all
 
 # What compiling the command line takes where there is no compiler cache.
-compile-cost: deps
+compile-cost: build-deps
 	@rm -rf build/compile-cost && CCACHE_DISABLE=1 cmake --preset programs -B build/compile-cost > /dev/null
 	@bash -c 'TIMEFORMAT="%U s + %S s of the system, %R s by the clock"; \
 	  time cmake --build build/compile-cost -j $(JOBS) --target burnish_cli > /dev/null'
@@ -44,7 +45,7 @@ demo: build
 	@examples/demo.sh "$(BURNISH)" "$(OUT)" "$(INPUT)"
 
 test-announcement:
-	@echo "Debian's packages are installed where they are missing (cmake/debian-packages.txt, cmake/debian-test-packages.txt),"
+	@echo "Debian's packages are installed where they are missing (cmake/debian-*packages.txt),"
 	@echo "others from PyPI and npm into build/ (python/requirements.txt, tests/web/package.json, clang-format)."
 
 test: test-announcement test-deps format-check docs-check include-check

@@ -75,7 +75,11 @@ def _fits(value, annotation):
     """Whether the value may be of that type; yes of types that are not looked into."""
     if isinstance(annotation, ast.BinOp):
         return _fits(value, annotation.left) or _fits(value, annotation.right)
-    if isinstance(annotation, ast.Subscript) and _text(annotation.value) in ("list", "Sequence", "collections.abc.Sequence"):
+    if isinstance(annotation, ast.Subscript) and _text(annotation.value) in (
+        "list",
+        "Sequence",
+        "collections.abc.Sequence",
+    ):
         return not isinstance(value, (str, bytes)) and hasattr(value, "__iter__")
     name = _text(annotation)
     if name in _KINDS:

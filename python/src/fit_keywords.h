@@ -10,9 +10,9 @@
 
 namespace burnish::python {
 
-/// What keywords of `fit` and `batch`, the caller, ask for. `others` are what the caller takes besides, which stand among
-/// the names of the error. Throws Error for what is no name or what the options refuse, and nb::type_error for an object
-/// that no option takes.
+/// What keywords of `fit` and `batch`, the caller, ask for. `others` are what the caller takes besides, which
+/// stand among the names of the error. Throws Error for what is no name or what the options refuse, and
+/// nb::type_error for an object that no option takes.
 FitRequest request_of(std::string_view caller, const nb::kwargs& keywords,
                       std::span<const std::string_view> others);
 

@@ -178,7 +178,8 @@ void bind_model(nb::module_& m) {
           nb::sig("def notes(self) -> dict"),
           "What the fit noted: source, options, errors. Of a measurement \"node_expected\" is the error "
           "\"relative\"\n"
-          "that is expected over all directions, measured or not, and \"from_theta_i_deg\" in bands of 15 degrees.")
+          "that is expected over all directions, measured or not, and \"from_theta_i_deg\" in bands of 15 "
+          "degrees.")
       .def("__repr__", &text_of_model)
       .def(
           "with_log_tables", &with_log_tables, nb::arg("log_tables"), nb::arg("format") = nb::none(),

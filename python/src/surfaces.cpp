@@ -268,8 +268,8 @@ void bind_surfaces(nb::module_& m) {
            nb::sig("def eval(self, uv: NDArray[numpy.float64], wi: NDArray[numpy.float64], wo: "
                    "NDArray[numpy.float64], lod: float = 0.0, out: NDArray[numpy.float64] | None = None) -> "
                    "NDArray[numpy.float64]"))
-      .def("eval", &eval_any, nb::arg("uv").none(), nb::arg("wi").none(), nb::arg("wo").none(), nb::arg("lod") = 0.0,
-           nb::arg("out") = nb::none(),
+      .def("eval", &eval_any, nb::arg("uv").none(), nb::arg("wi").none(), nb::arg("wo").none(),
+           nb::arg("lod") = 0.0, nb::arg("out") = nb::none(),
            nb::sig("def eval(self, uv: numpy.typing.ArrayLike, wi: numpy.typing.ArrayLike, "
                    "wo: numpy.typing.ArrayLike, lod: float = 0.0, out: NDArray | None = None) -> NDArray"))
       .def(

@@ -107,14 +107,49 @@ def test_shapes_and_types_that_do_not_fit_are_refused(model):
         model.eval(w, w, out=np.empty((3, 3), np.float32))
     with pytest.raises(TypeError, match="out: expected a writable array of float32"):
         model.eval(w, w, out=np.empty((4, 3)))
-    with pytest.raises(TypeError):
-        model.eval(w, w.astype(np.float64))
-    with pytest.raises(TypeError):
-        model.eval(w.astype(int), w)
     frozen = np.empty((4, 3), np.float32)
     frozen.flags.writeable = False
     with pytest.raises(TypeError, match="writable"):
         model.eval(w, w, out=frozen)
+
+
+def test_lists_and_integers_and_mixtures_are_taken(model, ggx):
+    w = hemisphere(4)
+    exact = w.astype(np.float64)
+    up, upright = np.array([0, 0, 1]), np.array([0, 0, 1.0])
+    for source in (model, ggx):
+        expected = source.eval(exact, upright)
+        for wi, wo in (
+            (exact.tolist(), [0, 0, 1]),
+            (exact, up),
+            (w, upright),
+            (exact.astype(">f8"), up.astype("u1")),
+            ([*exact], (0, 0, 1)),
+        ):
+            f = source.eval(wi, wo)
+            assert f.dtype == np.float64
+            np.testing.assert_array_equal(f, expected)
+        # lists follow arrays
+        f = source.eval(w, [0, 0, 1])
+        assert f.dtype == np.float32
+        np.testing.assert_array_equal(f, source.eval(w, upright.astype("f4")))
+        out = np.empty((4, 3), np.float32)
+        assert source.eval(w.tolist(), [0, 0, 1], out=out) is out
+        np.testing.assert_array_equal(source.pdf(exact.tolist(), [0, 0, 1]), source.pdf(exact, upright))
+        drawn, again = source.sample_wi([0, 0, 1], [0.25, 0.5]), source.sample_wi(upright, np.array([0.25, 0.5]))
+        np.testing.assert_array_equal(drawn[0], again[0])
+        assert drawn[1] == again[1] and source.eval([0, 0, 1], [0, 0, 1]).shape == (3,)
+    for wrong, found in (
+        ([[0, 0, 1], [0, 1]], "rows of unequal lengths"),
+        ("up", "str"),
+        (None, "NoneType"),
+        ([0, 0, 1j], "complex ones"),
+        ([True, False, True], "truth values"),
+    ):
+        with pytest.raises(TypeError, match=f"^wi: expected an array of real numbers, found {found}$"):
+            model.eval(wrong, up)
+    with pytest.raises(burnish.Error, match=r"^wo: expected shape \(N, 3\) or \(3,\), found \(2,\)$"):
+        model.eval(w, [0, 1])
 
 
 def test_draws_have_the_density_that_pdf_states(model, ggx):

@@ -254,9 +254,79 @@ def test_exports_are_the_command_lines(cli, model, tmp_path):
     for name, content in files.items():
         assert (tmp_path / "cli" / name).read_bytes() == content == (tmp_path / "python" / name).read_bytes()
     assert len(files) == len(list((tmp_path / "cli").iterdir()))
-    assert list(burnish.export(model, "three")) == ["brdf.three.js", "brdf.json"]
+    assert list(burnish.export(model, "three")) == ["ggx.three.js", "ggx.json"]
     with pytest.raises(burnish.Error, match="expected one of ktx2, .*, found 'jpeg'"):
         burnish.export(model, "jpeg")
+
+
+def test_exports_are_named_after_their_materials(model, ggx, tmp_path):
+    documents = {}
+    for name in ("red paint", "blue"):
+        burnish.write_model(tmp_path / f"{name}.burnish", model)
+        files = burnish.export(burnish.open_source(tmp_path / f"{name}.burnish"), "materialx")
+        documents[name] = next(text for file, text in files.items() if file.endswith(".mtlx")).decode()
+    assert "ND_burnish_red_paint_bsdf" in documents["red paint"] and "ND_burnish_blue_bsdf" in documents["blue"]
+    assert "ND_burnish_mine_bsdf" in burnish.export(model, "materialx", name="mine")["mine.mtlx"].decode()
+    assert "openpbr.glsl" in burnish.export("openpbr:coat_weight=1", "glsl")
+
+
+def test_rows_of_a_comparison_are_named_by_model(ggx, model, volume, tmp_path):
+    def names(models):
+        return [row["model"] for row in burnish.compare_models(ggx, models, count=500)]
+
+    assert names({"small": model, "large": volume}) == ["small", "large"]
+    of_list = names([model, volume, model])
+    assert of_list[0] == f"{model.expression}, {model.bytes} bytes" and of_list[2] == of_list[0] + " (2)"
+    assert of_list[1].startswith(volume.expression) and len(set(of_list)) == 3
+    burnish.write_model(tmp_path / "own.exr", model)
+    assert names([burnish.open_source(tmp_path / "own.exr")]) == [str(tmp_path / "own.exr")]
+    assert names(model) == names([model])
+    with pytest.raises(TypeError, match="^models: expected a Source, a list or a dictionary of them, found 'x'$"):
+        names(["x"])
+
+
+def test_everything_says_what_it_is(ggx, model, volume):
+    shader = burnish.generate_shader(model)
+    figures = burnish.error_figures(ggx, model, count=500)
+    assert repr(ggx) == f"<burnish source '{GGX}': analytic, 3 channels, isotropic>"
+    assert repr(model).startswith(f"<burnish model '{GGX}': {model.expression}, {model.bytes} bytes, 3 channels, psnr ")
+    assert repr(volume.tables[1]) == "<burnish table 'g': volume of 7 x 5 x 3 nodes, power 0.5, 3 channels, " \
+        f"{volume.tables[1].format}, {volume.tables[1].byte_count} bytes>"
+    assert repr(figures).startswith(f"ErrorFigures(psnr={figures.psnr:.2f}, ssim=")
+    things = (ggx, model, figures, shader, shader.textures[0], shader.textures[0].tables[0], model.tables[0],
+              model.lobes[0], model.lobes[0].factors[0], burnish.fit(ggx, method="svd", samples=2000))
+    for thing in things:
+        assert " object at 0x" not in repr(thing) and "\n" not in repr(thing)
+
+
+def test_misspelt_keywords_are_told_in_one_line(ggx, model, tmp_path):
+    wi = [0, 0, 1]
+    for call, said in (
+        (
+            lambda: burnish.open_source(GGX, keep_spectrl=True),
+            "open_source: .*, found 'keep_spectrl'; did you mean 'keep_spectral'",
+        ),
+        (lambda: burnish.error_figures(ggx, model, cuont=5), "error_figures: .*found 'cuont'; did you mean 'count'"),
+        (lambda: ggx.eval(wi=wi, w0=wi), "eval: expected one of wi, wo, out, found 'w0'; did you mean 'wi'"),
+        (lambda: burnish.export(model, "glsl", nmae="a"), "export: .*, found 'nmae'; did you mean 'name'"),
+        (lambda: burnish.export(ggx, "glsl"), "export: model: expected Model, found Source"),
+        (lambda: burnish.error_figures(ggx, "a.exr"), "error_figures: model: expected Source, found str 'a.exr'"),
+        (lambda: burnish.error_figures(ggx), "error_figures: model: expected Source, found nothing"),
+        (lambda: burnish.error_figures(ggx, model, count=1.5), "error_figures: count: expected int, found float 1.5"),
+        (
+            lambda: burnish.error_figures(ggx, model, 5),
+            "error_figures: expected at most 2 arguments without a name, found 3",
+        ),
+        (lambda: burnish.fit(GGX), "fit: source: expected Source, found str"),
+        (lambda: burnish.open_source(3), "spec: expected a path or a spec, found 3"),
+    ):
+        with pytest.raises(TypeError, match=f"^{said}") as told:
+            call()
+        assert "\n" not in str(told.value) and len(str(told.value)) < 290
+    with pytest.raises(burnish.Error, match="found 'progres'; did you mean 'progress'"):
+        burnish.fit(ggx, progres=print)
+    with pytest.raises(burnish.Error, match="^batch: .*found 'keep_spectrl'; did you mean 'keep_spectral'"):
+        burnish.batch([GGX], tmp_path, keep_spectrl=True)
 
 
 def test_the_specular_family_is_exported(cli, tmp_path):

@@ -139,14 +139,34 @@ def changed(array, index, value):
         (lambda i, o, v: (i, o, v.T), burnish.Error, r"values: expected shape .*, found \(3, 1500\)"),
         (lambda i, o, v: (i[:, :2], o, v), burnish.Error, r"wi: expected shape \(N, 3\) or \(3,\), found \(1500, 2\)"),
         (lambda i, o, v: (i, o[:7], v), burnish.Error, "wi and wo: expected equal counts, found 1500 and 7"),
-        (lambda i, o, v: (i, o, changed(v, 4, np.nan)), burnish.Error, r"values\[4\]: expected finite values, found nan"),
-        (lambda i, o, v: (i, o, changed(v, 9, np.inf)), burnish.Error, r"values\[9\]: expected finite values, found inf"),
+        (
+            lambda i, o, v: (i, o, changed(v, 4, np.nan)),
+            burnish.Error,
+            r"values\[4\]: expected finite values, found nan",
+        ),
+        (
+            lambda i, o, v: (i, o, changed(v, 9, np.inf)),
+            burnish.Error,
+            r"values\[9\]: expected finite values, found inf",
+        ),
         (lambda i, o, v: (changed(i, 8, np.nan), o, v), burnish.Error, r"wi\[8\]: expected a unit vector, found \(nan"),
         (lambda i, o, v: (i, 1.1 * o, v), burnish.Error, r"wo\[0\]: expected a unit vector"),
         (lambda i, o, v: (i, -o, v), burnish.Error, r"wo\[0\]: expected a direction above the horizon"),
-        (lambda i, o, v: (i, o, v[:, :2]), burnish.Error, "lambda_nm: expected 2 wavelengths for 2 channels, found none"),
-        (lambda i, o, v: (i[:0], o[:0], v[:0]), burnish.Error, "samples: expected at least one measurement, found none"),
-        (lambda i, o, v: (i, o, [[1, 2], [3]]), TypeError, "values: expected an array of real numbers, found rows of un"),
+        (
+            lambda i, o, v: (i, o, v[:, :2]),
+            burnish.Error,
+            "lambda_nm: expected 2 wavelengths for 2 channels, found none",
+        ),
+        (
+            lambda i, o, v: (i[:0], o[:0], v[:0]),
+            burnish.Error,
+            "samples: expected at least one measurement, found none",
+        ),
+        (
+            lambda i, o, v: (i, o, [[1, 2], [3]]),
+            TypeError,
+            "values: expected an array of real numbers, found rows of un",
+        ),
         (lambda i, o, v: (i, o, v * 1j), TypeError, "values: expected an array of real numbers, found complex ones"),
         (lambda i, o, v: ("up", o, v), TypeError, "wi: expected an array of real numbers, found str"),
     ],
@@ -278,11 +298,31 @@ def test_what_a_function_raises_ends_whatever_needed_it(use):
 @pytest.mark.parametrize(
     "answer, kind, said",
     [
-        (lambda wi, wo: np.where(wi[:, :1] > 0.3, np.nan, ggx_of_numpy(wi, wo)), burnish.Error, "function: expected finite values of at least 0, found nan at wi = "),
-        (lambda wi, wo: ggx_of_numpy(wi, wo) / 0, burnish.Error, "function: expected finite values of at least 0, found inf at wi = "),
-        (lambda wi, wo: -ggx_of_numpy(wi, wo), burnish.Error, "function: expected finite values of at least 0, found -"),
-        (lambda wi, wo: ggx_of_numpy(wi, wo)[:, :2], burnish.Error, r"function: expected shape \(200, 3\) for 200 pairs, found \(200, 2\)"),
-        (lambda wi, wo: ggx_of_numpy(wi, wo).T, burnish.Error, r"function: expected shape .* for 200 pairs, found \(3, 200\)"),
+        (
+            lambda wi, wo: np.where(wi[:, :1] > 0.3, np.nan, ggx_of_numpy(wi, wo)),
+            burnish.Error,
+            "function: expected finite values of at least 0, found nan at wi = ",
+        ),
+        (
+            lambda wi, wo: ggx_of_numpy(wi, wo) / 0,
+            burnish.Error,
+            "function: expected finite values of at least 0, found inf at wi = ",
+        ),
+        (
+            lambda wi, wo: -ggx_of_numpy(wi, wo),
+            burnish.Error,
+            "function: expected finite values of at least 0, found -",
+        ),
+        (
+            lambda wi, wo: ggx_of_numpy(wi, wo)[:, :2],
+            burnish.Error,
+            r"function: expected shape \(200, 3\) for 200 pairs, found \(200, 2\)",
+        ),
+        (
+            lambda wi, wo: ggx_of_numpy(wi, wo).T,
+            burnish.Error,
+            r"function: expected shape .* for 200 pairs, found \(3, 200\)",
+        ),
         (lambda wi, wo: 0.3, burnish.Error, r"function: expected shape .* for 200 pairs, found \(\)"),
         (lambda wi, wo: None, TypeError, "function: expected an array of real numbers, found NoneType"),
         (lambda wi, wo: 1j * wi[:, 2], TypeError, "function: expected an array of real numbers, found complex ones"),
@@ -359,7 +399,14 @@ def test_the_error_of_samples_is_the_command_lines(cli, measured, samples, tmp_p
     file = write_csv(tmp_path / "samples.csv", *measured, remark="# isotropic\n")
     wi, wo = burnish.draw_pairs(300, seed=8)
     wi[5, 2] *= -1
-    np.savetxt(tmp_path / "d.csv", np.hstack([wi, wo]), delimiter=",", header="wi_x,wi_y,wi_z,wo_x,wo_y,wo_z", comments="", fmt="%.17g")
+    np.savetxt(
+        tmp_path / "d.csv",
+        np.hstack([wi, wo]),
+        delimiter=",",
+        header="wi_x,wi_y,wi_z,wo_x,wo_y,wo_z",
+        comments="",
+        fmt="%.17g",
+    )
     cli("eval", file, tmp_path / "d.csv", "-o", tmp_path / "v.csv", "--error")
     expected = np.loadtxt(tmp_path / "v.csv", delimiter=",", skiprows=1)[:, 3]
     error = samples.relative_error(wi, wo)

@@ -13,7 +13,8 @@ SymmetrizedBrdf::SymmetrizedBrdf(BrdfRef source) : source_(source) {
 namespace {
 
 // Of both orders of a pair: the mean, or the one that is known.
-bool join_orders(std::span<double> f, bool known, std::span<const double> swapped, bool swapped_known) noexcept {
+bool join_orders(std::span<double> f, bool known, std::span<const double> swapped,
+                 bool swapped_known) noexcept {
   if (known && swapped_known)
     for (std::size_t c = 0; c < f.size(); ++c) f[c] = 0.5 * (f[c] + swapped[c]);
   else if (swapped_known)
