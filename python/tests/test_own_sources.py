@@ -389,7 +389,6 @@ def make():
 gone = make()
 gc.collect()
 assert gone() is None
-kept = burnish.Source.from_function(lambda wi, wo: wi[:, 2])
 """
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert done.returncode == 0 and not done.stderr, done.stderr

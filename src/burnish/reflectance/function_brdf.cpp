@@ -16,6 +16,7 @@ namespace burnish {
 struct FunctionBrdf::State {
   Function function;
   std::atomic<std::size_t> failures = 0;
+  std::atomic<bool> waiting = false;  // what was thrown has not been asked for
   std::mutex mutex;  // of what was thrown
   std::exception_ptr thrown = {};
 };
@@ -30,6 +31,10 @@ FunctionBrdf::FunctionBrdf(std::size_t channels, bool isotropic, Function functi
 }
 
 bool FunctionBrdf::fill(std::span<const DirectionPair> pairs, std::span<double> values) const noexcept {
+  if (state_->waiting) {  // whatever asks will fail: its end need not be slow
+    ++state_->failures;
+    return false;
+  }
   std::exception_ptr thrown;
   try {
     run_isolated([&] { state_->function(pairs, values); });
@@ -40,6 +45,7 @@ bool FunctionBrdf::fill(std::span<const DirectionPair> pairs, std::span<double> 
   {
     const std::scoped_lock lock(state_->mutex);
     std::swap(state_->thrown, thrown);
+    state_->waiting = true;
     ++state_->failures;
   }
   return false;  // an earlier one dies outside of the lock
@@ -88,6 +94,7 @@ void FunctionBrdf::rethrow_since(std::size_t count) const {
   {
     const std::scoped_lock lock(state_->mutex);
     std::swap(state_->thrown, thrown);
+    state_->waiting = false;
   }
   if (thrown) std::rethrow_exception(std::move(thrown));
   throw Error("function: it failed, as another caller was told");
