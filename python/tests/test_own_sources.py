@@ -270,7 +270,6 @@ USES = {
     "sample_wi": lambda s: s.sample_wi([0, 0, 1], [0.5, 0.5]),
     "pdf": lambda s: s.pdf([0, 0, 1], [0, 0, 1]),
     "info": lambda s: s.info(),
-    "fit": lambda s: burnish.fit(s, budget=600, lobes=1),
     "fit of one lobe": lambda s: burnish.fit(s, model="pqp"),
     "baseline": lambda s: burnish.fit(s, method="svd"),
     "fit_material": lambda s: burnish.fit_material(s, "gltf", beside=False),
