@@ -291,7 +291,7 @@ def test_what_a_function_raises_ends_whatever_needed_it(use):
     with pytest.raises(LookupError, match="^'?mine'?$"):
         USES[use](source)
     function.fails = False
-    assert np.isfinite(source.pdf([0, 0, 1], [0.6, 0, 0.8])) and source.eval([0, 0, 1], [0, 0, 1])[0] > 0
+    assert source.eval([0, 0, 1], [0, 0, 1])[0] > 0
 
 
 @pytest.mark.parametrize(
