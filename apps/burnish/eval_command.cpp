@@ -98,6 +98,7 @@ Values values_at(const Source& source, std::span<const DirectionPair> pairs, boo
   return values;
 }
 
+/// `directions`: those that stand beside the values.
 std::vector<std::string> columns_of(const Source& source, const DirectionTable& directions,
                                     bool with_errors) {
   std::vector<std::string> names = directions.names;
@@ -121,7 +122,7 @@ std::string csv_of(const std::vector<std::string>& columns, const DirectionTable
   for (const std::string& name : columns) text += (text.empty() ? "" : ",") + as_cell(name);
   text += '\n';
   const std::size_t width = directions.names.size();
-  for (std::size_t i = 0; i < directions.pairs.size(); ++i) {
+  for (std::size_t i = 0; i < values.known.size(); ++i) {
     for (std::size_t k = 0; k < width; ++k) text += fmt::format("{},", directions.numbers[i * width + k]);
     for (std::size_t c = 0; c < values.channels; ++c)
       text += (c ? "," : "") +
@@ -135,7 +136,7 @@ std::string csv_of(const std::vector<std::string>& columns, const DirectionTable
 nlohmann::ordered_json rows_of(const DirectionTable& directions, const Values& values) {
   auto rows = nlohmann::ordered_json::array();
   const std::size_t width = directions.names.size();
-  for (std::size_t i = 0; i < directions.pairs.size(); ++i) {
+  for (std::size_t i = 0; i < values.known.size(); ++i) {
     auto row = nlohmann::ordered_json::array();
     for (std::size_t k = 0; k < width; ++k) row.push_back(directions.numbers[i * width + k]);
     for (std::size_t c = 0; c < values.channels; ++c)
@@ -149,7 +150,7 @@ nlohmann::ordered_json rows_of(const DirectionTable& directions, const Values& v
 struct EvalArguments {
   SourceArguments source;
   std::string directions, out;
-  bool json = false, error = false;
+  bool json = false, error = false, with_directions = false;
 };
 
 void evaluate(const EvalArguments& arguments) {
@@ -158,8 +159,10 @@ void evaluate(const EvalArguments& arguments) {
     check_writable(arguments.out);
   }
   const Source source = arguments.source.open();
-  const DirectionTable directions = parse_directions(read_directions(arguments.directions));
+  DirectionTable directions = parse_directions(read_directions(arguments.directions));
   const Values values = values_at(source, directions.pairs, arguments.error);
+  const std::size_t pairs = directions.pairs.size();
+  if (!arguments.out.empty() && !arguments.with_directions) directions = {};
   const std::vector<std::string> columns = columns_of(source, directions, arguments.error);
   if (!arguments.out.empty()) write_then_rename(arguments.out, csv_of(columns, directions, values));
   if (!arguments.json) {
@@ -167,7 +170,7 @@ void evaluate(const EvalArguments& arguments) {
     return;
   }
   nlohmann::ordered_json json{{"output", arguments.out},
-                              {"pairs", directions.pairs.size()},
+                              {"pairs", pairs},
                               {"known", std::count(values.known.begin(), values.known.end(), 1)},
                               {"channels", values.channels}};
   if (arguments.out.empty()) {
@@ -185,15 +188,19 @@ void add_eval_command(CLI::App& app) {
       app.add_subcommand("eval", "Evaluate a BRDF at direction pairs: f_r in 1/sr, without the cosine");
   verb->footer(
       "The header of DIRECTIONS is wi_x,wi_y,wi_z,wo_x,wo_y,wo_z or theta_i,phi_i,theta_o,phi_o (degrees). "
-      "Directions stand beside the values; nan stands where a measurement knows nothing.\n"
-      "Examples: burnish eval paint.exr directions.csv -o values.csv\n"
+      "On the terminal directions stand beside the values, in a file where asked; nan stands where a "
+      "measurement knows nothing.\n"
+      "Examples: burnish eval paint.exr directions.csv -o values.csv --with-directions\n"
       "          printf 'theta_i,theta_o\\n30,-30\\n' | burnish eval paint.exr -");
   auto arguments = std::make_shared<EvalArguments>();
   add_source_arguments(*verb, arguments->source);
   verb->add_option("DIRECTIONS", arguments->directions,
                    "Names a CSV file of direction pairs, or - for the standard input.")
       ->required();
-  verb->add_option("-o,--output,--out", arguments->out, "Writes this CSV file, not to the terminal.");
+  verb->add_option("-o,--output,--out", arguments->out,
+                   "Writes the values to this CSV file, not to the terminal.");
+  verb->add_flag("--with-directions", arguments->with_directions,
+                 "Writes the directions beside the values into the file too.");
   verb->add_flag("--error", arguments->error,
                  "Adds a column that says how far a measurement's value may be off: the standard deviation "
                  "of ln(f + 0.001).");

@@ -124,6 +124,10 @@ void print(const NodesReport& report) {
                f.rms_log, f.log_cos, f.count);
   };
   fmt::print("target     the measured nodes (--target function fits what their owner makes of them)\n");
+  if (report.outliers > 0)
+    fmt::print("outliers   {} left out: samples around {} contradict {}\n",
+               counted(report.outliers, "sample"), report.outliers == 1 ? "it" : "them",
+               report.outliers == 1 ? "it" : "them");
   line("nodes", report.at_fitted);
   if (report.held_out) line("unseen", *report.held_out);
   if (report.at_held_out) line("held out", *report.at_held_out);

@@ -15,6 +15,7 @@
 #include <burnish/reflectance/goniometer.h>
 #include <burnish/reflectance/next_measurements.h>
 #include <burnish/reflectance/node_figures.h>
+#include <burnish/reflectance/outliers.h>
 
 #include "commands.h"
 #include "counted.h"
@@ -67,7 +68,7 @@ nlohmann::ordered_json next_json(std::span<const NextMeasurement> next) {
 
 /// Lists what to measure next, to a file where one is given.
 void say_next(const Source& source, std::size_t count, const std::string& out, bool json) {
-  const MeasuredNodes nodes = measured_nodes(source);
+  const MeasuredNodes all = measured_nodes(source), nodes = source.samples() ? without_outliers(all) : all;
   const std::vector<NextMeasurement> next = [&] {
     Progress progress("kriging");
     try {

@@ -150,6 +150,8 @@ class Notes {
       add("target", target == "nodes" ? count + " measured nodes" : target + ", " + count + " nodes");
     else
       add("target", target);
+    if (const std::string left_out = take("outliers"); !left_out.empty())
+      add("outliers", left_out + " samples left out");
     figures("node_fit", "nodes", "those that were fitted");
     figures("node_test", "left out", "nodes that were left out");
     figures("node_held_out", "unseen", "each node by the others");

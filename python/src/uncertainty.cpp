@@ -13,6 +13,7 @@
 #include <burnish/reflectance/kriged_nodes.h>
 #include <burnish/reflectance/next_measurements.h>
 #include <burnish/reflectance/node_figures.h>
+#include <burnish/reflectance/outliers.h>
 
 #include "array_like.h"
 #include "opened_brdf.h"
@@ -60,7 +61,7 @@ nb::object next_to_measure(const OpenedBrdf& brdf, std::size_t count) {
   std::string text;
   {
     const nb::gil_scoped_release released;
-    const MeasuredNodes nodes = measured_nodes(source);
+    const MeasuredNodes all = measured_nodes(source), nodes = source.samples() ? without_outliers(all) : all;
     try {
       const LogCovariance covariance = choose_covariance(
           nodes, [told = progress_of(nb::none())](double fraction) { told("kriging", fraction); });

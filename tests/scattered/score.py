@@ -49,7 +49,7 @@ def evaluate(brdf, wi, wo, *options):
         np.savetxt(directions, np.concatenate([wi, wo], -1), delimiter=",", fmt="%.9g", comments="",
                    header="wi_x,wi_y,wi_z,wo_x,wo_y,wo_z")
         run("eval", brdf, directions, "-o", values, *options)
-        return np.loadtxt(values, delimiter=",", skiprows=1, ndmin=2)[:, 6:]  # behind the directions
+        return np.loadtxt(values, delimiter=",", skiprows=1, ndmin=2)
 
 
 # ---- Directions

@@ -37,7 +37,7 @@ build/release/tests/burnish_input_files "$web/out"
 "$burnish" export "$web/out/flat.burnish" --to three --to gltf -o "$web/out" > /dev/null
 printf 'wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0,0,1,0,0,1\n' > "$web/normal.csv"
 "$burnish" eval "$web/brushed.exr" "$web/normal.csv" -o "$web/value.csv" > /dev/null
-NODE_FOLDER=node_modules node "$web/check.mjs" "$web/out" brushed "$(tail -1 "$web/value.csv" | cut -d, -f7)"
+NODE_FOLDER=node_modules node "$web/check.mjs" "$web/out" brushed "$(tail -1 "$web/value.csv" | cut -d, -f1)"
 node "$web/frames.mjs" build/release/tests/burnish_mesh_frames "$web"
 
 # a library's page

@@ -30,6 +30,7 @@
 #include <burnish/reflectance/goniometer.h>
 #include <burnish/reflectance/kriged_nodes.h>
 #include <burnish/reflectance/node_figures.h>
+#include <burnish/reflectance/outliers.h>
 #include <burnish/reflectance/sample_source.h>
 
 namespace burnish {
@@ -647,7 +648,10 @@ class Fitter {
   void take_nodes() {
     nodes_ = measured_nodes(source_);
     if (options_.hold_out) nodes_ = nodes_without(*nodes_, *options_.hold_out);
-    NodesReport& report = report_.nodes.emplace(NodesReport{.fitted = nodes_->size()});
+    const std::size_t measured = nodes_->size();
+    if (source_.samples()) nodes_ = without_outliers(*std::move(nodes_));
+    NodesReport& report =
+        report_.nodes.emplace(NodesReport{.fitted = nodes_->size(), .outliers = measured - nodes_->size()});
     if (!nodes_->samples.isotropic) return;
     const auto told = progress("kriging the nodes");
     report.covariance = choose_covariance(*nodes_, told);

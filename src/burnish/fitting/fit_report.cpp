@@ -140,6 +140,7 @@ Json json_of(const ExpectedError& expected) {
 
 Json json_of(const NodesReport& report) {
   Json json{{"target", "nodes"}, {"nodes", report.fitted}};
+  if (report.outliers > 0) json["outliers"] = report.outliers;
   if (report.covariance) json["node_covariance"] = json_of(*report.covariance);
   if (report.held_out) json["node_held_out"] = json_of(*report.held_out);
   json["node_fit"] = json_of(report.at_fitted);

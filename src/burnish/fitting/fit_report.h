@@ -115,7 +115,8 @@ struct EnergyReport {
 
 /// What was fitted where it was nodes.
 struct NodesReport {
-  std::size_t fitted = 0;  ///< nodes, without those that were held out
+  std::size_t fitted = 0;    ///< nodes, without those that were held out and outliers
+  std::size_t outliers = 0;  ///< scattered samples that were left out: see outliers_among
   /// Of the function between them, of an isotropic source: as found, and what it scores at nodes that it had not seen.
   std::optional<LogCovariance> covariance = {};
   std::optional<NodeFigures> held_out = {};

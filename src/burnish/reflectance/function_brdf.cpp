@@ -17,7 +17,7 @@ struct FunctionBrdf::State {
   Function function;
   std::atomic<std::size_t> failures = 0;
   std::atomic<bool> waiting = false;  // what was thrown has not been asked for
-  std::mutex mutex;  // of what was thrown
+  std::mutex mutex;                   // of what was thrown
   std::exception_ptr thrown = {};
 };
 

@@ -10,6 +10,7 @@
 #include <burnish/math/parallel.h>
 #include <burnish/parameterization/half_diff.h>
 #include <burnish/reflectance/node_figures.h>
+#include <burnish/reflectance/outliers.h>
 #include <burnish/reflectance/scattered_brdf.h>
 
 namespace burnish {
@@ -99,7 +100,7 @@ const KrigedNodes* ScatteredBrdf::kriged() const noexcept {
         return std::min(pair.wi.z, pair.wo.z) > KrigedNodes::kLeastCosine;
       });
       if (!any) return;
-      const MeasuredNodes nodes = measured_nodes(samples_);
+      const MeasuredNodes nodes = without_outliers(measured_nodes(samples_));
       kriging_->function.emplace(nodes, choose_covariance(nodes));
     });
   });
