@@ -116,7 +116,7 @@ OpenedBrdf* from_samples(nb::handle wi, nb::handle wo, nb::handle values, std::o
   file.findings.conventions = {isotropic ? (*isotropic ? "Isotropic, as asked." : "Anisotropic, as asked.")
                                : file.samples.isotropic
                                    ? "Taken as isotropic: every sample has the same phi_i."
-                                   : "Taken as anisotropic: phi_i varies."};
+                                   : settle_isotropy(file.samples)};
   OpenOptions options;
   options.keep_spectral = keep_spectral;
   options.illuminant = illuminant;

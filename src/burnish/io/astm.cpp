@@ -151,7 +151,7 @@ SampleFile parse_astm(const FileBytes& file, const OpenOptions& options) {
         fmt::format("{} rows on the horizon were left out: their cosine cannot be divided out.", grazing));
   samples.isotropic = same_incident_azimuth(samples);
   findings.conventions.push_back(samples.isotropic ? "Taken as isotropic: every sample has the same phi_i."
-                                                   : "Taken as anisotropic: phi_i varies.");
+                                                   : settle_isotropy(samples));
   finish_samples(file.name, options, result);
   check_azimuths(samples, findings);
   return result;

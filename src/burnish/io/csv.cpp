@@ -321,16 +321,16 @@ SampleFile parse_csv(const FileBytes& file, const OpenOptions& options) {
                                                              : "as the file's first lines say")};
   if (columns.wavelength) spectra.finish(columns.to_nm, samples, findings);
   const bool one_azimuth = !columns.vectors && !columns.direction[1];
-  samples.isotropic =
-      tag == Tag::isotropic || (tag == Tag::none && (one_azimuth || same_incident_azimuth(samples)));
+  const bool one_incident_azimuth = one_azimuth || same_incident_azimuth(samples);
+  samples.isotropic = tag == Tag::isotropic || (tag == Tag::none && one_incident_azimuth);
   if (columns.in_plane)
     findings.conventions.push_back(settle_plane(samples));
   else if (one_azimuth)
     findings.conventions.push_back("phi_i is 0 everywhere: the file has none.");
   findings.conventions.push_back(
-      tag == Tag::none ? (one_azimuth         ? "Taken as isotropic: the file has no phi_i."
-                          : samples.isotropic ? "Taken as isotropic: every sample has the same phi_i."
-                                              : "Taken as anisotropic: the file does not say.")
+      tag == Tag::none ? (one_azimuth            ? "Taken as isotropic: the file has no phi_i."
+                          : one_incident_azimuth ? "Taken as isotropic: every sample has the same phi_i."
+                                                 : settle_isotropy(samples))
                        : (samples.isotropic ? "Isotropic, the file says." : "Anisotropic, the file says."));
   if (!columns.unknown.empty())
     findings.warnings.push_back(fmt::format("Columns passed over: {}.", some_of(columns.unknown)));

@@ -5,8 +5,11 @@
 #include <numeric>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include <burnish/io/sample_checks.h>
 #include <burnish/math/angles.h>
+#include <burnish/reflectance/leave_one_out.h>
 
 namespace burnish {
 
@@ -90,6 +93,19 @@ void check_azimuths(const Samples& samples, Findings& findings) {
         "The largest values lie at phi_o = phi_i, where light goes back; the mirror direction is at phi_i + "
         "180 "
         "degrees. Does the file count azimuths otherwise?");
+}
+
+std::string settle_isotropy(Samples& samples) {
+  const IsotropyErrors errors = isotropy_errors(samples);
+  if (!(errors.anisotropic > 0)) {
+    samples.isotropic = false;
+    return "Taken as anisotropic: phi_i varies, and samples are too few to tell.";
+  }
+  samples.isotropic = errors.isotropic <= errors.anisotropic;
+  return fmt::format(
+      "Taken as {}: ln f of samples is predicted by the others to {:.3f} if isotropic, to {:.3f} if "
+      "anisotropic.",
+      samples.isotropic ? "isotropic" : "anisotropic", errors.isotropic, errors.anisotropic);
 }
 
 std::string settle_plane(Samples& samples) {
