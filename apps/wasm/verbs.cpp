@@ -146,7 +146,8 @@ Reply open(Request request) {
 Reply info(const Request& request) {
   if (const Opened& found = opened(request.arguments); found.surface)
     return {.json = cli::surface_info_json(*found.surface, found.source.name)};
-  return {.json = cli::info_json(report_on(material(request.arguments))), .blobs = {}};
+  const Source& source = material(request.arguments);
+  return {.json = cli::info_json(report_on(source), cli::nodes_of(source)), .blobs = {}};
 }
 
 // Directions n x 3, those to the light before those to the viewer; values n x channels, NaN where none is known.

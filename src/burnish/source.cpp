@@ -90,7 +90,7 @@ Source to_source(const std::string& name, FunctionBrdf brdf, std::vector<double>
                          fmt::format("{} channels and {} wavelengths", channels, lambda_nm.size()));
   if (!lambda_nm.empty() &&
       (!(lambda_nm.front() > 0) || !std::isfinite(lambda_nm.back()) ||
-       std::ranges::adjacent_find(lambda_nm, std::not_fn(std::less<>{})) != lambda_nm.end()))
+       std::adjacent_find(lambda_nm.begin(), lambda_nm.end(), std::not_fn(std::less<>{})) != lambda_nm.end()))
     throw Error::in_file(name, "positive, increasing wavelengths",
                          fmt::format("{} ... {} nm out of order", lambda_nm.front(), lambda_nm.back()));
   Findings findings;

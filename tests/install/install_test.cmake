@@ -32,6 +32,7 @@ run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${SCRATCH}/consumer -G ${GE
 run(${CMAKE_COMMAND} --build ${SCRATCH}/consumer)
 # the example's measurement: few scattered samples, which are fitted in a moment
 run(${SCRATCH}/prefix/bin/burnish measure ggx:alpha_x=0.3,alpha_y=0.3 -o paint.csv --count 2000)
+run(${CMAKE_COMMAND} -E rename paint.csv paint.binary)
 run(${SCRATCH}/consumer/consumer)
 if(NOT output MATCHES "^burnish evaluates a model whose file has [1-9][0-9]* bytes\n$")
   message(FATAL_ERROR "the consumer printed '${output}'")

@@ -63,7 +63,8 @@ check_library() {
   rm -rf "$root/tmp/consumer" && cp -r "$here/tests/install" "$root/tmp/consumer"
   sed -n '/^```cpp$/,/^```$/{/^```/d;p}' "$here/README.md" > "$root/tmp/consumer/readme_example.inc"
   chroot "$root" sh -ec 'cd /tmp/consumer
-    burnish measure ggx:alpha_x=0.3,alpha_y=0.3 -o paint.binary --count 2000 > /dev/null
+    burnish measure ggx:alpha_x=0.3,alpha_y=0.3 -o paint.csv --count 2000 > /dev/null
+    mv paint.csv paint.binary
     c++ -std=c++20 -I. consumer.cpp $(pkg-config --cflags --libs burnish) -o by_pkg_config && ./by_pkg_config
     cmake -B built -DEXAMPLE_FOLDER=/tmp/consumer > /dev/null && cmake --build built > /dev/null && built/consumer'
   echo "a program is built against its library, by pkg-config and by CMake"

@@ -70,7 +70,7 @@ void FunctionBrdf::eval(std::span<const DirectionPair> pairs, std::span<double> 
   }
   // those above the horizon side by side
   std::vector<DirectionPair> asked;
-  std::ranges::copy_if(pairs, std::back_inserter(asked), above);
+  std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(asked), above);
   std::vector<double> found(asked.size() * channels_);
   const bool told = asked.empty() || fill(asked, found);
   std::ranges::fill(values, 0.0);

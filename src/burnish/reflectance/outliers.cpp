@@ -56,8 +56,7 @@ class Surprises {
   /// Of all nodes at first, then of those near what was left out.
   void update() {
     std::ranges::sort(stale_);
-    const auto repeated = std::ranges::unique(stale_);
-    stale_.erase(repeated.begin(), repeated.end());
+    stale_.erase(std::unique(stale_.begin(), stale_.end()), stale_.end());
     for_each_chunk(stale_.size(), kNodesTogether, [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) squares_[stale_[k]] = others_.miss(stale_[k], out_).square;
     });
