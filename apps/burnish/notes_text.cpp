@@ -44,7 +44,7 @@ std::string plain_text(const Json& value) {
   return text;
 }
 
-/// The notes, of which each part is taken once; what nobody takes is said as it stands.
+/// Takes each part of the notes once, and prints the rest as it stands.
 class Notes {
  public:
   explicit Notes(Json json) : json_(std::move(json)) {}

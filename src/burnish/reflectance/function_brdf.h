@@ -16,8 +16,8 @@ class FunctionBrdf {
  public:
   /// Writes f_r in 1/sr of every pair, channel fastest, each finite and at least 0. Both directions of every pair lie
   /// above the horizon. Called from several threads at a time, of one pair or of thousands.
-  /// It may throw: the pairs of that call then are unknown, and what it threw waits for `rethrow_since`. Loops in
-  /// threads inside it take up no work from outside it.
+  /// It may throw: pairs are unknown then, and it is not called again before `rethrow_since` has thrown what it threw.
+  /// Loops in threads inside it take up no work from outside it.
   using Function = std::function<void(std::span<const DirectionPair> pairs, std::span<double> values)>;
 
   /// Throws Error without a function, and for other than 1 to SymmetrizedBrdf::kMaxChannels channels.

@@ -12,7 +12,7 @@
 namespace burnish {
 
 /// Predicts each of some samples from the nearest others, by kriging ln(f + 1e-3) under the default LogCovariance:
-/// quick, and without a search for what is likely. For questions about samples, not for their function.
+/// KrigedNodes with few neighbours and without a search for the likeliest covariance. It answers questions about samples.
 /// Source: [Rasmussen 2006, eq. 2.25 and 2.26].
 class LeaveOneOut {
  public:
@@ -32,8 +32,7 @@ class LeaveOneOut {
 
   /// How far off the prediction of a sample is.
   struct Miss {
-    double square =
-        0;  ///< of the difference of logarithms over the variance that is expected, mean over channels
+    double square = 0;    ///< (difference of logarithms)^2 over its expected variance, mean over channels
     double distance = 0;  ///< |difference of logarithms|, mean over channels
   };
   /// Precondition: another sample is not left out.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -7,7 +8,9 @@
 #include <burnish/math/angles.h>
 #include <burnish/math/random.h>
 #include <burnish/reflectance/analytic.h>
+#include <burnish/reflectance/kriged_nodes.h>
 #include <burnish/reflectance/leave_one_out.h>
+#include <burnish/reflectance/measured_nodes.h>
 
 namespace burnish {
 namespace {
@@ -39,6 +42,32 @@ TEST(LeaveOneOut, PredictsWhatIsSmooth) {
   double sum = 0;
   for (std::size_t i = 0; i < 200; ++i) sum += others.miss(10 * i).distance;
   EXPECT_LT(sum / 200, 0.05);
+}
+
+TEST(LeaveOneOut, PredictsAsKrigedNodesDo) {
+  // of thirteen samples both take the twelve others; their means differ a little
+  const Samples samples = samples_of("ggx:alpha_x=0.6,alpha_y=0.4,f0=0.5,kd=0.3", 60, 0.1);
+  Samples few{.channels = samples.channels};
+  for (std::size_t i = 0; i < samples.size() && few.size() <= LeaveOneOut::kPredicting; ++i) {
+    if (std::min(samples.pairs[i].wi.z, samples.pairs[i].wo.z) < 0.2) continue;  // others are noisier
+    few.pairs.push_back(samples.pairs[i]);
+    few.values.insert(few.values.end(), samples.at(i).begin(), samples.at(i).end());
+  }
+  ASSERT_EQ(few.size(), LeaveOneOut::kPredicting + 1);
+  const LeaveOneOut others(few, false);
+  const KrigedNodes kriged(measured_nodes(few), LogCovariance(false));
+  std::vector<double> f(few.channels);
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    const std::size_t own = others.number(i);
+    const DirectionPair& pair = few.pairs[own];
+    kriged.eval_from(
+        pair.wi, pair.wo, [&](std::size_t node) { return node != own; }, f);
+    double distance = 0;
+    for (std::size_t c = 0; c < f.size(); ++c)
+      distance += std::abs(std::log((f[c] + KrigedNodes::kFloor) / (few.at(own)[c] + KrigedNodes::kFloor))) /
+                  static_cast<double>(f.size());
+    EXPECT_NEAR(others.miss(i).distance, distance, 0.05) << i;
+  }
 }
 
 TEST(LeaveOneOut, DoesWithoutWhatIsLeftOut) {

@@ -40,8 +40,8 @@ struct HemisphereTrials {
   std::vector<HemisphereCandidate> candidates;  ///< theirs; of lobes without a fit
 };
 /// The three finalists of fit_hemispheres among models of any number of fetches, and these lobes, refined with
-/// `of_lobes`: each fitted to a quarter of the pairs, the mean of their channels, and judged on another; of two that
-/// take as many fetches the better one. Empty where the limit's bytes hold no hemispheres; its fetches do not count.
+/// `of_lobes`: each fitted to a quarter of the pairs, the mean of their channels, and judged on another. Of two with as
+/// many fetches the better one stays. Empty where the limit's bytes hold no hemispheres; its fetches do not count.
 /// Deterministic.
 HemisphereTrials try_hemispheres(const TrainingSet& set, CostLimit limit, const RefineOptions& options,
                                  const LobePlan& lobes, const RefineOptions& of_lobes);
