@@ -103,7 +103,9 @@ def test_openpbr_is_exported_from_its_file_too(cli, tmp_path):
     path = tmp_path / "coated.json"
     cli("fit", "ggx:alpha_x=0.2,alpha_y=0.2", "--to", "openpbr", "--alone", "-o", path)
     spec = json.loads(path.read_text())["notes"]["spec"]
-    assert burnish.export(str(path), "glsl")["brdf.glsl"] == burnish.export(spec, "glsl")["brdf.glsl"]
+    files = burnish.export(str(path), "glsl")
+    assert list(files) == ["coated.glsl", "coated.json"]
+    assert files["coated.glsl"] == burnish.export(spec, "glsl", name="coated")["coated.glsl"]
 
 
 def test_mdl_has_the_cells_that_are_asked_for_of_a_model_and_of_a_spec(model):

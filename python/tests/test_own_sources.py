@@ -69,7 +69,10 @@ def test_samples_are_fitted_as_their_file_is(how, measured, samples, tmp_path):
 def test_whether_samples_are_isotropic_is_found_as_in_files(measured, tmp_path):
     wi, wo, values = measured
     file = burnish.open_source(write_csv(tmp_path / "samples.csv", wi, wo, values))
-    assert not file.isotropic and not burnish.Source.from_samples(wi, wo, values).isotropic
+    assert file.isotropic and burnish.Source.from_samples(wi, wo, values).isotropic
+    brushed = burnish.measure(burnish.open_source("ggx:alpha_x=0.1,alpha_y=0.4,f0=0.9"), count=1500, seed=5)
+    file = burnish.open_source(write_csv(tmp_path / "brushed.csv", *brushed))
+    assert not file.isotropic and not burnish.Source.from_samples(*brushed).isotropic
     in_one = [0.6, 0, 0.8]
     assert burnish.Source.from_samples(in_one, wo, values).isotropic
     assert not burnish.Source.from_samples(in_one, wo, values, isotropic=False).isotropic
@@ -413,7 +416,7 @@ def test_the_error_of_samples_is_the_command_lines(cli, measured, samples, tmp_p
     np.testing.assert_array_equal(samples.relative_error(wi.tolist(), wo), error)
     single = samples.relative_error(wi.astype("f4"), wo.astype("f4"))
     assert single.dtype == np.float32
-    np.testing.assert_allclose(single, error, rtol=1e-3)
+    np.testing.assert_allclose(single, error, rtol=0.01)
     assert samples.relative_error(wi[1], wo[1]) == error[1]
     out = np.empty(300)
     assert samples.relative_error(wi, wo, out=out) is out and np.array_equal(out, error)

@@ -139,14 +139,28 @@ def test_evaluates_arrays_as_a_model_does(fitted):
         surface.at(numpy.nan, 0)
 
 
-def test_refuses_what_it_would_have_to_copy(fitted):
+def test_takes_places_and_directions_of_any_type(fitted):
+    _, surface, _ = fitted
+    w, uv = directions(4, 7), numpy.tile(numpy.array([0.5, 0.25], numpy.float32), (4, 1))
+    wide = [array.astype(numpy.float64) for array in (uv, w, w)]
+    expected = surface.eval(*wide)
+    for given in ((uv, wide[1], w), (uv.tolist(), wide[1].tolist(), w.tolist())):
+        found = surface.eval(*given)
+        assert found.dtype == numpy.float64
+        numpy.testing.assert_array_equal(found, expected)
+    assert surface.eval(uv.tolist(), w, w).dtype == numpy.float32
+    corner = numpy.zeros((4, 2), int)
+    numpy.testing.assert_array_equal(surface.eval(corner, w, w), surface.eval(corner.astype(numpy.float64), w, w))
+    for wrong in (uv.astype(complex), uv > 0, "uv"):
+        with pytest.raises(TypeError, match="uv: expected an array of real numbers"):
+            surface.eval(wrong, w, w)
+
+
+def test_refuses_an_out_that_does_not_fit(fitted):
     _, surface, _ = fitted
     w, uv = directions(4, 7), numpy.full((4, 2), 0.5, numpy.float32)
-    for wrong in ((uv, w.astype(numpy.float64), w), (uv.astype(int), w, w), (uv.tolist(), w, w)):
-        with pytest.raises(TypeError):
-            surface.eval(*wrong)
     with pytest.raises(TypeError):
-        surface.eval(uv, w, w, out=numpy.empty((4, 3)))
+        surface.eval(uv, w, w, out=numpy.empty((4, 3), int))
     with pytest.raises(burnish.Error, match=r"out: expected shape \(4, 3\), found \(3, 3\)"):
         surface.eval(uv, w, w, out=numpy.empty((3, 3), numpy.float32))
 
