@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <cstdint>
+#include <numeric>
+#include <span>
 #include <utility>
 
 #include <burnish/math/parallel.h>
+#include <burnish/math/vec3.h>
 #include <burnish/reflectance/leave_one_out.h>
 #include <burnish/reflectance/outliers.h>
 
@@ -12,6 +15,7 @@ namespace {
 
 constexpr std::size_t kUsual = 24, kFewest = 2 * kUsual;
 constexpr double kDeviations = 5;
+constexpr std::size_t kNearerHorizon = kUsual / 4, kNearerMirror = kUsual / 8;  // at least, of those around
 constexpr double kMedianSquare = 0.455;  // of a normal variable of deviation 1
 constexpr double kLargestShare = 0.1;    // of the nodes
 constexpr int kRounds = 8;
@@ -22,7 +26,14 @@ class Surprises {
  public:
   explicit Surprises(const MeasuredNodes& nodes)
       : others_(nodes.samples, nodes.samples.isotropic), squares_(others_.size()), out_(others_.size()) {
-    for (std::size_t i = 0; i < others_.size(); ++i) stale_.push_back(i);
+    for (std::size_t i = 0; i < others_.size(); ++i) {
+      const DirectionPair& pair = nodes.samples.pairs[others_.number(i)];
+      const std::span<const double> f = nodes.samples.at(others_.number(i));
+      cosine_of_h_.push_back(half_vector(pair.wi, pair.wo).z);
+      least_cosine_.push_back(std::min(pair.wi.z, pair.wo.z));
+      sum_.push_back(std::accumulate(f.begin(), f.end(), 0.0));
+      stale_.push_back(i);
+    }
   }
 
   std::size_t size() const noexcept { return others_.size(); }
@@ -66,11 +77,30 @@ class Surprises {
   bool contradicts(std::size_t i) const {
     constexpr double kMost = kDeviations * kDeviations;
     if (!(squares_[i] > kMost)) return false;
+    const std::vector<KdTree::Neighbour> near = others_.nearest(i, kUsual, out_);
+    if (!is_surrounded(i, near) || !is_extreme(i, near)) return false;
     std::vector<double> around;
-    for (const KdTree::Neighbour& near : others_.nearest(i, kUsual, out_))
-      around.push_back(squares_[near.place]);
+    for (const KdTree::Neighbour& one : near) around.push_back(squares_[one.place]);
     std::ranges::nth_element(around, around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2));
     return squares_[i] > kMost * around[around.size() / 2] / kMedianSquare;
+  }
+
+  /// Whether the others stand on all sides. What rises towards the horizon or the mirror direction, where measurements
+  /// end, differs from all that was measured before it.
+  bool is_surrounded(std::size_t i, std::span<const KdTree::Neighbour> near) const {
+    const auto count = [&](const auto& is_beyond) {
+      return static_cast<std::size_t>(
+          std::ranges::count_if(near, [&](const KdTree::Neighbour& one) { return is_beyond(one.place); }));
+    };
+    return count([&](std::size_t k) { return least_cosine_[k] < least_cosine_[i]; }) >= kNearerHorizon &&
+           count([&](std::size_t k) { return cosine_of_h_[k] > cosine_of_h_[i]; }) >= kNearerMirror;
+  }
+
+  /// Whether it is larger, or smaller, than all the others: on the slope of a highlight a value is neither.
+  bool is_extreme(std::size_t i, std::span<const KdTree::Neighbour> near) const {
+    const auto [least, most] =
+        std::ranges::minmax(near, {}, [&](const KdTree::Neighbour& one) { return sum_[one.place]; });
+    return sum_[i] < sum_[least.place] || sum_[i] > sum_[most.place];
   }
 
   bool is_worst_nearby(std::size_t i) const {
@@ -81,7 +111,8 @@ class Surprises {
   }
 
   LeaveOneOut others_;
-  std::vector<double> squares_;     // everything in its order
+  std::vector<double> cosine_of_h_, least_cosine_, sum_;  // everything in its order; of the channels
+  std::vector<double> squares_;
   std::vector<std::uint8_t> out_;   // 1: left out
   std::vector<std::size_t> stale_;  // whose squares are not known
 };
