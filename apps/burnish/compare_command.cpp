@@ -106,6 +106,24 @@ void print_nodes(const Measurement& measurement, std::span<const ComparedFigures
   fmt::print("{} nodes with both cosines above 0.15\n", measurement.itself.count);
 }
 
+// How far off models may be between samples, and the function between these itself.
+void print_expected(const Measurement& measurement, std::span<const ComparedFigures> models) {
+  if (!measurement.expected) return;
+  fmt::print("{:<32} {:>9}", "expected, measured or not", "relative");
+  for (std::size_t band = 0; band < measurement.expected->by_theta_i.size(); ++band)
+    fmt::print(" {:>7.0f}+", ExpectedError::begin_degrees(band));
+  fmt::print("  degrees of theta_i\n");
+  const auto row = [](const std::string& name, const ExpectedError& expected) {
+    fmt::print("{:<32} {:>9.4f}", name, expected.relative);
+    for (const auto& relative : expected.by_theta_i)
+      fmt::print(" {:>8}", relative ? fmt::format("{:.4f}", *relative) : "-");
+    fmt::print("\n");
+  };
+  row("the function between the samples", *measurement.expected);
+  for (const ComparedFigures& model : models)
+    if (model.expected) row(model.name, *model.expected);
+}
+
 void print_compared(std::span<const ComparedFigures> figures, const Measurement* measured,
                     bool asked_quality) {
   fmt::print("{:<32} {:>8} {:>8} {:>8} {:>7} {:>9} {:>8} {:>8}\n", "model", "bytes", "psnr dB", "disc dB",
@@ -169,6 +187,7 @@ void compare(const CompareArguments& arguments) {
 
   print_compared(figures, measured, asked_quality);
   if (measured && arguments.target != "function") print_nodes(*measured, figures);
+  if (measured) print_expected(*measured, figures);
   if (!arguments.folder.empty()) fmt::print("report: {}/index.html\n", arguments.folder);
 }
 

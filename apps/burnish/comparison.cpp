@@ -20,6 +20,9 @@ std::optional<Measurement> measurement_of(const Candidate& reference, bool nodes
   Measurement measurement{.nodes = measured_nodes(reference.source()), .itself = {}, .quality = {}};
   if (!only.empty()) measurement.nodes = nodes_of(measurement.nodes, parse_node_part(only));
   measurement.itself = node_figures(measurement.nodes, reference.ref());
+  if (const auto* scattered = std::get_if<ScatteredBrdf>(&reference.source().brdf))
+    measurement.between = scattered->kriged();
+  if (measurement.between) measurement.expected = expected_error(*measurement.between, reference.ref());
   return measurement;
 }
 

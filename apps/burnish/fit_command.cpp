@@ -133,15 +133,12 @@ void print(const NodesReport& report) {
   if (report.at_held_out) line("held out", *report.at_held_out);
   if (!report.expected) return;
   fmt::print("expected   relative {:.4f}, measured or not", report.expected->relative);
-  double theta_i = 0;
   std::string bands, values;
-  for (const auto& band : report.expected->by_theta_i) {
-    if (band) {
-      values += fmt::format("{}{:.3f}", values.empty() ? "" : " ", *band);
-      bands += fmt::format("{}{:.0f}", bands.empty() ? "" : " ", theta_i);
+  for (std::size_t band = 0; band < report.expected->by_theta_i.size(); ++band)
+    if (const auto& relative = report.expected->by_theta_i[band]) {
+      values += fmt::format("{}{:.3f}", values.empty() ? "" : " ", *relative);
+      bands += fmt::format("{}{:.0f}", bands.empty() ? "" : " ", ExpectedError::begin_degrees(band));
     }
-    theta_i += ExpectedError::kBandDegrees;
-  }
   fmt::print("; {} from theta_i = {} degrees on\n", values, bands);
 }
 

@@ -145,8 +145,16 @@ const figure = (x, digits) => make("span", {title: x}, number(Math.abs(x) < kNot
 // A long name without its middle: its end tells fits of one file apart.
 const shortened = (name) => make("span", {class: "name", title: name}, name.length > 17 ? `${name.slice(0, 8)}…${name.slice(-8)}` : name);
 
+// How far off a model of scattered samples may be, measured or not, by the incidence.
+function expectedTable(expected, ofReference, ofModel) {
+  const bands = Object.keys(expected.itself.from_theta_i_deg);
+  const values = ({relative, from_theta_i_deg: by}) => [relative, ...bands.map((band) => by[band])].map((x) => (x === undefined ? "" : figure(x, 3)));
+  return table("Expected relative error, measured or not", ["of", "all", ...bands.map((band) => `θi ${band}°+`)],
+               [row([ofReference, ...values(expected.itself)]), row([ofModel, ...values(expected)])]);
+}
+
 // What compare prints of a model below its first line: albedos, and figures where something was measured.
-function moreFigures(reference, model, {albedo, nodes, unknown_fraction: unknown, unknown_pixels: pixels}) {
+function moreFigures(reference, model, {albedo, nodes, expected, unknown_fraction: unknown, unknown_pixels: pixels}) {
   const mean = (values) => values.reduce((sum, x) => sum + x, 0) / values.length;
   const names = () => [shortened(reference.name), shortened(model.name)], [ofReference, ofModel] = names();
   const albedos = albedo.map((at) => row([incidence(at), figure(mean(at.reference), 4), figure(mean(at.model), 4)]));
@@ -155,6 +163,7 @@ function moreFigures(reference, model, {albedo, nodes, unknown_fraction: unknown
     table("Mean of the channels", ["at", ...names()], albedos),
     nodes ? table(`At ${nodes.count.toLocaleString("en")} measured nodes`, ["of", "relative", "rms log", "log cos", "rms"],
                   [row([ofReference, ...scores(nodes.itself)]), row([ofModel, ...scores(nodes)])]) : "",
+    expected ? expectedTable(expected, ...names()) : "",
     unknown > 0 || pixels > 0 ? make("p", {class: "hint"}, `Left out, where a side knows nothing: ${number(100 * unknown, 3)} % of the directions and ${pixels} pixels.`) : "",
   ];
 }

@@ -128,16 +128,6 @@ Json json_of(const LogCovariance& covariance) {
   return json;
 }
 
-Json json_of(const ExpectedError& expected) {
-  Json json{{"relative", expected.relative}};
-  double theta_i = 0;
-  for (const auto& band : expected.by_theta_i) {
-    if (band) json["from_theta_i_deg"][fmt::format("{:.0f}", theta_i)] = *band;
-    theta_i += ExpectedError::kBandDegrees;
-  }
-  return json;
-}
-
 Json json_of(const NodesReport& report) {
   Json json{{"target", "nodes"}, {"nodes", report.fitted}};
   if (report.outliers > 0) json["outliers"] = report.outliers;

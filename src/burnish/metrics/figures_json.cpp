@@ -60,4 +60,12 @@ Json json_of(const NodeFigures& figures, std::initializer_list<std::string_view>
   return json;
 }
 
+Json json_of(const ExpectedError& expected) {
+  Json json{{"relative", expected.relative}};
+  for (std::size_t band = 0; band < expected.by_theta_i.size(); ++band)
+    if (const auto& relative = expected.by_theta_i[band])
+      json["from_theta_i_deg"][fmt::format("{:.0f}", ExpectedError::begin_degrees(band))] = *relative;
+  return json;
+}
+
 }  // namespace burnish

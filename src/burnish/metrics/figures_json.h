@@ -8,6 +8,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <burnish/metrics/error_figures.h>
+#include <burnish/reflectance/expected_error.h>
 #include <burnish/reflectance/node_figures.h>
 
 namespace burnish {
@@ -21,5 +22,8 @@ nlohmann::ordered_json json_of(const ErrorFigures& figures,
 /// Likewise, after `count`.
 nlohmann::ordered_json json_of(const NodeFigures& figures, std::initializer_list<std::string_view> names = {
                                                                "relative", "rms_log", "log_cos"});
+
+/// `relative`, and `from_theta_i_deg`: an object of each band's figure by the angle that it begins at, in degrees.
+nlohmann::ordered_json json_of(const ExpectedError& expected);
 
 }  // namespace burnish

@@ -14,6 +14,10 @@ namespace burnish {
 /// The figure is exp(mean |ln|) - 1, over those of 2,000 pairs of draw_pairs that have both cosines above 0.15.
 struct ExpectedError {
   static constexpr double kBandDegrees = 15;
+  /// The least theta_i of a band.
+  static constexpr double begin_degrees(std::size_t band) noexcept {
+    return kBandDegrees * static_cast<double>(band);
+  }
 
   double relative = 0;
   /// Of the pairs whose theta_i lies in [0, 15), [15, 30), ... degrees; nothing where no pair does.

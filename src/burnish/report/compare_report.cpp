@@ -77,6 +77,9 @@ nlohmann::ordered_json json_of(std::span<const ComparedFigures> compared, const 
     if (!c.note.empty()) entry["note"] = c.note;
     if (c.nodes) entry["nodes"] = node_json(*c.nodes);
     if (c.nodes && measurement) entry["nodes"]["itself"] = node_json(measurement->itself);
+    if (c.expected) entry["expected"] = json_of(*c.expected);
+    if (c.expected && measurement && measurement->expected)
+      entry["expected"]["itself"] = json_of(*measurement->expected);
     if (measurement && measurement->quality) entry["measurement"] = json_of(*measurement->quality);
     list.push_back(std::move(entry));
   }
@@ -155,6 +158,28 @@ std::string nodes_html(const Measurement& measurement, std::span<const ComparedF
                                {"NOISE", std::move(noise)}});
 }
 
+std::string expected_row(std::string_view name, const ExpectedError& expected) {
+  std::string bands;
+  for (const auto& relative : expected.by_theta_i)
+    bands += filled("expected_band.html", {{"RELATIVE", relative ? fmt::format("{:.4f}", *relative) : "–"}});
+  return filled("expected_row.html", {{"NAME", escape_markup(name)},
+                                      {"RELATIVE", fmt::format("{:.4f}", expected.relative)},
+                                      {"BANDS", std::move(bands)}});
+}
+
+// How far off everything may be between scattered samples.
+std::string expected_html(const Measurement& measurement, std::span<const ComparedFigures> compared) {
+  if (!measurement.expected) return {};
+  std::string heads, rows = expected_row("the function between the samples", *measurement.expected);
+  for (std::size_t band = 0; band < measurement.expected->by_theta_i.size(); ++band)
+    heads +=
+        filled("expected_head.html", {{"FROM", fmt::format("{:.0f}", ExpectedError::begin_degrees(band))},
+                                      {"TO", fmt::format("{:.0f}", ExpectedError::begin_degrees(band + 1))}});
+  for (const ComparedFigures& c : compared)
+    if (c.expected) rows += expected_row(c.name, *c.expected);
+  return filled("expected.html", {{"HEADS", std::move(heads)}, {"ROWS", std::move(rows)}});
+}
+
 std::string figures_row(std::string_view name, std::optional<std::uint64_t> bytes,
                         const ErrorFigures& figures, std::string_view note) {
   return filled("row.html", {{"NAME", escape_markup(name)},
@@ -187,7 +212,9 @@ std::string index_html(const std::string& reference_name, std::span<const Compar
                                {"PAIRS", fmt::format("{}", options.count)},
                                {"SEED", fmt::format("{}", options.seed)},
                                {"SIZE", fmt::format("{}", options.image_size)},
-                               {"NODES", measurement ? nodes_html(*measurement, compared) : std::string()},
+                               {"NODES", measurement ? nodes_html(*measurement, compared) +
+                                                           expected_html(*measurement, compared)
+                                                     : std::string()},
                                {"SHEETS", std::move(sheets)},
                                {"PLOTS", std::move(charts)}});
 }
@@ -214,6 +241,7 @@ std::vector<ComparedFigures> compare_models(const Scorer& scorer, std::span<cons
       c.albedos.push_back({at.theta_i, at.phi_i, at.albedo,
                            directional_albedo(model.brdf, spherical_direction(at.theta_i, at.phi_i))});
     if (measurement) c.nodes = node_figures(measurement->nodes, model.brdf);
+    if (measurement && measurement->between) c.expected = expected_error(*measurement->between, model.brdf);
   }
   return result;
 }

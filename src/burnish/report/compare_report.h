@@ -13,6 +13,7 @@
 #include <burnish/metrics/error_figures.h>
 #include <burnish/metrics/measurement_quality.h>
 #include <burnish/reflectance/brdf.h>
+#include <burnish/reflectance/expected_error.h>
 #include <burnish/reflectance/node_figures.h>
 
 namespace burnish {
@@ -39,6 +40,8 @@ struct ComparedFigures {
   ErrorFigures figures;
   std::vector<ComparedAlbedo> albedos;    ///< at 0, 15, ... 75 degrees, see albedo_curve
   std::optional<NodeFigures> nodes = {};  ///< where the reference is a measurement
+  /// Against the truth behind scattered samples.
+  std::optional<ExpectedError> expected = {};
 };
 
 /// The psnr of lit spheres, in dB, of their discs alone: the black background, equal in every picture, is left out. A
@@ -53,6 +56,9 @@ struct Measurement {
   MeasuredNodes nodes;                        ///< those that are scored
   NodeFigures itself;                         ///< the reference's own figures there, made reciprocal
   std::optional<MeasurementQuality> quality;  ///< none where nothing tells
+  /// What knows how far the function between scattered samples may be off; of others null. Must outlive this.
+  const KrigedNodes* between = nullptr;
+  std::optional<ExpectedError> expected = {};  ///< of the function between scattered samples
 };
 
 /// Figures of every model, in their order; at the nodes too where a measurement is given. Throws Error as Scorer.
@@ -63,7 +69,8 @@ std::vector<ComparedFigures> compare_models(const Scorer& scorer, std::span<cons
 /// for equal pictures, where it is infinite), ssim, psnr_of_disc (likewise), unknown_fraction, unknown_pixels, albedo (a list of
 /// theta_i_deg, phi_i_deg, reference and model, one number a channel, reference_unknown_fraction), and note
 /// if there is one. Of a measurement also nodes (count, log_cos, relative, rms_log, rms, and the same as
-/// itself) and measurement (repeated, log_cos, relative, rms_log, rms, psnr, ssim, negative_share, negative_rms,
+/// itself), of scattered samples expected (relative, from_theta_i_deg, and the same as itself: json_of(ExpectedError)),
+/// and measurement (repeated, log_cos, relative, rms_log, rms, psnr, ssim, negative_share, negative_rms,
 /// held_out and held_out_incidences, each with the figures of nodes).
 std::string to_json(std::span<const ComparedFigures> figures, const Measurement* measurement = nullptr);
 

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <fstream>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <unistd.h>
@@ -120,6 +121,34 @@ TEST_F(CompareReport, OfAMeasurementSaysWhatItWouldScoreItself) {
   ASSERT_EQ(of_nodes.size(), 4u);
   EXPECT_EQ(of_nodes[2]["bytes"], 1344);
   EXPECT_EQ(of_nodes[2]["relative"], compared[1].nodes->relative);
+}
+
+TEST_F(CompareReport, OfScatteredSamplesSaysHowFarOffItMayBe) {
+  BURNISH_SKIP_WHERE_SANITIZED();
+  const MeasuredNodes nodes = measured_nodes(measure(reference_, {.count = 300}));
+  const KrigedNodes between(nodes, LogCovariance(true));
+  const Measurement measurement{.nodes = nodes,
+                                .itself = node_figures(nodes, reference_),
+                                .quality = {},
+                                .between = &between,
+                                .expected = expected_error(between, reference_)};
+  const auto compared = write_report(folder_, "r", Scorer(reference_, kQuick), models_, &measurement);
+  for (std::size_t m = 0; m < models_.size(); ++m) {
+    ASSERT_TRUE(compared[m].expected);
+    EXPECT_EQ(compared[m].expected->relative, expected_error(between, models_[m].brdf).relative);
+  }
+  EXPECT_GT(compared[1].expected->relative, 0.9);  // of twice the function
+
+  const auto report = nlohmann::json::parse(read_file(folder_ / "report.json").text());
+  const auto expected = report["models"][1]["expected"];
+  EXPECT_EQ(expected["relative"], compared[1].expected->relative);
+  EXPECT_EQ(expected["itself"]["relative"], measurement.expected->relative);
+  EXPECT_EQ(expected["from_theta_i_deg"]["30"], compared[1].expected->by_theta_i[2].value());
+  const std::string page(read_file(folder_ / "index.html").text());
+  EXPECT_NE(page.find("Expected error"), page.npos);
+  EXPECT_NE(page.find("<th>75 to 90</th>"), page.npos);
+  EXPECT_NE(page.find(fmt::format("{:.4f}", compared[1].expected->relative)), page.npos);
+  EXPECT_EQ(page.find('@'), page.npos);
 }
 
 TEST_F(CompareReport, RefusesNoModelsAndAFolderThatIsAFile) {
