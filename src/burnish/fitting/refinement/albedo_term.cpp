@@ -20,6 +20,7 @@ void AlbedoTerm::for_each_block(std::size_t direction, Visit visit) const {
   const std::size_t blocks = set_.points() / kBlock;
   for (std::size_t b = direction * blocks; b < (direction + 1) * blocks; ++b)
     for (std::size_t c = 0; c < channels_; ++c) {
+      // Errors are relative: weights cos(theta_o) times solid angle are divided by the scale of the target.
       const float scale = set_.scales[direction * all_channels_ + first_channel_ + c];
       std::array<float, kBlock> weights;
       for (std::size_t i = 0; i < kBlock; ++i) weights[i] = set_.weights[b * kBlock + i] / scale;
@@ -35,6 +36,7 @@ double AlbedoTerm::target(std::size_t direction, std::size_t channel) const noex
 Eigen::VectorXd AlbedoTerm::residuals(const Eigen::VectorXd& x) const {
   Eigen::VectorXd result = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(size()));
   if (set_.empty()) return result;
+  // residual = (sum over points of weight f^ - target) / scale, for each direction and channel.
   const LobeLanes::Values values = lanes_->values(x);
   for_each_chunk(set_.directions, 1, [&](std::size_t k, std::size_t, std::size_t) {
     LobeLanes::Block at = lanes_->block();
@@ -60,7 +62,7 @@ AlbedoTerm::Rows AlbedoTerm::rows(const Eigen::VectorXd& x) const {
     std::vector<AlignedVector<float>> sums(channels_);
     for (auto& sum : sums) sum.resize(values.lambdas.size());
     for_each_block(k, [&](std::size_t c, std::size_t b, const auto& weights) {
-      // d (sum of weights f^) = sum of weights f^ d ln f^
+      // The residual is linear in f^, and d f^ = f^ d ln f^, so each point's row is scaled by weight times f^.
       lanes_->evaluate(values, b, c, at);
       std::array<float, LobeLanes::kBlock> amounts;
       for (std::size_t i = 0; i < amounts.size(); ++i) amounts[i] = weights[i] * at.total[i];
@@ -70,7 +72,7 @@ AlbedoTerm::Rows AlbedoTerm::rows(const Eigen::VectorXd& x) const {
     for (std::size_t c = 0; c < channels_; ++c) {
       Eigen::VectorXd slope = Eigen::VectorXd::Zero(x.size());
       lanes_->gather(sums[c], slope);
-      // by logarithms: d lambda / dx = lambda
+      // The unknowns are x = ln lambda, so the derivative by lambda is multiplied by lambda.
       result.slopes.col(static_cast<Eigen::Index>(k * channels_ + c)) = slope.cwiseProduct(values.lambda);
     }
   });

@@ -15,12 +15,13 @@ namespace burnish {
 /// many pairs and so linear in the values of f^.
 class AlbedoTerm {
  public:
-  /// Of the channels [first_channel, first_channel + channels). `set` must outlive it; empty: no residuals.
+  /// Makes the residuals of the channels [first_channel, first_channel + channels). `set` must outlive it; an empty
+  /// set gives no residuals.
   AlbedoTerm(const ModelSpec& spec, std::span<const LobeLanes::NumberedTable> tables, const AlbedoSet& set,
              std::size_t all_channels, std::size_t first_channel, std::size_t channels);
 
   std::size_t size() const noexcept { return set_.directions * channels_; }
-  /// (albedo - target) / scale, [direction][channel], given the logarithms of the unknowns.
+  /// Returns (albedo - target) / scale, [direction][channel], given the logarithms of the unknowns.
   Eigen::VectorXd residuals(const Eigen::VectorXd& x) const;
 
   struct Rows {
@@ -30,14 +31,14 @@ class AlbedoTerm {
   Rows rows(const Eigen::VectorXd& x) const;
 
  private:
-  // visit(direction, channel, block, its 32 weights over the scale)
+  // Calls visit(channel, block, weights over the scale) for each block of a direction's points.
   template <class Visit>
   void for_each_block(std::size_t direction, Visit visit) const;
   double target(std::size_t direction, std::size_t channel) const noexcept;
 
   const AlbedoSet& set_;
   std::size_t all_channels_, first_channel_, channels_;
-  // at one place in memory, since lanes refer to lookups
+  // The lanes refer to the lookups, so both stay at one place in memory.
   std::unique_ptr<const Lookups> lookups_;
   std::unique_ptr<const LobeLanes> lanes_;
 };

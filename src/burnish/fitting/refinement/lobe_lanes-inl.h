@@ -28,13 +28,13 @@ HWY_INLINE V mix(V a, V b, V t) {
   return hn::MulAdd(t, hn::Sub(b, a), a);
 }
 
-// Vectors at a lookup and its neighbour, and their weights.
+// Interpolates between the vectors at a lookup's node and its neighbour along x.
 HWY_INLINE V between(const float* v, V fx) {
   const D d;
   return mix(hn::Load(d, v), hn::Load(d, v + kLanes), fx);
 }
 
-// To the rows and layers that follow a lookup's; 0 where a table has none.
+// Floats from a lookup's node to the next row and layer; 0 where a table has none.
 struct Strides {
   std::size_t row, layer;
 };
@@ -43,6 +43,7 @@ HWY_INLINE Strides strides_of(const LobeLanes::Slot& slot) {
   return {slot.next_row, slot.next_layer};
 }
 
+// Interpolates linearly along 1, 2 or 3 axes.
 template <int axes>
 HWY_INLINE V interpolate(const float* v, Strides next, const Lookups::Place& place) {
   const D d;
@@ -56,7 +57,7 @@ HWY_INLINE V interpolate(const float* v, Strides next, const Lookups::Place& pla
   }
 }
 
-// Adds `amount` times an interpolation's weights.
+// Adds `amount` times the weights of linear interpolation along x: the transpose of between().
 HWY_INLINE void add_between(V amount, V fx, float* v) {
   const D d;
   const V second = hn::Mul(fx, amount);
@@ -64,6 +65,7 @@ HWY_INLINE void add_between(V amount, V fx, float* v) {
   hn::Store(hn::Add(hn::Load(d, v + kLanes), second), d, v + kLanes);
 }
 
+// Adds `amount` times the weights along all axes: the transpose of interpolate().
 template <int axes>
 HWY_INLINE void add_weights(V amount, const Lookups::Place& place, Strides next, float* v) {
   const D d;
@@ -83,7 +85,7 @@ HWY_INLINE void add_weights(V amount, const Lookups::Place& place, Strides next,
   }
 }
 
-// The same with the squares of the weights.
+// Adds `amount` times the squares of the weights along x.
 HWY_INLINE void add_squares_between(V amount, float fx, float* v) {
   const D d;
   const V first = hn::Set(d, (1 - fx) * (1 - fx)), second = hn::Set(d, fx * fx);
@@ -91,6 +93,7 @@ HWY_INLINE void add_squares_between(V amount, float fx, float* v) {
   hn::Store(hn::MulAdd(amount, second, hn::Load(d, v + kLanes)), d, v + kLanes);
 }
 
+// Adds `amount` times the squares of the weights along all axes.
 template <int axes>
 HWY_INLINE void add_square_weights(V amount, const Lookups::Place& place, Strides next, float* v) {
   const D d;
@@ -106,10 +109,10 @@ HWY_INLINE void add_square_weights(V amount, const Lookups::Place& place, Stride
 
 HWY_INLINE V reciprocal(V v) {
   const V guess = hn::ApproximateReciprocal(v);
-  return hn::Mul(guess, hn::NegMulAdd(v, guess, hn::Set(D(), 2.0f)));  // a step of Newton's
+  return hn::Mul(guess, hn::NegMulAdd(v, guess, hn::Set(D(), 2.0f)));  // one Newton step
 }
 
-// visit(slot, number of the slot, its axes)
+// Calls visit(slot, number of the slot, its axes).
 template <class Visit>
 HWY_INLINE void for_each_slot(Slots slots, Visit visit) {
   for (std::size_t s = 0; s < slots.size(); ++s)
@@ -121,13 +124,14 @@ HWY_INLINE void for_each_slot(Slots slots, Visit visit) {
       visit(slots[s], s, std::integral_constant<int, 3>());
 }
 
-// visit(pair of the block, lane, number of the lane in the block)
+// Calls visit(pair of the block, lane, number of the lane in the block).
 template <class Visit>
 HWY_INLINE void for_each_vector(Visit visit) {
   for (std::size_t i = 0; i < kBlock; ++i)
     for (std::size_t l = 0; l < kLanes; l += hn::Lanes(D())) visit(i, l, i * kLanes + l);
 }
 
+// Sums each pair's lanes over all parts of the lobes.
 void sum_lanes(std::size_t parts, const float* lanes, float* sums) {
   const D d;
   for (std::size_t i = 0; i < kBlock; ++i) {
@@ -139,7 +143,8 @@ void sum_lanes(std::size_t parts, const float* lanes, float* sums) {
   }
 }
 
-// `products` hold the lobes' scales, 0 where there is none.
+// Looks up every slot and multiplies its lobes' products, which begin as the lobes' scales (0: no lobe). The totals
+// are f^, the sums of the products [HomomorphicBrdf, eq. 4].
 void evaluate(Slots slots, std::size_t parts, const Lookups::Place* places, const float* values,
               float* factors, float* products, float* totals) {
   const D d;
@@ -160,6 +165,7 @@ void evaluate(Slots slots, std::size_t parts, const Lookups::Place* places, cons
 void differentiate(Slots slots, std::size_t parts, const float* totals, float* factors, float* products) {
   const D d;
   for (std::size_t i = 0; i < kBlock; ++i) {
+    // A lobe's share is its product over the total: d ln f^ / d ln(product).
     const V over = hn::Set(d, 1 / totals[i]);
     for (std::size_t p = 0; p < parts; ++p)
       for (std::size_t l = 0; l < kLanes; l += hn::Lanes(d)) {
@@ -168,6 +174,7 @@ void differentiate(Slots slots, std::size_t parts, const float* totals, float* f
       }
   }
   for_each_slot(slots, [&](const LobeLanes::Slot& slot, std::size_t s, auto) HWY_ATTR {
+    // A factor lambda changes ln f^ by share / lambda.
     float* factor = factors + s * kBlockLanes;
     const float* share = products + slot.part * kBlockLanes;
     for_each_vector([=](std::size_t, std::size_t, std::size_t at) HWY_ATTR {
@@ -175,6 +182,7 @@ void differentiate(Slots slots, std::size_t parts, const float* totals, float* f
     });
   });
   for (std::size_t s = 0; s < slots.size(); ++s) {
+    // Where all lanes share one table, the sum of their slopes is the table's.
     if (!slots[s].one_table) continue;
     float* factor = factors + s * kBlockLanes;
     for (std::size_t i = 0; i < kBlock; ++i, factor += kLanes) {
@@ -185,7 +193,7 @@ void differentiate(Slots slots, std::size_t parts, const float* totals, float* f
   }
 }
 
-// Adds amounts times the rows' terms, or the squares of these.
+// Adds to each node amount * slope * weight, or amount * (slope * weight)^2 if `squares`.
 template <bool squares>
 void add_terms(Slots slots, const Lookups::Place* places, const float* slopes, const float* amounts,
                float* sums) {
@@ -216,7 +224,7 @@ void add_squares(Slots slots, const Lookups::Place* places, const float* slopes,
   add_terms<true>(slots, places, slopes, amounts, sums);
 }
 
-// Adds J^T J v of a block to `sums`; `slopes` is room.
+// Adds J^T J v of a block to `sums`; `slopes` is room. The row times v is the sum of slope times v's interpolation.
 void multiply(Slots slots, const Lookups::Place* places, const float* values, const float* shares,
               const float* v, float* slopes, float* sums) {
   const D d;

@@ -34,7 +34,8 @@ LobeLanes::LobeLanes(std::span<const NumberedTable> tables, const Lookups& looku
       channels_(channels),
       parts_(chunk_count(lookups.lobes.size(), kLanes)),
       tables_(tables.begin(), tables.end()) {
-  // slots: what lobes of one part look up at one place, a lane a lobe; and the tables of their lanes
+  // A slot is what up to kLanes lobes of one part look up at one place, a lane a lobe. A lobe takes the first slot
+  // with its place whose lane is free.
   std::vector<std::vector<std::size_t>> lanes;
   for (std::size_t j = 0; j < lookups.lobes.size(); ++j)
     for (const std::size_t k : lookups.lobes[j]) {
@@ -49,8 +50,8 @@ LobeLanes::LobeLanes(std::span<const NumberedTable> tables, const Lookups& looku
       lanes[s][j % kLanes] = lookups.lookups[k].table;
     }
 
-  // families: slots of the same tables share values
-  std::vector<std::size_t> nodes;  // of the families
+  // Slots of the same tables form a family and share its values.
+  std::vector<std::size_t> nodes;  // nodes of each family's tables
   for (std::size_t s = 0; s < slots_.size(); ++s) {
     Slot& slot = slots_[s];
     const auto table = *std::ranges::find_if(lanes[s], [](std::size_t t) { return t != kNone; });
@@ -72,7 +73,7 @@ LobeLanes::LobeLanes(std::span<const NumberedTable> tables, const Lookups& looku
     slot.next_layer = axes > 2 ? slot.next_row * static_cast<std::size_t>(layout.height) : 0;
   }
 
-  // links: where each unknown's value stands among the lanes
+  // Links map each unknown to all its places among the lanes.
   for (std::size_t f = 0; f < families_.size(); ++f)
     for (std::size_t l = 0; l < kLanes; ++l) {
       if (families_[f].tables[l] == kNone) continue;
@@ -95,7 +96,7 @@ AlignedVector<float> LobeLanes::spread(const Eigen::VectorXd& v, float empty) co
 LobeLanes::Values LobeLanes::values(const Eigen::VectorXd& x) const {
   Values found{.lambda = x, .lambdas = {}, .scales = AlignedVector<float>(channels_ * parts_ * kLanes)};
 
-  // the means of the logarithms, divided out of each table's channels
+  // The mean of each table's logarithms is divided out of its values, so that floats hold them well.
   std::vector<double> means(tables_.size() * channels_);
   for (std::size_t t = 0; t < tables_.size(); ++t) {
     const auto& [number, layout] = tables_[t];
@@ -115,7 +116,7 @@ LobeLanes::Values LobeLanes::values(const Eigen::VectorXd& x) const {
   found.lambda = found.lambda.array().exp();
   found.lambdas = spread(found.lambda, 1);
 
-  // and given back as the lobes' scales
+  // The means come back as scales: lobe j's is exp of the sum of its tables' means.
   for (std::size_t c = 0; c < channels_; ++c)
     for (std::size_t j = 0; j < lookups_.lobes.size(); ++j) {
       double sum = 0;
@@ -138,7 +139,7 @@ LobeLanes::Block LobeLanes::block() const {
 
 void LobeLanes::evaluate(const Values& values, std::size_t block, std::size_t channel,
                          Block& at) const noexcept {
-  // the products start as the scales
+  // Products start as the lobes' scales, times the weights of lobes where the pairs have them.
   for (std::size_t p = 0; p < parts_; ++p) {
     const float* scales = values.scales.data() + (channel * parts_ + p) * kLanes;
     for (std::size_t i = 0; i < kBlock; ++i)
@@ -176,6 +177,7 @@ void LobeLanes::add_squares(const Block& at, const float* amounts, std::size_t b
 
 Eigen::VectorXd LobeLanes::times(const Values& values, const AlignedVector<float>& shares,
                                  const Eigen::VectorXd& v) const {
+  // Each group of blocks sums J^T (J v) of its pairs.
   const AlignedVector<float> lanes = spread(v, 0);
   const std::size_t group_size = (blocks() + kMaxGroups - 1) / kMaxGroups;
   std::vector<AlignedVector<float>> partial(chunk_count(blocks(), group_size));
@@ -184,7 +186,7 @@ Eigen::VectorXd LobeLanes::times(const Values& values, const AlignedVector<float
     AlignedVector<float> slopes(slots_.size() * kBlockLanes);
     for (std::size_t b = begin; b < end; ++b)
       for (std::size_t c = 0; c < channels_; ++c) {
-        if (b + 1 < end) {  // many short streams: too short for the processor to foresee
+        if (b + 1 < end) {  // The memory is many short streams, which the processor does not foresee.
           if (c == 0) prefetch(places(b + 1), kBlock * lookups_.place_count * sizeof(Lookups::Place));
           prefetch(shares.data() + ((b + 1) * channels_ + c) * shares_of_block(),
                    shares_of_block() * sizeof(float));
@@ -197,7 +199,7 @@ Eigen::VectorXd LobeLanes::times(const Values& values, const AlignedVector<float
       }
   });
 
-  // in the order of the groups, whatever the threads
+  // Groups are summed in their order, which gives the same bits for any number of threads.
   AlignedVector<float>& sum = partial.front();
   for (std::size_t g = 1; g < partial.size(); ++g)
     for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += partial[g][k];

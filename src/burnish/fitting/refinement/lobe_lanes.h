@@ -26,12 +26,13 @@ class LobeLanes {
   static constexpr std::size_t kLanes = 8, kBlock = Lookups::kBlock;
   static constexpr std::size_t kBlockLanes = kBlock * kLanes;
 
-  /// A table and where its nodes stand among the unknowns; it has one copy, or one a channel.
+  /// A table and the numbers of its nodes among the unknowns; it has one copy, or one for each channel.
   struct NumberedTable {
     NodeNumbers number;
     TableLayout layout;
   };
-  /// Rows are those of the training set that `lookups` was made for, `channels` a pair. Keeps a reference.
+  /// Prepares the lanes. Rows are those of the training set that `lookups` was made for, with `channels` for each
+  /// pair. Keeps a reference.
   LobeLanes(std::span<const NumberedTable> tables, const Lookups& lookups, std::size_t channels);
 
   /// Tables, one a lane; kNone where there is none.
@@ -41,7 +42,7 @@ class LobeLanes {
     std::size_t base;  ///< of its values
   };
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-  /// What up to kLanes lobes look up at one place.
+  /// The lookups of up to kLanes lobes at one place.
   struct Slot {
     std::size_t place, family;
     std::size_t base;                  ///< of the family's values
@@ -59,13 +60,13 @@ class LobeLanes {
     return lookups_.places.data() + block * kBlock * lookups_.place_count;
   }
 
-  /// A model's values: of each table over exp(the mean of its logarithms), which are the lobes' scales.
+  /// A model's values. Each table's are divided by exp(the mean of its logarithms); these make the lobes' scales.
   struct Values {
     Eigen::VectorXd lambda;        ///< of the unknowns
     AlignedVector<float> lambdas;  ///< the same as lanes, 1 where there is no table
     AlignedVector<float> scales;   ///< [channel][part][lane], 0 where there is no lobe
   };
-  /// Given the logarithms.
+  /// Computes the values from the logarithms.
   Values values(const Eigen::VectorXd& x) const;
   /// Adds what lanes hold to their unknowns.
   void gather(const AlignedVector<float>& lanes, Eigen::VectorXd& v) const;
@@ -75,7 +76,7 @@ class LobeLanes {
     AlignedVector<float> factor, product, total;
   };
   Block block() const;
-  /// Factors, products and totals of a block of one channel.
+  /// Computes factors, products and totals of a block of one channel.
   void evaluate(const Values& values, std::size_t block, std::size_t channel, Block& at) const noexcept;
   /// Turns products into shares of the total, and factors into d ln(total) / d factor. Of one table, the
   /// first lane has the sum.
@@ -83,18 +84,18 @@ class LobeLanes {
   /// Adds amounts times the transposed row of each pair, `factor` being slopes by the lookups, to `sums`.
   void add_transposed(const Block& at, const float* amounts, std::size_t block, std::size_t channel,
                       AlignedVector<float>& sums) const noexcept;
-  /// The same with the squares of the rows' terms.
+  /// Adds amounts times the squares of the rows' terms.
   void add_squares(const Block& at, const float* amounts, std::size_t block, std::size_t channel,
                    AlignedVector<float>& sums) const noexcept;
 
-  /// J^T J v where rows of J are `roots` times d ln(total) / d value, given the shares as differentiate
-  /// leaves them, times roots: [block][channel][part][pair][lane]. The same for any number of threads.
+  /// Returns J^T J v, where rows of J are `roots` times d ln(total) / d value. It takes the shares as differentiate
+  /// leaves them, times roots: [block][channel][part][pair][lane]. The same bits for any number of threads.
   Eigen::VectorXd times(const Values& values, const AlignedVector<float>& shares,
                         const Eigen::VectorXd& v) const;
   std::size_t shares_of_block() const noexcept { return parts_ * kBlockLanes; }
 
  private:
-  // The unknowns' numbers as lanes, `empty` where there is no table.
+  // Returns the unknowns' numbers as lanes, `empty` where there is no table.
   AlignedVector<float> spread(const Eigen::VectorXd& v, float empty) const;
 
   const Lookups& lookups_;

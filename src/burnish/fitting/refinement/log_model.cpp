@@ -10,13 +10,15 @@ namespace burnish {
 
 namespace {
 
-// Where a lobe is split, in tan(theta_d / 2): the width of the step, and how little is left of it far away.
+// The step that splits a lobe, over tan(theta_d / 2): its width, and the share that is left far away.
 constexpr double kStepWidth = 0.1, kStepRest = 0.01;
 
+// A logistic step from kStepRest to 1 - kStepRest at `centre`.
 double step_up(double t, double centre) {
   return kStepRest + (1 - 2 * kStepRest) / (1 + std::exp((centre - t) / kStepWidth));
 }
 
+// Returns the coordinate of a node: its index over the last one, through the inverse warp.
 double node_place(const Warp& warp, int node, int count) {
   return warp.inverse(static_cast<double>(node) / (count - 1));
 }
@@ -36,6 +38,7 @@ Cell find_cell(double u, int count) {
 
 LogModel fit_one_lobe(const ModelSpec& spec, const TrainingSet& set, const std::vector<float>& values,
                       const HomomorphicOptions& options) {
+  // The fit is in single precision, so that the refinement that follows starts from unrounded values.
   ModelSpec unrounded = spec;
   for (ModelSpec::TableSpec& table : unrounded.tables) table.format = TableFormat::single;
   const HomomorphicFit fit = fit_homomorphic(as_source(set, values), unrounded, options);
@@ -44,7 +47,7 @@ LogModel fit_one_lobe(const ModelSpec& spec, const TrainingSet& set, const std::
     auto& logs = model.log_values.emplace_back(table.values.begin(), table.values.end());
     for (double& v : logs) v = std::log(v);
   }
-  // The lobe's scale goes into tables used once; a shared table takes none.
+  // The lobe's scale goes into its last table with all channels. A table used n times takes 1/n of the logarithm.
   const Lobe& lobe = fit.brdf.lobes().front();
   for (std::size_t k = lobe.factors.size(); k-- > 0;) {
     const auto t = lobe.factors[k].table;
@@ -63,7 +66,8 @@ LogModel with_lobe_split(LogModel model, std::size_t lobe, double centre, const 
   const auto is_common = [&](std::size_t table) {
     return std::ranges::find(common, model.spec.tables[table].name) != common.end();
   };
-  // the new lobe's own tables: copies, but for the step over theta_d
+  // The new lobe gets copies of its own tables. The first table over theta_d is multiplied by the step s in the copy,
+  // and by 1 - s in the old lobe: the two add up to the old lobe.
   std::vector<FactorUse> uses = model.spec.lobes[lobe];
   std::vector<std::optional<std::size_t>> copy(model.spec.tables.size());
   bool stepped = false;
@@ -90,7 +94,7 @@ LogModel with_lobe_split(LogModel model, std::size_t lobe, double centre, const 
     use.table = *copy[t];
   }
 
-  // without one, halves
+  // Without such a table both lobes are halved, in a table of their own.
   const std::vector<FactorUse>& old = model.spec.lobes[lobe];
   const auto own = std::ranges::find_if(old, [&](const FactorUse& use) { return !is_common(use.table); });
   if (!stepped)
@@ -104,7 +108,7 @@ LogModel with_lobe_split(LogModel model, std::size_t lobe, double centre, const 
 
 namespace {
 
-// Adds the function that one table holds to the nodes of another.
+// Adds the logarithm of the function that one table holds to the nodes of another.
 void add_resampled(const TableLayout& from, const std::vector<double>& old, const TableLayout& to,
                    std::size_t step, std::vector<double>& logs) {
   const auto width = static_cast<std::size_t>(from.width), height = static_cast<std::size_t>(from.height);
@@ -113,6 +117,7 @@ void add_resampled(const TableLayout& from, const std::vector<double>& old, cons
   for (int z = 0; z < to.depth; ++z)
     for (int y = 0; y < to.height; ++y)
       for (int x = 0; x < to.width; ++x, ++node) {
+        // A node's position in the new table is unwarped, then warped to its cell in the old one.
         Cell cx{}, cy{}, cz{};
         if (to.shape == TableShape::disk) {
           const DiskPoint p = to_disk(node_direction(to, x, y), from.warp);
@@ -124,6 +129,7 @@ void add_resampled(const TableLayout& from, const std::vector<double>& old, cons
           if (axes > 2) cz = find_cell(from.warp_z.forward(node_place(to.warp_z, z, to.depth)), from.depth);
         }
         for (std::size_t c = 0; c < step; ++c) {
+          // Values, not logarithms, are interpolated, as evaluation does.
           const auto at = [&](std::size_t i, std::size_t row) {
             return std::exp(old[(row * width + i) * step + c]);
           };
@@ -141,7 +147,8 @@ void add_resampled(const TableLayout& from, const std::vector<double>& old, cons
       }
 }
 
-// The mean over the channels of a table; what it is short of each channel, on average, goes to `colour`.
+// Returns the mean over the channels of a table's logarithms. Each channel's mean deviation from it is added to
+// `colour`.
 std::vector<double> mean_of_channels(const std::vector<double>& logs, std::size_t channels,
                                      std::span<double> colour) {
   std::vector<double> mean(logs.size() / channels);
@@ -151,7 +158,7 @@ std::vector<double> mean_of_channels(const std::vector<double>& logs, std::size_
   return mean;
 }
 
-// Multiplies each lobe that uses the table as often with a colour, in a coloured table of the lobe's own.
+// Multiplies each lobe by a colour as often as it uses the table, in a coloured table of the lobe's own.
 void give_colour(std::size_t table, std::span<const double> colour, LogModel& model) {
   const auto uses_in = [&](const std::vector<FactorUse>& lobe, std::size_t t) {
     return std::ranges::count(lobe, t, &FactorUse::table);
@@ -181,12 +188,14 @@ LogModel resampled(const LogModel& model, const ModelSpec& spec) {
   for (std::size_t t = 0; t < spec.tables.size(); ++t) {
     const TableLayout& layout = spec.tables[t].layout;
     const std::string& name = spec.tables[t].name;
+    // A table is found by its name, or by the first lobe's numbered name where it becomes common to all lobes.
     auto old = std::ranges::find(model.spec.tables, name, &ModelSpec::TableSpec::name);
     if (old == model.spec.tables.end())
       old = std::ranges::find(model.spec.tables, name + "1", &ModelSpec::TableSpec::name);
     if (old == model.spec.tables.end() || old->layout.shape != layout.shape) continue;
     const auto k = static_cast<std::size_t>(old - model.spec.tables.begin());
     const std::size_t step = result.step(t);
+    // Tables of equal channels are resampled. One that becomes shared takes the mean, and the lobes get its colour.
     if (model.step(k) == step) {
       add_resampled(old->layout, model.log_values[k], layout, step, result.log_values[t]);
     } else if (step == 1) {

@@ -13,23 +13,22 @@
 
 namespace burnish {
 
-/// A factored BRDF on its way: the logarithms of its tables, the lobes' scales among them. Every value is
-/// positive whatever the logarithms are.
+/// A factored BRDF during a fit: the logarithms of its tables, which include the lobes' scales. Every value is
+/// positive for all logarithms.
 struct LogModel {
   ModelSpec spec;
   std::size_t channels = 0;
   std::vector<std::vector<double>> log_values;  ///< of table t: [node * step(t) + channel]
 
-  /// Channels of a table: 1 where it is shared.
+  /// Returns the channels of a table: 1 where it is shared.
   std::size_t step(std::size_t table) const noexcept { return spec.tables[table].shared ? 1 : channels; }
-  /// Whether a table couples the channels.
+  /// Returns true if some table is shared and so couples the channels.
   bool any_shared() const noexcept {
     return channels > 1 && std::ranges::any_of(spec.tables, &ModelSpec::TableSpec::shared);
   }
 };
 
-/// The log-linear fit of one lobe to the set with `values` in place of its own. Throws what fit_homomorphic
-/// throws.
+/// Fits one lobe log-linearly to the set, with `values` in place of its own. Throws as fit_homomorphic does.
 LogModel fit_one_lobe(const ModelSpec& spec, const TrainingSet& set, const std::vector<float>& values,
                       const HomomorphicOptions& options);
 
@@ -40,13 +39,13 @@ LogModel fit_one_lobe(const ModelSpec& spec, const TrainingSet& set, const std::
 LogModel with_lobe_split(LogModel model, std::size_t lobe, double centre, const std::string& suffix,
                          std::span<const std::string> common = {});
 
-/// The model in the tables of `spec`: those of the same name and shape hold the same functions, whatever
-/// their size and warp, others are 1 everywhere. A table that becomes one for every lobe, and so loses its
-/// number, starts as the first lobe's; one that becomes shared by the channels as their mean, and what that
-/// takes from each channel goes to a table of the lobe's own.
+/// Returns the model in the tables of `spec`. Tables of the same name and shape hold the same functions, whatever
+/// their size and warp; others are 1 everywhere.
+/// A table that becomes common to all lobes, and so loses its number, starts as the first lobe's. A table that
+/// becomes shared by the channels starts as their mean; each channel's deviation goes to a table of the lobe's own.
 LogModel resampled(const LogModel& model, const ModelSpec& spec);
 
-/// The tables' logarithms and the lobes as from_log_tables takes them, in each table's format, or `format`.
+/// Returns the tables' logarithms and the lobes as from_log_tables takes them, in each table's format, or `format`.
 std::vector<Table> log_tables(const LogModel& model, TableFormat format);
 std::vector<Lobe> log_scaled_lobes(const LogModel& model);
 

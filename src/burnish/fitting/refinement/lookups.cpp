@@ -16,7 +16,7 @@ const TableLayout& layout_of(const ModelSpec& spec, const FactorUse& use) {
   return spec.tables[use.table].layout;
 }
 
-/// Block by block; the last is filled up with the last pair.
+/// Locates every distinct lookup of every pair, block by block. The last block is filled up with the last pair.
 std::vector<Lookups::Place> places_of(const ModelSpec& spec, const std::vector<FactorUse>& distinct,
                                       const TrainingSet& set) {
   const std::size_t blocks = chunk_count(set.size(), Lookups::kBlock);
@@ -35,7 +35,7 @@ std::vector<Lookups::Place> places_of(const ModelSpec& spec, const std::vector<F
   return places;
 }
 
-/// The set's, of whole blocks: what fills the last one up weighs as the last pair does.
+/// Returns the set's weights in whole blocks: the last pair's weights fill up the last block.
 std::vector<float> lobe_weights_of(const TrainingSet& set, std::size_t lobes) {
   if (set.lobe_weights.empty()) return {};
   if (set.lobe_weights.size() != lobes * set.size())
@@ -52,7 +52,7 @@ std::vector<float> lobe_weights_of(const TrainingSet& set, std::size_t lobes) {
 Lookups lookups_of(const ModelSpec& spec, const TrainingSet& set) {
   Lookups found;
 
-  // what the lobes look up, each once
+  // Equal lookups of several lobes are kept once.
   for (const auto& lobe : spec.lobes) {
     std::vector<std::size_t>& of_lobe = found.lobes.emplace_back();
     for (const FactorUse& use : lobe) {
@@ -62,7 +62,7 @@ Lookups lookups_of(const ModelSpec& spec, const TrainingSet& set) {
     }
   }
 
-  // of these, what falls on the same place
+  // Lookups that always fall on the same nodes share one place.
   std::vector<FactorUse> distinct;
   for (const FactorUse& use : found.lookups) {
     const auto known = std::ranges::find_if(distinct, [&](const FactorUse& other) {
@@ -82,7 +82,7 @@ Lookups lookups_of(const ModelSpec& spec, const TrainingSet& set) {
 TrainingSet ordered_by_cells(const TrainingSet& set, const ModelSpec& spec) {
   const Lookups found = lookups_of(spec, set);
 
-  // the places of the two largest tables
+  // Pairs are sorted by the cell of the largest table, then by that of the second largest.
   std::vector<std::size_t> nodes(found.place_count);
   for (std::size_t k = 0; k < found.lookups.size(); ++k)
     nodes[found.place_of[k]] = spec.tables[found.lookups[k].table].layout.node_count();

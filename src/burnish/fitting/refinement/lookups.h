@@ -9,9 +9,8 @@
 
 namespace burnish {
 
-/// Where a model's lookups fall, the same for every channel. Lobes that look up the same texels, and the same
-/// ones of a table that they share, have one lookup; tables of one layout that are looked up alike have one
-/// place.
+/// The places of a model's lookups, the same for every channel. Lobes that look up the same texels, and the same
+/// texels of a table that they share, have one lookup. Tables of one layout that are looked up alike have one place.
 struct Lookups {
   struct Place {
     std::uint32_t node;
@@ -24,7 +23,7 @@ struct Lookups {
 
   /// Pairs follow each other in blocks of this many.
   static constexpr std::size_t kBlock = 32;
-  /// What one thread takes at a time.
+  /// Blocks that one thread takes at a time.
   static constexpr std::size_t kBlocksATask = 64;
   std::size_t pairs = 0;
   std::vector<Place> places;  ///< [pair / kBlock][place][pair % kBlock]
@@ -35,8 +34,8 @@ struct Lookups {
 
 Lookups lookups_of(const ModelSpec& spec, const TrainingSet& set);
 
-/// The set, pixels and other pairs each in the order of the cells of the model's largest tables that they fall on:
-/// neighbours read and add to the same nodes.
+/// Returns the set with pixels and other pairs each in the order of the cells of the model's largest tables that they
+/// fall on: neighbours read and add to the same nodes.
 TrainingSet ordered_by_cells(const TrainingSet& set, const ModelSpec& spec);
 
 }  // namespace burnish

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kMaxDenseRest = 800;
 constexpr std::size_t kMaxBand = 10'000'000;  // entries, which stand there once a channel
 
-/// One axis of a table.
+/// One axis of a table: nodes along it (0: no axis), the step from node to node, and the warp.
 struct Axis {
   std::size_t nodes = 0, stride = 1;  ///< along it, 0: no axis; in nodes from one to the next
   Warp warp = {};
@@ -30,7 +30,7 @@ const Projection& projection_of(const FactorUse& use, int axis) {
   return axis == 0 ? use.projection : axis == 1 ? use.projection_y : use.projection_z;
 }
 
-/// The axis along which every lookup of a table has the projection; without nodes where there is none.
+/// Returns the axis along which every lookup of a table has the projection; without nodes where there is none.
 Axis axis_along(const Projection& projection, std::size_t table, const TableLayout& layout,
                 const Lookups& lookups) {
   if (layout.shape == TableShape::disk) return {};
@@ -42,7 +42,8 @@ Axis axis_along(const Projection& projection, std::size_t table, const TableLayo
   return {};
 }
 
-/// The projection that all volumes have an axis of, and in order of which the fewest nodes stand abreast.
+/// Returns the projection that every volume has along some axis. Of several, the one whose order leaves the fewest
+/// nodes at one coordinate, which makes the narrowest band.
 std::optional<Projection> key_projection(std::span<const LobeLanes::NumberedTable> tables,
                                          const Lookups& lookups) {
   std::optional<Projection> best;
@@ -68,7 +69,7 @@ std::optional<Projection> key_projection(std::span<const LobeLanes::NumberedTabl
   return best;
 }
 
-// visit(unknown) for the nodes that a lookup touches.
+// Calls visit(unknown) for the nodes that a lookup touches.
 template <class Visit>
 void for_each_node(const LobeLanes::NumberedTable& table, std::size_t node, std::size_t channel,
                    Visit visit) {
@@ -85,12 +86,14 @@ void for_each_node(const LobeLanes::NumberedTable& table, std::size_t node, std:
 
 NodeBand::NodeBand(std::span<const LobeLanes::NumberedTable> tables, const Lookups& lookups,
                    std::size_t channels) {
+  // The band is used if it fits the memory limit. Otherwise all unknowns go to the rest.
   order(tables, lookups, key_projection(tables, lookups));
   const std::size_t width = !banded_.empty() ? band_width(tables, lookups, channels) : 0;
   if (banded_.size() * (width + 1) <= kMaxBand)
     band_ = BandMatrix(banded_.size(), width);
   else
     order(tables, lookups, {});
+  // The rest keeps its whole matrix while it is small, and its diagonal where it is large.
   const auto rest = static_cast<Eigen::Index>(rest_count_);
   rest_.resize(rest, rest_count_ <= kMaxDenseRest ? rest : 1);
 }
@@ -108,6 +111,7 @@ void NodeBand::order(std::span<const LobeLanes::NumberedTable> tables, const Loo
     const auto& [number, layout] = tables[t];
     const std::size_t unknowns = layout.node_count() * number.copies;
     place_.resize(std::max(place_.size(), number.base + unknowns));
+    // Unknowns of tables along the key get a coordinate, tan(theta / 2) of their node; all others go to the rest.
     const Axis axis = key ? axis_along(*key, t, layout, lookups) : Axis{};
     for (std::size_t i = 0; i < unknowns; ++i) {
       const auto unknown = static_cast<std::uint32_t>(number.base + i);
@@ -120,6 +124,7 @@ void NodeBand::order(std::span<const LobeLanes::NumberedTable> tables, const Loo
           {axis.warp.inverse(static_cast<double>(along) / static_cast<double>(axis.nodes - 1)), unknown});
     }
   }
+  // Sorted by that coordinate, nodes that a pair couples stand near each other.
   std::ranges::stable_sort(banded, {}, &Placed::coordinate);
   for (const Placed& placed : banded) {
     place_[placed.unknown] = static_cast<std::uint32_t>(banded_.size());
@@ -133,6 +138,7 @@ std::size_t NodeBand::band_width(std::span<const LobeLanes::NumberedTable> table
   constexpr std::size_t kBlock = Lookups::kBlock;
   for (std::size_t i = 0; i < lookups.pairs; ++i)
     for (std::size_t c = 0; c < channels; ++c) {
+      // The width is the largest distance between two banded unknowns that one pair touches.
       std::uint32_t least = kInRest, most = 0;
       for (std::size_t k = 0; k < lookups.lookups.size(); ++k) {
         const auto t = lookups.lookups[k].table;
@@ -156,6 +162,8 @@ void NodeBand::set_zero() {
 }
 
 void NodeBand::add(std::uint32_t a, std::uint32_t b, double value) {
+  // kInRest is the highest bit, so the larger place is in the rest if either is. Entries that couple band and rest
+  // are dropped.
   const std::uint32_t row = std::max(place_[a], place_[b]), column = std::min(place_[a], place_[b]);
   if ((row & kInRest) == 0) {
     band_(row, column) += value;
@@ -170,7 +178,7 @@ void NodeBand::add(std::uint32_t a, std::uint32_t b, double value) {
 }
 
 void NodeBand::add_row(std::span<const Term> row, double weight) {
-  // rows of the same nodes are summed before they go to their places
+  // Rows of the same nodes are summed in a small dense triangle before they go to their places.
   if (!std::ranges::equal(row, nodes_, {}, &Term::unknown)) {
     add_sums();
     nodes_.clear();
@@ -190,13 +198,14 @@ void NodeBand::add_sums() {
   const double* sums = sums_.data();
   for (std::size_t a = 0; a < nodes_.size(); ++a, sums += nodes_.size()) {
     add(nodes_[a], nodes_[a], sums[a]);
-    // two terms of one node stand on the diagonal, once for either order
+    // A row may touch one node twice. Both orders of that product fall on the diagonal.
     for (std::size_t b = 0; b < a; ++b) add(nodes_[a], nodes_[b], (nodes_[a] == nodes_[b] ? 2 : 1) * sums[b]);
   }
   nodes_.clear();
 }
 
 void NodeBand::add_wide_row(std::span<const Term> row, double weight) {
+  // A product is inside if the band, or the whole matrix of the rest, has a place for it.
   const auto inside = [&](std::uint32_t a, std::uint32_t b) {
     if (!is_banded(a)) return rest_.cols() == rest_.rows();
     return std::max(place_[a], place_[b]) - std::min(place_[a], place_[b]) <= band_.width();
@@ -209,6 +218,8 @@ void NodeBand::add_wide_row(std::span<const Term> row, double weight) {
       if (inside(row[a].unknown, row[b].unknown)) {
         add(row[a].unknown, row[b].unknown, product);
       } else {
+        // A product p outside becomes |p| on both diagonals: |p| (x_a^2 + x_b^2) >= 2 p x_a x_b, so the matrix stays
+        // positive.
         add(row[a].unknown, row[a].unknown, std::abs(product));
         add(row[b].unknown, row[b].unknown, std::abs(product));
       }
@@ -217,6 +228,7 @@ void NodeBand::add_wide_row(std::span<const Term> row, double weight) {
 }
 
 bool NodeBand::factorize(const Eigen::VectorXd& extra) {
+  // The damping goes on the diagonal; then rest and band are factorized, each by Cholesky.
   add_sums();
   for (std::uint32_t u = 0; u < place_.size(); ++u) add(u, u, extra[static_cast<Eigen::Index>(u)]);
   if (rest_.cols() == rest_.rows() && rest_count_ > 0) {
@@ -229,6 +241,7 @@ bool NodeBand::factorize(const Eigen::VectorXd& extra) {
 Eigen::VectorXd NodeBand::solve(const Eigen::VectorXd& b) const {
   Eigen::VectorXd banded(static_cast<Eigen::Index>(banded_.size())),
       rest(static_cast<Eigen::Index>(rest_count_));
+  // The vector is split into band and rest, each is solved by its factor, and the solutions are joined.
   const auto at = [&](Eigen::VectorXd& of_band, Eigen::VectorXd& of_rest, std::size_t u) -> double& {
     return place_[u] & kInRest ? of_rest[static_cast<Eigen::Index>(place_[u] & ~kInRest)]
                                : of_band[static_cast<Eigen::Index>(place_[u])];

@@ -31,14 +31,14 @@ class NodeBand {
   };
   /// Adds weight times the products of a row's terms; fastest where rows of the same nodes follow each other.
   void add_row(std::span<const Term> row, double weight);
-  /// The same of a row whose products may lie outside: each of these is put on the diagonal, which keeps the
-  /// matrix positive.
+  /// Adds a row whose products may lie outside the band. Each of those is put on the diagonal, which keeps the matrix
+  /// positive.
   void add_wide_row(std::span<const Term> row, double weight);
   /// Adds `extra` to the diagonal and factorizes; false where rounding made the matrix indefinite.
   bool factorize(const Eigen::VectorXd& extra);
   Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
 
-  /// Whether an unknown stands in the band, whose unknowns are in their order here.
+  /// Returns true if an unknown stands in the band; banded() lists these in the band's order.
   bool is_banded(std::uint32_t unknown) const noexcept { return (place_[unknown] & kInRest) == 0; }
   std::span<const std::uint32_t> banded() const noexcept { return banded_; }
   /// The factorized band.
@@ -49,7 +49,7 @@ class NodeBand {
 
   void add(std::uint32_t a, std::uint32_t b, double value);
   void add_sums();
-  // Puts what has an axis of the key projection in its order, all else into the rest.
+  // Puts tables with an axis of the key projection in its order, and all others into the rest.
   void order(std::span<const LobeLanes::NumberedTable> tables, const Lookups& lookups,
              const std::optional<Projection>& key);
   std::size_t band_width(std::span<const LobeLanes::NumberedTable> tables, const Lookups& lookups,
@@ -58,7 +58,7 @@ class NodeBand {
   std::vector<std::uint32_t> place_;  ///< of an unknown, in the band or in the rest
   std::vector<std::uint32_t> banded_;
   std::size_t rest_count_ = 0;
-  // rows of the same nodes: these, and the sums of their products
+  // Nodes that consecutive rows share, and the sums of their products.
   std::vector<std::uint32_t> nodes_;
   std::vector<double> slopes_, sums_;
   BandMatrix band_;

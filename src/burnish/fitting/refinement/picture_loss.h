@@ -8,7 +8,7 @@ namespace burnish {
 
 /// The errors that refinement weighs, each a mean over its part of the training set; or one number for each.
 struct ErrorTerms {
-  /// Of pixels, the squared error of min(1, exposure f cos theta_i)^(1/2.2), as the sphere images are scored.
+  /// The squared error of min(1, exposure f cos theta_i)^(1/2.2) over pixels, as the sphere images are scored.
   double pictures = 0;
   /// The same at 1/8 and 1/64 of the exposure, so that highlights keep their shape.
   double dimmed = 0;
@@ -27,20 +27,20 @@ struct ErrorTerms {
     return *this;
   }
 
-  /// The sum of all but that of albedos.
+  /// Returns the sum of all terms except albedo.
   double sum() const noexcept { return pictures + dimmed + relative + log_cos + absolute; }
 };
 
-/// What refinement minimizes: the sum of share ln(mean) over the terms, so that a percent of one error is worth
-/// a percent of another whatever their sizes. Absolute values are rounded off near 0. The noise of a measurement
-/// about small values, negative ones among them, is light to all terms but that of albedos, which are linear in
-/// the values as they were measured: it sees to it that the model reflects no more.
+/// The objective of refinement: the sum of share ln(mean) over the terms. So a percent of one error is worth a
+/// percent of another, whatever their sizes. Absolute values are rounded off near 0.
+/// The noise of a measurement about small values, negative ones among them, weighs little in all terms but that of
+/// albedos. These are linear in the raw values and so keep the model from reflecting more than was measured.
 struct PictureLoss {
   static constexpr double kInverseGamma = 1 / 2.2;
   static constexpr double kFloor = 1e-3;  ///< 1/sr, of `relative`
   /// Absolute errors below these count as squares; errors of sensors and rounding lie below.
   static constexpr double kRelativeRound = 0.05, kLogCosRound = 0.003;
-  /// What the exposures make of a pixel: one gamma for all, as (e y)^g = e^g y^g.
+  /// Factors of a shown pixel at the three exposures: one gamma for all, as (e y)^g = e^g y^g.
   static inline const std::array<double, 3> kDim{1, std::pow(1.0 / 8, kInverseGamma),
                                                  std::pow(1.0 / 64, kInverseGamma)};
   /// The slope of a saturated pixel's model where the reference is not saturated, relative to the slope at 1.
@@ -49,11 +49,11 @@ struct PictureLoss {
   ErrorTerms shares{.pictures = 2, .dimmed = 0.1, .relative = 1, .log_cos = 1};
   double exposure = 1;
 
-  /// The objective of means.
+  /// Returns the objective for given means.
   double objective(const ErrorTerms& means) const noexcept;
 
-  /// What of a value's errors does not depend on the model: of a pixel (exposure f cos theta_i)^(1/2.2), of
-  /// a pair ln(f + 1e-3) and ln(1 + f cos theta_i).
+  /// The part of a value's errors that does not depend on the model. For a pixel it is (exposure f cos
+  /// theta_i)^(1/2.2), for a pair ln(f + 1e-3) and ln(1 + f cos theta_i).
   struct Target {
     float first = 0, second = 0;
   };
@@ -67,7 +67,7 @@ struct PictureLoss {
   Slope add(Target target, double model, double cos_theta_i, bool picture, double weight,
             const ErrorTerms& derivatives, ErrorTerms& sums) const noexcept;
 
-  /// The derivative of the objective by each term's sum, given the means and the sums of weights.
+  /// Returns the derivative of the objective by each term's sum, given the means and the sums of weights.
   ErrorTerms derivatives(const ErrorTerms& means, double picture_weight, double pair_weight,
                          double albedo_count = 0) const noexcept;
 };

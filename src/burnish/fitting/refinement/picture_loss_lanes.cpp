@@ -14,7 +14,7 @@ V number(double v) {
   return hn::Set(D(), static_cast<float>(v));
 }
 
-// What a vector of values adds.
+// The sums of errors, slope and curvature of a vector of values.
 struct Part {
   V pictures, dimmed, relative, log_cos, absolute;  // of ErrorTerms
   V gradient, curvature;
@@ -23,6 +23,7 @@ struct Part {
 void add_pictures(const PictureLoss& loss, const ErrorTerms& derivatives, V target, V lit, V weight,
                   Part& part) {
   const D d;
+  // As PictureLoss::add for pixels: (exposure f cos theta_i)^(1/2.2) by logarithm and exponential.
   const V one = number(1), gamma = number(PictureLoss::kInverseGamma);
   const V shown = hn::Max(hn::Mul(lit, number(loss.exposure)), number(1e-30));
   const V modelled = hn::Exp(d, hn::Mul(gamma, hn::Log(d, shown)));
@@ -34,7 +35,7 @@ void add_pictures(const PictureLoss& loss, const ErrorTerms& derivatives, V targ
     const double derivative = e == 0 ? derivatives.pictures : derivatives.dimmed;
     const V share = hn::Mul(weight, number(e == 0 ? 1 : 0.5)), slope = hn::Mul(share, number(2 * derivative));
     const auto white = hn::Gt(b, one);
-    // white both: dimmer exposures tell them apart
+    // Where both are white, dimmer exposures tell them apart.
     const V rise =
         hn::IfThenZeroElse(hn::And(hn::Ge(b, one), hn::Ge(a, one)),
                            hn::Mul(gamma, hn::IfThenElse(white, number(PictureLoss::kSaturatedSlope), b)));
@@ -45,6 +46,7 @@ void add_pictures(const PictureLoss& loss, const ErrorTerms& derivatives, V targ
 }
 
 void add_absolute(V error, V rise, double round, V weight, double derivative, V& term, Part& part) {
+  // size - round is written as error^2 / (size + round), which does not cancel for small errors in floats.
   const V square = hn::Mul(error, error), rounding = number(round);
   const V size = hn::Sqrt(hn::MulAdd(rounding, rounding, square));
   term = hn::MulAdd(weight, hn::Div(square, hn::Add(size, rounding)), term);
@@ -55,13 +57,15 @@ void add_absolute(V error, V rise, double round, V weight, double derivative, V&
 
 void add_pairs(const ErrorTerms& derivatives, V first, V second, V model, V lit, V weight, Part& part) {
   const D d;
+  // As PictureLoss::add for pairs: the errors of ln(f + 1e-3), of ln(1 + f cos theta_i) and of f.
   const V raised = hn::Add(model, number(PictureLoss::kFloor)), brighter = hn::Add(lit, number(1));
   add_absolute(hn::Sub(hn::Log(d, raised), first), hn::Div(model, raised), PictureLoss::kRelativeRound,
                weight, derivatives.relative, part.relative, part);
   add_absolute(hn::Sub(hn::Log1p(d, lit), second), hn::Div(lit, brighter), PictureLoss::kLogCosRound, weight,
                derivatives.log_cos, part.log_cos, part);
 
-  // a model far below steps by no more than the ratio; of a pixel in the same vector `first` is no logarithm
+  // The curvature takes max(f^, f), so that a model far below steps by no more than the ratio. In lanes of pixels
+  // `first` is no logarithm and is set to 0.
   const V log_f = hn::IfThenElseZero(hn::Gt(weight, hn::Zero(d)), first);
   const V f = hn::Sub(hn::Exp(d, log_f), number(PictureLoss::kFloor)), error = hn::Sub(model, f);
   part.absolute = hn::MulAdd(weight, hn::Mul(error, error), part.absolute);

@@ -6,7 +6,7 @@
 
 namespace burnish {
 
-/// What PictureLoss::add takes of many values, each an array of as many floats; a multiple of 8.
+/// The inputs of PictureLoss::add for many values, each an array of that many floats; a multiple of 8.
 struct LossInputs {
   const float *first, *second;  ///< PictureLoss::target
   const float *model, *cos_theta_i;

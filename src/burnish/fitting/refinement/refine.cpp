@@ -16,9 +16,10 @@ namespace burnish {
 
 namespace {
 
-// Levenberg-Marquardt: the damping's start, its smallest, and what successes and failures make of it.
-// It changes where the objective falls by more or less than these shares of what was predicted, as a third of
-// the damping that serves best makes a step that leads up.
+// Constants of Levenberg-Marquardt [Marquardt1963]: the damping's start, its least value, and its factors
+// after good and bad steps.
+// The damping changes where the actual fall of the objective is above or below these shares of the predicted
+// fall. A third of the damping that serves best makes a step that raises the objective.
 constexpr double kFirstDamping = 1e-2, kFirstIterativeDamping = 0.1, kMinDamping = 1e-6;
 constexpr double kEase = 0.3, kHarden = 4, kGoodGain = 0.75, kPoorGain = 0.25;
 constexpr int kMaxTrials = 6, kMaxSlowSteps = 3;
@@ -35,7 +36,7 @@ class Descent {
         system_(model, set, lookups, loss, options.format, first_channel, last_channel),
         x_(system_.read(model)) {}
 
-  /// At most `most` steps more.
+  /// Takes at most `most` further steps.
   template <class BeforeStep>
   void run(int most, BeforeStep before_step) {
     if (!solver_) {
@@ -50,7 +51,7 @@ class Descent {
     }
   }
 
-  /// Where it stands, in numbers: x behind the rest.
+  /// Returns all that decides the further steps as numbers, x last.
   std::vector<double> state() const {
     std::vector<double> numbers{static_cast<double>(iterations_),
                                 static_cast<double>(slow_),
@@ -63,7 +64,7 @@ class Descent {
     numbers.insert(numbers.end(), x_.begin(), x_.end());
     return numbers;
   }
-  /// Instead of the first run.
+  /// Restores a state in place of the first run.
   void go_on_from(std::span<const double> state) {
     prepare();
     iterations_ = static_cast<int>(state[0]);
@@ -81,7 +82,7 @@ class Descent {
     std::ranges::copy(state, x_.begin());
   }
 
-  /// Puts the tables into the model.
+  /// Writes the tables into the model.
   void write(LogModel& model) const { system_.write(x_, model); }
   void add_to(FitSummary& summary) const {
     if (iterations_ == options_.max_iterations) summary.stop_reason = StopReason::iteration_limit;
@@ -106,12 +107,15 @@ class Descent {
     return iterations_ < options_.max_iterations && slow_ < kMaxSlowSteps && !stuck_;
   }
 
-  /// Harder and harder damped, until it leads down.
+  /// Takes one step: damps it more and more until the objective falls.
   void step() {
+    // The quadratic model about x gives the step. Unknowns at a side of the box that descent pushes outwards are
+    // held.
     solver_->linearize(x_, means_);
     if (box_) solver_->stay_within(*box_, x_);
     bool accepted = false;
     for (int trial = 0; trial < kMaxTrials && !accepted; ++trial) {
+      // The damped step is moved back into the box, or to what the tables' formats hold.
       Eigen::VectorXd next = x_ + solver_->step(damping_);
       if (box_)
         next = next.cwiseMax(box_->least).cwiseMin(box_->most);
@@ -121,11 +125,14 @@ class Descent {
       const double value = objective(next_means, next);
       accepted = value < after_;
       if (accepted) {
+        // The gain is the actual change over the predicted one. It tells how far the quadratic model can be
+        // trusted.
         const double gain = (value - after_) / solver_->predicted_change(next - x_);
         slow_ = after_ - value < options_.least_progress ? slow_ + 1 : 0;
         after_ = value;
         x_ = std::move(next);
         means_ = next_means;
+        // A good first step eases the damping; a poor one hardens it by half of what a failure does.
         if (gain > kGoodGain && trial == 0) damping_ = std::max(kMinDamping, kEase * damping_);
         if (gain < kPoorGain) damping_ *= kHarden / 2;
       } else {
@@ -168,7 +175,7 @@ PictureLoss loss_of(const TrainingSet& set, const ErrorTerms& shares) {
   return {.shares = shares, .exposure = set.exposure};
 }
 
-/// Whether two channels of values that lie channel by channel are the same.
+/// Returns true if two channels of interleaved values are equal.
 template <class T>
 bool are_equal(const std::vector<T>& values, std::size_t channels, std::size_t a, std::size_t b) {
   for (std::size_t i = 0; i < values.size(); i += channels)
@@ -176,7 +183,8 @@ bool are_equal(const std::vector<T>& values, std::size_t channels, std::size_t a
   return true;
 }
 
-/// The first channel with the same data and the same start: grey materials have one for all.
+/// Returns the first channel with the same data and the same start. Grey materials are refined once for all
+/// channels.
 std::size_t first_like(std::size_t channel, const LogModel& model, const TrainingSet& set) {
   const std::size_t channels = set.channels;
   for (std::size_t c = 0; c < channel; ++c)
@@ -210,6 +218,8 @@ FitSummary refine(LogModel& model, const TrainingSet& set, const Lookups& lookup
   const PictureLoss loss = loss_of(set, options.shares);
   const auto channels = model.channels;
   const std::size_t together = model.any_shared() ? channels : 1;
+  // Channels coupled by a shared table are one descent. Otherwise each channel is one, unless an earlier one
+  // is equal.
   std::vector<Descent> descents;
   struct Part {
     std::size_t channel, like, descent;  ///< `like` is refined in place of `channel`
@@ -227,7 +237,7 @@ FitSummary refine(LogModel& model, const TrainingSet& set, const Lookups& lookup
     descents.emplace_back(model, set, lookups, loss, options, c, c + together);
   }
 
-  // Side by side, as much of a step is too small to share out.
+  // Descents run side by side: many parts of one step are too small to share between threads.
   std::atomic<int> steps = 0;
   const std::thread::id caller = std::this_thread::get_id();
   const double all_steps = static_cast<double>(descents.size()) * std::max(options.max_iterations, 1);
@@ -238,6 +248,8 @@ FitSummary refine(LogModel& model, const TrainingSet& set, const Lookups& lookup
     });
   });
 
+  // Each descent writes its channels, equal channels are copied, and the summary's errors are means over the
+  // channels.
   FitSummary summary{.stop_reason = StopReason::no_more_progress};
   for (const Descent& descent : descents) descent.write(model);
   for (const Part& part : parts) {
@@ -282,6 +294,7 @@ double objective(const LogModel& model, const TrainingSet& set, const Lookups& l
                  const ErrorTerms& shares) {
   const PictureLoss loss = loss_of(set, shares);
   const auto channels = model.channels;
+  // The objective is the mean over the channels of the loss of their errors.
   double sum = 0;
   for (std::size_t c = 0; c < channels; ++c) {
     const RefineSystem system(model, set, lookups, loss, TableFormat::single, c, c + 1);

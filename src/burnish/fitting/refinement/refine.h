@@ -19,54 +19,60 @@ inline constexpr std::size_t kMaxCholeskyUnknowns = 1000;
 
 struct RefineOptions {
   ErrorTerms shares = PictureLoss{}.shares;  ///< see PictureLoss
-  /// Times the integrals over each table of the squared second derivatives of log lambda, added to the
-  /// objective; >= 0.
+  /// Factor of the smoothness term: the integrals over each table of the squared second derivatives of log
+  /// lambda; >= 0.
   double smooth = 1e-8;
-  /// In which tables without one of their own will be stored: values stay within its range.
+  /// Storage format of tables without one of their own: values stay within its range.
   TableFormat format = TableFormat::half;
   int max_iterations = 40;  ///< Gauss-Newton steps a channel
-  /// Of a model without tables that channels share: the one to refine; none: all.
+  /// The one channel to refine, for models without tables that channels share. Empty: all channels.
   std::optional<std::size_t> channel = {};
   double least_progress = 2e-4;  ///< stop after three steps in a row that lowered the objective by less
   /// Called with rising shares of the work done, from the calling thread.
   std::function<void(double fraction)> progress;
 };
 
-/// The progress of a part of the work, which runs from `from` to `to` of the whole; nothing of nothing.
+/// Returns a callback for a part of the work that runs from `from` to `to` of the whole; null if `whole` is
+/// null.
 std::function<void(double fraction)> part_of_progress(std::function<void(double fraction)> whole, double from,
                                                       double to);
 
 /// Lowers the error that PictureLoss states, by damped Gauss-Newton steps (Levenberg-Marquardt) on the
-/// logarithms of the tables [Marquardt1963]; lambda stays positive. Every accepted step lowers the
-/// objective. Channels are refined side by side, or as one system where a table is shared; channels of the same data
-/// and start are refined once. Steps are solved directly for up to kMaxCholeskyUnknowns, by preconditioned conjugate gradients for more. The
-/// result does not depend on the number of threads. The summary's errors are the objective with the
-/// smoothness term, means over the channels; its iterations are of all channels.
+/// logarithms of the tables [Marquardt1963]. All lambda stay positive, and every accepted step lowers the
+/// objective.
+/// Channels are refined side by side, or as one system where a table is shared. Channels of the same data
+/// and start are refined once.
+/// Steps are solved directly for up to kMaxCholeskyUnknowns unknowns, by preconditioned conjugate gradients
+/// for more. The result does not depend on the number of threads.
+/// The summary's errors are the objective with the smoothness term, means over the channels. Its iterations
+/// are of all channels. Throws Error if smooth or max_iterations is negative, or if model and data differ in
+/// channels.
 FitSummary refine(LogModel& model, const TrainingSet& set, const RefineOptions& options);
-/// The same with the set's lookups of models like this one at hand.
+/// The same, given the set's lookups by models of this spec.
 FitSummary refine(LogModel& model, const TrainingSet& set, const Lookups& lookups,
                   const RefineOptions& options);
 
 class Descent;
 
-/// refine() of one channel in parts. What one process began another goes on with, to the same bits.
+/// refine() of one channel in parts. A second process may continue what a first one began, to the same bits.
 class ChannelRefinement {
  public:
-  /// Of options.channel, of a model without tables that channels share; says no progress. The set and its lookups must
-  /// outlive it. Throws Error as refine().
+  /// Prepares the refinement of options.channel of a model without tables that channels share. It reports no
+  /// progress.
+  /// The set and its lookups must outlive this object. Throws Error as refine().
   ChannelRefinement(const LogModel& model, const TrainingSet& set, const Lookups& lookups,
                     const RefineOptions& options);
   ChannelRefinement(ChannelRefinement&&) noexcept;
   ChannelRefinement& operator=(ChannelRefinement&&) noexcept;
   ~ChannelRefinement();
 
-  /// At most so many steps more, and options.max_iterations in all.
+  /// Takes at most `steps` further steps, and at most options.max_iterations in all.
   void run(int steps);
-  /// After a run: all that another object of the same model, set and options takes to go on.
+  /// Returns all that another object of the same model, set and options needs to continue. Call after a run.
   std::vector<double> state() const;
-  /// Instead of the first run.
+  /// Restores a state of another object in place of the first run.
   void go_on_from(std::span<const double> state);
-  /// Puts the channel's tables into the model.
+  /// Writes the channel's tables into the model.
   void finish(LogModel& model) const;
 
  private:

@@ -10,10 +10,12 @@ namespace burnish {
 
 namespace {
 
-// Of many pairs an even part makes a matrix good enough for a step; the slope is that of all.
+// With many pairs per unknown, every k-th pair makes a matrix good enough for a step. The slope uses all
+// pairs.
 constexpr std::size_t kMatrixPairsPerUnknown = 40;
 
-// ln of a table's largest value over the smallest that its format, or the general floor, leaves.
+// Returns ln(largest / smallest) of the values that a table may hold: by its format, or by the general
+// floor.
 double log_range(TableFormat format) {
   return format == TableFormat::unorm8 ? std::log(255.0) : -std::log(kTableFloor);
 }
@@ -22,14 +24,18 @@ double log_range(TableFormat format) {
 const double kLogMantissa = std::log(256.0);
 constexpr double kHeadroom = std::numbers::ln2;  // the least that a texel's largest channel may rise
 
-// Where the channels of an rgb9e5 texel stay, whichever way the others move: within what one exponent holds.
-// Logarithms over the channels' means, which are divided out before the texels are stored.
+// Returns for each rgb9e5 texel the range of logarithms that one shared exponent holds, wherever its
+// channels move.
+// The logarithms are relative to the channels' means, which are divided out before the texels are stored.
 std::vector<LogRange> shared_exponent_ranges(const std::vector<double>& logs, std::size_t channels) {
+  // The mean of each channel's logarithms is what storing divides out.
   std::vector<double> mean(channels);
   const double nodes = static_cast<double>(logs.size()) / static_cast<double>(channels);
   for (std::size_t i = 0; i < logs.size(); ++i) mean[i % channels] += logs[i] / nodes;
   std::vector<LogRange> ranges;
   for (std::size_t i = 0; i < logs.size(); i += channels) {
+    // The range is centred on the texel's channels, and its top leaves at least kHeadroom above the largest
+    // of them.
     double most = -INFINITY, least = INFINITY;
     for (std::size_t c = 0; c < channels; ++c) {
       most = std::max(most, logs[i + c] - mean[c]);
@@ -41,7 +47,7 @@ std::vector<LogRange> shared_exponent_ranges(const std::vector<double>& logs, st
   return ranges;
 }
 
-// The tables of a system of `channels` channels of a model.
+// Numbers the tables' nodes for a system of `channels` channels of a model.
 std::vector<LobeLanes::NumberedTable> numbered_tables(const LogModel& model, std::size_t channels) {
   const Numbering numbering = number_nodes(model.spec, channels);
   std::vector<LobeLanes::NumberedTable> tables;
@@ -63,6 +69,7 @@ RefineSystem::RefineSystem(const LogModel& model, const TrainingSet& set, const 
       lanes_(numbered_tables(model, channels()), lookups, channels()),
       albedo_(model.spec, lanes_.tables(), set.albedo, set.channels, first_channel, channels()) {
   add_tables(model, format);
+  // The sums of weights over pixels and over other pairs turn sums of errors into means.
   for (std::size_t i = 0; i < set.size(); ++i)
     (i < set.picture_count ? picture_weight_ : pair_weight_) +=
         set.weights[i] * static_cast<double>(channels());
@@ -81,7 +88,7 @@ void RefineSystem::add_tables(const LogModel& model, TableFormat format) {
                        .smoothness = smoothness_rows(layout, {.circle_z = table.circle_z})});
     size_ += tables_.back().nodes * number.copies;
 
-    // texels of one exponent stay where it holds them
+    // Channels of an rgb9e5 texel share an exponent, so each unknown is limited to what that exponent holds.
     ranges_.resize(size_, {-INFINITY, INFINITY});
     if (model.step(t) == 1 || format_of(table, format) != TableFormat::rgb9e5) continue;
     const std::vector<LogRange> ranges = shared_exponent_ranges(model.log_values[t], model.step(t));
@@ -101,8 +108,11 @@ void RefineSystem::fill_losses() {
       set_.size(), Lookups::kBlocksATask * kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
           const bool picture = i < set_.picture_count;
+          // A pair is a pixel or one of the other pairs. The weight of the other kind stays 0, which
+          // switches its errors off.
           losses_.cos_theta_i[i] = static_cast<float>(set_.pairs[i].wi.z);
           (picture ? losses_.picture_weight : losses_.pair_weight)[i] = set_.weights[i];
+          // The targets are the parts of each error that do not depend on the model. They are computed once.
           for (std::size_t c = 0; c < channels(); ++c) {
             const double f = set_.values[i * set_.channels + first_channel_ + c];
             const PictureLoss::Target target = loss_.target(f, set_.pairs[i].wi.z, picture);
@@ -114,7 +124,7 @@ void RefineSystem::fill_losses() {
       });
 }
 
-// visit(unknown, table, place in the model's log_values)
+// Calls visit(unknown, table, index in the table's log_values) for every unknown.
 template <class Visit>
 void RefineSystem::for_each_unknown(Visit visit) const {
   for (std::size_t t = 0; t < tables_.size(); ++t) {
@@ -137,7 +147,8 @@ void RefineSystem::write(const Eigen::VectorXd& x, LogModel& model) const {
       [&](Eigen::Index unknown, std::size_t t, std::size_t at) { model.log_values[t][at] = x[unknown]; });
 }
 
-// visit(unknown, largest and mean of its table's channel, what its table holds below the first)
+// Calls visit(unknown, largest, mean, log_range) for every unknown. The largest and the mean are over its
+// table's channel; log_range is how far its table's values may lie below the largest.
 template <class Visit>
 void RefineSystem::for_each_limit(const Eigen::VectorXd& x, Visit visit) const {
   for (const SystemTable& table : tables_)
@@ -153,7 +164,8 @@ void RefineSystem::for_each_limit(const Eigen::VectorXd& x, Visit visit) const {
 }
 
 void RefineSystem::clamp(Eigen::VectorXd& x) const {
-  // not below a share of the largest, and about the mean as far as an exponent reaches
+  // Each value stays above the table's floor below its largest, and within the range of its texel's shared
+  // exponent.
   for_each_limit(x, [&](Eigen::Index unknown, double largest, double mean, double log_range) {
     const LogRange& range = ranges_[static_cast<std::size_t>(unknown)];
     double& value = x[unknown];
@@ -164,6 +176,8 @@ void RefineSystem::clamp(Eigen::VectorXd& x) const {
 RefineSystem::Box RefineSystem::box(const Eigen::VectorXd& x) const {
   Box box{.least = x, .most = x};
   for_each_limit(x, [&](Eigen::Index unknown, double largest, double mean, double log_range) {
+    // The box holds x itself, so that a start outside the limits is not moved. Its floor is that of a table
+    // whose largest value has risen by kHeadroom.
     const LogRange& range = ranges_[static_cast<std::size_t>(unknown)];
     const double top = largest + kHeadroom;
     box.least[unknown] = std::min(x[unknown], std::max(top - log_range, mean + range.least));
@@ -186,6 +200,7 @@ LossInputs RefineSystem::loss_inputs(std::size_t block, std::size_t channel,
 }
 
 ErrorTerms RefineSystem::errors(const Eigen::VectorXd& x) const {
+  // Each group of blocks evaluates the model f^ and sums the weighted errors of its pairs.
   const LobeLanes::Values values = lanes_.values(x);
   std::vector<ErrorTerms> partial(chunk_count(lanes_.blocks(), Lookups::kBlocksATask));
   for_each_chunk(lanes_.blocks(), Lookups::kBlocksATask,
@@ -199,6 +214,7 @@ ErrorTerms RefineSystem::errors(const Eigen::VectorXd& x) const {
                                   partial[chunk], gradient, curvature);
                      }
                  });
+  // The groups' sums are joined in their order and divided by the weights, which gives the means.
   ErrorTerms sums;
   for (const ErrorTerms& part : partial) sums += part;
   const auto mean = [](double sum, double weight) { return weight > 0 ? sum / weight : 0; };
@@ -212,11 +228,14 @@ ErrorTerms RefineSystem::errors(const Eigen::VectorXd& x) const {
 
 RefineSystem::AlbedoPart RefineSystem::albedo_part(const Eigen::VectorXd& x,
                                                    const ErrorTerms& derivatives) const {
+  // With residuals r, slopes J = dr/dx and d the derivative by their sum of squares, the term adds 2 d J r
+  // to the slope. It adds 2 d J J^T to the matrix, whose root is sqrt(2 d) J.
   const AlbedoTerm::Rows rows = albedo_.rows(x);
   return {.gradient = 2 * derivatives.albedo * (rows.slopes * rows.residuals),
           .roots = std::sqrt(2 * derivatives.albedo) * rows.slopes};
 }
 
+// Visits the slopes and curvatures of the blocks [begin, end), evaluating the model at `values`.
 template <class Visit>
 void RefineSystem::for_each_slope(const LobeLanes::Values& values, const ErrorTerms& derivatives,
                                   std::size_t begin, std::size_t end, Visit visit) const {
@@ -225,6 +244,8 @@ void RefineSystem::for_each_slope(const LobeLanes::Values& values, const ErrorTe
   float gradient[LobeLanes::kBlock], curvature[LobeLanes::kBlock];
   for (std::size_t b = begin; b < end; ++b)
     for (std::size_t c = 0; c < channels(); ++c) {
+      // The model's values give each pair's slope and curvature by ln f^. The lobes' factors then become d
+      // ln f^ / d factor.
       lanes_.evaluate(values, b, c, at);
       add_losses(loss_, loss_inputs(b, c, at.total.data()), LobeLanes::kBlock, derivatives, sums, gradient,
                  curvature);
@@ -236,18 +257,21 @@ void RefineSystem::for_each_slope(const LobeLanes::Values& values, const ErrorTe
 void RefineSystem::gauss_newton_matrix(const Eigen::VectorXd& x, const ErrorTerms& means,
                                        std::size_t first_unknown, std::size_t last_unknown,
                                        GaussNewton& result) const {
+  // `derivatives` holds the objective's derivative by each sum of errors: it weighs the slopes of all pairs.
   const LobeLanes::Values values = lanes_.values(x);
   const std::size_t unknowns = last_unknown - first_unknown;
   const ErrorTerms derivatives =
       loss_.derivatives(means, picture_weight_, pair_weight_, static_cast<double>(albedo_.size()));
 
-  // room for the factor's rows, of every so many pairs
+  // The matrix is J^T J of rows for every `every`-th pair, so that there are about kMatrixPairsPerUnknown
+  // rows an unknown.
   const std::size_t every =
       std::max<std::size_t>(1, set_.size() * channels() / (kMatrixPairsPerUnknown * unknowns));
   LaneRows& factor = result.factor;
   factor.layout(lanes_, first_unknown, last_unknown, (set_.size() + every - 1) / every * channels());
 
-  // the slope of all pairs; rows of some, each standing for `every`
+  // The slope sums over all pairs. Each kept row is scaled by sqrt(curvature * every) and stands for `every`
+  // pairs.
   constexpr std::size_t kBlock = LobeLanes::kBlock;
   const std::size_t group_size = (lanes_.blocks() + kMaxGroups - 1) / kMaxGroups;
   std::vector<AlignedVector<float>> gradient(chunk_count(lanes_.blocks(), group_size));
@@ -266,12 +290,14 @@ void RefineSystem::gauss_newton_matrix(const Eigen::VectorXd& x, const ErrorTerm
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(size_));
   for (const AlignedVector<float>& part : gradient) lanes_.gather(part, sum);
 
-  // by logarithms: d lambda / dx = lambda
+  // The unknowns are logarithms x = ln lambda, so derivatives by lambda are multiplied by d lambda / dx =
+  // lambda.
   const auto segment = [&](const Eigen::VectorXd& v) {
     return v.segment(static_cast<Eigen::Index>(first_unknown), static_cast<Eigen::Index>(unknowns));
   };
   result.gradient = segment(sum).cwiseProduct(segment(values.lambda));
   scaled_gram(factor, segment(values.lambda), result.matrix);
+  // The albedo residuals add their slope, and a matrix of rank albedo_.size().
   if (albedo_.size() == 0) return;
   const AlbedoPart albedo = albedo_part(x, derivatives);
   result.gradient += segment(albedo.gradient);
@@ -289,7 +315,8 @@ RefineSystem::GaussNewtonFactor RefineSystem::gauss_newton_factor(const Eigen::V
   result.gradient = result.diagonal = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(size_));
   result.shares.resize(lanes_.blocks() * channels() * block_size);
 
-  // slope and diagonal, and the lobes' shares that make the rows
+  // Each group sums the slope and the matrix's diagonal over its pairs. The shares times sqrt(curvature)
+  // make the rows of J, which gauss_newton_times multiplies with without forming J^T J.
   const std::size_t group_size = (lanes_.blocks() + kMaxGroups - 1) / kMaxGroups;
   std::vector<AlignedVector<float>> gradient(chunk_count(lanes_.blocks(), group_size)),
       diagonal(gradient.size());
@@ -312,7 +339,7 @@ RefineSystem::GaussNewtonFactor RefineSystem::gauss_newton_factor(const Eigen::V
     lanes_.gather(diagonal[g], result.diagonal);
   }
 
-  // by logarithms: d lambda / dx = lambda
+  // Derivatives by lambda become derivatives by x = ln lambda. The diagonal takes the square of that factor.
   const Eigen::VectorXd& lambda = result.values.lambda;
   result.gradient = result.gradient.cwiseProduct(lambda);
   result.diagonal = result.diagonal.cwiseProduct(lambda.cwiseProduct(lambda));
@@ -323,8 +350,8 @@ RefineSystem::GaussNewtonFactor RefineSystem::gauss_newton_factor(const Eigen::V
   return result;
 }
 
-// visit(coefficients of a row, number of a coefficient's unknown, the table): a row is the functional sum of
-// coefficient k times unknown(k).
+// Calls visit(coefficients, unknown, table) for every roughness row. The row is the sum over k of
+// coefficients[k] times the unknown numbered unknown(k); its square is a part of the roughness.
 template <class Visit>
 void RefineSystem::for_each_roughness_row(Visit visit) const {
   for (const SystemTable& table : tables_)
@@ -348,26 +375,30 @@ void RefineSystem::fill(const Eigen::VectorXd& x, const ErrorTerms& means, doubl
                         NodeBand& band) const {
   const LobeLanes::Values values = lanes_.values(x);
   const ErrorTerms derivatives = loss_.derivatives(means, picture_weight_, pair_weight_);
+  // The band holds the sum over pairs of curvature * slope slope^T. It preconditions only, so albedos are left out.
   band.set_zero();
   std::vector<NodeBand::Term> row;
 
-  // a term for each node that a lobe's lookup touches
+  // Appends to `row` the derivative of ln f^ by each node that one lobe's lookup touches, 2, 4 or 8 of them.
   const auto add_terms = [&](const LobeLanes::Slot& slot, const Lookups::Place& place, std::size_t lane,
                              std::size_t channel, double slope) {
     const auto& [number, layout] = lanes_.tables()[lanes_.families()[slot.family].tables[lane]];
     const std::size_t row_nodes = slot.next_row / LobeLanes::kLanes,
                       layer_nodes = slot.next_layer / LobeLanes::kLanes;
     for (std::size_t k = 0; k < std::size_t{1} << axis_count(layout.shape); ++k) {
+      // The bits of k pick the lower or upper node along x, y and z; the weight is that of linear
+      // interpolation.
       const double weight = (k & 1 ? place.fx : 1 - place.fx) * (k & 2 ? place.fy : 1 - place.fy) *
                             (k & 4 ? place.fz : 1 - place.fz);
       const std::size_t node = place.node + (k & 1) + (k & 2 ? row_nodes : 0) + (k & 4 ? layer_nodes : 0);
       const std::size_t unknown = number(node, channel);
-      // by logarithms: d lambda / dx = lambda
+      // The unknown is x = ln lambda, so the derivative by lambda is multiplied by lambda.
       row.push_back({static_cast<std::uint32_t>(unknown),
                      slope * weight * values.lambda[static_cast<Eigen::Index>(unknown)]});
     }
   };
   for_each_slope(
+      // Each pair collects the terms of all its lookups and adds their products, weighted with its curvature.
       values, derivatives, 0, lanes_.blocks(),
       [&](std::size_t b, std::size_t c, const LobeLanes::Block& at, const float*, const float* curvatures) {
         const Lookups::Place* places = lanes_.places(b);
@@ -385,6 +416,7 @@ void RefineSystem::fill(const Eigen::VectorXd& x, const ErrorTerms& means, doubl
           if (curvatures[i] > 0) band.add_row(row, static_cast<double>(curvatures[i]));
         }
       });
+  // Each roughness row adds its products too. Those outside the band go to the diagonal.
   for_each_roughness_row(
       [&](std::span<const double> coefficients, const auto& unknown, const SystemTable& table) {
         row.clear();
@@ -397,6 +429,8 @@ void RefineSystem::fill(const Eigen::VectorXd& x, const ErrorTerms& means, doubl
 std::optional<SparseGram> RefineSystem::sparse_gram(double smooth) const {
   std::optional<SparseGram> gram = SparseGram::of(lanes_);
   if (!gram) return {};
+  // The roughness is quadratic, so its matrix does not change between steps: it is the constant of the
+  // sparse matrix.
   std::vector<Eigen::Triplet<double>> entries;
   for_each_roughness_row([&](std::span<const double> row, const auto& unknown, const SystemTable& table) {
     for (std::size_t a = 0; a < row.size(); ++a)
@@ -415,6 +449,7 @@ RefineSystem::SparseGaussNewton RefineSystem::linearize(const Eigen::VectorXd& x
   const ErrorTerms derivatives =
       loss_.derivatives(means, picture_weight_, pair_weight_, static_cast<double>(albedo_.size()));
   constexpr std::size_t kBlock = LobeLanes::kBlock;
+  // One pass over the pairs sums the slope J^T gradient and the matrix's entries.
   gram.set_zero();
   AlignedVector<float> slope(values.lambdas.size());
   for_each_slope(values, derivatives, 0, lanes_.blocks(),
@@ -427,7 +462,8 @@ RefineSystem::SparseGaussNewton RefineSystem::linearize(const Eigen::VectorXd& x
                            .albedo_roots = {}};
   lanes_.gather(slope, result.gradient);
 
-  // by logarithms: d lambda / dx = lambda
+  // The unknowns are x = ln lambda, so slope and matrix are scaled by lambda. Albedo rows are dense and stay
+  // apart.
   result.gradient = result.gradient.cwiseProduct(values.lambda);
   gram.make(values.lambda);
   AlbedoPart albedo = albedo_part(x, derivatives);
@@ -437,6 +473,7 @@ RefineSystem::SparseGaussNewton RefineSystem::linearize(const Eigen::VectorXd& x
 }
 
 double RefineSystem::roughness(const Eigen::VectorXd& x) const {
+  // The roughness is the sum over the tables of share times the squares of their rows.
   double sum = 0;
   for_each_roughness_row([&](std::span<const double> row, const auto& unknown, const SystemTable& table) {
     double value = 0;
@@ -447,6 +484,7 @@ double RefineSystem::roughness(const Eigen::VectorXd& x) const {
 }
 
 Eigen::VectorXd RefineSystem::roughness_matrix_times(const Eigen::VectorXd& v) const {
+  // y = sum over rows of share * row (row . v), which is the product with the matrix without forming it.
   Eigen::VectorXd y = Eigen::VectorXd::Zero(v.size());
   for_each_roughness_row([&](std::span<const double> row, const auto& unknown, const SystemTable& table) {
     double value = 0;
@@ -457,6 +495,7 @@ Eigen::VectorXd RefineSystem::roughness_matrix_times(const Eigen::VectorXd& v) c
 }
 
 Eigen::VectorXd RefineSystem::roughness_diagonal() const {
+  // The diagonal is the sum over rows of share times the squared coefficients.
   Eigen::VectorXd d = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(size_));
   for_each_roughness_row([&](std::span<const double> row, const auto& unknown, const SystemTable& table) {
     for (std::size_t a = 0; a < row.size(); ++a) d[unknown(a)] += table.share * row[a] * row[a];
@@ -468,6 +507,7 @@ void RefineSystem::add_roughness_matrix(double scale, std::size_t first, Eigen::
   const std::size_t last = first + static_cast<std::size_t>(matrix.rows());
   const auto start = static_cast<Eigen::Index>(first);
   for_each_roughness_row([&](std::span<const double> row, const auto& unknown, const SystemTable& table) {
+    // Rows of tables outside the matrix's unknowns are skipped: a row never spans two tables.
     if (table.number.base < first || table.number.base >= last) return;
     for (std::size_t a = 0; a < row.size(); ++a)
       for (std::size_t b = 0; b < row.size(); ++b)

@@ -35,12 +35,13 @@ class RefineSystem {
   std::size_t size() const noexcept { return size_; }
   Eigen::VectorXd read(const LogModel& model) const;
   void write(const Eigen::VectorXd& x, LogModel& model) const;
-  /// Keeps unknowns where their table's format can hold them: no smaller than a share of the table's largest,
-  /// and of rgb9e5 tables within a range around where the texel's channels stand in the model given.
+  /// Moves unknowns to where their table's format can hold them. No value is smaller than a share of the
+  /// table's largest. Values of rgb9e5 tables stay within a range about the texel's channels in the model
+  /// given to the constructor.
   void clamp(Eigen::VectorXd& x) const;
 
-  /// Between which numbers clamp would keep each unknown if the others stayed at x, and a table's largest value
-  /// rose by no more than a little.
+  /// Bounds for each unknown: where clamp would keep it if the others stayed at x, and a table's largest
+  /// value rose by no more than kHeadroom (ln 2).
   struct Box {
     Eigen::VectorXd least, most;
   };
@@ -49,8 +50,9 @@ class RefineSystem {
   /// Means of the errors at x.
   ErrorTerms errors(const Eigen::VectorXd& x) const;
 
-  /// Slope of the objective at x whose errors are `means`, and the lower triangle of its Gauss-Newton matrix.
-  /// Where there are many pairs an unknown, the matrix is that of an even part of them.
+  /// Slope of the objective at x, whose errors are `means`, and the lower triangle of its Gauss-Newton
+  /// matrix.
+  /// With many pairs per unknown, the matrix uses an evenly spaced subset of them.
   struct GaussNewton {
     Eigen::VectorXd gradient;
     Eigen::MatrixXd matrix;
@@ -59,14 +61,14 @@ class RefineSystem {
   void gauss_newton_matrix(const Eigen::VectorXd& x, const ErrorTerms& means, GaussNewton& result) const {
     gauss_newton_matrix(x, means, 0, size_, result);
   }
-  /// The same of the unknowns [first, last) of whole tables, the others being fixed.
+  /// Computes the same for the unknowns [first, last) of whole tables, with all others fixed.
   void gauss_newton_matrix(const Eigen::VectorXd& x, const ErrorTerms& means, std::size_t first,
                            std::size_t last, GaussNewton& result) const;
 
-  /// The same without the matrix, whose factor has the rows curvature^(1/2) d ln f^ / dx.
+  /// Slope and diagonal without the matrix. Its factor J has the rows curvature^(1/2) d ln f^ / dx.
   struct GaussNewtonFactor {
     Eigen::VectorXd gradient;
-    Eigen::VectorXd diagonal;  ///< of the matrix, less what terms of one row that share an unknown add
+    Eigen::VectorXd diagonal;  ///< of the matrix, without the cross terms of one row's lookups that share an unknown
     LobeLanes::Values values;
     /// curvature^(1/2) times the lobes' shares of f^, as LobeLanes::times takes them.
     AlignedVector<float> shares;
@@ -74,26 +76,27 @@ class RefineSystem {
     Eigen::MatrixXd albedo_roots;
   };
   GaussNewtonFactor gauss_newton_factor(const Eigen::VectorXd& x, const ErrorTerms& means) const;
-  /// The Gauss-Newton matrix times v. As d lambda / dx = lambda, rows are multiplied by the values.
+  /// Returns the Gauss-Newton matrix times v. As d lambda / dx = lambda, rows are multiplied by the values.
   Eigen::VectorXd gauss_newton_times(const GaussNewtonFactor& factor, const Eigen::VectorXd& v) const {
     const Eigen::VectorXd& lambda = factor.values.lambda;
     return lambda.cwiseProduct(lanes_.times(factor.values, factor.shares, lambda.cwiseProduct(v))) +
            factor.albedo_roots * (factor.albedo_roots.transpose() * v);
   }
 
-  /// Whether a table has three axes.
+  /// Returns true if a table has three axes.
   bool has_volume() const noexcept;
   NodeBand node_band() const { return NodeBand(lanes_.tables(), lookups_, channels()); }
   /// Puts the Gauss-Newton matrix at x and `smooth` times that of the roughness into a band like node_band().
   void fill(const Eigen::VectorXd& x, const ErrorTerms& means, double smooth, NodeBand& band) const;
 
-  /// The sparse matrix of a system that has one, `smooth` times that of the roughness being its constant.
+  /// Returns the sparse matrix of the system, with `smooth` times the roughness as its constant part.
+  /// Returns nothing if the model has no volumes or too many nodes meet (SparseGram::of).
   std::optional<SparseGram> sparse_gram(double smooth) const;
   struct SparseGaussNewton {
     Eigen::VectorXd gradient;
     Eigen::MatrixXd albedo_roots;  ///< as in GaussNewtonFactor
   };
-  /// Slope and matrix at x, the latter which `gram` holds.
+  /// Returns the slope at x and puts the matrix at x into `gram`.
   SparseGaussNewton linearize(const Eigen::VectorXd& x, const ErrorTerms& means, SparseGram& gram) const;
 
   /// Roughness of all tables, its gradient, its matrix times v and its diagonal.
@@ -103,7 +106,7 @@ class RefineSystem {
   void add_roughness_matrix(double scale, Eigen::MatrixXd& matrix) const {
     add_roughness_matrix(scale, 0, matrix);
   }
-  /// The same to the matrix of the unknowns from `first` on.
+  /// Adds to the matrix of the unknowns from `first` on.
   void add_roughness_matrix(double scale, std::size_t first, Eigen::MatrixXd& matrix) const;
 
  private:
@@ -114,22 +117,23 @@ class RefineSystem {
     double share, log_range;
     SmoothnessRows smoothness;
   };
-  // What PictureLoss takes of the pairs, whole blocks: the last is filled up with pairs that weigh nothing.
+  // The inputs of PictureLoss for all pairs, in whole blocks. The last block is filled up with pairs of
+  // weight 0.
   struct Losses {
     AlignedVector<float> targets;  // [block][channel of the system][first, second][pair]
     AlignedVector<float> cos_theta_i, picture_weight, pair_weight;  // [pair]
   };
   void add_tables(const LogModel& model, TableFormat format);
   void fill_losses();
-  // What albedos add to the slope, and the roots of what they add to the matrix.
+  // The albedos' part of the slope, and roots R of their part R R^T of the matrix.
   struct AlbedoPart {
     Eigen::VectorXd gradient;
     Eigen::MatrixXd roots;
   };
   AlbedoPart albedo_part(const Eigen::VectorXd& x, const ErrorTerms& derivatives) const;
   LossInputs loss_inputs(std::size_t block, std::size_t channel, const float* model) const noexcept;
-  // visit(block, channel, lanes as differentiate leaves them, gradients, curvatures) of the blocks from
-  // `begin` to `end`.
+  // Calls visit(block, channel, lanes as differentiate leaves them, gradients, curvatures) for the blocks
+  // from `begin` to `end`.
   template <class Visit>
   void for_each_slope(const LobeLanes::Values& values, const ErrorTerms& derivatives, std::size_t begin,
                       std::size_t end, Visit visit) const;

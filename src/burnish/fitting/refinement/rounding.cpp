@@ -13,7 +13,8 @@ namespace burnish {
 namespace {
 
 constexpr std::size_t kMaxTogether = 2000;  // unknowns of a system whose errors are made good together
-// Keeps what makes good within what a linear model sees: shares of a diagonal entry and of their mean.
+// Damping and ridge keep compensating changes within what a linear model predicts well: shares of a diagonal entry
+// and of their mean.
 constexpr double kRoundingDamping = 1e-2, kRoundingRidge = 1e-3;
 constexpr std::size_t kMaxChannels = 64;
 
@@ -21,7 +22,7 @@ bool holds_few_bits(TableFormat format) {
   return format == TableFormat::rgb9e5 || format == TableFormat::unorm8;
 }
 
-/// What a table's texels become when they are stored.
+/// Rounds a table's texels as storing does.
 class Rounding {
  public:
   explicit Rounding(const Table& log_table) : format_(log_table.format), channels_(log_table.channels) {
@@ -29,8 +30,9 @@ class Rounding {
     divided_ = store_log_table(stored);
   }
 
-  /// Logarithms of lambda of one texel, and what they are once stored.
+  /// Sets `stored` to the logarithms of one texel's values as they are once stored, given the exact ones.
   void round(std::span<const double> logs, std::span<double> stored) const {
+    // Values are over what storing divides out, clamped to the format's range, rounded, and multiplied back.
     const double least = holds_few_bits(format_) ? 0x1p-126 : kTableFloor;
     const double most = format_ == TableFormat::rgb9e5 ? 65408 : 1;
     std::array<float, kMaxChannels> values;
@@ -50,7 +52,7 @@ class Rounding {
   std::vector<double> divided_;  // one a channel
 };
 
-/// The channels that are solved together, and their unknowns.
+/// One system of channels that are solved together, and its unknowns.
 struct Channels {
   RefineSystem system;
   Eigen::VectorXd x;
@@ -59,10 +61,12 @@ struct Channels {
   std::optional<NodeBand> band;  ///< of models with volumes
   Eigen::VectorXd start = {};    ///< x before the first table was rounded
 
-  /// Sets unknown u, `first` being the first of the matrix, to what is stored and makes that good by the
-  /// unknowns after it.
+  /// Sets unknown u to its stored value and moves the unknowns after it to compensate. `first` is the matrix's first
+  /// unknown.
   void set_and_compensate(std::size_t u, std::size_t first, double stored) {
     const auto at = static_cast<Eigen::Index>(u), row = static_cast<Eigen::Index>(u - first);
+    // With H^-1 = U^T U of the damped matrix H, the change of the later unknowns that minimizes the quadratic model
+    // is -(error / U_uu) times the rest of row u of U.
     const Eigen::Index rest = upper.rows() - row - 1;
     if (rest > 0) {
       const double error = (x[at] - stored) / upper(row, row);
@@ -93,7 +97,7 @@ class CompensatedRounding {
 
   const std::vector<Rounding>& roundings() const noexcept { return roundings_; }
 
-  /// What is stored, the errors made good by the nodes that come after.
+  /// Returns the stored model, where later nodes compensate the rounding errors of earlier ones.
   LogModel compensated() {
     prepare_bands();
     for (std::size_t t = 0; t < roundings_.size();) {
@@ -101,7 +105,7 @@ class CompensatedRounding {
         ++t;
         continue;
       }
-      // as many tables as one matrix may hold
+      // A matrix takes as many consecutive tables as kMaxTogether allows.
       const std::size_t first = first_unknown(t);
       std::size_t end = t + 1;
       while (end < roundings_.size() && !is_banded(end) && first_unknown(end + 1) - first <= kMaxTogether)
@@ -115,7 +119,7 @@ class CompensatedRounding {
     return result;
   }
 
-  /// What is stored where each node is rounded by itself.
+  /// Returns the stored model where each node is rounded to its nearest value.
   LogModel nearest() const {
     LogModel result = model_;
     for (std::size_t t = 0; t < roundings_.size(); ++t) {
@@ -132,10 +136,11 @@ class CompensatedRounding {
     return table < numbering_.tables.size() ? numbering_.tables[table].base : numbering_.count;
   }
 
-  /// The factor of the damped inverse for the unknowns [first, last).
+  /// Computes the factor of the damped inverse for the unknowns [first, last).
   void prepare(Channels& part, std::size_t first, std::size_t last) {
     part.upper.resize(0, 0);
     if (last - first > kMaxTogether) return;
+    // The matrix is the Gauss-Newton matrix with the roughness, damped so that compensation stays small.
     part.system.gauss_newton_matrix(part.x, part.means, first, last, gauss_newton_);
     part.upper = gauss_newton_.matrix;
     part.system.add_roughness_matrix(2 * smooth_, first, part.upper);
@@ -161,6 +166,7 @@ class CompensatedRounding {
   }
 
   bool prepare_band(Channels& part) {
+    // The damped matrix of models with volumes is factorized as a band.
     part.band = part.system.node_band();
     part.start = part.x;
     const RefineSystem::GaussNewtonFactor factor = part.system.gauss_newton_factor(part.x, part.means);
@@ -169,7 +175,7 @@ class CompensatedRounding {
     return part.band->factorize(kRoundingDamping * diagonal.array() + kRoundingRidge * diagonal.mean());
   }
 
-  /// From the last node to the first, each where those after it ask it to be.
+  /// Rounds the band's nodes from the last to the first. Each moves where the changes of those after it pull it.
   void round_band() {
     std::vector<Eigen::VectorXd> asked;
     for (Channels& part : parts_) asked.push_back(follow_rest(part));
@@ -178,7 +184,7 @@ class CompensatedRounding {
                                          Eigen::VectorXd::Zero(static_cast<Eigen::Index>(order.size())));
     std::vector<double> logs, stored;
     for (std::size_t i = order.size(); i > 0;) {
-      // a texel's channels, side by side in one system or at the same place of several
+      // A texel's channels stand side by side in one system, or at the same place of several systems.
       const std::size_t t = table_of(order[i - 1]), step = model_.step(t);
       const std::size_t here = together_ > 1 ? step : 1, systems = step / here;
       i -= here;
@@ -186,6 +192,8 @@ class CompensatedRounding {
       stored.resize(step);
       for (std::size_t c = 0; c < step; ++c) {
         const std::size_t s = systems > 1 ? c : 0, at = i + (here > 1 ? c : 0);
+        // Given the changes of later unknowns, follow() gives the change of this one that minimizes the quadratic
+        // model.
         logs[c] = asked[s][order[at]] + parts_[s].band->band().follow(at, changes[s]);
       }
       roundings_[t].round(logs, stored);
@@ -197,8 +205,10 @@ class CompensatedRounding {
     }
   }
 
-  /// Where the band's unknowns go after what rounding did to the others.
+  /// Returns the band's unknowns after they compensate the rounding of all other tables.
   Eigen::VectorXd follow_rest(Channels& part) const {
+    // The change d of the others pulls with -H d, H being the Gauss-Newton matrix. The band's unknowns answer by its
+    // inverse.
     const Eigen::VectorXd change = part.x - part.start;
     if (change.isZero(0)) return part.x;
     const RefineSystem::GaussNewtonFactor factor = part.system.gauss_newton_factor(part.start, part.means);
@@ -217,6 +227,7 @@ class CompensatedRounding {
   // ---- The others
 
   void round_table(std::size_t t, std::size_t first) {
+    // Node by node, all channels of a texel are rounded together, then each compensates in its own system.
     const NodeNumbers& number = numbering_.tables[t];
     const std::size_t step = model_.step(t);
     std::vector<double> logs(step), stored(step);
@@ -237,7 +248,7 @@ class CompensatedRounding {
   RefineSystem::GaussNewton gauss_newton_;
 };
 
-/// The model whose logarithms are those of what is stored.
+/// Makes the model from the logarithms of its stored values.
 FactoredBrdf from_stored(const LogModel& model, const std::vector<Rounding>& roundings, TableFormat format) {
   std::vector<Table> tables = log_tables(model, format);
   std::vector<std::vector<double>> divided;
@@ -259,6 +270,7 @@ FactoredBrdf to_rounded_brdf(const LogModel& model, const TrainingSet& set, cons
       std::ranges::none_of(tables, [](const Table& table) { return holds_few_bits(table.format); }))
     return to_brdf(model, options.format);
 
+  // Compensated rounding is kept only if its objective is lower than that of nearest rounding.
   const Lookups lookups = lookups_of(model.spec, set);
   CompensatedRounding rounding(model, tables, set, lookups, options);
   const LogModel compensated = rounding.compensated();

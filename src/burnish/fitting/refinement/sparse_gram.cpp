@@ -10,14 +10,14 @@ namespace {
 
 constexpr std::size_t kMaxUses = 12;
 constexpr std::size_t kMaxEntries = 2'000'000;
-// Nodes of tables of which all may meet all.
+// The largest number of nodes whose entries with each other are all kept (dense rows).
 constexpr std::size_t kMaxDense = 1000;
-// A table whose nodes meet a smaller share of each volume's is not kept dense.
+// A table stays sparse if its nodes meet a smaller share than this of every volume's nodes.
 constexpr double kFewMeetings = 0.25;
 
 constexpr std::size_t kProducts = 27;  // three along each axis
 
-// Corners a >= b of a cell, bits x, y, z, and which product of weights they have.
+// Two corners a >= b of a cell, as bits x, y, z, and the index of the product of their weights.
 struct CornerPair {
   std::uint8_t a, b, product;
 };
@@ -27,7 +27,7 @@ constexpr std::array<CornerPair, 36> corner_pairs() {
   std::size_t k = 0;
   for (std::uint8_t a = 0; a < 8; ++a)
     for (std::uint8_t b = 0; b <= a; ++b) {
-      // along an axis: both first, one of each, both second
+      // Along one axis there are three products: 0 both corners lower, 1 one of each, 2 both upper.
       const auto along = [&](int bit) { return (a >> bit & 1) + (b >> bit & 1); };
       pairs[k++] = {a, b, static_cast<std::uint8_t>((along(2) * 3 + along(1)) * 3 + along(0))};
     }
@@ -35,6 +35,7 @@ constexpr std::array<CornerPair, 36> corner_pairs() {
 }
 constexpr std::array<CornerPair, 36> kPairs = corner_pairs();
 
+// Returns the products of two linear weights along one axis: (1-f)^2, f(1-f), f^2.
 std::array<float, 3> products(float f) {
   const float g = 1 - f;
   return {g * g, f * g, f * f};
@@ -50,12 +51,14 @@ std::optional<SparseGram> SparseGram::of(const LobeLanes& lanes) {
 }
 
 bool SparseGram::find_uses() {
+  // A use is one table looked up by one lane of a slot. A slot whose lanes share one table is one use.
   for (std::size_t s = 0; s < lanes_->slots().size(); ++s) {
     const LobeLanes::Slot& slot = lanes_->slots()[s];
     const std::vector<std::size_t>& of_lanes = lanes_->families()[slot.family].tables;
     for (std::size_t lane = 0; lane < (slot.one_table ? 1 : of_lanes.size()); ++lane)
       if (of_lanes[lane] != LobeLanes::kNone) uses_.push_back({of_lanes[lane], s, lane});
   }
+  // Each table gets its strides and sides. A volume with one use sums products by cell, without a meeting.
   bool any_volume = false;
   for (std::size_t t = 0; t < lanes_->tables().size(); ++t) {
     const auto& [number, layout] = lanes_->tables()[t];
@@ -74,6 +77,7 @@ bool SparseGram::find_uses() {
 }
 
 SparseGram::Terms SparseGram::terms(const Use& use, const Lookups::Place& place, float slope) const noexcept {
+  // The terms of a use are the nodes of its cell with slope times the weight of (bi-, tri-)linear interpolation.
   const Table& table = tables_[use.table];
   Terms row;
   row.count = table.corners;
@@ -88,6 +92,7 @@ SparseGram::Terms SparseGram::terms(const Use& use, const Lookups::Place& place,
 
 template <class Visit>
 void SparseGram::for_each_product(const UsePair& pair, std::span<const Terms> row, Visit visit) {
+  // Visits all products of two uses' terms; those of a use with itself once for each unordered pair.
   const Terms &a = row[pair.first], &b = row[pair.second];
   const bool same = pair.first == pair.second;
   for (std::uint32_t i = 0; i < a.count; ++i)
@@ -98,6 +103,7 @@ void SparseGram::for_each_product(const UsePair& pair, std::span<const Terms> ro
 void SparseGram::find_pairs() {
   for (std::size_t u = 0; u < uses_.size(); ++u)
     for (std::size_t v = 0; v <= u; ++v) {
+      // Each pair of uses adds to the meeting of their tables. The larger table is the meeting's table a.
       std::size_t first = u, second = v;
       if (u == v && !tables_[uses_[u].table].cells.empty()) continue;
       if (tables_[uses_[first].table].nodes < tables_[uses_[second].table].nodes) std::swap(first, second);
@@ -119,12 +125,13 @@ void SparseGram::find_pairs() {
 bool SparseGram::find_meetings() {
   find_pairs();
 
-  // starts hold the ranges' ends until all are known
+  // One pass over all pairs finds for each node of table a the range of b's nodes that it meets. Until the pass ends,
+  // starts[a + 1] holds the end of a's range.
   constexpr std::size_t kBlock = LobeLanes::kBlock;
   std::vector<Terms> row(uses_.size());  // counts are 0 before the first pair
   for (std::size_t block = 0; block < lanes_->blocks(); ++block)
     for (std::size_t i = 0; i < kBlock; ++i) {
-      // pairs in the order of cells often touch the nodes of the one before
+      // Pairs are in the order of cells, so a pair often touches the nodes of the one before. Then nothing changes.
       bool as_before = true;
       for (std::size_t u = 0; u < uses_.size(); ++u) {
         const Lookups::Place& place = place_of(uses_[u], block, i);
@@ -141,6 +148,7 @@ bool SparseGram::find_meetings() {
         });
       }
     }
+  // The ranges' lengths become the places where their sums start. Too many entries make the sparse matrix useless.
   std::size_t entries = 0;
   for (Meeting& meeting : meetings_) {
     for (std::size_t a = 0; a < tables_[meeting.a].nodes; ++a) {
@@ -164,7 +172,8 @@ bool SparseGram::meets_few(std::size_t table) const noexcept {
 }
 
 void SparseGram::find_order() {
-  // lines and grids looked up once that meet few, volumes, then what all meet
+  // Unknowns are ordered for little fill-in: lines looked up once and grids that meet few nodes, then volumes. The
+  // tables that nearly everything meets come last, as dense rows.
   const auto rank = [&](std::size_t t) {
     if (tables_[t].corners == 8) return 1;
     if (std::ranges::count(uses_, t, &Use::table) != 1) return 2;
@@ -191,6 +200,7 @@ void SparseGram::set_zero() {
 }
 
 void SparseGram::add_to_cell(Table& table, const Lookups::Place& place, float amount) noexcept {
+  // Adds the 27 products of the corners' weights along z, y and x, times `amount`, to the sums of the cell.
   const std::array<float, 3> x = products(place.fx), y = products(place.fy), z = products(place.fz);
   float plane[9];
   for (std::size_t j = 0; j < 3; ++j)
@@ -204,6 +214,7 @@ void SparseGram::add(std::size_t block, const LobeLanes::Block& at, const float*
                      std::size_t count) {
   Terms row[kMaxUses];
   for (std::size_t i = 0; i < count; ++i) {
+    // A pair adds curvature * slope_u w_u slope_v w_v to the entry of every two nodes u and v that it touches.
     const float curvature = curvatures[i];
     if (!(curvature > 0)) continue;
     for (std::size_t u = 0; u < uses_.size(); ++u) {
@@ -222,7 +233,7 @@ void SparseGram::add(std::size_t block, const LobeLanes::Block& at, const float*
       if (meeting.a != meeting.b || pair.first == pair.second)
         for_each_product(pair, {row, uses_.size()},
                          [&](std::uint32_t a, std::uint32_t b, float w) { sum(a, b) += curvature * w; });
-      else  // two uses of a table: each product stands twice in the matrix
+      else  // Two uses of one table: each product stands twice in the matrix, on both sides of the diagonal.
         for_each_product(pair, {row, uses_.size()}, [&](std::uint32_t a, std::uint32_t b, float w) {
           sum(std::max(a, b), std::min(a, b)) += (a == b ? 2 : 1) * curvature * w;
         });
@@ -232,6 +243,7 @@ void SparseGram::add(std::size_t block, const LobeLanes::Block& at, const float*
 
 template <class Visit>
 void SparseGram::for_each_entry(Visit visit) const {
+  // The sums of a cell are entries of its 36 pairs of corners.
   for (const Table& table : tables_) {
     if (table.cells.empty()) continue;
     for (std::size_t z = 0; z + 1 < table.sides[2]; ++z)
@@ -245,6 +257,7 @@ void SparseGram::for_each_entry(Visit visit) const {
             visit(corner(pair.a), corner(pair.b), table.cells[first * kProducts + pair.product]);
         }
   }
+  // The sums of a meeting are entries of its tables' nodes.
   for (const Meeting& meeting : meetings_)
     for (std::size_t a = 0; a < tables_[meeting.a].nodes; ++a)
       for (std::uint32_t k = meeting.starts[a]; k < meeting.starts[a + 1]; ++k)
@@ -253,7 +266,7 @@ void SparseGram::for_each_entry(Visit visit) const {
 }
 
 void SparseGram::set_constant(std::span<const Eigen::Triplet<double>> entries) {
-  // places for all that can be: every row has its diagonal
+  // The pattern is the union of the constant's entries, the sums' entries, the diagonal and all pairs of dense rows.
   using Triplet = Eigen::Triplet<double>;
   std::vector<Triplet> all;
   const auto lower = [&](std::size_t a, std::size_t b) {
@@ -278,7 +291,7 @@ void SparseGram::set_constant(std::span<const Eigen::Triplet<double>> entries) {
   matrix_.setFromTriplets(all.begin(), all.end());
   constant_.assign(matrix_.valuePtr(), matrix_.valuePtr() + matrix_.nonZeros());
 
-  // and where each is
+  // The place of each sum among the matrix's values is found once, so that make() only adds.
   slots_.clear();
   for_each_entry([&](std::size_t a, std::size_t b, float) {
     const auto [row, column] = lower(a, b);
@@ -289,6 +302,7 @@ void SparseGram::set_constant(std::span<const Eigen::Triplet<double>> entries) {
 }
 
 void SparseGram::make(const Eigen::VectorXd& lambda) {
+  // The sums are by lambda. By x = ln lambda, entry (a, b) is multiplied by lambda_a lambda_b.
   std::ranges::copy(constant_, matrix_.valuePtr());
   std::size_t k = 0;
   for_each_entry([&](std::size_t a, std::size_t b, float sum) {

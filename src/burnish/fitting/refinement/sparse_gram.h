@@ -19,10 +19,11 @@ namespace burnish {
 /// range of the smaller's nodes that it meets.
 class SparseGram {
  public:
-  /// None for models without volumes, of many lookups, and where too many nodes meet. `lanes` must outlive it.
+  /// Returns nothing for models without volumes, of several channels, of many lookups, and where too many nodes meet.
+  /// `lanes` must outlive the result.
   static std::optional<SparseGram> of(const LobeLanes& lanes);
 
-  /// What all is added to from now on, until now nothing: entries of a lower triangle, by unknowns.
+  /// Sets the constant part of the matrix, which is empty until now: entries of a lower triangle, by unknowns.
   void set_constant(std::span<const Eigen::Triplet<double>> entries);
 
   void set_zero();
@@ -36,7 +37,7 @@ class SparseGram {
   /// The lower triangle in an order of its own: row place()[u] is unknown u's.
   const SparseTriangle& matrix() const noexcept { return matrix_; }
   std::span<const std::uint32_t> place() const noexcept { return place_; }
-  /// How many of its last rows have entries for each two of them.
+  /// Returns the number of last rows that have entries for each two of them.
   int dense_rows() const noexcept { return dense_rows_; }
 
  private:
@@ -71,14 +72,14 @@ class SparseGram {
 
   explicit SparseGram(const LobeLanes& lanes) : lanes_(&lanes) {}
   bool find_uses();
-  // which tables' uses meet
+  // Finds the tables whose uses meet.
   void find_pairs();
-  // the ranges of their nodes that do; false where they have too many entries
+  // Finds the ranges of nodes that meet; returns false if they have too many entries.
   bool find_meetings();
   void find_order();
-  // whether the nodes of a table meet a small part of each volume's
+  // Returns true if the nodes of a table meet a small part of each volume's nodes.
   bool meets_few(std::size_t table) const noexcept;
-  // visit(meeting, node a, node b, the product of their weights) for what two uses add
+  // Calls visit(node a, node b, product of their weights) for each entry that two uses add to.
   template <class Visit>
   static void for_each_product(const UsePair& pair, std::span<const Terms> row, Visit visit);
   Terms terms(const Use& use, const Lookups::Place& place, float slope) const noexcept;
@@ -99,7 +100,7 @@ class SparseGram {
   int dense_rows_ = 0;
   SparseTriangle matrix_;
   std::vector<double> constant_;      ///< in the order of the matrix
-  std::vector<std::uint32_t> slots_;  ///< where for_each_entry's entries stand in it
+  std::vector<std::uint32_t> slots_;  ///< places of for_each_entry's entries in the matrix
 };
 
 }  // namespace burnish

@@ -11,7 +11,7 @@ namespace burnish {
 
 namespace {
 
-// Pins what neither data nor smoothness determine, as shares of the mean diagonal.
+// Ridges that fix what neither data nor smoothness determine, as shares of the mean diagonal.
 constexpr double kStepRidge = 1e-7, kDampedRidge = 1e-3;
 constexpr double kLongestStep = 2;  // change of a logarithm
 constexpr double kHeld = 1e6;       // of the largest diagonal entry: what does not move
@@ -24,6 +24,7 @@ using Vector = Eigen::VectorXd;
 
 template <class Apply, class Precondition>
 Vector solve_iteratively(const Vector& b, const Apply& apply, const Precondition& precondition) {
+  // Solves apply(x) = b by conjugate gradients from x = 0.
   Vector x = Vector::Zero(b.size());
   preconditioned_cg(
       x, b, kCgTolerance, kMaxCgIterations, apply, precondition,
@@ -31,12 +32,14 @@ Vector solve_iteratively(const Vector& b, const Apply& apply, const Precondition
   return x;
 }
 
-/// Of few unknowns: solved directly.
+/// Forms the dense matrix and solves it by Cholesky. For few unknowns.
 class DenseModel final : public QuadraticModel {
  public:
   DenseModel(const RefineSystem& system, double smooth) : system_(system), smooth_(smooth) {}
 
   void linearize(const Vector& x, const ErrorTerms& means) override {
+    // Objective and smooth * roughness add up; the roughness x^T S x has the gradient 2 S x and the Hessian
+    // 2 S.
     system_.gauss_newton_matrix(x, means, dense_);
     system_.add_roughness_matrix(2 * smooth_, dense_.matrix);
     gradient_ = dense_.gradient + 2 * smooth_ * system_.roughness_matrix_times(x);
@@ -44,6 +47,7 @@ class DenseModel final : public QuadraticModel {
   Vector diagonal() const override { return dense_.matrix.diagonal(); }
   Vector times(const Vector& v) const override { return dense_.matrix.selfadjointView<Eigen::Lower>() * v; }
   Vector step(const Vector& extra) override {
+    // The step solves (matrix + diag(extra)) dx = -gradient.
     factorized_ = dense_.matrix;
     factorized_.diagonal() += extra;
     Vector dx = -gradient_;
@@ -58,7 +62,8 @@ class DenseModel final : public QuadraticModel {
   Eigen::MatrixXd factorized_;
 };
 
-/// Of many unknowns: by the factor of the matrix, and of models with volumes most of the matrix as a band.
+/// Multiplies with J and J^T and never forms the matrix. For many unknowns; models with volumes precondition
+/// with a band of the matrix.
 class FactorModel final : public QuadraticModel {
  public:
   FactorModel(const RefineSystem& system, double smooth)
@@ -67,6 +72,8 @@ class FactorModel final : public QuadraticModel {
   }
 
   void linearize(const Vector& x, const ErrorTerms& means) override {
+    // The slope adds the roughness's gradient. The point is kept, since the band is filled only when a step
+    // is asked for.
     factor_ = system_.gauss_newton_factor(x, means);
     gradient_ = factor_.gradient + 2 * smooth_ * system_.roughness_matrix_times(x);
     x_ = x;
@@ -77,6 +84,8 @@ class FactorModel final : public QuadraticModel {
     return system_.gauss_newton_times(factor_, v) + 2 * smooth_ * system_.roughness_matrix_times(v);
   }
   Vector step(const Vector& extra) override {
+    // The preconditioner is the factorized band, or the diagonal where there is no band or rounding made it
+    // indefinite.
     bool banded = band_.has_value();
     if (banded) {
       system_.fill(x_, means_, 2 * smooth_, *band_);
@@ -98,7 +107,7 @@ class FactorModel final : public QuadraticModel {
   std::optional<NodeBand> band_;
 };
 
-/// Of models with volumes: the matrix, sparse, but for what albedos add.
+/// Forms the matrix sparse; the albedos' part stays a product of few columns. For models with volumes.
 class SparseModel final : public QuadraticModel {
  public:
   SparseModel(const RefineSystem& system, double smooth, SparseGram gram)
@@ -111,6 +120,8 @@ class SparseModel final : public QuadraticModel {
   }
 
   void linearize(const Vector& x, const ErrorTerms& means) override {
+    // The matrix's rows have an order of their own, so the albedos' rows are permuted to it. The gradient is
+    // not.
     RefineSystem::SparseGaussNewton slope = system_.linearize(x, means, gram_);
     gradient_ = slope.gradient + 2 * smooth_ * system_.roughness_matrix_times(x);
     albedo_roots_ = order_ * slope.albedo_roots;
@@ -120,6 +131,8 @@ class SparseModel final : public QuadraticModel {
   }
   Vector times(const Vector& v) const override { return order_.transpose() * ordered_times(order_ * v); }
   Vector step(const Vector& extra) override {
+    // The damped matrix gets an incomplete Cholesky factor as preconditioner. Its diagonal share carries
+    // over to the next step.
     const Vector ordered = order_ * extra;
     SparseTriangle damped = gram_.matrix();
     damped.diagonal() += ordered;
@@ -161,12 +174,15 @@ StepSolver::StepSolver(const RefineSystem& system, double smooth)
 }
 
 void StepSolver::stay_within(const RefineSystem::Box& box, const Vector& x) {
+  // An unknown is held where it is at a side of its box and the descent direction leads out.
   const Vector& slope = model_->gradient();
   held_ = (x.array() <= box.least.array() && slope.array() > 0) ||
           (x.array() >= box.most.array() && slope.array() < 0);
 }
 
 Vector StepSolver::step(double damping) {
+  // Marquardt's damping scales the diagonal [Marquardt1963]. A ridge of the mean diagonal is added for what
+  // nothing determines, and held unknowns get a diagonal so large that they do not move.
   const Vector diagonal = model_->diagonal();
   Vector extra = damping * diagonal.array() + (kStepRidge + damping * kDampedRidge) * diagonal.mean();
   for (Eigen::Index u = 0; u < held_.size(); ++u)

@@ -15,11 +15,11 @@ class QuadraticModel {
   virtual void linearize(const Eigen::VectorXd& x, const ErrorTerms& means) = 0;
   const Eigen::VectorXd& gradient() const noexcept { return gradient_; }
   virtual Eigen::VectorXd diagonal() const = 0;
-  /// The matrix times v.
+  /// Returns the matrix times v.
   virtual Eigen::VectorXd times(const Eigen::VectorXd& v) const = 0;
-  /// About -(matrix + extra)^-1 gradient, `extra` being added to the diagonal.
+  /// Returns about -(matrix + diag(extra))^-1 gradient.
   virtual Eigen::VectorXd step(const Eigen::VectorXd& extra) = 0;
-  /// What later steps take from earlier ones: IncompleteCholesky::share, 0 where there is none.
+  /// The state that later steps take from earlier ones: IncompleteCholesky::share, or 0 where there is none.
   virtual double last_share() const { return 0; }
   virtual void set_last_share(double) {}
 
@@ -27,20 +27,20 @@ class QuadraticModel {
   Eigen::VectorXd gradient_;
 };
 
-/// One channel's, or coupled channels', damped linear systems.
+/// The damped linear systems of one channel, or of coupled channels.
 class StepSolver {
  public:
   /// `system` must outlive it.
   StepSolver(const RefineSystem& system, double smooth);
 
-  /// Whether steps are solved to the last digit.
+  /// Returns true if steps are solved directly, not iteratively.
   bool is_direct() const noexcept { return direct_; }
   void linearize(const Eigen::VectorXd& x, const ErrorTerms& means) { model_->linearize(x, means); }
-  /// What the quadratic model of linearize says that a step adds to the objective.
+  /// Returns the change of the objective that the quadratic model of linearize predicts for a step.
   double predicted_change(const Eigen::VectorXd& dx) const {
     return dx.dot(model_->gradient() + 0.5 * model_->times(dx));
   }
-  /// Steps from now on leave an unknown alone whose gradient leads out of the box at whose side it is.
+  /// From now on, steps hold an unknown that is at a side of the box where its gradient leads out.
   void stay_within(const RefineSystem::Box& box, const Eigen::VectorXd& x);
   Eigen::VectorXd step(double damping);
   double last_share() const { return model_->last_share(); }

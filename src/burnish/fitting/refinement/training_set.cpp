@@ -29,7 +29,7 @@ constexpr double kMaxAlbedoTheta = radians(70), kMinAlbedo = 1e-4, kAlbedoPrecis
 constexpr double kRingTurn = 0.6180339887498949;  // the golden ratio's: rings near one another differ
 constexpr std::size_t kAlbedoThetas = 15, kAlbedoRings = 64, kAlbedoAzimuths = 32;
 
-// Points of the additive recurrence of the generalized golden ratio in five dimensions: phi^6 = phi + 1
+// Points of the additive recurrence of the generalized golden ratio in five dimensions, the root of phi^6 = phi + 1
 // [Roberts 2018].
 class Recurrence {
  public:
@@ -58,6 +58,7 @@ Vec3 light_of(double u) {
 }
 
 std::optional<DirectionPair> draw_pixel(const std::array<double, 5>& u) {
+  // The pixel's point on the sphere gives the normal. The light and the view are turned into its local frame.
   const std::optional<Vec3> n = sphere_normal(2, 2 * u[0], 2 * u[1]);
   if (!n || std::abs(n->y) >= 1) return {};
   const DirectionPair pair{sphere_local(*n, light_of(u[2])), sphere_local(*n, {0, 0, 1})};
@@ -65,25 +66,30 @@ std::optional<DirectionPair> draw_pixel(const std::array<double, 5>& u) {
   return pair;
 }
 
+// A pixel and its weight beside pixels that are even over the disk.
 struct WeightedPixel {
   DirectionPair pair;
-  double weight;  // one over its density beside that of pixels spread evenly over the disk
+  double weight;  // the density of pixels even over the disk, over the pixel's own
 };
 
-// Half of the pixels are spread over the disk, half crowd where it mirrors the light.
+// Draws a pixel: half of them are even over the disk, half crowd where the sphere mirrors the light.
 WeightedPixel draw_crowded_pixel(const std::array<double, 5>& u) {
+  // The highlight is where the normal is half way between light and view, at theta_h = 0.
   const Vec3 light = light_of(u[2]), half = normalize(light + Vec3{0, 0, 1});
   const double phi = kTwoPi * u[1];
   Vec3 n;
   if (u[3] < 0.5) {
+    // Even pixels: the radius is a root, since areas grow with its square.
     const double r = std::sqrt(u[0]);
     n = {r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u[0])};
   } else {
+    // Crowded pixels: theta_h = pi/2 u^2 about the half vector, which densifies the highlight.
     const double theta_h = kHalfPi * u[0] * u[0], r = std::sin(theta_h);
     const Vec3 across{half.z, 0, -half.x};
     n = r * std::cos(phi) * across + r * std::sin(phi) * Vec3{0, 1, 0} + std::cos(theta_h) * half;
   }
-  // densities over the normal's solid angle
+  // The weight takes both densities over the normal's solid angle: cos / pi of the even ones, and of the crowded ones
+  // 1 / (2 pi sin(theta_h)) times du / dtheta_h = 1 / (pi sqrt(theta_h / (pi/2))).
   const double theta_h = std::acos(std::clamp(dot(n, half), -1.0, 1 - 1e-12));
   const double even = std::max(n.z, 0.0) / kPi;
   const double crowded =
@@ -91,19 +97,21 @@ WeightedPixel draw_crowded_pixel(const std::array<double, 5>& u) {
   return {{sphere_local(n, light), sphere_local(n, {0, 0, 1})}, 2 * even / (even + crowded)};
 }
 
-// theta_h / (pi/2) of a point, half of them uniform, half squared, and one over the density.
+// Returns x = theta_h / (pi/2) of a point and one over its density. Half of the points are uniform in x, half are
+// squares, so the density is 1/2 + 1 / (4 sqrt(x)).
 std::array<double, 2> draw_theta_h(double u) {
   const double v = 2 * u - std::floor(2 * u), x = u < 0.5 ? v : v * v;
   return {x, 1 / (0.5 + 0.25 / std::sqrt(std::max(x, 1e-9)))};
 }
 
+// Turns both directions about the normal.
 DirectionPair turned(const DirectionPair& pair, double angle) {
   const double s = std::sin(angle), c = std::cos(angle);
   const auto turn = [&](Vec3 w) { return Vec3{c * w.x - s * w.y, s * w.x + c * w.y, w.z}; };
   return {turn(pair.wi), turn(pair.wo)};
 }
 
-// Evaluates the source and keeps what it knows.
+// Evaluates the source at the pairs and drops those at which it is unknown.
 void fill_values(BrdfRef source, TrainingSet& set) {
   const auto channels = set.channels;
   std::vector<std::uint8_t> known(set.size());
@@ -130,8 +138,8 @@ void fill_values(BrdfRef source, TrainingSet& set) {
   set.picture_count = pictures;
 }
 
-// Linear between the values at their places among the weights; `unlit` is that of black pixels beside the
-// set's.
+// Returns 1 / (the weighted percentile kExposedShare of the pixels' f cos theta_i), linear between values. `unlit` is
+// the weight of black pixels that the set leaves out.
 double exposure_of(const TrainingSet& set, double unlit) {
   const auto channels = set.channels;
   struct Shown {
@@ -148,6 +156,7 @@ double exposure_of(const TrainingSet& set, double unlit) {
   std::ranges::sort(shown, {}, &Shown::value);
   const double mean = total / static_cast<double>(shown.size()),
                black = unlit * static_cast<double>(channels);
+  // The percentile counts the mean weight once less, as n values have n - 1 gaps. Black pixels come first.
   double rest = std::max(0.0, kExposedShare * (total + black - mean) - black);
   std::size_t low = 0;
   while (low + 1 < shown.size() && rest >= shown[low].weight) rest -= shown[low++].weight;
@@ -162,7 +171,7 @@ TrainingSet draw_training_set(BrdfRef source, const TrainingOptions& options) {
   TrainingSet set{.channels = source.channels(), .isotropic = source.isotropic()};
   Recurrence points(options.seed);
 
-  // pixels of lit spheres
+  // Draws the pixels of lit spheres. A crowded pixel that the light does not reach only adds to the black ones.
   double unlit = 0;
   while (set.pairs.size() < options.pictures) {
     if (!options.crowded) {
@@ -181,7 +190,7 @@ TrainingSet draw_training_set(BrdfRef source, const TrainingOptions& options) {
   set.weights.resize(set.pairs.size(), 1);
   set.picture_count = set.pairs.size();
 
-  // pairs over all directions
+  // Draws the pairs over all directions. Those near the horizon come beside the number asked for, with little weight.
   for (std::size_t drawn = 0; drawn < options.directions;) {
     const std::array<double, 5>& u = points.next();
     const auto [theta_h, weight] = draw_theta_h(u[0]);
@@ -198,7 +207,7 @@ TrainingSet draw_training_set(BrdfRef source, const TrainingOptions& options) {
     drawn += !rim;
   }
 
-  // what the source says there
+  // The source is evaluated at all of them, after a turn about the normal where that is asked for.
   if (options.spread_phi_h && source.isotropic())
     for (DirectionPair& pair : set.pairs) pair = turned(pair, kTwoPi * points.next()[4]);
   fill_values(source, set);
@@ -216,8 +225,8 @@ AlbedoSet albedo_set(BrdfRef source) {
     const double phi = kTwoPi * (static_cast<double>(k % sides) + 0.3) / 4;
     const Vec3 wi = spherical_direction(theta, phi);
 
-    // rings crowd around the mirror direction: radius = most u^2, dr = 2 most u du; cut at the horizon, above which
-    // cos(theta_o) = level + slope cos(azimuth) is
+    // Rings crowd around the mirror direction: radius = most u^2, so dr = 2 most u du. They are cut at the horizon,
+    // where cos(theta_o) = level + slope cos(azimuth) is 0.
     for (std::size_t ring = 0; ring < kAlbedoRings; ++ring)
       for (std::size_t j = 0; j < kAlbedoAzimuths; ++j) {
         const double most = kHalfPi + theta, u = (static_cast<double>(ring) + 0.5) / kAlbedoRings;
@@ -226,17 +235,18 @@ AlbedoSet albedo_set(BrdfRef source) {
         const double half = slope > 0   ? std::acos(std::clamp(-level / slope, -1.0, 1.0))
                             : level > 0 ? kPi
                                         : 0;
-        // points of one ring stand between those of the next: a fine model would fit itself to a pattern
+        // Points of one ring stand between those of the next, since a fine model would fit itself to a pattern.
         const double shift = std::fmod((static_cast<double>(ring) + 0.5) * kRingTurn, 1.0);
         const double azimuth = half * (2 * (static_cast<double>(j) + shift) / kAlbedoAzimuths - 1);
         const Vec3 wo = around_specular(theta, phi, azimuth, radius);
+        // The solid angle of a point is sin(radius) dr times its share of the visible azimuths.
         const double area = std::sin(radius) * 2 * most * u / kAlbedoRings * 2 * half / kAlbedoAzimuths;
         const bool counts = wo.z > 0 && source.eval(wi, wo, f);
         set.pairs.push_back({wi, counts ? wo : Vec3{0, 0, 1}});
         set.weights.push_back(static_cast<float>(counts ? area * wo.z : 0));
       }
 
-    // noise takes more points than a model does
+    // The target is integrated with more points than the model's sums, because measurements are noisy.
     const std::vector<double> albedo = directional_albedo(source, wi, kAlbedoPrecision).albedo;
     const double mean =
         std::accumulate(albedo.begin(), albedo.end(), 0.0) / static_cast<double>(albedo.size());

@@ -11,19 +11,19 @@
 
 namespace burnish {
 
-/// What of the light from some directions is reflected: sums over pairs of a direction wi and points wo.
+/// The light that is reflected from some directions: sums over pairs of a direction wi and points wo.
 struct AlbedoSet {
   std::size_t directions = 0;
   std::vector<DirectionPair> pairs;  ///< [direction][point], as many points for each
   std::vector<float> weights;        ///< cos(theta_o) times solid angle, one a pair; 0 where f is unknown
   std::vector<float> targets;        ///< [direction][channel], >= 0
-  std::vector<float> scales;         ///< what errors of these are relative to, > 0
+  std::vector<float> scales;         ///< errors of the targets are divided by these, > 0
 
   bool empty() const noexcept { return directions == 0; }
   std::size_t points() const noexcept { return pairs.size() / directions; }
 };
 
-/// What a model of several lobes is refined on: pixels of lit spheres, which the eye judges, and direction
+/// The data that a model of several lobes is refined on: pixels of lit spheres, which the eye judges, and direction
 /// pairs spread over all directions, which keep the model right where no picture looks.
 struct TrainingSet {
   std::size_t channels = 0;
@@ -31,10 +31,10 @@ struct TrainingSet {
   std::vector<DirectionPair> pairs;  ///< above the horizon
   std::vector<float> values;         ///< f_r >= 0 of pair i at [i * channels, (i + 1) * channels), 1/sr
   std::vector<float> weights;        ///< one a pair, > 0
-  /// What each lobe's value is multiplied by at each pair, >= 0, [pair][lobe]: the places of a surface that pairs are
-  /// of differ in these. Empty: 1. It counts in refinement, not in log-linear fits.
+  /// Factors of each lobe's value at each pair, >= 0, [pair][lobe]. Pairs of different places on a surface differ in
+  /// these. Empty: 1. Refinement uses them; log-linear fits do not.
   std::vector<float> lobe_weights;
-  std::size_t picture_count = 0;  ///< the first so many pairs are pixels
+  std::size_t picture_count = 0;  ///< the first picture_count pairs are pixels
   double exposure = 1;            ///< 1 / (97th percentile of the pixels' f_r cos theta_i)
   AlbedoSet albedo;               ///< empty: albedos do not count
 
@@ -61,23 +61,24 @@ struct TrainingOptions {
 /// Pairs of which the source knows nothing are left out. Throws Error if nothing is left. No albedos.
 TrainingSet draw_training_set(BrdfRef source, const TrainingOptions& options);
 
-/// The albedos of a source's raw values (see BrdfRef::unclamped) under light from 0 to 70 degrees, of
-/// anisotropic sources from four sides, by rings about the mirror direction as directional_albedo takes them.
-/// Targets are at least 0, and errors are relative to at least the mean over the channels: in a colour
-/// outside the gamut one may be below zero.
+/// Returns the albedos of a source's raw values (see BrdfRef::unclamped) under light from 0 to 70 degrees, for
+/// anisotropic sources from four sides. Points stand on rings about the mirror direction, as directional_albedo takes
+/// them.
+/// Targets are at least 0. Errors are relative to at least the mean over the channels, since the albedo of a colour
+/// outside the gamut may be below zero in one channel.
 AlbedoSet albedo_set(BrdfRef source);
 
-/// Scattered measurements above the horizon, weight 1, no pictures, no albedos; with `symmetrize` each also stands for
-/// its swapped pair. Throws Error if nothing is left.
+/// Makes a set of scattered measurements above the horizon, with weight 1, no pictures and no albedos. With
+/// `symmetrize` each measurement also stands for its swapped pair. Throws Error if nothing is left.
 TrainingSet training_set_of(const Samples& samples, bool symmetrize);
 
-/// Pairs of the set in an order, pixels before others.
+/// Returns the pairs of the set in an order, pixels before others.
 TrainingSet taken(const TrainingSet& set, std::span<const std::size_t> order);
 
-/// Every `step`-th pixel and every `step`-th pair; step >= 1.
+/// Returns every `step`-th pixel and every `step`-th pair; step >= 1.
 TrainingSet thinned(const TrainingSet& set, std::size_t step);
 
-/// The set as samples of a log-linear fit, with `values` in place of its own. Both must outlive the result.
+/// Returns the set as samples of a log-linear fit, with `values` in place of its own. Both must outlive the result.
 SampleSource as_source(const TrainingSet& set, const std::vector<float>& values);
 
 }  // namespace burnish
