@@ -43,7 +43,7 @@ float load_nodes(std::span<const float> table, std::span<const std::int32_t> nod
 /// The limit that arithmetic sets: fused multiply-adds in 16 independent chains. Returns how many.
 std::size_t multiply_add(std::size_t steps, float factor, std::span<float, 64> last);
 
-/// As NearestHalfDiff; over half a circle.
+/// Evaluates as NearestHalfDiff does, with phi_d over half a circle.
 void eval_nearest(const HalfDiffTable& table, const DirectionSpans& directions, std::span<float> f);
 
 }  // namespace burnish

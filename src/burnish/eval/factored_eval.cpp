@@ -10,9 +10,9 @@
 #include <burnish/eval/factored_plan.h>
 #include <burnish/eval/lobe_evaluator.h>
 
-// Compiled without contraction to fused multiply-adds (CMakeLists.txt): a fused a * x + b * y differs from
-// b * y + a * x, and swapping the directions would change the last bit. Where that cannot be, they are
-// written.
+// This file is compiled without contraction to fused multiply-adds (CMakeLists.txt). A fused a * x + b * y differs
+// from b * y + a * x, so swapping the directions would change the last bit. Where contraction cannot be switched off,
+// fused multiply-adds are written out.
 
 #define HWY_TARGET_INCLUDE "burnish/eval/factored_eval.cpp"
 #include <burnish/math/highway-inl.h>
@@ -33,7 +33,7 @@ struct DirectionPointers {
   const float* at(std::size_t k, std::size_t i) const { return component[k] + i * step; }
 };
 
-// Channel c of direction i goes to f[c * plane + i * step]; step is 1 or the number of channels.
+// Channel c of direction i is written to f[c * plane + i * step]; step is 1 or the number of channels.
 struct ValuePointers {
   float* f;
   std::size_t plane, step;
@@ -51,19 +51,19 @@ BURNISH_BEGIN_TARGET;
 
 constexpr std::size_t kMaxBlock = FactoredPlan::kMaxBlock;
 
-HWY_INLINE hn::Vec<DI> excess(const Lane (&w)[6]) {  // of a pair
+HWY_INLINE hn::Vec<DI> excess(const Lane (&w)[6]) {  // the larger deviation from unit length of a pair's directions
   return hn::Max(excess_of(w[0], w[1], w[2]), excess_of(w[3], w[4], w[5]));
 }
 
-// A block's directions on the way to positions in tables. Every step is a loop of its own, so that none has a
-// decision in it; stores are hidden behind roots and divisions. The formulas are projection-inl.h's.
+// Turns a block of directions into positions in tables. Every step is a loop of its own and takes no branch; stores
+// are hidden behind roots and divisions. The formulas are those of projection-inl.h.
 struct Projector {
   alignas(64) float sum_x[kMaxBlock], sum_y[kMaxBlock], sum_z[kMaxBlock],
       sum_length[kMaxBlock];                   // wi + wo
-  alignas(64) float directions[6][kMaxBlock];  // of rows
-  // of the projection at hand: (x, y), its length r, and den with r / den = tan(theta / 2)
+  alignas(64) float directions[6][kMaxBlock];  // components of directions that came in rows
+  // The current projection: (x, y), its length r, and den with r / den = tan(theta / 2).
   alignas(64) float own_x[kMaxBlock], own_y[kMaxBlock], r[kMaxBlock], den[kMaxBlock];
-  alignas(64) float power[kMaxBlock];  // of tan(theta / 2)
+  alignas(64) float power[kMaxBlock];  // powers of tan(theta / 2)
   const float* in[6];                  // planes of wi and wo
   const float *x, *y;
   std::size_t count;
@@ -74,7 +74,7 @@ struct Projector {
     for (std::size_t i = 0; i < count; i += kLanes) step(i);
   }
 
-  // Takes rows apart, adds the two directions and looks whether they are unit vectors: all while roots are
+  // Splits rows into planes, adds the two directions, and checks that they are unit vectors: all while roots are
   // taken.
   template <bool kRows, bool kSum>
   void begin() {
@@ -95,8 +95,10 @@ struct Projector {
       } else {
         for (std::size_t k = 0; k < 6; ++k) w[k] = load(in[k] + i);
       }
+      // The largest deviation from unit length is kept, and tested once a block.
       worst = hn::Max(worst, excess(w));
       if constexpr (kSum) {
+        // wi + wo is the unnormalized half vector; its length is 2 cos(theta_d).
         const Lane u = w[0] + w[3], v = w[1] + w[4], z = w[2] + w[5];
         store(u, sum_x + i);
         store(v, sum_y + i);
@@ -136,7 +138,7 @@ struct Projector {
     store(polar.den, den + i);
   }
 
-  // Of a vector (x, y, z) and `total`, its length; none: 1.
+  // Projects a vector (x, y, z) of length `total`, or of unit length if that is null.
   void project_up(const float* from_x, const float* from_y, const float* z, const float* total, bool radius) {
     x = from_x;
     y = from_y;
@@ -144,18 +146,20 @@ struct Projector {
       return polar_of(Lanes{load(from_x + i), load(from_y + i), load(z + i)},
                       total ? load(total + i) : Lane(1.0));
     };
+    // Only positions that need the radius pay for its root: an identity-warped disk needs (x, y) / den alone.
     if (radius)
       for_each([&](std::size_t i) HWY_ATTR { put(polar(i), i); });
     else
       for_each([&](std::size_t i) HWY_ATTR { store(polar(i).den, den + i); });
   }
 
+  // Finds tan(theta / 2) = r / den of a projection that has a polar angle but no azimuth.
   void project_angle(Projection::Kind kind) {
     with_angle(kind, [&](const auto& angle)
                          HWY_ATTR { for_each([&](std::size_t i) HWY_ATTR { put(angle(pair(i)), i); }); });
   }
 
-  // 2 d, whose z is |wi + wo|
+  // Projects onto 2 d, the doubled difference vector, whose z is |wi + wo|.
   void project_difference() {
     x = own_x;
     y = own_y;
@@ -167,6 +171,7 @@ struct Projector {
     });
   }
 
+  // Projects onto a normalized affine combination of wi, wo and the normal.
   void project_affine(const Projection& p) {
     x = own_x;
     y = own_y;
@@ -198,7 +203,8 @@ struct Projector {
 
   HWY_INLINE Polar<Lane> polar(std::size_t i) const { return {load(r + i), load(den + i)}; }
 
-  // `warp` makes a line's position of a polar angle, `stretch` what a disk's x and y are multiplied by.
+  // Stores positions in cells: `warp` maps a polar angle to a line's position, `stretch` gives the factor of a disk's
+  // x and y. Positions are clamped to the table.
   template <class WarpOf, class StretchOf>
   HWY_INLINE void place(const FactoredPlan::Position& k, float* to, std::size_t stride, const WarpOf& warp,
                         const StretchOf& stretch) const {
@@ -212,8 +218,8 @@ struct Projector {
     else
       for_each([&](std::size_t i) HWY_ATTR { store(within(warp(polar(i)), cells), to + i); });
   }
-  // A power is found once for lines of several sizes: of size 1, which changes no bit of what it is multiplied
-  // with.
+  // Places by a power warp. Lines of several sizes share one power: it is found for size 1, which leaves every bit of
+  // the product as it would be.
   template <class Exponent>
   HWY_INLINE void place_by_power(const FactoredPlan::Position& k, float* to, std::size_t stride,
                                  const Exponent& exponent) {
@@ -228,6 +234,7 @@ struct Projector {
   }
 
   void find_positions(const FactoredPlan::Position& k, float* to, std::size_t stride) {
+    // Each kind of warp has a loop of its own; a power of 1/2 is a root.
     const Lane size(k.size), parameter(k.parameter);
     switch (k.warp) {
       case WarpKind::identity:
@@ -245,12 +252,12 @@ struct Projector {
   }
 };
 
-// Lookups in rows, again in loops of their own: loads that span several recent stores would wait for them.
+// Lookups in rows. Loops are separate, because loads that span several recent stores would wait for them.
 struct RowCells {
-  alignas(64) std::int32_t first[kMaxBlock];  // float of the row that a lookup starts with
+  alignas(64) std::int32_t first[kMaxBlock];  // index of the first float of a lookup
   alignas(64) float x[kMaxBlock], y[kMaxBlock], z[kMaxBlock];
 
-  /// at[k]: the positions along axis k.
+  /// Splits positions into nodes and fractions. at[k] holds the positions along axis k.
   template <int kAxes>
   HWY_INLINE void find(const FactoredPlan::Lookup& lookup, const std::array<const float*, 3>& at,
                        std::size_t count) {
@@ -258,6 +265,7 @@ struct RowCells {
     const auto width = hn::Set(di, static_cast<std::int32_t>(lookup.width));
     const auto layer = hn::Set(di, static_cast<std::int32_t>(lookup.layer));
     for (std::size_t i = 0; i < count; i += kLanes) {
+      // node = x + width y + layer z, and a node has kRowStride floats.
       const LaneCell across = cell_of(load(at[0] + i));
       hn::Vec<DI> node = node_of(across);
       if constexpr (kAxes > 1) {
@@ -275,7 +283,7 @@ struct RowCells {
       store(across.fraction, x + i);
     }
   }
-  /// above, layer: floats to the next row, and to the next layer.
+  /// Interpolates direction i linearly along all axes. above, layer: floats to the next row, and to the next layer.
   template <int kAxes>
   HWY_INLINE Quad interpolated(const float* table, std::size_t above, std::size_t layer,
                                std::size_t i) const {
@@ -290,8 +298,8 @@ struct Rows {
   alignas(64) float values[FactoredPlan::kRowStride * kMaxBlock];
 };
 
-// Calls store_quad(i, where) for the directions of a block, by fours and at least `count`, with the places in
-// `values` that transpose() expects.
+// Calls store_quad(i, where) for at least `count` directions of a block, in fours, with the places in `values` that
+// transpose() expects.
 template <class StoreQuad>
 HWY_INLINE void for_each_quad(std::size_t count, float* values, const StoreQuad& store_quad) {
   constexpr std::size_t kFours = kLanes < 4 ? 1 : 4;
@@ -300,12 +308,13 @@ HWY_INLINE void for_each_quad(std::size_t count, float* values, const StoreQuad&
       for (std::size_t k = 0; k < kFours; ++k) store_quad(i + four + k, values + 4 * i + k * kLanes + four);
 }
 
-// What a product's lookups are multiplied onto: first its scale, then what the lookups before left.
+// The running product of a lobe's lookups: it begins as the scale, and each lookup multiplies what the ones before
+// left.
 struct Block {
   std::size_t stride, count;
-  const float* positions;  // a slot has `stride`
-  float* values;           // a channel has kMaxBlock
-  const float* before;     // the same, or kLanes a channel of the scale
+  const float* positions;  // `stride` floats for each slot
+  float* values;           // kMaxBlock floats for each channel
+  const float* before;     // laid out as `values`, or kLanes floats of the scale for each channel
   std::size_t before_stride, before_mask;
   Rows& rows;
 
@@ -324,6 +333,7 @@ using Multiply = void (*)(const FactoredPlan::Lookup& lookup, const float* table
 #if BURNISH_PLANES_IN_REGISTERS
 template <int kVectors, int kChannels, bool kShared>
 void multiply_planes(const FactoredPlan::Lookup& lookup, const float* table, const Block& block) {
+  // A short line is held in registers whole, so a lookup is a permutation and reads no memory.
   constexpr int kPlanes = kShared ? 1 : kChannels;
   Plane<kVectors> planes[kPlanes];
   for (int c = 0; c < kPlanes; ++c) planes[c].load(table + static_cast<std::size_t>(16 * kVectors * c));
@@ -334,6 +344,8 @@ void multiply_planes(const FactoredPlan::Lookup& lookup, const float* table, con
     for (int c = 0; c < kPlanes; ++c) value[c] = mix(planes[c].at(node), planes[c].at(next), cell.fraction);
   };
   for (std::size_t i = 0; i < block.count; i += kLanes) {
+    // A pair of lookups that swapping wi and wo exchanges is multiplied first: the product is the same either way
+    // round.
     Lane value[kPlanes];
     interpolate(x + i, value);
     if (lookup.pair) {
@@ -361,6 +373,8 @@ Multiply planes_kernel(std::size_t vectors, bool shared, std::size_t channels) {
 
 template <int kChannels, int kAxes>
 void multiply_rows(const FactoredPlan::Lookup& lookup, const float* table, const Block& block) {
+  // Interpolation takes one direction at a time with its channels as lanes; transpose() then makes directions the
+  // lanes.
   Rows& rows = block.rows;
   const std::size_t above = lookup.width * FactoredPlan::kRowStride,
                     layer = lookup.layer * FactoredPlan::kRowStride;
@@ -417,7 +431,8 @@ struct Scratch {
   Rows rows;
 };
 
-// finish(i, value): the values of the vector of directions at i, `stored` of whose channels go to `to`.
+// Stores the values that finish(i, value) computes for each vector of directions: the first `stored` channels go to
+// `to`. Planes and interleaved triples have fast ways; the rest goes number by number.
 template <int kChannels, class Finish>
 HWY_INLINE void store_values(std::size_t count, std::size_t stored, const ValuePointers& to,
                              const Finish& finish) {
@@ -448,13 +463,13 @@ HWY_INLINE void store_values(std::size_t count, std::size_t stored, const ValueP
   }
 }
 
-// Of the directions that the projector began with. kApart: each lobe's value, its channels behind those of the lobe
-// before; else their sum.
+// Evaluates one group of channels for the projector's directions. kApart: each lobe's value, with its channels behind
+// those of the lobe before; else the sum of the lobes.
 template <int kChannels, bool kApart>
 void eval_group(const FactoredPlan& plan, std::size_t group, std::size_t stride, Scratch& scratch,
                 const ValuePointers& out) {
   const std::size_t count = scratch.projector.count;
-  // zero below the horizon
+  // Values are stored as 0 where a direction is below the horizon.
   const float *const wi_z = scratch.projector.in[2], *const wo_z = scratch.projector.in[5];
   const std::size_t stored = std::min<std::size_t>(kChannels, plan.channels - group * kTogether);
   const auto store_sum = [&](std::size_t channel) HWY_ATTR {
@@ -473,7 +488,7 @@ void eval_group(const FactoredPlan& plan, std::size_t group, std::size_t stride,
       store(Lane(product.scale[group * kTogether + c]), scratch.scale + c * kLanes);
     Block block{stride, count, scratch.positions, first ? scratch.sum : scratch.product, scratch.scale,
                 kLanes, 0,     scratch.rows};
-    // [HomomorphicBrdf, eq. 4]
+    // One lobe is its scale times all lookups [HomomorphicBrdf, eq. 4].
     for (std::size_t k = product.first; k < product.last; ++k) {
       multiply<kChannels>(plan, plan.lookups[k], group, block);
       block.before = block.values;
@@ -482,6 +497,7 @@ void eval_group(const FactoredPlan& plan, std::size_t group, std::size_t stride,
     }
     for (std::size_t c = 0; c < kChannels; ++c)
       for (std::size_t i = 0; i < count; i += kLanes) {
+        // The first lobe is its own sum; later lobes are added to it. A lobe without factors is its scale.
         if (product.first == product.last) block.multiply(c, i, Lane(1.0));
         float* const sum = scratch.sum + c * kMaxBlock + i;
         if (!first) store(load(sum) + load(scratch.product + c * kMaxBlock + i), sum);
@@ -491,7 +507,7 @@ void eval_group(const FactoredPlan& plan, std::size_t group, std::size_t stride,
   if constexpr (!kApart) store_sum(group * kTogether);
 }
 
-// Not-a-number for what is no pair of directions.
+// Overwrites values with not-a-number where an argument is no pair of unit vectors.
 void spoil_others(const Projector& p, std::size_t channels, const ValuePointers& out) {
   for (std::size_t i = 0; i < p.count; i += kLanes) {
     Lane w[6];
@@ -504,7 +520,7 @@ void spoil_others(const Projector& p, std::size_t channels, const ValuePointers&
   }
 }
 
-// Where the values of a volume times a line go, in whole vectors.
+// Stores the values of a volume times a line, in whole vectors.
 struct VolumeValues {
   ValuePointers to;
 
@@ -520,7 +536,7 @@ struct VolumeValues {
   }
 };
 
-// Whole vectors of directions of a model that is one.
+// Evaluates whole vectors of directions of a model that is a volume times a line.
 template <bool kRows>
 void eval_volumes(const FactoredPlan& plan, const DirectionPointers& in, std::size_t count,
                   VolumePipeline& pipeline, const ValuePointers& out) {
@@ -534,17 +550,20 @@ void eval_volumes(const FactoredPlan& plan, const DirectionPointers& in, std::si
     pipeline.run<kRows, false>(plan, w, count, put);
 }
 
-// Up to kMaxBlock directions from `first` on, in memory that whole vectors can be read from. kApart: see eval_group.
+// Evaluates up to kMaxBlock directions from `first` on, in memory that whole vectors can be read from. kApart: see
+// eval_group.
 template <bool kApart>
 void eval_block(const FactoredPlan& plan, const DirectionPointers& in, std::size_t first, std::size_t count,
                 std::size_t stride, Scratch& scratch, const ValuePointers& out) {
   Projector& projector = scratch.projector;
   projector.begin(in, first, count, plan.needs_sum);
+  // Every distinct projection is computed once, and every distinct position of it once.
   for (const FactoredPlan::Source& source : plan.sources) {
     projector.project(source);
     for (const FactoredPlan::Position& position : source.positions)
       projector.find_positions(position, scratch.positions + position.slot * stride, stride);
   }
+  // Channels go through the lookups in groups of three, or one by itself if one is left.
   for (std::size_t group = 0; group * kTogether < plan.channels; ++group) {
     const std::size_t left = plan.channels - group * kTogether;
     if (left == 1)
@@ -559,6 +578,7 @@ void eval_block(const FactoredPlan& plan, const DirectionPointers& in, std::size
 template <bool kApart>
 void eval_all(const FactoredPlan& plan, const DirectionPointers& in, std::size_t count,
               const ValuePointers& out) {
+  // Blocks are as long as the room for positions allows.
   Scratch scratch;
   constexpr std::size_t kPositions = FactoredPlan::kMaxSlots * kLanes;
   const std::size_t slots = std::max<std::size_t>(plan.slots, 1);
@@ -574,7 +594,7 @@ void eval_all(const FactoredPlan& plan, const DirectionPointers& in, std::size_t
       eval_block<kApart>(plan, in, i, std::min(stride, whole - i), stride, scratch, out.from(0, i));
   }
   if (whole == count) return;
-  // the rest, filled up to a vector with the first of them
+  // The remaining directions are filled up to a vector with the first of them.
   const std::size_t left = count - whole;
   float rest[6][kLanes];
   for (std::size_t k = 0; k < 6; ++k) {
@@ -600,7 +620,7 @@ void eval_lobes_apart(const FactoredPlan& plan, const DirectionPointers& in, std
   eval_all<true>(plan, in, count, out);
 }
 
-// Apart: its memory would be set up for volumes too.
+// Kept out of line: inlined, its memory would be set up for volumes too.
 HWY_NOINLINE void eval_any_one(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, float* f) {
 #if HWY_TARGET != HWY_SCALAR
   if (plan.steps.size() <= FactoredPlan::kMaxSteps) return eval_one_pair(plan, wi, wo, f);
@@ -618,7 +638,7 @@ void eval_one_in_floats(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo
 }
 
 HWY_NOINLINE void eval_any_one(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, double* f) {
-  std::array<float, SymmetrizedBrdf::kMaxChannels> values;  // touched up to the channels only
+  std::array<float, SymmetrizedBrdf::kMaxChannels> values;  // only the first `channels` are touched
   eval_any_one(plan, wi, wo, values.data());
   std::copy_n(values.begin(), plan.channels, f);
 }
@@ -630,7 +650,7 @@ void eval_one_in_doubles(const FactoredPlan& plan, const Vec3& wi, const Vec3& w
   eval_any_one(plan, wi, wo, f);
 }
 
-// Of one or three channels.
+// Evaluates the sum of lobes times weights for a model of one or three channels.
 void eval_one_weighted(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, const float* weights,
                        float* f) {
 #if HWY_TARGET != HWY_SCALAR
@@ -660,7 +680,7 @@ HWY_EXPORT(eval_one_in_doubles);
 
 namespace {
 
-/// Once: a kernel whose address is taken before would ask for the instruction set at every call.
+/// Chooses the instruction set once. A kernel whose address is taken before would look for it at every call.
 void choose_instructions() {
   if (!hwy::GetChosenTarget().IsInitialized()) hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t kShiftedZero = 0x4b400000;  // the bits of 1.5 2^23
 
-// Largest ratio of entries that one lookup mixes.
+// Returns the largest ratio of entries that one lookup mixes.
 double steepest_ratio(const Table& table) noexcept {
   const auto channels = table.channels;
   const auto width = static_cast<std::size_t>(table.layout.width),
@@ -24,6 +24,7 @@ double steepest_ratio(const Table& table) noexcept {
     for (std::size_t y = 0; y + (row ? 1 : 0) < height; ++y)
       for (std::size_t x = 0; x + 1 < width; ++x)
         for (std::size_t c = 0; c < channels; ++c) {
+          // A cell has up to eight corners; a table without rows or layers sees the same ones again.
           const float* v = table.values.data() + ((z * height + y) * width + x) * channels + c;
           const float* w = v + layer;
           const auto [least, most] = std::minmax({v[0], v[channels], v[row], v[row + channels],  //
@@ -34,13 +35,15 @@ double steepest_ratio(const Table& table) noexcept {
 }
 
 double lookup_bound(const Table& table) noexcept {
+  // The relative error of a lookup in units of 2^-24: rounding of the interpolation, and errors of the positions
+  // times the steepest relative slope, which is (ratio - 1) a cell.
   const double ratio = steepest_ratio(table);
   const TableLayout& layout = table.layout;
   const int cells = std::max({layout.width, layout.height, layout.depth}) - 1;
   return 0x1p-24 * (8 * ratio + 16 * axis_count(layout.shape) * cells * (ratio - 1));
 }
 
-// A position along an axis of so many nodes.
+// Makes a position along an axis of `nodes` nodes.
 FactoredPlan::Position position_in(Warp warp, int nodes, bool disk, std::size_t slot) noexcept {
   const auto cells = static_cast<float>(nodes - 1);
   return {.disk = disk,
@@ -101,10 +104,12 @@ bool FactoredPlan::Position::same_place(const Position& other) const noexcept {
 
 FactoredPlan::FactoredPlan(const FactoredBrdf& brdf)
     : channels(brdf.channels()), isotropic(brdf.isotropic()) {
+  // Each table's values are laid out once; a lookup is one use of them.
   std::vector<Lookup> tables;
   for (const Table& table : brdf.tables()) tables.push_back(add_table(table));
   for (std::size_t j = 0; j < brdf.lobes().size(); ++j) {
     const std::size_t paired = 2 * brdf.pair_count(j), first = lookups.size();
+    // The bound of a lobe adds the bounds of its lookups. The sum of the lobes rounds once more for each.
     double bound = 0x1p-24 * static_cast<double>(brdf.lobes().size());
     std::size_t k = 0;
     for (const FactorUse& use : brdf.ordered_factors(j)) {
@@ -124,7 +129,7 @@ FactoredPlan::FactoredPlan(const FactoredBrdf& brdf)
     }
     products.push_back({first, lookups.size(), {}});
     for (const double s : brdf.lobes()[j].scale) products.back().scale.push_back(static_cast<float>(s));
-    products.back().scale.resize(up_to_multiple(channels, kTogether) + 1);  // for loads of four
+    products.back().scale.resize(up_to_multiple(channels, kTogether) + 1);  // one more float, since scales are loaded in fours
     rounding_bound = std::max(rounding_bound, bound);
   }
   if (slots > kMaxSlots)
@@ -133,7 +138,7 @@ FactoredPlan::FactoredPlan(const FactoredBrdf& brdf)
   volume_and_line = find_volume_and_line(brdf);
 }
 
-// Whether the model is of that form, see VolumeAndLine.
+// Returns the plan's data if the model has the form of VolumeAndLine, else nothing.
 std::optional<FactoredPlan::VolumeAndLine> FactoredPlan::find_volume_and_line(const FactoredBrdf& brdf) {
   if (channels != kTogether || products.size() != 1 || lookups.empty() || lookups.size() > 2) return {};
   VolumeAndLine found;
@@ -145,7 +150,7 @@ std::optional<FactoredPlan::VolumeAndLine> FactoredPlan::find_volume_and_line(co
     found.start[lane] = static_cast<std::int32_t>(static_cast<std::uint32_t>(start) - floats * kShiftedZero);
     return found.root[lane] != 0 || warp.kind == WarpKind::identity;
   };
-  std::optional<std::size_t> volume, line;  // in `lookups`
+  std::optional<std::size_t> volume, line;  // indices in `lookups`
   for (std::size_t k = 0; k < lookups.size(); ++k) {
     const Lookup& lookup = lookups[k];
     const FactorUse& use = brdf.ordered_factors(0)[k];
@@ -168,7 +173,7 @@ std::optional<FactoredPlan::VolumeAndLine> FactoredPlan::find_volume_and_line(co
     }
   }
   if (!volume) return {};
-  // the line's nodes times the scale
+  // The line's nodes are multiplied by the scale. Without a line, two nodes of the scale stand for one.
   if (!line) set_lane(1, {}, 2, 0, values.size());
   const std::size_t from = line ? lookups[*line].rows : 0,
                     count = line ? lookups[*line].row_block : 2 * kRowStride;
@@ -217,7 +222,7 @@ std::array<std::size_t, 3> FactoredPlan::slots_of(const TableLayout& layout, con
   return {x, y, axes > 2 ? slot_of(use.projection_z, layout.warp_z, layout.depth, false) : x};
 }
 
-// The slot of a position, the same for the same position.
+// Returns the slot of a position, the same for equal positions.
 std::size_t FactoredPlan::slot_of(const Projection& projection, Warp warp, int nodes, bool disk) {
   const Position position = position_in(warp, nodes, disk, slots);
   Source& source = source_of(projection, disk);
@@ -225,7 +230,7 @@ std::size_t FactoredPlan::slot_of(const Projection& projection, Warp warp, int n
   for (const Position& known : source.positions)
     if (known.same_place(position)) return known.slot;
   slots += disk ? 2 : 1;
-  // behind those of the same power
+  // A position by a power is put behind one of the same power, whose result it shares.
   const auto same = std::ranges::find_if(source.positions, [&](const Position& known) {
     return !disk && !known.disk && warp.kind == WarpKind::power && known.warp == warp.kind &&
            known.parameter == position.parameter;
@@ -247,7 +252,7 @@ std::array<std::uint32_t, 3> FactoredPlan::steps_of(const TableLayout& layout, c
   return {x, y, axes > 2 ? steps_along(use.projection_z, layout.warp_z, layout.depth, width * height) : x};
 }
 
-// The lane of a position along a polar angle, the same for the same position.
+// Returns the lane of a position along a polar angle, the same for equal positions.
 std::uint32_t FactoredPlan::steps_along(const Projection& projection, Warp warp, int nodes,
                                         std::size_t stride) {
   const Position position = position_in(warp, nodes, false, 0);
@@ -268,7 +273,7 @@ std::uint32_t FactoredPlan::steps_along(const Projection& projection, Warp warp,
   return lane;
 }
 
-// The lanes of a disk's x and y.
+// Returns the lanes of a disk's x and y.
 std::array<std::uint32_t, 2> FactoredPlan::steps_across(const TableLayout& layout, const FactorUse& use) {
   const Position position = position_in(layout.warp, layout.width, true, 0);
   for (const GivenSteps& known : given)
@@ -279,7 +284,7 @@ std::array<std::uint32_t, 2> FactoredPlan::steps_across(const TableLayout& layou
   return {x, y};
 }
 
-// A lane with this position along this angle; a new one if it is given.
+// Returns a lane with this position along this angle; always a new one for given positions.
 std::uint32_t FactoredPlan::lane_of(Spacing spacing, const Position& position, std::size_t stride,
                                     std::size_t angle, bool is_apart) {
   const auto floats = static_cast<std::int32_t>(stride * kRowStride),

@@ -10,8 +10,8 @@
 
 namespace burnish {
 
-/// What the kernels of FactoredEvaluator carry out: a FactoredBrdf with everything shared found beforehand,
-/// in float, tables laid out for lookups by vectors.
+/// The plan that the kernels of FactoredEvaluator carry out: a FactoredBrdf in floats, with everything shared found
+/// beforehand, and with tables laid out for lookups by vectors.
 struct FactoredPlan {
   static constexpr std::size_t kTogether = 3;      ///< channels that go through the lookups together
   static constexpr std::size_t kRowStride = 4;     ///< floats a node in a table's rows
@@ -95,8 +95,8 @@ struct FactoredPlan {
     alignas(16) std::array<float, kLanes> cells{};
     alignas(16) std::array<std::int32_t, kLanes> root{};    // -1: even along the root of tan(theta / 2)
     alignas(16) std::array<std::int32_t, kLanes> floats{};  // of the rows, from node to node
-    /// What `floats` times the bits of 1.5 2^23 + node lack of the node's first float, modulo 2^32; of the volume the
-    /// sum of its lanes.
+    /// The offset that `floats` times the bits of 1.5 2^23 + node lacks to the node's first float, modulo 2^32. The
+    /// volume's is the sum over its lanes.
     alignas(16) std::array<std::int32_t, kLanes> start{};
     std::size_t above = 0, layer = 0;  // floats to the next row and layer of the volume
   };
@@ -109,7 +109,8 @@ struct FactoredPlan {
   /// Throws Error for more than kMaxSlots slots.
   explicit FactoredPlan(const FactoredBrdf& brdf);
 
-  /// What evaluates one pair: of the instruction set that was chosen when the plan was made. f has the channels.
+  /// The function that evaluates one pair, for the instruction set that was chosen when the plan was made. f has the
+  /// channels.
   template <class Real>
   using EvalOne = void (*)(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, Real* f);
   EvalOne<float> one_in_floats = nullptr;

@@ -17,7 +17,7 @@ using DI = hn::RebindToSigned<D>;
 /// 1.5 2^23: added to a float it rounds it to a whole number, which stays in the low bits of the sum.
 constexpr double kRoundingShift = 12582912;
 
-/// A vector of the floats that `Tag` says: as wide as there are, or one for each of a few things.
+/// A vector of as many floats as `Tag` says: the widest there is, or one for each of a few things.
 template <class Tag>
 struct LaneOf {
   using Integers = hn::RebindToSigned<Tag>;
@@ -40,7 +40,7 @@ struct LaneOf {
   }
   friend HWY_INLINE LaneOf max(LaneOf a, LaneOf b) { return LaneOf(hn::Max(a.raw, b.raw)); }
   friend HWY_INLINE LaneOf min(LaneOf a, LaneOf b) { return LaneOf(hn::Min(a.raw, b.raw)); }
-  // As integers: negative floats are negative integers, and integer maxima do not compete with the
+  // Clamps as integers: negative floats are negative integers, and integer maxima do not compete with the
   // multipliers.
   friend HWY_INLINE LaneOf clamp_negative(LaneOf a) {
     const Integers di;
@@ -51,7 +51,7 @@ struct LaneOf {
   friend HWY_INLINE LaneOf if_less(LaneOf a, LaneOf b, LaneOf x, LaneOf y) {
     return LaneOf(hn::IfThenElse(hn::Lt(a.raw, b.raw), x.raw, y.raw));
   }
-  /// Where the condition is positive, else 0, also where it is not-a-number.
+  /// Returns the value where the condition is positive, else 0; also 0 where the condition is not-a-number.
   friend HWY_INLINE LaneOf if_positive(LaneOf condition, LaneOf value) {
     return LaneOf(hn::IfThenElseZero(hn::Gt(condition.raw, hn::Zero(Tag())), value.raw));
   }

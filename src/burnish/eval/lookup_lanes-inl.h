@@ -17,8 +17,8 @@ BURNISH_BEGIN_TARGET;
 
 constexpr std::size_t kLanes = hn::MaxLanes(D());
 
-/// The cell that a position of at least 0 lies in and how far: an integer position is the start of its cell
-/// or the end of the one before.
+/// The cell of a position >= 0, and how far in it the position is. An integer position is the start of its cell or
+/// the end of the one before.
 template <class Tag>
 struct LaneCellOf {
   LaneOf<Tag> shifted;   // 1.5 2^23 + node: the node in the low 22 bits
@@ -53,7 +53,7 @@ struct Plane {
   HWY_INLINE void load(const float* from) {
     for (int i = 0; i < kVectors; ++i) part[i] = hn::LoadU(D(), from + 16 * i);
   }
-  // The hardware takes the low four or five bits of a node; those above choose here.
+  // The permutation takes the low four or five bits of a node; the bits above choose between its results.
   HWY_INLINE Lane at(hn::Vec<DI> node) const {
     if constexpr (kVectors == 1)
       return Lane(hn::Vec<D>{_mm512_permutexvar_ps(node.raw, part[0].raw)});
@@ -115,11 +115,11 @@ HWY_INLINE Quad mix(Quad low, Quad high, float fraction) {
 }
 #endif
 
-/// Between two nodes of four floats.
+/// Interpolates linearly between two nodes of four floats.
 HWY_INLINE Quad interpolate(const float* node, float fraction) {
   return mix(load_quad(node), load_quad(node + 4), fraction);
 }
-/// Between four.
+/// Interpolates bilinearly between four nodes. Two nodes of a row fit one vector of eight floats.
 HWY_INLINE Quad interpolate(const float* node, const float* above, float fraction_x, float fraction_y) {
 #if HWY_MAX_BYTES >= 32
   const hn::CappedTag<float, 8> d8;
@@ -131,7 +131,7 @@ HWY_INLINE Quad interpolate(const float* node, const float* above, float fractio
 #endif
 }
 
-/// Between eight: four of a layer, and four of the next.
+/// Interpolates trilinearly between eight nodes: four of a layer, and four of the next.
 HWY_INLINE Quad interpolate(const float* node, const float* above, std::size_t layer, float fraction_x,
                             float fraction_y, float fraction_z) {
 #if HWY_MAX_BYTES >= 32
@@ -151,12 +151,12 @@ HWY_INLINE Quad interpolate(const float* node, const float* above, std::size_t l
 }
 
 #if BURNISH_TARGET_IS_AVX3
-/// Two nodes from each of two places.
+/// Loads two nodes from each of two places.
 HWY_INLINE Lane load_nodes(const float* node, const float* other) {
   const hn::Half<D> d8;
   return Lane(hn::Combine(D(), hn::LoadU(d8, other), hn::LoadU(d8, node)));
 }
-/// Of four places, two a vector, the first nodes and the second ones.
+/// Returns the first nodes of four places, which stand two in a vector; second_nodes() returns the second ones.
 HWY_INLINE Lane first_nodes(Lane two, Lane others) {
   return Lane(hn::Vec<D>{_mm512_shuffle_f32x4(two.raw.raw, others.raw.raw, 0x88)});
 }
@@ -166,7 +166,7 @@ HWY_INLINE Lane second_nodes(Lane two, Lane others) {
 #endif
 
 #if HWY_TARGET != HWY_SCALAR
-/// The first, second and third floats of each of kLanes quads; quad j is the j / 4-th of part[j % 4].
+/// Returns the first, second and third floats of each of kLanes quads; quad j is the j / 4-th of part[j % 4].
 HWY_INLINE void transpose(const Lane (&part)[4], Lane (&channel)[3]) {
   const D d;
   const hn::Repartition<std::uint64_t, D> pairs;
@@ -180,7 +180,7 @@ HWY_INLINE void transpose(const Lane (&part)[4], Lane (&channel)[3]) {
 }
 #endif
 
-/// The same of quads in memory; quad j is at k kLanes + 4 (j / 4), k = j % 4.
+/// Transposes quads in memory; quad j is at k kLanes + 4 (j / 4), k = j % 4.
 HWY_INLINE void transpose(const float* buffer, Lane (&channel)[3]) {
 #if HWY_TARGET == HWY_SCALAR
   for (int c = 0; c < 3; ++c) channel[c] = load(buffer + c);

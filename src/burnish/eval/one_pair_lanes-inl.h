@@ -27,14 +27,14 @@ using Eight = LaneOf<D8>;
 using DI8 = hn::RebindToSigned<D8>;
 constexpr std::size_t kEight = hn::MaxLanes(D8());  // fewer where vectors are shorter
 
-// Logarithms and exponentials apart: their constants would be loaded for all.
+// Logarithms and exponentials are kept out of line: their constants would be loaded for all.
 template <class Tag>
 HWY_NOINLINE LaneOf<Tag> power_warp_apart(LaneOf<Tag> size, LaneOf<Tag> exponent,
                                           const Polar<LaneOf<Tag>>& polar) {
   return power_warp(size, exponent, polar);
 }
 
-/// A position of a polar angle.
+/// Returns the position of a polar angle.
 template <class T>
 HWY_INLINE T warped(FactoredPlan::Spacing spacing, T size, T parameter, const Polar<T>& polar) {
   using Spacing = FactoredPlan::Spacing;
@@ -51,7 +51,7 @@ HWY_INLINE T warped(FactoredPlan::Spacing spacing, T size, T parameter, const Po
   }
   return identity_warp(size, polar);
 }
-/// What a disk's x and y are multiplied by.
+/// Returns the factor of a disk's x and y.
 template <class T>
 HWY_INLINE T stretched(FactoredPlan::Spacing spacing, T size, T parameter, const Polar<T>& polar) {
   using Spacing = FactoredPlan::Spacing;
@@ -131,7 +131,7 @@ struct PolarAngles {
   }
 };
 
-/// Where lookups read: floats of the rows to step over and fractions, a lane of `steps` each.
+/// The places of lookups: floats to step over and fractions, one lane of `steps` each.
 struct OneCells {
   static constexpr std::size_t kMax = FactoredPlan::kMaxSteps * FactoredPlan::Steps::kLanes;
   alignas(64) std::int32_t floats[kMax];
@@ -146,7 +146,7 @@ struct OneCells {
   }
 };
 
-/// The polar angle of a projection that is not found together with others, in every lane.
+/// Returns the polar angle of a projection that is not found together with others, in every lane.
 HWY_INLINE Polar<Four> angle_apart(const Projection& projection, const OnePair& one) {
   if (projection.kind == Projection::Kind::affine)
     return affine(projection, one.of_all<0>(), one.of_all<1>()).polar;
@@ -154,12 +154,12 @@ HWY_INLINE Polar<Four> angle_apart(const Projection& projection, const OnePair& 
                     [&](const auto& angle) HWY_ATTR { return Polar<Four>(angle(one.pair)); });
 }
 
-/// The positions of disks and of angles that are too many, to their lanes of `given`.
+/// Finds the positions of disks and of angles that are too many, and writes them to their lanes of `given`.
 HWY_NOINLINE void find_given(const FactoredPlan& plan, const OnePair& one, float* given) {
   using Kind = FactoredPlan::Source::Kind;
   const LanesOf<D4> wi = one.of_all<0>(), wo = one.of_all<1>();
   for (const FactoredPlan::GivenSteps& steps : plan.given) {
-    // the projected vector and its polar angle
+    // The projected vector and its polar angle come first.
     Affine<LanesOf<D4>, Four> at;
     switch (steps.kind) {
       case Kind::wi:
@@ -180,7 +180,7 @@ HWY_NOINLINE void find_given(const FactoredPlan& plan, const OnePair& one, float
       case Kind::angle:
         at.polar = angle_apart(steps.projection, one);
     }
-    // its position: both of a disk, that of a line
+    // Then the position: two numbers for a disk, one for a line.
     const FactoredPlan::Position& p = steps.position;
     const Four size(p.size), parameter(p.parameter), centre(0.5 * p.cells);
     if (p.disk) {
@@ -234,7 +234,7 @@ class AngleTable {
 #endif
 };
 
-/// The polar angles that are found one by one; the lanes after them are filled up.
+/// Finds the polar angles one by one; the lanes after them are filled up.
 HWY_NOINLINE AngleTable angles_apart(const FactoredPlan& plan, const OnePair& one) {
   alignas(32) float r[FactoredPlan::Steps::kLanes], den[FactoredPlan::Steps::kLanes];
   for (std::size_t k = 0; k < FactoredPlan::Steps::kLanes; ++k) {
@@ -246,7 +246,7 @@ HWY_NOINLINE AngleTable angles_apart(const FactoredPlan& plan, const OnePair& on
   return AngleTable(r, den);
 }
 
-/// The positions of lanes that may have different spacings: of each that is among them, then chosen.
+/// Returns the positions of lanes of different spacings: each spacing is computed for all lanes, then chosen.
 HWY_INLINE Eight warped(const FactoredPlan::Steps& s, std::size_t lane, const Polar<Eight>& polar,
                         const float* given) {
   using Spacing = FactoredPlan::Spacing;
@@ -273,6 +273,7 @@ HWY_INLINE void find_cells(const FactoredPlan& plan, const OnePair& one, const A
   if (!plan.given.empty()) find_given(plan, one, given);
   AngleTable apart = angles;
   if (!plan.apart.empty()) apart = angles_apart(plan, one);
+  // Every lane picks its polar angle, warps it to a position, and splits that into a cell and a fraction.
   std::size_t to = 0;
   for (const FactoredPlan::Steps& s : plan.steps)
     for (std::size_t lane = 0; lane < FactoredPlan::Steps::kLanes; lane += kEight, to += kEight) {
@@ -287,7 +288,7 @@ HWY_INLINE void find_cells(const FactoredPlan& plan, const OnePair& one, const A
     }
 }
 
-/// A table's value for one pair. `at`: the axes' lanes.
+/// Returns a table's value for one pair. `at`: the axes' lanes.
 template <int kAxes>
 HWY_INLINE Quad looked_up(const FactoredPlan::Lookup& lookup, const float* rows, const OneCells& cells,
                           const std::array<std::uint32_t, 3>& at) {
@@ -309,8 +310,8 @@ HWY_INLINE Quad looked_up(const FactoredPlan::Lookup& lookup, const float* rows,
   return lookup.pair ? value * looked_up<kAxes>(lookup, rows, cells, lookup.pair_steps_at) : value;
 }
 
-/// Three channels: sum over lobes of scale times lookups [HomomorphicBrdf, eq. 4], and with `weights` times those,
-/// four a lobe.
+/// Returns three channels: the sum over lobes of scale times lookups [HomomorphicBrdf, eq. 4]. With `weights`, each
+/// lobe is multiplied by its weights, of which there are four a lobe.
 template <bool kWeighted>
 HWY_INLINE Quad sum_of_products(const FactoredPlan& plan, std::size_t group, const OneCells& cells,
                                 const float* weights) {
@@ -337,8 +338,8 @@ HWY_INLINE Quad sum_of_products(const FactoredPlan& plan, std::size_t group, con
   return sum;
 }
 
-/// f has the plan's channels; the plan at most kMaxSteps steps, and with weights, see sum_of_products, at most three
-/// channels.
+/// Evaluates one pair. f has the plan's channels; the plan has at most kMaxSteps steps, and with weights (see
+/// sum_of_products) at most three channels.
 template <bool kWeighted = false>
 void eval_one_pair(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, float* f,
                    const float* weights = nullptr) {
@@ -346,7 +347,7 @@ void eval_one_pair(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, flo
   const D2 d2;
   const DI2 di2;
   const OnePair one(wi, wo);
-  // of wi and wo
+  // Both must be unit vectors above the horizon: else the value is not-a-number, or 0 below the horizon.
   const auto excess = hn::LowerHalf(di2, excess_of(one.all.x, one.all.y, one.all.z));
   const auto up = hn::LowerHalf(d2, one.all.z.raw);
   const bool directions = hn::AllFalse(di2, hn::Gt(excess, hn::BitCast(di2, hn::Set(d2, kMaxExcess))));

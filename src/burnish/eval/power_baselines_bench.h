@@ -14,7 +14,7 @@ struct PowerBaseline {
   double allowed_error;  ///< absolute, against the true power
 };
 
-/// Those this processor and build can run. Only "fma_loop" is no power: out = a c + b, one instruction.
+/// The baselines that this processor and build can run. Only "fma_loop" is no power: out = a c + b, one instruction.
 std::vector<PowerBaseline> power_baselines();
 
 /// One fused multiply-add a value, the least that a loop over memory can do.

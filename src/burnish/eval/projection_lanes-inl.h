@@ -84,14 +84,15 @@ HWY_INLINE hn::Vec<hn::RebindToSigned<Tag>> excess_of(LaneOf<Tag> x, LaneOf<Tag>
   const LaneOf<Tag> signed_excess = mul_add(x, x, mul_add(y, y, mul_add(z, z, LaneOf<Tag>(-1.0))));
   return hn::BitCast(hn::RebindToSigned<Tag>(), hn::Abs(signed_excess.raw));
 }
-/// That and more is no direction: 1 %, as readers of directions ask for.
+/// A vector whose squared length is off by this and more is no direction: 1 % of length, as readers of directions ask
+/// for.
 constexpr float kMaxExcess = 0.02f;
-/// Lanes of what is no direction.
+/// Returns the lanes whose vectors are no directions.
 HWY_INLINE hn::Mask<DI> no_directions(hn::Vec<DI> excess) {
   return hn::Gt(excess, hn::BitCast(DI(), hn::Set(D(), kMaxExcess)));
 }
 
-/// The doubled difference vector 2 d, whose z is |wi + wo|, and its polar angle.
+/// Returns the doubled difference vector 2 d, whose z is |wi + wo|, and its polar angle.
 template <class Tag>
 HWY_INLINE Affine<LanesOf<Tag>, LaneOf<Tag>> doubled_difference(const LanePairOf<Tag>& pair) {
   const auto [u, v] = across_half(pair.sum, pair.length_of_sum, pair.apart);
@@ -99,7 +100,7 @@ HWY_INLINE Affine<LanesOf<Tag>, LaneOf<Tag>> doubled_difference(const LanePairOf
   return {d, polar_of(d, length(u, v, d.z))};
 }
 
-/// A position among cells: not-a-number, of directions below the horizon, becomes 0.
+/// Clamps a position to the cells. Not-a-number, from directions below the horizon, becomes 0.
 template <class Tag>
 HWY_INLINE LaneOf<Tag> within(LaneOf<Tag> position, LaneOf<Tag> cells) {
   return if_positive(position, min(position, cells));

@@ -62,7 +62,7 @@ ExprEdges edge_pair(const char* table, const ExprInt& i) {
   const Expr mass = upper - lower;  // modulo 65536
   return {ExprInt(lower), ExprInt(if_less(upper, lower, mass + Expr::integer(65536), mass))};
 }
-// By halves.
+// Searches by halves.
 template <int kSlices>
 ExprInt search(const char* table, const ExprInt (&start)[kSlices], const Expr (&weight)[kSlices], int count,
                const Expr& target) {
@@ -81,7 +81,7 @@ ExprInt search(const char* table, const ExprInt (&start)[kSlices], const Expr (&
 #include <burnish/eval/visible_half-inl.h>
 #undef SAMPLER_INLINE
 
-// What the formulas read.
+// The tables and numbers that the formulas read.
 struct View : SamplerTables {
   double last_ring, turn_per_row, per_column, cells;
   const char *row_edges = "row_edges", *cell_edges = "cell_edges";

@@ -29,7 +29,7 @@ class SpatialEvaluator {
   };
   /// At (u, v) and a level of detail, see SurfaceMap::sample.
   Place place(double u, double v, double lod = 0) const noexcept;
-  /// Of texel (x, y) of level 0, unfiltered.
+  /// Evaluates texel (x, y) of level 0, unfiltered.
   Place texel(int x, int y) const noexcept;
 
   /// f_r in 1/sr, without the cosine, of unit vectors of the surface's frame; f has channels() entries.

@@ -45,8 +45,8 @@ struct OneDraw {
 HWY_BEFORE_NAMESPACE();
 BURNISH_BEGIN_TARGET;
 
-// Runs body(in, out) on whole vectors, then on the rest through buffers filled up with 0. Unlike the loop of
-// vector_loop-inl.h for any count of outputs, which may be inputs.
+// Calls body(in, out) on whole vectors, then on the rest through buffers filled up with 0. Unlike the loop of
+// vector_loop-inl.h, it takes any count of outputs, which may be inputs.
 template <std::size_t kIn, std::size_t kOut, class Body>
 HWY_INLINE void for_each_vector(const float* const (&in)[kIn], float* const (&out)[kOut], std::size_t count,
                                 const Body& body) {
@@ -132,13 +132,14 @@ namespace {
 
 constexpr double kSteepest = 0.01;  // least wo.z of the tables
 
-// Where the last ring of wo stands: t / (kRingReach - t), t = tan(theta / 2).
+// Returns the place of the last ring of wo: t / (kRingReach - t), t = tan(theta / 2).
 double last_ring() noexcept {
   const double t = std::sqrt((1 - kSteepest) / (1 + kSteepest));
   return t / (scalar::kRingReach - t);
 }
 
 Vec3 wo_of(const SamplerOptions& options, int ring, int turn) noexcept {
+  // Inverts the places of rings and azimuths that mix_for() of visible_half-inl.h defines.
   const double at = last_ring() * ring / (options.wo_thetas - 1), t = scalar::kRingReach * at / (1 + at);
   const double sine = 2 * t / (1 + t * t), cosine = (1 - t * t) / (1 + t * t);
   const double around = 4.0 * turn / options.wo_phis;
@@ -146,10 +147,11 @@ Vec3 wo_of(const SamplerOptions& options, int ring, int turn) noexcept {
   return {sine * axis.x / axis.length, sine * axis.y / axis.length, cosine};
 }
 
-// Cumulative masses in 1/65536, the first of them 0, each cell at least 1.
+// Appends cumulative masses in 1/65536, the first of them 0, with at least 1 for each cell.
 void append_edges(std::vector<std::uint16_t>& edges, std::span<const double> masses) {
   double total = 0, before = 0;
   for (const double m : masses) total += m;
+  // Every cell gets one unit; the rest is shared by mass, or evenly where there is none.
   const double free = 65536 - static_cast<double>(masses.size());
   for (std::size_t i = 0; i < masses.size(); ++i) {
     const double share =
@@ -180,7 +182,7 @@ struct TabulatedSampler::Tables {
     size("rows", options.rows, power(options.rows));
     size("columns", options.columns, power(options.columns));
 
-    // the map that suits this BRDF best, and the sizes of the tables
+    // The map that suits this BRDF best is found first; the sizes of the tables follow.
     std::vector<double> f(brdf.channels());
     static_cast<VisibleHalfMap&>(view) = fit_map(brdf, options, f);
     view.thetas = options.wo_thetas;
@@ -193,7 +195,7 @@ struct TabulatedSampler::Tables {
     view.theta_scale = view.last_ring / last_ring();
     view.cells = scalar::cells_per_unit(view.rows, view.columns);
 
-    // one slice a wo; an edge of 0 follows the last, where 65536 would be
+    // One slice is tabulated for each wo. An edge of 0 follows the last, where 65536 would be.
     for (int ring = 0; ring < view.thetas; ++ring)
       for (int turn = 0; turn < view.phis; ++turn)
         if (isotropic)
@@ -209,8 +211,8 @@ struct TabulatedSampler::Tables {
   }
   Tables(const Tables&) = delete;
 
-  // One side of the plane of wo, y = 0, stands for both where the BRDF is isotropic: for their mean, as a
-  // measured one need not be its own mirror image.
+  // Returns the size of what is reflected. For isotropic BRDFs one side of the plane of wo, y = 0, stands for the
+  // mean of both, as a measured BRDF need not be its own mirror image.
   double size_of(BrdfRef brdf, Vec3 wi, Vec3 wo, std::span<double> f) const {
     const double one = reflected_size(brdf, wi, wo, f);
     return isotropic ? 0.5 * (one + reflected_size(brdf, {wi.x, -wi.y, wi.z}, wo, f)) : one;
@@ -224,7 +226,7 @@ struct TabulatedSampler::Tables {
         ReflectedLight light{
             .wo = spherical_direction(radians(theta_deg), kPi * k / azimuths), .rule = {}, .size = {}};
         light.rule = half_vector_quadrature(light.wo, 64, 96);
-        // wo lies in the x-z plane: one side of it does
+        // wo lies in the x-z plane, so one side of it is enough.
         if (isotropic) std::erase_if(light.rule, [](const DirectionWeight& d) { return d.wi.y < 0; });
         for (const auto& [wi, weight] : light.rule) light.size.push_back(size_of(brdf, wi, light.wo, f));
         views.push_back(std::move(light));
@@ -232,12 +234,12 @@ struct TabulatedSampler::Tables {
     return fit_visible_half_map(views, isotropic, options.rows, options.columns);
   }
 
-  // What is reflected in each cell, over rows and columns of the map at wo: the root of its mean square g^2 over the
-  // cell. Weights g / mass have the second moment sum of mean(g^2) / mass, which of all masses that add up to the
-  // same is least then; where all in a cell is alike it is the mean.
+  // Tabulates a mass for each cell of the map at wo: the root of the mean square g^2 of what is reflected in it.
+  // Weights g / mass have the second moment sum of mean(g^2) / mass. Of all masses with one sum, this one makes it
+  // least; where all in a cell is alike it is the mean.
   template <bool kIsotropic>
   void add_slice(BrdfRef brdf, Vec3 wo, std::span<double> f) {
-    constexpr int kAcross = 4;  // points a cell and axis
+    constexpr int kAcross = 4;  // points along each axis of a cell
     std::vector<double> rows, cells(static_cast<std::size_t>(view.columns));
     const double turn = (kIsotropic ? 2.0 : 4.0) / view.rows;
     for (int row = 0; row < view.rows; ++row) {
@@ -250,6 +252,7 @@ struct TabulatedSampler::Tables {
                                                       turn * (row + (i + 0.5) / kAcross),
                                                       (column + (j + 0.5) / kAcross) / view.columns, 1.0);
             if (!(wi.z > 0)) continue;
+            // g is what is reflected per unit of turn and v: the value over the map's density.
             const double g = size_of(brdf, {wi.x, wi.y, wi.z}, wo, f) / wi.density;
             squares += g * g;
           }

@@ -18,7 +18,7 @@ struct DrawSpans {
   std::size_t size() const noexcept { return wo_x.size(); }
 };
 
-/// What is drawn for them.
+/// The directions drawn for them.
 struct DrawnSpans {
   std::span<float> wi_x, wi_y, wi_z, pdf;
 };

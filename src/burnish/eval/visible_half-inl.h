@@ -1,11 +1,10 @@
-// TabulatedSampler's formulas, each written once. No include guard: included in a namespace of its own for
-// double and again in one per instruction set for vectors of floats, so that every copy is compiled with that
-// set's flags.
+// TabulatedSampler's formulas, each written once. No include guard: included in a namespace of its own for double and
+// again in one per instruction set for vectors of floats, so that every copy is compiled with that set's flags.
 //
-// `view` has the tables, their sizes and what of SamplerView is read, as any type of number.
+// `view` has the tables, their sizes and the members of SamplerView that the formulas read, as any type of number.
 //
-// F is a number or a vector of numbers, I of 32-bit integers. They need + - * (F also /), min, max, of F
-// sqrt, abs, copy_sign, less_or_equal and if_true(mask, a, b), to_int (truncating), to_real, and
+// F is a number or a vector of numbers, I of 32-bit integers. They need + - * (F also /), min, max, of F sqrt, abs,
+// copy_sign, less_or_equal and if_true(mask, a, b), to_int (truncating), to_real, and
 //   next_around(i, last)  i + 1, but 0 for i = last
 //   edge_pair(table, i)   lower = table[i] and table[i + 1] - lower, modulo 65536
 //   search(table, start, weight, count, target)  the last of `count` entries, a power of two, for which
@@ -24,13 +23,13 @@ struct Arrow {
   F x, y, length;
 };
 
-/// (x, y), which points along +x where both are zero.
+/// Returns (x, y) with its length; it points along +x where both are zero.
 template <class F>
 SAMPLER_INLINE Arrow<F> arrow(F x, F y) {
   const F right = x + F(1e-15);
   return {right, y, sqrt(right * right + y * y)};
 }
-/// arrow() over its length.
+/// Returns arrow() over its length.
 template <class F>
 SAMPLER_INLINE PlaneAxis<F> unit_axis(F x, F y) {
   const Arrow<F> to = arrow(x, y);
@@ -49,7 +48,7 @@ template <class F>
 SAMPLER_INLINE F turn(F w, F y) {
   return F(2.0) - copy_sign(F(1.0) + w, y);
 }
-/// A vector to w, of y with the sign of `side`.
+/// Returns a vector of place w whose y has the sign of `side`: the inverse of place_on_half_circle, up to length.
 template <class F>
 SAMPLER_INLINE Arrow<F> on_half_circle(F w, F side) {
   const F square = w * w;
@@ -112,9 +111,10 @@ struct Mix {
   I row[kSlices];
 };
 
-/// For wo = (x, y, z).
+/// Finds the slices around wo = (x, y, z): two rings, and on anisotropic tables the azimuths next to wo's.
 template <int kSlices, class F, class I, class View>
 SAMPLER_INLINE Mix<kSlices, F, I> mix_for(const View& view, F x, F y, F z) {
+  // The position among the rings is t / (kRingReach - t) with t = tan(theta_o / 2) = |(x, y)| / (1 + z).
   const Arrow<F> to = arrow(x, y);
   const F short_of = F(kRingReach) * (F(1.0) + z) - to.length;
   const F at = min(to.length / short_of * F(view.theta_scale), F(view.last_ring));
@@ -124,11 +124,12 @@ SAMPLER_INLINE Mix<kSlices, F, I> mix_for(const View& view, F x, F y, F z) {
   if constexpr (kSlices == 2) {
     return {{inner, outer}, {inner_ring, outer_ring}};
   } else {
+    // The position among the azimuths is a quarter of the turn, times their number.
     const F around = turn(place_on_half_circle(to), y) * F(0.25 * view.phis);
     const I first = max(min(to_int(around), I(view.phis - 1)), I(0));
     const F part = around - to_real(first);
     const I here = first * I(view.rows), next = next_around(first, view.phis - 1) * I(view.rows);
-    // between three of the four corners of the cell: those of its half, the two that both halves have first
+    // wo is between three of the cell's four corners, those of its half: the diagonal corners belong to both halves.
     const F beyond = part - inner;
     const auto far = less_or_equal(F(0.0), beyond);
     return {{min(part, inner), min(outer, F(1.0) - part), abs(beyond)},
@@ -136,7 +137,7 @@ SAMPLER_INLINE Mix<kSlices, F, I> mix_for(const View& view, F x, F y, F z) {
   }
 }
 
-/// Cell of a cumulative table and its bounds, of every slice weighed.
+/// A cell of a cumulative table with its bounds, summed over the slices with their weights.
 template <int kSlices, class F, class I>
 struct Interval {
   I index;
@@ -164,11 +165,11 @@ SAMPLER_INLINE Interval<kSlices, F, I> interval_at(Edges table, const I (&start)
 template <int kSlices, class F, class I, class Edges>
 SAMPLER_INLINE Interval<kSlices, F, I> find_interval(Edges table, const I (&start)[kSlices],
                                                      const F (&weight)[kSlices], int count, F target) {
-  // what is no number, or below 0, falls into the first cell
+  // A target that is no number or below 0 falls into the first cell.
   return interval_at(table, start, weight, max(search(table, start, weight, count, target), I(0)));
 }
 
-/// d(turn) / d(azimuth) at w: along the circle of M's images, which M turns by `narrowing` (of Ray).
+/// Returns d(turn) / d(azimuth) at w: along the circle of M's images, which M turns by `narrowing` (of Ray).
 template <class F>
 SAMPLER_INLINE F turning(F w, F narrowing) {
   return F(0.5) * (F(1.0) + w * w) * narrowing;
@@ -180,12 +181,12 @@ struct Placed {
   F x, y, z, density;
 };
 
-/// The direction at turn and v. Of isotropic tables the turn is that from the azimuth of wo, of whose x and y `plane`
-/// is the arrow, to the side that the sign of `side` tells.
+/// Returns the direction at turn and v. For isotropic tables, the turn is from the azimuth of wo (`plane` is the
+/// arrow of wo's x and y) to the side that the sign of `side` tells.
 template <bool kIsotropic, class F, class View>
 SAMPLER_INLINE Placed<F> place(const View& view, F wo_x, F wo_y, F wo_z, const Arrow<F>& plane, F turned, F v,
                                F side) {
-  // the half vector's azimuth
+  // The turn gives the half vector's azimuth; M^-1 maps it back from the stretched circle.
   const F w = abs(turned - F(2.0)) - F(1.0);
   F x, y, length2, length, along,
       narrowing(1.0);  // (x, y): towards the azimuth, from that of wo if isotropic
@@ -205,10 +206,10 @@ SAMPLER_INLINE Placed<F> place(const View& view, F wo_x, F wo_y, F wo_z, const A
     narrowing = length2 / (axis.length * axis.length);
     along = wo_x * x + wo_y * y;
   }
-  // its polar angle, m = tan^2(theta_h / 2)
+  // v gives its polar angle, as m = tan^2(theta_h / 2), along the ray of that azimuth.
   const Ray<F> ray(view, narrowing, along, wo_z * length, wo_z * wo_z * length2);
   const F m = ray.from_unit(v);
-  // wo reflected about it
+  // wi = 2 (wo.h) h - wo is wo reflected about the half vector.
   const F norm = F(1.0) / (F(1.0) + m), cosine = (F(1.0) - m) * norm;
   const F sine = F(2.0) / length * norm * sqrt(m);  // over length
   const F to_half = along * sine + wo_z * cosine, twice = to_half + to_half;
@@ -229,28 +230,31 @@ struct Drawn {
 };
 
 inline constexpr double kEdgeUnit = 65536;
-/// Cells on the half circles' turn and v, per square of an edge's unit.
+/// Returns the number of cells over the half circles' turn and v, per square of an edge's unit.
 SAMPLER_INLINE double cells_per_unit(int rows, int columns) {
   return 0.25 / (kEdgeUnit * kEdgeUnit) * rows * columns;
 }
 
 template <bool kIsotropic, class F, class I, class View>
 SAMPLER_INLINE Drawn<F> draw(const View& view, F wo_x, F wo_y, F wo_z, F u_x, F u_y) {
+  // A row is drawn by u_x, a column by u_y; both are found in cumulative tables that are mixed from the slices around
+  // wo.
   constexpr int kSlices = kIsotropic ? 2 : 3;
   const Arrow<F> plane = arrow(wo_x, wo_y);
   const Mix<kSlices, F, I> mix = mix_for<kSlices, F, I>(view, wo_x, wo_y, wo_z);
-  // the place in a cell, linear between its edges
+  // A place in a cell is linear between its edges, so that numbers are used up evenly.
   const auto within = [](F target, const Interval<kSlices, F, I>& i) {
     return to_real(i.index) + max(min((target - i.lower) / i.mass, F(1.0)), F(0.0));
   };
 
-  // the row, then where in it; isotropic tables have one side of the plane of wo, u_x < 1/2 is the other
+  // The row comes first, then the place in it. Isotropic tables hold one side of the plane of wo; u_x < 1/2 is the
+  // other.
   const F uniform = kIsotropic ? abs(u_x + u_x - F(1.0)) : u_x;
   const F row_target = uniform * F(kEdgeUnit);
   const auto row = find_interval<kSlices, F, I>(view.row_edges, mix.row, mix.weight, view.rows, row_target);
   const F around = within(row_target, row) * F(view.turn_per_row);
 
-  // the column in that row, its slices weighed by what the row has in each
+  // The column is drawn in that row. Each slice weighs by the mass that the row has in it.
   I start[kSlices];
   for (int s = 0; s < kSlices; ++s) start[s] = (mix.row[s] + row.index) * I(view.columns);
   const F column_target = u_y * row.mass * F(kEdgeUnit);
@@ -258,7 +262,7 @@ SAMPLER_INLINE Drawn<F> draw(const View& view, F wo_x, F wo_y, F wo_z, F u_x, F 
       find_interval<kSlices, F, I>(view.cell_edges, start, row.slice_mass, view.columns, column_target);
   const F v = within(column_target, column) * F(view.per_column);
 
-  // the direction there; the cell's density times the map's
+  // The pdf is the cell's density over turn and v times the map's density per solid angle; 0 below the horizon.
   const Placed<F> wi = place<kIsotropic>(view, wo_x, wo_y, wo_z, plane, around, v, u_x - F(0.5));
   const F cells = F(view.cells);
   return {wi.x, wi.y, wi.z, if_true(less_or_equal(wi.z, F(0.0)), F(0.0), column.mass * cells * wi.density)};
@@ -268,8 +272,8 @@ template <bool kIsotropic, class F, class I, class View>
 SAMPLER_INLINE F density(const View& view, F wi_x, F wi_y, F wi_z, F wo_x, F wo_y, F wo_z) {
   constexpr int kSlices = kIsotropic ? 2 : 3;
   const Mix<kSlices, F, I> mix = mix_for<kSlices, F, I>(view, wo_x, wo_y, wo_z);
-  // the half vector: m = tan^2(theta_h / 2) and its azimuth, or what M makes of it; as of arrow(), and lengths
-  // of vectors are left in wherever only their ratios count
+  // The half vector gives m = tan^2(theta_h / 2) and its azimuth, or M's image of it, as arrow() does. Lengths of
+  // vectors are left in wherever only their ratios count.
   const F x = wi_x + wo_x + F(1e-15), y = wi_y + wo_y, z = wi_z + wo_z;
   const F across = x * x + y * y, norm = sqrt(across), length = sqrt(across + z * z), up = length + z;
   const F m = across / (up * up);
@@ -287,7 +291,7 @@ SAMPLER_INLINE F density(const View& view, F wi_x, F wi_y, F wi_z, F wo_x, F wo_
   const F w = place_on_half_circle(image);
   const Ray<F> ray(view, narrowing, wo_x * x + wo_y * y, wo_z * norm, wo_z * wo_z * across);
 
-  // the cell that holds it
+  // turn and v = to_unit(m) give the cell that holds the half vector.
   const auto cell = [](F unit, int count) { return min(max(to_int(unit), I(0)), I(count - 1)); };
   const I row_index = cell(turn(w, image.y) * F(view.rows / (kIsotropic ? 2.0 : 4.0)), view.rows);
   const I column_index = cell(ray.to_unit(m) * F(view.columns), view.columns);
@@ -297,6 +301,7 @@ SAMPLER_INLINE F density(const View& view, F wi_x, F wi_y, F wi_z, F wo_x, F wo_
   const auto column = interval_at<kSlices, F, I>(view.cell_edges, start, row.slice_mass, column_index);
 
   const F cells = F(view.cells);
+  // The pdf is the same product as in draw(); wo.h is half the length of wi + wo.
   const F pdf = column.mass * cells * ray.density(m, F(0.5) * length, turning(w, narrowing));
   const F least = min(wi_z, wo_z);
   return if_true(less_or_equal(least, F(0.0)), F(0.0), pdf);

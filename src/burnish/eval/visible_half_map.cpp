@@ -11,7 +11,7 @@
 namespace burnish {
 namespace {
 
-// A half vector of a view's rule, as maps see it.
+// A half vector of a view's quadrature rule, in the terms of the map.
 struct HalfPoint {
   double x, y, m, along, to_half;  // unit azimuth (isotropic: from wo), tan^2(theta_h / 2), wo.azimuth, wo.h
   double squares;                  // sum of the solid angle's size squared
@@ -27,6 +27,7 @@ PreparedView prepare(const ReflectedLight& view, bool isotropic) {
   PreparedView prepared{.up = view.wo.z, .points = {}};
   const auto plane = scalar::unit_axis(view.wo.x, view.wo.y);
   for (std::size_t i = 0; i < view.rule.size(); ++i) {
+    // m = tan^2(theta_h / 2) = |xy|^2 / (|sum| + z)^2, and wo.h = |wi + wo| / 2.
     const auto& [wi, weight] = view.rule[i];
     const Vec3 sum = wi + view.wo;
     const double reach = length(sum), up = reach + sum.z;
@@ -42,9 +43,9 @@ PreparedView prepare(const ReflectedLight& view, bool isotropic) {
   return prepared;
 }
 
-// Logarithm of the relative second moment of the weights for cells of one map, mean over the views, so that none of
-// them rules: a cell's mass is the root of the mean square of what it reflects, of all masses that which makes this
-// moment least.
+// Returns the logarithm of the relative second moment of the weights for cells of one map. It is the mean over the
+// views, so that none of them dominates. A cell's mass is the root of the mean square of what it reflects: of all
+// masses, this makes the moment least.
 double log_second_moment(const std::vector<PreparedView>& views, const VisibleHalfMap& map, bool isotropic,
                          int rows, int columns, std::vector<double>& squares) {
   SamplerView view;
@@ -63,16 +64,17 @@ double log_second_moment(const std::vector<PreparedView>& views, const VisibleHa
       const auto cell = static_cast<std::size_t>(row * columns + column);
       squares[cell] += p.squares / ray.density(p.m, p.to_half, scalar::turning(w, narrowing));
     }
-    // the square of the sum of the masses
+    // The least second moment is the square of the sum of the masses, relative to the square of the light.
     double sum = 0;
     for (const double square : squares) sum += std::sqrt(square);
-    const double range = 1.0 / (0.25 * rows * columns);  // of a cell, in turn and v, halves folded
+    const double range = 1.0 / (0.25 * rows * columns);  // range of a cell in turn and v, halves folded
     mean += std::log(sum * sum * range / (v.total * v.total));
   }
   return mean / static_cast<double>(views.size());
 }
 
 VisibleHalfMap stretched(double sharpness, double share, double log_aspect, double turn) {
+  // M = R diag(s, 1/s) R^T stretches by s along the direction `turn`.
   const double s = std::exp(log_aspect), c = std::cos(turn), t = std::sin(turn);
   return {sharpness, share, s * c * c + t * t / s, (s - 1 / s) * c * t, s * t * t + c * c / s};
 }
@@ -93,7 +95,7 @@ VisibleHalfMap fit_visible_half_map(const std::vector<ReflectedLight>& views, bo
   double least = std::numeric_limits<double>::infinity();
   std::array<double, 4> at{};  // log sharpness, share, log aspect, turn
 
-  // takes parameters that are better than the best so far
+  // Keeps parameters that are better than the best so far.
   const auto consider = [&](std::array<double, 4> p) {
     p[0] = std::clamp(p[0], std::log(1e-7), std::log(1.0));
     p[1] = std::clamp(p[1], 0.0, 0.98);
@@ -106,7 +108,7 @@ VisibleHalfMap fit_visible_half_map(const std::vector<ReflectedLight>& views, bo
     return true;
   };
 
-  // first a grid of round maps, then stretched ones around the best
+  // A grid of round maps is tried first, then stretched ones around the best.
   for (int k = 0; k < 12; ++k)
     for (const double share : {0.3, 0.6, 0.85, 0.95}) consider({-1.25 * k, share, 0, 0});
   if (!isotropic) {
@@ -117,7 +119,7 @@ VisibleHalfMap fit_visible_half_map(const std::vector<ReflectedLight>& views, bo
           consider({round[0] - narrower, round[1], aspect, k * kPi / 4});
   }
 
-  // then one parameter after another, as long as it helps, by ever smaller steps
+  // Then one parameter after another is moved, as long as that helps, by ever smaller steps.
   std::array<double, 4> step{0.6, 0.1, 0.25, kPi / 12};
   for (int pass = 0; pass < 9; ++pass) {
     for (std::size_t k = 0; k < (isotropic ? 2 : 4); ++k)

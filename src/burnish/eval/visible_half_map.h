@@ -21,7 +21,7 @@ struct VisibleHalfMap {
   friend bool operator==(const VisibleHalfMap&, const VisibleHalfMap&) = default;
 };
 
-/// What a BRDF reflects towards one wo.
+/// The light that a BRDF reflects towards one wo.
 struct ReflectedLight {
   Vec3 wo;
   std::vector<DirectionWeight> rule;

@@ -9,7 +9,7 @@
 
 namespace burnish {
 
-/// What the formulas of visible_half-inl.h read.
+/// The tables and numbers that the formulas of visible_half-inl.h read.
 struct SamplerView : VisibleHalfMap {
   int thetas = 0, phis = 0, rows = 0, columns = 0;
   double theta_scale = 0,

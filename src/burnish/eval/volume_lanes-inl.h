@@ -28,7 +28,7 @@ BURNISH_BEGIN_TARGET;
 // All four lengths are roots of sums of squares, and none waits for another's. r > den, of directions that are no unit
 // vectors and of squares that vanish, ends at the last node like r = den.
 
-/// Where lookups begin, in floats from the tables' start.
+/// Returns the places where lookups begin, in floats from the tables' start.
 template <class Tag>
 HWY_INLINE hn::Vec<hn::RebindToSigned<Tag>> first_floats(const LaneCellOf<Tag>& cell,
                                                          hn::Vec<hn::RebindToSigned<Tag>> floats,
@@ -36,7 +36,7 @@ HWY_INLINE hn::Vec<hn::RebindToSigned<Tag>> first_floats(const LaneCellOf<Tag>& 
   return hn::Add(hn::Mul(hn::BitCast(hn::RebindToSigned<Tag>(), cell.shifted.raw), floats), start);
 }
 
-/// Where the rows lie, and floats to the next row and layer of the volume.
+/// The place of the rows, and floats to the next row and layer of the volume.
 struct VolumeRows {
   const float* values;
   std::size_t above, layer;
@@ -47,7 +47,7 @@ struct VolumeRows {
   HWY_INLINE const float* at(std::int32_t floats) const {
     return values + static_cast<std::uint32_t>(floats);
   }
-  /// The volume's value times the line's, at these floats and fractions of their cells.
+  /// Returns the volume's value times the line's, at these floats and fractions of their cells.
   HWY_INLINE Quad product(std::int32_t volume, std::int32_t line, float x, float y, float z,
                           float along) const {
     const float* const node = at(volume);
@@ -69,7 +69,7 @@ HWY_INLINE void store_three(hn::Vec<D4> value, double* f) {
   f[2] = hn::GetLane(hn::PromoteTo(two, hn::UpperHalf(d2, value)));
 }
 
-/// f has three values.
+/// Evaluates one pair; f has three values.
 template <class Real>
 HWY_INLINE void eval_one_of_volume(const FactoredPlan& plan, const Vec3& wi, const Vec3& wo, Real* f) {
   const FactoredPlan::VolumeAndLine& v = *plan.volume_and_line;
@@ -80,7 +80,8 @@ HWY_INLINE void eval_one_of_volume(const FactoredPlan& plan, const Vec3& wi, con
   const auto swapped = [](Four a) HWY_ATTR { return Four(hn::Shuffle2301(a.raw)); };
   const auto odd_even = [](Four odd, Four even) HWY_ATTR { return Four(hn::OddEven(odd.raw, even.raw)); };
 
-  // wi and wo: x, x, y, y and z, z. Doubles are loaded one by one: they were often just stored like that.
+  // The lanes are x, x, y, y and z, z of wi and wo. Doubles are loaded one by one, as they were often just stored
+  // like that.
   const auto both = [](const double& i, const double& o) HWY_ATTR {
     const hn::CappedTag<double, 2> two;
     return hn::DemoteTo(D2(), hn::InterleaveLower(two, hn::Set(two, i), hn::Set(two, o)));
@@ -97,13 +98,13 @@ HWY_INLINE void eval_one_of_volume(const FactoredPlan& plan, const Vec3& wi, con
     return;
   }
 
-  // d and s: x, x, y, y and z, z, once more
+  // The lanes of d and s have the same order.
   alignas(16) static constexpr float kSigns[] = {-1, 1, -1, 1};
   const Four signs(hn::Load(d4, kSigns));
   const Four ds = mul_add(swapped(xy), signs, xy), ds_z = mul_add(swapped(zz), signs, zz),
              sd_z = swapped(ds_z);
 
-  // lengths |d|, |s|, |s_xy| and that of phi_d
+  // One root gives all four lengths: |d|, |s|, |s_xy| and that of phi_d.
   const Four ds_y(hn::ConcatUpperUpper(d4, ds.raw, ds.raw));
   const Four across = mul_add(ds, ds, ds_y * ds_y), square = mul_add(ds_z, ds_z, across);
   const Four products = ds * Four(hn::Shuffle0123(ds.raw)), sine = abs(products - swapped(products));
@@ -111,7 +112,7 @@ HWY_INLINE void eval_one_of_volume(const FactoredPlan& plan, const Vec3& wi, con
   const Four lengths =
       sqrt(Four(hn::ConcatUpperLower(d4, hn::InterleaveLower(d4, across.raw, azimuth.raw), square.raw)));
 
-  // angles: theta_d, theta_h twice, phi_d
+  // tan(theta / 2) = r / den of the angles theta_d, theta_h twice, and phi_d.
   const Four ones(1.0), s(hn::Broadcast<1>(lengths.raw));
   const Four r = odd_even(Four(hn::ConcatLowerLower(d4, sine.raw, sine.raw)), lengths);
   const Four rest = odd_even(lengths, Four(hn::ConcatUpperLower(d4, sd_z.raw, Four(2.0).raw)));
@@ -119,7 +120,7 @@ HWY_INLINE void eval_one_of_volume(const FactoredPlan& plan, const Vec3& wi, con
   alignas(16) static constexpr std::int32_t kAngles[] = {0, 2, 2, 3};
   const Four t(hn::TableLookupLanes((r / den).raw, hn::SetTableIndices(d4, kAngles)));
 
-  // cells
+  // The position in cells is warped where the lane's spacing is a root, then split into a node and a fraction.
   const Four u(hn::IfVecThenElse(hn::BitCast(d4, hn::Load(di4, v.root.data())), sqrt(t).raw, t.raw));
   const Four cells(hn::Load(d4, v.cells.data()));
   const auto cell = cell_of(min(cells * u, cells));
@@ -141,7 +142,7 @@ HWY_INLINE void eval_one_of_volume(const FactoredPlan& plan, const Vec3& wi, con
 struct VolumePipeline {
   static constexpr std::size_t kAhead = 2 * kLanes, kRing = 4 * kLanes;  // pairs
   static constexpr std::size_t kFetched = FactoredPlan::kMaxBlock;       // so far ahead memory is asked for
-  /// Where pairs look up, some vectors in turn.
+  /// The places where pairs look up: a ring of some vectors.
   alignas(64) std::int32_t volume[kRing], line[kRing];  // first floats
   alignas(64) float x[kRing], y[kRing], z[kRing], along[kRing];
   alignas(64) float above[kRing];  // > 0: both above the horizon; not-a-number: no directions
@@ -167,8 +168,10 @@ struct VolumePipeline {
       wo = {load(w[3] + i), load(w[4] + i), load(w[5] + i)};
       for (const float* plane : w) hwy::Prefetch(plane + i + kFetched);
     }
+    // `above` is positive where both directions are above the horizon, and not-a-number where one is no unit vector.
     const auto excess = hn::Max(excess_of(wi.x, wi.y, wi.z), excess_of(wo.x, wo.y, wo.z));
     const Lane lit = if_positive(wi.z, wo.z), none(std::numeric_limits<double>::quiet_NaN());
+    // The lengths are those of the list above: |s|, |s_xy|, |d| and the one that phi_d's den takes.
     const Lanes sum = wi + wo, apart = wi - wo;
     const Lane across = mul_add(sum.x, sum.x, sum.y * sum.y), square = mul_add(sum.z, sum.z, across);
     const Lane sine = abs(sum.y * apart.x - sum.x * apart.y), d_z = abs(apart.z);
@@ -189,7 +192,7 @@ struct VolumePipeline {
             .above = l.above};
   }
 
-  /// How far in its cell along axis k, and where that begins.
+  /// Returns how far in its cell along axis k a position is, and sets where that cell begins.
   static HWY_INLINE Lane fraction(const FactoredPlan::VolumeAndLine& v, std::size_t k, Lane position,
                                   hn::Vec<DI>& first) {
     const Lane cells(v.cells[k]);
@@ -197,7 +200,7 @@ struct VolumePipeline {
     first = first_floats(cell, hn::Set(DI(), v.floats[k]), hn::Set(DI(), v.start[k]));
     return cell.fraction;
   }
-  /// Where the pairs at `to` of the ring look up; `root`: of the tangent of theta_h.
+  /// Finds the places of the pairs at `to` of the ring; `root` is the root of theta_h's tangent.
   template <bool kRoots>
   HWY_INLINE void place(const FactoredPlan::VolumeAndLine& v, const Tangents& t, Lane root, std::size_t to) {
     const Lane d = kRoots && v.root[0] ? sqrt(t.difference) : t.difference;
@@ -213,14 +216,14 @@ struct VolumePipeline {
   }
 
 #if BURNISH_TARGET_IS_AVX3
-  /// The numbers of pairs k and k + 4, eight times each.
+  /// Returns the numbers of pairs k and k + 4, eight times each.
   template <std::int32_t k>
   static HWY_INLINE Lane of_two(const float* from) {
     alignas(64) static constexpr std::int32_t kWhich[] = {
         k, k, k, k, k, k, k, k, k + 4, k + 4, k + 4, k + 4, k + 4, k + 4, k + 4, k + 4};
     return Lane(hn::TableLookupLanes(load(from).raw, hn::SetTableIndices(D(), kWhich)));
   }
-  /// Between the volume's rows, the two nodes of pairs i + k and i + k + 4.
+  /// Interpolates between the volume's rows and layers: the two nodes of pairs i + k and i + k + 4.
   template <std::int32_t k>
   HWY_INLINE Lane between_rows(const VolumeRows& rows, std::size_t i) const {
     const float *const node = rows.at(volume[i + k]), *const other = rows.at(volume[i + k + 4]);
@@ -231,11 +234,11 @@ struct VolumePipeline {
                           load_nodes(node + above_it, other + above_it), across);
     return mix(low, high, of_two<k>(y + i));
   }
-  /// The two nodes of the line.
+  /// Returns the two nodes of the line.
   HWY_INLINE Lane along_line(const VolumeRows& rows, std::size_t i) const {
     return load_nodes(rows.at(line[i]), rows.at(line[i + 4]));
   }
-  /// The quads of pairs i + k, + 4, + 8 and + 12: VolumeRows::product() with two pairs a vector, then four.
+  /// Returns the quads of pairs i + k, + 4, + 8 and + 12: VolumeRows::product() with two pairs a vector, then four.
   template <std::int32_t k>
   HWY_INLINE Lane quads(const VolumeRows& rows, std::size_t i) const {
     const Lane low = between_rows<k>(rows, i), high = between_rows<k + 8>(rows, i);
@@ -249,7 +252,7 @@ struct VolumePipeline {
     return rows.product(volume[i], line[i], x[i], y[i], z[i], along[i]);
   }
 #if HWY_MAX_BYTES >= 32
-  /// The quads of pairs i + k and i + k + 4.
+  /// Returns the quads of pairs i + k and i + k + 4.
   template <std::size_t k>
   HWY_INLINE Lane quads(const VolumeRows& rows, std::size_t i) const {
     return Lane(hn::Combine(D(), quad(rows, i + k + 4).raw, quad(rows, i + k).raw));
@@ -297,7 +300,7 @@ struct VolumePipeline {
       transpose(part, value);
 #endif
       t = next;
-      // 0 below the horizon, not-a-number of no directions
+      // The value is 0 below the horizon, and not-a-number where a vector is no direction.
       const Lane lit = load(above + at);
       const auto is_above = hn::Gt(lit.raw, hn::Zero(D()));
       for (Lane& channel : value) channel = Lane(hn::IfThenElse(is_above, channel.raw, (lit - lit).raw));

@@ -23,7 +23,7 @@ void require(const char* what, double value, double least, double most) {
     throw Error(fmt::format("edit: expected {} in [{}, {}], found {}", what, least, most, value));
 }
 
-// Where along [0, 1] the value is found that `u` gets, the angle's tangent divided by `factor`.
+// Returns the place in [0, 1] whose value moves to u when the angle's tangent is multiplied by `factor`.
 double widened(double u, const Warp& warp, double factor) {
   return warp.forward(std::min(warp.inverse(u) / factor, 1.0));
 }
@@ -38,7 +38,7 @@ Between between(double u, int nodes) {
   return {static_cast<std::size_t>(low), at - low};
 }
 
-// Logarithms of a table whose x runs over theta_h, resampled.
+// Widens a table of logarithms whose x runs over theta_h, by resampling its rows.
 std::vector<float> widened_rows(const Table& table, double factor) {
   const auto width = static_cast<std::size_t>(table.layout.width),
              channels = static_cast<std::size_t>(table.channels);
@@ -56,7 +56,7 @@ std::vector<float> widened_rows(const Table& table, double factor) {
   return result;
 }
 
-// The same of a disk, along its radii.
+// Widens a disk of logarithms along its radii, by bilinear resampling.
 std::vector<float> widened_disk(const Table& table, double factor) {
   const auto width = static_cast<std::size_t>(table.layout.width),
              channels = static_cast<std::size_t>(table.channels);
@@ -81,13 +81,15 @@ std::vector<float> widened_disk(const Table& table, double factor) {
   return result;
 }
 
-// A lobe's mean albedo, were its scale 1: views equally spaced in cos^2 up to 60 degrees, turned by the golden angle.
+// Returns a lobe's mean albedo at scale 1, over views equally spaced in cos^2 up to 60 degrees and turned by the
+// golden angle.
 std::vector<double> albedo_of(const FactoredBrdf& model, std::vector<FactorUse> factors) {
   const auto channels = model.channels();
   const FactoredBrdf lobe(channels, {model.tables().begin(), model.tables().end()},
                           {{.scale = std::vector<double>(channels, 1), .factors = std::move(factors)}});
   std::vector<double> sum(channels), f(channels);
   for (int view = 0; view < kViews; ++view) {
+    // The albedo integrates f cos(theta_i) over the half vector quadrature of each view.
     const double theta_o = std::acos(std::sqrt(1 - 0.75 * (view + 0.5) / kViews));
     const Vec3 wo = spherical_direction(theta_o, kGoldenAngle * view);
     for (const auto& [wi, weight] : half_vector_quadrature(wo, 24, 96)) {
@@ -98,13 +100,15 @@ std::vector<double> albedo_of(const FactoredBrdf& model, std::vector<FactorUse> 
   return sum;
 }
 
-// Turned about the grey axis, with less chroma where a channel would leave [0, 1], or [0, its largest].
+// Turns a colour about the grey axis by an angle, with less chroma where a channel would leave [0, 1], or [0, its
+// largest].
 std::vector<double> turned(std::span<const double> rgb, double angle) {
   const double mean = (rgb[0] + rgb[1] + rgb[2]) / 3, most = std::max(1.0, std::ranges::max(rgb));
   const double cosine = std::cos(angle), sine = std::sin(angle) / std::sqrt(3.0);
   std::vector<double> result(3);
   double part = 1;
   for (std::size_t c = 0; c < 3; ++c) {
+    // The rotation acts on the chroma, the difference to grey. `part` is how much of it stays inside the range.
     result[c] = cosine * (rgb[c] - mean) + sine * (rgb[(c + 2) % 3] - rgb[(c + 1) % 3]);
     if (result[c] < 0) part = std::min(part, -mean / result[c]);
     if (result[c] > 0) part = std::min(part, (most - mean) / result[c]);
@@ -114,6 +118,7 @@ std::vector<double> turned(std::span<const double> rgb, double angle) {
 }
 
 void turn(const FactoredBrdf& model, Lobe& lobe, double angle) {
+  // The lobe's albedo colour is turned, and its scale takes the ratio to the albedo at scale 1.
   const std::vector<double> unit = albedo_of(model, lobe.factors);
   std::vector<double> colour = unit;
   for (std::size_t c = 0; c < colour.size(); ++c) colour[c] *= lobe.scale[c];
@@ -150,11 +155,11 @@ FactoredBrdf edited(const FactoredBrdf& model, const Edit& edit) {
   }
   if (edit.roughness == 1) return {model.channels(), std::move(tables), std::move(lobes)};
 
-  // everything as logarithms, which tables are stored from
+  // Tables are stored from logarithms, so everything becomes one.
   for (Table& table : tables)
     std::ranges::transform(table.values, table.values.begin(), [](float v) { return std::log(v); });
   for (Lobe& lobe : lobes)
-    for (double& s : lobe.scale) s = std::log(s);  // of 0 it is -inf, and 0 again in the end
+    for (double& s : lobe.scale) s = std::log(s);  // the logarithm of 0 is -inf, which becomes 0 again
   widen(model, tables, edit.roughness);
   return from_log_tables(model.channels(), std::move(tables), std::move(lobes));
 }

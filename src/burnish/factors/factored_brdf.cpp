@@ -21,7 +21,7 @@ bool depends_on_azimuth(const TableLayout& layout) noexcept {
   return layout.shape == TableShape::disk;
 }
 
-// The use that swapping wi and wo turns `use` into; nothing where there is none.
+// Returns the use that swapping wi and wo turns `use` into; nothing where there is none.
 std::optional<FactorUse> swapped_use(const FactorUse& use, const TableLayout& layout) noexcept {
   const auto x = swapped(use.projection, depends_on_azimuth(layout));
   const int projections = projection_count(layout.shape);
@@ -31,10 +31,12 @@ std::optional<FactorUse> swapped_use(const FactorUse& use, const TableLayout& la
   return FactorUse{.table = use.table, .projection = *x, .projection_y = *y, .projection_z = *z};
 }
 
-// A fit far too rough can leave an unbounded product in a direction without data; floats end at e^88.
+// Largest logarithm of a scale. A fit that is far too rough can leave an unbounded product in a direction without
+// data; floats end at e^88.
 constexpr double kMaxLogScale = 88;
 
 double lookup(const Table& table, const Lookup& at, std::size_t channel) noexcept {
+  // Interpolates linearly along each axis: x within a row, y between rows, z between layers.
   const auto step = table.channels;
   const std::size_t c = step == 1 ? 0 : channel;
   const float* node = table.values.data() + static_cast<std::size_t>(at.node) * step + c;
@@ -72,7 +74,7 @@ void check_stored(const Table& table) {
                             to_string(table.format), *rounded, *value));
 }
 
-/// Names, sizes and values.
+/// Checks names, sizes and values; throws Error.
 void check_tables(std::span<const Table> tables, std::size_t channels) {
   std::set<std::string> names;
   for (const Table& table : tables) {
@@ -99,8 +101,8 @@ void check_scales(const Lobe& lobe, std::size_t channels) {
       throw Error(fmt::format("lobe: expected finite scales >= 0, found {}", s));
 }
 
-// For each channel the logarithm that becomes 1: of its largest value. In rgb9e5 channels share an exponent:
-// there they are brought to one mean, and the largest value of all becomes 1.
+// Returns for each channel the logarithm that is divided out: that of its largest value, which becomes 1. Channels of
+// rgb9e5 share an exponent, so they are brought to one mean, and the largest value of all becomes 1.
 std::vector<double> logs_of_one(const Table& table) {
   const auto channels = table.channels;
   std::vector<double> largest(channels, -std::numeric_limits<double>::infinity()), mean(channels, 0);
@@ -138,7 +140,8 @@ FactoredBrdf::FactoredBrdf(std::size_t channels, std::vector<Table> tables, std:
   for (const Lobe& lobe : lobes_) {
     check_scales(lobe, channels);
 
-    // order the factors so that those exchanged by swapping stand side by side
+    // Swapping wi and wo exchanges some factors of one table. They are put side by side as pairs; a factor that
+    // swapping leaves alone is reciprocal by itself, and any other makes the model not reciprocal.
     std::vector<FactorUse> rest = lobe.factors, pairs, singles;
     while (!rest.empty()) {
       const FactorUse use = rest.front();
@@ -162,7 +165,7 @@ FactoredBrdf::FactoredBrdf(std::size_t channels, std::vector<Table> tables, std:
       }
     }
 
-    // pairs first; lookups at one place are found once
+    // Pairs come first. Lookups that always fall on one place are located once.
     pair_counts_.push_back(pairs.size() / 2);
     pairs.insert(pairs.end(), singles.begin(), singles.end());
     std::vector<std::size_t>& place_of = place_of_.emplace_back();
@@ -181,13 +184,14 @@ bool FactoredBrdf::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   std::fill(f.begin(), f.end(), 0.0);
   if (wi.z <= 0 || wo.z <= 0) return true;
 
-  // every distinct place once
+  // Every distinct place is located once for the pair of directions.
   std::array<Lookup, kMaxPlaces> places;     // touched up to their count,
   std::array<double, kMaxChannels> product;  // up to channels_ only
   for (std::size_t p = 0; p < std::min(kMaxPlaces, places_.size()); ++p)
     places[p] = locate(layout_of(places_[p]), places_[p], wi, wo);
 
-  // sum over lobes of scale times pairs times the other factors [HomomorphicBrdf, eq. 4]
+  // f is the sum over lobes of scale times pairs times the other factors [HomomorphicBrdf, eq. 4]. The two values of
+  // a pair are multiplied first, so that swapping wi and wo changes no bit.
   const auto channels = channels_;
   for (std::size_t j = 0; j < lobes_.size(); ++j) {
     for (std::size_t c = 0; c < channels; ++c) product[c] = lobes_[j].scale[c];
@@ -226,6 +230,8 @@ std::size_t FactoredBrdf::table_bytes() const noexcept {
 }
 
 std::size_t FactoredBrdf::bytes() const noexcept {
+  // Bytes are those of the tables, and four for each number besides: warps that are not the identity, scales, and
+  // coefficients of projections.
   std::size_t parameters = 0;
   for (const Table& table : tables_) {
     parameters += table.layout.warp.kind != WarpKind::identity;
@@ -248,9 +254,10 @@ std::size_t FactoredBrdf::bytes() const noexcept {
 std::vector<double> store_log_table(Table& table) {
   check_format(table);
   const bool floored = table.format == TableFormat::half || table.format == TableFormat::single;
-  // what the other formats make of a smaller value is their own floor
+  // The other formats round a smaller value to their own floor.
   const double floor = floored ? kTableFloor : std::numeric_limits<float>::min();
   std::vector<double> divided = logs_of_one(table);
+  // Each channel's largest value becomes 1; smaller values than the floor are raised to it, then all are rounded.
   for (std::size_t i = 0; i < table.values.size(); ++i)
     table.values[i] =
         static_cast<float>(std::max(std::exp(table.values[i] - divided[i % divided.size()]), floor));
@@ -274,6 +281,7 @@ FactoredBrdf from_stored_tables(std::size_t channels, std::vector<Table> tables,
                                 std::span<const std::vector<double>> divided, std::vector<Lobe> lobes) {
   for (Lobe& lobe : lobes) {
     for (const FactorUse& use : lobe.factors) {
+      // A lobe's scale takes back what storing divided out of each of its tables.
       const std::vector<double>& logs = divided[use.table];
       for (std::size_t c = 0; c < lobe.scale.size(); ++c) lobe.scale[c] += logs[logs.size() == 1 ? 0 : c];
     }
@@ -289,7 +297,7 @@ std::string model_expression(const FactoredBrdf& brdf) {
     for (std::size_t k = 0; k < lobe.factors.size(); ++k) {
       const FactorUse& use = lobe.factors[k];
       const Table& table = brdf.table_of(use);
-      // where only the polar angle counts, say so
+      // A line over the difference vector depends on its polar angle alone, which the text says.
       const bool angle = table.layout.shape == TableShape::line && use.projection == kProjectDifference;
       text += fmt::format("{}{}({}", k ? " " : "", table.name, angle ? "theta_d" : to_string(use.projection));
       const int axes = projection_count(table.layout.shape);

@@ -1,5 +1,5 @@
-// From a position along a table's axis to nodes and weights, each written once, for the number types and with
-// the functions of parameterization/projection-inl.h, and
+// Maps a position along a table's axis to nodes and weights. Each formula is written once, for the number types and
+// with the functions of parameterization/projection-inl.h, and
 //   whole(x)   the integer part of x >= 0, as a number
 // No include guard: see there.
 
@@ -16,7 +16,7 @@ FORMULA_INLINE Cell<T> cell_of(const T& position, const T& last) {
   return {node, named("f", at - node)};
 }
 
-/// Between two values.
+/// Interpolates linearly between two values.
 template <class V, class T>
 FORMULA_INLINE V mix(const V& low, const V& high, const T& fraction) {
   return named("value", mul_add(fraction, high - low, low));

@@ -32,7 +32,7 @@ struct ExprPair {
   ExprPair(const ExprVector& wi, const ExprVector& wo)
       : sum(named("sum", wi + wo)), apart(named("apart", wi - wo)) {}
   Expr sum_length() const { return length(sum.x, sum.y, sum.z); }
-  /// Of roots that theta_d and theta_h take too.
+  /// Returns |d| |s_xy|, from roots that theta_d and theta_h take too.
   Expr azimuth_size() const {
     return named("r", length(apart.x, apart.y, apart.z)) * named("r", length(sum.x, sum.y));
   }
@@ -42,7 +42,7 @@ ExprVector direction(const char* name) {
   return ExprVector(Expr::input(name, ValueType::vector));
 }
 
-// x and y of the projected vector; a polar angle alone has none.
+// The polar angle and x, y of a projected vector; a polar angle alone has no x and y.
 struct Projected {
   Polar<Expr> polar;
   Expr x, y;
@@ -105,6 +105,7 @@ std::array<Expr, 3> position_expressions(const TableLayout& layout, const Factor
             axes > 1 ? line_position(use.projection_y, layout.warp_y, y) : Expr(0.0),
             axes > 2 ? line_position(use.projection_z, layout.warp_z, z) : Expr(0.0)};
   }
+  // A disk's position is the middle plus (x, y) times half the size over r, warped.
   const Projected at = project_expression(use.projection, true);
   const Expr stretch = named("stretch", stretched(layout.warp, 0.5 * x.size, at.polar));
   const auto along = [&](const Expr& component, const TableAxis& axis) {

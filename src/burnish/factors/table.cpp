@@ -18,7 +18,7 @@ struct Place {
   double fraction;
 };
 
-// Where u in [0, 1] falls among n nodes.
+// Returns the cell of u in [0, 1] among n nodes, and how far in it u is.
 Place place(double u, int n) noexcept {
   const auto cell = definition::cell_of(u * (n - 1), n - 1.0);
   return {static_cast<int>(cell.node), cell.fraction};
@@ -39,10 +39,12 @@ TableShape parse_table_shape(std::string_view name) {
 
 Lookup locate(const TableLayout& layout, const FactorUse& use, Vec3 wi, Vec3 wo) noexcept {
   if (layout.shape == TableShape::disk) {
+    // A disk maps the projected direction to the unit disk in the middle of the square of nodes.
     const DiskPoint p = to_disk(project(use.projection, wi, wo), layout.warp);
     const Place x = place(0.5 + 0.5 * p.x, layout.width), y = place(0.5 + 0.5 * p.y, layout.height);
     return {y.node * layout.width + x.node, x.fraction, y.fraction};
   }
+  // Every other axis maps tan(theta / 2) of its projection through its warp.
   const Place x = place(layout.warp.forward(project_tan_half(use.projection, wi, wo)), layout.width);
   if (layout.shape == TableShape::line) return {x.node, x.fraction, 0};
   const Place y = place(layout.warp_y.forward(project_tan_half(use.projection_y, wi, wo)), layout.height);
@@ -53,6 +55,7 @@ Lookup locate(const TableLayout& layout, const FactorUse& use, Vec3 wi, Vec3 wo)
 }
 
 Vec3 node_direction(const TableLayout& layout, int x, int y) noexcept {
+  // A node's place on the line or disk is mapped back to a direction: the inverse of locate().
   const double u = static_cast<double>(x) / (layout.width - 1);
   if (layout.shape == TableShape::line) return from_disk({u, 0}, layout.warp);
   const double v = static_cast<double>(y) / (layout.height - 1);

@@ -23,7 +23,7 @@ constexpr std::array<std::string_view, 4> kNames{"half", "float", "rgb9e5", "uno
 
 std::uint16_t to_half(float value) noexcept {
   const auto bits = Imath::half(std::min(value, 65504.0f)).bits();
-  return std::max<std::uint16_t>(bits, 1);  // the smallest subnormal
+  return std::max<std::uint16_t>(bits, 1);  // the smallest subnormal, as values stay positive
 }
 
 float from_half(std::uint16_t bits) noexcept {
@@ -40,22 +40,24 @@ float from_unorm8(std::uint8_t byte) noexcept {
   return static_cast<float>(byte) / 255.0f;
 }
 
-// [EXT_texture_shared_exponent]: mantissas of N bits, exponents of bias B, the largest exponent E.
+// Names of [EXT_texture_shared_exponent]: mantissas of N bits, exponents of bias B, the largest exponent E.
 constexpr int kMantissaBits = 9, kExponentBias = 15, kMaxExponent = 31;
 constexpr int kMantissaMask = (1 << kMantissaBits) - 1;
 
-// The value of one mantissa step.
+// Returns the value of one mantissa step.
 float step_of(int exponent) noexcept {
   return std::ldexp(1.0f, exponent - kExponentBias - kMantissaBits);
 }
 
 std::uint32_t to_rgb9e5(const float* rgb) noexcept {
+  // The shared exponent is the smallest that holds the largest channel, also after rounding.
   const float most = static_cast<float>(kMantissaMask) * step_of(kMaxExponent);
   const float largest = std::min(std::max({rgb[0], rgb[1], rgb[2]}), most);
   int exponent = std::max(-kExponentBias - 1, std::ilogb(largest)) + 1 + kExponentBias;
   if (std::lround(largest / step_of(exponent)) > kMantissaMask) ++exponent;
   auto packed = static_cast<std::uint32_t>(exponent) << (3 * kMantissaBits);
   for (int c = 0; c < 3; ++c) {
+    // Mantissas are at least 1, as values stay positive.
     const long mantissa = std::clamp(std::lround(std::min(rgb[c], most) / step_of(exponent)), 1l,
                                      static_cast<long>(kMantissaMask));
     packed |= static_cast<std::uint32_t>(mantissa) << (c * kMantissaBits);

@@ -34,12 +34,13 @@ const Calls kRustMath = {
     {Op::to_integer, {"({0}) as i32"}}, {Op::to_real, {"({0}) as f32"}}};
 // clang-format on
 
+// Returns calls with some of them replaced.
 Calls with(Calls calls, const Calls& others) {
   for (const auto& [op, call] : others) calls[op] = call;
   return calls;
 }
 
-// The GLSL names that generated C++ uses. It has its own vec3: CUDA's float3 has no operators.
+// The GLSL names that generated C++ uses. It has its own vec3, since CUDA's float3 has no operators.
 constexpr std::string_view kCppHeader = R"(
 #ifndef BURNISH_SHADER_TYPES
 #define BURNISH_SHADER_TYPES
@@ -75,7 +76,7 @@ BURNISH_FUNCTION float pow(float a, float b) { return ::powf(a, b); }
 #endif
 )";
 
-// What languages share.
+// Returns the patterns that languages share.
 Language c_like(std::string_view name, std::string_view suffix) {
   return {.name = name,
           .suffix = suffix,
@@ -117,6 +118,7 @@ Language c_like(std::string_view name, std::string_view suffix) {
           .made = {}};
 }
 
+// C: static functions of floats, without textures or vectors.
 Language c() {
   Language l = c_like("c", "f");
   l.definition = "static inline {0} {1}({2}) {{\n{3}}}\n";
@@ -130,6 +132,7 @@ Language c() {
   return l;
 }
 
+// CUDA: C's functions for the device.
 Language cuda() {
   Language l = c_like("cuda", "f");
   l.definition = "__device__ inline {0} {1}({2}) {{\n{3}}}\n";
@@ -141,6 +144,7 @@ Language cuda() {
   return l;
 }
 
+// C++ and CUDA through macros: the GLSL names with a vec3 of its own, and tables as arrays.
 Language cpp() {
   Language l = c_like("cpp", "f");
   l.vector = "vec3";
@@ -160,6 +164,7 @@ Language cpp() {
   return l;
 }
 
+// GLSL 4.50.
 Language glsl() {
   Language l = c_like("glsl", "");
   l.vector = "vec3";
@@ -187,6 +192,7 @@ Language glsl() {
   return l;
 }
 
+// GLSL ES 3.00: GLSL with declared precisions, without 1-D textures, and with exp2 in place of ldexp.
 Language glsl_es() {
   Language l = glsl();
   l.name = "glsl_es";
@@ -201,6 +207,7 @@ Language glsl_es() {
   return l;
 }
 
+// HLSL: textures and samplers have registers.
 Language hlsl() {
   Language l = c_like("hlsl", "");
   l.vector = "float3";
@@ -227,6 +234,7 @@ Language hlsl() {
   return l;
 }
 
+// MSL: textures stand in a struct that is an argument.
 Language msl() {
   Language l = c_like("msl", "f");
   l.vector = "float3";
@@ -256,6 +264,7 @@ Language msl() {
   return l;
 }
 
+// Rust: methods in place of functions, types after names.
 Language rust() {
   Language l = c_like("rust", "f32");
   l.scalar = "f32";
@@ -271,6 +280,7 @@ Language rust() {
   return l;
 }
 
+// WGSL: types after names, select() for conditions, textures and samplers have bindings.
 Language wgsl() {
   Language l = c_like("wgsl", "");
   l.scalar = "f32";
@@ -313,7 +323,7 @@ constexpr std::string_view channels_of(ValueType type) noexcept {
   return type == ValueType::vector ? "rgb" : "r";
 }
 
-// Of a texture of as many dimensions as there are coordinates.
+// Reads a texture that has as many dimensions as there are coordinates.
 std::string read_at(std::string_view of_two, std::string_view of_three, std::string_view texture,
                     std::span<const std::string> at, ValueType type) {
   if (at.size() == 2) return fmt::format(fmt::runtime(of_two), texture, at[0], at[1], channels_of(type));
@@ -343,6 +353,7 @@ std::string_view Language::type_name(ValueType type, bool half) const noexcept {
 }
 
 std::string Language::literal(double value, bool half) const {
+  // A literal has the fewest digits that give the float, or nine where the value is no float.
   const auto single = static_cast<float>(value);
   std::string digits =
       static_cast<double>(single) == value ? fmt::format("{}", single) : fmt::format("{:.9g}", value);

@@ -17,36 +17,37 @@ namespace burnish {
 
 namespace {
 
-constexpr double kFullCosine = 0.15;  // of nodes that are not noisier than others
-constexpr double kUpright = 1e-12;    // theta_h of rounding
-constexpr double kGuessWeight = 0.1;  // of what stands where nothing was measured
+constexpr double kFullCosine = 0.15;  // cosine from which nodes are not noisier than others
+constexpr double kUpright = 1e-12;    // theta_h below this is rounding
+constexpr double kGuessWeight = 0.1;  // weight of values where nothing was measured
 
 constexpr std::size_t kNeighbours = KrigedNodes::kNeighbours;
 constexpr std::size_t kCentresTogether = 64;     // a thread at a time
 constexpr std::size_t kSolvedNumbers = 1 << 24;  // at most, of all centres: spectra have many channels
-constexpr double kCalibrationPrior = 2;          // nodes as surprising as expected
-constexpr double kMostSurprise = 16;             // of one node
+constexpr double kCalibrationPrior = 2;          // number of nodes with the expected deviation, as a prior
+constexpr double kMostSurprise = 16;             // largest standardized square of one node
 constexpr double kLeastNoise = 1e-5;             // of the variance
 constexpr double kLeastPivot = 1e-9;             // of the variance
 
-// Blocks of nodes whose likelihood is looked at.
+// Blocks of nodes whose likelihood is maximized.
 constexpr std::size_t kNearBlocks = 16, kNearNodes = 64;
 constexpr std::size_t kFewNearBlocks = 6, kSpreadNodes = 160;
 constexpr TreePoint kNear{3, 1, 0.5, 0}, kNearAnisotropic{1.5, 1.5, 1, 1};
 
-// Cells along theta_h, theta_d and phi_d; nodes leave a gap where they touch none of a cell's corners.
+// Cells along theta_h, theta_d and phi_d. There is a gap where nodes touch none of a cell's corners.
 constexpr std::array<std::size_t, 3> kCells{48, 12, 6};
 
 double least_cosine(const DirectionPair& pair) noexcept {
   return std::min(pair.wi.z, pair.wo.z);
 }
 
-/// Nodes near the horizon are noisier than others.
+/// Returns a node's weight: nodes near the horizon are noisier than others.
 double weight_of(const DirectionPair& pair) noexcept {
   return std::min(1.0, least_cosine(pair) / kFullCosine);
 }
 
-/// Covariances are floats: less noise than their rounding would leave no matrix positive.
+/// Returns the variance of noise. Covariances are floats, so less noise than their rounding would make the matrix
+/// indefinite.
 double noise_variance(const LogCovariance& covariance, double units) noexcept {
   return std::max(units * covariance.noise * covariance.noise, kLeastNoise * covariance.variance());
 }
@@ -64,6 +65,7 @@ Logarithms logarithms_of(const MeasuredNodes& nodes) {
   result.mean.assign(channels, 0);
   result.largest.assign(channels, 0);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
+    // Nodes within a degree of the horizon are left out. A node's variance of noise is 1 / (weight * weight_of).
     const DirectionPair& pair = nodes.samples.pairs[i];
     if (!(least_cosine(pair) > KrigedNodes::kLeastCosine)) continue;
     result.node.push_back(static_cast<std::uint32_t>(i));
@@ -78,12 +80,13 @@ Logarithms logarithms_of(const MeasuredNodes& nodes) {
   }
   const std::size_t count = result.measured.size();
   if (count == 0) throw Error("nodes: expected some that are not within a degree of the horizon, found none");
+  // Each channel's mean is subtracted, so that the process has mean 0.
   for (double& mean : result.mean) mean /= static_cast<double>(count);
   for (std::size_t i = 0; i < count * channels; ++i) result.measured.logs[i] -= result.mean[i % channels];
   return result;
 }
 
-/// Indices of `count` of `size` things in an order as if by chance.
+/// Returns indices of `count` of `size` things in a random order that depends on the seed alone.
 std::vector<std::size_t> drawn(std::size_t count, std::size_t size, std::uint64_t seed) {
   std::vector<std::size_t> order(size);
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -96,7 +99,8 @@ std::vector<std::size_t> drawn(std::size_t count, std::size_t size, std::uint64_
   return order;
 }
 
-/// The corners of cells around a place in the coordinates (sqrt(tan(theta_h/2)), tan(theta_d/2), tan(phi_d/2)).
+/// Returns the corners of the cell around a place in the coordinates (sqrt(tan(theta_h/2)), tan(theta_d/2),
+/// tan(phi_d/2)).
 std::array<std::size_t, 8> corners_of(Vec3 wi, Vec3 wo) noexcept {
   const HalfDiff angles = to_half_diff(wi, wo);
   const double phi_d = angles.theta_h < kUpright ? 0 : std::abs(std::remainder(angles.phi_d, kPi));
@@ -112,7 +116,7 @@ std::array<std::size_t, 8> corners_of(Vec3 wi, Vec3 wo) noexcept {
   return corners;
 }
 
-/// The directions of a corner of cells.
+/// Returns the directions of a corner of cells.
 DirectionPair directions_of(std::size_t corner) noexcept {
   const auto part = [](std::size_t index, std::size_t axis) {
     return static_cast<double>(index) / static_cast<double>(kCells[axis] - 1);
@@ -130,11 +134,12 @@ TreePoint place_of(Vec3 wi, Vec3 wo, bool isotropic) noexcept {
   const HalfDiff angles = to_half_diff(wi, wo);
   const double half = std::sqrt(std::tan(angles.theta_h / 2)), difference = std::tan(angles.theta_d / 2);
   if (isotropic) {
-    // phi_d folded by exchange and reflection; where h is the normal no direction stands out
+    // Exchange and reflection fold phi_d to [0, pi/2]. Where h is the normal, phi_d is not defined.
     const double phi_d = angles.theta_h < kUpright ? 0 : std::abs(std::remainder(angles.phi_d, kPi));
     return {half, difference, std::sin(angles.theta_d) * phi_d / kHalfPi, 0};
   }
-  // where h is the normal only the sum of the azimuths is defined
+  // Where h is the normal, only the sum of the azimuths is defined. Doubling it makes the coordinates even in the
+  // exchange.
   const double turn = 2 * (angles.phi_h + angles.phi_d);
   return {half * std::cos(angles.phi_h), half * std::sin(angles.phi_h), difference * std::cos(turn),
           difference * std::sin(turn)};
@@ -150,7 +155,7 @@ KrigedNodes::KrigedNodes(const MeasuredNodes& nodes, const LogCovariance& covari
   for (const TreePoint& place : all.measured.places) places.push_back(scaled(place));
   tree_ = KdTree(places);
 
-  // everything in the tree's order: neighbours are near in memory too
+  // All arrays are in the tree's order, so that neighbours are near in memory too.
   const std::size_t channels = all.measured.channels;
   measured_.channels = channels;
   for (const std::size_t i : tree_.order()) {
@@ -174,10 +179,11 @@ using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColM
                              static_cast<int>(kNeighbours), static_cast<int>(kNeighbours)>;
 using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, static_cast<int>(kNeighbours), 1>;
 
-/// Places by axis.
+/// Coordinates of the neighbours, axis by axis.
 using Places = std::array<Floats, LogCovariance::kAxes>;
 
-/// Covariances of a place with the first n of some places.
+/// Returns the covariances of a place with the first n of some places: level^2 + sum over terms of spread^2 (1 +
+/// sqrt(3) r) exp(-sqrt(3) r) [Rasmussen 2006, eq. 4.17].
 Floats prior_covariances(const LogCovariance& covariance, const Places& at, const std::array<float, 4>& place,
                          Eigen::Index n) noexcept {
   Floats sum;
@@ -203,19 +209,19 @@ std::array<float, 4> floats_of(const TreePoint& place) noexcept {
 
 }  // namespace
 
-/// The nodes nearest to a place, in the tree's order, and the factor of their covariances K.
+/// The nodes nearest to a place, in the tree's order, and the Cholesky factor of their covariances K.
 struct KrigedNodes::Neighbourhood {
   std::size_t count = 0;
   std::array<std::uint32_t, kNeighbours> nodes;
   Places at;
   Square factor;
 
-  /// Covariances of a place with these nodes.
+  /// Returns the covariances of a place with these nodes.
   Column towards(const LogCovariance& covariance, const TreePoint& place) const noexcept {
     const auto n = static_cast<Eigen::Index>(count);
     return prior_covariances(covariance, at, floats_of(place), n).head(n).cast<double>().matrix();
   }
-  /// K^-1 x, in place.
+  /// Replaces x by K^-1 x.
   void solve(Column& x) const noexcept {
     factor.template triangularView<Eigen::Lower>().solveInPlace(x);
     factor.template triangularView<Eigen::Lower>().adjoint().solveInPlace(x);
@@ -225,7 +231,7 @@ struct KrigedNodes::Neighbourhood {
 template <class Takes>
 KrigedNodes::Neighbourhood KrigedNodes::neighbourhood(const TreePoint& scaled_place,
                                                       const Takes& takes) const noexcept {
-  // The nearest nodes, in one order whatever the tree's walk.
+  // The nearest nodes are sorted, so that sums have one order however the tree is walked.
   std::array<KdTree::Neighbour, kNeighbours> found;
   Neighbourhood near;
   near.count = tree_.nearest(scaled_place, found, takes);
@@ -236,7 +242,8 @@ KrigedNodes::Neighbourhood KrigedNodes::neighbourhood(const TreePoint& scaled_pl
     for (std::size_t k = 0; k < place.size(); ++k) near.at[k][static_cast<Eigen::Index>(i)] = place[k];
   }
 
-  // The lower triangle of K: covariances of each node with those up to it, and its noise on the diagonal.
+  // The lower triangle of K holds the covariances of each node with those before it, and on the diagonal its variance
+  // with the noise.
   const auto n = static_cast<Eigen::Index>(near.count);
   near.factor.resize(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -246,7 +253,7 @@ KrigedNodes::Neighbourhood KrigedNodes::neighbourhood(const TreePoint& scaled_pl
     near.factor(i, i) = covariance_.variance() + measured_.variances[node];
   }
 
-  // Its Cholesky factor in place, a column at a time; the noise keeps pivots above rounding.
+  // K is factorized in place, column by column. The least pivot keeps rounding from making it indefinite.
   const double least = kLeastPivot * covariance_.variance();
   for (Eigen::Index j = 0; j < n; ++j) {
     const double pivot = std::sqrt(std::max(near.factor(j, j), least));
@@ -260,9 +267,9 @@ KrigedNodes::Neighbourhood KrigedNodes::neighbourhood(const TreePoint& scaled_pl
   return near;
 }
 
-// What all pairs near each centre are predicted with.
+// Computes K^-1 y of each centre's neighbours, with which all pairs near the centre are predicted.
 void KrigedNodes::solve_centres() {
-  // Every so many nodes in the tree's order, which spreads them as the nodes are spread.
+  // Every step-th node in the tree's order is a centre: so centres are spread as the nodes are.
   const std::size_t most = std::min(kCentres, kSolvedNumbers / (kNeighbours * measured_.channels) + 1);
   const std::size_t step = (measured_.size() - 1) / most + 1;
   std::vector<TreePoint> places;
@@ -275,6 +282,8 @@ void KrigedNodes::solve_centres() {
   solved_.resize(centres_.size() * count * channels);
   for_each_chunk(centres_.size(), kCentresTogether, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
+      // Each channel solves K x = y for the neighbours' logarithms y. The centre's own surprise is kept for
+      // calibration.
       const Neighbourhood near = neighbourhood(centres_.points()[c], [](std::size_t) { return true; });
       std::copy_n(near.nodes.begin(), count, near_.begin() + static_cast<std::ptrdiff_t>(c * count));
       for (std::size_t channel = 0; channel < channels; ++channel) {
@@ -294,15 +303,15 @@ void KrigedNodes::solve_centres() {
   calibrate(surprises);
 }
 
-/// The square by which a node differs from what its neighbours without it foretell, in units of the variance that they
-/// give it, the mean over the channels: ((K^-1 y)_i)^2 / (K^-1)_ii [Rasmussen 2006, eq. 5.12]. 1 where the node is not
-/// among the neighbours.
+/// Returns the square of a node's leave-one-out residual over its predicted variance, mean over the channels: ((K^-1
+/// y)_i)^2 / (K^-1)_ii [Rasmussen 2006, eq. 5.12]. Returns 1 where the node is not among the neighbours.
 double KrigedNodes::surprise_of(const Neighbourhood& near, std::uint32_t node,
                                 std::span<const float> solved) {
   const auto found = std::lower_bound(near.nodes.begin(),
                                       near.nodes.begin() + static_cast<std::ptrdiff_t>(near.count), node);
   const auto own = static_cast<std::size_t>(found - near.nodes.begin());
   if (own == near.count || *found != node) return 1;
+  // (K^-1)_ii is the squared length of L^-1 e_i.
   Column unit = Column::Zero(static_cast<Eigen::Index>(near.count));
   unit[static_cast<Eigen::Index>(own)] = 1;
   near.factor.template triangularView<Eigen::Lower>().solveInPlace(unit);
@@ -315,8 +324,8 @@ double KrigedNodes::surprise_of(const Neighbourhood& near, std::uint32_t node,
   return squares / (static_cast<double>(channels) * unit.squaredNorm());
 }
 
-/// What variances are multiplied by near each centre: the mean surprise of the nearest ones, outliers bounded, beside a
-/// prior of 1.
+/// Computes the factor of variances near each centre: the mean of the nearest standardized squares, bounded against
+/// outliers, with a prior of 1.
 void KrigedNodes::calibrate(std::span<const double> surprises) {
   calibration_.resize(centres_.size());
   for_each_chunk(centres_.size(), kCentresTogether, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -339,11 +348,14 @@ double KrigedNodes::value_of(double log, std::size_t channel) const noexcept {
 bool KrigedNodes::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   std::ranges::fill(f, 0.0);
   if (!(wi.z > 0 && wo.z > 0)) return true;
+  // Without shared neighbours, each pair solves its own.
   if (centres_.size() == 0) {
     eval_from(
         wi, wo, [](std::size_t) { return true; }, f);
     return true;
   }
+  // The nearest centre's neighbours predict: ln f = k^T (K^-1 y) with the covariances k of the pair with them
+  // [Rasmussen 2006, eq. 2.25].
   const TreePoint place = place_of(wi, wo, isotropic_);
   std::array<KdTree::Neighbour, 1> nearest;
   centres_.nearest(scaled(place), nearest, [](std::size_t) { return true; });
@@ -373,6 +385,7 @@ void KrigedNodes::eval_from(Vec3 wi, Vec3 wo, const std::function<bool(std::size
   if (!(wi.z > 0 && wo.z > 0)) return;
   const TreePoint place = place_of(wi, wo, isotropic_);
   const Neighbourhood near = neighbourhood(scaled(place), [&](std::size_t at) { return takes(node_[at]); });
+  // The weights K^-1 k do not depend on the channel; each prediction is their product with the logarithms.
   Column weights = near.towards(covariance_, place);
   near.solve(weights);
   for (std::size_t c = 0; c < f.size(); ++c) {
@@ -390,6 +403,7 @@ LogUncertainty KrigedNodes::uncertainty(Vec3 wi, Vec3 wo) const noexcept {
   const Column towards = near.towards(covariance_, place);
   Column weights = towards;
   near.solve(weights);
+  // The predictive variance is k(x, x) - k^T K^-1 k [Rasmussen 2006, eq. 2.26]; a reading adds its noise.
   const double variance = std::max(0.0, covariance_.variance() - weights.dot(towards));
   const double noise = noise_variance(covariance_, 1 / weight_of({wi, wo}));
   const double by = calibration({wi, wo});
@@ -398,7 +412,8 @@ LogUncertainty KrigedNodes::uncertainty(Vec3 wi, Vec3 wo) const noexcept {
 
 void KrigedNodes::covariances_with(const DirectionPair& one, std::span<const DirectionPair> others,
                                    std::span<double> covariances) const noexcept {
-  // Prior covariance less what the nodes tell of both [Rasmussen 2006, eq. 2.24].
+  // The posterior covariance is the prior one less k_a^T K^-1 k_b, which the nodes determine [Rasmussen 2006, eq.
+  // 2.24].
   const TreePoint place = place_of(one.wi, one.wo, isotropic_);
   const Neighbourhood near = neighbourhood(scaled(place), [](std::size_t) { return true; });
   Column weights = near.towards(covariance_, place);
@@ -427,7 +442,7 @@ std::vector<LogCovariance> likely_covariances(const MeasuredNodes& nodes) {
     for (std::size_t k = 0; k < place.size(); ++k) place[k] *= by[k];
   const KdTree tree(places);
 
-  // groups of near nodes, about nodes drawn by chance
+  // Groups of near nodes around randomly drawn nodes tell how rough the source is.
   std::vector<std::vector<std::size_t>> near;
   for (const std::size_t centre : drawn(kNearBlocks, places.size(), 1)) {
     std::array<KdTree::Neighbour, kNearNodes> found;
@@ -436,7 +451,7 @@ std::vector<LogCovariance> likely_covariances(const MeasuredNodes& nodes) {
     for (std::size_t i = 0; i < count; ++i) block.push_back(tree.order()[found[i].place]);
     std::ranges::sort(block);
   }
-  // some of them, and nodes from everywhere
+  // A few of these groups and a set of nodes from everywhere tell how the source varies between places.
   std::vector<std::vector<std::size_t>> spread(
       near.begin(), near.begin() + static_cast<std::ptrdiff_t>(std::min(kFewNearBlocks, near.size())));
   spread.push_back(drawn(kSpreadNodes, places.size(), 2));
@@ -445,6 +460,7 @@ std::vector<LogCovariance> likely_covariances(const MeasuredNodes& nodes) {
 }
 
 MeasuredNodes with_gaps_filled(const MeasuredNodes& fitted, const MeasuredNodes& all, BrdfRef function) {
+  // All corners of cells that hold a node are touched; the others are gaps.
   std::vector<std::uint8_t> touched(kCells[0] * kCells[1] * kCells[2]);
   for (const DirectionPair& pair : all.samples.pairs)
     if (least_cosine(pair) > KrigedNodes::kLeastCosine)
@@ -455,6 +471,7 @@ MeasuredNodes with_gaps_filled(const MeasuredNodes& fitted, const MeasuredNodes&
   std::vector<double> f(function.channels());
   for (std::size_t i = 0; i < touched.size(); ++i) {
     if (touched[i]) continue;
+    // Each gap above the horizon is filled with the function's value, a group of its own and little weight.
     const DirectionPair pair = directions_of(i);
     if (!(least_cosine(pair) > KrigedNodes::kLeastCosine) || !function.eval(pair.wi, pair.wo, f)) continue;
     filled.samples.pairs.push_back(pair);

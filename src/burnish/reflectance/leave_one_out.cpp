@@ -14,13 +14,13 @@ namespace burnish {
 namespace {
 
 constexpr std::size_t kMostAsked = 2000, kMostPredicting = 50'000, kAskedTogether = 64;
-constexpr double kFarthest = 1;  // difference of logarithms that counts
+constexpr double kFarthest = 1;  // largest difference of logarithms that counts
 
 constexpr auto kFew = static_cast<int>(LeaveOneOut::kPredicting);
 using FewSquare = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kFew, kFew>;
 using FewColumn = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kFew, 1>;
 
-/// [Rasmussen 2006, eq. 4.17], as LogCovariance says.
+/// Returns the covariance of two places [Rasmussen 2006, eq. 4.17], as LogCovariance states it.
 double covariance_between(const LogCovariance& covariance, const TreePoint& a, const TreePoint& b) noexcept {
   double sum = covariance.level * covariance.level;
   for (std::size_t t = 0; t < LogCovariance::kTerms; ++t) {
@@ -50,6 +50,7 @@ LeaveOneOut::LeaveOneOut(const Samples& samples, bool isotropic)
     for (std::size_t k = 0; k < LogCovariance::kAxes; ++k)
       scaled.back()[k] *= covariance_.inverse_length.back()[k];
   }
+  // All arrays are in the tree's order.
   tree_ = KdTree(scaled);
   for (const std::size_t i : tree_.order()) {
     number_.push_back(all[i]);
@@ -70,7 +71,7 @@ std::vector<KdTree::Neighbour> LeaveOneOut::nearest(std::size_t i, std::size_t c
 }
 
 LeaveOneOut::Miss LeaveOneOut::miss(std::size_t i, std::span<const std::uint8_t> left_out) const {
-  // covariances of the neighbours with each other and with the sample
+  // K holds the covariances of the neighbours with each other and their noise, k those with the sample.
   const std::vector<KdTree::Neighbour> near = nearest(i, kPredicting, left_out);
   const auto n = static_cast<Eigen::Index>(near.size());
   const double noise2 = covariance_.noise * covariance_.noise;
@@ -84,11 +85,13 @@ LeaveOneOut::Miss LeaveOneOut::miss(std::size_t i, std::span<const std::uint8_t>
     matrix(a, a) = covariance_.variance() + noise2;
     towards[a] = covariance_between(covariance_, place(a), places_[i]);
   }
+  // The weights are K^-1 k, and the variance of the difference is k(x, x) + noise - k^T K^-1 k [Rasmussen 2006, eq.
+  // 2.26].
   const Eigen::LLT<FewSquare, Eigen::Lower> factor(matrix);
   const FewColumn weights = factor.solve(towards);
   const double variance = std::max(noise2, covariance_.variance() + noise2 - weights.dot(towards));
 
-  // logarithms spread about the mean of the neighbours
+  // Logarithms are predicted about the mean of the neighbours [Rasmussen 2006, eq. 2.25].
   Miss miss;
   for (std::size_t c = 0; c < channels_; ++c) {
     double mean = 0, predicted = 0;
@@ -107,6 +110,7 @@ namespace {
 double mean_distance(const Samples& samples, bool isotropic) {
   const LeaveOneOut others(samples, isotropic);
   if (others.size() < 2 * LeaveOneOut::kPredicting) return 0;
+  // Every step-th sample is predicted, so that at most kMostAsked are.
   const std::size_t step = (others.size() - 1) / kMostAsked + 1, asked = (others.size() - 1) / step + 1;
   std::vector<double> distances(asked);
   for_each_chunk(asked, kAskedTogether, [&](std::size_t, std::size_t begin, std::size_t end) {

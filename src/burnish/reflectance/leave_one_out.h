@@ -11,26 +11,28 @@
 
 namespace burnish {
 
-/// Predicts each of some samples from the nearest others, by kriging ln(f + 1e-3) under the default LogCovariance:
-/// KrigedNodes with few neighbours and without a search for the likeliest covariance. It answers questions about samples.
+/// Predicts each sample from its nearest others, by kriging ln(f + 1e-3) under the default LogCovariance. Unlike
+/// KrigedNodes it uses few neighbours and does not search for the likeliest covariance. It answers questions about
+/// samples.
 /// Source: [Rasmussen 2006, eq. 2.25 and 2.26].
 class LeaveOneOut {
  public:
   static constexpr std::size_t kPredicting = 12;  ///< samples that one is predicted from
 
-  /// Of the samples whose cosines are both above KrigedNodes::kLeastCosine, taken as isotropic or not.
+  /// Prepares the samples whose cosines are both above KrigedNodes::kLeastCosine, taken as isotropic or not.
   LeaveOneOut(const Samples& samples, bool isotropic);
 
-  /// Samples in an order of their own, in which near ones are near.
+  /// Returns the number of samples. They have an order of their own, in which near ones are near.
   std::size_t size() const noexcept { return number_.size(); }
-  /// The index that a sample had.
+  /// Returns the index that a sample had.
   std::size_t number(std::size_t i) const noexcept { return number_[i]; }
 
-  /// At most `count` nearest others among those that are not left out, nearest first. left_out: [sample], or empty.
+  /// Returns at most `count` nearest others among those that are not left out, nearest first. left_out: [sample], or
+  /// empty.
   std::vector<KdTree::Neighbour> nearest(std::size_t i, std::size_t count,
                                          std::span<const std::uint8_t> left_out = {}) const;
 
-  /// How far off the prediction of a sample is.
+  /// The error of a sample's prediction.
   struct Miss {
     double square = 0;    ///< (difference of logarithms)^2 over its expected variance, mean over channels
     double distance = 0;  ///< |difference of logarithms|, mean over channels
@@ -49,12 +51,13 @@ class LeaveOneOut {
   std::vector<double> logs_;  // [sample][channel]
 };
 
-/// How far off samples are predicted by the others, |ln f - prediction| at most 1 each, the mean over up to 2,000 of
-/// up to 50,000 of them, once taken as isotropic and once as anisotropic. The smaller one is what they are.
+/// The errors of samples predicted from the others: |ln f - prediction|, at most 1 each, mean over up to 2,000 of up
+/// to 50,000 samples. They are taken once as isotropic and once as anisotropic; the smaller error tells which they
+/// are.
 struct IsotropyErrors {
   double isotropic = 0, anisotropic = 0;
 };
-/// 0 and 0 of fewer than 2 kPredicting samples, which do not tell. Deterministic.
+/// Computes both errors. They are 0 for fewer than 2 kPredicting samples, which do not tell. Deterministic.
 IsotropyErrors isotropy_errors(const Samples& samples);
 
 }  // namespace burnish

@@ -16,16 +16,16 @@ constexpr std::size_t kTerms = LogCovariance::kTerms, kAxes = LogCovariance::kAx
 
 // The search for the likeliest parameters, which are logarithms.
 constexpr int kSteps = 40;
-constexpr double kPrior = 1;  // what the square of a parameter's distance from its start counts
+constexpr double kPrior = 1;  // weight of the square of a parameter's distance from its start
 constexpr double kReach = 4;  // the largest such distance
 constexpr double kFirstStep = 0.1, kLargestStep = 0.5, kSmallestStep = 1e-3;
 constexpr double kFaster = 1.2, kSlower = 0.5;  // [Riedmiller 1993]
 
-/// The level, a spread for each term, a length for each coordinate that a term sees, the noise.
+/// The parameters: the level, a spread for each term, a length for each coordinate that a term sees, and the noise.
 constexpr std::size_t kMaxParameters = 1 + kTerms + kTerms * kAxes + 1;
 using Parameters = std::array<double, kMaxParameters>;
 
-/// Numbers of the parameters: a term has a length for each coordinate that the default gives one.
+/// The numbers of the parameters. A term has a length for each coordinate that the default gives one.
 struct ParameterNumbers {
   bool isotropic;
   std::array<std::array<bool, kAxes>, kTerms> sees{};
@@ -70,16 +70,16 @@ struct ParameterNumbers {
   }
 };
 
-/// Minus the logarithm of a likelihood, and its derivatives by the parameters.
+/// The negative log likelihood, and its derivatives by the parameters.
 struct Likelihood {
   double value = 0;
   Parameters gradient{};
 };
 
-/// Of one block: channels are independent and have the same covariance K,
+/// Computes the likelihood of one block. Channels are independent and have the same covariance K:
 ///   sum_c 1/2 y_c^T K^-1 y_c + channels/2 ln det K,
-/// and the derivative by a parameter is 1/2 tr(W dK), W = channels K^-1 - sum_c (K^-1 y_c)(K^-1 y_c)^T.
-/// [Rasmussen 2006, eq. 5.8 and 5.9]
+/// and the derivative by a parameter is 1/2 tr(W dK), W = channels K^-1 - sum_c (K^-1 y_c)(K^-1 y_c)^T [Rasmussen
+/// 2006, eq. 5.8 and 5.9].
 Likelihood likelihood_of(const LogMeasurements& measured, std::span<const std::size_t> block,
                          const LogCovariance& covariance, const ParameterNumbers& numbering) {
   const auto n = static_cast<Eigen::Index>(block.size());
@@ -97,7 +97,7 @@ Likelihood likelihood_of(const LogMeasurements& measured, std::span<const std::s
     return parts;
   };
 
-  // The matrix of covariances, and each term's exponential for the derivatives.
+  // K is filled with the covariances. Each term's spread^2 exp(-sqrt(3) r) is kept for the derivatives.
   Eigen::MatrixXd matrix(n, n), right(n, channels);
   std::array<Eigen::MatrixXd, kTerms> decay;
   for (Eigen::MatrixXd& of_term : decay) of_term.resize(n, n);
@@ -123,18 +123,20 @@ Likelihood likelihood_of(const LogMeasurements& measured, std::span<const std::s
     result.value = std::numeric_limits<double>::infinity();
     return result;
   }
+  // With K = L L^T, the value is half of y . K^-1 y, plus the sum of ln L_ii for each channel.
   const Eigen::MatrixXd solved = factor.solve(right);
   result.value = 0.5 * solved.cwiseProduct(right).sum();
   for (Eigen::Index i = 0; i < n; ++i)
     result.value += static_cast<double>(channels) * std::log(factor.matrixLLT()(i, i));
 
-  // The derivatives: of m(r) by the logarithm of a length 3 d^2 exp(-sqrt(3) r), d the part of r along it.
+  // Parameters are logarithms. The derivative of m(r) by that of a length is 3 d^2 exp(-sqrt(3) r), where d is the
+  // part of r along it; by that of a spread it doubles the term.
   Eigen::MatrixXd w = factor.solve(Eigen::MatrixXd::Identity(n, n)) * static_cast<double>(channels);
   w.noalias() -= solved * solved.transpose();
   Parameters& gradient = result.gradient;
   for (Eigen::Index j = 0; j < n; ++j) {
     for (Eigen::Index i = j; i < n; ++i) {
-      const double by = i == j ? 0.5 * w(i, j) : w(i, j);  // both triangles
+      const double by = i == j ? 0.5 * w(i, j) : w(i, j);  // the factor 1/2 cancels off the diagonal, where both triangles count
       gradient[0] += by * 2 * level2;
       for (std::size_t t = 0; t < kTerms; ++t) {
         const TreePoint d2 = squares(i, j, t);
@@ -160,7 +162,7 @@ LogCovariance likeliest_covariance(const LogMeasurements& measured,
   double smallest = std::numeric_limits<double>::infinity();
   std::vector<Likelihood> of_blocks(blocks.size());
   for (int step = 0; step < kSteps; ++step) {
-    // The blocks' likelihoods, summed in their order.
+    // The likelihoods of the blocks are summed in their order.
     const LogCovariance covariance = numbering.covariance_of(at);
     for_each_chunk(blocks.size(), 1, [&](std::size_t b, std::size_t, std::size_t) {
       of_blocks[b] = likelihood_of(measured, blocks[b], covariance, numbering);
@@ -171,6 +173,7 @@ LogCovariance likeliest_covariance(const LogMeasurements& measured,
       for (std::size_t k = 0; k < numbering.count; ++k) sum.gradient[k] += of_block.gradient[k];
     }
     for (std::size_t k = 0; k < numbering.count; ++k) {
+      // A prior pulls each parameter to its start.
       const double far = at[k] - start[k];
       sum.value += kPrior * far * far;
       sum.gradient[k] += 2 * kPrior * far;
@@ -179,7 +182,7 @@ LogCovariance likeliest_covariance(const LogMeasurements& measured,
       smallest = sum.value;
       best = at;
     }
-    // A step grows while the gradient keeps its sign, and shrinks where it changes.
+    // A step grows while the gradient keeps its sign, and shrinks where it changes [Riedmiller 1993].
     for (std::size_t k = 0; k < numbering.count; ++k) {
       double slope = sum.gradient[k];
       if (slope * before[k] > 0) steps[k] = std::min(kFaster * steps[k], kLargestStep);

@@ -6,7 +6,7 @@ namespace {
 
 using Lengths = std::array<std::array<double, LogCovariance::kAxes>, LogCovariance::kTerms>;
 
-// What a smooth BRDF has, measured well.
+// Lengths of a smooth BRDF that was measured well.
 constexpr Lengths kIsotropicLengths{{{0.4, 0, 0, 0}, {0.7, 0.7, 0, 0}, {0.4, 0.9, 1.5, 0}}};
 constexpr Lengths kAnisotropicLengths{{{0.4, 0.4, 0, 0}, {0, 0, 0.7, 0.7}, {0.5, 0.5, 0.9, 0.9}}};
 constexpr double kUsualLevel = 2, kUsualSpread = 1.5, kUsualNoise = 0.06;

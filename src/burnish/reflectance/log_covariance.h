@@ -5,12 +5,12 @@
 
 namespace burnish {
 
-/// How alike the logarithms of a BRDF are at two places: a Gaussian process, whose covariance is a sum of terms
+/// The covariance of a BRDF's logarithms at two places: a Gaussian process, whose covariance is a sum of terms
 ///   k(a, b) = level^2 + sum_t spread_t^2 m(|a - b|_t),   m(r) = (1 + sqrt(3) r) exp(-sqrt(3) r)
-/// (Matern, smoothness 3/2), |.|_t the distance in the coordinates of term t, each divided by a length.
-/// Coordinates of an isotropic BRDF, even in the exchange and in the reflection of the directions:
+/// (Matern, smoothness 3/2). |.|_t is the distance in the coordinates of term t, each divided by a length.
+/// Coordinates of an isotropic BRDF are even in the exchange and in the reflection of the directions:
 ///   (sqrt(tan(theta_h/2)), tan(theta_d/2), sin(theta_d) phi_d / (pi/2)), phi_d folded into [0, pi/2];
-/// its terms see the first, the first two, and all three. Coordinates of an anisotropic one, even in the exchange:
+/// its terms see the first, the first two, and all three. Coordinates of an anisotropic one are even in the exchange:
 ///   the half vector at radius sqrt(tan(theta_h/2)), the difference vector at radius tan(theta_d/2) and twice its
 ///   azimuth; its terms see the half vector, the difference vector, and both.
 /// Source: [Rasmussen 2006, eq. 4.17].
@@ -18,17 +18,17 @@ struct LogCovariance {
   static constexpr std::size_t kTerms = 3, kAxes = 4;
   static constexpr double kRoot3 = 1.7320508075688772;
 
-  /// Lengths, spreads and noise of a smooth BRDF that was measured well: for few measurements, and what likelihood
-  /// starts from.
+  /// Sets lengths, spreads and noise of a smooth BRDF that was measured well. They serve few measurements, and start
+  /// the search for likelier ones.
   explicit LogCovariance(bool isotropic) noexcept;
 
   double level;                       ///< standard deviation of the mean of ln f, > 0
   std::array<double, kTerms> spread;  ///< standard deviations of the terms, > 0
-  /// Of each term and coordinate; 0 where the term does not see it.
+  /// One inverse length for each term and coordinate; 0 where the term does not see it.
   std::array<std::array<double, kAxes>, kTerms> inverse_length{};
   double noise;  ///< standard deviation of a measured ln f of weight 1, > 0
 
-  /// The variance of ln f where nothing is measured.
+  /// Returns the variance of ln f where nothing is measured.
   double variance() const noexcept;
 
   friend bool operator==(const LogCovariance&, const LogCovariance&) = default;

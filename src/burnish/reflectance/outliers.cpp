@@ -16,12 +16,12 @@ namespace {
 constexpr std::size_t kUsual = 24, kFewest = 2 * kUsual;
 constexpr double kDeviations = 5;
 constexpr std::size_t kNearerHorizon = kUsual / 4, kNearerMirror = kUsual / 8;  // at least, of those around
-constexpr double kMedianSquare = 0.455;  // of a normal variable of deviation 1
+constexpr double kMedianSquare = 0.455;  // median square of a normal variable of deviation 1
 constexpr double kLargestShare = 0.1;    // of the nodes
 constexpr int kRounds = 8;
 constexpr std::size_t kNodesTogether = 256;  // a thread at a time
 
-/// Nodes, and how much each of them surprises the others.
+/// Nodes and the standardized square of each one's prediction error.
 class Surprises {
  public:
   explicit Surprises(const MeasuredNodes& nodes)
@@ -38,7 +38,7 @@ class Surprises {
 
   std::size_t size() const noexcept { return others_.size(); }
 
-  /// Leaves out what contradicts its neighbours most, and says whether there was any.
+  /// Leaves out the nodes that contradict their neighbours most. Returns true if there were any.
   bool leave_out_more() {
     update();
     std::vector<std::uint8_t> suspect(size());
@@ -48,13 +48,14 @@ class Surprises {
     std::vector<std::size_t> worst;
     for (std::size_t i = 0; i < size(); ++i)
       if (suspect[i] && is_worst_nearby(i)) worst.push_back(i);
+    // A node that is left out changes the predictions of those near it.
     for (const std::size_t i : worst) out_[i] = 1;
     for (const std::size_t i : worst)
       for (const KdTree::Neighbour& near : others_.nearest(i, kUsual, out_)) stale_.push_back(near.place);
     return !worst.empty();
   }
 
-  /// The nodes' own numbers, rising.
+  /// Returns the numbers of the nodes left out, rising.
   std::vector<std::size_t> left_out() const {
     std::vector<std::size_t> numbers;
     for (std::size_t i = 0; i < size(); ++i)
@@ -64,7 +65,7 @@ class Surprises {
   }
 
  private:
-  /// Of all nodes at first, then of those near what was left out.
+  /// Updates the squares: those of all nodes at first, later those near a node that was left out.
   void update() {
     std::ranges::sort(stale_);
     stale_.erase(std::unique(stale_.begin(), stale_.end()), stale_.end());
@@ -75,6 +76,8 @@ class Surprises {
   }
 
   bool contradicts(std::size_t i) const {
+    // An outlier is more than five deviations off, and five times more than is usual around it: the median of the
+    // neighbours' squares over that of a normal variable is their usual variance.
     constexpr double kMost = kDeviations * kDeviations;
     if (!(squares_[i] > kMost)) return false;
     const std::vector<KdTree::Neighbour> near = others_.nearest(i, kUsual, out_);
@@ -111,10 +114,11 @@ class Surprises {
   }
 
   LeaveOneOut others_;
-  std::vector<double> cosine_of_h_, least_cosine_, sum_;  // everything in its order; of the channels
+  // One value a node, in the order of others_; sum_ adds the channels.
+  std::vector<double> cosine_of_h_, least_cosine_, sum_;
   std::vector<double> squares_;
   std::vector<std::uint8_t> out_;   // 1: left out
-  std::vector<std::size_t> stale_;  // whose squares are not known
+  std::vector<std::size_t> stale_;  // nodes whose squares are out of date
 };
 
 }  // namespace

@@ -19,12 +19,12 @@ namespace {
 
 constexpr double kCornellCount = 1439;
 constexpr double kCornellRadius2 = 0.001;  // [Pharr 2010]
-constexpr double kMinRadius2 = 1e-9;       // samples that are this near are at one place
+constexpr double kMinRadius2 = 1e-9;       // samples this near are at one place
 constexpr double kSharpness = 100;         // [Pharr 2010]
 constexpr std::size_t kEnough = 3;         // [Pharr 2010]
-constexpr std::size_t kMaxAveraged = 64;   // that are averaged, where a scan is denser than elsewhere
+constexpr std::size_t kMaxAveraged = 64;   // largest number averaged where a scan is denser than elsewhere
 constexpr double kSamePlace2 =
-    2e-6;  // at most, between places of one measurement: sqrt(theta_h) is steep at 0
+    2e-6;  // largest squared distance between places of one measurement, as sqrt(theta_h) is steep at 0
 
 }  // namespace
 
@@ -40,7 +40,7 @@ Samples select(const Samples& samples, std::span<const std::size_t> subset) {
   return part;
 }
 
-/// The kriged function, made once by whoever asks first.
+/// The kriged function, made once by the first call.
 struct ScatteredBrdf::Kriging {
   std::once_flag made;
   std::optional<KrigedNodes> function;
@@ -60,7 +60,7 @@ ScatteredBrdf::ScatteredBrdf(Samples samples, SampleRule rule) : rule_(rule), sa
   initial_radius2_ =
       kCornellRadius2 * std::min(1.0, std::pow(kCornellCount / static_cast<double>(count), 2 / dimensions));
 
-  // points and samples in the order of the tree
+  // Points and samples are in the order of the tree.
   std::vector<TreePoint> points(count);
   for (std::size_t i = 0; i < count; ++i) points[i] = place(samples_.pairs[i].wi, samples_.pairs[i].wo);
   tree_ = KdTree(points);
@@ -70,16 +70,18 @@ ScatteredBrdf::ScatteredBrdf(Samples samples, SampleRule rule) : rule_(rule), sa
 
 TreePoint ScatteredBrdf::place(Vec3 wi, Vec3 wo) const noexcept {
   if (rule_ == SampleRule::mean_in_angles) {
+    // pbrt-v2's coordinates: (sin theta_i sin theta_o, |phi_i - phi_o| / pi, cos theta_i cos theta_o) [Pharr 2010].
     const double turn = std::abs(std::remainder(phi_of(wi) - phi_of(wo), kTwoPi));
     return {std::hypot(wi.x, wi.y) * std::hypot(wo.x, wo.y), turn / kPi, wi.z * wo.z, 0};
   }
-  // cos theta_i - cos theta_o = -2 sin theta_h sin theta_d cos phi_d
+  // The third coordinate is sin theta_h sin theta_d |cos phi_d|, since cos theta_i - cos theta_o = -2 sin theta_h sin
+  // theta_d cos phi_d.
   if (samples_.isotropic)
     return {std::sqrt(theta_of(half_vector(wi, wo)) / kHalfPi), angle_between(wi, wo) / kPi,
             0.5 * std::abs(wi.z - wo.z), 0};
   const HalfDiff angles = to_half_diff(wi, wo);
   const double half = std::sqrt(angles.theta_h / kHalfPi), difference = angles.theta_d / kPi;
-  // at theta_h = 0 only the sum of the azimuths is defined.
+  // At theta_h = 0 only the sum of the azimuths is defined.
   const double turn = angles.phi_h + angles.phi_d;
   return {half * std::cos(angles.phi_h), half * std::sin(angles.phi_h), difference * std::cos(turn),
           difference * std::sin(turn)};
@@ -94,7 +96,7 @@ bool ScatteredBrdf::eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
 const KrigedNodes* ScatteredBrdf::kriged() const noexcept {
   if (!kriging_) return nullptr;
   std::call_once(kriging_->made, [&] {
-    // A thread that waits within would take up outer work, which may ask for this very function.
+    // Isolated: a thread that waits inside would take up outer work, which may ask for this very function.
     run_isolated([&] {
       const bool any = std::ranges::any_of(samples_.pairs, [](const DirectionPair& pair) {
         return std::min(pair.wi.z, pair.wo.z) > KrigedNodes::kLeastCosine;
@@ -117,8 +119,8 @@ bool ScatteredBrdf::eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexce
   return function && function->eval(wi, wo, f);
 }
 
-/// The mean of the samples that were measured at these directions, exchanged or not. False, and f is 0, where there are
-/// none.
+/// Sets f to the mean of the samples that were measured at these directions, exchanged or not. Returns false, and f
+/// is 0, where there are none.
 bool ScatteredBrdf::mean_at(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept {
   std::size_t found = 0;
   const auto add_about = [&](const TreePoint& centre, const auto& takes) {
@@ -139,7 +141,7 @@ bool ScatteredBrdf::mean_at(Vec3 wi, Vec3 wo, std::span<double> f) const noexcep
   return found > 0;
 }
 
-/// Whether three samples lie near the pair or, of an anisotropic source, near the exchanged one.
+/// Returns true if three samples lie near the pair or, for an anisotropic source, near the exchanged one.
 bool ScatteredBrdf::covers(Vec3 wi, Vec3 wo) const noexcept {
   const auto has_near = [&](const TreePoint& centre) {
     std::array<KdTree::Neighbour, kEnough> nearest;
@@ -153,6 +155,7 @@ bool ScatteredBrdf::covers(Vec3 wi, Vec3 wo) const noexcept {
 }
 
 bool ScatteredBrdf::mean_of_neighbours(const TreePoint& centre, std::span<double> f) const noexcept {
+  // Averages the samples in a ball with weights exp(-100 distance^2), and returns their number.
   const auto add_ball = [&](double radius2) noexcept {
     std::size_t found = 0;
     double total = 0;
@@ -167,7 +170,7 @@ bool ScatteredBrdf::mean_of_neighbours(const TreePoint& centre, std::span<double
     for (double& value : f) value /= found > 0 ? total : 1;
     return found;
   };
-  // larger balls until one holds enough samples; smaller ones as long as they hold more than serves
+  // The ball grows until it holds enough samples, then shrinks while it holds more than needed.
   const std::size_t enough = std::min(kEnough, tree_.size());
   for (double radius2 = initial_radius2_; radius2 <= kMaxRadius2; radius2 *= 2) {
     std::size_t found = add_ball(radius2);

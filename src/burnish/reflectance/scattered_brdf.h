@@ -9,7 +9,7 @@
 
 namespace burnish {
 
-/// How scattered samples become a function.
+/// The rules that make a function of scattered samples.
 /// - kriged: the best linear prediction of ln(f + 1e-3) from the 64 nearest samples (KrigedNodes), under the covariance
 ///   that predicts unseen samples best (choose_covariance). At the directions of a sample it is the sample. The first
 ///   evaluation makes it: that one takes longer, and allocates.
@@ -19,8 +19,8 @@ namespace burnish {
 ///   than elsewhere the square halves until at most 64 samples are in reach, or none would be. [Pharr 2010]
 /// - mean_in_angles: the same in the space of pbrt-v2, (sin theta_i sin theta_o, |phi_i - phi_o| / pi,
 ///   cos theta_i cos theta_o), for isotropic samples only. Near the normal it mixes directions up to 10 degrees apart.
-/// A tenth of the samples of three Cornell paints, held out, is met by the means within 16, 16 and 11 % (the figure
-/// `relative`) in the first space, within 17, 20 and 17 % in that of angles.
+/// With a tenth of the samples of three Cornell paints held out, the means predict these within 16, 16 and 11 % (the
+/// figure `relative`) in the first space. In that of angles they do within 17, 20 and 17 %.
 enum class SampleRule { kriged, mean_in_half_difference, mean_in_angles };
 
 /// Scattered samples made into a function. Pairs are near one another among these coordinates:
@@ -38,7 +38,7 @@ class ScatteredBrdf {
   /// channels.
   explicit ScatteredBrdf(Samples samples, SampleRule rule = SampleRule::kriged);
 
-  /// The same from a part of the samples, for cross-validation.
+  /// Makes the function of a part of the samples, for cross-validation.
   ScatteredBrdf(const Samples& samples, std::span<const std::size_t> subset,
                 SampleRule rule = SampleRule::kriged);
 
@@ -49,12 +49,12 @@ class ScatteredBrdf {
 
   const Samples& samples() const noexcept { return samples_; }
   SampleRule rule() const noexcept { return rule_; }
-  /// Of the means: 0.001 min(1, (1439 / n)^(2/d)) in d dimensions: as many samples in reach as the Cornell sets have,
-  /// so that denser sets are blurred less.
+  /// Returns the first squared radius of the means: 0.001 min(1, (1439 / n)^(2/d)) in d dimensions. As many samples
+  /// are in reach as in the Cornell sets, so that denser sets are blurred less.
   double initial_radius2() const noexcept { return initial_radius2_; }
 
-  /// The function of the rule `kriged`, made now if it was not yet; nullptr of other rules and where no sample has both
-  /// cosines above 0.02.
+  /// Returns the function of the rule `kriged`, making it now if needed. Returns nullptr for other rules and where no
+  /// sample has both cosines above 0.02.
   const KrigedNodes* kriged() const noexcept;
 
  private:
@@ -74,7 +74,7 @@ class ScatteredBrdf {
 
 static_assert(HasRawValues<ScatteredBrdf>);
 
-/// The chosen samples, in the order given. Precondition: indices below samples.size().
+/// Returns the chosen samples in the order given. Precondition: indices below samples.size().
 Samples select(const Samples& samples, std::span<const std::size_t> subset);
 
 }  // namespace burnish

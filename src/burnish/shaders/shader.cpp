@@ -17,6 +17,7 @@ namespace burnish {
 
 namespace {
 
+// Writes table lookups as expressions that read textures.
 class Lookups {
  public:
   Lookups(const FactoredBrdf& brdf, const std::vector<ShaderTexture>& textures, ShaderFilter filter)
@@ -25,7 +26,7 @@ class Lookups {
       for (const PlacedTable& placed : texture.tables) places_[placed.table] = {&texture, placed.first};
   }
 
-  /// The table's value.
+  /// Returns the table's value for a use.
   Expr value(const FactorUse& use) const {
     const TableLayout& layout = brdf_.table_of(use).layout;
     const Place& place = places_[use.table];
@@ -41,6 +42,7 @@ class Lookups {
   };
 
   static Expr filtered(const TableLayout& layout, const FactorUse& use, const Place& place, ValueType type) {
+    // The hardware filters: positions run from the middle of the first node's texel to that of the last one.
     const auto& [texture, first] = place;
     const auto axis = [](int nodes, double texel, int texels) {
       return TableAxis{(nodes - 1.0) / texels, (texel + 0.5) / texels};
@@ -49,13 +51,14 @@ class Lookups {
                                                 axis(layout.height, first[1], texture->height),
                                                 axis(layout.depth, first[2], std::max(texture->depth, 1)));
     std::vector<Expr> at{x};
+    // A 2-D texture that holds lines needs the middle of the line's row as second coordinate.
     if (texture->height > 0)
       at.push_back(axis_count(layout.shape) == 1 ? Expr((first[1] + 0.5) / texture->height) : y);
     if (texture->depth > 0) at.push_back(z);
     return named("value", Expr::sample(texture->name, at, type));
   }
 
-  // The texels around a position, and how far it is from the lower one.
+  // The two texels around a position along an axis, and the fraction from the lower one.
   struct Cell {
     Expr low, high, fraction;
   };
@@ -67,14 +70,15 @@ class Lookups {
   }
 
   static Expr weighed(const TableLayout& layout, const FactorUse& use, const Place& place, ValueType type) {
-    const ShaderTexture* const texture = place.texture;  // a binding cannot be captured by clang 14
+    const ShaderTexture* const texture = place.texture;  // clang 14 cannot capture a binding
     const auto& first = place.first;
+    // The shader interpolates: positions are in cells, and texels are read around them.
     const auto axis = [](int nodes) { return TableAxis{nodes - 1.0, 0}; };
     const auto [x, y, z] =
         position_expressions(layout, use, axis(layout.width), axis(layout.height), axis(layout.depth));
     const Cell across = cell_of(x, layout.width, first[0]), up = cell_of(y, layout.height, first[1]),
                behind = cell_of(z, layout.depth, first[2]);
-    // an array has a volume's layers one after another
+    // An array (cpp) has a volume's layers one after another.
     const auto texel = [&](const Expr& column, const Expr& row, const Expr& layer) {
       std::vector<Expr> at{column, row};
       if (texture->depth > 0)
@@ -83,6 +87,7 @@ class Lookups {
         at[1] = layer * Expr::integer(layout.height) + row;
       return named("texel", Expr::texel(texture->name, at, type));
     };
+    // Interpolation is linear along each axis: in a row, between rows, between layers.
     const auto in_row = [&](const Expr& row, const Expr& layer) {
       return mix_expression(texel(across.low, row, layer), texel(across.high, row, layer), across.fraction);
     };
@@ -99,7 +104,7 @@ class Lookups {
   std::vector<Place> places_;
 };
 
-// Powers of 2 that tables are multiplied with in textures, by table.
+// Returns by table the powers of 2 that tables are multiplied with in textures.
 std::vector<int> exponents_in(const std::vector<ShaderTexture>& textures, std::size_t tables) {
   std::vector<int> exponents(tables, 0);
   for (const ShaderTexture& texture : textures)
@@ -113,14 +118,16 @@ Expr scale_value(const Lobe& lobe, int exponent) {
   return scale.size() == 1 ? scale[0] : Expr(Op::vector, scale);
 }
 
-// [HomomorphicBrdf, eq. 4], each pair multiplied with itself first, as the definition does. Textures have their
-// tables times 2^exponents.
+// Returns a lobe's value: scale times lookups [HomomorphicBrdf, eq. 4], where the two values of a pair are multiplied
+// first, as in the definition. Textures hold their tables times 2^exponents, which the scale divides out.
 Expr lobe_value(const Lookups& lookups, const FactoredBrdf& brdf, std::size_t j,
                 const std::vector<int>& exponents, bool half_products) {
   const auto uses = brdf.ordered_factors(j);
   int in_tables = 0;
   for (const FactorUse& use : uses) in_tables += exponents[use.table];
   if (half_products) {
+    // In half precision, the order of the factors and constants between them keep products within the range of
+    // halves.
     const HalfProduct half = half_product(brdf, j, exponents);
     const auto constants = static_cast<int>(std::ranges::count(half.order, HalfProduct::kConstant));
     Expr product = scale_value(brdf.lobes()[j], -in_tables - constants * half.exponent);
@@ -129,6 +136,7 @@ Expr lobe_value(const Lookups& lookups, const FactoredBrdf& brdf, std::size_t j,
                                                        : lookups.value(uses[static_cast<std::size_t>(k)]));
     return named("lobe", product);
   }
+  // In single precision, pairs come first and the other factors follow.
   const std::size_t paired = 2 * brdf.pair_count(j);
   Expr product = scale_value(brdf.lobes()[j], -in_tables);
   for (std::size_t k = 0; k < uses.size(); k += k < paired ? 2 : 1) {
@@ -148,7 +156,7 @@ std::vector<Expr> lobe_values(const FactoredBrdf& brdf, const std::vector<Shader
   return lobes;
 }
 
-// C++ has no textures: an array and a function that reads it.
+// Returns an array and a function that reads it, as C++ has no textures.
 std::string declare_array(const Language& l, const ShaderTexture& texture) {
   std::string text = fmt::format("BURNISH_CONSTANT float {}[] = {{", texture.name);
   for (std::size_t k = 0; k < texture.values.size(); ++k)
@@ -164,8 +172,8 @@ std::string declare_array(const Language& l, const ShaderTexture& texture) {
                     texture.name, at);
 }
 
-// Functions that read a picture of layers. A position is within the middles of the outermost texels, so that no layer mixes with
-// another.
+// Returns functions that read a picture of layers. A position stays within the middles of the outermost texels, so
+// that no layer mixes with another.
 std::string layer_functions(const ShaderTexture& texture, ShaderFilter filter) {
   if (filter == ShaderFilter::exact)
     return fmt::format(
@@ -189,6 +197,7 @@ std::string declare_textures(const Language& l, const ShaderOptions& options,
       if (texture.depth > 0) text += layer_functions(texture, options.filter);
     return text;
   }
+  // A texture's declaration depends on its dimensions and on who filters.
   for (std::size_t i = 0; i < textures.size(); ++i) {
     const ShaderTexture& texture = textures[i];
     const bool filtered = options.filter == ShaderFilter::hardware;
@@ -212,7 +221,7 @@ ShaderCost cost_of(const OperationCount& count, std::size_t textures) noexcept {
           .powers = count.transcendentals};
 }
 
-// What functions take besides the directions.
+// Returns the parameters of functions besides the directions.
 MoreParameters more_of(const ShaderOptions& options, const std::vector<ShaderTexture>& textures) {
   if (options.language == ShaderLanguage::msl)
     return {fmt::format("burnish_{}_tables tables", options.name), "tables"};
@@ -226,7 +235,8 @@ MoreParameters more_of(const ShaderOptions& options, const std::vector<ShaderTex
   return more;
 }
 
-// The language, with what reads a 3-D texture of which a picture has the layers.
+// Returns the language. Where textures are arguments, a picture has the layers of a 3-D texture, and functions read
+// it.
 Language language_of(const ShaderOptions& options) {
   Language l = language(to_string(options.language));
   if (!options.textures_are_arguments) return l;
@@ -241,10 +251,12 @@ struct LocalFunction {
 };
 LocalFunction local_function(Expr total, const Language& l, const ShaderOptions& options,
                              const std::string& name, const MoreParameters& more) {
+  // Grey models give three equal channels.
   if (total.type() == ValueType::real) {
     total = named("f0", total);
     total = Expr(Op::vector, {total, total, total});
   }
+  // The graph shares equal expressions; the writer turns it into statements, and the graph counts their cost.
   Graph graph;
   const std::size_t root = graph.add(total);
   const Writer writer(l, graph, {root}, options.half_products);
@@ -300,6 +312,7 @@ ShaderFormula shader_formula(const FactoredBrdf& brdf, const ShaderOptions& opti
                                                              : pack_tables(brdf, options.name, before);
   for (ShaderTexture& texture : formula.textures)
     if (options.lines_are_1d && texture.height == 1 && texture.depth == 0) texture.height = 0;
+  // The model is the sum of its lobes [HomomorphicBrdf, eq. 4].
   formula.lobes = lobe_values(brdf, formula.textures, options);
   for (const Expr& lobe : formula.lobes) formula.value = formula.value + lobe;
   return formula;
@@ -329,7 +342,7 @@ Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options) {
   const MoreParameters more = more_of(options, shader.textures);
   const LocalFunction function = local_function(formula.value, l, options, "burnish_" + options.name, more);
   shader.cost = cost_of(function.count, shader.textures.size());
-  const auto comment_of = [](std::string text) {  // a table's name may hold anything
+  const auto comment_of = [](std::string text) {  // a table's name may hold any character, which a comment may not
     for (char& c : text) c = c < ' ' || c > '~' || c == '\\' ? '?' : c;
     return text;
   };
@@ -376,6 +389,7 @@ SplitShader split_formula(ShaderFormula formula, const ShaderOptions& options) {
   const std::size_t root = graph.add(formula.value);
   const Writer writer(l, graph, {root}, options.half_products);
   OperationCount view, rest;
+  // Statements that depend on wi are computed for each light, all others once for each view.
   for (const Statement& statement : writer.statements()) {
     const bool lit = graph.reaches(statement.node, "wi");
     (lit ? shader.light : shader.view) += statement.text;

@@ -14,9 +14,7 @@ namespace burnish {
 /// GLSL 4.50, GLSL ES 3.00 (WebGL2), HLSL (shader model 5), MSL, WGSL, and C++ that CUDA compiles too.
 enum class ShaderLanguage { glsl, glsl_es, hlsl, msl, wgsl, cpp };
 
-/// How tables are interpolated:
-/// - exact: the neighbouring texels are fetched and weighed in floats;
-/// - hardware: one filtered read a lookup. Many GPUs weigh texels with 8 bits.
+/// The ways to interpolate tables:
 enum class ShaderFilter { exact, hardware };
 
 inline constexpr std::array kShaderLanguages{ShaderLanguage::glsl, ShaderLanguage::glsl_es,
@@ -30,20 +28,20 @@ struct ShaderOptions {
   ShaderLanguage language = ShaderLanguage::glsl;
   ShaderFilter filter = ShaderFilter::exact;
   std::string name = "brdf";  ///< letters, digits and single underscores, a letter first
-  /// Of the hardware filter: what comes out of textures is multiplied in half precision (mediump, half,
-  /// min16float, f16), positions still found in single.
+  /// For the hardware filter: values from textures are multiplied in half precision (mediump, half, min16float, f16).
+  /// Positions are still found in single precision.
   bool half_products = false;
-  /// Of glsl with the hardware filter: a texture of one row is 1-D, which takes half the texels where no
-  /// texture unit reads them.
+  /// For glsl with the hardware filter: a texture of one row is 1-D, which takes half the texels where no texture
+  /// unit reads them.
   bool lines_are_1d = false;
-  /// Of glsl: no uniforms are declared; the functions take the textures as their last arguments, all of them
-  /// sampler2D, the 3-D one as a picture of its layers, the first at v = 0 and the others behind it.
+  /// For glsl: no uniforms are declared. The functions take the textures as their last arguments, all of them
+  /// sampler2D. The 3-D one is a picture of its layers, the first at v = 0 and the others behind it.
   bool textures_are_arguments = false;
-  /// Of a surface: its maps are pairs in blocks, see pack_maps.
+  /// For a surface: its maps are pairs in blocks, see pack_maps.
   bool maps_in_blocks = false;
 };
 
-/// What one evaluation in the local frame costs, above the horizon. Floating-point operations are counted a
+/// The cost of one evaluation in the local frame, above the horizon. Floating-point operations are counted for each
 /// component; integers, conversions and the test for the horizon are not counted.
 struct ShaderCost {
   int fetches = 0;     ///< of texels (exact), or filtered reads (hardware)
@@ -63,14 +61,14 @@ struct ShaderCost {
   friend bool operator==(const ShaderCost&, const ShaderCost&) = default;
 };
 
-/// Where a table stands in a texture.
+/// The place of a table in a texture.
 struct PlacedTable {
   std::size_t table = 0;       ///< of the model
   std::array<int, 3> first{};  ///< x, y and z of the texel that is its first node
   int exponent = 0;            ///< its values are there times 2^exponent
 };
 
-/// What a shader reads: tables beside, above or behind each other. Texels around a table repeat its edge.
+/// A texture that a shader reads: tables beside, above or behind each other. Texels around a table repeat its edge.
 struct ShaderTexture {
   std::string name;           ///< of the sampler; of the array in C++; of a member in MSL
   int width = 0, height = 0;  ///< height 0: 1-D
@@ -87,26 +85,26 @@ struct Shader {
   ShaderCost cost;
 };
 
-/// Source text that evaluates a factored BRDF as FactoredBrdf::eval does, in floats:
-/// - `burnish_NAME(wi, wo)`: unit vectors of the local frame in, f_r in 1/sr out as three components (a grey
+/// Writes source text that evaluates a factored BRDF as FactoredBrdf::eval does, in floats:
+/// - `burnish_NAME(wi, wo)`: takes unit vectors of the local frame and returns f_r in 1/sr as three components (a grey
 ///   model's value three times), without the cosine, zero below the horizon;
-/// - `burnish_NAME_world(n, t, l, v)`: the same in any frame: unit normal and tangent, orthogonal to each
+/// - `burnish_NAME_world(n, t, l, v)`: the same in any frame. It takes the unit normal and tangent, orthogonal to each
 ///   other, and unit vectors to light and viewer.
-/// Nothing of the model is left to set but its textures: one 2-D texture of all lines, disks and grids and one
-/// 3-D texture of all volumes, one channel in red or three in red, green, blue, in any format that holds the
-/// values; clamped to the edge and linear for the hardware filter. MSL takes them in a struct, as third or
-/// fifth argument; C++ has an array a table. docs/guide/shaders.md states how precise it is.
+/// The textures are all that is left to set. One 2-D texture holds all lines, disks and grids, and one 3-D texture
+/// all volumes: one channel in red or three in red, green, blue, in any format that holds the values. They are
+/// clamped to the edge, and linear for the hardware filter.
+/// MSL takes them in a struct, as third or fifth argument; C++ has an array a table. docs/guide/shaders.md states how
+/// precise the text is.
 ///
-/// With half products the relative error stays below 1 % where f_r is between 1e-3 and 3e4 and tables are
-/// smooth; what is brighter than 65504 becomes infinite.
+/// With half products the relative error stays below 1 % where f_r is between 1e-3 and 3e4 and tables are smooth.
+/// Values above 65504 become infinite.
 ///
-/// Throws Error if the name is not as above, channels are not 1 or 3, a texture's side would be above 16384,
-/// for C++ with the hardware filter, for half products with the exact one, or if lines_are_1d or
-/// textures_are_arguments are not as above.
+/// Throws Error if the name or the options are not as ShaderOptions says, channels are not 1 or 3, a texture's side
+/// would be above 16384, for C++ with the hardware filter, and for half products with the exact one.
 Shader generate_shader(const FactoredBrdf& brdf, const ShaderOptions& options);
 
-/// What generate_shader computes, in two pieces of GLSL for a pixel that several lights shine on: `view`
-/// once, then `light` and `value` for every light.
+/// The computation of generate_shader in two pieces of GLSL, for a pixel that several lights shine on: `view` once,
+/// then `light` and `value` for every light.
 struct SplitShader {
   std::string declarations;  ///< of the textures
   std::string view;          ///< statements that need vec3 wo
@@ -116,7 +114,7 @@ struct SplitShader {
   ShaderCost view_cost, light_cost;
 };
 
-/// Source text for `options.language`, glsl or glsl_es. Throws Error as generate_shader, and for other
+/// Writes source text for `options.language`, glsl or glsl_es. Throws Error as generate_shader, and for other
 /// languages.
 SplitShader split_shader(const FactoredBrdf& brdf, const ShaderOptions& options);
 

@@ -25,7 +25,8 @@ bool BandMatrix::factorize() {
 }
 
 double BandMatrix::follow(std::size_t i, const Eigen::VectorXd& changes) const noexcept {
-  // v^T L L^T v is a sum of squares, one an unknown: that of i holds it and those after it
+  // v^T L L^T v is a sum of squares, one for each unknown. The unknowns before i can make theirs 0, so the square of
+  // i, which holds i and those after it, decides: it is 0 at the value returned.
   const double* column = lower_.data() + i * (width_ + 1);
   const std::size_t count = std::min(width_, size_ - 1 - i);
   double sum = 0;

@@ -15,7 +15,7 @@ class BandMatrix {
 
   std::size_t size() const noexcept { return size_; }
   std::size_t width() const noexcept { return width_; }
-  /// The entry of a row and a column at or before it, at most width() apart.
+  /// Returns the entry of a row and a column at or before it, at most width() apart.
   double& operator()(std::size_t row, std::size_t column) noexcept {
     return lower_[column * (width_ + 1) + row - column];
   }
@@ -24,10 +24,10 @@ class BandMatrix {
   /// Replaces a positive definite matrix by its factor; false where rounding made it indefinite, and what it
   /// holds is meaningless.
   bool factorize();
-  /// matrix^-1 b of a factorized matrix.
+  /// Returns matrix^-1 b, after factorize().
   Eigen::VectorXd solve(Eigen::VectorXd b) const;
-  /// What changes of the later unknowns ask of unknown i so that v^T matrix v stays least, those before it
-  /// being free to follow: for going from the last to the first, of a factorized matrix.
+  /// Given the changes of unknowns i + 1 and after, returns the change of unknown i that minimizes v^T matrix v, with
+  /// the unknowns before i free. Call it from the last unknown to the first, after factorize().
   double follow(std::size_t i, const Eigen::VectorXd& changes) const noexcept;
 
  private:

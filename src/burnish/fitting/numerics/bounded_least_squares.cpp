@@ -23,7 +23,7 @@ double half_square(std::span<const double> values) {
   return sum / 2;
 }
 
-/// Where the sum of squares is looked at: values, and a quadratic model of the sum around x.
+/// The current point: values, and a quadratic model of the sum of squares around x.
 class State {
  public:
   State(const LeastSquaresProblem& problem, std::vector<double> start, double least_diagonal)
@@ -41,9 +41,10 @@ class State {
     RowMatrix slopes(values_.size(), x_.size());
     problem_.evaluate(x_, values_, {slopes.data(), static_cast<std::size_t>(slopes.size())});
     const Eigen::Map<const Eigen::VectorXd> values(values_.data(), static_cast<Eigen::Index>(values_.size()));
+    // With slopes J and values r, the model has the matrix J^T J and the gradient J^T r.
     normal_ = slopes.transpose() * slopes;
     gradient_ = slopes.transpose() * values;
-    // held: at a bound, with the sum falling beyond it
+    // An unknown at a bound is held if the sum falls beyond it: its row, column and gradient become 0.
     for (Eigen::Index k = 0; k < gradient_.size(); ++k) {
       const auto i = static_cast<std::size_t>(k);
       if ((x_[i] > problem_.lower[i] || gradient_[k] <= 0) &&
@@ -55,9 +56,10 @@ class State {
     }
   }
 
-  /// Where the damped model is least within the bounds: unknowns that would leave them go as far as they may, and the
-  /// others are found again, until all stay within.
+  /// Returns the least point of the damped model within the bounds. Unknowns that would leave them go as far as they
+  /// may, and the others are solved again, until all stay within.
   std::vector<double> step(double damping) const {
+    // Marquardt's damping scales the diagonal, with a least value for unknowns that hardly matter.
     Eigen::MatrixXd damped = normal_;
     damped.diagonal() += damping * normal_.diagonal().cwiseMax(least_diagonal_);
     Eigen::VectorXd right = -gradient_;
@@ -71,6 +73,7 @@ class State {
         const auto k = static_cast<Eigen::Index>(i);
         to[i] = std::clamp(x_[i] + move[k], problem_.lower[i], problem_.upper[i]);
         if (to[i] == x_[i] + move[k]) continue;
+        // A settled unknown's known move goes to the right side; its row and column become those of the identity.
         settled[i] = again = true;
         right -= damped.col(k) * (to[i] - x_[i]);
         damped.row(k).setZero();
@@ -82,7 +85,7 @@ class State {
     return to;
   }
 
-  /// By how much the model says the sum falls.
+  /// Returns the fall of the sum that the model predicts.
   double promised(const std::vector<double>& to) const {
     Eigen::VectorXd move(gradient_.size());
     for (Eigen::Index k = 0; k < move.size(); ++k)
@@ -90,7 +93,7 @@ class State {
     return -gradient_.dot(move) - 0.5 * move.dot(normal_ * move);
   }
 
-  /// Goes there if the sum is less; says what was gained.
+  /// Moves to a point if the sum is less there. Returns the gain, or 0.
   double go(std::vector<double> to) {
     std::vector<double> values(values_.size());
     problem_.evaluate(to, values, {});
@@ -127,7 +130,7 @@ LeastSquaresSolution solve_least_squares(const LeastSquaresProblem& problem, std
     std::vector<double> to = state.step(damping);
     const double promised = state.promised(to), before = state.cost();
     ++solution.iterations;
-    // nothing to gain, or nothing that the numbers can tell
+    // The search ends where nothing is to be gained, or nothing that the numbers can tell.
     if (std::abs(promised) <= options.tolerance * 1e-3 * before || damping > kMaxDamping) {
       solution.converged = true;
       break;
@@ -135,12 +138,13 @@ LeastSquaresSolution solve_least_squares(const LeastSquaresProblem& problem, std
     const double gain = promised > 0 ? state.go(std::move(to)) : 0;
     moved = gain > 0;
     if (moved) {
-      // a good model is trusted more, up to three times
+      // Nielsen's rule: the better the prediction, the less damping, down to a third [Nielsen1999].
       const double quality = gain / promised;
       damping *= std::max(1.0 / 3, 1 - std::pow(2 * quality - 1, 3));
       rise = 2;
       solution.converged = gain < options.tolerance * before;
     } else {
+      // After a failure the damping rises, twice as fast each time.
       damping *= rise;
       rise *= 2;
     }

@@ -14,20 +14,21 @@ namespace {
 
 using Lanes = Eigen::Array<double, IncompleteCholesky::kLanes, 1>;
 
-constexpr double kFirstShare = 1e-3;  // of the diagonal, where it must be larger
+constexpr double kFirstShare = 1e-3;  // first share of the diagonal that is added, where 0 does not serve
 constexpr double kMoreShare = 4;
-// Of the dense rows with what stands before them, tried in turn; then none.
+// Factors of the coupling between the dense rows and the rows before them, tried in turn; the last one is 0.
 constexpr double kLessCoupling = 0.8, kMinCoupling = 0.3;
 
-// A thread's share of a solution, of some hundred thousand products.
+// Parts of a solution that a thread takes at a time, of some hundred thousand products.
 constexpr int kBlocksAtOnce = 4;
 constexpr std::size_t kColumnsAtOnce = 512;
 
+// Returns the inner product of `count` numbers.
 double dot(const double* a, const double* b, int count) {
   return Eigen::VectorXd::Map(a, count).dot(Eigen::VectorXd::Map(b, count));
 }
 
-/// to -= scale * from.
+/// Subtracts: to -= scale * from.
 void subtract(double* to, double scale, const double* from, int count) {
   Eigen::VectorXd::Map(to, count) -= scale * Eigen::VectorXd::Map(from, count);
 }
@@ -52,12 +53,14 @@ Eigen::VectorXd symmetric_times(const SparseTriangle& matrix, const TriangleRuns
   const double* values = matrix.valuePtr();
   Eigen::VectorXd product = Eigen::VectorXd::Zero(v.size());
   for (int i = 0; i < matrix.rows(); ++i) {
+    // Each stored row i serves twice: (A v)_i takes its entries times v, and its entries times v_i go to the other
+    // rows.
     double sum = 0;
     for (const TriangleRuns::Run& run : runs.row(i)) {
       sum += dot(values + run.at, v.data() + run.column, run.length);
       subtract(product.data() + run.column, -v[i], values + run.at, run.length);
     }
-    product[i] += sum - values[matrix.outerIndexPtr()[i + 1] - 1] * v[i];  // the diagonal stands there once
+    product[i] += sum - values[matrix.outerIndexPtr()[i + 1] - 1] * v[i];  // less the diagonal, which both added
   }
   return product;
 }
@@ -69,6 +72,8 @@ IncompleteCholesky::IncompleteCholesky(const SparseTriangle& matrix, double last
       share_(last_share > kFirstShare ? last_share / kMoreShare : 0) {
   const auto blocks = static_cast<std::size_t>((dense_rows + kLanes - 1) / kLanes);
   before_.resize(blocks * kLanes * static_cast<std::size_t>(first_dense()));
+  // Leaving out fill-in may make a pivot negative. Then a growing share of the diagonal is added until all are
+  // positive.
   while (!factorize(matrix)) share_ = share_ > 0 ? kMoreShare * share_ : kFirstShare;
 }
 
@@ -81,16 +86,17 @@ double IncompleteCholesky::eliminate(const SparseTriangle& matrix, int i, std::v
   const int *starts = factor_.outerIndexPtr(), *column = factor_.innerIndexPtr();
   double* values = factor_.valuePtr();
   const int diagonal = starts[i + 1] - 1;
+  // Row i is spread out over its columns; its pivot is the diagonal with the share added.
   for (int at = starts[i]; at < diagonal; ++at)
     row[static_cast<std::size_t>(column[at])] = matrix.valuePtr()[at];
   double pivot = (1 + share_) * matrix.valuePtr()[diagonal];
 
-  // l_ij = (a_ij - sum over k < j of l_ik l_jk) / l_jj
+  // l_ij = (a_ij - sum over k < j of l_ik l_jk) / l_jj, for the entries (i, j) of the matrix alone [Meijerink 1977].
   for (int at = starts[i]; at < diagonal; ++at) {
     const int j = column[at], last = starts[j + 1] - 1;
     double sum = row[static_cast<std::size_t>(j)];
     for (const TriangleRuns::Run& run : runs_.row(j)) {
-      const int length = std::min(run.length, last - run.at);  // less the diagonal
+      const int length = std::min(run.length, last - run.at);  // without the diagonal
       sum -= dot(row.data() + run.column, values + run.at, length);
     }
     values[at] = row[static_cast<std::size_t>(j)] = sum * values[last];
@@ -100,13 +106,13 @@ double IncompleteCholesky::eliminate(const SparseTriangle& matrix, int i, std::v
   return pivot;
 }
 
-// As eliminate, of kLanes rows at once: each has the sums that it would have alone, in their order.
+// Eliminates kLanes rows at once. Each has the sums that it would have alone, in their order.
 void IncompleteCholesky::eliminate_block(const SparseTriangle& matrix, int first, double* block) const {
   const int *starts = factor_.outerIndexPtr(), *column = factor_.innerIndexPtr();
   const double* values = factor_.valuePtr();
   const int columns = first_dense(), lanes = std::min(kLanes, static_cast<int>(factor_.rows()) - first);
 
-  // the matrix's entries, and which there are
+  // The matrix's entries go to lanes, and a mask says which entries there are.
   std::fill_n(block, static_cast<std::ptrdiff_t>(columns) * kLanes, 0.0);
   std::vector<Lanes> there(static_cast<std::size_t>(columns), Lanes::Zero());  // 1 or 0
   for (int lane = 0; lane < lanes; ++lane)
@@ -116,6 +122,7 @@ void IncompleteCholesky::eliminate_block(const SparseTriangle& matrix, int first
     }
 
   for (int j = 0; j < columns; ++j) {
+    // The formula is that of eliminate(), with lanes that have no entry set to 0.
     const int last = starts[j + 1] - 1;
     Lanes sum = Lanes::Map(block + j * kLanes);
     for (const TriangleRuns::Run& run : runs_.row(j)) {
@@ -132,6 +139,7 @@ bool IncompleteCholesky::factorize(const SparseTriangle& matrix) {
   double* values = factor_.valuePtr();
   const int size = static_cast<int>(matrix.rows()), first = first_dense();
   std::vector<double> row(static_cast<std::size_t>(first));
+  // The sparse rows are eliminated one after the other; a pivot that is not positive ends the attempt.
   for (int i = 0; i < first; ++i) {
     const double pivot = eliminate(matrix, i, row);
     if (!(pivot > 0)) return false;
@@ -139,7 +147,8 @@ bool IncompleteCholesky::factorize(const SparseTriangle& matrix) {
   }
   if (dense_rows_ == 0) return true;
 
-  // of the dense rows first what stands before them, then the complement that this leaves
+  // The dense rows are eliminated against the sparse ones first, in blocks. With B these entries and D the dense
+  // rows' own matrix, the complement is D - B B^T.
   for_each_chunk(static_cast<std::size_t>(dense_rows_), kLanes,
                  [&](std::size_t, std::size_t begin, std::size_t) {
                    const int i = first + static_cast<int>(begin);
@@ -153,7 +162,7 @@ bool IncompleteCholesky::factorize(const SparseTriangle& matrix) {
     for (int at = dense_start(i); at < starts[i + 1]; ++at)
       complement(i - first, column[at] - first) = (column[at] == i ? 1 + share_ : 1) * matrix.valuePtr()[at];
   }
-  // and with less of it where that is not positive: a smaller coupling of the two leaves a larger complement
+  // Where that is not positive, B is coupled less: c B B^T with c < 1 leaves a larger complement.
   const Eigen::MatrixXd products = products_of_rows(before), diagonal = complement;
   double coupling = 1;
   for (;; coupling = coupling > kMinCoupling ? kLessCoupling * coupling : 0) {
@@ -177,6 +186,7 @@ Eigen::VectorXd IncompleteCholesky::solve_lower(Eigen::VectorXd b) const {
   const int size = static_cast<int>(factor_.rows()), first = first_dense();
   const std::ptrdiff_t block_size = std::ptrdiff_t{first} * kLanes;
 
+  // L x = b is solved from the first row to the last; the diagonal holds reciprocals.
   for (int i = 0; i < first; ++i) {
     const int diagonal = starts[i + 1] - 1;
     double sum = b[i];
@@ -184,7 +194,7 @@ Eigen::VectorXd IncompleteCholesky::solve_lower(Eigen::VectorXd b) const {
       sum -= dot(values + run.at, b.data() + run.column, std::min(run.length, diagonal - run.at));
     b[i] = sum * values[diagonal];
   }
-  // blocks are worked on apart: a number's sum is in the order of one thread
+  // Blocks are split between threads. Each number's sum is in the order of one thread.
   for_each_chunk(static_cast<std::size_t>(dense_rows_), kBlocksAtOnce * kLanes,
                  [&](std::size_t, std::size_t begin, std::size_t end) {
                    for (auto row = static_cast<int>(begin); row < static_cast<int>(end); row += kLanes) {
@@ -196,6 +206,7 @@ Eigen::VectorXd IncompleteCholesky::solve_lower(Eigen::VectorXd b) const {
                      b.segment(i, lanes) = sum.head(lanes);
                    }
                  });
+  // The dense rows follow, by their own triangle.
   for (int i = first; i < size; ++i) {
     const double* const row = values + dense_start(i);
     b[i] = (b[i] - dot(row, b.data() + first, i - first)) * row[i - first];
@@ -209,13 +220,13 @@ Eigen::VectorXd IncompleteCholesky::solve_upper(Eigen::VectorXd b) const {
   const int size = static_cast<int>(factor_.rows()), first = first_dense();
   const std::ptrdiff_t block_size = std::ptrdiff_t{first} * kLanes;
 
-  // from the last row to the first
+  // L^T x = b is solved from the last row to the first.
   for (int i = size - 1; i >= first; --i) {
     const double* const row = values + dense_start(i);
     b[i] *= row[i - first];
     subtract(b.data() + first, b[i], row, i - first);
   }
-  // columns apart, as blocks before
+  // Columns are split between threads, each with the sums of one thread in their order.
   if (dense_rows_ > 0)
     for_each_chunk(static_cast<std::size_t>(first), kColumnsAtOnce,
                    [&](std::size_t, std::size_t begin, std::size_t end) {

@@ -7,7 +7,7 @@
 
 namespace burnish {
 
-/// Where a table's nodes stand among the unknowns of a system: copy c of node n is number base + n copies + c.
+/// The numbers of a table's nodes among the unknowns of a system: copy c of node n is number base + n copies + c.
 struct NodeNumbers {
   std::size_t base = 0;
   std::size_t copies = 1;  ///< one for all channels, or one each and what pads them

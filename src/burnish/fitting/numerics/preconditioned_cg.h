@@ -4,7 +4,7 @@
 
 namespace burnish {
 
-/// How preconditioned_cg went. Residuals are r^T M^-1 r, M being the preconditioner.
+/// The result of preconditioned_cg. Residuals are r^T M^-1 r, M being the preconditioner.
 struct CgResult {
   double first_residual = 0, residual = 0;
   int iterations = 0;
@@ -23,14 +23,14 @@ CgResult preconditioned_cg(Vector& x, Vector b, double tolerance, int max_iterat
   result.first_residual = result.residual = dot(r, z);
   const double enough = tolerance * tolerance * result.first_residual;
   while (result.iterations < max_iterations && result.residual > enough) {
-    // along the direction p to the least of the quadratic form
+    // A step along the direction p goes to the least of the quadratic form.
     const Vector ap = apply(p);
     const double alpha = result.residual / dot(p, ap);
     for (Index i = 0; i < x.size(); ++i) {
       x[i] += alpha * p[i];
       r[i] -= alpha * ap[i];
     }
-    // the next direction, conjugate to all before
+    // The next direction is conjugate to all before.
     z = precondition(r);
     const double next = dot(r, z), beta = next / result.residual;
     for (Index i = 0; i < p.size(); ++i) p[i] = z[i] + beta * p[i];

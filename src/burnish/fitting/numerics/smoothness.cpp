@@ -7,9 +7,9 @@ namespace burnish {
 
 namespace {
 
-// Of differences between nodes of a pole, beside second derivatives: no sample outweighs them.
+// Weight of differences between nodes of a pole, beside second derivatives: no sample outweighs them.
 constexpr double kPoleShare = 100;
-// Of differences between both ends of a circle: volumes are refined at a smoothness of 1e-9.
+// Weight of differences between both ends of a circle: volumes are refined at a smoothness of 1e-9.
 constexpr double kCircleShare = 1e4;
 
 struct Term {
@@ -32,7 +32,8 @@ SmoothnessRows smoothness_rows(const TableLayout& layout, TableEdges edges) {
   const int w = layout.width, h = layout.height, d = layout.depth, layer = w * h;
   const auto cells = [](int nodes) { return nodes > 1 ? nodes - 1.0 : 1.0; };
   const double nx = cells(w), ny = cells(h), nz = cells(d);
-  // An integral over cells of size 1/nx x 1/ny x 1/nz of squared differences over powers of the spacing.
+  // Rows are roots of the terms of an integral over cells of size 1/nx x 1/ny x 1/nz: differences over powers of the
+  // spacing.
   const double volume = 1 / (nx * ny * nz), root = std::sqrt(volume), twice = std::sqrt(2 * volume);
   const double xx = nx * nx * root, yy = ny * ny * root, zz = nz * nz * root, xy = nx * ny * twice,
                xz = nx * nz * twice, yz = ny * nz * twice;
@@ -42,6 +43,7 @@ SmoothnessRows smoothness_rows(const TableLayout& layout, TableEdges edges) {
   for (int z = 0; z < d; ++z)
     for (int y = 0; y < h; ++y)
       for (int x = 0; x < w; ++x) {
+        // Each node adds its second differences, mixed ones twice as strongly, and its first differences.
         const int i = (z * h + y) * w + x;
         const auto mixed = [&](double scale, int a, int b) {
           add_row(rows, scale, {{i, 1}, {i + a, -1}, {i + b, -1}, {i + a + b, 1}});

@@ -26,9 +26,10 @@ double inner_product(const Doubles& a, const Doubles& b) {
   return sum;
 }
 
-/// The normal operator A^T W A / sum(W) + smooth S + ridge, without its matrix. Unknowns of tables with all
-/// channels are padded to `Padded` floats a texel (0: no padding, any count), so that a texel is one vector
-/// register.
+/// The normal operator A^T W A / sum(W) + smooth S + ridge, without its matrix. Its solution is the least squares fit
+/// of log f = sum of log lambda [HomomorphicBrdf, eq. 5].
+/// Unknowns of tables with all channels are padded to `Padded` floats a texel (0: no padding, any count), so that a
+/// texel is one vector register.
 template <std::size_t Padded>
 class LogOperator {
  public:
@@ -52,6 +53,7 @@ class LogOperator {
                           .next_layer = row * static_cast<std::size_t>(layout.height),
                           .axes = axis_count(layout.shape)});
     }
+    // Rows are made once and kept, chunk by chunk.
     chunks_.resize(chunk_count(maker.source->count, kChunk));
     for_each_chunk(maker.source->count, kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
       chunks_[chunk] = maker.make(begin, end);
@@ -66,6 +68,7 @@ class LogOperator {
   const Doubles& mean() const { return mean_; }
 
   Doubles right_side() const {
+    // The right side is A^T W t / sum(W) for the targets t.
     return accumulate([&](const LogRows& rows, Floats& y) {
       scatter(rows, y, [&](std::size_t i, float* row) {
         for (std::size_t c = 0; c < step(); ++c) row[c] = weight(rows, i, c) * rows.target[i * step() + c];
@@ -73,8 +76,9 @@ class LogOperator {
     });
   }
 
-  /// y = operator x; also x^T A^T W A x / sum(W) is x.y less the smoothness.
+  /// Returns y = operator x. Also, x^T A^T W A x / sum(W) is x.y less the smoothness.
   Doubles apply(const Doubles& x) const {
+    // Each row gathers A x, weighs it, and scatters it by A^T.
     const Floats xf(x.begin(), x.end());
     Doubles y = accumulate([&](const LogRows& rows, Floats& part) {
       scatter(rows, part, [&](std::size_t i, float* row) {
@@ -87,12 +91,14 @@ class LogOperator {
     return y;
   }
 
-  /// r -> approximate inverse of the operator times r: on the tables' own resolution and every coarser one,
-  /// the residual over the operator's diagonal there, added up [Bramble 1990].
+  /// Prepares precondition(r), an approximate inverse of the operator times r. On the tables' own resolution and
+  /// every coarser one, it divides the residual by the operator's diagonal there, and adds the results [Bramble
+  /// 1990].
   void build_preconditioner() {
     preconditioner_.resize(spec_.tables.size());
     for (std::size_t t = 0; t < spec_.tables.size(); ++t) {
       const TableLayout& layout = spec_.tables[t].layout;
+      // A level is a transfer to a coarser grid; the first one is the table's own resolution.
       preconditioner_[t].push_back({GridTransfer(layout, layout.width, layout.height, layout.depth), {}});
       for (GridTransfer& level : coarser_levels(layout)) preconditioner_[t].push_back({std::move(level), {}});
     }
@@ -112,6 +118,7 @@ class LogOperator {
     Doubles z(r.size()), coarse;
     for (std::size_t t = 0; t < spec_.tables.size(); ++t) {
       const auto [base, copies] = numbering_.tables[t];
+      // Each level restricts the residual, scales it by the inverse diagonal, and interpolates it back.
       for (const Level& level : preconditioner_[t]) {
         coarse.resize(level.inverse_diagonal.size());
         level.transfer.restrict_to(r.data() + base, coarse.data(), copies);
@@ -122,7 +129,7 @@ class LogOperator {
     return z;
   }
 
-  /// Weighted rms of the rows' residual.
+  /// Returns the weighted rms of the rows' residual.
   double error(const Doubles& x) const {
     const Floats xf(x.begin(), x.end());
     Doubles sums(chunks_.size());
@@ -142,7 +149,7 @@ class LogOperator {
     return std::sqrt(sum / (total_weight_ * static_cast<double>(channels_)));
   }
 
-  /// Unknown of a table's node and channel.
+  /// Returns the unknown of a table's node and channel.
   std::size_t index(std::size_t table, std::size_t node, std::size_t channel) const {
     return numbering_.tables[table](node, channel);
   }
@@ -175,7 +182,7 @@ class LogOperator {
     if (rows.weight_channels > 1) widen(rows.weight);
   }
 
-  // Takes each channel's mean out of the targets.
+  // Subtracts each channel's mean from the targets, and finds the weights' sum and the error before the fit.
   void center() {
     Doubles weights(channels_), first(channels_), second(channels_);
     for (const LogRows& rows : chunks_) {
@@ -188,13 +195,14 @@ class LogOperator {
           second[c] += w * t * t;
         }
     }
-    // the mean weight of a channel is one unit of data
+    // total_weight_ is the sum of weights, mean over the channels: it normalizes the operator.
     for (const double w : weights) total_weight_ += w / static_cast<double>(channels_);
     if (!(total_weight_ > 0)) throw Error("fit: expected samples with weight, found none");
     mean_.assign(step(), 0);
     double spread = 0;
     for (std::size_t c = 0; c < channels_; ++c) {
       if (!(weights[c] > 0)) continue;
+      // The variance is the second moment less the mean squared, times the weight.
       mean_[c] = first[c] / weights[c];
       spread += (second[c] - weights[c] * mean_[c] * mean_[c]) / total_weight_;
     }
@@ -206,11 +214,12 @@ class LogOperator {
     });
   }
 
-  // Every kSampleStride-th sample is enough to estimate a diagonal.
+  // Returns the inverse of the operator's diagonal on one level of a table. Every kSampleStride-th sample is enough
+  // to estimate it.
   Doubles inverse_diagonal(std::size_t table, const GridTransfer& level) const {
     constexpr std::size_t kSampleStride = 8;
     const std::size_t step_of = numbering_.tables[table].copies;
-    // of the data
+    // The data add the squared weight of each coarse corner, times the sample's weight.
     Doubles d(level.coarse_count() * step_of);
     for (const LogRows& rows : chunks_)
       for (std::size_t i = 0; i < rows.size; i += kSampleStride)
@@ -226,7 +235,7 @@ class LogOperator {
               d[at.node[corner] * step_of + (step_of > 1 ? c : 0)] +=
                   kSampleStride * at.weight[corner] * at.weight[corner] * weight(rows, i, c);
         }
-    // and of the smoothness of the coarse table
+    // The smoothness adds the squared coefficients of the coarse table's rows.
     TableLayout layout = spec_.tables[table].layout;
     layout.width = level.coarse_width();
     layout.height = level.coarse_height();
@@ -243,6 +252,7 @@ class LogOperator {
   }
 
   template <class Body>
+  // Calls body(place, step, weight) for the 2, 4 or 8 texels of each lookup of row i, with linear weights.
   void for_each_corner(const LogRows& rows, std::size_t i, const Body& body) const {
     for (std::size_t k = 0; k < touches_.size(); ++k) {
       const Touch& touch = touches_[k];
@@ -261,7 +271,7 @@ class LogOperator {
     }
   }
 
-  // row = sum of log lambda over the uses [HomomorphicBrdf, eq. 5]
+  // Sets row = sum of log lambda over the uses [HomomorphicBrdf, eq. 5], for each channel.
   void gather(const LogRows& rows, std::size_t i, const Floats& x, float* row) const {
     for (std::size_t c = 0; c < step(); ++c) row[c] = 0;
     for_each_corner(rows, i, [&](std::size_t at, std::size_t step_of, float weight) {
@@ -272,7 +282,7 @@ class LogOperator {
     });
   }
 
-  // y += A^T row for every sample, row as make_row(i, row) writes it
+  // Adds y += A^T row for every sample, with the row that make_row(i, row) writes.
   template <class MakeRow>
   void scatter(const LogRows& rows, Floats& y, const MakeRow& make_row) const {
     std::array<float, Padded> fixed;
@@ -289,7 +299,8 @@ class LogOperator {
     }
   }
 
-  // Sum over chunks of what body adds to a zero vector, in the order of the chunks, over the samples' weight.
+  // Returns the sum over chunks of what body adds to a zero vector, divided by the samples' weight. The order of sums
+  // does not depend on the number of threads.
   template <class Body>
   Doubles accumulate(const Body& body) const {
     constexpr std::size_t kGroups = 32;
@@ -308,6 +319,7 @@ class LogOperator {
     return sum;
   }
 
+  // Adds smooth S x to y: each roughness row is applied to x and scattered back.
   void add_smoothness(const Doubles& x, Doubles& y) const {
     for (std::size_t t = 0; t < spec_.tables.size(); ++t) {
       const SmoothnessRows& rows = smoothness_[t];
@@ -346,11 +358,11 @@ LogSolution solve(const RowMaker& rows, const HomomorphicOptions& options) {
   op.build_preconditioner();
   LogSolution solution{.samples = op.samples(), .summary = {.error_before = op.error_before()}};
 
-  // on the normal equations
+  // Conjugate gradients solve the normal equations from x = 0, the targets' means.
   Doubles x(op.count());
   const double least = options.tolerance * options.tolerance;
   const auto after_step = [&](const CgResult& state) {
-    // the residual falls about geometrically
+    // The residual falls about geometrically, so progress is measured on its logarithm.
     if (options.progress)
       options.progress(std::clamp(
           std::log(state.first_residual / std::max(state.residual, 1e-300)) / std::log(1 / least), 0.0, 1.0));
@@ -365,7 +377,7 @@ LogSolution solve(const RowMaker& rows, const HomomorphicOptions& options) {
   if (found.iterations < options.max_iterations) solution.summary.stop_reason = StopReason::tolerance_reached;
   solution.summary.error_after = op.error(x);
 
-  // without the padding
+  // The solution is copied without the padding.
   const Numbering numbering = number_nodes(*rows.spec, rows.source->channels);
   solution.log_values.resize(numbering.count);
   for (std::size_t t = 0; t < rows.spec->tables.size(); ++t)

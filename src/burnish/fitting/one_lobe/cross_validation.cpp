@@ -10,7 +10,7 @@ namespace burnish {
 
 namespace {
 
-// The samples of a fold alone, or all others.
+// Returns the samples of a fold alone, or all others.
 SampleSource part_of(const SampleSource& source, std::size_t folds, std::size_t fold, bool inside) {
   SampleSource part = source;
   part.fill = [&source, folds, fold, inside](std::size_t begin, std::span<DirectionPair> pairs,
@@ -45,7 +45,7 @@ std::vector<SmoothTrial> choose_smoothness(const SampleSource& source, const Mod
                                            const HomomorphicOptions& options) {
   constexpr int kFirstDecade = -1, kLastDecade = -10, kWorseDecades = 2;
   const bool many = source.distinct > kManySamples;
-  // a fold without samples would be one more fit to all
+  // A fold without samples would be one more fit to all of them.
   const std::size_t folds = many ? 2 : std::clamp<std::size_t>(source.distinct, 2, 5),
                     tables = spec.tables.size();
   const int rounds = many || tables == 1 ? 0 : 2;
@@ -70,15 +70,15 @@ std::vector<SmoothTrial> choose_smoothness(const SampleSource& source, const Mod
     return true;
   };
 
-  // the smoothness of all tables, by decades; from the smooth side, since rough tables can be wild at any of
-  // several decades
+  // The smoothness of all tables is tried by decades. It starts from the smooth side, since rough tables can be wild
+  // at any of several decades.
   std::vector<double> shares;
   for (const ModelSpec::TableSpec& table : spec.tables) shares.push_back(table.smooth_share);
   best.shares = shares;
   int worse = 0;
   for (int decade = kFirstDecade; decade >= kLastDecade && worse < kWorseDecades; --decade)
     worse = improves(attempt(std::pow(10.0, decade), shares)) ? 0 : worse + 1;
-  // each table's share of it
+  // Each table's share of it is moved by factors of ten while that helps.
   for (int round = 0; round < rounds; ++round)
     for (std::size_t t = 0; t < tables; ++t)
       for (const double before = best.shares[t]; const double factor : {0.1, 10.0}) {
@@ -90,7 +90,7 @@ std::vector<SmoothTrial> choose_smoothness(const SampleSource& source, const Mod
         } while (moved && shares[t] > 1e-4 && shares[t] < 1e4);
         if (best.shares[t] != before) break;  // this way helped, the other would undo it
       }
-  // half a decade either way
+  // Last, half a decade either way is tried.
   for (const double factor : {std::sqrt(0.1), std::sqrt(10.0)})
     improves(attempt(best.smooth * factor, best.shares));
   std::ranges::stable_sort(trials, {}, &SmoothTrial::error);

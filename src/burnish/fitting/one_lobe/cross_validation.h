@@ -17,18 +17,19 @@ double held_out_error(const SampleSource& source, const ModelSpec& spec, const H
 /// Above this many samples choose_smoothness takes shortcuts.
 inline constexpr std::size_t kManySamples = 20'000;
 
-/// What choose_smoothness tried.
+/// The trials of choose_smoothness.
 struct SmoothTrial {
   double smooth = 0;
   std::vector<double> shares;  ///< smooth_share of each table
   double error = 0;            ///< held_out_error
 };
 
-/// Finds the smoothness with the smallest held_out_error. First smooth = 10^k for falling k from -1 to -10 until
-/// two decades in a row do not help; then, for each table in turn, twice, ever smaller or larger shares by
-/// factors of ten as long as that helps; then half a decade either way. Five folds, or one a sample; for more than
-/// 20,000 samples, where little hangs on it, two folds without reweighting, and all tables alike. Returns all trials,
-/// the best first. options.progress is called with the share of the trials that are expected.
+/// Finds the smoothness with the smallest held_out_error. First it tries smooth = 10^k for falling k from -1 to -10,
+/// until two decades in a row do not help. Then, for each table in turn, twice, it tries ever smaller or larger
+/// shares by factors of ten as long as that helps; last, half a decade either way.
+/// It uses five folds, or one a sample where there are fewer. For more than 20,000 samples, where little depends on
+/// it, it uses two folds without reweighting, and all tables alike.
+/// Returns all trials, the best first. options.progress is called with the share of the trials that are expected.
 std::vector<SmoothTrial> choose_smoothness(const SampleSource& source, const ModelSpec& spec,
                                            const HomomorphicOptions& options);
 

@@ -25,7 +25,7 @@ LogSolution solve(const RowMaker& rows, const HomomorphicOptions& options) {
              : solve_by_conjugate_gradients(rows, options);
 }
 
-// The tables of a solution, logarithms still, in the formats to be.
+// Returns the tables of a solution, still as logarithms, in the formats that they will be stored in.
 std::vector<Table> to_tables(const LogSolution& solution, const Numbering& numbering, const ModelSpec& spec,
                              TableFormat format) {
   std::vector<Table> tables;
@@ -65,7 +65,7 @@ HomomorphicFit fit_homomorphic(const SampleSource& source, const ModelSpec& spec
 
   check_formats(spec, source.channels, options.format);
 
-  // least squares in log f
+  // The first pass is least squares in log f.
   RowMaker rows(source, spec, options.floor, options.error_floor);
   rows.backscatter = options.backscatter;
   const Numbering numbering = number_nodes(spec, source.channels);
@@ -73,7 +73,7 @@ HomomorphicFit fit_homomorphic(const SampleSource& source, const ModelSpec& spec
   FitSummary summary = solution.summary;
   int reweightings = 0;
 
-  // towards the least absolute error; the best pass is kept
+  // Further passes reweight towards the least absolute error; the best pass is kept.
   if (options.reweightings > 0) {
     const auto unrounded = [&](const LogSolution& s) {
       return from_log_tables(source.channels, to_tables(s, numbering, spec, options.format),

@@ -23,7 +23,7 @@ constexpr double kNearest = 1.0 / 64;  // of HomomorphicOptions::backscatter
 LogRows RowMaker::make(std::size_t begin, std::size_t end) const {
   const std::vector<FactorUse>& uses = spec->lobes.front();
   const auto channels = source->channels;
-  // room for all samples
+  // Memory is reserved for all samples.
   LogRows rows;
   const std::size_t most = end - begin;
   rows.node.reserve(most * uses.size());
@@ -34,7 +34,7 @@ LogRows RowMaker::make(std::size_t begin, std::size_t end) const {
   rows.weight.reserve(most * (current ? channels : 1));
 
   rows.weight_channels = current ? channels : 1;
-  // a block at a time, those above the horizon that weigh something: lookups, then targets and weights
+  // Samples are read in blocks. Those above the horizon with weight give their lookups, then targets and weights.
   std::vector<double> model(channels);
   std::vector<DirectionPair> pairs(kSamplesAtOnce);
   std::vector<double> values(kSamplesAtOnce * channels), sample_weights(kSamplesAtOnce);
@@ -66,13 +66,14 @@ LogRows RowMaker::make(std::size_t begin, std::size_t end) const {
 
 double RowMaker::emphasis(const DirectionPair& pair) const noexcept {
   if (backscatter <= 0) return 1;
-  // of n samples spread evenly around wi = wo the number within theta_d grows with its square, that of each step of
-  // sqrt(theta_d) with its power of 1.5
+  // Of n samples spread evenly around wi = wo, the number within theta_d grows with its square. That of each step of
+  // sqrt(theta_d) grows with its power of 1.5, so the weight is its inverse.
   const double share = angle_between(pair.wi, pair.wo) / 2 / backscatter;
   return share < 1 ? std::pow(std::max(share, kNearest), -1.5) : 1;
 }
 
 void RowMaker::add_plain(std::span<const double> f, double weight, LogRows& rows) const {
+  // The target is log(max(f, 0) + floor).
   rows.weight.push_back(static_cast<float>(weight));
   for (const double v : f) rows.target.push_back(static_cast<float>(std::log(std::max(v, 0.0) + floor)));
 }
@@ -81,6 +82,8 @@ void RowMaker::add_reweighted(const DirectionPair& pair, std::span<const double>
                               std::span<double> model, LogRows& rows) const {
   current->eval(pair.wi, pair.wo, model);
   for (std::size_t c = 0; c < f.size(); ++c) {
+    // Linearized about log m, the error of log(f + floor) is a row of target log m + error / slope and weight
+    // slope^2. Dividing that by |error| makes the squares count as absolute values [Daubechies 2010].
     const double m = std::max(model[c], floor * kMinShare);
     const double slope = m / (m + error_floor);
     const double error = std::log((std::max(f[c], 0.0) + error_floor) / (m + error_floor));

@@ -11,8 +11,8 @@
 
 namespace burnish {
 
-/// A block of samples as rows of the log-linear problem: what each lookup touches, the logarithms and the
-/// weights. Samples without weight are left out.
+/// A block of samples as rows of the log-linear problem: the texels of each lookup, the logarithms and the weights.
+/// Samples without weight are left out.
 struct LogRows {
   std::size_t size = 0;
   std::vector<std::uint32_t> node;  ///< [sample][use], lower corner
@@ -22,10 +22,10 @@ struct LogRows {
   std::vector<float> weight;        ///< [sample]
 };
 
-/// How samples become rows. Without a current model the rows are log(f + floor) with the samples' weights.
-/// With one they are a step of reweighted least squares for the absolute error of log(f + error_floor) about
-/// that model: the error's derivative by log(model) is model / (model + error_floor), and a square weighs
-/// like an absolute value where it is divided by the size of the current error [Daubechies 2010].
+/// Makes rows of samples. Without a current model, the rows are log(f + floor) with the samples' weights.
+/// With one, they are a step of reweighted least squares for the absolute error of log(f + error_floor) about that
+/// model. The error's derivative by log(model) is model / (model + error_floor). A square weighs like an absolute
+/// value where it is divided by the size of the current error [Daubechies 2010].
 class RowMaker {
  public:
   RowMaker(const SampleSource& samples, const ModelSpec& model, double fit_floor,
@@ -39,7 +39,7 @@ class RowMaker {
 
   const FactoredBrdf* current = nullptr;
 
-  /// The rows of samples [begin, end).
+  /// Returns the rows of samples [begin, end).
   LogRows make(std::size_t begin, std::size_t end) const;
 
  private:

@@ -7,11 +7,12 @@ namespace burnish {
 
 namespace {
 
+// Returns the nodes of an axis on the next coarser level.
 int halved(int n) {
   return n > 2 ? (n + 1) / 2 : 1;
 }
 
-/// Runs body(step), the step a constant to the compiler where it is one of the usual ones.
+/// Calls body(step); the usual steps are constants to the compiler.
 template <class Body>
 void with_constant(std::size_t step, const Body& body) {
   if (step == 1)
@@ -31,6 +32,7 @@ GridTransfer::GridTransfer(const TableLayout& fine, int coarse_width, int coarse
   x_ = axis(fine.width, coarse_width);
   y_ = axis(fine.height, coarse_height);
   z_ = axis(fine.depth, coarse_depth);
+  // The coarse corners of every fine node and their weights are found once.
   for (int node = 0; node < fine_count(); ++node) {
     const Corners at = corners({.node = node});
     for (std::size_t k = 0; k < at.count; ++k)
@@ -40,7 +42,7 @@ GridTransfer::GridTransfer(const TableLayout& fine, int coarse_width, int coarse
 }
 
 GridTransfer::Corners GridTransfer::corners(const Lookup& fine) const noexcept {
-  // the two coarse nodes along an axis, and what each weighs
+  // Finds the two coarse nodes along an axis, and their linear weights.
   struct Place {
     std::size_t node[2];
     double weight[2];
@@ -67,6 +69,7 @@ GridTransfer::Corners GridTransfer::corners(const Lookup& fine) const noexcept {
 }
 
 void GridTransfer::restrict_to(const double* fine, double* coarse, std::size_t step) const {
+  // Restriction is the transpose of interpolation: each fine value is shared out among its coarse corners.
   std::fill_n(coarse, coarse_count() * step, 0.0);
   with_constant(step, [&](auto channels) {
     const double* from = fine;

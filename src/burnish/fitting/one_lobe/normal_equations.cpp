@@ -16,7 +16,7 @@ namespace {
 
 using Matrix = Eigen::MatrixXd;
 
-// Pins what neither data nor smoothness determine (the share of a constant between the tables).
+// A ridge that fixes what neither data nor smoothness determine, such as the share of a constant between the tables.
 constexpr double kDirectRidge = 1e-7;
 
 // Memory for the partial sums that run side by side.
@@ -71,13 +71,15 @@ class Gatherer {
         matrices_, Sums(static_cast<Eigen::Index>(numbering_.count), coupled_ ? 1 : channels, channels));
   }
   std::size_t bytes() const { return matrices_ * numbering_.count * numbering_.count * sizeof(double); }
-  /// How often a table stands in the matrix.
+  /// Returns how often a table stands in the matrix.
   std::size_t copies(std::size_t table) const { return numbering_.tables[table].copies; }
   Eigen::Index index(std::size_t table, std::size_t node, std::size_t copy) const {
     return static_cast<Eigen::Index>(numbering_.tables[table](node, copy));
   }
 
   std::size_t add(std::size_t begin, std::size_t end, std::vector<Sums>& sums) const {
+    // Each sample adds weight * a a^T to the matrix and weight * a * target to the right side; a are its row's
+    // weights [HomomorphicBrdf, eq. 5].
     const LogRows rows = rows_.make(begin, end);
     std::vector<Term> terms(8 * uses_.size());
     const std::size_t step = rows.weight_channels;
@@ -103,7 +105,7 @@ class Gatherer {
   }
 
  private:
-  /// One texel of a row.
+  /// One texel of a row, with its weight in the row.
   struct Term {
     std::size_t index;
     bool per_channel;
@@ -116,6 +118,7 @@ class Gatherer {
       return static_cast<Eigen::Index>(t.index + (t.per_channel ? copy : 0));
     };
     for (std::size_t a = 0; a < row.size(); ++a) {
+      // Each product of two terms is added once, on either side of the diagonal; solve() adds the transpose.
       const Eigen::Index at = place(row[a]);
       const double wa = weight * row[a].weight;
       for (Eigen::Index c = 0; c < sums.right.cols(); ++c) sums.right(at, c) += wa * target[c];
@@ -126,6 +129,7 @@ class Gatherer {
   }
 
   std::span<const Term> find_terms(const LogRows& rows, std::size_t i, std::vector<Term>& terms) const {
+    // The terms are the 2, 4 or 8 texels of each lookup with their weights of linear interpolation.
     std::size_t count = 0;
     for (std::size_t k = 0; k < uses_.size(); ++k) {
       const auto t = uses_[k].table;
@@ -159,7 +163,7 @@ class Gatherer {
   Numbering numbering_;  ///< of one matrix
 };
 
-// Adds smooth * (roughness of every table) to the matrix.
+// Adds smooth * share * (roughness of every table) to the matrix.
 void add_smoothness(const ModelSpec& spec, const Gatherer& gatherer, double smooth, Matrix& matrix) {
   for (std::size_t t = 0; t < spec.tables.size(); ++t) {
     const ModelSpec::TableSpec& table = spec.tables[t];
@@ -183,7 +187,7 @@ struct Solved {
 Solved solve(const Sums& sum, const ModelSpec& spec, const Gatherer& gatherer, double smooth) {
   if (!(sum.weight > 0)) throw Error("fit: expected samples with weight, found none");
 
-  // the mean over the samples, smoothness and ridge added
+  // The matrix is the mean over the samples, plus the smoothness and a ridge.
   Matrix data = (sum.upper + sum.upper.transpose()) / sum.weight;
   data.diagonal() += sum.diagonal / sum.weight;
   const Matrix right = sum.right / sum.weight;
@@ -192,7 +196,7 @@ Solved solve(const Sums& sum, const ModelSpec& spec, const Gatherer& gatherer, d
   matrix.diagonal().array() += kDirectRidge * matrix.trace() / static_cast<double>(matrix.rows());
   Solved solved{.x = matrix.ldlt().solve(right)};
 
-  // sum over rows of (A x - t)^2 = x A^T A x - 2 x A^T t + t^2
+  // The error is found from the sums alone: sum over rows of (A x - t)^2 = x A^T A x - 2 x A^T t + t^2.
   const Matrix& x = solved.x;
   const Eigen::ArrayXd mean = sum.target / sum.weight, mean_square = sum.target_squared / sum.weight;
   solved.before = sum.weight * (mean_square - mean * mean).sum();
@@ -208,7 +212,7 @@ LogSolution solve_normal_equations(const RowMaker& rows, const HomomorphicOption
   const Gatherer gatherer(rows);
   const auto channels = rows.source->channels;
 
-  // One partial sum a group of samples, joined in order.
+  // Each group of samples has a partial sum; these are joined in order, whatever the number of threads.
   const std::size_t groups = std::clamp<std::size_t>(kPartialBytes / gatherer.bytes(), 2, 32);
   const std::size_t group_size = std::max(kGatheredSamples, (rows.source->count + groups - 1) / groups);
   std::vector<std::vector<Sums>> partial(chunk_count(rows.source->count, group_size));
@@ -224,7 +228,7 @@ LogSolution solve_normal_equations(const RowMaker& rows, const HomomorphicOption
                        .channel_offset = std::vector<double>(channels),
                        .summary = {.stop_reason = StopReason::direct_solution}};
   for (const std::size_t s : samples) solution.samples += s;
-  // each matrix by itself
+  // Each matrix is summed and solved by itself.
   std::vector<Solved> solved(gatherer.matrices());
   for_each_chunk(gatherer.matrices(), 1, [&](std::size_t m, std::size_t, std::size_t) {
     Sums& sum = partial.front()[m];
@@ -239,7 +243,7 @@ LogSolution solve_normal_equations(const RowMaker& rows, const HomomorphicOption
     after += solved[m].after;
     weight += solved[m].weight;
 
-    // where the unknowns stand among those of all channels
+    // The unknowns are copied to their places among those of all channels.
     for (std::size_t t = 0; t < rows.spec->tables.size(); ++t)
       for (std::size_t node = 0; node < rows.spec->tables[t].layout.node_count(); ++node)
         for (std::size_t c = 0; c < all.tables[t].copies; ++c)
