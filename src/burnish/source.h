@@ -49,14 +49,14 @@ struct Source {
   std::optional<std::size_t> bytes() const noexcept;
 };
 
-/// Whether measured_nodes has an answer.
+/// Returns true if measured_nodes has an answer.
 bool is_measurement(const Source& source) noexcept;
 
-/// What was measured, where the source is a measurement. Throws Error naming the source where it is a formula
+/// Returns the measured nodes of a source that is a measurement. Throws Error naming the source where it is a formula
 /// or a model, or has no node above the horizon.
 MeasuredNodes measured_nodes(const Source& source);
 
-/// How many nodes that are, at how many incident angles, in little memory. Throws as measured_nodes does.
+/// Returns the number of these nodes and of their incident angles, in little memory. Throws as measured_nodes does.
 NodeCount count_nodes(const Source& source);
 
 /// A function of one's own as a source of that name. lambda_nm: wavelengths of its channels in nm, as many as they are,

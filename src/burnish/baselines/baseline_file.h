@@ -25,7 +25,7 @@ struct Baseline {
 BrdfRef baseline_ref(const BaselineBrdf& brdf) noexcept;
 std::size_t baseline_bytes(const BaselineBrdf& brdf) noexcept;
 
-/// What it is made of, such as "u(theta_h 32, theta_d 8) v(phi_d 5), 2 terms", one line.
+/// Returns the tables in one line, such as "u(theta_h 32, theta_d 8) v(phi_d 5), 2 terms".
 std::string baseline_expression(const BaselineBrdf& brdf);
 
 /// JSON {kind, parameters, tables, notes}. What format_baseline writes, parse_baseline restores to the last

@@ -41,7 +41,7 @@ class DgfBrdf {
 
 static_assert(Brdf<DgfBrdf>);
 
-/// Where G is looked up for a direction: theta_d of this is its polar angle.
+/// Returns the place of G for a direction: its polar angle takes the part of theta_d.
 inline PairPlace masking_place(Vec3 w) noexcept {
   return PairPlace(w, mirror(w));
 }

@@ -10,8 +10,8 @@
 
 namespace burnish {
 
-/// What one evaluation does with stored numbers, all channels together: numbers read, and multiplications by
-/// which they are interpolated and combined. Finding the place in a table is left out.
+/// The work of one evaluation on stored numbers, all channels together: numbers read, and multiplications that
+/// interpolate and combine them. Finding the place in a table is not counted.
 struct EvaluationCost {
   std::size_t table_reads = 0, multiplies = 0;
 

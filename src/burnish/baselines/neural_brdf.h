@@ -30,7 +30,7 @@ class NeuralBrdf {
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 
   std::span<const float> weights() const noexcept { return weights_; }
-  /// As half floats, which the published weights bear without a visible loss.
+  /// Returns the size as half floats, which the published weights bear without a visible loss.
   static constexpr std::size_t bytes() noexcept { return 2 * kWeights; }
 
  private:

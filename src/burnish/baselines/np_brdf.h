@@ -19,8 +19,8 @@ class NpBrdf {
  public:
   static constexpr std::size_t kCode = NpDecoder::kInputs - 4;
   using Code = std::array<float, kCode>;
-  /// What a decoded value is. A reciprocal network cannot know which of the two cosines a value was
-  /// multiplied by: `with_cosine` is divided by their mean, at least kMinCosine.
+  /// The meaning of a decoded value. A reciprocal network cannot know which of the two cosines a value was multiplied
+  /// by: `with_cosine` is divided by their mean, at least kMinCosine.
   enum class Value { reflectance, with_cosine };
   static constexpr double kMinCosine = 0.02;
 
@@ -37,7 +37,7 @@ class NpBrdf {
 
   const Code& code() const noexcept { return code_; }
   Value value() const noexcept { return value_; }
-  /// Of the code; NpDecoder::bytes() more are shared.
+  /// Returns the bytes of the code; NpDecoder::bytes() more are shared.
   static constexpr std::size_t bytes() noexcept { return sizeof(Code); }
 
  private:

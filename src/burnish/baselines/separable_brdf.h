@@ -26,7 +26,7 @@ class SeparableBrdf {
   bool isotropic() const noexcept { return isotropic_; }
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 
-  /// As eval, with values below zero left as they are.
+  /// Evaluates as eval, with values below zero left as they are.
   void eval_signed(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
 
   const NodeTable& u() const noexcept { return u_; }

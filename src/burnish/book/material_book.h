@@ -13,8 +13,8 @@
 
 namespace burnish {
 
-/// What a library of materials shares, of one axis of colour: logarithms at the nodes of one volume are the mean plus
-/// a sum of components, each with a weight of the material's own.
+/// The part of one axis of colour that a library of materials shares. Logarithms at the nodes of one volume are the
+/// mean plus a sum of components, each with a weight of the material's own.
 struct BookAxis {
   std::vector<float> mean;              ///< one a node, halves
   std::vector<std::int8_t> components;  ///< [component][node]
@@ -56,7 +56,7 @@ class MaterialBook {
   /// number of a material's weights does not fit. `sides`: nodes along theta_h, theta_d and phi_d.
   MaterialBook(std::array<int, 3> sides, std::array<BookAxis, kAxes> axes, std::vector<Material> materials);
 
-  /// Of the volume: theta_h with a root warp, theta_d and phi_d even in tan(theta / 2).
+  /// Returns the layout of the volume: theta_h with a root warp, theta_d and phi_d even in tan(theta / 2).
   const TableLayout& layout() const noexcept { return layout_; }
   std::size_t node_count() const noexcept { return layout_.node_count(); }
   const std::array<BookAxis, kAxes>& axes() const noexcept { return axes_; }

@@ -129,7 +129,7 @@ FactoredPlan::FactoredPlan(const FactoredBrdf& brdf)
     }
     products.push_back({first, lookups.size(), {}});
     for (const double s : brdf.lobes()[j].scale) products.back().scale.push_back(static_cast<float>(s));
-    products.back().scale.resize(up_to_multiple(channels, kTogether) + 1);  // one more float, since scales are loaded in fours
+    products.back().scale.resize(up_to_multiple(channels, kTogether) + 1);  // loaded in fours
     rounding_bound = std::max(rounding_bound, bound);
   }
   if (slots > kMaxSlots)

@@ -12,7 +12,7 @@
 
 namespace burnish {
 
-/// What a model can be written as.
+/// The targets that a model can be written as.
 enum class ExportTarget {
   ktx2,       ///< the textures that shaders read
   cube,       ///< tables of one direction as cube maps, KTX2
@@ -43,19 +43,20 @@ ExportTarget export_target(std::string_view name);
 
 /// The language of a shader; nothing for other targets.
 std::optional<ShaderLanguage> language_of(ExportTarget target) noexcept;
-/// Whether the target is a language that can multiply in half precision: all but C++.
+/// Returns true if the target is a language that can multiply in half precision: all but C++.
 bool has_half_products(ExportTarget target) noexcept;
-/// Whether the target can show light from all around: glsl, glsl_es and html.
+/// Returns true if the target can show light from all around: glsl, glsl_es and html.
 bool shows_environment(ExportTarget target) noexcept;
 
-/// What functions and files of an export can be called, made of a text's letters and digits; "brdf" where it has none.
+/// Returns the name of an export's functions and files, made of a text's letters and digits; "brdf" where it has
+/// none.
 std::string export_name(std::string_view text);
 
 struct ExportedFile {
   std::string name, bytes;
 };
 
-/// What an exported shader costs.
+/// The cost of an exported shader.
 struct ExportedShader {
   std::string file;
   /// "exact filter" or "hardware filter", this also with ", half products"; or the name of the power's method.
@@ -68,7 +69,7 @@ struct ExportedShader {
 struct ExportedFiles {
   std::vector<ExportedFile> files;
   std::vector<ExportedShader> shaders;
-  /// What tables that stand for the model say less than it does, as convert says it, each after its file's name.
+  /// What the tables of the target lose of the model, as convert reports it, each after its file's name.
   std::vector<std::string> losses;
 
   void lose(const std::string& file, std::span<const std::string> of_file) {

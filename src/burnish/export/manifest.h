@@ -12,7 +12,7 @@
 
 namespace burnish {
 
-// What the manifest of an export says of its files.
+// The entries of an export's manifest about its files.
 
 /// "NAME.glsl" and the like.
 std::string shader_file(ShaderLanguage language, const std::string& name);
@@ -24,7 +24,7 @@ nlohmann::json manifest_entry(const Table& table);
 /// A texture of light from all around.
 nlohmann::json manifest_entry(const std::string& file, const GlTexture& texture);
 
-/// What glTF shows: the material without its name, and its score.
+/// Returns the entry for glTF: the material without its name, and its score.
 nlohmann::json gltf_entry(const NearestGltf& nearest);
 
 /// A core material as glTF has it.

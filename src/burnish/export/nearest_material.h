@@ -17,10 +17,11 @@ struct NearestGltf {
   double relative = 0;  ///< as ErrorFigures has it, of 20,000 pairs
 };
 
-/// What fit_openpbr finds for a BRDF of 1 or 3 channels, and how much it looks like it. Takes seconds.
+/// Returns the material that fit_openpbr finds for a BRDF of 1 or 3 channels, and how much it looks like it. Takes
+/// seconds.
 NearestOpenPbr nearest_openpbr(BrdfRef brdf);
 
-/// What fit_gltf finds, likewise.
+/// Returns the same for fit_gltf.
 NearestGltf nearest_gltf(BrdfRef brdf);
 
 }  // namespace burnish

@@ -20,8 +20,8 @@ std::string three_module(const OpenPbr& material, const std::string& name);
 std::string babylon_module(const FactoredBrdf& brdf, const std::string& name);
 std::string babylon_module(const OpenPbr& material, const std::string& name);
 
-/// What scripts of web/ read of a surface: name, expression, shader, textures of the lobes, maps, and whether places
-/// have a frame. Throws Error as generate_shader does.
+/// Returns the JSON that scripts of web/ read of a surface: name, expression, shader, textures of the lobes, maps,
+/// and whether places have a frame. Throws Error as generate_shader does.
 nlohmann::json web_model(const SpatialBrdf& surface, const std::string& name);
 /// The same of a shader without textures, whose model is called `expression`, and of OpenPBR.
 nlohmann::json web_model(const Shader& shader, const std::string& expression, const std::string& name);

@@ -10,7 +10,7 @@
 
 namespace burnish {
 
-/// Whether a text is UTF-8, as CBOR's and JSON's texts are.
+/// Returns true if a text is UTF-8, as CBOR's and JSON's texts are.
 bool is_utf8(const std::string& text);
 
 /// Writes items of CBOR [RFC8949] one after the other, lengths definite and heads as short as they can be.
@@ -19,7 +19,7 @@ class CborWriter {
   void integer(std::int64_t value);
   void text(std::string_view utf8);
   void bytes(std::span<const std::byte> content);
-  /// Of the `count` items that follow.
+  /// Begins a list of the `count` items that follow.
   void list(std::size_t count);
   /// On the item that follows.
   void tag(std::uint64_t number);
@@ -56,7 +56,7 @@ class CborReader {
   void tag(std::string_view what, std::uint64_t number);
   /// A finite number in any of CborWriter's spellings; decimal fractions to the nearest double.
   double number(std::string_view what);
-  /// Whether a list comes next.
+  /// Returns true if a list comes next.
   bool list_is_next() const noexcept;
   /// Nothing may follow.
   void end() const;

@@ -8,7 +8,7 @@
 
 namespace burnish {
 
-/// What a compact file tells of a model.
+/// The parts of a model that a compact file holds.
 enum class CompactContent {
   model,           ///< all that evaluation needs, and lambda_nm; no notes
   model_and_notes  ///< everything

@@ -6,7 +6,7 @@
 
 namespace burnish {
 
-/// What is changed in a model; the defaults change nothing, not a bit.
+/// Changes to a model. The defaults change no bit.
 struct Edit {
   std::vector<double>
       hue;  ///< radians by which colours turn about grey, of all lobes or of each; three channels only

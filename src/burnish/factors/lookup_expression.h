@@ -13,9 +13,9 @@ struct TableAxis {
   double size, first;
 };
 
-/// Where two directions fall in a table, as expressions over the vectors "wi" and "wo": unit, above the
-/// horizon. The formulas of parameterization/projection-inl.h, for arithmetic of single precision. A line has
-/// one position, disks and grids two, a volume three; those that a table lacks are the number 0. A disk's
+/// Returns the positions of two directions in a table, as expressions over the vectors "wi" and "wo": unit, above the
+/// horizon. The formulas are those of parameterization/projection-inl.h, for arithmetic of single precision. A line
+/// has one position, disks and grids two, a volume three; those that a table lacks are the number 0. A disk's
 /// `x.size` cells are as many rows as there are columns.
 std::array<Expr, 3> position_expressions(const TableLayout& layout, const FactorUse& use, const TableAxis& x,
                                          const TableAxis& y, const TableAxis& z);

@@ -22,7 +22,7 @@ struct ExrPart {
 /// The longest side of a part that is no table.
 inline constexpr int kMaxPartSide = 16'384;
 
-/// What a model is part of, a surface (surface/surface_file.h): JSON that says so, and pictures.
+/// The surface that a model is part of (surface/surface_file.h): JSON that says so, and pictures.
 struct ModelExtension {
   std::string json;
   std::vector<ExrPart> parts;

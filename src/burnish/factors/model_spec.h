@@ -18,8 +18,8 @@ struct ModelSpec {
     bool shared = false;                ///< one channel for all
     double smooth_share = 1;            ///< multiplies the fit's smoothness for this table
     std::optional<TableFormat> format;  ///< none: what the fit's options say
-    /// Of grids: y is an angle about whose zero f is even, so that what no sample tells is level there; x is one, and y
-    /// the azimuth about it, so that where x is 0 all y are one direction.
+    /// For grids. even_y: y is an angle about whose zero f is even, so that f is level there where no sample tells.
+    /// pole_x: x is an angle too and y the azimuth about it, so that at x = 0 all y are one direction.
     bool even_y = false, pole_x = false;
     bool circle_z = false;  ///< of volumes: the first layer and the last are one place
   };

@@ -11,7 +11,7 @@
 
 namespace burnish {
 
-/// What a table's nodes are spread over.
+/// The domain of a table's nodes.
 /// - line: the polar angle of one projected direction, node 0 at the normal, the last at the horizon;
 /// - disk: the hemisphere of one projected direction, square, the disk's rim through the outermost nodes;
 /// - grid: the polar angles of two projected directions, x of the first, y of the second;
@@ -32,7 +32,7 @@ std::string_view to_string(TableShape shape) noexcept;
 /// Reads what to_string writes; throws Error on anything else.
 TableShape parse_table_shape(std::string_view name);
 
-/// Where the nodes of a table stand.
+/// The positions of a table's nodes.
 struct TableLayout {
   TableShape shape = TableShape::line;
   int width = 0;   ///< nodes along x, >= 2
@@ -84,7 +84,7 @@ struct Lookup {
   double fx, fy, fz;  ///< in [0, 1]; fy = 0 for a line, fz = 0 but for a volume
 };
 
-/// Whether two lookups find the same nodes for all directions: then they are located once.
+/// Returns true if two lookups find the same nodes for all directions: then they are located once.
 inline bool located_alike(const TableLayout& layout, const FactorUse& use, const TableLayout& other_layout,
                           const FactorUse& other) noexcept {
   return layout == other_layout && use.projection == other.projection &&
@@ -98,7 +98,7 @@ Lookup locate(const TableLayout& layout, const FactorUse& use, Vec3 wi, Vec3 wo)
 Vec3 node_direction(const TableLayout& layout, int x, int y) noexcept;
 
 inline constexpr int kMaxSide = 8192;
-/// Of a volume's sides, as 3-D textures have them, so that its layers are no more rows than kMaxSide.
+/// The longest side of a volume, as 3-D textures have it, so that its layers are no more rows than kMaxSide.
 inline constexpr int kMaxVolumeSide = 256;
 
 /// Throws Error unless the sizes are in [2, kMaxSide], a volume's in [2, kMaxVolumeSide] with at most kMaxSide

@@ -6,7 +6,7 @@
 
 namespace burnish {
 
-/// Where albedos are looked at, and how well.
+/// The directions in which albedos are computed, and their precision.
 struct EnergyOptions {
   int theta_count = 48;  ///< polar angles of wi from the normal to kMaxTheta, denser towards grazing; >= 2
   int phi_count = 24;    ///< azimuths around, of anisotropic models; >= 1

@@ -20,7 +20,7 @@
 
 namespace burnish {
 
-/// How one lobe is fitted, log-linearly: see HomomorphicOptions.
+/// Options of the log-linear fit of one lobe: see HomomorphicOptions.
 struct LogLinear {
   bool cross_validate = false;           ///< choose the smoothness; of scattered samples always
   std::optional<int> reweightings = {};  ///< none: 4 for scattered samples, else 0
@@ -58,9 +58,9 @@ struct Budget {
 /// The bytes of DefaultBudget.
 inline constexpr std::uint64_t kDefaultBudget = 16 << 10;
 
-/// What serves most uses: 16 KB, and two fetches for an isotropic source, six for another. Nodes of an isotropic source
-/// get one fetch more if the model's error at the nodes is larger than their cross-validation error. The one lobe of
-/// scattered samples has as many fetches as predict best.
+/// The budget that serves most uses: 16 KB, and two fetches for an isotropic source, six for another. Nodes of an
+/// isotropic source get one fetch more if the model's error at the nodes is larger than their cross-validation error.
+/// The one lobe of scattered samples has as many fetches as predict best.
 struct DefaultBudget {
   FitLoss loss = FitLoss::image;
   LogLinear scattered = {};  ///< as Budget has it
@@ -73,7 +73,7 @@ struct GivenLobes {
   FitLoss loss = FitLoss::image;
 };
 
-/// What others would do instead of positive factors.
+/// A method of others in place of positive factors.
 struct BaselineMethod {
   std::string method;  ///< one of baseline_methods()
   /// At most this many bytes, at least 1. None: the default of BaselineOptions.
@@ -87,7 +87,7 @@ struct FromBook {
   std::shared_ptr<const MaterialBook> book;  ///< not null
 };
 
-/// What a fit makes.
+/// The form of the model that a fit makes.
 using FitForm = std::variant<OneLobe, Budget, DefaultBudget, GivenLobes, BaselineMethod, FromBook>;
 
 /// The form for a model as parse_model_spec reads it: OneLobe or, where it has several, GivenLobes. Without a
@@ -95,23 +95,25 @@ using FitForm = std::variant<OneLobe, Budget, DefaultBudget, GivenLobes, Baselin
 FitForm form_of(const std::string& model, const std::vector<std::string>& tables, bool isotropic,
                 const LogLinear& of_one_lobe, FitLoss of_several);
 
-/// What is fitted: the function that the owner of a measurement makes of it, or what was measured itself. Between the
-/// nodes of an isotropic source stands a KrigedNodes, under the covariance that predicts left-out nodes best. Nodes of
-/// an anisotropic source are fitted as they are.
+/// The data of a fit: the function that the owner of a measurement makes of it, or the measured nodes themselves.
+/// Between the nodes of an isotropic source, a KrigedNodes interpolates under the covariance that predicts left-out
+/// nodes best. Nodes of an anisotropic source are fitted as they are.
 enum class FitTarget { function, nodes };
 
 /// "function" or "nodes". Throws Error on anything else.
 FitTarget parse_fit_target(std::string_view text);
-/// What parse_fit_target reads.
+/// Returns the name that parse_fit_target reads.
 std::string_view to_string(FitTarget target) noexcept;
 
 struct FitOptions;
 
-/// What is fitted where nobody says. Nodes: scattered samples, unless they crowd about wi = wo or are fewer than 1,000
-/// of an anisotropic source, and isotropic RGL files, whose owners multiply what stands between nodes by a distribution
-/// of normals, speckle and all (docs/results/measured.md). The function: any other source, and every source without
-/// symmetrize, for one lobe, for baselines and books, and where a budget's smoothness is cross-validated. Nodes wherever
-/// some are held out. Scattered samples with lobes as given are fitted as they are.
+/// Returns the target where the options name none.
+/// - nodes: scattered samples, unless they crowd about wi = wo or are fewer than 1,000 of an anisotropic source; and
+///   isotropic RGL files. Their owners multiply the interpolation between nodes by a distribution of normals, speckle
+///   included (docs/results/measured.md). Nodes also wherever some are held out.
+/// - function: any other source, and every source without symmetrize, for one lobe, for baselines and books, and where a
+///   budget's smoothness is cross-validated.
+/// Scattered samples with lobes as given are fitted as they are.
 FitTarget default_target(const Source& source, const FitOptions& options);
 
 struct FitOptions {
@@ -121,7 +123,7 @@ struct FitOptions {
       {};  ///< nodes that are not fitted and choose nothing; with FitTarget::nodes
 
   std::optional<double> smooth = {};  ///< >= 0; none: the solver's own, or chosen where LogLinear says so
-  /// Of tables without one of their own. None: half; with a budget or several lobes and three channels
+  /// The format of tables without one of their own. None: half; with a budget or several lobes and three channels
   /// rgb9e5; with a budget and scattered samples of three channels the one of both that predicts better.
   std::optional<TableFormat> format = {};
   /// Pairs drawn from a source that is a function, at least 1: for one lobe, a baseline or a book. None: 200,000, for
@@ -136,7 +138,7 @@ struct FitOptions {
   std::function<void(std::string_view stage, double fraction)> progress = {};
 };
 
-/// What came of a fit. Its file is written by format_fit (fit_file.h).
+/// The result of a fit. Its file is written by format_fit (fit_file.h).
 struct Fit {
   std::variant<FactoredBrdf, BaselineBrdf> brdf;  ///< the second where the form was a BaselineMethod
   std::vector<double> lambda_nm;                  ///< wavelengths of the channels; empty for grey and RGB

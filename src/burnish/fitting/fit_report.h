@@ -18,7 +18,7 @@
 
 namespace burnish {
 
-/// What several lobes are refined for: pictures at every exposure beside both means, or one mean.
+/// The goal of refining several lobes: pictures at every exposure beside both means, or one mean.
 enum class FitLoss { image, relative, log_cos };
 
 /// "image", "relative" or "log_cos".
@@ -35,12 +35,12 @@ struct OneLobeReport {
   int reweightings = 0;     ///< passes used
   /// Tables whose share of the smoothness is not 1.
   std::vector<std::pair<std::string, double>> smooth_shares;
-  /// Of scattered samples, exp(mean |ln((f + e) / (model + e))|) - 1: at the samples, and of those left out
-  /// in turn while the smoothness was chosen.
+  /// For scattered samples, exp(mean |ln((f + e) / (model + e))|) - 1: at the samples, and at those left out in turn
+  /// while the smoothness was chosen.
   std::optional<double> relative, relative_cross_validated;
 };
 
-/// What search_plan tried.
+/// The trials of search_plan.
 struct SearchReport {
   std::size_t trials = 0;
   /// The changes kept and the objective after each.
@@ -88,7 +88,7 @@ struct BudgetTrial {
   double excess = 0;  ///< how many times that is above the noise, or without noise above half a percent
 };
 
-/// How a number of bytes was chosen.
+/// The choice of a number of bytes.
 struct BudgetChoice {
   std::uint64_t bytes = 0;
   BudgetStop stop = BudgetStop::largest;
@@ -96,7 +96,7 @@ struct BudgetChoice {
   std::vector<BudgetTrial> trials;  ///< of rising bytes; none of few scattered samples
 };
 
-/// What others would do.
+/// The result of a method of others.
 struct BaselineReport {
   std::string method;
   std::size_t budget = 0;                       ///< bytes
@@ -106,28 +106,30 @@ struct BaselineReport {
   std::optional<NegativeLobes> negative_lobes;  ///< of svd
 };
 
-/// What conserve_energy took out, and what that cost on pairs that were not fitted.
+/// The energy that conserve_energy removed, and its cost on pairs that were not fitted.
 struct EnergyReport {
   double largest_albedo_before = 0, largest_albedo_after = 0;
   int iterations = 0;
   ErrorFigures before, after;
 };
 
-/// What was fitted where it was nodes.
+/// The nodes that were fitted, if the target was nodes.
 struct NodesReport {
   std::size_t fitted = 0;    ///< nodes, without those that were held out and outliers
   std::size_t outliers = 0;  ///< scattered samples that were left out: see outliers_among
-  /// Of the function between them, of an isotropic source: as found, and what it scores at nodes that it had not seen.
+  /// The function between the nodes of an isotropic source: its covariance, and its score at nodes that it had not
+  /// seen.
   std::optional<LogCovariance> covariance = {};
   std::optional<NodeFigures> held_out = {};
-  /// Of the model as stored, at the nodes that were fitted and at those that were held out.
+  /// Errors of the model as stored, at the nodes that were fitted and at those that were held out.
   NodeFigures at_fitted = {};
   std::optional<NodeFigures> at_held_out = {};
-  /// Of the model as stored, where nothing was measured too: of what has a function between its nodes.
+  /// The expected error of the model as stored, also where nothing was measured; only for sources with a function
+  /// between their nodes.
   std::optional<ExpectedError> expected = {};
 };
 
-/// How a fit went.
+/// The report of a fit.
 struct FitReport {
   std::string source, source_format;
   bool symmetrized = true;
@@ -135,12 +137,12 @@ struct FitReport {
   std::optional<BudgetChoice> budget_choice;
   std::optional<NodesReport> nodes;
   std::optional<EnergyReport> energy;
-  /// Of the model as stored, on 20,000 pairs that were not fitted; none of factors fitted to scattered
+  /// Errors of the model as stored, on 20,000 pairs that were not fitted; none for factors fitted to scattered
   /// samples.
   std::optional<ErrorFigures> held_out;
   double seconds = 0;  ///< of the fit by the wall clock, without what was measured afterwards
 
-  /// Of the solver; nothing for decompositions and completions.
+  /// Returns the solver's summary; nothing for decompositions and completions.
   std::optional<FitSummary> summary() const;
 };
 

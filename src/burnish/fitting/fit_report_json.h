@@ -10,7 +10,7 @@
 
 namespace burnish {
 
-/// What to_json writes.
+/// Returns the JSON that to_json writes.
 nlohmann::ordered_json json_of(const FitReport& report);
 
 /// Text of it; indent as nlohmann's dump. File names need not be UTF-8: what is not is replaced.

@@ -14,8 +14,9 @@
 
 namespace burnish {
 
-/// What an option of a fit takes: true or false; a text; a list of texts; one of some names; a whole number; a number;
-/// "auto" or a number of bytes, which may be a text such as "16K"; "auto" or a number; a part of the nodes; a file.
+/// The values that an option of a fit takes: true or false; a text; a list of texts; one of some names; a whole
+/// number; a number; "auto" or a number of bytes, which may be a text such as "16K"; "auto" or a number; a part of
+/// the nodes; a file.
 enum class FitValue { flag, text, texts, choice, whole, number, bytes, smoothness, node_part, file };
 
 /// A row of the table of fit options: all that the command line, Python, the page's package and the guide say of it.
@@ -42,7 +43,7 @@ std::span<const FitOption> fit_option_table();
 /// The row of that name. Precondition: there is one.
 const FitOption& fit_option(std::string_view name);
 
-/// Whether two options cannot be given together, whichever row says so.
+/// Returns true if two options cannot be given together, whichever row says so.
 bool excludes(const FitOption& one, const FitOption& other);
 
 /// Whoever asks for a fit. Messages name options as that place spells them, and are equal otherwise.

@@ -24,7 +24,7 @@ enum class StopReason {
 /// "direct solution", "tolerance reached", "no more progress", "converged", "iteration limit".
 std::string_view to_string(StopReason reason) noexcept;
 
-/// How a solver fared. What its error is, it says itself; all its errors are finite.
+/// The result of a solver. Each solver defines its error; all errors are finite.
 struct FitSummary {
   double error_before = 0, error_after = 0;
   int iterations = 0;

@@ -45,7 +45,7 @@ enum class Op {
 /// The enumerator's name.
 std::string_view to_string(Op op) noexcept;
 
-/// What a node's value is: a number, three of them, or an integer that numbers nodes of a table.
+/// The type of a node's value: a number, three of them, or an integer that numbers nodes of a table.
 enum class ValueType { real, vector, integer };
 
 /// A node of an expression graph: as number type of the formulas it records what they compute.
@@ -65,8 +65,8 @@ class Expr {
   static Expr integer(int constant);
   static Expr input(std::string name, ValueType type = ValueType::real);
   static Expr element(std::string array, const Expr& index, ValueType type);
-  /// What a texture holds, at as many coordinates as it has dimensions: `type` tells whether one or three
-  /// channels are read.
+  /// Reads a texture, at as many coordinates as it has dimensions: `type` tells whether one or three channels are
+  /// read.
   static Expr texel(std::string texture, const std::vector<Expr>& at, ValueType type);
   static Expr sample(std::string texture, const std::vector<Expr>& at, ValueType type);
   static Expr call(std::string function, const std::vector<Expr>& arguments, ValueType type);

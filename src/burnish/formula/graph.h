@@ -28,9 +28,9 @@ class Graph {
   std::size_t add(const Expr& expression);
 
   std::span<const Node> nodes() const noexcept { return nodes_; }
-  /// Whether the value depends on an input of that name.
+  /// Returns true if the value depends on an input of that name.
   bool reaches(std::size_t node, std::string_view input) const;
-  /// Of all nodes together, each once.
+  /// Counts the operations of all nodes together, each once.
   OperationCount count() const noexcept;
 
  private:

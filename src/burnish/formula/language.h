@@ -9,7 +9,7 @@
 
 namespace burnish {
 
-/// How a language spells what formulas and shaders are made of. Patterns are those of fmt.
+/// The spelling of formulas and shaders in a language. Patterns are those of fmt.
 struct Language {
   /// An operation on {0}, {1}, …; `precedence` tells where its text needs parentheses: 3, a call, nowhere.
   struct Call {
@@ -57,7 +57,7 @@ struct Language {
   /// A function's head and body; `more` is text that follows the parameters, each a `type`.
   std::string function(ValueType type, std::string_view name, std::span<const std::string_view> parameters,
                        std::string_view more, std::string_view body) const;
-  /// Of a 2-D or 3-D texture, by as many integers.
+  /// Reads a texel of a 2-D or 3-D texture, at as many integers as it has dimensions.
   std::string fetch(std::string_view texture, std::span<const std::string> at, ValueType type) const;
   /// Filtered, at one to three texture coordinates.
   std::string filtered(std::string_view texture, std::span<const std::string> at, ValueType type) const;

@@ -33,9 +33,9 @@ class Writer {
   std::string text() const;
   /// A root's value: its local's name, or an expression.
   std::string text(std::size_t root) const { return operand(root, 0); }
-  /// What a root's expression computes; nothing where it is a local's name.
+  /// Returns the count of a root's expression; nothing where it is a local's name.
   OperationCount count(std::size_t root) const;
-  /// Whether the statements call the language's exponent_of.
+  /// Returns true if the statements call the language's exponent_of.
   bool uses(Op op) const noexcept;
 
  private:

@@ -44,7 +44,7 @@ std::vector<GeneratedFile> generate_unit(const SpecularUnit& unit, const std::st
 std::vector<GeneratedFile> generate_blinn(const SpecularUnit& unit, const std::string& name,
                                           int vectors = 2000);
 
-/// What goes into the front end and comes out of the unit behind it.
+/// The inputs of the front end and the outputs of the unit behind it.
 struct BlinnVector {
   FixedVec3 normal, light, view;
   std::uint32_t exponent, value;

@@ -7,7 +7,7 @@
 
 namespace burnish {
 
-/// How a texture's bytes stand for its texels: each by itself, or pairs of numbers in blocks (see encode_bc5), in
+/// The encoding of a texture's texels as bytes: each by itself, or pairs of numbers in blocks (see encode_bc5), in
 /// [0, 1] or in [-1, 1].
 enum class TexelBlocks { none, bc5_unorm, bc5_snorm };
 
@@ -22,7 +22,7 @@ std::string_view to_string(TexelBlocks blocks) noexcept;
 /// below 0 and another count of numbers. Source: [DataFormat, BC5].
 std::vector<std::byte> encode_bc5(int width, int height, std::span<const float> pairs, bool has_sign);
 
-/// What a texture unit makes of it, [y][x][2]. Throws Error for another count of bytes.
+/// Returns the values that a texture unit decodes, [y][x][2]. Throws Error for another count of bytes.
 std::vector<float> decode_bc5(int width, int height, std::span<const std::byte> blocks, bool has_sign);
 
 }  // namespace burnish

@@ -21,7 +21,7 @@ Image mean_difference(const Image& a, const Image& b);
 /// there are more channels or scale is not above 0.
 Image8 heat_map(const Image& values, double scale);
 
-/// What the colours of a heat map mean: 0 to `scale`.
+/// The scale of a heat map's colours: 0 to `scale`.
 struct ColorBar {
   double scale = 1;
   std::string label;

@@ -37,7 +37,7 @@ struct BasicImage {
 
 /// Linear or tone-mapped values, any number of channels.
 using Image = BasicImage<float>;
-/// What is shown: sRGB bytes, 3 channels, or 4 with straight alpha.
+/// A picture as shown: sRGB bytes, 3 channels, or 4 with straight alpha.
 using Image8 = BasicImage<std::uint8_t>;
 
 }  // namespace burnish

@@ -8,7 +8,7 @@
 
 namespace burnish {
 
-/// How a series is drawn.
+/// The drawing style of a series.
 enum class PlotStyle { line, dashed, points, line_and_points };
 
 /// One curve or cloud: y over x. Points that are not finite, or not positive on a logarithmic axis, are left

@@ -18,11 +18,11 @@
 
 namespace burnish {
 
-/// How a library is fitted, and where to.
+/// Options of a batch: the fit of each material, and the folder that it writes.
 struct BatchOptions {
   std::filesystem::path folder;
   OpenOptions open = {};
-  /// Of a source that is isotropic or not; without progress. None: FitOptions' defaults.
+  /// Returns the fit options for an isotropic or anisotropic source, without progress. None: FitOptions' defaults.
   std::function<FitOptions(bool isotropic)> fit = {};
   bool compact = true;  ///< models as .burnish, else OpenEXR; baselines are JSON
   ExportOptions exports =
@@ -31,18 +31,18 @@ struct BatchOptions {
   std::uint64_t memory = 0;  ///< bytes that the process may take; 0: four fifths of usable_memory()
   bool resume = false;       ///< go on in a folder that holds a batch's journal
   std::string studio = "studio/index.html";  ///< where the page's links to the studio lead
-  /// How long another process that holds a material may be silent before it is taken over.
+  /// The time that another process may be silent before its material is taken over.
   std::chrono::duration<double> patience = std::chrono::seconds(60);
 };
 
-/// What a batch has come to.
+/// The state of a batch.
 struct BatchSummary {
   std::size_t total = 0;   ///< materials
   std::size_t fitted = 0;  ///< of these, in this run or earlier
   std::size_t failed = 0;
   std::size_t earlier = 0;  ///< of fitted and failed, what an earlier run or another process did
   double seconds = 0;       ///< since the batch began
-  /// What is left at the pace of this run; nothing before there is one.
+  /// The time left at the pace of this run; nothing before there is one.
   std::optional<double> seconds_left = {};
 };
 
@@ -73,7 +73,7 @@ class Batch {
   /// second meanwhile; what it throws reaches the caller, and the batch goes on.
   std::optional<MaterialRecord> next(const std::function<void()>& waiting = {});
 
-  /// Of what next has given out.
+  /// Returns the summary of the materials that next() has given out.
   BatchSummary summary() const;
 
  private:
@@ -81,7 +81,8 @@ class Batch {
   std::unique_ptr<State> state_;
 };
 
-/// What a fit is taken to need while it runs beside its input, bytes: a little more than was seen (docs/notes/library.md).
+/// Returns the memory that a fit is assumed to need beside its input, in bytes: a little more than was measured
+/// (docs/notes/library.md).
 std::uint64_t fit_memory(const FitOptions& options, bool isotropic);
 
 }  // namespace burnish

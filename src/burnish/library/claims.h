@@ -27,7 +27,8 @@ class Claims {
   Claims(const Claims&) = delete;
   Claims& operator=(const Claims&) = delete;
 
-  /// Whether `name` is now held by this process, which did not hold it. Throws Error where the folder cannot be written.
+  /// Claims `name` for this process. Returns true if this process holds it now and did not before. Throws Error where
+  /// the folder cannot be written.
   bool take(const std::string& name);
   /// Gives `name` back: call it when what others have to know of it can be read.
   void release(const std::string& name) noexcept;

@@ -33,10 +33,11 @@ FittedMaterial fit_material(const LibraryEntry& entry, const std::string& key, c
 /// from several threads.
 class InputDigests {
  public:
-  /// Of the options and the version alone; `options` must outlive this.
+  /// Prepares digests of the options and the version alone; `options` must outlive this.
   explicit InputDigests(const BatchOptions& options);
 
-  /// Of the input's bytes, its address in them, the options and the version. Throws Error where a file cannot be read.
+  /// Returns the digest of the input's bytes, its address in them, the options and the version. Throws Error where a
+  /// file cannot be read.
   std::string key(const LibraryEntry& entry);
 
  private:

@@ -25,13 +25,15 @@ struct AssembledFile {
   friend bool operator==(const AssembledFile&, const AssembledFile&) = default;
 };
 
-/// What became of a batch's materials, as the files of FOLDER/journal say together. Each process that works on the batch
-/// appends to a file of its own, named `writer`.jsonl, and reads those of the others: so they need no lock and no
-/// server, and none can spoil what another wrote. A line is a JSON object: {"event": "began", "name", "key"} before a
-/// fit, {"event": "fitted", ...} and {"event": "failed", ...} with a MaterialRecord, {"event": "assembled", "of",
-/// "files"} when table and page, these files, were made of records whose keys and names have that digest; each with
-/// "at", seconds since 1970. A line that is no such object, as a process leaves that was killed while it wrote, counts
-/// as not written. Safe to call from several threads.
+/// The record of a batch's materials, which the files of FOLDER/journal hold together. Each process that works on the
+/// batch appends to a file of its own, named `writer`.jsonl, and reads those of the others. So they need no lock and
+/// no server, and none can spoil another's lines.
+///
+/// A line is a JSON object: {"event": "began", "name", "key"} before a fit, {"event": "fitted", ...} and {"event":
+/// "failed", ...} with a MaterialRecord, {"event": "assembled", "of", "files"} when table and page, these files, were
+/// made of records whose keys and names have that digest. Each has "at", seconds since 1970.
+/// A process that was killed while it wrote leaves a line that is no such object; it counts as not written. Safe to
+/// call from several threads.
 class Journal {
  public:
   /// Reads what is there, and makes a file where there is none yet as soon as something is appended. Throws Error as
@@ -43,7 +45,7 @@ class Journal {
   std::optional<MaterialRecord> record(const std::string& name, const std::string& key) const;
   /// The files that table and page were made of when these records were last assembled.
   std::optional<std::vector<AssembledFile>> assembled(const std::string& digest) const;
-  /// Whether the folder holds any line.
+  /// Returns true if the folder holds no line.
   bool empty() const;
 
   /// Reads what others appended since the last time. Throws Error where the folder cannot be read.

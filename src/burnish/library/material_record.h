@@ -18,7 +18,7 @@ struct RecordedFile {
   friend bool operator==(const RecordedFile&, const RecordedFile&) = default;
 };
 
-/// What became of a material of a batch.
+/// The outcome of a material of a batch.
 struct MaterialRecord {
   std::string name, argument;
   std::string
@@ -30,7 +30,8 @@ struct MaterialRecord {
   std::string model;                        ///< its expression
   std::uint64_t bytes = 0;                  ///< of the model, as its type counts them
   std::optional<std::size_t> fetches = {};  ///< filtered reads of tables an evaluation; none of baselines
-  /// As in ErrorFigures, of the model as stored on pairs that were not fitted; none of what is not known or not finite.
+  /// Errors as in ErrorFigures, of the model as stored on pairs that were not fitted; none where not known or not
+  /// finite.
   std::optional<double> psnr = {}, ssim = {}, relative = {}, rms_log = {}, log_cos = {};
   /// The largest directional albedo of the model among theta_i 0, 30, 60 and 80 degrees and its channels.
   std::optional<double> albedo = {};
@@ -58,7 +59,8 @@ inline constexpr std::array<RecordFigure, 6> kRecordFigures = {{{"psnr", &Materi
 /// model, bytes, fetches, psnr, ssim, relative, rms_log, log_cos, albedo, warnings; and seconds. What is not known is
 /// left out.
 std::string to_json(const MaterialRecord& record);
-/// What to_json wrote, and `event` of a line of a journal ignored. Throws Error where it is no such object.
+/// Reads the text that to_json wrote, and ignores `event` of a line of a journal. Throws Error where it is no such
+/// object.
 MaterialRecord parse_material_record(const std::string& json);
 
 }  // namespace burnish

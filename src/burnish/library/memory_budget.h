@@ -17,7 +17,7 @@ class MemoryBudget {
   /// Waits until so many bytes are left, or until nobody holds any: what is larger than all goes alone. False where
   /// stop was called, and then nothing is reserved.
   bool reserve(std::uint64_t bytes);
-  /// Of what was reserved, these many are not needed any more; the rest still is.
+  /// Gives back this part of the reserved bytes; the rest stays reserved.
   void give_back(std::uint64_t bytes);
   /// Ends a reservation of which so many bytes are left.
   void release(std::uint64_t bytes);

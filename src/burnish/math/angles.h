@@ -30,7 +30,7 @@ inline double theta_of(Vec3 w) noexcept {
   return std::atan2(std::hypot(w.x, w.y), w.z);
 }
 
-/// Whether w is a pole to within 1e-13, which rounding makes of one: its azimuth means nothing.
+/// Returns true if w is a pole to within 1e-13, which rounding makes of one: its azimuth means nothing.
 inline bool is_pole(Vec3 w) noexcept {
   constexpr double kRounding = 1e-13;
   return std::abs(w.x) < kRounding && std::abs(w.y) < kRounding;

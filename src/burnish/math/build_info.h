@@ -6,7 +6,7 @@
 
 namespace burnish {
 
-/// What the library is made of and runs on.
+/// The parts that the library is built of, and the machine that it runs on.
 struct BuildInfo {
   std::vector<std::string>
       instruction_sets;  ///< that kernels are compiled for and this processor has, the best first

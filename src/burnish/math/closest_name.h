@@ -7,8 +7,8 @@
 
 namespace burnish {
 
-/// How many letters have to be put in, left out, replaced or exchanged with their neighbour to make one word of the
-/// other. Source: [Damerau 1964], of which no letter is changed twice.
+/// Returns how many letters have to be put in, left out, replaced or exchanged with their neighbour to make one word
+/// of the other. Source: [Damerau 1964], with no letter changed twice.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
 /// The name that was meant by a misspelt word: the one of least edit_distance, the first of several, where that is at

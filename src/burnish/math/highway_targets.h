@@ -27,6 +27,6 @@
 #define HWY_AVX10_2 0
 #endif
 
-// Whether vectors of 16 floats are AVX-512's in this pass. Of the targets of x86 the better have the lower numbers, and
-// those of other processors higher ones.
+// True if vectors of 16 floats are AVX-512's in this pass. The better targets of x86 have lower numbers, and those of
+// other processors higher ones.
 #define BURNISH_TARGET_IS_AVX3 (HWY_TARGET <= HWY_AVX3)

@@ -43,8 +43,8 @@ std::vector<std::array<double, 3>> rec709_weights(std::span<const double> lambda
 /// Under standard_illuminant(name).
 std::vector<std::array<double, 3>> rec709_weights(std::span<const double> lambda_nm, std::string_view name);
 
-/// Where a spectrum that shows a colour has its values: linear Rec. 709's blue up to the first, green between the
-/// second and the third, red from the last on. At these places no colour takes a value below zero.
+/// The nodes of a spectrum that shows a colour: linear Rec. 709's blue up to the first, green between the second and
+/// the third, red from the last on. At these places no colour takes a value below zero.
 inline constexpr std::array<double, 4> kColourNodes_nm{475, 510, 580, 605};
 /// A spectrum at kColourNodes_nm whose colour under equal energy is `rgb` within 1e-14 of the largest channel, not
 /// negative where none of the channels is; (1, 1, 1) is flat.

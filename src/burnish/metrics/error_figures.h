@@ -12,7 +12,7 @@
 
 namespace burnish {
 
-/// How far a model is from a reference, f and f^ in 1/sr. Means run over direction pairs and channels alike.
+/// The errors of a model f^ against a reference f, both in 1/sr. Means run over direction pairs and channels alike.
 /// Values below 0 (a source kept raw) count as 0.
 struct ErrorFigures {
   double log_cos = 0;           ///< mean |ln(1 + f cos theta_i) - ln(1 + f^ cos theta_i)| [Low 2012]
@@ -26,7 +26,7 @@ struct ErrorFigures {
   std::size_t unknown_pixels = 0;  ///< pixels of the three spheres left out, the reference knowing nothing
 };
 
-/// What is drawn and how it is weighed; the defaults are the definition.
+/// The pairs that are drawn and their weights; the defaults are the definition.
 struct FigureOptions {
   std::size_t count = 200'000;  ///< direction pairs, see draw_pairs
   std::uint64_t seed = 1;

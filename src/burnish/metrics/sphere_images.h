@@ -68,7 +68,7 @@ double psnr(double mean_squared_error) noexcept;
 /// twice. Throws as mean_squared_error. Source: [Wang 2004].
 double ssim(const Image& a, const Image& b);
 
-/// How a single sphere is shown.
+/// Options of the picture of a single sphere.
 struct LitSphereOptions {
   int size = 512;                       ///< pixels
   double light_angle = radians(30);     ///< from the view, radians

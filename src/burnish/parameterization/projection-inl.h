@@ -23,7 +23,7 @@ struct Polar {
   T r, den;
 };
 
-/// Of a vector of this length, z >= 0: r = |(x, y)|, den = length + z.
+/// Returns the polar angle of a vector of this length, z >= 0: r = |(x, y)|, den = length + z.
 template <class V, class T>
 FORMULA_INLINE Polar<T> polar_of(const V& v, const T& size) {
   return {named("r", length(v.x, v.y)), size + v.z};

@@ -47,7 +47,7 @@ inline constexpr Projection kProjectTwist{.kind = Projection::Kind::twist};
 inline constexpr Projection kProjectAzimuth{.kind = Projection::Kind::azimuth};
 inline constexpr Projection kProjectSide{.kind = Projection::Kind::side};
 
-/// Those that have a number in `.burnish` files: their places here. New ones go to the end.
+/// The projections that have a number in `.burnish` files: their places here. New ones go to the end.
 inline constexpr std::array kNumberedProjections{kProjectWi,         kProjectWo,        kProjectHalf,
                                                  kProjectDifference, kProjectDeviation, kProjectTwist,
                                                  kProjectAzimuth,    kProjectSide};
@@ -57,7 +57,7 @@ inline constexpr std::array kNumberedProjections{kProjectWi,         kProjectWo,
 /// of opposite directions 1/2.
 inline constexpr double kTwistCore = 1.0 / 256, kTwistScale = 0.6495190528383290;  // 3 sqrt(3) / 8
 
-/// Whether a projection has a polar angle but no azimuth.
+/// Returns true if a projection has a polar angle but no azimuth.
 constexpr bool is_angle_alone(const Projection& p) noexcept {
   return p.kind != Projection::Kind::affine && p.kind != Projection::Kind::difference;
 }

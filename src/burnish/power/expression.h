@@ -13,7 +13,7 @@ Expr power_value_expression(PowerMethod method, const std::vector<Expr>& coeffic
 /// The member's coefficients as graphs over the input "e".
 std::vector<Expr> power_coefficient_expressions(PowerMethod method);
 
-/// What the member's value costs, counted from its graph.
+/// Returns the cost of the method's value, counted from its graph.
 PowerCost count_operations(PowerMethod method);
 
 }  // namespace burnish

@@ -101,7 +101,7 @@ class SpecularUnit {
   /// falling as c rises from monotone_from on. Allocates nothing.
   std::uint32_t value(std::uint32_t exponent, std::uint32_t input) const noexcept;
 
-  /// As asked for, with the defaults filled in.
+  /// Returns the configuration that was asked for, with the defaults filled in.
   const UnitConfig& config() const noexcept { return config_; }
   std::vector<UnitTable> tables() const;
   std::vector<UnitParameter> parameters() const;
@@ -116,8 +116,8 @@ class SpecularUnit {
   std::shared_ptr<const UnitCore> core_;
 };
 
-/// How far a unit is from c^e over every exponent of a range (by steps) and every input (by steps), in units
-/// of its last place; `correct` is the share of outputs that are c^e correctly rounded.
+/// The error of a unit against c^e over every exponent of a range (by steps) and every input (by steps), in units of
+/// its last place. `correct` is the share of outputs that are c^e correctly rounded.
 struct UnitError {
   double max_error = 0, correct = 0;
   int worst_exponent = 0;

@@ -7,8 +7,8 @@
 
 namespace burnish {
 
-/// What stands behind a SpecularUnit: one class per method. `c` and `v` are words of cosine_bits fraction
-/// bits, c + v = 1; v stays below 1 where c = 0.
+/// The arithmetic behind a SpecularUnit: one class per method. `c` and `v` are words of cosine_bits fraction bits, c
+/// + v = 1; v stays below 1 where c = 0.
 class UnitCore {
  public:
   virtual ~UnitCore() = default;

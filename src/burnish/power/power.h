@@ -36,7 +36,7 @@ enum class PowerMethod {
 };
 inline constexpr int kPowerMethods = static_cast<int>(PowerMethod::near_exact) + 1;
 
-/// What one value costs once the coefficients are known, counted from the formula itself.
+/// The cost of one value once the coefficients are known, counted from the formula itself.
 struct PowerCost {
   int multiplies = 0, adds = 0, compares = 0, divisions = 0, roots = 0, transcendentals = 0;
   int table_words = 0;  ///< coefficients that depend on the exponent

@@ -69,7 +69,7 @@ class AnalyticBrdf {
 
 static_assert(Brdf<AnalyticBrdf>);
 
-/// Whether the text is the name of a model, or begins with one and ':'.
+/// Returns true if the text is the name of a model, or begins with one and ':'.
 bool is_analytic_spec(std::string_view spec);
 
 /// Reads "MODEL" or "MODEL:name=value,name=value,..."; parameters left out have their defaults. A value is a

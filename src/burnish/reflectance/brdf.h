@@ -16,16 +16,16 @@ struct DirectionPair {
   friend constexpr bool operator==(const DirectionPair&, const DirectionPair&) = default;
 };
 
-/// What every reflectance of this library is: a plain value with
+/// The concept of every reflectance of this library: a plain value with
 /// - channels(): how many values a direction pair has: 1, 3 (linear Rec. 709) or a count of wavelengths;
 /// - isotropic(): true where rotating both directions about the normal changes nothing;
 /// - eval(wi, wo, f): writes f_r in 1/sr without the cosine into f (size channels()). Returns false, and
 ///   writes zeros, where the source knows nothing: a hole in a measurement, a direction outside its coverage.
 ///   Below the horizon (wi.z <= 0 or wo.z <= 0) it writes zeros and returns true. Never throws, nor allocates but in
 ///   the first call of a ScatteredBrdf; values are finite and, except for sources kept raw on request, >= 0.
-/// What holds negative values, the noise of a measurement about small ones, has besides
-/// - eval_raw(wi, wo, f): the same with negative results as they are. eval sets these to zero, and what is
-///   interpolated or averaged is not cut before.
+/// A source that holds negative values, the noise of a measurement about small ones, also has
+/// - eval_raw(wi, wo, f): the same with negative results as they are. eval sets these to zero, and nothing that is
+///   interpolated or averaged is cut before.
 // clang-format off
 template <class T>
 concept Brdf = requires(const T& brdf, Vec3 w, std::span<double> f) {

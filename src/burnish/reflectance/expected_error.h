@@ -20,7 +20,7 @@ struct ExpectedError {
   }
 
   double relative = 0;
-  /// Of the pairs whose theta_i lies in [0, 15), [15, 30), ... degrees; nothing where no pair does.
+  /// The errors of pairs whose theta_i lies in [0, 15), [15, 30), ... degrees; nothing where no pair does.
   std::array<std::optional<double>, 6> by_theta_i;
 };
 

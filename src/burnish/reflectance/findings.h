@@ -14,7 +14,7 @@ struct Origin {
   friend bool operator==(const Origin&, const Origin&) = default;
 };
 
-/// What a reader found in a source, as `burnish info` prints it.
+/// The facts that a reader found in a source, as `burnish info` prints them.
 struct Findings {
   std::string format;       ///< "MERL binary", "Cornell scattered spectra", "analytic", ...
   std::string description;  ///< the source's own name or remarks, one line; may be empty

@@ -29,7 +29,7 @@ class FunctionBrdf {
   void eval(std::span<const DirectionPair> pairs, std::span<double> values,
             std::span<std::uint8_t> known) const noexcept;
 
-  /// How many calls of the function have thrown so far.
+  /// Returns how many calls of the function have thrown so far.
   std::size_t failures() const noexcept;
   /// Throws what the function threw last, once, if calls have thrown since `failures` was `count`; Error where another
   /// caller has had it. Whoever evaluates a source asks before and after, since evaluation itself never throws.

@@ -17,7 +17,7 @@ inline constexpr double kDrawnCosine = 0.05;
 /// `isotropic`. The same count, seed and flag give the same pairs; a smaller count gives a prefix.
 std::vector<DirectionPair> draw_pairs(std::size_t count, std::uint64_t seed, bool isotropic);
 
-/// What a virtual goniometer does.
+/// Options of a virtual goniometer.
 struct MeasureOptions {
   std::size_t count = 10000;
   double noise = 0;  ///< sigma of the logarithm of a factor on every value, >= 0; the factor's median is 1

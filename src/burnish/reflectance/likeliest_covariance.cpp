@@ -136,7 +136,7 @@ Likelihood likelihood_of(const LogMeasurements& measured, std::span<const std::s
   Parameters& gradient = result.gradient;
   for (Eigen::Index j = 0; j < n; ++j) {
     for (Eigen::Index i = j; i < n; ++i) {
-      const double by = i == j ? 0.5 * w(i, j) : w(i, j);  // the factor 1/2 cancels off the diagonal, where both triangles count
+      const double by = i == j ? 0.5 * w(i, j) : w(i, j);  // both triangles count
       gradient[0] += by * 2 * level2;
       for (std::size_t t = 0; t < kTerms; ++t) {
         const TreePoint d2 = squares(i, j, t);

@@ -15,8 +15,8 @@
 
 namespace burnish {
 
-/// What an instrument measured, before anything was interpolated: the entries of a table at their own
-/// directions, the samples of a scattered set. Both directions of every node lie above the horizon.
+/// The values that an instrument measured, before any interpolation: the entries of a table at their own directions,
+/// or the samples of a scattered set. Both directions of every node lie above the horizon.
 struct MeasuredNodes {
   Samples samples;              ///< f_r in 1/sr as stored, negative values kept
   std::vector<double> weights;  ///< one a node, > 0: 1, or of patches how much of both hemispheres they are
@@ -53,11 +53,11 @@ MeasuredNodes measured_nodes(const TensorTree& table);
 /// The samples themselves that lie above the horizon; the numbers of groups do not depend on their order.
 MeasuredNodes measured_nodes(const Samples& samples);
 
-/// Whether rotation about the normal, reflection (both of isotropic sources) and exchange of the directions lead from
-/// one pair to the other, to within 1e-6 of the directions' components.
+/// Returns true if rotation about the normal, reflection (both of isotropic sources) and exchange of the directions
+/// lead from one pair to the other, to within 1e-6 of the directions' components.
 bool are_one_measurement(const DirectionPair& a, const DirectionPair& b, bool isotropic) noexcept;
 
-/// How many nodes measured_nodes gives, and at how many distinct theta_i.
+/// The number of nodes that measured_nodes returns, and of their distinct theta_i.
 struct NodeCount {
   std::size_t nodes = 0;
   std::size_t incidences = 0;

@@ -12,8 +12,7 @@
 
 namespace burnish {
 
-/// How far a model is from what was measured, at the measured nodes: weighted means over them and the channels,
-/// each as in ErrorFigures.
+/// The errors of a model at the measured nodes: weighted means over them and the channels, each as in ErrorFigures.
 struct NodeFigures {
   double log_cos = 0, relative = 0, rms_log = 0, rms = 0;
   std::size_t count = 0;  ///< nodes that were scored
@@ -42,9 +41,9 @@ NodeFigures held_out_figures(const MeasuredNodes& nodes, const LogCovariance& co
 /// Nothing where there are fewer than five incidences, or so many that each is only a few nodes, or no node can be scored.
 std::optional<NodeFigures> held_out_incidences(const MeasuredNodes& nodes, const LogCovariance& covariance);
 
-/// Of the default and the likely covariances the one that predicts best: the least sum of the logarithms of relative
-/// and log_cos, of held_out_figures and, where there is such, of held_out_incidences. Deterministic. `progress` is told
-/// rising shares. The default where no node can be scored.
+/// Returns the one of the default and the likely covariances that predicts best. It has the least sum of the
+/// logarithms of relative and log_cos, of held_out_figures and, where there is such, of held_out_incidences. Returns
+/// the default where no node can be scored. `progress` is told rising shares. Deterministic.
 LogCovariance choose_covariance(const MeasuredNodes& nodes,
                                 const std::function<void(double fraction)>& progress = {});
 

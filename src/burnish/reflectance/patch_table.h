@@ -40,7 +40,7 @@ struct PatchTable {
   /// less. Between patch centres a peak as narrow as a patch would have another energy.
   bool eval(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
   bool eval_raw(Vec3 wi, Vec3 wo, std::span<double> f) const noexcept;
-  /// What is reflected of the light from wi, exact: a sum over patches.
+  /// Returns the share of light from wi that is reflected, exact: a sum over patches.
   double albedo(Vec3 wi) const noexcept;
 };
 

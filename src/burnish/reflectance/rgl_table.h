@@ -19,7 +19,7 @@ struct RglGrid {
   std::vector<float> values;
 };
 
-/// What an RGL measurement stores. Directions enter the unit square as
+/// The contents of an RGL measurement. Directions enter the unit square as
 ///   u = sqrt(2 theta / pi),   v = (phi + pi) / (2 pi);
 /// isotropic tables measure phi of the half vector from wi. [Dupuy 2018, sec. 4]
 struct RglData {
@@ -49,7 +49,7 @@ class RglTable {
   const RglData& data() const noexcept { return data_; }
   std::size_t channels() const noexcept { return data_.channels; }
   bool isotropic() const noexcept { return data_.phi_i.size() <= 2; }
-  /// How often the range of phi_i fits in the circle: 1, 2 or 4.
+  /// Returns how often the range of phi_i fits in the circle: 1, 2 or 4.
   int reduction() const noexcept { return reduction_; }
 
   /// f_r; see Brdf. The spectra are interpolated as they are stored and the result is cut at zero, as the

@@ -29,10 +29,9 @@ struct SampleSource {
 /// without resampling.
 SampleSource from_samples(const Samples& samples, bool symmetrize);
 
-/// What a pair drawn with theta_h = pi/2 u^2 weighs: sin(theta_h) min(cos theta_i, cos theta_o). The first
-/// leads from the sampling, dense where highlights are narrow, towards the solid angle that h takes up in a
-/// picture; the second fades out grazing directions, which pictures hardly show and instruments measure
-/// badly.
+/// Returns the weight of a pair drawn with theta_h = pi/2 u^2: sin(theta_h) min(cos theta_i, cos theta_o). The first
+/// factor leads from the sampling, dense where highlights are narrow, towards the solid angle that h takes up in a
+/// picture. The second fades out grazing directions, which pictures hardly show and instruments measure badly.
 double pair_weight(Vec3 wi, Vec3 wo) noexcept;
 
 /// `count` pairs of a low-discrepancy sequence: theta_d, phi_d and phi_h uniform, theta_h = pi/2 u^2

@@ -16,10 +16,10 @@ struct DrawnDirection {
   double pdf = 0;
 };
 
-/// What draws directions for a given wo, wo.z > 0:
+/// The concept of a sampler, which draws directions for a given wo, wo.z > 0:
 /// - sample_wi(wo, u): the direction that the uniform point u of the unit square becomes, with its density;
 /// - pdf(wi, wo): that density, 1/sr, for any unit vector wi; zero for wi.z <= 0. It integrates to at most 1
-///   over the upper hemisphere: what is missing is drawn below the horizon.
+///   over the upper hemisphere: the rest is drawn below the horizon.
 /// Never allocates, never throws.
 // clang-format off
 template <class T>

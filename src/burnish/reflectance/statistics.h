@@ -7,7 +7,7 @@
 
 namespace burnish {
 
-/// How far a source is from reciprocal.
+/// The error of a source's reciprocity.
 struct ReciprocityError {
   double mean = 0;  ///< mean of 2 |f(wi, wo) - f(wo, wi)| / (f(wi, wo) + f(wo, wi)) over pairs and channels
   std::size_t pairs = 0;  ///< pairs known both ways

@@ -33,7 +33,7 @@ using SceneMaterial = std::variant<BrdfRef, const SpatialBrdf*>;
 /// columns and rows, in texels; light from all around is drawn by a lobe like its mean over the texels.
 Image render_cpu(const Scene& scene, std::span<const SceneMaterial> materials, const CpuOptions& options);
 
-/// What render_cpu gives where a vertex is, without shadows: for every part, in order, a value a vertex.
+/// Returns the values of render_cpu at vertices, without shadows: for every part, in order, a value a vertex.
 std::vector<std::vector<Rgb>> shade_vertices(const Scene& scene, std::span<const BrdfRef> materials);
 
 /// One flag a pixel: 1 where the ray through it and those to its eight neighbours hit the same part, with

@@ -7,7 +7,7 @@
 
 namespace burnish {
 
-/// How linear values become bytes:
+/// The ways to turn linear values into bytes:
 /// - srgb: clamped to [0, 1] and encoded by the transfer function of [IEC61966];
 /// - aces: before that the filmic curve x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14) [Narkowicz 2016].
 enum class Tone { srgb, aces };

@@ -8,7 +8,7 @@
 
 namespace burnish {
 
-/// What a ray meets first.
+/// The first surface that a ray meets.
 struct SurfaceHit {
   std::size_t part = 0, triangle = 0;
   double u = 0, v = 0;  ///< weights of the triangle's second and third corner
@@ -24,7 +24,7 @@ class RayCaster {
 
   /// Along the unit vector `direction`. Safe to call from several threads.
   std::optional<SurfaceHit> nearest(Vec3 origin, Vec3 direction) const noexcept;
-  /// Whether something lies between two points, but for the last and first 1e-4 of the way.
+  /// Returns true if something lies between two points, except for the last and first 1e-4 of the way.
   bool blocked(Vec3 from, Vec3 to) const noexcept;
 
  private:

@@ -23,10 +23,10 @@ struct Camera {
   double field_of_view = 0.6;  ///< angle between the upper and the lower edge, radians, in (0, pi)
 };
 
-/// What both renderers draw: the outgoing radiance of [HomomorphicBrdf, eq. 2] without shadows,
-/// sum of f_r max(cos theta_i, 0) intensity / r^2 over the lights, at the middle of every pixel. Normals and
-/// tangents are interpolated over triangles, normalized, the tangent made orthogonal to the normal; surfaces
-/// are seen from both sides, but give nothing where the view is below the interpolated horizon.
+/// The scene of both renderers. They draw the outgoing radiance of [HomomorphicBrdf, eq. 2] without shadows, the sum
+/// of f_r max(cos theta_i, 0) intensity / r^2 over the lights, at the middle of every pixel.
+/// Normals and tangents are interpolated over triangles and normalized, and the tangent is made orthogonal to the
+/// normal. Surfaces are seen from both sides, but give nothing where the view is below the interpolated horizon.
 struct Scene {
   std::vector<MeshPart> parts;
   std::vector<PointLight> lights;

@@ -26,13 +26,13 @@ struct ComparedModel {
   std::string note = {};                    ///< how it was made: factors, fit time; one line, may be empty
 };
 
-/// What is reflected of light from one direction (radians), by the reference and by a model.
+/// The share of light from one direction (radians) that is reflected, by the reference and by a model.
 struct ComparedAlbedo {
   double theta_i = 0, phi_i = 0;
   DirectionalAlbedo reference, model;
 };
 
-/// What was measured of one candidate.
+/// The figures of one candidate.
 struct ComparedFigures {
   std::string name;
   std::optional<std::uint64_t> bytes;
@@ -48,10 +48,10 @@ struct ComparedFigures {
 /// disc has pi / 4 of its frame.
 double psnr_of_disc(double psnr) noexcept;
 
-/// Of what the measurement itself would score, where nothing tells (exchanged_figures).
+/// The text in place of the measurement's own score, where nothing tells it (exchanged_figures).
 inline constexpr std::string_view kCannotBeTold = "cannot be told from this file";
 
-/// What is known of a reference that is a measurement.
+/// The facts known of a reference that is a measurement.
 struct Measurement {
   MeasuredNodes nodes;                        ///< those that are scored
   NodeFigures itself;                         ///< the reference's own figures there, made reciprocal
@@ -74,8 +74,8 @@ std::vector<ComparedFigures> compare_models(const Scorer& scorer, std::span<cons
 /// held_out and held_out_incidences, each with the figures of nodes).
 std::string to_json(std::span<const ComparedFigures> figures, const Measurement* measurement = nullptr);
 
-/// Of the nodes alone, a JSON list of objects: model, bytes (null if unknown), count, log_cos, relative, rms_log, rms;
-/// the reference itself comes first. Throws Error as node_figures.
+/// Returns a JSON list of objects about the nodes alone: model, bytes (null if unknown), count, log_cos, relative,
+/// rms_log, rms. The reference itself comes first. Throws Error as node_figures.
 std::string nodes_json(const Measurement& measurement, std::span<const ComparedModel> models);
 
 /// f over theta_o in the plane of incidence at theta_i (radians, in (0, pi/2)), reference and models, mean

@@ -9,8 +9,8 @@
 
 namespace burnish {
 
-/// What the shader of a model costs with the hardware's filters; nothing of models that have neither one channel nor
-/// three, which shaders cannot show.
+/// Returns the cost of a model's shader with the hardware's filters; nothing for models that have neither one channel
+/// nor three, which shaders cannot show.
 std::optional<ShaderCost> shader_cost(const FactoredBrdf& model);
 
 /// {"fetches", "textures", "operations", "divisions", "roots", "powers"}.

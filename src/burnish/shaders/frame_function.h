@@ -19,7 +19,7 @@ inline constexpr std::array<std::string_view, 2> kTwoDirections{"wi", "wo"};
 /// A statement that returns zero where one of wi and wo is not above the horizon.
 std::string horizon_test(const Language& language);
 
-/// What functions take besides the directions: declarations, and the names in them; both may be empty.
+/// The parameters of functions besides the directions: declarations, and the names in them; both may be empty.
 struct MoreParameters {
   std::string declarations, names;
 };

@@ -23,7 +23,7 @@ struct MapTexture {
   std::vector<std::vector<std::byte>> levels;
 };
 
-/// Where a map's channel is: a texture and one of its four components.
+/// The place of a map's channel: a texture and one of its four components.
 struct MapComponent {
   std::size_t texture = 0, component = 0;
 };

@@ -10,8 +10,9 @@
 
 namespace burnish {
 
-/// What generate_shader writes, as an expression over the vectors wi and wo, above the horizon, and texels of
-/// the textures: a number or a vector. Volumes stand behind what is `before` them. Throws Error as it does.
+/// The formula that generate_shader writes, as an expression over the vectors wi and wo, above the horizon, and
+/// texels of the textures: a number or a vector. Volumes stand behind the layers of `before`. Throws Error as
+/// generate_shader does.
 struct ShaderFormula {
   Expr value;
   std::vector<Expr> lobes;  ///< whose sum it is
@@ -30,8 +31,8 @@ struct LobeFunctions {
 LobeFunctions lobe_functions(const FactoredBrdf& brdf, const ShaderOptions& options,
                              const LayersBefore* before = nullptr);
 
-/// What a formula's function stands between: a language's header with the declarations of textures, and what functions
-/// take besides the directions to read them.
+/// The surroundings of a formula's function: a language's header with the declarations of textures, and the
+/// parameters besides the directions that read them.
 struct FormulaSurroundings {
   std::string declarations;
   MoreParameters more;

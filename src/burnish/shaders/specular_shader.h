@@ -16,13 +16,14 @@ struct SpecularModel {
   double exponent = 80;
   PowerMethod method = PowerMethod::exact;
 
-  /// What the error of `method` at the exponent makes of f_r at most, in 1/sr. Throws Error as power_bound.
+  /// Returns the largest error of f_r, in 1/sr, that `method` causes at the exponent. Throws Error as power_bound.
   double bound() const;
   /// f_r in 1/sr of unit vectors, 0 below the horizon. Throws Error outside the method's exponents.
   Rgb eval(Vec3 wi, Vec3 wo) const;
 };
 
-/// Of phong, phong_normalized, blinn_phong and blinn_phong_normalized; nothing for other models.
+/// Returns the specular model of phong, phong_normalized, blinn_phong and blinn_phong_normalized; nothing for other
+/// models.
 std::optional<SpecularModel> specular_model(const AnalyticBrdf& brdf, PowerMethod method);
 
 /// The functions of generate_shader(FactoredBrdf) for a specular model, without textures; power_code writes

@@ -64,9 +64,9 @@ class SpatialBrdf {
   const FactoredBrdf& lobes() const noexcept { return lobes_; }
   /// Weights of all lobes, the widened ones' too.
   const SurfaceMaps& maps() const noexcept { return maps_; }
-  /// What the last lobes are, as many as there are here.
+  /// Returns the widened lobes, which are the last ones.
   std::span<const WidenedLobe> widened() const noexcept { return widened_; }
-  /// How many lobes have weights of their own: the first.
+  /// Returns how many lobes have weights of their own: the first ones.
   std::size_t own_lobes() const noexcept { return lobes_.lobes().size() - widened_.size(); }
   /// These, with the tables that they look up.
   FactoredBrdf own_model() const;
@@ -78,12 +78,12 @@ class SpatialBrdf {
   /// The same at a place of the maps.
   Weight weight(std::size_t lobe, const SurfaceMap::Place& at) const noexcept;
   ShadingFrame frame(const SurfaceMap::Place& at) const noexcept;
-  /// Of (u, v) and a level of detail in any of the maps.
+  /// Returns the place of (u, v) and a level of detail in any of the maps.
   SurfaceMap::Place map_place(double u, double v, double lod = 0) const noexcept {
     return maps_.weights.front().place(u, v, lod);
   }
 
-  /// What of a place is the same for all directions.
+  /// The data of a place that is the same for all directions.
   struct Place {
     ShadingFrame frame;
     std::array<Weight, kMaxSurfaceLobes> weights;  ///< the first of them, one a lobe
@@ -98,7 +98,7 @@ class SpatialBrdf {
 
   /// The uniform model of that place, in its own frame: the lobes' scales times their weights.
   FactoredBrdf at(double u, double v, double lod = 0) const;
-  /// That of one texel, unfiltered, of the own lobes. Throws Error for what is no texel.
+  /// Returns the BRDF of one texel, unfiltered, with the own lobes. Throws Error if there is no such texel.
   FactoredBrdf texel(int x, int y) const;
 
   /// Bytes of the weights, and of normals and tangents, a texel of level 0, as a file has them.
@@ -133,8 +133,9 @@ struct SurfaceAlbedo {
   double mean = 0;            ///< over texels, channels and directions
 };
 
-/// Of every texel of level 0 under light from 0 to 75 degrees, of lobes that are not isotropic from two sides. The
-/// albedo is linear in the weights: what it takes is the lobes' albedos once and a sum a texel. Deterministic.
+/// Returns the albedo of every texel of level 0 under light from 0 to 75 degrees, from two sides for lobes that are
+/// not isotropic. The albedo is linear in the weights, so it takes the lobes' albedos once and a sum for each texel.
+/// Deterministic.
 SurfaceAlbedo surface_albedo(const SpatialBrdf& surface);
 
 }  // namespace burnish

@@ -6,7 +6,7 @@
 
 namespace burnish {
 
-/// What parse_surface does with an OpenEXR file.
+/// Reads an OpenEXR file as parse_surface does.
 SurfaceModel read_surface_exr(const FileBytes& file);
 
 /// Weights of the own lobes, then normals and tangents: the maps of a file.

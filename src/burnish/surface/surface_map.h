@@ -53,7 +53,7 @@ class SurfaceMap {
   }
 
   using Value = std::array<float, kMaxMapChannels>;  ///< channels that the map has not are 0
-  /// Of one texel. Precondition: within the level.
+  /// Returns the value of one texel. Precondition: it is within the level.
   Value texel(int x, int y, std::size_t level = 0) const noexcept;
 
   /// Which texels a place lies between, and where: the same of all maps of one size.
@@ -66,9 +66,9 @@ class SurfaceMap {
     std::array<OfLevel, 2> levels;
     float fraction;  ///< from the first level to the second; 0: the second is not read
   };
-  /// Of finite u and v, as sample() has them.
+  /// Returns the place of finite u and v, as sample() takes them.
   Place place(double u, double v, double lod = 0) const noexcept;
-  /// Of one texel of level 0, unfiltered. Precondition: within the map.
+  /// Returns the place of one texel of level 0, unfiltered. Precondition: it is within the map.
   Place place_of_texel(int x, int y) const noexcept;
   /// sample() at a place of this map or another of its size.
   Value sample(const Place& place) const noexcept;
@@ -100,8 +100,8 @@ class SurfaceMap {
   std::vector<Level> levels_;
 };
 
-/// What texel i, of `count` along a side of a level, covers of the level before, `from_count` long: its first and the
-/// one behind its last. Of odd sides the last texel has three.
+/// The texels of the level before, `from_count` long, that texel i of `count` along a side covers: the first and the
+/// one behind the last. On odd sides the last texel covers three.
 struct CoveredTexels {
   int begin, end;
 };

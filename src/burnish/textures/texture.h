@@ -7,7 +7,7 @@
 
 namespace burnish {
 
-/// What a GPU holds, of one table mostly.
+/// The data of a GPU's texture, mostly of one table.
 struct Texture {
   TableFormat format = TableFormat::single;
   std::size_t channels = 1;  ///< 1 or 3

@@ -14,7 +14,7 @@
 
 namespace burnish {
 
-/// What others would do: "svd", "nd", "nmf", "dgf", and "analytic:" with one of fittable_models().
+/// The methods of others: "svd", "nd", "nmf", "dgf", and "analytic:" with one of fittable_models().
 std::span<const std::string_view> baseline_methods();
 
 struct BaselineOptions {

@@ -9,7 +9,7 @@
 
 namespace burnish {
 
-/// How a resampled BRDF is split into tables.
+/// The ways to split a resampled BRDF into tables.
 enum class Decomposition {
   svd,  ///< singular values, terms of both signs: least mean square [Kautz 1999]
   nd,   ///< normalized decomposition, one positive term in one pass [Kautz 1999]

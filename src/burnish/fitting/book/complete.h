@@ -8,10 +8,10 @@
 
 namespace burnish {
 
-/// What is believed of a material before it is measured, on one or two axes of colour; chosen by what the pairs
-/// make likeliest.
+/// The prior of a material before it is measured, on one or two axes of colour, chosen by what the pairs make
+/// likeliest.
 struct CompletionPrior {
-  /// Whether it is taken to be near one of the library's materials, whichever; else near their mean.
+  /// True: the material is near one of the library's materials, unknown which. False: it is near their mean.
   bool near_one = false;
   double spread = 1;    ///< how near: multiplies the deviations of the library's weights
   double residual = 1;  ///< multiplies the variance of what the book's components leave
@@ -21,7 +21,7 @@ struct CompletionPrior {
   friend bool operator==(const CompletionPrior&, const CompletionPrior&) = default;
 };
 
-/// How a completion went.
+/// The result of a completion.
 struct CompletionReport {
   std::size_t samples = 0;             ///< pairs above the horizon
   std::size_t used = 0;                ///< of these, evenly: at most kMaxCompletionPairs

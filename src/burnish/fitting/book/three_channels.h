@@ -17,7 +17,7 @@ inline TrainingSet in_three_channels(TrainingSet set) {
   return set;
 }
 
-/// Whether a book can have a part in it: one channel or three.
+/// Returns true if a book can have a part in it: one channel or three.
 constexpr bool book_takes(std::size_t channels) noexcept {
   return channels == 1 || channels == MaterialBook::kChannels;
 }

@@ -10,7 +10,7 @@ namespace burnish {
 
 struct GltfFit {
   GltfMaterial material;  ///< rounded to six decimals
-  /// As OpenPbrFit has them.
+  /// The figures are those of OpenPbrFit.
   FitSummary summary;
   int starts = 0;  ///< minimizations run
 };

@@ -15,8 +15,8 @@
 
 namespace burnish {
 
-/// What a BRDF does that a material does not: 1, 1, 0 and 1 of one that is the same. Nothing where the BRDF is not known
-/// at any of the directions; those that it does not know are left out.
+/// The effects of a BRDF that a material lacks: 1, 1, 0 and 1 for an identical one. Empty where the BRDF is known at
+/// none of the directions; unknown directions are left out.
 struct Unexplained {
   /// Light that returns to where it came from (wi = wo, 20 to 60 degrees), of the source over that of the material.
   std::optional<double> backscatter;
@@ -25,7 +25,7 @@ struct Unexplained {
   std::optional<double> rings;
   /// Greatest distance of the highlight's chromaticities (r, g, b over their sum; theta_h 0, theta_d to 75 degrees).
   std::optional<double> colour_shift;
-  /// How much more there is where half vectors lean across the tangent than where they lean along it (theta_h 10 to 40
+  /// The ratio of f where half vectors lean across the tangent to f where they lean along it (theta_h 10 to 40
   /// degrees, theta_d 15), of the source over that of the material.
   std::optional<double> grain;
 };
@@ -33,7 +33,7 @@ struct Unexplained {
 /// Compares the luminances, of all but grain means over four azimuths unless both are isotropic.
 Unexplained unexplained(BrdfRef source, BrdfRef material);
 
-/// What is to be known about a factored model beside a material.
+/// Figures of a factored model beside a material.
 struct FactoredBeside {
   std::size_t bytes = 0;
   ErrorFigures figures;

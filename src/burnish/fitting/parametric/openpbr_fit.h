@@ -34,10 +34,11 @@ struct OpenPbrFitOptions {
 /// inputs that say the same one is left; base_weight is 1. The same bits for every number of threads.
 OpenPbrFit fit_openpbr(const PicturePairs& pairs, const OpenPbrFitOptions& options = {});
 
-/// What fit_openpbr is measured by: the best of `count` >= 1 starts anywhere in the same ranges, every input varied.
-/// Hopeless ones are given up: on a third of the pixels each has 15 iterations, the better quarter 20 more, and the better
-/// twentieth of all goes, on all pixels, to where refine_openpbr ends; the best is the one whose pictures differ least.
-/// error_before is the least of these last beginnings. Seed 1 begins with the random starts of fit_openpbr.
+/// Fits from random starts, as a yardstick for fit_openpbr: returns the best of `count` >= 1 starts anywhere in the
+/// same ranges, with every input varied. The best is the one whose pictures differ least.
+/// Hopeless starts are given up. On a third of the pixels, each start has 15 iterations, and the better quarter 20
+/// more. The better twentieth of all goes, on all pixels, to where refine_openpbr ends. error_before is the least of
+/// these last beginnings. Seed 1 begins with the random starts of fit_openpbr.
 OpenPbrFit fit_openpbr_at_random(const PicturePairs& pairs, int count, std::uint64_t seed,
                                  const OpenPbrFitOptions& options = {});
 

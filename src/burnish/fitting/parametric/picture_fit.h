@@ -27,15 +27,15 @@ using MaterialsEval = std::function<void(Vec3 wi, Vec3 wo, std::span<double> f)>
 /// A material as a function of numbers.
 struct FittedMaterial {
   std::vector<FittedNumber> numbers;
-  /// How many numbers from one on are moved at once for their slopes: 1, or the 3 channels of a colour where each sees
-  /// its own alone.
+  /// Returns how many numbers, from one on, are moved at once for their slopes: 1, or the 3 channels of a colour
+  /// where each depends on its own alone.
   std::function<std::size_t(std::size_t number)> together;
   /// The materials at several points, side by side.
   std::function<MaterialsEval(std::vector<std::vector<double>> points)> at;
 };
 
-/// How long a minimization goes on, and how strongly numbers are drawn to their normal values: one that is a whole
-/// range off counts as an error of -20 log10(pull) dB.
+/// The length of a minimization, and the pull of numbers to their normal values: one that is a whole range off counts
+/// as an error of -20 log10(pull) dB.
 struct FitEffort {
   int max_iterations;
   double tolerance, pull;
@@ -47,14 +47,14 @@ struct FitEffort {
 LeastSquaresSolution fit_pictures(const PicturePairs& pairs, const FittedMaterial& material,
                                   std::vector<double> start, const FitEffort& effort);
 
-/// Where a minimization begins, and which of the material's inputs keep their values.
+/// The start of a minimization, and the inputs of the material that keep their values.
 template <class Material, class Inputs>
 struct FitStart {
   Material material;
   Inputs held;
 };
 
-/// Where one ended.
+/// The end of a minimization.
 template <class Material, class Inputs>
 struct FitTrial {
   Material material;
@@ -98,7 +98,7 @@ class FitSearch {
   Minimize minimize_;
 };
 
-/// Where the first of the trials go on.
+/// Returns the ends of the first `count` trials as starts for others.
 template <class Material, class Inputs>
 std::vector<FitStart<Material, Inputs>> best_of(const std::vector<FitTrial<Material, Inputs>>& trials,
                                                 std::size_t count) {
@@ -114,7 +114,7 @@ void add_starts(std::vector<FitStart<Material, Inputs>>& starts,
   starts.insert(starts.end(), further.begin(), further.end());
 }
 
-/// What a fit says of a trial whose material is `shown`: the beginning's cost as an error, and the pictures'.
+/// Returns the summary of a trial whose material is `shown`: the beginning's cost as an error, and the pictures'.
 FitSummary summary_of(const PicturePairs& pairs, BrdfRef shown, double first_cost, int iterations,
                       bool converged);
 
@@ -128,7 +128,7 @@ inline double round6(double x) {
   return std::round(x * 1e6) / 1e6;
 }
 
-/// What a colour is guessed at: a diffuse albedo that shows the mean of the pictures, in [.02, .98].
+/// Returns the first guess of a colour: a diffuse albedo that shows the mean of the pictures, in [.02, .98].
 Rgb mean_color(const PicturePairs& pairs);
 
 /// Every n-th of the pixels.

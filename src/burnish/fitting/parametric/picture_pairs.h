@@ -7,7 +7,7 @@
 
 namespace burnish {
 
-/// What the three lit spheres (metrics/sphere_images.h) show of a BRDF, at few places that crowd at the highlights: a
+/// The three lit spheres (metrics/sphere_images.h) of a BRDF, at few places that crowd at the highlights: a
 /// quadrature of the pictures' squared error.
 struct PicturePairs {
   std::vector<DirectionPair> pairs;  ///< lit and seen
@@ -16,7 +16,7 @@ struct PicturePairs {
   std::vector<double> shown;         ///< (exposure f cos theta_i)^(1/2.2), not clamped; three a pair
   double exposure = 1;
 
-  /// Whether all channels are alike.
+  /// Returns true if all channels are equal.
   bool grey() const noexcept;
 
   /// (exposure f cos theta_i)^(1/2.2) of another BRDF of three channels.

@@ -182,7 +182,7 @@ void differentiate(Slots slots, std::size_t parts, const float* totals, float* f
     });
   });
   for (std::size_t s = 0; s < slots.size(); ++s) {
-    // Where all lanes share one table, the sum of their slopes is the table's.
+    // If all lanes share one table, the sum of their slopes is the table's.
     if (!slots[s].one_table) continue;
     float* factor = factors + s * kBlockLanes;
     for (std::size_t i = 0; i < kBlock; ++i, factor += kLanes) {

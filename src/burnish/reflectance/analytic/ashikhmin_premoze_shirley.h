@@ -20,7 +20,7 @@ class ProjectedAreaTable {
   /// h.z alone, and so shall the table. Throws Error where it is negative, not finite or zero everywhere.
   ProjectedAreaTable(const std::function<double(Vec3)>& density, bool isotropic);
 
-  /// What makes density times h.z integrate to 1.
+  /// Returns the factor that makes density times h.z integrate to 1.
   double density_scale() const noexcept { return density_scale_; }
 
   /// sigma(w) of the normalized density, at least w.z (no less can face w, unless D leans to one side).

@@ -5,9 +5,10 @@
 
 namespace burnish {
 
-/// What X, Y and Z see of the light that interferes in a thin film: Gaussians over the wavenumber, whose Fourier
-/// transforms are value sqrt(2 pi variance) / kFilmNorm cos(position phase + shift) exp(-variance phase^2) of the phase
-/// 2 pi times the path difference in metres. Constants of the paper's code. Source: [Belcour 2017, section 4].
+/// The response of X, Y and Z to light that interferes in a thin film: Gaussians over the wavenumber. Their Fourier
+/// transforms are value sqrt(2 pi variance) / kFilmNorm cos(position phase + shift) exp(-variance phase^2), where
+/// phase is 2 pi times the path difference in metres. The constants are those of the paper's code. Source: [Belcour
+/// 2017, section 4].
 struct FilmResponse {
   std::size_t channel;  ///< 0, 1 and 2 of X, Y and Z
   double value, position, variance;

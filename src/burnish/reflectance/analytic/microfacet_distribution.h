@@ -40,7 +40,7 @@ struct GgxDistribution {
 
   double density(Vec3 h) const noexcept;
   bool isotropic() const noexcept { return alpha_x == alpha_y; }
-  /// As BeckmannDistribution::projected_area.
+  /// Returns the area as BeckmannDistribution::projected_area does.
   double projected_area(Vec3 w) const noexcept;
 };
 

@@ -125,7 +125,7 @@ class OpenPbr {
   template <class T>
   struct Parts;
 
-  /// What a value is put together from, in the order in which one needs another.
+  /// The parts of a value, in the order in which one needs another.
   enum Part { film, facets, base_diffuse, gloss, metal, coating, fuzz, part_count };
   using PartSet = std::bitset<part_count>;
 

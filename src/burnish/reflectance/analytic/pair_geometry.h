@@ -15,8 +15,8 @@ namespace burnish {
 /// finite. No other direction is changed.
 inline constexpr double kMinCosine = 1e-12;
 
-/// What the analytic models need of a pair of directions above the horizon, symmetric in the two to the last
-/// bit.
+/// The quantities that the analytic models need of a pair of directions above the horizon, symmetric in the two to
+/// the last bit.
 struct PairGeometry {
   Vec3 wi, wo;
   double cos_i, cos_o;  ///< to the normal, at least kMinCosine

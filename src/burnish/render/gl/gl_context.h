@@ -4,7 +4,7 @@
 
 namespace burnish {
 
-/// What may draw.
+/// The devices that may draw.
 enum class GlDevice {
   any,  ///< what Mesa takes without a surface, which may be llvmpipe beside a GPU of another driver; else a GPU
   gpu_first,  ///< a GPU that EGL lists, where one has OpenGL 4.5; else what Mesa takes
@@ -20,11 +20,11 @@ class GlContext {
   GlContext(const GlContext&) = delete;
   GlContext& operator=(const GlContext&) = delete;
 
-  /// What draws: "llvmpipe (LLVM 15.0.6, 256 bits)".
+  /// Returns the name of the renderer, such as "llvmpipe (LLVM 15.0.6, 256 bits)".
   std::string renderer() const;
   /// Its OpenGL and driver: "4.5 (Core Profile) Mesa 22.3.6".
   std::string version() const;
-  /// Whether that is one of Mesa's renderers that run on the processor.
+  /// Returns true if the renderer is one of Mesa's that run on the processor.
   bool in_software() const;
 
  private:

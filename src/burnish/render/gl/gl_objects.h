@@ -10,7 +10,8 @@
 
 namespace burnish {
 
-/// What is uploaded to a texture: 2-D, 1-D where height is 0, 3-D where depth is not 0; clamped to the edge, one level.
+/// The data that is uploaded to a texture: 2-D, 1-D where height is 0, 3-D where depth is not 0; clamped to the edge,
+/// one level.
 struct GlTexture {
   std::string name;  ///< of its sampler in the shader
   int width = 1, height = 1, depth = 0;

@@ -20,8 +20,8 @@ struct LightShader {
   std::vector<GlTexture> textures;     ///< all of them filtered
 };
 
-/// What a factored BRDF reflects of an environment, by prefilter where it is isotropic, by tap and blur where
-/// it is not.
+/// The light of an environment that a factored BRDF reflects, by prefilter where it is isotropic, by tap and blur
+/// where it is not.
 class SurfaceLight {
  public:
   /// Takes a second or two. Throws Error as prefilter or tap do.

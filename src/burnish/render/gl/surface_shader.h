@@ -27,10 +27,10 @@ struct SurfaceShader {
   std::vector<MapTexture> maps{};
 };
 
-/// Of a factored BRDF; textures of `precision`. Throws Error as split_shader.
+/// Makes the shader of a factored BRDF; textures have `precision`. Throws Error as split_shader.
 SurfaceShader surface_shader(const FactoredBrdf& brdf, ShaderFilter filter, TableFormat precision);
 
-/// Of a surface, drawn over the meshes' texture coordinates. Throws Error as split_shader.
+/// Makes the shader of a surface, drawn over the meshes' texture coordinates. Throws Error as split_shader.
 SurfaceShader surface_shader(const SpatialBrdf& surface, ShaderFilter filter, TableFormat precision);
 
 /// GlRenderer's programs, without #version lines. Vertices have place, normal, tangent, side, a value and texture

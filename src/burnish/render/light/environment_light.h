@@ -78,7 +78,7 @@ struct LightRender {
   Image variance;  ///< of one sample, estimated from the same samples; 0 outside
 };
 
-/// How to render.
+/// Options of rendering.
 struct LightOptions {
   int size = 64;     ///< pixels, in [4, 4096]
   int samples = 64;  ///< a pixel, in [2, 2^24]

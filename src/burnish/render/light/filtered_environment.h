@@ -6,7 +6,7 @@
 
 namespace burnish {
 
-/// How finely an environment is blurred.
+/// The resolution of a blurred environment.
 struct BlurOptions {
   int side = 64;             ///< texels along a hemisphere's map, in [8, 512]
   int levels = 12;           ///< in [2, 32]

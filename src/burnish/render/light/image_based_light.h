@@ -12,19 +12,19 @@
 
 namespace burnish {
 
-/// How finely the light is tabulated.
+/// The resolution of the tabulated light.
 struct PrefilterOptions {
   int slices = 16;    ///< polar angles of the view, evenly in tan(theta_o / 2) from 0 to 1; in [2, 64]
   int side = 32;      ///< texels along a hemisphere's map, in [8, 512]
   int harmonics = 4;  ///< orders of the azimuth about a kernel's axis, in [0, 4]
 };
 
-/// What the light of an environment becomes under one lobe, but for the factors that depend on the view
-/// alone. The other factors times cos(theta_i) are a kernel about the axis that lies, in the plane of view
-/// and normal, at `axis[slice]` from the normal, away from the viewer: the mean direction of the kernel
-/// squared. The kernel is a sum of cos(m psi) k_m(gamma), and where the BRDF is not its own mirror image
-/// sin(m psi) l_m(gamma), in angle gamma and azimuth psi about that axis, so light from it is a sum of maps
-/// over the axis in the world.
+/// The light of an environment under one lobe, without the factors that depend on the view alone. The other factors
+/// times cos(theta_i) are a kernel about an axis. The axis lies in the plane of view and normal, at `axis[slice]`
+/// from the normal, away from the viewer: it is the mean direction of the kernel squared.
+/// The kernel is a sum of cos(m psi) k_m(gamma), and where the BRDF is not its own mirror image also of sin(m psi)
+/// l_m(gamma), in angle gamma and azimuth psi about that axis. So light from it is a sum of maps over the axis in the
+/// world.
 struct PrefilteredLobe {
   FactoredBrdf outside;      ///< one lobe: the factors of wo alone, with the scale and the maps'
   std::vector<double> axis;  ///< radians, one a slice

@@ -4,7 +4,7 @@
 
 namespace burnish {
 
-/// Of a vector of the world its image in the half of a parabolic pair that `axis` lies in (parabolic_pair.h).
+/// Returns the image of a vector of the world in the half of a parabolic pair that `axis` lies in (parabolic_pair.h).
 ExprVector in_half_of(const ExprVector& axis, const ExprVector& w);
 
 /// Texture coordinates of a direction of the world in a pair of maps of `side` texels a side.

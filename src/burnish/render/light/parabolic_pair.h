@@ -8,7 +8,7 @@ namespace burnish {
 /// is half 0 seen in a mirror that exchanges up and down. The outermost texels lie on the square around the
 /// horizon and continue the map beyond it, so that no border shows.
 
-/// Of a half, or into it.
+/// Turns a vector of the world into the frame of a half, or back.
 inline Vec3 in_half(int half, Vec3 w) noexcept {
   return half == 0 ? w : Vec3{w.x, -w.y, w.z};
 }

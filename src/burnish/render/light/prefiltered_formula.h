@@ -50,7 +50,7 @@ std::array<T, kMaps> harmonics(const T& c, const T& s) {
   return h;
 }
 
-/// Where a direction with y >= 0 lies in its parabolic map of `side` texels a side, in texels.
+/// Returns the place of a direction with y >= 0 in its parabolic map of `side` texels a side, in texels.
 template <class T>
 struct MapPlace {
   T x, y;

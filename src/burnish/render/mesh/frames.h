@@ -4,7 +4,7 @@
 
 namespace burnish {
 
-/// What a file tells of a mesh: triangles whose corners have places, and perhaps the rest.
+/// The mesh of a file: triangles whose corners have places, and perhaps the rest.
 struct RawMesh {
   std::vector<Vec3> positions;                  ///< three a triangle, corner after corner
   std::vector<Vec3> normals;                    ///< of the same corners, or empty
@@ -12,8 +12,8 @@ struct RawMesh {
   std::vector<std::array<double, 4>> tangents;  ///< of the same corners, x, y, z and side, or empty
 };
 
-/// What to do where a mesh has no normals: those of the triangles, or smooth ones, which weigh the triangles
-/// at a place by their angles.
+/// The normals of a mesh that has none: those of the triangles, or smooth ones, which weigh the triangles at a place
+/// by their angles.
 enum class MissingNormals { flat, smooth };
 
 /// Gives every corner a frame and joins corners that are the same. Given tangents are made orthogonal to the

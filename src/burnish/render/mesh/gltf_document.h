@@ -39,7 +39,7 @@ class GltfDocument {
                         const std::string& place, std::size_t below) const;
   /// Element i of a list of the root; throws Error unless it is an object.
   const nlohmann::json& element(const char* list, std::size_t i) const;
-  /// What accessor `index` names; throws Error where it does not fit its buffer or is not supported.
+  /// Returns the elements of accessor `index`. Throws Error where it does not fit its buffer or is not supported.
   GltfElements elements(std::size_t index, const std::string& user);
 
  private:

@@ -9,7 +9,7 @@
 
 namespace burnish {
 
-/// What a mesh file holds: a part for every material it names, in their order of appearance.
+/// The contents of a mesh file: a part for every material it names, in their order of appearance.
 struct MeshFile {
   std::vector<MeshPart> parts;
   std::vector<std::string> materials;  ///< their names, as the file has them; may be empty
