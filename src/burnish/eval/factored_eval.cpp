@@ -51,8 +51,8 @@ BURNISH_BEGIN_TARGET;
 
 constexpr std::size_t kMaxBlock = FactoredPlan::kMaxBlock;
 
-HWY_INLINE hn::Vec<DI> excess(
-    const Lane (&w)[6]) {  // the larger deviation from unit length of a pair's directions
+// Returns the larger deviation of a pair's directions from unit length.
+HWY_INLINE hn::Vec<DI> excess(const Lane (&w)[6]) {
   return hn::Max(excess_of(w[0], w[1], w[2]), excess_of(w[3], w[4], w[5]));
 }
 

@@ -10,8 +10,8 @@ namespace burnish {
 
 struct FactoredPlan;
 
-/// Direction pairs, one array a component, all of one length. wi and wo are unit vectors to 2^-22.
-/// Those whose squared length differs from 1 by more than 0.02 give not-a-number.
+/// Direction pairs, one array a component, all of one length. wi and wo are unit vectors to 2^-22. Vectors whose
+/// squared length differs from 1 by more than 0.02 give not-a-number.
 struct DirectionSpans {
   std::span<const float> wi_x, wi_y, wi_z, wo_x, wo_y, wo_z;
 

@@ -47,12 +47,11 @@ struct SamplerTables {
   std::span<const std::uint16_t> row_edges, cell_edges;
 };
 
-/// Draws directions nearly in proportion to f_r cos(theta_i), of all lobes at once: the root mean square of what
-/// it reflects towards wo is found over cells of half vectors when it is made, which is the mass that leaves weights
-/// the least second moment, and a draw is two searches in 16-bit tables and a closed map. Cells cover exactly the
-/// half vectors visible from wo whose mirror direction lies above the horizon, so none is wasted, and are narrow
-/// where the material has its highlights. Between the wo of the tables densities are interpolated. Satisfies
-/// DirectionSampler.
+/// Draws directions nearly in proportion to f_r cos(theta_i), of all lobes at once. When it is made, it finds the
+/// root mean square of the light reflected towards wo over cells of half vectors: the mass that gives weights the
+/// least second moment. A draw is two searches in 16-bit tables and a closed map. Cells cover exactly the half
+/// vectors visible from wo whose mirror direction lies above the horizon, so none is wasted, and are narrow where the
+/// material has its highlights. Between the wo of the tables densities are interpolated. Satisfies DirectionSampler.
 ///
 /// Made from any BRDF, factored or measured; one whose isotropic() is true is drawn alike on both sides of
 /// the plane of wo and the normal, by their mean: unbiased where they differ, with weights as uneven. Never

@@ -9,11 +9,10 @@ namespace burnish {
 /// A map of the half vectors that are visible from some wo onto a rectangle, in which the cells of a sampling
 /// table stand. With m = tan^2(theta_h / 2), along every azimuth
 ///   G(m) = share (1 + K) m / (m + K) + (1 - share) m,
-/// a highlight of width sqrt(K) beside the whole hemisphere, and the rectangle's v = G(m) / G(largest visible
-/// m). Its u is the azimuth in the metric |x'| + |y'| of the vector (x', y') = M (cos phi, sin phi), which
-/// needs no trigonometry; where M stretches, K = sharpness / |(x', y')|^2. Of isotropic BRDFs the azimuth is
-/// that from wo and half the circle does. Both directions of the map are closed forms
-/// (eval/visible_half-inl.h).
+/// a highlight of width sqrt(K) beside the whole hemisphere, and the rectangle's v = G(m) / G(largest visible m). Its
+/// u is the azimuth in the metric |x'| + |y'| of the vector (x', y') = M (cos phi, sin phi), which needs no
+/// trigonometry; where M stretches, K = sharpness / |(x', y')|^2. For isotropic BRDFs the azimuth is that from wo,
+/// and half the circle is enough. Both directions of the map are closed forms (eval/visible_half-inl.h).
 struct VisibleHalfMap {
   double sharpness = 0.01, share = 0.5;
   double xx = 1, xy = 0, yy = 1;  ///< M, symmetric, determinant 1

@@ -24,10 +24,10 @@ struct ExportOptions {
   std::optional<Environment> environment = {};
 };
 
-/// A factored BRDF as every target of `to`, each once; shaders but C++ bring their textures along. Throws
-/// Error as generate_shader does, for an environment that no target shows, half without a language that has
-/// it or with `exact`, and for glTF of other than 1 or 3 channels. gltf has the nearest material of glTF,
-/// usda the nearest OpenPBR and core material, which take seconds to find.
+/// A factored BRDF as every target of `to`, each once; shaders but C++ bring their textures along. Throws Error as
+/// generate_shader does, for an environment that no target shows, half without a language that has it or with
+/// `exact`, and for glTF of other than 1 or 3 channels. The target gltf has the nearest material of glTF, usda the
+/// nearest OpenPBR and core material, which take seconds to find.
 ExportedFiles export_model(const FactoredBrdf& brdf, const ExportOptions& options);
 
 }  // namespace burnish

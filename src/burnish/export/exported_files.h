@@ -69,7 +69,7 @@ struct ExportedShader {
 struct ExportedFiles {
   std::vector<ExportedFile> files;
   std::vector<ExportedShader> shaders;
-  /// What the tables of the target lose of the model, as convert reports it, each after its file's name.
+  /// Losses of tables that stand for the model, as convert reports them, each after its file's name.
   std::vector<std::string> losses;
 
   void lose(const std::string& file, std::span<const std::string> of_file) {

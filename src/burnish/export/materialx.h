@@ -10,11 +10,11 @@
 
 namespace burnish {
 
-/// A MaterialX 1.39 document of a factored BRDF, NAME.mtlx, and the files beside it: a material NAME whose BSDF
-/// node `burnish_NAME_bsdf` is defined there, for code in GLSL alone (targets genglsl, genessl and those that
-/// inherit from them), that code, NAME.mtlx.glsl, and what it reads, NAME.tables.exr and NAME.volumes.exr
-/// (the layers above each other), whose first row is at v = 0. Light from all around is reflected as `core`
-/// does it. Throws Error as generate_shader does. Source: [MaterialX 2024].
+/// Returns a MaterialX 1.39 document of a factored BRDF, NAME.mtlx, and the files beside it. The document defines a
+/// material NAME and its BSDF node `burnish_NAME_bsdf`, for code in GLSL alone (targets genglsl, genessl and those
+/// that inherit from them). That code is NAME.mtlx.glsl. It reads NAME.tables.exr and NAME.volumes.exr (the layers
+/// above each other), whose first row is at v = 0. Light from all around is reflected as `core` does it. Throws Error
+/// as generate_shader does. Source: [MaterialX 2024].
 std::vector<ExportedFile> materialx_files(const FactoredBrdf& brdf, const MetallicRoughness& core,
                                           ShaderFilter filter, const std::string& name);
 

@@ -7,9 +7,9 @@
 
 namespace burnish {
 
-/// Filtered reads of tables that one evaluation takes: distinct tables and places in them, whatever the number
-/// of lobes that multiply by what is read. The view's own lookups count too. Of a line, grid, disk or volume
-/// one read each, as a texture unit makes it.
+/// Filtered reads of tables that one evaluation takes: distinct tables and places in them, whatever the number of
+/// lobes that multiply by what is read. The view's own lookups count too. A line, grid, disk or volume takes one read
+/// each, as a texture unit makes it.
 std::size_t fetch_count(const FactoredBrdf& brdf);
 /// The same of a model without its numbers.
 std::size_t fetch_count(const ModelSpec& spec);

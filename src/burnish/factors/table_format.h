@@ -8,8 +8,8 @@
 
 namespace burnish {
 
-/// How the values of a table are stored. A texel is the values of one node, its channels side by side; m is
-/// the largest of them. Of a positive value within the format's range, and not below its smallest:
+/// The storage of a table's values. A texel is the values of one node, its channels side by side; m is the largest of
+/// them. For a positive value within the format's range, and not below its smallest:
 /// - half: 2 bytes a value, IEEE 754 binary16; off by at most 2^-11 of the value from 2^-14 to 65504, below
 ///   that by at most 2^-25;
 /// - single: 4 bytes a value, exact;

@@ -20,9 +20,9 @@ struct EnergyConservation {
   int iterations = 0;                                 ///< of the gain
 };
 
-/// Makes the directional albedo of every channel at most 1 + tolerance, for wi from the normal to 89.5
-/// degrees, with little change: a gain g <= 1 over directions multiplies the table that a lobe looks up by wi
-/// and by wo, which keeps reciprocal models reciprocal, and is below 1 only where the albedo then is 1,
+/// Makes the directional albedo of every channel at most 1 + tolerance, for wi from the normal to 89.5 degrees, with
+/// little change. A gain g <= 1 over directions multiplies the table that a lobe looks up by wi and by wo, so
+/// reciprocal models stay reciprocal. It is below 1 only where the albedo then is 1,
 ///     g(wi) (integral of f(wi, wo) g(wo) cos(theta_o)) = 1,
 /// found by a symmetric Sinkhorn iteration [SinkhornKnopp1967]. Lobes without such a table are scaled as a
 /// whole if they exceed 1 by themselves; and all lobes are, by what rounding to the tables' formats, their

@@ -133,8 +133,9 @@ struct FitOptions {
   bool symmetrize = true;        ///< fit the reciprocal part, see SymmetrizedBrdf
   bool conserve_energy = false;  ///< see burnish::conserve_energy
   bool score = true;             ///< measure what is stored on pairs that were not fitted
-  /// Called from the calling thread with what is done ("kriging the nodes", "sampling", "choosing lobes", "searching",
-  /// "fitting", "matching albedos", a baseline's method) and a rising share of it. What it throws ends the fit and reaches the caller.
+  /// Called from the calling thread with what is done ("kriging the nodes", "sampling", "choosing lobes",
+  /// "searching", "fitting", "matching albedos", a baseline's method) and a rising share of it. An exception that it
+  /// throws ends the fit and reaches the caller.
   std::function<void(std::string_view stage, double fraction)> progress = {};
 };
 

@@ -146,15 +146,14 @@ struct FitReport {
   std::optional<FitSummary> summary() const;
 };
 
-/// A JSON object in one line, the notes that a model's file keeps: source, source_format, symmetrized; of one
-/// lobe samples, smooth, floor, reweightings, rms_log_before, rms_log_after, iterations, stop_reason,
-/// smooth_shares, relative, relative_cross_validated; of several search, budget, fetches, fetch_trials,
-/// smooth, samples, lobes, loss, iterations, stop_reason, objective; of baselines method, budget,
-/// layouts_tried, error_before, error_after, starts, iterations, stop_reason; of completions samples, used,
-/// book_materials, nearest, brightness, colour, relative_at_samples, relative_left_out; of a chosen number of bytes
-/// budget_choice; of nodes target, nodes, node_covariance, node_held_out, node_fit, node_test, node_expected; then
-/// conserve_energy, psnr, ssim, relative, rms_log, log_cos and negative_lobes. What there is none of is left
-/// out; what is not finite is null.
+/// A JSON object in one line, the notes that a model's file keeps: source, source_format, symmetrized; of one lobe
+/// samples, smooth, floor, reweightings, rms_log_before, rms_log_after, iterations, stop_reason, smooth_shares,
+/// relative, relative_cross_validated; of several search, budget, fetches, fetch_trials, smooth, samples, lobes,
+/// loss, iterations, stop_reason, objective; of baselines method, budget, layouts_tried, error_before, error_after,
+/// starts, iterations, stop_reason; of completions samples, used, book_materials, nearest, brightness, colour,
+/// relative_at_samples, relative_left_out; of a chosen number of bytes budget_choice; of nodes target, nodes,
+/// node_covariance, node_held_out, node_fit, node_test, node_expected; then conserve_energy, psnr, ssim, relative,
+/// rms_log, log_cos and negative_lobes. Absent figures are left out; what is not finite is null.
 std::string to_json(const FitReport& report);
 
 }  // namespace burnish

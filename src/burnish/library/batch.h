@@ -46,9 +46,9 @@ struct BatchSummary {
   std::optional<double> seconds_left = {};
 };
 
-/// Fits materials one after the other and beside each other, each with the bits of fit() alone, whatever the number of
-/// threads. As many as there are threads are fitted at once, fewer where their memory would not fit; threads that are
-/// left, at the end above all, help within fits. In the folder:
+/// Fits materials one after the other and beside each other, each with the bits of fit() alone, whatever the number
+/// of threads. One fit runs on each thread at once, fewer where their memory would not fit; threads that are left, at
+/// the end above all, help within fits. In the folder:
 ///
 /// - models/NAME.burnish (.exr, .json), pictures/NAME.png, exports/NAME/...: written under other names first and renamed
 ///   when the journal has their digests, so what stands there is whole;
@@ -67,10 +67,10 @@ class Batch {
   Batch(const Batch&) = delete;
   Batch& operator=(const Batch&) = delete;
 
-  /// The next material that is done, in the order they come; each once. Waits for it. After the last one, when table and
-  /// page are made, nothing. What is wrong with a material is in its record; what is wrong with the folder (full, gone,
-  /// not to be written) ends the batch and is thrown as Error, by every later call too. `waiting` is called ten times a
-  /// second meanwhile; what it throws reaches the caller, and the batch goes on.
+  /// The next material that is done, in the order they come; each once. Waits for it. After the last one, when table
+  /// and page are made, nothing. A fault of a material is in its record. A fault of the folder (full, gone, not to be
+  /// written) ends the batch and is thrown as Error, by every later call too. `waiting` is called ten times a second
+  /// meanwhile; an exception that it throws reaches the caller, and the batch goes on.
   std::optional<MaterialRecord> next(const std::function<void()>& waiting = {});
 
   /// Returns the summary of the materials that next() has given out.

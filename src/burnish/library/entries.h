@@ -14,12 +14,14 @@ struct LibraryEntry {
   friend bool operator==(const LibraryEntry&, const LibraryEntry&) = default;
 };
 
-/// The materials of a list or of a folder. A list is a text with an argument a line; empty lines and those that start
-/// with # are skipped, files are named as from the working directory. Of a folder it is every regular file below it, by
-/// name, without those whose name or whose folder's name starts with a dot, without `others`, such as the file or
-/// folder that results go to, without folders in which a batch worked, and without what is no measurement: other texts,
-/// pictures, lists, by their content where no name such as paint.binary says more. Their paths go to `skipped`. Names come of the arguments: a file's
-/// without its ending, what stands behind a #, an analytic BRDF as it is; names that meet get "-2", "-3" and so on.
+/// Returns the materials of a list or of a folder. A list is a text with an argument a line; empty lines and those
+/// that start with # are skipped, and files are named as from the working directory.
+/// In a folder, every regular file below it is a material, by name. Left out are files whose name or whose folder's
+/// name starts with a dot, `others`, such as the file or folder that results go to, and folders in which a batch
+/// worked. Files that are no measurement are left out too, and their paths go to `skipped`: other texts, pictures,
+/// lists, judged by their content where no name such as paint.binary says more.
+/// Names are made of the arguments: a file's name without its ending, the text behind a #, an analytic BRDF as it is.
+/// Equal names get "-2", "-3" and so on.
 /// Throws Error where the place cannot be read, holds nothing, is a file that is no text, or a folder of results
 /// itself.
 std::vector<LibraryEntry> library_entries(const std::filesystem::path& list_or_folder,

@@ -56,7 +56,7 @@ inline constexpr std::array<RecordFigure, 6> kRecordFigures = {{{"psnr", &Materi
                                                                 {"albedo", &MaterialRecord::albedo}}};
 
 /// A JSON object in one line: name, argument, key; reason where it failed; else files (path, staged, sha256), format,
-/// model, bytes, fetches, psnr, ssim, relative, rms_log, log_cos, albedo, warnings; and seconds. What is not known is
+/// model, bytes, fetches, psnr, ssim, relative, rms_log, log_cos, albedo, warnings; and seconds. Unknown figures are
 /// left out.
 std::string to_json(const MaterialRecord& record);
 /// Reads the text that to_json wrote, and ignores `event` of a line of a journal. Throws Error where it is no such

@@ -82,7 +82,7 @@ constexpr UnitProduct unit_product(std::uint64_t a, std::uint64_t b, int drop, i
 }
 
 /// z / 2^fraction_bits in [0, 1] as a whole number of 1 / (2^output_bits - 1), rounded: within 0.5 + 2^-4 for
-/// fraction_bits = output_bits + 4. What hw/rtl/burnish_scale.sv computes.
+/// fraction_bits = output_bits + 4. hw/rtl/burnish_scale.sv computes the same.
 constexpr std::uint32_t unit_scale(std::uint64_t z, int fraction_bits, int output_bits) noexcept {
   const std::uint64_t half = std::uint64_t{1} << (fraction_bits - output_bits - 1);
   return static_cast<std::uint32_t>((z + half - (z >> output_bits)) >> (fraction_bits - output_bits));

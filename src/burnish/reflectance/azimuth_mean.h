@@ -11,8 +11,8 @@ namespace burnish {
 /// directions about the normal, evenly over the circle. Rotations for which the source knows nothing are left
 /// out; unknown where all are. Isotropic sources give their own values. Channels: at most kMaxChannels.
 ///
-/// With `exchange`, every second rotation exchanges wi and wo: the mean over both orders for no more
-/// evaluations than one takes. Of isotropic sources it is SymmetrizedBrdf's.
+/// With `exchange`, every second rotation exchanges wi and wo: the mean over both orders for no more evaluations than
+/// one takes. For isotropic sources it is SymmetrizedBrdf's.
 class AzimuthMean {
  public:
   static constexpr int kTurns = 36, kMaxChannels = 1024;

@@ -54,7 +54,7 @@ concept SpanBrdf = Brdf<T> && requires(const T& brdf, std::span<const DirectionP
 };
 // clang-format on
 
-/// A non-owning reference to any Brdf. Of a span the indirection is paid once, not once a direction.
+/// A non-owning reference to any Brdf. A span pays the indirection once, not once for each direction.
 class BrdfRef {
  public:
   // clang-format off

@@ -6,9 +6,9 @@
 
 namespace burnish {
 
-/// Draws directions for a material as if it were GGX: with probability `share` the mirror of wo about a
-/// visible normal of the distribution, otherwise in proportion to the cosine. What lies below the horizon is
-/// lost. Source: [Heitz 2018], drawn by the spherical cap [Dupuy 2023].
+/// Draws directions for a material as if it were GGX: with probability `share` the mirror of wo about a visible
+/// normal of the distribution, otherwise in proportion to the cosine. Directions below the horizon are lost. Source:
+/// [Heitz 2018], drawn by the spherical cap [Dupuy 2023].
 struct GgxProxy {
   GgxDistribution distribution;
   double share = 1;

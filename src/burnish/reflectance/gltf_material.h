@@ -9,11 +9,12 @@
 namespace burnish {
 
 /// A material of glTF 2.0 with the extensions KHR_materials_ior, _specular, _anisotropy, _iridescence, _sheen and
-/// _clearcoat, under their names: a coat over sheen over a mixture of metal and dielectric, all of GGX facets. What lies
-/// below loses the greatest channel of what is reflected above. A film has Schlick's factors and two orders of
-/// interference [Belcour 2017]; sheen is the "Charlie" distribution with its own masking, what lies below scaled by its
-/// directional albedo [Estevez 2017]. Not reciprocal: the coat's factor sees the viewer alone. Colours are linear Rec.
-/// 709. Channels: 3. Source: [glTF 2021] and the extensions' texts, their implementation notes included.
+/// _clearcoat, under their names: a coat over sheen over a mixture of metal and dielectric, all of GGX facets. A
+/// lower layer loses the greatest channel of the light that is reflected above it. A film has Schlick's factors and
+/// two orders of interference [Belcour 2017]; sheen is the "Charlie" distribution with its own masking, what lies
+/// below scaled by its directional albedo [Estevez 2017]. Not reciprocal: the coat's factor sees the viewer alone.
+/// Colours are linear Rec. 709. Channels: 3. Source: [glTF 2021] and the extensions' texts, their implementation
+/// notes included.
 struct GltfMaterial {
   Rgb base_color = 1;    ///< in [0, 1]
   double metallic = 1;   ///< in [0, 1]

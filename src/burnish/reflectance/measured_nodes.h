@@ -20,9 +20,9 @@ namespace burnish {
 struct MeasuredNodes {
   Samples samples;              ///< f_r in 1/sr as stored, negative values kept
   std::vector<double> weights;  ///< one a node, > 0: 1, or of patches how much of both hemispheres they are
-  /// One a node. Nodes that are one measurement have one number: of an RGL table mirror twins, which it stores both; of
-  /// other sources what rotation about the normal, reflection (both if isotropic) and exchange of the directions lead
-  /// to one another. What holds nodes out holds all of a group out.
+  /// One a node. Nodes that are one measurement have one number: of an RGL table mirror twins, which it stores both;
+  /// of other sources what rotation about the normal, reflection (both if isotropic) and exchange of the directions
+  /// lead to one another. Whoever holds nodes out holds all of a group out.
   std::vector<std::uint32_t> groups;
   /// One a node, 0 or 1: a checkerboard over the rows and columns of an RGL slice, in which mirror twins fall
   /// together; of other sources a coin for each group.

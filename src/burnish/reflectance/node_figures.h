@@ -32,9 +32,9 @@ std::vector<PairError> node_errors(const MeasuredNodes& nodes, BrdfRef model,
 /// Throws Error as node_errors, or where no node is left to score.
 NodeFigures node_figures(const MeasuredNodes& nodes, BrdfRef model, const NodeScoring& scoring = {});
 
-/// Figures of KrigedNodes at nodes that it was not made from: groups are dealt to `folds` hands, and each hand is
-/// predicted from the others. Of many nodes a part is judged, the same whatever the covariance. folds >= 2.
-/// Throws Error as KrigedNodes and node_figures.
+/// Figures of KrigedNodes at nodes that it was not made from (cross-validation): groups are dealt to `folds` folds,
+/// and each fold is predicted from the others. Where there are many nodes, a part of them is scored, the same for
+/// every covariance. folds >= 2. Throws Error as KrigedNodes and node_figures.
 NodeFigures held_out_figures(const MeasuredNodes& nodes, const LogCovariance& covariance, int folds = 4);
 
 /// The same with incidences left out, all nodes of one together, two or more apart; the first and the last never are.

@@ -65,13 +65,16 @@ struct Measurement {
 std::vector<ComparedFigures> compare_models(const Scorer& scorer, std::span<const ComparedModel> models,
                                             const Measurement* measurement = nullptr);
 
-/// JSON list of objects: model, bytes (null if unknown), log_cos, relative, rms_log, mean_abs_log, psnr (null
-/// for equal pictures, where it is infinite), ssim, psnr_of_disc (likewise), unknown_fraction, unknown_pixels, albedo (a list of
-/// theta_i_deg, phi_i_deg, reference and model, one number a channel, reference_unknown_fraction), and note
-/// if there is one. Of a measurement also nodes (count, log_cos, relative, rms_log, rms, and the same as
-/// itself), of scattered samples expected (relative, from_theta_i_deg, and the same as itself: json_of(ExpectedError)),
-/// and measurement (repeated, log_cos, relative, rms_log, rms, psnr, ssim, negative_share, negative_rms,
-/// held_out and held_out_incidences, each with the figures of nodes).
+/// Returns a JSON list of objects with these members:
+/// - model, bytes (null if unknown), log_cos, relative, rms_log, mean_abs_log;
+/// - psnr (null for equal pictures, where it is infinite), ssim, psnr_of_disc (likewise), unknown_fraction,
+///   unknown_pixels;
+/// - albedo, a list of theta_i_deg, phi_i_deg, reference and model, one number a channel, reference_unknown_fraction;
+/// - note, if there is one;
+/// - for a measurement, nodes (count, log_cos, relative, rms_log, rms, and the same as itself);
+/// - for scattered samples, expected (relative, from_theta_i_deg, and the same as itself: see json_of(ExpectedError));
+/// - for a measurement, measurement (repeated, log_cos, relative, rms_log, rms, psnr, ssim, negative_share,
+///   negative_rms, held_out and held_out_incidences, each with the figures of nodes).
 std::string to_json(std::span<const ComparedFigures> figures, const Measurement* measurement = nullptr);
 
 /// Returns a JSON list of objects about the nodes alone: model, bytes (null if unknown), count, log_cos, relative,

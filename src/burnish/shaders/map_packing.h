@@ -19,7 +19,7 @@ struct MapTexture {
   TableFormat format = TableFormat::unorm8;  ///< or half
   TexelBlocks blocks = TexelBlocks::none;
   double block_rms = 0;  ///< what blocks lose: the root of the mean square of level 0, of numbers up to 1
-  /// [y][x][4], bytes or little-endian halves; or blocks of pairs. What no map has is 0.
+  /// [y][x][4], bytes or little-endian halves; or blocks of pairs. Components without a map are 0.
   std::vector<std::vector<std::byte>> levels;
 };
 

@@ -50,12 +50,11 @@ ShadingFrame frame_about(Vec3 normal, Vec3 tangent) noexcept;
 /// the surface where the frame is the same, and reciprocal as the lobes are. One or three channels.
 class SpatialBrdf {
  public:
-  /// Throws Error unless there are 1 to kMaxSurfaceLobes lobes of one or three channels, a weight map for each of one
-  /// channel or the lobes', and every map has the same size, weights no negative values, and normals and tangents two
-  /// channels of halves within their ranges.
-  /// The last lobes may be widened ones, see with_widened_lobes: no maps are given for them, but normals have to be.
-  /// Their weights are made: some in mip levels alone, and their lobes have so much less there.
-  /// Those of a lobe stand together, by rising variance.
+  /// Throws Error unless there are 1 to kMaxSurfaceLobes lobes of one or three channels, and a weight map for each,
+  /// of one channel or the lobes'. Every map must have the same size. Weights must not be negative; normals and
+  /// tangents must be two channels of halves within their ranges. The last lobes may be widened ones, see
+  /// with_widened_lobes: no maps are given for them, but normals have to be. Their weights are made: some in mip
+  /// levels alone, and their lobes have so much less there. The weights of a lobe stand together, by rising variance.
   SpatialBrdf(FactoredBrdf lobes, SurfaceMaps maps, std::vector<WidenedLobe> widened = {});
 
   std::size_t channels() const noexcept { return lobes_.channels(); }

@@ -18,12 +18,11 @@ struct Texture {
   std::vector<std::vector<float>> levels;
 };
 
-/// The table as it is, texel (x, y) node (x, y), of a volume (x, y, z). With `mips` levels follow down to one
-/// texel, each value the mean of the factor over the texel's footprint in the measure of the directions it
-/// stands for: solid angle of the hemisphere (line, disk), product of the directions' solid angles (grid,
-/// volume). What lies beyond the horizon (corners of a disk's square, outer halves of border texels) has no
-/// weight, so borders do not bleed inwards; footprints all beyond it take the plain mean. Throws Error for
-/// channels other than 1 or 3.
+/// The table as it is, texel (x, y) node (x, y), of a volume (x, y, z). With `mips` levels follow down to one texel,
+/// each value the mean of the factor over the texel's footprint in the measure of the directions it stands for: solid
+/// angle of the hemisphere (line, disk), product of the directions' solid angles (grid, volume). Areas beyond the
+/// horizon (corners of a disk's square, outer halves of border texels) have no weight, so borders do not bleed
+/// inwards; footprints all beyond it take the plain mean. Throws Error for channels other than 1 or 3.
 Texture make_texture(const Table& table, bool mips);
 
 /// A line or disk resampled into a cube map [HomomorphicBrdf, sec. 4]: the centre of a texel has the table's

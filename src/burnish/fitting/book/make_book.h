@@ -40,8 +40,9 @@ BookMaterial book_material(const Source& source, const std::string& name, std::a
 
 /// Principal components of the materials' logarithms, of each axis of colour on its own, each node as heavy as
 /// pictures and pairs that are spread over all directions make it; components are rounded to bytes and the weights
-/// found by least squares after that. As many components as the bytes allow and there are materials but one. The
-/// same bits whatever the number of threads. Throws Error for fewer than three materials, or none of that size.
+/// found by least squares after that. There are as many components as the bytes allow, and at most one fewer than
+/// materials. The same bits whatever the number of threads. Throws Error for fewer than three materials, or none of
+/// that size.
 MaterialBook make_book(std::array<int, 3> sides, const std::vector<BookMaterial>& materials,
                        const BookOptions& options);
 

@@ -60,8 +60,8 @@ Eigen::VectorXd symmetric_times(const SparseTriangle& matrix, const TriangleRuns
       sum += dot(values + run.at, v.data() + run.column, run.length);
       subtract(product.data() + run.column, -v[i], values + run.at, run.length);
     }
-    product[i] +=
-        sum - values[matrix.outerIndexPtr()[i + 1] - 1] * v[i];  // less the diagonal, which both added
+    // Both added the diagonal, which counts once.
+    product[i] += sum - values[matrix.outerIndexPtr()[i + 1] - 1] * v[i];
   }
   return product;
 }

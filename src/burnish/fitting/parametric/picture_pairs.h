@@ -26,8 +26,8 @@ struct PicturePairs {
   double mean_squared_error(std::span<const double> other, double dim = 1) const noexcept;
 };
 
-/// Places of a source of 1 or 3 channels that it knows. Of isotropic sources half of each sphere. `exposure` as
-/// sphere_exposure.
+/// Places of a source of 1 or 3 channels that it knows. For isotropic sources they cover half of each sphere.
+/// `exposure` as sphere_exposure.
 PicturePairs picture_pairs(BrdfRef source, double exposure);
 
 }  // namespace burnish

@@ -16,10 +16,11 @@ struct TexelMaterials {
   double psnr = 0;
 };
 
-/// Finds them by least squares over the pixels of lit spheres, weighted about as a square root would show them: all that
-/// it takes of a texel are its lobes' products with each other and with GltfMaterial at a grid of roughnesses, so texels
-/// are found in microseconds. What white is, and which of two materials as near is taken, are those of groups of texels.
-/// Frames are the texel's own. The same for any number of threads. Source: [glTF 2021], appendix B, as GltfMaterial.
+/// Finds them by least squares over the pixels of lit spheres, weighted about as a square root would show them: all
+/// that it takes of a texel are its lobes' products with each other and with GltfMaterial at a grid of roughnesses,
+/// so texels are found in microseconds. Groups of texels decide what white is, and which of two equally near
+/// materials is taken. Frames are the texel's own. The same for any number of threads. Source: [glTF 2021], appendix
+/// B, as GltfMaterial.
 TexelMaterials nearest_materials(const SpatialBrdf& surface);
 
 }  // namespace burnish

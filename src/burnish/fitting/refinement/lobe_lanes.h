@@ -78,8 +78,8 @@ class LobeLanes {
   Block block() const;
   /// Computes factors, products and totals of a block of one channel.
   void evaluate(const Values& values, std::size_t block, std::size_t channel, Block& at) const noexcept;
-  /// Turns products into shares of the total, and factors into d ln(total) / d factor. Of one table, the
-  /// first lane has the sum.
+  /// Turns products into shares of the total, and factors into d ln(total) / d factor. For one table, the first lane
+  /// has the sum.
   void differentiate(Block& at) const noexcept;
   /// Adds amounts times the transposed row of each pair, `factor` being slopes by the lookups, to `sums`.
   void add_transposed(const Block& at, const float* amounts, std::size_t block, std::size_t channel,

@@ -68,8 +68,8 @@ class RefineSystem {
   /// Slope and diagonal without the matrix. Its factor J has the rows curvature^(1/2) d ln f^ / dx.
   struct GaussNewtonFactor {
     Eigen::VectorXd gradient;
-    Eigen::VectorXd
-        diagonal;  ///< of the matrix, without the cross terms of one row's lookups that share an unknown
+    /// Diagonal of the matrix, without the cross terms of one row's lookups that share an unknown.
+    Eigen::VectorXd diagonal;
     LobeLanes::Values values;
     /// curvature^(1/2) times the lobes' shares of f^, as LobeLanes::times takes them.
     AlignedVector<float> shares;

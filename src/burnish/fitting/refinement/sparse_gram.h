@@ -13,10 +13,10 @@
 
 namespace burnish {
 
-/// The Gauss-Newton matrix of one channel of a model with volumes, formed whole: few pairs of nodes meet in a pair
-/// of directions. Of a volume that is looked up once, pairs add to sums of its cells: the product of two corners'
-/// weights is one, over the axes, of (1-f)^2, f(1-f), f^2. Of two tables, to each node of the larger belongs the
-/// range of the smaller's nodes that it meets.
+/// The Gauss-Newton matrix of one channel of a model with volumes, formed whole: few pairs of nodes meet in a pair of
+/// directions. For a volume that is looked up once, pairs add to sums of its cells: along each axis, the product of
+/// two corners' weights is (1-f)^2, f(1-f) or f^2. For two tables, each node of the larger has the range of the
+/// smaller's nodes that it meets.
 class SparseGram {
  public:
   /// Returns nothing for models without volumes, of several channels, of many lookups, and where too many nodes meet.

@@ -44,8 +44,8 @@ struct TrainingSet {
 struct TrainingOptions {
   std::size_t pictures = 20'000;    ///< pixels
   std::size_t directions = 60'000;  ///< pairs spread over all directions
-  /// Half of the pixels have theta_h = pi/2 u^2, all are weighted as if they were uniform on the disk, and
-  /// the exposure counts those in the dark too.
+  /// Half of the pixels have theta_h = pi/2 u^2. All are weighted as if they were uniform on the disk, and the
+  /// exposure counts those in the dark too.
   bool crowded = false;
   std::uint64_t seed = 1;
   bool spread_phi_h = false;  ///< turn pairs of isotropic sources about the normal, which 2-D tables need
@@ -55,10 +55,10 @@ struct TrainingOptions {
 /// - pixels uniform on the visible disk of a sphere seen from afar, under a light whose angle to the view is
 ///   uniform in [0, 75] degrees, as long as both cosines are above 0.01; crowded ones as the option says, as
 ///   long as both are above 0.001;
-/// - pairs with theta_d, phi_d and phi_h uniform and theta_h half uniform, half pi/2 u^2, weighted as if it
-///   were uniform, as long as both cosines are above 0.05, and beside those asked for the ones that come
-///   up with both above 0.005, a tenth of the weight: what hardly counts is kept from running away.
-/// Pairs of which the source knows nothing are left out. Throws Error if nothing is left. No albedos.
+/// - pairs with theta_d, phi_d and phi_h uniform and theta_h half uniform, half pi/2 u^2, weighted as if it were
+///   uniform, as long as both cosines are above 0.05. Beside those asked for, pairs that come up with both above
+///   0.005 are kept with a tenth of the weight, so that the model stays bounded there.
+/// Pairs that the source does not know are left out. Throws Error if nothing is left. No albedos.
 TrainingSet draw_training_set(BrdfRef source, const TrainingOptions& options);
 
 /// Returns the albedos of a source's raw values (see BrdfRef::unclamped) under light from 0 to 70 degrees, for
