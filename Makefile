@@ -154,6 +154,8 @@ format-check: test-deps
 
 docs-check:
 	@tests/docs/check.py
+	@tests/docs/comments.py --self-test
+	@tests/docs/comments.py
 	@docs/api.py --check
 
 include-check:

@@ -28,7 +28,7 @@ std::size_t baseline_bytes(const BaselineBrdf& brdf) noexcept;
 /// Returns the tables in one line, such as "u(theta_h 32, theta_d 8) v(phi_d 5), 2 terms".
 std::string baseline_expression(const BaselineBrdf& brdf);
 
-/// JSON {kind, parameters, tables, notes}. parse_baseline restores it to the last bit.
+/// JSON {kind, parameters, tables, notes}. parse_baseline restores the baseline to the last bit.
 std::string format_baseline(const Baseline& baseline);
 
 /// True if the text's first character that is no blank opens a JSON object.

@@ -12,7 +12,7 @@ namespace burnish {
 /// The file of a book, CBOR [RFC8949]: ["burnish book", version, sides, axes, names, weights]. sides: nodes along
 /// theta_h, theta_d and phi_d. An axis of colour: [mean (halves), residual, number of components, components (signed
 /// bytes), [scales, steps, deviations]]. weights: signed bytes, those of each material in turn. parse_book restores
-/// it to the last bit.
+/// the book to the last bit.
 std::string format_book(const MaterialBook& book);
 
 /// Throws Error, naming file and offset, if the bytes are no such file or contradict themselves in any way. Memory

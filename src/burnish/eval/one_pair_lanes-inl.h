@@ -1,6 +1,5 @@
-// Per-target include: one pair of directions at a time. What a batch does with a direction a lane is done here
-// with lanes across projections, positions and channels, by the same formulas in the same order: the bits are
-// the same.
+// Per-target include: one pair of directions at a time. A batch has a direction in each lane; here the lanes are
+// projections, positions and channels. The formulas and their order are the same, so the bits are too.
 #if defined(BURNISH_EVAL_ONE_PAIR_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BURNISH_EVAL_ONE_PAIR_LANES_INL_H_
 #undef BURNISH_EVAL_ONE_PAIR_LANES_INL_H_

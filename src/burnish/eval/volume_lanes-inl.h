@@ -136,9 +136,10 @@ HWY_INLINE void eval_one_of_volume(const FactoredPlan& plan, const Vec3& wi, con
 #endif  // HWY_TARGET != HWY_SCALAR
 
 /// Many pairs, a vector of them in every turn: those whose places were found two turns before are looked up, while
-/// places, tangents and lengths of later ones are found. What waits for roots or divisions is done a turn after they
-/// began, so that instructions that wait do not fill the processor's queues; places have two turns, because single
-/// numbers are loaded from vectors that were stored. Nothing is called in the loop: all registers would go to memory.
+/// places, tangents and lengths of later ones are found. Steps that wait for roots or divisions come a turn after
+/// these began, so that waiting instructions do not fill the processor's queues; places have two turns, because
+/// single numbers are loaded from vectors that were stored. Nothing is called in the loop: all registers would go to
+/// memory.
 struct VolumePipeline {
   static constexpr std::size_t kAhead = 2 * kLanes, kRing = 4 * kLanes;  // pairs
   static constexpr std::size_t kFetched = FactoredPlan::kMaxBlock;       // so far ahead memory is asked for

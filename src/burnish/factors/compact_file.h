@@ -17,9 +17,9 @@ enum class CompactContent {
 /// The compact twin of the native file, `.burnish`: one CBOR item [RFC8949] that holds the form of the model and
 /// every table's bytes as `pack` makes them, ready for a texture. docs/guide/formats.md lists it item by item. Above
 /// the tables it is at most 256 bytes and 5 % of theirs for what `fit` makes of grey and RGB sources within a budget.
-/// Notes would not fit into that: they are left out unless asked for. parse_compact restores it to the last bit, and
-/// so do both ways between this file and format_model's. Throws Error if there are more than kMaxCompactItems tables,
-/// lobes or factors, or a name or notes are no UTF-8.
+/// Notes would not fit into that: they are left out unless asked for. parse_compact restores the written parts of the
+/// model to the last bit, and so do both ways between this file and format_model's. Throws Error if there are more
+/// than kMaxCompactItems tables, lobes or factors, or a name or notes are no UTF-8.
 std::string format_compact(const Model& model, CompactContent content = CompactContent::model);
 
 /// Throws Error, naming the offset, if the bytes are no such file or contradict themselves in any way; what

@@ -21,7 +21,7 @@ struct Model {
 /// The native file: a multi-part OpenEXR image, one part a table in the table's name, and in the first part a string
 /// attribute "burnish" with JSON: version, channels, tables with their formats, lobes, notes. A volume's layers stand
 /// one under another. Pixels are halves where halves hold the table's format exactly (half, rgb9e5), else floats, so
-/// that any viewer shows the tables. parse_model restores it to the last bit.
+/// that any viewer shows the tables. parse_model restores the model to the last bit.
 std::string format_model(const Model& model);
 
 /// The bytes of a model's file by the ending of its name: format_compact's (compact_file.h) for .burnish,

@@ -1,6 +1,7 @@
-// Projections and warps, each written once. No include guard: included in a namespace of its own for double
-// (the definition) and for nodes of expression graphs (text, costs, graphs for other programs), and again in
-// one per instruction set for vectors of floats, so that every copy is compiled with that set's flags.
+// Projections and warps, each written once. There is no include guard. The file is included in a namespace of its own
+// for double (the definition) and for nodes of expression graphs (text, costs, graphs for other programs). It is
+// included again in one per instruction set for vectors of floats, so that every copy is compiled with that set's
+// flags.
 //
 // T is the number type, V a vector of three of them with members x, y and z. T needs + - * /, max, min, sqrt,
 // abs, a constructor from double and, found by argument or declared before,
@@ -66,9 +67,9 @@ FORMULA_INLINE auto affine(const Projection& p, const V& wi, const V& wo) {
 /// and sum_length(), |wi + wo| = 2 cos theta_d. |wi - wo| = 2 sin theta_d; wi - wo is orthogonal to the half
 /// vector, so that its components along the half vector's frame lose no digits.
 
-/// x and y of `e` in the frame whose z axis is h and whose x axis lies in the plane of h and the normal
-/// [Rusinkiewicz 1998]: h = frame / size, of any length. Of e = wi - wo 2 sin theta_d (cos phi_d, sin phi_d),
-/// of e = wi half of that.
+/// x and y of `e` in the frame whose z axis is h and whose x axis lies in the plane of h and the normal [Rusinkiewicz
+/// 1998]: h = frame / size, of any length. For e = wi - wo it is 2 sin theta_d (cos phi_d, sin phi_d), for e = wi
+/// half of that.
 template <class T>
 struct Across {
   T x, y;
@@ -125,12 +126,11 @@ FORMULA_INLINE auto twist_angle(const Pair& pair) {
   return off_the_middle(kTwistScale, turn, half);
 }
 
-/// phi_d, folded: |cos phi_d| : |sin phi_d| = |d_z| |s| : |s_y d_x - s_x d_y|, so that
-/// r / den = tan(phi_d / 2) = |sin phi_d| / (1 + |cos phi_d|), without inverse functions. The products are not
-/// fused: what is left of one rounded and one exact would be an angle where both terms are 0. Of unit
-/// directions, whose s and d are at right angles, the length of both is |d| |s_xy|: a pair with a member
-/// azimuth_size() says that, where those roots are taken anyway. Directions off by e turn phi_d by
-/// e / (|d| |s_xy|) more then.
+/// phi_d, folded: |cos phi_d| : |sin phi_d| = |d_z| |s| : |s_y d_x - s_x d_y|, so that r / den = tan(phi_d / 2) =
+/// |sin phi_d| / (1 + |cos phi_d|), without inverse functions. The products are not fused: what is left of one
+/// rounded and one exact would be an angle where both terms are 0. For unit directions s and d are at right angles,
+/// so the length of both is |d| |s_xy|: a pair with a member azimuth_size() returns that, where those roots are taken
+/// anyway. Directions off by e turn phi_d by e / (|d| |s_xy|) more then.
 template <class Pair>
 FORMULA_INLINE auto folded_azimuth(const Pair& pair) {
   using T = decltype(pair.sum.x);
